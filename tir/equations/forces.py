@@ -1,0 +1,117 @@
+"""All six outputs, composed in the order of the source."""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+from tir.equations import aligning, lateral, longitudinal, overturning, rolling, stiffness, turn_slip
+from tir.equations.elementary import absolute
+from tir.equations.normalise import Inputs, camber_reduction, total_spin
+
+
+class Forces(NamedTuple):
+    """Forces [N] and moments [Nm] on the wheel in the contact frame W; scalars or arrays of the inputs' shape."""
+
+    Fx: Any
+    Fy: Any
+    Fz: Any
+    Mx: Any
+    My: Any
+    Mz: Any
+
+
+class State(NamedTuple):
+    """Everything else that the model knows of the operating condition."""
+
+    K_xk: Any  #: longitudinal slip stiffness [N]
+    K_ya: Any  #: cornering stiffness at this load, camber, pressure and spin [N/rad]
+    K_yg0: Any  #: camber stiffness at zero camber, normal mode [N/rad]
+    mu_x: Any  #: longitudinal friction coefficient [-]
+    mu_y: Any  #: lateral friction coefficient [-]
+    sigma_x: Any  #: longitudinal relaxation length [m]
+    sigma_y: Any  #: lateral relaxation length [m]
+    Re: Any  #: effective rolling radius [m]
+    omega: Any  #: speed of rotation [rad/s]
+    trail: Any  #: pneumatic trail [m]
+    residual_torque: Any  #: Mzr [Nm]
+    S_Hy: Any  #: horizontal shift of the side-force curve [rad]
+    S_Vy: Any  #: vertical shift of the side-force curve [N]
+    eps_gamma: Any  #: camber reduction factor [-]
+    phi: Any  #: total spin [1/m]
+    S_Hyphi: Any  #: shift of the side-force curve by spin [rad]
+    zeta0: Any
+    zeta1: Any
+    zeta2: Any
+    zeta3: Any
+    zeta4: Any
+    zeta5: Any
+    zeta6: Any
+    zeta7: Any
+    zeta8: Any
+
+
+class Loads(NamedTuple):
+    """The load as Mx, My and Re see it: limits change them differently from the Magic Formula proper."""
+
+    overturning: Any  #: [N]
+    rolling: Any  #: [N]
+
+
+def evaluate(p, q: Inputs, loads: Loads, kappa, Vx, Re, with_turn_slip: bool) -> tuple[Forces, State]:
+    """Steady-state MF 6.2 of a wheel that rolls forwards.
+
+    Parameters
+    ----------
+    p : object with the parameter names of the file as attributes
+    q : normalised inputs, inside the limits
+    loads : load for the overturning and rolling-resistance moments [N]
+    kappa, Vx : longitudinal slip [-] and speed [m/s, > 0] before limits, for the rolling resistance
+    Re : effective rolling radius [m]
+    with_turn_slip : whether spin acts through the zeta factors (design of USE_MODE's units digit 5) or not at all
+    """
+    K_xk = stiffness.longitudinal_slip_stiffness(p, q)
+    K_yg0 = stiffness.camber_stiffness(p, q)
+    mu_x = stiffness.longitudinal_friction(p, q)
+    mu_y = stiffness.lateral_friction(p, q, q.gamma)
+    K_ya0 = stiffness.cornering_stiffness(p, q, 0.0)
+    eps_gamma = camber_reduction(p, q.dfz)
+
+    spin = turn_slip.NO_SPIN
+    if with_turn_slip:
+        spin = turn_slip.spin(p, q, total_spin(q, eps_gamma, Re), eps_gamma, K_ya0, K_yg0)
+    K_ya = stiffness.cornering_stiffness(p, q, q.gamma, spin.zeta3)
+
+    G_xa = longitudinal.combined_weight(p, q)
+    G_yk = lateral.combined_weight(p, q)
+    side = lateral.pure(p, q, q.gamma, spin, K_ya, K_yg0, mu_y)
+    Fx = G_xa * longitudinal.pure(p, q, spin, K_xk, mu_x)  # 4.E50
+    Fy = G_yk * side.Fy + lateral.longitudinal_shift(p, q, mu_y, spin.zeta2)  # 4.E58
+
+    spin_torque = turn_slip.NO_SPIN_TORQUE
+    if with_turn_slip:
+        K_z = stiffness.residual_torque_stiffness(p, q)
+        spin_torque = turn_slip.torque(p, q, spin.phi, eps_gamma, mu_y, K_z, G_yk)
+    trail = aligning.trail(p, q, spin, K_xk, K_ya)
+    Mzr = aligning.residual_torque(p, q, spin, spin_torque, side, K_xk, K_ya)
+    upright = lateral.pure(p, q, 0.0, turn_slip.NO_SPIN, K_ya0, K_yg0, stiffness.lateral_friction(p, q, 0.0))
+    Mz = -trail * G_yk * upright.Fy + Mzr + aligning.longitudinal_arm(p, q, Fy) * Fx  # 4.E71, 4.E74
+    Mx = overturning.moment(p, q, loads.overturning, Fy)
+    My = rolling.moment(p, q, loads.rolling, Fx, kappa, Vx)
+
+    S_V_gamma = side.S_V - q.Fz * (p.PVY1 + p.PVY2 * q.dfz) * p.LVY * p.LMUY * spin.zeta2
+    zeta4 = 1.0 + spin.shift - S_V_gamma / K_ya if with_turn_slip else 1.0  # 4.E84
+    state = State(
+        K_xk=K_xk, K_ya=K_ya, K_yg0=K_yg0, mu_x=mu_x, mu_y=mu_y,
+        sigma_x=absolute(K_xk / carcass_stiffness(p.LONGITUDINAL_STIFFNESS, p.PCFX1, p.PCFX2, p.PCFX3, q)),
+        sigma_y=absolute(K_ya / carcass_stiffness(p.LATERAL_STIFFNESS, p.PCFY1, p.PCFY2, p.PCFY3, q)),
+        Re=Re, omega=(1.0 + kappa) * Vx / Re, trail=trail, residual_torque=Mzr, S_Hy=side.S_H, S_Vy=side.S_V,
+        eps_gamma=eps_gamma, phi=spin.phi, S_Hyphi=spin.shift, zeta0=spin.zeta0, zeta1=spin.zeta1,
+        zeta2=spin.zeta2, zeta3=spin.zeta3, zeta4=zeta4, zeta5=spin.zeta5, zeta6=spin.zeta6,
+        zeta7=spin_torque.zeta7, zeta8=spin_torque.zeta8,
+    )  # fmt: skip
+    return Forces(Fx, Fy, q.Fz, Mx, My, Mz), state
+
+
+def carcass_stiffness(nominal, linear, quadratic, pressure, q: Inputs):
+    """Carcass stiffness [N/m] at the load and pressure; A8, A9. Its ratio to a slip stiffness is a relaxation length."""
+    return nominal * (1.0 + linear * q.dfz + quadratic * q.dfz**2) * (1.0 + pressure * q.dpi)

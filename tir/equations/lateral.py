@@ -1,0 +1,51 @@
+"""Side force Fy."""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+from tir.equations.elementary import at_most_one, away_from_zero, cos_arctan, arctan, cos, magic_angle, sign, sin
+from tir.equations.normalise import Inputs
+from tir.equations.turn_slip import Spin
+
+
+class SideForce(NamedTuple):
+    """Pure side force and the factors that the moments use again."""
+
+    Fy: Any  #: [N]
+    S_H: Any  #: horizontal shift [rad]
+    S_V: Any  #: vertical shift [N]
+    B: Any
+    C: Any
+
+
+def pure(p, q: Inputs, gamma, spin: Spin, K_ya, K_yg0, mu_y) -> SideForce:
+    """Fy at zero longitudinal slip [N], at the camber and spin given; 4.E19."""
+    S_V_gamma = q.Fz * (p.PVY3 + p.PVY4 * q.dfz) * gamma * p.LKYC * p.LMUY * spin.zeta2  # 4.E28
+    from_camber = (K_yg0 * gamma * spin.zeta0 - S_V_gamma) / away_from_zero(K_ya)
+    S_H = (p.PHY1 + p.PHY2 * q.dfz) * p.LHY + from_camber + spin.shift  # 4.E27 with zeta4 of 4.E84
+    S_V = q.Fz * (p.PVY1 + p.PVY2 * q.dfz) * p.LVY * p.LMUY * spin.zeta2 + S_V_gamma  # 4.E29
+    alpha_y = q.alpha + S_H  # 4.E20
+    C = p.PCY1 * p.LCY  # 4.E21
+    D = mu_y * q.Fz * spin.zeta2  # 4.E22
+    asymmetry = 1.0 + p.PEY5 * gamma**2 - (p.PEY3 + p.PEY4 * gamma) * sign(alpha_y)
+    E = (p.PEY1 + p.PEY2 * q.dfz) * asymmetry * p.LEY  # 4.E24
+    B = K_ya / away_from_zero(C * D)  # 4.E26
+    Fy = D * sin(magic_angle(B, C, at_most_one(E, q.limits), alpha_y)) + S_V  # 4.E19
+    return SideForce(Fy, S_H, S_V, B, C)
+
+
+def combined_weight(p, q: Inputs):
+    """G_yk [-]: how longitudinal slip reduces Fy; 4.E59."""
+    B = (p.RBY1 + p.RBY4 * q.gamma**2) * cos(arctan(p.RBY2 * (q.alpha - p.RBY3))) * p.LYKA  # 4.E62
+    C = p.RCY1  # 4.E63
+    E = at_most_one(p.REY1 + p.REY2 * q.dfz, q.limits)  # 4.E64
+    S_H = p.RHY1 + p.RHY2 * q.dfz  # 4.E65
+    at_zero = cos(magic_angle(B, C, E, S_H))  # 4.E60
+    return cos(magic_angle(B, C, E, q.kappa + S_H)) / at_zero  # 4.E59, 4.E61
+
+
+def longitudinal_shift(p, q: Inputs, mu_y, zeta2):
+    """S_Vyk [N]: side force induced by longitudinal slip (ply-steer under braking); 4.E66."""
+    D = mu_y * q.Fz * (p.RVY1 + p.RVY2 * q.dfz + p.RVY3 * q.gamma) * cos_arctan(p.RVY4 * q.alpha) * zeta2  # 4.E67
+    return D * sin(p.RVY5 * arctan(p.RVY6 * q.kappa)) * p.LVYKA  # 4.E66

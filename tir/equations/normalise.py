@@ -1,0 +1,75 @@
+"""Inputs of the Magic Formula: normalised load and pressure, slips, effective rolling radius, spin."""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+from tir.equations.elementary import arctan, away_from_zero, cos, sin, tan
+
+
+class Inputs(NamedTuple):
+    """One operating condition; every field a scalar or an array, all broadcasting together."""
+
+    Fz: Any  #: vertical load inside the limits, > 0 [N]
+    Fz_moment: Any  #: load used by the trail and residual torque, at least FZMIN with limits [N]
+    kappa: Any  #: longitudinal slip [-]
+    alpha: Any  #: sideslip as the formulae use it: the angle, or its tangent with ``star`` [rad, -]
+    gamma: Any  #: camber as the formulae use it: the angle, or its sine with ``star`` [rad, -]
+    sin_gamma: Any  #: [-]
+    cos_alpha: Any  #: Vx / Vc [-]
+    tan_alpha: Any  #: [-]
+    phi_t: Any  #: turn slip -psi_dot / Vc [1/m]
+    pressure: Any  #: [Pa]
+    dfz: Any  #: (Fz - Fz0') / Fz0', 4.E2a [-]
+    dpi: Any  #: (p - p0) / p0, 4.E2b [-]
+    Fz0: Any  #: Fz0' = LFZO FNOMIN, 4.E1 [N]
+    limits: bool  #: curvature factors held at <= 1
+
+
+def inputs(p, Fz, Fz_moment, kappa, alpha, gamma, phi_t, pressure, star, limits) -> Inputs:
+    """Collect the normalised inputs; angles in rad, pressure in Pa, load in N, turn slip in 1/m."""
+    Fz0 = p.LFZO * p.FNOMIN  # 4.E1
+    return Inputs(
+        Fz=Fz,
+        Fz_moment=Fz_moment,
+        kappa=kappa,
+        alpha=tan(alpha) if star else alpha,  # 4.E3
+        gamma=sin(gamma) if star else gamma,  # 4.E4
+        sin_gamma=sin(gamma),
+        cos_alpha=cos(alpha),  # 4.E6
+        tan_alpha=tan(alpha),
+        phi_t=phi_t,
+        pressure=pressure,
+        dfz=(Fz - Fz0) / Fz0,  # 4.E2a
+        dpi=(pressure - p.NOMPRES) / p.NOMPRES,  # 4.E2b
+        Fz0=Fz0,
+        limits=limits,
+    )
+
+
+def effective_radius(p, Fz, kappa, Vx, dpi):
+    """Effective rolling radius Re [m] at load Fz [N] and forward speed Vx [m/s]; A7.
+
+    Re depends on the wheel's speed of rotation, which depends on Re: ``Re = a + b / Re**2``, solved by Newton's method
+    (six steps reach rounding, as ``b`` is the small centrifugal growth).
+    """
+    stiffness = p.VERTICAL_STIFFNESS * (1.0 + p.PFZ1 * dpi)
+    load = Fz / p.FNOMIN
+    deflection = p.FNOMIN / stiffness * (p.DREFF * arctan(p.BREFF * load) + p.FREFF * load)
+    a = p.UNLOADED_RADIUS * p.Q_RE0 - deflection
+    b = p.UNLOADED_RADIUS * p.Q_V1 * ((1.0 + kappa) * Vx * p.UNLOADED_RADIUS / p.LONGVL) ** 2
+    Re = a + b / (a * a)
+    for _ in range(6):
+        Re = Re - (Re - a - b / (Re * Re)) / (1.0 + 2.0 * b / (Re * Re * Re))
+    return Re
+
+
+def camber_reduction(p, dfz):
+    """Camber reduction factor eps_gamma [-]; 4.E90. Kept off 1, where the turn-slip stiffness would be infinite."""
+    return 1.0 - away_from_zero(1.0 - p.PECP1 * (1.0 + p.PECP2 * dfz))
+
+
+def total_spin(q: Inputs, eps_gamma, Re):
+    """Total spin phi [1/m] of a rolling wheel: turn slip plus the reduced camber spin; 4.E76 in z-up axes."""
+    omega_over_Vc = (1.0 + q.kappa) * q.cos_alpha / Re
+    return q.phi_t - (1.0 - eps_gamma) * omega_over_Vc * q.sin_gamma

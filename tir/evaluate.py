@@ -1,0 +1,110 @@
+"""The public evaluation: shapes, limits and direction of rolling around the equations."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+
+from tir.equations import forces, normalise
+from tir.equations.elementary import select
+from tir.equations.forces import Forces, Loads, State
+
+CONICITY = ("PVY1", "PVY2", "PEY3", "QDZ6", "QDZ7")
+"""Coefficients that change sign with the tyre turned on its rim; rolling backwards is rolling such a tyre forwards."""
+
+SMALLEST_LOAD = 1e-6
+"""Load [N] that stands in for Fz <= 0, where several formulae are 0/0; the forces returned there are exactly 0."""
+
+
+def evaluate(
+    p: Any,
+    Fz: Any,
+    alpha: Any = 0.0,
+    gamma: Any = 0.0,
+    kappa: Any = 0.0,
+    phi_t: Any = 0.0,
+    Vx: Any = None,
+    pressure: Any = None,
+    *,
+    turn_slip: bool = False,
+    star: bool = False,
+    limits: bool = False,
+) -> tuple[Forces, State]:
+    """Evaluate MF 6.2 in steady state (ISO-W, SI, radians).
+
+    Parameters
+    ----------
+    p : any object with the file's parameter names as attributes, e.g. ``tyre.p``
+    Fz : vertical load [N], scalar or (n,); loads <= 0 give zero forces
+    alpha : sideslip angle atan(Vsy/Vx) [rad]; rolling backwards it stays the reading of the rig's axis
+    gamma : camber [rad], > 0 with the top of the wheel to -y
+    kappa : longitudinal slip -Vsx/Vx [-], -1 for a locked wheel in either direction
+    phi_t : turn slip -psi_dot/Vc of the path rolled forwards [1/m]; -1/R with the centre to the left
+    Vx : speed of the contact [m/s]; default LONGVL; < 0 rolls backwards, forces stay fixed to the rig
+    pressure : inflation pressure [Pa]; default INFLPRES
+    turn_slip : let spin act (zeta factors); otherwise phi_t is ignored
+    star : tan(alpha) and sin(gamma) as inputs instead of the angles
+    limits : hold the inputs to the file's ranges and the curvature factors to <= 1
+
+    Returns
+    -------
+    Forces, State
+        Fields of the broadcast shape (forces) or of any shape that broadcasts to it (state).
+    """
+    Vx = p.LONGVL if Vx is None else Vx
+    pressure = p.INFLPRES if pressure is None else pressure
+    backwards = np.real(Vx) < 0.0
+    if np.any(backwards):
+        return _rolling_backwards(
+            p, Fz, alpha, gamma, kappa, phi_t, Vx, pressure, backwards, turn_slip=turn_slip, star=star, limits=limits
+        )
+    loaded = np.real(Fz) > 0.0
+    Fz_given, kappa_given = select(loaded, Fz, SMALLEST_LOAD), kappa
+    Fz, Fz_moment, loads = Fz_given, Fz_given, Loads(Fz_given, Fz_given)
+    if limits:
+        Fz = _clip(Fz_given, None, p.FZMAX)
+        kappa = _clip(kappa, p.KPUMIN, p.KPUMAX)
+        alpha = _clip(alpha, p.ALPMIN, p.ALPMAX)
+        gamma = _clip(gamma, p.CAMMIN, p.CAMMAX)
+        pressure = _clip(pressure, p.PRESMIN, p.PRESMAX)
+        Fz_moment, loads = _loads_below_range(p, Fz, Fz_given)
+    q = normalise.inputs(p, Fz, Fz_moment, kappa, alpha, gamma, phi_t, pressure, star, limits)
+    Re = normalise.effective_radius(p, Fz_given, kappa_given, Vx, q.dpi)
+    out, state = forces.evaluate(p, q, loads, kappa_given, Vx, Re, turn_slip)
+    return Forces(*(select(loaded, f, 0.0) for f in out)), state
+
+
+def _rolling_backwards(p, Fz, alpha, gamma, kappa, phi_t, Vx, pressure, backwards, **switches):
+    """Seen from a frame turned half a revolution about z the wheel rolls forwards, turned on its rim."""
+    turned = select(backwards, -1.0, 1.0)
+    out, state = evaluate(
+        turned_on_rim(p, turned), Fz, alpha, turned * gamma, kappa, turned * phi_t, np.abs(Vx), pressure, **switches
+    )
+    out = out._replace(Fx=turned * out.Fx, Fy=turned * out.Fy, Mx=turned * out.Mx, My=turned * out.My)
+    return out, state._replace(omega=turned * state.omega, phi=turned * state.phi)
+
+
+def turned_on_rim(p: Any, turned: Any) -> SimpleNamespace:
+    """The parameters of the tyre as mounted: conicity terms times ``turned``, +1 as measured and -1 turned on its rim."""
+    mirrored = SimpleNamespace(**vars(p))
+    for name in CONICITY:
+        setattr(mirrored, name, getattr(p, name) * turned)
+    return mirrored
+
+
+def _clip(x, lower, upper):
+    if lower is not None:
+        x = select(np.real(x) < lower, lower, x)
+    return select(np.real(x) > upper, upper, x)
+
+
+def _loads_below_range(p, Fz, Fz_given) -> tuple[Any, Loads]:
+    """Loads for the moments: below FZMIN they fade faster than the load, so that an unloaded wheel has no moment."""
+    below = np.real(Fz) < p.FZMIN
+    floor = select(p.FZMIN > 0.0, p.FZMIN, 1.0)
+    Fz_moment = select(below, p.FZMIN, Fz)
+    overturning = select(below, Fz * (Fz / floor) ** 2, Fz)
+    rolling = select(below, Fz_given**2 / floor, Fz_given)
+    return Fz_moment, Loads(overturning, rolling)
