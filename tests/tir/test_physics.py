@@ -1,0 +1,123 @@
+"""What any tyre must do, whatever its coefficients."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+import tir
+
+VECTORS = Path(__file__).parent / "vectors"
+TYRES = ["MagicFormula61", "MagicFormula62", "moto_front"]
+ODD = dict.fromkeys(
+    "PHX1 PHX2 PVX1 PVX2 PHY1 PHY2 PVY1 PVY2 PEY3 QBZ4 QDZ3 QDZ6 QDZ7 QEZ4 QHZ1 QHZ2 RBY3 RHX1 RHY1 RHY2 RVY1 RVY2 "
+    "SSZ1 QSX1".split(),
+    0.0,
+)
+
+
+@pytest.fixture(params=TYRES)
+def tyre(request) -> tir.Tyre:
+    return tir.read(VECTORS / f"{request.param}.tir")
+
+
+@pytest.mark.parametrize("Fz", [500.0, 1500.0, 4000.0])
+def test_camber_alone_gives_the_normal_mode_times_R0_over_Re(tyre, Fz):
+    """The rule that decides the signs of turn slip."""
+    gamma = np.array([-1e-4, 1e-4])
+    ratio = tyre["UNLOADED_RADIUS"] / tyre.state(Fz).Re
+    spin, normal = tyre(Fz, gamma=gamma, turn_slip=True), tyre(Fz, gamma=gamma)
+    assert np.diff(spin.Fy)[0] / np.diff(normal.Fy)[0] == pytest.approx(ratio, rel=2e-3)
+    assert np.diff(spin.Mz)[0] / np.diff(normal.Mz)[0] == pytest.approx(ratio, rel=2e-3)
+
+
+def test_without_spin_both_modes_agree(tyre):
+    alpha = np.linspace(-0.2, 0.2, 9)
+    spin, normal = tyre(2000.0, alpha, phi_t=0.0), tyre(2000.0, alpha)
+    np.testing.assert_allclose(spin.Fy, normal.Fy, rtol=1e-12)
+    np.testing.assert_allclose(spin.Mz, normal.Mz, rtol=1e-9, atol=1e-9)
+
+
+def test_a_disc_pushes_the_tyre_outwards(tyre):
+    symmetric = tyre.replace(**ODD)
+    assert symmetric(2000.0, phi_t=-0.7).Fy < 0
+    assert symmetric(2000.0, phi_t=0.7).Fy > 0
+
+
+@given(
+    alpha=st.floats(-0.3, 0.3),
+    gamma=st.floats(-0.9, 0.9),
+    phi_t=st.floats(-1.0, 1.0),
+    Fz=st.floats(200.0, 4000.0),
+)
+def test_a_symmetric_tyre_mirrors(alpha, gamma, phi_t, Fz):
+    tyre = tir.read(VECTORS / "moto_front.tir").replace(**ODD)
+    a = tyre(Fz, alpha, gamma, 0.0, phi_t)
+    b = tyre(Fz, -alpha, -gamma, 0.0, -phi_t)
+    assert a.Fy == pytest.approx(-b.Fy, rel=1e-9, abs=1e-6)
+    assert a.Mz == pytest.approx(-b.Mz, rel=1e-9, abs=1e-6)
+    assert a.Fx == pytest.approx(b.Fx, rel=1e-9, abs=1e-6)
+
+
+def test_rolling_backwards_flips_slip_and_ply_steer_only(tyre):
+    plain = tyre.replace(**ODD)
+    step = np.radians(0.2)
+
+    def slope(Vx, **direction):
+        up = plain(2000.0, Vx=Vx, **direction)
+        down = plain(2000.0, Vx=Vx, **{k: -v for k, v in direction.items()})
+        return up.Fy - down.Fy, up.Mz - down.Mz
+
+    for direction, force_sign in (({"alpha": step}, -1), ({"gamma": step}, 1), ({"phi_t": 0.05}, 1)):
+        forwards, backwards = slope(8.0, **direction), slope(-8.0, **direction)
+        assert backwards[0] == pytest.approx(force_sign * forwards[0], rel=1e-9)
+        assert backwards[1] == pytest.approx(-force_sign * forwards[1], rel=1e-9)
+    ply_steer, conicity = plain.replace(PHY1=0.001), plain.replace(PVY1=0.001)
+    assert ply_steer(2000.0, Vx=-8.0).Fy == pytest.approx(-ply_steer(2000.0, Vx=8.0).Fy, rel=1e-9)
+    assert conicity(2000.0, Vx=-8.0).Fy == pytest.approx(conicity(2000.0, Vx=8.0).Fy, rel=1e-9)
+
+
+def test_forces_vanish_continuously_with_load(tyre):
+    load = np.array([-10.0, 0.0, 1e-9, 1e-6, 1e-3, 1.0])
+    for limits in (False, True):
+        for phi_t in (None, -0.7):
+            forces = tyre(load, 0.05, 0.1, 0.01, phi_t, limits=limits)
+            for channel in (forces.Fx, forces.Fy, forces.Mx, forces.My):
+                assert np.all(np.isfinite(channel))
+                assert np.all(channel[:2] == 0.0)
+                assert np.all(np.abs(channel[2:4]) < 1e-2)
+            assert np.all(np.isfinite(forces.Mz))
+
+
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+def test_standstill_is_the_limit_of_slow_rolling(tyre, sign):
+    for phi_t in (None, -0.7):
+        slow = tyre(2000.0, 0.03, 0.2, 0.0, phi_t, Vx=sign * 1e-9)
+        rest = tyre(2000.0, 0.03, 0.2, 0.0, phi_t, Vx=sign * 1e-300)
+        np.testing.assert_allclose(np.array(slow), np.array(rest), rtol=1e-6, atol=1e-6)
+        assert np.all(np.isfinite(np.array(tyre(2000.0, 0.03, 0.2, 0.0, phi_t, Vx=0.0))))
+
+
+def test_complex_step_equals_differences(tyre):
+    p, h = tyre.p, 1e-20
+    from tir.evaluate import evaluate
+
+    condition = dict(gamma=0.3, kappa=0.02, phi_t=-0.6, turn_slip=True)
+    step = evaluate(p, 1800.0, 0.04 + 1j * h, **condition)[0]
+    up, down = (evaluate(p, 1800.0, 0.04 + s, **condition)[0] for s in (1e-6, -1e-6))
+    for exact, high, low in zip(step, up, down, strict=True):
+        assert np.imag(exact) / h == pytest.approx((high - low) / 2e-6, rel=1e-5, abs=1e-3)
+    assert abs(np.imag(step.Fy) / h) > 1000
+
+
+def test_scalars_and_arrays_agree(tyre):
+    alpha = np.linspace(-0.1, 0.1, 5)
+    many = tyre(1500.0, alpha, 0.2, 0.01, -0.5)
+    for i, a in enumerate(alpha):
+        one = tyre(1500.0, float(a), 0.2, 0.01, -0.5)
+        assert float(one.Fy) == pytest.approx(many.Fy[i], rel=1e-12)
+        assert float(one.Mz) == pytest.approx(many.Mz[i], rel=1e-12)

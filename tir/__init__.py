@@ -1,0 +1,14 @@
+"""Read, write and evaluate MF-6.2 tyre property files.
+
+>>> import tir
+>>> tyre = tir.Tyre.from_values({"FNOMIN": 1500.0, "UNLOADED_RADIUS": 0.3})
+>>> bool(tyre(1500.0, alpha=0.02).Fy < 0)
+True
+"""
+
+from tir.equations.forces import Forces, State
+from tir.errors import Problem, TirError
+from tir.properties import read
+from tir.tyre import Quantity, Tyre
+
+__all__ = ["Forces", "Problem", "Quantity", "State", "TirError", "Tyre", "read"]

@@ -1,0 +1,34 @@
+"""What can be wrong with a property file: one exception class and one record; imports nothing of ours."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+
+class TirError(Exception):
+    """A property file that cannot be used.
+
+    Parameters
+    ----------
+    sentence : what is there, why it is wrong and what to do; without the place
+    path, line : where; they open the text as ``path:line: ...``
+    name : the key at fault
+    """
+
+    def __init__(
+        self, sentence: str, *, path: str | Path | None = None, line: int | None = None, name: str | None = None
+    ) -> None:
+        self.sentence, self.path, self.line, self.name = sentence, path, line, name
+        place = "" if path is None else f"{path}:{line}: " if line is not None else f"{path}: "
+        super().__init__(place + sentence)
+
+
+@dataclass(frozen=True, slots=True)
+class Problem:
+    """Something to look at in a file that can still be read."""
+
+    level: str  #: "error" (cannot be simulated sensibly) or "warning"
+    sentence: str  #: what, where and what to do
+    name: str = ""  #: the key concerned
+    line: int | None = None

@@ -1,0 +1,174 @@
+"""The tyre as a simulation uses it: a frozen record of values that can be called."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from pathlib import Path
+from types import MappingProxyType, SimpleNamespace
+from typing import Any, NamedTuple
+
+from tir.equations.forces import Forces, State
+from tir.errors import Problem, TirError
+from tir.evaluate import evaluate
+from tir.parameters import BY_NAME, TABLE
+
+EMPTY: Mapping[str, Any] = MappingProxyType({})
+
+
+class Quantity(NamedTuple):
+    """A measured quantity as it stands in a file's structured comments."""
+
+    value: float
+    u: float  #: standard uncertainty, k = 1
+    unit: str
+
+
+@dataclass(frozen=True)
+class Tyre:
+    """An MF 6.2 tyre: every parameter in SI, and what the file says about them.
+
+    Build one with :func:`tir.read` or :meth:`from_values`. Axes and signs are ISO-W, see :mod:`tir.conventions`.
+    """
+
+    values: Mapping[str, float | str]  #: every parameter of the table; defaults where the file has none
+    present: frozenset[str] = frozenset()  #: names that stood in the file or were given
+    status: Mapping[str, str] = field(default_factory=lambda: EMPTY)  #: name -> origin of the value
+    measured: Mapping[str, Quantity] = field(default_factory=lambda: EMPTY)
+    provenance: Mapping[str, str] = field(default_factory=lambda: EMPTY)
+    extra: Mapping[str, str] = field(default_factory=lambda: EMPTY)  #: "SECTION.KEY" -> text of unknown keys
+    problems: tuple[Problem, ...] = ()  #: what the reader stumbled over
+
+    @classmethod
+    def from_values(cls, given: Mapping[str, float | str]) -> Tyre:
+        """A tyre from some values; the table's defaults fill the rest.
+
+        Raises
+        ------
+        TirError
+            For a name that MF 6.2 does not have.
+        """
+        _known(given)
+        values = {row.name: row.default for row in TABLE} | dict(given)
+        return cls(MappingProxyType(values), frozenset(given))
+
+    def __getitem__(self, name: str) -> Any:
+        try:
+            return self.values[name]
+        except KeyError:
+            raise KeyError(f"MF 6.2 has no parameter {name}") from None
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Tyre) and dict(self.values) == dict(other.values)
+
+    def __hash__(self) -> int:
+        return hash(tuple(sorted((k, str(v)) for k, v in self.values.items())))
+
+    @cached_property
+    def p(self) -> SimpleNamespace:
+        """The parameters as attributes, as the equations take them."""
+        return SimpleNamespace(**self.values)
+
+    def replace(self, **changes: float | str) -> Tyre:
+        """A copy with some values changed; their status is dropped."""
+        _known(changes)
+        status = {name: text for name, text in self.status.items() if name not in changes}
+        return replace(
+            self,
+            values=MappingProxyType({**self.values, **changes}),
+            present=self.present | changes.keys(),
+            status=MappingProxyType(status),
+        )
+
+    def annotate(
+        self,
+        *,
+        status: Mapping[str, str] = EMPTY,
+        measured: Mapping[str, Quantity] = EMPTY,
+        provenance: Mapping[str, str] = EMPTY,
+    ) -> Tyre:
+        """A copy with origins of values, measured quantities and provenance added."""
+        return replace(
+            self,
+            status=MappingProxyType({**self.status, **status}),
+            measured=MappingProxyType({**self.measured, **measured}),
+            provenance=MappingProxyType({**self.provenance, **provenance}),
+        )
+
+    def __call__(
+        self,
+        Fz: Any,
+        alpha: Any = 0.0,
+        gamma: Any = 0.0,
+        kappa: Any = 0.0,
+        phi_t: Any = None,
+        Vx: Any = None,
+        p: Any = None,
+        *,
+        turn_slip: bool | None = None,
+        star: bool = False,
+        limits: bool = False,
+    ) -> Forces:
+        """Forces and moments in steady state.
+
+        Parameters
+        ----------
+        Fz : load [N], scalar or array; all inputs broadcast
+        alpha, gamma : sideslip and camber angle [rad]
+        kappa : longitudinal slip [-]
+        phi_t : turn slip -psi_dot/Vc [1/m]; -1/R on a left-hand path
+        Vx : speed [m/s], default LONGVL; < 0 rolls backwards
+        p : inflation pressure [Pa], default INFLPRES
+        turn_slip : let spin act; default: when ``phi_t`` is given
+        star : tan(alpha) and sin(gamma) as inputs of the formulae
+        limits : hold the inputs to the file's ranges
+
+        Returns
+        -------
+        Forces
+            ``.Fx .Fy .Fz`` [N], ``.Mx .My .Mz`` [Nm] in the contact frame W.
+        """
+        return self._evaluate(Fz, alpha, gamma, kappa, phi_t, Vx, p, turn_slip, star, limits)[0]
+
+    def state(
+        self,
+        Fz: Any,
+        alpha: Any = 0.0,
+        gamma: Any = 0.0,
+        kappa: Any = 0.0,
+        phi_t: Any = None,
+        Vx: Any = None,
+        p: Any = None,
+        *,
+        turn_slip: bool | None = None,
+        star: bool = False,
+        limits: bool = False,
+    ) -> State:
+        """Everything else the model knows of the condition: stiffnesses, radius, trail, spin; arguments as in a call."""
+        return self._evaluate(Fz, alpha, gamma, kappa, phi_t, Vx, p, turn_slip, star, limits)[1]
+
+    def _evaluate(self, Fz, alpha, gamma, kappa, phi_t, Vx, p, turn_slip, star, limits):
+        turn_slip = phi_t is not None if turn_slip is None else turn_slip
+        phi_t = 0.0 if phi_t is None else phi_t
+        return evaluate(
+            self.p, Fz, alpha, gamma, kappa, phi_t, Vx, p, turn_slip=turn_slip, star=star, limits=limits
+        )
+
+    def text(self) -> str:
+        """The complete property file as text; see :func:`tir.properties.render`."""
+        from tir.properties import render
+
+        return render(self)
+
+    def write(self, path: str | Path) -> None:
+        """Write the property file; an existing file is replaced only when the new one is complete."""
+        from tir.properties import write
+
+        write(self, path)
+
+
+def _known(names) -> None:
+    for name in names:
+        if name not in BY_NAME:
+            raise TirError(f"MF 6.2 has no parameter {name}", name=name)
