@@ -1,0 +1,69 @@
+"""In which line of a TOML text each key stands; knows nothing of what a key means."""
+
+from __future__ import annotations
+
+import re
+
+HEADER = re.compile(r"\s*(\[\[?)(.+?)\]\]?\s*(?:#.*)?$")
+KEY = re.compile(r"""\s*((?:[\w-]+|"[^"]*"|'[^']*')(?:\s*\.\s*(?:[\w-]+|"[^"]*"|'[^']*'))*)\s*=""")
+QUOTED = re.compile(r'"(?:\\.|[^"\\])*"|\'[^\']*\'|#.*')
+
+
+def lines_of_keys(text: str) -> dict[str, int]:
+    """Line, from 1, of every key and table of a valid TOML text, by dotted name.
+
+    Entries of an array of tables carry their number from 0: ``sweep.0.file``. Keys of an inline table are not
+    listed: they stand where the table does.
+    """
+    found: dict[str, int] = {}
+    count: dict[str, int] = {}
+    table, depth, fence = "", 0, ""
+    for number, line in enumerate(text.splitlines(), start=1):
+        if not fence and depth == 0:
+            header, key = HEADER.match(line), KEY.match(line)
+            if key:
+                found.setdefault(_joined(table, _dotted(key[1])), number)
+            elif header:
+                table = _numbered(_dotted(header[2]), count, header[1] == "[[")
+                found.setdefault(table, number)
+        fence, depth = _after(line, fence, depth)
+    return found
+
+
+def _dotted(name: str) -> str:
+    return ".".join(part.strip().strip("\"'") for part in name.split("."))
+
+
+def _joined(table: str, key: str) -> str:
+    return f"{table}.{key}" if table else key
+
+
+def _numbered(name: str, count: dict[str, int], is_array: bool) -> str:
+    """The table's name with the running number of every array of tables in it."""
+    path = ""
+    parts = name.split(".")
+    for depth, part in enumerate(parts):
+        path = _joined(path, part)
+        if is_array and depth == len(parts) - 1:
+            count[path] = count.get(path, -1) + 1
+        if path in count:
+            path = f"{path}.{count[path]}"
+    return path
+
+
+def _after(line: str, fence: str, depth: int) -> tuple[str, int]:
+    """State behind a line: the open multi-line quote, if any, and how many brackets of a value are open."""
+    while True:
+        if fence:
+            end = line.find(fence)
+            if end < 0:
+                return fence, depth
+            line, fence = line[end + 3 :], ""
+        start = re.search(r'"""|\'\'\'', line)
+        plain = line[: start.start()] if start else line
+        if "=" in plain or depth:
+            value = QUOTED.sub("", plain.partition("=")[2] if depth == 0 else plain)
+            depth += value.count("[") + value.count("{") - value.count("]") - value.count("}")
+        if start is None:
+            return "", depth
+        fence, line = start[0], line[start.end() :]

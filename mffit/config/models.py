@@ -1,0 +1,307 @@
+"""The tables of ``tyre.toml`` as frozen records: keys, types, defaults and what must not be.
+
+Every ``u_`` is one standard deviation (k = 1). Units are those of the file, as the key or the comment says.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated, Any, Literal
+
+from pydantic import (
+    AfterValidator,
+    BaseModel,
+    BeforeValidator,
+    ConfigDict,
+    Field,
+    PrivateAttr,
+    model_validator,
+)
+
+from mffit.config import quantities as q
+from mffit.config.radii import effective_radius, path_radius
+
+U_DECLARED_RADIUS = 0.0018
+"""Standard uncertainty [m] of a declared path radius when none is given: the paper's statement for (19)."""
+
+FORBIDDEN_IN_NAMES = set('/\\:*?"<>|') | {chr(code) for code in range(32)}
+
+
+class Table(BaseModel):
+    """One table of the file: nothing unknown, nothing coerced, no NaN, never changed."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid", strict=True, allow_inf_nan=False)
+
+
+def _file_stem(name: str) -> str:
+    if not name.strip() or name.startswith(".") or set(name) & FORBIDDEN_IN_NAMES:
+        raise q.wrong(f'"{name}" cannot name the output files; use letters, digits, - and _')
+    return name
+
+
+class TyreTable(Table):
+    """[tyre]: what is known of the tyre beforehand."""
+
+    name: Annotated[str, AfterValidator(_file_stem)]  #: stem of the output file
+    size: str = "-"
+    unloaded_radius: q.WheelRadius  #: [m]
+    width: q.Width | None = None  #: [m]
+    rim_radius: q.WheelRadius | None = None  #: [m]
+    nominal_load: q.Load  #: FNOMIN [N]
+    nominal_pressure: q.Pressure  #: NOMPRES [kPa]
+    nominal_speed: q.Speed = 10.0  #: LONGVL [m/s]
+    side: Literal["left", "right", "symmetric"] = "left"  #: TYRESIDE of the measured tyre
+    base: str | None = None  #: file from which coefficients come that are not fitted
+
+    @model_validator(mode="after")
+    def _rim_inside_tyre(self) -> TyreTable:
+        if self.rim_radius is not None and self.rim_radius >= self.unloaded_radius:
+            raise q.wrong(
+                f"{self.rim_radius:g} m is not smaller than the unloaded radius {self.unloaded_radius:g} m; "
+                "write the rim's radius in metres, not its diameter",
+                "tyre.rim_radius",
+            )
+        return self
+
+
+class PathTable(Table):
+    """[rig.path]: the four tape measures of (19)."""
+
+    shaft_diameter: q.Length  #: diameter of the disc's shaft [m]
+    L_B: q.Length  #: shaft to the inner edge of the path [m]
+    L_C: q.Length  #: inner edge of the path to the inner sidewall [m]
+    L_D: q.Length  #: inner edge of the path to the outer sidewall [m]
+
+
+class RigTable(Table):
+    """[rig]: the machine, its axes and how well it is known."""
+
+    type: Literal["rotating-disk", "flat-track"] = "rotating-disk"
+    axes: Literal["iso", "sae", "adapted-sae"] = "iso"
+    force_frame: Literal["W", "C"] = "W"
+    path_centre: Literal["left", "right"] = "left"
+    path_radius: q.PathRadius | None = None  #: [m]
+    path: PathTable | None = None
+    u_path_radius: q.ULength | None = None  #: [m]; overrides the propagation of (19)
+    u_length: q.ULength = 0.001  #: each tape measure [m]
+    backlash_deg: q.Play = 0.0  #: full play of the sideslip axis
+    u_backlash_deg: q.UAngle = 0.0
+    u_loadcell_offset_N: q.UForce = 10.0
+    u_camber_alignment_deg: q.UAngle = 0.5
+    u_slip_alignment_N: q.UForce = 25.0
+
+    @property
+    def radius(self) -> float | None:
+        """Path radius R [m], declared or by (19); None on a flat track."""
+        if self.type == "flat-track":
+            return None
+        return self.path_radius if self.path is None else path_radius(**self.path.model_dump())
+
+    @model_validator(mode="before")
+    @classmethod
+    def _default_u(cls, given: Any) -> Any:
+        if isinstance(given, dict) and "path_radius" in given and "u_path_radius" not in given:
+            return {**given, "u_path_radius": U_DECLARED_RADIUS}
+        return given
+
+    @model_validator(mode="after")
+    def _one_radius(self) -> RigTable:
+        if self.type == "flat-track":
+            return self
+        if self.path_radius is None and self.path is None:
+            raise q.wrong(
+                "is missing for a rotating disc; add it in metres, or [rig.path] with shaft_diameter, L_B, "
+                'L_C and L_D, or set type = "flat-track"',
+                "rig.path_radius",
+            )
+        if self.path_radius is not None and self.path is not None:
+            raise q.wrong("stands beside [rig.path]; keep one of the two", "rig.path_radius")
+        radius = self.radius
+        assert radius is not None
+        if not 0.2 <= radius <= 100.0:
+            raise q.wrong(
+                f"gives a path radius of {radius:g} m, outside 0.2 to 100 m; check the four lengths",
+                "rig.path",
+            )
+        if self.u_path_radius is not None and self.u_path_radius > 0.1 * radius:
+            raise q.wrong(
+                f"{self.u_path_radius:g} m is more than a tenth of the path radius; write it in metres",
+                "rig.u_path_radius",
+            )
+        return self
+
+
+class RollingRadiusTable(Table):
+    """[rolling_radius]: one disc revolution (18), or the effective radius itself."""
+
+    load_N: q.Load | None = None  #: nominal_load if not given
+    revolutions: q.Revolutions | None = None  #: whole turns of the wheel
+    angle_start_deg: q.Inclination | None = None
+    angle_end_deg: q.Inclination | None = None
+    u_angle_deg: q.UAngle = 1.0
+    u_arc_m: q.ULength = 0.001
+    effective_radius: q.WheelRadius | None = None  #: [m]
+    u_effective_radius: q.ULength | None = None  #: [m]
+
+    @property
+    def is_measured(self) -> bool:
+        """Whether r_e follows from a disc revolution rather than being given."""
+        return self.effective_radius is None
+
+    @model_validator(mode="after")
+    def _one_way(self) -> RollingRadiusTable:
+        turned = (self.revolutions, self.angle_start_deg, self.angle_end_deg)
+        if self.effective_radius is None and None in turned:
+            raise q.wrong(
+                "needs revolutions, angle_start_deg and angle_end_deg, or effective_radius with "
+                "u_effective_radius",
+                "rolling_radius",
+            )
+        if self.effective_radius is not None and any(value is not None for value in turned):
+            raise q.wrong(
+                "stands beside a measured revolution; keep one of the two", "rolling_radius.effective_radius"
+            )
+        if self.effective_radius is not None and self.u_effective_radius is None:
+            raise q.wrong(
+                "is missing beside effective_radius; add it in metres", "rolling_radius.u_effective_radius"
+            )
+        return self
+
+
+class CamberStiffnessTable(Table):
+    """[camber_stiffness]: how C_gamma is estimated; both ways are reported."""
+
+    method: Literal["slope", "secant"] = "slope"
+    angle_deg: q.EstimateAngle = 15.0
+
+
+class SpinTable(Table):
+    """[spin]: in which use of the file camber stiffness is exact, and where PECP1 comes from."""
+
+    exact: Literal["normal", "turn-slip"] = "normal"
+    pecp1: Literal["direct", "model"] = "direct"
+
+
+class ModelTable(Table):
+    """[model]: how the simulation to compare with runs."""
+
+    turn_slip: bool = True
+    star: bool = False
+    u_coefficients: q.Fraction = 0.0
+
+
+class Column(Table):
+    """Where a contract column stands in a file with other headings or units."""
+
+    column: str | None = None  #: heading in the file; the contract's own if None
+    unit: str | None = None  #: the contract's own if None
+    scale: float = 1.0
+
+
+def _heading(given: Any) -> Any:
+    return {"column": given} if isinstance(given, str) else given
+
+
+class SweepTable(Table):
+    """[[sweep]]: one file."""
+
+    file: str
+    direction: Literal["forward", "backward"] | None = None  #: None: the file's column, else forward
+    mount: Literal["normal", "flipped"] = "normal"
+    columns: dict[str, Annotated[Column, BeforeValidator(_heading)]] = Field(default_factory=dict)
+
+
+def _list_of_tables(given: Any) -> Any:
+    """TOML gives one table or a list of them; records hold tuples."""
+    return (given,) if isinstance(given, dict) else tuple(given) if isinstance(given, list) else given
+
+
+class Config(Table):
+    """The whole of ``tyre.toml``."""
+
+    tyre: TyreTable
+    rig: RigTable
+    rolling_radius: Annotated[tuple[RollingRadiusTable, ...], BeforeValidator(_list_of_tables)] = ()
+    camber_stiffness: CamberStiffnessTable = CamberStiffnessTable()
+    spin: SpinTable = SpinTable()
+    model: ModelTable = ModelTable()
+    sweep: Annotated[tuple[SweepTable, ...], BeforeValidator(_list_of_tables)]
+
+    _path: Path | None = PrivateAttr(default=None)
+    _folder: Path = PrivateAttr(default_factory=Path)
+    _lines: dict[str, int] = PrivateAttr(default_factory=dict)
+
+    @property
+    def path(self) -> Path | None:
+        """The file this came from; None for a mapping."""
+        return self._path
+
+    @property
+    def folder(self) -> Path:
+        """Where relative file names start."""
+        return self._folder
+
+    @property
+    def base_path(self) -> Path | None:
+        """The base property file; None if there is none."""
+        return None if self.tyre.base is None else self._folder / self.tyre.base
+
+    def line_of(self, key: str) -> int | None:
+        """Line of a dotted key, ``sweep.2.file`` for the third sweep; of the table around it if absent."""
+        while key:
+            if key in self._lines:
+                return self._lines[key]
+            key = key.rpartition(".")[0]
+        return None
+
+    @model_validator(mode="before")
+    @classmethod
+    def _load_of_radius(cls, given: Any) -> Any:
+        """A rolling radius without a load was taken at the nominal one."""
+        if not isinstance(given, dict) or not isinstance(given.get("tyre"), dict):
+            return given
+        rows, load = _list_of_tables(given.get("rolling_radius", ())), given["tyre"].get("nominal_load")
+        if not isinstance(rows, tuple) or not all(isinstance(row, dict) for row in rows):
+            return given
+        return {**given, "rolling_radius": tuple({"load_N": load, **row} for row in rows)}
+
+    @model_validator(mode="after")
+    def _some_sweep(self) -> Config:
+        if not self.sweep:
+            raise q.wrong('is empty; add a [[sweep]] with file = "..." for each measured file', "sweep")
+        seen: set[str] = set()
+        for index, sweep in enumerate(self.sweep):
+            if sweep.file in seen:
+                raise q.wrong(f'"{sweep.file}" is listed twice; remove one', f"sweep.{index}.file")
+            seen.add(sweep.file)
+        return self
+
+    @model_validator(mode="after")
+    def _rolling_radius_near_unloaded(self) -> Config:
+        """A free-rolling radius lies a little below the unloaded one; a diameter or a wrong R does not."""
+        R, R0 = self.rig.radius, self.tyre.unloaded_radius
+        for index, row in enumerate(self.rolling_radius):
+            key = f"rolling_radius.{index}"
+            if row.is_measured and R is None:
+                raise q.wrong(
+                    "a disc revolution was given for a flat track; give effective_radius instead", key
+                )
+            r_e = effective_radius(row, R) if row.effective_radius is None else row.effective_radius
+            if not 0.85 * R0 <= r_e <= 1.05 * R0:
+                raise q.wrong(_radius_sentence(r_e, R0, row.is_measured), key)
+            if row.u_effective_radius is not None and row.u_effective_radius > 0.1 * r_e:
+                raise q.wrong(
+                    f"{row.u_effective_radius:g} m is more than a tenth of the radius; write it in metres",
+                    f"{key}.u_effective_radius",
+                )
+        return self
+
+
+def _radius_sentence(r_e: float, R0: float, measured: bool) -> str:
+    sentence = f"gives an effective radius of {r_e:.4g} m, {r_e / R0:.2f} of the unloaded radius {R0:g} m"
+    if not measured:
+        return f"{sentence}; check both, in metres"
+    ratio = r_e / R0
+    if 1.8 < ratio < 2.2:
+        return f"{sentence}; path_radius looks like a diameter, halve it"
+    return f"{sentence}; check path_radius, revolutions and the angles, which are in degrees"

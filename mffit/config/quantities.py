@@ -1,0 +1,64 @@
+"""Numbers of ``tyre.toml``: the range in which they make sense, and what a value outside it usually is."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+from pydantic import AfterValidator
+from pydantic_core import PydanticCustomError
+
+
+class _Range:
+    """Refuses a number outside ``lower`` to ``upper``; ``below`` and ``above`` say what it usually is."""
+
+    def __init__(self, lower: float, upper: float, unit: str, below: str = "", above: str = "") -> None:
+        self.lower, self.upper, self.unit = lower, upper, unit
+        self.below, self.above = below, above
+
+    def __call__(self, value: float) -> float:
+        if value < self.lower and value > 0.0:
+            raise self._refusal(value, self.below)
+        if value < self.lower:
+            raise self._refusal(value, "")
+        if value > self.upper:
+            raise self._refusal(value, self.above)
+        return value
+
+    def _refusal(self, value: float, hint: str) -> PydanticCustomError:
+        sentence = f"{value:g} {self.unit} is outside {self.lower:g} to {self.upper:g} {self.unit}"
+        return wrong(f"{sentence}; {hint}" if hint else f"{sentence}; correct it")
+
+
+def wrong(sentence: str, key: str = "") -> PydanticCustomError:
+    """A refusal in our own words; ``key`` is the dotted key at fault when the value itself does not tell."""
+    return PydanticCustomError("sentence", "{sentence}", {"sentence": sentence, "key": key})
+
+
+MILLIMETRES = "it looks like millimetres, write metres"
+
+WheelRadius = Annotated[float, AfterValidator(_Range(0.03, 1.5, "m", above=MILLIMETRES))]
+Width = Annotated[float, AfterValidator(_Range(0.01, 1.0, "m", above=MILLIMETRES))]
+PathRadius = Annotated[float, AfterValidator(_Range(0.2, 100.0, "m", above=MILLIMETRES))]
+Length = Annotated[float, AfterValidator(_Range(1e-3, 100.0, "m", above=MILLIMETRES))]
+Load = Annotated[
+    float, AfterValidator(_Range(20.0, 2e5, "N", below="it looks like kilonewtons, write newtons"))
+]
+Pressure = Annotated[
+    float,
+    AfterValidator(
+        _Range(
+            20.0, 2000.0, "kPa", below="it looks like bar, write kilopascals", above="it looks like pascals"
+        )
+    ),
+]
+Speed = Annotated[float, AfterValidator(_Range(0.01, 150.0, "m/s", above="write metres per second"))]
+EstimateAngle = Annotated[
+    float, AfterValidator(_Range(1.0, 60.0, "deg", below="it looks like radians, write degrees"))
+]
+Play = Annotated[float, AfterValidator(_Range(0.0, 10.0, "deg", above="write the full play in degrees"))]
+Revolutions = Annotated[float, AfterValidator(_Range(0.0, 1e4, "revolutions"))]
+Inclination = Annotated[float, AfterValidator(_Range(-360.0, 720.0, "deg"))]
+ULength = Annotated[float, AfterValidator(_Range(0.0, 0.1, "m", above=MILLIMETRES))]
+UForce = Annotated[float, AfterValidator(_Range(0.0, 1e4, "N"))]
+UAngle = Annotated[float, AfterValidator(_Range(0.0, 20.0, "deg"))]
+Fraction = Annotated[float, AfterValidator(_Range(0.0, 1.0, "of the value", above="write 0.05 for 5 %"))]

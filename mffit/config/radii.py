@@ -1,0 +1,43 @@
+"""The two radii of the direct method from what the tape measure and the inclinometer say, (18) and (19).
+
+The formulae take plain numbers as well as numbers that carry an uncertainty.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+
+def path_radius(shaft_diameter: Any, L_B: Any, L_C: Any, L_D: Any) -> Any:
+    """Radius of the contact point's path, R = Phi_A/2 + L_B + (L_C + L_D)/2, (19); all [m].
+
+    Parameters
+    ----------
+    shaft_diameter : diameter of the disc's shaft Phi_A [m]
+    L_B : from the shaft to the inner edge of the abrasive path [m]
+    L_C, L_D : from that edge to the tyre's inner and outer sidewall [m]
+
+    Examples
+    --------
+    >>> round(path_radius(0.080, 1.140, 0.083, 0.203), 6)
+    1.323
+    """
+    return shaft_diameter / 2 + L_B + (L_C + L_D) / 2
+
+
+def wheel_turn(row: Any) -> float:
+    """Angle [rad] by which the wheel turned during one disc revolution: whole turns and the rest."""
+    return 2.0 * math.pi * row.revolutions + math.radians(row.angle_end_deg - row.angle_start_deg)
+
+
+def effective_radius(row: Any, R: Any) -> Any:
+    """Free-rolling radius r_e = 2 pi R / turn of the wheel [m], (18); infinite if the wheel did not turn.
+
+    Parameters
+    ----------
+    row : a measured ``[rolling_radius]`` table
+    R : path radius [m]
+    """
+    turn = wheel_turn(row)
+    return 2.0 * math.pi * R / turn if turn > 0.0 else math.inf

@@ -1,0 +1,44 @@
+"""The configuration as it was run, ready to be written and run again."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+from typing import Any
+
+from mffit.config.models import Config
+
+
+def resolved(config: Config, folder: str | Path) -> dict[str, Any]:
+    """Every key with its value, defaults filled in, keys without a value left out.
+
+    Parameters
+    ----------
+    config : the configuration as run
+    folder : where the result will be written as ``resolved.toml``
+
+    Returns
+    -------
+    dict
+        Plain TOML types. Relative file names stay relative, now to ``folder``, where that lies inside the
+        configuration's own folder, so that both may be moved together; all others are absolute.
+    """
+    content = config.model_dump(exclude_none=True)
+    content["rolling_radius"] = list(content["rolling_radius"])
+    content["sweep"] = [_plain(sweep) for sweep in content["sweep"]]
+    for sweep in content["sweep"]:
+        sweep["file"] = _moved(sweep["file"], config.folder, Path(folder))
+    if "base" in content["tyre"]:
+        content["tyre"]["base"] = _moved(content["tyre"]["base"], config.folder, Path(folder))
+    return {name: value for name, value in content.items() if value != []}
+
+
+def _plain(sweep: dict[str, Any]) -> dict[str, Any]:
+    return {name: value for name, value in sweep.items() if name != "columns" or value}
+
+
+def _moved(file: str, start: Path, folder: Path) -> str:
+    path = (start / file).absolute()
+    if Path(file).is_absolute() or not folder.absolute().is_relative_to(start.absolute()):
+        return str(path)
+    return Path(os.path.relpath(path, folder.absolute())).as_posix()

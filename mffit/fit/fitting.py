@@ -1,0 +1,287 @@
+"""From points and direct measurements to the tyre that is written: one screen of calls."""
+
+from __future__ import annotations
+
+import dataclasses
+import time
+from collections.abc import Mapping
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+
+from mffit.fit import weights
+from mffit.fit.coverage import coverage
+from mffit.fit.estimates import estimates
+from mffit.fit.normal import Normal, derive_normal
+from mffit.fit.problem import Problem
+from mffit.fit.radius import radius_coefficients
+from mffit.fit.ranges import covered_ranges, envelope
+from mffit.fit.result import Agreement, Coefficient, FitResult, agreement
+from mffit.fit.staged import Fitted, Progress, fit_staged
+from mffit.fit.stages import ODD_TERMS
+from mffit.fit.start import base_values, starting_values
+from mffit.fit.virtual_zero import epsilon_gamma_of_model, zero_points
+from mffit.parts import Parts
+from mffit.points import Points
+from mffit.rig import readings
+from mffit.rig.readings import reference_speed
+from tir import Tyre
+from tir.evaluate import evaluate
+from tir.parameters import BY_NAME, TABLE
+
+TIE_WEIGHT = 100.0
+"""Residual per newton by which the turn-slip force of the model may miss the measured one."""
+FORCE_SECTIONS = ("LATERAL_COEFFICIENTS", "ALIGNING_COEFFICIENTS", "TURNSLIP_COEFFICIENTS")
+
+
+def fit(
+    config: Any,
+    points: Points,
+    parts: Parts,
+    measured: Any,
+    base: Tyre | None = None,
+    progress: Progress = lambda sentence: None,
+) -> FitResult:
+    """Fit MF 6.2 to raw points with turn slip on, holding what was measured directly.
+
+    Parameters
+    ----------
+    config : the validated ``tyre.toml``
+    points : raw points, corrected for what the rig is known to do (backlash, misalignment)
+    parts : their odd and even parts
+    measured : the direct method's result; ``epsilon_gamma`` None on a flat track
+    base : coefficients that are not fitted come from here
+    progress : called with a sentence before each step
+
+    Raises
+    ------
+    InputError
+        If there are fewer points than coefficients.
+    """
+    began = time.perf_counter()
+    values, status = _before_the_fit(config, points, measured, base)
+    cover = coverage(points, config.tyre.side or "left")
+    start = starting_values(values, points, _by_load(measured, "C_alpha"))
+    problem, tied = _problem(config, points, values, measured)
+    fitted = fit_staged(problem, start, cover, progress, extra=("PECP1",) if tied else ())
+    turn_slip = {**values, **{n: start[n] for n in fitted.unmoved}, **fitted.values}
+    if base is None:
+        turn_slip.update(_unmeasured(turn_slip, status))
+    turn_slip.update(_rolling_resistance(turn_slip, points, status))
+    coefficients = _coefficients(turn_slip, fitted, cover, status)
+    explanations = [_pecp1_sentence(config, turn_slip, measured)] if measured.epsilon_gamma is not None else []
+
+    written_values, written_coefficients = turn_slip, coefficients
+    if config.rig.type == "rotating-disk" and config.spin.exact == "normal" and measured.epsilon_gamma is not None:
+        progress("deriving the file for turn slip off")
+        normal = derive_normal(
+            turn_slip, points, parts, cover, _by_load(measured, "C_gamma"), problem.envelope
+        )
+        written_values = {**turn_slip, **normal.values}
+        written_coefficients = _with_normal(coefficients, normal)
+        explanations += _normal_sentences(turn_slip, written_values, points, parts, normal)
+    elif config.rig.type == "rotating-disk":
+        explanations.append(
+            "This file is the fitted model itself: use it in simulations with turn slip on (USE_MODE with units digit 5)."
+        )
+    Fy, Mz = problem.model(fitted.values)
+    return FitResult(
+        tyre=_tyre(turn_slip, coefficients, base),
+        written=_tyre(written_values, written_coefficients, base),
+        coefficients=written_coefficients,
+        channels={"Fy": agreement(Fy, points.Fy), "Mz": agreement(Mz, points.Mz)},
+        odd=_odd_agreement(written_values, points, parts),
+        Fy_model=Fy,
+        Mz_model=Mz,
+        stages=fitted.stages,
+        coverage=cover,
+        explanations=tuple(explanations),
+        warnings=tuple(_warnings(fitted, cover)),
+        seconds=time.perf_counter() - began,
+        epsilon_gamma_model=_epsilon_of_model(turn_slip, points, measured),
+    )
+
+
+def _before_the_fit(config, points: Points, measured, base) -> tuple[dict[str, object], dict[str, str]]:
+    """Every value before the fit, and where it comes from."""
+    values = base_values(config, base)
+    origin = "base" if base is not None else "default"
+    status = {row.name: origin for row in TABLE}
+    if base is not None:
+        status.update({row.name: "default" for row in TABLE if row.name not in base.present})
+    ranges = covered_ranges(points)
+    values.update(ranges)
+    status.update(dict.fromkeys(ranges, "covered by the data"))
+    r_e = _by_load(measured, "r_e_measured")
+    if r_e:
+        radii = radius_coefficients(values, r_e, reference_speed(points))
+        values.update(radii)
+        status.update(dict.fromkeys(radii, "measured"))
+    if measured.epsilon_gamma is not None:
+        values["PECP1"], values["PECP2"] = measured.pecp1, measured.pecp2
+        status["PECP1"] = status["PECP2"] = "measured"
+    if config.tyre.side == "symmetric":
+        values.update(dict.fromkeys(ODD_TERMS, 0.0))
+    return values, status
+
+
+def _problem(config, points: Points, values, measured) -> tuple[Problem, bool]:
+    tied = config.spin.pecp1 == "model" and measured.epsilon_gamma is not None
+    tie = None
+    if tied:
+        load = measured.F_phit_load
+        tie = (zero_points(points, load), float(measured.F_phit.value), TIE_WEIGHT)
+    problem = Problem(
+        points=points,
+        fixed=values,
+        sigma_Fy=weights.stated_or_nominal(points.u_Fy, points.Fy),
+        sigma_Mz=weights.stated_or_nominal(points.u_Mz, points.Mz),
+        prior={},
+        envelope=envelope(covered_ranges(points)),
+        tie=tie,
+    )
+    return problem, tied
+
+
+def _by_load(measured, key: str) -> dict[float, float]:
+    return dict(measured.by_load(key))
+
+
+def _unmeasured(values: Mapping[str, object], status: dict[str, str]) -> dict[str, float]:
+    found = {n: v for n, v in estimates(values).items() if status.get(n) not in ("measured",)}
+    status.update(dict.fromkeys(found, "estimate"))
+    return found
+
+
+def _rolling_resistance(values: Mapping[str, object], points: Points, status: dict[str, str]) -> dict[str, float]:
+    """QSY1 from measured My, the other terms of the rolling resistance as they are."""
+    used = np.isfinite(points.My) & (points.direction > 0)
+    if not np.any(used):
+        return {}
+    chosen = points.select(np.flatnonzero(used))
+    def moment(QSY1: float) -> np.ndarray:
+        p = SimpleNamespace(**{**values, "QSY1": QSY1})
+        return evaluate(p, chosen.Fz, chosen.alpha, chosen.gamma, 0.0, chosen.phi_t, chosen.V, chosen.p, turn_slip=True)[0].My
+
+    at_zero = moment(0.0)
+    slope = moment(1.0) - at_zero
+    status["QSY1"] = "fitted"
+    return {"QSY1": float(slope @ (chosen.My - at_zero) / (slope @ slope))}
+
+
+def _coefficients(values, fitted: Fitted, cover, status: Mapping[str, str]) -> dict[str, Coefficient]:
+    """One record per number in the sections of forces, moments and turn slip."""
+    stage_of = {row.name: row.stage for row in TABLE}
+    out = {}
+    for row in TABLE:
+        if row.kind != "number" or not (row.section in FORCE_SECTIONS or status.get(row.name) not in ("base", "default")):
+            continue
+        free = row.name in fitted.values
+        state = status.get(row.name, "default")
+        if free and row.name != "PECP1":
+            state = "regularised" if row.name in fitted.regularised else "fitted"
+        partner, correlation = fitted.correlation.get(row.name, ("", 0.0))
+        out[row.name] = Coefficient(
+            value=float(values[row.name]),
+            stderr=fitted.stderr.get(row.name),
+            stage=stage_of[row.name],
+            fixed=not free,
+            at_bound=row.name in fitted.at_bound,
+            status=state,
+            correlated_with=partner,
+            correlation=correlation,
+        )
+    return out
+
+
+def _with_normal(coefficients: Mapping[str, Coefficient], normal: Normal) -> dict[str, Coefficient]:
+    out = dict(coefficients)
+    for name, value in normal.values.items():
+        measured = name in normal.measured
+        out[name] = dataclasses.replace(
+            coefficients[name],
+            value=value,
+            stderr=normal.stderr.get(name),
+            status="measured" if measured else "fitted",
+            fixed=measured,
+            at_bound=not measured and _at_bound(name, value),
+            correlated_with="",
+        )
+    return out
+
+
+def _at_bound(name: str, value: float) -> bool:
+    row = BY_NAME[name]
+    return min(value - row.lower, row.upper - value) < 1e-4 * (row.upper - row.lower)
+
+
+def _tyre(values: Mapping[str, object], coefficients: Mapping[str, Coefficient], base: Tyre | None) -> Tyre:
+    tyre = (base or Tyre.from_values({})).replace(**values)
+    return tyre.annotate(status={name: status_comment(c) for name, c in coefficients.items()})
+
+
+def status_comment(coefficient: Coefficient) -> str:
+    """How the file's comment states the origin of a value."""
+    words = {
+        "base": "from base",
+        "default": "default, not measured",
+        "estimate": "estimate, not measured",
+        "regularised": "tied to base value",
+    }
+    text = words.get(coefficient.status, coefficient.status)
+    if coefficient.stderr is not None and not coefficient.fixed:
+        text += f" +- {coefficient.stderr:.2g}"
+    return text + (", at bound" if coefficient.at_bound else "")
+
+
+def _odd_agreement(values, points: Points, parts: Parts) -> dict[str, Agreement]:
+    """The written file against the odd part, turn slip off, without the odd shift terms that the split removes."""
+    straight = points.replace(phi_t=np.zeros(len(points)), direction=np.ones_like(points.direction))
+    symmetric = {**values, **dict.fromkeys(("PHY1", "PHY2", "PVY1", "PVY2", "PEY3", "QHZ1", "QHZ2", "QDZ6", "QDZ7", "QEZ4"), 0.0)}
+    model = readings(SimpleNamespace(**symmetric), straight, turn_slip=False)
+    used = (parts.paired != "unpaired") & (points.direction > 0)
+    return {
+        "Fy": agreement(model.Fy[used], parts.Fy_odd[used]),
+        "Mz": agreement(model.Mz[used], parts.Mz_odd[used]),
+    }
+
+
+def _epsilon_of_model(values, points: Points, measured) -> float | None:
+    if measured.epsilon_gamma is None:
+        return None
+    return epsilon_gamma_of_model(values, points, measured.F_phit_load, measured.r_e.value, measured.R.value)
+
+
+def _pecp1_sentence(config, values, measured) -> str:
+    if config.spin.pecp1 == "direct":
+        return (
+            f"PECP1 = {values['PECP1']:.4f} is the measured eps_gamma itself; the finite spin of the disc makes the "
+            "model's turn-slip force differ slightly from the measured one (see epsilon_gamma_model)."
+        )
+    return (
+        f"PECP1 = {values['PECP1']:.4f} makes the model's force at (0, 0) equal the measured turn-slip force; the "
+        f"directly measured eps_gamma is {measured.epsilon_gamma.value:.4f}."
+    )
+
+
+def _normal_sentences(turn_slip, written, points: Points, parts: Parts, normal: Normal) -> list[str]:
+    odd = _odd_agreement(written, points, parts)["Fy"]
+    return [
+        "This file is for simulations with turn slip off: its camber terms carry the camber force without spin. "
+        'Set spin.exact = "turn-slip" for simulations with turn slip on; do not switch turn slip on with this file.',
+        f"Its side force misses the measured odd part by {odd.rmse:.1f} N rms ({odd.max_abs:.0f} N at most).",
+        f"At the largest camber it differs from the fitted model with turn slip on by {normal.difference_N:.1f} N rms "
+        "on a straight path.",
+    ]
+
+
+def _warnings(fitted: Fitted, cover) -> list[str]:
+    out = []
+    if fitted.at_bound:
+        out.append(f"at the bound of plausible values: {', '.join(sorted(fitted.at_bound))}; check the sweeps that decide them")
+    if fitted.scale[0] > 3.0:
+        out.append(
+            f"the model misses Fy by {fitted.scale[0]:.1f} times the stated uncertainty; run mffit diagnose to find out why"
+        )
+    return out

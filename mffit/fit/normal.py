@@ -1,0 +1,112 @@
+"""The derived file for simulations without turn slip: camber acts through its own terms, not through spin."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from types import SimpleNamespace
+from typing import NamedTuple
+
+import numpy as np
+
+from mffit.fit.constraints import Envelope
+from mffit.fit.coverage import StageCoverage
+from mffit.fit.problem import Problem
+from mffit.fit.solve import covariance, solve
+from mffit.parts import Parts
+from mffit.points import Points, main_pressure
+from mffit.rig import readings
+from tir.parameters import BY_NAME
+
+CAMBER_FORCE = ("PKY3", "PKY5", "PDY3", "PVY3", "PVY4", "PEY4", "PEY5")
+CAMBER_MOMENT = ("QDZ8", "QDZ9", "QDZ10", "QDZ11")
+
+
+class Normal(NamedTuple):
+    """Coefficients that differ from the fitted model, and what the derivation costs."""
+
+    values: dict[str, float]
+    stderr: dict[str, float]
+    measured: frozenset[str]  #: set to a measured stiffness
+    difference_N: float  #: of both modes at the largest camber, on a straight path
+
+
+def derive_normal(
+    values: Mapping[str, object],
+    points: Points,
+    parts: Parts,
+    cover: tuple[StageCoverage, ...],
+    C_gamma: Mapping[float, float],
+    envelope: Envelope,
+) -> Normal:
+    """Coefficients of the file for turn slip off.
+
+    PKY6 and PKY7 give the measured camber stiffness; the other camber terms of Fy are refitted to the odd part with
+    spin off. The camber terms of Mz follow the fitted model on a straight path, because the odd part of Mz still
+    carries the loss of trail on the disc.
+
+    Parameters
+    ----------
+    values : the fitted model, right with turn slip on
+    C_gamma : measured camber stiffness [N/rad] by load [N], at the main pressure
+    """
+    free = {name for row in cover for name in row.free}
+    imposed = camber_stiffness_terms(values, C_gamma, float(points.p[main_pressure(points)].mean()))
+    start = {**values, **imposed}
+    straight = points.replace(phi_t=np.zeros(len(points)), direction=np.ones_like(points.direction))
+    straight = straight.replace(mount=np.ones_like(points.mount))
+    symmetric = {**start, **{name: 0.0 for name in ("PHY1", "PHY2", "PVY1", "PVY2", "PEY3")}}
+
+    force = [name for name in CAMBER_FORCE if name in free]
+    used = (parts.paired != "unpaired") & (points.direction > 0)
+    odd = straight.replace(Fy=np.where(used, parts.Fy_odd, np.nan), Mz=np.full(len(points), np.nan))
+    fitted_force, errors_force = _refit(odd, symmetric, force, envelope, points.u_Fy)
+
+    fitted = {**start, **fitted_force}
+    on_road = readings(SimpleNamespace(**values), straight, turn_slip=True)
+    road = straight.replace(Fy=np.full(len(points), np.nan), Mz=on_road.Mz)
+    moment = [name for name in CAMBER_MOMENT if name in free]
+    fitted_moment, errors_moment = _refit(road, fitted, moment, envelope, points.u_Mz)
+
+    changed = {**imposed, **fitted_force, **fitted_moment}
+    normal = readings(SimpleNamespace(**{**values, **changed}), straight, turn_slip=False)
+    largest = np.abs(points.gamma) > 0.98 * np.max(np.abs(points.gamma))
+    difference = float(np.sqrt(np.mean((normal.Fy - on_road.Fy)[largest] ** 2)))
+    return Normal(changed, {**errors_force, **errors_moment}, frozenset(imposed), difference)
+
+
+def camber_stiffness_terms(values: Mapping[str, object], C_gamma: Mapping[float, float], main: float) -> dict[str, float]:
+    """PKY6 and PKY7 with K_yg0(Fz) = C_gamma(Fz): exact at the load nearest FNOMIN, best slope over the others.
+
+    ``main`` is the pressure [Pa] at which C_gamma was measured; PPY5 takes it to the nominal one.
+    """
+    if not C_gamma:
+        return {}
+    Fz0 = float(values["FNOMIN"])
+    load, stiffness = np.array(list(C_gamma)), np.array(list(C_gamma.values()))
+    pressure = 1.0 + float(values["PPY5"]) * (main / float(values["NOMPRES"]) - 1.0)
+    Fz0, specific = Fz0 * float(values["LFZO"]), stiffness / (load * pressure * float(values["LKYC"]))
+    dfz = (load - Fz0) / Fz0
+    nearest = int(np.argmin(np.abs(dfz)))
+    offset = dfz - dfz[nearest]
+    slope = float(offset @ (specific - specific[nearest]) / (offset @ offset)) if len(load) > 1 else float(values["PKY7"])
+    return {"PKY6": float(specific[nearest] - slope * dfz[nearest]), "PKY7": slope}
+
+
+def _refit(points: Points, values, names, envelope, u) -> tuple[dict[str, float], dict[str, float]]:
+    if not names:
+        return {}, {}
+    sigma = np.where(np.isfinite(u), u, np.nanmedian(u) if np.any(np.isfinite(u)) else 1.0)
+    problem = Problem(
+        points=points,
+        fixed=values,
+        sigma_Fy=np.where(np.isfinite(points.Fy), sigma, np.inf),
+        sigma_Mz=np.where(np.isfinite(points.Mz), sigma, np.inf),
+        prior={n: (values[n], 0.5 * (BY_NAME[n].upper - BY_NAME[n].lower)) for n in names},
+        envelope=envelope,
+        turn_slip=False,
+    )
+    start = {name: float(values[name]) for name in names}
+    solution = solve(problem.residual, start, {n: (BY_NAME[n].lower, BY_NAME[n].upper) for n in names})
+    misfit = max(1.0, float(np.sqrt(np.mean(solution.residual[: 2 * len(points)] ** 2))))
+    errors = misfit * np.sqrt(np.diag(covariance(solution.jacobian)))
+    return dict(solution.values), dict(zip(names, errors.tolist(), strict=True))

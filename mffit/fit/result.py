@@ -1,0 +1,119 @@
+"""The records that the fit returns."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from mffit.fit.coverage import StageCoverage
+from tir import Tyre
+
+
+@dataclass(frozen=True, slots=True)
+class Coefficient:
+    """One coefficient of the written file and how it came by its value."""
+
+    value: float
+    stderr: float | None  #: k = 1; None if held
+    stage: str
+    fixed: bool
+    at_bound: bool
+    status: str  #: measured | fitted | regularised | default | base
+    correlated_with: str = ""  #: the coefficient with the largest correlation, if above 0.95
+    correlation: float = 0.0
+
+
+@dataclass(frozen=True, slots=True)
+class Agreement:
+    """How one channel of the model agrees with the points."""
+
+    rmse: float
+    nrmse: float  #: rmse over the range of the measured values
+    r2: float
+    max_abs: float
+    n: int
+
+
+@dataclass(frozen=True, slots=True)
+class StageRecord:
+    """What one stage of the fit did."""
+
+    name: str
+    title: str
+    parameters: tuple[str, ...]
+    rmse_Fy: float
+    rmse_Mz: float
+    note: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class FitResult:
+    """The fitted tyre and everything the report says of it."""
+
+    tyre: Tyre  #: the fitted model, right with turn slip on
+    written: Tyre  #: what the .tir holds: the same, or its derivative for turn slip off
+    coefficients: Mapping[str, Coefficient]
+    channels: Mapping[str, Agreement]  #: of ``tyre`` on the raw points, turn slip on
+    odd: Mapping[str, Agreement]  #: of ``written`` on the odd part, turn slip off
+    Fy_model: np.ndarray  #: (n,) [N]
+    Mz_model: np.ndarray  #: (n,) [Nm]
+    stages: tuple[StageRecord, ...]
+    coverage: tuple[StageCoverage, ...]
+    explanations: tuple[str, ...]
+    warnings: tuple[str, ...]
+    seconds: float
+    epsilon_gamma_model: float | None = None
+
+    def to_json(self) -> dict:
+        """The ``fit`` part of result.json."""
+        return {
+            "channels": {name: _as_dict(row) for name, row in self.channels.items()},
+            "odd": {name: _as_dict(row) for name, row in self.odd.items()},
+            "coefficients": {
+                name: {
+                    "value": c.value,
+                    "stderr": c.stderr,
+                    "stage": c.stage,
+                    "fixed": c.fixed,
+                    "at_bound": c.at_bound,
+                    "status": c.status,
+                    "correlated_with": c.correlated_with or None,
+                    "correlation": c.correlation if c.correlated_with else None,
+                }
+                for name, c in self.coefficients.items()
+            },
+            "stages": [
+                {"name": s.name, "parameters": list(s.parameters), "rmse_Fy_N": s.rmse_Fy, "rmse_Mz_Nm": s.rmse_Mz}
+                for s in self.stages
+            ],
+            "coverage": [
+                {"stage": c.stage, "supported": c.supported, "held": list(c.held), "missing": list(c.missing)}
+                for c in self.coverage
+            ],
+            "explanations": list(self.explanations),
+            "seconds": self.seconds,
+        }
+
+
+def agreement(model: np.ndarray, measured: np.ndarray) -> Agreement:
+    """Compare a channel (n,); points where it was not measured do not count."""
+    used = np.isfinite(model) & np.isfinite(measured)
+    difference, measured = (model - measured)[used], measured[used]
+    if not len(measured):
+        return Agreement(float("nan"), float("nan"), float("nan"), float("nan"), 0)
+    rmse = float(np.sqrt(np.mean(difference**2)))
+    spread = float(np.ptp(measured))
+    variance = float(np.var(measured))
+    return Agreement(
+        rmse=rmse,
+        nrmse=rmse / spread if spread > 0 else float("nan"),
+        r2=1.0 - rmse**2 / variance if variance > 0 else float("nan"),
+        max_abs=float(np.max(np.abs(difference))),
+        n=len(measured),
+    )
+
+
+def _as_dict(row: Agreement) -> dict:
+    return {name: getattr(row, name) for name in ("rmse", "nrmse", "r2", "max_abs", "n")}

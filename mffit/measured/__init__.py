@@ -1,0 +1,21 @@
+"""Numbers read straight off the data, with budgets: alignment, radii, stiffnesses, turn-slip force, eps_gamma."""
+
+from mffit.measured.alignment import Alignment, AlignmentStep, align
+from mffit.measured.backlash import backlash_corrected
+from mffit.measured.camber_reduction import DirectInputs, TurnSlip, direct_method
+from mffit.measured.direct import measure
+from mffit.measured.result import Contribution, LoadResult, Measured
+
+__all__ = [
+    "Alignment",
+    "AlignmentStep",
+    "Contribution",
+    "DirectInputs",
+    "LoadResult",
+    "Measured",
+    "TurnSlip",
+    "align",
+    "backlash_corrected",
+    "direct_method",
+    "measure",
+]

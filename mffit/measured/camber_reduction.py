@@ -1,0 +1,156 @@
+"""The direct method proper: turn-slip force (23), its stiffness (21), eps_gamma (17), with correlated uncertainties.
+
+Numbers that carry an uncertainty are those of the ``uncertainties`` package: first-order propagation in which a source
+that enters twice (R is in r_e and in C_phit) is counted with its correlation.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any, NamedTuple
+
+import numpy as np
+from uncertainties import UFloat, ufloat
+
+from mffit.measured.result import Contribution
+from tir import Quantity
+
+DRAWS = 20_000
+EXACT = 1e-12
+"""Stands in for an uncertainty of zero, which the propagation does not accept."""
+
+
+@dataclass(frozen=True, slots=True)
+class RigErrors:
+    """Rig errors common to all loads, as numbers with uncertainty; build with :func:`rig_errors`."""
+
+    offset: UFloat  #: load-cell offset F0 [N]
+    gamma_0: UFloat  #: camber misalignment [rad]
+    slip_force: UFloat  #: force of the residual sideslip misalignment [N]
+    half_play: UFloat  #: backlash/2 [rad]
+    R: UFloat  #: path radius [m]
+
+
+class TurnSlip(NamedTuple):
+    """Result at one load."""
+
+    F_phit: UFloat  #: [N]
+    C_phit: UFloat  #: [Nm]
+    epsilon_gamma: UFloat
+
+
+def rig_errors(
+    *, u_offset: float, u_gamma_0: float, u_slip_force: float, half_play: float, u_half_play: float, R: UFloat
+) -> RigErrors:
+    """Rig errors from their standard uncertainties [N, rad, N, rad, rad]; all but the play are nominally zero."""
+    return RigErrors(
+        offset=named(0.0, u_offset, "load-cell offset", "N"),
+        gamma_0=named(0.0, u_gamma_0, "camber alignment", "rad"),
+        slip_force=named(0.0, u_slip_force, "sideslip alignment", "N"),
+        half_play=named(half_play, u_half_play, "backlash", "rad"),
+        R=R,
+    )
+
+
+def named(value: float, u: float, source: str, unit: str) -> UFloat:
+    """A number with uncertainty whose tag says what it is and in which unit."""
+    return ufloat(value, max(u, EXACT), f"{source}|{unit}")
+
+
+def turn_slip_force(F_raw: Any, C_gamma: Any, C_alpha: Any, rig: RigErrors, alpha_b: Any, *, slip_known: bool) -> Any:
+    """Turn-slip force [N] from the raw force at (0, 0); (23) in ISO signs.
+
+    Parameters
+    ----------
+    F_raw : raw force [N]
+    C_gamma, C_alpha : stiffnesses [N/rad]
+    alpha_b : sideslip that backlash makes of the reading 0 [rad]; -(play/2) sign(Mz)
+    slip_known : the slip force was removed by the mean of both directions, so alignment does not enter
+    """
+    force = F_raw - rig.offset - C_gamma * rig.gamma_0 - C_alpha * alpha_b
+    return force if slip_known else force - rig.slip_force
+
+
+def camber_reduction(F_phit: Any, C_gamma: Any, r_e: Any, R: Any, phi_sign: float) -> TurnSlip:
+    """C_phit = F/phi_t (21) and eps_gamma = 1 + r_e C_gamma / C_phit, (17) in ISO signs.
+
+    Parameters
+    ----------
+    F_phit : turn-slip force [N]
+    C_gamma : camber stiffness [N/rad], negative
+    r_e, R : effective and path radius [m]
+    phi_sign : -1 with the disc's centre to the left, +1 to the right
+    """
+    C_phit = phi_sign * F_phit * R
+    return TurnSlip(F_phit, C_phit, 1.0 + r_e * C_gamma / C_phit)
+
+
+def quantity(x: UFloat | None, unit: str) -> Quantity | None:
+    """A number with uncertainty as the record that leaves this folder."""
+    return None if x is None else Quantity(float(x.nominal_value), float(x.std_dev), unit)
+
+
+def budget(epsilon: UFloat) -> tuple[Contribution, ...]:
+    """What each source contributes to u(eps_gamma), largest first."""
+    rows: dict[str, list[float]] = {}
+    for variable, contribution in epsilon.error_components().items():
+        rows.setdefault(variable.tag or "other|", []).extend([variable.std_dev, contribution])
+    out = []
+    for tag, values in rows.items():
+        source, _, unit = tag.partition("|")
+        u, unit = (math.degrees(values[0]), "deg") if unit == "rad" else (values[0], unit)
+        out.append(Contribution(source, u, unit, float(np.linalg.norm(values[1::2]))))
+    return tuple(sorted((row for row in out if row.contribution > 1e-9), key=lambda row: -row.contribution))
+
+
+def monte_carlo(function: Any, inputs: Sequence[UFloat], seed: int = 1) -> float:
+    """Robust standard deviation of ``function(*inputs)`` over random draws of the independent inputs.
+
+    Half the distance between the 15.87 % and 84.13 % quantiles, because a ratio has heavy tails.
+    """
+    rng = np.random.default_rng(seed)
+    drawn = [rng.normal(x.nominal_value, x.std_dev, DRAWS) if x.std_dev else x.nominal_value for x in inputs]
+    values = function(*drawn)
+    low, high = np.quantile(values, [0.158655, 0.841345])
+    return float(high - low) / 2.0
+
+
+@dataclass(frozen=True, slots=True)
+class DirectInputs:
+    """The direct method as plain numbers, for tables like the paper's; SI, ISO signs, u with k = 1."""
+
+    F_raw: float  #: raw or already corrected turn-slip force [N]
+    C_gamma: float  #: [N/rad], negative
+    r_e: float  #: [m]
+    R: float  #: [m]
+    C_alpha: float = 0.0  #: [N/rad]
+    alpha_b: float = 0.0  #: [rad]
+    u_C_gamma: float = 0.0
+    u_r_e: float = 0.0
+    u_R: float = 0.0
+    u_offset: float = 10.0  #: [N]
+    u_gamma_0: float = math.radians(0.5)
+    u_slip_force: float = 25.0  #: [N]
+    u_F_raw: float = 0.0
+    u_alpha_b: float = 0.0
+
+
+def direct_method(given: DirectInputs) -> TurnSlip:
+    """Turn-slip force, stiffness and eps_gamma from plain numbers."""
+    R = named(given.R, given.u_R, "path radius", "m")
+    rig = rig_errors(
+        u_offset=given.u_offset,
+        u_gamma_0=given.u_gamma_0,
+        u_slip_force=given.u_slip_force,
+        half_play=abs(given.alpha_b),
+        u_half_play=given.u_alpha_b,
+        R=R,
+    )
+    C_gamma = named(given.C_gamma, given.u_C_gamma, "camber stiffness", "N/rad")
+    F = named(given.F_raw, given.u_F_raw, "noise of the zeros", "N")
+    sign = math.copysign(1.0, given.alpha_b)
+    force = turn_slip_force(F, C_gamma, given.C_alpha, rig, sign * rig.half_play, slip_known=False)
+    r_e = named(given.r_e, given.u_r_e, "effective radius", "m")
+    return camber_reduction(force, C_gamma, r_e, R, math.copysign(1.0, given.F_raw))

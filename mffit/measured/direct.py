@@ -1,0 +1,358 @@
+"""The direct method on a set of points: stiffnesses, turn-slip force, eps_gamma with budget, load by load."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+from uncertainties import UFloat
+
+from mffit.config import Config
+from mffit.errors import InputError
+from mffit.measured import camber_reduction as method
+from mffit.measured.groups import STRAIGHT, UPRIGHT, LoadGroup, load_groups, zeros
+from mffit.measured.loads import load_dependence
+from mffit.measured.radii import effective_radius_at, measured_effective_radius, measured_path_radius
+from mffit.measured.result import LoadResult, Measured
+from mffit.measured.slopes import Secant, Slope, secant_at, slope_at_zero
+from mffit.parts import Parts
+from mffit.points import Points
+from tir import Quantity, Tyre
+
+CUBIC_CAMBER = math.radians(20.0)
+CUBIC_SLIP = math.radians(2.0)
+NEAR_ZERO = math.radians(1.2)
+"""Within this sideslip a parabola describes the side force to a newton."""
+SHORTEST_CAMBER_SWEEP = math.radians(10.0)
+DEFAULT_U_FORCE, DEFAULT_U_MOMENT = 6.0, 0.6
+"""Standard uncertainty of a point [N], [Nm] where the data give none."""
+
+
+@dataclass(frozen=True, slots=True)
+class Stiffness:
+    """A stiffness at one load as the two estimates of it."""
+
+    slope: Slope | None
+    secant: Secant | None
+
+
+class Zero(NamedTuple):
+    """Forces and moment at zero sideslip and camber of one load."""
+
+    forward: float  #: [N], the sideslip of backlash removed
+    backward: float  #: NaN without backward runs
+    u_forward: float
+    u_backward: float
+    moment: UFloat | None  #: turn-slip moment [Nm]
+    alpha_b: float  #: sideslip that backlash makes at the forward zero [rad]
+
+
+@dataclass(frozen=True, slots=True)
+class AtLoad:
+    """Numbers with uncertainty of one load, before they become a record."""
+
+    row: LoadResult
+    epsilon: UFloat | None
+
+
+def measure(config: Config, points: Points, parts: Parts, base: Tyre | None = None) -> Measured:
+    """Measure stiffnesses, turn-slip force and eps_gamma at every load.
+
+    Parameters
+    ----------
+    config : the rig, its uncertainties and the method for C_gamma
+    points : with the backlash already taken off the angles
+    parts : their odd and even parts
+    base : gives the shape of Re over load where r_e was not measured
+
+    Returns
+    -------
+    Measured
+        On a flat track with stiffnesses only.
+
+    Raises
+    ------
+    InputError
+        If the turn-slip force points towards the centre of the disc.
+    """
+    disc = config.rig.type == "rotating-disk"
+    warnings: list[str] = list(parts.unpaired)
+    R = measured_path_radius(config)
+    radii = measured_effective_radius(config, R)
+    rig = _rig(config, R) if disc else None
+    rows = []
+    for group in load_groups(points):
+        found = _at_load(config, points, parts, group, rig, effective_radius_at(group.load, radii, base), warnings)
+        if found is not None:
+            rows.append(found)
+    measured_loads = {load: float(r.nominal_value) for load, r in radii.items()}
+    return _assembled(config, rows, measured_loads, warnings, disc)
+
+
+def _rig(config: Config, R: UFloat) -> method.RigErrors:
+    rig = config.rig
+    return method.rig_errors(
+        u_offset=rig.u_loadcell_offset_N,
+        u_gamma_0=math.radians(rig.u_camber_alignment_deg),
+        u_slip_force=rig.u_slip_alignment_N,
+        half_play=math.radians(rig.backlash_deg) / 2.0,
+        u_half_play=math.radians(rig.u_backlash_deg) / 2.0,
+        R=R,
+    )
+
+
+def _at_load(config, points, parts, group: LoadGroup, rig, r_e, warnings) -> AtLoad | None:
+    u_Fy = np.where(np.isfinite(parts.u_Fy_odd), parts.u_Fy_odd, DEFAULT_U_FORCE / math.sqrt(2.0))
+    u_Mz = np.where(np.isfinite(parts.u_Mz_odd), parts.u_Mz_odd, DEFAULT_U_MOMENT / math.sqrt(2.0))
+    odd_Fy, odd_Mz = (parts.Fy_odd, parts.Mz_odd) if rig else _raw_odd(points)
+    camber = _sweep(points, odd_Fy, group, "gamma")
+    slip = _sweep(points, odd_Fy, group, "alpha")
+    angle = math.radians(config.camber_stiffness.angle_deg)
+    C_gamma = Stiffness(*_estimates(points.gamma, odd_Fy, u_Fy, camber, CUBIC_CAMBER, angle))
+    C_alpha = Stiffness(*_estimates(points.alpha, odd_Fy, u_Fy, slip, CUBIC_SLIP, CUBIC_SLIP))
+    if C_gamma.slope is None and C_alpha.slope is None and C_gamma.secant is None and rig is None:
+        return None
+    chosen = _chosen(config, C_gamma, points.gamma[camber], group.load, warnings)
+    Ca = _number(C_alpha.slope or C_alpha.secant, "cornering stiffness")
+    zero = _zero(points, group, Ca, config) if rig else None
+    epsilon = turn = alpha_M = moment = None
+    row_budget, u_mc, e_slope, e_secant = (), None, None, None
+    if zero is not None and np.isfinite(zero.forward):
+        force, alpha_M, inputs = _turn_slip(zero, chosen, Ca, rig)
+        sign = float(np.sign(points.phi_t[group.index[0]]))
+        if force.nominal_value * sign <= 0.0:
+            _refuse_inward(force.nominal_value, group.load, alpha_M, config)
+        turn = force
+        if chosen is not None and r_e is not None:
+            result = method.camber_reduction(force, chosen, r_e, rig.R, sign)
+            epsilon, row_budget = result.epsilon_gamma, method.budget(result.epsilon_gamma)
+            u_mc = _monte_carlo(epsilon, inputs, chosen, Ca, r_e, rig, sign, zero)
+            e_slope, e_secant = (_epsilon_with(s, force, r_e, rig, sign) for s in (C_gamma.slope, C_gamma.secant))
+            moment = _moment_opinion(points, odd_Mz, u_Mz, group, zero, r_e, rig, sign)
+    C_phit = None if turn is None else float(np.sign(points.phi_t[group.index[0]])) * turn * rig.R
+    row = LoadResult(
+        load=group.load,
+        C_alpha=method.quantity(Ca, "N/rad"),
+        C_gamma=method.quantity(chosen, "N/rad"),
+        C_gamma_slope=None if C_gamma.slope is None else Quantity(C_gamma.slope.value, C_gamma.slope.u, "N/rad"),
+        C_gamma_secant=None if C_gamma.secant is None else Quantity(C_gamma.secant.value, C_gamma.secant.u, "N/rad"),
+        r_e=method.quantity(r_e, "m"),
+        R=method.quantity(rig.R, "m") if rig else None,
+        F_phit=method.quantity(turn, "N"),
+        C_phit=method.quantity(C_phit, "Nm"),
+        epsilon_gamma=method.quantity(epsilon, "-"),
+        epsilon_slope=e_slope,
+        epsilon_secant=e_secant,
+        epsilon_moment=method.quantity(moment, "-"),
+        alpha_M=method.quantity(alpha_M, "rad"),
+        F_forward=zero.forward if zero else math.nan,
+        F_backward=zero.backward if zero else math.nan,
+        budget=row_budget,
+        u_monte_carlo=u_mc,
+    )
+    return AtLoad(row, epsilon)
+
+
+def _raw_odd(points: Points) -> tuple[np.ndarray, np.ndarray]:
+    """On a straight path the curve itself, less its value at zero, stands for the odd part."""
+    return points.Fy, points.Mz
+
+
+def _sweep(points: Points, odd: np.ndarray, group: LoadGroup, angle: str) -> np.ndarray:
+    """Indices of the group's forward points on the positive branch of a pure camber or sideslip sweep."""
+    i = group.index
+    i = i[(points.direction[i] > 0) & np.isfinite(odd[i])]
+    if angle == "gamma":
+        return i[(np.abs(points.alpha[i]) < STRAIGHT) & (points.gamma[i] > UPRIGHT)]
+    return i[(np.abs(points.gamma[i]) < UPRIGHT) & (points.alpha[i] > np.radians(0.15))]
+
+
+def _estimates(x, odd, u, index, local, angle) -> tuple[Slope | None, Secant | None]:
+    x, y, u = x[index], odd[index], u[index]
+    return slope_at_zero(x, y, u, local=local), secant_at(x, y, u, angle)
+
+
+def _chosen(config, stiffness: Stiffness, gamma, load: float, warnings: list[str]) -> UFloat | None:
+    """C_gamma by the configured method; the other one, with a warning, if the sweep is too short for it."""
+    wanted = config.camber_stiffness.method
+    angle = config.camber_stiffness.angle_deg
+    slope_possible = stiffness.slope is not None and gamma.max() >= SHORTEST_CAMBER_SWEEP
+    if wanted == "slope" and not slope_possible and stiffness.secant is not None:
+        warnings.append(
+            f"at {load:.0f} N the camber sweep is too short for the slope at zero; the secant at {angle:g} deg is used, "
+            "which is a few per cent low: add cambers up to 20 deg"
+        )
+        return _number(stiffness.secant, "camber stiffness")
+    if wanted == "secant" and stiffness.secant is None and stiffness.slope is not None:
+        warnings.append(
+            f"at {load:.0f} N the camber sweep does not reach {angle:g} deg; the slope at zero is used instead of the secant"
+        )
+        return _number(stiffness.slope, "camber stiffness")
+    return _number(stiffness.slope if wanted == "slope" else stiffness.secant, "camber stiffness")
+
+
+def _number(estimate: Slope | Secant | None, source: str) -> UFloat | None:
+    return None if estimate is None else method.named(estimate.value, estimate.u, source, "N/rad")
+
+
+def _zero(points: Points, group: LoadGroup, C_alpha: UFloat | None, config: Config) -> Zero:
+    """Forces and moments at zero sideslip in both directions, backlash taken off."""
+    slope = C_alpha.nominal_value if C_alpha is not None else -10.0 * group.load
+    u_Fy = np.where(np.isfinite(points.u_Fy), points.u_Fy, DEFAULT_U_FORCE)
+    u_Mz = np.where(np.isfinite(points.u_Mz), points.u_Mz, DEFAULT_U_MOMENT)
+    forward = _at_zero(points, group, 1, points.Fy, u_Fy, slope)
+    backward = _at_zero(points, group, -1, points.Fy, u_Fy, -slope)
+    moments = [_at_zero(points, group, direction, points.Mz, u_Mz, None) for direction in (1, -1)]
+    known = [method.named(value, u, "noise of the zero moment", "Nm") for value, u in moments if math.isfinite(value)]
+    moment = (known[0] - known[1]) / 2.0 if len(known) == 2 else known[0] if known else None
+    i = zeros(points, group, 1)
+    play_sign = float(np.sign(np.mean(points.alpha[i]))) if len(i) and config.rig.backlash_deg else 0.0
+    return Zero(forward[0], backward[0], forward[1], backward[1], moment, play_sign)
+
+
+def _at_zero(points: Points, group: LoadGroup, direction: int, y, u, slope: float | None) -> tuple[float, float]:
+    """Value at zero sideslip and its u: a local parabola through five points or more, else the mean of the zeros.
+
+    ``slope`` takes the zeros that backlash has moved off zero back to it; NaN if the direction was not run.
+    """
+    i = zeros(points, group, direction)
+    i = i[np.isfinite(y[i])]
+    if not len(i):
+        return math.nan, math.nan
+    near = group.index[
+        (np.abs(points.alpha[group.index]) < NEAR_ZERO)
+        & (np.abs(points.gamma[group.index]) < UPRIGHT)
+        & (points.direction[group.index] == direction)
+        & np.isfinite(y[group.index])
+    ]
+    x = points.alpha[near]
+    if len(np.unique(np.round(x, 3))) >= 5 and x.min() < -NEAR_ZERO / 2 and x.max() > NEAR_ZERO / 2:
+        A = np.vander(x, 3) / u[near, None]
+        cov = np.linalg.inv(A.T @ A)
+        return float((cov @ A.T @ (y[near] / u[near]))[2]), float(np.sqrt(cov[2, 2]))
+    values = y[i] - (slope * points.alpha[i] if slope is not None else 0.0)
+    return float(np.mean(values)), float(np.sqrt(np.sum(u[i] ** 2)) / len(i))
+
+
+def _turn_slip(zero: Zero, C_gamma, C_alpha, rig):
+    """Corrected turn-slip force, alpha_M if known, and the raw forces that enter."""
+    forward = method.named(zero.forward, zero.u_forward, "noise of the forward zeros", "N")
+    Cg = C_gamma if C_gamma is not None else 0.0
+    Ca = C_alpha if C_alpha is not None else 0.0
+    # The play was taken off the angles already, so only its uncertainty is left to propagate.
+    play_error = zero.alpha_b * (rig.half_play - rig.half_play.nominal_value)
+    if not math.isfinite(zero.backward):
+        force = method.turn_slip_force(forward, Cg, Ca, rig, play_error, slip_known=False)
+        return force, None, (forward,)
+    backward = method.named(zero.backward, zero.u_backward, "noise of the backward zeros", "N")
+    force = method.turn_slip_force((forward + backward) / 2.0, Cg, Ca, rig, play_error, slip_known=True)
+    alpha_M = (forward - backward) / 2.0 / Ca if C_alpha is not None else None
+    return force, alpha_M, (forward, backward)
+
+
+def _refuse_inward(force: float, load: float, alpha_M, config) -> None:
+    if alpha_M is None:
+        cause = "sideslip misaligned by a degree or more (run mffit align with forward and backward zeros), or path_centre wrong"
+    else:
+        cause = "path_centre or axes are wrong, as forward and backward runs agree on it"
+    raise InputError(
+        f"the turn-slip force at {load:.0f} N is {force:.0f} N in ISO-W, towards the disc's centre, and a disc pushes "
+        f"outwards: {cause}",
+        file=config.path,
+        key="rig.path_centre",
+    )
+
+
+def _epsilon_with(estimate, force, r_e, rig, sign) -> float | None:
+    if estimate is None:
+        return None
+    return float(method.camber_reduction(force, estimate.value, r_e, rig.R, sign).epsilon_gamma.nominal_value)
+
+
+def _monte_carlo(epsilon, forces, C_gamma, C_alpha, r_e, rig, sign, zero) -> float:
+    """u(eps_gamma) by random draws of all independent sources."""
+    ratio = r_e / rig.R  # R cancels where r_e comes from a revolution on the same path
+    inputs = [*forces, C_gamma, rig.offset, rig.gamma_0, rig.slip_force, ratio_number(ratio)]
+
+    def formula(*x):
+        force = np.mean(np.broadcast_arrays(*x[: len(forces)]), axis=0) if len(forces) > 1 else x[0]
+        C, offset, gamma_0, slip, r = x[len(forces) :]
+        force = force - offset - C * gamma_0 - (slip if len(forces) == 1 else 0.0)
+        return 1.0 + r * C / (sign * force)
+
+    return method.monte_carlo(formula, inputs)
+
+
+def ratio_number(ratio: UFloat) -> UFloat:
+    """r_e / R as one independent number."""
+    return method.named(ratio.nominal_value, ratio.std_dev, "r_e/R", "-")
+
+
+def _moment_opinion(points, odd_Mz, u_Mz, group, zero, r_e, rig, sign) -> UFloat | None:
+    """eps_gamma from the moments; informational, as it scatters widely."""
+    if zero.moment is None:
+        return None
+    index = _sweep(points, odd_Mz, group, "gamma")
+    slope = slope_at_zero(points.gamma[index], odd_Mz[index], u_Mz[index], local=CUBIC_CAMBER)
+    if slope is None or abs(zero.moment.nominal_value) < 2.0 * zero.moment.std_dev:
+        return None
+    C = method.named(slope.value, slope.u, "camber moment stiffness", "Nm/rad")
+    return 1.0 + r_e * C / (sign * zero.moment * rig.R)
+
+
+def _assembled(config, rows: list[AtLoad], r_e_loads, warnings: list[str], disc: bool) -> Measured:
+    nominal_load = config.tyre.nominal_load
+    per_load = tuple(found.row for found in rows)
+    with_epsilon = [k for k, found in enumerate(rows) if found.epsilon is not None]
+    if not with_epsilon:
+        nearest = min(per_load, key=lambda row: abs(row.load - nominal_load), default=None)
+        if disc:
+            warnings.append(
+                "eps_gamma could not be measured: it needs a camber sweep, points at (0, 0) and a [rolling_radius]"
+            )
+        return Measured(per_load, nearest, None, 0.0, None, r_e_loads, False, (), tuple(warnings))
+    at = min(with_epsilon, key=lambda k: abs(per_load[k].load - nominal_load))
+    loads = [per_load[k].load for k in with_epsilon]
+    law = load_dependence(loads, [rows[k].epsilon for k in with_epsilon], with_epsilon.index(at), nominal_load)
+    row = per_load[at]
+    misaligned, notes = _alignment_verdict(config, row, warnings)
+    notes += [law.note, *_standing_notes(config, row)]
+    return Measured(per_load, row, law.pecp1, law.pecp2, law.u_pecp2, r_e_loads, misaligned, tuple(notes), tuple(warnings))
+
+
+def _alignment_verdict(config, row: LoadResult, warnings: list[str]) -> tuple[bool, list[str]]:
+    """Whether the sideslip axis is off by more than the rig's own alignment leaves, and what to say of it."""
+    force = row.F_phit.value
+    degrees_per_newton = math.degrees(1.0 / abs(row.C_alpha.value)) if row.C_alpha else math.nan
+    if row.alpha_M is None:
+        warnings.append(
+            "no backward runs: sideslip misalignment, turn slip and ply-steer are not separable here; the force "
+            f"{force:.0f} N at (0, 0) would take {abs(force) * degrees_per_newton:.2f} deg of misalignment or ply-steer if it "
+            f"were not turn slip, and {config.rig.u_slip_alignment_N:.0f} N (k = 1) is assumed for the alignment"
+        )
+        return False, []
+    alpha_M, u = math.degrees(row.alpha_M.value), math.degrees(row.alpha_M.u)
+    slip = (row.F_forward - row.F_backward) / 2.0
+    shift = row.epsilon_gamma and abs((1.0 - row.epsilon_gamma.value) * slip / force)
+    sentence = f"alpha_M = {alpha_M:.3f} +- {u:.3f} deg ({slip:.0f} N); uncorrected it would move eps_gamma by {shift:.2f}"
+    if abs(slip) <= config.rig.u_slip_alignment_N:
+        return False, [
+            f"Forward and backward runs: {sentence}. It is within what the alignment leaves and stays in the model as ply-steer."
+        ]
+    warnings.append(
+        f"the sideslip axis is misaligned: {sentence}; forward and backward forces differ by {abs(2 * slip):.0f} N. It is taken "
+        "off the angles; ply-steer cannot be told from it"
+    )
+    return True, []
+
+
+def _standing_notes(config, row: LoadResult) -> list[str]:
+    conicity = 0.002 * row.load
+    return [
+        "All uncertainties are standard uncertainties (k = 1).",
+        f"Conicity cannot be removed: a plausible {conicity:.0f} N (0.2 % of the load) would move eps_gamma by "
+        f"{abs((1.0 - row.epsilon_gamma.value) * conicity / row.F_phit.value):.3f}.",
+        "With camber the contact point wanders over the crown and changes the path radius; R holds for the upright wheel.",
+    ]

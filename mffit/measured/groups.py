@@ -1,0 +1,40 @@
+"""Which points belong to which load, and which of them the direct method reads."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from mffit.points import Points, main_pressure
+
+LOAD_GAP = 0.08
+"""Loads closer together than this (relative) are one level."""
+UPRIGHT = np.radians(0.5)
+STRAIGHT = np.radians(0.3)
+
+
+@dataclass(frozen=True, slots=True)
+class LoadGroup:
+    """The points of one load at the main pressure, normal mount."""
+
+    load: float  #: mean load [N]
+    index: np.ndarray  #: (m,) into the points
+
+
+def load_groups(points: Points) -> tuple[LoadGroup, ...]:
+    """Group the steady points at the programme's main pressure by load, rising."""
+    used = np.flatnonzero(main_pressure(points) & (points.mount > 0) & ~points.continuous)
+    order = used[np.argsort(points.Fz[used])]
+    cuts = np.flatnonzero(np.diff(np.log(points.Fz[order])) > LOAD_GAP) + 1
+    return tuple(
+        LoadGroup(float(np.mean(points.Fz[part])), np.sort(part)) for part in np.split(order, cuts) if len(part)
+    )
+
+
+def zeros(points: Points, group: LoadGroup, direction: int) -> np.ndarray:
+    """Indices of the group's points at zero sideslip and camber, rolling in ``direction`` (+1, -1)."""
+    i = group.index
+    near = (np.abs(points.alpha[i]) < STRAIGHT) & (np.abs(points.gamma[i]) < UPRIGHT) & (points.direction[i] == direction)
+    i = i[near]
+    return i[np.abs(points.alpha[i]) < np.min(np.abs(points.alpha[i])) + np.radians(0.05)] if len(i) else i

@@ -1,0 +1,57 @@
+"""eps_gamma over load: PECP1 and PECP2."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+from uncertainties import UFloat, covariance_matrix
+
+LARGEST_EPSILON = 0.9
+
+
+class LoadDependence(NamedTuple):
+    """PECP1 and PECP2 of eps_gamma(Fz) = PECP1 (1 + PECP2 dfz)."""
+
+    pecp1: float
+    pecp2: float
+    u_pecp2: float | None
+    note: str
+
+
+def load_dependence(loads: Sequence[float], epsilon: Sequence[UFloat], nominal: int, Fz0: float) -> LoadDependence:
+    """Fit the slope over load with eps_gamma at the nominal load held; rig errors common to all loads stay correlated.
+
+    Parameters
+    ----------
+    loads : [N]
+    epsilon : eps_gamma at each, with its correlations
+    nominal : which of them is the load nearest FNOMIN
+    Fz0 : FNOMIN [N]
+
+    Notes
+    -----
+    PECP2 is written only where the slope exceeds 2 u, |PECP1| exceeds 2 u and eps_gamma stays below 0.9.
+    """
+    at_nominal = epsilon[nominal]
+    pecp1 = float(at_nominal.nominal_value)
+    others = [i for i in range(len(loads)) if i != nominal]
+    if not others:
+        return LoadDependence(pecp1, 0.0, None, "PECP2 is 0: one load was measured.")
+    x = np.array([(loads[i] - loads[nominal]) / Fz0 for i in others])
+    differences = [epsilon[i] - at_nominal for i in others]
+    weight = np.linalg.pinv(np.array(covariance_matrix(differences)))
+    y = np.array([d.nominal_value for d in differences])
+    slope, u = float(x @ weight @ y / (x @ weight @ x)), float(1.0 / np.sqrt(x @ weight @ x))
+    u_pecp2 = u / max(abs(pecp1), 1e-12)
+    span = [pecp1 + slope * (load - loads[nominal]) / Fz0 for load in loads]
+    if abs(slope) <= 2.0 * u:
+        why = f"the slope {slope:.3f} per unit of dfz is within 2 u = {2 * u:.3f}"
+    elif abs(pecp1) <= 2.0 * at_nominal.std_dev:
+        why = "eps_gamma itself is within 2 u of zero, so a relative slope has no meaning"
+    elif max(span) >= LARGEST_EPSILON:
+        why = f"eps_gamma would reach {max(span):.2f} within the loads"
+    else:
+        return LoadDependence(pecp1, slope / pecp1, u_pecp2, f"PECP2 = {slope / pecp1:.3f} +- {u_pecp2:.3f} (k = 1).")
+    return LoadDependence(pecp1, 0.0, u_pecp2, f"PECP2 is 0: {why}.")

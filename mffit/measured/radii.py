@@ -1,0 +1,51 @@
+"""Path radius (19) and effective rolling radius (18), with their uncertainties."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+from uncertainties import UFloat
+from uncertainties import ufloat as _ufloat
+
+from mffit.config import Config, path_radius
+from mffit.measured.camber_reduction import named
+from tir import Tyre
+
+
+def measured_path_radius(config: Config) -> UFloat | None:
+    """R [m] from the four tape measures or as given; None on a flat track."""
+    rig = config.rig
+    if rig.type == "flat-track":
+        return None
+    if rig.path is None:
+        return named(rig.path_radius, rig.u_path_radius or 0.0, "path radius", "m")
+    R = path_radius(**{k: _ufloat(v, rig.u_length) for k, v in rig.path.model_dump().items()})
+    return named(R.nominal_value, R.std_dev if rig.u_path_radius is None else rig.u_path_radius, "path radius", "m")
+
+
+def measured_effective_radius(config: Config, R: UFloat | None) -> dict[float, UFloat]:
+    """r_e [m] by load [N]: distance of one disc revolution over the wheel's angle (18), or as given."""
+    out = {}
+    for row in config.rolling_radius:
+        load = row.load_N or config.tyre.nominal_load
+        if not row.is_measured:
+            out[load] = named(row.effective_radius, row.u_effective_radius, "effective radius", "m")
+            continue
+        arcs = named(0.0, np.sqrt(2.0) * row.u_arc_m, "disc notches", "m")
+        turned = 2.0 * np.pi * row.revolutions + np.radians(row.angle_end_deg - row.angle_start_deg)
+        angle = named(turned, np.sqrt(2.0) * np.radians(row.u_angle_deg), "wheel angle", "rad")
+        out[load] = (2.0 * np.pi * R + arcs) / angle
+    return out
+
+
+def effective_radius_at(load: float, measured: Mapping[float, UFloat], base: Tyre | None) -> UFloat | None:
+    """r_e [m] at a load [N]: measured there, else the nearest measurement moved along the base file's Re(Fz)."""
+    if not measured:
+        return None
+    nearest = min(measured, key=lambda other: abs(np.log(other / load)))
+    r_e = measured[nearest]
+    if abs(nearest - load) < 0.02 * load or base is None:
+        return r_e
+    shape = base.state(np.array([nearest, load])).Re
+    return r_e * float(shape[1] / shape[0])

@@ -1,0 +1,174 @@
+"""The records of the direct method."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any, NamedTuple
+
+from tir import Quantity
+
+
+class Contribution(NamedTuple):
+    """One line of the budget."""
+
+    source: str
+    u: float  #: in the source's own unit
+    unit: str
+    contribution: float  #: to u(eps_gamma)
+
+
+@dataclass(frozen=True, slots=True)
+class LoadResult:
+    """Everything measured at one load; quantities in SI and ISO signs, u with k = 1."""
+
+    load: float  #: [N]
+    C_alpha: Quantity | None  #: [N/rad]
+    C_gamma: Quantity | None  #: the chosen estimate [N/rad]
+    C_gamma_slope: Quantity | None
+    C_gamma_secant: Quantity | None
+    r_e: Quantity | None  #: [m]
+    R: Quantity | None  #: [m]
+    F_phit: Quantity | None  #: turn-slip force, corrected (23) [N]
+    C_phit: Quantity | None  #: [Nm]
+    epsilon_gamma: Quantity | None
+    epsilon_slope: float | None
+    epsilon_secant: float | None
+    epsilon_moment: Quantity | None
+    alpha_M: Quantity | None  #: sideslip misalignment from backward runs [rad]
+    F_forward: float  #: mean raw force of the forward zeros, backlash removed [N]
+    F_backward: float  #: [N]; NaN without backward runs
+    budget: tuple[Contribution, ...] = ()
+    u_monte_carlo: float | None = None  #: u(eps_gamma) from random draws
+
+
+@dataclass(frozen=True, slots=True)
+class Measured:
+    """What was read straight off the data, no model involved."""
+
+    per_load: tuple[LoadResult, ...]
+    nominal: LoadResult | None  #: the load nearest FNOMIN; None if nothing could be measured
+    pecp1: float | None
+    pecp2: float
+    u_pecp2: float | None
+    r_e_loads: Mapping[float, float]  #: loads at which r_e was really measured
+    misaligned: bool  #: alpha_M is beyond what the rig's alignment leaves and is corrected in the points
+    notes: tuple[str, ...]
+    warnings: tuple[str, ...]
+    epsilon_gamma_model: float | None = None
+
+    @property
+    def epsilon_gamma(self) -> Quantity | None:
+        return self.nominal.epsilon_gamma if self.nominal else None
+
+    @property
+    def F_phit(self) -> Quantity | None:
+        return self.nominal.F_phit if self.nominal else None
+
+    @property
+    def F_phit_load(self) -> float:
+        assert self.nominal is not None
+        return self.nominal.load
+
+    @property
+    def C_phit(self) -> Quantity | None:
+        return self.nominal.C_phit if self.nominal else None
+
+    @property
+    def C_gamma(self) -> Quantity | None:
+        return self.nominal.C_gamma if self.nominal else None
+
+    @property
+    def C_alpha(self) -> Quantity | None:
+        return self.nominal.C_alpha if self.nominal else None
+
+    @property
+    def r_e(self) -> Quantity | None:
+        return self.nominal.r_e if self.nominal else None
+
+    @property
+    def R(self) -> Quantity | None:
+        return self.nominal.R if self.nominal else None
+
+    @property
+    def alpha_M(self) -> Quantity | None:
+        return self.nominal.alpha_M if self.nominal else None
+
+    @property
+    def budget(self) -> tuple[Contribution, ...]:
+        return self.nominal.budget if self.nominal else ()
+
+    def by_load(self, key: str) -> dict[float, float]:
+        """One quantity by load [N]: "C_alpha", "C_gamma" or "r_e_measured"."""
+        if key == "r_e_measured":
+            return dict(self.r_e_loads)
+        found = {row.load: getattr(row, key) for row in self.per_load}
+        return {load: quantity.value for load, quantity in found.items() if quantity is not None}
+
+    def with_model(self, *, epsilon_gamma_model: float | None, pecp1: float | None) -> Measured:
+        """The same with what only the finished file can tell."""
+        return dataclasses.replace(
+            self, epsilon_gamma_model=epsilon_gamma_model, pecp1=self.pecp1 if pecp1 is None else pecp1
+        )
+
+    def quantities(self) -> dict[str, Quantity]:
+        """What goes into the property file's structured comments."""
+        if self.nominal is None:
+            return {}
+        out = {}
+        for key, _, unit in KEYS:
+            quantity = getattr(self.nominal, _)
+            if quantity is not None:
+                out[key] = Quantity(quantity.value, quantity.u, unit)
+        for key, value in (("epsilon_gamma_model", self.epsilon_gamma_model), ("load_N", self.nominal.load)):
+            if value is not None:
+                out[key] = Quantity(float(value), 0.0, "N" if key == "load_N" else "-")
+        return out
+
+    def to_json(self) -> dict[str, Any]:
+        """The ``spin`` part of result.json."""
+        row = self.nominal
+        out: dict[str, Any] = _row(row) if row else {key: None for key, _, _ in KEYS}
+        out.pop("load_N", None)
+        out |= {
+            "epsilon_gamma_model": self.epsilon_gamma_model,
+            "pecp1": self.pecp1,
+            "pecp2": self.pecp2,
+            "u_pecp2": self.u_pecp2,
+            "budget": [c._asdict() for c in self.budget],
+            "u_epsilon_gamma_monte_carlo": row.u_monte_carlo if row else None,
+            "misaligned": self.misaligned,
+            "coverage_factor": 1,
+            "notes": list(self.notes),
+            "per_load": [_row(other) for other in self.per_load],
+        }
+        return out
+
+
+KEYS = (
+    ("epsilon_gamma", "epsilon_gamma", "-"),
+    ("C_phit_Nm", "C_phit", "Nm"),
+    ("C_gamma_N_per_rad", "C_gamma", "N/rad"),
+    ("C_alpha_N_per_rad", "C_alpha", "N/rad"),
+    ("r_e_m", "r_e", "m"),
+    ("R_m", "R", "m"),
+    ("F_phit_N", "F_phit", "N"),
+)
+
+
+def _row(row: LoadResult) -> dict[str, Any]:
+    out: dict[str, Any] = {"load_N": row.load}
+    for key, name, _ in KEYS:
+        quantity = getattr(row, name)
+        out[key] = None if quantity is None else quantity.value
+        out[f"u_{key}"] = None if quantity is None else quantity.u
+    out["epsilon_gamma_secant"], out["epsilon_gamma_slope"] = row.epsilon_secant, row.epsilon_slope
+    out["epsilon_gamma_moment"] = row.epsilon_moment.value if row.epsilon_moment else None
+    out["u_epsilon_gamma_moment"] = row.epsilon_moment.u if row.epsilon_moment else None
+    alpha_M = row.alpha_M
+    out["alpha_M_deg"] = math.degrees(alpha_M.value) if alpha_M else None
+    out["u_alpha_M_deg"] = math.degrees(alpha_M.u) if alpha_M else None
+    out["F_forward_N"], out["F_backward_N"] = row.F_forward, row.F_backward
+    return out

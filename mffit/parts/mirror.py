@@ -1,0 +1,95 @@
+"""Which point is the mirror image (-alpha, -gamma) of which, under the same condition."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+from scipy.interpolate import PchipInterpolator
+
+from mffit.points import Points
+
+
+@dataclass(frozen=True, slots=True)
+class Tolerance:
+    """How far set-points may differ and still count as the same."""
+
+    alpha_deg: float = 0.05
+    gamma_deg: float = 0.25
+    load: float = 0.04  #: relative
+    pressure_kPa: float = 6.0
+    speed: float = 0.1  #: relative
+
+
+class Mirrors(NamedTuple):
+    """For every point (n,): its mirror's readings, and how they were found."""
+
+    partner: np.ndarray  #: index of the mirror; -1 if interpolated or unpaired
+    Fy: np.ndarray  #: side force of the mirror [N]; NaN if unpaired
+    Mz: np.ndarray  #: [Nm]
+    u_Fy: np.ndarray
+    u_Mz: np.ndarray
+    paired: np.ndarray  #: "exact" | "interpolated" | "unpaired"
+
+
+def same_condition(points: Points, i: int, tolerance: Tolerance) -> np.ndarray:
+    """Mask (n,) of the points run at the load, pressure, speed, direction, mount and path of point i."""
+    return (
+        (np.abs(points.Fz - points.Fz[i]) < tolerance.load * points.Fz[i])
+        & (np.abs(points.p - points.p[i]) < tolerance.pressure_kPa * 1e3)
+        & (np.abs(points.V - points.V[i]) <= tolerance.speed * points.V[i])
+        & (points.direction == points.direction[i])
+        & (points.mount == points.mount[i])
+        & np.isclose(points.phi_t, points.phi_t[i])
+    )
+
+
+def find_mirrors(points: Points, tolerance: Tolerance = Tolerance()) -> Mirrors:  # noqa: B008 - frozen
+    """Find the mirror of every point: a measured one within tolerance, else interpolated along the mirrored sweep.
+
+    A mirror in the same sweep is preferred to one in another. Interpolation runs over alpha at the mirrored camber, or
+    over gamma at the mirrored sideslip, never beyond the ends and never across conditions.
+    """
+    n = len(points)
+    partner = np.full(n, -1)
+    paired = np.full(n, "unpaired", dtype="<U12")
+    values = {name: np.full(n, np.nan) for name in ("Fy", "Mz", "u_Fy", "u_Mz")}
+    alpha, gamma = np.degrees(points.alpha), np.degrees(points.gamma)
+    for i in range(n):
+        same = same_condition(points, i, tolerance)
+        d_alpha, d_gamma = np.abs(alpha + alpha[i]), np.abs(gamma + gamma[i])
+        close = same & (d_alpha < tolerance.alpha_deg) & (d_gamma < tolerance.gamma_deg)
+        if np.any(close):
+            distance = d_alpha + d_gamma + 10.0 * (points.sweep != points.sweep[i])
+            j = int(np.argmin(np.where(close, distance, np.inf)))
+            partner[i], paired[i] = j, "exact"
+            for name, found in values.items():
+                found[i] = getattr(points, name)[j]
+            continue
+        line = same & (d_gamma < tolerance.gamma_deg)
+        found_values = _interpolated(points, line, alpha, -alpha[i])
+        if found_values is None:
+            line = same & (d_alpha < tolerance.alpha_deg)
+            found_values = _interpolated(points, line, gamma, -gamma[i])
+        if found_values is not None:
+            paired[i] = "interpolated"
+            for name, found in values.items():
+                found[i] = found_values[name]
+    return Mirrors(partner, values["Fy"], values["Mz"], values["u_Fy"], values["u_Mz"], paired)
+
+
+def _interpolated(points: Points, line: np.ndarray, x: np.ndarray, at: float) -> dict[str, float] | None:
+    """Readings at ``at`` along the points of ``line``; None outside them or with fewer than three."""
+    index = np.flatnonzero(line)
+    levels = np.unique(np.round(x[index], 3))
+    if len(levels) < 3 or not levels[0] <= at <= levels[-1]:
+        return None
+    groups = [index[np.abs(x[index] - level) < 1e-3] for level in levels]
+    out = {}
+    for name in ("Fy", "Mz"):
+        means = np.array([np.mean(getattr(points, name)[g]) for g in groups])
+        out[name] = float(PchipInterpolator(levels, means)(at)) if np.all(np.isfinite(means)) else np.nan
+    nearest = groups[int(np.argmin(np.abs(levels - at)))][0]
+    out["u_Fy"], out["u_Mz"] = float(points.u_Fy[nearest]), float(points.u_Mz[nearest])
+    return out

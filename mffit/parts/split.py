@@ -1,0 +1,64 @@
+"""Symmetric decomposition (4), (25): what turns round with the angles, and what does not."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from mffit.parts.mirror import Tolerance, find_mirrors
+from mffit.points import Points
+
+
+@dataclass(frozen=True, slots=True)
+class Parts:
+    """Odd and even part at every point; arrays (n,), NaN where a point has no mirror."""
+
+    Fy_odd: np.ndarray  #: [F(a, g) - F(-a, -g)] / 2 [N]
+    Fy_even: np.ndarray  #: F - odd part [N]
+    Mz_odd: np.ndarray  #: [Nm]
+    Mz_even: np.ndarray  #: [Nm]
+    u_Fy_odd: np.ndarray  #: standard uncertainty of either part [N]
+    u_Mz_odd: np.ndarray  #: [Nm]
+    paired: np.ndarray  #: "exact" | "interpolated" | "unpaired"
+    partner: np.ndarray  #: index of the mirror, -1 if interpolated or unpaired
+    unpaired: tuple[str, ...]  #: one sentence per sweep with unpaired points
+
+
+def split(points: Points, tolerance: Tolerance = Tolerance()) -> Parts:  # noqa: B008 - frozen
+    """Decompose Fy and Mz of every point by mirror symmetry.
+
+    On a straight path nothing has to be removed: all points stay unpaired, without remark.
+    """
+    n = len(points)
+    if not np.any(points.phi_t):
+        nan = np.full(n, np.nan)
+        return Parts(nan, nan, nan, nan, nan, nan, np.full(n, "unpaired"), np.full(n, -1), ())
+    mirrors = find_mirrors(points, tolerance)
+    Fy_odd, Mz_odd = (points.Fy - mirrors.Fy) / 2.0, (points.Mz - mirrors.Mz) / 2.0
+    return Parts(
+        Fy_odd=Fy_odd,
+        Fy_even=points.Fy - Fy_odd,
+        Mz_odd=Mz_odd,
+        Mz_even=points.Mz - Mz_odd,
+        u_Fy_odd=np.hypot(points.u_Fy, mirrors.u_Fy) / 2.0,
+        u_Mz_odd=np.hypot(points.u_Mz, mirrors.u_Mz) / 2.0,
+        paired=mirrors.paired,
+        partner=mirrors.partner,
+        unpaired=_sentences(points, mirrors.paired == "unpaired"),
+    )
+
+
+def _sentences(points: Points, unpaired: np.ndarray) -> tuple[str, ...]:
+    out = []
+    for k in np.unique(points.sweep[unpaired]):
+        rows = np.flatnonzero(unpaired & (points.sweep == k))
+        shown = ", ".join(
+            f"({np.degrees(points.alpha[i]):.2g}, {np.degrees(points.gamma[i]):.2g})" for i in rows[:4]
+        )
+        more = f" and {len(rows) - 4} more" if len(rows) > 4 else ""
+        out.append(
+            f"{points.sweep_names[k]}: {len(rows)} points have no mirror (-alpha, -gamma) and count only as raw points: "
+            f"(alpha, gamma) = {shown}{more} deg"
+        )
+    return tuple(out)

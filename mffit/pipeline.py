@@ -1,0 +1,251 @@
+"""The workflows: one screen each, one call per step."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import math
+import os
+import shutil
+import tempfile
+import time
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import tomli_w
+
+import mffit
+import tir
+from mffit import config as configuration
+from mffit import fit as fitting
+from mffit import measured as direct
+from mffit import parts as decomposition
+from mffit import points as ingestion
+from mffit.config import Config
+from mffit.errors import InputError
+from mffit.fit import FitResult
+from mffit.measured import Alignment, Measured
+from mffit.parts import Parts
+from mffit.points import Points
+from tir import Tyre
+
+Progress = Callable[[str], None]
+"""Called with a short sentence whenever a step begins."""
+
+
+def silent(sentence: str) -> None:
+    """Progress that is not shown."""
+
+
+@dataclass(frozen=True, slots=True)
+class Result:
+    """Everything a build produces."""
+
+    config: Config
+    points: Points
+    parts: Parts
+    measured: Measured
+    fit: FitResult
+    tyre: Tyre  #: what the .tir holds
+    warnings: tuple[str, ...]
+    seconds: float
+    tir_path: str  #: name of the .tir in the output folder
+
+    def to_json(self) -> dict[str, Any]:
+        """The content of result.json."""
+        return {
+            "tyre": self.config.tyre.model_dump(exclude_none=True),
+            "spin": self.measured.to_json(),
+            "fit": self.fit.to_json(),
+            "tir": self.tir_path,
+            "warnings": list(self.warnings),
+        }
+
+
+def build(config: Config | Mapping[str, Any] | str | Path, out: str | Path | None = None, *, progress: Progress = silent) -> Result:
+    """Turn rig sweeps into an MF-6.2 tyre.
+
+    Parameters
+    ----------
+    config : path of a ``tyre.toml``, its content, or a loaded Config
+    out : folder to write to; nothing is written if None
+    progress : called with a sentence before each step
+
+    Returns
+    -------
+    Result
+        The tyre, the direct measurements and the fit.
+
+    Raises
+    ------
+    InputError
+        On bad input; nothing is written then.
+    """
+    began = time.perf_counter()
+    config = configuration.load(config)
+    progress("reading sweeps")
+    points, warnings = ingestion.load(config)
+    base = read_base(config)
+    progress("measuring the camber reduction factor")
+    corrected, parts, measured = measure(config, points, base)
+    fitted = fitting.fit(config, corrected, parts, measured, base, progress)
+    measured = measured.with_model(
+        epsilon_gamma_model=fitted.epsilon_gamma_model, pecp1=_number(fitted.written, "PECP1", measured)
+    )
+    result = Result(
+        config=config,
+        points=corrected,
+        parts=parts,
+        measured=measured,
+        fit=fitted,
+        tyre=annotated(fitted.written, config, measured),
+        warnings=(*warnings, *measured.warnings, *fitted.warnings),
+        seconds=time.perf_counter() - began,
+        tir_path=f"{config.tyre.name}.tir",
+    )
+    if out is not None:
+        progress("writing the report")
+        write_build(result, Path(out))
+    return result
+
+
+def spin(config: Config | Mapping[str, Any] | str | Path, out: str | Path | None = None) -> Measured:
+    """Alignment check and direct method only; writes ``spin.json`` if ``out`` is given."""
+    config = configuration.load(config)
+    points, warnings = ingestion.load(config)
+    _, _, measured = measure(config, points, read_base(config))
+    measured = replace(measured, warnings=(*warnings, *measured.warnings))
+    if out is not None:
+        with output_folder(Path(out)) as folder:
+            _write_json(folder / "spin.json", measured.to_json())
+    return measured
+
+
+def measure(config: Config, points: Points, base: Tyre | None) -> tuple[Points, Parts, Measured]:
+    """Correct the points for what the rig is known to do, split them and measure directly."""
+    corrected = direct.backlash_corrected(points, config)
+    parts = decomposition.split(corrected)
+    measured = direct.measure(config, points, parts, base)
+    if measured.misaligned:
+        corrected = corrected.replace(alpha=corrected.alpha + measured.alpha_M.value)
+    return corrected, parts, measured
+
+
+def read_base(config: Config) -> Tyre | None:
+    """The base file of the configuration, if it names one."""
+    if config.tyre.base is None:
+        return None
+    path = config.folder / config.tyre.base
+    if not path.is_file():
+        raise InputError(f"the base file {path} does not exist: correct [tyre] base or remove it", file=config.path, key="tyre.base")
+    return tir.read(path)
+
+
+def annotated(tyre: Tyre, config: Config, measured: Measured) -> Tyre:
+    """The tyre with its measured quantities and provenance as structured comments."""
+    provenance = {
+        "program": f"mffit {mffit.__version__}",
+        "configuration": _settings(config),
+        **{f"input {name}": digest for name, digest in input_hashes(config).items()},
+    }
+    return tyre.annotate(measured=measured.quantities(), provenance=provenance)
+
+
+def input_hashes(config: Config) -> dict[str, str]:
+    """First 16 hex digits of the SHA-256 of every input file, by name."""
+    names = [sweep.file for sweep in config.sweep] + ([config.tyre.base] if config.tyre.base else [])
+    return {
+        Path(name).name: hashlib.sha256((config.folder / name).read_bytes()).hexdigest()[:16]
+        for name in dict.fromkeys(names)
+    }
+
+
+def write_build(result: Result, out: Path) -> None:
+    """Write every output of a build, or nothing."""
+    from mffit import report
+
+    with output_folder(out) as folder:
+        result.tyre.write(folder / result.tir_path)
+        _write_json(folder / "result.json", result.to_json())
+        points_table(result).to_csv(folder / "points.csv", index=False)
+        resolved = configuration.resolved(result.config, folder=out)
+        (folder / "resolved.toml").write_bytes(tomli_w.dumps(resolved).encode())
+        report.write_build(result, folder)
+
+
+def points_table(result: Result):
+    """The input columns with the odd and even part and the model at every point (contract of points.csv)."""
+    table = result.points.table.copy()
+    parts, fit = result.parts, result.fit
+    signs = configuration.axis_signs(result.config)
+    table["Fy_odd_N"], table["Fy_even_N"] = parts.Fy_odd * signs["Fy"], parts.Fy_even * signs["Fy"]
+    table["Mz_odd_Nm"], table["Mz_even_Nm"] = parts.Mz_odd * signs["Mz"], parts.Mz_even * signs["Mz"]
+    table["Fy_model_N"], table["Mz_model_Nm"] = fit.Fy_model * signs["Fy"], fit.Mz_model * signs["Mz"]
+    table["paired"] = parts.paired
+    return table
+
+
+@contextmanager
+def output_folder(out: Path) -> Iterator[Path]:
+    """A temporary folder beside ``out`` whose files replace those of ``out`` only if the block succeeds.
+
+    Files of ``out`` that this run does not write stay. An interrupted or failing run leaves ``out`` as it was.
+    """
+    if out.exists() and not out.is_dir():
+        raise InputError(f"{out} is a file, and the output needs a folder: name another with --out")
+    parent = out.absolute().parent
+    try:
+        parent.mkdir(parents=True, exist_ok=True)
+        temporary = Path(tempfile.mkdtemp(prefix=f".{out.name}-", dir=parent))
+    except OSError as error:
+        raise InputError(f"cannot write to {parent} ({error.strerror}): name another folder with --out") from error
+    try:
+        yield temporary
+        out.mkdir(exist_ok=True)
+        for path in sorted(temporary.iterdir()):
+            target = out / path.name
+            if target.is_dir() and path.is_dir():
+                shutil.rmtree(target)
+            os.replace(path, target)
+    finally:
+        shutil.rmtree(temporary, ignore_errors=True)
+
+
+def _write_json(path: Path, content: Mapping[str, Any]) -> None:
+    path.write_text(json.dumps(_plain(content), indent=2, ensure_ascii=False, allow_nan=False) + "\n", encoding="utf-8")
+
+
+def _plain(value: Any) -> Any:
+    """JSON has no NaN and no numpy types."""
+    if isinstance(value, Mapping):
+        return {str(key): _plain(item) for key, item in value.items()}
+    if isinstance(value, list | tuple | np.ndarray):
+        return [_plain(item) for item in value]
+    if isinstance(value, np.generic):
+        value = value.item()
+    if isinstance(value, float) and not math.isfinite(value):
+        return None
+    return value
+
+
+def _number(tyre: Tyre, name: str, measured: Measured) -> float | None:
+    return float(tyre[name]) if measured.epsilon_gamma is not None else None
+
+
+def _settings(config: Config) -> str:
+    return f"spin.exact {config.spin.exact}, spin.pecp1 {config.spin.pecp1}, camber stiffness by {config.camber_stiffness.method}"
+
+
+def align(source: str | Path, **options: Any) -> Alignment:
+    """Next steering correction from forward and backward zeros; see :func:`mffit.measured.align`."""
+    source = Path(source)
+    if source.suffix == ".toml":
+        config = configuration.load(source)
+        points, _ = ingestion.load(config, check_physics=False)
+    else:
+        points = ingestion.load_table(source, **options)
+    return direct.align(points)

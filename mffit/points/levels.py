@@ -1,0 +1,16 @@
+"""Levels of the set-points: the conditions that a test plan repeats."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from mffit.points.points import Points
+
+PRESSURE_GAP = 10e3
+"""Pressures closer together than this [Pa] are one level."""
+
+
+def main_pressure(points: Points) -> np.ndarray:
+    """Mask (n,) of the points at the pressure at which most of the programme was run."""
+    counts = [int(np.sum(np.abs(points.p - p) < PRESSURE_GAP)) for p in points.p]
+    return np.abs(points.p - points.p[int(np.argmax(counts))]) < PRESSURE_GAP

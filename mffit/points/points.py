@@ -1,0 +1,187 @@
+"""The record of finished measuring points: what every later step starts from."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, fields
+from typing import Any
+
+import numpy as np
+import pandas as pd
+
+INTEGER = frozenset({"direction", "mount", "sweep", "file", "line"})
+SHARED = frozenset({"sweep_names", "files", "table"})
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Points:
+    """Steady points in ISO-W, contact frame W, SI; arrays are (n,) and read-only.
+
+    Angles are the rig's readings turned to ISO; no correction is applied to anything. A channel that was not
+    measured is all NaN, except pressure and speed, for which the nominal value stands in. Built by
+    :func:`make_points`.
+    """
+
+    alpha: np.ndarray  #: sideslip angle as read [rad]
+    gamma: np.ndarray  #: camber (inclination angle) as read [rad]
+    Fz: np.ndarray  #: load, positive [N]
+    p: np.ndarray  #: inflation pressure [Pa]
+    V: np.ndarray  #: speed, positive in both directions [m/s]
+    phi_t: np.ndarray  #: turn slip of the path, declared radius [1/m]
+    Fy: np.ndarray  #: [N]
+    Mz: np.ndarray  #: [Nm]
+    Mx: np.ndarray  #: [Nm]
+    My: np.ndarray  #: [Nm]
+    T: np.ndarray  #: tyre temperature [degC]
+    t: np.ndarray  #: when the point was taken [s]
+    u_Fy: np.ndarray  #: standard uncertainty of Fy [N]
+    u_Mz: np.ndarray  #: standard uncertainty of Mz [Nm]
+    iteration: np.ndarray  #: step of the steering alignment; NaN when not given
+    direction: np.ndarray  #: +1 forward, -1 backward
+    mount: np.ndarray  #: +1 normal, -1 tyre turned on its rim
+    continuous: np.ndarray  #: bool: a sample of a moving sweep, not a steady point
+    time: np.ndarray  #: time within the continuous sweep [s]; NaN for steady points
+    sweep: np.ndarray  #: index into ``sweep_names``
+    file: np.ndarray  #: index into ``files``
+    line: np.ndarray  #: line in that file, counted from 1
+    sweep_names: tuple[str, ...]
+    files: tuple[str, ...]
+    table: pd.DataFrame  #: input columns as reported: contract names and units, rig's axes; a row per point
+
+    def __len__(self) -> int:
+        return len(self.alpha)
+
+    @property
+    def Vx(self) -> np.ndarray:
+        """Signed speed (n,) [m/s]: negative when the wheel rolls backwards."""
+        return self.direction * self.V
+
+    def select(self, which: np.ndarray) -> Points:
+        """The points of a boolean mask (n,) or of an index array (m,), in that order."""
+        which = np.asarray(which)
+        if which.dtype == bool:
+            which = np.flatnonzero(which)
+        taken: dict[str, Any] = {name: getattr(self, name)[which] for name in ARRAYS}
+        return _sealed(
+            taken,
+            sweep_names=self.sweep_names,
+            files=self.files,
+            table=self.table.iloc[which].reset_index(drop=True),
+        )
+
+    def replace(self, **arrays: Any) -> Points:
+        """A copy with some fields changed; scalars are broadcast to (n,)."""
+        unknown = set(arrays) - set(FIELDS)
+        if unknown:
+            raise TypeError(f"Points has no field {', '.join(sorted(unknown))}")
+        taken = {name: arrays.get(name, getattr(self, name)) for name in ARRAYS}
+        shared = {name: arrays.get(name, getattr(self, name)) for name in SHARED}
+        return _sealed({name: _filled(name, taken[name], len(self)) for name in ARRAYS}, **shared)
+
+
+FIELDS = tuple(field.name for field in fields(Points))
+ARRAYS = tuple(name for name in FIELDS if name not in SHARED)
+
+
+def make_points(
+    alpha: Any,
+    gamma: Any,
+    Fz: Any,
+    *,
+    p: Any,
+    V: Any,
+    phi_t: Any,
+    Fy: Any = np.nan,
+    Mz: Any = np.nan,
+    Mx: Any = np.nan,
+    My: Any = np.nan,
+    T: Any = np.nan,
+    t: Any = np.nan,
+    u_Fy: Any = np.nan,
+    u_Mz: Any = np.nan,
+    iteration: Any = np.nan,
+    direction: Any = 1,
+    mount: Any = 1,
+    continuous: Any = False,
+    time: Any = np.nan,
+    sweep: Any = 0,
+    file: Any = 0,
+    line: Any = 0,
+    sweep_names: Sequence[str] = ("sweep",),
+    files: Sequence[str] = ("",),
+    table: pd.DataFrame | None = None,
+) -> Points:
+    """Build points from arrays or scalars, ISO-W and SI, units as in :class:`Points`.
+
+    Parameters
+    ----------
+    alpha, gamma : scalar or (n,) [rad]
+    Fz : scalar or (n,) load, positive [N]
+    p : scalar or (n,) pressure [Pa]
+    V : scalar or (n,) speed, positive [m/s]
+    phi_t : scalar or (n,) turn slip [1/m]; -1/R with the disc's centre to the left, 0 on a flat track
+    Fy, Mz, Mx, My, T, t, u_Fy, u_Mz, iteration, time : scalar or (n,); NaN where not measured
+    direction, mount : scalar or (n,), +1 or -1
+    continuous : scalar or (n,) bool
+    sweep, file, line : scalar or (n,) int
+    sweep_names, files : what ``sweep`` and ``file`` count
+    table : input columns as reported, (n,) rows; empty if not given
+
+    Returns
+    -------
+    Points
+        All arrays broadcast to the common length.
+
+    Raises
+    ------
+    ValueError
+        Lengths disagree, or ``direction`` or ``mount`` is something else than +1 or -1.
+    """
+    given = {
+        "alpha": alpha, "gamma": gamma, "Fz": Fz, "p": p, "V": V, "phi_t": phi_t, "Fy": Fy, "Mz": Mz,
+        "Mx": Mx, "My": My, "T": T, "t": t, "u_Fy": u_Fy, "u_Mz": u_Mz, "iteration": iteration,
+        "direction": direction, "mount": mount, "continuous": continuous, "time": time,
+        "sweep": sweep, "file": file, "line": line,
+    }  # fmt: skip
+    n = np.broadcast(*(np.atleast_1d(values) for values in given.values())).size
+    arrays = {name: _filled(name, values, n) for name, values in given.items()}
+    for name in ("direction", "mount"):
+        if not np.all(np.abs(arrays[name]) == 1):
+            raise ValueError(f"{name} must be +1 or -1 at every point")
+    table = pd.DataFrame(index=pd.RangeIndex(n)) if table is None else table.reset_index(drop=True)
+    if len(table) != n:
+        raise ValueError(f"the table has {len(table)} rows for {n} points")
+    return _sealed(arrays, sweep_names=tuple(sweep_names), files=tuple(files), table=table)
+
+
+def concatenate(parts: Sequence[Points]) -> Points:
+    """Join points one after the other; sweeps and files are renumbered, tables joined by column name."""
+    arrays = {name: np.concatenate([getattr(part, name) for part in parts]) for name in ARRAYS}
+    files = tuple(dict.fromkeys(name for part in parts for name in part.files))
+    sweep_names = tuple(dict.fromkeys(name for part in parts for name in part.sweep_names))
+    arrays["file"] = np.concatenate([_renumbered(part.file, part.files, files) for part in parts])
+    arrays["sweep"] = np.concatenate(
+        [_renumbered(part.sweep, part.sweep_names, sweep_names) for part in parts]
+    )
+    table = pd.concat([part.table for part in parts], ignore_index=True)
+    return _sealed(arrays, sweep_names=sweep_names, files=files, table=table)
+
+
+def _renumbered(index: np.ndarray, old: Sequence[str], new: Sequence[str]) -> np.ndarray:
+    """An index array (n,) into ``old`` as one into ``new``."""
+    return np.array([new.index(name) for name in old], dtype=int)[index]
+
+
+def _filled(name: str, values: Any, n: int) -> np.ndarray:
+    """The values as a new array (n,) of the field's type."""
+    kind = int if name in INTEGER else bool if name == "continuous" else float
+    values = np.asarray(values)
+    if values.ndim > 1:
+        raise ValueError(f"{name} must be a scalar or one-dimensional")
+    return np.array(np.broadcast_to(values, (n,)), dtype=kind)
+
+
+def _sealed(arrays: dict[str, np.ndarray], **shared: Any) -> Points:
+    for values in arrays.values():
+        values.setflags(write=False)
+    return Points(**arrays, **shared)
