@@ -1,5 +1,6 @@
 """``tyre.toml``: its tables as frozen records, read with errors that name file, line and key."""
 
+from mffit.config.axes import axis_signs, path_curvature
 from mffit.config.loading import load
 from mffit.config.models import Config, RigTable, RollingRadiusTable, SweepTable, TyreTable
 from mffit.config.radii import effective_radius, path_radius, wheel_turn
@@ -11,8 +12,10 @@ __all__ = [
     "RollingRadiusTable",
     "SweepTable",
     "TyreTable",
+    "axis_signs",
     "effective_radius",
     "load",
+    "path_curvature",
     "path_radius",
     "resolved",
     "wheel_turn",

@@ -1,0 +1,21 @@
+"""Signs between the rig's axes and ours, and the curvature of the rig's path."""
+
+from __future__ import annotations
+
+from mffit.config.models import Config, RigTable
+from tir.conventions import sign
+
+CHANNELS = ("alpha", "gamma", "Fz", "Fx", "Fy", "Mx", "My", "Mz")
+
+
+def axis_signs(config: Config) -> dict[str, float]:
+    """+1 or -1 per channel: what turns ISO-W into the rig's axes, and back."""
+    return {channel: sign(config.rig.axes, channel) for channel in CHANNELS}
+
+
+def path_curvature(rig: RigTable) -> float:
+    """Turn slip phi_t of the path [1/m]: -1/R with the centre to the left, 1/R to the right, else 0."""
+    radius = rig.radius
+    if radius is None:
+        return 0.0
+    return (-1.0 if rig.path_centre == "left" else 1.0) / radius

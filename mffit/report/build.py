@@ -1,0 +1,91 @@
+"""The build report: plots/*.png and report.html."""
+
+from __future__ import annotations
+
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+import mffit
+from mffit.report import page, published
+from mffit.report.build_view import STATUS_ORDER, BuildView, Channel, Row, view_of
+
+RESIDUAL_LIMIT = 4.0
+"""End of the residual maps' scale, in units of noise."""
+
+SECTION_TITLES = {
+    "LATERAL_COEFFICIENTS": "Side force",
+    "ALIGNING_COEFFICIENTS": "Self-aligning moment",
+    "TURNSLIP_COEFFICIENTS": "Turn slip",
+    "ROLLING_COEFFICIENTS": "Rolling resistance",
+}
+OTHER_SECTIONS = "Radius and ranges"
+
+
+def write_build(result: Any, folder: Path) -> None:
+    """Write ``plots/*.png`` and ``report.html`` of a build.
+
+    Parameters
+    ----------
+    result : ``mffit.pipeline.Result``
+    folder : existing folder to write to
+    """
+    view = view_of(result)
+    pictures = page.draw(folder, _figures(view))
+    page.render(
+        "build.html.j2",
+        folder / "report.html",
+        view=view,
+        pictures=pictures,
+        sections=_by_section(view),
+        statuses=[s for s in STATUS_ORDER if any(row.status == s for row in view.rows)],
+        residual_unit=residual_unit(view),
+        published=published,
+        version=mffit.__version__,
+    )
+
+
+def _figures(view: BuildView) -> dict[str, Any]:
+    """What is drawn, in the order of the page."""
+    from mffit.report.figures import decomposition, fit, residuals, spin
+
+    out: dict[str, Any] = {}
+    if view.on_disc:
+        out["camber_reduction"] = partial(spin.camber_reduction, view)
+        if spin.both_directions(view):
+            out["alignment"] = partial(spin.alignment, view)
+        for channel in view.channels:
+            if decomposition.worth_drawing(view.curves, channel):
+                out[f"parts_{channel.name}"] = partial(decomposition.decomposition, view, channel)
+        if decomposition.pure_curves(view):
+            out["even_parts"] = partial(decomposition.even_parts, view)
+    for channel in view.channels:
+        if view.curves:
+            out[f"fit_{channel.name}"] = partial(fit.model_against_points, view, channel)
+    scaled = [(c.name, (c.measured - c.model) / _scale(view, c)) for c in view.channels]
+    out["residuals"] = partial(
+        residuals.residual_maps, view.points, scaled, view.conditions, RESIDUAL_LIMIT, residual_unit(view)
+    )
+    return out
+
+
+def _scale(view: BuildView, channel: Channel) -> np.ndarray | float:
+    """The noise of each point, or the misfit of the channel where no noise is known."""
+    if residual_unit(view) == "u":
+        return np.where(np.isfinite(channel.u), channel.u, channel.noise)
+    return view.agreement[channel.name].rmse
+
+
+def residual_unit(view: BuildView) -> str:
+    """What a residual of 1 means: the point's uncertainty if every channel has one, else the rms misfit."""
+    return "u" if all(np.isfinite(c.noise) for c in view.channels) else "rms misfit"
+
+
+def _by_section(view: BuildView) -> dict[str, list[Row]]:
+    """The rows of the coefficient table by section; what is no coefficient stands together, last."""
+    out: dict[str, list[Row]] = {title: [] for title in (*SECTION_TITLES.values(), OTHER_SECTIONS)}
+    for row in view.rows:
+        out[SECTION_TITLES.get(row.section, OTHER_SECTIONS)].append(row)
+    return {title: rows for title, rows in out.items() if rows}

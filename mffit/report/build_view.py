@@ -1,0 +1,165 @@
+"""What the build report shows, taken from the result in this one place."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from mffit.points import Points
+from mffit.report.curves import Condition, Curve, conditions, curves
+from mffit.report.lines import Line, model_lines
+from tir.parameters import BY_NAME
+
+TITLES = {"Fy": "side force", "Mz": "self-aligning moment"}
+UNITS = {"Fy": "N", "Mz": "Nm"}
+STATUS_ORDER = ("measured", "fitted", "regularised", "estimate", "base", "default")
+
+
+@dataclass(frozen=True, slots=True)
+class Channel:
+    """One measured channel with what is drawn beside it; arrays (n,) in ``unit``, NaN where unknown."""
+
+    name: str
+    measured: np.ndarray
+    u: np.ndarray
+    model: np.ndarray
+    odd: np.ndarray
+    even: np.ndarray
+    u_odd: np.ndarray
+
+    @property
+    def title(self) -> str:
+        return TITLES[self.name]
+
+    @property
+    def unit(self) -> str:
+        return UNITS[self.name]
+
+    @property
+    def label(self) -> str:
+        return f"{self.name} [{self.unit}]"
+
+    @property
+    def noise(self) -> float:
+        """Typical standard uncertainty of a point; NaN if none is known."""
+        known = self.u[np.isfinite(self.u)]
+        return float(np.sqrt(np.mean(known**2))) if len(known) else float("nan")
+
+
+@dataclass(frozen=True, slots=True)
+class Row:
+    """One row of the coefficient table."""
+
+    name: str
+    section: str
+    description: str
+    unit: str
+    value: float
+    stderr: float | None
+    lower: float | None
+    upper: float | None
+    at_bound: bool
+    stage: str
+    status: str
+    correlation: str  #: the strongest one in words, empty if harmless
+
+    @property
+    def place(self) -> float | None:
+        """Where between its bounds the value lies, 0 to 1; None where there are no bounds."""
+        if self.lower is None or self.upper is None or not self.upper > self.lower:
+            return None
+        return float(np.clip((self.value - self.lower) / (self.upper - self.lower), 0.0, 1.0))
+
+    @property
+    def held(self) -> bool:
+        return self.status in ("base", "default")
+
+
+@dataclass(frozen=True, slots=True)
+class BuildView:
+    """Everything the build report needs."""
+
+    config: Any
+    points: Points
+    channels: tuple[Channel, ...]
+    curves: tuple[Curve, ...]
+    lines: Mapping[tuple, Line]
+    conditions: tuple[Condition, ...]
+    spin: Mapping[str, Any]  #: the contract's ``spin``
+    agreement: Mapping[str, Any]  #: by channel, of the fitted model on the raw points
+    odd_agreement: Mapping[str, Any]  #: by channel, of the written file on the odd part
+    rows: tuple[Row, ...]
+    stages: tuple[Any, ...]
+    coverage: tuple[Any, ...]
+    warnings: tuple[str, ...]
+    explanations: tuple[str, ...]
+    unpaired: tuple[str, ...]
+    paired: Mapping[str, int]  #: how many points have an exact mirror, an interpolated one, none
+    provenance: Mapping[str, str]
+    seconds: float
+    fit_seconds: float
+    tir_name: str
+
+    @property
+    def on_disc(self) -> bool:
+        return self.spin.get("epsilon_gamma") is not None
+
+
+def view_of(result: Any) -> BuildView:
+    """Take a build's result apart; the only function that knows its attributes."""
+    points, parts, fit = result.points, result.parts, result.fit
+    found = tuple(curves(points))
+    channels = (
+        Channel("Fy", points.Fy, points.u_Fy, fit.Fy_model, parts.Fy_odd, parts.Fy_even, parts.u_Fy_odd),
+        Channel("Mz", points.Mz, points.u_Mz, fit.Mz_model, parts.Mz_odd, parts.Mz_even, parts.u_Mz_odd),
+    )
+    return BuildView(
+        config=result.config,
+        points=points,
+        channels=tuple(c for c in channels if np.isfinite(c.measured).any()),
+        curves=found,
+        lines=model_lines(fit.tyre, points, found),
+        conditions=tuple(conditions(points)),
+        spin=result.measured.to_json(),
+        agreement=fit.channels,
+        odd_agreement=fit.odd,
+        rows=coefficient_rows(fit.coefficients),
+        stages=fit.stages,
+        coverage=fit.coverage,
+        warnings=tuple(result.warnings),
+        explanations=tuple(fit.explanations),
+        unpaired=parts.unpaired,
+        paired={kind: int(np.sum(parts.paired == kind)) for kind in ("exact", "interpolated", "unpaired")},
+        provenance=dict(result.tyre.provenance),
+        seconds=result.seconds,
+        fit_seconds=fit.seconds,
+        tir_name=result.tir_path,
+    )
+
+
+def coefficient_rows(coefficients: Mapping[str, Any]) -> tuple[Row, ...]:
+    """The fit's coefficients with what the parameter table knows of them, in the table's order."""
+    rows = []
+    for name, c in coefficients.items():
+        known = BY_NAME[name]
+        partner = getattr(c, "correlated_with", "")
+        rows.append(
+            Row(
+                name=name,
+                section=known.section,
+                description=known.description,
+                unit="" if known.unit == "-" else known.unit,
+                value=c.value,
+                stderr=c.stderr,
+                lower=known.lower,
+                upper=known.upper,
+                at_bound=c.at_bound,
+                stage=c.stage,
+                status=c.status,
+                correlation=f"{partner} {c.correlation:+.2f}" if partner else "",
+            )
+        )
+    return tuple(rows)

@@ -1,0 +1,131 @@
+"""Which points belong on one curve and which curves on one panel; geometry of the pictures only."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+import numpy as np
+
+from mffit.points import Points
+
+LOAD_GAP = 0.08
+"""Loads closer than this share of each other are one level."""
+PRESSURE_GAP = 10.0  # kPa
+CAMBER_GAP = 1.0  # deg
+SIDESLIP_GAP = 0.5  # deg
+FEWEST = 4
+"""Set-points that make a curve."""
+
+
+@dataclass(frozen=True, slots=True)
+class Curve:
+    """Points of one sweep that differ in one angle only."""
+
+    over: str  #: the angle that varies, "alpha" or "gamma"
+    load: float  #: [N]
+    pressure: float  #: [kPa]
+    held: float  #: value of the other angle [deg]
+    forward: bool
+    mount: int
+    sweep: str
+    index: np.ndarray  #: (k,) rows of the points, in order of the angle
+
+    @property
+    def key(self) -> tuple[str, str, float, float, float, bool, int]:
+        """What tells this curve from the others."""
+        return self.sweep, self.over, self.load, self.pressure, self.held, self.forward, self.mount
+
+
+@dataclass(frozen=True, slots=True)
+class Condition:
+    """Points at one load and pressure."""
+
+    load: float  #: [N]
+    pressure: float  #: [kPa]
+    index: np.ndarray  #: (k,) rows of the points
+
+    @property
+    def title(self) -> str:
+        return f"{self.load:.0f} N, {self.pressure:.0f} kPa"
+
+
+def levels(values: np.ndarray, gap: float) -> np.ndarray:
+    """Median of the group each value belongs to (n,); groups lie further apart than ``gap``; NaN stays."""
+    out = np.full(len(values), np.nan)
+    known = np.flatnonzero(np.isfinite(values))
+    if len(known) == 0:
+        return out
+    order = known[np.argsort(values[known], kind="stable")]
+    for group in np.split(order, np.flatnonzero(np.diff(values[order]) > gap) + 1):
+        out[group] = np.median(values[group])
+    return out
+
+
+def load_levels(points: Points) -> np.ndarray:
+    """Load of each point's group [N], rounded to 10 N."""
+    return np.round(np.exp(levels(np.log(points.Fz), LOAD_GAP)) / 10.0) * 10.0
+
+
+def pressure_levels(points: Points) -> np.ndarray:
+    """Pressure of each point's group [kPa], rounded to 1 kPa."""
+    return np.round(levels(points.p / 1000.0, PRESSURE_GAP))
+
+
+def conditions(points: Points) -> list[Condition]:
+    """The points by load and pressure, in that order."""
+    keys = np.column_stack([load_levels(points), pressure_levels(points)])
+    return [Condition(float(k[0]), float(k[1]), index) for k, index in _groups(keys)]
+
+
+def curves(points: Points) -> list[Curve]:
+    """Every run of at least four set-points over one angle, sorted by load, pressure and held angle."""
+    alpha, gamma = np.degrees(points.alpha), np.degrees(points.gamma)
+    held = {"alpha": levels(gamma, CAMBER_GAP), "gamma": levels(alpha, SIDESLIP_GAP)}
+    angle = {"alpha": alpha, "gamma": gamma}
+    load, pressure = load_levels(points), pressure_levels(points)
+    found = []
+    for name, rows in _sweeps(points):
+        over = _varied(alpha[rows], gamma[rows])
+        keys = np.column_stack(
+            [load[rows], pressure[rows], held[over][rows], points.direction[rows], points.mount[rows]]
+        )
+        for key, members in _groups(keys):
+            index = rows[members]
+            if _set_points(angle[over][index]) >= FEWEST:
+                index = index[np.argsort(angle[over][index], kind="stable")]
+                found.append(
+                    Curve(
+                        over=over,
+                        load=float(key[0]),
+                        pressure=float(key[1]),
+                        held=float(key[2]),
+                        forward=bool(key[3] > 0),
+                        mount=int(key[4]),
+                        sweep=name,
+                        index=index,
+                    )
+                )
+    return sorted(found, key=lambda c: (c.over, c.load, c.pressure, c.held, not c.forward))
+
+
+def _sweeps(points: Points) -> Iterable[tuple[str, np.ndarray]]:
+    for i, name in enumerate(points.sweep_names):
+        yield name, np.flatnonzero(points.sweep == i)
+
+
+def _varied(alpha: np.ndarray, gamma: np.ndarray) -> str:
+    """The angle with more set-points; a grid counts as sideslip sweeps at several cambers."""
+    return "alpha" if _set_points(alpha) >= _set_points(gamma) else "gamma"
+
+
+def _set_points(angle: np.ndarray) -> int:
+    return len(np.unique(np.round(angle * 4.0)))
+
+
+def _groups(keys: np.ndarray) -> list[tuple[np.ndarray, np.ndarray]]:
+    """Rows with equal keys, in order of the keys."""
+    if len(keys) == 0:
+        return []
+    unique, inverse = np.unique(np.nan_to_num(keys), axis=0, return_inverse=True)
+    return [(key, np.flatnonzero(inverse.ravel() == i)) for i, key in enumerate(unique)]

@@ -1,0 +1,1 @@
+"""The pictures: each function takes a view and returns a figure."""

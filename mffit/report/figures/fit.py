@@ -1,0 +1,74 @@
+"""The model against the points, at every load, pressure and camber."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from mffit.report import style
+from mffit.report.build_view import BuildView, Channel
+from mffit.report.curves import Curve
+from mffit.report.rounding import number
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+MOST_PANELS = 15
+DENSE = 60
+"""Points on one curve above which they are drawn as dots."""
+
+
+def model_against_points(view: BuildView, channel: Channel) -> Figure:
+    """One panel per load and pressure: first over sideslip, coloured by camber, then over camber."""
+    panels = _panels(view.curves)[:MOST_PANELS]
+    groups = [n for n in (sum(p[0] == over for p in panels) for over in ("alpha", "gamma")) if n]
+    colours = style.ramp(sorted({c.held for c in view.curves if c.over == "alpha"}))
+    figure, rows = style.panel_grid(groups, 5 if max(groups) > 4 else 4, height=1.75)
+    for ax, (over, load, pressure, members) in zip((ax for row in rows for ax in row), panels, strict=True):
+        ax.axhline(0.0, color=style.FAINT, lw=0.8)
+        for curve in members:
+            colour = colours.get(curve.held, style.INK) if over == "alpha" else style.ACCENT
+            _draw(ax, view, channel, curve, colour)
+        ax.set_title(f"{load:.0f} N, {pressure:.0f} kPa")
+        ax.set_xlabel("sideslip α [deg]" if over == "alpha" else "camber γ [deg]", labelpad=1.5)
+        style.few_ticks(ax, x=4)
+    style.label_left(rows, channel.label)
+    style.legend_above(figure, _legend(colours, any(not c.forward for c in view.curves)))
+    return figure
+
+
+def _panels(curves: Iterable[Curve]) -> list[tuple[str, float, float, list[Curve]]]:
+    grouped: dict[tuple[str, float, float], list[Curve]] = {}
+    for curve in curves:
+        grouped.setdefault((curve.over, curve.load, curve.pressure), []).append(curve)
+    return [(*key, members) for key, members in sorted(grouped.items())]
+
+
+def _draw(ax: Axes, view: BuildView, channel: Channel, curve: Curve, colour: Any) -> None:
+    x, line = np.degrees(getattr(view.points, curve.over)[curve.index]), view.lines[curve.key]
+    marker, size = (".", 2.0) if len(x) > DENSE else ("o" if curve.forward else "v", 3.2)
+    filled = {"mfc": colour, "mew": 0.0} if curve.forward else {"mfc": "white", "mew": 0.8}
+    ax.plot(x, channel.measured[curve.index], ls="none", marker=marker, ms=size, color=colour, **filled)
+    ax.plot(line.x, line.raw[channel.name], "-" if curve.forward else "--", color=colour, lw=1.0)
+
+
+def _legend(colours: dict[float, Any], backward: bool) -> list[Any]:
+    from matplotlib.lines import Line2D
+
+    handles = [
+        Line2D([], [], ls="none", marker="o", ms=3.5, color=style.MUTED, label="measured"),
+        Line2D([], [], color=style.MUTED, label="model"),
+    ]
+    if backward:
+        handles.append(
+            Line2D([], [], ls="--", marker="v", mfc="white", ms=3.5, color=style.MUTED, label="backward")
+        )
+    places = 0 if all(abs(g - round(g)) < 0.15 for g in colours) else 1
+    if len(colours) > 1:
+        handles += [
+            Line2D([], [], lw=3, color=c, label=f"γ = {number(g, places)}°") for g, c in colours.items()
+        ]
+    return handles

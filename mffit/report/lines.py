@@ -1,0 +1,67 @@
+"""The model as a smooth line through each curve's conditions, for drawing only."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from mffit.points import Points
+from mffit.report.curves import Curve
+from mffit.rig import readings
+
+STEPS = 41
+
+
+@dataclass(frozen=True, slots=True)
+class Line:
+    """What the rig would read along a curve if the tyre were the model; arrays (m,)."""
+
+    x: np.ndarray  #: the angle that varies [deg]
+    raw: Mapping[str, np.ndarray]  #: by channel, Fy [N] and Mz [Nm]
+    even: Mapping[str, np.ndarray]  #: its even part
+
+
+def model_lines(
+    tyre: Any, points: Points, curves: Sequence[Curve], *, turn_slip: bool = True
+) -> dict[tuple, Line]:
+    """A line per curve, by ``curve.key``, at the curve's median load, pressure, speed and held angle.
+
+    Parameters
+    ----------
+    tyre : the model, right with turn slip on
+    points : the measured points (n,)
+    curves : which of them belong together
+    turn_slip : whether the model knows spin
+    """
+    if not curves:
+        return {}
+    grid = _along(points, curves)
+    mirrored = grid.replace(alpha=-grid.alpha, gamma=-grid.gamma)
+    here, there = (readings(tyre, p, turn_slip=turn_slip) for p in (grid, mirrored))
+    lines = {}
+    for i, curve in enumerate(curves):
+        rows = slice(i * STEPS, (i + 1) * STEPS)
+        lines[curve.key] = Line(
+            x=np.degrees(getattr(grid, curve.over)[rows]),
+            raw={name: getattr(here, name)[rows] for name in ("Fy", "Mz")},
+            even={name: 0.5 * (getattr(here, name) + getattr(there, name))[rows] for name in ("Fy", "Mz")},
+        )
+    return lines
+
+
+def _along(points: Points, curves: Sequence[Curve]) -> Points:
+    """Points every 1/40 of each curve's range."""
+    columns: dict[str, list[np.ndarray]] = {name: [] for name in ("alpha", "gamma", "Fz", "p", "V")}
+    for curve in curves:
+        for name, values in columns.items():
+            here = getattr(points, name)[curve.index]
+            values.append(
+                np.linspace(here.min(), here.max(), STEPS)
+                if name == curve.over
+                else np.full(STEPS, np.median(here))
+            )
+    rows = np.repeat([curve.index[0] for curve in curves], STEPS)
+    return points.select(rows).replace(**{name: np.concatenate(values) for name, values in columns.items()})

@@ -1,0 +1,57 @@
+"""Numbers as people read them: rounded by their uncertainty, with the sign that typographers use."""
+
+from __future__ import annotations
+
+import math
+
+MINUS = "\N{MINUS SIGN}"
+PLAIN = str.maketrans({MINUS: "-", "±": "+-", "×": "x", "–": "-"})
+
+
+def ascii_only(text: str) -> str:
+    """The same in characters that any terminal shows and any program reads back."""
+    return text.translate(PLAIN)
+
+
+def decimals_of(u: float, digits: int = 2) -> int:
+    """Decimals that show ``digits`` significant digits of an uncertainty; negative ones are cut to 0."""
+    if not (math.isfinite(u) and u > 0.0):
+        return 0
+    places = digits - 1 - math.floor(math.log10(u))
+    return max(0, places - (round(u, places) >= 10.0 ** (digits - places)))
+
+
+def number(value: float | None, decimals: int | None = None, *, digits: int = 4) -> str:
+    """A number with fixed decimals, or else ``digits`` significant ones; a dash where there is none."""
+    if value is None or not math.isfinite(value):
+        return "–"
+    if decimals is None:
+        text = f"{value:.{digits}g}"
+    else:
+        text = f"{value:.{decimals}f}"
+        if float(text) == 0.0:
+            text = text.lstrip("-")
+    return text.replace("-", MINUS)
+
+
+def with_u(value: float | None, u: float | None, unit: str = "") -> str:
+    """``value ± u unit`` with the digits that the uncertainty allows."""
+    unit = f" {unit}" if unit else ""
+    if value is None or not math.isfinite(value):
+        return "–"
+    if u is None or not math.isfinite(u) or u <= 0.0:
+        return number(value) + unit
+    if u < 1e-6:
+        return f"{number(value, digits=7)} ± {number(u, digits=2)}{unit}"
+    if u >= 100.0:
+        step = 10.0 ** (math.floor(math.log10(u)) - 1)
+        value, u = round(value / step) * step, round(u / step) * step
+    places = decimals_of(u)
+    return f"{number(value, places)} ± {number(u, places)}{unit}"
+
+
+def times(value: float | None, reference: float | None) -> str:
+    """A ratio such as ``1.03 × noise``, without the word."""
+    if not value or not reference or not math.isfinite(value / reference):
+        return "–"
+    return f"{value / reference:.2f} ×"

@@ -1,0 +1,59 @@
+"""From the wheel-carrier frame C to the contact frame W.
+
+Both share the x axis. C leans with the wheel: with camber ``gamma > 0`` the top of the wheel goes to -y, so that
+``z_C = (0, -sin gamma, cos gamma)`` and ``y_C = (0, cos gamma, sin gamma)``. A force ``(Fy, Fz)`` of W reads
+``Fy_C = Fy cos gamma + Fz sin gamma``, ``Fz_C = Fz cos gamma - Fy sin gamma``; moments about one point likewise.
+The lever from contact point to wheel centre lies along z_C and leaves Mz alone.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from mffit.sweeps.sweep import Sweep
+
+CAMBERED = np.radians(5.0)
+"""Below this camber both readings of the load agree within its control."""
+
+
+def to_contact_frame(sweep: Sweep, *, load_is_vertical: bool) -> Sweep:
+    """Turn the forces and moments of a sweep from C to W.
+
+    Parameters
+    ----------
+    sweep : rows in ISO signs, frame C
+    load_is_vertical : the load column is the vertical load, not the component along the wheel plane
+
+    Notes
+    -----
+    Without My the rolling resistance about the W axis is neglected beside the aligning moment.
+    """
+    c, s = np.cos(sweep.gamma), np.sin(sweep.gamma)
+    if load_is_vertical:
+        Fy, Fz = (sweep.Fy - s * sweep.Fz) / c, sweep.Fz
+    else:
+        Fy, Fz = c * sweep.Fy - s * sweep.Fz, c * sweep.Fz + s * sweep.Fy
+    measured = np.isfinite(sweep.My)
+    Mz = np.where(measured, c * sweep.Mz + s * np.where(measured, sweep.My, 0.0), sweep.Mz / c)
+    return replace(sweep, Fy=Fy, Fz=Fz, My=c * sweep.My - s * sweep.Mz, Mz=Mz)
+
+
+def load_is_vertical(sweeps: Sequence[Sweep]) -> bool:
+    """Whether the load column of rows in frame C is the vertical load all the same.
+
+    Rigs control the vertical load. Along a cambered sweep it changes little from row to row; of the two readings
+    of the column the one is taken in which it does so. Without such sweeps it makes no difference.
+    """
+    as_given, turned = [], []
+    for sweep in sweeps:
+        if np.max(np.abs(sweep.gamma)) < CAMBERED:
+            continue
+        as_given.append(np.abs(np.diff(sweep.Fz)) / sweep.Fz[1:])
+        vertical = to_contact_frame(sweep, load_is_vertical=False).Fz
+        turned.append(np.abs(np.diff(vertical)) / sweep.Fz[1:])
+    if not as_given:
+        return False
+    return bool(np.median(np.concatenate(as_given)) < 0.5 * np.median(np.concatenate(turned)))

@@ -1,0 +1,107 @@
+"""All files of a configuration, or a single table, as sweeps in ISO-W."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+
+import numpy as np
+
+from mffit.config import Config
+from mffit.config.models import SweepTable
+from mffit.errors import InputError
+from mffit.sweeps.channels import BY_NAME, nearest_channel
+from mffit.sweeps.columns import Columns, read_columns
+from mffit.sweeps.csv_text import read_csv_text
+from mffit.sweeps.frames import load_is_vertical, to_contact_frame
+from mffit.sweeps.readers import Circumstances, sweeps_of
+from mffit.sweeps.sweep import Sweep, Sweeps
+
+ENDINGS = (".csv", ".csv.gz")
+
+
+def load(config: Config) -> Sweeps:
+    """Read every file of ``[[sweep]]``.
+
+    Returns
+    -------
+    Sweeps
+        In the order of the configuration, ISO-W, contact frame, SI; with warnings as sentences.
+
+    Raises
+    ------
+    InputError
+        A file cannot be read or a value in it cannot be right; names file, line and column.
+    """
+    found: list[Sweep] = []
+    warnings: list[str] = []
+    for index, entry in enumerate(config.sweep):
+        columns = _columns(config, index, entry)
+        warnings.extend(columns.warnings)
+        direction = {"forward": 1, "backward": -1, None: None}[entry.direction]
+        given = Circumstances(
+            axes=config.rig.axes,
+            file=entry.file,
+            direction=direction,
+            mount=1 if entry.mount == "normal" else -1,
+            pressure=1e3 * config.tyre.nominal_pressure,
+            speed=config.tyre.nominal_speed,
+        )
+        found.extend(sweeps_of(columns, given))
+    if config.rig.force_frame == "C":
+        found, said = _in_contact_frame(found)
+        warnings.extend(said)
+    return Sweeps(tuple(found), tuple(warnings))
+
+
+def load_file(path: str | Path, *, axes: str) -> Sweeps:
+    """Read one CSV file without a configuration; pressure and speed are NaN where it does not hold them.
+
+    Parameters
+    ----------
+    path : file with the contract's headings, forces in the contact frame
+    axes : "iso", "sae" or "adapted-sae"
+    """
+    columns = read_columns(read_csv_text(Path(path)), {})
+    given = Circumstances(axes, str(path), None, 1, math.nan, math.nan)
+    return Sweeps(tuple(sweeps_of(columns, given)), columns.warnings)
+
+
+def _columns(config: Config, index: int, entry: SweepTable) -> Columns:
+    def refuse(sentence: str, key: str) -> InputError:
+        line = config.line_of(f"sweep.{index}.{key}")
+        return InputError(sentence, file=config.path, line=line, key=f"sweep[{index + 1}].{key}")
+
+    for name in entry.columns:
+        if name not in BY_NAME:
+            near = nearest_channel(name)
+            hint = f'did you mean "{near}"?' if near else f"known are {', '.join(BY_NAME)}"
+            raise refuse(f"is no column of a sweep; {hint}", f"columns.{name}")
+    if not entry.file.endswith(ENDINGS):
+        raise refuse(f'"{entry.file}" is no .csv or .csv.gz file; export it as CSV', "file")
+    path = config.folder / entry.file
+    if not path.exists():
+        raise refuse(
+            f'there is no file "{entry.file}" in {config.folder.absolute()}; correct the name', "file"
+        )
+    text = read_csv_text(path)
+    try:
+        return read_columns(text, entry.columns)
+    except InputError as error:
+        if error.file is None and error.key is not None:
+            raise refuse(error.sentence, error.key) from None
+        raise
+
+
+def _in_contact_frame(sweeps: list[Sweep]) -> tuple[list[Sweep], list[str]]:
+    vertical = load_is_vertical(sweeps)
+    warnings = []
+    if vertical:
+        warnings.append(
+            "Fz_N does not vary with camber and is taken for the vertical load, although force_frame is C"
+        )
+    if any(np.any(np.isfinite(sweep.Mz) & ~np.isfinite(sweep.My)) for sweep in sweeps):
+        warnings.append(
+            "My_Nm is missing, so rolling resistance is neglected where Mz is turned from frame C to W"
+        )
+    return [to_contact_frame(sweep, load_is_vertical=vertical) for sweep in sweeps], warnings

@@ -1,0 +1,127 @@
+"""One file to sweeps in ISO-W and SI: the only place where a rig's units and signs exist."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+
+from mffit.errors import InputError
+from mffit.sweeps.columns import Columns
+from mffit.sweeps.sweep import Sweep
+from tir.conventions import to_iso
+
+SMALLEST_LOAD = 20.0
+"""Loads that are all below this [N] are taken for kilonewtons."""
+
+
+class Circumstances(NamedTuple):
+    """What a file does not say itself."""
+
+    axes: str  #: of the rig
+    file: str  #: name to report
+    direction: int | None  #: +1 or -1; None: the file's column, else forward
+    mount: int
+    pressure: float  #: where not measured [Pa]
+    speed: float  #: where not measured [m/s]
+
+
+def sweeps_of(columns: Columns, given: Circumstances) -> list[Sweep]:
+    """The sweeps of a file: one per ``run``, or the whole file; forces stay in the rig's frame."""
+    check_loads(columns, given.axes)
+    whole = _sweep(columns, given)
+    if "run" not in columns.table:
+        return [whole]
+    runs = columns.table["run"].astype(str).to_numpy()
+    names = list(dict.fromkeys(runs))
+    return [rows_of(whole, np.flatnonzero(runs == name), f"{whole.name}:{name}") for name in names]
+
+
+def _sweep(columns: Columns, given: Circumstances) -> Sweep:
+    table, n = columns.table, len(columns.text.rows)
+
+    def column(name: str, missing: float = np.nan) -> np.ndarray:
+        return table[name].to_numpy(dtype=float) if name in table else np.full(n, missing)
+
+    def iso(channel: str, name: str) -> np.ndarray:
+        return to_iso(given.axes, channel, column(name)) + 0.0  # turns -0.0 into 0.0
+
+    return Sweep(
+        name=Path(given.file).name.removesuffix(".gz").removesuffix(".csv"),
+        file=given.file,
+        alpha=np.radians(iso("alpha", "alpha_deg")),
+        gamma=np.radians(iso("gamma", "gamma_deg")),
+        Fz=np.abs(column("Fz_N")),
+        Fy=iso("Fy", "Fy_N"),
+        Mz=iso("Mz", "Mz_Nm"),
+        Mx=iso("Mx", "Mx_Nm"),
+        My=iso("My", "My_Nm"),
+        p=1e3 * column("p_kPa", given.pressure / 1e3),
+        V=column("V_mps", given.speed),
+        T=column("T_degC"),
+        t=column("t_s"),
+        u_Fy=column("u_Fy_N"),
+        u_Mz=column("u_Mz_Nm"),
+        iteration=column("iteration"),
+        direction=_direction(columns, given, n),
+        mount=given.mount,
+        time=column("time_s"),
+        point=table["point"].astype(str).to_numpy() if "point" in table else None,
+        line=np.array(columns.text.lines),
+        table=table,
+    )
+
+
+def rows_of(sweep: Sweep, rows: np.ndarray, name: str) -> Sweep:
+    """Some rows (m,) of a sweep as one of its own."""
+    arrays = {
+        field: getattr(sweep, field)[rows]
+        for field in Sweep.__dataclass_fields__
+        if isinstance(getattr(sweep, field), np.ndarray)
+    }
+    rest = {"file": sweep.file, "mount": sweep.mount, "table": sweep.table.iloc[rows].reset_index(drop=True)}
+    return Sweep(name=name, point=arrays.pop("point", None), **arrays, **rest)
+
+
+def _direction(columns: Columns, given: Circumstances, n: int) -> np.ndarray:
+    if columns.direction is None:
+        return np.full(n, given.direction or 1)
+    if given.direction is not None:
+        differs = columns.direction != given.direction
+        if np.any(differs):
+            raise InputError(
+                "contradicts the direction that tyre.toml gives for this file; remove one of the two",
+                file=columns.text.path,
+                line=columns.line(int(differs.argmax())),
+                column="direction",
+            )
+    return columns.direction
+
+
+def check_loads(columns: Columns, axes: str) -> None:
+    """Refuse loads that are zero, of mixed sign, of the wrong sign for the axes, or kilonewtons."""
+    Fz = columns.table["Fz_N"].to_numpy(dtype=float)
+
+    def refuse(row: int, sentence: str) -> InputError:
+        return InputError(sentence, file=columns.text.path, line=columns.line(row), column="Fz_N")
+
+    if np.any(Fz == 0.0):
+        raise refuse(int((Fz == 0.0).argmax()), "the load is zero; remove the rows without load")
+    if np.any(Fz > 0.0) and np.any(Fz < 0.0):
+        rare = int(((Fz > 0.0) if np.mean(Fz > 0.0) < 0.5 else (Fz < 0.0)).argmax())
+        raise refuse(
+            rare, f"{Fz[rare]:g} N has another sign than the other loads; correct it or remove the row"
+        )
+    if Fz[0] < 0.0 and axes != "sae":
+        raise refuse(
+            0,
+            f"loads are negative, which {axes} axes do not have; if the rig reports in SAE axes, set "
+            'axes = "sae", else map the column with scale = -1 under [sweep.columns]',
+        )
+    if np.all(np.abs(Fz) < SMALLEST_LOAD):
+        raise refuse(
+            0,
+            f"the largest load is {np.max(np.abs(Fz)):g} N, which looks like kN; write newtons, or "
+            'Fz_N = { column = "Fz_N", unit = "kN" } under [sweep.columns]',
+        )

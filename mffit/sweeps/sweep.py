@@ -1,0 +1,55 @@
+"""The record of one sweep: rows as measured, turned to ISO-W and SI."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import pandas as pd
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Sweep:
+    """Rows of one sweep in ISO-W, contact frame W, SI; arrays are (n,), all NaN for a channel not measured.
+
+    The rows are finished points, or samples of a time series if ``time`` is there.
+    """
+
+    name: str
+    file: str  #: as ``tyre.toml`` names it
+    alpha: np.ndarray  #: sideslip angle as read [rad]
+    gamma: np.ndarray  #: camber as read [rad]
+    Fz: np.ndarray  #: load, positive [N]
+    Fy: np.ndarray  #: [N]
+    Mz: np.ndarray  #: [Nm]
+    Mx: np.ndarray  #: [Nm]
+    My: np.ndarray  #: [Nm]
+    p: np.ndarray  #: pressure, nominal where not measured [Pa]
+    V: np.ndarray  #: speed, positive, nominal where not measured [m/s]
+    T: np.ndarray  #: tyre temperature [degC]
+    t: np.ndarray  #: when a finished point was taken [s]
+    u_Fy: np.ndarray  #: standard uncertainty [N]
+    u_Mz: np.ndarray  #: standard uncertainty [Nm]
+    iteration: np.ndarray  #: step of the steering alignment
+    direction: np.ndarray  #: +1 forward, -1 backward
+    mount: int  #: +1 normal, -1 tyre turned on its rim
+    time: np.ndarray  #: time of a sample [s]; NaN for finished points
+    point: np.ndarray | None  #: label of the point a sample belongs to, "" between points; None if not given
+    line: np.ndarray  #: line in the file, from 1
+    table: pd.DataFrame  #: columns as reported, contract names and units, rig's axes
+
+    def __len__(self) -> int:
+        return len(self.alpha)
+
+    @property
+    def is_series(self) -> bool:
+        """Whether the rows are samples in time rather than finished points."""
+        return bool(np.all(np.isfinite(self.time)))
+
+
+@dataclass(frozen=True, slots=True)
+class Sweeps:
+    """All sweeps of a configuration, in its order, and what is worth knowing about them."""
+
+    sweeps: tuple[Sweep, ...]
+    warnings: tuple[str, ...]

@@ -1,0 +1,13 @@
+"""The virtual rig: a known tyre on a rig with known faults, tested like a real one.
+
+Its data are what ``mffit build`` is tested with, and a way to try a test plan before going to the rig.
+"""
+
+from mffit.virtual_rig.campaign import Campaign, run
+from mffit.virtual_rig.faults import Faults
+from mffit.virtual_rig.loading import load_plan
+from mffit.virtual_rig.plan import Plan
+from mffit.virtual_rig.simulate import simulate
+from mffit.virtual_rig.truth import DirectTruth, Truth
+
+__all__ = ["Campaign", "DirectTruth", "Faults", "Plan", "Truth", "load_plan", "run", "simulate"]

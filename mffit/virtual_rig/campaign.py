@@ -1,0 +1,141 @@
+"""A whole virtual test campaign: from the plan to tables, tyre.toml and truth, in memory."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import pandas as pd
+
+from mffit.errors import InputError
+from mffit.virtual_rig.faults import Faults, drawn, given
+from mffit.virtual_rig.machine import Channels, Machine, steady
+from mffit.virtual_rig.plan import NoiseTable, Plan, SweepPlan
+from mffit.virtual_rig.recording import record
+from mffit.virtual_rig.revolution import written_down
+from mffit.virtual_rig.settings import Settings, settings_of, usual_speed
+from mffit.virtual_rig.tables import point_table, recorded_table
+from mffit.virtual_rig.truth import DirectTruth, Truth, coefficients_of, direct_truth
+from tir import Tyre
+
+
+@dataclass(frozen=True, slots=True)
+class Campaign:
+    """What the virtual rig hands over."""
+
+    tables: dict[str, pd.DataFrame]  #: one per sweep by file name, in the rig's axes and the contract's units
+    configuration: dict[str, Any]  #: the content of tyre.toml
+    truth: Truth
+
+
+def run(plan: Plan, tyre: Tyre, seed: int | None = None) -> Campaign:
+    """Test a tyre on the virtual rig.
+
+    Parameters
+    ----------
+    plan : what to run and what is wrong with the rig
+    tyre : the tyre that is really on it
+    seed : of the noise and the drawn faults; default the plan's
+
+    Returns
+    -------
+    Campaign
+        The same plan, tyre and seed give the same numbers.
+    """
+    seed = plan.tables.seed if seed is None else seed
+    if seed < 0:
+        raise InputError(f"the seed is {seed}; give a whole number, 0 or larger")
+    # Every sweep has a stream of chance of its own, so that a sweep more does not change the others.
+    for_faults, for_radii, *for_sweeps = np.random.SeedSequence(seed).spawn(2 + len(plan.tables.sweep))
+    faults = faults_of(plan, tyre, np.random.default_rng(for_faults))
+    sweeps = settings_of(plan)
+    machine = Machine(tyre, faults, plan.phi_t_sign, usual_speed(sweeps))
+    tables = {
+        sweep.file: sweep_table(plan, machine, sweep, settings, np.random.default_rng(stream))
+        for sweep, settings, stream in zip(plan.tables.sweep, sweeps, for_sweeps, strict=True)
+    }
+    truth = truth_of(plan, machine, seed)
+    return Campaign(tables, configuration_of(plan, machine, np.random.default_rng(for_radii)), truth)
+
+
+def faults_of(plan: Plan, tyre: Tyre, generator: np.random.Generator) -> Faults:
+    """The faults of the plan, the missing ones drawn if it asks for that."""
+    table, rig = plan.tables.faults, plan.declared.rig
+    if rig.radius is None and table.path_radius_m is not None:
+        raise InputError("a flat track has no path radius; remove it", key="faults.path_radius_m")
+    if not table.draw:
+        return given(rig, table.values())
+    nominal = plan.declared.tyre.nominal_load
+    C_alpha = float(tyre.state(nominal, Vx=plan.tables.conditions.V_mps).K_ya)
+    return drawn(rig, table.values(), C_alpha, generator)
+
+
+def sweep_table(
+    plan: Plan, machine: Machine, sweep: SweepPlan, settings: Settings, generator: np.random.Generator
+) -> pd.DataFrame:
+    """Run one sweep, as finished points or as a recording."""
+    if sweep.recording is not None:
+        return recorded_table(plan, record(machine, settings, sweep.recording, generator))
+    return point_table(
+        plan, sweep, settings, scattered(steady(machine, settings), plan.tables.noise, generator)
+    )
+
+
+def scattered(forces: Channels, noise: NoiseTable, generator: np.random.Generator) -> Channels:
+    """Finished points with their scatter."""
+    Fy, Mz, My = generator.standard_normal((3, len(forces.Fy)))
+    return forces._replace(
+        Fy=forces.Fy + noise.Fy_N * Fy,
+        Mz=forces.Mz + noise.Mz_Nm * Mz,
+        My=forces.My + (noise.My_Nm or 0.0) * My,
+    )
+
+
+def truth_of(plan: Plan, machine: Machine, seed: int) -> Truth:
+    """What the campaign would find without faults and noise, at its loads and the nominal one."""
+    nominal = plan.declared.tyre.nominal_load
+    loads = sorted({sweep.load_N for sweep in plan.tables.sweep})
+    rows = {load: _direct(plan, machine, load) for load in sorted({nominal, *loads})}
+    return Truth(
+        nominal=rows[nominal],
+        per_load=tuple(rows[load] for load in loads),
+        faults=machine.faults,
+        coefficients=coefficients_of(machine.tyre),
+        seed=seed,
+    )
+
+
+def _direct(plan: Plan, machine: Machine, load: float) -> DirectTruth:
+    return direct_truth(
+        machine.tyre,
+        load,
+        speed=plan.tables.conditions.V_mps,
+        pressure=1e3 * plan.declared.tyre.nominal_pressure,
+        phi_t=machine.phi_t_sign / machine.faults.path_radius_m,
+        R=machine.faults.path_radius_m,
+    )
+
+
+def configuration_of(plan: Plan, machine: Machine, generator: np.random.Generator) -> dict[str, Any]:
+    """The content of tyre.toml: the declaration, the measured rolling radii and the sweeps."""
+    content = plan.declared.model_dump(exclude_unset=True)
+    content["sweep"] = [_sweep_entry(sweep) for sweep in plan.tables.sweep]
+    radii = [
+        written_down(
+            row,
+            _direct(plan, machine, row.load_N).r_e_m,
+            machine.faults.path_radius_m,
+            generator,
+        )
+        for row in plan.tables.rolling_radius
+    ]
+    content["rolling_radius"] = radii
+    # The sweeps, which are many, stand at the end; without radii there is no such table.
+    order = ["tyre", "rig", "rolling_radius", "camber_stiffness", "spin", "model", "sweep"]
+    return {name: content[name] for name in order if content.get(name)}
+
+
+def _sweep_entry(sweep: SweepPlan) -> dict[str, Any]:
+    entry = {"file": sweep.file, "direction": sweep.direction, "mount": sweep.mount}
+    return {key: value for key, value in entry.items() if value not in ("forward", "normal")}

@@ -1,0 +1,187 @@
+"""``rig.toml`` as frozen records: what is really true, and the sweeps to run.
+
+Angles, forces and directions are in ISO-W here, whatever axes the rig reports in.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated, Any, Literal
+
+import numpy as np
+from pydantic import BeforeValidator, Field, NonNegativeFloat, PositiveFloat, model_validator
+
+from mffit.config import Config, path_curvature
+from mffit.config import quantities as q
+from mffit.config.models import Table
+
+
+def angles(given: Any) -> Any:
+    """A number, a list, or ``{ from, to, step }`` with both ends included, as a tuple of numbers."""
+    if isinstance(given, int | float) and not isinstance(given, bool):
+        return (float(given),)
+    if isinstance(given, dict):
+        return _range(given)
+    return tuple(given) if isinstance(given, list) else given
+
+
+def _range(given: dict[str, Any]) -> tuple[float, ...]:
+    if set(given) != {"from", "to", "step"} or not all(isinstance(v, int | float) for v in given.values()):
+        raise q.wrong("needs from, to and step, all three numbers; or write a list of angles")
+    steps = (given["to"] - given["from"]) / given["step"] if given["step"] else -1.0
+    if not 0 <= steps <= 10_000 or abs(steps - round(steps)) > 1e-6:
+        raise q.wrong("does not get from one end to the other in whole steps; correct step")
+    return tuple(float(x) for x in np.linspace(given["from"], given["to"], round(steps) + 1))
+
+
+Angles = Annotated[tuple[float, ...], BeforeValidator(angles), Field(min_length=1)]
+
+
+class TruthTable(Table):
+    """[truth]: the tyre that really is on the rig."""
+
+    tyre: str  #: property file, relative to rig.toml
+
+
+class FaultsTable(Table):
+    """[faults]: what is wrong with the rig; see :class:`mffit.virtual_rig.Faults`."""
+
+    draw: bool = False  #: draw every fault not given here from the uncertainties declared in [rig]
+    alpha_0_deg: float | None = None
+    gamma_0_deg: float | None = None
+    gain: PositiveFloat | None = None
+    F0_N: float | None = None
+    crosstalk: float | None = None
+    M0_Nm: float | None = None
+    backlash_deg: NonNegativeFloat | None = None
+    path_radius_m: q.PathRadius | None = None
+    k_T_per_K: float | None = None
+    k_V_per_mps: float | None = None
+    k_t_per_s: float | None = None
+
+    def values(self) -> dict[str, float]:
+        """The faults that stand in the file."""
+        return self.model_dump(exclude={"draw"}, exclude_none=True)
+
+
+class NoiseTable(Table):
+    """[noise]: scatter of a finished point, one standard deviation."""
+
+    Fy_N: NonNegativeFloat = 0.0
+    Mz_Nm: NonNegativeFloat = 0.0
+    My_Nm: NonNegativeFloat | None = None  #: not given: the rig has no cell for My
+    declared: bool = True  #: write the scatter beside every point, as u_Fy_N and u_Mz_Nm
+
+
+class ConditionsTable(Table):
+    """[conditions]: what holds in every sweep that does not say otherwise."""
+
+    p_kPa: q.Pressure | None = None  #: the nominal pressure if not given
+    V_mps: q.Speed = 6.0
+    T_degC: float = 25.0
+    seconds_per_point: PositiveFloat | None = None  #: time from point to point; writes the column t_s
+
+
+class RollingRadiusPlan(Table):
+    """[[rolling_radius]]: one disc revolution to simulate, or a radius given with its uncertainty."""
+
+    load_N: q.Load
+    u_angle_deg: q.UAngle = 1.0
+    u_arc_m: q.ULength = 0.001
+    u_effective_radius: q.ULength | None = None  #: write the radius itself, as far as it is known, instead
+
+
+class RecordingTable(Table):
+    """[sweep.recording]: the sweep as a time series instead of finished points."""
+
+    rate_Hz: PositiveFloat = 20.0
+    hold_s: NonNegativeFloat = 30.0  #: time at every set-point; 0 records a sweep that never stops
+    steering_deg_per_s: PositiveFloat = 2.0
+    noise_Fy_N: NonNegativeFloat = 25.0
+    noise_Mz_Nm: NonNegativeFloat = 2.5
+    noise_My_Nm: NonNegativeFloat = 0.0
+    noise_Fz_N: NonNegativeFloat = 0.0
+    correlation_s: NonNegativeFloat = 0.8  #: time in which the noise forgets itself
+    ripple_Fy_N: NonNegativeFloat = 0.0  #: amplitude, once per revolution of the wheel
+    ripple_Mz_Nm: NonNegativeFloat = 0.0
+
+
+class SweepPlan(Table):
+    """[[sweep]]: set-points at one load; alpha runs fastest, then camber."""
+
+    file: str
+    load_N: q.Load
+    alpha_deg: Angles = (0.0,)
+    gamma_deg: Angles = (0.0,)
+    p_kPa: q.Pressure | None = None
+    V_mps: q.Speed | None = None
+    T_degC: Angles | None = None  #: one temperature, or the first and the last point's
+    direction: Literal["forward", "backward"] = "forward"
+    mount: Literal["normal", "flipped"] = "normal"
+    recording: RecordingTable | None = None
+
+    @model_validator(mode="after")
+    def _file_inside_the_folder(self) -> SweepPlan:
+        if Path(self.file).name != self.file or not self.file.endswith((".csv", ".csv.gz")):
+            raise q.wrong(f'"{self.file}" is no plain file name ending in .csv or .csv.gz; write one', "file")
+        return self
+
+
+TABLES = (
+    TruthTable,
+    FaultsTable,
+    NoiseTable,
+    ConditionsTable,
+    RollingRadiusPlan,
+    RecordingTable,
+    SweepPlan,
+)
+
+
+def _entries(given: Any) -> Any:
+    """TOML gives a list, records hold tuples."""
+    return tuple(given) if isinstance(given, list) else given
+
+
+class RigTables(Table):
+    """The tables of ``rig.toml`` that ``tyre.toml`` does not have, or has in another form."""
+
+    seed: int = 0
+    truth: TruthTable
+    faults: FaultsTable = FaultsTable()
+    noise: NoiseTable = NoiseTable()
+    conditions: ConditionsTable = ConditionsTable()
+    rolling_radius: Annotated[tuple[RollingRadiusPlan, ...], BeforeValidator(_entries)] = ()
+    sweep: Annotated[tuple[SweepPlan, ...], BeforeValidator(_entries), Field(min_length=1)]
+
+
+@dataclass(frozen=True, slots=True)
+class Plan:
+    """A virtual test campaign: the rig as declared in ``tyre.toml`` and what is behind it."""
+
+    declared: Config  #: what tyre.toml will say, but for the rolling radii
+    tables: RigTables  #: what only the virtual rig knows
+    folder: Path  #: where relative file names start
+
+    @property
+    def tyre_path(self) -> Path:
+        """The property file of the tyre on the rig."""
+        return self.folder / self.tables.truth.tyre
+
+    @property
+    def phi_t_sign(self) -> int:
+        """Sign of the path's turn slip: -1 with the centre to the left, 0 on a flat track."""
+        return int(np.sign(path_curvature(self.declared.rig)))
+
+    def pressure_kPa(self, sweep: SweepPlan) -> float:
+        """Inflation pressure of a sweep [kPa]."""
+        return sweep.p_kPa or self.tables.conditions.p_kPa or self.declared.tyre.nominal_pressure
+
+    def speed_mps(self, sweep: SweepPlan) -> float:
+        """Speed of a sweep [m/s], positive in both directions."""
+        return sweep.V_mps or self.tables.conditions.V_mps
+
+    def temperatures_degC(self, sweep: SweepPlan) -> tuple[float, ...]:
+        """Temperature of a sweep [degC]: one, or the first and the last point's."""
+        return sweep.T_degC or (self.tables.conditions.T_degC,)

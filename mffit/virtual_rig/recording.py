@@ -1,0 +1,86 @@
+"""A sweep as the data logger sees it: steered from angle to angle, held there, and noisy."""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from scipy.signal import lfilter
+
+from mffit.virtual_rig.machine import Channels, Machine, at_the_tyre, reported, true_alpha
+from mffit.virtual_rig.plan import RecordingTable
+from mffit.virtual_rig.settings import Settings
+
+
+class Recording(NamedTuple):
+    """A time series; every array has one value per sample (m,)."""
+
+    time: np.ndarray  #: [s]
+    settings: Settings
+    forces: Channels  #: with noise and ripple, ISO-W
+
+
+def record(
+    machine: Machine, settings: Settings, table: RecordingTable, generator: np.random.Generator
+) -> Recording:
+    """Run through the set-points of one sweep with the logger on.
+
+    Parameters
+    ----------
+    machine : tyre and rig
+    settings : set-points (n,) of one sweep, all at one load, speed and pressure
+    table : how it is recorded
+    generator : the source of the noise
+    """
+    time, alpha, gamma = course(settings, table)
+    seen = settings.at(alpha, gamma)
+    state = machine.tyre.state(settings.Fz[0], Vx=settings.Vx[0], p=settings.p[0])
+    true = at_the_tyre(
+        machine, seen, lagged(true_alpha(machine, seen), settings.V[0], state.sigma_y, table.rate_Hz)
+    )
+    forces = reported(machine, seen, true)
+    turned = settings.V[0] / state.Re * time
+    forces = forces._replace(
+        Fy=forces.Fy + table.ripple_Fy_N * np.sin(turned) + noise(time, table.noise_Fy_N, table, generator),
+        Mz=forces.Mz + table.ripple_Mz_Nm * np.cos(turned) + noise(time, table.noise_Mz_Nm, table, generator),
+        My=forces.My + noise(time, table.noise_My_Nm, table, generator),
+        Fz=forces.Fz + noise(time, table.noise_Fz_N, table, generator),
+    )
+    return Recording(time, seen, forces)
+
+
+def course(settings: Settings, table: RecordingTable) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Time [s], sideslip and camber as read [rad] of every sample (m,): straight to each point, then held."""
+    stations = np.column_stack([settings.alpha, settings.gamma])
+    travel = np.abs(np.diff(stations, axis=0)).max(axis=1, initial=0.0) / math.radians(
+        table.steering_deg_per_s
+    )
+    arrivals = np.concatenate([[0.0], np.cumsum(travel + table.hold_s)])
+    corners = np.column_stack([arrivals, arrivals + table.hold_s]).ravel()
+    time = np.arange(math.floor(corners[-1] * table.rate_Hz) + 1) / table.rate_Hz
+    alpha, gamma = (np.interp(time, corners, np.repeat(column, 2)) for column in stations.T)
+    return time, alpha, gamma
+
+
+def lagged(alpha: np.ndarray, V: float, sigma: float, rate_Hz: float) -> np.ndarray:
+    """The angle behind the force (m,): ``sigma d(alpha')/dt + V alpha' = V alpha``, settled at the start.
+
+    Parameters
+    ----------
+    alpha : sideslip angle of the wheel, sample by sample (m,) [rad]
+    V : speed [m/s]
+    sigma : relaxation length [m]
+    rate_Hz : samples per second
+    """
+    forgets = math.exp(-V / (sigma * rate_Hz))
+    follows, _ = lfilter([1.0 - forgets], [1.0, -forgets], alpha, zi=[forgets * alpha[0]])
+    return follows
+
+
+def noise(time: np.ndarray, size: float, table: RecordingTable, generator: np.random.Generator) -> np.ndarray:
+    """Noise (m,) of standard deviation ``size`` that forgets itself within ``correlation_s``."""
+    fresh = generator.standard_normal(len(time))
+    remembers = math.exp(-1.0 / (table.correlation_s * table.rate_Hz)) if table.correlation_s else 0.0
+    fresh[1:] *= math.sqrt(1.0 - remembers**2)
+    return size * lfilter([1.0], [1.0, -remembers], fresh)

@@ -1,0 +1,72 @@
+"""From the plan's sweeps to what the operator sets, point by point."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, fields, replace
+
+import numpy as np
+
+from mffit.virtual_rig.plan import Plan, SweepPlan
+
+
+@dataclass(frozen=True, slots=True)
+class Settings:
+    """What the rig's displays show at every point, ISO-W and SI; arrays (n,)."""
+
+    alpha: np.ndarray  #: sideslip angle as read [rad]
+    gamma: np.ndarray  #: camber as read [rad]
+    Fz: np.ndarray  #: load [N]
+    p: np.ndarray  #: inflation pressure [Pa]
+    V: np.ndarray  #: speed, positive in both directions [m/s]
+    T: np.ndarray  #: tyre temperature [degC]
+    t: np.ndarray  #: when the point was taken [s]
+    direction: np.ndarray  #: +1 forward, -1 backward
+    mount: np.ndarray  #: +1 normal, -1 tyre turned on its rim
+
+    def __len__(self) -> int:
+        return len(self.alpha)
+
+    @property
+    def Vx(self) -> np.ndarray:
+        """Signed speed (n,) [m/s]: negative when the wheel rolls backwards."""
+        return self.direction * self.V
+
+    def at(self, alpha: np.ndarray, gamma: np.ndarray) -> Settings:
+        """The same conditions as at the first point, at other angles (m,) [rad]."""
+        repeated = {f.name: np.full(len(alpha), getattr(self, f.name)[0]) for f in fields(self)}
+        return replace(self, **repeated | {"alpha": alpha, "gamma": gamma})
+
+
+def settings_of(plan: Plan) -> list[Settings]:
+    """The settings of every sweep, in the order of the plan; time runs on from sweep to sweep."""
+    pause = plan.tables.conditions.seconds_per_point or 0.0
+    found: list[Settings] = []
+    begins = 0
+    for sweep in plan.tables.sweep:
+        found.append(_settings(plan, sweep, begins, pause))
+        begins += len(found[-1])
+    return found
+
+
+def _settings(plan: Plan, sweep: SweepPlan, begins: int, pause: float) -> Settings:
+    gamma, alpha = (grid.ravel() for grid in np.meshgrid(sweep.gamma_deg, sweep.alpha_deg, indexing="ij"))
+    n = len(alpha)
+    temperatures = plan.temperatures_degC(sweep)
+    return Settings(
+        alpha=np.radians(alpha),
+        gamma=np.radians(gamma),
+        Fz=np.full(n, sweep.load_N),
+        p=np.full(n, 1e3 * plan.pressure_kPa(sweep)),
+        V=np.full(n, plan.speed_mps(sweep)),
+        T=np.linspace(temperatures[0], temperatures[-1], n),
+        t=pause * (begins + np.arange(n)),
+        direction=np.full(n, 1 if sweep.direction == "forward" else -1),
+        mount=np.full(n, 1 if sweep.mount == "normal" else -1),
+    )
+
+
+def usual_speed(sweeps: list[Settings]) -> float:
+    """The speed at which most points are taken [m/s]."""
+    speeds, counts = np.unique(np.round(np.concatenate([sweep.V for sweep in sweeps]), 1), return_counts=True)
+    return float(speeds[counts.argmax()]) if len(speeds) else math.nan

@@ -1,0 +1,65 @@
+"""What the rig hands over: columns with the contract's names and units, in the rig's own axes."""
+
+from __future__ import annotations
+
+import numpy as np
+import pandas as pd
+
+from mffit.virtual_rig.frames import in_wheel_carrier
+from mffit.virtual_rig.machine import Channels
+from mffit.virtual_rig.plan import Plan, SweepPlan
+from mffit.virtual_rig.recording import Recording
+from mffit.virtual_rig.settings import Settings
+from tir.conventions import from_iso
+
+DECIMALS = {
+    "time_s": 3, "alpha_deg": 3, "gamma_deg": 3, "Fz_N": 1, "p_kPa": 1, "V_mps": 2, "T_degC": 1, "t_s": 1,
+    "Fy_N": 2, "Mz_Nm": 3, "My_Nm": 3,
+}  # fmt: skip
+RECORDED_DECIMALS = {"alpha_deg": 2, "gamma_deg": 2, "Fz_N": 0, "Fy_N": 0, "Mz_Nm": 1, "My_Nm": 1}
+"""A logger's resolution: far below its noise, and a third of the file's size."""
+
+
+def point_table(plan: Plan, sweep: SweepPlan, settings: Settings, forces: Channels) -> pd.DataFrame:
+    """One row per finished point (n,); ``forces`` is in ISO-W with the noise in it."""
+    table = _channels(plan, settings, forces)
+    noise = plan.tables.noise
+    if noise.declared and (noise.Fy_N or noise.Mz_Nm):
+        table["u_Fy_N"], table["u_Mz_Nm"] = noise.Fy_N, noise.Mz_Nm
+    if plan.tables.conditions.seconds_per_point is not None:
+        table["t_s"] = settings.t
+    return table.round(DECIMALS)
+
+
+def recorded_table(plan: Plan, recording: Recording) -> pd.DataFrame:
+    """One row per sample of a recorded sweep (m,)."""
+    table = _channels(plan, recording.settings, recording.forces)
+    table.insert(0, "time_s", recording.time)
+    return table.round(DECIMALS | RECORDED_DECIMALS)
+
+
+def _channels(plan: Plan, settings: Settings, forces: Channels) -> pd.DataFrame:
+    rig = plan.declared.rig
+    if rig.force_frame == "C":
+        forces = in_wheel_carrier(forces, settings.gamma)
+
+    def turned(channel: str, values: np.ndarray) -> np.ndarray:
+        # Adding zero turns -0.0, which a CSV would show, into 0.0.
+        return from_iso(rig.axes, channel, values) + 0.0
+
+    table = pd.DataFrame(
+        {
+            "alpha_deg": np.degrees(turned("alpha", settings.alpha)),
+            "gamma_deg": np.degrees(turned("gamma", settings.gamma)),
+            "Fz_N": turned("Fz", forces.Fz),
+            "p_kPa": settings.p / 1e3,
+            "V_mps": settings.V,
+            "T_degC": settings.T,
+            "Fy_N": turned("Fy", forces.Fy),
+            "Mz_Nm": turned("Mz", forces.Mz),
+        }
+    )
+    # Without My nobody can turn Mz from the wheel carrier back into the contact frame.
+    if plan.tables.noise.My_Nm is not None or rig.force_frame == "C":
+        table["My_Nm"] = turned("My", forces.My)
+    return table

@@ -1,0 +1,110 @@
+"""What a perfect campaign would find: the direct method's quantities, taken from the tyre itself."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import asdict, dataclass
+from typing import Any
+
+from mffit.virtual_rig.faults import Faults
+from tir import Tyre
+from tir.parameters import TABLE
+
+STEP = 1e-6  # rad and 1/m; rounding and curvature both stay below 1e-6 of the slope
+SECTIONS = ("LATERAL_COEFFICIENTS", "ALIGNING_COEFFICIENTS", "TURNSLIP_COEFFICIENTS")
+
+
+@dataclass(frozen=True, slots=True)
+class DirectTruth:
+    """True values at one load, nominal pressure, ISO-W; the path curvature is that of the rig.
+
+    Slopes are taken on a straight path, where the definition has them, with turn slip acting and without.
+    """
+
+    load_N: float
+    epsilon_gamma: float  #: of (17), from the slopes with turn slip acting
+    C_phit_Nm: float  #: slope of Fy over phi_t at zero [N m]
+    C_phit_secant_Nm: float | None  #: F_phit / phi_t, which a disc measures [N m]
+    C_gamma_N_per_rad: float  #: camber stiffness without turn slip
+    C_gamma_turn_slip_N_per_rad: float  #: camber stiffness with turn slip acting, R0/r_e larger
+    C_alpha_N_per_rad: float  #: cornering stiffness without turn slip
+    C_alpha_disc_N_per_rad: float  #: slope over alpha on the path, where spin weakens it
+    r_e_m: float
+    R_m: float | None  #: true radius of the path
+    F_phit_N: float | None  #: part of Fy at zero angles that changes sign with the path's curvature
+    Fy_zero_N: float  #: Fy at zero angles on the path, shifts of the tyre included
+
+
+@dataclass(frozen=True, slots=True)
+class Truth:
+    """Everything that a campaign's data were made from."""
+
+    nominal: DirectTruth
+    per_load: tuple[DirectTruth, ...]
+    faults: Faults
+    coefficients: dict[str, float]  #: of the tyre's side force, aligning moment and turn slip
+    seed: int
+
+    def to_json(self) -> dict[str, Any]:
+        """The content of truth.json; the flat-track path radius is null."""
+        faults = asdict(self.faults)
+        if math.isinf(self.faults.path_radius_m):
+            faults["path_radius_m"] = None
+        return {
+            **asdict(self.nominal),
+            "pecp1": self.coefficients["PECP1"],
+            "pecp2": self.coefficients["PECP2"],
+            "faults": faults,
+            "per_load": [asdict(row) for row in self.per_load],
+            "coefficients": self.coefficients,
+            "seed": self.seed,
+        }
+
+
+def direct_truth(
+    tyre: Tyre, load: float, speed: float, pressure: float, phi_t: float, R: float
+) -> DirectTruth:
+    """True direct-method quantities at one load.
+
+    Parameters
+    ----------
+    tyre : the tyre on the rig
+    load, speed, pressure : [N], [m/s], [Pa]
+    phi_t : turn slip of the path [1/m]; 0 on a flat track
+    R : true radius of the path [m]
+    """
+
+    def Fy(alpha: float = 0.0, gamma: float = 0.0, curvature: float = 0.0, turn_slip: bool = True) -> float:
+        out = tyre(load, alpha, gamma, 0.0, curvature, speed, pressure, turn_slip=turn_slip)
+        return float(out.Fy)
+
+    r_e = float(tyre.state(load, Vx=speed, p=pressure).Re)
+    C_phit = slope(lambda x: Fy(curvature=x))
+    C_gamma_turn_slip = slope(lambda x: Fy(gamma=x))
+    on_disc = phi_t != 0.0
+    F_phit = (Fy(curvature=phi_t) - Fy(curvature=-phi_t)) / 2.0
+    return DirectTruth(
+        load_N=load,
+        epsilon_gamma=1.0 + r_e * C_gamma_turn_slip / C_phit,
+        C_phit_Nm=C_phit,
+        C_phit_secant_Nm=F_phit / phi_t if on_disc else None,
+        C_gamma_N_per_rad=slope(lambda x: Fy(gamma=x, turn_slip=False)),
+        C_gamma_turn_slip_N_per_rad=C_gamma_turn_slip,
+        C_alpha_N_per_rad=slope(lambda x: Fy(alpha=x, turn_slip=False)),
+        C_alpha_disc_N_per_rad=slope(lambda x: Fy(alpha=x, curvature=phi_t)),
+        r_e_m=r_e,
+        R_m=R if on_disc else None,
+        F_phit_N=F_phit if on_disc else None,
+        Fy_zero_N=Fy(curvature=phi_t, turn_slip=on_disc),
+    )
+
+
+def slope(force: Callable[[float], float]) -> float:
+    """Slope at zero by central differences."""
+    return (force(STEP) - force(-STEP)) / (2.0 * STEP)
+
+
+def coefficients_of(tyre: Tyre) -> dict[str, float]:
+    """The coefficients that disc data speak of, by name."""
+    return {row.name: float(tyre[row.name]) for row in TABLE if row.section in SECTIONS}

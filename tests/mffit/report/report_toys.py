@@ -1,0 +1,139 @@
+"""A build's result from a known tyre: real records, readings made by the rig model with a little noise."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+import tir
+from mffit import config, measured, parts
+from mffit.fit.coverage import coverage
+from mffit.fit.result import Coefficient, FitResult, StageRecord, agreement
+from mffit.pipeline import Result
+from mffit.points import Points, make_points
+from mffit.rig import readings
+from tir.parameters import BY_NAME
+
+TRUE = Path(__file__).parents[3] / "samples" / "front-120-70" / "true.tir"
+R = 1.323
+NOISE_FY, NOISE_MZ = 6.0, 0.6
+SIDESLIP = np.array([-8, -6, -4, -3, -2, -1, -0.5, 0, 0.5, 1, 2, 3, 4, 6, 8.0])
+CAMBER = np.array([-50, -40, -30, -20, -15, -10, -5, 0, 5, 10, 15, 20, 30, 40, 50.0])
+ZEROS = np.array([-1, -0.5, 0, 0.5, 1.0])
+STATUSES = ("fitted", "measured", "regularised", "base", "default")
+
+
+def sweep(alpha, gamma, Fz, p=250e3, direction=1) -> dict[str, np.ndarray]:
+    columns = np.broadcast_arrays(alpha, gamma, float(Fz), float(p), direction)
+    return dict(zip(("alpha", "gamma", "Fz", "p", "direction"), columns, strict=True))
+
+
+def programme(loads=(900.0, 1500.0)) -> dict[str, dict[str, np.ndarray]]:
+    """Set-points [deg, N, Pa] by sweep name."""
+    sweeps = {}
+    for load in loads:
+        sweeps[f"sideslip_{load:.0f}"] = sweep(SIDESLIP, 0.0, load)
+        sweeps[f"camber_{load:.0f}"] = sweep(0.0, CAMBER, load)
+        sweeps[f"backward_{load:.0f}"] = sweep(ZEROS, 0.0, load, direction=-1)
+    coupled = [sweep(SIDESLIP, gamma, loads[-1]) for gamma in (-20.0, 20.0)]
+    sweeps["coupled"] = {key: np.concatenate([c[key] for c in coupled]) for key in coupled[0]}
+    sweeps["soft"] = sweep(SIDESLIP, 0.0, loads[0], p=200e3)
+    return sweeps
+
+
+def made_points(sweeps, *, phi_t=-1 / R, seed=1, u_Fy=NOISE_FY, u_Mz=NOISE_MZ, moment=True) -> Points:
+    """Points of a programme as the rig would read them from the true tyre."""
+    columns = {key: np.concatenate([s[key] for s in sweeps.values()]) for key in next(iter(sweeps.values()))}
+    number = np.repeat(np.arange(len(sweeps)), [len(s["Fz"]) for s in sweeps.values()])
+    points = make_points(
+        np.radians(columns["alpha"]),
+        np.radians(columns["gamma"]),
+        columns["Fz"],
+        p=columns["p"],
+        V=6.0,
+        phi_t=phi_t,
+        u_Fy=u_Fy,
+        u_Mz=u_Mz,
+        direction=columns["direction"],
+        sweep=number,
+        file=number,
+        sweep_names=tuple(sweeps),
+        files=tuple(f"{name}.csv" for name in sweeps),
+    )
+    rng = np.random.default_rng(seed)
+    Fy, Mz = readings(tir.read(TRUE), points, turn_slip=phi_t != 0.0)
+    n = len(points)
+    return points.replace(
+        Fy=Fy + NOISE_FY * rng.standard_normal(n),
+        Mz=Mz + NOISE_MZ * rng.standard_normal(n) if moment else np.full(n, np.nan),
+    )
+
+
+def made_coefficients() -> dict[str, Coefficient]:
+    """One coefficient of each status, one of them at its bound."""
+    tyre = tir.read(TRUE)
+    names = ("PKY1", "PECP1", "PHYP2", "QBZ1", "PHY2")
+    out = {}
+    for name, status in zip(names, STATUSES, strict=True):
+        fixed = status not in ("fitted", "regularised")
+        out[name] = Coefficient(
+            value=tyre[name],
+            stderr=None if fixed else 0.02,
+            stage=BY_NAME[name].stage,
+            fixed=fixed,
+            at_bound=name == "PHYP2",
+            status=status,
+            correlated_with="PKY2" if name == "PKY1" else "",
+            correlation=-0.97,
+        )
+    return out
+
+
+def made_result(**changes: Any) -> Result:
+    """A whole result; ``changes`` go to :func:`made_points`, except ``rig``, which goes to tyre.toml."""
+    rig = changes.pop("rig", {"path_radius": R, "backlash_deg": 0.0})
+    settings = config.load(
+        {
+            "tyre": {
+                "name": "front-1",
+                "size": "120/70 <ZR17>",
+                "unloaded_radius": 0.2992,
+                "nominal_load": 1500.0,
+                "nominal_pressure": 250.0,
+            },
+            "rig": rig,
+            "rolling_radius": [{"effective_radius": 0.2945, "u_effective_radius": 0.0005}],
+            "sweep": [{"file": "sideslip.csv"}],
+        }
+    )
+    points = made_points(programme(), **changes)
+    halves = parts.split(points)
+    tyre = tir.read(TRUE)
+    Fy, Mz = readings(tyre, points, turn_slip=bool(points.phi_t.any()))
+    fitted = FitResult(
+        tyre=tyre,
+        written=tyre,
+        coefficients=made_coefficients(),
+        channels={"Fy": agreement(Fy, points.Fy), "Mz": agreement(Mz, points.Mz)},
+        odd={"Fy": agreement(Fy, points.Fy), "Mz": agreement(Mz, points.Mz)},
+        Fy_model=Fy,
+        Mz_model=Mz,
+        stages=(StageRecord("Fy", "Side force at zero camber", ("PKY1",), 41.5, 3.2),),
+        coverage=coverage(points, "left"),
+        explanations=("The file is for simulations with turn slip on.",),
+        warnings=(),
+        seconds=1.5,
+    )
+    return Result(
+        config=settings,
+        points=points,
+        parts=halves,
+        measured=measured.measure(settings, points, halves, None),
+        fit=fitted,
+        tyre=tyre.annotate(provenance={"input sideslip.csv": "0123456789abcdef"}),
+        warnings=("the camber sweep at 900 N is short & noisy",),
+        seconds=3.25,
+        tir_path="front-1.tir",
+    )

@@ -1,0 +1,155 @@
+"""The build report: self-contained, complete, and right where data are missing."""
+
+from __future__ import annotations
+
+import base64
+import re
+import subprocess
+import sys
+from html.parser import HTMLParser
+
+import numpy as np
+import pytest
+from report_toys import made_coefficients, made_result
+
+from mffit.report import write_build
+
+VOID = {"meta", "img", "br", "col"}
+PNG = b"\x89PNG\r\n"
+
+
+class Reader(HTMLParser):
+    """Collects tags and text; stops at a tag closed out of order."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.open: list[str] = []
+        self.images: list[dict[str, str | None]] = []
+        self.references: list[str] = []
+        self.text = ""
+
+    def handle_starttag(self, tag, attrs):
+        attributes = dict(attrs)
+        if tag not in VOID:
+            self.open.append(tag)
+        if tag == "img":
+            self.images.append(attributes)
+        self.references += [v for k, v in attributes.items() if k in ("src", "href") and v]
+
+    def handle_endtag(self, tag):
+        assert self.open.pop() == tag
+
+    def handle_data(self, data):
+        if self.open and self.open[-1] != "style":
+            self.text += data + " "
+
+
+def read(path) -> Reader:
+    reader = Reader()
+    reader.feed(path.read_text(encoding="utf-8"))
+    reader.close()
+    assert reader.open == []
+    return reader
+
+
+@pytest.fixture(scope="module")
+def written(result, tmp_path_factory):
+    folder = tmp_path_factory.mktemp("report")
+    write_build(result, folder)
+    return folder
+
+
+@pytest.fixture(scope="module")
+def page(written):
+    return read(written / "report.html")
+
+
+def test_pictures_are_on_disk_and_in_the_page(written, page):
+    on_disk = {base64.b64encode(path.read_bytes()).decode() for path in (written / "plots").glob("*.png")}
+    embedded = {image["src"].removeprefix("data:image/png;base64,") for image in page.images}
+    assert on_disk == embedded
+    assert {path.stem for path in (written / "plots").glob("*.png")} == {
+        "camber_reduction", "alignment", "parts_Fy", "parts_Mz", "even_parts", "fit_Fy", "fit_Mz", "residuals",
+    }  # fmt: skip
+    assert all(path.read_bytes().startswith(PNG) for path in (written / "plots").glob("*.png"))
+
+
+def test_page_needs_no_network(written, page):
+    assert all(r.startswith(("data:image/png;base64,", "#")) for r in page.references)
+    html = (written / "report.html").read_text(encoding="utf-8")
+    assert "<script" not in html
+    assert "<link" not in html
+    assert "@import" not in html
+    assert "url(" not in html
+
+
+def test_links_within_the_page_resolve(written, page):
+    html = (written / "report.html").read_text(encoding="utf-8")
+    assert all(f'id="{r[1:]}"' in html for r in page.references if r.startswith("#"))
+
+
+def test_every_picture_is_described_in_words(page):
+    assert all(len(image["alt"]) > 20 for image in page.images)
+
+
+def test_warnings_stand_before_everything_else(page):
+    assert page.text.index("short & noisy") < page.text.index("Camber reduction factor ε")
+
+
+def test_input_text_is_escaped(written):
+    html = (written / "report.html").read_text(encoding="utf-8")
+    assert "120/70 &lt;ZR17&gt;" in html
+    assert "<ZR17>" not in html
+
+
+def test_every_coefficient_is_listed_with_its_status(page):
+    for name, coefficient in made_coefficients().items():
+        assert re.search(rf"\b{name}\b", page.text)
+        assert coefficient.status in page.text
+    assert page.text.count("at bound") == 1
+    assert "correlated with PKY2 -0.97" in page.text
+
+
+def test_headline_numbers_are_those_of_the_direct_method(result, page):
+    spin = result.measured.to_json()
+    assert f"{spin['epsilon_gamma']:.2f}"[1:] in page.text
+    assert f"{spin['C_phit_Nm']:.0f} ± {spin['u_C_phit_Nm']:.0f}" in page.text
+
+
+def test_same_result_gives_the_same_bytes(result, written, tmp_path):
+    write_build(result, tmp_path)
+    assert (tmp_path / "report.html").read_bytes() == (written / "report.html").read_bytes()
+
+
+def test_a_flat_track_has_no_spin_and_no_parts(tmp_path):
+    write_build(made_result(rig={"type": "flat-track"}, phi_t=0.0), tmp_path)
+    page = read(tmp_path / "report.html")
+    assert "flat track" in page.text
+    assert "turn slip plays no part" in page.text or "turn slip" in page.text
+    assert {p.stem for p in (tmp_path / "plots").iterdir()} == {"fit_Fy", "fit_Mz", "residuals"}
+
+
+def test_without_moment_only_side_force_is_shown(tmp_path):
+    write_build(made_result(moment=False), tmp_path)
+    assert not [p for p in (tmp_path / "plots").iterdir() if "Mz" in p.stem]
+    assert "Mz misfit" not in read(tmp_path / "report.html").text
+
+
+def test_without_stated_noise_residuals_are_in_units_of_the_misfit(tmp_path):
+    write_build(made_result(u_Fy=np.nan, u_Mz=np.nan), tmp_path)
+    text = read(tmp_path / "report.html").text
+    assert "units of the channel's rms misfit" in text
+    assert "not stated" in text
+
+
+def test_drawing_touches_no_global_figure_and_importing_loads_no_plot_library():
+    code = (
+        "import sys, mffit.report, mffit.report.text\n"
+        "assert 'matplotlib' not in sys.modules and 'jinja2' not in sys.modules\n"
+        "from mffit.report import style\n"
+        "with style.applied():\n"
+        "    figure, _ = style.panel_grid([1], 1)\n"
+        "    figure.canvas.print_png(open(sys.argv[1], 'wb'))\n"
+        "assert 'matplotlib.pyplot' not in sys.modules\n"
+    )
+    subprocess.run([sys.executable, "-W", "error", "-c", code, "/dev/null"], check=True)

@@ -1,0 +1,75 @@
+"""Points are put on the curves that an engineer would draw."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from report_toys import SIDESLIP, made_points, programme, sweep
+from hypothesis import given
+from hypothesis import strategies as st
+
+from mffit.report.curves import conditions, curves, levels
+
+
+@pytest.fixture(scope="module")
+def points():
+    return made_points(programme())
+
+
+def test_every_sweep_of_a_programme_becomes_its_curves(points):
+    found = {(c.sweep, c.over, c.load, c.pressure, c.held, c.forward) for c in curves(points)}
+    assert found == {
+        ("sideslip_900", "alpha", 900.0, 250.0, 0.0, True),
+        ("sideslip_1500", "alpha", 1500.0, 250.0, 0.0, True),
+        ("backward_900", "alpha", 900.0, 250.0, 0.0, False),
+        ("backward_1500", "alpha", 1500.0, 250.0, 0.0, False),
+        ("soft", "alpha", 900.0, 200.0, 0.0, True),
+        ("coupled", "alpha", 1500.0, 250.0, -20.0, True),
+        ("coupled", "alpha", 1500.0, 250.0, 20.0, True),
+        ("camber_900", "gamma", 900.0, 250.0, 0.0, True),
+        ("camber_1500", "gamma", 1500.0, 250.0, 0.0, True),
+    }
+
+
+def test_a_curve_runs_along_its_angle(points):
+    for curve in curves(points):
+        assert np.all(np.diff(getattr(points, curve.over)[curve.index]) > 0)
+
+
+def test_no_point_is_on_two_curves(points):
+    rows = np.concatenate([c.index for c in curves(points)])
+    assert len(rows) == len(np.unique(rows)) == len(points)
+
+
+def test_scatter_of_load_and_camber_does_not_tear_a_curve_apart():
+    rng = np.random.default_rng(3)
+    n = len(SIDESLIP)
+    loose = sweep(SIDESLIP, 3.0 + 0.1 * rng.standard_normal(n), 1500.0)
+    loose["Fz"] = 1500.0 * (1.0 + 0.01 * rng.standard_normal(n))
+    (curve,) = curves(made_points({"loose": loose}))
+    assert len(curve.index) == n
+    assert curve.load == pytest.approx(1500.0, abs=20.0)
+
+
+def test_three_set_points_are_no_curve():
+    assert curves(made_points({"short": sweep(np.array([-1.0, 0.0, 1.0]), 0.0, 1500.0)})) == []
+
+
+def test_conditions_split_all_points_by_load_and_pressure(points):
+    found = conditions(points)
+    assert [c.title for c in found] == ["900 N, 200 kPa", "900 N, 250 kPa", "1500 N, 250 kPa"]
+    assert sorted(np.concatenate([c.index for c in found])) == list(range(len(points)))
+
+
+@given(st.lists(st.floats(-100.0, 100.0), min_size=1, max_size=30))
+def test_values_within_the_gap_share_a_level(values):
+    values = np.array(values)
+    level = levels(values, 1.0)
+    order = np.argsort(values)
+    near = np.diff(values[order]) <= 1.0
+    assert np.all(np.diff(level[order])[near] == 0.0)
+    assert np.all(np.diff(level[order])[~near] > 0.0)
+
+
+def test_missing_values_have_no_level():
+    assert np.isnan(levels(np.array([1.0, np.nan]), 0.5)[1])

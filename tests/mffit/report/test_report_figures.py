@@ -1,0 +1,106 @@
+"""The pictures show the numbers they are given."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from mffit.report import style
+from mffit.report.build_view import view_of
+from mffit.report.figures import decomposition, fit, residuals, spin
+from mffit.report.published import TYRES
+
+
+@pytest.fixture(scope="module")
+def view(result):
+    return view_of(result)
+
+
+@pytest.fixture(autouse=True)
+def _settings():
+    with style.applied():
+        yield
+
+
+def titles(figure):
+    return [ax.get_title(loc="left") for ax in figure.axes]
+
+
+def test_decomposition_has_a_panel_for_every_forward_curve_and_one_of_each_camber_pair(view):
+    figure = decomposition.decomposition(view, view.channels[0])
+    assert titles(figure) == [
+        "900 N, 200 kPa",
+        "900 N, 250 kPa",
+        "1500 N, 250 kPa",
+        "1500 N, 250 kPa, γ = 20°",
+        "900 N, 250 kPa",
+        "1500 N, 250 kPa",
+    ]
+
+
+def test_raw_curve_is_the_sum_of_its_parts(view):
+    for ax in decomposition.decomposition(view, view.channels[0]).axes:
+        _, raw, odd, even = (line.get_ydata() for line in ax.lines)
+        assert raw == pytest.approx(np.asarray(odd) + np.asarray(even))
+
+
+def test_even_parts_have_a_row_per_channel_and_angle_and_a_column_per_load(view):
+    figure = decomposition.even_parts(view)
+    assert titles(figure) == [f"{c}, {load} N" for c in ("Fy", "Fy", "Mz", "Mz") for load in (900, 1500)]
+
+
+def test_fit_draws_every_point(view):
+    figure = fit.model_against_points(view, view.channels[1])
+    drawn = [line for ax in figure.axes for line in ax.lines if line.get_linestyle() == "None"]
+    assert sum(len(line.get_xdata()) for line in drawn) == len(view.points)
+
+
+def test_residual_maps_share_one_scale_that_is_symmetric(view):
+    values = np.linspace(-9.0, 9.0, len(view.points))
+    figure = residuals.residual_maps(view.points, [("Fy", values)], view.conditions, 4.0, "u")
+    for ax in figure.axes[:-1]:
+        assert ax.collections[0].get_clim() == (-4.0, 4.0)
+        assert np.abs(ax.collections[0].get_array()).max() <= 4.0
+
+
+def test_points_with_equal_angles_are_drawn_apart():
+    alpha, gamma = np.array([0.0, 1.0, 0.0, 0.0]), np.zeros(4)
+    shift = residuals.beside(alpha, gamma)
+    assert sorted(shift[[0, 2, 3]]) == [-1.0, 0.0, 1.0]
+    assert shift[1] == 0.0
+
+
+def test_too_many_conditions_leave_those_with_most_points(view):
+    kept = residuals.most_populated(view.conditions, 2)
+    assert [c.title for c in kept] == ["900 N, 250 kPa", "1500 N, 250 kPa"]
+
+
+def test_this_tyre_stands_beside_the_published_ones(view):
+    figure = spin.camber_reduction(view)
+    labels = [label.get_text() for label in figure.axes[0].get_yticklabels()]
+    assert labels == ["front-1", *(tyre.name for tyre in reversed(TYRES))]
+
+
+def test_budget_bars_are_ordered_and_below_the_total(view):
+    bars = [bar.get_width() for bar in spin.camber_reduction(view).axes[1].patches]
+    assert bars == sorted(bars)
+    assert max(bars) <= view.spin["u_epsilon_gamma"]
+
+
+def test_line_over_load_is_the_one_the_file_carries(view):
+    ax = spin.camber_reduction(view).axes[2]
+    line = next(line for line in ax.lines if line.get_label().startswith("PECP1"))
+    assert line.get_ydata() == pytest.approx(view.spin["pecp1"])
+
+
+def test_alignment_has_a_panel_per_load_run_both_ways(view):
+    assert titles(spin.alignment(view)) == ["900 N", "1500 N"]
+
+
+def test_settings_are_left_as_they_were():
+    import matplotlib
+
+    before = dict(matplotlib.rcParams)
+    with style.applied():
+        matplotlib.rcParams["font.size"] = 3.0
+    assert dict(matplotlib.rcParams) == before

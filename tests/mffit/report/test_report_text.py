@@ -1,0 +1,49 @@
+"""Tables for the terminal."""
+
+from __future__ import annotations
+
+from mffit.measured import align
+from mffit.report import text
+
+BUDGET = [
+    {"source": "load-cell offset", "u": 10.0, "unit": "N", "contribution": 0.03},
+    {"source": "camber alignment", "u": 0.5, "unit": "deg", "contribution": -0.04},
+]
+
+
+def test_budget_is_ordered_and_adds_up():
+    assert text.budget_table(BUDGET, 0.05) == (
+        "source                  u  in eps_gamma  of variance\n"
+        "----------------  -------  ------------  -----------\n"
+        "camber alignment  0.5 deg        0.0400         64 %\n"
+        "load-cell offset     10 N        0.0300         36 %\n"
+        "combined (k = 1)                 0.0500"
+    )
+
+
+def test_spin_summary_names_what_to_improve_first(result):
+    summary = text.spin_summary(result.measured)
+    first = max(result.measured.to_json()["budget"], key=lambda row: abs(row["contribution"]))
+    assert f"Improve first: {first['source']};" in summary
+    for load in ("900", "1500"):
+        assert f"\n     {load.rjust(3)}"[-4:] in summary
+
+
+def test_alignment_table_has_a_line_per_load_and_ends_with_the_correction(result):
+    alignment = align(result.points)
+    table = text.alignment_table(alignment)
+    assert len(table.split("\n\n")[0].splitlines()) == 2 + len(alignment.steps)
+    assert f"{alignment.correction_deg:+.3f} deg" in table
+
+
+def test_build_summary_gives_misfits_and_statuses(result):
+    summary = text.build_summary(result)
+    assert f"{result.fit.channels['Fy'].rmse:.2f}" in summary
+    assert "1 fitted, 1 measured, 1 regularised, 1 base, 1 default; at a bound: PHYP2" in summary
+    assert "turn slip on" in summary
+
+
+def test_terminal_text_is_ascii_and_fits_a_line(result):
+    for summary in (text.spin_summary(result.measured), text.build_summary(result)):
+        assert summary.isascii()
+        assert max(map(len, summary.splitlines())) <= 120

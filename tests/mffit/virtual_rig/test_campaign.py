@@ -1,0 +1,135 @@
+"""The whole campaign in memory: chance, faults drawn from declared uncertainties, truth."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from mffit import config
+from mffit.virtual_rig import load_plan
+from mffit.virtual_rig.campaign import faults_of
+from mffit.virtual_rig.truth import direct_truth
+
+NOISE = {"Fy_N": 6.0, "Mz_Nm": 0.6}
+DRAW = {"draw": True}
+
+
+def test_the_same_seed_gives_the_same_tables(run):
+    first, second, other = (run(seed, noise=NOISE, faults=DRAW) for seed in (4, 4, 5))
+    assert first.truth == second.truth
+    for name, table in first.tables.items():
+        assert table.equals(second.tables[name])
+        assert not table.equals(other.tables[name])
+
+
+def test_a_sweep_more_leaves_the_others_as_they_were(run, content):
+    extra = {"file": "extra.csv", "load_N": 900, "gamma_deg": [0, 10]}
+    before, after = run(1, noise=NOISE), run(1, noise=NOISE, sweep=[*content["sweep"], extra])
+    for name, table in before.tables.items():
+        assert table.equals(after.tables[name])
+
+
+def test_scatter_has_the_size_that_is_declared(run, content):
+    many = [{"file": "many.csv", "load_N": 1400, "alpha_deg": [0] * 4000}]
+    table, still = run(noise=NOISE, sweep=many).tables["many.csv"], run(sweep=many).tables["many.csv"]
+    assert (table["Fy_N"] - still["Fy_N"]).std() == pytest.approx(6.0, rel=0.05)
+    assert (table["Mz_Nm"] - still["Mz_Nm"]).std() == pytest.approx(0.6, rel=0.05)
+    assert (table["u_Fy_N"] == 6.0).all()
+    assert (table["u_Mz_Nm"] == 0.6).all()
+
+
+def test_drawn_faults_scatter_as_declared(content, folder, tyre):
+    plan = load_plan(content | {"faults": DRAW}, folder=folder)
+    rng = np.random.default_rng(0)
+    drawn = [faults_of(plan, tyre, rng) for _ in range(1500)]
+    C_alpha = abs(tyre.state(1400.0, Vx=6.0).K_ya)
+    expected = {
+        "alpha_0_deg": (0.0, np.degrees(25.0 / C_alpha)),
+        "gamma_0_deg": (0.0, 0.5),
+        "F0_N": (0.0, 10.0),
+        "path_radius_m": (1.323, 0.0018),
+    }
+    for name, (mean, u) in expected.items():
+        values = [getattr(faults, name) for faults in drawn]
+        # 1500 draws: u to 1.8 %, the mean to 0.026 u
+        assert np.std(values) == pytest.approx(u, rel=0.08)
+        assert np.mean(values) == pytest.approx(mean, abs=0.1 * u)
+
+
+def test_a_fault_that_is_given_is_not_drawn_and_leaves_the_others_alone(content, folder, tyre):
+    def faults(**table):
+        plan = load_plan(content | {"faults": DRAW | table}, folder=folder)
+        return faults_of(plan, tyre, np.random.default_rng(7))
+
+    free, fixed = faults(), faults(gamma_0_deg=0.25, gain=1.02)
+    assert fixed.gamma_0_deg == 0.25
+    assert fixed.gain == 1.02
+    assert (fixed.alpha_0_deg, fixed.F0_N) == (free.alpha_0_deg, free.F0_N)
+
+
+def test_the_disc_revolution_gives_the_true_radius_within_its_uncertainty(run):
+    errors = []
+    for seed in range(200):
+        campaign = run(seed)
+        row = config.RollingRadiusTable(**campaign.configuration["rolling_radius"][0])
+        errors.append(config.effective_radius(row, 1.323) - campaign.truth.nominal.r_e_m)
+    r_e, turn = 0.2924, 2 * np.pi * 1.323 / 0.2924
+    # (18): two angles of 1 deg and two arcs of 1 mm
+    u = r_e * np.hypot(np.sqrt(2) * np.radians(1.0) / turn, np.sqrt(2) * 0.001 / (2 * np.pi * 1.323))
+    assert np.std(errors) == pytest.approx(u, rel=0.15)
+    assert np.mean(errors) == pytest.approx(0.0, abs=0.2 * u)
+
+
+def test_a_given_radius_is_off_by_its_uncertainty(run):
+    radius = [{"load_N": 1400, "u_effective_radius": 0.0005}]
+    found = [
+        run(seed, rolling_radius=radius).configuration["rolling_radius"][0]["effective_radius"]
+        for seed in range(200)
+    ]
+    assert np.std(found) == pytest.approx(0.0005, rel=0.2)
+
+
+def test_the_true_epsilon_is_the_tyres_own_coefficient(tyre):
+    unshifted = tyre.replace(PHY1=0.0, PHY2=0.0, PVY1=0.0, PVY2=0.0)
+    truth = direct_truth(unshifted, 1400.0, speed=6.0, pressure=250e3, phi_t=-1 / 1.323, R=1.323)
+    assert truth.epsilon_gamma == pytest.approx(tyre["PECP1"], abs=1e-6)
+    R0, K = tyre["UNLOADED_RADIUS"], truth.C_gamma_N_per_rad
+    assert truth.C_phit_Nm == pytest.approx(R0 * abs(K) / (1 - tyre["PECP1"]), rel=1e-6)
+    assert truth.C_gamma_turn_slip_N_per_rad == pytest.approx(K * R0 / truth.r_e_m, rel=1e-6)
+    assert truth.C_phit_secant_Nm == pytest.approx(-truth.F_phit_N * truth.R_m)
+
+
+def test_truth_over_load_follows_pecp2(run, tyre, content):
+    sweeps = [{"file": f"{load}.csv", "load_N": load} for load in (900, 1400, 2100)]
+    for row in run(sweep=sweeps).truth.per_load:
+        dfz = row.load_N / 1400.0 - 1.0
+        expected = tyre["PECP1"] * (1 + tyre["PECP2"] * dfz)
+        # The shifts of this tyre move the slopes at zero by some 1e-5.
+        assert row.epsilon_gamma == pytest.approx(expected, abs=1e-4)
+
+
+def test_the_configuration_is_one_that_build_accepts(run, folder):
+    content = run(noise=NOISE, faults=DRAW).configuration
+    loaded = config.load(content, folder=folder)
+    assert [sweep.file for sweep in loaded.sweep] == [
+        "sideslip.csv",
+        "camber.csv",
+        "forward.csv",
+        "backward.csv",
+    ]
+    assert loaded.sweep[3].direction == "backward"
+    assert loaded.rig.path_radius == 1.323
+
+
+def test_time_runs_on_from_sweep_to_sweep(run):
+    tables = run(conditions={"seconds_per_point": 60}).tables
+    t = np.concatenate([table["t_s"] for table in tables.values()])
+    np.testing.assert_allclose(np.diff(t), 60.0)
+
+
+def test_temperature_runs_from_the_first_to_the_last_point(run, content):
+    sweep = content["sweep"][0] | {"T_degC": [20, 50]}
+    table = run(sweep=[sweep], faults={"k_T_per_K": -0.01}).tables["sideslip.csv"]
+    cold = run(sweep=[content["sweep"][0]]).tables["sideslip.csv"]
+    assert (table["T_degC"].iloc[0], table["T_degC"].iloc[-1]) == (20.0, 50.0)
+    np.testing.assert_allclose(table["Fy_N"] / cold["Fy_N"], 1 - 0.01 * (table["T_degC"] - 25.0), atol=1e-3)

@@ -1,0 +1,87 @@
+"""rig.toml: what is refused, and in which words."""
+
+from __future__ import annotations
+
+import pytest
+
+from mffit.errors import InputError
+from mffit.virtual_rig import load_plan, simulate
+from mffit.virtual_rig.plan import angles
+
+TEXT = """\
+[truth]
+tyre = "true.tir"
+
+[tyre]
+name = "small"
+unloaded_radius = 0.2992
+nominal_load = 1400
+nominal_pressure = 250
+
+[rig]
+path_radius = 1.323
+
+[[sweep]]
+file = "sideslip.csv"
+load_N = 1400
+alpha_deg = [-2, 0, 2]
+"""
+
+
+@pytest.fixture
+def written(tmp_path):
+    def write(old: str = "", new: str = ""):
+        assert old in TEXT
+        path = tmp_path / "rig.toml"
+        path.write_text(TEXT.replace(old, new, 1))
+        return path
+
+    return write
+
+
+def test_a_range_includes_both_ends():
+    assert angles({"from": -1, "to": 1, "step": 0.5}) == (-1.0, -0.5, 0.0, 0.5, 1.0)
+    assert angles({"from": 2, "to": 0, "step": -1}) == (2.0, 1.0, 0.0)
+    assert angles(3) == (3.0,)
+
+
+def test_a_plan_is_read(written):
+    plan = load_plan(written())
+    assert plan.declared.rig.path_radius == 1.323
+    assert plan.pressure_kPa(plan.tables.sweep[0]) == 250.0
+    assert plan.phi_t_sign == -1
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "sentence"),
+    [
+        ("load_N = 1400\n", "", "rig.toml:13: sweep[1].load_N: is missing; add it"),
+        ("alpha_deg =", "alfa_deg =", 'sweep[1].alfa_deg: is unknown; did you mean "alpha_deg"?'),
+        ("unloaded_radius =", "unloded_radius =", 'tyre.unloded_radius: is unknown; did you mean "unloaded'),
+        ("path_radius = 1.323", "path_radius = 1323", "rig.toml:11: rig.path_radius: 1323 m is outside"),
+        ('"sideslip.csv"', '"../sideslip.csv"', "no plain file name"),
+        ("[-2, 0, 2]", "{ from = -2, to = 2, step = 0 }", "correct step"),
+        ("[-2, 0, 2]", "{ from = -2, to = 2, step = 0.3 }", "correct step"),
+        ("[-2, 0, 2]", "{ from = -2, to = 2 }", "needs from, to and step"),
+        ("[truth]", "[truth", "is not valid TOML"),
+        ("[-2, 0, 2]", '["a"]', "sweep[1].alpha_deg"),
+    ],
+)  # fmt: skip
+def test_a_mistake_is_named_with_its_place(written, old, new, sentence):
+    with pytest.raises(InputError) as caught:
+        load_plan(written(old, new))
+    assert sentence in str(caught.value)
+    assert "\n" not in str(caught.value)
+
+
+def test_a_flat_track_has_no_disc_to_turn(written):
+    path = written("path_radius = 1.323\n", 'type = "flat-track"\n[[rolling_radius]]\nload_N = 1400\n')
+    with pytest.raises(InputError, match="no disc to turn"):
+        load_plan(path)
+
+
+def test_a_flat_track_has_no_path_radius(content, folder, tmp_path):
+    content |= {"rig": {"type": "flat-track"}, "rolling_radius": [], "faults": {"path_radius_m": 1.3}}
+    with pytest.raises(InputError, match="no path radius"):
+        simulate(load_plan(content, folder=folder), tmp_path / "out")
+    assert not (tmp_path / "out").exists()

@@ -1,0 +1,108 @@
+"""Imports point where docs/architecture.md says they may."""
+
+from __future__ import annotations
+
+import ast
+import re
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+ROOT = Path(__file__).parents[1]
+ARCHITECTURE = "docs/architecture.md"
+
+
+def modules(package: str) -> list[Path]:
+    return sorted((ROOT / package).rglob("*.py"))
+
+
+def imports(path: Path) -> Iterator[tuple[int, str]]:
+    """Line and dotted name of everything a module imports, inside functions too."""
+    package = ".".join(path.relative_to(ROOT).parts[:-1])
+    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        if isinstance(node, ast.Import):
+            for alias in node.names:
+                yield node.lineno, alias.name
+        elif isinstance(node, ast.ImportFrom):
+            above = package.split(".")[: len(package.split(".")) - node.level + 1] if node.level else []
+            origin = ".".join([*above, *([node.module] if node.module else [])])
+            for alias in node.names:
+                yield node.lineno, f"{origin}.{alias.name}"
+
+
+def layers() -> list[str]:
+    """Folders and modules of mffit from the top of the list in docs/architecture.md downwards."""
+    text = (ROOT / ARCHITECTURE).read_text(encoding="utf-8")
+    block = re.search(r"^mffit/\n((?: .*\n)+)", text, re.MULTILINE)
+    assert block, f"{ARCHITECTURE} has no list of the folders of mffit/ any more; put it back"
+    return [re.split(r"[/.\s]", line.strip())[0] for line in block[1].splitlines()]
+
+
+def layer_of(dotted: str) -> str | None:
+    """The folder or module of mffit that a dotted name lies in; None outside mffit and for mffit itself."""
+    parts = dotted.split(".")
+    if parts[0] != "mffit" or len(parts) == 1:
+        return None
+    inside = ROOT / "mffit" / parts[1]
+    return parts[1] if inside.is_dir() or inside.with_suffix(".py").is_file() else None
+
+
+def place(path: Path, line: int) -> str:
+    return f"{path.relative_to(ROOT)}:{line}"
+
+
+def test_every_part_of_mffit_stands_in_the_list():
+    order = layers()
+    parts = {path.relative_to(ROOT / "mffit").parts[0].removesuffix(".py") for path in modules("mffit")}
+    missing = sorted(parts - set(order) - {"__init__"})
+    assert not missing, (
+        f"{ARCHITECTURE} does not say where {', '.join(missing)} belongs; add a line to its list"
+    )
+
+
+def test_mffit_imports_only_from_above():
+    order = layers()
+    wrong = []
+    for path in modules("mffit"):
+        own = path.relative_to(ROOT / "mffit").parts[0].removesuffix(".py")
+        if own not in order:
+            continue  # mffit/__init__.py gives out the public names and may import any of them
+        for line, name in imports(path):
+            other = layer_of(name)
+            if other in order and order.index(other) > order.index(own):
+                wrong.append(
+                    f"{place(path, line)}: {own} imports {name}, but {ARCHITECTURE} has {own} above {other}; "
+                    f"move the code, or the folder's place in the list"
+                )
+    assert not wrong, "\n".join(wrong)
+
+
+def test_tir_does_not_know_mffit():
+    wrong = [
+        f"{place(path, line)}: tir imports {name}; a simulation must be able to use tir alone"
+        for path in modules("tir")
+        for line, name in imports(path)
+        if name.split(".")[0] == "mffit"
+    ]
+    assert not wrong, "\n".join(wrong)
+
+
+def test_tir_needs_nothing_but_numpy():
+    allowed = {"tir", "numpy"} | set(sys.stdlib_module_names)
+    wrong = [
+        f"{place(path, line)}: tir imports {name}; it may use numpy and the standard library only"
+        for path in modules("tir")
+        for line, name in imports(path)
+        if name.split(".")[0] not in allowed
+    ]
+    assert not wrong, "\n".join(wrong)
+
+
+def test_only_the_report_draws():
+    wrong = [
+        f"{place(path, line)}: {name} is imported outside mffit/report; hand the numbers to a figure there"
+        for path in modules("mffit")
+        for line, name in imports(path)
+        if name.split(".")[0] == "matplotlib" and "report" not in path.parts
+    ]
+    assert not wrong, "\n".join(wrong)
