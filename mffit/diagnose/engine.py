@@ -1,0 +1,261 @@
+"""The diagnosis: gap, where, what, ties, correction, what remains."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import Any
+
+import numpy as np
+from scipy.stats import chi2 as chi2_distribution
+
+from mffit.diagnose.candidates import Hypothesis, Problem
+from mffit.diagnose.needs import missing
+from mffit.diagnose.noise import Noise, noise_model
+from mffit.diagnose.result import Diagnosis, Found
+from mffit.diagnose.selection import Step, projected_cosine, select
+from mffit.diagnose.state import State
+from mffit.diagnose.ties import separation
+from mffit.diagnose.unknown import Bump, BumpScan, bump_scan
+from mffit.diagnose.validate import gap, validate
+from mffit.diagnose.where import Region, where
+from mffit.effects import CATALOG, Effect
+from mffit.errors import InputError
+from mffit.points import Points
+from mffit.rig import RigFaults
+from tir import Tyre
+from tir.parameters import BY_NAME
+
+FEWEST_POINTS = 12
+MOST_POINTS = 1200
+"""Points beyond this are neighbours that say the same again; every k-th is used."""
+LACK_OF_FIT = 1.3
+"""chi2 per reading that no accepted explanation brings down: the misfit then counts as noise."""
+
+
+def diagnose(
+    points: Points,
+    tyre: Tyre,
+    config: Any,
+    *,
+    effects: Sequence[Effect] = CATALOG,
+    progress: Callable[[str], None] = lambda sentence: None,
+) -> Diagnosis:
+    """Find where a model disagrees with points, and the effects that explain it.
+
+    Parameters
+    ----------
+    points : raw points (n,), ISO-W
+    tyre : the model of the simulation
+    config : with ``model.turn_slip``, ``model.star``, ``model.u_coefficients`` and ``tyre.name``
+    effects : the library to choose from; add your own records to the catalogue's
+    progress : called with a sentence before each step
+
+    Returns
+    -------
+    Diagnosis
+
+    Raises
+    ------
+    InputError
+        If points and model cannot belong together, or are too few.
+    """
+    progress("comparing simulation and measurement")
+    points = thinned(points)
+    start = State(dict(tyre.values), RigFaults(), config.model.turn_slip, config.model.star)
+    refuse_strangers(points, tyre, start)
+    noise = noise_model(points, start, config.model.u_coefficients)
+    candidates, notes = possible(effects, points, start)
+    if len(np.unique(points.sweep)) < 2:
+        candidates = []
+        notes.append("One sweep cannot tell causes apart: add sweeps at another load, camber or direction.")
+    progress("trying every effect")
+    problem, scan, chosen, steps, bump = _explained(points, start, noise, candidates)
+    if candidates and steps and not (bump.found and not chosen.effects):
+        inflation = _lack_of_fit(problem, chosen)
+        if inflation > 1.0:
+            notes.append(
+                f"The model misses the points by more than their noise whatever is added; uncertainties were enlarged {inflation:.1f} "
+                "times so that effects are judged against the misfit that remains."
+            )
+            problem, scan, chosen, steps, bump = _explained(points, start, noise.inflated(inflation), candidates)
+    progress("checking on left-out sweeps")
+    return _record(problem, tyre, config, chosen, steps, bump, notes, noise)
+
+
+def _explained(points, start, noise, candidates) -> tuple[Problem, BumpScan, Hypothesis, list[Step], Bump]:
+    """Select effects while none of them is beaten by structure that no effect has."""
+    problem = Problem(points, start, noise)
+    scan = bump_scan(points, noise)
+
+    def accept(step: Step) -> bool:
+        return not (rival := scan.best(step.before)).found or step.gain > rival.gain - step.threshold
+
+    chosen, steps = select(problem, candidates, accept) if candidates else (problem.null, [])
+    return problem, scan, chosen, steps, scan.best(chosen)
+
+
+def thinned(points: Points) -> Points:
+    """At most some twelve hundred points, evenly from every sweep."""
+    step = int(np.ceil(len(points) / MOST_POINTS))
+    return points if step <= 1 else points.select(np.arange(0, len(points), step))
+
+
+def refuse_strangers(points: Points, tyre: Tyre, start: State) -> None:
+    """A model and data that cannot belong together end the diagnosis with the likely cause."""
+    if len(points) < FEWEST_POINTS:
+        raise InputError(f"{len(points)} points are too few for a diagnosis: measure at least {FEWEST_POINTS}")
+    ratio = float(np.median(points.Fz)) / float(tyre["FNOMIN"])
+    if not 0.1 < ratio < 10.0:
+        raise InputError(
+            f"the data's loads (median {np.median(points.Fz):.0f} N) and the model's FNOMIN {tyre['FNOMIN']:.0f} N are an order "
+            "apart: this model is of another tyre, or one of them is not in newtons"
+        )
+    simulated = start.predict(points)[: len(points)]
+    if np.std(simulated) > 0 and np.std(points.Fy) > 0:
+        agreement = float(np.corrcoef(simulated, points.Fy)[0, 1])
+        if agreement < -0.3:
+            raise InputError(
+                f"simulated and measured Fy run against each other (correlation {agreement:.2f}): data or model are in other "
+                "axes; check [rig] axes and the signs of PKY1 and PKY6"
+            )
+
+
+def possible(effects: Sequence[Effect], points: Points, start: State) -> tuple[list[Effect], list[str]]:
+    """Effects that the data can show, and a note on the others."""
+    out, lacking = [], {}
+    for effect in effects:
+        lack = missing(effect, points)
+        if effect.id == "turn-slip" and start.turn_slip:
+            continue
+        if lack:
+            lacking.setdefault(" and ".join(lack), []).append(effect.id)
+        else:
+            out.append(effect)
+    return out, [f"Not visible in these data, which lack {lack}: {', '.join(ids)}." for lack, ids in lacking.items()]
+
+
+def _lack_of_fit(problem: Problem, chosen: Hypothesis) -> float:
+    """Factor on all uncertainties that makes the remaining misfit noise, its correlation along sweeps counted."""
+    m = len(chosen.residual)
+    ratio = chosen.chi2 / m
+    if ratio < LACK_OF_FIT or len(chosen.effects) < 3:
+        return 1.0
+    residual = np.full(2 * len(problem.points), np.nan)
+    residual[problem.noise.used] = chosen.residual
+    n = len(problem.points)
+    products = [
+        r[1:] * r[:-1]
+        for k in np.unique(problem.points.sweep)
+        for r in (residual[:n][problem.points.sweep == k], residual[n:][problem.points.sweep == k])
+    ]
+    neighbours = float(np.clip(np.nanmean(np.concatenate(products)) / ratio, 0.0, 0.95))
+    return float(np.sqrt(ratio * (1.0 + neighbours) / (1.0 - neighbours)))
+
+
+def _record(problem: Problem, tyre: Tyre, config, chosen: Hypothesis, steps, bump: Bump, notes, noise: Noise) -> Diagnosis:
+    points = problem.points
+    before, after = problem.start.predict(points), chosen.state.predict(points)
+    residual_before, residual_after = problem.measured - before, problem.measured - after
+    found = tuple(_found(problem, chosen, steps, effect) for effect in chosen.effects)
+    remaining = where(points, residual_after, problem.noise)
+    p_value = float(chi2_distribution.sf(chosen.chi2, max(len(chosen.residual) - len(chosen.numbers), 1)))
+    unexplained = bump.found and (p_value < 0.05 or not chosen.effects)
+    weights = steps[-1].weights() if steps else {"none": 1.0}
+    name = f"{config.tyre.name}.tir"
+    return Diagnosis(
+        points=points,
+        noise=problem.noise,
+        before=before,
+        after=after,
+        gap_before=gap(residual_before, noise),
+        gap_after=gap(residual_after, noise),
+        validation=validate(problem, chosen),
+        where=where(points, residual_before, problem.noise),
+        effects=found,
+        alternatives=_alternatives(steps, chosen, weights),
+        steps=tuple(steps),
+        unexplained=unexplained,
+        unexplained_where=(_bump_region(bump), *remaining[:4]) if unexplained else (),
+        bump=bump if bump.found else None,
+        state=chosen.state,
+        tyre=_corrected(tyre, chosen),
+        turn_slip_before=problem.start.turn_slip,
+        headline=_headline(found, unexplained, bump, gap(residual_before, noise), gap(residual_after, noise), noise),
+        notes=tuple(notes),
+        model_after=name,
+    )
+
+
+def _found(problem: Problem, chosen: Hypothesis, steps: Sequence[Step], effect: Effect) -> Found:
+    """What is said of one accepted effect: judged beside all the others that were accepted."""
+    others = tuple(e for e in chosen.effects if e.id != effect.id)
+    step = next((s for s in steps if s.best.effects[-1].id == effect.id), steps[min(len(steps), len(chosen.effects)) - 1])
+    tied: list[Hypothesis] = []
+    ids = {e.id for e in chosen.effects}
+    names = {name for e in others for name in e.parameters}
+    for trial in step.trials:
+        rival = trial.effects[-1]
+        if rival.id in ids or step.best.log_evidence - trial.log_evidence > 40.0 and others == ():
+            continue
+        if step.best.log_evidence - trial.log_evidence > 0.5 * abs(step.gain) + 40.0:
+            continue
+        refitted = trial
+        if others:
+            refitted = problem.fit((*others, rival), {n: v for n, v in chosen.numbers.items() if n in names})
+        if chosen.log_evidence - refitted.log_evidence < 3.0:
+            tied.append(refitted)
+    logs = {effect.id: chosen.log_evidence} | {t.effects[-1].id: t.log_evidence for t in tied}
+    top = max(logs.values())
+    share = {name: float(np.exp(v - top)) for name, v in logs.items()}
+    certainty = 1.0 - step.weights().get("none", 0.0)
+    sentences = [separation(problem.points, chosen, t, problem.noise.Fy, problem.noise.Mz) for t in tied]
+    best = min(sentences, key=lambda s: s.chi2, default=None)
+    upto = chosen if not others else step.best
+    return Found(
+        effect=effect,
+        confidence=certainty * share[effect.id] / sum(share.values()),
+        parameters={n: (chosen.numbers[n], chosen.stderr.get(n, 0.0)) for n in effect.parameters},
+        gap_after=gap(problem.measured - upto.state.predict(problem.points), problem.noise),
+        tied_with=tuple(t.effects[-1].id for t in tied),
+        separate_by=best.sentence() if best else "",
+        cosines={t.effects[-1].id: projected_cosine(chosen, t) for t in tied},
+    )
+
+
+def _alternatives(steps: Sequence[Step], chosen: Hypothesis, weights) -> dict[str, float]:
+    accepted = {effect.id for effect in chosen.effects}
+    source = steps[0].weights() if chosen.effects and steps else weights
+    return {name: w for name, w in source.items() if name not in accepted and name != "none" and w > 1e-4}
+
+
+def _bump_region(bump: Bump) -> Region:
+    return Region(bump.channel, bump.region, bump.amplitude, float(np.sign(bump.amplitude) * np.sqrt(2.0 * max(bump.gain, 0.0))), 0)
+
+
+def _corrected(tyre: Tyre, chosen: Hypothesis) -> Tyre:
+    """The property file with the tyre effects as coefficients and their reason in the comments."""
+    changes, status = {}, {}
+    for effect in chosen.effects:
+        for name in effect.parameters:
+            if name in BY_NAME:
+                changes[name] = chosen.numbers[name]
+                error = chosen.stderr.get(name, 0.0)
+                status[name] = f"diagnosed, {effect.id}, was {float(tyre[name]):.6g}, +- {error:.2g}"
+    return tyre.replace(**changes).annotate(status=status) if changes else tyre
+
+
+def _headline(found: Sequence[Found], unexplained: bool, bump: Bump, before, after, noise: Noise) -> str:
+    numbers = f"side force misses by {before.Fy_rmse_N:.1f} N rms, the noise is {noise.Fy:.1f} N"
+    if not found and not unexplained:
+        return f"No effect is missing that these data could show: {numbers}."
+    place = "; ".join(f"{name} {low:.3g} to {high:.3g}" for name, (low, high) in bump.region.items())
+    if not found:
+        return (
+            f"There is structure that no effect of the library describes: {bump.channel} is off by {bump.amplitude:.3g} around {place}."
+        )
+    names = " and ".join(
+        f"{f.effect.name}" + (f" (or {' or '.join(f.tied_with)}, not separable here)" if f.tied_with else "") for f in found
+    )
+    sentence = f"The missing effect is {names}: with it the side force misses by {after.Fy_rmse_N:.1f} N rms instead of {before.Fy_rmse_N:.1f} N"
+    sentence += f" (noise {noise.Fy:.1f} N)"
+    return sentence + (f"; {bump.channel} stays unexplained around {place}." if unexplained else ".")

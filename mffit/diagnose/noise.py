@@ -1,0 +1,111 @@
+"""How uncertain every reading is, and how uncertain the given model is: the covariance that residuals are judged by."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass, replace
+
+import numpy as np
+from scipy.linalg import cholesky, solve_triangular
+
+from mffit.diagnose.state import State
+from mffit.errors import InputError
+from mffit.points import Points
+from tir.parameters import TABLE
+
+INEXACT = re.compile(r"^(P.Y\d+|Q.Z\d+)$")
+"""Coefficients that ``[model] u_coefficients`` speaks of."""
+
+
+@dataclass(frozen=True, slots=True)
+class Noise:
+    """Standard uncertainties and the whitening that goes with them."""
+
+    Fy: float  #: typical noise of Fy [N]
+    Mz: float  #: of Mz [Nm]; NaN if Mz was not measured
+    u: np.ndarray  #: (2n,) standard uncertainty of every reading; inf where missing
+    used: np.ndarray  #: (m,) indices of the readings that count
+    root: np.ndarray  #: (m, m) Cholesky factor of the covariance
+    source: str  #: where the uncertainties come from
+
+    def whiten(self, x: np.ndarray) -> np.ndarray:
+        """Readings' differences (2n,) or (2n, k) in units of their joint uncertainty: (m,) or (m, k)."""
+        return solve_triangular(self.root, x[self.used], lower=True, check_finite=False)
+
+    def subset(self, keep: np.ndarray) -> Noise:
+        """The noise of some points (mask (n,)), with the covariance among them."""
+        both = np.concatenate([keep, keep])
+        rows = np.flatnonzero(both[self.used])
+        new = np.cumsum(both) - 1
+        covariance = self.root[rows] @ self.root[rows].T
+        return replace(self, u=self.u[both], used=new[self.used[rows]], root=cholesky(covariance, lower=True))
+
+    def inflated(self, factor: float) -> Noise:
+        """The same with every uncertainty enlarged."""
+        return replace(self, u=factor * self.u, root=factor * self.root)
+
+
+def noise_model(points: Points, state: State, u_coefficients: float) -> Noise:
+    """Noise from the stated uncertainties, else from replicates and neighbours; plus the model's own inexactness.
+
+    Raises
+    ------
+    InputError
+        If all stated uncertainties are zero.
+    """
+    Fy, source_y = _channel(points, points.Fy, points.u_Fy, "u_Fy_N")
+    Mz, _ = _channel(points, points.Mz, points.u_Mz, "u_Mz_Nm")
+    u = np.concatenate([Fy, Mz])
+    used = np.flatnonzero(np.isfinite(u))
+    covariance = np.diag(u[used] ** 2)
+    if u_coefficients > 0.0:
+        J = coefficient_jacobian(points, state)[used]
+        covariance += u_coefficients**2 * (J @ J.T)
+    return Noise(
+        Fy=float(np.median(Fy[np.isfinite(Fy)])),
+        Mz=float(np.median(Mz[np.isfinite(Mz)])) if np.any(np.isfinite(Mz)) else float("nan"),
+        u=u,
+        used=used,
+        root=cholesky(covariance, lower=True),
+        source=source_y,
+    )
+
+
+def coefficient_jacobian(points: Points, state: State) -> np.ndarray:
+    """Change of the readings (2n, k) per relative change of each P.Y. and Q.Z. coefficient."""
+    columns = []
+    for row in TABLE:
+        value = state.values[row.name]
+        if INEXACT.match(row.name) and value:
+            step = 1e-4 * float(value)
+            up, down = (state.with_numbers({row.name: float(value) + s}).predict(points) for s in (step, -step))
+            columns.append((up - down) / 2e-4)
+    return np.nan_to_num(np.column_stack(columns))
+
+
+def _channel(points: Points, values: np.ndarray, stated: np.ndarray, column: str) -> tuple[np.ndarray, str]:
+    """Uncertainty (n,) of one channel; inf where it was not measured."""
+    measured = np.isfinite(values)
+    if not np.any(measured):
+        return np.full(len(points), np.inf), ""
+    known = measured & np.isfinite(stated)
+    if np.any(known) and np.all(stated[known] <= 0.0):
+        raise InputError(f"all {column} are zero; give real standard uncertainties, or leave the column out", column=column)
+    if np.all(known[measured]):
+        floor = 0.05 * np.median(stated[known][stated[known] > 0])
+        return np.where(measured, np.maximum(stated, floor), np.inf), "stated uncertainties"
+    guess = neighbour_noise(points, values)
+    u = np.where(known, stated, guess)
+    return np.where(measured, u, np.inf), "scatter between neighbouring points"
+
+
+def neighbour_noise(points: Points, values: np.ndarray) -> float:
+    """Robust noise of a channel from third differences along each sweep, which a smooth curve hardly has."""
+    out = []
+    for k in np.unique(points.sweep):
+        rows = np.flatnonzero((points.sweep == k) & np.isfinite(values))
+        if len(rows) >= 6:
+            out.append(np.diff(values[rows], 3) / np.sqrt(20.0))
+    if not out:
+        return max(0.01 * float(np.ptp(values[np.isfinite(values)])), 1e-9)
+    return max(1.4826 * float(np.median(np.abs(np.concatenate(out)))), 1e-9)

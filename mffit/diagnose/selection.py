@@ -1,0 +1,110 @@
+"""Which effects the data call for: forward steps, exchange and backward check, on evidence."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from mffit.diagnose.candidates import Hypothesis, Problem
+from mffit.effects import Effect
+
+MOST_EFFECTS = 4
+MARGIN = 4.0
+"""Log evidence an effect must bring beyond what picking the best of the whole list brings by chance."""
+TIE = 3.0
+"""Difference of log evidence below which two effects are not told apart."""
+
+
+@dataclass(frozen=True, slots=True)
+class Step:
+    """One forward step: how every candidate did beside the effects accepted before."""
+
+    before: Hypothesis
+    trials: tuple[Hypothesis, ...]  #: best first, each with one effect more than ``before``
+    threshold: float  #: gain of log evidence needed
+
+    @property
+    def best(self) -> Hypothesis:
+        return self.trials[0]
+
+    @property
+    def gain(self) -> float:
+        return self.best.log_evidence - self.before.log_evidence
+
+    @property
+    def passes(self) -> bool:
+        return self.gain > self.threshold
+
+    @property
+    def tied(self) -> tuple[Hypothesis, ...]:
+        """Other trials that the data do not tell from the best."""
+        near = [t for t in self.trials[1:] if self.best.log_evidence - t.log_evidence < TIE]
+        return tuple(t for t in near if t.log_evidence - self.before.log_evidence > self.threshold)
+
+    def weights(self) -> dict[str, float]:
+        """Posterior weight per effect id, "none" included; the prior of each effect is one over the number of effects."""
+        logs = {t.effects[-1].id: t.log_evidence + t.effects[-1].prior - math.log(len(self.trials)) for t in self.trials}
+        logs["none"] = self.before.log_evidence
+        top = max(logs.values())
+        total = sum(math.exp(v - top) for v in logs.values())
+        return {name: math.exp(v - top) / total for name, v in logs.items()}
+
+
+def forward_step(problem: Problem, before: Hypothesis, candidates: Sequence[Effect]) -> Step:
+    """Try every candidate beside the accepted effects, all numbers refitted."""
+    taken = {effect.id for effect in before.effects}
+    trials = [problem.fit((*before.effects, e), before.numbers) for e in candidates if e.id not in taken]
+    trials.sort(key=lambda t: -(t.log_evidence + t.effects[-1].prior))
+    return Step(before, tuple(trials), math.log(max(len(trials), 1)) + MARGIN)
+
+
+def select(problem: Problem, candidates: Sequence[Effect], accept: Callable[[Step], bool]) -> tuple[Hypothesis, list[Step]]:
+    """Forward steps until nothing passes ``accept``; after each, exchange and drop what became needless."""
+    current, steps = problem.null, []
+    while len(current.effects) < MOST_EFFECTS:
+        step = forward_step(problem, current, candidates)
+        steps.append(step)
+        if not step.passes or not accept(step):
+            break
+        current = _improved(problem, step.best, candidates)
+    return current, steps
+
+
+def _improved(problem: Problem, current: Hypothesis, candidates: Sequence[Effect]) -> Hypothesis:
+    """Exchange single effects while that helps, then drop those whose evidence is gone."""
+    for _ in range(MOST_EFFECTS):
+        best = current
+        for i in range(len(current.effects) - (len(current.effects) == 1)):
+            rest = tuple(e for k, e in enumerate(current.effects) if k != i)
+            for other in candidates:
+                if other.id in {e.id for e in current.effects}:
+                    continue
+                trial = problem.fit((*rest, other), _numbers_of(rest, current))
+                if trial.log_evidence > best.log_evidence + 1.0:
+                    best = trial
+        if best is current:
+            break
+        current = best
+    for effect in current.effects if len(current.effects) > 1 else ():
+        rest = tuple(e for e in current.effects if e.id != effect.id)
+        without = problem.fit(rest, _numbers_of(rest, current))
+        if current.log_evidence - without.log_evidence < math.log(len(candidates)) + MARGIN:
+            current = without
+            break
+    return current
+
+
+def _numbers_of(effects: Sequence[Effect], hypothesis: Hypothesis) -> dict[str, float]:
+    names = {name for effect in effects for name in effect.parameters}
+    return {name: value for name, value in hypothesis.numbers.items() if name in names}
+
+
+def projected_cosine(a: Hypothesis, b: Hypothesis) -> float:
+    """|cos| between what two hypotheses change in the whitened readings, relative to their common start."""
+    if not a.jacobian.shape[1] or not b.jacobian.shape[1]:
+        return float("nan")
+    u, v = a.jacobian[:, -1], b.jacobian[:, -1]
+    return float(abs(u @ v) / max(np.linalg.norm(u) * np.linalg.norm(v), 1e-300))

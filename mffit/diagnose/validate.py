@@ -1,0 +1,73 @@
+"""Does the gap shrink where the effect was not fitted? Whole sweeps are left out, never single points."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from mffit.diagnose.candidates import Hypothesis, Problem
+from mffit.diagnose.noise import Noise
+
+MOST_FOLDS = 8
+
+
+@dataclass(frozen=True, slots=True)
+class Gap:
+    """Measured minus simulated, in one number per channel."""
+
+    Fy_rmse_N: float
+    Mz_rmse_Nm: float
+    chi2_per_dof: float
+
+    def to_json(self) -> dict:
+        return {"Fy_rmse_N": self.Fy_rmse_N, "Mz_rmse_Nm": self.Mz_rmse_Nm, "chi2_per_dof": self.chi2_per_dof}
+
+
+@dataclass(frozen=True, slots=True)
+class Validation:
+    """The gap on held-out conditions."""
+
+    method: str
+    gap_before: Gap
+    gap_after: Gap
+    held_out: np.ndarray  #: (2n,) residual of every reading, predicted without its own sweep
+
+    @property
+    def confirms(self) -> bool:
+        """Whether the held-out chi2 fell."""
+        return self.gap_after.chi2_per_dof < self.gap_before.chi2_per_dof
+
+
+def gap(residual: np.ndarray, noise: Noise) -> Gap:
+    """Gap of residuals (2n,), Fy then Mz."""
+    n = len(residual) // 2
+    white = noise.whiten(np.nan_to_num(residual))
+    return Gap(_rms(residual[:n]), _rms(residual[n:]), float(white @ white) / max(len(white), 1))
+
+
+def validate(problem: Problem, hypothesis: Hypothesis) -> Validation:
+    """Refit the hypothesis without each group of sweeps and predict that group."""
+    points = problem.points
+    before = problem.measured - problem.start.predict(points)
+    held_out = before.copy()
+    sweeps = np.unique(points.sweep)
+    folds = np.array_split(sweeps, min(MOST_FOLDS, len(sweeps)))
+    n = len(points)
+    for fold in folds:
+        out = np.isin(points.sweep, fold)
+        if hypothesis.effects and 0 < out.sum() < n:
+            rest = Problem(points.select(~out), problem.start, problem.noise.subset(~out))
+            fitted = rest.fit(hypothesis.effects, hypothesis.numbers)
+            chosen = points.select(out)
+            predicted = fitted.state.predict(chosen)
+            rows = np.flatnonzero(out)
+            held_out[rows] = points.Fy[out] - predicted[: out.sum()]
+            held_out[rows + n] = points.Mz[out] - predicted[out.sum() :]
+    method = f"{len(folds)} groups of whole sweeps left out in turn"
+    return Validation(method, gap(before, problem.noise), gap(held_out, problem.noise), held_out)
+
+
+def _rms(x: np.ndarray) -> float:
+    x = x[np.isfinite(x)]
+    return float(np.sqrt(np.mean(x**2))) if len(x) else float("nan")

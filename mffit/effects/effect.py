@@ -1,0 +1,42 @@
+"""The contract of an effect: one small declarative object, no code of its own."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True, slots=True)
+class Free:
+    """One number that an effect sets free.
+
+    ``spread`` is how large the effect usually is, 1 sigma around the current model: it scales the evidence, not the fit's
+    answer. ``scan`` are changes to start from; an effect that is even in its number has no slope at zero and needs them
+    finite.
+    """
+
+    name: str  #: coefficient of the file, field of RigFaults, or "turn_slip"
+    spread: float
+    scan: tuple[float, ...] = (0.0,)
+    lower: float = float("-inf")  #: of the number itself, not of its change
+    upper: float = float("inf")
+    relative: bool = False  #: spread and scan are relative to the current value
+
+
+@dataclass(frozen=True, slots=True)
+class Effect:
+    """A physical cause that can make simulation and measurement disagree."""
+
+    id: str
+    name: str
+    kind: str  #: "tyre" | "rig" | "environment"
+    physics: str  #: one sentence
+    free: tuple[Free, ...]
+    needs: tuple[str, ...] = ()  #: what the data must vary for the effect to be seen; see diagnose.needs
+    parity: str = ""  #: under alpha, gamma, phi_t -> reversed
+    confusable_with: tuple[str, ...] = ()
+    prior: float = 0.0  #: log prior weight, decides ties only: rig causes before tyre causes
+    also: tuple[str, ...] = ()  #: what else to do about it
+
+    @property
+    def parameters(self) -> tuple[str, ...]:
+        return tuple(free.name for free in self.free)

@@ -1,0 +1,51 @@
+"""Effects of the rig: each becomes a correction of the readings."""
+
+from __future__ import annotations
+
+from mffit.effects.effect import Effect, Free
+
+SIDESLIP_MISALIGNMENT = Effect(
+    "sideslip-misalignment", "sideslip axis misaligned", "rig",
+    "The steering axis reads zero while the wheel runs at a small sideslip angle.",
+    (Free("alpha_0_deg", 0.2, (0.0,), -5.0, 5.0),), (), "even in alpha; force turns with the direction of rolling", ("ply-steer",),
+)  # fmt: skip
+CAMBER_MISALIGNMENT = Effect(
+    "camber-misalignment", "camber axis misaligned", "rig",
+    "The camber axis reads zero while the wheel leans a little.",
+    (Free("gamma_0_deg", 0.4, (0.0,), -5.0, 5.0),), (), "even in gamma", ("camber-reduction", "path-radius"),
+)  # fmt: skip
+LOADCELL_OFFSET_FY = Effect(
+    "loadcell-offset-fy", "load-cell zero of Fy", "rig",
+    "The side-force load cell was zeroed while the tyre was still deformed.",
+    (Free("F0_N", 10.0, (0.0,), -1e3, 1e3),), (), "even, the same at every load", ("conicity", "crosstalk-fz-fy"),
+)  # fmt: skip
+LOADCELL_OFFSET_MZ = Effect(
+    "loadcell-offset-mz", "load-cell zero of Mz", "rig",
+    "The moment load cell was zeroed while the tyre was still twisted.",
+    (Free("M0_Nm", 1.0, (0.0,), -1e2, 1e2),), ("moment",), "even, the same at every load", ("residual-torque",),
+)  # fmt: skip
+LOADCELL_GAIN = Effect(
+    "loadcell-gain", "calibration of Fy", "rig",
+    "The side-force channel reads a few per cent too much or too little.",
+    (Free("gain", 0.02, (0.0,), 0.5, 2.0),), (), "as Fy",
+)  # fmt: skip
+CROSSTALK_FZ_FY = Effect(
+    "crosstalk-fz-fy", "crosstalk of Fz into Fy", "rig",
+    "Part of the vertical load appears in the side-force channel.",
+    (Free("crosstalk", 0.01, (0.0,), -0.3, 0.3),), ("loads",), "even, proportional to load", ("conicity", "loadcell-offset-fy"),
+)  # fmt: skip
+BACKLASH = Effect(
+    "backlash", "backlash of the sideslip axis", "rig",
+    "The moment on the wheel takes up the play of the steering, so the angle is off by half the play against the moment.",
+    (Free("backlash_deg", 0.2, (0.05, 0.15, 0.3), 0.0, 3.0),), ("moment",), "partly odd",
+)  # fmt: skip
+PATH_RADIUS = Effect(
+    "path-radius", "path radius", "rig",
+    "The contact point runs on another radius than declared.",
+    (Free("path_radius_m", 0.03, (0.0,), 0.1, 100.0, relative=True),), ("curved",), "as turn slip", ("camber-reduction",),
+)  # fmt: skip
+
+RIG_EFFECTS = (
+    SIDESLIP_MISALIGNMENT, CAMBER_MISALIGNMENT, LOADCELL_OFFSET_FY, LOADCELL_OFFSET_MZ, LOADCELL_GAIN, CROSSTALK_FZ_FY,
+    BACKLASH, PATH_RADIUS,
+)  # fmt: skip
