@@ -5,12 +5,8 @@ from __future__ import annotations
 import hashlib
 import json
 import math
-import os
-import shutil
-import tempfile
 import time
-from collections.abc import Callable, Iterator, Mapping
-from contextlib import contextmanager
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -26,9 +22,13 @@ from mffit import measured as direct
 from mffit import parts as decomposition
 from mffit import points as ingestion
 from mffit.config import Config
+from mffit.diagnose import Diagnosis, corrected_points
+from mffit.diagnose import diagnose as find_effects
+from mffit.effects import CATALOG, Effect
 from mffit.errors import InputError
 from mffit.fit import FitResult
 from mffit.measured import Alignment, Measured
+from mffit.output import output_folder
 from mffit.parts import Parts
 from mffit.points import Points
 from tir import Tyre
@@ -98,7 +98,7 @@ def build(config: Config | Mapping[str, Any] | str | Path, out: str | Path | Non
     )
     result = Result(
         config=config,
-        points=corrected,
+        points=fitted.points,
         parts=parts,
         measured=measured,
         fit=fitted,
@@ -125,14 +125,89 @@ def spin(config: Config | Mapping[str, Any] | str | Path, out: str | Path | None
     return measured
 
 
+def diagnose(
+    config: Config | Mapping[str, Any] | str | Path,
+    model: Tyre | str | Path | None = None,
+    *,
+    out: str | Path | None = None,
+    effects: Sequence[Effect] = CATALOG,
+    progress: Progress = silent,
+) -> Diagnosis:
+    """Find where a simulation's model and the measurement disagree, and what explains it.
+
+    Parameters
+    ----------
+    config : path of a ``tyre.toml``, its content, or a loaded Config
+    model : the model that the simulation uses; default the last build's file, else one fitted now
+    out : folder to write to; nothing is written if None
+    effects : the library of effects, to which records of your own may be added
+    progress : called with a sentence before each step
+
+    Returns
+    -------
+    Diagnosis
+        With the direct method redone where a rig effect was found.
+    """
+    config = configuration.load(config)
+    progress("reading sweeps")
+    points, _ = ingestion.load(config, check_physics=False)
+    base = read_base(config)
+    tyre = _model(config, model, progress)
+    diagnosis = find_effects(points, tyre, config, effects=effects, progress=progress)
+    if any(found.effect.kind == "rig" for found in diagnosis.effects):
+        diagnosis = replace(diagnosis, notes=(*diagnosis.notes, _redone(config, points, diagnosis, base)))
+    if out is not None:
+        write_diagnosis(diagnosis, Path(out))
+    return diagnosis
+
+
+def _model(config: Config, model: Tyre | str | Path | None, progress: Progress) -> Tyre:
+    """The simulation's model: as given, else the last build's, else fitted now."""
+    if isinstance(model, Tyre):
+        return model
+    if model is not None:
+        return tir.read(model)
+    last = config.folder / "out" / f"{config.tyre.name}.tir"
+    if last.is_file():
+        return tir.read(last)
+    exact = config.spin.model_copy(update={"exact": "turn-slip" if config.model.turn_slip else "normal"})
+    return build(config.model_copy(update={"spin": exact}), progress=progress).tyre
+
+
+def _redone(config: Config, points: Points, diagnosis: Diagnosis, base: Tyre | None) -> str:
+    """The direct method with the rig's faults taken off, in one sentence."""
+    names = " and ".join(f.effect.name for f in diagnosis.effects if f.effect.kind == "rig")
+    play = diagnosis.faults.backlash_deg
+    mended = config.model_copy(update={"rig": config.rig.model_copy(update={"backlash_deg": play})})
+    without = corrected_points(points, replace(diagnosis.faults, backlash_deg=0.0))
+    results = []
+    for settings, chosen in ((config, points), (mended, without)):
+        try:
+            found = direct.measure(settings, chosen, decomposition.split(chosen), base).epsilon_gamma
+        except InputError:
+            found = None
+        results.append("not measurable" if found is None else f"{found.value:.2f} +- {found.u:.2f}")
+    return f"eps_gamma was {results[0]} with {names}; corrected it is {results[1]} (k = 1)."
+
+
+def write_diagnosis(diagnosis: Diagnosis, out: Path) -> None:
+    """Write every output of a diagnosis, or nothing."""
+    from mffit import report
+
+    with output_folder(out) as folder:
+        diagnosis.tyre.write(folder / diagnosis.model_after)
+        _write_json(folder / "diagnosis.json", diagnosis.to_json())
+        report.write_diagnosis(diagnosis, folder)
+
+
 def measure(config: Config, points: Points, base: Tyre | None) -> tuple[Points, Parts, Measured]:
-    """Correct the points for what the rig is known to do, split them and measure directly."""
-    corrected = direct.backlash_corrected(points, config)
-    parts = decomposition.split(corrected)
+    """Split the points, measure directly, and take a misalignment beyond the rig's tolerance off the angles."""
+    parts = decomposition.split(points)
     measured = direct.measure(config, points, parts, base)
+    parts = replace(parts, alpha_odd=direct.odd_alpha(points, parts, config))
     if measured.misaligned:
-        corrected = corrected.replace(alpha=corrected.alpha + measured.alpha_M.value)
-    return corrected, parts, measured
+        points = points.replace(alpha=points.alpha + measured.alpha_M.value)
+    return points, parts, measured
 
 
 def read_base(config: Config) -> Tyre | None:
@@ -187,32 +262,6 @@ def points_table(result: Result):
     table["Fy_model_N"], table["Mz_model_Nm"] = fit.Fy_model * signs["Fy"], fit.Mz_model * signs["Mz"]
     table["paired"] = parts.paired
     return table
-
-
-@contextmanager
-def output_folder(out: Path) -> Iterator[Path]:
-    """A temporary folder beside ``out`` whose files replace those of ``out`` only if the block succeeds.
-
-    Files of ``out`` that this run does not write stay. An interrupted or failing run leaves ``out`` as it was.
-    """
-    if out.exists() and not out.is_dir():
-        raise InputError(f"{out} is a file, and the output needs a folder: name another with --out")
-    parent = out.absolute().parent
-    try:
-        parent.mkdir(parents=True, exist_ok=True)
-        temporary = Path(tempfile.mkdtemp(prefix=f".{out.name}-", dir=parent))
-    except OSError as error:
-        raise InputError(f"cannot write to {parent} ({error.strerror}): name another folder with --out") from error
-    try:
-        yield temporary
-        out.mkdir(exist_ok=True)
-        for path in sorted(temporary.iterdir()):
-            target = out / path.name
-            if target.is_dir() and path.is_dir():
-                shutil.rmtree(target)
-            os.replace(path, target)
-    finally:
-        shutil.rmtree(temporary, ignore_errors=True)
 
 
 def _write_json(path: Path, content: Mapping[str, Any]) -> None:

@@ -44,9 +44,9 @@ def diagnose(
 
     Parameters
     ----------
-    points : raw points (n,), ISO-W
+    points : raw points (n,), ISO-W, angles as read
     tyre : the model of the simulation
-    config : with ``model.turn_slip``, ``model.star``, ``model.u_coefficients`` and ``tyre.name``
+    config : its tables ``model``, ``rig.backlash_deg`` and ``tyre.name`` are used
     effects : the library to choose from; add your own records to the catalogue's
     progress : called with a sentence before each step
 
@@ -61,7 +61,8 @@ def diagnose(
     """
     progress("comparing simulation and measurement")
     points = thinned(points)
-    start = State(dict(tyre.values), RigFaults(), config.model.turn_slip, config.model.star)
+    declared = RigFaults(backlash_deg=config.rig.backlash_deg)
+    start = State(dict(tyre.values), declared, config.model.turn_slip, config.model.star)
     refuse_strangers(points, tyre, start)
     noise = noise_model(points, start, config.model.u_coefficients)
     candidates, notes = possible(effects, points, start)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import math
 import time
 from collections.abc import Mapping
 from types import SimpleNamespace
@@ -22,6 +23,7 @@ from mffit.fit.staged import Fitted, Progress, fit_staged
 from mffit.fit.stages import ODD_TERMS
 from mffit.fit.start import base_values, starting_values
 from mffit.fit.virtual_zero import epsilon_gamma_of_model, zero_points
+from mffit.measured import backlash_corrected
 from mffit.parts import Parts
 from mffit.points import Points
 from mffit.rig import readings
@@ -48,7 +50,7 @@ def fit(
     Parameters
     ----------
     config : the validated ``tyre.toml``
-    points : raw points, corrected for what the rig is known to do (backlash, misalignment)
+    points : raw points, sideslip misalignment taken off; backlash is taken off here
     parts : their odd and even parts
     measured : the direct method's result; ``epsilon_gamma`` None on a flat track
     base : coefficients that are not fitted come from here
@@ -85,13 +87,15 @@ def fit(
         explanations.append(
             "This file is the fitted model itself: use it in simulations with turn slip on (USE_MODE with units digit 5)."
         )
-    Fy, Mz = problem.model(fitted.values)
+    points = fitted.points
+    Fy, Mz = dataclasses.replace(problem, points=points).model(fitted.values)
     return FitResult(
         tyre=_tyre(turn_slip, coefficients, base),
         written=_tyre(written_values, written_coefficients, base),
         coefficients=written_coefficients,
         channels={"Fy": agreement(Fy, points.Fy), "Mz": agreement(Mz, points.Mz)},
         odd=_odd_agreement(written_values, points, parts),
+        points=points,
         Fy_model=Fy,
         Mz_model=Mz,
         stages=fitted.stages,
@@ -133,7 +137,9 @@ def _problem(config, points: Points, values, measured) -> tuple[Problem, bool]:
         load = measured.F_phit_load
         tie = (zero_points(points, load), float(measured.F_phit.value), TIE_WEIGHT)
     problem = Problem(
-        points=points,
+        points=backlash_corrected(points, config),
+        play=math.radians(config.rig.backlash_deg),
+        alpha_read=points.alpha,
         fixed=values,
         sigma_Fy=weights.stated_or_nominal(points.u_Fy, points.Fy),
         sigma_Mz=weights.stated_or_nominal(points.u_Mz, points.Mz),
@@ -237,7 +243,9 @@ def status_comment(coefficient: Coefficient) -> str:
 
 def _odd_agreement(values, points: Points, parts: Parts) -> dict[str, Agreement]:
     """The written file against the odd part, turn slip off, without the odd shift terms that the split removes."""
-    straight = points.replace(phi_t=np.zeros(len(points)), direction=np.ones_like(points.direction))
+    straight = points.replace(
+        alpha=parts.alpha_odd, phi_t=np.zeros(len(points)), direction=np.ones_like(points.direction)
+    )
     symmetric = {**values, **dict.fromkeys(("PHY1", "PHY2", "PVY1", "PVY2", "PEY3", "QHZ1", "QHZ2", "QDZ6", "QDZ7", "QEZ4"), 0.0)}
     model = readings(SimpleNamespace(**symmetric), straight, turn_slip=False)
     used = (parts.paired != "unpaired") & (points.direction > 0)

@@ -58,7 +58,7 @@ def derive_normal(
 
     force = [name for name in CAMBER_FORCE if name in free]
     used = (parts.paired != "unpaired") & (points.direction > 0)
-    odd = straight.replace(Fy=np.where(used, parts.Fy_odd, np.nan), Mz=np.full(len(points), np.nan))
+    odd = straight.replace(alpha=parts.alpha_odd, Fy=np.where(used, parts.Fy_odd, np.nan), Mz=np.full(len(points), np.nan))
     fitted_force, errors_force = _refit(odd, symmetric, force, envelope, points.u_Fy)
 
     fitted = {**start, **fitted_force}

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -28,6 +28,8 @@ class Problem:
     envelope: Envelope | None = None
     turn_slip: bool = True
     tie: tuple[Points, float, float] | None = None  #: (points, side force, weight) whose mean the model must give
+    play: float = 0.0  #: backlash of the sideslip axis [rad]
+    alpha_read: np.ndarray | None = None  #: (n,) sideslip as read, before the play was taken up [rad]
 
     def parameters(self, free: Mapping[str, float]) -> SimpleNamespace:
         """All parameters with the free values in place."""
@@ -36,6 +38,17 @@ class Problem:
     def model(self, free: Mapping[str, float]):
         """Readings (Fy [N], Mz [Nm]) of the model at the points."""
         return readings(self.parameters(free), self.points, turn_slip=self.turn_slip)
+
+    def settled(self, free: Mapping[str, float]) -> Problem:
+        """The same with the play taken up as the model's moment says, which has no noise."""
+        if not self.play or self.alpha_read is None:
+            return self
+        at_reading = readings(
+            self.parameters(free), self.points.replace(alpha=self.alpha_read), turn_slip=self.turn_slip
+        )
+        return replace(
+            self, points=self.points.replace(alpha=self.alpha_read - 0.5 * self.play * np.sign(at_reading.Mz))
+        )
 
     def data_residual(self, free: Mapping[str, float]) -> np.ndarray:
         """(model - measured) / sigma for Fy and then Mz, shape (2n,); 0 where a channel is not used."""

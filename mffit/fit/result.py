@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from mffit.fit.coverage import StageCoverage
+from mffit.points import Points
 from tir import Tyre
 
 
@@ -57,6 +58,7 @@ class FitResult:
     coefficients: Mapping[str, Coefficient]
     channels: Mapping[str, Agreement]  #: of ``tyre`` on the raw points, turn slip on
     odd: Mapping[str, Agreement]  #: of ``written`` on the odd part, turn slip off
+    points: Points  #: raw points with the angles that the wheel had
     Fy_model: np.ndarray  #: (n,) [N]
     Mz_model: np.ndarray  #: (n,) [Nm]
     stages: tuple[StageRecord, ...]

@@ -40,6 +40,7 @@ class Fitted:
     unmoved: frozenset[str]  #: freed, but the data did not move them: back at their start and held
     stages: tuple[StageRecord, ...]
     scale: tuple[float, float]  #: misfit over stated uncertainty, Fy and Mz
+    points: Points  #: with the angles that the wheel had, as far as the model knows them
 
 
 def fit_staged(problem: Problem, start: Mapping[str, float], cover: tuple[StageCoverage, ...], progress: Progress, extra: tuple[str, ...] = ()) -> Fitted:
@@ -70,7 +71,8 @@ def fit_staged(problem: Problem, start: Mapping[str, float], cover: tuple[StageC
     base.update({name: start[name] for name in extra})
     fitted = _polish(problem, values, base)
     names = tuple(fitted.values)
-    records.append(_record(problem, "polish", "Joint polish", names, fitted.values))
+    polished = dataclasses.replace(problem, points=fitted.points)
+    records.append(_record(polished, "polish", "Joint polish", names, fitted.values))
     return dataclasses.replace(fitted, stages=tuple(records))
 
 
@@ -107,10 +109,11 @@ def _used_by(stage: Stage, problem: Problem) -> np.ndarray:
 
 def _polish(problem: Problem, values: dict[str, float], base: dict[str, float]) -> Fitted:
     """All free coefficients together: balance the channels, discount outliers, release what the data identify."""
-    problem, scale = _reweighted(problem, values)
+    stated = problem
+    problem, scale = _reweighted(stated.settled(values), values)
     ties = _ties(problem.points, values, base)
     solution = _solve(problem, values, ties, tolerance=1e-5)
-    problem, scale = _reweighted(problem, solution.values, scale)
+    problem, scale = _reweighted(stated.settled(solution.values), solution.values)
     tied = {name for name in ties if name in IF_IDENTIFIED}
     released = frozenset(tied & _identified(problem, solution))
     conicity = {name for name in ties if name in CONICITY_ON_A_DISC and np.any(problem.points.phi_t)}
@@ -131,6 +134,7 @@ def _polish(problem: Problem, values: dict[str, float], base: dict[str, float]) 
         unmoved=frozenset(unmoved),
         stages=(),
         scale=scale,
+        points=problem.points,
     )
 
 
@@ -139,15 +143,15 @@ def _solve(problem: Problem, values, ties, tolerance) -> Solution:
     return solve(problem.residual, values, _bounds(values), tolerance=tolerance)
 
 
-def _reweighted(problem: Problem, values, before=(1.0, 1.0)) -> tuple[Problem, tuple[float, float]]:
+def _reweighted(problem: Problem, values) -> tuple[Problem, tuple[float, float]]:
     """Weights from the misfit itself: a model that misses by more than the noise must not let one channel rule."""
     residual = problem.data_residual(values)
     n = len(problem.points)
     out, scales = [], []
-    for part, sigma, old in ((residual[:n], problem.sigma_Fy, before[0]), (residual[n:], problem.sigma_Mz, before[1])):
-        scale = max(weights.robust_scale(part) * old, 1.0) / old
+    for part, sigma in ((residual[:n], problem.sigma_Fy), (residual[n:], problem.sigma_Mz)):
+        scale = max(weights.robust_scale(part), 1.0)
         out.append(sigma * scale * weights.huber(part, scale))
-        scales.append(scale * old)
+        scales.append(scale)
     return dataclasses.replace(problem, sigma_Fy=out[0], sigma_Mz=out[1]), (scales[0], scales[1])
 
 

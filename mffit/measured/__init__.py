@@ -1,7 +1,7 @@
 """Numbers read straight off the data, with budgets: alignment, radii, stiffnesses, turn-slip force, eps_gamma."""
 
 from mffit.measured.alignment import Alignment, AlignmentStep, align
-from mffit.measured.backlash import backlash_corrected
+from mffit.measured.backlash import backlash_corrected, odd_alpha
 from mffit.measured.camber_reduction import DirectInputs, TurnSlip, direct_method
 from mffit.measured.direct import measure
 from mffit.measured.result import Contribution, LoadResult, Measured
@@ -18,4 +18,5 @@ __all__ = [
     "backlash_corrected",
     "direct_method",
     "measure",
+    "odd_alpha",
 ]

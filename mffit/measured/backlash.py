@@ -3,19 +3,53 @@
 from __future__ import annotations
 
 import numpy as np
+from scipy.special import ndtr
 
 from mffit.config import Config
+from mffit.parts import Parts
 from mffit.points import Points
+
+TYPICAL_STIFFNESS = 10.0
+"""Cornering stiffness over load [1/rad] that turns the doubt about an angle into one about the force."""
+TYPICAL_MOMENT_NOISE = 0.6  # Nm
+
+
+def backlash_shift(Mz: np.ndarray, u_Mz: np.ndarray, play: float) -> tuple[np.ndarray, np.ndarray]:
+    """Sideslip that the play adds to the reading, ISO-W: -(play/2) sign(Mz), and its standard uncertainty [rad].
+
+    Where the moment is no larger than its noise its sign is in doubt: the shift is then the expectation over both signs.
+    """
+    noise = np.where(np.isfinite(u_Mz) & (u_Mz > 0), u_Mz, TYPICAL_MOMENT_NOISE)
+    positive = ndtr(Mz / noise)
+    return -0.5 * play * (2.0 * positive - 1.0), play * np.sqrt(positive * (1.0 - positive))
 
 
 def backlash_corrected(points: Points, config: Config) -> Points:
-    """The points with the sideslip angle that the wheel really had: reading - (play/2) sign(Mz), ISO-W.
+    """The points with the sideslip angle that the wheel really had, and the doubt about it in u_Fy.
 
     Points without Mz take the sign of the moment that the path curvature causes at zero slip.
     """
     play = np.radians(config.rig.backlash_deg)
     if play == 0.0:
         return points
-    assumed = np.where(points.direction > 0, np.sign(points.phi_t), -np.sign(points.phi_t))
-    moment = np.where(np.isfinite(points.Mz), np.sign(np.nan_to_num(points.Mz)), assumed)
-    return points.replace(alpha=points.alpha - 0.5 * play * moment)
+    assumed = 1e3 * np.sign(points.phi_t) * points.direction
+    shift, u = backlash_shift(np.where(np.isfinite(points.Mz), points.Mz, assumed), points.u_Mz, play)
+    return points.replace(
+        alpha=points.alpha + shift, u_Fy=np.hypot(points.u_Fy, TYPICAL_STIFFNESS * points.Fz * u)
+    )
+
+
+def odd_alpha(points: Points, parts: Parts, config: Config) -> np.ndarray:
+    """Sideslip (n,) to which the odd part of every point belongs: half the difference of the true angles of the pair.
+
+    Parameters
+    ----------
+    points : with the angles as read
+    parts : their decomposition, by reading
+    """
+    play = np.radians(config.rig.backlash_deg)
+    if play == 0.0:
+        return points.alpha
+    own, _ = backlash_shift(points.Mz, points.u_Mz, play)
+    mirror, _ = backlash_shift(points.Mz - 2.0 * parts.Mz_odd, points.u_Mz, play)
+    return points.alpha + np.nan_to_num(own - mirror) / 2.0

@@ -12,6 +12,7 @@ from uncertainties import UFloat
 from mffit.config import Config
 from mffit.errors import InputError
 from mffit.measured import camber_reduction as method
+from mffit.measured.backlash import backlash_corrected, odd_alpha
 from mffit.measured.groups import STRAIGHT, UPRIGHT, LoadGroup, load_groups, zeros
 from mffit.measured.loads import load_dependence
 from mffit.measured.radii import effective_radius_at, measured_effective_radius, measured_path_radius
@@ -63,7 +64,7 @@ def measure(config: Config, points: Points, parts: Parts, base: Tyre | None = No
     Parameters
     ----------
     config : the rig, its uncertainties and the method for C_gamma
-    points : with the backlash already taken off the angles
+    points : with the angles as read
     parts : their odd and even parts
     base : gives the shape of Re over load where r_e was not measured
 
@@ -79,12 +80,14 @@ def measure(config: Config, points: Points, parts: Parts, base: Tyre | None = No
     """
     disc = config.rig.type == "rotating-disk"
     warnings: list[str] = list(parts.unpaired)
+    slip = odd_alpha(points, parts, config)
+    points = backlash_corrected(points, config)
     R = measured_path_radius(config)
     radii = measured_effective_radius(config, R)
     rig = _rig(config, R) if disc else None
     rows = []
     for group in load_groups(points):
-        found = _at_load(config, points, parts, group, rig, effective_radius_at(group.load, radii, base), warnings)
+        found = _at_load(config, points, parts, slip, group, rig, effective_radius_at(group.load, radii, base), warnings)
         if found is not None:
             rows.append(found)
     measured_loads = {load: float(r.nominal_value) for load, r in radii.items()}
@@ -103,19 +106,21 @@ def _rig(config: Config, R: UFloat) -> method.RigErrors:
     )
 
 
-def _at_load(config, points, parts, group: LoadGroup, rig, r_e, warnings) -> AtLoad | None:
+def _at_load(config, points, parts, odd_slip, group: LoadGroup, rig, r_e, warnings) -> AtLoad | None:
     u_Fy = np.where(np.isfinite(parts.u_Fy_odd), parts.u_Fy_odd, DEFAULT_U_FORCE / math.sqrt(2.0))
     u_Mz = np.where(np.isfinite(parts.u_Mz_odd), parts.u_Mz_odd, DEFAULT_U_MOMENT / math.sqrt(2.0))
     odd_Fy, odd_Mz = (parts.Fy_odd, parts.Mz_odd) if rig else _raw_odd(points)
     camber = _sweep(points, odd_Fy, group, "gamma")
     slip = _sweep(points, odd_Fy, group, "alpha")
     angle = math.radians(config.camber_stiffness.angle_deg)
+    C_alpha = Stiffness(*_estimates(odd_slip, odd_Fy, u_Fy, slip, CUBIC_SLIP, CUBIC_SLIP))
+    Ca = _number(C_alpha.slope or C_alpha.secant, "cornering stiffness")
+    if Ca is not None:  # the sideslip that backlash leaves in a camber sweep
+        odd_Fy = np.where(np.isin(np.arange(len(points)), camber), odd_Fy - Ca.nominal_value * odd_slip, odd_Fy)
     C_gamma = Stiffness(*_estimates(points.gamma, odd_Fy, u_Fy, camber, CUBIC_CAMBER, angle))
-    C_alpha = Stiffness(*_estimates(points.alpha, odd_Fy, u_Fy, slip, CUBIC_SLIP, CUBIC_SLIP))
     if C_gamma.slope is None and C_alpha.slope is None and C_gamma.secant is None and rig is None:
         return None
     chosen = _chosen(config, C_gamma, points.gamma[camber], group.load, warnings)
-    Ca = _number(C_alpha.slope or C_alpha.secant, "cornering stiffness")
     zero = _zero(points, group, Ca, config) if rig else None
     epsilon = turn = alpha_M = moment = None
     row_budget, u_mc, e_slope, e_secant = (), None, None, None

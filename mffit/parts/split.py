@@ -23,6 +23,7 @@ class Parts:
     paired: np.ndarray  #: "exact" | "interpolated" | "unpaired"
     partner: np.ndarray  #: index of the mirror, -1 if interpolated or unpaired
     unpaired: tuple[str, ...]  #: one sentence per sweep with unpaired points
+    alpha_odd: np.ndarray  #: sideslip to which the odd part belongs [rad]; the reading, unless play is known
 
 
 def split(points: Points, tolerance: Tolerance = Tolerance()) -> Parts:  # noqa: B008 - frozen
@@ -33,7 +34,7 @@ def split(points: Points, tolerance: Tolerance = Tolerance()) -> Parts:  # noqa:
     n = len(points)
     if not np.any(points.phi_t):
         nan = np.full(n, np.nan)
-        return Parts(nan, nan, nan, nan, nan, nan, np.full(n, "unpaired"), np.full(n, -1), ())
+        return Parts(nan, nan, nan, nan, nan, nan, np.full(n, "unpaired"), np.full(n, -1), (), points.alpha)
     mirrors = find_mirrors(points, tolerance)
     Fy_odd, Mz_odd = (points.Fy - mirrors.Fy) / 2.0, (points.Mz - mirrors.Mz) / 2.0
     return Parts(
@@ -46,6 +47,7 @@ def split(points: Points, tolerance: Tolerance = Tolerance()) -> Parts:  # noqa:
         paired=mirrors.paired,
         partner=mirrors.partner,
         unpaired=_sentences(points, mirrors.paired == "unpaired"),
+        alpha_odd=points.alpha,
     )
 
 

@@ -1,29 +1,35 @@
-"""Sweeps to Points: finished points as they are, time series reduced, physics checked."""
+"""All sweeps of a configuration, or a single table, as points."""
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
-import pandas as pd
 
-from mffit.config import Config
+from mffit import sweeps as files
+from mffit.config import Config, path_curvature
 from mffit.errors import InputError
-from mffit.points.plausibility import check_physics as physics
-from mffit.points.points import Points, concatenate, make_points
-from mffit.points.steady import mean_and_error, plateaus
-from mffit.sweeps import Sweep, load_sweeps, read_csv, to_sweep
+from mffit.points.levels import load_levels
+from mffit.points.plausibility import check_physics as check
+from mffit.points.points import Points, concatenate
+from mffit.points.reduction import reduce
+from mffit.points.requirements import check_disc_programme
 
-CHANNELS = ("alpha", "gamma", "Fz", "p", "V", "Fy", "Mz", "Mx", "My", "T", "t", "u_Fy", "u_Mz", "iteration")
+STAND_IN = {"p": 250e3, "V": 1.0}
+"""Pressure [Pa] and speed [m/s] of a bare table that holds none; alignment depends on neither."""
 
 
-def load(config: Config, *, check_physics: bool = True) -> tuple[Points, tuple[str, ...]]:
-    """Read the sweeps of a configuration as steady points in ISO-W.
+def load(
+    config: Config, *, check_physics: bool = True, continuous: bool = False
+) -> tuple[Points, tuple[str, ...]]:
+    """Read the sweeps of a configuration as points in ISO-W.
 
     Parameters
     ----------
-    config : the validated ``tyre.toml``
-    check_physics : test the declared axes, frame and path centre against the data
+    config : the checked ``tyre.toml``
+    check_physics : test the declared axes, frame and path centre, and what a disc needs, against the data
+    continuous : keep the samples of sweeps that never rest, marked ``continuous``
 
     Returns
     -------
@@ -32,61 +38,72 @@ def load(config: Config, *, check_physics: bool = True) -> tuple[Points, tuple[s
     Raises
     ------
     InputError
-        On files that cannot be read and on data that contradict the declared axes.
+        On files that cannot be read, data that contradict the declaration, and without any steady point.
     """
-    sweeps = load_sweeps(config)
-    phi_t = 0.0
-    if config.rig.type == "rotating-disk":
-        phi_t = (-1.0 if config.rig.path_centre == "left" else 1.0) / config.rig.radius
-    points = concatenate([to_points(sweep, phi_t, config.tyre.unloaded_radius) for sweep in sweeps])
-    warnings = [] if np.any(np.isfinite(points.Mz)) else ["Mz was not measured: only Fy is fitted"]
+    found = files.load(config)
+    phi_t = path_curvature(config.rig)
+    reduced = [reduce(sweep, phi_t) for sweep in found.sweeps]
+    points = concatenate([part.points for part in reduced if len(part.points)] or [reduced[0].points])
+    warnings = [*found.warnings, *(sentence for part in reduced for sentence in part.warnings)]
+    steady = points.select(~points.continuous)
+    if not len(steady):
+        raise InputError(
+            "no sweep rests long enough for a steady point; hold every set-point for some seconds, "
+            "or leave out "
+            "column time_s to take each row for a finished point",
+            file=config.path,
+        )
+    if not continuous:
+        warnings += _left_out(points)
     if check_physics:
-        warnings += physics(points, config)
-    return points, tuple(warnings)
+        warnings += check(steady, config)
+        if config.rig.type == "rotating-disk":
+            check_disc_programme(steady, config)
+    warnings += _thin(steady, config)
+    return points if continuous else steady, tuple(warnings)
 
 
 def load_table(path: str | Path, *, axes: str, path_centre: str) -> Points:
-    """Points of a bare CSV file, for the alignment of the sideslip axis."""
-    path = Path(path)
-    table, line = read_csv(path)
-    sweep = to_sweep(path, table, line, axes=axes, pressure=250.0, speed=1.0)
-    return to_points(sweep, -1.0 if path_centre == "left" else 1.0, 0.3)
+    """Points of a bare CSV file, for the alignment of the sideslip axis.
+
+    Parameters
+    ----------
+    path : file with the contract's headings
+    axes : "iso", "sae" or "adapted-sae"
+    path_centre : "left" or "right"; the radius is unknown, so that phi_t is -1 or 1 and says only the side
+
+    Notes
+    -----
+    A continuous sweep has no zero points and is left out.
+    """
+    phi_t = -1.0 if path_centre == "left" else 1.0
+    found = files.load_file(path, axes=axes).sweeps
+    points = concatenate([reduce(_completed(sweep), phi_t).points for sweep in found])
+    return points.select(~points.continuous)
 
 
-def to_points(sweep: Sweep, phi_t: float, radius: float) -> Points:
-    """One file's points; a time series is averaged over its plateaus, or kept sample by sample if it never rests."""
-    names = tuple(dict.fromkeys(sweep.run))
-    which = np.array([names.index(name) for name in sweep.run])
-    common = dict(phi_t=phi_t, mount=sweep.mount, sweep_names=names, files=(sweep.file,))
-    if not sweep.is_series:
-        given = {name: sweep.channels[name] for name in CHANNELS}
-        return make_points(**given, direction=sweep.direction, sweep=which, line=sweep.line, table=sweep.table, **common)
-    c = sweep.channels
-    if np.any(np.diff(c["time"]) <= 0) and sweep.point is None:
-        raise InputError("does not rise from row to row; sort the rows by time", file=sweep.file, column="time_s")
-    found = plateaus(c["time"], c["alpha"], c["gamma"], c["V"], radius, sweep.point)
-    if not found:
-        given = {name: c[name] for name in CHANNELS}
-        return make_points(
-            **given, direction=sweep.direction, sweep=which, line=sweep.line, table=sweep.table, continuous=True,
-            time=c["time"], **common,
-        )  # fmt: skip
-    return _reduced(sweep, found, which, common)
+def _completed(sweep: files.Sweep) -> files.Sweep:
+    filled = {
+        name: np.where(np.isfinite(getattr(sweep, name)), getattr(sweep, name), value)
+        for name, value in STAND_IN.items()
+    }
+    return replace(sweep, p=filled["p"], V=filled["V"])
 
 
-def _reduced(sweep: Sweep, found, which: np.ndarray, common: dict) -> Points:
-    """Means over the plateaus; the standard errors become the points' uncertainties."""
-    c = sweep.channels
-    means = {name: np.array([np.mean(c[name][p.begin : p.end]) for p in found]) for name in CHANNELS}
-    for channel, u in (("Fy", "u_Fy"), ("Mz", "u_Mz")):
-        errors = [mean_and_error(c[channel][p.begin : p.end]) for p in found]
-        stated = means[u]
-        means[channel] = np.array([mean for mean, _ in errors])
-        means[u] = np.where(np.isfinite(stated), stated, [error for _, error in errors])
-    means["t"] = np.where(np.isfinite(means["t"]), means["t"], [c["time"][p.begin] for p in found])
-    first = np.array([p.begin for p in found])
-    numeric = sweep.table.select_dtypes("number")
-    table = pd.DataFrame([numeric.iloc[p.begin : p.end].mean() for p in found])
-    return make_points(
-        **means, direction=sweep.direction[first], sweep=which[first], line=sweep.line[first], table=table, **common
-    )
+def _left_out(points: Points) -> list[str]:
+    names = [points.files[index] for index in np.unique(points.file[points.continuous])]
+    return [f"{name}: keeps moving and gives no steady point; only mffit diagnose uses it" for name in names]
+
+
+def _thin(points: Points, config: Config) -> list[str]:
+    """What the data lack without being wrong."""
+    out = []
+    if not np.any(np.isfinite(points.Mz)):
+        out.append("Mz_Nm was not measured: only Fy is fitted")
+    if config.rig.type == "rotating-disk" and not np.any(points.direction < 0):
+        out.append(
+            "there are no backward runs: sideslip misalignment cannot be told from turn slip and ply-steer"
+        )
+    if load_levels(points) == 1:
+        out.append(f"there is one load only ({np.mean(points.Fz):.0f} N): terms that vary with load are held")
+    return out

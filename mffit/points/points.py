@@ -181,7 +181,7 @@ def _filled(name: str, values: Any, n: int) -> np.ndarray:
     return np.array(np.broadcast_to(values, (n,)), dtype=kind)
 
 
-def _sealed(arrays: dict[str, np.ndarray], **shared: Any) -> Points:
+def _sealed(arrays: dict[str, Any], **shared: Any) -> Points:
     for values in arrays.values():
         values.setflags(write=False)
     return Points(**arrays, **shared)

@@ -1,80 +1,165 @@
-"""Time series to steady points: where the rig stood still, and what the mean over that time is worth."""
+"""Time series to steady stretches: where the rig stood still long enough for its forces to settle.
+
+Only the settings (angles, load, pressure, speed) decide where the rig stood still. What the forces do then
+decides how much of a stretch is transient, and whether it ever came to rest.
+"""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
+from scipy.ndimage import uniform_filter1d
 
-SETTLED_ANGLE = np.radians(0.15)
-"""Change of an angle within a plateau [rad]; a logger's noise is below, a set-point's step above."""
-SHORTEST_PLATEAU = 2.0  # s
-TRANSIENT_ROLL = 6.0
-"""Rolling distance dropped at the start of a plateau, in unloaded radii; about six relaxation lengths."""
+from mffit.points.mean import mean_and_error
+
+STEP_ANGLE = np.radians(0.15)
+"""Change of an angle within a stretch [rad]; a logger's noise is below, a set-point's step above."""
+STEP_SHARE = 0.08
+"""Relative change of load, pressure or speed that makes another set-point."""
+LAG = 0.5  # s, over which settings are compared
+SHORTEST = 2.0  # s, of what is left after the transient
+FEWEST = 8  # samples of it
+TRANSIENT_ROLL = 2.0
+"""Rolling distance [m] that is always dropped behind a change: three to ten relaxation lengths."""
+HOLDING_SHARE = 0.5
+"""A series that rests for a smaller part of its time is a continuous sweep."""
+BLOCKS = 10
+LEADING_BLOCK = 3.5
+"""A leading block this many of its standard errors away from the second half belongs to the transient."""
+DRIFT = 4.0
+"""Standard errors between both halves that prove a drift."""
 
 
-class Plateau(NamedTuple):
-    """One steady stretch: samples ``begin`` to ``end`` (excluded), the transient left out."""
+class Settings(NamedTuple):
+    """What the rig was told to do, sample by sample (n,)."""
+
+    time: np.ndarray  #: [s], rising
+    alpha: np.ndarray  #: [rad]
+    gamma: np.ndarray  #: [rad]
+    Fz: np.ndarray  #: [N]
+    p: np.ndarray  #: [Pa]
+    V: np.ndarray  #: [m/s]
+
+
+class Stretch(NamedTuple):
+    """Samples ``begin`` to ``end`` (excluded); ``dropped`` says why they give no point, empty if they do."""
 
     begin: int
     end: int
+    dropped: str = ""
 
 
-def plateaus(
-    time: np.ndarray, alpha: np.ndarray, gamma: np.ndarray, V: np.ndarray, radius: float, point: np.ndarray | None = None
-) -> list[Plateau]:
-    """Find the stretches at constant angles.
+def stretches(settings: Settings, point: np.ndarray | None = None) -> list[Stretch]:
+    """The stretches at constant settings, in time order, transients included; empty for a continuous sweep.
 
     Parameters
     ----------
-    time : (n,) [s], rising
-    alpha, gamma : (n,) readings [rad]
-    V : (n,) speed [m/s]
-    radius : unloaded radius [m], sets how much of each stretch counts as transient
-    point : (n,) number of the point of every sample, if the file says it; None finds the stretches from the angles
-
-    Returns
-    -------
-    list of Plateau, in time order; a stretch too short to leave two seconds after its transient is left out.
+    settings : of one series
+    point : (n,) label of the point of every sample, "" between points; None finds the stretches from the
+        settings
     """
+    n = len(settings.time)
     if point is not None:
-        edges = np.flatnonzero(np.diff(point) != 0) + 1
+        edges = np.flatnonzero(point[1:] != point[:-1]) + 1
+        resting = point != ""
     else:
-        step = max(1, int(round(0.5 / np.median(np.diff(time)))))
-        moving = np.zeros(len(time), bool)
-        for angle in (alpha, gamma):
-            change = np.abs(angle[step:] - angle[:-step]) > SETTLED_ANGLE
-            moving[step:] |= change
-            moving[:-step] |= change
-        edges = np.flatnonzero(np.diff(moving.astype(int)) != 0) + 1
-    starts, ends = np.concatenate([[0], edges]), np.concatenate([edges, [len(time)]])
-    out = []
-    for begin, end in zip(starts, ends, strict=True):
-        if point is None and moving[begin]:
-            continue
-        transient = TRANSIENT_ROLL * radius / max(float(np.median(V[begin:end])), 0.1)
-        first = int(np.searchsorted(time, time[begin] + transient)) if begin > 0 else begin
-        if end - first >= 8 and time[end - 1] - time[first] >= SHORTEST_PLATEAU:
-            out.append(Plateau(first, end))
-    return out
+        resting = ~moving(settings)
+        edges = np.flatnonzero(np.diff(resting.astype(int))) + 1
+    bounds = zip(np.r_[0, edges], np.r_[edges, n], strict=True)
+    found = [Stretch(int(begin), int(end)) for begin, end in bounds if resting[begin]]
+    if point is not None:
+        return found
+    found = [stretch for stretch in found if not _creeps(settings, stretch)]
+    held = sum(settings.time[s.end - 1] - settings.time[s.begin] for s in found)
+    return found if held >= HOLDING_SHARE * np.ptp(settings.time) else []
 
 
-def mean_and_error(x: np.ndarray) -> tuple[float, float]:
-    """Mean of a stationary series (n,) and its standard error, with the autocorrelation counted.
+def moving(settings: Settings) -> np.ndarray:
+    """Mask (n,) of the samples within ``LAG`` of a change of a setting."""
+    n = len(settings.time)
+    lag = int(np.clip(round(LAG / max(np.median(np.diff(settings.time)), 1e-9)), 1, max(n - 1, 1)))
+    mask = np.zeros(n, dtype=bool)
+    for values, step in (
+        (settings.alpha, STEP_ANGLE),
+        (settings.gamma, STEP_ANGLE),
+        *((x, STEP_SHARE * float(np.median(np.abs(x)))) for x in (settings.Fz, settings.p, settings.V)),
+    ):
+        smooth = uniform_filter1d(values, lag, mode="nearest")
+        change = np.abs(smooth[lag:] - smooth[:-lag]) > max(step, 6.0 * _noise(values) / np.sqrt(lag))
+        mask[lag:] |= change
+        mask[:-lag] |= change
+    return mask
 
-    The integrated autocorrelation time is summed until it exceeds a fifth of the lag (Sokal's window), so that slow
-    noise is not mistaken for many independent samples.
+
+def _noise(values: np.ndarray) -> float:
+    """Standard deviation of a setting's noise, from the median step between samples."""
+    return float(1.4826 * np.median(np.abs(np.diff(values))) / np.sqrt(2.0)) if len(values) > 1 else 0.0
+
+
+def _creeps(settings: Settings, stretch: Stretch) -> bool:
+    """Whether an angle moves so slowly through the stretch that no single step shows."""
+    quarter = max((stretch.end - stretch.begin) // 4, 1)
+    for values in (settings.alpha, settings.gamma):
+        part = values[stretch.begin : stretch.end]
+        if abs(float(np.mean(part[-quarter:]) - np.mean(part[:quarter]))) > STEP_ANGLE:
+            return True
+    return False
+
+
+def settled(
+    stretch: Stretch, settings: Settings, responses: Sequence[tuple[np.ndarray, float, str]]
+) -> Stretch:
+    """The stretch without its transient, or with the reason why it gives no point.
+
+    Parameters
+    ----------
+    stretch : samples at constant settings
+    settings : of the series
+    responses : for each measured force or moment the samples (n,), the drift over a stretch that does not
+        matter, and
+        its unit
     """
-    n, mean = len(x), float(np.mean(x))
-    centred = x - mean
-    variance = float(np.mean(centred**2))
-    if variance == 0.0 or n < 8:
-        return mean, float(np.std(x, ddof=1) / np.sqrt(n)) if n > 1 else float("nan")
-    padded = np.fft.rfft(centred, 2 * n)
-    correlation = np.fft.irfft(np.abs(padded) ** 2)[:n] / (n * variance)
-    tau = 2.0 * np.cumsum(correlation) - 1.0
-    window = np.flatnonzero(np.arange(n) >= 5.0 * tau)
-    tau_used = max(float(tau[window[0]] if len(window) else tau.max()), 1.0)
-    # The spectrum of a finite record underestimates the slow part by about tau/n.
-    tau_used *= 1.0 + 2.0 * tau_used / n
-    return mean, float(np.sqrt(variance * n / (n - 1) * tau_used / n))
+    time = settings.time
+    speed = max(float(np.median(settings.V[stretch.begin : stretch.end])), 0.1)
+    begin = stretch.begin
+    if begin > 0:
+        begin = int(np.searchsorted(time, time[begin] + TRANSIENT_ROLL / speed))
+    short = _too_short(time, begin, stretch.end)
+    if short:
+        return stretch._replace(dropped=short)
+    begin = max(begin + _transient(x[begin : stretch.end]) for x, _, _ in responses)
+    short = _too_short(time, begin, stretch.end)
+    if short:
+        return stretch._replace(dropped=short)
+    for x, harmless, unit in responses:
+        drift, error = _drift(x[begin : stretch.end])
+        if abs(drift) > max(DRIFT * error, harmless):
+            return stretch._replace(dropped=f"still drifting by {drift:.3g} {unit}")
+    return Stretch(begin, stretch.end)
+
+
+def _too_short(time: np.ndarray, begin: int, end: int) -> str:
+    if end - begin < FEWEST:
+        return f"only {max(end - begin, 0)} samples after the transient"
+    seconds = time[end - 1] - time[begin]
+    return f"only {seconds:.1f} s steady" if seconds < SHORTEST else ""
+
+
+def _transient(x: np.ndarray) -> int:
+    """Number of leading samples that differ from what the second half settles at; at most half of them."""
+    edges = np.linspace(0, len(x), BLOCKS + 1).astype(int)
+    level, error = mean_and_error(x[edges[BLOCKS // 2] :])
+    error *= np.sqrt(BLOCKS / 2.0 + 1.0)  # of one block against half of them all
+    for block in range(BLOCKS // 2):
+        if not abs(float(np.mean(x[edges[block] : edges[block + 1]])) - level) > LEADING_BLOCK * error:
+            return int(edges[block])
+    return int(edges[BLOCKS // 2])
+
+
+def _drift(x: np.ndarray) -> tuple[float, float]:
+    """Change over the record, twice the difference of its halves, and its standard error."""
+    half = len(x) // 2
+    (first, u_first), (second, u_second) = mean_and_error(x[:half]), mean_and_error(x[half:])
+    return 2.0 * (second - first), 2.0 * float(np.hypot(u_first, u_second))

@@ -8,7 +8,7 @@ from typing import Any
 
 import mffit
 from mffit.report import page
-from mffit.report.diagnosis_view import DiagnosisView, view_of
+from mffit.report.diagnosis_view import shown_steps, view_of
 
 
 def write_diagnosis(diagnosis: Any, folder: Path) -> None:
@@ -19,22 +19,19 @@ def write_diagnosis(diagnosis: Any, folder: Path) -> None:
     diagnosis : ``mffit.diagnose.Diagnosis``
     folder : existing folder to write to
     """
-    write_view(view_of(diagnosis), folder)
-
-
-def write_view(view: DiagnosisView, folder: Path) -> None:
-    """The page of a view; :func:`write_diagnosis` makes the view first."""
     from mffit.report.figures import gap
 
-    figures = {"gap": partial(gap.gap_bars, view)}
+    view = view_of(diagnosis)
+    figures: dict[str, Any] = {"gap": partial(gap.gap_bars, view)}
+    if shown_steps(view):
+        figures["evidence"] = partial(gap.evidence, view)
     if view.channels:
-        frames = [*view.where, *view.unexplained_where]
-        figures["gap_maps"] = partial(gap.residuals_before_after, view, frames)
-    pictures = page.draw(folder, figures)
+        figures["gap_maps"] = partial(gap.residuals_before_after, view)
     page.render(
         "diagnosis.html.j2",
         folder / "diagnosis.html",
         view=view,
-        pictures=pictures,
+        d=view.summary,
+        pictures=page.draw(folder, figures),
         version=mffit.__version__,
     )

@@ -61,5 +61,6 @@ def _environment() -> Environment:
         trim_blocks=True,
         lstrip_blocks=True,
     )
-    environment.filters.update(number=rounding.number, with_u=rounding.with_u, times=rounding.times)
+    for rounded in (rounding.number, rounding.with_u, rounding.times, rounding.per_cent):
+        environment.filters[rounded.__name__] = rounded
     return environment

@@ -50,6 +50,13 @@ def with_u(value: float | None, u: float | None, unit: str = "") -> str:
     return f"{number(value, places)} ± {number(u, places)}{unit}"
 
 
+def per_cent(share: float) -> str:
+    """A confidence as per cent; never a round 0 or 100, which would claim certainty."""
+    if share > 0.99:
+        return "more than 99 %"
+    return "less than 1 %" if share < 0.01 else f"{100.0 * share:.0f} %"
+
+
 def times(value: float | None, reference: float | None) -> str:
     """A ratio such as ``1.03 × noise``, without the word."""
     if not value or not reference or not math.isfinite(value / reference):

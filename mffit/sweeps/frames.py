@@ -1,9 +1,9 @@
 """From the wheel-carrier frame C to the contact frame W.
 
-Both share the x axis. C leans with the wheel: with camber ``gamma > 0`` the top of the wheel goes to -y, so that
-``z_C = (0, -sin gamma, cos gamma)`` and ``y_C = (0, cos gamma, sin gamma)``. A force ``(Fy, Fz)`` of W reads
-``Fy_C = Fy cos gamma + Fz sin gamma``, ``Fz_C = Fz cos gamma - Fy sin gamma``; moments about one point likewise.
-The lever from contact point to wheel centre lies along z_C and leaves Mz alone.
+Both share the x axis. C leans with the wheel: with camber ``gamma > 0`` the top of the wheel goes to -y, so
+that ``z_C = (0, -sin gamma, cos gamma)`` and ``y_C = (0, cos gamma, sin gamma)``. A force ``(Fy, Fz)`` of W
+reads ``Fy_C = Fy cos gamma + Fz sin gamma``, ``Fz_C = Fz cos gamma - Fy sin gamma``; moments about one point
+likewise. The lever from contact point to wheel centre lies along z_C and leaves Mz alone.
 """
 
 from __future__ import annotations
@@ -44,8 +44,8 @@ def to_contact_frame(sweep: Sweep, *, load_is_vertical: bool) -> Sweep:
 def load_is_vertical(sweeps: Sequence[Sweep]) -> bool:
     """Whether the load column of rows in frame C is the vertical load all the same.
 
-    Rigs control the vertical load. Along a cambered sweep it changes little from row to row; of the two readings
-    of the column the one is taken in which it does so. Without such sweeps it makes no difference.
+    Rigs control the vertical load. Along a cambered sweep it changes little from row to row; of the two
+    readings of the column the one is taken in which it does so. Without such sweeps it makes no difference.
     """
     as_given, turned = [], []
     for sweep in sweeps:

@@ -38,7 +38,9 @@ def load(config: Config) -> Sweeps:
     for index, entry in enumerate(config.sweep):
         columns = _columns(config, index, entry)
         warnings.extend(columns.warnings)
-        direction = {"forward": 1, "backward": -1, None: None}[entry.direction]
+        direction = -1 if entry.direction == "backward" else 1
+        if entry.direction is not None and columns.direction is not None:
+            warnings.extend(_contradicting(columns, entry, direction))
         given = Circumstances(
             axes=config.rig.axes,
             file=entry.file,
@@ -63,7 +65,7 @@ def load_file(path: str | Path, *, axes: str) -> Sweeps:
     axes : "iso", "sae" or "adapted-sae"
     """
     columns = read_columns(read_csv_text(Path(path)), {})
-    given = Circumstances(axes, str(path), None, 1, math.nan, math.nan)
+    given = Circumstances(axes, str(path), 1, 1, math.nan, math.nan)
     return Sweeps(tuple(sweeps_of(columns, given)), columns.warnings)
 
 
@@ -91,6 +93,18 @@ def _columns(config: Config, index: int, entry: SweepTable) -> Columns:
         if error.file is None and error.key is not None:
             raise refuse(error.sentence, error.key) from None
         raise
+
+
+def _contradicting(columns: Columns, entry: SweepTable, direction: int) -> list[str]:
+    assert columns.direction is not None
+    differs = int(np.sum(columns.direction != direction))
+    if not differs:
+        return []
+    return [
+        f"{entry.file}: {differs} rows of column direction are not {entry.direction}, as [[sweep]] "
+        "says; the column "
+        "counts"
+    ]
 
 
 def _in_contact_frame(sweeps: list[Sweep]) -> tuple[list[Sweep], list[str]]:

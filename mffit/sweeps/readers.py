@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from dataclasses import fields, replace
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -21,7 +22,7 @@ class Circumstances(NamedTuple):
 
     axes: str  #: of the rig
     file: str  #: name to report
-    direction: int | None  #: +1 or -1; None: the file's column, else forward
+    direction: int  #: +1 or -1, where the file has no such column
     mount: int
     pressure: float  #: where not measured [Pa]
     speed: float  #: where not measured [m/s]
@@ -64,7 +65,7 @@ def _sweep(columns: Columns, given: Circumstances) -> Sweep:
         u_Fy=column("u_Fy_N"),
         u_Mz=column("u_Mz_Nm"),
         iteration=column("iteration"),
-        direction=_direction(columns, given, n),
+        direction=np.full(n, given.direction) if columns.direction is None else columns.direction,
         mount=given.mount,
         time=column("time_s"),
         point=table["point"].astype(str).to_numpy() if "point" in table else None,
@@ -75,28 +76,11 @@ def _sweep(columns: Columns, given: Circumstances) -> Sweep:
 
 def rows_of(sweep: Sweep, rows: np.ndarray, name: str) -> Sweep:
     """Some rows (m,) of a sweep as one of its own."""
-    arrays = {
-        field: getattr(sweep, field)[rows]
-        for field in Sweep.__dataclass_fields__
-        if isinstance(getattr(sweep, field), np.ndarray)
+    values = {field.name: getattr(sweep, field.name) for field in fields(sweep)}
+    arrays: dict[str, Any] = {
+        field: value[rows] for field, value in values.items() if isinstance(value, np.ndarray)
     }
-    rest = {"file": sweep.file, "mount": sweep.mount, "table": sweep.table.iloc[rows].reset_index(drop=True)}
-    return Sweep(name=name, point=arrays.pop("point", None), **arrays, **rest)
-
-
-def _direction(columns: Columns, given: Circumstances, n: int) -> np.ndarray:
-    if columns.direction is None:
-        return np.full(n, given.direction or 1)
-    if given.direction is not None:
-        differs = columns.direction != given.direction
-        if np.any(differs):
-            raise InputError(
-                "contradicts the direction that tyre.toml gives for this file; remove one of the two",
-                file=columns.text.path,
-                line=columns.line(int(differs.argmax())),
-                column="direction",
-            )
-    return columns.direction
+    return replace(sweep, name=name, table=sweep.table.iloc[rows].reset_index(drop=True), **arrays)
 
 
 def check_loads(columns: Columns, axes: str) -> None:

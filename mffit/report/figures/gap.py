@@ -2,21 +2,33 @@
 
 from __future__ import annotations
 
+import textwrap
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from mffit.report import style
-from mffit.report.diagnosis_view import FLOOR_KEYS, GAP_KEYS, DiagnosisView, GapChannel
-from mffit.report.figures.residuals import colour_bar, most_populated, residual_map
+from mffit.report.diagnosis_view import (
+    FLOOR_KEYS,
+    GAP_KEYS,
+    DiagnosisView,
+    GapChannel,
+    RankedStep,
+    shown_steps,
+)
+from mffit.report.figures.residuals import colour_bar, most_populated, residual_map, set_limits
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
 MOST_CONDITIONS = 6
-SMALLEST_LIMIT, LARGEST_LIMIT = 4.0, 15.0
+MOST_CANDIDATES = 12
+SMALLEST_GAIN = 1.0
+"""Left end of the evidence scale: what gains less is not worth a bar."""
+KIND_COLOURS = {"tyre": style.ACCENT, "rig": style.CONTRAST, "environment": style.CALM}
+SMALLEST_LIMIT, LARGEST_LIMIT = 4.0, 20.0
 """Ends of the maps' scale, in units of noise: never so small that noise looks like structure."""
 
 
@@ -26,13 +38,14 @@ def gap_bars(view: DiagnosisView) -> Figure:
 
     panels = len(view.channels) + 1
     figure = Figure(figsize=(style.WIDTH, 1.95))
-    axes = figure.subplots(1, panels, gridspec_kw=dict(left=0.10, right=0.985, top=0.86, bottom=0.23, wspace=0.22))
+    place = {"left": 0.10, "right": 0.985, "top": 0.86, "bottom": 0.23, "wspace": 0.22}
+    axes = figure.subplots(1, panels, gridspec_kw=place)
     for ax, channel in zip(axes, view.channels, strict=False):
         key = GAP_KEYS[channel.name]
-        _bars(ax, _rows(view, key), view.noise_floor.get(FLOOR_KEYS[channel.name]), "noise")
+        _bars(ax, _rows(view, key), view.summary["noise_floor"][FLOOR_KEYS[channel.name]])
         ax.set_title(f"{channel.name}: rms gap")
         ax.set_xlabel(f"measured − simulated [{channel.unit}]")
-    _bars(axes[-1], _rows(view, "chi2_per_dof"), 1.0, "noise alone")
+    _bars(axes[-1], _rows(view, "chi2_per_dof"), 1.0)
     axes[-1].set_title("χ² per degree of freedom")
     axes[-1].set_xlabel("1 = nothing but noise")
     for ax in axes[1:]:
@@ -40,14 +53,8 @@ def gap_bars(view: DiagnosisView) -> Figure:
     return figure
 
 
-def residuals_before_after(view: DiagnosisView, regions: Sequence[Mapping[str, Any]]) -> Figure:
-    """Maps side by side: a row per load and pressure, per channel before and after, one colour scale for all.
-
-    Parameters
-    ----------
-    view : what to show
-    regions : those of ``where`` or ``unexplained_where``, framed in the maps they lie in
-    """
+def residuals_before_after(view: DiagnosisView) -> Figure:
+    """Maps side by side: a row per load and pressure, per channel before and after, one colour scale for all."""
     shown = most_populated(view.conditions, MOST_CONDITIONS)
     columns = [(channel, when) for channel in view.channels for when in ("before", "after")]
     limit = colour_limit(view.channels)
@@ -55,12 +62,13 @@ def residuals_before_after(view: DiagnosisView, regions: Sequence[Mapping[str, A
         [len(columns)] * len(shown), 4, height=1.40, legend=False, margins=(0.70, 0.95), gap=(0.22, 0.36),
         share_x=True, share_y=True,
     )  # fmt: skip
+    set_limits(rows[0][0], view.points)
     for row, condition in zip(rows, shown, strict=True):
         for ax, (channel, when) in zip(row, columns, strict=True):
             drawn = residual_map(ax, view.points, getattr(channel, when), condition.index, limit)
             ax.set_title(f"{channel.name} {when}, {condition.title}")
             if when == "before":
-                _frames(ax, regions, channel, condition.load)
+                _frames(ax, view.frames, channel, condition.load)
     for ax in rows[-1]:
         ax.set_xlabel("sideslip α [deg]")
     style.label_left(rows, "camber γ [deg]")
@@ -75,24 +83,62 @@ def colour_limit(channels: Sequence[GapChannel]) -> float:
     return float(np.clip(np.ceil(wanted), SMALLEST_LIMIT, LARGEST_LIMIT))
 
 
+def evidence(view: DiagnosisView) -> Figure:
+    """How every candidate did, a panel per forward step: gain in log evidence, coloured by kind."""
+    from matplotlib.figure import Figure
+    from matplotlib.patches import Patch
+
+    steps = shown_steps(view)
+    count = max(min(len(step.candidates), MOST_CANDIDATES) for step in steps)
+    tall = 0.85 + 0.185 * count
+    figure = Figure(figsize=(style.WIDTH, tall))
+    for i, step in enumerate(steps):
+        ax = figure.add_axes((0.155 + 0.335 * i, 0.42 / tall, 0.15, 0.185 * count / tall))
+        _candidates(ax, step)
+        after = f"beside {' and '.join(step.beside)}" if step.beside else "one effect alone"
+        ax.set_title(f"Step {i + 1}: {textwrap.shorten(after, 44, placeholder='…')}", x=-0.9)
+    present = {c.kind for step in steps for c in step.candidates}
+    style.legend_above(
+        figure, [Patch(color=c, label=kind) for kind, c in KIND_COLOURS.items() if kind in present]
+    )
+    return figure
+
+
+def _candidates(ax: Axes, step: RankedStep) -> None:
+    rows = step.candidates[:MOST_CANDIDATES]
+    gains = [max(c.gain, SMALLEST_GAIN) for c in rows]
+    ax.barh(
+        range(len(rows)),
+        gains,
+        left=0.0,
+        height=0.66,
+        color=[KIND_COLOURS.get(c.kind, style.MUTED) for c in rows],
+    )
+    ax.axvline(step.threshold, color=style.INK, lw=1.0, ls="--")
+    ax.set_xscale("log")
+    ax.set_xlim(SMALLEST_GAIN, 2.0 * max(10.0, *gains))
+    ax.set_yticks(range(len(rows)), [textwrap.shorten(c.name, 34, placeholder="…") for c in rows])
+    ax.set_ylim(len(rows) - 0.4, -0.6)
+    ax.grid(axis="y", visible=False)
+    ax.minorticks_off()
+    ax.set_xlabel("gain in log evidence")
+
+
 def _rows(view: DiagnosisView, key: str) -> list[tuple[str, float, float]]:
-    rows = [("all points", view.gap_before.get(key), view.gap_after.get(key))]
-    if view.validation:
-        held = view.validation
-        rows.append(("held out", held["gap_before"].get(key), held["gap_after"].get(key)))
-    return [(name, before, after) for name, before, after in rows if before is not None and after is not None]
+    pairs = {"all points": view.summary, "held out": view.summary["validation"]}
+    return [(name, pair["gap_before"][key], pair["gap_after"][key]) for name, pair in pairs.items()]
 
 
-def _bars(ax: Axes, rows: list[tuple[str, float, float]], floor: float | None, floor_name: str) -> None:
+def _bars(ax: Axes, rows: list[tuple[str, float, float]], floor: float) -> None:
     place = np.arange(len(rows))[::-1] * 1.0
     for offset, column, colour in ((0.19, 1, style.FAINT), (-0.19, 2, style.ACCENT)):
         values = [row[column] for row in rows]
         ax.barh(place + offset, values, height=0.34, color=colour)
         for y, value in zip(place + offset, values, strict=True):
-            ax.annotate(f"{value:.3g}", (value, y), xytext=(3, 0), textcoords="offset points", va="center", fontsize=7.5)
-    if floor is not None and np.isfinite(floor):
+            ax.annotate(f" {value:.3g}", (value, y), va="center", fontsize=7.5)
+    if np.isfinite(floor):
         ax.axvline(floor, color=style.CONTRAST, lw=1.2, ls="--")
-    largest = max([row[1] for row in rows] + [row[2] for row in rows] + [floor or 0.0])
+    largest = max([*(row[1] for row in rows), *(row[2] for row in rows), np.nan_to_num(floor)])
     ax.set_xlim(0.0, 1.18 * largest)
     ax.set_ylim(-0.55, len(rows) - 0.45)
     ax.set_yticks(place, [row[0] for row in rows])
@@ -106,16 +152,21 @@ def _frames(ax: Axes, regions: Sequence[Mapping[str, Any]], channel: GapChannel,
     for item in regions:
         region = item["region"]
         low, high = region.get("Fz_N", (-np.inf, np.inf))
-        if item["channel"] != channel.name or not low * 0.95 <= load <= high * 1.05:
+        if item["channel"] != channel.name or not {"alpha_deg", "gamma_deg"} & region.keys():
             continue
-        (a0, a1), (g0, g1) = (_side(ax, region.get(key), axis) for key, axis in (("alpha_deg", "x"), ("gamma_deg", "y")))
-        ax.add_patch(Rectangle((a0, g0), a1 - a0, g1 - g0, fill=False, ec=style.INK, lw=1.0, ls=(0, (3, 2)), zorder=5))
+        if not low * 0.95 <= load <= high * 1.05:
+            continue
+        left, right = _side(region.get("alpha_deg"), ax.get_xlim())
+        bottom, top = _side(region.get("gamma_deg"), ax.get_ylim())
+        frame = Rectangle((left, bottom), right - left, top - bottom, fill=False, ec=style.INK, lw=1.0)
+        frame.set(linestyle=(0, (3, 2)), zorder=5)
+        ax.add_patch(frame)
 
 
-def _side(ax: Axes, bounds: Sequence[float] | None, axis: str) -> tuple[float, float]:
-    """Bounds of a region, widened so that a frame around one value has a width; the whole axis if there are none."""
-    low, high = ax.get_xlim() if axis == "x" else ax.get_ylim()
-    if bounds is None:
-        return low, high
+def _side(bounds: Sequence[float] | None, axis: tuple[float, float]) -> tuple[float, float]:
+    """Bounds of a region, widened so that one value has a width; nearly the whole axis without bounds."""
+    low, high = axis
     pad = 0.03 * (high - low)
+    if bounds is None:
+        return low + 0.5 * pad, high - 0.5 * pad
     return max(bounds[0] - pad, low), min(bounds[1] + pad, high)

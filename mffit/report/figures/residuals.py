@@ -38,6 +38,7 @@ def residual_maps(
         [len(shown)] * len(residuals), 6, height=1.45, legend=False, margins=(0.70, 0.95), gap=(0.25, 0.38),
         share_x=True, share_y=True,
     )  # fmt: skip
+    set_limits(rows[0][0], points)
     for row, (name, values) in zip(rows, residuals, strict=True):
         for ax, condition in zip(row, shown, strict=True):
             drawn = residual_map(ax, points, values, condition.index, limit)
@@ -85,6 +86,14 @@ def beside(alpha: np.ndarray, gamma: np.ndarray) -> np.ndarray:
     return np.where(rank % 2 == 1, 1.0, -1.0) * np.ceil(rank / 2.0)
 
 
+def set_limits(ax: Axes, points: Points) -> None:
+    """Axes that hold all points; the panels share them."""
+    for angle, limits in ((points.alpha, ax.set_xlim), (points.gamma, ax.set_ylim)):
+        low, high = np.degrees(angle.min()), np.degrees(angle.max())
+        room = 0.08 * max(high - low, 2.0)
+        limits(low - room, high + room)
+
+
 def _camber_range(points: Points) -> float:
     """Extent of all points [deg]; at least 1, so that a sweep without camber has a height."""
     return max(float(np.degrees(np.ptp(points.gamma))), 1.0)
@@ -94,7 +103,7 @@ def colour_bar(figure: Figure, drawn: Any, label: str) -> None:
     """The scale of the maps, at the right edge."""
     width, height = figure.get_size_inches()
     tall = min(2.2, 0.7 * height)
-    box = figure.add_axes((1.0 - 0.72 / width, 0.5 - 0.5 * tall / height, 0.13 / width, tall / height))
+    box = figure.add_axes((1.0 - 0.80 / width, 0.5 - 0.5 * tall / height, 0.13 / width, tall / height))
     bar = figure.colorbar(drawn, cax=box)
     bar.set_label(label)
     bar.outline.set_linewidth(0.5)

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from report_toys import SIDESLIP, made_points, programme, sweep
 from hypothesis import given
 from hypothesis import strategies as st
+from report_toys import SIDESLIP, made_points, programme, sweep
 
 from mffit.report.curves import conditions, curves, levels
 

@@ -1,0 +1,75 @@
+"""Units that make numbers look plausible one by one and impossible together."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from mffit.errors import InputError
+from mffit.points.points import Points
+from mffit.points.signatures import slope
+
+STEEPEST = {"alpha": 120.0, "gamma": 12.0}
+"""Slopes of side force per load [1/rad] that no tyre comes near; radians read as degrees are 57-fold."""
+SLIP_THAT_SHOWS = np.radians(2.0)
+CAMBER_THAT_SHOWS = np.radians(5.0)
+SMALLEST_FRICTION = 0.02
+"""Side force per load that any tyre exceeds at those angles."""
+LONGEST_ARM = 1.0
+"""|Mz| / Fz [m] that no tyre reaches."""
+
+
+def check_magnitudes(points: Points) -> None:
+    """Refuse angles in radians, side forces in kN and moments in N mm, file by file.
+
+    The angles are judged by how steeply the force follows them, so that a file of small angles is not
+    suspected.
+
+    Raises
+    ------
+    InputError
+        Names the file and the column.
+    """
+    for index in np.unique(points.file):
+        part = points.select(points.file == index)
+        name = points.files[index]
+        for angle, steepest in STEEPEST.items():
+            for way in (1, -1):
+                found = slope(part, part.Fy, angle, part.direction == way)
+                if found.sign and abs(found.value) > steepest:
+                    raise _radians(name, angle, getattr(part, angle), found.value)
+        _check_friction(name, part)
+        arm = np.abs(part.Mz) / part.Fz
+        if np.any(arm > LONGEST_ARM):
+            raise InputError(
+                f"reaches {np.nanmax(arm):.0f} m times the load, which looks like N mm; name its unit under "
+                "[sweep.columns]",
+                file=name,
+                column="Mz_Nm",
+            )
+
+
+def _radians(name: str, angle: str, values: np.ndarray, steepness: float) -> InputError:
+    largest = np.degrees(np.max(np.abs(values)))
+    return InputError(
+        f"reaches only {largest:.3g} deg, over which the side force changes by {abs(steepness):.0f} "
+        "times the load per "
+        f'radian; the angles look like radians: write degrees, or {angle}_deg = {{ column = "{angle}_deg", '
+        'unit = "rad" } under [sweep.columns]',
+        file=name,
+        column=f"{angle}_deg",
+    )
+
+
+def _check_friction(name: str, part: Points) -> None:
+    shows = (np.abs(part.alpha) > SLIP_THAT_SHOWS) | (np.abs(part.gamma) > CAMBER_THAT_SHOWS)
+    if np.sum(shows) < 3:
+        return
+    friction = np.max(np.abs(part.Fy[shows]) / part.Fz[shows])
+    if friction < SMALLEST_FRICTION:
+        raise InputError(
+            f"is at most {np.max(np.abs(part.Fy[shows])):.3g} N at loads of {np.median(part.Fz):.0f} "
+            "N, which looks like "
+            'kN; write newtons, or Fy_N = { column = "Fy_N", unit = "kN" } under [sweep.columns]',
+            file=name,
+            column="Fy_N",
+        )

@@ -1,0 +1,229 @@
+"""The declaration against the data: every wrong one is refused by its name, and no right one is."""
+
+from __future__ import annotations
+
+import itertools
+
+import numpy as np
+import pytest
+from disc_project import SIDESLIP, disc_project, rows
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+from mffit import config as configuration
+from mffit import points
+from mffit.errors import InputError
+from tir.conventions import FLIPPED
+
+COLUMNS = {"alpha": "alpha_deg", "Fy": "Fy_N", "Mz": "Mz_Nm"}
+
+
+def report_in(project, axes: str) -> None:
+    """Let the rig report in other axes, loads as positive magnitudes."""
+    project.each(**{COLUMNS[channel]: -1.0 for channel in FLIPPED[axes] if channel in COLUMNS})
+
+
+def load(project):
+    return points.load(configuration.load(project.write()))
+
+
+def refusal(project) -> InputError:
+    with pytest.raises(InputError) as caught:
+        load(project)
+    return caught.value
+
+
+@pytest.mark.parametrize(("true", "declared"), list(itertools.permutations(FLIPPED, 2)))
+def test_wrong_axes_are_refused_and_the_right_ones_named(project, true, declared):
+    report_in(project, true)
+    project.config["rig"]["axes"] = declared
+    error = refusal(project)
+    assert error.key == "rig.axes"
+    assert f'agree with axes = "{true}"' in str(error)
+
+
+@pytest.mark.parametrize("axes", list(FLIPPED))
+def test_all_axes_give_the_same_points(project, axes):
+    reference, _ = load(project)
+    report_in(project, axes)
+    project.config["rig"]["axes"] = axes
+    found, warnings = load(project)
+    assert warnings == ()
+    for name in ("alpha", "gamma", "Fz", "Fy", "Mz"):
+        np.testing.assert_array_equal(getattr(found, name), getattr(reference, name))
+
+
+@pytest.mark.parametrize("axes", list(FLIPPED))
+def test_the_wrong_path_centre_is_refused_by_name(project, axes):
+    report_in(project, axes)
+    project.config["rig"] |= {"axes": axes, "path_centre": "right"}
+    error = refusal(project)
+    assert error.key == "rig.path_centre"
+    assert 'agree with path_centre = "left"' in str(error)
+
+
+def test_wrong_axes_and_path_centre_together_are_both_named(project):
+    report_in(project, "sae")
+    project.config["rig"] |= {"path_centre": "right"}
+    assert 'axes = "sae" and path_centre = "left"' in str(refusal(project))
+
+
+@pytest.mark.parametrize("vertical", [False, True], ids=["load along wheel", "vertical load"])
+@pytest.mark.parametrize("declared", ["W", "C"])
+def test_forces_in_the_other_frame_are_refused_by_name(project, declared, vertical):
+    true = "C" if declared == "W" else "W"
+    if true == "C":
+        lean_forces(project, vertical)
+    project.config["rig"]["force_frame"] = declared
+    error = refusal(project)
+    assert error.key == "rig.force_frame"
+    assert f'agree with force_frame = "{true}"' in str(error)
+
+
+@pytest.mark.parametrize("vertical", [False, True], ids=["load along wheel", "vertical load"])
+def test_frame_c_gives_the_points_of_frame_w(project, vertical):
+    reference, _ = load(project)
+    lean_forces(project, vertical)
+    project.config["rig"]["force_frame"] = "C"
+    found, warnings = load(project)
+    np.testing.assert_allclose(found.Fy, reference.Fy, atol=1e-6)
+    np.testing.assert_allclose(found.Fz, reference.Fz, atol=1e-6)
+    np.testing.assert_allclose(found.Mz, reference.Mz, atol=1e-6)
+    assert vertical == any("vertical load" in sentence for sentence in warnings)
+
+
+def lean_forces(project, vertical: bool) -> None:
+    """Report what cells in the wheel carrier read, from unit vectors of the leaning wheel."""
+    for table in project.tables.values():
+        gamma = np.radians(table["gamma_deg"])
+        force = np.column_stack([table["Fy_N"], table["Fz_N"]])
+        # Top of the wheel to -y with gamma > 0.
+        upwards = np.column_stack([-np.sin(gamma), np.cos(gamma)])
+        sideways = np.column_stack([np.cos(gamma), np.sin(gamma)])
+        table["Fy_N"] = np.sum(force * sideways, axis=1)
+        if not vertical:
+            table["Fz_N"] = np.sum(force * upwards, axis=1)
+        table["Mz_Nm"] *= np.cos(gamma)  # Mz along the leaning axis; My is zero here
+
+
+def test_a_moment_of_the_wrong_sign_is_refused_by_name(project):
+    project.each(Mz_Nm=-1.0)
+    assert "Mz_Nm" in str(refusal(project))
+    assert "scale = -1" in str(refusal(project))
+
+
+def test_backward_runs_labelled_forward_in_their_angles_are_refused(project):
+    for Fz in (1000, 1500):
+        project.tables[f"backward_{Fz}.csv"]["alpha_deg"] *= -1.0
+    assert "backward" in str(refusal(project))
+
+
+@settings(max_examples=25, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@given(
+    shift=st.floats(-1.0, 1.0),
+    offset=st.floats(-40.0, 40.0),
+    camber=st.floats(-1.0, 1.0),
+    noise=st.floats(0.0, 25.0),
+    seed=st.integers(0, 10_000),
+)
+def test_rig_faults_are_no_wrong_axes(tmp_path_factory, shift, offset, camber, noise, seed):
+    """A sideslip axis up to a degree out, camber zero, load-cell zero and noise: backward runs are there."""
+    project = disc_project(tmp_path_factory.mktemp("rig"))
+    for number, (name, table) in enumerate(list(project.tables.items())):
+        way = -1 if name.startswith("backward") else 1
+        true = rows(
+            table["alpha_deg"] + shift, table["gamma_deg"] + camber, table["Fz_N"].iloc[0],
+            direction=way, noise=noise, seed=seed + number,
+        )  # fmt: skip
+        project.tables[name] = table.assign(Fy_N=true["Fy_N"] + offset, Mz_Nm=true["Mz_Nm"])
+    load(project)
+
+
+def test_a_force_turned_round_by_misalignment_is_no_wrong_centre_with_backward_runs(project):
+    """1 deg at 13 Fz/rad is 0.227 Fz, against a turn-slip force of 0.22 Fz."""
+    for name, table in project.tables.items():
+        way = -1 if name.startswith("backward") else 1
+        true = rows(table["alpha_deg"] - 1.1, table["gamma_deg"], table["Fz_N"].iloc[0], direction=way)
+        project.tables[name] = table.assign(Fy_N=true["Fy_N"], Mz_Nm=true["Mz_Nm"])
+    found, _ = load(project)
+    zero = (found.alpha == 0.0) & (found.gamma == 0.0) & (found.direction > 0)
+    assert np.all(found.Fy[zero] * found.phi_t[zero] < 0.0)  # the premise: it points inwards
+
+
+def test_without_backward_runs_misalignment_is_named_beside_the_path_centre(project):
+    project.keep(*(name for name in project.tables if not name.startswith("backward")))
+    project.config["rig"]["path_centre"] = "right"
+    text = str(refusal(project))
+    assert 'path_centre = "left"' in text
+    assert "backward runs would show" in text
+
+
+@pytest.mark.parametrize("column", ["alpha_deg", "gamma_deg"])
+def test_angles_in_radians_are_refused_with_file_and_column(project, column):
+    name = "sideslip_1500.csv" if column == "alpha_deg" else "camber_1500.csv"
+    project.tables[name][column] = np.radians(project.tables[name][column])
+    error = refusal(project)
+    assert error.column == column
+    assert error.file.name == name
+    assert 'unit = "rad"' in str(error)
+
+
+@pytest.mark.parametrize("span", [0.3, 0.15, 0.05])
+def test_small_angles_are_not_taken_for_radians(project, span):
+    """An alignment file of a few hundredths of a degree, with 5 N of noise."""
+    project.add("fine.csv", rows(np.linspace(-span, span, 9), 0.0, seed=9))
+    load(project)
+
+
+def test_side_forces_in_kilonewtons_are_refused(project):
+    project.each(Fy_N=1e-3)
+    error = refusal(project)
+    assert error.column == "Fy_N"
+    assert 'unit = "kN"' in str(error)
+
+
+def test_moments_in_newton_millimetres_are_refused(project):
+    project.each(Mz_Nm=1e3)
+    assert "N mm" in str(refusal(project))
+
+
+@pytest.mark.parametrize("column", ["alpha_deg", "gamma_deg"])
+def test_a_disc_needs_both_signs(project, column):
+    for name, table in project.tables.items():
+        project.tables[name] = table[table[column] >= 0.0]
+    error = refusal(project)
+    assert error.column == column
+    assert "mirrored" in str(error)
+
+
+def test_a_disc_needs_a_forward_zero(project):
+    for name, table in project.tables.items():
+        if not name.startswith("backward"):
+            project.tables[name] = table[(table["alpha_deg"].abs() > 0.4) | (table["gamma_deg"].abs() > 1)]
+    assert "no forward point" in str(refusal(project))
+
+
+def test_a_flat_track_needs_no_mirrors_and_no_zero(project):
+    project.config["rig"] = {"type": "flat-track"}
+    project.tables.clear()
+    project.config["sweep"].clear()
+    table = rows(SIDESLIP[SIDESLIP > 0.5], 2.0, side=0.0)
+    project.add("half.csv", table)
+    found, warnings = load(project)
+    assert np.all(found.phi_t == 0.0)
+    assert len(warnings) == 1
+    assert "one load" in warnings[0]
+
+
+@pytest.mark.parametrize(
+    ("spoil", "said"),
+    [
+        (lambda p: p.keep("sideslip_1500.csv", "camber_1500.csv", "backward_1500.csv"), "one load"),
+        (lambda p: p.keep(*(n for n in p.tables if "backward" not in n)), "no backward runs"),
+        (lambda p: [t.pop("Mz_Nm") for t in p.tables.values()], "Mz_Nm was not measured"),
+    ],
+)
+def test_thin_programmes_warn_and_go_on(project, spoil, said):
+    spoil(project)
+    _, warnings = load(project)
+    assert any(said in sentence for sentence in warnings)
