@@ -34,7 +34,7 @@ class InputError(Exception):
         column: str | None = None,
         key: str | None = None,
     ) -> None:
-        self.sentence = sentence
+        self.sentence = " ".join(sentence.split())
         self.file = None if file is None else Path(file)
         self.line = line
         self.column = column

@@ -13,6 +13,7 @@ from typing import Any
 
 import numpy as np
 import tomli_w
+from threadpoolctl import threadpool_limits
 
 import mffit
 import tir
@@ -92,7 +93,8 @@ def build(config: Config | Mapping[str, Any] | str | Path, out: str | Path | Non
     base = read_base(config)
     progress("measuring the camber reduction factor")
     corrected, parts, measured = measure(config, points, base)
-    fitted = fitting.fit(config, corrected, parts, measured, base, progress)
+    with threadpool_limits(1):  # the matrices are small: threads cost more than they bring
+        fitted = fitting.fit(config, corrected, parts, measured, base, progress)
     measured = measured.with_model(
         epsilon_gamma_model=fitted.epsilon_gamma_model, pecp1=_number(fitted.written, "PECP1", measured)
     )
@@ -153,8 +155,10 @@ def diagnose(
     points, _ = ingestion.load(config, check_physics=False)
     base = read_base(config)
     tyre = _model(config, model, progress)
-    diagnosis = find_effects(points, tyre, config, effects=effects, progress=progress)
-    if any(found.effect.kind == "rig" for found in diagnosis.effects):
+    with threadpool_limits(1):
+        diagnosis = find_effects(points, tyre, config, effects=effects, progress=progress)
+    disc = config.rig.type == "rotating-disk"
+    if disc and any(found.effect.kind == "rig" for found in diagnosis.effects):
         diagnosis = replace(diagnosis, notes=(*diagnosis.notes, _redone(config, points, diagnosis, base)))
     if out is not None:
         write_diagnosis(diagnosis, Path(out))
@@ -177,9 +181,8 @@ def _model(config: Config, model: Tyre | str | Path | None, progress: Progress) 
 def _redone(config: Config, points: Points, diagnosis: Diagnosis, base: Tyre | None) -> str:
     """The direct method with the rig's faults taken off, in one sentence."""
     names = " and ".join(f.effect.name for f in diagnosis.effects if f.effect.kind == "rig")
-    play = diagnosis.faults.backlash_deg
-    mended = config.model_copy(update={"rig": config.rig.model_copy(update={"backlash_deg": play})})
-    without = corrected_points(points, replace(diagnosis.faults, backlash_deg=0.0))
+    mended = config.model_copy(update={"rig": config.rig.model_copy(update={"backlash_deg": 0.0})})
+    without = corrected_points(points, diagnosis.state)
     results = []
     for settings, chosen in ((config, points), (mended, without)):
         try:

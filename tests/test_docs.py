@@ -89,6 +89,15 @@ def test_every_key_of_rig_toml_is_described():
     assert not missing, f"docs/simulate.md does not describe {', '.join(missing)}"
 
 
+@pytest.mark.parametrize(
+    "example", re.findall(r"^```python\n(.*?)```", text_of(ROOT / "README.md"), re.DOTALL | re.MULTILINE)
+)
+def test_the_examples_of_the_readme_run(example, tmp_path, monkeypatch):
+    (tmp_path / "samples").symlink_to(ROOT / "samples")
+    monkeypatch.chdir(tmp_path)
+    exec(compile(example, "README.md", "exec"), {})
+
+
 def test_the_readme_says_how_to_run_and_how_to_test():
     blocks = re.findall(
         r"<!-- ci:(\w+) -->\n```(?:bash|sh|console)\n(.*?)```", text_of(ROOT / "README.md"), re.DOTALL

@@ -102,7 +102,7 @@ def _sentence(detail: Any, key: str, near: str) -> str:
 
 def _quoted(given: Any) -> str:
     if isinstance(given, str):
-        return f'"{given}"'
+        return f'"{given}"' if len(given) <= 60 else f'"{given[:60]}..."'
     if isinstance(given, bool):
         return "true" if given else "false"
     if isinstance(given, dict):

@@ -81,7 +81,10 @@ class Problem:
     def _anchor(self, free: Free) -> tuple[float, float]:
         """Current value, and the unit of spread and scan."""
         current = self.start.number(free.name, self.points)
-        return current, (max(abs(current), 1e-9) if free.relative else 1.0)
+        if not free.relative:
+            return current, 1.0
+        # A coefficient that the model has at zero gives no scale; the width of its plausible values does.
+        return current, abs(current) if current else 0.2 * (free.upper - free.lower)
 
     def _descend(self, effects, moving: list[Free], fixed: Mapping[str, float], start: Mapping[str, float]) -> Hypothesis:
         """Gauss-Newton with step halving on chi2 plus the spreads' prior."""

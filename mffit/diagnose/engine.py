@@ -12,10 +12,10 @@ from mffit.diagnose.candidates import Hypothesis, Problem
 from mffit.diagnose.needs import missing
 from mffit.diagnose.noise import Noise, noise_model
 from mffit.diagnose.result import Diagnosis, Found
-from mffit.diagnose.selection import Step, projected_cosine, select
+from mffit.diagnose.selection import Step, price, projected_cosine, select
 from mffit.diagnose.state import State
 from mffit.diagnose.ties import separation
-from mffit.diagnose.unknown import Bump, BumpScan, bump_scan
+from mffit.diagnose.unknown import Bump, bump_scan
 from mffit.diagnose.validate import gap, validate
 from mffit.diagnose.where import Region, where
 from mffit.effects import CATALOG, Effect
@@ -62,7 +62,8 @@ def diagnose(
     progress("comparing simulation and measurement")
     points = thinned(points)
     declared = RigFaults(backlash_deg=config.rig.backlash_deg)
-    start = State(dict(tyre.values), declared, config.model.turn_slip, config.model.star)
+    simulates_spin = config.model.turn_slip and bool(np.any(points.phi_t))
+    start = State(dict(tyre.values), declared, simulates_spin, config.model.star)
     refuse_strangers(points, tyre, start)
     noise = noise_model(points, start, config.model.u_coefficients)
     candidates, notes = possible(effects, points, start)
@@ -70,7 +71,7 @@ def diagnose(
         candidates = []
         notes.append("One sweep cannot tell causes apart: add sweeps at another load, camber or direction.")
     progress("trying every effect")
-    problem, scan, chosen, steps, bump = _explained(points, start, noise, candidates)
+    problem, chosen, steps, bump = _explained(points, start, noise, candidates)
     if candidates and steps and not (bump.found and not chosen.effects):
         inflation = _lack_of_fit(problem, chosen)
         if inflation > 1.0:
@@ -78,21 +79,21 @@ def diagnose(
                 f"The model misses the points by more than their noise whatever is added; uncertainties were enlarged {inflation:.1f} "
                 "times so that effects are judged against the misfit that remains."
             )
-            problem, scan, chosen, steps, bump = _explained(points, start, noise.inflated(inflation), candidates)
+            problem, chosen, steps, bump = _explained(points, start, noise.inflated(inflation), candidates)
     progress("checking on left-out sweeps")
     return _record(problem, tyre, config, chosen, steps, bump, notes, noise)
 
 
-def _explained(points, start, noise, candidates) -> tuple[Problem, BumpScan, Hypothesis, list[Step], Bump]:
-    """Select effects while none of them is beaten by structure that no effect has."""
+def _explained(points, start, noise, candidates) -> tuple[Problem, Hypothesis, list[Step], Bump]:
+    """Select effects, unless structure that no effect has explains more than all of them together."""
     problem = Problem(points, start, noise)
     scan = bump_scan(points, noise)
-
-    def accept(step: Step) -> bool:
-        return not (rival := scan.best(step.before)).found or step.gain > rival.gain - step.threshold
-
-    chosen, steps = select(problem, candidates, accept) if candidates else (problem.null, [])
-    return problem, scan, chosen, steps, scan.best(chosen)
+    rival = scan.best(problem.null)
+    chosen, steps = select(problem, candidates) if candidates else (problem.null, [])
+    gained = chosen.log_evidence - problem.null.log_evidence - len(chosen.effects) * price(len(candidates))
+    if rival.found and rival.gain > gained:
+        return problem, problem.null, steps[:1], rival
+    return problem, chosen, steps, scan.best(chosen)
 
 
 def thinned(points: Points) -> Points:
@@ -157,7 +158,7 @@ def _record(problem: Problem, tyre: Tyre, config, chosen: Hypothesis, steps, bum
     points = problem.points
     before, after = problem.start.predict(points), chosen.state.predict(points)
     residual_before, residual_after = problem.measured - before, problem.measured - after
-    found = tuple(_found(problem, chosen, steps, effect) for effect in chosen.effects)
+    found = tuple(_found(problem, chosen, steps, effect, noise) for effect in chosen.effects)
     remaining = where(points, residual_after, problem.noise)
     p_value = float(chi2_distribution.sf(chosen.chi2, max(len(chosen.residual) - len(chosen.numbers), 1)))
     unexplained = bump.found and (p_value < 0.05 or not chosen.effects)
@@ -170,7 +171,7 @@ def _record(problem: Problem, tyre: Tyre, config, chosen: Hypothesis, steps, bum
         after=after,
         gap_before=gap(residual_before, noise),
         gap_after=gap(residual_after, noise),
-        validation=validate(problem, chosen),
+        validation=validate(problem, chosen, noise),
         where=where(points, residual_before, problem.noise),
         effects=found,
         alternatives=_alternatives(steps, chosen, weights),
@@ -187,7 +188,7 @@ def _record(problem: Problem, tyre: Tyre, config, chosen: Hypothesis, steps, bum
     )
 
 
-def _found(problem: Problem, chosen: Hypothesis, steps: Sequence[Step], effect: Effect) -> Found:
+def _found(problem: Problem, chosen: Hypothesis, steps: Sequence[Step], effect: Effect, noise: Noise) -> Found:
     """What is said of one accepted effect: judged beside all the others that were accepted."""
     others = tuple(e for e in chosen.effects if e.id != effect.id)
     step = next((s for s in steps if s.best.effects[-1].id == effect.id), steps[min(len(steps), len(chosen.effects)) - 1])
@@ -216,7 +217,7 @@ def _found(problem: Problem, chosen: Hypothesis, steps: Sequence[Step], effect: 
         effect=effect,
         confidence=certainty * share[effect.id] / sum(share.values()),
         parameters={n: (chosen.numbers[n], chosen.stderr.get(n, 0.0)) for n in effect.parameters},
-        gap_after=gap(problem.measured - upto.state.predict(problem.points), problem.noise),
+        gap_after=gap(problem.measured - upto.state.predict(problem.points), noise),
         tied_with=tuple(t.effects[-1].id for t in tied),
         separate_by=best.sentence() if best else "",
         cosines={t.effects[-1].id: projected_cosine(chosen, t) for t in tied},

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -58,16 +58,21 @@ def forward_step(problem: Problem, before: Hypothesis, candidates: Sequence[Effe
     taken = {effect.id for effect in before.effects}
     trials = [problem.fit((*before.effects, e), before.numbers) for e in candidates if e.id not in taken]
     trials.sort(key=lambda t: -(t.log_evidence + t.effects[-1].prior))
-    return Step(before, tuple(trials), math.log(max(len(trials), 1)) + MARGIN)
+    return Step(before, tuple(trials), price(len(trials)))
 
 
-def select(problem: Problem, candidates: Sequence[Effect], accept: Callable[[Step], bool]) -> tuple[Hypothesis, list[Step]]:
-    """Forward steps until nothing passes ``accept``; after each, exchange and drop what became needless."""
+def price(candidates: int) -> float:
+    """Gain of log evidence that an effect must bring: the choice among all candidates, and a margin."""
+    return math.log(max(candidates, 1)) + MARGIN
+
+
+def select(problem: Problem, candidates: Sequence[Effect]) -> tuple[Hypothesis, list[Step]]:
+    """Forward steps until nothing passes; after each, exchange and drop what became needless."""
     current, steps = problem.null, []
     while len(current.effects) < MOST_EFFECTS:
         step = forward_step(problem, current, candidates)
         steps.append(step)
-        if not step.passes or not accept(step):
+        if not step.passes:
             break
         current = _improved(problem, step.best, candidates)
     return current, steps
@@ -91,7 +96,7 @@ def _improved(problem: Problem, current: Hypothesis, candidates: Sequence[Effect
     for effect in current.effects if len(current.effects) > 1 else ():
         rest = tuple(e for e in current.effects if e.id != effect.id)
         without = problem.fit(rest, _numbers_of(rest, current))
-        if current.log_evidence - without.log_evidence < math.log(len(candidates)) + MARGIN:
+        if current.log_evidence - without.log_evidence < price(len(candidates)):
             current = without
             break
     return current

@@ -46,8 +46,9 @@ def gap(residual: np.ndarray, noise: Noise) -> Gap:
     return Gap(_rms(residual[:n]), _rms(residual[n:]), float(white @ white) / max(len(white), 1))
 
 
-def validate(problem: Problem, hypothesis: Hypothesis) -> Validation:
-    """Refit the hypothesis without each group of sweeps and predict that group."""
+def validate(problem: Problem, hypothesis: Hypothesis, noise: Noise | None = None) -> Validation:
+    """Refit the hypothesis without each group of sweeps and predict that group; the gap is in units of ``noise``."""
+    noise = noise or problem.noise
     points = problem.points
     before = problem.measured - problem.start.predict(points)
     held_out = before.copy()
@@ -65,7 +66,7 @@ def validate(problem: Problem, hypothesis: Hypothesis) -> Validation:
             held_out[rows] = points.Fy[out] - predicted[: out.sum()]
             held_out[rows + n] = points.Mz[out] - predicted[out.sum() :]
     method = f"{len(folds)} groups of whole sweeps left out in turn"
-    return Validation(method, gap(before, problem.noise), gap(held_out, problem.noise), held_out)
+    return Validation(method, gap(before, noise), gap(held_out, noise), held_out)
 
 
 def _rms(x: np.ndarray) -> float:

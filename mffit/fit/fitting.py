@@ -146,6 +146,7 @@ def _problem(config, points: Points, values, measured) -> tuple[Problem, bool]:
         prior={},
         envelope=envelope(covered_ranges(points)),
         tie=tie,
+        turn_slip=config.rig.type == "rotating-disk",
     )
     return problem, tied
 

@@ -93,7 +93,7 @@ def _fit_stage(problem: Problem, stage: Stage, names, values, base) -> Mapping[s
     )
     part, _ = _reweighted(part, values)
     start = {name: values[name] for name in names}
-    return solve(part.residual, start, _bounds(names), max_steps=25, tolerance=1e-4).values
+    return solve(part.residual, start, _bounds(names), max_steps=15, tolerance=1e-3).values
 
 
 def _used_by(stage: Stage, problem: Problem) -> np.ndarray:
@@ -112,7 +112,7 @@ def _polish(problem: Problem, values: dict[str, float], base: dict[str, float]) 
     stated = problem
     problem, scale = _reweighted(stated.settled(values), values)
     ties = _ties(problem.points, values, base)
-    solution = _solve(problem, values, ties, tolerance=1e-5)
+    solution = _solve(problem, values, ties, tolerance=1e-4)
     problem, scale = _reweighted(stated.settled(solution.values), solution.values)
     tied = {name for name in ties if name in IF_IDENTIFIED}
     released = frozenset(tied & _identified(problem, solution))
@@ -121,7 +121,7 @@ def _polish(problem: Problem, values: dict[str, float], base: dict[str, float]) 
     ties = _ties(problem.points, values, base, released)
     values = {n: v for n, v in solution.values.items() if n not in unmoved}
     problem = dataclasses.replace(problem, fixed={**problem.fixed, **{n: base[n] for n in unmoved}})
-    solution = _solve(problem, values, ties, tolerance=1e-7)
+    solution = _solve(problem, values, ties, tolerance=1e-6)
     names = list(solution.values)
     cov = covariance(solution.jacobian)
     stderr = dict(zip(names, np.sqrt(np.diag(cov)).tolist(), strict=True))

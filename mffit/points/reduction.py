@@ -14,9 +14,9 @@ from mffit.points.steady import Settings, Stretch, settled, stretches
 from mffit.sweeps import Sweep
 
 CHANNELS = ("alpha", "gamma", "Fz", "p", "V", "Fy", "Mz", "Mx", "My", "T", "t", "u_Fy", "u_Mz", "iteration")
-HARMLESS_FORCE = 0.01
+HARMLESS_FORCE = 0.02
 """Drift of Fy within a stretch, per load, that is averaged rather than refused."""
-HARMLESS_ARM = 0.001
+HARMLESS_ARM = 0.002
 """The same for Mz [m]."""
 SHOWN = 3  # dropped stretches named one by one
 CONTINUOUS_STEP = 0.1  # s, over which a continuous sweep is averaged

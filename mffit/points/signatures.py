@@ -23,7 +23,7 @@ STRAIGHT = np.radians(1.5)
 LARGE_CAMBER = np.radians(20.0)
 CLEAR = 4.0
 """Standard errors by which a slope must differ from zero for its sign to count."""
-SMALLEST_RANGE = np.radians(0.4)
+SMALLEST_RANGE = np.radians(0.02)
 """A smaller range of angles [rad] has no slope."""
 WEAK_FORCE = 0.01
 """A turn-slip force below this share of the load has no direction."""

@@ -13,6 +13,7 @@ from mffit.points import Points
 from mffit.report.curves import Condition, conditions
 from tir.parameters import BY_NAME
 
+MOST_FRAMES = 3
 UNITS = {"Fy": "N", "Mz": "Nm"}
 GAP_KEYS = {"Fy": "Fy_rmse_N", "Mz": "Mz_rmse_Nm"}
 FLOOR_KEYS = {"Fy": "Fy_N", "Mz": "Mz_Nm"}
@@ -49,6 +50,10 @@ class RankedStep:
     candidates: tuple[Candidate, ...]
     threshold: float  #: gain needed to be named
 
+    @property
+    def passed(self) -> bool:
+        return bool(self.candidates) and self.candidates[0].gain > self.threshold
+
 
 @dataclass(frozen=True, slots=True)
 class DiagnosisView:
@@ -65,9 +70,16 @@ class DiagnosisView:
     descriptions: Mapping[str, str]  #: coefficient -> what it is
 
     @property
-    def frames(self) -> list[Mapping[str, Any]]:
-        """Regions to be framed in the maps."""
-        return [*self.summary["where"], *self.summary["unexplained_where"]]
+    def changed(self) -> bool:
+        """Whether anything was added, so that before and after differ."""
+        return bool(self.summary["effects"])
+
+    def frames(self, channel: str) -> list[Mapping[str, Any]]:
+        """Regions of a channel to be framed in the maps; more of them would hide the map."""
+        own = [
+            r for r in (*self.summary["unexplained_where"], *self.summary["where"]) if r["channel"] == channel
+        ]
+        return own[:MOST_FRAMES]
 
 
 def view_of(diagnosis: Any) -> DiagnosisView:

@@ -10,7 +10,7 @@ import numpy as np
 
 from mffit.points import Points
 from mffit.report.curves import Curve
-from mffit.rig import readings
+from mffit.rig import NO_FAULTS, RigFaults, readings
 
 STEPS = 41
 
@@ -25,22 +25,22 @@ class Line:
 
 
 def model_lines(
-    tyre: Any, points: Points, curves: Sequence[Curve], *, turn_slip: bool = True
+    tyre: Any, points: Points, curves: Sequence[Curve], faults: RigFaults = NO_FAULTS
 ) -> dict[tuple, Line]:
     """A line per curve, by ``curve.key``, at the curve's median load, pressure, speed and held angle.
 
     Parameters
     ----------
     tyre : the model, right with turn slip on
-    points : the measured points (n,)
+    points : the measured points (n,), angles as read
     curves : which of them belong together
-    turn_slip : whether the model knows spin
+    faults : what is known of the rig, so that the line is what it would read
     """
     if not curves:
         return {}
     grid = _along(points, curves)
     mirrored = grid.replace(alpha=-grid.alpha, gamma=-grid.gamma)
-    here, there = (readings(tyre, p, turn_slip=turn_slip) for p in (grid, mirrored))
+    here, there = (readings(tyre, p, faults) for p in (grid, mirrored))
     lines = {}
     for i, curve in enumerate(curves):
         rows = slice(i * STEPS, (i + 1) * STEPS)

@@ -26,7 +26,6 @@ DIVERGING = "RdBu_r"
 
 DPI = 110
 WIDTH = 11.0  # inch; the page scales pictures down, never up
-MARKERS = ("o", "s", "^", "D", "v", "P")
 
 SETTINGS: Any = {
     "font.family": ["DejaVu Sans"],  # comes with matplotlib, so pictures are the same on every machine

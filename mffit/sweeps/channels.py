@@ -61,8 +61,8 @@ def nearest_heading(channel: Channel, headings: Iterable[str]) -> str:
     return spelt[near[0]] if near else starts[0] if starts else ""
 
 
-def nearest_channel(heading: str) -> str:
-    """The channel whose name is spelt almost like a heading; empty if none is."""
+def nearest_channel(heading: str, *, likeness: float = 0.8) -> str:
+    """The channel whose name is spelt most like a heading; empty below a ``likeness`` of 0 to 1."""
     lower = {name.lower(): name for name in BY_NAME}
-    near = difflib.get_close_matches(heading.lower(), lower, n=1, cutoff=0.8)
+    near = difflib.get_close_matches(heading.lower(), lower, n=1, cutoff=likeness)
     return lower[near[0]] if near else ""

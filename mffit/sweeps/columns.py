@@ -17,6 +17,7 @@ from mffit.sweeps.units import UnknownUnitError, converted
 
 DIRECTIONS = {"forward": 1, "backward": -1, "1": 1, "+1": 1, "-1": -1}
 MAY_BE_BLANK = frozenset({"iteration", "point"})
+LONGEST_QUOTE = 40
 NUMBER_WITH_UNIT = re.compile(r"[-+]?[\d.]+(?:[eE][-+]?\d+)?\s*([^\d\s.,+-].*)")
 DECIMAL_COMMA = re.compile(r"[-+]?\d+,\d+")
 
@@ -119,7 +120,7 @@ def _channel(
 def _directions(text: CsvText, heading: str, given: tuple[str, ...]) -> np.ndarray:
     for row, cell in enumerate(given):
         if cell.lower() not in DIRECTIONS:
-            sentence = f'"{cell}" is no direction; write forward or backward'
+            sentence = f'"{_cut(cell)}" is no direction; write forward or backward'
             raise InputError(sentence, file=text.path, line=text.lines[row], column=heading)
     return np.array([DIRECTIONS[cell.lower()] for cell in given])
 
@@ -138,6 +139,7 @@ def _numbers(text: CsvText, channel: Channel, heading: str, given: tuple[str, ..
 
 def _bad_cell(cell: str, channel: Channel) -> str:
     """Why a cell is no finite number and what to do."""
+    cell = _cut(cell)
     if cell == "":
         return "this cell is empty; complete it or remove the row"
     if cell.lower().lstrip("+-") in ("nan", "inf", "infinity", "na", "n/a", "null"):
@@ -151,6 +153,11 @@ def _bad_cell(cell: str, channel: Channel) -> str:
             f'unit = "{unit[1].strip()}" for this column under [sweep.columns]'
         )
     return f'"{cell}" is a text where a number in {channel.unit or "plain digits"} should be; correct it'
+
+
+def _cut(cell: str) -> str:
+    """A cell short enough to be quoted; a quote that is never closed swallows half a file."""
+    return cell if len(cell) <= LONGEST_QUOTE else f"{cell[:LONGEST_QUOTE]}..."
 
 
 def _in_contract_unit(values: np.ndarray, channel: Channel, column: Column) -> np.ndarray:

@@ -100,15 +100,15 @@ def _check_headings(path: Path, line: int, headings: tuple[str, ...], text: str)
             decimals = " and decimal points" if _has_decimal_commas(text, separator) else ""
             sentence = f"is separated by {word}; save it with commas between the cells{decimals}"
             raise InputError(sentence, file=path, line=line)
+    if all(_is_number(heading) for heading in headings):
+        sentence = "there are numbers where the headings should be; add a first line of headings"
+        raise InputError(sentence, file=path, line=line)
     if "" in headings:
         number = headings.index("") + 1
         raise InputError(f"heading {number} is empty; name or remove that column", file=path, line=line)
     twice = [heading for number, heading in enumerate(headings) if heading in headings[:number]]
     if twice:
         raise InputError("stands twice; rename or remove one", file=path, line=line, column=twice[0])
-    if all(_is_number(heading) for heading in headings):
-        sentence = "there are numbers where the headings should be; add a first line of headings"
-        raise InputError(sentence, file=path, line=line)
 
 
 def _has_decimal_commas(text: str, separator: str) -> bool:

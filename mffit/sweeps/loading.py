@@ -76,7 +76,7 @@ def _columns(config: Config, index: int, entry: SweepTable) -> Columns:
 
     for name in entry.columns:
         if name not in BY_NAME:
-            near = nearest_channel(name)
+            near = nearest_channel(name, likeness=0.5)
             hint = f'did you mean "{near}"?' if near else f"known are {', '.join(BY_NAME)}"
             raise refuse(f"is no column of a sweep; {hint}", f"columns.{name}")
     if not entry.file.endswith(ENDINGS):

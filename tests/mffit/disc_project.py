@@ -1,7 +1,8 @@
 """A small campaign on a disc, from a tyre of four lines, with every file open to damage.
 
-The tyre shares with real ones only what the way in relies on: the signs and rough sizes of its slopes, a camber thrust
-of about 0.7 Fz tan(gamma), and a turn-slip force of a fifth of the load. Nothing here comes from the project's model.
+The tyre shares with real ones only what the way in relies on: the signs and rough sizes of its slopes, a
+camber thrust of about 0.7 Fz tan(gamma), and a turn-slip force of a fifth of the load. Nothing here comes
+from the project's model.
 """
 
 from __future__ import annotations
@@ -26,7 +27,9 @@ def side_force(alpha: Any, gamma: Any, Fz: Any, *, side: float = -1.0, direction
 
 def moment(alpha: Any, gamma: Any, Fz: Any, *, side: float = -1.0, direction: Any = 1.0) -> Any:
     """Mz [Nm], ISO-W: restoring with a trail that fades, and the spin of the path."""
-    return Fz * (0.2 * alpha * np.exp(-((alpha / 0.1) ** 2)) - 0.006 * np.sin(gamma) + 0.004 * side * direction)
+    return Fz * (
+        0.2 * alpha * np.exp(-((alpha / 0.1) ** 2)) - 0.006 * np.sin(gamma) + 0.004 * side * direction
+    )
 
 
 def rows(
@@ -90,7 +93,12 @@ class Project:
         for name, table in self.tables.items():
             table.to_csv(self.folder / name, index=False)
         path = self.folder / "tyre.toml"
-        path.write_bytes(tomli_w.dumps(self.config).encode())
+        sweeps = [
+            "[[sweep]]\n" + tomli_w.dumps(entry).replace("[columns", "[sweep.columns")
+            for entry in self.config["sweep"]
+        ]
+        rest = tomli_w.dumps({name: table for name, table in self.config.items() if name != "sweep"})
+        path.write_text("\n".join([rest, *sweeps]))
         return path
 
     def text(self, file: str) -> str:

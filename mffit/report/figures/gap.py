@@ -12,6 +12,7 @@ from mffit.report import style
 from mffit.report.diagnosis_view import (
     FLOOR_KEYS,
     GAP_KEYS,
+    Candidate,
     DiagnosisView,
     GapChannel,
     RankedStep,
@@ -27,6 +28,8 @@ MOST_CONDITIONS = 6
 MOST_CANDIDATES = 12
 SMALLEST_GAIN = 1.0
 """Left end of the evidence scale: what gains less is not worth a bar."""
+TIE = 3.0
+"""Log evidence behind the best within which an effect is not told from it: odds of 20 to 1."""
 KIND_COLOURS = {"tyre": style.ACCENT, "rig": style.CONTRAST, "environment": style.CALM}
 SMALLEST_LIMIT, LARGEST_LIMIT = 4.0, 20.0
 """Ends of the maps' scale, in units of noise: never so small that noise looks like structure."""
@@ -37,15 +40,21 @@ def gap_bars(view: DiagnosisView) -> Figure:
     from matplotlib.figure import Figure
 
     panels = len(view.channels) + 1
-    figure = Figure(figsize=(style.WIDTH, 1.95))
-    place = {"left": 0.10, "right": 0.985, "top": 0.86, "bottom": 0.23, "wspace": 0.22}
+    figure = Figure(figsize=(style.WIDTH, 1.95 if view.changed else 1.35))
+    place = {
+        "left": 0.10,
+        "right": 0.985,
+        "top": 1.0 - 0.27 / figure.get_figheight(),
+        "bottom": 0.45 / figure.get_figheight(),
+        "wspace": 0.22,
+    }
     axes = figure.subplots(1, panels, gridspec_kw=place)
     for ax, channel in zip(axes, view.channels, strict=False):
         key = GAP_KEYS[channel.name]
-        _bars(ax, _rows(view, key), view.summary["noise_floor"][FLOOR_KEYS[channel.name]])
+        _bars(ax, _rows(view, key), view.summary["noise_floor"][FLOOR_KEYS[channel.name]], view.changed)
         ax.set_title(f"{channel.name}: rms gap")
         ax.set_xlabel(f"measured − simulated [{channel.unit}]")
-    _bars(axes[-1], _rows(view, "chi2_per_dof"), 1.0)
+    _bars(axes[-1], _rows(view, "chi2_per_dof"), 1.0, view.changed)
     axes[-1].set_title("χ² per degree of freedom")
     axes[-1].set_xlabel("1 = nothing but noise")
     for ax in axes[1:]:
@@ -54,9 +63,10 @@ def gap_bars(view: DiagnosisView) -> Figure:
 
 
 def residuals_before_after(view: DiagnosisView) -> Figure:
-    """Maps side by side: a row per load and pressure, per channel before and after, one colour scale for all."""
+    """Maps side by side: a row per load and pressure, channels before and after, one colour scale for all."""
     shown = most_populated(view.conditions, MOST_CONDITIONS)
-    columns = [(channel, when) for channel in view.channels for when in ("before", "after")]
+    whens = ("before", "after") if view.changed else ("before",)
+    columns = [(channel, when) for channel in view.channels for when in whens]
     limit = colour_limit(view.channels)
     figure, rows = style.panel_grid(
         [len(columns)] * len(shown), 4, height=1.40, legend=False, margins=(0.70, 0.95), gap=(0.22, 0.36),
@@ -66,9 +76,9 @@ def residuals_before_after(view: DiagnosisView) -> Figure:
     for row, condition in zip(rows, shown, strict=True):
         for ax, (channel, when) in zip(row, columns, strict=True):
             drawn = residual_map(ax, view.points, getattr(channel, when), condition.index, limit)
-            ax.set_title(f"{channel.name} {when}, {condition.title}")
+            ax.set_title(f"{channel.name}{' ' + when if view.changed else ''}, {condition.title}")
             if when == "before":
-                _frames(ax, view.frames, channel, condition.load)
+                _frames(ax, view.frames(channel.name), condition.load)
     for ax in rows[-1]:
         ax.set_xlabel("sideslip α [deg]")
     style.label_left(rows, "camber γ [deg]")
@@ -93,10 +103,11 @@ def evidence(view: DiagnosisView) -> Figure:
     tall = 0.85 + 0.185 * count
     figure = Figure(figsize=(style.WIDTH, tall))
     for i, step in enumerate(steps):
-        ax = figure.add_axes((0.155 + 0.335 * i, 0.42 / tall, 0.15, 0.185 * count / tall))
+        ax = figure.add_axes((0.165 + 0.335 * i, 0.42 / tall, 0.15, 0.185 * count / tall))
         _candidates(ax, step)
         after = f"beside {' and '.join(step.beside)}" if step.beside else "one effect alone"
-        ax.set_title(f"Step {i + 1}: {textwrap.shorten(after, 44, placeholder='…')}", x=-0.9)
+        title = f"Step {i + 1}{'' if step.passed else ', nothing passes'}: {after}"
+        ax.set_title(textwrap.shorten(title, 52, placeholder="…"), x=-0.9)
     present = {c.kind for step in steps for c in step.candidates}
     style.legend_above(
         figure, [Patch(color=c, label=kind) for kind, c in KIND_COLOURS.items() if kind in present]
@@ -114,24 +125,38 @@ def _candidates(ax: Axes, step: RankedStep) -> None:
         height=0.66,
         color=[KIND_COLOURS.get(c.kind, style.MUTED) for c in rows],
     )
+    if step.passed:
+        _distances(ax, rows, gains)
     ax.axvline(step.threshold, color=style.INK, lw=1.0, ls="--")
     ax.set_xscale("log")
-    ax.set_xlim(SMALLEST_GAIN, 2.0 * max(10.0, *gains))
-    ax.set_yticks(range(len(rows)), [textwrap.shorten(c.name, 34, placeholder="…") for c in rows])
+    ax.set_xlim(SMALLEST_GAIN, 8.0 * max(10.0, *gains))
+    ax.set_yticks(range(len(rows)), [textwrap.shorten(c.name, 31, placeholder="…") for c in rows])
     ax.set_ylim(len(rows) - 0.4, -0.6)
     ax.grid(axis="y", visible=False)
     ax.minorticks_off()
     ax.set_xlabel("gain in log evidence")
 
 
+def _distances(ax: Axes, rows: Sequence[Candidate], gains: Sequence[float]) -> None:
+    """How far each candidate is behind the best, at the end of its bar; dark where it may be a tie."""
+    for i, (candidate, gain) in enumerate(zip(rows, gains, strict=True)):
+        behind = rows[0].gain - candidate.gain
+        said = "best" if i == 0 else f"−{behind:.3g}"
+        colour = style.INK if behind < TIE else style.MUTED
+        ax.annotate(f" {said}", (gain, i), va="center", fontsize=7.0, color=colour)
+
+
 def _rows(view: DiagnosisView, key: str) -> list[tuple[str, float, float]]:
-    pairs = {"all points": view.summary, "held out": view.summary["validation"]}
+    pairs = {"all points": view.summary}
+    if view.changed:
+        pairs["held out"] = view.summary["validation"]
     return [(name, pair["gap_before"][key], pair["gap_after"][key]) for name, pair in pairs.items()]
 
 
-def _bars(ax: Axes, rows: list[tuple[str, float, float]], floor: float) -> None:
+def _bars(ax: Axes, rows: list[tuple[str, float, float]], floor: float, changed: bool) -> None:
     place = np.arange(len(rows))[::-1] * 1.0
-    for offset, column, colour in ((0.19, 1, style.FAINT), (-0.19, 2, style.ACCENT)):
+    sides = ((0.19, 1, style.FAINT), (-0.19, 2, style.ACCENT)) if changed else ((0.0, 1, style.FAINT),)
+    for offset, column, colour in sides:
         values = [row[column] for row in rows]
         ax.barh(place + offset, values, height=0.34, color=colour)
         for y, value in zip(place + offset, values, strict=True):
@@ -145,14 +170,14 @@ def _bars(ax: Axes, rows: list[tuple[str, float, float]], floor: float) -> None:
     ax.grid(axis="y", visible=False)
 
 
-def _frames(ax: Axes, regions: Sequence[Mapping[str, Any]], channel: GapChannel, load: float) -> None:
-    """A frame around every region of the channel that lies at this load."""
+def _frames(ax: Axes, regions: Sequence[Mapping[str, Any]], load: float) -> None:
+    """A frame around every region that lies at this load."""
     from matplotlib.patches import Rectangle
 
     for item in regions:
         region = item["region"]
         low, high = region.get("Fz_N", (-np.inf, np.inf))
-        if item["channel"] != channel.name or not {"alpha_deg", "gamma_deg"} & region.keys():
+        if not {"alpha_deg", "gamma_deg"} & region.keys():
             continue
         if not low * 0.95 <= load <= high * 1.05:
             continue

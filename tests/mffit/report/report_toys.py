@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from html.parser import HTMLParser
 from pathlib import Path
 from typing import Any
 
@@ -91,10 +92,9 @@ def made_coefficients() -> dict[str, Coefficient]:
     return out
 
 
-def made_result(**changes: Any) -> Result:
-    """A whole result; ``changes`` go to :func:`made_points`, except ``rig``, which goes to tyre.toml."""
-    rig = changes.pop("rig", {"path_radius": R, "backlash_deg": 0.0})
-    settings = config.load(
+def made_config(rig: dict[str, Any] | None = None) -> config.Config:
+    """A tyre.toml; the size would break a page that does not escape."""
+    return config.load(
         {
             "tyre": {
                 "name": "front-1",
@@ -103,11 +103,16 @@ def made_result(**changes: Any) -> Result:
                 "nominal_load": 1500.0,
                 "nominal_pressure": 250.0,
             },
-            "rig": rig,
+            "rig": rig or {"path_radius": R},
             "rolling_radius": [{"effective_radius": 0.2945, "u_effective_radius": 0.0005}],
             "sweep": [{"file": "sideslip.csv"}],
         }
     )
+
+
+def made_result(**changes: Any) -> Result:
+    """A whole result; ``changes`` go to :func:`made_points`, except ``rig``, which goes to tyre.toml."""
+    settings = made_config(changes.pop("rig", None))
     points = made_points(programme(), **changes)
     halves = parts.split(points)
     tyre = tir.read(TRUE)
@@ -118,6 +123,7 @@ def made_result(**changes: Any) -> Result:
         coefficients=made_coefficients(),
         channels={"Fy": agreement(Fy, points.Fy), "Mz": agreement(Mz, points.Mz)},
         odd={"Fy": agreement(Fy, points.Fy), "Mz": agreement(Mz, points.Mz)},
+        points=points,
         Fy_model=Fy,
         Mz_model=Mz,
         stages=(StageRecord("Fy", "Side force at zero camber", ("PKY1",), 41.5, 3.2),),
@@ -137,3 +143,41 @@ def made_result(**changes: Any) -> Result:
         seconds=3.25,
         tir_path="front-1.tir",
     )
+
+
+VOID = frozenset({"meta", "img", "br", "col"})
+
+
+class PageReader(HTMLParser):
+    """Collects tags and text; stops at a tag closed out of order."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.open: list[str] = []
+        self.images: list[dict[str, str | None]] = []
+        self.references: list[str] = []
+        self.text = ""
+
+    def handle_starttag(self, tag, attrs):
+        attributes = dict(attrs)
+        if tag not in VOID:
+            self.open.append(tag)
+        if tag == "img":
+            self.images.append(attributes)
+        self.references += [v for k, v in attributes.items() if k in ("src", "href") and v]
+
+    def handle_endtag(self, tag):
+        assert self.open.pop() == tag
+
+    def handle_data(self, data):
+        if self.open and self.open[-1] != "style":
+            self.text += data + " "
+
+
+def read_page(path: Path) -> PageReader:
+    """The page, with every tag closed."""
+    reader = PageReader()
+    reader.feed(path.read_text(encoding="utf-8"))
+    reader.close()
+    assert reader.open == []
+    return reader

@@ -6,50 +6,14 @@ import base64
 import re
 import subprocess
 import sys
-from html.parser import HTMLParser
 
 import numpy as np
 import pytest
-from report_toys import made_coefficients, made_result
+from report_toys import made_coefficients, made_result, read_page
 
 from mffit.report import write_build
 
-VOID = {"meta", "img", "br", "col"}
 PNG = b"\x89PNG\r\n"
-
-
-class Reader(HTMLParser):
-    """Collects tags and text; stops at a tag closed out of order."""
-
-    def __init__(self) -> None:
-        super().__init__()
-        self.open: list[str] = []
-        self.images: list[dict[str, str | None]] = []
-        self.references: list[str] = []
-        self.text = ""
-
-    def handle_starttag(self, tag, attrs):
-        attributes = dict(attrs)
-        if tag not in VOID:
-            self.open.append(tag)
-        if tag == "img":
-            self.images.append(attributes)
-        self.references += [v for k, v in attributes.items() if k in ("src", "href") and v]
-
-    def handle_endtag(self, tag):
-        assert self.open.pop() == tag
-
-    def handle_data(self, data):
-        if self.open and self.open[-1] != "style":
-            self.text += data + " "
-
-
-def read(path) -> Reader:
-    reader = Reader()
-    reader.feed(path.read_text(encoding="utf-8"))
-    reader.close()
-    assert reader.open == []
-    return reader
 
 
 @pytest.fixture(scope="module")
@@ -61,7 +25,7 @@ def written(result, tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def page(written):
-    return read(written / "report.html")
+    return read_page(written / "report.html")
 
 
 def test_pictures_are_on_disk_and_in_the_page(written, page):
@@ -124,7 +88,7 @@ def test_same_result_gives_the_same_bytes(result, written, tmp_path):
 
 def test_a_flat_track_has_no_spin_and_no_parts(tmp_path):
     write_build(made_result(rig={"type": "flat-track"}, phi_t=0.0), tmp_path)
-    page = read(tmp_path / "report.html")
+    page = read_page(tmp_path / "report.html")
     assert "flat track" in page.text
     assert "turn slip plays no part" in page.text or "turn slip" in page.text
     assert {p.stem for p in (tmp_path / "plots").iterdir()} == {"fit_Fy", "fit_Mz", "residuals"}
@@ -133,12 +97,12 @@ def test_a_flat_track_has_no_spin_and_no_parts(tmp_path):
 def test_without_moment_only_side_force_is_shown(tmp_path):
     write_build(made_result(moment=False), tmp_path)
     assert not [p for p in (tmp_path / "plots").iterdir() if "Mz" in p.stem]
-    assert "Mz misfit" not in read(tmp_path / "report.html").text
+    assert "Mz misfit" not in read_page(tmp_path / "report.html").text
 
 
 def test_without_stated_noise_residuals_are_in_units_of_the_misfit(tmp_path):
     write_build(made_result(u_Fy=np.nan, u_Mz=np.nan), tmp_path)
-    text = read(tmp_path / "report.html").text
+    text = read_page(tmp_path / "report.html").text
     assert "units of the channel's rms misfit" in text
     assert "not stated" in text
 

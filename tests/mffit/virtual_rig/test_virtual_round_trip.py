@@ -11,9 +11,9 @@ from mffit.virtual_rig import load_plan, simulate
 
 @pytest.fixture
 def read_back(content, folder, tmp_path):
-    def points_of(**changes) -> points.Points:
+    def points_of(continuous: bool = False, **changes) -> points.Points:
         simulate(load_plan(content | changes, folder=folder), tmp_path / "out")
-        return points.load(config.load(tmp_path / "out" / "tyre.toml"))[0]
+        return points.load(config.load(tmp_path / "out" / "tyre.toml"), continuous=continuous)[0]
 
     return points_of
 
@@ -39,16 +39,18 @@ def test_a_recorded_sweep_is_reduced_to_its_points(read_back, content):
     first = expected.sweep == 0
     n = int(first.sum())
     np.testing.assert_allclose(found.alpha[:n], expected.alpha[first], atol=1e-4)
-    # A mean over 30 s less the transient, with a memory of 0.8 s, scatters by 6 N and 0.6 Nm; an error estimated
-    # from one such stretch by a third of itself.
+    # A mean over 30 s less the transient, with a memory of 0.8 s, scatters by 6 N and 0.6 Nm; an error
+    # estimated from one such stretch by a third of itself.
     assert np.sqrt(np.mean((found.Fy[:n] - expected.Fy[first]) ** 2)) < 10.0
     assert np.sqrt(np.mean((found.Mz[:n] - expected.Mz[first]) ** 2)) < 1.0
     assert 3.0 < np.median(found.u_Fy[:n]) < 9.0
     assert 0.3 < np.median(found.u_Mz[:n]) < 0.9
 
 
-def test_a_sweep_that_never_rests_is_kept_sample_by_sample(read_back, content):
+def test_a_sweep_that_never_rests_is_marked_continuous(read_back, content):
     sweep, *others = content["sweep"]
-    found = read_back(sweep=[sweep | {"recording": {"hold_s": 0, "steering_deg_per_s": 4}}, *others])
-    assert found.continuous[found.sweep == 0].all()
-    assert np.sum(found.sweep == 0) > 50
+    moving = sweep | {"recording": {"hold_s": 0, "steering_deg_per_s": 2}}
+    found = read_back(continuous=True, sweep=[moving, *others])
+    # 12 deg at 2 deg/s, averaged over tenths of a second
+    assert found.continuous.sum() == pytest.approx(60, abs=3)
+    assert not found.continuous[found.sweep != 0].any()

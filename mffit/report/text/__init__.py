@@ -1,0 +1,7 @@
+"""Plain text for a terminal: functions of records that return str."""
+
+from mffit.report.text.build import build_summary
+from mffit.report.text.diagnosis import diagnosis_summary
+from mffit.report.text.direct import alignment_table, budget_table, spin_summary
+
+__all__ = ["alignment_table", "budget_table", "build_summary", "diagnosis_summary", "spin_summary"]

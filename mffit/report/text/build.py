@@ -1,0 +1,52 @@
+"""The end of a build, for the terminal."""
+
+from __future__ import annotations
+
+import math
+import statistics
+from collections.abc import Mapping
+from typing import Any
+
+from mffit.report.rounding import number, times
+from mffit.report.text.direct import spin_numbers
+from mffit.report.text.layout import blocks, paragraphs, table
+
+
+def build_summary(result: Any) -> str:
+    """What ``mffit build`` prints at its end."""
+    spin, fit = result.measured.to_json(), result.fit
+    parts = []
+    if spin["epsilon_gamma"] is not None:
+        parts.append(spin_numbers(spin))
+    noise = {"Fy": _typical(result.points.u_Fy), "Mz": _typical(result.points.u_Mz)}
+    rows = [
+        (
+            name,
+            str(a.n),
+            f"{number(a.rmse, digits=3)} {unit}",
+            times(a.rmse, noise[name]),
+            f"{number(a.max_abs, digits=3)} {unit}",
+            number(a.r2, 5),
+        )
+        for name, unit in (("Fy", "N"), ("Mz", "Nm"))
+        if (a := fit.channels.get(name)) is not None and a.n
+    ]
+    parts.append(table(("fit", "points", "rms", "of noise", "largest", "R2"), rows))
+    parts.append(_statuses(fit.coefficients))
+    parts.append(paragraphs(fit.explanations))
+    return blocks(parts)
+
+
+def _statuses(coefficients: Mapping[str, Any]) -> str:
+    counts: dict[str, int] = {}
+    for c in coefficients.values():
+        counts[c.status] = counts.get(c.status, 0) + 1
+    text = "coefficients: " + ", ".join(f"{n} {status}" for status, n in counts.items())
+    bound = [name for name, c in coefficients.items() if c.at_bound]
+    return text + (f"; at a bound: {' '.join(bound)}" if bound else "")
+
+
+def _typical(u: Any) -> float:
+    """Median of the known uncertainties; a few doubtful points do not count as the noise."""
+    known = [x for x in u if math.isfinite(x)]
+    return statistics.median(known) if known else math.nan

@@ -1,0 +1,299 @@
+"""Every key of the contract is taken, everything else is refused with its line and the nearest known key."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from mffit import config
+from mffit.config.locate import lines_of_keys
+from mffit.config.problems import known_keys
+from mffit.errors import InputError
+
+MINIMAL = """[tyre]
+name = "front-1"
+unloaded_radius = 0.2998
+nominal_load = 1500
+nominal_pressure = 250
+
+[rig]
+path_radius = 1.323
+
+[[sweep]]
+file = "a.csv"
+
+[[sweep]]
+file = "b.csv"
+"""
+
+COMPLETE = """[tyre]
+name = "front-1"
+size = "120/70ZR17"
+unloaded_radius = 0.2998
+width = 0.120
+rim_radius = 0.2159
+nominal_load = 1500
+nominal_pressure = 250
+nominal_speed = 10
+side = "symmetric"
+base = "base.tir"
+
+[rig]
+type = "rotating-disk"
+axes = "adapted-sae"
+force_frame = "C"
+path_centre = "right"
+u_length = 0.001
+backlash_deg = 0.17
+u_backlash_deg = 0.01
+u_loadcell_offset_N = 10
+u_camber_alignment_deg = 0.5
+u_slip_alignment_N = 25
+
+[rig.path]
+shaft_diameter = 0.080
+L_B = 1.140
+L_C = 0.083
+L_D = 0.203
+
+[[rolling_radius]]
+load_N = 1500
+revolutions = 4
+angle_start_deg = 12.0
+angle_end_deg = 187.0
+u_angle_deg = 1.0
+u_arc_m = 0.001
+
+[[rolling_radius]]
+load_N = 2000
+effective_radius = 0.2924
+u_effective_radius = 0.0004
+
+[camber_stiffness]
+method = "secant"
+angle_deg = 15
+
+[spin]
+exact = "turn-slip"
+pecp1 = "model"
+
+[model]
+turn_slip = false
+star = true
+u_coefficients = 0.004
+
+[[sweep]]
+file = "sideslip.csv"
+direction = "forward"
+mount = "flipped"
+[sweep.columns]
+Fy_N = { column = "FY", unit = "kN", scale = -1 }
+alpha_deg = "SA"
+
+[[sweep]]
+file = "zero.csv.gz"
+direction = "backward"
+"""
+
+
+def write(folder: Path, text: str) -> Path:
+    path = folder / "tyre.toml"
+    path.write_text(text)
+    return path
+
+
+def refusal(folder: Path, text: str) -> InputError:
+    with pytest.raises(InputError) as caught:
+        config.load(write(folder, text))
+    return caught.value
+
+
+def test_every_key_of_the_contract_is_taken(tmp_path):
+    found = config.load(write(tmp_path, COMPLETE))
+    assert found.tyre.side == "symmetric"
+    assert found.rig.path.L_B == 1.14
+    assert found.rolling_radius[1].effective_radius == 0.2924
+    assert found.sweep[0].columns["Fy_N"].scale == -1.0
+    assert found.sweep[0].columns["alpha_deg"].column == "SA"
+    assert found.path == tmp_path / "tyre.toml"
+    assert found.base_path == tmp_path / "base.tir"
+
+
+def test_defaults_are_those_of_the_contract(tmp_path):
+    found = config.load(write(tmp_path, MINIMAL))
+    rig = found.rig
+    assert (rig.type, rig.axes, rig.force_frame, rig.path_centre) == ("rotating-disk", "iso", "W", "left")
+    assert (rig.u_path_radius, rig.u_length, rig.backlash_deg) == (0.0018, 0.001, 0.0)
+    assert (rig.u_loadcell_offset_N, rig.u_camber_alignment_deg, rig.u_slip_alignment_N) == (10, 0.5, 25)
+    assert (found.camber_stiffness.method, found.camber_stiffness.angle_deg) == ("slope", 15.0)
+    assert (found.spin.exact, found.spin.pecp1) == ("normal", "direct")
+    assert (found.model.turn_slip, found.model.star, found.model.u_coefficients) == (True, False, 0.0)
+    assert (found.sweep[0].direction, found.sweep[0].mount) == (None, "normal")
+
+
+def test_the_path_radius_is_that_of_the_four_tape_measures(tmp_path):
+    """(19): half the shaft, the gap, and the middle of the sidewalls: 0.040 + 1.140 + 0.143 m."""
+    assert config.load(write(tmp_path, COMPLETE)).rig.radius == pytest.approx(1.323, abs=1e-12)
+
+
+def test_the_rolling_radius_follows_from_one_revolution_of_the_disc():
+    """(18): 4 turns and 175 degrees over a circle of 1.323 m: 1.323 / (4 + 175/360)."""
+    row = config.RollingRadiusTable(revolutions=4.0, angle_start_deg=12.0, angle_end_deg=187.0)
+    assert config.effective_radius(row, 1.323) == pytest.approx(1.323 / (4 + 175 / 360), rel=1e-12)
+
+
+def test_phi_t_has_the_sign_of_the_path_centre():
+    """A centre to the left turns the rig to the left, psi_dot > 0: phi_t = -psi_dot/V = -1/R."""
+    rig = config.RigTable(path_radius=1.25)
+    assert config.path_curvature(rig) == -0.8
+    assert config.path_curvature(rig.model_copy(update={"path_centre": "right"})) == 0.8
+    assert config.path_curvature(config.RigTable(type="flat-track")) == 0.0
+
+
+def test_a_flat_track_needs_no_path(tmp_path):
+    found = config.load(write(tmp_path, MINIMAL.replace("path_radius = 1.323", 'type = "flat-track"')))
+    assert found.rig.radius is None
+
+
+def test_a_loaded_configuration_is_given_back(tmp_path):
+    found = config.load(write(tmp_path, MINIMAL))
+    assert config.load(found) is found
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "key", "line", "said"),
+    [
+        ("unloaded_radius", "unloded_radius", "tyre.unloded_radius", 3, 'did you mean "unloaded_radius"'),
+        ('name = "front-1"', "", "tyre.name", 1, "missing"),
+        ("nominal_load = 1500", "", "tyre.nominal_load", 1, "missing"),
+        ("nominal_load = 1500", "nominal_load = 1.5", "tyre.nominal_load", 4, "kilonewtons"),
+        ("nominal_load = 1500", "nominal_load = -1500", "tyre.nominal_load", 4, "outside"),
+        ("nominal_pressure = 250", "nominal_pressure = 2.5", "tyre.nominal_pressure", 5, "bar"),
+        ("nominal_pressure = 250", "nominal_pressure = 250000", "tyre.nominal_pressure", 5, "Pa"),
+        ("unloaded_radius = 0.2998", "unloaded_radius = 299.8", "tyre.unloaded_radius", 3, "millimetres"),
+        ("unloaded_radius = 0.2998", "unloaded_radius = true", "tyre.unloaded_radius", 3, "not a number"),
+        ("path_radius = 1.323", "path_radius = 1323", "rig.path_radius", 8, "millimetres"),
+        ("path_radius = 1.323", 'path_radius = "1.323"', "rig.path_radius", 8, "quotes"),
+        ("path_radius = 1.323", "path_radius = nan", "rig.path_radius", 8, "finite"),
+        ("path_radius = 1.323", "", "rig.path_radius", 7, "flat-track"),
+        ("path_radius = 1.323", "path_radius = 1.3\nu_path_radius = 1.8", "rig.u_path_radius", 9, "metres"),
+        ("path_radius = 1.323", "path_radius = 1.3\naxes = 'ISO'", "rig.axes", 9, "'adapted-sae'"),
+        ("path_radius = 1.323", "path_radius = 1.3\nbacklash_deg = -1", "rig.backlash_deg", 9, "outside"),
+        ('file = "b.csv"', 'fiel = "b.csv"', "sweep[2].fiel", 14, 'did you mean "file"'),
+        ('file = "b.csv"', 'file = "a.csv"', "sweep[2].file", 14, "twice"),
+        ('file = "b.csv"', 'file = "b.csv"\ndirection = "back"', "sweep[2].direction", 15, "'backward'"),
+        ("[tyre]", "[tire]", "tire", 1, 'did you mean "tyre"'),
+        ("[tyre]", "path_centre = 'left'\n[tyre]", "path_centre", 1, "[rig]"),
+        ("[rig]", "[spin]\nexact = 'both'\n[rig]", "spin.exact", 8, "'turn-slip'"),
+        ("front-1", "../front", "tyre.name", 2, "cannot name"),
+    ],
+)
+def test_what_is_wrong_is_said_with_key_and_line(tmp_path, old, new, key, line, said):
+    assert old in MINIMAL
+    error = refusal(tmp_path, MINIMAL.replace(old, new, 1))
+    assert (error.key, error.line) == (key, line)
+    assert said in str(error)
+    assert str(error).startswith(f"{tmp_path / 'tyre.toml'}:{line}: {key}: ")
+    assert "\n" not in str(error)
+
+
+@pytest.mark.parametrize(
+    ("row", "said"),
+    [
+        ("effective_radius = 0.2945", "u_effective_radius"),
+        ("effective_radius = 0.59\nu_effective_radius = 0.001", "check both"),
+        ("effective_radius = 0.2945\nu_effective_radius = 0.05", "a tenth"),
+        ("revolutions = 4", "angle_start_deg"),
+        ("revolutions = 2\nangle_start_deg = 0\nangle_end_deg = 88", "diameter"),
+        ("revolutions = 7\nangle_start_deg = 0\nangle_end_deg = 88", "revolutions"),
+        (
+            "revolutions = 4\nangle_start_deg = 0\nangle_end_deg = 88\neffective_radius = 0.3",
+            "one of the two",
+        ),
+    ],
+)
+def test_absurd_rolling_radii_are_refused(tmp_path, row, said):
+    error = refusal(tmp_path, MINIMAL + f"\n[rolling_radius]\n{row}\n")
+    assert error.key.startswith("rolling_radius")
+    assert error.line >= 16
+    assert said in str(error)
+
+
+def test_a_disc_revolution_on_a_flat_track_is_refused(tmp_path):
+    row = "\n[rolling_radius]\nrevolutions = 4\nangle_start_deg = 0\nangle_end_deg = 175\n"
+    error = refusal(tmp_path, MINIMAL.replace("path_radius = 1.323", 'type = "flat-track"') + row)
+    assert "flat track" in str(error)
+
+
+def test_a_path_radius_beside_the_tape_measures_is_refused(tmp_path):
+    error = refusal(tmp_path, COMPLETE.replace("u_length = 0.001", "path_radius = 1.3"))
+    assert "one of the two" in str(error)
+
+
+def test_several_mistakes_are_listed_in_one_sentence(tmp_path):
+    text = MINIMAL.replace("1.323", "-1").replace("nominal_load", "nominal_laod")
+    error = refusal(tmp_path, text)
+    assert error.key == "tyre.nominal_laod"
+    assert "(also wrong: rig.path_radius)" in str(error)
+
+
+@pytest.mark.parametrize(
+    ("text", "line"),
+    [("[tyre\nname =", 1), ("[tyre]\nname = \n", 2), ('[tyre]\nname = "a"\nname = "b"\n', 3)],
+)
+def test_broken_toml_is_refused_with_its_line(tmp_path, text, line):
+    error = refusal(tmp_path, text)
+    assert error.line == line
+    assert "TOML" in str(error)
+
+
+def test_a_missing_configuration_says_where_to_get_one(tmp_path):
+    with pytest.raises(InputError, match="mffit init"):
+        config.load(tmp_path / "nowhere.toml")
+
+
+def test_a_configuration_in_utf_16_is_refused(tmp_path):
+    path = tmp_path / "tyre.toml"
+    path.write_bytes(MINIMAL.encode("utf-16"))
+    with pytest.raises(InputError, match="UTF-8"):
+        config.load(path)
+
+
+def test_an_empty_configuration_is_refused(tmp_path):
+    assert "missing" in str(refusal(tmp_path, ""))
+
+
+def test_lines_are_found_whatever_the_values_look_like():
+    text = '''# [not.a.table]
+top = 1
+[a]
+"quoted key" = "x = [ # no comment"
+list = [
+  "b = 3",  # c = 4
+]
+text = """
+inside = 5
+"""
+after = 6
+[a.b]
+c.d = 7
+[[s]]
+x = 1
+[s.t]
+y = 2
+[[s]]
+x = { z = 1 }
+'''
+    assert lines_of_keys(text) == {
+        "top": 2, "a": 3, "a.quoted key": 4, "a.list": 5, "a.text": 8, "a.after": 11, "a.b": 12,
+        "a.b.c.d": 13, "s.0": 14, "s.0.x": 15, "s.0.t": 16, "s.0.t.y": 17, "s.1": 18, "s.1.x": 19,
+    }  # fmt: skip
+
+
+def test_known_keys_cover_every_table():
+    known = known_keys()
+    assert set(known) == {
+        "", "tyre", "rig", "rig.path", "rolling_radius", "camber_stiffness", "spin", "model", "sweep",
+        "sweep.columns.*",
+    }  # fmt: skip

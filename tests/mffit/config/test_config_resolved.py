@@ -1,0 +1,60 @@
+"""``resolved.toml`` says everything and means the same."""
+
+from __future__ import annotations
+
+import shutil
+from pathlib import Path
+
+import tomli_w
+from test_config_loading import COMPLETE, MINIMAL
+
+from mffit import config
+
+
+def settings(found: config.Config) -> dict:
+    """Everything but the names of files, which depend on where the configuration lies."""
+    return found.model_dump(exclude={"sweep": {"__all__": {"file"}}, "tyre": {"base"}})
+
+
+def written(found: config.Config, folder: Path) -> Path:
+    folder.mkdir(parents=True, exist_ok=True)
+    path = folder / "resolved.toml"
+    path.write_bytes(tomli_w.dumps(config.resolved(found, folder)).encode())
+    return path
+
+
+def test_it_means_the_same_and_names_the_same_files(tmp_path):
+    for text in (MINIMAL, COMPLETE):
+        (tmp_path / "tyre.toml").write_text(text)
+        found = config.load(tmp_path / "tyre.toml")
+        for folder in (tmp_path / "out", tmp_path, tmp_path.parent / "elsewhere"):
+            again = config.load(written(found, folder))
+            assert settings(again) == settings(found)
+            for sweep, original in zip(again.sweep, found.sweep, strict=True):
+                assert (again.folder / sweep.file).resolve() == (tmp_path / original.file).resolve()
+
+
+def test_resolving_twice_changes_nothing(tmp_path):
+    (tmp_path / "tyre.toml").write_text(COMPLETE)
+    found = config.load(tmp_path / "tyre.toml")
+    path = written(found, tmp_path / "out")
+    again = config.load(path)
+    assert config.resolved(again, tmp_path / "out") == config.resolved(found, tmp_path / "out")
+
+
+def test_folder_and_output_may_be_moved_together(tmp_path):
+    here = tmp_path / "here"
+    here.mkdir()
+    (here / "tyre.toml").write_text(COMPLETE)
+    written(config.load(here / "tyre.toml"), here / "out")
+    shutil.move(here, tmp_path / "there")
+    again = config.load(tmp_path / "there" / "out" / "resolved.toml")
+    assert (again.folder / again.sweep[0].file).resolve() == tmp_path / "there" / "sideslip.csv"
+
+
+def test_every_default_is_filled_in(tmp_path):
+    (tmp_path / "tyre.toml").write_text(MINIMAL)
+    content = config.resolved(config.load(tmp_path / "tyre.toml"), tmp_path)
+    assert content["rig"]["u_slip_alignment_N"] == 25.0
+    assert content["model"] == {"turn_slip": True, "star": False, "u_coefficients": 0.0}
+    assert content["sweep"][0] == {"file": "a.csv", "mount": "normal"}

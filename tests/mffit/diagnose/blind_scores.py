@@ -1,0 +1,174 @@
+"""Which cases make a blind set, and how a diagnosis of each is judged."""
+
+from __future__ import annotations
+
+import tempfile
+import time
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from blind_set import CAUSES, Case, draw_case, write_case
+
+
+from mffit import pipeline
+from mffit.diagnose import Diagnosis
+from mffit.rig import readings
+
+PAIRS = (
+    ("camber-stiffness", "sideslip-misalignment"), ("camber-reduction", "load-grip"), ("pressure", "loadcell-offset-fy"),
+    ("trail-load", "conicity"), ("load-cornering-stiffness", "temperature"), ("spin-trail-loss", "camber-grip"),
+    ("crosstalk-fz-fy", "trail-camber"), ("loadcell-gain", "residual-torque"), ("speed", "camber-thrust-curvature"),
+    ("backlash", "curvature-asymmetry"), ("ply-steer", "spin-grip-loss"), ("path-radius", "load-cornering-stiffness"),
+)  # fmt: skip
+STRUCTURES = ("sideslip-bump", "camber-bump", "moment-bump", "one-load-bump")
+
+
+@dataclass(frozen=True)
+class Plan:
+    """A case that can be drawn when its turn comes."""
+
+    name: str
+    draw: Callable[[], Case]
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """What was hidden, what was named, and how well the correction works."""
+
+    name: str
+    causes: tuple[str, ...]
+    structure: str
+    named: tuple[str, ...]
+    ties: tuple[tuple[str, ...], ...]
+    unexplained: bool
+    right_region: bool
+    shrink: float  #: gap to the noise-free truth before over after, at unmeasured set-points, in units of noise
+    seconds: float
+
+    @property
+    def outright(self) -> bool:
+        """Everything as it should be, nothing left open."""
+        if self.structure:
+            return self.unexplained and self.right_region and not self.named
+        return set(self.named) == set(self.causes) and not any(self.ties) and not self.unexplained
+
+    @property
+    def extra(self) -> int:
+        """Effects named that neither were hidden nor are tied with a hidden one."""
+        tied = [set(ties) for ties in self.ties]
+        return sum(n not in self.causes and not t & set(self.causes) for n, t in zip(self.named, tied, strict=True))
+
+    def found(self, cause: str) -> bool:
+        """Whether a cause is named, or tied with something that is."""
+        return cause in self.named or any(cause in ties for ties in self.ties)
+
+    def line(self) -> str:
+        named = " ".join(f"{n}{list(t) or ''}" for n, t in zip(self.named, self.ties, strict=True))
+        return (
+            f"{self.name:44s} -> {named or 'none'}" + (" unexplained" if self.unexplained else "")
+            + (" right region" if self.right_region else "") + f"  x{self.shrink:.1f}"
+        )  # fmt: skip
+
+
+def suite(seed: int, repeats: int = 1) -> Iterator[Plan]:
+    """All effects at all sizes, exact and inexact models in turn; pairs; nothing hidden; structure without a name."""
+    number = 1000 * seed
+    for repeat in range(repeats):
+        for k, cause in enumerate(CAUSES):
+            for level in ("large", "moderate", "faint"):
+                number += 1
+                yield _plan((cause,), level, number, exact=bool((k + repeat + number) % 2))
+        for causes in PAIRS:
+            number += 1
+            yield _plan(causes, "large" if number % 3 else "moderate", number, exact=bool(number % 2))
+        for _ in range(16):
+            number += 1
+            yield _plan((), "large", number, exact=bool(number % 2))
+        for structure in (*STRUCTURES, "sideslip-bump", *STRUCTURES, "sideslip-bump"):
+            number += 1
+            yield _plan((), "large", number, exact=bool(number % 2), structure=structure)
+
+
+def _plan(causes, level, seed, *, exact, structure=None) -> Plan:
+    what = "+".join(causes) or structure or "none"
+    name = f"{seed}-{what}-{level}-{'exact' if exact else 'inexact'}"
+    return Plan(name, lambda: draw_case(name, causes, level, seed, exact=exact, structure=structure))
+
+
+def judge(case: Case) -> Verdict:
+    """Write the case to files, diagnose it as a user would, and compare with what was hidden."""
+    with tempfile.TemporaryDirectory() as scratch:
+        folder = Path(scratch) / "case"
+        write_case(case, folder, Path(scratch) / "truth.json")
+        began = time.perf_counter()
+        diagnosis = pipeline.diagnose(folder / "tyre.toml", folder / "given.tir")
+        seconds = time.perf_counter() - began
+    return Verdict(
+        name=case.name,
+        causes=case.causes,
+        structure=str(case.structure["shape"]) if case.structure else "",
+        named=tuple(found.effect.id for found in diagnosis.effects),
+        ties=tuple(tuple(found.tied_with) for found in diagnosis.effects),
+        unexplained=diagnosis.unexplained,
+        right_region=_right_region(case, diagnosis),
+        shrink=_shrink(case, diagnosis),
+        seconds=seconds,
+    )
+
+
+def _right_region(case: Case, diagnosis: Diagnosis) -> bool:
+    """Whether the first region that is called unexplained holds the structure, and not half the programme with it."""
+    if case.structure is None or not diagnosis.unexplained_where:
+        return False
+    first = diagnosis.unexplained_where[0]
+    low, high = first.region.get(str(case.structure["column"]), (np.nan, np.nan))
+    width = float(case.structure["width"])  # type: ignore[arg-type]
+    return (
+        first.channel == case.structure["channel"] and low - width <= case.structure["centre"] <= high + width
+        and high - low < 8.0 * width
+    )  # fmt: skip
+
+
+def _shrink(case: Case, diagnosis: Diagnosis) -> float:
+    """How much nearer the corrected simulation is to the noise-free truth, halfway between the measured angles."""
+    run = case.run
+    between = run.where(np.abs(run.alpha_deg) < 8.0)
+    offset = np.where(between.gamma_deg == 0.0, 0.25, 0.0)
+    between = type(run)(**{**vars(between), "alpha_deg": between.alpha_deg + offset, "gamma_deg": between.gamma_deg * 0.9})
+    points = diagnosis.points.select(np.flatnonzero(np.abs(np.degrees(diagnosis.points.alpha)) < 7.999))
+    points = points.replace(alpha=np.radians(between.alpha_deg), gamma=np.radians(between.gamma_deg))
+    truth = case.noise_free(between)
+    before = readings(case.given, points, turn_slip=case.turn_slip)
+    after = diagnosis.state.predict(points)
+    n = len(points)
+    gap = [
+        sum(float(np.sum(((t - s) / u) ** 2)) for t, s, u in zip(truth, sides, (6.0, 0.6), strict=True))
+        for sides in ((before.Fy, before.Mz), (after[:n], after[n:]))
+    ]
+    return float(np.sqrt(gap[0] / max(gap[1], 1e-12)))
+
+
+def rates(verdicts: list[Verdict]) -> dict[str, tuple[float, float]]:
+    """The rates by which a set is judged: count, and of how many."""
+    single = [v for v in verdicts if len(v.causes) == 1]
+    pairs = [v for v in verdicts if len(v.causes) == 2]
+    none = [v for v in verdicts if not v.causes and not v.structure]
+    unknown = [v for v in verdicts if v.structure]
+    caused = single + pairs
+    first = [v for v in single if v.named and (v.named[0] == v.causes[0] or v.causes[0] in v.ties[0])]
+    return {
+        "named first outright": (sum(v.named[:1] == v.causes and not v.ties[0] for v in single), len(single)),
+        "named first, tied or not": (sum(v.named[:1] == v.causes for v in single), len(single)),
+        "first or inside its tie": (len(first), len(single)),
+        "cases with a tie": (sum(any(v.ties) for v in single), len(single)),
+        "nothing hidden, nothing named": (sum(not v.named and not v.unexplained for v in none), len(none)),
+        "both of two found": (sum(all(v.found(c) for c in v.causes) for v in pairs), len(pairs)),
+        "false extra effects": (sum(v.extra for v in verdicts), len(verdicts)),
+        "false 'unexplained'": (sum(v.unexplained for v in caused + none), len(caused + none)),
+        "unknown: unexplained, right region": (sum(v.unexplained and v.right_region for v in unknown), len(unknown)),
+        "unknown: not forced onto an effect": (sum(not v.named for v in unknown), len(unknown)),
+        "median gap shrinkage": (float(np.median([v.shrink for v in caused] or [np.nan])), 0),
+        "median seconds": (float(np.median([v.seconds for v in verdicts] or [np.nan])), 0),
+    }

@@ -1,0 +1,65 @@
+"""Pictures show readings: what the rig displayed, beside what it would display if the tyre were the model."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+
+import numpy as np
+import pandas as pd
+import pytest
+from report_toys import TRUE, R, made_points, made_result, programme
+
+import tir
+from mffit.report.build_view import as_read, coefficient_rows, known_faults, view_of
+from mffit.report.curves import curves
+from mffit.report.lines import model_lines
+from mffit.rig import RigFaults, readings
+
+
+@pytest.mark.parametrize(("axes", "sign"), [("iso", 1.0), ("sae", -1.0), ("adapted-sae", 1.0)])
+def test_angles_are_the_readings_whatever_the_fit_took_off_them(axes, sign):
+    points = made_points(programme())
+    table = pd.DataFrame({"alpha_deg": sign * np.degrees(points.alpha)})
+    fitted = dataclasses.replace(points, table=table).replace(alpha=points.alpha + 0.01)
+    assert as_read(fitted, axes).alpha == pytest.approx(points.alpha)
+
+
+def test_line_includes_the_faults_that_are_known():
+    points = made_points(programme())
+    faults = RigFaults(alpha_0_deg=0.4, backlash_deg=0.17)
+    tyre = tir.read(TRUE)
+    found = curves(points)
+    read, lines = readings(tyre, points, faults), model_lines(tyre, points, found, faults)
+    for curve in found:
+        assert lines[curve.key].raw["Fy"][[0, -1]] == pytest.approx(read.Fy[curve.index[[0, -1]]])
+
+
+def test_only_a_misalignment_that_was_corrected_counts_as_known():
+    config = made_result().config
+    found = {"alpha_M_deg": 0.3, "misaligned": True}
+    assert known_faults(found, config).alpha_0_deg == 0.3
+    assert known_faults({**found, "misaligned": False}, config).alpha_0_deg == 0.0
+    assert known_faults({}, config) == RigFaults()
+
+
+def test_place_between_the_bounds(result):
+    rows = {row.name: row for row in coefficient_rows(result.fit.coefficients)}
+    row = rows["PKY1"]
+    assert row.place == pytest.approx((row.value - row.lower) / (row.upper - row.lower))
+    assert [name for name, row in rows.items() if row.held] == ["QBZ1", "PHY2"]
+
+
+def test_channels_that_were_not_measured_are_left_out():
+    assert [channel.name for channel in view_of(made_result(moment=False)).channels] == ["Fy"]
+
+
+def test_noise_of_a_channel_is_that_of_its_points(result):
+    view = view_of(result)
+    assert [channel.noise for channel in view.channels] == pytest.approx([6.0, 0.6])
+    assert math.isnan(view_of(made_result(u_Fy=np.nan)).channels[0].noise)
+
+
+def test_disc_and_flat_track_are_told_apart():
+    assert view_of(made_result(rig={"path_radius": R})).on_disc
+    assert not view_of(made_result(rig={"type": "flat-track"}, phi_t=0.0)).on_disc

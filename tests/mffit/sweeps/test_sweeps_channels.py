@@ -1,0 +1,76 @@
+"""The table of columns is whole, and guesses headings as people write them."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from mffit.sweeps.channels import BY_NAME, CHANNELS, nearest_channel, nearest_heading
+from mffit.sweeps.units import UnknownUnitError, converted
+
+CONTRACT = [
+    "alpha_deg", "gamma_deg", "Fz_N", "Fy_N", "Mz_Nm", "Mx_Nm", "My_Nm", "p_kPa", "V_mps", "T_degC",
+    "direction", "u_Fy_N", "u_Mz_Nm", "point", "time_s", "t_s", "run", "iteration",
+]  # fmt: skip
+
+
+def test_the_columns_are_those_of_the_contract():
+    assert sorted(BY_NAME) == sorted(CONTRACT)
+    assert [c.name for c in CHANNELS if c.required] == ["alpha_deg", "gamma_deg", "Fz_N", "Fy_N"]
+
+
+def test_every_row_is_whole():
+    aliases = [alias.lower() for channel in CHANNELS for alias in channel.aliases]
+    assert len(set(aliases)) == len(aliases)
+    for channel in CHANNELS:
+        assert channel.kind in ("number", "label", "direction")
+        assert channel.lower < channel.upper
+        assert channel.description
+        if channel.unit:
+            same = converted(np.array([1.0, 2.0]), channel.unit, channel.unit)
+            np.testing.assert_allclose(same, [1.0, 2.0])
+
+
+@pytest.mark.parametrize(
+    ("name", "headings", "near"),
+    [
+        ("Fy_N", ["time", "FY", "FZ"], "FY"),
+        ("alpha_deg", ["SLIPANGL", "INCLANGL"], "SLIPANGL"),
+        ("gamma_deg", ["alpha_deg", "gama_deg"], "gama_deg"),
+        ("Fz_N", ["Fz_kN"], "Fz_kN"),
+        ("Fz_N", ["torque"], ""),
+    ],
+)
+def test_the_heading_that_was_meant_is_guessed(name, headings, near):
+    assert nearest_heading(BY_NAME[name], headings) == near
+
+
+def test_a_misspelt_channel_is_guessed_and_a_foreign_heading_is_not():
+    assert nearest_channel("mz_nm") == "Mz_Nm"
+    assert nearest_channel("operator") == ""
+
+
+@pytest.mark.parametrize(
+    ("value", "unit", "target", "expected"),
+    [
+        (1.5, "kN", "N", 1500.0),
+        (1.0, "lbf", "N", 4.4482216152605),
+        (1.0, "kgf", "N", 9.80665),
+        (100.0, "Nm", "N m", 100.0),
+        (1500.0, "Nmm", "N m", 1.5),
+        (2.0, "kNm", "N m", 2000.0),
+        (2.5, "bar", "kPa", 250.0),
+        (36.0, "psi", "kPa", 248.2112626),
+        (36.0, "km/h", "m/s", 10.0),
+        (212.0, "degF", "degC", 100.0),
+        (np.pi, "rad", "deg", 180.0),
+    ],
+)
+def test_units_of_rigs_are_converted(value, unit, target, expected):
+    assert converted(np.array([value]), unit, target)[0] == pytest.approx(expected, rel=1e-6)
+
+
+@pytest.mark.parametrize("unit", ["N m", "furlong per", "kPa kPa", "", "?", "3 +", "__import__"])
+def test_other_units_are_refused(unit):
+    with pytest.raises(UnknownUnitError):
+        converted(np.array([1.0]), unit, "N")

@@ -1,0 +1,241 @@
+"""Files as rigs and spreadsheets write them: read right, or refused with file, line, column and remedy."""
+
+from __future__ import annotations
+
+import gzip
+import re
+
+import numpy as np
+import pytest
+
+from mffit import config as configuration
+from mffit import sweeps
+from mffit.errors import InputError
+
+NAME = "sideslip_1500.csv"
+
+
+def load(path):
+    return sweeps.load(configuration.load(path))
+
+
+def refusal(path) -> InputError:
+    with pytest.raises(InputError) as caught:
+        load(path)
+    assert "\n" not in str(caught.value)
+    return caught.value
+
+
+def sweep_named(found, name):
+    return next(sweep for sweep in found.sweeps if sweep.file == name)
+
+
+def test_units_and_signs_arrive_in_iso_si(project):
+    table = project.tables[NAME]
+    found = sweep_named(load(project.write()), NAME)
+    np.testing.assert_allclose(np.degrees(found.alpha), table["alpha_deg"])
+    np.testing.assert_allclose(found.p, 250e3)
+    np.testing.assert_array_equal(found.Fy, table["Fy_N"])
+    assert np.all(np.isnan(found.My))
+    assert list(found.line) == list(range(2, 2 + len(table)))
+    assert list(found.table.columns) == list(table.columns)
+    assert not found.is_series
+
+
+@pytest.mark.parametrize(
+    "rewrite",
+    [
+        lambda text: text.replace("\n", "\r\n").encode(),
+        lambda text: b"\xef\xbb\xbf" + text.encode(),
+        lambda text: ("# rig 7, \u00e9t\u00e9\n\n" + text + "\n\n").encode("latin-1"),
+        lambda text: text.replace(",", " , ").encode(),
+        lambda text: re.sub(r"([^,\n]+)", r'"\1"', text).encode(),
+        lambda text: text.replace("\n", ",\n").replace("V_mps,", "V_mps,note").encode(),
+    ],
+    ids=["CRLF", "BOM", "Latin-1 comment", "blanks", "quotes", "empty extra column"],
+)
+def test_harmless_variants_read_the_same(project, rewrite):
+    path = project.write()
+    reference = sweep_named(load(path), NAME)
+    project.overwrite(NAME, rewrite(project.text(NAME)))
+    found = sweep_named(load(path), NAME)
+    np.testing.assert_array_equal(found.Fy, reference.Fy)
+    np.testing.assert_array_equal(found.Fz, reference.Fz)
+
+
+def test_compressed_files_read_the_same(project):
+    path = project.write()
+    reference = sweep_named(load(path), NAME)
+    (project.folder / f"{NAME}.gz").write_bytes(gzip.compress(project.text(NAME).encode()))
+    path.write_text(path.read_text().replace(NAME, f"{NAME}.gz"))
+    found = sweep_named(load(path), f"{NAME}.gz")
+    np.testing.assert_array_equal(found.Fy, reference.Fy)
+    assert found.name == reference.name
+
+
+def line_changed(text: str, line: int, old: str, new: str) -> str:
+    lines = text.split("\n")
+    assert old in lines[line - 1]
+    lines[line - 1] = lines[line - 1].replace(old, new, 1)
+    return "\n".join(lines)
+
+
+CELLS = {
+    "unit": (4, "1500.0", "1.5 kN", "Fz_N", 'unit = "kN"'),
+    "text": (3, "1500.0", "heavy", "Fz_N", "text"),
+    "decimal comma": (5, "1500.0", '"1500,5"', "Fz_N", "write 1500.5"),
+    "NaN": (2, "1500.0", "NaN", "Fz_N", "no measurement"),
+    "infinity": (6, "1500.0", "inf", "Fz_N", "no measurement"),
+    "blank": (7, "1500.0", "", "Fz_N", "empty"),
+    "zero load": (7, "1500.0", "0", "Fz_N", "zero"),
+    "mixed sign": (8, "1500.0", "-1500", "Fz_N", "another sign"),
+    "pressure in bar": (4, "250.0", "2.5", "p_kPa", "bar"),
+    "negative speed": (4, ",6.0", ",-6.0", "V_mps", "direction"),
+    "angle beyond reason": (2, "-8.0", "-180", "alpha_deg", "outside"),
+}
+
+
+@pytest.mark.parametrize("case", CELLS)
+def test_a_bad_cell_is_refused_with_line_and_column(project, case):
+    line, old, new, column, said = CELLS[case]
+    path = project.write()
+    project.overwrite(NAME, line_changed(project.text(NAME), line, old, new))
+    error = refusal(path)
+    assert (error.file.name, error.line, error.column) == (NAME, line, column)
+    assert said in str(error)
+
+
+WHOLE = {
+    "empty": (b"", None, "is empty"),
+    "blank lines": (b"\n\n  \n", None, "is empty"),
+    "UTF-16": ("alpha_deg,gamma_deg\n1,2\n".encode("utf-16"), None, "UTF-16"),
+    "binary": (b"\x00\x01\x02", None, "binary"),
+    "header only": (b"alpha_deg,gamma_deg,Fz_N,Fy_N\n", 1, "no data"),
+    "semicolons": (b"alpha_deg;gamma_deg;Fz_N;Fy_N\n0;0;1500;-300\n", 1, "semicolons"),
+    "decimal commas": (b"alpha_deg;gamma_deg;Fz_N;Fy_N\n0,5;0;1500;-300\n", 1, "decimal points"),
+    "tabs": (b"alpha_deg\tgamma_deg\tFz_N\tFy_N\n0\t0\t1500\t-300\n", 1, "tabs"),
+    "ragged": (b"alpha_deg,gamma_deg,Fz_N,Fy_N\n0,0,1500,-300\n0,0,1500\n", 3, "3 cells under 4 headings"),
+    "too many cells": (b"alpha_deg,gamma_deg,Fz_N,Fy_N\n0,0,1500,-300,7\n", 2, "5 cells under 4 headings"),
+    "duplicate headings": (b"alpha_deg,gamma_deg,Fz_N,Fy_N,Fz_N\n0,0,1500,-300,1\n", 1, "twice"),
+    "empty heading": (b"alpha_deg,,Fz_N,Fy_N\n0,0,1500,-300\n", 1, "heading 2 is empty"),
+    "no headings": (b"0,0,1500,-300\n1,0,1500,-500\n", 1, "headings should be"),
+    "missing column": (b"alpha_deg,gamma_deg,Fz_N,FY\n0,0,1500,-300\n", 1, 'column = "FY"'),
+    "kilonewtons": (b"alpha_deg,gamma_deg,Fz_N,Fy_N\n0,0,1.5,-300\n", 2, "kN"),
+    "all loads negative": (b"alpha_deg,gamma_deg,Fz_N,Fy_N\n0,0,-1500,-300\n", 2, 'axes = "sae"'),
+    "no direction": (b"alpha_deg,gamma_deg,Fz_N,Fy_N,direction\n0,0,1500,-300,left\n", 2, "write forward"),
+}
+
+
+@pytest.mark.parametrize("case", WHOLE)
+def test_a_bad_file_is_refused_with_its_name_and_line(project, case):
+    content, line, said = WHOLE[case]
+    path = project.write()
+    project.overwrite(NAME, content)
+    error = refusal(path)
+    assert (error.file.name, error.line) == (NAME, line)
+    assert said in str(error)
+
+
+def test_a_broken_gzip_file_is_refused(project):
+    path = project.write()
+    whole = gzip.compress(project.text(NAME).encode())
+    path.write_text(path.read_text().replace(NAME, f"{NAME}.gz"))
+    for content in (b"plain text", whole[: len(whole) // 2]):
+        project.overwrite(f"{NAME}.gz", content)
+        assert "gzip" in str(refusal(path))
+
+
+def test_a_missing_file_is_refused_where_it_is_named(project):
+    path = project.write()
+    (project.folder / NAME).unlink()
+    error = refusal(path)
+    assert error.file == path
+    assert NAME in path.read_text().splitlines()[error.line - 1]
+    assert NAME in str(error)
+
+
+def test_another_format_is_refused(project):
+    project.config["sweep"][0]["file"] = "sweep.mat"
+    assert "export it as CSV" in str(refusal(project.write()))
+
+
+def test_headings_units_and_signs_are_mapped(project):
+    path = project.write()
+    reference = sweep_named(load(path), NAME)
+    table = project.tables[NAME]
+    table["FY"] = -1e-3 * table.pop("Fy_N")
+    table["SA"] = np.radians(table.pop("alpha_deg"))
+    entry = next(entry for entry in project.config["sweep"] if entry["file"] == NAME)
+    entry["columns"] = {
+        "Fy_N": {"column": "FY", "unit": "kN", "scale": -1.0},
+        "alpha_deg": {"column": "SA", "unit": "rad"},
+        "Fz_N": "Fz_N",
+    }
+    found = sweep_named(load(project.write()), NAME)
+    np.testing.assert_allclose(found.Fy, reference.Fy, rtol=1e-12)
+    np.testing.assert_allclose(found.alpha, reference.alpha, rtol=1e-12)
+    assert {"Fy_N", "alpha_deg"} <= set(found.table)
+    assert "FY" not in found.table
+
+
+@pytest.mark.parametrize(
+    ("columns", "said"),
+    [
+        ({"Fy": "Fy_N"}, 'did you mean "Fy_N"'),
+        ({"Fy_N": "FY"}, 'no heading "FY"'),
+        ({"Fy_N": {"unit": "kPa"}}, "cannot be turned into N"),
+        ({"Fy_N": {"unit": "stone throws"}}, "is no unit"),
+    ],
+)
+def test_a_bad_mapping_is_refused(project, columns, said):
+    project.config["sweep"][0]["columns"] = columns
+    error = refusal(project.write())
+    assert said in str(error)
+    assert error.line is not None
+
+
+def test_a_misspelt_optional_column_is_pointed_out(project):
+    project.tables[NAME] = project.tables[NAME].rename(columns={"Mz_Nm": "Mz_nm"})
+    warnings = load(project.write()).warnings
+    assert any("Mz_nm" in w and "Mz_Nm" in w for w in warnings)
+
+
+def test_foreign_columns_come_along_as_text(project):
+    project.tables[NAME]["operator"] = "J"
+    found = sweep_named(load(project.write()), NAME)
+    assert set(found.table["operator"]) == {"J"}
+
+
+def test_the_direction_column_counts_and_a_contradiction_is_said(project):
+    table = project.tables[NAME]
+    table["direction"] = np.where(table["alpha_deg"] > 0, "backward", "forward")
+    assert np.array_equal(
+        sweep_named(load(project.write()), NAME).direction, np.where(table["alpha_deg"] > 0, -1, 1)
+    )
+    next(entry for entry in project.config["sweep"] if entry["file"] == NAME)["direction"] = "forward"
+    found = load(project.write())
+    assert any("6 rows" in w for w in found.warnings)
+    assert np.sum(sweep_named(found, NAME).direction < 0) == 6
+
+
+def test_runs_are_sweeps_of_their_own(project):
+    table = project.tables[NAME]
+    table["run"] = np.where(table["alpha_deg"] > 0, "left", "right")
+    found = [sweep for sweep in load(project.write()).sweeps if sweep.file == NAME]
+    assert [sweep.name for sweep in found] == ["sideslip_1500:right", "sideslip_1500:left"]
+    assert sum(len(sweep) for sweep in found) == len(table)
+
+
+def test_sae_loads_are_taken_with_either_sign(project):
+    project.config["rig"]["axes"] = "sae"
+    reference = sweep_named(load(project.write()), NAME)
+    project.each(Fz_N=-1.0)
+    found = sweep_named(load(project.write()), NAME)
+    np.testing.assert_array_equal(found.Fz, reference.Fz)
+    assert np.all(found.Fz > 0.0)
+
+
+def test_a_bare_table_needs_no_configuration(project):
+    path = project.write()
+    found = sweeps.load_file(project.folder / NAME, axes="adapted-sae").sweeps[0]
+    np.testing.assert_array_equal(found.Fy, -sweep_named(load(path), NAME).Fy)
