@@ -18,7 +18,9 @@ def commands() -> None:
 
 @commands.command()
 @click.argument("tyre_toml", type=click.Path(path_type=Path))
-@click.option("--out", type=click.Path(path_type=Path), help="Folder to write to [default: out/ beside TYRE_TOML].")
+@click.option(
+    "--out", type=click.Path(path_type=Path), help="Folder to write to [default: out/ beside TYRE_TOML]."
+)
 def build(tyre_toml: Path, out: Path | None) -> None:
     """Run the whole pipeline: sweeps to .tir, result.json, report.html."""
     from mffit import pipeline
@@ -34,7 +36,9 @@ def build(tyre_toml: Path, out: Path | None) -> None:
 
 @commands.command()
 @click.argument("tyre_toml", type=click.Path(path_type=Path))
-@click.option("--out", type=click.Path(path_type=Path), help="Folder to write to [default: out/ beside TYRE_TOML].")
+@click.option(
+    "--out", type=click.Path(path_type=Path), help="Folder to write to [default: out/ beside TYRE_TOML]."
+)
 def spin(tyre_toml: Path, out: Path | None) -> None:
     """Alignment check and direct method only: eps_gamma with its uncertainty budget."""
     from mffit import pipeline
@@ -50,7 +54,9 @@ def spin(tyre_toml: Path, out: Path | None) -> None:
 @commands.command()
 @click.argument("source", type=click.Path(path_type=Path), metavar="TYRE_TOML|FILE.csv")
 @click.option("--axes", type=click.Choice(["iso", "sae", "adapted-sae"]), help="Axes of a bare CSV file.")
-@click.option("--path-centre", type=click.Choice(["left", "right"]), help="Side of the disc centre, for a CSV file.")
+@click.option(
+    "--path-centre", type=click.Choice(["left", "right"]), help="Side of the disc centre, for a CSV file."
+)
 def align(source: Path, axes: str | None, path_centre: str | None) -> None:
     """Next steering correction from forward and backward zeros, in degrees of the rig's axis."""
     from mffit import pipeline
@@ -66,8 +72,12 @@ def align(source: Path, axes: str | None, path_centre: str | None) -> None:
 
 @commands.command()
 @click.argument("tyre_toml", type=click.Path(path_type=Path))
-@click.option("--model", type=click.Path(path_type=Path), help="The simulation's .tir [default: the last build's].")
-@click.option("--out", type=click.Path(path_type=Path), help="Folder to write to [default: out/ beside TYRE_TOML].")
+@click.option(
+    "--model", type=click.Path(path_type=Path), help="The simulation's .tir [default: the last build's]."
+)
+@click.option(
+    "--out", type=click.Path(path_type=Path), help="Folder to write to [default: out/ beside TYRE_TOML]."
+)
 def diagnose(tyre_toml: Path, model: Path | None, out: Path | None) -> None:
     """Find where simulation and measurement disagree, name the missing effect, show the gap shrink."""
     from mffit import pipeline

@@ -67,7 +67,12 @@ class Result:
         }
 
 
-def build(config: Config | Mapping[str, Any] | str | Path, out: str | Path | None = None, *, progress: Progress = silent) -> Result:
+def build(
+    config: Config | Mapping[str, Any] | str | Path,
+    out: str | Path | None = None,
+    *,
+    progress: Progress = silent,
+) -> Result:
     """Turn rig sweeps into an MF-6.2 tyre.
 
     Parameters
@@ -152,7 +157,7 @@ def diagnose(
     """
     config = configuration.load(config)
     progress("reading sweeps")
-    points, _ = ingestion.load(config, check_physics=False)
+    points, _ = ingestion.load(config, continuous=True)
     base = read_base(config)
     tyre = _model(config, model, progress)
     with threadpool_limits(1):
@@ -183,14 +188,28 @@ def _redone(config: Config, points: Points, diagnosis: Diagnosis, base: Tyre | N
     names = " and ".join(f.effect.name for f in diagnosis.effects if f.effect.kind == "rig")
     mended = config.model_copy(update={"rig": config.rig.model_copy(update={"backlash_deg": 0.0})})
     without = corrected_points(points, diagnosis.state)
-    results = []
-    for settings, chosen in ((config, points), (mended, without)):
-        try:
-            found = direct.measure(settings, chosen, decomposition.split(chosen), base).epsilon_gamma
-        except InputError:
-            found = None
-        results.append("not measurable" if found is None else f"{found.value:.2f} +- {found.u:.2f}")
-    return f"eps_gamma was {results[0]} with {names}; corrected it is {results[1]} (k = 1)."
+    before, after = (
+        _epsilon(settings, chosen, base) for settings, chosen in ((config, points), (mended, without))
+    )
+    if before is None or after is None:
+        return f"eps_gamma cannot be measured {'with' if after else 'even without'} {names}."
+    if abs(after.value - before.value) < 0.5 * after.u:
+        return (
+            f"eps_gamma stays {after.value:.2f} +- {after.u:.2f} (k = 1) with {names} corrected: the direct method allows "
+            "for it."
+        )
+    return (
+        f"eps_gamma was {before.value:.2f} +- {before.u:.2f} with {names}; corrected it is {after.value:.2f} +- "
+        f"{after.u:.2f} (k = 1)."
+    )
+
+
+def _epsilon(config: Config, points: Points, base: Tyre | None) -> tir.Quantity | None:
+    """eps_gamma of the points, None where the direct method fails on them."""
+    try:
+        return direct.measure(config, points, decomposition.split(points), base).epsilon_gamma
+    except InputError:
+        return None
 
 
 def write_diagnosis(diagnosis: Diagnosis, out: Path) -> None:
@@ -208,7 +227,7 @@ def measure(config: Config, points: Points, base: Tyre | None) -> tuple[Points, 
     parts = decomposition.split(points)
     measured = direct.measure(config, points, parts, base)
     parts = replace(parts, alpha_odd=direct.odd_alpha(points, parts, config))
-    if measured.misaligned:
+    if measured.misaligned and measured.alpha_M is not None:
         points = points.replace(alpha=points.alpha + measured.alpha_M.value)
     return points, parts, measured
 
@@ -219,7 +238,11 @@ def read_base(config: Config) -> Tyre | None:
         return None
     path = config.folder / config.tyre.base
     if not path.is_file():
-        raise InputError(f"the base file {path} does not exist: correct [tyre] base or remove it", file=config.path, key="tyre.base")
+        raise InputError(
+            f"the base file {path} does not exist: correct [tyre] base or remove it",
+            file=config.path,
+            key="tyre.base",
+        )
     return tir.read(path)
 
 
@@ -268,7 +291,9 @@ def points_table(result: Result):
 
 
 def _write_json(path: Path, content: Mapping[str, Any]) -> None:
-    path.write_text(json.dumps(_plain(content), indent=2, ensure_ascii=False, allow_nan=False) + "\n", encoding="utf-8")
+    path.write_text(
+        json.dumps(_plain(content), indent=2, ensure_ascii=False, allow_nan=False) + "\n", encoding="utf-8"
+    )
 
 
 def _plain(value: Any) -> Any:
@@ -298,6 +323,6 @@ def align(source: str | Path, **options: Any) -> Alignment:
     if source.suffix == ".toml":
         config = configuration.load(source)
         points, _ = ingestion.load(config, check_physics=False)
-    else:
-        points = ingestion.load_table(source, **options)
-    return direct.align(points)
+        return direct.align(points, axes=config.rig.axes)
+    points = ingestion.load_table(source, **options)
+    return direct.align(points, axes=options["axes"])

@@ -10,8 +10,14 @@ from tir.equations import normalise, stiffness
 from tir.errors import Problem
 from tir.tyre import Tyre
 
-RANGES = (("PRESMIN", "PRESMAX"), ("FZMIN", "FZMAX"), ("KPUMIN", "KPUMAX"), ("ALPMIN", "ALPMAX"), ("CAMMIN", "CAMMAX"))
-ODD_TERMS = "PHY1 PHY2 PVY1 PVY2 PEY3 QBZ4 QDZ3 QDZ6 QDZ7 QEZ4 QHZ1 QHZ2".split()
+RANGES = (
+    ("PRESMIN", "PRESMAX"),
+    ("FZMIN", "FZMAX"),
+    ("KPUMIN", "KPUMAX"),
+    ("ALPMIN", "ALPMAX"),
+    ("CAMMIN", "CAMMAX"),
+)
+ODD_TERMS = ["PHY1", "PHY2", "PVY1", "PVY2", "PEY3", "QBZ4", "QDZ3", "QDZ6", "QDZ7", "QEZ4", "QHZ1", "QHZ2"]
 
 
 def check(tyre: Tyre) -> list[Problem]:
@@ -36,18 +42,26 @@ def _dimensions(tyre: Tyre) -> Iterator[Problem]:
         hint = "it looks like millimetres" if R0 > 50 else "a radius in metres was expected"
         yield _error("UNLOADED_RADIUS", f"UNLOADED_RADIUS is {R0:g}: {hint}; correct it or [UNITS] LENGTH")
     if tyre["RIM_RADIUS"] >= R0:
-        yield _warning("RIM_RADIUS", f"RIM_RADIUS {tyre['RIM_RADIUS']:g} is not smaller than UNLOADED_RADIUS {R0:g}")
+        yield _warning(
+            "RIM_RADIUS", f"RIM_RADIUS {tyre['RIM_RADIUS']:g} is not smaller than UNLOADED_RADIUS {R0:g}"
+        )
     if tyre["FNOMIN"] <= 0:
-        yield _error("FNOMIN", f"FNOMIN is {tyre['FNOMIN']:g}: the nominal load must be positive; reverse its sign")
+        yield _error(
+            "FNOMIN", f"FNOMIN is {tyre['FNOMIN']:g}: the nominal load must be positive; reverse its sign"
+        )
     if tyre["NOMPRES"] <= 0 or tyre["INFLPRES"] <= 0:
         yield _error("NOMPRES", "NOMPRES and INFLPRES must be positive pressures in Pa")
     elif tyre["NOMPRES"] < 5e3:
         yield _warning("NOMPRES", f"NOMPRES is {tyre['NOMPRES']:g} Pa: it looks like kPa or bar; write Pa")
     if tyre["LONGVL"] <= 0 or tyre["VERTICAL_STIFFNESS"] <= 0:
         yield _error("LONGVL", "LONGVL and VERTICAL_STIFFNESS must be positive")
-    scaled = [n for n in tyre.values if n.startswith("L") and len(n) <= 5 and tyre[n] != 1.0 and n[1:2].isalpha()]
+    scaled = [
+        n for n in tyre.values if n.startswith("L") and len(n) <= 5 and tyre[n] != 1.0 and n[1:2].isalpha()
+    ]
     if scaled:
-        yield _warning(scaled[0], f"scaling factors differ from 1: {', '.join(scaled)}; fitted files have 1 throughout")
+        yield _warning(
+            scaled[0], f"scaling factors differ from 1: {', '.join(scaled)}; fitted files have 1 throughout"
+        )
     if str(tyre["TYRESIDE"]).upper().startswith("SYM") and any(tyre[n] for n in ODD_TERMS):
         names = ", ".join(n for n in ODD_TERMS if tyre[n])
         yield _warning("TYRESIDE", f"TYRESIDE is symmetric, but the odd terms {names} are not 0")
@@ -91,27 +105,44 @@ def _envelope(tyre: Tyre) -> Iterator[Problem]:
 
     mu = stiffness.lateral_friction(p, q, gamma)
     if np.any(mu <= 0):
-        yield _error("PDY1", f"the lateral friction coefficient is not positive {where(mu <= 0)}: narrow the ranges or refit")
+        yield _error(
+            "PDY1",
+            f"the lateral friction coefficient is not positive {where(mu <= 0)}: narrow the ranges or refit",
+        )
     elif np.any(mu > 4):
         yield _warning("PDY1", f"the lateral friction coefficient is {mu.max():.1f} {where(mu > 4)}")
     K = stiffness.cornering_stiffness(p, q, gamma)
     upright = np.abs(gamma) < 1e-9
     if np.any(K[upright] >= 0):
-        yield _error("PKY1", "the cornering stiffness is not negative at zero camber (ISO-W): the file is in other axes, or wrong")
+        yield _error(
+            "PKY1",
+            "the cornering stiffness is not negative at zero camber (ISO-W): the file is in other axes, or wrong",
+        )
     elif np.any(K >= 0):
-        yield _warning("PKY3", f"the cornering stiffness changes sign {where(K >= 0)}: narrow CAMMIN and CAMMAX")
+        yield _warning(
+            "PKY3", f"the cornering stiffness changes sign {where(K >= 0)}: narrow CAMMIN and CAMMAX"
+        )
     K_gamma = stiffness.camber_stiffness(p, q)
     if np.any(K_gamma > 0):
-        yield _warning("PKY6", f"camber pushes against the lean {where(K_gamma > 0)}: a normal tyre has PKY6 < 0 in ISO-W")
+        yield _warning(
+            "PKY6",
+            f"camber pushes against the lean {where(K_gamma > 0)}: a normal tyre has PKY6 < 0 in ISO-W",
+        )
     worst = -np.inf
     for side in (-1.0, 1.0):
         E = (p.PEY1 + p.PEY2 * q.dfz) * (1 + p.PEY5 * gamma**2 - (p.PEY3 + p.PEY4 * gamma) * side) * p.LEY
         worst = max(worst, float(E.max()))
     if worst > 1.0:
-        yield _warning("PEY1", f"the curvature E_y reaches {worst:.2f} > 1 within the ranges: simulations may hold it at 1")
+        yield _warning(
+            "PEY1",
+            f"the curvature E_y reaches {worst:.2f} > 1 within the ranges: simulations may hold it at 1",
+        )
     ratio = tyre.state(float(p.FNOMIN)).Re / p.UNLOADED_RADIUS
     if not 0.85 < ratio < 1.05:
-        yield _warning("BREFF", f"the effective radius is {ratio:.2f} of the unloaded one: check BREFF, DREFF, FREFF, Q_RE0")
+        yield _warning(
+            "BREFF",
+            f"the effective radius is {ratio:.2f} of the unloaded one: check BREFF, DREFF, FREFF, Q_RE0",
+        )
 
 
 def _spin(tyre: Tyre) -> Iterator[Problem]:
@@ -119,15 +150,22 @@ def _spin(tyre: Tyre) -> Iterator[Problem]:
     load = np.linspace(max(p.FZMIN, 0.02 * p.FNOMIN), p.FZMAX, 21)
     eps = p.PECP1 * (1 + p.PECP2 * (load - p.FNOMIN * p.LFZO) / (p.FNOMIN * p.LFZO))
     if np.any(np.abs(eps - 1.0) < 0.02) or np.ptp(np.sign(eps - 1.0)) > 0:
-        yield _warning("PECP1", "eps_gamma comes near 1 within the load range, where the turn-slip stiffness is infinite")
+        yield _warning(
+            "PECP1", "eps_gamma comes near 1 within the load range, where the turn-slip stiffness is infinite"
+        )
     if (p.PECP1, p.PECP2) == (0.5, 0.0):
-        yield _warning("PECP1", "PECP1 is the common default 0.5, not a measurement: motorcycle tyres have about 0")
+        yield _warning(
+            "PECP1", "PECP1 is the common default 0.5, not a measurement: motorcycle tyres have about 0"
+        )
     gamma = np.array([-1e-4, 1e-4])
     Fz = float(p.FNOMIN)
     with_spin, without = (float(np.diff(tyre(Fz, gamma=gamma, turn_slip=on).Fy)[0]) for on in (True, False))
     expected = without * p.UNLOADED_RADIUS / tyre.state(Fz).Re
     if abs(without) > 1e-9 and abs(with_spin - expected) > 0.01 * abs(expected):
-        yield _warning("PHYP1", "camber force with turn slip on is not that with turn slip off times R0/Re: check PHYP1-4")
+        yield _warning(
+            "PHYP1",
+            "camber force with turn slip on is not that with turn slip off times R0/Re: check PHYP1-4",
+        )
 
 
 def _moments(tyre: Tyre) -> Iterator[Problem]:
@@ -135,7 +173,12 @@ def _moments(tyre: Tyre) -> Iterator[Problem]:
     first = any(tyre[f"QSX{i}"] for i in range(4, 12))
     second = any(tyre[f"QSX{i}"] for i in (12, 13, 14))
     if first and second:
-        yield _warning("QSX12", "QSX4-11 and QSX12-14 are both used: they are alternatives for the same effect")
+        yield _warning(
+            "QSX12", "QSX4-11 and QSX12-14 are both used: they are alternatives for the same effect"
+        )
     step = np.array([-1e-3, 1e-3])
     if float(np.diff(tyre(float(p.FNOMIN), step).Mz)[0]) <= 0:
-        yield _warning("QDZ1", "the aligning moment does not align at nominal load (dMz/dalpha should be positive in ISO-W)")
+        yield _warning(
+            "QDZ1",
+            "the aligning moment does not align at nominal load (dMz/dalpha should be positive in ISO-W)",
+        )

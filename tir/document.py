@@ -51,7 +51,9 @@ def read_document(path: str | Path) -> Document:
     try:
         raw = path.read_bytes()
     except OSError as error:
-        raise TirError(f"cannot be read ({(error.strerror or 'error').lower()}): check the path", path=path) from error
+        raise TirError(
+            f"cannot be read ({(error.strerror or 'error').lower()}): check the path", path=path
+        ) from error
     text, encoding = _decode(raw, path)
     return parse_document(text, encoding=encoding, path=str(path))
 

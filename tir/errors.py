@@ -17,7 +17,12 @@ class TirError(Exception):
     """
 
     def __init__(
-        self, sentence: str, *, path: str | Path | None = None, line: int | None = None, name: str | None = None
+        self,
+        sentence: str,
+        *,
+        path: str | Path | None = None,
+        line: int | None = None,
+        name: str | None = None,
     ) -> None:
         self.sentence, self.path, self.line, self.name = sentence, path, line, name
         place = "" if path is None else f"{path}:{line}: " if line is not None else f"{path}: "

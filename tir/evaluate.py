@@ -58,7 +58,18 @@ def evaluate(
     backwards = np.real(Vx) < 0.0
     if np.any(backwards):
         return _rolling_backwards(
-            p, Fz, alpha, gamma, kappa, phi_t, Vx, pressure, backwards, turn_slip=turn_slip, star=star, limits=limits
+            p,
+            Fz,
+            alpha,
+            gamma,
+            kappa,
+            phi_t,
+            Vx,
+            pressure,
+            backwards,
+            turn_slip=turn_slip,
+            star=star,
+            limits=limits,
         )
     loaded = np.real(Fz) > 0.0
     Fz_given, kappa_given = select(loaded, Fz, SMALLEST_LOAD), kappa
@@ -80,7 +91,15 @@ def _rolling_backwards(p, Fz, alpha, gamma, kappa, phi_t, Vx, pressure, backward
     """Seen from a frame turned half a revolution about z the wheel rolls forwards, turned on its rim."""
     turned = select(backwards, -1.0, 1.0)
     out, state = evaluate(
-        turned_on_rim(p, turned), Fz, alpha, turned * gamma, kappa, turned * phi_t, np.abs(Vx), pressure, **switches
+        turned_on_rim(p, turned),
+        Fz,
+        alpha,
+        turned * gamma,
+        kappa,
+        turned * phi_t,
+        np.abs(Vx),
+        pressure,
+        **switches,
     )
     out = out._replace(Fx=turned * out.Fx, Fy=turned * out.Fy, Mx=turned * out.Mx, My=turned * out.My)
     return out, state._replace(omega=turned * state.omega, phi=turned * state.phi)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import math
 from dataclasses import dataclass
 from importlib.resources import files
 
@@ -22,6 +23,20 @@ class Parameter:
     stage: str  #: stage of the fit that frees it; "" where nothing is fitted
     equation: str  #: where it enters
     description: str
+
+    @property
+    def bounds(self) -> tuple[float, float]:
+        """The plausible range; all numbers where the table has none."""
+        return (
+            -math.inf if self.lower is None else self.lower,
+            math.inf if self.upper is None else self.upper,
+        )
+
+    @property
+    def width(self) -> float:
+        """Width of the plausible range."""
+        lower, upper = self.bounds
+        return upper - lower
 
 
 def _load() -> tuple[Parameter, ...]:

@@ -23,7 +23,9 @@ ESSENTIAL_COEFFICIENTS = ("PCY1", "PDY1", "PKY1")
 HEADER = ("MDI_HEADER", "UNITS")
 MEASURED = re.compile(r"^\s*!\s*measured:\s*(\S+)\s+(\S+)\s+u\s+(\S+)\s+(\S+)\s*$")
 PROVENANCE = re.compile(r"^\s*!\s*provenance:\s*([^:]+):\s*(.*?)\s*$")
-STATUS = re.compile(r"^(fitted|measured|tied|default|from base|estimate|covered|regularised|given|diagnosed)\b")
+STATUS = re.compile(
+    r"^(fitted|measured|tied|default|from base|estimate|covered|regularised|given|diagnosed)\b"
+)
 
 
 def read(path: str | Path) -> Tyre:
@@ -62,7 +64,9 @@ def interpret(document: Document) -> Tyre:
             problems.append(_warning(f"{line.key} stands twice; the first value is used", line))
             continue
         if not line.section:
-            problems.append(_warning(f"{line.key} stands before any [SECTION]; it is read all the same", line))
+            problems.append(
+                _warning(f"{line.key} stands before any [SECTION]; it is read all the same", line)
+            )
         values[line.key] = _value(row, line, words, document.path)
         if STATUS.match(line.comment):
             status[line.key] = line.comment
@@ -91,29 +95,42 @@ def _units(document: Document, problems: list[Problem]) -> dict[str, str]:
         if word not in KINDS[line.key]:
             known = ", ".join(sorted(KINDS[line.key]))
             raise TirError(
-                f"{line.key} = {line.value} is no known unit: use one of {known}", path=document.path, line=line.number
+                f"{line.key} = {line.value} is no known unit: use one of {known}",
+                path=document.path,
+                line=line.number,
             )
         words[line.key] = word
         if KINDS[line.key][word] != 1.0:
-            problems.append(_warning(f"{line.key} is in {word}; all values are converted to SI on reading", line))
+            problems.append(
+                _warning(f"{line.key} is in {word}; all values are converted to SI on reading", line)
+            )
     return words
 
 
 def _value(row: Parameter, line: Line, words: dict[str, str], path: str) -> float | str:
     if not line.value:
-        raise TirError(f"{line.key} has no value: the file is damaged or cut short here", path=path, line=line.number)
+        raise TirError(
+            f"{line.key} has no value: the file is damaged or cut short here", path=path, line=line.number
+        )
     if row.kind == "text":
         return _unquoted(line.value)
     text = _unquoted(line.value)
     try:
         number = float(re.sub(r"(?<=[\d.])[dD](?=[+-]?\d)", "e", text))
     except ValueError:
-        remedy = f"; a decimal comma is not a number here, write {text.replace(',', '.')}" if "," in text else ""
+        remedy = (
+            f"; a decimal comma is not a number here, write {text.replace(',', '.')}" if "," in text else ""
+        )
         raise TirError(
-            f'{line.key} is "{text}", and a number was expected{remedy}', path=path, line=line.number, name=line.key
+            f'{line.key} is "{text}", and a number was expected{remedy}',
+            path=path,
+            line=line.number,
+            name=line.key,
         ) from None
     if not math.isfinite(number):
-        raise TirError(f"{line.key} is {text}, which no formula can use: give a number", path=path, line=line.number)
+        raise TirError(
+            f"{line.key} is {text}, which no formula can use: give a number", path=path, line=line.number
+        )
     return number * factor(row.unit, words)
 
 
@@ -141,7 +158,8 @@ def _refuse_truncated(values, document: Document) -> None:
         )
     if not any(name in values for name in ESSENTIAL_COEFFICIENTS):
         raise TirError(
-            "has none of PCY1, PDY1, PKY1: the coefficients are missing, so the file is cut short", path=document.path
+            "has none of PCY1, PDY1, PKY1: the coefficients are missing, so the file is cut short",
+            path=document.path,
         )
 
 
@@ -155,7 +173,9 @@ def _about_missing(values) -> list[Problem]:
     missing = [row.name for row in TABLE if row.name not in values and row.name not in ("QDRP2", "LMP")]
     if missing:
         shown = ", ".join(missing[:6]) + (f" and {len(missing) - 6} more" if len(missing) > 6 else "")
-        out.append(Problem("warning", f"{len(missing)} keys of MF 6.2 are missing and take their defaults: {shown}"))
+        out.append(
+            Problem("warning", f"{len(missing)} keys of MF 6.2 are missing and take their defaults: {shown}")
+        )
     return out
 
 
@@ -164,7 +184,9 @@ def _about_unknown(extra) -> list[Problem]:
     if not names:
         return []
     shown = ", ".join(names[:6]) + (f" and {len(names) - 6} more" if len(names) > 6 else "")
-    return [Problem("warning", f"{len(names)} keys are no MF 6.2 parameters and are kept but not used: {shown}")]
+    return [
+        Problem("warning", f"{len(names)} keys are no MF 6.2 parameters and are kept but not used: {shown}")
+    ]
 
 
 def _structured_comments(document: Document) -> tuple[dict[str, Quantity], dict[str, str]]:
@@ -188,15 +210,26 @@ def render(tyre: Tyre) -> str:
     TirError
         If a value is not finite or a text cannot be written in ASCII.
     """
-    lines = ["[MDI_HEADER]", _entry("FILE_TYPE", "'tir'"), _entry("FILE_VERSION", "3.0"), _entry("FILE_FORMAT", "'ASCII'")]
+    lines = [
+        "[MDI_HEADER]",
+        _entry("FILE_TYPE", "'tir'"),
+        _entry("FILE_VERSION", "3.0"),
+        _entry("FILE_FORMAT", "'ASCII'"),
+    ]
     lines += [f"! provenance: {key}: {_comment(text)}" for key, text in tyre.provenance.items()]
-    lines += [f"! measured: {name} {q.value!r} u {q.u!r} {q.unit or '-'}" for name, q in tyre.measured.items()]
+    lines += [
+        f"! measured: {name} {q.value!r} u {q.u!r} {q.unit or '-'}" for name, q in tyre.measured.items()
+    ]
     lines += ["$" + "-" * 60 + "units", "[UNITS]", *(_entry(kind, f"'{word}'") for kind, word in SI.items())]
     for section in SECTIONS:
         lines += ["$" + "-" * 60 + section.lower(), f"[{section}]"]
         rows = [row for row in TABLE if row.section == section and _written(row, tyre)]
         lines += [_entry(row.name, _text(row, tyre[row.name]), _remark(row, tyre)) for row in rows]
-        lines += [_entry(key.partition(".")[2], value) for key, value in tyre.extra.items() if key.startswith(f"{section}.")]
+        lines += [
+            _entry(key.partition(".")[2], value)
+            for key, value in tyre.extra.items()
+            if key.startswith(f"{section}.")
+        ]
     return "\r\n".join(lines) + "\r\n"
 
 
@@ -239,13 +272,26 @@ def _remark(row: Parameter, tyre: Tyre) -> str:
 
 def _comment(text: str) -> str:
     """Text that no reader can mistake for a key: ASCII, without equals signs, semicolons and exclamation marks."""
-    text = text.translate(str.maketrans({"=": ":", ";": ",", "!": ".", "$": " ", "\n": " ", "\r": " ", "\t": " "}))
+    signs: dict[str, str | int | None] = {
+        "=": ":",
+        ";": ",",
+        "!": ".",
+        "$": " ",
+        "\n": " ",
+        "\r": " ",
+        "\t": " ",
+    }
+    text = text.translate(str.maketrans(signs))
     return text.encode("ascii", "replace").decode()
 
 
 def _unquoted(text: str) -> str:
     text = text.strip()
-    return text[1:-1].strip() if len(text) >= 2 and text[0] == text[-1] and text[0] in "'\"" else text.strip("'\"")
+    return (
+        text[1:-1].strip()
+        if len(text) >= 2 and text[0] == text[-1] and text[0] in "'\""
+        else text.strip("'\"")
+    )
 
 
 def _warning(sentence: str, line: Line) -> Problem:

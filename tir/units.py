@@ -20,8 +20,23 @@ MASS = {
     "kg": 1.0, "kilogram": 1.0, "g": 1e-3, "gram": 1e-3, "mg": 1e-6, "ton": 1e3, "tonne": 1e3, "slug": 14.593902937,
     "pound_mass": 0.45359237, "lbm": 0.45359237,
 }  # fmt: skip
-TIME = {"second": 1.0, "seconds": 1.0, "sec": 1.0, "s": 1.0, "millisecond": 1e-3, "ms": 1e-3, "minute": 60.0, "hour": 3600.0}
-KINDS: dict[str, dict[str, float]] = {"LENGTH": LENGTH, "FORCE": FORCE, "ANGLE": ANGLE, "MASS": MASS, "TIME": TIME}
+TIME = {
+    "second": 1.0,
+    "seconds": 1.0,
+    "sec": 1.0,
+    "s": 1.0,
+    "millisecond": 1e-3,
+    "ms": 1e-3,
+    "minute": 60.0,
+    "hour": 3600.0,
+}
+KINDS: dict[str, dict[str, float]] = {
+    "LENGTH": LENGTH,
+    "FORCE": FORCE,
+    "ANGLE": ANGLE,
+    "MASS": MASS,
+    "TIME": TIME,
+}
 SI = {"LENGTH": "meter", "FORCE": "newton", "ANGLE": "radians", "MASS": "kg", "TIME": "second"}
 
 PRODUCTS: dict[str, tuple[tuple[str, int], ...]] = {

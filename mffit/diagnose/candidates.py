@@ -24,7 +24,9 @@ class Hypothesis:
     numbers: Mapping[str, float]  #: fitted value of every freed number
     stderr: Mapping[str, float]
     chi2: float
-    log_evidence: float  #: relative to the same data without any effect only through chi2; comparable across hypotheses
+    log_evidence: (
+        float  #: relative to the same data without any effect only through chi2; comparable across hypotheses
+    )
     state: State
     residual: np.ndarray  #: whitened, (m,)
     jacobian: np.ndarray  #: whitened, per freed number (m, k)
@@ -47,7 +49,16 @@ class Problem:
         state = self.start.with_numbers(numbers)
         residual = self.whitened(state)
         chi2 = float(residual @ residual)
-        return Hypothesis(tuple(effects), dict(numbers), {}, chi2, -0.5 * chi2, state, residual, np.empty((len(residual), 0)))
+        return Hypothesis(
+            tuple(effects),
+            dict(numbers),
+            {},
+            chi2,
+            -0.5 * chi2,
+            state,
+            residual,
+            np.empty((len(residual), 0)),
+        )
 
     def fit(self, effects: Sequence[Effect], start: Mapping[str, float] | None = None) -> Hypothesis:
         """Fit all numbers of the effects, the last effect from every start of its scan; return the best."""
@@ -86,7 +97,9 @@ class Problem:
         # A coefficient that the model has at zero gives no scale; the width of its plausible values does.
         return current, abs(current) if current else 0.2 * (free.upper - free.lower)
 
-    def _descend(self, effects, moving: list[Free], fixed: Mapping[str, float], start: Mapping[str, float]) -> Hypothesis:
+    def _descend(
+        self, effects, moving: list[Free], fixed: Mapping[str, float], start: Mapping[str, float]
+    ) -> Hypothesis:
         """Gauss-Newton with step halving on chi2 plus the spreads' prior."""
         anchors = [self._anchor(free) for free in moving]
         centre = np.array([current for current, _ in anchors])
@@ -97,7 +110,9 @@ class Problem:
         x = np.array([start.get(name, c) for name, c in zip(names, centre, strict=True)])
 
         def residual(x: np.ndarray) -> np.ndarray:
-            return self.whitened(self.start.with_numbers({**fixed, **dict(zip(names, x.tolist(), strict=True))}))
+            return self.whitened(
+                self.start.with_numbers({**fixed, **dict(zip(names, x.tolist(), strict=True))})
+            )
 
         def cost(r: np.ndarray, x: np.ndarray) -> float:
             return float(r @ r + np.sum(((x - centre) / spread) ** 2))

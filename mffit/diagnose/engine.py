@@ -10,7 +10,7 @@ from scipy.stats import chi2 as chi2_distribution
 
 from mffit.diagnose.candidates import Hypothesis, Problem
 from mffit.diagnose.needs import missing
-from mffit.diagnose.noise import Noise, noise_model
+from mffit.diagnose.noise import Noise, noise_model, with_uncertainties
 from mffit.diagnose.result import Diagnosis, Found
 from mffit.diagnose.selection import Step, price, projected_cosine, select
 from mffit.diagnose.state import State
@@ -26,8 +26,8 @@ from tir import Tyre
 from tir.parameters import BY_NAME
 
 FEWEST_POINTS = 12
-MOST_POINTS = 1200
-"""Points beyond this are neighbours that say the same again; every k-th is used."""
+MOST_POINTS = 800
+"""Points beyond this are neighbours that say the same again: every k-th is used."""
 LACK_OF_FIT = 1.3
 """chi2 per reading that no accepted explanation brings down: the misfit then counts as noise."""
 
@@ -60,12 +60,13 @@ def diagnose(
         If points and model cannot belong together, or are too few.
     """
     progress("comparing simulation and measurement")
+    points, source = with_uncertainties(points)
     points = thinned(points)
     declared = RigFaults(backlash_deg=config.rig.backlash_deg)
     simulates_spin = config.model.turn_slip and bool(np.any(points.phi_t))
     start = State(dict(tyre.values), declared, simulates_spin, config.model.star)
     refuse_strangers(points, tyre, start)
-    noise = noise_model(points, start, config.model.u_coefficients)
+    noise = noise_model(points, start, config.model.u_coefficients, source)
     candidates, notes = possible(effects, points, start)
     if len(np.unique(points.sweep)) < 2:
         candidates = []
@@ -76,8 +77,8 @@ def diagnose(
         inflation = _lack_of_fit(problem, chosen)
         if inflation > 1.0:
             notes.append(
-                f"The model misses the points by more than their noise whatever is added; uncertainties were enlarged {inflation:.1f} "
-                "times so that effects are judged against the misfit that remains."
+                "The model misses the points by more than their noise whatever is added; uncertainties were "
+                f"enlarged {inflation:.1f} times so that effects are judged against the misfit that remains."
             )
             problem, chosen, steps, bump = _explained(points, start, noise.inflated(inflation), candidates)
     progress("checking on left-out sweeps")
@@ -97,7 +98,7 @@ def _explained(points, start, noise, candidates) -> tuple[Problem, Hypothesis, l
 
 
 def thinned(points: Points) -> Points:
-    """At most some twelve hundred points, evenly from every sweep."""
+    """At most some eight hundred points, evenly from every sweep."""
     step = int(np.ceil(len(points) / MOST_POINTS))
     return points if step <= 1 else points.select(np.arange(0, len(points), step))
 
@@ -105,7 +106,9 @@ def thinned(points: Points) -> Points:
 def refuse_strangers(points: Points, tyre: Tyre, start: State) -> None:
     """A model and data that cannot belong together end the diagnosis with the likely cause."""
     if len(points) < FEWEST_POINTS:
-        raise InputError(f"{len(points)} points are too few for a diagnosis: measure at least {FEWEST_POINTS}")
+        raise InputError(
+            f"{len(points)} points are too few for a diagnosis: measure at least {FEWEST_POINTS}"
+        )
     ratio = float(np.median(points.Fz)) / float(tyre["FNOMIN"])
     if not 0.1 < ratio < 10.0:
         raise InputError(
@@ -124,7 +127,8 @@ def refuse_strangers(points: Points, tyre: Tyre, start: State) -> None:
 
 def possible(effects: Sequence[Effect], points: Points, start: State) -> tuple[list[Effect], list[str]]:
     """Effects that the data can show, and a note on the others."""
-    out, lacking = [], {}
+    out: list[Effect] = []
+    lacking: dict[str, list[str]] = {}
     for effect in effects:
         lack = missing(effect, points)
         if effect.id == "turn-slip" and start.turn_slip:
@@ -133,7 +137,9 @@ def possible(effects: Sequence[Effect], points: Points, start: State) -> tuple[l
             lacking.setdefault(" and ".join(lack), []).append(effect.id)
         else:
             out.append(effect)
-    return out, [f"Not visible in these data, which lack {lack}: {', '.join(ids)}." for lack, ids in lacking.items()]
+    return out, [
+        f"Not visible in these data, which lack {lack}: {', '.join(ids)}." for lack, ids in lacking.items()
+    ]
 
 
 def _lack_of_fit(problem: Problem, chosen: Hypothesis) -> float:
@@ -154,7 +160,9 @@ def _lack_of_fit(problem: Problem, chosen: Hypothesis) -> float:
     return float(np.sqrt(ratio * (1.0 + neighbours) / (1.0 - neighbours)))
 
 
-def _record(problem: Problem, tyre: Tyre, config, chosen: Hypothesis, steps, bump: Bump, notes, noise: Noise) -> Diagnosis:
+def _record(
+    problem: Problem, tyre: Tyre, config, chosen: Hypothesis, steps, bump: Bump, notes, noise: Noise
+) -> Diagnosis:
     points = problem.points
     before, after = problem.start.predict(points), chosen.state.predict(points)
     residual_before, residual_after = problem.measured - before, problem.measured - after
@@ -182,22 +190,29 @@ def _record(problem: Problem, tyre: Tyre, config, chosen: Hypothesis, steps, bum
         state=chosen.state,
         tyre=_corrected(tyre, chosen),
         turn_slip_before=problem.start.turn_slip,
-        headline=_headline(found, unexplained, bump, gap(residual_before, noise), gap(residual_after, noise), noise),
+        headline=_headline(
+            found, unexplained, bump, gap(residual_before, noise), gap(residual_after, noise), noise
+        ),
         notes=tuple(notes),
         model_after=name,
     )
 
 
-def _found(problem: Problem, chosen: Hypothesis, steps: Sequence[Step], effect: Effect, noise: Noise) -> Found:
+def _found(
+    problem: Problem, chosen: Hypothesis, steps: Sequence[Step], effect: Effect, noise: Noise
+) -> Found:
     """What is said of one accepted effect: judged beside all the others that were accepted."""
     others = tuple(e for e in chosen.effects if e.id != effect.id)
-    step = next((s for s in steps if s.best.effects[-1].id == effect.id), steps[min(len(steps), len(chosen.effects)) - 1])
+    step = next(
+        (s for s in steps if s.best.effects[-1].id == effect.id),
+        steps[min(len(steps), len(chosen.effects)) - 1],
+    )
     tied: list[Hypothesis] = []
     ids = {e.id for e in chosen.effects}
     names = {name for e in others for name in e.parameters}
     for trial in step.trials:
         rival = trial.effects[-1]
-        if rival.id in ids or step.best.log_evidence - trial.log_evidence > 40.0 and others == ():
+        if rival.id in ids or (step.best.log_evidence - trial.log_evidence > 40.0 and others == ()):
             continue
         if step.best.log_evidence - trial.log_evidence > 0.5 * abs(step.gain) + 40.0:
             continue
@@ -231,7 +246,13 @@ def _alternatives(steps: Sequence[Step], chosen: Hypothesis, weights) -> dict[st
 
 
 def _bump_region(bump: Bump) -> Region:
-    return Region(bump.channel, bump.region, bump.amplitude, float(np.sign(bump.amplitude) * np.sqrt(2.0 * max(bump.gain, 0.0))), 0)
+    return Region(
+        bump.channel,
+        bump.region,
+        bump.amplitude,
+        float(np.sign(bump.amplitude) * np.sqrt(2.0 * max(bump.gain, 0.0))),
+        0,
+    )
 
 
 def _corrected(tyre: Tyre, chosen: Hypothesis) -> Tyre:
@@ -250,14 +271,39 @@ def _headline(found: Sequence[Found], unexplained: bool, bump: Bump, before, aft
     numbers = f"side force misses by {before.Fy_rmse_N:.1f} N rms, the noise is {noise.Fy:.1f} N"
     if not found and not unexplained:
         return f"No effect is missing that these data could show: {numbers}."
-    place = "; ".join(f"{name} {low:.3g} to {high:.3g}" for name, (low, high) in bump.region.items())
+    place = " and ".join(in_words(name, limits) for name, limits in bump.region.items())
     if not found:
+        unit = "N" if bump.channel == "Fy" else "Nm"
         return (
-            f"There is structure that no effect of the library describes: {bump.channel} is off by {bump.amplitude:.3g} around {place}."
+            f"There is structure that no effect of the library describes: {bump.channel} is off by {bump.amplitude:.3g} {unit} "
+            f"around {place}."
         )
     names = " and ".join(
-        f"{f.effect.name}" + (f" (or {' or '.join(f.tied_with)}, not separable here)" if f.tied_with else "") for f in found
+        f"{f.effect.name}" + (f" (or {' or '.join(f.tied_with)}, not separable here)" if f.tied_with else "")
+        for f in found
     )
-    sentence = f"The missing effect is {names}: with it the side force misses by {after.Fy_rmse_N:.1f} N rms instead of {before.Fy_rmse_N:.1f} N"
-    sentence += f" (noise {noise.Fy:.1f} N)"
+    verb, pronoun = ("effect is", "it") if len(found) == 1 else ("effects are", "them")
+    sentence = (
+        f"The missing {verb} {names}: with {pronoun} the side force misses by {after.Fy_rmse_N:.1f} N rms"
+    )
+    sentence += f" instead of {before.Fy_rmse_N:.1f} N (noise {noise.Fy:.1f} N)"
     return sentence + (f"; {bump.channel} stays unexplained around {place}." if unexplained else ".")
+
+
+WORDS = {
+    "alpha_deg": ("sideslip", "deg"),
+    "gamma_deg": ("camber", "deg"),
+    "Fz_N": ("load", "N"),
+    "p_kPa": ("pressure", "kPa"),
+    "V_mps": ("speed", "m/s"),
+    "T_degC": ("temperature", "degC"),
+    "t_s": ("time", "s"),
+}
+
+
+def in_words(name: str, limits: tuple[float, float]) -> str:
+    """A range of one condition as an engineer says it."""
+    if name == "direction":
+        return "backward runs" if limits[1] < 0 else "forward runs"
+    word, unit = WORDS[name]
+    return f"{word} {limits[0]:.3g} to {limits[1]:.3g} {unit}"

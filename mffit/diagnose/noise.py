@@ -25,49 +25,76 @@ class Noise:
     Mz: float  #: of Mz [Nm]; NaN if Mz was not measured
     u: np.ndarray  #: (2n,) standard uncertainty of every reading; inf where missing
     used: np.ndarray  #: (m,) indices of the readings that count
-    root: np.ndarray  #: (m, m) Cholesky factor of the covariance
+    root: (
+        np.ndarray
+    )  #: (m, m) Cholesky factor of the covariance; its diagonal (m,) where the readings are independent
     source: str  #: where the uncertainties come from
 
     def whiten(self, x: np.ndarray) -> np.ndarray:
         """Readings' differences (2n,) or (2n, k) in units of their joint uncertainty: (m,) or (m, k)."""
-        return solve_triangular(self.root, x[self.used], lower=True, check_finite=False)
+        x = x[self.used]
+        if self.root.ndim == 1:
+            return (x.T / self.root).T
+        return solve_triangular(self.root, x, lower=True, check_finite=False)
+
+    def error_of_sum(self, rows: np.ndarray) -> float:
+        """Standard error of the sum of some used readings, by their position among the used ones."""
+        return float(np.linalg.norm(self.root[rows] if self.root.ndim == 1 else self.root[rows].sum(axis=0)))
 
     def subset(self, keep: np.ndarray) -> Noise:
         """The noise of some points (mask (n,)), with the covariance among them."""
         both = np.concatenate([keep, keep])
         rows = np.flatnonzero(both[self.used])
         new = np.cumsum(both) - 1
-        covariance = self.root[rows] @ self.root[rows].T
-        return replace(self, u=self.u[both], used=new[self.used[rows]], root=cholesky(covariance, lower=True))
+        root = self.root[rows]
+        if root.ndim == 2:
+            root = cholesky(root @ root.T, lower=True)
+        return replace(self, u=self.u[both], used=new[self.used[rows]], root=root)
 
     def inflated(self, factor: float) -> Noise:
         """The same with every uncertainty enlarged."""
         return replace(self, u=factor * self.u, root=factor * self.root)
 
 
-def noise_model(points: Points, state: State, u_coefficients: float) -> Noise:
-    """Noise from the stated uncertainties, else from replicates and neighbours; plus the model's own inexactness.
+def with_uncertainties(points: Points) -> tuple[Points, str]:
+    """The points with a standard uncertainty for every reading, and where it comes from.
+
+    As stated, else from the scatter between neighbouring points of each sweep; so before any thinning.
 
     Raises
     ------
     InputError
         If all stated uncertainties are zero.
     """
-    Fy, source_y = _channel(points, points.Fy, points.u_Fy, "u_Fy_N")
+    Fy, source = _channel(points, points.Fy, points.u_Fy, "u_Fy_N")
     Mz, _ = _channel(points, points.Mz, points.u_Mz, "u_Mz_Nm")
+    return points.replace(u_Fy=Fy, u_Mz=Mz), source
+
+
+def noise_model(points: Points, state: State, u_coefficients: float, source: str = "") -> Noise:
+    """Covariance of the readings: their own uncertainties (finite where used) and the model's inexactness.
+
+    Parameters
+    ----------
+    points : with uncertainties as :func:`with_uncertainties` gives them
+    state : the simulation whose coefficients are inexact
+    u_coefficients : relative standard uncertainty of the P.Y. and Q.Z. coefficients
+    source : where the uncertainties come from
+    """
+    Fy, Mz = points.u_Fy, points.u_Mz
     u = np.concatenate([Fy, Mz])
     used = np.flatnonzero(np.isfinite(u))
-    covariance = np.diag(u[used] ** 2)
+    root = u[used]
     if u_coefficients > 0.0:
         J = coefficient_jacobian(points, state)[used]
-        covariance += u_coefficients**2 * (J @ J.T)
+        root = cholesky(np.diag(root**2) + u_coefficients**2 * (J @ J.T), lower=True)
     return Noise(
         Fy=float(np.median(Fy[np.isfinite(Fy)])),
         Mz=float(np.median(Mz[np.isfinite(Mz)])) if np.any(np.isfinite(Mz)) else float("nan"),
         u=u,
         used=used,
-        root=cholesky(covariance, lower=True),
-        source=source_y,
+        root=root,
+        source=source,
     )
 
 
@@ -78,7 +105,9 @@ def coefficient_jacobian(points: Points, state: State) -> np.ndarray:
         value = state.values[row.name]
         if INEXACT.match(row.name) and value:
             step = 1e-4 * float(value)
-            up, down = (state.with_numbers({row.name: float(value) + s}).predict(points) for s in (step, -step))
+            up, down = (
+                state.with_numbers({row.name: float(value) + s}).predict(points) for s in (step, -step)
+            )
             columns.append((up - down) / 2e-4)
     return np.nan_to_num(np.column_stack(columns))
 
@@ -90,7 +119,9 @@ def _channel(points: Points, values: np.ndarray, stated: np.ndarray, column: str
         return np.full(len(points), np.inf), ""
     known = measured & np.isfinite(stated)
     if np.any(known) and np.all(stated[known] <= 0.0):
-        raise InputError(f"all {column} are zero; give real standard uncertainties, or leave the column out", column=column)
+        raise InputError(
+            f"all {column} are zero; give real standard uncertainties, or leave the column out", column=column
+        )
     if np.all(known[measured]):
         floor = 0.05 * np.median(stated[known][stated[known] > 0])
         return np.where(measured, np.maximum(stated, floor), np.inf), "stated uncertainties"

@@ -12,6 +12,8 @@ from mffit.diagnose.candidates import Hypothesis, Problem
 from mffit.effects import Effect
 
 MOST_EFFECTS = 4
+EXCHANGED = 6
+"""Candidates that may take the place of an accepted effect: the best of the step, the others have no chance."""
 MARGIN = 4.0
 """Log evidence an effect must bring beyond what picking the best of the whole list brings by chance."""
 TIE = 3.0
@@ -46,7 +48,10 @@ class Step:
 
     def weights(self) -> dict[str, float]:
         """Posterior weight per effect id, "none" included; the prior of each effect is one over the number of effects."""
-        logs = {t.effects[-1].id: t.log_evidence + t.effects[-1].prior - math.log(len(self.trials)) for t in self.trials}
+        logs = {
+            t.effects[-1].id: t.log_evidence + t.effects[-1].prior - math.log(len(self.trials))
+            for t in self.trials
+        }
         logs["none"] = self.before.log_evidence
         top = max(logs.values())
         total = sum(math.exp(v - top) for v in logs.values())
@@ -74,11 +79,14 @@ def select(problem: Problem, candidates: Sequence[Effect]) -> tuple[Hypothesis, 
         steps.append(step)
         if not step.passes:
             break
-        current = _improved(problem, step.best, candidates)
+        near = [trial.effects[-1] for trial in (*step.trials[:EXCHANGED], *steps[0].trials[:EXCHANGED])]
+        current = _improved(problem, step.best, tuple(dict.fromkeys(near)), price(len(candidates)))
     return current, steps
 
 
-def _improved(problem: Problem, current: Hypothesis, candidates: Sequence[Effect]) -> Hypothesis:
+def _improved(
+    problem: Problem, current: Hypothesis, candidates: Sequence[Effect], needed: float
+) -> Hypothesis:
     """Exchange single effects while that helps, then drop those whose evidence is gone."""
     for _ in range(MOST_EFFECTS):
         best = current
@@ -96,7 +104,7 @@ def _improved(problem: Problem, current: Hypothesis, candidates: Sequence[Effect
     for effect in current.effects if len(current.effects) > 1 else ():
         rest = tuple(e for e in current.effects if e.id != effect.id)
         without = problem.fit(rest, _numbers_of(rest, current))
-        if current.log_evidence - without.log_evidence < price(len(candidates)):
+        if current.log_evidence - without.log_evidence < needed:
             current = without
             break
     return current

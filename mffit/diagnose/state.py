@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, fields, replace
 from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 
@@ -19,7 +20,7 @@ FAULT_FIELDS = frozenset(field.name for field in fields(RigFaults))
 class State:
     """Everything that decides what the simulation says."""
 
-    values: Mapping[str, object]  #: every value of the property file
+    values: Mapping[str, Any]  #: every value of the property file
     faults: RigFaults
     turn_slip: bool
     star: bool
@@ -41,7 +42,11 @@ class State:
     def with_numbers(self, numbers: Mapping[str, float]) -> State:
         """A state with some numbers replaced."""
         faults = {name: value for name, value in numbers.items() if name in FAULT_FIELDS}
-        values = {n: v for n, v in numbers.items() if n not in FAULT_FIELDS and n not in ("turn_slip", "relaxation_m")}
+        values = {
+            n: v
+            for n, v in numbers.items()
+            if n not in FAULT_FIELDS and n not in ("turn_slip", "relaxation_m")
+        }
         return replace(
             self,
             values={**self.values, **values} if values else self.values,

@@ -39,12 +39,16 @@ class Separation:
 
 def candidate_runs(points: Points) -> tuple[Run, ...]:
     """Runs a rig could add: the other direction or mount, other loads, radii, cambers, pressures and speeds."""
-    main = points.select(main_pressure(points) & (points.direction > 0) & (points.mount > 0) & ~points.continuous)
+    main = points.select(
+        main_pressure(points) & (points.direction > 0) & (points.mount > 0) & ~points.continuous
+    )
     loads = np.unique(np.round(main.Fz, -1))
     load = float(np.median(main.Fz))
     reach = float(np.max(np.abs(main.alpha)))
     slip = _line(main, load, alpha=np.linspace(-reach, reach, 13))
     camber = _line(main, load, gamma=np.radians([-40, -25, -15, -8, -4, 0, 4, 8, 15, 25, 40]))
+    warmer = np.nan_to_num(slip.T, nan=25.0) + 20.0
+    later = np.full(len(slip), 1.2 * float(np.max(np.nan_to_num(points.t))) + 600.0)
     runs = [
         Run(f"a backward sideslip sweep at {load:.0f} N", slip.replace(direction=-np.ones(len(slip), int))),
         Run(f"a sideslip sweep at {load:.0f} N with the tyre turned on its rim", slip.replace(mount=-np.ones(len(slip), int))),
@@ -57,13 +61,28 @@ def candidate_runs(points: Points) -> tuple[Run, ...]:
         Run(f"a sideslip sweep at 20 deg camber and {load:.0f} N", slip.replace(gamma=np.full(len(slip), np.radians(20.0)))),
         Run(f"a sideslip sweep at 0.8 of the pressure and {load:.0f} N", slip.replace(p=0.8 * slip.p)),
         Run(f"a sideslip sweep at twice the speed and {load:.0f} N", slip.replace(V=2.0 * slip.V)),
-        Run(f"a repeated sideslip sweep at {load:.0f} N with the tyre 20 K warmer", slip.replace(T=np.nan_to_num(slip.T, nan=25.0) + 20.0)),
-        Run(f"a repeated sideslip sweep at {load:.0f} N at the end of the test", slip.replace(t=np.full(len(slip), np.nan_to_num(np.nanmax(points.t) if np.any(np.isfinite(points.t)) else 0.0) * 1.2 + 600.0))),
+        Run(f"a repeated sideslip sweep at {load:.0f} N with the tyre 20 K warmer", slip.replace(T=warmer)),
+        Run(f"a repeated sideslip sweep at {load:.0f} N at the end of the test", slip.replace(t=later)),
     ]  # fmt: skip
     if np.any(points.phi_t):
-        runs.append(Run(f"a sideslip sweep at {load:.0f} N on a straight path", slip.replace(phi_t=np.zeros(len(slip)))))
-        runs.append(Run(f"a sideslip sweep at {load:.0f} N on a path of twice the radius", slip.replace(phi_t=slip.phi_t / 2.0)))
-        runs.append(Run(f"a camber sweep at {load:.0f} N on a straight path", camber.replace(phi_t=np.zeros(len(camber)))))
+        runs.append(
+            Run(
+                f"a sideslip sweep at {load:.0f} N on a straight path",
+                slip.replace(phi_t=np.zeros(len(slip))),
+            )
+        )
+        runs.append(
+            Run(
+                f"a sideslip sweep at {load:.0f} N on a path of twice the radius",
+                slip.replace(phi_t=slip.phi_t / 2.0),
+            )
+        )
+        runs.append(
+            Run(
+                f"a camber sweep at {load:.0f} N on a straight path",
+                camber.replace(phi_t=np.zeros(len(camber))),
+            )
+        )
     return tuple(runs)
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 
@@ -89,16 +90,18 @@ def _centres(values: np.ndarray) -> np.ndarray:
 
 def _masks(points: Points) -> list[tuple[dict[str, tuple[float, float]], np.ndarray]]:
     gamma = np.degrees(points.gamma)
-    out = [({}, np.ones(len(points)))]
+    out: list[tuple[dict[str, tuple[float, float]], np.ndarray]] = [({}, np.ones(len(points)))]
     for low, high in ((-90.0, -1.0), (-1.0, 1.0), (1.0, 90.0)):
         mask = (gamma >= low) & (gamma <= high)
         if 2 <= mask.sum() < len(points):
-            out.append(({"gamma_deg": (max(low, float(gamma.min())), min(high, float(gamma.max())))}, mask * 1.0))
+            out.append(
+                ({"gamma_deg": (max(low, float(gamma.min())), min(high, float(gamma.max())))}, mask * 1.0)
+            )
     order = np.sort(points.Fz)
     cuts = np.flatnonzero(np.diff(np.log(order)) > 0.08)
     edges = [order[0], *[float(order[c] + order[c + 1]) / 2.0 for c in cuts], order[-1]]
     if 2 < len(edges) < 9:
-        for low, high in zip(edges[:-1], edges[1:], strict=True):
+        for low, high in pairwise(edges):
             mask = (points.Fz >= low) & (points.Fz <= high)
             out.append(({"Fz_N": (float(low), float(high))}, mask * 1.0))
     if np.any(points.direction < 0):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 from scipy.stats import false_discovery_control, norm
@@ -13,7 +14,13 @@ from mffit.points import Points
 FALSE_DISCOVERY = 0.01
 FEWEST = 4
 MOST_REGIONS = 12
-PAIRS = (("alpha_deg", "gamma_deg"), ("alpha_deg", "Fz_N"), ("gamma_deg", "Fz_N"), ("alpha_deg", "direction"), ("Fz_N", "p_kPa"))
+PAIRS = (
+    ("alpha_deg", "gamma_deg"),
+    ("alpha_deg", "Fz_N"),
+    ("gamma_deg", "Fz_N"),
+    ("alpha_deg", "direction"),
+    ("Fz_N", "p_kPa"),
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,10 +66,11 @@ def where(points: Points, residual: np.ndarray, noise: Noise) -> tuple[Region, .
             if len(rows) < FEWEST:
                 continue
             values = residual[noise.used[rows]]
-            factor = noise.root[rows].sum(axis=0)
-            error = float(np.sqrt(factor @ factor)) / len(rows)
+            error = noise.error_of_sum(rows) / len(rows)
             z = float(values.mean()) / error
-            found.append((Region(channel, region, float(values.mean()), z, len(rows)), frozenset(rows.tolist())))
+            found.append(
+                (Region(channel, region, float(values.mean()), z, len(rows)), frozenset(rows.tolist()))
+            )
             p_values.append(2.0 * norm.sf(abs(z)))
     if not found:
         return ()
@@ -70,9 +78,9 @@ def where(points: Points, residual: np.ndarray, noise: Noise) -> tuple[Region, .
     passing = [found[i] for i in np.flatnonzero(adjusted < FALSE_DISCOVERY)]
     passing.sort(key=lambda item: -abs(item[0].z))
     kept: list[tuple[Region, frozenset]] = []
-    for region, rows in passing:
-        if all(len(rows & other) < 0.6 * min(len(rows), len(other)) for _, other in kept):
-            kept.append((region, rows))
+    for region, members in passing:
+        if all(len(members & other) < 0.6 * min(len(members), len(other)) for _, other in kept):
+            kept.append((region, members))
         if len(kept) == MOST_REGIONS:
             break
     return tuple(region for region, _ in kept)
@@ -113,11 +121,11 @@ def _cut(values: np.ndarray) -> list[tuple[tuple[float, float], np.ndarray]]:
         return []
     gaps = np.flatnonzero(np.diff(finite) > 0.1 * np.ptp(finite))
     if 1 <= len(gaps) <= 5:
-        edges = [finite[0], *[(finite[g] + finite[g + 1]) / 2.0 for g in gaps], finite[-1]]
+        edges = np.array([finite[0], *[(finite[g] + finite[g + 1]) / 2.0 for g in gaps], finite[-1]])
     else:
         edges = np.unique(np.quantile(finite, np.linspace(0.0, 1.0, 7)))
     out = []
-    for low, high in zip(edges[:-1], edges[1:], strict=True):
+    for low, high in pairwise(edges):
         mask = (values >= low) & (values <= high)
         if mask.sum() >= FEWEST:
             out.append(((float(values[mask].min()), float(values[mask].max())), mask))

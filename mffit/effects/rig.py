@@ -7,7 +7,8 @@ from mffit.effects.effect import Effect, Free
 SIDESLIP_MISALIGNMENT = Effect(
     "sideslip-misalignment", "sideslip axis misaligned", "rig",
     "The steering axis reads zero while the wheel runs at a small sideslip angle.",
-    (Free("alpha_0_deg", 0.2, (0.0,), -5.0, 5.0),), (), "even in alpha; force turns with the direction of rolling", ("ply-steer",),
+    (Free("alpha_0_deg", 0.2, (0.0,), -5.0, 5.0),), (), "even in alpha; turns with the direction",
+    ("ply-steer",),
 )  # fmt: skip
 CAMBER_MISALIGNMENT = Effect(
     "camber-misalignment", "camber axis misaligned", "rig",

@@ -51,5 +51,9 @@ def violations(p, envelope: Envelope) -> np.ndarray:
 def _grid(envelope: Envelope) -> list[np.ndarray]:
     Fz = np.linspace(*envelope.Fz, 3)
     gamma = np.linspace(-envelope.gamma, envelope.gamma, 5) if envelope.gamma > 0 else np.zeros(1)
-    pressure = np.linspace(*envelope.pressure, 2) if envelope.pressure[1] > envelope.pressure[0] else np.array(envelope.pressure[:1])
+    pressure = (
+        np.linspace(*envelope.pressure, 2)
+        if envelope.pressure[1] > envelope.pressure[0]
+        else np.array(envelope.pressure[:1])
+    )
     return list(np.meshgrid(Fz, gamma, pressure))

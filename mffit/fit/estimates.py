@@ -6,9 +6,10 @@ They make the file complete and the simulation run; they are not measurements an
 from __future__ import annotations
 
 from collections.abc import Mapping
+from typing import Any
 
 
-def estimates(values: Mapping[str, object]) -> dict[str, float]:
+def estimates(values: Mapping[str, Any]) -> dict[str, float]:
     """Vertical, longitudinal, combined-slip, rolling and structural coefficients scaled from what is known.
 
     The longitudinal peak is the lateral one; the longitudinal slip stiffness 1.3 times the cornering stiffness;

@@ -72,10 +72,16 @@ def fit(
         turn_slip.update(_unmeasured(turn_slip, status))
     turn_slip.update(_rolling_resistance(turn_slip, points, status))
     coefficients = _coefficients(turn_slip, fitted, cover, status)
-    explanations = [_pecp1_sentence(config, turn_slip, measured)] if measured.epsilon_gamma is not None else []
+    explanations = (
+        [_pecp1_sentence(config, turn_slip, measured)] if measured.epsilon_gamma is not None else []
+    )
 
     written_values, written_coefficients = turn_slip, coefficients
-    if config.rig.type == "rotating-disk" and config.spin.exact == "normal" and measured.epsilon_gamma is not None:
+    if (
+        config.rig.type == "rotating-disk"
+        and config.spin.exact == "normal"
+        and measured.epsilon_gamma is not None
+    ):
         progress("deriving the file for turn slip off")
         normal = derive_normal(
             turn_slip, points, parts, cover, _by_load(measured, "C_gamma"), problem.envelope
@@ -107,7 +113,7 @@ def fit(
     )
 
 
-def _before_the_fit(config, points: Points, measured, base) -> tuple[dict[str, object], dict[str, str]]:
+def _before_the_fit(config, points: Points, measured, base) -> tuple[dict[str, Any], dict[str, str]]:
     """Every value before the fit, and where it comes from."""
     values = base_values(config, base)
     origin = "base" if base is not None else "default"
@@ -155,21 +161,26 @@ def _by_load(measured, key: str) -> dict[float, float]:
     return dict(measured.by_load(key))
 
 
-def _unmeasured(values: Mapping[str, object], status: dict[str, str]) -> dict[str, float]:
+def _unmeasured(values: Mapping[str, Any], status: dict[str, str]) -> dict[str, float]:
     found = {n: v for n, v in estimates(values).items() if status.get(n) not in ("measured",)}
     status.update(dict.fromkeys(found, "estimate"))
     return found
 
 
-def _rolling_resistance(values: Mapping[str, object], points: Points, status: dict[str, str]) -> dict[str, float]:
+def _rolling_resistance(
+    values: Mapping[str, Any], points: Points, status: dict[str, str]
+) -> dict[str, float]:
     """QSY1 from measured My, the other terms of the rolling resistance as they are."""
     used = np.isfinite(points.My) & (points.direction > 0)
     if not np.any(used):
         return {}
     chosen = points.select(np.flatnonzero(used))
+
     def moment(QSY1: float) -> np.ndarray:
         p = SimpleNamespace(**{**values, "QSY1": QSY1})
-        return evaluate(p, chosen.Fz, chosen.alpha, chosen.gamma, 0.0, chosen.phi_t, chosen.V, chosen.p, turn_slip=True)[0].My
+        return evaluate(
+            p, chosen.Fz, chosen.alpha, chosen.gamma, 0.0, chosen.phi_t, chosen.V, chosen.p, turn_slip=True
+        )[0].My
 
     at_zero = moment(0.0)
     slope = moment(1.0) - at_zero
@@ -182,7 +193,9 @@ def _coefficients(values, fitted: Fitted, cover, status: Mapping[str, str]) -> d
     stage_of = {row.name: row.stage for row in TABLE}
     out = {}
     for row in TABLE:
-        if row.kind != "number" or not (row.section in FORCE_SECTIONS or status.get(row.name) not in ("base", "default")):
+        if row.kind != "number" or not (
+            row.section in FORCE_SECTIONS or status.get(row.name) not in ("base", "default")
+        ):
             continue
         free = row.name in fitted.values
         state = status.get(row.name, "default")
@@ -219,11 +232,11 @@ def _with_normal(coefficients: Mapping[str, Coefficient], normal: Normal) -> dic
 
 
 def _at_bound(name: str, value: float) -> bool:
-    row = BY_NAME[name]
-    return min(value - row.lower, row.upper - value) < 1e-4 * (row.upper - row.lower)
+    lower, upper = BY_NAME[name].bounds
+    return min(value - lower, upper - value) < 1e-4 * (upper - lower)
 
 
-def _tyre(values: Mapping[str, object], coefficients: Mapping[str, Coefficient], base: Tyre | None) -> Tyre:
+def _tyre(values: Mapping[str, Any], coefficients: Mapping[str, Coefficient], base: Tyre | None) -> Tyre:
     tyre = (base or Tyre.from_values({})).replace(**values)
     return tyre.annotate(status={name: status_comment(c) for name, c in coefficients.items()})
 
@@ -247,7 +260,12 @@ def _odd_agreement(values, points: Points, parts: Parts) -> dict[str, Agreement]
     straight = points.replace(
         alpha=parts.alpha_odd, phi_t=np.zeros(len(points)), direction=np.ones_like(points.direction)
     )
-    symmetric = {**values, **dict.fromkeys(("PHY1", "PHY2", "PVY1", "PVY2", "PEY3", "QHZ1", "QHZ2", "QDZ6", "QDZ7", "QEZ4"), 0.0)}
+    symmetric = {
+        **values,
+        **dict.fromkeys(
+            ("PHY1", "PHY2", "PVY1", "PVY2", "PEY3", "QHZ1", "QHZ2", "QDZ6", "QDZ7", "QEZ4"), 0.0
+        ),
+    }
     model = readings(SimpleNamespace(**symmetric), straight, turn_slip=False)
     used = (parts.paired != "unpaired") & (points.direction > 0)
     return {
@@ -288,7 +306,9 @@ def _normal_sentences(turn_slip, written, points: Points, parts: Parts, normal: 
 def _warnings(fitted: Fitted, cover) -> list[str]:
     out = []
     if fitted.at_bound:
-        out.append(f"at the bound of plausible values: {', '.join(sorted(fitted.at_bound))}; check the sweeps that decide them")
+        out.append(
+            f"at the bound of plausible values: {', '.join(sorted(fitted.at_bound))}; check the sweeps that decide them"
+        )
     if fitted.scale[0] > 3.0:
         out.append(
             f"the model misses Fy by {fitted.scale[0]:.1f} times the stated uncertainty; run mffit diagnose to find out why"

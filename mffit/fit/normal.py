@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from types import SimpleNamespace
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -31,12 +31,12 @@ class Normal(NamedTuple):
 
 
 def derive_normal(
-    values: Mapping[str, object],
+    values: Mapping[str, Any],
     points: Points,
     parts: Parts,
     cover: tuple[StageCoverage, ...],
     C_gamma: Mapping[float, float],
-    envelope: Envelope,
+    envelope: Envelope | None,
 ) -> Normal:
     """Coefficients of the file for turn slip off.
 
@@ -54,11 +54,13 @@ def derive_normal(
     start = {**values, **imposed}
     straight = points.replace(phi_t=np.zeros(len(points)), direction=np.ones_like(points.direction))
     straight = straight.replace(mount=np.ones_like(points.mount))
-    symmetric = {**start, **{name: 0.0 for name in ("PHY1", "PHY2", "PVY1", "PVY2", "PEY3")}}
+    symmetric = {**start, **dict.fromkeys(("PHY1", "PHY2", "PVY1", "PVY2", "PEY3"), 0.0)}
 
     force = [name for name in CAMBER_FORCE if name in free]
     used = (parts.paired != "unpaired") & (points.direction > 0)
-    odd = straight.replace(alpha=parts.alpha_odd, Fy=np.where(used, parts.Fy_odd, np.nan), Mz=np.full(len(points), np.nan))
+    odd = straight.replace(
+        alpha=parts.alpha_odd, Fy=np.where(used, parts.Fy_odd, np.nan), Mz=np.full(len(points), np.nan)
+    )
     fitted_force, errors_force = _refit(odd, symmetric, force, envelope, points.u_Fy)
 
     fitted = {**start, **fitted_force}
@@ -74,7 +76,9 @@ def derive_normal(
     return Normal(changed, {**errors_force, **errors_moment}, frozenset(imposed), difference)
 
 
-def camber_stiffness_terms(values: Mapping[str, object], C_gamma: Mapping[float, float], main: float) -> dict[str, float]:
+def camber_stiffness_terms(
+    values: Mapping[str, Any], C_gamma: Mapping[float, float], main: float
+) -> dict[str, float]:
     """PKY6 and PKY7 with K_yg0(Fz) = C_gamma(Fz): exact at the load nearest FNOMIN, best slope over the others.
 
     ``main`` is the pressure [Pa] at which C_gamma was measured; PPY5 takes it to the nominal one.
@@ -88,7 +92,11 @@ def camber_stiffness_terms(values: Mapping[str, object], C_gamma: Mapping[float,
     dfz = (load - Fz0) / Fz0
     nearest = int(np.argmin(np.abs(dfz)))
     offset = dfz - dfz[nearest]
-    slope = float(offset @ (specific - specific[nearest]) / (offset @ offset)) if len(load) > 1 else float(values["PKY7"])
+    slope = (
+        float(offset @ (specific - specific[nearest]) / (offset @ offset))
+        if len(load) > 1
+        else float(values["PKY7"])
+    )
     return {"PKY6": float(specific[nearest] - slope * dfz[nearest]), "PKY7": slope}
 
 
@@ -101,12 +109,12 @@ def _refit(points: Points, values, names, envelope, u) -> tuple[dict[str, float]
         fixed=values,
         sigma_Fy=np.where(np.isfinite(points.Fy), sigma, np.inf),
         sigma_Mz=np.where(np.isfinite(points.Mz), sigma, np.inf),
-        prior={n: (values[n], 0.5 * (BY_NAME[n].upper - BY_NAME[n].lower)) for n in names},
+        prior={n: (values[n], 0.5 * BY_NAME[n].width) for n in names},
         envelope=envelope,
         turn_slip=False,
     )
     start = {name: float(values[name]) for name in names}
-    solution = solve(problem.residual, start, {n: (BY_NAME[n].lower, BY_NAME[n].upper) for n in names})
+    solution = solve(problem.residual, start, {n: BY_NAME[n].bounds for n in names})
     misfit = max(1.0, float(np.sqrt(np.mean(solution.residual[: 2 * len(points)] ** 2))))
     errors = misfit * np.sqrt(np.diag(covariance(solution.jacobian)))
     return dict(solution.values), dict(zip(names, errors.tolist(), strict=True))

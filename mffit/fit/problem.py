@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 
@@ -21,13 +22,17 @@ class Problem:
     """Residuals of a set of points; built once, evaluated for many parameter values."""
 
     points: Points
-    fixed: Mapping[str, object]  #: every value of the file, before the free ones replace theirs
+    fixed: Mapping[str, Any]  #: every value of the file, before the free ones replace theirs
     sigma_Fy: np.ndarray  #: (n,) standard uncertainty used as weight [N]; inf where not used
     sigma_Mz: np.ndarray  #: (n,) [Nm]
-    prior: Mapping[str, tuple[float, float]]  #: name -> (expected value, spread) of coefficients that are tied
+    prior: Mapping[
+        str, tuple[float, float]
+    ]  #: name -> (expected value, spread) of coefficients that are tied
     envelope: Envelope | None = None
     turn_slip: bool = True
-    tie: tuple[Points, float, float] | None = None  #: (points, side force, weight) whose mean the model must give
+    tie: tuple[Points, float, float] | None = (
+        None  #: (points, side force, weight) whose mean the model must give
+    )
     play: float = 0.0  #: backlash of the sideslip axis [rad]
     alpha_read: np.ndarray | None = None  #: (n,) sideslip as read, before the play was taken up [rad]
 

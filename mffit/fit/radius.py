@@ -4,13 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 
 from tir.evaluate import evaluate
 
 
-def radius_coefficients(values: Mapping[str, object], r_e: Mapping[float, float], speed: float) -> dict[str, float]:
+def radius_coefficients(
+    values: Mapping[str, Any], r_e: Mapping[float, float], speed: float
+) -> dict[str, float]:
     """Q_RE0, and DREFF where several loads were measured, such that Re(Fz) passes through the measurements.
 
     Parameters

@@ -87,7 +87,12 @@ class FitResult:
                 for name, c in self.coefficients.items()
             },
             "stages": [
-                {"name": s.name, "parameters": list(s.parameters), "rmse_Fy_N": s.rmse_Fy, "rmse_Mz_Nm": s.rmse_Mz}
+                {
+                    "name": s.name,
+                    "parameters": list(s.parameters),
+                    "rmse_Fy_N": s.rmse_Fy,
+                    "rmse_Mz_Nm": s.rmse_Mz,
+                }
                 for s in self.stages
             ],
             "coverage": [

@@ -55,7 +55,7 @@ def solve(
         gtol=1e-10,
     )
     values = dict(zip(names, out.x.tolist(), strict=True))
-    return Solution(values, out.jac, out.fun, frozenset(_touching(values, bounds)), out.nfev)
+    return Solution(values, np.asarray(out.jac), out.fun, frozenset(_touching(values, bounds)), out.nfev)
 
 
 def covariance(jacobian: np.ndarray) -> np.ndarray:

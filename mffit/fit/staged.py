@@ -43,7 +43,13 @@ class Fitted:
     points: Points  #: with the angles that the wheel had, as far as the model knows them
 
 
-def fit_staged(problem: Problem, start: Mapping[str, float], cover: tuple[StageCoverage, ...], progress: Progress, extra: tuple[str, ...] = ()) -> Fitted:
+def fit_staged(
+    problem: Problem,
+    start: Mapping[str, float],
+    cover: tuple[StageCoverage, ...],
+    progress: Progress,
+    extra: tuple[str, ...] = (),
+) -> Fitted:
     """Fit stage by stage, then everything together.
 
     Parameters
@@ -155,12 +161,14 @@ def _reweighted(problem: Problem, values) -> tuple[Problem, tuple[float, float]]
     return dataclasses.replace(problem, sigma_Fy=out[0], sigma_Mz=out[1]), (scales[0], scales[1])
 
 
-def _ties(points: Points, names, base: Mapping[str, float], released: frozenset[str] = frozenset()) -> dict[str, tuple[float, float]]:
+def _ties(
+    points: Points, names, base: Mapping[str, float], released: frozenset[str] = frozenset()
+) -> dict[str, tuple[float, float]]:
     """Expected value and spread of every free coefficient: tight for spin terms, the table's bounds for the rest."""
     ties = {}
     for name in names:
         row = BY_NAME[name]
-        spread = 0.5 * (row.upper - row.lower)
+        spread = 0.5 * row.width
         if name in IF_IDENTIFIED and name not in released:
             spread = max(TIED_SPREAD * abs(base[name]), 0.02)
         if name in CONICITY_ON_A_DISC and np.any(points.phi_t):
@@ -170,7 +178,7 @@ def _ties(points: Points, names, base: Mapping[str, float], released: frozenset[
 
 
 def _bounds(names) -> dict[str, tuple[float, float]]:
-    return {name: (BY_NAME[name].lower, BY_NAME[name].upper) for name in names}
+    return {name: BY_NAME[name].bounds for name in names}
 
 
 def _data_errors(problem: Problem, solution: Solution) -> dict[str, float]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from typing import Any
 
 import numpy as np
 
@@ -13,7 +14,7 @@ NEVER_ZERO = {"QBZ1": 8.0, "QDZ1": 0.08, "PDYP1": 0.3, "PKYP1": 0.5, "QDTP1": 3.
 """Where the derivative vanishes at zero, a start at zero never leaves it."""
 
 
-def base_values(config, base: Tyre | None) -> dict[str, object]:
+def base_values(config, base: Tyre | None) -> dict[str, Any]:
     """Every value of the file before the fit: the base file's, else the table's defaults, with the tyre's own data."""
     values = dict(base.values) if base is not None else dict(Tyre.from_values({}).values)
     tyre = config.tyre
@@ -32,7 +33,9 @@ def base_values(config, base: Tyre | None) -> dict[str, object]:
     return values
 
 
-def starting_values(values: Mapping[str, object], points: Points, C_alpha: Mapping[float, float]) -> dict[str, float]:
+def starting_values(
+    values: Mapping[str, Any], points: Points, C_alpha: Mapping[float, float]
+) -> dict[str, float]:
     """Improve on the base values by what can be read off the data directly.
 
     Parameters

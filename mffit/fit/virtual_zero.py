@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 
@@ -21,7 +22,9 @@ def zero_points(points: Points, load: float) -> Points:
     )
 
 
-def epsilon_gamma_of_model(values: dict[str, object], points: Points, load: float, r_e: float, R: float) -> float:
+def epsilon_gamma_of_model(
+    values: dict[str, Any], points: Points, load: float, r_e: float, R: float
+) -> float:
     """eps_gamma by (17), as the direct method would find it if the model stood on the rig without noise."""
     p = SimpleNamespace(**values)
     zero = zero_points(points, load)

@@ -59,7 +59,9 @@ def named(value: float, u: float, source: str, unit: str) -> UFloat:
     return ufloat(value, max(u, EXACT), f"{source}|{unit}")
 
 
-def turn_slip_force(F_raw: Any, C_gamma: Any, C_alpha: Any, rig: RigErrors, alpha_b: Any, *, slip_known: bool) -> Any:
+def turn_slip_force(
+    F_raw: Any, C_gamma: Any, C_alpha: Any, rig: RigErrors, alpha_b: Any, *, slip_known: bool
+) -> Any:
     """Turn-slip force [N] from the raw force at (0, 0); (23) in ISO signs.
 
     Parameters

@@ -16,7 +16,7 @@ from mffit.measured.backlash import backlash_corrected, odd_alpha
 from mffit.measured.groups import STRAIGHT, UPRIGHT, LoadGroup, load_groups, zeros
 from mffit.measured.loads import load_dependence
 from mffit.measured.radii import effective_radius_at, measured_effective_radius, measured_path_radius
-from mffit.measured.result import LoadResult, Measured
+from mffit.measured.result import Contribution, LoadResult, Measured
 from mffit.measured.slopes import Secant, Slope, secant_at, slope_at_zero
 from mffit.parts import Parts
 from mffit.points import Points
@@ -87,7 +87,9 @@ def measure(config: Config, points: Points, parts: Parts, base: Tyre | None = No
     rig = _rig(config, R) if disc else None
     rows = []
     for group in load_groups(points):
-        found = _at_load(config, points, parts, slip, group, rig, effective_radius_at(group.load, radii, base), warnings)
+        found = _at_load(
+            config, points, parts, slip, group, rig, effective_radius_at(group.load, radii, base), warnings
+        )
         if found is not None:
             rows.append(found)
     measured_loads = {load: float(r.nominal_value) for load, r in radii.items()}
@@ -116,14 +118,17 @@ def _at_load(config, points, parts, odd_slip, group: LoadGroup, rig, r_e, warnin
     C_alpha = Stiffness(*_estimates(odd_slip, odd_Fy, u_Fy, slip, CUBIC_SLIP, CUBIC_SLIP))
     Ca = _number(C_alpha.slope or C_alpha.secant, "cornering stiffness")
     if Ca is not None:  # the sideslip that backlash leaves in a camber sweep
-        odd_Fy = np.where(np.isin(np.arange(len(points)), camber), odd_Fy - Ca.nominal_value * odd_slip, odd_Fy)
+        odd_Fy = np.where(
+            np.isin(np.arange(len(points)), camber), odd_Fy - Ca.nominal_value * odd_slip, odd_Fy
+        )
     C_gamma = Stiffness(*_estimates(points.gamma, odd_Fy, u_Fy, camber, CUBIC_CAMBER, angle))
     if C_gamma.slope is None and C_alpha.slope is None and C_gamma.secant is None and rig is None:
         return None
     chosen = _chosen(config, C_gamma, points.gamma[camber], group.load, warnings)
     zero = _zero(points, group, Ca, config) if rig else None
     epsilon = turn = alpha_M = moment = None
-    row_budget, u_mc, e_slope, e_secant = (), None, None, None
+    row_budget: tuple[Contribution, ...] = ()
+    u_mc = e_slope = e_secant = None
     if zero is not None and np.isfinite(zero.forward):
         force, alpha_M, inputs = _turn_slip(zero, chosen, Ca, rig)
         sign = float(np.sign(points.phi_t[group.index[0]]))
@@ -134,15 +139,21 @@ def _at_load(config, points, parts, odd_slip, group: LoadGroup, rig, r_e, warnin
             result = method.camber_reduction(force, chosen, r_e, rig.R, sign)
             epsilon, row_budget = result.epsilon_gamma, method.budget(result.epsilon_gamma)
             u_mc = _monte_carlo(epsilon, inputs, chosen, Ca, r_e, rig, sign, zero)
-            e_slope, e_secant = (_epsilon_with(s, force, r_e, rig, sign) for s in (C_gamma.slope, C_gamma.secant))
+            e_slope, e_secant = (
+                _epsilon_with(s, force, r_e, rig, sign) for s in (C_gamma.slope, C_gamma.secant)
+            )
             moment = _moment_opinion(points, odd_Mz, u_Mz, group, zero, r_e, rig, sign)
     C_phit = None if turn is None else float(np.sign(points.phi_t[group.index[0]])) * turn * rig.R
     row = LoadResult(
         load=group.load,
         C_alpha=method.quantity(Ca, "N/rad"),
         C_gamma=method.quantity(chosen, "N/rad"),
-        C_gamma_slope=None if C_gamma.slope is None else Quantity(C_gamma.slope.value, C_gamma.slope.u, "N/rad"),
-        C_gamma_secant=None if C_gamma.secant is None else Quantity(C_gamma.secant.value, C_gamma.secant.u, "N/rad"),
+        C_gamma_slope=None
+        if C_gamma.slope is None
+        else Quantity(C_gamma.slope.value, C_gamma.slope.u, "N/rad"),
+        C_gamma_secant=None
+        if C_gamma.secant is None
+        else Quantity(C_gamma.secant.value, C_gamma.secant.u, "N/rad"),
         r_e=method.quantity(r_e, "m"),
         R=method.quantity(rig.R, "m") if rig else None,
         F_phit=method.quantity(turn, "N"),
@@ -210,14 +221,20 @@ def _zero(points: Points, group: LoadGroup, C_alpha: UFloat | None, config: Conf
     forward = _at_zero(points, group, 1, points.Fy, u_Fy, slope)
     backward = _at_zero(points, group, -1, points.Fy, u_Fy, -slope)
     moments = [_at_zero(points, group, direction, points.Mz, u_Mz, None) for direction in (1, -1)]
-    known = [method.named(value, u, "noise of the zero moment", "Nm") for value, u in moments if math.isfinite(value)]
+    known = [
+        method.named(value, u, "noise of the zero moment", "Nm")
+        for value, u in moments
+        if math.isfinite(value)
+    ]
     moment = (known[0] - known[1]) / 2.0 if len(known) == 2 else known[0] if known else None
     i = zeros(points, group, 1)
     play_sign = float(np.sign(np.mean(points.alpha[i]))) if len(i) and config.rig.backlash_deg else 0.0
     return Zero(forward[0], backward[0], forward[1], backward[1], moment, play_sign)
 
 
-def _at_zero(points: Points, group: LoadGroup, direction: int, y, u, slope: float | None) -> tuple[float, float]:
+def _at_zero(
+    points: Points, group: LoadGroup, direction: int, y, u, slope: float | None
+) -> tuple[float, float]:
     """Value at zero sideslip and its u: a local parabola through five points or more, else the mean of the zeros.
 
     ``slope`` takes the zeros that backlash has moved off zero back to it; NaN if the direction was not run.
@@ -320,15 +337,20 @@ def _assembled(config, rows: list[AtLoad], r_e_loads, warnings: list[str], disc:
         return Measured(per_load, nearest, None, 0.0, None, r_e_loads, False, (), tuple(warnings))
     at = min(with_epsilon, key=lambda k: abs(per_load[k].load - nominal_load))
     loads = [per_load[k].load for k in with_epsilon]
-    law = load_dependence(loads, [rows[k].epsilon for k in with_epsilon], with_epsilon.index(at), nominal_load)
+    law = load_dependence(
+        loads, [rows[k].epsilon for k in with_epsilon], with_epsilon.index(at), nominal_load
+    )
     row = per_load[at]
     misaligned, notes = _alignment_verdict(config, row, warnings)
     notes += [law.note, *_standing_notes(config, row)]
-    return Measured(per_load, row, law.pecp1, law.pecp2, law.u_pecp2, r_e_loads, misaligned, tuple(notes), tuple(warnings))
+    return Measured(
+        per_load, row, law.pecp1, law.pecp2, law.u_pecp2, r_e_loads, misaligned, tuple(notes), tuple(warnings)
+    )
 
 
 def _alignment_verdict(config, row: LoadResult, warnings: list[str]) -> tuple[bool, list[str]]:
     """Whether the sideslip axis is off by more than the rig's own alignment leaves, and what to say of it."""
+    assert row.F_phit is not None
     force = row.F_phit.value
     degrees_per_newton = math.degrees(1.0 / abs(row.C_alpha.value)) if row.C_alpha else math.nan
     if row.alpha_M is None:
@@ -354,6 +376,8 @@ def _alignment_verdict(config, row: LoadResult, warnings: list[str]) -> tuple[bo
 
 
 def _standing_notes(config, row: LoadResult) -> list[str]:
+    assert row.epsilon_gamma is not None
+    assert row.F_phit is not None
     conicity = 0.002 * row.load
     return [
         "All uncertainties are standard uncertainties (k = 1).",

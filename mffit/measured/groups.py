@@ -28,13 +28,19 @@ def load_groups(points: Points) -> tuple[LoadGroup, ...]:
     order = used[np.argsort(points.Fz[used])]
     cuts = np.flatnonzero(np.diff(np.log(points.Fz[order])) > LOAD_GAP) + 1
     return tuple(
-        LoadGroup(float(np.mean(points.Fz[part])), np.sort(part)) for part in np.split(order, cuts) if len(part)
+        LoadGroup(float(np.mean(points.Fz[part])), np.sort(part))
+        for part in np.split(order, cuts)
+        if len(part)
     )
 
 
 def zeros(points: Points, group: LoadGroup, direction: int) -> np.ndarray:
     """Indices of the group's points at zero sideslip and camber, rolling in ``direction`` (+1, -1)."""
     i = group.index
-    near = (np.abs(points.alpha[i]) < STRAIGHT) & (np.abs(points.gamma[i]) < UPRIGHT) & (points.direction[i] == direction)
+    near = (
+        (np.abs(points.alpha[i]) < STRAIGHT)
+        & (np.abs(points.gamma[i]) < UPRIGHT)
+        & (points.direction[i] == direction)
+    )
     i = i[near]
     return i[np.abs(points.alpha[i]) < np.min(np.abs(points.alpha[i])) + np.radians(0.05)] if len(i) else i

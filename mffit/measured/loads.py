@@ -20,7 +20,9 @@ class LoadDependence(NamedTuple):
     note: str
 
 
-def load_dependence(loads: Sequence[float], epsilon: Sequence[UFloat], nominal: int, Fz0: float) -> LoadDependence:
+def load_dependence(
+    loads: Sequence[float], epsilon: Sequence[UFloat], nominal: int, Fz0: float
+) -> LoadDependence:
     """Fit the slope over load with eps_gamma at the nominal load held; rig errors common to all loads stay correlated.
 
     Parameters
@@ -53,5 +55,7 @@ def load_dependence(loads: Sequence[float], epsilon: Sequence[UFloat], nominal: 
     elif max(span) >= LARGEST_EPSILON:
         why = f"eps_gamma would reach {max(span):.2f} within the loads"
     else:
-        return LoadDependence(pecp1, slope / pecp1, u_pecp2, f"PECP2 = {slope / pecp1:.3f} +- {u_pecp2:.3f} (k = 1).")
+        return LoadDependence(
+            pecp1, slope / pecp1, u_pecp2, f"PECP2 = {slope / pecp1:.3f} +- {u_pecp2:.3f} (k = 1)."
+        )
     return LoadDependence(pecp1, 0.0, u_pecp2, f"PECP2 is 0: {why}.")

@@ -19,9 +19,12 @@ def measured_path_radius(config: Config) -> UFloat | None:
     if rig.type == "flat-track":
         return None
     if rig.path is None:
+        assert rig.path_radius is not None
         return named(rig.path_radius, rig.u_path_radius or 0.0, "path radius", "m")
     R = path_radius(**{k: _ufloat(v, rig.u_length) for k, v in rig.path.model_dump().items()})
-    return named(R.nominal_value, R.std_dev if rig.u_path_radius is None else rig.u_path_radius, "path radius", "m")
+    return named(
+        R.nominal_value, R.std_dev if rig.u_path_radius is None else rig.u_path_radius, "path radius", "m"
+    )
 
 
 def measured_effective_radius(config: Config, R: UFloat | None) -> dict[float, UFloat]:
@@ -30,9 +33,14 @@ def measured_effective_radius(config: Config, R: UFloat | None) -> dict[float, U
     for row in config.rolling_radius:
         load = row.load_N or config.tyre.nominal_load
         if not row.is_measured:
-            out[load] = named(row.effective_radius, row.u_effective_radius, "effective radius", "m")
+            assert row.effective_radius is not None
+            out[load] = named(row.effective_radius, row.u_effective_radius or 0.0, "effective radius", "m")
             continue
         arcs = named(0.0, np.sqrt(2.0) * row.u_arc_m, "disc notches", "m")
+        assert R is not None
+        assert row.revolutions is not None
+        assert row.angle_end_deg is not None
+        assert row.angle_start_deg is not None
         turned = 2.0 * np.pi * row.revolutions + np.radians(row.angle_end_deg - row.angle_start_deg)
         angle = named(turned, np.sqrt(2.0) * np.radians(row.u_angle_deg), "wheel angle", "rad")
         out[load] = (2.0 * np.pi * R + arcs) / angle

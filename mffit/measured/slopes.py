@@ -62,7 +62,11 @@ def secant_at(x: np.ndarray, y: np.ndarray, u: np.ndarray, angle: float) -> Seca
     nearest = int(np.argmin(np.abs(x - angle)))
     if abs(x[nearest] - angle) < 0.02 * angle:
         same = np.abs(x - x[nearest]) < 1e-3
-        return Secant(float(np.mean(y[same] / x[same])), float(np.sqrt(np.sum(u[same] ** 2)) / same.sum() / x[nearest]), angle)
+        return Secant(
+            float(np.mean(y[same] / x[same])),
+            float(np.sqrt(np.sum(u[same] ** 2)) / same.sum() / x[nearest]),
+            angle,
+        )
     return Secant(float(np.interp(angle, x, y) / angle), float(np.interp(angle, x, u) / angle), angle)
 
 
@@ -79,8 +83,11 @@ def _saturating(x, y, u) -> tuple[float, float]:
     def residual(v):
         return np.append((model(v) - y) / u, (v[2] - 1.2) / 0.5)
 
-    out = least_squares(residual, [1.05, 1.2, 1.2], bounds=([0.2, 0.7, 0.3], [5.0, 20.0, 1.9]), x_scale=[0.1, 0.3, 0.2])
-    cov = np.linalg.pinv(out.jac.T @ out.jac)
+    out = least_squares(
+        residual, [1.05, 1.2, 1.2], bounds=([0.2, 0.7, 0.3], [5.0, 20.0, 1.9]), x_scale=[0.1, 0.3, 0.2]
+    )
+    jacobian = np.asarray(out.jac)
+    cov = np.linalg.pinv(jacobian.T @ jacobian)
     inflation = max(1.0, float(np.sqrt(2.0 * out.cost / max(len(x) - 3, 1))))
     return float(out.x[0] * start), float(np.sqrt(cov[0, 0]) * abs(start) * inflation)
 

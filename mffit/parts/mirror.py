@@ -45,7 +45,7 @@ def same_condition(points: Points, i: int, tolerance: Tolerance) -> np.ndarray:
     )
 
 
-def find_mirrors(points: Points, tolerance: Tolerance = Tolerance()) -> Mirrors:  # noqa: B008 - frozen
+def find_mirrors(points: Points, tolerance: Tolerance = Tolerance()) -> Mirrors:
     """Find the mirror of every point: a measured one within tolerance, else interpolated along the mirrored sweep.
 
     A mirror in the same sweep is preferred to one in another. Interpolation runs over alpha at the mirrored camber, or

@@ -52,7 +52,16 @@ def readings(
 
     def forces(alpha):
         return evaluate(
-            p, points.Fz, alpha, seen.gamma, 0.0, seen.phi_t, points.Vx, points.p, turn_slip=turn_slip, star=star
+            p,
+            points.Fz,
+            alpha,
+            seen.gamma,
+            0.0,
+            seen.phi_t,
+            points.Vx,
+            points.p,
+            turn_slip=turn_slip,
+            star=star,
         )[0]
 
     out = forces(seen.alpha)
@@ -70,7 +79,9 @@ def true_conditions(points: Points, faults: RigFaults) -> Conditions:
     if not math.isnan(faults.path_radius_m):
         phi_t = np.sign(phi_t) / faults.path_radius_m
     return Conditions(
-        points.alpha + math.radians(faults.alpha_0_deg), points.gamma + math.radians(faults.gamma_0_deg), phi_t
+        points.alpha + math.radians(faults.alpha_0_deg),
+        points.gamma + math.radians(faults.gamma_0_deg),
+        phi_t,
     )
 
 

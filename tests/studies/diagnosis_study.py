@@ -10,13 +10,13 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "mffit" / "diagnose"))
 
-from blind_scores import Verdict, judge, rates, suite  # noqa: E402
+from blind_scores import Verdict, judge, rates, suite
 
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--seed", type=int, default=1, help="of the whole set")
-    parser.add_argument("--repeats", type=int, default=1, help="sets of all effects at all three sizes")
+    parser.add_argument("--repeats", type=int, default=1, help="how many sets")
     parser.add_argument("--only", default="", help="only cases whose name contains this")
     options = parser.parse_args()
     verdicts: list[Verdict] = []
@@ -30,7 +30,7 @@ def main() -> None:
             print(f"{verdict.line()}  {time.perf_counter() - began:.1f} s", flush=True)
     print_confusion(verdicts)
     for name, (hits, of) in rates(verdicts).items():
-        print(f"{name:46s} {hits:5.3g} of {of:g}" + (f"  {hits / of:.3f}" if of else ""))
+        print(f"{name:46s} " + (f"{hits:g} of {of:g}, {100.0 * hits / of:.1f} %" if of else f"{hits:.1f}"))
 
 
 def print_confusion(verdicts: list[Verdict]) -> None:

@@ -14,8 +14,32 @@ import tir
 VECTORS = Path(__file__).parent / "vectors"
 TYRES = ["MagicFormula61", "MagicFormula62", "moto_front"]
 ODD = dict.fromkeys(
-    "PHX1 PHX2 PVX1 PVX2 PHY1 PHY2 PVY1 PVY2 PEY3 QBZ4 QDZ3 QDZ6 QDZ7 QEZ4 QHZ1 QHZ2 RBY3 RHX1 RHY1 RHY2 RVY1 RVY2 "
-    "SSZ1 QSX1".split(),
+    [
+        "PHX1",
+        "PHX2",
+        "PVX1",
+        "PVX2",
+        "PHY1",
+        "PHY2",
+        "PVY1",
+        "PVY2",
+        "PEY3",
+        "QBZ4",
+        "QDZ3",
+        "QDZ6",
+        "QDZ7",
+        "QEZ4",
+        "QHZ1",
+        "QHZ2",
+        "RBY3",
+        "RHX1",
+        "RHY1",
+        "RHY2",
+        "RVY1",
+        "RVY2",
+        "SSZ1",
+        "QSX1",
+    ],
     0.0,
 )
 

@@ -49,7 +49,9 @@ def test_turn_slip_equals_the_independent_implementation():
     forces, state = tyre(*inputs), tyre.state(*inputs)
     for column in ("Fx", "Fy", "Mx", "My", "Mz"):
         assert_agree(getattr(forces, column), rows, column, LOOSE)
-    columns = "Kya Kxk sigma_x sigma_y Re omega phi Shyphi t Mzr".split() + [f"zeta{i}" for i in range(1, 9)]
+    columns = ["Kya", "Kxk", "sigma_x", "sigma_y", "Re", "omega", "phi", "Shyphi", "t", "Mzr"] + [
+        f"zeta{i}" for i in range(1, 9)
+    ]
     for column in columns:
         assert_agree(getattr(state, STATE_NAMES.get(column, column)), rows, column, LOOSE)
 

@@ -2,7 +2,18 @@
 
 from __future__ import annotations
 
-from tir.equations.elementary import absolute, arctan, at_most_one, away_from_zero, cos, magic_angle, pi, sign, sqrt, tan
+from tir.equations.elementary import (
+    absolute,
+    arctan,
+    at_most_one,
+    away_from_zero,
+    cos,
+    magic_angle,
+    pi,
+    sign,
+    sqrt,
+    tan,
+)
 from tir.equations.lateral import SideForce
 from tir.equations.normalise import Inputs
 from tir.equations.turn_slip import Spin, SpinTorque
@@ -22,7 +33,9 @@ def trail(p, q: Inputs, spin: Spin, K_xk, K_ya):
     B = load * (1.0 + p.QBZ4 * q.gamma + p.QBZ5 * absolute(q.gamma)) * p.LKY / p.LMUY  # A58
     C = p.QCZ1  # 4.E41
     size = q.Fz_moment * p.UNLOADED_RADIUS / q.Fz0 * (p.QDZ1 + p.QDZ2 * q.dfz)
-    D = size * (1.0 - p.PPZ1 * q.dpi) * (1.0 + p.QDZ3 * q.gamma + p.QDZ4 * q.gamma**2) * p.LTR * spin.zeta5  # A60
+    D = (
+        size * (1.0 - p.PPZ1 * q.dpi) * (1.0 + p.QDZ3 * q.gamma + p.QDZ4 * q.gamma**2) * p.LTR * spin.zeta5
+    )  # A60
     side = 2.0 / pi * arctan(B * C * alpha_t)
     E = (p.QEZ1 + p.QEZ2 * q.dfz + p.QEZ3 * q.dfz**2) * (1.0 + (p.QEZ4 + p.QEZ5 * q.gamma) * side)  # 4.E44
     slip = equivalent_slip(alpha_t, K_xk, K_ya, q.kappa)
@@ -44,4 +57,6 @@ def residual_torque(p, q: Inputs, spin: Spin, spin_torque: SpinTorque, side: Sid
 
 def longitudinal_arm(p, q: Inputs, Fy):
     """Moment arm s of Fx [m]; A56."""
-    return p.UNLOADED_RADIUS * (p.SSZ1 + p.SSZ2 * Fy / p.FNOMIN + (p.SSZ3 + p.SSZ4 * q.dfz) * q.gamma) * p.LS  # A56
+    return (
+        p.UNLOADED_RADIUS * (p.SSZ1 + p.SSZ2 * Fy / p.FNOMIN + (p.SSZ3 + p.SSZ4 * q.dfz) * q.gamma) * p.LS
+    )  # A56

@@ -4,7 +4,16 @@ from __future__ import annotations
 
 from typing import Any, NamedTuple
 
-from tir.equations.elementary import at_most_one, away_from_zero, cos_arctan, arctan, cos, magic_angle, sign, sin
+from tir.equations.elementary import (
+    arctan,
+    at_most_one,
+    away_from_zero,
+    cos,
+    cos_arctan,
+    magic_angle,
+    sign,
+    sin,
+)
 from tir.equations.normalise import Inputs
 from tir.equations.turn_slip import Spin
 
@@ -47,5 +56,7 @@ def combined_weight(p, q: Inputs):
 
 def longitudinal_shift(p, q: Inputs, mu_y, zeta2):
     """S_Vyk [N]: side force induced by longitudinal slip (ply-steer under braking); 4.E66."""
-    D = mu_y * q.Fz * (p.RVY1 + p.RVY2 * q.dfz + p.RVY3 * q.gamma) * cos_arctan(p.RVY4 * q.alpha) * zeta2  # 4.E67
+    D = (
+        mu_y * q.Fz * (p.RVY1 + p.RVY2 * q.dfz + p.RVY3 * q.gamma) * cos_arctan(p.RVY4 * q.alpha) * zeta2
+    )  # 4.E67
     return D * sin(p.RVY5 * arctan(p.RVY6 * q.kappa)) * p.LVYKA  # 4.E66

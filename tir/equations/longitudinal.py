@@ -27,5 +27,3 @@ def combined_weight(p, q: Inputs):
     S_H = p.RHX1  # 4.E57
     at_zero = cos(magic_angle(B, C, E, S_H))  # 4.E52
     return cos(magic_angle(B, C, E, q.alpha + S_H)) / at_zero  # 4.E51, 4.E53
-
-

@@ -15,7 +15,9 @@ def moment(p, q: Inputs, Fz, Fx, kappa, Vx):
     load = Fz / p.FNOMIN
     terms = p.QSY1 + p.QSY2 * Fx / p.FNOMIN + p.QSY3 * absolute(speed) + p.QSY4 * speed**4
     terms = terms + (p.QSY5 + p.QSY6 * load) * q.gamma**2
-    My = -p.UNLOADED_RADIUS * p.FNOMIN * p.LMY * terms * load**p.QSY7 * (q.pressure / p.NOMPRES) ** p.QSY8  # A48
+    My = (
+        -p.UNLOADED_RADIUS * p.FNOMIN * p.LMY * terms * load**p.QSY7 * (q.pressure / p.NOMPRES) ** p.QSY8
+    )  # A48
     rotation = (1.0 + kappa) * Vx / p.VXLOW
     rotation = select(real(rotation) > 1.0, 1.0, select(real(rotation) < -1.0, -1.0, rotation))
     return My * sin(0.5 * pi * rotation)

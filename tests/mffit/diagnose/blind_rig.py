@@ -70,7 +70,9 @@ def disc_programme(nominal: float, rng: np.random.Generator) -> Programme:
     t = SECONDS_PER_POINT * np.arange(len(rows))
     T = 34.0 + 7.0 * np.sin(t / rng.uniform(300.0, 900.0)) + rng.normal(0.0, 0.3, len(rows))
     flipped = np.zeros(len(rows), dtype=bool)
-    return Programme(name, alpha.astype(float), gamma.astype(float), Fz, p, V, backward, flipped, t, np.round(T, 2))
+    return Programme(
+        name, alpha.astype(float), gamma.astype(float), Fz, p, V, backward, flipped, t, np.round(T, 2)
+    )
 
 
 @dataclass(frozen=True)
@@ -93,19 +95,28 @@ class Machine:
         return replace(self, **faults)
 
 
-def report(tyre: Tyre, machine: Machine, run: Programme, *, turn_slip: bool = True) -> tuple[np.ndarray, np.ndarray]:
+def report(
+    tyre: Tyre, machine: Machine, run: Programme, *, turn_slip: bool = True
+) -> tuple[np.ndarray, np.ndarray]:
     """Fy [N] and Mz [Nm] that the rig reports without noise; arrays (n,)."""
     alpha = np.deg2rad(run.alpha_deg + machine.alpha_0_deg)
     Fy, Mz = _at_the_tyre(tyre, machine, run, alpha, turn_slip)
     if machine.backlash_deg > 0.0:
         half_play = np.deg2rad(machine.backlash_deg / 2.0)
-        Fy, Mz = _at_the_tyre(tyre, machine, run, np.where(Mz > 0.0, alpha - half_play, alpha + half_play), turn_slip)
+        Fy, Mz = _at_the_tyre(
+            tyre, machine, run, np.where(Mz > 0.0, alpha - half_play, alpha + half_play), turn_slip
+        )
     surroundings = (1.0 + machine.k_T * (run.T - 25.0)) * (1.0 + machine.k_V * (run.V - USUAL_SPEED))
     surroundings = surroundings * (1.0 + machine.k_t * run.t)
-    return machine.gain * surroundings * Fy + machine.F0 + machine.crosstalk * run.Fz, surroundings * Mz + machine.M0
+    return (
+        machine.gain * surroundings * Fy + machine.F0 + machine.crosstalk * run.Fz,
+        surroundings * Mz + machine.M0,
+    )
 
 
-def _at_the_tyre(tyre, machine: Machine, run: Programme, alpha, turn_slip: bool) -> tuple[np.ndarray, np.ndarray]:
+def _at_the_tyre(
+    tyre, machine: Machine, run: Programme, alpha, turn_slip: bool
+) -> tuple[np.ndarray, np.ndarray]:
     """True Fy and Mz at true sideslip; a tyre turned on its rim and a tyre rolling backwards are both asked for."""
     Fy, Mz = np.empty(len(run)), np.empty(len(run))
     gamma = np.deg2rad(run.gamma_deg + machine.gamma_0_deg)

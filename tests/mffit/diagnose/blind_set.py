@@ -101,7 +101,13 @@ class Case:
 
 
 def draw_case(
-    name: str, causes: tuple[str, ...], level: str, seed: int, *, exact: bool = True, structure: str | None = None
+    name: str,
+    causes: tuple[str, ...],
+    level: str,
+    seed: int,
+    *,
+    exact: bool = True,
+    structure: str | None = None,
 ) -> Case:
     """A tyre, a programme and hidden causes, all drawn from ``seed``."""
     rng = np.random.default_rng(seed)
@@ -114,8 +120,10 @@ def draw_case(
     for cause in causes:
         given, true, machine = _hide(cause, CHI2[level], given, true, machine, run, u_coefficients, rng)
     if not exact:
-        given = given.replace(**{n: float(given[n]) * (1.0 + u_coefficients * rng.normal()) for n in inexact_names(given)})
-    drawn = draw_structure(structure, true, rng) if structure else None
+        given = given.replace(
+            **{n: float(given[n]) * (1.0 + u_coefficients * rng.normal()) for n in inexact_names(given)}
+        )
+    drawn = draw_structure(structure, rng) if structure else None
     Fy, Mz = _with_structure(drawn, run, *report(true, machine, run), true)
     Fy, Mz = Fy + rng.normal(0.0, U_FY, len(run)), Mz + rng.normal(0.0, U_MZ, len(run))
     return Case(
@@ -144,7 +152,7 @@ def _hide(cause, target, given: Tyre, true: Tyre, machine: Machine, run, u_coeff
     names = [*hidden.tyre, *hidden.machine]
     signs = {n: (rng.choice((-1.0, 1.0)) if hidden.sign else 1.0) * rng.uniform(0.6, 1.4) for n in names}
     if cause == "camber-reduction-load":
-        true = given = given.replace(PECP1=-0.25)
+        given, true = given.replace(PECP1=-0.25), true.replace(PECP1=-0.25)
     base = dict.fromkeys(hidden.tyre, 0.0) if hidden.absent else {n: float(given[n]) for n in hidden.tyre}
     given, true = given.replace(**base), true.replace(**base)
 
@@ -182,7 +190,10 @@ def chi2_of_gap(given: Tyre, run: Programme, u_coefficients: float) -> Callable[
         return lambda gap: float(np.sum((gap / u) ** 2))
     columns = []
     for name in inexact_names(given):
-        values = [np.concatenate(report(given.replace(**{name: float(given[name]) * f}), Machine(), run)) for f in (1.001, 0.999)]
+        values = [
+            np.concatenate(report(given.replace(**{name: float(given[name]) * f}), Machine(), run))
+            for f in (1.001, 0.999)
+        ]
         columns.append((values[0] - values[1]) / 0.002 * u_coefficients / u)
     J = np.column_stack(columns)
     # Woodbury: (1 + J J')^-1 = 1 - J (1 + J' J)^-1 J'
@@ -190,35 +201,40 @@ def chi2_of_gap(given: Tyre, run: Programme, u_coefficients: float) -> Callable[
     return lambda gap: float(np.sum((gap / u) ** 2) - (gap / u) @ J @ inner @ J.T @ (gap / u))
 
 
-def draw_structure(shape: str, tyre: Tyre, rng: np.random.Generator) -> dict[str, object]:
-    """Something that no effect of the library describes, and where it lies."""
-    sign = float(rng.choice((-1.0, 1.0)))
-    if shape == "sideslip-bump":
-        centre = float(rng.choice((-1, 1)) * rng.uniform(2.0, 5.0))
-        return {"shape": shape, "channel": "Fy", "column": "alpha_deg", "centre": centre, "width": 0.9, "size": 65.0 * sign}
-    if shape == "camber-bump":
-        centre = float(rng.choice((-1, 1)) * rng.uniform(12.0, 32.0))
-        return {"shape": shape, "channel": "Fy", "column": "gamma_deg", "centre": centre, "width": 6.0, "size": 60.0 * sign}
-    if shape == "moment-bump":
-        centre = float(rng.choice((-1, 1)) * rng.uniform(2.0, 5.0))
-        return {"shape": shape, "channel": "Mz", "column": "alpha_deg", "centre": centre, "width": 0.9, "size": 6.0 * sign}
-    if shape == "one-load-bump":
-        centre = float(rng.choice((-1, 1)) * rng.uniform(2.0, 5.0))
-        return {
-            "shape": shape, "channel": "Fy", "column": "alpha_deg", "centre": centre, "width": 0.9, "size": 65.0 * sign,
-            "Fz": float(tyre["FNOMIN"]),
-        }  # fmt: skip
-    raise ValueError(shape)
+STRUCTURES: dict[str, dict[str, object]] = {
+    "sideslip-bump": {"channel": "Fy", "column": "alpha_deg", "centre": (2.0, 5.0), "width": 0.9, "size": 65.0},
+    "wide-bump": {"channel": "Fy", "column": "alpha_deg", "centre": (3.0, 6.0), "width": 1.6, "size": 50.0},
+    "camber-bump": {"channel": "Fy", "column": "gamma_deg", "centre": (12.0, 32.0), "width": 6.0, "size": 60.0},
+    "moment-bump": {"channel": "Mz", "column": "alpha_deg", "centre": (2.0, 5.0), "width": 0.9, "size": 6.0},
+    "one-load-bump": {
+        "channel": "Fy", "column": "alpha_deg", "centre": (2.0, 5.0), "width": 0.9, "size": 65.0, "only": ("Fz", 0.9, 1.1)
+    },
+    "leaned-bump": {
+        "channel": "Fy", "column": "alpha_deg", "centre": (2.0, 5.0), "width": 0.9, "size": 65.0, "only": ("gamma_deg", 15.0, 40.0)
+    },
+}  # fmt: skip
+"""Local structure that no effect of the library describes; loads in ``only`` are relative to the nominal one."""
+
+
+def draw_structure(shape: str, rng: np.random.Generator) -> dict[str, object]:
+    """Structure of some shape, its side, sign and size drawn."""
+    drawn = dict(STRUCTURES[shape], shape=shape)
+    drawn["centre"] = float(rng.choice((-1.0, 1.0)) * rng.uniform(*drawn["centre"]))
+    drawn["size"] = float(rng.choice((-1.0, 1.0)) * rng.uniform(0.7, 1.3) * drawn["size"])
+    return drawn
 
 
 def _with_structure(structure, run: Programme, Fy, Mz, tyre: Tyre) -> tuple[np.ndarray, np.ndarray]:
+    """Readings with the structure added; it grows with load."""
     if structure is None:
         return Fy, Mz
+    load = run.Fz / float(tyre["FNOMIN"])
     x = getattr(run, structure["column"])
-    bell = structure["size"] * np.exp(-0.5 * ((x - structure["centre"]) / structure["width"]) ** 2)
-    bell = bell * (run.Fz / float(tyre["FNOMIN"]))
-    if "Fz" in structure:
-        bell = bell * (np.abs(run.Fz / np.median(run.Fz) - 1.0) < 0.2)
+    bell = load * structure["size"] * np.exp(-0.5 * ((x - structure["centre"]) / structure["width"]) ** 2)
+    if "only" in structure:
+        name, low, high = structure["only"]
+        y = load if name == "Fz" else getattr(run, name)
+        bell = bell * ((y >= low) & (y <= high))
     return (Fy + bell, Mz) if structure["channel"] == "Fy" else (Fy, Mz + bell)
 
 
@@ -239,7 +255,12 @@ def write_case(case: Case, folder: Path, truth: Path) -> None:
         f"backlash_deg = 0.0\n[model]\nturn_slip = {str(case.turn_slip).lower()}\n"
         f"u_coefficients = {case.u_coefficients}\n{files}"
     )
-    secret = {"causes": case.causes, "level": case.level, "exact": case.exact, "machine": asdict(case.machine)}
+    secret = {
+        "causes": case.causes,
+        "level": case.level,
+        "exact": case.exact,
+        "machine": asdict(case.machine),
+    }
     truth.write_text(json.dumps(secret | {"structure": case.structure}, indent=1))
     case.true.write(truth.with_suffix(".tir"))
 
@@ -253,7 +274,22 @@ def _write_sweep(case: Case, rows: np.ndarray, path: Path) -> None:
     )  # fmt: skip
     with path.open("w", newline="", encoding="utf-8") as out:
         writer = csv.writer(out)
-        writer.writerow("alpha_deg gamma_deg Fz_N p_kPa V_mps direction t_s T_degC Fy_N Mz_Nm u_Fy_N u_Mz_Nm".split())
+        writer.writerow(
+            [
+                "alpha_deg",
+                "gamma_deg",
+                "Fz_N",
+                "p_kPa",
+                "V_mps",
+                "direction",
+                "t_s",
+                "T_degC",
+                "Fy_N",
+                "Mz_Nm",
+                "u_Fy_N",
+                "u_Mz_Nm",
+            ]
+        )
         writer.writerows(zip(*columns, strict=True))
 
 

@@ -35,7 +35,13 @@ def test_tables_1_and_2(name, F, u_F, C_gamma, r_e, epsilon, u, side):
 def test_43_newtons_are_a_tenth_of_epsilon():
     R, C_gamma, r_e = 1.4, 2000.0, 0.3
     given = DirectInputs(
-        F_raw=-C_gamma * r_e / R, C_gamma=-C_gamma, r_e=r_e, R=R, u_offset=43.0, u_gamma_0=0.0, u_slip_force=0.0
+        F_raw=-C_gamma * r_e / R,
+        C_gamma=-C_gamma,
+        r_e=r_e,
+        R=R,
+        u_offset=43.0,
+        u_gamma_0=0.0,
+        u_slip_force=0.0,
     )
     epsilon = direct_method(given).epsilon_gamma
     assert epsilon.nominal_value == pytest.approx(0.0, abs=1e-12)
@@ -49,7 +55,15 @@ def test_misalignments_of_section_5(alpha_M_deg, printed):
     C_gamma = F * R / r_e
     raw = F + 337.0 * alpha_M_deg
     epsilon = direct_method(
-        DirectInputs(F_raw=raw, C_gamma=math.copysign(abs(C_gamma), -1), r_e=r_e, R=R, u_offset=0, u_gamma_0=0, u_slip_force=0)
+        DirectInputs(
+            F_raw=raw,
+            C_gamma=math.copysign(abs(C_gamma), -1),
+            r_e=r_e,
+            R=R,
+            u_offset=0,
+            u_gamma_0=0,
+            u_slip_force=0,
+        )
     ).epsilon_gamma.nominal_value
     if raw > 0:  # the force has turned round: the disc's side is that of the aligned force
         epsilon = 2.0 - epsilon

@@ -52,7 +52,10 @@ def test_points_without_mirror_are_listed_and_never_filled():
 )
 def test_mirrors_are_never_taken_from_another_condition(other):
     alpha = np.radians([2.0, -2.0])
-    condition = {name: np.array([value, other.get(name, value)]) for name, value in {**COMMON, "direction": 1, "mount": 1}.items()}
+    condition = {
+        name: np.array([value, other.get(name, value)])
+        for name, value in {**COMMON, "direction": 1, "mount": 1}.items()
+    }
     parts = split(make_points(alpha, 0.0, Fy=np.array([1.0, 2.0]), **condition))
     assert set(parts.paired) == {"unpaired"}
 

@@ -1,0 +1,154 @@
+"""A page of documentation per effect, written from the records: ``python -m mffit.effects.pages docs/effects``."""
+
+from __future__ import annotations
+
+import math
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+
+from mffit.effects.catalog import CATALOG
+from mffit.effects.effect import Effect, Free
+from tir.parameters import BY_NAME
+
+RIG_NUMBERS = {
+    "alpha_0_deg": ("deg", "true sideslip angle = reading + alpha_0"),
+    "gamma_0_deg": ("deg", "true camber = reading + gamma_0"),
+    "F0_N": ("N", "reported Fy = gain Fy + F0 + crosstalk Fz"),
+    "gain": ("-", "reported Fy = gain Fy + F0 + crosstalk Fz"),
+    "crosstalk": ("-", "reported Fy = gain Fy + F0 + crosstalk Fz"),
+    "M0_Nm": ("Nm", "reported Mz = Mz + M0"),
+    "backlash_deg": ("deg", "full play; true sideslip angle = reading - play/2 sign(Mz)"),
+    "path_radius_m": ("m", "true radius of the path"),
+    "k_T_per_K": ("1/K", "Fy and Mz times 1 + k_T (T - 25 degC)"),
+    "k_V_per_mps": ("s/m", "Fy and Mz times 1 + k_V (V - V_ref), V_ref the most frequent speed"),
+    "k_t_per_s": ("1/s", "Fy and Mz times 1 + k_t t, t the time at which the point was taken"),
+    "relaxation_m": (
+        "m",
+        "relaxation length: sigma d(alpha')/ds + alpha' = alpha, the force answers to alpha'",
+    ),
+}
+NEEDED = {
+    "curved": "a curved path",
+    "spin": "a curved path, or large camber",
+    "camber": "points at camber",
+    "coupled": "sideslip and camber together",
+    "slip": "a sideslip sweep",
+    "loads": "at least two loads",
+    "pressures": "at least two pressures",
+    "moment": "Mz",
+    "temperatures": "a column `T_degC` that varies",
+    "speeds": "at least two speeds",
+    "times": "the time of every point, `t_s`",
+    "continuous": "a continuous sweep: `time_s` with a moving angle",
+}
+RESULT = {
+    "tyre": "It becomes coefficients of the corrected `.tir`, with the reason in their comments.",
+    "rig": "It becomes a correction of the readings, and the direct method is redone with it; the tyre's file does not change.",
+    "environment": "It becomes a term beside the file: MF 6.2 has no coefficient for it.",
+}
+KINDS = {"tyre": "The tyre", "rig": "The rig", "environment": "The environment"}
+
+
+def page(effect: Effect, catalog: Sequence[Effect] = CATALOG) -> str:
+    """The page of one effect in Markdown.
+
+    Parameters
+    ----------
+    effect : the record
+    catalog : the library, for links to the effects that it can be confused with
+    """
+    names = {other.id: other.name for other in catalog}
+    needs = [NEEDED[need] for need in effect.needs] or ["nothing special"]
+    alike = [f"[{names[i]}]({i}.md) (`{i}`)" if i in names else f"`{i}`" for i in effect.confusable_with]
+    lines = [
+        f"# {effect.name[:1].upper()}{effect.name[1:]}",
+        "",
+        f"`{effect.id}` · {effect.kind}",
+        "",
+        effect.physics,
+        "",
+        "## What it sets free",
+        "| number | unit | meaning | usual size of the change | limits | started from |",
+        "|---|---|---|---|---|---|",
+        *[_row(free) for free in effect.free],
+        "",
+        RESULT[effect.kind],
+        "",
+        "## What the data must have",
+        f"{_sentence(needs)}.",
+        "",
+        "## How to recognise it",
+        f"Under reversed angles: {effect.parity or 'no symmetry'}. "
+        + (f"Can be confused with {_listed(alike)}." if alike else "No other effect of the library looks like it in a full programme."),
+        *([f"Also: {_listed(effect.also)}."] if effect.also else []),
+    ]  # fmt: skip
+    return "\n".join(lines) + "\n"
+
+
+def index(catalog: Sequence[Effect] = CATALOG) -> str:
+    """The page that lists all effects."""
+    lines = [
+        "# The effects",
+        "",
+        "What a diagnosis can name. These pages are written from the records in `mffit/effects`; "
+        "[Diagnosis](../diagnosis.md) says how they compete.",
+    ]
+    for kind, title in KINDS.items():
+        lines += ["", f"## {title}", "| id | frees | physics |", "|---|---|---|"]
+        lines += [
+            f"| [`{e.id}`]({e.id}.md) | {', '.join(f'`{n}`' for n in e.parameters)} | {e.physics} |"
+            for e in catalog
+            if e.kind == kind
+        ]
+    return "\n".join(lines) + "\n"
+
+
+def pages(catalog: Sequence[Effect] = CATALOG) -> dict[str, str]:
+    """All pages by file name."""
+    return {"index.md": index(catalog)} | {f"{effect.id}.md": page(effect, catalog) for effect in catalog}
+
+
+def write(folder: Path, catalog: Sequence[Effect] = CATALOG) -> None:
+    """Write all pages, and remove those of effects that are no longer there."""
+    folder.mkdir(parents=True, exist_ok=True)
+    texts = pages(catalog)
+    for path in folder.glob("*.md"):
+        if path.name not in texts:
+            path.unlink()
+    for name, text in texts.items():
+        (folder / name).write_text(text, encoding="utf-8")
+
+
+def _row(free: Free) -> str:
+    unit, meaning = _described(free.name)
+    if free.name == "turn_slip":
+        return f"| `turn_slip` | {unit} | {meaning} | off to on | – | – |"
+    scale = " × its value" if free.relative else ""
+    lower = "–∞" if math.isinf(free.lower) else f"{free.lower:g}"
+    upper = "∞" if math.isinf(free.upper) else f"{free.upper:g}"
+    starts = ", ".join(f"{start:+g}" if start else "0" for start in free.scan)
+    return f"| `{free.name}` | {unit} | {meaning} | {free.spread:g}{scale} | {lower} to {upper} | {starts}{scale} |"
+
+
+def _described(name: str) -> tuple[str, str]:
+    """Unit and meaning of a number."""
+    if name == "turn_slip":
+        return "–", "whether the simulation has turn slip"
+    if name in RIG_NUMBERS:
+        return RIG_NUMBERS[name]
+    row = BY_NAME[name]
+    return row.unit, row.description + (f" ({row.equation})" if row.equation else "")
+
+
+def _listed(words: Sequence[str]) -> str:
+    return words[0] if len(words) == 1 else f"{', '.join(words[:-1])} and {words[-1]}"
+
+
+def _sentence(words: Sequence[str]) -> str:
+    text = _listed(words)
+    return text[:1].upper() + text[1:]
+
+
+if __name__ == "__main__":
+    write(Path(sys.argv[1] if len(sys.argv) > 1 else "docs/effects"))
