@@ -12,7 +12,7 @@ from mffit.diagnose.candidates import Hypothesis, Problem
 from mffit.effects import Effect
 
 MOST_EFFECTS = 4
-EXCHANGED = 6
+EXCHANGED = 4
 """Candidates that may take the place of an accepted effect: the best of the step, the others have no chance."""
 MARGIN = 4.0
 """Log evidence an effect must bring beyond what picking the best of the whole list brings by chance."""
@@ -88,7 +88,7 @@ def _improved(
     problem: Problem, current: Hypothesis, candidates: Sequence[Effect], needed: float
 ) -> Hypothesis:
     """Exchange single effects while that helps, then drop those whose evidence is gone."""
-    for _ in range(MOST_EFFECTS):
+    for _ in range(2):
         best = current
         for i in range(len(current.effects) - (len(current.effects) == 1)):
             rest = tuple(e for k, e in enumerate(current.effects) if k != i)

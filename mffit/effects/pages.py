@@ -80,7 +80,11 @@ def page(effect: Effect, catalog: Sequence[Effect] = CATALOG) -> str:
         "",
         "## How to recognise it",
         f"Under reversed angles: {effect.parity or 'no symmetry'}. "
-        + (f"Can be confused with {_listed(alike)}." if alike else "No other effect of the library looks like it in a full programme."),
+        + (
+            f"Can be confused with {_listed(alike)}."
+            if alike
+            else "No other effect of the library looks like it in a full programme."
+        ),
         *([f"Also: {_listed(effect.also)}."] if effect.also else []),
     ]  # fmt: skip
     return "\n".join(lines) + "\n"

@@ -22,6 +22,7 @@ from mffit.fit.result import Agreement, Coefficient, FitResult, agreement
 from mffit.fit.staged import Fitted, Progress, fit_staged
 from mffit.fit.stages import ODD_TERMS
 from mffit.fit.start import base_values, starting_values
+from mffit.fit.systematic import common_errors
 from mffit.fit.virtual_zero import epsilon_gamma_of_model, zero_points
 from mffit.measured import backlash_corrected
 from mffit.parts import Parts
@@ -66,7 +67,14 @@ def fit(
     cover = coverage(points, config.tyre.side or "left")
     start = starting_values(values, points, _by_load(measured, "C_alpha"))
     problem, tied = _problem(config, points, values, measured)
-    fitted = fit_staged(problem, start, cover, progress, extra=("PECP1",) if tied else ())
+    fitted = fit_staged(
+        problem,
+        start,
+        cover,
+        progress,
+        extra=("PECP1",) if tied else (),
+        errors=common_errors(config, measured),
+    )
     turn_slip = {**values, **{n: start[n] for n in fitted.unmoved}, **fitted.values}
     if base is None:
         turn_slip.update(_unmeasured(turn_slip, status))
@@ -96,8 +104,8 @@ def fit(
     points = fitted.points
     Fy, Mz = dataclasses.replace(problem, points=points).model(fitted.values)
     return FitResult(
-        tyre=_tyre(turn_slip, coefficients, base),
-        written=_tyre(written_values, written_coefficients, base),
+        tyre=_tyre(turn_slip, coefficients, base, status),
+        written=_tyre(written_values, written_coefficients, base, status),
         coefficients=written_coefficients,
         channels={"Fy": agreement(Fy, points.Fy), "Mz": agreement(Mz, points.Mz)},
         odd=_odd_agreement(written_values, points, parts),
@@ -236,20 +244,34 @@ def _at_bound(name: str, value: float) -> bool:
     return min(value - lower, upper - value) < 1e-4 * (upper - lower)
 
 
-def _tyre(values: Mapping[str, Any], coefficients: Mapping[str, Coefficient], base: Tyre | None) -> Tyre:
+def _tyre(
+    values: Mapping[str, Any],
+    coefficients: Mapping[str, Coefficient],
+    base: Tyre | None,
+    status: Mapping[str, str],
+) -> Tyre:
+    """The values as a tyre whose every coefficient says where it comes from."""
     tyre = (base or Tyre.from_values({})).replace(**values)
-    return tyre.annotate(status={name: status_comment(c) for name, c in coefficients.items()})
+    comments = {
+        row.name: WORDS.get(status[row.name], status[row.name])
+        for row in TABLE
+        if row.section.endswith("_COEFFICIENTS") or status[row.name] not in ("base", "default")
+    }
+    fitted = {name: status_comment(c) for name, c in coefficients.items()}
+    return tyre.annotate(status={**comments, **fitted})
+
+
+WORDS = {
+    "base": "from base",
+    "default": "default, not measured",
+    "estimate": "estimate, not measured",
+    "regularised": "tied to base value",
+}
 
 
 def status_comment(coefficient: Coefficient) -> str:
     """How the file's comment states the origin of a value."""
-    words = {
-        "base": "from base",
-        "default": "default, not measured",
-        "estimate": "estimate, not measured",
-        "regularised": "tied to base value",
-    }
-    text = words.get(coefficient.status, coefficient.status)
+    text = WORDS.get(coefficient.status, coefficient.status)
     if coefficient.stderr is not None and not coefficient.fixed:
         text += f" +- {coefficient.stderr:.2g}"
     return text + (", at bound" if coefficient.at_bound else "")

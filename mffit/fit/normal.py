@@ -54,7 +54,7 @@ def derive_normal(
     start = {**values, **imposed}
     straight = points.replace(phi_t=np.zeros(len(points)), direction=np.ones_like(points.direction))
     straight = straight.replace(mount=np.ones_like(points.mount))
-    symmetric = {**start, **dict.fromkeys(("PHY1", "PHY2", "PVY1", "PVY2", "PEY3"), 0.0)}
+    symmetric = {**start, **dict.fromkeys(("PHY1", "PHY2", "PVY1", "PVY2"), 0.0)}
 
     force = [name for name in CAMBER_FORCE if name in free]
     used = (parts.paired != "unpaired") & (points.direction > 0)

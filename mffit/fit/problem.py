@@ -13,7 +13,7 @@ from mffit.fit.constraints import Envelope, violations
 from mffit.points import Points
 from mffit.rig import readings
 
-CONSTRAINT_WEIGHT = 300.0
+CONSTRAINT_WEIGHT = 3000.0
 """Residual in units of noise per unit of violation; large enough to hold, small enough to keep the problem smooth."""
 
 

@@ -15,6 +15,7 @@ from mffit.fit.problem import Problem
 from mffit.fit.result import StageRecord
 from mffit.fit.solve import Solution, covariance, solve
 from mffit.fit.stages import CONICITY_ON_A_DISC, IF_IDENTIFIED, STAGES, Stage
+from mffit.fit.systematic import CommonError, systematic_covariance
 from mffit.points import Points, main_pressure
 from tir.parameters import BY_NAME
 
@@ -49,6 +50,7 @@ def fit_staged(
     cover: tuple[StageCoverage, ...],
     progress: Progress,
     extra: tuple[str, ...] = (),
+    errors: tuple[CommonError, ...] = (),
 ) -> Fitted:
     """Fit stage by stage, then everything together.
 
@@ -59,6 +61,7 @@ def fit_staged(
     cover : the coverage matrix; only its free coefficients are fitted
     progress : called with a sentence before each step
     extra : coefficients freed in the polish only (PECP1 when it is tied to the turn-slip force)
+    errors : rig errors common to all points, which add to the standard errors
     """
     free = [name for row in cover for name in row.free]
     _enough_points(problem.points, free)
@@ -75,7 +78,7 @@ def fit_staged(
     progress("joint polish")
     values.update({name: start[name] for name in extra})
     base.update({name: start[name] for name in extra})
-    fitted = _polish(problem, values, base)
+    fitted = _polish(problem, values, base, errors)
     names = tuple(fitted.values)
     polished = dataclasses.replace(problem, points=fitted.points)
     records.append(_record(polished, "polish", "Joint polish", names, fitted.values))
@@ -113,7 +116,9 @@ def _used_by(stage: Stage, problem: Problem) -> np.ndarray:
     return used
 
 
-def _polish(problem: Problem, values: dict[str, float], base: dict[str, float]) -> Fitted:
+def _polish(
+    problem: Problem, values: dict[str, float], base: dict[str, float], errors: tuple[CommonError, ...]
+) -> Fitted:
     """All free coefficients together: balance the channels, discount outliers, release what the data identify."""
     stated = problem
     problem, scale = _reweighted(stated.settled(values), values)
@@ -130,6 +135,8 @@ def _polish(problem: Problem, values: dict[str, float], base: dict[str, float]) 
     solution = _solve(problem, values, ties, tolerance=1e-6)
     names = list(solution.values)
     cov = covariance(solution.jacobian)
+    final = dataclasses.replace(problem, prior=ties)
+    cov = cov + systematic_covariance(final, solution.values, solution.jacobian, errors)
     stderr = dict(zip(names, np.sqrt(np.diag(cov)).tolist(), strict=True))
     return Fitted(
         values=solution.values,

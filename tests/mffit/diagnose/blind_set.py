@@ -210,7 +210,8 @@ STRUCTURES: dict[str, dict[str, object]] = {
         "channel": "Fy", "column": "alpha_deg", "centre": (2.0, 5.0), "width": 0.9, "size": 65.0, "only": ("Fz", 0.9, 1.1)
     },
     "leaned-bump": {
-        "channel": "Fy", "column": "alpha_deg", "centre": (2.0, 5.0), "width": 0.9, "size": 65.0, "only": ("gamma_deg", 15.0, 40.0)
+        "channel": "Fy", "column": "alpha_deg", "centre": (2.0, 5.0), "width": 0.9, "size": 65.0,
+        "only": ("gamma_deg", 15.0, 40.0),
     },
 }  # fmt: skip
 """Local structure that no effect of the library describes; loads in ``only`` are relative to the nominal one."""
@@ -252,7 +253,8 @@ def write_case(case: Case, folder: Path, truth: Path) -> None:
         f"rim_radius = {tyre['RIM_RADIUS']}\nnominal_load = {tyre['FNOMIN']}\n"
         f"nominal_pressure = {float(tyre['NOMPRES']) / 1e3}\nnominal_speed = {tyre['LONGVL']}\n"
         f'[rig]\ntype = "rotating-disk"\naxes = "iso"\npath_centre = "left"\npath_radius = {Machine().R}\n'
-        f"backlash_deg = 0.0\n[model]\nturn_slip = {str(case.turn_slip).lower()}\n"
+        f"backlash_deg = 0.0\n[rolling_radius]\nload_N = {tyre['FNOMIN']}\neffective_radius = {_rolling_radius(case):.5f}\n"
+        f"u_effective_radius = 0.0005\n[model]\nturn_slip = {str(case.turn_slip).lower()}\n"
         f"u_coefficients = {case.u_coefficients}\n{files}"
     )
     secret = {
@@ -263,6 +265,11 @@ def write_case(case: Case, folder: Path, truth: Path) -> None:
     }
     truth.write_text(json.dumps(secret | {"structure": case.structure}, indent=1))
     case.true.write(truth.with_suffix(".tir"))
+
+
+def _rolling_radius(case: Case) -> float:
+    """What a revolution of the disc would give at the nominal load [m]."""
+    return float(case.true.state(float(case.true["FNOMIN"]), Vx=6.0).Re)
 
 
 def _write_sweep(case: Case, rows: np.ndarray, path: Path) -> None:

@@ -1,0 +1,77 @@
+"""When data and model cannot decide, the diagnosis says so, or says what to correct."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from mffit.diagnose import diagnose
+from mffit.errors import InputError
+
+
+def test_a_right_model_has_no_gap(right_model):
+    case, config, points = right_model
+    found = diagnose(points, case.given, config)
+    assert not found.effects
+    assert not found.unexplained
+    assert found.gap_before == found.gap_after
+    assert found.gap_before.chi2_per_dof == pytest.approx(1.0, abs=0.2)
+    assert "No effect is missing" in found.headline
+    assert all(found.tyre[name] == case.given[name] for name in ("PKY1", "PKY6", "PECP1", "QDZ1"))
+
+
+def test_one_sweep_cannot_tell_causes_apart(stiffer_camber):
+    case, config, points = stiffer_camber
+    camber = np.flatnonzero([points.sweep_names[k].startswith("camber") for k in points.sweep])
+    one = points.select(camber[:15])
+    found = diagnose(one, case.given, config)
+    assert not found.effects
+    assert any("ne sweep" in note for note in found.notes)
+
+
+def test_without_pressures_or_temperature_the_report_says_what_cannot_be_seen(stiffer_camber):
+    case, config, points = stiffer_camber
+    found = diagnose(points.select(points.p == 250e3).replace(T=np.nan), case.given, config)
+    assert [f.effect.id for f in found.effects] == ["camber-stiffness"]
+    notes = " ".join(found.notes)
+    assert "pressure" in notes
+    assert "temperature" in notes
+    assert not {"pressure", "temperature"} & set(found.alternatives)
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        (lambda p: p.replace(Fy=-p.Fy), "axes"),
+        (lambda p: p.replace(Fz=p.Fz * 1e3), "loads"),
+        (lambda p: p.replace(u_Fy=0.0), "zero"),
+        (lambda p: p.select(np.arange(8)), "too few"),
+    ],
+    ids=["axes", "loads", "zero uncertainty", "few points"],
+)
+def test_what_cannot_belong_together_is_refused_with_its_cause(right_model, change, words):
+    case, config, points = right_model
+    with pytest.raises(InputError, match=words):
+        diagnose(change(points), case.given, config)
+
+
+def test_without_stated_uncertainties_the_scatter_stands_in(stiffer_camber):
+    case, config, points = stiffer_camber
+    found = diagnose(points.replace(u_Fy=np.nan, u_Mz=np.nan), case.given, config)
+    assert [f.effect.id for f in found.effects] == ["camber-stiffness"]
+    # 6 N and 0.6 Nm were put in; the curvature of the sweeps may add to it
+    assert 4.0 < found.noise.Fy < 18.0
+    assert 0.4 < found.noise.Mz < 1.5
+
+
+def test_the_same_input_gives_the_same_answer(stiffer_camber):
+    case, config, points = stiffer_camber
+    first, second = (diagnose(points, case.given, config).to_json() for _ in range(2))
+    assert first == second
+
+
+def test_forces_alone_are_enough_for_an_effect_on_forces(stiffer_camber):
+    case, config, points = stiffer_camber
+    found = diagnose(points.replace(Mz=np.nan, u_Mz=np.nan), case.given, config)
+    assert [f.effect.id for f in found.effects] == ["camber-stiffness"]
+    assert any("Mz" in note for note in found.notes)

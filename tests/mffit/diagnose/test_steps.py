@@ -1,0 +1,98 @@
+"""Every step of a diagnosis can be used alone."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from mffit.diagnose import diagnose, gap, where
+from mffit.diagnose.candidates import Problem
+from mffit.diagnose.noise import noise_model
+from mffit.diagnose.selection import forward_step
+from mffit.diagnose.state import State
+from mffit.diagnose.ties import candidate_runs, separation
+from mffit.diagnose.validate import validate
+from mffit.effects import CATALOG
+from mffit.rig import RigFaults
+
+BY_ID = {effect.id: effect for effect in CATALOG}
+
+
+def problem(case, points, u_coefficients=0.0):
+    state = State(dict(case.given.values), RigFaults(), True, False)
+    return Problem(points, state, noise_model(points, state, u_coefficients))
+
+
+def test_a_right_model_leaves_one_chi2_per_reading(right_model):
+    case, _, points = right_model
+    chosen = problem(case, points)
+    found = gap(chosen.measured - chosen.start.predict(points), chosen.noise)
+    # 780 readings: the standard deviation of chi2 per reading is sqrt(2/780) = 0.05
+    assert found.chi2_per_dof == pytest.approx(1.0, abs=0.2)
+    assert found.Fy_rmse_N == pytest.approx(6.0, rel=0.15)
+
+
+def test_nothing_stands_out_of_noise(right_model):
+    case, _, points = right_model
+    chosen = problem(case, points)
+    assert len(where(points, chosen.measured - chosen.start.predict(points), chosen.noise)) <= 1
+
+
+def test_a_place_that_is_off_is_found_with_its_size(right_model):
+    case, _, points = right_model
+    chosen = problem(case, points)
+    residual = chosen.measured - chosen.start.predict(points)
+    leaned = np.degrees(points.gamma) > 25.0
+    residual[: len(points)][leaned] += 30.0
+    first = where(points, residual, chosen.noise)[0]
+    assert first.channel == "Fy"
+    assert first.region["gamma_deg"][0] > 15.0
+    assert first.bias == pytest.approx(30.0, abs=8.0)
+    assert first.z > 5.0
+
+
+def test_the_forward_step_ranks_the_hidden_effect_first(stiffer_camber):
+    case, _, points = stiffer_camber
+    chosen = problem(case, points)
+    step = forward_step(
+        chosen, chosen.null, [BY_ID[i] for i in ("camber-grip", "camber-stiffness", "load-grip")]
+    )
+    assert step.best.effects[-1].id == "camber-stiffness"
+    assert step.passes
+    assert step.weights()["camber-stiffness"] > 0.99
+
+
+def test_inexact_coefficients_are_no_missing_effect(right_model):
+    """A model 1 % off in every coefficient has a gap; stated as such, the gap is no effect."""
+    case, config, points = right_model
+    rng = np.random.default_rng(2)
+    names = [n for n in case.given.values if n.startswith(("PK", "PD", "PC", "QB", "QD")) and n[2:3] in "YZ"]
+    off = case.given.replace(
+        **{n: float(case.given[n]) * (1.0 + 0.01 * rng.normal()) for n in names if case.given[n]}
+    )
+    stated = config.model_copy(update={"model": config.model.model_copy(update={"u_coefficients": 0.01})})
+    assert not diagnose(points, off, stated).effects
+
+
+def test_left_out_sweeps_confirm_a_true_effect(stiffer_camber):
+    case, _, points = stiffer_camber
+    chosen = problem(case, points)
+    fitted = chosen.fit((BY_ID["camber-stiffness"],))
+    checked = validate(chosen, fitted)
+    assert checked.confirms
+    assert checked.gap_after.chi2_per_dof == pytest.approx(1.0, abs=0.2)
+
+
+def test_the_flipped_mount_separates_conicity_from_a_load_cell(right_model):
+    """Computed from the refitted explanations, not looked up: the proposed run must tell them apart."""
+    case, _, points = right_model
+    chosen = problem(case, points)
+    conical = chosen.start.with_numbers({"PVY1": float(case.given["PVY1"]) + 0.004})
+    predicted = conical.predict(points)
+    n = len(points)
+    tilted = problem(case, points.replace(Fy=predicted[:n], Mz=predicted[n:]))
+    a, b = (tilted.fit((BY_ID[i],)) for i in ("conicity", "crosstalk-fz-fy"))
+    best = separation(points, a, b, 6.0, 0.6)
+    assert best.chi2 > 9.0
+    assert "turned on its rim" in best.run
+    assert any("turned on its rim" in run.description for run in candidate_runs(points))

@@ -1,0 +1,68 @@
+"""The fit on simulated rigs with known truth; the study over many rigs is tests/studies/recovery_study.py."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import mffit
+import tir
+from mffit import virtual_rig
+from tests.studies.recovery_study import SAMPLE, model_error, one_rig, plan_content
+
+
+@pytest.fixture(scope="module")
+def sound_rig(tmp_path_factory):
+    """A build from a rig without faults, noise as declared."""
+    content = plan_content()
+    content["faults"] = {}
+    content["rig"]["backlash_deg"] = 0.0
+    folder = tmp_path_factory.mktemp("rig")
+    virtual_rig.simulate(virtual_rig.load_plan(content, folder=SAMPLE), folder, seed=5)
+    return mffit.build(folder / "tyre.toml")
+
+
+def test_residuals_are_the_noise(sound_rig):
+    channels = sound_rig.fit.channels
+    assert channels["Fy"].rmse < 1.15 * 6.0
+    assert channels["Mz"].rmse < 1.25 * 0.6
+
+
+@pytest.mark.parametrize(("phi_t", "Fy", "Mz"), [(-1 / 1.323, 4.0, 0.6), (0.0, 8.0, 1.0)])
+def test_the_model_meets_the_truth_between_the_points(sound_rig, phi_t, Fy, Mz):
+    error = model_error(
+        sound_rig.fit.tyre, tir.read(SAMPLE / "true.tir"), phi_t, np.array([900.0, 1400.0, 2000.0])
+    )
+    assert error[0] < Fy
+    assert error[1] < Mz
+
+
+def test_eps_gamma_is_recovered(sound_rig):
+    measured = sound_rig.measured.epsilon_gamma
+    assert abs(measured.value + 0.115) < min(2 * measured.u, 0.05)
+    assert sound_rig.fit.tyre["PECP1"] == pytest.approx(-0.115, abs=0.05)
+
+
+def test_pecp1_of_the_model_gives_the_measured_turn_slip_force(sound_rig):
+    measured = sound_rig.measured
+    forces = [
+        sound_rig.fit.tyre(measured.F_phit_load, phi_t=-1 / 1.323, Vx=speed, p=250e3).Fy
+        for speed in (6.0, -6.0)
+    ]
+    assert np.mean(forces) == pytest.approx(measured.F_phit.value, abs=0.2)
+
+
+def test_the_files_radius_is_the_measured_one(sound_rig):
+    for load, r_e in sound_rig.measured.r_e_loads.items():
+        assert sound_rig.fit.written.state(load, Vx=6.0).Re == pytest.approx(r_e, abs=1e-4)
+
+
+def test_errors_of_drawn_rigs_stay_within_their_intervals():
+    pulls = [
+        value
+        for seed in (101, 102)
+        for name, value in one_rig(seed).items()
+        if "error" not in name and "rms" not in name
+    ]
+    assert np.mean(np.abs(pulls) < 1.96) > 0.75
+    assert np.max(np.abs(pulls)) < 6.0
