@@ -23,8 +23,8 @@ from mffit import measured as direct
 from mffit import parts as decomposition
 from mffit import points as ingestion
 from mffit.config import Config
-from mffit.diagnose import Diagnosis, corrected_points
-from mffit.diagnose import diagnose as find_effects
+from mffit.diagnosis import Diagnosis, corrected_points
+from mffit.diagnosis import diagnose as find_effects
 from mffit.effects import CATALOG, Effect
 from mffit.errors import InputError
 from mffit.fit import FitResult

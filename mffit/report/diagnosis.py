@@ -16,7 +16,7 @@ def write_diagnosis(diagnosis: Any, folder: Path) -> None:
 
     Parameters
     ----------
-    diagnosis : ``mffit.diagnose.Diagnosis``
+    diagnosis : ``mffit.diagnosis.Diagnosis``
     folder : existing folder to write to
     """
     from mffit.report.figures import gap

@@ -12,7 +12,7 @@ import numpy as np
 from blind_set import CAUSES, STRUCTURES, Case, draw_case, write_case
 
 from mffit import pipeline
-from mffit.diagnose import Diagnosis
+from mffit.diagnosis import Diagnosis
 from mffit.rig import readings
 
 LOOK_ALIKE = (

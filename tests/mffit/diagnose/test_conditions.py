@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from mffit.diagnose.conditions import by_condition
+from mffit.diagnosis.conditions import by_condition
 from mffit.points import make_points
 
 SWEEP = np.radians(np.linspace(-9.0, 9.0, 31))

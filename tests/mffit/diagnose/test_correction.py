@@ -12,9 +12,9 @@ from conftest import loaded
 
 import tir
 from mffit import parts
-from mffit.diagnose import corrected_points, diagnose
-from mffit.diagnose.result import Diagnosis
-from mffit.diagnose.state import State
+from mffit.diagnosis import corrected_points, diagnose
+from mffit.diagnosis.result import Diagnosis
+from mffit.diagnosis.state import State
 from mffit.measured import measure
 from mffit.rig import RigFaults
 
@@ -88,7 +88,7 @@ def test_misaligned_wheel_of_the_paper_is_named_and_eps_gamma_restored(misalignm
     restored = eps_gamma(corrected_points(forward, found.state))
     assert restored.value == pytest.approx(true, abs=2.5 * restored.u)
     # without the backward runs and without the correction, alpha_M goes into the turn-slip force unseen
-    assert abs(eps_gamma(forward).value - true) > 0.3
+    assert abs(eps_gamma(forward).value - true) > 5.0 * restored.u
 
 
 def _with_misalignment(case, alpha_0_deg):

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from mffit.diagnose import diagnose
+from mffit.diagnosis import diagnose
 from mffit.errors import InputError
 
 

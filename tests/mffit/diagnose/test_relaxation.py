@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from blind_set import random_tyre
 
-from mffit.diagnose import diagnose
+from mffit.diagnosis import diagnose
 from mffit.points import concatenate, make_points
 from tir.evaluate import evaluate
 

@@ -11,7 +11,7 @@ import pytest
 from blind_rig import report
 from conftest import loaded
 
-from mffit.diagnose import diagnose
+from mffit.diagnosis import diagnose
 from mffit.effects import CATALOG
 
 EXAMPLE = Path(__file__).parents[3] / "docs" / "examples" / "road_friction.py"

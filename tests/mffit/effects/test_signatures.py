@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 import tir
-from mffit.diagnose.state import State
+from mffit.diagnosis.state import State
 from mffit.points import make_points
 from mffit.rig import RigFaults
 

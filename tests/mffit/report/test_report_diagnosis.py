@@ -9,7 +9,7 @@ import pytest
 from report_toys import TRUE, made_config, made_points, programme, read_page
 
 import tir
-from mffit.diagnose import diagnose
+from mffit.diagnosis import diagnose
 from mffit.report import style, text, write_diagnosis
 from mffit.report.diagnosis_view import view_of
 from mffit.report.figures import gap

@@ -8,16 +8,17 @@ from typing import Any
 import numpy as np
 from scipy.stats import chi2 as chi2_distribution
 
-from mffit.diagnose.candidates import Hypothesis, Problem
-from mffit.diagnose.needs import missing
-from mffit.diagnose.noise import Noise, noise_model, with_uncertainties
-from mffit.diagnose.result import Diagnosis, Found
-from mffit.diagnose.selection import Step, price, projected_cosine, select
-from mffit.diagnose.state import State
-from mffit.diagnose.ties import separation
-from mffit.diagnose.unknown import Bump, bump_scan
-from mffit.diagnose.validate import gap, validate
-from mffit.diagnose.where import Region, where
+from mffit.diagnosis.candidates import Hypothesis, Problem
+from mffit.diagnosis.conditions import by_condition
+from mffit.diagnosis.needs import missing
+from mffit.diagnosis.noise import Noise, noise_model, with_uncertainties
+from mffit.diagnosis.result import Diagnosis, Found
+from mffit.diagnosis.selection import TIE, Step, price, projected_cosine, select
+from mffit.diagnosis.state import State
+from mffit.diagnosis.ties import separation
+from mffit.diagnosis.unknown import Bump, bump_scan
+from mffit.diagnosis.validate import gap, validate
+from mffit.diagnosis.where import Region, where
 from mffit.effects import CATALOG, Effect
 from mffit.errors import InputError
 from mffit.points import Points
@@ -28,6 +29,8 @@ from tir.parameters import BY_NAME
 FEWEST_POINTS = 12
 MOST_POINTS = 800
 """Points beyond this are neighbours that say the same again: every k-th is used."""
+UNEXPLAINED = 1.5
+"""chi2 per reading, against the uncertainties as given, above which a diagnosis is not complete."""
 LACK_OF_FIT = 1.3
 """chi2 per reading that no accepted explanation brings down: the misfit then counts as noise."""
 
@@ -60,12 +63,12 @@ def diagnose(
         If points and model cannot belong together, or are too few.
     """
     progress("comparing simulation and measurement")
-    points, source = with_uncertainties(points)
-    points = thinned(points)
     declared = RigFaults(backlash_deg=config.rig.backlash_deg)
     simulates_spin = config.model.turn_slip and bool(np.any(points.phi_t))
     start = State(dict(tyre.values), declared, simulates_spin, config.model.star)
     refuse_strangers(points, tyre, start)
+    points, source = with_uncertainties(by_condition(points), start)
+    points = thinned(points)
     noise = noise_model(points, start, config.model.u_coefficients, source)
     candidates, notes = possible(effects, points, start)
     if len(np.unique(points.sweep)) < 2:
@@ -115,13 +118,16 @@ def refuse_strangers(points: Points, tyre: Tyre, start: State) -> None:
             f"the data's loads (median {np.median(points.Fz):.0f} N) and the model's FNOMIN {tyre['FNOMIN']:.0f} N are an order "
             "apart: this model is of another tyre, or one of them is not in newtons"
         )
-    simulated = start.predict(points)[: len(points)]
-    if np.std(simulated) > 0 and np.std(points.Fy) > 0:
-        agreement = float(np.corrcoef(simulated, points.Fy)[0, 1])
+    n, simulated = len(points), start.predict(points)
+    for channel, model, measured in (("Fy", simulated[:n], points.Fy), ("Mz", simulated[n:], points.Mz)):
+        known = np.isfinite(measured)
+        if not np.any(known) or np.std(model[known]) == 0.0 or np.std(measured[known]) == 0.0:
+            continue
+        agreement = float(np.corrcoef(model[known], measured[known])[0, 1])
         if agreement < -0.3:
             raise InputError(
-                f"simulated and measured Fy run against each other (correlation {agreement:.2f}): data or model are in other "
-                "axes; check [rig] axes and the signs of PKY1 and PKY6"
+                f"simulated and measured {channel} run against each other (correlation {agreement:.2f}): data or model are in "
+                "other axes; check [rig] axes and the signs of PKY1 and PKY6"
             )
 
 
@@ -169,7 +175,8 @@ def _record(
     found = tuple(_found(problem, chosen, steps, effect, noise) for effect in chosen.effects)
     remaining = where(points, residual_after, problem.noise)
     p_value = float(chi2_distribution.sf(chosen.chi2, max(len(chosen.residual) - len(chosen.numbers), 1)))
-    unexplained = bump.found and (p_value < 0.05 or not chosen.effects)
+    misfit = gap(residual_after, noise).chi2_per_dof
+    unexplained = (bump.found and (p_value < 0.05 or not chosen.effects)) or misfit > UNEXPLAINED
     weights = steps[-1].weights() if steps else {"none": 1.0}
     name = f"{config.tyre.name}.tir"
     return Diagnosis(
@@ -185,7 +192,8 @@ def _record(
         alternatives=_alternatives(steps, chosen, weights),
         steps=tuple(steps),
         unexplained=unexplained,
-        unexplained_where=(_bump_region(bump), *remaining[:4]) if unexplained else (),
+        unexplained_where=((_bump_region(bump),) if bump.found else ())
+        + (remaining[:4] if unexplained else ()),
         bump=bump if bump.found else None,
         state=chosen.state,
         tyre=_corrected(tyre, chosen),
@@ -219,7 +227,7 @@ def _found(
         refitted = trial
         if others:
             refitted = problem.fit((*others, rival), {n: v for n, v in chosen.numbers.items() if n in names})
-        if chosen.log_evidence - refitted.log_evidence < 3.0:
+        if chosen.log_evidence - refitted.log_evidence < TIE:
             tied.append(refitted)
     logs = {effect.id: chosen.log_evidence} | {t.effects[-1].id: t.log_evidence for t in tied}
     top = max(logs.values())
@@ -267,12 +275,16 @@ def _corrected(tyre: Tyre, chosen: Hypothesis) -> Tyre:
     return tyre.replace(**changes).annotate(status=status) if changes else tyre
 
 
-def _headline(found: Sequence[Found], unexplained: bool, bump: Bump, before, after, noise: Noise) -> str:
+def _headline(
+    found: Sequence[Found], unexplained: bool, bump: Bump | None, before, after, noise: Noise
+) -> str:
     numbers = f"side force misses by {before.Fy_rmse_N:.1f} N rms, the noise is {noise.Fy:.1f} N"
     if not found and not unexplained:
         return f"No effect is missing that these data could show: {numbers}."
-    place = " and ".join(in_words(name, limits) for name, limits in bump.region.items())
-    if not found:
+    place = " and ".join(in_words(name, limits) for name, limits in bump.region.items()) if bump else ""
+    if not found and bump is None:
+        return f"The model misses the data by more than their noise, and no effect of the library explains it: {numbers}."
+    if not found and bump is not None:
         unit = "N" if bump.channel == "Fy" else "Nm"
         return (
             f"There is structure that no effect of the library describes: {bump.channel} is off by {bump.amplitude:.3g} {unit} "
@@ -287,7 +299,11 @@ def _headline(found: Sequence[Found], unexplained: bool, bump: Bump, before, aft
         f"The missing {verb} {names}: with {pronoun} the side force misses by {after.Fy_rmse_N:.1f} N rms"
     )
     sentence += f" instead of {before.Fy_rmse_N:.1f} N (noise {noise.Fy:.1f} N)"
-    return sentence + (f"; {bump.channel} stays unexplained around {place}." if unexplained else ".")
+    if not unexplained:
+        return sentence + "."
+    return sentence + (
+        f"; {bump.channel} stays unexplained around {place}." if bump else "; the rest stays unexplained."
+    )
 
 
 WORDS = {

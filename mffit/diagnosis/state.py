@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from mffit.diagnose.lag import lagged_points
+from mffit.diagnosis.lag import lagged_points
 from mffit.points import Points
 from mffit.rig import RigFaults, readings
 

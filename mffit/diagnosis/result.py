@@ -8,12 +8,12 @@ from typing import Any
 
 import numpy as np
 
-from mffit.diagnose.noise import Noise
-from mffit.diagnose.selection import Step
-from mffit.diagnose.state import State
-from mffit.diagnose.unknown import Bump
-from mffit.diagnose.validate import Gap, Validation
-from mffit.diagnose.where import Region
+from mffit.diagnosis.noise import Noise
+from mffit.diagnosis.selection import Step
+from mffit.diagnosis.state import State
+from mffit.diagnosis.unknown import Bump
+from mffit.diagnosis.validate import Gap, Validation
+from mffit.diagnosis.where import Region
 from mffit.effects import Effect
 from mffit.points import Points
 from mffit.rig import RigFaults

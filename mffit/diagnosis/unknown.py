@@ -8,8 +8,8 @@ from itertools import pairwise
 
 import numpy as np
 
-from mffit.diagnose.candidates import Hypothesis
-from mffit.diagnose.noise import Noise
+from mffit.diagnosis.candidates import Hypothesis
+from mffit.diagnosis.noise import Noise
 from mffit.points import Points
 
 WIDTHS = {"alpha": (0.7, 1.4, 3.0), "gamma": (3.0, 8.0)}  # deg
@@ -77,10 +77,18 @@ def bump_scan(points: Points, noise: Noise) -> BumpScan:
                         column[slice(0, n) if channel == "Fy" else slice(n, 2 * n)] = shape
                         shapes.append(column)
                         channels.append(channel)
-                        regions.append({f"{name}_deg": (centre - width, centre + width), **region})
+                        regions.append(_narrowed(region, f"{name}_deg", centre - width, centre + width))
                         spread.append(AMPLITUDE * np.nanmax(np.abs(measured)))
     whitened = noise.whiten(np.column_stack(shapes)) if shapes else np.empty((len(noise.used), 0))
     return BumpScan(whitened, tuple(channels), tuple(regions), np.array(spread))
+
+
+def _narrowed(
+    region: dict[str, tuple[float, float]], name: str, low: float, high: float
+) -> dict[str, tuple[float, float]]:
+    """The region with one range cut to the bump."""
+    before = region.get(name, (-np.inf, np.inf))
+    return {**region, name: (float(max(low, before[0])), float(min(high, before[1])))}
 
 
 def _centres(values: np.ndarray) -> np.ndarray:

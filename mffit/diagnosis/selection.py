@@ -8,7 +8,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from mffit.diagnose.candidates import Hypothesis, Problem
+from mffit.diagnosis.candidates import Hypothesis, Problem
+from mffit.diagnosis.state import State
 from mffit.effects import Effect
 
 MOST_EFFECTS = 4
@@ -16,7 +17,9 @@ EXCHANGED = 4
 """Candidates that may take the place of an accepted effect: the best of the step, the others have no chance."""
 MARGIN = 4.0
 """Log evidence an effect must bring beyond what picking the best of the whole list brings by chance."""
-TIE = 3.0
+NEVER_IDENTIFIED = 1.0
+"""Log prior odds of a coefficient at zero over rig effects, and of those over a coefficient that the model has."""
+TIE = 1.5
 """Difference of log evidence below which two effects are not told apart."""
 
 
@@ -27,6 +30,7 @@ class Step:
     before: Hypothesis
     trials: tuple[Hypothesis, ...]  #: best first, each with one effect more than ``before``
     threshold: float  #: gain of log evidence needed
+    start: State  #: the simulation as given
 
     @property
     def best(self) -> Hypothesis:
@@ -46,11 +50,14 @@ class Step:
         near = [t for t in self.trials[1:] if self.best.log_evidence - t.log_evidence < TIE]
         return tuple(t for t in near if t.log_evidence - self.before.log_evidence > self.threshold)
 
+    def prior(self, trial: Hypothesis) -> float:
+        """Log prior of the trial's newest effect."""
+        return log_prior(trial.effects[-1], self.start)
+
     def weights(self) -> dict[str, float]:
         """Posterior weight per effect id, "none" included; the prior of each effect is one over the number of effects."""
         logs = {
-            t.effects[-1].id: t.log_evidence + t.effects[-1].prior - math.log(len(self.trials))
-            for t in self.trials
+            t.effects[-1].id: t.log_evidence + self.prior(t) - math.log(len(self.trials)) for t in self.trials
         }
         logs["none"] = self.before.log_evidence
         top = max(logs.values())
@@ -58,12 +65,24 @@ class Step:
         return {name: math.exp(v - top) / total for name, v in logs.items()}
 
 
+def log_prior(effect: Effect, start: State) -> float:
+    """What is known before the data: decides the order among effects that they hardly tell apart.
+
+    A coefficient that the given model has at exactly zero was never identified and is likelier to be what is missing than
+    one that the model already has.
+    """
+    if effect.kind != "tyre" or "turn_slip" in effect.parameters or "relaxation_m" in effect.parameters:
+        return effect.prior
+    unidentified = all(float(start.values[name]) == 0.0 for name in effect.parameters)
+    return effect.prior + (NEVER_IDENTIFIED if unidentified else -NEVER_IDENTIFIED)
+
+
 def forward_step(problem: Problem, before: Hypothesis, candidates: Sequence[Effect]) -> Step:
     """Try every candidate beside the accepted effects, all numbers refitted."""
     taken = {effect.id for effect in before.effects}
     trials = [problem.fit((*before.effects, e), before.numbers) for e in candidates if e.id not in taken]
-    trials.sort(key=lambda t: -(t.log_evidence + t.effects[-1].prior))
-    return Step(before, tuple(trials), price(len(trials)))
+    trials.sort(key=lambda t: -(t.log_evidence + log_prior(t.effects[-1], problem.start)))
+    return Step(before, tuple(trials), price(len(trials)), problem.start)
 
 
 def price(candidates: int) -> float:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from mffit.diagnose.state import State
+from mffit.diagnosis.state import State
 from mffit.points import Points
 from mffit.rig import NO_FAULTS
 

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from mffit.diagnose.candidates import Hypothesis, Problem
-from mffit.diagnose.noise import Noise
+from mffit.diagnosis.candidates import Hypothesis, Problem
+from mffit.diagnosis.noise import Noise
 
 MOST_FOLDS = 8
 
@@ -53,7 +53,8 @@ def validate(problem: Problem, hypothesis: Hypothesis, noise: Noise | None = Non
     before = problem.measured - problem.start.predict(points)
     held_out = before.copy()
     sweeps = np.unique(points.sweep)
-    folds = np.array_split(sweeps, min(MOST_FOLDS, len(sweeps)))
+    count = min(MOST_FOLDS, len(sweeps))
+    folds = [sweeps[k::count] for k in range(count)]
     n = len(points)
     for fold in folds:
         out = np.isin(points.sweep, fold)

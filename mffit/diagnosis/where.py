@@ -8,7 +8,7 @@ from itertools import pairwise
 import numpy as np
 from scipy.stats import false_discovery_control, norm
 
-from mffit.diagnose.noise import Noise
+from mffit.diagnosis.noise import Noise
 from mffit.points import Points
 
 FALSE_DISCOVERY = 0.01

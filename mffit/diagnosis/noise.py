@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.linalg import cholesky, solve_triangular
 
-from mffit.diagnose.state import State
+from mffit.diagnosis.state import State
 from mffit.errors import InputError
 from mffit.points import Points
 from tir.parameters import TABLE
@@ -56,18 +56,20 @@ class Noise:
         return replace(self, u=factor * self.u, root=factor * self.root)
 
 
-def with_uncertainties(points: Points) -> tuple[Points, str]:
+def with_uncertainties(points: Points, state: State) -> tuple[Points, str]:
     """The points with a standard uncertainty for every reading, and where it comes from.
 
-    As stated, else from the scatter between neighbouring points of each sweep; so before any thinning.
+    As stated, else from the scatter of measured minus simulated between neighbouring points of each sweep, from which the
+    curve itself has largely gone; so before any thinning.
 
     Raises
     ------
     InputError
         If all stated uncertainties are zero.
     """
-    Fy, source = _channel(points, points.Fy, points.u_Fy, "u_Fy_N")
-    Mz, _ = _channel(points, points.Mz, points.u_Mz, "u_Mz_Nm")
+    n, simulated = len(points), state.predict(points)
+    Fy, source = _channel(points, points.Fy, points.u_Fy, simulated[:n], "u_Fy_N")
+    Mz, _ = _channel(points, points.Mz, points.u_Mz, simulated[n:], "u_Mz_Nm")
     return points.replace(u_Fy=Fy, u_Mz=Mz), source
 
 
@@ -112,7 +114,9 @@ def coefficient_jacobian(points: Points, state: State) -> np.ndarray:
     return np.nan_to_num(np.column_stack(columns))
 
 
-def _channel(points: Points, values: np.ndarray, stated: np.ndarray, column: str) -> tuple[np.ndarray, str]:
+def _channel(
+    points: Points, values: np.ndarray, stated: np.ndarray, simulated: np.ndarray, column: str
+) -> tuple[np.ndarray, str]:
     """Uncertainty (n,) of one channel; inf where it was not measured."""
     measured = np.isfinite(values)
     if not np.any(measured):
@@ -125,7 +129,7 @@ def _channel(points: Points, values: np.ndarray, stated: np.ndarray, column: str
     if np.all(known[measured]):
         floor = 0.05 * np.median(stated[known][stated[known] > 0])
         return np.where(measured, np.maximum(stated, floor), np.inf), "stated uncertainties"
-    guess = neighbour_noise(points, values)
+    guess = neighbour_noise(points, values - simulated)
     u = np.where(known, stated, guess)
     return np.where(measured, u, np.inf), "scatter between neighbouring points"
 

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from mffit.diagnose.noise import Noise
-from mffit.diagnose.state import State
+from mffit.diagnosis.noise import Noise
+from mffit.diagnosis.state import State
 from mffit.effects import Effect, Free
 from mffit.points import Points
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from mffit.diagnose.candidates import Hypothesis
+from mffit.diagnosis.candidates import Hypothesis
 from mffit.points import Points, main_pressure
 
 TELLING = 9.0
