@@ -31,6 +31,8 @@ MOST_POINTS = 800
 """Points beyond this are neighbours that say the same again: every k-th is used."""
 UNEXPLAINED = 1.5
 """chi2 per reading, against the uncertainties as given, above which a diagnosis is not complete."""
+STRANGER = 30.0
+"""Misfit in units of the noise beyond which a model is so wrong that naming an effect would be a guess."""
 LACK_OF_FIT = 1.3
 """chi2 per reading that no accepted explanation brings down: the misfit then counts as noise."""
 
@@ -78,7 +80,13 @@ def diagnose(
     problem, chosen, steps, bump = _explained(points, start, noise, candidates)
     if candidates and steps and not (bump.found and not chosen.effects):
         inflation = _lack_of_fit(problem, chosen)
-        if inflation > 1.0:
+        if inflation > STRANGER:
+            notes.append(
+                f"Cannot tell: the model misses the points by {inflation:.0f} times their noise even with the best effects "
+                "added, so it is hardly a model of this tyre; fit it first (mffit build)."
+            )
+            chosen, steps = problem.null, steps[:1]
+        elif inflation > 1.0:
             notes.append(
                 "The model misses the points by more than their noise whatever is added; uncertainties were "
                 f"enlarged {inflation:.1f} times so that effects are judged against the misfit that remains."

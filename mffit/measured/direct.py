@@ -354,12 +354,11 @@ def _alignment_verdict(config, row: LoadResult, warnings: list[str]) -> tuple[bo
     force = row.F_phit.value
     degrees_per_newton = math.degrees(1.0 / abs(row.C_alpha.value)) if row.C_alpha else math.nan
     if row.alpha_M is None:
-        warnings.append(
-            "no backward runs: sideslip misalignment, turn slip and ply-steer are not separable here; the force "
+        return False, [
+            "Sideslip misalignment, turn slip and ply-steer are not separable here; the force "
             f"{force:.0f} N at (0, 0) would take {abs(force) * degrees_per_newton:.2f} deg of misalignment or ply-steer if it "
             f"were not turn slip, and {config.rig.u_slip_alignment_N:.0f} N (k = 1) is assumed for the alignment"
-        )
-        return False, []
+        ]
     alpha_M, u = math.degrees(row.alpha_M.value), math.degrees(row.alpha_M.u)
     slip = (row.F_forward - row.F_backward) / 2.0
     shift = row.epsilon_gamma and abs((1.0 - row.epsilon_gamma.value) * slip / force)

@@ -8,7 +8,7 @@ import time
 from collections import Counter
 from pathlib import Path
 
-sys.path.insert(0, str(Path(__file__).parents[1] / "mffit" / "diagnose"))
+sys.path.insert(0, str(Path(__file__).parents[1] / "mffit" / "diagnosis"))
 
 from blind_scores import Verdict, judge, rates, suite
 

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from drawn_rigs import SAMPLE, model_error, one_rig, plan_content
 
 import mffit
 import tir
 from mffit import virtual_rig
-from tests.studies.recovery_study import SAMPLE, model_error, one_rig, plan_content
 
 
 @pytest.fixture(scope="module")

@@ -12,7 +12,11 @@ import numpy as np
 from blind_set import CAUSES, STRUCTURES, Case, draw_case, write_case
 
 from mffit import pipeline
+from mffit.config import Config
+from mffit.config import load as load_config
 from mffit.diagnosis import Diagnosis
+from mffit.points import Points
+from mffit.points import load as load_points
 from mffit.rig import readings
 
 LOOK_ALIKE = (
@@ -23,6 +27,13 @@ LOOK_ALIKE = (
     {"spin-trail-loss", "trail-camber"},
 )
 """Two of one group would be a case that the data cannot decide."""
+
+
+def loaded(case: Case, folder: Path) -> tuple[Config, Points]:
+    """Configuration and points of a case, through its files."""
+    write_case(case, folder / case.name, folder / f"{case.name}.json")
+    settings = load_config(folder / case.name / "tyre.toml")
+    return settings, load_points(settings)[0]
 
 
 @dataclass(frozen=True)

@@ -2,21 +2,9 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 import pytest
-from blind_set import Case, draw_case, write_case
-
-import mffit.points
-from mffit import config
-from mffit.points import Points
-
-
-def loaded(case: Case, folder: Path) -> tuple[config.Config, Points]:
-    """Configuration and points of a case, through its files."""
-    write_case(case, folder / case.name, folder / f"{case.name}.json")
-    settings = config.load(folder / case.name / "tyre.toml")
-    return settings, mffit.points.load(settings)[0]
+from blind_scores import loaded
+from blind_set import draw_case
 
 
 @pytest.fixture(scope="session")

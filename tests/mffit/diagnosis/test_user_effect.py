@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from blind_rig import report
-from conftest import loaded
+from blind_scores import loaded
 
 from mffit.diagnosis import diagnose
 from mffit.effects import CATALOG
