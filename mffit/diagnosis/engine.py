@@ -78,6 +78,10 @@ def diagnose(
         notes.append("One sweep cannot tell causes apart: add sweeps at another load, camber or direction.")
     progress("trying every effect")
     problem, chosen, steps, bump = _explained(points, start, noise, candidates)
+    if config.model.u_coefficients and chosen.effects:
+        # What an inexact coefficient does depends on the rest of the model: ask again at the one that was found.
+        noise = noise_model(points, chosen.state, config.model.u_coefficients, source)
+        problem, chosen, steps, bump = _explained(points, start, noise, candidates)
     if candidates and steps and not (bump.found and not chosen.effects):
         inflation = _lack_of_fit(problem, chosen)
         if inflation > STRANGER:

@@ -123,12 +123,14 @@ def _polish(
     stated = problem
     problem, scale = _reweighted(stated.settled(values), values)
     ties = _ties(problem.points, values, base)
-    solution = _solve(problem, values, ties, tolerance=1e-4)
+    rough = _thinned(problem)
+    solution = _solve(rough, values, ties, tolerance=1e-4)
+    errors_of_data = _data_errors(rough, solution, len(problem.points))
     problem, scale = _reweighted(stated.settled(solution.values), solution.values)
     tied = {name for name in ties if name in IF_IDENTIFIED}
-    released = frozenset(tied & _identified(problem, solution))
+    released = frozenset(tied & _identified(solution, errors_of_data))
     conicity = {name for name in ties if name in CONICITY_ON_A_DISC and np.any(problem.points.phi_t)}
-    unmoved = _unmoved(problem, solution, ties) - tied - conicity
+    unmoved = _unmoved(errors_of_data, ties) - tied - conicity
     ties = _ties(problem.points, values, base, released)
     values = {n: v for n, v in solution.values.items() if n not in unmoved}
     problem = dataclasses.replace(problem, fixed={**problem.fixed, **{n: base[n] for n in unmoved}})
@@ -188,21 +190,34 @@ def _bounds(names) -> dict[str, tuple[float, float]]:
     return {name: BY_NAME[name].bounds for name in names}
 
 
-def _data_errors(problem: Problem, solution: Solution) -> dict[str, float]:
-    """Standard errors from the data alone, without the ties."""
+def _thinned(problem: Problem) -> Problem:
+    """Every k-th point: enough to come near the solution, at a part of the cost."""
+    step = len(problem.points) // ENOUGH_FOR_A_STAGE
+    if step <= 1:
+        return problem
+    index = np.arange(0, len(problem.points), step)
+    return dataclasses.replace(
+        problem,
+        points=problem.points.select(index),
+        sigma_Fy=problem.sigma_Fy[index],
+        sigma_Mz=problem.sigma_Mz[index],
+        alpha_read=None if problem.alpha_read is None else problem.alpha_read[index],
+    )
+
+
+def _data_errors(problem: Problem, solution: Solution, of: int) -> dict[str, float]:
+    """Standard errors from the data alone, without the ties, for ``of`` points of the kind that was solved."""
     rows = 2 * len(problem.points)
-    errors = np.sqrt(np.diag(covariance(solution.jacobian[:rows])))
+    errors = np.sqrt(np.diag(covariance(solution.jacobian[:rows])) * len(problem.points) / of)
     return dict(zip(solution.values, errors.tolist(), strict=True))
 
 
-def _identified(problem: Problem, solution: Solution) -> set[str]:
-    errors = _data_errors(problem, solution)
+def _identified(solution: Solution, errors: Mapping[str, float]) -> set[str]:
     return {n for n, v in solution.values.items() if errors[n] < IDENTIFIED * max(abs(v), 1e-12)}
 
 
-def _unmoved(problem: Problem, solution: Solution, ties) -> set[str]:
+def _unmoved(errors: Mapping[str, float], ties: Mapping[str, tuple[float, float]]) -> set[str]:
     """Coefficients whose error from the data exceeds half the width of all plausible values."""
-    errors = _data_errors(problem, solution)
     return {name for name, (_, spread) in ties.items() if errors[name] > spread}
 
 

@@ -46,7 +46,7 @@ def pure(p, q: Inputs, gamma, spin: Spin, K_ya, K_yg0, mu_y) -> SideForce:
 
 def combined_weight(p, q: Inputs):
     """G_yk [-]: how longitudinal slip reduces Fy; 4.E59."""
-    B = (p.RBY1 + p.RBY4 * q.gamma**2) * cos(arctan(p.RBY2 * (q.alpha - p.RBY3))) * p.LYKA  # 4.E62
+    B = (p.RBY1 + p.RBY4 * q.gamma**2) * cos_arctan(p.RBY2 * (q.alpha - p.RBY3)) * p.LYKA  # 4.E62
     C = p.RCY1  # 4.E63
     E = at_most_one(p.REY1 + p.REY2 * q.dfz, q.limits)  # 4.E64
     S_H = p.RHY1 + p.RHY2 * q.dfz  # 4.E65

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from tir.equations.elementary import arctan, at_most_one, away_from_zero, cos, magic_angle, sign, sin
+from tir.equations.elementary import at_most_one, away_from_zero, cos, cos_arctan, magic_angle, sign, sin
 from tir.equations.normalise import Inputs
 from tir.equations.turn_slip import Spin
 
@@ -21,7 +21,7 @@ def pure(p, q: Inputs, spin: Spin, K_xk, mu_x):
 
 def combined_weight(p, q: Inputs):
     """G_xa [-]: how sideslip reduces Fx; 4.E51."""
-    B = (p.RBX1 + p.RBX3 * q.gamma**2) * cos(arctan(p.RBX2 * q.kappa)) * p.LXAL  # 4.E54
+    B = (p.RBX1 + p.RBX3 * q.gamma**2) * cos_arctan(p.RBX2 * q.kappa) * p.LXAL  # 4.E54
     C = p.RCX1  # 4.E55
     E = at_most_one(p.REX1 + p.REX2 * q.dfz, q.limits)  # 4.E56
     S_H = p.RHX1  # 4.E57
