@@ -1,0 +1,241 @@
+"""Property files: what the wild holds is read, what is written comes back, readers of every kind accept it."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+import tir
+from tir.check import check
+from tir.parameters import TABLE
+
+VECTORS = Path(__file__).parent / "vectors"
+TEXT = (VECTORS / "moto_front.tir").read_text(encoding="ascii")
+NUMBERS = [
+    row.name
+    for row in TABLE
+    if row.kind == "number" and row.name not in ("FITTYP", "UNLOADED_RADIUS", "FNOMIN")
+]
+
+
+@pytest.fixture
+def tyre() -> tir.Tyre:
+    return tir.read(VECTORS / "moto_front.tir")
+
+
+def read_text(tmp_path: Path, text: str | bytes) -> tir.Tyre:
+    path = tmp_path / "t.tir"
+    path.write_bytes(text if isinstance(text, bytes) else text.encode("latin-1"))
+    return tir.read(path)
+
+
+@pytest.mark.parametrize(
+    "mangled",
+    [
+        TEXT.replace("\n", "\r\n"),
+        TEXT.replace("\n", "\r"),
+        b"\xef\xbb\xbf" + TEXT.encode(),
+        TEXT.replace("! Motorcycle", "! Motorradreifen, Größe 120").encode("latin-1"),
+        TEXT.replace("= 1.27\n", "= 1.27D+00   $ Fortran\n"),
+        TEXT.replace("= 1.27\n", "=1.27!inline\n"),
+        TEXT.replace("'LEFT'", '"LEFT"'),
+        TEXT.replace("PDY1  ", "pdy1  "),
+        TEXT + "[SHAPE]\n{radial width}\n 1.0 0.0\n 1.0 0.4\n",
+        TEXT.replace("[MDI_HEADER]", "(COMMENTS)\n{comment_string}\n'free text = here'\n[MDI_HEADER]"),
+        TEXT + "[FOREIGN]\nSOME_KEY = 3\n",
+    ],
+    ids=["crlf", "cr", "bom", "latin1", "fortran", "tight", "quotes", "lowercase", "shape", "comments", "foreign"],
+)
+def test_what_files_look_like_in_the_wild_is_read_alike(tmp_path, tyre, mangled):
+    assert read_text(tmp_path, mangled) == tyre
+
+
+def test_unknown_keys_are_kept_and_named(tmp_path):
+    found = read_text(tmp_path, TEXT + "[FOREIGN]\nSOME_KEY = 3\n")
+    assert found.extra["FOREIGN.SOME_KEY"] == "3"
+    assert any("FOREIGN.SOME_KEY" in problem.sentence for problem in found.problems)
+
+
+def test_mass_of_units_and_mass_of_inertia_are_two_things(tyre):
+    assert tyre["MASS"] == 4.4
+
+
+def test_units_other_than_si_are_converted(tmp_path, tyre):
+    text = TEXT.replace("'meter'", "'mm'").replace("'newton'", "'kN'").replace("'radians'", "'deg'")
+    text = re.sub(r"(?m)^UNLOADED_RADIUS( +)= .*$", r"UNLOADED_RADIUS\1= 299.8", text)
+    text = re.sub(r"(?m)^FNOMIN( +)= .*$", r"FNOMIN\1= 1.5", text)
+    text = re.sub(r"(?m)^ALPMAX( +)= .*$", r"ALPMAX\1= 20.0", text)
+    text = re.sub(r"(?m)^NOMPRES( +)= .*$", r"NOMPRES\1= 2.5e-4", text)
+    found = read_text(tmp_path, text)
+    assert found["UNLOADED_RADIUS"] == pytest.approx(0.2998)
+    assert found["FNOMIN"] == pytest.approx(1500.0)
+    assert found["ALPMAX"] == pytest.approx(0.349, abs=1e-3)
+    assert found["NOMPRES"] == pytest.approx(250e3)
+    assert found["PKY1"] == tyre["PKY1"]
+
+
+@pytest.mark.parametrize(
+    ("mangled", "words"),
+    [
+        (b"", ["empty"]),
+        (TEXT.encode("utf-16"), ["UTF-16"]),
+        ("nothing of the kind\n", ["not a property file"]),
+        (TEXT.replace("FITTYP                   = 62", "FITTYP = 6"), ["5.2", "fit"]),
+        (TEXT.replace("= 62", "= 21").replace("'USER'", "'MF_05'"), ["5.2"]),
+        (TEXT.replace("PDY1                     = 1.27", "PDY1 = 1,27"), ["PDY1", "1.27", ":"]),
+        (TEXT.replace("PDY1                     = 1.27", "PDY1 ="), ["PDY1", "cut short"]),
+        (TEXT.replace("PDY1                     = 1.27", "PDY1 = nan"), ["PDY1"]),
+        (TEXT[: TEXT.index("[LATERAL")], ["PCY1", "cut short"]),
+        (TEXT[: TEXT.index("[VERTICAL]")], ["FNOMIN"]),
+        (TEXT.replace("'meter'", "'cubit'"), ["cubit", "meter"]),
+    ],
+    ids=["empty", "utf16", "prose", "old", "mf05", "comma", "novalue", "nan", "truncated", "shorter", "unit"],
+)
+def test_what_cannot_be_used_is_refused_with_the_place_and_the_remedy(tmp_path, mangled, words):
+    with pytest.raises(tir.TirError) as caught:
+        read_text(tmp_path, mangled)
+    text = str(caught.value)
+    assert "t.tir" in text
+    assert all(word in text for word in words), text
+    assert "\n" not in text
+
+
+def test_a_missing_file_is_a_sentence(tmp_path):
+    with pytest.raises(tir.TirError, match="cannot be read"):
+        tir.read(tmp_path / "none.tir")
+
+
+@given(st.dictionaries(st.sampled_from(NUMBERS), st.floats(-1e9, 1e9, allow_nan=False), max_size=20))
+def test_written_values_come_back_bit_for_bit(values):
+    tyre = tir.Tyre.from_values({"UNLOADED_RADIUS": 0.3, "FNOMIN": 1500.0, **values})
+    from tir.document import parse_document
+    from tir.properties import interpret
+
+    again = interpret(parse_document(tyre.text()))
+    assert dict(again.values) == dict(tyre.values)
+
+
+def test_status_measured_and_provenance_come_back(tmp_path, tyre):
+    noted = tyre.annotate(
+        status={"PKY1": "fitted +- 0.12"},
+        measured={
+            "epsilon_gamma": tir.Quantity(-0.0617, 0.084, "-"),
+            "C_phit_Nm": tir.Quantity(501.25, 40.1, "Nm"),
+        },
+        provenance={"program": "mffit 0.1.0", "input a.csv": "0123456789abcdef"},
+    )
+    noted.write(tmp_path / "n.tir")
+    again = tir.read(tmp_path / "n.tir")
+    assert again == noted
+    assert again.status["PKY1"] == "fitted +- 0.12"
+    assert again.measured == noted.measured
+    assert again.provenance == noted.provenance
+
+
+@pytest.mark.parametrize("value", [float("nan"), float("inf")])
+def test_no_file_is_written_with_a_value_that_is_no_number(tmp_path, tyre, value):
+    target = tmp_path / "t.tir"
+    target.write_text("before")
+    with pytest.raises(tir.TirError, match="PKY1"):
+        tyre.replace(PKY1=value).write(target)
+    assert target.read_text() == "before"
+    assert [path.name for path in tmp_path.iterdir()] == ["t.tir"]
+
+
+def test_a_name_that_mf62_does_not_have_is_refused(tyre):
+    with pytest.raises(tir.TirError, match="PKY99"):
+        tyre.replace(PKY99=1.0)
+
+
+class TestOtherReaders:
+    """The quirks of other programs' readers, each in its own few lines."""
+
+    @pytest.fixture
+    def text(self, tyre) -> str:
+        return tyre.annotate(provenance={"note": "a = b; c! d"}, status={"PKY1": "fitted = 1; !"}).text()
+
+    def test_plain_ascii_crlf_and_short_lines(self, text):
+        assert text.isascii()
+        lines = text.split("\r\n")
+        assert "\n" not in "".join(lines)
+        assert "\t" not in text
+        assert max(map(len, lines)) < 120
+
+    def test_splitting_at_the_first_equals_sign(self, text, tyre):
+        """Any line with '=' is a parameter; a dollar sign starts a comment."""
+        found = {}
+        for line in text.splitlines():
+            if "=" in line and line[0] not in "!$":
+                key, _, rest = line.partition("=")
+                found[key.strip()] = rest.split("$")[0].strip()
+        assert float(found["PKY1"]) == tyre["PKY1"]
+        assert float(found["QSY3"]) == tyre["QSY3"]
+        assert "note" not in " ".join(found)
+
+    def test_reading_by_position(self, text, tyre):
+        """Counts lines behind a section head and never looks at the key."""
+
+        def section(name: str) -> list[str]:
+            body = text.split(f"[{name}]\r\n")[1].split("$---")[0].split("\r\n")
+            return [line.split("=")[1].split("$")[0].strip() for line in body if line]
+
+        assert [section("MODEL")[i] for i in (0, 1)] == ["62", "'LEFT'"]
+        assert float(section("DIMENSION")[2]) == tyre["RIM_RADIUS"]
+        assert float(section("LATERAL_COEFFICIENTS")[9]) == tyre["PKY1"]
+        assert len(section("VERTICAL")) == 25
+        assert len(section("STRUCTURAL")) == 22
+        assert len(section("LATERAL_COEFFICIENTS")) == 42
+        assert len(section("ALIGNING_COEFFICIENTS")) == 33
+        assert len(section("TURNSLIP_COEFFICIENTS")) == 19
+
+    def test_a_dollar_comment_needs_a_blank_before_it(self, text):
+        assert not re.search(r"[^ \n]\$(?!-)", "\n".join(x for x in text.splitlines() if x[:1] not in "!$"))
+
+    def test_no_comment_line_between_the_keys_of_a_section(self, text):
+        body = text.split("[UNITS]")[1]
+        keys = [line for line in body.splitlines() if line and not line.startswith(("[", "$---"))]
+        assert all("=" in line for line in keys)
+
+
+class TestCheck:
+    @pytest.mark.parametrize("name", ["MagicFormula61", "MagicFormula62", "moto_front"])
+    def test_sound_tyres_have_no_error(self, name):
+        assert not [p for p in check(tir.read(VECTORS / f"{name}.tir")) if p.level == "error"]
+
+    @pytest.mark.parametrize(
+        ("change", "level", "words"),
+        [
+            ({"UNLOADED_RADIUS": 299.8}, "error", "millimetres"),
+            ({"FNOMIN": -1500.0}, "error", "positive"),
+            ({"PKY1": 12.6}, "error", "cornering stiffness"),
+            ({"PKY6": 1.2}, "warning", "camber"),
+            ({"PDY1": -1.0}, "error", "friction"),
+            ({"PEY1": 3.0, "PEY2": 0.0}, "warning", "E_y"),
+            ({"PECP1": 1.0}, "warning", "eps_gamma"),
+            ({"PECP1": 0.5, "PECP2": 0.0}, "warning", "default"),
+            ({"CAMMAX": 50.0}, "warning", "degrees"),
+            ({"FZMIN": 5000.0}, "error", "FZMIN"),
+            ({"QDZ1": -0.1}, "warning", "align"),
+            ({"TYRESIDE": "SYMMETRIC"}, "warning", "odd terms"),
+            ({"LMUY": 0.8}, "warning", "LMUY"),
+            ({"NOMPRES": 250.0, "INFLPRES": 250.0}, "warning", "kPa"),
+        ],
+    )
+    def test_a_planted_fault_is_named(self, tyre, change, level, words):
+        found = check(tyre.replace(**change))
+        assert any(p.level == level and words in p.sentence for p in found), [p.sentence for p in found]
+
+
+def test_the_table_is_sound():
+    names = [row.name for row in TABLE]
+    assert len(names) == len(set(names))
+    for row in TABLE:
+        assert row.description
+        if row.stage:
+            lower, upper = row.bounds
+            assert lower <= float(row.default) <= upper, row.name
+            assert row.equation, row.name
