@@ -76,14 +76,16 @@ def align(source: Path, axes: str | None, path_centre: str | None) -> None:
     "--model", type=click.Path(path_type=Path), help="The simulation's .tir [default: the last build's]."
 )
 @click.option(
-    "--out", type=click.Path(path_type=Path), help="Folder to write to [default: out/ beside TYRE_TOML]."
+    "--out",
+    type=click.Path(path_type=Path),
+    help="Folder to write to [default: out/diagnosis/ beside TYRE_TOML].",
 )
 def diagnose(tyre_toml: Path, model: Path | None, out: Path | None) -> None:
     """Find where simulation and measurement disagree, name the missing effect, show the gap shrink."""
     from mffit import pipeline
     from mffit.report import text
 
-    out = out or tyre_toml.parent / "out"
+    out = out or tyre_toml.parent / "out" / "diagnosis"
     with progress() as show:
         diagnosis = pipeline.diagnose(tyre_toml, model, out=out, progress=show)
     click.echo(text.diagnosis_summary(diagnosis))

@@ -159,9 +159,10 @@ def diagnose(
     progress("reading sweeps")
     points, _ = ingestion.load(config, continuous=True)
     base = read_base(config)
-    tyre = _model(config, model, progress)
+    tyre, choice = _model(config, model, progress)
     with threadpool_limits(1):
         diagnosis = find_effects(points, tyre, config, effects=effects, progress=progress)
+    diagnosis = replace(diagnosis, notes=(*choice, *diagnosis.notes))
     disc = config.rig.type == "rotating-disk"
     if disc and any(found.effect.kind == "rig" for found in diagnosis.effects):
         diagnosis = replace(diagnosis, notes=(*diagnosis.notes, _redone(config, points, diagnosis, base)))
@@ -170,17 +171,27 @@ def diagnose(
     return diagnosis
 
 
-def _model(config: Config, model: Tyre | str | Path | None, progress: Progress) -> Tyre:
-    """The simulation's model: as given, else the last build's, else fitted now."""
+def _model(
+    config: Config, model: Tyre | str | Path | None, progress: Progress
+) -> tuple[Tyre, tuple[str, ...]]:
+    """The simulation's model, as given, else the last build's, else fitted now; and what to say of the choice."""
     if isinstance(model, Tyre):
-        return model
+        return model, ()
     if model is not None:
-        return tir.read(model)
+        return tir.read(model), ()
+    wanted = "turn-slip" if config.model.turn_slip and config.rig.type == "rotating-disk" else "normal"
+    note = "The model was fitted to these points first, as there was no earlier build."
     last = config.folder / "out" / f"{config.tyre.name}.tir"
     if last.is_file():
-        return tir.read(last)
-    exact = config.spin.model_copy(update={"exact": "turn-slip" if config.model.turn_slip else "normal"})
-    return build(config.model_copy(update={"spin": exact}), progress=progress).tyre
+        tyre = tir.read(last)
+        if f"spin.exact {wanted}" in tyre.provenance.get("configuration", f"spin.exact {wanted}"):
+            return tyre, ()
+        note = (
+            f"The last build's file is not for simulations with turn slip {'on' if config.model.turn_slip else 'off'}; the "
+            f'model was fitted anew with spin.exact = "{wanted}".'
+        )
+    spin_table = config.spin.model_copy(update={"exact": wanted})
+    return build(config.model_copy(update={"spin": spin_table}), progress=progress).tyre, (note,)
 
 
 def _redone(config: Config, points: Points, diagnosis: Diagnosis, base: Tyre | None) -> str:

@@ -48,7 +48,19 @@ def read_text(tmp_path: Path, text: str | bytes) -> tir.Tyre:
         TEXT.replace("[MDI_HEADER]", "(COMMENTS)\n{comment_string}\n'free text = here'\n[MDI_HEADER]"),
         TEXT + "[FOREIGN]\nSOME_KEY = 3\n",
     ],
-    ids=["crlf", "cr", "bom", "latin1", "fortran", "tight", "quotes", "lowercase", "shape", "comments", "foreign"],
+    ids=[
+        "crlf",
+        "cr",
+        "bom",
+        "latin1",
+        "fortran",
+        "tight",
+        "quotes",
+        "lowercase",
+        "shape",
+        "comments",
+        "foreign",
+    ],
 )
 def test_what_files_look_like_in_the_wild_is_read_alike(tmp_path, tyre, mangled):
     assert read_text(tmp_path, mangled) == tyre
