@@ -69,12 +69,14 @@ def one_rig(seed: int) -> dict[str, float]:
     return out
 
 
-def model_error(model: tir.Tyre, true: tir.Tyre, phi_t: float, loads: np.ndarray) -> tuple[float, float]:
+def model_error(
+    model: tir.Tyre, true: tir.Tyre, phi_t: float, loads: np.ndarray, pressure: float = 250e3
+) -> tuple[float, float]:
     """Rms difference of Fy [N] and Mz [Nm] from the noise-free truth, between the measured conditions."""
     alpha = np.radians(np.concatenate([np.linspace(-7.5, 7.5, 31), np.linspace(-7.5, 7.5, 31), np.zeros(19)]))
     gamma = np.radians(np.concatenate([np.zeros(31), np.full(31, 15.0), np.linspace(-45.0, 45.0, 19)]))
     Fz = loads[:, None] * 1.03
-    a, b = (tyre(Fz, alpha, gamma, phi_t=phi_t, Vx=6.0, p=250e3) for tyre in (model, true))
+    a, b = (tyre(Fz, alpha, gamma, phi_t=phi_t, Vx=6.0, p=pressure) for tyre in (model, true))
     return float(np.sqrt(np.mean((a.Fy - b.Fy) ** 2))), float(np.sqrt(np.mean((a.Mz - b.Mz) ** 2)))
 
 
