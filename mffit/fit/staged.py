@@ -134,7 +134,7 @@ def _polish(
     ties = _ties(problem.points, values, base, released)
     values = {n: v for n, v in solution.values.items() if n not in unmoved}
     problem = dataclasses.replace(problem, fixed={**problem.fixed, **{n: base[n] for n in unmoved}})
-    solution = _solve(problem, values, ties, tolerance=1e-6)
+    solution = _solve(problem, values, ties, tolerance=1e-5)
     names = list(solution.values)
     cov = covariance(solution.jacobian)
     final = dataclasses.replace(problem, prior=ties)
