@@ -227,20 +227,7 @@ def _found(
         (s for s in steps if s.best.effects[-1].id == effect.id),
         steps[min(len(steps), len(chosen.effects)) - 1],
     )
-    tied: list[Hypothesis] = []
-    ids = {e.id for e in chosen.effects}
-    names = {name for e in others for name in e.parameters}
-    for trial in step.trials:
-        rival = trial.effects[-1]
-        if rival.id in ids or (step.best.log_evidence - trial.log_evidence > 40.0 and others == ()):
-            continue
-        if step.best.log_evidence - trial.log_evidence > 0.5 * abs(step.gain) + 40.0:
-            continue
-        refitted = trial
-        if others:
-            refitted = problem.fit((*others, rival), {n: v for n, v in chosen.numbers.items() if n in names})
-        if chosen.log_evidence - refitted.log_evidence < TIE:
-            tied.append(refitted)
+    tied = _tied(problem, chosen, step, others)
     logs = {effect.id: chosen.log_evidence} | {t.effects[-1].id: t.log_evidence for t in tied}
     top = max(logs.values())
     share = {name: float(np.exp(v - top)) for name, v in logs.items()}
@@ -257,6 +244,23 @@ def _found(
         separate_by=best.sentence() if best else "",
         cosines={t.effects[-1].id: projected_cosine(chosen, t) for t in tied},
     )
+
+
+def _tied(problem: Problem, chosen: Hypothesis, step: Step, others: tuple[Effect, ...]) -> list[Hypothesis]:
+    """Explanations with another effect in the place of one, refitted beside the others, that do as well."""
+    ids = {e.id for e in chosen.effects}
+    names = {name for e in others for name in e.parameters}
+    kept = {name: value for name, value in chosen.numbers.items() if name in names}
+    hopeless = 40.0 + (0.5 * abs(step.gain) if others else 0.0)
+    out = []
+    for trial in step.trials:
+        rival = trial.effects[-1]
+        if rival.id in ids or step.best.log_evidence - trial.log_evidence > hopeless:
+            continue
+        refitted = problem.fit((*others, rival), kept) if others else trial
+        if chosen.log_evidence - refitted.log_evidence < TIE:
+            out.append(refitted)
+    return out
 
 
 def _alternatives(steps: Sequence[Step], chosen: Hypothesis, weights) -> dict[str, float]:
