@@ -97,15 +97,15 @@ def build(
     points, warnings = ingestion.load(config)
     base = read_base(config)
     progress("measuring the camber reduction factor")
-    corrected, parts, measured = measure(config, points, base)
+    parts, measured = measure(config, points, base)
     with threadpool_limits(1):  # the matrices are small: threads cost more than they bring
-        fitted = fitting.fit(config, corrected, parts, measured, base, progress)
+        fitted = fitting.fit(config, points, parts, measured, base, progress)
     measured = measured.with_model(
         epsilon_gamma_model=fitted.epsilon_gamma_model, pecp1=_number(fitted.written, "PECP1", measured)
     )
     result = Result(
         config=config,
-        points=fitted.points,
+        points=points,
         parts=parts,
         measured=measured,
         fit=fitted,
@@ -124,7 +124,7 @@ def spin(config: Config | Mapping[str, Any] | str | Path, out: str | Path | None
     """Alignment check and direct method only; writes ``spin.json`` if ``out`` is given."""
     config = configuration.load(config)
     points, warnings = ingestion.load(config)
-    _, _, measured = measure(config, points, read_base(config))
+    _, measured = measure(config, points, read_base(config))
     measured = replace(measured, warnings=(*warnings, *measured.warnings))
     if out is not None:
         with output_folder(Path(out)) as folder:
@@ -233,14 +233,11 @@ def write_diagnosis(diagnosis: Diagnosis, out: Path) -> None:
         report.write_diagnosis(diagnosis, folder)
 
 
-def measure(config: Config, points: Points, base: Tyre | None) -> tuple[Points, Parts, Measured]:
-    """Split the points, measure directly, and take a misalignment beyond the rig's tolerance off the angles."""
+def measure(config: Config, points: Points, base: Tyre | None) -> tuple[Parts, Measured]:
+    """Split the points and measure directly."""
     parts = decomposition.split(points)
     measured = direct.measure(config, points, parts, base)
-    parts = replace(parts, alpha_odd=direct.odd_alpha(points, parts, config))
-    if measured.misaligned and measured.alpha_M is not None:
-        points = points.replace(alpha=points.alpha + measured.alpha_M.value)
-    return points, parts, measured
+    return replace(parts, alpha_odd=direct.odd_alpha(points, parts, config)), measured
 
 
 def read_base(config: Config) -> Tyre | None:

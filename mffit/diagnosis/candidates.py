@@ -8,9 +8,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from mffit.diagnosis.noise import Noise
-from mffit.diagnosis.state import State
 from mffit.effects import Effect, Free
+from mffit.least_squares import Linear, Number, solve
+from mffit.least_squares import Problem as LeastSquares
 from mffit.points import Points
+from mffit.rig import Simulation
 
 STEPS = 12
 CONVERGED = 1e-3  # of chi2
@@ -27,7 +29,7 @@ class Hypothesis:
     log_evidence: (
         float  #: relative to the same data without any effect only through chi2; comparable across hypotheses
     )
-    state: State
+    state: Simulation
     residual: np.ndarray  #: whitened, (m,)
     jacobian: np.ndarray  #: whitened, per freed number (m, k)
 
@@ -35,12 +37,12 @@ class Hypothesis:
 class Problem:
     """The data, their noise and the model to start from; evaluates hypotheses."""
 
-    def __init__(self, points: Points, start: State, noise: Noise) -> None:
+    def __init__(self, points: Points, start: Simulation, noise: Noise) -> None:
         self.points, self.start, self.noise = points, start, noise
         self.measured = np.concatenate([points.Fy, points.Mz])
         self.null = self.evaluate((), {})
 
-    def whitened(self, state: State) -> np.ndarray:
+    def whitened(self, state: Simulation) -> np.ndarray:
         """Measured minus simulated in units of the joint uncertainty (m,)."""
         return self.noise.whiten(np.nan_to_num(self.measured - state.predict(self.points)))
 
@@ -100,59 +102,42 @@ class Problem:
     def _descend(
         self, effects, moving: list[Free], fixed: Mapping[str, float], start: Mapping[str, float]
     ) -> Hypothesis:
-        """Gauss-Newton with step halving on chi2 plus the spreads' prior."""
-        anchors = [self._anchor(free) for free in moving]
-        centre = np.array([current for current, _ in anchors])
-        spread = np.array([free.spread * unit for free, (_, unit) in zip(moving, anchors, strict=True)])
-        lower = np.array([free.lower for free in moving])
-        upper = np.array([free.upper for free in moving])
-        names = [free.name for free in moving]
-        x = np.array([start.get(name, c) for name, c in zip(names, centre, strict=True)])
+        """Fit the numbers from one start and weigh the evidence of the answer."""
+        numbers = []
+        for free in moving:
+            current, unit = self._anchor(free)
+            at = start.get(free.name, current)
+            numbers.append(Number(free.name, at, free.lower, free.upper, current, free.spread * unit))
+        found = solve(
+            self._free([n.name for n in numbers], fixed), numbers, max_steps=STEPS, tolerance=CONVERGED
+        )
+        spread = np.array([n.spread for n in numbers])
+        scaled = found.jacobian * spread
+        occam = (
+            0.5 * float(np.linalg.slogdet(scaled.T @ scaled + np.eye(len(numbers)))[1]) if numbers else 0.0
+        )
+        stderr = dict(zip(found.names, np.sqrt(np.diag(found.covariance)).tolist(), strict=True))
+        values = {**fixed, **found.values}
+        chi2 = float(found.data @ found.data)
+        state = self.start.with_numbers(values)
+        return Hypothesis(
+            effects, values, stderr, chi2, -0.5 * found.cost - occam, state, -found.data, -found.jacobian
+        )
 
-        def residual(x: np.ndarray) -> np.ndarray:
-            return self.whitened(
-                self.start.with_numbers({**fixed, **dict(zip(names, x.tolist(), strict=True))})
-            )
+    def _free(self, names: Sequence[str], fixed: Mapping[str, float]) -> LeastSquares:
+        """Simulated minus measured in units of the joint uncertainty, as functions of the named numbers."""
+        nothing = np.zeros(0)
 
-        def cost(r: np.ndarray, x: np.ndarray) -> float:
-            return float(r @ r + np.sum(((x - centre) / spread) ** 2))
+        def at(x: np.ndarray) -> Simulation:
+            return self.start.with_numbers({**fixed, **dict(zip(names, x.tolist(), strict=True))})
 
-        r = residual(x)
-        value = cost(r, x)
-        J = np.empty((len(r), 0))
-        for _ in range(STEPS if names else 0):
-            J = self._jacobian(residual, r, x, spread, lower, upper)
-            H = J.T @ J + np.diag(spread**-2.0)
-            step = -np.linalg.solve(H, J.T @ r + (x - centre) / spread**2)
-            for shrink in (1.0, 0.4, 0.1, 0.02):
-                trial = np.clip(x + shrink * step, lower, upper)
-                r_trial = residual(trial)
-                if (new := cost(r_trial, trial)) < value:
-                    break
-            else:
-                break
-            gained = value - new
-            x, r, value = trial, r_trial, new
-            if gained < CONVERGED * max(1.0, 1e-3 * value):
-                break
-        numbers = {**fixed, **dict(zip(names, x.tolist(), strict=True))}
-        stderr, occam = {}, 0.0
-        if names:
-            J = self._jacobian(residual, r, x, spread, lower, upper)
-            scaled = J * spread
-            H = scaled.T @ scaled + np.eye(len(names))
-            occam = 0.5 * float(np.linalg.slogdet(H)[1])
-            stderr = dict(zip(names, (spread * np.sqrt(np.diag(np.linalg.inv(H)))).tolist(), strict=True))
-        state = self.start.with_numbers(numbers)
-        return Hypothesis(effects, numbers, stderr, float(r @ r), -0.5 * value - occam, state, r, J)
+        def residual(x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+            return -self.whitened(at(x)), nothing
 
-    def _jacobian(self, residual, r, x, spread, lower, upper) -> np.ndarray:
-        J = np.empty((len(r), len(x)))
-        for k in range(len(x)):
-            step = 1e-3 * spread[k]
-            if x[k] + step > upper[k]:
-                step = -step
-            shifted = x.copy()
-            shifted[k] += step
-            J[:, k] = (residual(shifted) - r) / step
-        return J
+        def linear(x: np.ndarray) -> Linear:
+            out, slope = at(x).sensitivities(self.points, names)
+            data = self.noise.whiten(np.nan_to_num(np.concatenate(out) - self.measured))
+            rows = np.where(np.isfinite(self.measured)[:, None], np.concatenate(slope), 0.0)
+            return Linear(data, self.noise.whiten(rows), nothing, np.zeros((0, len(names))))
+
+        return LeastSquares(residual, linear)

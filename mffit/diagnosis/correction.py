@@ -4,12 +4,11 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from mffit.diagnosis.state import State
 from mffit.points import Points
-from mffit.rig import NO_FAULTS
+from mffit.rig import NO_FAULTS, Simulation
 
 
-def corrected_points(points: Points, state: State) -> Points:
+def corrected_points(points: Points, state: Simulation) -> Points:
     """Points as a faultless rig at reference conditions would have reported them at the same readings.
 
     What the faults do to a reading is taken from the diagnosed model: with and without them. So the set-points stay

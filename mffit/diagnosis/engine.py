@@ -14,7 +14,6 @@ from mffit.diagnosis.needs import missing
 from mffit.diagnosis.noise import Noise, noise_model, with_uncertainties
 from mffit.diagnosis.result import Diagnosis, Found
 from mffit.diagnosis.selection import TIE, Step, price, projected_cosine, select
-from mffit.diagnosis.state import State
 from mffit.diagnosis.ties import separation
 from mffit.diagnosis.unknown import Bump, bump_scan
 from mffit.diagnosis.validate import gap, validate
@@ -22,7 +21,7 @@ from mffit.diagnosis.where import Region, where
 from mffit.effects import CATALOG, Effect
 from mffit.errors import InputError
 from mffit.points import Points
-from mffit.rig import RigFaults
+from mffit.rig import RigFaults, Simulation
 from tir import Tyre
 from tir.parameters import BY_NAME
 
@@ -67,7 +66,7 @@ def diagnose(
     progress("comparing simulation and measurement")
     declared = RigFaults(backlash_deg=config.rig.backlash_deg)
     simulates_spin = config.model.turn_slip and bool(np.any(points.phi_t))
-    start = State(dict(tyre.values), declared, simulates_spin, config.model.star)
+    start = Simulation(dict(tyre.values), declared, simulates_spin, config.model.star)
     refuse_strangers(points, tyre, start)
     points, source = with_uncertainties(by_condition(points), start)
     points = thinned(points)
@@ -118,7 +117,7 @@ def thinned(points: Points) -> Points:
     return points if step <= 1 else points.select(np.arange(0, len(points), step))
 
 
-def refuse_strangers(points: Points, tyre: Tyre, start: State) -> None:
+def refuse_strangers(points: Points, tyre: Tyre, start: Simulation) -> None:
     """A model and data that cannot belong together end the diagnosis with the likely cause."""
     if len(points) < FEWEST_POINTS:
         raise InputError(
@@ -143,7 +142,7 @@ def refuse_strangers(points: Points, tyre: Tyre, start: State) -> None:
             )
 
 
-def possible(effects: Sequence[Effect], points: Points, start: State) -> tuple[list[Effect], list[str]]:
+def possible(effects: Sequence[Effect], points: Points, start: Simulation) -> tuple[list[Effect], list[str]]:
     """Effects that the data can show, and a note on the others."""
     out: list[Effect] = []
     lacking: dict[str, list[str]] = {}

@@ -8,9 +8,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.linalg import cholesky, solve_triangular
 
-from mffit.diagnosis.state import State
 from mffit.errors import InputError
 from mffit.points import Points
+from mffit.rig import Simulation
 from tir.parameters import TABLE
 
 INEXACT = re.compile(r"^(P.Y\d+|Q.Z\d+)$")
@@ -56,7 +56,7 @@ class Noise:
         return replace(self, u=factor * self.u, root=factor * self.root)
 
 
-def with_uncertainties(points: Points, state: State) -> tuple[Points, str]:
+def with_uncertainties(points: Points, state: Simulation) -> tuple[Points, str]:
     """The points with a standard uncertainty for every reading, and where it comes from.
 
     As stated, else from the scatter of measured minus simulated between neighbouring points of each sweep, from which the
@@ -73,7 +73,7 @@ def with_uncertainties(points: Points, state: State) -> tuple[Points, str]:
     return points.replace(u_Fy=Fy, u_Mz=Mz), source
 
 
-def noise_model(points: Points, state: State, u_coefficients: float, source: str = "") -> Noise:
+def noise_model(points: Points, state: Simulation, u_coefficients: float, source: str = "") -> Noise:
     """Covariance of the readings: their own uncertainties (finite where used) and the model's inexactness.
 
     Parameters
@@ -100,18 +100,11 @@ def noise_model(points: Points, state: State, u_coefficients: float, source: str
     )
 
 
-def coefficient_jacobian(points: Points, state: State) -> np.ndarray:
+def coefficient_jacobian(points: Points, state: Simulation) -> np.ndarray:
     """Change of the readings (2n, k) per relative change of each P.Y. and Q.Z. coefficient."""
-    columns = []
-    for row in TABLE:
-        value = state.values[row.name]
-        if INEXACT.match(row.name) and value:
-            step = 1e-4 * float(value)
-            up, down = (
-                state.with_numbers({row.name: float(value) + s}).predict(points) for s in (step, -step)
-            )
-            columns.append((up - down) / 2e-4)
-    return np.nan_to_num(np.column_stack(columns))
+    names = [row.name for row in TABLE if INEXACT.match(row.name) and state.values[row.name]]
+    _, slope = state.sensitivities(points, names)
+    return np.nan_to_num(np.concatenate(slope) * [float(state.values[name]) for name in names])
 
 
 def _channel(

@@ -10,13 +10,12 @@ import numpy as np
 
 from mffit.diagnosis.noise import Noise
 from mffit.diagnosis.selection import Step
-from mffit.diagnosis.state import State
 from mffit.diagnosis.unknown import Bump
 from mffit.diagnosis.validate import Gap, Validation
 from mffit.diagnosis.where import Region
 from mffit.effects import Effect
 from mffit.points import Points
-from mffit.rig import RigFaults
+from mffit.rig import RigFaults, Simulation
 from tir import Tyre
 
 
@@ -64,7 +63,7 @@ class Diagnosis:
     unexplained: bool
     unexplained_where: tuple[Region, ...]
     bump: Bump | None
-    state: State  #: the simulation after all corrections
+    state: Simulation  #: the simulation after all corrections
     tyre: Tyre  #: the corrected property file
     turn_slip_before: bool
     headline: str  #: one sentence

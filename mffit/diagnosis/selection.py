@@ -9,8 +9,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from mffit.diagnosis.candidates import Hypothesis, Problem
-from mffit.diagnosis.state import State
 from mffit.effects import Effect
+from mffit.rig import Simulation
 
 MOST_EFFECTS = 4
 EXCHANGED = 4
@@ -30,7 +30,7 @@ class Step:
     before: Hypothesis
     trials: tuple[Hypothesis, ...]  #: best first, each with one effect more than ``before``
     threshold: float  #: gain of log evidence needed
-    start: State  #: the simulation as given
+    start: Simulation  #: the simulation as given
 
     @property
     def best(self) -> Hypothesis:
@@ -65,7 +65,7 @@ class Step:
         return {name: math.exp(v - top) / total for name, v in logs.items()}
 
 
-def log_prior(effect: Effect, start: State) -> float:
+def log_prior(effect: Effect, start: Simulation) -> float:
     """What is known before the data: decides the order among effects that they hardly tell apart.
 
     A coefficient that the given model has at exactly zero was never identified and is likelier to be what is missing than

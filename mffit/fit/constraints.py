@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -20,9 +20,20 @@ class Envelope(NamedTuple):
     alpha: float  #: largest |sideslip| [rad]
     pressure: tuple[float, float]  #: [Pa]
 
+    @property
+    def size(self) -> int:
+        """Number of conditions at which the limits are tested."""
+        return _grid(self)[0].size
+
 
 def violations(p, envelope: Envelope) -> np.ndarray:
-    """How far each limit is broken on a grid over the envelope, dimensionless, 0 where it is kept; shape (k,).
+    """How far each limit is broken on a grid over the envelope, dimensionless, 0 where it is kept; shape (k,)."""
+    rows = limits(p, envelope)
+    return np.maximum(np.concatenate([np.broadcast_to(row, envelope.size) for row in rows]), 0.0)
+
+
+def limits(p, envelope: Envelope) -> list[Any]:
+    """Each limit on a grid over the envelope, dimensionless: above 0 where it is broken; rows (envelope.size,).
 
     Limits: mu_y > 0, cornering stiffness < 0, E_y <= 1 on both sides of the curve, B_t > 0, E_t <= 1 on both sides,
     trail at zero slip not negative, shape factor of the pressure terms > 0.
@@ -45,7 +56,7 @@ def violations(p, envelope: Envelope) -> np.ndarray:
     rows.append((0.3 - B_t) / 10.0)
     trail = (p.QDZ1 + p.QDZ2 * q.dfz) * (1.0 - p.PPZ1 * q.dpi) * (1.0 + p.QDZ3 * gamma + p.QDZ4 * gamma**2)
     rows.append((0.0005 - trail) / 0.1)
-    return np.maximum(np.concatenate([np.broadcast_to(row, Fz.shape) for row in rows]) + MARGIN, 0.0)
+    return [row + MARGIN for row in rows]
 
 
 def _grid(envelope: Envelope) -> list[np.ndarray]:

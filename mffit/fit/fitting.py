@@ -3,10 +3,8 @@
 from __future__ import annotations
 
 import dataclasses
-import math
 import time
 from collections.abc import Mapping
-from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -19,22 +17,18 @@ from mffit.fit.problem import Problem
 from mffit.fit.radius import radius_coefficients
 from mffit.fit.ranges import covered_ranges, envelope
 from mffit.fit.result import Agreement, Coefficient, FitResult, agreement
-from mffit.fit.staged import Fitted, Progress, fit_staged
+from mffit.fit.rig_numbers import known_faults, rig_numbers
+from mffit.fit.staged import Fitted, Plan, Progress, fit_staged
 from mffit.fit.stages import ODD_TERMS
 from mffit.fit.start import base_values, starting_values
-from mffit.fit.systematic import common_errors
-from mffit.fit.virtual_zero import epsilon_gamma_of_model, zero_points
-from mffit.measured import backlash_corrected
+from mffit.fit.virtual_zero import epsilon_gamma_of_model
+from mffit.least_squares import touches
 from mffit.parts import Parts
 from mffit.points import Points
-from mffit.rig import readings
-from mffit.rig.readings import reference_speed
+from mffit.rig import Simulation, reference_speed
 from tir import Tyre
-from tir.evaluate import evaluate
 from tir.parameters import BY_NAME, TABLE
 
-TIE_WEIGHT = 100.0
-"""Residual per newton by which the turn-slip force of the model may miss the measured one."""
 FORCE_SECTIONS = ("LATERAL_COEFFICIENTS", "ALIGNING_COEFFICIENTS", "TURNSLIP_COEFFICIENTS")
 
 
@@ -51,7 +45,7 @@ def fit(
     Parameters
     ----------
     config : the validated ``tyre.toml``
-    points : raw points, sideslip misalignment taken off; backlash is taken off here
+    points : raw points, angles as read
     parts : their odd and even parts
     measured : the direct method's result; ``epsilon_gamma`` None on a flat track
     base : coefficients that are not fitted come from here
@@ -65,16 +59,12 @@ def fit(
     began = time.perf_counter()
     values, status = _before_the_fit(config, points, measured, base)
     cover = coverage(points, config.tyre.side or "left")
-    start = starting_values(values, points, _by_load(measured, "C_alpha"))
-    problem, tied = _problem(config, points, values, measured)
-    fitted = fit_staged(
-        problem,
-        start,
-        cover,
-        progress,
-        extra=("PECP1",) if tied else (),
-        errors=common_errors(config, measured),
-    )
+    start = starting_values(values, points, measured)
+    free_pecp1 = config.spin.pecp1 == "model" and measured.epsilon_gamma is not None
+    plan = Plan(cover, start, rig_numbers(config, measured), ("PECP1",) if free_pecp1 else ())
+    problem = _problem(config, points, values, measured)
+    fitted = fit_staged(problem, start, plan, progress)
+    fitted = _with_held_pecp1(fitted, points, measured, free_pecp1)
     turn_slip = {**values, **{n: start[n] for n in fitted.unmoved}, **fitted.values}
     if base is None:
         turn_slip.update(_unmeasured(turn_slip, status))
@@ -101,17 +91,17 @@ def fit(
         explanations.append(
             "This file is the fitted model itself: use it in simulations with turn slip on (USE_MODE with units digit 5)."
         )
-    points = fitted.points
-    Fy, Mz = dataclasses.replace(problem, points=points).model(fitted.values)
+    Fy, Mz = fitted.simulation.readings(points)
     return FitResult(
         tyre=_tyre(turn_slip, coefficients, base, status),
         written=_tyre(written_values, written_coefficients, base, status),
         coefficients=written_coefficients,
         channels={"Fy": agreement(Fy, points.Fy), "Mz": agreement(Mz, points.Mz)},
         odd=_odd_agreement(written_values, points, parts),
-        points=points,
         Fy_model=Fy,
         Mz_model=Mz,
+        simulation=fitted.simulation,
+        rig=fitted.rig,
         stages=fitted.stages,
         coverage=cover,
         explanations=tuple(explanations),
@@ -144,25 +134,29 @@ def _before_the_fit(config, points: Points, measured, base) -> tuple[dict[str, A
     return values, status
 
 
-def _problem(config, points: Points, values, measured) -> tuple[Problem, bool]:
-    tied = config.spin.pecp1 == "model" and measured.epsilon_gamma is not None
-    tie = None
-    if tied:
-        load = measured.F_phit_load
-        tie = (zero_points(points, load), float(measured.F_phit.value), TIE_WEIGHT)
-    problem = Problem(
-        points=backlash_corrected(points, config),
-        play=math.radians(config.rig.backlash_deg),
-        alpha_read=points.alpha,
-        fixed=values,
+def _problem(config, points: Points, values, measured) -> Problem:
+    """Everything before the fit: points as read, weights as stated, what is known of the rig."""
+    disc = config.rig.type == "rotating-disk"
+    return Problem(
+        points=points,
+        simulation=Simulation(values, known_faults(config, measured), turn_slip=disc),
         sigma_Fy=weights.stated_or_nominal(points.u_Fy, points.Fy),
         sigma_Mz=weights.stated_or_nominal(points.u_Mz, points.Mz),
-        prior={},
         envelope=envelope(covered_ranges(points)),
-        tie=tie,
-        turn_slip=config.rig.type == "rotating-disk",
     )
-    return problem, tied
+
+
+def _with_held_pecp1(fitted: Fitted, points: Points, measured, free: bool) -> Fitted:
+    """PECP1 is held at the measured eps_gamma: its uncertainty goes on to every coefficient, to first order."""
+    if free or measured.epsilon_gamma is None:
+        return fitted
+    names = [*fitted.names, "PECP1"]
+    slope = np.concatenate(fitted.simulation.sensitivities(points, names)[1])
+    slope /= np.concatenate([fitted.sigma_Fy, fitted.sigma_Mz])[:, None]
+    shift = -fitted.covariance @ (slope[:, :-1].T @ slope[:, -1]) * measured.epsilon_gamma.u
+    covariance = fitted.covariance + np.outer(shift, shift)
+    errors = dict(zip(fitted.names, np.sqrt(np.diag(covariance)).tolist(), strict=True))
+    return dataclasses.replace(fitted, covariance=covariance, stderr=errors)
 
 
 def _by_load(measured, key: str) -> dict[float, float]:
@@ -185,10 +179,10 @@ def _rolling_resistance(
     chosen = points.select(np.flatnonzero(used))
 
     def moment(QSY1: float) -> np.ndarray:
-        p = SimpleNamespace(**{**values, "QSY1": QSY1})
-        return evaluate(
-            p, chosen.Fz, chosen.alpha, chosen.gamma, 0.0, chosen.phi_t, chosen.V, chosen.p, turn_slip=True
-        )[0].My
+        trial = Tyre.from_values(values).replace(QSY1=QSY1)
+        return trial(
+            chosen.Fz, chosen.alpha, chosen.gamma, phi_t=chosen.phi_t, Vx=chosen.V, p=chosen.p, turn_slip=True
+        ).My
 
     at_zero = moment(0.0)
     slope = moment(1.0) - at_zero
@@ -233,15 +227,10 @@ def _with_normal(coefficients: Mapping[str, Coefficient], normal: Normal) -> dic
             stderr=normal.stderr.get(name),
             status="measured" if measured else "fitted",
             fixed=measured,
-            at_bound=not measured and _at_bound(name, value),
+            at_bound=not measured and touches(value, *BY_NAME[name].bounds),
             correlated_with="",
         )
     return out
-
-
-def _at_bound(name: str, value: float) -> bool:
-    lower, upper = BY_NAME[name].bounds
-    return min(value - lower, upper - value) < 1e-4 * (upper - lower)
 
 
 def _tyre(
@@ -288,7 +277,7 @@ def _odd_agreement(values, points: Points, parts: Parts) -> dict[str, Agreement]
             ("PHY1", "PHY2", "PVY1", "PVY2", "PEY3", "QHZ1", "QHZ2", "QDZ6", "QDZ7", "QEZ4"), 0.0
         ),
     }
-    model = readings(SimpleNamespace(**symmetric), straight, turn_slip=False)
+    model = Simulation(symmetric, turn_slip=False).readings(straight)
     used = (parts.paired != "unpaired") & (points.direction > 0)
     return {
         "Fy": agreement(model.Fy[used], parts.Fy_odd[used]),

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from types import SimpleNamespace
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -11,10 +10,11 @@ import numpy as np
 from mffit.fit.constraints import Envelope
 from mffit.fit.coverage import StageCoverage
 from mffit.fit.problem import Problem
-from mffit.fit.solve import covariance, solve
+from mffit.fit.start import camber_stiffness_terms
+from mffit.least_squares import Number, solve
 from mffit.parts import Parts
 from mffit.points import Points, main_pressure
-from mffit.rig import readings
+from mffit.rig import Simulation
 from tir.parameters import BY_NAME
 
 CAMBER_FORCE = ("PKY3", "PKY5", "PDY3", "PVY3", "PVY4", "PEY4", "PEY5")
@@ -64,40 +64,16 @@ def derive_normal(
     fitted_force, errors_force = _refit(odd, symmetric, force, envelope, points.u_Fy)
 
     fitted = {**start, **fitted_force}
-    on_road = readings(SimpleNamespace(**values), straight, turn_slip=True)
+    on_road = Simulation(values).readings(straight)
     road = straight.replace(Fy=np.full(len(points), np.nan), Mz=on_road.Mz)
     moment = [name for name in CAMBER_MOMENT if name in free]
     fitted_moment, errors_moment = _refit(road, fitted, moment, envelope, points.u_Mz)
 
     changed = {**imposed, **fitted_force, **fitted_moment}
-    normal = readings(SimpleNamespace(**{**values, **changed}), straight, turn_slip=False)
+    normal = Simulation({**values, **changed}, turn_slip=False).readings(straight)
     largest = np.abs(points.gamma) > 0.98 * np.max(np.abs(points.gamma))
     difference = float(np.sqrt(np.mean((normal.Fy - on_road.Fy)[largest] ** 2)))
     return Normal(changed, {**errors_force, **errors_moment}, frozenset(imposed), difference)
-
-
-def camber_stiffness_terms(
-    values: Mapping[str, Any], C_gamma: Mapping[float, float], main: float
-) -> dict[str, float]:
-    """PKY6 and PKY7 with K_yg0(Fz) = C_gamma(Fz): exact at the load nearest FNOMIN, best slope over the others.
-
-    ``main`` is the pressure [Pa] at which C_gamma was measured; PPY5 takes it to the nominal one.
-    """
-    if not C_gamma:
-        return {}
-    Fz0 = float(values["FNOMIN"])
-    load, stiffness = np.array(list(C_gamma)), np.array(list(C_gamma.values()))
-    pressure = 1.0 + float(values["PPY5"]) * (main / float(values["NOMPRES"]) - 1.0)
-    Fz0, specific = Fz0 * float(values["LFZO"]), stiffness / (load * pressure * float(values["LKYC"]))
-    dfz = (load - Fz0) / Fz0
-    nearest = int(np.argmin(np.abs(dfz)))
-    offset = dfz - dfz[nearest]
-    slope = (
-        float(offset @ (specific - specific[nearest]) / (offset @ offset))
-        if len(load) > 1
-        else float(values["PKY7"])
-    )
-    return {"PKY6": float(specific[nearest] - slope * dfz[nearest]), "PKY7": slope}
 
 
 def _refit(points: Points, values, names, envelope, u) -> tuple[dict[str, float], dict[str, float]]:
@@ -106,15 +82,16 @@ def _refit(points: Points, values, names, envelope, u) -> tuple[dict[str, float]
     sigma = np.where(np.isfinite(u), u, np.nanmedian(u) if np.any(np.isfinite(u)) else 1.0)
     problem = Problem(
         points=points,
-        fixed=values,
+        simulation=Simulation(values, turn_slip=False),
         sigma_Fy=np.where(np.isfinite(points.Fy), sigma, np.inf),
         sigma_Mz=np.where(np.isfinite(points.Mz), sigma, np.inf),
-        prior={n: (values[n], 0.5 * BY_NAME[n].width) for n in names},
         envelope=envelope,
-        turn_slip=False,
     )
-    start = {name: float(values[name]) for name in names}
-    solution = solve(problem.residual, start, {n: BY_NAME[n].bounds for n in names})
-    misfit = max(1.0, float(np.sqrt(np.mean(solution.residual[: 2 * len(points)] ** 2))))
-    errors = misfit * np.sqrt(np.diag(covariance(solution.jacobian)))
+    numbers = [
+        Number(n, float(values[n]), *BY_NAME[n].bounds, float(values[n]), 0.5 * BY_NAME[n].width)
+        for n in names
+    ]
+    solution = solve(problem.free(names), numbers)
+    misfit = max(1.0, float(np.sqrt(np.mean(solution.data**2))))
+    errors = misfit * np.sqrt(np.diag(solution.covariance))
     return dict(solution.values), dict(zip(names, errors.tolist(), strict=True))

@@ -1,80 +1,124 @@
-"""The least-squares problem: what the model says at the raw points, against what was measured."""
+"""The least-squares problem: what the simulation says at the raw points, against what was measured."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from types import SimpleNamespace
-from typing import Any
 
 import numpy as np
 
-from mffit.fit.constraints import Envelope, violations
+from mffit import least_squares
+from mffit.fit.constraints import Envelope, limits
+from mffit.measured import RadiusReading
 from mffit.points import Points
-from mffit.rig import readings
+from mffit.rig import Simulation, declared_radius
+from tir.derivatives import gradient, plain, traced
+from tir.evaluate import evaluate
 
-CONSTRAINT_WEIGHT = 3000.0
+LIMIT_WEIGHT = 3000.0
 """Residual in units of noise per unit of violation; large enough to hold, small enough to keep the problem smooth."""
 
 
 @dataclass(frozen=True, slots=True)
 class Problem:
-    """Residuals of a set of points; built once, evaluated for many parameter values."""
+    """Points with their weights and the simulation to start from; residuals for any choice of free numbers."""
 
     points: Points
-    fixed: Mapping[str, Any]  #: every value of the file, before the free ones replace theirs
+    simulation: Simulation
     sigma_Fy: np.ndarray  #: (n,) standard uncertainty used as weight [N]; inf where not used
     sigma_Mz: np.ndarray  #: (n,) [Nm]
-    prior: Mapping[
-        str, tuple[float, float]
-    ]  #: name -> (expected value, spread) of coefficients that are tied
-    envelope: Envelope | None = None
-    turn_slip: bool = True
-    tie: tuple[Points, float, float] | None = (
-        None  #: (points, side force, weight) whose mean the model must give
-    )
-    play: float = 0.0  #: backlash of the sideslip axis [rad]
-    alpha_read: np.ndarray | None = None  #: (n,) sideslip as read, before the play was taken up [rad]
+    envelope: Envelope | None = None  #: over which the physical limits hold
+    radii: tuple[RadiusReading, ...] = ()  #: measured effective radii, which count as data
+    speed: float = 1.0  #: at which they were measured [m/s]
 
-    def parameters(self, free: Mapping[str, float]) -> SimpleNamespace:
-        """All parameters with the free values in place."""
-        return SimpleNamespace(**{**self.fixed, **free})
-
-    def model(self, free: Mapping[str, float]):
-        """Readings (Fy [N], Mz [Nm]) of the model at the points."""
-        return readings(self.parameters(free), self.points, turn_slip=self.turn_slip)
-
-    def settled(self, free: Mapping[str, float]) -> Problem:
-        """The same with the play taken up as the model's moment says, which has no noise."""
-        if not self.play or self.alpha_read is None:
-            return self
-        at_reading = readings(
-            self.parameters(free), self.points.replace(alpha=self.alpha_read), turn_slip=self.turn_slip
-        )
+    def select(self, index: np.ndarray) -> Problem:
+        """The problem of some points (m,)."""
         return replace(
-            self, points=self.points.replace(alpha=self.alpha_read - 0.5 * self.play * np.sign(at_reading.Mz))
+            self,
+            points=self.points.select(index),
+            sigma_Fy=self.sigma_Fy[index],
+            sigma_Mz=self.sigma_Mz[index],
         )
 
-    def data_residual(self, free: Mapping[str, float]) -> np.ndarray:
-        """(model - measured) / sigma for Fy and then Mz, shape (2n,); 0 where a channel is not used."""
-        Fy, Mz = self.model(free)
-        return np.concatenate(
-            [_weighted(Fy - self.points.Fy, self.sigma_Fy), _weighted(Mz - self.points.Mz, self.sigma_Mz)]
+    def with_values(self, values) -> Problem:
+        """The same from another start."""
+        return replace(self, simulation=self.simulation.with_numbers(values))
+
+    def misfit(self) -> np.ndarray:
+        """(model - measured) / sigma at the start for Fy and then Mz, shape (2n,); 0 where a channel is not used."""
+        out = self.simulation.readings(self.points)
+        return np.concatenate([self._weighted(out.Fy, 0), self._weighted(out.Mz, 1)])
+
+    def free(self, names: Sequence[str]) -> least_squares.Problem:
+        """Residuals and derivatives with the named numbers free."""
+
+        def at(x: np.ndarray) -> Problem:
+            return self.with_values(dict(zip(names, x.tolist(), strict=True)))
+
+        def residual(x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+            here = at(x)
+            return np.concatenate([here.misfit(), here._radii([])[0]]), here._limits([])[0]
+
+        def linear(x: np.ndarray) -> least_squares.Linear:
+            here = at(x)
+            out, slope = here.simulation.sensitivities(here.points, names)
+            radii, radii_slope = here._radii(names)
+            limits, limits_slope = here._limits(names)
+            rows = [here._weighted(out.Fy, 0), here._weighted(out.Mz, 1), radii]
+            slopes = [
+                slope.Fy / here.sigma_Fy[:, None] * here._used(0)[:, None],
+                slope.Mz / here.sigma_Mz[:, None] * here._used(1)[:, None],
+                radii_slope,
+            ]
+            return least_squares.Linear(np.concatenate(rows), np.concatenate(slopes), limits, limits_slope)
+
+        return least_squares.Problem(residual, linear)
+
+    def _channel(self, channel: int) -> tuple[np.ndarray, np.ndarray]:
+        return ((self.points.Fy, self.sigma_Fy), (self.points.Mz, self.sigma_Mz))[channel]
+
+    def _used(self, channel: int) -> np.ndarray:
+        measured, sigma = self._channel(channel)
+        return np.isfinite(sigma) & np.isfinite(measured)
+
+    def _weighted(self, model: np.ndarray, channel: int) -> np.ndarray:
+        measured, sigma = self._channel(channel)
+        return np.where(self._used(channel), (model - np.nan_to_num(measured)) / sigma, 0.0)
+
+    def _radii(self, names: Sequence[str]) -> tuple[np.ndarray, np.ndarray]:
+        """Effective radii of the model against the measured ones, which follow the path radius they were taken on."""
+        if not self.radii:
+            return np.zeros(0), np.zeros((0, len(names)))
+        numbers = traced({name: self.simulation.number(name, self.points) for name in names})
+        coefficients = {n: x for n, x in numbers.items() if n in self.simulation.values}
+        p = SimpleNamespace(**{**self.simulation.values, **coefficients})
+        load = np.array([row.load for row in self.radii])
+        measured, u = (np.array([getattr(row, name) for row in self.radii]) for name in ("value", "u"))
+        declared = declared_radius(self.points)
+        R = numbers.get("path_radius_m", self.simulation.number("path_radius_m", self.points))
+        follows = np.array([1.0 if row.follows_path else 0.0 for row in self.radii])
+        Re = evaluate(p, load, Vx=self.speed)[1].Re
+        out = (Re - measured * (1.0 + follows * (R / declared - 1.0))) / u
+        slope = np.broadcast_to(gradient(out, list(numbers.values())), (len(load), len(names)))
+        return np.broadcast_to(plain(out), len(load)), slope
+
+    def _limits(self, names: Sequence[str]) -> tuple[np.ndarray, np.ndarray]:
+        """Broken physical limits of the model."""
+        if self.envelope is None:
+            return np.zeros(0), np.zeros((0, len(names)))
+        coefficients = traced(
+            {name: float(self.simulation.values[name]) for name in names if name in self.simulation.values}
         )
-
-    def residual(self, free: Mapping[str, float]) -> np.ndarray:
-        """The data's residual, followed by the tied coefficients and the broken limits."""
-        rows = [self.data_residual(free)]
-        rows.append(np.array([(free[n] - v) / s for n, (v, s) in self.prior.items() if n in free]))
-        if self.envelope is not None:
-            rows.append(CONSTRAINT_WEIGHT * violations(self.parameters(free), self.envelope))
-        if self.tie is not None:
-            zero_points, force, weight = self.tie
-            Fy = readings(self.parameters(free), zero_points, turn_slip=self.turn_slip).Fy
-            rows.append(np.array([(Fy.mean() - force) * weight]))
-        return np.concatenate(rows)
-
-
-def _weighted(difference: np.ndarray, sigma: np.ndarray) -> np.ndarray:
-    used = np.isfinite(sigma) & np.isfinite(difference)
-    return np.where(used, np.where(used, difference, 0.0) / np.where(used, sigma, 1.0), 0.0)
+        rows = limits(SimpleNamespace(**{**self.simulation.values, **coefficients}), self.envelope)
+        m = self.envelope.size
+        slope = np.zeros((len(rows) * m, len(names)))
+        columns = [k for k, name in enumerate(names) if name in coefficients]
+        value = np.concatenate([np.broadcast_to(plain(row), m) for row in rows])
+        if columns:
+            wrt = list(coefficients.values())
+            slope[:, columns] = np.concatenate(
+                [np.broadcast_to(gradient(row, wrt), (m, len(wrt))) for row in rows]
+            )
+        broken = value > 0.0
+        return LIMIT_WEIGHT * np.where(broken, value, 0.0), LIMIT_WEIGHT * slope * broken[:, None]

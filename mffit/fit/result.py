@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from mffit.fit.coverage import StageCoverage
-from mffit.points import Points
+from mffit.rig import UNITS, Simulation
 from tir import Tyre
 
 
@@ -58,7 +58,8 @@ class FitResult:
     coefficients: Mapping[str, Coefficient]
     channels: Mapping[str, Agreement]  #: of ``tyre`` on the raw points, turn slip on
     odd: Mapping[str, Agreement]  #: of ``written`` on the odd part, turn slip off
-    points: Points  #: raw points with the angles that the wheel had
+    simulation: Simulation  #: ``tyre`` on the rig as the fit found it
+    rig: Mapping[str, tuple[float, float]]  #: rig error -> (value, standard error)
     Fy_model: np.ndarray  #: (n,) [N]
     Mz_model: np.ndarray  #: (n,) [Nm]
     stages: tuple[StageRecord, ...]
@@ -85,6 +86,10 @@ class FitResult:
                     "correlation": c.correlation if c.correlated_with else None,
                 }
                 for name, c in self.coefficients.items()
+            },
+            "rig": {
+                name: {"value": value, "stderr": u, "unit": UNITS[name]}
+                for name, (value, u) in self.rig.items()
             },
             "stages": [
                 {

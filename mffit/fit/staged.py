@@ -1,9 +1,9 @@
-"""The staged fit of one model to the raw points, and the joint polish that ends it."""
+"""The staged fit of one model to the raw points, and the joint polish of tyre and rig that ends it."""
 
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -13,10 +13,10 @@ from mffit.fit import weights
 from mffit.fit.coverage import StageCoverage
 from mffit.fit.problem import Problem
 from mffit.fit.result import StageRecord
-from mffit.fit.solve import Solution, covariance, solve
 from mffit.fit.stages import CONICITY_ON_A_DISC, IF_IDENTIFIED, STAGES, Stage
-from mffit.fit.systematic import CommonError, systematic_covariance
+from mffit.least_squares import Number, Solution, inverse, solve
 from mffit.points import Points, main_pressure
+from mffit.rig import FAULT_NAMES, Simulation
 from tir.parameters import BY_NAME
 
 ENOUGH_FOR_A_STAGE = 600
@@ -25,89 +25,122 @@ TIED_SPREAD = 0.3
 """How far spin coefficients of similar tyres scatter around each other, relative, 1 sigma."""
 IDENTIFIED = 0.5
 """Largest relative standard error at which a tied coefficient is released."""
+FALSE_MINIMUM = 1.3
+"""Misfit in units of the stated noise from which on the fit starts again from other shapes."""
+BETTER = 0.97
+"""A restart replaces the fit before only if its sum of squares is this much smaller."""
 
 Progress = Callable[[str], None]
 
 
 @dataclass(frozen=True, slots=True)
 class Fitted:
-    """Values and errors of the free coefficients after the polish."""
+    """Values and errors of the free numbers after the polish."""
 
-    values: Mapping[str, float]
+    values: Mapping[str, float]  #: coefficients
+    rig: Mapping[str, tuple[float, float]]  #: rig error -> (value, standard error)
     stderr: Mapping[str, float]
     correlation: Mapping[str, tuple[str, float]]
+    names: tuple[str, ...]  #: of the covariance's rows, coefficients and rig errors
+    covariance: np.ndarray  #: (k, k)
+    sigma_Fy: np.ndarray  #: (n,) weights used in the end [N]
+    sigma_Mz: np.ndarray  #: (n,) [Nm]
     at_bound: frozenset[str]
     regularised: frozenset[str]
     unmoved: frozenset[str]  #: freed, but the data did not move them: back at their start and held
     stages: tuple[StageRecord, ...]
-    scale: tuple[float, float]  #: misfit over stated uncertainty, Fy and Mz
-    points: Points  #: with the angles that the wheel had, as far as the model knows them
+    scale: tuple[float, float]  #: robust misfit over stated uncertainty, Fy and Mz
+    simulation: Simulation  #: fitted, rig errors included
+    cost: float
+    attempts: tuple[str, ...] = ()  #: other shapes from which the fit was started again
 
 
-def fit_staged(
-    problem: Problem,
-    start: Mapping[str, float],
-    cover: tuple[StageCoverage, ...],
-    progress: Progress,
-    extra: tuple[str, ...] = (),
-    errors: tuple[CommonError, ...] = (),
-) -> Fitted:
-    """Fit stage by stage, then everything together.
+@dataclass(frozen=True, slots=True)
+class Plan:
+    """What a fit frees and what is known of it beforehand."""
+
+    cover: tuple[StageCoverage, ...]
+    expected: Mapping[str, float]  #: centre of every coefficient's prior
+    rig: tuple[Number, ...] = ()  #: rig errors, freed in the polish
+    extra: tuple[str, ...] = ()  #: coefficients freed in the polish only
+
+    @property
+    def free(self) -> list[str]:
+        return [name for row in self.cover for name in row.free]
+
+
+SHAPES: Mapping[str, Mapping[str, float]] = {
+    "a round side-force curve": {"PCY1": 1.2, "PEY1": 0.3, "PEY2": 0.0},
+    "a peaked side-force curve": {"PCY1": 1.7, "PEY1": -1.5, "PEY2": 0.0},
+    "a short trail": {"QBZ1": 15.0, "QCZ1": 1.2, "QEZ1": -0.5, "QEZ2": 0.0},
+    "a long trail": {"QBZ1": 5.0, "QCZ1": 1.1, "QEZ1": -3.0, "QEZ2": 0.0},
+}
+"""Other places to start from where the first fit ends too far away."""
+
+
+def fit_staged(problem: Problem, start: Mapping[str, float], plan: Plan, progress: Progress) -> Fitted:
+    """Fit stage by stage, then tyre and rig together; again from other shapes where that ends far from the noise.
 
     Parameters
     ----------
     problem : points, weights (as stated) and fixed values
     start : starting value of every coefficient
-    cover : the coverage matrix; only its free coefficients are fitted
+    plan : what is free
     progress : called with a sentence before each step
-    extra : coefficients freed in the polish only (PECP1 when it is tied to the turn-slip force)
-    errors : rig errors common to all points, which add to the standard errors
     """
-    free = [name for row in cover for name in row.free]
-    _enough_points(problem.points, free)
-    values = {name: start[name] for name in free}
-    base = dict(values)
+    _enough_points(problem.points, plan.free)
+    best = _fit_from(problem, start, plan, progress)
+    if max(best.scale) < FALSE_MINIMUM and not best.at_bound & BY_SHAPE:
+        return best
+    tried = []
+    for shape, values in SHAPES.items():
+        progress(f"starting again from {shape}")
+        tried.append(shape)
+        other = _fit_from(problem, {**start, **values}, plan, lambda sentence: None)
+        if other.cost < BETTER * best.cost:
+            best = other
+    return dataclasses.replace(best, attempts=tuple(tried))
+
+
+BY_SHAPE = frozenset(name for values in SHAPES.values() for name in values)
+
+
+def _fit_from(problem: Problem, start: Mapping[str, float], plan: Plan, progress: Progress) -> Fitted:
+    values = {name: start[name] for name in plan.free}
+    problem = problem.with_values({**values, **{name: start[name] for name in plan.extra}})
     records = []
-    for stage, row in zip(STAGES, cover, strict=True):
+    for stage, row in zip(STAGES, plan.cover, strict=True):
         if not row.free:
             continue
         progress(f"fitting {stage.title.lower()}")
-        reopened = [name for other in cover if other.stage in stage.reopened for name in other.free]
-        values.update(_fit_stage(problem, stage, [*reopened, *row.free], values, base))
-        records.append(_record(problem, stage.name, stage.title, row.free, values))
+        reopened = [name for other in plan.cover if other.stage in stage.reopened for name in other.free]
+        problem = problem.with_values(_fit_stage(problem, stage, [*reopened, *row.free], plan))
+        records.append(_record(problem, stage.name, stage.title, row.free))
     progress("joint polish")
-    values.update({name: start[name] for name in extra})
-    base.update({name: start[name] for name in extra})
-    fitted = _polish(problem, values, base, errors)
-    names = tuple(fitted.values)
-    polished = dataclasses.replace(problem, points=fitted.points)
-    records.append(_record(polished, "polish", "Joint polish", names, fitted.values))
+    fitted, problem = _polish(problem, plan)
+    records.append(_record(problem, "polish", "Joint polish of tyre and rig", fitted.names))
     return dataclasses.replace(fitted, stages=tuple(records))
 
 
-def _fit_stage(problem: Problem, stage: Stage, names, values, base) -> Mapping[str, float]:
-    points = problem.points
-    index = np.flatnonzero(_used_by(stage, problem))
+def _fit_stage(problem: Problem, stage: Stage, names: Sequence[str], plan: Plan) -> Mapping[str, float]:
+    index = np.flatnonzero(_used_by(stage, problem.points))
     index = index[:: max(1, len(index) // ENOUGH_FOR_A_STAGE)]
     if len(index) < len(names):
         return {}
+    part = problem.select(index)
+    unused = np.full(len(index), np.inf)
     part = dataclasses.replace(
-        problem,
-        points=points.select(index),
-        fixed={**problem.fixed, **values},
-        sigma_Fy=problem.sigma_Fy[index] if "Fy" in stage.channels else np.full(len(index), np.inf),
-        sigma_Mz=problem.sigma_Mz[index] if "Mz" in stage.channels else np.full(len(index), np.inf),
-        prior=_ties(points, names, base),
-        tie=None,
+        part,
+        sigma_Fy=part.sigma_Fy if "Fy" in stage.channels else unused,
+        sigma_Mz=part.sigma_Mz if "Mz" in stage.channels else unused,
+        radii=(),
     )
-    part, _ = _reweighted(part, values)
-    start = {name: values[name] for name in names}
-    return solve(part.residual, start, _bounds(names), max_steps=15, tolerance=1e-3).values
+    part, _ = _reweighted(part)
+    return solve(part.free(names), _numbers(part, names, plan), max_steps=15, tolerance=1e-3).values
 
 
-def _used_by(stage: Stage, problem: Problem) -> np.ndarray:
+def _used_by(stage: Stage, points: Points) -> np.ndarray:
     """Mask (n,) of the points that the stage is fitted to."""
-    points = problem.points
     used = np.ones(len(points), bool)
     if stage.main_pressure:
         used &= main_pressure(points)
@@ -116,51 +149,91 @@ def _used_by(stage: Stage, problem: Problem) -> np.ndarray:
     return used
 
 
-def _polish(
-    problem: Problem, values: dict[str, float], base: dict[str, float], errors: tuple[CommonError, ...]
-) -> Fitted:
-    """All free coefficients together: balance the channels, discount outliers, release what the data identify."""
-    stated = problem
-    problem, scale = _reweighted(stated.settled(values), values)
-    ties = _ties(problem.points, values, base)
+def _polish(stated: Problem, plan: Plan) -> tuple[Fitted, Problem]:
+    """All free numbers together: balance the channels, discount outliers, release what the data identify."""
+    names = [*plan.free, *plan.extra]
+    problem, _ = _reweighted(stated)
     rough = _thinned(problem)
-    solution = _solve(rough, values, ties, tolerance=1e-4)
-    errors_of_data = _data_errors(rough, solution, len(problem.points))
-    problem, scale = _reweighted(stated.settled(solution.values), solution.values)
-    tied = {name for name in ties if name in IF_IDENTIFIED}
-    released = frozenset(tied & _identified(solution, errors_of_data))
-    conicity = {name for name in ties if name in CONICITY_ON_A_DISC and np.any(problem.points.phi_t)}
-    unmoved = _unmoved(errors_of_data, ties) - tied - conicity
-    ties = _ties(problem.points, values, base, released)
-    values = {n: v for n, v in solution.values.items() if n not in unmoved}
-    problem = dataclasses.replace(problem, fixed={**problem.fixed, **{n: base[n] for n in unmoved}})
-    solution = _solve(problem, values, ties, tolerance=1e-5)
-    names = list(solution.values)
-    cov = covariance(solution.jacobian)
-    final = dataclasses.replace(problem, prior=ties)
-    cov = cov + systematic_covariance(final, solution.values, solution.jacobian, errors)
-    stderr = dict(zip(names, np.sqrt(np.diag(cov)).tolist(), strict=True))
-    return Fitted(
-        values=solution.values,
+    solution = _solved(rough, names, plan, tolerance=1e-3)
+    errors = _data_errors(rough, solution, len(problem.points))
+    problem, scale = _reweighted(stated.with_values(solution.values))
+    tied = {name for name in names if name in IF_IDENTIFIED}
+    released = frozenset(n for n in tied if errors[n] < IDENTIFIED * max(abs(solution.values[n]), 1e-12))
+    curved = bool(np.any(problem.points.phi_t))
+    conicity = {name for name in names if name in CONICITY_ON_A_DISC and curved}
+    spread = {n.name: n.spread for n in _numbers(problem, names, plan)}
+    unmoved = {n for n in names if errors[n] > spread[n]} - tied - conicity
+    problem = problem.with_values({n: plan.expected[n] for n in unmoved})
+    kept = [n for n in names if n not in unmoved]
+    solution = _solved(problem, kept, plan, released=released, tolerance=1e-6)
+    problem = problem.with_values(solution.values)
+    covariance = solution.covariance
+    stderr = dict(zip(solution.names, np.sqrt(np.diag(covariance)).tolist(), strict=True))
+    fitted = Fitted(
+        values={n: v for n, v in solution.values.items() if n not in RIG},
+        rig={n: (v, stderr[n]) for n, v in solution.values.items() if n in RIG},
         stderr=stderr,
-        correlation=_strongest_correlations(names, cov),
-        at_bound=solution.at_bound,
+        correlation=_strongest_correlations(list(solution.names), covariance),
+        names=solution.names,
+        covariance=covariance,
+        sigma_Fy=problem.sigma_Fy,
+        sigma_Mz=problem.sigma_Mz,
+        at_bound=solution.at_bound | solution.at_limit,
         regularised=frozenset((tied | conicity) - released),
         unmoved=frozenset(unmoved),
         stages=(),
         scale=scale,
-        points=problem.points,
+        simulation=problem.simulation,
+        cost=solution.cost,
     )
+    return fitted, problem
 
 
-def _solve(problem: Problem, values, ties, tolerance) -> Solution:
-    problem = dataclasses.replace(problem, prior=ties)
-    return solve(problem.residual, values, _bounds(values), tolerance=tolerance)
+RIG = frozenset(FAULT_NAMES)
 
 
-def _reweighted(problem: Problem, values) -> tuple[Problem, tuple[float, float]]:
+def _solved(
+    problem: Problem,
+    names: Sequence[str],
+    plan: Plan,
+    *,
+    tolerance: float,
+    released: frozenset[str] = frozenset(),
+) -> Solution:
+    numbers = [*_numbers(problem, names, plan, released), *plan.rig]
+    start = {n.name: problem.simulation.number(n.name, problem.points) for n in plan.rig}
+    numbers = [dataclasses.replace(n, start=start.get(n.name, n.start)) for n in numbers]
+    return solve(problem.free([n.name for n in numbers]), numbers, tolerance=tolerance)
+
+
+def _numbers(
+    problem: Problem, names: Sequence[str], plan: Plan, released: frozenset[str] = frozenset()
+) -> list[Number]:
+    """Every free coefficient with its bounds and prior: tight for spin terms, the table's bounds for the rest."""
+    curved = bool(np.any(problem.points.phi_t))
+    out = []
+    for name in names:
+        row = BY_NAME[name]
+        spread = 0.5 * row.width
+        if name in IF_IDENTIFIED and name not in released:
+            spread = max(TIED_SPREAD * abs(plan.expected[name]), 0.02)
+        if name in CONICITY_ON_A_DISC and curved:
+            spread = CONICITY_ON_A_DISC[name]
+        lower, upper = row.bounds
+        start = _inside(float(problem.simulation.values[name]), lower, upper)
+        out.append(Number(name, start, lower, upper, plan.expected[name], spread))
+    return out
+
+
+def _inside(value: float, lower: float, upper: float) -> float:
+    """A start a little inside the bounds: one on a bound can be held there by the first step's direction."""
+    margin = 1e-3 * (upper - lower) if np.isfinite(upper - lower) else 0.0
+    return float(np.clip(value, lower + margin, upper - margin))
+
+
+def _reweighted(problem: Problem) -> tuple[Problem, tuple[float, float]]:
     """Weights from the misfit itself: a model that misses by more than the noise must not let one channel rule."""
-    residual = problem.data_residual(values)
+    residual = problem.misfit()
     n = len(problem.points)
     out, scales = [], []
     for part, sigma in ((residual[:n], problem.sigma_Fy), (residual[n:], problem.sigma_Mz)):
@@ -170,55 +243,17 @@ def _reweighted(problem: Problem, values) -> tuple[Problem, tuple[float, float]]
     return dataclasses.replace(problem, sigma_Fy=out[0], sigma_Mz=out[1]), (scales[0], scales[1])
 
 
-def _ties(
-    points: Points, names, base: Mapping[str, float], released: frozenset[str] = frozenset()
-) -> dict[str, tuple[float, float]]:
-    """Expected value and spread of every free coefficient: tight for spin terms, the table's bounds for the rest."""
-    ties = {}
-    for name in names:
-        row = BY_NAME[name]
-        spread = 0.5 * row.width
-        if name in IF_IDENTIFIED and name not in released:
-            spread = max(TIED_SPREAD * abs(base[name]), 0.02)
-        if name in CONICITY_ON_A_DISC and np.any(points.phi_t):
-            spread = CONICITY_ON_A_DISC[name]
-        ties[name] = (base[name], spread)
-    return ties
-
-
-def _bounds(names) -> dict[str, tuple[float, float]]:
-    return {name: BY_NAME[name].bounds for name in names}
-
-
 def _thinned(problem: Problem) -> Problem:
     """Every k-th point: enough to come near the solution, at a part of the cost."""
     step = len(problem.points) // ENOUGH_FOR_A_STAGE
-    if step <= 1:
-        return problem
-    index = np.arange(0, len(problem.points), step)
-    return dataclasses.replace(
-        problem,
-        points=problem.points.select(index),
-        sigma_Fy=problem.sigma_Fy[index],
-        sigma_Mz=problem.sigma_Mz[index],
-        alpha_read=None if problem.alpha_read is None else problem.alpha_read[index],
-    )
+    return problem if step <= 1 else problem.select(np.arange(0, len(problem.points), step))
 
 
 def _data_errors(problem: Problem, solution: Solution, of: int) -> dict[str, float]:
-    """Standard errors from the data alone, without the ties, for ``of`` points of the kind that was solved."""
-    rows = 2 * len(problem.points)
-    errors = np.sqrt(np.diag(covariance(solution.jacobian[:rows])) * len(problem.points) / of)
-    return dict(zip(solution.values, errors.tolist(), strict=True))
-
-
-def _identified(solution: Solution, errors: Mapping[str, float]) -> set[str]:
-    return {n for n, v in solution.values.items() if errors[n] < IDENTIFIED * max(abs(v), 1e-12)}
-
-
-def _unmoved(errors: Mapping[str, float], ties: Mapping[str, tuple[float, float]]) -> set[str]:
-    """Coefficients whose error from the data exceeds half the width of all plausible values."""
-    return {name for name, (_, spread) in ties.items() if errors[name] > spread}
+    """Standard errors from the data and the rig's priors, without the ties, for ``of`` points of the kind solved."""
+    known = np.array([p if n in RIG else 0.0 for n, p in zip(solution.names, solution.prior, strict=True)])
+    information = solution.jacobian.T @ solution.jacobian * (of / len(problem.points)) + np.diag(known)
+    return dict(zip(solution.names, np.sqrt(np.diag(inverse(information))).tolist(), strict=True))
 
 
 def _strongest_correlations(names: list[str], cov: np.ndarray) -> dict[str, tuple[str, float]]:
@@ -233,10 +268,9 @@ def _strongest_correlations(names: list[str], cov: np.ndarray) -> dict[str, tupl
     }
 
 
-def _record(problem: Problem, name: str, title: str, parameters, values) -> StageRecord:
-    Fy, Mz = problem.model(values)
-    points = problem.points
-    return StageRecord(name, title, tuple(parameters), _rms(Fy - points.Fy), _rms(Mz - points.Mz))
+def _record(problem: Problem, name: str, title: str, parameters: Sequence[str]) -> StageRecord:
+    out, points = problem.simulation.readings(problem.points), problem.points
+    return StageRecord(name, title, tuple(parameters), _rms(out.Fy - points.Fy), _rms(out.Mz - points.Mz))
 
 
 def _rms(x: np.ndarray) -> float:

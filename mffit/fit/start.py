@@ -7,7 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from mffit.points import Points
+from mffit.measured import Measured
+from mffit.points import Points, main_pressure
 from tir import Tyre
 
 NEVER_ZERO = {"QBZ1": 8.0, "QDZ1": 0.08, "PDYP1": 0.3, "PKYP1": 0.5, "QDTP1": 3.0, "QCRP1": 0.1, "QBRP1": 0.2}
@@ -33,16 +34,14 @@ def base_values(config, base: Tyre | None) -> dict[str, Any]:
     return values
 
 
-def starting_values(
-    values: Mapping[str, Any], points: Points, C_alpha: Mapping[float, float]
-) -> dict[str, float]:
+def starting_values(values: Mapping[str, Any], points: Points, measured: Measured) -> dict[str, float]:
     """Improve on the base values by what can be read off the data directly.
 
     Parameters
     ----------
     values : every value of the file
     points : raw points
-    C_alpha : cornering stiffness [N/rad] by load [N], ISO signs; may be empty
+    measured : stiffnesses by load, ISO signs; may be empty
     """
     start = {name: float(value) for name, value in values.items() if isinstance(value, (int, float))}
     for name, value in NEVER_ZERO.items():
@@ -52,9 +51,39 @@ def starting_values(
     if np.any(upright):
         friction = np.max(np.abs(points.Fy[upright]) / points.Fz[upright])
         start["PDY1"] = max(float(friction), 0.5)
+    C_alpha, C_gamma = measured.by_load("C_alpha"), measured.by_load("C_gamma")
     if C_alpha:
         start.update(_cornering_stiffness(C_alpha, start))
+    if C_gamma:
+        # With turn slip on, camber acts through the rolling spin: the force is that of K_yg0 times R0 / r_e.
+        rolling = (
+            measured.r_e.value / start["UNLOADED_RADIUS"] if measured.r_e and np.any(points.phi_t) else 1.0
+        )
+        C_gamma = {load: rolling * value for load, value in C_gamma.items()}
+        start.update(camber_stiffness_terms(start, C_gamma, float(points.p[main_pressure(points)].mean())))
     return start
+
+
+def camber_stiffness_terms(
+    values: Mapping[str, Any], C_gamma: Mapping[float, float], main: float
+) -> dict[str, float]:
+    """PKY6 and PKY7 with K_yg0(Fz) = C_gamma(Fz): exact at the load nearest FNOMIN, best slope over the others.
+
+    ``main`` is the pressure [Pa] at which C_gamma was measured; PPY5 takes it to the nominal one.
+    """
+    if not C_gamma:
+        return {}
+    Fz0 = float(values["FNOMIN"]) * float(values["LFZO"])
+    load, stiffness = np.array(list(C_gamma)), np.array(list(C_gamma.values()))
+    pressure = 1.0 + float(values["PPY5"]) * (main / float(values["NOMPRES"]) - 1.0)
+    specific = stiffness / (load * pressure * float(values["LKYC"]))
+    dfz = (load - Fz0) / Fz0
+    nearest = int(np.argmin(np.abs(dfz)))
+    offset = dfz - dfz[nearest]
+    slope = float(values["PKY7"])
+    if len(load) > 1:
+        slope = float(offset @ (specific - specific[nearest]) / (offset @ offset))
+    return {"PKY6": float(specific[nearest] - slope * dfz[nearest]), "PKY7": slope}
 
 
 def _cornering_stiffness(C_alpha: Mapping[float, float], start: Mapping[str, float]) -> dict[str, float]:

@@ -1,14 +1,14 @@
-"""The finished model on the rig at zero sideslip and camber: its turn-slip force and its own eps_gamma."""
+"""The finished model on a faultless rig at zero sideslip and camber: its turn-slip force and its own eps_gamma."""
 
 from __future__ import annotations
 
-from types import SimpleNamespace
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
 
 from mffit.points import Points
-from mffit.rig import readings
+from mffit.rig import Simulation
 
 
 def zero_points(points: Points, load: float) -> Points:
@@ -23,14 +23,14 @@ def zero_points(points: Points, load: float) -> Points:
 
 
 def epsilon_gamma_of_model(
-    values: dict[str, Any], points: Points, load: float, r_e: float, R: float
+    values: Mapping[str, Any], points: Points, load: float, r_e: float, R: float
 ) -> float:
     """eps_gamma by (17), as the direct method would find it if the model stood on the rig without noise."""
-    p = SimpleNamespace(**values)
+    tyre = Simulation(values)
     zero = zero_points(points, load)
-    F_phit = float(readings(p, zero).Fy.mean())
+    F_phit = float(tyre.readings(zero).Fy.mean())
     C_phit = F_phit / float(zero.phi_t[0])
     step = np.radians(0.5)
     forward = zero.select(np.zeros(2, int)).replace(gamma=np.array([step, -step]))
-    Fy = readings(p, forward).Fy
+    Fy = tyre.readings(forward).Fy
     return 1.0 + r_e * float(Fy[0] - Fy[1]) / (2.0 * step) / C_phit

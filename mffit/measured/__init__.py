@@ -4,6 +4,7 @@ from mffit.measured.alignment import Alignment, AlignmentStep, align
 from mffit.measured.backlash import backlash_corrected, odd_alpha
 from mffit.measured.camber_reduction import DirectInputs, TurnSlip, direct_method
 from mffit.measured.direct import measure
+from mffit.measured.radii import RadiusReading, radius_readings
 from mffit.measured.result import Contribution, LoadResult, Measured
 
 __all__ = [
@@ -13,10 +14,12 @@ __all__ = [
     "DirectInputs",
     "LoadResult",
     "Measured",
+    "RadiusReading",
     "TurnSlip",
     "align",
     "backlash_corrected",
     "direct_method",
     "measure",
     "odd_alpha",
+    "radius_readings",
 ]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from typing import NamedTuple
 
 import numpy as np
 from uncertainties import UFloat
@@ -45,6 +46,29 @@ def measured_effective_radius(config: Config, R: UFloat | None) -> dict[float, U
         angle = named(turned, np.sqrt(2.0) * np.radians(row.u_angle_deg), "wheel angle", "rad")
         out[load] = (2.0 * np.pi * R + arcs) / angle
     return out
+
+
+class RadiusReading(NamedTuple):
+    """A measured effective radius as a reading: its own uncertainty, and whether it follows the path radius."""
+
+    load: float  #: [N]
+    value: float  #: at the declared path radius [m]
+    u: float  #: without that of the path radius [m]
+    follows_path: bool  #: from a disc revolution (18), so proportional to R
+
+
+def radius_readings(config: Config) -> tuple[RadiusReading, ...]:
+    """The effective radii as readings for the joint fit of tyre and rig."""
+    R = measured_path_radius(config)
+    found = measured_effective_radius(config, R)
+    rows = []
+    for load, r_e in found.items():
+        own = [u for source, u in r_e.error_components().items() if source is not R]
+        follows = R is not None and R in r_e.derivatives
+        rows.append(
+            RadiusReading(load, float(r_e.nominal_value), max(float(np.hypot.reduce(own)), 1e-5), follows)
+        )
+    return tuple(rows)
 
 
 def effective_radius_at(load: float, measured: Mapping[float, UFloat], base: Tyre | None) -> UFloat | None:

@@ -11,8 +11,6 @@ import numpy as np
 from mffit.points import Points
 from mffit.report.curves import Condition, Curve, conditions, curves
 from mffit.report.lines import Line, model_lines
-from mffit.rig import RigFaults
-from tir import conventions
 from tir.parameters import BY_NAME
 
 TITLES = {"Fy": "side force", "Mz": "self-aligning moment"}
@@ -112,7 +110,7 @@ class BuildView:
 
 def view_of(result: Any) -> BuildView:
     """Take a build's result apart; the only function that knows its attributes."""
-    points, parts, fit = as_read(result.points, result.config.rig.axes), result.parts, result.fit
+    points, parts, fit = result.points, result.parts, result.fit
     spin = result.measured.to_json()
     found = tuple(curves(points))
     channels = (
@@ -124,7 +122,7 @@ def view_of(result: Any) -> BuildView:
         points=points,
         channels=tuple(c for c in channels if np.isfinite(c.measured).any()),
         curves=found,
-        lines=model_lines(fit.tyre, points, found, known_faults(spin, result.config)),
+        lines=model_lines(fit.simulation, points, found),
         conditions=tuple(conditions(points)),
         spin=spin,
         agreement=fit.channels,
@@ -141,20 +139,6 @@ def view_of(result: Any) -> BuildView:
         fit_seconds=fit.seconds,
         tir_name=result.tir_path,
     )
-
-
-def as_read(points: Points, axes: str) -> Points:
-    """The points with the sideslip that the rig read; the fit's points carry the angle that the wheel had."""
-    if "alpha_deg" not in points.table:
-        return points
-    reading = np.radians(np.asarray(points.table["alpha_deg"], dtype=float))
-    return points.replace(alpha=conventions.to_iso(axes, "alpha", reading))
-
-
-def known_faults(spin: Mapping[str, Any], config: Any) -> RigFaults:
-    """What stands between reading and angle: misalignment where it was corrected, and backlash."""
-    misalignment = spin.get("alpha_M_deg") if spin.get("misaligned") else None
-    return RigFaults(alpha_0_deg=misalignment or 0.0, backlash_deg=config.rig.backlash_deg)
 
 
 def coefficient_rows(coefficients: Mapping[str, Any]) -> tuple[Row, ...]:

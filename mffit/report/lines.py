@@ -4,13 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
 from mffit.points import Points
 from mffit.report.curves import Curve
-from mffit.rig import NO_FAULTS, RigFaults, readings
+from mffit.rig import Simulation
 
 STEPS = 41
 
@@ -24,23 +23,20 @@ class Line:
     even: Mapping[str, np.ndarray]  #: its even part
 
 
-def model_lines(
-    tyre: Any, points: Points, curves: Sequence[Curve], faults: RigFaults = NO_FAULTS
-) -> dict[tuple, Line]:
+def model_lines(simulation: Simulation, points: Points, curves: Sequence[Curve]) -> dict[tuple, Line]:
     """A line per curve, by ``curve.key``, at the curve's median load, pressure, speed and held angle.
 
     Parameters
     ----------
-    tyre : the model, right with turn slip on
+    simulation : the model on the rig, so that the line is what it would read
     points : the measured points (n,), angles as read
     curves : which of them belong together
-    faults : what is known of the rig, so that the line is what it would read
     """
     if not curves:
         return {}
     grid = _along(points, curves)
     mirrored = grid.replace(alpha=-grid.alpha, gamma=-grid.gamma)
-    here, there = (readings(tyre, p, faults) for p in (grid, mirrored))
+    here, there = (simulation.readings(p) for p in (grid, mirrored))
     lines = {}
     for i, curve in enumerate(curves):
         rows = slice(i * STEPS, (i + 1) * STEPS)

@@ -1,6 +1,16 @@
 """What a rig makes of a tyre: the readings it reports, with its own faults and the environment's influence."""
 
-from mffit.rig.faults import NO_FAULTS, RigFaults
-from mffit.rig.readings import Readings, readings, true_conditions
+from mffit.rig.faults import FAULT_NAMES, MEANINGS, NO_FAULTS, UNITS, RigFaults
+from mffit.rig.simulation import Readings, Simulation, declared_radius, reference_speed
 
-__all__ = ["NO_FAULTS", "Readings", "RigFaults", "readings", "true_conditions"]
+__all__ = [
+    "FAULT_NAMES",
+    "MEANINGS",
+    "NO_FAULTS",
+    "UNITS",
+    "Readings",
+    "RigFaults",
+    "Simulation",
+    "declared_radius",
+    "reference_speed",
+]

@@ -8,12 +8,11 @@ from blind_scores import loaded
 from blind_set import draw_case
 
 from mffit.diagnosis.screening import outliers, understated
-from mffit.diagnosis.state import State
 from mffit.rig import RigFaults
 
 
 def residual_of(case, points):
-    simulated = State(dict(case.given.values), RigFaults(), True, False).predict(points)
+    simulated = Simulation(dict(case.given.values), RigFaults(), True, False).predict(points)
     return np.concatenate([points.Fy, points.Mz]) - simulated
 
 

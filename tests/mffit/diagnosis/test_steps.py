@@ -9,7 +9,6 @@ from mffit.diagnosis import diagnose, gap, where
 from mffit.diagnosis.candidates import Problem
 from mffit.diagnosis.noise import noise_model
 from mffit.diagnosis.selection import forward_step
-from mffit.diagnosis.state import State
 from mffit.diagnosis.ties import candidate_runs, separation
 from mffit.diagnosis.validate import validate
 from mffit.effects import CATALOG
@@ -19,7 +18,7 @@ BY_ID = {effect.id: effect for effect in CATALOG}
 
 
 def problem(case, points, u_coefficients=0.0):
-    state = State(dict(case.given.values), RigFaults(), True, False)
+    state = Simulation(dict(case.given.values), RigFaults(), True, False)
     return Problem(points, state, noise_model(points, state, u_coefficients))
 
 

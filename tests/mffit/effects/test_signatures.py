@@ -11,7 +11,6 @@ import numpy as np
 import pytest
 
 import tir
-from mffit.diagnosis.state import State
 from mffit.points import make_points
 from mffit.rig import RigFaults
 
@@ -26,7 +25,7 @@ PLAIN = TYRE.replace(
 def change(numbers, *, alpha=ANGLES, gamma=0.0, phi_t=0.0, channel="Fy", load=1500.0, **conditions):
     """What the numbers change in a channel, (n,), of a plain tyre."""
     points = make_points(alpha, gamma, load, p=250e3, V=6.0, phi_t=phi_t, **conditions)
-    start = State(dict(PLAIN.values), RigFaults(), bool(phi_t), False)
+    start = Simulation(dict(PLAIN.values), RigFaults(), bool(phi_t), False)
     after = start.with_numbers(numbers).predict(points) - start.predict(points)
     n = len(points)
     return after[:n] if channel == "Fy" else after[n:]

@@ -1,0 +1,163 @@
+"""The forward model: what this rig would read of this tyre, and how that changes with any number in it."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict, dataclass, replace
+from types import SimpleNamespace
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from mffit.points import Points
+from mffit.rig.faults import FAULT_NAMES, NO_FAULTS, REFERENCE_TEMPERATURE, RigFaults
+from mffit.rig.lag import lagged_points
+from tir import Tyre
+from tir.derivatives import Traced, gradient, plain, traced
+from tir.evaluate import evaluate, turned_on_rim
+
+SWITCH = "turn_slip"
+RELAXATION = "relaxation_m"
+RADIANS = math.pi / 180.0
+
+
+class Readings(NamedTuple):
+    """What the rig reports; arrays (n,)."""
+
+    Fy: np.ndarray  #: [N]
+    Mz: np.ndarray  #: [Nm]
+
+
+@dataclass(frozen=True, slots=True)
+class Simulation:
+    """A tyre on a rig. Points keep the angle as read; whatever stands between reading and tyre is in ``faults``."""
+
+    values: Mapping[str, Any]  #: every value of the property file
+    faults: RigFaults = NO_FAULTS
+    turn_slip: bool = True  #: whether the simulation knows path curvature and spin
+    star: bool = False  #: tan(alpha), sin(gamma) as inputs
+    relaxation_m: float = 0.0  #: lag of continuous sweeps [m]
+
+    @classmethod
+    def of(
+        cls, tyre: Tyre, faults: RigFaults = NO_FAULTS, *, turn_slip: bool = True, star: bool = False
+    ) -> Simulation:
+        """The simulation of a tyre."""
+        return cls(dict(tyre.values), faults, turn_slip, star)
+
+    def number(self, name: str, points: Points) -> float:
+        """Current value of a coefficient, a rig fault or a switch."""
+        if name == SWITCH:
+            return float(self.turn_slip)
+        if name == RELAXATION:
+            return self.relaxation_m
+        if name == "path_radius_m" and math.isnan(self.faults.path_radius_m):
+            return declared_radius(points)
+        return float(getattr(self.faults, name) if name in FAULT_NAMES else self.values[name])
+
+    def with_numbers(self, numbers: Mapping[str, float]) -> Simulation:
+        """The same with some coefficients, rig faults or switches replaced."""
+        faults = {name: value for name, value in numbers.items() if name in FAULT_NAMES}
+        values = {n: v for n, v in numbers.items() if n not in FAULT_NAMES and n not in (SWITCH, RELAXATION)}
+        return replace(
+            self,
+            values={**self.values, **values} if values else self.values,
+            faults=replace(self.faults, **faults) if faults else self.faults,
+            turn_slip=bool(numbers.get(SWITCH, self.turn_slip)),
+            relaxation_m=float(numbers.get(RELAXATION, self.relaxation_m)),
+        )
+
+    def readings(self, points: Points) -> Readings:
+        """What the rig would report at every point.
+
+        Parameters
+        ----------
+        points : set-points (n,): angles as read, load, pressure, speed, direction, mount and path curvature
+
+        Returns
+        -------
+        Readings
+            Fy [N] and Mz [Nm] in ISO-W, contact frame, rig-fixed also when rolling backwards.
+        """
+        return Readings(*self._reported(points, {}))
+
+    def predict(self, points: Points) -> np.ndarray:
+        """The readings in one row (2n,): Fy [N], then Mz [Nm]."""
+        return np.concatenate(self.readings(points))
+
+    def sensitivities(self, points: Points, names: Sequence[str]) -> tuple[Readings, Readings]:
+        """The readings, and their exact derivatives by the named numbers: each channel (n, k).
+
+        The side to which the moment takes up the play is held as it is: it does not move with the numbers.
+        """
+        numbers = traced({name: self.number(name, points) for name in names})
+        out = self._reported(points, numbers)
+        columns = list(numbers.values())
+        n = len(points)
+        slopes = (np.broadcast_to(gradient(channel, columns), (n, len(columns))) for channel in out)
+        return Readings(*(np.broadcast_to(plain(channel), n) for channel in out)), Readings(*slopes)
+
+    def _reported(self, points: Points, numbers: Mapping[str, Traced]) -> tuple[Any, Any]:
+        """Fy and Mz as the rig reports them, plain or traced."""
+        values = {**self.values, **{n: x for n, x in numbers.items() if n in self.values}}
+        p: Any = SimpleNamespace(**values)
+        if np.any(points.mount < 0):
+            p = turned_on_rim(p, points.mount)
+        fault: Any = SimpleNamespace(
+            **{**asdict(self.faults), **{n: x for n, x in numbers.items() if n in FAULT_NAMES}}
+        )
+        gamma = points.gamma + fault.gamma_0_deg * RADIANS
+        phi_t: Any = points.phi_t
+        if not math.isnan(plain(fault.path_radius_m)):
+            phi_t = np.sign(points.phi_t) / fault.path_radius_m
+
+        alpha = self._followed(points, numbers.get(RELAXATION)) + fault.alpha_0_deg * RADIANS
+        if plain(fault.backlash_deg) or isinstance(fault.backlash_deg, Traced):
+            free = replace(self, faults=replace(self.faults, backlash_deg=0.0, M0_Nm=0.0))
+            side = np.sign(free.readings(points).Mz)  # not smooth: held as it is while derivatives are taken
+            alpha = alpha - (0.5 * RADIANS) * fault.backlash_deg * side
+        out, _ = evaluate(
+            p,
+            points.Fz,
+            alpha,
+            gamma,
+            0.0,
+            phi_t,
+            points.Vx,
+            points.p,
+            turn_slip=self.turn_slip,
+            star=self.star,
+        )
+        environment = _environment(points, fault)
+        Fy = fault.gain * out.Fy * environment + fault.F0_N + fault.crosstalk * points.Fz
+        return Fy, out.Mz * environment + fault.M0_Nm
+
+    def _followed(self, points: Points, relaxation: Traced | None) -> Any:
+        """Sideslip that the force answers to (n,): along continuous sweeps it lags behind the reading."""
+        length = plain(relaxation) if relaxation is not None else self.relaxation_m
+        alpha = lagged_points(points, length).alpha if length else points.alpha
+        if relaxation is None:
+            return alpha
+        step = 1e-4
+        return relaxation.derived(alpha, (lagged_points(points, length + step).alpha - alpha) / step)
+
+
+def declared_radius(points: Points) -> float:
+    """Path radius [m] that the points were declared with; very large on a straight path."""
+    return 1.0 / max(float(np.max(np.abs(points.phi_t))), 1e-12)
+
+
+def reference_speed(points: Points) -> float:
+    """The most frequent speed of the data [m/s], to 0.1 m/s."""
+    values, counts = np.unique(np.round(points.V[np.isfinite(points.V)], 1), return_counts=True)
+    return float(values[counts.argmax()])
+
+
+def _environment(points: Points, fault: Any) -> Any:
+    """Factor (n,) on Fy and Mz; a channel that was not measured has no influence."""
+    warmth = 1.0 + fault.k_T_per_K * np.nan_to_num(points.T - REFERENCE_TEMPERATURE)
+    factor = warmth * (1.0 + fault.k_t_per_s * np.nan_to_num(points.t))
+    if not isinstance(fault.k_V_per_mps, Traced) and not fault.k_V_per_mps:
+        return factor
+    return factor * (1.0 + fault.k_V_per_mps * np.nan_to_num(points.V - reference_speed(points)))
