@@ -6,8 +6,9 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from tir.equations import normalise, stiffness
+from tir.equations import lateral, normalise, stiffness
 from tir.errors import Problem
+from tir.parameters import TABLE
 from tir.tyre import Tyre
 
 RANGES = (
@@ -17,7 +18,6 @@ RANGES = (
     ("ALPMIN", "ALPMAX"),
     ("CAMMIN", "CAMMAX"),
 )
-ODD_TERMS = ["PHY1", "PHY2", "PVY1", "PVY2", "PEY3", "QBZ4", "QDZ3", "QDZ6", "QDZ7", "QEZ4", "QHZ1", "QHZ2"]
 
 
 def check(tyre: Tyre) -> list[Problem]:
@@ -45,26 +45,20 @@ def _dimensions(tyre: Tyre) -> Iterator[Problem]:
         yield _warning(
             "RIM_RADIUS", f"RIM_RADIUS {tyre['RIM_RADIUS']:g} is not smaller than UNLOADED_RADIUS {R0:g}"
         )
-    if tyre["FNOMIN"] <= 0:
-        yield _error(
-            "FNOMIN", f"FNOMIN is {tyre['FNOMIN']:g}: the nominal load must be positive; reverse its sign"
-        )
-    if tyre["NOMPRES"] <= 0 or tyre["INFLPRES"] <= 0:
-        yield _error("NOMPRES", "NOMPRES and INFLPRES must be positive pressures in Pa")
-    elif tyre["NOMPRES"] < 5e3:
+    for name in [row.name for row in TABLE if row.divisor] + ["INFLPRES"]:
+        if tyre[name] <= 0:
+            remedy = "reverse its sign" if tyre[name] < 0 else "give its value"
+            yield _error(name, f"{name} is {tyre[name]:g}, and it must be positive; {remedy}")
+    if 0 < tyre["NOMPRES"] < 5e3:
         yield _warning("NOMPRES", f"NOMPRES is {tyre['NOMPRES']:g} Pa: it looks like kPa or bar; write Pa")
-    if tyre["LONGVL"] <= 0 or tyre["VERTICAL_STIFFNESS"] <= 0:
-        yield _error("LONGVL", "LONGVL and VERTICAL_STIFFNESS must be positive")
-    scaled = [
-        n for n in tyre.values if n.startswith("L") and len(n) <= 5 and tyre[n] != 1.0 and n[1:2].isalpha()
-    ]
+    scaled = [row.name for row in TABLE if row.scaling and tyre[row.name] != 1.0]
     if scaled:
         yield _warning(
             scaled[0], f"scaling factors differ from 1: {', '.join(scaled)}; fitted files have 1 throughout"
         )
-    if str(tyre["TYRESIDE"]).upper().startswith("SYM") and any(tyre[n] for n in ODD_TERMS):
-        names = ", ".join(n for n in ODD_TERMS if tyre[n])
-        yield _warning("TYRESIDE", f"TYRESIDE is symmetric, but the odd terms {names} are not 0")
+    odd = [row.name for row in TABLE if row.odd and tyre[row.name]]
+    if str(tyre["TYRESIDE"]).upper().startswith("SYM") and odd:
+        yield _warning("TYRESIDE", f"TYRESIDE is symmetric, but the odd terms {', '.join(odd)} are not 0")
 
 
 def _ranges(tyre: Tyre) -> Iterator[Problem]:
@@ -128,10 +122,7 @@ def _envelope(tyre: Tyre) -> Iterator[Problem]:
             "PKY6",
             f"camber pushes against the lean {where(K_gamma > 0)}: a normal tyre has PKY6 < 0 in ISO-W",
         )
-    worst = -np.inf
-    for side in (-1.0, 1.0):
-        E = (p.PEY1 + p.PEY2 * q.dfz) * (1 + p.PEY5 * gamma**2 - (p.PEY3 + p.PEY4 * gamma) * side) * p.LEY
-        worst = max(worst, float(E.max()))
+    worst = max(float(lateral.curvature(p, q, gamma, side).max()) for side in (-1.0, 1.0))
     if worst > 1.0:
         yield _warning(
             "PEY1",
@@ -148,7 +139,7 @@ def _envelope(tyre: Tyre) -> Iterator[Problem]:
 def _spin(tyre: Tyre) -> Iterator[Problem]:
     p = tyre.p
     load = np.linspace(max(p.FZMIN, 0.02 * p.FNOMIN), p.FZMAX, 21)
-    eps = p.PECP1 * (1 + p.PECP2 * (load - p.FNOMIN * p.LFZO) / (p.FNOMIN * p.LFZO))
+    eps = normalise.camber_reduction(p, normalise.relative_load(p, load))
     if np.any(np.abs(eps - 1.0) < 0.02) or np.ptp(np.sign(eps - 1.0)) > 0:
         yield _warning(
             "PECP1", "eps_gamma comes near 1 within the load range, where the turn-slip stiffness is infinite"

@@ -10,10 +10,11 @@ import numpy as np
 from tir.equations import forces, normalise
 from tir.equations.elementary import select
 from tir.equations.forces import Forces, Loads, State
+from tir.errors import TirError
+from tir.parameters import TABLE
 
-CONICITY = ("PVY1", "PVY2", "PEY3", "QDZ6", "QDZ7")
-"""Coefficients that change sign with the tyre turned on its rim; rolling backwards is rolling such a tyre forwards."""
-
+CONICITY = tuple(row.name for row in TABLE if row.conicity)
+DIVISORS = tuple(row.name for row in TABLE if row.divisor)
 SMALLEST_LOAD = 1e-6
 """Load [N] that stands in for Fz <= 0, where several formulae are 0/0; the forces returned there are exactly 0."""
 
@@ -37,7 +38,7 @@ def evaluate(
     Parameters
     ----------
     p : any object with the file's parameter names as attributes, e.g. ``tyre.p``
-    Fz : vertical load [N], scalar or (n,); loads <= 0 give zero forces
+    Fz : vertical load [N], scalar or (n,); loads <= 0 give zero forces, NaN gives NaN
     alpha : sideslip angle atan(Vsy/Vx) [rad]; rolling backwards it stays the reading of the rig's axis
     gamma : camber [rad], > 0 with the top of the wheel to -y
     kappa : longitudinal slip -Vsx/Vx [-], -1 for a locked wheel in either direction
@@ -52,6 +53,11 @@ def evaluate(
     -------
     Forces, State
         Fields of the broadcast shape (forces) or of any shape that broadcasts to it (state).
+
+    Raises
+    ------
+    TirError
+        If a value by which the equations divide is 0.
     """
     Vx = p.LONGVL if Vx is None else Vx
     pressure = p.INFLPRES if pressure is None else pressure
@@ -71,8 +77,11 @@ def evaluate(
             star=star,
             limits=limits,
         )
-    loaded = np.real(Fz) > 0.0
-    Fz_given, kappa_given = select(loaded, Fz, SMALLEST_LOAD), kappa
+    _refuse_zero_divisors(p)
+    if isinstance(pressure, float | int):
+        pressure = np.float64(pressure)  # Python's own numbers raise at 0 ** -0.4, numpy's do not
+    unloaded = np.real(Fz) <= 0.0
+    Fz_given, kappa_given = select(unloaded, SMALLEST_LOAD, Fz), kappa
     Fz, Fz_moment, loads = Fz_given, Fz_given, Loads(Fz_given, Fz_given)
     if limits:
         Fz = _clip(Fz_given, None, p.FZMAX)
@@ -84,7 +93,7 @@ def evaluate(
     q = normalise.inputs(p, Fz, Fz_moment, kappa, alpha, gamma, phi_t, pressure, star, limits)
     Re = normalise.effective_radius(p, Fz_given, kappa_given, Vx, q.dpi)
     out, state = forces.evaluate(p, q, loads, kappa_given, Vx, Re, turn_slip)
-    return Forces(*(select(loaded, f, 0.0) for f in out)), state
+    return Forces(*(select(unloaded, 0.0, f) for f in out)), state
 
 
 def _rolling_backwards(p, Fz, alpha, gamma, kappa, phi_t, Vx, pressure, backwards, **switches):
@@ -111,6 +120,13 @@ def turned_on_rim(p: Any, turned: Any) -> SimpleNamespace:
     for name in CONICITY:
         setattr(mirrored, name, getattr(p, name) * turned)
     return mirrored
+
+
+def _refuse_zero_divisors(p) -> None:
+    for name in DIVISORS:
+        value = getattr(p, name)
+        if isinstance(value, float | int) and value == 0.0:
+            raise TirError(f"{name} is 0, and the equations divide by it: give its value", name=name)
 
 
 def _clip(x, lower, upper):

@@ -5,12 +5,22 @@ from __future__ import annotations
 import csv
 import math
 from dataclasses import dataclass
-from importlib.resources import files
+from importlib.resources import files as resources
+from typing import NamedTuple
+
+NORMAL_MODE = ("LATERAL_COEFFICIENTS", "ALIGNING_COEFFICIENTS")
+
+
+class Need(NamedTuple):
+    """Something that has to be varied before a coefficient can be seen in the data."""
+
+    word: str  #: see docs/parameters.md
+    levels: int  #: so many at least; 1 where it only has to be there
 
 
 @dataclass(frozen=True, slots=True)
 class Parameter:
-    """One row of ``parameters.csv``."""
+    """One row of ``parameters.csv``; its columns are explained in docs/parameters.md."""
 
     name: str
     section: str
@@ -20,7 +30,14 @@ class Parameter:
     default: float | str  #: value of a key that a file does not have
     lower: float | None  #: plausible range, used by the fit; None where nothing is fitted
     upper: float | None
+    divisor: bool  #: the equations divide by it, so that it cannot be 0
     stage: str  #: stage of the fit that frees it; "" where nothing is fitted
+    channel: str  #: force or moment that must be measured to see it; "" for no coefficient of one
+    symmetry: frozenset[str]  #: "odd", "shift", "conicity"; see the properties of these names
+    tied_to_base: bool  #: held near the base file's value until the data identify it
+    disc_spread: float | None  #: spread around the base file's value to which runs on a disc hold it, 1 sigma
+    needs: tuple[Need, ...]  #: what the data must vary
+    files: str  #: "" in every file, "62" of MF 6.2 only, "some" not in all, "rare" in no common one
     equation: str  #: where it enters
     description: str
 
@@ -38,14 +55,40 @@ class Parameter:
         lower, upper = self.bounds
         return upper - lower
 
+    @property
+    def odd(self) -> bool:
+        """Whether a tyre of perfect mirror symmetry does not have it."""
+        return "odd" in self.symmetry
+
+    @property
+    def shift(self) -> bool:
+        """Whether it is an odd term that on a disc lives in the even part, beside turn slip."""
+        return "shift" in self.symmetry
+
+    @property
+    def conicity(self) -> bool:
+        """Whether it changes sign with the tyre turned on its rim."""
+        return "conicity" in self.symmetry
+
+    @property
+    def scaling(self) -> bool:
+        """Whether it is a scaling factor, 1 in a fitted file."""
+        return self.section == "SCALING_COEFFICIENTS"
+
+    @property
+    def normal_mode(self) -> bool:
+        """Whether it is a coefficient of Fy or Mz at pure sideslip and camber, without turn slip."""
+        return self.section in NORMAL_MODE and bool(self.stage)
+
 
 def _load() -> tuple[Parameter, ...]:
-    text = (files("tir") / "parameters.csv").read_text(encoding="ascii")
+    text = (resources("tir") / "parameters.csv").read_text(encoding="ascii")
     return tuple(_parameter(row) for row in csv.DictReader(text.splitlines()))
 
 
 def _parameter(row: dict[str, str]) -> Parameter:
     number = row["kind"] == "number"
+    tie, _, spread = row["tied"].partition(":")
     return Parameter(
         name=row["name"],
         section=row["section"],
@@ -55,10 +98,22 @@ def _parameter(row: dict[str, str]) -> Parameter:
         default=float(row["default"]) if number else row["default"],
         lower=float(row["lower"]) if row["lower"] else None,
         upper=float(row["upper"]) if row["upper"] else None,
+        divisor=row["divisor"] == "yes",
         stage=row["stage"],
+        channel=row["channel"],
+        symmetry=frozenset(row["symmetry"].split()),
+        tied_to_base=tie == "base",
+        disc_spread=float(spread) if tie == "disc" else None,
+        needs=tuple(_need(word) for word in row["needs"].split()),
+        files=row["files"],
         equation=row["equation"],
         description=row["description"],
     )
+
+
+def _need(text: str) -> Need:
+    word, _, levels = text.partition(":")
+    return Need(word, int(levels or 1))
 
 
 TABLE: tuple[Parameter, ...] = _load()

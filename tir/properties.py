@@ -170,11 +170,13 @@ def _about_missing(values) -> list[Problem]:
         out.append(Problem("warning", "FITTYP is missing; the file is read as MF 6.2", "FITTYP"))
     elif version == 60:
         out.append(Problem("warning", "FITTYP 60 is read as MF 6.1", "FITTYP"))
-    missing = [row.name for row in TABLE if row.name not in values and row.name not in ("QDRP2", "LMP")]
+    old = version in (60, 61)
+    missing = [row.name for row in TABLE if row.name not in values and row.files in ("", "" if old else "62")]
     if missing:
         shown = ", ".join(missing[:6]) + (f" and {len(missing) - 6} more" if len(missing) > 6 else "")
+        mf = "6.1" if old else "6.2"
         out.append(
-            Problem("warning", f"{len(missing)} keys of MF 6.2 are missing and take their defaults: {shown}")
+            Problem("warning", f"{len(missing)} keys of MF {mf} are missing and take their defaults: {shown}")
         )
     return out
 
@@ -208,7 +210,7 @@ def render(tyre: Tyre) -> str:
     Raises
     ------
     TirError
-        If a value is not finite or a text cannot be written in ASCII.
+        If a value is not finite.
     """
     lines = [
         "[MDI_HEADER]",
@@ -216,20 +218,20 @@ def render(tyre: Tyre) -> str:
         _entry("FILE_VERSION", "3.0"),
         _entry("FILE_FORMAT", "'ASCII'"),
     ]
-    lines += [f"! provenance: {key}: {_comment(text)}" for key, text in tyre.provenance.items()]
+    lines += [f"! provenance: {_comment(key)}: {_comment(text)}" for key, text in tyre.provenance.items()]
     lines += [
-        f"! measured: {name} {q.value!r} u {q.u!r} {q.unit or '-'}" for name, q in tyre.measured.items()
+        f"! measured: {_escaped(name)} {q.value!r} u {q.u!r} {_escaped(q.unit) or '-'}"
+        for name, q in tyre.measured.items()
     ]
     lines += ["$" + "-" * 60 + "units", "[UNITS]", *(_entry(kind, f"'{word}'") for kind, word in SI.items())]
     for section in SECTIONS:
         lines += ["$" + "-" * 60 + section.lower(), f"[{section}]"]
         rows = [row for row in TABLE if row.section == section and _written(row, tyre)]
         lines += [_entry(row.name, _text(row, tyre[row.name]), _remark(row, tyre)) for row in rows]
-        lines += [
-            _entry(key.partition(".")[2], value)
-            for key, value in tyre.extra.items()
-            if key.startswith(f"{section}.")
-        ]
+        lines += _foreign_entries(section, tyre)
+    others = dict.fromkeys(key.partition(".")[0] for key in tyre.extra)
+    for section in (name for name in others if name and name not in SECTIONS):
+        lines += ["$" + "-" * 60, f"[{_foreign_key(section)}]", *_foreign_entries(section, tyre)]
     return "\r\n".join(lines) + "\r\n"
 
 
@@ -248,13 +250,24 @@ def write(tyre: Tyre, path: str | Path) -> None:
 
 
 def _written(row: Parameter, tyre: Tyre) -> bool:
-    """QDRP2 is in no common file: it is written only if it matters."""
-    return row.name != "QDRP2" or tyre["QDRP2"] != 0.0
+    """Whether the key goes into a file: one that no common program knows only if it matters."""
+    return row.files != "rare" or tyre[row.name] != row.default
 
 
 def _entry(key: str, value: str, comment: str = "") -> str:
     line = f"{key:<24} = {value}"
     return f"{line:<50} ${_comment(comment)}"[:118] if comment else line
+
+
+def _foreign_entries(section: str, tyre: Tyre) -> list[str]:
+    """Keys that MF 6.2 does not know, as they stood; those before any section join the first."""
+    homes = (section, "") if section == SECTIONS[0] else (section,)
+    return [
+        _entry(_foreign_key(key), _escaped(value))
+        for place, value in tyre.extra.items()
+        for home, _, key in [place.partition(".")]
+        if home in homes
+    ]
 
 
 def _text(row: Parameter, value: Any) -> str:
@@ -283,6 +296,16 @@ def _comment(text: str) -> str:
     }
     text = text.translate(str.maketrans(signs))
     return text.encode("ascii", "replace").decode()
+
+
+def _escaped(text: str) -> str:
+    """Text of another program as it stood, with signs beyond ASCII as ``\\xfc``."""
+    return text.encode("ascii", "backslashreplace").decode()
+
+
+def _foreign_key(key: str) -> str:
+    """A key that a reader still takes for one: ``_XFC`` for a sign beyond ASCII."""
+    return _escaped(key).replace("\\", "_").upper()
 
 
 def _unquoted(text: str) -> str:

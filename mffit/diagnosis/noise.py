@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -12,9 +11,6 @@ from mffit.errors import InputError
 from mffit.points import Points
 from mffit.rig import Simulation
 from tir.parameters import TABLE
-
-INEXACT = re.compile(r"^(P.Y\d+|Q.Z\d+)$")
-"""Coefficients that ``[model] u_coefficients`` speaks of."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -102,7 +98,7 @@ def noise_model(points: Points, state: Simulation, u_coefficients: float, source
 
 def coefficient_jacobian(points: Points, state: Simulation) -> np.ndarray:
     """Change of the readings (2n, k) per relative change of each P.Y. and Q.Z. coefficient."""
-    names = [row.name for row in TABLE if INEXACT.match(row.name) and state.values[row.name]]
+    names = [row.name for row in TABLE if row.normal_mode and state.values[row.name]]
     _, slope = state.sensitivities(points, names)
     return np.nan_to_num(np.concatenate(slope) * [float(state.values[name]) for name in names])
 

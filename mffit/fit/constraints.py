@@ -6,8 +6,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from tir.equations import normalise, stiffness
-from tir.equations.elementary import arctan
+from tir.equations import aligning, lateral, normalise, stiffness
 
 MARGIN = 0.02
 
@@ -40,22 +39,17 @@ def limits(p, envelope: Envelope) -> list[Any]:
     """
     Fz, gamma, pressure = (axis.ravel() for axis in _grid(envelope))
     q = normalise.inputs(p, Fz, Fz, 0.0, 0.0, gamma, 0.0, pressure, False, False)
-    magnitude = np.abs(gamma)
     rows = []
     mu_y = stiffness.lateral_friction(p, q, gamma)
     rows.append(0.1 - mu_y)
     K_ya = stiffness.cornering_stiffness(p, q, gamma) / Fz
     rows.append((K_ya + 0.5) / 5.0)
-    load_y, load_t = p.PEY1 + p.PEY2 * q.dfz, p.QEZ1 + p.QEZ2 * q.dfz + p.QEZ3 * q.dfz**2
-    B_t = p.QBZ1 + p.QBZ2 * q.dfz + p.QBZ3 * q.dfz**2
-    B_t = B_t * (1.0 + p.QBZ4 * gamma + p.QBZ5 * magnitude)
-    reach = 2.0 / np.pi * arctan(np.abs(B_t) * p.QCZ1 * envelope.alpha)
+    B_t = aligning.slope_factor(p, q)
     for side in (-1.0, 1.0):
-        rows.append(load_y * (1.0 + p.PEY5 * gamma**2 - (p.PEY3 + p.PEY4 * gamma) * side) - 1.0)
-        rows.append(load_t * (1.0 + (p.QEZ4 + p.QEZ5 * gamma) * side * reach) - 1.0)
+        rows.append(lateral.curvature(p, q, gamma, side) - 1.0)
+        rows.append(aligning.curvature(p, q, B_t, side * envelope.alpha) - 1.0)
     rows.append((0.3 - B_t) / 10.0)
-    trail = (p.QDZ1 + p.QDZ2 * q.dfz) * (1.0 - p.PPZ1 * q.dpi) * (1.0 + p.QDZ3 * gamma + p.QDZ4 * gamma**2)
-    rows.append((0.0005 - trail) / 0.1)
+    rows.append((0.0005 - aligning.trail_at_zero(p, q)) / 0.1)
     return [row + MARGIN for row in rows]
 
 

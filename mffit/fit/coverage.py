@@ -6,18 +6,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from mffit.fit.stages import (
-    CAMBER_MOMENT,
-    COUPLED,
-    ODD_TERMS,
-    SHIFT_TERMS,
-    STAGES,
-    THREE_LOADS,
-    THREE_PRESSURES,
-    TWO_LOADS,
-    TWO_PRESSURES,
-)
+from mffit.fit.stages import STAGES
 from mffit.points import Points
+from tir.parameters import BY_NAME, Need, Parameter
+
+LOAD_GAP = 0.08
+"""Loads closer than this, relative, are one level."""
+PRESSURE_GAP = 10e3
+"""Pressures [Pa] closer than this are one level."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,6 +34,7 @@ class Design:
 
     loads: int
     pressures: int
+    pressure_loads: int  #: loads at which more than one pressure was run
     cambers: int
     coupled: bool  #: sideslip and camber together
     moment: bool  #: Mz measured
@@ -47,13 +44,16 @@ class Design:
 
 
 def design(points: Points, side: str) -> Design:
-    """Count what was varied. Loads within 8 %, pressures within 10 kPa and cambers within 1 deg are one level."""
+    """Count what was varied; cambers within 1 deg are one level."""
     curved = bool(np.any(points.phi_t != 0.0))
+    load = groups(np.log(points.Fz), LOAD_GAP)
+    pressures_at = [levels(points.p[load == k], PRESSURE_GAP) for k in np.unique(load[load >= 0])]
     both_ways = bool(np.any(points.direction < 0) or np.any(points.mount < 0))
     gamma, alpha = np.degrees(points.gamma), np.degrees(points.alpha)
     return Design(
-        loads=levels(np.log(points.Fz), 0.08),
-        pressures=levels(points.p, 10e3),
+        loads=len(pressures_at),
+        pressures=levels(points.p, PRESSURE_GAP),
+        pressure_loads=sum(n > 1 for n in pressures_at),
         cambers=levels(np.abs(gamma), 1.0),
         coupled=bool(np.any((np.abs(gamma) > 1.0) & (np.abs(alpha) > 0.5))),
         moment=bool(np.any(np.isfinite(points.Mz))),
@@ -63,10 +63,18 @@ def design(points: Points, side: str) -> Design:
     )
 
 
+def groups(values: np.ndarray, gap: float) -> np.ndarray:
+    """The level (n,) that every value belongs to, from 0; -1 for NaN. Levels are separated by more than ``gap``."""
+    order = np.argsort(values)
+    steps = np.diff(values[order], prepend=values[order[:1]])
+    label = np.empty(len(values), int)
+    label[order] = np.cumsum(steps > gap)
+    return np.where(np.isfinite(values), label, -1)
+
+
 def levels(values: np.ndarray, gap: float) -> int:
-    """Number of levels among the values: groups that are separated by more than ``gap``."""
-    ordered = np.sort(values[np.isfinite(values)])
-    return int(np.sum(np.diff(ordered) > gap)) + 1 if len(ordered) else 0
+    """Number of levels among the values."""
+    return int(groups(values, gap).max(initial=-1)) + 1
 
 
 def coverage(points: Points, side: str) -> tuple[StageCoverage, ...]:
@@ -74,7 +82,7 @@ def coverage(points: Points, side: str) -> tuple[StageCoverage, ...]:
     seen = design(points, side)
     rows = []
     for stage in STAGES:
-        reasons = {name: _missing(name, stage.name, seen) for name in stage.parameters}
+        reasons = {name: _missing(BY_NAME[name], seen) for name in stage.parameters}
         free = tuple(name for name, reason in reasons.items() if not reason)
         held = tuple(name for name, reason in reasons.items() if reason)
         missing = tuple(dict.fromkeys(reason for reason in reasons.values() if reason))
@@ -82,24 +90,29 @@ def coverage(points: Points, side: str) -> tuple[StageCoverage, ...]:
     return tuple(rows)
 
 
-def _missing(name: str, stage: str, seen: Design) -> str:
+def _missing(row: Parameter, seen: Design) -> str:
     """Why the coefficient cannot be seen; empty if it can."""
-    if name.startswith(("Q", "PPZ")) and not seen.moment:
+    if row.channel == "Mz" and not seen.moment:
         return "Mz was not measured"
-    if (stage == "camber" or name in CAMBER_MOMENT) and seen.cambers < 2:
-        return "no camber was run"
-    if name in COUPLED and not seen.coupled:
-        return "no sweep combines sideslip and camber"
-    if stage == "spin" and not seen.curved:
-        return "the path is straight, so spin is not excited"
-    if name in SHIFT_TERMS and not seen.shifts:
+    if row.shift and not seen.shifts:
         return "backward runs or flipped mounts, which tell shifts from turn slip, are absent"
-    if name in ODD_TERMS and seen.symmetric:
+    if row.odd and seen.symmetric:
         return "the tyre is declared symmetric"
-    needed = 3 if name in THREE_LOADS else 2 if name in TWO_LOADS else 1
-    if seen.loads < needed:
-        return f"{needed} loads are needed, {seen.loads} run"
-    needed = 3 if name in THREE_PRESSURES else 2 if name in TWO_PRESSURES else 1
-    if seen.pressures < needed:
-        return f"{needed} pressures are needed, {seen.pressures} run"
-    return ""
+    return next((reason for need in row.needs if (reason := _unmet(need, seen))), "")
+
+
+def _unmet(need: Need, seen: Design) -> str:
+    """The sentence for what a coefficient needs and these data do not vary; empty if they do."""
+    run, sentence = {
+        "camber": (seen.cambers - 1, "no camber was run"),
+        "coupled": (seen.coupled, "no sweep combines sideslip and camber"),
+        "curvature": (seen.curved, "the path is straight, so spin is not excited"),
+        "loads": (seen.loads, f"{need.levels} loads are needed, {seen.loads} run"),
+        "pressures": (seen.pressures, f"{need.levels} pressures are needed, {seen.pressures} run"),
+        "pressure_loads": (
+            seen.pressure_loads,
+            f"pressures were run at {'one load' if seen.pressure_loads else 'different loads'} only, which cannot tell "
+            "the pressure effect on cornering stiffness from that on the load of its peak",
+        ),
+    }[need.word]
+    return sentence if run < need.levels else ""

@@ -279,7 +279,7 @@ def _rms(x: np.ndarray) -> float:
 
 
 def _enough_points(points: Points, free: list[str]) -> None:
-    moment = [n for n in free if n.startswith("Q") or n in ("PPZ1", "PPZ2")]
+    moment = [n for n in free if BY_NAME[n].channel == "Mz"]
     for channel, needed, values in (
         ("Fy_N", len(free) - len(moment), points.Fy),
         ("Mz_Nm", len(moment), points.Mz),

@@ -72,6 +72,34 @@ def test_unknown_keys_are_kept_and_named(tmp_path):
     assert any("FOREIGN.SOME_KEY" in problem.sentence for problem in found.problems)
 
 
+def test_signs_beyond_ascii_in_unknown_keys_are_written_escaped(tmp_path):
+    """They used to end a build with a traceback at the very last step."""
+    path = tmp_path / "written.tir"
+    mangled = TEXT.replace("[DIMENSION]", "[DIMENSION]\nHÖHE = 'für 3 µm'\nPLAIN = 4") + "[FÜR]\nKEY = 5\n"
+    read_text(tmp_path, mangled.encode()).write(path)
+    again = tir.read(path)
+    assert again.extra["DIMENSION.H_XD6HE"] == r"'f\xfcr 3 \xb5m'"
+    assert again.extra["DIMENSION.PLAIN"] == "4"
+    assert again.extra["F_XDCR.KEY"] == "5"
+    assert again == read_text(tmp_path, TEXT)
+    assert again.text() == path.read_bytes().decode("ascii")
+
+
+def test_unknown_keys_of_any_section_are_written_back(tmp_path):
+    found = read_text(tmp_path, "EARLY = 1\n" + TEXT + "[FOREIGN]\nSOME_KEY = 3\n")
+    again = read_text(tmp_path, found.text())
+    assert again.extra == {"MODEL.EARLY": "1", "FOREIGN.SOME_KEY": "3"}
+
+
+@pytest.mark.parametrize(("version", "missed"), [(61, False), (62, True)])
+def test_only_a_file_of_mf62_misses_its_keys(tmp_path, version, missed):
+    text = re.sub(r"(?m)^Q_CAM1 .*$", "", TEXT).replace("QSY8", "!QSY8")
+    text = re.sub(r"(?m)^FITTYP .*$", f"FITTYP = {version}", text)
+    (sentence,) = [p.sentence for p in read_text(tmp_path, text).problems if "missing" in p.sentence]
+    assert "QSY8" in sentence
+    assert ("Q_CAM1" in sentence) is missed
+
+
 def test_mass_of_units_and_mass_of_inertia_are_two_things(tyre):
     assert tyre["MASS"] == 4.4
 
@@ -234,20 +262,12 @@ class TestCheck:
             ({"QDZ1": -0.1}, "warning", "align"),
             ({"TYRESIDE": "SYMMETRIC"}, "warning", "odd terms"),
             ({"LMUY": 0.8}, "warning", "LMUY"),
+            ({"LFZO": 0.0}, "error", "LFZO"),
+            ({"LONGVL": 0.0}, "error", "LONGVL"),
+            ({"TYRESIDE": "SYMMETRIC", "QSX1": 0.01}, "warning", "QSX1"),
             ({"NOMPRES": 250.0, "INFLPRES": 250.0}, "warning", "kPa"),
         ],
     )
     def test_a_planted_fault_is_named(self, tyre, change, level, words):
         found = check(tyre.replace(**change))
         assert any(p.level == level and words in p.sentence for p in found), [p.sentence for p in found]
-
-
-def test_the_table_is_sound():
-    names = [row.name for row in TABLE]
-    assert len(names) == len(set(names))
-    for row in TABLE:
-        assert row.description
-        if row.stage:
-            lower, upper = row.bounds
-            assert lower <= float(row.default) <= upper, row.name
-            assert row.equation, row.name

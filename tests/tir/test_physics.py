@@ -10,38 +10,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import tir
+from tir.parameters import BY_NAME, TABLE
 
 VECTORS = Path(__file__).parent / "vectors"
 TYRES = ["MagicFormula61", "MagicFormula62", "moto_front"]
-ODD = dict.fromkeys(
-    [
-        "PHX1",
-        "PHX2",
-        "PVX1",
-        "PVX2",
-        "PHY1",
-        "PHY2",
-        "PVY1",
-        "PVY2",
-        "PEY3",
-        "QBZ4",
-        "QDZ3",
-        "QDZ6",
-        "QDZ7",
-        "QEZ4",
-        "QHZ1",
-        "QHZ2",
-        "RBY3",
-        "RHX1",
-        "RHY1",
-        "RHY2",
-        "RVY1",
-        "RVY2",
-        "SSZ1",
-        "QSX1",
-    ],
-    0.0,
-)
+ODD = {row.name: 0.0 for row in TABLE if row.odd}
 
 
 @pytest.fixture(params=TYRES)
@@ -103,6 +76,38 @@ def test_rolling_backwards_flips_slip_and_ply_steer_only(tyre):
     ply_steer, conicity = plain.replace(PHY1=0.001), plain.replace(PVY1=0.001)
     assert ply_steer(2000.0, Vx=-8.0).Fy == pytest.approx(-ply_steer(2000.0, Vx=8.0).Fy, rel=1e-9)
     assert conicity(2000.0, Vx=-8.0).Fy == pytest.approx(conicity(2000.0, Vx=8.0).Fy, rel=1e-9)
+
+
+@pytest.mark.parametrize("condition", [{}, {"limits": True}, {"phi_t": -0.5}, {"Vx": -8.0}])
+def test_a_load_that_is_no_number_gives_no_number(tyre, condition):
+    forces = tyre(np.array([np.nan, 2000.0, 0.0]), 0.05, 0.1, 0.01, **condition)
+    alone = tyre(float("nan"), np.array([0.05, 0.02]), 0.1, 0.01, **condition)
+    one = tyre(float("nan"), 0.05, 0.1, 0.01, **condition)
+    for many, channel, single in zip(forces, alone, one, strict=True):
+        assert np.isnan(many[0])
+        assert np.isfinite(many[1])
+        assert many[2] == 0.0
+        assert np.all(np.isnan(channel))
+        assert np.isnan(single)
+
+
+@pytest.mark.parametrize("name", [row.name for row in TABLE if row.kind == "number"])
+def test_a_zero_in_the_file_gives_a_number_or_a_sentence(name):
+    damaged = tir.read(VECTORS / "moto_front.tir").replace(**{name: 0.0})
+    for pressure in (None, 0.0):
+        if BY_NAME[name].divisor:
+            with pytest.raises(tir.TirError, match=f"^{name} is 0"):
+                damaged(1800.0, 0.05, 0.1, 0.01, -0.5, 8.0, pressure)
+        else:
+            with np.errstate(all="ignore"):
+                forces = damaged(1800.0, 0.05, 0.1, 0.01, -0.5, 8.0, pressure)
+            assert np.shape(forces.Fy) == ()
+
+
+def test_a_flat_tyre_is_the_same_for_scalars_and_arrays(tyre):
+    soft = tyre.replace(QSY8=-0.4)
+    with np.errstate(divide="ignore"):
+        assert soft(1800.0, p=0.0).My == soft(1800.0, p=np.zeros(1)).My[0]
 
 
 def test_forces_vanish_continuously_with_load(tyre):

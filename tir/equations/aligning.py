@@ -29,17 +29,31 @@ def trail(p, q: Inputs, spin: Spin, K_xk, K_ya):
     """Pneumatic trail t [m]; 4.E33 with the equivalent slip of A54."""
     S_H = p.QHZ1 + p.QHZ2 * q.dfz + (p.QHZ3 + p.QHZ4 * q.dfz) * q.gamma  # 4.E35
     alpha_t = q.alpha + S_H  # 4.E34
-    load = p.QBZ1 + p.QBZ2 * q.dfz + p.QBZ3 * q.dfz**2
-    B = load * (1.0 + p.QBZ4 * q.gamma + p.QBZ5 * absolute(q.gamma)) * p.LKY / p.LMUY  # A58
+    B = slope_factor(p, q)
     C = p.QCZ1  # 4.E41
-    size = q.Fz_moment * p.UNLOADED_RADIUS / q.Fz0 * (p.QDZ1 + p.QDZ2 * q.dfz)
-    D = (
-        size * (1.0 - p.PPZ1 * q.dpi) * (1.0 + p.QDZ3 * q.gamma + p.QDZ4 * q.gamma**2) * p.LTR * spin.zeta5
-    )  # A60
-    side = 2.0 / pi * arctan(B * C * alpha_t)
-    E = (p.QEZ1 + p.QEZ2 * q.dfz + p.QEZ3 * q.dfz**2) * (1.0 + (p.QEZ4 + p.QEZ5 * q.gamma) * side)  # 4.E44
+    D = q.Fz_moment * p.UNLOADED_RADIUS / q.Fz0 * trail_at_zero(p, q) * p.LTR * spin.zeta5  # A60
+    E = curvature(p, q, B, alpha_t)
     slip = equivalent_slip(alpha_t, K_xk, K_ya, q.kappa)
     return p.LFZO * D * cos(magic_angle(B, C, at_most_one(E, q.limits), slip)) * q.cos_alpha  # 4.E33
+
+
+def slope_factor(p, q: Inputs):
+    """B_t [-] of the trail; A58."""
+    load = p.QBZ1 + p.QBZ2 * q.dfz + p.QBZ3 * q.dfz**2
+    return load * (1.0 + p.QBZ4 * q.gamma + p.QBZ5 * absolute(q.gamma)) * p.LKY / p.LMUY  # A58
+
+
+def trail_at_zero(p, q: Inputs):
+    """Peak trail over free radius at nominal load [-]: D_t of A60 without its proportionality to the load."""
+    pressure, camber = 1.0 - p.PPZ1 * q.dpi, 1.0 + p.QDZ3 * q.gamma + p.QDZ4 * q.gamma**2
+    return (p.QDZ1 + p.QDZ2 * q.dfz) * pressure * camber
+
+
+def curvature(p, q: Inputs, B, alpha_t):
+    """E_t [-] before limits, at the shifted sideslip alpha_t [rad]; 4.E44."""
+    side = 2.0 / pi * arctan(B * p.QCZ1 * alpha_t)
+    load = p.QEZ1 + p.QEZ2 * q.dfz + p.QEZ3 * q.dfz**2
+    return load * (1.0 + (p.QEZ4 + p.QEZ5 * q.gamma) * side)  # 4.E44
 
 
 def residual_torque(p, q: Inputs, spin: Spin, spin_torque: SpinTorque, side: SideForce, K_xk, K_ya):

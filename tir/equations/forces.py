@@ -98,8 +98,7 @@ def evaluate(p, q: Inputs, loads: Loads, kappa, Vx, Re, with_turn_slip: bool) ->
     Mx = overturning.moment(p, q, loads.overturning, Fy)
     My = rolling.moment(p, q, loads.rolling, Fx, kappa, Vx)
 
-    S_V_gamma = side.S_V - q.Fz * (p.PVY1 + p.PVY2 * q.dfz) * p.LVY * p.LMUY * spin.zeta2
-    zeta4 = 1.0 + spin.shift - S_V_gamma / K_ya if with_turn_slip else 1.0  # 4.E84
+    zeta4 = 1.0 + spin.shift - side.S_V_gamma / K_ya if with_turn_slip else 1.0  # 4.E84
     state = State(
         K_xk=K_xk, K_ya=K_ya, K_yg0=K_yg0, mu_x=mu_x, mu_y=mu_y,
         sigma_x=absolute(K_xk / carcass_stiffness(p.LONGITUDINAL_STIFFNESS, p.PCFX1, p.PCFX2, p.PCFX3, q)),

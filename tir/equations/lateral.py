@@ -24,24 +24,41 @@ class SideForce(NamedTuple):
     Fy: Any  #: [N]
     S_H: Any  #: horizontal shift [rad]
     S_V: Any  #: vertical shift [N]
+    S_V_gamma: Any  #: its camber part [N]
     B: Any
     C: Any
 
 
 def pure(p, q: Inputs, gamma, spin: Spin, K_ya, K_yg0, mu_y) -> SideForce:
     """Fy at zero longitudinal slip [N], at the camber and spin given; 4.E19."""
-    S_V_gamma = q.Fz * (p.PVY3 + p.PVY4 * q.dfz) * gamma * p.LKYC * p.LMUY * spin.zeta2  # 4.E28
+    S_V_gamma = camber_force(p, q, gamma, spin.zeta2)
     from_camber = (K_yg0 * gamma * spin.zeta0 - S_V_gamma) / away_from_zero(K_ya)
     S_H = (p.PHY1 + p.PHY2 * q.dfz) * p.LHY + from_camber + spin.shift  # 4.E27 with zeta4 of 4.E84
-    S_V = q.Fz * (p.PVY1 + p.PVY2 * q.dfz) * p.LVY * p.LMUY * spin.zeta2 + S_V_gamma  # 4.E29
+    S_V = vertical_shift(p, q, gamma, spin.zeta2)
     alpha_y = q.alpha + S_H  # 4.E20
     C = p.PCY1 * p.LCY  # 4.E21
     D = mu_y * q.Fz * spin.zeta2  # 4.E22
-    asymmetry = 1.0 + p.PEY5 * gamma**2 - (p.PEY3 + p.PEY4 * gamma) * sign(alpha_y)
-    E = (p.PEY1 + p.PEY2 * q.dfz) * asymmetry * p.LEY  # 4.E24
+    E = curvature(p, q, gamma, sign(alpha_y))
     B = K_ya / away_from_zero(C * D)  # 4.E26
     Fy = D * sin(magic_angle(B, C, at_most_one(E, q.limits), alpha_y)) + S_V  # 4.E19
-    return SideForce(Fy, S_H, S_V, B, C)
+    return SideForce(Fy, S_H, S_V, S_V_gamma, B, C)
+
+
+def camber_force(p, q: Inputs, gamma, zeta2=1.0):
+    """S_Vygamma [N]: the part of the vertical shift that camber makes; 4.E28."""
+    return q.Fz * (p.PVY3 + p.PVY4 * q.dfz) * gamma * p.LKYC * p.LMUY * zeta2  # 4.E28
+
+
+def vertical_shift(p, q: Inputs, gamma, zeta2=1.0):
+    """S_Vy [N]: vertical shift of the side-force curve, conicity and camber; 4.E29."""
+    conicity = q.Fz * (p.PVY1 + p.PVY2 * q.dfz) * p.LVY * p.LMUY * zeta2
+    return conicity + camber_force(p, q, gamma, zeta2)  # 4.E29
+
+
+def curvature(p, q: Inputs, gamma, side):
+    """E_y [-] before limits, on the side of the curve given by ``side``: -1 or +1; 4.E24."""
+    asymmetry = 1.0 + p.PEY5 * gamma**2 - (p.PEY3 + p.PEY4 * gamma) * side
+    return (p.PEY1 + p.PEY2 * q.dfz) * asymmetry * p.LEY  # 4.E24
 
 
 def combined_weight(p, q: Inputs):

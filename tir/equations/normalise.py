@@ -26,9 +26,19 @@ class Inputs(NamedTuple):
     limits: bool  #: curvature factors held at <= 1
 
 
+def nominal_load(p):
+    """Fz0' [N]; 4.E1."""
+    return p.LFZO * p.FNOMIN  # 4.E1
+
+
+def relative_load(p, Fz):
+    """dfz [-]: load above the nominal one, over it; 4.E2a."""
+    Fz0 = nominal_load(p)
+    return (Fz - Fz0) / Fz0  # 4.E2a
+
+
 def inputs(p, Fz, Fz_moment, kappa, alpha, gamma, phi_t, pressure, star, limits) -> Inputs:
     """Collect the normalised inputs; angles in rad, pressure in Pa, load in N, turn slip in 1/m."""
-    Fz0 = p.LFZO * p.FNOMIN  # 4.E1
     return Inputs(
         Fz=Fz,
         Fz_moment=Fz_moment,
@@ -40,9 +50,9 @@ def inputs(p, Fz, Fz_moment, kappa, alpha, gamma, phi_t, pressure, star, limits)
         tan_alpha=tan(alpha),
         phi_t=phi_t,
         pressure=pressure,
-        dfz=(Fz - Fz0) / Fz0,  # 4.E2a
+        dfz=relative_load(p, Fz),
         dpi=(pressure - p.NOMPRES) / p.NOMPRES,  # 4.E2b
-        Fz0=Fz0,
+        Fz0=nominal_load(p),
         limits=limits,
     )
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from tir.equations.elementary import absolute, pi, real, select, sin
+from tir.equations.elementary import TINY, absolute, pi, real, select, sin
 from tir.equations.normalise import Inputs
 
 
@@ -18,6 +18,6 @@ def moment(p, q: Inputs, Fz, Fx, kappa, Vx):
     My = (
         -p.UNLOADED_RADIUS * p.FNOMIN * p.LMY * terms * load**p.QSY7 * (q.pressure / p.NOMPRES) ** p.QSY8
     )  # A48
-    rotation = (1.0 + kappa) * Vx / p.VXLOW
+    rotation = (1.0 + kappa) * Vx / select(p.VXLOW > 0.0, p.VXLOW, TINY)
     rotation = select(real(rotation) > 1.0, 1.0, select(real(rotation) < -1.0, -1.0, rotation))
     return My * sin(0.5 * pi * rotation)

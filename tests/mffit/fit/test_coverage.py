@@ -1,0 +1,94 @@
+"""What a programme of sweeps can show of a tyre, and what it says is missing."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from mffit.fit.coverage import coverage, design, levels
+from mffit.fit.stages import CONICITY_ON_A_DISC, IF_IDENTIFIED, ODD_TERMS, SHIFT_TERMS
+from mffit.points import Points, make_points
+from tir.parameters import TABLE
+
+ALPHA = np.radians([-6.0, -3.0, -1.0, 0.0, 1.0, 3.0, 6.0])
+
+
+def programme(*sweeps, moment=True, phi_t=-0.7, backward=True) -> Points:
+    """Sideslip sweeps, each at (load [N], pressure [kPa], camber [deg])."""
+    rows = [(a, np.radians(g), Fz, 1e3 * p, 1) for Fz, p, g in sweeps for a in ALPHA]
+    if backward:
+        rows += [(0.0, 0.0, rows[0][2], rows[0][3], -1)]
+    alpha, gamma, Fz, p, direction = np.array(rows).T
+    points = make_points(alpha, gamma, Fz, p=p, V=6.0, phi_t=phi_t, direction=direction.astype(int))
+    return points.replace(
+        Fy=-10.0 * Fz * alpha, Mz=0.1 * Fz * alpha if moment else np.full(len(rows), np.nan)
+    )
+
+
+LOADS = [(Fz, 250.0, g) for Fz in (900.0, 1400.0, 2100.0) for g in (0.0, 20.0)]
+PRESSURES = [(1400.0, 200.0, 0.0), (1400.0, 300.0, 0.0)]
+FULL = [*LOADS, *PRESSURES, (2100.0, 200.0, 0.0)]
+
+
+def held(points, side="unknown") -> dict[str, str]:
+    """Held coefficient -> the sentences of its stage."""
+    return {name: "; ".join(row.missing) for row in coverage(points, side) for name in row.held}
+
+
+def test_a_full_programme_frees_everything_that_a_stage_names():
+    assert not held(programme(*FULL))
+
+
+def test_pressures_at_one_load_hold_the_pressure_effect_on_the_load_of_peak_stiffness():
+    found = held(programme(*LOADS, *PRESSURES))
+    assert set(found) == {"PPY2"}
+    assert found["PPY2"].startswith("pressures were run at one load only")
+    assert design(programme(*LOADS, *PRESSURES), "").pressure_loads == 1
+
+
+def test_different_pressures_at_different_loads_are_no_pressures_at_a_load():
+    found = held(programme(*LOADS[:4], (2100.0, 200.0, 0.0), (2100.0, 200.0, 20.0)))
+    assert found["PPY2"].startswith("pressures were run at different loads only")
+
+
+@pytest.mark.parametrize(
+    ("sweeps", "changes", "names", "sentence"),
+    [
+        (FULL, {"moment": False}, {"QBZ1", "PPZ1", "QDTP1"}, "Mz was not measured"),
+        (FULL, {"phi_t": 0.0}, {"PKYP1", "QCRP1"}, "the path is straight"),
+        (FULL, {"backward": False}, {"PHY1", "PVY1", "QHZ1"}, "backward runs"),
+        ([s for s in FULL if s[2] == 0.0], {}, {"PKY6", "QDZ8", "PPY5", "PPZ2"}, "no camber was run"),
+        ([s for s in FULL if s[2] == 0.0], {}, {"PKY3", "QBZ5", "QEZ5"}, "combines sideslip and camber"),
+        (LOADS[2:], {}, {"PKY4", "QBZ3", "QEZ3"}, "3 loads are needed, 2 run"),
+        (LOADS[:2], {}, {"PKY2", "PDY2", "QDZ2", "PKY7", "PDYP2"}, "2 loads are needed, 1 run"),
+        (LOADS, {}, {"PPY1", "PPY3", "PPZ1", "PPY2"}, "2 pressures are needed, 1 run"),
+        ([*LOADS, PRESSURES[0], (2100.0, 200.0, 0.0)], {}, {"PPY4"}, "3 pressures are needed, 2 run"),
+    ],
+)
+def test_what_is_missing_holds_its_coefficients(sweeps, changes, names, sentence):
+    found = held(programme(*sweeps, **changes))
+    assert names <= set(found)
+    assert any(sentence in found[name] for name in names)
+
+
+def test_a_symmetric_tyre_has_no_odd_terms():
+    found = held(programme(*FULL), side="symmetric")
+    assert set(found) == {row.name for row in TABLE if row.odd and row.stage}
+
+
+def test_every_stage_knows_the_needs_of_its_coefficients():
+    """A word that the coverage does not know would be a KeyError for the first user whose data come so far."""
+    assert len(coverage(programme((1500.0, 250.0, 0.0)), "")) == len(coverage(programme(*FULL), ""))
+
+
+def test_the_sets_of_the_stages_are_the_tables():
+    assert SHIFT_TERMS < ODD_TERMS
+    assert {"PHYP1", "QDRP1"} <= IF_IDENTIFIED
+    assert not IF_IDENTIFIED & {"PKYP1", "PDYP1", "QDTP1"}
+    assert CONICITY_ON_A_DISC == {"PVY1": 0.003, "PVY2": 0.003}
+
+
+def test_levels_are_separated_by_the_gap():
+    assert levels(np.array([1.0, 1.05, 3.0, np.nan, 2.96]), 0.1) == 2
+    assert levels(np.array([np.nan]), 0.1) == 0
+    assert levels(np.array([]), 0.1) == 0

@@ -1,0 +1,137 @@
+"""The table of parameters: every row is sound, and what it says of a tyre's symmetry is what the equations do."""
+
+from __future__ import annotations
+
+import csv
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import tir
+from tir.parameters import BY_NAME, SECTIONS, TABLE, Parameter
+
+ROOT = Path(__file__).parents[2]
+CSV = ROOT / "tir" / "parameters.csv"
+EQUATIONS = "".join(
+    path.read_text(encoding="utf-8") for path in sorted((ROOT / "tir/equations").glob("*.py"))
+)
+NEEDS = (
+    "camber",
+    "coupled",
+    "combined",
+    "curvature",
+    "kappa",
+    "speeds",
+    "loads",
+    "pressures",
+    "pressure_loads",
+)
+COUNTED = {"speeds", "loads", "pressures", "pressure_loads"}
+WORDS = {
+    "kind": {"number", "text"},
+    "divisor": {"", "yes"},
+    "stage": {"", "held", "Fy", "camber", "pressure", "trail", "residual", "spin", "shift"},
+    "channel": {"", "Fx", "Fy", "Mx", "My", "Mz"},
+    "symmetry": {"", "odd", "odd shift", "odd shift conicity"},
+    "files": {"", "62", "some", "rare"},
+}
+"""Every word that a column may hold; docs/parameters.md explains them."""
+COEFFICIENTS = [
+    row for row in TABLE if row.section.endswith("COEFFICIENTS") and not row.scaling and row.kind == "number"
+]
+
+
+def test_every_row_is_sound():
+    with CSV.open(encoding="ascii", newline="") as stream:
+        rows = list(csv.DictReader(stream))
+    names = [row["name"] for row in rows]
+    assert len(names) == len(set(names))
+    assert [int(row["order"]) for row in rows] == list(range(1, len(rows) + 1))
+    assert [row["section"] for row in rows] == sorted(
+        (row["section"] for row in rows), key=list(SECTIONS).index
+    ), "a section's rows stand together"
+    for row in rows:
+        name = row["name"]
+        assert None not in row, f"{name} has a cell too many"
+        for column, words in WORDS.items():
+            assert row[column] in words, f"{name}: {column} is {row[column]!r}"
+        assert row["description"], name
+        _sound_tie(row)
+        _sound_needs(row)
+        _sound_range(BY_NAME[name])
+
+
+def _sound_tie(row: dict[str, str]) -> None:
+    tie, _, spread = row["tied"].partition(":")
+    assert tie in ("", "base", "disc"), row["name"]
+    assert (float(spread or 0.0) > 0.0) == (tie == "disc"), row["name"]
+    assert not tie or row["stage"], f"{row['name']} is tied, and no stage frees it"
+
+
+def _sound_needs(row: dict[str, str]) -> None:
+    name, words = row["name"], []
+    for need in row["needs"].split():
+        word, colon, levels = need.partition(":")
+        assert (word in COUNTED) == bool(colon), f"{name}: {need}"
+        assert not colon or int(levels) in (2, 3), f"{name}: {need}"
+        words.append(word)
+    assert words == sorted(set(words), key=NEEDS.index), f"{name}: each need once, in the order of NEEDS"
+    assert row["channel"] or not words, f"{name} needs data, and no channel"
+    assert row["channel"] or not row["stage"], f"{name} is fitted, and to no channel"
+
+
+def _sound_range(row: Parameter) -> None:
+    lower, upper = row.bounds
+    assert lower < upper
+    if row.stage:
+        assert math.isfinite(row.width), row.name
+        assert lower <= float(row.default) <= upper, row.name
+        assert row.equation, row.name
+    if row.divisor:
+        assert float(row.default) > 0.0, row.name
+    if row.equation:
+        assert row.equation in EQUATIONS, f"{row.name}: {row.equation} is not in the code"
+
+
+def test_the_words_of_the_table_are_explained():
+    page = (ROOT / "docs" / "parameters.md").read_text(encoding="utf-8")
+    with CSV.open(encoding="ascii", newline="") as stream:
+        columns = csv.DictReader(stream).fieldnames or []
+    for word in (*columns, *NEEDS):
+        assert f"`{word}`" in page or f"`{word}:2`" in page, f"docs/parameters.md does not explain {word}"
+
+
+@pytest.fixture(scope="module")
+def symmetric() -> tir.Tyre:
+    """Every coefficient at work, except those that a mirror-symmetric tyre does not have."""
+    tyre = tir.read(Path(__file__).parent / "vectors" / "moto_front.tir")
+    return tyre.replace(**{row.name: 0.0 if row.odd else tyre[row.name] or 0.07 for row in COEFFICIENTS})
+
+
+@pytest.mark.parametrize("row", COEFFICIENTS, ids=lambda row: row.name)
+def test_odd_is_what_breaks_the_mirror(symmetric, row):
+    """By definition of mirror symmetry about the wheel plane; the signs of the six outputs are ISO-W's."""
+    rng = np.random.default_rng(3)
+    alpha, gamma, kappa, phi_t = (size * rng.uniform(-1, 1, 30) for size in (0.2, 0.5, 0.1, 0.5))
+    tyre = symmetric.replace(**{row.name: symmetric[row.name] + 0.05})
+    broken = 0.0
+    for on in (True, False):
+        left = tyre(1800.0, alpha, gamma, kappa, phi_t, turn_slip=on)
+        right = tyre(1800.0, -alpha, -gamma, kappa, -phi_t, turn_slip=on)
+        for a, b, sign in zip(left, right, (1, -1, 1, -1, 1, -1), strict=True):
+            broken = max(broken, float(np.max(np.abs(a - sign * b))))
+    assert (broken > 1e-6) == row.odd
+    if row.conicity or row.shift:
+        assert row.odd
+
+
+def test_conicity_changes_sign_with_the_tyre_turned_on_its_rim():
+    """Rolling backwards is rolling a turned tyre forwards: a tyre of conicity alone pushes the same way over the rig."""
+    plain = tir.Tyre.from_values({"FNOMIN": 1500.0}).replace(**{r.name: 0.0 for r in TABLE if r.odd})
+    for name in ("PVY1", "PHY1"):
+        tyre = plain.replace(**{name: 0.005})
+        assert tyre(1500.0, Vx=8.0).Fy != 0.0
+        same = tyre(1500.0, Vx=-8.0).Fy == pytest.approx(tyre(1500.0, Vx=8.0).Fy)
+        assert same == BY_NAME[name].conicity
