@@ -10,7 +10,7 @@ import numpy as np
 from mffit import sweeps as files
 from mffit.config import Config, path_curvature
 from mffit.errors import InputError
-from mffit.points.levels import load_levels
+from mffit.points import levels
 from mffit.points.plausibility import check_physics as check
 from mffit.points.points import Points, concatenate
 from mffit.points.reduction import reduce
@@ -104,6 +104,6 @@ def _thin(points: Points, config: Config) -> list[str]:
         out.append(
             "there are no backward runs: sideslip misalignment cannot be told from turn slip and ply-steer"
         )
-    if load_levels(points) == 1:
+    if levels.count(points.Fz, levels.LOAD) == 1:
         out.append(f"there is one load only ({np.mean(points.Fz):.0f} N): terms that vary with load are held")
     return out
