@@ -16,7 +16,8 @@ from mffit.sweeps.raw_table import RawTable
 from mffit.sweeps.units import UnknownUnitError, converted
 
 DIRECTIONS = {"forward": 1, "backward": -1, "1": 1, "+1": 1, "-1": -1}
-MAY_BE_BLANK = frozenset({"iteration", "point"})
+UNCERTAINTIES = ("u_Fy_N", "u_Mz_Nm")
+MAY_BE_BLANK = frozenset({"iteration", "point", *UNCERTAINTIES})
 LONGEST_QUOTE = 40
 NUMBER_WITH_UNIT = re.compile(r"[-+]?[\d.]+(?:[eE][-+]?\d+)?\s*([^\d\s.,+-].*)")
 DECIMAL_COMMA = re.compile(r"[-+]?\d+,\d+")
@@ -61,6 +62,11 @@ def read_columns(raw: RawTable, mapping: Mapping[str, Column]) -> Columns:
             values = _channel(raw, channel, sources[channel.name], cells, mapping.get(channel.name))
             if values is not None:
                 found[channel.name] = values
+    warnings = []
+    for name in UNCERTAINTIES:
+        if name in found:
+            found[name], said = _stated(raw, sources[name], found[name])
+            warnings += said
     taken = set(sources.values()) | set(sources)
     extras = {heading: column for heading, column in cells.items() if heading not in taken}
     direction = found.get("direction")
@@ -68,7 +74,7 @@ def read_columns(raw: RawTable, mapping: Mapping[str, Column]) -> Columns:
         found["direction"] = np.where(direction > 0, "forward", "backward")
     order = sorted(found, key=lambda name: raw.headings.index(sources[name]))
     table = pd.DataFrame({**{name: found[name] for name in order}, **extras})
-    return Columns(raw, table, direction, tuple(_misspelt(raw, extras, found)))
+    return Columns(raw, table, direction, (*warnings, *_misspelt(raw, extras, found)))
 
 
 def _check_sources(raw: RawTable, sources: Mapping[str, str]) -> None:
@@ -208,6 +214,27 @@ def _check_range(raw: RawTable, channel: Channel, heading: str, values: np.ndarr
         f"{hint or 'correct it'}{', convert it or name its unit under [sweep.columns]' if hint else ''}"
     )
     raise InputError(sentence, file=raw.path, line=raw.lines[row], column=heading)
+
+
+def _stated(raw: RawTable, heading: str, values: np.ndarray) -> tuple[np.ndarray, list[str]]:
+    """Uncertainties (n,), NaN where none is stated, and what to say: a point of no uncertainty would count for all."""
+    none = values <= 0.0
+    if not np.any(none):
+        return values, []
+    row, number = int(none.argmax()), int(none.sum())
+    if not np.any(values > 0.0):
+        raise InputError(
+            "is not above zero in any row, and a standard uncertainty is; complete or remove the column",
+            file=raw.path,
+            line=raw.lines[row],
+            column=heading,
+        )
+    more = f", as in {number - 1} more rows" if number > 1 else ""
+    sentence = (
+        f"{raw.path}:{raw.lines[row]}: column {heading}: {values[row]:g} is no uncertainty and counts as not "
+        f"stated{more}"
+    )
+    return np.where(none, np.nan, values), [sentence]
 
 
 def _misspelt(raw: RawTable, extras: Mapping[str, object], found: Mapping[str, object]) -> list[str]:

@@ -245,6 +245,38 @@ def test_a_bare_table_needs_no_configuration(project):
     np.testing.assert_array_equal(found.Fy, -sweep_named(load(path), NAME).Fy)
 
 
+def with_uncertainties(project, *u):
+    """The sweep with ``u_Fy_N``, 6 N but for its first rows."""
+    table = project.tables[NAME]
+    column = [*u, *[6.0] * (len(table) - len(u))]
+    project.tables[NAME] = table.assign(u_Fy_N=column)
+    return project.write()
+
+
+@pytest.mark.parametrize(("u", "more"), [((6.0, 0.0), ""), ((6.0, -999.0, 0.0), "1 more")])
+def test_an_uncertainty_not_above_zero_counts_as_not_stated(project, u, more):
+    found = load(with_uncertainties(project, *u))
+    u_Fy = sweep_named(found, NAME).u_Fy
+    np.testing.assert_array_equal(np.isfinite(u_Fy), [k == 0 or k >= len(u) for k in range(len(u_Fy))])
+    (warning,) = found.warnings
+    assert re.search(
+        rf"{NAME}:3: column u_Fy_N: {u[1]:g} is no uncertainty and counts as not stated", warning
+    )
+    assert more in warning
+
+
+def test_a_blank_uncertainty_is_not_stated(project):
+    found = load(with_uncertainties(project, np.nan))
+    assert np.isnan(sweep_named(found, NAME).u_Fy[0])
+    assert not found.warnings
+
+
+def test_a_column_of_zero_uncertainties_is_refused(project):
+    error = refusal(with_uncertainties(project, *[0.0] * len(project.tables[NAME])))
+    assert (error.line, error.column) == (2, "u_Fy_N")
+    assert "not above zero in any row" in error.sentence
+
+
 def numbers(path):
     """A reader of another format: numbers instead of text, with the unit beside each heading."""
     return RawTable(
