@@ -37,7 +37,7 @@ FLANK = 0.3
 """Density, relative to the densest place half a tolerance away, below which values are the flank of that place."""
 CLOSE = 1.0 / 3.0
 """Distance from a level, in tolerances, within which most values of a setting lie that was held."""
-MOST_AWAY = 0.35
+MOST_AWAY = 0.3
 """Share of values further away than that from which the values are spread rather than held."""
 NONE = -1
 """Label of a value that belongs to no level."""

@@ -84,7 +84,7 @@ def test_evenly_spread_values_are_varied(n, span, start, quantity):
 @RELAXED
 @given(seeds, st.floats(6.0, 30.0))
 def test_randomly_spread_values_are_varied_and_spread(seed, span):
-    values = placed(np.random.default_rng(seed).uniform(0.0, span, 400), LOAD)
+    values = placed(np.random.default_rng(seed).uniform(0.0, span, 1500), LOAD)
     assert levels.count(values, LOAD) >= 3
     assert levels.spread(values, LOAD)
 
