@@ -4,17 +4,18 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from itertools import pairwise
 
 import numpy as np
 
 from mffit.diagnosis.candidates import Hypothesis
 from mffit.diagnosis.noise import Noise
-from mffit.points import Points
+from mffit.points import Points, levels
 
 WIDTHS = {"alpha": (0.7, 1.4, 3.0), "gamma": (3.0, 8.0)}  # deg
 AMPLITUDE = 0.03
 """How large an unknown bump may be, 1 sigma, relative to the channel's largest value."""
+MOST_LOADS = 7
+"""More loads than this are not looked at one by one."""
 NEEDED = 8.0
 """Log evidence, after the price of having searched everywhere, at which a bump counts as found."""
 
@@ -105,13 +106,11 @@ def _masks(points: Points) -> list[tuple[dict[str, tuple[float, float]], np.ndar
             out.append(
                 ({"gamma_deg": (max(low, float(gamma.min())), min(high, float(gamma.max())))}, mask * 1.0)
             )
-    order = np.sort(points.Fz)
-    cuts = np.flatnonzero(np.diff(np.log(order)) > 0.08)
-    edges = [order[0], *[float(order[c] + order[c + 1]) / 2.0 for c in cuts], order[-1]]
-    if 2 < len(edges) < 9:
-        for low, high in pairwise(edges):
-            mask = (points.Fz >= low) & (points.Fz <= high)
-            out.append(({"Fz_N": (float(low), float(high))}, mask * 1.0))
+    load = levels.nearest_labels(points.Fz, levels.LOAD)
+    if 1 < load.max() + 1 <= MOST_LOADS:
+        for k in range(load.max() + 1):
+            mask = load == k
+            out.append(({"Fz_N": (float(points.Fz[mask].min()), float(points.Fz[mask].max()))}, mask * 1.0))
     if np.any(points.direction < 0):
         out.append(({"direction": (-1.0, -1.0)}, (points.direction < 0) * 1.0))
     return out

@@ -9,11 +9,12 @@ import numpy as np
 from scipy.stats import false_discovery_control, norm
 
 from mffit.diagnosis.noise import Noise
-from mffit.points import Points
+from mffit.points import Points, levels
 
 FALSE_DISCOVERY = 0.01
 FEWEST = 4
 MOST_REGIONS = 12
+MOST_BINS = 6
 PAIRS = (
     ("alpha_deg", "gamma_deg"),
     ("alpha_deg", "Fz_N"),
@@ -115,18 +116,20 @@ def _bins(points: Points) -> dict[str, list[tuple[tuple[float, float], np.ndarra
 
 
 def _cut(values: np.ndarray) -> list[tuple[tuple[float, float], np.ndarray]]:
-    """At most six bins: at the gaps between levels where there are few, else at equal counts."""
-    finite = np.sort(values[np.isfinite(values)])
+    """At most six bins: the levels that the values keep to where there are few, else equal counts."""
+    finite = values[np.isfinite(values)]
     if len(finite) < 2 * FEWEST or np.ptp(finite) == 0.0:
         return []
-    gaps = np.flatnonzero(np.diff(finite) > 0.1 * np.ptp(finite))
-    if 1 <= len(gaps) <= 5:
-        edges = np.array([finite[0], *[(finite[g] + finite[g + 1]) / 2.0 for g in gaps], finite[-1]])
+    tenth = levels.Quantity("tenth of the range", 0.1 * float(np.ptp(finite)))
+    level = levels.nearest_labels(values, tenth)
+    number = int(level.max()) + 1
+    if 1 < number <= MOST_BINS and not levels.spread(values, tenth):
+        masks = [level == k for k in range(number)]
     else:
-        edges = np.unique(np.quantile(finite, np.linspace(0.0, 1.0, 7)))
-    out = []
-    for low, high in pairwise(edges):
-        mask = (values >= low) & (values <= high)
-        if mask.sum() >= FEWEST:
-            out.append(((float(values[mask].min()), float(values[mask].max())), mask))
-    return out
+        edges = np.unique(np.quantile(finite, np.linspace(0.0, 1.0, MOST_BINS + 1)))
+        masks = [(values >= low) & (values <= high) for low, high in pairwise(edges)]
+    return [
+        ((float(values[mask].min()), float(values[mask].max())), mask)
+        for mask in masks
+        if mask.sum() >= FEWEST
+    ]

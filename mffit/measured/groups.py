@@ -6,10 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from mffit.points import Points, main_pressure
+from mffit.points import Points, levels, main_pressure
 
-LOAD_GAP = 0.08
-"""Loads closer together than this (relative) are one level."""
 UPRIGHT = np.radians(0.5)
 STRAIGHT = np.radians(0.3)
 
@@ -23,15 +21,11 @@ class LoadGroup:
 
 
 def load_groups(points: Points) -> tuple[LoadGroup, ...]:
-    """Group the steady points at the programme's main pressure by load, rising."""
+    """Group the steady points at the programme's main pressure by load, rising; points between loads are left out."""
     used = np.flatnonzero(main_pressure(points) & (points.mount > 0) & ~points.continuous)
-    order = used[np.argsort(points.Fz[used])]
-    cuts = np.flatnonzero(np.diff(np.log(points.Fz[order])) > LOAD_GAP) + 1
-    return tuple(
-        LoadGroup(float(np.mean(points.Fz[part])), np.sort(part))
-        for part in np.split(order, cuts)
-        if len(part)
-    )
+    level = levels.labels(points.Fz[used], levels.LOAD)
+    parts = [used[level == k] for k in range(level.max(initial=levels.NONE) + 1)]
+    return tuple(LoadGroup(float(np.mean(points.Fz[part])), part) for part in parts)
 
 
 def zeros(points: Points, group: LoadGroup, direction: int) -> np.ndarray:

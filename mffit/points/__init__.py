@@ -1,6 +1,7 @@
 """From rig sweeps to finished points: steady states with standard errors, tested against physics."""
 
-from mffit.points.levels import load_levels, main_pressure
+from mffit.points import levels
+from mffit.points.levels import main_pressure
 from mffit.points.loading import load, load_table
 from mffit.points.mean import mean_and_error
 from mffit.points.plausibility import check_physics
@@ -10,8 +11,8 @@ __all__ = [
     "Points",
     "check_physics",
     "concatenate",
+    "levels",
     "load",
-    "load_levels",
     "load_table",
     "main_pressure",
     "make_points",

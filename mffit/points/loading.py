@@ -10,12 +10,14 @@ import numpy as np
 from mffit import sweeps as files
 from mffit.config import Config, path_curvature
 from mffit.errors import InputError
-from mffit.points.levels import load_levels
+from mffit.points import levels
 from mffit.points.plausibility import check_physics as check
 from mffit.points.points import Points, concatenate
 from mffit.points.reduction import reduce
 from mffit.points.requirements import check_disc_programme
+from tir.conventions import FLIPPED
 
+SIDES = ("left", "right")
 STAND_IN = {"p": 250e3, "V": 1.0}
 """Pressure [Pa] and speed [m/s] of a bare table that holds none; alignment depends on neither."""
 
@@ -63,8 +65,8 @@ def load(
     return points if continuous else steady, tuple(warnings)
 
 
-def load_table(path: str | Path, *, axes: str, path_centre: str) -> Points:
-    """Points of a bare CSV file, for the alignment of the sideslip axis.
+def load_table(path: str | Path, *, axes: str | None = None, path_centre: str | None = None) -> Points:
+    """Points of a bare table, for the alignment of the sideslip axis.
 
     Parameters
     ----------
@@ -72,14 +74,30 @@ def load_table(path: str | Path, *, axes: str, path_centre: str) -> Points:
     axes : "iso", "sae" or "adapted-sae"
     path_centre : "left" or "right"; the radius is unknown, so that phi_t is -1 or 1 and says only the side
 
+    Raises
+    ------
+    InputError
+        ``axes`` or ``path_centre`` is not said, as a table does not hold it, or the file cannot be read.
+
     Notes
     -----
     A continuous sweep has no zero points and is left out.
     """
+    axes = _said("axes", axes, tuple(FLIPPED), path)
+    path_centre = _said("path_centre", path_centre, SIDES, path)
     phi_t = -1.0 if path_centre == "left" else 1.0
     found = files.load_file(path, axes=axes).sweeps
     points = concatenate([reduce(_completed(sweep), phi_t).points for sweep in found])
     return points.select(~points.continuous)
+
+
+def _said(name: str, value: str | None, choice: tuple[str, ...], path: str | Path) -> str:
+    """The value of what a bare table cannot say itself."""
+    if value in choice:
+        return value
+    found = f"does not say the rig's {name}" if value is None else f'{name} = "{value}" is not known'
+    written = " or ".join(f'"{one}"' for one in choice)
+    raise InputError(f"{found}; give {name} = {written}, or a tyre.toml", file=path)
 
 
 def _completed(sweep: files.Sweep) -> files.Sweep:
@@ -104,6 +122,6 @@ def _thin(points: Points, config: Config) -> list[str]:
         out.append(
             "there are no backward runs: sideslip misalignment cannot be told from turn slip and ply-steer"
         )
-    if load_levels(points) == 1:
+    if levels.count(points.Fz, levels.LOAD) == 1:
         out.append(f"there is one load only ({np.mean(points.Fz):.0f} N): terms that vary with load are held")
     return out

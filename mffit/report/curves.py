@@ -7,13 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from mffit.points import Points
+from mffit.points import Points, levels
 
-LOAD_GAP = 0.08
-"""Loads closer than this share of each other are one level."""
-PRESSURE_GAP = 10.0  # kPa
-CAMBER_GAP = 1.0  # deg
-SIDESLIP_GAP = 0.5  # deg
 FEWEST = 4
 """Set-points that make a curve."""
 
@@ -50,26 +45,14 @@ class Condition:
         return f"{self.load:.0f} N, {self.pressure:.0f} kPa"
 
 
-def levels(values: np.ndarray, gap: float) -> np.ndarray:
-    """Median of the group each value belongs to (n,); groups lie further apart than ``gap``; NaN stays."""
-    out = np.full(len(values), np.nan)
-    known = np.flatnonzero(np.isfinite(values))
-    if len(known) == 0:
-        return out
-    order = known[np.argsort(values[known], kind="stable")]
-    for group in np.split(order, np.flatnonzero(np.diff(values[order]) > gap) + 1):
-        out[group] = np.median(values[group])
-    return out
-
-
 def load_levels(points: Points) -> np.ndarray:
-    """Load of each point's group [N], rounded to 10 N."""
-    return np.round(np.exp(levels(np.log(points.Fz), LOAD_GAP)) / 10.0) * 10.0
+    """Load of each point's level [N], rounded to 10 N."""
+    return np.round(levels.level_values(points.Fz, levels.LOAD) / 10.0) * 10.0
 
 
 def pressure_levels(points: Points) -> np.ndarray:
-    """Pressure of each point's group [kPa], rounded to 1 kPa."""
-    return np.round(levels(points.p / 1000.0, PRESSURE_GAP))
+    """Pressure of each point's level [kPa], rounded to 1 kPa."""
+    return np.round(levels.level_values(points.p, levels.PRESSURE) / 1000.0)
 
 
 def conditions(points: Points) -> list[Condition]:
@@ -81,7 +64,10 @@ def conditions(points: Points) -> list[Condition]:
 def curves(points: Points) -> list[Curve]:
     """Every run of at least four set-points over one angle, sorted by load, pressure and held angle."""
     alpha, gamma = np.degrees(points.alpha), np.degrees(points.gamma)
-    held = {"alpha": levels(gamma, CAMBER_GAP), "gamma": levels(alpha, SIDESLIP_GAP)}
+    held = {
+        "alpha": np.degrees(levels.level_values(points.gamma, levels.CAMBER)),
+        "gamma": np.degrees(levels.level_values(points.alpha, levels.SIDESLIP)),
+    }
     angle = {"alpha": alpha, "gamma": gamma}
     load, pressure = load_levels(points), pressure_levels(points)
     found = []

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -12,11 +12,12 @@ import pandas as pd
 from mffit.config.models import Column
 from mffit.errors import InputError
 from mffit.sweeps.channels import BY_NAME, CHANNELS, Channel, nearest_channel, nearest_heading
-from mffit.sweeps.csv_text import CsvText
+from mffit.sweeps.raw_table import RawTable
 from mffit.sweeps.units import UnknownUnitError, converted
 
 DIRECTIONS = {"forward": 1, "backward": -1, "1": 1, "+1": 1, "-1": -1}
-MAY_BE_BLANK = frozenset({"iteration", "point"})
+UNCERTAINTIES = ("u_Fy_N", "u_Mz_Nm")
+MAY_BE_BLANK = frozenset({"iteration", "point", *UNCERTAINTIES})
 LONGEST_QUOTE = 40
 NUMBER_WITH_UNIT = re.compile(r"[-+]?[\d.]+(?:[eE][-+]?\d+)?\s*([^\d\s.,+-].*)")
 DECIMAL_COMMA = re.compile(r"[-+]?\d+,\d+")
@@ -26,22 +27,22 @@ DECIMAL_COMMA = re.compile(r"[-+]?\d+,\d+")
 class Columns:
     """A file's columns as reported, row-aligned with ``lines``."""
 
-    text: CsvText
+    raw: RawTable
     table: pd.DataFrame  #: contract columns in contract units, then whatever else the file holds, as text
     direction: np.ndarray | None  #: +1 or -1 (n,), None without such a column
     warnings: tuple[str, ...]
 
     def line(self, row: int) -> int:
         """Line of a row in the file."""
-        return self.text.lines[row]
+        return self.raw.lines[row]
 
 
-def read_columns(text: CsvText, mapping: Mapping[str, Column]) -> Columns:
+def read_columns(raw: RawTable, mapping: Mapping[str, Column]) -> Columns:
     """Find, convert and check the contract's columns.
 
     Parameters
     ----------
-    text : the file's cells
+    raw : the file's cells
     mapping : ``[sweep.columns]``: contract column -> heading, unit and scale; its keys are contract columns
 
     Raises
@@ -51,89 +52,98 @@ def read_columns(text: CsvText, mapping: Mapping[str, Column]) -> Columns:
     """
     sources = {name: column.column or name for name, column in mapping.items()}
     for channel in CHANNELS:
-        if channel.name not in sources and channel.name in text.headings:
+        if channel.name not in sources and channel.name in raw.headings:
             sources[channel.name] = channel.name
-    _check_sources(text, sources)
-    cells = dict(zip(text.headings, zip(*text.rows, strict=True), strict=True))
+    _check_sources(raw, sources)
+    cells = dict(zip(raw.headings, raw.cells, strict=True))
     found: dict[str, np.ndarray] = {}
     for channel in CHANNELS:
         if channel.name in sources:
-            values = _channel(text, channel, sources[channel.name], cells, mapping.get(channel.name))
+            values = _channel(raw, channel, sources[channel.name], cells, mapping.get(channel.name))
             if values is not None:
                 found[channel.name] = values
+    warnings = []
+    for name in UNCERTAINTIES:
+        if name in found:
+            found[name], said = _stated(raw, sources[name], found[name])
+            warnings += said
     taken = set(sources.values()) | set(sources)
     extras = {heading: column for heading, column in cells.items() if heading not in taken}
     direction = found.get("direction")
     if direction is not None:
         found["direction"] = np.where(direction > 0, "forward", "backward")
-    order = sorted(found, key=lambda name: text.headings.index(sources[name]))
+    order = sorted(found, key=lambda name: raw.headings.index(sources[name]))
     table = pd.DataFrame({**{name: found[name] for name in order}, **extras})
-    return Columns(text, table, direction, tuple(_misspelt(text, extras, found)))
+    return Columns(raw, table, direction, (*warnings, *_misspelt(raw, extras, found)))
 
 
-def _check_sources(text: CsvText, sources: Mapping[str, str]) -> None:
+def _check_sources(raw: RawTable, sources: Mapping[str, str]) -> None:
     """Every mapped heading is there, and every required column has one."""
     for name, heading in sources.items():
-        if heading not in text.headings:
-            near = nearest_heading(BY_NAME[name], text.headings)
-            hint = f'; the nearest heading is "{near}"' if near else f"; there are {', '.join(text.headings)}"
+        if heading not in raw.headings:
+            near = nearest_heading(BY_NAME[name], raw.headings)
+            hint = f'; the nearest heading is "{near}"' if near else f"; there are {', '.join(raw.headings)}"
             sentence = f'there is no heading "{heading}", which [sweep.columns] {name} names{hint}'
-            raise InputError(sentence, file=text.path, line=text.heading_line)
+            raise InputError(sentence, file=raw.path, line=raw.heading_line)
     for channel in CHANNELS:
         if channel.required and channel.name not in sources:
-            raise _missing(text, channel)
+            raise _missing(raw, channel)
 
 
-def _missing(text: CsvText, channel: Channel) -> InputError:
-    near = nearest_heading(channel, text.headings)
+def _missing(raw: RawTable, channel: Channel) -> InputError:
+    near = nearest_heading(channel, raw.headings)
     unit = channel.unit
     remedy = (
         f'if "{near}" is it, put {channel.name} = {{ column = "{near}", unit = "{unit}" }}, with its true '
         "unit, under [sweep.columns]"
         if near
-        else f"add it, or name its heading under [sweep.columns] ({', '.join(text.headings)} are there)"
+        else f"add it, or name its heading under [sweep.columns] ({', '.join(raw.headings)} are there)"
     )
     sentence = f"is missing ({channel.description}); {remedy}"
-    return InputError(sentence, file=text.path, line=text.heading_line, column=channel.name)
+    return InputError(sentence, file=raw.path, line=raw.heading_line, column=channel.name)
 
 
 def _channel(
-    text: CsvText, channel: Channel, heading: str, cells: Mapping[str, tuple[str, ...]], column: Column | None
+    raw: RawTable,
+    channel: Channel,
+    heading: str,
+    cells: Mapping[str, Sequence[str | float]],
+    column: Column | None,
 ) -> np.ndarray | None:
     """One column (n,) in the contract's unit; None if all its cells are blank."""
     given = cells[heading]
-    if not any(given):
+    if all(_is_blank(cell) for cell in given):
         if channel.required:
-            raise InputError("has no values; complete it", file=text.path, line=text.lines[0], column=heading)
+            raise InputError("has no values; complete it", file=raw.path, line=raw.lines[0], column=heading)
         return None
     if channel.kind == "label":
-        return np.array(given, dtype=object)
+        return np.array([_text(cell) for cell in given], dtype=object)
     if channel.kind == "direction":
-        return _directions(text, heading, given)
-    values = _numbers(text, channel, heading, given)
-    if column is not None:
-        values = column.scale * _in_contract_unit(values, channel, column)
-    _check_range(text, channel, heading, values)
+        return _directions(raw, heading, given)
+    values = _numbers(raw, channel, heading, given)
+    values = _in_contract_unit(values, raw, channel, heading, column)
+    _check_range(raw, channel, heading, values)
     return values
 
 
-def _directions(text: CsvText, heading: str, given: tuple[str, ...]) -> np.ndarray:
-    for row, cell in enumerate(given):
-        if cell.lower() not in DIRECTIONS:
-            sentence = f'"{_cut(cell)}" is no direction; write forward or backward'
-            raise InputError(sentence, file=text.path, line=text.lines[row], column=heading)
-    return np.array([DIRECTIONS[cell.lower()] for cell in given])
+def _directions(raw: RawTable, heading: str, given: Sequence[str | float]) -> np.ndarray:
+    words = [_text(cell).lower() for cell in given]
+    for row, word in enumerate(words):
+        if word not in DIRECTIONS:
+            sentence = f'"{_cut(_text(given[row]))}" is no direction; write forward or backward'
+            raise InputError(sentence, file=raw.path, line=raw.lines[row], column=heading)
+    return np.array([DIRECTIONS[word] for word in words])
 
 
-def _numbers(text: CsvText, channel: Channel, heading: str, given: tuple[str, ...]) -> np.ndarray:
+def _numbers(raw: RawTable, channel: Channel, heading: str, given: Sequence[str | float]) -> np.ndarray:
     values = pd.to_numeric(pd.Series(given, dtype=object), errors="coerce").to_numpy(dtype=float)
     bad = ~np.isfinite(values)
     if channel.name in MAY_BE_BLANK:
-        bad &= np.array([cell != "" for cell in given])
+        bad &= np.array([not _is_blank(cell) for cell in given])
     if np.any(bad):
         row = int(bad.argmax())
-        sentence = _bad_cell(given[row], channel)
-        raise InputError(sentence, file=text.path, line=text.lines[row], column=heading)
+        sentence = _bad_cell(_text(given[row]), channel)
+        raise InputError(sentence, file=raw.path, line=raw.lines[row], column=heading)
     return values
 
 
@@ -155,24 +165,44 @@ def _bad_cell(cell: str, channel: Channel) -> str:
     return f'"{cell}" is a text where a number in {channel.unit or "plain digits"} should be; correct it'
 
 
+def _is_blank(cell: str | float) -> bool:
+    """Whether a cell holds nothing: no text, or the NaN that stands for it in a format of numbers."""
+    return not cell if isinstance(cell, str) else bool(np.isnan(cell))
+
+
+def _text(cell: str | float) -> str:
+    return cell if isinstance(cell, str) else f"{cell:g}"
+
+
 def _cut(cell: str) -> str:
     """A cell short enough to be quoted; a quote that is never closed swallows half a file."""
     return cell if len(cell) <= LONGEST_QUOTE else f"{cell[:LONGEST_QUOTE]}..."
 
 
-def _in_contract_unit(values: np.ndarray, channel: Channel, column: Column) -> np.ndarray:
-    if column.unit is None:
-        return values
+def _in_contract_unit(
+    values: np.ndarray, raw: RawTable, channel: Channel, heading: str, column: Column | None
+) -> np.ndarray:
+    """Values in the contract's unit, from the unit that ``tyre.toml`` names, else from the file's own."""
+    scale = 1.0 if column is None else column.scale
+    named = None if column is None else column.unit
+    unit = named or raw.units[raw.headings.index(heading)]
+    if not unit:
+        return scale * values
+
+    def refuse(sentence: str) -> InputError:
+        if named:
+            return InputError(sentence, key=f"columns.{channel.name}.unit")
+        return InputError(sentence, file=raw.path, line=raw.heading_line, column=heading)
+
     if not channel.unit:
-        raise InputError("has no unit; remove it", key=f"columns.{channel.name}.unit")
+        raise refuse("has no unit; remove it")
     try:
-        return converted(values, column.unit, channel.unit)
+        return scale * converted(values, unit, channel.unit)
     except UnknownUnitError as error:
-        sentence = f"{error}; name the unit of the file's column"
-        raise InputError(sentence, key=f"columns.{channel.name}.unit") from None
+        raise refuse(f"{error}; name the unit of the file's column") from None
 
 
-def _check_range(text: CsvText, channel: Channel, heading: str, values: np.ndarray) -> None:
+def _check_range(raw: RawTable, channel: Channel, heading: str, values: np.ndarray) -> None:
     outside = (values < channel.lower) | (values > channel.upper)
     if not np.any(outside):
         return
@@ -183,14 +213,35 @@ def _check_range(text: CsvText, channel: Channel, heading: str, values: np.ndarr
         f"{values[row]:g}{unit} is outside {channel.lower:g} to {channel.upper:g}{unit}; "
         f"{hint or 'correct it'}{', convert it or name its unit under [sweep.columns]' if hint else ''}"
     )
-    raise InputError(sentence, file=text.path, line=text.lines[row], column=heading)
+    raise InputError(sentence, file=raw.path, line=raw.lines[row], column=heading)
 
 
-def _misspelt(text: CsvText, extras: Mapping[str, object], found: Mapping[str, object]) -> list[str]:
+def _stated(raw: RawTable, heading: str, values: np.ndarray) -> tuple[np.ndarray, list[str]]:
+    """Uncertainties (n,), NaN where none is stated, and what to say: a point of no uncertainty would count for all."""
+    none = values <= 0.0
+    if not np.any(none):
+        return values, []
+    row, number = int(none.argmax()), int(none.sum())
+    if not np.any(values > 0.0):
+        raise InputError(
+            "is not above zero in any row, and a standard uncertainty is; complete or remove the column",
+            file=raw.path,
+            line=raw.lines[row],
+            column=heading,
+        )
+    more = f", as in {number - 1} more rows" if number > 1 else ""
+    sentence = (
+        f"{raw.path}:{raw.lines[row]}: column {heading}: {values[row]:g} is no uncertainty and counts as not "
+        f"stated{more}"
+    )
+    return np.where(none, np.nan, values), [sentence]
+
+
+def _misspelt(raw: RawTable, extras: Mapping[str, object], found: Mapping[str, object]) -> list[str]:
     """Warnings for headings that look like a channel that would otherwise be missing."""
     sentences = []
     for heading in extras:
         near = nearest_channel(heading)
         if near and near not in found:
-            sentences.append(f'{text.path}: column "{heading}" is not used; if it is {near}, rename it')
+            sentences.append(f'{raw.path}: column "{heading}" is not used; if it is {near}, rename it')
     return sentences

@@ -1,4 +1,4 @@
-"""A CSV file as headings and cells of text, with the line of every row; knows no heading and no unit."""
+"""The reader of CSV files."""
 
 from __future__ import annotations
 
@@ -6,27 +6,16 @@ import csv
 import gzip
 import io
 import zlib
-from dataclasses import dataclass
 from pathlib import Path
 
 from mffit.errors import InputError
+from mffit.sweeps.raw_table import RawTable
 
 UTF16_MARKS = (b"\xff\xfe", b"\xfe\xff")
 SEPARATORS = {";": "semicolons", "\t": "tabs", "|": "bars"}
 
 
-@dataclass(frozen=True, slots=True)
-class CsvText:
-    """The cells of one file, stripped of blanks; ``rows`` and ``lines`` are of equal length (n,)."""
-
-    path: Path
-    headings: tuple[str, ...]
-    heading_line: int
-    rows: tuple[tuple[str, ...], ...]
-    lines: tuple[int, ...]  #: line of each row, counted from 1
-
-
-def read_csv_text(path: Path) -> CsvText:
+def read_csv(path: Path) -> RawTable:
     """Read a ``.csv`` or ``.csv.gz`` with one line of headings; blank lines and ``#`` lines are passed over.
 
     Raises
@@ -66,7 +55,14 @@ def read_csv_text(path: Path) -> CsvText:
             file=path,
             line=heading_line,
         )
-    return CsvText(path, headings, heading_line, tuple(rows), tuple(lines))
+    return RawTable(
+        headings=headings,
+        units=("",) * len(headings),
+        cells=tuple(zip(*rows, strict=True)),
+        lines=tuple(lines),
+        path=path,
+        heading_line=heading_line,
+    )
 
 
 def _decoded(path: Path) -> str:

@@ -10,14 +10,12 @@ import numpy as np
 from mffit.config import Config
 from mffit.config.models import SweepTable
 from mffit.errors import InputError
+from mffit.sweeps.assembly import Circumstances, sweeps_of
 from mffit.sweeps.channels import BY_NAME, nearest_channel
 from mffit.sweeps.columns import Columns, read_columns
-from mffit.sweeps.csv_text import read_csv_text
+from mffit.sweeps.formats import ENDINGS, FORMATS, read
 from mffit.sweeps.frames import load_is_vertical, to_contact_frame
-from mffit.sweeps.readers import Circumstances, sweeps_of
 from mffit.sweeps.sweep import Sweep, Sweeps
-
-ENDINGS = (".csv", ".csv.gz")
 
 
 def load(config: Config) -> Sweeps:
@@ -57,14 +55,14 @@ def load(config: Config) -> Sweeps:
 
 
 def load_file(path: str | Path, *, axes: str) -> Sweeps:
-    """Read one CSV file without a configuration; pressure and speed are NaN where it does not hold them.
+    """Read one file without a configuration; pressure and speed are NaN where it does not hold them.
 
     Parameters
     ----------
     path : file with the contract's headings, forces in the contact frame
     axes : "iso", "sae" or "adapted-sae"
     """
-    columns = read_columns(read_csv_text(Path(path)), {})
+    columns = read_columns(read(Path(path)), {})
     given = Circumstances(axes, str(path), 1, 1, math.nan, math.nan)
     return Sweeps(tuple(sweeps_of(columns, given)), columns.warnings)
 
@@ -80,15 +78,16 @@ def _columns(config: Config, index: int, entry: SweepTable) -> Columns:
             hint = f'did you mean "{near}"?' if near else f"known are {', '.join(BY_NAME)}"
             raise refuse(f"is no column of a sweep; {hint}", f"columns.{name}")
     if not entry.file.endswith(ENDINGS):
-        raise refuse(f'"{entry.file}" is no .csv or .csv.gz file; export it as CSV', "file")
+        names = " or ".join(kind.name for kind in FORMATS)
+        raise refuse(f'"{entry.file}" is no {" or ".join(ENDINGS)} file; export it as {names}', "file")
     path = config.folder / entry.file
     if not path.exists():
         raise refuse(
             f'there is no file "{entry.file}" in {config.folder.absolute()}; correct the name', "file"
         )
-    text = read_csv_text(path)
+    raw = read(path)
     try:
-        return read_columns(text, entry.columns)
+        return read_columns(raw, entry.columns)
     except InputError as error:
         if error.file is None and error.key is not None:
             raise refuse(error.sentence, error.key) from None

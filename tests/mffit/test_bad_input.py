@@ -9,8 +9,10 @@ import numpy as np
 import pytest
 from disc_project import CAMBER, Project, rows
 
+import mffit
 import tir
 from mffit.cli import main
+from mffit.errors import InputError
 
 SWEEP = "sideslip_1500.csv"
 
@@ -260,3 +262,27 @@ def test_thin_data_warn_and_go_on(project, capsys, thin):
 def test_the_undamaged_project_is_fine(project, capsys):
     code, err = run(capsys, "spin", project.write())
     assert code == 0, err
+
+
+def test_an_uncertainty_of_zero_in_one_row_is_no_traceback(project, capsys):
+    """It divided by zero where the forces at zero are averaged."""
+    project.add(
+        "zeros.csv", rows(np.linspace(-1.0, 1.0, 9), 0.0).assign(u_Fy_N=[6.0] * 4 + [0.0] + [6.0] * 4)
+    )
+    code, err = run(capsys, "spin", project.write())
+    assert code == 0, err
+    assert "zeros.csv:6: column u_Fy_N: 0 is no uncertainty" in err
+
+
+@pytest.mark.parametrize(
+    ("options", "said"),
+    [
+        ({}, "does not say the rig's axes"),
+        ({"axes": "iso"}, "does not say the rig's path_centre"),
+        ({"axes": "iso", "path_centre": "up"}, 'path_centre = "up" is not known'),
+    ],
+)
+def test_align_of_a_bare_table_says_what_it_must_be_told(project, options, said):
+    project.write()
+    with pytest.raises(InputError, match=said):
+        mffit.align(project.folder / SWEEP, **options)

@@ -5,6 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from mffit.diagnosis.conditions import by_condition
+from mffit.diagnosis.unknown import _masks
+from mffit.diagnosis.where import _cut
 from mffit.points import make_points
 
 SWEEP = np.radians(np.linspace(-9.0, 9.0, 31))
@@ -51,3 +53,31 @@ def test_separate_sweeps_stay_separate():
         sweep_names=("a", "b"),
     )
     assert by_condition(points).sweep_names == ("a", "b")
+
+
+def test_a_camber_that_is_swept_slowly_is_not_cut():
+    """2000 samples over 100 degrees: close enough together for levels, but none of them was held."""
+    gamma = np.radians(np.linspace(-50.0, 50.0, 2000))
+    points = make_points(0.0, gamma, 1500.0, p=250e3, V=6.0, phi_t=-0.76, sweep_names=("camber",))
+    assert by_condition(points).sweep_names == ("camber",)
+
+
+def test_samples_between_two_loads_do_not_join_their_conditions():
+    Fz = np.concatenate([np.full(200, 900.0), np.linspace(900.0, 1500.0, 12), np.full(200, 1500.0)])
+    cut = by_condition(make_points(0.0, 0.0, Fz, p=250e3, V=6.0, phi_t=-0.76))
+    assert len(cut.sweep_names) == 2
+
+
+def test_a_bump_is_looked_for_within_each_load_despite_samples_between_them():
+    Fz = np.concatenate([np.full(200, 900.0), np.linspace(900.0, 1500.0, 12), np.full(200, 1500.0)])
+    masks = _masks(make_points(0.0, 0.0, Fz, p=250e3, V=6.0, phi_t=-0.76))
+    loads = [(region["Fz_N"], mask.sum()) for region, mask in masks if "Fz_N" in region]
+    assert len(loads) == 2
+    assert sum(number for _, number in loads) == len(Fz)
+
+
+def test_regions_follow_the_levels_despite_samples_between_them():
+    values = np.concatenate([np.full(200, 900.0), np.linspace(900.0, 1500.0, 12), np.full(200, 1500.0)])
+    assert len(_cut(values)) == 2
+    assert len(_cut(np.linspace(900.0, 1500.0, 400))) == 6
+    assert len(_cut(np.array([-1.0] * 10 + [1.0] * 30))) == 2

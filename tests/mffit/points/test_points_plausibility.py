@@ -227,3 +227,13 @@ def test_thin_programmes_warn_and_go_on(project, spoil, said):
     spoil(project)
     _, warnings = load(project)
     assert any(said in sentence for sentence in warnings)
+
+
+def test_evenly_spread_loads_are_not_one_load(project):
+    """Each was within 8 % of the next, and all were called one load."""
+    project.config["rig"] = {"type": "flat-track", "axes": "iso"}
+    project.keep()
+    alpha, loads = np.tile(SIDESLIP, 30), np.linspace(800.0, 2200.0, 30 * len(SIDESLIP))
+    project.add("spread.csv", rows(alpha, 0.0, loads, side=0.0))
+    _, warnings = load(project)
+    assert not any("one load" in sentence for sentence in warnings)

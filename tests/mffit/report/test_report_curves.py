@@ -4,11 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
 from report_toys import SIDESLIP, made_points, programme, sweep
 
-from mffit.report.curves import conditions, curves, levels
+from mffit.report.curves import conditions, curves
 
 
 @pytest.fixture(scope="module")
@@ -61,15 +59,9 @@ def test_conditions_split_all_points_by_load_and_pressure(points):
     assert sorted(np.concatenate([c.index for c in found])) == list(range(len(points)))
 
 
-@given(st.lists(st.floats(-100.0, 100.0), min_size=1, max_size=30))
-def test_values_within_the_gap_share_a_level(values):
-    values = np.array(values)
-    level = levels(values, 1.0)
-    order = np.argsort(values)
-    near = np.diff(values[order]) <= 1.0
-    assert np.all(np.diff(level[order])[near] == 0.0)
-    assert np.all(np.diff(level[order])[~near] > 0.0)
-
-
-def test_missing_values_have_no_level():
-    assert np.isnan(levels(np.array([1.0, np.nan]), 0.5)[1])
+def test_a_few_samples_on_the_way_join_no_two_loads():
+    """Chained one to the next they used to make a single load of some 1200 N."""
+    way = sweep(0.0, 0.0, 950.0)
+    way = {name: np.full(8, column) for name, column in way.items()} | {"Fz": np.linspace(950.0, 1450.0, 8)}
+    points = made_points({f"{Fz:.0f}": sweep(SIDESLIP, 0.0, Fz) for Fz in (900.0, 1500.0)} | {"way": way})
+    assert {c.load for c in curves(points)} >= {900.0, 1500.0}

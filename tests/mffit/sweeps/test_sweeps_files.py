@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import gzip
 import re
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -11,6 +12,9 @@ import pytest
 from mffit import config as configuration
 from mffit import sweeps
 from mffit.errors import InputError
+from mffit.sweeps import formats, loading
+from mffit.sweeps.columns import read_columns
+from mffit.sweeps.raw_table import RawTable
 
 NAME = "sideslip_1500.csv"
 
@@ -239,3 +243,84 @@ def test_a_bare_table_needs_no_configuration(project):
     path = project.write()
     found = sweeps.load_file(project.folder / NAME, axes="adapted-sae").sweeps[0]
     np.testing.assert_array_equal(found.Fy, -sweep_named(load(path), NAME).Fy)
+
+
+def with_uncertainties(project, *u):
+    """The sweep with ``u_Fy_N``, 6 N but for its first rows."""
+    table = project.tables[NAME]
+    column = [*u, *[6.0] * (len(table) - len(u))]
+    project.tables[NAME] = table.assign(u_Fy_N=column)
+    return project.write()
+
+
+@pytest.mark.parametrize(("u", "more"), [((6.0, 0.0), ""), ((6.0, -999.0, 0.0), "1 more")])
+def test_an_uncertainty_not_above_zero_counts_as_not_stated(project, u, more):
+    found = load(with_uncertainties(project, *u))
+    u_Fy = sweep_named(found, NAME).u_Fy
+    np.testing.assert_array_equal(np.isfinite(u_Fy), [k == 0 or k >= len(u) for k in range(len(u_Fy))])
+    (warning,) = found.warnings
+    assert re.search(
+        rf"{NAME}:3: column u_Fy_N: {u[1]:g} is no uncertainty and counts as not stated", warning
+    )
+    assert more in warning
+
+
+def test_a_blank_uncertainty_is_not_stated(project):
+    found = load(with_uncertainties(project, np.nan))
+    assert np.isnan(sweep_named(found, NAME).u_Fy[0])
+    assert not found.warnings
+
+
+def test_a_column_of_zero_uncertainties_is_refused(project):
+    error = refusal(with_uncertainties(project, *[0.0] * len(project.tables[NAME])))
+    assert (error.line, error.column) == (2, "u_Fy_N")
+    assert "not above zero in any row" in error.sentence
+
+
+def numbers(path):
+    """A reader of another format: numbers instead of text, with the unit beside each heading."""
+    return RawTable(
+        headings=("alpha_deg", "gamma_deg", "Fz_N", "Fy_N", "Mz_Nm", "iteration", "run"),
+        units=("rad", "", "kN", "kN", "", "", ""),
+        cells=(
+            np.array([0.0, 0.1]),
+            np.zeros(2),
+            np.array([1.5, 1.5]),
+            [0.2, -0.3],
+            np.full(2, np.nan),
+            np.array([np.nan, 2.0]),
+            np.array([1.0, 1.0]),
+        ),
+        lines=(7, 8),
+        path=path,
+        heading_line=5,
+    )
+
+
+def test_a_new_format_is_a_reader_and_a_record(project, monkeypatch):
+    path = project.write()
+    path.write_text(path.read_text().replace(NAME, "rig.dat"))
+    (project.folder / "rig.dat").write_bytes(b"")
+    assert "is no .csv or .csv.gz file; export it as CSV" in refusal(path).sentence
+    extended = (*formats.FORMATS, formats.Format("DAT", (".dat",), numbers))
+    monkeypatch.setattr(formats, "FORMATS", extended)
+    monkeypatch.setattr(loading, "ENDINGS", (*formats.ENDINGS, ".dat"))
+    found = sweep_named(load(path), "rig.dat")
+    np.testing.assert_allclose(found.alpha, [0.0, 0.1])
+    np.testing.assert_allclose(found.Fz, 1500.0)
+    np.testing.assert_allclose(found.Fy, [200.0, -300.0])
+    assert np.all(np.isnan(found.Mz))
+    np.testing.assert_array_equal(found.iteration, [np.nan, 2.0])
+    np.testing.assert_array_equal(found.line, [7, 8])
+    assert found.name == "rig.dat:1"
+
+
+def test_a_unit_that_the_file_states_and_nobody_knows_is_refused(project):
+    raw = formats.read(project.write().parent / NAME)
+    strange = replace(raw, units=("furlong per", *raw.units[1:]))
+    with pytest.raises(InputError, match=f"{NAME}:1: column alpha_deg: .*furlong"):
+        read_columns(strange, {})
+
+
+def test_the_name_of_a_sweep_is_its_files_without_ending():
+    assert [formats.stem(name) for name in ("a/b.csv", "b.csv.gz", "b.c.txt")] == ["b", "b", "b.c.txt"]

@@ -8,10 +8,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from mffit.sweeps.assembly import Circumstances, sweeps_of
 from mffit.sweeps.columns import Columns
-from mffit.sweeps.csv_text import CsvText
 from mffit.sweeps.frames import to_contact_frame
-from mffit.sweeps.readers import Circumstances, sweeps_of
+from mffit.sweeps.raw_table import RawTable
 from mffit.sweeps.sweep import Sweep
 
 
@@ -20,9 +20,10 @@ def sweep(gamma_deg: float, Fy: float, Fz: float, Mz: float, My: float | None) -
     values = {"alpha_deg": 0.0, "gamma_deg": gamma_deg, "Fz_N": Fz, "Fy_N": Fy, "Mz_Nm": Mz}
     values |= {} if My is None else {"My_Nm": My}
     table = pd.DataFrame([values])
-    text = CsvText(None, tuple(table), 1, (tuple(map(str, table.iloc[0])),), (2,))
+    cells = tuple((str(value),) for value in table.iloc[0])
+    raw = RawTable(tuple(table), ("",) * len(cells), cells, (2,), None, 1)
     given = Circumstances("iso", "a.csv", 1, 1, 250e3, 6.0)
-    return sweeps_of(Columns(text, table, None, ()), given)[0]
+    return sweeps_of(Columns(raw, table, None, ()), given)[0]
 
 
 def axes_of_the_wheel(gamma: float) -> tuple[np.ndarray, np.ndarray]:

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import fields, replace
-from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from mffit.errors import InputError
 from mffit.sweeps.columns import Columns
+from mffit.sweeps.formats import stem
 from mffit.sweeps.sweep import Sweep
 from tir.conventions import to_iso
 
@@ -40,7 +40,7 @@ def sweeps_of(columns: Columns, given: Circumstances) -> list[Sweep]:
 
 
 def _sweep(columns: Columns, given: Circumstances) -> Sweep:
-    table, n = columns.table, len(columns.text.rows)
+    table, n = columns.table, len(columns.raw)
 
     def column(name: str, missing: float = np.nan) -> np.ndarray:
         return table[name].to_numpy(dtype=float) if name in table else np.full(n, missing)
@@ -49,7 +49,7 @@ def _sweep(columns: Columns, given: Circumstances) -> Sweep:
         return to_iso(given.axes, channel, column(name)) + 0.0  # turns -0.0 into 0.0
 
     return Sweep(
-        name=Path(given.file).name.removesuffix(".gz").removesuffix(".csv"),
+        name=stem(given.file),
         file=given.file,
         alpha=np.radians(iso("alpha", "alpha_deg")),
         gamma=np.radians(iso("gamma", "gamma_deg")),
@@ -69,7 +69,7 @@ def _sweep(columns: Columns, given: Circumstances) -> Sweep:
         mount=given.mount,
         time=column("time_s"),
         point=table["point"].astype(str).to_numpy() if "point" in table else None,
-        line=np.array(columns.text.lines),
+        line=np.array(columns.raw.lines),
         table=table,
     )
 
@@ -88,7 +88,7 @@ def check_loads(columns: Columns, axes: str) -> None:
     Fz = columns.table["Fz_N"].to_numpy(dtype=float)
 
     def refuse(row: int, sentence: str) -> InputError:
-        return InputError(sentence, file=columns.text.path, line=columns.line(row), column="Fz_N")
+        return InputError(sentence, file=columns.raw.path, line=columns.line(row), column="Fz_N")
 
     if np.any(Fz == 0.0):
         raise refuse(int((Fz == 0.0).argmax()), "the load is zero; remove the rows without load")

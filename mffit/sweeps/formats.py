@@ -1,0 +1,35 @@
+"""The file formats that sweeps come in; a new one is a reader and one record here."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import NamedTuple
+
+from mffit.sweeps.csv_text import read_csv
+from mffit.sweeps.raw_table import RawTable
+
+
+class Format(NamedTuple):
+    """One file format."""
+
+    name: str  #: as people call it
+    endings: tuple[str, ...]  #: of file names
+    read: Callable[[Path], RawTable]  #: raises InputError with file and line
+
+
+FORMATS = (Format("CSV", (".csv", ".csv.gz"), read_csv),)
+ENDINGS = tuple(ending for kind in FORMATS for ending in kind.endings)
+
+
+def read(path: Path) -> RawTable:
+    """Read a file by the ending of its name; a name with another ending is read as CSV."""
+    return next((kind for kind in FORMATS if path.name.endswith(kind.endings)), FORMATS[0]).read(path)
+
+
+def stem(path: str) -> str:
+    """The file's name without folder and ending."""
+    name = Path(path).name
+    return name.removesuffix(
+        max((ending for ending in ENDINGS if name.endswith(ending)), key=len, default="")
+    )
