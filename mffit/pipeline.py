@@ -325,12 +325,18 @@ def _settings(config: Config) -> str:
     return f"spin.exact {config.spin.exact}, spin.pecp1 {config.spin.pecp1}, camber stiffness by {config.camber_stiffness.method}"
 
 
-def align(source: str | Path, **options: Any) -> Alignment:
-    """Next steering correction from forward and backward zeros; see :func:`mffit.measured.align`."""
+def align(source: str | Path, *, axes: str | None = None, path_centre: str | None = None) -> Alignment:
+    """Next steering correction from forward and backward zeros; see :func:`mffit.measured.align`.
+
+    Parameters
+    ----------
+    source : path of a ``tyre.toml``, or of a bare table
+    axes, path_centre : what a bare table does not say itself
+    """
     source = Path(source)
     if source.suffix == ".toml":
         config = configuration.load(source)
         points, _ = ingestion.load(config, check_physics=False)
         return direct.align(points, axes=config.rig.axes)
-    points = ingestion.load_table(source, **options)
-    return direct.align(points, axes=options["axes"])
+    points = ingestion.load_table(source, axes=axes, path_centre=path_centre)
+    return direct.align(points, axes=axes or "iso")

@@ -7,13 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from mffit.fit.stages import STAGES
-from mffit.points import Points
+from mffit.points import Points, levels
 from tir.parameters import BY_NAME, Need, Parameter
-
-LOAD_GAP = 0.08
-"""Loads closer than this, relative, are one level."""
-PRESSURE_GAP = 10e3
-"""Pressures [Pa] closer than this are one level."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,37 +39,23 @@ class Design:
 
 
 def design(points: Points, side: str) -> Design:
-    """Count what was varied; cambers within 1 deg are one level."""
+    """Count what was varied."""
     curved = bool(np.any(points.phi_t != 0.0))
-    load = groups(np.log(points.Fz), LOAD_GAP)
-    pressures_at = [levels(points.p[load == k], PRESSURE_GAP) for k in np.unique(load[load >= 0])]
+    load = levels.nearest_labels(points.Fz, levels.LOAD)
+    pressures_at = [levels.count(points.p[load == k], levels.PRESSURE) for k in np.unique(load[load >= 0])]
     both_ways = bool(np.any(points.direction < 0) or np.any(points.mount < 0))
     gamma, alpha = np.degrees(points.gamma), np.degrees(points.alpha)
     return Design(
-        loads=len(pressures_at),
-        pressures=levels(points.p, PRESSURE_GAP),
+        loads=levels.count(points.Fz, levels.LOAD),
+        pressures=levels.count(points.p, levels.PRESSURE),
         pressure_loads=sum(n > 1 for n in pressures_at),
-        cambers=levels(np.abs(gamma), 1.0),
+        cambers=levels.count(np.abs(points.gamma), levels.CAMBER),
         coupled=bool(np.any((np.abs(gamma) > 1.0) & (np.abs(alpha) > 0.5))),
         moment=bool(np.any(np.isfinite(points.Mz))),
         curved=curved,
         shifts=both_ways or not curved,
         symmetric=side == "symmetric",
     )
-
-
-def groups(values: np.ndarray, gap: float) -> np.ndarray:
-    """The level (n,) that every value belongs to, from 0; -1 for NaN. Levels are separated by more than ``gap``."""
-    order = np.argsort(values)
-    steps = np.diff(values[order], prepend=values[order[:1]])
-    label = np.empty(len(values), int)
-    label[order] = np.cumsum(steps > gap)
-    return np.where(np.isfinite(values), label, -1)
-
-
-def levels(values: np.ndarray, gap: float) -> int:
-    """Number of levels among the values."""
-    return int(groups(values, gap).max(initial=-1)) + 1
 
 
 def coverage(points: Points, side: str) -> tuple[StageCoverage, ...]:

@@ -12,7 +12,7 @@ import pytest
 
 import tir
 from mffit.points import make_points
-from mffit.rig import RigFaults
+from mffit.rig import RigFaults, Simulation
 
 TYRE = tir.read(Path(__file__).parents[3] / "samples" / "front-120-70" / "true.tir")
 ANGLES = np.radians([-6.0, -3.0, -1.0, 0.0, 1.0, 3.0, 6.0])

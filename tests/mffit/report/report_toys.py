@@ -14,7 +14,7 @@ from mffit.fit.coverage import coverage
 from mffit.fit.result import Coefficient, FitResult, StageRecord, agreement
 from mffit.pipeline import Result
 from mffit.points import Points, make_points
-from mffit.rig import readings
+from mffit.rig import Simulation
 from tir.parameters import BY_NAME
 
 TRUE = Path(__file__).parents[3] / "samples" / "front-120-70" / "true.tir"
@@ -64,7 +64,7 @@ def made_points(sweeps, *, phi_t=-1 / R, seed=1, u_Fy=NOISE_FY, u_Mz=NOISE_MZ, m
         files=tuple(f"{name}.csv" for name in sweeps),
     )
     rng = np.random.default_rng(seed)
-    Fy, Mz = readings(tir.read(TRUE), points, turn_slip=phi_t != 0.0)
+    Fy, Mz = Simulation.of(tir.read(TRUE), turn_slip=phi_t != 0.0).readings(points)
     n = len(points)
     return points.replace(
         Fy=Fy + NOISE_FY * rng.standard_normal(n),
@@ -116,14 +116,16 @@ def made_result(**changes: Any) -> Result:
     points = made_points(programme(), **changes)
     halves = parts.split(points)
     tyre = tir.read(TRUE)
-    Fy, Mz = readings(tyre, points, turn_slip=bool(points.phi_t.any()))
+    simulation = Simulation.of(tyre, turn_slip=bool(points.phi_t.any()))
+    Fy, Mz = simulation.readings(points)
     fitted = FitResult(
         tyre=tyre,
         written=tyre,
         coefficients=made_coefficients(),
         channels={"Fy": agreement(Fy, points.Fy), "Mz": agreement(Mz, points.Mz)},
         odd={"Fy": agreement(Fy, points.Fy), "Mz": agreement(Mz, points.Mz)},
-        points=points,
+        simulation=simulation,
+        rig={"F0_N": (1.5, 3.0)},
         Fy_model=Fy,
         Mz_model=Mz,
         stages=(StageRecord("Fy", "Side force at zero camber", ("PKY1",), 41.5, 3.2),),

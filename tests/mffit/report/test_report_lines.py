@@ -9,7 +9,7 @@ from report_toys import TRUE, made_points, programme
 import tir
 from mffit.report.curves import curves
 from mffit.report.lines import model_lines
-from mffit.rig import readings
+from mffit.rig import Simulation
 
 
 @pytest.fixture(scope="module")
@@ -17,7 +17,7 @@ def drawn():
     points = made_points(programme())
     tyre = tir.read(TRUE)
     found = curves(points)
-    return points, found, model_lines(tyre, points, found), readings(tyre, points)
+    return points, found, model_lines(Simulation.of(tyre), points, found), Simulation.of(tyre).readings(points)
 
 
 def test_line_meets_the_model_at_both_ends_of_every_curve(drawn):

@@ -2,45 +2,27 @@
 
 from __future__ import annotations
 
-import dataclasses
 import math
 
 import numpy as np
-import pandas as pd
 import pytest
 from report_toys import TRUE, R, made_points, made_result, programme
 
 import tir
-from mffit.report.build_view import as_read, coefficient_rows, known_faults, view_of
+from mffit.report.build_view import coefficient_rows, view_of
 from mffit.report.curves import curves
 from mffit.report.lines import model_lines
-from mffit.rig import RigFaults, readings
-
-
-@pytest.mark.parametrize(("axes", "sign"), [("iso", 1.0), ("sae", -1.0), ("adapted-sae", 1.0)])
-def test_angles_are_the_readings_whatever_the_fit_took_off_them(axes, sign):
-    points = made_points(programme())
-    table = pd.DataFrame({"alpha_deg": sign * np.degrees(points.alpha)})
-    fitted = dataclasses.replace(points, table=table).replace(alpha=points.alpha + 0.01)
-    assert as_read(fitted, axes).alpha == pytest.approx(points.alpha)
+from mffit.rig import RigFaults, Simulation
 
 
 def test_line_includes_the_faults_that_are_known():
     points = made_points(programme())
     faults = RigFaults(alpha_0_deg=0.4, backlash_deg=0.17)
-    tyre = tir.read(TRUE)
+    rig = Simulation.of(tir.read(TRUE), faults)
     found = curves(points)
-    read, lines = readings(tyre, points, faults), model_lines(tyre, points, found, faults)
+    read, lines = rig.readings(points), model_lines(rig, points, found)
     for curve in found:
         assert lines[curve.key].raw["Fy"][[0, -1]] == pytest.approx(read.Fy[curve.index[[0, -1]]])
-
-
-def test_only_a_misalignment_that_was_corrected_counts_as_known():
-    config = made_result().config
-    found = {"alpha_M_deg": 0.3, "misaligned": True}
-    assert known_faults(found, config).alpha_0_deg == 0.3
-    assert known_faults({**found, "misaligned": False}, config).alpha_0_deg == 0.0
-    assert known_faults({}, config) == RigFaults()
 
 
 def test_place_between_the_bounds(result):

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from mffit.points import make_points
-from mffit.rig import RigFaults, readings
+from mffit.rig import RigFaults, Simulation
 from mffit.virtual_rig.faults import Faults
 from mffit.virtual_rig.machine import Machine, at_the_tyre, steady, taken_up, true_alpha
 from mffit.virtual_rig.settings import Settings
@@ -49,7 +49,7 @@ def other_implementation(tyre, s: Settings, **faults):
         s.alpha, s.gamma, s.Fz, p=s.p, V=s.V, phi_t=-1 / R, T=s.T, t=s.t, direction=s.direction.astype(int),
         mount=s.mount.astype(int),
     )  # fmt: skip
-    return readings(tyre, points, RigFaults(**faults))
+    return Simulation.of(tyre, RigFaults(**faults)).readings(points)
 
 
 @pytest.mark.parametrize("fault", SHARED)
