@@ -13,7 +13,7 @@ from mffit.diagnosis.conditions import by_condition
 from mffit.diagnosis.needs import missing
 from mffit.diagnosis.noise import Noise, noise_model, with_uncertainties
 from mffit.diagnosis.result import Diagnosis, Found
-from mffit.diagnosis.selection import TIE, Step, price, projected_cosine, select
+from mffit.diagnosis.selection import TIE, Step, price, select
 from mffit.diagnosis.state import State
 from mffit.diagnosis.ties import separation
 from mffit.diagnosis.unknown import Bump, bump_scan
@@ -242,7 +242,6 @@ def _found(
         gap_after=gap(problem.measured - upto.state.predict(problem.points), noise),
         tied_with=tuple(t.effects[-1].id for t in tied),
         separate_by=best.sentence() if best else "",
-        cosines={t.effects[-1].id: projected_cosine(chosen, t) for t in tied},
     )
 
 

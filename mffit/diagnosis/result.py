@@ -30,7 +30,6 @@ class Found:
     gap_after: Gap  #: with this and all earlier effects
     tied_with: tuple[str, ...]  #: ids that the data do not tell from it
     separate_by: str  #: the run that would
-    cosines: Mapping[str, float]  #: |cos| of the projected signatures, by tied id
 
     def to_json(self) -> dict[str, Any]:
         return {
