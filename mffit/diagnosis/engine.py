@@ -96,7 +96,9 @@ def diagnose(
     return _record(problem, tyre, config, chosen, steps, bump, notes, noise)
 
 
-def _explained(points, start, noise, candidates) -> tuple[Problem, Hypothesis, list[Step], Bump]:
+def _explained(
+    points: Points, start: State, noise: Noise, candidates: Sequence[Effect]
+) -> tuple[Problem, Hypothesis, list[Step], Bump]:
     """Select effects, unless structure that no effect has explains more than all of them together."""
     problem = Problem(points, start, noise)
     scan = bump_scan(points, noise)
@@ -173,7 +175,14 @@ def _lack_of_fit(problem: Problem, chosen: Hypothesis) -> float:
 
 
 def _record(
-    problem: Problem, tyre: Tyre, config: Config, chosen: Hypothesis, steps, bump: Bump, notes, noise: Noise
+    problem: Problem,
+    tyre: Tyre,
+    config: Config,
+    chosen: Hypothesis,
+    steps: Sequence[Step],
+    bump: Bump,
+    notes: Sequence[Note],
+    noise: Noise,
 ) -> Diagnosis:
     points = problem.points
     before, after = problem.start.predict(points), chosen.state.predict(points)
@@ -183,7 +192,6 @@ def _record(
     p_value = float(chi2_distribution.sf(chosen.chi2, max(len(chosen.residual) - len(chosen.numbers), 1)))
     misfit = gap(residual_after, noise).chi2_per_dof
     unexplained = (bump.found and (p_value < 0.05 or not chosen.effects)) or misfit > UNEXPLAINED
-    weights = steps[-1].weights() if steps else {"none": 1.0}
     return Diagnosis(
         points=points,
         noise=problem.noise,
@@ -194,7 +202,7 @@ def _record(
         validation=validate(problem, chosen, noise),
         where=where(points, residual_before, problem.noise),
         effects=found,
-        alternatives=_alternatives(steps, chosen, weights),
+        alternatives=_alternatives(steps, chosen),
         steps=tuple(steps),
         unexplained=unexplained,
         unexplained_where=((_bump_region(bump),) if bump.found else ())
@@ -250,9 +258,12 @@ def _tied(problem: Problem, chosen: Hypothesis, step: Step, others: tuple[Effect
     return out
 
 
-def _alternatives(steps: Sequence[Step], chosen: Hypothesis, weights) -> dict[str, float]:
+def _alternatives(steps: Sequence[Step], chosen: Hypothesis) -> dict[str, float]:
+    """Weights of what was not accepted: in the first step if something was, else in the last."""
+    if not steps:
+        return {}
     accepted = {effect.id for effect in chosen.effects}
-    source = steps[0].weights() if chosen.effects and steps else weights
+    source = steps[0 if chosen.effects else -1].weights()
     return {name: w for name, w in source.items() if name not in accepted and name != "none" and w > 1e-4}
 
 

@@ -27,7 +27,7 @@ def diagnosis_summary(diagnosis: Diagnosis) -> str:
         textwrap.fill(diagnosis.headline, WIDTH),
         table(head, [(name, *(number(value, digits=3) for value in values)) for name, *values in rows]),
         *(_effect(found) for found in diagnosis.effects),
-        _regions("unexplained", diagnosis.unexplained_where) if diagnosis.unexplained else "",
+        _regions(diagnosis.unexplained_where) if diagnosis.unexplained else "",
         paragraphs(wording.notes(diagnosis)),
     ]
     return blocks(parts)
@@ -42,8 +42,10 @@ def _effect(found: Found) -> str:
     return "\n".join(lines)
 
 
-def _regions(title: str, regions: Sequence[Region]) -> str:
-    lines = [f"{title}:"]
+def _regions(regions: Sequence[Region]) -> str:
+    if not regions:
+        return ""  # the headline says that something remains
+    lines = ["unexplained:"]
     for item in regions:
         off = f"{number(item.bias, digits=3)} {CHANNELS[item.channel].unit}"
         lines.append(

@@ -147,6 +147,8 @@ def test_summary_for_the_terminal(misaligned, unknown, clean):
     assert "(rig), confidence" in summary
     assert "alpha_0_deg = 0.3" in summary
     assert "unexplained:" in text.diagnosis_summary(unknown)
+    nowhere = dataclasses.replace(unknown, unexplained_where=())
+    assert "unexplained:" not in text.diagnosis_summary(nowhere)
     for diagnosis in (misaligned, unknown, clean):
         said = text.diagnosis_summary(diagnosis)
         assert said.isascii()
