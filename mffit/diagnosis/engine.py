@@ -3,17 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from typing import Any
 
 import numpy as np
 from scipy.stats import chi2 as chi2_distribution
 
+from mffit.config import Config
+from mffit.diagnosis import wording
 from mffit.diagnosis.candidates import Hypothesis, Problem
 from mffit.diagnosis.conditions import by_condition
 from mffit.diagnosis.needs import missing
 from mffit.diagnosis.noise import Noise, noise_model, with_uncertainties
+from mffit.diagnosis.notes import HardlyThisTyre, Note, NotVisible, OneSweep, UncertaintiesEnlarged
 from mffit.diagnosis.result import Diagnosis, Found
-from mffit.diagnosis.selection import TIE, Step, price, projected_cosine, select
+from mffit.diagnosis.selection import TIE, Step, price, select
 from mffit.diagnosis.ties import separation
 from mffit.diagnosis.unknown import Bump, bump_scan
 from mffit.diagnosis.validate import gap, validate
@@ -39,7 +41,7 @@ LACK_OF_FIT = 1.3
 def diagnose(
     points: Points,
     tyre: Tyre,
-    config: Any,
+    config: Config,
     *,
     effects: Sequence[Effect] = CATALOG,
     progress: Callable[[str], None] = lambda sentence: None,
@@ -74,7 +76,7 @@ def diagnose(
     candidates, notes = possible(effects, points, start)
     if len(np.unique(points.sweep)) < 2:
         candidates = []
-        notes.append("One sweep cannot tell causes apart: add sweeps at another load, camber or direction.")
+        notes.append(OneSweep())
     progress("trying every effect")
     problem, chosen, steps, bump = _explained(points, start, noise, candidates)
     if config.model.u_coefficients and chosen.effects:
@@ -84,22 +86,18 @@ def diagnose(
     if candidates and steps and not (bump.found and not chosen.effects):
         inflation = _lack_of_fit(problem, chosen)
         if inflation > STRANGER:
-            notes.append(
-                f"Cannot tell: the model misses the points by {inflation:.0f} times their noise even with the best effects "
-                "added, so it is hardly a model of this tyre; fit it first (mffit build)."
-            )
+            notes.append(HardlyThisTyre(inflation))
             chosen, steps = problem.null, steps[:1]
         elif inflation > 1.0:
-            notes.append(
-                "The model misses the points by more than their noise whatever is added; uncertainties were "
-                f"enlarged {inflation:.1f} times so that effects are judged against the misfit that remains."
-            )
+            notes.append(UncertaintiesEnlarged(inflation))
             problem, chosen, steps, bump = _explained(points, start, noise.inflated(inflation), candidates)
     progress("checking on left-out sweeps")
     return _record(problem, tyre, config, chosen, steps, bump, notes, noise)
 
 
-def _explained(points, start, noise, candidates) -> tuple[Problem, Hypothesis, list[Step], Bump]:
+def _explained(
+    points: Points, start: Simulation, noise: Noise, candidates: Sequence[Effect]
+) -> tuple[Problem, Hypothesis, list[Step], Bump]:
     """Select effects, unless structure that no effect has explains more than all of them together."""
     problem = Problem(points, start, noise)
     scan = bump_scan(points, noise)
@@ -142,21 +140,19 @@ def refuse_strangers(points: Points, tyre: Tyre, start: Simulation) -> None:
             )
 
 
-def possible(effects: Sequence[Effect], points: Points, start: Simulation) -> tuple[list[Effect], list[str]]:
-    """Effects that the data can show, and a note on the others."""
+def possible(effects: Sequence[Effect], points: Points, start: Simulation) -> tuple[list[Effect], list[Note]]:
+    """Effects that the data can show, and notes on the others."""
     out: list[Effect] = []
-    lacking: dict[str, list[str]] = {}
+    lacking: dict[tuple[str, ...], list[str]] = {}
     for effect in effects:
         lack = missing(effect, points)
         if effect.id == "turn-slip" and start.turn_slip:
             continue
         if lack:
-            lacking.setdefault(" and ".join(lack), []).append(effect.id)
+            lacking.setdefault(lack, []).append(effect.id)
         else:
             out.append(effect)
-    return out, [
-        f"Not visible in these data, which lack {lack}: {', '.join(ids)}." for lack, ids in lacking.items()
-    ]
+    return out, [NotVisible(lack, tuple(ids)) for lack, ids in lacking.items()]
 
 
 def _lack_of_fit(problem: Problem, chosen: Hypothesis) -> float:
@@ -178,7 +174,14 @@ def _lack_of_fit(problem: Problem, chosen: Hypothesis) -> float:
 
 
 def _record(
-    problem: Problem, tyre: Tyre, config, chosen: Hypothesis, steps, bump: Bump, notes, noise: Noise
+    problem: Problem,
+    tyre: Tyre,
+    config: Config,
+    chosen: Hypothesis,
+    steps: Sequence[Step],
+    bump: Bump,
+    notes: Sequence[Note],
+    noise: Noise,
 ) -> Diagnosis:
     points = problem.points
     before, after = problem.start.predict(points), chosen.state.predict(points)
@@ -188,8 +191,6 @@ def _record(
     p_value = float(chi2_distribution.sf(chosen.chi2, max(len(chosen.residual) - len(chosen.numbers), 1)))
     misfit = gap(residual_after, noise).chi2_per_dof
     unexplained = (bump.found and (p_value < 0.05 or not chosen.effects)) or misfit > UNEXPLAINED
-    weights = steps[-1].weights() if steps else {"none": 1.0}
-    name = f"{config.tyre.name}.tir"
     return Diagnosis(
         points=points,
         noise=problem.noise,
@@ -200,7 +201,7 @@ def _record(
         validation=validate(problem, chosen, noise),
         where=where(points, residual_before, problem.noise),
         effects=found,
-        alternatives=_alternatives(steps, chosen, weights),
+        alternatives=_alternatives(steps, chosen),
         steps=tuple(steps),
         unexplained=unexplained,
         unexplained_where=((_bump_region(bump),) if bump.found else ())
@@ -208,12 +209,8 @@ def _record(
         bump=bump if bump.found else None,
         state=chosen.state,
         tyre=_corrected(tyre, chosen),
-        turn_slip_before=problem.start.turn_slip,
-        headline=_headline(
-            found, unexplained, bump, gap(residual_before, noise), gap(residual_after, noise), noise
-        ),
         notes=tuple(notes),
-        model_after=name,
+        model_after=f"{config.tyre.name}.tir",
     )
 
 
@@ -231,8 +228,7 @@ def _found(
     top = max(logs.values())
     share = {name: float(np.exp(v - top)) for name, v in logs.items()}
     certainty = 1.0 - step.weights().get("none", 0.0)
-    sentences = [separation(problem.points, chosen, t, problem.noise.Fy, problem.noise.Mz) for t in tied]
-    best = min(sentences, key=lambda s: s.chi2, default=None)
+    separations = [separation(problem.points, chosen, t, problem.noise.Fy, problem.noise.Mz) for t in tied]
     upto = chosen if not others else step.best
     return Found(
         effect=effect,
@@ -240,8 +236,7 @@ def _found(
         parameters={n: (chosen.numbers[n], chosen.stderr.get(n, 0.0)) for n in effect.parameters},
         gap_after=gap(problem.measured - upto.state.predict(problem.points), noise),
         tied_with=tuple(t.effects[-1].id for t in tied),
-        separate_by=best.sentence() if best else "",
-        cosines={t.effects[-1].id: projected_cosine(chosen, t) for t in tied},
+        separation=min(separations, key=lambda s: s.chi2, default=None),
     )
 
 
@@ -262,9 +257,12 @@ def _tied(problem: Problem, chosen: Hypothesis, step: Step, others: tuple[Effect
     return out
 
 
-def _alternatives(steps: Sequence[Step], chosen: Hypothesis, weights) -> dict[str, float]:
+def _alternatives(steps: Sequence[Step], chosen: Hypothesis) -> dict[str, float]:
+    """Weights of what was not accepted: in the first step if something was, else in the last."""
+    if not steps:
+        return {}
     accepted = {effect.id for effect in chosen.effects}
-    source = steps[0].weights() if chosen.effects and steps else weights
+    source = steps[0 if chosen.effects else -1].weights()
     return {name: w for name, w in source.items() if name not in accepted and name != "none" and w > 1e-4}
 
 
@@ -274,7 +272,6 @@ def _bump_region(bump: Bump) -> Region:
         bump.region,
         bump.amplitude,
         float(np.sign(bump.amplitude) * np.sqrt(2.0 * max(bump.gain, 0.0))),
-        0,
     )
 
 
@@ -286,55 +283,5 @@ def _corrected(tyre: Tyre, chosen: Hypothesis) -> Tyre:
             if name in BY_NAME:
                 changes[name] = chosen.numbers[name]
                 error = chosen.stderr.get(name, 0.0)
-                status[name] = f"diagnosed, {effect.id}, was {float(tyre[name]):.6g}, +- {error:.2g}"
+                status[name] = wording.status(effect.id, float(tyre[name]), error)
     return tyre.replace(**changes).annotate(status=status) if changes else tyre
-
-
-def _headline(
-    found: Sequence[Found], unexplained: bool, bump: Bump | None, before, after, noise: Noise
-) -> str:
-    numbers = f"side force misses by {before.Fy_rmse_N:.1f} N rms, the noise is {noise.Fy:.1f} N"
-    if not found and not unexplained:
-        return f"No effect is missing that these data could show: {numbers}."
-    place = " and ".join(in_words(name, limits) for name, limits in bump.region.items()) if bump else ""
-    if not found and bump is None:
-        return f"The model misses the data by more than their noise, and no effect of the library explains it: {numbers}."
-    if not found and bump is not None:
-        unit = "N" if bump.channel == "Fy" else "Nm"
-        return (
-            f"There is structure that no effect of the library describes: {bump.channel} is off by {bump.amplitude:.3g} {unit} "
-            f"around {place}."
-        )
-    names = " and ".join(
-        f"{f.effect.name}" + (f" (or {' or '.join(f.tied_with)}, not separable here)" if f.tied_with else "")
-        for f in found
-    )
-    verb, pronoun = ("effect is", "it") if len(found) == 1 else ("effects are", "them")
-    sentence = (
-        f"The missing {verb} {names}: with {pronoun} the side force misses by {after.Fy_rmse_N:.1f} N rms"
-    )
-    sentence += f" instead of {before.Fy_rmse_N:.1f} N (noise {noise.Fy:.1f} N)"
-    if not unexplained:
-        return sentence + "."
-    return sentence + (
-        f"; {bump.channel} stays unexplained around {place}." if bump else "; the rest stays unexplained."
-    )
-
-
-WORDS = {
-    "alpha_deg": ("sideslip", "deg"),
-    "gamma_deg": ("camber", "deg"),
-    "Fz_N": ("load", "N"),
-    "p_kPa": ("pressure", "kPa"),
-    "V_mps": ("speed", "m/s"),
-    "T_degC": ("temperature", "degC"),
-    "t_s": ("time", "s"),
-}
-
-
-def in_words(name: str, limits: tuple[float, float]) -> str:
-    """A range of one condition as an engineer says it."""
-    if name == "direction":
-        return "backward runs" if limits[1] < 0 else "forward runs"
-    word, unit = WORDS[name]
-    return f"{word} {limits[0]:.3g} to {limits[1]:.3g} {unit}"

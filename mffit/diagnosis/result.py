@@ -8,8 +8,11 @@ from typing import Any
 
 import numpy as np
 
+from mffit.diagnosis import wording
 from mffit.diagnosis.noise import Noise
+from mffit.diagnosis.notes import Note
 from mffit.diagnosis.selection import Step
+from mffit.diagnosis.ties import Separation
 from mffit.diagnosis.unknown import Bump
 from mffit.diagnosis.validate import Gap, Validation
 from mffit.diagnosis.where import Region
@@ -28,21 +31,7 @@ class Found:
     parameters: Mapping[str, tuple[float, float]]  #: name -> (value, standard error)
     gap_after: Gap  #: with this and all earlier effects
     tied_with: tuple[str, ...]  #: ids that the data do not tell from it
-    separate_by: str  #: the run that would
-    cosines: Mapping[str, float]  #: |cos| of the projected signatures, by tied id
-
-    def to_json(self) -> dict[str, Any]:
-        return {
-            "id": self.effect.id,
-            "name": self.effect.name,
-            "kind": self.effect.kind,
-            "physics": self.effect.physics,
-            "confidence": self.confidence,
-            "parameters": {n: {"value": v, "stderr": s} for n, (v, s) in self.parameters.items()},
-            "gap_after": self.gap_after.to_json(),
-            "tied_with": list(self.tied_with),
-            "separate_by": self.separate_by,
-        }
+    separation: Separation | None  #: the run that would, if any is tied
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,9 +54,7 @@ class Diagnosis:
     bump: Bump | None
     state: Simulation  #: the simulation after all corrections
     tyre: Tyre  #: the corrected property file
-    turn_slip_before: bool
-    headline: str  #: one sentence
-    notes: tuple[str, ...]
+    notes: tuple[Note | str, ...]  #: facts, and sentences of whoever ran the diagnosis
     model_after: str  #: file name of the corrected model in the output folder
 
     @property
@@ -75,26 +62,57 @@ class Diagnosis:
         """Rig faults and environment terms that were found."""
         return self.state.faults
 
+    @property
+    def headline(self) -> str:
+        """The whole answer in one sentence."""
+        return wording.headline(self)
+
+    def ranked_alternatives(self) -> list[tuple[str, float]]:
+        """Id and confidence of what was not accepted, likeliest first."""
+        return sorted(self.alternatives.items(), key=lambda item: -item[1])
+
     def to_json(self) -> dict[str, Any]:
         """The content of diagnosis.json."""
         return {
             "headline": self.headline,
-            "gap_before": self.gap_before.to_json(),
-            "gap_after": self.gap_after.to_json(),
+            "gap_before": _gap(self.gap_before),
+            "gap_after": _gap(self.gap_after),
             "validation": {
-                "method": self.validation.method,
-                "gap_before": self.validation.gap_before.to_json(),
-                "gap_after": self.validation.gap_after.to_json(),
+                "method": wording.method(self.validation),
+                "gap_before": _gap(self.validation.gap_before),
+                "gap_after": _gap(self.validation.gap_after),
             },
-            "where": [region.to_json() for region in self.where],
-            "effects": [found.to_json() for found in self.effects],
+            "where": [_region(region) for region in self.where],
+            "effects": [_found(found) for found in self.effects],
             "alternatives": [
-                {"id": name, "confidence": weight}
-                for name, weight in sorted(self.alternatives.items(), key=lambda item: -item[1])
+                {"id": name, "confidence": weight} for name, weight in self.ranked_alternatives()
             ],
             "unexplained": self.unexplained,
-            "unexplained_where": [region.to_json() for region in self.unexplained_where],
+            "unexplained_where": [_region(region) for region in self.unexplained_where],
             "noise_floor": {"Fy_N": self.noise.Fy, "Mz_Nm": self.noise.Mz, "source": self.noise.source},
             "model_after": self.model_after,
-            "notes": list(self.notes),
+            "notes": wording.notes(self),
         }
+
+
+def _gap(gap: Gap) -> dict[str, float]:
+    return {"Fy_rmse_N": gap.Fy_rmse_N, "Mz_rmse_Nm": gap.Mz_rmse_Nm, "chi2_per_dof": gap.chi2_per_dof}
+
+
+def _region(region: Region) -> dict[str, Any]:
+    limits = {name: list(limits) for name, limits in region.region.items()}
+    return {"channel": region.channel, "region": limits, "bias": region.bias, "z": region.z}
+
+
+def _found(found: Found) -> dict[str, Any]:
+    return {
+        "id": found.effect.id,
+        "name": found.effect.name,
+        "kind": found.effect.kind,
+        "physics": found.effect.physics,
+        "confidence": found.confidence,
+        "parameters": {n: {"value": v, "stderr": s} for n, (v, s) in found.parameters.items()},
+        "gap_after": _gap(found.gap_after),
+        "tied_with": list(found.tied_with),
+        "separate_by": wording.separation(found.separation),
+    }

@@ -6,8 +6,6 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-import numpy as np
-
 from mffit.diagnosis.candidates import Hypothesis, Problem
 from mffit.effects import Effect
 from mffit.rig import Simulation
@@ -15,6 +13,8 @@ from mffit.rig import Simulation
 MOST_EFFECTS = 4
 EXCHANGED = 4
 """Candidates that may take the place of an accepted effect: the best of the step, the others have no chance."""
+EXCHANGE_GAIN = 1.0
+"""Log evidence by which a set must be better than the one it takes the place of."""
 MARGIN = 4.0
 """Log evidence an effect must bring beyond what picking the best of the whole list brings by chance."""
 NEVER_IDENTIFIED = 1.0
@@ -43,12 +43,6 @@ class Step:
     @property
     def passes(self) -> bool:
         return self.gain > self.threshold
-
-    @property
-    def tied(self) -> tuple[Hypothesis, ...]:
-        """Other trials that the data do not tell from the best."""
-        near = [t for t in self.trials[1:] if self.best.log_evidence - t.log_evidence < TIE]
-        return tuple(t for t in near if t.log_evidence - self.before.log_evidence > self.threshold)
 
     def prior(self, trial: Hypothesis) -> float:
         """Log prior of the trial's newest effect."""
@@ -82,61 +76,75 @@ def forward_step(problem: Problem, before: Hypothesis, candidates: Sequence[Effe
     taken = {effect.id for effect in before.effects}
     trials = [problem.fit((*before.effects, e), before.numbers) for e in candidates if e.id not in taken]
     trials.sort(key=lambda t: -(t.log_evidence + log_prior(t.effects[-1], problem.start)))
-    return Step(before, tuple(trials), price(len(trials)), problem.start)
+    return Step(before, tuple(trials), price(len(candidates)), problem.start)
 
 
 def price(candidates: int) -> float:
-    """Gain of log evidence that an effect must bring: the choice among all candidates, and a margin."""
+    """Log evidence that an effect must bring to be taken, and to be kept: the choice among all candidates, and a margin."""
     return math.log(max(candidates, 1)) + MARGIN
 
 
 def select(problem: Problem, candidates: Sequence[Effect]) -> tuple[Hypothesis, list[Step]]:
-    """Forward steps until nothing passes; after each, exchange and drop what became needless."""
-    current, steps = problem.null, []
+    """Forward steps until nothing passes; after each, exchange and drop what became needless.
+
+    Fits end in local optima, so that a set can look better or worse when it is met again. A set that was left for
+    another is therefore never entered a second time, which ends the search after finitely many steps.
+    """
+    current, steps, left = problem.null, [], set[frozenset[str]]()
     while len(current.effects) < MOST_EFFECTS:
         step = forward_step(problem, current, candidates)
         steps.append(step)
-        if not step.passes:
+        left.add(ids(current))
+        if not step.passes or ids(step.best) in left:
             break
         near = [trial.effects[-1] for trial in (*step.trials[:EXCHANGED], *steps[0].trials[:EXCHANGED])]
-        current = _improved(problem, step.best, tuple(dict.fromkeys(near)), price(len(candidates)))
+        current = _exchanged(problem, step.best, tuple(dict.fromkeys(near)), left)
+        current = _without_needless(problem, current, step.threshold, left)
     return current, steps
 
 
-def _improved(
-    problem: Problem, current: Hypothesis, candidates: Sequence[Effect], needed: float
+def ids(hypothesis: Hypothesis) -> frozenset[str]:
+    """The set of effects of a hypothesis, whatever their order."""
+    return frozenset(effect.id for effect in hypothesis.effects)
+
+
+def _exchanged(
+    problem: Problem, current: Hypothesis, candidates: Sequence[Effect], left: set[frozenset[str]]
 ) -> Hypothesis:
-    """Exchange single effects while that helps, then drop those whose evidence is gone."""
-    for _ in range(2):
+    """Exchange single effects while that helps; adds to ``left`` what was given up."""
+    for _ in range(2 if len(current.effects) > 1 else 0):
         best = current
-        for i in range(len(current.effects) - (len(current.effects) == 1)):
+        for i in range(len(current.effects)):
             rest = tuple(e for k, e in enumerate(current.effects) if k != i)
             for other in candidates:
-                if other.id in {e.id for e in current.effects}:
+                others = (*rest, other)
+                if other in current.effects or frozenset(e.id for e in others) in left:
                     continue
-                trial = problem.fit((*rest, other), _numbers_of(rest, current))
-                if trial.log_evidence > best.log_evidence + 1.0:
+                trial = problem.fit(others, _numbers_of(rest, current))
+                if trial.log_evidence > best.log_evidence + EXCHANGE_GAIN:
                     best = trial
         if best is current:
             break
+        left.add(ids(current))
         current = best
+    return current
+
+
+def _without_needless(
+    problem: Problem, current: Hypothesis, needed: float, left: set[frozenset[str]]
+) -> Hypothesis:
+    """Drop the first effect beside the others that brings less than ``needed``; adds to ``left`` what was given up."""
     for effect in current.effects if len(current.effects) > 1 else ():
         rest = tuple(e for e in current.effects if e.id != effect.id)
+        if frozenset(e.id for e in rest) in left:
+            continue
         without = problem.fit(rest, _numbers_of(rest, current))
         if current.log_evidence - without.log_evidence < needed:
-            current = without
-            break
+            left.add(ids(current))
+            return without
     return current
 
 
 def _numbers_of(effects: Sequence[Effect], hypothesis: Hypothesis) -> dict[str, float]:
     names = {name for effect in effects for name in effect.parameters}
     return {name: value for name, value in hypothesis.numbers.items() if name in names}
-
-
-def projected_cosine(a: Hypothesis, b: Hypothesis) -> float:
-    """|cos| between what two hypotheses change in the whitened readings, relative to their common start."""
-    if not a.jacobian.shape[1] or not b.jacobian.shape[1]:
-        return float("nan")
-    u, v = a.jacobian[:, -1], b.jacobian[:, -1]
-    return float(abs(u @ v) / max(np.linalg.norm(u) * np.linalg.norm(v), 1e-300))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from enum import Enum, auto
 
 import numpy as np
 
@@ -13,31 +14,34 @@ TELLING = 9.0
 """Expected chi2 between two explanations at which a run is worth making."""
 
 
-@dataclass(frozen=True, slots=True)
-class Run:
+class Run(Enum):
     """A run that could be added to the programme."""
 
-    description: str
-    points: Points
+    BACKWARD = auto()
+    TURNED_ON_RIM = auto()
+    OTHER_LOAD = auto()
+    CAMBER = auto()
+    BACKWARD_CAMBER = auto()
+    LEANED = auto()
+    LOW_PRESSURE = auto()
+    FAST = auto()
+    WARM = auto()
+    LATE = auto()
+    STRAIGHT = auto()
+    WIDE = auto()
+    STRAIGHT_CAMBER = auto()
 
 
 @dataclass(frozen=True, slots=True)
 class Separation:
     """The best run to tell two explanations apart, and what it would bring."""
 
-    run: str
+    run: Run
+    load: float  #: at which it would be run [N]
     chi2: float  #: expected, for the explanations as fitted
 
-    def sentence(self) -> str:
-        if self.chi2 < TELLING:
-            return (
-                f"none of the usual runs separates them at this size; the best would be {self.run} "
-                f"(expected chi2 {self.chi2:.1f})"
-            )
-        return f"{self.run} (expected chi2 {self.chi2:.0f})"
 
-
-def candidate_runs(points: Points) -> tuple[Run, ...]:
+def candidate_runs(points: Points) -> tuple[tuple[Run, Points], ...]:
     """Runs a rig could add: the other direction or mount, other loads, radii, cambers, pressures and speeds."""
     main = points.select(
         main_pressure(points) & (points.direction > 0) & (points.mount > 0) & ~points.continuous
@@ -47,57 +51,41 @@ def candidate_runs(points: Points) -> tuple[Run, ...]:
     reach = float(np.max(np.abs(main.alpha)))
     slip = _line(main, load, alpha=np.linspace(-reach, reach, 13))
     camber = _line(main, load, gamma=np.radians([-40, -25, -15, -8, -4, 0, 4, 8, 15, 25, 40]))
+    backward = -np.ones(len(slip), int)
     warmer = np.nan_to_num(slip.T, nan=25.0) + 20.0
     later = np.full(len(slip), 1.2 * float(np.max(np.nan_to_num(points.t))) + 600.0)
     runs = [
-        Run(f"a backward sideslip sweep at {load:.0f} N", slip.replace(direction=-np.ones(len(slip), int))),
-        Run(f"a sideslip sweep at {load:.0f} N with the tyre turned on its rim", slip.replace(mount=-np.ones(len(slip), int))),
-        Run(f"a sideslip sweep at {1.4 * loads.max():.0f} N", slip.replace(Fz=np.full(len(slip), 1.4 * loads.max()))),
-        Run(f"a sideslip sweep at {0.5 * loads.min():.0f} N", slip.replace(Fz=np.full(len(slip), 0.5 * loads.min()))),
-        Run(f"a camber sweep to 40 deg at {load:.0f} N", camber),
-        Run(
-            f"a backward camber sweep at {load:.0f} N", camber.replace(direction=-np.ones(len(camber), int))
-        ),
-        Run(f"a sideslip sweep at 20 deg camber and {load:.0f} N", slip.replace(gamma=np.full(len(slip), np.radians(20.0)))),
-        Run(f"a sideslip sweep at 0.8 of the pressure and {load:.0f} N", slip.replace(p=0.8 * slip.p)),
-        Run(f"a sideslip sweep at twice the speed and {load:.0f} N", slip.replace(V=2.0 * slip.V)),
-        Run(f"a repeated sideslip sweep at {load:.0f} N with the tyre 20 K warmer", slip.replace(T=warmer)),
-        Run(f"a repeated sideslip sweep at {load:.0f} N at the end of the test", slip.replace(t=later)),
-    ]  # fmt: skip
+        (Run.BACKWARD, slip.replace(direction=backward)),
+        (Run.TURNED_ON_RIM, slip.replace(mount=backward)),
+        (Run.OTHER_LOAD, slip.replace(Fz=np.full(len(slip), 1.4 * loads.max()))),
+        (Run.OTHER_LOAD, slip.replace(Fz=np.full(len(slip), 0.5 * loads.min()))),
+        (Run.CAMBER, camber),
+        (Run.BACKWARD_CAMBER, camber.replace(direction=backward[: len(camber)])),
+        (Run.LEANED, slip.replace(gamma=np.full(len(slip), np.radians(20.0)))),
+        (Run.LOW_PRESSURE, slip.replace(p=0.8 * slip.p)),
+        (Run.FAST, slip.replace(V=2.0 * slip.V)),
+        (Run.WARM, slip.replace(T=warmer)),
+        (Run.LATE, slip.replace(t=later)),
+    ]
     if np.any(points.phi_t):
-        runs.append(
-            Run(
-                f"a sideslip sweep at {load:.0f} N on a straight path",
-                slip.replace(phi_t=np.zeros(len(slip))),
-            )
-        )
-        runs.append(
-            Run(
-                f"a sideslip sweep at {load:.0f} N on a path of twice the radius",
-                slip.replace(phi_t=slip.phi_t / 2.0),
-            )
-        )
-        runs.append(
-            Run(
-                f"a camber sweep at {load:.0f} N on a straight path",
-                camber.replace(phi_t=np.zeros(len(camber))),
-            )
-        )
+        runs += [
+            (Run.STRAIGHT, slip.replace(phi_t=np.zeros(len(slip)))),
+            (Run.WIDE, slip.replace(phi_t=slip.phi_t / 2.0)),
+            (Run.STRAIGHT_CAMBER, camber.replace(phi_t=np.zeros(len(camber)))),
+        ]
     return tuple(runs)
 
 
 def separation(points: Points, a: Hypothesis, b: Hypothesis, noise_Fy: float, noise_Mz: float) -> Separation:
     """The candidate run at which the two refitted explanations differ most."""
-    best = Separation("", -1.0)
-    for run in candidate_runs(points):
-        difference = a.state.predict(run.points) - b.state.predict(run.points)
-        n = len(run.points)
+    found = []
+    for run, added in candidate_runs(points):
+        n, difference = len(added), a.state.predict(added) - b.state.predict(added)
         chi2 = float(np.sum((difference[:n] / noise_Fy) ** 2))
         if np.isfinite(noise_Mz):
             chi2 += float(np.sum((difference[n:] / noise_Mz) ** 2))
-        if chi2 > best.chi2:
-            best = Separation(run.description, chi2)
-    return best
+        found.append(Separation(run, float(added.Fz[0]), chi2))
+    return max(found, key=lambda s: s.chi2)
 
 
 def _line(points: Points, load: float, alpha=0.0, gamma=0.0) -> Points:

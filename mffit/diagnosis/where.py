@@ -32,15 +32,6 @@ class Region:
     region: dict[str, tuple[float, float]]
     bias: float  #: mean of measured minus simulated [N] or [Nm]
     z: float  #: in standard errors, correlations counted
-    points: int
-
-    def to_json(self) -> dict:
-        return {
-            "channel": self.channel,
-            "region": {name: list(limits) for name, limits in self.region.items()},
-            "bias": self.bias,
-            "z": self.z,
-        }
 
 
 def where(points: Points, residual: np.ndarray, noise: Noise) -> tuple[Region, ...]:
@@ -69,9 +60,7 @@ def where(points: Points, residual: np.ndarray, noise: Noise) -> tuple[Region, .
             values = residual[noise.used[rows]]
             error = noise.error_of_sum(rows) / len(rows)
             z = float(values.mean()) / error
-            found.append(
-                (Region(channel, region, float(values.mean()), z, len(rows)), frozenset(rows.tolist()))
-            )
+            found.append((Region(channel, region, float(values.mean()), z), frozenset(rows.tolist())))
             p_values.append(2.0 * norm.sf(abs(z)))
     if not found:
         return ()

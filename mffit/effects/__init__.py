@@ -2,5 +2,6 @@
 
 from mffit.effects.catalog import CATALOG
 from mffit.effects.effect import Effect, Free
+from mffit.effects.needs import NEEDS
 
-__all__ = ["CATALOG", "Effect", "Free"]
+__all__ = ["CATALOG", "NEEDS", "Effect", "Free"]

@@ -31,11 +31,10 @@ class Effect:
     kind: str  #: "tyre" | "rig" | "environment"
     physics: str  #: one sentence
     free: tuple[Free, ...]
-    needs: tuple[str, ...] = ()  #: what the data must vary for the effect to be seen; see diagnose.needs
+    needs: tuple[str, ...] = ()  #: what the data must vary for the effect to be seen; see effects.needs
     parity: str = ""  #: under alpha, gamma, phi_t -> reversed
     confusable_with: tuple[str, ...] = ()
     prior: float = 0.0  #: log prior weight, decides ties only: rig causes before tyre causes
-    also: tuple[str, ...] = ()  #: what else to do about it
 
     @property
     def parameters(self) -> tuple[str, ...]:

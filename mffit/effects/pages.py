@@ -9,6 +9,7 @@ from pathlib import Path
 
 from mffit.effects.catalog import CATALOG
 from mffit.effects.effect import Effect, Free
+from mffit.effects.needs import NEEDS
 from tir.parameters import BY_NAME
 
 RIG_NUMBERS = {
@@ -28,20 +29,6 @@ RIG_NUMBERS = {
         "relaxation length: sigma d(alpha')/ds + alpha' = alpha, the force answers to alpha'",
     ),
 }
-NEEDED = {
-    "curved": "a curved path",
-    "spin": "a curved path, or large camber",
-    "camber": "points at camber",
-    "coupled": "sideslip and camber together",
-    "slip": "a sideslip sweep",
-    "loads": "at least two loads",
-    "pressures": "at least two pressures",
-    "moment": "Mz",
-    "temperatures": "a column `T_degC` that varies",
-    "speeds": "at least two speeds",
-    "times": "the time of every point, `t_s`",
-    "continuous": "a continuous sweep: `time_s` with a moving angle",
-}
 RESULT = {
     "tyre": "It becomes coefficients of the corrected `.tir`, with the reason in their comments.",
     "rig": "It becomes a correction of the readings, and the direct method is redone with it; the tyre's file does not change.",
@@ -59,7 +46,7 @@ def page(effect: Effect, catalog: Sequence[Effect] = CATALOG) -> str:
     catalog : the library, for links to the effects that it can be confused with
     """
     names = {other.id: other.name for other in catalog}
-    needs = [NEEDED[need] for need in effect.needs] or ["nothing special"]
+    needs = [NEEDS[need] for need in effect.needs] or ["nothing special"]
     alike = [f"[{names[i]}]({i}.md) (`{i}`)" if i in names else f"`{i}`" for i in effect.confusable_with]
     lines = [
         f"# {effect.name[:1].upper()}{effect.name[1:]}",
@@ -85,7 +72,6 @@ def page(effect: Effect, catalog: Sequence[Effect] = CATALOG) -> str:
             if alike
             else "No other effect of the library looks like it in a full programme."
         ),
-        *([f"Also: {_listed(effect.also)}."] if effect.also else []),
     ]  # fmt: skip
     return "\n".join(lines) + "\n"
 

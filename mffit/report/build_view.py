@@ -9,12 +9,11 @@ from typing import Any
 import numpy as np
 
 from mffit.points import Points
+from mffit.quantities import CHANNELS
 from mffit.report.curves import Condition, Curve, conditions, curves
 from mffit.report.lines import Line, model_lines
 from tir.parameters import BY_NAME
 
-TITLES = {"Fy": "side force", "Mz": "self-aligning moment"}
-UNITS = {"Fy": "N", "Mz": "Nm"}
 STATUS_ORDER = ("measured", "fitted", "regularised", "estimate", "base", "default")
 
 
@@ -32,11 +31,11 @@ class Channel:
 
     @property
     def title(self) -> str:
-        return TITLES[self.name]
+        return CHANNELS[self.name].word
 
     @property
     def unit(self) -> str:
-        return UNITS[self.name]
+        return CHANNELS[self.name].unit
 
     @property
     def label(self) -> str:

@@ -7,16 +7,19 @@ from pathlib import Path
 from typing import Any
 
 import mffit
+from mffit.diagnosis import Diagnosis, wording
+from mffit.diagnosis.selection import TIE
+from mffit.quantities import CHANNELS
 from mffit.report import page
 from mffit.report.diagnosis_view import shown_steps, view_of
 
 
-def write_diagnosis(diagnosis: Any, folder: Path) -> None:
+def write_diagnosis(diagnosis: Diagnosis, folder: Path) -> None:
     """Write ``plots/*.png`` and ``diagnosis.html`` of a diagnosis.
 
     Parameters
     ----------
-    diagnosis : ``mffit.diagnosis.Diagnosis``
+    diagnosis : the record
     folder : existing folder to write to
     """
     from mffit.report.figures import gap
@@ -31,7 +34,10 @@ def write_diagnosis(diagnosis: Any, folder: Path) -> None:
         "diagnosis.html.j2",
         folder / "diagnosis.html",
         view=view,
-        d=view.summary,
+        d=diagnosis,
+        say=wording,
+        tie=TIE,
+        channels=CHANNELS,
         pictures=page.draw(folder, figures),
         version=mffit.__version__,
     )

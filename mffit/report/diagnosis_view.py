@@ -4,19 +4,19 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
+from mffit.diagnosis import Diagnosis
+from mffit.diagnosis.selection import Step
+from mffit.diagnosis.where import Region
 from mffit.effects import CATALOG
 from mffit.points import Points
+from mffit.quantities import CHANNELS
 from mffit.report.curves import Condition, conditions
 from tir.parameters import BY_NAME
 
 MOST_FRAMES = 3
-UNITS = {"Fy": "N", "Mz": "Nm"}
-GAP_KEYS = {"Fy": "Fy_rmse_N", "Mz": "Mz_rmse_Nm"}
-FLOOR_KEYS = {"Fy": "Fy_N", "Mz": "Mz_Nm"}
 
 
 @dataclass(frozen=True, slots=True)
@@ -26,10 +26,11 @@ class GapChannel:
     name: str
     before: np.ndarray
     after: np.ndarray
+    noise: float  #: typical of a point, in ``unit``
 
     @property
     def unit(self) -> str:
-        return UNITS[self.name]
+        return CHANNELS[self.name].unit
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,13 +58,13 @@ class RankedStep:
 
 @dataclass(frozen=True, slots=True)
 class DiagnosisView:
-    """Everything the diagnosis page needs; ``summary`` is the content of ``diagnosis.json``."""
+    """Everything the diagnosis page needs."""
 
     title: str
     points: Points
     conditions: tuple[Condition, ...]
     channels: tuple[GapChannel, ...]
-    summary: Mapping[str, Any]
+    diagnosis: Diagnosis
     steps: tuple[RankedStep, ...]
     kinds: Mapping[str, str]  #: effect id -> tyre, rig or environment
     names: Mapping[str, str]  #: effect id -> plain name
@@ -72,35 +73,33 @@ class DiagnosisView:
     @property
     def changed(self) -> bool:
         """Whether anything was added, so that before and after differ."""
-        return bool(self.summary["effects"])
+        return bool(self.diagnosis.effects)
 
-    def frames(self, channel: str) -> list[Mapping[str, Any]]:
+    def frames(self, channel: str) -> list[Region]:
         """Regions of a channel to be framed in the maps; more of them would hide the map."""
-        own = [
-            r for r in (*self.summary["unexplained_where"], *self.summary["where"]) if r["channel"] == channel
-        ]
-        return own[:MOST_FRAMES]
+        all_regions = (*self.diagnosis.unexplained_where, *self.diagnosis.where)
+        return [region for region in all_regions if region.channel == channel][:MOST_FRAMES]
 
 
-def view_of(diagnosis: Any) -> DiagnosisView:
-    """Take a diagnosis apart; the only function that knows its attributes."""
-    points, summary = diagnosis.points, diagnosis.to_json()
-    n = len(points)
+def view_of(diagnosis: Diagnosis) -> DiagnosisView:
+    """What the page shows beside the diagnosis itself: residuals in units of noise, conditions, ranked candidates."""
+    points, n = diagnosis.points, len(diagnosis.points)
     channels = []
-    for i, (name, measured) in enumerate((("Fy", points.Fy), ("Mz", points.Mz))):
+    measured_channels = (("Fy", points.Fy, diagnosis.noise.Fy), ("Mz", points.Mz, diagnosis.noise.Mz))
+    for i, (name, measured, noise) in enumerate(measured_channels):
         rows = slice(i * n, (i + 1) * n)
         u = np.where(np.isfinite(diagnosis.noise.u[rows]), diagnosis.noise.u[rows], np.nan)
         before, after = ((measured - model[rows]) / u for model in (diagnosis.before, diagnosis.after))
         if np.isfinite(before).any():
-            channels.append(GapChannel(name, before, after))
+            channels.append(GapChannel(name, before, after, noise))
     known = {e.id: e for e in (*CATALOG, *(t.effects[-1] for s in diagnosis.steps for t in s.trials))}
-    freed = {name for effect in summary["effects"] for name in effect["parameters"]}
+    freed = {name for found in diagnosis.effects for name in found.parameters}
     return DiagnosisView(
         title=diagnosis.model_after.removesuffix(".tir"),
         points=points,
         conditions=tuple(conditions(points)),
         channels=tuple(channels),
-        summary=summary,
+        diagnosis=diagnosis,
         steps=tuple(_ranked(step) for step in diagnosis.steps),
         kinds={key: effect.kind for key, effect in known.items()},
         names={key: effect.name for key, effect in known.items()},
@@ -108,7 +107,7 @@ def view_of(diagnosis: Any) -> DiagnosisView:
     )
 
 
-def _ranked(step: Any) -> RankedStep:
+def _ranked(step: Step) -> RankedStep:
     candidates = (
         Candidate(e.id, e.name, e.kind, float(t.log_evidence - step.before.log_evidence))
         for t, e in ((t, t.effects[-1]) for t in step.trials)

@@ -66,6 +66,8 @@ def course(settings: Settings, table: RecordingTable) -> tuple[np.ndarray, np.nd
 def lagged(alpha: np.ndarray, V: float, sigma: float, rate_Hz: float) -> np.ndarray:
     """The angle behind the force (m,): ``sigma d(alpha')/dt + V alpha' = V alpha``, settled at the start.
 
+    The wheel turns steadily from sample to sample, as the steering drives it.
+
     Parameters
     ----------
     alpha : sideslip angle of the wheel, sample by sample (m,) [rad]
@@ -73,8 +75,12 @@ def lagged(alpha: np.ndarray, V: float, sigma: float, rate_Hz: float) -> np.ndar
     sigma : relaxation length [m]
     rate_Hz : samples per second
     """
-    forgets = math.exp(-V / (sigma * rate_Hz))
-    follows, _ = lfilter([1.0 - forgets], [1.0, -forgets], alpha, zi=[forgets * alpha[0]])
+    seconds = sigma / V  # the time constant
+    forgets = math.exp(-1.0 / (seconds * rate_Hz))
+    # Within a sample the answer to a ramp of slope 1/T is (t - seconds (1 - exp(-t/seconds)))/T.
+    new = 1.0 - seconds * rate_Hz * (1.0 - forgets)
+    old = 1.0 - forgets - new
+    follows, _ = lfilter([new, old], [1.0, -forgets], alpha, zi=[(1.0 - new) * alpha[0]])
     return follows
 
 

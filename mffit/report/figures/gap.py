@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 import textwrap
-from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from collections.abc import Callable, Sequence
+from operator import attrgetter, methodcaller
+from typing import TYPE_CHECKING
 
 import numpy as np
 
+from mffit.diagnosis import Gap
+from mffit.diagnosis.selection import TIE
+from mffit.diagnosis.where import Region
 from mffit.report import style
 from mffit.report.diagnosis_view import (
-    FLOOR_KEYS,
-    GAP_KEYS,
     Candidate,
     DiagnosisView,
     GapChannel,
@@ -28,8 +30,6 @@ MOST_CONDITIONS = 6
 MOST_CANDIDATES = 12
 SMALLEST_GAIN = 1.0
 """Left end of the evidence scale: what gains less is not worth a bar."""
-TIE = 3.0
-"""Log evidence behind the best within which an effect is not told from it: odds of 20 to 1."""
 KIND_COLOURS = {"tyre": style.ACCENT, "rig": style.CONTRAST, "environment": style.CALM}
 SMALLEST_LIMIT, LARGEST_LIMIT = 4.0, 20.0
 """Ends of the maps' scale, in units of noise: never so small that noise looks like structure."""
@@ -50,11 +50,11 @@ def gap_bars(view: DiagnosisView) -> Figure:
     }
     axes = figure.subplots(1, panels, gridspec_kw=place)
     for ax, channel in zip(axes, view.channels, strict=False):
-        key = GAP_KEYS[channel.name]
-        _bars(ax, _rows(view, key), view.summary["noise_floor"][FLOOR_KEYS[channel.name]], view.changed)
+        rows = _rows(view, methodcaller("rms", channel.name))
+        _bars(ax, rows, channel.noise, view.changed)
         ax.set_title(f"{channel.name}: rms gap")
         ax.set_xlabel(f"measured − simulated [{channel.unit}]")
-    _bars(axes[-1], _rows(view, "chi2_per_dof"), 1.0, view.changed)
+    _bars(axes[-1], _rows(view, attrgetter("chi2_per_dof")), 1.0, view.changed)
     axes[-1].set_title("χ² per degree of freedom")
     axes[-1].set_xlabel("1 = nothing but noise")
     for ax in axes[1:]:
@@ -146,11 +146,12 @@ def _distances(ax: Axes, rows: Sequence[Candidate], gains: Sequence[float]) -> N
         ax.annotate(f" {said}", (gain, i), va="center", fontsize=7.0, color=colour)
 
 
-def _rows(view: DiagnosisView, key: str) -> list[tuple[str, float, float]]:
-    pairs = {"all points": view.summary}
+def _rows(view: DiagnosisView, size: Callable[[Gap], float]) -> list[tuple[str, float, float]]:
+    found, checked = view.diagnosis, view.diagnosis.validation
+    rows = [("all points", size(found.gap_before), size(found.gap_after))]
     if view.changed:
-        pairs["held out"] = view.summary["validation"]
-    return [(name, pair["gap_before"][key], pair["gap_after"][key]) for name, pair in pairs.items()]
+        rows.append(("held out", size(checked.gap_before), size(checked.gap_after)))
+    return rows
 
 
 def _bars(ax: Axes, rows: list[tuple[str, float, float]], floor: float, changed: bool) -> None:
@@ -170,12 +171,12 @@ def _bars(ax: Axes, rows: list[tuple[str, float, float]], floor: float, changed:
     ax.grid(axis="y", visible=False)
 
 
-def _frames(ax: Axes, regions: Sequence[Mapping[str, Any]], load: float) -> None:
+def _frames(ax: Axes, regions: Sequence[Region], load: float) -> None:
     """A frame around every region that lies at this load."""
     from matplotlib.patches import Rectangle
 
     for item in regions:
-        region = item["region"]
+        region = item.region
         low, high = region.get("Fz_N", (-np.inf, np.inf))
         if not {"alpha_deg", "gamma_deg"} & region.keys():
             continue

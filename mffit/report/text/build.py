@@ -7,6 +7,7 @@ import statistics
 from collections.abc import Mapping
 from typing import Any
 
+from mffit.quantities import CHANNELS
 from mffit.report.rounding import number, times
 from mffit.report.text.direct import spin_numbers
 from mffit.report.text.layout import blocks, paragraphs, table
@@ -28,7 +29,7 @@ def build_summary(result: Any) -> str:
             f"{number(a.max_abs, digits=3)} {unit}",
             number(a.r2, 5),
         )
-        for name, unit in (("Fy", "N"), ("Mz", "Nm"))
+        for name, (_, unit) in CHANNELS.items()
         if (a := fit.channels.get(name)) is not None and a.n
     ]
     parts.append(table(("fit", "points", "rms", "of noise", "largest", "R2"), rows))

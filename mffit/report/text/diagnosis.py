@@ -3,69 +3,52 @@
 from __future__ import annotations
 
 import textwrap
-from collections.abc import Mapping, Sequence
-from typing import Any
+from collections.abc import Sequence
 
+from mffit.diagnosis import Diagnosis, Found, wording
+from mffit.diagnosis.where import Region
+from mffit.quantities import CHANNELS
 from mffit.report.rounding import number, per_cent, with_u
 from mffit.report.text.layout import WIDTH, blocks, paragraphs, table
 
 
-def diagnosis_summary(diagnosis: Any) -> str:
+def diagnosis_summary(diagnosis: Diagnosis) -> str:
     """What ``mffit diagnose`` prints: the sentence, the gap, what was found, what remains."""
-    d = diagnosis.to_json()
-    rows = [
-        (
-            name,
-            number(g["Fy_rmse_N"], digits=3),
-            number(g["Mz_rmse_Nm"], digits=3),
-            number(g["chi2_per_dof"], digits=3),
-        )
-        for name, g in (
-            ("before", d["gap_before"]),
-            ("after", d["gap_after"]),
-            ("held out, before", d["validation"]["gap_before"]),
-            ("held out, after", d["validation"]["gap_after"]),
-        )
-    ]
-    rows.append(
-        (
-            "noise",
-            number(d["noise_floor"]["Fy_N"], digits=3),
-            number(d["noise_floor"]["Mz_Nm"], digits=3),
-            "1",
-        )
+    gaps = (
+        ("before", diagnosis.gap_before),
+        ("after", diagnosis.gap_after),
+        ("held out, before", diagnosis.validation.gap_before),
+        ("held out, after", diagnosis.validation.gap_after),
     )
+    rows = [(name, g.Fy_rmse_N, g.Mz_rmse_Nm, g.chi2_per_dof) for name, g in gaps]
+    rows.append(("noise", diagnosis.noise.Fy, diagnosis.noise.Mz, 1.0))
+    head = ("gap, rms", *(f"{name} [{CHANNELS[name].unit}]" for name in ("Fy", "Mz")), "chi2 per dof")
     parts = [
-        textwrap.fill(d["headline"], WIDTH),
-        table(("gap, rms", "Fy [N]", "Mz [Nm]", "chi2 per dof"), rows),
-        *(_effect(effect) for effect in d["effects"]),
-        _regions("unexplained", d["unexplained_where"]) if d["unexplained"] else "",
-        paragraphs(d["notes"]),
+        textwrap.fill(diagnosis.headline, WIDTH),
+        table(head, [(name, *(number(value, digits=3) for value in values)) for name, *values in rows]),
+        *(_effect(found) for found in diagnosis.effects),
+        _regions(diagnosis.unexplained_where) if diagnosis.unexplained else "",
+        paragraphs(wording.notes(diagnosis)),
     ]
     return blocks(parts)
 
 
-def _effect(effect: Mapping[str, Any]) -> str:
-    lines = [f"{effect['id']} ({effect['kind']}), confidence {per_cent(effect['confidence'])}"]
-    lines += [f"  {name} = {with_u(p['value'], p['stderr'])}" for name, p in effect["parameters"].items()]
-    if effect["tied_with"]:
-        lines.append(f"  not told from: {', '.join(effect['tied_with'])}")
-        lines.append(f"  to separate: {effect['separate_by']}")
+def _effect(found: Found) -> str:
+    lines = [f"{found.effect.id} ({found.effect.kind}), confidence {per_cent(found.confidence)}"]
+    lines += [f"  {name} = {with_u(value, stderr)}" for name, (value, stderr) in found.parameters.items()]
+    if found.tied_with:
+        lines.append(f"  not told from: {', '.join(found.tied_with)}")
+        lines.append(f"  to separate: {wording.separation(found.separation)}")
     return "\n".join(lines)
 
 
-def _regions(title: str, regions: Sequence[Mapping[str, Any]]) -> str:
-    lines = [f"{title}:"]
+def _regions(regions: Sequence[Region]) -> str:
+    if not regions:
+        return ""  # the headline says that something remains
+    lines = ["unexplained:"]
     for item in regions:
-        place = ", ".join(_range(key, low, high) for key, (low, high) in item["region"].items())
-        unit = "N" if item["channel"] == "Fy" else "Nm"
+        off = f"{number(item.bias, digits=3)} {CHANNELS[item.channel].unit}"
         lines.append(
-            f"  {item['channel']} off by {number(item['bias'], digits=3)} {unit} at {place or 'all points'}"
+            f"  {item.channel} off by {off} at {', '.join(wording.place(item.region)) or 'all points'}"
         )
     return "\n".join(lines)
-
-
-def _range(key: str, low: float, high: float) -> str:
-    if key == "direction":
-        return "backward" if high < 0 else "forward" if low > 0 else "both directions"
-    return f"{key} {number(low)}" if low == high else f"{key} {number(low)} to {number(high)}"

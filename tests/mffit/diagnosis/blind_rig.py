@@ -6,7 +6,7 @@ Nothing of ``mffit`` is used here. The faults are written down again, from their
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from types import SimpleNamespace
 
@@ -21,6 +21,8 @@ ZEROS = (-1.0, -0.5, 0.0, 0.5, 1.0)  # deg
 TURNS_WITH_THE_RIM = ("PVY1", "PVY2", "PEY3", "QDZ6", "QDZ7")
 SECONDS_PER_POINT = 90.0
 USUAL_SPEED = 6.0  # m/s
+WALK = 8  # steps through half the play
+BISECTIONS = 16
 
 
 @dataclass(frozen=True)
@@ -102,16 +104,38 @@ def report(
     alpha = np.deg2rad(run.alpha_deg + machine.alpha_0_deg)
     Fy, Mz = _at_the_tyre(tyre, machine, run, alpha, turn_slip)
     if machine.backlash_deg > 0.0:
-        half_play = np.deg2rad(machine.backlash_deg / 2.0)
-        Fy, Mz = _at_the_tyre(
-            tyre, machine, run, np.where(Mz > 0.0, alpha - half_play, alpha + half_play), turn_slip
-        )
+        play = np.deg2rad(machine.backlash_deg)
+        at_rest = resting(lambda x: _at_the_tyre(tyre, machine, run, x, turn_slip)[1], alpha, play, Mz)
+        Fy, Mz = _at_the_tyre(tyre, machine, run, at_rest, turn_slip)
     surroundings = (1.0 + machine.k_T * (run.T - 25.0)) * (1.0 + machine.k_V * (run.V - USUAL_SPEED))
     surroundings = surroundings * (1.0 + machine.k_t * run.t)
     return (
         machine.gain * surroundings * Fy + machine.F0 + machine.crosstalk * run.Fz,
         surroundings * Mz + machine.M0,
     )
+
+
+def resting(moment: Callable[[np.ndarray], np.ndarray], alpha: np.ndarray, play: float, Mz: np.ndarray):
+    """Where wheels come to rest that are loose by ``play`` about ``alpha`` and start there with the moment ``Mz``; (n,).
+
+    A positive moment turns the wheel to smaller angles, a negative one to larger, until it meets the end of the play or
+    a point where the moment has turned round; there it floats without moment.
+    """
+    way = np.where(Mz > 0.0, -1.0, 1.0)
+    start, turned = np.zeros(len(alpha)), np.full(len(alpha), np.nan)
+    # Walked in small steps, so that the first turning point on the way is the one that stops the wheel.
+    for share in np.linspace(0.0, 0.5, WALK + 1)[1:]:
+        pushed = moment(alpha + way * share * play) * way < 0.0
+        new = np.isnan(turned) & ~pushed
+        turned[new] = share
+        start[np.isnan(turned)] = share
+    floats = np.isfinite(turned)
+    near, far = start.copy(), np.where(floats, turned, 0.5)
+    for _ in range(BISECTIONS if floats.any() else 0):
+        middle = 0.5 * (near + far)
+        pushed = moment(alpha + way * middle * play) * way < 0.0
+        near, far = np.where(pushed, middle, near), np.where(pushed, far, middle)
+    return alpha + way * np.where(floats, 0.5 * (near + far), 0.5) * play
 
 
 def _at_the_tyre(

@@ -17,7 +17,7 @@ from mffit.config import load as load_config
 from mffit.diagnosis import Diagnosis
 from mffit.points import Points
 from mffit.points import load as load_points
-from mffit.rig import readings
+from mffit.rig import Simulation
 
 LOOK_ALIKE = (
     {"sideslip-misalignment", "ply-steer"},
@@ -179,7 +179,7 @@ def _shrink(case: Case, diagnosis: Diagnosis) -> float:
     points = diagnosis.points.select(np.flatnonzero(np.abs(np.degrees(diagnosis.points.alpha)) < 7.999))
     points = points.replace(alpha=np.radians(between.alpha_deg), gamma=np.radians(between.gamma_deg))
     truth = case.noise_free(between)
-    before = readings(case.given, points, turn_slip=case.turn_slip)
+    before = Simulation.of(case.given, turn_slip=case.turn_slip).readings(points)
     after = diagnosis.state.predict(points)
     n = len(points)
     gap = [

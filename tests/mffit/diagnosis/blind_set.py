@@ -10,7 +10,7 @@ import csv
 import json
 import re
 from collections.abc import Callable, Mapping
-from dataclasses import asdict, dataclass, field, replace
+from dataclasses import asdict, dataclass, field
 from pathlib import Path
 
 import numpy as np
@@ -298,8 +298,3 @@ def _write_sweep(case: Case, rows: np.ndarray, path: Path) -> None:
             ]
         )
         writer.writerows(zip(*columns, strict=True))
-
-
-def with_mount(run: Programme, flipped: bool) -> Programme:
-    """The same set-points with the tyre turned on its rim, or not."""
-    return replace(run, flipped=np.full(len(run), flipped))

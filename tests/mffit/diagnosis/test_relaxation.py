@@ -7,9 +7,11 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 from blind_set import random_tyre
+from scipy.integrate import solve_ivp
 
 from mffit.diagnosis import diagnose
 from mffit.points import concatenate, make_points
+from mffit.rig.lag import lagged_points
 from tir.evaluate import evaluate
 
 SIGMA = 0.28  # m
@@ -58,3 +60,48 @@ def test_the_lag_of_a_moving_sweep_is_named_with_its_length(tyre):
 
 def test_a_moving_sweep_without_lag_has_no_relaxation(tyre):
     assert not diagnose(campaign(tyre, 0.0), tyre, CONFIG).effects
+
+
+def integrated(time, speed, alpha):
+    """alpha' [rad] by a general integrator, sample by sample, the angle linear over each step."""
+    behind = [alpha[0]]
+    for t0, t1, V, a0, a1 in zip(time, time[1:], speed, alpha, alpha[1:], strict=False):
+        found = solve_ivp(
+            lambda t, y, t0=t0, t1=t1, V=V, a0=a0, a1=a1: V / SIGMA * (a0 + (a1 - a0) * (t - t0) / (t1 - t0) - y),
+            (t0, t1), [behind[-1]], rtol=1e-10, atol=1e-13,
+        )  # fmt: skip
+        behind.append(found.y[0, -1])
+    return np.array(behind)
+
+
+def moving(alpha, time, V):
+    return make_points(alpha, 0.0, 1500.0, p=250e3, V=V, phi_t=0.0, continuous=True, time=time)
+
+
+def test_the_lag_is_exact_at_uneven_steps_whatever_the_order_of_the_rows():
+    rng = np.random.default_rng(7)
+    time = np.concatenate([[0.0], np.cumsum(rng.choice([0.01, 0.1, 0.5, 1.5], 60))])
+    alpha = np.radians(8.0 * np.sin(1.3 * time) + rng.normal(0.0, 1.0, len(time)))
+    expected = integrated(time, np.full(len(time), 1.0), alpha)
+    assert np.degrees(np.abs(alpha - expected)).max() > 2.0
+    shuffled = rng.permutation(len(time))
+    found = lagged_points(moving(alpha[shuffled], time[shuffled], 1.0), SIGMA).alpha
+    assert found == pytest.approx(expected[shuffled], abs=1e-8)
+
+
+def test_a_wheel_that_stands_still_keeps_its_lag():
+    """The force answers to rolled distance: steering a wheel at rest moves alpha alone."""
+    time = np.array([0.0, 0.5, 1.0, 1.0, 2.0])
+    alpha = np.radians([1.0, 2.0, 3.0, 3.5, 4.0])
+    standing = lagged_points(moving(alpha, time, 0.0), SIGMA).alpha
+    assert np.degrees(standing) == pytest.approx(np.ones(5), abs=1e-12)
+
+
+def test_steps_of_no_distance_change_nothing_of_what_follows():
+    time, alpha = np.array([0.0, 0.2, 0.5, 0.9]), np.radians([0.0, 2.0, 3.0, 1.0])
+    once = lagged_points(moving(alpha, time, 2.0), SIGMA).alpha
+    twice = lagged_points(moving(np.repeat(alpha, 2), np.repeat(time, 2), 2.0), SIGMA).alpha
+    assert twice[::2] == pytest.approx(once, abs=1e-15)
+    assert twice[1::2] == pytest.approx(once, abs=1e-15)
+    expected = integrated(time, np.full(4, 2.0), alpha)
+    assert once == pytest.approx(expected, abs=1e-9)

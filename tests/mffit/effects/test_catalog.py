@@ -7,8 +7,8 @@ from pathlib import Path
 
 import pytest
 
-from mffit.effects import CATALOG
-from mffit.effects.pages import NEEDED, RIG_NUMBERS, pages
+from mffit.effects import CATALOG, NEEDS
+from mffit.effects.pages import RIG_NUMBERS, pages
 from mffit.rig import RigFaults
 from tir.parameters import BY_NAME
 
@@ -71,7 +71,7 @@ def test_a_record_says_what_a_reader_needs(effect):
     assert effect.physics.endswith(".")
     assert effect.kind in {"tyre", "rig", "environment"}
     assert effect.parity, f"{effect.id} does not say how it behaves under reversed angles"
-    assert set(effect.needs) <= set(NEEDED)
+    assert set(effect.needs) <= set(NEEDS)
     assert set(effect.confusable_with) <= set(ids()) - {effect.id}
 
 

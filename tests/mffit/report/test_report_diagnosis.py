@@ -10,8 +10,10 @@ from report_toys import TRUE, made_config, made_points, programme, read_page
 
 import tir
 from mffit.diagnosis import diagnose
+from mffit.diagnosis.selection import TIE
+from mffit.diagnosis.ties import Run, Separation
 from mffit.report import style, text, write_diagnosis
-from mffit.report.diagnosis_view import view_of
+from mffit.report.diagnosis_view import Candidate, RankedStep, view_of
 from mffit.report.figures import gap
 
 DENT = -80.0  # N, over 1 deg of sideslip
@@ -66,11 +68,13 @@ def test_page_needs_no_network(misaligned, tmp_path):
 
 def test_a_tie_is_stated_with_the_run_that_separates_it(misaligned, tmp_path):
     found = dataclasses.replace(
-        misaligned.effects[0], tied_with=("ply-steer",), separate_by="a second tyre on the same zero"
+        misaligned.effects[0],
+        tied_with=("ply-steer",),
+        separation=Separation(Run.TURNED_ON_RIM, 1400.0, 50.0),
     )
     page = written(dataclasses.replace(misaligned, effects=(found,)), tmp_path)
     assert "these data cannot tell it from ply-steer" in page.text
-    assert "a second tyre on the same zero" in page.text
+    assert "a sideslip sweep at 1400 N with the tyre turned on its rim (expected chi2 50)" in page.text
 
 
 def test_residuals_after_are_noise_where_the_effect_was_found(misaligned):
@@ -97,9 +101,23 @@ def test_evidence_ranks_the_named_effect_first(misaligned):
     assert widths == sorted(widths, reverse=True)
 
 
+@pytest.mark.parametrize(("share", "tied"), [(0.99, True), (1.01, False)])
+def test_picture_and_verdict_call_the_same_distance_a_tie(misaligned, share, tied):
+    gains = (50.0, 50.0 - share * TIE)
+    step = RankedStep((), tuple(Candidate(f"{g}", f"{g}", "rig", g) for g in gains), 5.0)
+    with style.applied():
+        ax = gap.evidence(dataclasses.replace(view_of(misaligned), steps=(step,))).axes[0]
+    behind = next(t for t in ax.texts if "best" not in t.get_text())
+    assert behind.get_color() == (style.INK if tied else style.MUTED)
+
+
+def test_the_page_states_the_margin_of_the_verdict(misaligned, tmp_path):
+    assert f"within {TIE:g} the data do not tell them apart" in written(misaligned, tmp_path).text
+
+
 def test_colour_scale_never_blows_up_noise_nor_hides_what_is_left(clean, misaligned):
     assert gap.colour_limit(view_of(clean).channels) == gap.SMALLEST_LIMIT
-    loud = gap.GapChannel("Fy", np.full(9, 500.0), np.zeros(9))
+    loud = gap.GapChannel("Fy", np.full(9, 500.0), np.zeros(9), 6.0)
     assert gap.colour_limit([loud]) == gap.LARGEST_LIMIT
 
 
@@ -115,7 +133,7 @@ def test_unexplained_structure_stands_at_the_top_with_its_place(unknown, tmp_pat
     assert unknown.unexplained
     alert = page.text.index("Something remains that no effect of the library describes")
     assert alert < page.text.index("Fy gap, rms")
-    assert view_of(unknown).frames("Fy")[0] == unknown.unexplained_where[0].to_json()
+    assert view_of(unknown).frames("Fy")[0] == unknown.unexplained_where[0]
 
 
 def test_without_moment_only_side_force_is_shown(tmp_path):
@@ -129,6 +147,8 @@ def test_summary_for_the_terminal(misaligned, unknown, clean):
     assert "(rig), confidence" in summary
     assert "alpha_0_deg = 0.3" in summary
     assert "unexplained:" in text.diagnosis_summary(unknown)
+    nowhere = dataclasses.replace(unknown, unexplained_where=())
+    assert "unexplained:" not in text.diagnosis_summary(nowhere)
     for diagnosis in (misaligned, unknown, clean):
         said = text.diagnosis_summary(diagnosis)
         assert said.isascii()

@@ -17,7 +17,12 @@ def drawn():
     points = made_points(programme())
     tyre = tir.read(TRUE)
     found = curves(points)
-    return points, found, model_lines(Simulation.of(tyre), points, found), Simulation.of(tyre).readings(points)
+    return (
+        points,
+        found,
+        model_lines(Simulation.of(tyre), points, found),
+        Simulation.of(tyre).readings(points),
+    )
 
 
 def test_line_meets_the_model_at_both_ends_of_every_curve(drawn):

@@ -1,0 +1,140 @@
+"""The sentences about a diagnosis, for page, terminal and ``diagnosis.json``: written here and nowhere else."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, assert_never
+
+from mffit.diagnosis.notes import HardlyThisTyre, Note, NotVisible, OneSweep, UncertaintiesEnlarged
+from mffit.diagnosis.ties import TELLING, Run, Separation
+from mffit.effects import NEEDS
+from mffit.quantities import CHANNELS, CONDITIONS
+
+if TYPE_CHECKING:
+    from mffit.diagnosis.result import Diagnosis, Found
+    from mffit.diagnosis.unknown import Bump
+    from mffit.diagnosis.validate import Validation
+
+RUNS = {
+    Run.BACKWARD: "a backward sideslip sweep at {load:.0f} N",
+    Run.TURNED_ON_RIM: "a sideslip sweep at {load:.0f} N with the tyre turned on its rim",
+    Run.OTHER_LOAD: "a sideslip sweep at {load:.0f} N",
+    Run.CAMBER: "a camber sweep to 40 deg at {load:.0f} N",
+    Run.BACKWARD_CAMBER: "a backward camber sweep at {load:.0f} N",
+    Run.LEANED: "a sideslip sweep at 20 deg camber and {load:.0f} N",
+    Run.LOW_PRESSURE: "a sideslip sweep at 0.8 of the pressure and {load:.0f} N",
+    Run.FAST: "a sideslip sweep at twice the speed and {load:.0f} N",
+    Run.WARM: "a repeated sideslip sweep at {load:.0f} N with the tyre 20 K warmer",
+    Run.LATE: "a repeated sideslip sweep at {load:.0f} N at the end of the test",
+    Run.STRAIGHT: "a sideslip sweep at {load:.0f} N on a straight path",
+    Run.WIDE: "a sideslip sweep at {load:.0f} N on a path of twice the radius",
+    Run.STRAIGHT_CAMBER: "a camber sweep at {load:.0f} N on a straight path",
+}
+
+
+def headline(diagnosis: Diagnosis) -> str:
+    """The whole answer in one sentence."""
+    before, after, noise = diagnosis.gap_before, diagnosis.gap_after, diagnosis.noise
+    bump = diagnosis.bump
+    if not diagnosis.effects:
+        numbers = f"side force misses by {before.Fy_rmse_N:.1f} N rms, the noise is {noise.Fy:.1f} N"
+        if not diagnosis.unexplained:
+            return f"No effect is missing that these data could show: {numbers}."
+        if bump is None:
+            return f"The model misses the data by more than their noise, and no effect of the library explains it: {numbers}."
+        return (
+            f"There is structure that no effect of the library describes: {bump.channel} is off by {bump.amplitude:.3g} "
+            f"{CHANNELS[bump.channel].unit} around {_around(bump)}."
+        )
+    verb, pronoun = ("effect is", "it") if len(diagnosis.effects) == 1 else ("effects are", "them")
+    sentence = (
+        f"The missing {verb} {' and '.join(map(_named, diagnosis.effects))}: with {pronoun} the side force misses by "
+        f"{after.Fy_rmse_N:.1f} N rms instead of {before.Fy_rmse_N:.1f} N (noise {noise.Fy:.1f} N)"
+    )
+    if not diagnosis.unexplained:
+        return f"{sentence}."
+    rest = (
+        f"{bump.channel} stays unexplained around {_around(bump)}" if bump else "the rest stays unexplained"
+    )
+    return f"{sentence}; {rest}."
+
+
+def note(remark: Note | str) -> str:
+    """A note as a sentence; what is a sentence already stays as it is."""
+    match remark:
+        case str():
+            return remark
+        case OneSweep():
+            return "One sweep cannot tell causes apart: add sweeps at another load, camber or direction."
+        case NotVisible(needs, effects):
+            lack = " and ".join(NEEDS[need] for need in needs)
+            return f"Not visible in these data, which lack {lack}: {', '.join(effects)}."
+        case HardlyThisTyre(misfit):
+            return (
+                f"Cannot tell: the model misses the points by {misfit:.0f} times their noise even with the best effects "
+                "added, so it is hardly a model of this tyre; fit it first (mffit build)."
+            )
+        case UncertaintiesEnlarged(factor):
+            return (
+                "The model misses the points by more than their noise whatever is added; uncertainties were "
+                f"enlarged {factor:.1f} times so that effects are judged against the misfit that remains."
+            )
+        case _:
+            assert_never(remark)
+
+
+def notes(diagnosis: Diagnosis) -> list[str]:
+    """All notes as sentences."""
+    return [note(remark) for remark in diagnosis.notes]
+
+
+def separation(found: Separation | None) -> str:
+    """Which run would tell two explanations apart; empty if there is nothing to tell apart."""
+    if found is None:
+        return ""
+    run = RUNS[found.run].format(load=found.load)
+    if found.chi2 < TELLING:
+        return (
+            f"none of the usual runs separates them at this size; the best would be {run} "
+            f"(expected chi2 {found.chi2:.1f})"
+        )
+    return f"{run} (expected chi2 {found.chi2:.0f})"
+
+
+def method(validation: Validation) -> str:
+    """How it was validated."""
+    return f"{validation.folds} groups of whole sweeps left out in turn"
+
+
+def status(effect: str, before: float, stderr: float) -> str:
+    """The reason of a coefficient, in the comments of the corrected property file."""
+    return f"diagnosed, {effect}, was {before:.6g}, +- {stderr:.2g}"
+
+
+def place(region: Mapping[str, tuple[float, float]]) -> list[str]:
+    """The ranges of a region as an engineer says them; none if it is the whole programme."""
+    return [_range(name, *limits) for name, limits in region.items()]
+
+
+def _range(name: str, low: float, high: float) -> str:
+    if name == "direction":
+        return "backward runs" if high < 0 else "forward runs" if low > 0 else "both directions"
+    word, unit = CONDITIONS[name]
+    if low == high:
+        return f"{word} {_short(low)} {unit}"
+    return f"{word} {_short(low)} to {_short(high)} {unit}"
+
+
+def _short(value: float) -> str:
+    """Three digits, but never a power of ten."""
+    return f"{value:.3g}" if abs(value) < 999.5 else f"{value:.0f}"
+
+
+def _around(bump: Bump) -> str:
+    return " and ".join(place(bump.region))
+
+
+def _named(found: Found) -> str:
+    if not found.tied_with:
+        return found.effect.name
+    return f"{found.effect.name} (or {' or '.join(found.tied_with)}, not separable here)"

@@ -1,0 +1,18 @@
+"""What data must vary for an effect to be seen, in words; :mod:`mffit.diagnosis.needs` tests the points for it."""
+
+from __future__ import annotations
+
+NEEDS = {
+    "curved": "a curved path",
+    "spin": "a curved path or large camber",
+    "camber": "points at camber",
+    "coupled": "sideslip and camber together",
+    "slip": "a sideslip sweep",
+    "loads": "two loads",
+    "pressures": "two pressures",
+    "moment": "Mz",
+    "temperatures": "temperatures that differ (T_degC)",
+    "speeds": "two speeds",
+    "times": "the time of every point (t_s)",
+    "continuous": "a continuous sweep (time_s, moving alpha)",
+}

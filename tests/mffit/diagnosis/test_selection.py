@@ -1,0 +1,72 @@
+"""The search for effects ends, whatever the evidence of the sets that it meets."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from mffit.diagnosis.candidates import Hypothesis
+from mffit.diagnosis.selection import MARGIN, ids, price, select
+from mffit.effects import Effect, Free
+
+MOST_FITS = 500
+"""Far beyond what a search among three effects needs."""
+
+
+def effect(name: str) -> Effect:
+    return Effect(name, name, "rig", "", (Free(name, 1.0),))
+
+
+A, B, C = (effect(name) for name in "abc")
+
+
+class Table:
+    """A problem whose evidence stands in a table; several numbers are what successive fits of a set end in."""
+
+    def __init__(self, **evidence: tuple[float, ...]) -> None:
+        self.evidence = {frozenset(names): list(values) for names, values in evidence.items()}
+        self.fits, self.start = 0, None
+        self.null = self.hypothesis((), 0.0)
+
+    def hypothesis(self, effects, evidence):
+        numbers = {e.id: 1.0 for e in effects}
+        nothing = np.empty(0)
+        return Hypothesis(
+            effects, numbers, numbers, 0.0, evidence, self.start, nothing, np.empty((0, len(effects)))
+        )
+
+    def fit(self, effects, start=None):
+        self.fits += 1
+        if self.fits > MOST_FITS:
+            pytest.fail("the search goes round in circles")
+        values = self.evidence[frozenset(e.id for e in effects)]
+        return self.hypothesis(tuple(effects), values.pop(0) if len(values) > 1 else values[0])
+
+
+def chosen(problem, *effects):
+    return sorted(ids(select(problem, effects)[0]))
+
+
+@pytest.mark.parametrize("side", [-0.05, 0.05])
+def test_an_effect_is_kept_for_the_price_for_which_it_is_taken(side):
+    """Between the prices of two and of three candidates it was taken, dropped, and taken again."""
+    b = price(3) + side
+    problem = Table(
+        a=(100.0,), b=(20.0,), c=(0.0,), ab=(100.0 + b,), ac=(100.0,), bc=(20.0,), abc=(100.0 + b,)
+    )
+    assert math.log(2.0) + MARGIN < b
+    assert chosen(problem, A, B, C) == (["a", "b"] if side > 0.0 else ["a"])
+
+
+def test_the_search_ends_where_a_set_looks_worse_at_every_visit():
+    """With b, a looks needless; without a, b is worth nothing; and a fit of a and b always ends somewhere better."""
+    rising = tuple(100.0 + 10.0 * k for k in range(MOST_FITS))
+    problem = Table(a=(60.0,), b=(50.0, *rising), c=(0.0,), ab=rising, ac=(60.0,), bc=(50.0,), abc=(90.0,))
+    assert chosen(problem, A, B, C) == ["b"]
+
+
+def test_an_exchange_that_helps_is_made():
+    problem = Table(a=(60.0,), b=(40.0,), c=(40.0,), ab=(80.0,), ac=(75.0,), bc=(120.0,), abc=(121.0,))
+    assert chosen(problem, A, B, C) == ["b", "c"]

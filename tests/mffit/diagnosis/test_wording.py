@@ -1,0 +1,110 @@
+"""A diagnosis holds facts; its sentences say them, and nothing that is not so."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import pytest
+
+from mffit.diagnosis import Diagnosis, diagnose, wording
+from mffit.diagnosis.needs import MET
+from mffit.diagnosis.notes import HardlyThisTyre, NotVisible, OneSweep, UncertaintiesEnlarged
+from mffit.diagnosis.ties import Run, Separation
+from mffit.diagnosis.unknown import Bump
+from mffit.effects import NEEDS
+
+BUMP = Bump("Mz", {"alpha_deg": (-4.0, -2.5), "Fz_N": (1400.0, 1600.0)}, -6.2, 30.0)
+
+
+@pytest.fixture(scope="module")
+def nothing(right_model) -> Diagnosis:
+    case, config, points = right_model
+    return diagnose(points, case.given, config)
+
+
+@pytest.fixture(scope="module")
+def camber(stiffer_camber) -> Diagnosis:
+    case, config, points = stiffer_camber
+    return diagnose(points, case.given, config)
+
+
+def test_a_misfit_without_a_place_is_not_given_one(nothing):
+    """The best of the bumps that were tried, but not found, was named as the place."""
+    said = replace(nothing, unexplained=True).headline
+    assert "no effect of the library explains it" in said
+    assert "around" not in said
+
+
+def test_a_rest_without_a_place_is_not_given_one(camber):
+    said = replace(camber, unexplained=True, bump=None).headline
+    assert said.endswith("; the rest stays unexplained.")
+
+
+def test_structure_is_given_its_size_and_place(nothing):
+    said = replace(nothing, unexplained=True, bump=BUMP).headline
+    assert "Mz is off by -6.2 Nm around sideslip -4 to -2.5 deg and load 1400 to 1600 N." in said
+
+
+def test_an_effect_is_named_with_what_it_is_tied_with(camber):
+    assert camber.headline.startswith(
+        "The missing effect is camber stiffness: with it the side force misses by"
+    )
+    tied = replace(camber.effects[0], tied_with=("path-radius",))
+    assert (
+        "camber stiffness (or path-radius, not separable here)" in replace(camber, effects=(tied,)).headline
+    )
+
+
+@pytest.mark.parametrize(
+    ("region", "words"),
+    [
+        ({"direction": (-1.0, -1.0)}, ["backward runs"]),
+        ({"direction": (1.0, 1.0)}, ["forward runs"]),
+        ({"direction": (-1.0, 1.0)}, ["both directions"]),
+        ({"p_kPa": (250.0, 250.0)}, ["pressure 250 kPa"]),
+        ({"t_s": (0.0, 12345.6)}, ["time 0 to 12346 s"]),
+        ({}, []),
+    ],
+)
+def test_a_place_is_said_in_words(region, words):
+    assert wording.place(region) == words
+
+
+@pytest.mark.parametrize("run", Run)
+def test_every_run_has_words_and_only_a_telling_one_is_recommended(run):
+    assert wording.separation(Separation(run, 1500.0, 40.0)).endswith("(expected chi2 40)")
+    assert wording.separation(Separation(run, 1500.0, 2.0)).startswith("none of the usual runs")
+
+
+@pytest.mark.parametrize(
+    ("note", "words"),
+    [
+        (OneSweep(), "One sweep cannot tell"),
+        (NotVisible(("curved", "moment"), ("spin-torque",)), "which lack a curved path and Mz: spin-torque."),
+        (HardlyThisTyre(41.7), "by 42 times their noise"),
+        (UncertaintiesEnlarged(2.34), "enlarged 2.3 times"),
+        ("said elsewhere", "said elsewhere"),
+    ],
+)
+def test_every_note_becomes_a_sentence(note, words):
+    assert words in wording.note(note)
+
+
+def test_the_file_keeps_its_keys(camber):
+    content = replace(camber, notes=(OneSweep(),)).to_json()
+    assert list(content) == [
+        "headline", "gap_before", "gap_after", "validation", "where", "effects", "alternatives", "unexplained",
+        "unexplained_where", "noise_floor", "model_after", "notes",
+    ]  # fmt: skip
+    assert list(content["effects"][0]) == [
+        "id", "name", "kind", "physics", "confidence", "parameters", "gap_after", "tied_with", "separate_by",
+    ]  # fmt: skip
+    assert list(content["where"][0]) == ["channel", "region", "bias", "z"]
+    assert content["effects"][0]["separate_by"] == ""
+    assert content["effects"][0]["parameters"]["PKY6"].keys() == {"value", "stderr"}
+    assert content["validation"].keys() == {"method", "gap_before", "gap_after"}
+    assert content["notes"] == [wording.note(OneSweep())]
+
+
+def test_every_need_has_words_and_a_test_of_the_points():
+    assert set(MET) == set(NEEDS)
