@@ -53,6 +53,7 @@ def test_pecp1_of_the_model_gives_the_measured_turn_slip_force(sound_rig):
 
 
 def test_the_files_radius_is_the_measured_one(sound_rig):
+    assert len(sound_rig.measured.r_e_loads) == len(plan_content()["rolling_radius"]) > 0
     for load, r_e in sound_rig.measured.r_e_loads.items():
         assert sound_rig.fit.written.state(load, Vx=6.0).Re == pytest.approx(r_e, abs=1e-4)
 
