@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import os
 import sys
+from contextlib import redirect_stderr, redirect_stdout
 from pathlib import Path
+from typing import Any
 
 import click
 
@@ -155,8 +158,42 @@ def progress():
     return shown()
 
 
+class Unheard:
+    """A stream that goes on in silence when its reader leaves (``mffit ... | head -1``): no failure of the command."""
+
+    def __init__(self, stream: Any) -> None:
+        self._stream = stream
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self._stream, name)
+
+    def write(self, text: str) -> int:
+        try:
+            return self._stream.write(text)
+        except BrokenPipeError:
+            self._give_up()
+            return len(text)
+
+    def flush(self) -> None:
+        try:
+            self._stream.flush()
+        except BrokenPipeError:
+            self._give_up()
+
+    def _give_up(self) -> None:
+        """Send the rest, also what Python flushes at its end, nowhere."""
+        nowhere = os.open(os.devnull, os.O_WRONLY)
+        os.dup2(nowhere, self._stream.fileno())
+        os.close(nowhere)
+
+
 def main(arguments: list[str] | None = None) -> None:
     """Entry point: exit 0 done, 2 bad input or usage with one sentence, 1 a bug."""
+    with redirect_stdout(Unheard(sys.stdout)), redirect_stderr(Unheard(sys.stderr)):
+        _run(arguments)
+
+
+def _run(arguments: list[str] | None) -> None:
     from mffit.errors import InputError
     from tir.errors import TirError
 

@@ -1,41 +1,233 @@
-"""A folder that is written whole or not at all."""
+"""A folder that is written whole or not at all, and never over what somebody else put there."""
 
 from __future__ import annotations
 
+import hashlib
+import json
 import os
+import platform
+import re
 import shutil
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from contextlib import contextmanager
-from pathlib import Path
+from pathlib import Path, PurePosixPath
+from typing import NamedTuple
 
 from mffit.errors import InputError
 
+RECORD = ".mffit.json"
+"""The usual record of a folder: each file that a run wrote there, with its SHA-256 and the command that did."""
+
+ABOUT = "Written by mffit: it replaces the files listed here, while they are unchanged, and no others."
+
+
+class Entry(NamedTuple):
+    """What a record says of a file; ``by:sha256`` in JSON."""
+
+    by: str  #: the command that wrote it
+    sha256: str
+
 
 @contextmanager
-def output_folder(out: Path) -> Iterator[Path]:
-    """A temporary folder beside ``out`` whose files replace those of ``out`` only if the block succeeds.
+def output_folder(
+    out: Path, *, by: str = "mffit", protected: Iterable[Path] = (), record: str = RECORD
+) -> Iterator[Path]:
+    """A temporary folder beside ``out`` whose files go to ``out`` only if the block succeeds.
 
-    Files of ``out`` that this run does not write stay. An interrupted or failing run leaves ``out`` as it
-    was.
+    Parameters
+    ----------
+    out : folder to write to; made if need be
+    by : the command that writes, so that it clears away only pictures of its own
+    protected : files that the run reads
+    record : JSON file of ``out`` that lists, under ``files``, what was written; one of the run's own JSON
+        files may serve, which then carries that key
+
+    Raises
+    ------
+    InputError
+        ``out`` cannot be written to, or a file in the way is not this program's to replace; ``out`` is as
+        it was then.
+
+    Notes
+    -----
+    A file of ``out`` is replaced only if an earlier run wrote it and nobody changed it since (the record
+    tells), or if it would get the bytes that it has. A file that the run reads is never replaced by other
+    bytes, whoever wrote it. Files that the run does not write stay. In folders within ``out`` (``plots``),
+    what an earlier run of the same command wrote, and this one does not, goes, if it is unchanged.
+
+    An interrupted or failing run leaves ``out`` as it was. A killed one leaves its temporary folder, which
+    the next run to the same place removes: its name tells machine and process.
     """
+    parent = out.absolute().parent
     if out.exists() and not out.is_dir():
         raise InputError(f"{out} is a file, and the output needs a folder: name another with --out")
-    parent = out.absolute().parent
     try:
         parent.mkdir(parents=True, exist_ok=True)
-        temporary = Path(tempfile.mkdtemp(prefix=f".{out.name}-", dir=parent))
+        _remove_litter(parent, out.name)
+        temporary = Path(tempfile.mkdtemp(prefix=f"{_prefix(out.name)}{os.getpid()}-", dir=parent))
     except OSError as error:
         raise InputError(
             f"cannot write to {parent} ({error.strerror}): name another folder with --out"
         ) from error
     try:
         yield temporary
-        out.mkdir(exist_ok=True)
-        for path in sorted(temporary.iterdir()):
-            target = out / path.name
-            if target.is_dir() and path.is_dir():
-                shutil.rmtree(target)
-            os.replace(path, target)
+        files = sorted(path for path in temporary.rglob("*") if path.is_file())
+        written = {path.relative_to(temporary).as_posix(): digest(path) for path in files}
+        recorded = _recorded(out, record)
+        # A record lists itself by being one.
+        itself = {record: Entry(by, digest(out / record))} if recorded else {}
+        _refuse(out, written, recorded | itself, protected)
+        try:
+            _move(temporary, out, written, recorded, by, record)
+        except OSError as error:
+            raise InputError(
+                f"cannot be written to ({error.strerror}: {error.filename}); close what uses it or name another "
+                "folder with --out",
+                file=out,
+            ) from error
     finally:
         shutil.rmtree(temporary, ignore_errors=True)
+
+
+def refuse_early(out: Path | None, names: Collection[str], protected: Iterable[Path] = ()) -> None:
+    """Refuse before the work what :func:`output_folder` would refuse after it, as far as names are known.
+
+    Raises
+    ------
+    InputError
+        One of ``names`` stands in ``out`` and is not this program's to replace.
+    """
+    if out is not None and out.is_dir():
+        _refuse(out, dict.fromkeys(names, ""), _recorded(out, RECORD), protected)
+
+
+def digest(path: Path) -> str:
+    """SHA-256 of a file, in hex."""
+    return hashlib.sha256(path.read_bytes()).hexdigest()
+
+
+def _refuse(
+    out: Path,
+    written: Mapping[str, str],
+    recorded: Mapping[str, Entry],
+    protected: Iterable[Path],
+) -> None:
+    """Raise if a file of ``written`` would replace one that it must not."""
+    inputs = [path for path in protected if path.exists()]
+    for name, new in written.items():
+        target = out / name
+        for folder in list(target.parents)[: len(PurePosixPath(name).parents) - 1]:
+            if folder.exists() and not folder.is_dir():
+                raise InputError(
+                    "is a file where the output has a folder; move it away or name another folder with --out",
+                    file=folder,
+                )
+        if not os.path.lexists(target):
+            continue
+        if not target.is_file():
+            raise InputError(
+                "is no file, and the output writes one there; move it away or name another folder with --out",
+                file=target,
+            )
+        old = digest(target)
+        if old == new:
+            continue
+        if any(os.path.samefile(target, path) for path in inputs):
+            raise InputError(
+                "is an input of this run, and its output would replace it; name another folder with --out",
+                file=target,
+            )
+        if name not in recorded:
+            raise InputError(
+                "would be replaced, and no run of mffit is known to have written it; move it away or name "
+                "another folder with --out",
+                file=target,
+            )
+        if recorded[name].sha256 != old:
+            raise InputError(
+                "would be replaced, and was changed since mffit wrote it; move it away or name another folder "
+                "with --out",
+                file=target,
+            )
+
+
+def _move(
+    temporary: Path,
+    out: Path,
+    written: Mapping[str, str],
+    recorded: Mapping[str, Entry],
+    by: str,
+    record: str,
+) -> None:
+    """Put the files in their places, take away stale ones, and record it."""
+    stale = _stale(out, written, recorded, by)
+    kept = {name: entry for name, entry in recorded.items() if name not in stale and (out / name).is_file()}
+    entries = kept | {name: Entry(by, new) for name, new in written.items() if name != record}
+    file = temporary / record
+    content = json.loads(file.read_text(encoding="utf-8")) if record in written else {"about": ABOUT}
+    content["files"] = {name: ":".join(entry) for name, entry in sorted(entries.items())}
+    file.write_text(json.dumps(content, indent=2, ensure_ascii=False) + "\n", encoding="utf-8")
+    out.mkdir(exist_ok=True)
+    for name in dict.fromkeys([*written, record]):
+        (out / name).parent.mkdir(exist_ok=True)
+        os.replace(temporary / name, out / name)
+    for name in stale:
+        (out / name).unlink()
+
+
+def _stale(out: Path, written: Mapping[str, str], recorded: Mapping[str, Entry], by: str) -> list[str]:
+    """Files of an earlier run of this command, unchanged since, in folders this run wrote to and not among its own."""
+    folders = {PurePosixPath(name).parent for name in written} - {PurePosixPath(".")}
+    return [
+        name
+        for name, entry in recorded.items()
+        if name not in written
+        and PurePosixPath(name).parent in folders
+        and entry.by == by
+        and (out / name).is_file()
+        and digest(out / name) == entry.sha256
+    ]
+
+
+def _recorded(out: Path, record: str) -> dict[str, Entry]:
+    """What earlier runs wrote, by name relative to ``out``; a record of our own name must be one."""
+    path = out / record
+    try:
+        files = json.loads(path.read_text(encoding="utf-8"))["files"]
+        return {name: Entry(*text.split(":")) for name, text in files.items()}
+    except FileNotFoundError:
+        return {}
+    except (OSError, ValueError, LookupError, TypeError, AttributeError):
+        if record != RECORD:
+            return {}
+        raise InputError(
+            "is not the record of written files that mffit keeps under this name; move it away", file=path
+        ) from None
+
+
+def _prefix(name: str) -> str:
+    machine = re.sub(r"[^A-Za-z0-9]", "_", platform.node()) or "here"
+    return f".{name}-{machine}-"
+
+
+def _remove_litter(parent: Path, name: str) -> None:
+    """Remove temporary folders for ``name`` whose process, on this machine, is no more."""
+    prefix = _prefix(name)
+    for path in parent.iterdir():
+        found = re.fullmatch(r"(\d+)-\w{8}", path.name.removeprefix(prefix))
+        if path.name.startswith(prefix) and found and path.is_dir() and not _alive(int(found[1])):
+            shutil.rmtree(path, ignore_errors=True)
+
+
+def _alive(pid: int) -> bool:
+    """Whether the process runs; taken to be so on Windows, where asking with a signal would end it."""
+    if os.name == "nt":
+        return True
+    try:
+        os.kill(pid, 0)
+    except ProcessLookupError:
+        return False
+    except (PermissionError, OverflowError):
+        return True
+    return True

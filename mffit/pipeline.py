@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-import hashlib
 import json
 import math
 import time
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
+from urllib.parse import quote
 
 import numpy as np
 import tomli_w
@@ -29,13 +29,22 @@ from mffit.effects import CATALOG, Effect
 from mffit.errors import InputError
 from mffit.fit import FitResult
 from mffit.measured import Alignment, Measured
-from mffit.output import output_folder
+from mffit.output import digest, output_folder, refuse_early
 from mffit.parts import Parts
 from mffit.points import Points
 from tir import Tyre
 
 Progress = Callable[[str], None]
 """Called with a short sentence whenever a step begins."""
+
+
+BUILD_FILES = ("result.json", "points.csv", "report.html")
+DIAGNOSIS_FILES = ("diagnosis.json", "diagnosis.html")
+"""What a run is sure to write beside a property file, known before the work begins."""
+
+
+PLAIN = " /\\!#$&'()+,;=@[]{}~"
+"""What may stand in a file's name, beside letters and digits, without being written as %XX in a property file."""
 
 
 def silent(sentence: str) -> None:
@@ -98,6 +107,7 @@ def build(
     base = read_base(config)
     progress("measuring the camber reduction factor")
     parts, measured = measure(config, points, base)
+    refuse_early(_folder(out), (f"{config.tyre.name}.tir", *BUILD_FILES), inputs_of(config))
     with threadpool_limits(1):  # the matrices are small: threads cost more than they bring
         fitted = fitting.fit(config, points, parts, measured, base, progress)
     measured = measured.with_model(
@@ -127,7 +137,7 @@ def spin(config: Config | Mapping[str, Any] | str | Path, out: str | Path | None
     _, measured = measure(config, points, read_base(config))
     measured = replace(measured, warnings=(*warnings, *measured.warnings))
     if out is not None:
-        with output_folder(Path(out)) as folder:
+        with output_folder(Path(out), by="spin", protected=inputs_of(config)) as folder:
             _write_json(folder / "spin.json", measured.to_json())
     return measured
 
@@ -159,6 +169,10 @@ def diagnose(
     progress("reading sweeps")
     points, _ = ingestion.load(config, continuous=True)
     base = read_base(config)
+    inputs = [*inputs_of(config), last_build(config)]
+    if isinstance(model, str | Path):
+        inputs.append(Path(model))
+    refuse_early(_folder(out), (f"{config.tyre.name}.tir", *DIAGNOSIS_FILES), inputs)
     tyre, choice = _model(config, model, progress)
     with threadpool_limits(1):
         diagnosis = find_effects(points, tyre, config, effects=effects, progress=progress)
@@ -167,7 +181,7 @@ def diagnose(
     if disc and any(found.effect.kind == "rig" for found in diagnosis.effects):
         diagnosis = replace(diagnosis, notes=(*diagnosis.notes, _redone(config, points, diagnosis, base)))
     if out is not None:
-        write_diagnosis(diagnosis, Path(out))
+        write_diagnosis(diagnosis, Path(out), protected=inputs)
     return diagnosis
 
 
@@ -181,7 +195,7 @@ def _model(
         return tir.read(model), ()
     wanted = "turn-slip" if config.model.turn_slip and config.rig.type == "rotating-disk" else "normal"
     note = "The model was fitted to these points first, as there was no earlier build."
-    last = config.folder / "out" / f"{config.tyre.name}.tir"
+    last = last_build(config)
     if last.is_file():
         tyre = tir.read(last)
         if f"spin.exact {wanted}" in tyre.provenance.get("configuration", f"spin.exact {wanted}"):
@@ -223,11 +237,11 @@ def _epsilon(config: Config, points: Points, base: Tyre | None) -> tir.Quantity 
         return None
 
 
-def write_diagnosis(diagnosis: Diagnosis, out: Path) -> None:
-    """Write every output of a diagnosis, or nothing."""
+def write_diagnosis(diagnosis: Diagnosis, out: Path, protected: Iterable[Path] = ()) -> None:
+    """Write every output of a diagnosis, or nothing; the ``protected`` files were read and are not replaced."""
     from mffit import report
 
-    with output_folder(out) as folder:
+    with output_folder(out, by="diagnose", protected=protected) as folder:
         diagnosis.tyre.write(folder / diagnosis.model_after)
         _write_json(folder / "diagnosis.json", diagnosis.to_json())
         report.write_diagnosis(diagnosis, folder)
@@ -259,25 +273,42 @@ def annotated(tyre: Tyre, config: Config, measured: Measured) -> Tyre:
     provenance = {
         "program": f"mffit {mffit.__version__}",
         "configuration": _settings(config),
-        **{f"input {name}": digest for name, digest in input_hashes(config).items()},
+        # A property file is ASCII, and a colon ends the key of a structured comment.
+        **{f"input {quote(name, safe=PLAIN)}": known for name, known in input_hashes(config).items()},
     }
     return tyre.annotate(measured=measured.quantities(), provenance=provenance)
 
 
 def input_hashes(config: Config) -> dict[str, str]:
-    """First 16 hex digits of the SHA-256 of every input file, by name."""
+    """First 16 hex digits of the SHA-256 of every input file, by its name as the configuration gives it."""
+    return {name: digest(config.folder / name)[:16] for name in _input_names(config)}
+
+
+def inputs_of(config: Config) -> list[Path]:
+    """Every file that a run of this configuration reads."""
+    files = [config.folder / name for name in _input_names(config)]
+    return files if config.path is None else [config.path, *files]
+
+
+def last_build(config: Config) -> Path:
+    """Where a build writes its property file by default."""
+    return config.folder / "out" / f"{config.tyre.name}.tir"
+
+
+def _input_names(config: Config) -> list[str]:
     names = [sweep.file for sweep in config.sweep] + ([config.tyre.base] if config.tyre.base else [])
-    return {
-        Path(name).name: hashlib.sha256((config.folder / name).read_bytes()).hexdigest()[:16]
-        for name in dict.fromkeys(names)
-    }
+    return list(dict.fromkeys(names))
+
+
+def _folder(out: str | Path | None) -> Path | None:
+    return None if out is None else Path(out)
 
 
 def write_build(result: Result, out: Path) -> None:
     """Write every output of a build, or nothing."""
     from mffit import report
 
-    with output_folder(out) as folder:
+    with output_folder(out, by="build", protected=inputs_of(result.config)) as folder:
         result.tyre.write(folder / result.tir_path)
         _write_json(folder / "result.json", result.to_json())
         points_table(result).to_csv(folder / "points.csv", index=False)

@@ -54,7 +54,9 @@ def test_every_dependency_has_a_reason():
     project = tomllib.loads(text_of(ROOT / "pyproject.toml"))["project"]
     extras = [line for lines in project["optional-dependencies"].values() for line in lines]
     names = {re.split(r"[\s<>=!\[;]", line)[0] for line in [*project["dependencies"], *extras]} - {"mffit"}
-    explained = set(re.findall(r"^\| `([\w-]+)`", text_of(DOCS / "dependencies.md"), re.MULTILINE))
+    rows = re.findall(r"^\| `([\w-]+)`", text_of(DOCS / "dependencies.md"), re.MULTILINE)
+    explained = set(rows)
+    assert len(rows) == len(explained), "docs/dependencies.md explains a package twice"
     assert names <= explained, (
         f"docs/dependencies.md has no reason for {', '.join(sorted(names - explained))}"
     )

@@ -8,6 +8,8 @@ import sys
 from collections.abc import Iterator
 from pathlib import Path
 
+import pytest
+
 ROOT = Path(__file__).parents[1]
 ARCHITECTURE = "docs/architecture.md"
 
@@ -36,6 +38,25 @@ def layers() -> list[str]:
     block = re.search(r"^mffit/\n((?: .*\n)+)", text, re.MULTILINE)
     assert block, f"{ARCHITECTURE} has no list of the folders of mffit/ any more; put it back"
     return [re.split(r"[/.\s]", line.strip())[0] for line in block[1].splitlines()]
+
+
+def listed() -> dict[str, list[str]]:
+    """By package, the entries of the list in docs/architecture.md as they stand there."""
+    text = (ROOT / ARCHITECTURE).read_text(encoding="utf-8")
+    blocks = re.findall(r"^(\w+)/\n((?: .*\n)+)", text, re.MULTILINE)
+    return {package: [line.split()[0] for line in block.splitlines()] for package, block in blocks}
+
+
+@pytest.mark.parametrize("package", ["tir", "mffit"])
+def test_the_list_is_the_tree(package):
+    """Folders with a slash, modules with .py, each once and no other."""
+    there = {
+        path.name + "/" * path.is_dir()
+        for path in (ROOT / package).iterdir()
+        if path.suffix in (".py", ".csv") or (path / "__init__.py").is_file()
+    } - {"__init__.py"}
+    entries = listed()[package]
+    assert sorted(entries) == sorted(there), f"{ARCHITECTURE} lists {package}/ otherwise than it is"
 
 
 def layer_of(dotted: str) -> str | None:

@@ -330,11 +330,12 @@ def _assembled(config, rows: list[AtLoad], r_e_loads, warnings: list[str], disc:
     with_epsilon = [k for k, found in enumerate(rows) if found.epsilon is not None]
     if not with_epsilon:
         nearest = min(per_load, key=lambda row: abs(row.load - nominal_load), default=None)
+        notes = [] if disc else ["A flat track's path is straight: it has no turn slip to measure."]
         if disc:
             warnings.append(
                 "eps_gamma could not be measured: it needs a camber sweep, points at (0, 0) and a [rolling_radius]"
             )
-        return Measured(per_load, nearest, None, 0.0, None, r_e_loads, False, (), tuple(warnings))
+        return Measured(per_load, nearest, None, 0.0, None, r_e_loads, False, tuple(notes), tuple(warnings))
     at = min(with_epsilon, key=lambda k: abs(per_load[k].load - nominal_load))
     loads = [per_load[k].load for k in with_epsilon]
     law = load_dependence(
@@ -352,11 +353,16 @@ def _alignment_verdict(config, row: LoadResult, warnings: list[str]) -> tuple[bo
     """Whether the sideslip axis is off by more than the rig's own alignment leaves, and what to say of it."""
     assert row.F_phit is not None
     force = row.F_phit.value
-    degrees_per_newton = math.degrees(1.0 / abs(row.C_alpha.value)) if row.C_alpha else math.nan
     if row.alpha_M is None:
+        # Without a sideslip sweep nobody knows what angle the force would take.
+        angle = (
+            f"{math.degrees(abs(force / row.C_alpha.value)):.2f} deg of"
+            if row.C_alpha
+            else "an unknown angle (no sideslip sweep gives C_alpha) of"
+        )
         return False, [
             "Sideslip misalignment, turn slip and ply-steer are not separable here; the force "
-            f"{force:.0f} N at (0, 0) would take {abs(force) * degrees_per_newton:.2f} deg of misalignment or ply-steer if it "
+            f"{force:.0f} N at (0, 0) would take {angle} misalignment or ply-steer if it "
             f"were not turn slip, and {config.rig.u_slip_alignment_N:.0f} N (k = 1) is assumed for the alignment"
         ]
     alpha_M, u = math.degrees(row.alpha_M.value), math.degrees(row.alpha_M.u)

@@ -19,6 +19,9 @@ from mffit.virtual_rig.tables import point_table, recorded_table
 from mffit.virtual_rig.truth import DirectTruth, Truth, coefficients_of, direct_truth
 from tir import Tyre
 
+LEADING = ("tyre", "rig", "rolling_radius")
+"""Tables of tyre.toml that a reader looks for first."""
+
 
 @dataclass(frozen=True, slots=True)
 class Campaign:
@@ -131,9 +134,13 @@ def configuration_of(plan: Plan, machine: Machine, generator: np.random.Generato
         for row in plan.tables.rolling_radius
     ]
     content["rolling_radius"] = radii
-    # The sweeps, which are many, stand at the end; without radii there is no such table.
-    order = ["tyre", "rig", "rolling_radius", "camber_stiffness", "spin", "model", "sweep"]
-    return {name: content[name] for name in order if content.get(name)}
+    if plan.declared.base_path is not None:
+        content["tyre"]["base"] = plan.declared.base_path.name  # its copy stands beside tyre.toml
+    # Plain keys before tables, as TOML wants it, the sweeps, which are many, at the end; no empty tables.
+    first = [name for name, value in content.items() if not isinstance(value, dict | list | tuple)]
+    order = dict.fromkeys([*first, *(name for name in LEADING if name in content), *content])
+    order = dict.fromkeys([*(name for name in order if name != "sweep"), "sweep"])
+    return {name: content[name] for name in order if content[name] not in ({}, [], ())}
 
 
 def _sweep_entry(sweep: SweepPlan) -> dict[str, Any]:

@@ -12,7 +12,7 @@ from mffit.virtual_rig.campaign import run
 from mffit.virtual_rig.loading import load_plan
 from mffit.virtual_rig.plan import Plan
 from mffit.virtual_rig.truth import Truth
-from mffit.virtual_rig.writing import write
+from mffit.virtual_rig.writing import TRUTH, write
 
 
 def simulate(plan: Plan | Mapping[str, Any] | str | Path, out: str | Path, seed: int | None = None) -> Truth:
@@ -32,10 +32,13 @@ def simulate(plan: Plan | Mapping[str, Any] | str | Path, out: str | Path, seed:
     Raises
     ------
     InputError, tir.errors.TirError
-        The plan or the tyre's file is wrong; nothing is written then.
+        The plan or the tyre's file is wrong, or a file in ``out`` is not one that an earlier run wrote;
+        nothing is written then.
     """
+    read = [Path(plan)] if isinstance(plan, str | Path) else []
     plan = plan if isinstance(plan, Plan) else load_plan(plan)
+    read += [path for path in (plan.tyre_path, plan.declared.base_path) if path is not None]
     campaign = run(plan, tir.read(plan.tyre_path), seed)
-    with output_folder(Path(out)) as folder:
+    with output_folder(Path(out), by="simulate", protected=read, record=TRUTH) as folder:
         write(campaign, plan, folder)
     return campaign.truth

@@ -15,6 +15,9 @@ import tomli_w
 from mffit.virtual_rig.campaign import Campaign
 from mffit.virtual_rig.plan import Plan
 
+TRUTH = "truth.json"
+"""What is true behind the data; also lists the files of the campaign, so that a later run knows them."""
+
 
 def write(campaign: Campaign, plan: Plan, folder: Path) -> None:
     """Write sweeps, ``tyre.toml``, ``truth.json`` and a copy of the base file into an existing folder."""
@@ -22,7 +25,7 @@ def write(campaign: Campaign, plan: Plan, folder: Path) -> None:
         write_table(table, folder / name)
     (folder / "tyre.toml").write_text(configuration_text(campaign.configuration), encoding="utf-8")
     truth = json.dumps(campaign.truth.to_json(), indent=2, allow_nan=False)
-    (folder / "truth.json").write_text(truth + "\n", encoding="utf-8")
+    (folder / TRUTH).write_text(truth + "\n", encoding="utf-8")
     base = plan.declared.base_path
     if base is not None:
         shutil.copyfile(base, folder / base.name)
@@ -32,7 +35,7 @@ def configuration_text(configuration: Mapping[str, Any]) -> str:
     """The text of tyre.toml; a list becomes one ``[[table]]`` per entry, as a person would write it."""
     parts = ["# Made by `mffit simulate`; what is true behind these data stands in truth.json.\n"]
     for name, content in configuration.items():
-        if isinstance(content, list):
+        if isinstance(content, list | tuple):
             parts += [f"[[{name}]]\n{tomli_w.dumps(entry)}" for entry in content]
         else:
             parts.append(tomli_w.dumps({name: content}))

@@ -9,6 +9,9 @@ from typing import Any
 from mffit.report.rounding import MINUS, number, with_u
 from mffit.report.text.layout import blocks, paragraphs, table
 
+STIFFNESSES = ("C_gamma_N_per_rad", "C_alpha_N_per_rad")
+"""What can be read off a load without turn slip."""
+
 
 def budget_table(budget: Sequence[Mapping[str, Any]], total: float) -> str:
     """Where u(eps_gamma) comes from, largest contribution first."""
@@ -30,7 +33,10 @@ def spin_summary(measured: Any) -> str:
     """What ``mffit spin`` prints: the direct method's numbers, its budget, every load."""
     spin = measured.to_json()
     if spin["epsilon_gamma"] is None:
-        return blocks([paragraphs(["No camber reduction factor: see the warnings.", *spin.get("notes", ())])])
+        reason = "the warnings say why." if measured.warnings else "it was not measured."
+        known = [row for row in spin["per_load"] if any(row.get(key) is not None for key in STIFFNESSES)]
+        sentences = [*spin["notes"]] or [f"No camber reduction factor: {reason}"]
+        return blocks([_per_load(known) if known else "", paragraphs(sentences)])
     parts = [
         spin_numbers(spin),
         budget_table(spin["budget"], spin["u_epsilon_gamma"]),

@@ -106,13 +106,21 @@ def test_the_path_pushes_outwards_and_a_larger_radius_less():
     assert less > 0.0  # centre at the left: turn slip makes Fy < 0, and less of it is a gain
 
 
-def test_environment_scales_both_channels():
-    for channel in ("Fy", "Mz"):
-        warm = change({"k_T_per_K": 0.002}, T=45.0, channel=channel)
-        full = change({"gain": 2.0}) if channel == "Fy" else None
-        if full is not None:
-            assert warm == pytest.approx(0.04 * full, rel=1e-9)
-        assert np.any(warm)
+@pytest.mark.parametrize("channel", ["Fy", "Mz"])
+@pytest.mark.parametrize(
+    ("numbers", "conditions", "share"),
+    [
+        ({"k_T_per_K": 0.002}, {"T": 45.0}, 0.04),
+        ({"k_T_per_K": 0.002}, {"T": 25.0}, 0.0),
+        ({"k_t_per_s": 1e-4}, {"t": 300.0}, 0.03),
+    ],
+)
+def test_environment_scales_both_channels(channel, numbers, conditions, share):
+    points = make_points(ANGLES, 0.0, 1500.0, p=250e3, V=6.0, phi_t=0.0)
+    whole = State(dict(PLAIN.values), RigFaults(), False, False).predict(points)
+    whole = whole[: len(points)] if channel == "Fy" else whole[len(points) :]
+    assert np.max(np.abs(whole)) > 1.0
+    assert change(numbers, channel=channel, **conditions) == pytest.approx(share * whole, rel=1e-9)
 
 
 def test_play_is_taken_up_against_the_moment():

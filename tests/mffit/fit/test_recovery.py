@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from drawn_rigs import SAMPLE, model_error, one_rig, plan_content
+from drawn_rigs import COEFFICIENTS, SAMPLE, model_error, one_rig, plan_content
 
 import mffit
 import tir
@@ -53,6 +53,7 @@ def test_pecp1_of_the_model_gives_the_measured_turn_slip_force(sound_rig):
 
 
 def test_the_files_radius_is_the_measured_one(sound_rig):
+    assert len(sound_rig.measured.r_e_loads) == len(plan_content()["rolling_radius"]) > 0
     for load, r_e in sound_rig.measured.r_e_loads.items():
         assert sound_rig.fit.written.state(load, Vx=6.0).Re == pytest.approx(r_e, abs=1e-4)
 
@@ -64,5 +65,8 @@ def test_errors_of_drawn_rigs_stay_within_their_intervals():
         for name, value in one_rig(seed).items()
         if "error" not in name and "rms" not in name
     ]
+    assert len(pulls) == 2 * (2 + len(COEFFICIENTS))
     assert np.mean(np.abs(pulls) < 1.96) > 0.75
     assert np.max(np.abs(pulls)) < 6.0
+    # 30 pulls, many of them correlated: intervals half or twice as wide as they should be give 1.8 or 0.45.
+    assert 0.6 < np.sqrt(np.mean(np.square(pulls))) < 1.5

@@ -118,7 +118,7 @@ def test_backward_runs_labelled_forward_in_their_angles_are_refused(project):
     assert "backward" in str(refusal(project))
 
 
-@settings(max_examples=25, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(max_examples=25, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(
     shift=st.floats(-1.0, 1.0),
     offset=st.floats(-40.0, 40.0),

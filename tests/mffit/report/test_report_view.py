@@ -28,7 +28,10 @@ def test_line_includes_the_faults_that_are_known():
 def test_place_between_the_bounds(result):
     rows = {row.name: row for row in coefficient_rows(result.fit.coefficients)}
     row = rows["PKY1"]
-    assert row.place == pytest.approx((row.value - row.lower) / (row.upper - row.lower))
+    row = dataclasses.replace(row, lower=-30.0, upper=-10.0)
+    for value, place in ((-30.0, 0.0), (-25.0, 0.25), (-10.0, 1.0), (-40.0, 0.0), (0.0, 1.0)):
+        assert dataclasses.replace(row, value=value).place == pytest.approx(place)
+    assert dataclasses.replace(row, lower=None).place is None
     assert [name for name, row in rows.items() if row.held] == ["QBZ1", "PHY2"]
 
 

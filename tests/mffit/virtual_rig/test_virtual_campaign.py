@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+import dataclasses
+import tomllib
+
 import numpy as np
 import pytest
 
-from mffit import config
+from mffit import config, virtual_rig
 from mffit.virtual_rig import load_plan
 from mffit.virtual_rig.campaign import faults_of
 from mffit.virtual_rig.truth import direct_truth
+from mffit.virtual_rig.writing import configuration_text
 
 NOISE = {"Fy_N": 6.0, "Mz_Nm": 0.6}
 DRAW = {"draw": True}
@@ -119,6 +123,27 @@ def test_the_configuration_is_one_that_build_accepts(run, folder):
     ]
     assert loaded.sweep[3].direction == "backward"
     assert loaded.rig.path_radius == 1.323
+
+
+def test_every_table_of_the_declaration_reaches_tyre_toml(content, folder, tyre):
+    class Extended(config.Config):
+        """A configuration with tables that the virtual rig has never heard of."""
+
+        comment: str = ""
+        later: dict[str, float] = {}  # noqa: RUF012
+        steps: tuple[dict[str, int], ...] = ()
+
+    plan = load_plan(content | {"spin": {"exact": "turn-slip"}}, folder=folder)
+    known = {name: getattr(plan.declared, name) for name in plan.declared.model_fields_set}
+    declared = Extended.model_construct(**known, comment="new", later={"a": 1.5}, steps=({"b": 1}, {"b": 2}))
+    declared._folder = folder
+    made = virtual_rig.run(dataclasses.replace(plan, declared=declared), tyre).configuration
+    written = tomllib.loads(configuration_text(made))
+    assert written["comment"] == "new"
+    assert written["later"] == {"a": 1.5}
+    assert written["steps"] == [{"b": 1}, {"b": 2}]
+    assert written["spin"] == {"exact": "turn-slip"}
+    assert list(written)[-1] == "sweep"
 
 
 def test_time_runs_on_from_sweep_to_sweep(run):

@@ -1,0 +1,247 @@
+"""Nothing is replaced or deleted that this program did not write: refused with the file's name, all else kept."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from test_bad_input import run, snapshot
+
+from mffit import config
+from mffit.errors import InputError
+from mffit.output import RECORD, output_folder, refuse_early
+from mffit.pipeline import input_hashes, read_base
+from mffit.virtual_rig import load_plan, simulate
+
+SAMPLE = Path(__file__).parents[2] / "samples" / "front-120-70"
+
+
+def write(out: Path, by: str = "build", protected=(), **contents: str) -> None:
+    """A run that writes ``plots__a=...`` to plots/a."""
+    with output_folder(out, by=by, protected=protected) as folder:
+        for name, text in contents.items():
+            path = folder / name.replace("__", "/")
+            path.parent.mkdir(exist_ok=True)
+            path.write_text(text)
+
+
+def assert_kept(out: Path, said: str, **keys) -> None:
+    """The run is refused, and the folder and its neighbours are as they were."""
+    before = snapshot(out.parent)
+    with pytest.raises(InputError, match=said):
+        write(out, **keys)
+    assert snapshot(out.parent) == before
+    assert not list(out.parent.glob(".out-*"))
+
+
+def test_a_later_run_replaces_what_an_earlier_one_wrote(tmp_path):
+    out = tmp_path / "out"
+    write(out, a="1", plots__p="1")
+    write(out, a="2", plots__p="2")
+    assert (out / "a").read_text() == "2"
+    assert (out / "plots" / "p").read_text() == "2"
+
+
+@pytest.mark.parametrize("name", ["a", "plots/p"])
+def test_a_foreign_file_is_not_replaced(tmp_path, name):
+    out = tmp_path / "out"
+    (out / "plots").mkdir(parents=True)
+    (out / name).write_text("mine")
+    assert_kept(out, f"{name}: .*no run of mffit", a="1", plots__p="1")
+
+
+def test_a_file_changed_since_is_not_replaced(tmp_path):
+    out = tmp_path / "out"
+    write(out, a="1")
+    (out / "a").write_text("edited")
+    assert_kept(out, "a: .*changed since", a="2")
+
+
+def test_a_file_that_the_run_reads_is_not_replaced_whoever_wrote_it(tmp_path):
+    out = tmp_path / "out"
+    write(out, a="1")
+    assert_kept(out, "a: is an input", a="2", protected=[tmp_path / "out" / ".." / "out" / "a"])
+
+
+def test_the_same_bytes_are_no_loss(tmp_path):
+    out = tmp_path / "out"
+    out.mkdir()
+    (out / "a").write_text("1")
+    write(out, a="1", protected=[out / "a"])
+    assert (out / "a").read_text() == "1"
+
+
+def test_stale_pictures_go_and_everything_else_stays(tmp_path):
+    out = tmp_path / "out"
+    write(out, a="1", plots__old="1", plots__edited="1", plots__kept="1")
+    write(out, by="diagnose", plots__other="1")
+    (out / "plots" / "edited").write_text("mine")
+    (out / "plots" / "foreign").write_text("mine")
+    write(out, b="1", plots__kept="2")
+    assert set(snapshot(out)) == {
+        RECORD, "a", "b", "plots/edited", "plots/foreign", "plots/kept", "plots/other",
+    }  # fmt: skip
+
+
+@pytest.mark.parametrize("made", ["a/", "plots"])
+def test_a_folder_and_a_file_are_not_exchanged(tmp_path, made):
+    out = tmp_path / "out"
+    (out / made).mkdir(parents=True) if made.endswith("/") else (out.mkdir(), (out / made).write_text("mine"))
+    assert_kept(out, "move it away", a="1", plots__p="1")
+
+
+def test_a_foreign_file_of_the_records_name_is_not_taken_for_one(tmp_path):
+    out = tmp_path / "out"
+    out.mkdir()
+    (out / RECORD).write_text("[]")
+    assert_kept(out, "move it away", a="1")
+
+
+def test_a_dead_runs_folder_is_removed_and_a_living_ones_is_not(tmp_path):
+    code = (
+        "import os, sys; from pathlib import Path; from mffit.output import output_folder\n"
+        "with output_folder(Path(sys.argv[1])) as folder:\n"
+        "    (folder / 'half').write_text('x'); os._exit(9)\n"
+    )
+    subprocess.run([sys.executable, "-c", code, str(tmp_path / "out")], check=False)
+    (dead,) = tmp_path.glob(".out-*")
+    living = dead.with_name(dead.name.replace(f"-{dead.name.split('-')[-2]}-", f"-{os.getpid()}-"))
+    living.mkdir()
+    (tmp_path / ".out-mine").mkdir()
+    write(tmp_path / "out", a="1")
+    assert {path.name for path in tmp_path.glob(".out-*")} == {living.name, ".out-mine"}
+
+
+def test_what_would_be_refused_at_the_end_is_refused_before_the_work(tmp_path):
+    (tmp_path / "a").write_text("mine")
+    refuse_early(tmp_path, ["b"])
+    refuse_early(None, ["a"])
+    with pytest.raises(InputError, match="no run of mffit"):
+        refuse_early(tmp_path, ["a"])
+
+
+def assert_command_refused(capsys, folder: Path, name: str, *arguments: object) -> None:
+    before = snapshot(folder)
+    code, err = run(capsys, *arguments)
+    assert code == 2, err
+    assert name in err
+    assert err.count("\n") == 1
+    assert snapshot(folder) == before
+
+
+def sweep_called_points(project):
+    project.tables["points.csv"] = project.tables.pop("camber_1500.csv")
+    for entry in project.config["sweep"]:
+        entry["file"] = entry["file"].replace("camber_1500.csv", "points.csv")
+    return "points.csv"
+
+
+def base_of_the_tyres_name(project):
+    project.config["tyre"]["base"] = "toy.tir"
+    project.folder.mkdir()
+    (project.folder / "toy.tir").write_bytes((SAMPLE / "base.tir").read_bytes())
+    return "toy.tir"
+
+
+def report_of_somebody_else(project):
+    project.folder.mkdir()
+    (project.folder / "report.html").write_text("mine")
+    return "report.html"
+
+
+@pytest.mark.parametrize("make", [sweep_called_points, base_of_the_tyres_name, report_of_somebody_else])
+def test_build_into_the_project_does_not_replace(project, capsys, make):
+    name = make(project)
+    assert_command_refused(capsys, project.folder, name, "build", project.write(), "--out", project.folder)
+
+
+def test_diagnose_does_not_replace_its_model(project, capsys):
+    path, out = project.write(), project.folder / "out"
+    write(out, **{"toy.tir": (SAMPLE / "true.tir").read_text()})
+    for model in (["--model", out / "toy.tir"], []):
+        assert_command_refused(capsys, project.folder, "toy.tir", "diagnose", path, *model, "--out", out)
+
+
+def test_spin_does_not_replace_a_foreign_file(project, capsys):
+    path = project.write()
+    (project.folder / "spin.json").write_text("mine")
+    assert_command_refused(capsys, project.folder, "spin.json", "spin", path, "--out", project.folder)
+
+
+PLAN = """
+[truth]
+tyre = "true.tir"
+[tyre]
+name = "small"
+unloaded_radius = 0.2992
+nominal_load = 1400
+nominal_pressure = 250
+base = "base.tir"
+[rig]
+path_radius = 1.323
+[[sweep]]
+file = "sideslip.csv"
+load_N = 1400
+alpha_deg = { from = -6, to = 6, step = 1 }
+[noise]
+Fy_N = 6.0
+"""
+
+
+@pytest.fixture
+def campaign(tmp_path):
+    """A rig.toml in a folder of its own, with its tyres."""
+    folder = tmp_path / "plan"
+    folder.mkdir()
+    for name in ("true.tir", "base.tir"):
+        (folder / name).write_bytes((SAMPLE / name).read_bytes())
+    (folder / "rig.toml").write_text(PLAN)
+    return folder
+
+
+@pytest.mark.parametrize("name", ["tyre.toml", "sideslip.csv", "truth.json", "base.tir"])
+def test_simulate_does_not_replace_files_written_by_hand(campaign, tmp_path, capsys, name):
+    out = tmp_path / "mine"
+    out.mkdir()
+    (out / name).write_text("mine")
+    assert_command_refused(capsys, tmp_path, name, "simulate", campaign / "rig.toml", "--out", out)
+
+
+def test_simulate_replaces_its_own_files_until_they_are_edited(campaign, capsys):
+    command = ("simulate", campaign / "rig.toml", "--out", campaign)
+    assert run(capsys, *command) == (0, "")
+    before = snapshot(campaign)
+    assert run(capsys, *command, "--seed", "5") == (0, "")
+    after = snapshot(campaign)
+    changed = {name for name in after if after[name] != before[name]}
+    assert changed == {"sideslip.csv", "truth.json"}
+    assert json.loads(after["truth.json"])["seed"] == 5
+    (campaign / "tyre.toml").write_text((campaign / "tyre.toml").read_text() + "# mine\n")
+    assert_command_refused(capsys, campaign, "tyre.toml", *command, "--seed", "6")
+
+
+def test_simulate_takes_a_base_file_from_another_folder_along(campaign, tmp_path):
+    (campaign / "tyres").mkdir()
+    (campaign / "base.tir").rename(campaign / "tyres" / "base.tir")
+    (campaign / "rig.toml").write_text(PLAN.replace('"base.tir"', '"tyres/base.tir"'))
+    simulate(load_plan(campaign / "rig.toml"), tmp_path / "out")
+    assert read_base(config.load(tmp_path / "out" / "tyre.toml")) is not None
+
+
+def test_inputs_of_the_same_name_in_two_folders_both_count(project):
+    for k, name in enumerate(("sideslip_1000.csv", "sideslip_1500.csv")):
+        folder = project.folder / str(k)
+        folder.mkdir(parents=True)
+        project.tables[f"{k}/sideslip.csv"] = project.tables.pop(name)
+        project.config["sweep"] = [
+            entry | {"file": entry["file"].replace(name, f"{k}/sideslip.csv")}
+            for entry in project.config["sweep"]
+        ]
+    hashes = input_hashes(config.load(project.write()))
+    assert len(hashes) == len(project.tables)
+    assert {"0/sideslip.csv", "1/sideslip.csv"} <= set(hashes)
+    assert hashes["0/sideslip.csv"] != hashes["1/sideslip.csv"]
