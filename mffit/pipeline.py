@@ -175,7 +175,8 @@ def diagnose(
     refuse_early(_folder(out), (f"{config.tyre.name}.tir", *DIAGNOSIS_FILES), inputs)
     tyre, choice = _model(config, model, progress)
     with threadpool_limits(1):
-        diagnosis = find_effects(points, tyre, config, effects=effects, progress=progress)
+        rig = rig_of_build(tyre, config)
+        diagnosis = find_effects(points, tyre, config, rig=rig, effects=effects, progress=progress)
     diagnosis = replace(diagnosis, notes=(*choice, *diagnosis.notes))
     disc = config.rig.type == "rotating-disk"
     if disc and any(found.effect.kind == "rig" for found in diagnosis.effects):
@@ -277,6 +278,19 @@ def annotated(tyre: Tyre, config: Config, measured: Measured) -> Tyre:
         **{f"input {quote(name, safe=PLAIN)}": known for name, known in input_hashes(config).items()},
     }
     return tyre.annotate(measured=measured.quantities(), provenance=provenance)
+
+
+def rig_of_build(tyre: Tyre, config: Config) -> RigFaults | None:
+    """The rig errors that the build found, if the file was fitted to these very sweeps; None otherwise."""
+    of_file = {name: digest for name, digest in tyre.provenance.items() if name.startswith("input ")}
+    if not of_file or of_file != {f"input {name}": digest for name, digest in input_hashes(config).items()}:
+        return None
+    found = {name: tyre.measured[RIG + name].value for name in FAULT_NAMES if RIG + name in tyre.measured}
+    return RigFaults(**{"backlash_deg": config.rig.backlash_deg, **found}) if found else None
+
+
+RIG = "rig."
+"""What opens the name of a rig error among a file's measured quantities."""
 
 
 def input_hashes(config: Config) -> dict[str, str]:

@@ -43,6 +43,7 @@ def diagnose(
     tyre: Tyre,
     config: Config,
     *,
+    rig: RigFaults | None = None,
     effects: Sequence[Effect] = CATALOG,
     progress: Callable[[str], None] = lambda sentence: None,
 ) -> Diagnosis:
@@ -53,6 +54,7 @@ def diagnose(
     points : raw points (n,), ISO-W, angles as read
     tyre : the model of the simulation
     config : its tables ``model``, ``rig.backlash_deg`` and ``tyre.name`` are used
+    rig : what is known of the rig's errors; default the declared play alone
     effects : the library to choose from; add your own records to the catalogue's
     progress : called with a sentence before each step
 
@@ -66,7 +68,7 @@ def diagnose(
         If points and model cannot belong together, or are too few.
     """
     progress("comparing simulation and measurement")
-    declared = RigFaults(backlash_deg=config.rig.backlash_deg)
+    declared = rig or RigFaults(backlash_deg=config.rig.backlash_deg)
     simulates_spin = config.model.turn_slip and bool(np.any(points.phi_t))
     start = Simulation(dict(tyre.values), declared, simulates_spin, config.model.star)
     refuse_strangers(points, tyre, start)
