@@ -22,7 +22,7 @@ CAMBER_MOMENT = (
 )  # fmt: skip
 FORCE_STARTS: tuple[Mapping[str, float], ...] = ({}, {"PEY5": -3.0, "PDY3": 0.3}, {"PVY3": -0.5, "PDY3": 1.0})
 MOMENT_STARTS: tuple[Mapping[str, float], ...] = ({}, {"QDZ4": -1.0, "QEZ5": -2.0}, {"QBZ5": 0.8, "QEZ5": 2.0})
-OUTSIDE, CORNER = 0.1, 0.5
+OUTSIDE, CORNER = 0.02, 0.5
 SLIP, LEAN = np.radians(4.0), np.radians(25.0)
 LIMIT_WEIGHT = 300.0
 """Residual per unit of a broken limit, the rms misfit being of the order of 1."""
@@ -86,9 +86,9 @@ def derive_normal(
             for road in (coarse, fine)
         )
         begun = {name: measured.get(name, float(values[name])) for name in names}
-        tried = [_solve(on_coarse, {**begun, **start}, 25) for start in starts]
+        tried = [_solve(on_coarse, {**begun, **start}, 25, 1e-3) for start in starts]
         best, _ = min(tried, key=lambda end: end[1])
-        found.update(_solve(on_fine, best, 30)[0])
+        found.update(_solve(on_fine, best, 30, 1e-4)[0])
     return {name: found[name] for name in (*CAMBER_FORCE, *CAMBER_MOMENT) if found[name] != values[name]}
 
 
@@ -121,8 +121,8 @@ def weights(road: Road, tested: Mapping[str, float]) -> np.ndarray:
 
     A wheel leans far with little sideslip and slips far with little lean; both at once is a fall. Inside the tested
     ranges the weight is ``1/2 + 1/2 / (1 + (alpha/4 deg * gamma/25 deg)**2)``: 1 along both axes, nearly 1/2 in the
-    corner of 8 deg of sideslip and 50 deg of camber. Conditions that only the written ranges hold count a tenth: enough
-    to keep the file plausible there, too little to cost newtons where there are data.
+    corner of 8 deg of sideslip and 50 deg of camber. Conditions that only the written ranges hold count a fiftieth:
+    enough to keep the file plausible there, too little to cost newtons where there are data.
     """
     both = (road.alpha / SLIP * road.gamma / LEAN) ** 2
     return np.where(inside(road, tested), 1.0, OUTSIDE) * (CORNER + (1.0 - CORNER) / (1.0 + both))
@@ -183,7 +183,9 @@ def _camber_line(limits: Envelope) -> Road:
     return Road(Fz.ravel(), np.zeros(shape), gamma.ravel(), np.full(shape, 0.5 * sum(limits.pressure)))
 
 
-def _solve(residual: Residual, start: Mapping[str, float], steps: int) -> tuple[dict[str, float], float]:
+def _solve(
+    residual: Residual, start: Mapping[str, float], steps: int, tolerance: float
+) -> tuple[dict[str, float], float]:
     """Where bounded least squares end from a start, and the sum of squares there."""
     names = list(start)
     lower, upper = (np.array([BY_NAME[name].bounds[i] for name in names]) for i in (0, 1))
@@ -194,8 +196,8 @@ def _solve(residual: Residual, start: Mapping[str, float], steps: int) -> tuple[
         bounds=(lower, upper),
         x_scale="jac",
         max_nfev=steps,
-        ftol=1e-5,
-        xtol=1e-5,
+        ftol=tolerance,
+        xtol=tolerance,
     )
     return dict(zip(names, out.x.tolist(), strict=True)), float(out.cost)
 

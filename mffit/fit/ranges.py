@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from types import SimpleNamespace
 from typing import Any
@@ -14,7 +15,7 @@ from tir.evaluate import evaluate
 
 SHARES = (1.0, 0.75, 0.5, 0.25)
 """Shares of the way from the tested end of a range to the wished one that are tried, the longest first."""
-SIDESLIP, CAMBER = np.radians(20.0), np.radians(45.0)
+SIDESLIP, CAMBER = math.radians(20.0), math.radians(45.0)
 LOW_LOAD, HIGH_LOAD, PRESSURE = 0.1, 1.5, 0.2
 REMAINING = 0.5
 """Share of its peak that the side force keeps up to the end of the sideslip range of a plausible tyre."""
