@@ -28,6 +28,17 @@ RADII = (100.0, 30.0, 10.0)
 LONGEST = 66
 """Characters of a comment that fit on a line of the file."""
 DECIDED = ("TYRESIDE", "USE_MODE", "FITTYP")
+"""Values that the build itself decides."""
+GIVEN = {
+    "FNOMIN": "nominal_load",
+    "NOMPRES": "nominal_pressure",
+    "INFLPRES": "nominal_pressure",
+    "LONGVL": "nominal_speed",
+    "UNLOADED_RADIUS": "unloaded_radius",
+    "WIDTH": "width",
+    "RIM_RADIUS": "rim_radius",
+}
+"""Values that [tyre] of tyre.toml states, by its keys."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -111,7 +122,8 @@ def make_files(
     disc = config.rig.type == "rotating-disk"
     tested = tested_ranges(points)
     written = plausible_ranges(values, tested, turn_slip=disc)
-    status.update({**dict.fromkeys(NAMES, "range"), **dict.fromkeys(DECIDED, "given")})
+    given = [name for name, key in GIVEN.items() if getattr(config.tyre, key) is not None]
+    status.update({**dict.fromkeys(NAMES, "range"), **dict.fromkeys((*DECIDED, *given), "given")})
     symmetric = config.tyre.side == "symmetric"
     if symmetric:
         status.update(dict.fromkeys(ODD_TERMS, "given"))
@@ -140,7 +152,9 @@ DERIVED = "fitted to the model without path curvature"
 
 
 def _figures(values, comments, base, use, model, road: Road, tested, disc: bool) -> FileFigures:
-    tyre = (base or Tyre.from_values({})).replace(**values, USE_MODE=use_mode(values, use))
+    tyre = (base or Tyre.from_values({})).replace(
+        **{**values, "USE_MODE": use_mode(values, use)}
+    )
     with_spin = use == "turn-slip"
     here, target = road.forces(tyre.values, turn_slip=with_spin), road.forces(model, turn_slip=disc)
     weight, within = weights(road, tested), inside(road, tested)
@@ -202,7 +216,7 @@ def _comments(status: Mapping[str, str], tested: Mapping[str, float]) -> dict[st
         if row.name in DECIDED:
             words = "given by this build"
         if row.name in tested:
-            words = f"{words}, tested to {tested[row.name]:.5g} {row.unit}"
+            words = f"{words}, tested to {tested[row.name]:.6g} {row.unit}"
         elif not row.section.endswith("_COEFFICIENTS"):
             words = f"{words}: {row.description}"
         out[row.name] = whole_words(words)
