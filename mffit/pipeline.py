@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import json
 import math
+import re
 import time
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 from urllib.parse import quote
@@ -64,6 +65,8 @@ class Result:
     warnings: tuple[str, ...]
     seconds: float
     tir_path: str  #: name of the .tir in the output folder
+    files: Mapping[str, str] = field(default_factory=dict)  #: name of each file by use, "turn-slip" or "normal"
+    tyres: Mapping[str, Tyre] = field(default_factory=dict)  #: what each of them holds
 
     def to_json(self) -> dict[str, Any]:
         """The content of result.json."""
@@ -72,6 +75,7 @@ class Result:
             "spin": self.measured.to_json(),
             "fit": self.fit.to_json(),
             "tir": self.tir_path,
+            "files": dict(self.files),
             "warnings": list(self.warnings),
         }
 
@@ -113,16 +117,22 @@ def build(
     measured = measured.with_model(
         epsilon_gamma_model=fitted.epsilon_gamma_model, pecp1=_number(fitted.written, "PECP1", measured)
     )
+    disc = config.rig.type == "rotating-disk"
+    names = fitting.file_names(config.tyre.name, config.spin.exact, disc)
+    tyres = {use: annotated(fitted.files.by_use[use].tyre, config, measured, use) for use in names}
+    plain = config.spin.exact if disc else "normal"
     result = Result(
         config=config,
         points=points,
         parts=parts,
         measured=measured,
         fit=fitted,
-        tyre=annotated(fitted.written, config, measured),
+        tyre=tyres[plain],
         warnings=(*warnings, *measured.warnings, *fitted.warnings),
         seconds=time.perf_counter() - began,
-        tir_path=f"{config.tyre.name}.tir",
+        tir_path=names[plain],
+        files=names,
+        tyres=tyres,
     )
     if out is not None:
         progress("writing the report")
@@ -195,18 +205,22 @@ def _model(
     if model is not None:
         return tir.read(model), ()
     wanted = "turn-slip" if config.model.turn_slip and config.rig.type == "rotating-disk" else "normal"
-    note = "The model was fitted to these points first, as there was no earlier build."
-    last = last_build(config)
-    if last.is_file():
-        tyre = tir.read(last)
-        if f"spin.exact {wanted}" in tyre.provenance.get("configuration", f"spin.exact {wanted}"):
-            return tyre, ()
-        note = (
-            f"The last build's file is not for simulations with turn slip {'on' if config.model.turn_slip else 'off'}; the "
-            f'model was fitted anew with spin.exact = "{wanted}".'
-        )
-    spin_table = config.spin.model_copy(update={"exact": wanted})
-    return build(config.model_copy(update={"spin": spin_table}), progress=progress).tyre, (note,)
+    for name in (f"{config.tyre.name}.tir", f"{config.tyre.name}-{wanted}.tir"):
+        last = config.folder / "out" / name
+        if last.is_file() and use_of(tyre := tir.read(last)) in (wanted, None):
+            return tyre, () if name == f"{config.tyre.name}.tir" else (f"The model is {name} of the last build.",)
+    note = (
+        "The model was fitted to these points first, as there was no earlier build for simulations with turn slip "
+        f"{'on' if wanted == 'turn-slip' else 'off'}."
+    )
+    return build(config, progress=progress).tyres[wanted], (note,)
+
+
+def use_of(tyre: Tyre) -> str | None:
+    """Which use a built file is for, "turn-slip" or "normal", as its provenance says; None for files from elsewhere."""
+    said = tyre.provenance.get("use") or tyre.provenance.get("configuration", "")
+    found = re.match(r"(?:spin\.exact )?(turn-slip|normal)\b", said)
+    return found[1] if found else None
 
 
 def _redone(config: Config, points: Points, diagnosis: Diagnosis, base: Tyre | None) -> str:
@@ -269,10 +283,11 @@ def read_base(config: Config) -> Tyre | None:
     return tir.read(path)
 
 
-def annotated(tyre: Tyre, config: Config, measured: Measured) -> Tyre:
-    """The tyre with its measured quantities and provenance as structured comments."""
+def annotated(tyre: Tyre, config: Config, measured: Measured, use: str) -> Tyre:
+    """The tyre with its measured quantities, its use and provenance as structured comments."""
     provenance = {
         "program": f"mffit {mffit.__version__}",
+        "use": f"{use}, for simulations with turn slip {'on' if use == 'turn-slip' else 'off'}",
         "configuration": _settings(config),
         # A property file is ASCII, and a colon ends the key of a structured comment.
         **{f"input {quote(name, safe=PLAIN)}": known for name, known in input_hashes(config).items()},
@@ -323,12 +338,17 @@ def write_build(result: Result, out: Path) -> None:
     from mffit import report
 
     with output_folder(out, by="build", protected=inputs_of(result.config)) as folder:
-        result.tyre.write(folder / result.tir_path)
+        for use, name in (result.files or {"": result.tir_path}).items():
+            result.tyres.get(use, result.tyre).write(folder / name)
         _write_json(folder / "result.json", result.to_json())
         points_table(result).to_csv(folder / "points.csv", index=False)
         resolved = configuration.resolved(result.config, folder=out)
         (folder / "resolved.toml").write_bytes(tomli_w.dumps(resolved).encode())
         report.write_build(result, folder)
+    for use in ("turn-slip", "normal"):  # a sibling of a build with another spin.exact would pass for this build's
+        sibling = f"{result.config.tyre.name}-{use}.tir"
+        if result.files and sibling not in result.files.values():
+            (out / sibling).unlink(missing_ok=True)
 
 
 def points_table(result: Result):

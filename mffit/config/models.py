@@ -176,9 +176,9 @@ class CamberStiffnessTable(Table):
 
 
 class SpinTable(Table):
-    """[spin]: in which use of the file camber stiffness is exact, and where PECP1 comes from."""
+    """[spin]: which of the two files carries the plain name, and where PECP1 comes from."""
 
-    exact: Literal["normal", "turn-slip"] = "normal"
+    exact: Literal["turn-slip", "normal"] = "turn-slip"
     pecp1: Literal["direct", "model"] = "direct"
 
 

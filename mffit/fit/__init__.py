@@ -1,6 +1,7 @@
 """Points and direct measurements to an MF-6.2 tyre with standard errors."""
 
+from mffit.fit.files import file_names
 from mffit.fit.fitting import fit
 from mffit.fit.result import Agreement, Coefficient, FitResult, StageRecord
 
-__all__ = ["Agreement", "Coefficient", "FitResult", "StageRecord", "fit"]
+__all__ = ["Agreement", "Coefficient", "FitResult", "StageRecord", "file_names", "fit"]

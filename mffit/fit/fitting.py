@@ -12,7 +12,7 @@ import numpy as np
 from mffit.fit import weights
 from mffit.fit.coverage import coverage
 from mffit.fit.estimates import estimates
-from mffit.fit.normal import Normal, derive_normal
+from mffit.fit.files import Files, file_names, make_files, sentences
 from mffit.fit.problem import Problem
 from mffit.fit.radius import radius_coefficients
 from mffit.fit.ranges import covered_ranges, envelope
@@ -29,7 +29,8 @@ from mffit.rig import Simulation, reference_speed
 from tir import Tyre
 from tir.parameters import BY_NAME, TABLE
 
-FORCE_SECTIONS = ("LATERAL_COEFFICIENTS", "ALIGNING_COEFFICIENTS", "TURNSLIP_COEFFICIENTS")
+FROM_DATA = ("measured", "fitted", "regularised")
+"""Statuses of values that these data decided."""
 
 
 def fit(
@@ -69,35 +70,31 @@ def fit(
     if base is None:
         turn_slip.update(_unmeasured(turn_slip, status))
     turn_slip.update(_rolling_resistance(turn_slip, points, status))
+    progress("deriving the files and judging them")
+    disc = config.rig.type == "rotating-disk"
     coefficients = _coefficients(turn_slip, fitted, cover, status)
-    explanations = (
-        [_pecp1_sentence(config, turn_slip, measured)] if measured.epsilon_gamma is not None else []
+    written = make_files(
+        config,
+        turn_slip,
+        points,
+        base,
+        status,
+        {name: status_comment(c) for name, c in coefficients.items() if c.status in FROM_DATA},
+        _by_load(measured, "C_gamma"),
     )
-
-    written_values, written_coefficients = turn_slip, coefficients
-    if (
-        config.rig.type == "rotating-disk"
-        and config.spin.exact == "normal"
-        and measured.epsilon_gamma is not None
-    ):
-        progress("deriving the file for turn slip off")
-        normal = derive_normal(
-            turn_slip, points, parts, cover, _by_load(measured, "C_gamma"), problem.envelope
-        )
-        written_values = {**turn_slip, **normal.values}
-        written_coefficients = _with_normal(coefficients, normal)
-        explanations += _normal_sentences(turn_slip, written_values, points, parts, normal)
-    elif config.rig.type == "rotating-disk":
-        explanations.append(
-            "This file is the fitted model itself: use it in simulations with turn slip on (USE_MODE with units digit 5)."
-        )
+    names = file_names(config.tyre.name, config.spin.exact, disc)
+    explanations = sentences(written, names)
+    if measured.epsilon_gamma is not None:
+        explanations.append(_pecp1_sentence(config, turn_slip, measured))
+    use = config.spin.exact if disc else "normal"
+    normal = written.by_use["normal"].tyre
     Fy, Mz = fitted.simulation.readings(points)
     return FitResult(
-        tyre=_tyre(turn_slip, coefficients, base, status),
-        written=_tyre(written_values, written_coefficients, base, status),
-        coefficients=written_coefficients,
+        tyre=written.by_use["turn-slip" if disc else "normal"].tyre,
+        written=written.by_use[use].tyre,
+        coefficients=_of_file(written, use, _coefficients(turn_slip, fitted, cover, status), status),
         channels={"Fy": agreement(Fy, points.Fy), "Mz": agreement(Mz, points.Mz)},
-        odd=_odd_agreement(written_values, points, parts),
+        odd=_odd_agreement(normal.values, points, parts),
         Fy_model=Fy,
         Mz_model=Mz,
         simulation=fitted.simulation,
@@ -108,6 +105,7 @@ def fit(
         warnings=tuple(_warnings(fitted, cover)),
         seconds=time.perf_counter() - began,
         epsilon_gamma_model=_epsilon_of_model(turn_slip, points, measured),
+        files=written,
     )
 
 
@@ -120,7 +118,6 @@ def _before_the_fit(config, points: Points, measured, base) -> tuple[dict[str, A
         status.update({row.name: "default" for row in TABLE if row.name not in base.present})
     ranges = covered_ranges(points)
     values.update(ranges)
-    status.update(dict.fromkeys(ranges, "covered by the data"))
     r_e = _by_load(measured, "r_e_measured")
     if r_e:
         radii = radius_coefficients(values, r_e, reference_speed(points))
@@ -191,13 +188,11 @@ def _rolling_resistance(
 
 
 def _coefficients(values, fitted: Fitted, cover, status: Mapping[str, str]) -> dict[str, Coefficient]:
-    """One record per number in the sections of forces, moments and turn slip."""
+    """One record per number of the file."""
     stage_of = {row.name: row.stage for row in TABLE}
     out = {}
     for row in TABLE:
-        if row.kind != "number" or not (
-            row.section in FORCE_SECTIONS or status.get(row.name) not in ("base", "default")
-        ):
+        if row.kind != "number":
             continue
         free = row.name in fitted.values
         state = status.get(row.name, "default")
@@ -217,50 +212,25 @@ def _coefficients(values, fitted: Fitted, cover, status: Mapping[str, str]) -> d
     return out
 
 
-def _with_normal(coefficients: Mapping[str, Coefficient], normal: Normal) -> dict[str, Coefficient]:
-    out = dict(coefficients)
-    for name, value in normal.values.items():
-        measured = name in normal.measured
-        out[name] = dataclasses.replace(
-            coefficients[name],
-            value=value,
-            stderr=normal.stderr.get(name),
-            status="measured" if measured else "fitted",
-            fixed=measured,
-            at_bound=not measured and touches(value, *BY_NAME[name].bounds),
-            correlated_with="",
-        )
+def _of_file(
+    files: Files, use: str, coefficients: Mapping[str, Coefficient], status: Mapping[str, str]
+) -> dict[str, Coefficient]:
+    """The records of the file with the plain name: its values, and the origin of each as the file states it."""
+    tyre = files.by_use[use].tyre
+    derived = files.changed if use == "normal" else ()
+    out = {}
+    for name, c in coefficients.items():
+        value, origin = float(tyre[name]), tyre.status[name]
+        out[name] = dataclasses.replace(c, value=value, origin=origin)
+        if name in derived:
+            bound = touches(value, *BY_NAME[name].bounds)
+            out[name] = Coefficient(value, None, c.stage, False, bound, "fitted", origin=origin)
     return out
-
-
-def _tyre(
-    values: Mapping[str, Any],
-    coefficients: Mapping[str, Coefficient],
-    base: Tyre | None,
-    status: Mapping[str, str],
-) -> Tyre:
-    """The values as a tyre whose every coefficient says where it comes from."""
-    tyre = (base or Tyre.from_values({})).replace(**values)
-    comments = {
-        row.name: WORDS.get(status[row.name], status[row.name])
-        for row in TABLE
-        if row.section.endswith("_COEFFICIENTS") or status[row.name] not in ("base", "default")
-    }
-    fitted = {name: status_comment(c) for name, c in coefficients.items()}
-    return tyre.annotate(status={**comments, **fitted})
-
-
-WORDS = {
-    "base": "from base",
-    "default": "default, not measured",
-    "estimate": "estimate, not measured",
-    "regularised": "tied to base value",
-}
 
 
 def status_comment(coefficient: Coefficient) -> str:
     """How the file's comment states the origin of a value."""
-    text = WORDS.get(coefficient.status, coefficient.status)
+    text = "tied to base value" if coefficient.status == "regularised" else coefficient.status
     if coefficient.stderr is not None and not coefficient.fixed:
         text += f" +- {coefficient.stderr:.2g}"
     return text + (", at bound" if coefficient.at_bound else "")
@@ -301,17 +271,6 @@ def _pecp1_sentence(config, values, measured) -> str:
         f"PECP1 = {values['PECP1']:.4f} makes the model's force at (0, 0) equal the measured turn-slip force; the "
         f"directly measured eps_gamma is {measured.epsilon_gamma.value:.4f}."
     )
-
-
-def _normal_sentences(turn_slip, written, points: Points, parts: Parts, normal: Normal) -> list[str]:
-    odd = _odd_agreement(written, points, parts)["Fy"]
-    return [
-        "This file is for simulations with turn slip off: its camber terms carry the camber force without spin. "
-        'Set spin.exact = "turn-slip" for simulations with turn slip on; do not switch turn slip on with this file.',
-        f"Its side force misses the measured odd part by {odd.rmse:.1f} N rms ({odd.max_abs:.0f} N at most).",
-        f"At the largest camber it differs from the fitted model with turn slip on by {normal.difference_N:.1f} N rms "
-        "on a straight path.",
-    ]
 
 
 def _warnings(fitted: Fitted, cover) -> list[str]:

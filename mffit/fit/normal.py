@@ -2,96 +2,201 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
+from types import SimpleNamespace
 from typing import Any, NamedTuple
 
 import numpy as np
+from scipy.optimize import least_squares
 
-from mffit.fit.constraints import Envelope
-from mffit.fit.coverage import StageCoverage
-from mffit.fit.problem import Problem
-from mffit.fit.start import camber_stiffness_terms
-from mffit.least_squares import Number, solve
-from mffit.parts import Parts
-from mffit.points import Points, main_pressure
-from mffit.rig import Simulation
+from mffit.fit.constraints import Envelope, violations
+from mffit.fit.ranges import envelope
+from mffit.fit.stages import ODD_TERMS
+from tir.evaluate import evaluate
 from tir.parameters import BY_NAME
 
-CAMBER_FORCE = ("PKY3", "PKY5", "PDY3", "PVY3", "PVY4", "PEY4", "PEY5")
-CAMBER_MOMENT = ("QDZ8", "QDZ9", "QDZ10", "QDZ11")
+CAMBER_STIFFNESS = ("PKY6", "PKY7")
+CAMBER_FORCE = ("PKY3", "PKY5", "PDY3", "PVY3", "PVY4", "PEY4", "PEY5", *CAMBER_STIFFNESS)
+CAMBER_MOMENT = (
+    "QDZ3", "QDZ4", "QDZ8", "QDZ9", "QDZ10", "QDZ11", "QBZ4", "QBZ5", "QEZ5", "QHZ3", "QHZ4"
+)  # fmt: skip
+FORCE_STARTS: tuple[Mapping[str, float], ...] = ({}, {"PEY5": -3.0, "PDY3": 0.3}, {"PVY3": -0.5, "PDY3": 1.0})
+MOMENT_STARTS: tuple[Mapping[str, float], ...] = ({}, {"QDZ4": -1.0, "QEZ5": -2.0}, {"QBZ5": 0.8, "QEZ5": 2.0})
+OUTSIDE, CORNER = 0.02, 0.5
+SLIP, LEAN = np.radians(4.0), np.radians(25.0)
+LIMIT_WEIGHT = 300.0
+"""Residual per unit of a broken limit, the rms misfit being of the order of 1."""
+TIE, TIE_SHARE = 0.1, 0.03
+"""Spread of the measured camber stiffness as PKY6 and PKY7 see it, and its weight beside the whole grid."""
+SCALE = {"Fy": 0.01, "Mz": 0.001}
+"""Unit of the residual, per nominal load [N/N, m]: the size of the misfit that the formula cannot avoid."""
 
 
-class Normal(NamedTuple):
-    """Coefficients that differ from the fitted model, and what the derivation costs."""
+class Road(NamedTuple):
+    """Conditions on a straight path, arrays (n,)."""
 
-    values: dict[str, float]
-    stderr: dict[str, float]
-    measured: frozenset[str]  #: set to a measured stiffness
-    difference_N: float  #: of both modes at the largest camber, on a straight path
+    Fz: np.ndarray  #: [N]
+    alpha: np.ndarray  #: [rad]
+    gamma: np.ndarray  #: [rad]
+    pressure: np.ndarray  #: [Pa]
+
+    def forces(self, values: Mapping[str, Any], *, turn_slip: bool):
+        """Forces of a file on it; with turn slip on, path curvature is 0 and only camber makes spin."""
+        return evaluate(
+            SimpleNamespace(**values),
+            self.Fz,
+            self.alpha,
+            self.gamma,
+            pressure=self.pressure,
+            turn_slip=turn_slip,
+        )[0]
 
 
 def derive_normal(
     values: Mapping[str, Any],
-    points: Points,
-    parts: Parts,
-    cover: tuple[StageCoverage, ...],
-    C_gamma: Mapping[float, float],
-    envelope: Envelope | None,
-) -> Normal:
-    """Coefficients of the file for turn slip off.
+    tested: Mapping[str, float],
+    written: Mapping[str, float],
+    measured: Mapping[str, float],
+    *,
+    symmetric: bool = False,
+) -> dict[str, float]:
+    """Coefficients of the file for turn slip off, where they differ from the fitted model.
 
-    PKY6 and PKY7 give the measured camber stiffness; the other camber terms of Fy are refitted to the odd part with
-    spin off. The camber terms of Mz follow the fitted model on a straight path, because the odd part of Mz still
-    carries the loss of trail on the disc.
+    The target is the fitted model on a straight path, turn slip on, on a grid over the written ranges. Only coefficients
+    that act through camber move, so that the upright wheel stays exact. First those of Fy, then those of Mz, which sees
+    the shifts of Fy. Several starts on a coarse grid, the best of them finished on the fine one.
 
     Parameters
     ----------
     values : the fitted model, right with turn slip on
-    C_gamma : measured camber stiffness [N/rad] by load [N], at the main pressure
+    tested, written : ranges of the data and of the file, by name of the file's limits
+    measured : PKY6 and PKY7 of the measured camber stiffness, from :func:`mffit.fit.start.camber_stiffness_terms`; may be empty
+    symmetric : hold the terms that a symmetric tyre does not have
     """
-    free = {name for row in cover for name in row.free}
-    imposed = camber_stiffness_terms(values, C_gamma, float(points.p[main_pressure(points)].mean()))
-    start = {**values, **imposed}
-    straight = points.replace(phi_t=np.zeros(len(points)), direction=np.ones_like(points.direction))
-    straight = straight.replace(mount=np.ones_like(points.mount))
-    symmetric = {**start, **dict.fromkeys(("PHY1", "PHY2", "PVY1", "PVY2"), 0.0)}
+    limits = envelope(written)
+    coarse, fine = (road_grid(tested, written, float(values["FNOMIN"]), dense=dense) for dense in (False, True))
+    found = dict(values)
+    for channel, names, starts in (
+        ("Fy", CAMBER_FORCE, FORCE_STARTS),
+        ("Mz", CAMBER_MOMENT, MOMENT_STARTS),
+    ):
+        names = tuple(n for n in names if not (symmetric and n in ODD_TERMS))
+        on_coarse, on_fine = (
+            _residual(channel, road, values, found, weights(road, tested), limits, measured)
+            for road in (coarse, fine)
+        )
+        begun = {name: measured.get(name, float(values[name])) for name in names}
+        tried = [_solve(on_coarse, {**begun, **start}, 25, 1e-3) for start in starts]
+        best, _ = min(tried, key=lambda end: end[1])
+        found.update(_solve(on_fine, best, 30, 1e-4)[0])
+    return {name: found[name] for name in (*CAMBER_FORCE, *CAMBER_MOMENT) if found[name] != values[name]}
 
-    force = [name for name in CAMBER_FORCE if name in free]
-    used = (parts.paired != "unpaired") & (points.direction > 0)
-    odd = straight.replace(
-        alpha=parts.alpha_odd, Fy=np.where(used, parts.Fy_odd, np.nan), Mz=np.full(len(points), np.nan)
+
+def road_grid(
+    tested: Mapping[str, float], written: Mapping[str, float], nominal_load: float, *, dense: bool = True
+) -> Road:
+    """Straight-path conditions over the written ranges: denser inside the tested ones, other pressures at one load."""
+    sides, inner, outer = (11, 13, 3) if dense else (7, 7, 1)
+    gamma = np.linspace(-written["CAMMAX"], written["CAMMAX"], sides)
+    inside = np.linspace(-tested["ALPMAX"], tested["ALPMAX"], inner)
+    beyond = np.linspace(tested["ALPMAX"], written["ALPMAX"], outer + 1)[1:]
+    alpha = np.unique(np.concatenate([-beyond, inside, beyond]))
+    main = 0.5 * (tested["PRESMIN"] + tested["PRESMAX"])
+    loads = np.unique(
+        [
+            written["FZMIN"],
+            *np.linspace(tested["FZMIN"], tested["FZMAX"], 4 if dense else 2),
+            written["FZMAX"],
+        ]
     )
-    fitted_force, errors_force = _refit(odd, symmetric, force, envelope, points.u_Fy)
-
-    fitted = {**start, **fitted_force}
-    on_road = Simulation(values).readings(straight)
-    road = straight.replace(Fy=np.full(len(points), np.nan), Mz=on_road.Mz)
-    moment = [name for name in CAMBER_MOMENT if name in free]
-    fitted_moment, errors_moment = _refit(road, fitted, moment, envelope, points.u_Mz)
-
-    changed = {**imposed, **fitted_force, **fitted_moment}
-    normal = Simulation({**values, **changed}, turn_slip=False).readings(straight)
-    largest = np.abs(points.gamma) > 0.98 * np.max(np.abs(points.gamma))
-    difference = float(np.sqrt(np.mean((normal.Fy - on_road.Fy)[largest] ** 2)))
-    return Normal(changed, {**errors_force, **errors_moment}, frozenset(imposed), difference)
+    middle = float(np.clip(nominal_load, tested["FZMIN"], tested["FZMAX"]))
+    cases = [(load, main) for load in loads]
+    cases += [(middle, pressure) for pressure in sorted({written["PRESMIN"], written["PRESMAX"]} - {main})]
+    at = [np.meshgrid([load], alpha, gamma, [pressure], indexing="ij") for load, pressure in cases]
+    return Road(*(np.concatenate([axes[i].ravel() for axes in at]) for i in range(4)))
 
 
-def _refit(points: Points, values, names, envelope, u) -> tuple[dict[str, float], dict[str, float]]:
-    if not names:
-        return {}, {}
-    sigma = np.where(np.isfinite(u), u, np.nanmedian(u) if np.any(np.isfinite(u)) else 1.0)
-    problem = Problem(
-        points=points,
-        simulation=Simulation(values, turn_slip=False),
-        sigma_Fy=np.where(np.isfinite(points.Fy), sigma, np.inf),
-        sigma_Mz=np.where(np.isfinite(points.Mz), sigma, np.inf),
-        envelope=envelope,
+def weights(road: Road, tested: Mapping[str, float]) -> np.ndarray:
+    """Weight (n,) of each condition: what a vehicle visits counts more than the corners of the ranges.
+
+    A wheel leans far with little sideslip and slips far with little lean; both at once is a fall. Inside the tested
+    ranges the weight is ``1/2 + 1/2 / (1 + (alpha/4 deg * gamma/25 deg)**2)``: 1 along both axes, nearly 1/2 in the
+    corner of 8 deg of sideslip and 50 deg of camber. Conditions that only the written ranges hold count a fiftieth:
+    enough to keep the file plausible there, too little to cost newtons where there are data.
+    """
+    both = (road.alpha / SLIP * road.gamma / LEAN) ** 2
+    return np.where(inside(road, tested), 1.0, OUTSIDE) * (CORNER + (1.0 - CORNER) / (1.0 + both))
+
+
+def inside(road: Road, tested: Mapping[str, float]) -> np.ndarray:
+    """Which conditions (n,) lie inside the tested ranges."""
+    within = np.abs(road.alpha) <= tested["ALPMAX"] + 1e-9
+    within &= np.abs(road.gamma) <= tested["CAMMAX"] + 1e-9
+    within &= (road.Fz >= 0.999 * tested["FZMIN"]) & (road.Fz <= 1.001 * tested["FZMAX"])
+    return within & (road.pressure >= 0.999 * tested["PRESMIN"]) & (road.pressure <= 1.001 * tested["PRESMAX"])
+
+
+Residual = Callable[[Mapping[str, float]], np.ndarray]
+
+
+def _residual(
+    channel: str,
+    road: Road,
+    model: Mapping[str, Any],
+    fixed: Mapping[str, Any],
+    weight: np.ndarray,
+    limits: Envelope,
+    measured: Mapping[str, float],
+) -> Residual:
+    """Misfit of one channel, then the broken limits, the camber stiffness and the turning back of camber thrust."""
+    target = getattr(road.forces(model, turn_slip=True), channel)
+    factor = np.sqrt(weight / weight.sum()) / (SCALE[channel] * float(model["FNOMIN"]))
+    fixed = dict(fixed)
+    line = _camber_line(limits)
+    falls = np.diff(line.forces(model, turn_slip=True).Fy.reshape(3, -1)) < 0.0
+    stiffness = max(abs(measured.get("PKY6", 1.0)), 0.1)
+
+    def residual(free: Mapping[str, float]) -> np.ndarray:
+        values = {**fixed, **free}
+        rows = [
+            (getattr(road.forces(values, turn_slip=False), channel) - target) * factor,
+            LIMIT_WEIGHT / 20.0 * violations(SimpleNamespace(**values), limits),
+        ]
+        if channel == "Fy":
+            step = np.diff(line.forces(values, turn_slip=False).Fy.reshape(3, -1))
+            rows.append(np.where(falls, np.maximum(step, 0.0), 0.0).ravel() / (SCALE["Fy"] * fixed["FNOMIN"]))
+            rows.append(
+                np.array([(values[n] - measured[n]) / (TIE * stiffness) for n in CAMBER_STIFFNESS if n in measured])
+                * TIE_SHARE
+            )
+        return np.concatenate(rows)
+
+    return residual
+
+
+def _camber_line(limits: Envelope) -> Road:
+    """Camber alone, over the whole range, at three loads."""
+    Fz, gamma = np.meshgrid(
+        np.linspace(*limits.Fz, 3), np.linspace(-limits.gamma, limits.gamma, 17), indexing="ij"
     )
-    numbers = [
-        Number(n, float(values[n]), *BY_NAME[n].bounds, float(values[n]), 0.5 * BY_NAME[n].width)
-        for n in names
-    ]
-    solution = solve(problem.free(names), numbers)
-    misfit = max(1.0, float(np.sqrt(np.mean(solution.data**2))))
-    errors = misfit * np.sqrt(np.diag(solution.covariance))
-    return dict(solution.values), dict(zip(names, errors.tolist(), strict=True))
+    shape = Fz.ravel().shape
+    return Road(Fz.ravel(), np.zeros(shape), gamma.ravel(), np.full(shape, 0.5 * sum(limits.pressure)))
+
+
+def _solve(
+    residual: Residual, start: Mapping[str, float], steps: int, tolerance: float
+) -> tuple[dict[str, float], float]:
+    """Where bounded least squares end from a start, and the sum of squares there."""
+    names = list(start)
+    lower, upper = (np.array([BY_NAME[name].bounds[i] for name in names]) for i in (0, 1))
+    margin = 1e-3 * (upper - lower)
+    out = least_squares(
+        lambda x: residual(dict(zip(names, x.tolist(), strict=True))),
+        np.clip(list(start.values()), lower + margin, upper - margin),
+        bounds=(lower, upper),
+        x_scale="jac",
+        max_nfev=steps,
+        ftol=tolerance,
+        xtol=tolerance,
+    )
+    return dict(zip(names, out.x.tolist(), strict=True)), float(out.cost)

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from mffit.fit.coverage import StageCoverage
+from mffit.fit.files import Files
 from mffit.rig import UNITS, Simulation
 from tir import Tyre
 
@@ -24,6 +25,7 @@ class Coefficient:
     status: str  #: measured | fitted | regularised | default | base
     correlated_with: str = ""  #: the coefficient with the largest correlation, if above 0.95
     correlation: float = 0.0
+    origin: str = ""  #: where the value comes from, as the file's comment says it
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,10 +56,10 @@ class FitResult:
     """The fitted tyre and everything the report says of it."""
 
     tyre: Tyre  #: the fitted model, right with turn slip on
-    written: Tyre  #: what the .tir holds: the same, or its derivative for turn slip off
+    written: Tyre  #: what the .tir with the plain name holds: the same, or its derivative for turn slip off
     coefficients: Mapping[str, Coefficient]
     channels: Mapping[str, Agreement]  #: of ``tyre`` on the raw points, turn slip on
-    odd: Mapping[str, Agreement]  #: of ``written`` on the odd part, turn slip off
+    odd: Mapping[str, Agreement]  #: of the file for turn slip off on the odd part, turn slip off
     simulation: Simulation  #: ``tyre`` on the rig as the fit found it
     rig: Mapping[str, tuple[float, float]]  #: rig error -> (value, standard error)
     Fy_model: np.ndarray  #: (n,) [N]
@@ -68,6 +70,7 @@ class FitResult:
     warnings: tuple[str, ...]
     seconds: float
     epsilon_gamma_model: float | None = None
+    files: Files | None = None  #: every file that is written, and how good each is
 
     def to_json(self) -> dict:
         """The ``fit`` part of result.json."""
@@ -82,6 +85,7 @@ class FitResult:
                     "fixed": c.fixed,
                     "at_bound": c.at_bound,
                     "status": c.status,
+                    "origin": c.origin or c.status,
                     "correlated_with": c.correlated_with or None,
                     "correlation": c.correlation if c.correlated_with else None,
                 }
@@ -104,6 +108,7 @@ class FitResult:
                 {"stage": c.stage, "supported": c.supported, "held": list(c.held), "missing": list(c.missing)}
                 for c in self.coverage
             ],
+            "files": self.files.to_json() if self.files is not None else {},
             "explanations": list(self.explanations),
             "seconds": self.seconds,
         }

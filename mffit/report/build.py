@@ -21,7 +21,7 @@ SECTION_TITLES = {
     "TURNSLIP_COEFFICIENTS": "Turn slip",
     "ROLLING_COEFFICIENTS": "Rolling resistance",
 }
-OTHER_SECTIONS = "Radius and ranges"
+OTHER_SECTIONS = "Everything else"
 
 
 def write_build(result: Any, folder: Path) -> None:
@@ -49,9 +49,11 @@ def write_build(result: Any, folder: Path) -> None:
 
 def _figures(view: BuildView) -> dict[str, Any]:
     """What is drawn, in the order of the page."""
-    from mffit.report.figures import decomposition, fit, residuals, spin
+    from mffit.report.figures import decomposition, files, fit, residuals, spin
 
     out: dict[str, Any] = {}
+    if view.two_files:
+        out["files"] = partial(files.files_on_a_straight_path, view)
     if view.on_disc:
         out["camber_reduction"] = partial(spin.camber_reduction, view)
         if spin.both_directions(view):

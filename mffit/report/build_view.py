@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -14,7 +14,7 @@ from mffit.report.curves import Condition, Curve, conditions, curves
 from mffit.report.lines import Line, model_lines
 from tir.parameters import BY_NAME
 
-STATUS_ORDER = ("measured", "fitted", "regularised", "estimate", "base", "default")
+STATUS_ORDER = ("measured", "fitted", "regularised", "estimate", "range", "given", "base", "default")
 
 
 @dataclass(frozen=True, slots=True)
@@ -74,7 +74,7 @@ class Row:
 
     @property
     def held(self) -> bool:
-        return self.status in ("base", "default")
+        return self.status in ("base", "default", "given", "range")
 
 
 @dataclass(frozen=True, slots=True)
@@ -89,7 +89,7 @@ class BuildView:
     conditions: tuple[Condition, ...]
     spin: Mapping[str, Any]  #: the contract's ``spin``
     agreement: Mapping[str, Any]  #: by channel, of the fitted model on the raw points
-    odd_agreement: Mapping[str, Any]  #: by channel, of the written file on the odd part
+    odd_agreement: Mapping[str, Any]  #: by channel, of the file for turn slip off on the odd part
     rows: tuple[Row, ...]
     stages: tuple[Any, ...]
     coverage: tuple[Any, ...]
@@ -101,10 +101,17 @@ class BuildView:
     seconds: float
     fit_seconds: float
     tir_name: str
+    model: Any  #: the fitted model, a ``tir.Tyre``
+    files: Any = None  #: ``mffit.fit.files.Files``, None if nothing is known of them
+    file_names: Mapping[str, str] = field(default_factory=dict)  #: by use
 
     @property
     def on_disc(self) -> bool:
         return self.spin.get("epsilon_gamma") is not None
+
+    @property
+    def two_files(self) -> bool:
+        return self.files is not None and len(self.files.by_use) == 2
 
 
 def view_of(result: Any) -> BuildView:
@@ -137,6 +144,9 @@ def view_of(result: Any) -> BuildView:
         seconds=result.seconds,
         fit_seconds=fit.seconds,
         tir_name=result.tir_path,
+        model=fit.tyre,
+        files=fit.files,
+        file_names=dict(result.files),
     )
 
 

@@ -4,19 +4,21 @@ from __future__ import annotations
 
 import math
 import statistics
+import textwrap
 from collections.abc import Mapping
 from typing import Any
 
 from mffit.quantities import CHANNELS
 from mffit.report.rounding import number, times
 from mffit.report.text.direct import spin_numbers
-from mffit.report.text.layout import blocks, paragraphs, table
+from mffit.report.text.layout import WIDTH, blocks, paragraphs, table
+from tir.parameters import BY_NAME
 
 
 def build_summary(result: Any) -> str:
     """What ``mffit build`` prints at its end."""
     spin, fit = result.measured.to_json(), result.fit
-    parts = []
+    parts = [textwrap.fill(sentence, WIDTH) for sentence in fit.explanations[:1]]
     if spin["epsilon_gamma"] is not None:
         parts.append(spin_numbers(spin))
     noise = {"Fy": _typical(result.points.u_Fy), "Mz": _typical(result.points.u_Mz)}
@@ -34,13 +36,15 @@ def build_summary(result: Any) -> str:
     ]
     parts.append(table(("fit", "points", "rms", "of noise", "largest", "R2"), rows))
     parts.append(_statuses(fit.coefficients))
-    parts.append(paragraphs(fit.explanations))
+    parts.append(paragraphs(fit.explanations[1:]))
     return blocks(parts)
 
 
 def _statuses(coefficients: Mapping[str, Any]) -> str:
     counts: dict[str, int] = {}
-    for c in coefficients.values():
+    for name, c in coefficients.items():
+        if not BY_NAME[name].section.endswith("_COEFFICIENTS"):
+            continue
         counts[c.status] = counts.get(c.status, 0) + 1
     text = "coefficients: " + ", ".join(f"{n} {status}" for status, n in counts.items())
     bound = [name for name, c in coefficients.items() if c.at_bound]

@@ -127,7 +127,7 @@ def test_defaults_are_those_of_the_contract(tmp_path):
     assert (rig.u_path_radius, rig.u_length, rig.backlash_deg) == (0.0018, 0.001, 0.0)
     assert (rig.u_loadcell_offset_N, rig.u_camber_alignment_deg, rig.u_slip_alignment_N) == (10, 0.5, 25)
     assert (found.camber_stiffness.method, found.camber_stiffness.angle_deg) == ("slope", 15.0)
-    assert (found.spin.exact, found.spin.pecp1) == ("normal", "direct")
+    assert (found.spin.exact, found.spin.pecp1) == ("turn-slip", "direct")
     assert (found.model.turn_slip, found.model.star, found.model.u_coefficients) == (True, False, 0.0)
     assert (found.sweep[0].direction, found.sweep[0].mount) == (None, "normal")
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import importlib
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -9,35 +11,128 @@ import pytest
 
 import mffit
 import tir
+from mffit.fit.files import file_names, use_mode, whole_words
+from mffit.pipeline import use_of
 from tir.check import check
+from tir.parameters import TABLE
 
-SAMPLES = Path(__file__).parents[3] / "samples"
+ROOT = Path(__file__).parents[3]
+SAMPLES = ROOT / "samples"
+sys.path.insert(0, str(ROOT / "tests" / "studies"))
+normal_study = importlib.import_module("normal_study")
 
 
 @pytest.fixture(scope="module")
-def result():
-    return mffit.build(SAMPLES / "front-120-70" / "tyre.toml")
+def built(tmp_path_factory):
+    out = tmp_path_factory.mktemp("front") / "out"
+    return mffit.build(SAMPLES / "front-120-70" / "tyre.toml", out), out
 
 
-def test_camber_stiffness_of_the_normal_file_is_the_measured_one(result):
-    measured = result.measured
-    K = result.tyre.state(measured.F_phit_load, p=250e3).K_yg0
-    assert pytest.approx(measured.C_gamma.value, rel=1e-3) == K
+@pytest.fixture(scope="module")
+def result(built):
+    return built[0]
+
+
+@pytest.fixture(scope="module")
+def truth():
+    return tir.read(SAMPLES / "front-120-70" / "true.tir")
+
+
+def test_both_files_are_written_each_for_its_use(built):
+    result, out = built
+    assert result.files == {"turn-slip": "front-120-70.tir", "normal": "front-120-70-normal.tir"}
+    on_disk = {use: tir.read(out / name) for use, name in result.files.items()}
+    # MF-Tyre's digits: 2 circular cross-section of a motorcycle tyre, 2 nonlinear transient, 5 or 4 with or without turn slip
+    assert {use: int(tyre["USE_MODE"]) for use, tyre in on_disk.items()} == {"turn-slip": 225, "normal": 224}
+    assert {use_of(tyre) for tyre in on_disk.values()} == {"turn-slip", "normal"}
+    assert result.to_json()["files"] == result.files
+    assert result.to_json()["tir"] == "front-120-70.tir"
+
+
+def test_exact_says_which_file_carries_the_plain_name():
+    names = {"turn-slip": "a-turn-slip.tir", "normal": "a.tir"}
+    assert file_names("a", "normal", True) == names
+    assert file_names("a", "turn-slip", False) == {"normal": "a.tir"}
+
+
+def test_a_tyre_without_motorcycle_contour_gets_a_smooth_road():
+    assert use_mode({"MC_CONTOUR_A": 0.0}, "turn-slip") == 125
+    assert use_mode({"MC_CONTOUR_A": 0.0}, "normal") == 124
+
+
+def test_the_upright_wheel_is_the_same_in_both_files(result):
+    on, off = result.tyres["turn-slip"], result.tyres["normal"]
+    alpha = np.radians(np.linspace(-15, 15, 31))
+    for channel in ("Fy", "Mz"):
+        with_spin = getattr(on(1800.0, alpha, turn_slip=True), channel)
+        without = getattr(off(1800.0, alpha, turn_slip=False), channel)
+        assert without == pytest.approx(with_spin, abs=1e-6)
+
+
+def test_the_normal_file_follows_the_true_tyre_on_a_straight_path(result, truth):
+    """The formula's own limit on this tyre is 44 N and 1.8 Nm (tests/studies/normal_study.py); the fit adds its noise."""
+    road = normal_study.box(truth["FNOMIN"], truth["NOMPRES"])
+    made = road.forces(result.tyres["normal"].values, turn_slip=False)
+    true = road.forces(truth.values, turn_slip=True)
+    assert np.sqrt(np.mean((made.Fy - true.Fy) ** 2)) < 52.0
+    assert np.sqrt(np.mean((made.Mz - true.Mz) ** 2)) < 2.5
+
+
+def test_derivation_comes_within_a_twentieth_of_the_limit(truth):
+    found = normal_study.outcome(truth)
+    assert found.Fy < 1.05 * found.limit_Fy
+    assert found.Mz < 1.05 * found.limit_Mz
+
+
+def test_camber_thrust_does_not_turn_back_where_the_model_does_not(result):
+    gamma = np.linspace(0.0, result.tyre["CAMMAX"], 40)
+    for load in (600.0, 1400.0, 2300.0):
+        model = np.diff(result.tyres["turn-slip"](load, gamma=gamma, turn_slip=True).Fy)
+        made = np.diff(result.tyres["normal"](load, gamma=gamma, turn_slip=False).Fy)
+        assert np.all(made[model < 0.0] < 1.0)
+
+
+def test_what_the_normal_file_lacks_is_stated(result):
+    files = result.fit.files
+    assert 0.0 < files.stiffness_loss < 0.25
+    forces = list(files.lacking.values())
+    assert forces == sorted(forces)
+    assert result.fit.to_json()["files"]["normal"]["turn_slip_force_lacking_N"]["10 m"] == forces[-1]
 
 
 def test_pecp1_is_the_measured_eps_gamma(result):
     assert result.tyre["PECP1"] == result.measured.epsilon_gamma.value
 
 
-def test_limits_hold_over_the_written_ranges(result):
-    sentences = [p.sentence for p in check(result.tyre) if p.level == "error" or "E_y" in p.sentence]
+@pytest.mark.parametrize("use", ["turn-slip", "normal"])
+def test_limits_hold_over_the_written_ranges(result, use):
+    sentences = [p.sentence for p in check(result.tyres[use]) if p.level == "error" or "E_y" in p.sentence]
     assert not sentences
 
 
-def test_ranges_are_what_was_tested(result):
-    assert np.degrees(result.tyre["CAMMAX"]) == pytest.approx(50.0, abs=0.5)
-    assert result.tyre["FZMIN"] < 950 < 2050 < result.tyre["FZMAX"]
-    assert int(result.tyre["FITTYP"]) == 62
+def test_written_ranges_go_beyond_the_tests_and_say_what_was_tested(result):
+    tyre, tested = result.tyre, result.fit.files.tested
+    assert np.degrees(tyre["ALPMAX"]) == pytest.approx(20.0)
+    assert np.degrees(tested["CAMMAX"]) == pytest.approx(50.0, abs=0.5)
+    assert tyre["FZMIN"] < 0.7 * tested["FZMIN"] < tested["FZMAX"] < tyre["FZMAX"]
+    assert tyre["PRESMIN"] < tested["PRESMIN"] < tested["PRESMAX"] < tyre["PRESMAX"]
+    assert "tested to" in tyre.status["FZMAX"]
+
+
+def test_every_value_has_an_origin(built):
+    result, out = built
+    again = tir.read(out / result.tir_path)
+    numbers = {row.name for row in TABLE if row.kind == "number"} - {"QDRP2"}
+    assert numbers <= again.status.keys()
+    assert again["TYRESIDE"] == "LEFT"
+    stated = result.to_json()["fit"]["coefficients"]
+    assert numbers <= stated.keys()
+    assert all(c["status"] and c["origin"] for c in stated.values())
+
+
+def test_no_comment_is_cut_within_a_word():
+    assert whole_words("a tyre of many words", 10) == "a tyre of"
+    assert whole_words("short", 10) == "short"
 
 
 def test_every_fitted_value_says_so_in_the_file(result, tmp_path):
@@ -52,5 +147,7 @@ def test_every_fitted_value_says_so_in_the_file(result, tmp_path):
 def test_a_straight_path_measures_no_spin():
     flat = mffit.build(SAMPLES / "flat-track" / "tyre.toml")
     assert flat.measured.epsilon_gamma is None
+    assert flat.files == {"normal": "flat-track.tir"} or len(flat.files) == 1
+    assert str(int(flat.tyre["USE_MODE"])).endswith("4")
     assert flat.fit.coefficients["PECP1"].fixed
     assert all(not row.free for row in flat.fit.coverage if row.stage == "spin")

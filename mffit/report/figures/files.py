@@ -1,0 +1,50 @@
+"""The written files against the fitted model on a straight path."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from mffit.report import style
+from mffit.report.build_view import BuildView
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+STEPS = 81
+CAMBERS, SIDESLIPS = (0.0, 0.4, 0.8), (0.0, 0.4)
+"""Shares of the tested range at which the other angle is held."""
+
+
+def files_on_a_straight_path(view: BuildView) -> Figure:
+    """Fy and Mz of both files over camber and over sideslip at nominal load, the model dotted; bands end where data do."""
+    from matplotlib.lines import Line2D
+
+    files, tested, written = view.files, view.files.tested, view.files.written
+    figure, rows = style.panel_grid([4], 4, height=2.3)
+    colours = {"turn-slip": style.ACCENT, "normal": style.CONTRAST}
+    panels = [(channel, over) for channel in ("Fy", "Mz") for over in ("gamma", "alpha")]
+    load = float(files.by_use["normal"].tyre["FNOMIN"])
+    for ax, (channel, over) in zip(rows[0], panels, strict=True):
+        end, held_end = ("CAMMAX", "ALPMAX") if over == "gamma" else ("ALPMAX", "CAMMAX")
+        x = np.linspace(-written[end], written[end], STEPS)
+        for share in SIDESLIPS if over == "gamma" else CAMBERS:
+            angles = {over: x, "alpha" if over == "gamma" else "gamma": share * tested[held_end]}
+            for use, file in files.by_use.items():
+                force = getattr(file.tyre(load, **angles, turn_slip=use == "turn-slip"), channel)
+                ax.plot(np.degrees(x), force, color=colours[use], lw=1.2, ls="-" if use == "turn-slip" else "--")
+            model = getattr(view.model(load, **angles, turn_slip=True), channel)
+            ax.plot(np.degrees(x)[::5], model[::5], ls="none", marker=".", ms=3.0, color=style.INK)
+        for edge in (-1.0, 1.0):
+            ax.axvline(np.degrees(edge * tested[end]), color=style.FAINT, lw=0.8, ls=":")
+        ax.set_title(f"{channel} [{'N' if channel == 'Fy' else 'Nm'}], {load:.0f} N")
+        ax.set_xlabel("camber γ [deg]" if over == "gamma" else "sideslip α [deg]", labelpad=1.5)
+        style.few_ticks(ax, x=4)
+    handles = [Line2D([], [], ls="none", marker=".", color=style.INK, label="fitted model")]
+    handles += [
+        Line2D([], [], color=colours[use], ls="-" if use == "turn-slip" else "--", label=view.file_names[use])
+        for use in files.by_use
+    ]
+    style.legend_above(figure, handles)
+    return figure
