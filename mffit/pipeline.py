@@ -33,6 +33,7 @@ from mffit.measured import Alignment, Measured
 from mffit.output import digest, output_folder, refuse_early
 from mffit.parts import Parts
 from mffit.points import Points
+from mffit.rig import FAULT_NAMES, UNITS, RigFaults
 from tir import Tyre
 
 Progress = Callable[[str], None]
@@ -119,7 +120,7 @@ def build(
     )
     disc = config.rig.type == "rotating-disk"
     names = fitting.file_names(config.tyre.name, config.spin.exact, disc)
-    tyres = {use: annotated(fitted.files.by_use[use].tyre, config, measured, use) for use in names}
+    tyres = {use: annotated(fitted.files.by_use[use].tyre, config, measured, fitted, use) for use in names}
     plain = config.spin.exact if disc else "normal"
     result = Result(
         config=config,
@@ -283,25 +284,30 @@ def read_base(config: Config) -> Tyre | None:
     return tir.read(path)
 
 
-def annotated(tyre: Tyre, config: Config, measured: Measured, use: str) -> Tyre:
+def annotated(tyre: Tyre, config: Config, measured: Measured, fitted: FitResult, use: str) -> Tyre:
     """The tyre with its measured quantities, its use and provenance as structured comments."""
     provenance = {
         "program": f"mffit {mffit.__version__}",
         "use": f"{use}, for simulations with turn slip {'on' if use == 'turn-slip' else 'off'}",
         "configuration": _settings(config),
-        # A property file is ASCII, and a colon ends the key of a structured comment.
-        **{f"input {quote(name, safe=PLAIN)}": known for name, known in input_hashes(config).items()},
+        **inputs_said(config),
     }
-    return tyre.annotate(measured=measured.quantities(), provenance=provenance)
+    rig = {RIG + name: tir.Quantity(value, u, UNITS[name]) for name, (value, u) in fitted.rig.items()}
+    return tyre.annotate(measured={**measured.quantities(), **rig}, provenance=provenance)
 
 
 def rig_of_build(tyre: Tyre, config: Config) -> RigFaults | None:
     """The rig errors that the build found, if the file was fitted to these very sweeps; None otherwise."""
     of_file = {name: digest for name, digest in tyre.provenance.items() if name.startswith("input ")}
-    if not of_file or of_file != {f"input {name}": digest for name, digest in input_hashes(config).items()}:
+    if not of_file or of_file != inputs_said(config):
         return None
     found = {name: tyre.measured[RIG + name].value for name in FAULT_NAMES if RIG + name in tyre.measured}
     return RigFaults(**{"backlash_deg": config.rig.backlash_deg, **found}) if found else None
+
+
+def inputs_said(config: Config) -> dict[str, str]:
+    """The hashes of the inputs as a property file's provenance: ASCII, and no colon in a name."""
+    return {f"input {quote(name, safe=PLAIN)}": known for name, known in input_hashes(config).items()}
 
 
 RIG = "rig."

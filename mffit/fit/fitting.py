@@ -23,6 +23,7 @@ from mffit.fit.stages import ODD_TERMS
 from mffit.fit.start import base_values, starting_values
 from mffit.fit.virtual_zero import epsilon_gamma_of_model
 from mffit.least_squares import touches
+from mffit.measured import radius_readings
 from mffit.parts import Parts
 from mffit.points import Points
 from mffit.rig import Simulation, reference_speed
@@ -62,7 +63,9 @@ def fit(
     cover = coverage(points, config.tyre.side or "left")
     start = starting_values(values, points, measured)
     free_pecp1 = config.spin.pecp1 == "model" and measured.epsilon_gamma is not None
-    plan = Plan(cover, start, rig_numbers(config, measured), ("PECP1",) if free_pecp1 else ())
+    rig = rig_numbers(config, measured)
+    extra = (*(("PECP1",) if free_pecp1 else ()), *(("Q_RE0",) if rig and config.rolling_radius else ()))
+    plan = Plan(cover, start, rig, extra)
     problem = _problem(config, points, values, measured)
     fitted = fit_staged(problem, start, plan, progress)
     fitted = _with_held_pecp1(fitted, points, measured, free_pecp1)
@@ -140,6 +143,8 @@ def _problem(config, points: Points, values, measured) -> Problem:
         sigma_Fy=weights.stated_or_nominal(points.u_Fy, points.Fy),
         sigma_Mz=weights.stated_or_nominal(points.u_Mz, points.Mz),
         envelope=envelope(covered_ranges(points)),
+        radii=radius_readings(config) if disc else (),
+        speed=reference_speed(points),
     )
 
 
@@ -196,7 +201,7 @@ def _coefficients(values, fitted: Fitted, cover, status: Mapping[str, str]) -> d
             continue
         free = row.name in fitted.values
         state = status.get(row.name, "default")
-        if free and row.name != "PECP1":
+        if free and row.stage:
             state = "regularised" if row.name in fitted.regularised else "fitted"
         partner, correlation = fitted.correlation.get(row.name, ("", 0.0))
         out[row.name] = Coefficient(

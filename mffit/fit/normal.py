@@ -80,12 +80,12 @@ def derive_normal(
         ("Fy", CAMBER_FORCE, FORCE_STARTS),
         ("Mz", CAMBER_MOMENT, MOMENT_STARTS),
     ):
-        names = tuple(n for n in names if not (symmetric and n in ODD_TERMS))
+        free = tuple(n for n in names if not (symmetric and n in ODD_TERMS))
         on_coarse, on_fine = (
             _residual(channel, road, values, found, weights(road, tested), limits, measured)
             for road in (coarse, fine)
         )
-        begun = {name: measured.get(name, float(values[name])) for name in names}
+        begun = {name: measured.get(name, float(values[name])) for name in free}
         tried = [_solve(on_coarse, {**begun, **start}, 25, 1e-3) for start in starts]
         best, _ = min(tried, key=lambda end: end[1])
         found.update(_solve(on_fine, best, 30, 1e-4)[0])

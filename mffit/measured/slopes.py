@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+import lmfit
 import numpy as np
-from scipy.optimize import least_squares
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,20 +76,21 @@ def _saturating(x, y, u) -> tuple[float, float]:
     start = float(np.sum(x[first] * y[first]) / np.sum(x[first] ** 2))
     top = max(float(np.max(np.abs(y))), 1e-9) * np.sign(start or 1.0)
 
-    def model(v):
-        slope, D, C = v[0] * start, v[1] * top, v[2]
-        return D * np.sin(C * np.arctan(slope * x / (C * D)))
+    shape = lmfit.Parameters()
+    shape.add("slope", 1.05, min=0.2, max=5.0)  # over its first estimate
+    shape.add("ceiling", 1.2, min=0.7, max=20.0)  # over the largest value
+    shape.add("C", 1.2, min=0.3, max=1.9)
 
-    def residual(v):
-        return np.append((model(v) - y) / u, (v[2] - 1.2) / 0.5)
+    def residual(shape):
+        s, D, C = shape["slope"] * start, shape["ceiling"] * top, shape["C"].value
+        curve = D * np.sin(C * np.arctan(s * x / (C * D)))
+        return np.append((curve - y) / u, (C - 1.2) / 0.5)
 
-    out = least_squares(
-        residual, [1.05, 1.2, 1.2], bounds=([0.2, 0.7, 0.3], [5.0, 20.0, 1.9]), x_scale=[0.1, 0.3, 0.2]
-    )
-    jacobian = np.asarray(out.jac)
-    cov = np.linalg.pinv(jacobian.T @ jacobian)
-    inflation = max(1.0, float(np.sqrt(2.0 * out.cost / max(len(x) - 3, 1))))
-    return float(out.x[0] * start), float(np.sqrt(cov[0, 0]) * abs(start) * inflation)
+    out = lmfit.minimize(residual, shape, method="least_squares", scale_covar=False, x_scale=[0.1, 0.3, 0.2])
+    found = out.params["slope"]
+    inflation = max(1.0, float(np.sqrt(out.chisqr / max(len(x) - 3, 1))))
+    error = found.stderr if found.stderr is not None else abs(found.value)
+    return float(found.value * start), float(error * abs(start) * inflation)
 
 
 def _cubic(x, y, u) -> tuple[float, float]:

@@ -117,7 +117,7 @@ def test_the_path_pushes_outwards_and_a_larger_radius_less():
 )
 def test_environment_scales_both_channels(channel, numbers, conditions, share):
     points = make_points(ANGLES, 0.0, 1500.0, p=250e3, V=6.0, phi_t=0.0)
-    whole = State(dict(PLAIN.values), RigFaults(), False, False).predict(points)
+    whole = Simulation(dict(PLAIN.values), RigFaults(), False, False).predict(points)
     whole = whole[: len(points)] if channel == "Fy" else whole[len(points) :]
     assert np.max(np.abs(whole)) > 1.0
     assert change(numbers, channel=channel, **conditions) == pytest.approx(share * whole, rel=1e-9)

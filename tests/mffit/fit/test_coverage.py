@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from mffit.fit.coverage import coverage, design, levels
+from mffit.fit.coverage import coverage, design
 from mffit.fit.stages import CONICITY_ON_A_DISC, IF_IDENTIFIED, ODD_TERMS, SHIFT_TERMS
 from mffit.points import Points, make_points
 from tir.parameters import TABLE
@@ -86,9 +86,3 @@ def test_the_sets_of_the_stages_are_the_tables():
     assert {"PHYP1", "QDRP1"} <= IF_IDENTIFIED
     assert not IF_IDENTIFIED & {"PKYP1", "PDYP1", "QDTP1"}
     assert CONICITY_ON_A_DISC == {"PVY1": 0.003, "PVY2": 0.003}
-
-
-def test_levels_are_separated_by_the_gap():
-    assert levels(np.array([1.0, 1.05, 3.0, np.nan, 2.96]), 0.1) == 2
-    assert levels(np.array([np.nan]), 0.1) == 0
-    assert levels(np.array([]), 0.1) == 0

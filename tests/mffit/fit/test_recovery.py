@@ -13,10 +13,12 @@ from mffit import virtual_rig
 
 @pytest.fixture(scope="module")
 def sound_rig(tmp_path_factory):
-    """A build from a rig without faults, noise as declared."""
+    """A build from a rig without faults that says so, noise as declared."""
     content = plan_content()
     content["faults"] = {}
-    content["rig"]["backlash_deg"] = 0.0
+    content["rig"] |= {
+        "backlash_deg": 0.0, "u_loadcell_offset_N": 0.5, "u_camber_alignment_deg": 0.02, "u_slip_alignment_N": 1.0,
+    }  # fmt: skip
     folder = tmp_path_factory.mktemp("rig")
     virtual_rig.simulate(virtual_rig.load_plan(content, folder=SAMPLE), folder, seed=5)
     return mffit.build(folder / "tyre.toml")
@@ -49,7 +51,8 @@ def test_pecp1_of_the_model_gives_the_measured_turn_slip_force(sound_rig):
         sound_rig.fit.tyre(measured.F_phit_load, phi_t=-1 / 1.323, Vx=speed, p=250e3).Fy
         for speed in (6.0, -6.0)
     ]
-    assert np.mean(forces) == pytest.approx(measured.F_phit.value, abs=0.2)
+    # The zeros count with their noise, beside all other points: the model need not pass through them.
+    assert np.mean(forces) == pytest.approx(measured.F_phit.value, abs=2.0 * measured.F_phit.u)
 
 
 def test_the_files_radius_is_the_measured_one(sound_rig):
