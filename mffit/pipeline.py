@@ -66,7 +66,9 @@ class Result:
     warnings: tuple[str, ...]
     seconds: float
     tir_path: str  #: name of the .tir in the output folder
-    files: Mapping[str, str] = field(default_factory=dict)  #: name of each file by use, "turn-slip" or "normal"
+    files: Mapping[str, str] = field(
+        default_factory=dict
+    )  #: name of each file by use, "turn-slip" or "normal"
     tyres: Mapping[str, Tyre] = field(default_factory=dict)  #: what each of them holds
 
     def to_json(self) -> dict[str, Any]:
@@ -120,6 +122,7 @@ def build(
     )
     disc = config.rig.type == "rotating-disk"
     names = fitting.file_names(config.tyre.name, config.spin.exact, disc)
+    assert fitted.files is not None
     tyres = {use: annotated(fitted.files.by_use[use].tyre, config, measured, fitted, use) for use in names}
     plain = config.spin.exact if disc else "normal"
     result = Result(
@@ -209,7 +212,9 @@ def _model(
     for name in (f"{config.tyre.name}.tir", f"{config.tyre.name}-{wanted}.tir"):
         last = config.folder / "out" / name
         if last.is_file() and use_of(tyre := tir.read(last)) in (wanted, None):
-            return tyre, () if name == f"{config.tyre.name}.tir" else (f"The model is {name} of the last build.",)
+            return tyre, () if name == f"{config.tyre.name}.tir" else (
+                f"The model is {name} of the last build.",
+            )
     note = (
         "The model was fitted to these points first, as there was no earlier build for simulations with turn slip "
         f"{'on' if wanted == 'turn-slip' else 'off'}."
@@ -351,7 +356,10 @@ def write_build(result: Result, out: Path) -> None:
         resolved = configuration.resolved(result.config, folder=out)
         (folder / "resolved.toml").write_bytes(tomli_w.dumps(resolved).encode())
         report.write_build(result, folder)
-    for use in ("turn-slip", "normal"):  # a sibling of a build with another spin.exact would pass for this build's
+    for use in (
+        "turn-slip",
+        "normal",
+    ):  # a sibling of a build with another spin.exact would pass for this build's
         sibling = f"{result.config.tyre.name}-{use}.tir"
         if result.files and sibling not in result.files.values():
             (out / sibling).unlink(missing_ok=True)

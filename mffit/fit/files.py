@@ -151,9 +151,7 @@ DERIVED = "fitted to the model without path curvature"
 
 
 def _figures(values, comments, base, use, model, road: Road, tested, disc: bool) -> FileFigures:
-    tyre = (base or Tyre.from_values({})).replace(
-        **{**values, "USE_MODE": use_mode(values, use)}
-    )
+    tyre = (base or Tyre.from_values({})).replace(**{**values, "USE_MODE": use_mode(values, use)})
     with_spin = use == "turn-slip"
     here, target = road.forces(tyre.values, turn_slip=with_spin), road.forces(model, turn_slip=disc)
     weight, within = weights(road, tested), inside(road, tested)

@@ -21,7 +21,11 @@ CAMBER_MOMENT = (
     "QDZ3", "QDZ4", "QDZ8", "QDZ9", "QDZ10", "QDZ11", "QBZ4", "QBZ5", "QEZ5", "QHZ3", "QHZ4"
 )  # fmt: skip
 FORCE_STARTS: tuple[Mapping[str, float], ...] = ({}, {"PEY5": -3.0, "PDY3": 0.3}, {"PVY3": -0.5, "PDY3": 1.0})
-MOMENT_STARTS: tuple[Mapping[str, float], ...] = ({}, {"QDZ4": -1.0, "QEZ5": -2.0}, {"QBZ5": 0.8, "QEZ5": 2.0})
+MOMENT_STARTS: tuple[Mapping[str, float], ...] = (
+    {},
+    {"QDZ4": -1.0, "QEZ5": -2.0},
+    {"QBZ5": 0.8, "QEZ5": 2.0},
+)
 OUTSIDE, CORNER = 0.02, 0.5
 SLIP, LEAN = np.radians(4.0), np.radians(25.0)
 LIMIT_WEIGHT = 300.0
@@ -74,7 +78,9 @@ def derive_normal(
     symmetric : hold the terms that a symmetric tyre does not have
     """
     limits = envelope(written)
-    coarse, fine = (road_grid(tested, written, float(values["FNOMIN"]), dense=dense) for dense in (False, True))
+    coarse, fine = (
+        road_grid(tested, written, float(values["FNOMIN"]), dense=dense) for dense in (False, True)
+    )
     found = dict(values)
     for channel, names, starts in (
         ("Fy", CAMBER_FORCE, FORCE_STARTS),
@@ -133,7 +139,9 @@ def inside(road: Road, tested: Mapping[str, float]) -> np.ndarray:
     within = np.abs(road.alpha) <= tested["ALPMAX"] + 1e-9
     within &= np.abs(road.gamma) <= tested["CAMMAX"] + 1e-9
     within &= (road.Fz >= 0.999 * tested["FZMIN"]) & (road.Fz <= 1.001 * tested["FZMAX"])
-    return within & (road.pressure >= 0.999 * tested["PRESMIN"]) & (road.pressure <= 1.001 * tested["PRESMAX"])
+    return (
+        within & (road.pressure >= 0.999 * tested["PRESMIN"]) & (road.pressure <= 1.001 * tested["PRESMAX"])
+    )
 
 
 Residual = Callable[[Mapping[str, float]], np.ndarray]
@@ -166,7 +174,9 @@ def _residual(
             step = np.diff(line.forces(values, turn_slip=False).Fy.reshape(3, -1))
             rows.append(np.where(falls, np.maximum(step, 0.0), 0.0).ravel() / (SCALE["Fy"] * fixed["FNOMIN"]))
             rows.append(
-                np.array([(values[n] - measured[n]) / (TIE * stiffness) for n in CAMBER_STIFFNESS if n in measured])
+                np.array(
+                    [(values[n] - measured[n]) / (TIE * stiffness) for n in CAMBER_STIFFNESS if n in measured]
+                )
                 * TIE_SHARE
             )
         return np.concatenate(rows)

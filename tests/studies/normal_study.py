@@ -80,7 +80,10 @@ def limit(values: Mapping[str, Any], road: Road) -> tuple[float, float]:
 def _least(values, start, names, channel, road: Road) -> tuple[float, dict[str, float]]:
     target = getattr(road.forces(values, turn_slip=True), channel)
     limits = Envelope(
-        (road.Fz.min(), road.Fz.max()), road.gamma.max(), road.alpha.max(), (road.pressure[0], road.pressure[0])
+        (road.Fz.min(), road.Fz.max()),
+        road.gamma.max(),
+        road.alpha.max(),
+        (road.pressure[0], road.pressure[0]),
     )
     unit = {"Fy": 10.0, "Mz": 0.5}[channel]
 
@@ -130,8 +133,9 @@ def main(files: list[str]) -> None:
     )
     for path in paths:
         o = outcome(tir.read(path))
+        name = f"{path.parent.name}/{path.stem}"
         print(
-            f"{path.parent.name + '/' + path.stem:28} {o.limit_Fy:8.1f} {o.Fy:6.1f} {o.Fy / o.limit_Fy:6.2f} {o.weighted_Fy:8.1f} "
+            f"{name:28} {o.limit_Fy:8.1f} {o.Fy:6.1f} {o.Fy / o.limit_Fy:6.2f} {o.weighted_Fy:8.1f} "
             f"{o.largest_Fy:8.0f} {o.limit_Mz:8.2f} {o.Mz:5.2f} {o.Mz / o.limit_Mz:6.2f} {o.stiffness:9.2f} {o.seconds:5.2f}"
         )
 

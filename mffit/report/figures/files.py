@@ -33,7 +33,9 @@ def files_on_a_straight_path(view: BuildView) -> Figure:
             angles = {over: x, "alpha" if over == "gamma" else "gamma": share * tested[held_end]}
             for use, file in files.by_use.items():
                 force = getattr(file.tyre(load, **angles, turn_slip=use == "turn-slip"), channel)
-                ax.plot(np.degrees(x), force, color=colours[use], lw=1.2, ls="-" if use == "turn-slip" else "--")
+                ax.plot(
+                    np.degrees(x), force, color=colours[use], lw=1.2, ls="-" if use == "turn-slip" else "--"
+                )
             model = getattr(view.model(load, **angles, turn_slip=True), channel)
             ax.plot(np.degrees(x)[::5], model[::5], ls="none", marker=".", ms=3.0, color=style.INK)
         for edge in (-1.0, 1.0):

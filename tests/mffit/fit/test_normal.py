@@ -12,7 +12,7 @@ import pytest
 import mffit
 import tir
 from mffit.fit.files import file_names, use_mode, whole_words
-from mffit.pipeline import use_of
+from mffit.pipeline import _model, use_of
 from tir.check import check
 from tir.parameters import TABLE
 
@@ -53,6 +53,19 @@ def test_exact_says_which_file_carries_the_plain_name():
     names = {"turn-slip": "a-turn-slip.tir", "normal": "a.tir"}
     assert file_names("a", "normal", True) == names
     assert file_names("a", "turn-slip", False) == {"normal": "a.tir"}
+
+
+@pytest.mark.parametrize(
+    ("turn_slip", "name"), [(True, "front-120-70.tir"), (False, "front-120-70-normal.tir")]
+)
+def test_diagnosis_takes_the_file_of_its_simulation(built, turn_slip, name):
+    result, out = built
+    table = result.config.model.model_copy(update={"turn_slip": turn_slip})
+    config = result.config.model_copy(update={"model": table})
+    config._folder = out.parent
+    tyre, notes = _model(config, None, lambda sentence: None)
+    assert not any("fitted" in note for note in notes)
+    assert tyre == tir.read(out / name)
 
 
 def test_a_tyre_without_motorcycle_contour_gets_a_smooth_road():
