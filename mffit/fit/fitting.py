@@ -119,6 +119,8 @@ def _before_the_fit(config, points: Points, measured, base) -> tuple[dict[str, A
     status = {row.name: origin for row in TABLE}
     if base is not None:
         status.update({row.name: "default" for row in TABLE if row.name not in base.present})
+    if base is None:  # before the fit, because the vertical terms among them decide the rolling radius
+        values.update(_unmeasured(values, status))
     ranges = covered_ranges(points)
     values.update(ranges)
     r_e = _by_load(measured, "r_e_measured")

@@ -155,14 +155,15 @@ def _polish(stated: Problem, plan: Plan) -> tuple[Fitted, Problem]:
     problem, _ = _reweighted(stated)
     rough = _thinned(problem)
     solution = _solved(rough, names, plan, tolerance=1e-3)
-    errors = _data_errors(rough, solution, len(problem.points))
+    information = _data_information(rough, solution, len(problem.points))
+    errors = _errors(solution.names, information)
     problem, scale = _reweighted(stated.with_values(solution.values))
     tied = {name for name in names if name in IF_IDENTIFIED}
     released = frozenset(n for n in tied if errors[n] < IDENTIFIED * max(abs(solution.values[n]), 1e-12))
     curved = bool(np.any(problem.points.phi_t))
     conicity = {name for name in names if name in CONICITY_ON_A_DISC and curved}
     spread = {n.name: n.spread for n in _numbers(problem, names, plan)}
-    unmoved = {n for n in names if errors[n] > spread[n]} - tied - conicity
+    unmoved = _unmoved(solution.names, information, {n: spread[n] for n in set(names) - tied - conicity})
     problem = problem.with_values({n: plan.expected[n] for n in unmoved})
     kept = [n for n in names if n not in unmoved]
     solution = _solved(problem, kept, plan, released=released, tolerance=1e-6)
@@ -249,11 +250,32 @@ def _thinned(problem: Problem) -> Problem:
     return problem if step <= 1 else problem.select(np.arange(0, len(problem.points), step))
 
 
-def _data_errors(problem: Problem, solution: Solution, of: int) -> dict[str, float]:
-    """Standard errors from the data and the rig's priors, without the ties, for ``of`` points of the kind solved."""
+def _data_information(problem: Problem, solution: Solution, of: int) -> np.ndarray:
+    """Precision matrix (k, k) from the data and the rig's priors, without the ties, for ``of`` points of the kind solved."""
     known = np.array([p if n in RIG else 0.0 for n, p in zip(solution.names, solution.prior, strict=True)])
-    information = solution.jacobian.T @ solution.jacobian * (of / len(problem.points)) + np.diag(known)
-    return dict(zip(solution.names, np.sqrt(np.diag(inverse(information))).tolist(), strict=True))
+    return solution.jacobian.T @ solution.jacobian * (of / len(problem.points)) + np.diag(known)
+
+
+def _errors(names: Sequence[str], information: np.ndarray) -> dict[str, float]:
+    return dict(zip(names, np.sqrt(np.diag(inverse(information))).tolist(), strict=True))
+
+
+def _unmoved(names: Sequence[str], information: np.ndarray, spread: Mapping[str, float]) -> set[str]:
+    """Coefficients that the data leave anywhere among the plausible values, held one by one, the worst first.
+
+    Two that only their combination decides are both uncertain; holding one makes the other certain.
+    """
+    kept = list(range(len(names)))
+    held: set[str] = set()
+    while kept:
+        errors = _errors([names[i] for i in kept], information[np.ix_(kept, kept)])
+        doubt = {n: errors[n] / spread[n] for n in errors if n in spread}
+        worst = max(doubt, key=doubt.__getitem__, default="")
+        if not worst or doubt[worst] <= 1.0:
+            break
+        held.add(worst)
+        kept.remove(list(names).index(worst))
+    return held
 
 
 def _strongest_correlations(names: list[str], cov: np.ndarray) -> dict[str, tuple[str, float]]:

@@ -17,7 +17,7 @@ def sound_rig(tmp_path_factory):
     content = plan_content()
     content["faults"] = {}
     content["rig"] |= {
-        "backlash_deg": 0.0, "u_loadcell_offset_N": 0.5, "u_camber_alignment_deg": 0.02, "u_slip_alignment_N": 1.0,
+        "backlash_deg": 0.0, "u_loadcell_offset_N": 0.5, "u_camber_alignment_deg": 0.02,
     }  # fmt: skip
     folder = tmp_path_factory.mktemp("rig")
     virtual_rig.simulate(virtual_rig.load_plan(content, folder=SAMPLE), folder, seed=5)
