@@ -32,9 +32,10 @@ def build(tyre_toml: Path, out: Path | None) -> None:
     out = out or tyre_toml.parent / "out"
     with progress() as show:
         result = pipeline.build(tyre_toml, out, progress=show)
-    click.echo(text.build_summary(result))
     warn(result.warnings)
-    click.echo(f"written to {out}: {result.tir_path}, report.html, result.json, points.csv, plots")
+    click.echo(text.build_summary(result))
+    files = dict.fromkeys((result.tir_path, *result.files.values()))
+    click.echo(f"written to {out}: {', '.join(files)}, report.html, result.json, points.csv, plots")
 
 
 @commands.command()

@@ -31,7 +31,12 @@ class Entry(NamedTuple):
 
 @contextmanager
 def output_folder(
-    out: Path, *, by: str = "mffit", protected: Iterable[Path] = (), record: str = RECORD
+    out: Path,
+    *,
+    by: str = "mffit",
+    protected: Iterable[Path] = (),
+    outdated: Iterable[str] = (),
+    record: str = RECORD,
 ) -> Iterator[Path]:
     """A temporary folder beside ``out`` whose files go to ``out`` only if the block succeeds.
 
@@ -40,6 +45,7 @@ def output_folder(
     out : folder to write to; made if need be
     by : the command that writes, so that it clears away only pictures of its own
     protected : files that the run reads
+    outdated : names that would pass for this run's output if an earlier one left them
     record : JSON file of ``out`` that lists, under ``files``, what was written; one of the run's own JSON
         files may serve, which then carries that key
 
@@ -79,7 +85,7 @@ def output_folder(
         itself = {record: Entry(by, digest(out / record))} if recorded else {}
         _refuse(out, written, recorded | itself, protected)
         try:
-            _move(temporary, out, written, recorded, by, record)
+            _move(temporary, out, written, recorded, by, record, frozenset(outdated))
         except OSError as error:
             raise InputError(
                 f"cannot be written to ({error.strerror}: {error.filename}); close what uses it or name another "
@@ -159,9 +165,10 @@ def _move(
     recorded: Mapping[str, Entry],
     by: str,
     record: str,
+    outdated: frozenset[str],
 ) -> None:
     """Put the files in their places, take away stale ones, and record it."""
-    stale = _stale(out, written, recorded, by)
+    stale = _stale(out, written, recorded, by, outdated)
     kept = {name: entry for name, entry in recorded.items() if name not in stale and (out / name).is_file()}
     entries = kept | {name: Entry(by, new) for name, new in written.items() if name != record}
     file = temporary / record
@@ -176,14 +183,19 @@ def _move(
         (out / name).unlink()
 
 
-def _stale(out: Path, written: Mapping[str, str], recorded: Mapping[str, Entry], by: str) -> list[str]:
-    """Files of an earlier run of this command, unchanged since, in folders this run wrote to and not among its own."""
+def _stale(
+    out: Path, written: Mapping[str, str], recorded: Mapping[str, Entry], by: str, outdated: frozenset[str]
+) -> list[str]:
+    """Files of an earlier run of this command, unchanged since, that this run did not write again.
+
+    In the folders that it wrote to all of them; beside them those that would pass for its own, ``outdated``.
+    """
     folders = {PurePosixPath(name).parent for name in written} - {PurePosixPath(".")}
     return [
         name
         for name, entry in recorded.items()
         if name not in written
-        and PurePosixPath(name).parent in folders
+        and (PurePosixPath(name).parent in folders or name in outdated)
         and entry.by == by
         and (out / name).is_file()
         and digest(out / name) == entry.sha256

@@ -349,7 +349,8 @@ def write_build(result: Result, out: Path) -> None:
     """Write every output of a build, or nothing."""
     from mffit import report
 
-    with output_folder(out, by="build", protected=inputs_of(result.config)) as folder:
+    siblings = [f"{result.config.tyre.name}-{use}.tir" for use in ("turn-slip", "normal")]
+    with output_folder(out, by="build", protected=inputs_of(result.config), outdated=siblings) as folder:
         for use, name in (result.files or {"": result.tir_path}).items():
             result.tyres.get(use, result.tyre).write(folder / name)
         _write_json(folder / "result.json", result.to_json())
@@ -357,13 +358,6 @@ def write_build(result: Result, out: Path) -> None:
         resolved = configuration.resolved(result.config, folder=out)
         (folder / "resolved.toml").write_bytes(tomli_w.dumps(resolved).encode())
         report.write_build(result, folder)
-    for use in (
-        "turn-slip",
-        "normal",
-    ):  # a sibling of a build with another spin.exact would pass for this build's
-        sibling = f"{result.config.tyre.name}-{use}.tir"
-        if result.files and sibling not in result.files.values():
-            (out / sibling).unlink(missing_ok=True)
 
 
 def points_table(result: Result):

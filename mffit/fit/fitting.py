@@ -105,7 +105,7 @@ def fit(
         stages=fitted.stages,
         coverage=cover,
         explanations=tuple(explanations),
-        warnings=tuple(_warnings(fitted, cover)),
+        warnings=tuple(_warnings(fitted, points)),
         seconds=time.perf_counter() - began,
         epsilon_gamma_model=_epsilon_of_model(turn_slip, points, measured),
         files=written,
@@ -280,14 +280,41 @@ def _pecp1_sentence(config, values, measured) -> str:
     )
 
 
-def _warnings(fitted: Fitted, cover) -> list[str]:
+NOT_TRUSTED = 2.0
+"""Misfit in units of the stated noise above which a file is not to be trusted."""
+CARRIES = 1.5
+"""A sweep carries the misfit if its own is this many times that of all points."""
+
+
+def _warnings(fitted: Fitted, points: Points) -> list[str]:
+    """What a user must know of the fit, the gravest first."""
     out = []
+    Fy, Mz = fitted.simulation.readings(points)
+    for name, model, measured, u, scale in (
+        ("Fy", Fy, points.Fy, points.u_Fy, fitted.scale[0]),
+        ("Mz", Mz, points.Mz, points.u_Mz, fitted.scale[1]),
+    ):
+        if scale > NOT_TRUSTED and np.any(np.isfinite(u)):
+            out.append(
+                f"the file is not to be trusted: the model misses {name} by {scale:.1f} times the stated uncertainty"
+                f"{_carriers(points, (model - measured) / u)}; look at these sweeps, or run mffit diagnose"
+            )
+    if fitted.attempts:
+        out.append(f"the fit was started again from {', '.join(fitted.attempts)}; the best of all is kept")
     if fitted.at_bound:
         out.append(
             f"at the bound of plausible values: {', '.join(sorted(fitted.at_bound))}; check the sweeps that decide them"
         )
-    if fitted.scale[0] > 3.0:
-        out.append(
-            f"the model misses Fy by {fitted.scale[0]:.1f} times the stated uncertainty; run mffit diagnose to find out why"
-        )
     return out
+
+
+def _carriers(points: Points, z: np.ndarray) -> str:
+    """The sweeps that carry a misfit (n,), in words."""
+    known = np.isfinite(z)
+    total = float(np.sqrt(np.mean(z[known] ** 2)))
+    own = {
+        k: float(np.sqrt(np.mean(z[known & (points.sweep == k)] ** 2)))
+        for k in np.unique(points.sweep[known])
+    }
+    worst = [k for k in sorted(own, key=lambda k: -own[k]) if own[k] > CARRIES * total][:3]
+    return f", most of it in {', '.join(points.sweep_names[k] for k in worst)}" if worst else ""

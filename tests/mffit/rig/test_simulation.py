@@ -1,0 +1,73 @@
+"""Derivatives of a rig's readings by every number in the simulation, against differences of the readings."""
+
+from __future__ import annotations
+
+from dataclasses import fields
+
+import numpy as np
+import pytest
+
+import tir
+from mffit.points import make_points
+from mffit.rig import NO_FAULTS, RigFaults, Simulation
+from mffit.rig.simulation import RELAXATION
+
+FAULTS = RigFaults(0.3, -0.4, 1.02, 8.0, 0.01, 0.5, 0.2, 1.31, 1e-3, 2e-3, 1e-6)
+STEPS = {"k_t_per_s": 1e-9, "k_T_per_K": 1e-6, "crosstalk": 1e-5}
+
+
+@pytest.fixture(scope="module")
+def points():
+    rng = np.random.default_rng(8)
+    n = 50
+    return make_points(
+        rng.uniform(-0.12, 0.12, n), rng.uniform(-0.7, 0.7, n), rng.uniform(800.0, 2000.0, n), p=250e3,
+        V=rng.choice([6.0, 9.0], n), T=rng.uniform(20.0, 60.0, n), t=rng.uniform(0.0, 4000.0, n), phi_t=-1 / 1.323,
+        direction=rng.choice([1, -1], n), mount=rng.choice([1, -1], n),
+    )  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def simulation():
+    return Simulation.of(tir.read("samples/front-120-70/true.tir"), FAULTS)
+
+
+@pytest.mark.parametrize(
+    "name", [*(f.name for f in fields(RigFaults)), "PKY1", "PECP1", "PHY1", "QDZ8", "PVY1"]
+)
+def test_a_sensitivity_is_the_slope_of_the_readings(points, simulation, name):
+    step = STEPS.get(name, 1e-5)
+    value = simulation.number(name, points)
+    up, down = (simulation.with_numbers({name: value + s}).predict(points) for s in (step, -step))
+    _, slope = simulation.sensitivities(points, [name])
+    expected = (up - down) / (2.0 * step)
+    assert np.concatenate(slope)[:, 0] == pytest.approx(expected, abs=1e-5 * (1.0 + np.max(np.abs(expected))))
+
+
+def test_sensitivities_come_with_the_readings(points, simulation):
+    out, slope = simulation.sensitivities(points, ["PKY1", "F0_N"])
+    assert np.concatenate(out) == pytest.approx(simulation.predict(points), rel=1e-12)
+    assert slope.Fy.shape == slope.Mz.shape == (50, 2)
+    assert np.all(slope.Fy[:, 1] == 1.0)
+    assert np.all(slope.Mz[:, 1] == 0.0)
+
+
+def test_the_lag_of_a_continuous_sweep_has_a_slope_too(simulation):
+    time = np.cumsum(np.random.default_rng(1).uniform(0.05, 0.2, 80))
+    sweep = make_points(
+        0.1 * np.sin(time), 0.0, 1400.0, p=250e3, V=2.0, phi_t=-1 / 1.323, continuous=True, time=time
+    )
+    lagging = simulation.with_numbers({RELAXATION: 0.3})
+    up, down = (lagging.with_numbers({RELAXATION: 0.3 + s}).predict(sweep) for s in (1e-4, -1e-4))
+    _, slope = lagging.sensitivities(sweep, [RELAXATION])
+    expected = (up - down) / 2e-4
+    assert np.concatenate(slope)[:, 0] == pytest.approx(expected, abs=2e-3 * np.max(np.abs(expected)))
+
+
+def test_a_perfect_rig_reads_the_tyre(points):
+    tyre = tir.read("samples/front-120-70/true.tir")
+    normal = points.replace(mount=1)
+    forces = tyre(normal.Fz, normal.alpha, normal.gamma, phi_t=normal.phi_t, Vx=normal.Vx, p=normal.p)
+    read = Simulation.of(tyre, NO_FAULTS).readings(normal)
+    assert read.Fy == pytest.approx(forces.Fy)
+    assert read.Mz == pytest.approx(forces.Mz)

@@ -1,0 +1,86 @@
+"""The one least-squares against answers that are known in closed form, and against scipy."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from scipy.optimize import least_squares
+
+from mffit.least_squares import Linear, Number, Problem, solve
+
+RNG = np.random.default_rng(5)
+A = RNG.normal(size=(30, 3))
+TRUE = np.array([1.0, -2.0, 0.5])
+DATA = A @ TRUE + 0.1 * RNG.normal(size=30)
+
+
+def linear_problem(limit: float = np.inf) -> Problem:
+    """A straight line in three numbers, the first of which may be limited with a heavy penalty."""
+
+    def limits(x):
+        return np.array([1e4 * max(x[0] - limit, 0.0)])
+
+    def linear(x):
+        slope = np.array([[1e4 if x[0] > limit else 0.0, 0.0, 0.0]])
+        return Linear(A @ x - DATA, A, limits(x), slope)
+
+    return Problem(lambda x: (A @ x - DATA, limits(x)), linear)
+
+
+def numbers(**changes) -> list[Number]:
+    return [Number(name, 0.0, **changes.get(name, {})) for name in ("a", "b", "c")]
+
+
+def test_a_linear_problem_gives_the_normal_equations():
+    found = solve(linear_problem(), numbers())
+    assert list(found.values.values()) == pytest.approx(np.linalg.lstsq(A, DATA, rcond=None)[0], abs=1e-6)
+    assert found.covariance == pytest.approx(np.linalg.inv(A.T @ A), rel=1e-9)
+    assert not found.at_bound | found.at_limit
+
+
+def test_a_prior_counts_as_one_more_reading():
+    found = solve(linear_problem(), numbers(b={"expected": 4.0, "spread": 0.01}), tolerance=1e-12)
+    rows = np.vstack([A, [0.0, 100.0, 0.0]])
+    assert list(found.values.values()) == pytest.approx(
+        np.linalg.lstsq(rows, np.append(DATA, 400.0), rcond=None)[0], abs=1e-6
+    )
+    assert found.covariance == pytest.approx(np.linalg.inv(rows.T @ rows), rel=1e-9)
+
+
+def test_a_bound_holds_and_is_said():
+    found = solve(linear_problem(), numbers(a={"lower": -3.0, "upper": 0.4}), tolerance=1e-12)
+    bounded = least_squares(
+        lambda x: A @ x - DATA, np.zeros(3), bounds=([-3, -9, -9], [0.4, 9, 9]), xtol=1e-14
+    )
+    assert found.at_bound == {"a"}
+    assert list(found.values.values()) == pytest.approx(bounded.x, abs=1e-5)
+
+
+def test_a_limit_holds_is_said_and_is_no_information():
+    found = solve(linear_problem(limit=0.4), numbers(), tolerance=1e-12)
+    assert found.values["a"] == pytest.approx(0.4, abs=1e-3)
+    assert found.at_limit == {"a"}
+    assert found.covariance == pytest.approx(np.linalg.inv(A.T @ A), rel=1e-9)
+
+
+def test_a_curved_problem_ends_where_scipy_ends():
+    x = np.linspace(0.1, 3.0, 40)
+    y = 2.0 * np.sin(1.3 * np.arctan(1.7 * x)) + 0.02 * RNG.normal(size=40)
+
+    def residual(v):
+        return v[0] * np.sin(v[1] * np.arctan(v[2] * x)) - y
+
+    def linear(v):
+        inner = np.arctan(v[2] * x)
+        slope = np.column_stack(
+            [
+                np.sin(v[1] * inner),
+                v[0] * inner * np.cos(v[1] * inner),
+                v[0] * v[1] * np.cos(v[1] * inner) * x / (1.0 + (v[2] * x) ** 2),
+            ]
+        )
+        return Linear(residual(v), slope, np.zeros(0), np.zeros((0, 3)))
+
+    start = [Number("D", 1.0), Number("C", 1.0), Number("B", 1.0)]
+    found = solve(Problem(lambda v: (residual(v), np.zeros(0)), linear), start, tolerance=1e-12)
+    assert list(found.values.values()) == pytest.approx(least_squares(residual, np.ones(3)).x, abs=1e-4)
