@@ -117,6 +117,13 @@ def build(
     refuse_early(_folder(out), (f"{config.tyre.name}.tir", *BUILD_FILES), inputs_of(config))
     with threadpool_limits(1):  # the matrices are small: threads cost more than they bring
         fitted = fitting.fit(config, points, parts, measured, base, progress)
+        bias = finite_spin_bias(config, points, fitted, base)
+        if bias is not None:
+            measured = measured.debiased(bias)
+        if bias is not None and config.spin.pecp1 == "debiased":
+            assert measured.epsilon_gamma_debiased is not None
+            measured = replace(measured, pecp1=measured.epsilon_gamma_debiased.value)
+            fitted = fitting.fit(config, points, parts, measured, base, progress)
     measured = measured.with_model(
         epsilon_gamma_model=fitted.epsilon_gamma_model, pecp1=_number(fitted.written, "PECP1", measured)
     )
@@ -232,7 +239,7 @@ def use_of(tyre: Tyre) -> str | None:
 def _redone(config: Config, points: Points, diagnosis: Diagnosis, base: Tyre | None) -> str:
     """The direct method with the rig's faults taken off, in one sentence."""
     names = " and ".join(f.effect.name for f in diagnosis.effects if f.effect.kind == "rig")
-    mended = config.model_copy(update={"rig": config.rig.model_copy(update={"backlash_deg": 0.0})})
+    mended = without_play(config)
     without = corrected_points(points, diagnosis.state)
     before, after = (
         _epsilon(settings, chosen, base) for settings, chosen in ((config, points), (mended, without))
@@ -274,6 +281,24 @@ def measure(config: Config, points: Points, base: Tyre | None) -> tuple[Parts, M
     with threadpool_limits(1):  # the same numbers to the last digit whatever else the machine does
         measured = direct.measure(config, points, parts, base)
     return replace(parts, alpha_odd=direct.odd_alpha(points, parts, config)), measured
+
+
+def finite_spin_bias(config: Config, points: Points, fitted: FitResult, base: Tyre | None) -> float | None:
+    """What the direct method adds to eps_gamma because spin on a disc is not small; None where it does not apply.
+
+    The method is run on what a faultless rig would read, without noise, of the fitted model, whose eps_gamma is known.
+    """
+    if config.rig.type != "rotating-disk" or fitted.epsilon_gamma_model is None:
+        return None
+    faultless = replace(fitted.simulation, faults=RigFaults())
+    Fy, Mz = faultless.readings(points)
+    found = _epsilon(without_play(config), points.replace(Fy=Fy, Mz=Mz), base)
+    return None if found is None else found.value - float(fitted.simulation.values["PECP1"])
+
+
+def without_play(config: Config) -> Config:
+    """The configuration of the same rig with a steering axis that has no play."""
+    return config.model_copy(update={"rig": config.rig.model_copy(update={"backlash_deg": 0.0})})
 
 
 def read_base(config: Config) -> Tyre | None:

@@ -179,7 +179,7 @@ class SpinTable(Table):
     """[spin]: which of the two files carries the plain name, and where PECP1 comes from."""
 
     exact: Literal["turn-slip", "normal"] = "turn-slip"
-    pecp1: Literal["direct", "model"] = "direct"
+    pecp1: Literal["direct", "debiased", "model"] = "direct"
 
 
 class ModelTable(Table):

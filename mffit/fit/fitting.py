@@ -65,7 +65,7 @@ def fit(
     free_pecp1 = config.spin.pecp1 == "model" and measured.epsilon_gamma is not None
     rig = rig_numbers(config, measured)
     extra = (*(("PECP1",) if free_pecp1 else ()), *(("Q_RE0",) if rig and config.rolling_radius else ()))
-    plan = Plan(cover, start, rig, extra)
+    plan = Plan(cover, start, rig, extra, noise_stated=bool(np.any(np.isfinite(points.u_Fy))))
     problem = _problem(config, points, values, measured)
     fitted = fit_staged(problem, start, plan, progress)
     fitted = _with_held_pecp1(fitted, points, measured, free_pecp1)
@@ -269,14 +269,19 @@ def _epsilon_of_model(values, points: Points, measured) -> float | None:
 
 
 def _pecp1_sentence(config, values, measured) -> str:
+    if config.spin.pecp1 == "debiased":
+        return (
+            f"PECP1 = {values['PECP1']:.4f} is the measured eps_gamma {measured.epsilon_gamma.value:.4f} less what the "
+            "finite spin of the disc adds to it."
+        )
     if config.spin.pecp1 == "direct":
         return (
             f"PECP1 = {values['PECP1']:.4f} is the measured eps_gamma itself; the finite spin of the disc makes the "
             "model's turn-slip force differ slightly from the measured one (see epsilon_gamma_model)."
         )
     return (
-        f"PECP1 = {values['PECP1']:.4f} makes the model's force at (0, 0) equal the measured turn-slip force; the "
-        f"directly measured eps_gamma is {measured.epsilon_gamma.value:.4f}."
+        f"PECP1 = {values['PECP1']:.4f} is the joint estimate of tyre and rig, in which every point counts with its noise "
+        f"and the rig's errors with what [rig] declares; the directly measured eps_gamma is {measured.epsilon_gamma.value:.4f}."
     )
 
 

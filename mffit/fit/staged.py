@@ -63,6 +63,7 @@ class Plan:
     expected: Mapping[str, float]  #: centre of every coefficient's prior
     rig: tuple[Number, ...] = ()  #: rig errors, freed in the polish
     extra: tuple[str, ...] = ()  #: coefficients freed in the polish only
+    noise_stated: bool = True  #: whether the points say how uncertain they are
 
     @property
     def free(self) -> list[str]:
@@ -90,7 +91,8 @@ def fit_staged(problem: Problem, start: Mapping[str, float], plan: Plan, progres
     """
     _enough_points(problem.points, plan.free)
     best = _fit_from(problem, start, plan, progress)
-    if max(best.scale) < FALSE_MINIMUM and not best.at_bound & BY_SHAPE:
+    far = plan.noise_stated and max(best.scale) > FALSE_MINIMUM
+    if not far and not best.at_bound & BY_SHAPE:
         return best
     tried = []
     for shape, values in SHAPES.items():

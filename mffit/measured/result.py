@@ -58,6 +58,7 @@ class Measured:
     notes: tuple[str, ...]
     warnings: tuple[str, ...]
     epsilon_gamma_model: float | None = None
+    epsilon_gamma_debiased: Quantity | None = None  #: less what the finite spin of the disc adds
 
     @property
     def epsilon_gamma(self) -> Quantity | None:
@@ -113,6 +114,14 @@ class Measured:
             self, epsilon_gamma_model=epsilon_gamma_model, pecp1=self.pecp1 if pecp1 is None else pecp1
         )
 
+    def debiased(self, bias: float) -> Measured:
+        """The same with eps_gamma less the bias that finite spin gives it."""
+        direct = self.epsilon_gamma
+        assert direct is not None
+        return dataclasses.replace(
+            self, epsilon_gamma_debiased=Quantity(direct.value - bias, direct.u, direct.unit)
+        )
+
     def quantities(self) -> dict[str, Quantity]:
         """What goes into the property file's structured comments."""
         if self.nominal is None:
@@ -122,6 +131,8 @@ class Measured:
             quantity = getattr(self.nominal, _)
             if quantity is not None:
                 out[key] = Quantity(quantity.value, quantity.u, unit)
+        if self.epsilon_gamma_debiased is not None:
+            out["epsilon_gamma_debiased"] = self.epsilon_gamma_debiased
         for key, value in (("epsilon_gamma_model", self.epsilon_gamma_model), ("load_N", self.nominal.load)):
             if value is not None:
                 out[key] = Quantity(float(value), 0.0, "N" if key == "load_N" else "-")
@@ -134,6 +145,8 @@ class Measured:
         out.pop("load_N", None)
         out |= {
             "epsilon_gamma_model": self.epsilon_gamma_model,
+            "epsilon_gamma_debiased": self.epsilon_gamma_debiased and self.epsilon_gamma_debiased.value,
+            "u_epsilon_gamma_debiased": self.epsilon_gamma_debiased and self.epsilon_gamma_debiased.u,
             "pecp1": self.pecp1,
             "pecp2": self.pecp2,
             "u_pecp2": self.u_pecp2,

@@ -95,7 +95,13 @@ def spin_numbers(spin: Mapping[str, Any]) -> str:
         for name, key, unit in names
         if spin.get(key) is not None
     ]
-    others = (("slope", "slope"), ("secant", "secant"), ("written file", "model"), ("Mz", "moment"))
+    others = (
+        ("slope", "slope"),
+        ("secant", "secant"),
+        ("debiased", "debiased"),
+        ("written file", "model"),
+        ("Mz", "moment"),
+    )
     given = [
         f"{name} {number(spin[f'epsilon_gamma_{key}'], 4)}"
         for name, key in others

@@ -45,6 +45,23 @@ def test_eps_gamma_is_recovered(sound_rig):
     assert sound_rig.fit.tyre["PECP1"] == pytest.approx(-0.115, abs=0.05)
 
 
+def test_debiased_is_the_direct_method_less_its_error_on_noise_free_readings(sound_rig):
+    measured = sound_rig.measured
+    # A rig without faults: what is left of the bias is the noise of zeros and camber sweep.
+    assert measured.epsilon_gamma_debiased.value == pytest.approx(-0.115, abs=2 * measured.epsilon_gamma.u)
+    assert measured.epsilon_gamma_debiased.value != measured.epsilon_gamma.value
+    assert measured.epsilon_gamma_debiased.u == measured.epsilon_gamma.u
+
+
+def test_coefficients_known_only_together_are_held_one_by_one():
+    from mffit.fit.staged import _unmoved
+
+    # Only a + b is measured, to 0.01; c is not seen at all.
+    information = 1e4 * np.array([[1.0, 1.0, 0.0], [1.0, 1.0 + 1e-9, 0.0], [0.0, 0.0, 1e-12]])
+    held = _unmoved(["a", "b", "c"], information, {"a": 1.0, "b": 2.0, "c": 5.0})
+    assert held == {"a", "c"}
+
+
 def test_pecp1_of_the_model_gives_the_measured_turn_slip_force(sound_rig):
     measured = sound_rig.measured
     forces = [
