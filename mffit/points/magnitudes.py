@@ -14,6 +14,8 @@ SLIP_THAT_SHOWS = np.radians(2.0)
 CAMBER_THAT_SHOWS = np.radians(5.0)
 SMALLEST_FRICTION = 0.02
 """Side force per load that any tyre exceeds at those angles."""
+LARGEST_FRICTION = 4.0
+"""Side force per load that no tyre reaches."""
 LONGEST_ARM = 1.0
 """|Mz| / Fz [m] that no tyre reaches."""
 
@@ -38,6 +40,8 @@ def check_magnitudes(points: Points) -> None:
                 if found.sign and abs(found.value) > steepest:
                     raise _radians(name, angle, getattr(part, angle), found.value)
         _check_friction(name, part)
+        _check_largest_friction(name, part)
+        _check_dead(name, part)
         arm = np.abs(part.Mz) / part.Fz
         if np.any(arm > LONGEST_ARM):
             raise InputError(
@@ -46,6 +50,41 @@ def check_magnitudes(points: Points) -> None:
                 file=name,
                 column="Mz_Nm",
             )
+
+
+def _check_largest_friction(name: str, part: Points) -> None:
+    """A load in another unit lifts the friction of a whole file, a wild reading that of one row."""
+    friction = np.abs(part.Fy) / part.Fz
+    wild = friction > LARGEST_FRICTION
+    if not np.any(wild):
+        return
+    row = int(np.argmax(friction))
+    if np.sum(wild) < 3:
+        raise InputError(
+            f"{part.Fy[row]:.6g} N is {friction[row]:.0f} times the load, which no tyre reaches; correct or remove the row",
+            file=name,
+            line=int(part.line[row]) or None,
+            column="Fy_N",
+        )
+    raise InputError(
+        f"side forces reach {friction[row]:.0f} times the load ({part.Fz[row]:.0f} N), which no tyre does: the load looks like "
+        'kgf, or the force like another unit; map it with its unit, Fz_N = { column = "Fz_N", unit = "kgf" } in [sweep.columns]',
+        file=name,
+        column="Fz_N",
+    )
+
+
+def _check_dead(name: str, part: Points) -> None:
+    if len(part) >= FEWEST_DEAD and np.all(part.Mz == 0.0):
+        raise InputError(
+            "is 0 in every row, so the channel was dead; leave the column out of this file",
+            file=name,
+            column="Mz_Nm",
+        )
+
+
+FEWEST_DEAD = 4
+"""Rows of nothing but zeros that make a dead channel."""
 
 
 def _radians(name: str, angle: str, values: np.ndarray, steepness: float) -> InputError:

@@ -57,6 +57,7 @@ def check_physics(points: Points, config: Config) -> list[str]:
     wrong = contradictions(found)
     if wrong:
         raise _refusal(wrong, found, points, config)
+    _check_every_file(points)
     if np.isfinite(found.outward) and found.outward < WEAK_FORCE:
         return [
             f"the force at alpha = gamma = 0 is {100 * found.outward:.1f} % of the load along the "
@@ -64,6 +65,27 @@ def check_physics(points: Points, config: Config) -> list[str]:
             "measure turn slip; check the alignment of the sideslip axis"
         ]
     return []
+
+
+def _check_every_file(points: Points) -> None:
+    """Refuse a file that has another sign than all the others: it was recorded or written down the other way round."""
+    if len(np.unique(points.file)) < 2:
+        return
+    for index in np.unique(points.file):
+        own = signatures(points.select(points.file == index))
+        for broken, column, sentence in (
+            (own.cornering.sign > 0, "alpha_deg", "Fy_N rises with alpha_deg"),
+            (own.backward.sign < 0, "alpha_deg", "Fy_N falls with alpha_deg, rolling backwards"),
+            (own.camber.sign > 0, "gamma_deg", "Fy_N rises with gamma_deg"),
+            (own.aligning.sign < 0, "Mz_Nm", "Mz_Nm falls with alpha_deg"),
+        ):
+            if broken:
+                raise InputError(
+                    f"{sentence} in this file alone, against all the others: its sign or its direction of rolling looks "
+                    f"reversed; correct the file or its direction, or map {column} with scale = -1 under [sweep.columns]",
+                    file=points.files[index],
+                    column=column,
+                )
 
 
 def contradictions(found: Signatures) -> list[str]:
