@@ -10,7 +10,9 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "mffit" / "diagnosis"))
 
-from blind_scores import Verdict, judge, rates, suite
+import numpy as np
+from blind_hard import SCATTERS, hard, smooth, triples
+from blind_scores import Plan, Verdict, judge, rates, suite
 
 
 def main() -> None:
@@ -18,7 +20,11 @@ def main() -> None:
     parser.add_argument("--seed", type=int, default=1, help="of the whole set")
     parser.add_argument("--repeats", type=int, default=1, help="how many sets")
     parser.add_argument("--only", default="", help="only cases whose name contains this")
+    parser.add_argument("--hard", action="store_true", help="noise not as stated, inexact models, unknown effects")
     options = parser.parse_args()
+    if options.hard:
+        print_hard(options.seed, options.only)
+        return
     verdicts: list[Verdict] = []
     for plan in suite(options.seed, options.repeats):
         if options.only not in plan.name:
@@ -31,6 +37,57 @@ def main() -> None:
     print_confusion(verdicts)
     for name, (hits, of) in rates(verdicts).items():
         print(f"{name:46s} " + (f"{hits:g} of {of:g}, {100.0 * hits / of:.1f} %" if of else f"{hits:.1f}"))
+
+
+def print_hard(seed: int, only: str) -> None:
+    """A line for every condition: 12 single causes and 6 right models each."""
+    print(f"{'row':12s} right first/ties  extras  unexplained  named on empty  worse  shrink  seconds")
+    every: list[Verdict] = []
+    for row in SCATTERS:
+        every += judged(row, list(hard(row, seed)), only)
+    every += judged("smooth", list(smooth(seed)), only)
+    every += judged("triples", list(triples(seed)), only)
+    print_calibration(every)
+
+
+def judged(row: str, plans: list[Plan], only: str) -> list[Verdict]:
+    """Judge the cases of a row and print it."""
+    if only not in row:
+        return []
+    verdicts = []
+    for plan in plans:
+        verdicts.append(judge(plan.draw()))
+        if not verdicts[-1].outright:
+            print("    " + verdicts[-1].line(), flush=True)
+    caused = [v for v in verdicts if v.causes]
+    first = sum(v.named[:1] == v.causes[:1] for v in caused)
+    if row == "triples":
+        first = sum(v.named != () and v.named[0] in v.causes for v in caused)
+    ties = sum(bool(v.named) and bool({v.named[0], *v.ties[0]} & set(v.causes)) for v in caused)
+    all_found = sum(all(v.found(c) for c in v.causes) for v in caused)
+    print(
+        f"{row:12s} {first}/{ties} of {len(caused)} (all {all_found})  {sum(v.extra for v in verdicts)} extra  "
+        f"{sum(v.unexplained for v in verdicts)} of {len(verdicts)} unexplained  "
+        f"{sum(bool(v.named) for v in verdicts if not v.causes)} of {len(verdicts) - len(caused)} named on empty  "
+        f"{sum(v.shrink < 0.98 for v in verdicts)} worse  "
+        f"shrink {float(np.median([v.shrink for v in caused or verdicts])):.1f}  "
+        f"{float(np.median([v.seconds for v in verdicts])):.1f} s, at most {max(v.seconds for v in verdicts):.1f}",
+        flush=True,
+    )
+    return verdicts
+
+
+def print_calibration(verdicts: list[Verdict]) -> None:
+    """How often named effects are right, by the confidence they are given."""
+    said = [
+        (c, n in v.causes, bool({n, *t} & set(v.causes)))
+        for v in verdicts
+        for n, t, c in zip(v.named, v.ties, v.confidence, strict=True)
+    ]
+    print("confidence: named, right, right or tied with it")
+    for low, high in ((0.0, 0.5), (0.5, 0.8), (0.8, 0.95), (0.95, 0.99), (0.99, 1.01)):
+        inside = [(right, tied) for c, right, tied in said if low <= c < high]
+        print(f"  {low:.2f} to {min(high, 1.0):.2f}: {len(inside)}, {sum(r for r, _ in inside)}, {sum(t for _, t in inside)}")
 
 
 def print_confusion(verdicts: list[Verdict]) -> None:

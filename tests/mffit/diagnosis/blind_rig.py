@@ -92,6 +92,7 @@ class Machine:
     k_T: float = 0.0  #: [1/K]
     k_V: float = 0.0  #: [s/m]
     k_t: float = 0.0  #: [1/s]
+    compliance: float = 0.0  #: of the steering: the moment turns the wheel by this [deg/Nm]
 
     def with_faults(self, faults: Mapping[str, float]) -> Machine:
         return replace(self, **faults)
@@ -103,6 +104,9 @@ def report(
     """Fy [N] and Mz [Nm] that the rig reports without noise; arrays (n,)."""
     alpha = np.deg2rad(run.alpha_deg + machine.alpha_0_deg)
     Fy, Mz = _at_the_tyre(tyre, machine, run, alpha, turn_slip)
+    for _ in range(40 if machine.compliance else 0):  # halves its error in each round, or better
+        yielding = alpha + np.deg2rad(machine.compliance) * Mz
+        Fy, Mz = _at_the_tyre(tyre, machine, run, yielding, turn_slip)
     if machine.backlash_deg > 0.0:
         play = np.deg2rad(machine.backlash_deg)
         at_rest = resting(lambda x: _at_the_tyre(tyre, machine, run, x, turn_slip)[1], alpha, play, Mz)

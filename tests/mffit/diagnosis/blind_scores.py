@@ -59,6 +59,7 @@ class Verdict:
         float  #: gap to the noise-free truth before over after, at unmeasured set-points, in units of noise
     )
     seconds: float
+    confidence: tuple[float, ...] = ()  #: of each named effect
 
     @property
     def outright(self) -> bool:
@@ -152,6 +153,7 @@ def judge(case: Case) -> Verdict:
         right_region=_right_region(case, diagnosis),
         shrink=_shrink(case, diagnosis),
         seconds=seconds,
+        confidence=tuple(found.confidence for found in diagnosis.effects),
     )
 
 

@@ -71,6 +71,7 @@ CAUSES: dict[str, Hidden] = {
     "temperature": Hidden(machine={"k_T": 0.002}),
     "speed": Hidden(machine={"k_V": 0.006}),
     "drift": Hidden(machine={"k_t": 2e-6}),
+    "steering-compliance": Hidden(machine={"compliance": 0.006}),
 }
 """Every effect that steady points on a disc can show."""
 
@@ -108,13 +109,14 @@ def draw_case(
     *,
     exact: bool = True,
     structure: str | None = None,
+    inexactness: float = 0.004,
 ) -> Case:
     """A tyre, a programme and hidden causes, all drawn from ``seed``."""
     rng = np.random.default_rng(seed)
     kind = "front" if rng.random() < 0.5 else "rear"
     true = random_tyre(kind, rng)
     run = disc_programme(1500.0 if kind == "front" else 1800.0, rng)
-    u_coefficients = 0.0 if exact else 0.004
+    u_coefficients = 0.0 if exact else inexactness
     turn_slip = "turn-slip" not in causes
     given, machine = true, Machine()
     for cause in causes:

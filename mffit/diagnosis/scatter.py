@@ -1,0 +1,189 @@
+"""What the readings really scatter like: scale, growth with the reading, memory along sweeps, wild readings.
+
+Every part is accepted only if the data ask for it. What effects, inexact coefficients and smooth structure could bring is
+allowed for with its own prior, so that the scatter is what none of them explains.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.linalg import cho_solve, cholesky, solve_triangular
+from scipy.optimize import minimize
+from scipy.stats import norm, t
+
+from mffit.diagnosis.noise import CHANNELS, Noise, Scatter
+
+STATED_WITHIN = math.log(2.0)
+"""Standard deviation of the logarithm of what uncertainties are over what they are stated to be."""
+NEEDED = 4.0
+"""Gain in log likelihood at which a part of the scatter is accepted."""
+LARGEST_GROWTH, LARGEST_MEMORY, LARGEST_SMOOTH = 0.2, 0.97, 0.3
+TAILS = (2.0, 2.5, 3.0, 4.0, 6.0, 10.0, 20.0)
+ROUNDS = 4
+WILD = 4.5
+"""Standard errors from everything that could explain it at which a reading is listed as an outlier."""
+
+
+@dataclass(frozen=True, slots=True)
+class Explained:
+    """What could explain a residual, one prior standard deviation of each as a column (2n, k)."""
+
+    named: np.ndarray  #: effects, coefficients, bumps
+    smooth: np.ndarray  #: low-order structure; its amplitude is found with the scatter
+
+
+def learned(noise: Noise, residual: np.ndarray, explained: Explained, size: np.ndarray) -> Noise:
+    """The noise with the scatter that the residual shows.
+
+    Parameters
+    ----------
+    noise : as stated, or as found before; where the search starts
+    residual : (2n,) measured minus simulated
+    explained : what other causes could bring
+    size : (2n,) readings that a growing part is in proportion to
+    """
+    n = len(residual) // 2
+    weight, scatter = np.ones(2 * n), dict(noise.scatter)
+    for name, first in (("Fy", 0), ("Mz", n)):
+        rows = np.arange(first, first + n)
+        rows = rows[np.isfinite(noise.stated[rows])]
+        if len(rows):
+            channel = _Channel(
+                noise.stated[rows], np.nan_to_num(residual[rows]), explained.named[rows],
+                explained.smooth[rows], np.abs(np.nan_to_num(size[rows])), noise.chain[rows],
+            )  # fmt: skip
+            scatter[name], weight[rows] = channel.learned(noise.scatter[name])
+    return noise.scattering(scatter, size, weight)
+
+
+class _Channel:
+    """The used readings (m,) of one channel."""
+
+    def __init__(self, stated, residual, named, smooth, size, chain) -> None:
+        self.stated, self.residual, self.size = stated, residual, size
+        self.named = named[:, np.any(named != 0.0, axis=0)]
+        self.smooth = smooth[:, np.any(smooth != 0.0, axis=0)]
+        order = np.argsort(chain, kind="stable")
+        follows = chain[order][1:] == chain[order][:-1]
+        self.later, self.earlier = order[1:][follows], order[:-1][follows]
+        self.weight = np.ones(len(stated))
+
+    def learned(self, start: Scatter) -> tuple[Scatter, np.ndarray]:
+        """The scatter, and the weight of every reading (m,)."""
+        x = np.array([math.log(start.scale), start.growth, start.memory, 0.03])
+        tails = math.inf
+        for _ in range(ROUNDS):
+            x = self._parts(x)
+            z = self.alone(x)
+            before, (tails, width) = tails, heavy_tails(z)
+            weight = (
+                np.ones(len(z))
+                if math.isinf(tails)
+                else (tails + 1.0) / (tails + (z / width) ** 2)
+            )
+            settled = np.max(np.abs(np.sqrt(weight) - np.sqrt(self.weight))) < 0.05
+            self.weight = weight
+            if settled or (math.isinf(tails) and math.isinf(before)):
+                break
+        return Scatter(math.exp(x[0]), float(x[1]), float(x[2]), tails), self.weight
+
+    def _parts(self, start: np.ndarray) -> np.ndarray:
+        """Scale, growth, memory and smooth amplitude (4,), without the parts that the data do not ask for."""
+        best, whole = self._climb(start, (0, 1, 2, 3))
+        for part in (1, 2):
+            reduced = best.copy()
+            reduced[part] = 0.0
+            free = tuple(k for k in (0, 1, 2, 3) if k != part and (k in (0, 3) or best[k]))
+            other, less = self._climb(reduced, free)
+            if whole - less < NEEDED:
+                best, whole = other, less
+        return best
+
+    def _climb(self, start: np.ndarray, free: tuple[int, ...]) -> tuple[np.ndarray, float]:
+        bounds = np.array(
+            [(-2.0, 4.0), (0.0, LARGEST_GROWTH), (-0.2, LARGEST_MEMORY), (1e-4, LARGEST_SMOOTH)]
+        )
+        unit = np.array([1.0, 0.02, 1.0, 0.05])
+        chosen = list(free)
+
+        def full(y: np.ndarray) -> np.ndarray:
+            x = start.copy()
+            x[chosen] = y * unit[chosen]
+            return x
+
+        first = start.copy()
+        if 1 in free and not first[1]:
+            first[1] = 0.004
+        found = minimize(
+            lambda y: -self.likelihood(full(y)),
+            first[chosen] / unit[chosen],
+            bounds=bounds[chosen] / unit[chosen][:, None],
+            method="L-BFGS-B",
+            options={"maxiter": 12, "ftol": 1e-5},
+        )
+        return full(found.x), -float(found.fun)
+
+    def _white(self, x: np.ndarray) -> tuple[np.ndarray, np.ndarray, float]:
+        """Residual (m,) and columns (m, k) in units of the scatter, and the logarithm of what was divided by."""
+        scale, growth, memory, amplitude = math.exp(x[0]), x[1], x[2], x[3]
+        u = np.hypot(scale * self.stated, growth * self.size) / np.sqrt(self.weight)
+        A = np.column_stack([self.residual, self.named, amplitude * self.smooth]) / u[:, None]
+        log = float(np.sum(np.log(u)))
+        if memory:
+            own = math.sqrt(1.0 - memory**2)
+            moved = (A[self.later] - memory * A[self.earlier]) / own
+            A[self.later] = moved
+            log += len(self.later) * math.log(own)
+        return A[:, 0], A[:, 1:], log
+
+    def likelihood(self, x: np.ndarray) -> float:
+        """Log likelihood of the residual, everything else integrated out, with the prior of the scale."""
+        r, A, log = self._white(x)
+        root = cholesky(A.T @ A + np.eye(A.shape[1]), lower=True, check_finite=False)
+        b = solve_triangular(root, A.T @ r, lower=True, check_finite=False)
+        log += float(np.sum(np.log(np.diag(root))))
+        return -0.5 * float(r @ r - b @ b) - log - 0.5 * (x[0] / STATED_WITHIN) ** 2
+
+    def alone(self, x: np.ndarray) -> np.ndarray:
+        """Every reading (m,) against what all others say of it, in units of the joint uncertainty at weight 1."""
+        r, A, _ = self._white(x)
+        root = cholesky(A.T @ A + np.eye(A.shape[1]), lower=True, check_finite=False)
+        left = r - A @ cho_solve((root, True), A.T @ r, check_finite=False)
+        B = solve_triangular(root, A.T, lower=True, check_finite=False)
+        variance = np.maximum(1.0 - np.sum(B * B, axis=0), 1e-3)
+        if x[2]:
+            return left / np.sqrt(variance)
+        # with the weight taken off again: own scatter at weight 1, and what the others leave open
+        own = 1.0 / np.sqrt(self.weight)
+        free = left / variance * own  # the reading less the prediction by all others, in units of u at weight 1
+        open_ = (1.0 / variance - 1.0) * own**2
+        return free / np.sqrt(1.0 + open_)
+
+
+def heavy_tails(z: np.ndarray) -> tuple[float, float]:
+    """Degrees of freedom and width of Student's t that standardised residuals (m,) follow; infinite if they are normal."""
+    width = float(np.sqrt(np.mean(z**2)))
+    best, found = float(np.sum(norm.logpdf(z, scale=width))) + NEEDED, (math.inf, width)
+    for dof in TAILS:
+        width = 1.4826 * float(np.median(np.abs(z))) or 1.0
+        for _ in range(30):
+            width = math.sqrt(float(np.mean((dof + 1.0) * z**2 / (dof + (z / width) ** 2))))
+        value = float(np.sum(t.logpdf(z, dof, scale=width)))
+        if value > best:
+            best, found = value, (dof, width)
+    return found
+
+
+def wild(noise: Noise) -> np.ndarray:
+    """Indices of readings that lost nearly all their weight."""
+    if noise.weight is None:
+        return np.empty(0, dtype=int)
+    tails = np.concatenate(
+        [np.full(len(noise.weight) // 2, noise.scatter[name].tails) for name in CHANNELS]
+    )
+    limit = (tails + 1.0) / (tails + WILD**2)
+    return np.flatnonzero(np.isfinite(tails) & (noise.weight < limit) & np.isfinite(noise.stated))
+

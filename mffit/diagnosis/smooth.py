@@ -1,0 +1,144 @@
+"""Smooth structure that no effect describes: low-order curves over all conditions, the global rival of every effect."""
+
+from __future__ import annotations
+
+import itertools
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.polynomial.legendre import legvander
+
+from mffit.diagnosis.candidates import Hypothesis
+from mffit.diagnosis.noise import CHANNELS, Noise
+from mffit.points import Points
+
+BEND = np.radians(4.0)
+"""Sideslip over which side force saturates: the curves are finer below it than beyond."""
+ANGLES = 5
+"""Largest order over sideslip and camber together."""
+CROSSED = 3
+"""Largest order of a product of angles with load or another condition."""
+SLOW = 6
+"""Largest order over time."""
+AMPLITUDES = np.geomspace(0.001, 0.3, 12)
+"""Sizes that are tried, relative to the channel."""
+NEEDED = 8.0
+"""Log evidence, the choice of the amplitude paid for, at which smooth structure counts as found."""
+
+
+@dataclass(frozen=True, slots=True)
+class Smooth:
+    """The smooth structure that fits a residual best."""
+
+    amplitude: dict[str, float]  #: by channel, rms relative to that of the readings; 0 where there is none
+    gain: float  #: log evidence
+
+    @property
+    def found(self) -> bool:
+        return self.gain > NEEDED
+
+
+NO_SMOOTH = Smooth(dict.fromkeys(CHANNELS, 0.0), 0.0)
+
+
+def smooth_basis(points: Points) -> np.ndarray:
+    """Smooth changes (2n, k) of the readings, Fy and Mz apart, each as large as its order makes it plausible.
+
+    With amplitude 1 they vary together as much as the readings of their channel do.
+    """
+    shapes = _shapes(points)
+    nothing = np.zeros_like(shapes)
+    rows = []
+    for values in (points.Fy, points.Mz):
+        known = values[np.isfinite(values)]
+        rows.append(shapes * (np.sqrt(np.mean(known**2)) if len(known) else 0.0))
+    return np.vstack([np.hstack([rows[0], nothing]), np.hstack([nothing, rows[1]])])
+
+
+def _shapes(points: Points) -> np.ndarray:
+    """Products (n, k) of Legendre polynomials, of unit variance altogether."""
+    a = _orders(np.arctan(points.alpha / BEND), ANGLES)
+    g = _orders(points.gamma, ANGLES)
+    angles = {
+        (i, j): a[:, i] * g[:, j]
+        for i, j in itertools.product(range(a.shape[1]), range(g.shape[1]))
+        if i + j <= ANGLES
+    }
+    columns = {(*key, 0): value for key, value in angles.items()}
+    others = [
+        (np.log(points.Fz), 2),
+        (points.p, 2),
+        (points.T, 2),
+        (points.V, 2),
+        (points.t, SLOW),
+        (points.direction.astype(float), 1),
+    ]
+    for number, (values, most) in enumerate(others, start=1):
+        along = _orders(np.where(np.isfinite(values), values, np.nan), most)
+        for k in range(1, along.shape[1]):
+            for (i, j), shape in angles.items():
+                if i + j + min(k, 2) <= CROSSED or (k > 2 and i + j <= 1):
+                    columns[i, j, 10 * number + k] = shape * along[:, k]
+    scaled = np.column_stack(
+        [value / (1.0 + i + j + key % 10) for (i, j, key), value in columns.items() if np.any(value)]
+    )
+    return scaled / np.sqrt(np.mean(np.sum(scaled**2, axis=1)))
+
+
+def _orders(values: np.ndarray, most: int) -> np.ndarray:
+    """Legendre polynomials (n, k) over the range of values (n,); only the constant where they do not vary."""
+    known = values[np.isfinite(values)]
+    if not len(known) or np.ptp(known) <= 1e-9 * max(1.0, float(np.abs(known).max())):
+        return np.ones((len(values), 1))
+    middle, half = 0.5 * (known.max() + known.min()), 0.5 * np.ptp(known)
+    distinct = len(np.unique(np.round((known - middle) / half, 2)))
+    return legvander(np.nan_to_num((values - middle) / half), min(most, distinct - 1))
+
+
+@dataclass(frozen=True, slots=True)
+class SmoothScan:
+    """All smooth structure that the programme could show, whitened once."""
+
+    shapes: np.ndarray  #: (m, k) whitened
+    half: int  #: columns of Fy; the others are of Mz
+
+    def best(self, hypothesis: Hypothesis) -> Smooth:
+        """The amplitudes that explain most of what the hypothesis leaves, its own freed numbers projected out."""
+        shapes, residual = self.shapes, hypothesis.residual
+        if hypothesis.jacobian.shape[1]:
+            Q, _ = np.linalg.qr(hypothesis.jacobian)
+            shapes, residual = shapes - Q @ (Q.T @ shapes), residual - Q @ (Q.T @ residual)
+        power, score = shapes.T @ shapes, shapes.T @ residual
+        amplitude, gain = {}, 0.0
+        first, second = slice(0, self.half), slice(self.half, None)
+        for name, part in zip(CHANNELS, (first, second), strict=True):
+            size, value = _best_amplitude(power[part, part], score[part])
+            amplitude[name] = size
+            gain += value
+        return Smooth(amplitude, gain)
+
+
+def smooth_scan(basis: np.ndarray, noise: Noise) -> SmoothScan:
+    """The basis as seen through the noise."""
+    return SmoothScan(noise.whiten(basis), basis.shape[1] // 2)
+
+
+def amplified(basis: np.ndarray, smooth: Smooth) -> np.ndarray:
+    """The basis (2n, k) at the amplitudes that were found."""
+    half = basis.shape[1] // 2
+    return basis * np.repeat([smooth.amplitude[name] for name in CHANNELS], half)
+
+
+def _best_amplitude(power: np.ndarray, score: np.ndarray) -> tuple[float, float]:
+    """Amplitude of one channel and its log evidence; 0 and 0 where none helps."""
+    if not power.size or not np.any(power):
+        return 0.0, 0.0
+    size, axes = np.linalg.eigh(power)
+    size, turned = np.maximum(size, 0.0), (axes.T @ score) ** 2
+    gains = [
+        0.5 * float(np.sum(turned * a**2 / (1.0 + a**2 * size)) - np.sum(np.log1p(a**2 * size)))
+        for a in AMPLITUDES
+    ]
+    k = int(np.argmax(gains))
+    gain = gains[k] - np.log(len(AMPLITUDES))
+    return (float(AMPLITUDES[k]), gain) if gain > 0.0 else (0.0, 0.0)

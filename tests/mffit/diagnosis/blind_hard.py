@@ -1,0 +1,121 @@
+"""Blind campaigns as laboratories have them: noise that is not as stated, models off everywhere, effects without a name."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import replace
+
+import numpy as np
+from blind_rig import Programme
+from blind_scores import Plan
+from blind_set import CAUSES, U_FY, U_MZ, Case, draw_case
+
+Scatter = Callable[[np.random.Generator, Programme, np.ndarray, float], np.ndarray]
+
+
+def _gauss(rng, run, force, u):
+    return rng.normal(0.0, u, len(force))
+
+
+def _outliers(rng, run, force, u):
+    wild = rng.random(len(force)) < 0.02
+    return _gauss(rng, run, force, u) + wild * rng.choice((-15.0, 15.0), len(force)) * u
+
+
+def _student(rng, run, force, u):
+    return u * rng.standard_t(2.5, len(force))
+
+
+def _double(rng, run, force, u):
+    return _gauss(rng, run, force, 2.0 * u)
+
+
+def _growing(rng, run, force, u):
+    return rng.normal(0.0, np.hypot(u, 0.015 * force))
+
+
+def _correlated(rng, run, force, u, memory=0.9):
+    noise = _gauss(rng, run, force, u)
+    for i in range(1, len(force)):
+        if run.sweep[i] == run.sweep[i - 1]:
+            noise[i] = memory * noise[i - 1] + np.sqrt(1.0 - memory**2) * noise[i]
+    return noise
+
+
+SCATTERS: dict[str, Scatter] = {
+    "plain": _gauss,
+    "outliers": _outliers,
+    "student": _student,
+    "half": _double,
+    "growing": _growing,
+    "correlated": _correlated,
+    "inexact": _gauss,
+    "compliance": _gauss,
+}
+"""Every row of the study, and what its readings scatter like; both channels alike."""
+
+SMOOTH: dict[str, Callable[[Programme, np.ndarray], np.ndarray]] = {
+    "slip wave": lambda run, Fy: 45.0 * np.sin(np.radians(20.0) * run.alpha_deg) * (run.Fz / 1500.0),
+    "leaned sink": lambda run, Fy: 40.0 * (run.gamma_deg / 30.0) ** 2 * (run.alpha_deg / 5.0),
+    "tidal gain": lambda run, Fy: 0.04 * Fy * np.sin(run.t / 3000.0),
+    "load hump": lambda run, Fy: 50.0 * np.cos(2.5 * run.Fz / run.Fz.mean()) * np.tanh(run.alpha_deg / 2.0),
+}
+"""Smooth changes of Fy that no record of the library has."""
+
+
+def hard(row: str, seed: int, singles: int = 12, empty: int = 6) -> Iterator[Plan]:
+    """Cases of one row: single causes, plain to see and moderate in turn, then cases without any."""
+    rng = np.random.default_rng((seed, *row.encode()))
+    usual = [name for name in CAUSES if name != "steering-compliance"]
+    causes = rng.choice(usual, singles, replace=False).tolist()
+    if row == "compliance":
+        causes = ["steering-compliance"] * singles
+    for k in range(singles + empty):
+        hidden = (str(causes[k]),) if k < singles else ()
+        yield _plan(row, hidden, ("large", "moderate")[k % 2], int(rng.integers(1 << 31)))
+
+
+def smooth(seed: int, repeats: int = 3) -> Iterator[Plan]:
+    """Smooth effects outside the library, exact models."""
+    for k in range(repeats * len(SMOOTH)):
+        shape = list(SMOOTH)[k % len(SMOOTH)]
+        yield Plan(f"smooth-{k}-{shape}", lambda shape=shape, k=k: _smooth(shape, 100 * seed + k))
+
+
+def triples(seed: int, count: int = 10) -> Iterator[Plan]:
+    """Three causes that do not look alike, exact models."""
+    from blind_scores import LOOK_ALIKE
+
+    rng = np.random.default_rng((seed, 3))
+    names = [name for name in CAUSES if name not in ("turn-slip", "steering-compliance")]
+    for k in range(count):
+        while True:
+            drawn = tuple(rng.choice(names, 3, replace=False).tolist())
+            if not any(len(set(drawn) & alike) > 1 for alike in LOOK_ALIKE):
+                break
+        number = int(rng.integers(1 << 31))
+        name = f"triple-{k}-{'+'.join(drawn)}"
+        yield Plan(name, lambda name=name, drawn=drawn, n=number: draw_case(name, drawn, "large", n))
+
+
+def _plan(row: str, causes: tuple[str, ...], level: str, seed: int) -> Plan:
+    name = f"{row}-{'+'.join(causes) or 'none'}-{level}-{seed}"
+
+    def draw() -> Case:
+        case = draw_case(name, causes, level, seed, exact=row != "inexact", inexactness=0.03)
+        return rescattered(case, SCATTERS[row], np.random.default_rng(seed + 1))
+
+    return Plan(name, draw)
+
+
+def rescattered(case: Case, scatter: Scatter, rng: np.random.Generator) -> Case:
+    """The case with other noise."""
+    Fy, Mz = case.noise_free(case.run)
+    return replace(case, Fy=Fy + scatter(rng, case.run, Fy, U_FY), Mz=Mz + scatter(rng, case.run, Mz, U_MZ))
+
+
+def _smooth(shape: str, seed: int) -> Case:
+    case = draw_case(f"smooth-{seed}-{shape}", (), "large", seed)
+    rng = np.random.default_rng(seed)
+    sign = rng.choice((-1.0, 1.0)) * rng.uniform(0.7, 1.3)
+    return replace(case, Fy=case.Fy + sign * SMOOTH[shape](case.run, case.Fy))
