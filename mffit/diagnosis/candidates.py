@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
+from mffit.diagnosis.inexact import EXACT, Inexactness
 from mffit.diagnosis.noise import Noise
 from mffit.effects import Effect, Free
 from mffit.least_squares import Linear, Number, solve
@@ -16,6 +18,10 @@ from mffit.rig import Simulation
 
 STEPS = 12
 CONVERGED = 1e-3  # of chi2
+PROMISING = 9
+"""Candidates that are fitted in full in each step; the others are far behind already to first order."""
+BEYOND_DECLARED = 0.05
+"""Share of rigs that are worse than their owner declares."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,12 +41,38 @@ class Hypothesis:
 
 
 class Problem:
-    """The data, their noise and the model to start from; evaluates hypotheses."""
+    """The data, their noise and the model to start from; evaluates hypotheses.
 
-    def __init__(self, points: Points, start: Simulation, noise: Noise) -> None:
+    Parameters
+    ----------
+    points, start, noise : what was measured, the model, and how uncertain both are
+    declared : what the rig's owner says of its errors: name -> (value, standard uncertainty)
+    offset : (2n,) added to the readings, where ``start`` is not at the centre of the coefficients' prior
+    """
+
+    def __init__(
+        self,
+        points: Points,
+        start: Simulation,
+        noise: Noise,
+        declared: Mapping[str, tuple[float, float]] | None = None,
+        offset: np.ndarray | None = None,
+    ) -> None:
         self.points, self.start, self.noise = points, start, noise
+        self.declared, self.offset = declared or {}, offset
         self.measured = np.concatenate([points.Fy, points.Mz])
+        if offset is not None:
+            self.measured = self.measured + offset
         self.null = self.evaluate((), {})
+
+    def part(self, keep: np.ndarray) -> Problem:
+        """The same with some of the points (mask (n,))."""
+        offset = None if self.offset is None else self.offset[np.concatenate([keep, keep])]
+        return Problem(self.points.select(keep), self.start, self.noise.subset(keep), self.declared, offset)
+
+    def seen_through(self, noise: Noise) -> Problem:
+        """The same with another noise."""
+        return Problem(self.points, self.start, noise, self.declared, self.offset)
 
     def whitened(self, state: Simulation) -> np.ndarray:
         """Measured minus simulated in units of the joint uncertainty (m,)."""
@@ -77,6 +109,92 @@ class Problem:
         assert best is not None
         return best
 
+    def refine(
+        self, chosen: Hypothesis, inexact: Inexactness = EXACT
+    ) -> tuple[Hypothesis, dict[str, tuple[float, float]]]:
+        """The hypothesis with the model's coefficients estimated beside its numbers, and these: name -> (value, error)."""
+        frees = [free for e in chosen.effects for free in e.free if free.name != "turn_slip"]
+        fixed = {name: value for name, value in chosen.numbers.items() if name == "turn_slip"}
+        prior = inexact.without(frozenset(free.name for free in frees))
+        if not prior:
+            return chosen, {}
+        numbers = [self._number(free, chosen.numbers) for free in frees]
+        numbers += [Number(name, float(self.start.values[name])) for name in prior.names]
+        names, k = [n.name for n in numbers], len(frees)
+        precision = np.linalg.pinv(prior.root)
+        plain = Problem(self.points, self.start, self.noise, self.declared).within(names, fixed)
+
+        def residual(x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+            data, limits = plain.residual(x)
+            return np.concatenate([data, precision @ (x[k:] - prior.expected)]), limits
+
+        def linear(x: np.ndarray) -> Linear:
+            here = plain.linear(x)
+            rows = np.hstack([np.zeros((len(precision), k)), precision])
+            return Linear(
+                np.concatenate([here.data, precision @ (x[k:] - prior.expected)]),
+                np.vstack([here.slope, rows]),
+                here.limits,
+                here.limits_slope,
+            )
+
+        found = solve(LeastSquares(residual, linear), numbers, max_steps=STEPS, tolerance=CONVERGED)
+        values = {**fixed, **found.values}
+        errors = dict(zip(found.names, np.sqrt(np.diag(found.covariance)).tolist(), strict=True))
+        own = {n: values[n] for n in (*fixed, *(free.name for free in frees))}
+        refined = replace(
+            chosen,
+            numbers=own,
+            stderr={n: errors[n] for n in own if n in errors},
+            state=self.start.with_numbers(values),
+        )
+        return refined, {n: (values[n], errors[n]) for n in prior.names}
+
+    def promising(self, before: Hypothesis, candidates: Sequence[Effect]) -> list[tuple[Effect, float]]:
+        """Candidates with the gain in log evidence that they promise to first order, best first."""
+        projected = before.residual
+        Q = np.linalg.qr(before.jacobian)[0] if before.jacobian.shape[1] else np.empty((len(projected), 0))
+        projected = projected - Q @ (Q.T @ projected)
+        out = []
+        for effect, groups in self.columns(before.state, candidates).items():
+            gains = [0.0]
+            for columns in groups:
+                white = self.noise.whiten(columns)
+                white = white - Q @ (Q.T @ white)
+                power = white.T @ white + np.eye(white.shape[1])
+                score = white.T @ projected
+                gains.append(
+                    0.5 * float(score @ np.linalg.solve(power, score) - np.linalg.slogdet(power)[1])
+                )
+            out.append((effect, max(gains)))
+        return sorted(out, key=lambda row: -row[1])
+
+    def columns(self, state: Simulation, effects: Sequence[Effect]) -> dict[Effect, list[np.ndarray]]:
+        """Changes of the readings (2n, k) by each effect at its usual size: to first order, and from each start."""
+        names = [f.name for e in effects for f in e.free if f.name != "turn_slip"]
+        _, slope = state.sensitivities(self.points, names) if names else (None, None)
+        rows = np.nan_to_num(np.concatenate(slope)) if slope is not None else None
+        here, column, out = np.nan_to_num(state.predict(self.points)), 0, {}
+        for effect in effects:
+            groups = []
+            if any(f.name == "turn_slip" for f in effect.free):
+                on = np.nan_to_num(state.with_numbers({"turn_slip": 1.0}).predict(self.points))
+                groups.append((on - here)[:, None])
+            else:
+                assert rows is not None
+                spreads = [f.spread * self._anchor(f)[1] for f in effect.free]
+                groups.append(rows[:, column : column + len(spreads)] * spreads)
+                column += len(spreads)
+                for free, spread in zip(effect.free, spreads, strict=True):
+                    for change in (c for c in free.scan if c and len(effect.free) == 1):
+                        value, unit = state.number(free.name, self.points), self._anchor(free)[1]
+                        to = float(np.clip(value + change * unit, free.lower, free.upper))
+                        if to != value:
+                            moved = np.nan_to_num(state.with_numbers({free.name: to}).predict(self.points))
+                            groups.append(((moved - here) * (spread / (to - value)))[:, None])
+            out[effect] = groups
+        return out
+
     def _starts(self, effect: Effect, start: dict[str, float]) -> list[dict[str, float]]:
         scans = [free.scan for free in effect.free]
         trials = []
@@ -99,17 +217,18 @@ class Problem:
         # A coefficient that the model has at zero gives no scale; the width of its plausible values does.
         return current, abs(current) if current else 0.2 * (free.upper - free.lower)
 
+    def _number(self, free: Free, start: Mapping[str, float]) -> Number:
+        current, unit = self._anchor(free)
+        at = start.get(free.name, current)
+        return Number(free.name, at, free.lower, free.upper, current, free.spread * unit)
+
     def _descend(
         self, effects, moving: list[Free], fixed: Mapping[str, float], start: Mapping[str, float]
     ) -> Hypothesis:
         """Fit the numbers from one start and weigh the evidence of the answer."""
-        numbers = []
-        for free in moving:
-            current, unit = self._anchor(free)
-            at = start.get(free.name, current)
-            numbers.append(Number(free.name, at, free.lower, free.upper, current, free.spread * unit))
+        numbers = [self._number(free, start) for free in moving]
         found = solve(
-            self._free([n.name for n in numbers], fixed), numbers, max_steps=STEPS, tolerance=CONVERGED
+            self.within([n.name for n in numbers], fixed), numbers, max_steps=STEPS, tolerance=CONVERGED
         )
         spread = np.array([n.spread for n in numbers])
         scaled = found.jacobian * spread
@@ -119,12 +238,24 @@ class Problem:
         stderr = dict(zip(found.names, np.sqrt(np.diag(found.covariance)).tolist(), strict=True))
         values = {**fixed, **found.values}
         chi2 = float(found.data @ found.data)
+        known = sum(self._beyond(n, values[n.name]) for n in numbers)
         state = self.start.with_numbers(values)
         return Hypothesis(
-            effects, values, stderr, chi2, -0.5 * found.cost - occam, state, -found.data, -found.jacobian
-        )
+            effects, values, stderr, chi2, -0.5 * found.cost - occam + known, state, -found.data, -found.jacobian
+        )  # fmt: skip
 
-    def _free(self, names: Sequence[str], fixed: Mapping[str, float]) -> LeastSquares:
+    def _beyond(self, number: Number, value: float) -> float:
+        """Log prior of a rig error against what is declared of it; never a gain, as the spread is already paid for."""
+        if number.name not in self.declared:
+            return 0.0
+        expected, u = self.declared[number.name]
+        near = -0.5 * ((value - expected) / u) ** 2 + 0.5 * ((value - number.expected) / number.spread) ** 2
+        within = (1.0 - BEYOND_DECLARED) * math.exp(
+            min(near + math.log(number.spread / u) if u < number.spread else near, 30.0)
+        )
+        return min(math.log(within + BEYOND_DECLARED), 0.0)
+
+    def within(self, names: Sequence[str], fixed: Mapping[str, float]) -> LeastSquares:
         """Simulated minus measured in units of the joint uncertainty, as functions of the named numbers."""
         nothing = np.zeros(0)
 

@@ -2,23 +2,29 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 
 import numpy as np
-from scipy.stats import chi2 as chi2_distribution
 
 from mffit.config import Config
 from mffit.diagnosis import wording
 from mffit.diagnosis.candidates import Hypothesis, Problem
 from mffit.diagnosis.conditions import by_condition
+from mffit.diagnosis.declared import declared_rig
+from mffit.diagnosis.explain import Explanation, explain
+from mffit.diagnosis.inexact import Inexactness
+from mffit.diagnosis.inexact import declared as declared_inexactness
 from mffit.diagnosis.needs import missing
-from mffit.diagnosis.noise import Noise, noise_model, with_uncertainties
-from mffit.diagnosis.notes import HardlyThisTyre, Note, NotVisible, OneSweep, UncertaintiesEnlarged
-from mffit.diagnosis.result import Diagnosis, Found
-from mffit.diagnosis.selection import TIE, Step, price, select
+from mffit.diagnosis.noise import CHANNELS, Noise, noise_model, with_uncertainties
+from mffit.diagnosis.notes import HardlyThisTyre, NoRepair, Note, NotVisible, OneSweep
+from mffit.diagnosis.result import Diagnosis, Found, Outlier
+from mffit.diagnosis.scatter import wild
+from mffit.diagnosis.selection import TIE, Step
 from mffit.diagnosis.ties import separation
-from mffit.diagnosis.unknown import Bump, bump_scan
-from mffit.diagnosis.validate import gap, validate
+from mffit.diagnosis.unknown import Bump
+from mffit.diagnosis.validate import Validation, gap, validate
 from mffit.diagnosis.where import Region, where
 from mffit.effects import CATALOG, Effect
 from mffit.errors import InputError
@@ -28,14 +34,8 @@ from tir import Tyre
 from tir.parameters import BY_NAME
 
 FEWEST_POINTS = 12
-MOST_POINTS = 800
-"""Points beyond this are neighbours that say the same again: every k-th is used."""
-UNEXPLAINED = 1.5
-"""chi2 per reading, against the uncertainties as given, above which a diagnosis is not complete."""
 STRANGER = 30.0
 """Misfit in units of the noise beyond which a model is so wrong that naming an effect would be a guess."""
-LACK_OF_FIT = 1.3
-"""chi2 per reading that no accepted explanation brings down: the misfit then counts as noise."""
 
 
 def diagnose(
@@ -45,6 +45,7 @@ def diagnose(
     *,
     rig: RigFaults | None = None,
     effects: Sequence[Effect] = CATALOG,
+    coefficients: Inexactness | None = None,
     progress: Callable[[str], None] = lambda sentence: None,
 ) -> Diagnosis:
     """Find where a model disagrees with points, and the effects that explain it.
@@ -56,6 +57,7 @@ def diagnose(
     config : its tables ``model``, ``rig.backlash_deg`` and ``tyre.name`` are used
     rig : what is known of the rig's errors; default the declared play alone
     effects : the library to choose from; add your own records to the catalogue's
+    coefficients : prior of the model's coefficients; default from ``model.u_coefficients``
     progress : called with a sentence before each step
 
     Returns
@@ -68,53 +70,45 @@ def diagnose(
         If points and model cannot belong together, or are too few.
     """
     progress("comparing simulation and measurement")
-    declared = rig or RigFaults(backlash_deg=config.rig.backlash_deg)
+    given = rig or RigFaults(backlash_deg=config.rig.backlash_deg)
     simulates_spin = config.model.turn_slip and bool(np.any(points.phi_t))
-    start = Simulation(dict(tyre.values), declared, simulates_spin, config.model.star)
+    start = Simulation(dict(tyre.values), given, simulates_spin, config.model.star)
     refuse_strangers(points, tyre, start)
     points, source = with_uncertainties(by_condition(points), start)
-    points = thinned(points)
-    noise = noise_model(points, start, config.model.u_coefficients, source)
+    inexact = coefficients or declared_inexactness(tyre, config.model.u_coefficients)
     candidates, notes = possible(effects, points, start)
     if len(np.unique(points.sweep)) < 2:
         candidates = []
         notes.append(OneSweep())
     progress("trying every effect")
-    problem, chosen, steps, bump = _explained(points, start, noise, candidates)
-    if config.model.u_coefficients and chosen.effects:
-        # What an inexact coefficient does depends on the rest of the model: ask again at the one that was found.
-        noise = noise_model(points, chosen.state, config.model.u_coefficients, source)
-        problem, chosen, steps, bump = _explained(points, start, noise, candidates)
-    if candidates and steps and not (bump.found and not chosen.effects):
-        inflation = _lack_of_fit(problem, chosen)
-        if inflation > STRANGER:
-            notes.append(HardlyThisTyre(inflation))
-            chosen, steps = problem.null, steps[:1]
-        elif inflation > 1.0:
-            notes.append(UncertaintiesEnlarged(inflation))
-            problem, chosen, steps, bump = _explained(points, start, noise.inflated(inflation), candidates)
+    stated = noise_model(points, start, 0.0, source)
+    found = explain(points, start, stated, candidates, inexact, declared_rig(config, points, start))
+    misfit = _misfit(found, points)
+    if found.chosen.effects and misfit > STRANGER:
+        notes.append(HardlyThisTyre(misfit))
+        found = _without_effects(found)
     progress("checking on left-out sweeps")
-    return _record(problem, tyre, config, chosen, steps, bump, notes, noise)
+    given_problem = Problem(points, start, found.plain.noise)
+    validation = validate(given_problem, found.refined, inexact)
+    repaired = bool(found.chosen.effects or found.coefficients)
+    if repaired and validation.gap_after.chi2_per_dof >= validation.gap_before.chi2_per_dof:
+        notes.append(NoRepair(tuple(e.name for e in found.chosen.effects), validation))
+        found = _without_effects(found)
+        validation = Validation(validation.folds, validation.gap_before, validation.gap_before)
+    return _record(found, given_problem, tyre, config, validation, notes)
 
 
-def _explained(
-    points: Points, start: Simulation, noise: Noise, candidates: Sequence[Effect]
-) -> tuple[Problem, Hypothesis, list[Step], Bump]:
-    """Select effects, unless structure that no effect has explains more than all of them together."""
-    problem = Problem(points, start, noise)
-    scan = bump_scan(points, noise)
-    rival = scan.best(problem.null)
-    chosen, steps = select(problem, candidates) if candidates else (problem.null, [])
-    gained = chosen.log_evidence - problem.null.log_evidence - len(chosen.effects) * price(len(candidates))
-    if rival.found and rival.gain > gained:
-        return problem, problem.null, steps[:1], rival
-    return problem, chosen, steps, scan.best(chosen)
+def _without_effects(found: Explanation) -> Explanation:
+    """Nothing named, nothing repaired."""
+    null = found.problem.null
+    return replace(found, chosen=null, refined=null, coefficients={}, steps=found.steps[:1])
 
 
-def thinned(points: Points) -> Points:
-    """At most some eight hundred points, evenly from every sweep."""
-    step = int(np.ceil(len(points) / MOST_POINTS))
-    return points if step <= 1 else points.select(np.arange(0, len(points), step))
+def _misfit(found: Explanation, points: Points) -> float:
+    """How far the best explanation misses the points, in units of the noise as stated; a median, for wild readings."""
+    residual = np.concatenate([points.Fy, points.Mz]) - found.refined.state.predict(points)
+    noise = found.scatter
+    return float(np.median(np.abs(residual[noise.used] / noise.stated[noise.used]))) / 0.6745
 
 
 def refuse_strangers(points: Points, tyre: Tyre, start: Simulation) -> None:
@@ -157,69 +151,61 @@ def possible(effects: Sequence[Effect], points: Points, start: Simulation) -> tu
     return out, [NotVisible(lack, tuple(ids)) for lack, ids in lacking.items()]
 
 
-def _lack_of_fit(problem: Problem, chosen: Hypothesis) -> float:
-    """Factor on all uncertainties that makes the remaining misfit noise, its correlation along sweeps counted."""
-    m = len(chosen.residual)
-    ratio = chosen.chi2 / m
-    if ratio < LACK_OF_FIT or len(chosen.effects) < 3:
-        return 1.0
-    residual = np.full(2 * len(problem.points), np.nan)
-    residual[problem.noise.used] = chosen.residual
-    n = len(problem.points)
-    products = [
-        r[1:] * r[:-1]
-        for k in np.unique(problem.points.sweep)
-        for r in (residual[:n][problem.points.sweep == k], residual[n:][problem.points.sweep == k])
-    ]
-    neighbours = float(np.clip(np.nanmean(np.concatenate(products)) / ratio, 0.0, 0.95))
-    return float(np.sqrt(ratio * (1.0 + neighbours) / (1.0 - neighbours)))
-
-
 def _record(
-    problem: Problem,
+    found: Explanation,
+    given: Problem,
     tyre: Tyre,
     config: Config,
-    chosen: Hypothesis,
-    steps: Sequence[Step],
-    bump: Bump,
+    validation: Validation,
     notes: Sequence[Note],
-    noise: Noise,
 ) -> Diagnosis:
-    points = problem.points
-    before, after = problem.start.predict(points), chosen.state.predict(points)
-    residual_before, residual_after = problem.measured - before, problem.measured - after
-    found = tuple(_found(problem, chosen, steps, effect, noise) for effect in chosen.effects)
-    remaining = where(points, residual_after, problem.noise)
-    p_value = float(chi2_distribution.sf(chosen.chi2, max(len(chosen.residual) - len(chosen.numbers), 1)))
-    misfit = gap(residual_after, noise).chi2_per_dof
-    unexplained = (bump.found and (p_value < 0.05 or not chosen.effects)) or misfit > UNEXPLAINED
+    points, chosen, scatter = given.points, found.chosen, found.scatter
+    before, after = given.start.predict(points), found.refined.state.predict(points)
+    if not chosen.effects and not found.coefficients:
+        after = before
+    residual_before, residual_after = given.measured - before, given.measured - after
+    unexplained = found.bump.found or found.smooth.found
+    remaining = where(points, residual_after, scatter) if unexplained else ()
+    named = tuple(_found(found, effect) for effect in chosen.effects)
     return Diagnosis(
         points=points,
-        noise=problem.noise,
+        noise=scatter,
         before=before,
         after=after,
-        gap_before=gap(residual_before, noise),
-        gap_after=gap(residual_after, noise),
-        validation=validate(problem, chosen, noise),
-        where=where(points, residual_before, problem.noise),
-        effects=found,
-        alternatives=_alternatives(steps, chosen),
-        steps=tuple(steps),
+        gap_before=gap(residual_before, scatter),
+        gap_after=gap(residual_after, scatter),
+        validation=validation,
+        where=where(points, residual_before, scatter),
+        effects=named,
+        alternatives=_alternatives(found.steps, chosen),
+        steps=tuple(found.steps),
         unexplained=unexplained,
-        unexplained_where=((_bump_region(bump),) if bump.found else ())
-        + (remaining[:4] if unexplained else ()),
-        bump=bump if bump.found else None,
-        state=chosen.state,
-        tyre=_corrected(tyre, chosen),
+        unexplained_where=((_bump_region(found.bump),) if found.bump.found else ()) + remaining[:4],
+        bump=found.bump if found.bump.found else None,
+        smooth=found.smooth if found.smooth.found else None,
+        outliers=tuple(_outlier(points, residual_after, scatter, int(i)) for i in wild(scatter)),
+        coefficients=dict(found.coefficients),
+        state=found.refined.state,
+        tyre=_corrected(tyre, found),
         notes=tuple(notes),
         model_after=f"{config.tyre.name}.tir",
     )
 
 
-def _found(
-    problem: Problem, chosen: Hypothesis, steps: Sequence[Step], effect: Effect, noise: Noise
-) -> Found:
+def _outlier(points: Points, residual: np.ndarray, noise: Noise, i: int) -> Outlier:
+    n = len(points)
+    channel, k = CHANNELS[i >= n], i % n
+    assert noise.weight is not None
+    usual = float(noise.u[i] * np.sqrt(noise.weight[i]))
+    return Outlier(
+        channel, points.sweep_names[points.sweep[k]], points.files[points.file[k]], int(points.line[k]),
+        float(residual[i]), float(residual[i]) / usual,
+    )  # fmt: skip
+
+
+def _found(found: Explanation, effect: Effect) -> Found:
     """What is said of one accepted effect: judged beside all the others that were accepted."""
+    problem, chosen, steps = found.problem, found.chosen, found.steps
     others = tuple(e for e in chosen.effects if e.id != effect.id)
     step = next(
         (s for s in steps if s.best.effects[-1].id == effect.id),
@@ -229,17 +215,29 @@ def _found(
     logs = {effect.id: chosen.log_evidence} | {t.effects[-1].id: t.log_evidence for t in tied}
     top = max(logs.values())
     share = {name: float(np.exp(v - top)) for name, v in logs.items()}
-    certainty = 1.0 - step.weights().get("none", 0.0)
     separations = [separation(problem.points, chosen, t, problem.noise.Fy, problem.noise.Mz) for t in tied]
-    upto = chosen if not others else step.best
+    upto = found.refined if not others else step.best
+    numbers, stderr = found.refined.numbers, found.refined.stderr
     return Found(
         effect=effect,
-        confidence=certainty * share[effect.id] / sum(share.values()),
-        parameters={n: (chosen.numbers[n], chosen.stderr.get(n, 0.0)) for n in effect.parameters},
-        gap_after=gap(problem.measured - upto.state.predict(problem.points), noise),
+        confidence=_certainty(found, effect, others) * share[effect.id] / sum(share.values()),
+        parameters={n: (numbers[n], stderr.get(n, 0.0)) for n in effect.parameters},
+        gap_after=gap(problem.measured - upto.state.predict(problem.points), found.scatter),
         tied_with=tuple(t.effects[-1].id for t in tied),
         separation=min(separations, key=lambda s: s.chi2, default=None),
     )
+
+
+def _certainty(found: Explanation, effect: Effect, others: tuple[Effect, ...]) -> float:
+    """Weight of an effect against its absence, structure without a name in its place, less what is left unexplained."""
+    problem, chosen = found.problem, found.chosen
+    numbers = {n: chosen.numbers[n] for e in others for n in e.parameters}
+    without = problem.fit(others, numbers) if others else problem.null
+    left = found.left(chosen)
+    gain = chosen.log_evidence - without.log_evidence
+    against = gain + left - found.left(without) - math.log(max(len(found.steps[0].trials), 1))
+    counted = gain / (gain + found.smooth.gain + left) if found.smooth.found or left > 0.0 else 1.0
+    return counted / (1.0 + math.exp(-float(np.clip(against, -500.0, 500.0))))
 
 
 def _tied(problem: Problem, chosen: Hypothesis, step: Step, others: tuple[Effect, ...]) -> list[Hypothesis]:
@@ -253,7 +251,7 @@ def _tied(problem: Problem, chosen: Hypothesis, step: Step, others: tuple[Effect
         rival = trial.effects[-1]
         if rival.id in ids or step.best.log_evidence - trial.log_evidence > hopeless:
             continue
-        refitted = problem.fit((*others, rival), kept) if others else trial
+        refitted = problem.fit((*others, rival), kept)
         if chosen.log_evidence - refitted.log_evidence < TIE:
             out.append(refitted)
     return out
@@ -277,13 +275,15 @@ def _bump_region(bump: Bump) -> Region:
     )
 
 
-def _corrected(tyre: Tyre, chosen: Hypothesis) -> Tyre:
+def _corrected(tyre: Tyre, found: Explanation) -> Tyre:
     """The property file with the tyre effects as coefficients and their reason in the comments."""
     changes, status = {}, {}
-    for effect in chosen.effects:
+    for name, (value, error) in found.coefficients.items():
+        changes[name], status[name] = value, wording.adjusted(float(tyre[name]), error)
+    for effect in found.chosen.effects:
         for name in effect.parameters:
             if name in BY_NAME:
-                changes[name] = chosen.numbers[name]
-                error = chosen.stderr.get(name, 0.0)
+                changes[name] = found.refined.numbers[name]
+                error = found.refined.stderr.get(name, 0.0)
                 status[name] = wording.status(effect.id, float(tyre[name]), error)
     return tyre.replace(**changes).annotate(status=status) if changes else tyre

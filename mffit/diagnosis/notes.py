@@ -3,6 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from mffit.diagnosis.validate import Validation
 
 
 @dataclass(frozen=True, slots=True)
@@ -26,10 +30,11 @@ class HardlyThisTyre:
 
 
 @dataclass(frozen=True, slots=True)
-class UncertaintiesEnlarged:
-    """The misfit that nothing explains was counted as noise."""
+class NoRepair:
+    """The best explanation raises the gap on left-out sweeps, so that nothing is repaired."""
 
-    factor: float
+    effects: tuple[str, ...]  #: their names
+    validation: Validation
 
 
-Note = OneSweep | NotVisible | HardlyThisTyre | UncertaintiesEnlarged
+Note = OneSweep | NotVisible | HardlyThisTyre | NoRepair

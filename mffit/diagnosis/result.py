@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from typing import Any
 
 import numpy as np
@@ -12,6 +12,7 @@ from mffit.diagnosis import wording
 from mffit.diagnosis.noise import Noise
 from mffit.diagnosis.notes import Note
 from mffit.diagnosis.selection import Step
+from mffit.diagnosis.smooth import Smooth
 from mffit.diagnosis.ties import Separation
 from mffit.diagnosis.unknown import Bump
 from mffit.diagnosis.validate import Gap, Validation
@@ -35,6 +36,18 @@ class Found:
 
 
 @dataclass(frozen=True, slots=True)
+class Outlier:
+    """One reading that contradicts all others and lost its weight."""
+
+    channel: str  #: "Fy" | "Mz"
+    sweep: str
+    file: str
+    line: int  #: in that file, from 1; 0 if unknown
+    residual: float  #: measured minus simulated after all corrections [N] or [Nm]
+    z: float  #: in units of the noise of its neighbours
+
+
+@dataclass(frozen=True, slots=True)
 class Diagnosis:
     """Where simulation and measurement disagree, what explains it, and what remains."""
 
@@ -52,6 +65,11 @@ class Diagnosis:
     unexplained: bool
     unexplained_where: tuple[Region, ...]
     bump: Bump | None
+    smooth: Smooth | None  #: smooth structure without a name
+    outliers: tuple[Outlier, ...]
+    coefficients: Mapping[
+        str, tuple[float, float]
+    ]  #: inexact coefficients as estimated beside the effects: value and error
     state: Simulation  #: the simulation after all corrections
     tyre: Tyre  #: the corrected property file
     notes: tuple[Note | str, ...]  #: facts, and sentences of whoever ran the diagnosis
@@ -89,10 +107,26 @@ class Diagnosis:
             ],
             "unexplained": self.unexplained,
             "unexplained_where": [_region(region) for region in self.unexplained_where],
-            "noise_floor": {"Fy_N": self.noise.Fy, "Mz_Nm": self.noise.Mz, "source": self.noise.source},
+            "noise_floor": _noise(self.noise),
+            "outliers": [asdict(outlier) for outlier in self.outliers],
+            "coefficients": {n: {"value": v, "stderr": s} for n, (v, s) in self.coefficients.items()},
             "model_after": self.model_after,
             "notes": wording.notes(self),
         }
+
+
+def _noise(noise: Noise) -> dict[str, Any]:
+    """The noise that was found, beside the one that was stated."""
+    n = len(noise.u) // 2
+    stated = [u[np.isfinite(u)] for u in (noise.stated[:n], noise.stated[n:])]
+    return {
+        "Fy_N": noise.Fy,
+        "Mz_Nm": noise.Mz,
+        "source": noise.source,
+        "stated_Fy_N": float(np.median(stated[0])) if len(stated[0]) else None,
+        "stated_Mz_Nm": float(np.median(stated[1])) if len(stated[1]) else None,
+        **{name: {k: v for k, v in asdict(s).items() if np.isfinite(v)} for name, s in noise.scatter.items()},
+    }
 
 
 def _gap(gap: Gap) -> dict[str, float]:

@@ -181,9 +181,8 @@ def wild(noise: Noise) -> np.ndarray:
     """Indices of readings that lost nearly all their weight."""
     if noise.weight is None:
         return np.empty(0, dtype=int)
-    tails = np.concatenate(
-        [np.full(len(noise.weight) // 2, noise.scatter[name].tails) for name in CHANNELS]
-    )
-    limit = (tails + 1.0) / (tails + WILD**2)
-    return np.flatnonzero(np.isfinite(tails) & (noise.weight < limit) & np.isfinite(noise.stated))
-
+    half = len(noise.weight) // 2
+    tails = np.repeat([noise.scatter[name].tails for name in CHANNELS], half)
+    heavy = np.isfinite(tails) & np.isfinite(noise.stated)
+    known = np.where(heavy, tails, 1.0)
+    return np.flatnonzero(heavy & (noise.weight < (known + 1.0) / (known + WILD**2)))

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
-from mffit.diagnosis.candidates import Hypothesis, Problem
+from mffit.diagnosis.candidates import PROMISING, Hypothesis, Problem
 from mffit.effects import Effect
 from mffit.rig import Simulation
 
@@ -15,6 +15,8 @@ EXCHANGED = 4
 """Candidates that may take the place of an accepted effect: the best of the step, the others have no chance."""
 EXCHANGE_GAIN = 1.0
 """Log evidence by which a set must be better than the one it takes the place of."""
+CLOSE = 0.5
+"""Share of the largest gain to first order from which on a candidate is fitted in full whatever its rank."""
 MARGIN = 4.0
 """Log evidence an effect must bring beyond what picking the best of the whole list brings by chance."""
 NEVER_IDENTIFIED = 1.0
@@ -72,9 +74,16 @@ def log_prior(effect: Effect, start: Simulation) -> float:
 
 
 def forward_step(problem: Problem, before: Hypothesis, candidates: Sequence[Effect]) -> Step:
-    """Try every candidate beside the accepted effects, all numbers refitted."""
+    """Try every candidate beside the accepted effects, all numbers refitted where that has any prospect."""
     taken = {effect.id for effect in before.effects}
-    trials = [problem.fit((*before.effects, e), before.numbers) for e in candidates if e.id not in taken]
+    trials = []
+    left = problem.promising(before, [e for e in candidates if e.id not in taken])
+    for rank, (effect, gain) in enumerate(left):
+        if rank < PROMISING or gain > CLOSE * left[0][1]:
+            trials.append(problem.fit((*before.effects, effect), before.numbers))
+        else:  # to first order
+            effects, evidence = (*before.effects, effect), before.log_evidence + gain
+            trials.append(replace(before, effects=effects, log_evidence=evidence))
     trials.sort(key=lambda t: -(t.log_evidence + log_prior(t.effects[-1], problem.start)))
     return Step(before, tuple(trials), price(len(candidates)), problem.start)
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -16,6 +17,8 @@ AMPLITUDE = 0.03
 """How large an unknown bump may be, 1 sigma, relative to the channel's largest value."""
 MOST_LOADS = 7
 """More loads than this are not looked at one by one."""
+AT_ONCE = 256
+"""Bumps that are whitened together."""
 NEEDED = 8.0
 """Log evidence, after the price of having searched everywhere, at which a bump counts as found."""
 
@@ -28,6 +31,7 @@ class Bump:
     region: dict[str, tuple[float, float]]  #: column -> range
     amplitude: float  #: [N] or [Nm]
     gain: float  #: log evidence, the search paid for
+    number: int = -1  #: of its shape among those tried
 
     @property
     def found(self) -> bool:
@@ -36,32 +40,59 @@ class Bump:
 
 @dataclass(frozen=True, slots=True)
 class BumpScan:
-    """All bumps that the programme could show, whitened once."""
+    """All bumps that the programme could show."""
 
-    shapes: np.ndarray  #: (m, k) whitened unit bumps
-    channels: tuple[str, ...]
+    noise: Noise
+    bumps: np.ndarray  #: (n, k) unit bumps over the points
     regions: tuple[dict[str, tuple[float, float]], ...]
-    spread: np.ndarray  #: (k,) plausible amplitude
+    spread: Mapping[str, float]  #: plausible amplitude by channel
 
-    def best(self, hypothesis: Hypothesis) -> Bump:
-        """The bump that explains most of what the hypothesis leaves, its own freed numbers projected out."""
-        shapes, residual = self.shapes, hypothesis.residual
+    def best(self, hypothesis: Hypothesis, limit: float = math.inf) -> Bump:
+        """The bump that explains most of what the hypothesis leaves, its own freed numbers projected out.
+
+        Parameters
+        ----------
+        hypothesis : with the residuals that the bump has to explain
+        limit : residuals count no more than this many standard deviations, so that a wild reading is no bump
+        """
+        Q = None
         if hypothesis.jacobian.shape[1]:
             Q, _ = np.linalg.qr(hypothesis.jacobian)
-            shapes = shapes - Q @ (Q.T @ shapes)
-        power = np.einsum("ij,ij->j", shapes, shapes)
-        score = shapes.T @ residual
-        precision = power + self.spread**-2.0
-        gain = 0.5 * score**2 / precision - 0.5 * np.log(precision * self.spread**2) - math.log(len(power))
-        k = int(np.argmax(gain))
-        return Bump(self.channels[k], self.regions[k], float(score[k] / precision[k]), float(gain[k]))
+        residual = np.clip(hypothesis.residual, -limit, limit)
+        tried = math.log(max(len(self.regions) * len(self.spread), 1))
+        best = Bump("Fy", {}, 0.0, -math.inf)
+        for channel, spread in self.spread.items():
+            for first in range(0, len(self.regions), AT_ONCE):
+                shapes = self.noise.whiten(self.column(channel, slice(first, first + AT_ONCE)))
+                score = shapes.T @ residual
+                power = np.einsum("ij,ij->j", shapes, shapes)
+                if Q is not None:
+                    inside = Q.T @ shapes
+                    score -= inside.T @ (Q.T @ residual)
+                    power -= np.einsum("ij,ij->j", inside, inside)
+                precision = np.maximum(power, 0.0) + spread**-2.0
+                gain = 0.5 * score**2 / precision - 0.5 * np.log(precision * spread**2) - tried
+                k = int(np.argmax(gain))
+                if gain[k] > best.gain:
+                    amplitude = float(score[k] / precision[k])
+                    best = Bump(channel, self.regions[first + k], amplitude, float(gain[k]), first + k)
+        return best
+
+    def column(self, channel: str, which: slice) -> np.ndarray:
+        """Some unit bumps of a channel as changes of the readings (2n, k)."""
+        shapes = self.bumps[:, which].astype(float)
+        nothing = np.zeros_like(shapes)
+        return np.vstack([shapes, nothing] if channel == "Fy" else [nothing, shapes])
+
+    def plausible(self, bump: Bump) -> np.ndarray:
+        """A bump as a change of the readings (2n, 1), as large as it may be."""
+        return self.spread[bump.channel] * self.column(bump.channel, slice(bump.number, bump.number + 1))
 
 
 def bump_scan(points: Points, noise: Noise) -> BumpScan:
     """Bumps over sideslip or camber, everywhere or within one load, one side of camber, or one direction."""
     masks = _masks(points)
-    shapes, channels, regions, spread = [], [], [], []
-    n = len(points)
+    shapes, regions = [], []
     for name, values in (("alpha", np.degrees(points.alpha)), ("gamma", np.degrees(points.gamma))):
         for centre in _centres(values):
             for width in WIDTHS[name]:
@@ -71,17 +102,16 @@ def bump_scan(points: Points, noise: Noise) -> BumpScan:
                     shape = bell * mask
                     if np.sum(shape > 0.5) < 2:
                         continue
-                    for channel, measured in (("Fy", points.Fy), ("Mz", points.Mz)):
-                        if not np.any(np.isfinite(measured)):
-                            continue
-                        column = np.zeros(2 * n)
-                        column[slice(0, n) if channel == "Fy" else slice(n, 2 * n)] = shape
-                        shapes.append(column)
-                        channels.append(channel)
-                        regions.append(_narrowed(region, f"{name}_deg", centre - width, centre + width))
-                        spread.append(AMPLITUDE * np.nanmax(np.abs(measured)))
-    whitened = noise.whiten(np.column_stack(shapes)) if shapes else np.empty((len(noise.used), 0))
-    return BumpScan(whitened, tuple(channels), tuple(regions), np.array(spread))
+                    shapes.append(shape.astype(np.float32))
+                    regions.append(_narrowed(region, f"{name}_deg", centre - width, centre + width))
+    measured = {"Fy": points.Fy, "Mz": points.Mz}
+    spread = {
+        name: AMPLITUDE * float(np.nanmax(np.abs(values)))
+        for name, values in measured.items()
+        if np.any(np.isfinite(values))
+    }
+    bumps = np.column_stack(shapes) if shapes else np.empty((len(points), 0), np.float32)
+    return BumpScan(noise, bumps, tuple(regions), spread)
 
 
 def _narrowed(

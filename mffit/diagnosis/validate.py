@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from mffit.diagnosis.candidates import Hypothesis, Problem
+from mffit.diagnosis.inexact import EXACT, Inexactness
 from mffit.diagnosis.noise import Noise
 
 MOST_FOLDS = 8
@@ -41,26 +42,33 @@ def gap(residual: np.ndarray, noise: Noise) -> Gap:
     return Gap(_rms(residual[:n]), _rms(residual[n:]), float(white @ white) / max(len(white), 1))
 
 
-def validate(problem: Problem, hypothesis: Hypothesis, noise: Noise | None = None) -> Validation:
-    """Refit the hypothesis without each group of sweeps and predict that group; the gap is in units of ``noise``."""
-    noise = noise or problem.noise
-    points = problem.points
-    before = problem.measured - problem.start.predict(points)
+def validate(problem: Problem, hypothesis: Hypothesis, inexact: Inexactness = EXACT) -> Validation:
+    """Refit the hypothesis without each group of sweeps and predict that group; the gap is in units of the noise.
+
+    Parameters
+    ----------
+    problem : seen through the scatter of the readings alone, or with what else the fits shall allow for
+    hypothesis : its effects and where to start from
+    inexact : the prior of the model's coefficients, which are refitted as well
+    """
+    points, n = problem.points, len(problem.points)
+    measured = np.concatenate([points.Fy, points.Mz])
+    before = measured - problem.start.predict(points)
     held_out = before.copy()
     sweeps = np.unique(points.sweep)
     count = min(MOST_FOLDS, len(sweeps))
     folds = [sweeps[k::count] for k in range(count)]
-    n = len(points)
     for fold in folds:
         out = np.isin(points.sweep, fold)
-        if hypothesis.effects and 0 < out.sum() < n:
-            rest = Problem(points.select(~out), problem.start, problem.noise.subset(~out))
-            fitted = rest.fit(hypothesis.effects, hypothesis.numbers)
-            chosen = points.select(out)
-            predicted = fitted.state.predict(chosen)
-            rows = np.flatnonzero(out)
-            held_out[rows] = points.Fy[out] - predicted[: out.sum()]
-            held_out[rows + n] = points.Mz[out] - predicted[out.sum() :]
+        if (hypothesis.effects or inexact) and 0 < out.sum() < n:
+            rest = problem.part(~out)
+            fitted = rest.evaluate(hypothesis.effects, hypothesis.numbers)
+            if hypothesis.effects and not inexact:
+                fitted = rest.fit(hypothesis.effects, hypothesis.numbers)
+            predicted = rest.refine(fitted, inexact)[0].state.predict(points.select(out))
+            both = np.concatenate([out, out])
+            held_out[both] = measured[both] - predicted
+    noise = problem.noise.alone()
     return Validation(len(folds), gap(before, noise), gap(held_out, noise))
 
 

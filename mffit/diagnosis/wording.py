@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, assert_never
 
-from mffit.diagnosis.notes import HardlyThisTyre, Note, NotVisible, OneSweep, UncertaintiesEnlarged
+from mffit.diagnosis.notes import HardlyThisTyre, NoRepair, Note, NotVisible, OneSweep
 from mffit.diagnosis.ties import TELLING, Run, Separation
 from mffit.effects import NEEDS
 from mffit.quantities import CHANNELS, CONDITIONS
@@ -40,6 +40,8 @@ def headline(diagnosis: Diagnosis) -> str:
         numbers = f"side force misses by {before.Fy_rmse_N:.1f} N rms, the noise is {noise.Fy:.1f} N"
         if not diagnosis.unexplained:
             return f"No effect is missing that these data could show: {numbers}."
+        if diagnosis.smooth is not None:
+            return f"There is smooth structure that no effect of the library describes: {numbers}."
         if bump is None:
             return f"The model misses the data by more than their noise, and no effect of the library explains it: {numbers}."
         return (
@@ -74,10 +76,13 @@ def note(remark: Note | str) -> str:
                 f"Cannot tell: the model misses the points by {misfit:.0f} times their noise even with the best effects "
                 "added, so it is hardly a model of this tyre; fit it first (mffit build)."
             )
-        case UncertaintiesEnlarged(factor):
+        case NoRepair(effects, validation):
+            before, after = validation.gap_before, validation.gap_after
+            tried = " and ".join(effects) or "other coefficients"
             return (
-                "The model misses the points by more than their noise whatever is added; uncertainties were "
-                f"enlarged {factor:.1f} times so that effects are judged against the misfit that remains."
+                f"No repair is written: {tried} would fit these points better, but on sweeps that were left out the side "
+                f"force misses by {after.Fy_rmse_N:.3g} N instead of {before.Fy_rmse_N:.3g} N and the moment by "
+                f"{after.Mz_rmse_Nm:.3g} instead of {before.Mz_rmse_Nm:.3g} Nm."
             )
         case _:
             assert_never(remark)
@@ -109,6 +114,11 @@ def method(validation: Validation) -> str:
 def status(effect: str, before: float, stderr: float) -> str:
     """The reason of a coefficient, in the comments of the corrected property file."""
     return f"diagnosed, {effect}, was {before:.6g}, +- {stderr:.2g}"
+
+
+def adjusted(before: float, stderr: float) -> str:
+    """The reason of an inexact coefficient that was estimated beside the effects."""
+    return f"adjusted with the diagnosis, was {before:.6g}, +- {stderr:.2g}"
 
 
 def place(region: Mapping[str, tuple[float, float]]) -> list[str]:

@@ -1,0 +1,179 @@
+"""Noise, effects, inexact coefficients and structure without a name, found in turn until they agree."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from mffit.diagnosis.candidates import Hypothesis, Problem
+from mffit.diagnosis.inexact import Inexactness
+from mffit.diagnosis.noise import CHANNELS, Noise
+from mffit.diagnosis.scatter import Explained, learned
+from mffit.diagnosis.selection import Step, ids, price, select
+from mffit.diagnosis.smooth import NO_SMOOTH, Smooth, amplified, smooth_basis, smooth_scan
+from mffit.diagnosis.unknown import Bump, BumpScan, bump_scan
+from mffit.effects import Effect
+from mffit.points import Points
+from mffit.rig import Simulation
+
+ROUNDS = 3
+GENEROUS = 3.0
+"""How much larger than usual effects are allowed for while the scatter is learned."""
+USUAL_SMOOTH = 0.03
+"""Smooth structure that is allowed for before the scatter is known, relative to the channel."""
+CLIPPED = 3.0
+"""Standard deviations beyond which a reading counts no more in the search for bumps."""
+MOST_BUMPS = 2
+SETTLED = 0.1
+"""Change of the uncertainties, relative, below which the scatter is settled."""
+
+
+@dataclass(frozen=True, slots=True)
+class Explanation:
+    """What was found."""
+
+    problem: Problem  #: as it was judged: readings, model and covariance with everything inexact in it
+    chosen: Hypothesis
+    steps: list[Step]
+    bump: Bump  #: best local structure that is left
+    smooth: Smooth  #: smooth structure that is left, in the covariance if found
+    bumps: BumpScan
+    basis: np.ndarray  #: (2n, k) of the smooth structure
+    refined: Hypothesis  #: the chosen effects with the coefficients of the model estimated beside them
+    coefficients: Mapping[str, tuple[float, float]]  #: these: name -> (value, standard error)
+
+    @property
+    def scatter(self) -> Noise:
+        """The scatter of the readings alone."""
+        return self.problem.noise.alone()
+
+    @property
+    def plain(self) -> Problem:
+        """The problem in which coefficients are fitted rather than integrated out; smooth structure stays allowed for."""
+        noise = self.scatter
+        if self.smooth.found:
+            noise = noise.sharing(amplified(self.basis, self.smooth))
+        return Problem(self.problem.points, self.problem.start, noise, self.problem.declared)
+
+    def left(self, hypothesis: Hypothesis) -> float:
+        """Log evidence of the best structure without a name beside a hypothesis; 0 where there is none."""
+        smooth = smooth_scan(self.basis, self.problem.noise).best(hypothesis)
+        return max(self.bumps.best(hypothesis).gain, smooth.gain, 0.0)
+
+
+def explain(
+    points: Points,
+    start: Simulation,
+    noise: Noise,
+    candidates: Sequence[Effect],
+    inexact: Inexactness,
+    declared: Mapping[str, tuple[float, float]],
+) -> Explanation:
+    """Find what explains the readings.
+
+    Parameters
+    ----------
+    points : with uncertainties
+    start : the simulation as given
+    noise : as stated
+    candidates : effects that the data can show
+    inexact : prior of the model's coefficients
+    declared : what is known of the rig's errors: name -> (value, standard uncertainty)
+    """
+    basis, found, at = smooth_basis(points), None, start
+    stated = noise
+    for _ in range(ROUNDS):
+        before = noise
+        state = found.chosen.state if found else start
+        noise = _learned(stated, noise, points, state, candidates, inexact, basis, start)
+        if found is not None and not _moved(before, noise) and not (inexact and at is start):
+            break
+        offset = None
+        if found is not None and inexact:
+            # What an inexact coefficient does depends on the rest of the model: ask again at the one that was found.
+            at = start.with_numbers({n: v for n, (v, _) in found.coefficients.items()})
+            offset = inexact.moved(points, at)
+        columns = inexact.columns(points, found.refined.state if found else start)
+        problem = Problem(points, at, noise.sharing(columns), declared, offset)
+        latest = _explained(problem, columns, candidates, basis)
+        same = found is not None and ids(latest.chosen) == ids(found.chosen)
+        found = _refined(latest, start, inexact)
+        if same:
+            break
+    assert found is not None
+    return found
+
+
+def _refined(found: Explanation, start: Simulation, inexact: Inexactness) -> Explanation:
+    """With the model's coefficients estimated beside the effects."""
+    refined, coefficients = found.plain.refine(found.chosen, inexact)
+    return replace(found, refined=refined, coefficients=coefficients)
+
+
+def _explained(
+    problem: Problem, columns: np.ndarray, candidates: Sequence[Effect], basis: np.ndarray
+) -> Explanation:
+    """Select effects; structure without a name takes their place, or stands beside them, where it explains more."""
+    bumps = bump_scan(problem.points, problem.noise)
+    chosen, steps = select(problem, candidates) if candidates else (problem.null, [])
+    rival = bumps.best(problem.null)
+    gained = chosen.log_evidence - problem.null.log_evidence - len(chosen.effects) * price(len(candidates))
+    scan = smooth_scan(basis, problem.noise)
+    alone, beside = scan.best(problem.null), scan.best(chosen)
+    if rival.found and rival.gain > max(gained, alone.gain):
+        return Explanation(
+            problem, problem.null, steps[:1], rival, NO_SMOOTH, bumps, basis, problem.null, {}
+        )
+    bump = bumps.best(chosen)
+    smooth = beside if beside.found else alone if alone.found and alone.gain > gained else NO_SMOOTH
+    if not smooth.found or (bump.found and bump.gain > smooth.gain):
+        return Explanation(problem, chosen, steps, bump, NO_SMOOTH, bumps, basis, chosen, {})
+    # Effects are now judged against the smooth structure: what they explain it must not.
+    noise = problem.noise.sharing(columns, amplified(basis, smooth))
+    problem = problem.seen_through(noise)
+    chosen, steps = select(problem, candidates) if candidates else (problem.null, [])
+    bumps = bump_scan(problem.points, noise)
+    return Explanation(problem, chosen, steps, bumps.best(chosen), smooth, bumps, basis, chosen, {})
+
+
+def _learned(
+    stated: Noise,
+    noise: Noise,
+    points: Points,
+    state: Simulation,
+    candidates: Sequence[Effect],
+    inexact: Inexactness,
+    basis: np.ndarray,
+    start: Simulation,
+) -> Noise:
+    """The scatter that is left when everything that could explain something may do so."""
+    problem = Problem(points, state, stated.alone())
+    columns = [GENEROUS * g for groups in problem.columns(state, candidates).values() for g in groups[:2]]
+    columns.append(inexact.columns(points, state))
+    named = np.column_stack([c for c in columns if c.size] or [np.zeros((2 * len(points), 0))])
+    predicted = np.nan_to_num(state.predict(points))
+    residual = problem.measured - predicted
+    for _ in range(MOST_BUMPS):
+        allowed = stated.alone().sharing(named, USUAL_SMOOTH * basis)
+        white = allowed.whiten(np.nan_to_num(residual))
+        first = allowed.used < len(points)
+        for rows in (first, ~first):
+            white[rows] /= max(1.4826 * float(np.median(np.abs(white[rows]))), 1e-9) if rows.any() else 1.0
+        scan = bump_scan(points, allowed)
+        bump = scan.best(replace(problem.null, residual=white), CLIPPED)
+        if not bump.found:
+            break
+        named = np.column_stack([named, GENEROUS * scan.plausible(bump)])
+    return learned(
+        replace(stated, scatter=noise.scatter), residual, Explained(named, basis), predicted
+    ).alone()
+
+
+def _moved(before: Noise, after: Noise) -> bool:
+    """Whether the scatter changed so much that the effects have to be judged again."""
+    used = after.used
+    change = np.abs(np.log(after.u[used] / before.u[used]))
+    memory = [abs(after.scatter[c].memory - before.scatter[c].memory) for c in CHANNELS]
+    return bool(np.median(change) > SETTLED or np.quantile(change, 0.95) > 5.0 * SETTLED or max(memory) > SETTLED)

@@ -1,0 +1,82 @@
+"""How inexact the given model's coefficients are: uncertain numbers with a prior, estimated together with the effects."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from mffit.points import Points
+from mffit.rig import Simulation
+from tir import Tyre
+from tir.parameters import BY_NAME, TABLE
+
+REFITTED = 0.3
+"""Relative spread of a coefficient that was fitted to these very points: they may move it freely again."""
+
+
+@dataclass(frozen=True, slots=True)
+class Inexactness:
+    """Prior of the given model's coefficients: normal around the values in the file."""
+
+    names: tuple[str, ...]
+    expected: np.ndarray  #: (k,) values in the file
+    root: np.ndarray  #: (k, k) the covariance is root root'
+
+    def __bool__(self) -> bool:
+        return bool(self.names)
+
+    def columns(self, points: Points, state: Simulation) -> np.ndarray:
+        """Changes of the readings (2n, k), one prior standard deviation each."""
+        if not self.names:
+            return np.zeros((2 * len(points), 0))
+        _, slope = state.sensitivities(points, self.names)
+        return np.nan_to_num(np.concatenate(slope)) @ self.root
+
+    def moved(self, points: Points, state: Simulation) -> np.ndarray:
+        """What has to be added to readings (2n,) for the prior to be centred at a state that has left it."""
+        if not self.names:
+            return np.zeros(2 * len(points))
+        _, slope = state.sensitivities(points, self.names)
+        away = np.array([float(state.values[name]) for name in self.names]) - self.expected
+        return np.nan_to_num(np.concatenate(slope)) @ away
+
+    def without(self, names: frozenset[str]) -> Inexactness:
+        """The prior of the others, whatever these are."""
+        kept = [k for k, name in enumerate(self.names) if name not in names]
+        if len(kept) == len(self.names):
+            return self
+        covariance = (self.root @ self.root.T)[np.ix_(kept, kept)]
+        return correlated([self.names[k] for k in kept], self.expected[kept], covariance)
+
+
+EXACT = Inexactness((), np.empty(0), np.empty((0, 0)))
+
+
+def declared(tyre: Tyre, u_coefficients: float) -> Inexactness:
+    """Every P.Y. and Q.Z. coefficient that the file has, off by a share of itself."""
+    if u_coefficients <= 0.0:
+        return EXACT
+    names = [row.name for row in TABLE if row.normal_mode and float(tyre[row.name])]
+    values = np.array([float(tyre[name]) for name in names])
+    return Inexactness(tuple(names), values, np.diag(u_coefficients * np.abs(values)))
+
+
+def refitted(tyre: Tyre) -> Inexactness:
+    """The coefficients that a build fitted, free to move again, as the points were already used for them."""
+    names = [row.name for row in TABLE if tyre.status.get(row.name, "").startswith(("fitted", "tied"))]
+    values = np.array([float(tyre[name]) for name in names])
+    usual = np.array([_usual(name) for name in names])
+    return Inexactness(tuple(names), values, np.diag(REFITTED * np.maximum(np.abs(values), usual)))
+
+
+def correlated(names: list[str], expected: np.ndarray, covariance: np.ndarray) -> Inexactness:
+    """The posterior of an earlier fit as prior."""
+    size, axes = np.linalg.eigh(covariance)
+    return Inexactness(tuple(names), np.asarray(expected), axes * np.sqrt(np.maximum(size, 0.0)))
+
+
+def _usual(name: str) -> float:
+    """How large a coefficient is that happens to be near zero."""
+    lower, upper = BY_NAME[name].bounds
+    return 0.1 * (upper - lower) if np.isfinite(upper - lower) else 0.0
