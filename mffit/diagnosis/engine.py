@@ -73,6 +73,8 @@ def diagnose(
     given = rig or RigFaults(backlash_deg=config.rig.backlash_deg)
     simulates_spin = config.model.turn_slip and bool(np.any(points.phi_t))
     start = Simulation(dict(tyre.values), given, simulates_spin, config.model.star)
+    if np.any(np.isfinite(points.T)):
+        start = replace(start, T_ref=float(np.nanmean(points.T)))
     refuse_strangers(points, tyre, start)
     points, source = with_uncertainties(by_condition(points), start)
     inexact = coefficients or declared_inexactness(tyre, config.model.u_coefficients)

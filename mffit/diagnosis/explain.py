@@ -94,7 +94,7 @@ def explain(
         if found is not None and inexact:
             # What an inexact coefficient does depends on the rest of the model: ask again at the one that was found.
             at = start.with_numbers({n: v for n, (v, _) in found.coefficients.items()})
-            offset = inexact.moved(points, at)
+            offset = inexact.moved(points, found.refined.state, at)
         columns = inexact.columns(points, found.refined.state if found else start)
         problem = Problem(points, at, noise.sharing(columns), declared, offset)
         latest = _explained(problem, columns, candidates, basis)

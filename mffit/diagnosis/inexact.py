@@ -33,12 +33,15 @@ class Inexactness:
         _, slope = state.sensitivities(points, self.names)
         return np.nan_to_num(np.concatenate(slope)) @ self.root
 
-    def moved(self, points: Points, state: Simulation) -> np.ndarray:
-        """What has to be added to readings (2n,) for the prior to be centred at a state that has left it."""
+    def moved(self, points: Points, state: Simulation, at: Simulation) -> np.ndarray:
+        """What has to be added to readings (2n,) for the prior to be centred where ``at`` has left it.
+
+        ``state`` is where :meth:`columns` are taken.
+        """
         if not self.names:
             return np.zeros(2 * len(points))
         _, slope = state.sensitivities(points, self.names)
-        away = np.array([float(state.values[name]) for name in self.names]) - self.expected
+        away = np.array([float(at.values[name]) for name in self.names]) - self.expected
         return np.nan_to_num(np.concatenate(slope)) @ away
 
     def without(self, names: frozenset[str]) -> Inexactness:

@@ -8,11 +8,24 @@ import numpy as np
 
 from mffit.effects import Effect
 from mffit.points import Points
+from mffit.rig.simulation import distance_km, sense
 
 
 def _spread(x: np.ndarray) -> float:
     x = x[np.isfinite(x)]
     return float(np.ptp(x)) if len(x) else 0.0
+
+
+def _both_senses(points: Points) -> bool:
+    way = sense(points)
+    return min(np.sum(way > 0), np.sum(way < 0)) > 0.1 * len(points)
+
+
+def _distance_is_not_time(points: Points) -> bool:
+    known = np.isfinite(points.t)
+    if _spread(points.t) <= 60.0 or _spread(points.V) <= 0.5:
+        return False
+    return float(np.corrcoef(points.t[known], distance_km(points)[known])[0, 1]) < 0.98
 
 
 MET: dict[str, Callable[[Points], bool]] = {
@@ -27,6 +40,8 @@ MET: dict[str, Callable[[Points], bool]] = {
     "temperatures": lambda p: _spread(p.T) > 3.0,
     "speeds": lambda p: _spread(p.V) > 0.5,
     "times": lambda p: _spread(p.t) > 60.0,
+    "distances": _distance_is_not_time,
+    "senses": _both_senses,
     "continuous": lambda p: bool(np.any(p.continuous)),
 }
 """Whether points meet a need, by its key in ``mffit.effects.NEEDS``."""

@@ -77,8 +77,10 @@ class Noise:
         """Orthogonal directions (m, k) of the shared changes, whitened, and their variances (k,)."""
         if self.shared is None or not self.shared.shape[1]:
             return np.empty((len(self.used), 0)), np.empty(0)
-        left, size, _ = np.linalg.svd(self._independent(self.shared[self.used]), full_matrices=False)
-        return left, size**2
+        white = self._independent(self.shared[self.used])
+        variance, turn = np.linalg.eigh(white.T @ white)
+        some = variance > 1e-9 * max(float(variance[-1]), 1e-9)
+        return white @ (turn[:, some] / np.sqrt(variance[some])), variance[some]
 
     @cached_property
     def _forget(self) -> SuperLU:

@@ -23,6 +23,9 @@ NEEDED = 4.0
 LARGEST_GROWTH, LARGEST_MEMORY, LARGEST_SMOOTH = 0.2, 0.97, 0.3
 TAILS = (2.0, 2.5, 3.0, 4.0, 6.0, 10.0, 20.0)
 ROUNDS = 4
+ENOUGH = 700
+"""Readings of a channel from which its scatter is learned; weights are found for all."""
+FEWEST_CHAINS = 8
 WILD = 4.5
 """Standard errors from everything that could explain it at which a reading is listed as an outlier."""
 
@@ -70,6 +73,7 @@ class _Channel:
         follows = chain[order][1:] == chain[order][:-1]
         self.later, self.earlier = order[1:][follows], order[:-1][follows]
         self.weight = np.ones(len(stated))
+        self.part = _some_chains(chain)
 
     def learned(self, start: Scatter) -> tuple[Scatter, np.ndarray]:
         """The scatter, and the weight of every reading (m,)."""
@@ -126,22 +130,33 @@ class _Channel:
         )
         return full(found.x), -float(found.fun)
 
-    def _white(self, x: np.ndarray) -> tuple[np.ndarray, np.ndarray, float]:
-        """Residual (m,) and columns (m, k) in units of the scatter, and the logarithm of what was divided by."""
+    def _white(self, x: np.ndarray, part: np.ndarray | None) -> tuple[np.ndarray, np.ndarray, float]:
+        """Residual (m,) and columns (m, k) in units of the scatter, and the logarithm of what was divided by.
+
+        Of some whole sweeps (mask (m,)), or of all readings.
+        """
         scale, growth, memory, amplitude = math.exp(x[0]), x[1], x[2], x[3]
         u = np.hypot(scale * self.stated, growth * self.size) / np.sqrt(self.weight)
-        A = np.column_stack([self.residual, self.named, amplitude * self.smooth]) / u[:, None]
+        rows = np.arange(len(u)) if part is None else np.flatnonzero(part)
+        u = u[rows]
+        A = np.column_stack(
+            [self.residual[rows], self.named[rows], amplitude * self.smooth[rows]]
+        )
+        A /= u[:, None]
         log = float(np.sum(np.log(u)))
         if memory:
             own = math.sqrt(1.0 - memory**2)
-            moved = (A[self.later] - memory * A[self.earlier]) / own
-            A[self.later] = moved
-            log += len(self.later) * math.log(own)
+            place = np.full(len(self.stated), -1)
+            place[rows] = np.arange(len(rows))
+            inside = place[self.later] >= 0
+            later, earlier = place[self.later[inside]], place[self.earlier[inside]]
+            A[later] = (A[later] - memory * A[earlier]) / own
+            log += len(later) * math.log(own)
         return A[:, 0], A[:, 1:], log
 
     def likelihood(self, x: np.ndarray) -> float:
         """Log likelihood of the residual, everything else integrated out, with the prior of the scale."""
-        r, A, log = self._white(x)
+        r, A, log = self._white(x, self.part)
         root = cholesky(A.T @ A + np.eye(A.shape[1]), lower=True, check_finite=False)
         b = solve_triangular(root, A.T @ r, lower=True, check_finite=False)
         log += float(np.sum(np.log(np.diag(root))))
@@ -149,7 +164,7 @@ class _Channel:
 
     def alone(self, x: np.ndarray) -> np.ndarray:
         """Every reading (m,) against what all others say of it, in units of the joint uncertainty at weight 1."""
-        r, A, _ = self._white(x)
+        r, A, _ = self._white(x, None)
         root = cholesky(A.T @ A + np.eye(A.shape[1]), lower=True, check_finite=False)
         left = r - A @ cho_solve((root, True), A.T @ r, check_finite=False)
         B = solve_triangular(root, A.T, lower=True, check_finite=False)
@@ -161,6 +176,13 @@ class _Channel:
         free = left / variance * own  # the reading less the prediction by all others, in units of u at weight 1
         open_ = (1.0 / variance - 1.0) * own**2
         return free / np.sqrt(1.0 + open_)
+
+
+def _some_chains(chain: np.ndarray) -> np.ndarray | None:
+    """Mask (m,) of every k-th sweep where there are more readings than scale, growth and memory need; None for all."""
+    names = np.unique(chain)
+    step = min(math.ceil(len(chain) / ENOUGH), max(len(names) // FEWEST_CHAINS, 1))
+    return np.isin(chain, names[::step]) if step > 1 else None
 
 
 def heavy_tails(z: np.ndarray) -> tuple[float, float]:

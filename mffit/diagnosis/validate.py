@@ -11,6 +11,9 @@ from mffit.diagnosis.inexact import EXACT, Inexactness
 from mffit.diagnosis.noise import Noise
 
 MOST_FOLDS = 8
+FOLDS_OF_MANY = 4
+MANY = 1000
+"""Points from which on fewer folds do."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,10 +39,10 @@ class Validation:
 
 
 def gap(residual: np.ndarray, noise: Noise) -> Gap:
-    """Gap of residuals (2n,), Fy then Mz."""
+    """Gap of residuals (2n,), Fy then Mz; chi2 reading by reading, as the gap in newtons is."""
     n = len(residual) // 2
-    white = noise.whiten(np.nan_to_num(residual))
-    return Gap(_rms(residual[:n]), _rms(residual[n:]), float(white @ white) / max(len(white), 1))
+    z = residual[noise.used] / noise.u[noise.used]
+    return Gap(_rms(residual[:n]), _rms(residual[n:]), float(z @ z) / max(len(z), 1))
 
 
 def validate(problem: Problem, hypothesis: Hypothesis, inexact: Inexactness = EXACT) -> Validation:
@@ -56,7 +59,7 @@ def validate(problem: Problem, hypothesis: Hypothesis, inexact: Inexactness = EX
     before = measured - problem.start.predict(points)
     held_out = before.copy()
     sweeps = np.unique(points.sweep)
-    count = min(MOST_FOLDS, len(sweeps))
+    count = min(MOST_FOLDS if n < MANY else FOLDS_OF_MANY, len(sweeps))
     folds = [sweeps[k::count] for k in range(count)]
     for fold in folds:
         out = np.isin(points.sweep, fold)
@@ -68,8 +71,7 @@ def validate(problem: Problem, hypothesis: Hypothesis, inexact: Inexactness = EX
             predicted = rest.refine(fitted, inexact)[0].state.predict(points.select(out))
             both = np.concatenate([out, out])
             held_out[both] = measured[both] - predicted
-    noise = problem.noise.alone()
-    return Validation(len(folds), gap(before, noise), gap(held_out, noise))
+    return Validation(len(folds), gap(before, problem.noise), gap(held_out, problem.noise))
 
 
 def _rms(x: np.ndarray) -> float:

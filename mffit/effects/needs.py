@@ -14,5 +14,7 @@ NEEDS = {
     "temperatures": "temperatures that differ (T_degC)",
     "speeds": "two speeds",
     "times": "the time of every point (t_s)",
+    "distances": "the time of every point (t_s) and speeds that differ during the test",
+    "senses": "sideslip swept both up and down",
     "continuous": "a continuous sweep (time_s, moving alpha)",
 }

@@ -46,7 +46,23 @@ PATH_RADIUS = Effect(
     (Free("path_radius_m", 0.03, (0.0,), 0.1, 100.0, relative=True),), ("curved",), "as turn slip", ("camber-reduction",),
 )  # fmt: skip
 
+STEERING_COMPLIANCE = Effect(
+    "steering-compliance", "compliance of the steering axis", "rig",
+    "The aligning moment turns the wheel a little, as the steering and its frame are not rigid.",
+    (Free("compliance_deg_per_Nm", 0.004, (0.0,), -0.05, 0.05),), ("moment", "slip"), "odd", ("backlash", "pressure"),
+)  # fmt: skip
+LOADCELL_NONLINEARITY = Effect(
+    "loadcell-nonlinearity", "nonlinearity of the Fy load cell", "rig",
+    "The side-force channel reads large forces a little larger, or smaller, than in proportion.",
+    (Free("nonlinearity_per_kN", 0.01, (0.0,), -0.2, 0.2),), ("slip",), "as Fy", ("loadcell-gain",),
+)  # fmt: skip
+HYSTERESIS = Effect(
+    "hysteresis", "hysteresis of sideslip sweeps", "rig",
+    "The force lags behind the angle as it is read, by a fixed angle in either sense of the sweep.",
+    (Free("hysteresis_deg", 0.1, (0.0,), -2.0, 2.0),), ("senses",), "changes sign with the sense of the sweep", ("relaxation",),
+)  # fmt: skip
+
 RIG_EFFECTS = (
     SIDESLIP_MISALIGNMENT, CAMBER_MISALIGNMENT, LOADCELL_OFFSET_FY, LOADCELL_OFFSET_MZ, LOADCELL_GAIN, CROSSTALK_FZ_FY,
-    BACKLASH, PATH_RADIUS,
+    BACKLASH, PATH_RADIUS, STEERING_COMPLIANCE, LOADCELL_NONLINEARITY, HYSTERESIS,
 )  # fmt: skip

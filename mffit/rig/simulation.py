@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
 from types import SimpleNamespace
 from typing import Any, NamedTuple
@@ -20,6 +20,15 @@ from tir.evaluate import evaluate, turned_on_rim
 SWITCH = "turn_slip"
 RELAXATION = "relaxation_m"
 RADIANS = math.pi / 180.0
+YIELDINGS = 12
+SETTLED = 1e-7
+"""Change of sideslip [rad] at which a compliant steering has found its angle, and rounds that it takes at most."""
+DIFFERENCE = 1e-6
+"""Step of sideslip [rad] for the moment's slope."""
+HELD = math.radians(0.02)
+"""Change of sideslip from point to point [rad] below which it was held."""
+WARM_KM = 1.0
+"""Distance over which a tyre warms up [km]."""
 
 
 class Readings(NamedTuple):
@@ -38,6 +47,7 @@ class Simulation:
     turn_slip: bool = True  #: whether the simulation knows path curvature and spin
     star: bool = False  #: tan(alpha), sin(gamma) as inputs
     relaxation_m: float = 0.0  #: lag of continuous sweeps [m]
+    T_ref: float = REFERENCE_TEMPERATURE  #: at which the coefficients hold [degC]
 
     @classmethod
     def of(
@@ -112,26 +122,41 @@ class Simulation:
         if not math.isnan(plain(fault.path_radius_m)):
             phi_t = np.sign(points.phi_t) / fault.path_radius_m
 
+        warmth = np.nan_to_num(points.T - self.T_ref)
+        for name, scale in (("k_T_grip_per_K", "LMUY"), ("k_T_stiffness_per_K", "LKY")):
+            factor = getattr(fault, name)
+            if isinstance(factor, Traced) or factor:
+                p = SimpleNamespace(**{**vars(p), scale: getattr(p, scale) * (1.0 + factor * warmth)})
+
+        def tyre(alpha: Any) -> Any:
+            return evaluate(
+                p,
+                points.Fz,
+                alpha,
+                gamma,
+                0.0,
+                phi_t,
+                points.Vx,
+                points.p,
+                turn_slip=self.turn_slip,
+                star=self.star,
+            )[0]
+
         alpha = self._followed(points, numbers.get(RELAXATION)) + fault.alpha_0_deg * RADIANS
+        if plain(fault.hysteresis_deg) or isinstance(fault.hysteresis_deg, Traced):
+            alpha = alpha - fault.hysteresis_deg * (RADIANS * sense(points))
+        if plain(fault.compliance_deg_per_Nm) or isinstance(fault.compliance_deg_per_Nm, Traced):
+            alpha = _yielding(fault.compliance_deg_per_Nm * RADIANS, alpha, tyre, derivatives=bool(numbers))
         if plain(fault.backlash_deg) or isinstance(fault.backlash_deg, Traced):
             free = replace(self, faults=replace(self.faults, backlash_deg=0.0, M0_Nm=0.0))
             side = np.sign(free.readings(points).Mz)  # not smooth: held as it is while derivatives are taken
             alpha = alpha - (0.5 * RADIANS) * fault.backlash_deg * side
-        out, _ = evaluate(
-            p,
-            points.Fz,
-            alpha,
-            gamma,
-            0.0,
-            phi_t,
-            points.Vx,
-            points.p,
-            turn_slip=self.turn_slip,
-            star=self.star,
-        )
-        environment = _environment(points, fault)
-        Fy = fault.gain * out.Fy * environment + fault.F0_N + fault.crosstalk * points.Fz
-        return Fy, out.Mz * environment + fault.M0_Nm
+        out = tyre(alpha)
+        environment = _environment(points, fault, warmth)
+        Fy = fault.gain * out.Fy * environment
+        if isinstance(fault.nonlinearity_per_kN, Traced) or fault.nonlinearity_per_kN:
+            Fy = Fy * (1.0 + 1e-3 * fault.nonlinearity_per_kN * abs(Fy))
+        return Fy + fault.F0_N + fault.crosstalk * points.Fz, out.Mz * environment + fault.M0_Nm
 
     def _followed(self, points: Points, relaxation: Traced | None) -> Any:
         """Sideslip that the force answers to (n,): along continuous sweeps it lags behind the reading."""
@@ -154,10 +179,66 @@ def reference_speed(points: Points) -> float:
     return float(values[counts.argmax()])
 
 
-def _environment(points: Points, fault: Any) -> Any:
+def sense(points: Points) -> np.ndarray:
+    """Way (n,) in which the sideslip was moving along its sweep: 1, -1, or 0 where it was held."""
+    out = np.zeros(len(points))
+    for k in np.unique(points.sweep):
+        rows = np.flatnonzero(points.sweep == k)
+        if len(rows) > 1:
+            moving = np.gradient(points.alpha[rows])
+            out[rows] = np.where(np.abs(moving) > HELD, np.sign(moving), 0.0)
+    return out
+
+
+def distance_km(points: Points) -> np.ndarray:
+    """Distance (n,) rolled since time zero [km]; 0 where times are not known."""
+    out = np.zeros(len(points))
+    rows = np.flatnonzero(np.isfinite(points.t))
+    rows = rows[np.argsort(points.t[rows], kind="stable")]
+    t, V = points.t[rows], points.V[rows]
+    if len(rows):
+        steps = np.diff(t) * 0.5 * (V[1:] + V[:-1])
+        out[rows] = 1e-3 * (max(t[0], 0.0) * V[0] + np.concatenate([[0.0], np.cumsum(steps)]))
+    return out
+
+
+def _yielding(give: Any, alpha: Any, tyre: Callable[[Any], Any], derivatives: bool) -> Any:
+    """Sideslip (n,) of a wheel that its own moment turns by ``give`` [rad/Nm] from ``alpha``."""
+    k, start = float(plain(give)), plain(alpha)
+    if not k and not isinstance(give, Traced):
+        return alpha
+    held, slope = start, 0.0
+    if k:
+        slope = _moment_slope(tyre, start)
+        for _ in range(YIELDINGS):
+            move = (start + k * plain(tyre(held).Mz) - held) / (1.0 - k * slope)
+            held = held + move
+            if np.max(np.abs(move)) < SETTLED:
+                break
+    if not derivatives:
+        return held
+    if k:
+        slope = _moment_slope(tyre, held)
+    return held + (alpha + give * tyre(held).Mz - held) / (1.0 - k * slope)
+
+
+def _moment_slope(tyre: Callable[[Any], Any], alpha: np.ndarray) -> np.ndarray:
+    """dMz/dalpha (n,) [Nm/rad]."""
+    up, down = (plain(tyre(alpha + step).Mz) for step in (DIFFERENCE, -DIFFERENCE))
+    return (up - down) / (2.0 * DIFFERENCE)
+
+
+def _environment(points: Points, fault: Any, warmth: np.ndarray) -> Any:
     """Factor (n,) on Fy and Mz; a channel that was not measured has no influence."""
-    warmth = 1.0 + fault.k_T_per_K * np.nan_to_num(points.T - REFERENCE_TEMPERATURE)
-    factor = warmth * (1.0 + fault.k_t_per_s * np.nan_to_num(points.t))
-    if not isinstance(fault.k_V_per_mps, Traced) and not fault.k_V_per_mps:
+    factor = (1.0 + fault.k_T_per_K * warmth) * (1.0 + fault.k_t_per_s * np.nan_to_num(points.t))
+    rolled = [n for n in ("wear_per_km", "warm_up") if _present(getattr(fault, n))]
+    if rolled:
+        s = distance_km(points)
+        factor = factor * (1.0 + fault.wear_per_km * s) * (1.0 - fault.warm_up * np.exp(-s / WARM_KM))
+    if not _present(fault.k_V_per_mps):
         return factor
     return factor * (1.0 + fault.k_V_per_mps * np.nan_to_num(points.V - reference_speed(points)))
+
+
+def _present(number: Any) -> bool:
+    return isinstance(number, Traced) or bool(number)

@@ -21,6 +21,7 @@ ZEROS = (-1.0, -0.5, 0.0, 0.5, 1.0)  # deg
 TURNS_WITH_THE_RIM = ("PVY1", "PVY2", "PEY3", "QDZ6", "QDZ7")
 SECONDS_PER_POINT = 90.0
 USUAL_SPEED = 6.0  # m/s
+USUAL_TEMPERATURE = 34.0  # degC, about which the programme varies
 WALK = 8  # steps through half the play
 BISECTIONS = 16
 
@@ -70,7 +71,7 @@ def disc_programme(nominal: float, rng: np.random.Generator) -> Programme:
         run(f"sideslip_{light}_{V:.0f}mps", light, SIDESLIP, V=V)
     name, alpha, gamma, Fz, p, V, backward = map(np.array, zip(*rows, strict=True))
     t = SECONDS_PER_POINT * np.arange(len(rows))
-    T = 34.0 + 7.0 * np.sin(t / rng.uniform(300.0, 900.0)) + rng.normal(0.0, 0.3, len(rows))
+    T = USUAL_TEMPERATURE + 7.0 * np.sin(t / rng.uniform(300.0, 900.0)) + rng.normal(0.0, 0.3, len(rows))
     flipped = np.zeros(len(rows), dtype=bool)
     return Programme(
         name, alpha.astype(float), gamma.astype(float), Fz, p, V, backward, flipped, t, np.round(T, 2)
@@ -111,7 +112,7 @@ def report(
         play = np.deg2rad(machine.backlash_deg)
         at_rest = resting(lambda x: _at_the_tyre(tyre, machine, run, x, turn_slip)[1], alpha, play, Mz)
         Fy, Mz = _at_the_tyre(tyre, machine, run, at_rest, turn_slip)
-    surroundings = (1.0 + machine.k_T * (run.T - 25.0)) * (1.0 + machine.k_V * (run.V - USUAL_SPEED))
+    surroundings = (1.0 + machine.k_T * (run.T - USUAL_TEMPERATURE)) * (1.0 + machine.k_V * (run.V - USUAL_SPEED))
     surroundings = surroundings * (1.0 + machine.k_t * run.t)
     return (
         machine.gain * surroundings * Fy + machine.F0 + machine.crosstalk * run.Fz,

@@ -9,6 +9,7 @@ import pytest
 from blind_set import random_tyre
 from scipy.integrate import solve_ivp
 
+from mffit.config import RigTable
 from mffit.diagnosis import diagnose
 from mffit.points import concatenate, make_points
 from mffit.rig.lag import lagged_points
@@ -18,7 +19,7 @@ SIGMA = 0.28  # m
 CONFIG = SimpleNamespace(
     tyre=SimpleNamespace(name="moving"),
     model=SimpleNamespace(turn_slip=True, star=False, u_coefficients=0.0),
-    rig=SimpleNamespace(backlash_deg=0.0),
+    rig=RigTable(type="flat-track"),
 )
 
 

@@ -37,6 +37,9 @@ class Table:
             effects, numbers, numbers, 0.0, evidence, self.start, nothing, np.empty((0, len(effects)))
         )
 
+    def promising(self, before, candidates):
+        return [(effect, 0.0) for effect in candidates]
+
     def fit(self, effects, start=None):
         self.fits += 1
         if self.fits > MOST_FITS:

@@ -8,9 +8,10 @@ import pytest
 
 from mffit.diagnosis import Diagnosis, diagnose, wording
 from mffit.diagnosis.needs import MET
-from mffit.diagnosis.notes import HardlyThisTyre, NotVisible, OneSweep, UncertaintiesEnlarged
+from mffit.diagnosis.notes import HardlyThisTyre, NoRepair, NotVisible, OneSweep
 from mffit.diagnosis.ties import Run, Separation
 from mffit.diagnosis.unknown import Bump
+from mffit.diagnosis.validate import Gap, Validation
 from mffit.effects import NEEDS
 
 BUMP = Bump("Mz", {"alpha_deg": (-4.0, -2.5), "Fz_N": (1400.0, 1600.0)}, -6.2, 30.0)
@@ -82,7 +83,11 @@ def test_every_run_has_words_and_only_a_telling_one_is_recommended(run):
         (OneSweep(), "One sweep cannot tell"),
         (NotVisible(("curved", "moment"), ("spin-torque",)), "which lack a curved path and Mz: spin-torque."),
         (HardlyThisTyre(41.7), "by 42 times their noise"),
-        (UncertaintiesEnlarged(2.34), "enlarged 2.3 times"),
+        (
+            NoRepair(("camber stiffness",), Validation(8, Gap(36.7, 2.0, 4.0), Gap(37.5, 2.1, 4.2))),
+            "No repair is written: camber stiffness would fit these points better, but on sweeps that were left out the "
+            "side force misses by 37.5 N instead of 36.7 N",
+        ),
         ("said elsewhere", "said elsewhere"),
     ],
 )
@@ -94,7 +99,7 @@ def test_the_file_keeps_its_keys(camber):
     content = replace(camber, notes=(OneSweep(),)).to_json()
     assert list(content) == [
         "headline", "gap_before", "gap_after", "validation", "where", "effects", "alternatives", "unexplained",
-        "unexplained_where", "noise_floor", "model_after", "notes",
+        "unexplained_where", "noise_floor", "outliers", "coefficients", "model_after", "notes",
     ]  # fmt: skip
     assert list(content["effects"][0]) == [
         "id", "name", "kind", "physics", "confidence", "parameters", "gap_after", "tied_with", "separate_by",

@@ -48,6 +48,13 @@ FREES = {
     "temperature": "k_T_per_K",
     "speed": "k_V_per_mps",
     "drift": "k_t_per_s",
+    "steering-compliance": "compliance_deg_per_Nm",
+    "loadcell-nonlinearity": "nonlinearity_per_kN",
+    "hysteresis": "hysteresis_deg",
+    "temperature-grip": "k_T_grip_per_K",
+    "temperature-stiffness": "k_T_stiffness_per_K",
+    "wear": "wear_per_km",
+    "warm-up": "warm_up",
 }
 """The ids that files and scripts rely on, and what each at least sets free."""
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import fields
+from dataclasses import fields, replace
 
 import numpy as np
 import pytest
@@ -12,7 +12,11 @@ from mffit.points import make_points
 from mffit.rig import NO_FAULTS, RigFaults, Simulation
 from mffit.rig.simulation import RELAXATION
 
-FAULTS = RigFaults(0.3, -0.4, 1.02, 8.0, 0.01, 0.5, 0.2, 1.31, 1e-3, 2e-3, 1e-6)
+FAULTS = RigFaults(
+    0.3, -0.4, 1.02, 8.0, 0.01, 0.5, 0.2, 1.31, 1e-3, 2e-3, 1e-6, 0.0, 0.02, 0.1, 1e-3, -1e-3, 1e-3, 0.02
+)  # fmt: skip
+YIELDING = replace(FAULTS, backlash_deg=0.0, compliance_deg_per_Nm=0.006)
+"""A steering that gives way to the moment; without play, whose side is held while derivatives are taken."""
 STEPS = {"k_t_per_s": 1e-9, "k_T_per_K": 1e-6, "crosstalk": 1e-5}
 
 
@@ -42,6 +46,26 @@ def test_a_sensitivity_is_the_slope_of_the_readings(points, simulation, name):
     _, slope = simulation.sensitivities(points, [name])
     expected = (up - down) / (2.0 * step)
     assert np.concatenate(slope)[:, 0] == pytest.approx(expected, abs=1e-5 * (1.0 + np.max(np.abs(expected))))
+
+
+@pytest.mark.parametrize("name", ["compliance_deg_per_Nm", "alpha_0_deg", "k_T_grip_per_K", "PKY1", "QDZ1"])
+def test_a_yielding_steering_passes_every_slope_on(points, simulation, name):
+    """The angle at which moment and steering agree moves with every number that moves the moment."""
+    yielding = replace(simulation, faults=YIELDING)
+    value = yielding.number(name, points)
+    up, down = (yielding.with_numbers({name: value + s}).predict(points) for s in (1e-5, -1e-5))
+    expected = (up - down) / 2e-5
+    slope = np.concatenate(yielding.sensitivities(points, [name])[1])[:, 0]
+    assert slope == pytest.approx(expected, abs=1e-5 * (1.0 + np.max(np.abs(expected))))
+
+
+def test_a_wheel_on_a_yielding_steering_stands_where_moment_and_steering_agree(points):
+    tyre = tir.read("samples/front-120-70/true.tir")
+    normal = points.replace(mount=1)
+    plain, soft = (Simulation.of(tyre, RigFaults(compliance_deg_per_Nm=k)) for k in (0.0, 0.01))
+    Mz = soft.readings(normal).Mz
+    turned = normal.replace(alpha=normal.alpha + np.radians(0.01 * Mz))
+    assert plain.readings(turned).Mz == pytest.approx(Mz, abs=1e-4)
 
 
 def test_sensitivities_come_with_the_readings(points, simulation):

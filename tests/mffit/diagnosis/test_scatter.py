@@ -1,0 +1,97 @@
+"""The noise is found in the readings, part by part, and only where it is."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from mffit.diagnosis.noise import Noise, Scatter
+from mffit.diagnosis.scatter import Explained, learned, wild
+
+N, SWEEPS = 400, 20
+FORCE = 1500.0 * np.sin(np.linspace(0.0, 40.0, N))
+NOTHING = np.zeros((2 * N, 1))
+
+
+def stated(u=6.0):
+    chain = np.repeat(np.arange(2 * SWEEPS), N // SWEEPS)
+    u = np.repeat([u, u / 10.0], N)
+    return Noise(u=u, stated=u, chain=chain, source="")
+
+
+def found(Fy, named=NOTHING):
+    rng = np.random.default_rng(99)
+    residual = np.concatenate([Fy, rng.normal(0.0, 0.6, N)])
+    size = np.concatenate([FORCE, 0.02 * FORCE])
+    return learned(stated(), residual, Explained(named, NOTHING), size)
+
+
+@pytest.fixture
+def rng():
+    return np.random.default_rng(4)
+
+
+def test_noise_as_stated_stays_as_stated(rng):
+    scatter = found(rng.normal(0.0, 6.0, N)).scatter["Fy"]
+    assert scatter.scale == pytest.approx(1.0, abs=0.15)  # 3.5 % of chance
+    assert (scatter.growth, scatter.memory, scatter.tails) == (0.0, 0.0, np.inf)
+
+
+def test_uncertainties_stated_half_as_large_are_doubled(rng):
+    assert found(rng.normal(0.0, 12.0, N)).scatter["Fy"].scale == pytest.approx(2.0, abs=0.3)
+
+
+def test_noise_that_grows_with_the_force(rng):
+    scatter = found(rng.normal(0.0, np.hypot(6.0, 0.015 * FORCE))).scatter["Fy"]
+    assert scatter.growth == pytest.approx(0.015, abs=0.004)
+    assert scatter.scale == pytest.approx(1.0, abs=0.4)
+
+
+def test_errors_that_remember_each_other_along_a_sweep(rng):
+    noise = rng.normal(0.0, 6.0, N)
+    for i in range(1, N):
+        if i % (N // SWEEPS):
+            noise[i] = 0.9 * noise[i - 1] + np.sqrt(1.0 - 0.81) * noise[i]
+    scatter = found(noise).scatter["Fy"]
+    assert scatter.memory == pytest.approx(0.9, abs=0.08)
+    assert scatter.scale == pytest.approx(1.0, abs=0.35)
+
+
+def test_wild_readings_are_listed_and_lose_their_weight(rng):
+    noise = rng.normal(0.0, 6.0, N)
+    off = np.sort(rng.choice(N, 8, replace=False))
+    noise[off] += rng.choice((-90.0, 90.0), 8)
+    learned_noise = found(noise)
+    listed = wild(learned_noise)
+    assert set(off) <= set(listed)
+    assert len(listed) <= 10
+    assert np.all(learned_noise.u[off] > 20.0)
+    usual = np.setdiff1d(np.arange(N), listed)
+    assert np.median(learned_noise.u[usual]) == pytest.approx(6.0, rel=0.25)
+
+
+def test_what_an_effect_could_bring_is_no_noise(rng):
+    shape = np.concatenate([np.cos(np.linspace(0.0, 9.0, N)), np.zeros(N)])[:, None]
+    scatter = found(rng.normal(0.0, 6.0, N) + 80.0 * shape[:N, 0], 100.0 * shape).scatter["Fy"]
+    assert scatter.scale == pytest.approx(1.0, abs=0.15)
+    assert scatter.memory == 0.0
+
+
+def test_whitening_makes_the_covariance_one():
+    """Against the covariance written out: own uncertainty, memory along sweeps, shared changes."""
+    rng = np.random.default_rng(1)
+    n, u = 30, rng.uniform(1.0, 3.0, 60)
+    u[40] = np.inf
+    chain, shared = np.repeat([0, 1, 2, 3], 15), rng.normal(size=(60, 4))
+    memory = {"Fy": Scatter(memory=0.8), "Mz": Scatter(memory=0.3)}
+    noise = Noise(u=u, stated=u, chain=chain, source="", scatter=memory, shared=shared)
+    used = np.flatnonzero(np.isfinite(u))
+    steps = np.abs(np.subtract.outer(np.arange(59), np.arange(59)))
+    rho = np.where(used < n, 0.8, 0.3)
+    inside = chain[used][:, None] == chain[used][None, :]
+    covariance = np.outer(u[used], u[used]) * np.where(inside, rho[:, None] ** steps, 0.0)
+    covariance += shared[used] @ shared[used].T
+    white = noise.whiten(np.eye(60))[:, used]
+    assert white @ covariance @ white.T == pytest.approx(np.eye(59), abs=1e-10)
+    rows = np.array([2, 3, 7, 33, 50])
+    assert noise.error_of_sum(rows) ** 2 == pytest.approx(covariance[np.ix_(rows, rows)].sum())
