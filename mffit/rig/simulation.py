@@ -13,8 +13,9 @@ import numpy as np
 from mffit.points import Points
 from mffit.rig.faults import FAULT_NAMES, NO_FAULTS, REFERENCE_TEMPERATURE, RigFaults
 from mffit.rig.lag import lagged_points
+from mffit.rig.play import Settled, settled
 from tir import Tyre
-from tir.derivatives import Traced, gradient, plain, traced
+from tir.derivatives import Traced, following, gradient, plain, traced
 from tir.evaluate import evaluate, turned_on_rim
 
 SWITCH = "turn_slip"
@@ -99,7 +100,7 @@ class Simulation:
     def sensitivities(self, points: Points, names: Sequence[str]) -> tuple[Readings, Readings]:
         """The readings, and their exact derivatives by the named numbers: each channel (n, k).
 
-        The side to which the moment takes up the play is held as it is: it does not move with the numbers.
+        The stop at which the moment holds a wheel with play stays the same; one that floats keeps without moment.
         """
         numbers = traced({name: self.number(name, points) for name in names})
         out = self._reported(points, numbers)
@@ -110,53 +111,85 @@ class Simulation:
 
     def _reported(self, points: Points, numbers: Mapping[str, Traced]) -> tuple[Any, Any]:
         """Fy and Mz as the rig reports them, plain or traced."""
-        values = {**self.values, **{n: x for n, x in numbers.items() if n in self.values}}
-        p: Any = SimpleNamespace(**values)
+        fault = self._faults(numbers)
+        out = self._forces(points, self._true_alpha(points, fault, numbers), fault, numbers)
+        environment = _environment(points, fault, self.T_ref)
+        Fy = fault.gain * out.Fy * environment
+        if _present(fault.nonlinearity_per_kN):
+            Fy = Fy * (1.0 + 1e-3 * fault.nonlinearity_per_kN * abs(Fy))
+        return Fy + fault.F0_N + fault.crosstalk * points.Fz, out.Mz * environment + fault.M0_Nm
+
+    def _faults(self, numbers: Mapping[str, Traced]) -> Any:
+        changed = {n: x for n, x in numbers.items() if n in FAULT_NAMES}
+        return SimpleNamespace(**{**asdict(self.faults), **changed})
+
+    def _forces(self, points: Points, alpha: Any, fault: Any, numbers: Mapping[str, Traced]) -> Any:
+        """Forces and moments of the tyre at its true sideslip angle ``alpha`` (n,) [rad]."""
+        p: Any = SimpleNamespace(**{**self.values, **{n: x for n, x in numbers.items() if n in self.values}})
         if np.any(points.mount < 0):
             p = turned_on_rim(p, points.mount)
-        fault: Any = SimpleNamespace(
-            **{**asdict(self.faults), **{n: x for n, x in numbers.items() if n in FAULT_NAMES}}
-        )
-        gamma = points.gamma + fault.gamma_0_deg * RADIANS
+        for name, scale in (("k_T_grip_per_K", "LMUY"), ("k_T_stiffness_per_K", "LKY")):
+            factor = getattr(fault, name)
+            if _present(factor):
+                scaled = getattr(p, scale) * (1.0 + factor * np.nan_to_num(points.T - self.T_ref))
+                p = SimpleNamespace(**{**vars(p), scale: scaled})
         phi_t: Any = points.phi_t
         if not math.isnan(plain(fault.path_radius_m)):
             phi_t = np.sign(points.phi_t) / fault.path_radius_m
+        out, _ = evaluate(
+            p,
+            points.Fz,
+            alpha,
+            points.gamma + fault.gamma_0_deg * RADIANS,
+            0.0,
+            phi_t,
+            points.Vx,
+            points.p,
+            turn_slip=self.turn_slip,
+            star=self.star,
+        )
+        return out
 
-        warmth = np.nan_to_num(points.T - self.T_ref)
-        for name, scale in (("k_T_grip_per_K", "LMUY"), ("k_T_stiffness_per_K", "LKY")):
-            factor = getattr(fault, name)
-            if isinstance(factor, Traced) or factor:
-                p = SimpleNamespace(**{**vars(p), scale: getattr(p, scale) * (1.0 + factor * warmth)})
-
-        def tyre(alpha: Any) -> Any:
-            return evaluate(
-                p,
-                points.Fz,
-                alpha,
-                gamma,
-                0.0,
-                phi_t,
-                points.Vx,
-                points.p,
-                turn_slip=self.turn_slip,
-                star=self.star,
-            )[0]
-
+    def _true_alpha(self, points: Points, fault: Any, numbers: Mapping[str, Traced]) -> Any:
+        """Sideslip angle of the tyre (n,) [rad]: what is read, followed with lag, misaligned, and the play taken up."""
         alpha = self._followed(points, numbers.get(RELAXATION)) + fault.alpha_0_deg * RADIANS
-        if plain(fault.hysteresis_deg) or isinstance(fault.hysteresis_deg, Traced):
+        if _present(fault.hysteresis_deg):
             alpha = alpha - fault.hysteresis_deg * (RADIANS * sense(points))
-        if plain(fault.compliance_deg_per_Nm) or isinstance(fault.compliance_deg_per_Nm, Traced):
-            alpha = _yielding(fault.compliance_deg_per_Nm * RADIANS, alpha, tyre, derivatives=bool(numbers))
-        if plain(fault.backlash_deg) or isinstance(fault.backlash_deg, Traced):
-            free = replace(self, faults=replace(self.faults, backlash_deg=0.0, M0_Nm=0.0))
-            side = np.sign(free.readings(points).Mz)  # not smooth: held as it is while derivatives are taken
-            alpha = alpha - (0.5 * RADIANS) * fault.backlash_deg * side
-        out = tyre(alpha)
-        environment = _environment(points, fault, warmth)
-        Fy = fault.gain * out.Fy * environment
-        if isinstance(fault.nonlinearity_per_kN, Traced) or fault.nonlinearity_per_kN:
-            Fy = Fy * (1.0 + 1e-3 * fault.nonlinearity_per_kN * abs(Fy))
-        return Fy + fault.F0_N + fault.crosstalk * points.Fz, out.Mz * environment + fault.M0_Nm
+        if _present(fault.compliance_deg_per_Nm):
+            give = fault.compliance_deg_per_Nm * RADIANS
+            alpha = _yielding(
+                give, alpha, lambda at: self._forces(points, at, fault, numbers).Mz, derivatives=bool(numbers)
+            )
+        if not _present(fault.backlash_deg):
+            return alpha
+        half_play = 0.5 * RADIANS * fault.backlash_deg
+
+        def moment(at: np.ndarray, which: np.ndarray) -> np.ndarray:
+            part = points if len(which) == len(points) else points.select(which)
+            return self._forces(part, at, self.faults, {}).Mz
+
+        rest = settled(moment, np.broadcast_to(plain(alpha), len(points)), plain(half_play))
+        held = alpha - half_play * rest.side
+        if not np.any(rest.floats):
+            return held
+        return np.where(rest.floats, self._floating(points, rest, numbers), held)
+
+    def _floating(self, points: Points, rest: Settled, numbers: Mapping[str, Traced]) -> Any:
+        """The angle without moment (n,); it moves with the numbers so that the moment stays away."""
+        if not numbers:
+            return rest.alpha
+        which = np.flatnonzero(rest.floats)
+        again = traced({n: x.value for n, x in numbers.items()} | {"alpha": rest.alpha[which]})
+        at = again.pop("alpha")
+        Mz = self._forces(points.select(which), at, self._faults(again), again).Mz
+        slopes = gradient(Mz, [*again.values(), at])
+        moves = np.zeros((len(points), len(numbers)))
+        turning = slopes[:, -1:]
+        moves[which] = np.divide(
+            -slopes[:, :-1], turning, out=np.zeros_like(slopes[:, :-1]), where=turning != 0.0
+        )
+        value = np.where(rest.floats, rest.alpha, 0.0)
+        return following(value, list(numbers.values()), moves)
 
     def _followed(self, points: Points, relaxation: Traced | None) -> Any:
         """Sideslip that the force answers to (n,): along continuous sweeps it lags behind the reading."""
@@ -202,35 +235,36 @@ def distance_km(points: Points) -> np.ndarray:
     return out
 
 
-def _yielding(give: Any, alpha: Any, tyre: Callable[[Any], Any], derivatives: bool) -> Any:
+def _yielding(give: Any, alpha: Any, moment: Callable[[Any], Any], derivatives: bool) -> Any:
     """Sideslip (n,) of a wheel that its own moment turns by ``give`` [rad/Nm] from ``alpha``."""
     k, start = float(plain(give)), plain(alpha)
     if not k and not isinstance(give, Traced):
         return alpha
     held, slope = start, 0.0
     if k:
-        slope = _moment_slope(tyre, start)
+        slope = _moment_slope(moment, start)
         for _ in range(YIELDINGS):
-            move = (start + k * plain(tyre(held).Mz) - held) / (1.0 - k * slope)
+            move = (start + k * plain(moment(held)) - held) / (1.0 - k * slope)
             held = held + move
             if np.max(np.abs(move)) < SETTLED:
                 break
     if not derivatives:
         return held
     if k:
-        slope = _moment_slope(tyre, held)
-    return held + (alpha + give * tyre(held).Mz - held) / (1.0 - k * slope)
+        slope = _moment_slope(moment, held)
+    return held + (alpha + give * moment(held) - held) / (1.0 - k * slope)
 
 
-def _moment_slope(tyre: Callable[[Any], Any], alpha: np.ndarray) -> np.ndarray:
+def _moment_slope(moment: Callable[[Any], Any], alpha: np.ndarray) -> np.ndarray:
     """dMz/dalpha (n,) [Nm/rad]."""
-    up, down = (plain(tyre(alpha + step).Mz) for step in (DIFFERENCE, -DIFFERENCE))
+    up, down = (plain(moment(alpha + step)) for step in (DIFFERENCE, -DIFFERENCE))
     return (up - down) / (2.0 * DIFFERENCE)
 
 
-def _environment(points: Points, fault: Any, warmth: np.ndarray) -> Any:
+def _environment(points: Points, fault: Any, T_ref: float) -> Any:
     """Factor (n,) on Fy and Mz; a channel that was not measured has no influence."""
-    factor = (1.0 + fault.k_T_per_K * warmth) * (1.0 + fault.k_t_per_s * np.nan_to_num(points.t))
+    warmth = 1.0 + fault.k_T_per_K * np.nan_to_num(points.T - T_ref)
+    factor = warmth * (1.0 + fault.k_t_per_s * np.nan_to_num(points.t))
     rolled = [n for n in ("wear_per_km", "warm_up") if _present(getattr(fault, n))]
     if rolled:
         s = distance_km(points)
