@@ -18,8 +18,8 @@ from mffit.rig import Simulation
 
 STEPS = 12
 CONVERGED = 1e-3  # of chi2
-PROMISING = 9
-"""Candidates that are fitted in full in each step; the others are far behind already to first order."""
+PROMISING = 12
+"""Most candidates that are fitted in full in each step; the others are far behind already to first order."""
 BEYOND_DECLARED = 0.05
 """Share of rigs that are worse than their owner declares."""
 
@@ -163,9 +163,7 @@ class Problem:
                 white = white - Q @ (Q.T @ white)
                 power = white.T @ white + np.eye(white.shape[1])
                 score = white.T @ projected
-                gains.append(
-                    0.5 * float(score @ np.linalg.solve(power, score) - np.linalg.slogdet(power)[1])
-                )
+                gains.append(0.5 * float(score @ np.linalg.solve(power, score) - np.linalg.slogdet(power)[1]))
             out.append((effect, max(gains)))
         return sorted(out, key=lambda row: -row[1])
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 
@@ -13,7 +12,7 @@ from mffit.diagnosis import wording
 from mffit.diagnosis.candidates import Hypothesis, Problem
 from mffit.diagnosis.conditions import by_condition
 from mffit.diagnosis.declared import declared_rig
-from mffit.diagnosis.explain import Explanation, explain
+from mffit.diagnosis.explain import Explanation, explain, only_first
 from mffit.diagnosis.inexact import Inexactness
 from mffit.diagnosis.inexact import declared as declared_inexactness
 from mffit.diagnosis.needs import missing
@@ -91,13 +90,31 @@ def diagnose(
         found = _without_effects(found)
     progress("checking on left-out sweeps")
     given_problem = Problem(points, start, found.plain.noise)
-    validation = validate(given_problem, found.refined, inexact)
-    repaired = bool(found.chosen.effects or found.coefficients)
-    if repaired and validation.gap_after.chi2_per_dof >= validation.gap_before.chi2_per_dof:
-        notes.append(NoRepair(tuple(e.name for e in found.chosen.effects), validation))
-        found = _without_effects(found)
-        validation = Validation(validation.folds, validation.gap_before, validation.gap_before)
+    found, validation, refused = _confirmed(found, given_problem, inexact, seen=coefficients is not None)
+    if refused is not None:
+        notes.append(refused)
     return _record(found, given_problem, tyre, config, validation, notes)
+
+
+def _confirmed(
+    found: Explanation, given: Problem, inexact: Inexactness, seen: bool
+) -> tuple[Explanation, Validation, NoRepair | None]:
+    """What left-out sweeps confirm: everything, else the first effect alone, else nothing; and what they refuse."""
+    validation = validate(given, found.refined, inexact, seen=seen)
+    if not (found.chosen.effects or found.coefficients) or _helps(validation):
+        return found, validation, None
+    refused = NoRepair(tuple(e.name for e in found.chosen.effects), validation)
+    if len(found.chosen.effects) > 1:
+        fewer = only_first(found, inexact)
+        validation = validate(given, fewer.refined, inexact, seen=seen)
+        if _helps(validation):
+            return fewer, validation, refused
+    before = validation.gap_before
+    return _without_effects(found), Validation(validation.folds, before, before), refused
+
+
+def _helps(validation: Validation) -> bool:
+    return validation.gap_after.chi2_per_dof < validation.gap_before.chi2_per_dof
 
 
 def _without_effects(found: Explanation) -> Explanation:
@@ -222,24 +239,12 @@ def _found(found: Explanation, effect: Effect) -> Found:
     numbers, stderr = found.refined.numbers, found.refined.stderr
     return Found(
         effect=effect,
-        confidence=_certainty(found, effect, others) * share[effect.id] / sum(share.values()),
+        confidence=found.certainty(effect) * share[effect.id] / sum(share.values()),
         parameters={n: (numbers[n], stderr.get(n, 0.0)) for n in effect.parameters},
         gap_after=gap(problem.measured - upto.state.predict(problem.points), found.scatter),
         tied_with=tuple(t.effects[-1].id for t in tied),
         separation=min(separations, key=lambda s: s.chi2, default=None),
     )
-
-
-def _certainty(found: Explanation, effect: Effect, others: tuple[Effect, ...]) -> float:
-    """Weight of an effect against its absence, structure without a name in its place, less what is left unexplained."""
-    problem, chosen = found.problem, found.chosen
-    numbers = {n: chosen.numbers[n] for e in others for n in e.parameters}
-    without = problem.fit(others, numbers) if others else problem.null
-    left = found.left(chosen)
-    gain = chosen.log_evidence - without.log_evidence
-    against = gain + left - found.left(without) - math.log(max(len(found.steps[0].trials), 1))
-    counted = gain / (gain + found.smooth.gain + left) if found.smooth.found or left > 0.0 else 1.0
-    return counted / (1.0 + math.exp(-float(np.clip(against, -500.0, 500.0))))
 
 
 def _tied(problem: Problem, chosen: Hypothesis, step: Step, others: tuple[Effect, ...]) -> list[Hypothesis]:

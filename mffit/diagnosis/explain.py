@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
@@ -26,6 +27,8 @@ USUAL_SMOOTH = 0.03
 CLIPPED = 3.0
 """Standard deviations beyond which a reading counts no more in the search for bumps."""
 MOST_BUMPS = 2
+CERTAIN = 0.5
+"""Certainty below which nothing is named beside smooth structure without a name."""
 SETTLED = 0.1
 """Change of the uncertainties, relative, below which the scatter is settled."""
 
@@ -56,6 +59,18 @@ class Explanation:
         if self.smooth.found:
             noise = noise.sharing(amplified(self.basis, self.smooth))
         return Problem(self.problem.points, self.problem.start, noise, self.problem.declared)
+
+    def certainty(self, effect: Effect) -> float:
+        """Weight of an effect against its absence, structure without a name in its place, less what is left unexplained."""
+        problem, chosen = self.problem, self.chosen
+        others = tuple(e for e in chosen.effects if e.id != effect.id)
+        numbers = {n: chosen.numbers[n] for e in others for n in e.parameters}
+        without = problem.fit(others, numbers) if others else problem.null
+        gain, left = chosen.log_evidence - without.log_evidence, self.left(chosen)
+        against = gain + left - self.left(without) - math.log(max(len(self.steps[0].trials), 1))
+        open_ = left + (self.smooth.gain if self.smooth.found else 0.0)
+        counted = max(gain, 0.0) / (max(gain, 0.0) + open_) if open_ else 1.0
+        return float(counted / (1.0 + math.exp(-float(np.clip(against, -500.0, 500.0)))))
 
     def left(self, hypothesis: Hypothesis) -> float:
         """Log evidence of the best structure without a name beside a hypothesis; 0 where there is none."""
@@ -99,14 +114,22 @@ def explain(
         problem = Problem(points, at, noise.sharing(columns), declared, offset)
         latest = _explained(problem, columns, candidates, basis)
         same = found is not None and ids(latest.chosen) == ids(found.chosen)
-        found = _refined(latest, start, inexact)
+        found = _refined(latest, inexact)
         if same:
             break
     assert found is not None
     return found
 
 
-def _refined(found: Explanation, start: Simulation, inexact: Inexactness) -> Explanation:
+def only_first(found: Explanation, inexact: Inexactness) -> Explanation:
+    """The explanation with nothing but the effect that explains most."""
+    first = found.steps[0].best.effects[:1]
+    chosen = found.problem.fit(first)
+    bump = found.bumps.best(chosen)
+    return _refined(replace(found, chosen=chosen, bump=bump, steps=found.steps[:2]), inexact)
+
+
+def _refined(found: Explanation, inexact: Inexactness) -> Explanation:
     """With the model's coefficients estimated beside the effects."""
     refined, coefficients = found.plain.refine(found.chosen, inexact)
     return replace(found, refined=refined, coefficients=coefficients)
@@ -123,9 +146,7 @@ def _explained(
     scan = smooth_scan(basis, problem.noise)
     alone, beside = scan.best(problem.null), scan.best(chosen)
     if rival.found and rival.gain > max(gained, alone.gain):
-        return Explanation(
-            problem, problem.null, steps[:1], rival, NO_SMOOTH, bumps, basis, problem.null, {}
-        )
+        return Explanation(problem, problem.null, steps[:1], rival, NO_SMOOTH, bumps, basis, problem.null, {})
     bump = bumps.best(chosen)
     smooth = beside if beside.found else alone if alone.found and alone.gain > gained else NO_SMOOTH
     if not smooth.found or (bump.found and bump.gain > smooth.gain):
@@ -135,7 +156,22 @@ def _explained(
     problem = problem.seen_through(noise)
     chosen, steps = select(problem, candidates) if candidates else (problem.null, [])
     bumps = bump_scan(problem.points, noise)
-    return Explanation(problem, chosen, steps, bumps.best(chosen), smooth, bumps, basis, chosen, {})
+    found = Explanation(problem, chosen, steps, bumps.best(chosen), smooth, bumps, basis, chosen, {})
+    return _certain(found)
+
+
+def _certain(found: Explanation) -> Explanation:
+    """Without effects that the structure beside them may as well explain, the least certain first."""
+    while found.chosen.effects:
+        certain = {e: found.certainty(e) for e in found.chosen.effects}
+        least = min(certain, key=lambda e: certain[e])
+        if certain[least] >= CERTAIN:
+            break
+        rest = tuple(e for e in found.chosen.effects if e is not least)
+        numbers = {n: found.chosen.numbers[n] for e in rest for n in e.parameters}
+        chosen = found.problem.fit(rest, numbers) if rest else found.problem.null
+        found = replace(found, chosen=chosen, refined=chosen, bump=found.bumps.best(chosen))
+    return found
 
 
 def _learned(
@@ -176,4 +212,6 @@ def _moved(before: Noise, after: Noise) -> bool:
     used = after.used
     change = np.abs(np.log(after.u[used] / before.u[used]))
     memory = [abs(after.scatter[c].memory - before.scatter[c].memory) for c in CHANNELS]
-    return bool(np.median(change) > SETTLED or np.quantile(change, 0.95) > 5.0 * SETTLED or max(memory) > SETTLED)
+    return bool(
+        np.median(change) > SETTLED or np.quantile(change, 0.95) > 5.0 * SETTLED or max(memory) > SETTLED
+    )

@@ -42,7 +42,9 @@ class Noise:
     source: str  #: where the stated uncertainties come from
     scatter: Mapping[str, Scatter] = field(default_factory=lambda: dict.fromkeys(CHANNELS, Scatter()))
     weight: np.ndarray | None = None  #: (2n,) of each reading; below 1 where it is wild; None: all 1
-    shared: np.ndarray | None = None  #: (2n, k) changes by inexactness of the model, one standard deviation each
+    shared: np.ndarray | None = (
+        None  #: (2n, k) changes by inexactness of the model, one standard deviation each
+    )
 
     @property
     def Fy(self) -> float:

@@ -83,11 +83,7 @@ class _Channel:
             x = self._parts(x)
             z = self.alone(x)
             before, (tails, width) = tails, heavy_tails(z)
-            weight = (
-                np.ones(len(z))
-                if math.isinf(tails)
-                else (tails + 1.0) / (tails + (z / width) ** 2)
-            )
+            weight = np.ones(len(z)) if math.isinf(tails) else (tails + 1.0) / (tails + (z / width) ** 2)
             settled = np.max(np.abs(np.sqrt(weight) - np.sqrt(self.weight))) < 0.05
             self.weight = weight
             if settled or (math.isinf(tails) and math.isinf(before)):
@@ -139,9 +135,7 @@ class _Channel:
         u = np.hypot(scale * self.stated, growth * self.size) / np.sqrt(self.weight)
         rows = np.arange(len(u)) if part is None else np.flatnonzero(part)
         u = u[rows]
-        A = np.column_stack(
-            [self.residual[rows], self.named[rows], amplitude * self.smooth[rows]]
-        )
+        A = np.column_stack([self.residual[rows], self.named[rows], amplitude * self.smooth[rows]])
         A /= u[:, None]
         log = float(np.sum(np.log(u)))
         if memory:
@@ -173,7 +167,9 @@ class _Channel:
             return left / np.sqrt(variance)
         # with the weight taken off again: own scatter at weight 1, and what the others leave open
         own = 1.0 / np.sqrt(self.weight)
-        free = left / variance * own  # the reading less the prediction by all others, in units of u at weight 1
+        free = (
+            left / variance * own
+        )  # the reading less the prediction by all others, in units of u at weight 1
         open_ = (1.0 / variance - 1.0) * own**2
         return free / np.sqrt(1.0 + open_)
 

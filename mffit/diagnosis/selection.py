@@ -15,8 +15,10 @@ EXCHANGED = 4
 """Candidates that may take the place of an accepted effect: the best of the step, the others have no chance."""
 EXCHANGE_GAIN = 1.0
 """Log evidence by which a set must be better than the one it takes the place of."""
-CLOSE = 0.5
-"""Share of the largest gain to first order from which on a candidate is fitted in full whatever its rank."""
+FEWEST_FITTED = 4
+"""Candidates of a step that are fitted in full in any case."""
+CLOSE, HOPE = 0.1, 2.0
+"""Gain to first order, relative to the largest and in log evidence, below which the others are not."""
 MARGIN = 4.0
 """Log evidence an effect must bring beyond what picking the best of the whole list brings by chance."""
 NEVER_IDENTIFIED = 1.0
@@ -79,7 +81,7 @@ def forward_step(problem: Problem, before: Hypothesis, candidates: Sequence[Effe
     trials = []
     left = problem.promising(before, [e for e in candidates if e.id not in taken])
     for rank, (effect, gain) in enumerate(left):
-        if rank < PROMISING or gain > CLOSE * left[0][1]:
+        if rank < FEWEST_FITTED or (rank < PROMISING and gain > max(HOPE, CLOSE * left[0][1])):
             trials.append(problem.fit((*before.effects, effect), before.numbers))
         else:  # to first order
             effects, evidence = (*before.effects, effect), before.log_evidence + gain

@@ -45,7 +45,9 @@ def gap(residual: np.ndarray, noise: Noise) -> Gap:
     return Gap(_rms(residual[:n]), _rms(residual[n:]), float(z @ z) / max(len(z), 1))
 
 
-def validate(problem: Problem, hypothesis: Hypothesis, inexact: Inexactness = EXACT) -> Validation:
+def validate(
+    problem: Problem, hypothesis: Hypothesis, inexact: Inexactness = EXACT, *, seen: bool = False
+) -> Validation:
     """Refit the hypothesis without each group of sweeps and predict that group; the gap is in units of the noise.
 
     Parameters
@@ -53,6 +55,8 @@ def validate(problem: Problem, hypothesis: Hypothesis, inexact: Inexactness = EX
     problem : seen through the scatter of the readings alone, or with what else the fits shall allow for
     hypothesis : its effects and where to start from
     inexact : the prior of the model's coefficients, which are refitted as well
+    seen : whether the model was fitted to these points: then it is refitted without the group for the gap before as well,
+        as it would otherwise have seen what it is to predict
     """
     points, n = problem.points, len(problem.points)
     measured = np.concatenate([points.Fy, points.Mz])
@@ -68,9 +72,10 @@ def validate(problem: Problem, hypothesis: Hypothesis, inexact: Inexactness = EX
             fitted = rest.evaluate(hypothesis.effects, hypothesis.numbers)
             if hypothesis.effects and not inexact:
                 fitted = rest.fit(hypothesis.effects, hypothesis.numbers)
-            predicted = rest.refine(fitted, inexact)[0].state.predict(points.select(out))
-            both = np.concatenate([out, out])
-            held_out[both] = measured[both] - predicted
+            both, chosen = np.concatenate([out, out]), points.select(out)
+            held_out[both] = measured[both] - rest.refine(fitted, inexact)[0].state.predict(chosen)
+            if seen:
+                before[both] = measured[both] - rest.refine(rest.null, inexact)[0].state.predict(chosen)
     return Validation(len(folds), gap(before, problem.noise), gap(held_out, problem.noise))
 
 

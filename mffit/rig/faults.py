@@ -33,10 +33,14 @@ class RigFaults:
     k_t_per_s: float = _fault(0.0, "1/s", "Fy and Mz times 1 + k_t t")
     compliance_deg_per_Nm: float = _fault(0.0, "deg/Nm", "true sideslip = reading + compliance Mz")
     nonlinearity_per_kN: float = _fault(0.0, "1/kN", "Fy as reported times 1 + nonlinearity |Fy|")
-    hysteresis_deg: float = _fault(0.0, "deg", "lag of the sideslip angle behind its reading, in the sense of the sweep")
+    hysteresis_deg: float = _fault(
+        0.0, "deg", "lag of the sideslip angle behind its reading, in the sense of the sweep"
+    )
     k_T_grip_per_K: float = _fault(0.0, "1/K", "friction times 1 + k (T - T_ref)")
     k_T_stiffness_per_K: float = _fault(0.0, "1/K", "cornering stiffness times 1 + k (T - T_ref)")
-    wear_per_km: float = _fault(0.0, "1/km", "Fy and Mz times 1 + wear s, s the distance rolled since the first point")
+    wear_per_km: float = _fault(
+        0.0, "1/km", "Fy and Mz times 1 + wear s, s the distance rolled since the first point"
+    )
     warm_up: float = _fault(0.0, "-", "share of Fy and Mz that the first point lacks; fades over 1 km rolled")
 
 

@@ -20,7 +20,9 @@ def main() -> None:
     parser.add_argument("--seed", type=int, default=1, help="of the whole set")
     parser.add_argument("--repeats", type=int, default=1, help="how many sets")
     parser.add_argument("--only", default="", help="only cases whose name contains this")
-    parser.add_argument("--hard", action="store_true", help="noise not as stated, inexact models, unknown effects")
+    parser.add_argument(
+        "--hard", action="store_true", help="noise not as stated, inexact models, unknown effects"
+    )
     options = parser.parse_args()
     if options.hard:
         print_hard(options.seed, options.only)
@@ -87,7 +89,9 @@ def print_calibration(verdicts: list[Verdict]) -> None:
     print("confidence: named, right, right or tied with it")
     for low, high in ((0.0, 0.5), (0.5, 0.8), (0.8, 0.95), (0.95, 0.99), (0.99, 1.01)):
         inside = [(right, tied) for c, right, tied in said if low <= c < high]
-        print(f"  {low:.2f} to {min(high, 1.0):.2f}: {len(inside)}, {sum(r for r, _ in inside)}, {sum(t for _, t in inside)}")
+        print(
+            f"  {low:.2f} to {min(high, 1.0):.2f}: {len(inside)}, {sum(r for r, _ in inside)}, {sum(t for _, t in inside)}"
+        )
 
 
 def print_confusion(verdicts: list[Verdict]) -> None:

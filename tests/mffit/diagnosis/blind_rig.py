@@ -112,7 +112,9 @@ def report(
         play = np.deg2rad(machine.backlash_deg)
         at_rest = resting(lambda x: _at_the_tyre(tyre, machine, run, x, turn_slip)[1], alpha, play, Mz)
         Fy, Mz = _at_the_tyre(tyre, machine, run, at_rest, turn_slip)
-    surroundings = (1.0 + machine.k_T * (run.T - USUAL_TEMPERATURE)) * (1.0 + machine.k_V * (run.V - USUAL_SPEED))
+    surroundings = (1.0 + machine.k_T * (run.T - USUAL_TEMPERATURE)) * (
+        1.0 + machine.k_V * (run.V - USUAL_SPEED)
+    )
     surroundings = surroundings * (1.0 + machine.k_t * run.t)
     return (
         machine.gain * surroundings * Fy + machine.F0 + machine.crosstalk * run.Fz,
