@@ -26,6 +26,7 @@ from mffit import points as ingestion
 from mffit.config import Config
 from mffit.diagnosis import Diagnosis, corrected_points
 from mffit.diagnosis import diagnose as find_effects
+from mffit.diagnosis.inexact import Inexactness, correlated, refitted
 from mffit.effects import CATALOG, Effect
 from mffit.errors import InputError
 from mffit.fit import FitResult
@@ -196,8 +197,11 @@ def diagnose(
     refuse_early(_folder(out), (f"{config.tyre.name}.tir", *DIAGNOSIS_FILES), inputs)
     tyre, choice = _model(config, model, progress)
     with threadpool_limits(1):
-        rig = rig_of_build(tyre, config)
-        diagnosis = find_effects(points, tyre, config, rig=rig, effects=effects, progress=progress)
+        rig, seen = rig_of_build(tyre, config), fitted_to(tyre, config)
+        known = known_of_model(tyre, config, model if isinstance(model, str | Path) else last_build(config))
+        diagnosis = find_effects(
+            points, tyre, config, rig=rig, effects=effects, coefficients=known, seen=seen, progress=progress
+        )
     diagnosis = replace(diagnosis, notes=(*choice, *diagnosis.notes))
     disc = config.rig.type == "rotating-disk"
     if disc and any(found.effect.kind == "rig" for found in diagnosis.effects):
@@ -329,11 +333,41 @@ def annotated(tyre: Tyre, config: Config, measured: Measured, fitted: FitResult,
 
 def rig_of_build(tyre: Tyre, config: Config) -> RigFaults | None:
     """The rig errors that the build found, if the file was fitted to these very sweeps; None otherwise."""
-    of_file = {name: digest for name, digest in tyre.provenance.items() if name.startswith("input ")}
-    if not of_file or of_file != inputs_said(config):
+    if not fitted_to(tyre, config):
         return None
     found = {name: tyre.measured[RIG + name].value for name in FAULT_NAMES if RIG + name in tyre.measured}
     return RigFaults(**{"backlash_deg": config.rig.backlash_deg, **found}) if found else None
+
+
+def fitted_to(tyre: Tyre, config: Config) -> bool:
+    """Whether a build fitted the file to these very sweeps."""
+    of_file = {name: digest for name, digest in tyre.provenance.items() if name.startswith("input ")}
+    return bool(of_file) and of_file == inputs_said(config)
+
+
+def known_of_model(tyre: Tyre, config: Config, path: str | Path) -> Inexactness | None:
+    """What is known of a model's coefficients beside ``model.u_coefficients``; None if nothing is.
+
+    Fitted to these very sweeps they may move again; of a build on other sweeps its posterior, kept in result.json beside
+    the file, says how far.
+    """
+    if fitted_to(tyre, config):
+        return refitted(tyre, curved=config.rig.type == "rotating-disk")
+    if config.model.u_coefficients:
+        return None
+    try:
+        result = json.loads((Path(path).parent / "result.json").read_text(encoding="utf-8"))
+        posterior, values = result["fit"]["posterior"], result["fit"]["coefficients"]
+        rows = [k for k, name in enumerate(posterior["names"]) if name in values]
+        names = [posterior["names"][k] for k in rows]
+        covariance = np.array(posterior["covariance"], dtype=float)[np.ix_(rows, rows)]
+        expected = np.array([float(values[name]["value"]) for name in names])
+    except (OSError, ValueError, KeyError, TypeError, IndexError):
+        return None
+    of_file = np.array([float(tyre[name]) for name in names])
+    if not names or not np.allclose(of_file, expected, rtol=1e-4, atol=1e-9):
+        return None
+    return correlated(names, of_file, covariance)
 
 
 def inputs_said(config: Config) -> dict[str, str]:

@@ -45,6 +45,7 @@ def diagnose(
     rig: RigFaults | None = None,
     effects: Sequence[Effect] = CATALOG,
     coefficients: Inexactness | None = None,
+    seen: bool = False,
     progress: Callable[[str], None] = lambda sentence: None,
 ) -> Diagnosis:
     """Find where a model disagrees with points, and the effects that explain it.
@@ -57,6 +58,7 @@ def diagnose(
     rig : what is known of the rig's errors; default the declared play alone
     effects : the library to choose from; add your own records to the catalogue's
     coefficients : prior of the model's coefficients; default from ``model.u_coefficients``
+    seen : whether the model was fitted to these very points
     progress : called with a sentence before each step
 
     Returns
@@ -90,7 +92,7 @@ def diagnose(
         found = _without_effects(found)
     progress("checking on left-out sweeps")
     given_problem = Problem(points, start, found.plain.noise)
-    found, validation, refused = _confirmed(found, given_problem, inexact, seen=coefficients is not None)
+    found, validation, refused = _confirmed(found, given_problem, inexact, seen=seen)
     if refused is not None:
         notes.append(refused)
     return _record(found, given_problem, tyre, config, validation, notes)

@@ -2,18 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
+from mffit.fit.priors import scatter
 from mffit.points import Points
 from mffit.rig import Simulation
 from tir import Tyre
-from tir.parameters import BY_NAME, TABLE
-
-REFITTED = 0.3
-"""Relative spread of a coefficient that was fitted to these very points: they may move it freely again."""
-
+from tir.parameters import TABLE
 
 @dataclass(frozen=True, slots=True)
 class Inexactness:
@@ -65,21 +63,18 @@ def declared(tyre: Tyre, u_coefficients: float) -> Inexactness:
     return Inexactness(tuple(names), values, np.diag(u_coefficients * np.abs(values)))
 
 
-def refitted(tyre: Tyre) -> Inexactness:
-    """The coefficients that a build fitted, free to move again, as the points were already used for them."""
-    names = [row.name for row in TABLE if tyre.status.get(row.name, "").startswith(("fitted", "tied"))]
+def refitted(tyre: Tyre, *, curved: bool) -> Inexactness:
+    """The coefficients that a build fitted, free to move again as far as coefficients of similar tyres scatter.
+
+    For points that were already used to fit them: what is known of them beyond that is in these points.
+    """
+    names = [row.name for row in TABLE if row.kind == "number" and "+-" in tyre.status.get(row.name, "")]
     values = np.array([float(tyre[name]) for name in names])
-    usual = np.array([_usual(name) for name in names])
-    return Inexactness(tuple(names), values, np.diag(REFITTED * np.maximum(np.abs(values), usual)))
+    spread = [scatter(n, v, from_base=True, curved=curved) for n, v in zip(names, values, strict=True)]
+    return Inexactness(tuple(names), values, np.diag(spread))
 
 
-def correlated(names: list[str], expected: np.ndarray, covariance: np.ndarray) -> Inexactness:
+def correlated(names: Sequence[str], expected: np.ndarray, covariance: np.ndarray) -> Inexactness:
     """The posterior of an earlier fit as prior."""
     size, axes = np.linalg.eigh(covariance)
     return Inexactness(tuple(names), np.asarray(expected), axes * np.sqrt(np.maximum(size, 0.0)))
-
-
-def _usual(name: str) -> float:
-    """How large a coefficient is that happens to be near zero."""
-    lower, upper = BY_NAME[name].bounds
-    return 0.1 * (upper - lower) if np.isfinite(upper - lower) else 0.0

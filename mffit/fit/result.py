@@ -96,6 +96,10 @@ class FitResult:
                 }
                 for name, c in self.coefficients.items()
             },
+            "posterior": {
+                "names": list(self.posterior.names),
+                "covariance": self.posterior.covariance.tolist(),
+            },
             "rig": {
                 name: {"value": value, "stderr": u, "unit": UNITS[name]}
                 for name, (value, u) in self.rig.items()
