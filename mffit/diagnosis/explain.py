@@ -112,7 +112,8 @@ def explain(
             offset = inexact.moved(points, found.refined.state, at)
         columns = inexact.columns(points, found.refined.state if found else start)
         problem = Problem(points, at, noise.sharing(columns), declared, offset)
-        latest = _explained(problem, columns, candidates, basis)
+        # Before that, what the coefficients do elsewhere would look like structure without a name.
+        latest = _explained(problem, columns, candidates, basis, rivals=not inexact or found is not None)
         same = found is not None and ids(latest.chosen) == ids(found.chosen)
         found = _refined(latest, inexact)
         if same:
@@ -136,11 +137,13 @@ def _refined(found: Explanation, inexact: Inexactness) -> Explanation:
 
 
 def _explained(
-    problem: Problem, columns: np.ndarray, candidates: Sequence[Effect], basis: np.ndarray
+    problem: Problem, columns: np.ndarray, candidates: Sequence[Effect], basis: np.ndarray, rivals: bool
 ) -> Explanation:
     """Select effects; structure without a name takes their place, or stands beside them, where it explains more."""
     bumps = bump_scan(problem.points, problem.noise)
     chosen, steps = select(problem, candidates) if candidates else (problem.null, [])
+    if not rivals:
+        return Explanation(problem, chosen, steps, bumps.best(chosen), NO_SMOOTH, bumps, basis, chosen, {})
     rival = bumps.best(problem.null)
     gained = chosen.log_evidence - problem.null.log_evidence - len(chosen.effects) * price(len(candidates))
     scan = smooth_scan(basis, problem.noise)

@@ -13,6 +13,7 @@ from mffit.rig import Simulation
 from tir import Tyre
 from tir.parameters import TABLE
 
+
 @dataclass(frozen=True, slots=True)
 class Inexactness:
     """Prior of the given model's coefficients: normal around the values in the file."""

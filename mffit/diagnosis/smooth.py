@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import itertools
+import math
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.polynomial.legendre import legvander
+from scipy.linalg import cholesky, solve_triangular
 
 from mffit.diagnosis.candidates import Hypothesis
 from mffit.diagnosis.noise import CHANNELS, Noise
@@ -109,13 +111,14 @@ class SmoothScan:
             Q, _ = np.linalg.qr(hypothesis.jacobian)
             shapes, residual = shapes - Q @ (Q.T @ shapes), residual - Q @ (Q.T @ residual)
         power, score = shapes.T @ shapes, shapes.T @ residual
-        amplitude, gain = {}, 0.0
-        first, second = slice(0, self.half), slice(self.half, None)
-        for name, part in zip(CHANNELS, (first, second), strict=True):
-            size, value = _best_amplitude(power[part, part], score[part])
-            amplitude[name] = size
-            gain += value
-        return Smooth(amplitude, gain)
+        size, gain = [0.0, 0.0], 0.0
+        for channel in (0, 1, 0):  # seen through inexact coefficients the channels hang together
+            for amplitude in AMPLITUDES:
+                trial = [amplitude if k == channel else size[k] for k in (0, 1)]
+                value = _gain(power, score, np.repeat(trial, (self.half, len(score) - self.half)))
+                if value > gain:
+                    size, gain = trial, value
+        return Smooth(dict(zip(CHANNELS, size, strict=True)), gain)
 
 
 def smooth_scan(basis: np.ndarray, noise: Noise) -> SmoothScan:
@@ -129,16 +132,13 @@ def amplified(basis: np.ndarray, smooth: Smooth) -> np.ndarray:
     return basis * np.repeat([smooth.amplitude[name] for name in CHANNELS], half)
 
 
-def _best_amplitude(power: np.ndarray, score: np.ndarray) -> tuple[float, float]:
-    """Amplitude of one channel and its log evidence; 0 and 0 where none helps."""
-    if not power.size or not np.any(power):
-        return 0.0, 0.0
-    size, axes = np.linalg.eigh(power)
-    size, turned = np.maximum(size, 0.0), (axes.T @ score) ** 2
-    gains = [
-        0.5 * float(np.sum(turned * a**2 / (1.0 + a**2 * size)) - np.sum(np.log1p(a**2 * size)))
-        for a in AMPLITUDES
-    ]
-    k = int(np.argmax(gains))
-    gain = gains[k] - np.log(len(AMPLITUDES))
-    return (float(AMPLITUDES[k]), gain) if gain > 0.0 else (0.0, 0.0)
+def _gain(power: np.ndarray, score: np.ndarray, amplitude: np.ndarray) -> float:
+    """Log evidence of smooth structure of given amplitudes (k,), their choice paid for."""
+    some = amplitude > 0.0
+    scaled = amplitude[some]
+    root = cholesky(
+        np.eye(int(some.sum())) + scaled[:, None] * power[np.ix_(some, some)] * scaled, lower=True
+    )
+    found = solve_triangular(root, scaled * score[some], lower=True)
+    paid = len(CHANNELS) * math.log(len(AMPLITUDES))
+    return 0.5 * float(found @ found) - float(np.sum(np.log(np.diag(root)))) - paid
