@@ -278,8 +278,7 @@ def write_diagnosis(diagnosis: Diagnosis, out: Path, protected: Iterable[Path] =
 def measure(config: Config, points: Points, base: Tyre | None) -> tuple[Parts, Measured]:
     """Split the points and measure directly."""
     parts = decomposition.split(points)
-    with threadpool_limits(1):  # the same numbers to the last digit whatever else the machine does
-        measured = direct.measure(config, points, parts, base)
+    measured = direct.measure(config, points, parts, base)
     return replace(parts, alpha_odd=direct.odd_alpha(points, parts, config)), measured
 
 
