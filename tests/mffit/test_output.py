@@ -14,7 +14,7 @@ from test_bad_input import run, snapshot
 from mffit import config
 from mffit.errors import InputError
 from mffit.output import RECORD, output_folder, refuse_early
-from mffit.pipeline import input_hashes, read_base
+from mffit.pipeline.inputs import input_hashes, read_base
 from mffit.virtual_rig import load_plan, simulate
 
 SAMPLE = Path(__file__).parents[2] / "samples" / "front-120-70"
