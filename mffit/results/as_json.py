@@ -13,6 +13,7 @@ import numpy as np
 from mffit.diagnosis import Diagnosis, Found, Gap, wording
 from mffit.diagnosis.where import Region
 from mffit.measured import KEYS, LoadResult, Measured
+from mffit.measured import wording as say
 from mffit.results.build import BuildResult
 from tir import Quantity
 
@@ -43,7 +44,7 @@ def spin(measured: Measured) -> dict[str, Any]:
         "u_epsilon_gamma_monte_carlo": row.u_monte_carlo if row else None,
         "misaligned": measured.misaligned,
         "coverage_factor": 1,
-        "notes": list(measured.notes),
+        "notes": [say.note(fact) for fact in measured.notes],
         "per_load": [_load(other) for other in measured.per_load],
     }
 
