@@ -112,6 +112,16 @@ class ContactWanders:
     """With camber the path radius changes."""
 
 
+@dataclass(frozen=True, slots=True)
+class AxisOff:
+    """Forward and backward zeros of a load differ by more than an aligned axis allows."""
+
+    load: float  #: [N]
+    difference: float  #: [N]
+    limit: float  #: [N]
+    correction_deg: float
+
+
 Note = (
     StraightPath
     | NotSeparable
@@ -126,5 +136,5 @@ Note = (
     | ContactWanders
 )
 """To be known beside the numbers."""
-Trouble = SlopeNotPossible | SecantNotPossible | NothingMeasured | Misaligned
+Trouble = SlopeNotPossible | SecantNotPossible | NothingMeasured | Misaligned | AxisOff
 """To be acted on."""

@@ -7,6 +7,7 @@ from typing import assert_never
 
 from mffit.measured.notes import (
     Aligned,
+    AxisOff,
     Conicity,
     ContactWanders,
     EpsilonInNoise,
@@ -91,6 +92,11 @@ def warning(fact: Trouble) -> str:
             return (
                 f"the sideslip axis is misaligned: {_found(fact)}; forward and backward forces differ by "
                 f"{abs(2 * slip):.0f} N. It is taken off the angles; ply-steer cannot be told from it"
+            )
+        case AxisOff(load, difference, limit, correction):
+            return (
+                f"at {load:.0f} N forward and backward forces differ by {difference:.0f} N ({limit:.0f} N is the limit): the "
+                f"sideslip axis is off by about {correction:.2f} deg"
             )
         case _:
             assert_never(fact)

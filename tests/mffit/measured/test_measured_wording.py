@@ -29,6 +29,10 @@ WARNINGS = [
     (notes.SlopeNotPossible(1500.0, 15.0), "at 1500 N the camber sweep is too short"),
     (notes.SecantNotPossible(1500.0, 15.0), "does not reach 15 deg"),
     (notes.NothingMeasured(), "eps_gamma could not be measured"),
+    (
+        notes.AxisOff(900.0, 64.2, 50.0, 0.213),
+        "differ by 64 N (50 N is the limit): the sideslip axis is off by about 0.21",
+    ),
     (notes.Misaligned(ANGLE, -60.0, 0.2), "differ by 120 N"),
 ]
 
