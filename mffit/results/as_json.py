@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import math
 from collections.abc import Mapping
+from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
@@ -12,9 +13,12 @@ import numpy as np
 
 from mffit.diagnosis import Diagnosis, Found, Gap, wording
 from mffit.diagnosis.where import Region
+from mffit.fit import Coefficient, FitResult
+from mffit.fit.files import Files
 from mffit.measured import KEYS, LoadResult, Measured
 from mffit.measured import wording as say
 from mffit.results.build import BuildResult
+from mffit.rig import UNITS
 from tir import Quantity
 
 
@@ -23,7 +27,7 @@ def build(result: BuildResult) -> dict[str, Any]:
     return {
         "tyre": result.config.tyre.model_dump(exclude_none=True),
         "spin": spin(result.measured),
-        "fit": result.fit.to_json(),
+        "fit": fit(result.fit),
         "tir": result.tir_path,
         "files": dict(result.files),
         "warnings": list(result.warnings),
@@ -46,6 +50,39 @@ def spin(measured: Measured) -> dict[str, Any]:
         "coverage_factor": 1,
         "notes": [say.note(fact) for fact in measured.notes],
         "per_load": [_load(other) for other in measured.per_load],
+    }
+
+
+def fit(found: FitResult) -> dict[str, Any]:
+    """The ``fit`` part of ``result.json``."""
+    return {
+        "channels": {name: asdict(row) for name, row in found.channels.items()},
+        "odd": {name: asdict(row) for name, row in found.odd.items()},
+        "coefficients": {name: _coefficient(row) for name, row in found.coefficients.items()},
+        "rig": {
+            name: {"value": value, "stderr": u, "unit": UNITS[name]} for name, (value, u) in found.rig.items()
+        },
+        "stages": [
+            {
+                "name": stage.name,
+                "parameters": list(stage.parameters),
+                "rmse_Fy_N": stage.rmse_Fy,
+                "rmse_Mz_Nm": stage.rmse_Mz,
+            }
+            for stage in found.stages
+        ],
+        "coverage": [
+            {
+                "stage": row.stage,
+                "supported": row.supported,
+                "held": list(row.held),
+                "missing": list(row.missing),
+            }
+            for row in found.coverage
+        ],
+        "files": _files(found.files) if found.files is not None else {},
+        "explanations": list(found.explanations),
+        "seconds": found.seconds,
     }
 
 
@@ -98,6 +135,40 @@ def _stated(key: str, number: Quantity | None, scale: float = 1.0) -> dict[str, 
     if number is None:
         return {key: None, f"u_{key}": None}
     return {key: scale * number.value, f"u_{key}": scale * number.u}
+
+
+def _coefficient(found: Coefficient) -> dict[str, Any]:
+    partner = found.correlated_with or None
+    return {
+        "value": found.value,
+        "stderr": found.stderr,
+        "stage": found.stage,
+        "fixed": found.fixed,
+        "at_bound": found.at_bound,
+        "status": found.status,
+        "origin": found.origin or found.status,
+        "correlated_with": partner,
+        "correlation": found.correlation if partner else None,
+    }
+
+
+def _files(files: Files) -> dict[str, Any]:
+    """How good each written file is, by use, and the ranges."""
+    out: dict[str, Any] = {
+        use: {
+            "USE_MODE": int(file.tyre["USE_MODE"]),
+            "straight": {channel: asdict(misfit) for channel, misfit in file.straight.items()},
+            "camber_stiffness_N_per_rad": file.camber_stiffness,
+        }
+        for use, file in files.by_use.items()
+    }
+    if len(files.by_use) == 2:
+        out["normal"] |= {
+            "coefficients": {name: files.by_use["normal"].tyre[name] for name in files.changed},
+            "camber_stiffness_loss": files.stiffness_loss,
+            "turn_slip_force_lacking_N": {f"{radius:g} m": force for radius, force in files.lacking.items()},
+        }
+    return {**out, "ranges": {"tested": dict(files.tested), "written": dict(files.written)}}
 
 
 def _gap(gap: Gap) -> dict[str, float]:
