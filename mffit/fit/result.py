@@ -9,6 +9,7 @@ import numpy as np
 
 from mffit.fit.coverage import StageCoverage
 from mffit.fit.files import Files
+from mffit.fit.posterior import Posterior
 from mffit.rig import Simulation
 from tir import Tyre
 
@@ -64,6 +65,7 @@ class FitResult:
     rig: Mapping[str, tuple[float, float]]  #: rig error -> (value, standard error)
     Fy_model: np.ndarray  #: (n,) [N]
     Mz_model: np.ndarray  #: (n,) [Nm]
+    posterior: Posterior  #: what the fit leaves uncertain
     stages: tuple[StageRecord, ...]
     coverage: tuple[StageCoverage, ...]
     explanations: tuple[str, ...]
