@@ -77,14 +77,14 @@ def diagnose(
     if np.any(np.isfinite(points.T)):
         start = replace(start, T_ref=float(np.nanmean(points.T)))
     refuse_strangers(points, tyre, start)
-    points, source = with_uncertainties(by_condition(points), start)
+    points, origin = with_uncertainties(by_condition(points), start)
     inexact = coefficients or declared_inexactness(tyre, config.model.u_coefficients)
     candidates, notes = possible(effects, points, start)
     if len(np.unique(points.sweep)) < 2:
         candidates = []
         notes.append(OneSweep())
     progress("trying every effect")
-    stated = noise_model(points, start, 0.0, source)
+    stated = noise_model(points, start, 0.0, origin)
     found = explain(points, start, stated, candidates, inexact, declared_rig(config, points, start))
     misfit = _misfit(found, points)
     if found.chosen.effects and misfit > STRANGER:
@@ -246,6 +246,7 @@ def _found(found: Explanation, effect: Effect) -> Found:
         gap_after=gap(problem.measured - upto.state.predict(problem.points), found.scatter),
         tied_with=tuple(t.effects[-1].id for t in tied),
         separation=min(separations, key=lambda s: s.chi2, default=None),
+        T_ref=chosen.state.T_ref if "temperatures" in effect.needs else None,
     )
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
+from enum import Enum, auto
 from functools import cached_property
 
 import numpy as np
@@ -16,6 +17,13 @@ from mffit.rig import Simulation
 from tir.parameters import TABLE
 
 CHANNELS = ("Fy", "Mz")
+
+
+class Origin(Enum):
+    """Where the uncertainties of the readings come from."""
+
+    STATED = auto()  #: with the data
+    SCATTER = auto()  #: of measured minus simulated between neighbouring points
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,7 +47,7 @@ class Noise:
     u: np.ndarray  #: (2n,) standard uncertainty of every reading; inf where missing
     stated: np.ndarray  #: (2n,) the same as stated
     chain: np.ndarray  #: (2n,) number of the sweep and channel along which errors may be correlated
-    source: str  #: where the stated uncertainties come from
+    origin: Origin | None  #: of the uncertainties of Fy; None if it was not measured
     scatter: Mapping[str, Scatter] = field(default_factory=lambda: dict.fromkeys(CHANNELS, Scatter()))
     weight: np.ndarray | None = None  #: (2n,) of each reading; below 1 where it is wild; None: all 1
     shared: np.ndarray | None = (
@@ -55,6 +63,11 @@ class Noise:
     def Mz(self) -> float:
         """Typical noise of Mz [Nm]; NaN if Mz was not measured."""
         return _typical(self.u[len(self.u) // 2 :])
+
+    def typically_stated(self, channel: str) -> float:
+        """Typical uncertainty of a channel as stated."""
+        n = len(self.stated) // 2
+        return _typical(self.stated[:n] if channel == "Fy" else self.stated[n:])
 
     @cached_property
     def used(self) -> np.ndarray:
@@ -161,7 +174,7 @@ class Noise:
         return replace(self, u=u / np.sqrt(weight), scatter=dict(scatter), weight=weight)
 
 
-def with_uncertainties(points: Points, state: Simulation) -> tuple[Points, str]:
+def with_uncertainties(points: Points, state: Simulation) -> tuple[Points, Origin | None]:
     """The points with a standard uncertainty for every reading, and where it comes from.
 
     As stated, else from the scatter of measured minus simulated between neighbouring points of each sweep, from which the
@@ -173,12 +186,14 @@ def with_uncertainties(points: Points, state: Simulation) -> tuple[Points, str]:
         If all stated uncertainties are zero.
     """
     n, simulated = len(points), state.predict(points)
-    Fy, source = _channel(points, points.Fy, points.u_Fy, simulated[:n], "u_Fy_N")
+    Fy, origin = _channel(points, points.Fy, points.u_Fy, simulated[:n], "u_Fy_N")
     Mz, _ = _channel(points, points.Mz, points.u_Mz, simulated[n:], "u_Mz_Nm")
-    return points.replace(u_Fy=Fy, u_Mz=Mz), source
+    return points.replace(u_Fy=Fy, u_Mz=Mz), origin
 
 
-def noise_model(points: Points, state: Simulation, u_coefficients: float, source: str = "") -> Noise:
+def noise_model(
+    points: Points, state: Simulation, u_coefficients: float, origin: Origin | None = None
+) -> Noise:
     """Covariance of the readings: their own uncertainties (finite where used) and the model's inexactness.
 
     Parameters
@@ -186,11 +201,11 @@ def noise_model(points: Points, state: Simulation, u_coefficients: float, source
     points : with uncertainties as :func:`with_uncertainties` gives them
     state : the simulation whose coefficients are inexact
     u_coefficients : relative standard uncertainty of the P.Y. and Q.Z. coefficients
-    source : where the uncertainties come from
+    origin : where the uncertainties come from
     """
     u = np.concatenate([points.u_Fy, points.u_Mz])
     chain = np.concatenate([points.sweep, points.sweep + 1 + points.sweep.max(initial=0)])
-    noise = Noise(u=u, stated=u, chain=chain, source=source)
+    noise = Noise(u=u, stated=u, chain=chain, origin=origin)
     if u_coefficients <= 0.0:
         return noise
     return noise.sharing(u_coefficients * coefficient_jacobian(points, state))
@@ -210,11 +225,11 @@ def _typical(u: np.ndarray) -> float:
 
 def _channel(
     points: Points, values: np.ndarray, stated: np.ndarray, simulated: np.ndarray, column: str
-) -> tuple[np.ndarray, str]:
+) -> tuple[np.ndarray, Origin | None]:
     """Uncertainty (n,) of one channel; inf where it was not measured."""
     measured = np.isfinite(values)
     if not np.any(measured):
-        return np.full(len(points), np.inf), ""
+        return np.full(len(points), np.inf), None
     known = measured & np.isfinite(stated)
     if np.any(known) and np.all(stated[known] <= 0.0):
         raise InputError(
@@ -222,10 +237,10 @@ def _channel(
         )
     if np.all(known[measured]):
         floor = 0.05 * np.median(stated[known][stated[known] > 0])
-        return np.where(measured, np.maximum(stated, floor), np.inf), "stated uncertainties"
+        return np.where(measured, np.maximum(stated, floor), np.inf), Origin.STATED
     guess = neighbour_noise(points, values - simulated)
     u = np.where(known, stated, guess)
-    return np.where(measured, u, np.inf), "scatter between neighbouring points"
+    return np.where(measured, u, np.inf), Origin.SCATTER
 
 
 def neighbour_noise(points: Points, values: np.ndarray) -> float:

@@ -82,29 +82,6 @@ class Files:
         told = {use: replace(f, tyre=f.tyre.annotate(status=comments[use])) for use, f in self.by_use.items()}
         return replace(self, by_use=told)
 
-    def to_json(self) -> dict[str, Any]:
-        """The ``files`` part of ``fit``."""
-        out: dict[str, Any] = {
-            use: {
-                "USE_MODE": int(f.tyre["USE_MODE"]),
-                **{place: _misfits_json(channels) for place, channels in f.misfit.items()},
-                "camber_stiffness_N_per_rad": f.camber_stiffness,
-            }
-            for use, f in self.by_use.items()
-        }
-        for use, names in self.changed.items():
-            out[use]["coefficients"] = {n: self.by_use[use].tyre[n] for n in names}
-        if self.lacking:
-            out["normal"]["camber_stiffness_loss"] = self.stiffness_loss
-            out["normal"]["turn_slip_force_lacking_N"] = {
-                f"{radius:g} m": force for radius, force in self.lacking.items()
-            }
-        return {**out, "ranges": {"tested": dict(self.tested), "written": dict(self.written)}}
-
-
-def _misfits_json(channels: Mapping[str, Misfit]) -> dict[str, Any]:
-    return {channel: {name: getattr(m, name) for name in Misfit.__slots__} for channel, m in channels.items()}
-
 
 def make_files(
     config: Any, known: Known, points: Points, base: Tyre | None, C_gamma: Mapping[float, float]

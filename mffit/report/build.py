@@ -2,15 +2,23 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Callable
 from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 import mffit
+from mffit.measured import LARGEST_DIFFERENCE, wording
+from mffit.quantities import CHANNELS, CONDITIONS, DIRECT
 from mffit.report import page, published
-from mffit.report.build_view import STATUS_ORDER, BuildView, Channel, Row, view_of
+from mffit.report.build_view import PER_LOAD, STATUS_ORDER, BuildView, Channel, Row, view_of
+from mffit.results import BuildResult
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 RESIDUAL_LIMIT = 4.0
 """End of the residual maps' scale, in units of noise."""
@@ -22,14 +30,16 @@ SECTION_TITLES = {
     "ROLLING_COEFFICIENTS": "Rolling resistance",
 }
 OTHER_SECTIONS = "Everything else"
+PLACES = {"straight_with_turn_slip": "turn slip on", "disc": "turn slip on, on the disc"}
+"""Where a file that serves both uses is judged beside the straight path without turn slip."""
 
 
-def write_build(result: Any, folder: Path) -> None:
+def write_build(result: BuildResult, folder: Path) -> None:
     """Write ``plots/*.png`` and ``report.html`` of a build.
 
     Parameters
     ----------
-    result : ``mffit.pipeline.Result``
+    result : what the build produced
     folder : existing folder to write to
     """
     view = view_of(result)
@@ -43,16 +53,24 @@ def write_build(result: Any, folder: Path) -> None:
         statuses=[s for s in STATUS_ORDER if any(row.status == s for row in view.rows)],
         residual_unit=residual_unit(view),
         published=published,
+        channels=CHANNELS,
+        places=PLACES,
+        epsilon_values=wording.epsilon_values(result.measured),
+        conditions=CONDITIONS,
+        direct=DIRECT,
+        per_load=PER_LOAD,
+        aligned_below=LARGEST_DIFFERENCE,
+        degrees=math.degrees(1.0),
         version=mffit.__version__,
     )
 
 
-def _figures(view: BuildView) -> dict[str, Any]:
+def _figures(view: BuildView) -> dict[str, Callable[[], Figure]]:
     """What is drawn, in the order of the page."""
-    from mffit.report.figures import decomposition, files, fit, residuals, spin
+    from mffit.report.figures import bands, decomposition, files, fit, residuals, spin
 
-    out: dict[str, Any] = {}
-    if view.two_files:
+    out: dict[str, Callable[[], Figure]] = {}
+    if view.several_files:
         out["files"] = partial(files.files_on_a_straight_path, view)
     if view.on_disc:
         out["camber_reduction"] = partial(spin.camber_reduction, view)
@@ -66,6 +84,8 @@ def _figures(view: BuildView) -> dict[str, Any]:
     for channel in view.channels:
         if view.curves:
             out[f"fit_{channel.name}"] = partial(fit.model_against_points, view, channel)
+    if view.files is not None:
+        out["bands"] = partial(bands.bands, view)
     scaled = [(c.name, (c.measured - c.model) / _scale(view, c)) for c in view.channels]
     out["residuals"] = partial(
         residuals.residual_maps, view.points, scaled, view.conditions, RESIDUAL_LIMIT, residual_unit(view)

@@ -8,12 +8,23 @@ import pytest
 
 from mffit.diagnosis import Diagnosis, diagnose, wording
 from mffit.diagnosis.needs import MET
-from mffit.diagnosis.notes import HardlyThisTyre, NoRepair, NotVisible, OneSweep
+from mffit.diagnosis.notes import (
+    DirectMethodRedone,
+    HardlyThisTyre,
+    ModelFittedFirst,
+    ModelOfLastBuild,
+    NoRepair,
+    NotVisible,
+    OneSweep,
+)
 from mffit.diagnosis.ties import Run, Separation
 from mffit.diagnosis.unknown import Bump
 from mffit.diagnosis.validate import Gap, Validation
 from mffit.effects import NEEDS
+from mffit.results import as_json
+from tir import Quantity
 
+RIGHT, WRONG = Quantity(-0.06, 0.05, "-"), Quantity(0.2, 0.07, "-")
 BUMP = Bump("Mz", {"alpha_deg": (-4.0, -2.5), "Fz_N": (1400.0, 1600.0)}, -6.2, 30.0)
 
 
@@ -88,7 +99,18 @@ def test_every_run_has_words_and_only_a_telling_one_is_recommended(run):
             "No repair is written: camber stiffness would fit these points better, but on sweeps that were left out the "
             "side force misses by 37.5 N instead of 36.7 N",
         ),
-        ("said elsewhere", "said elsewhere"),
+        (ModelOfLastBuild("front-normal.tir"), "The model is front-normal.tir of the last build."),
+        (ModelFittedFirst(turn_slip=False), "simulations with turn slip off."),
+        (DirectMethodRedone(("backlash",), RIGHT, None), "cannot be measured even without backlash"),
+        (DirectMethodRedone(("backlash",), None, RIGHT), "cannot be measured with backlash"),
+        (
+            DirectMethodRedone(("backlash",), RIGHT, RIGHT),
+            "stays -0.06 +- 0.05 (k = 1) with backlash corrected",
+        ),
+        (
+            DirectMethodRedone(("backlash", "gain"), WRONG, RIGHT),
+            "was 0.20 +- 0.07 with backlash and gain; corrected it is -0.06 +- 0.05 (k = 1).",
+        ),
     ],
 )
 def test_every_note_becomes_a_sentence(note, words):
@@ -96,7 +118,7 @@ def test_every_note_becomes_a_sentence(note, words):
 
 
 def test_the_file_keeps_its_keys(camber):
-    content = replace(camber, notes=(OneSweep(),)).to_json()
+    content = as_json.diagnosis(replace(camber, notes=(OneSweep(),)))
     assert list(content) == [
         "headline", "gap_before", "gap_after", "validation", "where", "effects", "alternatives", "unexplained",
         "unexplained_where", "noise_floor", "outliers", "coefficients", "model_after", "notes",
