@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, assert_never
 
@@ -21,7 +22,7 @@ from mffit.effects import NEEDS
 from mffit.quantities import CHANNELS, CONDITIONS
 
 if TYPE_CHECKING:
-    from mffit.diagnosis.result import Diagnosis, Found
+    from mffit.diagnosis.result import Diagnosis, Found, Outlier
     from mffit.diagnosis.unknown import Bump
     from mffit.diagnosis.validate import Validation
 
@@ -146,6 +147,33 @@ def separation(found: Separation | None) -> str:
 def method(validation: Validation) -> str:
     """How it was validated."""
     return f"{validation.folds} groups of whole sweeps left out in turn"
+
+
+def scatter(noise: Noise) -> list[str]:
+    """The noise that was found beside the one that was stated, a sentence per channel."""
+    out = []
+    for name, found in (("Fy", noise.Fy), ("Mz", noise.Mz)):
+        if not math.isfinite(found):
+            continue
+        part, unit = noise.scatter[name], CHANNELS[name].unit
+        sentence = (
+            f"{name} scatters by {found:.3g} {unit}, stated were {noise.typically_stated(name):.3g} {unit}"
+        )
+        more = []
+        if part.growth:
+            more.append(f"it grows by {100.0 * part.growth:.2g} % of the reading")
+        if part.memory:
+            more.append(f"errors along a sweep are alike ({part.memory:.2f} from point to point)")
+        if math.isfinite(part.tails):
+            more.append("wild readings are more frequent than normal noise has them and lost their weight")
+        out.append("; ".join([sentence, *more]) + ".")
+    return out
+
+
+def outlier(found: Outlier) -> str:
+    """One wild reading."""
+    place = f"{found.sweep}, line {found.line}" if found.line else found.sweep
+    return f"{place}: {found.channel} off by {found.residual:.3g} {CHANNELS[found.channel].unit}, {abs(found.z):.0f} times its noise"
 
 
 def status(effect: str, before: float, stderr: float) -> str:

@@ -16,7 +16,7 @@ NOTHING = np.zeros((2 * N, 1))
 def stated(u=6.0):
     chain = np.repeat(np.arange(2 * SWEEPS), N // SWEEPS)
     u = np.repeat([u, u / 10.0], N)
-    return Noise(u=u, stated=u, chain=chain, source="")
+    return Noise(u=u, stated=u, chain=chain, origin=None)
 
 
 def found(Fy, named=NOTHING):
@@ -84,7 +84,7 @@ def test_whitening_makes_the_covariance_one():
     u[40] = np.inf
     chain, shared = np.repeat([0, 1, 2, 3], 15), rng.normal(size=(60, 4))
     memory = {"Fy": Scatter(memory=0.8), "Mz": Scatter(memory=0.3)}
-    noise = Noise(u=u, stated=u, chain=chain, source="", scatter=memory, shared=shared)
+    noise = Noise(u=u, stated=u, chain=chain, origin=None, scatter=memory, shared=shared)
     used = np.flatnonzero(np.isfinite(u))
     steps = np.abs(np.subtract.outer(np.arange(59), np.arange(59)))
     rho = np.where(used < n, 0.8, 0.3)

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
 from mffit.diagnosis import Diagnosis, diagnose, wording
 from mffit.diagnosis.needs import MET
+from mffit.diagnosis.noise import Noise, Scatter
 from mffit.diagnosis.notes import (
     DirectMethodRedone,
     HardlyThisTyre,
@@ -17,6 +19,7 @@ from mffit.diagnosis.notes import (
     NotVisible,
     OneSweep,
 )
+from mffit.diagnosis.result import Outlier
 from mffit.diagnosis.ties import Run, Separation
 from mffit.diagnosis.unknown import Bump
 from mffit.diagnosis.validate import Gap, Validation
@@ -135,3 +138,20 @@ def test_the_file_keeps_its_keys(camber):
 
 def test_every_need_has_words_and_a_test_of_the_points():
     assert set(MET) == set(NEEDS)
+
+
+def test_the_noise_is_stated_beside_the_declared_one():
+    u = np.repeat([6.0, 0.6], 10)
+    parts = {"Fy": Scatter(2.0, 0.015, 0.9, 2.5), "Mz": Scatter()}
+    noise = Noise(u=u * np.repeat([2.0, 1.0], 10), stated=u, chain=np.zeros(20), origin=None, scatter=parts)
+    Fy, Mz = wording.scatter(noise)
+    assert Fy.startswith(
+        "Fy scatters by 12 N, stated were 6 N; it grows by 1.5 % of the reading; errors along a sweep"
+    )
+    assert "lost their weight" in Fy
+    assert Mz == "Mz scatters by 0.6 Nm, stated were 0.6 Nm."
+
+
+def test_a_wild_reading_is_named_by_its_line():
+    said = wording.outlier(Outlier("Fy", "sideslip_900", "sideslip_900.csv", 14, -91.0, -15.2))
+    assert said == "sideslip_900, line 14: Fy off by -91 N, 15 times its noise"
