@@ -173,7 +173,8 @@ def scatter(noise: Noise) -> list[str]:
 def outlier(found: Outlier) -> str:
     """One wild reading."""
     place = f"{found.sweep}, line {found.line}" if found.line else found.sweep
-    return f"{place}: {found.channel} off by {found.residual:.3g} {CHANNELS[found.channel].unit}, {abs(found.z):.0f} times its noise"
+    size = f"{found.residual:.3g} {CHANNELS[found.channel].unit}"
+    return f"{place}: {found.channel} off by {size}, {abs(found.z):.0f} times its noise"
 
 
 def status(effect: str, before: float, stderr: float) -> str:

@@ -107,7 +107,7 @@ SPIN_TRAIL_LOSS = Effect(
 SPIN_TORQUE = Effect(
     "spin-torque", "turn-slip moment", "tyre",
     "A contact patch that is turned resists with a moment of its own.",
-    (Free("QCRP1", 0.1, (0.03, 0.1, 0.2, -0.03, -0.06), 0.0, 1.5),), ("spin", "moment"), "odd in phi",
+    (Free("QCRP1", 0.1, (0.005, 0.03, 0.1, 0.2, -0.03, -0.06), 0.0, 1.5),), ("spin", "moment"), "odd in phi",
 )  # fmt: skip
 RELAXATION = Effect(
     "relaxation", "relaxation length", "tyre",
