@@ -34,7 +34,7 @@ def declared_rig(config: Any, points: Points, start: Simulation) -> dict[str, tu
 
 def _cornering_stiffness(points: Points, start: Simulation) -> float:
     """Of the model at the median load [N/rad]."""
-    middle = points.select([int(np.argmin(np.abs(points.Fz - np.median(points.Fz))))])
+    middle = points.select(np.array([np.argmin(np.abs(points.Fz - np.median(points.Fz)))]))
     step = np.radians(0.1)
     up, down = (start.predict(middle.replace(alpha=s, gamma=0.0))[0] for s in (step, -step))
     return max(abs(float(up - down)) / (2.0 * step), 1.0)

@@ -85,7 +85,9 @@ def diagnose(
         notes.append(OneSweep())
     progress("trying every effect")
     stated = noise_model(points, start, 0.0, origin)
-    found = explain(points, start, stated, candidates, inexact, declared_rig(config, points, start))
+    found = explain(
+        points, start, stated, candidates, inexact, declared_rig(config, points, start), seen=seen
+    )
     misfit = _misfit(found, points)
     if found.chosen.effects and misfit > STRANGER:
         notes.append(HardlyThisTyre(misfit))

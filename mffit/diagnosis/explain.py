@@ -54,23 +54,30 @@ class Explanation:
 
     @property
     def plain(self) -> Problem:
-        """The problem in which coefficients are fitted rather than integrated out; smooth structure stays allowed for."""
+        """The problem in which coefficients are fitted rather than integrated out.
+
+        Structure without a name is not allowed for here: a model predicts best that follows the readings as far as it can.
+        Then its memory along sweeps is structure too.
+        """
         noise = self.scatter
         if self.smooth.found:
-            noise = noise.sharing(amplified(self.basis, self.smooth))
+            noise = replace(noise, scatter={c: replace(s, memory=0.0) for c, s in noise.scatter.items()})
         return Problem(self.problem.points, self.problem.start, noise, self.problem.declared)
 
-    def certainty(self, effect: Effect) -> float:
-        """Weight of an effect against its absence, structure without a name in its place, less what is left unexplained."""
+    def certainty(self, effect: Effect, *, counted: bool = True) -> float:
+        """Weight of an effect against its absence with structure without a name in its place.
+
+        ``counted``: less what is left unexplained.
+        """
         problem, chosen = self.problem, self.chosen
         others = tuple(e for e in chosen.effects if e.id != effect.id)
         numbers = {n: chosen.numbers[n] for e in others for n in e.parameters}
         without = problem.fit(others, numbers) if others else problem.null
         gain, left = chosen.log_evidence - without.log_evidence, self.left(chosen)
         against = gain + left - self.left(without) - math.log(max(len(self.steps[0].trials), 1))
-        open_ = left + (self.smooth.gain if self.smooth.found else 0.0)
-        counted = max(gain, 0.0) / (max(gain, 0.0) + open_) if open_ else 1.0
-        return float(counted / (1.0 + math.exp(-float(np.clip(against, -500.0, 500.0)))))
+        open_ = left + (self.smooth.gain if self.smooth.found else 0.0) if counted else 0.0
+        share = max(gain, 0.0) / (max(gain, 0.0) + open_) if open_ else 1.0
+        return float(share / (1.0 + math.exp(-float(np.clip(against, -500.0, 500.0)))))
 
     def left(self, hypothesis: Hypothesis) -> float:
         """Log evidence of the best structure without a name beside a hypothesis; 0 where there is none."""
@@ -85,6 +92,8 @@ def explain(
     candidates: Sequence[Effect],
     inexact: Inexactness,
     declared: Mapping[str, tuple[float, float]],
+    *,
+    seen: bool = False,
 ) -> Explanation:
     """Find what explains the readings.
 
@@ -96,6 +105,8 @@ def explain(
     candidates : effects that the data can show
     inexact : prior of the model's coefficients
     declared : what is known of the rig's errors: name -> (value, standard uncertainty)
+    seen : whether the model was fitted to these points: what its formulae cannot follow then stays as smooth structure, which
+        says nothing against an effect beside it
     """
     basis, found, at = smooth_basis(points), None, start
     stated = noise
@@ -114,6 +125,8 @@ def explain(
         problem = Problem(points, at, noise.sharing(columns), declared, offset)
         # Before that, what the coefficients do elsewhere would look like structure without a name.
         latest = _explained(problem, columns, candidates, basis, rivals=not inexact or found is not None)
+        if latest.smooth.found:
+            latest = _certain(latest, counted=not seen)
         same = found is not None and ids(latest.chosen) == ids(found.chosen)
         found = _refined(latest, inexact)
         if same:
@@ -159,14 +172,13 @@ def _explained(
     problem = problem.seen_through(noise)
     chosen, steps = select(problem, candidates) if candidates else (problem.null, [])
     bumps = bump_scan(problem.points, noise)
-    found = Explanation(problem, chosen, steps, bumps.best(chosen), smooth, bumps, basis, chosen, {})
-    return _certain(found)
+    return Explanation(problem, chosen, steps, bumps.best(chosen), smooth, bumps, basis, chosen, {})
 
 
-def _certain(found: Explanation) -> Explanation:
+def _certain(found: Explanation, *, counted: bool) -> Explanation:
     """Without effects that the structure beside them may as well explain, the least certain first."""
     while found.chosen.effects:
-        certain = {e: found.certainty(e) for e in found.chosen.effects}
+        certain = {e: found.certainty(e, counted=counted) for e in found.chosen.effects}
         least = min(certain, key=lambda e: certain[e])
         if certain[least] >= CERTAIN:
             break

@@ -18,7 +18,7 @@ def _spread(x: np.ndarray) -> float:
 
 def _both_senses(points: Points) -> bool:
     way = sense(points)
-    return min(np.sum(way > 0), np.sum(way < 0)) > 0.1 * len(points)
+    return bool(min(np.sum(way > 0), np.sum(way < 0)) > 0.1 * len(points))
 
 
 def _distance_is_not_time(points: Points) -> bool:

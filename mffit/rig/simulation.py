@@ -240,7 +240,8 @@ def _yielding(give: Any, alpha: Any, moment: Callable[[Any], Any], derivatives: 
     k, start = float(plain(give)), plain(alpha)
     if not k and not isinstance(give, Traced):
         return alpha
-    held, slope = start, 0.0
+    held: Any = start
+    slope: Any = 0.0
     if k:
         slope = _moment_slope(moment, start)
         for _ in range(YIELDINGS):
