@@ -80,6 +80,8 @@ def diagnose(
     points, origin = with_uncertainties(by_condition(points), start)
     inexact = coefficients or declared_inexactness(tyre, config.model.u_coefficients)
     candidates, notes = possible(effects, points, start)
+    if seen:  # what is refitted in any case is no missing effect
+        candidates = [e for e in candidates if not set(e.parameters) <= set(inexact.names)]
     if len(np.unique(points.sweep)) < 2:
         candidates = []
         notes.append(OneSweep())
