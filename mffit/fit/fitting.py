@@ -9,10 +9,12 @@ from typing import Any
 
 import numpy as np
 
+from mffit.config import axis_signs
 from mffit.fit import weights
 from mffit.fit.coverage import coverage
 from mffit.fit.estimates import estimates
 from mffit.fit.files import Files, file_names, make_files, sentences
+from mffit.fit.judgement import judge
 from mffit.fit.problem import Problem
 from mffit.fit.radius import radius_coefficients
 from mffit.fit.ranges import covered_ranges, envelope
@@ -68,6 +70,14 @@ def fit(
     plan = Plan(cover, start, rig, extra, noise_stated=bool(np.any(np.isfinite(points.u_Fy))))
     problem = _problem(config, points, values, measured)
     fitted = fit_staged(problem, start, plan, progress)
+    progress("judging every sweep by all others")
+    doubts = judge(
+        points,
+        fitted,
+        (problem.sigma_Fy, problem.sigma_Mz),
+        axis_signs(config),
+        lambda rows: fit_staged(problem.select(rows), start, plan, silent, restarts=False),
+    )
     fitted = _with_held_pecp1(fitted, points, measured, free_pecp1)
     turn_slip = {**values, **{n: start[n] for n in fitted.unmoved}, **fitted.values}
     if base is None:
@@ -105,11 +115,16 @@ def fit(
         stages=fitted.stages,
         coverage=cover,
         explanations=tuple(explanations),
-        warnings=tuple(_warnings(fitted, points)),
+        warnings=(*_warnings(fitted, points), *(doubt.sentence for doubt in doubts)),
+        doubts=doubts,
         seconds=time.perf_counter() - began,
         epsilon_gamma_model=_epsilon_of_model(turn_slip, points, measured),
         files=written,
     )
+
+
+def silent(sentence: str) -> None:
+    """Progress of a fit on the way that is not told."""
 
 
 def _before_the_fit(config, points: Points, measured, base) -> tuple[dict[str, Any], dict[str, str]]:

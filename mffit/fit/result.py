@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from mffit.fit.coverage import StageCoverage
+from mffit.fit.doubts import Doubt
 from mffit.fit.files import Files
 from mffit.rig import UNITS, Simulation
 from tir import Tyre
@@ -70,6 +71,7 @@ class FitResult:
     warnings: tuple[str, ...]
     seconds: float
     epsilon_gamma_model: float | None = None
+    doubts: tuple[Doubt, ...] = ()  #: sweeps that do not fit the others
     files: Files | None = None  #: every file that is written, and how good each is
 
     def to_json(self) -> dict:

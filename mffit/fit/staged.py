@@ -79,7 +79,9 @@ SHAPES: Mapping[str, Mapping[str, float]] = {
 """Other places to start from where the first fit ends too far away."""
 
 
-def fit_staged(problem: Problem, start: Mapping[str, float], plan: Plan, progress: Progress) -> Fitted:
+def fit_staged(
+    problem: Problem, start: Mapping[str, float], plan: Plan, progress: Progress, *, restarts: bool = True
+) -> Fitted:
     """Fit stage by stage, then tyre and rig together; again from other shapes where that ends far from the noise.
 
     Parameters
@@ -88,11 +90,12 @@ def fit_staged(problem: Problem, start: Mapping[str, float], plan: Plan, progres
     start : starting value of every coefficient
     plan : what is free
     progress : called with a sentence before each step
+    restarts : whether to start again where the fit ends far from the noise
     """
     _enough_points(problem.points, plan.free)
     best = _fit_from(problem, start, plan, progress)
     far = plan.noise_stated and max(best.scale) > FALSE_MINIMUM
-    if not far and not best.at_bound & BY_SHAPE:
+    if not restarts or (not far and not best.at_bound & BY_SHAPE):
         return best
     tried = []
     for shape, values in SHAPES.items():
