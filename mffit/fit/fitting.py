@@ -15,6 +15,8 @@ from mffit.fit.coverage import coverage
 from mffit.fit.estimates import estimates
 from mffit.fit.files import Files, file_names, make_files, sentences
 from mffit.fit.judgement import judge
+from mffit.fit.outliers import outliers
+from mffit.fit.outliers import sentence as listed
 from mffit.fit.problem import Problem
 from mffit.fit.radius import radius_coefficients
 from mffit.fit.ranges import covered_ranges, envelope
@@ -71,10 +73,11 @@ def fit(
     problem = _problem(config, points, values, measured)
     fitted = fit_staged(problem, start, plan, progress)
     progress("judging every sweep by all others")
+    stated = problem.sigma_Fy, problem.sigma_Mz
     doubts = judge(
         points,
         fitted,
-        (problem.sigma_Fy, problem.sigma_Mz),
+        stated,
         axis_signs(config),
         lambda rows: fit_staged(problem.select(rows), start, plan, silent, restarts=False),
     )
@@ -102,6 +105,7 @@ def fit(
     use = config.spin.exact if disc else "normal"
     normal = written.by_use["normal"].tyre
     Fy, Mz = fitted.simulation.readings(points)
+    singled = outliers(points, stated, (fitted.sigma_Fy, fitted.sigma_Mz), (Fy, Mz))
     return FitResult(
         tyre=written.by_use["turn-slip" if disc else "normal"].tyre,
         written=written.by_use[use].tyre,
@@ -115,8 +119,13 @@ def fit(
         stages=fitted.stages,
         coverage=cover,
         explanations=tuple(explanations),
-        warnings=(*_warnings(fitted, points), *(doubt.sentence for doubt in doubts)),
+        warnings=(
+            *_warnings(fitted, points),
+            *(doubt.sentence for doubt in doubts),
+            *([listed(singled)] if singled else []),
+        ),
         doubts=doubts,
+        outliers=singled,
         seconds=time.perf_counter() - began,
         epsilon_gamma_model=_epsilon_of_model(turn_slip, points, measured),
         files=written,

@@ -46,6 +46,7 @@ class Error(NamedTuple):
     ratio: float  #: in units of what a sound sweep would show
     share: float  #: of the channel's usual size at this load, beyond what the prediction leaves open
     chance: float  #: probability that a sound sweep is as far off
+    vague: float  #: standard error of the prediction, noise included, as a share of the usual size
 
 
 class Verdict(NamedTuple):
@@ -99,7 +100,12 @@ def judge(
     if verdicts:
         raise _refusal(verdicts)
     usual = _usual_ratios([e for rows in errors.values() for e in rows])
-    return _doubts(points, [s for s in suspects if s[0].ratio > usual and s[0].share > DOUBTFUL], fit, fitted.simulation, signs)
+    doubtful = [
+        s
+        for s in suspects
+        if s[0].ratio > usual and s[0].share > DOUBTFUL and s[0].vague < DOUBTFUL
+    ]
+    return _doubts(points, doubtful, fit, fitted.simulation, signs)
 
 
 def usual_sizes(points: Points, found: list[Group]) -> dict[str, float]:
@@ -127,9 +133,14 @@ def error_of(name: str, prediction: Prediction, size: float) -> Error:
     e, V = error[kept], covariance[np.ix_(kept, kept)]
     total = float(e @ np.linalg.solve(V, e))
     rms = float(np.sqrt(np.mean(e**2)))
-    beyond = max(rms - SURE * float(np.sqrt(np.mean(own[kept] ** 2))), 0.0)
+    open_ = float(np.sqrt(np.mean(own[kept] ** 2)))
     return Error(
-        name, rms, float(np.sqrt(total / len(kept))), beyond / size, float(chi2.sf(total, len(kept)))
+        channel=name,
+        rms=rms,
+        ratio=float(np.sqrt(total / len(kept))),
+        share=max(rms - SURE * open_, 0.0) / size,
+        chance=float(chi2.sf(total, len(kept))),
+        vague=open_ / size,
     )
 
 
@@ -162,7 +173,7 @@ def _verdict(
     undone = [(m, seen(m.undone(part, signs))) for m in MISTAKES if m.beyond_doubt]
     fitting = [(_left(after), m) for m, after in undone if _explains(m, declared, after, part, signs)]
     left, best = min(fitting, key=lambda pair: pair[0], default=(1.0, None))
-    if best is None and worst.share < IMPLAUSIBLE:
+    if best is None and (worst.share < IMPLAUSIBLE or worst.vague > GROSS):
         return None
     return Verdict(group, worst, best, left)
 

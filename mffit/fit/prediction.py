@@ -83,7 +83,7 @@ def _conditions(points: Points) -> Iterator[Group]:
                 part = points.select(rows)
                 said = f"{np.mean(part.Fz):.0f} N, {np.mean(part.p) / 1e3:.0f} kPa"
                 if keys.shape[1] > 4:
-                    said += f", camber {np.degrees(np.mean(part.gamma)):.0f} deg"
+                    said += f", camber {np.degrees(np.mean(part.gamma)):z.0f} deg"
                 yield Group(f"{sweep.name} at {said}", sweep.file, rows, False)
 
 

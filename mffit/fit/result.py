@@ -10,6 +10,7 @@ import numpy as np
 from mffit.fit.coverage import StageCoverage
 from mffit.fit.doubts import Doubt
 from mffit.fit.files import Files
+from mffit.fit.outliers import Outlier
 from mffit.rig import UNITS, Simulation
 from tir import Tyre
 
@@ -72,6 +73,7 @@ class FitResult:
     seconds: float
     epsilon_gamma_model: float | None = None
     doubts: tuple[Doubt, ...] = ()  #: sweeps that do not fit the others
+    outliers: tuple[Outlier, ...] = ()  #: single readings that count with no weight
     files: Files | None = None  #: every file that is written, and how good each is
 
     def to_json(self) -> dict:

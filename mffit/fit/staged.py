@@ -11,6 +11,7 @@ import numpy as np
 from mffit.errors import InputError
 from mffit.fit import weights
 from mffit.fit.coverage import StageCoverage
+from mffit.fit.play import undecided_play
 from mffit.fit.problem import Problem
 from mffit.fit.result import StageRecord
 from mffit.fit.stages import CONICITY_ON_A_DISC, IF_IDENTIFIED, STAGES, Stage
@@ -242,9 +243,13 @@ def _reweighted(problem: Problem) -> tuple[Problem, tuple[float, float]]:
     residual = problem.misfit()
     n = len(problem.points)
     out, scales = [], []
-    for part, sigma in ((residual[:n], problem.sigma_Fy), (residual[n:], problem.sigma_Mz)):
-        scale = max(weights.robust_scale(part), 1.0)
-        out.append(sigma * scale * weights.huber(part, scale))
+    play = undecided_play(problem.simulation, problem.points, problem.sigma_Mz)
+    for part, sigma, open_ in (
+        (residual[:n], problem.sigma_Fy, play.Fy),
+        (residual[n:], problem.sigma_Mz, play.Mz),
+    ):
+        factor, scale = weights.enlarged(part, problem.points.sweep, open_ / sigma)
+        out.append(sigma * factor)
         scales.append(scale)
     return dataclasses.replace(problem, sigma_Fy=out[0], sigma_Mz=out[1]), (scales[0], scales[1])
 
