@@ -1,7 +1,9 @@
 """Points and direct measurements to an MF-6.2 tyre with standard errors."""
 
+from mffit.fit.doubts import Doubt
 from mffit.fit.files import file_names
 from mffit.fit.fitting import fit
+from mffit.fit.outliers import Outlier, marks
 from mffit.fit.result import Agreement, Coefficient, FitResult, StageRecord
 
-__all__ = ["Agreement", "Coefficient", "FitResult", "StageRecord", "file_names", "fit"]
+__all__ = ["Agreement", "Coefficient", "Doubt", "FitResult", "Outlier", "StageRecord", "file_names", "fit", "marks"]
