@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from mffit.fit.known import Known
 from mffit.fit.normal import (
     Road,
     derive_normal,
@@ -16,7 +17,6 @@ from mffit.fit.normal import (
     weights,
 )
 from mffit.fit.ranges import NAMES, plausible_ranges, tested_ranges
-from mffit.fit.stages import ODD_TERMS
 from mffit.fit.start import camber_stiffness_terms
 from mffit.points import Points, main_pressure
 from tir import Tyre
@@ -99,10 +99,9 @@ class Files:
 
 def make_files(
     config: Any,
-    values: Mapping[str, Any],
+    known: Known,
     points: Points,
     base: Tyre | None,
-    status: dict[str, str],
     comments: Mapping[str, str],
     C_gamma: Mapping[float, float],
 ) -> Files:
@@ -111,24 +110,20 @@ def make_files(
     Parameters
     ----------
     config : the validated ``tyre.toml``
-    values : the fitted model
+    known : the fitted model and the origin of every value
     points : the points it was fitted to
     base : coefficients that were not fitted came from here
-    status : origin of every value in a word; what is decided here is put in
     comments : the comments of fitted values
     C_gamma : measured camber stiffness [N/rad] by load [N]; empty on a flat track
     """
+    values = known.values
     disc = config.rig.type == "rotating-disk"
+    symmetric = config.tyre.side == "symmetric"
     tested = tested_ranges(points)
     written = plausible_ranges(values, tested, turn_slip=disc)
-    given = [name for name, key in GIVEN.items() if getattr(config.tyre, key) is not None]
-    status.update({**dict.fromkeys(NAMES, "range"), **dict.fromkeys((*DECIDED, *given), "given")})
-    symmetric = config.tyre.side == "symmetric"
-    if symmetric:
-        status.update(dict.fromkeys(ODD_TERMS, "given"))
     side = "RIGHT" if str(values["TYRESIDE"]).upper().startswith("R") else "LEFT"
     model = {**values, **written, "TYRESIDE": side, "FITTYP": 62}
-    all_comments = {**_comments(status, tested), **comments}
+    all_comments = {**_comments(known.origin, tested), **comments}
 
     changed: dict[str, float] = {}
     if disc:
@@ -203,6 +198,12 @@ WORDS = {
     "range": "estimate, checked plausible",
     "given": "given in tyre.toml",
 }
+
+
+def decisions(config: Any) -> dict[str, str]:
+    """Origin of the values that the configuration or the build itself decides."""
+    given = [name for name, key in GIVEN.items() if getattr(config.tyre, key) is not None]
+    return {**dict.fromkeys(NAMES, "range"), **dict.fromkeys((*DECIDED, *given), "given")}
 
 
 def _comments(status: Mapping[str, str], tested: Mapping[str, float]) -> dict[str, str]:

@@ -89,8 +89,7 @@ def judge(
         return ()
     size = usual_sizes(points, found)
     noise = np.concatenate([u * k for u, k in zip(stated, fitted.scale, strict=True)])
-    weight = np.concatenate([fitted.sigma_Fy, fitted.sigma_Mz])
-    fit = leverage(points, fitted.simulation, fitted.names, fitted.covariance, weight, noise)
+    fit = leverage(fitted.problem, fitted.numbers, noise)
     errors = {k: errors_of(predictions(fit, g.index), g, points, size) for k, g in enumerate(found)}
     level = FALSE_ALARM / sum(len(rows) for rows in errors.values())
     suspects = [(e, found[k]) for k, rows in errors.items() for e in rows if e.chance < level]
@@ -205,7 +204,7 @@ def _refusal(verdicts: list[Verdict]) -> InputError:
 
 def _predicted(part: Points, fitted: Fitted, stated, size) -> dict[str, tuple[Error, Prediction]]:
     """Errors of a fit at points (m,) that it has not seen."""
-    out, slope = fitted.simulation.sensitivities(part, fitted.names)
+    out, slope = fitted.simulation.sensitivities(part, fitted.posterior.names)
     load = float(np.mean(part.Fz))
     found = {}
     for name, u, scale in zip(CHANNELS, stated, fitted.scale, strict=True):
@@ -214,7 +213,7 @@ def _predicted(part: Points, fitted: Fitted, stated, size) -> dict[str, tuple[Er
             continue
         J = getattr(slope, name)[known]
         error = (getattr(out, name) - getattr(part, name))[known]
-        prediction = Prediction(error, J @ fitted.covariance @ J.T + np.diag((scale * u[known]) ** 2))
+        prediction = Prediction(error, J @ fitted.posterior.covariance @ J.T + np.diag((scale * u[known]) ** 2))
         found[name] = (error_of(name, prediction, size[name] * load), prediction)
     return found
 

@@ -13,8 +13,9 @@ from typing import NamedTuple
 
 import numpy as np
 
+from mffit.fit.problem import Problem
+from mffit.least_squares import Number, inverse
 from mffit.points import Points, levels
-from mffit.rig import Simulation
 
 FEWEST = 4
 """Points that make a sweep."""
@@ -87,29 +88,28 @@ def _conditions(points: Points) -> Iterator[Group]:
                 yield Group(f"{sweep.name} at {said}", sweep.file, rows, False)
 
 
-def leverage(
-    points: Points,
-    simulation: Simulation,
-    names: Sequence[str],
-    covariance: np.ndarray,
-    weight: np.ndarray,
-    noise: np.ndarray,
-) -> Leverage:
+def leverage(problem: Problem, numbers: Sequence[Number], noise: np.ndarray) -> Leverage:
     """Residuals and derivatives of a fit at its solution.
 
     Parameters
     ----------
-    points : (n,)
-    simulation : as fitted
-    names : the free numbers, (k,)
-    covariance : theirs, (k, k)
-    weight, noise : (2n,) of Fy and then Mz; see :class:`Leverage`
+    problem : at the solution, with the weights that the fit used
+    numbers : that were free, (k,), with their priors
+    noise : uncertainty of a sound point [N], [Nm], (2n,) of Fy and then Mz; inf where not measured
     """
-    out, slope = simulation.sensitivities(points, names)
+    points = problem.points
+    out, slope = problem.simulation.sensitivities(points, [n.name for n in numbers])
     measured = np.concatenate([points.Fy, points.Mz])
     used = np.isfinite(measured) & np.isfinite(noise)
-    residual = np.where(used, np.concatenate(out) - np.nan_to_num(measured), 0.0)
-    return Leverage(residual, np.concatenate(slope), weight, np.where(used, noise, np.inf), covariance)
+    weight = np.where(used, np.concatenate([problem.sigma_Fy, problem.sigma_Mz]), np.inf)
+    J = np.concatenate(slope) / weight[:, None]
+    return Leverage(
+        residual=np.where(used, np.concatenate(out) - np.nan_to_num(measured), 0.0),
+        slope=np.concatenate(slope),
+        weight=weight,
+        noise=np.where(used, noise, np.inf),
+        covariance=inverse(J.T @ J + np.diag([n.spread**-2.0 for n in numbers])),
+    )
 
 
 def predictions(fit: Leverage, index: np.ndarray) -> dict[str, Prediction]:

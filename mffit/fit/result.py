@@ -11,6 +11,7 @@ from mffit.fit.coverage import StageCoverage
 from mffit.fit.doubts import Doubt
 from mffit.fit.files import Files
 from mffit.fit.outliers import Outlier
+from mffit.fit.posterior import Posterior
 from mffit.rig import UNITS, Simulation
 from tir import Tyre
 
@@ -66,6 +67,7 @@ class FitResult:
     rig: Mapping[str, tuple[float, float]]  #: rig error -> (value, standard error)
     Fy_model: np.ndarray  #: (n,) [N]
     Mz_model: np.ndarray  #: (n,) [Nm]
+    posterior: Posterior  #: what the fit leaves uncertain
     stages: tuple[StageRecord, ...]
     coverage: tuple[StageCoverage, ...]
     explanations: tuple[str, ...]

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import dataclasses
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
 from mffit.errors import InputError
 from mffit.fit import weights
 from mffit.fit.coverage import StageCoverage
-from mffit.fit.play import undecided_play
+from mffit.fit.posterior import Posterior, joint, strongest_correlations
 from mffit.fit.problem import Problem
 from mffit.fit.result import StageRecord
 from mffit.fit.stages import CONICITY_ON_A_DISC, IF_IDENTIFIED, STAGES, Stage
@@ -40,20 +40,22 @@ class Fitted:
 
     values: Mapping[str, float]  #: coefficients
     rig: Mapping[str, tuple[float, float]]  #: rig error -> (value, standard error)
-    stderr: Mapping[str, float]
     correlation: Mapping[str, tuple[str, float]]
-    names: tuple[str, ...]  #: of the covariance's rows, coefficients and rig errors
-    covariance: np.ndarray  #: (k, k)
-    sigma_Fy: np.ndarray  #: (n,) weights used in the end [N]
-    sigma_Mz: np.ndarray  #: (n,) [Nm]
+    posterior: Posterior  #: of tyre and rig, held values included
+    problem: Problem  #: at the solution, with the weights used in the end
+    numbers: tuple[Number, ...]  #: that were free in the end
     at_bound: frozenset[str]
     regularised: frozenset[str]
     unmoved: frozenset[str]  #: freed, but the data did not move them: back at their start and held
     stages: tuple[StageRecord, ...]
     scale: tuple[float, float]  #: robust misfit over stated uncertainty, Fy and Mz
-    simulation: Simulation  #: fitted, rig errors included
     cost: float
     attempts: tuple[str, ...] = ()  #: other shapes from which the fit was started again
+
+    @property
+    def simulation(self) -> Simulation:
+        """Fitted, rig errors included."""
+        return self.problem.simulation
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,6 +66,9 @@ class Plan:
     expected: Mapping[str, float]  #: centre of every coefficient's prior
     rig: tuple[Number, ...] = ()  #: rig errors, freed in the polish
     extra: tuple[str, ...] = ()  #: coefficients freed in the polish only
+    held: Mapping[str, float] = field(
+        default_factory=dict
+    )  #: standard uncertainty of measured values that stay
     noise_stated: bool = True  #: whether the points say how uncertain they are
 
     @property
@@ -124,7 +129,9 @@ def _fit_from(problem: Problem, start: Mapping[str, float], plan: Plan, progress
         records.append(_record(problem, stage.name, stage.title, row.free))
     progress("joint polish")
     fitted, problem = _polish(problem, plan)
-    records.append(_record(problem, "polish", "Joint polish of tyre and rig", fitted.names))
+    records.append(
+        _record(problem, "polish", "Joint polish of tyre and rig", [n.name for n in fitted.numbers])
+    )
     return dataclasses.replace(fitted, stages=tuple(records))
 
 
@@ -160,7 +167,8 @@ def _polish(stated: Problem, plan: Plan) -> tuple[Fitted, Problem]:
     names = [*plan.free, *plan.extra]
     problem, _ = _reweighted(stated)
     rough = _thinned(problem)
-    solution = _solved(rough, names, plan, tolerance=1e-3)
+    begun = _all_numbers(rough, names, plan)
+    solution = solve(rough.free([n.name for n in begun]), begun, tolerance=1e-3)
     information = _data_information(rough, solution, len(problem.points))
     errors = _errors(solution.names, information)
     problem, scale = _reweighted(stated.with_values(solution.values))
@@ -172,25 +180,23 @@ def _polish(stated: Problem, plan: Plan) -> tuple[Fitted, Problem]:
     unmoved = _unmoved(solution.names, information, {n: spread[n] for n in set(names) - tied - conicity})
     problem = problem.with_values({n: plan.expected[n] for n in unmoved})
     kept = [n for n in names if n not in unmoved]
-    solution = _solved(problem, kept, plan, released=released, tolerance=1e-6)
+    numbers = _all_numbers(problem, kept, plan, released)
+    solution = solve(problem.free([n.name for n in numbers]), numbers, tolerance=1e-6)
     problem = problem.with_values(solution.values)
-    covariance = solution.covariance
-    stderr = dict(zip(solution.names, np.sqrt(np.diag(covariance)).tolist(), strict=True))
+    posterior = joint(problem, solution, {**{n: spread[n] for n in sorted(unmoved)}, **plan.held})
+    stderr = posterior.stderr
     fitted = Fitted(
         values={n: v for n, v in solution.values.items() if n not in RIG},
         rig={n: (v, stderr[n]) for n, v in solution.values.items() if n in RIG},
-        stderr=stderr,
-        correlation=_strongest_correlations(list(solution.names), covariance),
-        names=solution.names,
-        covariance=covariance,
-        sigma_Fy=problem.sigma_Fy,
-        sigma_Mz=problem.sigma_Mz,
+        correlation=strongest_correlations(posterior, solution.names),
+        posterior=posterior,
+        problem=problem,
+        numbers=tuple(numbers),
         at_bound=solution.at_bound | solution.at_limit,
         regularised=frozenset((tied | conicity) - released),
         unmoved=frozenset(unmoved),
         stages=(),
         scale=scale,
-        simulation=problem.simulation,
         cost=solution.cost,
     )
     return fitted, problem
@@ -199,18 +205,13 @@ def _polish(stated: Problem, plan: Plan) -> tuple[Fitted, Problem]:
 RIG = frozenset(FAULT_NAMES)
 
 
-def _solved(
-    problem: Problem,
-    names: Sequence[str],
-    plan: Plan,
-    *,
-    tolerance: float,
-    released: frozenset[str] = frozenset(),
-) -> Solution:
-    numbers = [*_numbers(problem, names, plan, released), *plan.rig]
+def _all_numbers(
+    problem: Problem, names: Sequence[str], plan: Plan, released: frozenset[str] = frozenset()
+) -> list[Number]:
+    """The named coefficients and the rig errors, starting from where the problem is."""
     start = {n.name: problem.simulation.number(n.name, problem.points) for n in plan.rig}
-    numbers = [dataclasses.replace(n, start=start.get(n.name, n.start)) for n in numbers]
-    return solve(problem.free([n.name for n in numbers]), numbers, tolerance=tolerance)
+    rig = [dataclasses.replace(n, start=start[n.name]) for n in plan.rig]
+    return [*_numbers(problem, names, plan, released), *rig]
 
 
 def _numbers(
@@ -243,12 +244,8 @@ def _reweighted(problem: Problem) -> tuple[Problem, tuple[float, float]]:
     residual = problem.misfit()
     n = len(problem.points)
     out, scales = [], []
-    play = undecided_play(problem.simulation, problem.points, problem.sigma_Mz)
-    for part, sigma, open_ in (
-        (residual[:n], problem.sigma_Fy, play.Fy),
-        (residual[n:], problem.sigma_Mz, play.Mz),
-    ):
-        factor, scale = weights.enlarged(part, problem.points.sweep, open_ / sigma)
+    for part, sigma in ((residual[:n], problem.sigma_Fy), (residual[n:], problem.sigma_Mz)):
+        factor, scale = weights.enlarged(part, problem.points.sweep)
         out.append(sigma * factor)
         scales.append(scale)
     return dataclasses.replace(problem, sigma_Fy=out[0], sigma_Mz=out[1]), (scales[0], scales[1])
@@ -286,18 +283,6 @@ def _unmoved(names: Sequence[str], information: np.ndarray, spread: Mapping[str,
         held.add(worst)
         kept.remove(list(names).index(worst))
     return held
-
-
-def _strongest_correlations(names: list[str], cov: np.ndarray) -> dict[str, tuple[str, float]]:
-    size = np.sqrt(np.diag(cov))
-    correlation = cov / np.outer(size, size)
-    np.fill_diagonal(correlation, 0.0)
-    strongest = np.argmax(np.abs(correlation), axis=1) if names else []
-    return {
-        name: (names[j], float(correlation[i, j]))
-        for i, (name, j) in enumerate(zip(names, strongest, strict=True))
-        if abs(correlation[i, j]) > 0.95
-    }
 
 
 def _record(problem: Problem, name: str, title: str, parameters: Sequence[str]) -> StageRecord:

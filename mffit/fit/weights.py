@@ -40,9 +40,7 @@ NEIGHBOURS = (-2, -1, 1, 2)
 """Rows of the same sweep, before and after, whose residuals a sound reading shares."""
 
 
-def standing_out(
-    residual: np.ndarray, scale: float, sweep: np.ndarray, open_: np.ndarray | float = 0.0
-) -> np.ndarray:
+def standing_out(residual: np.ndarray, scale: float, sweep: np.ndarray) -> np.ndarray:
     """Mask (n,) of single readings that neither the model nor the neighbours in their sweep agree with.
 
     Parameters
@@ -50,7 +48,6 @@ def standing_out(
     residual : (n,) in units of the uncertainty, rows in the order of measuring; 0 where a point is not used
     scale : standard deviation of the residuals' core, at least 1
     sweep : (n,) which sweep each point belongs to
-    open_ : (n,) how far the prediction itself may be off at single points, in the same units
     """
     used = np.flatnonzero(residual != 0.0)
     out = np.zeros(len(residual), dtype=bool)
@@ -62,8 +59,7 @@ def standing_out(
     # Less than the stated uncertainty is no scatter to judge by: points without noise would all stand out.
     local = max(robust_scale(apart[known]), 1.0)
     far = float(norm.isf(FALSE_ALARM / (2.0 * len(used))))
-    most = np.broadcast_to(open_, residual.shape)[used]
-    out[used] = known & (np.abs(apart) > far * local + most) & (np.abs(residual[used]) > far * scale + most)
+    out[used] = known & (np.abs(apart) > far * local) & (np.abs(residual[used]) > far * scale)
     return out
 
 
@@ -82,17 +78,14 @@ def _of_neighbours(residual: np.ndarray, sweep: np.ndarray) -> np.ndarray:
     return out
 
 
-def enlarged(
-    residual: np.ndarray, sweep: np.ndarray, open_: np.ndarray | float = 0.0
-) -> tuple[np.ndarray, float]:
+def enlarged(residual: np.ndarray, sweep: np.ndarray) -> tuple[np.ndarray, float]:
     """Factor (n,) on the uncertainty of each point, infinite where a reading stands out, and the robust scale, at least 1.
 
     Parameters
     ----------
     residual : (n,) in units of the stated uncertainty; 0 where a point is not used
     sweep : (n,) which sweep each point belongs to
-    open_ : (n,) how far the prediction itself may be off at single points, in the same units
     """
     scale = max(robust_scale(residual), 1.0)
     factor = scale * huber(residual, scale)
-    return np.where(standing_out(residual, scale, sweep, open_), np.inf, factor), scale
+    return np.where(standing_out(residual, scale, sweep), np.inf, factor), scale

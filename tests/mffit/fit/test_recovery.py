@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from drawn_rigs import COEFFICIENTS, SAMPLE, model_error, one_rig, plan_content
+from drawn_rigs import SAMPLE, model_error, one_rig, plan_content
 
 import mffit
 import tir
@@ -79,14 +79,11 @@ def test_the_files_radius_is_the_measured_one(sound_rig):
 
 
 def test_errors_of_drawn_rigs_stay_within_their_intervals():
-    pulls = [
-        value
-        for seed in (101, 102)
-        for name, value in one_rig(seed).items()
-        if "error" not in name and "rms" not in name
-    ]
-    assert len(pulls) == 2 * (2 + len(COEFFICIENTS))
-    assert np.mean(np.abs(pulls) < 1.96) > 0.75
-    assert np.max(np.abs(pulls)) < 6.0
-    # 30 pulls, many of them correlated: intervals half or twice as wide as they should be give 1.8 or 0.45.
+    draws = [one_rig(seed) for seed in (101, 102)]
+    pulls = np.array([pull for draw in draws for pull in draw.pulls.values()])
+    assert len(pulls) > 60
+    assert np.mean(np.abs(pulls) < 1.96) > 0.8
+    # Many of them are correlated: intervals half or twice as wide as they should be give 2 or 0.5.
     assert 0.6 < np.sqrt(np.mean(np.square(pulls))) < 1.5
+    assert all(misfit < 1.15 for draw in draws for misfit in draw.misfit.values())
+    assert np.mean([list(draw.bands.values()) for draw in draws]) > 0.7
