@@ -5,9 +5,10 @@ from mffit.measured.backlash import backlash_corrected, odd_alpha
 from mffit.measured.camber_reduction import DirectInputs, TurnSlip, direct_method
 from mffit.measured.direct import measure
 from mffit.measured.radii import RadiusReading, radius_readings
-from mffit.measured.result import Contribution, LoadResult, Measured
+from mffit.measured.result import KEYS, Contribution, LoadResult, Measured
 
 __all__ = [
+    "KEYS",
     "Alignment",
     "AlignmentStep",
     "Contribution",

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
-from uncertainties import UFloat, covariance_matrix
+from uncertainties import UFloat
 
 LARGEST_EPSILON = 0.9
 
@@ -43,7 +43,7 @@ def load_dependence(
         return LoadDependence(pecp1, 0.0, None, "PECP2 is 0: one load was measured.")
     x = np.array([(loads[i] - loads[nominal]) / Fz0 for i in others])
     differences = [epsilon[i] - at_nominal for i in others]
-    weight = np.linalg.pinv(np.array(covariance_matrix(differences)))
+    weight = np.linalg.pinv(covariance(differences))
     y = np.array([d.nominal_value for d in differences])
     slope, u = float(x @ weight @ y / (x @ weight @ x)), float(1.0 / np.sqrt(x @ weight @ x))
     u_pecp2 = u / max(abs(pecp1), 1e-12)
@@ -59,3 +59,16 @@ def load_dependence(
             pecp1, slope / pecp1, u_pecp2, f"PECP2 = {slope / pecp1:.3f} +- {u_pecp2:.3f} (k = 1)."
         )
     return LoadDependence(pecp1, 0.0, u_pecp2, f"PECP2 is 0: {why}.")
+
+
+def covariance(numbers: Sequence[UFloat]) -> np.ndarray:
+    """Covariance (n, n) of numbers with uncertainty, their independent sources in order of first appearance.
+
+    ``uncertainties.covariance_matrix`` goes through the sources as a set, whose order, and with it the last digit of the
+    sums, differs from run to run.
+    """
+    sources = list(dict.fromkeys(source for number in numbers for source in number.derivatives))
+    slopes = np.array(
+        [[number.derivatives.get(source, 0.0) * source.std_dev for source in sources] for number in numbers]
+    )
+    return slopes @ slopes.T

@@ -61,6 +61,6 @@ def _environment() -> Environment:
         trim_blocks=True,
         lstrip_blocks=True,
     )
-    for rounded in (rounding.number, rounding.with_u, rounding.times, rounding.per_cent):
+    for rounded in (rounding.number, rounding.with_u, rounding.stated, rounding.times, rounding.per_cent):
         environment.filters[rounded.__name__] = rounded
     return environment

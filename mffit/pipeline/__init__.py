@@ -1,0 +1,7 @@
+"""The workflows: one screen each, one call per step."""
+
+from mffit.pipeline.building import build
+from mffit.pipeline.diagnosing import diagnose
+from mffit.pipeline.measuring import align, spin
+
+__all__ = ["align", "build", "diagnose", "spin"]
