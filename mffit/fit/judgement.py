@@ -49,13 +49,18 @@ class Error(NamedTuple):
     vague: float  #: standard error of the prediction, noise included, as a share of the usual size
 
 
-class Verdict(NamedTuple):
-    """A sweep that the others contradict, and the mistake that explains it, if one does."""
+class View(NamedTuple):
+    """What the fit to all other sweeps says of one."""
 
     group: Group
     error: Error
     mistake: Mistake | None
     left: float  #: share of the usual size that is left when the mistake is undone
+
+    @property
+    def refused(self) -> bool:
+        """Whether it is beyond plausibility: a known mistake, or a contradiction that the others are sure of."""
+        return self.mistake is not None or (self.error.share > IMPLAUSIBLE and self.error.vague < GROSS)
 
 
 Refit = Callable[[np.ndarray], Fitted]
@@ -93,17 +98,15 @@ def judge(
     errors = {k: errors_of(predictions(fit, g.index), g, points, size) for k, g in enumerate(found)}
     level = FALSE_ALARM / sum(len(rows) for rows in errors.values())
     suspects = [(e, found[k]) for k, rows in errors.items() for e in rows if e.chance < level]
-    gross = sorted((s for s in suspects if s[0].share > GROSS), key=lambda s: -s[0].ratio)
-    tried = list({id(g): g for _, g in gross}.values())[:MOST_TRIED]
-    verdicts = [v for g in tried if (v := _verdict(points, g, stated, size, signs, refit, level)) is not None]
-    if verdicts:
-        raise _refusal(verdicts)
     usual = _usual_ratios([e for rows in errors.values() for e in rows])
-    doubtful = [
-        s
-        for s in suspects
-        if s[0].ratio > usual and s[0].share > DOUBTFUL and s[0].vague < DOUBTFUL
-    ]
+    odd = [s for s in suspects if s[0].share > GROSS or (s[0].share > DOUBTFUL and s[0].ratio > usual)]
+    worst_first = [g for _, g in sorted(odd, key=lambda s: (-s[0].ratio, not s[1].whole))]
+    tried = list({id(g): g for g in worst_first}.values())[:MOST_TRIED]
+    views = [v for g in tried if (v := _view(points, g, stated, size, signs, refit, level)) is not None]
+    refused = [v for v in views if v.refused]
+    if refused:
+        raise _refusal(refused)
+    doubtful = [v for v in views if v.error.ratio > usual and v.error.vague < DOUBTFUL]
     return _doubts(points, doubtful, fit, fitted.simulation, signs)
 
 
@@ -151,10 +154,10 @@ def _usual_ratios(errors: list[Error]) -> float:
     return float(np.exp(middle + norm.isf(FALSE_ALARM / len(errors)) * scatter))
 
 
-def _verdict(
+def _view(
     points: Points, group: Group, stated, size, signs, refit: Refit, level: float
-) -> Verdict | None:
-    """Fit again without the group; None unless the others contradict it beyond plausibility."""
+) -> View | None:
+    """Fit again without the group, and see what that says of it; None if it is nothing."""
     rest = np.setdiff1d(np.arange(len(points)), group.index)
     try:
         fitted = refit(rest)
@@ -165,22 +168,21 @@ def _verdict(
     def seen(of: Points) -> dict[str, tuple[Error, Prediction]]:
         return _predicted(of, fitted, [u[group.index] for u in stated], size)
 
-    declared = {n: e for n, (e, _) in seen(part).items() if e.chance < level and e.share > GROSS}
+    declared = {n: e for n, (e, _) in seen(part).items() if e.chance < level and e.share > DOUBTFUL}
     if not declared:
         return None
     worst = max(declared.values(), key=lambda e: e.share)
-    undone = [(m, seen(m.undone(part, signs))) for m in MISTAKES if m.beyond_doubt]
-    fitting = [(_left(after), m) for m, after in undone if _explains(m, declared, after, part, signs)]
+    gross = {n: e for n, e in declared.items() if e.share > GROSS}
+    undone = [(m, seen(m.undone(part, signs))) for m in MISTAKES if m.beyond_doubt and gross]
+    fitting = [(_left(after), m) for m, after in undone if _explains(m, gross, after, part, signs)]
     left, best = min(fitting, key=lambda pair: pair[0], default=(1.0, None))
-    if best is None and (worst.share < IMPLAUSIBLE or worst.vague > GROSS):
-        return None
-    return Verdict(group, worst, best, left)
+    return View(group, worst, best, left)
 
 
-def _refusal(verdicts: list[Verdict]) -> InputError:
+def _refusal(views: list[View]) -> InputError:
     """A sweep that a known mistake explains is named before one that only contradicts: it can drag others along."""
-    explained = [v for v in verdicts if v.mistake is not None]
-    v = max(explained or verdicts, key=lambda v: v.error.share)
+    explained = [v for v in views if v.mistake is not None]
+    v = max(explained or views, key=lambda v: v.error.share)
     contradiction = (
         f"contradicts all other sweeps: as they predict it, {v.error.channel} is out by {v.error.rms:.3g} "
         f"{WORDS[v.error.channel].unit}, {100 * v.error.share:.0f} % of its usual size"
@@ -188,7 +190,7 @@ def _refusal(verdicts: list[Verdict]) -> InputError:
     if not v.group.whole:
         contradiction += f" ({v.group.name})"
     if v.mistake is None:
-        others = dict.fromkeys(other.group.file for other in verdicts if other.group.file != v.group.file)
+        others = dict.fromkeys(other.group.file for other in views if other.group.file != v.group.file)
         perhaps = f", or {' or '.join(others)}, which contradicts it" if others else ""
         return InputError(
             f"{contradiction}, and no reversed sign, exchanged column or unit explains it; check this file{perhaps}, "
@@ -243,14 +245,26 @@ def _rms(x: np.ndarray) -> float:
     return float(np.sqrt(np.mean(x**2)))
 
 
-def _doubts(points: Points, suspects, fit: Leverage, simulation: Simulation, signs) -> tuple[Doubt, ...]:
+def _doubts(
+    points: Points, views: list[View], fit: Leverage, simulation: Simulation, signs
+) -> tuple[Doubt, ...]:
     """One record per doubtful sweep, of its worst channel; a sweep's conditions only where itself is not in doubt."""
     out: list[Doubt] = []
-    for error, group in sorted(suspects, key=lambda s: (not s[1].whole, -s[0].ratio)):
+    for view in sorted(views, key=lambda v: (not v.group.whole, -v.error.ratio)):
+        group, error = view.group, view.error
         if any(set(group.index) <= set(d.index) for d in out):
             continue
         looks = explanation(points.select(group.index), predictions(fit, group.index), simulation, signs)
         out.append(
-            Doubt(group.name, group.file, group.index, error.channel, error.rms, error.ratio, error.share, looks)
+            Doubt(
+                sweep=group.name,
+                file=group.file,
+                index=group.index,
+                channel=error.channel,
+                rms=error.rms,
+                ratio=error.ratio,
+                share=error.share,
+                looks=looks,
+            )
         )
     return tuple(out)

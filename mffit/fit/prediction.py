@@ -16,6 +16,7 @@ import numpy as np
 from mffit.fit.problem import Problem
 from mffit.least_squares import Number, inverse
 from mffit.points import Points, levels
+from mffit.rig import FAULT_NAMES
 
 FEWEST = 4
 """Points that make a sweep."""
@@ -24,6 +25,8 @@ MOST = 0.5
 UNKNOWN = 1e-3
 """Share of a direction's information that comes from the others below which they say nothing of it."""
 CHANNELS = ("Fy", "Mz")
+COMMON = tuple(name for name in FAULT_NAMES if name not in ("backlash_deg", "path_radius_m"))
+"""Errors of a rig that all sweeps share; they are no contradiction of one sweep, and are let free, to first order."""
 
 
 class Group(NamedTuple):
@@ -98,17 +101,24 @@ def leverage(problem: Problem, numbers: Sequence[Number], noise: np.ndarray) -> 
     noise : uncertainty of a sound point [N], [Nm], (2n,) of Fy and then Mz; inf where not measured
     """
     points = problem.points
-    out, slope = problem.simulation.sensitivities(points, [n.name for n in numbers])
+    free = [n.name for n in numbers]
+    common = [name for name in COMMON if name not in free]
+    out, slope = problem.simulation.sensitivities(points, [*free, *common])
+    slopes = np.concatenate(slope)
     measured = np.concatenate([points.Fy, points.Mz])
     used = np.isfinite(measured) & np.isfinite(noise)
     weight = np.where(used, np.concatenate([problem.sigma_Fy, problem.sigma_Mz]), np.inf)
-    J = np.concatenate(slope) / weight[:, None]
+    residual = np.where(used, np.concatenate(out) - np.nan_to_num(measured), 0.0)
+    J = slopes / weight[:, None]
+    covariance = inverse(J.T @ J + np.diag([n.spread**-2.0 for n in numbers] + [0.0] * len(common)))
+    push = J.T @ (residual / weight)
+    push[: len(free)] = 0.0  # the fit has ended: it is balanced in its own numbers
     return Leverage(
-        residual=np.where(used, np.concatenate(out) - np.nan_to_num(measured), 0.0),
-        slope=np.concatenate(slope),
+        residual=np.where(used, residual - slopes @ (covariance @ push), 0.0),
+        slope=slopes,
         weight=weight,
         noise=np.where(used, noise, np.inf),
-        covariance=inverse(J.T @ J + np.diag([n.spread**-2.0 for n in numbers])),
+        covariance=covariance,
     )
 
 

@@ -15,9 +15,10 @@ import numpy as np
 
 from mffit.config import Config
 from mffit.errors import InputError
-from mffit.points.magnitudes import check_magnitudes
+from mffit.points.magnitudes import check_magnitudes, check_pressures
 from mffit.points.points import Points
 from mffit.points.signatures import WEAK_FORCE, Signatures, signatures
+from mffit.points.twins import check_twins
 from tir.conventions import FLIPPED
 
 STEEPEST_CAMBER = -1.9
@@ -52,7 +53,9 @@ def check_physics(points: Points, config: Config) -> list[str]:
     InputError
         With the channel and the likely cause.
     """
+    check_twins(points)
     check_magnitudes(points)
+    check_pressures(points, 1e3 * config.tyre.nominal_pressure)
     found = signatures(points)
     wrong = contradictions(found)
     if wrong:
