@@ -102,7 +102,13 @@ def judge(
     odd = [s for s in suspects if s[0].share > GROSS or (s[0].share > DOUBTFUL and s[0].ratio > usual)]
     worst_first = [g for _, g in sorted(odd, key=lambda s: (-s[0].ratio, not s[1].whole))]
     tried = list({id(g): g for g in worst_first}.values())[:MOST_TRIED]
-    views = [v for g in tried if (v := _view(points, g, stated, size, signs, refit, level)) is not None]
+    views = []
+    for group in tried:
+        view = _view(points, group, stated, size, signs, refit, level)
+        if view is not None:
+            views.append(view)
+        if view is not None and view.mistake is not None:
+            break
     refused = [v for v in views if v.refused]
     if refused:
         raise _refusal(refused)
