@@ -75,27 +75,6 @@ class Files:
         """Share of the camber stiffness at zero that the file for turn slip off lacks."""
         return 1.0 - self.by_use["normal"].camber_stiffness / self.by_use["turn-slip"].camber_stiffness
 
-    def to_json(self) -> dict[str, Any]:
-        """The ``files`` part of ``fit``."""
-        out: dict[str, Any] = {
-            use: {
-                "USE_MODE": int(f.tyre["USE_MODE"]),
-                "straight": {
-                    channel: {name: getattr(m, name) for name in Misfit.__slots__}
-                    for channel, m in f.straight.items()
-                },
-                "camber_stiffness_N_per_rad": f.camber_stiffness,
-            }
-            for use, f in self.by_use.items()
-        }
-        if len(self.by_use) == 2:
-            out["normal"]["coefficients"] = {n: self.by_use["normal"].tyre[n] for n in self.changed}
-            out["normal"]["camber_stiffness_loss"] = self.stiffness_loss
-            out["normal"]["turn_slip_force_lacking_N"] = {
-                f"{radius:g} m": force for radius, force in self.lacking.items()
-            }
-        return {**out, "ranges": {"tested": dict(self.tested), "written": dict(self.written)}}
-
 
 def make_files(
     config: Any,

@@ -11,14 +11,13 @@ from typing import Any
 import numpy as np
 
 from mffit.config import axis_signs
-from mffit.fit import weights
+from mffit.fit import weights, wording
 from mffit.fit.coverage import coverage
 from mffit.fit.estimates import estimates
 from mffit.fit.files import Files, decisions, file_names, make_files, sentences
 from mffit.fit.judgement import judge
 from mffit.fit.known import Known
 from mffit.fit.outliers import outliers
-from mffit.fit.outliers import sentence as listed
 from mffit.fit.problem import Problem
 from mffit.fit.radius import radius_coefficients
 from mffit.fit.ranges import covered_ranges, envelope
@@ -113,8 +112,8 @@ def fit(
         explanations=tuple(explanations),
         warnings=(
             *_warnings(fitted, points, readings),
-            *(doubt.sentence for doubt in doubts),
-            *([listed(singled)] if singled else []),
+            *(wording.doubt(fact) for fact in doubts),
+            *([wording.standing_out(singled)] if singled else []),
         ),
         doubts=doubts,
         outliers=singled,

@@ -10,8 +10,6 @@ import numpy as np
 from mffit.points import Points
 from mffit.quantities import CHANNELS
 
-SHOWN = 5
-
 
 @dataclass(frozen=True, slots=True)
 class Outlier:
@@ -29,18 +27,6 @@ class Outlier:
     @property
     def place(self) -> str:
         return f"{self.file}:{self.line}" if self.line else self.file
-
-    def to_json(self) -> dict:
-        """One row of ``outliers`` in result.json."""
-        return {
-            "file": self.file,
-            "line": self.line or None,
-            "sweep": self.sweep,
-            "channel": self.channel,
-            "measured": self.measured,
-            "expected": self.expected,
-            "ratio": self.ratio,
-        }
 
 
 def outliers(
@@ -75,18 +61,6 @@ def outliers(
                 )
             )
     return tuple(sorted(out, key=lambda o: o.row))
-
-
-def sentence(found: tuple[Outlier, ...]) -> str:
-    """The warning that lists them."""
-    worst = sorted(found, key=lambda o: -o.ratio)[:SHOWN]
-    said = "; ".join(
-        f"{o.place} {o.channel} = {o.measured:.4g} {CHANNELS[o.channel].unit} where {o.expected:.4g} is expected"
-        for o in worst
-    )
-    more = f"; and {len(found) - len(worst)} more, all in result.json" if len(found) > len(worst) else ""
-    count = "1 reading stands" if len(found) == 1 else f"{len(found)} readings stand"
-    return f"{count} out of the sweep and carries no weight: {said}{more}; correct or remove what is wrong"
 
 
 def marks(found: Iterable[Outlier], n: int) -> np.ndarray:

@@ -12,7 +12,7 @@ from mffit.fit.doubts import Doubt
 from mffit.fit.files import Files
 from mffit.fit.outliers import Outlier
 from mffit.fit.posterior import Posterior
-from mffit.rig import UNITS, Simulation
+from mffit.rig import Simulation
 from tir import Tyre
 
 
@@ -78,47 +78,6 @@ class FitResult:
     outliers: tuple[Outlier, ...] = ()  #: single readings that count with no weight
     files: Files | None = None  #: every file that is written, and how good each is
 
-    def to_json(self) -> dict:
-        """The ``fit`` part of result.json."""
-        return {
-            "channels": {name: _as_dict(row) for name, row in self.channels.items()},
-            "odd": {name: _as_dict(row) for name, row in self.odd.items()},
-            "coefficients": {
-                name: {
-                    "value": c.value,
-                    "stderr": c.stderr,
-                    "stage": c.stage,
-                    "fixed": c.fixed,
-                    "at_bound": c.at_bound,
-                    "status": c.status,
-                    "origin": c.origin or c.status,
-                    "correlated_with": c.correlated_with or None,
-                    "correlation": c.correlation if c.correlated_with else None,
-                }
-                for name, c in self.coefficients.items()
-            },
-            "rig": {
-                name: {"value": value, "stderr": u, "unit": UNITS[name]}
-                for name, (value, u) in self.rig.items()
-            },
-            "stages": [
-                {
-                    "name": s.name,
-                    "parameters": list(s.parameters),
-                    "rmse_Fy_N": s.rmse_Fy,
-                    "rmse_Mz_Nm": s.rmse_Mz,
-                }
-                for s in self.stages
-            ],
-            "coverage": [
-                {"stage": c.stage, "supported": c.supported, "held": list(c.held), "missing": list(c.missing)}
-                for c in self.coverage
-            ],
-            "files": self.files.to_json() if self.files is not None else {},
-            "explanations": list(self.explanations),
-            "seconds": self.seconds,
-        }
-
 
 def agreement(model: np.ndarray, measured: np.ndarray) -> Agreement:
     """Compare a channel (n,); points where it was not measured do not count."""
@@ -136,7 +95,3 @@ def agreement(model: np.ndarray, measured: np.ndarray) -> Agreement:
         max_abs=float(np.max(np.abs(difference))),
         n=len(measured),
     )
-
-
-def _as_dict(row: Agreement) -> dict:
-    return {name: getattr(row, name) for name in ("rmse", "nrmse", "r2", "max_abs", "n")}

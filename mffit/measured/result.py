@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import NamedTuple
 
+from mffit.measured.notes import Note
 from tir import Quantity
 
 
@@ -54,8 +55,8 @@ class Measured:
     u_pecp2: float | None
     r_e_loads: Mapping[float, float]  #: loads at which r_e was really measured
     misaligned: bool  #: alpha_M is beyond what the rig's alignment leaves and is corrected in the points
-    notes: tuple[str, ...]
-    warnings: tuple[str, ...]
+    notes: tuple[Note, ...]
+    warnings: tuple[str, ...]  #: sentences, as they join those of the steps before and after
     epsilon_gamma_model: float | None = None
     epsilon_gamma_debiased: Quantity | None = None  #: less what the finite spin of the disc adds
 

@@ -8,6 +8,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pandas as pd
 import tomli_w
 from threadpoolctl import threadpool_limits
@@ -17,6 +18,7 @@ from mffit import fit as fitting
 from mffit import points as ingestion
 from mffit.config import Config
 from mffit.fit import FitResult
+from mffit.measured import Measured
 from mffit.output import output_folder, refuse_early
 from mffit.pipeline.inputs import Progress, inputs_of, read_base, silent
 from mffit.pipeline.measuring import epsilon_gamma, measure, without_play
@@ -67,6 +69,10 @@ def build(
         refuse_early(Path(out), (*names.values(), *WRITTEN), inputs_of(config))
     with threadpool_limits(1):  # the matrices are small: threads cost more than they bring
         fitted = fitting.fit(config, points, parts, measured, base, progress)
+        sound = without_outliers(config, points, measured, fitted, base)
+        if sound is not measured:
+            measured = sound
+            fitted = fitting.fit(config, points, parts, measured, base, progress)
         bias = finite_spin_bias(config, points, fitted, base)
         if bias is not None:
             measured = measured.debiased(bias)
@@ -96,6 +102,24 @@ def build(
         progress("writing the report")
         write_build(result, Path(out))
     return result
+
+
+def without_outliers(
+    config: Config, points: Points, measured: Measured, fitted: FitResult, base: Tyre | None
+) -> Measured:
+    """The direct method without the readings that the fit gave no weight; the very same where they make no difference."""
+    if not fitted.outliers:
+        return measured
+    rows = np.arange(len(points))
+    Fy, Mz = (
+        np.where(
+            np.isin(rows, [o.row for o in fitted.outliers if o.channel == name]), np.nan, getattr(points, name)
+        )
+        for name in ("Fy", "Mz")
+    )
+    sound = points.replace(Fy=Fy, Mz=Mz).select(np.isfinite(Fy))
+    again = measure(config, sound, base)[1]
+    return measured if as_json.spin(again) == as_json.spin(measured) else again
 
 
 def finite_spin_bias(config: Config, points: Points, fitted: FitResult, base: Tyre | None) -> float | None:
@@ -134,4 +158,6 @@ def points_table(result: BuildResult) -> pd.DataFrame:
     table["Mz_odd_Nm"], table["Mz_even_Nm"] = parts.Mz_odd * signs["Mz"], parts.Mz_even * signs["Mz"]
     table["Fy_model_N"], table["Mz_model_Nm"] = fit.Fy_model * signs["Fy"], fit.Mz_model * signs["Mz"]
     table["paired"] = parts.paired
+    table["outlier"] = fitting.marks(fit.outliers, len(table))
+    table["doubtful"] = np.isin(np.arange(len(table)), [row for doubt in fit.doubts for row in doubt.index])
     return table

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 import mffit
+from mffit.measured import LARGEST_DIFFERENCE
 from mffit.quantities import CHANNELS, CONDITIONS, DIRECT
 from mffit.report import page, published
 from mffit.report.build_view import PER_LOAD, STATUS_ORDER, BuildView, Channel, Row, view_of
@@ -54,6 +55,7 @@ def write_build(result: BuildResult, folder: Path) -> None:
         conditions=CONDITIONS,
         direct=DIRECT,
         per_load=PER_LOAD,
+        aligned_below=LARGEST_DIFFERENCE,
         degrees=math.degrees(1.0),
         version=mffit.__version__,
     )

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import math
 from collections.abc import Mapping
+from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
@@ -12,8 +13,12 @@ import numpy as np
 
 from mffit.diagnosis import Diagnosis, Found, Gap, wording
 from mffit.diagnosis.where import Region
+from mffit.fit import Coefficient, Doubt, FitResult, Outlier
+from mffit.fit.files import Files
 from mffit.measured import KEYS, LoadResult, Measured
+from mffit.measured import wording as say
 from mffit.results.build import BuildResult
+from mffit.rig import UNITS
 from tir import Quantity
 
 
@@ -22,10 +27,12 @@ def build(result: BuildResult) -> dict[str, Any]:
     return {
         "tyre": result.config.tyre.model_dump(exclude_none=True),
         "spin": spin(result.measured),
-        "fit": result.fit.to_json(),
+        "fit": fit(result.fit),
         "tir": result.tir_path,
         "files": dict(result.files),
         "warnings": list(result.warnings),
+        "doubts": [_doubt(row) for row in result.fit.doubts],
+        "outliers": [_outlier(row) for row in result.fit.outliers],
     }
 
 
@@ -43,8 +50,41 @@ def spin(measured: Measured) -> dict[str, Any]:
         "u_epsilon_gamma_monte_carlo": row.u_monte_carlo if row else None,
         "misaligned": measured.misaligned,
         "coverage_factor": 1,
-        "notes": list(measured.notes),
+        "notes": [say.note(fact) for fact in measured.notes],
         "per_load": [_load(other) for other in measured.per_load],
+    }
+
+
+def fit(found: FitResult) -> dict[str, Any]:
+    """The ``fit`` part of ``result.json``."""
+    return {
+        "channels": {name: asdict(row) for name, row in found.channels.items()},
+        "odd": {name: asdict(row) for name, row in found.odd.items()},
+        "coefficients": {name: _coefficient(row) for name, row in found.coefficients.items()},
+        "rig": {
+            name: {"value": value, "stderr": u, "unit": UNITS[name]} for name, (value, u) in found.rig.items()
+        },
+        "stages": [
+            {
+                "name": stage.name,
+                "parameters": list(stage.parameters),
+                "rmse_Fy_N": stage.rmse_Fy,
+                "rmse_Mz_Nm": stage.rmse_Mz,
+            }
+            for stage in found.stages
+        ],
+        "coverage": [
+            {
+                "stage": row.stage,
+                "supported": row.supported,
+                "held": list(row.held),
+                "missing": list(row.missing),
+            }
+            for row in found.coverage
+        ],
+        "files": _files(found.files) if found.files is not None else {},
+        "explanations": list(found.explanations),
+        "seconds": found.seconds,
     }
 
 
@@ -80,6 +120,30 @@ def write(path: Path, content: Mapping[str, Any]) -> None:
     path.write_text(text + "\n", encoding="utf-8")
 
 
+def _doubt(row: Doubt) -> dict[str, Any]:
+    return {
+        "sweep": row.sweep,
+        "file": row.file,
+        "channel": row.channel,
+        "rms": row.rms,
+        "ratio": row.ratio,
+        "share": row.share,
+        "looks_like": row.looks or None,
+    }
+
+
+def _outlier(row: Outlier) -> dict[str, Any]:
+    return {
+        "file": row.file,
+        "line": row.line or None,
+        "sweep": row.sweep,
+        "channel": row.channel,
+        "measured": row.measured,
+        "expected": row.expected,
+        "ratio": row.ratio,
+    }
+
+
 def _load(row: LoadResult | None) -> dict[str, Any]:
     """The numbers of one load; all null if nothing was measured."""
     out: dict[str, Any] = {"load_N": row and row.load}
@@ -97,6 +161,40 @@ def _stated(key: str, number: Quantity | None, scale: float = 1.0) -> dict[str, 
     if number is None:
         return {key: None, f"u_{key}": None}
     return {key: scale * number.value, f"u_{key}": scale * number.u}
+
+
+def _coefficient(found: Coefficient) -> dict[str, Any]:
+    partner = found.correlated_with or None
+    return {
+        "value": found.value,
+        "stderr": found.stderr,
+        "stage": found.stage,
+        "fixed": found.fixed,
+        "at_bound": found.at_bound,
+        "status": found.status,
+        "origin": found.origin or found.status,
+        "correlated_with": partner,
+        "correlation": found.correlation if partner else None,
+    }
+
+
+def _files(files: Files) -> dict[str, Any]:
+    """How good each written file is, by use, and the ranges."""
+    out: dict[str, Any] = {
+        use: {
+            "USE_MODE": int(file.tyre["USE_MODE"]),
+            "straight": {channel: asdict(misfit) for channel, misfit in file.straight.items()},
+            "camber_stiffness_N_per_rad": file.camber_stiffness,
+        }
+        for use, file in files.by_use.items()
+    }
+    if len(files.by_use) == 2:
+        out["normal"] |= {
+            "coefficients": {name: files.by_use["normal"].tyre[name] for name in files.changed},
+            "camber_stiffness_loss": files.stiffness_loss,
+            "turn_slip_force_lacking_N": {f"{radius:g} m": force for radius, force in files.lacking.items()},
+        }
+    return {**out, "ranges": {"tested": dict(files.tested), "written": dict(files.written)}}
 
 
 def _gap(gap: Gap) -> dict[str, float]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
-from mffit.measured import Alignment, Contribution, LoadResult, Measured
+from mffit.measured import Alignment, Contribution, LoadResult, Measured, wording
 from mffit.quantities import CONDITIONS, DIRECT
 from mffit.report.build_view import PER_LOAD
 from mffit.report.rounding import MINUS, number, stated
@@ -36,14 +36,14 @@ def spin_summary(measured: Measured) -> str:
         reason = "the warnings say why." if measured.warnings else "it was not measured."
         # What can be read off a load without turn slip.
         known = [row for row in measured.per_load if row.C_gamma is not None or row.C_alpha is not None]
-        sentences = measured.notes or [f"No camber reduction factor: {reason}"]
+        sentences = _notes(measured) or [f"No camber reduction factor: {reason}"]
         return blocks([_per_load(known) if known else "", paragraphs(sentences)])
     parts = [
         spin_numbers(measured),
         budget_table(measured.budget, measured.epsilon_gamma.u),
         _improve_first(measured.budget, measured.epsilon_gamma.u),
         _per_load(measured.per_load),
-        paragraphs(measured.notes),
+        paragraphs(_notes(measured)),
     ]
     return blocks(parts)
 
@@ -77,6 +77,10 @@ def alignment_table(alignment: Alignment) -> str:
         "directions again."
     )
     return blocks([table(head, rows, left=0), sentence])
+
+
+def _notes(measured: Measured) -> list[str]:
+    return [wording.note(fact) for fact in measured.notes]
 
 
 def spin_numbers(measured: Measured) -> str:

@@ -113,7 +113,7 @@ def test_what_the_normal_file_lacks_is_stated(result):
     assert 0.0 < files.stiffness_loss < 0.25
     forces = list(files.lacking.values())
     assert forces == sorted(forces)
-    assert result.fit.to_json()["files"]["normal"]["turn_slip_force_lacking_N"]["10 m"] == forces[-1]
+    assert as_json.fit(result.fit)["files"]["normal"]["turn_slip_force_lacking_N"]["10 m"] == forces[-1]
 
 
 def test_pecp1_is_the_measured_eps_gamma(result):
