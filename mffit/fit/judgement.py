@@ -191,7 +191,7 @@ def _refusal(views: list[View]) -> InputError:
     v = max(explained or views, key=lambda v: v.error.share)
     contradiction = (
         f"contradicts all other sweeps: as they predict it, {v.error.channel} is out by {v.error.rms:.3g} "
-        f"{WORDS[v.error.channel].unit}, {100 * v.error.share:.0f} % of its usual size"
+        f"{WORDS[v.error.channel].unit}, at least {100 * v.error.share:.0f} % of its usual size"
     )
     if not v.group.whole:
         contradiction += f" ({v.group.name})"

@@ -41,7 +41,7 @@ def build_summary(result: BuildResult) -> str:
     parts.append(_statuses(fit.coefficients))
     if fit.outliers or fit.doubts:
         parts.append(
-            f"{count(len(fit.outliers), 'reading')} without weight, {count(len(fit.doubts), 'doubtful sweep')}: see the warnings"
+            f"readings without weight: {len(fit.outliers)}; doubtful sweeps: {len(fit.doubts)}; see the warnings"
         )
     parts.append(paragraphs(fit.explanations[1:]))
     return blocks(parts)
