@@ -64,7 +64,10 @@ def standing_out(residual: np.ndarray, scale: float, sweep: np.ndarray) -> np.nd
 
 
 def _of_neighbours(residual: np.ndarray, sweep: np.ndarray) -> np.ndarray:
-    """Median (n,) of the residuals beside each one in its sweep; NaN where there are fewer than two."""
+    """What the residuals beside each one in its sweep (n,) let expect; NaN where there are fewer than two.
+
+    Their median; at the end of a sweep, where all lie on one side, what their trend leads to if that is nearer.
+    """
     n = len(residual)
     beside = np.full((n, len(NEIGHBOURS)), np.nan)
     for k, step in enumerate(NEIGHBOURS):
@@ -75,6 +78,11 @@ def _of_neighbours(residual: np.ndarray, sweep: np.ndarray) -> np.ndarray:
     enough = np.sum(np.isfinite(beside), axis=1) >= 2
     out = np.full(n, np.nan)
     out[enough] = np.nanmedian(beside[enough], axis=1)
+    far_before, before, after, far_after = beside.T
+    for near, far, other in ((before, far_before, after), (after, far_after, before)):
+        trend = np.where(np.isnan(other), 2.0 * near - far, np.nan)
+        better = np.abs(residual - trend) < np.abs(residual - out)
+        out = np.where(better, trend, out)
     return out
 
 
