@@ -66,7 +66,8 @@ def standing_out(residual: np.ndarray, scale: float, sweep: np.ndarray) -> np.nd
 def _of_neighbours(residual: np.ndarray, sweep: np.ndarray) -> np.ndarray:
     """What the residuals beside each one in its sweep (n,) let expect; NaN where there are fewer than two.
 
-    Their median; at the end of a sweep, where all lie on one side, what their trend leads to if that is nearer.
+    Their median, or the straight line through those beside it if that is nearer: on a stretch that the model misses the
+    residuals run in a line, and at the end of a sweep all neighbours lie on one side.
     """
     n = len(residual)
     beside = np.full((n, len(NEIGHBOURS)), np.nan)
@@ -79,10 +80,10 @@ def _of_neighbours(residual: np.ndarray, sweep: np.ndarray) -> np.ndarray:
     out = np.full(n, np.nan)
     out[enough] = np.nanmedian(beside[enough], axis=1)
     far_before, before, after, far_after = beside.T
-    for near, far, other in ((before, far_before, after), (after, far_after, before)):
-        trend = np.where(np.isnan(other), 2.0 * near - far, np.nan)
-        better = np.abs(residual - trend) < np.abs(residual - out)
-        out = np.where(better, trend, out)
+    between = (before + after) / 2.0
+    ahead, behind = 2.0 * before - far_before, 2.0 * after - far_after
+    for line in (between, np.where(np.isnan(after), ahead, np.nan), np.where(np.isnan(before), behind, np.nan)):
+        out = np.where(np.abs(residual - line) < np.abs(residual - out), line, out)
     return out
 
 
