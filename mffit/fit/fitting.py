@@ -14,6 +14,7 @@ from mffit.config import axis_signs
 from mffit.fit import weights, wording
 from mffit.fit.coverage import coverage
 from mffit.fit.estimates import estimates
+from mffit.fit.doubts import Doubt
 from mffit.fit.files import Files, decisions, file_names, make_files, sentences
 from mffit.fit.judgement import judge
 from mffit.fit.known import Known
@@ -68,16 +69,21 @@ def fit(
     start = starting_values(known.values, points, measured)
     plan = _plan(config, points, measured, start)
     problem = _problem(config, points, known.values, measured)
-    fitted = fit_staged(problem, start, plan, progress)
-    progress("judging every sweep by all others")
     stated = problem.sigma_Fy, problem.sigma_Mz
-    doubts = judge(
-        points,
-        fitted,
-        stated,
-        axis_signs(config),
-        lambda rows: fit_staged(problem.select(rows), start, plan, silent, restarts=False),
-    )
+
+    def judged(of: Fitted, *, only_known: bool = False) -> tuple[Doubt, ...]:
+        progress("judging every sweep by all others")
+        return judge(
+            points,
+            of,
+            stated,
+            axis_signs(config),
+            lambda rows: fit_staged(problem.select(rows), start, plan, silent, restarts=False),
+            only_known=only_known,
+        )
+
+    fitted = fit_staged(problem, start, plan, progress, first=lambda of: judged(of, only_known=True))
+    doubts = judged(fitted)
     known = _after_the_fit(known, fitted, start, points, base)
     progress("deriving the files and judging them")
     known = known.deciding(decisions(config))

@@ -73,6 +73,8 @@ def judge(
     stated: tuple[np.ndarray, np.ndarray],
     signs: Mapping[str, float],
     refit: Refit,
+    *,
+    only_known: bool = False,
 ) -> tuple[Doubt, ...]:
     """Judge every sweep by what all others predict of it.
 
@@ -83,6 +85,7 @@ def judge(
     stated : uncertainty of Fy [N] and of Mz [Nm] before any weighting, (n,); inf where not measured
     signs : +1 or -1 per channel, what turns ISO-W into the rig's axes
     refit : fits some of the points; called only for sweeps that are far off
+    only_known : refuse only what a known mistake explains, as the fit itself may be at fault
 
     Raises
     ------
@@ -109,7 +112,7 @@ def judge(
             views.append(view)
         if view is not None and view.mistake is not None:
             break
-    refused = [v for v in views if v.refused]
+    refused = [v for v in views if v.refused and (v.mistake is not None or not only_known)]
     if refused:
         raise _refusal(refused)
     doubtful = [v for v in views if v.error.ratio > usual and v.error.vague < DOUBTFUL]

@@ -86,7 +86,13 @@ SHAPES: Mapping[str, Mapping[str, float]] = {
 
 
 def fit_staged(
-    problem: Problem, start: Mapping[str, float], plan: Plan, progress: Progress, *, restarts: bool = True
+    problem: Problem,
+    start: Mapping[str, float],
+    plan: Plan,
+    progress: Progress,
+    *,
+    restarts: bool = True,
+    first: Callable[[Fitted], object] = lambda fitted: None,
 ) -> Fitted:
     """Fit stage by stage, then tyre and rig together; again from other shapes where that ends far from the noise.
 
@@ -97,12 +103,14 @@ def fit_staged(
     plan : what is free
     progress : called with a sentence before each step
     restarts : whether to start again where the fit ends far from the noise
+    first : called with a fit that ends there, before it is started again; may refuse the data
     """
     _enough_points(problem.points, plan.free)
     best = _fit_from(problem, start, plan, progress)
     far = plan.noise_stated and max(best.scale) > FALSE_MINIMUM
     if not restarts or (not far and not best.at_bound & BY_SHAPE):
         return best
+    first(best)
     tried = []
     for shape, values in SHAPES.items():
         progress(f"starting again from {shape}")
