@@ -6,4 +6,14 @@ from mffit.fit.fitting import fit
 from mffit.fit.outliers import Outlier, marks
 from mffit.fit.result import Agreement, Coefficient, FitResult, StageRecord
 
-__all__ = ["Agreement", "Coefficient", "Doubt", "FitResult", "Outlier", "StageRecord", "file_names", "fit", "marks"]
+__all__ = [
+    "Agreement",
+    "Coefficient",
+    "Doubt",
+    "FitResult",
+    "Outlier",
+    "StageRecord",
+    "file_names",
+    "fit",
+    "marks",
+]

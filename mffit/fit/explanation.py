@@ -23,7 +23,9 @@ class Shift:
     """One number of a sweep that may be off."""
 
     looks: str  #: with {} for the number
-    shape: Callable[[Points, Simulation], Mapping[str, np.ndarray]]  #: change of prediction less measured, per unit
+    shape: Callable[
+        [Points, Simulation], Mapping[str, np.ndarray]
+    ]  #: change of prediction less measured, per unit
     unit: float = 1.0  #: what the sentence shows of one unit
     start: float = 0.0  #: added to it
     sign: str = ""  #: channel whose sign in the rig's axes it has
@@ -52,8 +54,18 @@ SHIFTS = (
     Shift("a zero offset of {:+.3g} Nm in Mz_Nm", _constant("Mz"), sign="Mz"),
     Shift("a gain of {:.3g} in Fy_N", _gain("Fy"), start=1.0),
     Shift("a gain of {:.3g} in Mz_Nm", _gain("Mz"), start=1.0),
-    Shift("a sideslip axis that is {:+.2g} deg out", _set_point("alpha"), unit=float(np.degrees(1.0)), sign="alpha"),
-    Shift("a camber axis that is {:+.2g} deg out", _set_point("gamma"), unit=float(np.degrees(1.0)), sign="gamma"),
+    Shift(
+        "a sideslip axis that is {:+.2g} deg out",
+        _set_point("alpha"),
+        unit=float(np.degrees(1.0)),
+        sign="alpha",
+    ),
+    Shift(
+        "a camber axis that is {:+.2g} deg out",
+        _set_point("gamma"),
+        unit=float(np.degrees(1.0)),
+        sign="gamma",
+    ),
     Shift("a load that was {:+.2g} % off", _set_point("Fz", relative=True), unit=100.0),
     Shift("a pressure that was {:+.2g} % off", _set_point("p", relative=True), unit=100.0),
 )
@@ -86,7 +98,9 @@ def explanation(
             best, said = gained, mistake.looks
     for shift in SHIFTS:
         shape = {
-            n: x[np.isfinite(getattr(points, n))] for n, x in shift.shape(points, simulation).items() if n in errors
+            n: x[np.isfinite(getattr(points, n))]
+            for n, x in shift.shape(points, simulation).items()
+            if n in errors
         }
         solved = {n: np.linalg.solve(errors[n].covariance, x) for n, x in shape.items()}
         stiffness = sum(float(x @ solved[n]) for n, x in shape.items())

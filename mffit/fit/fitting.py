@@ -13,8 +13,8 @@ import numpy as np
 from mffit.config import axis_signs
 from mffit.fit import weights, wording
 from mffit.fit.coverage import coverage
-from mffit.fit.estimates import estimates
 from mffit.fit.doubts import Doubt
+from mffit.fit.estimates import estimates
 from mffit.fit.files import Files, decisions, file_names, make_files, sentences
 from mffit.fit.judgement import judge
 from mffit.fit.known import Known

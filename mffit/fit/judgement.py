@@ -163,9 +163,7 @@ def _usual_ratios(errors: list[Error]) -> float:
     return float(np.exp(middle + norm.isf(FALSE_ALARM / len(errors)) * scatter))
 
 
-def _view(
-    points: Points, group: Group, stated, size, signs, refit: Refit, level: float
-) -> View | None:
+def _view(points: Points, group: Group, stated, size, signs, refit: Refit, level: float) -> View | None:
     """Fit again without the group, and see what that says of it; None if it is nothing."""
     rest = np.setdiff1d(np.arange(len(points)), group.index)
     try:
@@ -224,7 +222,9 @@ def _predicted(part: Points, fitted: Fitted, stated, size) -> dict[str, tuple[Er
             continue
         J = getattr(slope, name)[known]
         error = (getattr(out, name) - getattr(part, name))[known]
-        prediction = Prediction(error, J @ fitted.posterior.covariance @ J.T + np.diag((scale * u[known]) ** 2))
+        prediction = Prediction(
+            error, J @ fitted.posterior.covariance @ J.T + np.diag((scale * u[known]) ** 2)
+        )
         found[name] = (error_of(name, prediction, size[name] * load), prediction)
     return found
 

@@ -45,7 +45,9 @@ class Leverage:
     residual: np.ndarray  #: (2n,) model less measured [N], [Nm]
     slope: np.ndarray  #: (2n, k) derivative by the free numbers
     weight: np.ndarray  #: (2n,) uncertainty that the fit used [N], [Nm]; inf: not used
-    noise: np.ndarray  #: (2n,) uncertainty of a sound point, the model's own misfit included; inf: not measured
+    noise: (
+        np.ndarray
+    )  #: (2n,) uncertainty of a sound point, the model's own misfit included; inf: not measured
     covariance: np.ndarray  #: (k, k)
 
 

@@ -82,7 +82,11 @@ def _of_neighbours(residual: np.ndarray, sweep: np.ndarray) -> np.ndarray:
     far_before, before, after, far_after = beside.T
     between = (before + after) / 2.0
     ahead, behind = 2.0 * before - far_before, 2.0 * after - far_after
-    for line in (between, np.where(np.isnan(after), ahead, np.nan), np.where(np.isnan(before), behind, np.nan)):
+    for line in (
+        between,
+        np.where(np.isnan(after), ahead, np.nan),
+        np.where(np.isnan(before), behind, np.nan),
+    ):
         out = np.where(np.abs(residual - line) < np.abs(residual - out), line, out)
     return out
 

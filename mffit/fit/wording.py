@@ -17,8 +17,8 @@ def doubt(fact: Doubt) -> str:
     explained = f"; it looks like {fact.looks}" if fact.looks else ""
     return (
         f"{fact.sweep} does not fit the other sweeps: predicted from them, {fact.channel} is out by {fact.rms:.3g} "
-        f"{CHANNELS[fact.channel].unit}, at least {100 * fact.share:.0f} % of its usual size and {fact.ratio:.1f} times what noise and "
-        f"model explain{explained}; check this sweep or repeat it"
+        f"{CHANNELS[fact.channel].unit}, at least {100 * fact.share:.0f} % of its usual size and {fact.ratio:.1f} times what "
+        f"noise and model explain{explained}; check this sweep or repeat it"
     )
 
 

@@ -113,7 +113,9 @@ def without_outliers(
     rows = np.arange(len(points))
     Fy, Mz = (
         np.where(
-            np.isin(rows, [o.row for o in fitted.outliers if o.channel == name]), np.nan, getattr(points, name)
+            np.isin(rows, [o.row for o in fitted.outliers if o.channel == name]),
+            np.nan,
+            getattr(points, name),
         )
         for name in ("Fy", "Mz")
     )

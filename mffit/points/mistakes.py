@@ -61,7 +61,11 @@ def _unit(channel: str, column: str, what: str, unit: str, house: str) -> Mistak
     )
 
 
-FORCE, LOAD, MOMENT = ("Fy", "Fy_N", "its side force"), ("Fz", "Fz_N", "its load"), ("Mz", "Mz_Nm", "its moment")
+FORCE, LOAD, MOMENT = (
+    ("Fy", "Fy_N", "its side force"),
+    ("Fz", "Fz_N", "its load"),
+    ("Mz", "Mz_Nm", "its moment"),
+)
 SIDESLIP, CAMBER = ("alpha", "alpha_deg", "its sideslip"), ("gamma", "gamma_deg", "its camber")
 
 MISTAKES: tuple[Mistake, ...] = (

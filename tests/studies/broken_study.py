@@ -1,7 +1,7 @@
 """What becomes of broken data: `python tests/studies/broken_study.py --help`; prints the table of docs/broken-data.md.
 
-Campaigns of the samples on drawn rigs, one mistake in each, in a file drawn by lot. "named": the build ends with the name of a file
-that holds the mistake. "doubted": it warns of that sweep, or lists the reading. The rest of the draws are sound: their alarms are
+Campaigns of the samples on drawn rigs, one mistake in each, in a file drawn by lot. "named": the build ends with the name of a
+file that holds the mistake. "doubted": it warns of that sweep, or lists the reading. The rest of the draws are sound: their alarms are
 counted.
 """
 
@@ -207,7 +207,9 @@ def main(count: int, clean: int) -> None:
     print("|---|" + "---|" * len(NAMES))
     for mistake in MISTAKES:
         cells = [table.get((mistake, sample), Counter()) for sample in NAMES]
-        said = [", ".join(f"{n} {word}" if word != "-" else "-" for word, n in cell.items()) for cell in cells]
+        said = [
+            ", ".join(f"{n} {word}" if word != "-" else "-" for word, n in cell.items()) for cell in cells
+        ]
         print(f"| {mistake} | {' | '.join(said)} |")
     alarms = [(s, k) for k in range(clean) for s in NAMES if outcome(s, sound, 10_000 + k) != "silent"]
     print(f"\nSound campaigns: {len(alarms)} alarms in {clean * len(NAMES)} builds {alarms or ''}")

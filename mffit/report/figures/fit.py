@@ -61,7 +61,15 @@ def _mark(ax: Axes, view: BuildView, channel: Channel, curve: Curve) -> None:
     angle = np.degrees(getattr(view.points, curve.over))
     for rows, (marker, size) in zip(view.marked(channel.name), MARKS.values(), strict=True):
         here = np.intersect1d(curve.index, rows)
-        ax.plot(angle[here], channel.measured[here], ls="none", marker=marker, ms=size, mfc="none", color=style.CONTRAST)
+        ax.plot(
+            angle[here],
+            channel.measured[here],
+            ls="none",
+            marker=marker,
+            ms=size,
+            mfc="none",
+            color=style.CONTRAST,
+        )
 
 
 MARKS = {"no weight": ("x", 5.0), "doubtful sweep": ("o", 5.5)}
@@ -82,7 +90,9 @@ def _legend(view: BuildView, channel: Channel, colours: dict[float, Any], backwa
     for rows, (word, (marker, size)) in zip(view.marked(channel.name), MARKS.items(), strict=True):
         if len(rows):
             handles.append(
-                Line2D([], [], ls="none", marker=marker, ms=size, mfc="none", color=style.CONTRAST, label=word)
+                Line2D(
+                    [], [], ls="none", marker=marker, ms=size, mfc="none", color=style.CONTRAST, label=word
+                )
             )
     places = 0 if all(abs(g - round(g)) < 0.15 for g in colours) else 1
     camber = labels.ANGLES["gamma"].symbol

@@ -26,9 +26,7 @@ class Campaign:
         content["faults"] = {"draw": True}
         for entry in content["sweep"]:
             entry.pop("recording", None)
-        virtual_rig.simulate(
-            virtual_rig.load_plan(content, folder=SAMPLES / sample), folder, seed=seed
-        )
+        virtual_rig.simulate(virtual_rig.load_plan(content, folder=SAMPLES / sample), folder, seed=seed)
         self.folder = folder
         self.config = tomllib.loads((folder / "tyre.toml").read_text(encoding="utf-8"))
         self.tables = {entry["file"]: pd.read_csv(folder / entry["file"]) for entry in self.config["sweep"]}
@@ -48,7 +46,12 @@ def refused(campaign: Campaign) -> InputError:
 
 
 CASES = [
-    ("flat-track", "sideslip_900N_20deg.csv", {"alpha_deg": "gamma_deg", "gamma_deg": "alpha_deg"}, "exchanged"),
+    (
+        "flat-track",
+        "sideslip_900N_20deg.csv",
+        {"alpha_deg": "gamma_deg", "gamma_deg": "alpha_deg"},
+        "exchanged",
+    ),
     ("flat-track", "sideslip_2100N_10deg.csv", {"Fy_N": 1.0 / 9.80665}, "kgf"),
     ("flat-track", "sideslip_1400N_35deg.csv", {"Mz_Nm": 1e-3}, "kN m"),
     ("rear-190-55", "camber_1650N.csv", {"Mz_Nm": -1.0}, "moment reversed"),
@@ -57,7 +60,9 @@ CASES = [
 
 
 @pytest.mark.parametrize(("sample", "file", "change", "looks"), CASES, ids=[case[3] for case in CASES])
-def test_a_sweep_that_all_others_contradict_is_named_with_what_it_looks_like(tmp_path, sample, file, change, looks):
+def test_a_sweep_that_all_others_contradict_is_named_with_what_it_looks_like(
+    tmp_path, sample, file, change, looks
+):
     campaign = Campaign(tmp_path, sample, seed=5)
     table = campaign.tables[file]
     for column, to in change.items():
