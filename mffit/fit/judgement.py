@@ -103,7 +103,7 @@ def judge(
     suspects = [(e, found[k]) for k, rows in errors.items() for e in rows if e.chance < level]
     usual = _usual_ratios([e for rows in errors.values() for e in rows])
     odd = [s for s in suspects if s[0].share > GROSS or (s[0].share > DOUBTFUL and s[0].ratio > usual)]
-    worst_first = [g for _, g in sorted(odd, key=lambda s: (-s[0].ratio, not s[1].whole))]
+    worst_first = [g for _, g in sorted(odd, key=lambda s: (not s[1].whole, -s[0].ratio))]
     tried = list({id(g): g for g in worst_first}.values())[:MOST_TRIED]
     views = []
     for group in tried:

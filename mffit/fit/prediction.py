@@ -9,7 +9,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from typing import NamedTuple
 
 import numpy as np
 
@@ -29,7 +28,8 @@ COMMON = tuple(name for name in FAULT_NAMES if name not in ("backlash_deg", "pat
 """Errors of a rig that all sweeps share; they are no contradiction of one sweep, and are let free, to first order."""
 
 
-class Group(NamedTuple):
+@dataclass(frozen=True, slots=True, eq=False)
+class Group:
     """Points that share a mistake, if there is one."""
 
     name: str  #: for sentences
