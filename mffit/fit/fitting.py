@@ -11,33 +11,34 @@ from typing import Any
 import numpy as np
 
 from mffit.config import axis_signs
-from mffit.fit import weights, wording
+from mffit.fit import remarks, weights
 from mffit.fit.coverage import coverage
 from mffit.fit.doubts import Doubt
+from mffit.fit.ensemble import ensemble
 from mffit.fit.estimates import estimates
-from mffit.fit.files import Files, decisions, file_names, make_files, sentences
+from mffit.fit.files import Files, decisions, file_names, make_files
 from mffit.fit.judgement import judge
 from mffit.fit.known import Known
 from mffit.fit.outliers import outliers
+from mffit.fit.posterior import COVERING
+from mffit.fit.priors import scatters
 from mffit.fit.problem import Problem
 from mffit.fit.radius import radius_coefficients
 from mffit.fit.ranges import covered_ranges, envelope
 from mffit.fit.result import Agreement, Coefficient, FitResult, agreement
 from mffit.fit.rig_numbers import known_faults, rig_numbers
 from mffit.fit.staged import Fitted, Plan, Progress, fit_staged
-from mffit.fit.stages import ODD_TERMS
+from mffit.fit.stages import ODD_TERMS, STAGES
 from mffit.fit.start import base_values, starting_values
 from mffit.fit.virtual_zero import epsilon_gamma_of_model
+from mffit.fit.wording import file_comments, pecp1_sentence, sentences, warnings
 from mffit.least_squares import touches
 from mffit.measured import radius_readings
 from mffit.parts import Parts
 from mffit.points import Points
-from mffit.rig import Readings, Simulation, reference_speed
+from mffit.rig import Simulation, reference_speed
 from tir import Tyre
 from tir.parameters import BY_NAME, TABLE
-
-FROM_DATA = ("measured", "fitted", "regularised")
-"""Statuses of values that these data decided."""
 
 
 def fit(
@@ -47,6 +48,8 @@ def fit(
     measured: Any,
     base: Tyre | None = None,
     progress: Progress = lambda sentence: None,
+    *,
+    members: int = 0,
 ) -> FitResult:
     """Fit MF 6.2 to raw points with turn slip on, holding what was measured directly.
 
@@ -58,6 +61,7 @@ def fit(
     measured : the direct method's result; ``epsilon_gamma`` None on a flat track
     base : coefficients that are not fitted come from here
     progress : called with a sentence before each step
+    members : tyres to draw from the posterior beside the best one
 
     Raises
     ------
@@ -67,7 +71,7 @@ def fit(
     began = time.perf_counter()
     known = _before_the_fit(config, points, measured, base)
     start = starting_values(known.values, points, measured)
-    plan = _plan(config, points, measured, start)
+    plan = _plan(config, points, measured, known, start)
     problem = _problem(config, points, known.values, measured)
     stated = problem.sigma_Fy, problem.sigma_Mz
 
@@ -84,18 +88,21 @@ def fit(
 
     fitted = fit_staged(problem, start, plan, progress, first=lambda of: judged(of, only_known=True))
     doubts = judged(fitted)
-    known = _after_the_fit(known, fitted, start, points, base)
+    known = _after_the_fit(known, fitted, base)
+    if members:
+        progress(f"drawing {members} tyres from what the fit leaves open")
+    drawn = ensemble(fitted, members)
     progress("deriving the files and judging them")
     known = known.deciding(decisions(config))
     rolling = _rolling_resistance(known.values, points)
     known = known.having({name: value for name, (value, _) in rolling.items()}, "fitted")
     coefficients = _coefficients(known, fitted, {name: u for name, (_, u) in rolling.items()})
-    comments = {name: status_comment(c) for name, c in coefficients.items() if c.status in FROM_DATA}
-    written = make_files(config, known, points, base, comments, dict(measured.by_load("C_gamma")))
+    written = make_files(config, known, points, base, dict(measured.by_load("C_gamma")))
+    written = written.annotated(file_comments(written, known.origin, coefficients))
     disc = config.rig.type == "rotating-disk"
     explanations = sentences(written, file_names(config.tyre.name, config.spin.exact, disc))
     if measured.epsilon_gamma is not None:
-        explanations.append(_pecp1_sentence(config, known.values, measured))
+        explanations.append(pecp1_sentence(config, known.values, measured))
     use = config.spin.exact if disc else "normal"
     readings = fitted.simulation.readings(points)
     singled = outliers(points, stated, (fitted.problem.sigma_Fy, fitted.problem.sigma_Mz), readings)
@@ -113,13 +120,14 @@ def fit(
         simulation=fitted.simulation,
         rig=fitted.rig,
         posterior=fitted.posterior,
+        members=tuple(drawn),
         stages=fitted.stages,
         coverage=plan.cover,
         explanations=tuple(explanations),
         warnings=(
-            *_warnings(fitted, points, readings),
-            *(wording.doubt(fact) for fact in doubts),
-            *([wording.standing_out(singled)] if singled else []),
+            *warnings(fitted, points, readings),
+            *(remarks.doubt(fact) for fact in doubts),
+            *([remarks.standing_out(singled)] if singled else []),
         ),
         doubts=doubts,
         outliers=singled,
@@ -133,19 +141,27 @@ def silent(sentence: str) -> None:
     """Progress of a fit on the way that is not told."""
 
 
-def _plan(config, points: Points, measured, start: Mapping[str, float]) -> Plan:
+def _plan(config, points: Points, measured, known: Known, start: Mapping[str, float]) -> Plan:
     """What these points can decide, and what is known of it beforehand."""
     rig = rig_numbers(config, measured)
     extra = ["Q_RE0"] if rig and config.rolling_radius else []
-    held = {}
+    cover = coverage(points, config.tyre.side or "left")
+    scatter = scatters(
+        {name: start[name] for stage in STAGES for name in stage.parameters},
+        known.origin,
+        curved=bool(np.any(points.phi_t)),
+    )
+    none = ODD_TERMS if config.tyre.side == "symmetric" else frozenset()
+    held = {name: scatter[name] for row in cover for name in row.held if name not in none}
     if measured.epsilon_gamma is not None:
         if config.spin.pecp1 == "model":
             extra.append("PECP1")
         else:
             held["PECP1"] = measured.epsilon_gamma.u
     return Plan(
-        coverage(points, config.tyre.side or "left"),
+        cover,
         start,
+        scatter,
         rig,
         tuple(extra),
         held,
@@ -171,12 +187,9 @@ def _before_the_fit(config, points: Points, measured, base: Tyre | None) -> Know
     return known
 
 
-def _after_the_fit(
-    known: Known, fitted: Fitted, start: Mapping[str, float], points: Points, base: Tyre | None
-) -> Known:
+def _after_the_fit(known: Known, fitted: Fitted, base: Tyre | None) -> Known:
     """The fitted values, and those that follow from them."""
     tied = fitted.regularised
-    known = known.having({n: start[n] for n in fitted.unmoved})
     known = known.having({n: v for n, v in fitted.values.items() if n in tied}, "regularised")
     freed = {n: v for n, v in fitted.values.items() if n not in tied}
     known = known.having({n: v for n, v in freed.items() if not BY_NAME[n].stage})
@@ -239,14 +252,26 @@ def _coefficients(known: Known, fitted: Fitted, rolling: Mapping[str, float]) ->
             status=known.origin[row.name],
             correlated_with=partner,
             correlation=correlation,
+            interval=_interval(
+                float(known.values[row.name]), free.get(row.name), fitted.intervals.get(row.name)
+            ),
         )
     return out
+
+
+def _interval(
+    value: float, stderr: float | None, followed: tuple[float, float] | None
+) -> tuple[float, float] | None:
+    """95 %: as the valley shows where one was followed, else from the curvature."""
+    if stderr is None:
+        return None
+    return followed or (value - COVERING * stderr, value + COVERING * stderr)
 
 
 def _of_file(files: Files, use: str, coefficients: Mapping[str, Coefficient]) -> dict[str, Coefficient]:
     """The records of the file with the plain name: its values, and the origin of each as the file states it."""
     tyre = files.by_use[use].tyre
-    derived = files.changed if use == "normal" else ()
+    derived = files.changed.get(use, ())
     out = {}
     for name, c in coefficients.items():
         value, origin = float(tyre[name]), tyre.status[name]
@@ -255,14 +280,6 @@ def _of_file(files: Files, use: str, coefficients: Mapping[str, Coefficient]) ->
             bound = touches(value, *BY_NAME[name].bounds)
             out[name] = Coefficient(value, None, c.stage, False, bound, "fitted", origin=origin)
     return out
-
-
-def status_comment(coefficient: Coefficient) -> str:
-    """How the file's comment states the origin of a value."""
-    text = "tied to base value" if coefficient.status == "regularised" else coefficient.status
-    if coefficient.stderr is not None and not coefficient.fixed:
-        text += f" +- {coefficient.stderr:.2g}"
-    return text + (", at bound" if coefficient.at_bound else "")
 
 
 def _odd_agreement(values, points: Points, parts: Parts) -> dict[str, Agreement]:
@@ -282,59 +299,3 @@ def _epsilon_of_model(values, points: Points, measured) -> float | None:
     if measured.epsilon_gamma is None:
         return None
     return epsilon_gamma_of_model(values, points, measured.F_phit_load, measured.r_e.value, measured.R.value)
-
-
-def _pecp1_sentence(config, values, measured) -> str:
-    if config.spin.pecp1 == "debiased":
-        return (
-            f"PECP1 = {values['PECP1']:.4f} is the measured eps_gamma {measured.epsilon_gamma.value:.4f} less what the "
-            "finite spin of the disc adds to it."
-        )
-    if config.spin.pecp1 == "direct":
-        return (
-            f"PECP1 = {values['PECP1']:.4f} is the measured eps_gamma itself; the finite spin of the disc makes the "
-            "model's turn-slip force differ slightly from the measured one (see epsilon_gamma_model)."
-        )
-    return (
-        f"PECP1 = {values['PECP1']:.4f} is the joint estimate of tyre and rig, in which every point counts with its noise "
-        f"and the rig's errors with what [rig] declares; the directly measured eps_gamma is {measured.epsilon_gamma.value:.4f}."
-    )
-
-
-NOT_TRUSTED = 2.0
-"""Misfit in units of the stated noise above which a file is not to be trusted."""
-CARRIES = 1.5
-"""A sweep carries the misfit if its own is this many times that of all points."""
-
-
-def _warnings(fitted: Fitted, points: Points, model: Readings) -> list[str]:
-    """What a user must know of the fit, the gravest first."""
-    out = []
-    for name, reading, measured, u, scale in (
-        ("Fy", model.Fy, points.Fy, points.u_Fy, fitted.scale[0]),
-        ("Mz", model.Mz, points.Mz, points.u_Mz, fitted.scale[1]),
-    ):
-        if scale > NOT_TRUSTED and np.any(np.isfinite(u)):
-            out.append(
-                f"the file is not to be trusted: the model misses {name} by {scale:.1f} times the stated uncertainty"
-                f"{_carriers(points, (reading - measured) / u)}; look at these sweeps, or run mffit diagnose"
-            )
-    if fitted.attempts:
-        out.append(f"the fit was started again from {', '.join(fitted.attempts)}; the best of all is kept")
-    if fitted.at_bound:
-        out.append(
-            f"at the bound of plausible values: {', '.join(sorted(fitted.at_bound))}; check the sweeps that decide them"
-        )
-    return out
-
-
-def _carriers(points: Points, z: np.ndarray) -> str:
-    """The sweeps that carry a misfit (n,), in words."""
-    known = np.isfinite(z)
-    total = float(np.sqrt(np.mean(z[known] ** 2)))
-    own = {
-        k: float(np.sqrt(np.mean(z[known & (points.sweep == k)] ** 2)))
-        for k in np.unique(points.sweep[known])
-    }
-    worst = [k for k in sorted(own, key=lambda k: -own[k]) if own[k] > CARRIES * total][:3]
-    return f", most of it in {', '.join(points.sweep_names[k] for k in worst)}" if worst else ""

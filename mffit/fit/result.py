@@ -28,6 +28,7 @@ class Coefficient:
     status: str  #: measured | fitted | regularised | default | base
     correlated_with: str = ""  #: the coefficient with the largest correlation, if above 0.95
     correlation: float = 0.0
+    interval: tuple[float, float] | None = None  #: of 95 %; None if held
     origin: str = ""  #: where the value comes from, as the file's comment says it
 
 
@@ -68,6 +69,7 @@ class FitResult:
     Fy_model: np.ndarray  #: (n,) [N]
     Mz_model: np.ndarray  #: (n,) [Nm]
     posterior: Posterior  #: what the fit leaves uncertain
+    members: tuple[Mapping[str, float], ...]  #: coefficients of tyres drawn from it, if any were asked for
     stages: tuple[StageRecord, ...]
     coverage: tuple[StageCoverage, ...]
     explanations: tuple[str, ...]

@@ -171,6 +171,7 @@ def _coefficient(found: Coefficient) -> dict[str, Any]:
         "stage": found.stage,
         "fixed": found.fixed,
         "at_bound": found.at_bound,
+        "interval_95": list(found.interval) if found.interval else None,
         "status": found.status,
         "origin": found.origin or found.status,
         "correlated_with": partner,
@@ -183,14 +184,18 @@ def _files(files: Files) -> dict[str, Any]:
     out: dict[str, Any] = {
         use: {
             "USE_MODE": int(file.tyre["USE_MODE"]),
-            "straight": {channel: asdict(misfit) for channel, misfit in file.straight.items()},
+            **{
+                place: {channel: asdict(misfit) for channel, misfit in channels.items()}
+                for place, channels in file.misfit.items()
+            },
             "camber_stiffness_N_per_rad": file.camber_stiffness,
         }
         for use, file in files.by_use.items()
     }
-    if len(files.by_use) == 2:
+    for use, names in files.changed.items():
+        out[use]["coefficients"] = {name: files.by_use[use].tyre[name] for name in names}
+    if files.lacking:
         out["normal"] |= {
-            "coefficients": {name: files.by_use["normal"].tyre[name] for name in files.changed},
             "camber_stiffness_loss": files.stiffness_loss,
             "turn_slip_force_lacking_N": {f"{radius:g} m": force for radius, force in files.lacking.items()},
         }

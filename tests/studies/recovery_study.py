@@ -1,7 +1,7 @@
 """Does a build find the truth, and do its intervals hold it? `python tests/studies/recovery_study.py 200 --jobs 2`.
 
-Prints the three tables of docs/recovery.md: misfit, truth, coverage; front and rear tyres, each with a base file up to 30 % off, without one,
-and with a thin campaign.
+Prints the three tables of docs/recovery.md: misfit, truth, coverage; front and rear tyres, each with a base file up to 30 %
+off, without one, and with a thin campaign.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ import numpy as np
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "mffit" / "fit"))
 
-from drawn_rigs import SAFE, Draw, Kind, one_rig
+from drawn_rigs import Draw, Kind, one_rig
 
 KINDS = {
     f"{sample.split('-')[0]}, {words}": Kind(sample, base, thin, tyre_off=0.1)
@@ -63,7 +63,7 @@ def tables(draws: dict[str, list[Draw]]) -> Iterable[str]:
     for name in dict.fromkeys(n for d in everything for n in d.pulls):
         x = np.array([d.pulls[name] for d in everything if name in d.pulls])
         if len(x) >= SELDOM * len(everything):
-            inside = np.mean(np.abs(x) < SAFE)
+            inside = np.mean([d.inside[name] for d in everything if name in d.inside])
             yield f"| {name} | {len(x)} | {inside:.0%} | {np.mean(x):+.2f} | {np.std(x):.2f} |"
     for name in everything[0].bands:
         inside = np.mean([d.bands[name] for d in everything])

@@ -47,8 +47,11 @@ class Draw:
 
     misfit: dict[str, float] = field(default_factory=dict)  #: rms over stated noise, by channel
     pulls: dict[str, float] = field(default_factory=dict)  #: (found - true) / standard error
+    inside: dict[str, bool] = field(default_factory=dict)  #: whether the 95 % interval holds the truth
     error: dict[str, float] = field(default_factory=dict)  #: against the noise-free truth, in units
-    bands: dict[str, float] = field(default_factory=dict)  #: share of conditions whose truth the 95 % band holds
+    bands: dict[str, float] = field(
+        default_factory=dict
+    )  #: share of conditions whose truth the 95 % band holds
     seconds: float = 0.0
 
 
@@ -106,11 +109,12 @@ def _compared(result: Any, true: tir.Tyre, known: Mapping[str, Any], rng: np.ran
         ("C_phit", measured.C_phit, known["C_phit_secant_Nm"]),
     ):
         draw.pulls[name] = (quantity.value - truth) / quantity.u
+        draw.inside[name] = abs(draw.pulls[name]) < SAFE
     for name, row in fit.coefficients.items():
-        if row.stderr and row.status == "fitted" and not row.at_bound and name in STAGED:
+        decided = row.status == "fitted" and name in STAGED and not row.at_bound
+        if row.stderr and row.interval and (decided or name == "PECP1"):
             draw.pulls[name] = (row.value - true[name]) / row.stderr
-        if name == "PECP1" and row.stderr:
-            draw.pulls[name] = (row.value - true[name]) / row.stderr
+            draw.inside[name] = row.interval[0] <= true[name] <= row.interval[1]
     draw.error["eps_gamma"] = measured.epsilon_gamma.value - known["epsilon_gamma"]
     draw.error["eps_gamma debiased"] = measured.epsilon_gamma_debiased.value - known["epsilon_gamma"]
     draw.error["PECP1"] = fit.tyre["PECP1"] - true["PECP1"]

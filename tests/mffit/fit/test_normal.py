@@ -12,7 +12,9 @@ import pytest
 import mffit
 import tir
 from mffit.diagnosis.notes import ModelFittedFirst
-from mffit.fit.files import file_names, use_mode, whole_words
+from mffit.fit.files import file_names, use_mode
+from mffit.fit.imitation import forces
+from mffit.fit.wording import whole_words
 from mffit.pipeline.diagnosing import chosen_model
 from mffit.pipeline.provenance import use_of
 from mffit.results import as_json
@@ -88,8 +90,8 @@ def test_the_upright_wheel_is_the_same_in_both_files(result):
 def test_the_normal_file_follows_the_true_tyre_on_a_straight_path(result, truth):
     """The formula's own limit on this tyre is 44 N and 1.8 Nm (tests/studies/normal_study.py); the fit adds its noise."""
     road = normal_study.box(truth["FNOMIN"], truth["NOMPRES"])
-    made = road.forces(result.tyres["normal"].values, turn_slip=False)
-    true = road.forces(truth.values, turn_slip=True)
+    made = forces(result.tyres["normal"].values, road, turn_slip=False)
+    true = forces(truth.values, road, turn_slip=True)
     assert np.sqrt(np.mean((made.Fy - true.Fy) ** 2)) < 52.0
     assert np.sqrt(np.mean((made.Mz - true.Mz) ** 2)) < 2.5
 
