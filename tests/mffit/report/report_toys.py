@@ -12,6 +12,7 @@ import tir
 from mffit import config, measured, parts
 from mffit.fit.coverage import coverage
 from mffit.fit.result import Coefficient, FitResult, StageRecord, agreement
+from mffit.fit.posterior import Posterior
 from mffit.points import Points, make_points
 from mffit.results import BuildResult
 from mffit.rig import Simulation
@@ -133,6 +134,8 @@ def made_result(**changes: Any) -> BuildResult:
         explanations=("The file is for simulations with turn slip on.",),
         warnings=(),
         seconds=1.5,
+        posterior=Posterior((), np.zeros((0, 0))),
+        members=(),
     )
     return BuildResult(
         config=settings,
