@@ -11,8 +11,8 @@ import numpy as np
 import tir
 from mffit import config, measured, parts
 from mffit.fit.coverage import coverage
-from mffit.fit.result import Coefficient, FitResult, StageRecord, agreement
 from mffit.fit.posterior import Posterior
+from mffit.fit.result import Coefficient, FitResult, StageRecord, agreement
 from mffit.points import Points, make_points
 from mffit.results import BuildResult
 from mffit.rig import Simulation
