@@ -151,7 +151,7 @@ def _problem(config, points: Points, values, measured) -> Problem:
 
 
 def _with_held_pecp1(fitted: Fitted, points: Points, measured, free: bool) -> Fitted:
-    """PECP1 is held at the measured eps_gamma: its uncertainty goes on to every coefficient, to first order."""
+    """PECP1 is held at the measured eps_gamma: its uncertainty goes on to every coefficient and rig error, to first order."""
     if free or measured.epsilon_gamma is None:
         return fitted
     names = [*fitted.names, "PECP1"]
@@ -160,7 +160,8 @@ def _with_held_pecp1(fitted: Fitted, points: Points, measured, free: bool) -> Fi
     shift = -fitted.covariance @ (slope[:, :-1].T @ slope[:, -1]) * measured.epsilon_gamma.u
     covariance = fitted.covariance + np.outer(shift, shift)
     errors = dict(zip(fitted.names, np.sqrt(np.diag(covariance)).tolist(), strict=True))
-    return dataclasses.replace(fitted, covariance=covariance, stderr=errors)
+    rig = {name: (value, errors[name]) for name, (value, _) in fitted.rig.items()}
+    return dataclasses.replace(fitted, covariance=covariance, stderr=errors, rig=rig)
 
 
 def _by_load(measured, key: str) -> dict[float, float]:
