@@ -13,7 +13,6 @@ import argparse
 import ast
 import difflib
 import os
-import queue
 import random
 import shutil
 import signal
@@ -22,29 +21,30 @@ import sys
 import tempfile
 import time
 from collections.abc import Iterator
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
-from itertools import islice
+from importlib import import_module
+from itertools import count, islice
+from multiprocessing import get_context
+from multiprocessing.process import BaseProcess
 from pathlib import Path
 
 ROOT = Path(__file__).parents[2]
-FIT, COMMANDS = "tests/mffit/fit", "tests/mffit/test_command_line.py"
+FIT, DIAGNOSIS, COMMANDS = "tests/mffit/fit", "tests/mffit/diagnosis", "tests/mffit/test_command_line.py"
 TESTS: dict[str, tuple[str, ...]] = {
-    "tir/equations": ("tests/tir", "tests/mffit/rig", f"{FIT}/test_constraints.py"),
+    "tir/equations": ("tests/tir", "tests/mffit/rig", f"{FIT}/test_constraints.py", f"{FIT}/test_estimates.py"),
     "tir/evaluate.py": ("tests/tir", "tests/mffit/rig"),
     "mffit/measured": (
-        "tests/mffit/measured", "tests/test_paper_tables.py", "tests/mffit/virtual_rig/test_virtual_round_trip.py",
-        f"{FIT}/test_recovery.py", "tests/mffit/diagnosis/test_correction.py", "tests/mffit/virtual_rig", COMMANDS,
-    ),
-    "mffit/fit": (
-        f"{FIT}/test_constraints.py", f"{FIT}/test_coverage.py", f"{FIT}/test_recovery.py", FIT, COMMANDS,
-    ),
-    "mffit/diagnosis": (
-        "tests/mffit/diagnosis/test_selection.py", "tests/mffit/diagnosis/test_conditions.py",
-        "tests/mffit/diagnosis/test_steps.py", "tests/mffit/diagnosis/test_wording.py", "tests/mffit/diagnosis",
+        "tests/mffit/measured", "tests/test_paper_tables.py", f"{FIT}/test_faulty_rig.py", f"{FIT}/test_recovery.py",
         COMMANDS,
     ),
-    "mffit/pipeline.py": (COMMANDS, "tests/mffit/test_bad_input.py", FIT, "tests/mffit/diagnosis/test_correction.py"),
+    "mffit/fit": (
+        *(f"{FIT}/test_{name}.py" for name in ("constraints", "coverage", "weights", "estimates", "rig_numbers")),
+        FIT, COMMANDS,
+    ),
+    "mffit/diagnosis": (
+        *(f"{DIAGNOSIS}/test_{name}.py" for name in ("selection", "conditions", "steps", "wording")), DIAGNOSIS,
+    ),
+    "mffit/pipeline.py": (COMMANDS, FIT, f"{DIAGNOSIS}/test_correction.py", "tests/mffit/test_bad_input.py"),
 }  # fmt: skip
 """Folder that is changed -> the tests that ought to notice, the quick ones first."""
 SWAPS = (
@@ -67,6 +67,17 @@ OPERATORS = (
 )
 
 
+PRELOADED = (
+    "numpy", "scipy.optimize", "scipy.stats", "scipy.special", "scipy.linalg", "scipy.interpolate", "scipy.integrate", "pandas",
+    "lmfit", "pydantic", "uncertainties", "pint", "matplotlib.figure", "matplotlib.backends.backend_agg", "jinja2", "click",
+    "rich.console", "tomli_w", "pytest",
+)  # fmt: skip
+LONGEST = 3600.0  # s
+ROOT_TEXT: dict[str, str] = {}
+"""Modules as they are, by name."""
+STAMPS = count(1_000_000_000)
+
+
 @dataclass(frozen=True)
 class Mutant:
     """One changed module."""
@@ -85,6 +96,13 @@ class Outcome:
     mutant: Mutant
     killed_by: str  #: first failing test, "timeout", or "" for a survivor
     seconds: float
+
+    def line(self) -> str:
+        """For whoever watches."""
+        m = self.mutant
+        what = f"{m.module} {m.operator}" if m.module else f"{m.folder} as it is"
+        end = self.killed_by[:100] or ("SURVIVES\n" + m.change if m.code else "passes")
+        return f"{self.seconds:5.0f} s {what} {end}"
 
 
 def places(folder: str) -> Iterator[tuple[str, Path, str, int]]:
@@ -111,6 +129,7 @@ def mutant(folder: str, module: Path, operator: str, occurrence: int) -> Mutant 
     if code is None or _executed(code) in ("", _executed(source)):
         return None
     name = str(module.relative_to(ROOT))
+    ROOT_TEXT[name] = source
     return Mutant(folder, name, operator.removeprefix("core/"), code, _change(source, code))
 
 
@@ -137,13 +156,13 @@ def _change(before: str, after: str) -> str:
     return "\n".join(lines)
 
 
-def drawn(count: int, seed: int, only: str) -> list[Mutant]:
+def drawn(size: int, seed: int, only: str) -> list[Mutant]:
     """A sample of all changes, each as likely as any other; the same for the same seed and code."""
     everything = [place for folder in TESTS if only in folder for place in places(folder)]
     print(f"{len(everything)} places for a change", flush=True)
     random.Random(seed).shuffle(everything)
     made = (mutant(*place) for place in everything)
-    return list(islice((m for m in made if m is not None), count))
+    return list(islice((m for m in made if m is not None), size))
 
 
 def copy_of_the_tree(at: Path) -> Path:
@@ -162,79 +181,83 @@ def copy_of_the_tree(at: Path) -> Path:
     return at
 
 
-def run_tests(tree: Path, tests: tuple[str, ...], timeout: float) -> str:
-    """First failing test, "timeout", or "" if all pass."""
-    alone = {name: "1" for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")}
-    env = os.environ | alone | {"PYTHONDONTWRITEBYTECODE": "1", "PYTHONPATH": str(tree)}
-    command = [
-        sys.executable,
-        "-m",
-        "pytest",
-        "-x",
-        "-q",
-        "-p",
-        "no:cacheprovider",
-        "--no-header",
-        "--tb=no",
-        *tests,
-    ]
-    process = subprocess.Popen(
-        command,
-        cwd=tree,
-        env=env,
-        text=True,
-        stdout=subprocess.PIPE,
-        stderr=subprocess.STDOUT,
-        start_new_session=True,
-    )
-    try:
-        output, _ = process.communicate(timeout=timeout)
-    except subprocess.TimeoutExpired:
+def started(tree: Path, tests: tuple[str, ...], output: Path) -> BaseProcess:
+    """A process that runs the tests in a copy of the tree; what is imported here already, it need not import again."""
+    process = get_context("fork").Process(target=_pytest, args=(tree, tests, output))
+    process.start()
+    return process
+
+
+def _pytest(tree: Path, tests: tuple[str, ...], output: Path) -> None:
+    os.setsid()
+    os.chdir(tree)
+    os.environ["PYTHONPATH"] = str(tree)
+    sys.path[:] = [str(tree), *(place for place in sys.path if place != str(ROOT))]
+    with output.open("w") as stream:
+        for descriptor in (1, 2):
+            os.dup2(stream.fileno(), descriptor)
+    import pytest
+
+    code = pytest.main(["-x", "-q", "-p", "no:cacheprovider", "--no-header", "--tb=no", *tests])
+    sys.stdout.flush()
+    os._exit(int(code))
+
+
+def verdict(process: BaseProcess, output: Path) -> str:
+    """First failing test, "timeout", or "" if all passed."""
+    if process.is_alive():
         os.killpg(process.pid, signal.SIGKILL)
-        process.communicate()
+        process.join()
         return "timeout"
-    if process.returncode == 0:
+    if process.exitcode == 0:
         return ""
-    failed = [line for line in output.splitlines() if line.startswith(("FAILED", "ERROR"))]
-    return failed[0] if failed else output[-200:]
+    text = output.read_text(errors="replace") if output.exists() else ""
+    failed = [line for line in text.splitlines() if line.startswith(("FAILED", "ERROR"))]
+    return failed[0] if failed else text[-200:].strip() or f"exit code {process.exitcode}"
 
 
 def judged(sample: list[Mutant], workers: int) -> list[Outcome]:
-    """Run the tests of every mutant, each worker in a copy of its own."""
+    """Run the tests of every mutant, each worker in a copy of its own; first those of every folder as they are."""
+    for name in PRELOADED:
+        import_module(name)
+    waiting = [Mutant(folder, "", "", "", "") for folder in dict.fromkeys(m.folder for m in sample)] + sample
+    waiting.reverse()
+    out: list[Outcome] = []
+    limit: dict[str, float] = {}
     with tempfile.TemporaryDirectory() as scratch:
-        free: queue.Queue[Path] = queue.Queue()
-        for k in range(workers):
-            free.put(copy_of_the_tree(Path(scratch) / str(k)))
-        limit = {}
-        for folder in {m.folder for m in sample}:
-            began = time.perf_counter()
-            wrong = run_tests(Path(scratch) / "0", TESTS[folder], 1800.0)
-            if wrong:
-                sys.exit(f"the tests of {folder} fail without any change: {wrong}")
-            limit[folder] = 60.0 + 4.0 * (time.perf_counter() - began)
-            print(f"{folder}: tests take {time.perf_counter() - began:.0f} s", flush=True)
+        trees = [copy_of_the_tree(Path(scratch) / str(k)) for k in range(workers)]
+        running: dict[Path, tuple[Mutant, BaseProcess, float]] = {}
+        while waiting or running:
+            for tree in trees:
+                if tree not in running and waiting:
+                    mutant = waiting.pop()
+                    _write(tree, mutant, mutant.code)
+                    process = started(tree, TESTS[mutant.folder], tree.with_suffix(".txt"))
+                    running[tree] = mutant, process, time.monotonic()
+            time.sleep(0.05)
+            for tree, (mutant, process, began) in list(running.items()):
+                seconds = time.monotonic() - began
+                if process.is_alive() and seconds < limit.get(mutant.folder, LONGEST):
+                    continue
+                found = Outcome(mutant, verdict(process, tree.with_suffix(".txt")), seconds)
+                _write(tree, mutant, "")
+                del running[tree]
+                print(found.line(), flush=True)
+                if mutant.code:
+                    out.append(found)
+                elif found.killed_by:
+                    sys.exit(f"the tests of {mutant.folder} fail without any change: {found.killed_by}")
+                else:
+                    limit[mutant.folder] = 120.0 + 5.0 * seconds
+    return out
 
-        def judge(mutant: Mutant) -> Outcome:
-            tree, began = free.get(), time.perf_counter()
-            path = tree / mutant.module
-            source, times = path.read_text(encoding="utf-8"), path.stat()
-            try:
-                path.write_text(mutant.code, encoding="utf-8")
-                killer = run_tests(tree, TESTS[mutant.folder], limit[mutant.folder])
-            finally:
-                path.write_text(source, encoding="utf-8")
-                os.utime(path, ns=(times.st_atime_ns, times.st_mtime_ns))
-                free.put(tree)
-            out = Outcome(mutant, killer, time.perf_counter() - began)
-            print(
-                f"{out.seconds:5.0f} s {mutant.module} {mutant.operator} {'SURVIVES' if not killer else killer[:100]}"
-                + ("" if killer else "\n" + mutant.change),
-                flush=True,
-            )
-            return out
 
-        with ThreadPoolExecutor(workers) as pool:
-            return list(pool.map(judge, sample))
+def _write(tree: Path, mutant: Mutant, code: str) -> None:
+    """The mutant's code into its module, or what stood there before; the time of a file tells compiled code apart."""
+    if mutant.module:
+        (tree / mutant.module).write_text(code or (ROOT_TEXT[mutant.module]), encoding="utf-8")
+        stamp = next(STAMPS)
+        os.utime(tree / mutant.module, (stamp, stamp))
 
 
 def report(outcomes: list[Outcome]) -> str:
@@ -261,6 +284,7 @@ def main() -> None:
     arguments.add_argument("--only", default="", help="part of a folder's name, to look at that one alone")
     arguments.add_argument("--workers", type=int, default=2)
     given = arguments.parse_args()
+    os.environ |= dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"), "1")
     try:
         import cosmic_ray  # noqa: F401
     except ImportError:

@@ -29,9 +29,16 @@ def disc(**changes: Any) -> dict[str, Any]:
             {"file": f"sideslip_{load}.csv", "load_N": load, "alpha_deg": SLIP},
             {"file": f"camber_{load}.csv", "load_N": load, "gamma_deg": LEAN},
             {"file": f"forward_{load}.csv", "load_N": load, "alpha_deg": [-0.5, 0, 0.5]},
-            {"file": f"backward_{load}.csv", "load_N": load, "alpha_deg": [-0.5, 0, 0.5], "direction": "backward"},
+            {
+                "file": f"backward_{load}.csv",
+                "load_N": load,
+                "alpha_deg": [-0.5, 0, 0.5],
+                "direction": "backward",
+            },
         ]
-    sweeps.append({"file": "coupled.csv", "load_N": 1400, "alpha_deg": [-6, -3, -1, 0, 1, 3, 6], "gamma_deg": [-20, 20]})
+    sweeps.append(
+        {"file": "coupled.csv", "load_N": 1400, "alpha_deg": [-6, -3, -1, 0, 1, 3, 6], "gamma_deg": [-20, 20]}
+    )
     return {
         "truth": {"tyre": "true.tir"},
         "noise": {"Fy_N": FY, "Mz_Nm": MZ, "My_Nm": 0.2},

@@ -1,4 +1,4 @@
-"""A tyre of four straight lines on a disc, every stiffness of which is known; nothing here comes from ``mffit`` but the record."""
+"""A plain tyre on a disc, every stiffness of which is known; nothing here comes from ``mffit`` but the record."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ NEWTON, NEWTON_METRE = 3.0, 0.3
 
 @dataclass(frozen=True)
 class Plain:
-    """Forces per load, ISO-W: ``Fy = -a sin-free slopes``; what is wrong with the rig beside it."""
+    """Slopes at zero per load, ISO-W, and what is wrong with the rig."""
 
     cornering: float = 12.0  #: -C_alpha per load [1/rad]
     camber: float = 0.9  #: -C_gamma per load [1/rad]
@@ -66,7 +66,8 @@ def settings(*, tyre=None, camber_stiffness=None, radius=True, **rig: Any) -> Co
     """A configuration of the disc: hardly a doubt about the rig but what is given."""
     sure = {"u_loadcell_offset_N": 0.0, "u_camber_alignment_deg": 0.0, "u_slip_alignment_N": 1.0}
     content = {
-        "tyre": {"name": "plain", "unloaded_radius": 0.3, "nominal_load": 1500.0, "nominal_pressure": 250.0} | (tyre or {}),
+        "tyre": {"name": "plain", "unloaded_radius": 0.3, "nominal_load": 1500.0, "nominal_pressure": 250.0}
+        | (tyre or {}),
         "rig": {"path_radius": R, "u_path_radius": U_R} | sure | rig,
         "rolling_radius": [{"effective_radius": R_E, "u_effective_radius": U_R_E}] if radius else [],
         "camber_stiffness": camber_stiffness or {},

@@ -20,7 +20,15 @@ def zeros(*steps, Fz=1500.0):
         rows += [(TURN_SLIP + slip, 1, iteration, Fz), (TURN_SLIP - slip, -1, iteration, Fz)]
     Fy, direction, iteration, load = np.array(rows).T
     return make_points(
-        0.0, 0.0, load, p=250e3, V=6.0, phi_t=-0.76, Fy=Fy, direction=direction.astype(int), iteration=iteration
+        0.0,
+        0.0,
+        load,
+        p=250e3,
+        V=6.0,
+        phi_t=-0.76,
+        Fy=Fy,
+        direction=direction.astype(int),
+        iteration=iteration,
     )
 
 

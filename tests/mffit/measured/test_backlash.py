@@ -32,7 +32,9 @@ def test_a_moment_in_its_noise_leaves_the_side_to_chance(Mz):
 
 def test_the_side_in_doubt_is_a_doubt_about_the_force():
     """Half the play at the cornering stiffness of a motorcycle tyre, 8 to 15 per rad of the load."""
-    points = make_points(0.0, 0.0, [1000.0, 2000.0], p=250e3, V=6.0, phi_t=-1 / R, Fy=0.0, Mz=0.0, u_Fy=3.0, u_Mz=0.6)
+    points = make_points(
+        0.0, 0.0, [1000.0, 2000.0], p=250e3, V=6.0, phi_t=-1 / R, Fy=0.0, Mz=0.0, u_Fy=3.0, u_Mz=0.6
+    )
     found = backlash_corrected(points, settings(backlash_deg=0.2))
     half = 0.1 * DEGREE * points.Fz
     assert np.all(found.u_Fy > np.hypot(3.0, 8.0 * half))

@@ -18,9 +18,7 @@ LOADS = (1000.0, 1500.0, 2000.0)
 def measured(tyre: Plain, loads=(1500.0,), points=None, base=None, camber_stiffness=None, radius=True, **rig):
     sides = {-1: "left", 1: "right"}
     points = points or tyre.campaign(loads)
-    config = settings(
-        path_centre=sides[tyre.side], camber_stiffness=camber_stiffness, radius=radius, **rig
-    )
+    config = settings(path_centre=sides[tyre.side], camber_stiffness=camber_stiffness, radius=radius, **rig)
     return measure(config, points, split(points), base)
 
 
@@ -28,7 +26,9 @@ def contributions(result) -> dict[str, float]:
     return {row.source: row.contribution for row in result.budget}
 
 
-@pytest.mark.parametrize("tyre", [Plain(), Plain(side=1), Plain(epsilon=0.3, camber=1.1), Plain(cornering=9.0)])
+@pytest.mark.parametrize(
+    "tyre", [Plain(), Plain(side=1), Plain(epsilon=0.3, camber=1.1), Plain(cornering=9.0)]
+)
 def test_stiffnesses_force_and_factor_at_every_load(tyre):
     result = measured(tyre, LOADS)
     assert [row.load for row in result.per_load] == list(LOADS)
@@ -36,7 +36,9 @@ def test_stiffnesses_force_and_factor_at_every_load(tyre):
         assert row.C_alpha.value == pytest.approx(-tyre.cornering * row.load, rel=0.01)
         assert row.C_gamma.value == pytest.approx(-tyre.camber * row.load, rel=0.004)
         assert row.F_phit.value == pytest.approx(tyre.turn_slip_force(row.load), abs=1.0)
-        assert row.C_phit.value == pytest.approx(R_E * tyre.camber * row.load / (1.0 - tyre.epsilon), rel=0.005)
+        assert row.C_phit.value == pytest.approx(
+            R_E * tyre.camber * row.load / (1.0 - tyre.epsilon), rel=0.005
+        )
         assert row.epsilon_gamma.value == pytest.approx(tyre.epsilon, abs=0.01)
         assert row.epsilon_slope == pytest.approx(tyre.epsilon, abs=0.01)
         assert row.epsilon_secant == pytest.approx(tyre.epsilon, abs=0.01)
@@ -102,7 +104,10 @@ def test_what_the_alignment_leaves_is_no_misalignment():
 def test_each_doubt_about_the_rig_counts_as_the_force_it_makes(rig, source, force):
     """With runs both ways the force of the sideslip axis drops out, and that of the play at zero moment with it."""
     tyre = Plain(play=rig.get("backlash_deg", 0.0) * DEGREE)
-    without, with_it = measured(tyre, **{k: v for k, v in rig.items() if k == "backlash_deg"}), measured(tyre, **rig)
+    without, with_it = (
+        measured(tyre, **{k: v for k, v in rig.items() if k == "backlash_deg"}),
+        measured(tyre, **rig),
+    )
     assert contributions(with_it).get(source, 0.0) == pytest.approx(share(force, tyre), rel=0.02, abs=1e-6)
     together = math.hypot(without.epsilon_gamma.u, share(force, tyre))
     assert with_it.epsilon_gamma.u == pytest.approx(together, rel=0.01)
@@ -160,13 +165,16 @@ def test_few_zeros_count_by_their_mean():
     points = tyre.campaign()
     few = points.select((np.abs(points.alpha) < 1e-6) | (np.abs(points.alpha) > 1.2 * DEGREE))
     got = contributions(measured(tyre, points=few))
-    assert got["noise of the forward zeros"] == pytest.approx(share(NEWTON / 2.0, tyre) / math.sqrt(3.0), rel=0.01)
+    assert got["noise of the forward zeros"] == pytest.approx(
+        share(NEWTON / 2.0, tyre) / math.sqrt(3.0), rel=0.01
+    )
 
 
 def test_points_without_uncertainty_count_as_6_newtons():
     tyre = Plain()
     stated, not_stated = (
-        contributions(measured(tyre, points=tyre.campaign(u_Fy=u, u_Mz=v))) for u, v in ((6.0, 0.6), (np.nan, np.nan))
+        contributions(measured(tyre, points=tyre.campaign(u_Fy=u, u_Mz=v)))
+        for u, v in ((6.0, 0.6), (np.nan, np.nan))
     )
     assert not_stated == pytest.approx(stated, rel=1e-6)
 
@@ -175,7 +183,9 @@ def test_points_without_uncertainty_count_as_6_newtons():
 def test_the_configured_camber_stiffness_is_used(method):
     tyre = Plain()
     points = tyre.campaign()
-    saturating = np.where(points.gamma != 0.0, 1500.0 * 0.9 * (points.gamma - np.sin(2.0 * points.gamma) / 2.0), 0.0)
+    saturating = np.where(
+        points.gamma != 0.0, 1500.0 * 0.9 * (points.gamma - np.sin(2.0 * points.gamma) / 2.0), 0.0
+    )
     bent = points.replace(Fy=points.Fy + saturating)  # camber force 1350 N sin(2 gamma)/2
     result = measured(tyre, points=bent, camber_stiffness={"method": method, "angle_deg": 15.0})
     secant = 0.5 * math.sin(math.radians(30.0)) / math.radians(15.0)
@@ -219,7 +229,9 @@ def test_a_force_towards_the_centre_is_refused_with_its_cause(backward):
     tyre = Plain()
     points = tyre.campaign(backward=backward)
     inward = points.replace(Fy=points.Fy - 2.0 * tyre.turn_slip_force(points.Fz))
-    with pytest.raises(InputError, match="path_centre or axes are wrong" if backward else "sideslip misaligned"):
+    with pytest.raises(
+        InputError, match="path_centre or axes are wrong" if backward else "sideslip misaligned"
+    ):
         measured(tyre, points=inward)
 
 

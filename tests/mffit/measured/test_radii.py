@@ -81,7 +81,8 @@ def test_a_given_radius_does_not_follow_the_path():
 def test_between_loads_the_nearest_is_moved_along_the_base_files_shape():
     measured = measured_effective_radius(
         rig(rolling_radius=[
-            {"load_N": load, "effective_radius": r, "u_effective_radius": 0.0005} for load, r in ((1000.0, 0.312), (2000.0, 0.308))
+            {"load_N": load, "effective_radius": r, "u_effective_radius": 0.0005}
+            for load, r in ((1000.0, 0.312), (2000.0, 0.308))
         ]), None,
     )  # fmt: skip
     assert effective_radius_at(1010.0, measured, None) is measured[1000.0]

@@ -34,7 +34,10 @@ def test_its_noise_is_the_scatter_over_many_draws():
     rng = np.random.default_rng(2)
     x = np.tile(X, 2)
     true = 2500.0 * np.sin(1.3 * np.arctan(20000.0 * x / (1.3 * 2500.0)))
-    drawn = [slope_at_zero(x, true + rng.normal(0.0, 20.0, len(x)), np.full(len(x), 20.0), local=0.0) for _ in range(60)]
+    drawn = [
+        slope_at_zero(x, true + rng.normal(0.0, 20.0, len(x)), np.full(len(x), 20.0), local=0.0)
+        for _ in range(60)
+    ]
     values = np.array([d.value for d in drawn])
     stated = np.median([d.u_noise for d in drawn])
     assert abs(values.mean() - 20000.0) < 3.0 * stated / np.sqrt(60)
@@ -56,7 +59,7 @@ def test_without_a_cubic_a_twentieth_is_in_doubt():
 
 def test_the_cubic_ends_at_its_reach():
     """Beyond 2 deg this curve is no cubic at all."""
-    broken = np.where(X < np.radians(2.5), 20000.0 * X - 2e6 * X**3, 0.0)
+    broken = np.where(np.radians(2.5) > X, 20000.0 * X - 2e6 * X**3, 0.0)
     found = slope_at_zero(X, broken, ONE, local=np.radians(2.0))
     assert found.cubic == pytest.approx(20000.0, rel=1e-9)
 
