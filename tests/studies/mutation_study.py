@@ -30,30 +30,27 @@ from pathlib import Path
 
 ROOT = Path(__file__).parents[2]
 FIT, DIAGNOSIS, COMMANDS = "tests/mffit/fit", "tests/mffit/diagnosis", "tests/mffit/test_command_line.py"
-QUICK = (
-    "constraints",
-    "coverage",
-    "weights",
-    "estimates",
-    "rig_numbers",
-    "before_the_fit",
-    "problem",
-    "roads",
-    "faulty_rig",
+EQUATIONS = (
+    "tests/tir/test_reference_vectors.py",
+    "tests/tir/test_physics.py",
+    "tests/tir",
+    "tests/mffit/rig",
 )
 TESTS: dict[str, tuple[str, ...]] = {
-    "tir/equations": ("tests/tir/test_reference_vectors.py", "tests/tir/test_physics.py", "tests/tir", "tests/mffit/rig", f"{FIT}/test_constraints.py", f"{FIT}/test_estimates.py"),
-    "tir/evaluate.py": ("tests/tir", "tests/mffit/rig"),
+    "tir/equations": (*EQUATIONS, f"{FIT}/test_constraints.py", f"{FIT}/test_estimates.py"),
+    "tir/evaluate.py": EQUATIONS,
     "mffit/measured": (
         "tests/mffit/measured", "tests/test_paper_tables.py", f"{FIT}/test_faulty_rig.py", f"{FIT}/test_recovery.py",
-        COMMANDS,
     ),
     "mffit/fit": (
-        *(f"{FIT}/test_{name}.py" for name in QUICK),
-        FIT, COMMANDS,
+        *(f"{FIT}/test_{name}.py" for name in (
+            "constraints", "coverage", "weights", "estimates", "rig_numbers", "before_the_fit", "problem", "roads", "faulty_rig",
+        )),
+        FIT,
     ),
     "mffit/diagnosis": (
-        *(f"{DIAGNOSIS}/test_{name}.py" for name in ("selection", "conditions", "steps", "wording")), DIAGNOSIS,
+        *(f"{DIAGNOSIS}/test_{name}.py" for name in ("selection", "evidence", "places", "conditions", "wording", "steps")),
+        DIAGNOSIS,
     ),
     "mffit/pipeline.py": (COMMANDS, FIT, f"{DIAGNOSIS}/test_correction.py", "tests/mffit/test_bad_input.py"),
 }  # fmt: skip
