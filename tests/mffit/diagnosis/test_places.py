@@ -289,6 +289,9 @@ def test_noise_larger_than_stated_is_said_and_does_not_hide_the_effects():
 
 
 def test_a_model_that_nothing_helps_is_hardly_of_this_tyre():
-    found = three_effects(2.5, strange=900.0)
-    assert any(isinstance(n, HardlyThisTyre) for n in found.notes) or not found.effects
+    """Whatever is added, the readings miss by some 300 N where 2.4 N are stated: naming a cause would be a guess."""
+    found = three_effects(2.5, strange=300.0)
+    (note,) = (n for n in found.notes if isinstance(n, HardlyThisTyre))
+    assert 40.0 < note.misfit < 300.0
+    assert not found.effects
     assert found.unexplained

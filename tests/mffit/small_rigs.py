@@ -9,7 +9,7 @@ import mffit
 import tir
 from mffit import virtual_rig
 
-SAMPLE = Path(__file__).parents[3] / "samples" / "front-120-70"
+SAMPLE = Path(__file__).parents[2] / "samples" / "front-120-70"
 LOADS = (900, 1400, 2100)
 SLIP = [-8, -6, -4, -3, -2, -1.5, -1, -0.5, 0, 0.5, 1, 1.5, 2, 3, 4, 6, 8]
 LEAN = [-45, -30, -20, -15, -10, -5, 0, 5, 10, 15, 20, 30, 45]
