@@ -3,7 +3,7 @@
 `python tests/studies/mutation_study.py 150 --seed 1` draws 150 changes, runs the tests of the changed folder on each, in a copy
 of the tree, and prints the share that survives and the survivors. Needs cosmic-ray, which makes the changes: swapped
 operators and comparisons, numbers one larger or smaller, dropped signs and ``not``, swapped ``and``/``or``, True/False, loops
-that never run, and calls that hand on their first argument. ``<`` for ``<=`` is not among them: on measured numbers it
+that never run. ``<`` for ``<=`` is not among them: on measured numbers it
 changes nothing.
 """
 
@@ -296,7 +296,7 @@ def main() -> None:
     try:
         import cosmic_ray  # noqa: F401
     except ImportError:
-        sys.exit("the changes are made by cosmic-ray: pip install cosmic-ray")
+        sys.exit("the changes are made by cosmic-ray: pip install 'mffit[studies]'")
     print(report(judged(drawn(given.count, given.seed, given.only), given.workers)))
 
 
