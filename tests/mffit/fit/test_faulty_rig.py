@@ -10,6 +10,7 @@ import pytest
 from small_rigs import FY, MZ, SAMPLE, built, disc, flat, truth
 
 import mffit
+import tir
 from mffit import virtual_rig
 
 
@@ -51,6 +52,47 @@ def test_the_camber_zero_is_as_doubtful_as_eps_gamma(misaligned):
     epsilon, r_e = misaligned.measured.epsilon_gamma, misaligned.measured.r_e.value
     hidden = math.degrees(r_e * epsilon.u / 1.323 / (1.0 - epsilon.value) ** 2)
     assert misaligned.fit.rig["gamma_0_deg"][1] == pytest.approx(hidden, rel=0.15)
+
+
+def test_fitted_coefficients_scatter_about_the_truth_as_they_say(misaligned):
+    """Half a hundred pulls, many of them correlated; ply-steer took the misalignment's place and is left out."""
+    coefficients, true = misaligned.fit.coefficients, truth()
+    pulls = {
+        name: (c.value - true[name]) / c.stderr
+        for name, c in coefficients.items()
+        if c.status == "fitted" and c.stderr and name not in ("PHY1", "Q_RE0")
+    }
+    assert len(pulls) > 40
+    values = np.array(list(pulls.values()))
+    assert 0.5 < np.sqrt(np.mean(values**2)) < 1.6
+    assert np.max(np.abs(values)) < 4.0
+
+
+def test_what_few_points_do_not_tell_stays_near_the_base_file(misaligned):
+    """A hundred points on one disc know of spin how stiffness and trail fall, not the shape of every curve."""
+    coefficients, base = misaligned.fit.coefficients, tir.read(SAMPLE / "base.tir")
+    for name in ("PHYP1", "PHYP2", "PDYP3", "QCRP2", "QBRP1", "QDRP1"):
+        found = coefficients[name]
+        assert found.status == "regularised", name
+        assert found.value == pytest.approx(base[name], rel=0.5), name
+        assert 0.01 < found.stderr / abs(base[name]) < 0.35, name
+    for name in ("PKYP1", "QDTP1"):
+        assert coefficients[name].status == "fitted", name
+    for name in ("PPY1", "PPY5", "PPZ1"):  # one pressure
+        assert (coefficients[name].value, coefficients[name].status) == (base[name], "base")
+    assert coefficients["PECP1"].status == "measured"
+    assert coefficients["PECP1"].value == misaligned.measured.epsilon_gamma.value
+
+
+def test_every_stage_brings_its_channel_nearer_to_the_noise(misaligned):
+    stages = {stage.name: stage for stage in misaligned.fit.stages}
+    assert list(stages) == ["Fy", "camber", "trail", "residual", "spin", "shift", "polish"]
+    Fy, Mz = ([getattr(s, channel) for s in stages.values()] for channel in ("rmse_Fy", "rmse_Mz"))
+    assert Fy[0] > 1.3 * Fy[1] > 2.0 * Fy[-1]
+    assert Mz[1] > 1.3 * Mz[2] > 2.0 * Mz[3]
+    assert 0.7 * FY < Fy[-1] < 1.1 * FY
+    assert 0.7 * MZ < Mz[-1] < 1.1 * MZ
+    assert {"F0_N", "gamma_0_deg", "alpha_0_deg", "path_radius_m"} <= set(stages["polish"].parameters)
 
 
 def test_rolling_resistance_comes_from_the_measured_moment(misaligned):
