@@ -44,12 +44,12 @@ TESTS: dict[str, tuple[str, ...]] = {
     ),
     "mffit/fit": (
         *(f"{FIT}/test_{name}.py" for name in (
-            "constraints", "coverage", "weights", "estimates", "rig_numbers", "before_the_fit", "problem", "roads", "faulty_rig",
+            "constraints", "coverage", "weights", "estimates", "rig_numbers", "before_the_fit", "problem", "shapes", "roads", "faulty_rig",
         )),
         FIT,
     ),
     "mffit/diagnosis": (
-        *(f"{DIAGNOSIS}/test_{name}.py" for name in ("selection", "evidence", "places", "conditions", "wording", "steps")),
+        *(f"{DIAGNOSIS}/test_{name}.py" for name in ("selection", "thresholds", "evidence", "places", "conditions", "wording", "steps")),
         DIAGNOSIS,
     ),
     "mffit/pipeline.py": (COMMANDS, FIT, f"{DIAGNOSIS}/test_correction.py", "tests/mffit/test_bad_input.py"),
@@ -206,9 +206,16 @@ def _pytest(tree: Path, tests: tuple[str, ...], output: Path) -> None:
             os.dup2(stream.fileno(), descriptor)
     import pytest
 
-    code = pytest.main(["-x", "-q", "-p", "no:cacheprovider", "--no-header", "--tb=no", *tests])
+    files = dict.fromkeys(
+        str(file) for test in tests for file in _files(Path(test))
+    )  # a folder would come in its own order
+    code = pytest.main(["-x", "-q", "-p", "no:cacheprovider", "--no-header", "--tb=no", *files])
     sys.stdout.flush()
     os._exit(int(code))
+
+
+def _files(test: Path) -> list[Path]:
+    return sorted(test.rglob("test_*.py")) if test.is_dir() else [test]
 
 
 def verdict(process: BaseProcess, output: Path) -> str:

@@ -95,6 +95,16 @@ def test_every_stage_brings_its_channel_nearer_to_the_noise(misaligned):
     assert {"F0_N", "gamma_0_deg", "alpha_0_deg", "path_radius_m"} <= set(stages["polish"].parameters)
 
 
+def test_coefficients_that_only_their_combination_decides_say_so(misaligned):
+    told = {n: c for n, c in misaligned.fit.coefficients.items() if c.correlated_with}
+    assert told
+    for name, found in told.items():
+        assert found.correlated_with != name
+        assert 0.95 < abs(found.correlation) <= 1.0
+    # Where the stiffness peaks and how high it is cannot be told apart well over loads that all lie below the peak.
+    assert told["PKY2"].correlated_with in ("PKY1", "PKY4")
+
+
 def test_rolling_resistance_comes_from_the_measured_moment(misaligned):
     assert misaligned.fit.tyre["QSY1"] == pytest.approx(truth()["QSY1"], rel=0.03)
     assert misaligned.fit.tyre["QSY1"] != misaligned.fit.tyre["QSY2"]

@@ -119,6 +119,7 @@ def test_the_lacking_force_is_that_of_the_curved_road(files):
     made, _ = files
     model = made.by_use["turn-slip"].tyre
     straight = model(1400.0, turn_slip=True).Fy
+    assert list(made.lacking) == [100.0, 30.0, 10.0]
     for radius, force in made.lacking.items():
         assert force == pytest.approx(abs(model(1400.0, phi_t=-1 / radius).Fy - straight), rel=1e-9)
         assert force > 1.0
