@@ -101,6 +101,8 @@ def test_where_pecp1_comes_from(small, tmp_path):
     result, _ = small
     assert result.tyre["PECP1"] == result.measured.epsilon_gamma.value == result.measured.pecp1
     assert result.measured.epsilon_gamma_model != result.measured.epsilon_gamma.value
+    stated = f"PECP1 = {result.tyre['PECP1']:.4f} is the measured eps_gamma itself"
+    assert sum(stated in sentence for sentence in result.fit.explanations) == 1
     simulated(tmp_path, faults={"F0_N": 15.0}, spin={"pecp1": "debiased"})
     debiased = mffit.build(tmp_path / "tyre.toml")
     bias = result.measured.epsilon_gamma.value - result.measured.epsilon_gamma_debiased.value
@@ -152,3 +154,4 @@ def test_a_flat_track_has_no_bias_and_one_file(tmp_path):
     assert result.tyre is result.tyres["normal"]
     assert np.all(result.parts.paired == "unpaired")
     assert result.measured.epsilon_gamma_debiased is None
+    assert not any("PECP1" in sentence for sentence in result.fit.explanations)

@@ -44,12 +44,15 @@ TESTS: dict[str, tuple[str, ...]] = {
     ),
     "mffit/fit": (
         *(f"{FIT}/test_{name}.py" for name in (
-            "constraints", "coverage", "weights", "estimates", "rig_numbers", "before_the_fit", "problem", "shapes", "roads", "faulty_rig",
+            "constraints", "coverage", "weights", "estimates", "rig_numbers", "before_the_fit", "problem", "shapes", "roads",
+            "faulty_rig",
         )),
         FIT,
     ),
     "mffit/diagnosis": (
-        *(f"{DIAGNOSIS}/test_{name}.py" for name in ("selection", "thresholds", "evidence", "places", "conditions", "wording", "steps")),
+        *(f"{DIAGNOSIS}/test_{name}.py" for name in (
+            "selection", "thresholds", "evidence", "places", "conditions", "wording", "steps",
+        )),
         DIAGNOSIS,
     ),
     "mffit/pipeline.py": (COMMANDS, FIT, f"{DIAGNOSIS}/test_correction.py", "tests/mffit/test_bad_input.py"),

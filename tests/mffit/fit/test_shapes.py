@@ -42,6 +42,13 @@ def test_a_short_trail_is_gone_at_half_the_sideslip_of_a_long_one(tyre):
     assert 2.0 * half(tyre, "a short trail") < half(tyre, "a long trail")
 
 
+@pytest.mark.parametrize("shape", ["a short trail", "a long trail"])
+def test_the_trail_falls_to_nothing_and_hardly_turns_round(tyre, shape):
+    trail = tyre.replace(**SHAPES[shape]).state(1400.0, SLIP).trail
+    assert trail.min() < 0.2 * trail[0]
+    assert trail.min() > -0.4 * trail[0]
+
+
 @pytest.mark.parametrize("shape", SHAPES)
 def test_a_start_lies_within_the_bounds(shape):
     for name, value in SHAPES[shape].items():
