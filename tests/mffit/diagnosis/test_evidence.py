@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 from small_programme import TYRE, U_FY, U_MZ, problem, programme, read
 
-from mffit.diagnosis.candidates import Hypothesis
+from mffit.diagnosis.candidates import Hypothesis, Problem
+from mffit.diagnosis.noise import noise_model
 from mffit.diagnosis.selection import Step, log_prior
 from mffit.diagnosis.ties import Run, candidate_runs, separation
 from mffit.diagnosis.validate import gap, validate
@@ -67,6 +68,27 @@ def test_an_effect_without_slope_at_zero_is_found_from_its_scan(play):
     found = chosen.fit((BY_ID["backlash"],))
     assert found.numbers["backlash_deg"] == pytest.approx(play, abs=0.01)
     assert found.chi2 < 0.05 * chosen.null.chi2
+
+
+def test_numbers_of_one_effect_need_not_be_scanned_alike():
+    """The play from three starts, the load cell beside it from one."""
+    points = read(programme(), faults=RigFaults(backlash_deg=0.3, F0_N=10.0))
+    loose = Effect("loose", "loose", "rig", "", (*BY_ID["backlash"].free, *OFFSET.free))
+    found = problem(points).fit((loose,))
+    assert found.numbers == {
+        "backlash_deg": pytest.approx(0.3, abs=0.01),
+        "F0_N": pytest.approx(10.0, abs=0.3),
+    }
+
+
+def test_turn_slip_is_switched_on():
+    """A simulation without spin misses the turn-slip force of the disc; the switch is no number with an error."""
+    points = read(programme())
+    start = Simulation.of(TYRE, turn_slip=False)
+    found = Problem(points, start, noise_model(points, start, 0.0)).fit((BY_ID["turn-slip"],))
+    assert dict(found.numbers) == {"turn_slip": 1.0}
+    assert found.chi2 == pytest.approx(0.0, abs=1e-9)
+    assert not found.stderr
 
 
 def test_two_hidden_effects_are_fitted_together():
