@@ -67,6 +67,15 @@ def test_the_build_explains_its_own_points(small):
     assert abs(true.faults.F0_N - 15.0) < 2.0
 
 
+def test_the_json_gives_the_origin_as_the_file_does(small):
+    result, folder = small
+    on_disk = tir.read(folder / "out" / "small.tir")
+    origin = {name: entry["origin"] for name, entry in result.to_json()["fit"]["coefficients"].items()}
+    assert len(on_disk.status.keys() & origin.keys()) > 200
+    for name in on_disk.status.keys() & origin.keys():
+        assert origin[name] == on_disk.status[name], name
+
+
 def said(diagnosis) -> str:
     (note,) = (n for n in diagnosis.notes if isinstance(n, str) and "eps_gamma" in n)
     return note

@@ -192,6 +192,13 @@ def test_a_model_of_another_size_is_refused(factor, refused):
         refuse_strangers(points, tyre, Simulation.of(TYRE))
 
 
+def test_twelve_points_are_the_fewest():
+    points = read(programme())
+    refuse_strangers(points.select(np.arange(12)), TYRE, Simulation.of(TYRE))
+    with pytest.raises(InputError, match="11 points are too few for a diagnosis: measure at least 12"):
+        refuse_strangers(points.select(np.arange(11)), TYRE, Simulation.of(TYRE))
+
+
 def test_moments_in_other_axes_are_refused_by_name():
     points = read(programme())
     with pytest.raises(InputError, match="simulated and measured Mz run against each other"):
@@ -217,6 +224,14 @@ def test_the_scatter_of_neighbours_is_the_noise():
     assert found.u_Fy == pytest.approx(6.0, rel=0.2)
     assert found.u_Mz == pytest.approx(0.6, rel=0.2)
     assert "neighbouring" in source
+
+
+def test_sweeps_too_short_for_a_scatter_get_a_hundredth_of_the_span():
+    points = read(programme())
+    few = points.select(np.flatnonzero(points.sweep == 1)[:5]).replace(u_Fy=np.nan, u_Mz=np.nan)
+    found, _ = with_uncertainties(few, Simulation.of(TYRE.replace(PKY6=0.5 * float(TYRE["PKY6"]))))
+    wrong = Simulation.of(TYRE.replace(PKY6=0.5 * float(TYRE["PKY6"]))).readings(few)
+    assert found.u_Fy == pytest.approx(0.01 * np.ptp(few.Fy - wrong.Fy))
 
 
 def test_inexact_coefficients_correlate_the_readings():

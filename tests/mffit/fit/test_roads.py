@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from small_rigs import SAMPLE, disc, truth
 
 from mffit import config, points, virtual_rig
-from mffit.fit.files import GIVEN, file_names, make_files, sentences
+from mffit.fit.files import GIVEN, file_names, make_files, ranges_sentence, sentences
 from mffit.fit.normal import Road, inside, road_grid, weights
 from tir.parameters import TABLE
 
@@ -157,3 +159,9 @@ def test_the_sentences_hold_the_figures(files):
     assert f"{made.stiffness_loss:.0%} less camber stiffness" in said
     assert "Give small.tir to a simulator that computes turn slip" in said
     assert "Tested: 900 to 2100 N, sideslip to 8.0 deg, camber to 45.0 deg, 250 kPa only." in said
+
+
+def test_several_pressures_are_said_as_a_range(files):
+    made, _ = files
+    several = replace(made, tested=made.tested | {"PRESMIN": 200e3, "PRESMAX": 300e3})
+    assert "camber to 45.0 deg, 200 to 300 kPa." in ranges_sentence(several)
