@@ -145,7 +145,7 @@ def mutant(folder: str, module: Path, operator: str, occurrence: int) -> Mutant 
 
 
 def _executed(source: str) -> str:
-    """The code without annotations and docstrings; "" if it is no Python any more."""
+    """The code without annotations and decorators of records; "" if it is no Python any more."""
     try:
         tree = ast.parse(source)
     except SyntaxError:
@@ -155,6 +155,8 @@ def _executed(source: str) -> str:
             node.annotation = None if isinstance(node, ast.arg) else ast.Constant(None)
         if isinstance(node, ast.FunctionDef):
             node.returns = None
+        if isinstance(node, ast.ClassDef):
+            node.decorator_list = []  # whether a record is frozen is for mypy to watch
     return ast.dump(tree)
 
 

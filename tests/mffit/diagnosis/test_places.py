@@ -282,9 +282,10 @@ class Settings:
         name = "small"
 
 
-def three_effects(understated: float, strange: float = 0.0):
+def three_effects(understated: float, strange: float = 0.0, alike: int = 1):
+    """Three hidden effects; beside the noise something ``strange`` [N] that is the same at some neighbours."""
     points = read(programme(), HIDDEN, RigFaults(M0_Nm=6.0), noise=9)
-    rough = np.random.default_rng(3).standard_normal(len(points)) * strange
+    rough = np.repeat(np.random.default_rng(3).standard_normal(len(points)), alike)[: len(points)] * strange
     stated = points.replace(Fy=points.Fy + rough, u_Fy=U_FY / understated, u_Mz=0.6 / understated)
     return diagnose(stated, TYRE, Settings, effects=[BY_ID[name] for name in THREE])
 
@@ -304,6 +305,17 @@ def test_noise_larger_than_stated_is_said_and_does_not_hide_the_effects():
         next(f.parameters["M0_Nm"][1] for f in d.effects if "M0_Nm" in f.parameters) for d in (found, stated)
     ]
     assert errors[0] == pytest.approx(errors[1], rel=0.25)
+
+
+def test_a_misfit_that_neighbours_share_counts_as_fewer_readings():
+    """Of the same size, but alike at two or three neighbours, it enlarges the uncertainties further."""
+    shares = []
+    for alike in (1, 3):
+        found = three_effects(1.0, strange=20.0, alike=alike)
+        (note,) = (n for n in found.notes if isinstance(n, UncertaintiesEnlarged))
+        shares.append(note.factor / math.sqrt(found.gap_after.chi2_per_dof))
+    assert 0.9 < shares[0] < 1.2
+    assert shares[1] > 1.25
 
 
 def test_a_model_that_nothing_helps_is_hardly_of_this_tyre():

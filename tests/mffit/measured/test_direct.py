@@ -277,6 +277,21 @@ def test_conicity_is_stated_as_a_force_of_two_per_mille():
     assert f"by {share(3.0, tyre):.3f}." in note
 
 
+def test_the_json_holds_value_and_uncertainty_of_every_quantity():
+    result = measured(Plain())
+    content = result.to_json()
+    for key, found in (
+        ("epsilon_gamma", result.epsilon_gamma), ("C_phit_Nm", result.C_phit), ("C_gamma_N_per_rad", result.C_gamma),
+        ("C_alpha_N_per_rad", result.C_alpha), ("r_e_m", result.r_e), ("R_m", result.R), ("F_phit_N", result.F_phit),
+    ):  # fmt: skip
+        assert (content[key], content[f"u_{key}"]) == (found.value, found.u)
+    row = content["per_load"][0]
+    assert row["alpha_M_deg"] == pytest.approx(math.degrees(result.alpha_M.value))
+    assert (row["F_forward_N"], row["load_N"]) == (result.nominal.F_forward, 1500.0)
+    forwards = measured(Plain(), points=Plain().campaign(backward=False)).to_json()
+    assert forwards["alpha_M_deg"] is forwards["u_alpha_M_deg"] is None
+
+
 def test_the_nominal_load_is_the_one_next_to_it():
     result = measured(Plain(), (900.0, 1300.0, 2000.0))
     assert result.nominal.load == 1300.0
