@@ -29,7 +29,8 @@ from multiprocessing.process import BaseProcess
 from pathlib import Path
 
 ROOT = Path(__file__).parents[2]
-FIT, DIAGNOSIS, COMMANDS = "tests/mffit/fit", "tests/mffit/diagnosis", "tests/mffit/test_command_line.py"
+FIT, DIAGNOSIS = "tests/mffit/fit", "tests/mffit/diagnosis"
+PIPELINE, COMMANDS = "tests/mffit/test_pipeline.py", "tests/mffit/test_command_line.py"
 EQUATIONS = (
     "tests/tir/test_reference_vectors.py",
     "tests/tir/test_physics.py",
@@ -47,7 +48,7 @@ TESTS: dict[str, tuple[str, ...]] = {
             "constraints", "coverage", "weights", "estimates", "rig_numbers", "before_the_fit", "problem", "shapes", "roads",
             "faulty_rig",
         )),
-        FIT,
+        PIPELINE, FIT,
     ),
     "mffit/diagnosis": (
         *(f"{DIAGNOSIS}/test_{name}.py" for name in (
@@ -55,7 +56,7 @@ TESTS: dict[str, tuple[str, ...]] = {
         )),
         DIAGNOSIS,
     ),
-    "mffit/pipeline.py": (COMMANDS, FIT, f"{DIAGNOSIS}/test_correction.py", "tests/mffit/test_bad_input.py"),
+    "mffit/pipeline.py": (PIPELINE, COMMANDS, FIT, f"{DIAGNOSIS}/test_correction.py", "tests/mffit/test_bad_input.py"),
 }  # fmt: skip
 """Folder that is changed -> the tests that ought to notice, the quick ones first."""
 SWAPS = (
