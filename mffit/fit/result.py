@@ -67,7 +67,9 @@ class FitResult:
     epsilon_gamma_model: float | None = None
     doubts: tuple[Doubt, ...] = ()  #: sweeps that do not fit the others
     outliers: tuple[Outlier, ...] = ()  #: single readings that count with no weight
-    distrusted: tuple[str, ...] = ()  #: why the file is not to be trusted; among the warnings too, first of all
+    distrusted: tuple[
+        str, ...
+    ] = ()  #: why the file is not to be trusted; among the warnings too, first of all
     search: Fitted | None = None  #: where the search ended, to draw tyres from
     files: Files | None = None  #: every file that is written, and how good each is
 
