@@ -20,7 +20,17 @@ from mffit.cli import main
 
 ROOT = Path(__file__).parents[2]
 PNG = b"\x89PNG\r\n\x1a\n"
-ADDED = ["Fy_odd_N", "Fy_even_N", "Mz_odd_Nm", "Mz_even_Nm", "Fy_model_N", "Mz_model_Nm", "paired"]
+ADDED = [
+    "Fy_odd_N",
+    "Fy_even_N",
+    "Mz_odd_Nm",
+    "Mz_even_Nm",
+    "Fy_model_N",
+    "Mz_model_Nm",
+    "paired",
+    "outlier",
+    "doubtful",
+]
 
 
 def mffit(*arguments: object) -> int:
