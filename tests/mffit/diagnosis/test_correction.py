@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from blind_rig import Machine, report
+from blind_rig import USUAL_TEMPERATURE, Machine, report
 from blind_scores import loaded
 from blind_set import draw_case
 
@@ -50,7 +50,7 @@ def test_corrections_undo_the_faults(right_model):
     """Readings of the tests' own faulty rig, corrected, are the readings of that rig without faults."""
     case, _, points = right_model
     Fy, Mz = report(case.true, SAME_FAULTS, case.run)
-    state = Simulation(dict(case.true.values), FAULTS, True, False)
+    state = replace(Simulation(dict(case.true.values), FAULTS, True, False), T_ref=USUAL_TEMPERATURE)
     corrected = corrected_points(points.replace(Fy=Fy, Mz=Mz), state)
     clean_Fy, clean_Mz = report(case.true, Machine(), case.run)
     assert corrected.Fy == pytest.approx(clean_Fy, abs=1e-6)
