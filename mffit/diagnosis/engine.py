@@ -13,7 +13,7 @@ from mffit.diagnosis.candidates import Hypothesis, Problem
 from mffit.diagnosis.conditions import by_condition
 from mffit.diagnosis.declared import declared_rig
 from mffit.diagnosis.explain import Explanation, explain, only_first
-from mffit.diagnosis.inexact import Inexactness
+from mffit.diagnosis.inexact import EXACT, Inexactness
 from mffit.diagnosis.inexact import declared as declared_inexactness
 from mffit.diagnosis.needs import missing
 from mffit.diagnosis.noise import CHANNELS, Noise, noise_model, with_uncertainties
@@ -106,7 +106,9 @@ def _confirmed(
     found: Explanation, given: Problem, inexact: Inexactness, seen: bool
 ) -> tuple[Explanation, Validation, NoRepair | None]:
     """What left-out sweeps confirm: everything, else the first effect alone, else nothing; and what they refuse."""
-    validation = validate(given, found.refined, inexact, seen=seen)
+    if seen and not found.chosen.effects:  # refitting what was fitted to these points is no repair
+        found = _without_effects(found)
+    validation = validate(given, found.refined, inexact if found.coefficients else EXACT, seen=seen)
     if not (found.chosen.effects or found.coefficients) or _helps(validation):
         return found, validation, None
     refused = NoRepair(tuple(e.name for e in found.chosen.effects), validation)

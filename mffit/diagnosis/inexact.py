@@ -69,10 +69,11 @@ def refitted(tyre: Tyre, *, curved: bool) -> Inexactness:
 
     For points that were already used to fit them: what is known of them beyond that is in these points.
     """
-    names = [row.name for row in TABLE if row.kind == "number" and "+-" in tyre.status.get(row.name, "")]
-    values = np.array([float(tyre[name]) for name in names])
-    spread = [scatter(n, v, from_base=True, curved=curved) for n, v in zip(names, values, strict=True)]
-    return Inexactness(tuple(names), values, np.diag(spread))
+    fitted = [row.name for row in TABLE if row.kind == "number" and "+-" in tyre.status.get(row.name, "")]
+    spread = {n: scatter(n, float(tyre[n]), from_base=True, curved=curved) for n in fitted}
+    known = {n: u for n, u in spread.items() if np.isfinite(u) and u > 0.0}
+    values = np.array([float(tyre[name]) for name in known])
+    return Inexactness(tuple(known), values, np.diag(list(known.values())))
 
 
 def correlated(names: Sequence[str], expected: np.ndarray, covariance: np.ndarray) -> Inexactness:
