@@ -21,7 +21,7 @@ from mffit.output import output_folder, refuse_early
 from mffit.pipeline.building import build
 from mffit.pipeline.inputs import Progress, inputs_of, read_base, silent
 from mffit.pipeline.measuring import epsilon_gamma, without_play
-from mffit.pipeline.provenance import fitted_to, known_of_model, rig_of_build, use_of
+from mffit.pipeline.provenance import known_of_model, rig_of_build, use_of
 from mffit.points import Points
 from mffit.results import as_json
 from tir import Tyre
@@ -64,16 +64,21 @@ def diagnose(
         refuse_early(Path(out), (f"{config.tyre.name}.tir", *WRITTEN), inputs)
     tyre, choice = chosen_model(config, model, progress)
     with threadpool_limits(1):
+        read = model if isinstance(model, str | Path) else last_build(config) if model is None else None
+        known, seen = known_of_model(
+            tyre,
+            config,
+            None if read is None else Path(read),
+            fresh=any(isinstance(note, ModelFittedFirst) for note in choice),
+        )
         diagnosis = find_effects(
             points,
             tyre,
             config,
             rig=rig_of_build(tyre, config),
             effects=effects,
-            coefficients=known_of_model(
-                tyre, config, model if isinstance(model, str | Path) else last_build(config)
-            ),
-            seen=fitted_to(tyre, config),
+            coefficients=known,
+            seen=seen,
             progress=progress,
         )
     notes = (*choice, *diagnosis.notes, *_redone(config, points, diagnosis, base))

@@ -60,29 +60,40 @@ def fitted_to(tyre: Tyre, config: Config) -> bool:
     return bool(of_file) and of_file == _inputs(config)
 
 
-def known_of_model(tyre: Tyre, config: Config, path: str | Path) -> Inexactness | None:
-    """What is known of a model's coefficients beside ``model.u_coefficients``; None if nothing is.
+def known_of_model(
+    tyre: Tyre, config: Config, path: Path | None, *, fresh: bool
+) -> tuple[Inexactness | None, bool]:
+    """What is known of a model's coefficients beside ``model.u_coefficients``, None if nothing is; and whether it was fitted
+    to these very sweeps.
 
-    Fitted to these very sweeps they may move again; of a build on other sweeps its posterior, kept in result.json beside
-    the file, says how far.
+    Fitted to these sweeps they may move again; of a build on other sweeps its posterior says how far. A file counts as a
+    build's only if result.json beside it has the same values: it may have been edited since.
+
+    Parameters
+    ----------
+    tyre, config : the model and what it is compared with
+    path : where the model was read; None if it was not
+    fresh : whether it was fitted just now
     """
-    if fitted_to(tyre, config):
-        return refitted(tyre, curved=config.rig.type == "rotating-disk")
-    if config.model.u_coefficients:
-        return None
+    posterior = None if path is None else _posterior(tyre, path)
+    if fitted_to(tyre, config) and (fresh or posterior is not None):
+        return refitted(tyre, curved=config.rig.type == "rotating-disk"), True
+    return (None if config.model.u_coefficients else posterior), False
+
+
+def _posterior(tyre: Tyre, path: Path) -> Inexactness | None:
+    """The posterior of the build that wrote a file; None if the file is none of a build or has other values."""
     try:
-        result = json.loads((Path(path).parent / "result.json").read_text(encoding="utf-8"))
+        result = json.loads((path.parent / "result.json").read_text(encoding="utf-8"))
         posterior, values = result["fit"]["posterior"], result["fit"]["coefficients"]
         rows = [k for k, name in enumerate(posterior["names"]) if name in values]
         names = [posterior["names"][k] for k in rows]
         covariance = np.array(posterior["covariance"], dtype=float)[np.ix_(rows, rows)]
-        expected = np.array([float(values[name]["value"]) for name in names])
+        expected = {name: float(row["value"]) for name, row in values.items()}
     except (OSError, ValueError, KeyError, TypeError, IndexError):
         return None
-    of_file = np.array([float(tyre[name]) for name in names])
-    if not names or not np.allclose(of_file, expected, rtol=1e-4, atol=1e-9):
-        return None
-    return correlated(names, of_file, covariance)
+    same = all(np.isclose(float(tyre[n]), v, rtol=1e-6, atol=1e-12) for n, v in expected.items())
+    return correlated(names, np.array([expected[n] for n in names]), covariance) if names and same else None
 
 
 def _inputs(config: Config) -> dict[str, str]:
