@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -29,6 +29,8 @@ CLIPPED = 3.0
 MOST_BUMPS = 2
 CERTAIN = 0.5
 """Certainty below which nothing is named beside smooth structure without a name."""
+EXPLAINS = 0.9
+"""The same, less the share that stays unexplained, for a model that was not fitted to these points."""
 SETTLED = 0.1
 """Change of the uncertainties, relative, below which the scatter is settled."""
 
@@ -46,6 +48,9 @@ class Explanation:
     basis: np.ndarray  #: (2n, k) of the smooth structure
     refined: Hypothesis  #: the chosen effects with the coefficients of the model estimated beside them
     coefficients: Mapping[str, tuple[float, float]]  #: these: name -> (value, standard error)
+    unaided: Mapping[str, float] = field(
+        default_factory=dict
+    )  #: gain of each effect alone, nothing smooth allowed for
 
     @property
     def scatter(self) -> Noise:
@@ -76,7 +81,8 @@ class Explanation:
         gain, left = chosen.log_evidence - without.log_evidence, self.left(chosen)
         against = gain + left - self.left(without) - math.log(max(len(self.steps[0].trials), 1))
         open_ = left + (self.smooth.gain if self.smooth.found else 0.0) if counted else 0.0
-        share = max(gain, 0.0) / (max(gain, 0.0) + open_) if open_ else 1.0
+        explains = max(gain, self.unaided.get(effect.id, 0.0), 0.0)
+        share = explains / (explains + open_) if open_ else 1.0
         return float(share / (1.0 + math.exp(-float(np.clip(against, -500.0, 500.0)))))
 
     def left(self, hypothesis: Hypothesis) -> float:
@@ -170,9 +176,13 @@ def _explained(
     # Effects are now judged against the smooth structure: what they explain it must not.
     noise = problem.noise.sharing(columns, amplified(basis, smooth))
     problem = problem.seen_through(noise)
+    unaided = {
+        t.effects[-1].id: float(t.log_evidence - s.before.log_evidence) for s in steps[:1] for t in s.trials
+    }
     chosen, steps = select(problem, candidates) if candidates else (problem.null, [])
     bumps = bump_scan(problem.points, noise)
-    return Explanation(problem, chosen, steps, bumps.best(chosen), smooth, bumps, basis, chosen, {})
+    bump = bumps.best(chosen)
+    return Explanation(problem, chosen, steps, bump, smooth, bumps, basis, chosen, {}, unaided)
 
 
 def _certain(found: Explanation, *, counted: bool) -> Explanation:
@@ -180,7 +190,7 @@ def _certain(found: Explanation, *, counted: bool) -> Explanation:
     while found.chosen.effects:
         certain = {e: found.certainty(e, counted=counted) for e in found.chosen.effects}
         least = min(certain, key=lambda e: certain[e])
-        if certain[least] >= CERTAIN:
+        if certain[least] >= (EXPLAINS if counted else CERTAIN):
             break
         rest = tuple(e for e in found.chosen.effects if e is not least)
         numbers = {n: found.chosen.numbers[n] for e in rest for n in e.parameters}
