@@ -6,9 +6,10 @@
 True
 """
 
+from tir.calls import compile_kernels
 from tir.equations.forces import Forces, State
 from tir.errors import Problem, TirError
 from tir.properties import read
 from tir.tyre import Quantity, Tyre
 
-__all__ = ["Forces", "Problem", "Quantity", "State", "TirError", "Tyre", "read"]
+__all__ = ["Forces", "Problem", "Quantity", "State", "TirError", "Tyre", "compile_kernels", "read"]

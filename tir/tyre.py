@@ -9,9 +9,10 @@ from pathlib import Path
 from types import MappingProxyType, SimpleNamespace
 from typing import Any, NamedTuple
 
+from tir import calls
+from tir.codegen.program import Switches
 from tir.equations.forces import Forces, State
 from tir.errors import Problem, TirError
-from tir.evaluate import evaluate
 from tir.parameters import BY_NAME, TABLE
 
 EMPTY: Mapping[str, Any] = MappingProxyType({})
@@ -70,6 +71,11 @@ class Tyre:
         """The parameters as attributes, as the equations take them."""
         return SimpleNamespace(**self.values)
 
+    @cached_property
+    def prepared(self) -> dict[Any, Any]:
+        """Functions made of the tyre for calls with floats and arrays; see :mod:`tir.calls`."""
+        return {}
+
     def replace(self, **changes: float | str) -> Tyre:
         """A copy with some values changed; their status is dropped."""
         _known(changes)
@@ -127,9 +133,34 @@ class Tyre:
         Returns
         -------
         Forces
-            ``.Fx .Fy .Fz`` [N], ``.Mx .My .Mz`` [Nm] in the contact frame W.
+            ``.Fx .Fy .Fz`` [N], ``.Mx .My .Mz`` [Nm] in the contact frame W: floats if every input is a single number,
+            else arrays of the common shape.
         """
-        return self._evaluate(Fz, alpha, gamma, kappa, phi_t, Vx, p, turn_slip, star, limits)[0]
+        if turn_slip is None:
+            turn_slip = phi_t is not None
+        if phi_t is None:
+            phi_t = 0.0
+        if Vx is None:
+            Vx = self.values["LONGVL"]
+        if p is None:
+            p = self.values["INFLPRES"]
+        # the way of a simulation that asks for one condition after the other: no array, no look at what is general
+        if (
+            type(Fz) is float
+            and type(alpha) is float
+            and type(gamma) is float
+            and type(kappa) is float
+            and type(phi_t) is float
+            and type(Vx) is float
+            and type(p) is float
+        ):
+            try:
+                run = self.prepared[turn_slip, star, limits]
+                return tuple.__new__(Forces, run(Fz, alpha, gamma, kappa, phi_t, Vx, p))
+            except (KeyError, ArithmeticError, ValueError):
+                pass
+        switches = Switches(bool(turn_slip), bool(star), bool(limits))
+        return calls.forces(self, (Fz, alpha, gamma, kappa, phi_t, Vx, p), switches)
 
     def state(
         self,
@@ -146,14 +177,17 @@ class Tyre:
         limits: bool = False,
     ) -> State:
         """Everything else the model knows of the condition: stiffnesses, radius, trail, spin; arguments as in a call."""
-        return self._evaluate(Fz, alpha, gamma, kappa, phi_t, Vx, p, turn_slip, star, limits)[1]
-
-    def _evaluate(self, Fz, alpha, gamma, kappa, phi_t, Vx, p, turn_slip, star, limits):
-        turn_slip = phi_t is not None if turn_slip is None else turn_slip
-        phi_t = 0.0 if phi_t is None else phi_t
-        return evaluate(
-            self.p, Fz, alpha, gamma, kappa, phi_t, Vx, p, turn_slip=turn_slip, star=star, limits=limits
+        inputs = (
+            Fz,
+            alpha,
+            gamma,
+            kappa,
+            0.0 if phi_t is None else phi_t,
+            self.values["LONGVL"] if Vx is None else Vx,
+            self.values["INFLPRES"] if p is None else p,
         )
+        on = phi_t is not None if turn_slip is None else bool(turn_slip)
+        return calls.state(self, inputs, Switches(on, bool(star), bool(limits)))
 
     def text(self) -> str:
         """The complete property file as text; see :func:`tir.properties.render`."""
