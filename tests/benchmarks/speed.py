@@ -19,6 +19,7 @@ import sys
 import tempfile
 import time
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -108,7 +109,7 @@ def main() -> None:
         inputs = [conditions(tyre, n) for n in SIZES]
         calls.LOADED.clear()
         plain = [
-            seconds(lambda x=x: evaluate(tyre.p, *(x if len(x[0]) > 1 else [v[0] for v in x]), **switches))
+            seconds(partial(evaluate, tyre.p, *(x if len(x[0]) > 1 else [v[0] for v in x]), **switches))
             / len(x[0])
             for x in inputs
         ]

@@ -75,7 +75,8 @@ def load(kind: str, switches: Switches) -> Kernel:
     if not path.exists():
         _write(path, source(kind, switches))
     spec = importlib.util.spec_from_file_location(f"tir_kernels_{name}", path)
-    assert spec is not None and spec.loader is not None
+    assert spec is not None
+    assert spec.loader is not None
     module = importlib.util.module_from_spec(spec)
     sys.modules[spec.name] = module  # numba's cache looks it up by name
     spec.loader.exec_module(module)
