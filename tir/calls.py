@@ -10,6 +10,7 @@ import math
 from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from functools import partial
+from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -116,8 +117,14 @@ def _one(tyre: Tyre, inputs: Sequence[np.ndarray], switches: Switches, outputs: 
             return run(*numbers)
     except (ArithmeticError, ValueError):
         pass
-    found = evaluate(tyre.p, *numbers, **switches._asdict())
+    with np.errstate(all="ignore"):
+        found = evaluate(_in_numpys(tyre.p), *map(np.float64, numbers), **switches._asdict())
     return tuple(_plain(x) for x in found[outputs is STATE])
+
+
+def _in_numpys(p: Any) -> SimpleNamespace:
+    """Numbers that give infinity or NaN where Python's own raise."""
+    return SimpleNamespace(**{k: np.float64(v) if type(v) in (float, int) else v for k, v in vars(p).items()})
 
 
 def _plain(x: Any) -> Any:
@@ -181,9 +188,10 @@ def _many(tyre: Tyre, inputs: Sequence[np.ndarray], n: int, switches: Switches) 
 
 
 def _in_numpy(tyre: Tyre, inputs: Sequence[np.ndarray], out: np.ndarray, switches: Switches) -> None:
+    p = _in_numpys(tyre.p)
     for start in range(0, out.shape[1], BLOCK):
         block = [x if x.ndim == 0 else x[start : start + BLOCK] for x in inputs]
-        found = evaluate(tyre.p, *block, **switches._asdict())[0]
+        found = evaluate(p, *block, **switches._asdict())[0]
         for row, force in zip(out, found, strict=True):
             row[start : start + BLOCK] = force
 

@@ -11,6 +11,7 @@ from typing import Any, NamedTuple
 
 from tir import calls
 from tir.codegen.program import Switches
+from tir.document import Document
 from tir.equations.forces import Forces, State
 from tir.errors import Problem, TirError
 from tir.parameters import BY_NAME, TABLE
@@ -40,6 +41,7 @@ class Tyre:
     provenance: Mapping[str, str] = field(default_factory=lambda: EMPTY)
     extra: Mapping[str, str] = field(default_factory=lambda: EMPTY)  #: "SECTION.KEY" -> text of unknown keys
     problems: tuple[Problem, ...] = ()  #: what the reader stumbled over
+    document: Document | None = field(default=None, repr=False)  #: the file's text, which is kept on writing
 
     @classmethod
     def from_values(cls, given: Mapping[str, float | str]) -> Tyre:
@@ -189,17 +191,40 @@ class Tyre:
         on = phi_t is not None if turn_slip is None else bool(turn_slip)
         return calls.state(self, inputs, Switches(on, bool(star), bool(limits)))
 
-    def text(self) -> str:
-        """The complete property file as text; see :func:`tir.properties.render`."""
-        from tir.properties import render
+    def expand(self) -> Tyre:
+        """A copy in which every key that the file lacks is given with the table's default, marked as not measured.
 
-        return render(self)
+        Without this, missing keys stay missing in a written file: for MF-Tyre an absent key means that it is to be
+        estimated, which is something else than the default of this table.
+        """
+        known = ("", "some") if self.values["FITTYP"] in (60, 61) else ("", "some", "62")
+        missing = [row.name for row in TABLE if row.name not in self.present and row.files in known]
+        status = {name: "default, not measured" for name in missing}
+        return replace(self, present=self.present | set(missing)).annotate(status=status)
 
-    def write(self, path: str | Path) -> None:
-        """Write the property file; an existing file is replaced only when the new one is complete."""
-        from tir.properties import write
+    def text(self, target: str | None = None) -> str:
+        """The property file as text.
 
-        write(self, path)
+        Parameters
+        ----------
+        target : for which program, see :data:`tir.targets.TARGETS`; the complete file, written anew. Without one, a tyre that
+            was read gives its file's own text, in which only what was changed or added differs; any other tyre gives the
+            file for MF-Tyre.
+
+        Raises
+        ------
+        TirError
+            If a value is not finite, or the target cannot use an MF 6.2 tyre.
+        """
+        from tir.writing import content
+
+        return content(self, target)[0]
+
+    def write(self, path: str | Path, target: str | None = None) -> None:
+        """Write :meth:`text`; an existing file is replaced only when the new one is complete."""
+        from tir.writing import write
+
+        write(self, path, target)
 
 
 def _known(names) -> None:

@@ -72,25 +72,6 @@ def test_unknown_keys_are_kept_and_named(tmp_path):
     assert any("FOREIGN.SOME_KEY" in problem.sentence for problem in found.problems)
 
 
-def test_signs_beyond_ascii_in_unknown_keys_are_written_escaped(tmp_path):
-    """They used to end a build with a traceback at the very last step."""
-    path = tmp_path / "written.tir"
-    mangled = TEXT.replace("[DIMENSION]", "[DIMENSION]\nHÖHE = 'für 3 µm'\nPLAIN = 4") + "[FÜR]\nKEY = 5\n"
-    read_text(tmp_path, mangled.encode()).write(path)
-    again = tir.read(path)
-    assert again.extra["DIMENSION.H_XD6HE"] == r"'f\xfcr 3 \xb5m'"
-    assert again.extra["DIMENSION.PLAIN"] == "4"
-    assert again.extra["F_XDCR.KEY"] == "5"
-    assert again == read_text(tmp_path, TEXT)
-    assert again.text() == path.read_bytes().decode("ascii")
-
-
-def test_unknown_keys_of_any_section_are_written_back(tmp_path):
-    found = read_text(tmp_path, "EARLY = 1\n" + TEXT + "[FOREIGN]\nSOME_KEY = 3\n")
-    again = read_text(tmp_path, found.text())
-    assert again.extra == {"MODEL.EARLY": "1", "FOREIGN.SOME_KEY": "3"}
-
-
 @pytest.mark.parametrize(("version", "missed"), [(61, False), (62, True)])
 def test_only_a_file_of_mf62_misses_its_keys(tmp_path, version, missed):
     text = re.sub(r"(?m)^Q_CAM1 .*$", "", TEXT).replace("QSY8", "!QSY8")
@@ -129,11 +110,15 @@ def test_units_other_than_si_are_converted(tmp_path, tyre):
         (TEXT.replace("PDY1                     = 1.27", "PDY1 = 1,27"), ["PDY1", "1.27", ":"]),
         (TEXT.replace("PDY1                     = 1.27", "PDY1 ="), ["PDY1", "cut short"]),
         (TEXT.replace("PDY1                     = 1.27", "PDY1 = nan"), ["PDY1"]),
+        (TEXT.rstrip().removesuffix("0.88"), ["QDRP1", "cut short"]),
+        (TEXT.replace("UNLOADED_RADIUS", "!UNLOADED_RADIUS"), ["UNLOADED_RADIUS to [DIMENSION]"]),
+        (TEXT.replace("FITTYP                   = 62", "FITTYP = 52"), ["MF-MCTyre", "motorcycle"]),
+        (TEXT.replace("FITTYP                   = 62", "FITTYP = 21"), ["MF-Tyre 5.2"]),
         (TEXT[: TEXT.index("[LATERAL")], ["PCY1", "cut short"]),
         (TEXT[: TEXT.index("[VERTICAL]")], ["FNOMIN"]),
         (TEXT.replace("'meter'", "'cubit'"), ["cubit", "meter"]),
     ],
-    ids=["empty", "utf16", "prose", "old", "mf05", "comma", "novalue", "nan", "truncated", "shorter", "unit"],
+    ids=["empty", "utf16", "prose", "old", "mf05", "comma", "novalue", "nan", "last", "radius", "52", "21", "truncated", "shorter", "unit"],
 )
 def test_what_cannot_be_used_is_refused_with_the_place_and_the_remedy(tmp_path, mangled, words):
     with pytest.raises(tir.TirError) as caught:
@@ -142,6 +127,29 @@ def test_what_cannot_be_used_is_refused_with_the_place_and_the_remedy(tmp_path, 
     assert "t.tir" in text
     assert all(word in text for word in words), text
     assert "\n" not in text
+
+
+def test_what_no_force_needs_may_be_blank_or_text(tmp_path, tyre):
+    """As widely used programs write it; the file is used, and the list of problems says what was not."""
+    text = re.sub(r"(?m)^ROAD_INCREMENT .*$", "ROAD_INCREMENT =   $ not known", TEXT)
+    text = re.sub(r"(?m)^MASS  .*4.4$", "MASS = kg", text)
+    text = re.sub(r"(?m)^QSY8 .*$", "QSY8 = ", text)
+    found = read_text(tmp_path, text)
+    assert found["MASS"] == 8.0
+    assert found["QSY8"] == 0.0
+    assert not {"MASS", "ROAD_INCREMENT", "QSY8"} & found.present
+    for name in ("MASS", "ROAD_INCREMENT", "QSY8"):
+        (problem,) = [p for p in found.problems if p.name == name]
+        assert f"line {problem.line}: {name}" in problem.sentence
+        assert text.splitlines()[problem.line - 1].startswith(name)
+
+
+def test_a_pressure_unit_is_honoured(tmp_path, tyre):
+    text = TEXT.replace("[UNITS]\n", "[UNITS]\nPRESSURE = 'kpascal'\n")
+    text = re.sub(r"(?m)^(NOMPRES|INFLPRES)( +)= .*$", r"\1\2= 250", text)
+    assert read_text(tmp_path, text)["NOMPRES"] == 250e3
+    text = text.replace("kpascal", "bar").replace("= 250\n", "= 2.5\n")
+    assert read_text(tmp_path, text)["INFLPRES"] == 250e3
 
 
 def test_a_missing_file_is_a_sentence(tmp_path):
@@ -196,7 +204,9 @@ class TestOtherReaders:
 
     @pytest.fixture
     def text(self, tyre) -> str:
-        return tyre.annotate(provenance={"note": "a = b; c! d"}, status={"PKY1": "fitted = 1; !"}).text()
+        return tyre.annotate(provenance={"note": "a = b; c! d"}, status={"PKY1": "fitted = 1; !"}).text(
+            "mftyre"
+        )
 
     def test_plain_ascii_crlf_and_short_lines(self, text):
         assert text.isascii()
