@@ -31,13 +31,10 @@ def merged(tyre: Tyre, document: Document) -> Document:
     for line in document.entries:
         if stands_for(line) is not None:
             lines.setdefault(line.key, line)
-    changed, added = {}, []
-    for row in TABLE:
-        line = lines.get(row.name)
-        if line is None:
-            if row.name in tyre.present:
-                added.append(row)
-            continue
+    added = [row for row in TABLE if row.name not in lines and row.name in tyre.present]
+    changed = {}
+    for row in (row for row in TABLE if row.name in lines):
+        line = lines[row.name]
         given = row.name in before.present or row.name in tyre.present
         new = line
         if given and (row.name not in before.present or tyre[row.name] != before[row.name]):

@@ -7,7 +7,6 @@ import re
 from functools import cache
 from pathlib import Path
 from types import MappingProxyType
-from typing import Any
 
 from tir.codegen.program import Switches, trace
 from tir.document import Document, Line, read_document

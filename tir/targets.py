@@ -9,8 +9,7 @@ from typing import Any
 from tir.errors import TirError
 from tir.parameters import TABLE
 
-ADAMS = ("PROPERTY_FILE_FORMAT", "USER_SUB_ID", "N_TIRE_STATES", "HMAX_LOCAL", "TIME_SWITCH_INTEG")
-"""Keys that only Adams reads."""
+ADAMS = tuple(row.name for row in TABLE if row.files == "adams")
 ONLY_62 = tuple(row.name for row in TABLE if row.files == "62")
 
 
@@ -55,7 +54,12 @@ TARGETS: dict[str, Target] = {
             si=True,
         ),
         Target(
-            "simscape", "the Magic Formula blocks of MathWorks", (62,), turn_slip=False, complete=True, si=True
+            "simscape",
+            "the Magic Formula blocks of MathWorks",
+            (62,),
+            turn_slip=False,
+            complete=True,
+            si=True,
         ),
         Target("recurdyn", "RecurDyn with MF-Tyre", (62, 61, 60), ADAMS, more={"VENDER_TIRE_TYPE": ""}),
         Target(

@@ -199,7 +199,7 @@ class Tyre:
         """
         known = ("", "some") if self.values["FITTYP"] in (60, 61) else ("", "some", "62")
         missing = [row.name for row in TABLE if row.name not in self.present and row.files in known]
-        status = {name: "default, not measured" for name in missing}
+        status = dict.fromkeys(missing, "default, not measured")
         return replace(self, present=self.present | set(missing)).annotate(status=status)
 
     def text(self, target: str | None = None) -> str:

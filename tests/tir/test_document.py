@@ -100,7 +100,9 @@ def test_keys_that_the_file_lacks_join_their_section_in_the_order_of_the_table(t
     text = text[: text.index("[OTHER]")].rstrip("\n")
     tyre = read_bytes(tmp_path, text.encode())
     again = tyre.replace(PDY2=-0.1, PDY3=2.5, PEY1=-0.7, PECP1=0.2)
-    keys = [line.key for line in parse_document(again.text()).entries if line.section == "LATERAL_COEFFICIENTS"]
+    keys = [
+        line.key for line in parse_document(again.text()).entries if line.section == "LATERAL_COEFFICIENTS"
+    ]
     assert keys[1:5] == ["PDY1", "PDY2", "PDY3", "PEY1"]
     found = read_bytes(tmp_path, again.text().encode())
     assert found == again
@@ -128,7 +130,10 @@ def test_what_is_known_of_a_value_stands_behind_it(tmp_path):
     assert replaced.text().count("! measured:") == 1
 
 
-@given(st.sampled_from([r.name for r in TABLE if r.kind == "number" and r.unit not in ("", "-")]), st.floats(0.1, 1e5))
+@given(
+    st.sampled_from([r.name for r in TABLE if r.kind == "number" and r.unit not in ("", "-")]),
+    st.floats(0.1, 1e5),
+)
 def test_changed_values_are_written_in_the_files_units(name, value):
     text = TEXT.replace("'meter'", "'mm'").replace("'newton'", "'kN'").replace("'radians'", "'deg'")
     text = text.replace("'second'", "'minute'").replace("'kg'", "'g'")
