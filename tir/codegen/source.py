@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections import Counter
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
@@ -24,11 +25,16 @@ class Dialect:
     truth: tuple[str, str] = ("False", "True")
     number: str = "{} = {}"  #: assignment of a number
     flag: str = "{} = {}"  #: assignment of a truth value
+    beyond: tuple[str, str] = ("inf", "nan")  #: what is no finite number
     inline: bool = True  #: whether what is used once stands where it is used
 
     def literal(self, x: float | bool) -> str:
         """A number as text; read back it is the same one."""
-        return self.truth[x] if isinstance(x, bool) else repr(x)
+        if isinstance(x, bool):
+            return self.truth[x]
+        if math.isfinite(x):
+            return repr(x)
+        return self.beyond[1] if math.isnan(x) else "-" * (x < 0) + self.beyond[0]
 
 
 COMMON = {
