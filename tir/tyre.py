@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field, fields, replace
 from functools import cached_property
 from pathlib import Path
 from types import MappingProxyType, SimpleNamespace
@@ -27,7 +28,7 @@ class Quantity(NamedTuple):
     unit: str
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Tyre:
     """An MF 6.2 tyre: every parameter in SI, and what the file says about them.
 
@@ -67,6 +68,24 @@ class Tyre:
 
     def __hash__(self) -> int:
         return hash(tuple(sorted((k, str(v)) for k, v in self.values.items())))
+
+    def __repr__(self) -> str:
+        """The tyre in a few lines; ``tyre.values`` holds everything."""
+        given = f"{len(self.present)} of {len(TABLE)} keys given"
+        origins = Counter(text.split()[0].rstrip(":,") for text in self.status.values())
+        head = f"Tyre of MF 6.{int(self['FITTYP']) % 10}, FNOMIN {self['FNOMIN']:g} N, "
+        lines = [f"{head}UNLOADED_RADIUS {self['UNLOADED_RADIUS']:g} m; {given}"]
+        if origins:
+            lines.append("origins: " + ", ".join(f"{n} {word}" for word, n in origins.most_common(6)))
+        lines += [f"{name} = {q.value:.6g} +- {q.u:.2g} {q.unit}" for name, q in [*self.measured.items()][:6]]
+        if self.problems:
+            lines.append(f"{len(self.problems)} problems on reading, see tyre.problems")
+        return "<" + "\n ".join(lines) + ">"
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """For other processes: everything but the functions made for calls."""
+        plain = {key: dict(x) if isinstance(x, Mapping) else x for key, x in _fields(self).items()}
+        return _rebuilt, (plain,)
 
     @cached_property
     def p(self) -> SimpleNamespace:
@@ -225,6 +244,15 @@ class Tyre:
         from tir.writing import write
 
         write(self, path, target)
+
+
+def _fields(tyre: Tyre) -> dict[str, Any]:
+    return {f.name: getattr(tyre, f.name) for f in fields(tyre)}
+
+
+def _rebuilt(plain: dict[str, Any]) -> Tyre:
+    frozen: dict[str, Any] = {k: MappingProxyType(x) if isinstance(x, dict) else x for k, x in plain.items()}
+    return Tyre(**frozen)
 
 
 def _known(names) -> None:

@@ -181,6 +181,33 @@ def test_a_tyre_without_numba_is_told_what_to_install(monkeypatch):
         tir.compile_kernels()
 
 
+def test_large_calls_without_numba_go_through_numpy(monkeypatch, tyre):
+    monkeypatch.setattr(kernel, "available", lambda: False)
+    monkeypatch.setattr(calls, "COMPILE_FROM", 1)
+    monkeypatch.setattr(calls, "LOADED", {})
+    alpha = np.linspace(-0.1, 0.1, 7)
+    assert np.array_equal(tyre(2000.0, alpha).Fy, evaluate(tyre.p, 2000.0, alpha)[0].Fy)
+
+
+def test_a_called_tyre_goes_to_other_processes(tyre):
+    import pickle
+
+    noted = tyre.annotate(measured={"C": tir.Quantity(1.0, 0.1, "N")})
+    before = noted(2000.0, 0.02)
+    again = pickle.loads(pickle.dumps(noted))
+    assert again == noted
+    assert again.measured == noted.measured
+    assert again.text() == noted.text()
+    assert again(2000.0, 0.02) == before
+
+
+def test_the_name_of_a_tyre_fits_a_screen(tyre):
+    noted = tyre.annotate(status=dict.fromkeys(tyre.values, "fitted +- 1"))
+    assert len(repr(noted)) < 400
+    assert "FNOMIN" in repr(noted)
+    assert f"{len(tyre.values)} fitted" in repr(noted)
+
+
 def test_importing_tir_imports_no_compiler():
     code = "import sys, tir; print([m for m in ('numba', 'llvmlite', 'scipy', 'pandas') if m in sys.modules])"
     found = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)

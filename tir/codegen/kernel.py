@@ -48,8 +48,12 @@ class Kernel(NamedTuple):
 
 @cache
 def available() -> bool:
-    """Whether numba is installed."""
-    return importlib.util.find_spec("numba") is not None
+    """Whether numba is installed and runs with the numpy that is there; imports it."""
+    try:
+        import numba  # noqa: F401
+    except ImportError:
+        return False
+    return True
 
 
 def threads() -> int:
@@ -69,7 +73,9 @@ def load(kind: str, switches: Switches) -> Kernel:
         If numba is not installed.
     """
     if not available():
-        raise TirError("compiled kernels need numba, which is not installed: pip install mffit[fast]")
+        raise TirError(
+            "compiled kernels need numba, which is not installed or does not run here: pip install mffit[fast]"
+        )
     name = "_".join([kind, *(word for word, on in switches._asdict().items() if on)])
     path = cache_folder() / f"{name}.py"
     if not path.exists():
