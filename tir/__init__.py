@@ -8,6 +8,7 @@ True
 
 from tir.calls import compile_kernels
 from tir.codegen.c99 import export_c
+from tir.codegen.casadi import casadi_function
 from tir.equations.forces import Forces, State
 from tir.errors import Problem, TirError
 from tir.properties import read
@@ -20,6 +21,7 @@ __all__ = [
     "State",
     "TirError",
     "Tyre",
+    "casadi_function",
     "compile_kernels",
     "export_c",
     "read",
