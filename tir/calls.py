@@ -118,13 +118,16 @@ def _one(tyre: Tyre, inputs: Sequence[np.ndarray], switches: Switches, outputs: 
     except (ArithmeticError, ValueError):
         pass
     with np.errstate(all="ignore"):
-        found = evaluate(_in_numpys(tyre.p), *map(np.float64, numbers), **switches._asdict())
+        found = evaluate(_in_numpys(tyre), *map(np.float64, numbers), **switches._asdict())
     return tuple(_plain(x) for x in found[outputs is STATE])
 
 
-def _in_numpys(p: Any) -> SimpleNamespace:
-    """Numbers that give infinity or NaN where Python's own raise."""
-    return SimpleNamespace(**{k: np.float64(v) if type(v) in (float, int) else v for k, v in vars(p).items()})
+def _in_numpys(tyre: Tyre) -> SimpleNamespace:
+    """The parameters as numbers that give infinity or NaN where Python's own raise."""
+    if "numpy" not in tyre.prepared:
+        numbers = {k: np.float64(v) if type(v) in (float, int) else v for k, v in vars(tyre.p).items()}
+        tyre.prepared["numpy"] = SimpleNamespace(**numbers)
+    return tyre.prepared["numpy"]
 
 
 def _plain(x: Any) -> Any:
@@ -188,7 +191,7 @@ def _many(tyre: Tyre, inputs: Sequence[np.ndarray], n: int, switches: Switches) 
 
 
 def _in_numpy(tyre: Tyre, inputs: Sequence[np.ndarray], out: np.ndarray, switches: Switches) -> None:
-    p = _in_numpys(tyre.p)
+    p = _in_numpys(tyre)
     for start in range(0, out.shape[1], BLOCK):
         block = [x if x.ndim == 0 else x[start : start + BLOCK] for x in inputs]
         found = evaluate(p, *block, **switches._asdict())[0]

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from typing import Any
 
 from tir.errors import TirError
-from tir.parameters import SECTIONS, TABLE, Parameter
+from tir.parameters import BY_NAME, SECTIONS, TABLE, Parameter
 from tir.targets import Target, use_mode_words, vendor
 from tir.tyre import Tyre
 from tir.units import SI
@@ -47,6 +47,8 @@ def render(tyre: Tyre, target: Target) -> str:
 
 def _written(row: Parameter, tyre: Tyre, target: Target) -> bool:
     """A key that no common program knows goes into a file only if it matters."""
+    if row.files == "62" and _value(BY_NAME["FITTYP"], tyre, target) < 62:
+        return False
     return row.name not in target.without and (row.files != "rare" or tyre[row.name] != row.default)
 
 

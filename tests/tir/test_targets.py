@@ -123,9 +123,13 @@ def test_adams_is_told_in_the_words_of_62_only(tyre):
     assert not others & {*ADAMS, "FUNCTION_NAME"}
 
 
-def test_mf61_has_no_key_of_62(tyre):
-    keys = {line.key for line in parse_document(tyre.text("mf61")).entries}
-    assert not keys & set(ONLY_62)
+@pytest.mark.parametrize("name", USABLE)
+def test_the_keys_are_those_of_the_version(tyre, name):
+    for version in (61.0, 62.0):
+        document = parse_document(tyre.replace(FITTYP=version).text(name))
+        keys = {line.key: line.value for line in document.entries}
+        assert bool(keys.keys() & set(ONLY_62)) == (keys["FITTYP"] == "62")
+        assert keys["FITTYP"] == str(int(version)) or int(version) not in TARGETS[name].fittyps
 
 
 @pytest.mark.parametrize("name", ["chrono", "pac2002"])
