@@ -239,7 +239,7 @@ def test_every_module_that_computes_is_in_the_key_of_the_cache():
         for name in kernel.SOURCES
         for f in ([package / name] if "." in name else (package / name).glob("*.py"))
     ]
-    harmless = {"tir.errors", "tir.parameters"}
+    harmless = {"tir.errors", "tir.parameters", "tir.tyre"}  # words, the table that is covered, a type
     for path in covered:
         if path.suffix != ".py":
             continue
