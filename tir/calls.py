@@ -84,7 +84,7 @@ def state(tyre: Tyre, inputs: Sequence[Any], switches: Switches) -> State:
     arrays = [np.asarray(x) for x in inputs]
     if _real(arrays) and _common_shape(arrays) == ():
         return State(*_one(tyre, arrays, switches, STATE))
-    return evaluate(tyre.p, *inputs, **switches._asdict())[1]
+    return _evaluated(tyre, inputs, switches)[1]
 
 
 def _real(arrays: Sequence[np.ndarray]) -> bool:
@@ -118,16 +118,17 @@ def _one(tyre: Tyre, inputs: Sequence[np.ndarray], switches: Switches, outputs: 
     except (ArithmeticError, ValueError):
         pass
     with np.errstate(all="ignore"):
-        found = evaluate(_in_numpys(tyre), *map(np.float64, numbers), **switches._asdict())
+        found = _evaluated(tyre, [np.float64(x) for x in numbers], switches)
     return tuple(_plain(x) for x in found[outputs is STATE])
 
 
-def _in_numpys(tyre: Tyre) -> SimpleNamespace:
-    """The parameters as numbers that give infinity or NaN where Python's own raise."""
-    if "numpy" not in tyre.prepared:
+def _evaluated(tyre: Tyre, inputs: Sequence[Any], switches: Switches) -> tuple[Forces, State]:
+    """The equations in numpy; where two parameters alone make Python's arithmetic raise, with numpy's numbers for them."""
+    try:
+        return evaluate(tyre.p, *inputs, **switches._asdict())
+    except ArithmeticError:
         numbers = {k: np.float64(v) if type(v) in (float, int) else v for k, v in vars(tyre.p).items()}
-        tyre.prepared["numpy"] = SimpleNamespace(**numbers)
-    return tyre.prepared["numpy"]
+        return evaluate(SimpleNamespace(**numbers), *inputs, **switches._asdict())
 
 
 def _plain(x: Any) -> Any:
@@ -191,10 +192,9 @@ def _many(tyre: Tyre, inputs: Sequence[np.ndarray], n: int, switches: Switches) 
 
 
 def _in_numpy(tyre: Tyre, inputs: Sequence[np.ndarray], out: np.ndarray, switches: Switches) -> None:
-    p = _in_numpys(tyre)
     for start in range(0, out.shape[1], BLOCK):
         block = [x if x.ndim == 0 else x[start : start + BLOCK] for x in inputs]
-        found = evaluate(p, *block, **switches._asdict())[0]
+        found = _evaluated(tyre, block, switches)[0]
         for row, force in zip(out, found, strict=True):
             row[start : start + BLOCK] = force
 

@@ -131,7 +131,7 @@ def main() -> None:
             print(
                 f"{name:<44}"
                 + "".join(
-                    f"{b / a:12.4f}" if a == a else f"{'-':>12}" for a, b in zip(plain, times, strict=True)
+                    f"{b / a:12.4f}" if b == b else f"{'-':>12}" for a, b in zip(plain, times, strict=True)
                 )
             )
         if compiled:
