@@ -6,8 +6,8 @@ from llvmlite import ir
 from numba import njit, types
 from numba.extending import intrinsic
 
-OPTIONS = {"fastmath": {"contract"}, "error_model": "numpy", "nogil": True}
-"""Products and sums may be one instruction; a division by zero is inf or NaN; other threads may run meanwhile."""
+OPTIONS = {"fastmath": {"contract"}, "error_model": "numpy"}
+"""Products and sums may be one instruction; a division by zero is inf or NaN."""
 compiled = njit(forceinline=True, **OPTIONS)
 
 
