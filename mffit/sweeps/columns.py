@@ -285,11 +285,16 @@ def _stated(raw: RawTable, heading: str, values: np.ndarray) -> tuple[np.ndarray
     return np.where(none, np.nan, values), [sentence]
 
 
-def _misspelt(raw: RawTable, extras: Mapping[str, object], found: Mapping[str, object]) -> list[str]:
+def _is_constant(cells: Cells) -> bool:
+    """Whether an unused column says nothing about its rows; of text it is not asked."""
+    return isinstance(cells, np.ndarray) and bool(np.all(cells == cells[0]))
+
+
+def _misspelt(raw: RawTable, extras: Mapping[str, Cells], found: Mapping[str, object]) -> list[str]:
     """Warnings for headings that look like a channel that would otherwise be missing."""
     sentences = []
-    for heading in extras:
+    for heading, cells in extras.items():
         near = nearest_channel(heading)
-        if near and near not in found:
+        if near and near not in found and not _is_constant(cells):
             sentences.append(f'{raw.path}: column "{heading}" is not used; if it is {near}, rename it')
     return sentences
