@@ -26,6 +26,7 @@ SHOWN = 3  # dropped stretches named one by one
 CONTINUOUS_STEP = 0.1  # s, over which a continuous sweep is averaged
 CONTINUOUS_ANGLE = np.radians(0.5)
 """Angle [rad] over which it is averaged at most."""
+ROLLING_IN = f"the first {TRANSIENT_ROLL:g} m of rolling behind a gap or a change"
 COLD = 10.0
 """Degrees [K] by which the tread of the first sweeps is below that of the middle one: the tyre was still warming up."""
 FEWEST_WARM = 3
@@ -144,7 +145,10 @@ def _judged(sweep: Sweep, found: list[Stretch]) -> list[Stretch]:
         elif stretch.kind == PLATEAU:
             tried.append(settled(stretch, settings, responses))
         else:
-            tried.append(_rolled_in(sweep, stretch))
+            rolled = _rolled_in(sweep, stretch)
+            if rolled.begin > stretch.begin:
+                tried.append(Stretch(stretch.begin, rolled.begin, ROLLING_IN, MOVE))
+            tried.append(rolled)
     return _without_cold(sweep, tried)
 
 

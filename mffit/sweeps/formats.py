@@ -34,7 +34,12 @@ ENDINGS = tuple(ending for kind in FORMATS for ending in kind.endings)
 
 def read(path: Path) -> RawTable:
     """Read a file by the ending of its name; a name with another ending is read as CSV."""
-    return next((kind for kind in FORMATS if path.name.lower().endswith(kind.endings)), FORMATS[0]).read(path)
+    return next((kind for kind in FORMATS if reads(kind, path)), FORMATS[0]).read(path)
+
+
+def reads(kind: Format, path: Path) -> bool:
+    """Whether files of this name are of this format."""
+    return path.name.lower().endswith(kind.endings)
 
 
 def stem(path: str) -> str:
