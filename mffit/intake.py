@@ -49,6 +49,8 @@ def init_from(
             raise InputError(f"recordings do not say it: give --{option} {unit}")
     folder = Path(folder)
     sniffed = sniff(files)
+    if not len(sniffed.points):
+        raise InputError(sniffed.reading.warnings[-1], file=files[0])
     if not sniffed.axes:
         raise InputError(
             f"no known axes fit: in ISO signs {' and '.join(sniffed.wrong)}, as no tyre does; write the tyre.toml with "

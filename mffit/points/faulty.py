@@ -11,6 +11,8 @@ from mffit.sweeps import Sweep
 
 UNLOADED = 0.1
 """Load, per usual load of the recording, below which the tyre does not roll on its belt."""
+FREE = 0.02
+"""Longitudinal slip up to which the wheel counts as rolling freely."""
 STUCK = 0.5  # s of one value to the last digit
 FEWEST_STUCK = 20  # samples of it
 CLIPPED = 6  # samples in a row at the very end of a channel's range
@@ -39,6 +41,9 @@ def faults(sweep: Sweep) -> list[Fault]:
     for name in ("alpha", "gamma", "Fz", "Fy"):
         found.append(Fault(~np.isfinite(getattr(sweep, name)), f"no reading of {name}", True))
     found.append(Fault(sweep.Fz < UNLOADED * usual, "no load on the tyre", True))
+    if "kappa" in sweep.table:
+        driven = np.abs(sweep.table["kappa"].to_numpy(dtype=float)) > FREE
+        found.append(Fault(driven, "driven or braked, and only free rolling is fitted", True))
     rate = 1.0 / max(float(np.median(np.diff(sweep.time))), 1e-9) if len(sweep) > 1 else 1.0
     for name, size in (("Fy", SPIKE_SHARE), ("Mz", SPIKE_ARM), ("Fz", SPIKE_SHARE)):
         values = getattr(sweep, name)

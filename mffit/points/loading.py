@@ -44,7 +44,9 @@ def load(
     return found.points, found.warnings
 
 
-def read(config: Config, *, check_physics: bool = True, continuous: bool = False) -> Reading:
+def read(
+    config: Config, *, check_physics: bool = True, continuous: bool = False, may_be_empty: bool = False
+) -> Reading:
     """Read the sweeps of a configuration as points in ISO-W.
 
     Parameters
@@ -52,6 +54,7 @@ def read(config: Config, *, check_physics: bool = True, continuous: bool = False
     config : the checked ``tyre.toml``
     check_physics : test the declared axes, frame and path centre, and what a disc needs, against the data
     continuous : keep the samples of sweeps that never rest, marked ``continuous``, with the angle as read
+    may_be_empty : recordings without a single point are no error
 
     Returns
     -------
@@ -76,13 +79,11 @@ def read(config: Config, *, check_physics: bool = True, continuous: bool = False
         points = settled_sweeps(points, lag)
         warnings += _of_motion(reduced, lag)
     steady = points if continuous and straight else points.select(~points.continuous)
-    if not len(points) or not (len(steady) or straight):
-        raise InputError(
-            "no sweep rests long enough for a steady point; hold every set-point for some seconds, "
-            "or leave out "
-            "column time_s to take each row for a finished point",
-            file=config.path,
-        )
+    notes = tuple(note for part in reduced for note in part.stretches)
+    if not len(steady):
+        if may_be_empty:
+            return Reading(steady, (*warnings, _nothing(reduced)), notes)
+        raise InputError(_nothing(reduced), file=config.path)
     if not continuous:
         warnings += _left_out(points)
     if check_physics:
@@ -91,7 +92,19 @@ def read(config: Config, *, check_physics: bool = True, continuous: bool = False
             check_disc_programme(steady, config)
     warnings += _thin(steady, config)
     kept = points if continuous else steady
-    return Reading(kept, tuple(warnings), tuple(note for part in reduced for note in part.stretches))
+    return Reading(kept, tuple(warnings), notes)
+
+
+def _nothing(reduced: Sequence[Reduced]) -> str:
+    """Why there is no point at all."""
+    reasons: dict[str, float] = {}
+    for note in (note for part in reduced for note in part.stretches if note.dropped):
+        reasons[note.dropped] = reasons.get(note.dropped, 0.0) + note.end_s - note.begin_s
+    most = f" (most of the time: {max(reasons, key=lambda reason: reasons[reason])})" if reasons else ""
+    return (
+        f"no sweep rests long enough for a steady point{most}; hold every set-point for some seconds, or leave out "
+        "column time_s to take each row for a finished point"
+    )
 
 
 def settled_sweeps(points: Points, lag: tuple[float, float]) -> Points:

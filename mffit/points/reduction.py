@@ -16,6 +16,7 @@ from mffit.points.points import Points, concatenate, make_points
 from mffit.points.steady import TRANSIENT_ROLL, Settings, settled, stretches
 from mffit.points.stretch import MOVE, PLATEAU, SWEEP, Stretch, StretchNote
 from mffit.sweeps import Sweep
+from mffit.sweeps.assembly import rows_of
 
 CHANNELS = ("alpha", "gamma", "Fz", "p", "V", "Fy", "Mz", "Mx", "My", "T", "t", "u_Fy", "u_Mz", "iteration")
 HARMLESS_FORCE = 0.02
@@ -27,6 +28,8 @@ CONTINUOUS_STEP = 0.1  # s, over which a continuous sweep is averaged
 CONTINUOUS_ANGLE = np.radians(0.5)
 """Angle [rad] over which it is averaged at most."""
 ROLLING_IN = f"the first {TRANSIENT_ROLL:g} m of rolling behind a gap or a change"
+MOST_REPEATED = 0.01
+"""Share of samples with the time of the one before that a recorder may have written twice."""
 COLD = 10.0
 """Degrees [K] by which the tread of the first sweeps is below that of the middle one: the tyre was still warming up."""
 FEWEST_WARM = 3
@@ -65,6 +68,7 @@ def reduce(sweep: Sweep, phi_t: float) -> Reduced:
     """
     if not sweep.is_series:
         return Reduced(_points(sweep, phi_t, {}, sweep.table, np.arange(len(sweep))), ())
+    sweep, repeated = _without_repeats(sweep)
     _check_time(sweep)
     wrong = faults(sweep)
     tried = _judged(sweep, _stretches(sweep, wrong))
@@ -72,22 +76,21 @@ def reduce(sweep: Sweep, phi_t: float) -> Reduced:
     plateaus = [stretch for stretch in tried if stretch.kind == PLATEAU and not stretch.dropped]
     swept = [stretch for stretch in tried if stretch.kind == SWEEP and not stretch.dropped]
     parts = [_averaged(sweep, phi_t, plateaus)] if plateaus else []
-    found, notes = [], []
-    number = 0
-    for stretch in tried:
-        label, lag, points = sweep.name, UNKNOWN, 0
-        if stretch.kind == SWEEP:
-            number += 1
-            label = f"{sweep.name}:{number:02d}"
-        if stretch.kind == SWEEP and not stretch.dropped:
-            part = _continuous(sweep, phi_t, stretch, label, bad)
-            lag, points = _lag(sweep, stretch, bad), len(part)
-            parts.append(part)
-            found.append(lag)
-        elif stretch in plateaus:
-            points = 1
-        notes.append(_note(sweep, stretch, label, points, lag))
-    warnings = (*_dropped(sweep, tried), *_said(sweep, wrong, tried))
+    numbers = np.cumsum([stretch.kind == SWEEP for stretch in tried])
+    labels = [f"{sweep.name}:{k:02d}" if s.kind == SWEEP else sweep.name for s, k in zip(tried, numbers, strict=True)]
+    counts = np.zeros(0, dtype=int)
+    if swept:
+        names = [label for stretch, label in zip(tried, labels, strict=True) if stretch.kind == SWEEP and not stretch.dropped]
+        parts.append(_continuous(sweep, phi_t, swept, names, bad))
+        counts = np.bincount(parts[-1].sweep, minlength=len(swept))
+    found = [_lag(sweep, stretch, bad) for stretch in swept]
+    by_stretch = {stretch: (int(count), lag) for stretch, count, lag in zip(swept, counts, found, strict=True)}
+    by_stretch |= {stretch: (1, UNKNOWN) for stretch in plateaus}
+    notes = [
+        _note(sweep, stretch, label, *by_stretch.get(stretch, (0, UNKNOWN)))
+        for stretch, label in zip(tried, labels, strict=True)
+    ]
+    warnings = (*repeated, *_dropped(sweep, tried), *_said(sweep, wrong, tried))
     if not parts:
         parts = [_points(sweep, phi_t, {}, sweep.table, np.zeros(0, dtype=int))]
     order = ((UNKNOWN,) if plateaus or not swept else ()) + tuple(found)
@@ -241,6 +244,16 @@ def _said(sweep: Sweep, wrong: list[Fault], tried: list[Stretch]) -> tuple[str, 
     return tuple(out)
 
 
+def _without_repeats(sweep: Sweep) -> tuple[Sweep, tuple[str, ...]]:
+    """The series without the few samples that a recorder wrote twice, and what to say of them."""
+    repeated = np.flatnonzero(np.diff(sweep.time) == 0.0) + 1
+    if not len(repeated) or len(repeated) > MOST_REPEATED * len(sweep):
+        return sweep, ()
+    kept = np.delete(np.arange(len(sweep)), repeated)
+    said = f"{sweep.file}:{int(sweep.line[repeated[0]])}: {len(repeated)} samples have the time of the one before; left out"
+    return rows_of(sweep, kept, sweep.name), (said,)
+
+
 def _check_time(sweep: Sweep) -> None:
     falls = np.flatnonzero(np.diff(sweep.time) <= 0.0)
     if len(falls):
@@ -294,34 +307,53 @@ def _averaged_table(table: pd.DataFrame, parts: list[slice]) -> pd.DataFrame:
     return pd.DataFrame(averaged)
 
 
-def _continuous(sweep: Sweep, phi_t: float, stretch: Stretch, label: str, bad: np.ndarray) -> Points:
-    """Means over a tenth of a second, or half a degree, of a sweep; faulty samples left out."""
-    rows = np.flatnonzero(~bad[stretch.begin : stretch.end]) + stretch.begin
-    time = sweep.time[rows]
-    interval = float(np.median(np.diff(time))) if len(rows) > 1 else CONTINUOUS_STEP
-    moved = max(float(np.median(np.abs(np.diff(x[rows])))) for x in (sweep.alpha, sweep.gamma)) / interval
-    step = min(CONTINUOUS_STEP, CONTINUOUS_ANGLE / moved) if moved > 0.0 else CONTINUOUS_STEP
-    size = max(1, round(step / interval))
-    block = np.floor((time - time[0]) / (size * interval) + 1e-6)
-    first = np.r_[0, np.flatnonzero(np.diff(block)) + 1]
+def _continuous(
+    sweep: Sweep, phi_t: float, stretches: list[Stretch], labels: list[str], bad: np.ndarray
+) -> Points:
+    """Means over a tenth of a second, or half a degree, of sweeps; faulty samples left out."""
+    whole, begins, numbers, count = [], [], [], 0
+    for k, stretch in enumerate(stretches):
+        rows = np.flatnonzero(~bad[stretch.begin : stretch.end]) + stretch.begin
+        first, size = _blocks(sweep, rows)
+        enough = np.diff(np.r_[first, len(rows)]) >= 0.5 * size
+        whole.append(rows)
+        begins.append(np.column_stack([first + count, enough]))
+        numbers.append(np.full(len(first), k))
+        count += len(rows)
+    rows, blocks, number = np.concatenate(whole), np.concatenate(begins), np.concatenate(numbers)
+    first, enough = blocks[:, 0], blocks[:, 1].astype(bool)
     counts = np.diff(np.r_[first, len(rows)])
 
     def mean(values: np.ndarray) -> np.ndarray:
-        return np.add.reduceat(values[rows], first) / counts
+        if values.strides == (0,):  # not measured, or the same throughout
+            return np.broadcast_to(values[:1], (int(enough.sum()),))
+        return (np.add.reduceat(values[rows], first) / counts)[enough]
 
     means = {name: mean(getattr(sweep, name)) for name in CHANNELS}
     table = pd.DataFrame(
         {
             name: mean(column.to_numpy(dtype=float))
             if pd.api.types.is_numeric_dtype(column)
-            else column.to_numpy()[rows[first]]
+            else column.to_numpy()[rows[first[enough]]]
             for name, column in sweep.table.items()
             if name != "time_s"
         }
     )
-    found = _points(sweep, phi_t, means, table, rows[first], label)
-    found = found.replace(continuous=True, time=mean(sweep.time))
-    return found.select(counts >= 0.5 * size)
+    found = _points(sweep, phi_t, means, table, rows[first[enough]])
+    return found.replace(
+        continuous=True, time=mean(sweep.time), sweep=number[enough], sweep_names=tuple(labels)
+    )
+
+
+def _blocks(sweep: Sweep, rows: np.ndarray) -> tuple[np.ndarray, int]:
+    """First of the rows of every block to be averaged, and how many samples one should have."""
+    time = sweep.time[rows]
+    interval = float(np.median(np.diff(time))) if len(rows) > 1 else CONTINUOUS_STEP
+    moved = max(float(np.median(np.abs(np.diff(x[rows])))) for x in (sweep.alpha, sweep.gamma)) / interval
+    step = min(CONTINUOUS_STEP, CONTINUOUS_ANGLE / moved) if moved > 0.0 else CONTINUOUS_STEP
+    size = max(1, round(step / interval))
+    block = np.floor((time - time[0]) / (size * interval) + 1e-6)
+    return np.r_[0, np.flatnonzero(np.diff(block)) + 1], size
 
 
 def _points(
@@ -330,7 +362,6 @@ def _points(
     means: dict[str, np.ndarray],
     table: pd.DataFrame,
     first: np.ndarray,
-    label: str | None = None,
 ) -> Points:
     values: dict[str, Any] = {
         name: means.get(name, getattr(sweep, name)[first]) for name in CHANNELS if name not in means
@@ -341,7 +372,7 @@ def _points(
         direction=sweep.direction[first],
         mount=sweep.mount,
         line=sweep.line[first],
-        sweep_names=(label or sweep.name,),
+        sweep_names=(sweep.name,),
         files=(sweep.file,),
         table=table.iloc[first] if len(table) != len(first) else table,
     )

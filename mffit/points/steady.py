@@ -31,7 +31,8 @@ SMALLEST_SWEEP = np.radians(3.0)
 GAP_STEPS, GAP = 5.0, 0.1
 """A gap in time: this many usual steps and this many seconds."""
 SAMPLED = 20_000  # samples of a long recording that tell what is usual
-ANGLES = ("alpha", "gamma")
+SHARP = 0.1  # s, over which a setting is averaged to see where its change begins and ends
+ANGLES, CONDITIONS = ("alpha", "gamma"), ("Fz", "p", "V")
 BLOCKS = 10
 LEADING_BLOCK = 3.5
 """A leading block this many of its standard errors away from the second half belongs to the transient."""
@@ -97,12 +98,47 @@ def _of_piece(settings: Settings, scale: Settings) -> list[Stretch]:
     masks = moves(settings, scale)
     changing = masks.Fz | masks.p | masks.V
     found = []
-    for begin, end in runs(~changing):
+    steady = _reaching(settings, scale, runs(~changing))
+    changing = np.ones(len(settings.time), dtype=bool)
+    for begin, end in steady:
+        changing[begin:end] = False
+    for begin, end in steady:
         part = Settings(*(x[begin:end] for x in settings))
         inside = _of_condition(part, masks.alpha[begin:end], masks.gamma[begin:end])
         found += [s._replace(begin=s.begin + begin, end=s.end + begin) for s in inside]
     found += [Stretch(begin, end, "load, pressure or speed changes", MOVE) for begin, end in runs(changing)]
     return sorted(found)
+
+
+def _reaching(settings: Settings, scale: Settings, found: list[tuple[int, int]]) -> list[tuple[int, int]]:
+    """Runs of one condition taken up to where it really begins and ends: a change shows ``LAG`` to either side of it."""
+    n = len(settings.time)
+    lag = _samples(settings, LAG)
+    out = []
+    smooth = {
+        name: uniform_filter1d(getattr(settings, name), _samples(settings, SHARP), mode="nearest")
+        for name in CONDITIONS
+    }
+    for k, (begin, end) in enumerate(found):
+        least = found[k - 1][1] if k else 0
+        most = found[k + 1][0] if k + 1 < len(found) else n
+        least, most = max(least, begin - lag), min(most, end + lag)
+        inside = np.ones(most - least, dtype=bool)
+        for name, x in smooth.items():
+            for a, b, c, d in ((least, begin, begin, min(begin + lag, end)), (end, most, max(end - lag, begin), end)):
+                step = STEP_SHARE * max(getattr(scale, name), abs(float(np.median(x[c:d]))))
+                inside[a - least : b - least] &= np.abs(x[a:b] - np.median(x[c:d])) <= step
+        before, behind = inside[: begin - least][::-1], inside[end - least :]
+        begin -= len(before) if before.all() else int(np.argmin(before))
+        end += len(behind) if behind.all() else int(np.argmin(behind))
+        out.append((begin, end))
+    return out
+
+
+def _samples(settings: Settings, seconds: float) -> int:
+    """How many samples that is, at least one."""
+    n = len(settings.time)
+    return int(np.clip(round(seconds / max(np.median(np.diff(settings.time)), 1e-9)), 1, max(n - 1, 1)))
 
 
 def _of_condition(settings: Settings, alpha_moves: np.ndarray, gamma_moves: np.ndarray) -> list[Stretch]:
@@ -175,7 +211,7 @@ def moves(settings: Settings, scale: Settings | None = None) -> Moves:
     """
     n = len(settings.time)
     scale = scale or Settings(*(float(np.median(np.abs(x))) for x in settings))
-    lag = int(np.clip(round(LAG / max(np.median(np.diff(settings.time)), 1e-9)), 1, max(n - 1, 1)))
+    lag = _samples(settings, LAG)
     masks = {}
     for name in Moves._fields:
         values = getattr(settings, name)

@@ -40,7 +40,7 @@ def project_text(
     """
     first = sniffed.recordings[0]
     said = next((r.about[key] for r in sniffed.recordings for key in ("tireid", "title") if r.about.get(key)), "")
-    usual = float(np.median(sniffed.points.p[main_pressure(sniffed.points)]))
+    usual = float(np.median(sniffed.points.p[main_pressure(sniffed.points)])) if len(sniffed.points) else np.nan
     has_pressure = any("p_kPa" in r.guesses for r in sniffed.recordings)
     speeds = sniffed.conditions["speed"]
     speed = max(speeds, key=lambda level: level.stretches).value if speeds else 10.0
@@ -58,7 +58,7 @@ def project_text(
     ]
     if nominal_pressure is not None:
         lines.append(f"nominal_pressure = {nominal_pressure:g}  # kPa, NOMPRES")
-    elif has_pressure:
+    elif has_pressure and np.isfinite(usual):
         lines.append(f"nominal_pressure = {usual / 1e3:.0f}  # kPa, NOMPRES: the middle one of those at which most was run")
     else:
         lines.append(_given("nominal_pressure", None, "kPa, NOMPRES"))

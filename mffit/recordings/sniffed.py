@@ -84,10 +84,10 @@ def sniff(paths: Sequence[str | Path]) -> Sniffed:
     recordings = tuple(_recording(path) for path in paths)
     axes = _first_axes(recordings)
     config = configuration_of(recordings, axes)
-    reading = read(config, check_physics=False)
+    reading = read(config, check_physics=False, may_be_empty=True)
     agreeing, wrong = axes_of(reading.points, axes, load_falls=axes == "sae")
     if agreeing and agreeing[0] != axes:
-        reading = read(configuration_of(recordings, agreeing[0]), check_physics=False)
+        reading = read(configuration_of(recordings, agreeing[0]), check_physics=False, may_be_empty=True)
     return Sniffed(recordings, agreeing, wrong, reading, conditions_of(reading))
 
 

@@ -191,18 +191,23 @@ def _column(column: pd.Series) -> Cells:
 
 def _lines(path: Path, head: int, rows: int) -> range | np.ndarray | None:
     """Line of every row behind the head; None if the lines are not the rows."""
-    numbers = []
-    count = 0
+    count, last = 0, b"\n"
     with _opened(path) as file:
-        for count, line in enumerate(file, start=1):
-            if count > head and (not line.strip() or line.lstrip().startswith(b"#")):
-                numbers.append(count)
-    if count - head - len(numbers) != rows:
-        return None
-    if not numbers:
+        while chunk := file.read(1 << 20):
+            count += chunk.count(b"\n")
+            last = chunk[-1:]
+    count += last != b"\n"
+    if count - head == rows:
         return range(head + 1, head + 1 + rows)
+    passed_over = []
+    with _opened(path) as file:
+        for number, line in enumerate(file, start=1):
+            if number > head and (not line.strip() or line.lstrip().startswith(b"#")):
+                passed_over.append(number)
+    if count - head - len(passed_over) != rows:
+        return None
     every = np.arange(head + 1, count + 1)
-    return every[~np.isin(every, numbers)]
+    return every[~np.isin(every, passed_over)]
 
 
 def _text(path: Path, dialect: Dialect) -> str:
