@@ -96,7 +96,7 @@ def output_folder(
         shutil.rmtree(temporary, ignore_errors=True)
 
 
-def refuse_early(out: Path | None, names: Collection[str], protected: Iterable[Path] = ()) -> None:
+def refuse_early(out: Path, names: Collection[str], protected: Iterable[Path] = ()) -> None:
     """Refuse before the work what :func:`output_folder` would refuse after it, as far as names are known.
 
     Raises
@@ -104,7 +104,7 @@ def refuse_early(out: Path | None, names: Collection[str], protected: Iterable[P
     InputError
         One of ``names`` stands in ``out`` and is not this program's to replace.
     """
-    if out is not None and out.is_dir():
+    if out.is_dir():
         _refuse(out, dict.fromkeys(names, ""), _recorded(out, RECORD), protected)
 
 

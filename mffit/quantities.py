@@ -1,29 +1,77 @@
-"""What the columns and channels of a rig are called, and their units: one table for every sentence, picture and page."""
+"""What is measured, simulated and plotted: word, symbol and unit, once for every sentence, table, picture and page."""
 
 from __future__ import annotations
 
+import re
 from typing import NamedTuple
+
+GREEK = str.maketrans({"α": "alpha", "γ": "gamma", "ε": "eps", "φ": "phi"})
 
 
 class Quantity(NamedTuple):
-    """How an engineer names a number."""
+    """How an engineer names a number; the subscript of a symbol stands behind ``_``."""
 
     word: str
-    unit: str
+    symbol: str
+    unit: str  #: "-" if it has none
+
+    @property
+    def ascii(self) -> str:
+        """The symbol as a terminal shows it: ``eps_gamma``."""
+        return self.symbol.translate(GREEK)
+
+    @property
+    def mathtext(self) -> str:
+        """The symbol as a picture shows it."""
+        return re.sub(r"_(\w+)", r"$_{\1}$", self.symbol)
+
+    @property
+    def html(self) -> str:
+        """The symbol as a page shows it."""
+        return re.sub(r"_(\w+)", r"<sub>\1</sub>", self.symbol)
+
+    @property
+    def unit_behind(self) -> str:
+        """What stands behind a number of this quantity: empty without a unit."""
+        return "" if self.unit == "-" else self.unit
+
+    @property
+    def axis(self) -> str:
+        """The label of a picture's axis."""
+        return f"{self.word} {self.mathtext} [{self.unit.replace('-', '–')}]"
+
+    def column(self, name: str) -> str:
+        """The heading of a table's column."""
+        return f"{name} [{self.unit}]" if self.unit_behind else name
+
+    def of(self, value: float) -> str:
+        """A round value with its unit, as conditions are named: ``1500 N``."""
+        return f"{value:.0f} {self.unit}"
 
 
 CONDITIONS = {
-    "alpha_deg": Quantity("sideslip", "deg"),
-    "gamma_deg": Quantity("camber", "deg"),
-    "Fz_N": Quantity("load", "N"),
-    "p_kPa": Quantity("pressure", "kPa"),
-    "V_mps": Quantity("speed", "m/s"),
-    "T_degC": Quantity("temperature", "degC"),
-    "t_s": Quantity("time", "s"),
+    "alpha_deg": Quantity("sideslip", "α", "deg"),
+    "gamma_deg": Quantity("camber", "γ", "deg"),
+    "Fz_N": Quantity("load", "F_z", "N"),
+    "p_kPa": Quantity("pressure", "p", "kPa"),
+    "V_mps": Quantity("speed", "V", "m/s"),
+    "T_degC": Quantity("temperature", "T", "degC"),
+    "t_s": Quantity("time", "t", "s"),
 }
 """Conditions of a point, by their column."""
 CHANNELS = {
-    "Fy": Quantity("side force", "N"),
-    "Mz": Quantity("self-aligning moment", "Nm"),
+    "Fy": Quantity("side force", "Fy", "N"),
+    "Mz": Quantity("self-aligning moment", "Mz", "Nm"),
 }
 """Measured channels that are simulated, by their symbol."""
+DIRECT = {
+    "epsilon_gamma": Quantity("camber reduction factor", "ε_γ", "-"),
+    "C_phit": Quantity("turn-slip stiffness", "C_φt", "Nm"),
+    "C_gamma": Quantity("camber stiffness", "C_γ", "N/rad"),
+    "C_alpha": Quantity("cornering stiffness", "C_α", "N/rad"),
+    "r_e": Quantity("effective radius", "r_e", "m"),
+    "R": Quantity("path radius", "R", "m"),
+    "F_phit": Quantity("turn-slip force", "F_φt", "N"),
+    "alpha_M": Quantity("sideslip misalignment", "α_M", "rad"),
+}
+"""What the direct method measures, by the attribute of its records."""

@@ -34,7 +34,6 @@ class Parameter:
     stage: str  #: stage of the fit that frees it; "" where nothing is fitted
     channel: str  #: force or moment that must be measured to see it; "" for no coefficient of one
     symmetry: frozenset[str]  #: "odd", "shift", "conicity"; see the properties of these names
-    tied_to_base: bool  #: held near the base file's value until the data identify it
     disc_spread: float | None  #: spread around the base file's value to which runs on a disc hold it, 1 sigma
     needs: tuple[Need, ...]  #: what the data must vary
     files: str  #: "" in every file, "62" of MF 6.2 only, "some" not in all, "rare" in no common one
@@ -54,6 +53,12 @@ class Parameter:
         """Width of the plausible range."""
         lower, upper = self.bounds
         return upper - lower
+
+    def inside(self, value: float) -> float:
+        """The value a little inside the plausible range: a search that starts on a bound can be held there."""
+        lower, upper = self.bounds
+        margin = 1e-3 * self.width if math.isfinite(self.width) else 0.0
+        return min(max(value, lower + margin), upper - margin)
 
     @property
     def odd(self) -> bool:
@@ -102,7 +107,6 @@ def _parameter(row: dict[str, str]) -> Parameter:
         stage=row["stage"],
         channel=row["channel"],
         symmetry=frozenset(row["symmetry"].split()),
-        tied_to_base=tie == "base",
         disc_spread=float(spread) if tie == "disc" else None,
         needs=tuple(_need(word) for word in row["needs"].split()),
         files=row["files"],

@@ -182,7 +182,7 @@ class CamberStiffnessTable(Table):
 class SpinTable(Table):
     """[spin]: which of the two files carries the plain name, and where PECP1 comes from."""
 
-    exact: Literal["turn-slip", "normal"] = "turn-slip"
+    exact: Literal["turn-slip", "normal", "both"] = "turn-slip"
     pecp1: Literal["direct", "debiased", "model"] = "direct"
 
 

@@ -72,9 +72,9 @@ def diagnose(
     simulates_spin = config.model.turn_slip and bool(np.any(points.phi_t))
     start = Simulation(dict(tyre.values), declared, simulates_spin, config.model.star)
     refuse_strangers(points, tyre, start)
-    points, source = with_uncertainties(by_condition(points), start)
+    points, origin = with_uncertainties(by_condition(points), start)
     points = thinned(points)
-    noise = noise_model(points, start, config.model.u_coefficients, source)
+    noise = noise_model(points, start, config.model.u_coefficients, origin)
     candidates, notes = possible(effects, points, start)
     if len(np.unique(points.sweep)) < 2:
         candidates = []
@@ -83,7 +83,7 @@ def diagnose(
     problem, chosen, steps, bump = _explained(points, start, noise, candidates)
     if config.model.u_coefficients and chosen.effects:
         # What an inexact coefficient does depends on the rest of the model: ask again at the one that was found.
-        noise = noise_model(points, chosen.state, config.model.u_coefficients, source)
+        noise = noise_model(points, chosen.state, config.model.u_coefficients, origin)
         problem, chosen, steps, bump = _explained(points, start, noise, candidates)
     if candidates and steps and not (bump.found and not chosen.effects):
         inflation = _lack_of_fit(problem, chosen)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from enum import Enum, auto
 
 import numpy as np
 from scipy.linalg import cholesky, solve_triangular
@@ -11,6 +12,13 @@ from mffit.errors import InputError
 from mffit.points import Points
 from mffit.rig import Simulation
 from tir.parameters import TABLE
+
+
+class Origin(Enum):
+    """Where the uncertainties of the readings come from."""
+
+    STATED = auto()  #: with the data
+    SCATTER = auto()  #: of measured minus simulated between neighbouring points
 
 
 @dataclass(frozen=True, slots=True)
@@ -24,7 +32,7 @@ class Noise:
     root: (
         np.ndarray
     )  #: (m, m) Cholesky factor of the covariance; its diagonal (m,) where the readings are independent
-    source: str  #: where the uncertainties come from
+    origin: Origin | None  #: of the uncertainties of Fy; None if it was not measured
 
     def whiten(self, x: np.ndarray) -> np.ndarray:
         """Readings' differences (2n,) or (2n, k) in units of their joint uncertainty: (m,) or (m, k)."""
@@ -52,7 +60,7 @@ class Noise:
         return replace(self, u=factor * self.u, root=factor * self.root)
 
 
-def with_uncertainties(points: Points, state: Simulation) -> tuple[Points, str]:
+def with_uncertainties(points: Points, state: Simulation) -> tuple[Points, Origin | None]:
     """The points with a standard uncertainty for every reading, and where it comes from.
 
     As stated, else from the scatter of measured minus simulated between neighbouring points of each sweep, from which the
@@ -64,12 +72,14 @@ def with_uncertainties(points: Points, state: Simulation) -> tuple[Points, str]:
         If all stated uncertainties are zero.
     """
     n, simulated = len(points), state.predict(points)
-    Fy, source = _channel(points, points.Fy, points.u_Fy, simulated[:n], "u_Fy_N")
+    Fy, origin = _channel(points, points.Fy, points.u_Fy, simulated[:n], "u_Fy_N")
     Mz, _ = _channel(points, points.Mz, points.u_Mz, simulated[n:], "u_Mz_Nm")
-    return points.replace(u_Fy=Fy, u_Mz=Mz), source
+    return points.replace(u_Fy=Fy, u_Mz=Mz), origin
 
 
-def noise_model(points: Points, state: Simulation, u_coefficients: float, source: str = "") -> Noise:
+def noise_model(
+    points: Points, state: Simulation, u_coefficients: float, origin: Origin | None = None
+) -> Noise:
     """Covariance of the readings: their own uncertainties (finite where used) and the model's inexactness.
 
     Parameters
@@ -77,7 +87,7 @@ def noise_model(points: Points, state: Simulation, u_coefficients: float, source
     points : with uncertainties as :func:`with_uncertainties` gives them
     state : the simulation whose coefficients are inexact
     u_coefficients : relative standard uncertainty of the P.Y. and Q.Z. coefficients
-    source : where the uncertainties come from
+    origin : where the uncertainties come from
     """
     Fy, Mz = points.u_Fy, points.u_Mz
     u = np.concatenate([Fy, Mz])
@@ -92,7 +102,7 @@ def noise_model(points: Points, state: Simulation, u_coefficients: float, source
         u=u,
         used=used,
         root=root,
-        source=source,
+        origin=origin,
     )
 
 
@@ -105,11 +115,11 @@ def coefficient_jacobian(points: Points, state: Simulation) -> np.ndarray:
 
 def _channel(
     points: Points, values: np.ndarray, stated: np.ndarray, simulated: np.ndarray, column: str
-) -> tuple[np.ndarray, str]:
+) -> tuple[np.ndarray, Origin | None]:
     """Uncertainty (n,) of one channel; inf where it was not measured."""
     measured = np.isfinite(values)
     if not np.any(measured):
-        return np.full(len(points), np.inf), ""
+        return np.full(len(points), np.inf), None
     known = measured & np.isfinite(stated)
     if np.any(known) and np.all(stated[known] <= 0.0):
         raise InputError(
@@ -117,10 +127,10 @@ def _channel(
         )
     if np.all(known[measured]):
         floor = 0.05 * np.median(stated[known][stated[known] > 0])
-        return np.where(measured, np.maximum(stated, floor), np.inf), "stated uncertainties"
+        return np.where(measured, np.maximum(stated, floor), np.inf), Origin.STATED
     guess = neighbour_noise(points, values - simulated)
     u = np.where(known, stated, guess)
-    return np.where(measured, u, np.inf), "scatter between neighbouring points"
+    return np.where(measured, u, np.inf), Origin.SCATTER
 
 
 def neighbour_noise(points: Points, values: np.ndarray) -> float:

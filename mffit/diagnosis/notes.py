@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from tir import Quantity
+
 
 @dataclass(frozen=True, slots=True)
 class OneSweep:
@@ -32,4 +34,35 @@ class UncertaintiesEnlarged:
     factor: float
 
 
-Note = OneSweep | NotVisible | HardlyThisTyre | UncertaintiesEnlarged
+@dataclass(frozen=True, slots=True)
+class ModelOfLastBuild:
+    """The model is a file of the last build that does not carry the plain name."""
+
+    file: str
+
+
+@dataclass(frozen=True, slots=True)
+class ModelFittedFirst:
+    """No model was given and no build was there, so one was fitted to the same points."""
+
+    turn_slip: bool  #: whether the simulation computes it
+
+
+@dataclass(frozen=True, slots=True)
+class DirectMethodRedone:
+    """eps_gamma with the rig's faults in the readings and without them; None where it could not be measured."""
+
+    causes: tuple[str, ...]  #: plain names of the faults
+    before: Quantity | None
+    after: Quantity | None
+
+
+Note = (
+    OneSweep
+    | NotVisible
+    | HardlyThisTyre
+    | UncertaintiesEnlarged
+    | ModelOfLastBuild
+    | ModelFittedFirst
+    | DirectMethodRedone
+)

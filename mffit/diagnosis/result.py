@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
@@ -54,7 +53,7 @@ class Diagnosis:
     bump: Bump | None
     state: Simulation  #: the simulation after all corrections
     tyre: Tyre  #: the corrected property file
-    notes: tuple[Note | str, ...]  #: facts, and sentences of whoever ran the diagnosis
+    notes: tuple[Note, ...]
     model_after: str  #: file name of the corrected model in the output folder
 
     @property
@@ -70,49 +69,3 @@ class Diagnosis:
     def ranked_alternatives(self) -> list[tuple[str, float]]:
         """Id and confidence of what was not accepted, likeliest first."""
         return sorted(self.alternatives.items(), key=lambda item: -item[1])
-
-    def to_json(self) -> dict[str, Any]:
-        """The content of diagnosis.json."""
-        return {
-            "headline": self.headline,
-            "gap_before": _gap(self.gap_before),
-            "gap_after": _gap(self.gap_after),
-            "validation": {
-                "method": wording.method(self.validation),
-                "gap_before": _gap(self.validation.gap_before),
-                "gap_after": _gap(self.validation.gap_after),
-            },
-            "where": [_region(region) for region in self.where],
-            "effects": [_found(found) for found in self.effects],
-            "alternatives": [
-                {"id": name, "confidence": weight} for name, weight in self.ranked_alternatives()
-            ],
-            "unexplained": self.unexplained,
-            "unexplained_where": [_region(region) for region in self.unexplained_where],
-            "noise_floor": {"Fy_N": self.noise.Fy, "Mz_Nm": self.noise.Mz, "source": self.noise.source},
-            "model_after": self.model_after,
-            "notes": wording.notes(self),
-        }
-
-
-def _gap(gap: Gap) -> dict[str, float]:
-    return {"Fy_rmse_N": gap.Fy_rmse_N, "Mz_rmse_Nm": gap.Mz_rmse_Nm, "chi2_per_dof": gap.chi2_per_dof}
-
-
-def _region(region: Region) -> dict[str, Any]:
-    limits = {name: list(limits) for name, limits in region.region.items()}
-    return {"channel": region.channel, "region": limits, "bias": region.bias, "z": region.z}
-
-
-def _found(found: Found) -> dict[str, Any]:
-    return {
-        "id": found.effect.id,
-        "name": found.effect.name,
-        "kind": found.effect.kind,
-        "physics": found.effect.physics,
-        "confidence": found.confidence,
-        "parameters": {n: {"value": v, "stderr": s} for n, (v, s) in found.parameters.items()},
-        "gap_after": _gap(found.gap_after),
-        "tied_with": list(found.tied_with),
-        "separate_by": wording.separation(found.separation),
-    }

@@ -5,7 +5,17 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, assert_never
 
-from mffit.diagnosis.notes import HardlyThisTyre, Note, NotVisible, OneSweep, UncertaintiesEnlarged
+from mffit.diagnosis.noise import Noise, Origin
+from mffit.diagnosis.notes import (
+    DirectMethodRedone,
+    HardlyThisTyre,
+    ModelFittedFirst,
+    ModelOfLastBuild,
+    Note,
+    NotVisible,
+    OneSweep,
+    UncertaintiesEnlarged,
+)
 from mffit.diagnosis.ties import TELLING, Run, Separation
 from mffit.effects import NEEDS
 from mffit.quantities import CHANNELS, CONDITIONS
@@ -29,6 +39,10 @@ RUNS = {
     Run.STRAIGHT: "a sideslip sweep at {load:.0f} N on a straight path",
     Run.WIDE: "a sideslip sweep at {load:.0f} N on a path of twice the radius",
     Run.STRAIGHT_CAMBER: "a camber sweep at {load:.0f} N on a straight path",
+}
+ORIGINS = {
+    Origin.STATED: "stated uncertainties",
+    Origin.SCATTER: "scatter between neighbouring points",
 }
 
 
@@ -59,11 +73,9 @@ def headline(diagnosis: Diagnosis) -> str:
     return f"{sentence}; {rest}."
 
 
-def note(remark: Note | str) -> str:
-    """A note as a sentence; what is a sentence already stays as it is."""
+def note(remark: Note) -> str:
+    """A note as a sentence."""
     match remark:
-        case str():
-            return remark
         case OneSweep():
             return "One sweep cannot tell causes apart: add sweeps at another load, camber or direction."
         case NotVisible(needs, effects):
@@ -79,8 +91,33 @@ def note(remark: Note | str) -> str:
                 "The model misses the points by more than their noise whatever is added; uncertainties were "
                 f"enlarged {factor:.1f} times so that effects are judged against the misfit that remains."
             )
+        case ModelOfLastBuild(file):
+            return f"The model is {file} of the last build."
+        case ModelFittedFirst(turn_slip):
+            return (
+                "The model was fitted to these points first, as there was no earlier build for simulations with turn slip "
+                f"{'on' if turn_slip else 'off'}."
+            )
+        case DirectMethodRedone():
+            return _redone(remark)
         case _:
             assert_never(remark)
+
+
+def _redone(found: DirectMethodRedone) -> str:
+    """What the rig's faults do to the direct method."""
+    names, before, after = " and ".join(found.causes), found.before, found.after
+    if before is None or after is None:
+        return f"eps_gamma cannot be measured {'with' if after else 'even without'} {names}."
+    corrected = f"{after.value:.2f} +- {after.u:.2f}"
+    if abs(after.value - before.value) < 0.5 * after.u:
+        return f"eps_gamma stays {corrected} (k = 1) with {names} corrected: the direct method allows for it."
+    return f"eps_gamma was {before.value:.2f} +- {before.u:.2f} with {names}; corrected it is {corrected} (k = 1)."
+
+
+def source(noise: Noise) -> str:
+    """Where the uncertainties of the readings come from; empty if Fy was not measured."""
+    return "" if noise.origin is None else ORIGINS[noise.origin]
 
 
 def notes(diagnosis: Diagnosis) -> list[str]:
@@ -119,7 +156,7 @@ def place(region: Mapping[str, tuple[float, float]]) -> list[str]:
 def _range(name: str, low: float, high: float) -> str:
     if name == "direction":
         return "backward runs" if high < 0 else "forward runs" if low > 0 else "both directions"
-    word, unit = CONDITIONS[name]
+    word, _, unit = CONDITIONS[name]
     if low == high:
         return f"{word} {_short(low)} {unit}"
     return f"{word} {_short(low)} to {_short(high)} {unit}"

@@ -10,25 +10,17 @@ from pathlib import Path
 from mffit.effects.catalog import CATALOG
 from mffit.effects.effect import Effect, Free
 from mffit.effects.needs import NEEDS
+from mffit.rig import FAULT_NAMES, MEANINGS, UNITS
 from tir.parameters import BY_NAME
 
-RIG_NUMBERS = {
-    "alpha_0_deg": ("deg", "true sideslip angle = reading + alpha_0"),
-    "gamma_0_deg": ("deg", "true camber = reading + gamma_0"),
-    "F0_N": ("N", "reported Fy = gain Fy + F0 + crosstalk Fz"),
-    "gain": ("-", "reported Fy = gain Fy + F0 + crosstalk Fz"),
-    "crosstalk": ("-", "reported Fy = gain Fy + F0 + crosstalk Fz"),
-    "M0_Nm": ("Nm", "reported Mz = Mz + M0"),
-    "backlash_deg": ("deg", "full play; true sideslip angle = reading - play/2 sign(Mz)"),
-    "path_radius_m": ("m", "true radius of the path"),
-    "k_T_per_K": ("1/K", "Fy and Mz times 1 + k_T (T - 25 degC)"),
-    "k_V_per_mps": ("s/m", "Fy and Mz times 1 + k_V (V - V_ref), V_ref the most frequent speed"),
-    "k_t_per_s": ("1/s", "Fy and Mz times 1 + k_t t, t the time at which the point was taken"),
+NEITHER = {
+    "turn_slip": ("–", "whether the simulation has turn slip"),
     "relaxation_m": (
         "m",
         "relaxation length: sigma d(alpha')/ds + alpha' = alpha, the force answers to alpha'",
     ),
 }
+"""Unit and meaning of what is neither a coefficient of the file nor a fault of the rig."""
 RESULT = {
     "tyre": "It becomes coefficients of the corrected `.tir`, with the reason in their comments.",
     "rig": "It becomes a correction of the readings, and the direct method is redone with it; the tyre's file does not change.",
@@ -123,10 +115,10 @@ def _row(free: Free) -> str:
 
 def _described(name: str) -> tuple[str, str]:
     """Unit and meaning of a number."""
-    if name == "turn_slip":
-        return "–", "whether the simulation has turn slip"
-    if name in RIG_NUMBERS:
-        return RIG_NUMBERS[name]
+    if name in NEITHER:
+        return NEITHER[name]
+    if name in FAULT_NAMES:
+        return UNITS[name], MEANINGS[name]
     row = BY_NAME[name]
     return row.unit, row.description + (f" ({row.equation})" if row.equation else "")
 

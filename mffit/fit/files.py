@@ -3,29 +3,22 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
-from typing import Any
+from dataclasses import dataclass, replace
+from typing import Any, NamedTuple
 
 import numpy as np
 
-from mffit.fit.normal import (
-    Road,
-    derive_normal,
-    inside,
-    road_grid,
-    weights,
-)
+from mffit.fit.imitation import forces
+from mffit.fit.known import Known
+from mffit.fit.normal import derive_both, derive_normal
 from mffit.fit.ranges import NAMES, plausible_ranges, tested_ranges
-from mffit.fit.stages import ODD_TERMS
+from mffit.fit.road import Road, inside, road_grid, weights
 from mffit.fit.start import camber_stiffness_terms
 from mffit.points import Points, main_pressure
 from tir import Tyre
-from tir.parameters import TABLE
 
 RADII = (100.0, 30.0, 10.0)
 """Radii of roads [m] for which the turn-slip force is stated that the file for turn slip off lacks."""
-LONGEST = 66
-"""Characters of a comment that fit on a line of the file."""
 DECIDED = ("TYRESIDE", "USE_MODE", "FITTYP")
 """Values that the build itself decides."""
 GIVEN = {
@@ -56,18 +49,27 @@ class FileFigures:
     """What is known of one written file."""
 
     tyre: Tyre
-    straight: Mapping[str, Misfit]  #: by channel
+    misfit: Mapping[
+        str, Mapping[str, Misfit]
+    ]  #: by place and channel; "straight" is the path that every file has
     camber_stiffness: float  #: slope of Fy over camber at zero on a straight path [N/rad]
+
+    @property
+    def straight(self) -> Mapping[str, Misfit]:
+        """By channel on a straight path, in the file's own use; turn slip off for a file that serves both."""
+        return self.misfit["straight"]
 
 
 @dataclass(frozen=True, slots=True)
 class Files:
     """The files of a build by use, "turn-slip" and "normal", and what they were made from."""
 
-    by_use: Mapping[str, FileFigures]
+    by_use: Mapping[
+        str, FileFigures
+    ]  #: "turn-slip" and "normal"; on a flat track the latter; if asked for, "both"
     tested: Mapping[str, float]
     written: Mapping[str, float]
-    changed: tuple[str, ...]  #: coefficients of the normal file that differ from the fitted model
+    changed: Mapping[str, tuple[str, ...]]  #: by use, coefficients that differ from the fitted model
     lacking: Mapping[float, float]  #: turn-slip force [N] at nominal load by radius of the road [m]
 
     @property
@@ -75,93 +77,81 @@ class Files:
         """Share of the camber stiffness at zero that the file for turn slip off lacks."""
         return 1.0 - self.by_use["normal"].camber_stiffness / self.by_use["turn-slip"].camber_stiffness
 
-    def to_json(self) -> dict[str, Any]:
-        """The ``files`` part of ``fit``."""
-        out: dict[str, Any] = {
-            use: {
-                "USE_MODE": int(f.tyre["USE_MODE"]),
-                "straight": {
-                    channel: {name: getattr(m, name) for name in Misfit.__slots__}
-                    for channel, m in f.straight.items()
-                },
-                "camber_stiffness_N_per_rad": f.camber_stiffness,
-            }
-            for use, f in self.by_use.items()
-        }
-        if len(self.by_use) == 2:
-            out["normal"]["coefficients"] = {n: self.by_use["normal"].tyre[n] for n in self.changed}
-            out["normal"]["camber_stiffness_loss"] = self.stiffness_loss
-            out["normal"]["turn_slip_force_lacking_N"] = {
-                f"{radius:g} m": force for radius, force in self.lacking.items()
-            }
-        return {**out, "ranges": {"tested": dict(self.tested), "written": dict(self.written)}}
+    def annotated(self, comments: Mapping[str, Mapping[str, str]]) -> Files:
+        """The same with comments on the values, by use and name."""
+        told = {use: replace(f, tyre=f.tyre.annotate(status=comments[use])) for use, f in self.by_use.items()}
+        return replace(self, by_use=told)
 
 
 def make_files(
-    config: Any,
-    values: Mapping[str, Any],
-    points: Points,
-    base: Tyre | None,
-    status: dict[str, str],
-    comments: Mapping[str, str],
-    C_gamma: Mapping[float, float],
+    config: Any, known: Known, points: Points, base: Tyre | None, C_gamma: Mapping[float, float]
 ) -> Files:
-    """The files that leave a build: both on a disc, one on a flat track.
+    """The files that leave a build: on a disc one for each use, one on a flat track.
 
     Parameters
     ----------
     config : the validated ``tyre.toml``
-    values : the fitted model
+    known : the fitted model and the origin of every value
     points : the points it was fitted to
     base : coefficients that were not fitted came from here
-    status : origin of every value in a word; what is decided here is put in
-    comments : the comments of fitted values
     C_gamma : measured camber stiffness [N/rad] by load [N]; empty on a flat track
     """
+    values = known.values
     disc = config.rig.type == "rotating-disk"
+    symmetric = config.tyre.side == "symmetric"
     tested = tested_ranges(points)
     written = plausible_ranges(values, tested, turn_slip=disc)
-    given = [name for name, key in GIVEN.items() if getattr(config.tyre, key) is not None]
-    status.update({**dict.fromkeys(NAMES, "range"), **dict.fromkeys((*DECIDED, *given), "given")})
-    symmetric = config.tyre.side == "symmetric"
-    if symmetric:
-        status.update(dict.fromkeys(ODD_TERMS, "given"))
     side = "RIGHT" if str(values["TYRESIDE"]).upper().startswith("R") else "LEFT"
     model = {**values, **written, "TYRESIDE": side, "FITTYP": 62}
-    all_comments = {**_comments(status, tested), **comments}
-
-    changed: dict[str, float] = {}
+    changed: dict[str, dict[str, float]] = {} if disc else {"normal": {}}
     if disc:
         terms = camber_stiffness_terms(values, C_gamma, float(points.p[main_pressure(points)].mean()))
-        changed = derive_normal(model, tested, written, terms, symmetric=symmetric)
-    made = {
-        "turn-slip": (model, all_comments),
-        "normal": ({**model, **changed}, {**all_comments, **dict.fromkeys(changed, DERIVED)}),
-    }
+        changed["turn-slip"] = {}
+        changed["normal"] = derive_normal(model, tested, written, terms, symmetric=symmetric)
+    phi_t = float(points.phi_t[np.argmax(np.abs(points.phi_t))])
+    if disc and config.spin.exact == "both":
+        changed["both"] = derive_both(model, tested, written, terms, phi_t, symmetric=symmetric)
     road = road_grid(tested, written, float(model["FNOMIN"]))
-    by_use = {
-        use: _figures(content, remarks, base, use, model, road, tested, disc)
-        for use, (content, remarks) in made.items()
-        if disc or use == "normal"
+    judge = _Judge(model, road, tested, phi_t)
+    tyres = {
+        use: (base or Tyre.from_values({})).replace(**{**model, **values, "USE_MODE": use_mode(model, use)})
+        for use, values in changed.items()
     }
-    return Files(by_use, tested, written, tuple(changed), _lacking(model) if disc else {})
+    return Files(
+        {use: judge.figures(tyre, use) for use, tyre in tyres.items()},
+        tested,
+        written,
+        {use: tuple(values) for use, values in changed.items() if values},
+        _lacking(model) if disc else {},
+    )
 
 
-DERIVED = "fitted to the model without path curvature"
+class _Judge(NamedTuple):
+    """Compares files with the fitted model over the ranges."""
 
+    model: Mapping[str, Any]
+    road: Road
+    tested: Mapping[str, float]
+    phi_t: float  #: of the disc's path; 0 on a flat track
 
-def _figures(values, comments, base, use, model, road: Road, tested, disc: bool) -> FileFigures:
-    tyre = (base or Tyre.from_values({})).replace(**{**values, "USE_MODE": use_mode(values, use)})
-    with_spin = use == "turn-slip"
-    here, target = road.forces(tyre.values, turn_slip=with_spin), road.forces(model, turn_slip=disc)
-    weight, within = weights(road, tested), inside(road, tested)
-    straight = {
-        name: _misfit(getattr(here, name) - getattr(target, name), road, weight, within)
-        for name in ("Fy", "Mz")
-    }
-    gamma = np.array([-1e-3, 1e-3])
-    Fy = tyre(float(values["FNOMIN"]), gamma=gamma, turn_slip=with_spin).Fy
-    return FileFigures(tyre.annotate(status=comments), straight, float(np.diff(Fy)[0] / np.diff(gamma)[0]))
+    def figures(self, tyre: Tyre, use: str) -> FileFigures:
+        spin = {"turn-slip": (True,), "normal": (False,), "both": (False, True)}[use]
+        misfit = {"straight": self._misfits(tyre, turn_slip=spin[0], phi_t=0.0)}
+        if len(spin) > 1:
+            misfit["straight_with_turn_slip"] = self._misfits(tyre, turn_slip=True, phi_t=0.0)
+            misfit["disc"] = self._misfits(tyre, turn_slip=True, phi_t=self.phi_t)
+        gamma = np.array([-1e-3, 1e-3])
+        Fy = tyre(float(self.model["FNOMIN"]), gamma=gamma, turn_slip=spin[0]).Fy
+        return FileFigures(tyre, misfit, float(np.diff(Fy)[0] / np.diff(gamma)[0]))
+
+    def _misfits(self, tyre: Tyre, *, turn_slip: bool, phi_t: float) -> dict[str, Misfit]:
+        here = forces(tyre.values, self.road, turn_slip=turn_slip, phi_t=phi_t)
+        target = forces(self.model, self.road, turn_slip=bool(self.phi_t), phi_t=phi_t)
+        weight, within = weights(self.road, self.tested), inside(self.road, self.tested)
+        return {
+            name: _misfit(getattr(here, name) - getattr(target, name), self.road, weight, within)
+            for name in ("Fy", "Mz")
+        }
 
 
 def _misfit(difference: np.ndarray, road: Road, weight: np.ndarray, within: np.ndarray) -> Misfit:
@@ -184,7 +174,7 @@ def use_mode(values: Mapping[str, Any], use: str) -> int:
     nonlinear transient; units 5 combined slip with turn slip, 4 without.
     """
     contact = 200 if float(values["MC_CONTOUR_A"]) > 0.0 else 100
-    return contact + 20 + (5 if use == "turn-slip" else 4)
+    return contact + 20 + (4 if use == "normal" else 5)
 
 
 def _lacking(model: Mapping[str, Any]) -> dict[float, float]:
@@ -195,83 +185,15 @@ def _lacking(model: Mapping[str, Any]) -> dict[float, float]:
     return {R: abs(float(tyre(load, phi_t=-1.0 / R).Fy) - straight) for R in RADII}
 
 
-WORDS = {
-    "base": "from base",
-    "default": "default, not measured",
-    "estimate": "estimate, not measured",
-    "regularised": "tied to base value",
-    "range": "estimate, checked plausible",
-    "given": "given in tyre.toml",
-}
-
-
-def _comments(status: Mapping[str, str], tested: Mapping[str, float]) -> dict[str, str]:
-    """Where every value comes from, and what it is where that is no coefficient's name."""
-    out = {}
-    for row in TABLE:
-        words = WORDS.get(status[row.name], status[row.name])
-        if row.name in DECIDED:
-            words = "given by this build"
-        if row.name in tested:
-            words = f"{words}, tested to {tested[row.name]:.6g} {row.unit}"
-        elif not row.section.endswith("_COEFFICIENTS"):
-            words = f"{words}: {row.description}"
-        out[row.name] = whole_words(words)
-    return out
-
-
-def whole_words(text: str, longest: int = LONGEST) -> str:
-    """The text, cut between words if it is too long for a line."""
-    return text if len(text) <= longest else text[: longest + 1].rsplit(" ", 1)[0].rstrip(",:")
-
-
-def sentences(files: Files, names: Mapping[str, str]) -> list[str]:
-    """Which file is for what, first of all, and what the file for turn slip off costs."""
-    if len(files.by_use) == 1:
-        return [
-            f"Give {names['normal']} to the simulator with turn slip off (USE_MODE "
-            f"{int(files.by_use['normal'].tyre['USE_MODE'])}): a straight path does not measure turn slip.",
-            ranges_sentence(files),
-        ]
-    normal = files.by_use["normal"]
-    fy, mz = normal.straight["Fy"], normal.straight["Mz"]
-    modes = {use: int(f.tyre["USE_MODE"]) for use, f in files.by_use.items()}
-    lacking = ", ".join(f"{force:.0f} N at {radius:g} m" for radius, force in files.lacking.items())
-    return [
-        f"Give {names['turn-slip']} to a simulator that computes turn slip, which is the turning of the wheel about the "
-        f"vertical along a curve (its USE_MODE ends in 5, here {modes['turn-slip']}); give {names['normal']} to every other "
-        f"simulator (USE_MODE ends in 4, here {modes['normal']}). If you do not know, it is the second one. Swapped, "
-        "camber forces come out wrong.",
-        f"{names['turn-slip']} is the fitted model itself.",
-        f"{names['normal']} reproduces it on a straight path to {fy.weighted:.0f} N and {mz.weighted:.1f} Nm rms where "
-        f"vehicles run ({fy.rms:.0f} N and {mz.rms:.1f} Nm over everything tested, {fy.largest:.0f} N at most): camber "
-        "changes grip through spin, and without spin the formula has no term of that shape. Upright the two are equal.",
-        f"{names['normal']} has {files.stiffness_loss:.0%} {'less' if files.stiffness_loss >= 0 else 'more'} camber "
-        f"stiffness at zero camber than the model, and lacks the turn-slip force of curved roads (upright, nominal load; "
-        f"by radius): {lacking}.",
-        ranges_sentence(files),
-    ]
-
-
-def ranges_sentence(files: Files) -> str:
-    """What was tested and what the files allow."""
-    t, w = files.tested, files.written
-    tested_pressure = (
-        f"{t['PRESMIN'] / 1e3:.0f} kPa only"
-        if t["PRESMAX"] - t["PRESMIN"] < 0.05 * t["PRESMAX"]
-        else f"{t['PRESMIN'] / 1e3:.0f} to {t['PRESMAX'] / 1e3:.0f} kPa"
-    )
-    return (
-        f"Tested: {t['FZMIN']:.0f} to {t['FZMAX']:.0f} N, sideslip to {np.degrees(t['ALPMAX']):.1f} deg, camber to "
-        f"{np.degrees(t['CAMMAX']):.1f} deg, {tested_pressure}. The ranges in the file are wider, as simulators clamp to them: "
-        f"the model stays plausible, not measured, over {w['FZMIN']:.0f} to {w['FZMAX']:.0f} N, "
-        f"{np.degrees(w['ALPMAX']):.0f} deg of sideslip, {np.degrees(w['CAMMAX']):.0f} deg of camber, "
-        f"{w['PRESMIN'] / 1e3:.0f} to {w['PRESMAX'] / 1e3:.0f} kPa."
-    )
+def decisions(config: Any) -> dict[str, str]:
+    """Origin of the values that the configuration or the build itself decides."""
+    given = [name for name, key in GIVEN.items() if getattr(config.tyre, key) is not None]
+    return {**dict.fromkeys(NAMES, "range"), **dict.fromkeys((*DECIDED, *given), "given")}
 
 
 def file_names(name: str, exact: str, on_disc: bool) -> dict[str, str]:
     """Names of the written files by use; ``exact`` carries the plain one."""
     if not on_disc:
         return {"normal": f"{name}.tir"}
-    return {use: f"{name}.tir" if use == exact else f"{name}-{use}.tir" for use in ("turn-slip", "normal")}
+    uses = dict.fromkeys((exact, "turn-slip", "normal"))
+    return {use: f"{name}.tir" if use == exact else f"{name}-{use}.tir" for use in uses}

@@ -9,7 +9,8 @@ import numpy as np
 
 from mffit.fit.coverage import StageCoverage
 from mffit.fit.files import Files
-from mffit.rig import UNITS, Simulation
+from mffit.fit.posterior import Posterior
+from mffit.rig import Simulation
 from tir import Tyre
 
 
@@ -25,6 +26,7 @@ class Coefficient:
     status: str  #: measured | fitted | regularised | default | base
     correlated_with: str = ""  #: the coefficient with the largest correlation, if above 0.95
     correlation: float = 0.0
+    interval: tuple[float, float] | None = None  #: of 95 %; None if held
     origin: str = ""  #: where the value comes from, as the file's comment says it
 
 
@@ -64,6 +66,8 @@ class FitResult:
     rig: Mapping[str, tuple[float, float]]  #: rig error -> (value, standard error)
     Fy_model: np.ndarray  #: (n,) [N]
     Mz_model: np.ndarray  #: (n,) [Nm]
+    posterior: Posterior  #: what the fit leaves uncertain
+    members: tuple[Mapping[str, float], ...]  #: coefficients of tyres drawn from it, if any were asked for
     stages: tuple[StageRecord, ...]
     coverage: tuple[StageCoverage, ...]
     explanations: tuple[str, ...]
@@ -71,47 +75,6 @@ class FitResult:
     seconds: float
     epsilon_gamma_model: float | None = None
     files: Files | None = None  #: every file that is written, and how good each is
-
-    def to_json(self) -> dict:
-        """The ``fit`` part of result.json."""
-        return {
-            "channels": {name: _as_dict(row) for name, row in self.channels.items()},
-            "odd": {name: _as_dict(row) for name, row in self.odd.items()},
-            "coefficients": {
-                name: {
-                    "value": c.value,
-                    "stderr": c.stderr,
-                    "stage": c.stage,
-                    "fixed": c.fixed,
-                    "at_bound": c.at_bound,
-                    "status": c.status,
-                    "origin": c.origin or c.status,
-                    "correlated_with": c.correlated_with or None,
-                    "correlation": c.correlation if c.correlated_with else None,
-                }
-                for name, c in self.coefficients.items()
-            },
-            "rig": {
-                name: {"value": value, "stderr": u, "unit": UNITS[name]}
-                for name, (value, u) in self.rig.items()
-            },
-            "stages": [
-                {
-                    "name": s.name,
-                    "parameters": list(s.parameters),
-                    "rmse_Fy_N": s.rmse_Fy,
-                    "rmse_Mz_Nm": s.rmse_Mz,
-                }
-                for s in self.stages
-            ],
-            "coverage": [
-                {"stage": c.stage, "supported": c.supported, "held": list(c.held), "missing": list(c.missing)}
-                for c in self.coverage
-            ],
-            "files": self.files.to_json() if self.files is not None else {},
-            "explanations": list(self.explanations),
-            "seconds": self.seconds,
-        }
 
 
 def agreement(model: np.ndarray, measured: np.ndarray) -> Agreement:
@@ -130,7 +93,3 @@ def agreement(model: np.ndarray, measured: np.ndarray) -> Agreement:
         max_abs=float(np.max(np.abs(difference))),
         n=len(measured),
     )
-
-
-def _as_dict(row: Agreement) -> dict:
-    return {name: getattr(row, name) for name in ("rmse", "nrmse", "r2", "max_abs", "n")}

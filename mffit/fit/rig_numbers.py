@@ -29,15 +29,16 @@ def rig_numbers(config: Any, measured: Any) -> tuple[Number, ...]:
     rig = config.rig
     if rig.type != "rotating-disk" or measured.epsilon_gamma is None:
         return ()
-    known = known_faults(config, measured)
     stiffness = abs(measured.C_alpha.value) if measured.C_alpha else FIRST_GUESS * measured.F_phit_load
     u_alpha = math.degrees(rig.u_slip_alignment_N / max(stiffness, 1.0))
-    if measured.misaligned and measured.alpha_M is not None:
-        u_alpha = math.degrees(measured.alpha_M.u)
+    if (
+        measured.alpha_M is not None
+    ):  # a zero that lies beyond what was declared shows that the declaration was too tight
+        u_alpha = max(u_alpha, math.degrees(abs(measured.alpha_M.value)))
     rows = [
         ("F0_N", 0.0, rig.u_loadcell_offset_N),
         ("gamma_0_deg", 0.0, rig.u_camber_alignment_deg),
-        ("alpha_0_deg", known.alpha_0_deg, u_alpha),
+        ("alpha_0_deg", 0.0, u_alpha),
         ("path_radius_m", rig.radius, measured.R.u if measured.R else 0.0),
         ("backlash_deg", rig.backlash_deg, rig.u_backlash_deg),
     ]

@@ -3,28 +3,29 @@
 from __future__ import annotations
 
 import dataclasses
+import math
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
 from mffit.errors import InputError
 from mffit.fit import weights
 from mffit.fit.coverage import StageCoverage
+from mffit.fit.posterior import Posterior, joint, strongest_correlations
 from mffit.fit.problem import Problem
+from mffit.fit.profile import follow
 from mffit.fit.result import StageRecord
-from mffit.fit.stages import CONICITY_ON_A_DISC, IF_IDENTIFIED, STAGES, Stage
-from mffit.least_squares import Number, Solution, inverse, solve
+from mffit.fit.stages import STAGES, WITH_CAMBER, Stage
+from mffit.least_squares import Number, Solution, solve
 from mffit.points import Points, main_pressure
 from mffit.rig import FAULT_NAMES, Simulation
 from tir.parameters import BY_NAME
 
 ENOUGH_FOR_A_STAGE = 600
 """Points used in a stage before the polish; more would only cost time, as the polish uses all."""
-TIED_SPREAD = 0.3
-"""How far spin coefficients of similar tyres scatter around each other, relative, 1 sigma."""
-IDENTIFIED = 0.5
-"""Largest relative standard error at which a tied coefficient is released."""
+DECIDED = 0.5
+"""A coefficient counts as fitted, not as tied, if its standard error is below this share of what was known before."""
 FALSE_MINIMUM = 1.3
 """Misfit in units of the stated noise from which on the fit starts again from other shapes."""
 BETTER = 0.97
@@ -39,20 +40,27 @@ class Fitted:
 
     values: Mapping[str, float]  #: coefficients
     rig: Mapping[str, tuple[float, float]]  #: rig error -> (value, standard error)
-    stderr: Mapping[str, float]
     correlation: Mapping[str, tuple[str, float]]
-    names: tuple[str, ...]  #: of the covariance's rows, coefficients and rig errors
-    covariance: np.ndarray  #: (k, k)
-    sigma_Fy: np.ndarray  #: (n,) weights used in the end [N]
-    sigma_Mz: np.ndarray  #: (n,) [Nm]
+    posterior: Posterior  #: of tyre and rig, held values included
+    intervals: Mapping[
+        str, tuple[float, float]
+    ]  #: 95 % intervals of coefficients in a bent valley of equally good fits
+    problem: Problem  #: at the solution, with the weights used in the end
+    numbers: tuple[Number, ...]  #: that were free in the end
+    held: Mapping[str, float]  #: spread of what the fit took as it was
     at_bound: frozenset[str]
-    regularised: frozenset[str]
-    unmoved: frozenset[str]  #: freed, but the data did not move them: back at their start and held
+    regularised: frozenset[
+        str
+    ]  #: coefficients to which what was known before contributes as much as the data
     stages: tuple[StageRecord, ...]
     scale: tuple[float, float]  #: robust misfit over stated uncertainty, Fy and Mz
-    simulation: Simulation  #: fitted, rig errors included
     cost: float
     attempts: tuple[str, ...] = ()  #: other shapes from which the fit was started again
+
+    @property
+    def simulation(self) -> Simulation:
+        """Fitted, rig errors included."""
+        return self.problem.simulation
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,8 +69,12 @@ class Plan:
 
     cover: tuple[StageCoverage, ...]
     expected: Mapping[str, float]  #: centre of every coefficient's prior
+    scatter: Mapping[str, float]  #: how far this tyre's value may be from it, 1 sigma
     rig: tuple[Number, ...] = ()  #: rig errors, freed in the polish
     extra: tuple[str, ...] = ()  #: coefficients freed in the polish only
+    held: Mapping[str, float] = field(
+        default_factory=dict
+    )  #: standard uncertainty of measured values that stay
     noise_stated: bool = True  #: whether the points say how uncertain they are
 
     @property
@@ -120,7 +132,9 @@ def _fit_from(problem: Problem, start: Mapping[str, float], plan: Plan, progress
         records.append(_record(problem, stage.name, stage.title, row.free))
     progress("joint polish")
     fitted, problem = _polish(problem, plan)
-    records.append(_record(problem, "polish", "Joint polish of tyre and rig", fitted.names))
+    records.append(
+        _record(problem, "polish", "Joint polish of tyre and rig", [n.name for n in fitted.numbers])
+    )
     return dataclasses.replace(fitted, stages=tuple(records))
 
 
@@ -137,6 +151,8 @@ def _fit_stage(problem: Problem, stage: Stage, names: Sequence[str], plan: Plan)
         sigma_Mz=part.sigma_Mz if "Mz" in stage.channels else unused,
         radii=(),
     )
+    if stage.zero_camber:
+        names = [n for n in names if n not in WITH_CAMBER]
     part, _ = _reweighted(part)
     return solve(part.free(names), _numbers(part, names, plan), max_steps=15, tolerance=1e-3).values
 
@@ -152,41 +168,29 @@ def _used_by(stage: Stage, points: Points) -> np.ndarray:
 
 
 def _polish(stated: Problem, plan: Plan) -> tuple[Fitted, Problem]:
-    """All free numbers together: balance the channels, discount outliers, release what the data identify."""
-    names = [*plan.free, *plan.extra]
+    """All free numbers together: balance the channels, discount outliers, look along the valley where it is bent."""
     problem, _ = _reweighted(stated)
-    rough = _thinned(problem)
-    solution = _solved(rough, names, plan, tolerance=1e-3)
-    information = _data_information(rough, solution, len(problem.points))
-    errors = _errors(solution.names, information)
-    problem, scale = _reweighted(stated.with_values(solution.values))
-    tied = {name for name in names if name in IF_IDENTIFIED}
-    released = frozenset(n for n in tied if errors[n] < IDENTIFIED * max(abs(solution.values[n]), 1e-12))
-    curved = bool(np.any(problem.points.phi_t))
-    conicity = {name for name in names if name in CONICITY_ON_A_DISC and curved}
-    spread = {n.name: n.spread for n in _numbers(problem, names, plan)}
-    unmoved = _unmoved(solution.names, information, {n: spread[n] for n in set(names) - tied - conicity})
-    problem = problem.with_values({n: plan.expected[n] for n in unmoved})
-    kept = [n for n in names if n not in unmoved]
-    solution = _solved(problem, kept, plan, released=released, tolerance=1e-6)
-    problem = problem.with_values(solution.values)
-    covariance = solution.covariance
-    stderr = dict(zip(solution.names, np.sqrt(np.diag(covariance)).tolist(), strict=True))
+    rough = _solved(_thinned(problem), plan, tolerance=1e-3)
+    problem, scale = _reweighted(stated.with_values(rough.values))
+    problem, solution = _settled(problem, plan)
+    valley = follow(problem, _numbers_of(problem, plan), solution, _decided(solution, plan))
+    if valley is not None and valley.better:
+        problem, solution = _settled(problem.with_values(valley.better), plan)
+    posterior = joint(problem, solution, plan.held)
+    stderr = posterior.stderr
     fitted = Fitted(
         values={n: v for n, v in solution.values.items() if n not in RIG},
         rig={n: (v, stderr[n]) for n, v in solution.values.items() if n in RIG},
-        stderr=stderr,
-        correlation=_strongest_correlations(list(solution.names), covariance),
-        names=solution.names,
-        covariance=covariance,
-        sigma_Fy=problem.sigma_Fy,
-        sigma_Mz=problem.sigma_Mz,
+        correlation=strongest_correlations(posterior, solution.names),
+        posterior=posterior,
+        intervals=valley.intervals if valley is not None else {},
+        held=plan.held,
+        problem=problem,
+        numbers=tuple(_numbers_of(problem, plan)),
         at_bound=solution.at_bound | solution.at_limit,
-        regularised=frozenset((tied | conicity) - released),
-        unmoved=frozenset(unmoved),
+        regularised=frozenset(plan.free) - _decided(solution, plan),
         stages=(),
         scale=scale,
-        simulation=problem.simulation,
         cost=solution.cost,
     )
     return fitted, problem
@@ -195,43 +199,41 @@ def _polish(stated: Problem, plan: Plan) -> tuple[Fitted, Problem]:
 RIG = frozenset(FAULT_NAMES)
 
 
-def _solved(
-    problem: Problem,
-    names: Sequence[str],
-    plan: Plan,
-    *,
-    tolerance: float,
-    released: frozenset[str] = frozenset(),
-) -> Solution:
-    numbers = [*_numbers(problem, names, plan, released), *plan.rig]
-    start = {n.name: problem.simulation.number(n.name, problem.points) for n in plan.rig}
-    numbers = [dataclasses.replace(n, start=start.get(n.name, n.start)) for n in numbers]
+def _decided(solution: Solution, plan: Plan) -> frozenset[str]:
+    """Coefficients of which the data say more than what was known before."""
+    errors = np.sqrt(np.diag(solution.covariance)).tolist()
+    known = plan.scatter
+    return frozenset(
+        n for n, u in zip(solution.names, errors, strict=True) if n in known and u < DECIDED * known[n]
+    )
+
+
+def _settled(problem: Problem, plan: Plan) -> tuple[Problem, Solution]:
+    solution = _solved(problem, plan, tolerance=1e-6)
+    return problem.with_values(solution.values), solution
+
+
+def _solved(problem: Problem, plan: Plan, *, tolerance: float) -> Solution:
+    numbers = _numbers_of(problem, plan)
     return solve(problem.free([n.name for n in numbers]), numbers, tolerance=tolerance)
 
 
-def _numbers(
-    problem: Problem, names: Sequence[str], plan: Plan, released: frozenset[str] = frozenset()
-) -> list[Number]:
-    """Every free coefficient with its bounds and prior: tight for spin terms, the table's bounds for the rest."""
-    curved = bool(np.any(problem.points.phi_t))
+def _numbers_of(problem: Problem, plan: Plan) -> list[Number]:
+    """Every free coefficient and rig error, starting from where the problem is."""
+    at = {n.name: problem.simulation.number(n.name, problem.points) for n in plan.rig}
+    rig = [dataclasses.replace(n, start=at[n.name]) for n in plan.rig]
+    return [*_numbers(problem, [*plan.free, *plan.extra], plan), *rig]
+
+
+def _numbers(problem: Problem, names: Sequence[str], plan: Plan) -> list[Number]:
+    """The named coefficients with the table's bounds and what is known of each."""
     out = []
     for name in names:
         row = BY_NAME[name]
-        spread = 0.5 * row.width
-        if name in IF_IDENTIFIED and name not in released:
-            spread = max(TIED_SPREAD * abs(plan.expected[name]), 0.02)
-        if name in CONICITY_ON_A_DISC and curved:
-            spread = CONICITY_ON_A_DISC[name]
-        lower, upper = row.bounds
-        start = _inside(float(problem.simulation.values[name]), lower, upper)
-        out.append(Number(name, start, lower, upper, plan.expected[name], spread))
+        start = row.inside(float(problem.simulation.values[name]))
+        known = plan.scatter.get(name, math.inf)
+        out.append(Number(name, start, *row.bounds, plan.expected[name], known))
     return out
-
-
-def _inside(value: float, lower: float, upper: float) -> float:
-    """A start a little inside the bounds: one on a bound can be held there by the first step's direction."""
-    margin = 1e-3 * (upper - lower) if np.isfinite(upper - lower) else 0.0
-    return float(np.clip(value, lower + margin, upper - margin))
 
 
 def _reweighted(problem: Problem) -> tuple[Problem, tuple[float, float]]:
@@ -250,46 +252,6 @@ def _thinned(problem: Problem) -> Problem:
     """Every k-th point: enough to come near the solution, at a part of the cost."""
     step = len(problem.points) // ENOUGH_FOR_A_STAGE
     return problem if step <= 1 else problem.select(np.arange(0, len(problem.points), step))
-
-
-def _data_information(problem: Problem, solution: Solution, of: int) -> np.ndarray:
-    """Precision matrix (k, k) from the data and the rig's priors, without the ties, for ``of`` points of the kind solved."""
-    known = np.array([p if n in RIG else 0.0 for n, p in zip(solution.names, solution.prior, strict=True)])
-    return solution.jacobian.T @ solution.jacobian * (of / len(problem.points)) + np.diag(known)
-
-
-def _errors(names: Sequence[str], information: np.ndarray) -> dict[str, float]:
-    return dict(zip(names, np.sqrt(np.diag(inverse(information))).tolist(), strict=True))
-
-
-def _unmoved(names: Sequence[str], information: np.ndarray, spread: Mapping[str, float]) -> set[str]:
-    """Coefficients that the data leave anywhere among the plausible values, held one by one, the worst first.
-
-    Two that only their combination decides are both uncertain; holding one makes the other certain.
-    """
-    kept = list(range(len(names)))
-    held: set[str] = set()
-    while kept:
-        errors = _errors([names[i] for i in kept], information[np.ix_(kept, kept)])
-        doubt = {n: errors[n] / spread[n] for n in errors if n in spread}
-        worst = max(doubt, key=doubt.__getitem__, default="")
-        if not worst or doubt[worst] <= 1.0:
-            break
-        held.add(worst)
-        kept.remove(list(names).index(worst))
-    return held
-
-
-def _strongest_correlations(names: list[str], cov: np.ndarray) -> dict[str, tuple[str, float]]:
-    size = np.sqrt(np.diag(cov))
-    correlation = cov / np.outer(size, size)
-    np.fill_diagonal(correlation, 0.0)
-    strongest = np.argmax(np.abs(correlation), axis=1) if names else []
-    return {
-        name: (names[j], float(correlation[i, j]))
-        for i, (name, j) in enumerate(zip(names, strongest, strict=True))
-        if abs(correlation[i, j]) > 0.95
-    }
 
 
 def _record(problem: Problem, name: str, title: str, parameters: Sequence[str]) -> StageRecord:

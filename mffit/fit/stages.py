@@ -31,7 +31,7 @@ STAGES = (
     Stage("Fy", "Side force at zero camber", ("Fy",), zero_camber=True, main_pressure=True),
     Stage("camber", "Camber", ("Fy",), reopened=("Fy",), main_pressure=True),
     Stage("pressure", "Pressure", ("Fy",), reopened=("Fy",)),
-    Stage("trail", "Pneumatic trail", ("Mz",)),
+    Stage("trail", "Pneumatic trail", ("Mz",), zero_camber=True),
     Stage("residual", "Residual torque", ("Mz",), reopened=("trail",)),
     Stage("spin", "Turn slip", ("Fy", "Mz")),
     Stage("shift", "Ply-steer and conicity", ("Fy", "Mz"), reopened=("spin",)),
@@ -41,8 +41,8 @@ ODD_TERMS = frozenset(row.name for row in TABLE if row.odd)
 """Terms that a tyre of perfect mirror symmetry does not have."""
 SHIFT_TERMS = frozenset(row.name for row in TABLE if row.shift)
 """Odd terms that on a disc live in the even part, beside turn slip: only backward runs or flipped mounts show them."""
-IF_IDENTIFIED = frozenset(row.name for row in TABLE if row.tied_to_base)
-"""Spin coefficients that stay tied to the base file's value unless their relative standard error is below 0.5."""
-CONICITY_ON_A_DISC = {row.name: row.disc_spread for row in TABLE if row.disc_spread is not None}
-"""Spread of conicity over load, 1 sigma. On a disc it hides beside the turn-slip force, from which only the shape of the
-curve tells it, so it is held to the size that road tyres have."""
+SMALL_ON_A_DISC = {row.name: row.disc_spread for row in TABLE if row.disc_spread is not None}
+"""Spread, 1 sigma, of what a disc shows only beside something larger: conicity beside the turn-slip force, ply-steer beside the
+zero of the sideslip axis. They are held to the size that road tyres have."""
+WITH_CAMBER = frozenset(row.name for row in TABLE for need in row.needs if need.word in ("camber", "coupled"))
+"""Coefficients that act only on a leaning wheel."""

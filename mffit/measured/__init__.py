@@ -1,13 +1,15 @@
 """Numbers read straight off the data, with budgets: alignment, radii, stiffnesses, turn-slip force, eps_gamma."""
 
-from mffit.measured.alignment import Alignment, AlignmentStep, align
+from mffit.measured.alignment import LARGEST_DIFFERENCE, Alignment, AlignmentStep, align
 from mffit.measured.backlash import backlash_corrected, odd_alpha
 from mffit.measured.camber_reduction import DirectInputs, TurnSlip, direct_method
 from mffit.measured.direct import measure
 from mffit.measured.radii import RadiusReading, radius_readings
-from mffit.measured.result import Contribution, LoadResult, Measured
+from mffit.measured.result import KEYS, Contribution, LoadResult, Measured
 
 __all__ = [
+    "KEYS",
+    "LARGEST_DIFFERENCE",
     "Alignment",
     "AlignmentStep",
     "Contribution",

@@ -8,7 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from mffit.errors import InputError
+from mffit.measured import wording
 from mffit.measured.groups import load_groups, zeros
+from mffit.measured.notes import AxisOff
 from mffit.points import Points
 from tir import conventions
 
@@ -70,13 +72,15 @@ def align(points: Points, *, axes: str = "iso", C_alpha: float | None = None) ->
             "no load has both forward and backward points at zero sideslip and camber: add rows with direction "
             "forward and backward"
         )
-    warnings = [
-        f"at {s.load:.0f} N forward and backward forces differ by {abs(s.F_forward - s.F_backward):.0f} N (50 N is the limit): "
-        f"the sideslip axis is off by about {abs(s.correction_deg):.2f} deg"
-        for s in {step.load: step for step in steps}.values()
-        if abs(s.F_forward - s.F_backward) > LARGEST_DIFFERENCE
+    last = {step.load: step for step in steps}.values()
+    off = [
+        AxisOff(
+            step.load, abs(step.F_forward - step.F_backward), LARGEST_DIFFERENCE, abs(step.correction_deg)
+        )
+        for step in last
+        if abs(step.F_forward - step.F_backward) > LARGEST_DIFFERENCE
     ]
-    return Alignment(tuple(steps), tuple(warnings))
+    return Alignment(tuple(steps), tuple(map(wording.warning, off)))
 
 
 def _steps(points: Points, group, axes: str, guess: float) -> list[AlignmentStep]:

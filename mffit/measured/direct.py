@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
@@ -12,9 +13,24 @@ from uncertainties import UFloat
 from mffit.config import Config
 from mffit.errors import InputError
 from mffit.measured import camber_reduction as method
+from mffit.measured import wording
 from mffit.measured.backlash import backlash_corrected, odd_alpha
 from mffit.measured.groups import STRAIGHT, UPRIGHT, LoadGroup, load_groups, zeros
 from mffit.measured.loads import load_dependence
+from mffit.measured.notes import (
+    Aligned,
+    Conicity,
+    ContactWanders,
+    Misaligned,
+    Note,
+    NothingMeasured,
+    NotSeparable,
+    SecantNotPossible,
+    SlopeNotPossible,
+    StandardUncertainties,
+    StraightPath,
+    Trouble,
+)
 from mffit.measured.radii import effective_radius_at, measured_effective_radius, measured_path_radius
 from mffit.measured.result import Contribution, LoadResult, Measured
 from mffit.measured.slopes import Secant, Slope, secant_at, slope_at_zero
@@ -22,6 +38,8 @@ from mffit.parts import Parts
 from mffit.points import Points
 from tir import Quantity, Tyre
 
+CONICITY = 0.002
+"""A plausible one, of the load."""
 CUBIC_CAMBER = math.radians(20.0)
 CUBIC_SLIP = math.radians(2.0)
 NEAR_ZERO = math.radians(1.2)
@@ -79,7 +97,7 @@ def measure(config: Config, points: Points, parts: Parts, base: Tyre | None = No
         If the turn-slip force points towards the centre of the disc.
     """
     disc = config.rig.type == "rotating-disk"
-    warnings: list[str] = list(parts.unpaired)
+    warnings: list[Trouble] = []
     slip = odd_alpha(points, parts, config)
     points = backlash_corrected(points, config)
     R = measured_path_radius(config)
@@ -93,7 +111,8 @@ def measure(config: Config, points: Points, parts: Parts, base: Tyre | None = No
         if found is not None:
             rows.append(found)
     measured_loads = {load: float(r.nominal_value) for load, r in radii.items()}
-    return _assembled(config, rows, measured_loads, warnings, disc)
+    measured = _assembled(config, rows, measured_loads, warnings, disc)
+    return replace(measured, warnings=(*parts.unpaired, *map(wording.warning, warnings)))
 
 
 def _rig(config: Config, R: UFloat) -> method.RigErrors:
@@ -190,21 +209,16 @@ def _estimates(x, odd, u, index, local, angle) -> tuple[Slope | None, Secant | N
     return slope_at_zero(x, y, u, local=local), secant_at(x, y, u, angle)
 
 
-def _chosen(config, stiffness: Stiffness, gamma, load: float, warnings: list[str]) -> UFloat | None:
+def _chosen(config, stiffness: Stiffness, gamma, load: float, warnings: list[Trouble]) -> UFloat | None:
     """C_gamma by the configured method; the other one, with a warning, if the sweep is too short for it."""
     wanted = config.camber_stiffness.method
     angle = config.camber_stiffness.angle_deg
     slope_possible = stiffness.slope is not None and gamma.max() >= SHORTEST_CAMBER_SWEEP
     if wanted == "slope" and not slope_possible and stiffness.secant is not None:
-        warnings.append(
-            f"at {load:.0f} N the camber sweep is too short for the slope at zero; the secant at {angle:g} deg is used, "
-            "which is a few per cent low: add cambers up to 20 deg"
-        )
+        warnings.append(SlopeNotPossible(load, angle))
         return _number(stiffness.secant, "camber stiffness")
     if wanted == "secant" and stiffness.secant is None and stiffness.slope is not None:
-        warnings.append(
-            f"at {load:.0f} N the camber sweep does not reach {angle:g} deg; the slope at zero is used instead of the secant"
-        )
+        warnings.append(SecantNotPossible(load, angle))
         return _number(stiffness.slope, "camber stiffness")
     return _number(stiffness.slope if wanted == "slope" else stiffness.secant, "camber stiffness")
 
@@ -324,69 +338,54 @@ def _moment_opinion(points, odd_Mz, u_Mz, group, zero, r_e, rig, sign) -> UFloat
     return 1.0 + r_e * C / (sign * zero.moment * rig.R)
 
 
-def _assembled(config, rows: list[AtLoad], r_e_loads, warnings: list[str], disc: bool) -> Measured:
+def _assembled(
+    config: Config,
+    rows: list[AtLoad],
+    r_e_loads: Mapping[float, float],
+    warnings: list[Trouble],
+    disc: bool,
+) -> Measured:
     nominal_load = config.tyre.nominal_load
     per_load = tuple(found.row for found in rows)
-    with_epsilon = [k for k, found in enumerate(rows) if found.epsilon is not None]
-    if not with_epsilon:
+    known = [(found.row.load, found.epsilon) for found in rows if found.epsilon is not None]
+    if not known:
         nearest = min(per_load, key=lambda row: abs(row.load - nominal_load), default=None)
-        notes = [] if disc else ["A flat track's path is straight: it has no turn slip to measure."]
         if disc:
-            warnings.append(
-                "eps_gamma could not be measured: it needs a camber sweep, points at (0, 0) and a [rolling_radius]"
-            )
-        return Measured(per_load, nearest, None, 0.0, None, r_e_loads, False, tuple(notes), tuple(warnings))
-    at = min(with_epsilon, key=lambda k: abs(per_load[k].load - nominal_load))
-    loads = [per_load[k].load for k in with_epsilon]
-    law = load_dependence(
-        loads, [rows[k].epsilon for k in with_epsilon], with_epsilon.index(at), nominal_load
-    )
-    row = per_load[at]
-    misaligned, notes = _alignment_verdict(config, row, warnings)
-    notes += [law.note, *_standing_notes(config, row)]
-    return Measured(
-        per_load, row, law.pecp1, law.pecp2, law.u_pecp2, r_e_loads, misaligned, tuple(notes), tuple(warnings)
-    )
+            warnings.append(NothingMeasured())
+        notes: tuple[Note, ...] = () if disc else (StraightPath(),)
+        return Measured(per_load, nearest, None, 0.0, None, r_e_loads, False, notes, ())
+    loads = [load for load, _ in known]
+    at = min(range(len(known)), key=lambda k: abs(loads[k] - nominal_load))
+    law = load_dependence(loads, [epsilon for _, epsilon in known], at, nominal_load)
+    row = next(row for row in per_load if row.load == loads[at])
+    axis = _alignment_verdict(config, row)
+    misaligned = isinstance(axis, Misaligned)
+    if isinstance(axis, Misaligned):
+        warnings.append(axis)
+    said = () if isinstance(axis, Misaligned) else (axis,)
+    notes = (*said, law.note, StandardUncertainties(), _conicity(row), ContactWanders())
+    return Measured(per_load, row, law.pecp1, law.pecp2, law.u_pecp2, r_e_loads, misaligned, notes, ())
 
 
-def _alignment_verdict(config, row: LoadResult, warnings: list[str]) -> tuple[bool, list[str]]:
-    """Whether the sideslip axis is off by more than the rig's own alignment leaves, and what to say of it."""
+def _alignment_verdict(config: Config, row: LoadResult) -> NotSeparable | Aligned | Misaligned:
+    """Whether the sideslip axis is off by more than the rig's own alignment leaves."""
     assert row.F_phit is not None
-    force = row.F_phit.value
+    force, left = row.F_phit.value, config.rig.u_slip_alignment_N
     if row.alpha_M is None:
-        # Without a sideslip sweep nobody knows what angle the force would take.
-        angle = (
-            f"{math.degrees(abs(force / row.C_alpha.value)):.2f} deg of"
-            if row.C_alpha
-            else "an unknown angle (no sideslip sweep gives C_alpha) of"
-        )
-        return False, [
-            "Sideslip misalignment, turn slip and ply-steer are not separable here; the force "
-            f"{force:.0f} N at (0, 0) would take {angle} misalignment or ply-steer if it "
-            f"were not turn slip, and {config.rig.u_slip_alignment_N:.0f} N (k = 1) is assumed for the alignment"
-        ]
-    alpha_M, u = math.degrees(row.alpha_M.value), math.degrees(row.alpha_M.u)
+        angle = math.degrees(abs(force / row.C_alpha.value)) if row.C_alpha is not None else None
+        return NotSeparable(force, angle, left)
     slip = (row.F_forward - row.F_backward) / 2.0
-    shift = row.epsilon_gamma and abs((1.0 - row.epsilon_gamma.value) * slip / force)
-    sentence = f"alpha_M = {alpha_M:.3f} +- {u:.3f} deg ({slip:.0f} N); uncorrected it would move eps_gamma by {shift:.2f}"
-    if abs(slip) <= config.rig.u_slip_alignment_N:
-        return False, [
-            f"Forward and backward runs: {sentence}. It is within what the alignment leaves and stays in the model as ply-steer."
-        ]
-    warnings.append(
-        f"the sideslip axis is misaligned: {sentence}; forward and backward forces differ by {abs(2 * slip):.0f} N. It is taken "
-        "off the angles; ply-steer cannot be told from it"
-    )
-    return True, []
+    verdict = Aligned if abs(slip) <= left else Misaligned
+    return verdict(row.alpha_M, slip, _shift(row, slip))
 
 
-def _standing_notes(config, row: LoadResult) -> list[str]:
+def _conicity(row: LoadResult) -> Conicity:
+    force = CONICITY * row.load
+    return Conicity(CONICITY, force, _shift(row, force))
+
+
+def _shift(row: LoadResult, force: float) -> float:
+    """How far eps_gamma moves by a force [N] that is taken for turn slip."""
     assert row.epsilon_gamma is not None
     assert row.F_phit is not None
-    conicity = 0.002 * row.load
-    return [
-        "All uncertainties are standard uncertainties (k = 1).",
-        f"Conicity cannot be removed: a plausible {conicity:.0f} N (0.2 % of the load) would move eps_gamma by "
-        f"{abs((1.0 - row.epsilon_gamma.value) * conicity / row.F_phit.value):.3f}.",
-        "With camber the contact point wanders over the crown and changes the path radius; R holds for the upright wheel.",
-    ]
+    return abs((1.0 - row.epsilon_gamma.value) * force / row.F_phit.value)

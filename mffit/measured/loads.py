@@ -6,7 +6,9 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
-from uncertainties import UFloat, covariance_matrix
+from uncertainties import UFloat
+
+from mffit.measured.notes import EpsilonInNoise, LoadSlope, Note, OneLoad, SlopeInNoise, SlopeTooSteep
 
 LARGEST_EPSILON = 0.9
 
@@ -17,7 +19,7 @@ class LoadDependence(NamedTuple):
     pecp1: float
     pecp2: float
     u_pecp2: float | None
-    note: str
+    note: Note
 
 
 def load_dependence(
@@ -40,22 +42,34 @@ def load_dependence(
     pecp1 = float(at_nominal.nominal_value)
     others = [i for i in range(len(loads)) if i != nominal]
     if not others:
-        return LoadDependence(pecp1, 0.0, None, "PECP2 is 0: one load was measured.")
+        return LoadDependence(pecp1, 0.0, None, OneLoad())
     x = np.array([(loads[i] - loads[nominal]) / Fz0 for i in others])
     differences = [epsilon[i] - at_nominal for i in others]
-    weight = np.linalg.pinv(np.array(covariance_matrix(differences)))
+    weight = np.linalg.pinv(covariance(differences))
     y = np.array([d.nominal_value for d in differences])
     slope, u = float(x @ weight @ y / (x @ weight @ x)), float(1.0 / np.sqrt(x @ weight @ x))
     u_pecp2 = u / max(abs(pecp1), 1e-12)
     span = [pecp1 + slope * (load - loads[nominal]) / Fz0 for load in loads]
+    why: Note
     if abs(slope) <= 2.0 * u:
-        why = f"the slope {slope:.3f} per unit of dfz is within 2 u = {2 * u:.3f}"
+        why = SlopeInNoise(slope, u)
     elif abs(pecp1) <= 2.0 * at_nominal.std_dev:
-        why = "eps_gamma itself is within 2 u of zero, so a relative slope has no meaning"
+        why = EpsilonInNoise()
     elif max(span) >= LARGEST_EPSILON:
-        why = f"eps_gamma would reach {max(span):.2f} within the loads"
+        why = SlopeTooSteep(max(span))
     else:
-        return LoadDependence(
-            pecp1, slope / pecp1, u_pecp2, f"PECP2 = {slope / pecp1:.3f} +- {u_pecp2:.3f} (k = 1)."
-        )
-    return LoadDependence(pecp1, 0.0, u_pecp2, f"PECP2 is 0: {why}.")
+        return LoadDependence(pecp1, slope / pecp1, u_pecp2, LoadSlope(slope / pecp1, u_pecp2))
+    return LoadDependence(pecp1, 0.0, u_pecp2, why)
+
+
+def covariance(numbers: Sequence[UFloat]) -> np.ndarray:
+    """Covariance (n, n) of numbers with uncertainty, their independent sources in order of first appearance.
+
+    ``uncertainties.covariance_matrix`` goes through the sources as a set, whose order, and with it the last digit of the
+    sums, differs from run to run.
+    """
+    sources = list(dict.fromkeys(source for number in numbers for source in number.derivatives))
+    slopes = np.array(
+        [[number.derivatives.get(source, 0.0) * source.std_dev for source in sources] for number in numbers]
+    )
+    return slopes @ slopes.T

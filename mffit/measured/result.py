@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import dataclasses
-import math
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
+from mffit.measured.notes import Note
 from tir import Quantity
 
 
@@ -55,8 +55,8 @@ class Measured:
     u_pecp2: float | None
     r_e_loads: Mapping[float, float]  #: loads at which r_e was really measured
     misaligned: bool  #: alpha_M is beyond what the rig's alignment leaves and is corrected in the points
-    notes: tuple[str, ...]
-    warnings: tuple[str, ...]
+    notes: tuple[Note, ...]
+    warnings: tuple[str, ...]  #: sentences, as they join those of the steps before and after
     epsilon_gamma_model: float | None = None
     epsilon_gamma_debiased: Quantity | None = None  #: less what the finite spin of the disc adds
 
@@ -126,11 +126,8 @@ class Measured:
         """What goes into the property file's structured comments."""
         if self.nominal is None:
             return {}
-        out = {}
-        for key, _, unit in KEYS:
-            quantity = getattr(self.nominal, _)
-            if quantity is not None:
-                out[key] = Quantity(quantity.value, quantity.u, unit)
+        found = {key: getattr(self.nominal, name) for name, key in KEYS.items()}
+        out = {key: quantity for key, quantity in found.items() if quantity is not None}
         if self.epsilon_gamma_debiased is not None:
             out["epsilon_gamma_debiased"] = self.epsilon_gamma_debiased
         for key, value in (("epsilon_gamma_model", self.epsilon_gamma_model), ("load_N", self.nominal.load)):
@@ -138,50 +135,14 @@ class Measured:
                 out[key] = Quantity(float(value), 0.0, "N" if key == "load_N" else "-")
         return out
 
-    def to_json(self) -> dict[str, Any]:
-        """The ``spin`` part of result.json."""
-        row = self.nominal
-        out: dict[str, Any] = _row(row) if row else {key: None for key, _, _ in KEYS}
-        out.pop("load_N", None)
-        out |= {
-            "epsilon_gamma_model": self.epsilon_gamma_model,
-            "epsilon_gamma_debiased": self.epsilon_gamma_debiased and self.epsilon_gamma_debiased.value,
-            "u_epsilon_gamma_debiased": self.epsilon_gamma_debiased and self.epsilon_gamma_debiased.u,
-            "pecp1": self.pecp1,
-            "pecp2": self.pecp2,
-            "u_pecp2": self.u_pecp2,
-            "budget": [c._asdict() for c in self.budget],
-            "u_epsilon_gamma_monte_carlo": row.u_monte_carlo if row else None,
-            "misaligned": self.misaligned,
-            "coverage_factor": 1,
-            "notes": list(self.notes),
-            "per_load": [_row(other) for other in self.per_load],
-        }
-        return out
 
-
-KEYS = (
-    ("epsilon_gamma", "epsilon_gamma", "-"),
-    ("C_phit_Nm", "C_phit", "Nm"),
-    ("C_gamma_N_per_rad", "C_gamma", "N/rad"),
-    ("C_alpha_N_per_rad", "C_alpha", "N/rad"),
-    ("r_e_m", "r_e", "m"),
-    ("R_m", "R", "m"),
-    ("F_phit_N", "F_phit", "N"),
-)
-
-
-def _row(row: LoadResult) -> dict[str, Any]:
-    out: dict[str, Any] = {"load_N": row.load}
-    for key, name, _ in KEYS:
-        quantity = getattr(row, name)
-        out[key] = None if quantity is None else quantity.value
-        out[f"u_{key}"] = None if quantity is None else quantity.u
-    out["epsilon_gamma_secant"], out["epsilon_gamma_slope"] = row.epsilon_secant, row.epsilon_slope
-    out["epsilon_gamma_moment"] = row.epsilon_moment.value if row.epsilon_moment else None
-    out["u_epsilon_gamma_moment"] = row.epsilon_moment.u if row.epsilon_moment else None
-    alpha_M = row.alpha_M
-    out["alpha_M_deg"] = math.degrees(alpha_M.value) if alpha_M else None
-    out["u_alpha_M_deg"] = math.degrees(alpha_M.u) if alpha_M else None
-    out["F_forward_N"], out["F_backward_N"] = row.F_forward, row.F_backward
-    return out
+KEYS = {
+    "epsilon_gamma": "epsilon_gamma",
+    "C_phit": "C_phit_Nm",
+    "C_gamma": "C_gamma_N_per_rad",
+    "C_alpha": "C_alpha_N_per_rad",
+    "r_e": "r_e_m",
+    "R": "R_m",
+    "F_phit": "F_phit_N",
+}
+"""What the quantities of a load are called, with their unit, in property files and JSON; by attribute."""

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-import lmfit
 import numpy as np
 
 
@@ -72,6 +71,8 @@ def secant_at(x: np.ndarray, y: np.ndarray, u: np.ndarray, angle: float) -> Seca
 
 def _saturating(x, y, u) -> tuple[float, float]:
     """Fit D sin(C atan(x s / (C D))): an odd curve of slope s at zero that saturates at D."""
+    import lmfit  # loads matplotlib, so only when a slope is wanted
+
     first = np.argsort(x)[:3]
     start = float(np.sum(x[first] * y[first]) / np.sum(x[first] ** 2))
     top = max(float(np.max(np.abs(y))), 1e-9) * np.sign(start or 1.0)

@@ -2,15 +2,23 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Callable
 from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 import mffit
+from mffit.measured import LARGEST_DIFFERENCE
+from mffit.quantities import CHANNELS, CONDITIONS, DIRECT
 from mffit.report import page, published
-from mffit.report.build_view import STATUS_ORDER, BuildView, Channel, Row, view_of
+from mffit.report.build_view import PER_LOAD, STATUS_ORDER, BuildView, Channel, Row, view_of
+from mffit.results import BuildResult
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 RESIDUAL_LIMIT = 4.0
 """End of the residual maps' scale, in units of noise."""
@@ -24,12 +32,12 @@ SECTION_TITLES = {
 OTHER_SECTIONS = "Everything else"
 
 
-def write_build(result: Any, folder: Path) -> None:
+def write_build(result: BuildResult, folder: Path) -> None:
     """Write ``plots/*.png`` and ``report.html`` of a build.
 
     Parameters
     ----------
-    result : ``mffit.pipeline.Result``
+    result : what the build produced
     folder : existing folder to write to
     """
     view = view_of(result)
@@ -43,15 +51,21 @@ def write_build(result: Any, folder: Path) -> None:
         statuses=[s for s in STATUS_ORDER if any(row.status == s for row in view.rows)],
         residual_unit=residual_unit(view),
         published=published,
+        channels=CHANNELS,
+        conditions=CONDITIONS,
+        direct=DIRECT,
+        per_load=PER_LOAD,
+        aligned_below=LARGEST_DIFFERENCE,
+        degrees=math.degrees(1.0),
         version=mffit.__version__,
     )
 
 
-def _figures(view: BuildView) -> dict[str, Any]:
+def _figures(view: BuildView) -> dict[str, Callable[[], Figure]]:
     """What is drawn, in the order of the page."""
     from mffit.report.figures import decomposition, files, fit, residuals, spin
 
-    out: dict[str, Any] = {}
+    out: dict[str, Callable[[], Figure]] = {}
     if view.two_files:
         out["files"] = partial(files.files_on_a_straight_path, view)
     if view.on_disc:

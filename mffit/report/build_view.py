@@ -3,17 +3,25 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
-from typing import Any
+from dataclasses import dataclass
 
 import numpy as np
 
+from mffit.config import Config
+from mffit.fit import Agreement, Coefficient, StageRecord
+from mffit.fit.coverage import StageCoverage
+from mffit.fit.files import Files
+from mffit.measured import Measured
 from mffit.points import Points
 from mffit.quantities import CHANNELS
 from mffit.report.curves import Condition, Curve, conditions, curves
 from mffit.report.lines import Line, model_lines
+from mffit.results import BuildResult
+from tir import Tyre
 from tir.parameters import BY_NAME
 
+PER_LOAD = ("epsilon_gamma", "F_phit", "C_phit", "C_gamma", "C_alpha")
+"""What the direct method gives at every load, in the order of the tables."""
 STATUS_ORDER = ("measured", "fitted", "regularised", "estimate", "range", "given", "base", "default")
 
 
@@ -39,7 +47,7 @@ class Channel:
 
     @property
     def label(self) -> str:
-        return f"{self.name} [{self.unit}]"
+        return CHANNELS[self.name].column(self.name)
 
     @property
     def noise(self) -> float:
@@ -81,18 +89,18 @@ class Row:
 class BuildView:
     """Everything the build report needs."""
 
-    config: Any
+    config: Config
     points: Points  #: angles as read
     channels: tuple[Channel, ...]
     curves: tuple[Curve, ...]
     lines: Mapping[tuple, Line]
     conditions: tuple[Condition, ...]
-    spin: Mapping[str, Any]  #: the contract's ``spin``
-    agreement: Mapping[str, Any]  #: by channel, of the fitted model on the raw points
-    odd_agreement: Mapping[str, Any]  #: by channel, of the file for turn slip off on the odd part
+    measured: Measured
+    agreement: Mapping[str, Agreement]  #: by channel, of the fitted model on the raw points
+    odd_agreement: Mapping[str, Agreement]  #: by channel, of the file for turn slip off on the odd part
     rows: tuple[Row, ...]
-    stages: tuple[Any, ...]
-    coverage: tuple[Any, ...]
+    stages: tuple[StageRecord, ...]
+    coverage: tuple[StageCoverage, ...]
     warnings: tuple[str, ...]
     explanations: tuple[str, ...]
     unpaired: tuple[str, ...]
@@ -101,23 +109,22 @@ class BuildView:
     seconds: float
     fit_seconds: float
     tir_name: str
-    model: Any  #: the fitted model, a ``tir.Tyre``
-    files: Any = None  #: ``mffit.fit.files.Files``, None if nothing is known of them
-    file_names: Mapping[str, str] = field(default_factory=dict)  #: by use
+    model: Tyre  #: the fitted model
+    files: Files | None  #: None if nothing is known of them
+    file_names: Mapping[str, str]  #: by use
 
     @property
     def on_disc(self) -> bool:
-        return self.spin.get("epsilon_gamma") is not None
+        return self.measured.epsilon_gamma is not None
 
     @property
     def two_files(self) -> bool:
         return self.files is not None and len(self.files.by_use) == 2
 
 
-def view_of(result: Any) -> BuildView:
+def view_of(result: BuildResult) -> BuildView:
     """Take a build's result apart; the only function that knows its attributes."""
     points, parts, fit = result.points, result.parts, result.fit
-    spin = result.measured.to_json()
     found = tuple(curves(points))
     channels = (
         Channel("Fy", points.Fy, points.u_Fy, fit.Fy_model, parts.Fy_odd, parts.Fy_even, parts.u_Fy_odd),
@@ -130,7 +137,7 @@ def view_of(result: Any) -> BuildView:
         curves=found,
         lines=model_lines(fit.simulation, points, found),
         conditions=tuple(conditions(points)),
-        spin=spin,
+        measured=result.measured,
         agreement=fit.channels,
         odd_agreement=fit.odd,
         rows=coefficient_rows(fit.coefficients),
@@ -150,12 +157,11 @@ def view_of(result: Any) -> BuildView:
     )
 
 
-def coefficient_rows(coefficients: Mapping[str, Any]) -> tuple[Row, ...]:
+def coefficient_rows(coefficients: Mapping[str, Coefficient]) -> tuple[Row, ...]:
     """The fit's coefficients with what the parameter table knows of them, in the table's order."""
     rows = []
     for name, c in coefficients.items():
         known = BY_NAME[name]
-        partner = getattr(c, "correlated_with", "")
         rows.append(
             Row(
                 name=name,
@@ -169,7 +175,7 @@ def coefficient_rows(coefficients: Mapping[str, Any]) -> tuple[Row, ...]:
                 at_bound=c.at_bound,
                 stage=c.stage,
                 status=c.status,
-                correlation=f"{partner} {c.correlation:+.2f}" if partner else "",
+                correlation=f"{c.correlated_with} {c.correlation:+.2f}" if c.correlated_with else "",
             )
         )
     return tuple(rows)

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from mffit.points import Points, levels
+from mffit.report import labels
 
 FEWEST = 4
 """Set-points that make a curve."""
@@ -42,7 +43,7 @@ class Condition:
 
     @property
     def title(self) -> str:
-        return f"{self.load:.0f} N, {self.pressure:.0f} kPa"
+        return labels.condition(self.load, self.pressure)
 
 
 def load_levels(points: Points) -> np.ndarray:

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING
 
 import mffit
 from mffit.diagnosis import Diagnosis, wording
@@ -12,6 +13,9 @@ from mffit.diagnosis.selection import TIE
 from mffit.quantities import CHANNELS
 from mffit.report import page
 from mffit.report.diagnosis_view import shown_steps, view_of
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 
 def write_diagnosis(diagnosis: Diagnosis, folder: Path) -> None:
@@ -25,7 +29,7 @@ def write_diagnosis(diagnosis: Diagnosis, folder: Path) -> None:
     from mffit.report.figures import gap
 
     view = view_of(diagnosis)
-    figures: dict[str, Any] = {"gap": partial(gap.gap_bars, view)}
+    figures: dict[str, Callable[[], Figure]] = {"gap": partial(gap.gap_bars, view)}
     if shown_steps(view):
         figures["evidence"] = partial(gap.evidence, view)
     if view.channels:

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from mffit.points import Points
+from mffit.quantities import CHANNELS
 from mffit.report.curves import Curve
 from mffit.rig import Simulation
 
@@ -42,8 +43,8 @@ def model_lines(simulation: Simulation, points: Points, curves: Sequence[Curve])
         rows = slice(i * STEPS, (i + 1) * STEPS)
         lines[curve.key] = Line(
             x=np.degrees(getattr(grid, curve.over)[rows]),
-            raw={name: getattr(here, name)[rows] for name in ("Fy", "Mz")},
-            even={name: 0.5 * (getattr(here, name) + getattr(there, name))[rows] for name in ("Fy", "Mz")},
+            raw={name: getattr(here, name)[rows] for name in CHANNELS},
+            even={name: 0.5 * (getattr(here, name) + getattr(there, name))[rows] for name in CHANNELS},
         )
     return lines
 

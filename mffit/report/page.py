@@ -9,6 +9,7 @@ from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from mffit.measured import wording
 from mffit.report import rounding, style
 
 if TYPE_CHECKING:
@@ -61,6 +62,7 @@ def _environment() -> Environment:
         trim_blocks=True,
         lstrip_blocks=True,
     )
-    for rounded in (rounding.number, rounding.with_u, rounding.times, rounding.per_cent):
+    environment.filters["note"] = wording.note
+    for rounded in (rounding.number, rounding.with_u, rounding.stated, rounding.times, rounding.per_cent):
         environment.filters[rounded.__name__] = rounded
     return environment

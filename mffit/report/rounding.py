@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import math
 
+from tir import Quantity
+
 MINUS = "\N{MINUS SIGN}"
 PLAIN = str.maketrans({MINUS: "-", "±": "+-", "×": "x", "–": "-"})
 
@@ -48,6 +50,13 @@ def with_u(value: float | None, u: float | None, unit: str = "") -> str:
         value, u = round(value / step) * step, round(u / step) * step
     places = decimals_of(u)
     return f"{number(value, places)} ± {number(u, places)}{unit}"
+
+
+def stated(quantity: Quantity | None, unit: str = "", scale: float = 1.0) -> str:
+    """A measured quantity with the uncertainty that it carries; a dash where it was not measured."""
+    if quantity is None:
+        return "–"
+    return with_u(scale * quantity.value, scale * quantity.u, unit)
 
 
 def per_cent(share: float) -> str:

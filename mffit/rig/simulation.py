@@ -13,8 +13,9 @@ import numpy as np
 from mffit.points import Points
 from mffit.rig.faults import FAULT_NAMES, NO_FAULTS, REFERENCE_TEMPERATURE, RigFaults
 from mffit.rig.lag import lagged_points
+from mffit.rig.play import Settled, settled
 from tir import Tyre
-from tir.derivatives import Traced, gradient, plain, traced
+from tir.derivatives import Traced, following, gradient, plain, traced
 from tir.evaluate import evaluate, turned_on_rim
 
 SWITCH = "turn_slip"
@@ -89,7 +90,7 @@ class Simulation:
     def sensitivities(self, points: Points, names: Sequence[str]) -> tuple[Readings, Readings]:
         """The readings, and their exact derivatives by the named numbers: each channel (n, k).
 
-        The side to which the moment takes up the play is held as it is: it does not move with the numbers.
+        The stop at which the moment holds a wheel with play stays the same; one that floats keeps without moment.
         """
         numbers = traced({name: self.number(name, points) for name in names})
         out = self._reported(points, numbers)
@@ -100,28 +101,29 @@ class Simulation:
 
     def _reported(self, points: Points, numbers: Mapping[str, Traced]) -> tuple[Any, Any]:
         """Fy and Mz as the rig reports them, plain or traced."""
-        values = {**self.values, **{n: x for n, x in numbers.items() if n in self.values}}
-        p: Any = SimpleNamespace(**values)
+        fault = self._faults(numbers)
+        out = self._forces(points, self._true_alpha(points, fault, numbers), fault, numbers)
+        environment = _environment(points, fault)
+        Fy = fault.gain * out.Fy * environment + fault.F0_N + fault.crosstalk * points.Fz
+        return Fy, out.Mz * environment + fault.M0_Nm
+
+    def _faults(self, numbers: Mapping[str, Traced]) -> Any:
+        changed = {n: x for n, x in numbers.items() if n in FAULT_NAMES}
+        return SimpleNamespace(**{**asdict(self.faults), **changed})
+
+    def _forces(self, points: Points, alpha: Any, fault: Any, numbers: Mapping[str, Traced]) -> Any:
+        """Forces and moments of the tyre at its true sideslip angle ``alpha`` (n,) [rad]."""
+        p: Any = SimpleNamespace(**{**self.values, **{n: x for n, x in numbers.items() if n in self.values}})
         if np.any(points.mount < 0):
             p = turned_on_rim(p, points.mount)
-        fault: Any = SimpleNamespace(
-            **{**asdict(self.faults), **{n: x for n, x in numbers.items() if n in FAULT_NAMES}}
-        )
-        gamma = points.gamma + fault.gamma_0_deg * RADIANS
         phi_t: Any = points.phi_t
         if not math.isnan(plain(fault.path_radius_m)):
             phi_t = np.sign(points.phi_t) / fault.path_radius_m
-
-        alpha = self._followed(points, numbers.get(RELAXATION)) + fault.alpha_0_deg * RADIANS
-        if plain(fault.backlash_deg) or isinstance(fault.backlash_deg, Traced):
-            free = replace(self, faults=replace(self.faults, backlash_deg=0.0, M0_Nm=0.0))
-            side = np.sign(free.readings(points).Mz)  # not smooth: held as it is while derivatives are taken
-            alpha = alpha - (0.5 * RADIANS) * fault.backlash_deg * side
         out, _ = evaluate(
             p,
             points.Fz,
             alpha,
-            gamma,
+            points.gamma + fault.gamma_0_deg * RADIANS,
             0.0,
             phi_t,
             points.Vx,
@@ -129,9 +131,41 @@ class Simulation:
             turn_slip=self.turn_slip,
             star=self.star,
         )
-        environment = _environment(points, fault)
-        Fy = fault.gain * out.Fy * environment + fault.F0_N + fault.crosstalk * points.Fz
-        return Fy, out.Mz * environment + fault.M0_Nm
+        return out
+
+    def _true_alpha(self, points: Points, fault: Any, numbers: Mapping[str, Traced]) -> Any:
+        """Sideslip angle of the tyre (n,) [rad]: what is read, followed with lag, misaligned, and the play taken up."""
+        alpha = self._followed(points, numbers.get(RELAXATION)) + fault.alpha_0_deg * RADIANS
+        if not plain(fault.backlash_deg) and not isinstance(fault.backlash_deg, Traced):
+            return alpha
+        half_play = 0.5 * RADIANS * fault.backlash_deg
+
+        def moment(at: np.ndarray, which: np.ndarray) -> np.ndarray:
+            part = points if len(which) == len(points) else points.select(which)
+            return self._forces(part, at, self.faults, {}).Mz
+
+        rest = settled(moment, np.broadcast_to(plain(alpha), len(points)), plain(half_play))
+        held = alpha - half_play * rest.side
+        if not np.any(rest.floats):
+            return held
+        return np.where(rest.floats, self._floating(points, rest, numbers), held)
+
+    def _floating(self, points: Points, rest: Settled, numbers: Mapping[str, Traced]) -> Any:
+        """The angle without moment (n,); it moves with the numbers so that the moment stays away."""
+        if not numbers:
+            return rest.alpha
+        which = np.flatnonzero(rest.floats)
+        again = traced({n: x.value for n, x in numbers.items()} | {"alpha": rest.alpha[which]})
+        at = again.pop("alpha")
+        Mz = self._forces(points.select(which), at, self._faults(again), again).Mz
+        slopes = gradient(Mz, [*again.values(), at])
+        moves = np.zeros((len(points), len(numbers)))
+        turning = slopes[:, -1:]
+        moves[which] = np.divide(
+            -slopes[:, :-1], turning, out=np.zeros_like(slopes[:, :-1]), where=turning != 0.0
+        )
+        value = np.where(rest.floats, rest.alpha, 0.0)
+        return following(value, list(numbers.values()), moves)
 
     def _followed(self, points: Points, relaxation: Traced | None) -> Any:
         """Sideslip that the force answers to (n,): along continuous sweeps it lags behind the reading."""

@@ -238,13 +238,9 @@ def test_spin_writes_the_spin_part_of_the_build(built, result, tmp_path, capsys)
     content = json.loads((tmp_path / "spin" / "spin.json").read_text(encoding="utf-8"))
     # what only the finished file can tell
     fitted = {"epsilon_gamma_model", "pecp1", "epsilon_gamma_debiased", "u_epsilon_gamma_debiased"}
-    assert content.keys() == result["spin"].keys()
-    for name in content.keys() - fitted:
-        if isinstance(content[name], float):  # the last digit depends on how the linear algebra was threaded
-            assert content[name] == pytest.approx(result["spin"][name], rel=1e-9), name
-    assert [row["load_N"] for row in content["per_load"]] == [
-        row["load_N"] for row in result["spin"]["per_load"]
-    ]
+    assert {k: v for k, v in content.items() if k not in fitted} == {
+        k: v for k, v in result["spin"].items() if k not in fitted
+    }
     assert content["epsilon_gamma_model"] is None
     assert f"{abs(content['epsilon_gamma']):.3f}" in capsys.readouterr().out
 

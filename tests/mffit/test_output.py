@@ -9,12 +9,14 @@ import sys
 from pathlib import Path
 
 import pytest
+from small_plan import SMALL_PLAN
 from test_bad_input import run, snapshot
 
+import mffit
 from mffit import config
 from mffit.errors import InputError
 from mffit.output import RECORD, output_folder, refuse_early
-from mffit.pipeline import input_hashes, read_base
+from mffit.pipeline.inputs import input_hashes, read_base
 from mffit.virtual_rig import load_plan, simulate
 
 SAMPLE = Path(__file__).parents[2] / "samples" / "front-120-70"
@@ -119,7 +121,6 @@ def test_a_dead_runs_folder_is_removed_and_a_living_ones_is_not(tmp_path):
 def test_what_would_be_refused_at_the_end_is_refused_before_the_work(tmp_path):
     (tmp_path / "a").write_text("mine")
     refuse_early(tmp_path, ["b"])
-    refuse_early(None, ["a"])
     with pytest.raises(InputError, match="no run of mffit"):
         refuse_early(tmp_path, ["a"])
 
@@ -153,10 +154,26 @@ def report_of_somebody_else(project):
     return "report.html"
 
 
-@pytest.mark.parametrize("make", [sweep_called_points, base_of_the_tyres_name, report_of_somebody_else])
+def sibling_of_somebody_else(project):
+    project.folder.mkdir()
+    (project.folder / "toy-normal.tir").write_text("mine")
+    return "toy-normal.tir"
+
+
+@pytest.mark.parametrize(
+    "make",
+    [sweep_called_points, base_of_the_tyres_name, report_of_somebody_else, sibling_of_somebody_else],
+)
 def test_build_into_the_project_does_not_replace(project, capsys, make):
     name = make(project)
     assert_command_refused(capsys, project.folder, name, "build", project.write(), "--out", project.folder)
+
+
+def test_build_asks_for_all_its_property_files_before_the_fit(project, monkeypatch):
+    sibling_of_somebody_else(project)
+    monkeypatch.setattr("mffit.fit.fit", lambda *given: pytest.fail("fitted before it was refused"))
+    with pytest.raises(InputError, match="toy-normal"):
+        mffit.build(project.write(), project.folder)
 
 
 def test_diagnose_does_not_replace_its_model(project, capsys):
@@ -172,24 +189,7 @@ def test_spin_does_not_replace_a_foreign_file(project, capsys):
     assert_command_refused(capsys, project.folder, "spin.json", "spin", path, "--out", project.folder)
 
 
-PLAN = """
-[truth]
-tyre = "true.tir"
-[tyre]
-name = "small"
-unloaded_radius = 0.2992
-nominal_load = 1400
-nominal_pressure = 250
-base = "base.tir"
-[rig]
-path_radius = 1.323
-[[sweep]]
-file = "sideslip.csv"
-load_N = 1400
-alpha_deg = { from = -6, to = 6, step = 1 }
-[noise]
-Fy_N = 6.0
-"""
+PLAN = SMALL_PLAN.replace("[rig]", 'base = "base.tir"\n\n[rig]') + "\n[noise]\nFy_N = 6.0\n"
 
 
 @pytest.fixture

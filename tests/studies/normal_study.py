@@ -20,8 +20,10 @@ from scipy.optimize import least_squares
 
 import tir
 from mffit.fit.constraints import Envelope, violations
-from mffit.fit.normal import CAMBER_FORCE, CAMBER_MOMENT, Road, derive_normal, weights
+from mffit.fit.imitation import forces
+from mffit.fit.normal import CAMBER_FORCE, CAMBER_MOMENT, derive_normal
 from mffit.fit.ranges import plausible_ranges
+from mffit.fit.road import Road, weights
 from tir.parameters import BY_NAME
 
 SAMPLES = Path(__file__).parents[2] / "samples"
@@ -78,7 +80,7 @@ def limit(values: Mapping[str, Any], road: Road) -> tuple[float, float]:
 
 
 def _least(values, start, names, channel, road: Road) -> tuple[float, dict[str, float]]:
-    target = getattr(road.forces(values, turn_slip=True), channel)
+    target = getattr(forces(values, road, turn_slip=True), channel)
     limits = Envelope(
         (road.Fz.min(), road.Fz.max()),
         road.gamma.max(),
@@ -89,7 +91,7 @@ def _least(values, start, names, channel, road: Road) -> tuple[float, dict[str, 
 
     def residual(x: np.ndarray) -> np.ndarray:
         tried = {**start, **dict(zip(names, x, strict=True))}
-        misfit = getattr(road.forces(tried, turn_slip=False), channel) - target
+        misfit = getattr(forces(tried, road, turn_slip=False), channel) - target
         return np.concatenate([misfit / unit, 300.0 * violations(SimpleNamespace(**tried), limits)])
 
     lower, upper = (np.array([BY_NAME[n].bounds[i] for n in names]) for i in (0, 1))
@@ -106,11 +108,11 @@ def outcome(tyre: tir.Tyre, *, with_limit: bool = True) -> Outcome:
     normal = {**values, **derive_normal(values, data, written, {n: values[n] for n in ("PKY6", "PKY7")})}
     seconds = time.perf_counter() - began
     road = box(values["FNOMIN"], values["NOMPRES"])
-    true, made = road.forces(values, turn_slip=True), road.forces(normal, turn_slip=False)
+    true, made = forces(values, road, turn_slip=True), forces(normal, road, turn_slip=False)
     weight = weights(road, data)
     step = np.radians([-0.1, 0.1])
     lean = Road(np.full(2, values["FNOMIN"]), np.zeros(2), step, np.full(2, values["NOMPRES"]))
-    slopes = [np.diff(lean.forces(v, turn_slip=on).Fy)[0] for v, on in ((normal, False), (values, True))]
+    slopes = [np.diff(forces(v, lean, turn_slip=on).Fy)[0] for v, on in ((normal, False), (values, True))]
     limits = limit(values, road) if with_limit else (np.nan, np.nan)
     return Outcome(
         limit_Fy=limits[0],

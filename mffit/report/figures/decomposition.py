@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from mffit.report import style
+from mffit.report import labels, style
 from mffit.report.build_view import BuildView, Channel
 from mffit.report.curves import Curve
 
@@ -16,7 +16,6 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 MOST_PANELS = 18
-ANGLE_LABEL = {"alpha": "sideslip α [deg]", "gamma": "camber γ [deg]"}
 
 
 def decomposition(view: BuildView, channel: Channel) -> Figure:
@@ -33,7 +32,7 @@ def decomposition(view: BuildView, channel: Channel) -> Figure:
         ax.plot(x, channel.odd[curve.index], "-", color=style.ACCENT)
         ax.plot(x, channel.even[curve.index], "--", color=style.CONTRAST)
         ax.set_title(_title(curve))
-        ax.set_xlabel(ANGLE_LABEL[curve.over], labelpad=1.5)
+        ax.set_xlabel(labels.ANGLES[curve.over].axis, labelpad=1.5)
         style.few_ticks(ax, x=4)
     style.label_left(rows, channel.label)
     handles = [
@@ -60,8 +59,8 @@ def even_parts(view: BuildView) -> Figure:
             ax.axhline(0.0, color=style.FAINT, lw=0.8)
             for curve in (c for c in pure if c.over == over and c.load == load):
                 _even_curve(ax, view, channel, curve)
-            ax.set_title(f"{channel.name}, {load:.0f} N")
-            ax.set_xlabel(ANGLE_LABEL[over], labelpad=1.5)
+            ax.set_title(f"{channel.name}, {labels.LOAD.of(load)}")
+            ax.set_xlabel(labels.ANGLES[over].axis, labelpad=1.5)
             style.few_ticks(ax, y=4)
         style.label_left([row], f"even {channel.label}")
     handles = [
@@ -109,8 +108,11 @@ def worth_drawing(curves: Sequence[Curve], channel: Channel) -> list[Curve]:
 
 
 def _title(curve: Curve) -> str:
-    held = "" if abs(curve.held) < 0.5 else f", {'γ' if curve.over == 'alpha' else 'α'} = {curve.held:.0f}°"
-    return f"{curve.load:.0f} N, {curve.pressure:.0f} kPa{held}"
+    condition = labels.condition(curve.load, curve.pressure)
+    if abs(curve.held) < 0.5:
+        return condition
+    other = labels.ANGLES["gamma" if curve.over == "alpha" else "alpha"]
+    return f"{condition}, {other.symbol} = {curve.held:.0f}°"
 
 
 def _angle(view: BuildView, curve: Curve) -> np.ndarray:

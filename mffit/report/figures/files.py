@@ -6,7 +6,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from mffit.report import style
+from mffit.quantities import CHANNELS
+from mffit.report import labels, style
 from mffit.report.build_view import BuildView
 
 if TYPE_CHECKING:
@@ -21,27 +22,30 @@ def files_on_a_straight_path(view: BuildView) -> Figure:
     """Fy and Mz of both files over camber and over sideslip at nominal load, the model dotted; bands end where data do."""
     from matplotlib.lines import Line2D
 
-    files, tested, written = view.files, view.files.tested, view.files.written
+    files = view.files
+    assert files is not None
+    tested, written = files.tested, files.written
     figure, rows = style.panel_grid([4], 4, height=2.3)
     colours = {"turn-slip": style.ACCENT, "normal": style.CONTRAST}
-    panels = [(channel, over) for channel in ("Fy", "Mz") for over in ("gamma", "alpha")]
+    panels = [(channel, over) for channel in CHANNELS for over in ("gamma", "alpha")]
     load = float(files.by_use["normal"].tyre["FNOMIN"])
     for ax, (channel, over) in zip(rows[0], panels, strict=True):
         end, held_end = ("CAMMAX", "ALPMAX") if over == "gamma" else ("ALPMAX", "CAMMAX")
         x = np.linspace(-written[end], written[end], STEPS)
         for share in SIDESLIPS if over == "gamma" else CAMBERS:
-            angles = {over: x, "alpha" if over == "gamma" else "gamma": share * tested[held_end]}
+            held = np.full(STEPS, share * tested[held_end])
+            alpha, gamma = (held, x) if over == "gamma" else (x, held)
             for use, file in files.by_use.items():
-                force = getattr(file.tyre(load, **angles, turn_slip=use == "turn-slip"), channel)
+                force = getattr(file.tyre(load, alpha, gamma, turn_slip=use == "turn-slip"), channel)
                 ax.plot(
                     np.degrees(x), force, color=colours[use], lw=1.2, ls="-" if use == "turn-slip" else "--"
                 )
-            model = getattr(view.model(load, **angles, turn_slip=True), channel)
+            model = getattr(view.model(load, alpha, gamma, turn_slip=True), channel)
             ax.plot(np.degrees(x)[::5], model[::5], ls="none", marker=".", ms=3.0, color=style.INK)
         for edge in (-1.0, 1.0):
             ax.axvline(np.degrees(edge * tested[end]), color=style.FAINT, lw=0.8, ls=":")
-        ax.set_title(f"{channel} [{'N' if channel == 'Fy' else 'Nm'}], {load:.0f} N")
-        ax.set_xlabel("camber γ [deg]" if over == "gamma" else "sideslip α [deg]", labelpad=1.5)
+        ax.set_title(f"{CHANNELS[channel].column(channel)}, {labels.LOAD.of(load)}")
+        ax.set_xlabel(labels.ANGLES[over].axis, labelpad=1.5)
         style.few_ticks(ax, x=4)
     handles = [Line2D([], [], ls="none", marker=".", color=style.INK, label="fitted model")]
     handles += [

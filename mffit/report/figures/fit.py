@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from mffit.report import style
+from mffit.report import labels, style
 from mffit.report.build_view import BuildView, Channel
 from mffit.report.curves import Curve
 from mffit.report.rounding import number
@@ -32,8 +32,8 @@ def model_against_points(view: BuildView, channel: Channel) -> Figure:
         for curve in members:
             colour = colours.get(curve.held, style.INK) if over == "alpha" else style.ACCENT
             _draw(ax, view, channel, curve, colour)
-        ax.set_title(f"{load:.0f} N, {pressure:.0f} kPa")
-        ax.set_xlabel("sideslip α [deg]" if over == "alpha" else "camber γ [deg]", labelpad=1.5)
+        ax.set_title(labels.condition(load, pressure))
+        ax.set_xlabel(labels.ANGLES[over].axis, labelpad=1.5)
         style.few_ticks(ax, x=4)
     style.label_left(rows, channel.label)
     style.legend_above(figure, _legend(colours, any(not c.forward for c in view.curves)))
@@ -67,8 +67,10 @@ def _legend(colours: dict[float, Any], backward: bool) -> list[Any]:
             Line2D([], [], ls="--", marker="v", mfc="white", ms=3.5, color=style.MUTED, label="backward")
         )
     places = 0 if all(abs(g - round(g)) < 0.15 for g in colours) else 1
+    camber = labels.ANGLES["gamma"].symbol
     if len(colours) > 1:
         handles += [
-            Line2D([], [], lw=3, color=c, label=f"γ = {number(g, places)}°") for g, c in colours.items()
+            Line2D([], [], lw=3, color=c, label=f"{camber} = {number(g, places)}°")
+            for g, c in colours.items()
         ]
     return handles

@@ -12,7 +12,7 @@ import numpy as np
 from mffit.diagnosis import Gap
 from mffit.diagnosis.selection import TIE
 from mffit.diagnosis.where import Region
-from mffit.report import style
+from mffit.report import labels, style
 from mffit.report.diagnosis_view import (
     Candidate,
     DiagnosisView,
@@ -80,8 +80,8 @@ def residuals_before_after(view: DiagnosisView) -> Figure:
             if when == "before":
                 _frames(ax, view.frames(channel.name), condition.load)
     for ax in rows[-1]:
-        ax.set_xlabel("sideslip α [deg]")
-    style.label_left(rows, "camber γ [deg]")
+        ax.set_xlabel(labels.ANGLES["alpha"].axis)
+    style.label_left(rows, labels.ANGLES["gamma"].axis)
     colour_bar(figure, drawn, "measured − simulated\n[noise of a point]")
     return figure
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from mffit.points import Points
-from mffit.report import style
+from mffit.report import labels, style
 from mffit.report.curves import Condition
 
 if TYPE_CHECKING:
@@ -44,8 +44,8 @@ def residual_maps(
             drawn = residual_map(ax, points, values, condition.index, limit)
             ax.set_title(f"{name}: {condition.title}")
     for ax in rows[-1]:
-        ax.set_xlabel("sideslip α [deg]")
-    style.label_left(rows, "camber γ [deg]")
+        ax.set_xlabel(labels.ANGLES["alpha"].axis)
+    style.label_left(rows, labels.ANGLES["gamma"].axis)
     colour_bar(figure, drawn, f"measured − model\n[{unit}]")
     return figure
 

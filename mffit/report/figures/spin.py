@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from mffit.report import style
+from mffit.measured import Measured
+from mffit.quantities import CHANNELS
+from mffit.report import labels, style
 from mffit.report.build_view import BuildView
 from mffit.report.curves import Curve
 from mffit.report.published import TYRES
@@ -28,15 +29,16 @@ def camber_reduction(view: BuildView) -> Figure:
         figure.add_axes((left, 0.155, wide, 0.735))
         for left, wide in ((0.115, 0.215), (0.465, 0.215), (0.745, 0.245))
     ]
-    _among_published(axes[0], view.config.tyre.name, view.spin)
-    _budget(axes[1], view.spin)
+    _among_published(axes[0], view.config.tyre.name, view.measured)
+    _budget(axes[1], view.measured)
     _over_load(axes[2], view)
     return figure
 
 
-def _among_published(ax: Axes, name: str, spin: Mapping[str, Any]) -> None:
+def _among_published(ax: Axes, name: str, measured: Measured) -> None:
     rows = [(t.name, t.epsilon_gamma, t.u, style.MUTED) for t in TYRES]
-    rows.append((name, spin["epsilon_gamma"], spin["u_epsilon_gamma"], style.ACCENT))
+    if measured.epsilon_gamma is not None:
+        rows.append((name, measured.epsilon_gamma.value, measured.epsilon_gamma.u, style.ACCENT))
     ax.axvline(0.0, color=style.FAINT, lw=0.8)
     for i, (_, value, u, colour) in enumerate(reversed(rows)):
         own = colour == style.ACCENT
@@ -54,16 +56,16 @@ def _among_published(ax: Axes, name: str, spin: Mapping[str, Any]) -> None:
     ax.get_yticklabels()[0].set(color=style.ACCENT, fontweight="bold")
     ax.set_ylim(-0.6, len(rows) - 0.4)
     ax.grid(axis="y", visible=False)
-    ax.set_xlabel("camber reduction factor ε$_γ$ [–], ± 1 u")
+    ax.set_xlabel(f"{labels.EPSILON.axis}, ± 1 u")
     ax.set_title("This tyre among published ones")
 
 
-def _budget(ax: Axes, spin: Mapping[str, Any]) -> None:
-    rows = sorted(spin["budget"], key=lambda row: -abs(row["contribution"]))[:MOST_SOURCES]
-    width = [abs(row["contribution"]) for row in rows][::-1]
-    names = [str(row["source"]).replace("_", " ") for row in rows][::-1]
+def _budget(ax: Axes, measured: Measured) -> None:
+    rows = sorted(measured.budget, key=lambda line: -abs(line.contribution))[:MOST_SOURCES]
+    width = [abs(line.contribution) for line in rows][::-1]
+    names = [line.source for line in rows][::-1]
     ax.barh(range(len(rows)), width, height=0.62, color=style.ACCENT)
-    total = spin["u_epsilon_gamma"]
+    total = measured.epsilon_gamma.u if measured.epsilon_gamma is not None else 0.0
     ax.axvline(total, color=style.CONTRAST, lw=1.4)
     ax.annotate(
         f" total {total:.3f}", (total, -0.35), color=style.CONTRAST, ha="right", va="center", rotation=90,
@@ -72,27 +74,27 @@ def _budget(ax: Axes, spin: Mapping[str, Any]) -> None:
     ax.set_yticks(range(len(rows)), names)
     ax.set_xlim(0.0, 1.12 * max([total, *width]))
     ax.grid(axis="y", visible=False)
-    ax.set_xlabel("contribution to u(ε$_γ$) [–]")
+    ax.set_xlabel(f"contribution to u({labels.EPSILON.mathtext}) [–]")
     ax.set_title("What its uncertainty consists of")
 
 
 def _over_load(ax: Axes, view: BuildView) -> None:
-    rows = view.spin.get("per_load") or []
-    load = np.array([row["load_N"] for row in rows], dtype=float)
-    value = np.array([row["epsilon_gamma"] for row in rows], dtype=float)
-    u = np.array([row["u_epsilon_gamma"] for row in rows], dtype=float)
+    measured = view.measured
+    found = [(row.load, row.epsilon_gamma) for row in measured.per_load if row.epsilon_gamma is not None]
+    load, value, u = np.array([(load, epsilon.value, epsilon.u) for load, epsilon in found]).T
     ax.axhline(0.0, color=style.FAINT, lw=0.8)
     ax.errorbar(load, value, u, fmt="o", ms=4.5, color=style.ACCENT, capsize=3, label="measured")
     nominal = view.config.tyre.nominal_load
     over = np.linspace(min(load.min(), nominal), max(load.max(), nominal), 20)
-    line = view.spin["pecp1"] * (1.0 + (view.spin.get("pecp2") or 0.0) * (over - nominal) / nominal)
-    ax.plot(over, line, color=style.INK, lw=1.2, label="PECP1, PECP2 of the file")
+    if measured.pecp1 is not None:
+        line = measured.pecp1 * (1.0 + measured.pecp2 * (over - nominal) / nominal)
+        ax.plot(over, line, color=style.INK, lw=1.2, label="PECP1, PECP2 of the file")
     ax.margins(x=0.08)
     low, high = ax.get_ylim()
     ax.set_ylim(low, high + 0.3 * (high - low))  # room for the legend
     ax.legend(loc="upper left", borderaxespad=0.0, handlelength=1.4)
-    ax.set_xlabel("load F$_z$ [N]")
-    ax.set_ylabel("ε$_γ$ [–], ± 1 u")
+    ax.set_xlabel(labels.LOAD.axis)
+    ax.set_ylabel(f"{labels.EPSILON.mathtext} [–], ± 1 u")
     ax.set_title("Over the load")
 
 
@@ -112,10 +114,10 @@ def alignment(view: BuildView) -> Figure:
                 marker="o" if curve.forward else "v", mfc=colour if curve.forward else "white", color=colour,
             )  # fmt: skip
         ax.axvline(0.0, color=style.FAINT, lw=0.8)
-        ax.set_title(f"{load:.0f} N")
-        ax.set_xlabel("sideslip α [deg]", labelpad=1.5)
+        ax.set_title(labels.LOAD.of(load))
+        ax.set_xlabel(labels.ANGLES["alpha"].axis, labelpad=1.5)
         style.few_ticks(ax)
-    style.label_left(rows, "Fy [N]")
+    style.label_left(rows, CHANNELS["Fy"].column("Fy"))
     handles = [
         Line2D([], [], marker="o", color=style.ACCENT, label="rolling forwards"),
         Line2D([], [], ls="--", marker="v", mfc="white", color=style.CONTRAST, label="rolling backwards"),

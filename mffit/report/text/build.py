@@ -6,32 +6,35 @@ import math
 import statistics
 import textwrap
 from collections.abc import Mapping
-from typing import Any
 
+import numpy as np
+
+from mffit.fit import Coefficient
 from mffit.quantities import CHANNELS
 from mffit.report.rounding import number, times
 from mffit.report.text.direct import spin_numbers
 from mffit.report.text.layout import WIDTH, blocks, paragraphs, table
+from mffit.results import BuildResult
 from tir.parameters import BY_NAME
 
 
-def build_summary(result: Any) -> str:
+def build_summary(result: BuildResult) -> str:
     """What ``mffit build`` prints at its end."""
-    spin, fit = result.measured.to_json(), result.fit
+    fit = result.fit
     parts = [textwrap.fill(sentence, WIDTH) for sentence in fit.explanations[:1]]
-    if spin["epsilon_gamma"] is not None:
-        parts.append(spin_numbers(spin))
+    if result.measured.epsilon_gamma is not None:
+        parts.append(spin_numbers(result.measured))
     noise = {"Fy": _typical(result.points.u_Fy), "Mz": _typical(result.points.u_Mz)}
     rows = [
         (
             name,
             str(a.n),
-            f"{number(a.rmse, digits=3)} {unit}",
+            f"{number(a.rmse, digits=3)} {channel.unit}",
             times(a.rmse, noise[name]),
-            f"{number(a.max_abs, digits=3)} {unit}",
+            f"{number(a.max_abs, digits=3)} {channel.unit}",
             number(a.r2, 5),
         )
-        for name, (_, unit) in CHANNELS.items()
+        for name, channel in CHANNELS.items()
         if (a := fit.channels.get(name)) is not None and a.n
     ]
     parts.append(table(("fit", "points", "rms", "of noise", "largest", "R2"), rows))
@@ -40,7 +43,7 @@ def build_summary(result: Any) -> str:
     return blocks(parts)
 
 
-def _statuses(coefficients: Mapping[str, Any]) -> str:
+def _statuses(coefficients: Mapping[str, Coefficient]) -> str:
     counts: dict[str, int] = {}
     for name, c in coefficients.items():
         if not BY_NAME[name].section.endswith("_COEFFICIENTS"):
@@ -51,7 +54,7 @@ def _statuses(coefficients: Mapping[str, Any]) -> str:
     return text + (f"; at a bound: {' '.join(bound)}" if bound else "")
 
 
-def _typical(u: Any) -> float:
+def _typical(u: np.ndarray) -> float:
     """Median of the known uncertainties; a few doubtful points do not count as the noise."""
     known = [x for x in u if math.isfinite(x)]
     return statistics.median(known) if known else math.nan

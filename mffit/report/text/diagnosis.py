@@ -22,7 +22,7 @@ def diagnosis_summary(diagnosis: Diagnosis) -> str:
     )
     rows = [(name, g.Fy_rmse_N, g.Mz_rmse_Nm, g.chi2_per_dof) for name, g in gaps]
     rows.append(("noise", diagnosis.noise.Fy, diagnosis.noise.Mz, 1.0))
-    head = ("gap, rms", *(f"{name} [{CHANNELS[name].unit}]" for name in ("Fy", "Mz")), "chi2 per dof")
+    head = ("gap, rms", *(channel.column(name) for name, channel in CHANNELS.items()), "chi2 per dof")
     parts = [
         textwrap.fill(diagnosis.headline, WIDTH),
         table(head, [(name, *(number(value, digits=3) for value in values)) for name, *values in rows]),

@@ -3,51 +3,52 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
-from typing import Any
+from collections.abc import Sequence
 
-from mffit.report.rounding import MINUS, number, with_u
+from mffit.measured import Alignment, Contribution, LoadResult, Measured, wording
+from mffit.quantities import CONDITIONS, DIRECT
+from mffit.report.build_view import PER_LOAD
+from mffit.report.rounding import MINUS, number, stated
 from mffit.report.text.layout import blocks, paragraphs, table
 
-STIFFNESSES = ("C_gamma_N_per_rad", "C_alpha_N_per_rad")
-"""What can be read off a load without turn slip."""
+NUMBERS = ("epsilon_gamma", "C_phit", "F_phit", "C_gamma", "C_alpha", "r_e", "R")
+"""What is said of the load nearest the nominal one, in this order."""
 
 
-def budget_table(budget: Sequence[Mapping[str, Any]], total: float) -> str:
+def budget_table(budget: Sequence[Contribution], total: float) -> str:
     """Where u(eps_gamma) comes from, largest contribution first."""
-    ordered = sorted(budget, key=lambda row: -abs(row["contribution"]))
     rows = [
         (
-            str(row["source"]),
-            f"{number(row['u'], digits=3)} {row.get('unit') or ''}".strip(),
-            number(abs(row["contribution"]), 4),
-            f"{100.0 * (row['contribution'] / total) ** 2:.0f} %" if total else "–",
+            line.source,
+            f"{number(line.u, digits=3)} {line.unit}".removesuffix(" -"),
+            number(abs(line.contribution), 4),
+            f"{100.0 * (line.contribution / total) ** 2:.0f} %" if total else "–",
         )
-        for row in ordered
+        for line in sorted(budget, key=lambda line: -abs(line.contribution))
     ]
     rows.append(("combined (k = 1)", "", number(total, 4), ""))
-    return table(("source", "u", "in eps_gamma", "of variance"), rows)
+    return table(("source", "u", f"in {DIRECT['epsilon_gamma'].ascii}", "of variance"), rows)
 
 
-def spin_summary(measured: Any) -> str:
+def spin_summary(measured: Measured) -> str:
     """What ``mffit spin`` prints: the direct method's numbers, its budget, every load."""
-    spin = measured.to_json()
-    if spin["epsilon_gamma"] is None:
+    if measured.epsilon_gamma is None:
         reason = "the warnings say why." if measured.warnings else "it was not measured."
-        known = [row for row in spin["per_load"] if any(row.get(key) is not None for key in STIFFNESSES)]
-        sentences = [*spin["notes"]] or [f"No camber reduction factor: {reason}"]
+        # What can be read off a load without turn slip.
+        known = [row for row in measured.per_load if row.C_gamma is not None or row.C_alpha is not None]
+        sentences = _notes(measured) or [f"No camber reduction factor: {reason}"]
         return blocks([_per_load(known) if known else "", paragraphs(sentences)])
     parts = [
-        spin_numbers(spin),
-        budget_table(spin["budget"], spin["u_epsilon_gamma"]),
-        _improve_first(spin),
-        _per_load(spin["per_load"]),
-        paragraphs(spin.get("notes", ())),
+        spin_numbers(measured),
+        budget_table(measured.budget, measured.epsilon_gamma.u),
+        _improve_first(measured.budget, measured.epsilon_gamma.u),
+        _per_load(measured.per_load),
+        paragraphs(_notes(measured)),
     ]
     return blocks(parts)
 
 
-def alignment_table(alignment: Any) -> str:
+def alignment_table(alignment: Alignment) -> str:
     """What ``mffit align`` prints: every step and the correction to apply now."""
     rows = [
         (
@@ -62,15 +63,13 @@ def alignment_table(alignment: Any) -> str:
         )
         for step in alignment.steps
     ]
+    load, force = CONDITIONS["Fz_N"], DIRECT["F_phit"]
     head = (
-        "load [N]",
+        load.column(load.word),
         "step",
-        "forward [N]",
-        "backward [N]",
-        "turn slip [N]",
-        "slip [N]",
-        "C_alpha [N/rad]",
-        "correction [deg]",
+        *(force.column(name) for name in ("forward", "backward", "turn slip", "slip")),
+        DIRECT["C_alpha"].column(DIRECT["C_alpha"].ascii),
+        CONDITIONS["alpha_deg"].column("correction"),
     )
     correction = alignment.correction_deg
     sentence = (
@@ -80,84 +79,62 @@ def alignment_table(alignment: Any) -> str:
     return blocks([table(head, rows, left=0), sentence])
 
 
-def spin_numbers(spin: Mapping[str, Any]) -> str:
-    names = (
-        ("eps_gamma", "epsilon_gamma", ""),
-        ("C_phit", "C_phit_Nm", "Nm"),
-        ("F_phit", "F_phit_N", "N"),
-        ("C_gamma", "C_gamma_N_per_rad", "N/rad"),
-        ("C_alpha", "C_alpha_N_per_rad", "N/rad"),
-        ("r_e", "r_e_m", "m"),
-        ("R", "R_m", "m"),
-    )
-    lines = [
-        f"{name:<10} {with_u(spin[key], spin.get('u_' + key), unit)}"
-        for name, key, unit in names
-        if spin.get(key) is not None
-    ]
-    others = (
-        ("slope", "slope"),
-        ("secant", "secant"),
-        ("debiased", "debiased"),
-        ("written file", "model"),
-        ("Mz", "moment"),
-    )
-    given = [
-        f"{name} {number(spin[f'epsilon_gamma_{key}'], 4)}"
-        for name, key in others
-        if spin.get(f"epsilon_gamma_{key}") is not None
-    ]
+def _notes(measured: Measured) -> list[str]:
+    return [wording.note(fact) for fact in measured.notes]
+
+
+def spin_numbers(measured: Measured) -> str:
+    """The numbers of the load nearest the nominal one, a line each."""
+    row = measured.nominal
+    if row is None:
+        return ""
+    found = [(DIRECT[name], getattr(row, name)) for name in NUMBERS]
+    lines = [f"{q.ascii:<10} {stated(value, q.unit_behind)}" for q, value in found if value is not None]
+    debiased, moment = measured.epsilon_gamma_debiased, row.epsilon_moment
+    others = {
+        "slope": row.epsilon_slope,
+        "secant": row.epsilon_secant,
+        "debiased": debiased and debiased.value,
+        "written file": measured.epsilon_gamma_model,
+        "Mz": moment and moment.value,
+    }
+    given = [f"{name} {number(value, 4)}" for name, value in others.items() if value is not None]
     if given:
         lines.append(f"{'from':<10} {', '.join(given)}")
-    if spin.get("pecp1") is not None:
-        lines.append(f"{'file':<10} PECP1 {number(spin['pecp1'], 4)}, PECP2 {number(spin['pecp2'], 4)}")
+    if measured.pecp1 is not None:
+        lines.append(f"{'file':<10} PECP1 {number(measured.pecp1, 4)}, PECP2 {number(measured.pecp2, 4)}")
     return "\n".join(lines)
 
 
-def _improve_first(spin: Mapping[str, Any]) -> str:
+def _improve_first(budget: Sequence[Contribution], total: float) -> str:
     """Which source to work on, and what halving it would bring."""
-    largest = max(spin["budget"], key=lambda row: abs(row["contribution"]), default=None)
-    if largest is None or not spin["u_epsilon_gamma"]:
+    largest = max(budget, key=lambda line: abs(line.contribution), default=None)
+    if largest is None or not total:
         return ""
-    rest = spin["u_epsilon_gamma"] ** 2 - 0.75 * largest["contribution"] ** 2
+    rest = total**2 - 0.75 * largest.contribution**2
     if rest <= 0.0:
         return ""
-    before, after = number(spin["u_epsilon_gamma"], 3), number(math.sqrt(rest), 3)
-    return (
-        f"Improve first: {largest['source']}; half of it would bring u(eps_gamma) from {before} to {after}."
+    before, after = number(total, 3), number(math.sqrt(rest), 3)
+    epsilon = DIRECT["epsilon_gamma"].ascii
+    return f"Improve first: {largest.source}; half of it would bring u({epsilon}) from {before} to {after}."
+
+
+def _per_load(rows: Sequence[LoadResult]) -> str:
+    load = CONDITIONS["Fz_N"]
+    head = (
+        load.column(load.word),
+        *(DIRECT[name].column(DIRECT[name].ascii) for name in PER_LOAD),
+        CONDITIONS["alpha_deg"].column(DIRECT["alpha_M"].ascii),
     )
-
-
-def _per_load(rows: Sequence[Mapping[str, Any]]) -> str:
-    return table(
+    cells = [
         (
-            "load [N]",
-            "eps_gamma",
-            "F_phit [N]",
-            "C_phit [Nm]",
-            "C_gamma [N/rad]",
-            "C_alpha [N/rad]",
-            "alpha_M [deg]",
-        ),
-        [
-            (
-                number(row["load_N"], 0),
-                *(
-                    with_u(row.get(key), row.get("u_" + key))
-                    for key in (
-                        "epsilon_gamma",
-                        "F_phit_N",
-                        "C_phit_Nm",
-                        "C_gamma_N_per_rad",
-                        "C_alpha_N_per_rad",
-                        "alpha_M_deg",
-                    )
-                ),
-            )
-            for row in rows
-        ],
-        left=0,
-    )
+            number(row.load, 0),
+            *(stated(getattr(row, name)) for name in PER_LOAD),
+            stated(row.alpha_M, scale=math.degrees(1.0)),
+        )
+        for row in rows
+    ]
+    return table(head, cells, left=0)
 
 
 def _signed(value: float, decimals: int) -> str:

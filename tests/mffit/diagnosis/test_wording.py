@@ -8,11 +8,22 @@ import pytest
 
 from mffit.diagnosis import Diagnosis, diagnose, wording
 from mffit.diagnosis.needs import MET
-from mffit.diagnosis.notes import HardlyThisTyre, NotVisible, OneSweep, UncertaintiesEnlarged
+from mffit.diagnosis.notes import (
+    DirectMethodRedone,
+    HardlyThisTyre,
+    ModelFittedFirst,
+    ModelOfLastBuild,
+    NotVisible,
+    OneSweep,
+    UncertaintiesEnlarged,
+)
 from mffit.diagnosis.ties import Run, Separation
 from mffit.diagnosis.unknown import Bump
 from mffit.effects import NEEDS
+from mffit.results import as_json
+from tir import Quantity
 
+RIGHT, WRONG = Quantity(-0.06, 0.05, "-"), Quantity(0.2, 0.07, "-")
 BUMP = Bump("Mz", {"alpha_deg": (-4.0, -2.5), "Fz_N": (1400.0, 1600.0)}, -6.2, 30.0)
 
 
@@ -83,7 +94,18 @@ def test_every_run_has_words_and_only_a_telling_one_is_recommended(run):
         (NotVisible(("curved", "moment"), ("spin-torque",)), "which lack a curved path and Mz: spin-torque."),
         (HardlyThisTyre(41.7), "by 42 times their noise"),
         (UncertaintiesEnlarged(2.34), "enlarged 2.3 times"),
-        ("said elsewhere", "said elsewhere"),
+        (ModelOfLastBuild("front-normal.tir"), "The model is front-normal.tir of the last build."),
+        (ModelFittedFirst(turn_slip=False), "simulations with turn slip off."),
+        (DirectMethodRedone(("backlash",), RIGHT, None), "cannot be measured even without backlash"),
+        (DirectMethodRedone(("backlash",), None, RIGHT), "cannot be measured with backlash"),
+        (
+            DirectMethodRedone(("backlash",), RIGHT, RIGHT),
+            "stays -0.06 +- 0.05 (k = 1) with backlash corrected",
+        ),
+        (
+            DirectMethodRedone(("backlash", "gain"), WRONG, RIGHT),
+            "was 0.20 +- 0.07 with backlash and gain; corrected it is -0.06 +- 0.05 (k = 1).",
+        ),
     ],
 )
 def test_every_note_becomes_a_sentence(note, words):
@@ -91,7 +113,7 @@ def test_every_note_becomes_a_sentence(note, words):
 
 
 def test_the_file_keeps_its_keys(camber):
-    content = replace(camber, notes=(OneSweep(),)).to_json()
+    content = as_json.diagnosis(replace(camber, notes=(OneSweep(),)))
     assert list(content) == [
         "headline", "gap_before", "gap_after", "validation", "where", "effects", "alternatives", "unexplained",
         "unexplained_where", "noise_floor", "model_after", "notes",

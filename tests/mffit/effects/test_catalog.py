@@ -8,12 +8,12 @@ from pathlib import Path
 import pytest
 
 from mffit.effects import CATALOG, NEEDS
-from mffit.effects.pages import RIG_NUMBERS, pages
-from mffit.rig import RigFaults
+from mffit.effects.effect import Effect, Free
+from mffit.effects.pages import NEITHER, page, pages
+from mffit.rig import MEANINGS, UNITS, RigFaults
 from tir.parameters import BY_NAME
 
 DOCS = Path(__file__).parents[3] / "docs" / "effects"
-SWITCHES = {"turn_slip", "relaxation_m"}
 FREES = {
     "turn-slip": "turn_slip",
     "camber-reduction": "PECP1",
@@ -79,15 +79,18 @@ def test_a_record_says_what_a_reader_needs(effect):
 def test_freed_numbers_exist_and_can_be_started_from(effect):
     rig = {field.name for field in fields(RigFaults)}
     for free in effect.free:
-        assert free.name in (BY_NAME if effect.kind == "tyre" else rig) or free.name in SWITCHES
+        assert free.name in (BY_NAME if effect.kind == "tyre" else rig) or free.name in NEITHER
         assert free.spread > 0.0
         assert free.lower < free.upper
         if free.name in BY_NAME:
             assert free.lower <= BY_NAME[free.name].default <= free.upper or free.relative
 
 
-def test_numbers_of_the_rig_are_all_described():
-    assert {field.name for field in fields(RigFaults)} <= set(RIG_NUMBERS)
+@pytest.mark.parametrize("fault", [field.name for field in fields(RigFaults)])
+def test_numbers_of_the_rig_are_all_described(fault):
+    free = Free(fault, 1.0)
+    row = page(Effect("mine", "mine", "rig", "What a rig does.", (free,)), CATALOG)
+    assert f"| `{fault}` | {UNITS[fault]} | {MEANINGS[fault]} |" in row
 
 
 def test_the_pages_are_current():

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from mffit.fit.coverage import coverage, design
-from mffit.fit.stages import CONICITY_ON_A_DISC, IF_IDENTIFIED, ODD_TERMS, SHIFT_TERMS
+from mffit.fit.stages import ODD_TERMS, SHIFT_TERMS, SMALL_ON_A_DISC, WITH_CAMBER
 from mffit.points import Points, make_points
 from tir.parameters import TABLE
 
@@ -83,6 +83,6 @@ def test_every_stage_knows_the_needs_of_its_coefficients():
 
 def test_the_sets_of_the_stages_are_the_tables():
     assert SHIFT_TERMS < ODD_TERMS
-    assert {"PHYP1", "QDRP1"} <= IF_IDENTIFIED
-    assert not IF_IDENTIFIED & {"PKYP1", "PDYP1", "QDTP1"}
-    assert CONICITY_ON_A_DISC == {"PVY1": 0.003, "PVY2": 0.003}
+    assert {"QDZ3", "PVY3", "QBZ4"} <= WITH_CAMBER
+    assert not WITH_CAMBER & {"PKY1", "QDZ1", "PHY1"}
+    assert SMALL_ON_A_DISC == {"PHY1": 0.002, "PVY1": 0.003, "PVY2": 0.003}

@@ -11,8 +11,13 @@ import pytest
 
 import mffit
 import tir
-from mffit.fit.files import file_names, use_mode, whole_words
-from mffit.pipeline import _model, use_of
+from mffit.diagnosis.notes import ModelFittedFirst
+from mffit.fit.files import file_names, use_mode
+from mffit.fit.imitation import forces
+from mffit.fit.wording import whole_words
+from mffit.pipeline.diagnosing import chosen_model
+from mffit.pipeline.provenance import use_of
+from mffit.results import as_json
 from tir.check import check
 from tir.parameters import TABLE
 
@@ -45,8 +50,8 @@ def test_both_files_are_written_each_for_its_use(built):
     # MF-Tyre's digits: 2 circular cross-section of a motorcycle tyre, 2 nonlinear transient, 5 or 4 with or without turn slip
     assert {use: int(tyre["USE_MODE"]) for use, tyre in on_disk.items()} == {"turn-slip": 225, "normal": 224}
     assert {use_of(tyre) for tyre in on_disk.values()} == {"turn-slip", "normal"}
-    assert result.to_json()["files"] == result.files
-    assert result.to_json()["tir"] == "front-120-70.tir"
+    assert as_json.build(result)["files"] == result.files
+    assert as_json.build(result)["tir"] == "front-120-70.tir"
 
 
 def test_exact_says_which_file_carries_the_plain_name():
@@ -63,8 +68,8 @@ def test_diagnosis_takes_the_file_of_its_simulation(built, turn_slip, name):
     table = result.config.model.model_copy(update={"turn_slip": turn_slip})
     config = result.config.model_copy(update={"model": table})
     config._folder = out.parent
-    tyre, notes = _model(config, None, lambda sentence: None)
-    assert not any("fitted" in note for note in notes)
+    tyre, notes = chosen_model(config, None, lambda sentence: None)
+    assert not any(isinstance(note, ModelFittedFirst) for note in notes)
     assert tyre == tir.read(out / name)
 
 
@@ -85,8 +90,8 @@ def test_the_upright_wheel_is_the_same_in_both_files(result):
 def test_the_normal_file_follows_the_true_tyre_on_a_straight_path(result, truth):
     """The formula's own limit on this tyre is 44 N and 1.8 Nm (tests/studies/normal_study.py); the fit adds its noise."""
     road = normal_study.box(truth["FNOMIN"], truth["NOMPRES"])
-    made = road.forces(result.tyres["normal"].values, turn_slip=False)
-    true = road.forces(truth.values, turn_slip=True)
+    made = forces(result.tyres["normal"].values, road, turn_slip=False)
+    true = forces(truth.values, road, turn_slip=True)
     assert np.sqrt(np.mean((made.Fy - true.Fy) ** 2)) < 52.0
     assert np.sqrt(np.mean((made.Mz - true.Mz) ** 2)) < 2.5
 
@@ -110,7 +115,7 @@ def test_what_the_normal_file_lacks_is_stated(result):
     assert 0.0 < files.stiffness_loss < 0.25
     forces = list(files.lacking.values())
     assert forces == sorted(forces)
-    assert result.fit.to_json()["files"]["normal"]["turn_slip_force_lacking_N"]["10 m"] == forces[-1]
+    assert as_json.fit(result.fit)["files"]["normal"]["turn_slip_force_lacking_N"]["10 m"] == forces[-1]
 
 
 def test_pecp1_is_the_measured_eps_gamma(result):
@@ -138,7 +143,7 @@ def test_every_value_has_an_origin(built):
     numbers = {row.name for row in TABLE if row.kind == "number"} - {"QDRP2"}
     assert numbers <= again.status.keys()
     assert again["TYRESIDE"] == "LEFT"
-    stated = result.to_json()["fit"]["coefficients"]
+    stated = as_json.build(result)["fit"]["coefficients"]
     assert numbers <= stated.keys()
     assert all(c["status"] and c["origin"] for c in stated.values())
 

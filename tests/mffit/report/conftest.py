@@ -5,10 +5,10 @@ from __future__ import annotations
 import pytest
 from report_toys import made_result
 
-from mffit.pipeline import Result
+from mffit.results import BuildResult
 
 
 @pytest.fixture(scope="session")
-def result() -> Result:
+def result() -> BuildResult:
     """A build on a rotating disc."""
     return made_result()

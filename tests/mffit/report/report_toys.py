@@ -12,8 +12,8 @@ import tir
 from mffit import config, measured, parts
 from mffit.fit.coverage import coverage
 from mffit.fit.result import Coefficient, FitResult, StageRecord, agreement
-from mffit.pipeline import Result
 from mffit.points import Points, make_points
+from mffit.results import BuildResult
 from mffit.rig import Simulation
 from tir.parameters import BY_NAME
 
@@ -110,7 +110,7 @@ def made_config(rig: dict[str, Any] | None = None) -> config.Config:
     )
 
 
-def made_result(**changes: Any) -> Result:
+def made_result(**changes: Any) -> BuildResult:
     """A whole result; ``changes`` go to :func:`made_points`, except ``rig``, which goes to tyre.toml."""
     settings = made_config(changes.pop("rig", None))
     points = made_points(programme(), **changes)
@@ -134,16 +134,17 @@ def made_result(**changes: Any) -> Result:
         warnings=(),
         seconds=1.5,
     )
-    return Result(
+    return BuildResult(
         config=settings,
         points=points,
         parts=halves,
         measured=measured.measure(settings, points, halves, None),
         fit=fitted,
-        tyre=tyre.annotate(provenance={"input sideslip.csv": "0123456789abcdef"}),
+        files={"turn-slip": "front-1.tir"},
+        tyres={"turn-slip": tyre.annotate(provenance={"input sideslip.csv": "0123456789abcdef"})},
+        plain="turn-slip",
         warnings=("the camber sweep at 900 N is short & noisy",),
         seconds=3.25,
-        tir_path="front-1.tir",
     )
 
 

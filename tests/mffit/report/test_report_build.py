@@ -76,9 +76,9 @@ def test_every_coefficient_is_listed_with_its_status(page):
 
 
 def test_headline_numbers_are_those_of_the_direct_method(result, page):
-    spin = result.measured.to_json()
-    assert f"{spin['epsilon_gamma']:.2f}"[1:] in page.text
-    assert f"{spin['C_phit_Nm']:.0f} ± {spin['u_C_phit_Nm']:.0f}" in page.text
+    measured = result.measured
+    assert f"{measured.epsilon_gamma.value:.2f}"[1:] in page.text
+    assert f"{measured.C_phit.value:.0f} ± {measured.C_phit.u:.0f}" in page.text
 
 
 def test_same_result_gives_the_same_bytes(result, written, tmp_path):

@@ -84,13 +84,13 @@ def test_this_tyre_stands_beside_the_published_ones(view):
 def test_budget_bars_are_ordered_and_below_the_total(view):
     bars = [bar.get_width() for bar in spin.camber_reduction(view).axes[1].patches]
     assert bars == sorted(bars)
-    assert max(bars) <= view.spin["u_epsilon_gamma"]
+    assert max(bars) <= view.measured.epsilon_gamma.u
 
 
 def test_line_over_load_is_the_one_the_file_carries(view):
     ax = spin.camber_reduction(view).axes[2]
     line = next(line for line in ax.lines if line.get_label().startswith("PECP1"))
-    assert line.get_ydata() == pytest.approx(view.spin["pecp1"])
+    assert line.get_ydata() == pytest.approx(view.measured.pecp1)
 
 
 def test_alignment_has_a_panel_per_load_run_both_ways(view):

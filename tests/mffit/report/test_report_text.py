@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from mffit.measured import align
+from mffit.measured import Contribution, align
 from mffit.report import text
 
 BUDGET = [
-    {"source": "load-cell offset", "u": 10.0, "unit": "N", "contribution": 0.03},
-    {"source": "camber alignment", "u": 0.5, "unit": "deg", "contribution": -0.04},
+    Contribution("load-cell offset", 10.0, "N", 0.03),
+    Contribution("camber alignment", 0.5, "deg", -0.04),
 ]
 
 
@@ -23,8 +23,8 @@ def test_budget_is_ordered_and_adds_up():
 
 def test_spin_summary_names_what_to_improve_first(result):
     summary = text.spin_summary(result.measured)
-    first = max(result.measured.to_json()["budget"], key=lambda row: abs(row["contribution"]))
-    assert f"Improve first: {first['source']};" in summary
+    first = max(result.measured.budget, key=lambda line: abs(line.contribution))
+    assert f"Improve first: {first.source};" in summary
     for load in ("900", "1500"):
         assert f"\n     {load.rjust(3)}"[-4:] in summary
 

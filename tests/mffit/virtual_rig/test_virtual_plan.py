@@ -3,37 +3,19 @@
 from __future__ import annotations
 
 import pytest
+from small_plan import SMALL_PLAN
 
 from mffit.errors import InputError
 from mffit.virtual_rig import load_plan, simulate
 from mffit.virtual_rig.plan import angles
 
-TEXT = """\
-[truth]
-tyre = "true.tir"
-
-[tyre]
-name = "small"
-unloaded_radius = 0.2992
-nominal_load = 1400
-nominal_pressure = 250
-
-[rig]
-path_radius = 1.323
-
-[[sweep]]
-file = "sideslip.csv"
-load_N = 1400
-alpha_deg = [-2, 0, 2]
-"""
-
 
 @pytest.fixture
 def written(tmp_path):
     def write(old: str = "", new: str = ""):
-        assert old in TEXT
+        assert old in SMALL_PLAN
         path = tmp_path / "rig.toml"
-        path.write_text(TEXT.replace(old, new, 1))
+        path.write_text(SMALL_PLAN.replace(old, new, 1))
         return path
 
     return write

@@ -1,0 +1,110 @@
+"""The sentences about the direct method, for page, terminal and JSON: written here and nowhere else."""
+
+from __future__ import annotations
+
+import math
+from typing import assert_never
+
+from mffit.measured.notes import (
+    Aligned,
+    AxisOff,
+    Conicity,
+    ContactWanders,
+    EpsilonInNoise,
+    LoadSlope,
+    Misaligned,
+    Note,
+    NothingMeasured,
+    NotSeparable,
+    OneLoad,
+    SecantNotPossible,
+    SlopeInNoise,
+    SlopeNotPossible,
+    SlopeTooSteep,
+    StandardUncertainties,
+    StraightPath,
+    Trouble,
+)
+
+
+def note(fact: Note) -> str:
+    """A note as a sentence."""
+    match fact:
+        case StraightPath():
+            return "A flat track's path is straight: it has no turn slip to measure."
+        case NotSeparable(force, angle, u):
+            # Without a sideslip sweep nobody knows what angle the force would take.
+            taken = (
+                "an unknown angle (no sideslip sweep gives C_alpha)" if angle is None else f"{angle:.2f} deg"
+            )
+            return (
+                f"Sideslip misalignment, turn slip and ply-steer are not separable here; the force {force:.0f} N at (0, 0) "
+                f"would take {taken} of misalignment or ply-steer if it were not turn slip, and {u:.0f} N (k = 1) is assumed "
+                "for the alignment."
+            )
+        case Aligned():
+            return (
+                f"Forward and backward runs: {_found(fact)}. It is within what the alignment leaves and stays in the model "
+                "as ply-steer."
+            )
+        case LoadSlope(pecp2, u):
+            return f"PECP2 = {pecp2:.3f} +- {u:.3f} (k = 1)."
+        case OneLoad():
+            return "PECP2 is 0: one load was measured."
+        case SlopeInNoise(slope, u):
+            return f"PECP2 is 0: the slope {slope:.3f} per unit of dfz is within 2 u = {2 * u:.3f}."
+        case EpsilonInNoise():
+            return "PECP2 is 0: eps_gamma itself is within 2 u of zero, so a relative slope has no meaning."
+        case SlopeTooSteep(largest):
+            return f"PECP2 is 0: eps_gamma would reach {largest:.2f} within the loads."
+        case StandardUncertainties():
+            return "All uncertainties are standard uncertainties (k = 1)."
+        case Conicity(share, force, shift):
+            return (
+                f"Conicity cannot be removed: a plausible {force:.0f} N ({100 * share:.1f} % of the load) would move "
+                f"eps_gamma by {shift:.3f}."
+            )
+        case ContactWanders():
+            return (
+                "With camber the contact point wanders over the crown and changes the path radius; R holds for the upright "
+                "wheel."
+            )
+        case _:
+            assert_never(fact)
+
+
+def warning(fact: Trouble) -> str:
+    """A warning as a sentence."""
+    match fact:
+        case SlopeNotPossible(load, angle):
+            return (
+                f"at {load:.0f} N the camber sweep is too short for the slope at zero; the secant at {angle:g} deg is used, "
+                "which is a few per cent low: add cambers up to 20 deg"
+            )
+        case SecantNotPossible(load, angle):
+            return (
+                f"at {load:.0f} N the camber sweep does not reach {angle:g} deg; the slope at zero is used instead of the "
+                "secant"
+            )
+        case NothingMeasured():
+            return "eps_gamma could not be measured: it needs a camber sweep, points at (0, 0) and a [rolling_radius]"
+        case Misaligned(_, slip, _):
+            return (
+                f"the sideslip axis is misaligned: {_found(fact)}; forward and backward forces differ by "
+                f"{abs(2 * slip):.0f} N. It is taken off the angles; ply-steer cannot be told from it"
+            )
+        case AxisOff(load, difference, limit, correction):
+            return (
+                f"at {load:.0f} N forward and backward forces differ by {difference:.0f} N ({limit:.0f} N is the limit): the "
+                f"sideslip axis is off by about {correction:.2f} deg"
+            )
+        case _:
+            assert_never(fact)
+
+
+def _found(fact: Aligned | Misaligned) -> str:
+    alpha_M, u = math.degrees(fact.alpha_M.value), math.degrees(fact.alpha_M.u)
+    return (
+        f"alpha_M = {alpha_M:.3f} +- {u:.3f} deg ({fact.slip:.0f} N); uncorrected it would move eps_gamma by "
+        f"{fact.shift:.2f}"
+    )

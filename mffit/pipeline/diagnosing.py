@@ -1,0 +1,117 @@
+"""``mffit diagnose``: what a simulation lacks."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+from threadpoolctl import threadpool_limits
+
+import tir
+from mffit import config as configuration
+from mffit import points as ingestion
+from mffit.config import Config
+from mffit.diagnosis import Diagnosis, corrected_points
+from mffit.diagnosis import diagnose as find_effects
+from mffit.diagnosis.notes import DirectMethodRedone, ModelFittedFirst, ModelOfLastBuild, Note
+from mffit.effects import CATALOG, Effect
+from mffit.output import output_folder, refuse_early
+from mffit.pipeline.building import build
+from mffit.pipeline.inputs import Progress, inputs_of, read_base, silent
+from mffit.pipeline.measuring import epsilon_gamma, without_play
+from mffit.pipeline.provenance import rig_of_build, use_of
+from mffit.points import Points
+from mffit.results import as_json
+from tir import Tyre
+
+WRITTEN = ("diagnosis.json", "diagnosis.html")
+"""What a run is sure to write beside a property file, known before the work begins."""
+
+
+def diagnose(
+    config: Config | Mapping[str, Any] | str | Path,
+    model: Tyre | str | Path | None = None,
+    *,
+    out: str | Path | None = None,
+    effects: Sequence[Effect] = CATALOG,
+    progress: Progress = silent,
+) -> Diagnosis:
+    """Find where a simulation's model and the measurement disagree, and what explains it.
+
+    Parameters
+    ----------
+    config : path of a ``tyre.toml``, its content, or a loaded Config
+    model : the model that the simulation uses; default the last build's file, else one fitted now
+    out : folder to write to; nothing is written if None
+    effects : the library of effects, to which records of your own may be added
+    progress : called with a sentence before each step
+
+    Returns
+    -------
+    Diagnosis
+        With the direct method redone where a rig effect was found.
+    """
+    config = configuration.load(config)
+    progress("reading sweeps")
+    points, _ = ingestion.load(config, continuous=True)
+    base = read_base(config)
+    inputs = [*inputs_of(config), last_build(config)]
+    if isinstance(model, str | Path):
+        inputs.append(Path(model))
+    if out is not None:
+        refuse_early(Path(out), (f"{config.tyre.name}.tir", *WRITTEN), inputs)
+    tyre, choice = chosen_model(config, model, progress)
+    with threadpool_limits(1):
+        rig = rig_of_build(tyre, config)
+        diagnosis = find_effects(points, tyre, config, rig=rig, effects=effects, progress=progress)
+    notes = (*choice, *diagnosis.notes, *_redone(config, points, diagnosis, base))
+    diagnosis = replace(diagnosis, notes=notes)
+    if out is not None:
+        write_diagnosis(diagnosis, Path(out), protected=inputs)
+    return diagnosis
+
+
+def chosen_model(
+    config: Config, model: Tyre | str | Path | None, progress: Progress
+) -> tuple[Tyre, tuple[Note, ...]]:
+    """The simulation's model, as given, else the last build's, else fitted now; and what to say of the choice."""
+    if isinstance(model, Tyre):
+        return model, ()
+    if model is not None:
+        return tir.read(model), ()
+    plain = last_build(config)
+    wanted = "turn-slip" if config.model.turn_slip and config.rig.type == "rotating-disk" else "normal"
+    for path in (plain, plain.with_name(f"{config.tyre.name}-{wanted}.tir")):
+        if path.is_file() and use_of(tyre := tir.read(path)) in (wanted, None):
+            return tyre, () if path == plain else (ModelOfLastBuild(path.name),)
+    fitted = build(config, progress=progress).tyres[wanted]
+    return fitted, (ModelFittedFirst(turn_slip=wanted == "turn-slip"),)
+
+
+def last_build(config: Config) -> Path:
+    """Where a build writes its property file by default."""
+    return config.folder / "out" / f"{config.tyre.name}.tir"
+
+
+def _redone(
+    config: Config, points: Points, diagnosis: Diagnosis, base: Tyre | None
+) -> tuple[DirectMethodRedone, ...]:
+    """The direct method with the rig's faults taken off, if any were found."""
+    causes = tuple(found.effect.name for found in diagnosis.effects if found.effect.kind == "rig")
+    if config.rig.type != "rotating-disk" or not causes:
+        return ()
+    mended = corrected_points(points, diagnosis.state)
+    before = epsilon_gamma(config, points, base)
+    return (DirectMethodRedone(causes, before, epsilon_gamma(without_play(config), mended, base)),)
+
+
+def write_diagnosis(diagnosis: Diagnosis, out: Path, protected: Iterable[Path] = ()) -> None:
+    """Write every output of a diagnosis, or nothing; the ``protected`` files were read and are not replaced."""
+    from mffit import report
+
+    with output_folder(out, by="diagnose", protected=protected) as folder:
+        diagnosis.tyre.write(folder / diagnosis.model_after)
+        as_json.write(folder / "diagnosis.json", as_json.diagnosis(diagnosis))
+        report.write_diagnosis(diagnosis, folder)

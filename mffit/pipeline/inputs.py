@@ -1,0 +1,49 @@
+"""What a run reads and says while it runs."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+import tir
+from mffit.config import Config
+from mffit.errors import InputError
+from mffit.output import digest
+from tir import Tyre
+
+Progress = Callable[[str], None]
+"""Called with a short sentence whenever a step begins."""
+
+
+def silent(sentence: str) -> None:
+    """Progress that is not shown."""
+
+
+def read_base(config: Config) -> Tyre | None:
+    """The base file of the configuration, if it names one."""
+    if config.tyre.base is None:
+        return None
+    path = config.folder / config.tyre.base
+    if not path.is_file():
+        raise InputError(
+            f"the base file {path} does not exist: correct [tyre] base or remove it",
+            file=config.path,
+            key="tyre.base",
+        )
+    return tir.read(path)
+
+
+def inputs_of(config: Config) -> list[Path]:
+    """Every file that a run of this configuration reads."""
+    files = [config.folder / name for name in _names(config)]
+    return files if config.path is None else [config.path, *files]
+
+
+def input_hashes(config: Config) -> dict[str, str]:
+    """First 16 hex digits of the SHA-256 of every input file, by its name as the configuration gives it."""
+    return {name: digest(config.folder / name)[:16] for name in _names(config)}
+
+
+def _names(config: Config) -> list[str]:
+    names = [sweep.file for sweep in config.sweep] + ([config.tyre.base] if config.tyre.base else [])
+    return list(dict.fromkeys(names))

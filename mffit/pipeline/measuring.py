@@ -1,0 +1,72 @@
+"""``mffit spin`` and ``mffit align``: what is read off the data without a model."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import tir
+from mffit import config as configuration
+from mffit import measured as direct
+from mffit import parts as decomposition
+from mffit import points as ingestion
+from mffit.config import Config
+from mffit.errors import InputError
+from mffit.measured import Alignment, Measured
+from mffit.output import output_folder
+from mffit.parts import Parts
+from mffit.pipeline.inputs import inputs_of, read_base
+from mffit.points import Points
+from mffit.results import as_json
+from tir import Tyre
+
+
+def spin(config: Config | Mapping[str, Any] | str | Path, out: str | Path | None = None) -> Measured:
+    """Alignment check and direct method only; writes ``spin.json`` if ``out`` is given."""
+    config = configuration.load(config)
+    points, warnings = ingestion.load(config)
+    _, measured = measure(config, points, read_base(config))
+    measured = replace(measured, warnings=(*warnings, *measured.warnings))
+    if out is not None:
+        with output_folder(Path(out), by="spin", protected=inputs_of(config)) as folder:
+            as_json.write(folder / "spin.json", as_json.spin(measured))
+    return measured
+
+
+def align(source: str | Path, *, axes: str | None = None, path_centre: str | None = None) -> Alignment:
+    """Next steering correction from forward and backward zeros; see :func:`mffit.measured.align`.
+
+    Parameters
+    ----------
+    source : path of a ``tyre.toml``, or of a bare table
+    axes, path_centre : what a bare table does not say itself
+    """
+    source = Path(source)
+    if source.suffix == ".toml":
+        config = configuration.load(source)
+        points, _ = ingestion.load(config, check_physics=False)
+        return direct.align(points, axes=config.rig.axes)
+    points = ingestion.load_table(source, axes=axes, path_centre=path_centre)
+    return direct.align(points, axes=axes or "iso")
+
+
+def measure(config: Config, points: Points, base: Tyre | None) -> tuple[Parts, Measured]:
+    """Split the points and measure directly."""
+    parts = decomposition.split(points)
+    measured = direct.measure(config, points, parts, base)
+    return replace(parts, alpha_odd=direct.odd_alpha(points, parts, config)), measured
+
+
+def epsilon_gamma(config: Config, points: Points, base: Tyre | None) -> tir.Quantity | None:
+    """eps_gamma of the points, None where the direct method fails on them."""
+    try:
+        return direct.measure(config, points, decomposition.split(points), base).epsilon_gamma
+    except InputError:
+        return None
+
+
+def without_play(config: Config) -> Config:
+    """The configuration of the same rig with a steering axis that has no play."""
+    return config.model_copy(update={"rig": config.rig.model_copy(update={"backlash_deg": 0.0})})

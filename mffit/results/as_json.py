@@ -1,0 +1,212 @@
+"""The JSON files: made from the records here and nowhere else, with the keys that users' scripts rely on."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Mapping
+from dataclasses import asdict
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from mffit.diagnosis import Diagnosis, Found, Gap, wording
+from mffit.diagnosis.where import Region
+from mffit.fit import Coefficient, FitResult
+from mffit.fit.files import Files
+from mffit.measured import KEYS, LoadResult, Measured
+from mffit.measured import wording as say
+from mffit.results.build import BuildResult
+from mffit.rig import UNITS
+from tir import Quantity
+
+
+def build(result: BuildResult) -> dict[str, Any]:
+    """The content of ``result.json``."""
+    return {
+        "tyre": result.config.tyre.model_dump(exclude_none=True),
+        "spin": spin(result.measured),
+        "fit": fit(result.fit),
+        "tir": result.tir_path,
+        "files": dict(result.files),
+        "warnings": list(result.warnings),
+    }
+
+
+def spin(measured: Measured) -> dict[str, Any]:
+    """The content of ``spin.json``, which is the ``spin`` part of ``result.json``; SI units, ISO signs, u with k = 1."""
+    row = measured.nominal
+    numbers = {key: value for key, value in _load(row).items() if key != "load_N"}
+    return numbers | {
+        "epsilon_gamma_model": measured.epsilon_gamma_model,
+        **_stated("epsilon_gamma_debiased", measured.epsilon_gamma_debiased),
+        "pecp1": measured.pecp1,
+        "pecp2": measured.pecp2,
+        "u_pecp2": measured.u_pecp2,
+        "budget": [line._asdict() for line in measured.budget],
+        "u_epsilon_gamma_monte_carlo": row.u_monte_carlo if row else None,
+        "misaligned": measured.misaligned,
+        "coverage_factor": 1,
+        "notes": [say.note(fact) for fact in measured.notes],
+        "per_load": [_load(other) for other in measured.per_load],
+    }
+
+
+def fit(found: FitResult) -> dict[str, Any]:
+    """The ``fit`` part of ``result.json``."""
+    return {
+        "channels": {name: asdict(row) for name, row in found.channels.items()},
+        "odd": {name: asdict(row) for name, row in found.odd.items()},
+        "coefficients": {name: _coefficient(row) for name, row in found.coefficients.items()},
+        "rig": {
+            name: {"value": value, "stderr": u, "unit": UNITS[name]} for name, (value, u) in found.rig.items()
+        },
+        "stages": [
+            {
+                "name": stage.name,
+                "parameters": list(stage.parameters),
+                "rmse_Fy_N": stage.rmse_Fy,
+                "rmse_Mz_Nm": stage.rmse_Mz,
+            }
+            for stage in found.stages
+        ],
+        "coverage": [
+            {
+                "stage": row.stage,
+                "supported": row.supported,
+                "held": list(row.held),
+                "missing": list(row.missing),
+            }
+            for row in found.coverage
+        ],
+        "files": _files(found.files) if found.files is not None else {},
+        "explanations": list(found.explanations),
+        "seconds": found.seconds,
+    }
+
+
+def diagnosis(found: Diagnosis) -> dict[str, Any]:
+    """The content of ``diagnosis.json``."""
+    return {
+        "headline": found.headline,
+        "gap_before": _gap(found.gap_before),
+        "gap_after": _gap(found.gap_after),
+        "validation": {
+            "method": wording.method(found.validation),
+            "gap_before": _gap(found.validation.gap_before),
+            "gap_after": _gap(found.validation.gap_after),
+        },
+        "where": [_region(region) for region in found.where],
+        "effects": [_effect(effect) for effect in found.effects],
+        "alternatives": [{"id": name, "confidence": weight} for name, weight in found.ranked_alternatives()],
+        "unexplained": found.unexplained,
+        "unexplained_where": [_region(region) for region in found.unexplained_where],
+        "noise_floor": {
+            "Fy_N": found.noise.Fy,
+            "Mz_Nm": found.noise.Mz,
+            "source": wording.source(found.noise),
+        },
+        "model_after": found.model_after,
+        "notes": wording.notes(found),
+    }
+
+
+def write(path: Path, content: Mapping[str, Any]) -> None:
+    """Write one of the above as UTF-8; numbers that are not finite become null."""
+    text = json.dumps(_plain(content), indent=2, ensure_ascii=False, allow_nan=False)
+    path.write_text(text + "\n", encoding="utf-8")
+
+
+def _load(row: LoadResult | None) -> dict[str, Any]:
+    """The numbers of one load; all null if nothing was measured."""
+    out: dict[str, Any] = {"load_N": row and row.load}
+    for name, key in KEYS.items():
+        out |= _stated(key, getattr(row, name, None))
+    if row is None:
+        return out
+    out |= {"epsilon_gamma_secant": row.epsilon_secant, "epsilon_gamma_slope": row.epsilon_slope}
+    out |= _stated("epsilon_gamma_moment", row.epsilon_moment)
+    out |= _stated("alpha_M_deg", row.alpha_M, scale=math.degrees(1.0))
+    return out | {"F_forward_N": row.F_forward, "F_backward_N": row.F_backward}
+
+
+def _stated(key: str, number: Quantity | None, scale: float = 1.0) -> dict[str, float | None]:
+    if number is None:
+        return {key: None, f"u_{key}": None}
+    return {key: scale * number.value, f"u_{key}": scale * number.u}
+
+
+def _coefficient(found: Coefficient) -> dict[str, Any]:
+    partner = found.correlated_with or None
+    return {
+        "value": found.value,
+        "stderr": found.stderr,
+        "stage": found.stage,
+        "fixed": found.fixed,
+        "at_bound": found.at_bound,
+        "interval_95": list(found.interval) if found.interval else None,
+        "status": found.status,
+        "origin": found.origin or found.status,
+        "correlated_with": partner,
+        "correlation": found.correlation if partner else None,
+    }
+
+
+def _files(files: Files) -> dict[str, Any]:
+    """How good each written file is, by use, and the ranges."""
+    out: dict[str, Any] = {
+        use: {
+            "USE_MODE": int(file.tyre["USE_MODE"]),
+            **{
+                place: {channel: asdict(misfit) for channel, misfit in channels.items()}
+                for place, channels in file.misfit.items()
+            },
+            "camber_stiffness_N_per_rad": file.camber_stiffness,
+        }
+        for use, file in files.by_use.items()
+    }
+    for use, names in files.changed.items():
+        out[use]["coefficients"] = {name: files.by_use[use].tyre[name] for name in names}
+    if files.lacking:
+        out["normal"] |= {
+            "camber_stiffness_loss": files.stiffness_loss,
+            "turn_slip_force_lacking_N": {f"{radius:g} m": force for radius, force in files.lacking.items()},
+        }
+    return {**out, "ranges": {"tested": dict(files.tested), "written": dict(files.written)}}
+
+
+def _gap(gap: Gap) -> dict[str, float]:
+    return {"Fy_rmse_N": gap.Fy_rmse_N, "Mz_rmse_Nm": gap.Mz_rmse_Nm, "chi2_per_dof": gap.chi2_per_dof}
+
+
+def _region(region: Region) -> dict[str, Any]:
+    limits = {name: list(limits) for name, limits in region.region.items()}
+    return {"channel": region.channel, "region": limits, "bias": region.bias, "z": region.z}
+
+
+def _effect(found: Found) -> dict[str, Any]:
+    return {
+        "id": found.effect.id,
+        "name": found.effect.name,
+        "kind": found.effect.kind,
+        "physics": found.effect.physics,
+        "confidence": found.confidence,
+        "parameters": {n: {"value": v, "stderr": s} for n, (v, s) in found.parameters.items()},
+        "gap_after": _gap(found.gap_after),
+        "tied_with": list(found.tied_with),
+        "separate_by": wording.separation(found.separation),
+    }
+
+
+def _plain(value: Any) -> Any:
+    """JSON has no NaN and no numpy types."""
+    if isinstance(value, Mapping):
+        return {str(key): _plain(item) for key, item in value.items()}
+    if isinstance(value, list | tuple | np.ndarray):
+        return [_plain(item) for item in value]
+    if isinstance(value, np.generic):
+        value = value.item()
+    if isinstance(value, float) and not math.isfinite(value):
+        return None
+    return value

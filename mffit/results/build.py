@@ -1,0 +1,39 @@
+"""The record of a build."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from mffit.config import Config
+from mffit.fit import FitResult
+from mffit.measured import Measured
+from mffit.parts import Parts
+from mffit.points import Points
+from tir import Tyre
+
+
+@dataclass(frozen=True, slots=True)
+class BuildResult:
+    """Everything a build produces."""
+
+    config: Config
+    points: Points
+    parts: Parts
+    measured: Measured
+    fit: FitResult
+    files: Mapping[str, str]  #: name of each file by use, "turn-slip" or "normal"
+    tyres: Mapping[str, Tyre]  #: what each of them holds
+    plain: str  #: the use whose file carries the plain name
+    warnings: tuple[str, ...]
+    seconds: float
+
+    @property
+    def tyre(self) -> Tyre:
+        """What the file with the plain name holds."""
+        return self.tyres[self.plain]
+
+    @property
+    def tir_path(self) -> str:
+        """The plain name, relative to the output folder."""
+        return self.files[self.plain]

@@ -1,0 +1,54 @@
+"""Every fact that the direct method remarks becomes a sentence, and says the numbers of the fact."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+
+from mffit.measured import notes, wording
+from tir import Quantity
+
+ANGLE = Quantity(math.radians(0.25), math.radians(0.02), "rad")
+
+NOTES = [
+    (notes.StraightPath(), "it has no turn slip to measure"),
+    (notes.NotSeparable(-331.4, 0.97, 25.0), "-331 N at (0, 0) would take 0.97 deg of misalignment"),
+    (notes.NotSeparable(-331.4, None, 25.0), "an unknown angle (no sideslip sweep gives C_alpha) of"),
+    (notes.Aligned(ANGLE, 12.0, 0.04), "alpha_M = 0.250 +- 0.020 deg (12 N); uncorrected it would move"),
+    (notes.LoadSlope(1.25, 0.1), "PECP2 = 1.250 +- 0.100 (k = 1)."),
+    (notes.OneLoad(), "one load was measured"),
+    (notes.SlopeInNoise(0.05, 0.07), "the slope 0.050 per unit of dfz is within 2 u = 0.140"),
+    (notes.EpsilonInNoise(), "within 2 u of zero"),
+    (notes.SlopeTooSteep(0.93), "would reach 0.93"),
+    (notes.StandardUncertainties(), "k = 1"),
+    (notes.Conicity(0.002, 3.0, 0.0096), "3 N (0.2 % of the load) would move eps_gamma by 0.010"),
+    (notes.ContactWanders(), "R holds for the upright wheel"),
+]
+WARNINGS = [
+    (notes.SlopeNotPossible(1500.0, 15.0), "at 1500 N the camber sweep is too short"),
+    (notes.SecantNotPossible(1500.0, 15.0), "does not reach 15 deg"),
+    (notes.NothingMeasured(), "eps_gamma could not be measured"),
+    (
+        notes.AxisOff(900.0, 64.2, 50.0, 0.213),
+        "differ by 64 N (50 N is the limit): the sideslip axis is off by about 0.21",
+    ),
+    (notes.Misaligned(ANGLE, -60.0, 0.2), "differ by 120 N"),
+]
+
+
+@pytest.mark.parametrize(("fact", "words"), NOTES)
+def test_a_note_is_a_sentence_with_its_numbers(fact, words):
+    said = wording.note(fact)
+    assert words in said
+    assert said.endswith(".")
+
+
+@pytest.mark.parametrize(("fact", "words"), WARNINGS)
+def test_a_warning_is_a_sentence_with_its_numbers(fact, words):
+    assert words in wording.warning(fact)
+
+
+def test_no_fact_is_without_words():
+    assert {type(fact) for fact, _ in NOTES} == set(notes.Note.__args__)
+    assert {type(fact) for fact, _ in WARNINGS} == set(notes.Trouble.__args__)
