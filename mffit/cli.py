@@ -57,7 +57,7 @@ def spin(tyre_toml: Path, out: Path | None) -> None:
 
 @commands.command()
 @click.argument("source", type=click.Path(path_type=Path), metavar="TYRE_TOML|FILE.csv")
-@click.option("--axes", type=click.Choice(["iso", "sae", "adapted-sae", "calspan"]), help="Axes of a bare CSV file.")
+@click.option("--axes", type=click.Choice(["iso", "sae", "adapted-sae"]), help="Axes of a bare CSV file.")
 @click.option(
     "--path-centre", type=click.Choice(["left", "right"]), help="Side of the disc centre, for a CSV file."
 )
