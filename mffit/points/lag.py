@@ -17,6 +17,8 @@ NEAR_ZERO = 0.25
 """Side force, per largest of its sweep, within which its curve is straight enough to be read at zero."""
 FEWEST = 8
 """Points on each way, within that."""
+WORST = 1e8
+"""Condition number beyond which the points do not fix the lines: one side of zero is missing."""
 BINS = 25
 
 
@@ -69,14 +71,21 @@ def measure(alpha: np.ndarray, Fy: np.ndarray, s: np.ndarray, smooth: int = 1) -
 
 
 def _crossing(Fy: np.ndarray, alpha: np.ndarray) -> tuple[float, float]:
-    """Angle at zero force [rad] and its standard error, from a line through the points about it."""
+    """Angle at zero force [rad] and its standard error, from the points about it.
+
+    They are met by two lines with a common end at zero, as a way that begins cold and ends hot is steeper on one side.
+    """
     if len(Fy) < FEWEST or Fy.min() > 0.0 or Fy.max() < 0.0:
         return np.nan, np.nan
-    design = np.column_stack([np.ones(len(Fy)), Fy / np.max(np.abs(Fy))])
+    x = Fy / np.max(np.abs(Fy))
+    design = np.column_stack([np.ones(len(Fy)), x.clip(min=0.0), x.clip(max=0.0)])
     found, *_ = np.linalg.lstsq(design, alpha, rcond=None)
     residual = alpha - design @ found
-    variance = float(residual @ residual) / (len(Fy) - 2)
-    return float(found[0]), float(np.sqrt(variance * np.linalg.inv(design.T @ design)[0, 0]))
+    normal = design.T @ design
+    if np.linalg.cond(normal) > WORST:
+        return np.nan, np.nan
+    variance = float(residual @ residual) / (len(Fy) - 3)
+    return float(found[0]), float(np.sqrt(variance * np.linalg.inv(normal)[0, 0]))
 
 
 def _binned(x: np.ndarray, y: np.ndarray, edges: np.ndarray) -> np.ndarray:
