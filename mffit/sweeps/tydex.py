@@ -131,7 +131,7 @@ def _numbers(line: str, count: int, path: Path, number: int) -> list[float]:
     words = line.split()
     if len(words) != count:  # full columns leave no blank between them
         words = [line[k : k + WIDTH].strip() for k in range(0, len(line), WIDTH)]
-    if len(words) != count:
+    if len(words) != count or any(" " in word for word in words):
         sentence = f"has {len(line.split())} values for {count} channels; complete or remove this row"
         raise InputError(sentence, file=path, line=number)
     found = [_float(word) for word in words]
