@@ -127,7 +127,9 @@ def simulate(rig_toml: Path, out: Path, seed: int | None) -> None:
 
 @commands.command()
 @click.argument("files", nargs=-1, required=True, type=click.Path(path_type=Path), metavar="FILE...")
-@click.option("--out", type=click.Path(path_type=Path), help="Folder for tyre.toml, stretches.csv and pictures.")
+@click.option(
+    "--out", type=click.Path(path_type=Path), help="Folder for tyre.toml, stretches.csv and pictures."
+)
 def sniff(files: tuple[Path, ...], out: Path | None) -> None:
     """What recordings hold: channels, units, axes, conditions, stretches, and the tyre.toml for them."""
     from mffit import pipeline, recordings
@@ -137,7 +139,9 @@ def sniff(files: tuple[Path, ...], out: Path | None) -> None:
     click.echo(text.sniff_summary(found))
     if out is None:
         folder = Path()
-        click.echo("\n" + recordings.project_text(found, folder, unloaded_radius=None, nominal_load=None), nl=False)
+        click.echo(
+            "\n" + recordings.project_text(found, folder, unloaded_radius=None, nominal_load=None), nl=False
+        )
         return
     for path in pipeline.write_sniffed(found, out):
         click.echo(f"written {path}")
@@ -165,7 +169,9 @@ def init(paths: tuple[Path, ...], recorded: bool, name: str | None, **tyre: floa
         found, written = pipeline.init_from(files, folder, name=name, **tyre)
         click.echo(text.sniff_summary(found))
     elif files:
-        raise InputError(f"one folder only; recordings go behind --from: mffit init --from {files[0]} {folder}")
+        raise InputError(
+            f"one folder only; recordings go behind --from: mffit init --from {files[0]} {folder}"
+        )
     else:
         written = init_project(folder)
     for path in written:

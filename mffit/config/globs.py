@@ -28,7 +28,8 @@ def with_globs_expanded(
         sweeps = [sweeps]
     if not isinstance(sweeps, list) or not any(_is_wild(entry, folder) for entry in sweeps):
         return content, lines
-    expanded, found_lines = [], {key: line for key, line in lines.items() if not key.startswith("sweep.")}
+    expanded: list[Any] = []
+    found_lines = {key: line for key, line in lines.items() if not key.startswith("sweep.")}
     for index, entry in enumerate(sweeps):
         own = {key: line for key, line in lines.items() if f"{key}.".startswith(f"sweep.{index}.")}
         names = _matches(entry["file"], folder) if _is_wild(entry, folder) else [None]

@@ -81,7 +81,9 @@ class RigTable(Table):
     """[rig]: the machine, its axes and how well it is known."""
 
     type: Literal["rotating-disk", "flat-track"] = "rotating-disk"
-    axes: Annotated[Literal["iso", "sae", "adapted-sae"], BeforeValidator(lambda name: ALSO_CALLED.get(name, name))] = "iso"
+    axes: Annotated[
+        Literal["iso", "sae", "adapted-sae"], BeforeValidator(lambda name: ALSO_CALLED.get(name, name))
+    ] = "iso"
     force_frame: Literal["W", "C"] = "W"
     path_centre: Literal["left", "right"] = "left"
     path_radius: q.PathRadius | None = None  #: [m]

@@ -44,7 +44,10 @@ def init_from(
     InputError
         A recording cannot be read, radius or load is missing, a file is there already, or no axes fit.
     """
-    for value, option, unit in ((unloaded_radius, "unloaded-radius", "M"), (nominal_load, "nominal-load", "N")):
+    for value, option, unit in (
+        (unloaded_radius, "unloaded-radius", "M"),
+        (nominal_load, "nominal-load", "N"),
+    ):
         if value is None:
             raise InputError(f"recordings do not say it: give --{option} {unit}")
     folder = Path(folder)
@@ -89,7 +92,9 @@ def _written(folder: Path, sniffed: Sniffed, text: str) -> list[Path]:
     except (FileExistsError, NotADirectoryError):
         raise InputError("is a file; name a folder", file=folder) from None
     except OSError as error:
-        raise InputError(f"cannot be written to ({error.strerror}); name another folder", file=folder) from None
+        raise InputError(
+            f"cannot be written to ({error.strerror}); name another folder", file=folder
+        ) from None
     for name, k in pictures.items():
         _picture(sniffed, k, folder / name)
     return [folder / name for name in names]

@@ -72,20 +72,31 @@ def reduce(sweep: Sweep, phi_t: float) -> Reduced:
     _check_time(sweep)
     wrong = faults(sweep)
     tried = _judged(sweep, _stretches(sweep, wrong))
-    bad = np.logical_or.reduce([fault.which for fault in wrong]) if wrong else np.zeros(len(sweep), dtype=bool)
+    bad = (
+        np.logical_or.reduce([fault.which for fault in wrong]) if wrong else np.zeros(len(sweep), dtype=bool)
+    )
     plateaus = [stretch for stretch in tried if stretch.kind == PLATEAU and not stretch.dropped]
     swept = [stretch for stretch in tried if stretch.kind == SWEEP and not stretch.dropped]
     parts = [_averaged(sweep, phi_t, plateaus)] if plateaus else []
     numbers = np.cumsum([stretch.kind == SWEEP for stretch in tried])
-    labels = [f"{sweep.name}:{k:02d}" if s.kind == SWEEP else sweep.name for s, k in zip(tried, numbers, strict=True)]
+    labels = [
+        f"{sweep.name}:{k:02d}" if s.kind == SWEEP else sweep.name
+        for s, k in zip(tried, numbers, strict=True)
+    ]
     counts = np.zeros(0, dtype=int)
     if swept:
-        names = [label for stretch, label in zip(tried, labels, strict=True) if stretch.kind == SWEEP and not stretch.dropped]
+        names = [
+            label
+            for stretch, label in zip(tried, labels, strict=True)
+            if stretch.kind == SWEEP and not stretch.dropped
+        ]
         parts.append(_continuous(sweep, phi_t, swept, names, bad))
         counts = np.bincount(parts[-1].sweep, minlength=len(swept))
     found = [_lag(sweep, stretch, bad) for stretch in swept]
-    by_stretch = {stretch: (int(count), lag) for stretch, count, lag in zip(swept, counts, found, strict=True)}
-    by_stretch |= {stretch: (1, UNKNOWN) for stretch in plateaus}
+    by_stretch = {
+        stretch: (int(count), lag) for stretch, count, lag in zip(swept, counts, found, strict=True)
+    }
+    by_stretch |= dict.fromkeys(plateaus, (1, UNKNOWN))
     notes = [
         _note(sweep, stretch, label, *by_stretch.get(stretch, (0, UNKNOWN)))
         for stretch, label in zip(tried, labels, strict=True)
@@ -124,10 +135,15 @@ def _merged(found: list[Stretch]) -> list[Stretch]:
     out: list[Stretch] = []
     for stretch in sorted(found):
         last = out[-1] if out else None
-        if last and stretch.dropped and (last.dropped, last.kind, last.end) == (
-            stretch.dropped,
-            stretch.kind,
-            stretch.begin,
+        if (
+            last
+            and stretch.dropped
+            and (last.dropped, last.kind, last.end)
+            == (
+                stretch.dropped,
+                stretch.kind,
+                stretch.begin,
+            )
         ):
             out[-1] = last._replace(end=stretch.end)
         else:
@@ -191,7 +207,9 @@ def _lag(sweep: Sweep, stretch: Stretch, bad: np.ndarray) -> Lag:
     rolled = np.r_[0.0, np.cumsum(np.diff(time) * 0.5 * (V[1:] + V[:-1]))]
     if not rolled[-1] > 0.0 or np.any(np.diff(rolled) <= 0.0):
         return UNKNOWN
-    return lags.measure(sweep.alpha[rows], sweep.Fy[rows], rolled, round(CONTINUOUS_STEP / np.median(np.diff(time))))
+    return lags.measure(
+        sweep.alpha[rows], sweep.Fy[rows], rolled, round(CONTINUOUS_STEP / np.median(np.diff(time)))
+    )
 
 
 def _note(sweep: Sweep, stretch: Stretch, label: str, points: int, lag: Lag) -> StretchNote:

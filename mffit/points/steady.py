@@ -6,6 +6,7 @@ decides how much of a stretch is transient, and whether it ever came to rest.
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Sequence
 from typing import NamedTuple
 
@@ -51,9 +52,7 @@ class Settings(NamedTuple):
     V: np.ndarray  #: [m/s]
 
 
-def stretches(
-    settings: Settings, point: np.ndarray | None = None, cuts: Sequence[int] = ()
-) -> list[Stretch]:
+def stretches(settings: Settings, point: np.ndarray | None = None, cuts: Sequence[int] = ()) -> list[Stretch]:
     """The stretches of a series in time order, transients included.
 
     Parameters
@@ -74,12 +73,14 @@ def stretches(
         edges = np.flatnonzero(point[1:] != point[:-1]) + 1
         bounds = zip(np.r_[0, edges], np.r_[edges, n], strict=True)
         return [Stretch(int(begin), int(end)) for begin, end in bounds if point[begin] != ""]
-    scale = Settings(*(float(np.median(np.abs(x[:: max(n // SAMPLED, 1)]))) for x in settings))
+    scale = scale_of(settings)
     edges = np.unique(np.r_[0, gaps(settings.time), np.asarray(cuts, dtype=int), n])
     found: list[Stretch] = []
-    for begin, end in zip(edges[:-1], edges[1:], strict=True):
+    for begin, end in itertools.pairwise(edges.tolist()):
         piece = Settings(*(x[begin:end] for x in settings))
-        found += [s._replace(begin=s.begin + int(begin), end=s.end + int(begin)) for s in _of_piece(piece, scale)]
+        found += [
+            s._replace(begin=s.begin + int(begin), end=s.end + int(begin)) for s in _of_piece(piece, scale)
+        ]
     return found
 
 
@@ -91,7 +92,7 @@ def gaps(time: np.ndarray) -> np.ndarray:
     return np.flatnonzero(steps > max(GAP_STEPS * float(np.median(steps)), GAP)) + 1
 
 
-def _of_piece(settings: Settings, scale: Settings) -> list[Stretch]:
+def _of_piece(settings: Settings, scale: Scale) -> list[Stretch]:
     """The stretches of a piece without gaps."""
     if len(settings.time) < 2:
         return [Stretch(0, len(settings.time), "only one sample", MOVE)]
@@ -110,7 +111,7 @@ def _of_piece(settings: Settings, scale: Settings) -> list[Stretch]:
     return sorted(found)
 
 
-def _reaching(settings: Settings, scale: Settings, found: list[tuple[int, int]]) -> list[tuple[int, int]]:
+def _reaching(settings: Settings, scale: Scale, found: list[tuple[int, int]]) -> list[tuple[int, int]]:
     """Runs of one condition taken up to where it really begins and ends: a change shows ``LAG`` to either side of it."""
     n = len(settings.time)
     lag = _samples(settings, LAG)
@@ -125,7 +126,10 @@ def _reaching(settings: Settings, scale: Settings, found: list[tuple[int, int]])
         least, most = max(least, begin - lag), min(most, end + lag)
         inside = np.ones(most - least, dtype=bool)
         for name, x in smooth.items():
-            for a, b, c, d in ((least, begin, begin, min(begin + lag, end)), (end, most, max(end - lag, begin), end)):
+            for a, b, c, d in (
+                (least, begin, begin, min(begin + lag, end)),
+                (end, most, max(end - lag, begin), end),
+            ):
                 step = STEP_SHARE * max(getattr(scale, name), abs(float(np.median(x[c:d]))))
                 inside[a - least : b - least] &= np.abs(x[a:b] - np.median(x[c:d])) <= step
         before, behind = inside[: begin - least][::-1], inside[end - least :]
@@ -158,12 +162,16 @@ def _of_condition(settings: Settings, alpha_moves: np.ndarray, gamma_moves: np.n
     return found
 
 
-def _swept(settings: Settings, gamma_moves: np.ndarray, begin: int, end: int, staircase: bool) -> list[Stretch]:
+def _swept(
+    settings: Settings, gamma_moves: np.ndarray, begin: int, end: int, staircase: bool
+) -> list[Stretch]:
     """What a moving piece is: sweeps of one angle, or the way between plateaus."""
-    found = []
+    found: list[Stretch] = []
     for values, held in ((settings.alpha, ~gamma_moves), (settings.gamma, None)):
         if held is None:
-            whole = not any(s.kind == SWEEP for s in found) and np.ptp(settings.alpha[begin:end]) < SMALLEST_SWEEP
+            whole = (
+                not any(s.kind == SWEEP for s in found) and np.ptp(settings.alpha[begin:end]) < SMALLEST_SWEEP
+            )
             parts = [(begin, end)] if whole else []
         else:
             parts = [(begin + b, begin + e) for b, e in runs(held[begin:end])]
@@ -191,6 +199,22 @@ def runs(mask: np.ndarray) -> list[tuple[int, int]]:
     return [(int(begin), int(end)) for begin, end in zip(edges[::2], edges[1::2], strict=True)]
 
 
+class Scale(NamedTuple):
+    """Usual size of each setting in a recording."""
+
+    alpha: float
+    gamma: float
+    Fz: float
+    p: float
+    V: float
+
+
+def scale_of(settings: Settings) -> Scale:
+    """Median size of each setting, of a sample of a long recording."""
+    some = max(len(settings.time) // SAMPLED, 1)
+    return Scale(*(float(np.median(np.abs(getattr(settings, name)[::some]))) for name in Scale._fields))
+
+
 class Moves(NamedTuple):
     """Masks (n,) of the samples within ``LAG`` of a change of each setting."""
 
@@ -201,7 +225,7 @@ class Moves(NamedTuple):
     V: np.ndarray
 
 
-def moves(settings: Settings, scale: Settings | None = None) -> Moves:
+def moves(settings: Settings, scale: Scale | None = None) -> Moves:
     """Where each setting changes.
 
     Parameters
@@ -210,7 +234,7 @@ def moves(settings: Settings, scale: Settings | None = None) -> Moves:
     scale : usual size of each setting in the whole recording; of this series if None
     """
     n = len(settings.time)
-    scale = scale or Settings(*(float(np.median(np.abs(x))) for x in settings))
+    scale = scale or scale_of(settings)
     lag = _samples(settings, LAG)
     masks = {}
     for name in Moves._fields:

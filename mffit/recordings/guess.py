@@ -71,7 +71,7 @@ def _guess(raw: RawTable, channel: Channel, heading: str) -> Guess | None:
         if heading != channel.name and len(np.unique(np.asarray(raw.cells[k]))) < 2:
             return None  # one label for all says nothing
         return Guess(channel, heading, stated, "", False, np.nan, np.nan)
-    values = _numbers(raw.cells[k])
+    values = numbers(raw.cells[k])
     if not np.any(np.isfinite(values)):
         return None
     lower, upper = float(np.nanmin(values)), float(np.nanmax(values))
@@ -89,7 +89,8 @@ def _guess(raw: RawTable, channel: Channel, heading: str) -> Guess | None:
     return Guess(channel, heading, "", fitting[0] if fitting else channel.unit, True, lower, upper)
 
 
-def _numbers(cells: Cells) -> np.ndarray:
+def numbers(cells: Cells) -> np.ndarray:
+    """A column's numbers (n,), NaN where there is none."""
     if isinstance(cells, np.ndarray):
         return cells
     return pd.to_numeric(pd.Series(list(cells), dtype=object), errors="coerce").to_numpy(dtype=float)

@@ -39,8 +39,12 @@ def project_text(
     name : of the output files; None takes the first recording's
     """
     first = sniffed.recordings[0]
-    said = next((r.about[key] for r in sniffed.recordings for key in ("tireid", "title") if r.about.get(key)), "")
-    usual = float(np.median(sniffed.points.p[main_pressure(sniffed.points)])) if len(sniffed.points) else np.nan
+    said = next(
+        (r.about[key] for r in sniffed.recordings for key in ("tireid", "title") if r.about.get(key)), ""
+    )
+    usual = (
+        float(np.median(sniffed.points.p[main_pressure(sniffed.points)])) if len(sniffed.points) else np.nan
+    )
     has_pressure = any("p_kPa" in r.guesses for r in sniffed.recordings)
     speeds = sniffed.conditions["speed"]
     speed = max(speeds, key=lambda level: level.stretches).value if speeds else 10.0
@@ -59,19 +63,31 @@ def project_text(
     if nominal_pressure is not None:
         lines.append(f"nominal_pressure = {nominal_pressure:g}  # kPa, NOMPRES")
     elif has_pressure and np.isfinite(usual):
-        lines.append(f"nominal_pressure = {usual / 1e3:.0f}  # kPa, NOMPRES: the middle one of those at which most was run")
+        lines.append(
+            f"nominal_pressure = {usual / 1e3:.0f}  # kPa, NOMPRES: the middle one of those at which most was run"
+        )
     else:
         lines.append(_given("nominal_pressure", None, "kPa, NOMPRES"))
     if any("V_mps" in r.guesses for r in sniffed.recordings):
         lines.append(f"nominal_speed = {speed:.3g}  # m/s, LONGVL: the speed at which most was run")
-    lines += ["", "[rig]", 'type = "flat-track"  # a straight path; a disc needs path_centre and path_radius, too']
+    lines += [
+        "",
+        "[rig]",
+        'type = "flat-track"  # a straight path; a disc needs path_centre and path_radius, too',
+    ]
     lines += _axes(sniffed)
     shared = _shared(sniffed)
     lines += ["", "[columns]  # of all files"]
-    lines += [_column(guess) for guess in shared.values() if guess.heading != guess.channel.name or guess.unit]
+    lines += [
+        _column(guess) for guess in shared.values() if guess.heading != guess.channel.name or guess.unit
+    ]
     for recording in sniffed.recordings:
         lines += ["", "[[sweep]]", f"file = {quoted(relative(recording.path, folder))}"]
-        own = {key: guess for key, guess in recording.guesses.items() if shared.get(key) != guess and _differs(shared, guess)}
+        own = {
+            key: guess
+            for key, guess in recording.guesses.items()
+            if shared.get(key) != guess and _differs(shared, guess)
+        }
         if own:
             lines.append("[sweep.columns]")
             lines += [_column(guess) for guess in own.values()]
@@ -85,7 +101,9 @@ def _axes(sniffed: Sniffed) -> list[str]:
     if len(sniffed.axes) == 1:
         return [f'axes = "{sniffed.axes[0]}"  # as side force, aligning moment, camber thrust and load say']
     others = " or ".join(f'"{axes}"' for axes in sniffed.axes[1:])
-    return [f'axes = "{sniffed.axes[0]}"  # {others} would agree with these recordings, too: they hold too little camber']
+    return [
+        f'axes = "{sniffed.axes[0]}"  # {others} would agree with these recordings, too: they hold too little camber'
+    ]
 
 
 def _shared(sniffed: Sniffed) -> dict[str, Guess]:

@@ -19,7 +19,7 @@ from mffit.points.points import Points
 from mffit.points.signatures import signatures
 from mffit.points.steady import gaps
 from mffit.points.stretch import MOVE
-from mffit.recordings.guess import Guess, guesses
+from mffit.recordings.guess import Guess, guesses, numbers
 from mffit.sweeps import formats
 from mffit.sweeps.channels import CHANNELS
 from mffit.sweeps.raw_table import RawTable
@@ -59,7 +59,9 @@ class Sniffed:
     axes: tuple[str, ...]  #: that agree with physics, the likeliest first; empty if none does
     wrong: tuple[str, ...]  #: what the likeliest axes contradict, if none agrees
     reading: Reading  #: points and stretches under the likeliest axes
-    conditions: dict[str, tuple[Level, ...]]  #: by quantity: load [N], camber [rad], pressure [Pa], speed [m/s]
+    conditions: dict[
+        str, tuple[Level, ...]
+    ]  #: by quantity: load [N], camber [rad], pressure [Pa], speed [m/s]
 
     @property
     def points(self) -> Points:
@@ -75,13 +77,13 @@ def sniff(paths: Sequence[str | Path]) -> Sniffed:
     InputError
         A file cannot be read, lacks a required channel, or the same file is named twice.
     """
-    paths = [Path(path) for path in paths]
-    if not paths:
+    files = [Path(path) for path in paths]
+    if not files:
         raise InputError("no file is named; name one recording or more")
-    twice = [path for k, path in enumerate(paths) if path in paths[:k]]
+    twice = [file for k, file in enumerate(files) if file in files[:k]]
     if twice:
         raise InputError("is named twice; remove one", file=twice[0])
-    recordings = tuple(_recording(path) for path in paths)
+    recordings = tuple(_recording(file) for file in files)
     axes = _first_axes(recordings)
     config = configuration_of(recordings, axes)
     reading = read(config, check_physics=False, may_be_empty=True)
@@ -112,13 +114,12 @@ def _recording(path: Path) -> Recording:
 def _clock(raw: RawTable, found: dict[str, Guess]) -> tuple[float, float, int]:
     if "time_s" not in found:
         return float("nan"), float("nan"), 0
-    cells = raw.cells[raw.headings.index(found["time_s"].heading)]
-    time = np.array([float(cell) if cell != "" else np.nan for cell in cells]) if isinstance(cells, list | tuple) else cells
+    time = numbers(raw.cells[raw.headings.index(found["time_s"].heading)])
     steps = np.diff(time)
     usual = float(np.median(steps)) if len(steps) else float("nan")
     if not usual > 0.0:
         return float("nan"), float("nan"), 0
-    return 1.0 / usual, float(time[-1] - time[0]), len(gaps(np.asarray(time)))
+    return 1.0 / usual, float(time[-1] - time[0]), len(gaps(time))
 
 
 def _first_axes(recordings: Sequence[Recording]) -> str:
@@ -132,11 +133,17 @@ def configuration_of(recordings: Sequence[Recording], axes: str) -> Config:
     sweeps = [
         {
             "file": str(recording.path.absolute()),
-            "columns": {name: guess.column.model_dump(exclude_none=True) for name, guess in recording.guesses.items()},
+            "columns": {
+                name: guess.column.model_dump(exclude_none=True) for name, guess in recording.guesses.items()
+            },
         }
         for recording in recordings
     ]
-    content = {"tyre": {"name": "sniffed", **STAND_IN}, "rig": {"type": "flat-track", "axes": axes}, "sweep": sweeps}
+    content = {
+        "tyre": {"name": "sniffed", **STAND_IN},
+        "rig": {"type": "flat-track", "axes": axes},
+        "sweep": sweeps,
+    }
     return configuration.load(content)
 
 
@@ -177,5 +184,6 @@ def conditions_of(reading: Reading) -> dict[str, tuple[Level, ...]]:
 def _levels(values: np.ndarray, quantity: levels.Quantity) -> tuple[Level, ...]:
     near = levels.nearest_labels(values, quantity)
     return tuple(
-        Level(float(np.median(values[near == k])), int(np.sum(near == k))) for k in range(near.max(initial=-1) + 1)
+        Level(float(np.median(values[near == k])), int(np.sum(near == k)))
+        for k in range(near.max(initial=-1) + 1)
     )

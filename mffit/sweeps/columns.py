@@ -138,7 +138,9 @@ def _channel(
     given = cells[heading]
     if bool(np.all(np.isnan(given))) if isinstance(given, np.ndarray) else all(map(_is_blank, given)):
         if channel.required:
-            raise InputError("has no values; complete it", file=raw.path, line=int(raw.lines[0]), column=heading)
+            raise InputError(
+                "has no values; complete it", file=raw.path, line=int(raw.lines[0]), column=heading
+            )
         return None
     if channel.kind == "label":
         different, where = np.unique(np.asarray(given), return_inverse=True)

@@ -120,9 +120,9 @@ def _encoding(head: bytes) -> str | None:
 def _rows(text: str, dialect: Dialect) -> Iterator[tuple[int, tuple[str, ...]]]:
     """Line and stripped cells of every row that is neither blank nor a comment."""
     if dialect.separator == BLANKS:
-        for number, line in enumerate(text.splitlines(), start=1):
-            if line.strip() and not line.lstrip().startswith("#"):
-                yield number, tuple(_point(cell, dialect) for cell in line.split())
+        for number, words in enumerate(text.splitlines(), start=1):
+            if words.strip() and not words.lstrip().startswith("#"):
+                yield number, tuple(_point(cell, dialect) for cell in words.split())
         return
     reader = csv.reader(io.StringIO(text, newline=""), delimiter=dialect.separator)
     before = 0

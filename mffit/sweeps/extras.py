@@ -15,5 +15,6 @@ def needed(module: str, what: str, path: Path) -> Any:
         return importlib.import_module(module)
     except ImportError:
         raise InputError(
-            f'{what} are read with {module}, which is not installed; run pip install "mffit[formats]"', file=path
+            f'{what} are read with {module}, which is not installed; run pip install "mffit[formats]"',
+            file=path,
         ) from None

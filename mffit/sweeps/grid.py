@@ -49,7 +49,9 @@ def table_of(rows: Sequence[Row], lines: Sequence[int], path: Path) -> RawTable:
     width = len(head.headings)
     if not data:
         raise InputError(
-            "has headings but no data; add one row per point or remove its [[sweep]]", file=path, line=heading_line
+            "has headings but no data; add one row per point or remove its [[sweep]]",
+            file=path,
+            line=heading_line,
         )
     for row, line in data:
         if len(row) != width and (len(row) < width or any(cell != "" for cell in row[width:])):
@@ -79,7 +81,9 @@ def head_of(rows: Sequence[Row], lines: Sequence[int], path: Path) -> Head:
         sentence = "there are numbers where the headings should be; add a first line of headings"
         raise InputError(sentence, file=path, line=lines[at])
     units, used = _units(rows, at, len(headings))
-    split = [WITH_UNIT.match(heading) if not unit else None for heading, unit in zip(headings, units, strict=True)]
+    split = [
+        WITH_UNIT.match(heading) if not unit else None for heading, unit in zip(headings, units, strict=True)
+    ]
     split = [found if found and is_unit(found[2]) else None for found in split]
     headings = tuple(found[1] if found else heading for heading, found in zip(headings, split, strict=True))
     units = tuple(found[2].strip() if found else unit for unit, found in zip(units, split, strict=True))

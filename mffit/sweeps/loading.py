@@ -89,7 +89,9 @@ def _columns(config: Config, index: int, entry: SweepTable) -> Columns:
         )
     raw = read(path)
     try:
-        return read_columns(raw, {**config.columns, **entry.columns}, set(config.columns) - set(entry.columns))
+        return read_columns(
+            raw, {**config.columns, **entry.columns}, set(config.columns) - set(entry.columns)
+        )
     except InputError as error:
         if error.file is None and error.key is not None:
             if error.key.split(".")[1] in entry.columns:

@@ -19,10 +19,14 @@ class RawTable:
     headings: tuple[str, ...]
     units: tuple[str, ...]  #: as the file states them, "" where it does not
     cells: tuple[Cells, ...]  #: a column under each heading; text is stripped of blanks
-    lines: Sequence[int]  #: line of each row in the file, counted from 1; in binary formats its number
+    lines: (
+        Sequence[int] | np.ndarray
+    )  #: line of each row in the file, counted from 1; in binary formats its number
     path: Path
     heading_line: int | None  #: None where the format has no lines
-    about: Mapping[str, str] = field(default_factory=dict)  #: what the file says of itself: tyre, test, source
+    about: Mapping[str, str] = field(
+        default_factory=dict
+    )  #: what the file says of itself: tyre, test, source
 
     def __len__(self) -> int:
         return len(self.lines)

@@ -10,7 +10,6 @@ from mffit.sweeps.grid import table_of
 from mffit.sweeps.raw_table import RawTable
 
 
-
 def read_xlsx(path: Path) -> RawTable:
     """Read an ``.xlsx`` file: headings, if need be a row of units, then numbers; values, not formulae.
 
@@ -35,7 +34,9 @@ def read_xlsx(path: Path) -> RawTable:
         raise InputError("there is no such file; correct its name in [[sweep]] file", file=path) from None
     except Exception as error:  # a damaged workbook fails in whatever way its parts happen to lead to
         said = " ".join(str(error).split())[:80]
-        raise InputError(f"is no Excel workbook that can be read ({said}); save it again", file=path) from None
+        raise InputError(
+            f"is no Excel workbook that can be read ({said}); save it again", file=path
+        ) from None
     raise InputError("has no sheet with a table; put headings above the columns", file=path)
 
 

@@ -59,9 +59,9 @@ def read_tydex(path: Path) -> RawTable:
     units = {c.name: c.unit for c in channels}
     for _, line in sections.get("CONSTANTS", []):
         constant = _entry(line)
-        number = _float(constant.words[0]) if constant.words else math.nan
-        if constant.name not in columns and math.isfinite(number):
-            columns[constant.name], units[constant.name] = np.full(len(lines), number), constant.unit
+        value = _float(constant.words[0]) if constant.words else math.nan
+        if constant.name not in columns and math.isfinite(value):
+            columns[constant.name], units[constant.name] = np.full(len(lines), value), constant.unit
     about = {e.name: " ".join(e.words) for _, line in sections["HEADER"] if (e := _entry(line)).name}
     return RawTable(
         headings=tuple(columns),
@@ -101,7 +101,8 @@ def _text(path: Path) -> str:
         return text
     if "\0" in text:
         raise InputError(
-            "is binary: a National Instruments .tdx goes with a .tdm file and is no TYDEX; export it as CSV", file=path
+            "is binary: a National Instruments .tdx goes with a .tdm file and is no TYDEX; export it as CSV",
+            file=path,
         )
     raise InputError("is no TYDEX file, as **HEADER is not in it; export it as TYDEX 1.3 or CSV", file=path)
 

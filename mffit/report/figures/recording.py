@@ -28,7 +28,7 @@ def recording(sweep: Sweep, notes: list[StretchNote]) -> Figure:
     sweep : a series in ISO-W and SI
     notes : its stretches
     """
-    rows = (
+    channels = (
         ("sideslip [deg]", np.degrees(sweep.alpha)),
         ("camber [deg]", np.degrees(sweep.gamma)),
         ("load [N]", sweep.Fz),
@@ -37,7 +37,7 @@ def recording(sweep: Sweep, notes: list[StretchNote]) -> Figure:
         ("side force [N]", sweep.Fy),
         ("moment [Nm]", sweep.Mz),
     )
-    rows = tuple((name, x) for name, x in rows if np.any(np.isfinite(x)))
+    rows = tuple((name, x) for name, x in channels if np.any(np.isfinite(x)))
     figure, grid = style.panel_grid([1] * len(rows), 1, height=0.85, legend=True)
     panels = [row[0] for row in grid]
     drawn = _clock(sweep.time)
@@ -52,7 +52,12 @@ def recording(sweep: Sweep, notes: list[StretchNote]) -> Figure:
             ax.axvspan(drawn[first], drawn[min(last, len(drawn) - 1)], color=colour, alpha=0.13, lw=0)
         shown = values[some].astype(float)
         broken = np.searchsorted(some, breaks)
-        ax.plot(np.insert(drawn[some], broken, drawn[some][broken.clip(max=len(some) - 1)]), np.insert(shown, broken, np.nan), color=style.INK, lw=0.6)
+        ax.plot(
+            np.insert(drawn[some], broken, drawn[some][broken.clip(max=len(some) - 1)]),
+            np.insert(shown, broken, np.nan),
+            color=style.INK,
+            lw=0.6,
+        )
         ax.set_ylabel(name)
         ax.margins(x=0.005)
         if ax is not panels[-1]:

@@ -9,7 +9,12 @@ from mffit.recordings import Sniffed
 from mffit.recordings.sniffed import Level, Recording
 from mffit.report.text.layout import blocks, paragraphs, table
 
-WORDS = {"load": ("N", 1.0, 0), "camber": ("deg", 180.0 / np.pi, 1), "pressure": ("kPa", 1e-3, 1), "speed": ("m/s", 1.0, 2)}
+WORDS = {
+    "load": ("N", 1.0, 0),
+    "camber": ("deg", 180.0 / np.pi, 1),
+    "pressure": ("kPa", 1e-3, 1),
+    "speed": ("m/s", 1.0, 2),
+}
 """Unit, factor and digits in which a setting is shown."""
 SHOWN = 12  # dropped stretches
 
@@ -36,7 +41,9 @@ def _file(recording: Recording) -> str:
             rows.append((heading, unit or "-", "not used", ""))
         else:
             found = "" if np.isnan(guess.lower) else f"{guess.lower:.5g} to {guess.upper:.5g}"
-            rows.append((heading, unit or (f"{guess.unit}?" if guess.assumed else "-"), guess.channel.name, found))
+            rows.append(
+                (heading, unit or (f"{guess.unit}?" if guess.assumed else "-"), guess.channel.name, found)
+            )
     rate = (
         f", {recording.rate:.4g} samples per second over {recording.seconds:.0f} s, {recording.gaps} gaps in time"
         if np.isfinite(recording.rate)
@@ -45,7 +52,9 @@ def _file(recording: Recording) -> str:
     head = f"{recording.path}: {recording.kind}, {recording.samples} rows{rate}"
     about = "; ".join(f"{key}: {text[:90]}" for key, text in recording.about.items())
     return "\n".join(
-        part for part in (head, about, "", table(("heading", "unit", "is", "range"), rows, left=3)) if part or not about
+        part
+        for part in (head, about, "", table(("heading", "unit", "is", "range"), rows, left=3))
+        if part or not about
     )
 
 
@@ -53,7 +62,11 @@ def _axes(sniffed: Sniffed) -> str:
     if not sniffed.axes:
         return f"axes: no known axes fit; in ISO signs {' and '.join(sniffed.wrong)}"
     said = " or ".join(sniffed.axes)
-    more = ", which these recordings do not tell apart: they hold too little camber" if len(sniffed.axes) > 1 else ""
+    more = (
+        ", which these recordings do not tell apart: they hold too little camber"
+        if len(sniffed.axes) > 1
+        else ""
+    )
     return f"axes: {said}{more} (by the slopes of side force and moment over sideslip, camber thrust and the sign of the load)"
 
 
@@ -80,6 +93,10 @@ def _stretches(sniffed: Sniffed) -> str:
         (note.sweep, note.kind, f"{note.begin_s:.2f}", f"{note.end_s:.2f}", note.dropped)
         for note in sorted(lost, key=lambda note: (note.kind == MOVE, note.begin_s))[:SHOWN]
     ]
-    shown = table(("part of", "kind", "from [s]", "to [s]", "why it gives no point"), rows, left=2) if rows else ""
+    shown = (
+        table(("part of", "kind", "from [s]", "to [s]", "why it gives no point"), rows, left=2)
+        if rows
+        else ""
+    )
     more = f"... and {len(lost) - SHOWN} more in stretches.csv" if len(lost) > SHOWN else ""
     return "\n".join(part for part in (head, shown, more) if part)

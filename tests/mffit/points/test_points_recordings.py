@@ -27,7 +27,12 @@ def read(tmp_path):
         return points.read(
             configuration.load(
                 {
-                    "tyre": {"name": "x", "unloaded_radius": 0.2, "nominal_load": 1500.0, "nominal_pressure": 83.0},
+                    "tyre": {
+                        "name": "x",
+                        "unloaded_radius": 0.2,
+                        "nominal_load": 1500.0,
+                        "nominal_pressure": 83.0,
+                    },
                     "rig": {"type": "flat-track", "axes": axes},
                     "columns": COLUMNS,
                     "sweep": [{"file": str(file)}],
@@ -225,7 +230,9 @@ def test_moves_between_plateaus_are_no_sweeps(read):
     random = np.random.default_rng(3)
     table["SA"], table["IA"], table["P"] = -alpha, 0.0, 83.0
     table["FZ"] = -1500.0 + 5.0 * random.standard_normal(len(time))
-    table["FY"] = -side_force(np.radians(alpha), 0.0, 1500.0, side=0.0) + 5.0 * random.standard_normal(len(time))
+    table["FY"] = -side_force(np.radians(alpha), 0.0, 1500.0, side=0.0) + 5.0 * random.standard_normal(
+        len(time)
+    )
     found = read(table, check_physics=False)
     assert not kept(found)
     assert len(found.points) == 8

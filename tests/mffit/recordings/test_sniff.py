@@ -98,11 +98,15 @@ def test_from_the_recording_to_the_property_file(machine, tmp_path, capsys):
     alpha = np.radians(np.linspace(-8.0, 8.0, 33))
     for load in LOADS:
         truth = side_force(alpha, 0.0, load, side=0.0)
-        assert np.sqrt(np.mean((result.tyre(load, alpha=alpha, p=83e3, Vx=11.0).Fy - truth) ** 2)) < 0.03 * load
+        assert (
+            np.sqrt(np.mean((result.tyre(load, alpha=alpha, p=83e3, Vx=11.0).Fy - truth) ** 2)) < 0.03 * load
+        )
     points = pd.read_csv(project / "out" / "points.csv")
     assert set(points["sweep"]) >= {"cornering:01", "cornering:18"}
     assert {"file", "line", "direction", "mount", "T_degC"} <= set(points)
-    pd.testing.assert_frame_equal(pd.read_csv(project / "out" / "stretches.csv")[["points"]], stretches[["points"]])
+    pd.testing.assert_frame_equal(
+        pd.read_csv(project / "out" / "stretches.csv")[["points"]], stretches[["points"]]
+    )
 
 
 def test_the_written_project_is_valid_and_its_resolved_form_too(machine, tmp_path):
@@ -154,7 +158,9 @@ def test_the_command_prints_the_project_file(machine, capsys):
     assert tomllib.loads(printed[start:])["columns"]["alpha_deg"] == "SA"
 
 
-@pytest.mark.parametrize("arguments", [["init", "--from", "only-one"], ["init", "a", "b"], ["sniff", "missing.mat"]])
+@pytest.mark.parametrize(
+    "arguments", [["init", "--from", "only-one"], ["init", "a", "b"], ["sniff", "missing.mat"]]
+)
 def test_bad_usage_is_one_sentence(arguments, tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     with pytest.raises(SystemExit) as caught:

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import re
+from pathlib import Path
+
 import numpy as np
 import pytest
 
@@ -52,7 +55,20 @@ def test_every_spelling_of_a_laboratory_is_a_unit(written):
     assert is_unit(written.upper()) or written.upper() == written
 
 
-@pytest.mark.parametrize("text", ["FY", "heavy", "forward", "left", "a**9**9**9", "m**99", "1500.0", "N" * 99, "()"])
+def test_every_spelling_is_in_the_documentation():
+    page = (Path(__file__).parents[3] / "docs" / "recordings.md").read_text(encoding="utf-8")
+    rows = dict(re.findall(r"^\| `([^`]*)` \| (`.*`) \|$", page, re.MULTILINE))
+    listed = {
+        word.replace("␣", " "): unit.replace("(none)", "")
+        for unit, words in rows.items()
+        for word in re.findall("`([^`]*)`", words)
+    }
+    assert {written: listed.get(written) for written in spellings()} == spellings()
+
+
+@pytest.mark.parametrize(
+    "text", ["FY", "heavy", "forward", "left", "a**9**9**9", "m**99", "1500.0", "N" * 99, "()"]
+)
 def test_what_is_no_unit_is_not_tried(text):
     """pint's parser also calculates: a tower of powers would never return."""
     assert not is_unit(text)

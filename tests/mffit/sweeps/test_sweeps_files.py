@@ -331,4 +331,9 @@ def test_a_unit_that_the_file_states_and_nobody_knows_is_refused(project):
 
 
 def test_the_name_of_a_sweep_is_its_files_without_ending():
-    assert [formats.stem(name) for name in ("a/b.csv", "b.csv.gz", "b.c.odt", "B.MAT")] == ["b", "b", "b.c.odt", "B"]
+    assert [formats.stem(name) for name in ("a/b.csv", "b.csv.gz", "b.c.odt", "B.MAT")] == [
+        "b",
+        "b",
+        "b.c.odt",
+        "B",
+    ]

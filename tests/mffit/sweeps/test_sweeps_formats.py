@@ -33,7 +33,9 @@ def write_v73(path):
         for key, texts in (("name", list(TABLE)), ("units", [UNITS[name] for name in TABLE])):
             cells = []
             for k, text in enumerate(texts):
-                item = file.create_dataset(f"#refs#/{key}{k}", data=np.array([[ord(c)] for c in text], dtype=np.uint16))
+                item = file.create_dataset(
+                    f"#refs#/{key}{k}", data=np.array([[ord(c)] for c in text], dtype=np.uint16)
+                )
                 item.attrs["MATLAB_class"] = np.bytes_("char")
                 cells.append(item.ref)
             channel.create_dataset(key, data=np.array(cells, dtype=h5py.ref_dtype)[None, :])
@@ -62,12 +64,22 @@ def write_dat(path):
     path.write_text("\r\n".join(lines))
 
 
-def tydex(*, factor: float = 1.0, offset: float = 0.0, shift: float = 0.0, fixed: bool = True, end: str = "\n") -> str:
+def tydex(
+    *, factor: float = 1.0, offset: float = 0.0, shift: float = 0.0, fixed: bool = True, end: str = "\n"
+) -> str:
     lines = ["**HEADER", f"{'RELEASE':<10}{'Release of TYDEX':<30}{'':<10}1.3", "! a remark", "**CONSTANTS"]
-    lines += [f"{'RIMWIDTH':<10}{'Width of the rim':<30}{'in':<10}7.0", f"{'TYRE':<10}{'Name':<30}{'':<10}Tyre A", "**MEASURCHANNELS"]
+    lines += [
+        f"{'RIMWIDTH':<10}{'Width of the rim':<30}{'in':<10}7.0",
+        f"{'TYRE':<10}{'Name':<30}{'':<10}Tyre A",
+        "**MEASURCHANNELS",
+    ]
     for name in TABLE:
         row = f"{name:<10}{'a channel':<30}{UNITS[name].replace('none', '-'):<10}{factor:<10}{offset:<10}{shift:<10}"
-        lines.append(row if fixed else " ".join([name, "a", "channel", UNITS[name].replace(" ", ""), f"{factor} {offset} {shift}"]))
+        lines.append(
+            row
+            if fixed
+            else " ".join([name, "a", "channel", UNITS[name].replace(" ", ""), f"{factor} {offset} {shift}"])
+        )
     lines.append("**MEASURDATA")
     raw = (TABLE.to_numpy() - shift) / factor - offset
     lines += [" ".join(repr(float(value)) for value in row) for row in raw]
@@ -146,7 +158,9 @@ def test_a_broken_file_is_refused_in_a_sentence(tmp_path, name):
     assert "\n" not in str(caught.value)
 
 
-@pytest.mark.parametrize(("module", "name"), [("h5py", "seven.mat"), ("openpyxl", "book.xlsx"), ("pyarrow", "table.parquet")])
+@pytest.mark.parametrize(
+    ("module", "name"), [("h5py", "seven.mat"), ("openpyxl", "book.xlsx"), ("pyarrow", "table.parquet")]
+)
 def test_a_missing_library_is_named(tmp_path, monkeypatch, module, name):
     WRITERS[name](tmp_path / name)
     monkeypatch.setitem(__import__("sys").modules, module, None)
@@ -197,7 +211,7 @@ def test_a_pattern_without_files_is_refused_with_its_line(tmp_path):
         '[tyre]\nname = "x"\nunloaded_radius = 0.3\nnominal_load = 1500\nnominal_pressure = 250\n'
         '[rig]\ntype = "flat-track"\n[[sweep]]\nfile = "*.mat"\n'
     )
-    with pytest.raises(InputError, match="no file in .* matches") as caught:
+    with pytest.raises(InputError, match=r"no file in .* matches") as caught:
         configuration.load(path)
     assert caught.value.line == 9
 
