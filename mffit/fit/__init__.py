@@ -2,6 +2,7 @@
 
 from mffit.fit.files import file_names
 from mffit.fit.fitting import fit
+from mffit.fit.posterior import Posterior
 from mffit.fit.result import Agreement, Coefficient, FitResult, StageRecord
 
-__all__ = ["Agreement", "Coefficient", "FitResult", "StageRecord", "file_names", "fit"]
+__all__ = ["Agreement", "Coefficient", "FitResult", "Posterior", "StageRecord", "file_names", "fit"]

@@ -27,7 +27,7 @@ from mffit.fit.staged import Fitted, Plan, Progress, fit_staged
 from mffit.fit.stages import ODD_TERMS, STAGES
 from mffit.fit.start import base_values, starting_values
 from mffit.fit.virtual_zero import epsilon_gamma_of_model
-from mffit.fit.wording import file_comments, pecp1_sentence, sentences, warnings
+from mffit.fit.wording import distrust, file_comments, pecp1_sentence, sentences, warnings
 from mffit.least_squares import touches
 from mffit.measured import radius_readings
 from mffit.parts import Parts
@@ -86,6 +86,7 @@ def fit(
         explanations.append(pecp1_sentence(config, known.values, measured))
     use = config.spin.exact if disc else "normal"
     readings = fitted.simulation.readings(points)
+    doubts = distrust(fitted, points, readings)
     return FitResult(
         tyre=written.by_use["turn-slip" if disc else "normal"].tyre,
         written=written.by_use[use].tyre,
@@ -104,7 +105,8 @@ def fit(
         stages=fitted.stages,
         coverage=plan.cover,
         explanations=tuple(explanations),
-        warnings=tuple(warnings(fitted, points, readings)),
+        distrusted=tuple(doubts),
+        warnings=(*doubts, *warnings(fitted)),
         seconds=time.perf_counter() - began,
         epsilon_gamma_model=_epsilon_of_model(known.values, points, measured),
         files=written,

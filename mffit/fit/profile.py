@@ -16,6 +16,10 @@ PROBE = 2.0
 """Standard errors away from the best fit at which the sum of squares is compared with its quadratic form."""
 BENT = 3.0
 """Ratio of the two from which on the valley counts as bent."""
+ENOUGH = 300
+"""Points that show whether a valley is bent."""
+DIRECTIONS = 8
+"""The least determined directions, along which valleys are looked for."""
 MOST_STEPS = 7
 """Steps along the valley to either side."""
 STRIDE = 1.7
@@ -76,28 +80,44 @@ def follow(
 def _most_bent(
     problem: Problem, numbers: Sequence[Number], solution: Solution, among: Collection[str]
 ) -> str:
-    """The number along which the sum of squares differs most from its quadratic form; empty if none does by much."""
+    """The number that moves most along the direction in which the sum of squares is least like its quadratic form.
+
+    Looked at are the directions that the data determine least; empty if it is a fair picture along all of them.
+    """
     best = np.array(list(solution.values.values()))
-    covariance = solution.covariance
-    at = problem.free(solution.names)
+    held = solution.at_bound | solution.at_limit
+    rows = [i for i, n in enumerate(numbers) if n.name in among and n.name not in held]
+    if not rows:
+        return ""
+    step = max(len(problem.points) // ENOUGH, 1)
+    part = problem.select(np.arange(0, len(problem.points), step))
+    at = part.free(solution.names)
+    here = at.linear(best)
     worst, name = BENT, ""
-    for i, number in enumerate(numbers):
-        error = np.sqrt(covariance[i, i])
-        if number.name not in among or number.name in solution.at_bound | solution.at_limit:
-            continue
+    for direction in _least_determined(solution.covariance, rows, [numbers[i].spread for i in rows]):
         for side in (-PROBE, PROBE):
-            trial = best + side * covariance[:, i] / error
+            trial = best + side * direction
             if any(not n.lower <= v <= n.upper for n, v in zip(numbers, trial, strict=True)):
                 continue
-            ratio = (_cost(at.residual(trial), numbers, trial) - solution.cost) / PROBE**2
+            data, limits = at.residual(trial)
+            expected = here.data + here.slope @ (trial - best)
+            bent = data @ data + limits @ limits - here.limits @ here.limits - expected @ expected
+            ratio = 1.0 + bent * step / PROBE**2
             if ratio > worst:
-                worst, name = ratio, number.name
+                own = np.abs(direction) / np.sqrt(np.diag(solution.covariance))
+                worst, name = ratio, numbers[max(rows, key=lambda i: own[i])].name
     return name
 
 
-def _cost(rows: tuple[np.ndarray, np.ndarray], numbers: Sequence[Number], at: np.ndarray) -> float:
-    data, limits = rows
-    return float(data @ data + limits @ limits) + sum(map(_known, numbers, at.tolist()))
+def _least_determined(covariance: np.ndarray, rows: list[int], spread: list[float]) -> list[np.ndarray]:
+    """Directions (k,) of one standard error in the named rows, the widest first, everything else following."""
+    scale = np.where(np.isfinite(spread), spread, 1.0)
+    own = covariance[np.ix_(rows, rows)]
+    size, axes = np.linalg.eigh(own / np.outer(scale, scale))
+    follow_up = covariance[:, rows] @ np.linalg.inv(own)
+    return [
+        follow_up @ (scale * axes[:, j] * np.sqrt(max(size[j], 0.0))) for j in np.argsort(-size)[:DIRECTIONS]
+    ]
 
 
 def _known(number: Number, value: float) -> float:

@@ -71,6 +71,7 @@ class FitResult:
     stages: tuple[StageRecord, ...]
     coverage: tuple[StageCoverage, ...]
     explanations: tuple[str, ...]
+    distrusted: tuple[str, ...]  #: why the file is not to be trusted; among the warnings too, first of all
     warnings: tuple[str, ...]
     seconds: float
     epsilon_gamma_model: float | None = None

@@ -152,8 +152,8 @@ CARRIES = 1.5
 """A sweep carries the misfit if its own is this many times that of all points."""
 
 
-def warnings(fitted: Fitted, points: Points, model: Readings) -> list[str]:
-    """What a user must know of the fit, the gravest first."""
+def distrust(fitted: Fitted, points: Points, model: Readings) -> list[str]:
+    """Why the file is not to be trusted; empty for a sound fit."""
     out = []
     for name, reading, measured, u, scale in (
         ("Fy", model.Fy, points.Fy, points.u_Fy, fitted.scale[0]),
@@ -164,6 +164,12 @@ def warnings(fitted: Fitted, points: Points, model: Readings) -> list[str]:
                 f"the file is not to be trusted: the model misses {name} by {scale:.1f} times the stated uncertainty"
                 f"{_carriers(points, (reading - measured) / u)}; look at these sweeps, or run mffit diagnose"
             )
+    return out
+
+
+def warnings(fitted: Fitted) -> list[str]:
+    """What else a user must know of the fit."""
+    out = []
     if fitted.attempts:
         out.append(f"the fit was started again from {', '.join(fitted.attempts)}; the best of all is kept")
     if fitted.at_bound:

@@ -25,6 +25,23 @@ from mffit.measured.notes import (
     StraightPath,
     Trouble,
 )
+from mffit.measured.result import Measured
+
+
+def epsilon_values(measured: Measured) -> str:
+    """Which estimate of eps_gamma differs from which, and why; one line, empty where there is one only."""
+    direct, debiased, model = (
+        measured.epsilon_gamma,
+        measured.epsilon_gamma_debiased,
+        measured.epsilon_gamma_model,
+    )
+    if direct is None or debiased is None:
+        return ""
+    joint = f"; the fitted model's own turn-slip force stands for {model:.3f}" if model is not None else ""
+    return (
+        f"measured {direct.value:.3f}, of which {direct.value - debiased.value:+.3f} is what the finite spin of the disc adds to "
+        f"the direct method{joint}; all are within their uncertainty if they differ by less than {2.0 * direct.u:.3f}"
+    )
 
 
 def note(fact: Note) -> str:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -18,9 +18,11 @@ from mffit import fit as fitting
 from mffit import points as ingestion
 from mffit.config import Config
 from mffit.fit import FitResult
+from mffit.measured import Measured
 from mffit.output import output_folder, refuse_early
 from mffit.pipeline.inputs import Progress, inputs_of, read_base, silent
 from mffit.pipeline.measuring import epsilon_gamma, measure, without_play
+from mffit.pipeline.members import write_members
 from mffit.pipeline.provenance import annotated
 from mffit.points import Points
 from mffit.points.stretch import StretchNote
@@ -29,6 +31,8 @@ from mffit.results import BuildResult, as_json
 from mffit.rig import NO_FAULTS
 from tir import Tyre
 
+USES = ("turn-slip", "normal")
+"""What a written file may be for, beside the plain name."""
 WRITTEN = ("result.json", "points.csv", "report.html")
 """What a run is sure to write beside its property files, known before the work begins."""
 
@@ -37,6 +41,7 @@ def build(
     config: Config | Mapping[str, Any] | str | Path,
     out: str | Path | None = None,
     *,
+    ensemble: int = 0,
     progress: Progress = silent,
 ) -> BuildResult:
     """Turn rig sweeps into an MF-6.2 tyre.
@@ -45,6 +50,7 @@ def build(
     ----------
     config : path of a ``tyre.toml``, its content, or a loaded Config
     out : folder to write to; nothing is written if None
+    ensemble : property files to draw from what the fit leaves uncertain, beside the best one
     progress : called with a sentence before each step
 
     Returns
@@ -70,14 +76,17 @@ def build(
     if out is not None:
         refuse_early(Path(out), (*names.values(), *WRITTEN), inputs_of(config))
     with threadpool_limits(1):  # the matrices are small: threads cost more than they bring
-        fitted = fitting.fit(config, points, parts, measured, base, progress)
+        again = config.spin.pecp1 == "debiased"
+        fitted = fitting.fit(
+            config, points, parts, measured, base, progress, members=0 if again else ensemble
+        )
         bias = finite_spin_bias(config, points, fitted, base)
         if bias is not None:
             measured = measured.debiased(bias)
-        if bias is not None and config.spin.pecp1 == "debiased":
+        if bias is not None and again:
             assert measured.epsilon_gamma_debiased is not None
             measured = replace(measured, pecp1=measured.epsilon_gamma_debiased.value)
-            fitted = fitting.fit(config, points, parts, measured, base, progress)
+            fitted = fitting.fit(config, points, parts, measured, base, progress, members=ensemble)
     measured = measured.with_model(
         epsilon_gamma_model=fitted.epsilon_gamma_model,
         pecp1=float(fitted.written["PECP1"]) if measured.epsilon_gamma is not None else None,
@@ -92,6 +101,7 @@ def build(
         fit=fitted,
         files=names,
         tyres={use: annotated(made[use].tyre, config, measured, fitted, use) for use in names},
+        members=tuple(_members(fitted, config, measured)),
         plain=config.spin.exact if disc else "normal",
         warnings=(*warnings, *measured.warnings, *fitted.warnings),
         seconds=time.perf_counter() - began,
@@ -100,6 +110,16 @@ def build(
         progress("writing the report")
         write_build(result, Path(out), reading.stretches)
     return result
+
+
+def _members(fitted: FitResult, config: Config, measured: Measured) -> Iterator[Tyre]:
+    """The drawn coefficients as tyres, each of which says that it is a draw."""
+    use = "turn-slip" if config.rig.type == "rotating-disk" else "normal"
+    best = annotated(fitted.tyre, config, measured, fitted, use)
+    for i, values in enumerate(fitted.members, 1):
+        told = {"ensemble": f"draw {i} of {len(fitted.members)} from what the fit leaves uncertain"}
+        status = dict.fromkeys(values, "drawn")
+        yield best.replace(**values).annotate(status=status, provenance={**best.provenance, **told})
 
 
 def finite_spin_bias(config: Config, points: Points, fitted: FitResult, base: Tyre | None) -> float | None:
@@ -118,7 +138,7 @@ def write_build(result: BuildResult, out: Path, stretches: Sequence[StretchNote]
     """Write every output of a build, or nothing; ``stretches`` of recordings go to ``stretches.csv``."""
     from mffit import report
 
-    siblings = [f"{result.config.tyre.name}-{use}.tir" for use in ("turn-slip", "normal")]
+    siblings = [f"{result.config.tyre.name}-{use}.tir" for use in USES]
     with output_folder(out, by="build", protected=inputs_of(result.config), outdated=siblings) as folder:
         for use, name in result.files.items():
             result.tyres[use].write(folder / name)
@@ -128,6 +148,7 @@ def write_build(result: BuildResult, out: Path, stretches: Sequence[StretchNote]
             stretch_table(stretches).to_csv(folder / "stretches.csv", index=False)
         resolved = configuration.resolved(result.config, folder=out)
         (folder / "resolved.toml").write_bytes(tomli_w.dumps(resolved).encode())
+        write_members(result, folder)
         report.write_build(result, folder)
 
 

@@ -16,6 +16,8 @@ from tir import Tyre
 
 RIG = "rig."
 """What opens the name of a rig error among a file's measured quantities."""
+TURN_SLIP = {"turn-slip": "on", "normal": "off", "both": "on or off"}
+"""What each use of a file means for the simulation's turn slip."""
 PLAIN = " /\\!#$&'()+,;=@[]{}~"
 """What may stand in a file's name, beside letters and digits, without being written as %XX in a property file."""
 
@@ -24,7 +26,7 @@ def annotated(tyre: Tyre, config: Config, measured: Measured, fitted: FitResult,
     """The tyre with its measured quantities, its use and provenance as structured comments."""
     provenance = {
         "program": f"mffit {mffit.__version__}",
-        "use": f"{use}, for simulations with turn slip {'on' if use == 'turn-slip' else 'off'}",
+        "use": f"{use}, for simulations with turn slip {TURN_SLIP[use]}",
         "configuration": _settings(config),
         **_inputs(config),
     }
@@ -33,9 +35,9 @@ def annotated(tyre: Tyre, config: Config, measured: Measured, fitted: FitResult,
 
 
 def use_of(tyre: Tyre) -> str | None:
-    """Which use a built file is for, "turn-slip" or "normal", as its provenance says; None for files from elsewhere."""
+    """Which use a built file is for, "turn-slip", "normal" or "both", as its provenance says; None for files from elsewhere."""
     said = tyre.provenance.get("use") or tyre.provenance.get("configuration", "")
-    found = re.match(r"(?:spin\.exact )?(turn-slip|normal)\b", said)
+    found = re.match(r"(?:spin\.exact )?(turn-slip|normal|both)\b", said)
     return found[1] if found else None
 
 

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 import mffit
-from mffit.measured import LARGEST_DIFFERENCE
+from mffit.measured import LARGEST_DIFFERENCE, wording
 from mffit.quantities import CHANNELS, CONDITIONS, DIRECT
 from mffit.report import page, published
 from mffit.report.build_view import PER_LOAD, STATUS_ORDER, BuildView, Channel, Row, view_of
@@ -30,6 +30,8 @@ SECTION_TITLES = {
     "ROLLING_COEFFICIENTS": "Rolling resistance",
 }
 OTHER_SECTIONS = "Everything else"
+PLACES = {"straight_with_turn_slip": "turn slip on", "disc": "turn slip on, on the disc"}
+"""Where a file that serves both uses is judged beside the straight path without turn slip."""
 
 
 def write_build(result: BuildResult, folder: Path) -> None:
@@ -52,6 +54,8 @@ def write_build(result: BuildResult, folder: Path) -> None:
         residual_unit=residual_unit(view),
         published=published,
         channels=CHANNELS,
+        places=PLACES,
+        epsilon_values=wording.epsilon_values(result.measured),
         conditions=CONDITIONS,
         direct=DIRECT,
         per_load=PER_LOAD,
@@ -63,10 +67,10 @@ def write_build(result: BuildResult, folder: Path) -> None:
 
 def _figures(view: BuildView) -> dict[str, Callable[[], Figure]]:
     """What is drawn, in the order of the page."""
-    from mffit.report.figures import decomposition, files, fit, residuals, spin
+    from mffit.report.figures import bands, decomposition, files, fit, residuals, spin
 
     out: dict[str, Callable[[], Figure]] = {}
-    if view.two_files:
+    if view.several_files:
         out["files"] = partial(files.files_on_a_straight_path, view)
     if view.on_disc:
         out["camber_reduction"] = partial(spin.camber_reduction, view)
@@ -80,6 +84,8 @@ def _figures(view: BuildView) -> dict[str, Callable[[], Figure]]:
     for channel in view.channels:
         if view.curves:
             out[f"fit_{channel.name}"] = partial(fit.model_against_points, view, channel)
+    if view.files is not None:
+        out["bands"] = partial(bands.bands, view)
     scaled = [(c.name, (c.measured - c.model) / _scale(view, c)) for c in view.channels]
     out["residuals"] = partial(
         residuals.residual_maps, view.points, scaled, view.conditions, RESIDUAL_LIMIT, residual_unit(view)

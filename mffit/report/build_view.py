@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from mffit.config import Config
-from mffit.fit import Agreement, Coefficient, StageRecord
+from mffit.fit import Agreement, Coefficient, Posterior, StageRecord
 from mffit.fit.coverage import StageCoverage
 from mffit.fit.files import Files
 from mffit.measured import Measured
@@ -110,6 +110,8 @@ class BuildView:
     fit_seconds: float
     tir_name: str
     model: Tyre  #: the fitted model
+    posterior: Posterior  #: what the fit leaves uncertain
+    distrusted: tuple[str, ...]  #: why the file is not to be trusted, first of all
     files: Files | None  #: None if nothing is known of them
     file_names: Mapping[str, str]  #: by use
 
@@ -118,8 +120,8 @@ class BuildView:
         return self.measured.epsilon_gamma is not None
 
     @property
-    def two_files(self) -> bool:
-        return self.files is not None and len(self.files.by_use) == 2
+    def several_files(self) -> bool:
+        return self.files is not None and len(self.files.by_use) > 1
 
 
 def view_of(result: BuildResult) -> BuildView:
@@ -152,6 +154,8 @@ def view_of(result: BuildResult) -> BuildView:
         fit_seconds=fit.seconds,
         tir_name=result.tir_path,
         model=fit.tyre,
+        posterior=fit.posterior,
+        distrusted=fit.distrusted,
         files=fit.files,
         file_names=dict(result.files),
     )

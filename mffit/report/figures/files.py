@@ -26,7 +26,8 @@ def files_on_a_straight_path(view: BuildView) -> Figure:
     assert files is not None
     tested, written = files.tested, files.written
     figure, rows = style.panel_grid([4], 4, height=2.3)
-    colours = {"turn-slip": style.ACCENT, "normal": style.CONTRAST}
+    colours = {"turn-slip": style.ACCENT, "normal": style.CONTRAST, "both": style.MUTED}
+    dashes = {"turn-slip": "-", "normal": "--", "both": ":"}
     panels = [(channel, over) for channel in CHANNELS for over in ("gamma", "alpha")]
     load = float(files.by_use["normal"].tyre["FNOMIN"])
     for ax, (channel, over) in zip(rows[0], panels, strict=True):
@@ -37,9 +38,7 @@ def files_on_a_straight_path(view: BuildView) -> Figure:
             alpha, gamma = (held, x) if over == "gamma" else (x, held)
             for use, file in files.by_use.items():
                 force = getattr(file.tyre(load, alpha, gamma, turn_slip=use == "turn-slip"), channel)
-                ax.plot(
-                    np.degrees(x), force, color=colours[use], lw=1.2, ls="-" if use == "turn-slip" else "--"
-                )
+                ax.plot(np.degrees(x), force, color=colours[use], lw=1.2, ls=dashes[use])
             model = getattr(view.model(load, alpha, gamma, turn_slip=True), channel)
             ax.plot(np.degrees(x)[::5], model[::5], ls="none", marker=".", ms=3.0, color=style.INK)
         for edge in (-1.0, 1.0):
@@ -49,8 +48,7 @@ def files_on_a_straight_path(view: BuildView) -> Figure:
         style.few_ticks(ax, x=4)
     handles = [Line2D([], [], ls="none", marker=".", color=style.INK, label="fitted model")]
     handles += [
-        Line2D([], [], color=colours[use], ls="-" if use == "turn-slip" else "--", label=view.file_names[use])
-        for use in files.by_use
+        Line2D([], [], color=colours[use], ls=dashes[use], label=view.file_names[use]) for use in files.by_use
     ]
     style.legend_above(figure, handles)
     return figure

@@ -21,7 +21,8 @@ from tir.parameters import BY_NAME
 def build_summary(result: BuildResult) -> str:
     """What ``mffit build`` prints at its end."""
     fit = result.fit
-    parts = [textwrap.fill(sentence, WIDTH) for sentence in fit.explanations[:1]]
+    parts = [textwrap.fill(f"NOT TO BE TRUSTED: {sentence}.", WIDTH) for sentence in fit.distrusted]
+    parts += [textwrap.fill(sentence, WIDTH) for sentence in fit.explanations[:1]]
     if result.measured.epsilon_gamma is not None:
         parts.append(spin_numbers(result.measured))
     noise = {"Fy": _typical(result.points.u_Fy), "Mz": _typical(result.points.u_Mz)}
