@@ -19,6 +19,8 @@ FEWEST = 8
 """Points on each way, within that."""
 WORST = 1e8
 """Condition number beyond which the points do not fix the lines: one side of zero is missing."""
+FEWEST_SWEEPS = 3
+"""Sweeps whose scatter tells how well their median is known."""
 BINS = 25
 
 
@@ -26,11 +28,12 @@ class Lag(NamedTuple):
     """Of one sweep."""
 
     lag: float  #: rolled distance by which the force lags behind the angle [m]; negative where the angle is delayed more
-    u: float  #: its standard uncertainty [m]
+    u: float  #: its standard uncertainty [m], from the scatter of the points
+    u_shape: float  #: the same from the choice of the curve through zero, common to all sweeps [m]
     hysteresis: float  #: half the difference of the two ways at one angle, rms over the sweep [N]
 
 
-UNKNOWN = Lag(np.nan, np.nan, np.nan)
+UNKNOWN = Lag(np.nan, np.nan, np.nan, np.nan)
 
 
 def measure(alpha: np.ndarray, Fy: np.ndarray, s: np.ndarray, smooth: int = 1) -> Lag:
@@ -56,10 +59,11 @@ def measure(alpha: np.ndarray, Fy: np.ndarray, s: np.ndarray, smooth: int = 1) -
     near = np.abs(Fy) < NEAR_ZERO * np.max(np.abs(Fy))
     even = np.abs(np.abs(rate) - usual) < 0.5 * usual
     crossings = [_crossing(Fy[way & near & even], alpha[way & near & even]) for way in ways]
-    if usual == 0.0 or not all(np.isfinite(value) for value, _ in crossings):
+    if usual == 0.0 or not all(np.isfinite(crossing.alpha) for crossing in crossings):
         return UNKNOWN
-    (up, u_up), (down, u_down) = crossings
-    lag = 0.5 * (up - down) / usual
+    up, down = crossings
+    lag = 0.5 * (up.alpha - down.alpha) / usual
+    one_line = 0.5 * (up.of_one_line - down.of_one_line) / usual
     # What is left of the difference once the lag is taken off the angle.
     moved = alpha - lag * rate
     edges = np.linspace(moved.min(), moved.max(), BINS + 1)
@@ -67,25 +71,36 @@ def measure(alpha: np.ndarray, Fy: np.ndarray, s: np.ndarray, smooth: int = 1) -
     difference = means[0] - means[1]
     known = np.isfinite(difference)
     hysteresis = float(np.sqrt(np.mean(difference[known] ** 2)) / 2.0) if np.any(known) else np.nan
-    return Lag(float(lag), float(0.5 * np.hypot(u_up, u_down) / usual), hysteresis)
+    return Lag(
+        float(lag), float(0.5 * np.hypot(up.u, down.u) / usual), float(abs(lag - one_line)), hysteresis
+    )
 
 
-def _crossing(Fy: np.ndarray, alpha: np.ndarray) -> tuple[float, float]:
-    """Angle at zero force [rad] and its standard error, from the points about it.
+class Crossing(NamedTuple):
+    """Of one way through zero force."""
 
-    They are met by two lines with a common end at zero, as a way that begins cold and ends hot is steeper on one side.
+    alpha: float  #: angle there [rad], by two lines with a common end at zero force
+    u: float  #: its standard error [rad]
+    of_one_line: float  #: the same angle by one straight line [rad]
+
+
+def _crossing(Fy: np.ndarray, alpha: np.ndarray) -> Crossing:
+    """The angle at zero force, from the points about it.
+
+    A way that begins cold and ends hot is steeper on one side of zero, which one line would take for a shift.
     """
     if len(Fy) < FEWEST or Fy.min() > 0.0 or Fy.max() < 0.0:
-        return np.nan, np.nan
+        return Crossing(np.nan, np.nan, np.nan)
     x = Fy / np.max(np.abs(Fy))
     design = np.column_stack([np.ones(len(Fy)), x.clip(min=0.0), x.clip(max=0.0)])
     found, *_ = np.linalg.lstsq(design, alpha, rcond=None)
     residual = alpha - design @ found
     normal = design.T @ design
     if np.linalg.cond(normal) > WORST:
-        return np.nan, np.nan
+        return Crossing(np.nan, np.nan, np.nan)
     variance = float(residual @ residual) / (len(Fy) - 3)
-    return float(found[0]), float(np.sqrt(variance * np.linalg.inv(normal)[0, 0]))
+    straight = float(np.polynomial.polynomial.polyfit(x, alpha, 1)[0])
+    return Crossing(float(found[0]), float(np.sqrt(variance * np.linalg.inv(normal)[0, 0])), straight)
 
 
 def _binned(x: np.ndarray, y: np.ndarray, edges: np.ndarray) -> np.ndarray:
@@ -99,14 +114,16 @@ def _binned(x: np.ndarray, y: np.ndarray, edges: np.ndarray) -> np.ndarray:
 def common(lags: Sequence[Lag]) -> tuple[float, float]:
     """The lag of a recording [m] and its standard uncertainty: one tyre on one rig; NaN where no sweep tells.
 
-    The uncertainty is that of the median of the sweeps, from their scatter.
+    The uncertainty is that of the median of the sweeps, from their scatter, and that of the curve's shape.
     """
-    known = np.array([found.lag for found in lags if np.isfinite(found.lag)])
-    if not len(known):
+    told = [found for found in lags if np.isfinite(found.lag)]
+    if not told:
         return np.nan, np.nan
-    if len(known) < 3:
-        errors = [found.u for found in lags if np.isfinite(found.lag)]
-        return float(np.mean(known)), float(np.hypot.reduce(errors) / len(errors))
+    known = np.array([found.lag for found in told])
+    shape = float(np.median([found.u_shape for found in told]))
+    if len(told) < FEWEST_SWEEPS:
+        own = float(np.hypot.reduce([found.u for found in told])) / len(told)
+        return float(np.mean(known)), float(np.hypot(own, shape))
     middle = float(np.median(known))
     scatter = 1.4826 * float(np.median(np.abs(known - middle)))
-    return middle, float(1.2533 * scatter / np.sqrt(len(known)))
+    return middle, float(np.hypot(1.2533 * scatter / np.sqrt(len(known)), shape))  # of a median

@@ -238,7 +238,7 @@ def _note(sweep: Sweep, stretch: Stretch, label: str, points: int, lag: Lag) -> 
         T_degC=middle(sweep.T),
         points=points,
         lag_m=lag.lag,
-        u_lag_m=lag.u,
+        u_lag_m=float(np.hypot(lag.u, lag.u_shape)),
         hysteresis_N=lag.hysteresis,
         dropped=stretch.dropped,
     )
