@@ -104,13 +104,16 @@ def diagnose(tyre_toml: Path, model: Path | None, out: Path | None) -> None:
 
 @commands.command()
 @click.argument("file", type=click.Path(path_type=Path), metavar="FILE.tir")
-def check(file: Path) -> None:
+@click.option(
+    "--for", "targets", default="", metavar="NAMES", help="Programs that are to read it: mftyre,simscape,..."
+)
+def check(file: Path, targets: str) -> None:
     """Check a .tir: units, missing and unknown keys, physics over the file's own ranges."""
     import tir
     from tir.check import check as problems_of
 
     tyre = tir.read(file)
-    problems = [*tyre.problems, *problems_of(tyre)]
+    problems = [*tyre.problems, *problems_of(tyre, targets.split(",") if targets else ())]
     for problem in problems:
         click.echo(f"{problem.level}: {problem.sentence}")
     errors = sum(problem.level == "error" for problem in problems)

@@ -91,7 +91,7 @@ def select(problem: Problem, candidates: Sequence[Effect]) -> tuple[Hypothesis, 
     another is therefore never entered a second time, which ends the search after finitely many steps.
     """
     current, steps, left = problem.null, [], set[frozenset[str]]()
-    while len(current.effects) < MOST_EFFECTS:
+    while len(current.effects) < min(MOST_EFFECTS, len(candidates)):
         step = forward_step(problem, current, candidates)
         steps.append(step)
         left.add(ids(current))

@@ -1,8 +1,24 @@
 """Points and direct measurements to an MF-6.2 tyre with standard errors."""
 
+from mffit.fit.doubts import Doubt
+from mffit.fit.ensemble import ensemble
 from mffit.fit.files import file_names
 from mffit.fit.fitting import fit
+from mffit.fit.outliers import Outlier, marks
 from mffit.fit.posterior import Posterior
-from mffit.fit.result import Agreement, Coefficient, FitResult, StageRecord
+from mffit.fit.result import Agreement, Coefficient, FitResult
+from mffit.fit.stages import StageRecord
 
-__all__ = ["Agreement", "Coefficient", "FitResult", "Posterior", "StageRecord", "file_names", "fit"]
+__all__ = [
+    "Agreement",
+    "Coefficient",
+    "Doubt",
+    "FitResult",
+    "Outlier",
+    "Posterior",
+    "StageRecord",
+    "ensemble",
+    "file_names",
+    "fit",
+    "marks",
+]

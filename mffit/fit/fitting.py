@@ -10,12 +10,15 @@ from typing import Any
 
 import numpy as np
 
-from mffit.fit import weights
+from mffit.config import axis_signs
+from mffit.fit import remarks, weights
 from mffit.fit.coverage import coverage
-from mffit.fit.ensemble import ensemble
+from mffit.fit.doubts import Doubt
 from mffit.fit.estimates import estimates
 from mffit.fit.files import Files, decisions, file_names, make_files
+from mffit.fit.judgement import judge
 from mffit.fit.known import Known
+from mffit.fit.outliers import outliers
 from mffit.fit.posterior import COVERING
 from mffit.fit.priors import scatters
 from mffit.fit.problem import Problem
@@ -44,8 +47,6 @@ def fit(
     measured: Any,
     base: Tyre | None = None,
     progress: Progress = lambda sentence: None,
-    *,
-    members: int = 0,
 ) -> FitResult:
     """Fit MF 6.2 to raw points with turn slip on, holding what was measured directly.
 
@@ -57,7 +58,6 @@ def fit(
     measured : the direct method's result; ``epsilon_gamma`` None on a flat track
     base : coefficients that are not fitted come from here
     progress : called with a sentence before each step
-    members : tyres to draw from the posterior beside the best one
 
     Raises
     ------
@@ -68,11 +68,23 @@ def fit(
     known = _before_the_fit(config, points, measured, base)
     start = starting_values(known.values, points, measured)
     plan = _plan(config, points, measured, known, start)
-    fitted = fit_staged(_problem(config, points, known.values, measured), start, plan, progress)
+    problem = _problem(config, points, known.values, measured)
+    stated = problem.sigma_Fy, problem.sigma_Mz
+
+    def judged(of: Fitted, *, only_known: bool = False) -> tuple[Doubt, ...]:
+        progress("judging every sweep by all others")
+        return judge(
+            points,
+            of,
+            stated,
+            axis_signs(config),
+            lambda rows: fit_staged(problem.select(rows), start, plan, silent, restarts=False),
+            only_known=only_known,
+        )
+
+    fitted = fit_staged(problem, start, plan, progress, first=lambda of: judged(of, only_known=True))
+    doubts = judged(fitted)
     known = _after_the_fit(known, fitted, base)
-    if members:
-        progress(f"drawing {members} tyres from what the fit leaves open")
-    drawn = ensemble(fitted, members)
     progress("deriving the files and judging them")
     known = known.deciding(decisions(config))
     rolling = _rolling_resistance(known.values, points)
@@ -86,7 +98,8 @@ def fit(
         explanations.append(pecp1_sentence(config, known.values, measured))
     use = config.spin.exact if disc else "normal"
     readings = fitted.simulation.readings(points)
-    doubts = distrust(fitted, points, readings)
+    untrusted = distrust(fitted, points, readings)
+    singled = outliers(points, stated, (fitted.problem.sigma_Fy, fitted.problem.sigma_Mz), readings)
     return FitResult(
         tyre=written.by_use["turn-slip" if disc else "normal"].tyre,
         written=written.by_use[use].tyre,
@@ -101,16 +114,27 @@ def fit(
         simulation=fitted.simulation,
         rig=fitted.rig,
         posterior=fitted.posterior,
-        members=tuple(drawn),
+        search=fitted,
         stages=fitted.stages,
         coverage=plan.cover,
         explanations=tuple(explanations),
-        distrusted=tuple(doubts),
-        warnings=(*doubts, *warnings(fitted)),
+        distrusted=tuple(untrusted),
+        warnings=(
+            *untrusted,
+            *warnings(fitted),
+            *(remarks.doubt(fact) for fact in doubts),
+            *([remarks.standing_out(singled)] if singled else []),
+        ),
+        doubts=doubts,
+        outliers=singled,
         seconds=time.perf_counter() - began,
         epsilon_gamma_model=_epsilon_of_model(known.values, points, measured),
         files=written,
     )
+
+
+def silent(sentence: str) -> None:
+    """Progress of a fit on the way that is not told."""
 
 
 def _plan(config, points: Points, measured, known: Known, start: Mapping[str, float]) -> Plan:

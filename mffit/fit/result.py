@@ -8,8 +8,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from mffit.fit.coverage import StageCoverage
+from mffit.fit.doubts import Doubt
 from mffit.fit.files import Files
+from mffit.fit.outliers import Outlier
 from mffit.fit.posterior import Posterior
+from mffit.fit.staged import Fitted
+from mffit.fit.stages import StageRecord
 from mffit.rig import Simulation
 from tir import Tyre
 
@@ -42,18 +46,6 @@ class Agreement:
 
 
 @dataclass(frozen=True, slots=True)
-class StageRecord:
-    """What one stage of the fit did."""
-
-    name: str
-    title: str
-    parameters: tuple[str, ...]
-    rmse_Fy: float
-    rmse_Mz: float
-    note: str = ""
-
-
-@dataclass(frozen=True, slots=True)
 class FitResult:
     """The fitted tyre and everything the report says of it."""
 
@@ -67,14 +59,18 @@ class FitResult:
     Fy_model: np.ndarray  #: (n,) [N]
     Mz_model: np.ndarray  #: (n,) [Nm]
     posterior: Posterior  #: what the fit leaves uncertain
-    members: tuple[Mapping[str, float], ...]  #: coefficients of tyres drawn from it, if any were asked for
     stages: tuple[StageRecord, ...]
     coverage: tuple[StageCoverage, ...]
     explanations: tuple[str, ...]
-    distrusted: tuple[str, ...]  #: why the file is not to be trusted; among the warnings too, first of all
     warnings: tuple[str, ...]
     seconds: float
     epsilon_gamma_model: float | None = None
+    doubts: tuple[Doubt, ...] = ()  #: sweeps that do not fit the others
+    outliers: tuple[Outlier, ...] = ()  #: single readings that count with no weight
+    distrusted: tuple[
+        str, ...
+    ] = ()  #: why the file is not to be trusted; among the warnings too, first of all
+    search: Fitted | None = None  #: where the search ended, to draw tyres from
     files: Files | None = None  #: every file that is written, and how good each is
 
 

@@ -15,8 +15,7 @@ from mffit.fit.coverage import StageCoverage
 from mffit.fit.posterior import Posterior, joint, strongest_correlations
 from mffit.fit.problem import Problem
 from mffit.fit.profile import follow
-from mffit.fit.result import StageRecord
-from mffit.fit.stages import STAGES, WITH_CAMBER, Stage
+from mffit.fit.stages import STAGES, WITH_CAMBER, Stage, StageRecord
 from mffit.least_squares import Number, Solution, solve
 from mffit.points import Points, main_pressure
 from mffit.rig import FAULT_NAMES, Simulation
@@ -91,7 +90,15 @@ SHAPES: Mapping[str, Mapping[str, float]] = {
 """Other places to start from where the first fit ends too far away."""
 
 
-def fit_staged(problem: Problem, start: Mapping[str, float], plan: Plan, progress: Progress) -> Fitted:
+def fit_staged(
+    problem: Problem,
+    start: Mapping[str, float],
+    plan: Plan,
+    progress: Progress,
+    *,
+    restarts: bool = True,
+    first: Callable[[Fitted], object] = lambda fitted: None,
+) -> Fitted:
     """Fit stage by stage, then tyre and rig together; again from other shapes where that ends far from the noise.
 
     Parameters
@@ -100,12 +107,15 @@ def fit_staged(problem: Problem, start: Mapping[str, float], plan: Plan, progres
     start : starting value of every coefficient
     plan : what is free
     progress : called with a sentence before each step
+    restarts : whether to start again where the fit ends far from the noise
+    first : called with a fit that ends there, before it is started again; may refuse the data
     """
     _enough_points(problem.points, plan.free)
     best = _fit_from(problem, start, plan, progress)
     far = plan.noise_stated and max(best.scale) > FALSE_MINIMUM
-    if not far and not best.at_bound & BY_SHAPE:
+    if not restarts or (not far and not best.at_bound & BY_SHAPE):
         return best
+    first(best)
     tried = []
     for shape, values in SHAPES.items():
         progress(f"starting again from {shape}")
@@ -242,8 +252,8 @@ def _reweighted(problem: Problem) -> tuple[Problem, tuple[float, float]]:
     n = len(problem.points)
     out, scales = [], []
     for part, sigma in ((residual[:n], problem.sigma_Fy), (residual[n:], problem.sigma_Mz)):
-        scale = max(weights.robust_scale(part), 1.0)
-        out.append(sigma * scale * weights.huber(part, scale))
+        factor, scale = weights.enlarged(part, problem.points.sweep)
+        out.append(sigma * factor)
         scales.append(scale)
     return dataclasses.replace(problem, sigma_Fy=out[0], sigma_Mz=out[1]), (scales[0], scales[1])
 

@@ -27,6 +27,18 @@ class Stage:
         return tuple(row.name for row in TABLE if row.stage == self.name)
 
 
+@dataclass(frozen=True, slots=True)
+class StageRecord:
+    """What one stage of the fit did."""
+
+    name: str
+    title: str
+    parameters: tuple[str, ...]
+    rmse_Fy: float
+    rmse_Mz: float
+    note: str = ""
+
+
 STAGES = (
     Stage("Fy", "Side force at zero camber", ("Fy",), zero_camber=True, main_pressure=True),
     Stage("camber", "Camber", ("Fy",), reopened=("Fy",), main_pressure=True),

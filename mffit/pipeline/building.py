@@ -76,21 +76,26 @@ def build(
     if out is not None:
         refuse_early(Path(out), (*names.values(), *WRITTEN), inputs_of(config))
     with threadpool_limits(1):  # the matrices are small: threads cost more than they bring
-        again = config.spin.pecp1 == "debiased"
-        fitted = fitting.fit(
-            config, points, parts, measured, base, progress, members=0 if again else ensemble
-        )
+        fitted = fitting.fit(config, points, parts, measured, base, progress)
+        sound = without_outliers(config, points, measured, fitted, base)
+        if sound is not measured:
+            measured = sound
+            fitted = fitting.fit(config, points, parts, measured, base, progress)
         bias = finite_spin_bias(config, points, fitted, base)
         if bias is not None:
             measured = measured.debiased(bias)
-        if bias is not None and again:
+        if bias is not None and config.spin.pecp1 == "debiased":
             assert measured.epsilon_gamma_debiased is not None
             measured = replace(measured, pecp1=measured.epsilon_gamma_debiased.value)
-            fitted = fitting.fit(config, points, parts, measured, base, progress, members=ensemble)
+            fitted = fitting.fit(config, points, parts, measured, base, progress)
     measured = measured.with_model(
         epsilon_gamma_model=fitted.epsilon_gamma_model,
         pecp1=float(fitted.written["PECP1"]) if measured.epsilon_gamma is not None else None,
     )
+    if ensemble:
+        progress(f"drawing {ensemble} tyres from what the fit leaves uncertain")
+    with threadpool_limits(1):
+        drawn = tuple(_members(fitted, ensemble, config, measured))
     assert fitted.files is not None
     made = fitted.files.by_use
     result = BuildResult(
@@ -101,7 +106,7 @@ def build(
         fit=fitted,
         files=names,
         tyres={use: annotated(made[use].tyre, config, measured, fitted, use) for use in names},
-        members=tuple(_members(fitted, config, measured)),
+        members=drawn,
         plain=config.spin.exact if disc else "normal",
         warnings=(*warnings, *measured.warnings, *fitted.warnings),
         seconds=time.perf_counter() - began,
@@ -112,14 +117,34 @@ def build(
     return result
 
 
-def _members(fitted: FitResult, config: Config, measured: Measured) -> Iterator[Tyre]:
-    """The drawn coefficients as tyres, each of which says that it is a draw."""
+def _members(fitted: FitResult, count: int, config: Config, measured: Measured) -> Iterator[Tyre]:
+    """Tyres drawn from what the fit leaves uncertain, each of which says that it is a draw."""
     use = "turn-slip" if config.rig.type == "rotating-disk" else "normal"
     best = annotated(fitted.tyre, config, measured, fitted, use)
-    for i, values in enumerate(fitted.members, 1):
-        told = {"ensemble": f"draw {i} of {len(fitted.members)} from what the fit leaves uncertain"}
-        status = dict.fromkeys(values, "drawn")
-        yield best.replace(**values).annotate(status=status, provenance={**best.provenance, **told})
+    assert fitted.search is not None
+    for i, values in enumerate(fitting.ensemble(fitted.search, count), 1):
+        told = {"ensemble": f"draw {i} of {count} from what the fit leaves uncertain"}
+        yield best.replace(**values).annotate(status=dict.fromkeys(values, "drawn"), provenance=told)
+
+
+def without_outliers(
+    config: Config, points: Points, measured: Measured, fitted: FitResult, base: Tyre | None
+) -> Measured:
+    """The direct method without the readings that the fit gave no weight; the very same where they make no difference."""
+    if not fitted.outliers:
+        return measured
+    rows = np.arange(len(points))
+    Fy, Mz = (
+        np.where(
+            np.isin(rows, [o.row for o in fitted.outliers if o.channel == name]),
+            np.nan,
+            getattr(points, name),
+        )
+        for name in ("Fy", "Mz")
+    )
+    sound = points.replace(Fy=Fy, Mz=Mz).select(np.isfinite(Fy))
+    again = measure(config, sound, base)[1]
+    return measured if as_json.spin(again) == as_json.spin(measured) else again
 
 
 def finite_spin_bias(config: Config, points: Points, fitted: FitResult, base: Tyre | None) -> float | None:
@@ -161,6 +186,8 @@ def points_table(result: BuildResult) -> pd.DataFrame:
     table["Mz_odd_Nm"], table["Mz_even_Nm"] = parts.Mz_odd * signs["Mz"], parts.Mz_even * signs["Mz"]
     table["Fy_model_N"], table["Mz_model_Nm"] = fit.Fy_model * signs["Fy"], fit.Mz_model * signs["Mz"]
     table["paired"] = parts.paired
+    table["outlier"] = fitting.marks(fit.outliers, len(table))
+    table["doubtful"] = np.isin(np.arange(len(table)), [row for doubt in fit.doubts for row in doubt.index])
     for name, values in origin(result.points).items():
         if name not in table:  # a heading of the user's own stays
             table[name] = values
@@ -170,7 +197,7 @@ def points_table(result: BuildResult) -> pd.DataFrame:
 def origin(points: Points) -> dict[str, np.ndarray]:
     """Where every point comes from, by the columns of points.csv."""
     return {
-        "file": np.array(points.files, dtype=object)[points.file],
+        "file": np.array([Path(name).name for name in points.files], dtype=object)[points.file],
         "line": points.line,
         "sweep": np.array(points.sweep_names, dtype=object)[points.sweep],
         "direction": np.where(points.direction > 0, "forward", "backward"),

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from mffit.errors import InputError
+from mffit.points.mistakes import factor
 from mffit.points.points import Points
 from mffit.points.signatures import slope
 
@@ -40,6 +41,7 @@ def check_magnitudes(points: Points) -> None:
                 if found.sign and abs(found.value) > steepest:
                     raise _radians(name, angle, getattr(part, angle), found.value)
         _check_friction(name, part)
+        _check_single_load(name, part)
         _check_largest_friction(name, part)
         _check_dead(name, part)
         arm = np.abs(part.Mz) / part.Fz
@@ -74,17 +76,63 @@ def _check_largest_friction(name: str, part: Points) -> None:
     )
 
 
-def _check_dead(name: str, part: Points) -> None:
-    if len(part) >= FEWEST_DEAD and np.all(part.Mz == 0.0):
+def _check_single_load(name: str, part: Points) -> None:
+    """A load that stands alone far above the others of its file is a wild reading, as no programme has one point there."""
+    if len(part) < FEWEST_DEAD:
+        return
+    largest, others = np.argmax(part.Fz), np.sort(part.Fz)[:-1]
+    if part.Fz[largest] > WILD * others[-1]:
         raise InputError(
-            "is 0 in every row, so the channel was dead; leave the column out of this file",
+            f"{part.Fz[largest]:.6g} N stands alone, as all other loads of the file are at most {others[-1]:.6g} N; correct or "
+            "remove the row",
             file=name,
-            column="Mz_Nm",
+            line=int(part.line[largest]) or None,
+            column="Fz_N",
         )
 
 
+WILD = 5.0
+"""How many times all the others one load may not be."""
+
+
+def _check_dead(name: str, part: Points) -> None:
+    """A channel that gives one and the same number while the angles change is not connected."""
+    if len(part) < FEWEST_DEAD or np.ptp(part.alpha) + np.ptp(part.gamma) == 0.0:
+        return
+    for column, reading in (("Mz_Nm", part.Mz), ("Fy_N", part.Fy)):
+        if np.all(reading == reading[0]):
+            remedy = "leave the column out of this file" if column == "Mz_Nm" else "leave this file out"
+            raise InputError(
+                f"is {reading[0]:g} in every row, so the channel was dead; {remedy}", file=name, column=column
+            )
+
+
 FEWEST_DEAD = 4
-"""Rows of nothing but zeros that make a dead channel."""
+"""Rows of one and the same number that make a dead channel."""
+
+
+def check_pressures(points: Points, nominal: float) -> None:
+    """Refuse files whose pressure is in psi, as it is far below the nominal one [Pa] as declared and not in psi.
+
+    Raises
+    ------
+    InputError
+        Names the file.
+    """
+    psi = factor("psi", "kPa")
+    for index in np.unique(points.file):
+        pressure = float(np.median(points.p[points.file == index]))
+        if pressure < LOW * nominal and LOW * nominal < psi * pressure < nominal / LOW:
+            raise InputError(
+                f"is {pressure / 1e3:.3g} kPa, far from the nominal {nominal / 1e3:.3g} kPa, and looks like psi; write kPa, or "
+                'p_kPa = { column = "p_kPa", unit = "psi" } under [sweep.columns]',
+                file=points.files[index],
+                column="p_kPa",
+            )
+
+
+LOW = 0.35
+"""Share of the nominal pressure below which no tyre is tested."""
 
 
 def _radians(name: str, angle: str, values: np.ndarray, steepness: float) -> InputError:

@@ -15,9 +15,10 @@ import numpy as np
 
 from mffit.config import Config
 from mffit.errors import InputError
-from mffit.points.magnitudes import check_magnitudes
+from mffit.points.magnitudes import check_magnitudes, check_pressures
 from mffit.points.points import Points
 from mffit.points.signatures import WEAK_FORCE, Signatures, signatures
+from mffit.points.twins import check_twins
 from tir.conventions import FLIPPED
 
 STEEPEST_CAMBER = -1.9
@@ -52,7 +53,9 @@ def check_physics(points: Points, config: Config) -> list[str]:
     InputError
         With the channel and the likely cause.
     """
+    check_twins(points)
     check_magnitudes(points)
+    check_pressures(points, 1e3 * config.tyre.nominal_pressure)
     found = signatures(points)
     wrong = contradictions(found)
     if wrong:
@@ -68,24 +71,38 @@ def check_physics(points: Points, config: Config) -> list[str]:
 
 
 def _check_every_file(points: Points) -> None:
-    """Refuse a file that has another sign than all the others: it was recorded or written down the other way round."""
+    """Refuse a file that has another sign than the others: it was recorded or written down the other way round."""
     if len(np.unique(points.file)) < 2:
         return
-    for index in np.unique(points.file):
-        own = signatures(points.select(points.file == index))
-        for broken, column, sentence in (
-            (own.cornering.sign > 0, "alpha_deg", "Fy_N rises with alpha_deg"),
-            (own.backward.sign < 0, "alpha_deg", "Fy_N falls with alpha_deg, rolling backwards"),
-            (own.camber.sign > 0, "gamma_deg", "Fy_N rises with gamma_deg"),
-            (own.aligning.sign < 0, "Mz_Nm", "Mz_Nm falls with alpha_deg"),
-        ):
-            if broken:
-                raise InputError(
-                    f"{sentence} in this file alone, against all the others: its sign or its direction of rolling looks "
-                    f"reversed; correct the file or its direction, or map {column} with scale = -1 under [sweep.columns]",
-                    file=points.files[index],
-                    column=column,
-                )
+    broken = [
+        (points.files[index], *said)
+        for index in np.unique(points.file)
+        if (said := _reversed(signatures(points.select(points.file == index)))) is not None
+    ]
+    if not broken:
+        return
+    name, column, sentence = broken[0]
+    alike = [other for other, *said in broken[1:] if tuple(said) == (column, sentence)]
+    where = f"in this file and in {', '.join(alike)}" if alike else "in this file alone"
+    raise InputError(
+        f"{sentence} {where}, against all the others: its sign or its direction of rolling looks reversed; correct the file, "
+        f'write direction = "backward" in its [[sweep]], or map {column} with scale = -1 under [sweep.columns]',
+        file=name,
+        column=column,
+    )
+
+
+def _reversed(own: Signatures) -> tuple[str, str] | None:
+    """Column and beginning of the sentence where one file has a sign that no tyre has."""
+    for broken, column, sentence in (
+        (own.cornering.sign > 0, "alpha_deg", "Fy_N rises with alpha_deg"),
+        (own.backward.sign < 0, "alpha_deg", "Fy_N falls with alpha_deg, rolling backwards"),
+        (own.camber.sign > 0, "gamma_deg", "Fy_N rises with gamma_deg"),
+        (own.aligning.sign < 0, "Mz_Nm", "Mz_Nm falls with alpha_deg"),
+    ):
+        if broken:
+            return column, sentence
+    return None
 
 
 def contradictions(found: Signatures) -> list[str]:

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from mffit.config import Config
-from mffit.fit import Agreement, Coefficient, Posterior, StageRecord
+from mffit.fit import Agreement, Coefficient, Doubt, Outlier, Posterior, StageRecord
 from mffit.fit.coverage import StageCoverage
 from mffit.fit.files import Files
 from mffit.measured import Measured
@@ -114,6 +114,14 @@ class BuildView:
     distrusted: tuple[str, ...]  #: why the file is not to be trusted, first of all
     files: Files | None  #: None if nothing is known of them
     file_names: Mapping[str, str]  #: by use
+    doubts: tuple[Doubt, ...]  #: sweeps that do not fit the others
+    outliers: tuple[Outlier, ...]  #: single readings without weight
+
+    def marked(self, channel: str) -> tuple[np.ndarray, np.ndarray]:
+        """Rows of the channel's readings without weight, and of the points of doubtful sweeps."""
+        single = [o.row for o in self.outliers if o.channel == channel]
+        doubtful = [row for doubt in self.doubts for row in doubt.index]
+        return np.array(single, dtype=int), np.array(doubtful, dtype=int)
 
     @property
     def on_disc(self) -> bool:
@@ -158,6 +166,8 @@ def view_of(result: BuildResult) -> BuildView:
         distrusted=fit.distrusted,
         files=fit.files,
         file_names=dict(result.files),
+        doubts=fit.doubts,
+        outliers=fit.outliers,
     )
 
 

@@ -13,7 +13,7 @@ import numpy as np
 
 from mffit.diagnosis import Diagnosis, Found, Gap, wording
 from mffit.diagnosis.where import Region
-from mffit.fit import Coefficient, FitResult
+from mffit.fit import Coefficient, Doubt, FitResult, Outlier
 from mffit.fit.files import Files
 from mffit.measured import KEYS, LoadResult, Measured
 from mffit.measured import wording as say
@@ -31,6 +31,8 @@ def build(result: BuildResult) -> dict[str, Any]:
         "tir": result.tir_path,
         "files": dict(result.files),
         "warnings": list(result.warnings),
+        "doubts": [_doubt(row) for row in result.fit.doubts],
+        "outliers": [_outlier(row) for row in result.fit.outliers],
     }
 
 
@@ -116,6 +118,30 @@ def write(path: Path, content: Mapping[str, Any]) -> None:
     """Write one of the above as UTF-8; numbers that are not finite become null."""
     text = json.dumps(_plain(content), indent=2, ensure_ascii=False, allow_nan=False)
     path.write_text(text + "\n", encoding="utf-8")
+
+
+def _doubt(row: Doubt) -> dict[str, Any]:
+    return {
+        "sweep": row.sweep,
+        "file": row.file,
+        "channel": row.channel,
+        "rms": row.rms,
+        "ratio": row.ratio,
+        "share": row.share,
+        "looks_like": row.looks or None,
+    }
+
+
+def _outlier(row: Outlier) -> dict[str, Any]:
+    return {
+        "file": row.file,
+        "line": row.line or None,
+        "sweep": row.sweep,
+        "channel": row.channel,
+        "measured": row.measured,
+        "expected": row.expected,
+        "ratio": row.ratio,
+    }
 
 
 def _load(row: LoadResult | None) -> dict[str, Any]:

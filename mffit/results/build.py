@@ -24,10 +24,10 @@ class BuildResult:
     fit: FitResult
     files: Mapping[str, str]  #: name of each file by use, "turn-slip" or "normal"
     tyres: Mapping[str, Tyre]  #: what each of them holds
-    members: tuple[Tyre, ...]  #: drawn from what the fit leaves uncertain, if any were asked for
     plain: str  #: the use whose file carries the plain name
     warnings: tuple[str, ...]
     seconds: float
+    members: tuple[Tyre, ...] = ()  #: drawn from what the fit leaves uncertain, if any were asked for
 
     @property
     def on_disc(self) -> bool:

@@ -36,7 +36,7 @@ def model_against_points(view: BuildView, channel: Channel) -> Figure:
         ax.set_xlabel(labels.ANGLES[over].axis, labelpad=1.5)
         style.few_ticks(ax, x=4)
     style.label_left(rows, channel.label)
-    style.legend_above(figure, _legend(colours, any(not c.forward for c in view.curves)))
+    style.legend_above(figure, _legend(view, channel, colours, any(not c.forward for c in view.curves)))
     return figure
 
 
@@ -52,10 +52,31 @@ def _draw(ax: Axes, view: BuildView, channel: Channel, curve: Curve, colour: Any
     marker, size = (".", 2.0) if len(x) > DENSE else ("o" if curve.forward else "v", 3.2)
     filled = {"mfc": colour, "mew": 0.0} if curve.forward else {"mfc": "white", "mew": 0.8}
     ax.plot(x, channel.measured[curve.index], ls="none", marker=marker, ms=size, color=colour, **filled)
+    _mark(ax, view, channel, curve)
     ax.plot(line.x, line.raw[channel.name], "-" if curve.forward else "--", color=colour, lw=1.0)
 
 
-def _legend(colours: dict[float, Any], backward: bool) -> list[Any]:
+def _mark(ax: Axes, view: BuildView, channel: Channel, curve: Curve) -> None:
+    """A cross over every reading without weight, a ring around the points of doubtful sweeps."""
+    angle = np.degrees(getattr(view.points, curve.over))
+    for rows, (marker, size) in zip(view.marked(channel.name), MARKS.values(), strict=True):
+        here = np.intersect1d(curve.index, rows)
+        ax.plot(
+            angle[here],
+            channel.measured[here],
+            ls="none",
+            marker=marker,
+            ms=size,
+            mfc="none",
+            color=style.CONTRAST,
+        )
+
+
+MARKS = {"no weight": ("x", 5.0), "doubtful sweep": ("o", 5.5)}
+"""Marker and size of what does not fit."""
+
+
+def _legend(view: BuildView, channel: Channel, colours: dict[float, Any], backward: bool) -> list[Any]:
     from matplotlib.lines import Line2D
 
     handles = [
@@ -66,6 +87,13 @@ def _legend(colours: dict[float, Any], backward: bool) -> list[Any]:
         handles.append(
             Line2D([], [], ls="--", marker="v", mfc="white", ms=3.5, color=style.MUTED, label="backward")
         )
+    for rows, (word, (marker, size)) in zip(view.marked(channel.name), MARKS.items(), strict=True):
+        if len(rows):
+            handles.append(
+                Line2D(
+                    [], [], ls="none", marker=marker, ms=size, mfc="none", color=style.CONTRAST, label=word
+                )
+            )
     places = 0 if all(abs(g - round(g)) < 0.15 for g in colours) else 1
     camber = labels.ANGLES["gamma"].symbol
     if len(colours) > 1:

@@ -40,6 +40,10 @@ def build_summary(result: BuildResult) -> str:
     ]
     parts.append(table(("fit", "points", "rms", "of noise", "largest", "R2"), rows))
     parts.append(_statuses(fit.coefficients))
+    if fit.outliers or fit.doubts:
+        parts.append(
+            f"readings without weight: {len(fit.outliers)}; doubtful sweeps: {len(fit.doubts)}; see the warnings"
+        )
     parts.append(paragraphs(fit.explanations[1:]))
     return blocks(parts)
 

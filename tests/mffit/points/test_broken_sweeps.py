@@ -54,3 +54,13 @@ def test_one_wild_reading_is_named_with_its_line(tmp_path):
 
 def test_the_unit_that_the_remedy_names_is_known():
     assert converted(np.array([1.0]), "kgf", "N") == pytest.approx([9.80665])
+
+
+def test_backward_zeros_that_are_not_declared_are_named_together(tmp_path):
+    project = disc_project(tmp_path)
+    for entry in project.config["sweep"]:
+        entry.pop("direction", None)
+    with pytest.raises(InputError) as error:
+        mffit.spin(project.write())
+    assert all(f"backward_{load}.csv" in str(error.value) for load in (1000, 1500))
+    assert 'direction = "backward"' in str(error.value)

@@ -11,6 +11,7 @@ import numpy as np
 import tir
 from mffit import config, measured, parts
 from mffit.fit.coverage import coverage
+from mffit.fit.posterior import Posterior
 from mffit.fit.result import Coefficient, FitResult, StageRecord, agreement
 from mffit.points import Points, make_points
 from mffit.results import BuildResult
@@ -133,6 +134,7 @@ def made_result(**changes: Any) -> BuildResult:
         explanations=("The file is for simulations with turn slip on.",),
         warnings=(),
         seconds=1.5,
+        posterior=Posterior((), np.zeros((0, 0))),
     )
     return BuildResult(
         config=settings,

@@ -1,0 +1,71 @@
+"""Single readings that stand out of their sweep: they are listed, and the fit does not follow them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+import numpy as np
+
+from mffit.points import Points
+from mffit.quantities import CHANNELS
+
+
+@dataclass(frozen=True, slots=True)
+class Outlier:
+    """One reading without weight."""
+
+    file: str
+    line: int  #: counted from 1; 0 if unknown
+    sweep: str
+    row: int  #: of the points
+    channel: str
+    measured: float  #: [N] or [Nm], in ISO-W as all of these
+    expected: float  #: what the fitted model reads there
+    ratio: float  #: their difference in units of the uncertainty
+
+    @property
+    def place(self) -> str:
+        return f"{self.file}:{self.line}" if self.line else self.file
+
+
+def outliers(
+    points: Points,
+    stated: tuple[np.ndarray, np.ndarray],
+    weights: tuple[np.ndarray, np.ndarray],
+    model: tuple[np.ndarray, np.ndarray],
+) -> tuple[Outlier, ...]:
+    """The readings that the fit gave no weight, in the order of the points.
+
+    Parameters
+    ----------
+    points : (n,)
+    stated : uncertainty of Fy [N] and Mz [Nm], (n,); inf where not measured
+    weights : the uncertainty that the fit used in the end, (n,)
+    model : readings of the fitted model, (n,)
+    """
+    out = []
+    for name, u, used, expected in zip(CHANNELS, stated, weights, model, strict=True):
+        measured = getattr(points, name)
+        for row in np.flatnonzero(np.isfinite(u) & ~np.isfinite(used)):
+            out.append(
+                Outlier(
+                    file=points.files[points.file[row]],
+                    line=int(points.line[row]),
+                    sweep=points.sweep_names[points.sweep[row]],
+                    row=int(row),
+                    channel=name,
+                    measured=float(measured[row]),
+                    expected=float(expected[row]),
+                    ratio=float(abs(measured[row] - expected[row]) / u[row]),
+                )
+            )
+    return tuple(sorted(out, key=lambda o: o.row))
+
+
+def marks(found: Iterable[Outlier], n: int) -> np.ndarray:
+    """What stands out at every point (n,): "", "Fy", "Mz" or "Fy Mz"."""
+    out = np.full(n, "", dtype=object)
+    for o in found:
+        out[o.row] = f"{out[o.row]} {o.channel}".strip()
+    return out

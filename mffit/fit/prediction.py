@@ -1,0 +1,145 @@
+"""What all other sweeps say of each sweep: prediction with the sweep left out, from the one fit to all of them.
+
+To first order no second fit is needed. With J the derivatives of a group's residuals r in units of their weight, and C the
+covariance of the fit, the hat matrix is P = J C J^T; without the group its residuals are (I - P)^-1 r, and the prediction itself
+has the covariance (I - P)^-1 - I (Belsley, Kuh and Welsch, Regression Diagnostics, 1980, section 2.1).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from mffit.fit.problem import Problem
+from mffit.least_squares import Number, inverse
+from mffit.points import Points, levels
+from mffit.rig import FAULT_NAMES
+
+FEWEST = 4
+"""Points that make a sweep."""
+MOST = 0.5
+"""Share of all points from which on the others say too little of a sweep."""
+UNKNOWN = 1e-3
+"""Share of a direction's information that comes from the others below which they say nothing of it."""
+CHANNELS = ("Fy", "Mz")
+COMMON = tuple(name for name in FAULT_NAMES if name not in ("backlash_deg", "path_radius_m"))
+"""Errors of a rig that all sweeps share; they are no contradiction of one sweep, and are let free, to first order."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Group:
+    """Points that share a mistake, if there is one."""
+
+    name: str  #: for sentences
+    file: str
+    index: np.ndarray  #: (m,) rows of the points
+    whole: bool  #: all points of a sweep, not those of one condition
+
+
+@dataclass(frozen=True, slots=True)
+class Leverage:
+    """A fit at its solution, for every point; arrays of Fy and then Mz, 0 or inf where a channel is not used."""
+
+    residual: np.ndarray  #: (2n,) model less measured [N], [Nm]
+    slope: np.ndarray  #: (2n, k) derivative by the free numbers
+    weight: np.ndarray  #: (2n,) uncertainty that the fit used [N], [Nm]; inf: not used
+    noise: (
+        np.ndarray
+    )  #: (2n,) uncertainty of a sound point, the model's own misfit included; inf: not measured
+    covariance: np.ndarray  #: (k, k)
+
+
+@dataclass(frozen=True, slots=True)
+class Prediction:
+    """One channel of a group as the others predict it."""
+
+    error: np.ndarray  #: (m,) prediction less measured [N] or [Nm]
+    covariance: np.ndarray  #: (m, m) of a sound sweep's error: its noise and the prediction's
+
+
+def groups(points: Points) -> list[Group]:
+    """Every sweep, and where one holds several loads, pressures, directions or cambers each of these by itself."""
+    found = [*_sweeps(points), *_conditions(points)]
+    unique = {tuple(group.index): group for group in reversed(found)}
+    return [g for g in reversed(unique.values()) if FEWEST <= len(g.index) <= MOST * len(points)]
+
+
+def _sweeps(points: Points) -> Iterator[Group]:
+    for k in np.unique(points.sweep):
+        index = np.flatnonzero(points.sweep == k)
+        yield Group(points.sweep_names[k], points.files[points.file[index[0]]], index, True)
+
+
+def _conditions(points: Points) -> Iterator[Group]:
+    load = levels.nearest_labels(points.Fz, levels.LOAD)
+    pressure = levels.nearest_labels(points.p, levels.PRESSURE)
+    camber = levels.nearest_labels(points.gamma, levels.CAMBER)
+    for sweep in _sweeps(points):
+        i = sweep.index
+        own = levels.count(points.gamma[i], levels.CAMBER)
+        keys = np.column_stack([load[i], pressure[i], points.direction[i], points.mount[i]])
+        # A sweep of camber is not a condition per angle.
+        if own * FEWEST <= len(i) and not levels.spread(points.gamma[i], levels.CAMBER):
+            keys = np.column_stack([keys, camber[i]])
+        for key in np.unique(keys, axis=0):
+            rows = i[np.all(keys == key, axis=1)]
+            if len(rows) < len(i):
+                part = points.select(rows)
+                said = f"{np.mean(part.Fz):.0f} N, {np.mean(part.p) / 1e3:.0f} kPa"
+                if keys.shape[1] > 4:
+                    said += f", camber {np.degrees(np.mean(part.gamma)):z.0f} deg"
+                yield Group(f"{sweep.name} at {said}", sweep.file, rows, False)
+
+
+def leverage(problem: Problem, numbers: Sequence[Number], noise: np.ndarray) -> Leverage:
+    """Residuals and derivatives of a fit at its solution.
+
+    Parameters
+    ----------
+    problem : at the solution, with the weights that the fit used
+    numbers : that were free, (k,), with their priors
+    noise : uncertainty of a sound point [N], [Nm], (2n,) of Fy and then Mz; inf where not measured
+    """
+    points = problem.points
+    free = [n.name for n in numbers]
+    common = [name for name in COMMON if name not in free]
+    out, slope = problem.simulation.sensitivities(points, [*free, *common])
+    slopes = np.concatenate(slope)
+    measured = np.concatenate([points.Fy, points.Mz])
+    used = np.isfinite(measured) & np.isfinite(noise)
+    weight = np.where(used, np.concatenate([problem.sigma_Fy, problem.sigma_Mz]), np.inf)
+    residual = np.where(used, np.concatenate(out) - np.nan_to_num(measured), 0.0)
+    J = slopes / weight[:, None]
+    covariance = inverse(J.T @ J + np.diag([n.spread**-2.0 for n in numbers] + [0.0] * len(common)))
+    push = J.T @ (residual / weight)
+    push[: len(free)] = 0.0  # the fit has ended: it is balanced in its own numbers
+    return Leverage(
+        residual=np.where(used, residual - slopes @ (covariance @ push), 0.0),
+        slope=slopes,
+        weight=weight,
+        noise=np.where(used, noise, np.inf),
+        covariance=covariance,
+    )
+
+
+def predictions(fit: Leverage, index: np.ndarray) -> dict[str, Prediction]:
+    """The channels of a group (m,) as all other points predict them; a channel that was not measured is left out."""
+    n = len(fit.residual) // 2
+    rows = np.concatenate([index, n + index])
+    rows = rows[np.isfinite(fit.noise[rows])]
+    slope, weight = fit.slope[rows], fit.weight[rows]
+    J = slope / weight[:, None]
+    share, axes = np.linalg.eigh(J @ fit.covariance @ J.T)
+    apart = (axes / np.maximum(1.0 - share, UNKNOWN)) @ axes.T  # (I - P)^-1
+    toward = slope @ fit.covariance @ J.T @ apart
+    error = fit.residual[rows] + toward @ (fit.residual[rows] / weight)
+    spread = slope @ fit.covariance @ slope.T + toward @ J @ fit.covariance @ slope.T
+    spread += np.diag(fit.noise[rows] ** 2)
+    out = {}
+    for k, name in enumerate(CHANNELS):
+        own = rows >= n if k else rows < n
+        if np.any(own):
+            out[name] = Prediction(error[own], spread[np.ix_(own, own)])
+    return out

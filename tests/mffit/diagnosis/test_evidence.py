@@ -1,0 +1,233 @@
+"""The weight of a hypothesis against closed forms: one number that adds to every reading, a number the data do not touch."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from small_programme import TYRE, U_FY, U_MZ, problem, programme, read
+
+from mffit.diagnosis.candidates import Hypothesis, Problem
+from mffit.diagnosis.noise import noise_model
+from mffit.diagnosis.selection import Step, log_prior
+from mffit.diagnosis.ties import Run, candidate_runs, separation
+from mffit.diagnosis.validate import gap, validate
+from mffit.effects import CATALOG, Effect, Free
+from mffit.rig import RigFaults, Simulation
+
+BY_ID = {effect.id: effect for effect in CATALOG}
+OFFSET = BY_ID["loadcell-offset-fy"]
+
+
+@pytest.mark.parametrize("offset", [0.0, 5.0, -20.0])
+def test_evidence_of_an_offset_in_closed_form(offset):
+    """Gauss with a Gaussian prior: the integral over the one number is exact."""
+    points = read(programme(), faults=RigFaults(F0_N=offset), noise=1)
+    chosen = problem(points)
+    found = chosen.fit((OFFSET,))
+    residual = points.Fy - Simulation.of(TYRE).readings(points).Fy
+    n, spread = len(points), OFFSET.free[0].spread
+    precision = n / U_FY**2 + 1.0 / spread**2
+    value = residual.sum() / U_FY**2 / precision
+    assert found.numbers["F0_N"] == pytest.approx(value, rel=1e-4, abs=1e-4)
+    assert found.stderr["F0_N"] == pytest.approx(precision**-0.5)
+    gained = 0.5 * value**2 * precision - 0.5 * math.log(1.0 + n * spread**2 / U_FY**2)
+    assert found.log_evidence - chosen.null.log_evidence == pytest.approx(gained, rel=1e-4, abs=1e-3)
+    assert chosen.null.chi2 == pytest.approx(
+        np.sum((residual / U_FY) ** 2)
+        + np.sum(((points.Mz - Simulation.of(TYRE).readings(points).Mz) / U_MZ) ** 2)
+    )
+    assert found.chi2 == pytest.approx(
+        chosen.null.chi2 - 2.0 * value * residual.sum() / U_FY**2 + n * (value / U_FY) ** 2
+    )
+
+
+@pytest.mark.parametrize(
+    ("free", "spread"),
+    [
+        (Free("QSX3", 0.15), 0.15),
+        (Free("QSY1", 0.15, relative=True), 0.15 * float(TYRE["QSY1"])),
+        (Free("QSX12", 0.5, (0.0,), -2.0, 3.0, relative=True), 0.5 * 0.2 * 5.0),
+    ],
+)
+def test_a_number_that_the_data_do_not_touch_keeps_its_spread_and_brings_nothing(free, spread):
+    """Relative to the coefficient; to a fifth of its bounds where the model has none."""
+    chosen = problem(read(programme(), noise=2))
+    found = chosen.fit((Effect("x", "x", "tyre", "", (free,)),))
+    assert found.stderr[free.name] == pytest.approx(spread)
+    assert found.numbers[free.name] == pytest.approx(float(TYRE[free.name]))
+    assert found.log_evidence == pytest.approx(chosen.null.log_evidence)
+
+
+@pytest.mark.parametrize("play", [0.15, 0.3])
+def test_an_effect_without_slope_at_zero_is_found_from_its_scan(play):
+    """Play is even in its number at zero: only a start away from it sees it."""
+    chosen = problem(read(programme(), faults=RigFaults(backlash_deg=play)))
+    found = chosen.fit((BY_ID["backlash"],))
+    assert found.numbers["backlash_deg"] == pytest.approx(play, abs=0.01)
+    assert found.chi2 < 0.05 * chosen.null.chi2
+
+
+def test_numbers_of_one_effect_need_not_be_scanned_alike():
+    """The play from three starts, the load cell beside it from one."""
+    points = read(programme(), faults=RigFaults(backlash_deg=0.3, F0_N=10.0))
+    loose = Effect("loose", "loose", "rig", "", (*BY_ID["backlash"].free, *OFFSET.free))
+    found = problem(points).fit((loose,))
+    assert found.numbers == {
+        "backlash_deg": pytest.approx(0.3, abs=0.01),
+        "F0_N": pytest.approx(10.0, abs=0.3),
+    }
+
+
+def test_turn_slip_is_switched_on():
+    """A simulation without spin misses the turn-slip force of the disc; the switch is no number with an error."""
+    points = read(programme())
+    start = Simulation.of(TYRE, turn_slip=False)
+    found = Problem(points, start, noise_model(points, start, 0.0)).fit((BY_ID["turn-slip"],))
+    assert dict(found.numbers) == {"turn_slip": 1.0}
+    assert found.chi2 == pytest.approx(0.0, abs=1e-9)
+    assert not found.stderr
+
+
+def test_two_hidden_effects_are_fitted_together():
+    true = TYRE.replace(PKY6=1.1 * float(TYRE["PKY6"]))
+    chosen = problem(read(programme(), true, RigFaults(M0_Nm=1.5)))
+    found = chosen.fit((BY_ID["camber-stiffness"], BY_ID["loadcell-offset-mz"]))
+    assert found.numbers["PKY6"] == pytest.approx(true["PKY6"], rel=0.01)
+    assert found.numbers["M0_Nm"] == pytest.approx(1.5, abs=0.05)
+    assert found.residual @ found.residual == pytest.approx(found.chi2)
+
+
+def test_a_channel_that_was_not_measured_brings_nothing():
+    points = read(programme(), faults=RigFaults(F0_N=12.0, M0_Nm=2.0), noise=3)
+    without = points.replace(Mz=np.nan, u_Mz=np.inf)
+    assert len(problem(without).null.residual) == len(points)
+    found = problem(without).fit((OFFSET,))
+    assert found.numbers["F0_N"] == pytest.approx(problem(points).fit((OFFSET,)).numbers["F0_N"], rel=1e-6)
+
+
+def step(**evidence: float) -> Step:
+    """Candidates beside nothing, evidence 0 for nothing; every one a rig effect with the prior of its name's length."""
+    nothing = np.empty(0)
+
+    def hypothesis(effects, value):
+        return Hypothesis(effects, {}, {}, 0.0, value, Simulation.of(TYRE), nothing, np.empty((0, 0)))
+
+    trials = [
+        hypothesis((Effect(name, name, "rig", "", (Free("F0_N", 1.0),), prior=0.5 * (len(name) - 1)),), value)
+        for name, value in evidence.items()
+    ]
+    return Step(hypothesis((), 0.0), tuple(trials), 4.0, Simulation.of(TYRE))
+
+
+def test_weights_are_evidence_times_prior_and_add_up():
+    found = step(a=3.0, bb=2.0, c=-1.0).weights()
+    logs = {"a": 3.0 - math.log(3), "bb": 2.5 - math.log(3), "c": -1.0 - math.log(3), "none": 0.0}
+    total = sum(math.exp(v) for v in logs.values())
+    assert found == pytest.approx({name: math.exp(v) / total for name, v in logs.items()})
+    assert sum(found.values()) == pytest.approx(1.0)
+
+
+@pytest.mark.parametrize(("value", "passes"), [(3.9, False), (4.1, True)])
+def test_a_step_passes_from_its_threshold_on(value, passes):
+    found = step(a=value)
+    assert found.passes is passes
+    assert found.gain == value
+    assert found.best.effects[0].id == "a"
+
+
+def test_a_coefficient_that_the_model_does_not_have_is_likelier_to_be_missing():
+    absent, present = TYRE.replace(PVY3=0.0), TYRE.replace(PVY3=0.4)
+    effect = BY_ID["camber-thrust-curvature"]
+    one, other = (log_prior(effect, Simulation.of(tyre)) for tyre in (absent, present))
+    assert one - effect.prior == effect.prior - other == 1.0
+    for name in ("loadcell-offset-fy", "turn-slip", "relaxation"):
+        assert log_prior(BY_ID[name], Simulation.of(TYRE)) == BY_ID[name].prior
+
+
+def test_two_offsets_differ_by_their_square_at_every_point_of_the_best_run():
+    """Of the usual runs those with most points win: 13 sideslip angles, (9/6)^2 each."""
+    points = read(programme())
+    null = problem(points).null
+    other = replace(null, state=Simulation.of(TYRE, RigFaults(F0_N=9.0, M0_Nm=0.3)))
+    best = separation(points, null, other, U_FY, U_MZ)
+    assert best.chi2 == pytest.approx(13 * (1.5**2 + 0.5**2))
+    assert separation(points, null, other, U_FY, float("nan")).chi2 == pytest.approx(13 * 1.5**2)
+
+
+def test_the_usual_runs_are_what_they_are_called():
+    points = read(programme(T=30.0))
+    loads = {}
+    for run, added in candidate_runs(points):
+        loads.setdefault(run, []).append((added, float(added.Fz[0])))
+        assert np.ptp(added.Fz) == 0.0
+    assert set(loads) == set(Run)
+    one = {run: rows[0][0] for run, rows in loads.items()}
+    assert sorted(load for _, load in loads[Run.OTHER_LOAD]) == [500.0, pytest.approx(2520.0)]
+    usual = 1000.0, 1800.0
+    assert all(
+        min(usual) <= load <= max(usual)
+        for run, rows in loads.items()
+        if run is not Run.OTHER_LOAD
+        for _, load in rows
+    )
+    assert np.all(one[Run.BACKWARD].direction == -1)
+    assert np.all(one[Run.BACKWARD_CAMBER].direction == -1)
+    assert np.ptp(one[Run.BACKWARD_CAMBER].gamma) > 1.0
+    assert np.all(one[Run.TURNED_ON_RIM].mount == -1)
+    assert np.degrees(one[Run.LEANED].gamma) == pytest.approx(20.0)
+    assert one[Run.LOW_PRESSURE].p == pytest.approx(200e3)
+    fast, warm = one[Run.FAST], one[Run.WARM]
+    np.testing.assert_allclose(fast.V, 12.0)
+    np.testing.assert_allclose(warm.T, 50.0)
+    assert np.all(one[Run.LATE].t > points.t.max() + 600.0)
+    assert np.all(one[Run.STRAIGHT].phi_t == 0.0)
+    assert np.all(one[Run.STRAIGHT_CAMBER].phi_t == 0.0)
+    assert one[Run.WIDE].phi_t == pytest.approx(-0.5 / 1.323)
+    for run in (Run.BACKWARD, Run.STRAIGHT, Run.FAST):
+        assert np.degrees(np.max(np.abs(one[run].alpha))) == pytest.approx(8.0)
+    assert np.degrees(np.max(np.abs(one[Run.CAMBER].gamma))) == pytest.approx(40.0)
+    straight = points.replace(phi_t=0.0)
+    assert {Run.STRAIGHT, Run.WIDE, Run.STRAIGHT_CAMBER}.isdisjoint(
+        run for run, _ in candidate_runs(straight)
+    )
+
+
+def test_the_gap_in_numbers():
+    points = read(programme(), faults=RigFaults(F0_N=9.0, M0_Nm=-1.2))
+    chosen = problem(points)
+    found = gap(chosen.measured - chosen.start.predict(points), chosen.noise)
+    assert found.Fy_rmse_N == pytest.approx(9.0)
+    assert found.Mz_rmse_Nm == pytest.approx(1.2)
+    assert found.chi2_per_dof == pytest.approx(0.5 * (1.5**2 + 2.0**2))
+    assert (found.rms("Fy"), found.rms("Mz")) == (found.Fy_rmse_N, found.Mz_rmse_Nm)
+
+
+def test_a_sweep_left_out_is_predicted_from_the_others():
+    """An offset of 12 N in all sweeps but one, which lacks it: left out, that one is off by what the others say."""
+    points = read(programme(), faults=RigFaults(F0_N=12.0))
+    odd_one = points.sweep == 4
+    points = points.replace(Fy=np.where(odd_one, points.Fy - 12.0, points.Fy))
+    chosen = problem(points)
+    checked = validate(chosen, chosen.fit((OFFSET,)))
+    assert checked.folds == 5
+    n, m = len(points), int(odd_one.sum())
+    assert checked.gap_before.Fy_rmse_N == pytest.approx(12.0 * math.sqrt((n - m) / n))
+    squares = 0.0
+    for k in range(5):
+        out = points.sweep == k
+        rest = np.where(odd_one, 0.0, 12.0)[~out]
+        predicted = rest.sum() / U_FY**2 / (len(rest) / U_FY**2 + 1.0 / 10.0**2)
+        squares += float(np.sum((np.where(odd_one, 0.0, 12.0)[out] - predicted) ** 2))
+    assert checked.gap_after.Fy_rmse_N == pytest.approx(math.sqrt(squares / n), rel=1e-3)
+
+
+def test_many_sweeps_are_left_out_in_eight_groups():
+    points = read(programme(), noise=5)
+    many = points.replace(sweep=np.arange(len(points)) // 3, sweep_names=tuple(map(str, range(40))))
+    chosen = problem(many)
+    assert validate(chosen, chosen.fit((OFFSET,))).folds == 8
+    nothing = validate(chosen, chosen.null)
+    assert nothing.gap_before == nothing.gap_after

@@ -1,0 +1,221 @@
+"""What is read off the data before the fit: starts, radii and ranges, each against the tyre that they are to describe."""
+
+from __future__ import annotations
+
+import math
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from small_rigs import truth
+
+import tir
+from mffit.fit import ranges
+from mffit.fit.radius import radius_coefficients
+from mffit.fit.ranges import plausible_ranges
+from mffit.fit.result import agreement
+from mffit.fit.start import camber_stiffness_terms, starting_values
+from mffit.fit.virtual_zero import epsilon_gamma_of_model, zero_points
+from mffit.points import make_points
+from tir import Quantity
+
+LOADS = (900.0, 1400.0, 2100.0)
+STEP = 1e-4
+
+
+@pytest.fixture(scope="module")
+def tyre() -> tir.Tyre:
+    return truth()
+
+
+def camber_slope(tyre, Fz, **condition):
+    up, down = (tyre(Fz, gamma=s, **condition).Fy for s in (STEP, -STEP))
+    return float(up - down) / (2.0 * STEP)
+
+
+@pytest.mark.parametrize("changes", [{}, {"LKYC": 1.2}, {"LFZO": 1.1}, {"PPY5": -0.3}])
+@pytest.mark.parametrize("loads", [LOADS[:1], LOADS[::2], LOADS])
+def test_camber_terms_give_the_measured_stiffness(tyre, loads, changes):
+    """Slopes on a line over load, as K_yg0 / Fz is: all are met; PVY3 and PHY terms add none here."""
+    model = tyre.replace(PVY3=0.0, PVY4=0.0, PKY7=0.1, **changes)
+    specific = -1.1 - 0.2 * (np.array(loads) / 1400.0 - 1.0)
+    measured = dict(zip(loads, np.array(loads) * specific, strict=True))
+    found = model.replace(**camber_stiffness_terms(model.values, measured, 220e3))
+    for load, stiffness in measured.items():
+        assert camber_slope(found, load, p=220e3) == pytest.approx(stiffness, rel=1e-3)
+
+
+def test_of_loads_off_a_line_the_nominal_one_is_met(tyre):
+    model = tyre.replace(PVY3=0.0, PVY4=0.0)
+    measured = {900.0: -1000.0, 1400.0: -1500.0, 2100.0: -2500.0}
+    found = model.replace(**camber_stiffness_terms(model.values, measured, 250e3))
+    assert camber_slope(found, 1400.0) == pytest.approx(-1500.0, rel=1e-3)
+    # Least squares of the other two: in dfz their specific stiffness is off the line through the nominal one on both sides.
+    off = [camber_slope(found, load) / load - stiffness / load for load, stiffness in measured.items()]
+    dfz = np.array([900.0, 1400.0, 2100.0]) / 1400.0 - 1.0
+    assert dfz @ off == pytest.approx(0.0, abs=1e-3)
+
+
+def test_no_measured_stiffness_changes_nothing(tyre):
+    assert camber_stiffness_terms(tyre.values, {}, 250e3) == {}
+
+
+def measured_of(C_alpha, C_gamma, r_e=None):
+    by = {"C_alpha": C_alpha, "C_gamma": C_gamma}
+    return SimpleNamespace(by_load=lambda key: by[key], r_e=r_e)
+
+
+def campaign(tyre, phi_t=-1 / 1.323):
+    alpha = np.tile(np.radians(np.linspace(-8.0, 8.0, 17)), 3)
+    Fz = np.repeat(LOADS, 17)
+    return make_points(
+        alpha, 0.0, Fz, p=250e3, V=6.0, phi_t=phi_t, Fy=tyre(Fz, alpha, phi_t=phi_t or None).Fy
+    )
+
+
+@pytest.mark.parametrize("loads", [(1400.0,), LOADS])
+def test_the_start_has_the_measured_cornering_stiffness_and_grip(tyre, loads):
+    other = tyre.replace(PKY1=-25.0, PKY2=4.0, PDY1=2.5)
+    points = campaign(tyre, 0.0)
+    stiffness = {load: float(tyre.state(load).K_ya) for load in loads}
+    start = starting_values(other.values, points, measured_of(stiffness, {}))
+    begun = other.replace(**{name: start[name] for name in ("PKY1", "PKY2", "PDY1")})
+    for load, K in stiffness.items():
+        assert begun.state(load).K_ya == pytest.approx(K, rel=0.02)
+    assert start["PDY1"] == pytest.approx(np.max(np.abs(points.Fy / points.Fz)))
+    assert start["PCY1"] == other["PCY1"]
+
+
+@pytest.mark.parametrize("phi_t", [-1 / 1.323, 0.0])
+def test_the_start_has_the_measured_camber_stiffness_as_the_rig_reads_it(tyre, phi_t):
+    """On a disc turn slip is on, and camber acts through the spin of a wheel whose radius is r_e instead of R0."""
+    model = tyre.replace(PVY3=0.0, PVY4=0.0, PKYP1=0.0, PDYP1=0.0)
+    r_e = Quantity(float(model.state(1400.0, Vx=6.0).Re), 0.0, "m")
+    start = starting_values(model.values, campaign(tyre, phi_t), measured_of({}, {1400.0: -1500.0}, r_e))
+    begun = model.replace(PKY6=start["PKY6"], PKY7=start["PKY7"])
+    condition = {"turn_slip": True} if phi_t else {}
+    assert camber_slope(begun, 1400.0, Vx=6.0, **condition) == pytest.approx(-1500.0, rel=5e-3)
+
+
+def test_where_zero_is_a_dead_end_the_start_is_not_zero():
+    """Without trail and slope factor the moment knows neither of them."""
+    empty = tir.Tyre.from_values({}).replace(FNOMIN=1400.0, UNLOADED_RADIUS=0.3, QBZ1=0.0, QDZ1=0.0)
+    start = starting_values(empty.values, campaign(truth()), measured_of({}, {}))
+    assert start["QBZ1"] > 1.0
+    assert 0.02 < start["QDZ1"] < 0.3
+    kept = starting_values({**empty.values, "QBZ1": 3.0}, campaign(truth()), measured_of({}, {}))
+    assert kept["QBZ1"] == 3.0
+
+
+@pytest.mark.parametrize("loads", [(1400.0,), (900.0, 2100.0)])
+def test_the_files_radius_passes_through_the_measured_ones(tyre, loads):
+    measured = {load: 0.297 - 3e-6 * load for load in loads}
+    found = tyre.replace(**radius_coefficients(tyre.values, measured, 6.0))
+    for load, r_e in measured.items():
+        assert found.state(load, Vx=6.0).Re == pytest.approx(r_e, abs=1e-8)
+    assert found.state(loads[0], Vx=30.0).Re > measured[loads[0]]  # it grows with speed
+
+
+def test_the_models_own_factor_is_pecp1_where_spin_is_small(tyre):
+    """(17) on a wide path: both stiffnesses at zero spin."""
+    model = tyre.replace(PHY1=0.0, PHY2=0.0, PVY1=0.0, PVY2=0.0, PECP1=-0.2)
+    R = 2000.0
+    points = make_points([0.0, 0.0], 0.0, 1400.0, p=250e3, V=6.0, phi_t=-1 / R, direction=[1, -1])
+    r_e = float(model.state(1400.0, Vx=6.0).Re)
+    assert epsilon_gamma_of_model(model.values, points, 1400.0, r_e, R) == pytest.approx(-0.2, abs=0.003)
+
+
+def test_the_zeros_of_the_model_are_run_as_the_data_were(tyre):
+    points = make_points(
+        [0.1, 0.05], 0.3, [900.0, 1400.0], p=[200e3, 250e3], V=6.0, phi_t=-0.7, direction=[1, -1]
+    )
+    zero = zero_points(points, 1500.0)
+    assert list(zero.direction) == [1, -1]
+    assert np.all(zero.alpha == 0.0)
+    assert np.all(zero.gamma == 0.0)
+    assert np.all(zero.Fz == 1500.0)
+    assert np.all(zero.p == 250e3)
+    assert len(zero_points(points.select(points.direction > 0), 1500.0)) == 1
+
+
+def test_tested_ranges_are_those_of_the_set_points():
+    points = make_points(
+        np.radians([-3.0, 8.0]),
+        np.radians([-40.0, 10.0]),
+        [900.0, 2100.0],
+        p=[240e3, 260e3],
+        V=6.0,
+        phi_t=0.0,
+    )
+    found = ranges.tested_ranges(points)
+    assert found["ALPMAX"] == -found["ALPMIN"] == pytest.approx(np.radians(8.0))
+    assert found["CAMMAX"] == -found["CAMMIN"] == pytest.approx(np.radians(40.0))
+    assert (found["FZMIN"], found["FZMAX"], found["PRESMIN"], found["PRESMAX"]) == (
+        900.0,
+        2100.0,
+        240e3,
+        260e3,
+    )
+    assert ranges.covered_ranges(points) == found
+    alone = ranges.covered_ranges(points.replace(p=250e3))
+    assert (alone["PRESMIN"], alone["PRESMAX"]) == (pytest.approx(225e3), pytest.approx(275e3))
+    limits = ranges.envelope(found)
+    assert limits == ((900.0, 2100.0), found["CAMMAX"], found["ALPMAX"], (240e3, 260e3))
+
+
+TESTED = {
+    "PRESMIN": 200e3, "PRESMAX": 300e3, "FZMIN": 900.0, "FZMAX": 2100.0, "ALPMIN": -0.14, "ALPMAX": 0.14,
+    "CAMMIN": -0.5, "CAMMAX": 0.5,
+}  # fmt: skip
+
+
+def test_a_sound_model_may_go_as_far_as_is_wished(tyre):
+    sound = tyre.replace(PDY2=0.0, PEY2=0.0, PEY4=0.0, PEY5=0.0, PDY3=0.0)
+    found = plausible_ranges(sound.values, TESTED, turn_slip=False)
+    assert found["FZMIN"] == pytest.approx(90.0)
+    assert found["FZMAX"] == pytest.approx(3150.0)
+    assert (found["PRESMIN"], found["PRESMAX"]) == (pytest.approx(160e3), pytest.approx(360e3))
+    assert found["ALPMAX"] == -found["ALPMIN"] == pytest.approx(math.radians(20.0))
+    assert found["CAMMAX"] == -found["CAMMIN"] == pytest.approx(0.75)
+
+
+@pytest.mark.parametrize(("tested", "written"), [(0.3, 0.45), (0.7, math.radians(45.0)), (0.9, 0.9)])
+def test_camber_grows_by_half_to_45_degrees_and_never_shrinks(tyre, tested, written):
+    sound = tyre.replace(PDY2=0.0, PEY2=0.0, PEY4=0.0, PEY5=0.0, PDY3=0.0)
+    found = plausible_ranges(sound.values, {**TESTED, "CAMMAX": tested, "CAMMIN": -tested}, turn_slip=False)
+    assert found["CAMMAX"] == pytest.approx(written)
+
+
+def test_a_model_that_loses_its_grip_is_not_allowed_there(tyre):
+    """mu = 1.2 - 1.2 (Fz/1400 - 1) is 0.6 at 2100 N, 0.15 at 2625 and gone at 2800: half the way is the last share."""
+    weak = tyre.replace(PDY1=1.2, PDY2=-1.2, PEY1=0.0, PEY2=0.0, PEY4=0.0, PEY5=0.0, PDY3=0.0)
+    found = plausible_ranges(weak.values, TESTED, turn_slip=False)
+    assert found["FZMAX"] == pytest.approx(2100.0 + 0.5 * 1050.0)
+    assert found["FZMIN"] == pytest.approx(90.0)
+
+
+def test_a_side_force_that_reverses_ends_the_sideslip_range(tyre):
+    """sin(C atan(...)) with C = 2.4 comes back to zero: at 20 deg it has lost more than half its peak."""
+    hunched = tyre.replace(PCY1=2.4, PEY1=0.0, PEY2=0.0, PEY4=0.0, PEY5=0.0, PDY3=0.0, PDY2=0.0)
+    found = plausible_ranges(hunched.values, TESTED, turn_slip=False)
+    assert TESTED["ALPMAX"] <= found["ALPMAX"] < math.radians(20.0)
+    fine = hunched.replace(PCY1=1.3)
+    assert plausible_ranges(fine.values, TESTED, turn_slip=False)["ALPMAX"] == pytest.approx(
+        math.radians(20.0)
+    )
+
+
+def test_agreement_in_numbers():
+    found = agreement(np.array([1.0, 2.0, 3.0, np.nan, 9.0]), np.array([0.0, 2.0, 5.0, 4.0, np.nan]))
+    assert found.n == 3
+    assert found.rmse == pytest.approx(math.sqrt(5.0 / 3.0))
+    assert found.nrmse == pytest.approx(math.sqrt(5.0 / 3.0) / 5.0)
+    assert found.max_abs == 2.0
+    assert found.r2 == pytest.approx(1.0 - (5.0 / 3.0) / np.var([0.0, 2.0, 5.0]))
+    flat = agreement(np.array([1.0, 2.0]), np.array([0.0, 0.0]))
+    assert flat.rmse == pytest.approx(math.sqrt(2.5))
+    assert math.isnan(flat.nrmse)
+    assert math.isnan(flat.r2)
+    nothing = agreement(np.array([1.0]), np.array([np.nan]))
+    assert nothing.n == 0
+    assert math.isnan(nothing.rmse)

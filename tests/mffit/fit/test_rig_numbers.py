@@ -1,0 +1,96 @@
+"""The rig's errors enter the fit with what [rig] declares of them, no more and no less."""
+
+from __future__ import annotations
+
+import math
+from types import SimpleNamespace
+
+import pytest
+
+from mffit import config
+from mffit.fit.rig_numbers import known_faults, rig_numbers
+from tir import Quantity
+
+DOUBTS = {
+    "u_loadcell_offset_N": 8.0, "u_camber_alignment_deg": 0.3, "u_slip_alignment_N": 20.0, "backlash_deg": 0.2,
+    "u_backlash_deg": 0.05,
+}  # fmt: skip
+ALPHA_M = Quantity(math.radians(0.7), math.radians(0.02), "rad")
+
+
+def rig(**changes):
+    return config.load(
+        {
+            "tyre": {"name": "t", "unloaded_radius": 0.3, "nominal_load": 1500.0, "nominal_pressure": 250.0},
+            "rig": {"path_radius": 1.3, "u_path_radius": 0.002} | DOUBTS | changes,
+            "sweep": [{"file": "a.csv"}],
+        }
+    )
+
+
+def direct(**changes):
+    """What the direct method found: 18 kN/rad of cornering stiffness."""
+    found = dict(
+        misaligned=False, alpha_M=ALPHA_M, C_alpha=Quantity(-18000.0, 100.0, "N/rad"), R=Quantity(1.3, 0.002, "m"),
+        epsilon_gamma=Quantity(-0.1, 0.05, "-"), F_phit_load=1500.0,
+    )  # fmt: skip
+    return SimpleNamespace(**found | changes)
+
+
+def by_name(config, measured):
+    return {number.name: number for number in rig_numbers(config, measured)}
+
+
+def test_every_declared_doubt_is_a_prior_of_that_width():
+    found = by_name(rig(), direct())
+    assert {name: (n.expected, n.spread) for name, n in found.items()} == {
+        "F0_N": (0.0, 8.0),
+        "gamma_0_deg": (0.0, 0.3),
+        "alpha_0_deg": (0.0, pytest.approx(math.degrees(20.0 / 18000.0))),
+        "path_radius_m": (1.3, 0.002),
+        "backlash_deg": (0.2, 0.05),
+    }
+    for number in found.values():
+        assert number.start == number.expected
+        assert number.upper - number.expected > 5.0 * number.spread
+        assert number.expected - number.lower > 5.0 * number.spread or number.name == "backlash_deg"
+    assert found["backlash_deg"].lower == 0.0
+
+
+def test_a_misalignment_is_known_as_it_was_measured():
+    """True sideslip is the reading plus alpha_M."""
+    number = by_name(rig(), direct(misaligned=True))["alpha_0_deg"]
+    assert (number.expected, number.spread) == (pytest.approx(0.7), pytest.approx(0.02))
+    assert known_faults(rig(), direct(misaligned=True)).alpha_0_deg == pytest.approx(0.7)
+
+
+def test_what_the_alignment_leaves_is_not_taken_off_beforehand():
+    faults = known_faults(rig(), direct())
+    assert faults.alpha_0_deg == 0.0
+    assert faults.backlash_deg == 0.2
+
+
+def test_without_backward_runs_nothing_is_known_of_the_misalignment():
+    measured = direct(alpha_M=None)
+    assert known_faults(rig(), measured).alpha_0_deg == 0.0
+    assert by_name(rig(), measured)["alpha_0_deg"].expected == 0.0
+
+
+def test_without_a_sideslip_sweep_ten_per_load_turns_the_force_into_an_angle():
+    number = by_name(rig(), direct(C_alpha=None))["alpha_0_deg"]
+    assert number.spread == pytest.approx(math.degrees(20.0 / 15000.0))
+
+
+@pytest.mark.parametrize(
+    ("key", "name"),
+    [("u_loadcell_offset_N", "F0_N"), ("u_camber_alignment_deg", "gamma_0_deg"), ("u_slip_alignment_N", "alpha_0_deg"),
+     ("u_backlash_deg", "backlash_deg")],
+)  # fmt: skip
+def test_what_is_exact_is_no_number_of_the_fit(key, name):
+    assert name not in by_name(rig(**{key: 0.0}), direct())
+
+
+def test_a_straight_path_and_a_rig_without_measured_spin_have_none():
+    flat = rig(type="flat-track", path_radius=None, u_path_radius=None)
+    assert rig_numbers(flat, direct()) == ()
+    assert rig_numbers(rig(), direct(epsilon_gamma=None)) == ()

@@ -1,0 +1,167 @@
+"""Where the two files are compared: the conditions of a straight road, what each counts, and what is stated of it."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from small_rigs import SAMPLE, disc, truth
+
+from mffit import config, points, virtual_rig
+from mffit.fit.files import GIVEN, file_names, make_files, ranges_sentence, sentences
+from mffit.fit.normal import Road, inside, road_grid, weights
+from tir.parameters import TABLE
+
+TESTED = {
+    "PRESMIN": 200e3, "PRESMAX": 300e3, "FZMIN": 900.0, "FZMAX": 2100.0, "ALPMIN": -0.14, "ALPMAX": 0.14,
+    "CAMMIN": -0.5, "CAMMAX": 0.5,
+}  # fmt: skip
+WRITTEN = TESTED | {
+    "PRESMIN": 160e3, "PRESMAX": 360e3, "FZMIN": 90.0, "FZMAX": 3150.0, "ALPMIN": -0.35, "ALPMAX": 0.35,
+    "CAMMIN": -0.75, "CAMMAX": 0.75,
+}  # fmt: skip
+
+
+def road(alpha_deg, gamma_deg, Fz=1500.0, p=250e3):
+    alpha, gamma = np.radians(np.atleast_1d(alpha_deg)), np.radians(np.atleast_1d(gamma_deg))
+    shape = np.broadcast(alpha, gamma).shape
+    return Road(*(np.broadcast_to(x, shape) for x in (Fz, alpha, gamma, p)))
+
+
+def test_sideslip_or_lean_alone_count_fully_and_both_at_once_half():
+    """1/2 + 1/2 / (1 + (a/4 deg g/25 deg)^2)."""
+    assert weights(road([0.0, 8.0, 0.0], [0.0, 0.0, 28.0]), TESTED) == pytest.approx([1.0, 1.0, 1.0])
+    assert weights(road(4.0, 25.0), TESTED)[0] == pytest.approx(0.75)
+    assert weights(road(-8.0, 25.0), TESTED)[0] == pytest.approx(0.6)
+
+
+def test_what_was_not_tested_counts_a_fiftieth():
+    for beyond in (road(10.0, 0.0), road(0.0, -35.0), road(0.0, 0.0, 800.0), road(0.0, 0.0, 2200.0), road(0.0, 0.0, p=310e3),
+                   road(0.0, 0.0, p=190e3)):  # fmt: skip
+        assert not inside(beyond, TESTED)[0]
+        assert weights(beyond, TESTED)[0] == pytest.approx(0.02)
+    for edge in (
+        road(np.degrees(0.14), 0.0),
+        road(0.0, np.degrees(-0.5)),
+        road(0.0, 0.0, 900.0),
+        road(0.0, 0.0, 2100.0, 300e3),
+    ):
+        assert inside(edge, TESTED)[0]
+
+
+@pytest.mark.parametrize("dense", [True, False])
+def test_the_grid_spans_the_written_ranges_and_is_a_mirror_of_itself(dense):
+    grid = road_grid(TESTED, WRITTEN, 1400.0, dense=dense)
+    assert (grid.Fz.min(), grid.Fz.max()) == (90.0, 3150.0)
+    assert (grid.pressure.min(), grid.pressure.max()) == (160e3, 360e3)
+    assert (grid.alpha.min(), grid.alpha.max()) == (-0.35, 0.35)
+    assert (grid.gamma.min(), grid.gamma.max()) == (-0.75, 0.75)
+    conditions = {tuple(np.round(row, 9)) for row in np.column_stack(grid)}
+    assert {(F, -a + 0.0, -g + 0.0, p) for F, a, g, p in conditions} == conditions
+    assert {900.0, 2100.0} <= set(grid.Fz)
+    within = inside(grid, TESTED)
+    assert 0.15 < within.mean() < 0.9
+    # Other pressures at one load, the nominal one.
+    assert set(grid.Fz[grid.pressure != 250e3]) == {1400.0}
+    if dense:
+        assert within.sum() > 300
+
+
+@pytest.fixture(scope="module")
+def files(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("files")
+    virtual_rig.simulate(virtual_rig.load_plan(disc(), folder=SAMPLE), folder, seed=3)
+    settings = config.load(folder / "tyre.toml")
+    loaded, _ = points.load(settings)
+    status = {row.name: "base" for row in TABLE}
+    return make_files(settings, truth().values, loaded, truth(), status, {}, {}), status
+
+
+def test_the_turn_slip_file_is_the_model_and_states_no_misfit(files):
+    made, _ = files
+    exact = made.by_use["turn-slip"]
+    for misfit in exact.straight.values():
+        assert misfit.rms == misfit.largest == misfit.weighted == misfit.beyond == 0.0
+
+
+def test_the_stated_misfit_is_that_of_the_two_files(files):
+    made, _ = files
+    normal = made.by_use["normal"]
+    grid = road_grid(made.tested, made.written, 1400.0)
+    off = normal.tyre(grid.Fz, grid.alpha, grid.gamma, p=grid.pressure).Fy
+    off = off - truth()(grid.Fz, grid.alpha, grid.gamma, p=grid.pressure, turn_slip=True).Fy
+    within = inside(grid, made.tested)
+    stated = normal.straight["Fy"]
+    assert stated.rms == pytest.approx(np.sqrt(np.mean(off[within] ** 2)), rel=1e-6)
+    assert stated.largest == pytest.approx(np.max(np.abs(off[within])), rel=1e-6)
+    assert stated.beyond == pytest.approx(np.sqrt(np.mean(off[~within] ** 2)), rel=1e-6)
+    weight = weights(grid, made.tested)[within]
+    assert stated.weighted == pytest.approx(
+        np.sqrt(np.sum(weight * off[within] ** 2) / weight.sum()), rel=1e-6
+    )
+    lean = within & (np.abs(grid.gamma) < np.radians(30.5))
+    assert stated.lean_30 == pytest.approx(np.sqrt(np.mean(off[lean] ** 2)), rel=1e-6)
+
+
+def test_camber_stiffness_and_its_loss_are_slopes_at_zero(files):
+    made, _ = files
+    step = 1e-4
+    slopes = {
+        use: float(np.diff(f.tyre(1400.0, gamma=np.array([-step, step]), turn_slip=use == "turn-slip").Fy)[0])
+        / (2 * step)
+        for use, f in made.by_use.items()
+    }
+    for use, f in made.by_use.items():
+        assert f.camber_stiffness == pytest.approx(slopes[use], rel=1e-3)
+    assert made.stiffness_loss == pytest.approx(1.0 - slopes["normal"] / slopes["turn-slip"], abs=2e-3)
+
+
+def test_the_lacking_force_is_that_of_the_curved_road(files):
+    made, _ = files
+    model = made.by_use["turn-slip"].tyre
+    straight = model(1400.0, turn_slip=True).Fy
+    assert list(made.lacking) == [100.0, 30.0, 10.0]
+    for radius, force in made.lacking.items():
+        assert force == pytest.approx(abs(model(1400.0, phi_t=-1 / radius).Fy - straight), rel=1e-9)
+        assert force > 1.0
+
+
+def test_every_value_says_where_it_is_from(files):
+    made, status = files
+    for use in ("turn-slip", "normal"):
+        comments = made.by_use[use].tyre.status
+        assert comments["PKY1"] == "from base"
+        assert comments["FZMAX"] == "estimate, checked plausible, tested to 2100 N"
+        assert comments["FNOMIN"].startswith("given in tyre.toml")
+        assert comments["USE_MODE"].startswith("given by this build")
+    assert {status[name] for name in GIVEN} == {"given"}
+    assert made.changed
+    assert made.by_use["normal"].tyre.status[made.changed[0]] == "fitted to the model without path curvature"
+    assert made.by_use["turn-slip"].tyre.status[made.changed[0]] == "from base"
+
+
+def test_upright_both_files_are_equal_and_only_camber_terms_differ(files):
+    made, _ = files
+    on, off = made.by_use["turn-slip"].tyre, made.by_use["normal"].tyre
+    differing = {name for name in on.values if on[name] != off[name]}
+    assert differing == {*made.changed, "USE_MODE"}
+    Fz, alpha = np.meshgrid([500.0, 1400.0, 2500.0], np.radians([-15.0, -3.0, 0.0, 2.0, 9.0]))
+    assert off(Fz, alpha).Fy == pytest.approx(on(Fz, alpha).Fy, rel=1e-12)
+    assert off(Fz, alpha).Mz == pytest.approx(on(Fz, alpha).Mz, rel=1e-12)
+
+
+def test_the_sentences_hold_the_figures(files):
+    made, _ = files
+    said = " ".join(sentences(made, file_names("small", "turn-slip", True)))
+    normal = made.by_use["normal"].straight
+    assert f"to {normal['Fy'].weighted:.0f} N and {normal['Mz'].weighted:.1f} Nm rms" in said
+    assert f"{made.stiffness_loss:.0%} less camber stiffness" in said
+    assert "Give small.tir to a simulator that computes turn slip" in said
+    assert "Tested: 900 to 2100 N, sideslip to 8.0 deg, camber to 45.0 deg, 250 kPa only." in said
+
+
+def test_several_pressures_are_said_as_a_range(files):
+    made, _ = files
+    several = replace(made, tested=made.tested | {"PRESMIN": 200e3, "PRESMAX": 300e3})
+    assert "camber to 45.0 deg, 200 to 300 kPa." in ranges_sentence(several)

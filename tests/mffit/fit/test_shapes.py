@@ -1,0 +1,56 @@
+"""The other places to start from are what they are called."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from small_rigs import truth
+
+from mffit.fit.staged import SHAPES
+from tir.parameters import BY_NAME
+
+SLIP = np.radians(np.linspace(0.1, 30.0, 300))
+
+
+@pytest.fixture(scope="module")
+def tyre():
+    """Without load dependence, camber and shifts, so that a shape is all there is."""
+    changes = dict.fromkeys(
+        ("PHY1", "PHY2", "PVY1", "PVY2", "PEY3", "QHZ1", "QHZ2", "QDZ6", "QDZ7", "QEZ3", "QEZ4"), 0.0
+    )
+    return truth().replace(**changes)
+
+
+def left(tyre, shape: str) -> float:
+    """Share of its peak that the side force keeps at 30 deg of sideslip."""
+    Fy = np.abs(tyre.replace(**SHAPES[shape])(1400.0, SLIP).Fy)
+    return float(Fy[-1] / Fy.max())
+
+
+def half(tyre, shape: str) -> float:
+    """Sideslip at which half the trail is left [deg]."""
+    trail = tyre.replace(**SHAPES[shape]).state(1400.0, SLIP).trail
+    return float(np.degrees(SLIP[np.argmax(trail < 0.5 * trail[0])]))
+
+
+def test_a_round_curve_keeps_its_force_and_a_peaked_one_does_not(tyre):
+    assert left(tyre, "a round side-force curve") > 0.97
+    assert left(tyre, "a peaked side-force curve") < 0.9
+
+
+def test_a_short_trail_is_gone_at_half_the_sideslip_of_a_long_one(tyre):
+    assert 2.0 * half(tyre, "a short trail") < half(tyre, "a long trail")
+
+
+@pytest.mark.parametrize("shape", ["a short trail", "a long trail"])
+def test_the_trail_falls_to_nothing_and_hardly_turns_round(tyre, shape):
+    trail = tyre.replace(**SHAPES[shape]).state(1400.0, SLIP).trail
+    assert trail.min() < 0.2 * trail[0]
+    assert trail.min() > -0.4 * trail[0]
+
+
+@pytest.mark.parametrize("shape", SHAPES)
+def test_a_start_lies_within_the_bounds(shape):
+    for name, value in SHAPES[shape].items():
+        lower, upper = BY_NAME[name].bounds
+        assert lower < value < upper

@@ -1,0 +1,82 @@
+"""How much a point counts: what it states, what the model misses, and what an outlier is worth."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from mffit.fit import weights
+from mffit.fit.weights import enlarged, standing_out
+
+
+def test_an_outlier_pulls_no_harder_the_further_it_lies():
+    """Huber: with the uncertainty so enlarged the pull r / sigma^2 is that of the border for every residual beyond it."""
+    residual = np.array([0.5, -3.9, 4.0, 8.0, -40.0, 400.0])
+    for scale in (1.0, 2.5):
+        pull = scale * residual / weights.huber(scale * residual, scale) ** 2
+        assert pull == pytest.approx(scale * np.clip(residual, -weights.OUTLIER, weights.OUTLIER))
+
+
+def test_only_rare_residuals_of_pure_noise_are_outliers():
+    noise = np.random.default_rng(1).normal(0.0, 3.0, 20_000)
+    assert np.mean(weights.huber(noise, 3.0) > 1.0) < 0.001
+    assert weights.huber(np.array([18.0]), 3.0)[0] > 1.1
+
+
+def test_the_core_of_a_normal_scatter_is_its_deviation():
+    noise = np.random.default_rng(2).normal(0.0, 3.0, 20_000)
+    noise[:500] = 1e4
+    assert weights.robust_scale(noise) == pytest.approx(3.0, rel=0.05)
+
+
+def test_points_that_are_not_used_do_not_make_the_scatter_small():
+    residual = np.concatenate([np.zeros(500), np.random.default_rng(3).normal(0.0, 2.0, 400)])
+    assert weights.robust_scale(residual) == pytest.approx(2.0, rel=0.1)
+    assert weights.robust_scale(np.zeros(5)) == 1.0
+
+
+def test_uncertainties_are_the_stated_ones_else_a_hundredth_of_the_span():
+    values = np.array([-500.0, 0.0, 1500.0, np.nan])
+    found = weights.stated_or_nominal(np.array([6.0, np.nan, 0.0, 6.0]), values)
+    assert found == pytest.approx([6.0, 20.0, 20.0, np.inf])
+    assert np.all(np.isinf(weights.stated_or_nominal(np.full(2, np.nan), np.full(2, np.nan))))
+    assert np.all(weights.stated_or_nominal(np.full(2, np.nan), np.full(2, 7.0)) > 0.0)
+
+
+def test_noise_alone_stands_out_as_rarely_as_said():
+    rng = np.random.default_rng(8)
+    sweep = np.repeat(np.arange(20), 20)
+    alarms = sum(np.any(standing_out(rng.standard_normal(400), 1.0, sweep)) for _ in range(400))
+    assert alarms <= 12  # 4 expected at 1 %; 12 or more has a chance of one in a thousand
+
+
+def test_planted_readings_are_found_and_nothing_else():
+    rng = np.random.default_rng(9)
+    sweep = np.repeat(np.arange(20), 20)
+    residual = rng.standard_normal(400)
+    planted = rng.permutation(400)[:8]
+    residual[planted] += 15.0 * rng.choice([-1.0, 1.0], 8)
+    assert set(np.flatnonzero(standing_out(residual, 1.0, sweep))) == set(planted)
+
+
+def test_a_stretch_that_the_model_misses_is_no_outlier():
+    rng = np.random.default_rng(10)
+    sweep = np.repeat(np.arange(20), 20)
+    residual = rng.standard_normal(400)
+    residual[40:60] += 40.0 * np.sin(np.linspace(0.0, np.pi, 20))
+    factor, _ = enlarged(residual, sweep)
+    assert np.all(np.isfinite(factor))
+    assert factor[50] > 2.0  # but it pulls less than its size
+
+
+def test_two_points_have_no_neighbours_to_judge_them():
+    residual = np.array([0.3, -0.2, 0.1, 0.4, 60.0, -0.3])
+    sweep = np.array([0, 0, 0, 0, 1, 1])
+    assert not np.any(standing_out(residual, 1.0, sweep))
+
+
+def test_unused_points_are_left_alone():
+    residual = np.zeros(30)
+    residual[::2] = np.random.default_rng(2).standard_normal(15)
+    residual[10] = 50.0
+    assert list(np.flatnonzero(standing_out(residual, 1.0, np.zeros(30, int)))) == [10]

@@ -1,0 +1,304 @@
+"""The direct method on a tyre of which every answer is known by arithmetic."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from plain_tyre import DEGREE, LEAN, NEWTON, R_E, SLIP, U_R, U_R_E, Plain, R, settings, share
+
+from mffit.errors import InputError
+from mffit.measured import measure
+from mffit.parts import split
+
+LOADS = (1000.0, 1500.0, 2000.0)
+
+
+def measured(tyre: Plain, loads=(1500.0,), points=None, base=None, camber_stiffness=None, radius=True, **rig):
+    sides = {-1: "left", 1: "right"}
+    points = points or tyre.campaign(loads)
+    config = settings(path_centre=sides[tyre.side], camber_stiffness=camber_stiffness, radius=radius, **rig)
+    return measure(config, points, split(points), base)
+
+
+def contributions(result) -> dict[str, float]:
+    return {row.source: row.contribution for row in result.budget}
+
+
+@pytest.mark.parametrize(
+    "tyre", [Plain(), Plain(side=1), Plain(epsilon=0.3, camber=1.1), Plain(cornering=9.0)]
+)
+def test_stiffnesses_force_and_factor_at_every_load(tyre):
+    result = measured(tyre, LOADS)
+    assert [row.load for row in result.per_load] == list(LOADS)
+    for row in result.per_load:
+        assert row.C_alpha.value == pytest.approx(-tyre.cornering * row.load, rel=0.01)
+        assert row.C_gamma.value == pytest.approx(-tyre.camber * row.load, rel=0.004)
+        assert row.F_phit.value == pytest.approx(tyre.turn_slip_force(row.load), abs=1.0)
+        assert row.C_phit.value == pytest.approx(
+            R_E * tyre.camber * row.load / (1.0 - tyre.epsilon), rel=0.005
+        )
+        assert row.epsilon_gamma.value == pytest.approx(tyre.epsilon, abs=0.01)
+        assert row.epsilon_slope == pytest.approx(tyre.epsilon, abs=0.01)
+        assert row.epsilon_secant == pytest.approx(tyre.epsilon, abs=0.01)
+        assert row.alpha_M.value == pytest.approx(0.0, abs=1e-6)
+        assert row.R.value == R
+        assert row.r_e.value == R_E
+    assert result.nominal.load == 1500.0
+    assert result.pecp1 == result.epsilon_gamma.value
+    assert not result.misaligned
+
+
+@pytest.mark.parametrize("tyre", [Plain(), Plain(epsilon_moment=0.2, side=1)])
+def test_the_opinion_of_the_moments(tyre):
+    """Spin moment and camber moment of the plain tyre were made for it."""
+    (row,) = measured(tyre).per_load
+    assert row.epsilon_moment.value == pytest.approx(tyre.epsilon_moment, abs=0.02)
+    assert 0.0 < row.epsilon_moment.u < 0.1
+
+
+def test_a_moment_within_twice_its_noise_has_no_opinion():
+    tyre = Plain()
+    spin = abs(tyre.readings(0.0, 0.0, 1500.0, 1)[1])
+    # One point at zero backwards, a parabola through nine forwards: u is little more than u_Mz / 2.
+    quiet, loud = (tyre.campaign(u_Mz=f * spin) for f in (0.8, 1.1))
+    assert measured(tyre, points=quiet).per_load[0].epsilon_moment is not None
+    assert measured(tyre, points=loud).per_load[0].epsilon_moment is None
+
+
+@pytest.mark.parametrize("alpha_0", [0.5 * DEGREE, -0.3 * DEGREE])
+def test_misalignment_is_half_the_difference_of_both_directions(alpha_0):
+    """(7): forwards the force gains C_alpha alpha_M, backwards it loses it."""
+    tyre = Plain(alpha_0=alpha_0)
+    result = measured(tyre, u_slip_alignment_N=25.0)
+    assert result.alpha_M.value == pytest.approx(alpha_0, rel=0.03)
+    slip = -12.0 * 1500.0 * alpha_0
+    assert result.nominal.F_forward == pytest.approx(tyre.turn_slip_force(1500.0) + slip, abs=3.0)
+    assert result.nominal.F_backward == pytest.approx(tyre.turn_slip_force(1500.0) - slip, abs=3.0)
+    assert result.F_phit.value == pytest.approx(tyre.turn_slip_force(1500.0), abs=1.0)
+    assert result.misaligned
+    (warning,) = result.warnings
+    assert f"alpha_M = {math.degrees(result.alpha_M.value):.3f}" in warning
+    assert f"differ by {abs(2 * slip):.0f} N" in warning or f"differ by {abs(2 * slip) - 1:.0f} N" in warning
+
+
+def test_what_the_alignment_leaves_is_no_misalignment():
+    tyre = Plain(alpha_0=0.1 * DEGREE)  # 31 N
+    assert not measured(tyre, u_slip_alignment_N=40.0).misaligned
+    assert measured(tyre, u_slip_alignment_N=25.0).misaligned
+    stays = measured(tyre, u_slip_alignment_N=40.0)
+    shift = abs(1.0 - tyre.epsilon) * 31.4 / abs(tyre.turn_slip_force(1500.0))
+    assert any(f"would move eps_gamma by {shift:.2f}" in note for note in stays.notes)
+
+
+@pytest.mark.parametrize(
+    ("rig", "source", "force"),
+    [
+        ({"u_loadcell_offset_N": 20.0}, "load-cell offset", 20.0),
+        ({"u_camber_alignment_deg": 0.5}, "camber alignment", 0.9 * 1500.0 * 0.5 * DEGREE),
+        ({"u_slip_alignment_N": 30.0}, "sideslip alignment", 0.0),
+        ({"backlash_deg": 0.2, "u_backlash_deg": 0.06}, "backlash", 0.0),
+    ],
+)
+def test_each_doubt_about_the_rig_counts_as_the_force_it_makes(rig, source, force):
+    """With runs both ways the force of the sideslip axis drops out, and that of the play at zero moment with it."""
+    tyre = Plain(play=rig.get("backlash_deg", 0.0) * DEGREE)
+    without, with_it = (
+        measured(tyre, **{k: v for k, v in rig.items() if k == "backlash_deg"}),
+        measured(tyre, **rig),
+    )
+    assert contributions(with_it).get(source, 0.0) == pytest.approx(share(force, tyre), rel=0.02, abs=1e-6)
+    together = math.hypot(without.epsilon_gamma.u, share(force, tyre))
+    assert with_it.epsilon_gamma.u == pytest.approx(together, rel=0.01)
+    assert with_it.nominal.u_monte_carlo == pytest.approx(together, rel=0.03)
+    units = {row.source: (row.u, row.unit) for row in with_it.budget}
+    if source in units and "deg" in str(rig):
+        assert units[source] == (pytest.approx(0.5), "deg")
+
+
+def test_without_backward_runs_the_alignment_is_in_doubt():
+    tyre = Plain()
+    result = measured(tyre, points=tyre.campaign(backward=False), u_slip_alignment_N=30.0)
+    assert result.alpha_M is None
+    assert math.isnan(result.nominal.F_backward)
+    assert contributions(result)["sideslip alignment"] == pytest.approx(share(30.0, tyre), rel=0.02)
+    assert result.nominal.u_monte_carlo == pytest.approx(result.epsilon_gamma.u, rel=0.03)
+    angle = math.degrees(abs(tyre.turn_slip_force(1500.0)) / (12.0 * 1500.0))
+    assert any(f"would take {angle:.2f} deg of misalignment" in note for note in result.notes)
+
+
+def test_the_play_is_taken_off_and_its_doubt_counts_where_the_moment_holds_one_side():
+    """All zeros lie at one end of the play: forwards reading 0 means -play/2 sign(Mz), and so backwards."""
+    tyre = Plain(play=0.3 * DEGREE)
+    result = measured(tyre, points=tyre.campaign(backward=False), backlash_deg=0.3, u_backlash_deg=0.06)
+    assert result.F_phit.value == pytest.approx(tyre.turn_slip_force(1500.0), abs=4.0)
+    assert result.C_gamma.value == pytest.approx(-tyre.camber * 1500.0, rel=0.01)
+    assert result.C_alpha.value == pytest.approx(-tyre.cornering * 1500.0, rel=0.03)
+    assert contributions(result)["backlash"] == pytest.approx(
+        share(12.0 * 1500.0 * 0.03 * DEGREE, tyre), rel=0.03
+    )
+
+
+def test_radii_count_once_where_they_come_from_one_path():
+    """eps = 1 + r_e C_gamma / (F R): each radius counts with its own relative doubt."""
+    tyre = Plain()
+    got = contributions(measured(tyre))
+    assert got["path radius"] == pytest.approx((1.0 - tyre.epsilon) * U_R / R, rel=0.01)
+    assert got["effective radius"] == pytest.approx((1.0 - tyre.epsilon) * U_R_E / R_E, rel=0.01)
+
+
+@pytest.mark.parametrize("noise", [NEWTON, 3.0 * NEWTON])
+def test_noise_of_the_zeros_counts_with_their_number(noise):
+    """Backwards one point at zero, forwards what a parabola through nine leaves at zero; half of each goes into the mean."""
+    tyre = Plain()
+    got = contributions(measured(tyre, points=tyre.campaign(u_Fy=noise)))
+    alpha = np.array([-1.0, -0.5, -0.1, 0.0, 0.0, 0.0, 0.1, 0.5, 1.0])
+    A = np.column_stack([alpha**0, alpha, alpha**2])
+    left = noise * math.sqrt(np.linalg.inv(A.T @ A)[0, 0])
+    assert got["noise of the backward zeros"] == pytest.approx(share(noise / 2.0, tyre), rel=0.01)
+    assert got["noise of the forward zeros"] == pytest.approx(share(left / 2.0, tyre), rel=0.01)
+
+
+def test_few_zeros_count_by_their_mean():
+    tyre = Plain()
+    points = tyre.campaign()
+    few = points.select((np.abs(points.alpha) < 1e-6) | (np.abs(points.alpha) > 1.2 * DEGREE))
+    got = contributions(measured(tyre, points=few))
+    assert got["noise of the forward zeros"] == pytest.approx(
+        share(NEWTON / 2.0, tyre) / math.sqrt(3.0), rel=0.01
+    )
+
+
+def test_points_without_uncertainty_count_as_6_newtons():
+    tyre = Plain()
+    stated, not_stated = (
+        contributions(measured(tyre, points=tyre.campaign(u_Fy=u, u_Mz=v)))
+        for u, v in ((6.0, 0.6), (np.nan, np.nan))
+    )
+    assert not_stated == pytest.approx(stated, rel=1e-6)
+
+
+@pytest.mark.parametrize("method", ["slope", "secant"])
+def test_the_configured_camber_stiffness_is_used(method):
+    tyre = Plain()
+    points = tyre.campaign()
+    saturating = np.where(
+        points.gamma != 0.0, 1500.0 * 0.9 * (points.gamma - np.sin(2.0 * points.gamma) / 2.0), 0.0
+    )
+    bent = points.replace(Fy=points.Fy + saturating)  # camber force 1350 N sin(2 gamma)/2
+    result = measured(tyre, points=bent, camber_stiffness={"method": method, "angle_deg": 15.0})
+    secant = 0.5 * math.sin(math.radians(30.0)) / math.radians(15.0)
+    row = result.nominal
+    assert row.C_gamma_secant.value == pytest.approx(-1350.0 * secant, rel=1e-3)
+    assert row.C_gamma_slope.value == pytest.approx(-1350.0, rel=0.03)
+    assert row.C_gamma == {"slope": row.C_gamma_slope, "secant": row.C_gamma_secant}[method]
+    assert row.epsilon_gamma.value == {"slope": row.epsilon_slope, "secant": row.epsilon_secant}[method]
+
+
+def only(points, mask):
+    return points.select(mask | (points.gamma == 0.0))
+
+
+def test_a_camber_sweep_too_short_for_the_slope_gives_the_secant_and_says_so():
+    tyre = Plain()
+    points = tyre.campaign()
+    short = only(points, np.abs(points.gamma) < 6.0 * DEGREE)
+    result = measured(tyre, points=short, camber_stiffness={"method": "slope", "angle_deg": 5.0})
+    assert result.nominal.C_gamma == result.nominal.C_gamma_secant
+    assert "too short for the slope" in result.warnings[0]
+    long = only(points, np.abs(points.gamma) < 16.0 * DEGREE)
+    assert measured(tyre, points=long, camber_stiffness={"angle_deg": 5.0}).warnings == ()
+
+
+def test_a_secant_beyond_the_sweep_gives_the_slope_and_says_so():
+    tyre = Plain()
+    points = tyre.campaign()
+    result = measured(
+        tyre,
+        points=only(points, np.abs(points.gamma) < 21.0 * DEGREE),
+        camber_stiffness={"method": "secant", "angle_deg": 30.0},
+    )
+    assert result.nominal.C_gamma_secant is None
+    assert result.nominal.C_gamma == result.nominal.C_gamma_slope
+    assert "does not reach 30 deg" in result.warnings[0]
+
+
+@pytest.mark.parametrize("backward", [True, False])
+def test_a_force_towards_the_centre_is_refused_with_its_cause(backward):
+    tyre = Plain()
+    points = tyre.campaign(backward=backward)
+    inward = points.replace(Fy=points.Fy - 2.0 * tyre.turn_slip_force(points.Fz))
+    with pytest.raises(
+        InputError, match="path_centre or axes are wrong" if backward else "sideslip misaligned"
+    ):
+        measured(tyre, points=inward)
+
+
+def test_without_what_it_needs_there_is_no_factor():
+    tyre = Plain()
+    points = tyre.campaign()
+    upright = points.select(points.gamma == 0.0)
+    for chosen, radius in ((upright, True), (points, False)):
+        result = measured(tyre, points=chosen, radius=radius)
+        assert result.epsilon_gamma is None
+        assert result.pecp1 is None
+        assert result.F_phit.value == pytest.approx(tyre.turn_slip_force(1500.0), abs=1.0)
+        assert any("eps_gamma could not be measured" in w for w in result.warnings)
+
+
+def test_a_flat_track_gives_stiffnesses_only():
+    tyre = Plain()
+    points = tyre.campaign(backward=False)
+    flat = points.replace(Fy=points.Fy - tyre.turn_slip_force(points.Fz), phi_t=0.0)
+    config = settings(type="flat-track", path_radius=None, u_path_radius=None)
+    result = measure(config, flat, split(flat))
+    assert result.C_alpha.value == pytest.approx(-12.0 * 1500.0, rel=0.01)
+    assert result.C_gamma.value == pytest.approx(-0.9 * 1500.0, rel=0.004)
+    assert result.F_phit is None
+    assert result.epsilon_gamma is None
+    assert result.notes == ("A flat track's path is straight: it has no turn slip to measure.",)
+    assert result.warnings == ()
+
+
+def test_a_parabola_through_many_zeros_is_read_at_zero():
+    """Five sideslip angles within 1.2 deg, forwards: the value at 0 of a curve that bends, not their mean."""
+    tyre = Plain()
+    points = tyre.campaign()
+    bend = 4e5 * np.where(np.abs(points.gamma) > 0.0, 0.0, points.alpha**2)
+    result = measured(tyre, points=points.replace(Fy=points.Fy + bend))
+    assert result.nominal.F_forward == pytest.approx(tyre.turn_slip_force(1500.0), abs=1.0)
+
+
+def test_conicity_is_stated_as_a_force_of_two_per_mille():
+    tyre = Plain()
+    (note,) = (n for n in measured(tyre).notes if "Conicity" in n)
+    assert "a plausible 3 N" in note
+    assert f"by {share(3.0, tyre):.3f}." in note
+
+
+def test_the_json_holds_value_and_uncertainty_of_every_quantity():
+    result = measured(Plain())
+    content = result.to_json()
+    for key, found in (
+        ("epsilon_gamma", result.epsilon_gamma), ("C_phit_Nm", result.C_phit), ("C_gamma_N_per_rad", result.C_gamma),
+        ("C_alpha_N_per_rad", result.C_alpha), ("r_e_m", result.r_e), ("R_m", result.R), ("F_phit_N", result.F_phit),
+    ):  # fmt: skip
+        assert (content[key], content[f"u_{key}"]) == (found.value, found.u)
+    row = content["per_load"][0]
+    assert row["alpha_M_deg"] == pytest.approx(math.degrees(result.alpha_M.value))
+    assert (row["F_forward_N"], row["load_N"]) == (result.nominal.F_forward, 1500.0)
+    forwards = measured(Plain(), points=Plain().campaign(backward=False)).to_json()
+    assert forwards["alpha_M_deg"] is forwards["u_alpha_M_deg"] is None
+
+
+def test_the_nominal_load_is_the_one_next_to_it():
+    result = measured(Plain(), (900.0, 1300.0, 2000.0))
+    assert result.nominal.load == 1300.0
+    assert result.r_e_loads == {1500.0: R_E}
+    assert result.by_load("C_gamma").keys() == {900.0, 1300.0, 2000.0}
+
+
+def test_the_sweeps_are_as_long_as_the_tests_say():
+    assert len(SLIP) == 15
+    assert len(LEAN) == 13

@@ -1,0 +1,91 @@
+"""Slopes at zero and secants of curves whose slope is known."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from mffit.measured.slopes import secant_at, slope_at_zero
+
+X = np.radians([0.5, 1.0, 1.5, 2.0, 3.0, 4.0, 6.0, 8.0])
+ONE = np.ones(len(X))
+
+
+@pytest.mark.parametrize(
+    ("curve", "within"),
+    [
+        (lambda x: 2000.0 * np.tanh(x / 0.1), 0.02),
+        (lambda x: 2000.0 * x / np.hypot(x, 0.1), 0.02),
+        (lambda x: 20000.0 * x, 0.002),
+        (lambda x: 2500.0 * np.sin(1.3 * np.arctan(20000.0 * x / (1.3 * 2500.0))), 0.001),
+    ],
+    ids=["tanh", "root", "line", "magic"],
+)
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+def test_the_slope_of_a_saturating_curve(curve, within, sign):
+    found = slope_at_zero(X, sign * curve(X), 5.0 * ONE, local=np.radians(2.0))
+    assert found.value == pytest.approx(sign * 20000.0, rel=within)
+    assert found.cubic == pytest.approx(sign * 20000.0, rel=0.03)
+    assert found.points == 8
+    assert found.u == pytest.approx(np.hypot(found.u_noise, (found.value - found.cubic) / 2.0))
+
+
+def test_its_noise_is_the_scatter_over_many_draws():
+    rng = np.random.default_rng(2)
+    x = np.tile(X, 2)
+    true = 2500.0 * np.sin(1.3 * np.arctan(20000.0 * x / (1.3 * 2500.0)))
+    drawn = [
+        slope_at_zero(x, true + rng.normal(0.0, 20.0, len(x)), np.full(len(x), 20.0), local=0.0)
+        for _ in range(60)
+    ]
+    values = np.array([d.value for d in drawn])
+    stated = np.median([d.u_noise for d in drawn])
+    assert abs(values.mean() - 20000.0) < 3.0 * stated / np.sqrt(60)
+    # The scatter of 60 draws is known to a tenth; a misfit larger than stated by chance enlarges u a little.
+    assert 0.7 < values.std() / stated < 1.2
+
+
+def test_a_misfit_beyond_the_noise_enlarges_the_uncertainty():
+    wavy = 20000.0 * X + np.array([1, -1, 1, -1, 1, -1, 1, -1]) * 50.0
+    quiet, loud = (slope_at_zero(X, wavy, u * ONE, local=0.0) for u in (5.0, 50.0))
+    assert quiet.u_noise > 0.5 * loud.u_noise
+
+
+def test_without_a_cubic_a_twentieth_is_in_doubt():
+    found = slope_at_zero(X, 20000.0 * X, 1e-3 * ONE, local=np.radians(1.0))
+    assert np.isnan(found.cubic)
+    assert found.u == pytest.approx(0.025 * 20000.0, rel=0.01)
+
+
+def test_the_cubic_ends_at_its_reach():
+    """Beyond 2 deg this curve is no cubic at all."""
+    broken = np.where(np.radians(2.5) > X, 20000.0 * X - 2e6 * X**3, 0.0)
+    found = slope_at_zero(X, broken, ONE, local=np.radians(2.0))
+    assert found.cubic == pytest.approx(20000.0, rel=1e-9)
+
+
+def test_two_angles_are_no_curve():
+    assert slope_at_zero(np.tile(X[:2], 3), np.tile(X[:2], 3), np.ones(6), local=1.0) is None
+    assert slope_at_zero(X[:3], X[:3], ONE[:3], local=1.0) is not None
+
+
+def test_a_secant_at_a_measured_angle_is_the_mean_of_what_was_read_there():
+    x = np.radians([15.0, 5.0, 15.0, 25.0])
+    found = secant_at(x, np.array([100.0, 40.0, 110.0, 150.0]), np.full(4, 6.0), np.radians(15.0))
+    assert found.value == pytest.approx(105.0 / np.radians(15.0))
+    assert found.u == pytest.approx(6.0 / np.sqrt(2.0) / np.radians(15.0))
+    assert found.angle == np.radians(15.0)
+
+
+def test_a_secant_between_angles_is_interpolated():
+    x = np.radians([5.0, 10.0, 20.0])
+    found = secant_at(x, np.array([50.0, 100.0, 160.0]), np.array([2.0, 2.0, 4.0]), np.radians(15.0))
+    assert found.value == pytest.approx(130.0 / np.radians(15.0))
+    assert found.u == pytest.approx(3.0 / np.radians(15.0))
+
+
+@pytest.mark.parametrize("angle", [4.0, 21.0])
+def test_a_secant_beyond_the_sweep_is_none(angle):
+    x = np.radians([5.0, 10.0, 20.0])
+    assert secant_at(x, x, x, np.radians(angle)) is None
+    assert secant_at(x[:0], x[:0], x[:0], 0.1) is None

@@ -1,0 +1,65 @@
+"""Small campaigns of the virtual rig, which fit in a second or two; the tyre's truth is the front sample's."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import mffit
+import tir
+from mffit import virtual_rig
+
+SAMPLE = Path(__file__).parents[2] / "samples" / "front-120-70"
+LOADS = (900, 1400, 2100)
+SLIP = [-8, -6, -4, -3, -2, -1.5, -1, -0.5, 0, 0.5, 1, 1.5, 2, 3, 4, 6, 8]
+LEAN = [-45, -30, -20, -15, -10, -5, 0, 5, 10, 15, 20, 30, 45]
+FY, MZ = 3.0, 0.3
+"""Noise of a point [N], [Nm]."""
+
+
+def truth() -> tir.Tyre:
+    return tir.read(SAMPLE / "true.tir")
+
+
+def disc(**changes: Any) -> dict[str, Any]:
+    """Sideslip, camber, zeros both ways at three loads, one coupled sweep; tables added or replaced."""
+    sweeps: list[dict[str, Any]] = []
+    for load in LOADS:
+        sweeps += [
+            {"file": f"sideslip_{load}.csv", "load_N": load, "alpha_deg": SLIP},
+            {"file": f"camber_{load}.csv", "load_N": load, "gamma_deg": LEAN},
+            {"file": f"forward_{load}.csv", "load_N": load, "alpha_deg": [-0.5, 0, 0.5]},
+            {
+                "file": f"backward_{load}.csv",
+                "load_N": load,
+                "alpha_deg": [-0.5, 0, 0.5],
+                "direction": "backward",
+            },
+        ]
+    sweeps.append(
+        {"file": "coupled.csv", "load_N": 1400, "alpha_deg": [-6, -3, -1, 0, 1, 3, 6], "gamma_deg": [-20, 20]}
+    )
+    return {
+        "truth": {"tyre": "true.tir"},
+        "noise": {"Fy_N": FY, "Mz_Nm": MZ, "My_Nm": 0.2},
+        "tyre": {
+            "name": "small", "unloaded_radius": 0.2992, "width": 0.12, "rim_radius": 0.2159, "nominal_load": 1400,
+            "nominal_pressure": 250, "base": "base.tir",
+        },
+        "rig": {"path_radius": 1.323, "u_path_radius": 0.0018},
+        "rolling_radius": [{"load_N": load} for load in LOADS],
+        "sweep": sweeps,
+    } | changes  # fmt: skip
+
+
+def flat(**changes: Any) -> dict[str, Any]:
+    """The forward sweeps on a flat track."""
+    content = disc(rig={"type": "flat-track"}, rolling_radius=[], **changes)
+    content["sweep"] = [s for s in content["sweep"] if s.get("direction") != "backward"]
+    return content
+
+
+def built(content: dict[str, Any], folder: Path, seed: int = 3) -> mffit.pipeline.Result:
+    """Simulate and build."""
+    virtual_rig.simulate(virtual_rig.load_plan(content, folder=SAMPLE), folder, seed=seed)
+    return mffit.build(folder / "tyre.toml")

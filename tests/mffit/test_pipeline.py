@@ -1,0 +1,166 @@
+"""The workflows as calls: what a build knows of its rig, what a diagnosis makes of it, where PECP1 comes from."""
+
+from __future__ import annotations
+
+import re
+
+import numpy as np
+import pandas as pd
+import pytest
+from small_rigs import MZ, SAMPLE, built, disc, flat, truth
+
+import mffit
+import tir
+from mffit import config, pipeline, virtual_rig
+from mffit.effects import CATALOG
+from mffit.errors import InputError
+
+OFFSET = [effect for effect in CATALOG if effect.id in ("loadcell-offset-fy", "camber-misalignment")]
+MOMENT = [effect for effect in CATALOG if effect.id in ("loadcell-offset-mz", "residual-torque-camber")]
+
+
+def simulated(folder, **changes):
+    """A small campaign in a folder; its truth."""
+    return virtual_rig.simulate(
+        virtual_rig.load_plan(disc(**changes), folder=SAMPLE), folder, seed=6
+    ).to_json()
+
+
+@pytest.fixture(scope="module")
+def small(tmp_path_factory):
+    """A build of a rig with a load cell 15 N off, and where it was written."""
+    folder = tmp_path_factory.mktemp("small")
+    simulated(folder, faults={"F0_N": 15.0})
+    return mffit.build(folder / "tyre.toml", folder / "out"), folder
+
+
+def test_a_file_knows_the_rig_of_the_sweeps_it_was_fitted_to(small):
+    result, folder = small
+    settings = config.load(folder / "tyre.toml")
+    found = pipeline.rig_of_build(tir.read(pipeline.last_build(settings)), settings)
+    for name, (value, _) in result.fit.rig.items():
+        assert getattr(found, name) == pytest.approx(value, rel=1e-6), name
+    assert abs(found.F0_N - 15.0) < 6.0
+
+
+def test_a_file_fitted_to_other_sweeps_does_not(small, tmp_path):
+    _, folder = small
+    for path in folder.glob("*.*"):
+        if path.is_file():
+            (tmp_path / path.name).write_bytes(path.read_bytes())
+    changed = tmp_path / "sideslip_900.csv"
+    changed.write_text(changed.read_text().rstrip("\n") + "\n\n")
+    settings = config.load(tmp_path / "tyre.toml")
+    assert pipeline.rig_of_build(tir.read(folder / "out" / "small.tir"), settings) is None
+    assert pipeline.rig_of_build(truth(), settings) is None
+
+
+def test_the_build_explains_its_own_points(small):
+    """Diagnosed with the file and the rig of the build, nothing is left; with the tyre's truth the load cell is."""
+    _, folder = small
+    own = mffit.diagnose(folder / "tyre.toml", effects=OFFSET)
+    assert not own.effects
+    assert own.gap_before.chi2_per_dof < 1.2
+    assert not any("fitted" in note for note in own.notes if isinstance(note, str))
+    true = mffit.diagnose(folder / "tyre.toml", SAMPLE / "true.tir", effects=OFFSET)
+    assert [f.effect.id for f in true.effects] == ["loadcell-offset-fy"]
+    assert abs(true.faults.F0_N - 15.0) < 2.0
+
+
+def test_the_json_gives_the_origin_as_the_file_does(small):
+    result, folder = small
+    on_disk = tir.read(folder / "out" / "small.tir")
+    origin = {name: entry["origin"] for name, entry in result.to_json()["fit"]["coefficients"].items()}
+    assert len(on_disk.status.keys() & origin.keys()) > 200
+    for name in on_disk.status.keys() & origin.keys():
+        assert origin[name] == on_disk.status[name], name
+
+
+def said(diagnosis) -> str:
+    (note,) = (n for n in diagnosis.notes if isinstance(n, str) and "eps_gamma" in n)
+    return note
+
+
+def test_the_direct_method_is_redone_without_the_fault(tmp_path):
+    """60 N on the load cell: eps = 1 + r_e C_gamma / (F R) with F wrong by 60 N, and with 60 N less."""
+    true = simulated(tmp_path, faults={"F0_N": -60.0})
+    found = mffit.diagnose(tmp_path / "tyre.toml", SAMPLE / "true.tir", effects=OFFSET)
+    note = said(found)
+    before, u_before, after, u_after = map(float, re.findall(r"(?<![\w.])-?\d+\.\d+", note)[:4])
+    measured = mffit.spin(tmp_path / "tyre.toml").epsilon_gamma
+    assert (before, u_before) == (
+        pytest.approx(measured.value, abs=0.006),
+        pytest.approx(measured.u, abs=0.006),
+    )
+    assert after == pytest.approx(true["epsilon_gamma"], abs=0.06)
+    assert u_after > 0.01
+    force = true["F_phit_N"] if "F_phit_N" in true else 1400.0 * -0.22
+    assert 1.0 - before == pytest.approx((1.0 - after) / (1.0 + 60.0 / abs(force)), rel=0.05)
+
+
+def test_a_fault_that_the_method_allows_for_leaves_the_factor(tmp_path):
+    """The moment's load cell is not in the turn-slip force."""
+    simulated(tmp_path, faults={"M0_Nm": 10.0 * MZ})
+    found = mffit.diagnose(tmp_path / "tyre.toml", SAMPLE / "true.tir", effects=MOMENT)
+    assert [f.effect.id for f in found.effects] == ["loadcell-offset-mz"]
+    assert said(found).startswith("eps_gamma stays ")
+
+
+def test_where_pecp1_comes_from(small, tmp_path):
+    result, _ = small
+    assert result.tyre["PECP1"] == result.measured.epsilon_gamma.value == result.measured.pecp1
+    assert result.measured.epsilon_gamma_model != result.measured.epsilon_gamma.value
+    stated = f"PECP1 = {result.tyre['PECP1']:.4f} is the measured eps_gamma itself"
+    assert sum(stated in sentence for sentence in result.fit.explanations) == 1
+    simulated(tmp_path, faults={"F0_N": 15.0}, spin={"pecp1": "debiased"})
+    debiased = mffit.build(tmp_path / "tyre.toml")
+    bias = result.measured.epsilon_gamma.value - result.measured.epsilon_gamma_debiased.value
+    assert debiased.tyre["PECP1"] == pytest.approx(result.measured.epsilon_gamma.value - bias, abs=0.005)
+    assert debiased.measured.pecp1 == debiased.tyre["PECP1"]
+    # The load cell is off, and the direct method does not know: the bias alone is known without the data's error.
+    noise_free = direct_of_truth(tmp_path / "clean")
+    assert bias == pytest.approx(noise_free - truth()["PECP1"], abs=0.02)
+
+
+def direct_of_truth(folder) -> float:
+    """eps_gamma of the direct method on noise-free readings of the true tyre."""
+    content = disc(noise={})
+    virtual_rig.simulate(virtual_rig.load_plan(content, folder=SAMPLE), folder, seed=1)
+    return mffit.spin(folder / "tyre.toml").epsilon_gamma.value
+
+
+def test_a_base_file_that_is_not_there_is_named(tmp_path):
+    simulated(tmp_path)
+    (tmp_path / "base.tir").unlink()
+    with pytest.raises(InputError, match=r"base file .*base\.tir does not exist"):
+        mffit.build(tmp_path / "tyre.toml")
+
+
+def test_alignment_of_a_project_and_of_its_table_are_the_same(tmp_path):
+    """0.3 deg off: the next correction of the reading is -0.3 deg, ply-steer of the tyre included."""
+    simulated(tmp_path, faults={"alpha_0_deg": 0.3})
+    found = mffit.align(tmp_path / "tyre.toml")
+    assert len(found.steps) == 3
+    table = pd.concat(
+        [pd.read_csv(tmp_path / f"{way}_1400.csv").assign(direction=way) for way in ("forward", "backward")]
+    )
+    table.to_csv(tmp_path / "zeros.csv", index=False)
+    (alone,) = mffit.align(tmp_path / "zeros.csv", axes="iso", path_centre="left").steps
+    (same,) = (s for s in found.steps if s.load == alone.load)
+    assert alone.correction_deg == pytest.approx(
+        same.correction_deg, abs=0.03
+    )  # which has zeros in its sweeps too
+    assert -0.6 < same.correction_deg < -0.3
+    sae = tmp_path / "sae"
+    simulated(sae, faults={"alpha_0_deg": 0.3}, rig=disc()["rig"] | {"axes": "sae"})
+    assert mffit.align(sae / "tyre.toml").correction_deg == pytest.approx(-found.correction_deg, rel=1e-3)
+
+
+def test_a_flat_track_has_no_bias_and_one_file(tmp_path):
+    result = built(flat(), tmp_path)
+    assert pipeline.finite_spin_bias(result.config, result.points, result.fit, None) is None
+    assert list(result.files) == ["normal"]
+    assert result.tyre is result.tyres["normal"]
+    assert np.all(result.parts.paired == "unpaired")
+    assert result.measured.epsilon_gamma_debiased is None
+    assert not any("PECP1" in sentence for sentence in result.fit.explanations)
