@@ -30,6 +30,11 @@ ADDED = [
     "paired",
     "outlier",
     "doubtful",
+    "file",
+    "line",
+    "sweep",
+    "direction",
+    "mount",
 ]
 
 
