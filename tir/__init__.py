@@ -6,9 +6,23 @@
 True
 """
 
+from tir.calls import compile_kernels
+from tir.codegen.c99 import export_c
+from tir.codegen.casadi import casadi_function
 from tir.equations.forces import Forces, State
 from tir.errors import Problem, TirError
 from tir.properties import read
 from tir.tyre import Quantity, Tyre
 
-__all__ = ["Forces", "Problem", "Quantity", "State", "TirError", "Tyre", "read"]
+__all__ = [
+    "Forces",
+    "Problem",
+    "Quantity",
+    "State",
+    "TirError",
+    "Tyre",
+    "casadi_function",
+    "compile_kernels",
+    "export_c",
+    "read",
+]

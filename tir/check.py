@@ -2,15 +2,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
+from dataclasses import replace
 
 import numpy as np
 
-from tir.equations import lateral, normalise, stiffness
+from tir.consumers import stumbles
+from tir.envelope import over_the_range
+from tir.equations import normalise
 from tir.errors import Problem
 from tir.parameters import TABLE
+from tir.targets import known_target, use_mode_words
 from tir.tyre import Tyre
 
+TURN_SLIP = "TURNSLIP_COEFFICIENTS"
+KEYS_OF_52 = (
+    "PHY3", "PTX1", "PTX2", "PTX3", "PTY1", "PTY2", "QTZ1", "MBELT", "LGAX", "LGAY", "LGAZ", "LSGKP", "LSGAL", "LKYG",
+)  # fmt: skip
+"""Coefficients that only the 5.2 generation has."""
 RANGES = (
     ("PRESMIN", "PRESMAX"),
     ("FZMIN", "FZMAX"),
@@ -20,12 +29,39 @@ RANGES = (
 )
 
 
-def check(tyre: Tyre) -> list[Problem]:
-    """Problems of the tyre; level "error" where it cannot be simulated sensibly, "warning" where one should look."""
-    found = [*_dimensions(tyre), *_ranges(tyre)]
+def check(tyre: Tyre, targets: Iterable[str] = ()) -> list[Problem]:
+    """Problems of the tyre; level "error" where it cannot be simulated sensibly, "warning" where one should look.
+
+    Parameters
+    ----------
+    tyre : its file's text is looked at too, if it was read from one
+    targets : programs that are to read the file, see :data:`tir.targets.TARGETS`
+
+    Raises
+    ------
+    TirError
+        If a target is unknown.
+    """
+    programs = [known_target(name) for name in targets]
+    found = [*_dimensions(tyre), *_ranges(tyre), *_mode(tyre), *_old_keys(tyre)]
     if not any(problem.level == "error" for problem in found):
-        found += [*_envelope(tyre), *_spin(tyre), *_moments(tyre)]
-    return found
+        with np.errstate(all="ignore"):
+            found += [*_shape(tyre), *over_the_range(tyre), *_clamps(tyre), *_spin(tyre), *_moments(tyre)]
+    for target in programs:
+        found += stumbles(tyre, target)
+    return [_with_line(problem, tyre) for problem in found]
+
+
+def _with_line(problem: Problem, tyre: Tyre) -> Problem:
+    """With the line of the file on which the key stands."""
+    if problem.line is not None or tyre.document is None:
+        return problem
+    lines = [
+        line.number for line in tyre.document.entries if line.key == problem.name and line.section != "UNITS"
+    ]
+    if not lines:
+        return problem
+    return replace(problem, sentence=f"line {lines[0]}: {problem.sentence}", line=lines[0])
 
 
 def _error(name: str, sentence: str) -> Problem:
@@ -73,62 +109,52 @@ def _ranges(tyre: Tyre) -> Iterator[Problem]:
             "CAMMAX",
             f"CAMMAX is {np.degrees(tyre['CAMMAX']):.1f} deg on a motorcycle tyre: simulations hold camber to it without notice",
         )
+    for name in ("INFLPRES", "NOMPRES"):
+        if not tyre["PRESMIN"] <= tyre[name] <= tyre["PRESMAX"]:
+            yield _warning(
+                name,
+                f"{name} {tyre[name]:g} lies outside PRESMIN {tyre['PRESMIN']:g} to PRESMAX {tyre['PRESMAX']:g}: simulations "
+                "hold the pressure to the range",
+            )
+    if not tyre["FZMIN"] <= tyre["FNOMIN"] <= tyre["FZMAX"]:
+        yield _warning(
+            "FZMAX",
+            f"the nominal load {tyre['FNOMIN']:g} lies outside FZMIN {tyre['FZMIN']:g} to FZMAX {tyre['FZMAX']:g}",
+        )
     if tyre["ALPMIN"] > 0 or tyre["CAMMIN"] > 0 or tyre["KPUMIN"] > 0:
         yield _error("ALPMIN", "the lower limits of slip and camber must not be positive")
 
 
-def _grid(tyre: Tyre):
-    Fz = np.linspace(max(tyre["FZMIN"], 0.02 * tyre["FNOMIN"]), tyre["FZMAX"], 7)
-    gamma = np.linspace(max(tyre["CAMMIN"], -1.05), min(tyre["CAMMAX"], 1.05), 9)
-    low, high = max(tyre["PRESMIN"], 0.5 * tyre["NOMPRES"]), min(tyre["PRESMAX"], 1.5 * tyre["NOMPRES"])
-    pressure = np.linspace(low, high, 3) if low < high else np.array([tyre["NOMPRES"]])
-    return [axis.ravel() for axis in np.meshgrid(Fz, gamma, pressure)]
+def _clamps(tyre: Tyre) -> Iterator[Problem]:
+    """Ranges so narrow that simulations hold inputs to them which vehicles reach."""
+    Fz = float(tyre["FNOMIN"])
+    alpha = np.radians(np.linspace(0.1, 30.0, 300))
+    force = np.abs(tyre(Fz, alpha).Fy)
+    peak = float(alpha[np.argmax(force)])
+    if force.max() > 0.0 and tyre["ALPMAX"] < peak and tyre["ALPMAX"] < np.radians(15.0):
+        share = abs(tyre(Fz, float(tyre["ALPMAX"])).Fy) / float(force.max())
+        yield _warning(
+            "ALPMAX",
+            f"simulations hold sideslip to ALPMAX, {np.degrees(tyre['ALPMAX']):.1f} deg, where the side force at nominal load "
+            f"is {share:.0%} of its peak",
+        )
+    if tyre["FZMAX"] < 1.5 * tyre["FNOMIN"]:
+        yield _warning(
+            "FZMAX",
+            f"simulations hold the load to FZMAX, {tyre['FZMAX'] / tyre['FNOMIN']:.2f} of the nominal one, in the formula",
+        )
+    if tyre["FZMIN"] > 0.2 * tyre["FNOMIN"]:
+        yield _warning(
+            "FZMIN",
+            f"below FZMIN, {tyre['FZMIN']:g} N, simulations fade or scale forces and moments, each in its way",
+        )
 
 
-def _envelope(tyre: Tyre) -> Iterator[Problem]:
-    """Shape of the side force over the file's ranges of load, camber and pressure."""
+def _shape(tyre: Tyre) -> Iterator[Problem]:
     p = tyre.p
-    Fz, gamma, pressure = _grid(tyre)
-    q = normalise.inputs(p, Fz, Fz, 0.0, 0.0, gamma, 0.0, pressure, False, False)
     if p.PCY1 * p.LCY <= 0 or p.QCZ1 <= 0:
         yield _error("PCY1", "the shape factors PCY1 and QCZ1 must be positive")
-
-    def where(broken):
-        i = int(np.argmax(broken))
-        return f"at {Fz[i]:.0f} N, {np.degrees(gamma[i]):.0f} deg camber, {pressure[i] / 1e3:.0f} kPa"
-
-    mu = stiffness.lateral_friction(p, q, gamma)
-    if np.any(mu <= 0):
-        yield _error(
-            "PDY1",
-            f"the lateral friction coefficient is not positive {where(mu <= 0)}: narrow the ranges or refit",
-        )
-    elif np.any(mu > 4):
-        yield _warning("PDY1", f"the lateral friction coefficient is {mu.max():.1f} {where(mu > 4)}")
-    K = stiffness.cornering_stiffness(p, q, gamma)
-    upright = np.abs(gamma) < 1e-9
-    if np.any(K[upright] >= 0):
-        yield _error(
-            "PKY1",
-            "the cornering stiffness is not negative at zero camber (ISO-W): the file is in other axes, or wrong",
-        )
-    elif np.any(K >= 0):
-        yield _warning(
-            "PKY3", f"the cornering stiffness changes sign {where(K >= 0)}: narrow CAMMIN and CAMMAX"
-        )
-    K_gamma = stiffness.camber_stiffness(p, q)
-    if np.any(K_gamma > 0):
-        yield _warning(
-            "PKY6",
-            f"camber pushes against the lean {where(K_gamma > 0)}: a normal tyre has PKY6 < 0 in ISO-W",
-        )
-    worst = max(float(lateral.curvature(p, q, gamma, side).max()) for side in (-1.0, 1.0))
-    if worst > 1.0:
-        yield _warning(
-            "PEY1",
-            f"the curvature E_y reaches {worst:.2f} > 1 within the ranges: simulations may hold it at 1",
-        )
-    ratio = tyre.state(float(p.FNOMIN)).Re / p.UNLOADED_RADIUS
+    ratio = float(tyre.state(float(p.FNOMIN)).Re) / p.UNLOADED_RADIUS
     if not 0.85 < ratio < 1.05:
         yield _warning(
             "BREFF",
@@ -136,15 +162,61 @@ def _envelope(tyre: Tyre) -> Iterator[Problem]:
         )
 
 
+def _mode(tyre: Tyre) -> Iterator[Problem]:
+    """What USE_MODE and FITTYP say against what the file holds."""
+    mode, given = int(tyre["USE_MODE"]), "USE_MODE" in tyre.present
+    turn_slip, road = mode % 10 == 5, mode // 100 % 10
+    block = [row.name for row in TABLE if row.section == TURN_SLIP and row.files == ""]
+    if given and turn_slip and not any(name in tyre.present for name in block):
+        yield _warning(
+            "USE_MODE",
+            f"USE_MODE {mode} asks for turn slip, and [{TURN_SLIP}] is not there: a simulation estimates it",
+        )
+    if given and turn_slip:
+        yield _warning(
+            "USE_MODE",
+            f"USE_MODE {mode} asks for turn slip, which in MF-Tyre/MF-Swift takes the Swift licence",
+        )
+    round_section = tyre["MC_CONTOUR_A"] > 0
+    if given and round_section != (road == 2) and road in (1, 2):
+        tyre_is = "a motorcycle tyre" if round_section else "no motorcycle tyre"
+        yield _warning(
+            "USE_MODE",
+            f"USE_MODE {mode} means {use_mode_words(mode)}, and by MC_CONTOUR_A this is {tyre_is}",
+        )
+    if tyre["FITTYP"] in (60, 61):
+        newer = [
+            r.name for r in TABLE if r.files == "62" and r.name in tyre.present and tyre[r.name] != r.default
+        ]
+        if newer:
+            yield _warning("FITTYP", f"FITTYP {tyre['FITTYP']:g} does not know {', '.join(newer)}")
+
+
+def _old_keys(tyre: Tyre) -> Iterator[Problem]:
+    old = [key.partition(".")[2] for key in tyre.extra]
+    old = [key for key in old if key in KEYS_OF_52]
+    if old:
+        yield _warning(
+            old[0],
+            f"{', '.join(old)} are keys of MF 5.2, which MF 6 does not read: was an old file renamed?",
+        )
+
+
 def _spin(tyre: Tyre) -> Iterator[Problem]:
     p = tyre.p
     load = np.linspace(max(p.FZMIN, 0.02 * p.FNOMIN), p.FZMAX, 21)
     eps = normalise.camber_reduction(p, normalise.relative_load(p, load))
-    if np.any(np.abs(eps - 1.0) < 0.02) or np.ptp(np.sign(eps - 1.0)) > 0:
+    if np.any(np.abs(eps - 1.0) < 0.1) or np.ptp(np.sign(eps - 1.0)) > 0:
         yield _warning(
             "PECP1", "eps_gamma comes near 1 within the load range, where the turn-slip stiffness is infinite"
         )
-    if (p.PECP1, p.PECP2) == (0.5, 0.0):
+    rows = [row for row in TABLE if row.section == TURN_SLIP and row.files == ""]
+    default = all(tyre[row.name] == row.default for row in rows) and rows[0].name in tyre.present
+    if default:
+        yield _warning(
+            rows[0].name, f"the {len(rows)} turn-slip coefficients are the common defaults, not measurements"
+        )
+    if p.MC_CONTOUR_A > 0.0 and (p.PECP1, p.PECP2) == (0.5, 0.0):
         yield _warning(
             "PECP1", "PECP1 is the common default 0.5, not a measurement: motorcycle tyres have about 0"
         )

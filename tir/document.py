@@ -1,16 +1,19 @@
-"""Property-file text as lines: sections, keys and comments, with their places; knows no key's meaning."""
+"""Property-file text as lines, byte for byte: sections, keys and comments with their places; knows no key's meaning."""
 
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
+from collections import Counter
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from tir.errors import TirError
 
-SECTION = re.compile(r"^\[([^\]]*)\]")
-ENTRY = re.compile(r"^([A-Za-z_][\w.\- ]*?)\s*=\s*(.*)$")
+SECTION = re.compile(r"^\s*\[([^\]]*)\]")
+ENTRY = re.compile(r"^(\s*)([A-Za-z_][\w.\- ]*?)(\s*=[^\S\r\n]*)(.*)$", re.DOTALL)
 QUOTED = re.compile(r"'([^']*)'|\"([^\"]*)\"")
+LINE_END = re.compile(r"(\r\n|\r|\n)")
 
 
 @dataclass(frozen=True, slots=True)
@@ -23,6 +26,26 @@ class Line:
     key: str = ""  #: upper case; "" if the line holds none
     value: str = ""  #: without comment and blanks; quotes kept
     comment: str = ""
+    end: str = ""  #: the line end; "" behind the last line
+    start: int = 0  #: column at which the value begins
+
+    @property
+    def head(self) -> bool:
+        """Whether the line opens a section."""
+        return not self.key and SECTION.match(self.text) is not None
+
+    def with_value(self, value: str) -> Line:
+        """The line with another value and every other character as it was."""
+        rest = self.text[self.start + len(self.value) :]
+        if not self.value and rest.strip():
+            value += " "  # a comment may follow a missing value at once
+        text = self.text[: self.start] + value + rest
+        return replace(self, text=text, value=value)
+
+    def with_comment(self, comment: str) -> Line:
+        """The line with another comment behind the value."""
+        before = self.text[: self.start + len(self.value)]
+        return replace(self, text=f"{before:<49} ${comment}", comment=comment)
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,6 +60,43 @@ class Document:
     def entries(self) -> tuple[Line, ...]:
         """Lines that hold a key."""
         return tuple(line for line in self.lines if line.key)
+
+    @property
+    def text(self) -> str:
+        """Every character of the file, its line ends as they are."""
+        return "".join(line.text + line.end for line in self.lines)
+
+    @property
+    def content(self) -> bytes:
+        """Every byte of the file."""
+        return self.text.encode(self.encoding)
+
+    @property
+    def line_end(self) -> str:
+        """The line end that most lines have; CR LF if there is none."""
+        known = Counter(line.end for line in self.lines if line.end)
+        return known.most_common(1)[0][0] if known else "\r\n"
+
+    def changed(self, lines: dict[int, Line]) -> Document:
+        """With other lines in the place of those of these numbers."""
+        return replace(self, lines=tuple(lines.get(line.number, line) for line in self.lines))
+
+    def without(self, numbers: Iterable[int]) -> Document:
+        """Without the lines of these numbers; the others keep theirs."""
+        gone = set(numbers)
+        return replace(self, lines=tuple(line for line in self.lines if line.number not in gone))
+
+    def inserted(self, texts: dict[int, list[str]]) -> Document:
+        """With new lines behind those of these numbers (0: before the first), numbered anew."""
+        end, out = self.line_end, [text + self.line_end for text in texts.get(0, [])]
+        for line in self.lines:
+            out.append(line.text + line.end)
+            new = texts.get(line.number, [])
+            if new:
+                if not line.end and line.text:
+                    out[-1] += end
+                out += [text + end for text in new]
+        return parse_document("".join(out), encoding=self.encoding, path=self.path)
 
 
 def read_document(path: str | Path) -> Document:
@@ -60,22 +120,27 @@ def read_document(path: str | Path) -> Document:
 
 def parse_document(text: str, *, encoding: str = "ascii", path: str = "") -> Document:
     """Cut text into lines and recognise sections, keys and comments."""
+    pieces = LINE_END.split(text)
     lines, section, table = [], "", False
-    for number, content in enumerate(re.split(r"\r\n|\r|\n", text), start=1):
+    for number, content in enumerate(pieces[::2], start=1):
+        end = pieces[2 * number - 1] if 2 * number - 1 < len(pieces) else ""
         stripped = content.strip()
         head = SECTION.match(stripped)
         if head:
             section, table = head.group(1).strip().upper(), False
-            lines.append(Line(number, content, section))
+            lines.append(Line(number, content, section, end=end))
             continue
         if stripped.startswith("{"):
             table = True
-        entry = None if table or not stripped or stripped[0] in "$!({" else ENTRY.match(stripped)
+        entry = None if table or not stripped or stripped[0] in "$!({" else ENTRY.match(content)
         if entry is None:
-            lines.append(Line(number, content, section))
+            lines.append(Line(number, content, section, end=end))
             continue
-        value, comment = split_comment(entry.group(2))
-        lines.append(Line(number, content, section, entry.group(1).strip().upper(), value, comment))
+        value, comment = split_comment(entry.group(4))
+        start = entry.start(4) + (len(entry.group(4)) - len(entry.group(4).lstrip()) if value else 0)
+        lines.append(
+            Line(number, content, section, entry.group(2).strip().upper(), value, comment, end, start)
+        )
     return Document(tuple(lines), encoding, path)
 
 
@@ -94,7 +159,7 @@ def _decode(raw: bytes, path: Path) -> tuple[str, str]:
         raise TirError("is empty: a property file was expected", path=path)
     if raw[:2] in (b"\xff\xfe", b"\xfe\xff") or b"\x00" in raw[:200]:
         raise TirError("is UTF-16 or binary: save it as plain text (ASCII or UTF-8)", path=path)
-    for encoding in ("utf-8-sig", "latin-1"):
+    for encoding in ("utf-8-sig" if raw.startswith(b"\xef\xbb\xbf") else "utf-8", "latin-1"):
         try:
             return raw.decode(encoding), encoding
         except UnicodeDecodeError:

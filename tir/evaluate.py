@@ -61,25 +61,20 @@ def evaluate(
     """
     Vx = p.LONGVL if Vx is None else Vx
     pressure = p.INFLPRES if pressure is None else pressure
-    backwards = np.real(Vx) < 0.0
-    if np.any(backwards):
-        return _rolling_backwards(
-            p,
-            Fz,
-            alpha,
-            gamma,
-            kappa,
-            phi_t,
-            Vx,
-            pressure,
-            backwards,
-            turn_slip=turn_slip,
-            star=star,
-            limits=limits,
-        )
-    _refuse_zero_divisors(p)
+    refuse_zero_divisors(p)
     if isinstance(pressure, float | int):
         pressure = np.float64(pressure)  # Python's own numbers raise at 0 ** -0.4, numpy's do not
+    inputs, switches = (Fz, alpha, gamma, kappa, phi_t, Vx, pressure), (turn_slip, star, limits)
+    backwards = np.real(Vx) < 0.0
+    if np.any(backwards):
+        return either_way(p, backwards, *inputs, *switches)
+    return forwards(p, *inputs, *switches)
+
+
+def forwards(
+    p, Fz, alpha, gamma, kappa, phi_t, Vx, pressure, turn_slip, star, limits
+) -> tuple[Forces, State]:
+    """The model of a wheel that rolls forwards, ``Vx`` >= 0; arguments as in :func:`evaluate`, every one given."""
     unloaded = np.real(Fz) <= 0.0
     Fz_given, kappa_given = select(unloaded, SMALLEST_LOAD, Fz), kappa
     Fz, Fz_moment, loads = Fz_given, Fz_given, Loads(Fz_given, Fz_given)
@@ -96,20 +91,19 @@ def evaluate(
     return Forces(*(select(unloaded, 0.0, f) for f in out)), state
 
 
-def _rolling_backwards(p, Fz, alpha, gamma, kappa, phi_t, Vx, pressure, backwards, **switches):
-    """Seen from a frame turned half a revolution about z the wheel rolls forwards, turned on its rim."""
+def either_way(
+    p, backwards, Fz, alpha, gamma, kappa, phi_t, Vx, pressure, turn_slip, star, limits
+) -> tuple[Forces, State]:
+    """Forwards, and where ``backwards`` holds seen from a frame turned half a revolution about z.
+
+    In that frame the wheel rolls forwards, turned on its rim.
+    """
     turned = select(backwards, -1.0, 1.0)
-    out, state = evaluate(
+    out, state = forwards(
         turned_on_rim(p, turned),
-        Fz,
-        alpha,
-        turned * gamma,
-        kappa,
-        turned * phi_t,
-        np.abs(Vx),
-        pressure,
-        **switches,
-    )
+        Fz, alpha, turned * gamma, kappa, turned * phi_t, np.abs(Vx), pressure,
+        turn_slip, star, limits,
+    )  # fmt: skip
     out = out._replace(Fx=turned * out.Fx, Fy=turned * out.Fy, Mx=turned * out.Mx, My=turned * out.My)
     return out, state._replace(omega=turned * state.omega, phi=turned * state.phi)
 
@@ -122,7 +116,7 @@ def turned_on_rim(p: Any, turned: Any) -> SimpleNamespace:
     return mirrored
 
 
-def _refuse_zero_divisors(p) -> None:
+def refuse_zero_divisors(p) -> None:
     for name in DIVISORS:
         value = getattr(p, name)
         if isinstance(value, float | int) and value == 0.0:

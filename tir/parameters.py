@@ -36,7 +36,7 @@ class Parameter:
     symmetry: frozenset[str]  #: "odd", "shift", "conicity"; see the properties of these names
     disc_spread: float | None  #: spread around the base file's value to which runs on a disc hold it, 1 sigma
     needs: tuple[Need, ...]  #: what the data must vary
-    files: str  #: "" in every file, "62" of MF 6.2 only, "some" not in all, "rare" in no common one
+    files: str  #: "" in every file, "62" of MF 6.2 only, "some" not in all, "rare" in no common one, "adams" for Adams alone
     equation: str  #: where it enters
     description: str
 

@@ -1,22 +1,28 @@
-"""Property files: Document and table to Tyre, and Tyre to text."""
+"""Property files: Document and table to Tyre."""
 
 from __future__ import annotations
 
 import math
-import os
 import re
-import tempfile
+from functools import cache
 from pathlib import Path
 from types import MappingProxyType
-from typing import Any
 
+from tir.codegen.program import Switches, trace
 from tir.document import Document, Line, read_document
+from tir.equations.forces import Forces, State
 from tir.errors import Problem, TirError
-from tir.parameters import BY_NAME, SECTIONS, TABLE, Parameter
+from tir.parameters import BY_NAME, TABLE, Parameter
 from tir.tyre import Quantity, Tyre
-from tir.units import KINDS, SI, factor
+from tir.units import KINDS, factor
 
-OLD_FITTYPS = {5, 6, 21, 51, 52}
+OLD_FITTYPS = {
+    5: "MF-Tyre 5",
+    6: "MF-Tyre 5.2",
+    21: "MF-Tyre 5.2 with MF-Swift",
+    51: "MF-MCTyre 1.0, a motorcycle tyre",
+    52: "MF-MCTyre 1.1, a motorcycle tyre",
+}
 OLD_FORMATS = {"MF_05", "PAC2002", "MF-TYRE", "PAC_MC"}
 ESSENTIAL = ("UNLOADED_RADIUS", "FNOMIN")
 ESSENTIAL_COEFFICIENTS = ("PCY1", "PDY1", "PKY1")
@@ -48,16 +54,14 @@ def interpret(document: Document) -> Tyre:
     if not entries:
         raise TirError("holds no 'KEY = value' line, so it is not a property file", path=document.path)
     problems: list[Problem] = []
-    words = _units(document, problems)
+    words = units_of(document, problems)
     values: dict[str, float | str] = {}
     extra: dict[str, str] = {}
     status: dict[str, str] = {}
     for line in entries:
-        if line.section == "UNITS":
-            continue
-        row = BY_NAME.get(line.key)
-        if row is None or (line.section in HEADER):
-            if line.section != "MDI_HEADER":
+        row = stands_for(line)
+        if row is None:
+            if line.section not in HEADER:
                 extra[f"{line.section}.{line.key}"] = line.value
             continue
         if line.key in values:
@@ -67,7 +71,10 @@ def interpret(document: Document) -> Tyre:
             problems.append(
                 _warning(f"{line.key} stands before any [SECTION]; it is read all the same", line)
             )
-        values[line.key] = _value(row, line, words, document.path)
+        value = _value(row, line, words, document, problems)
+        if value is None:
+            continue
+        values[line.key] = value
         if STATUS.match(line.comment):
             status[line.key] = line.comment
     _refuse_other_versions(values, extra, document)
@@ -83,15 +90,22 @@ def interpret(document: Document) -> Tyre:
         provenance=MappingProxyType(provenance),
         extra=MappingProxyType(extra),
         problems=tuple(problems),
+        document=document,
     )
 
 
-def _units(document: Document, problems: list[Problem]) -> dict[str, str]:
+def stands_for(line: Line) -> Parameter | None:
+    """The parameter that a line with a key gives; None in the header and for keys that MF 6.2 does not have."""
+    return None if line.section in HEADER else BY_NAME.get(line.key)
+
+
+def units_of(document: Document, problems: list[Problem]) -> dict[str, str]:
+    """The file's word for each kind of unit."""
     words = {}
     for line in document.entries:
         if line.section != "UNITS" or line.key not in KINDS or line.key in words:
             continue
-        word = _unquoted(line.value).lower()
+        word = unquoted(line.value).lower()
         if word not in KINDS[line.key]:
             known = ", ".join(sorted(KINDS[line.key]))
             raise TirError(
@@ -107,42 +121,61 @@ def _units(document: Document, problems: list[Problem]) -> dict[str, str]:
     return words
 
 
-def _value(row: Parameter, line: Line, words: dict[str, str], path: str) -> float | str:
-    if not line.value:
-        raise TirError(
-            f"{line.key} has no value: the file is damaged or cut short here", path=path, line=line.number
-        )
-    if row.kind == "text":
-        return _unquoted(line.value)
-    text = _unquoted(line.value)
+def _value(
+    row: Parameter, line: Line, words: dict[str, str], document: Document, problems: list[Problem]
+) -> float | str | None:
+    """The value in the table's unit; None with a problem where there is none and the file can still be used."""
+    if row.kind == "text" and line.value:
+        return unquoted(line.value)
+    text = unquoted(line.value)
+    number = _number(text)
+    if number is not None and math.isfinite(number):
+        return number * factor(row.unit, words)
+    if not text:
+        if row.name in (*ESSENTIAL, *ESSENTIAL_COEFFICIENTS) or line.number == len(document.lines):
+            raise TirError(
+                f"{line.key} has no value: the file is damaged or cut short here",
+                path=document.path,
+                line=line.number,
+                name=line.key,
+            )
+        problems.append(_warning(f"{line.key} has no value and takes its default", line))
+        return None
+    said = f'{line.key} is "{text}", and a number was expected' if number is None else ""
+    said = said or f"{line.key} is {text}, which no formula can use"
+    if row.name not in _needed():
+        problems.append(_warning(f"{said}; no force needs it, so that its default is taken", line))
+        return None
+    remedy = ": give a number"
+    if number is None and "," in text:
+        remedy = f"; a decimal comma is not a number here, write {text.replace(',', '.')}"
+    raise TirError(f"{said}{remedy}", path=document.path, line=line.number, name=line.key)
+
+
+def _number(text: str) -> float | None:
     try:
-        number = float(re.sub(r"(?<=[\d.])[dD](?=[+-]?\d)", "e", text))
+        return float(re.sub(r"(?<=[\d.])[dD](?=[+-]?\d)", "e", text))
     except ValueError:
-        remedy = (
-            f"; a decimal comma is not a number here, write {text.replace(',', '.')}" if "," in text else ""
-        )
-        raise TirError(
-            f'{line.key} is "{text}", and a number was expected{remedy}',
-            path=path,
-            line=line.number,
-            name=line.key,
-        ) from None
-    if not math.isfinite(number):
-        raise TirError(
-            f"{line.key} is {text}, which no formula can use: give a number", path=path, line=line.number
-        )
-    return number * factor(row.unit, words)
+        return None
+
+
+@cache
+def _needed() -> frozenset[str]:
+    """Parameters that some force or other result depends on."""
+    program = trace(Switches(True, False, True), Forces._fields + State._fields)
+    return frozenset(program.parameters) | {"LONGVL", "INFLPRES", "FITTYP"}
 
 
 def _refuse_other_versions(values, extra, document: Document) -> None:
     version = values.get("FITTYP")
     form = str(values.get("PROPERTY_FILE_FORMAT", "")).upper()
-    old = version is None and form in OLD_FORMATS
-    if old or version in OLD_FITTYPS:
-        name = f"FITTYP {version:g}" if version is not None else f"PROPERTY_FILE_FORMAT '{form}'"
+    if version in OLD_FITTYPS or (version is None and form in OLD_FORMATS):
+        name = f"PROPERTY_FILE_FORMAT '{form}'"
+        if version in OLD_FITTYPS:
+            name = f"FITTYP {version:g}: {OLD_FITTYPS[version]}"
         raise TirError(
-            f"is an MF 5.2 file ({name}); its coefficients mean something else in MF 6.2, so it cannot be renamed: fit "
-            "the tyre's data anew, or name an MF 6.1 or 6.2 file",
+            f"is a file of the MF 5.2 generation ({name}); its coefficients mean something else in MF 6.2, so it cannot be "
+            "renamed: fit the tyre's data anew, or name an MF 6.1 or 6.2 file",
             path=document.path,
         )
     if version is not None and version not in (60, 61, 62):
@@ -150,13 +183,17 @@ def _refuse_other_versions(values, extra, document: Document) -> None:
 
 
 def _refuse_truncated(values, document: Document) -> None:
+    coefficients = any(name in values for name in ESSENTIAL_COEFFICIENTS)
     missing = [name for name in ESSENTIAL if name not in values]
     if missing:
+        homes = " and ".join(f"{name} to [{BY_NAME[name].section}]" for name in missing)
+        remedy = f"add {homes}" if coefficients else "the file is cut short or is no tyre"
         raise TirError(
-            f"lacks {' and '.join(missing)}, without which no force can be computed: the file is cut short or is no tyre",
+            f"lacks {' and '.join(missing)}, without which no force can be computed: {remedy}",
             path=document.path,
+            name=missing[0],
         )
-    if not any(name in values for name in ESSENTIAL_COEFFICIENTS):
+    if not coefficients:
         raise TirError(
             "has none of PCY1, PDY1, PKY1: the coefficients are missing, so the file is cut short",
             path=document.path,
@@ -204,111 +241,8 @@ def _structured_comments(document: Document) -> tuple[dict[str, Quantity], dict[
     return measured, provenance
 
 
-def render(tyre: Tyre) -> str:
-    """The complete file as text: every key in the order of the table, ASCII, CRLF.
-
-    Raises
-    ------
-    TirError
-        If a value is not finite.
-    """
-    lines = [
-        "[MDI_HEADER]",
-        _entry("FILE_TYPE", "'tir'"),
-        _entry("FILE_VERSION", "3.0"),
-        _entry("FILE_FORMAT", "'ASCII'"),
-    ]
-    lines += [f"! provenance: {_comment(key)}: {_comment(text)}" for key, text in tyre.provenance.items()]
-    lines += [
-        f"! measured: {_escaped(name)} {q.value!r} u {q.u!r} {_escaped(q.unit) or '-'}"
-        for name, q in tyre.measured.items()
-    ]
-    lines += ["$" + "-" * 60 + "units", "[UNITS]", *(_entry(kind, f"'{word}'") for kind, word in SI.items())]
-    for section in SECTIONS:
-        lines += ["$" + "-" * 60 + section.lower(), f"[{section}]"]
-        rows = [row for row in TABLE if row.section == section and _written(row, tyre)]
-        lines += [_entry(row.name, _text(row, tyre[row.name]), _remark(row, tyre)) for row in rows]
-        lines += _foreign_entries(section, tyre)
-    others = dict.fromkeys(key.partition(".")[0] for key in tyre.extra)
-    for section in (name for name in others if name and name not in SECTIONS):
-        lines += ["$" + "-" * 60, f"[{_foreign_key(section)}]", *_foreign_entries(section, tyre)]
-    return "\r\n".join(lines) + "\r\n"
-
-
-def write(tyre: Tyre, path: str | Path) -> None:
-    """Write :func:`render`'s text; the file at ``path`` is replaced only once the new one is complete."""
-    path, text = Path(path), render(tyre)
-    handle, temporary = tempfile.mkstemp(prefix=f".{path.name}-", dir=path.parent)
-    try:
-        with os.fdopen(handle, "w", encoding="ascii", newline="") as stream:
-            stream.write(text)
-        os.chmod(temporary, 0o644)
-        os.replace(temporary, path)
-    except BaseException:
-        Path(temporary).unlink(missing_ok=True)
-        raise
-
-
-def _written(row: Parameter, tyre: Tyre) -> bool:
-    """Whether the key goes into a file: one that no common program knows only if it matters."""
-    return row.files != "rare" or tyre[row.name] != row.default
-
-
-def _entry(key: str, value: str, comment: str = "") -> str:
-    line = f"{key:<24} = {value}"
-    return f"{line:<50} ${_comment(comment)}"[:118] if comment else line
-
-
-def _foreign_entries(section: str, tyre: Tyre) -> list[str]:
-    """Keys that MF 6.2 does not know, as they stood; those before any section join the first."""
-    homes = (section, "") if section == SECTIONS[0] else (section,)
-    return [
-        _entry(_foreign_key(key), _escaped(value))
-        for place, value in tyre.extra.items()
-        for home, _, key in [place.partition(".")]
-        if home in homes
-    ]
-
-
-def _text(row: Parameter, value: Any) -> str:
-    if row.kind == "text":
-        return f"'{_comment(str(value))}'"
-    number = float(value)
-    if not math.isfinite(number):
-        raise TirError(f"{row.name} is {number}, and a file can only hold numbers", name=row.name)
-    return str(int(number)) if number.is_integer() and abs(number) < 1e15 else repr(number)
-
-
-def _remark(row: Parameter, tyre: Tyre) -> str:
-    return tyre.status.get(row.name) or row.description
-
-
-def _comment(text: str) -> str:
-    """Text that no reader can mistake for a key: ASCII, without equals signs, semicolons and exclamation marks."""
-    signs: dict[str, str | int | None] = {
-        "=": ":",
-        ";": ",",
-        "!": ".",
-        "$": " ",
-        "\n": " ",
-        "\r": " ",
-        "\t": " ",
-    }
-    text = text.translate(str.maketrans(signs))
-    return text.encode("ascii", "replace").decode()
-
-
-def _escaped(text: str) -> str:
-    """Text of another program as it stood, with signs beyond ASCII as ``\\xfc``."""
-    return text.encode("ascii", "backslashreplace").decode()
-
-
-def _foreign_key(key: str) -> str:
-    """A key that a reader still takes for one: ``_XFC`` for a sign beyond ASCII."""
-    return _escaped(key).replace("\\", "_").upper()
-
-
-def _unquoted(text: str) -> str:
+def unquoted(text: str) -> str:
+    """The text without the quotes around it."""
     text = text.strip()
     return (
         text[1:-1].strip()

@@ -2,16 +2,19 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field, fields, replace
 from functools import cached_property
 from pathlib import Path
 from types import MappingProxyType, SimpleNamespace
 from typing import Any, NamedTuple
 
+from tir import calls
+from tir.codegen.program import Switches
+from tir.document import Document
 from tir.equations.forces import Forces, State
 from tir.errors import Problem, TirError
-from tir.evaluate import evaluate
 from tir.parameters import BY_NAME, TABLE
 
 EMPTY: Mapping[str, Any] = MappingProxyType({})
@@ -25,7 +28,7 @@ class Quantity(NamedTuple):
     unit: str
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Tyre:
     """An MF 6.2 tyre: every parameter in SI, and what the file says about them.
 
@@ -39,6 +42,7 @@ class Tyre:
     provenance: Mapping[str, str] = field(default_factory=lambda: EMPTY)
     extra: Mapping[str, str] = field(default_factory=lambda: EMPTY)  #: "SECTION.KEY" -> text of unknown keys
     problems: tuple[Problem, ...] = ()  #: what the reader stumbled over
+    document: Document | None = field(default=None, repr=False)  #: the file's text, which is kept on writing
 
     @classmethod
     def from_values(cls, given: Mapping[str, float | str]) -> Tyre:
@@ -65,10 +69,33 @@ class Tyre:
     def __hash__(self) -> int:
         return hash(tuple(sorted((k, str(v)) for k, v in self.values.items())))
 
+    def __repr__(self) -> str:
+        """The tyre in a few lines; ``tyre.values`` holds everything."""
+        given = f"{len(self.present)} of {len(TABLE)} keys given"
+        origins = Counter(text.split()[0].rstrip(":,") for text in self.status.values())
+        head = f"Tyre of MF 6.{int(self['FITTYP']) % 10}, FNOMIN {self['FNOMIN']:g} N, "
+        lines = [f"{head}UNLOADED_RADIUS {self['UNLOADED_RADIUS']:g} m; {given}"]
+        if origins:
+            lines.append("origins: " + ", ".join(f"{n} {word}" for word, n in origins.most_common(6)))
+        lines += [f"{name} = {q.value:.6g} +- {q.u:.2g} {q.unit}" for name, q in [*self.measured.items()][:6]]
+        if self.problems:
+            lines.append(f"{len(self.problems)} problems on reading, see tyre.problems")
+        return "<" + "\n ".join(lines) + ">"
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """For other processes: everything but the functions made for calls."""
+        plain = {key: dict(x) if isinstance(x, Mapping) else x for key, x in _fields(self).items()}
+        return _rebuilt, (plain,)
+
     @cached_property
     def p(self) -> SimpleNamespace:
         """The parameters as attributes, as the equations take them."""
         return SimpleNamespace(**self.values)
+
+    @cached_property
+    def prepared(self) -> dict[Any, Any]:
+        """Functions made of the tyre for calls with floats and arrays; see :mod:`tir.calls`."""
+        return {}
 
     def replace(self, **changes: float | str) -> Tyre:
         """A copy with some values changed; their status is dropped."""
@@ -127,9 +154,34 @@ class Tyre:
         Returns
         -------
         Forces
-            ``.Fx .Fy .Fz`` [N], ``.Mx .My .Mz`` [Nm] in the contact frame W.
+            ``.Fx .Fy .Fz`` [N], ``.Mx .My .Mz`` [Nm] in the contact frame W: floats if every input is a single number,
+            else arrays of the common shape.
         """
-        return self._evaluate(Fz, alpha, gamma, kappa, phi_t, Vx, p, turn_slip, star, limits)[0]
+        if turn_slip is None:
+            turn_slip = phi_t is not None
+        if phi_t is None:
+            phi_t = 0.0
+        if Vx is None:
+            Vx = self.values["LONGVL"]
+        if p is None:
+            p = self.values["INFLPRES"]
+        # the way of a simulation that asks for one condition after the other: no array, no look at what is general
+        if (
+            type(Fz) is float
+            and type(alpha) is float
+            and type(gamma) is float
+            and type(kappa) is float
+            and type(phi_t) is float
+            and type(Vx) is float
+            and type(p) is float
+        ):
+            try:
+                run = self.prepared[turn_slip, star, limits]
+                return tuple.__new__(Forces, run(Fz, alpha, gamma, kappa, phi_t, Vx, p))
+            except (KeyError, ArithmeticError, ValueError):
+                pass
+        switches = Switches(bool(turn_slip), bool(star), bool(limits))
+        return calls.forces(self, (Fz, alpha, gamma, kappa, phi_t, Vx, p), switches)
 
     def state(
         self,
@@ -146,26 +198,61 @@ class Tyre:
         limits: bool = False,
     ) -> State:
         """Everything else the model knows of the condition: stiffnesses, radius, trail, spin; arguments as in a call."""
-        return self._evaluate(Fz, alpha, gamma, kappa, phi_t, Vx, p, turn_slip, star, limits)[1]
-
-    def _evaluate(self, Fz, alpha, gamma, kappa, phi_t, Vx, p, turn_slip, star, limits):
-        turn_slip = phi_t is not None if turn_slip is None else turn_slip
-        phi_t = 0.0 if phi_t is None else phi_t
-        return evaluate(
-            self.p, Fz, alpha, gamma, kappa, phi_t, Vx, p, turn_slip=turn_slip, star=star, limits=limits
+        inputs = (
+            Fz,
+            alpha,
+            gamma,
+            kappa,
+            0.0 if phi_t is None else phi_t,
+            self.values["LONGVL"] if Vx is None else Vx,
+            self.values["INFLPRES"] if p is None else p,
         )
+        on = phi_t is not None if turn_slip is None else bool(turn_slip)
+        return calls.state(self, inputs, Switches(on, bool(star), bool(limits)))
 
-    def text(self) -> str:
-        """The complete property file as text; see :func:`tir.properties.render`."""
-        from tir.properties import render
+    def expand(self) -> Tyre:
+        """A copy in which every key that the file lacks is given with the table's default, marked as not measured.
 
-        return render(self)
+        Without this, missing keys stay missing in a written file: for MF-Tyre an absent key means that it is to be
+        estimated, which is something else than the default of this table.
+        """
+        known = ("", "some") if self.values["FITTYP"] in (60, 61) else ("", "some", "62")
+        missing = [row.name for row in TABLE if row.name not in self.present and row.files in known]
+        status = dict.fromkeys(missing, "default, not measured")
+        return replace(self, present=self.present | set(missing)).annotate(status=status)
 
-    def write(self, path: str | Path) -> None:
-        """Write the property file; an existing file is replaced only when the new one is complete."""
-        from tir.properties import write
+    def text(self, target: str | None = None) -> str:
+        """The property file as text.
 
-        write(self, path)
+        Parameters
+        ----------
+        target : for which program, see :data:`tir.targets.TARGETS`; the complete file, written anew. Without one, a tyre that
+            was read gives its file's own text, in which only what was changed or added differs; any other tyre gives the
+            file for MF-Tyre.
+
+        Raises
+        ------
+        TirError
+            If a value is not finite, or the target cannot use an MF 6.2 tyre.
+        """
+        from tir.writing import content
+
+        return content(self, target)[0]
+
+    def write(self, path: str | Path, target: str | None = None) -> None:
+        """Write :meth:`text`; an existing file is replaced only when the new one is complete."""
+        from tir.writing import write
+
+        write(self, path, target)
+
+
+def _fields(tyre: Tyre) -> dict[str, Any]:
+    return {f.name: getattr(tyre, f.name) for f in fields(tyre)}
+
+
+def _rebuilt(plain: dict[str, Any]) -> Tyre:
+    frozen: dict[str, Any] = {k: MappingProxyType(x) if isinstance(x, dict) else x for k, x in plain.items()}
+    return Tyre(**frozen)
 
 
 def _known(names) -> None:

@@ -30,12 +30,17 @@ TIME = {
     "minute": 60.0,
     "hour": 3600.0,
 }
+PRESSURE = {
+    "pascal": 1.0, "pa": 1.0, "kpascal": 1e3, "kpa": 1e3, "kilopascal": 1e3, "mpascal": 1e6, "mpa": 1e6, "megapascal": 1e6,
+    "bar": 1e5, "psi": 6894.757293168361,
+}  # fmt: skip
 KINDS: dict[str, dict[str, float]] = {
     "LENGTH": LENGTH,
     "FORCE": FORCE,
     "ANGLE": ANGLE,
     "MASS": MASS,
     "TIME": TIME,
+    "PRESSURE": PRESSURE,
 }
 SI = {"LENGTH": "meter", "FORCE": "newton", "ANGLE": "radians", "MASS": "kg", "TIME": "second"}
 
@@ -63,8 +68,11 @@ def factor(unit: str, words: Mapping[str, str]) -> float:
     Parameters
     ----------
     unit : unit of the table, e.g. "N/m"
-    words : the file's word per kind, e.g. {"LENGTH": "mm"}; a kind that is missing is SI
+    words : the file's word per kind, e.g. {"LENGTH": "mm"}; a kind that is missing is SI, and a pressure without its own
+        word is the file's force per area
     """
+    if unit == "Pa" and "PRESSURE" in words:
+        return PRESSURE[words["PRESSURE"].lower()]
     result = 1.0
     for kind, power in PRODUCTS.get(unit, ()):
         result *= KINDS[kind][words.get(kind, SI[kind]).lower()] ** power

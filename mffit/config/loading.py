@@ -10,6 +10,7 @@ from typing import Any
 
 from pydantic import ValidationError
 
+from mffit.config.globs import with_globs_expanded
 from mffit.config.locate import lines_of_keys
 from mffit.config.models import Config
 from mffit.config.problems import first_problem
@@ -73,6 +74,7 @@ def _syntax_error(error: tomllib.TOMLDecodeError, path: Path, text: str) -> Inpu
 
 
 def _checked(content: Mapping[str, Any], path: Path | None, folder: Path, lines: dict[str, int]) -> Config:
+    content, lines = with_globs_expanded(content, path, folder, lines)
     try:
         config = Config.model_validate(dict(content))
     except ValidationError as error:

@@ -73,11 +73,17 @@ class PathTable(Table):
     L_D: q.Length  #: inner edge of the path to the outer sidewall [m]
 
 
+ALSO_CALLED = {"calspan": "sae"}
+"""Other names of axes: Calspan's flat belt, as the tyre test consortium publishes it, reports in SAE axes."""
+
+
 class RigTable(Table):
     """[rig]: the machine, its axes and how well it is known."""
 
     type: Literal["rotating-disk", "flat-track"] = "rotating-disk"
-    axes: Literal["iso", "sae", "adapted-sae"] = "iso"
+    axes: Annotated[
+        Literal["iso", "sae", "adapted-sae"], BeforeValidator(lambda name: ALSO_CALLED.get(name, name))
+    ] = "iso"
     force_frame: Literal["W", "C"] = "W"
     path_centre: Literal["left", "right"] = "left"
     path_radius: q.PathRadius | None = None  #: [m]
@@ -202,13 +208,16 @@ def _heading(given: Any) -> Any:
     return {"column": given} if isinstance(given, str) else given
 
 
+Columns = dict[str, Annotated[Column, BeforeValidator(_heading)]]
+
+
 class SweepTable(Table):
     """[[sweep]]: one file."""
 
     file: str
     direction: Literal["forward", "backward"] | None = None  #: None: the file's column, else forward
     mount: Literal["normal", "flipped"] = "normal"
-    columns: dict[str, Annotated[Column, BeforeValidator(_heading)]] = Field(default_factory=dict)
+    columns: Columns = Field(default_factory=dict)
 
 
 def _list_of_tables(given: Any) -> Any:
@@ -225,6 +234,7 @@ class Config(Table):
     camber_stiffness: CamberStiffnessTable = CamberStiffnessTable()
     spin: SpinTable = SpinTable()
     model: ModelTable = ModelTable()
+    columns: Columns = Field(default_factory=dict)  #: of all files; a sweep's own come before them
     sweep: Annotated[tuple[SweepTable, ...], BeforeValidator(_list_of_tables)]
 
     _path: Path | None = PrivateAttr(default=None)

@@ -30,7 +30,7 @@ def resolved(config: Config, folder: str | Path) -> dict[str, Any]:
         sweep["file"] = _moved(sweep["file"], config.folder, Path(folder))
     if "base" in content["tyre"]:
         content["tyre"]["base"] = _moved(content["tyre"]["base"], config.folder, Path(folder))
-    return {name: value for name, value in content.items() if value != []}
+    return {name: value for name, value in content.items() if value not in ([], {})}
 
 
 def _plain(sweep: dict[str, Any]) -> dict[str, Any]:

@@ -15,6 +15,7 @@ from mffit.fit.ranges import NAMES, plausible_ranges, tested_ranges
 from mffit.fit.road import Road, inside, road_grid, weights
 from mffit.fit.start import camber_stiffness_terms
 from mffit.points import Points, main_pressure
+from mffit.scatter import rms
 from tir import Tyre
 
 RADII = (100.0, 30.0, 10.0)
@@ -155,15 +156,12 @@ class _Judge(NamedTuple):
 
 
 def _misfit(difference: np.ndarray, road: Road, weight: np.ndarray, within: np.ndarray) -> Misfit:
-    def rms(used: np.ndarray) -> float:
-        return float(np.sqrt(np.mean(difference[used] ** 2))) if np.any(used) else 0.0
-
     return Misfit(
-        rms=rms(within),
+        rms=rms(difference[within]),
         weighted=float(np.sqrt(np.average(difference[within] ** 2, weights=weight[within]))),
         largest=float(np.max(np.abs(difference[within]))),
-        lean_30=rms(within & (np.abs(road.gamma) < np.radians(30.5))),
-        beyond=rms(~within),
+        lean_30=rms(difference[within & (np.abs(road.gamma) < np.radians(30.5))]),
+        beyond=rms(difference[~within]) if np.any(~within) else 0.0,
     )
 
 

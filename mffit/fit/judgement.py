@@ -17,6 +17,8 @@ from mffit.points import Points
 from mffit.points.mistakes import MISTAKES, Mistake
 from mffit.quantities import CHANNELS as WORDS
 from mffit.rig import Simulation
+from mffit.scatter import rms as root_mean_square
+from mffit.scatter import robust
 
 FALSE_ALARM = 0.01
 """Probability that chance alone makes any sweep of a sound campaign significant (Bonferroni)."""
@@ -143,8 +145,8 @@ def error_of(name: str, prediction: Prediction, size: float) -> Error:
     kept = np.argsort(np.abs(error) / own)[: max(1, int((1.0 - TRIMMED) * len(error)))]
     e, V = error[kept], covariance[np.ix_(kept, kept)]
     total = float(e @ np.linalg.solve(V, e))
-    rms = float(np.sqrt(np.mean(e**2)))
-    open_ = float(np.sqrt(np.mean(own[kept] ** 2)))
+    rms = root_mean_square(e)
+    open_ = root_mean_square(own[kept])
     return Error(
         channel=name,
         rms=rms,
@@ -159,7 +161,7 @@ def _usual_ratios(errors: list[Error]) -> float:
     """The largest ratio that the scatter among the sweeps themselves explains: a model misses each of them differently."""
     ratio = np.log([max(e.ratio, 1e-9) for e in errors])
     middle = float(np.median(ratio))
-    scatter = 1.4826 * float(np.median(np.abs(ratio - middle)))
+    scatter = robust(ratio, middle)
     return float(np.exp(middle + norm.isf(FALSE_ALARM / len(errors)) * scatter))
 
 
@@ -244,14 +246,10 @@ def _explains(mistake: Mistake, declared, after, part: Points, signs) -> bool:
         measured = getattr(changed, name)
         measured = measured[np.isfinite(measured)]
         predicted = measured + prediction.error
-        smallest = min(_rms(measured), _rms(predicted))
+        smallest = min(root_mean_square(measured), root_mean_square(predicted))
         if error.rms > EXPLAINED * before.rms or error.rms > MATCHED * smallest:
             return False
     return True
-
-
-def _rms(x: np.ndarray) -> float:
-    return float(np.sqrt(np.mean(x**2)))
 
 
 def _doubts(

@@ -15,6 +15,7 @@ from mffit.fit.posterior import Posterior
 from mffit.fit.staged import Fitted
 from mffit.fit.stages import StageRecord
 from mffit.rig import Simulation
+from mffit.scatter import rms
 from tir import Tyre
 
 
@@ -80,7 +81,7 @@ def agreement(model: np.ndarray, measured: np.ndarray) -> Agreement:
     difference, measured = (model - measured)[used], measured[used]
     if not len(measured):
         return Agreement(float("nan"), float("nan"), float("nan"), float("nan"), 0)
-    rmse = float(np.sqrt(np.mean(difference**2)))
+    rmse = rms(difference)
     spread = float(np.ptp(measured))
     variance = float(np.var(measured))
     return Agreement(

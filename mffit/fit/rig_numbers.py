@@ -31,9 +31,8 @@ def rig_numbers(config: Any, measured: Any) -> tuple[Number, ...]:
         return ()
     stiffness = abs(measured.C_alpha.value) if measured.C_alpha else FIRST_GUESS * measured.F_phit_load
     u_alpha = math.degrees(rig.u_slip_alignment_N / max(stiffness, 1.0))
-    if (
-        measured.alpha_M is not None
-    ):  # a zero that lies beyond what was declared shows that the declaration was too tight
+    if measured.misaligned and measured.alpha_M is not None:
+        # A zero that lies beyond what was declared shows that the declaration was too tight.
         u_alpha = max(u_alpha, math.degrees(abs(measured.alpha_M.value)))
     rows = [
         ("F0_N", 0.0, rig.u_loadcell_offset_N),

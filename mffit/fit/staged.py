@@ -19,6 +19,7 @@ from mffit.fit.stages import STAGES, WITH_CAMBER, Stage, StageRecord
 from mffit.least_squares import Number, Solution, solve
 from mffit.points import Points, main_pressure
 from mffit.rig import FAULT_NAMES, Simulation
+from mffit.scatter import rms
 from tir.parameters import BY_NAME
 
 ENOUGH_FOR_A_STAGE = 600
@@ -266,12 +267,7 @@ def _thinned(problem: Problem) -> Problem:
 
 def _record(problem: Problem, name: str, title: str, parameters: Sequence[str]) -> StageRecord:
     out, points = problem.simulation.readings(problem.points), problem.points
-    return StageRecord(name, title, tuple(parameters), _rms(out.Fy - points.Fy), _rms(out.Mz - points.Mz))
-
-
-def _rms(x: np.ndarray) -> float:
-    x = x[np.isfinite(x)]
-    return float(np.sqrt(np.mean(x**2))) if len(x) else float("nan")
+    return StageRecord(name, title, tuple(parameters), rms(out.Fy - points.Fy), rms(out.Mz - points.Mz))
 
 
 def _enough_points(points: Points, free: list[str]) -> None:

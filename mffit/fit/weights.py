@@ -10,6 +10,8 @@ from __future__ import annotations
 import numpy as np
 from scipy.stats import norm
 
+from mffit.scatter import robust
+
 OUTLIER = 4.0
 """Residuals beyond this many robust standard deviations lose weight (Huber)."""
 
@@ -25,7 +27,7 @@ def stated_or_nominal(u: np.ndarray, values: np.ndarray) -> np.ndarray:
 def robust_scale(residual: np.ndarray) -> float:
     """Standard deviation of the residuals' core, from the median absolute value."""
     residual = residual[residual != 0.0]
-    return float(1.4826 * np.median(np.abs(residual))) if len(residual) else 1.0
+    return robust(residual) if len(residual) else 1.0
 
 
 def huber(residual: np.ndarray, scale: float) -> np.ndarray:

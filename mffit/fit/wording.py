@@ -11,6 +11,7 @@ from mffit.fit.result import Coefficient
 from mffit.fit.staged import Fitted
 from mffit.points import Points
 from mffit.rig import Readings
+from mffit.scatter import rms
 from tir.parameters import TABLE, Parameter
 
 LONGEST = 66
@@ -182,10 +183,7 @@ def warnings(fitted: Fitted) -> list[str]:
 def _carriers(points: Points, z: np.ndarray) -> str:
     """The sweeps that carry a misfit (n,), in words."""
     known = np.isfinite(z)
-    total = float(np.sqrt(np.mean(z[known] ** 2)))
-    own = {
-        k: float(np.sqrt(np.mean(z[known & (points.sweep == k)] ** 2)))
-        for k in np.unique(points.sweep[known])
-    }
+    total = rms(z)
+    own = {k: rms(z[points.sweep == k]) for k in np.unique(points.sweep[known])}
     worst = [k for k in sorted(own, key=lambda k: -own[k]) if own[k] > CARRIES * total][:3]
     return f", most of it in {', '.join(points.sweep_names[k] for k in worst)}" if worst else ""

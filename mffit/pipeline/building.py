@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -25,6 +25,8 @@ from mffit.pipeline.measuring import epsilon_gamma, measure, without_play
 from mffit.pipeline.members import write_members
 from mffit.pipeline.provenance import annotated
 from mffit.points import Points
+from mffit.points.stretch import StretchNote
+from mffit.recordings.stretch_table import stretch_table
 from mffit.results import BuildResult, as_json
 from mffit.rig import NO_FAULTS
 from tir import Tyre
@@ -64,7 +66,8 @@ def build(
     began = time.perf_counter()
     config = configuration.load(config)
     progress("reading sweeps")
-    points, warnings = ingestion.load(config)
+    reading = ingestion.read(config)
+    points, warnings = reading.points, reading.warnings
     base = read_base(config)
     progress("measuring the camber reduction factor")
     parts, measured = measure(config, points, base)
@@ -110,7 +113,7 @@ def build(
     )
     if out is not None:
         progress("writing the report")
-        write_build(result, Path(out))
+        write_build(result, Path(out), reading.stretches)
     return result
 
 
@@ -156,8 +159,8 @@ def finite_spin_bias(config: Config, points: Points, fitted: FitResult, base: Ty
     return None if found is None else found.value - float(fitted.simulation.values["PECP1"])
 
 
-def write_build(result: BuildResult, out: Path) -> None:
-    """Write every output of a build, or nothing."""
+def write_build(result: BuildResult, out: Path, stretches: Sequence[StretchNote] = ()) -> None:
+    """Write every output of a build, or nothing; ``stretches`` of recordings go to ``stretches.csv``."""
     from mffit import report
 
     siblings = [f"{result.config.tyre.name}-{use}.tir" for use in USES]
@@ -166,6 +169,8 @@ def write_build(result: BuildResult, out: Path) -> None:
             result.tyres[use].write(folder / name)
         as_json.write(folder / "result.json", as_json.build(result))
         points_table(result).to_csv(folder / "points.csv", index=False)
+        if stretches:
+            stretch_table(stretches).to_csv(folder / "stretches.csv", index=False)
         resolved = configuration.resolved(result.config, folder=out)
         (folder / "resolved.toml").write_bytes(tomli_w.dumps(resolved).encode())
         write_members(result, folder)
@@ -183,4 +188,18 @@ def points_table(result: BuildResult) -> pd.DataFrame:
     table["paired"] = parts.paired
     table["outlier"] = fitting.marks(fit.outliers, len(table))
     table["doubtful"] = np.isin(np.arange(len(table)), [row for doubt in fit.doubts for row in doubt.index])
+    for name, values in origin(result.points).items():
+        if name not in table:  # a heading of the user's own stays
+            table[name] = values
     return table
+
+
+def origin(points: Points) -> dict[str, np.ndarray]:
+    """Where every point comes from, by the columns of points.csv."""
+    return {
+        "file": np.array([Path(name).name for name in points.files], dtype=object)[points.file],
+        "line": points.line,
+        "sweep": np.array(points.sweep_names, dtype=object)[points.sweep],
+        "direction": np.where(points.direction > 0, "forward", "backward"),
+        "mount": np.where(points.mount > 0, "normal", "flipped"),
+    }

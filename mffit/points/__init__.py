@@ -2,7 +2,7 @@
 
 from mffit.points import levels
 from mffit.points.levels import main_pressure
-from mffit.points.loading import load, load_table
+from mffit.points.loading import load, load_table, read
 from mffit.points.mean import mean_and_error
 from mffit.points.plausibility import check_physics
 from mffit.points.points import Points, concatenate, make_points
@@ -17,4 +17,5 @@ __all__ = [
     "main_pressure",
     "make_points",
     "mean_and_error",
+    "read",
 ]

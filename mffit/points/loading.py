@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 
@@ -11,50 +13,77 @@ from mffit import sweeps as files
 from mffit.config import Config, path_curvature
 from mffit.errors import InputError
 from mffit.points import levels
+from mffit.points.lag import common
 from mffit.points.plausibility import check_physics as check
 from mffit.points.points import Points, concatenate
-from mffit.points.reduction import reduce
+from mffit.points.reduction import Reduced, reduce
 from mffit.points.requirements import check_disc_programme
+from mffit.points.stretch import StretchNote
 from tir.conventions import FLIPPED
 
 SIDES = ("left", "right")
+PROVEN = 2.0
+"""Standard uncertainties by which a lag differs from none."""
 STAND_IN = {"p": 250e3, "V": 1.0}
 """Pressure [Pa] and speed [m/s] of a bare table that holds none; alignment depends on neither."""
+
+
+class Reading(NamedTuple):
+    """The points of a configuration, and how they came about."""
+
+    points: Points
+    warnings: tuple[str, ...]
+    stretches: tuple[StretchNote, ...]  #: of all recordings
 
 
 def load(
     config: Config, *, check_physics: bool = True, continuous: bool = False
 ) -> tuple[Points, tuple[str, ...]]:
+    """Points and warnings of :func:`read`."""
+    found = read(config, check_physics=check_physics, continuous=continuous)
+    return found.points, found.warnings
+
+
+def read(
+    config: Config, *, check_physics: bool = True, continuous: bool = False, may_be_empty: bool = False
+) -> Reading:
     """Read the sweeps of a configuration as points in ISO-W.
 
     Parameters
     ----------
     config : the checked ``tyre.toml``
     check_physics : test the declared axes, frame and path centre, and what a disc needs, against the data
-    continuous : keep the samples of sweeps that never rest, marked ``continuous``
+    continuous : keep the samples of sweeps that never rest, marked ``continuous``, with the angle as read
+    may_be_empty : recordings without a single point are no error
 
     Returns
     -------
-    points, warnings
+    Reading
+        On a straight path the means along continuous sweeps are points like any others unless ``continuous`` asks for
+        them as they are: there the lag behind the sideslip angle is measured and taken off the angle. On a disc, whose
+        parts are taken from pairs of steady points, they are left out.
 
     Raises
     ------
     InputError
-        On files that cannot be read, data that contradict the declaration, and without any steady point.
+        On files that cannot be read, data that contradict the declaration, and without any point.
     """
     found = files.load(config)
     phi_t = path_curvature(config.rig)
     reduced = [reduce(sweep, phi_t) for sweep in found.sweeps]
     points = concatenate([part.points for part in reduced if len(part.points)] or [reduced[0].points])
     warnings = [*found.warnings, *(sentence for part in reduced for sentence in part.warnings)]
-    steady = points.select(~points.continuous)
+    straight = config.rig.type == "flat-track"
+    if straight and not continuous and np.any(points.continuous):
+        lag = common([one for part in reduced for one in part.lags])
+        points = settled_sweeps(points, lag)
+        warnings += _of_motion(reduced, lag)
+    steady = points if continuous and straight else points.select(~points.continuous)
+    notes = tuple(note for part in reduced for note in part.stretches)
     if not len(steady):
-        raise InputError(
-            "no sweep rests long enough for a steady point; hold every set-point for some seconds, "
-            "or leave out "
-            "column time_s to take each row for a finished point",
-            file=config.path,
-        )
+        if may_be_empty:
+            return Reading(steady, (*warnings, _nothing(reduced)), notes)
+        raise InputError(_nothing(reduced), file=config.path)
     if not continuous:
         warnings += _left_out(points)
     if check_physics:
@@ -62,7 +91,60 @@ def load(
         if config.rig.type == "rotating-disk":
             check_disc_programme(steady, config)
     warnings += _thin(steady, config)
-    return points if continuous else steady, tuple(warnings)
+    kept = points if continuous else steady
+    return Reading(kept, tuple(warnings), notes)
+
+
+def _nothing(reduced: Sequence[Reduced]) -> str:
+    """Why there is no point at all."""
+    reasons: dict[str, float] = {}
+    for note in (note for part in reduced for note in part.stretches if note.dropped):
+        reasons[note.dropped] = reasons.get(note.dropped, 0.0) + note.end_s - note.begin_s
+    most = f" (most of the time: {max(reasons, key=lambda reason: reasons[reason])})" if reasons else ""
+    return (
+        f"no sweep rests long enough for a steady point{most}; hold every set-point for some seconds, or leave out "
+        "column time_s to take each row for a finished point"
+    )
+
+
+def settled_sweeps(points: Points, lag: tuple[float, float]) -> Points:
+    """Continuous sweeps as points: the angle is the one that the force answers to.
+
+    Parameters
+    ----------
+    points : with ``continuous`` samples, of which every sweep has a name of its own
+    lag : rolled distance by which the force lags, and its standard uncertainty [m]; taken off where it is proven
+    """
+    value, u = lag
+    alpha, taken = points.alpha.copy(), np.zeros(len(points))
+    if np.isfinite(value) and abs(value) > PROVEN * u:
+        for k in np.unique(points.sweep[points.continuous]):
+            rows = np.flatnonzero(points.continuous & (points.sweep == k))
+            if len(rows) < 3:
+                continue
+            time, V = points.time[rows], points.V[rows]
+            rolled = np.r_[0.0, np.cumsum(np.diff(time) * 0.5 * (V[1:] + V[:-1]))]
+            taken[rows] = value * np.gradient(points.alpha[rows], rolled)
+    table = points.table.assign(alpha_lag_deg=np.degrees(taken)) if np.any(taken) else points.table
+    return points.replace(alpha=alpha - taken, continuous=False, time=np.nan, table=table)
+
+
+def _of_motion(reduced: Sequence[Reduced], lag: tuple[float, float]) -> list[str]:
+    """What motion did to the sweeps, in a sentence."""
+    known = [one for part in reduced for one in part.lags if np.isfinite(one.lag)]
+    if not known:
+        return [
+            "no sweep goes through zero side force both ways, so the lag of the force behind the sideslip angle is "
+            "not known and not taken off; sweep up and down"
+        ]
+    value, u = lag
+    proven = abs(value) > PROVEN * u
+    said = "taken off the angle" if proven else "not proven and not taken off"
+    hysteresis = float(np.sqrt(np.mean([one.hysteresis**2 for one in known])))
+    return [
+        f"the side force of {len(known)} continuous sweeps lags {1e3 * value:.0f} +- {1e3 * u:.0f} mm of rolling (k = 1) behind "
+        f"the sideslip angle: {said}; what is left of the difference between the ways up and down is +-{hysteresis:.0f} N"
+    ]
 
 
 def load_table(path: str | Path, *, axes: str | None = None, path_centre: str | None = None) -> Points:

@@ -163,7 +163,7 @@ def _alternatives(points: Points, config: Config) -> list[Alternative]:
     """Every declaration that differs in one thing."""
     rig = config.rig
     others = [
-        Alternative(f'axes = "{axes}"', "rig.axes", partial(_other_axes, points, rig.axes, axes))
+        Alternative(f'axes = "{axes}"', "rig.axes", partial(under_axes, points, rig.axes, axes))
         for axes in FLIPPED
         if axes != rig.axes
     ]
@@ -203,7 +203,7 @@ def _pairs(points: Points, config: Config) -> list[Alternative]:
     for axes in FLIPPED:
         if axes == rig.axes:
             continue
-        turned = _other_axes(points, rig.axes, axes)
+        turned = under_axes(points, rig.axes, axes)
         for other in _alternatives(turned, config):
             if other.key in ("rig.path_centre", "rig.force_frame"):
                 pairs.append(Alternative(f'axes = "{axes}" and {other.remedy}', "rig.axes", other.points))
@@ -217,7 +217,7 @@ def _other_centre(points: Points, config: Config) -> Alternative:
     )
 
 
-def _other_axes(points: Points, declared: str, other: str) -> Points:
+def under_axes(points: Points, declared: str, other: str) -> Points:
     """The points, had ``other`` axes been declared."""
     changed = FLIPPED[declared] ^ FLIPPED[other]
     signs = {name: -1.0 if name in changed else 1.0 for name in ("alpha", "Fy", "Mz")}

@@ -6,6 +6,7 @@ decides how much of a stretch is transient, and whether it ever came to rest.
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Sequence
 from typing import NamedTuple
 
@@ -13,6 +14,7 @@ import numpy as np
 from scipy.ndimage import uniform_filter1d
 
 from mffit.points.mean import mean_and_error
+from mffit.points.stretch import MOVE, SWEEP, Stretch
 
 STEP_ANGLE = np.radians(0.15)
 """Change of an angle within a stretch [rad]; a logger's noise is below, a set-point's step above."""
@@ -24,7 +26,14 @@ FEWEST = 8  # samples of it
 TRANSIENT_ROLL = 2.0
 """Rolling distance [m] that is always dropped behind a change: three to ten relaxation lengths."""
 HOLDING_SHARE = 0.5
-"""A series that rests for a smaller part of its time is a continuous sweep."""
+"""A condition that rests for a greater part of its time is a staircase of plateaus with moves between them."""
+SMALLEST_SWEEP = np.radians(3.0)
+"""Range of an angle [rad] that makes its motion a sweep."""
+GAP_STEPS, GAP = 5.0, 0.1
+"""A gap in time: this many usual steps and this many seconds."""
+SAMPLED = 20_000  # samples of a long recording that tell what is usual
+SHARP = 0.1  # s, over which a setting is averaged to see where its change begins and ends
+ANGLES, CONDITIONS = ("alpha", "gamma"), ("Fz", "p", "V")
 BLOCKS = 10
 LEADING_BLOCK = 3.5
 """A leading block this many of its standard errors away from the second half belongs to the transient."""
@@ -43,54 +52,208 @@ class Settings(NamedTuple):
     V: np.ndarray  #: [m/s]
 
 
-class Stretch(NamedTuple):
-    """Samples ``begin`` to ``end`` (excluded); ``dropped`` says why they give no point, empty if they do."""
-
-    begin: int
-    end: int
-    dropped: str = ""
-
-
-def stretches(settings: Settings, point: np.ndarray | None = None) -> list[Stretch]:
-    """The stretches at constant settings, in time order, transients included; empty for a continuous sweep.
+def stretches(settings: Settings, point: np.ndarray | None = None, cuts: Sequence[int] = ()) -> list[Stretch]:
+    """The stretches of a series in time order, transients included.
 
     Parameters
     ----------
     settings : of one series
     point : (n,) label of the point of every sample, "" between points; None finds the stretches from the
         settings
+    cuts : samples before which something else begins, beside the gaps in time
+
+    Returns
+    -------
+    list of Stretch
+        Plateaus, where all settings rest; sweeps, where one angle moves through its range and all else rests; and, with a
+        reason, what is neither. Between plateaus the angle moves to the next one: that is no sweep.
     """
     n = len(settings.time)
     if point is not None:
         edges = np.flatnonzero(point[1:] != point[:-1]) + 1
-        resting = point != ""
-    else:
-        resting = ~moving(settings)
-        edges = np.flatnonzero(np.diff(resting.astype(int))) + 1
-    bounds = zip(np.r_[0, edges], np.r_[edges, n], strict=True)
-    found = [Stretch(int(begin), int(end)) for begin, end in bounds if resting[begin]]
-    if point is not None:
-        return found
-    found = [stretch for stretch in found if not _creeps(settings, stretch)]
-    held = sum(settings.time[s.end - 1] - settings.time[s.begin] for s in found)
-    return found if held >= HOLDING_SHARE * np.ptp(settings.time) else []
+        bounds = zip(np.r_[0, edges], np.r_[edges, n], strict=True)
+        return [Stretch(int(begin), int(end)) for begin, end in bounds if point[begin] != ""]
+    scale = scale_of(settings)
+    edges = np.unique(np.r_[0, gaps(settings.time), np.asarray(cuts, dtype=int), n])
+    found: list[Stretch] = []
+    for begin, end in itertools.pairwise(edges.tolist()):
+        piece = Settings(*(x[begin:end] for x in settings))
+        found += [
+            s._replace(begin=s.begin + int(begin), end=s.end + int(begin)) for s in _of_piece(piece, scale)
+        ]
+    return found
+
+
+def gaps(time: np.ndarray) -> np.ndarray:
+    """Samples behind a gap in time."""
+    steps = np.diff(time)
+    if not len(steps):
+        return np.zeros(0, dtype=int)
+    return np.flatnonzero(steps > max(GAP_STEPS * float(np.median(steps)), GAP)) + 1
+
+
+def _of_piece(settings: Settings, scale: Scale) -> list[Stretch]:
+    """The stretches of a piece without gaps."""
+    if len(settings.time) < 2:
+        return [Stretch(0, len(settings.time), "only one sample", MOVE)]
+    masks = moves(settings, scale)
+    changing = masks.Fz | masks.p | masks.V
+    found = []
+    steady = _reaching(settings, scale, runs(~changing))
+    changing = np.ones(len(settings.time), dtype=bool)
+    for begin, end in steady:
+        changing[begin:end] = False
+    for begin, end in steady:
+        part = Settings(*(x[begin:end] for x in settings))
+        inside = _of_condition(part, masks.alpha[begin:end], masks.gamma[begin:end])
+        found += [s._replace(begin=s.begin + begin, end=s.end + begin) for s in inside]
+    found += [Stretch(begin, end, "load, pressure or speed changes", MOVE) for begin, end in runs(changing)]
+    return sorted(found)
+
+
+def _reaching(settings: Settings, scale: Scale, found: list[tuple[int, int]]) -> list[tuple[int, int]]:
+    """Runs of one condition taken up to where it really begins and ends: a change shows ``LAG`` to either side of it."""
+    n = len(settings.time)
+    lag = _samples(settings, LAG)
+    out = []
+    smooth = {
+        name: uniform_filter1d(getattr(settings, name), _samples(settings, SHARP), mode="nearest")
+        for name in CONDITIONS
+    }
+    for k, (begin, end) in enumerate(found):
+        least = found[k - 1][1] if k else 0
+        most = found[k + 1][0] if k + 1 < len(found) else n
+        least, most = max(least, begin - lag), min(most, end + lag)
+        inside = np.ones(most - least, dtype=bool)
+        for name, x in smooth.items():
+            for a, b, c, d in (
+                (least, begin, begin, min(begin + lag, end)),
+                (end, most, max(end - lag, begin), end),
+            ):
+                step = STEP_SHARE * max(getattr(scale, name), abs(float(np.median(x[c:d]))))
+                inside[a - least : b - least] &= np.abs(x[a:b] - np.median(x[c:d])) <= step
+        before, behind = inside[: begin - least][::-1], inside[end - least :]
+        begin -= len(before) if before.all() else int(np.argmin(before))
+        end += len(behind) if behind.all() else int(np.argmin(behind))
+        out.append((begin, end))
+    return out
+
+
+def _samples(settings: Settings, seconds: float) -> int:
+    """How many samples that is, at least one."""
+    n = len(settings.time)
+    return int(np.clip(round(seconds / max(np.median(np.diff(settings.time)), 1e-9)), 1, max(n - 1, 1)))
+
+
+def _of_condition(settings: Settings, alpha_moves: np.ndarray, gamma_moves: np.ndarray) -> list[Stretch]:
+    """The stretches of a piece of constant load, pressure and speed."""
+    resting = ~alpha_moves & ~gamma_moves
+    rests = [Stretch(begin, end) for begin, end in runs(resting)]
+    still = [rest for rest in rests if not _creeps(settings, rest)]
+    held = sum(settings.time[s.end - 1] - settings.time[s.begin] for s in still)
+    staircase = held >= HOLDING_SHARE * np.ptp(settings.time)
+    long = [s for s in still if settings.time[s.end - 1] - settings.time[s.begin] >= SHORTEST]
+    covered = np.zeros(len(settings.time), dtype=bool)
+    for rest in still if staircase else long:
+        covered[rest.begin : rest.end] = True
+    found = list(still if staircase else long)
+    for begin, end in runs(~covered):
+        found += _swept(settings, gamma_moves, begin, end, staircase)
+    return found
+
+
+def _swept(
+    settings: Settings, gamma_moves: np.ndarray, begin: int, end: int, staircase: bool
+) -> list[Stretch]:
+    """What a moving piece is: sweeps of one angle, or the way between plateaus."""
+    found: list[Stretch] = []
+    for values, held in ((settings.alpha, ~gamma_moves), (settings.gamma, None)):
+        if held is None:
+            whole = (
+                not any(s.kind == SWEEP for s in found) and np.ptp(settings.alpha[begin:end]) < SMALLEST_SWEEP
+            )
+            parts = [(begin, end)] if whole else []
+        else:
+            parts = [(begin + b, begin + e) for b, e in runs(held[begin:end])]
+        for b, e in parts:
+            x = values[b:e]
+            enough = settings.time[e - 1] - settings.time[b] >= SHORTEST and np.ptp(x) >= SMALLEST_SWEEP
+            if enough and (not staircase or _returns(x)):
+                found.append(Stretch(b, e, "", SWEEP))
+    taken = np.zeros(end - begin, dtype=bool)
+    for s in found:
+        taken[s.begin - begin : s.end - begin] = True
+    found += [Stretch(begin + b, begin + e, "moves between set-points", MOVE) for b, e in runs(~taken)]
+    return found
+
+
+def _returns(x: np.ndarray) -> bool:
+    """Whether an angle goes a good part of its way back."""
+    far = max(x.max() - max(x[0], x[-1]), min(x[0], x[-1]) - x.min())
+    return bool(far > 0.3 * np.ptp(x))
+
+
+def runs(mask: np.ndarray) -> list[tuple[int, int]]:
+    """Begin and end (excluded) of every run of a mask (n,)."""
+    edges = np.flatnonzero(np.diff(np.r_[False, mask, False].astype(np.int8)))
+    return [(int(begin), int(end)) for begin, end in zip(edges[::2], edges[1::2], strict=True)]
+
+
+class Scale(NamedTuple):
+    """Usual size of each setting in a recording."""
+
+    alpha: float
+    gamma: float
+    Fz: float
+    p: float
+    V: float
+
+
+def scale_of(settings: Settings) -> Scale:
+    """Median size of each setting, of a sample of a long recording."""
+    some = max(len(settings.time) // SAMPLED, 1)
+    return Scale(*(float(np.median(np.abs(getattr(settings, name)[::some]))) for name in Scale._fields))
+
+
+class Moves(NamedTuple):
+    """Masks (n,) of the samples within ``LAG`` of a change of each setting."""
+
+    alpha: np.ndarray
+    gamma: np.ndarray
+    Fz: np.ndarray
+    p: np.ndarray
+    V: np.ndarray
+
+
+def moves(settings: Settings, scale: Scale | None = None) -> Moves:
+    """Where each setting changes.
+
+    Parameters
+    ----------
+    settings : of a series without gaps
+    scale : usual size of each setting in the whole recording; of this series if None
+    """
+    n = len(settings.time)
+    scale = scale or scale_of(settings)
+    lag = _samples(settings, LAG)
+    masks = {}
+    for name in Moves._fields:
+        values = getattr(settings, name)
+        usual = max(getattr(scale, name), float(np.median(np.abs(values))))
+        step = STEP_ANGLE if name in ANGLES else STEP_SHARE * usual
+        mask = np.zeros(n, dtype=bool)
+        if np.ptp(values) > 0.0:
+            smooth = uniform_filter1d(values, lag, mode="nearest")
+            change = np.abs(smooth[lag:] - smooth[:-lag]) > max(step, 6.0 * _noise(values) / np.sqrt(lag))
+            mask[lag:] |= change
+            mask[:-lag] |= change
+        masks[name] = mask
+    return Moves(**masks)
 
 
 def moving(settings: Settings) -> np.ndarray:
     """Mask (n,) of the samples within ``LAG`` of a change of a setting."""
-    n = len(settings.time)
-    lag = int(np.clip(round(LAG / max(np.median(np.diff(settings.time)), 1e-9)), 1, max(n - 1, 1)))
-    mask = np.zeros(n, dtype=bool)
-    for values, step in (
-        (settings.alpha, STEP_ANGLE),
-        (settings.gamma, STEP_ANGLE),
-        *((x, STEP_SHARE * float(np.median(np.abs(x)))) for x in (settings.Fz, settings.p, settings.V)),
-    ):
-        smooth = uniform_filter1d(values, lag, mode="nearest")
-        change = np.abs(smooth[lag:] - smooth[:-lag]) > max(step, 6.0 * _noise(values) / np.sqrt(lag))
-        mask[lag:] |= change
-        mask[:-lag] |= change
-    return mask
+    return np.logical_or.reduce(moves(settings))
 
 
 def _noise(values: np.ndarray) -> float:

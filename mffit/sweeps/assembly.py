@@ -11,7 +11,7 @@ from mffit.errors import InputError
 from mffit.sweeps.columns import Columns
 from mffit.sweeps.formats import stem
 from mffit.sweeps.sweep import Sweep
-from tir.conventions import to_iso
+from tir.conventions import FLIPPED, to_iso
 
 SMALLEST_LOAD = 20.0
 """Loads that are all below this [N] are taken for kilonewtons."""
@@ -43,7 +43,8 @@ def _sweep(columns: Columns, given: Circumstances) -> Sweep:
     table, n = columns.table, len(columns.raw)
 
     def column(name: str, missing: float = np.nan) -> np.ndarray:
-        return table[name].to_numpy(dtype=float) if name in table else np.full(n, missing)
+        # A channel that was not measured takes no memory, however long the recording.
+        return table[name].to_numpy(dtype=float) if name in table else np.broadcast_to(missing, (n,))
 
     def iso(channel: str, name: str) -> np.ndarray:
         return to_iso(given.axes, channel, column(name)) + 0.0  # turns -0.0 into 0.0
@@ -53,7 +54,7 @@ def _sweep(columns: Columns, given: Circumstances) -> Sweep:
         file=given.file,
         alpha=np.radians(iso("alpha", "alpha_deg")),
         gamma=np.radians(iso("gamma", "gamma_deg")),
-        Fz=np.abs(column("Fz_N")),
+        Fz=usual_sign(column("Fz_N")) * column("Fz_N"),
         Fy=iso("Fy", "Fy_N"),
         Mz=iso("Mz", "Mz_Nm"),
         Mx=iso("Mx", "Mx_Nm"),
@@ -65,11 +66,11 @@ def _sweep(columns: Columns, given: Circumstances) -> Sweep:
         u_Fy=column("u_Fy_N"),
         u_Mz=column("u_Mz_Nm"),
         iteration=column("iteration"),
-        direction=np.full(n, given.direction) if columns.direction is None else columns.direction,
+        direction=np.broadcast_to(given.direction, (n,)) if columns.direction is None else columns.direction,
         mount=given.mount,
         time=column("time_s"),
         point=table["point"].astype(str).to_numpy() if "point" in table else None,
-        line=np.array(columns.raw.lines),
+        line=np.asarray(columns.raw.lines),
         table=table,
     )
 
@@ -83,29 +84,40 @@ def rows_of(sweep: Sweep, rows: np.ndarray, name: str) -> Sweep:
     return replace(sweep, name=name, table=sweep.table.iloc[rows].reset_index(drop=True), **arrays)
 
 
+def usual_sign(Fz: np.ndarray) -> float:
+    """Sign of most loads (n,): 1.0 or -1.0."""
+    return -1.0 if np.sum(Fz < 0.0) > np.sum(Fz > 0.0) else 1.0
+
+
 def check_loads(columns: Columns, axes: str) -> None:
-    """Refuse loads that are zero, of mixed sign, of the wrong sign for the axes, or kilonewtons."""
+    """Refuse loads of the wrong sign for the axes or in kilonewtons; in a table of points also zero and mixed ones.
+
+    A recording may begin with the tyre off the belt, where the load is noise about zero.
+    """
     Fz = columns.table["Fz_N"].to_numpy(dtype=float)
 
     def refuse(row: int, sentence: str) -> InputError:
         return InputError(sentence, file=columns.raw.path, line=columns.line(row), column="Fz_N")
 
-    if np.any(Fz == 0.0):
+    is_series = "time_s" in columns.table
+    if is_series and not np.any(np.isfinite(Fz) & (Fz != 0.0)):
+        raise refuse(0, "the load is never other than zero; map the column that holds it")
+    if not is_series and np.any(Fz == 0.0):
         raise refuse(int((Fz == 0.0).argmax()), "the load is zero; remove the rows without load")
-    if np.any(Fz > 0.0) and np.any(Fz < 0.0):
+    if not is_series and np.any(Fz > 0.0) and np.any(Fz < 0.0):
         rare = int(((Fz > 0.0) if np.mean(Fz > 0.0) < 0.5 else (Fz < 0.0)).argmax())
         raise refuse(
             rare, f"{Fz[rare]:g} N has another sign than the other loads; correct it or remove the row"
         )
-    if Fz[0] < 0.0 and axes != "sae":
+    if usual_sign(Fz) < 0.0 and "Fz" not in FLIPPED[axes]:
         raise refuse(
-            0,
+            int((Fz < 0.0).argmax()),
             f"loads are negative, which {axes} axes do not have; if the rig reports in SAE axes, set "
             'axes = "sae", else map the column with scale = -1 under [sweep.columns]',
         )
-    if np.all(np.abs(Fz) < SMALLEST_LOAD):
+    if np.nanmax(np.abs(Fz)) < SMALLEST_LOAD:
         raise refuse(
             0,
-            f"the largest load is {np.max(np.abs(Fz)):g} N, which looks like kN; write newtons, or "
+            f"the largest load is {np.nanmax(np.abs(Fz)):g} N, which looks like kN; write newtons, or "
             'Fz_N = { column = "Fz_N", unit = "kN" } under [sweep.columns]',
         )

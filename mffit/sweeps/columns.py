@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -12,7 +12,7 @@ import pandas as pd
 from mffit.config.models import Column
 from mffit.errors import InputError
 from mffit.sweeps.channels import BY_NAME, CHANNELS, Channel, nearest_channel, nearest_heading
-from mffit.sweeps.raw_table import RawTable
+from mffit.sweeps.raw_table import Cells, RawTable
 from mffit.sweeps.units import UnknownUnitError, converted
 
 DIRECTIONS = {"forward": 1, "backward": -1, "1": 1, "+1": 1, "-1": -1}
@@ -20,6 +20,9 @@ UNCERTAINTIES = ("u_Fy_N", "u_Mz_Nm")
 MAY_BE_BLANK = frozenset({"iteration", "point", *UNCERTAINTIES})
 LONGEST_QUOTE = 40
 NUMBER_WITH_UNIT = re.compile(r"[-+]?[\d.]+(?:[eE][-+]?\d+)?\s*([^\d\s.,+-].*)")
+NO_READING = ("", "nan", "inf", "infinity", "na", "n/a", "null", "notavail")
+FEW = 0.01
+"""Share of a recording's samples up to which readings outside the plausible range are spikes, not another unit."""
 DECIMAL_COMMA = re.compile(r"[-+]?\d+,\d+")
 
 
@@ -34,16 +37,28 @@ class Columns:
 
     def line(self, row: int) -> int:
         """Line of a row in the file."""
-        return self.raw.lines[row]
+        return int(self.raw.lines[row])
 
 
-def read_columns(raw: RawTable, mapping: Mapping[str, Column]) -> Columns:
+def _mapped(mapping: Mapping[str, Column], name: str) -> str | None:
+    """The heading that a mapping gives a contract column; None if it does not name the column."""
+    return (mapping[name].column or name) if name in mapping else None
+
+
+def read_columns(raw: RawTable, mapping: Mapping[str, Column], shared: Collection[str] = ()) -> Columns:
     """Find, convert and check the contract's columns.
 
     Parameters
     ----------
     raw : the file's cells
     mapping : ``[sweep.columns]``: contract column -> heading, unit and scale; its keys are contract columns
+    shared : those of its keys that come from ``[columns]``, which serves all files: headings that this file lacks
+        are passed over unless the column is required
+
+    Notes
+    -----
+    A recording (``time_s``) may have gaps: cells without a number, and rare samples outside the plausible range, which
+    become NaN. In a table of points each of them is refused.
 
     Raises
     ------
@@ -51,18 +66,24 @@ def read_columns(raw: RawTable, mapping: Mapping[str, Column]) -> Columns:
         A column is missing, a cell is no finite number, or a value is outside its plausible range.
     """
     sources = {name: column.column or name for name, column in mapping.items()}
+    for name in set(shared) & set(sources):
+        if sources[name] not in raw.headings and (name in raw.headings or not BY_NAME[name].required):
+            del sources[name]
     for channel in CHANNELS:
         if channel.name not in sources and channel.name in raw.headings:
             sources[channel.name] = channel.name
     _check_sources(raw, sources)
     cells = dict(zip(raw.headings, raw.cells, strict=True))
     found: dict[str, np.ndarray] = {}
+    warnings: list[str] = []
     for channel in CHANNELS:
         if channel.name in sources:
-            values = _channel(raw, channel, sources[channel.name], cells, mapping.get(channel.name))
+            heading = sources[channel.name]
+            gaps = "time_s" in sources and channel.name != "time_s"
+            own = mapping.get(channel.name) if heading == _mapped(mapping, channel.name) else None
+            values = _channel(raw, channel, heading, cells, own, gaps=gaps, say=warnings)
             if values is not None:
                 found[channel.name] = values
-    warnings = []
     for name in UNCERTAINTIES:
         if name in found:
             found[name], said = _stated(raw, sources[name], found[name])
@@ -73,7 +94,7 @@ def read_columns(raw: RawTable, mapping: Mapping[str, Column]) -> Columns:
     if direction is not None:
         found["direction"] = np.where(direction > 0, "forward", "backward")
     order = sorted(found, key=lambda name: raw.headings.index(sources[name]))
-    table = pd.DataFrame({**{name: found[name] for name in order}, **extras})
+    table = pd.DataFrame({**{name: found[name] for name in order}, **extras}, copy=False)
     return Columns(raw, table, direction, (*warnings, *_misspelt(raw, extras, found)))
 
 
@@ -107,43 +128,58 @@ def _channel(
     raw: RawTable,
     channel: Channel,
     heading: str,
-    cells: Mapping[str, Sequence[str | float]],
+    cells: Mapping[str, Cells],
     column: Column | None,
+    *,
+    gaps: bool,
+    say: list[str],
 ) -> np.ndarray | None:
     """One column (n,) in the contract's unit; None if all its cells are blank."""
     given = cells[heading]
-    if all(_is_blank(cell) for cell in given):
+    if bool(np.all(np.isnan(given))) if isinstance(given, np.ndarray) else all(map(_is_blank, given)):
         if channel.required:
-            raise InputError("has no values; complete it", file=raw.path, line=raw.lines[0], column=heading)
+            raise InputError(
+                "has no values; complete it", file=raw.path, line=int(raw.lines[0]), column=heading
+            )
         return None
     if channel.kind == "label":
-        return np.array([_text(cell) for cell in given], dtype=object)
+        different, where = np.unique(np.asarray(given), return_inverse=True)
+        return np.array([_text(cell) for cell in different.tolist()], dtype=object)[where]
     if channel.kind == "direction":
         return _directions(raw, heading, given)
-    values = _numbers(raw, channel, heading, given)
+    values = _numbers(raw, channel, heading, given, gaps=gaps)
     values = _in_contract_unit(values, raw, channel, heading, column)
-    _check_range(raw, channel, heading, values)
-    return values
+    return _in_range(raw, channel, heading, values, gaps=gaps, say=say)
 
 
-def _directions(raw: RawTable, heading: str, given: Sequence[str | float]) -> np.ndarray:
-    words = [_text(cell).lower() for cell in given]
-    for row, word in enumerate(words):
-        if word not in DIRECTIONS:
-            sentence = f'"{_cut(_text(given[row]))}" is no direction; write forward or backward'
-            raise InputError(sentence, file=raw.path, line=raw.lines[row], column=heading)
-    return np.array([DIRECTIONS[word] for word in words])
+def _directions(raw: RawTable, heading: str, given: Cells) -> np.ndarray:
+    different, where = np.unique(np.asarray(given), return_inverse=True)
+    words = [_text(cell).lower() for cell in different.tolist()]
+    wrong = np.array([word not in DIRECTIONS for word in words])[where]
+    if np.any(wrong):
+        row = int(wrong.argmax())
+        sentence = f'"{_cut(_text(given[row]))}" is no direction; write forward or backward'
+        raise InputError(sentence, file=raw.path, line=int(raw.lines[row]), column=heading)
+    return np.array([DIRECTIONS.get(word, 0) for word in words])[where]
 
 
-def _numbers(raw: RawTable, channel: Channel, heading: str, given: Sequence[str | float]) -> np.ndarray:
-    values = pd.to_numeric(pd.Series(given, dtype=object), errors="coerce").to_numpy(dtype=float)
+def _numbers(raw: RawTable, channel: Channel, heading: str, given: Cells, *, gaps: bool) -> np.ndarray:
+    if isinstance(given, np.ndarray):
+        values = given
+    else:
+        values = pd.to_numeric(pd.Series(given, dtype=object), errors="coerce").to_numpy(dtype=float)
     bad = ~np.isfinite(values)
-    if channel.name in MAY_BE_BLANK:
+    if not np.any(bad):
+        return values
+    if gaps:
+        bad &= np.array([not _is_gap(cell) for cell in np.asarray(given, dtype=object)])
+        values = np.where(np.isinf(values), np.nan, values)
+    elif channel.name in MAY_BE_BLANK:
         bad &= np.array([not _is_blank(cell) for cell in given])
     if np.any(bad):
         row = int(bad.argmax())
         sentence = _bad_cell(_text(given[row]), channel)
-        raise InputError(sentence, file=raw.path, line=raw.lines[row], column=heading)
+        raise InputError(sentence, file=raw.path, line=int(raw.lines[row]), column=heading)
     return values
 
 
@@ -152,7 +188,7 @@ def _bad_cell(cell: str, channel: Channel) -> str:
     cell = _cut(cell)
     if cell == "":
         return "this cell is empty; complete it or remove the row"
-    if cell.lower().lstrip("+-") in ("nan", "inf", "infinity", "na", "n/a", "null"):
+    if cell.lower().lstrip("+-") in NO_READING:
         return f'"{cell}" is no measurement; complete it or remove the row'
     if DECIMAL_COMMA.fullmatch(cell):
         return f'"{cell}" has a decimal comma; write {cell.replace(",", ".")}'
@@ -168,6 +204,11 @@ def _bad_cell(cell: str, channel: Channel) -> str:
 def _is_blank(cell: str | float) -> bool:
     """Whether a cell holds nothing: no text, or the NaN that stands for it in a format of numbers."""
     return not cell if isinstance(cell, str) else bool(np.isnan(cell))
+
+
+def _is_gap(cell: str | float) -> bool:
+    """Whether a recorder writes this where it has no reading."""
+    return not isinstance(cell, str) or cell.lower().lstrip("+-") in NO_READING
 
 
 def _text(cell: str | float) -> str:
@@ -194,7 +235,7 @@ def _in_contract_unit(
             return InputError(sentence, key=f"columns.{channel.name}.unit")
         return InputError(sentence, file=raw.path, line=raw.heading_line, column=heading)
 
-    if not channel.unit:
+    if not channel.unit and named and channel.kind != "number":
         raise refuse("has no unit; remove it")
     try:
         return scale * converted(values, unit, channel.unit)
@@ -202,18 +243,27 @@ def _in_contract_unit(
         raise refuse(f"{error}; name the unit of the file's column") from None
 
 
-def _check_range(raw: RawTable, channel: Channel, heading: str, values: np.ndarray) -> None:
+def _in_range(
+    raw: RawTable, channel: Channel, heading: str, values: np.ndarray, *, gaps: bool, say: list[str]
+) -> np.ndarray:
+    """The values (n,), all in their plausible range or, few of a recording, NaN."""
     outside = (values < channel.lower) | (values > channel.upper)
     if not np.any(outside):
-        return
-    row = int(outside.argmax())
-    hint = channel.below if values[row] < channel.lower else channel.above
+        return values
+    row, number = int(outside.argmax()), int(outside.sum())
     unit = f" {channel.unit}" if channel.unit else ""
+    said = f"{values[row]:g}{unit} is outside {channel.lower:g} to {channel.upper:g}{unit}"
+    line = int(raw.lines[row])
+    if gaps and number <= FEW * len(values):
+        more = f", as {number - 1} more" if number > 1 else ""
+        say.append(f"{raw.path}:{line}: column {heading}: {said}{more}; taken for no reading")
+        return np.where(outside, np.nan, values)
+    hint = channel.below if values[row] < channel.lower else channel.above
     sentence = (
-        f"{values[row]:g}{unit} is outside {channel.lower:g} to {channel.upper:g}{unit}; "
-        f"{hint or 'correct it'}{', convert it or name its unit under [sweep.columns]' if hint else ''}"
+        f"{said}; {hint or 'correct it'}"
+        f"{', convert it or name its unit under [sweep.columns]' if hint else ''}"
     )
-    raise InputError(sentence, file=raw.path, line=raw.lines[row], column=heading)
+    raise InputError(sentence, file=raw.path, line=line, column=heading)
 
 
 def _stated(raw: RawTable, heading: str, values: np.ndarray) -> tuple[np.ndarray, list[str]]:
@@ -226,7 +276,7 @@ def _stated(raw: RawTable, heading: str, values: np.ndarray) -> tuple[np.ndarray
         raise InputError(
             "is not above zero in any row, and a standard uncertainty is; complete or remove the column",
             file=raw.path,
-            line=raw.lines[row],
+            line=int(raw.lines[row]),
             column=heading,
         )
     more = f", as in {number - 1} more rows" if number > 1 else ""
@@ -237,11 +287,16 @@ def _stated(raw: RawTable, heading: str, values: np.ndarray) -> tuple[np.ndarray
     return np.where(none, np.nan, values), [sentence]
 
 
-def _misspelt(raw: RawTable, extras: Mapping[str, object], found: Mapping[str, object]) -> list[str]:
+def _is_constant(cells: Cells) -> bool:
+    """Whether an unused column says nothing about its rows; of text it is not asked."""
+    return isinstance(cells, np.ndarray) and bool(np.all(cells == cells[0]))
+
+
+def _misspelt(raw: RawTable, extras: Mapping[str, Cells], found: Mapping[str, object]) -> list[str]:
     """Warnings for headings that look like a channel that would otherwise be missing."""
     sentences = []
-    for heading in extras:
+    for heading, cells in extras.items():
         near = nearest_channel(heading)
-        if near and near not in found:
+        if near and near not in found and not _is_constant(cells):
             sentences.append(f'{raw.path}: column "{heading}" is not used; if it is {near}, rename it')
     return sentences

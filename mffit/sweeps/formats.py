@@ -7,7 +7,11 @@ from pathlib import Path
 from typing import NamedTuple
 
 from mffit.sweeps.csv_text import read_csv
+from mffit.sweeps.matlab import read_mat
+from mffit.sweeps.parquet import read_parquet
 from mffit.sweeps.raw_table import RawTable
+from mffit.sweeps.spreadsheet import read_xlsx
+from mffit.sweeps.tydex import read_tydex
 
 
 class Format(NamedTuple):
@@ -18,18 +22,28 @@ class Format(NamedTuple):
     read: Callable[[Path], RawTable]  #: raises InputError with file and line
 
 
-FORMATS = (Format("CSV", (".csv", ".csv.gz"), read_csv),)
+FORMATS = (
+    Format("CSV", (".csv", ".csv.gz", ".txt", ".txt.gz", ".tsv", ".tsv.gz", ".dat", ".dat.gz"), read_csv),
+    Format("MATLAB", (".mat",), read_mat),
+    Format("Excel", (".xlsx", ".xlsm"), read_xlsx),
+    Format("Parquet", (".parquet",), read_parquet),
+    Format("TYDEX", (".tdx", ".tdx.gz"), read_tydex),
+)
 ENDINGS = tuple(ending for kind in FORMATS for ending in kind.endings)
 
 
 def read(path: Path) -> RawTable:
     """Read a file by the ending of its name; a name with another ending is read as CSV."""
-    return next((kind for kind in FORMATS if path.name.endswith(kind.endings)), FORMATS[0]).read(path)
+    return next((kind for kind in FORMATS if reads(kind, path)), FORMATS[0]).read(path)
+
+
+def reads(kind: Format, path: Path) -> bool:
+    """Whether files of this name are of this format."""
+    return path.name.lower().endswith(kind.endings)
 
 
 def stem(path: str) -> str:
     """The file's name without folder and ending."""
     name = Path(path).name
-    return name.removesuffix(
-        max((ending for ending in ENDINGS if name.endswith(ending)), key=len, default="")
-    )
+    ending = max((ending for ending in ENDINGS if name.lower().endswith(ending)), key=len, default="")
+    return name[: len(name) - len(ending)]

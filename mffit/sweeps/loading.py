@@ -74,10 +74,12 @@ def _columns(config: Config, index: int, entry: SweepTable) -> Columns:
 
     for name in entry.columns:
         if name not in BY_NAME:
-            near = nearest_channel(name, likeness=0.5)
-            hint = f'did you mean "{near}"?' if near else f"known are {', '.join(BY_NAME)}"
-            raise refuse(f"is no column of a sweep; {hint}", f"columns.{name}")
-    if not entry.file.endswith(ENDINGS):
+            raise refuse(_unknown(name), f"columns.{name}")
+    for name in config.columns:
+        if name not in BY_NAME:
+            key = f"columns.{name}"
+            raise InputError(_unknown(name), file=config.path, line=config.line_of(key), key=key)
+    if not entry.file.lower().endswith(ENDINGS):
         names = " or ".join(kind.name for kind in FORMATS)
         raise refuse(f'"{entry.file}" is no {" or ".join(ENDINGS)} file; export it as {names}', "file")
     path = config.folder / entry.file
@@ -87,11 +89,22 @@ def _columns(config: Config, index: int, entry: SweepTable) -> Columns:
         )
     raw = read(path)
     try:
-        return read_columns(raw, entry.columns)
+        return read_columns(
+            raw, {**config.columns, **entry.columns}, set(config.columns) - set(entry.columns)
+        )
     except InputError as error:
         if error.file is None and error.key is not None:
-            raise refuse(error.sentence, error.key) from None
+            if error.key.split(".")[1] in entry.columns:
+                raise refuse(error.sentence, error.key) from None
+            line = config.line_of(error.key)
+            raise InputError(error.sentence, file=config.path, line=line, key=error.key) from None
         raise
+
+
+def _unknown(name: str) -> str:
+    near = nearest_channel(name, likeness=0.5)
+    hint = f'did you mean "{near}"?' if near else f"known are {', '.join(BY_NAME)}"
+    return f"is no column of a sweep; {hint}"
 
 
 def _contradicting(columns: Columns, entry: SweepTable, direction: int) -> list[str]:

@@ -2,9 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 from pathlib import Path
+
+import numpy as np
+
+Cells = Sequence[str | float] | np.ndarray
+"""One column (n,): an array of floats where the reader is sure of all of them, else cells as they stand."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -13,10 +18,15 @@ class RawTable:
 
     headings: tuple[str, ...]
     units: tuple[str, ...]  #: as the file states them, "" where it does not
-    cells: tuple[Sequence[str | float], ...]  #: a column under each heading; text is stripped of blanks
-    lines: Sequence[int]  #: line of each row in the file, counted from 1
+    cells: tuple[Cells, ...]  #: a column under each heading; text is stripped of blanks
+    lines: (
+        Sequence[int] | np.ndarray
+    )  #: line of each row in the file, counted from 1; in binary formats its number
     path: Path
-    heading_line: int
+    heading_line: int | None  #: None where the format has no lines
+    about: Mapping[str, str] = field(
+        default_factory=dict
+    )  #: what the file says of itself: tyre, test, source
 
     def __len__(self) -> int:
         return len(self.lines)

@@ -30,6 +30,11 @@ ADDED = [
     "paired",
     "outlier",
     "doubtful",
+    "file",
+    "line",
+    "sweep",
+    "direction",
+    "mount",
 ]
 
 
@@ -53,7 +58,7 @@ def disc(folder: Path) -> Project:
 @pytest.fixture(scope="module")
 def built(tmp_path_factory) -> Path:
     folder = tmp_path_factory.mktemp("built")
-    assert mffit("build", disc(folder).write()) == 0
+    assert mffit("build", disc(folder).write(), "--ensemble", 2) == 0
     return folder
 
 
@@ -141,6 +146,18 @@ def test_the_measured_quantities_in_the_file_are_those_of_the_json(tyre, result)
     for key in ("epsilon_gamma", "C_phit_Nm", "r_e_m", "F_phit_N"):
         assert tyre.measured[key].value == pytest.approx(result["spin"][key])
         assert tyre.measured[key].u == pytest.approx(result["spin"][f"u_{key}"])
+
+
+def test_drawn_files_are_read_back_beside_the_numbers_of_their_index(built, tyre, result):
+    index = pd.read_csv(built / "out" / "ensemble" / "index.csv")
+    assert len(index) == 2
+    for row in index.itertuples():
+        drawn = tir.read(built / "out" / "ensemble" / row.file)
+        assert drawn["PECP1"] == pytest.approx(row.epsilon_gamma)
+        stated = result["fit"]["coefficients"]["PDY1"]
+        assert 0.0 < abs(drawn["PDY1"] - tyre["PDY1"]) < 4.0 * stated["stderr"]
+        small = drawn(drawn["FNOMIN"], alpha=1e-4).Fy - drawn(drawn["FNOMIN"], alpha=-1e-4).Fy
+        assert small / 2e-4 == pytest.approx(row.C_alpha_N_per_rad, rel=1e-3)
 
 
 def test_points_are_the_input_with_parts_and_model(built, points, result):

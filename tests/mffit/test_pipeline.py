@@ -11,9 +11,15 @@ from small_rigs import MZ, SAMPLE, built, disc, flat, truth
 
 import mffit
 import tir
-from mffit import config, pipeline, virtual_rig
+from mffit import config, virtual_rig
+from mffit.diagnosis import wording
+from mffit.diagnosis.notes import DirectMethodRedone, ModelFittedFirst
 from mffit.effects import CATALOG
 from mffit.errors import InputError
+from mffit.pipeline.building import finite_spin_bias
+from mffit.pipeline.diagnosing import last_build
+from mffit.pipeline.provenance import rig_of_build
+from mffit.results import as_json
 
 OFFSET = [effect for effect in CATALOG if effect.id in ("loadcell-offset-fy", "camber-misalignment")]
 MOMENT = [effect for effect in CATALOG if effect.id in ("loadcell-offset-mz", "residual-torque-camber")]
@@ -37,7 +43,7 @@ def small(tmp_path_factory):
 def test_a_file_knows_the_rig_of_the_sweeps_it_was_fitted_to(small):
     result, folder = small
     settings = config.load(folder / "tyre.toml")
-    found = pipeline.rig_of_build(tir.read(pipeline.last_build(settings)), settings)
+    found = rig_of_build(tir.read(last_build(settings)), settings)
     for name, (value, _) in result.fit.rig.items():
         assert getattr(found, name) == pytest.approx(value, rel=1e-6), name
     assert abs(found.F0_N - 15.0) < 6.0
@@ -51,8 +57,8 @@ def test_a_file_fitted_to_other_sweeps_does_not(small, tmp_path):
     changed = tmp_path / "sideslip_900.csv"
     changed.write_text(changed.read_text().rstrip("\n") + "\n\n")
     settings = config.load(tmp_path / "tyre.toml")
-    assert pipeline.rig_of_build(tir.read(folder / "out" / "small.tir"), settings) is None
-    assert pipeline.rig_of_build(truth(), settings) is None
+    assert rig_of_build(tir.read(folder / "out" / "small.tir"), settings) is None
+    assert rig_of_build(truth(), settings) is None
 
 
 def test_the_build_explains_its_own_points(small):
@@ -61,7 +67,7 @@ def test_the_build_explains_its_own_points(small):
     own = mffit.diagnose(folder / "tyre.toml", effects=OFFSET)
     assert not own.effects
     assert own.gap_before.chi2_per_dof < 1.2
-    assert not any("fitted" in note for note in own.notes if isinstance(note, str))
+    assert not any(isinstance(note, ModelFittedFirst) for note in own.notes)
     true = mffit.diagnose(folder / "tyre.toml", SAMPLE / "true.tir", effects=OFFSET)
     assert [f.effect.id for f in true.effects] == ["loadcell-offset-fy"]
     assert abs(true.faults.F0_N - 15.0) < 2.0
@@ -70,14 +76,14 @@ def test_the_build_explains_its_own_points(small):
 def test_the_json_gives_the_origin_as_the_file_does(small):
     result, folder = small
     on_disk = tir.read(folder / "out" / "small.tir")
-    origin = {name: entry["origin"] for name, entry in result.to_json()["fit"]["coefficients"].items()}
+    origin = {name: entry["origin"] for name, entry in as_json.build(result)["fit"]["coefficients"].items()}
     assert len(on_disk.status.keys() & origin.keys()) > 200
     for name in on_disk.status.keys() & origin.keys():
         assert origin[name] == on_disk.status[name], name
 
 
 def said(diagnosis) -> str:
-    (note,) = (n for n in diagnosis.notes if isinstance(n, str) and "eps_gamma" in n)
+    (note,) = (wording.note(n) for n in diagnosis.notes if isinstance(n, DirectMethodRedone))
     return note
 
 
@@ -158,7 +164,7 @@ def test_alignment_of_a_project_and_of_its_table_are_the_same(tmp_path):
 
 def test_a_flat_track_has_no_bias_and_one_file(tmp_path):
     result = built(flat(), tmp_path)
-    assert pipeline.finite_spin_bias(result.config, result.points, result.fit, None) is None
+    assert finite_spin_bias(result.config, result.points, result.fit, None) is None
     assert list(result.files) == ["normal"]
     assert result.tyre is result.tyres["normal"]
     assert np.all(result.parts.paired == "unpaired")

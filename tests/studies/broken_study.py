@@ -1,8 +1,8 @@
 """What becomes of broken data: `python tests/studies/broken_study.py --help`; prints the table of docs/broken-data.md.
 
-Campaigns of the samples on drawn rigs, one mistake in each, in a file drawn by lot. "named": the build ends with the name of a
-file that holds the mistake. "doubted": it warns of that sweep, or lists the reading. The rest of the draws are sound: their alarms
-are counted.
+Campaigns of the samples on drawn rigs, one mistake in each, in a file drawn by lot. "named": the build ends with the name of
+a file that holds the mistake. "doubted": it warns of that sweep, or lists the reading. The rest of the draws are sound:
+their alarms are counted.
 """
 
 from __future__ import annotations

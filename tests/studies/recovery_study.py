@@ -37,7 +37,12 @@ def run(job: tuple[int, str]) -> tuple[str, Draw]:
 
 
 def tables(draws: dict[str, list[Draw]]) -> Iterable[str]:
+    ended = [(kind, d) for kind, rows in draws.items() for d in rows if d.refused]
+    draws = {kind: [d for d in rows if not d.refused] for kind, rows in draws.items()}
     everything = [d for rows in draws.values() for d in rows]
+    yield f"Refused, though sound: {len(ended)}. Builds with a doubted sweep: {sum(d.doubted > 0 for d in everything)}.\n"
+    for kind, d in ended:
+        yield f"* {kind}: {d.refused}"
     yield "## Misfit over stated noise\n"
     yield "| campaign | builds | Fy median | largest | Mz median | largest | above 1.05 | above 1.3 | fit [s] |"
     yield "|---|---|---|---|---|---|---|---|---|"

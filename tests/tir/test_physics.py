@@ -104,6 +104,32 @@ def test_a_zero_in_the_file_gives_a_number_or_a_sentence(name):
             assert np.shape(forces.Fy) == ()
 
 
+EXTREMES = st.sampled_from([0.0, -1.0, 1e308, -1e308, 1e200, 1e-320, float("inf"), float("nan")])
+NUMBERS = [row.name for row in TABLE if row.kind == "number"]
+
+
+@given(
+    st.dictionaries(st.sampled_from(NUMBERS), EXTREMES, min_size=1, max_size=4),
+    st.tuples(*[EXTREMES | st.floats(-10.0, 10.0)] * 7),
+    st.tuples(st.booleans(), st.booleans(), st.booleans()),
+)
+def test_no_damage_ends_in_pythons_arithmetic(values, condition, switches):
+    """A number, NaN and infinity among them, or a sentence that names the key; for floats and arrays alike."""
+    damaged = tir.read(VECTORS / "moto_front.tir").replace(**values)
+    asked = dict(zip(("turn_slip", "star", "limits"), switches, strict=True))
+    named = set()
+    with np.errstate(all="ignore"):
+        for given_as in (condition, [np.array([x, x]) for x in condition]):
+            for ask in (damaged, damaged.state):
+                try:
+                    found = ask(*given_as, **asked)
+                except tir.TirError as error:
+                    named.add(error.name)
+                else:
+                    assert all(np.asarray(x).dtype.kind == "f" for x in found)
+    assert named <= values.keys()
+
+
 def test_a_flat_tyre_is_the_same_for_scalars_and_arrays(tyre):
     soft = tyre.replace(QSY8=-0.4)
     with np.errstate(divide="ignore"):

@@ -3,5 +3,13 @@
 from mffit.report.text.build import build_summary
 from mffit.report.text.diagnosis import diagnosis_summary
 from mffit.report.text.direct import alignment_table, budget_table, spin_summary
+from mffit.report.text.recordings import sniff_summary
 
-__all__ = ["alignment_table", "budget_table", "build_summary", "diagnosis_summary", "spin_summary"]
+__all__ = [
+    "alignment_table",
+    "budget_table",
+    "build_summary",
+    "diagnosis_summary",
+    "sniff_summary",
+    "spin_summary",
+]

@@ -185,7 +185,7 @@ def test_a_loaded_configuration_is_given_back(tmp_path):
         ('file = "b.csv"', 'file = "b.csv"\ndirection = "back"', "sweep[2].direction", 15, "'backward'"),
         ("[tyre]", "[tire]", "tire", 1, 'did you mean "tyre"'),
         ("[tyre]", "path_centre = 'left'\n[tyre]", "path_centre", 1, "[rig]"),
-        ("[rig]", "[spin]\nexact = 'both'\n[rig]", "spin.exact", 8, "'turn-slip'"),
+        ("[rig]", "[spin]\nexact = 'all'\n[rig]", "spin.exact", 8, "'turn-slip'"),
         ("front-1", "../front", "tyre.name", 2, "cannot name"),
     ],
 )

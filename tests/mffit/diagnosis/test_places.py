@@ -11,7 +11,7 @@ from small_programme import TYRE, U_FY, problem, programme, read
 from mffit.diagnosis import diagnose, where
 from mffit.diagnosis.engine import possible, refuse_strangers, thinned
 from mffit.diagnosis.needs import MET, missing
-from mffit.diagnosis.noise import noise_model, with_uncertainties
+from mffit.diagnosis.noise import Origin, noise_model, with_uncertainties
 from mffit.diagnosis.notes import HardlyThisTyre, NotVisible, UncertaintiesEnlarged
 from mffit.diagnosis.unknown import bump_scan
 from mffit.effects import CATALOG
@@ -223,7 +223,7 @@ def test_the_scatter_of_neighbours_is_the_noise():
     found, source = with_uncertainties(points.replace(u_Fy=np.nan, u_Mz=np.nan), off)
     assert found.u_Fy == pytest.approx(6.0, rel=0.2)
     assert found.u_Mz == pytest.approx(0.6, rel=0.2)
-    assert "neighbouring" in source
+    assert source is Origin.SCATTER
 
 
 def test_sweeps_too_short_for_a_scatter_get_a_hundredth_of_the_span():

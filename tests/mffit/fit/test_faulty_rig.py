@@ -22,11 +22,13 @@ def misaligned(tmp_path_factory):
 
 
 def test_the_misalignment_is_taken_off_the_angles(misaligned):
-    """With its sign: the ply-steer of the tyre, 0.05 deg, cannot be told from it."""
+    """With its sign. Ply-steer cannot be told from it: their sum is known, and each to what is usual of ply-steer, 0.002 rad."""
     value, u = misaligned.fit.rig["alpha_0_deg"]
     assert misaligned.measured.misaligned
-    assert value == pytest.approx(0.5 + math.degrees(truth()["PHY1"]), abs=0.03)
-    assert u < 0.05
+    sum_found = value + math.degrees(misaligned.fit.tyre["PHY1"])
+    assert sum_found == pytest.approx(0.5 + math.degrees(truth()["PHY1"]), abs=0.03)
+    assert value == pytest.approx(0.5, abs=2.0 * u)
+    assert u == pytest.approx(math.degrees(0.002), rel=0.1)
     channels = misaligned.fit.channels
     assert channels["Fy"].rmse < 1.1 * FY
     assert channels["Mz"].rmse < 1.1 * MZ
@@ -75,7 +77,7 @@ def test_what_few_points_do_not_tell_stays_near_the_base_file(misaligned):
         found = coefficients[name]
         assert found.status == "regularised", name
         assert found.value == pytest.approx(base[name], rel=0.5), name
-        assert 0.01 < found.stderr / abs(base[name]) < 0.35, name
+        assert 0.01 < found.stderr / abs(base[name]) < 1.1, name
     for name in ("PKYP1", "QDTP1"):
         assert coefficients[name].status == "fitted", name
     for name in ("PPY1", "PPY5", "PPZ1"):  # one pressure

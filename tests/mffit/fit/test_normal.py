@@ -14,6 +14,7 @@ import tir
 from mffit.diagnosis.notes import ModelFittedFirst
 from mffit.fit.files import file_names, use_mode
 from mffit.fit.imitation import forces
+from mffit.fit.normal import derive_both, derive_normal
 from mffit.fit.wording import whole_words
 from mffit.pipeline.diagnosing import chosen_model
 from mffit.pipeline.provenance import use_of
@@ -169,3 +170,25 @@ def test_a_straight_path_measures_no_spin():
     assert str(int(flat.tyre["USE_MODE"])).endswith("4")
     assert flat.fit.coefficients["PECP1"].fixed
     assert all(not row.free for row in flat.fit.coverage if row.stage == "spin")
+
+
+@pytest.mark.parametrize("sample", ["front-120-70", "rear-190-55"])
+def test_one_file_for_both_uses_is_better_than_either_in_the_other_ones_use(sample):
+    truth = tir.read(SAMPLES / sample / "true.tir")
+    values, tested = dict(truth.values), normal_study.tested(truth)
+    written = {**tested}
+    terms = {name: values[name] for name in ("PKY6", "PKY7")}
+    both = {**values, **derive_both(values, tested, written, terms, -1 / 1.323)}
+    normal = {**values, **derive_normal(values, tested, written, terms)}
+    road = normal_study.box(values["FNOMIN"], values["NOMPRES"])
+
+    def misfit(file, *, turn_slip, phi_t=0.0):
+        there = forces(values, road, turn_slip=True, phi_t=phi_t).Fy
+        return np.sqrt(np.mean((forces(file, road, turn_slip=turn_slip, phi_t=phi_t).Fy - there) ** 2))
+
+    assert misfit(both, turn_slip=False) < 0.5 * misfit(values, turn_slip=False)
+    for phi_t in (0.0, -1 / 1.323):
+        assert misfit(both, turn_slip=True, phi_t=phi_t) < 0.5 * misfit(normal, turn_slip=True, phi_t=phi_t)
+    upright = np.radians(np.linspace(-8, 8, 9))
+    a, b = (tir.Tyre.from_values(v)(values["FNOMIN"], upright, turn_slip=False) for v in (both, values))
+    assert a.Fy == pytest.approx(b.Fy, abs=1e-6)

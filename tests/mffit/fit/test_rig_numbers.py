@@ -58,9 +58,9 @@ def test_every_declared_doubt_is_a_prior_of_that_width():
 
 
 def test_a_misalignment_is_known_as_it_was_measured():
-    """True sideslip is the reading plus alpha_M."""
+    """True sideslip is the reading plus alpha_M; what was declared was too tight then, and ply-steer may have its share."""
     number = by_name(rig(), direct(misaligned=True))["alpha_0_deg"]
-    assert (number.expected, number.spread) == (pytest.approx(0.7), pytest.approx(0.02))
+    assert (number.expected, number.spread) == (0.0, pytest.approx(0.7))
     assert known_faults(rig(), direct(misaligned=True)).alpha_0_deg == pytest.approx(0.7)
 
 

@@ -9,8 +9,10 @@ import pytest
 from small_rigs import SAMPLE, disc, truth
 
 from mffit import config, points, virtual_rig
-from mffit.fit.files import GIVEN, file_names, make_files, ranges_sentence, sentences
-from mffit.fit.normal import Road, inside, road_grid, weights
+from mffit.fit.files import GIVEN, decisions, file_names, make_files
+from mffit.fit.known import Known
+from mffit.fit.road import Road, inside, road_grid, weights
+from mffit.fit.wording import file_comments, ranges_sentence, sentences
 from tir.parameters import TABLE
 
 TESTED = {
@@ -74,8 +76,9 @@ def files(tmp_path_factory):
     virtual_rig.simulate(virtual_rig.load_plan(disc(), folder=SAMPLE), folder, seed=3)
     settings = config.load(folder / "tyre.toml")
     loaded, _ = points.load(settings)
-    status = {row.name: "base" for row in TABLE}
-    return make_files(settings, truth().values, loaded, truth(), status, {}, {}), status
+    known = Known(truth().values, {row.name: "base" for row in TABLE}).deciding(decisions(settings))
+    made = make_files(settings, known, loaded, truth(), {})
+    return made.annotated(file_comments(made, known.origin, {})), known.origin
 
 
 def test_the_turn_slip_file_is_the_model_and_states_no_misfit(files):
@@ -137,15 +140,18 @@ def test_every_value_says_where_it_is_from(files):
         assert comments["USE_MODE"].startswith("given by this build")
     assert {status[name] for name in GIVEN} == {"given"}
     assert made.changed
-    assert made.by_use["normal"].tyre.status[made.changed[0]] == "fitted to the model without path curvature"
-    assert made.by_use["turn-slip"].tyre.status[made.changed[0]] == "from base"
+    assert (
+        made.by_use["normal"].tyre.status[made.changed["normal"][0]]
+        == "fitted to the model without path curvature"
+    )
+    assert made.by_use["turn-slip"].tyre.status[made.changed["normal"][0]] == "from base"
 
 
 def test_upright_both_files_are_equal_and_only_camber_terms_differ(files):
     made, _ = files
     on, off = made.by_use["turn-slip"].tyre, made.by_use["normal"].tyre
     differing = {name for name in on.values if on[name] != off[name]}
-    assert differing == {*made.changed, "USE_MODE"}
+    assert differing == {*made.changed["normal"], "USE_MODE"}
     Fz, alpha = np.meshgrid([500.0, 1400.0, 2500.0], np.radians([-15.0, -3.0, 0.0, 2.0, 9.0]))
     assert off(Fz, alpha).Fy == pytest.approx(on(Fz, alpha).Fy, rel=1e-12)
     assert off(Fz, alpha).Mz == pytest.approx(on(Fz, alpha).Mz, rel=1e-12)

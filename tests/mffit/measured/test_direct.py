@@ -10,7 +10,10 @@ from plain_tyre import DEGREE, LEAN, NEWTON, R_E, SLIP, U_R, U_R_E, Plain, R, se
 
 from mffit.errors import InputError
 from mffit.measured import measure
+from mffit.measured.notes import Conicity, StraightPath
+from mffit.measured.wording import note as say
 from mffit.parts import split
+from mffit.results import as_json
 
 LOADS = (1000.0, 1500.0, 2000.0)
 
@@ -89,7 +92,7 @@ def test_what_the_alignment_leaves_is_no_misalignment():
     assert measured(tyre, u_slip_alignment_N=25.0).misaligned
     stays = measured(tyre, u_slip_alignment_N=40.0)
     shift = abs(1.0 - tyre.epsilon) * 31.4 / abs(tyre.turn_slip_force(1500.0))
-    assert any(f"would move eps_gamma by {shift:.2f}" in note for note in stays.notes)
+    assert any(f"would move eps_gamma by {shift:.2f}" in say(note) for note in stays.notes)
 
 
 @pytest.mark.parametrize(
@@ -125,7 +128,7 @@ def test_without_backward_runs_the_alignment_is_in_doubt():
     assert contributions(result)["sideslip alignment"] == pytest.approx(share(30.0, tyre), rel=0.02)
     assert result.nominal.u_monte_carlo == pytest.approx(result.epsilon_gamma.u, rel=0.03)
     angle = math.degrees(abs(tyre.turn_slip_force(1500.0)) / (12.0 * 1500.0))
-    assert any(f"would take {angle:.2f} deg of misalignment" in note for note in result.notes)
+    assert any(f"would take {angle:.2f} deg of misalignment" in say(note) for note in result.notes)
 
 
 def test_the_play_is_taken_off_and_its_doubt_counts_where_the_moment_holds_one_side():
@@ -257,7 +260,7 @@ def test_a_flat_track_gives_stiffnesses_only():
     assert result.C_gamma.value == pytest.approx(-0.9 * 1500.0, rel=0.004)
     assert result.F_phit is None
     assert result.epsilon_gamma is None
-    assert result.notes == ("A flat track's path is straight: it has no turn slip to measure.",)
+    assert result.notes == (StraightPath(),)
     assert result.warnings == ()
 
 
@@ -272,14 +275,14 @@ def test_a_parabola_through_many_zeros_is_read_at_zero():
 
 def test_conicity_is_stated_as_a_force_of_two_per_mille():
     tyre = Plain()
-    (note,) = (n for n in measured(tyre).notes if "Conicity" in n)
+    (note,) = (say(n) for n in measured(tyre).notes if isinstance(n, Conicity))
     assert "a plausible 3 N" in note
     assert f"by {share(3.0, tyre):.3f}." in note
 
 
 def test_the_json_holds_value_and_uncertainty_of_every_quantity():
     result = measured(Plain())
-    content = result.to_json()
+    content = as_json.spin(result)
     for key, found in (
         ("epsilon_gamma", result.epsilon_gamma), ("C_phit_Nm", result.C_phit), ("C_gamma_N_per_rad", result.C_gamma),
         ("C_alpha_N_per_rad", result.C_alpha), ("r_e_m", result.r_e), ("R_m", result.R), ("F_phit_N", result.F_phit),
@@ -288,7 +291,7 @@ def test_the_json_holds_value_and_uncertainty_of_every_quantity():
     row = content["per_load"][0]
     assert row["alpha_M_deg"] == pytest.approx(math.degrees(result.alpha_M.value))
     assert (row["F_forward_N"], row["load_N"]) == (result.nominal.F_forward, 1500.0)
-    forwards = measured(Plain(), points=Plain().campaign(backward=False)).to_json()
+    forwards = as_json.spin(measured(Plain(), points=Plain().campaign(backward=False)))
     assert forwards["alpha_M_deg"] is forwards["u_alpha_M_deg"] is None
 
 

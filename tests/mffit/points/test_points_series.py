@@ -149,7 +149,7 @@ def test_steps_of_load_alone_make_new_stretches():
     Fz = np.r_[np.full(n, 900.0), np.full(n, 1500.0)]
     still = np.zeros(2 * n)
     settings = Settings(time, still, still, Fz, np.full(2 * n, 250e3), np.full(2 * n, V))
-    found = stretches(settings)
+    found = [stretch for stretch in stretches(settings) if not stretch.dropped]
     assert len(found) == 2
     assert moving(settings)[n]
     assert found[0].end <= n <= found[1].begin

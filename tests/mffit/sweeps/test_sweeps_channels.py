@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
+import re
+from pathlib import Path
+
 import numpy as np
 import pytest
 
 from mffit.sweeps.channels import BY_NAME, CHANNELS, nearest_channel, nearest_heading
-from mffit.sweeps.units import UnknownUnitError, converted
+from mffit.sweeps.units import UnknownUnitError, converted, is_unit, spellings
 
 CONTRACT = [
     "alpha_deg", "gamma_deg", "Fz_N", "Fy_N", "Mz_Nm", "Mx_Nm", "My_Nm", "p_kPa", "V_mps", "T_degC",
     "direction", "u_Fy_N", "u_Mz_Nm", "point", "time_s", "t_s", "run", "iteration",
+    "kappa", "Fx_N", "RL_m", "omega_radps",
 ]  # fmt: skip
 
 
@@ -45,6 +49,31 @@ def test_the_heading_that_was_meant_is_guessed(name, headings, near):
     assert nearest_heading(BY_NAME[name], headings) == near
 
 
+@pytest.mark.parametrize("written", sorted(spellings()))
+def test_every_spelling_of_a_laboratory_is_a_unit(written):
+    assert is_unit(written)
+    assert is_unit(written.upper()) or written.upper() == written
+
+
+def test_every_spelling_is_in_the_documentation():
+    page = (Path(__file__).parents[3] / "docs" / "recordings.md").read_text(encoding="utf-8")
+    rows = dict(re.findall(r"^\| `([^`]*)` \| (`.*`) \|$", page, re.MULTILINE))
+    listed = {
+        word.replace("␣", " "): unit.replace("(none)", "")
+        for unit, words in rows.items()
+        for word in re.findall("`([^`]*)`", words)
+    }
+    assert {written: listed.get(written) for written in spellings()} == spellings()
+
+
+@pytest.mark.parametrize(
+    "text", ["FY", "heavy", "forward", "left", "a**9**9**9", "m**99", "1500.0", "N" * 99, "()"]
+)
+def test_what_is_no_unit_is_not_tried(text):
+    """pint's parser also calculates: a tower of powers would never return."""
+    assert not is_unit(text)
+
+
 def test_a_misspelt_channel_is_guessed_and_a_foreign_heading_is_not():
     assert nearest_channel("mz_nm") == "Mz_Nm"
     assert nearest_channel("operator") == ""
@@ -58,6 +87,16 @@ def test_a_misspelt_channel_is_guessed_and_a_foreign_heading_is_not():
         (1.0, "kgf", "N", 9.80665),
         (100.0, "Nm", "N m", 100.0),
         (1500.0, "Nmm", "N m", 1.5),
+        (1.0, "N-m", "N m", 1.0),
+        (1.0, "kp", "N", 9.80665),
+        (1.0, "in-lb", "N m", 0.1129848290276167),
+        (1.0, "psi", "kPa", 6.894757293168361),
+        (1.0, "Grad", "deg", 1.0),
+        (36.0, "kph", "m/s", 10.0),
+        (25.0, "deg C", "degC", 25.0),
+        (12.0, "%", "", 0.12),
+        (0.12, "none", "", 0.12),
+        (20.0, "cm", "m", 0.2),
         (2.0, "kNm", "N m", 2000.0),
         (2.5, "bar", "kPa", 250.0),
         (36.0, "psi", "kPa", 248.2112626),

@@ -1,0 +1,113 @@
+"""From recordings to a project: ``mffit sniff`` and ``mffit init --from``."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from mffit.errors import InputError
+from mffit.recordings import Sniffed, project_text, sniff
+from mffit.recordings.project_file import slug
+from mffit.recordings.sniffed import configuration_of
+from mffit.recordings.stretch_table import stretch_table
+
+STRETCHES = "stretches.csv"
+
+
+def init_from(
+    files: Sequence[str | Path],
+    folder: str | Path,
+    *,
+    unloaded_radius: float | None,
+    nominal_load: float | None,
+    nominal_pressure: float | None = None,
+    name: str | None = None,
+) -> tuple[Sniffed, list[Path]]:
+    """Write a project from recordings: ``tyre.toml``, ``stretches.csv`` and a picture of each recording.
+
+    Parameters
+    ----------
+    files : recordings as the rig wrote them; they stay where they are
+    folder : created if need be; existing files are never touched
+    unloaded_radius : [m]
+    nominal_load : [N]
+    nominal_pressure : [kPa]; default the pressure at which most was run
+    name : of the output files; default the first recording's
+
+    Returns
+    -------
+    sniffed, list of Path
+        What the recordings hold, and the files written, ``tyre.toml`` first.
+
+    Raises
+    ------
+    InputError
+        A recording cannot be read, radius or load is missing, a file is there already, or no axes fit.
+    """
+    for value, option, unit in (
+        (unloaded_radius, "unloaded-radius", "M"),
+        (nominal_load, "nominal-load", "N"),
+    ):
+        if value is None:
+            raise InputError(f"recordings do not say it: give --{option} {unit}")
+    folder = Path(folder)
+    sniffed = sniff(files)
+    if not len(sniffed.points):
+        raise InputError(sniffed.reading.warnings[-1], file=files[0])
+    if not sniffed.axes:
+        raise InputError(
+            f"no known axes fit: in ISO signs {' and '.join(sniffed.wrong)}, as no tyre does; write the tyre.toml with "
+            "`mffit init DIR` and map the column that has the wrong sign with scale = -1",
+            file=files[0],
+        )
+    text = project_text(
+        sniffed,
+        folder,
+        unloaded_radius=unloaded_radius,
+        nominal_load=nominal_load,
+        nominal_pressure=nominal_pressure,
+        name=name,
+    )
+    return sniffed, _written(folder, sniffed, text)
+
+
+def write_sniffed(sniffed: Sniffed, folder: str | Path) -> list[Path]:
+    """Write what recordings hold: ``tyre.toml`` without radius and load, ``stretches.csv``, a picture of each."""
+    folder = Path(folder)
+    return _written(folder, sniffed, project_text(sniffed, folder, unloaded_radius=None, nominal_load=None))
+
+
+def _written(folder: Path, sniffed: Sniffed, text: str) -> list[Path]:
+    pictures = {f"{slug(r.path)}.png": k for k, r in enumerate(sniffed.recordings) if r.rate > 0.0}
+    names = ["tyre.toml", *([STRETCHES] if sniffed.reading.stretches else []), *pictures]
+    for name in names:
+        if (folder / name).exists():
+            raise InputError("is there already; name another folder or move it away", file=folder / name)
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        (folder / "tyre.toml").write_text(text, encoding="utf-8", newline="\n")
+        if STRETCHES in names:
+            table = stretch_table(sniffed.reading.stretches)
+            table.to_csv(folder / STRETCHES, index=False, lineterminator="\n")
+    except (FileExistsError, NotADirectoryError):
+        raise InputError("is a file; name a folder", file=folder) from None
+    except OSError as error:
+        raise InputError(
+            f"cannot be written to ({error.strerror}); name another folder", file=folder
+        ) from None
+    for name, k in pictures.items():
+        _picture(sniffed, k, folder / name)
+    return [folder / name for name in names]
+
+
+def _picture(sniffed: Sniffed, k: int, path: Path) -> None:
+    """The picture of one recording."""
+    from mffit import sweeps
+    from mffit.report import style
+    from mffit.report.figures.recording import recording
+
+    axes = sniffed.axes[0] if sniffed.axes else "iso"
+    found = sweeps.load(configuration_of(sniffed.recordings[k : k + 1], axes)).sweeps
+    notes = [n for n in sniffed.reading.stretches if n.file == found[0].file]
+    with style.applied():
+        style.save(recording(found[0], notes), path)

@@ -1,0 +1,129 @@
+"""What a moving sweep owes to its motion: the lag of the side force, and the hysteresis that is left without it.
+
+A tyre answers to a change of its sideslip angle over its relaxation length, and filters delay channels; both shift the
+curve along the angle, up and down in opposite senses. Where the side force is zero nothing else tells the two ways apart:
+heat and friction act in proportion to the force. So the shift is read there, and only there.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+from scipy.ndimage import uniform_filter1d
+
+NEAR_ZERO = 0.25
+"""Side force, per largest of its sweep, within which its curve is straight enough to be read at zero."""
+FEWEST = 8
+"""Points on each way, within that."""
+WORST = 1e8
+"""Condition number beyond which the points do not fix the lines: one side of zero is missing."""
+FEWEST_SWEEPS = 3
+"""Sweeps whose scatter tells how well their median is known."""
+BINS = 25
+
+
+class Lag(NamedTuple):
+    """Of one sweep."""
+
+    lag: float  #: rolled distance by which the force lags behind the angle [m]; negative where the angle is delayed more
+    u: float  #: its standard uncertainty [m], from the scatter of the points
+    u_shape: float  #: the same from the choice of the curve through zero, common to all sweeps [m]
+    hysteresis: float  #: half the difference of the two ways at one angle, rms over the sweep [N]
+
+
+UNKNOWN = Lag(np.nan, np.nan, np.nan, np.nan)
+
+
+def measure(alpha: np.ndarray, Fy: np.ndarray, s: np.ndarray, smooth: int = 1) -> Lag:
+    """Lag and hysteresis of one sweep of the sideslip angle.
+
+    Parameters
+    ----------
+    alpha : (n,) angle as read [rad]
+    Fy : (n,) [N]
+    s : (n,) rolled distance [m], rising
+    smooth : samples over which the angle is averaged before its rate is taken
+
+    Returns
+    -------
+    Lag
+        ``UNKNOWN`` where the sweep does not go through zero force both ways.
+    """
+    if len(alpha) < 4 * FEWEST:
+        return UNKNOWN
+    rate = np.gradient(uniform_filter1d(alpha, max(smooth, 1), mode="nearest"), s)
+    usual = float(np.median(np.abs(rate)))
+    ways = [np.sign(rate) == way for way in (1.0, -1.0)]
+    near = np.abs(Fy) < NEAR_ZERO * np.max(np.abs(Fy))
+    even = np.abs(np.abs(rate) - usual) < 0.5 * usual
+    crossings = [_crossing(Fy[way & near & even], alpha[way & near & even]) for way in ways]
+    if usual == 0.0 or not all(np.isfinite(crossing.alpha) for crossing in crossings):
+        return UNKNOWN
+    up, down = crossings
+    lag = 0.5 * (up.alpha - down.alpha) / usual
+    one_line = 0.5 * (up.of_one_line - down.of_one_line) / usual
+    # What is left of the difference once the lag is taken off the angle.
+    moved = alpha - lag * rate
+    edges = np.linspace(moved.min(), moved.max(), BINS + 1)
+    means = [_binned(moved[way], Fy[way], edges) for way in ways]
+    difference = means[0] - means[1]
+    known = np.isfinite(difference)
+    hysteresis = float(np.sqrt(np.mean(difference[known] ** 2)) / 2.0) if np.any(known) else np.nan
+    return Lag(
+        float(lag), float(0.5 * np.hypot(up.u, down.u) / usual), float(abs(lag - one_line)), hysteresis
+    )
+
+
+class Crossing(NamedTuple):
+    """Of one way through zero force."""
+
+    alpha: float  #: angle there [rad], by two lines with a common end at zero force
+    u: float  #: its standard error [rad]
+    of_one_line: float  #: the same angle by one straight line [rad]
+
+
+def _crossing(Fy: np.ndarray, alpha: np.ndarray) -> Crossing:
+    """The angle at zero force, from the points about it.
+
+    A way that begins cold and ends hot is steeper on one side of zero, which one line would take for a shift.
+    """
+    if len(Fy) < FEWEST or Fy.min() > 0.0 or Fy.max() < 0.0:
+        return Crossing(np.nan, np.nan, np.nan)
+    x = Fy / np.max(np.abs(Fy))
+    design = np.column_stack([np.ones(len(Fy)), x.clip(min=0.0), x.clip(max=0.0)])
+    found, *_ = np.linalg.lstsq(design, alpha, rcond=None)
+    residual = alpha - design @ found
+    normal = design.T @ design
+    if np.linalg.cond(normal) > WORST:
+        return Crossing(np.nan, np.nan, np.nan)
+    variance = float(residual @ residual) / (len(Fy) - 3)
+    straight = float(np.polynomial.polynomial.polyfit(x, alpha, 1)[0])
+    return Crossing(float(found[0]), float(np.sqrt(variance * np.linalg.inv(normal)[0, 0])), straight)
+
+
+def _binned(x: np.ndarray, y: np.ndarray, edges: np.ndarray) -> np.ndarray:
+    """Means of ``y`` (k,) between the edges (k + 1,); NaN where there is none."""
+    where = np.clip(np.searchsorted(edges, x, side="right") - 1, 0, len(edges) - 2)
+    count = np.bincount(where, minlength=len(edges) - 1)
+    with np.errstate(invalid="ignore"):
+        return np.bincount(where, weights=y, minlength=len(edges) - 1) / np.where(count > 0, count, np.nan)
+
+
+def common(lags: Sequence[Lag]) -> tuple[float, float]:
+    """The lag of a recording [m] and its standard uncertainty: one tyre on one rig; NaN where no sweep tells.
+
+    The uncertainty is that of the median of the sweeps, from their scatter, and that of the curve's shape.
+    """
+    told = [found for found in lags if np.isfinite(found.lag)]
+    if not told:
+        return np.nan, np.nan
+    known = np.array([found.lag for found in told])
+    shape = float(np.median([found.u_shape for found in told]))
+    if len(told) < FEWEST_SWEEPS:
+        own = float(np.hypot.reduce([found.u for found in told])) / len(told)
+        return float(np.mean(known)), float(np.hypot(own, shape))
+    middle = float(np.median(known))
+    scatter = 1.4826 * float(np.median(np.abs(known - middle)))
+    return middle, float(np.hypot(1.2533 * scatter / np.sqrt(len(known)), shape))  # of a median

@@ -1,0 +1,20 @@
+"""How far numbers scatter: the one root mean square, and the one measure that outliers do not move."""
+
+from __future__ import annotations
+
+import numpy as np
+
+NORMAL = 1.482602218505602
+"""Standard deviation of normal noise over the median of its absolute value."""
+
+
+def rms(x: np.ndarray) -> float:
+    """Root mean square of the finite values; NaN if there are none."""
+    x = x[np.isfinite(x)]
+    return float(np.sqrt(np.mean(x**2))) if len(x) else float("nan")
+
+
+def robust(x: np.ndarray, centre: float = 0.0) -> float:
+    """Standard deviation of the core of finite values around a centre; NaN if there are none."""
+    x = x[np.isfinite(x)]
+    return NORMAL * float(np.median(np.abs(x - centre))) if len(x) else float("nan")

@@ -1,0 +1,104 @@
+"""A flat-belt machine that writes recordings the way such machines do, from the four-line tyre of ``disc_project``.
+
+SAE axes, km/h, centimetres, one file with everything in it: sweeps of sideslip up and down, the load stepped between
+them, camber and pressure now and then. The tyre lags by a first-order filter along the rolled distance and loses grip with
+the heat that it makes; neither comes from the project's own code.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import scipy.io
+from disc_project import moment, side_force
+from scipy.signal import lfilter
+
+RATE = 100.0
+SPEED = 11.0  # m/s
+LOADS = (600.0, 1500.0, 2400.0)
+CAMBERS = (0.0, 2.0, 4.0)
+UNITS = {
+    "ET": "sec", "V": "kph", "SA": "deg", "IA": "deg", "P": "kPa", "FX": "N", "FY": "N", "FZ": "N", "MX": "N-m", "MZ": "N-m",
+    "TSTC": "deg C", "SL": "none",
+}  # fmt: skip
+
+
+def recording(
+    *,
+    loads: Sequence[float] = LOADS,
+    cambers: Sequence[float] = CAMBERS,
+    pressures: Sequence[float] = (83.0, 97.0),
+    sigma: float = 0.0,
+    grip_per_K: float = 0.0,
+    sweep_s: float = 12.0,
+    rest_s: float = 3.0,
+    gaps: bool = False,
+    seed: int = 1,
+) -> pd.DataFrame:
+    """Samples in the machine's own words; every condition is swept once, 0 -> 9 -> 0 -> -9 -> 0 deg.
+
+    Parameters
+    ----------
+    sigma : relaxation length [m]
+    grip_per_K : share of the side force lost per degree of tread temperature
+    rest_s : at zero sideslip before each sweep, while the load changes over its first half second
+    gaps : only the sweeps are written, with the clock running on
+    """
+    random = np.random.default_rng(seed)
+    swept, resting = round(sweep_s * RATE), round(rest_s * RATE)
+    phase = np.arange(swept) / swept
+    triangle = 9.0 * (1.0 - np.abs((4.0 * phase + 1.0) % 4.0 - 2.0))
+    parts = []
+    for p in pressures:
+        for gamma in cambers:
+            for load in loads:
+                parts.append((p, gamma, load))
+    alpha = np.concatenate([np.r_[np.zeros(resting), triangle] for _ in parts])
+    each = resting + swept
+    Fz, gamma, p = (np.repeat([part[k] for part in parts], each).astype(float) for k in (2, 1, 0))
+    ramp = round(0.5 * RATE)
+    Fz, gamma = (lfilter(np.ones(ramp) / ramp, 1, x - x[0]) + x[0] for x in (Fz, gamma))
+    n = len(alpha)
+    time = np.arange(n) / RATE
+    follows = np.radians(alpha)
+    if sigma:
+        keeps = np.exp(-SPEED / RATE / sigma)
+        follows = lfilter([1.0 - keeps], [1.0, -keeps], follows)
+    heat = lfilter([0.004], [1.0, -0.996], np.abs(alpha))  # follows the work done with some seconds' delay
+    T = 55.0 + 3.0 * heat
+    grip = 1.0 - grip_per_K * (T - 55.0)
+    real = Fz * (1.0 + 0.01 * random.standard_normal(n))
+    Fy = grip * side_force(follows, np.radians(gamma), real, side=0.0) + 10.0 * random.standard_normal(n)
+    Mz = moment(follows, np.radians(gamma), real, side=0.0) + 0.8 * random.standard_normal(n)
+    table = pd.DataFrame(
+        {
+            "ET": time + 31.5,
+            "V": 3.6 * SPEED + 0.05 * random.standard_normal(n),
+            "SA": -(alpha + 0.01 * random.standard_normal(n)),
+            "IA": gamma + 0.01 * random.standard_normal(n),
+            "P": p + 0.3 * random.standard_normal(n),
+            "FX": 5.0 * random.standard_normal(n),
+            "FY": -Fy,
+            "FZ": -real,
+            "MX": 0.02 * Fy,
+            "MZ": -Mz,
+            "TSTC": T,
+            "SL": 0.0,
+        }
+    )
+    if gaps:
+        table = table[np.tile(np.r_[np.zeros(resting, bool), np.ones(swept, bool)], len(parts))]
+    return table.reset_index(drop=True)
+
+
+def write_mat(table: pd.DataFrame, path: Path, **texts: str) -> Path:
+    """The table as a MATLAB file in the layout of the tyre test consortium."""
+    names = np.array(list(table), dtype=object)
+    units = np.array([UNITS.get(name, "") for name in table], dtype=object)
+    content = {name: table[name].to_numpy()[:, None] for name in table}
+    channel = {"name": names, "units": units}
+    scipy.io.savemat(path, {**content, "channel": channel, "tireid": "Tyre A, 7 inch", **texts})
+    return path

@@ -1,0 +1,251 @@
+"""Recordings of a flat belt come back as sweeps, with what motion did to them measured, and everything left out named."""
+
+from __future__ import annotations
+
+import numpy as np
+import pandas as pd
+import pytest
+from disc_project import side_force
+from flat_belt import CAMBERS, LOADS, RATE, SPEED, recording, write_mat
+
+from mffit import config as configuration
+from mffit import points
+from mffit.errors import InputError
+from mffit.points import lag
+from mffit.points.stretch import MOVE, SWEEP
+
+COLUMNS = {
+    "time_s": "ET", "alpha_deg": "SA", "gamma_deg": "IA", "Fz_N": "FZ", "Fy_N": "FY", "Mz_Nm": "MZ", "p_kPa": "P", "V_mps": "V",
+    "T_degC": "TSTC", "kappa": "SL",
+}  # fmt: skip
+
+
+@pytest.fixture
+def read(tmp_path):
+    def reading(table: pd.DataFrame, axes: str = "calspan", **keys) -> points.loading.Reading:
+        file = write_mat(table, tmp_path / "run.mat")
+        return points.read(
+            configuration.load(
+                {
+                    "tyre": {
+                        "name": "x",
+                        "unloaded_radius": 0.2,
+                        "nominal_load": 1500.0,
+                        "nominal_pressure": 83.0,
+                    },
+                    "rig": {"type": "flat-track", "axes": axes},
+                    "columns": COLUMNS,
+                    "sweep": [{"file": str(file)}],
+                }
+            ),
+            **keys,
+        )
+
+    return reading
+
+
+def kept(found) -> list:
+    return [note for note in found.stretches if note.kind == SWEEP and not note.dropped]
+
+
+@pytest.mark.parametrize("gaps", [True, False])
+def test_every_condition_is_a_sweep_of_its_own(read, gaps):
+    found = read(recording(gaps=gaps))
+    sweeps = kept(found)
+    conditions = [(p, gamma, load) for p in (83.0, 97.0) for gamma in CAMBERS for load in LOADS]
+    assert len(sweeps) == len(conditions)
+    for note, (p, gamma, load) in zip(sweeps, conditions, strict=True):
+        assert note.Fz_N == pytest.approx(load, rel=0.01)
+        assert note.gamma_deg == pytest.approx(gamma, abs=0.05)
+        assert note.p_kPa == pytest.approx(p, abs=0.2)
+        assert note.alpha_from_deg < -8.5
+        assert note.alpha_to_deg > 8.5
+    labels = {found.points.sweep_names[k] for k in np.unique(found.points.sweep)}
+    assert {note.sweep for note in sweeps} <= labels
+    assert not np.any(found.points.continuous)
+
+
+def test_every_sample_is_in_one_stretch_and_those_left_out_say_why(read):
+    table = recording()
+    notes = read(table).stretches
+    covered = np.zeros(len(table), dtype=int)
+    for note in notes:
+        covered[note.first_line - 1 : note.last_line] += 1
+        assert bool(note.dropped) != bool(note.points), note
+    # A plateau begins behind its transient, which is no stretch of its own.
+    assert covered.max() == 1
+    assert covered.mean() > 0.9
+
+
+def test_points_lie_on_the_tyre(read):
+    """Means of ten samples of 10 N scatter by 3.2 N; the curve bends by less than 3 N over a third of a degree."""
+    found = read(recording()).points
+    truth = side_force(found.alpha, found.gamma, found.Fz, side=0.0)
+    assert np.sqrt(np.mean((found.Fy - truth) ** 2)) < 8.0
+    line = found.line[1:] - found.line[:-1]
+    assert np.all(line[np.diff(found.sweep) == 0] > 0)
+
+
+@pytest.mark.parametrize("sigma", [0.0, 0.3, 0.6])
+def test_the_lag_is_measured_and_taken_off(read, sigma):
+    table = recording(sigma=sigma)
+    lags = [note.lag_m for note in kept(read(table)) if np.isfinite(note.lag_m)]
+    assert len(lags) >= 12
+    # The machine's filter, sample by sample, lags by this on a ramp: sigma less half a sample.
+    step = SPEED / RATE
+    keeps = np.exp(-step / sigma) if sigma else 0.0
+    assert np.median(lags) == pytest.approx(step * keeps / (1.0 - keeps), rel=0.08, abs=0.03)
+    found = read(table).points
+    truth = side_force(found.alpha, found.gamma, found.Fz, side=0.0)
+    # Uncorrected, 0.6 m at 3 deg/s and 11 m/s are 0.16 deg, 55 N where the curve is steepest.
+    assert np.sqrt(np.mean((found.Fy - truth) ** 2)) < 12.0
+    np.testing.assert_allclose(-found.table["alpha_deg"], np.degrees(found.alpha), atol=0.25)
+
+
+def test_heat_is_no_lag(read):
+    """A tyre that loses 1 % of its grip per degree differs between up and down, but not where the force is zero."""
+    found = read(recording(grip_per_K=0.01))
+    lags = [note.lag_m for note in kept(found) if np.isfinite(note.lag_m)]
+    assert abs(np.median(lags)) < 0.05
+    hysteresis = [note.hysteresis_N / note.Fz_N for note in kept(found)]
+    assert np.nanmedian(hysteresis) > 0.01
+    assert np.nanmedian([n.hysteresis_N / n.Fz_N for n in kept(read(recording()))]) < 0.01
+    assert np.ptp(found.points.T) > 5.0  # the tread's temperature stays a channel
+
+
+def test_the_diagnosis_gets_the_angle_as_read(read):
+    found = read(recording(sigma=0.5), continuous=True).points
+    swept = found.continuous
+    np.testing.assert_allclose(-found.table["alpha_deg"][swept], np.degrees(found.alpha[swept]), atol=1e-9)
+    assert swept.mean() > 0.9
+
+
+def test_spread_does_not_join_the_loads(read):
+    """A load that wanders by a tenth within its sweeps does not make one level of three."""
+    table = recording()
+    table["FZ"] *= 1.0 + 0.1 * np.sin(np.arange(len(table)) / RATE / 2.0)
+    found = read(table)
+    loads = [note.Fz_N for note in kept(found)]
+    assert len(loads) == 18
+    assert points.levels.count(np.array(loads), points.levels.LOAD) == 3
+
+
+def spoilt(change) -> pd.DataFrame:
+    table = recording()
+    change(table)
+    return table
+
+
+def cold(table):
+    table["TSTC"] -= np.where(table["ET"] < 31.5 + 30.0, 20.0, 0.0)
+
+
+def stuck(table):
+    table.loc[2000:2200, "FY"] = table["FY"][2000]
+
+
+def clipped(table):
+    table["FY"] = table["FY"].clip(upper=1800.0)
+
+
+def spiky(table):
+    table.loc[[700, 900, 2600], "FY"] += 4000.0
+
+
+def off_the_belt(table):
+    table.loc[3000:3400, "FZ"] = 3.0 * np.random.default_rng(2).standard_normal(401)
+
+
+def silent(table):
+    table.loc[4000:4100, "FY"] = np.nan
+
+
+def driven(table):
+    table.loc[5000:5300, "SL"] = 0.08
+
+
+def impossible(table):
+    table.loc[[100, 101], "FZ"] = -9e9
+
+
+@pytest.mark.parametrize(
+    ("change", "said"),
+    [
+        (cold, "cold"),
+        (stuck, "Fy stuck"),
+        (clipped, "Fy clipped"),
+        (spiky, "spikes of Fy"),
+        (off_the_belt, "no load"),
+        (silent, "no reading of Fy"),
+        (driven, "driven or braked"),
+        (impossible, "no reading"),
+    ],
+)
+def test_what_is_no_measurement_is_left_out_with_its_reason(read, change, said):
+    whole = read(recording())
+    found = read(spoilt(change))
+    sentences = " ".join([*found.warnings, *(note.dropped for note in found.stretches)])
+    assert said in sentences
+    truth = side_force(found.points.alpha, found.points.gamma, found.points.Fz, side=0.0)
+    assert np.max(np.abs(found.points.Fy - truth)) < 80.0
+    assert 0.5 * len(whole.points) < len(found.points) < 1.02 * len(whole.points)
+
+
+@pytest.mark.parametrize("axes", ["iso", "adapted-sae"])
+def test_a_wrong_declaration_is_caught(read, axes):
+    with pytest.raises(InputError, match='"sae"'):
+        read(recording(), axes=axes)
+
+
+@pytest.mark.parametrize("column", ["SA", "FY", "IA"])
+def test_a_reversed_channel_is_caught(read, column):
+    table = recording()
+    table[column] *= -1.0
+    with pytest.raises(InputError, match="as no tyre does"):
+        read(table)
+
+
+def test_samples_written_twice_are_left_out(read):
+    table = recording(gaps=True)
+    doubled = pd.concat([table.iloc[:800], table.iloc[799:800], table.iloc[800:]], ignore_index=True)
+    found = read(doubled)
+    assert any("time of the one before" in warning for warning in found.warnings)
+    assert len(found.points) == len(read(table).points)
+
+
+def test_a_recording_that_is_driven_throughout_says_so(read):
+    table = recording()
+    table["SL"] = 0.1
+    with pytest.raises(InputError, match="driven or braked"):
+        read(table)
+
+
+def test_moves_between_plateaus_are_no_sweeps(read):
+    """A staircase of set-points with moves of 4 deg between them."""
+    time = np.arange(8000) / RATE
+    stations = np.repeat([0.0, 4.0, 8.0, 4.0, 0.0, -4.0, -8.0, -4.0], 2)
+    corners = np.sort(np.r_[np.arange(8) * 10.0, np.arange(8) * 10.0 + 8.0])
+    alpha = np.interp(time, corners, stations)
+    table = recording().iloc[: len(time)].copy()
+    random = np.random.default_rng(3)
+    table["SA"], table["IA"], table["P"] = -alpha, 0.0, 83.0
+    table["FZ"] = -1500.0 + 5.0 * random.standard_normal(len(time))
+    table["FY"] = -side_force(np.radians(alpha), 0.0, 1500.0, side=0.0) + 5.0 * random.standard_normal(
+        len(time)
+    )
+    found = read(table, check_physics=False)
+    assert not kept(found)
+    assert len(found.points) == 8
+    assert {note.dropped for note in found.stretches if note.kind == MOVE} == {"moves between set-points"}
+
+
+def test_lag_and_hysteresis_of_a_curve_that_is_known():
+    """Two ways of a straight line of 2000 N, shifted by 0.4 m of rolling at 0.005 rad/m."""
+    s = np.linspace(0.0, 80.0, 801)
+    alpha = 0.1 - np.abs(0.005 * s - 0.2)
+    way = np.sign(np.gradient(alpha, s))
+    Fy = -20_000.0 * (alpha - 0.4 * 0.005 * way)
+    found = lag.measure(alpha, Fy, s)
+    assert found.lag == pytest.approx(0.4, abs=0.01)
+    assert found.hysteresis == pytest.approx(0.0, abs=10.0)
+    assert lag.measure(alpha[:400], Fy[:400], s[:400]) == lag.UNKNOWN

@@ -1,0 +1,171 @@
+"""From a recording to a property file with nothing typed by hand but radius and load."""
+
+from __future__ import annotations
+
+import tomllib
+
+import numpy as np
+import pandas as pd
+import pytest
+from disc_project import side_force
+from flat_belt import CAMBERS, LOADS, recording, write_mat
+
+from mffit import config as configuration
+from mffit import pipeline
+from mffit.cli import main
+from mffit.errors import InputError
+from mffit.recordings import sniff
+from mffit.report import text
+
+GIVEN = {"unloaded_radius": 0.2057, "nominal_load": 1500.0}
+
+
+@pytest.fixture(scope="module")
+def machine(tmp_path_factory):
+    return write_mat(recording(sigma=0.3), tmp_path_factory.mktemp("machine") / "cornering.mat")
+
+
+def test_conditions_axes_and_columns_are_found(machine):
+    found = sniff([machine])
+    assert found.axes == ("sae",)
+    values = {name: [level.value for level in levels] for name, levels in found.conditions.items()}
+    np.testing.assert_allclose(values["load"], LOADS, rtol=0.01)
+    np.testing.assert_allclose(np.degrees(values["camber"]), CAMBERS, atol=0.05)
+    np.testing.assert_allclose(values["pressure"], [83e3, 97e3], rtol=0.01)
+    np.testing.assert_allclose(values["speed"], [11.0], rtol=0.01)
+    guesses = found.recordings[0].guesses
+    assert {name: guesses[name].heading for name in ("alpha_deg", "Fz_N", "T_degC", "kappa")} == {
+        "alpha_deg": "SA", "Fz_N": "FZ", "T_degC": "TSTC", "kappa": "SL",
+    }  # fmt: skip
+    assert found.recordings[0].rate == pytest.approx(100.0)
+    said = text.sniff_summary(found)
+    for word in ("SA", "alpha_deg", "kph", "axes: sae", "Tyre A", "100 samples per second"):
+        assert word in said
+
+
+def iso(table: pd.DataFrame) -> pd.DataFrame:
+    return table.assign(SA=-table["SA"], FY=-table["FY"], FZ=-table["FZ"], MZ=-table["MZ"])
+
+
+@pytest.mark.parametrize(
+    ("turned", "axes"),
+    [
+        (lambda t: t, ("sae",)),
+        (iso, ("iso",)),
+        (lambda t: iso(t).assign(FY=t["FY"], MZ=t["MZ"]), ("adapted-sae",)),
+        (lambda t: t.assign(FZ=-t["FZ"]), ("sae",)),
+        (lambda t: t.assign(FY=-t["FY"]), ()),
+    ],
+)
+def test_physics_tells_the_axes(tmp_path, turned, axes):
+    assert sniff([write_mat(turned(recording(pressures=(83.0,))), tmp_path / "a.mat")]).axes == axes
+
+
+def test_an_upright_wheel_leaves_the_axes_open_and_says_so(tmp_path):
+    table = iso(recording(cambers=(0.0,), pressures=(83.0,)))
+    found = sniff([write_mat(table, tmp_path / "a.mat")])
+    assert set(found.axes) == {"iso", "sae"}
+    assert "too little camber" in text.sniff_summary(found)
+
+
+def test_units_that_a_file_does_not_state_are_written_down_as_assumed(tmp_path):
+    table = recording(pressures=(83.0,))
+    table = table.assign(P=table["P"] / 100.0, FZ=table["FZ"] / 1e3, V=table["V"] / 3.6)
+    table.to_csv(tmp_path / "a.csv", index=False)
+    _, written = pipeline.init_from([tmp_path / "a.csv"], tmp_path / "project", **GIVEN)
+    content = tomllib.loads(written[0].read_text())
+    assert content["columns"]["Fz_N"] == {"column": "FZ", "unit": "kN"}
+    assert content["columns"]["p_kPa"] == {"column": "P", "unit": "bar"}
+    assert content["columns"]["V_mps"] == {"column": "V", "unit": "m/s"}
+    assert "the file states no unit" in written[0].read_text()
+    assert content["tyre"]["nominal_pressure"] == pytest.approx(83, abs=1)
+
+
+def test_from_the_recording_to_the_property_file(machine, tmp_path, capsys):
+    """The tyre's own curve, which lags and scatters in the recording, to 3 % of the load."""
+    project = tmp_path / "project"
+    options = ["--unloaded-radius", "0.2057", "--nominal-load", "1500"]
+    main(["init", "--from", str(machine), str(project), *options])
+    assert "written" in capsys.readouterr().out
+    content = tomllib.loads((project / "tyre.toml").read_text())
+    assert content["tyre"]["name"] == "cornering"
+    assert content["tyre"]["size"] == "Tyre A, 7 inch"
+    assert content["rig"] == {"type": "flat-track", "axes": "sae"}
+    assert (project / "cornering.png").stat().st_size > 10_000
+    stretches = pd.read_csv(project / "stretches.csv")
+    assert (stretches["points"] > 0).sum() >= 18
+    result = pipeline.build(project / "tyre.toml", project / "out")
+    alpha = np.radians(np.linspace(-8.0, 8.0, 33))
+    for load in LOADS:
+        truth = side_force(alpha, 0.0, load, side=0.0)
+        assert (
+            np.sqrt(np.mean((result.tyre(load, alpha=alpha, p=83e3, Vx=11.0).Fy - truth) ** 2)) < 0.03 * load
+        )
+    points = pd.read_csv(project / "out" / "points.csv")
+    assert set(points["sweep"]) >= {"cornering:01", "cornering:18"}
+    assert {"file", "line", "direction", "mount", "T_degC"} <= set(points)
+    pd.testing.assert_frame_equal(
+        pd.read_csv(project / "out" / "stretches.csv")[["points"]], stretches[["points"]]
+    )
+
+
+def test_the_written_project_is_valid_and_its_resolved_form_too(machine, tmp_path):
+    _, written = pipeline.init_from([machine], tmp_path / "p", nominal_pressure=90.0, name="a-b", **GIVEN)
+    found = configuration.load(written[0])
+    assert (found.tyre.name, found.tyre.nominal_pressure) == ("a-b", 90.0)
+    again = configuration.load(configuration.resolved(found, folder=tmp_path / "p"), folder=tmp_path / "p")
+    assert again.columns == found.columns
+
+
+def test_what_recordings_do_not_say_is_asked_for(machine, tmp_path):
+    with pytest.raises(InputError, match="--unloaded-radius"):
+        pipeline.init_from([machine], tmp_path / "p", unloaded_radius=None, nominal_load=1500.0)
+    assert not (tmp_path / "p").exists()
+
+
+def test_nothing_is_overwritten(machine, tmp_path):
+    (tmp_path / "tyre.toml").write_text("mine")
+    with pytest.raises(InputError, match="there already"):
+        pipeline.init_from([machine], tmp_path, **GIVEN)
+    assert (tmp_path / "tyre.toml").read_text() == "mine"
+    assert [path.name for path in tmp_path.iterdir()] == ["tyre.toml"]
+
+
+def test_a_driven_recording_is_described_and_makes_no_project(tmp_path):
+    table = recording(pressures=(83.0,))
+    table["SL"] = 0.1 * np.sin(np.arange(len(table)) / 50.0)
+    table["SL"] += 0.2
+    path = write_mat(table, tmp_path / "drive.mat")
+    found = sniff([path])
+    assert "driven or braked" in text.sniff_summary(found)
+    with pytest.raises(InputError, match="driven or braked"):
+        pipeline.init_from([path], tmp_path / "p", **GIVEN)
+
+
+@pytest.mark.parametrize("hostile", ['a"b', "x\ny", "[[sweep]]", "<script>", "\\", "# no"])
+def test_texts_of_a_file_stay_texts(tmp_path, hostile):
+    path = write_mat(recording(loads=(1500.0,), pressures=(83.0,)), tmp_path / "a.mat", tireid=hostile)
+    _, written = pipeline.init_from([path], tmp_path / "p", **GIVEN)
+    content = tomllib.loads(written[0].read_text())
+    assert content["tyre"].get("size", hostile) == hostile
+    assert set(content) == {"tyre", "rig", "columns", "sweep"}
+
+
+def test_the_command_prints_the_project_file(machine, capsys):
+    main(["sniff", str(machine)])
+    printed = capsys.readouterr().out
+    start = printed.index("[tyre]")
+    assert tomllib.loads(printed[start:])["columns"]["alpha_deg"] == "SA"
+
+
+@pytest.mark.parametrize(
+    "arguments", [["init", "--from", "only-one"], ["init", "a", "b"], ["sniff", "missing.mat"]]
+)
+def test_bad_usage_is_one_sentence(arguments, tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    with pytest.raises(SystemExit) as caught:
+        main(arguments)
+    assert caught.value.code == 2
+    error = capsys.readouterr().err
+    assert error.startswith("mffit: ")
+    assert error.count("\n") == 1

@@ -1,0 +1,230 @@
+"""The same table in every format reads the same; what is broken is one sentence."""
+
+from __future__ import annotations
+
+import gzip
+
+import numpy as np
+import pandas as pd
+import pytest
+import scipy.io
+from flat_belt import UNITS, recording, write_mat
+
+from mffit import config as configuration
+from mffit import sweeps
+from mffit.errors import InputError
+from mffit.sweeps import formats
+
+TABLE = recording(loads=(1500.0,), cambers=(0.0,), pressures=(83.0,), sweep_s=2.0, rest_s=0.2)
+
+
+def write_v4(path):
+    scipy.io.savemat(path, {name: TABLE[name].to_numpy()[:, None] for name in TABLE}, format="4")
+
+
+def write_v73(path):
+    """The layout of MATLAB 7.3: a row for each column vector, letters as numbers, cells as references."""
+    h5py = pytest.importorskip("h5py")
+    with h5py.File(path, "w", userblock_size=512) as file:
+        for name in TABLE:
+            file[name] = TABLE[name].to_numpy()[None, :]
+            file[name].attrs["MATLAB_class"] = np.bytes_("double")
+        channel = file.create_group("channel")
+        for key, texts in (("name", list(TABLE)), ("units", [UNITS[name] for name in TABLE])):
+            cells = []
+            for k, text in enumerate(texts):
+                item = file.create_dataset(
+                    f"#refs#/{key}{k}", data=np.array([[ord(c)] for c in text], dtype=np.uint16)
+                )
+                item.attrs["MATLAB_class"] = np.bytes_("char")
+                cells.append(item.ref)
+            channel.create_dataset(key, data=np.array(cells, dtype=h5py.ref_dtype)[None, :])
+        tyre = file.create_dataset("tireid", data=np.array([[ord(c)] for c in "Tyre A"], dtype=np.uint16))
+        tyre.attrs["MATLAB_class"] = np.bytes_("char")
+
+
+def write_xlsx(path):
+    pytest.importorskip("openpyxl")
+    units = pd.DataFrame([[UNITS[name] for name in TABLE]], columns=list(TABLE))
+    pd.concat([units, TABLE.astype(object)]).to_excel(path, index=False, startrow=2)
+
+
+def write_parquet(path):
+    pa = pytest.importorskip("pyarrow")
+    import pyarrow.parquet as parquet
+
+    fields = [pa.field(name, pa.float64(), metadata={"unit": UNITS[name]}) for name in TABLE]
+    parquet.write_table(pa.table([TABLE[name].to_numpy() for name in TABLE], schema=pa.schema(fields)), path)
+
+
+def write_dat(path):
+    """A title, names and units between tabs, as Calspan's text files have them."""
+    lines = ["Tyre A; 12 psi; 25 mph", "\t".join(TABLE), "\t".join(UNITS[name] for name in TABLE)]
+    lines += ["\t".join(repr(float(value)) for value in row) for row in TABLE.to_numpy()]
+    path.write_text("\r\n".join(lines))
+
+
+def tydex(
+    *, factor: float = 1.0, offset: float = 0.0, shift: float = 0.0, fixed: bool = True, end: str = "\n"
+) -> str:
+    lines = ["**HEADER", f"{'RELEASE':<10}{'Release of TYDEX':<30}{'':<10}1.3", "! a remark", "**CONSTANTS"]
+    lines += [
+        f"{'RIMWIDTH':<10}{'Width of the rim':<30}{'in':<10}7.0",
+        f"{'TYRE':<10}{'Name':<30}{'':<10}Tyre A",
+        "**MEASURCHANNELS",
+    ]
+    for name in TABLE:
+        row = f"{name:<10}{'a channel':<30}{UNITS[name].replace('none', '-'):<10}{factor:<10}{offset:<10}{shift:<10}"
+        lines.append(
+            row
+            if fixed
+            else " ".join([name, "a", "channel", UNITS[name].replace(" ", ""), f"{factor} {offset} {shift}"])
+        )
+    lines.append("**MEASURDATA")
+    raw = (TABLE.to_numpy() - shift) / factor - offset
+    lines += [" ".join(repr(float(value)) for value in row) for row in raw]
+    return end.join([*lines, "**END", ""])
+
+
+WRITERS = {
+    "five.mat": lambda path: write_mat(TABLE, path),
+    "four.mat": write_v4,
+    "seven.mat": write_v73,
+    "book.xlsx": write_xlsx,
+    "table.parquet": write_parquet,
+    "calspan.dat": write_dat,
+    "run.tdx": lambda path: path.write_text(tydex()),
+    "scaled.tdx": lambda path: path.write_text(tydex(factor=0.25, offset=3.0, shift=-1.0)),
+    "free.tdx": lambda path: path.write_text(tydex(fixed=False, end="\r\n"), newline=""),
+    "run.tdx.gz": lambda path: path.write_bytes(gzip.compress(tydex().encode())),
+    "plain.csv": lambda path: TABLE.to_csv(path, index=False),
+    "german.csv": lambda path: TABLE.to_csv(path, index=False, sep=";", decimal=","),
+}
+
+
+@pytest.mark.parametrize("name", WRITERS)
+def test_every_format_gives_the_same_numbers(tmp_path, name):
+    path = tmp_path / name
+    WRITERS[name](path)
+    raw = formats.read(path)
+    assert set(raw.headings) >= set(TABLE)
+    for heading in TABLE:
+        k = raw.headings.index(heading)
+        cells = np.array([float(cell) for cell in raw.cells[k]])
+        np.testing.assert_allclose(cells, TABLE[heading], rtol=1e-12, atol=1e-9)
+        if raw.units[k]:
+            assert raw.units[k].replace(" ", "") in (UNITS[heading].replace(" ", ""), "-")
+    assert len(raw.lines) == len(raw)
+
+
+@pytest.mark.parametrize("name", ["five.mat", "seven.mat"])
+def test_what_a_recording_says_of_itself_is_kept(tmp_path, name):
+    WRITERS[name](tmp_path / name)
+    raw = formats.read(tmp_path / name)
+    assert raw.about["tireid"].startswith("Tyre A")
+    assert dict(zip(raw.headings, raw.units, strict=True)) == UNITS
+
+
+def test_constants_of_a_tydex_file_become_columns(tmp_path):
+    (tmp_path / "a.tdx").write_text(tydex())
+    raw = formats.read(tmp_path / "a.tdx")
+    k = raw.headings.index("RIMWIDTH")
+    assert raw.units[k] == "in"
+    np.testing.assert_array_equal(raw.cells[k], 7.0)
+
+
+BROKEN = {
+    "a.mat": (b"", "MATLAB"),
+    "b.mat": (b"MATLAB 5.0 MAT-file" + bytes(120), "MATLAB"),
+    "c.mat": (b"\x89HDF\r\n\x1a\nnothing more", "MATLAB"),
+    "d.xlsx": (b"PK\x03\x04nothing", "Excel"),
+    "e.parquet": (b"PAR1", "Parquet"),
+    "f.tdx": (b"\0\1\2\3", "National Instruments"),
+    "g.tdx": (b"alpha,beta\n", "**HEADER"),
+    "h.tdx": (b"**HEADER\n**MEASURCHANNELS\n**END\n", "no channels"),
+    "i.tdx": (b"**HEADER\n**MEASURCHANNELS\nFYW x N\n**MEASURDATA\n1 2\n", "2 values for 1"),
+    "j.tdx": (b"**HEADER\n**MEASURCHANNELS\nFYW x N\n**MEASURDATA\none\n", "no number"),
+    "k.dat": (b"", "empty"),
+}
+
+
+@pytest.mark.parametrize("name", BROKEN)
+def test_a_broken_file_is_refused_in_a_sentence(tmp_path, name):
+    content, said = BROKEN[name]
+    (tmp_path / name).write_bytes(content)
+    with pytest.raises(InputError) as caught:
+        formats.read(tmp_path / name)
+    assert said in str(caught.value)
+    assert "\n" not in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ("module", "name"), [("h5py", "seven.mat"), ("openpyxl", "book.xlsx"), ("pyarrow", "table.parquet")]
+)
+def test_a_missing_library_is_named(tmp_path, monkeypatch, module, name):
+    WRITERS[name](tmp_path / name)
+    monkeypatch.setitem(__import__("sys").modules, module, None)
+    with pytest.raises(InputError, match=r"mffit\[formats\]"):
+        formats.read(tmp_path / name)
+
+
+def config(folder, **changes):
+    content = {
+        "tyre": {"name": "x", "unloaded_radius": 0.2, "nominal_load": 1500.0, "nominal_pressure": 83.0},
+        "rig": {"type": "flat-track", "axes": "calspan"},
+        "columns": {
+            "alpha_deg": "SA", "gamma_deg": "IA", "Fz_N": "FZ", "Fy_N": "FY", "V_mps": "V", "time_s": "ET", "T_degC": "TSTC",
+        },
+        "sweep": [{"file": "run*.mat"}],
+    }  # fmt: skip
+    return configuration.load({**content, **changes}, folder=folder)
+
+
+def test_one_map_and_one_pattern_serve_all_files(tmp_path):
+    for k in (2, 1, 10):
+        write_mat(TABLE, tmp_path / f"run{k}.mat")
+    (tmp_path / "runs.txt").write_text("not this one")
+    found = sweeps.load(config(tmp_path)).sweeps
+    assert [sweep.file for sweep in found] == ["run1.mat", "run10.mat", "run2.mat"]
+    np.testing.assert_allclose(found[0].V, TABLE["V"] / 3.6)
+    np.testing.assert_allclose(found[0].Fy, -TABLE["FY"])
+    np.testing.assert_allclose(found[0].Fz, -TABLE["FZ"])
+
+
+def test_a_files_own_map_comes_before_the_one_for_all(tmp_path):
+    write_mat(TABLE.rename(columns={"FY": "FYW"}), tmp_path / "run1.mat")
+    found = sweeps.load(config(tmp_path, sweep=[{"file": "run1.mat", "columns": {"Fy_N": "FYW"}}])).sweeps
+    np.testing.assert_allclose(found[0].Fy, -TABLE["FY"])
+
+
+def test_a_file_may_lack_what_the_map_for_all_names_unless_it_is_required(tmp_path):
+    write_mat(TABLE.drop(columns="TSTC"), tmp_path / "run1.mat")
+    assert np.all(np.isnan(sweeps.load(config(tmp_path)).sweeps[0].T))
+    write_mat(TABLE.drop(columns="FY"), tmp_path / "run1.mat")
+    with pytest.raises(InputError, match='no heading "FY"'):
+        sweeps.load(config(tmp_path))
+
+
+def test_a_pattern_without_files_is_refused_with_its_line(tmp_path):
+    path = tmp_path / "tyre.toml"
+    path.write_text(
+        '[tyre]\nname = "x"\nunloaded_radius = 0.3\nnominal_load = 1500\nnominal_pressure = 250\n'
+        '[rig]\ntype = "flat-track"\n[[sweep]]\nfile = "*.mat"\n'
+    )
+    with pytest.raises(InputError, match=r"no file in .* matches") as caught:
+        configuration.load(path)
+    assert caught.value.line == 9
+
+
+def test_lines_are_right_in_a_large_file_with_remarks(tmp_path):
+    """Read by pandas, which passes over blank and comment lines without counting them."""
+    table = pd.DataFrame({"alpha_deg": 0.0, "gamma_deg": 0.0, "Fz_N": 1500.0, "Fy_N": np.arange(60_000.0)})
+    text = table.to_csv(index=False).splitlines()
+    text.insert(100, "# a remark")
+    text.insert(30_000, "")
+    text = [*text, *["#" + 999 * "-"] * 2500]
+    (tmp_path / "a.csv").write_text("\n".join(text))
+    raw = formats.read(tmp_path / "a.csv")
+    assert isinstance(raw.cells[3], np.ndarray)
+    for row in (0, 98, 99, 29_997, 29_999, 59_999):
+        assert float(text[raw.lines[row] - 1].split(",")[3]) == raw.cells[3][row]

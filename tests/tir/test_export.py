@@ -1,0 +1,121 @@
+"""The exported C, compiled, against the equations."""
+
+from __future__ import annotations
+
+import ctypes
+import re
+import shutil
+import subprocess
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import tir
+from tir.codegen.c99 import STATES
+from tir.codegen.program import INPUTS, Switches
+from tir.equations.forces import Forces
+from tir.evaluate import evaluate
+
+VECTORS = Path(__file__).parent / "vectors"
+COMPILER = next((name for name in ("cc", "gcc", "clang") if shutil.which(name)), None)
+needs_compiler = pytest.mark.skipif(COMPILER is None, reason="there is no C compiler")
+STRICT = [
+    "-std=c99",
+    "-pedantic",
+    "-Wall",
+    "-Wextra",
+    "-Werror",
+    "-Wdouble-promotion",
+    "-ffp-contract=off",
+    "-O2",
+]
+
+
+def record(names) -> type[ctypes.Structure]:
+    return type("Record", (ctypes.Structure,), {"_fields_": [(name, ctypes.c_double) for name in names]})
+
+
+def compiled(code, name: str, folder: Path) -> ctypes.CDLL:
+    (folder / f"{name}.h").write_text(code.header, encoding="ascii")
+    (folder / f"{name}.c").write_text(code.source, encoding="ascii")
+    library = folder / f"{name}.so"
+    command = [str(COMPILER), *STRICT, "-shared", "-fPIC", f"{name}.c", "-o", str(library), "-lm"]
+    done = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    return ctypes.CDLL(str(library))
+
+
+@pytest.fixture
+def conditions(request) -> list[list[float]]:
+    rng = np.random.default_rng(11)
+    n = 300
+    rows = np.array(
+        [
+            rng.uniform(-100.0, 6000.0, n), rng.uniform(-0.4, 0.4, n), rng.uniform(-0.9, 0.9, n), rng.uniform(-0.5, 0.5, n),
+            rng.uniform(-0.8, 0.8, n), rng.uniform(-30.0, 30.0, n), rng.uniform(1e5, 4e5, n),
+        ]
+    ).T.tolist()  # fmt: skip
+    usual = [2000.0, 0.03, 0.1, 0.01, -0.2, 10.0, 2.2e5]
+    for i in range(len(INPUTS)):
+        rows += [[*usual[:i], value, *usual[i + 1 :]] for value in (0.0, float("nan"))]
+    return rows
+
+
+@needs_compiler
+@pytest.mark.parametrize("file", ["MagicFormula62", "moto_front"])
+@pytest.mark.parametrize("switches", [Switches(), Switches(True), Switches(True, True, True)], ids=str)
+def test_the_compiled_code_equals_the_equations(tmp_path, conditions, file, switches):
+    tyre = tir.read(VECTORS / f"{file}.tir")
+    library = compiled(tir.export_c(tyre, name="front_1", **switches._asdict()), "front_1", tmp_path)
+    with np.errstate(all="ignore"):
+        wanted = evaluate(
+            tyre.p, **dict(zip(INPUTS, np.array(conditions).T, strict=True)), **switches._asdict()
+        )
+    for function, names, values in (
+        (library.front_1_evaluate, Forces._fields, wanted[0]),
+        (library.front_1_evaluate_state, STATES, wanted[1]),
+    ):
+        function.argtypes, function.restype = [ctypes.c_double] * len(INPUTS), record(names)
+        found = [function(*row) for row in conditions]
+        for name in names:
+            a = np.array([getattr(one, name) for one in found])
+            b = np.broadcast_to(getattr(values, name), a.shape)
+            sound = np.isfinite(b)
+            assert np.array_equal(a[~sound], b[~sound], equal_nan=True), name
+            scale = np.maximum(np.abs(b[sound]), 1e-3 * np.max(np.abs(b[sound])))
+            assert np.max(np.abs(a[sound] - b[sound]) / scale) < 1e-12, name
+
+
+def test_the_code_allocates_nothing_and_keeps_nothing():
+    code = tir.export_c(tir.read(VECTORS / "moto_front.tir"))
+    assert not re.search(r"malloc|static|float\b|for\s*\(|while|goto", code.source)
+    assert re.findall(r"#include\s+(\S+)", code.source) == ['"tyre.h"', "<math.h>"]
+    assert (code.header + code.source).isascii()
+    assert set(re.findall(r"^\w.*\(", code.source, re.MULTILINE)) == {
+        "tyre_forces tyre_evaluate(",
+        "tyre_state tyre_evaluate_state(",
+    }
+
+
+@pytest.mark.parametrize("name", ["2front", "a b", "double", ""])
+def test_a_name_that_is_none_in_c_is_refused(name):
+    with pytest.raises(tir.TirError, match="no name in C"):
+        tir.export_c(tir.Tyre.from_values({}), name=name)
+
+
+@needs_compiler
+def test_numbers_beyond_all_bounds_are_written_as_c_has_them(tmp_path):
+    """A stiffness of 0 divides: the relaxation length is infinite, in C too."""
+    tyre = tir.read(VECTORS / "moto_front.tir").replace(LATERAL_STIFFNESS=0.0)
+    library = compiled(tir.export_c(tyre), "tyre", tmp_path)
+    function = library.tyre_evaluate_state
+    function.argtypes, function.restype = [ctypes.c_double] * len(INPUTS), record(STATES)
+    assert function(2000.0, 0.03, 0.1, 0.01, -0.2, 10.0, 2.2e5).sigma_y == float("inf")
+
+
+def test_values_of_which_no_code_can_be_made_are_named():
+    with pytest.raises(tir.TirError, match="LMUY is 0"):
+        tir.export_c(tir.Tyre.from_values({"LMUY": 0.0}))
+    with pytest.raises(tir.TirError, match="PKY1 is nan"):
+        tir.export_c(tir.Tyre.from_values({"PKY1": float("nan")}))

@@ -1,0 +1,293 @@
+"""Code made from the equations gives the numbers of the equations themselves, on every path and at every edge."""
+
+from __future__ import annotations
+
+import importlib.util
+import itertools
+import math
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import tir
+from tir import calls
+from tir.codegen import kernel, single
+from tir.codegen.graph import INPUT, PARAMETER, Graph
+from tir.codegen.program import INPUTS, Switches, trace
+from tir.equations.forces import Forces, State
+from tir.evaluate import evaluate
+from tir.parameters import TABLE
+
+VECTORS = Path(__file__).parent / "vectors"
+ALL_SWITCHES = [Switches(*on) for on in itertools.product((False, True), repeat=3)]
+TOLERANCE = 1e-12
+"""Of the value, or of 1e-3 of the channel's largest: hundreds of roundings in another order."""
+needs_numba = pytest.mark.skipif(importlib.util.find_spec("numba") is None, reason="numba is not installed")
+
+
+@pytest.fixture(scope="module", params=["MagicFormula62", "moto_front"])
+def tyre(request) -> tir.Tyre:
+    """Every coefficient at work, QDRP2 and the odd ones too."""
+    found = tir.read(VECTORS / f"{request.param}.tir")
+    rng = np.random.default_rng(7)
+    idle = [row.name for row in TABLE if row.section.endswith("COEFFICIENTS") and not found[row.name]]
+    return found.replace(**{name: float(rng.uniform(0.01, 0.05)) for name in idle})
+
+
+@pytest.fixture(scope="module")
+def conditions(tyre) -> dict[str, np.ndarray]:
+    """Inside and outside the ranges of a file, rolling backwards, and every edge in every input."""
+    rng = np.random.default_rng(5)
+    n = 500
+    ordinary = {
+        "Fz": tyre["FNOMIN"] * rng.uniform(-0.1, 2.5, n),
+        "alpha": rng.uniform(-1.5, 1.5, n) ** 3,
+        "gamma": rng.uniform(-1.0, 1.0, n),
+        "kappa": rng.uniform(-1.0, 1.0, n) ** 3,
+        "phi_t": rng.uniform(-1.0, 1.0, n),
+        "Vx": rng.uniform(-30.0, 40.0, n),
+        "pressure": rng.uniform(5e4, 6e5, n),
+    }
+    usual = {
+        "Fz": 2e3,
+        "alpha": 0.03,
+        "gamma": 0.1,
+        "kappa": 0.01,
+        "phi_t": -0.2,
+        "Vx": 10.0,
+        "pressure": 2.2e5,
+    }
+    edges = [
+        {**usual, name: value}
+        for name in INPUTS
+        for value in (0.0, -0.0, 1e-9, -1e-9, 1.0, -1.0, 50.0, math.nan)
+    ]
+    return {name: np.append(ordinary[name], [edge[name] for edge in edges]) for name in INPUTS}
+
+
+def assert_equal(found, wanted, names) -> None:
+    for name, a, b in zip(names, found, wanted, strict=True):
+        a, b = np.asarray(a, float), np.broadcast_to(np.asarray(b, float), np.shape(a))
+        assert np.array_equal(np.isnan(a), np.isnan(b)), f"{name}: NaN in other places"
+        assert np.array_equal(np.isinf(a), np.isinf(b)), f"{name}: infinite in other places"
+        sound = np.isfinite(b)
+        scale = np.maximum(np.abs(b[sound]), 1e-3 * np.max(np.abs(b[sound]), initial=0.0))
+        error = np.abs(a[sound] - b[sound])
+        assert np.all(error <= TOLERANCE * scale), f"{name}: {np.max(error / scale):.2g}"
+
+
+@pytest.mark.parametrize("switches", ALL_SWITCHES, ids=str)
+def test_floats_equal_the_equations(tyre, conditions, switches):
+    with np.errstate(all="ignore"):
+        wanted = evaluate(tyre.p, **conditions, **switches._asdict())
+        rows = [[float(x) for x in row] for row in zip(*conditions.values(), strict=True)]
+        forces = [calls.forces(tyre, row, switches) for row in rows]
+        state = [calls.state(tyre, row, switches) for row in rows]
+    assert_equal(zip(*forces, strict=True), wanted[0], Forces._fields)
+    assert_equal(zip(*state, strict=True), wanted[1], State._fields)
+    assert {type(x) for found in (*forces, *state) for x in found} == {float}
+
+
+@needs_numba
+@pytest.mark.parametrize("switches", [Switches(), Switches(True), Switches(True, True, True)], ids=str)
+def test_the_compiled_loop_equals_the_equations(tyre, conditions, switches, compiled):
+    compiled(switches, "batch")
+    with np.errstate(all="ignore"):
+        wanted = evaluate(tyre.p, **conditions, **switches._asdict())[0]
+        for times in (1, calls.THREADS_FROM // len(conditions["Fz"]) + 2):
+            many = [np.tile(x, times) for x in conditions.values()]
+            found = calls.forces(tyre, many, switches)
+            assert_equal(found, [np.tile(x, times) for x in wanted], Forces._fields)
+
+
+@needs_numba
+def test_the_compiled_single_call_equals_the_equations(tyre, conditions, compiled):
+    switches = Switches(True, False, True)
+    compiled(switches, "one")
+    fresh = tyre.replace()
+    with np.errstate(all="ignore"):
+        wanted = evaluate(tyre.p, **conditions, **switches._asdict())[0]
+    rows = zip(*conditions.values(), strict=True)
+    found = [calls.forces(fresh, [float(x) for x in row], switches) for row in rows]
+    assert_equal(zip(*found, strict=True), wanted, Forces._fields)
+
+
+@pytest.fixture
+def compiled(monkeypatch):
+    """Compiles for this test only."""
+    monkeypatch.setattr(calls, "LOADED", {})
+
+    def load(switches: Switches, kind: str) -> None:
+        tir.compile_kernels(**switches._asdict(), kinds=(kind,))
+        assert (kind, switches) in calls.LOADED
+
+    return load
+
+
+@needs_numba
+def test_elementary_functions_are_those_of_the_libm():
+    from tir.codegen import vector_math
+
+    angles = np.concatenate([np.linspace(-9.0, 9.0, 4001), np.geomspace(1e-300, 1e6, 500), [0.0]])
+    ratios = np.linspace(-0.999, 1.0, 1001)
+    positive = np.geomspace(1e-6, 1e3, 1001)
+    for name, x in (
+        ("sin", angles),
+        ("cos", angles),
+        ("tan", angles),
+        ("arctan", np.append(angles, [np.inf, -np.inf])),
+        ("arccos", ratios),
+        ("exp", np.linspace(-700.0, 700.0, 2001)),
+    ):
+        function = getattr(vector_math, name)
+        found, wanted = np.array([function(v) for v in x]), getattr(np, name)(x)
+        assert np.max(np.abs(found / np.where(wanted == 0.0, 1.0, wanted) - (wanted != 0.0))) < 3e-15, name
+        assert math.isnan(function(math.nan)), name
+    for y in (0.85, -0.4, 2.0, -3.0, 0.0):
+        found = np.array([vector_math.power(v, y) for v in positive])
+        assert found == pytest.approx(positive**y, rel=1e-14)
+        for base in (0.0, -2.0, math.inf, math.nan):
+            with np.errstate(all="ignore"):
+                wanted = float(np.power(np.float64(base), y))
+            assert vector_math.power(base, y) == pytest.approx(wanted, nan_ok=True), (base, y)
+
+
+def test_shapes_broadcast_and_scalars_stay_floats(tyre):
+    Fz, alpha = np.array([[1000.0], [2000.0]]), np.array([0.01, 0.02, 0.03])
+    forces = tyre(Fz, alpha, phi_t=-0.1)
+    for force in forces:
+        assert force.shape == (2, 3)
+    assert tyre(2000.0, 0.02, phi_t=-0.1) == pytest.approx([force[1, 1] for force in forces], rel=1e-12)
+    for kind in (int, np.float64, np.array):
+        assert type(tyre(kind(2000), 0.02).Fy) is float
+    assert tyre(np.array([]), 0.02).Fy.shape == (0,)
+    assert tyre([2000.0, 3000.0], 0.02).Fy.shape == (2,)
+
+
+def test_blocks_are_put_together_in_order(tyre, monkeypatch):
+    alpha = np.linspace(-0.2, 0.2, 23)
+    whole = tyre(2000.0, alpha)
+    monkeypatch.setattr(calls, "BLOCK", 5)
+    assert np.array_equal(np.array(tyre(2000.0, alpha)), np.array(whole))
+
+
+def test_a_tyre_without_numba_is_told_what_to_install(monkeypatch):
+    monkeypatch.setattr(kernel, "available", lambda: False)
+    kernel.load.cache_clear()
+    with pytest.raises(tir.TirError, match=r"pip install mffit\[fast\]"):
+        tir.compile_kernels()
+
+
+def test_large_calls_without_numba_go_through_numpy(monkeypatch, tyre):
+    monkeypatch.setattr(kernel, "available", lambda: False)
+    monkeypatch.setattr(calls, "COMPILE_FROM", 1)
+    monkeypatch.setattr(calls, "LOADED", {})
+    alpha = np.linspace(-0.1, 0.1, 7)
+    assert np.array_equal(tyre(2000.0, alpha).Fy, evaluate(tyre.p, 2000.0, alpha)[0].Fy)
+
+
+def test_a_called_tyre_goes_to_other_processes(tyre):
+    import pickle
+
+    noted = tyre.annotate(measured={"C": tir.Quantity(1.0, 0.1, "N")})
+    before = noted(2000.0, 0.02)
+    again = pickle.loads(pickle.dumps(noted))
+    assert again == noted
+    assert again.measured == noted.measured
+    assert again.text() == noted.text()
+    assert again(2000.0, 0.02) == before
+
+
+def test_the_name_of_a_tyre_fits_a_screen(tyre):
+    noted = tyre.annotate(status=dict.fromkeys(tyre.values, "fitted +- 1"))
+    assert len(repr(noted)) < 400
+    assert "FNOMIN" in repr(noted)
+    assert f"{len(tyre.values)} fitted" in repr(noted)
+
+
+def test_importing_tir_imports_no_compiler():
+    code = "import sys, tir; print([m for m in ('numba', 'llvmlite', 'scipy', 'pandas') if m in sys.modules])"
+    found = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert found.stdout.strip() == "[]"
+
+
+def test_the_cache_notices_every_edit(tmp_path, monkeypatch):
+    import shutil
+
+    package = Path(kernel.__file__).parents[1]
+    for name in kernel.SOURCES:
+        copy = shutil.copytree if (package / name).is_dir() else shutil.copy
+        copy(package / name, tmp_path / name)
+    monkeypatch.setattr(kernel, "resources", lambda package: tmp_path)
+    before = kernel._fingerprint()
+    assert kernel._fingerprint() == before
+    edited = tmp_path / "equations" / "lateral.py"
+    edited.write_text(edited.read_text() + "\n")
+    assert kernel._fingerprint() != before
+
+
+def test_every_module_that_computes_is_in_the_key_of_the_cache():
+    """What the equations, the evaluation and the generators import of tir, they import from what the key covers."""
+    import ast
+
+    package = Path(kernel.__file__).parents[1]
+    covered = [
+        f
+        for name in kernel.SOURCES
+        for f in ([package / name] if "." in name else (package / name).glob("*.py"))
+    ]
+    harmless = {"tir.errors", "tir.parameters", "tir.tyre"}  # words, the table that is covered, a type
+    for path in covered:
+        if path.suffix != ".py":
+            continue
+        for node in ast.walk(ast.parse(path.read_text())):
+            if isinstance(node, ast.ImportFrom) and str(node.module).startswith("tir"):
+                for module in {str(node.module)} - {"tir.equations", "tir.codegen"} - harmless:
+                    assert any(
+                        f.with_suffix("") == package.parent / module.replace(".", "/") for f in covered
+                    ), module
+
+
+class TestGraph:
+    """What is simplified away must be the same for every number, NaN and infinity included."""
+
+    @pytest.fixture
+    def graph(self):
+        return Graph()
+
+    def test_equal_operations_are_one(self, graph):
+        x = graph.symbol("x", INPUT)
+        assert (x + 1.0) * 2.0 is (1.0 * (x + 1.0)) * 2.0
+        assert len(graph.nodes) == 3
+
+    def test_nothing_times_a_number_is_kept_for_nan(self, graph):
+        x = graph.symbol("x", INPUT)
+        assert (0.0 * x).operation == "multiply"
+
+    def test_factors_of_the_tyre_meet_first(self, graph):
+        x, y = graph.symbol("x", INPUT), graph.symbol("y", INPUT)
+        a, b, c = (graph.symbol(name, PARAMETER) for name in "abc")
+        product = (a * x) * b * y / c
+        constant, rest = product.arguments
+        assert constant.level == PARAMETER
+        assert rest is x * y
+
+    def test_an_operation_that_no_language_knows_is_refused(self, graph):
+        with pytest.raises(TypeError):
+            np.sinh(graph.symbol("x", INPUT))
+
+    def test_the_program_asks_only_for_what_it_needs(self):
+        program = trace(Switches(), ("K_ya",))
+        assert "PKY1" in program.parameters
+        assert not {"PCX1", "QSY1", "PKYP1"} & set(program.parameters)
+
+    def test_constants_of_a_tyre_with_infinite_values_are_numpys(self, tyre):
+        """Where Python's sine raises."""
+        values = {**calls._values(tyre), "QDRP1": math.inf}
+        prepare, _ = single._compiled(Switches(True), Forces._fields)
+        with pytest.raises(ValueError, match="domain"):
+            prepare(values, **single.MATH)
+        assert any(math.isnan(x) for x in single.constants(prepare, values))

@@ -1,0 +1,208 @@
+"""Files for other programs, each read back by a small imitation of that program's habits."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import pytest
+
+import tir
+from tir.check import check
+from tir.document import parse_document
+from tir.parameters import SECTIONS, TABLE
+from tir.properties import interpret
+from tir.targets import ADAMS, ONLY_62, TARGETS, use_mode_words, vendor
+
+VECTORS = Path(__file__).parent / "vectors"
+TEXT = (VECTORS / "moto_front.tir").read_text(encoding="ascii")
+USABLE = [name for name, target in TARGETS.items() if not target.refusal]
+HEADER = {"FILE_TYPE", "FILE_VERSION", "FILE_FORMAT", "LENGTH", "FORCE", "ANGLE", "MASS", "TIME"}
+NEEDED = [row.name for row in TABLE if row.kind == "number" and row.section.endswith("COEFFICIENTS")]
+
+
+@pytest.fixture(scope="module")
+def tyre() -> tir.Tyre:
+    """With all the text in its comments that could lead a reader astray."""
+    found = tir.read(VECTORS / "moto_front.tir").replace(PVY1=0.1 + 0.2, PKY1=-12.345678901234567)
+    return found.annotate(provenance={"note": "a = b; c! d"}, status={"PKY1": "fitted = 1; !" + 90 * "x"})
+
+
+def numbers(found: dict[str, str]) -> dict[str, float]:
+    return {name: float(text) for name, text in found.items() if name in NEEDED}
+
+
+def first_equals_dollar_comments(text: str) -> dict[str, float]:
+    """Anything with '=' is a parameter unless the line is a comment; only $ ends a value; later keys do not replace."""
+    found: dict[str, str] = {}
+    for line in text.split("\r\n"):
+        if "=" in line and line[0] not in "$!":
+            key, _, rest = line.partition("=")
+            found.setdefault(key.strip(), rest.split("$")[0].strip())
+    return numbers(found)
+
+
+def every_equals(text: str) -> dict[str, float]:
+    """Splits a line at each '=' and takes the second piece up to the first blank."""
+    pieces = [line.split("=") for line in text.splitlines() if not line.startswith("!")]
+    return numbers({p[0].strip(): p[1].split()[0] for p in pieces if len(p) > 1})
+
+
+def short_buffer(text: str) -> dict[str, float]:
+    """Lines of 200 characters, cut; blanks around '='; the value ends at a blank."""
+    words = [line[:200].split() for line in text.splitlines()]
+    return numbers({w[0]: w[2] for w in words if len(w) > 2 and w[1] == "="})
+
+
+def line_ends_lost(text: str) -> dict[str, float]:
+    """Splits at LF and drops the last character of every line, which it takes for CR."""
+    lines = [line[:-1] for line in text.split("\n")]
+    pairs = [line.split("=", 1) for line in lines if "=" in line and line[0] not in "$!"]
+    return numbers({key.strip(): rest.split("$")[0].strip() for key, rest in pairs})
+
+
+@pytest.mark.parametrize("habit", [first_equals_dollar_comments, every_equals, short_buffer, line_ends_lost])
+@pytest.mark.parametrize("name", USABLE)
+def test_every_habit_reads_identical_numbers(tyre, name, habit):
+    found = habit(tyre.text(name))
+    wanted = {row: tyre[row] for row in found}
+    assert found == wanted
+    assert {"PCY1", "PKY1", "PVY1", "QDRP1", "QSY8"} <= set(found)
+
+
+@pytest.mark.parametrize("name", USABLE)
+def test_no_program_meets_an_unknown_key_or_a_version_it_does_not_read(tyre, name):
+    target = TARGETS[name]
+    document = parse_document(tyre.text(name))
+    keys = {line.key for line in document.entries}
+    assert keys <= HEADER | {row.name for row in TABLE} | set(target.more)
+    assert all(line.section for line in document.entries)
+    (version,) = [line.value for line in document.entries if line.key == "FITTYP"]
+    assert int(version) in target.fittyps
+    assert not keys & (set(target.without) - HEADER)
+
+
+@pytest.mark.parametrize("name", USABLE)
+def test_what_is_written_for_a_program_passes_its_check(tyre, name):
+    written = interpret(parse_document(tyre.text(name)))
+    assert [p.sentence for p in check(written, [name]) if p.level == "error"] == []
+
+
+@pytest.mark.parametrize("name", USABLE)
+def test_the_forces_are_the_same_in_every_file(tyre, name):
+    written = interpret(parse_document(tyre.text(name)))
+    condition = (1800.0, 0.05, 0.3, 0.02, -0.4)
+    assert written(*condition) == tyre(*condition)
+
+
+def test_reading_by_position(tyre):
+    """Counts lines behind a section head and never looks at the key; the counts are those of MF 6.2."""
+    text = tyre.text("mbsim")
+
+    def section(name: str) -> list[str]:
+        body = text.split(f"[{name}]\r\n")[1].split("$---")[0].split("\r\n")
+        return [line.split("=")[1].split("$")[0].strip() for line in body if line]
+
+    assert section("MODEL")[:2] == ["62", "'LEFT'"]
+    assert float(section("MODEL")[2]) == tyre["LONGVL"]
+    assert float(section("DIMENSION")[2]) == tyre["RIM_RADIUS"]
+    assert float(section("LATERAL_COEFFICIENTS")[9]) == tyre["PKY1"]
+    for name, count in (
+        ("VERTICAL", 25), ("STRUCTURAL", 22), ("LATERAL_COEFFICIENTS", 42), ("ALIGNING_COEFFICIENTS", 33),
+        ("TURNSLIP_COEFFICIENTS", 19), ("LONGITUDINAL_COEFFICIENTS", 26), ("OVERTURNING_COEFFICIENTS", 15),
+    ):  # fmt: skip
+        assert len(section(name)) == count, name
+
+
+def test_adams_is_told_in_the_words_of_62_only(tyre):
+    keys = {line.key: line.value for line in parse_document(tyre.text("adams")).entries}
+    assert keys["FUNCTION_NAME"].startswith("'TNO_DelftTyre")
+    assert keys["N_TIRE_STATES"] == "5"
+    assert "USER_SUB_ID" not in keys
+    others = {line.key for line in parse_document(tyre.text("mftyre")).entries}
+    assert not others & {*ADAMS, "FUNCTION_NAME"}
+
+
+@pytest.mark.parametrize("name", USABLE)
+def test_the_keys_are_those_of_the_version(tyre, name):
+    for version in (61.0, 62.0):
+        document = parse_document(tyre.replace(FITTYP=version).text(name))
+        keys = {line.key: line.value for line in document.entries}
+        assert bool(keys.keys() & set(ONLY_62)) == (keys["FITTYP"] == "62")
+        assert keys["FITTYP"] == str(int(version)) or int(version) not in TARGETS[name].fittyps
+
+
+@pytest.mark.parametrize("name", ["chrono", "pac2002"])
+def test_another_formula_is_refused_with_the_reason(tyre, name):
+    with pytest.raises(tir.TirError, match=r"PAC2002.*another formula"):
+        tyre.text(name)
+    assert any(p.level == "error" and "PAC2002" in p.sentence for p in check(tyre, [name]))
+
+
+def test_an_unknown_program_is_refused_with_the_known_ones(tyre):
+    with pytest.raises(tir.TirError, match="mftyre"):
+        tyre.text("excel")
+    with pytest.raises(tir.TirError, match="mftyre"):
+        check(tyre, ["excel"])
+
+
+def test_the_digits_of_use_mode_are_explained(tyre):
+    assert (
+        use_mode_words(225)
+        == "smooth road, round cross-section, nonlinear relaxation, combined and turn slip"
+    )
+    assert use_mode_words(4) == "road contact by default, steady state, combined slip"
+    assert vendor(225) == vendor(134) == "'TNO-SWIFT'"
+    assert vendor(114) == "'TNO-MF'"
+    assert "round cross-section" in tyre.replace(USE_MODE=214.0).text("mftyre")
+
+
+class TestCheckOfText:
+    """Faults planted in a file's text are named with their line."""
+
+    @staticmethod
+    def sentences(text: str, target: str) -> list[str]:
+        return [
+            p.sentence
+            for p in check(interpret(parse_document(text)), [target])
+            if f"for {target}" in p.sentence
+        ]
+
+    def number_of(self, text: str, key: str) -> int:
+        return next(i for i, line in enumerate(text.splitlines(), 1) if line.startswith(key))
+
+    @pytest.mark.parametrize(
+        ("mangled", "target", "key", "words"),
+        [
+            (TEXT.replace("'meter'", "'mm'"), "simscape", "LENGTH", "SI"),
+            (TEXT.replace("= 1.27\n", "= 1.27 ! peak\n"), "mfeval", "PDY1", "only $"),
+            (re.sub(r"(?m)^QSY3 .*\n", "", TEXT), "carmaker", "", "QSY3"),
+            (TEXT.replace("= 62\n", "= 61\n"), "simscape", "FITTYP", "FITTYP 61"),
+            (TEXT, "mbsim", "ASPECT_RATIO", "RIM_RADIUS"),
+            (TEXT, "recurdyn", "", "VENDER_TIRE_TYPE"),
+            (
+                TEXT.replace("[MODEL]\n", "[MODEL]\nFUNCTION_NAME = 'a::b'\n"),
+                "adams",
+                "USER_SUB_ID",
+                "keep one",
+            ),
+            (TEXT.replace("= 1.27\n", "= 1.27 $" + 250 * "x" + "\n"), "mftyre", "PDY1", "characters"),
+            (TEXT.replace("= 1.27\n", "= 1.27 $ für\n"), "mftyre", "PDY1", "ASCII"),
+            (
+                TEXT.replace("USE_MODE                 = 124", "USE_MODE = 225"),
+                "simscape",
+                "USE_MODE",
+                "no turn slip",
+            ),
+        ],
+    )
+    def test_a_planted_stumbling_block_is_named(self, mangled, target, key, words):
+        found = [s for s in self.sentences(mangled, target) if words in s]
+        assert found, self.sentences(mangled, target)
+        if key:
+            assert any(f"line {self.number_of(mangled, key)}" in s for s in found), found
+
+
+def test_the_order_of_sections_is_the_manuals(tyre):
+    heads = [line.section for line in parse_document(tyre.text("mftyre")).lines if line.head]
+    assert heads == ["MDI_HEADER", "UNITS", *SECTIONS]

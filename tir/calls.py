@@ -1,0 +1,235 @@
+"""How a call of a tyre is carried out: one condition in floats, many in blocks, other kinds of numbers as they are.
+
+Real numbers go through code generated from the equations where that is faster; complex and traced ones, as derivatives
+need them, through :func:`tir.evaluate.evaluate`.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from functools import partial
+from types import SimpleNamespace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from tir.codegen import kernel, single
+from tir.codegen.program import INPUTS, NUMBERS, Switches
+from tir.equations.forces import Forces, State
+from tir.evaluate import evaluate, refuse_zero_divisors
+
+if TYPE_CHECKING:
+    from tir.tyre import Tyre
+
+BLOCK = 4096
+"""Conditions that are computed together, so that what is between input and output stays in the processor's cache."""
+COMPILE_FROM = 100_000
+"""Conditions of one call from which on the compiled kernel is worth loading, or compiling once after installation."""
+LANES = 8
+"""Conditions of the widest common vector instruction."""
+THREADS_FROM = 8 * BLOCK
+"""Conditions of one call from which on they are shared out to threads."""
+FORCES, STATE = Forces._fields, State._fields
+
+
+def compile_kernels(
+    *,
+    turn_slip: bool | None = None,
+    star: bool = False,
+    limits: bool = False,
+    kinds: Sequence[str] = ("batch", "one"),
+) -> None:
+    """Compile the model with numba, or load it from the cache, for every call that follows in this process.
+
+    Without this, calls of 100 000 conditions and more do so for themselves; smaller ones, and single ones, go through
+    numpy and Python's floats.
+
+    Parameters
+    ----------
+    turn_slip : for calls with turn slip, without, or (None) both
+    star, limits : for calls with these switches
+    kinds : "batch" for arrays, "one" for floats
+
+    Raises
+    ------
+    TirError
+        If numba is not installed (``pip install mffit[fast]``).
+    """
+    for on in (False, True) if turn_slip is None else (turn_slip,):
+        for kind in kinds:
+            LOADED[kind, Switches(on, star, limits)] = kernel.load(kind, Switches(on, star, limits))
+
+
+LOADED: dict[tuple[str, Switches], kernel.Kernel] = {}
+"""The kernels of this process."""
+
+
+def forces(tyre: Tyre, inputs: Sequence[Any], switches: Switches) -> Forces:
+    """Forces for :data:`~tir.codegen.program.INPUTS`, every one given; see :meth:`tir.Tyre.__call__`."""
+    arrays = [np.asarray(x) for x in inputs]
+    if not _real(arrays):
+        return evaluate(tyre.p, *inputs, **switches._asdict())[0]
+    shape = _common_shape(arrays)
+    if shape == ():
+        return Forces(*_one(tyre, arrays, switches, FORCES))
+    flat = arrays if len(shape) == 1 and _stretched(arrays) else [_flat(a, shape) for a in arrays]
+    out = _many(tyre, flat, math.prod(shape), switches)
+    return Forces(*(out if len(shape) == 1 else out.reshape(len(FORCES), *shape)))
+
+
+def state(tyre: Tyre, inputs: Sequence[Any], switches: Switches) -> State:
+    """State for the same; see :meth:`tir.Tyre.state`."""
+    arrays = [np.asarray(x) for x in inputs]
+    if _real(arrays) and _common_shape(arrays) == ():
+        return State(*_one(tyre, arrays, switches, STATE))
+    return _evaluated(tyre, inputs, switches)[1]
+
+
+def _real(arrays: Sequence[np.ndarray]) -> bool:
+    return all(a.dtype.kind in "fiub" for a in arrays)
+
+
+def _common_shape(arrays: Sequence[np.ndarray]) -> tuple[int, ...]:
+    shapes = {a.shape for a in arrays} - {()}
+    if not shapes:
+        return ()
+    return shapes.pop() if len(shapes) == 1 else np.broadcast_shapes(*shapes)
+
+
+def _stretched(arrays: Sequence[np.ndarray]) -> bool:
+    """Whether each is a single number, or as long as the longest."""
+    return len({a.size for a in arrays if a.ndim}) == 1
+
+
+def _flat(a: np.ndarray, shape: tuple[int, ...]) -> np.ndarray:
+    """One number, or one per condition."""
+    return a if a.ndim == 0 else (a if a.shape == shape else np.broadcast_to(a, shape)).reshape(-1)
+
+
+def _one(tyre: Tyre, inputs: Sequence[np.ndarray], switches: Switches, outputs: tuple[str, ...]) -> tuple:
+    """Floats in, floats out; where Python's arithmetic raises, numpy's NaN or infinity."""
+    numbers = [float(x) for x in inputs]
+    run = function_of(tyre, switches, outputs)
+    try:
+        if run is not None:
+            return run(*numbers)
+    except (ArithmeticError, ValueError):
+        pass
+    with np.errstate(all="ignore"):
+        found = _evaluated(tyre, [np.float64(x) for x in numbers], switches)
+    return tuple(_plain(x) for x in found[outputs is STATE])
+
+
+def _evaluated(tyre: Tyre, inputs: Sequence[Any], switches: Switches) -> tuple[Forces, State]:
+    """The equations in numpy; where two parameters alone make Python's arithmetic raise, with numpy's numbers for them."""
+    try:
+        return evaluate(tyre.p, *inputs, **switches._asdict())
+    except ArithmeticError:
+        numbers = {k: np.float64(v) if type(v) in (float, int) else v for k, v in vars(tyre.p).items()}
+        return evaluate(SimpleNamespace(**numbers), *inputs, **switches._asdict())
+
+
+def _plain(x: Any) -> Any:
+    return x.item() if isinstance(x, np.ndarray | np.generic) and np.ndim(x) == 0 else x
+
+
+def function_of(tyre: Tyre, switches: Switches, outputs: tuple[str, ...] = FORCES) -> Callable | None:
+    """The tyre as a function of floats, kept with the tyre; None if a parameter is no real number."""
+    key = switches if outputs is FORCES else (outputs, switches)
+    if key not in tyre.prepared:
+        values = _values(tyre)
+        compiled = LOADED.get(("one", switches)) if outputs is FORCES else None
+        if values is None:
+            return None
+        if compiled is None:
+            tyre.prepared[key] = single.run_of(values, switches, outputs)
+        else:
+            constants = np.array(single.constants(compiled.prepare, values))
+            tyre.prepared[key] = partial(compiled.run, constants)
+    return tyre.prepared[key]
+
+
+def _batch_of(tyre: Tyre, switches: Switches) -> Callable | None:
+    """The loop over conditions with the tyre's constants, kept with the tyre; None if it is not loaded."""
+    key = ("batch", switches)
+    if key not in LOADED:
+        return None
+    if key not in tyre.prepared:
+        values = _values(tyre)
+        if values is None:
+            return None
+        constants = np.array(single.constants(LOADED[key].prepare, values))
+        tyre.prepared[key] = partial(LOADED[key].run, constants)
+    return tyre.prepared[key]
+
+
+def _values(tyre: Tyre) -> dict[str, float] | None:
+    """The numbers as floats; refuses zeros by which the equations divide."""
+    refuse_zero_divisors(tyre.p)
+    given = {name: tyre.values[name] for name in NUMBERS}
+    if not all(isinstance(x, float | int | np.floating | np.integer) for x in given.values()):
+        return None
+    return {name: float(x) for name, x in given.items()}
+
+
+def _many(tyre: Tyre, inputs: Sequence[np.ndarray], n: int, switches: Switches) -> np.ndarray:
+    """Forces (6, n) of inputs that are single numbers or (n,)."""
+    if n >= COMPILE_FROM and ("batch", switches) not in LOADED and kernel.available():
+        compile_kernels(**switches._asdict(), kinds=("batch",))
+    run = _batch_of(tyre, switches)
+    if run is not None and n <= BLOCK:
+        return _computed(run, inputs, slice(0, n), *_space(n))
+    out = np.empty((len(FORCES), n))
+    if run is None:
+        _in_numpy(tyre, inputs, out, switches)
+    elif n < THREADS_FROM:
+        _in_blocks(run, inputs, out, 0, n)
+    else:
+        _in_threads(run, inputs, out)
+    return out
+
+
+def _in_numpy(tyre: Tyre, inputs: Sequence[np.ndarray], out: np.ndarray, switches: Switches) -> None:
+    for start in range(0, out.shape[1], BLOCK):
+        block = [x if x.ndim == 0 else x[start : start + BLOCK] for x in inputs]
+        found = _evaluated(tyre, block, switches)[0]
+        for row, force in zip(out, found, strict=True):
+            row[start : start + BLOCK] = force
+
+
+def _space(n: int) -> tuple[np.ndarray, np.ndarray]:
+    """Room for the inputs and forces of n conditions, up to whole vector instructions."""
+    size = -(-n // LANES) * LANES
+    return np.ones((len(INPUTS), size)), np.empty((len(FORCES), size))
+
+
+def _computed(
+    run: Callable, inputs: Sequence[np.ndarray], block: slice, packed: np.ndarray, found: np.ndarray
+) -> np.ndarray:
+    """Forces of a block of conditions, in ``found``; one array of inputs spares the compiler many cases."""
+    n = block.stop - block.start
+    for row, x in zip(packed, inputs, strict=True):
+        row[:n] = x[block] if x.ndim else x
+    run(packed, packed.shape[1], found)
+    return found[:, :n]
+
+
+def _in_blocks(run: Callable, inputs: Sequence[np.ndarray], out: np.ndarray, first: int, last: int) -> None:
+    packed, found = _space(BLOCK)
+    for start in range(first, last, BLOCK):
+        block = slice(start, min(start + BLOCK, last))
+        out[:, block] = _computed(run, inputs, block, packed, found)
+
+
+def _in_threads(run: Callable, inputs: Sequence[np.ndarray], out: np.ndarray) -> None:
+    n, threads = out.shape[1], kernel.threads()
+    share = BLOCK * -(-n // (BLOCK * threads))
+    with ThreadPoolExecutor(threads) as pool:
+        done = [
+            pool.submit(_in_blocks, run, inputs, out, first, min(first + share, n))
+            for first in range(0, n, share)
+        ]
+    for part in done:
+        part.result()

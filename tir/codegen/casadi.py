@@ -1,0 +1,70 @@
+"""A tyre as a function of CasADi, with its exact derivatives, from the same equations. Imports casadi when asked."""
+
+from __future__ import annotations
+
+import operator
+from typing import TYPE_CHECKING, Any
+
+from tir.codegen.graph import Node
+from tir.codegen.program import INPUTS, NUMBERS, Switches, trace
+from tir.equations.forces import Forces
+from tir.errors import TirError
+from tir.evaluate import refuse_zero_divisors
+
+if TYPE_CHECKING:
+    from tir.tyre import Tyre
+
+OPERATORS = {
+    "add": operator.add, "subtract": operator.sub, "multiply": operator.mul, "divide": operator.truediv,
+    "negative": operator.neg, "less": operator.lt, "less_equal": operator.le, "greater": operator.gt,
+    "greater_equal": operator.ge,
+}  # fmt: skip
+NAMES = {"absolute": "fabs", "where": "if_else", "both": "logic_and"}
+"""CasADi's functions that are called otherwise than here."""
+
+
+def casadi_function(
+    tyre: Tyre,
+    *,
+    name: str = "tyre",
+    outputs: tuple[str, ...] = Forces._fields,
+    turn_slip: bool = True,
+    star: bool = False,
+    limits: bool = False,
+) -> Any:
+    """The tyre as a ``casadi.Function`` of Fz, alpha, gamma, kappa, phi_t, Vx, pressure (ISO-W, SI, radians).
+
+    Parameters
+    ----------
+    tyre : its values become constants
+    name : of the function
+    outputs : fields of Forces and State, one output each, in this order
+    turn_slip, star, limits : as in a call of the tyre
+
+    Raises
+    ------
+    TirError
+        If casadi is not installed (``pip install mffit[casadi]``), or a value is a zero by which the equations divide.
+    """
+    try:
+        import casadi
+    except ImportError:
+        raise TirError("this needs casadi, which is not installed: pip install mffit[casadi]") from None
+    refuse_zero_divisors(tyre.p)
+    program = trace(Switches(turn_slip, star, limits), outputs, {key: float(tyre[key]) for key in NUMBERS})
+    inputs = {key: casadi.SX.sym(key) for key in INPUTS}
+    known: dict[int, Any] = {}
+
+    def of(x: Any) -> Any:
+        return known[x.number] if isinstance(x, Node) else float(x)
+
+    for node in program.per_point:
+        if node.operation == "symbol":
+            known[node.number] = inputs[node.name]
+            continue
+        word = NAMES.get(node.operation, node.operation)
+        operation: Any = OPERATORS[word] if word in OPERATORS else getattr(casadi, word)
+        known[node.number] = operation(*map(of, node.arguments))
+    results = [casadi.SX(of(x)) for x in program.outputs.values()]
+    options = {"allow_duplicate_io_names": True}  # Fz goes in, and comes out inside the limits
+    return casadi.Function(name, [*inputs.values()], results, [*inputs], [*outputs], options)

@@ -1,0 +1,76 @@
+"""A run of the model noted down: what is computed once per tyre, what per operating condition."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from types import SimpleNamespace
+from typing import Any, NamedTuple
+
+from tir.codegen.graph import INPUT, PARAMETER, Graph, Node, level
+from tir.evaluate import either_way
+from tir.parameters import TABLE
+
+INPUTS = ("Fz", "alpha", "gamma", "kappa", "phi_t", "Vx", "pressure")
+NUMBERS = tuple(row.name for row in TABLE if row.kind == "number")
+
+
+class Switches(NamedTuple):
+    """What the model is asked for beside its inputs; each combination is a program of its own."""
+
+    turn_slip: bool = False
+    star: bool = False
+    limits: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Program:
+    """Operations in order, and what they give.
+
+    ``per_tyre`` depends on parameters only, ``per_point`` on inputs too; ``constants`` are those of ``per_tyre``, parameters
+    themselves included, that the rest uses.
+    """
+
+    per_tyre: tuple[Node, ...]
+    per_point: tuple[Node, ...]
+    constants: tuple[Node, ...]
+    outputs: Mapping[str, Any]  #: name of a force or state -> node or number
+
+    @property
+    def parameters(self) -> tuple[str, ...]:
+        """Names of the parameters that have a say in the outputs and no value in the program."""
+        return tuple(node.name for node in self.per_tyre if node.operation == "symbol")
+
+
+def trace(switches: Switches, outputs: tuple[str, ...], fixed: Mapping[str, float] | None = None) -> Program:
+    """Run the model on symbols.
+
+    Parameters
+    ----------
+    switches : see :class:`Switches`
+    outputs : fields of Forces and State to compute
+    fixed : parameters that the program holds as numbers, the others stay symbols
+    """
+    graph, fixed = Graph(), fixed or {}
+    p = {name: fixed[name] if name in fixed else graph.symbol(name, PARAMETER) for name in NUMBERS}
+    inputs = {name: graph.symbol(name, INPUT) for name in INPUTS}
+    forces, state = either_way(SimpleNamespace(**p), inputs["Vx"] < 0.0, **inputs, **switches._asdict())
+    found = {**state._asdict(), **forces._asdict()}
+    return _program(graph, {name: found[name] for name in outputs})
+
+
+def _program(graph: Graph, outputs: Mapping[str, Any]) -> Program:
+    needed = {x.number for x in outputs.values() if isinstance(x, Node)}
+    for node in reversed(graph.nodes):
+        if node.number in needed:
+            needed |= {a.number for a in node.arguments if isinstance(a, Node)}
+    nodes = [node for node in graph.nodes if node.number in needed]
+    per_point = tuple(node for node in nodes if node.level == INPUT)
+    used = [*(a for node in per_point for a in node.arguments), *outputs.values()]
+    constants = {a.number: a for a in used if isinstance(a, Node) and level(a) == PARAMETER}
+    return Program(
+        per_tyre=tuple(node for node in nodes if node.level == PARAMETER),
+        per_point=per_point,
+        constants=tuple(constants[number] for number in sorted(constants)),
+        outputs=outputs,
+    )

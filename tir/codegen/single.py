@@ -1,0 +1,45 @@
+"""The model for one operating condition in Python's own floats: no array, no compiler."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from functools import cache
+from typing import Any
+
+import numpy as np
+
+from tir.codegen.program import Switches, trace
+from tir.codegen.source import FUNCTIONS, conditions, preparation
+
+Run = Callable[..., tuple[float, ...]]
+PYTHON_NAMES = {"arctan": "atan", "arccos": "acos", "power": "pow"}
+MATH = {name: getattr(math, PYTHON_NAMES.get(name, name)) for name in FUNCTIONS}
+NUMPY = {name: getattr(np, name) for name in FUNCTIONS}
+
+
+@cache
+def _compiled(switches: Switches, outputs: tuple[str, ...]) -> tuple[Any, Any]:
+    program, namespace = trace(switches, outputs), dict(MATH)
+    exec(preparation(program) + conditions(program), namespace)
+    return namespace["prepare"], namespace["make"]
+
+
+def constants(prepare: Callable[..., tuple[float, ...]], values: Mapping[str, float]) -> tuple[float, ...]:
+    """The constants of a tyre as Python floats; where Python's division by zero raises, as numpy has them."""
+    try:
+        return prepare(values, **MATH)
+    except (ArithmeticError, ValueError):
+        with np.errstate(all="ignore"):
+            numbers = {name: np.float64(value) for name, value in values.items()}
+            return tuple(float(x) for x in prepare(numbers, **NUMPY))
+
+
+def run_of(values: Mapping[str, float], switches: Switches, outputs: tuple[str, ...]) -> Run:
+    """The tyre as a function of :data:`~tir.codegen.program.INPUTS` in floats.
+
+    Raises what Python's arithmetic raises where numpy's gives NaN or infinity.
+    """
+    prepare, make = _compiled(switches, outputs)
+    run: Run = make(constants(prepare, values))
+    return run

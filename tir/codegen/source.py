@@ -1,0 +1,115 @@
+"""A program written down as assignments, in the words of a language."""
+
+from __future__ import annotations
+
+import math
+from collections import Counter
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from tir.codegen.graph import Node
+from tir.codegen.program import INPUTS, Program
+
+FUNCTIONS = ("sqrt", "exp", "sin", "cos", "tan", "arctan", "arccos", "power")
+COMPARISONS = ("less", "less_equal", "greater", "greater_equal", "both")
+LONGEST = 400
+"""Characters of an expression that may stand inside another one."""
+
+
+@dataclass(frozen=True, slots=True)
+class Dialect:
+    """How a language writes an operation: a template by its name, with braces where the arguments go."""
+
+    templates: Mapping[str, str]
+    truth: tuple[str, str] = ("False", "True")
+    number: str = "{} = {}"  #: assignment of a number
+    flag: str = "{} = {}"  #: assignment of a truth value
+    beyond: tuple[str, str] = ("inf", "nan")  #: what is no finite number
+    inline: bool = True  #: whether what is used once stands where it is used
+
+    def literal(self, x: float | bool) -> str:
+        """A number as text; read back it is the same one."""
+        if isinstance(x, bool):
+            return self.truth[x]
+        if math.isfinite(x):
+            return repr(x)
+        return self.beyond[1] if math.isnan(x) else "-" * (x < 0) + self.beyond[0]
+
+
+COMMON = {
+    "add": "({} + {})",
+    "subtract": "({} - {})",
+    "multiply": "({} * {})",
+    "divide": "({} / {})",
+    "negative": "(-{})",
+    "less": "({} < {})",
+    "less_equal": "({} <= {})",
+    "greater": "({} > {})",
+    "greater_equal": "({} >= {})",
+    "absolute": "abs({})",
+    **{name: f"{name}({{}})" for name in FUNCTIONS},
+    "power": "power({}, {})",
+}
+"""What all languages write alike."""
+PYTHON = Dialect({**COMMON, "where": "({1} if {0} else {2})", "both": "({} and {})"})
+
+
+def name_of(node: Node) -> str:
+    """The name of the variable that holds the result of an operation."""
+    return node.name if node.operation == "symbol" else f"v{node.number}"
+
+
+def assignments(
+    nodes: Iterable[Node], results: Iterable[Any], dialect: Dialect
+) -> tuple[list[str], list[str]]:
+    """Lines that compute the nodes, and the expressions of the results.
+
+    Parameters
+    ----------
+    nodes : in order; symbols and nodes that are not among them are taken for variables that are there
+    results : nodes or numbers
+    """
+    nodes, results = [node for node in nodes if node.operation != "symbol"], list(results)
+    uses = Counter(a.number for node in nodes for a in node.arguments if isinstance(a, Node))
+    uses.update({x.number: 2 for x in results if isinstance(x, Node)})
+    inside: dict[int, str] = {}
+
+    def written(x: Any) -> str:
+        if not isinstance(x, Node):
+            return dialect.literal(x)
+        return inside.pop(x.number) if x.number in inside else name_of(x)
+
+    lines = []
+    for node in nodes:
+        text = dialect.templates[node.operation].format(*map(written, node.arguments))
+        if dialect.inline and uses[node.number] == 1 and len(text) < LONGEST:
+            inside[node.number] = text
+            continue
+        form = dialect.flag if node.operation in COMPARISONS else dialect.number
+        lines.append(form.format(name_of(node), text))
+    return lines, [written(x) for x in results]
+
+
+def preparation(program: Program) -> str:
+    """Python source of ``prepare(p, <functions>)``: the program's constants of a tyre from its values by name."""
+    lines, results = assignments(program.per_tyre, program.constants, PYTHON)
+    given = [f'{name} = p["{name}"]' for name in program.parameters]
+    return function(f"prepare(p, {', '.join(FUNCTIONS)})", [*given, *lines, _returned(results)])
+
+
+def conditions(program: Program) -> str:
+    """Python source of ``make(constants)``, which gives the function of one operating condition in Python floats."""
+    lines, results = assignments(program.per_point, program.outputs.values(), PYTHON)
+    run = function(f"run({', '.join(INPUTS)})", [*lines, _returned(results)])
+    unpacked = f"({', '.join(map(name_of, program.constants))},) = constants"
+    return function("make(constants)", [unpacked, *run.splitlines(), "return run"])
+
+
+def function(head: str, lines: Iterable[str]) -> str:
+    """A Python function as text."""
+    return f"def {head}:\n" + "".join(f"    {line}\n" for line in lines)
+
+
+def _returned(results: Iterable[str]) -> str:
+    return f"return ({', '.join(results)},)"

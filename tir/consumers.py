@@ -1,0 +1,134 @@
+"""What a program would stumble over in the very text of a file."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from tir.document import Document, Line
+from tir.errors import Problem
+from tir.parameters import BY_NAME, TABLE
+from tir.targets import Target
+from tir.tyre import Tyre
+from tir.units import KINDS
+
+FIRST_OF_MODEL = 3
+"""Keys of [MODEL] that a reader by position takes: version, side, reference speed."""
+LONGEST = 200
+"""Characters of a line that the shortest buffers hold."""
+
+
+def stumbles(tyre: Tyre, target: Target) -> Iterator[Problem]:
+    """Problems of the tyre, and of its file's text if it has one, in a program."""
+    if target.refusal:
+        yield Problem("error", f"{target.name} {target.refusal}")
+        return
+    for problem in (*_content(tyre, target), *(_text(tyre, tyre.document, target) if tyre.document else ())):
+        yield Problem(problem.level, f"for {target.name}: {problem.sentence}", problem.name, problem.line)
+
+
+def _content(tyre: Tyre, target: Target) -> Iterator[Problem]:
+    version = int(tyre["FITTYP"])
+    if version not in target.fittyps:
+        known = ", ".join(map(str, target.fittyps))
+        yield Problem(
+            "error",
+            f'FITTYP {version} is not read, only {known}: write the file with target="{target.name}"',
+            "FITTYP",
+        )
+    if target.complete and tyre.document is not None:
+        missing = [
+            r.name for r in TABLE if r.files in ("", "62") and r.name not in (*tyre.present, *target.without)
+        ]
+        if missing:
+            shown = ", ".join(missing[:6]) + (f" and {len(missing) - 6} more" if len(missing) > 6 else "")
+            yield Problem("error", f"every key has to be there, and {shown} are not: tyre.expand() adds them")
+    if not target.turn_slip and int(tyre["USE_MODE"]) % 10 == 5:
+        yield Problem(
+            "warning",
+            "it computes no turn slip, so that camber and spin come out wrong: use the file for turn slip off",
+            "USE_MODE",
+        )
+
+
+def _text(tyre: Tyre, document: Document, target: Target) -> Iterator[Problem]:
+    keys = {line.key: line for line in reversed(document.entries)}
+    if not document.text.isascii():
+        line = next(line for line in document.lines if not line.text.isascii())
+        yield Problem("warning", f"line {line.number} holds signs beyond ASCII", line=line.number)
+    for line in document.lines:
+        if len(line.text) >= LONGEST:
+            yield Problem(
+                "warning", f"line {line.number} has {len(line.text)} characters", line.key, line.number
+            )
+        if target.dollar_only and line.key and "!" in line.text[line.start :].split("$")[0]:
+            yield Problem(
+                "error",
+                f"line {line.number}: only $ opens a comment, so that {line.key} is read as text",
+                line.key,
+                line.number,
+            )
+    if target.si:
+        yield from _other_units(document)
+    if target.positions:
+        yield from _out_of_place(tyre, document, target)
+    yield from _keys_of_its_own(keys, target)
+
+
+def _other_units(document: Document) -> Iterator[Problem]:
+    for line in document.entries:
+        kind = KINDS.get(line.key, {}) if line.section == "UNITS" else {}
+        if kind.get(line.value.strip("'\" ").lower(), 1.0) != 1.0:
+            yield Problem(
+                "error",
+                f"line {line.number}: {line.key} in {line.value} is ignored and every number taken for SI",
+                line.key,
+                line.number,
+            )
+
+
+def _out_of_place(tyre: Tyre, document: Document, target: Target) -> Iterator[Problem]:
+    """The first key of each section of which a reader that counts lines takes another one's value."""
+    sections = dict.fromkeys(row.section for row in TABLE)
+    for section in sections:
+        rows = [
+            r.name
+            for r in TABLE
+            if r.section == section and r.files in ("", "62") and r.name not in target.without
+        ]
+        if section == "MODEL":
+            rows = rows[:FIRST_OF_MODEL]
+        body = [line for line in document.lines if line.section == section and not line.head]
+        while body and not body[-1].key:
+            body.pop()
+        for line, name in zip(body, rows, strict=False):
+            if line.key not in BY_NAME or tyre[line.key] != tyre[name]:
+                found = line.key or "a line without a key"
+                yield Problem(
+                    "error",
+                    f"line {line.number}: lines are counted, and {found} stands in the place of {name}",
+                    name,
+                    line.number,
+                )
+                break
+        else:
+            if len(body) < len(rows):
+                yield Problem("error", f"[{section}] lacks lines, and lines are counted", rows[len(body)])
+
+
+def _keys_of_its_own(keys: dict[str, Line], target: Target) -> Iterator[Problem]:
+    for name in target.more:
+        if name not in keys:
+            yield Problem("error", f'[MODEL] lacks {name}: write the file with target="{target.name}"', name)
+    if "FUNCTION_NAME" in keys and "USER_SUB_ID" in keys:
+        line = keys["USER_SUB_ID"]
+        yield Problem(
+            "error",
+            f"line {line.number}: USER_SUB_ID is the old way to name the model, FUNCTION_NAME the one of 6.2; keep one",
+            "USER_SUB_ID",
+            line.number,
+        )
+    for line in keys.values():
+        if not line.section and line.key in BY_NAME:
+            yield Problem(
+                "error", f"line {line.number}: {line.key} stands before any [SECTION]", line.key, line.number
+            )

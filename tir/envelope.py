@@ -1,0 +1,192 @@
+"""Physics of a tyre over its whole range: each condition is searched for its worst point, inside and just outside."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from tir.equations import aligning, lateral, longitudinal, normalise, stiffness
+from tir.errors import Problem
+from tir.tyre import Tyre
+
+AXES = (
+    ("FZMIN", "FZMAX", 7),
+    ("CAMMIN", "CAMMAX", 9),
+    ("PRESMIN", "PRESMAX", 5),
+    ("ALPMIN", "ALPMAX", 9),
+    ("KPUMIN", "KPUMAX", 5),
+)
+"""The ranges searched, and how many values of each are tried at a time."""
+ROUNDS = 4
+"""How often the search narrows to the neighbourhood of the worst point."""
+BEYOND = 0.1
+"""How far outside a range "just outside" is, as a share of its width."""
+WIDEST = 1.05
+"""Camber [rad] beyond which no tyre is judged, whatever its file allows."""
+
+Measure = Callable[[Any, normalise.Inputs], Any]
+
+
+@dataclass(frozen=True, slots=True)
+class Condition:
+    """Something that must stay above zero."""
+
+    name: str  #: the key to look at first
+    level: str  #: "error" or "warning"
+    measure: Measure
+    sentence: str  #: with {where} and {worst}
+    value: Callable[[float], float] = lambda margin: margin  #: what to print, from the margin
+    outside: str = ""  #: sentence where it holds inside only; "" if nobody minds
+    slips: bool = False  #: whether it depends on sideslip and longitudinal slip
+
+
+CONDITIONS = (
+    Condition(
+        "PDY1",
+        "error",
+        lambda p, q: stiffness.lateral_friction(p, q, q.gamma),
+        "the lateral friction coefficient is not positive: {worst:.2f} at {where}; narrow the ranges or refit",
+        outside="the lateral friction coefficient turns negative just outside the ranges, at {where}",
+    ),
+    Condition(
+        "PDY1",
+        "warning",
+        lambda p, q: 4.0 - stiffness.lateral_friction(p, q, q.gamma),
+        "the lateral friction coefficient is {worst:.1f} at {where}",
+        lambda margin: 4.0 - margin,
+    ),
+    Condition(
+        "PDX1",
+        "warning",
+        lambda p, q: np.where(p.PDX1 == 0.0, 1.0, stiffness.longitudinal_friction(p, q)),
+        "the longitudinal friction coefficient is not positive: {worst:.2f} at {where}; narrow the ranges or refit",
+    ),
+    Condition(
+        "PKY1",
+        "error",
+        lambda p, q: -stiffness.cornering_stiffness(p, q, 0.0),
+        "the cornering stiffness is not negative at zero camber (ISO-W), at {where}: the file is in other axes, or wrong",
+    ),
+    Condition(
+        "PKY3",
+        "warning",
+        lambda p, q: -stiffness.cornering_stiffness(p, q, q.gamma),
+        "the cornering stiffness changes sign at {where}: narrow CAMMIN and CAMMAX",
+        outside="the cornering stiffness changes sign just outside the ranges, at {where}",
+    ),
+    Condition(
+        "PKX1",
+        "warning",
+        lambda p, q: np.where(p.PKX1 == 0.0, 1.0, stiffness.longitudinal_slip_stiffness(p, q)),
+        "the longitudinal slip stiffness is not positive at {where}",
+    ),
+    Condition(
+        "PKY6",
+        "warning",
+        lambda p, q: 1e-9 - stiffness.camber_stiffness(p, q),
+        "camber pushes against the lean at {where}: a normal tyre has PKY6 < 0 in ISO-W",
+    ),
+    Condition(
+        "PEY1",
+        "warning",
+        lambda p, q: 1.0 - np.maximum(*(lateral.curvature(p, q, q.gamma, side) for side in (-1.0, 1.0))),
+        "the curvature E_y reaches {worst:.2f} > 1 at {where}: simulations may hold it at 1",
+        lambda margin: 1.0 - margin,
+    ),
+    Condition(
+        "QEZ1",
+        "warning",
+        lambda p, q: 1.0 - aligning.curvature(p, q, aligning.slope_factor(p, q), q.alpha),
+        "the curvature E_t of the trail reaches {worst:.2f} > 1 at {where}: simulations may hold it at 1",
+        lambda margin: 1.0 - margin,
+        slips=True,
+    ),
+    Condition(
+        "RBY1",
+        "warning",
+        lateral.combined_weight,
+        "longitudinal slip turns the side force round: G_yk is {worst:.2f} at {where}",
+        slips=True,
+    ),
+    Condition(
+        "RBX1",
+        "warning",
+        longitudinal.combined_weight,
+        "sideslip turns the longitudinal force round: G_xa is {worst:.2f} at {where}",
+        slips=True,
+    ),
+)
+
+
+def over_the_range(tyre: Tyre) -> Iterator[Problem]:
+    """What the tyre breaks within its ranges, and just outside."""
+    box = _box(tyre)
+    width = box[1] - box[0]
+    around = np.array([box[0] - BEYOND * width, box[1] + BEYOND * width])
+    around[0, 0] = max(around[0, 0], 0.2 * box[0, 0])
+    around[0, 2] = max(around[0, 2], 0.2 * box[0, 2])
+    for condition in CONDITIONS:
+        margin, point = worst(tyre, condition.measure, box)
+        if np.isnan(margin):
+            yield Problem(
+                "error",
+                f"{condition.name} and its like give no number at {_place(point, condition.slips)}",
+                condition.name,
+            )
+            return
+        sentence = condition.sentence if margin <= 0.0 else ""
+        level = condition.level
+        if not sentence and condition.outside:
+            margin, point = worst(tyre, condition.measure, around)
+            sentence, level = condition.outside if margin <= 0.0 else "", "warning"
+        if sentence:
+            text = sentence.format(where=_place(point, condition.slips), worst=condition.value(margin))
+            yield Problem(level, text, condition.name)
+
+
+def worst(tyre: Tyre, measure: Measure, box: np.ndarray) -> tuple[float, np.ndarray]:
+    """The smallest value over a box (2, 5) of Fz [N], gamma [rad], pressure [Pa], alpha [rad], kappa, and where.
+
+    NaN where the measure is no number.
+    """
+    low, high = box
+    best, place = np.inf, low
+    for _ in range(ROUNDS):
+        axes = [np.linspace(a, b, n) for a, b, (_, _, n) in zip(low, high, AXES, strict=True)]
+        points = np.stack([axis.ravel() for axis in np.meshgrid(*axes, indexing="ij")])
+        found = np.broadcast_to(_measured(tyre, measure, points), points.shape[1:])
+        i = int(np.argmax(np.isnan(found))) if np.any(np.isnan(found)) else int(np.argmin(found))
+        if np.isnan(found[i]):
+            return float("nan"), points[:, i]
+        if found[i] < best:
+            best, place = float(found[i]), points[:, i]
+        step = (high - low) / [n - 1 for _, _, n in AXES]
+        low, high = np.maximum(box[0], place - step), np.minimum(box[1], place + step)
+    return best, place
+
+
+def _measured(tyre: Tyre, measure: Measure, points: np.ndarray) -> Any:
+    Fz, gamma, pressure, alpha, kappa = points
+    with np.errstate(all="ignore"):
+        q = normalise.inputs(tyre.p, Fz, Fz, kappa, alpha, gamma, 0.0, pressure, False, False)
+        return measure(tyre.p, q)
+
+
+def _box(tyre: Tyre) -> np.ndarray:
+    """The file's ranges, without what no tyre meets."""
+    box = np.array([[float(tyre[name]) for name in ends] for *ends, _ in AXES]).T
+    box[0, 0] = max(box[0, 0], 0.02 * tyre["FNOMIN"])
+    box[:, 1] = np.clip(box[:, 1], -WIDEST, WIDEST)
+    pressure = np.clip(box[:, 2], 0.5 * tyre["NOMPRES"], 1.5 * tyre["NOMPRES"])
+    box[:, 2] = pressure if pressure[0] < pressure[1] else tyre["NOMPRES"]
+    box[:, 3] = np.clip(box[:, 3], -0.5, 0.5)
+    return box
+
+
+def _place(point: np.ndarray, slips: bool) -> str:
+    Fz, gamma, pressure, alpha, kappa = point
+    text = f"{Fz:.0f} N, {np.degrees(gamma):.0f} deg camber, {pressure / 1e3:.0f} kPa"
+    return f"{text}, {np.degrees(alpha):.0f} deg sideslip, kappa {kappa:.2g}" if slips else text

@@ -1,0 +1,101 @@
+"""What a tyre changes in the text it was read from: the characters of changed values, and nothing beside them.
+
+Keys that are given and that the file lacks are added to their section; a key's comment is replaced where it states an origin
+of the value that no longer holds, or where there is a new one to state.
+"""
+
+from __future__ import annotations
+
+import math
+from collections import defaultdict
+from typing import Any
+
+from tir.document import Document, Line
+from tir.parameters import SECTIONS, TABLE, Parameter
+from tir.properties import MEASURED, PROVENANCE, interpret, stands_for, units_of, unquoted
+from tir.rendering import comment_text, entry, remark, structured_comments, value_text
+from tir.tyre import Tyre
+from tir.units import factor
+
+
+def merged(tyre: Tyre, document: Document) -> Document:
+    """The document with the values, origins, measured quantities and provenance of the tyre.
+
+    Raises
+    ------
+    TirError
+        If a changed value is not finite.
+    """
+    before, words = interpret(document), units_of(document, [])
+    lines: dict[str, Line] = {}
+    for line in document.entries:
+        if stands_for(line) is not None:
+            lines.setdefault(line.key, line)
+    added = [row for row in TABLE if row.name not in lines and row.name in tyre.present]
+    changed = {}
+    for row in (row for row in TABLE if row.name in lines):
+        line = lines[row.name]
+        given = row.name in before.present or row.name in tyre.present
+        new = line
+        if given and (row.name not in before.present or tyre[row.name] != before[row.name]):
+            new = new.with_value(_text(row, tyre[row.name], words, line))
+        if tyre.status.get(row.name) != before.status.get(row.name):
+            new = new.with_comment(comment_text(remark(row, tyre)))
+        if new is not line:
+            changed[line.number] = new
+    document = document.changed(changed)
+    if added:
+        document = document.inserted(_places(document, added, lines, tyre, words))
+    if tyre.measured != before.measured or tyre.provenance != before.provenance:
+        document = _with_structured_comments(document, tyre)
+    return document
+
+
+def _text(row: Parameter, value: Any, words: dict[str, str], line: Line | None = None) -> str:
+    """The value in the file's units and in the quotes of the line."""
+    if row.kind == "text":
+        text = value_text(row, value)
+        quoted = line is None or not line.value or line.value[0] in "'\""
+        return text.replace("'", line.value[0] if line and line.value else "'") if quoted else unquoted(text)
+    value_text(row, value)  # refuses what is no number
+    wanted, size = float(value), factor(row.unit, words)
+    found = wanted / size
+    near = (found, math.nextafter(found, -math.inf), math.nextafter(found, math.inf))
+    return value_text(row, next((x for x in near if x * size == wanted), found))
+
+
+def _places(
+    document: Document, rows: list[Parameter], lines: dict[str, Line], tyre: Tyre, words: dict[str, str]
+) -> dict[int, list[str]]:
+    """New lines by the number of the line that they follow: behind the key that precedes them in the table."""
+    heads = {line.section: line.number for line in reversed(document.lines) if line.head}
+    last = document.lines[-1].number
+    if not document.lines[-1].text:
+        last -= 1
+    texts: dict[int, list[str]] = defaultdict(list)
+    for section in SECTIONS:
+        new = [row for row in rows if row.section == section]
+        if not new:
+            continue
+        if section not in heads:
+            texts[last] += [f"[{section}]"]
+        for row in new:
+            above = [
+                lines[other.name].number
+                for other in TABLE
+                if other.section == section
+                and other.order < row.order
+                and other.name in lines
+                and lines[other.name].section == section
+            ]
+            place = above[-1] if above else heads.get(section, last)
+            texts[place].append(entry(row.name, _text(row, tyre[row.name], words), remark(row, tyre)))
+    return dict(texts)
+
+
+def _with_structured_comments(document: Document, tyre: Tyre) -> Document:
+    old = [line.number for line in document.lines if MEASURED.match(line.text) or PROVENANCE.match(line.text)]
+    header = [line.number for line in document.entries if line.section == "MDI_HEADER"]
+    place = max(header, default=0)
+    kept = document.without(old)
+    return kept.inserted({place: list(structured_comments(tyre))})

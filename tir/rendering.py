@@ -1,0 +1,109 @@
+"""A property file written anew: every key in the order of the table, ASCII, CR LF, one form that every reader takes."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from typing import Any
+
+from tir.errors import TirError
+from tir.parameters import BY_NAME, SECTIONS, TABLE, Parameter
+from tir.targets import Target, use_mode_words, vendor
+from tir.tyre import Tyre
+from tir.units import SI
+
+WIDTH = 118
+"""Characters of the longest line; some readers stop at 120."""
+
+
+def render(tyre: Tyre, target: Target) -> str:
+    """The complete file as text; keys without a value of their own say so in their comment.
+
+    Raises
+    ------
+    TirError
+        If a value is not finite.
+    """
+    lines = [
+        "[MDI_HEADER]",
+        entry("FILE_TYPE", "'tir'"),
+        entry("FILE_VERSION", "3.0"),
+        entry("FILE_FORMAT", "'ASCII'"),
+        *structured_comments(tyre),
+        "$" + "-" * 60 + "units",
+        "[UNITS]",
+        *(entry(kind, f"'{word}'") for kind, word in SI.items()),
+    ]
+    for section in SECTIONS:
+        lines += ["$" + "-" * 60 + section.lower(), f"[{section}]"]
+        rows = [row for row in TABLE if row.section == section and _written(row, tyre, target)]
+        lines += [
+            entry(row.name, value_text(row, _value(row, tyre, target)), remark(row, tyre)) for row in rows
+        ]
+        if section == "MODEL":
+            lines += [entry(key, text or vendor(tyre["USE_MODE"])) for key, text in target.more.items()]
+    return "\r\n".join(lines) + "\r\n"
+
+
+def _written(row: Parameter, tyre: Tyre, target: Target) -> bool:
+    """A key that no common program knows goes into a file only if it matters."""
+    if row.files == "62" and _value(BY_NAME["FITTYP"], tyre, target) < 62:
+        return False
+    return row.name not in target.without and (row.files != "rare" or tyre[row.name] != row.default)
+
+
+def _value(row: Parameter, tyre: Tyre, target: Target) -> Any:
+    if row.name == "FITTYP":
+        given = tyre["FITTYP"]
+        return given if given in target.fittyps and row.name in tyre.present else target.fittyps[0]
+    return target.values.get(row.name, tyre[row.name])
+
+
+def structured_comments(tyre: Tyre) -> Iterator[str]:
+    """Provenance and measured quantities as comment lines that ``tir.read`` gives back."""
+    for key, text in tyre.provenance.items():
+        yield f"! provenance: {comment_text(key)}: {comment_text(text)}"
+    for name, q in tyre.measured.items():
+        unit = q.unit.encode("ascii", "backslashreplace").decode()
+        yield f"! measured: {comment_text(name)} {q.value!r} u {q.u!r} {unit or '-'}"
+
+
+def entry(key: str, value: str, comment: str = "") -> str:
+    """One line with a key."""
+    line = f"{key:<24} = {value}"
+    return f"{line:<50} ${comment_text(comment)}"[:WIDTH] if comment else line
+
+
+def value_text(row: Parameter, value: Any) -> str:
+    """The value as it stands in a file in SI; read back it is the same.
+
+    Raises
+    ------
+    TirError
+        If a number is not finite.
+    """
+    if row.kind == "text":
+        return f"'{comment_text(str(value))}'"
+    number = float(value)
+    if not math.isfinite(number):
+        raise TirError(f"{row.name} is {number}, and a file can only hold numbers", name=row.name)
+    return str(int(number)) if number.is_integer() and abs(number) < 1e15 else repr(number)
+
+
+def remark(row: Parameter, tyre: Tyre) -> str:
+    """The comment of a key: where its value comes from, else what it is."""
+    if row.name in tyre.status:
+        return tyre.status[row.name]
+    if row.name not in tyre.present:
+        return f"default, not measured: {row.description}"
+    return use_mode_words(tyre["USE_MODE"]) if row.name == "USE_MODE" else row.description
+
+
+SIGNS: dict[str, str | int | None] = {
+    "=": ":", ";": ",", "!": ".", "$": " ", "\n": " ", "\r": " ", "\t": " ",
+}  # fmt: skip
+
+
+def comment_text(text: str) -> str:
+    """Text that no reader can mistake for a key: ASCII, without equals signs, semicolons and exclamation marks."""
+    return text.translate(str.maketrans(SIGNS)).encode("ascii", "replace").decode()

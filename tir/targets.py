@@ -1,0 +1,146 @@
+"""The programs for which a property file can be written, and what each of them needs said differently."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+from tir.errors import TirError
+from tir.parameters import TABLE
+
+ADAMS = tuple(row.name for row in TABLE if row.files == "adams")
+ONLY_62 = tuple(row.name for row in TABLE if row.files == "62")
+
+
+@dataclass(frozen=True, slots=True)
+class Target:
+    """A program that reads property files."""
+
+    name: str
+    program: str  #: what it is, in a few words
+    fittyps: tuple[int, ...]  #: versions that it reads; the first is written
+    without: tuple[str, ...] = ()  #: keys that it is not given
+    values: Mapping[str, Any] = field(default_factory=dict)  #: keys of the table that are always these
+    more: Mapping[str, str] = field(default_factory=dict)  #: keys of its own in [MODEL], with their text
+    turn_slip: bool = True  #: whether it can compute turn slip
+    complete: bool = False  #: whether every key has to be there
+    si: bool = False  #: whether it takes every number for SI, whatever [UNITS] says
+    positions: bool = False  #: whether it counts lines instead of reading keys
+    dollar_only: bool = False  #: whether only a dollar sign opens a comment
+    refusal: str = ""  #: why nothing can be written for it
+
+
+TARGETS: dict[str, Target] = {
+    target.name: target
+    for target in (
+        Target("mftyre", "MF-Tyre/MF-Swift 6.2 and what has it built in", (62, 61, 60), ADAMS),
+        Target("mf61", "programs that know MF 6.1 and no 6.2", (61, 60), (*ADAMS, *ONLY_62)),
+        Target(
+            "adams",
+            "MF-Tyre/MF-Swift 6.2 in Adams",
+            (62, 61, 60),
+            ("USER_SUB_ID",),
+            {"PROPERTY_FILE_FORMAT": "USER", "N_TIRE_STATES": 5.0},
+            {"FUNCTION_NAME": "'TNO_DelftTyre_Adams_interface::TYR815'"},
+        ),
+        Target(
+            "carmaker",
+            "CarMaker's own MF 6.1",
+            (61,),
+            (*ADAMS, *ONLY_62),
+            turn_slip=False,
+            complete=True,
+            si=True,
+        ),
+        Target(
+            "simscape",
+            "the Magic Formula blocks of MathWorks",
+            (62,),
+            turn_slip=False,
+            complete=True,
+            si=True,
+        ),
+        Target("recurdyn", "RecurDyn with MF-Tyre", (62, 61, 60), ADAMS, more={"VENDER_TIRE_TYPE": ""}),
+        Target(
+            "mbsim",
+            "MBSim's MagicFormula62",
+            (62,),
+            ADAMS,
+            complete=True,
+            si=True,
+            positions=True,
+        ),
+        Target("mfeval", "MFeval and its relatives", (62, 61, 60), ADAMS, si=True, dollar_only=True),
+        *(
+            Target(
+                name,
+                "PAC2002",
+                (),
+                refusal=(
+                    "computes PAC2002, another formula: its coefficients are not those of MF 6.2, so that a renamed file would "
+                    "be read as another tyre, or without complaint as none. Fit PAC2002 to the forces of this tyre"
+                ),
+            )
+            for name in ("chrono", "pac2002")
+        ),
+    )
+}
+DEFAULT = "mftyre"
+
+
+def target_of(name: str) -> Target:
+    """The program of this name.
+
+    Raises
+    ------
+    TirError
+        If there is none, or if it cannot use an MF 6.2 tyre.
+    """
+    target = known_target(name)
+    if target.refusal:
+        raise TirError(f"nothing can be written for {name}: it {target.refusal}")
+    return target
+
+
+def known_target(name: str) -> Target:
+    """The program of this name, whether or not it can use an MF 6.2 tyre; raises as :func:`target_of`."""
+    if name not in TARGETS:
+        raise TirError(f"{name} is no known program: use one of {', '.join(TARGETS)}")
+    return TARGETS[name]
+
+
+UNITS_DIGIT = {
+    0: "Fz only",
+    1: "Fx and My only",
+    2: "Fy, Mx and Mz only",
+    3: "slips apart",
+    4: "combined slip",
+    5: "combined and turn slip",
+}
+TENS_DIGIT = {0: "steady state", 1: "linear relaxation", 2: "nonlinear relaxation", 3: "rigid ring"}
+HUNDREDS_DIGIT = {
+    0: "road contact by default",
+    1: "smooth road",
+    2: "smooth road, round cross-section",
+    3: "moving road",
+    4: "2D road",
+    5: "3D road",
+}
+
+
+def use_mode_words(mode: float) -> str:
+    """What a USE_MODE asks of MF-Tyre/MF-Swift, digit by digit; the thousands are its own business."""
+    number = abs(int(mode))
+    parts = (
+        HUNDREDS_DIGIT.get(number // 100 % 10),
+        TENS_DIGIT.get(number // 10 % 10),
+        UNITS_DIGIT.get(number % 10),
+    )
+    return ", ".join(part or "unknown digit" for part in parts)
+
+
+def vendor(mode: float) -> str:
+    """RecurDyn's name of the model: turn slip and the rigid ring belong to MF-Swift."""
+    number = abs(int(mode))
+    return "'TNO-SWIFT'" if number % 10 == 5 or number // 10 % 10 == 3 else "'TNO-MF'"

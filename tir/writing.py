@@ -1,0 +1,40 @@
+"""Property files written: the file's own text with its changes, or a new one for a program."""
+
+from __future__ import annotations
+
+import os
+import tempfile
+from dataclasses import replace
+from pathlib import Path
+
+from tir.merging import merged
+from tir.parameters import TABLE
+from tir.rendering import render
+from tir.targets import DEFAULT, target_of
+from tir.tyre import Tyre
+
+
+def content(tyre: Tyre, target: str | None = None) -> tuple[str, str]:
+    """Text and encoding of the tyre's file; see :meth:`tir.Tyre.text`."""
+    if target is None and tyre.document is not None:
+        document = merged(tyre, tyre.document)
+        return document.text, document.encoding
+    chosen = target_of(target or DEFAULT)
+    if target is None:  # nobody named a program: what was given of another one's keys is kept
+        own = {row.name for row in TABLE if tyre[row.name] != row.default}
+        chosen = replace(chosen, without=tuple(name for name in chosen.without if name not in own))
+    return render(tyre, chosen), "ascii"
+
+
+def write(tyre: Tyre, path: str | Path, target: str | None = None) -> None:
+    """Write :func:`content`; the file at ``path`` is replaced only once the new one is complete."""
+    path, (text, encoding) = Path(path), content(tyre, target)
+    handle, temporary = tempfile.mkstemp(prefix=f".{path.name}-", dir=path.parent)
+    try:
+        with os.fdopen(handle, "wb") as stream:
+            stream.write(text.encode(encoding))
+        os.chmod(temporary, 0o644)
+        os.replace(temporary, path)
+    except BaseException:
+        Path(temporary).unlink(missing_ok=True)
+        raise
