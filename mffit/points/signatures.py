@@ -10,6 +10,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
+from scipy.stats import t
 
 from mffit.points.points import Points
 from mffit.points.requirements import at_zero
@@ -21,8 +22,8 @@ SMALL_SLIP_OF_MOMENT = np.radians(3.0)
 UPRIGHT = np.radians(5.0)
 STRAIGHT = np.radians(1.5)
 LARGE_CAMBER = np.radians(20.0)
-CLEAR = 4.0
-"""Standard errors by which a slope must differ from zero for its sign to count."""
+DOUBT = 3e-5
+"""Probability of a slope of the other sign (Student's t) below which its sign counts; 4 standard errors of many points."""
 SMALLEST_RANGE = np.radians(0.02)
 """A smaller range of angles [rad] has no slope."""
 WEAK_FORCE = 0.01
@@ -35,14 +36,16 @@ class Slope(NamedTuple):
 
     value: float
     error: float
+    freedom: int  #: degrees of freedom of the scatter behind the error
 
     @property
     def sign(self) -> int:
         """+1 or -1 if beyond doubt, else 0."""
-        return int(np.sign(self.value)) if abs(self.value) > CLEAR * self.error else 0
+        clear = float(t.isf(DOUBT, self.freedom)) * self.error
+        return int(np.sign(self.value)) if abs(self.value) > clear else 0
 
 
-UNKNOWN = Slope(np.nan, np.nan)
+UNKNOWN = Slope(np.nan, np.nan, 1)
 
 
 class Signatures(NamedTuple):
@@ -99,7 +102,7 @@ def slope(points: Points, response: np.ndarray, angle: str, used: np.ndarray) ->
         return UNKNOWN
     scatter = float(np.sum((y - design @ solution) ** 2)) / freedom
     error = float(np.sqrt(scatter * np.linalg.inv(design.T @ design)[1, 1]))
-    return Slope(float(solution[1]), error)
+    return Slope(float(solution[1]), error, freedom)
 
 
 def _outward(points: Points) -> float:
