@@ -17,7 +17,7 @@ from mffit.config import Config
 from mffit.errors import InputError
 from mffit.points.magnitudes import check_magnitudes, check_pressures
 from mffit.points.points import Points
-from mffit.points.signatures import WEAK_FORCE, Signatures, signatures
+from mffit.points.signatures import WEAK_FORCE, Signatures, pooled, signatures
 from mffit.points.twins import check_twins
 from tir.conventions import FLIPPED
 
@@ -74,10 +74,23 @@ def _check_every_file(points: Points) -> None:
     """Refuse a file that has another sign than the others: it was recorded or written down the other way round."""
     if len(np.unique(points.file)) < 2:
         return
+    files = np.unique(points.file)
+    each = [signatures(points.select(points.file == index)) for index in files]
+    sure = [
+        own._replace(cornering=cornering, backward=backward, camber=camber, aligning=aligning)
+        for own, cornering, backward, camber, aligning in zip(
+            each,
+            pooled([own.cornering for own in each]),
+            pooled([own.backward for own in each]),
+            pooled([own.camber for own in each]),
+            pooled([own.aligning for own in each]),
+            strict=True,
+        )
+    ]
     broken = [
         (points.files[index], *said)
-        for index in np.unique(points.file)
-        if (said := _reversed(signatures(points.select(points.file == index)))) is not None
+        for index, own in zip(files, sure, strict=True)
+        if (said := _reversed(own)) is not None
     ]
     if not broken:
         return

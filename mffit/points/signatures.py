@@ -7,6 +7,8 @@ backwards, side force rises with the sideslip reading.
 
 from __future__ import annotations
 
+import math
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -37,15 +39,31 @@ class Slope(NamedTuple):
     value: float
     error: float
     freedom: int  #: degrees of freedom of the scatter behind the error
+    scatter: float  #: standard deviation about the line
 
     @property
     def sign(self) -> int:
         """+1 or -1 if beyond doubt, else 0."""
-        clear = float(t.isf(DOUBT, self.freedom)) * self.error
+        clear = float(t.isf(DOUBT, max(self.freedom, 1))) * self.error
         return int(np.sign(self.value)) if abs(self.value) > clear else 0
 
 
-UNKNOWN = Slope(np.nan, np.nan, 1)
+UNKNOWN = Slope(np.nan, np.nan, 0, np.nan)
+
+
+def pooled(slopes: Sequence[Slope]) -> list[Slope]:
+    """The slopes of several files with the scatter that they have in common: five points alone hardly know theirs."""
+    known = [s for s in slopes if s.freedom]
+    freedom = sum(s.freedom for s in known)
+    if not freedom:
+        return list(slopes)
+    scatter = math.sqrt(sum(s.freedom * s.scatter**2 for s in known) / freedom)
+    return [
+        Slope(s.value, s.error * scatter / s.scatter, freedom, scatter)
+        if s.freedom and s.scatter > 0.0
+        else s
+        for s in slopes
+    ]
 
 
 class Signatures(NamedTuple):
@@ -100,9 +118,9 @@ def slope(points: Points, response: np.ndarray, angle: str, used: np.ndarray) ->
     freedom = len(x) - rank
     if rank < design.shape[1] or freedom < 1:
         return UNKNOWN
-    scatter = float(np.sum((y - design @ solution) ** 2)) / freedom
-    error = float(np.sqrt(scatter * np.linalg.inv(design.T @ design)[1, 1]))
-    return Slope(float(solution[1]), error, freedom)
+    scatter = float(np.sqrt(np.sum((y - design @ solution) ** 2) / freedom))
+    error = scatter * float(np.sqrt(np.linalg.inv(design.T @ design)[1, 1]))
+    return Slope(float(solution[1]), error, freedom, scatter)
 
 
 def _outward(points: Points) -> float:
