@@ -12,7 +12,7 @@ from mffit.diagnosis.candidates import Hypothesis, Problem
 from mffit.diagnosis.inexact import Inexactness
 from mffit.diagnosis.noise import CHANNELS, Noise
 from mffit.diagnosis.scatter import Explained, learned
-from mffit.diagnosis.selection import Step, ids, price, select
+from mffit.diagnosis.selection import Step, ids, select
 from mffit.diagnosis.smooth import NO_SMOOTH, Smooth, amplified, smooth_basis, smooth_scan
 from mffit.diagnosis.unknown import Bump, BumpScan, bump_scan
 from mffit.effects import Effect
@@ -164,7 +164,9 @@ def _explained(
     if not rivals:
         return Explanation(problem, chosen, steps, bumps.best(chosen), NO_SMOOTH, bumps, basis, chosen, {})
     rival = bumps.best(problem.null)
-    gained = chosen.log_evidence - problem.null.log_evidence - len(chosen.effects) * price(len(candidates))
+    # Any one effect is as likely beforehand as its share of the library; structure without a name, as the whole library.
+    choice = math.log(max(len(candidates), 1))
+    gained = chosen.log_evidence - problem.null.log_evidence - len(chosen.effects) * choice
     scan = smooth_scan(basis, problem.noise)
     alone, beside = scan.best(problem.null), scan.best(chosen)
     if rival.found and rival.gain > max(gained, alone.gain):

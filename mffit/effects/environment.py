@@ -7,7 +7,8 @@ from mffit.effects.effect import Effect, Free
 TEMPERATURE = Effect(
     "temperature", "tyre temperature", "environment",
     "Warm rubber grips and stiffens differently: forces scale with temperature.",
-    (Free("k_T_per_K", 0.001, (0.0,), -0.05, 0.05),), ("temperatures",), "as the forces",
+    (Free("k_T_per_K", 0.001, (0.0,), -0.05, 0.05), Free("T_ref_degC", 10.0, (0.0,), -40.0, 200.0)),
+    ("temperatures",), "as the forces",
     ("drift", "temperature-grip", "temperature-stiffness"),
 )  # fmt: skip
 TEMPERATURE_GRIP = Effect(

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import dataclasses
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from mffit.measured.notes import Note
+from mffit.measured.notes import Conicity, Note
 from tir import Quantity
 
 
@@ -115,11 +116,25 @@ class Measured:
         )
 
     def debiased(self, bias: float) -> Measured:
-        """The same with eps_gamma less the bias that finite spin gives it."""
-        direct = self.epsilon_gamma
+        """The same with eps_gamma less the bias that finite spin gives it, beside the measured one.
+
+        Both budgets gain what conicity may add, the measured one also the bias, which is known now and stays in it.
+        """
+        row, direct = self.nominal, self.epsilon_gamma
+        assert row is not None
         assert direct is not None
+        conicity = [
+            Contribution("conicity", n.force, "N", n.shift) for n in self.notes if isinstance(n, Conicity)
+        ]
+        spin = Contribution("finite spin of the disc", abs(bias), "-", abs(bias))
+        u = math.hypot(direct.u, *(line.contribution for line in conicity))
+        whole = Quantity(direct.value, math.hypot(u, bias), direct.unit)
+        named = dataclasses.replace(row, epsilon_gamma=whole, budget=(*row.budget, *conicity, spin))
         return dataclasses.replace(
-            self, epsilon_gamma_debiased=Quantity(direct.value - bias, direct.u, direct.unit)
+            self,
+            nominal=named,
+            per_load=tuple(named if other is row else other for other in self.per_load),
+            epsilon_gamma_debiased=Quantity(direct.value - bias, u, direct.unit),
         )
 
     def quantities(self) -> dict[str, Quantity]:

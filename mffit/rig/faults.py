@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, fields
 from typing import Any
 
 REFERENCE_TEMPERATURE = 25.0  # degC
-WARMTH = "(T - T_ref), T_ref the mean temperature of the data"
+WARMTH = "(T - T_ref), T_ref the mean temperature of the data unless it is fitted"
 FORCE = "reported Fy = gain Fy + F0 + crosstalk Fz"
 
 
@@ -31,6 +31,7 @@ class RigFaults:
     backlash_deg: float = _fault(0.0, "deg", "full play; true sideslip angle = reading - play/2 sign(Mz)")
     path_radius_m: float = _fault(math.nan, "m", "true radius of the path")
     k_T_per_K: float = _fault(0.0, "1/K", f"Fy and Mz times 1 + k_T {WARMTH}")
+    T_ref_degC: float = _fault(math.nan, "degC", "temperature at which the model holds")
     k_V_per_mps: float = _fault(
         0.0, "s/m", "Fy and Mz times 1 + k_V (V - V_ref), V_ref the most frequent speed"
     )

@@ -65,6 +65,8 @@ class Simulation:
             return self.relaxation_m
         if name == "path_radius_m" and math.isnan(self.faults.path_radius_m):
             return declared_radius(points)
+        if name == "T_ref_degC" and math.isnan(self.faults.T_ref_degC):
+            return self.T_ref
         return float(getattr(self.faults, name) if name in FAULT_NAMES else self.values[name])
 
     def with_numbers(self, numbers: Mapping[str, float]) -> Simulation:
@@ -113,7 +115,7 @@ class Simulation:
         """Fy and Mz as the rig reports them, plain or traced."""
         fault = self._faults(numbers)
         out = self._forces(points, self._true_alpha(points, fault, numbers), fault, numbers)
-        environment = _environment(points, fault, self.T_ref)
+        environment = _environment(points, fault)
         Fy = fault.gain * out.Fy * environment
         if _present(fault.nonlinearity_per_kN):
             Fy = Fy * (1.0 + 1e-3 * fault.nonlinearity_per_kN * abs(Fy))
@@ -121,7 +123,10 @@ class Simulation:
 
     def _faults(self, numbers: Mapping[str, Traced]) -> Any:
         changed = {n: x for n, x in numbers.items() if n in FAULT_NAMES}
-        return SimpleNamespace(**{**asdict(self.faults), **changed})
+        fault = SimpleNamespace(**{**asdict(self.faults), **changed})
+        if math.isnan(plain(fault.T_ref_degC)):
+            fault.T_ref_degC = self.T_ref
+        return fault
 
     def _forces(self, points: Points, alpha: Any, fault: Any, numbers: Mapping[str, Traced]) -> Any:
         """Forces and moments of the tyre at its true sideslip angle ``alpha`` (n,) [rad]."""
@@ -131,7 +136,7 @@ class Simulation:
         for name, scale in (("k_T_grip_per_K", "LMUY"), ("k_T_stiffness_per_K", "LKY")):
             factor = getattr(fault, name)
             if _present(factor):
-                scaled = getattr(p, scale) * (1.0 + factor * np.nan_to_num(points.T - self.T_ref))
+                scaled = getattr(p, scale) * (1.0 + factor * _warmth(points, fault))
                 p = SimpleNamespace(**{**vars(p), scale: scaled})
         phi_t: Any = points.phi_t
         if not math.isnan(plain(fault.path_radius_m)):
@@ -262,10 +267,17 @@ def _moment_slope(moment: Callable[[Any], Any], alpha: np.ndarray) -> np.ndarray
     return (up - down) / (2.0 * DIFFERENCE)
 
 
-def _environment(points: Points, fault: Any, T_ref: float) -> Any:
+def _warmth(points: Points, fault: Any) -> Any:
+    """Temperature above the reference (n,) [K]; 0 where it was not measured."""
+    known = np.isfinite(points.T)
+    return np.where(known, np.nan_to_num(points.T) - fault.T_ref_degC, 0.0)
+
+
+def _environment(points: Points, fault: Any) -> Any:
     """Factor (n,) on Fy and Mz; a channel that was not measured has no influence."""
-    warmth = 1.0 + fault.k_T_per_K * np.nan_to_num(points.T - T_ref)
-    factor = warmth * (1.0 + fault.k_t_per_s * np.nan_to_num(points.t))
+    factor = (1.0 + fault.k_T_per_K * _warmth(points, fault)) * (
+        1.0 + fault.k_t_per_s * np.nan_to_num(points.t)
+    )
     rolled = [n for n in ("wear_per_km", "warm_up") if _present(getattr(fault, n))]
     if rolled:
         s = distance_km(points)

@@ -265,9 +265,18 @@ def test_spin_writes_the_spin_part_of_the_build(built, result, tmp_path, capsys)
     content = json.loads((tmp_path / "spin" / "spin.json").read_text(encoding="utf-8"))
     # what only the finished file can tell
     fitted = {"epsilon_gamma_model", "pecp1", "epsilon_gamma_debiased", "u_epsilon_gamma_debiased"}
+    fitted |= {"u_epsilon_gamma", "budget", "per_load"}
     assert {k: v for k, v in content.items() if k not in fitted} == {
         k: v for k, v in result["spin"].items() if k not in fitted
     }
+    # The model adds two lines to the budget: what finite spin and conicity may have done.
+    before, after = content["budget"], result["spin"]["budget"]
+    assert after[: len(before)] == before
+    assert [line["source"] for line in after[len(before) :]] == ["conicity", "finite spin of the disc"]
+    for part, lines in ((content, before), (result["spin"], after)):
+        assert part["u_epsilon_gamma"] == pytest.approx(
+            np.sqrt(sum(x["contribution"] ** 2 for x in lines)), rel=1e-6
+        )
     assert content["epsilon_gamma_model"] is None
     assert f"{abs(content['epsilon_gamma']):.3f}" in capsys.readouterr().out
 

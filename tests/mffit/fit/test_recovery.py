@@ -52,7 +52,9 @@ def test_debiased_is_the_direct_method_less_its_error_on_noise_free_readings(sou
     # A rig without faults: what is left of the bias is the noise of zeros and camber sweep.
     assert measured.epsilon_gamma_debiased.value == pytest.approx(-0.115, abs=2 * measured.epsilon_gamma.u)
     assert measured.epsilon_gamma_debiased.value != measured.epsilon_gamma.value
-    assert measured.epsilon_gamma_debiased.u == measured.epsilon_gamma.u
+    # The bias is an uncertainty of the measured value, not of the one without it.
+    bias = measured.epsilon_gamma.value - measured.epsilon_gamma_debiased.value
+    assert measured.epsilon_gamma.u == pytest.approx(np.hypot(measured.epsilon_gamma_debiased.u, bias))
 
 
 def test_a_coefficient_that_the_data_do_not_decide_stays_where_it_is_expected():
