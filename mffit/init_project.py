@@ -6,7 +6,7 @@ import tomllib
 from importlib import resources
 from pathlib import Path
 
-from mffit.errors import InputError
+from mffit.output import new_files
 from mffit.sweeps.channels import CHANNELS
 
 OFFERED = ("alpha_deg", "gamma_deg", "Fz_N", "Fy_N", "Mz_Nm", "p_kPa", "V_mps", "T_degC")
@@ -34,20 +34,7 @@ def init_project(folder: str | Path) -> list[Path]:
     template = resources.files("mffit.config").joinpath("template.toml").read_text(encoding="utf-8")
     names = [entry["file"] for entry in tomllib.loads(template)["sweep"]]
     contents = {"tyre.toml": template} | {name: headings() for name in names}
-    for name in contents:
-        if (folder / name).exists():
-            raise InputError("is there already; name another folder or move it away", file=folder / name)
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-        for name, content in contents.items():
-            (folder / name).write_text(content, encoding="utf-8", newline="\n")
-    except (FileExistsError, NotADirectoryError):
-        raise InputError("is a file; name a folder", file=folder) from None
-    except OSError as error:
-        raise InputError(
-            f"cannot be written to ({error.strerror}); name another folder", file=folder
-        ) from None
-    return [folder / name for name in contents]
+    return new_files(folder, contents)
 
 
 def headings() -> str:

@@ -243,3 +243,27 @@ def _alive(pid: int) -> bool:
     except (PermissionError, OverflowError):
         return True
     return True
+
+
+def new_files(folder: Path, contents: Mapping[str, str]) -> list[Path]:
+    """Write texts as new files of a folder, none of which may be there already; returns their paths.
+
+    Raises
+    ------
+    InputError
+        One of the files is there already, or the folder cannot be written to.
+    """
+    for name in contents:
+        if (folder / name).exists():
+            raise InputError("is there already; name another folder or move it away", file=folder / name)
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        for name, content in contents.items():
+            (folder / name).write_text(content, encoding="utf-8", newline="\n")
+    except (FileExistsError, NotADirectoryError):
+        raise InputError("is a file; name a folder", file=folder) from None
+    except OSError as error:
+        raise InputError(
+            f"cannot be written to ({error.strerror}); name another folder", file=folder
+        ) from None
+    return [folder / name for name in contents]

@@ -2,6 +2,12 @@
 
 from __future__ import annotations
 
+import os
+
+# Before numpy is loaded: the matrices are small, and threads of several test processes only wait for each other.
+for library in ("OPENBLAS", "OMP", "MKL"):
+    os.environ.setdefault(f"{library}_NUM_THREADS", "1")
+
 from hypothesis import settings
 
 # How long an example takes says how busy the machine is, not whether the code is right.

@@ -29,6 +29,7 @@ from mffit.effects import CATALOG, Effect
 from mffit.errors import InputError
 from mffit.points import Points
 from mffit.rig import RigFaults, Simulation
+from mffit.scatter import robust
 from tir import Tyre
 from tir.parameters import BY_NAME
 
@@ -135,7 +136,7 @@ def _misfit(found: Explanation, points: Points) -> float:
     """How far the best explanation misses the points, in units of the noise as stated; a median, for wild readings."""
     residual = np.concatenate([points.Fy, points.Mz]) - found.refined.state.predict(points)
     noise = found.scatter
-    return float(np.median(np.abs(residual[noise.used] / noise.stated[noise.used]))) / 0.6745
+    return robust(residual[noise.used] / noise.stated[noise.used])
 
 
 def refuse_strangers(points: Points, tyre: Tyre, start: Simulation) -> None:
@@ -191,7 +192,8 @@ def _record(
     if not chosen.effects and not found.coefficients:
         after = before
     residual_before, residual_after = given.measured - before, given.measured - after
-    unexplained = found.bump.found or found.smooth.found
+    hardly = any(isinstance(note, HardlyThisTyre) for note in notes)
+    unexplained = found.bump.found or found.smooth.found or hardly
     remaining = where(points, residual_after, scatter) if unexplained else ()
     named = tuple(_found(found, effect) for effect in chosen.effects)
     return Diagnosis(
@@ -252,7 +254,7 @@ def _found(found: Explanation, effect: Effect) -> Found:
         gap_after=gap(problem.measured - upto.state.predict(problem.points), found.scatter),
         tied_with=tuple(t.effects[-1].id for t in tied),
         separation=min(separations, key=lambda s: s.chi2, default=None),
-        T_ref=chosen.state.T_ref if "temperatures" in effect.needs else None,
+        T_ref=chosen.state.number("T_ref_degC", problem.points) if "temperatures" in effect.needs else None,
     )
 
 

@@ -18,6 +18,7 @@ from mffit.diagnosis.unknown import Bump, BumpScan, bump_scan
 from mffit.effects import Effect
 from mffit.points import Points
 from mffit.rig import Simulation
+from mffit.scatter import robust
 
 ROUNDS = 3
 GENEROUS = 3.0
@@ -223,7 +224,7 @@ def _learned(
         white = allowed.whiten(np.nan_to_num(residual))
         first = allowed.used < len(points)
         for rows in (first, ~first):
-            white[rows] /= max(1.4826 * float(np.median(np.abs(white[rows]))), 1e-9) if rows.any() else 1.0
+            white[rows] /= max(robust(white[rows]), 1e-9) if rows.any() else 1.0
         scan = bump_scan(points, allowed)
         bump = scan.best(replace(problem.null, residual=white), CLIPPED)
         if not bump.found:

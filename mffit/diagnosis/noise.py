@@ -14,6 +14,7 @@ from scipy.sparse.linalg import SuperLU, splu
 from mffit.errors import InputError
 from mffit.points import Points
 from mffit.rig import Simulation
+from mffit.scatter import robust
 from tir.parameters import TABLE
 
 CHANNELS = ("Fy", "Mz")
@@ -252,4 +253,4 @@ def neighbour_noise(points: Points, values: np.ndarray) -> float:
             out.append(np.diff(values[rows], 3) / np.sqrt(20.0))
     if not out:
         return max(0.01 * float(np.ptp(values[np.isfinite(values)])), 1e-9)
-    return max(1.4826 * float(np.median(np.abs(np.concatenate(out)))), 1e-9)
+    return max(robust(np.concatenate(out)), 1e-9)

@@ -15,6 +15,7 @@ from scipy.optimize import minimize
 from scipy.stats import norm, t
 
 from mffit.diagnosis.noise import CHANNELS, Noise, Scatter
+from mffit.scatter import rms, robust
 
 STATED_WITHIN = math.log(2.0)
 """Standard deviation of the logarithm of what uncertainties are over what they are stated to be."""
@@ -183,10 +184,10 @@ def _some_chains(chain: np.ndarray) -> np.ndarray | None:
 
 def heavy_tails(z: np.ndarray) -> tuple[float, float]:
     """Degrees of freedom and width of Student's t that standardised residuals (m,) follow; infinite if they are normal."""
-    width = float(np.sqrt(np.mean(z**2)))
+    width = rms(z)
     best, found = float(np.sum(norm.logpdf(z, scale=width))) + NEEDED, (math.inf, width)
     for dof in TAILS:
-        width = 1.4826 * float(np.median(np.abs(z))) or 1.0
+        width = robust(z) or 1.0
         for _ in range(30):
             width = math.sqrt(float(np.mean((dof + 1.0) * z**2 / (dof + (z / width) ** 2))))
         value = float(np.sum(t.logpdf(z, dof, scale=width)))

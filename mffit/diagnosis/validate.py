@@ -9,6 +9,7 @@ import numpy as np
 from mffit.diagnosis.candidates import Hypothesis, Problem
 from mffit.diagnosis.inexact import EXACT, Inexactness
 from mffit.diagnosis.noise import Noise
+from mffit.scatter import rms
 
 MOST_FOLDS = 8
 FOLDS_OF_MANY = 4
@@ -42,7 +43,7 @@ def gap(residual: np.ndarray, noise: Noise) -> Gap:
     """Gap of residuals (2n,), Fy then Mz; chi2 reading by reading, as the gap in newtons is."""
     n = len(residual) // 2
     z = residual[noise.used] / noise.u[noise.used]
-    return Gap(_rms(residual[:n]), _rms(residual[n:]), float(z @ z) / max(len(z), 1))
+    return Gap(rms(residual[:n]), rms(residual[n:]), float(z @ z) / max(len(z), 1))
 
 
 def validate(
@@ -77,8 +78,3 @@ def validate(
             if seen:
                 before[both] = measured[both] - rest.refine(rest.null, inexact)[0].state.predict(chosen)
     return Validation(len(folds), gap(before, problem.noise), gap(held_out, problem.noise))
-
-
-def _rms(x: np.ndarray) -> float:
-    x = x[np.isfinite(x)]
-    return float(np.sqrt(np.mean(x**2))) if len(x) else float("nan")

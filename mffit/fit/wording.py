@@ -71,14 +71,14 @@ def sentences(files: Files, names: Mapping[str, str]) -> list[str]:
     fy, mz = normal.straight["Fy"], normal.straight["Mz"]
     modes = {use: int(f.tyre["USE_MODE"]) for use, f in files.by_use.items()}
     lacking = ", ".join(f"{force:.0f} N at {radius:g} m" for radius, force in files.lacking.items())
-    first = []
+    first, doubt = [], " If you do not know, it is the second one."
     if "both" in files.by_use:
-        first.append(both_sentence(files.by_use["both"], names["both"]))
+        first, doubt = [both_sentence(files.by_use["both"], names["both"])], ""
     return [
         *first,
         f"Give {names['turn-slip']} to a simulator that computes turn slip, which is the turning of the wheel about the "
         f"vertical along a curve (its USE_MODE ends in 5, here {modes['turn-slip']}); give {names['normal']} to every other "
-        f"simulator (USE_MODE ends in 4, here {modes['normal']}). If you do not know, it is the second one. Swapped, "
+        f"simulator (USE_MODE ends in 4, here {modes['normal']}).{doubt} Swapped, "
         "camber forces come out wrong.",
         f"{names['turn-slip']} is the fitted model itself.",
         f"{names['normal']} reproduces it on a straight path to {fy.weighted:.0f} N and {mz.weighted:.1f} Nm rms where "

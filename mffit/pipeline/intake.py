@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from mffit.errors import InputError
+from mffit.output import new_files
 from mffit.recordings import Sniffed, project_text, sniff
 from mffit.recordings.project_file import slug
 from mffit.recordings.sniffed import configuration_of
@@ -79,25 +80,18 @@ def write_sniffed(sniffed: Sniffed, folder: str | Path) -> list[Path]:
 
 def _written(folder: Path, sniffed: Sniffed, text: str) -> list[Path]:
     pictures = {f"{slug(r.path)}.png": k for k, r in enumerate(sniffed.recordings) if r.rate > 0.0}
-    names = ["tyre.toml", *([STRETCHES] if sniffed.reading.stretches else []), *pictures]
-    for name in names:
+    contents = {"tyre.toml": text}
+    if sniffed.reading.stretches:
+        contents[STRETCHES] = stretch_table(sniffed.reading.stretches).to_csv(
+            index=False, lineterminator="\n"
+        )
+    for name in pictures:
         if (folder / name).exists():
             raise InputError("is there already; name another folder or move it away", file=folder / name)
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-        (folder / "tyre.toml").write_text(text, encoding="utf-8", newline="\n")
-        if STRETCHES in names:
-            table = stretch_table(sniffed.reading.stretches)
-            table.to_csv(folder / STRETCHES, index=False, lineterminator="\n")
-    except (FileExistsError, NotADirectoryError):
-        raise InputError("is a file; name a folder", file=folder) from None
-    except OSError as error:
-        raise InputError(
-            f"cannot be written to ({error.strerror}); name another folder", file=folder
-        ) from None
+    written = new_files(folder, contents)
     for name, k in pictures.items():
         _picture(sniffed, k, folder / name)
-    return [folder / name for name in names]
+    return [*written, *(folder / name for name in pictures)]
 
 
 def _picture(sniffed: Sniffed, k: int, path: Path) -> None:

@@ -7,6 +7,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy.ndimage import median_filter
 
+from mffit.scatter import robust
 from mffit.sweeps import Sweep
 
 UNLOADED = 0.1
@@ -67,7 +68,7 @@ def _spikes(values: np.ndarray, smallest: float) -> np.ndarray:
     finite = away[np.isfinite(away)]
     if not len(finite):
         return np.zeros(len(values), dtype=bool)
-    noise = 1.4826 * float(np.median(finite[:: max(len(finite) // 100_000, 1)]))
+    noise = robust(finite[:: max(len(finite) // 100_000, 1)])
     return away > max(SPIKE * noise, smallest)
 
 

@@ -13,6 +13,8 @@ from typing import NamedTuple
 import numpy as np
 from scipy.ndimage import uniform_filter1d
 
+from mffit.scatter import rms, robust
+
 NEAR_ZERO = 0.25
 """Side force, per largest of its sweep, within which its curve is straight enough to be read at zero."""
 FEWEST = 8
@@ -70,7 +72,7 @@ def measure(alpha: np.ndarray, Fy: np.ndarray, s: np.ndarray, smooth: int = 1) -
     means = [_binned(moved[way], Fy[way], edges) for way in ways]
     difference = means[0] - means[1]
     known = np.isfinite(difference)
-    hysteresis = float(np.sqrt(np.mean(difference[known] ** 2)) / 2.0) if np.any(known) else np.nan
+    hysteresis = rms(difference[known]) / 2.0
     return Lag(
         float(lag), float(0.5 * np.hypot(up.u, down.u) / usual), float(abs(lag - one_line)), hysteresis
     )
@@ -125,5 +127,5 @@ def common(lags: Sequence[Lag]) -> tuple[float, float]:
         own = float(np.hypot.reduce([found.u for found in told])) / len(told)
         return float(np.mean(known)), float(np.hypot(own, shape))
     middle = float(np.median(known))
-    scatter = 1.4826 * float(np.median(np.abs(known - middle)))
+    scatter = robust(known, middle)
     return middle, float(np.hypot(1.2533 * scatter / np.sqrt(len(known)), shape))  # of a median

@@ -19,6 +19,7 @@ from mffit.points.points import Points, concatenate
 from mffit.points.reduction import Reduced, reduce
 from mffit.points.requirements import check_disc_programme
 from mffit.points.stretch import StretchNote
+from mffit.scatter import rms
 from tir.conventions import FLIPPED
 
 SIDES = ("left", "right")
@@ -140,7 +141,7 @@ def _of_motion(reduced: Sequence[Reduced], lag: tuple[float, float]) -> list[str
     value, u = lag
     proven = abs(value) > PROVEN * u
     said = "taken off the angle" if proven else "not proven and not taken off"
-    hysteresis = float(np.sqrt(np.mean([one.hysteresis**2 for one in known])))
+    hysteresis = rms(np.array([one.hysteresis for one in known]))
     return [
         f"the side force of {len(known)} continuous sweeps lags {1e3 * value:.0f} +- {1e3 * u:.0f} mm of rolling (k = 1) behind "
         f"the sideslip angle: {said}; what is left of the difference between the ways up and down is +-{hysteresis:.0f} N"

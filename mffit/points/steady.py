@@ -7,6 +7,7 @@ decides how much of a stretch is transient, and whether it ever came to rest.
 from __future__ import annotations
 
 import itertools
+import math
 from collections.abc import Sequence
 from typing import NamedTuple
 
@@ -15,6 +16,7 @@ from scipy.ndimage import uniform_filter1d
 
 from mffit.points.mean import mean_and_error
 from mffit.points.stretch import MOVE, SWEEP, Stretch
+from mffit.scatter import robust
 
 STEP_ANGLE = np.radians(0.15)
 """Change of an angle within a stretch [rad]; a logger's noise is below, a set-point's step above."""
@@ -258,7 +260,7 @@ def moving(settings: Settings) -> np.ndarray:
 
 def _noise(values: np.ndarray) -> float:
     """Standard deviation of a setting's noise, from the median step between samples."""
-    return float(1.4826 * np.median(np.abs(np.diff(values))) / np.sqrt(2.0)) if len(values) > 1 else 0.0
+    return robust(np.diff(values)) / math.sqrt(2.0) if len(values) > 1 else 0.0
 
 
 def _creeps(settings: Settings, stretch: Stretch) -> bool:

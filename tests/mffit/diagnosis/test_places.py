@@ -6,12 +6,13 @@ import math
 
 import numpy as np
 import pytest
-from small_programme import TYRE, U_FY, problem, programme, read
+from small_programme import TYRE, U_FY, U_MZ, problem, programme, read
 
+from mffit import config
 from mffit.diagnosis import diagnose, where
 from mffit.diagnosis.engine import possible, refuse_strangers
 from mffit.diagnosis.needs import MET, missing
-from mffit.diagnosis.noise import Origin, noise_model, with_uncertainties
+from mffit.diagnosis.noise import Origin, Scatter, noise_model, with_uncertainties
 from mffit.diagnosis.notes import HardlyThisTyre, NotVisible
 from mffit.diagnosis.unknown import bump_scan
 from mffit.effects import CATALOG
@@ -130,6 +131,7 @@ def test_what_a_hypothesis_can_take_up_is_no_bump():
     assert not scan.best(chosen.fit((BY_ID["camber-stiffness"],))).found
 
 
+TWO_SWEEPS = {"sweep": [0, 0, 1, 1], "sweep_names": ("up", "again")}
 CONDITIONS = {
     "curved": ({"phi_t": [0.0, -0.7]}, {"phi_t": 0.0}),
     "spin": ({"gamma": [0.0, 0.25]}, {"gamma": [0.0, 0.15]}),
@@ -142,13 +144,24 @@ CONDITIONS = {
     "temperatures": ({"T": [25.0, 29.0]}, {"T": [25.0, 27.0]}),
     "speeds": ({"V": [6.0, 7.0]}, {"V": [6.0, 6.3]}),
     "times": ({"t": [0.0, 90.0]}, {"t": [0.0, 30.0]}),
+    # Slow, then four times as fast; or both in turn, so that every step takes the same distance.
+    "distances": (
+        {"t": [0.0, 100.0, 200.0, 300.0], "V": [5.0, 5.0, 5.0, 20.0]},
+        {"t": [0.0, 100.0, 200.0, 300.0], "V": [5.0, 20.0, 5.0, 20.0]},
+    ),
+    # Up and down again; or up twice, where the way back is between the sweeps.
+    "senses": (
+        {"alpha": [0.0, 0.1, 0.1, 0.0], **TWO_SWEEPS},
+        {"alpha": [0.0, 0.1, 0.0, 0.1], **TWO_SWEEPS},
+    ),
     "continuous": ({"continuous": [False, True]}, {"continuous": False}),
 }
 
 
 @pytest.mark.parametrize("need", MET)
 def test_a_need_is_met_by_what_varies_it_and_by_nothing_less(need):
-    plain = {"alpha": 0.0, "gamma": 0.0, "Fz": 1400.0, "p": 250e3, "V": 6.0, "phi_t": 0.0, "mount": [1, 1]}
+    plain = {"alpha": 0.0, "gamma": 0.0, "Fz": 1400.0, "p": 250e3, "V": 6.0, "phi_t": 0.0}
+    plain["mount"] = [1] * (4 if need in ("distances", "senses") else 2)
     enough, too_little = (make_points(**plain | changes) for changes in CONDITIONS[need])
     assert MET[need](enough)
     assert not MET[need](too_little)
@@ -225,6 +238,12 @@ def test_sweeps_too_short_for_a_scatter_get_a_hundredth_of_the_span():
     assert found.u_Fy == pytest.approx(0.01 * np.ptp(few.Fy - wrong.Fy))
 
 
+def covariance(noise):
+    """Of the used readings: what whitening makes one."""
+    white = noise.whiten(np.eye(len(noise.u)))[:, noise.used]
+    return np.linalg.inv(white.T @ white)
+
+
 def test_inexact_coefficients_correlate_the_readings():
     """cov = u^2 + sum over coefficients of (u_c c dF/dc)^2, with products between readings."""
     points = read(programme()).select(np.arange(0, 60, 4))
@@ -233,75 +252,125 @@ def test_inexact_coefficients_correlate_the_readings():
     up, down = (
         Simulation.of(TYRE.replace(PDY1=float(TYRE["PDY1"]) * f)).predict(points) for f in (1.001, 0.999)
     )
-    whole = inexact.root @ inexact.root.T
-    without = np.diag(exact.root**2)
+    whole, without = covariance(inexact), covariance(exact)
+    n = len(points)
+    assert without == pytest.approx(np.diag(np.repeat([U_FY**2, U_MZ**2], n)), abs=1e-9)
     by_grip = 0.02 * (up - down) / 0.002
     # What one coefficient does to the variance is contained in the whole, in every direction.
     rest = np.linalg.eigvalsh(whole - without - np.outer(by_grip, by_grip))
     assert rest.min() > -1e-6 * rest.max()
-    assert np.all(np.diag(whole) >= np.diag(without) + by_grip**2 - 1e-9)
-    residual = by_grip / np.linalg.norm(by_grip / exact.root)
-    assert np.linalg.norm(inexact.whiten(residual)) < np.linalg.norm(exact.whiten(residual))
+    assert np.all(np.diag(whole) >= np.diag(without) + by_grip**2 - 1e-6)
+    assert np.linalg.norm(inexact.whiten(by_grip)) < 1.0 < np.linalg.norm(exact.whiten(by_grip))
     assert inexact.error_of_sum(np.array([0, 1])) == pytest.approx(math.sqrt(whole[:2, :2].sum()))
 
 
 def test_part_of_the_readings_keeps_their_covariance():
+    """Inexact coefficients, and errors that remember each other along the sweeps that are left."""
+    points = read(programme())
+    nothing, all_of_it = np.zeros(2 * len(points)), np.ones(2 * len(points))
+    remembered = {"Fy": Scatter(memory=0.8), "Mz": Scatter(memory=0.3)}
+    noise = noise_model(points, Simulation.of(TYRE), 0.02).scattering(remembered, nothing, all_of_it)
+    keep = points.sweep != 1
+    both = np.concatenate([keep, keep])
+    whole, part = covariance(noise), covariance(noise.subset(keep))
+    assert part == pytest.approx(whole[np.ix_(both, both)], rel=1e-6, abs=1e-6)
+
+
+def test_a_larger_scatter_leaves_the_model_as_inexact_as_it_was():
     points = read(programme())
     noise = noise_model(points, Simulation.of(TYRE), 0.02)
-    keep = points.sweep != 1
-    part, both = noise.subset(keep), np.concatenate([keep, keep])
-    assert part.root @ part.root.T == pytest.approx((noise.root @ noise.root.T)[np.ix_(both, both)], abs=1e-6)
-    assert part.inflated(3.0).whiten(np.ones(2 * keep.sum())) == pytest.approx(
-        part.whiten(np.ones(2 * keep.sum())) / 3.0
-    )
+    nothing, all_of_it = np.zeros(2 * len(points)), np.ones(2 * len(points))
+    thrice = noise.scattering(dict.fromkeys(("Fy", "Mz"), Scatter(scale=3.0)), nothing, all_of_it)
+    larger = covariance(thrice) - covariance(noise)
+    assert larger == pytest.approx(np.diag(8.0 * noise.stated**2), abs=1e-5)
+    assert thrice.alone().whiten(all_of_it) == pytest.approx(noise.alone().whiten(all_of_it) / 3.0)
 
 
 THREE = ("load-grip", "camber-stiffness", "loadcell-offset-mz")
 HIDDEN = TYRE.replace(PDY2=float(TYRE["PDY2"]) + 0.25, PKY6=1.3 * float(TYRE["PKY6"]))
 
 
-class Settings:
-    """As much of a configuration as a diagnosis asks for."""
+SETTINGS = config.load(
+    {
+        "tyre": {
+            "name": "small",
+            "unloaded_radius": 0.2998,
+            "nominal_load": 1500.0,
+            "nominal_pressure": 250.0,
+        },
+        "rig": {"path_radius": 1.323},
+        "model": {"u_coefficients": 0.0},
+        "sweep": [{"file": "points.csv"}],
+    }
+)
 
-    class model:
-        turn_slip, star, u_coefficients = True, False, 0.0
 
-    class rig:
-        backlash_deg = 0.0
-
-    class tyre:
-        name = "small"
-
-
-def three_effects(understated: float, strange: float = 0.0, alike: int = 1):
-    """Three hidden effects; beside the noise something ``strange`` [N] that is the same at some neighbours."""
+def three_effects(understated: float, strange: float = 0.0, alike: int = 1, strange_moment: float = 0.0):
+    """Three hidden effects; beside the noise something ``strange`` [N, Nm] that is the same at some neighbours."""
     points = read(programme(), HIDDEN, RigFaults(M0_Nm=6.0), noise=9)
-    rough = np.repeat(np.random.default_rng(3).standard_normal(len(points)), alike)[: len(points)] * strange
-    stated = points.replace(Fy=points.Fy + rough, u_Fy=U_FY / understated, u_Mz=0.6 / understated)
-    return diagnose(stated, TYRE, Settings, effects=[BY_ID[name] for name in THREE])
+    n, rng = len(points), np.random.default_rng(3)
+    Fy, Mz = (
+        reading + size * np.repeat(rng.standard_normal(n), alike)[:n]
+        for reading, size in ((points.Fy, strange), (points.Mz, strange_moment))
+    )
+    stated = points.replace(Fy=Fy, Mz=Mz, u_Fy=U_FY / understated, u_Mz=U_MZ / understated)
+    return diagnose(stated, TYRE, SETTINGS, effects=[BY_ID[name] for name in THREE])
+
+
+def answers(found):
+    """Value and standard error of every number of the effects that were named."""
+    return {name: answer for f in found.effects for name, answer in f.parameters.items()}
+
+
+def assert_true(found):
+    """All three are named, with their sizes."""
+    assert {f.effect.id for f in found.effects} == set(THREE)
+    for name, true in (("PKY6", HIDDEN["PKY6"]), ("PDY2", HIDDEN["PDY2"]), ("M0_Nm", 6.0)):
+        value, error = answers(found)[name]
+        assert abs(value - true) < 4.0 * error, name
 
 
 def test_noise_larger_than_stated_is_found_and_does_not_hide_the_effects():
     found = three_effects(2.5)
     assert found.noise.scatter["Fy"].scale == pytest.approx(2.5, rel=0.25)
     assert found.noise.typically_stated("Fy") == pytest.approx(U_FY / 2.5)
-    assert {f.effect.id for f in found.effects} == set(THREE)
-    for name, true in (("PKY6", HIDDEN["PKY6"]), ("PDY2", HIDDEN["PDY2"]), ("M0_Nm", 6.0)):
-        value, error = next(f.parameters[name] for f in found.effects if name in f.parameters)
-        assert abs(value - true) < 4.0 * error, name
+    assert_true(found)
     # The uncertainty of an answer is that of the noise that is really there.
     stated = three_effects(1.0)
     assert stated.noise.scatter["Fy"].scale == pytest.approx(1.0, abs=0.25)
-    errors = [
-        next(f.parameters["M0_Nm"][1] for f in d.effects if "M0_Nm" in f.parameters) for d in (found, stated)
-    ]
-    assert errors[0] == pytest.approx(errors[1], rel=0.25)
+    assert answers(found)["M0_Nm"][1] == pytest.approx(answers(stated)["M0_Nm"][1], rel=0.25)
+
+
+def test_a_misfit_that_neighbours_share_counts_as_fewer_readings():
+    """Of the same size, but alike at three neighbours: the answers become less certain than their number promises."""
+    independent, shared = (three_effects(1.0, strange=20.0, alike=alike) for alike in (1, 3))
+    assert independent.noise.scatter["Fy"].memory == 0.0
+    # Two of three neighbours share 20 N of hypot(20, 6) N.
+    assert shared.noise.scatter["Fy"].memory == pytest.approx(2.0 / 3.0 * 400.0 / 436.0, abs=0.2)
+    assert_true(independent)
+    assert_true(shared)
+    for name in ("PKY6", "PDY2"):
+        per_noise = [answers(found)[name][1] / found.noise.Fy for found in (independent, shared)]
+        # Up to sqrt((1 + 0.61) / (1 - 0.61)) = 2 for what changes slowly along a sweep.
+        assert 1.25 < per_noise[1] / per_noise[0] < 2.2, name
+
+
+def test_a_channel_lost_in_noise_leaves_the_answers_of_the_other():
+    """Forces scatter by 100 N where 2.4 N are stated: theirs are worth little, those of the moments as much as ever."""
+    found, quiet = three_effects(2.5, strange=100.0), three_effects(2.5)
+    assert found.noise.Fy == pytest.approx(math.hypot(100.0, U_FY), rel=0.2)
+    assert found.noise.Mz == pytest.approx(U_MZ, rel=0.2)
+    assert_true(found)
+    assert answers(found)["M0_Nm"][1] == pytest.approx(answers(quiet)["M0_Nm"][1], rel=0.2)
+    assert answers(found)["PDY2"][1] > 5.0 * answers(quiet)["PDY2"][1]
 
 
 def test_a_model_that_nothing_helps_is_hardly_of_this_tyre():
-    """Whatever is added, the readings miss by some 300 N where 2.4 N are stated: naming a cause would be a guess."""
-    found = three_effects(2.5, strange=300.0)
+    """Whatever is added, both channels miss by 42 times what is stated: naming a cause would be a guess."""
+    found = three_effects(2.5, strange=100.0, strange_moment=10.0)
     (note,) = (n for n in found.notes if isinstance(n, HardlyThisTyre))
-    assert 40.0 < note.misfit < 300.0
+    assert note.misfit == pytest.approx(math.hypot(100.0, U_FY) / (U_FY / 2.5), rel=0.15)
     assert not found.effects
     assert found.unexplained
+    assert "no effect of the library explains it" in found.headline
+    assert found.tyre.values == TYRE.values
