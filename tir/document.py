@@ -36,6 +36,8 @@ class Line:
 
     def with_value(self, value: str) -> Line:
         """The line with another value and every other character as it was."""
+        if value == self.value:
+            return self
         rest = self.text[self.start + len(self.value) :]
         if not self.value and rest.strip():
             value += " "  # a comment may follow a missing value at once

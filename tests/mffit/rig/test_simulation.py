@@ -70,7 +70,8 @@ def test_a_wheel_on_a_yielding_steering_stands_where_moment_and_steering_agree(p
 
 def test_sensitivities_come_with_the_readings(points, simulation):
     out, slope = simulation.sensitivities(points, ["PKY1", "F0_N"])
-    assert np.concatenate(out) == pytest.approx(simulation.predict(points), rel=1e-12)
+    # The angle that play and compliance leave is found step by step: that far and no further.
+    assert np.concatenate(out) == pytest.approx(simulation.predict(points), rel=1e-6)
     assert slope.Fy.shape == slope.Mz.shape == (50, 2)
     assert np.all(slope.Fy[:, 1] == 1.0)
     assert np.all(slope.Mz[:, 1] == 0.0)
