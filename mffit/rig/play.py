@@ -7,11 +7,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-STEPS, CLOSE = 12, 1e-12
+STEPS, CLOSE = 12, 1e-10
 """Steps of the search for the angle without moment at most, and how close it comes [rad]."""
 
-Moment = Callable[[np.ndarray, np.ndarray], np.ndarray]
-"""Aligning moment [Nm] at the sideslip angles (m,) [rad] of the conditions with the indices (m,)."""
+Moment = Callable[[np.ndarray], np.ndarray]
+"""Aligning moment [Nm] at sideslip angles (m,) [rad]."""
 
 
 class Settled(NamedTuple):
@@ -22,19 +22,19 @@ class Settled(NamedTuple):
     alpha: np.ndarray  #: the sideslip angle at which it floats [rad]; NaN where a stop holds it
 
 
-def settled(moment: Moment, alpha: np.ndarray, half_play: float) -> Settled:
+def settled(moment_of: Callable[[np.ndarray], Moment], alpha: np.ndarray, half_play: float) -> Settled:
     """Rest of a wheel that may turn by ``half_play`` to either side of ``alpha``.
 
     Parameters
     ----------
-    moment : of the tyre on the wheel; a positive one turns the wheel towards smaller sideslip
+    moment_of : indices (m,) of conditions -> their moment on the wheel; a positive one turns it towards smaller sideslip
     alpha : (n,) sideslip angle in the middle of the play [rad]
     half_play : [rad]
     """
-    everywhere = np.arange(len(alpha))
-    lower, upper = moment(alpha - half_play, everywhere), moment(alpha + half_play, everywhere)
+    moment = moment_of(np.arange(len(alpha)))
+    lower, upper = moment(alpha - half_play), moment(alpha + half_play)
     # Two stops that both hold it: it lies at the one to which the moment in the middle turns it.
-    middle = moment(alpha, everywhere) if np.any((lower > 0.0) & (upper < 0.0)) else lower + upper
+    middle = moment(alpha) if np.any((lower > 0.0) & (upper < 0.0)) else lower + upper
     at_lower, at_upper = lower > 0.0, upper < 0.0
     side = np.where(at_lower & (~at_upper | (middle > 0.0)), 1.0, -1.0)
     floats = ~at_lower & ~at_upper
@@ -42,7 +42,7 @@ def settled(moment: Moment, alpha: np.ndarray, half_play: float) -> Settled:
     which = np.flatnonzero(floats & (lower < upper))
     if len(which):
         rest[which] = _without_moment(
-            lambda at: moment(at, which),
+            moment_of(which),
             alpha[which] - half_play,
             alpha[which] + half_play,
             lower[which],
@@ -52,7 +52,7 @@ def settled(moment: Moment, alpha: np.ndarray, half_play: float) -> Settled:
 
 
 def _without_moment(
-    moment: Callable[[np.ndarray], np.ndarray],
+    moment: Moment,
     a: np.ndarray,
     b: np.ndarray,
     at_a: np.ndarray,

@@ -13,7 +13,7 @@ import numpy as np
 from mffit.points import Points
 from mffit.rig.faults import FAULT_NAMES, NO_FAULTS, REFERENCE_TEMPERATURE, RigFaults
 from mffit.rig.lag import lagged_points
-from mffit.rig.play import Settled, settled
+from mffit.rig.play import Moment, Settled, settled
 from tir import Tyre
 from tir.derivatives import Traced, following, gradient, plain, traced
 from tir.evaluate import evaluate, turned_on_rim
@@ -169,11 +169,13 @@ class Simulation:
             return alpha
         half_play = 0.5 * RADIANS * fault.backlash_deg
 
-        def moment(at: np.ndarray, which: np.ndarray) -> np.ndarray:
-            part = points if len(which) == len(points) else points.select(which)
-            return self._forces(part, at, self.faults, {}).Mz
+        plainly = self._faults({})
 
-        rest = settled(moment, np.broadcast_to(plain(alpha), len(points)), plain(half_play))
+        def moment_of(which: np.ndarray) -> Moment:
+            part = points if len(which) == len(points) else points.select(which)
+            return lambda at: self._forces(part, at, plainly, {}).Mz
+
+        rest = settled(moment_of, np.broadcast_to(plain(alpha), len(points)), plain(half_play))
         held = alpha - half_play * rest.side
         if not np.any(rest.floats):
             return held

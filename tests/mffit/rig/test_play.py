@@ -74,11 +74,11 @@ def test_what_a_floating_wheel_reads_changes_as_the_sensitivity_says(points, sim
 def test_a_moment_that_turns_away_from_zero_leaves_the_wheel_at_a_stop():
     """Unstable in the middle: it lies where the moment in the middle turned it."""
     alpha = np.array([0.0005, -0.0005])
-    rest = settled(lambda at, which: -at, alpha, 0.002)
+    rest = settled(lambda which: lambda at: -at, alpha, 0.002)
     assert not rest.floats.any()
     assert rest.side.tolist() == [-1.0, 1.0]
 
 
 def test_without_any_moment_the_wheel_stays_where_it_is():
-    rest = settled(lambda at, which: 0.0 * at, np.array([0.01]), 0.002)
+    rest = settled(lambda which: lambda at: 0.0 * at, np.array([0.01]), 0.002)
     assert rest.alpha == pytest.approx([0.01])
