@@ -7,6 +7,10 @@ Only numbers and texts are taken: objects, functions and everything else that co
 
 from __future__ import annotations
 
+import json
+import subprocess
+import sys
+import tempfile
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
@@ -15,12 +19,16 @@ import numpy as np
 
 from mffit.errors import InputError
 from mffit.sweeps.extras import needed
+from mffit.sweeps.matlab_apart import LARGEST_TEXT, TEXTS, TROUBLE, short
 from mffit.sweeps.raw_table import RawTable
 
 HDF5_MARK = b"\x89HDF"
 HDF5_AT = (0, 512)
 """Where an HDF5 file begins: MATLAB puts a text of 512 bytes in front."""
-LARGEST_TEXT = 10_000
+LONGEST = 600.0
+"""Time for the reader [s], many times what the largest recording takes."""
+PACKAGES = Path(__file__).parents[2]
+"""Where this package lies, so that the other process finds it."""
 
 
 def read_mat(path: Path) -> RawTable:
@@ -72,37 +80,20 @@ def _is_hdf5(path: Path) -> bool:
 
 
 def _classic(path: Path) -> dict[str, Any]:
-    import scipy.io
-
-    try:
-        loaded = scipy.io.loadmat(path, chars_as_strings=True)
-    except (MemoryError, RecursionError):
-        raise InputError("is damaged: its sizes cannot be right; save it again", file=path) from None
-    except Exception as error:  # a damaged file fails in whatever way its bytes happen to lead to
-        raise InputError(
-            f"is no MATLAB file that can be read ({_short(error)}); save it again", file=path
-        ) from None
-    content: dict[str, Any] = {}
-    for name, value in loaded.items():
-        if name.startswith("__") or not isinstance(value, np.ndarray):
-            continue
-        if value.dtype.names and {"name", "units"} <= set(value.dtype.names) and value.size == 1:
-            entry = value.reshape(-1)[0]
-            content[name] = {key: _texts(entry[key]) for key in ("name", "units")}
-        elif value.dtype.kind == "U" and value.size == 1:
-            content[name] = str(value.reshape(-1)[0])[:LARGEST_TEXT].strip()
-        elif value.dtype.kind in "fiub" and value.size > 1 and value.size == max(value.shape):
-            content[name] = value.reshape(-1).astype(float, copy=False)
-    return content
-
-
-def _texts(cells: Any) -> list[str]:
-    """The texts of a cell array, one level deep."""
-    found = []
-    for cell in np.asarray(cells, dtype=object).reshape(-1):
-        flat = np.asarray(cell).reshape(-1)
-        found.append(str(flat[0]).strip() if flat.size else "")
-    return found
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        command = [sys.executable, "-m", "mffit.sweeps.matlab_apart", str(path.absolute()), name]
+        try:
+            subprocess.run(command, check=True, timeout=LONGEST, capture_output=True, cwd=PACKAGES)
+        except (subprocess.CalledProcessError, subprocess.TimeoutExpired):
+            raise InputError("is damaged: its sizes cannot be right; save it again", file=path) from None
+        trouble = folder / TROUBLE
+        if trouble.exists():
+            said = trouble.read_text(encoding="utf-8", errors="replace")
+            raise InputError(f"is no MATLAB file that can be read ({said}); save it again", file=path)
+        content = json.loads((folder / TEXTS).read_text(encoding="utf-8"))
+        vectors = {n: np.load(folder / f"{k}.npy") for k, (n, v) in enumerate(content.items()) if v is None}
+    return {**content, **vectors}
 
 
 def _hdf5(path: Path) -> dict[str, Any]:
@@ -122,7 +113,7 @@ def _hdf5(path: Path) -> dict[str, Any]:
                     content[name] = np.asarray(item, dtype=float).reshape(-1)
     except Exception as error:
         raise InputError(
-            f"is no MATLAB file that can be read ({_short(error)}); save it again", file=path
+            f"is no MATLAB file that can be read ({short(error)}); save it again", file=path
         ) from None
     return content
 
@@ -137,8 +128,3 @@ def _letters(item: Any) -> str:
     if item.size > LARGEST_TEXT or item.dtype.kind not in "ui":
         return ""
     return "".join(chr(int(code)) for code in np.asarray(item).reshape(-1, order="F") if code).strip()
-
-
-def _short(error: Exception) -> str:
-    """What a library says of a damaged file, in one line."""
-    return " ".join(str(error).split())[:80] or type(error).__name__

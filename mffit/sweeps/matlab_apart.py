@@ -1,0 +1,68 @@
+"""MATLAB files of v4 to v7 in a process of their own: scipy's reader may crash on a damaged one, which no exception tells.
+
+``python -m mffit.sweeps.matlab_apart FILE OUT`` writes what :func:`mffit.sweeps.matlab.read_mat` needs to know to the folder
+OUT, or a sentence's middle to OUT/trouble.txt. Numbers and texts only, nothing that could be code.
+"""
+
+from __future__ import annotations
+
+import json
+import sys
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+LARGEST_TEXT = 10_000
+TROUBLE, TEXTS = "trouble.txt", "texts.json"
+
+
+def load(path: Path) -> dict[str, Any]:
+    """Column vectors (n,), texts, and the names and units of the structure ``channel``."""
+    import scipy.io
+
+    loaded = scipy.io.loadmat(path, chars_as_strings=True)
+    content: dict[str, Any] = {}
+    for name, value in loaded.items():
+        if name.startswith("__") or not isinstance(value, np.ndarray):
+            continue
+        if value.dtype.names and {"name", "units"} <= set(value.dtype.names) and value.size == 1:
+            entry = value.reshape(-1)[0]
+            content[name] = {key: _texts(entry[key]) for key in ("name", "units")}
+        elif value.dtype.kind == "U" and value.size == 1:
+            content[name] = str(value.reshape(-1)[0])[:LARGEST_TEXT].strip()
+        elif value.dtype.kind in "fiub" and value.size > 1 and value.size == max(value.shape):
+            content[name] = value.reshape(-1).astype(float, copy=False)
+    return content
+
+
+def _texts(cells: Any) -> list[str]:
+    """The texts of a cell array, one level deep."""
+    found = []
+    for cell in np.asarray(cells, dtype=object).reshape(-1):
+        flat = np.asarray(cell).reshape(-1)
+        found.append(str(flat[0]).strip() if flat.size else "")
+    return found
+
+
+def short(error: BaseException) -> str:
+    """What a library says of a damaged file, in one line."""
+    return " ".join(str(error).split())[:80] or type(error).__name__
+
+
+def main(source: str, out: str) -> None:
+    """Load the file and write its vectors as ``0.npy``, ``1.npy`` ..., in the order of ``texts.json``."""
+    folder = Path(out)
+    try:
+        content = load(Path(source))
+        for k, value in enumerate(content.values()):
+            if isinstance(value, np.ndarray):
+                np.save(folder / f"{k}.npy", value, allow_pickle=False)
+        told = {n: None if isinstance(v, np.ndarray) else v for n, v in content.items()}
+        (folder / TEXTS).write_text(json.dumps(told), encoding="utf-8")
+    except Exception as error:  # a damaged file fails in whatever way its bytes happen to lead to
+        (folder / TROUBLE).write_text(short(error), encoding="utf-8", errors="replace")
+
+
+if __name__ == "__main__":
+    main(*sys.argv[1:3])
