@@ -90,7 +90,7 @@ def test_randomly_spread_values_are_varied_and_spread(seed, span):
 
 
 @RELAXED
-@given(seeds, st.integers(10, 3000))
+@given(seeds, st.integers(25, 3000))  # of ten values even one that is 8 % away may be a level
 def test_load_control_of_two_per_cent_does_not_split_a_level(seed, n):
     scatter = np.clip(np.random.default_rng(seed).standard_normal(n), -3.0, 3.0)
     loads = 1500.0 * (1.0 + 0.02 * scatter)
