@@ -45,6 +45,11 @@ def load(source: str | Path | Mapping[str, Any] | Config, *, folder: str | Path 
         content = tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:
         raise _syntax_error(error, path, text) from None
+    if "truth" in content:
+        raise InputError(
+            "is a plan for the virtual rig, as its [truth] says: run `mffit simulate` on it and build what that writes",
+            file=path,
+        )
     return _checked(content, path, Path(folder or path.parent), lines_of_keys(text))
 
 

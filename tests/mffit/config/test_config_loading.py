@@ -297,3 +297,9 @@ def test_known_keys_cover_every_table():
         "", "tyre", "rig", "rig.path", "rolling_radius", "camber_stiffness", "spin", "model", "sweep",
         "sweep.columns.*",
     }  # fmt: skip
+
+
+def test_a_plan_of_the_virtual_rig_is_told_for_what_it_is():
+    with pytest.raises(InputError, match="mffit simulate") as error:
+        config.load(Path(__file__).parents[3] / "samples" / "front-120-70" / "rig.toml")
+    assert "did you mean" not in str(error.value)
