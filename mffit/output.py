@@ -245,6 +245,13 @@ def _alive(pid: int) -> bool:
     return True
 
 
+def must_be_new(folder: Path, names: Iterable[str]) -> None:
+    """Refuse a folder that holds one of the names already."""
+    for name in names:
+        if (folder / name).exists():
+            raise InputError("is there already; name another folder or move it away", file=folder / name)
+
+
 def new_files(folder: Path, contents: Mapping[str, str]) -> list[Path]:
     """Write texts as new files of a folder, none of which may be there already; returns their paths.
 
@@ -253,9 +260,7 @@ def new_files(folder: Path, contents: Mapping[str, str]) -> list[Path]:
     InputError
         One of the files is there already, or the folder cannot be written to.
     """
-    for name in contents:
-        if (folder / name).exists():
-            raise InputError("is there already; name another folder or move it away", file=folder / name)
+    must_be_new(folder, contents)
     try:
         folder.mkdir(parents=True, exist_ok=True)
         for name, content in contents.items():

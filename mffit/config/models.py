@@ -97,9 +97,14 @@ class RigTable(Table):
     u_slip_alignment_N: q.UForce = 25.0
 
     @property
+    def on_disc(self) -> bool:
+        """Whether the path is curved."""
+        return self.type == "rotating-disk"
+
+    @property
     def radius(self) -> float | None:
         """Path radius R [m], declared or by (19); None on a flat track."""
-        if self.type == "flat-track":
+        if not self.on_disc:
             return None
         return self.path_radius if self.path is None else path_radius(**self.path.model_dump())
 

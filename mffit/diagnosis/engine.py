@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -16,7 +16,7 @@ from mffit.diagnosis.explain import Explanation, explain, only_first
 from mffit.diagnosis.inexact import EXACT, Inexactness
 from mffit.diagnosis.inexact import declared as declared_inexactness
 from mffit.diagnosis.needs import missing
-from mffit.diagnosis.noise import CHANNELS, Noise, noise_model, with_uncertainties
+from mffit.diagnosis.noise import Noise, noise_model, with_uncertainties
 from mffit.diagnosis.notes import HardlyThisTyre, NoRepair, Note, NotVisible, OneSweep
 from mffit.diagnosis.result import Diagnosis, Found, Outlier
 from mffit.diagnosis.scatter import wild
@@ -28,6 +28,8 @@ from mffit.diagnosis.where import Region, where
 from mffit.effects import CATALOG, Effect
 from mffit.errors import InputError
 from mffit.points import Points
+from mffit.progress import Progress, silent
+from mffit.quantities import CHANNELS
 from mffit.rig import RigFaults, Simulation
 from mffit.scatter import robust
 from tir import Tyre
@@ -47,7 +49,7 @@ def diagnose(
     effects: Sequence[Effect] = CATALOG,
     coefficients: Inexactness | None = None,
     seen: bool = False,
-    progress: Callable[[str], None] = lambda sentence: None,
+    progress: Progress = silent,
 ) -> Diagnosis:
     """Find where a model disagrees with points, and the effects that explain it.
 
@@ -73,10 +75,10 @@ def diagnose(
     """
     progress("comparing simulation and measurement")
     given = rig or RigFaults(backlash_deg=config.rig.backlash_deg)
+    if np.any(np.isfinite(points.T)):
+        given = replace(given, T_ref_degC=float(np.nanmean(points.T)))
     simulates_spin = config.model.turn_slip and bool(np.any(points.phi_t))
     start = Simulation(dict(tyre.values), given, simulates_spin, config.model.star)
-    if np.any(np.isfinite(points.T)):
-        start = replace(start, T_ref=float(np.nanmean(points.T)))
     refuse_strangers(points, tyre, start)
     points, origin = with_uncertainties(by_condition(points), start)
     inexact = coefficients or declared_inexactness(tyre, config.model.u_coefficients)
@@ -223,7 +225,7 @@ def _record(
 
 def _outlier(points: Points, residual: np.ndarray, noise: Noise, i: int) -> Outlier:
     n = len(points)
-    channel, k = CHANNELS[i >= n], i % n
+    channel, k = tuple(CHANNELS)[i >= n], i % n
     assert noise.weight is not None
     usual = float(noise.u[i] * np.sqrt(noise.weight[i]))
     return Outlier(
@@ -254,7 +256,7 @@ def _found(found: Explanation, effect: Effect) -> Found:
         gap_after=gap(problem.measured - upto.state.predict(problem.points), found.scatter),
         tied_with=tuple(t.effects[-1].id for t in tied),
         separation=min(separations, key=lambda s: s.chi2, default=None),
-        T_ref=chosen.state.number("T_ref_degC", problem.points) if "temperatures" in effect.needs else None,
+        T_ref=chosen.state.faults.T_ref_degC if "temperatures" in effect.needs else None,
     )
 
 

@@ -10,13 +10,14 @@ import numpy as np
 
 from mffit.diagnosis.candidates import Hypothesis, Problem
 from mffit.diagnosis.inexact import Inexactness
-from mffit.diagnosis.noise import CHANNELS, Noise
+from mffit.diagnosis.noise import Noise
 from mffit.diagnosis.scatter import Explained, learned
 from mffit.diagnosis.selection import Step, ids, select
 from mffit.diagnosis.smooth import NO_SMOOTH, Smooth, amplified, smooth_basis, smooth_scan
 from mffit.diagnosis.unknown import Bump, BumpScan, bump_scan
 from mffit.effects import Effect
 from mffit.points import Points
+from mffit.quantities import CHANNELS
 from mffit.rig import Simulation
 from mffit.scatter import robust
 

@@ -13,11 +13,10 @@ from scipy.sparse.linalg import SuperLU, splu
 
 from mffit.errors import InputError
 from mffit.points import Points
+from mffit.quantities import CHANNELS
 from mffit.rig import Simulation
 from mffit.scatter import robust
 from tir.parameters import TABLE
-
-CHANNELS = ("Fy", "Mz")
 
 
 class Origin(Enum):

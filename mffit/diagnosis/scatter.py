@@ -14,7 +14,8 @@ from scipy.linalg import cho_solve, cholesky, solve_triangular
 from scipy.optimize import minimize
 from scipy.stats import norm, t
 
-from mffit.diagnosis.noise import CHANNELS, Noise, Scatter
+from mffit.diagnosis.noise import Noise, Scatter
+from mffit.quantities import CHANNELS
 from mffit.scatter import rms, robust
 
 STATED_WITHIN = math.log(2.0)
@@ -186,8 +187,9 @@ def heavy_tails(z: np.ndarray) -> tuple[float, float]:
     """Degrees of freedom and width of Student's t that standardised residuals (m,) follow; infinite if they are normal."""
     width = rms(z)
     best, found = float(np.sum(norm.logpdf(z, scale=width))) + NEEDED, (math.inf, width)
+    core = robust(z) or 1.0
     for dof in TAILS:
-        width = robust(z) or 1.0
+        width = core
         for _ in range(30):
             width = math.sqrt(float(np.mean((dof + 1.0) * z**2 / (dof + (z / width) ** 2))))
         value = float(np.sum(t.logpdf(z, dof, scale=width)))

@@ -11,8 +11,9 @@ from numpy.polynomial.legendre import legvander
 from scipy.linalg import cholesky, solve_triangular
 
 from mffit.diagnosis.candidates import Hypothesis
-from mffit.diagnosis.noise import CHANNELS, Noise
+from mffit.diagnosis.noise import Noise
 from mffit.points import Points
+from mffit.quantities import CHANNELS
 
 BEND = np.radians(4.0)
 """Sideslip over which side force saturates: the curves are finer below it than beyond."""

@@ -15,6 +15,7 @@ from mffit.fit.ranges import NAMES, plausible_ranges, tested_ranges
 from mffit.fit.road import Road, inside, road_grid, weights
 from mffit.fit.start import camber_stiffness_terms
 from mffit.points import Points, main_pressure
+from mffit.quantities import CHANNELS
 from mffit.scatter import rms
 from tir import Tyre
 
@@ -98,7 +99,7 @@ def make_files(
     C_gamma : measured camber stiffness [N/rad] by load [N]; empty on a flat track
     """
     values = known.values
-    disc = config.rig.type == "rotating-disk"
+    disc = config.rig.on_disc
     symmetric = config.tyre.side == "symmetric"
     tested = tested_ranges(points)
     written = plausible_ranges(values, tested, turn_slip=disc)
@@ -151,7 +152,7 @@ class _Judge(NamedTuple):
         weight, within = weights(self.road, self.tested), inside(self.road, self.tested)
         return {
             name: _misfit(getattr(here, name) - getattr(target, name), self.road, weight, within)
-            for name in ("Fy", "Mz")
+            for name in CHANNELS
         }
 
 

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from mffit.config import axis_signs
-from mffit.fit import remarks, weights
+from mffit.fit import weights
 from mffit.fit.coverage import coverage
 from mffit.fit.doubts import Doubt
 from mffit.fit.estimates import estimates
@@ -26,15 +26,24 @@ from mffit.fit.radius import radius_coefficients
 from mffit.fit.ranges import covered_ranges, envelope
 from mffit.fit.result import Agreement, Coefficient, FitResult, agreement
 from mffit.fit.rig_numbers import known_faults, rig_numbers
-from mffit.fit.staged import Fitted, Plan, Progress, fit_staged
+from mffit.fit.staged import Fitted, Plan, fit_staged
 from mffit.fit.stages import ODD_TERMS, STAGES
 from mffit.fit.start import base_values, starting_values
 from mffit.fit.virtual_zero import epsilon_gamma_of_model
-from mffit.fit.wording import distrust, file_comments, pecp1_sentence, sentences, warnings
+from mffit.fit.wording import (
+    distrust,
+    doubtful,
+    file_comments,
+    pecp1_sentence,
+    sentences,
+    standing_out,
+    warnings,
+)
 from mffit.least_squares import touches
 from mffit.measured import radius_readings
 from mffit.parts import Parts
 from mffit.points import Points
+from mffit.progress import Progress, silent
 from mffit.rig import Simulation, reference_speed
 from tir import Tyre
 from tir.parameters import BY_NAME, TABLE
@@ -46,7 +55,7 @@ def fit(
     parts: Parts,
     measured: Any,
     base: Tyre | None = None,
-    progress: Progress = lambda sentence: None,
+    progress: Progress = silent,
 ) -> FitResult:
     """Fit MF 6.2 to raw points with turn slip on, holding what was measured directly.
 
@@ -92,7 +101,7 @@ def fit(
     coefficients = _coefficients(known, fitted, {name: u for name, (_, u) in rolling.items()})
     written = make_files(config, known, points, base, dict(measured.by_load("C_gamma")))
     written = written.annotated(file_comments(written, known.origin, coefficients))
-    disc = config.rig.type == "rotating-disk"
+    disc = config.rig.on_disc
     explanations = sentences(written, file_names(config.tyre.name, config.spin.exact, disc))
     if measured.epsilon_gamma is not None:
         explanations.append(pecp1_sentence(config, known.values, measured))
@@ -122,8 +131,8 @@ def fit(
         warnings=(
             *untrusted,
             *warnings(fitted),
-            *(remarks.doubt(fact) for fact in doubts),
-            *([remarks.standing_out(singled)] if singled else []),
+            *(doubtful(fact) for fact in doubts),
+            *([standing_out(singled)] if singled else []),
         ),
         doubts=doubts,
         outliers=singled,
@@ -131,10 +140,6 @@ def fit(
         epsilon_gamma_model=_epsilon_of_model(known.values, points, measured),
         files=written,
     )
-
-
-def silent(sentence: str) -> None:
-    """Progress of a fit on the way that is not told."""
 
 
 def _plan(config, points: Points, measured, known: Known, start: Mapping[str, float]) -> Plan:
@@ -199,7 +204,7 @@ def _after_the_fit(known: Known, fitted: Fitted, base: Tyre | None) -> Known:
 
 def _problem(config, points: Points, values, measured) -> Problem:
     """Everything before the fit: points as read, weights as stated, what is known of the rig."""
-    disc = config.rig.type == "rotating-disk"
+    disc = config.rig.on_disc
     return Problem(
         points=points,
         simulation=Simulation(values, known_faults(config, measured), turn_slip=disc),

@@ -11,11 +11,11 @@ from scipy.stats import chi2, norm
 from mffit.errors import InputError
 from mffit.fit.doubts import Doubt
 from mffit.fit.explanation import explanation
-from mffit.fit.prediction import CHANNELS, Group, Leverage, Prediction, groups, leverage, predictions
+from mffit.fit.prediction import Group, Leverage, Prediction, groups, leverage, predictions
 from mffit.fit.staged import Fitted
 from mffit.points import Points
 from mffit.points.mistakes import MISTAKES, Mistake
-from mffit.quantities import CHANNELS as WORDS
+from mffit.quantities import CHANNELS
 from mffit.rig import Simulation
 from mffit.scatter import rms as root_mean_square
 from mffit.scatter import robust
@@ -194,7 +194,7 @@ def _refusal(views: list[View]) -> InputError:
     v = max(explained or views, key=lambda v: v.error.share)
     contradiction = (
         f"contradicts all other sweeps: as they predict it, {v.error.channel} is out by {v.error.rms:.3g} "
-        f"{WORDS[v.error.channel].unit}, at least {100 * v.error.share:.0f} % of its usual size"
+        f"{CHANNELS[v.error.channel].unit}, at least {100 * v.error.share:.0f} % of its usual size"
     )
     if not v.group.whole:
         contradiction += f" ({v.group.name})"

@@ -12,6 +12,7 @@ from mffit.fit.ranges import envelope
 from mffit.fit.road import Road, camber_lines, road_grid, weights
 from mffit.fit.stages import ODD_TERMS, STAGES
 from mffit.least_squares import Number
+from mffit.quantities import CHANNELS
 from tir.parameters import BY_NAME
 
 CAMBER_STIFFNESS = ("PKY6", "PKY7")
@@ -90,7 +91,7 @@ def derive_both(
             goal(values, road, weight, turn_slip=False),
         )
 
-    by_channel = [[n for n in SPIN if BY_NAME[n].channel == channel] for channel in ("Fy", "Mz")]
+    by_channel = [[n for n in SPIN if BY_NAME[n].channel == channel] for channel in CHANNELS]
     free = ((*CAMBER_FORCE, *by_channel[0]), (*CAMBER_MOMENT, *by_channel[1]))
     return _derived(values, tested, written, measured, goals, free, symmetric=symmetric)
 
@@ -101,7 +102,7 @@ def _derived(values, tested, written, measured, goals, free, *, symmetric: bool)
         road_grid(tested, written, float(values["FNOMIN"]), dense=dense) for dense in (False, True)
     )
     found = dict(values)
-    for channel, names, starts in zip(("Fy", "Mz"), free, (FORCE_STARTS, MOMENT_STARTS), strict=True):
+    for channel, names, starts in zip(CHANNELS, free, (FORCE_STARTS, MOMENT_STARTS), strict=True):
         moving = [n for n in names if not (symmetric and n in ODD_TERMS)]
         lines = _lines(values, written) if channel == "Fy" else None
         on_coarse, on_fine = (

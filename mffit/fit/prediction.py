@@ -15,6 +15,7 @@ import numpy as np
 from mffit.fit.problem import Problem
 from mffit.least_squares import Number, inverse
 from mffit.points import Points, levels
+from mffit.quantities import CHANNELS
 from mffit.rig import FAULT_NAMES
 
 FEWEST = 4
@@ -23,7 +24,6 @@ MOST = 0.5
 """Share of all points from which on the others say too little of a sweep."""
 UNKNOWN = 1e-3
 """Share of a direction's information that comes from the others below which they say nothing of it."""
-CHANNELS = ("Fy", "Mz")
 COMMON = tuple(name for name in FAULT_NAMES if name not in ("backlash_deg", "path_radius_m"))
 """Errors of a rig that all sweeps share; they are no contradiction of one sweep, and are let free, to first order."""
 

@@ -27,7 +27,7 @@ def rig_numbers(config: Any, measured: Any) -> tuple[Number, ...]:
     On a straight path ply-steer and conicity are free and take up what the zeros leave.
     """
     rig = config.rig
-    if rig.type != "rotating-disk" or measured.epsilon_gamma is None:
+    if not rig.on_disc or measured.epsilon_gamma is None:
         return ()
     stiffness = abs(measured.C_alpha.value) if measured.C_alpha else FIRST_GUESS * measured.F_phit_load
     u_alpha = math.degrees(rig.u_slip_alignment_N / max(stiffness, 1.0))

@@ -18,6 +18,7 @@ from mffit.fit.profile import follow
 from mffit.fit.stages import STAGES, WITH_CAMBER, Stage, StageRecord
 from mffit.least_squares import Number, Solution, solve
 from mffit.points import Points, main_pressure
+from mffit.progress import Progress, silent
 from mffit.rig import FAULT_NAMES, Simulation
 from mffit.scatter import rms
 from tir.parameters import BY_NAME
@@ -30,8 +31,6 @@ FALSE_MINIMUM = 1.3
 """Misfit in units of the stated noise from which on the fit starts again from other shapes."""
 BETTER = 0.97
 """A restart replaces the fit before only if its sum of squares is this much smaller."""
-
-Progress = Callable[[str], None]
 
 
 @dataclass(frozen=True, slots=True)
@@ -121,7 +120,7 @@ def fit_staged(
     for shape, values in SHAPES.items():
         progress(f"starting again from {shape}")
         tried.append(shape)
-        other = _fit_from(problem, {**start, **values}, plan, lambda sentence: None)
+        other = _fit_from(problem, {**start, **values}, plan, silent)
         if other.cost < BETTER * best.cost:
             best = other
     return dataclasses.replace(best, attempts=tuple(tried))
@@ -142,9 +141,9 @@ def _fit_from(problem: Problem, start: Mapping[str, float], plan: Plan, progress
         problem = problem.with_values(_fit_stage(problem, stage, [*reopened, *row.free], plan))
         records.append(_record(problem, stage.name, stage.title, row.free))
     progress("joint polish")
-    fitted, problem = _polish(problem, plan)
+    fitted = _polish(problem, plan)
     records.append(
-        _record(problem, "polish", "Joint polish of tyre and rig", [n.name for n in fitted.numbers])
+        _record(fitted.problem, "polish", "Joint polish of tyre and rig", [n.name for n in fitted.numbers])
     )
     return dataclasses.replace(fitted, stages=tuple(records))
 
@@ -178,7 +177,7 @@ def _used_by(stage: Stage, points: Points) -> np.ndarray:
     return used
 
 
-def _polish(stated: Problem, plan: Plan) -> tuple[Fitted, Problem]:
+def _polish(stated: Problem, plan: Plan) -> Fitted:
     """All free numbers together: balance the channels, discount outliers, look along the valley where it is bent."""
     problem, _ = _reweighted(stated)
     rough = _solved(_thinned(problem), plan, tolerance=1e-3)
@@ -189,7 +188,7 @@ def _polish(stated: Problem, plan: Plan) -> tuple[Fitted, Problem]:
         problem, solution = _settled(problem.with_values(valley.better), plan)
     posterior = joint(problem, solution, plan.held)
     stderr = posterior.stderr
-    fitted = Fitted(
+    return Fitted(
         values={n: v for n, v in solution.values.items() if n not in RIG},
         rig={n: (v, stderr[n]) for n, v in solution.values.items() if n in RIG},
         correlation=strongest_correlations(posterior, solution.names),
@@ -204,7 +203,6 @@ def _polish(stated: Problem, plan: Plan) -> tuple[Fitted, Problem]:
         scale=scale,
         cost=solution.cost,
     )
-    return fitted, problem
 
 
 RIG = frozenset(FAULT_NAMES)

@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
+from mffit.fit.doubts import Doubt
 from mffit.fit.files import DECIDED, FileFigures, Files
+from mffit.fit.outliers import Outlier
 from mffit.fit.result import Coefficient
 from mffit.fit.staged import Fitted
 from mffit.points import Points
+from mffit.quantities import CHANNELS
 from mffit.rig import Readings
 from mffit.scatter import rms
 from tir.parameters import TABLE, Parameter
@@ -20,6 +23,8 @@ DERIVED = {
     "normal": "fitted to the model without path curvature",
     "both": "fitted to the model with and without turn slip",
 }
+SHOWN = 5
+"""Outlying readings named in the sentence."""
 TIED = "tied to its expected value"
 FROM_DATA = ("measured", "fitted", "regularised")
 """Origins of values that these data decided."""
@@ -187,3 +192,29 @@ def _carriers(points: Points, z: np.ndarray) -> str:
     own = {k: rms(z[points.sweep == k]) for k in np.unique(points.sweep[known])}
     worst = [k for k in sorted(own, key=lambda k: -own[k]) if own[k] > CARRIES * total][:3]
     return f", most of it in {', '.join(points.sweep_names[k] for k in worst)}" if worst else ""
+
+
+def doubtful(fact: Doubt) -> str:
+    """A sweep that does not fit the others."""
+    explained = f"; it looks like {fact.looks}" if fact.looks else ""
+    return (
+        f"{fact.sweep} does not fit the other sweeps: predicted from them, {fact.channel} is out by {fact.rms:.3g} "
+        f"{CHANNELS[fact.channel].unit}, at least {100 * fact.share:.0f} % of its usual size and {fact.ratio:.1f} times what "
+        f"noise and model explain{explained}; check this sweep or repeat it"
+    )
+
+
+def standing_out(found: Sequence[Outlier]) -> str:
+    """The readings without weight, the worst by name."""
+    worst = sorted(found, key=lambda o: -o.ratio)[:SHOWN]
+    said = "; ".join(
+        f"{o.place} {o.channel} = {o.measured:.4g} {CHANNELS[o.channel].unit} where {o.expected:.4g} is expected"
+        for o in worst
+    )
+    more = f"; and {len(found) - len(worst)} more, all in result.json" if len(found) > len(worst) else ""
+    count = (
+        "1 reading stands out of its sweep and carries"
+        if len(found) == 1
+        else f"{len(found)} readings stand out of their sweeps and carry"
+    )
+    return f"{count} no weight: {said}{more}; correct or remove what is wrong"

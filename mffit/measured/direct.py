@@ -96,7 +96,7 @@ def measure(config: Config, points: Points, parts: Parts, base: Tyre | None = No
     InputError
         If the turn-slip force points towards the centre of the disc.
     """
-    disc = config.rig.type == "rotating-disk"
+    disc = config.rig.on_disc
     warnings: list[Trouble] = []
     slip = odd_alpha(points, parts, config)
     points = backlash_corrected(points, config)

@@ -20,12 +20,14 @@ from mffit.config import Config
 from mffit.fit import FitResult
 from mffit.measured import Measured
 from mffit.output import output_folder, refuse_early
-from mffit.pipeline.inputs import Progress, inputs_of, read_base, silent
+from mffit.pipeline.inputs import inputs_of, read_base
 from mffit.pipeline.measuring import epsilon_gamma, measure, without_play
 from mffit.pipeline.members import write_members
-from mffit.pipeline.provenance import annotated
+from mffit.pipeline.provenance import Annotate, annotator
 from mffit.points import Points
 from mffit.points.stretch import StretchNote
+from mffit.progress import Progress, silent
+from mffit.quantities import CHANNELS
 from mffit.recordings.stretch_table import stretch_table
 from mffit.results import BuildResult, as_json
 from mffit.rig import NO_FAULTS
@@ -71,7 +73,7 @@ def build(
     base = read_base(config)
     progress("measuring the camber reduction factor")
     parts, measured = measure(config, points, base)
-    disc = config.rig.type == "rotating-disk"
+    disc = config.rig.on_disc
     names = fitting.file_names(config.tyre.name, config.spin.exact, disc)
     if out is not None:
         refuse_early(Path(out), (*names.values(), *WRITTEN), inputs_of(config))
@@ -94,8 +96,9 @@ def build(
     )
     if ensemble:
         progress(f"drawing {ensemble} tyres from what the fit leaves uncertain")
+    annotated = annotator(config, measured, fitted)
     with threadpool_limits(1):
-        drawn = tuple(_members(fitted, ensemble, config, measured))
+        drawn = tuple(_members(fitted, ensemble, annotated, disc)) if ensemble else ()
     assert fitted.files is not None
     made = fitted.files.by_use
     result = BuildResult(
@@ -105,7 +108,7 @@ def build(
         measured=measured,
         fit=fitted,
         files=names,
-        tyres={use: annotated(made[use].tyre, config, measured, fitted, use) for use in names},
+        tyres={use: annotated(made[use].tyre, use) for use in names},
         members=drawn,
         plain=config.spin.exact if disc else "normal",
         warnings=(*warnings, *measured.warnings, *fitted.warnings),
@@ -117,10 +120,9 @@ def build(
     return result
 
 
-def _members(fitted: FitResult, count: int, config: Config, measured: Measured) -> Iterator[Tyre]:
+def _members(fitted: FitResult, count: int, annotated: Annotate, disc: bool) -> Iterator[Tyre]:
     """Tyres drawn from what the fit leaves uncertain, each of which says that it is a draw."""
-    use = "turn-slip" if config.rig.type == "rotating-disk" else "normal"
-    best = annotated(fitted.tyre, config, measured, fitted, use)
+    best = annotated(fitted.tyre, "turn-slip" if disc else "normal")
     assert fitted.search is not None
     for i, values in enumerate(fitting.ensemble(fitted.search, count), 1):
         told = {"ensemble": f"draw {i} of {count} from what the fit leaves uncertain"}
@@ -140,11 +142,11 @@ def without_outliers(
             np.nan,
             getattr(points, name),
         )
-        for name in ("Fy", "Mz")
+        for name in CHANNELS
     )
     sound = points.replace(Fy=Fy, Mz=Mz).select(np.isfinite(Fy))
     again = measure(config, sound, base)[1]
-    return measured if as_json.spin(again) == as_json.spin(measured) else again
+    return measured if again == measured else again
 
 
 def finite_spin_bias(config: Config, points: Points, fitted: FitResult, base: Tyre | None) -> float | None:
@@ -152,7 +154,7 @@ def finite_spin_bias(config: Config, points: Points, fitted: FitResult, base: Ty
 
     The method is run on what a faultless rig would read, without noise, of the fitted model, whose eps_gamma is known.
     """
-    if config.rig.type != "rotating-disk" or fitted.epsilon_gamma_model is None:
+    if not config.rig.on_disc or fitted.epsilon_gamma_model is None:
         return None
     Fy, Mz = replace(fitted.simulation, faults=NO_FAULTS).readings(points)
     found = epsilon_gamma(without_play(config), points.replace(Fy=Fy, Mz=Mz), base)

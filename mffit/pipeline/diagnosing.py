@@ -19,10 +19,11 @@ from mffit.diagnosis.notes import DirectMethodRedone, ModelFittedFirst, ModelOfL
 from mffit.effects import CATALOG, Effect
 from mffit.output import output_folder, refuse_early
 from mffit.pipeline.building import build
-from mffit.pipeline.inputs import Progress, inputs_of, read_base, silent
+from mffit.pipeline.inputs import inputs_of, read_base
 from mffit.pipeline.measuring import epsilon_gamma, without_play
 from mffit.pipeline.provenance import known_of_model, rig_of_build, use_of
 from mffit.points import Points
+from mffit.progress import Progress, silent
 from mffit.results import as_json
 from tir import Tyre
 
@@ -97,7 +98,7 @@ def chosen_model(
     if model is not None:
         return tir.read(model), ()
     plain = last_build(config)
-    wanted = "turn-slip" if config.model.turn_slip and config.rig.type == "rotating-disk" else "normal"
+    wanted = "turn-slip" if config.model.turn_slip and config.rig.on_disc else "normal"
     for path in (plain, plain.with_name(f"{config.tyre.name}-{wanted}.tir")):
         if path.is_file() and use_of(tyre := tir.read(path)) in (wanted, None):
             return tyre, () if path == plain else (ModelOfLastBuild(path.name),)
@@ -115,7 +116,7 @@ def _redone(
 ) -> tuple[DirectMethodRedone, ...]:
     """The direct method with the rig's faults taken off, if any were found."""
     causes = tuple(found.effect.name for found in diagnosis.effects if found.effect.kind == "rig")
-    if config.rig.type != "rotating-disk" or not causes:
+    if not config.rig.on_disc or not causes:
         return ()
     mended = corrected_points(points, diagnosis.state)
     before = epsilon_gamma(config, points, base)

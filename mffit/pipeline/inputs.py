@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from pathlib import Path
 
 import tir
@@ -10,13 +9,6 @@ from mffit.config import Config
 from mffit.errors import InputError
 from mffit.output import digest
 from tir import Tyre
-
-Progress = Callable[[str], None]
-"""Called with a short sentence whenever a step begins."""
-
-
-def silent(sentence: str) -> None:
-    """Progress that is not shown."""
 
 
 def read_base(config: Config) -> Tyre | None:

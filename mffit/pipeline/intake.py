@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from mffit.errors import InputError
-from mffit.output import new_files
+from mffit.output import must_be_new, new_files
 from mffit.recordings import Sniffed, project_text, sniff
 from mffit.recordings.project_file import slug
 from mffit.recordings.sniffed import configuration_of
@@ -85,9 +85,7 @@ def _written(folder: Path, sniffed: Sniffed, text: str) -> list[Path]:
         contents[STRETCHES] = stretch_table(sniffed.reading.stretches).to_csv(
             index=False, lineterminator="\n"
         )
-    for name in pictures:
-        if (folder / name).exists():
-            raise InputError("is there already; name another folder or move it away", file=folder / name)
+    must_be_new(folder, pictures)
     written = new_files(folder, contents)
     for name, k in pictures.items():
         _picture(sniffed, k, folder / name)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import re
+from collections.abc import Callable
 from pathlib import Path
 from urllib.parse import quote
 
@@ -27,16 +28,25 @@ PLAIN = " /\\!#$&'()+,;=@[]{}~"
 """What may stand in a file's name, beside letters and digits, without being written as %XX in a property file."""
 
 
-def annotated(tyre: Tyre, config: Config, measured: Measured, fitted: FitResult, use: str) -> Tyre:
-    """The tyre with its measured quantities, its use and provenance as structured comments."""
-    provenance = {
-        "program": f"mffit {mffit.__version__}",
-        "use": f"{use}, for simulations with turn slip {TURN_SLIP[use]}",
-        "configuration": _settings(config),
-        **_inputs(config),
-    }
+Annotate = Callable[[Tyre, str], Tyre]
+"""The tyre, of a use, with its measured quantities and provenance as structured comments."""
+
+
+def annotator(config: Config, measured: Measured, fitted: FitResult) -> Annotate:
+    """What a build says in each of its files; the inputs are hashed once for all of them."""
+    inputs = _inputs(config)
     rig = {RIG + name: tir.Quantity(value, u, UNITS[name]) for name, (value, u) in fitted.rig.items()}
-    return tyre.annotate(measured={**measured.quantities(), **rig}, provenance=provenance)
+
+    def annotated(tyre: Tyre, use: str) -> Tyre:
+        provenance = {
+            "program": f"mffit {mffit.__version__}",
+            "use": f"{use}, for simulations with turn slip {TURN_SLIP[use]}",
+            "configuration": _settings(config),
+            **inputs,
+        }
+        return tyre.annotate(measured={**measured.quantities(), **rig}, provenance=provenance)
+
+    return annotated
 
 
 def use_of(tyre: Tyre) -> str | None:
@@ -77,7 +87,7 @@ def known_of_model(
     """
     posterior = None if path is None else _posterior(tyre, path)
     if fitted_to(tyre, config) and (fresh or posterior is not None):
-        return refitted(tyre, curved=config.rig.type == "rotating-disk"), True
+        return refitted(tyre, curved=config.rig.on_disc), True
     return (None if config.model.u_coefficients else posterior), False
 
 

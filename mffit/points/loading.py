@@ -89,7 +89,7 @@ def read(
         warnings += _left_out(points)
     if check_physics:
         warnings += check(steady, config)
-        if config.rig.type == "rotating-disk":
+        if config.rig.on_disc:
             check_disc_programme(steady, config)
     warnings += _thin(steady, config)
     kept = points if continuous else steady
@@ -201,7 +201,7 @@ def _thin(points: Points, config: Config) -> list[str]:
     out = []
     if not np.any(np.isfinite(points.Mz)):
         out.append("Mz_Nm was not measured: only Fy is fitted")
-    if config.rig.type == "rotating-disk" and not np.any(points.direction < 0):
+    if config.rig.on_disc and not np.any(points.direction < 0):
         out.append(
             "there are no backward runs: sideslip misalignment cannot be told from turn slip and ply-steer"
         )

@@ -19,6 +19,12 @@ LARGEST_FRICTION = 4.0
 """Side force per load that no tyre reaches."""
 LONGEST_ARM = 1.0
 """|Mz| / Fz [m] that no tyre reaches."""
+LOW = 0.35
+"""Share of the nominal pressure below which no tyre is tested."""
+FEWEST_DEAD = 4
+"""Rows of one and the same number that make a dead channel."""
+WILD = 5.0
+"""How many times all the others one load may not be."""
 
 
 def check_magnitudes(points: Points) -> None:
@@ -91,10 +97,6 @@ def _check_single_load(name: str, part: Points) -> None:
         )
 
 
-WILD = 5.0
-"""How many times all the others one load may not be."""
-
-
 def _check_dead(name: str, part: Points) -> None:
     """A channel that gives one and the same number while the angles change is not connected."""
     if len(part) < FEWEST_DEAD or np.ptp(part.alpha) + np.ptp(part.gamma) == 0.0:
@@ -105,10 +107,6 @@ def _check_dead(name: str, part: Points) -> None:
             raise InputError(
                 f"is {reading[0]:g} in every row, so the channel was dead; {remedy}", file=name, column=column
             )
-
-
-FEWEST_DEAD = 4
-"""Rows of one and the same number that make a dead channel."""
 
 
 def check_pressures(points: Points, nominal: float) -> None:
@@ -129,10 +127,6 @@ def check_pressures(points: Points, nominal: float) -> None:
                 file=points.files[index],
                 column="p_kPa",
             )
-
-
-LOW = 0.35
-"""Share of the nominal pressure below which no tyre is tested."""
 
 
 def _radians(name: str, angle: str, values: np.ndarray, steepness: float) -> InputError:

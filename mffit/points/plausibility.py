@@ -180,7 +180,7 @@ def _alternatives(points: Points, config: Config) -> list[Alternative]:
         for axes in FLIPPED
         if axes != rig.axes
     ]
-    if rig.type == "rotating-disk":
+    if rig.on_disc:
         others.append(_other_centre(points, config))
     frame = "C" if rig.force_frame == "W" else "W"
     for vertical in (False, True):

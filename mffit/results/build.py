@@ -32,7 +32,7 @@ class BuildResult:
     @property
     def on_disc(self) -> bool:
         """Whether the path was curved."""
-        return self.config.rig.type == "rotating-disk"
+        return self.config.rig.on_disc
 
     @property
     def tyre(self) -> Tyre:

@@ -31,7 +31,7 @@ class RigFaults:
     backlash_deg: float = _fault(0.0, "deg", "full play; true sideslip angle = reading - play/2 sign(Mz)")
     path_radius_m: float = _fault(math.nan, "m", "true radius of the path")
     k_T_per_K: float = _fault(0.0, "1/K", f"Fy and Mz times 1 + k_T {WARMTH}")
-    T_ref_degC: float = _fault(math.nan, "degC", "temperature at which the model holds")
+    T_ref_degC: float = _fault(REFERENCE_TEMPERATURE, "degC", "temperature at which the model holds")
     k_V_per_mps: float = _fault(
         0.0, "s/m", "Fy and Mz times 1 + k_V (V - V_ref), V_ref the most frequent speed"
     )

@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from mffit.points import Points
-from mffit.rig.faults import FAULT_NAMES, NO_FAULTS, REFERENCE_TEMPERATURE, RigFaults
+from mffit.rig.faults import FAULT_NAMES, NO_FAULTS, RigFaults
 from mffit.rig.lag import lagged_points
 from mffit.rig.play import Moment, Settled, settled
 from tir import Tyre
@@ -48,7 +48,6 @@ class Simulation:
     turn_slip: bool = True  #: whether the simulation knows path curvature and spin
     star: bool = False  #: tan(alpha), sin(gamma) as inputs
     relaxation_m: float = 0.0  #: lag of continuous sweeps [m]
-    T_ref: float = REFERENCE_TEMPERATURE  #: at which the coefficients hold [degC]
 
     @classmethod
     def of(
@@ -65,8 +64,6 @@ class Simulation:
             return self.relaxation_m
         if name == "path_radius_m" and math.isnan(self.faults.path_radius_m):
             return declared_radius(points)
-        if name == "T_ref_degC" and math.isnan(self.faults.T_ref_degC):
-            return self.T_ref
         return float(getattr(self.faults, name) if name in FAULT_NAMES else self.values[name])
 
     def with_numbers(self, numbers: Mapping[str, float]) -> Simulation:
@@ -123,10 +120,7 @@ class Simulation:
 
     def _faults(self, numbers: Mapping[str, Traced]) -> Any:
         changed = {n: x for n, x in numbers.items() if n in FAULT_NAMES}
-        fault = SimpleNamespace(**{**asdict(self.faults), **changed})
-        if math.isnan(plain(fault.T_ref_degC)):
-            fault.T_ref_degC = self.T_ref
-        return fault
+        return SimpleNamespace(**{**asdict(self.faults), **changed})
 
     def _forces(self, points: Points, alpha: Any, fault: Any, numbers: Mapping[str, Traced]) -> Any:
         """Forces and moments of the tyre at its true sideslip angle ``alpha`` (n,) [rad]."""

@@ -50,7 +50,7 @@ def test_corrections_undo_the_faults(right_model):
     """Readings of the tests' own faulty rig, corrected, are the readings of that rig without faults."""
     case, _, points = right_model
     Fy, Mz = report(case.true, SAME_FAULTS, case.run)
-    state = replace(Simulation(dict(case.true.values), FAULTS, True, False), T_ref=USUAL_TEMPERATURE)
+    state = Simulation(dict(case.true.values), replace(FAULTS, T_ref_degC=USUAL_TEMPERATURE), True, False)
     corrected = corrected_points(points.replace(Fy=Fy, Mz=Mz), state)
     clean_Fy, clean_Mz = report(case.true, Machine(), case.run)
     assert corrected.Fy == pytest.approx(clean_Fy, abs=1e-6)
