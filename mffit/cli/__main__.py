@@ -1,0 +1,3 @@
+from mffit.cli import main
+
+main()

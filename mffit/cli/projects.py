@@ -1,0 +1,60 @@
+"""`mffit sniff` and `mffit init`: what recordings hold, and a project to start from."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+
+
+@click.command()
+@click.argument("files", nargs=-1, required=True, type=click.Path(path_type=Path), metavar="FILE...")
+@click.option(
+    "--out", type=click.Path(path_type=Path), help="Folder for tyre.toml, stretches.csv and pictures."
+)
+def sniff(files: tuple[Path, ...], out: Path | None) -> None:
+    """What recordings hold: channels, units, axes, conditions, stretches, and the tyre.toml for them."""
+    from mffit import pipeline, recordings
+    from mffit.report import text
+
+    found = recordings.sniff(files)
+    click.echo(text.sniff_summary(found))
+    if out is None:
+        folder = Path()
+        click.echo(
+            "\n" + recordings.project_text(found, folder, unloaded_radius=None, nominal_load=None), nl=False
+        )
+        return
+    for path in pipeline.write_sniffed(found, out):
+        click.echo(f"written {path}")
+
+
+@click.command()
+@click.argument("paths", nargs=-1, required=True, type=click.Path(path_type=Path), metavar="[FILE...] DIR")
+@click.option("--from", "recorded", is_flag=True, help="From the recordings FILE... before DIR.")
+@click.option("--unloaded-radius", type=float, metavar="M", help="With --from: of the tyre, in metres.")
+@click.option("--nominal-load", type=float, metavar="N", help="With --from: FNOMIN, in newtons.")
+@click.option("--nominal-pressure", type=float, metavar="KPA", help="With --from [default: as most was run].")
+@click.option("--name", help="With --from: of the output files [default: the first recording's].")
+def init(paths: tuple[Path, ...], recorded: bool, name: str | None, **tyre: float | None) -> None:
+    """Write a commented tyre.toml and empty CSV templates, or with --from a project for recordings."""
+    from mffit.errors import InputError
+    from mffit.init_project import init_project
+
+    *files, folder = paths
+    if recorded:
+        from mffit import pipeline
+        from mffit.report import text
+
+        if not files:
+            raise InputError("--from needs recordings before the folder: mffit init --from FILE... DIR")
+        found, written = pipeline.init_from(files, folder, name=name, **tyre)
+        click.echo(text.sniff_summary(found))
+    elif files:
+        raise InputError(
+            f"one folder only; recordings go behind --from: mffit init --from {files[0]} {folder}"
+        )
+    else:
+        written = init_project(folder)
+    for path in written:
+        click.echo(f"written {path}")

@@ -1,0 +1,19 @@
+"""`mffit simulate`: a virtual rig."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+
+
+@click.command()
+@click.argument("rig_toml", type=click.Path(path_type=Path))
+@click.option("--out", type=click.Path(path_type=Path), required=True, help="Folder to write to.")
+@click.option("--seed", type=int, default=None, help="Seed of noise and drawn faults [default: the file's].")
+def simulate(rig_toml: Path, out: Path, seed: int | None) -> None:
+    """Virtual rig: write sweeps that `build` reads, and truth.json."""
+    from mffit import virtual_rig
+
+    virtual_rig.simulate(rig_toml, out, seed=seed)
+    click.echo(f"written to {out}: sweeps, tyre.toml, truth.json")
