@@ -151,8 +151,8 @@ class _Judge(NamedTuple):
         target = forces(self.model, self.road, turn_slip=bool(self.phi_t), phi_t=phi_t)
         weight, within = weights(self.road, self.tested), inside(self.road, self.tested)
         return {
-            name: _misfit(getattr(here, name) - getattr(target, name), self.road, weight, within)
-            for name in CHANNELS
+            name: _misfit(own - aim, self.road, weight, within)
+            for name, own, aim in zip(CHANNELS, here, target, strict=True)
         }
 
 

@@ -12,8 +12,10 @@ from mffit import least_squares
 from mffit.fit.constraints import Envelope, limits
 from mffit.fit.road import Road
 from mffit.least_squares import Linear, Number
+from mffit.quantities import CHANNELS
+from mffit.rig import Readings
 from tir.derivatives import gradient, plain, traced
-from tir.evaluate import evaluate
+from tir.outputs import outputs_of
 
 SCALE = {"Fy": 0.01, "Mz": 0.001}
 """Unit of the residual, per nominal load [N/N, m]: the size of the misfit that the formula cannot avoid."""
@@ -40,17 +42,21 @@ class Lines(NamedTuple):
     falls: np.ndarray  #: (lines, points - 1) bool: where the force of the model falls
 
 
-def forces(values: Mapping[str, Any], road: Road, *, turn_slip: bool, phi_t: float = 0.0) -> Any:
-    """Forces of a file on the road, plain or traced."""
-    return evaluate(
-        SimpleNamespace(**values),
-        road.Fz,
-        road.alpha,
-        road.gamma,
-        phi_t=phi_t,
-        pressure=road.pressure,
-        turn_slip=turn_slip,
-    )[0]
+def forces(values: Mapping[str, Any], road: Road, *, turn_slip: bool, phi_t: float = 0.0) -> Readings:
+    """Fy [N] and Mz [Nm] of a file on the road."""
+    return Readings(*_wanted(tuple(CHANNELS), values, road, turn_slip, phi_t))
+
+
+def force(channel: str, values: Mapping[str, Any], road: Road, *, turn_slip: bool, phi_t: float = 0.0) -> Any:
+    """One of the two, plain or traced."""
+    return _wanted((channel,), values, road, turn_slip, phi_t)[0]
+
+
+def _wanted(
+    names: tuple[str, ...], values: Mapping[str, Any], road: Road, turn_slip: bool, phi_t: float
+) -> list[Any]:
+    path = {"phi_t": phi_t} if phi_t else {}
+    return outputs_of(names, SimpleNamespace(**values), {**road._asdict(), **path}, turn_slip=turn_slip)
 
 
 def goal(
@@ -92,7 +98,7 @@ class Imitation(NamedTuple):
         unit = SCALE[self.channel] * float(self.fixed["FNOMIN"])
         data, slopes = [], []
         for goal in self.goals:
-            out = getattr(forces(values, goal.road, turn_slip=goal.turn_slip, phi_t=goal.phi_t), self.channel)
+            out = force(self.channel, values, goal.road, turn_slip=goal.turn_slip, phi_t=goal.phi_t)
             factor = np.sqrt(goal.weight / goal.weight.sum()) / unit
             data.append((plain(out) - getattr(goal, self.channel)) * factor)
             slopes.append(gradient(out, wrt) * factor[:, None])
@@ -107,7 +113,7 @@ class Imitation(NamedTuple):
         value = [LIMIT_WEIGHT * np.broadcast_to(plain(row), size) for row in rows]
         slope = [LIMIT_WEIGHT * np.broadcast_to(gradient(row, wrt), (size, len(wrt))) for row in rows]
         if self.lines is not None:
-            Fy = forces(values, self.lines.road, turn_slip=False).Fy
+            Fy = force("Fy", values, self.lines.road, turn_slip=False)
             shape = (len(self.lines.falls), self.lines.points)
             steps = np.diff(plain(Fy).reshape(shape))
             value.append((np.where(self.lines.falls, steps, 0.0) / unit).ravel())

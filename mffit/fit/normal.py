@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from mffit.fit.imitation import Goal, Imitation, Lines, forces, goal
+from mffit.fit.imitation import Goal, Imitation, Lines, force, goal
 from mffit.fit.ranges import envelope
 from mffit.fit.road import Road, camber_lines, road_grid, weights
 from mffit.fit.stages import ODD_TERMS, STAGES
@@ -120,7 +120,7 @@ def _derived(values, tested, written, measured, goals, free, *, symmetric: bool)
 
 def _lines(values: Mapping[str, Any], written: Mapping[str, float]) -> Lines:
     road, n = camber_lines(written)
-    return Lines(road, n, np.diff(forces(values, road, turn_slip=True).Fy.reshape(-1, n)) < 0.0)
+    return Lines(road, n, np.diff(force("Fy", values, road, turn_slip=True).reshape(-1, n)) < 0.0)
 
 
 def _numbers(start: Mapping[str, float], measured: Mapping[str, float]) -> Sequence[Number]:

@@ -14,7 +14,7 @@ from mffit.measured import RadiusReading
 from mffit.points import Points
 from mffit.rig import Simulation, declared_radius
 from tir.derivatives import gradient, plain, traced
-from tir.evaluate import evaluate
+from tir.outputs import outputs_of
 
 LIMIT_WEIGHT = 3000.0
 """Residual in units of noise per unit of violation; large enough to hold, small enough to keep the problem smooth."""
@@ -98,7 +98,7 @@ class Problem:
         declared = declared_radius(self.points)
         R = numbers.get("path_radius_m", self.simulation.number("path_radius_m", self.points))
         follows = np.array([1.0 if row.follows_path else 0.0 for row in self.radii])
-        Re = evaluate(p, load, Vx=self.speed)[1].Re
+        (Re,) = outputs_of(("Re",), p, {"Fz": load, "Vx": self.speed})
         out = (Re - measured * (1.0 + follows * (R / declared - 1.0))) / u
         slope = np.broadcast_to(gradient(out, list(numbers.values())), (len(load), len(names)))
         return np.broadcast_to(plain(out), len(load)), slope

@@ -149,6 +149,7 @@ def _fit_from(problem: Problem, start: Mapping[str, float], plan: Plan, progress
 
 
 def _fit_stage(problem: Problem, stage: Stage, names: Sequence[str], plan: Plan) -> Mapping[str, float]:
+    """Values near enough to start the polish from; the play of the steering axis is left to that one."""
     index = np.flatnonzero(_used_by(stage, problem.points))
     index = index[:: max(1, len(index) // ENOUGH_FOR_A_STAGE)]
     if len(index) < len(names):
@@ -160,6 +161,7 @@ def _fit_stage(problem: Problem, stage: Stage, names: Sequence[str], plan: Plan)
         sigma_Fy=part.sigma_Fy if "Fy" in stage.channels else unused,
         sigma_Mz=part.sigma_Mz if "Mz" in stage.channels else unused,
         radii=(),
+        simulation=part.simulation.with_numbers({"backlash_deg": 0.0}),
     )
     if stage.zero_camber:
         names = [n for n in names if n not in WITH_CAMBER]

@@ -7,8 +7,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-STEPS, CLOSE = 12, 1e-10
-"""Steps of the search for the angle without moment at most, and how close it comes [rad]."""
+STEPS, CLOSE = 12, 1e-7
+"""Steps of the search for the angle without moment at most, and the step [rad] that ends it: what is left after a step
+of that size is its square and less."""
 
 Moment = Callable[[np.ndarray], np.ndarray]
 """Aligning moment [Nm] at sideslip angles (m,) [rad]."""
@@ -31,10 +32,13 @@ def settled(moment_of: Callable[[np.ndarray], Moment], alpha: np.ndarray, half_p
     alpha : (n,) sideslip angle in the middle of the play [rad]
     half_play : [rad]
     """
-    moment = moment_of(np.arange(len(alpha)))
-    lower, upper = moment(alpha - half_play), moment(alpha + half_play)
+    n = len(alpha)
+    both = moment_of(
+        np.tile(np.arange(n), 2)
+    )  # of both stops at once: the cost is in the call, not in the number
+    lower, upper = np.split(both(np.concatenate([alpha - half_play, alpha + half_play])), 2)
     # Two stops that both hold it: it lies at the one to which the moment in the middle turns it.
-    middle = moment(alpha) if np.any((lower > 0.0) & (upper < 0.0)) else lower + upper
+    middle = moment_of(np.arange(n))(alpha) if np.any((lower > 0.0) & (upper < 0.0)) else lower + upper
     at_lower, at_upper = lower > 0.0, upper < 0.0
     side = np.where(at_lower & (~at_upper | (middle > 0.0)), 1.0, -1.0)
     floats = ~at_lower & ~at_upper
@@ -58,17 +62,32 @@ def _without_moment(
     at_a: np.ndarray,
     at_b: np.ndarray,
 ) -> np.ndarray:
-    """Root (m,) between ``a`` and ``b`` with values of opposite sign: false position, the stale end halved (Illinois).
+    """Root (m,) between ``a`` and ``b``, where the moment has opposite signs: a chord, then parabolas lying on their side.
 
-    The moment is nearly straight over so small an angle; scipy's root finder costs ten times as much here.
+    The moment is nearly straight over so small an angle, so that two evaluations do; scipy's root finder costs ten
+    times as much here.
     """
+    x = a - at_a * (b - a) / (at_b - at_a)
     for _ in range(STEPS):
-        middle = b - at_b * (b - a) / np.where(at_b == at_a, 1.0, at_b - at_a)
-        value = moment(middle)
-        crossed = value * at_b < 0.0
-        a, at_a = np.where(crossed, b, a), np.where(crossed, at_b, 0.5 * at_a)
-        moved = np.abs(middle - b)
-        b, at_b = middle, value
-        if np.all((moved < CLOSE) | (value == 0.0)):
+        value = moment(x)
+        beside = _on_its_side((a, b, x), (at_a, at_b, value))
+        below = value < 0.0  # as at ``a``
+        a, at_a = np.where(below, x, a), np.where(below, value, at_a)
+        b, at_b = np.where(below, b, x), np.where(below, at_b, value)
+        inside = (beside > a) & (beside < b)  # false for NaN, too
+        following = np.where(value == 0.0, x, np.where(inside, beside, 0.5 * (a + b)))
+        moved, x = np.abs(following - x), following
+        if np.all(moved < CLOSE):
             break
-    return b
+    return x
+
+
+def _on_its_side(x: tuple[np.ndarray, ...], y: tuple[np.ndarray, ...]) -> np.ndarray:
+    """Where the parabola x(y) through three places (m,) each passes y = 0."""
+    (x0, x1, x2), (y0, y1, y2) = x, y
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return (
+            x0 * y1 * y2 / ((y0 - y1) * (y0 - y2))
+            + x1 * y0 * y2 / ((y1 - y0) * (y1 - y2))
+            + x2 * y0 * y1 / ((y2 - y0) * (y2 - y1))
+        )

@@ -11,12 +11,14 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from mffit.points import Points
+from mffit.quantities import CHANNELS
 from mffit.rig.faults import FAULT_NAMES, NO_FAULTS, RigFaults
 from mffit.rig.lag import lagged_points
 from mffit.rig.play import Moment, Settled, settled
 from tir import Tyre
 from tir.derivatives import Traced, following, gradient, plain, traced
-from tir.evaluate import evaluate, turned_on_rim
+from tir.evaluate import turned_on_rim
+from tir.outputs import outputs_of
 
 SWITCH = "turn_slip"
 RELAXATION = "relaxation_m"
@@ -111,19 +113,26 @@ class Simulation:
     def _reported(self, points: Points, numbers: Mapping[str, Traced]) -> tuple[Any, Any]:
         """Fy and Mz as the rig reports them, plain or traced."""
         fault = self._faults(numbers)
-        out = self._forces(points, self._true_alpha(points, fault, numbers), fault, numbers)
+        Fy, Mz = self._forces(points, self._true_alpha(points, fault, numbers), fault, numbers)
         environment = _environment(points, fault)
-        Fy = fault.gain * out.Fy * environment
+        Fy = fault.gain * Fy * environment
         if _present(fault.nonlinearity_per_kN):
             Fy = Fy * (1.0 + 1e-3 * fault.nonlinearity_per_kN * abs(Fy))
-        return Fy + fault.F0_N + fault.crosstalk * points.Fz, out.Mz * environment + fault.M0_Nm
+        return Fy + fault.F0_N + fault.crosstalk * points.Fz, Mz * environment + fault.M0_Nm
 
     def _faults(self, numbers: Mapping[str, Traced]) -> Any:
         changed = {n: x for n, x in numbers.items() if n in FAULT_NAMES}
         return SimpleNamespace(**{**asdict(self.faults), **changed})
 
-    def _forces(self, points: Points, alpha: Any, fault: Any, numbers: Mapping[str, Traced]) -> Any:
-        """Forces and moments of the tyre at its true sideslip angle ``alpha`` (n,) [rad]."""
+    def _forces(
+        self,
+        points: Points,
+        alpha: Any,
+        fault: Any,
+        numbers: Mapping[str, Traced],
+        wanted: tuple[str, ...] = tuple(CHANNELS),
+    ) -> list[Any]:
+        """Fy [N] and Mz [Nm] of the tyre at its true sideslip angle ``alpha`` (n,) [rad], or one of them."""
         p: Any = SimpleNamespace(**{**self.values, **{n: x for n, x in numbers.items() if n in self.values}})
         if np.any(points.mount < 0):
             p = turned_on_rim(p, points.mount)
@@ -135,19 +144,18 @@ class Simulation:
         phi_t: Any = points.phi_t
         if not math.isnan(plain(fault.path_radius_m)):
             phi_t = np.sign(points.phi_t) / fault.path_radius_m
-        out, _ = evaluate(
-            p,
-            points.Fz,
-            alpha,
-            points.gamma + fault.gamma_0_deg * RADIANS,
-            0.0,
-            phi_t,
-            points.Vx,
-            points.p,
-            turn_slip=self.turn_slip,
-            star=self.star,
-        )
-        return out
+        inputs = {
+            "Fz": points.Fz,
+            "alpha": alpha,
+            "gamma": points.gamma + fault.gamma_0_deg * RADIANS,
+            "phi_t": phi_t,
+            "Vx": points.Vx,
+            "pressure": points.p,
+        }
+        return outputs_of(wanted, p, inputs, turn_slip=self.turn_slip, star=self.star)
+
+    def _moment(self, points: Points, alpha: Any, fault: Any, numbers: Mapping[str, Traced]) -> Any:
+        return self._forces(points, alpha, fault, numbers, ("Mz",))[0]
 
     def _true_alpha(self, points: Points, fault: Any, numbers: Mapping[str, Traced]) -> Any:
         """Sideslip angle of the tyre (n,) [rad]: what is read, followed with lag, misaligned, and the play taken up."""
@@ -157,7 +165,10 @@ class Simulation:
         if _present(fault.compliance_deg_per_Nm):
             give = fault.compliance_deg_per_Nm * RADIANS
             alpha = _yielding(
-                give, alpha, lambda at: self._forces(points, at, fault, numbers).Mz, derivatives=bool(numbers)
+                give,
+                alpha,
+                lambda at: self._moment(points, at, fault, numbers),
+                derivatives=bool(numbers),
             )
         if not _present(fault.backlash_deg):
             return alpha
@@ -167,7 +178,7 @@ class Simulation:
 
         def moment_of(which: np.ndarray) -> Moment:
             part = points if len(which) == len(points) else points.select(which)
-            return lambda at: self._forces(part, at, plainly, {}).Mz
+            return lambda at: self._moment(part, at, plainly, {})
 
         rest = settled(moment_of, np.broadcast_to(plain(alpha), len(points)), plain(half_play))
         held = alpha - half_play * rest.side
@@ -182,7 +193,7 @@ class Simulation:
         which = np.flatnonzero(rest.floats)
         again = traced({n: x.value for n, x in numbers.items()} | {"alpha": rest.alpha[which]})
         at = again.pop("alpha")
-        Mz = self._forces(points.select(which), at, self._faults(again), again).Mz
+        Mz = self._moment(points.select(which), at, self._faults(again), again)
         slopes = gradient(Mz, [*again.values(), at])
         moves = np.zeros((len(points), len(numbers)))
         turning = slopes[:, -1:]

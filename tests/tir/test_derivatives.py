@@ -1,4 +1,4 @@
-"""Derivatives by reverse accumulation against the complex step through the same equations, which shares no rule with it."""
+"""Derivatives by reverse accumulation, on the equations and replayed, against the complex step, which shares no rule with it."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ import pytest
 import tir
 from tir.derivatives import gradient, traced
 from tir.evaluate import evaluate
+from tir.outputs import outputs_of
 from tir.parameters import TABLE
 
 SAMPLE = "samples/front-120-70/true.tir"
@@ -35,11 +36,20 @@ def forces(values, conditions, turn_slip):
     return evaluate(SimpleNamespace(**values), **conditions, turn_slip=turn_slip)[0]
 
 
+def replayed(values, conditions, turn_slip):
+    found = outputs_of(("Fy", "Mz"), SimpleNamespace(**values), conditions, turn_slip=turn_slip)
+    return SimpleNamespace(Fy=found[0], Mz=found[1])
+
+
+ROUTES = pytest.mark.parametrize("route", [forces, replayed])
+
+
+@ROUTES
 @pytest.mark.parametrize("turn_slip", [True, False])
-def test_every_coefficient_has_the_derivative_of_a_complex_step(conditions, turn_slip):
+def test_every_coefficient_has_the_derivative_of_a_complex_step(conditions, turn_slip, route):
     values = dict(tir.read(SAMPLE).values)
     numbers = traced({name: float(values[name]) for name in COEFFICIENTS})
-    out = forces({**values, **numbers}, conditions, turn_slip)
+    out = route({**values, **numbers}, conditions, turn_slip)
     for channel in ("Fy", "Mz"):
         found = gradient(getattr(out, channel), list(numbers.values()))
         for k, name in enumerate(COEFFICIENTS):
@@ -51,11 +61,12 @@ def test_every_coefficient_has_the_derivative_of_a_complex_step(conditions, turn
             ), name
 
 
+@ROUTES
 @pytest.mark.parametrize("name", ["alpha", "gamma", "phi_t", "Fz", "pressure"])
-def test_every_input_has_the_derivative_of_a_complex_step(conditions, name):
+def test_every_input_has_the_derivative_of_a_complex_step(conditions, name, route):
     values = dict(tir.read(SAMPLE).values)
     (number,) = traced({name: conditions[name]}).values()
-    out = forces(values, {**conditions, name: number}, True)
+    out = route(values, {**conditions, name: number}, True)
     moved = forces(values, {**conditions, name: conditions[name] + 1j * STEP}, True)
     for channel in ("Fy", "Mz"):
         expected = np.imag(getattr(moved, channel)) / STEP

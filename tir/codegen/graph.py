@@ -10,7 +10,7 @@ import numpy as np
 OPERATIONS: dict[Any, str] = {
     np.add: "add", np.subtract: "subtract", np.multiply: "multiply", np.divide: "divide", np.power: "power",
     np.negative: "negative", np.absolute: "absolute", np.sqrt: "sqrt", np.exp: "exp", np.sin: "sin", np.cos: "cos",
-    np.tan: "tan", np.arctan: "arctan", np.arccos: "arccos", np.less: "less", np.less_equal: "less_equal",
+    np.tan: "tan", np.log: "log", np.arctan: "arctan", np.arccos: "arccos", np.less: "less", np.less_equal: "less_equal",
     np.greater: "greater", np.greater_equal: "greater_equal", np.bitwise_and: "both",
 }  # fmt: skip
 UFUNCS = {name: ufunc for ufunc, name in OPERATIONS.items()}

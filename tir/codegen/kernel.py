@@ -23,7 +23,7 @@ from tir.equations.forces import Forces
 from tir.errors import TirError
 
 BRANCHLESS = Dialect({**COMMON, "where": "select({}, {}, {})", "both": "({} & {})"}, inline=False)
-SOURCES = ("equations", "codegen", "evaluate.py", "parameters.csv")
+SOURCES = ("equations", "codegen", "evaluate.py", "derivatives.py", "parameters.csv")
 """What the machine code follows from."""
 HEAD = f"""from math import sqrt
 from numba import njit

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 from types import SimpleNamespace
 from typing import Any, NamedTuple
@@ -51,20 +51,38 @@ def trace(switches: Switches, outputs: tuple[str, ...], fixed: Mapping[str, floa
     outputs : fields of Forces and State to compute
     fixed : parameters that the program holds as numbers, the others stay symbols
     """
-    graph, fixed = Graph(), fixed or {}
+    found = run_on_symbols(switches, fixed or {}, {})
+    return _program({name: found[name] for name in outputs})
+
+
+def run_on_symbols(
+    switches: Switches, fixed: Mapping[str, float], given: Mapping[str, float]
+) -> dict[str, Any]:
+    """Every force and state as a node of one graph, or as a number.
+
+    ``fixed`` and ``given`` are the parameters and inputs that are numbers already.
+    """
+    graph = Graph()
     p = {name: fixed[name] if name in fixed else graph.symbol(name, PARAMETER) for name in NUMBERS}
-    inputs = {name: graph.symbol(name, INPUT) for name in INPUTS}
+    inputs = {name: given[name] if name in given else graph.symbol(name, INPUT) for name in INPUTS}
     forces, state = either_way(SimpleNamespace(**p), inputs["Vx"] < 0.0, **inputs, **switches._asdict())
-    found = {**state._asdict(), **forces._asdict()}
-    return _program(graph, {name: found[name] for name in outputs})
+    return {**state._asdict(), **forces._asdict()}
 
 
-def _program(graph: Graph, outputs: Mapping[str, Any]) -> Program:
-    needed = {x.number for x in outputs.values() if isinstance(x, Node)}
+def needed(results: Collection[Any]) -> list[Node]:
+    """Every node that the results follow from, in order."""
+    wanted = {x.number: x for x in results if isinstance(x, Node)}
+    if not wanted:
+        return []
+    graph = next(iter(wanted.values())).graph
     for node in reversed(graph.nodes):
-        if node.number in needed:
-            needed |= {a.number for a in node.arguments if isinstance(a, Node)}
-    nodes = [node for node in graph.nodes if node.number in needed]
+        if node.number in wanted:
+            wanted.update((a.number, a) for a in node.arguments if isinstance(a, Node))
+    return [wanted[number] for number in sorted(wanted)]
+
+
+def _program(outputs: Mapping[str, Any]) -> Program:
+    nodes = needed(outputs.values())
     per_point = tuple(node for node in nodes if node.level == INPUT)
     used = [*(a for node in per_point for a in node.arguments), *outputs.values()]
     constants = {a.number: a for a in used if isinstance(a, Node) and level(a) == PARAMETER}

@@ -1,0 +1,158 @@
+"""A program run again operation by operation, in numpy: no compiler, and only what the wanted outputs need."""
+
+from __future__ import annotations
+
+import operator
+import threading
+from collections.abc import Mapping, Sequence
+from functools import lru_cache
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from tir.codegen.adjoint import derivatives
+from tir.codegen.graph import INPUT, UFUNCS, Node
+from tir.codegen.program import INPUTS, NUMBERS, Switches, needed, run_on_symbols
+
+IN_NUMPY = {**UFUNCS, "where": np.where}
+IN_FLOATS = {
+    **IN_NUMPY,
+    "add": operator.add,
+    "subtract": operator.sub,
+    "multiply": operator.mul,
+    "divide": operator.truediv,
+    "negative": operator.neg,
+    "less": operator.lt,
+    "greater": operator.gt,
+    "where": lambda chosen, a, b: a if chosen else b,
+}
+"""For what depends on the tyre alone and is a single number as a rule: an array function costs ten times as much on it."""
+ONE_AT_A_TIME = threading.Lock()
+"""Derivatives are added to a graph that all threads share."""
+
+
+class Replay(NamedTuple):
+    """Operations on a row of places: first the symbols', then the constants', then what the operations give.
+
+    A place is used again when nothing needs what is in it any more, so that large arrays stay in the processor's cache.
+    """
+
+    symbols: tuple[str, ...]  #: names of the values that are asked for
+    constants: tuple[Any, ...]
+    room: int  #: number of places
+    operations: tuple[tuple[Any, ...], ...]  #: (function, place of the result, places of the arguments)
+    in_numpy: tuple[tuple[Any, ...], ...]  #: the same with array functions only
+    results: tuple[int, ...]  #: places of the outputs
+
+    def __call__(self, values: Mapping[str, Any]) -> list[Any]:
+        """The outputs from numbers by name, scalars or arrays that broadcast with each other."""
+        given = [*(values[name] for name in self.symbols), *self.constants]
+        given += [None] * (self.room - len(given))
+        with np.errstate(all="ignore"):
+            try:
+                at = _run(self.operations, given.copy())
+            except (ArithmeticError, ValueError):  # a zero divisor, or a parameter for each condition
+                at = _run(self.in_numpy, given)
+        return [at[place] for place in self.results]
+
+
+def _run(operations: tuple[tuple[Any, ...], ...], at: list[Any]) -> list[Any]:
+    for operation in operations:
+        if len(operation) == 4:
+            function, to, a, b = operation
+            at[to] = function(at[a], at[b])
+        elif len(operation) == 3:
+            function, to, a = operation
+            at[to] = function(at[a])
+        else:
+            function, to, a, b, c = operation
+            at[to] = function(at[a], at[b], at[c])
+    return at
+
+
+@lru_cache(maxsize=64)
+def replay(
+    switches: Switches, outputs: tuple[str, ...], wrt: tuple[str, ...] = (), still: tuple[str, ...] = ()
+) -> Replay:
+    """The program that gives some forces or states and their derivatives.
+
+    Parameters
+    ----------
+    switches : what the model is asked for
+    outputs : fields of Forces and State
+    wrt : parameters and inputs to differentiate by
+    still : inputs that are zero
+
+    Returns
+    -------
+    Replay
+        of the outputs, and then for each output its derivatives by ``wrt``
+    """
+    with ONE_AT_A_TIME:
+        found = _on_symbols(switches, still)
+        wanted = {name: found[name] for name in outputs}
+        slopes = _derivatives(switches, outputs, still) if wrt else {}
+    return _replay([*wanted.values(), *(slopes.get((name, x), 0.0) for name in outputs for x in wrt)])
+
+
+@lru_cache(maxsize=8)
+def _on_symbols(switches: Switches, still: tuple[str, ...]) -> Mapping[str, Any]:
+    return run_on_symbols(switches, {}, dict.fromkeys(still, 0.0))
+
+
+@lru_cache(maxsize=8)
+def _derivatives(
+    switches: Switches, outputs: tuple[str, ...], still: tuple[str, ...]
+) -> Mapping[tuple[str, str], Any]:
+    """Of the outputs by every parameter and input; what is not asked for later is not computed later."""
+    found = _on_symbols(switches, still)
+    return derivatives({name: found[name] for name in outputs}, {*NUMBERS, *INPUTS} - set(still))
+
+
+def _replay(results: Sequence[Any]) -> Replay:
+    nodes = needed(results)
+    symbols = [node for node in nodes if node.operation == "symbol"]
+    others = [node for node in nodes if node.operation != "symbol"]
+    used = (*results, *(a for node in others for a in node.arguments))
+    constants = list(dict.fromkeys(_key(x) for x in used if not isinstance(x, Node)))
+    place = {key: i for i, key in enumerate([*map(_key, symbols), *constants])}
+    room = _allocated(others, frozenset(map(_key, results)), place)
+
+    def operations(of_tyre: Mapping[str, Any]) -> tuple[tuple[Any, ...], ...]:
+        return tuple(
+            (
+                (IN_NUMPY if node.level == INPUT else of_tyre)[node.operation],
+                place[_key(node)],
+                *(place[_key(a)] for a in node.arguments),
+            )
+            for node in others
+        )
+
+    return Replay(
+        tuple(node.name for node in symbols),
+        tuple(value for _, value in constants),
+        room,
+        operations(IN_FLOATS),
+        operations(IN_NUMPY),
+        tuple(place[_key(x)] for x in results),
+    )
+
+
+def _allocated(nodes: Sequence[Node], kept: frozenset[Any], place: dict[Any, int]) -> int:
+    """Give every operation's result a place that is free when it is made; the number of places in all."""
+    given, room = frozenset(place), len(place)
+    last = {_key(a): i for i, node in enumerate(nodes) for a in node.arguments}
+    free: list[int] = []
+    for i, node in enumerate(nodes):
+        done = {_key(a) for a in node.arguments} - given - kept
+        free += [place[key] for key in done if last[key] == i]
+        if free:
+            place[_key(node)] = free.pop()
+        else:
+            place[_key(node)], room = room, room + 1
+    return room
+
+
+def _key(x: Any) -> Any:
+    """What an argument is known by; 0 and False are not the same."""
+    return x.number if isinstance(x, Node) else (type(x), x)

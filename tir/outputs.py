@@ -1,0 +1,61 @@
+"""Some outputs of the equations, of plain numbers or with exact derivatives, without computing the others."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from tir.codegen.program import INPUTS, NUMBERS, Switches
+from tir.codegen.replay import replay
+from tir.derivatives import Traced, plain
+from tir.evaluate import refuse_zero_divisors
+
+
+def outputs_of(
+    names: tuple[str, ...],
+    p: Any,
+    inputs: Mapping[str, Any],
+    *,
+    turn_slip: bool = False,
+    star: bool = False,
+) -> list[Any]:
+    """Forces or states by name, as :func:`tir.evaluate.evaluate` has them; several times as fast, and no complex numbers.
+
+    Parameters
+    ----------
+    names : fields of :class:`tir.equations.forces.Forces` and ``State``, e.g. ``("Fy", "Mz")``
+    p : object with the file's parameter names as attributes: floats, arrays (n,) or :class:`~tir.derivatives.Traced`
+    inputs : some of :data:`~tir.codegen.program.INPUTS`, SI and radians, scalar or (n,), real or traced; slip and
+        angles that are not given are 0, Vx is LONGVL and pressure INFLPRES
+    turn_slip, star : as of ``evaluate``
+
+    Returns
+    -------
+    list
+        One for each name: of the broadcast shape, or Traced if it follows from a traced number.
+
+    Raises
+    ------
+    TirError
+        If a value by which the equations divide is 0.
+    """
+    refuse_zero_divisors(p)
+    given = {"Vx": p.LONGVL, "pressure": p.INFLPRES, **inputs}
+    still = tuple(name for name in INPUTS if name not in given)
+    every = {**vars(p), **given}
+    leaves = {name: x for name in (*NUMBERS, *given) if isinstance(x := every[name], Traced)}
+    run = replay(Switches(turn_slip, star), names, tuple(leaves), still)
+    found = run({name: _real(plain(every[name])) for name in run.symbols})
+    if not leaves:
+        return found
+    tape, k = next(iter(leaves.values())).tape, len(leaves)
+    slopes = [found[i : i + k] for i in range(len(names), len(found), k)]
+    return [
+        Traced(value, tape, tuple(zip(leaves.values(), row, strict=True)))
+        for value, row in zip(found[: len(names)], slopes, strict=True)
+    ]
+
+
+def _real(x: Any) -> Any:
+    """Whole numbers as floats: numpy has no negative powers of integers."""
+    return float(x) if isinstance(x, int) else x
