@@ -85,6 +85,7 @@ class RigTable(Table):
         Literal["iso", "sae", "adapted-sae"], BeforeValidator(lambda name: ALSO_CALLED.get(name, name))
     ] = "iso"
     force_frame: Literal["W", "C"] = "W"
+    moments: Literal["contact", "wheel-centre"] = "contact"
     path_centre: Literal["left", "right"] = "left"
     path_radius: q.PathRadius | None = None  #: [m]
     path: PathTable | None = None

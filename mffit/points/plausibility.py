@@ -27,8 +27,8 @@ WEAKEST_CAMBER = -0.2
 """Camber stiffness per load [1/rad] that a declaration must leave to be proposed."""
 THRUST = (0.1, 1.5)
 """Camber thrust per load over tan(gamma) at large camber; frame C taken for W adds or removes about 1."""
-
-
+UPRIGHT, FEWEST_UPRIGHT = np.radians(2.0), 10
+"""Camber [rad] and points by which the point of the moments is judged."""
 SHOWN = 2  # contradictions named in the sentence
 
 
@@ -61,6 +61,7 @@ def check_physics(points: Points, config: Config) -> list[str]:
     if wrong:
         raise _refusal(wrong, found, points, config)
     _check_every_file(points)
+    _check_moment_point(points, config)
     if np.isfinite(found.outward) and found.outward < WEAK_FORCE:
         return [
             f"the force at alpha = gamma = 0 is {100 * found.outward:.1f} % of the load along the "
@@ -68,6 +69,24 @@ def check_physics(points: Points, config: Config) -> list[str]:
             "measure turn slip; check the alignment of the sideslip axis"
         ]
     return []
+
+
+def _check_moment_point(points: Points, config: Config) -> None:
+    """Refuse moments about another point than declared: about the contact point Mx hardly follows the side force."""
+    used = np.isfinite(points.Mx) & np.isfinite(points.Fy) & (np.abs(points.gamma) < UPRIGHT)
+    if np.sum(used) < FEWEST_UPRIGHT or np.ptp(points.Fy[used]) < 0.5 * np.median(points.Fz[used]):
+        return
+    lever = float(np.polyfit(points.Fy[used], points.Mx[used], 1)[0])
+    if abs(lever) < 0.5 * config.tyre.unloaded_radius:
+        return
+    other = {"contact": "wheel-centre", "wheel-centre": "contact"}[config.rig.moments]
+    raise InputError(
+        f'with moments = "{config.rig.moments}", Mx_Nm changes by {lever:.2f} m times Fy_N, about the wheel\'s radius, as it '
+        f'does about no contact point; the data agree with moments = "{other}"',
+        file=config.path,
+        line=config.line_of("rig.moments"),
+        key="rig.moments",
+    )
 
 
 def _check_every_file(points: Points) -> None:

@@ -1,4 +1,4 @@
-"""From the wheel-carrier frame C to the contact frame W.
+"""From the wheel-carrier frame C to the contact frame W, and from the wheel centre to the contact point.
 
 Both share the x axis. C leans with the wheel: with camber ``gamma > 0`` the top of the wheel goes to -y, so
 that ``z_C = (0, -sin gamma, cos gamma)`` and ``y_C = (0, cos gamma, sin gamma)``. A force ``(Fy, Fz)`` of W
@@ -39,6 +39,32 @@ def to_contact_frame(sweep: Sweep, *, load_is_vertical: bool) -> Sweep:
     measured = np.isfinite(sweep.My)
     Mz = np.where(measured, c * sweep.Mz + s * np.where(measured, sweep.My, 0.0), sweep.Mz / c)
     return replace(sweep, Fy=Fy, Fz=Fz, My=c * sweep.My - s * sweep.Mz, Mz=Mz)
+
+
+def to_contact_point(sweep: Sweep, *, unloaded_radius: float) -> Sweep:
+    """Moments about the wheel centre as moments about the contact point.
+
+    Parameters
+    ----------
+    sweep : rows in ISO signs, frame W
+    unloaded_radius : lever [m] where the file has no loaded radius (``RL_m``)
+
+    Notes
+    -----
+    The centre lies at ``l = RL (0, -sin gamma, cos gamma)`` from the contact point, and ``M = M_centre + l x F``: Mx loses
+    ``RL (Fy cos gamma + Fz sin gamma)``, My gains ``RL Fx cos gamma`` and Mz ``RL Fx sin gamma``. Where Fx was not
+    measured the wheel is taken to roll freely.
+    """
+    table, zero = sweep.table, np.zeros(len(sweep))
+    lever = table["RL_m"].to_numpy(float) if "RL_m" in table else zero + unloaded_radius
+    Fx = np.nan_to_num(table["Fx_N"].to_numpy(float)) if "Fx_N" in table else zero
+    c, s = np.cos(sweep.gamma), np.sin(sweep.gamma)
+    return replace(
+        sweep,
+        Mx=sweep.Mx - lever * (c * sweep.Fy + s * sweep.Fz),
+        My=sweep.My + lever * c * Fx,
+        Mz=sweep.Mz + lever * s * Fx,
+    )
 
 
 def load_is_vertical(sweeps: Sequence[Sweep]) -> bool:

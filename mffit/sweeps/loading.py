@@ -14,7 +14,7 @@ from mffit.sweeps.assembly import Circumstances, sweeps_of
 from mffit.sweeps.channels import BY_NAME, nearest_channel
 from mffit.sweeps.columns import Columns, read_columns
 from mffit.sweeps.formats import ENDINGS, FORMATS, read
-from mffit.sweeps.frames import load_is_vertical, to_contact_frame
+from mffit.sweeps.frames import load_is_vertical, to_contact_frame, to_contact_point
 from mffit.sweeps.sweep import Sweep, Sweeps
 
 
@@ -51,6 +51,8 @@ def load(config: Config) -> Sweeps:
     if config.rig.force_frame == "C":
         found, said = _in_contact_frame(found)
         warnings.extend(said)
+    if config.rig.moments == "wheel-centre":
+        found = [to_contact_point(sweep, unloaded_radius=config.tyre.unloaded_radius) for sweep in found]
     return Sweeps(tuple(found), tuple(warnings))
 
 

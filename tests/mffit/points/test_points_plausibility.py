@@ -237,3 +237,20 @@ def test_evenly_spread_loads_are_not_one_load(project):
     project.add("spread.csv", rows(alpha, 0.0, loads, side=0.0))
     _, warnings = load(project)
     assert not any("one load" in sentence for sentence in warnings)
+
+
+@pytest.mark.parametrize("declared", ["contact", "wheel-centre"])
+def test_moments_about_another_point_than_declared_are_refused_by_name(project, declared):
+    """A tyre of 0.3 m whose overturning moment about the contact point is a hundredth of the side force."""
+    true = {"contact": "wheel-centre", "wheel-centre": "contact"}[declared]
+    for table in project.tables.values():
+        gamma = np.radians(table["gamma_deg"])
+        lever = np.cos(gamma) * table["Fy_N"] + np.sin(gamma) * table["Fz_N"]
+        table["Mx_Nm"] = -0.01 * table["Fy_N"] + (0.3 * lever if true == "wheel-centre" else 0.0)
+    project.config["rig"]["moments"] = declared
+    error = refusal(project)
+    assert error.key == "rig.moments"
+    assert f'agree with moments = "{true}"' in str(error)
+    project.config["rig"]["moments"] = true
+    found, _ = load(project)
+    assert np.max(np.abs(found.Mx + 0.01 * found.Fy)) < 5.0

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pandas as pd
 import pytest
@@ -10,7 +12,7 @@ from hypothesis import strategies as st
 
 from mffit.sweeps.assembly import Circumstances, sweeps_of
 from mffit.sweeps.columns import Columns
-from mffit.sweeps.frames import to_contact_frame
+from mffit.sweeps.frames import to_contact_frame, to_contact_point
 from mffit.sweeps.raw_table import RawTable
 from mffit.sweeps.sweep import Sweep
 
@@ -72,3 +74,27 @@ def test_the_lever_to_the_wheel_centre_leaves_the_aligning_moment_alone():
     force = np.array([50.0, -900.0, 1500.0])
     about_centre = np.cross(-0.3 * z, force)
     assert about_centre @ z == pytest.approx(0.0, abs=1e-9)
+
+
+@given(
+    gamma=angles,
+    force=st.tuples(forces, forces, st.floats(100.0, 9000.0)),
+    moment=st.tuples(forces, forces, forces),
+)
+def test_moments_about_the_wheel_centre_are_those_of_a_rigid_body_about_the_contact_point(
+    gamma, force, moment
+):
+    _, top = axes_of_the_wheel(np.radians(gamma))
+    radius = 0.31
+    at_centre = np.array(moment) - np.cross(radius * top, force)
+    reported = sweep(gamma, force[1], force[2], at_centre[2], at_centre[1])
+    table = reported.table.assign(Fx_N=force[0], RL_m=radius)
+    reported = replace(reported, Mx=at_centre[:1], table=table)
+    found = to_contact_point(reported, unloaded_radius=9.9)
+    np.testing.assert_allclose([found.Mx[0], found.My[0], found.Mz[0]], moment, atol=1e-8)
+
+
+def test_without_a_loaded_radius_the_lever_is_the_unloaded_one_and_without_fx_the_wheel_rolls_freely():
+    reported = replace(sweep(0.0, 1000.0, 3000.0, 20.0, -4.0), Mx=np.array([310.0]))
+    found = to_contact_point(reported, unloaded_radius=0.3)
+    assert (found.Mx[0], found.My[0], found.Mz[0]) == pytest.approx((10.0, -4.0, 20.0))
