@@ -5,7 +5,9 @@ from __future__ import annotations
 import re
 from typing import NamedTuple
 
-GREEK = str.maketrans({"α": "alpha", "γ": "gamma", "ε": "eps", "φ": "phi"})
+GREEK = str.maketrans(
+    {"α": "alpha", "γ": "gamma", "ε": "eps", "φ": "phi", "κ": "kappa", "σ": "sigma", "μ": "mu"}
+)
 
 
 class Quantity(NamedTuple):
@@ -60,8 +62,8 @@ CONDITIONS = {
 }
 """Conditions of a point, by their column."""
 CHANNELS = {
-    "Fy": Quantity("side force", "Fy", "N"),
-    "Mz": Quantity("self-aligning moment", "Mz", "Nm"),
+    "Fy": Quantity("side force", "F_y", "N"),
+    "Mz": Quantity("self-aligning moment", "M_z", "Nm"),
 }
 """Measured channels that are simulated, by their symbol."""
 DIRECT = {
@@ -75,3 +77,21 @@ DIRECT = {
     "alpha_M": Quantity("sideslip misalignment", "α_M", "rad"),
 }
 """What the direct method measures, by the attribute of its records."""
+MODEL = {
+    "Fz": CONDITIONS["Fz_N"],
+    "alpha": CONDITIONS["alpha_deg"],
+    "gamma": CONDITIONS["gamma_deg"],
+    "kappa": Quantity("longitudinal slip", "κ", "-"),
+    "phi_t": Quantity("path curvature", "φ_t", "1/m"),
+    "Vx": CONDITIONS["V_mps"],
+    "pressure": CONDITIONS["p_kPa"],
+    "Fx": Quantity("longitudinal force", "F_x", "N"),
+    **CHANNELS,
+    "Mx": Quantity("overturning moment", "M_x", "Nm"),
+    "My": Quantity("rolling resistance moment", "M_y", "Nm"),
+    "K_ya": DIRECT["C_alpha"]._replace(symbol="K_yα"),
+    "K_yg0": DIRECT["C_gamma"]._replace(symbol="K_yγ0"),
+    "trail": Quantity("pneumatic trail", "t", "mm"),
+    "sigma_y": Quantity("lateral relaxation length", "σ_y", "m"),
+}
+"""What the model of a tyre takes and gives, by tir's names; shown in these units, computed in SI."""

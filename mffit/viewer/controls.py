@@ -1,0 +1,94 @@
+"""The sliders: what they move, and from where to where for the tyres at hand."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from mffit.quantities import MODEL
+from mffit.viewer.units import in_si
+from tir import Tyre
+
+STEPS = 200
+"""Steps of a slider, at least."""
+
+
+@dataclass(frozen=True, slots=True)
+class Control:
+    """An input of the model that the page moves; numbers in SI, or shares of the value of ``relative_to``."""
+
+    name: str  #: as tir calls it
+    usual: tuple[float, float]  #: range where a file gives none
+    widest: tuple[float, float]  #: a file's range counts so far
+    limits: tuple[str, str] | None = None  #: the file's keys of its range
+    start: str = ""  #: the key with which the page opens; 0 without one
+    relative_to: str = ""
+
+    def range_of(self, tyre: Tyre) -> tuple[float, float]:
+        """The range of a tyre [SI]: the file's own where it gives one that makes sense."""
+        scale = float(tyre[self.relative_to]) if self.relative_to else 1.0
+        usual, widest = ([x * scale for x in bounds] for bounds in (self.usual, self.widest))
+        written = written_range(tyre, self)
+        if written is None:
+            return usual[0], usual[1]
+        low, high = (min(max(x, widest[0]), widest[1]) for x in written)
+        return (low, high) if low < high else (usual[0], usual[1])
+
+
+def _either_way(x: float) -> tuple[float, float]:
+    return -x, x
+
+
+CONTROLS = (
+    Control("Fz", (0.1, 2.0), (0.05, 3.0), ("FZMIN", "FZMAX"), "FNOMIN", "FNOMIN"),
+    Control(
+        "gamma", _either_way(math.radians(10.0)), _either_way(math.radians(60.0)), ("CAMMIN", "CAMMAX")
+    ),
+    Control("pressure", (0.8, 1.2), (0.5, 1.5), ("PRESMIN", "PRESMAX"), "INFLPRES", "NOMPRES"),
+    Control(
+        "alpha", _either_way(math.radians(15.0)), _either_way(math.radians(20.0)), ("ALPMIN", "ALPMAX")
+    ),
+    Control("kappa", _either_way(0.3), _either_way(0.4), ("KPUMIN", "KPUMAX")),
+    Control("phi_t", _either_way(1.0), _either_way(1.0)),
+    Control("Vx", (-20.0, 60.0), (-20.0, 60.0), start="LONGVL"),
+)
+
+
+def written_range(tyre: Tyre, control: Control) -> tuple[float, float] | None:
+    """The range that the tyre's file states [SI]; None where it does not."""
+    if control.limits is None or not set(control.limits) <= tyre.present:
+        return None
+    low, high = (float(tyre[key]) for key in control.limits)
+    return low, high
+
+
+def settings(tyres: Sequence[Tyre]) -> list[dict[str, Any]]:
+    """For each slider what the page needs, in the units that it shows: ends and steps are round numbers."""
+    return [_setting(control, tyres) for control in CONTROLS]
+
+
+def _setting(control: Control, tyres: Sequence[Tyre]) -> dict[str, Any]:
+    quantity = MODEL[control.name]
+    si = in_si(quantity.unit)
+    ranges = [control.range_of(tyre) for tyre in tyres]
+    low, high = min(r[0] for r in ranges) / si, max(r[1] for r in ranges) / si
+    start = float(tyres[0][control.start]) / si if control.start else 0.0
+    low, high = min(low, start), max(high, start)
+    step = _round_step((high - low) / STEPS)
+    digits = max(0, -math.floor(math.log10(step) + 1e-9))
+    return {
+        "name": control.name,
+        "si": si,
+        "min": round(math.floor(low / step + 1e-9) * step, digits),
+        "max": round(math.ceil(high / step - 1e-9) * step, digits),
+        "step": round(step, digits),
+        "start": start,
+    }
+
+
+def _round_step(x: float) -> float:
+    """The largest of 1, 2, 5, 10, ... that is not above."""
+    power = 10.0 ** math.floor(math.log10(x))
+    return power * max(n for n in (1.0, 2.0, 5.0) if n * power <= x * (1.0 + 1e-9))

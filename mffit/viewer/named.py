@@ -1,0 +1,87 @@
+"""The tyres of a page: read, with names that tell them apart, and with what is known of their ranges."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Mapping
+from pathlib import Path
+from typing import Any
+
+import tir
+from mffit.errors import InputError
+from mffit.viewer.controls import CONTROLS, Control, written_range
+from mffit.tested import tested_end
+from tir import Tyre
+from tir.evaluate import refuse_zero_divisors
+
+Given = str | Path | Tyre
+"""A property file, or a tyre."""
+
+
+def named(given: Given | Mapping[str, Given] | Iterable[Given]) -> dict[str, Tyre]:
+    """Tyres by name: the given one, or the shortest end of each path that tells it from the others.
+
+    Raises
+    ------
+    InputError
+        If there is none, or if one has a value of which no curve can be drawn.
+    TirError
+        If a file cannot be read.
+    """
+    if isinstance(given, str | Path | Tyre):
+        given = [given]
+    if isinstance(given, Mapping):
+        found = {str(name): _tyre(one) for name, one in given.items()}
+    else:
+        given = list(given)
+        names = tell_apart([_path(one) for one in given])
+        found = {name: _tyre(one) for name, one in zip(names, given, strict=True)}
+    if not found:
+        raise InputError("there is no tyre to show: name at least one .tir file")
+    for name, tyre in found.items():
+        _refuse_what_cannot_be_drawn(name, tyre)
+    return found
+
+
+def tell_apart(paths: list[Path]) -> list[str]:
+    """The last part of each path without its suffix, with folders in front as far as equal names need them; and numbers."""
+    depth, names = 1, [path.stem for path in paths]
+    while len(set(names)) < len(names) and depth < max(len(path.parts) for path in paths):
+        depth += 1
+        names = [Path(*path.with_suffix("").parts[-depth:]).as_posix() for path in paths]
+    if len(set(names)) < len(names):
+        names = [f"{name} ({i})" for i, name in enumerate(names, 1)]
+    return names
+
+
+def described(name: str, tyre: Tyre, parameters: Iterable[str]) -> dict[str, Any]:
+    """What the page holds of a tyre: numbers of the parameters named, ranges in SI, whether its file is for turn slip."""
+    return {
+        "name": name,
+        "values": {key: float(tyre[key]) for key in parameters},
+        "ranges": {control.name: _ranges(tyre, control) for control in CONTROLS if control.limits},
+        "turn_slip": int(tyre["USE_MODE"]) % 10 == 5,
+    }
+
+
+def _ranges(tyre: Tyre, control: Control) -> dict[str, Any]:
+    assert control.limits is not None
+    ends = [tested_end(tyre.status.get(key, "")) for key in control.limits]
+    return {"written": written_range(tyre, control), "tested": None if None in ends else ends}
+
+
+def _path(given: Given) -> Path:
+    if isinstance(given, Tyre):
+        return Path(given.document.path if given.document is not None and given.document.path else "tyre")
+    return Path(given)
+
+
+def _tyre(given: Given) -> Tyre:
+    return given if isinstance(given, Tyre) else tir.read(given)
+
+
+def _refuse_what_cannot_be_drawn(name: str, tyre: Tyre) -> None:
+    refuse_zero_divisors(tyre.p)
+    for key, value in tyre.values.items():
+        if isinstance(value, float) and not math.isfinite(value):
+            raise InputError(f"{name}: {key} is {value}, and nothing can be drawn of it: give its value")

@@ -1,0 +1,154 @@
+"""One HTML file that evaluates tyres itself: parameters as JSON, equations as JavaScript, no network."""
+
+from __future__ import annotations
+
+import hashlib
+import html
+import os
+import re
+import tempfile
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import mffit
+from mffit.errors import InputError
+from mffit.quantities import MODEL
+from mffit.viewer.controls import settings
+from mffit.viewer.named import Given, described, named
+from mffit.viewer.panels import OUTPUTS, PANELS
+from tir.codegen.javascript import javascript
+from tir.codegen.program import INPUTS, Switches, trace
+
+SEAL = re.compile(r"<!-- written by mffit show, sha256 of the rest ([0-9a-f]{64}) -->\n\Z")
+
+
+@dataclass(frozen=True, slots=True, repr=False)
+class Page:
+    """A page that shows tyres; in a notebook it shows itself."""
+
+    html: str
+    names: tuple[str, ...]  #: of the tyres, as the page's legend has them
+
+    def write(self, path: str | Path) -> Path:
+        """Write the page; returns its path.
+
+        Raises
+        ------
+        InputError
+            If a file is there that is no page of this kind, or was changed since; or if it cannot be written.
+        """
+        path = Path(path)
+        if os.path.lexists(path) and not _is_ours(path):
+            raise InputError("is there already, and is no page as mffit show wrote it; name another", file=path)
+        text = f"{self.html}<!-- written by mffit show, sha256 of the rest {_digest(self.html)} -->\n"
+        try:
+            path.parent.mkdir(parents=True, exist_ok=True)
+            handle, temporary = tempfile.mkstemp(prefix=f".{path.name}-", dir=path.parent)
+        except OSError as error:
+            raise InputError(f"cannot be written to ({error.strerror}); name another", file=path) from None
+        try:
+            with os.fdopen(handle, "wb") as stream:
+                stream.write(text.encode())
+            os.chmod(temporary, 0o644)
+            os.replace(temporary, path)
+        except OSError as error:
+            raise InputError(f"cannot be written to ({error.strerror}); name another", file=path) from None
+        finally:
+            Path(temporary).unlink(missing_ok=True)
+        return path
+
+    def __repr__(self) -> str:
+        return f"<Page of {', '.join(self.names)}: {len(self.html)} characters; .write(path) keeps it>"
+
+    def _repr_html_(self) -> str:
+        frame = 'style="width:100%;height:900px;border:0" sandbox="allow-scripts"'
+        return f'<iframe {frame} srcdoc="{html.escape(self.html)}"></iframe>'
+
+
+def show(tyres: Given | Mapping[str, Given] | Iterable[Given], out: str | Path | None = None) -> Page:
+    """Show property files: a page with their curves over one another, sliders for the operating condition.
+
+    The page evaluates the tyres itself, with code made from the equations; it needs no network and no server.
+
+    Parameters
+    ----------
+    tyres : a path or :class:`tir.Tyre`, several, or a mapping from the names to show
+    out : where to write the page; nothing is written if None
+
+    Returns
+    -------
+    Page
+        ``.html`` is the text, ``.write(path)`` keeps it; a notebook shows it.
+
+    Raises
+    ------
+    InputError, TirError
+        On a file that cannot be read or drawn, or a file in the way of ``out``.
+    """
+    found = named(tyres)
+    names = sorted({name for on in (False, True) for name in trace(Switches(on), OUTPUTS).parameters})
+    data = {
+        "order": INPUTS,
+        "controls": settings([*found.values()]),
+        "panels": [
+            {
+                "key": panel.key, "x": panel.x, "y": panel.y, "sign": panel.sign, "sweep": panel.sweep,
+                "fan": panel.fan, "turn_slip": panel.turn_slip,
+            }
+            for panel in PANELS
+        ],
+        "quantities": {name: _quantity(name) for name in (*INPUTS, *OUTPUTS)},
+        "tyres": [described(name, tyre, names) for name, tyre in found.items()],
+    }  # fmt: skip
+    page = Page(_filled(data, list(found)), tuple(found))
+    if out is not None:
+        page.write(out)
+    return page
+
+
+def _quantity(name: str) -> dict[str, Any]:
+    from mffit.viewer.units import in_si
+
+    quantity = MODEL[name]
+    return {
+        "word": quantity.word,
+        "symbol": quantity.symbol,
+        "unit": quantity.unit_behind,
+        "si": in_si(quantity.unit),
+    }
+
+
+def _filled(data: dict[str, Any], names: list[str]) -> str:
+    from jinja2 import Environment, PackageLoader, StrictUndefined
+
+    environment = Environment(
+        loader=PackageLoader("mffit.viewer"),
+        autoescape=True,
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    return environment.get_template("show.html.j2").render(
+        data=data,
+        names=names,
+        panels=PANELS,
+        quantities=MODEL,
+        models={mode: javascript(OUTPUTS, turn_slip=mode == "on") for mode in ("off", "on")},
+        version=mffit.__version__,
+    )
+
+
+def _digest(text: str) -> str:
+    return hashlib.sha256(text.encode()).hexdigest()
+
+
+def _is_ours(path: Path) -> bool:
+    """Whether the file is a page as :meth:`Page.write` left it."""
+    try:
+        text = path.read_bytes().decode()
+    except (OSError, UnicodeDecodeError):
+        return False
+    found = SEAL.search(text)
+    return found is not None and found[1] == _digest(text[: found.start()])

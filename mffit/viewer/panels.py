@@ -1,0 +1,61 @@
+"""What the page draws: one record per panel."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from mffit.quantities import MODEL, Quantity
+from tir.codegen.program import INPUTS
+
+
+@dataclass(frozen=True, slots=True)
+class Panel:
+    """An output of the model over one of its inputs, the other inputs as the sliders have them."""
+
+    x: str
+    y: str
+    name: str = ""  #: of the heading, if it is not the output's own
+    sign: int = 1  #: -1 for what is negative in ISO-W and looked at by its size
+    sweep: str = ""  #: the input that is swept where x is an output too
+    fan: tuple[float, ...] = ()  #: sideslip angles [deg] beside the slider's
+    turn_slip: bool = False  #: flat without turn slip
+
+    @property
+    def key(self) -> str:
+        """Its name in the page."""
+        return f"{self.y}-{self.x}"
+
+    @property
+    def word(self) -> str:
+        """The heading."""
+        word = self.name or self.output.word
+        return word[0].upper() + word[1:]
+
+    @property
+    def output(self) -> Quantity:
+        return MODEL[self.y]
+
+    @property
+    def input(self) -> Quantity:
+        return MODEL[self.x]
+
+
+PANELS = (
+    Panel("alpha", "Fy"),
+    Panel("alpha", "Mz"),
+    Panel("kappa", "Fx"),
+    Panel("gamma", "Fy", "camber thrust"),
+    Panel("Fx", "Fy", "friction ellipse", sweep="kappa", fan=(-12.0, -8.0, -4.0, -2.0, 2.0, 4.0, 8.0, 12.0)),
+    Panel("alpha", "trail"),
+    Panel("Fz", "K_ya", sign=-1),
+    Panel("Fz", "K_yg0", sign=-1),
+    Panel("phi_t", "Fy", "turn-slip force", turn_slip=True),
+    Panel("phi_t", "Mz", "turn-slip moment", turn_slip=True),
+    Panel("gamma", "Mx"),
+    Panel("Fz", "sigma_y"),
+    Panel("Vx", "My"),
+)
+OUTPUTS = tuple(
+    dict.fromkeys(name for panel in PANELS for name in (panel.x, panel.y) if name not in INPUTS)
+)
+"""What the page computes."""

@@ -1,0 +1,59 @@
+"""The model as JavaScript, for pages that evaluate tyres where there is no Python."""
+
+from __future__ import annotations
+
+from tir.codegen.program import INPUTS, Switches, trace
+from tir.codegen.source import COMMON, FUNCTIONS, Dialect, assignments
+from tir.equations.forces import Forces
+
+MATH = {"absolute": "abs", "arctan": "atan", "arccos": "acos", "power": "pow"}
+"""JavaScript's functions that are called otherwise than here."""
+JAVASCRIPT = Dialect(
+    {
+        **COMMON,
+        **{name: f"Math.{MATH.get(name, name)}({{}})" for name in (*FUNCTIONS, "absolute")},
+        "power": "Math.pow({}, {})",
+        "where": "({} ? {} : {})",
+        "both": "({} && {})",
+    },
+    truth=("false", "true"),
+    beyond=("Infinity", "NaN"),
+    number="const {} = {};",
+    flag="const {} = {};",
+)
+
+
+def javascript(
+    outputs: tuple[str, ...] = Forces._fields,
+    *,
+    turn_slip: bool = True,
+    star: bool = False,
+    limits: bool = False,
+) -> str:
+    """The model, of any tyre, as one JavaScript expression.
+
+    Its value is a function of the tyre's parameters (an object by name) that returns a function of
+    :data:`~tir.codegen.program.INPUTS` in this order (ISO-W, SI, radians), which returns an object of the outputs.
+
+    Parameters
+    ----------
+    outputs : fields of Forces and State
+    turn_slip, star, limits : as in a call of the tyre
+    """
+    program = trace(Switches(turn_slip, star, limits), outputs)
+    once, _ = assignments(program.per_tyre, program.constants, JAVASCRIPT)
+    each, results = assignments(program.per_point, program.outputs.values(), JAVASCRIPT)
+    given = ", ".join(program.parameters)
+    found = ", ".join(f"{name}: {text}" for name, text in zip(program.outputs, results, strict=True))
+    return "\n".join(
+        [
+            "p => {",
+            f"  const {{{given}}} = p;",
+            *(f"  {line}" for line in once),
+            f"  return ({', '.join(INPUTS)}) => {{",
+            *(f"    {line}" for line in each),
+            f"    return {{{found}}};",
+            "  };",
+            "}",
+        ]
+    )
