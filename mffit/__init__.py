@@ -7,17 +7,26 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from mffit.pipeline import align, build, diagnose, spin
+    from mffit.viewer import show
 
 __version__ = "0.1.0"
 
-__all__ = ["align", "build", "diagnose", "spin"]
+__all__ = ["align", "build", "diagnose", "show", "spin"]
 
 
 def __getattr__(name: str) -> Any:
-    """Import the pipeline when one of its workflows is first asked for: it needs scipy and pandas."""
+    """Import a workflow when it is first asked for: most need scipy and pandas."""
     if name in __all__:
         from importlib import import_module
 
-        return getattr(import_module("mffit.pipeline"), name)
+        return getattr(import_module("mffit.viewer" if name == "show" else "mffit.pipeline"), name)
     raise AttributeError(f"module 'mffit' has no attribute {name!r}")
+
+
+def __dir__() -> list[str]:
+    """The public names, imported yet or not."""
+    return sorted([*__all__, *(name for name in globals() if name.startswith("__"))])

@@ -17,6 +17,7 @@ COMMANDS = (
     measuring.align,
     diagnosing.diagnose,
     files.check,
+    files.show,
     rigs.simulate,
     projects.sniff,
     projects.init,

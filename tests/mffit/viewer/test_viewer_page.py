@@ -1,0 +1,193 @@
+"""The page of `mffit show` in a real browser: its numbers are tir's, its sliders move its curves, nothing runs over."""
+
+from __future__ import annotations
+
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import mffit
+import tir
+from mffit.viewer.controls import CONTROLS
+from mffit.viewer.panels import OUTPUTS, PANELS
+from tests.browser import console_errors, opened
+from tir.codegen.program import INPUTS, Switches, trace
+
+ROOT = Path(__file__).parents[3]
+FILES = (
+    ROOT / "samples" / "front-120-70" / "true.tir",
+    ROOT / "samples" / "rear-190-55" / "true.tir",
+    ROOT / "tests" / "tir" / "vectors" / "MagicFormula62.tir",
+)
+HOSTILE = "</script><script>window.hacked=1</script><img src=x onerror='window.hacked=1'>"
+"""A name as no file should have it; the file itself gets one too."""
+LONG = "a_very_long_name_of_a_tyre_without_any_space_in_it_that_does_not_fit_into_a_narrow_page"
+TEXTS = """
+return [...document.querySelectorAll("svg text, figcaption, .x, label, th, td, summary, legend")]
+  .filter(e => e.getClientRects().length && !e.closest("aside"))
+  .map(e => { const r = e.getBoundingClientRect(); return [r.left, r.top + 2, r.right, r.bottom - 2, e.textContent]; });
+"""
+
+
+@pytest.fixture(scope="module")
+def browser(tmp_path_factory):
+    """One browser with the page of three tyres, two of them with names that have to be escaped or wrapped."""
+    page = tmp_path_factory.mktemp("page") / "page.html"
+    names = (f"front {HOSTILE}", LONG, "car")
+    mffit.show(dict(zip(names, FILES, strict=True)), page)
+    with opened(page) as driver:
+        yield driver
+
+
+def move(browser, **shown: float) -> None:
+    """Drag sliders, then let the page draw."""
+    for name, value in shown.items():
+        browser.execute_script(
+            "const e = document.getElementById(arguments[0]); e.value = arguments[1];"
+            "e.dispatchEvent(new Event('input')); e.dispatchEvent(new Event('change'));",
+            name,
+            value,
+        )
+    drawn(browser)
+
+
+def drawn(browser) -> None:
+    browser.execute_async_script(
+        "const done = arguments[0]; requestAnimationFrame(() => requestAnimationFrame(done));"
+    )
+
+
+def lines(browser, panel: str) -> list[str]:
+    return browser.execute_script(
+        "return [...document.querySelectorAll('#' + arguments[0] + ' svg path.curve')].map(e => e.getAttribute('d'));",
+        panel,
+    )
+
+
+def test_nothing_is_complained_of(browser):
+    assert console_errors(browser) == []
+    assert browser.execute_script("return performance.getEntriesByType('resource').length") == 0
+
+
+@pytest.mark.parametrize("turn_slip", [False, True])
+def test_the_page_computes_what_tir_computes(browser, turn_slip):
+    rng, n = np.random.default_rng(7), 200
+    inputs = np.array(
+        [
+            rng.uniform(-50.0, 5000.0, n), rng.uniform(-0.4, 0.4, n), rng.uniform(-0.9, 0.9, n), rng.uniform(-0.5, 0.5, n),
+            rng.uniform(-0.9, 0.9, n), rng.uniform(-20.0, 60.0, n), rng.uniform(1.5e5, 3.5e5, n),
+        ]
+    )  # fmt: skip
+    for k, file in enumerate(FILES):
+        tyre = tir.read(file)
+        found = browser.execute_script(
+            "return arguments[2].map(row => window.mffit.evaluate(arguments[0], arguments[1], row));",
+            k,
+            turn_slip,
+            inputs.T.tolist(),
+        )
+        given = dict(zip(INPUTS, inputs, strict=True))
+        given["p"] = given.pop("pressure")
+        with np.errstate(all="ignore"):
+            wanted = {
+                **tyre.state(**given, turn_slip=turn_slip)._asdict(),
+                **tyre(**given, turn_slip=turn_slip)._asdict(),
+            }
+        for name in OUTPUTS:
+            theirs = np.array([row[name] for row in found], dtype=float)
+            ours = np.broadcast_to(wanted[name], (n,))
+            assert np.allclose(theirs, ours, rtol=1e-9, atol=1e-9 * np.max(np.abs(ours))), (file.name, name)
+
+
+def test_a_slider_moves_the_curves_that_depend_on_it(browser):
+    move(browser, alpha=0, gamma=0, Fz=1500)
+    before = {panel.key: lines(browser, panel.key) for panel in PANELS}
+    move(browser, Fz=2200)
+    after = {panel.key: lines(browser, panel.key) for panel in PANELS}
+    assert after["Fy-alpha"] != before["Fy-alpha"]
+    assert after["Fx-kappa" if "Fx-kappa" in after else "Fx"] != before["Fx-kappa"]
+    assert after["K_ya-Fz"] == before["K_ya-Fz"]  # over load: only the mark moves
+
+
+def test_a_curve_is_that_of_the_condition_shown(browser):
+    """In the units of the page: degrees, and the size of what is negative in these axes."""
+    move(browser, Fz=1800, gamma=10, alpha=0, phi_t=-0.3)
+    browser.find_element("css selector", "input[value=on]").click()
+    drawn(browser)
+    tyre, p = tir.read(FILES[0]), tir.read(FILES[0])["INFLPRES"]
+    curve = browser.execute_script("return window.mffit.curve('Fy-alpha', 0)")
+    alpha = np.array([point["x"] for point in curve])
+    Fy = tyre(1800.0, np.radians(alpha), np.radians(10.0), phi_t=-0.3, Vx=tyre["LONGVL"], p=p).Fy
+    assert alpha.min() < -14 < 14 < alpha.max()
+    assert np.allclose([point["y"] for point in curve], Fy, rtol=1e-9)
+    curve = browser.execute_script("return window.mffit.curve('K_ya-Fz', 0)")
+    loads = np.array([point["x"] for point in curve])
+    K = tyre.state(loads, gamma=np.radians(10.0), phi_t=-0.3, Vx=tyre["LONGVL"], p=p).K_ya
+    assert np.allclose([point["y"] for point in curve], -K, rtol=1e-9)
+    browser.find_element("id", "reset").click()
+    drawn(browser)
+
+
+def test_turn_slip_can_be_switched(browser):
+    """Files of USE_MODE ending in 4 start without; the force at a curvature appears with the switch."""
+    flat = lambda: browser.execute_script(  # noqa: E731
+        "return document.getElementById('Fy-phi_t').classList.contains('flat')"
+    )
+    force = lambda: browser.execute_script("return window.mffit.curve('Fy-phi_t', 0).map(p => p.y)")  # noqa: E731
+    assert flat()
+    assert np.ptp(force()) == 0.0
+    browser.find_element("css selector", "input[value=on]").click()
+    drawn(browser)
+    assert not flat()
+    assert np.ptp(force()) > 100.0
+    browser.find_element("id", "reset").click()
+    drawn(browser)
+
+
+def test_curves_beyond_the_ranges_look_otherwise(browser):
+    """The car's file allows 6 degrees of camber: its curves are dotted at 20, and the table says why."""
+    move(browser, gamma=20)
+    car = browser.find_elements("css selector", "#legend .about")[2].text
+    assert "outside the file's range: camber" in car
+    zones = browser.execute_script("return window.mffit.curve('Fy-alpha', 2).map(p => p.zone)")
+    assert set(zones) == {2}
+    move(browser, gamma=0)
+
+
+def test_hostile_names_do_no_harm(browser):
+    assert browser.execute_script("return window.hacked") is None
+    assert browser.find_element("css selector", ".name").text == f"front {HOSTILE}"
+    assert browser.find_elements("css selector", "img") == []
+
+
+@pytest.mark.parametrize("width", [420, 1200])
+def test_nothing_runs_over_and_no_label_lies_on_another(browser, width):
+    size = {"width": width, "height": 900, "deviceScaleFactor": 1, "mobile": False}
+    browser.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", size)
+    browser.execute_script("window.dispatchEvent(new Event('resize'))")
+    time.sleep(0.2)
+    drawn(browser)
+    assert browser.execute_script("return document.documentElement.scrollWidth") <= width
+    boxes = browser.execute_script(TEXTS)
+    plots = browser.execute_script(
+        "return [...document.querySelectorAll('.plot svg')].map(e => { const r = e.getBoundingClientRect(); return [r.left, r.right]; });"
+    )
+    assert len(plots) == len(PANELS)
+    assert all(left >= 0 and right <= width for left, right in plots)
+    ticks = browser.execute_script(
+        "return [...document.querySelectorAll('.plot svg text')].map(e => { const r = e.getBoundingClientRect(), "
+        "s = e.closest('svg').getBoundingClientRect(); return [r.left - s.left, s.right - r.right, s.bottom - r.bottom, r.top - s.top]; });"
+    )
+    assert np.min(ticks) > -2.0, "a tick's text is cut off"
+    for i, a in enumerate(boxes):
+        for b in boxes[i + 1 :]:
+            apart = a[2] <= b[0] or b[2] <= a[0] or a[3] <= b[1] or b[3] <= a[1]
+            assert apart or a[4].strip() in b[4] or b[4].strip() in a[4], (a, b)
+
+
+def test_every_slider_belongs_to_an_input_and_every_panel_to_an_output():
+    assert {control.name for control in CONTROLS} == set(INPUTS)
+    program = trace(Switches(True), OUTPUTS)
+    assert set(program.outputs) == set(OUTPUTS)
