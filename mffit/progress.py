@@ -8,5 +8,14 @@ Progress = Callable[[str], None]
 """Called with a short sentence whenever a step begins."""
 
 
-def silent(sentence: str) -> None:
+class Silent:
     """Progress that is not shown."""
+
+    def __call__(self, sentence: str) -> None:
+        pass
+
+    def __repr__(self) -> str:
+        return "silent"  # what a help text has for a default
+
+
+silent = Silent()

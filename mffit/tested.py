@@ -5,12 +5,12 @@ from __future__ import annotations
 import re
 
 
-def tested_words(end: float, unit: str) -> str:
+def words_on_tested(end: float, unit: str) -> str:
     """The end of a comment on a range's limit."""
     return f"tested to {end:.6g} {unit}"
 
 
-def tested_end(comment: str) -> float | None:
+def end_tested(comment: str) -> float | None:
     """To where the data went, in SI, if the comment says it."""
     found = re.search(r"\btested to (-?[\d.]+(?:e[+-]?\d+)?)", comment)
     return float(found[1]) if found else None

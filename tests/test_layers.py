@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ast
 import re
+import subprocess
 import sys
 from collections.abc import Iterator
 from pathlib import Path
@@ -110,14 +111,33 @@ def test_tir_does_not_know_mffit():
 
 def test_tir_needs_nothing_but_numpy():
     allowed = {"tir", "numpy"} | set(sys.stdlib_module_names)
-    compiler = {"numba", "llvmlite", "casadi"}
+    compiler, drawing = {"numba", "llvmlite", "casadi"}, {"matplotlib"}
     wrong = [
-        f"{place(path, line)}: tir imports {name}; it may use numpy and the standard library, in tir/codegen numba and casadi"
+        f"{place(path, line)}: tir imports {name}; it may use numpy and the standard library, in tir/codegen numba and casadi, "
+        f"in tir/drawing.py matplotlib"
         for path in modules("tir")
         for line, name in imports(path)
-        if name.split(".")[0] not in allowed | (compiler if "codegen" in path.parts else set())
+        if name.split(".")[0]
+        not in allowed
+        | (compiler if "codegen" in path.parts else set())
+        | (drawing if path.name == "drawing.py" else set())
     ]
     assert not wrong, "\n".join(wrong)
+
+
+def test_tir_imports_what_is_optional_only_when_asked():
+    wrong = subprocess.run(
+        [
+            sys.executable,
+            "-c",
+            "import sys, tir; print(*{'matplotlib', 'numba', 'casadi'} & set(sys.modules))",
+        ],
+        capture_output=True,
+        text=True,
+        check=True,
+        cwd=ROOT,
+    ).stdout.split()
+    assert not wrong, f"import tir imports {', '.join(wrong)}"
 
 
 def test_only_the_report_draws():

@@ -50,13 +50,16 @@ class Line:
         return replace(self, text=f"{before:<49} ${comment}", comment=comment)
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, repr=False)
 class Document:
     """A whole file: its lines as read, and what is needed to write it back."""
 
     lines: tuple[Line, ...]
     encoding: str
     path: str
+
+    def __repr__(self) -> str:
+        return f"<Document {self.path!r}: {len(self.lines)} lines, {self.encoding}>"
 
     @property
     def entries(self) -> tuple[Line, ...]:

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, fields, replace
 from functools import cached_property
 from pathlib import Path
 from types import MappingProxyType, SimpleNamespace
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from tir import calls
 from tir.codegen.program import Switches
@@ -16,6 +16,9 @@ from tir.document import Document
 from tir.equations.forces import Forces, State
 from tir.errors import Problem, TirError
 from tir.parameters import BY_NAME, TABLE
+
+if TYPE_CHECKING:
+    from tir.drawing import Figure
 
 EMPTY: Mapping[str, Any] = MappingProxyType({})
 
@@ -30,9 +33,17 @@ class Quantity(NamedTuple):
 
 @dataclass(frozen=True, repr=False)
 class Tyre:
-    """An MF 6.2 tyre: every parameter in SI, and what the file says about them.
+    """``tyre(Fz, alpha, gamma, kappa, phi_t, Vx, p)`` gives forces and moments: MF 6.2 in steady state, N, rad, m/s, Pa, ISO-W.
 
-    Build one with :func:`tir.read` or :meth:`from_values`. Axes and signs are ISO-W, see :mod:`tir.conventions`.
+    Make one with ``tir.read("front.tir")`` or :meth:`from_values`; the fields are filled by these, not by hand.
+
+    >>> tyre = Tyre.from_values({"FNOMIN": 1500.0, "UNLOADED_RADIUS": 0.3})
+    >>> tyre(1500.0, alpha=0.02).Fy < 0
+    True
+
+    ``tyre["PKY1"]`` is a parameter in SI, ``tyre.replace(PKY1=-20.0)`` a copy with another value, ``tyre.state(...)`` what the
+    model knows beside the forces, ``tyre.plot()`` a figure, ``tyre.write("other.tir")`` writes a file. Axes and signs:
+    :mod:`tir.conventions`.
     """
 
     values: Mapping[str, float | str]  #: every parameter of the table; defaults where the file has none
@@ -81,6 +92,12 @@ class Tyre:
         if self.problems:
             lines.append(f"{len(self.problems)} problems on reading, see tyre.problems")
         return "<" + "\n ".join(lines) + ">"
+
+    def _repr_html_(self) -> str:
+        """For notebooks: the same lines, and a small picture."""
+        from tir.drawing import notebook
+
+        return notebook(self)
 
     def __reduce__(self) -> tuple[Any, ...]:
         """For other processes: everything but the functions made for calls."""
@@ -209,6 +226,28 @@ class Tyre:
         )
         on = phi_t is not None if turn_slip is None else bool(turn_slip)
         return calls.state(self, inputs, Switches(on, bool(star), bool(limits)))
+
+    def plot(self, *, loads: Iterable[float] | None = None, turn_slip: bool = False) -> Figure:
+        """Draw the forces: Fy and Mz over sideslip, Fx over longitudinal slip, Fy over camber.
+
+        Parameters
+        ----------
+        loads : loads [N], a curve each; default: half, once and one and a half times FNOMIN
+        turn_slip : as in a call of the tyre
+
+        Returns
+        -------
+        matplotlib.figure.Figure
+            Ranges are the file's, as far as they are usual. ``figure.savefig("front.png")`` keeps it.
+
+        Raises
+        ------
+        TirError
+            If matplotlib is not installed.
+        """
+        from tir.drawing import plot
+
+        return plot(self, loads=loads, turn_slip=turn_slip)
 
     def expand(self) -> Tyre:
         """A copy in which every key that the file lacks is given with the table's default, marked as not measured.

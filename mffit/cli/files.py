@@ -28,7 +28,9 @@ def check(file: Path, targets: str) -> None:
 
 
 @click.command()
-@click.argument("files", type=click.Path(path_type=Path), nargs=-1, required=True, metavar="FILE.tir [MORE.tir]...")
+@click.argument(
+    "files", type=click.Path(path_type=Path), nargs=-1, required=True, metavar="FILE.tir [MORE.tir]..."
+)
 @click.option(
     "--out", type=click.Path(path_type=Path), help="Page to write [default: FILE.html in this folder]."
 )

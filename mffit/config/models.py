@@ -18,6 +18,7 @@ from pydantic import (
     model_validator,
 )
 
+from mffit.brief import Brief
 from mffit.config import quantities as q
 from mffit.config.radii import effective_radius, path_radius
 
@@ -231,7 +232,7 @@ def _list_of_tables(given: Any) -> Any:
     return (given,) if isinstance(given, dict) else tuple(given) if isinstance(given, list) else given
 
 
-class Config(Table):
+class Config(Brief, Table):
     """The whole of ``tyre.toml``."""
 
     tyre: TyreTable
@@ -246,6 +247,11 @@ class Config(Table):
     _path: Path | None = PrivateAttr(default=None)
     _folder: Path = PrivateAttr(default_factory=Path)
     _lines: dict[str, int] = PrivateAttr(default_factory=dict)
+
+    @property
+    def headline(self) -> str:
+        """The tyre's name."""
+        return self.tyre.name
 
     @property
     def path(self) -> Path | None:

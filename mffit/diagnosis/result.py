@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from mffit.brief import Brief
 from mffit.diagnosis import wording
 from mffit.diagnosis.noise import Noise
 from mffit.diagnosis.notes import Note
@@ -47,8 +48,8 @@ class Outlier:
     z: float  #: in units of the noise of its neighbours
 
 
-@dataclass(frozen=True, slots=True)
-class Diagnosis:
+@dataclass(frozen=True, slots=True, repr=False)
+class Diagnosis(Brief):
     """Where simulation and measurement disagree, what explains it, and what remains."""
 
     points: Points

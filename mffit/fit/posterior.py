@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from mffit.brief import Brief
 from mffit.fit.problem import Problem
 from mffit.least_squares import Solution
 from mffit.points import Points
@@ -16,8 +17,8 @@ COVERING = 1.959964
 """Standard deviations on either side of a normal distribution that hold 95 % of it."""
 
 
-@dataclass(frozen=True, slots=True)
-class Posterior:
+@dataclass(frozen=True, slots=True, repr=False)
+class Posterior(Brief):
     """Best values and joint covariance of tyre and rig, to first order around the best values."""
 
     names: tuple[str, ...]  #: coefficients and rig errors: the fitted ones, then those held with a spread

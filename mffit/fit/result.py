@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from mffit.brief import Brief
 from mffit.fit.coverage import StageCoverage
 from mffit.fit.doubts import Doubt
 from mffit.fit.files import Files
@@ -14,6 +15,7 @@ from mffit.fit.outliers import Outlier
 from mffit.fit.posterior import Posterior
 from mffit.fit.staged import Fitted
 from mffit.fit.stages import StageRecord
+from mffit.quantities import CHANNELS
 from mffit.rig import Simulation
 from mffit.scatter import rms
 from tir import Tyre
@@ -46,8 +48,8 @@ class Agreement:
     n: int
 
 
-@dataclass(frozen=True, slots=True)
-class FitResult:
+@dataclass(frozen=True, slots=True, repr=False)
+class FitResult(Brief):
     """The fitted tyre and everything the report says of it."""
 
     tyre: Tyre  #: the fitted model, right with turn slip on
@@ -73,6 +75,12 @@ class FitResult:
     ] = ()  #: why the file is not to be trusted; among the warnings too, first of all
     search: Fitted | None = None  #: where the search ended, to draw tyres from
     files: Files | None = None  #: every file that is written, and how good each is
+
+    @property
+    def headline(self) -> str:
+        """How far the model is from the points."""
+        gaps = {name: found for name, found in self.channels.items() if found.n}
+        return ", ".join(f"{name} rmse {x.rmse:.3g} {CHANNELS[name].unit}" for name, x in gaps.items())
 
 
 def agreement(model: np.ndarray, measured: np.ndarray) -> Agreement:

@@ -15,7 +15,7 @@ from mffit.points import Points
 from mffit.quantities import CHANNELS
 from mffit.rig import Readings
 from mffit.scatter import rms
-from mffit.tested import tested_words
+from mffit.tested import words_on_tested
 from tir.parameters import TABLE, Parameter
 
 LONGEST = 66
@@ -54,7 +54,7 @@ def file_comments(
 def _comment(row: Parameter, origin: str, tested: Mapping[str, float]) -> str:
     words = "given by this build" if row.name in DECIDED else WORDS.get(origin, origin)
     if row.name in tested:
-        words = f"{words}, {tested_words(tested[row.name], row.unit)}"
+        words = f"{words}, {words_on_tested(tested[row.name], row.unit)}"
     elif not row.section.endswith("_COEFFICIENTS"):
         words = f"{words}: {row.description}"
     return whole_words(words)

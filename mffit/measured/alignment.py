@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from mffit.brief import Brief
 from mffit.errors import InputError
 from mffit.measured import wording
 from mffit.measured.groups import load_groups, zeros
@@ -35,8 +36,8 @@ class AlignmentStep:
     secant: bool  #: C_alpha from two iterations (9), not the guess
 
 
-@dataclass(frozen=True, slots=True)
-class Alignment:
+@dataclass(frozen=True, slots=True, repr=False)
+class Alignment(Brief):
     """All steps, in the order of loads and iterations."""
 
     steps: tuple[AlignmentStep, ...]

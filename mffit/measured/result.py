@@ -8,7 +8,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import NamedTuple
 
+from mffit.brief import Brief
 from mffit.measured.notes import Conicity, Note
+from mffit.quantities import CONDITIONS, DIRECT
 from tir import Quantity
 
 
@@ -21,8 +23,8 @@ class Contribution(NamedTuple):
     contribution: float  #: to u(eps_gamma)
 
 
-@dataclass(frozen=True, slots=True)
-class LoadResult:
+@dataclass(frozen=True, slots=True, repr=False)
+class LoadResult(Brief):
     """Everything measured at one load; quantities in SI and ISO signs, u with k = 1."""
 
     load: float  #: [N]
@@ -44,9 +46,18 @@ class LoadResult:
     budget: tuple[Contribution, ...] = ()
     u_monte_carlo: float | None = None  #: u(eps_gamma) from random draws
 
+    @property
+    def headline(self) -> str:
+        """The load, and eps_gamma if it was measured there."""
+        found = self.epsilon_gamma
+        said = (
+            "" if found is None else f", {DIRECT['epsilon_gamma'].ascii} {found.value:.3f} +- {found.u:.2g}"
+        )
+        return f"{CONDITIONS['Fz_N'].of(self.load)}{said}"
 
-@dataclass(frozen=True, slots=True)
-class Measured:
+
+@dataclass(frozen=True, slots=True, repr=False)
+class Measured(Brief):
     """What was read straight off the data, no model involved."""
 
     per_load: tuple[LoadResult, ...]
@@ -60,6 +71,11 @@ class Measured:
     warnings: tuple[str, ...]  #: sentences, as they join those of the steps before and after
     epsilon_gamma_model: float | None = None
     epsilon_gamma_debiased: Quantity | None = None  #: less what the finite spin of the disc adds
+
+    @property
+    def headline(self) -> str:
+        """eps_gamma at the nominal load."""
+        return self.nominal.headline if self.nominal else "nothing"
 
     @property
     def epsilon_gamma(self) -> Quantity | None:

@@ -6,12 +6,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from mffit.brief import Brief
 from mffit.parts.mirror import Tolerance, find_mirrors
 from mffit.points import Points
 
 
-@dataclass(frozen=True, slots=True)
-class Parts:
+@dataclass(frozen=True, slots=True, repr=False)
+class Parts(Brief):
     """Odd and even part at every point; arrays (n,), NaN where a point has no mirror."""
 
     Fy_odd: np.ndarray  #: [F(a, g) - F(-a, -g)] / 2 [N]

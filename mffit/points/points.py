@@ -9,12 +9,14 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
+from mffit.brief import Brief
+
 INTEGER = frozenset({"direction", "mount", "sweep", "file", "line"})
 SHARED = frozenset({"sweep_names", "files", "table"})
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Points:
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class Points(Brief):
     """Steady points in ISO-W, contact frame W, SI; arrays are (n,) and read-only.
 
     Angles are the rig's readings turned to ISO; no correction is applied to anything. A channel that was not
@@ -50,6 +52,11 @@ class Points:
 
     def __len__(self) -> int:
         return len(self.alpha)
+
+    @property
+    def headline(self) -> str:
+        """How many there are."""
+        return f"{len(self)} in {len(self.sweep_names)} sweeps"
 
     @property
     def Vx(self) -> np.ndarray:

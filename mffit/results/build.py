@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
+from mffit.brief import Brief
 from mffit.config import Config
 from mffit.fit import FitResult
 from mffit.measured import Measured
@@ -13,8 +14,8 @@ from mffit.points import Points
 from tir import Tyre
 
 
-@dataclass(frozen=True, slots=True)
-class BuildResult:
+@dataclass(frozen=True, slots=True, repr=False)
+class BuildResult(Brief):
     """Everything a build produces."""
 
     config: Config
@@ -28,6 +29,11 @@ class BuildResult:
     warnings: tuple[str, ...]
     seconds: float
     members: tuple[Tyre, ...] = ()  #: drawn from what the fit leaves uncertain, if any were asked for
+
+    @property
+    def headline(self) -> str:
+        """Which tyre, its eps_gamma if it was measured, and how well the model meets the points."""
+        return ", ".join(filter(None, (self.config.tyre.name, self.measured.headline, self.fit.headline)))
 
     @property
     def on_disc(self) -> bool:

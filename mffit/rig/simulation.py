@@ -10,6 +10,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from mffit.brief import Brief
 from mffit.points import Points
 from mffit.quantities import CHANNELS
 from mffit.rig.faults import FAULT_NAMES, NO_FAULTS, RigFaults
@@ -41,8 +42,8 @@ class Readings(NamedTuple):
     Mz: np.ndarray  #: [Nm]
 
 
-@dataclass(frozen=True, slots=True)
-class Simulation:
+@dataclass(frozen=True, slots=True, repr=False)
+class Simulation(Brief):
     """A tyre on a rig. Points keep the angle as read; whatever stands between reading and tyre is in ``faults``."""
 
     values: Mapping[str, Any]  #: every value of the property file

@@ -7,9 +7,11 @@ from dataclasses import dataclass
 import numpy as np
 import pandas as pd
 
+from mffit.brief import Brief
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Sweep:
+
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class Sweep(Brief):
     """Rows of one sweep in ISO-W, contact frame W, SI; arrays are (n,), all NaN for a channel not measured.
 
     The rows are finished points, or samples of a time series if ``time`` is there.
@@ -47,8 +49,8 @@ class Sweep:
         return bool(np.all(np.isfinite(self.time)))
 
 
-@dataclass(frozen=True, slots=True)
-class Sweeps:
+@dataclass(frozen=True, slots=True, repr=False)
+class Sweeps(Brief):
     """All sweeps of a configuration, in its order, and what is worth knowing about them."""
 
     sweeps: tuple[Sweep, ...]

@@ -43,13 +43,9 @@ def _either_way(x: float) -> tuple[float, float]:
 
 CONTROLS = (
     Control("Fz", (0.1, 2.0), (0.05, 3.0), ("FZMIN", "FZMAX"), "FNOMIN", "FNOMIN"),
-    Control(
-        "gamma", _either_way(math.radians(10.0)), _either_way(math.radians(60.0)), ("CAMMIN", "CAMMAX")
-    ),
+    Control("gamma", _either_way(math.radians(10.0)), _either_way(math.radians(60.0)), ("CAMMIN", "CAMMAX")),
     Control("pressure", (0.8, 1.2), (0.5, 1.5), ("PRESMIN", "PRESMAX"), "INFLPRES", "NOMPRES"),
-    Control(
-        "alpha", _either_way(math.radians(15.0)), _either_way(math.radians(20.0)), ("ALPMIN", "ALPMAX")
-    ),
+    Control("alpha", _either_way(math.radians(15.0)), _either_way(math.radians(20.0)), ("ALPMIN", "ALPMAX")),
     Control("kappa", _either_way(0.3), _either_way(0.4), ("KPUMIN", "KPUMAX")),
     Control("phi_t", _either_way(1.0), _either_way(1.0)),
     Control("Vx", (-20.0, 60.0), (-20.0, 60.0), start="LONGVL"),

@@ -9,8 +9,8 @@ from typing import Any
 
 import tir
 from mffit.errors import InputError
+from mffit.tested import end_tested
 from mffit.viewer.controls import CONTROLS, Control, written_range
-from mffit.tested import tested_end
 from tir import Tyre
 from tir.evaluate import refuse_zero_divisors
 
@@ -66,7 +66,7 @@ def described(name: str, tyre: Tyre, parameters: Iterable[str]) -> dict[str, Any
 
 def _ranges(tyre: Tyre, control: Control) -> dict[str, Any]:
     assert control.limits is not None
-    ends = [tested_end(tyre.status.get(key, "")) for key in control.limits]
+    ends = [end_tested(tyre.status.get(key, "")) for key in control.limits]
     return {"written": written_range(tyre, control), "tested": None if None in ends else ends}
 
 

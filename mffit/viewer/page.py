@@ -41,7 +41,9 @@ class Page:
         """
         path = Path(path)
         if os.path.lexists(path) and not _is_ours(path):
-            raise InputError("is there already, and is no page as mffit show wrote it; name another", file=path)
+            raise InputError(
+                "is there already, and is no page as mffit show wrote it; name another", file=path
+            )
         text = f"{self.html}<!-- written by mffit show, sha256 of the rest {_digest(self.html)} -->\n"
         try:
             path.parent.mkdir(parents=True, exist_ok=True)

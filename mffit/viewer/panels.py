@@ -55,7 +55,5 @@ PANELS = (
     Panel("Fz", "sigma_y"),
     Panel("Vx", "My"),
 )
-OUTPUTS = tuple(
-    dict.fromkeys(name for panel in PANELS for name in (panel.x, panel.y) if name not in INPUTS)
-)
+OUTPUTS = tuple(dict.fromkeys(name for panel in PANELS for name in (panel.x, panel.y) if name not in INPUTS))
 """What the page computes."""

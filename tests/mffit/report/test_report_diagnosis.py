@@ -9,6 +9,7 @@ import pytest
 from report_toys import TRUE, made_config, made_points, programme, read_page
 
 import tir
+from mffit.brief import HEIGHT, WIDTH
 from mffit.diagnosis import diagnose
 from mffit.diagnosis.selection import TIE
 from mffit.diagnosis.ties import Run, Separation
@@ -50,6 +51,13 @@ def clean():
 def written(diagnosis, folder):
     write_diagnosis(diagnosis, folder)
     return read_page(folder / "diagnosis.html")
+
+
+def test_a_diagnosis_fits_a_screen_and_leads_with_its_headline(misaligned):
+    lines = repr(misaligned).splitlines()
+    assert len(lines) <= HEIGHT
+    assert max(map(len, lines)) <= WIDTH
+    assert misaligned.headline[:60] in lines[0]
 
 
 def test_a_found_effect_is_shown_with_its_size_and_pictures(misaligned, tmp_path):

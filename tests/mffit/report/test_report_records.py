@@ -1,0 +1,50 @@
+"""What a terminal and a notebook show of the records fits a screen, and says the main thing first."""
+
+from __future__ import annotations
+
+import dataclasses
+import html
+
+import pytest
+
+from mffit.brief import HEIGHT, WIDTH, summary
+
+
+def fits(text: str) -> bool:
+    lines = text.splitlines()
+    return len(lines) <= HEIGHT and max(map(len, lines)) <= WIDTH
+
+
+@pytest.mark.parametrize(
+    "part",
+    ["config", "points", "parts", "measured", "measured.nominal", "fit", "fit.simulation", "fit.posterior"],
+)
+def test_every_part_of_a_build_fits_a_screen(result, part):
+    record = result
+    for name in part.split("."):
+        record = getattr(record, name)
+    assert fits(repr(record)), repr(record)
+    assert repr(record).startswith(f"<{type(record).__name__}")
+
+
+def test_a_build_says_what_was_measured_first(result):
+    first = repr(result).splitlines()[0]
+    found = result.measured.epsilon_gamma
+    assert fits(repr(result))
+    assert result.config.tyre.name in first
+    assert f"{found.value:.3f}" in first
+    assert f"{result.fit.channels['Fy'].rmse:.3g} N" in first
+
+
+def test_a_notebook_shows_a_picture_and_no_foreign_markup(result):
+    shown = dataclasses.replace(result, warnings=("<script>alert(1)</script>",))._repr_html_()
+    assert "data:image/png;base64," in shown
+    assert "<script>" not in shown
+    assert html.escape("<script>") in shown
+
+
+def test_numbers_are_not_hidden_by_their_containers(result):
+    assert summary(result.points.Fz) == "115, 900 to 1500"
+    assert summary(result.points.Mx) == "115, not known"
+    assert summary({}) == summary(()) == "none"
+    assert summary(result.measured.nominal.R).endswith(" m")

@@ -1,0 +1,104 @@
+"""Pictures of a tyre; matplotlib is imported when one is asked for."""
+
+from __future__ import annotations
+
+import base64
+import html
+import io
+import math
+from collections.abc import Iterable, Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from tir.errors import TirError
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+    from tir.tyre import Tyre
+
+SHARES = (0.5, 1.0, 1.5)
+"""Loads that are drawn, as shares of the nominal one."""
+WIDEST = {"alpha": math.radians(15.0), "kappa": 0.3, "gamma": math.radians(50.0)}
+"""How far the inputs go, if the file's range goes as far."""
+KEYS = {"alpha": ("ALPMIN", "ALPMAX"), "kappa": ("KPUMIN", "KPUMAX"), "gamma": ("CAMMIN", "CAMMAX")}
+PANELS = (("alpha", "Fy"), ("alpha", "Mz"), ("kappa", "Fx"), ("gamma", "Fy"))
+LABELS = {
+    "alpha": r"$\alpha$ [deg]", "gamma": r"$\gamma$ [deg]", "kappa": r"$\kappa$ [–]",
+    "Fx": "$F_x$ [N]", "Fy": "$F_y$ [N]", "Mz": "$M_z$ [Nm]",
+}  # fmt: skip
+ANGLES = ("alpha", "gamma")
+POINTS = 161
+DPI = 80
+
+
+def plot(
+    tyre: Tyre,
+    *,
+    loads: Iterable[float] | None = None,
+    turn_slip: bool = False,
+    panels: Sequence[tuple[str, str]] = PANELS,
+) -> Figure:
+    """See :meth:`tir.Tyre.plot`; ``panels`` are pairs of an input and an output."""
+    try:
+        from matplotlib.figure import Figure
+    except ImportError:
+        raise TirError("drawing needs matplotlib, which is not installed: pip install matplotlib") from None
+    at = [share * float(tyre["FNOMIN"]) for share in SHARES] if loads is None else [float(x) for x in loads]
+    rows = math.ceil(len(panels) / 2)
+    figure = Figure(figsize=(8.4, 2.7 * rows), layout="constrained")
+    for ax, (x, y) in zip(figure.subplots(rows, 2, squeeze=False).flat, panels, strict=True):
+        given = np.linspace(*_reach(tyre, x), POINTS)
+        inputs: dict[str, Any] = {x: given}
+        for i, Fz in enumerate(at):
+            forces = tyre(Fz, **inputs, turn_slip=turn_slip)
+            shown = np.degrees(given) if x in ANGLES else given
+            ax.plot(shown, getattr(forces, y), color=_shade(i, len(at)), label=f"{Fz:.0f} N")
+        ax.set(xlabel=LABELS[x], ylabel=LABELS[y])
+        ax.grid(alpha=0.3)
+        ax.spines[["top", "right"]].set_visible(False)
+    figure.legend(
+        *figure.axes[0].get_legend_handles_labels(), loc="outside upper center", ncols=6, frameon=False
+    )
+    return figure
+
+
+def notebook(tyre: Tyre) -> str:
+    """What a notebook shows of a tyre: its few lines, and a small picture if matplotlib is there."""
+    said = "".join(f"<div>{html.escape(line)}</div>" for line in repr(tyre).strip("<>").splitlines())
+    try:
+        figure = plot(tyre, panels=PANELS[:2])
+    except TirError:
+        return said + _table(tyre)
+    figure.set_size_inches(7.0, 2.4)
+    stream = io.BytesIO()
+    figure.savefig(stream, dpi=DPI, format="png", facecolor="white")
+    data = base64.b64encode(stream.getvalue()).decode("ascii")
+    return f'{said}<img alt="side force and aligning moment over sideslip at three loads" src="data:image/png;base64,{data}">'
+
+
+def _table(tyre: Tyre) -> str:
+    """Forces at some sideslip and load, where no picture can be drawn."""
+    angles = (-4.0, -2.0, 0.0, 2.0, 4.0)
+    head = "".join(f"<th>{angle:g} deg</th>" for angle in angles)
+    lines = []
+    for share in SHARES:
+        Fz = share * float(tyre["FNOMIN"])
+        found = tyre(Fz, np.radians(angles)).Fy
+        lines.append(f"<tr><th>{Fz:.0f} N</th>{''.join(f'<td>{Fy:.0f} N</td>' for Fy in found)}</tr>")
+    return f"<table><tr><th>F<sub>y</sub> at load, sideslip</th>{head}</tr>{''.join(lines)}</table>"
+
+
+def _reach(tyre: Tyre, name: str) -> tuple[float, float]:
+    """From where to where an input is drawn [SI]."""
+    widest = WIDEST[name]
+    low, high = (min(max(float(tyre[key]), -widest), widest) for key in KEYS[name])
+    return (low, high) if low < high else (-widest, widest)
+
+
+def _shade(i: int, n: int) -> Any:
+    """Dark to light, in order."""
+    import matplotlib
+
+    return matplotlib.colormaps["viridis"](0.8 * i / max(n - 1, 1))
