@@ -18,6 +18,7 @@ from mffit.quantities import MODEL
 from mffit.viewer.controls import settings
 from mffit.viewer.named import Given, described, named
 from mffit.viewer.panels import OUTPUTS, PANELS
+from mffit.viewer.units import in_si
 from tir.codegen.javascript import javascript
 from tir.codegen.program import INPUTS, Switches, trace
 
@@ -111,8 +112,6 @@ def show(tyres: Given | Mapping[str, Given] | Iterable[Given], out: str | Path |
 
 
 def _quantity(name: str) -> dict[str, Any]:
-    from mffit.viewer.units import in_si
-
     quantity = MODEL[name]
     return {
         "word": quantity.word,
