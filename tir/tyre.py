@@ -6,6 +6,7 @@ from collections import Counter
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, fields, replace
 from functools import cached_property
+from inspect import Parameter, Signature
 from pathlib import Path
 from types import MappingProxyType, SimpleNamespace
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -283,6 +284,11 @@ class Tyre:
         from tir.writing import write
 
         write(self, path, target)
+
+
+# What help prints first: a tyre is read or made from values, and its fields are no call that anybody writes.
+SIGNATURE = Signature([Parameter(name, Parameter.POSITIONAL_OR_KEYWORD) for name in ("self", "values")])
+Tyre.__init__.__signature__ = SIGNATURE  # type: ignore[attr-defined]
 
 
 def _fields(tyre: Tyre) -> dict[str, Any]:

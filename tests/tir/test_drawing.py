@@ -64,7 +64,9 @@ def test_without_matplotlib_there_is_a_sentence_and_a_table(without_matplotlib):
 
 def test_help_begins_with_the_call():
     words = pydoc.render_doc(tir.Tyre, renderer=pydoc.plaintext)
-    assert "tyre(Fz, alpha, gamma, kappa, phi_t, Vx, p)" in "\n".join(words.splitlines()[:6])
+    first = [line for line in words.splitlines() if line.strip(" |")][2:4]
+    assert first[0].strip(" |") == "Tyre(values)"
+    assert "tyre(Fz, alpha, gamma, kappa, phi_t, Vx, p)" in first[1]
 
 
 def test_a_document_is_one_line():

@@ -14,7 +14,7 @@
   const DIGITS = 4;
   const SQUEEZE = 0.3;
   const STEPS = 160;
-  const HEIGHT = 230, TOP = 8, BOTTOM = 20, RIGHT = 12;
+  const HEIGHT = 230, TOP = 8, BOTTOM = 24, RIGHT = 12;
   const INSIDE = 0, UNTESTED = 1, OUTSIDE = 2;
   const ZONES = ["", "untested", "outside"];
   let mode = "file", settled = true, pending = false;
@@ -149,7 +149,7 @@
     for (const tick of ticks(...box.x, Math.max(3, Math.min(8, (width - left) / 58)))) {
       draw(svg, "line", {class: "gridline", x1: X(tick.x), x2: X(tick.x), y1: TOP, y2: HEIGHT - BOTTOM});
       const half = 3.6 * tick.text.length;
-      draw(svg, "text", {x: Math.min(X(tick.x), width - half), y: HEIGHT - 5, "text-anchor": "middle"}, tick.text);
+      draw(svg, "text", {x: Math.min(X(tick.x), width - half), y: HEIGHT - 6, "text-anchor": "middle"}, tick.text);
     }
     if (box.x[0] <= 0 && box.x[1] >= 0) draw(svg, "line", {class: "axis", x1: X(0), x2: X(0), y1: TOP, y2: HEIGHT - BOTTOM});
     if (box.y[0] <= 0 && box.y[1] >= 0) draw(svg, "line", {class: "axis", x1: left, x2: width - RIGHT, y1: Y(0), y2: Y(0)});

@@ -36,6 +36,16 @@ def test_the_command_writes_the_page_of_the_python_function(tmp_path, monkeypatc
     assert (tmp_path / "true.html").read_text(encoding="utf-8").startswith(mffit.show([FRONT, REAR]).html)
 
 
+def test_the_page_is_opened_when_asked(tmp_path, monkeypatch):
+    launched: list[str] = []
+    monkeypatch.setattr("click.launch", launched.append)
+    page = tmp_path / "page.html"
+    assert status("show", FRONT, "--out", page) == 0
+    assert launched == []
+    assert status("show", FRONT, "--out", page, "--open") == 0
+    assert launched == [str(page)]
+
+
 def test_a_page_is_written_again_and_nothing_else_is_replaced(tmp_path):
     page = tmp_path / "page.html"
     assert status("show", FRONT, "--out", page) == 0
