@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 from tir.document import Document, Line
 from tir.errors import Problem
-from tir.parameters import BY_NAME, TABLE
+from tir.parameters import BY_NAME, REGULAR, TABLE
 from tir.targets import Target
 from tir.tyre import Tyre
 from tir.units import KINDS
@@ -37,7 +37,7 @@ def _content(tyre: Tyre, target: Target) -> Iterator[Problem]:
         )
     if target.complete and tyre.document is not None:
         missing = [
-            r.name for r in TABLE if r.files in ("", "62") and r.name not in (*tyre.present, *target.without)
+            r.name for r in TABLE if r.files in REGULAR and r.name not in (*tyre.present, *target.without)
         ]
         if missing:
             shown = ", ".join(missing[:6]) + (f" and {len(missing) - 6} more" if len(missing) > 6 else "")
@@ -93,7 +93,7 @@ def _out_of_place(tyre: Tyre, document: Document, target: Target) -> Iterator[Pr
         rows = [
             r.name
             for r in TABLE
-            if r.section == section and r.files in ("", "62") and r.name not in target.without
+            if r.section == section and r.files in REGULAR and r.name not in target.without
         ]
         if section == "MODEL":
             rows = rows[:FIRST_OF_MODEL]

@@ -24,6 +24,8 @@ ROUNDS = 4
 """How often the search narrows to the neighbourhood of the worst point."""
 BEYOND = 0.1
 """How far outside a range "just outside" is, as a share of its width."""
+SLIGHT = 0.01
+"""Share of a force that may turn round: less than a rig can tell from none."""
 WIDEST = 1.05
 """Camber [rad] beyond which no tyre is judged, whatever its file allows."""
 
@@ -107,15 +109,17 @@ CONDITIONS = (
     Condition(
         "RBY1",
         "warning",
-        lateral.combined_weight,
+        lambda p, q: SLIGHT + lateral.combined_weight(p, q),
         "longitudinal slip turns the side force round: G_yk is {worst:.2f} at {where}",
+        lambda margin: margin - SLIGHT,
         slips=True,
     ),
     Condition(
         "RBX1",
         "warning",
-        longitudinal.combined_weight,
+        lambda p, q: SLIGHT + longitudinal.combined_weight(p, q),
         "sideslip turns the longitudinal force round: G_xa is {worst:.2f} at {where}",
+        lambda margin: margin - SLIGHT,
         slips=True,
     ),
 )

@@ -8,6 +8,8 @@ from dataclasses import dataclass
 from importlib.resources import files as resources
 from typing import NamedTuple
 
+REGULAR = ("", "motorcycle", "62")
+"""Words of the column ``files`` of which a file that is complete for every program has the keys."""
 NORMAL_MODE = ("LATERAL_COEFFICIENTS", "ALIGNING_COEFFICIENTS")
 
 
@@ -36,7 +38,7 @@ class Parameter:
     symmetry: frozenset[str]  #: "odd", "shift", "conicity"; see the properties of these names
     disc_spread: float | None  #: spread around the base file's value to which runs on a disc hold it, 1 sigma
     needs: tuple[Need, ...]  #: what the data must vary
-    files: str  #: "" in every file, "62" of MF 6.2 only, "some" not in all, "rare" in no common one, "adams" for Adams alone
+    files: str  #: which ones have it, see docs/parameters.md; "" for every one, :data:`REGULAR` for a complete one
     equation: str  #: where it enters
     description: str
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import re
+from collections.abc import Sequence
 from functools import cache
 from pathlib import Path
 from types import MappingProxyType
@@ -13,6 +14,7 @@ from tir.document import Document, Line, read_document
 from tir.equations.forces import Forces, State
 from tir.errors import Problem, TirError
 from tir.parameters import BY_NAME, TABLE, Parameter
+from tir.targets import TARGETS
 from tir.tyre import Quantity, Tyre
 from tir.units import KINDS, factor
 
@@ -24,6 +26,8 @@ OLD_FITTYPS = {
     52: "MF-MCTyre 1.1, a motorcycle tyre",
 }
 OLD_FORMATS = {"MF_05", "PAC2002", "MF-TYRE", "PAC_MC"}
+OF_PROGRAMS = {"SWITCH_INTEG"} | {key for target in TARGETS.values() for key in target.more}
+"""Keys of [MODEL] by which single programs are told how to run the model; no parameters of the tyre."""
 ESSENTIAL = ("UNLOADED_RADIUS", "FNOMIN")
 ESSENTIAL_COEFFICIENTS = ("PCY1", "PDY1", "PKY1")
 HEADER = ("MDI_HEADER", "UNITS")
@@ -79,7 +83,8 @@ def interpret(document: Document) -> Tyre:
             status[line.key] = line.comment
     _refuse_other_versions(values, extra, document)
     _refuse_truncated(values, document)
-    problems += _about_missing(values) + _about_unknown(extra)
+    stated = {line.key for line in entries if stands_for(line)}
+    problems += _about_missing(values, stated) + _about_unknown(extra)
     complete = {row.name: row.default for row in TABLE} | values
     measured, provenance = _structured_comments(document)
     return Tyre(
@@ -187,7 +192,7 @@ def _refuse_truncated(values, document: Document) -> None:
     missing = [name for name in ESSENTIAL if name not in values]
     if missing:
         homes = " and ".join(f"{name} to [{BY_NAME[name].section}]" for name in missing)
-        remedy = f"add {homes}" if coefficients else "the file is cut short or is no tyre"
+        remedy = f"add {homes}" if coefficients else "the file is cut short, or of another tyre model"
         raise TirError(
             f"lacks {' and '.join(missing)}, without which no force can be computed: {remedy}",
             path=document.path,
@@ -200,32 +205,47 @@ def _refuse_truncated(values, document: Document) -> None:
         )
 
 
-def _about_missing(values) -> list[Problem]:
-    out = []
+def _about_missing(values, stated) -> list[Problem]:
+    """Keys that a file of its version has; those that stand there without a usable value were told of already."""
     version = values.get("FITTYP")
+    missing = [
+        row.name
+        for row in TABLE
+        if row.name not in stated and (row.files == "" or (row.files == "62" and version not in (60, 61)))
+    ]
+    if version == 60:
+        rest = f"; {_counted(missing, 'key')} of 6.1 that it lacks take their defaults" if missing else ""
+        return [Problem("warning", f"FITTYP 60 is read as MF 6.1{rest}", "FITTYP")]
+    out = []
     if version is None:
         out.append(Problem("warning", "FITTYP is missing; the file is read as MF 6.2", "FITTYP"))
-    elif version == 60:
-        out.append(Problem("warning", "FITTYP 60 is read as MF 6.1", "FITTYP"))
-    old = version in (60, 61)
-    missing = [row.name for row in TABLE if row.name not in values and row.files in ("", "" if old else "62")]
     if missing:
-        shown = ", ".join(missing[:6]) + (f" and {len(missing) - 6} more" if len(missing) > 6 else "")
-        mf = "6.1" if old else "6.2"
-        out.append(
-            Problem("warning", f"{len(missing)} keys of MF {mf} are missing and take their defaults: {shown}")
-        )
+        mf, verbs = "6.1" if version == 61 else "6.2", "is" if len(missing) == 1 else "are"
+        sentence = f"{_counted(missing, f'key of MF {mf}')} {verbs} missing, defaults are taken: {_some(missing)}"
+        out.append(Problem("warning", sentence))
     return out
 
 
+def _counted(names: Sequence[str], what: str) -> str:
+    head, *rest = what.split(" ", 1)
+    return " ".join([str(len(names)), head + "s" * (len(names) != 1), *rest])
+
+
+def _some(names: Sequence[str]) -> str:
+    return ", ".join(names[:6]) + (f" and {len(names) - 6} more" if len(names) > 6 else "")
+
+
 def _about_unknown(extra) -> list[Problem]:
-    names = [key for key in extra if not key.startswith(("SHAPE.", "MDI_HEADER."))]
+    names = [
+        key
+        for key in extra
+        if not key.startswith(("SHAPE.", "MDI_HEADER.")) and key.removeprefix("MODEL.") not in OF_PROGRAMS
+    ]
     if not names:
         return []
-    shown = ", ".join(names[:6]) + (f" and {len(names) - 6} more" if len(names) > 6 else "")
-    return [
-        Problem("warning", f"{len(names)} keys are no MF 6.2 parameters and are kept but not used: {shown}")
-    ]
+    said = "is no MF 6.2 parameter and is" if len(names) == 1 else "are no MF 6.2 parameters and are"
+    sentence = f"{_counted(names, 'key')} {said} kept but not used: {_some(names)}"
+    return [Problem("warning", sentence)]
 
 
 def _structured_comments(document: Document) -> tuple[dict[str, Quantity], dict[str, str]]:

@@ -256,7 +256,7 @@ class Tyre:
         Without this, missing keys stay missing in a written file: for MF-Tyre an absent key means that it is to be
         estimated, which is something else than the default of this table.
         """
-        known = ("", "some") if self.values["FITTYP"] in (60, 61) else ("", "some", "62")
+        known = {"", "some", "motorcycle"} | (set() if self.values["FITTYP"] in (60, 61) else {"62"})
         missing = [row.name for row in TABLE if row.name not in self.present and row.files in known]
         status = dict.fromkeys(missing, "default, not measured")
         return replace(self, present=self.present | set(missing)).annotate(status=status)

@@ -82,6 +82,32 @@ def test_only_a_file_of_mf62_misses_its_keys(tmp_path, version, missed):
     assert ("Q_CAM1" in sentence) is missed
 
 
+def test_a_car_file_misses_no_keys_of_motorcycles_nor_of_single_programs(tmp_path):
+    """Car files of 6.2 as they are published: no USE_MODE, no contour of a motorcycle tyre, solver's words in [MODEL]."""
+    text = re.sub(r"(?m)^(USE_MODE|MC_CONTOUR_[AB]) .*\n", "", TEXT)
+    text = text.replace("[MODEL]", "[MODEL]\nFUNCTION_NAME = 'TNO_X::TYR815'\nSWITCH_INTEG = 1")
+    assert not read_text(tmp_path, text).problems
+
+
+def test_a_key_without_a_value_is_told_of_once(tmp_path):
+    text = re.sub(r"(?m)^ROAD_INCREMENT .*$", "ROAD_INCREMENT = ", TEXT)
+    assert [p.name for p in read_text(tmp_path, text).problems] == ["ROAD_INCREMENT"]
+
+
+def test_a_file_of_mf60_is_told_so_in_one_sentence(tmp_path):
+    text = re.sub(r"(?m)^FITTYP .*$", "FITTYP = 60", TEXT)
+    text = re.sub(r"(?m)^(INFLPRES|NOMPRES) .*\n", "", text)
+    (problem,) = read_text(tmp_path, text).problems
+    assert re.search(r"60.*2 keys of 6\.1", problem.sentence)
+
+
+@pytest.mark.parametrize(("shape", "told"), [(1.005, False), (1.05, True)])
+def test_a_side_force_that_turns_round_by_less_than_a_rig_can_see_is_no_problem(tyre, shape, told):
+    """The weight cos(C atan(B kappa)) tends to cos(C pi / 2): -0.8 % for C = 1.005, -7.8 % for 1.05."""
+    steep = tyre.replace(RBY1=1e4, RBY2=0.0, RCY1=shape, REY1=0.0, REY2=0.0, RHY1=0.0, RHY2=0.0)
+    assert any("turns the side force round" in p.sentence for p in check(steep)) is told
+
+
 def test_mass_of_units_and_mass_of_inertia_are_two_things(tyre):
     assert tyre["MASS"] == 4.4
 

@@ -35,7 +35,7 @@ WORDS = {
     "stage": {"", "held", "Fy", "camber", "pressure", "trail", "residual", "spin", "shift"},
     "channel": {"", "Fx", "Fy", "Mx", "My", "Mz"},
     "symmetry": {"", "odd", "odd shift", "odd shift conicity"},
-    "files": {"", "62", "some", "rare", "adams"},
+    "files": {"", "62", "motorcycle", "some", "rare", "adams"},
 }
 """Every word that a column may hold; docs/parameters.md explains them."""
 COEFFICIENTS = [
