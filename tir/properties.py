@@ -221,7 +221,9 @@ def _about_missing(values, stated) -> list[Problem]:
         out.append(Problem("warning", "FITTYP is missing; the file is read as MF 6.2", "FITTYP"))
     if missing:
         mf, verbs = "6.1" if version == 61 else "6.2", "is" if len(missing) == 1 else "are"
-        sentence = f"{_counted(missing, f'key of MF {mf}')} {verbs} missing, defaults are taken: {_some(missing)}"
+        sentence = (
+            f"{_counted(missing, f'key of MF {mf}')} {verbs} missing, defaults are taken: {_some(missing)}"
+        )
         out.append(Problem("warning", sentence))
     return out
 

@@ -7,7 +7,7 @@ from contextlib import redirect_stderr, redirect_stdout
 
 import click
 
-from mffit.cli import building, diagnosing, files, measuring, projects, rigs
+from mffit.cli import building, diagnosing, exporting, files, measuring, projects, rigs
 from mffit.cli.console import Unheard
 
 CONTEXT = {"help_option_names": ["-h", "--help"], "max_content_width": 100}
@@ -18,6 +18,7 @@ COMMANDS = (
     diagnosing.diagnose,
     files.check,
     files.show,
+    exporting.export,
     rigs.simulate,
     projects.sniff,
     projects.init,

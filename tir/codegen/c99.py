@@ -27,7 +27,8 @@ INPUT_TEXTS = {
     "pressure": "inflation pressure [Pa]",
 }
 OUTPUT_TEXTS = {
-    "Fx": "[N]", "Fy": "[N]", "Fz": "load in the formulae [N]", "Mx": "[Nm]", "My": "[Nm]", "Mz": "[Nm]",
+    "Fx": "longitudinal force [N]", "Fy": "side force [N]", "Fz": "load in the formulae [N]",
+    "Mx": "overturning moment [Nm]", "My": "rolling-resistance moment [Nm]", "Mz": "self-aligning moment [Nm]",
     "K_ya": "cornering stiffness [N/rad]", "K_xk": "longitudinal slip stiffness [N]",
     "sigma_x": "longitudinal relaxation length [m]", "sigma_y": "lateral relaxation length [m]",
     "Re": "effective rolling radius [m]", "omega": "speed of rotation [rad/s]", "trail": "pneumatic trail [m]",

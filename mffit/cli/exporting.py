@@ -1,0 +1,64 @@
+"""A property file for other programs: `mffit export c`, `mffit export fmu`."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import click
+
+
+def _shared(command: Any) -> Any:
+    """What both commands ask for."""
+    for decorator in reversed(
+        (
+            click.argument("file", type=click.Path(path_type=Path), metavar="FILE.tir"),
+            click.option(
+                "--out",
+                type=click.Path(path_type=Path),
+                default="export",
+                show_default=True,
+                help="Folder to write to.",
+            ),
+            click.option("--name", default=None, help="Name in the code [default: made of the file's]."),
+            click.option(
+                "--turn-slip/--no-turn-slip", default=True, show_default=True, help="Whether spin acts."
+            ),
+            click.option("--limits", is_flag=True, help="Hold the inputs to the file's ranges."),
+        )
+    ):
+        command = decorator(command)
+    return command
+
+
+@click.group()
+def export() -> None:
+    """A .tir as C99 sources, or as an FMU (functional mock-up unit)."""
+
+
+@export.command()
+@_shared
+def c(file: Path, out: Path, name: str | None, turn_slip: bool, limits: bool) -> None:
+    """One header and one source of C99: no allocation, no state, doubles."""
+    from mffit.export import write_c
+
+    written = write_c(file, out, name=name, turn_slip=turn_slip, limits=limits)
+    click.echo(f"written: {', '.join(map(str, written))}")
+
+
+@export.command()
+@_shared
+@click.option(
+    "--fmi", type=click.Choice(["2", "3"]), default="2", show_default=True, help="Version: FMI 2.0 or 3.0."
+)
+@click.option("--sources-only", is_flag=True, help="No binary: the importing program compiles the sources.")
+def fmu(
+    file: Path, out: Path, name: str | None, turn_slip: bool, limits: bool, fmi: str, sources_only: bool
+) -> None:
+    """An FMU for model exchange and co-simulation, with C sources and a binary for this machine."""
+    from mffit.export import write_fmu
+
+    written = write_fmu(
+        file, out, fmi=int(fmi), name=name, turn_slip=turn_slip, limits=limits, sources_only=sources_only
+    )
+    click.echo(f"written: {written}")

@@ -1,0 +1,9 @@
+"""A tyre for other programs: C source files, and functional mock-up units (FMI 2.0 and 3.0).
+
+The equations come from ``tir.export_c``; here is what surrounds them: names, units, files, a compiler.
+"""
+
+from mffit.export.c import write_c
+from mffit.export.fmu import write_fmu
+
+__all__ = ["write_c", "write_fmu"]

@@ -1,0 +1,145 @@
+"""A property file as a functional mock-up unit of FMI 2.0 or 3.0: description, C sources, binary for this machine."""
+
+from __future__ import annotations
+
+import hashlib
+import tempfile
+import uuid
+import zipfile
+from collections.abc import Mapping
+from functools import cache
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import mffit
+import tir
+from mffit.errors import InputError
+from mffit.export import compiler, variables
+from mffit.export.names import c_of, identifier
+from mffit.output import output_folder
+
+if TYPE_CHECKING:
+    from jinja2 import Environment
+
+DEFINITIONS: dict[int, tuple[str, ...]] = {2: (), 3: ("FMI3_OVERRIDE_FUNCTION_PREFIX",)}
+"""By version of FMI, what is defined when a shared library is compiled."""
+READABLE = 0o644
+EARLIEST = (1980, 1, 1, 0, 0, 0)
+"""The date of every file in the archive, so that the same tyre gives the same bytes."""
+
+
+def write_fmu(
+    path: Path,
+    out: Path,
+    *,
+    fmi: int = 2,
+    name: str | None = None,
+    turn_slip: bool = True,
+    limits: bool = False,
+    sources_only: bool = False,
+) -> Path:
+    """Write a property file as an FMU for model exchange and co-simulation.
+
+    The model has no states: outputs follow the inputs at once. Inputs Fz, kappa, alpha, gamma, phi_t, Vx, p; outputs Fx, Fy,
+    Fz_out, Mx, My, Mz, K_ya, K_xk, sigma_x, sigma_y, Re, omega, trail. SI units, radians, ISO-W.
+
+    Parameters
+    ----------
+    path : the property file
+    out : folder to write ``<name>.fmu`` to
+    fmi : 2 or 3, for FMI 2.0 or 3.0
+    name : model identifier; by default made of the file's name
+    turn_slip, limits : as in a call of the tyre
+    sources_only : no binary; the program that imports the FMU compiles the sources
+
+    Returns
+    -------
+    Path
+        The FMU.
+
+    Raises
+    ------
+    InputError
+        No compiler, another version of FMI, or what :func:`mffit.export.write_c` raises.
+    TirError
+        The file cannot be read.
+    """
+    if fmi not in DEFINITIONS:
+        raise InputError(f"FMI {fmi} is not written, only {' and '.join(map(str, DEFINITIONS))}")
+    tyre, name = tir.read(path), identifier(path, name)
+    files = _texts(tyre, path, name, fmi, turn_slip, limits)
+    if not sources_only:
+        files[f"binaries/{compiler.host_folder(fmi)}/{name}{compiler.suffix()}"] = _binary(files, name, fmi)
+    with output_folder(out, by="export", protected=[path]) as folder:
+        _archive(folder / f"{name}.fmu", files)
+    return out / f"{name}.fmu"
+
+
+def _texts(
+    tyre: tir.Tyre, path: Path, name: str, fmi: int, turn_slip: bool, limits: bool
+) -> dict[str, bytes]:
+    """The files of the archive, by their place in it."""
+    code = c_of(tyre, path, name, turn_slip=turn_slip, limits=limits)
+    given, found = variables.inputs(tyre), variables.outputs()
+    on = [word for word, is_on in (("turn slip", turn_slip), ("limits", limits)) if is_on]
+    content = {
+        "name": name,
+        "title": path.stem,
+        "version": mffit.__version__,
+        "token": "{" + str(uuid.UUID(hashlib.sha256(f"{fmi} {code.source}".encode()).hexdigest()[:32])) + "}",
+        "description": f"Tyre {path.name}: MF 6.2 in steady state, {' and '.join(on) or 'no turn slip'}; axes ISO-W",
+        "inputs": given,
+        "outputs": found,
+        "units": variables.UNITS.values(),
+        "arguments": variables.arguments(given),
+        "compiled": [f"{name}.c", f"{name}_fmi{fmi}.c"],
+    }
+    texts = {
+        "modelDescription.xml": _filled(f"modelDescription{fmi}.xml.j2", content),
+        f"sources/{name}.h": code.header,
+        f"sources/{name}.c": code.source,
+        f"sources/{name}_instance.h": _filled("instance.h.j2", content),
+        f"sources/{name}_fmi{fmi}.c": _filled(f"fmi{fmi}.c.j2", content),
+    }
+    if fmi == 3:
+        texts["sources/buildDescription.xml"] = _filled("buildDescription.xml.j2", content)
+    return {place: text.encode("utf-8") for place, text in texts.items()}
+
+
+def _archive(path: Path, files: Mapping[str, bytes]) -> None:
+    with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as archive:
+        for place, content in files.items():
+            entry = zipfile.ZipInfo(place, EARLIEST)
+            entry.external_attr = READABLE << 16
+            archive.writestr(entry, content, zipfile.ZIP_DEFLATED)
+
+
+def _binary(files: Mapping[str, bytes], name: str, fmi: int) -> bytes:
+    with tempfile.TemporaryDirectory() as place:
+        folder = Path(place)
+        for file, content in files.items():
+            (folder / file).parent.mkdir(exist_ok=True)
+            (folder / file).write_bytes(content)
+        library = folder / f"{name}{compiler.suffix()}"
+        sources = [folder / file for file in files if file.endswith(".c")]
+        compiler.compile_shared(sources, library, DEFINITIONS[fmi])
+        return library.read_bytes()
+
+
+def _filled(template: str, content: Mapping[str, Any]) -> str:
+    return _environment().get_template(template).render(**content)
+
+
+@cache
+def _environment() -> Environment:
+    from jinja2 import Environment, PackageLoader, StrictUndefined
+
+    environment = Environment(
+        loader=PackageLoader("mffit.export"),
+        autoescape=lambda template: template is not None and ".xml" in template,
+        undefined=StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+        keep_trailing_newline=True,
+    )
+    return environment

@@ -1,0 +1,92 @@
+"""The variables of a functional mock-up unit: names, references, units, start values."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import tir
+from tir.codegen.c99 import INPUT_TEXTS, OUTPUT_TEXTS, STATES
+from tir.codegen.program import INPUTS
+from tir.equations.forces import Forces
+
+ORDER = ("Fz", "kappa", "alpha", "gamma", "phi_t", "Vx", "pressure")
+"""Inputs in the order that other programs have them in, too."""
+NAMES = {"pressure": "p", "out.Fz": "Fz_out"}
+"""Where a variable is called otherwise than in C: as in a call of the tyre, and since the load goes in and comes out."""
+
+
+@dataclass(frozen=True, slots=True)
+class Unit:
+    """A unit by powers of the SI's."""
+
+    name: str
+    powers: Mapping[str, int]
+    shown: str = ""  #: unit in which a program should show it
+    factor: float = 1.0  #: of the shown number
+
+
+UNITS = {
+    unit.name: unit
+    for unit in (
+        Unit("s", {"s": 1}),
+        Unit("m", {"m": 1}),
+        Unit("1/m", {"m": -1}),
+        Unit("m/s", {"m": 1, "s": -1}),
+        Unit("N", {"kg": 1, "m": 1, "s": -2}),
+        Unit("Nm", {"kg": 1, "m": 2, "s": -2}),
+        Unit("N/rad", {"kg": 1, "m": 1, "s": -2, "rad": -1}),
+        Unit("Pa", {"kg": 1, "m": -1, "s": -2}, "kPa", 1e-3),
+        Unit("rad", {"rad": 1}, "deg", 57.29577951308232),
+        Unit("rad/s", {"rad": 1, "s": -1}),
+    )
+}
+
+
+@dataclass(frozen=True, slots=True)
+class Variable:
+    """An input or output."""
+
+    name: str
+    field: str  #: what it is in C
+    reference: int  #: value reference; 0 is time
+    description: str
+    unit: str  #: "" if it has none
+    start: str = ""  #: as C and XML write it; inputs only
+
+
+def inputs(tyre: tir.Tyre) -> tuple[Variable, ...]:
+    """The operating condition; starts as the file's nominal one, rolling straight on."""
+    starts = {"Fz": tyre["FNOMIN"], "Vx": tyre["LONGVL"], "pressure": tyre["INFLPRES"]}
+    out = []
+    for reference, field in enumerate(ORDER, start=1):
+        description, unit = _described(INPUT_TEXTS[field])
+        start = repr(float(starts.get(field, 0.0)))
+        out.append(Variable(NAMES.get(field, field), field, reference, description, unit, start))
+    return tuple(out)
+
+
+def outputs() -> tuple[Variable, ...]:
+    """Forces and moments on the wheel in the contact frame, and what a simulation needs beside them."""
+    fields = [("forces", name) for name in Forces._fields] + [("state", name) for name in STATES]
+    out = []
+    for reference, (record, field) in enumerate(fields, start=1 + len(INPUTS)):
+        description, unit = _described(OUTPUT_TEXTS[field])
+        out.append(
+            Variable(NAMES.get(f"out.{field}", field), f"{record}.{field}", reference, description, unit)
+        )
+    return tuple(out)
+
+
+def arguments(variables: tuple[Variable, ...]) -> str:
+    """The inputs as arguments of the C functions, from the array of values ``v``."""
+    references = {x.field: x.reference for x in variables}
+    return ", ".join(f"v[{references[name]}]" for name in INPUTS)
+
+
+def _described(text: str) -> tuple[str, str]:
+    """Words and unit of a text with a unit in brackets: 'sideslip angle [rad]'."""
+    found = re.fullmatch(r"(.*?)\s*\[(.*?)\](.*)", text)
+    assert found, f"{text!r} states no unit"
+    return found[1] + found[3], "" if found[2] == "-" else found[2]

@@ -1,0 +1,248 @@
+"""The FMU: its description by FMPy, its numbers by FMPy and by hand, its sources under every warning."""
+
+from __future__ import annotations
+
+import ctypes
+import shutil
+import subprocess
+import sys
+import zipfile
+from ctypes import POINTER, byref, c_char_p, c_double, c_int, c_size_t, c_uint, c_void_p
+from pathlib import Path
+from xml.etree import ElementTree
+
+import numpy as np
+import pytest
+
+import tir
+from mffit.cli import main
+from mffit.errors import InputError
+from mffit.export import write_c, write_fmu
+from mffit.export.variables import UNITS, outputs
+
+VECTORS = Path(__file__).parents[2] / "tir" / "vectors"
+FILE = VECTORS / "moto_front.tir"
+INPUTS = ("Fz", "kappa", "alpha", "gamma", "phi_t", "Vx", "p")
+FORCES = ("Fx", "Fy", "Fz_out", "Mx", "My", "Mz")
+COMPILER = next((name for name in ("cc", "gcc", "clang") if shutil.which(name)), None)
+needs_compiler = pytest.mark.skipif(COMPILER is None, reason="there is no C compiler")
+
+
+@pytest.fixture(scope="module")
+def fmus(tmp_path_factory) -> dict[int, Path]:
+    """An FMU of each version; the file's name is one that XML and C have to be careful with."""
+    folder = tmp_path_factory.mktemp("fmu")
+    file = folder / '1 front & "rear" <x>.tir'
+    file.write_bytes(FILE.read_bytes())
+    return {fmi: write_fmu(file, folder / str(fmi), fmi=fmi) for fmi in (2, 3)}
+
+
+def conditions(n: int) -> dict[str, np.ndarray]:
+    rng = np.random.default_rng(5)
+    columns = {
+        "Fz": (-50.0, 4000.0), "kappa": (-0.9, 0.9), "alpha": (-0.3, 0.3), "gamma": (-0.8, 0.8), "phi_t": (-0.7, 0.7),
+        "Vx": (-30.0, 30.0), "p": (1.5e5, 3.5e5),
+    }  # fmt: skip
+    return {name: rng.uniform(*ends, n) for name, ends in columns.items()}
+
+
+def wanted(given: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
+    """What ``tir`` says to the same, by the FMU's names."""
+    tyre = tir.read(FILE)
+    forces = tyre(**given, turn_slip=True)
+    state = tyre.state(**given, turn_slip=True)._asdict()
+    names = [x.name for x in outputs()]
+    return dict(zip(FORCES, forces, strict=True)) | {name: state[name] for name in names if name in state}
+
+
+def assert_equal(found: np.ndarray, right: np.ndarray, name: str) -> None:
+    scale = np.maximum(np.abs(right), 1e-3 * np.max(np.abs(right)))
+    assert np.max(np.abs(found - right) / scale) < 1e-12, name
+
+
+@needs_compiler
+@pytest.mark.parametrize("fmi", [2, 3])
+def test_fmpy_finds_nothing_wrong(fmus, fmi):
+    pytest.importorskip("fmpy")
+    from fmpy.validation import validate_fmu
+
+    assert validate_fmu(str(fmus[fmi])) == []
+
+
+@needs_compiler
+@pytest.mark.parametrize("fmi", [2, 3])
+@pytest.mark.parametrize("kind", ["CoSimulation", "ModelExchange"])
+def test_simulated_it_gives_the_forces_of_tir(fmus, fmi, kind):
+    fmpy = pytest.importorskip("fmpy")
+    n = 40
+    given = conditions(n)
+    time = np.arange(n) * 0.01
+    signals = np.zeros(n, dtype=[("time", float), *((name, float) for name in INPUTS)])
+    signals["time"] = time
+    for name in INPUTS:
+        signals[name] = given[name]
+    found = fmpy.simulate_fmu(
+        str(fmus[fmi]), fmi_type=kind, input=signals, stop_time=time[-1], output_interval=0.01, step_size=0.01,
+        output=[*INPUTS, *(x.name for x in outputs())],
+    )  # fmt: skip
+    recorded = {name: found[name] for name in INPUTS}
+    assert np.ptp(recorded["Fz"]) > 3000.0
+    for name, right in wanted(recorded).items():
+        assert_equal(found[name], right, name)
+
+
+@needs_compiler
+@pytest.mark.parametrize("fmi", [2, 3])
+def test_units_and_starts_are_declared(fmus, fmi):
+    """Base units by hand: a moment is kg m2/s2; the start is the nominal condition of the file."""
+    with zipfile.ZipFile(fmus[fmi]) as archive:
+        root = ElementTree.fromstring(archive.read("modelDescription.xml"))
+    assert root.attrib["modelName"] == '1 front & "rear" <x>'
+    units = {unit.attrib["name"]: dict(unit.find("BaseUnit").attrib) for unit in root.iter("Unit")}
+    assert units["Nm"] == {"kg": "1", "m": "2", "s": "-2"}
+    assert units["Pa"] == {"kg": "1", "m": "-1", "s": "-2"}
+    tyre = tir.read(FILE)
+    real = [x for x in root.iter() if "name" in x.attrib and x.attrib.get("causality") in ("input", "output")]
+    starts, named = {}, {}
+    for x in real:
+        inner = x.find("Real") if fmi == 2 else x
+        named[x.attrib["name"]] = inner.attrib.get("unit", "")
+        if x.attrib["causality"] == "input":
+            starts[x.attrib["name"]] = float(inner.attrib["start"])
+    assert set(named) == {*INPUTS, *(x.name for x in outputs())}
+    assert {unit for unit in named.values() if unit} <= set(UNITS) & set(units)
+    assert (named["K_ya"], named["sigma_y"], named["kappa"]) == ("N/rad", "m", "")
+    assert starts == {
+        "Fz": tyre["FNOMIN"], "kappa": 0, "alpha": 0, "gamma": 0, "phi_t": 0, "Vx": tyre["LONGVL"], "p": tyre["INFLPRES"]
+    }  # fmt: skip
+
+
+class ByHand:
+    """FMI 2.0's functions called as its document has them, without a library."""
+
+    def __init__(self, fmu: Path, folder: Path):
+        with zipfile.ZipFile(fmu) as archive:
+            (place,) = [name for name in archive.namelist() if name.startswith("binaries/")]
+            library = folder / "by_hand.so"
+            library.write_bytes(archive.read(place))
+            self.guid = ElementTree.fromstring(archive.read("modelDescription.xml")).attrib["guid"]
+        self.library = ctypes.CDLL(str(library))
+        self.library.fmi2Instantiate.restype = c_void_p
+        self.library.fmi2Instantiate.argtypes = [c_char_p, c_int, c_char_p, c_char_p, c_void_p, c_int, c_int]
+        for name in ("fmi2GetReal", "fmi2SetReal"):
+            getattr(self.library, name).argtypes = [c_void_p, POINTER(c_uint), c_size_t, POINTER(c_double)]
+        for name in (
+            "fmi2GetFMUstate",
+            "fmi2SetFMUstate",
+            "fmi2FreeFMUstate",
+            "fmi2Reset",
+            "fmi2FreeInstance",
+        ):
+            getattr(self.library, name).argtypes = [c_void_p] * (2 if "state" in name else 1)
+
+    def instance(self, guid: str | None = None) -> int | None:
+        return self.library.fmi2Instantiate(b"a", 1, (guid or self.guid).encode(), None, None, 0, 0)
+
+    def get(self, m, *references) -> list[float]:
+        out = (c_double * len(references))()
+        assert self.library.fmi2GetReal(m, (c_uint * len(references))(*references), len(references), out) == 0
+        return list(out)
+
+    def set(self, m, **values) -> int:
+        names = [INPUTS.index(name) + 1 for name in values]
+        return self.library.fmi2SetReal(
+            m, (c_uint * len(names))(*names), len(names), (c_double * len(names))(*values.values())
+        )
+
+
+@needs_compiler
+@pytest.mark.skipif(sys.platform == "win32", reason="a loaded library cannot be removed there")
+def test_instances_are_independent_and_states_come_back(fmus, tmp_path):
+    hand, tyre = ByHand(fmus[2], tmp_path), tir.read(FILE)
+    assert hand.instance("{00000000-0000-0000-0000-000000000000}") is None
+    a, b = hand.instance(), hand.instance()
+    Fy = next(x.reference for x in outputs() if x.name == "Fy")
+    assert hand.set(a, Fz=1200.0, alpha=0.05) == 0
+    (here,), (there,) = hand.get(a, Fy), hand.get(b, Fy)
+    assert here == pytest.approx(tyre(1200.0, 0.05, phi_t=0.0).Fy, rel=1e-12)
+    assert there == pytest.approx(tyre(tyre["FNOMIN"], phi_t=0.0).Fy, rel=1e-12)
+    kept = c_void_p()
+    assert hand.library.fmi2GetFMUstate(a, byref(kept)) == 0
+    hand.set(a, alpha=-0.1)
+    assert hand.get(a, Fy)[0] > 0.0
+    assert hand.library.fmi2SetFMUstate(a, kept) == 0
+    assert hand.get(a, Fy) == [here]
+    hand.library.fmi2FreeFMUstate(a, byref(kept))
+    assert hand.library.fmi2Reset(a) == 0
+    assert hand.get(a, Fy) == [there]
+    assert hand.set(a, alpha=float("nan")) == 0
+    assert np.isnan(hand.get(a, Fy)[0])
+    output = (c_uint * 1)(Fy)
+    assert hand.library.fmi2SetReal(a, output, 1, (c_double * 1)(1.0)) == 3, "an output cannot be set"
+    assert hand.library.fmi2GetReal(a, (c_uint * 1)(99), 1, (c_double * 1)()) == 3
+    for m in (a, b):
+        hand.library.fmi2FreeInstance(m)
+
+
+@needs_compiler
+@pytest.mark.parametrize("fmi", [2, 3])
+def test_the_sources_compile_without_a_warning_with_prefixed_names(fmus, fmi, tmp_path):
+    with zipfile.ZipFile(fmus[fmi]) as archive:
+        archive.extractall(tmp_path)
+    sources = sorted((tmp_path / "sources").glob("*.c"))
+    assert len(sources) == 2
+    warnings = ["-std=c99", "-pedantic", "-Wall", "-Wextra", "-Werror"]
+    prefix = ["-DFMI2_FUNCTION_PREFIX=tyre_1_front____rear___x__"] if fmi == 2 else []
+    command = [str(COMPILER), *warnings, *prefix, "-c", *map(str, sources)]
+    done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    symbols = (tmp_path / f"{sources[1].stem}.o").read_bytes()
+    assert f"tyre_1_front____rear___x__fmi{fmi}DoStep".encode() in symbols
+
+
+def test_the_same_tyre_gives_the_same_bytes(tmp_path):
+    one = write_fmu(FILE, tmp_path / "a", sources_only=True)
+    two = write_fmu(FILE, tmp_path / "b", sources_only=True)
+    assert one.read_bytes() == two.read_bytes()
+    with zipfile.ZipFile(one) as archive:
+        assert not [name for name in archive.namelist() if name.startswith("binaries")]
+        assert {info.external_attr >> 16 & 0o444 for info in archive.infolist()} == {0o444}
+
+
+def test_without_a_compiler_the_sentence_names_the_choice(tmp_path, monkeypatch):
+    monkeypatch.delenv("CC", raising=False)
+    monkeypatch.setenv("PATH", str(tmp_path))
+    with pytest.raises(InputError, match=r"no C compiler.*--sources-only"):
+        write_fmu(FILE, tmp_path / "out")
+    assert not (tmp_path / "out").exists()
+    monkeypatch.setenv("CC", "no-such-compiler")
+    with pytest.raises(InputError, match="no-such-compiler did not run"):
+        write_fmu(FILE, tmp_path / "out")
+    assert write_fmu(FILE, tmp_path / "out", sources_only=True).is_file()
+
+
+def test_files_of_others_are_left_alone(tmp_path):
+    (tmp_path / "moto_front.h").write_text("mine")
+    with pytest.raises(InputError, match=r"moto_front\.h.*no run of mffit"):
+        write_c(FILE, tmp_path)
+    assert (tmp_path / "moto_front.h").read_text() == "mine"
+    assert not (tmp_path / "moto_front.c").exists()
+
+
+def test_the_commands_write_where_they_are_told(tmp_path, capsys):
+    main(["export", "c", str(FILE), "--out", str(tmp_path), "--name", "front", "--no-turn-slip"])
+    main(["export", "fmu", str(FILE), "--out", str(tmp_path), "--sources-only", "--fmi", "3"])
+    assert {"front.c", "front.h", "moto_front.fmu"} <= {path.name for path in tmp_path.iterdir()}
+    assert "turn_slip" not in (tmp_path / "front.h").read_text()
+    assert "moto_front.fmu" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"), [(["--name", "3x"], "no name in C"), (["--fmi", "1"], "Invalid value")]
+)
+def test_bad_choices_end_in_one_sentence(tmp_path, capsys, arguments, said):
+    with pytest.raises(SystemExit) as end:
+        main(["export", "fmu", str(FILE), "--out", str(tmp_path), *arguments])
+    assert end.value.code == 2
+    assert said in capsys.readouterr().err
+    assert not list(tmp_path.iterdir())
