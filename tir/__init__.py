@@ -6,6 +6,7 @@
 True
 """
 
+from tir import transient
 from tir.calls import compile_kernels
 from tir.codegen.c99 import export_c
 from tir.codegen.casadi import casadi_function
@@ -25,4 +26,5 @@ __all__ = [
     "compile_kernels",
     "export_c",
     "read",
+    "transient",
 ]
