@@ -7,8 +7,8 @@ state. With its deflections against the wheel, u forwards and v to the right [m]
     dv/dt + |Vx| / sigma_y v =  Vsy        tan(alpha') = sgn(Vx) v / sigma_y
 
 (H. B. Pacejka, Tire and Vehicle Dynamics, 3rd ed., section 7.2.1, equations 7.7 and 7.9, in the signs of this package.)
-sigma_x and sigma_y are the slip stiffness over the carcass stiffness (A8, A9 of the file's formulae), so that at standstill, where
-du/dt = -Vsx, what is left is a spring of the carcass stiffness. Each step solves the equations exactly for speeds that
+sigma_x and sigma_y are the slip stiffness over the carcass stiffness (A8, A9), so that at standstill, where du/dt = -Vsx, what is
+left is a spring of the carcass stiffness. Each step solves the equations exactly for speeds that
 stay constant in it: steps of any length are stable.
 """
 
@@ -143,8 +143,12 @@ def _no_growth(x: Any, before: Any, limit: Any) -> Any:
 
 
 def _fading(Vx: Any, low: float) -> Any:
-    """1 at standstill, 0 from ``low`` on, smooth between (Pacejka, equation 7.25)."""
-    return np.where(np.abs(Vx) < low, 0.5 * (1.0 + np.cos(np.pi * np.asarray(Vx) / low)), 0.0) if low > 0.0 else 0.0
+    """1 at standstill, 0 from ``low`` on, smooth between (Pacejka, chapter 7)."""
+    return (
+        np.where(np.abs(Vx) < low, 0.5 * (1.0 + np.cos(np.pi * np.asarray(Vx) / low)), 0.0)
+        if low > 0.0
+        else 0.0
+    )
 
 
 def _ratio(x: Any, sigma: Any) -> Any:
