@@ -12,7 +12,9 @@ from tir.parameters import TABLE
 from tir.transient import Contact, step
 
 TYRE = tir.read(Path(__file__).parent / "vectors" / "MagicFormula61.tir")
-SYMMETRIC = TYRE.replace(**{row.name: 0.0 for row in TABLE if "odd" in row.symmetry})
+SHIFTS = ("PHX1", "PHX2", "PVX1", "PVX2")
+"""By which the slope of Fx at no slip is not K_xk."""
+SYMMETRIC = TYRE.replace(**{row.name: 0.0 for row in TABLE if "odd" in row.symmetry or row.name in SHIFTS})
 Fz = 5000.0
 
 
@@ -101,7 +103,7 @@ def test_the_longest_step_is_stable():
 
 
 def test_without_load_the_contact_is_lost():
-    contact, forces = step(TYRE, Contact(0.01, 0.02), 0.01, 0.0, 0.0, 1.0, 1.0)
+    contact, forces = step(TYRE, Contact(0.03, 0.02), 0.01, 0.0, 0.0, 1.0, 1.0)
     assert contact == Contact(0.0, 0.0)
     assert (forces.Fx, forces.Fy, forces.Mz) == (0.0, 0.0, 0.0)
 
