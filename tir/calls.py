@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from tir.codegen import arrays as in_arrays
 from tir.codegen import kernel, single
 from tir.codegen.program import INPUTS, NUMBERS, Switches
 from tir.equations.forces import Forces, State
@@ -183,7 +184,7 @@ def _many(tyre: Tyre, inputs: Sequence[np.ndarray], n: int, switches: Switches) 
         return _computed(run, inputs, slice(0, n), *_space(n))
     out = np.empty((len(FORCES), n))
     if run is None:
-        _in_numpy(tyre, inputs, out, switches)
+        _in_numpy(_arrays_of(tyre, switches), inputs, out)
     elif n < THREADS_FROM:
         _in_blocks(run, inputs, out, 0, n)
     else:
@@ -191,12 +192,24 @@ def _many(tyre: Tyre, inputs: Sequence[np.ndarray], n: int, switches: Switches) 
     return out
 
 
-def _in_numpy(tyre: Tyre, inputs: Sequence[np.ndarray], out: np.ndarray, switches: Switches) -> None:
-    for start in range(0, out.shape[1], BLOCK):
-        block = [x if x.ndim == 0 else x[start : start + BLOCK] for x in inputs]
-        found = _evaluated(tyre, block, switches)[0]
-        for row, force in zip(out, found, strict=True):
-            row[start : start + BLOCK] = force
+def _arrays_of(tyre: Tyre, switches: Switches) -> Callable:
+    """The tyre as a function of arrays, kept with the tyre; the equations as they are if a parameter is no real number."""
+    key = ("arrays", switches)
+    if key not in tyre.prepared:
+        values = _values(tyre)
+        if values is None:
+            return lambda *block: _evaluated(tyre, block, switches)[0]
+        tyre.prepared[key] = in_arrays.run_of(values, switches)
+    return tyre.prepared[key]
+
+
+def _in_numpy(run: Callable, inputs: Sequence[np.ndarray], out: np.ndarray) -> None:
+    whole = [np.asarray(x, dtype=float) for x in inputs]
+    with np.errstate(all="ignore"):  # as the compiled code: NaN and infinity say enough
+        for start in range(0, out.shape[1], BLOCK):
+            found = run(*(x[()] if x.ndim == 0 else x[start : start + BLOCK] for x in whole))
+            for row, force in zip(out, found, strict=True):
+                row[start : start + BLOCK] = force
 
 
 def _space(n: int) -> tuple[np.ndarray, np.ndarray]:

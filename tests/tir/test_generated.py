@@ -14,7 +14,7 @@ import pytest
 
 import tir
 from tir import calls
-from tir.codegen import kernel, single
+from tir.codegen import kernel, single, source
 from tir.codegen.graph import INPUT, PARAMETER, Graph
 from tir.codegen.program import INPUTS, Switches, trace
 from tir.equations.forces import Forces, State
@@ -186,7 +186,40 @@ def test_large_calls_without_numba_go_through_numpy(monkeypatch, tyre):
     monkeypatch.setattr(calls, "COMPILE_FROM", 1)
     monkeypatch.setattr(calls, "LOADED", {})
     alpha = np.linspace(-0.1, 0.1, 7)
-    assert np.array_equal(tyre(2000.0, alpha).Fy, evaluate(tyre.p, 2000.0, alpha)[0].Fy)
+    assert tyre(2000.0, alpha).Fy == pytest.approx(evaluate(tyre.p, 2000.0, alpha)[0].Fy, rel=1e-12)
+
+
+@pytest.mark.parametrize("switches", ALL_SWITCHES, ids=str)
+def test_arrays_without_numba_equal_the_equations(tyre, conditions, switches, monkeypatch):
+    """Each input as an array, and as a single number beside arrays."""
+    monkeypatch.setattr(calls, "LOADED", {})
+    with np.errstate(all="ignore"):
+        wanted = evaluate(tyre.p, **conditions, **switches._asdict())[0]
+        assert_equal(calls.forces(tyre, list(conditions.values()), switches), wanted, Forces._fields)
+        for name in INPUTS:
+            for value in (conditions[name][0], conditions[name][-1]):
+                given = {**conditions, name: np.array(value)}
+                wanted = evaluate(tyre.p, **given, **switches._asdict())[0]
+                assert_equal(calls.forces(tyre, list(given.values()), switches), wanted, Forces._fields)
+
+
+def test_whole_numbers_and_short_floats_are_computed_as_doubles(tyre):
+    rows = np.array([[2000, 220000], [3000, 240000]])
+    found = tyre(rows[:, 0].astype("i4"), 0.0625, p=rows[:, 1].astype("f4"))
+    assert found.Fy == pytest.approx([tyre(float(Fz), 0.0625, p=float(p)).Fy for Fz, p in rows], rel=1e-12)
+
+
+def test_the_code_for_arrays_keeps_no_array_longer_than_needed():
+    from tir.codegen import arrays
+
+    text = source.conditions(trace(Switches(True), Forces._fields), arrays.DIALECT)
+    gone: set[str] = set()
+    for line in text.splitlines():
+        names = set(source.VARIABLE.findall(line))
+        assert not names & gone, f"{names & gone} is used after it was deleted"
+        if line.strip().startswith("del "):
+            gone |= names
+    assert len(gone) > 100
 
 
 def test_a_called_tyre_goes_to_other_processes(tyre):
