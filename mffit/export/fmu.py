@@ -81,13 +81,13 @@ def _texts(
     """The files of the archive, by their place in it."""
     code = c_of(tyre, path, name, turn_slip=turn_slip, limits=limits)
     given, found = variables.inputs(tyre), variables.outputs()
-    on = [word for word, is_on in (("turn slip", turn_slip), ("limits", limits)) if is_on]
+    use = f"turn slip {'on' if turn_slip else 'off'}{', inputs held to the ranges' if limits else ''}"
     content = {
         "name": name,
         "title": path.stem,
         "version": mffit.__version__,
         "token": "{" + str(uuid.UUID(hashlib.sha256(f"{fmi} {code.source}".encode()).hexdigest()[:32])) + "}",
-        "description": f"Tyre {path.name}: MF 6.2 in steady state, {' and '.join(on) or 'no turn slip'}; axes ISO-W",
+        "description": f"Tyre {path.name}: MF 6.2 in steady state, {use}; axes ISO-W",
         "inputs": given,
         "outputs": found,
         "units": variables.UNITS.values(),

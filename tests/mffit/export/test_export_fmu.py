@@ -237,6 +237,13 @@ def test_the_commands_write_where_they_are_told(tmp_path, capsys):
     assert "moto_front.fmu" in capsys.readouterr().out
 
 
+def test_the_switches_reach_the_code(tmp_path):
+    held = write_fmu(FILE, tmp_path, turn_slip=False, limits=True, sources_only=True)
+    with zipfile.ZipFile(held) as archive:
+        assert "Computed with: limits." in archive.read("sources/moto_front.h").decode()
+        assert "turn slip off, inputs held" in archive.read("modelDescription.xml").decode()
+
+
 @pytest.mark.parametrize(
     ("arguments", "said"), [(["--name", "3x"], "no name in C"), (["--fmi", "1"], "Invalid value")]
 )
