@@ -10,12 +10,15 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from mffit.export import write_c, write_fmu
     from mffit.pipeline import align, build, diagnose, spin
     from mffit.viewer import show
 
 __version__ = "0.1.0"
 
-__all__ = ["align", "build", "diagnose", "show", "spin"]
+__all__ = ["align", "build", "diagnose", "show", "spin", "write_c", "write_fmu"]
+ELSEWHERE = {"show": "mffit.viewer", "write_c": "mffit.export", "write_fmu": "mffit.export"}
+"""Public names that are not the pipeline's."""
 
 
 def __getattr__(name: str) -> Any:
@@ -23,7 +26,7 @@ def __getattr__(name: str) -> Any:
     if name in __all__:
         from importlib import import_module
 
-        return getattr(import_module("mffit.viewer" if name == "show" else "mffit.pipeline"), name)
+        return getattr(import_module(ELSEWHERE.get(name, "mffit.pipeline")), name)
     raise AttributeError(f"module 'mffit' has no attribute {name!r}")
 
 

@@ -10,7 +10,12 @@ from mffit.output import output_folder
 
 
 def write_c(
-    path: Path, out: Path, *, name: str | None = None, turn_slip: bool = True, limits: bool = False
+    path: str | Path,
+    out: str | Path,
+    *,
+    name: str | None = None,
+    turn_slip: bool = True,
+    limits: bool = False,
 ) -> list[Path]:
     """Write a property file as one C99 header and one source, see :func:`tir.export_c`.
 
@@ -33,6 +38,7 @@ def write_c(
     TirError
         The file cannot be read.
     """
+    path, out = Path(path), Path(out)
     name = identifier(path, name)
     code = c_of(tir.read(path), path, name, turn_slip=turn_slip, limits=limits)
     with output_folder(out, by="export", protected=[path]) as folder:

@@ -29,8 +29,8 @@ EARLIEST = (1980, 1, 1, 0, 0, 0)
 
 
 def write_fmu(
-    path: Path,
-    out: Path,
+    path: str | Path,
+    out: str | Path,
     *,
     fmi: int = 2,
     name: str | None = None,
@@ -66,6 +66,7 @@ def write_fmu(
     """
     if fmi not in DEFINITIONS:
         raise InputError(f"FMI {fmi} is not written, only {' and '.join(map(str, DEFINITIONS))}")
+    path, out = Path(path), Path(out)
     tyre, name = tir.read(path), identifier(path, name)
     files = _texts(tyre, path, name, fmi, turn_slip, limits)
     if not sources_only:
