@@ -1,4 +1,4 @@
-"""A property file for other programs: `mffit export c`, `mffit export fmu`."""
+"""A property file or a project's points for other programs: `mffit export c`, `fmu`, `tydex`."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ def _shared(command: Any) -> Any:
 
 @click.group()
 def export() -> None:
-    """A .tir as C99 sources, or as an FMU (functional mock-up unit)."""
+    """A .tir as C99 sources or as an FMU (functional mock-up unit); a project's points as TYDEX."""
 
 
 @export.command()
@@ -62,3 +62,18 @@ def fmu(
         file, out, fmi=int(fmi), name=name, turn_slip=turn_slip, limits=limits, sources_only=sources_only
     )
     click.echo(f"written: {written}")
+
+
+@export.command()
+@click.argument("tyre_toml", type=click.Path(path_type=Path))
+@click.option(
+    "--out",
+    type=click.Path(path_type=Path),
+    help="Folder to write to [default: out/tydex/ beside TYRE_TOML].",
+)
+def tydex(tyre_toml: Path, out: Path | None) -> None:
+    """The points of a project as TYDEX 1.3, a file for each sweep."""
+    from mffit import pipeline
+
+    written = pipeline.write_tydex(tyre_toml, out or tyre_toml.parent / "out" / "tydex")
+    click.echo(f"written: {', '.join(map(str, written))}")

@@ -81,7 +81,7 @@ def _sections(path: Path) -> dict[str, list[tuple[int, str]]]:
     for number, line in enumerate(_text(path).splitlines(), start=1):
         line = line.expandtabs(WIDTH).rstrip()
         if line.startswith("**"):
-            section = line[2:].strip().upper()
+            section = (line[2:].split() or [""])[0].upper()  # **MEASURDATA may go on with the number of rows
             found.setdefault(section, [])
         elif section and line.strip() and not line.lstrip().startswith("!"):
             found[section].append((number, line))

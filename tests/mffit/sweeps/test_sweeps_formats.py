@@ -96,6 +96,9 @@ WRITERS = {
     "run.tdx": lambda path: path.write_text(tydex()),
     "scaled.tdx": lambda path: path.write_text(tydex(factor=0.25, offset=3.0, shift=-1.0)),
     "free.tdx": lambda path: path.write_text(tydex(fixed=False, end="\r\n"), newline=""),
+    "counted.tdx": lambda path: path.write_text(
+        tydex().replace("**MEASURDATA", f"**MEASURDATA{len(TABLE):>18}")
+    ),
     "run.tdx.gz": lambda path: path.write_bytes(gzip.compress(tydex().encode())),
     "plain.csv": lambda path: TABLE.to_csv(path, index=False),
     "german.csv": lambda path: TABLE.to_csv(path, index=False, sep=";", decimal=","),

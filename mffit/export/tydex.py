@@ -1,0 +1,95 @@
+"""Measured points as TYDEX files, release 1.3: one for each sweep, free columns, every digit."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from datetime import datetime
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from mffit import __version__
+from mffit.config import Config
+from mffit.errors import InputError
+from mffit.points import Points
+
+LONGEST_NAME, LONGEST_TEXT = 10, 30
+MISSING = "NOTAVAIL"
+
+
+class Channel(NamedTuple):
+    """A channel of TYDEX: at most ten letters, and where its numbers come from."""
+
+    name: str
+    words: str
+    unit: str
+    of: Callable[[Points], np.ndarray]
+
+
+CHANNELS = (
+    Channel("SLIPANGL", "slip angle", "rad", lambda p: p.alpha),
+    Channel("INCLANGL", "inclination angle", "rad", lambda p: p.gamma),
+    Channel("FZW", "vertical force", "N", lambda p: p.Fz),
+    Channel("FYW", "lateral force", "N", lambda p: p.Fy),
+    Channel("MXW", "overturning moment", "Nm", lambda p: p.Mx),
+    Channel("MYW", "rolling resistance moment", "Nm", lambda p: p.My),
+    Channel("MZW", "self aligning moment", "Nm", lambda p: p.Mz),
+    Channel("INFLPRES", "inflation pressure", "Pa", lambda p: p.p),
+    Channel("TRAJVELW", "trajectory velocity", "m/s", lambda p: p.V),
+    Channel("TYRETEMP", "tyre temperature", "degC", lambda p: p.T),
+)
+"""In TYDEX W axes, which are those of ISO; a channel that was not measured is left out."""
+
+
+def tydex_texts(points: Points, config: Config) -> dict[str, str]:
+    """The text of a file for each sweep, by a name that is no path.
+
+    Read again with ``axes = "iso"`` the files give the same points to rounding. Direction, mount and path curvature, for
+    which TYDEX has no channel, stand in the comments.
+
+    Raises
+    ------
+    InputError
+        Two sweeps would have the same name.
+    """
+    texts: dict[str, str] = {}
+    for k in np.unique(points.sweep):
+        name = "".join(c if c.isalnum() or c in "-_." else "_" for c in points.sweep_names[k])
+        if name in texts:
+            raise InputError(f'two sweeps would both be written as "{name}.tdx"; rename one of their files')
+        texts[name] = "\n".join([*_lines(name, points.select(points.sweep == k), config), ""])
+    return texts
+
+
+def _lines(name: str, points: Points, config: Config) -> Iterator[str]:
+    there = [channel for channel in CHANNELS if np.any(np.isfinite(channel.of(points)))]
+    yield "**HEADER"
+    yield _row("RELEASE", "Release of TYDEX-Format", "", "1.3")
+    yield _row("MEASID", "Measurement ID", "", name)
+    yield _row("SUPPLIER", "Data supplier", "", f"mffit {__version__}")
+    yield _row("DATE", "Date", "", f"{datetime.now():%d-%b-%y}")
+    yield "**COMMENTS"
+    yield from _remarks(points, config)
+    yield "**CONSTANTS"
+    yield _row("OVALLDIA", "Overall diameter", "m", repr(2.0 * config.tyre.unloaded_radius))
+    yield "**MEASURCHANNELS"
+    for channel in there:
+        yield _row(channel.name, channel.words, channel.unit, "1", "0", "0")
+    yield "**MEASURDATA"  # with the number of rows behind it, as some write, other readers do not know it
+    for row in np.column_stack([channel.of(points) for channel in there]).tolist():
+        yield " ".join(repr(x) if np.isfinite(x) else MISSING for x in row)
+    yield "**END"
+
+
+def _remarks(points: Points, config: Config) -> Iterator[str]:
+    yield f"! {config.tyre.name}: steady points, ISO-W axes, forces in the contact frame, nothing corrected"
+    yield f"! rolling {'forwards' if np.all(points.direction > 0) else 'backwards'}"
+    if np.any(points.mount < 0):
+        yield "! tyre turned on its rim"
+    if np.any(points.phi_t):
+        yield f"! on a path of {1.0 / np.max(np.abs(points.phi_t)):.6g} m radius, turn slip {points.phi_t[0]:+.6g} 1/m"
+
+
+def _row(name: str, words: str, unit: str, *values: Any) -> str:
+    head = f"{name[:LONGEST_NAME]:<10}{words[:LONGEST_TEXT]:<30}{unit:<10}"
+    return (head + " ".join(map(str, values))).rstrip()

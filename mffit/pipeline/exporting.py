@@ -1,0 +1,38 @@
+"""``mffit export tydex``: the points of a project for other programs."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from mffit import config as configuration
+from mffit import points as ingestion
+from mffit.config import Config
+from mffit.export.tydex import tydex_texts
+from mffit.output import output_folder
+from mffit.pipeline.inputs import inputs_of
+
+
+def write_tydex(config: Config | str | Path, out: str | Path) -> list[Path]:
+    """Write the points of a project, as ``mffit build`` uses them, as TYDEX 1.3: one file for each sweep.
+
+    Parameters
+    ----------
+    config : path of a ``tyre.toml``, or a loaded Config
+    out : folder to write to
+
+    Returns
+    -------
+    list of Path
+        What was written.
+
+    Raises
+    ------
+    InputError
+        The sweeps cannot be read, two would have the same name, or the folder cannot be written to.
+    """
+    config, out = configuration.load(config), Path(out)
+    texts = tydex_texts(ingestion.read(config).points, config)
+    with output_folder(out, by="export", protected=inputs_of(config)) as folder:
+        for name, text in texts.items():
+            (folder / f"{name}.tdx").write_text(text, encoding="latin-1", errors="replace", newline="\r\n")
+    return [out / f"{name}.tdx" for name in texts]
