@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import hashlib
 import json
 import os
@@ -10,7 +11,7 @@ import re
 import shutil
 import tempfile
 from collections.abc import Collection, Iterable, Iterator, Mapping
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path, PurePosixPath
 from typing import NamedTuple
 
@@ -20,6 +21,11 @@ RECORD = ".mffit.json"
 """The usual record of a folder: each file that a run wrote there, with its SHA-256 and the command that did."""
 
 ABOUT = "Written by mffit: it replaces the files listed here, while they are unchanged, and no others."
+
+READY = ".ready.json"
+"""Stands in a temporary folder from the moment in which its files begin to move: the next run ends what a killed one began."""
+NO_ROOM = frozenset({errno.ENOSPC, errno.EROFS, errno.EDQUOT, errno.EFBIG})
+"""What a full or read-only disk says."""
 
 
 class Entry(NamedTuple):
@@ -63,14 +69,15 @@ def output_folder(
     what an earlier run of the same command wrote, and this one does not, goes, if it is unchanged.
 
     An interrupted or failing run leaves ``out`` as it was. A killed one leaves its temporary folder, which
-    the next run to the same place removes: its name tells machine and process.
+    the next run to the same place removes: its name tells machine and process. If it was killed while its
+    finished files were moving, the next run moves the rest first.
     """
     parent = out.absolute().parent
     if out.exists() and not out.is_dir():
         raise InputError(f"{out} is a file, and the output needs a folder: name another with --out")
     try:
         parent.mkdir(parents=True, exist_ok=True)
-        _remove_litter(parent, out.name)
+        _remove_litter(out.absolute())
         temporary = Path(tempfile.mkdtemp(prefix=f"{_prefix(out.name)}{os.getpid()}-", dir=parent))
     except OSError as error:
         raise InputError(
@@ -92,6 +99,12 @@ def output_folder(
                 "folder with --out",
                 file=out,
             ) from error
+    except OSError as error:
+        if error.errno not in NO_ROOM:
+            raise
+        raise InputError(
+            f"cannot be written to ({error.strerror}); make room or name another folder with --out", file=out
+        ) from error
     finally:
         shutil.rmtree(temporary, ignore_errors=True)
 
@@ -106,6 +119,19 @@ def refuse_early(out: Path, names: Collection[str], protected: Iterable[Path] = 
     """
     if out.is_dir():
         _refuse(out, dict.fromkeys(names, ""), _recorded(out, RECORD), protected)
+
+
+def written_by(out: Path, by: str, record: str = RECORD) -> frozenset[str]:
+    """Files of ``out`` that the command ``by`` wrote and that are as it left them; empty where nothing is recorded."""
+    try:
+        recorded = _recorded(out, record)
+        return frozenset(
+            name
+            for name, entry in recorded.items()
+            if entry.by == by and (out / name).is_file() and digest(out / name) == entry.sha256
+        )
+    except (InputError, OSError):
+        return frozenset()
 
 
 def digest(path: Path) -> str:
@@ -176,11 +202,36 @@ def _move(
     content["files"] = {name: ":".join(entry) for name, entry in sorted(entries.items())}
     file.write_text(json.dumps(content, indent=2, ensure_ascii=False) + "\n", encoding="utf-8")
     out.mkdir(exist_ok=True)
-    for name in dict.fromkeys([*written, record]):
+    (temporary / READY).write_text(json.dumps({"record": record, "stale": stale}), encoding="utf-8")
+    _carry(temporary, out, [name for name in written if name != record], stale, record)
+
+
+def _carry(temporary: Path, out: Path, names: Iterable[str], stale: Iterable[str], record: str) -> None:
+    """Move the files, take the stale ones away, and the record last: it tells of a whole folder."""
+    for name in names:
         (out / name).parent.mkdir(exist_ok=True)
         os.replace(temporary / name, out / name)
     for name in stale:
-        (out / name).unlink()
+        (out / name).unlink(missing_ok=True)
+    os.replace(temporary / record, out / record)
+
+
+def _end(dead: Path, out: Path) -> None:
+    """Move what a killed run had finished and not yet moved; nothing if somebody changed a file since."""
+    ready = json.loads((dead / READY).read_text(encoding="utf-8"))
+    record = ready["record"]
+    if not (dead / record).is_file():
+        return
+    recorded = _recorded(out, record)
+    left = {path.relative_to(dead).as_posix(): digest(path) for path in dead.rglob("*") if path.is_file()}
+    moving = {name: new for name, new in left.items() if name not in (READY, record)}
+    _refuse(out, moving, recorded, ())
+    unchanged = [
+        n
+        for n in ready["stale"]
+        if n in recorded and (out / n).is_file() and digest(out / n) == recorded[n].sha256
+    ]
+    _carry(dead, out, moving, unchanged, record)
 
 
 def _stale(
@@ -223,12 +274,15 @@ def _prefix(name: str) -> str:
     return f".{name}-{machine}-"
 
 
-def _remove_litter(parent: Path, name: str) -> None:
-    """Remove temporary folders for ``name`` whose process, on this machine, is no more."""
-    prefix = _prefix(name)
-    for path in parent.iterdir():
+def _remove_litter(out: Path) -> None:
+    """Remove temporary folders for ``out`` whose process, on this machine, is no more; first what they had finished moves."""
+    prefix = _prefix(out.name)
+    for path in out.parent.iterdir():
         found = re.fullmatch(r"(\d+)-\w{8}", path.name.removeprefix(prefix))
         if path.name.startswith(prefix) and found and path.is_dir() and not _alive(int(found[1])):
+            if (path / READY).is_file():
+                with suppress(InputError, OSError, ValueError, LookupError, TypeError):
+                    _end(path, out)
             shutil.rmtree(path, ignore_errors=True)
 
 

@@ -16,6 +16,9 @@ from mffit.config.models import Config
 from mffit.config.problems import first_problem
 from mffit.errors import InputError
 
+OF_A_PLAN = frozenset({"truth", "faults", "noise", "conditions"})
+"""Tables that only the plan of a virtual rig has."""
+
 
 def load(source: str | Path | Mapping[str, Any] | Config, *, folder: str | Path | None = None) -> Config:
     """Read and check a configuration.
@@ -43,11 +46,14 @@ def load(source: str | Path | Mapping[str, Any] | Config, *, folder: str | Path 
     text = _text(path)
     try:
         content = tomllib.loads(text)
+        if not path.name.lower().endswith(".toml") and not content.keys() & Config.model_fields.keys():
+            raise _other_file(path)
     except tomllib.TOMLDecodeError as error:
         raise _syntax_error(error, path, text) from None
-    if "truth" in content:
+    if plan := content.keys() & OF_A_PLAN:
         raise InputError(
-            "is a plan for the virtual rig, as its [truth] says: run `mffit simulate` on it and build what that writes",
+            f"is a rig.toml, a plan for the virtual rig, as its [{min(plan)}] says: run `mffit simulate` on it and build what "
+            "that writes",
             file=path,
         )
     return _checked(content, path, Path(folder or path.parent), lines_of_keys(text))
@@ -65,10 +71,28 @@ def _text(path: Path) -> str:
     except OSError as error:
         raise InputError(f"cannot be read ({error.strerror}); check its permissions", file=path) from None
     except UnicodeDecodeError:
+        if not path.name.lower().endswith(".toml"):
+            raise _other_file(path) from None
         raise InputError("is not UTF-8 text; save it as UTF-8", file=path) from None
 
 
+def _other_file(path: Path) -> InputError:
+    """What to do with a file that is evidently something else."""
+    if path.name.lower().endswith(".tir"):
+        return InputError(
+            'is a property file, not a tyre.toml: `mffit check` looks at it, and a tyre.toml names it as base = "..." '
+            "under [tyre]",
+            file=path,
+        )
+    return InputError(
+        f"is not a tyre.toml; if it is a recording or a table of points, `mffit init --from {path.name} DIR` writes one for it",
+        file=path,
+    )
+
+
 def _syntax_error(error: tomllib.TOMLDecodeError, path: Path, text: str) -> InputError:
+    if not path.name.lower().endswith(".toml"):
+        return _other_file(path)
     said = str(error)
     place = re.search(r"\(at line (\d+), column (\d+)\)", said)
     line = int(place[1]) if place else max(len(text.splitlines()), 1)

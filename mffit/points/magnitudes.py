@@ -46,10 +46,10 @@ def check_magnitudes(points: Points) -> None:
                 found = slope(part, part.Fy, angle, part.direction == way)
                 if found.sign and abs(found.value) > steepest:
                     raise _radians(name, angle, getattr(part, angle), found.value)
+        _check_dead(name, part)
         _check_friction(name, part)
         _check_single_load(name, part)
         _check_largest_friction(name, part)
-        _check_dead(name, part)
         arm = np.abs(part.Mz) / part.Fz
         if np.any(arm > LONGEST_ARM):
             raise InputError(

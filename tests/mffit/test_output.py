@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import errno
 import json
 import os
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -116,6 +118,75 @@ def test_a_dead_runs_folder_is_removed_and_a_living_ones_is_not(tmp_path):
     (tmp_path / ".out-mine").mkdir()
     write(tmp_path / "out", a="1")
     assert {path.name for path in tmp_path.glob(".out-*")} == {living.name, ".out-mine"}
+
+
+KILLED_WHILE_MOVING = """
+import os, sys
+from pathlib import Path
+from mffit import output
+moved = os.replace
+def replace(source, target):
+    moved(source, target)
+    os._exit(9)
+output.os.replace = replace
+with output.output_folder(Path(sys.argv[1]), by="build") as folder:
+    (folder / "plots").mkdir()
+    for name in ("a", "b", "plots/p"):
+        (folder / name).write_text("2")
+"""
+
+
+@pytest.fixture
+def half_moved(tmp_path):
+    """A folder of which one of three files is of a later run, killed while its files were moving."""
+    out = tmp_path / "out"
+    write(out, a="1", b="1", plots__old="1")
+    ended = subprocess.run([sys.executable, "-c", KILLED_WHILE_MOVING, str(out)], check=False)
+    assert ended.returncode == 9
+    assert [(out / name).read_text() for name in ("a", "b")] == ["2", "1"]
+    return out
+
+
+def test_a_run_killed_while_its_files_were_moving_is_ended_by_the_next(half_moved):
+    write(half_moved, c="3")
+    assert {name: text for name, text in snapshot(half_moved).items() if name != RECORD} == {
+        "a": b"2", "b": b"2", "plots/p": b"2", "c": b"3",
+    }  # fmt: skip
+    assert not list(half_moved.parent.glob(".out-*"))
+
+
+def test_it_is_not_ended_over_what_somebody_changed_since(half_moved):
+    (half_moved / "b").write_text("mine")
+    write(half_moved, c="3")
+    assert (half_moved / "b").read_text() == "mine"
+    assert not list(half_moved.parent.glob(".out-*"))
+
+
+@pytest.mark.parametrize("code", [errno.ENOSPC, errno.EROFS])
+@pytest.mark.parametrize("where", ["write", "mkdtemp", "replace"])
+def test_a_full_or_read_only_disk_is_said_in_a_sentence(tmp_path, monkeypatch, code, where):
+    out = tmp_path / "out"
+    write(out, a="1")
+
+    def refused(*given, **keys):
+        raise OSError(code, os.strerror(code), "a")
+
+    if where == "mkdtemp":
+        monkeypatch.setattr("mffit.output.tempfile.mkdtemp", refused)
+    elif where == "replace":
+        monkeypatch.setattr("mffit.output.os.replace", refused)
+
+    def run_into_it() -> None:
+        with output_folder(out, by="build") as folder:
+            (folder / "a").write_text("2")
+            if where == "write":
+                refused()
+
+    with pytest.raises(InputError, match=re.escape(os.strerror(code))) as told:
+        run_into_it()
+    assert "--out" in str(told.value)
+    assert (out / "a").read_text() == "1"
+    assert not list(tmp_path.glob(".out-*"))
 
 
 def test_what_would_be_refused_at_the_end_is_refused_before_the_work(tmp_path):

@@ -1,0 +1,115 @@
+"""Data are data: names that come from files stand in pages as text and can do nothing there."""
+
+from __future__ import annotations
+
+import dataclasses
+from html.parser import HTMLParser
+
+import numpy as np
+import pytest
+from report_toys import TRUE, made_config, made_points, made_result, programme
+
+import tir
+from mffit.diagnosis import diagnose
+from mffit.diagnosis.result import Outlier as Reading
+from mffit.fit import Doubt, Outlier
+from mffit.report import write_build, write_diagnosis
+
+HOSTILE = "<img src=x onerror=alert(1)>\"'$^&amp;</style></title><script>alert(2)</script>"
+"""Breaks out of an element, an attribute, a style sheet, a title and the type setting of a picture."""
+
+
+class Suspicious(HTMLParser):
+    """Everything in a page that could act or fetch."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.found: list[str] = []
+        self.text = ""
+
+    def handle_starttag(self, tag, attrs):
+        if tag in ("script", "iframe", "object", "embed", "link", "base", "form"):
+            self.found.append(tag)
+        for name, value in attrs:
+            if name.startswith("on") or (
+                name in ("src", "href") and not (value or "").startswith(("data:image/", "#"))
+            ):
+                self.found.append(f"{tag} {name}={value}")
+
+    def handle_data(self, data):
+        self.text += data
+
+
+def read(path) -> Suspicious:
+    page = Suspicious()
+    page.feed(path.read_text(encoding="utf-8"))
+    page.close()
+    return page
+
+
+def hostile(points):
+    """The same points from files and sweeps with hostile names and a hostile column."""
+    n = len(points.files)
+    return points.replace(
+        files=tuple(f"{HOSTILE}{i}.csv" for i in range(n)),
+        sweep_names=tuple(f"{HOSTILE}{i}" for i in range(n)),
+        table=points.table.assign(**{HOSTILE: 0.0}),
+    )
+
+
+@pytest.fixture(scope="module")
+def settings():
+    """[tyre] size and the sweep's file are free texts; a name is not: it must do as a file's."""
+    given = made_config()
+    return given.model_copy(
+        update={
+            "tyre": given.tyre.model_copy(update={"size": HOSTILE}),
+            "sweep": (given.sweep[0].model_copy(update={"file": HOSTILE}),),
+        }
+    )
+
+
+def test_the_build_report_shows_hostile_names_as_text(settings, tmp_path):
+    result = made_result()
+    fit = dataclasses.replace(
+        result.fit,
+        doubts=(Doubt(HOSTILE, HOSTILE, np.arange(3), "Fy", 9.0, 3.0, 0.1, HOSTILE),),
+        outliers=(Outlier(HOSTILE, 3, HOSTILE, 2, "Fy", 1.0, 2.0, 9.0),),
+        explanations=(HOSTILE, HOSTILE),
+        distrusted=(HOSTILE,),
+    )
+    write_build(
+        dataclasses.replace(
+            result,
+            config=settings,
+            points=hostile(result.points),
+            fit=fit,
+            warnings=(HOSTILE,),
+            files={"turn-slip": f"{HOSTILE}.tir"},
+            tyres={"turn-slip": result.tyre.annotate(provenance={f"input {HOSTILE}": "0123456789abcdef"})},
+        ),
+        tmp_path,
+    )
+    page = read(tmp_path / "report.html")
+    assert page.found == []
+    assert page.text.count(HOSTILE) >= 4
+
+
+def test_the_diagnosis_shows_hostile_names_as_text(settings, tmp_path):
+    points = hostile(made_points(programme()))
+    found = diagnose(points, tir.read(TRUE), settings)
+    found = dataclasses.replace(
+        found,
+        outliers=(Reading("Fy", HOSTILE, HOSTILE, 3, 40.0, 9.0),),
+        model_after=f"{HOSTILE}.tir",
+    )
+    write_diagnosis(found, tmp_path)
+    page = read(tmp_path / "diagnosis.html")
+    assert page.found == []
+    assert HOSTILE in page.text
+
+
+def test_the_reader_of_this_test_would_find_them():
+    page = Suspicious()
+    page.feed(f"<p>{HOSTILE}</p>")
+    assert page.found == ["img src=x", "img onerror=alert(1)", "script"]
