@@ -95,3 +95,11 @@ MODEL = {
     "sigma_y": Quantity("lateral relaxation length", "σ_y", "m"),
 }
 """What the model of a tyre takes and gives, by tir's names; shown in these units, computed in SI."""
+COMPARED = {
+    "C_alpha_N_per_rad": DIRECT["C_alpha"],
+    "C_gamma_N_per_rad": DIRECT["C_gamma"],
+    "C_Mz_alpha_Nm_per_rad": Quantity("aligning stiffness", "C_Mα", "Nm/rad"),
+    "mu_y": Quantity("largest side force over load", "μ_y", "-"),
+    "Mz_peak_Nm": Quantity("largest aligning moment", "M_max", "Nm"),
+}
+"""What tyres are compared by, beside eps_gamma: of the fitted model at nominal load and pressure on a straight path."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import sys
 from contextlib import redirect_stderr, redirect_stdout
 
@@ -13,6 +14,7 @@ from mffit.cli.console import Unheard
 CONTEXT = {"help_option_names": ["-h", "--help"], "max_content_width": 100}
 COMMANDS = (
     building.build,
+    building.fleet,
     measuring.spin,
     measuring.align,
     diagnosing.diagnose,
@@ -47,8 +49,16 @@ def _run(arguments: list[str] | None) -> None:
 
     try:
         commands.main(arguments, standalone_mode=False)
+        sys.stdout.flush()
     except (InputError, TirError) as error:
         click.echo(f"mffit: {error}", err=True)
+        sys.exit(2)
+    except OSError as error:
+        if error.errno != errno.ENOSPC:
+            raise
+        click.echo(
+            f"mffit: no room is left on the disk ({error.filename or 'what is printed'}); make some", err=True
+        )
         sys.exit(2)
     except click.ClickException as error:
         error.show()

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import click
 
-from mffit.cli.console import progress
+from mffit.cli.console import Voice, voiced
 
 
 @click.command()
@@ -19,13 +19,16 @@ from mffit.cli.console import progress
     type=click.Path(path_type=Path),
     help="Folder to write to [default: out/diagnosis/ beside TYRE_TOML].",
 )
-def diagnose(tyre_toml: Path, model: Path | None, out: Path | None) -> None:
+@voiced
+def diagnose(tyre_toml: Path, model: Path | None, out: Path | None, voice: Voice) -> None:
     """Find where simulation and measurement disagree, name the missing effect, show the gap shrink."""
     from mffit import pipeline
     from mffit.report import text
+    from mffit.results import as_json
 
     out = out or tyre_toml.parent / "out" / "diagnosis"
-    with progress() as show:
+    with voice.progress() as show:
         diagnosis = pipeline.diagnose(tyre_toml, model, out=out, progress=show)
-    click.echo(text.diagnosis_summary(diagnosis))
-    click.echo(f"written to {out}: diagnosis.html, diagnosis.json, {diagnosis.model_after}")
+    voice.say(text.diagnosis_summary(diagnosis))
+    voice.say(f"written to {out}: diagnosis.html, diagnosis.json, {diagnosis.model_after}")
+    voice.give(lambda: as_json.diagnosis(diagnosis))

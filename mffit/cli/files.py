@@ -6,23 +6,28 @@ from pathlib import Path
 
 import click
 
+from mffit.cli.console import Voice, voiced
+
 
 @click.command()
 @click.argument("file", type=click.Path(path_type=Path), metavar="FILE.tir")
 @click.option(
     "--for", "targets", default="", metavar="NAMES", help="Programs that are to read it: mftyre,simscape,..."
 )
-def check(file: Path, targets: str) -> None:
+@voiced
+def check(file: Path, targets: str, voice: Voice) -> None:
     """Check a .tir: units, missing and unknown keys, physics over the file's own ranges."""
     import tir
+    from mffit.results import as_json
     from tir.check import check as problems_of
 
     tyre = tir.read(file)
     problems = [*tyre.problems, *problems_of(tyre, targets.split(",") if targets else ())]
     for problem in problems:
-        click.echo(f"{problem.level}: {problem.sentence}")
+        voice.say(f"{problem.level}: {problem.sentence}")
     errors = sum(problem.level == "error" for problem in problems)
-    click.echo(f"{file}: {errors} errors, {len(problems) - errors} warnings")
+    voice.say(f"{file}: {errors} errors, {len(problems) - errors} warnings")
+    voice.give(lambda: as_json.problems(file, problems))
     if errors:
         raise SystemExit(2)
 
@@ -35,12 +40,14 @@ def check(file: Path, targets: str) -> None:
     "--out", type=click.Path(path_type=Path), help="Page to write [default: FILE.html in this folder]."
 )
 @click.option("--open", "open_it", is_flag=True, help="Open the page in the browser.")
-def show(files: tuple[Path, ...], out: Path | None, open_it: bool) -> None:
+@voiced
+def show(files: tuple[Path, ...], out: Path | None, open_it: bool, voice: Voice) -> None:
     """Curves of several .tir over one another, in a page with sliders."""
     import mffit
 
     out = out or Path(f"{files[0].stem}.html")
     page = mffit.show(files, out)
-    click.echo(f"written to {out}: {', '.join(page.names)}")
+    voice.say(f"written to {out}: {', '.join(page.names)}")
+    voice.give(lambda: {"written": [str(out)]})
     if open_it:
         click.launch(str(out))

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import click
 
-from mffit.cli.console import warn
+from mffit.cli.console import Voice, voiced
 
 
 @click.command()
@@ -14,16 +14,21 @@ from mffit.cli.console import warn
 @click.option(
     "--out", type=click.Path(path_type=Path), help="Folder to write to [default: out/ beside TYRE_TOML]."
 )
-def spin(tyre_toml: Path, out: Path | None) -> None:
+@voiced
+def spin(tyre_toml: Path, out: Path | None, voice: Voice) -> None:
     """Alignment check and direct method only: eps_gamma with its uncertainty budget."""
     from mffit import pipeline
     from mffit.report import text
+    from mffit.results import as_json
 
     out = out or tyre_toml.parent / "out"
-    measured = pipeline.spin(tyre_toml, out)
-    click.echo(text.spin_summary(measured))
-    warn(measured.warnings)
-    click.echo(f"written to {out}: spin.json")
+    with voice.progress() as show:
+        show("measuring")
+        measured = pipeline.spin(tyre_toml, out)
+    voice.say(text.spin_summary(measured))
+    voice.warn(measured.warnings)
+    voice.say(f"written to {out}: spin.json")
+    voice.give(lambda: as_json.spin(measured))
 
 
 @click.command()
@@ -32,14 +37,17 @@ def spin(tyre_toml: Path, out: Path | None) -> None:
 @click.option(
     "--path-centre", type=click.Choice(["left", "right"]), help="Side of the disc centre, for a CSV file."
 )
-def align(source: Path, axes: str | None, path_centre: str | None) -> None:
+@voiced
+def align(source: Path, axes: str | None, path_centre: str | None, voice: Voice) -> None:
     """Next steering correction from forward and backward zeros, in degrees of the rig's axis."""
     from mffit import pipeline
     from mffit.errors import InputError
     from mffit.report import text
+    from mffit.results import as_json
 
     if source.suffix != ".toml" and (axes is None or path_centre is None):
         raise InputError("a CSV file needs --axes and --path-centre, as it does not say them itself")
     alignment = pipeline.align(source, axes=axes, path_centre=path_centre)
-    click.echo(text.alignment_table(alignment))
-    warn(alignment.warnings)
+    voice.say(text.alignment_table(alignment))
+    voice.warn(alignment.warnings)
+    voice.give(lambda: as_json.alignment(alignment))

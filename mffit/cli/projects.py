@@ -6,27 +6,33 @@ from pathlib import Path
 
 import click
 
+from mffit.cli.console import Voice, voiced
+
 
 @click.command()
 @click.argument("files", nargs=-1, required=True, type=click.Path(path_type=Path), metavar="FILE...")
 @click.option(
     "--out", type=click.Path(path_type=Path), help="Folder for tyre.toml, stretches.csv and pictures."
 )
-def sniff(files: tuple[Path, ...], out: Path | None) -> None:
+@voiced
+def sniff(files: tuple[Path, ...], out: Path | None, voice: Voice) -> None:
     """What recordings hold: channels, units, axes, conditions, stretches, and the tyre.toml for them."""
     from mffit import pipeline, recordings
     from mffit.report import text
+    from mffit.results import as_json
 
-    found = recordings.sniff(files)
-    click.echo(text.sniff_summary(found))
+    with voice.progress() as show:
+        show("reading recordings")
+        found = recordings.sniff(files)
+    voice.say(text.sniff_summary(found))
+    voice.give(lambda: as_json.sniffed(found))
     if out is None:
         folder = Path()
-        click.echo(
-            "\n" + recordings.project_text(found, folder, unloaded_radius=None, nominal_load=None), nl=False
-        )
+        project = recordings.project_text(found, folder, unloaded_radius=None, nominal_load=None)
+        voice.say("\n" + project, end="")
         return
     for path in pipeline.write_sniffed(found, out):
-        click.echo(f"written {path}")
+        voice.say(f"written {path}")
 
 
 @click.command()
@@ -36,7 +42,10 @@ def sniff(files: tuple[Path, ...], out: Path | None) -> None:
 @click.option("--nominal-load", type=float, metavar="N", help="With --from: FNOMIN, in newtons.")
 @click.option("--nominal-pressure", type=float, metavar="KPA", help="With --from [default: as most was run].")
 @click.option("--name", help="With --from: of the output files [default: the first recording's].")
-def init(paths: tuple[Path, ...], recorded: bool, name: str | None, **tyre: float | None) -> None:
+@voiced
+def init(
+    paths: tuple[Path, ...], recorded: bool, name: str | None, voice: Voice, **tyre: float | None
+) -> None:
     """Write a commented tyre.toml and empty CSV templates, or with --from a project for recordings."""
     from mffit.errors import InputError
     from mffit.init_project import init_project
@@ -48,8 +57,10 @@ def init(paths: tuple[Path, ...], recorded: bool, name: str | None, **tyre: floa
 
         if not files:
             raise InputError("--from needs recordings before the folder: mffit init --from FILE... DIR")
-        found, written = pipeline.init_from(files, folder, name=name, **tyre)
-        click.echo(text.sniff_summary(found))
+        with voice.progress() as show:
+            show("reading recordings")
+            found, written = pipeline.init_from(files, folder, name=name, **tyre)
+        voice.say(text.sniff_summary(found))
     elif files:
         raise InputError(
             f"one folder only; recordings go behind --from: mffit init --from {files[0]} {folder}"
@@ -57,4 +68,5 @@ def init(paths: tuple[Path, ...], recorded: bool, name: str | None, **tyre: floa
     else:
         written = init_project(folder)
     for path in written:
-        click.echo(f"written {path}")
+        voice.say(f"written {path}")
+    voice.give(lambda: {"written": [str(path) for path in written]})

@@ -53,6 +53,7 @@ class TyreTable(Table):
     nominal_speed: q.Speed = 10.0  #: LONGVL [m/s]
     side: Literal["left", "right", "symmetric"] = "left"  #: TYRESIDE of the measured tyre
     base: str | None = None  #: file from which coefficients come that are not fitted
+    priors: str | None = None  #: what a fleet of such tyres knows of them
 
     @model_validator(mode="after")
     def _rim_inside_tyre(self) -> TyreTable:
@@ -267,6 +268,11 @@ class Config(Brief, Table):
     def base_path(self) -> Path | None:
         """The base property file; None if there is none."""
         return None if self.tyre.base is None else self._folder / self.tyre.base
+
+    @property
+    def priors_path(self) -> Path | None:
+        """What a fleet of such tyres knows; None if none is named."""
+        return None if self.tyre.priors is None else self._folder / self.tyre.priors
 
     def line_of(self, key: str) -> int | None:
         """Line of a dotted key, ``sweep.2.file`` for the third sweep; of the table around it if absent."""

@@ -28,8 +28,9 @@ def resolved(config: Config, folder: str | Path) -> dict[str, Any]:
     content["sweep"] = [_plain(sweep) for sweep in content["sweep"]]
     for sweep in content["sweep"]:
         sweep["file"] = _moved(sweep["file"], config.folder, Path(folder))
-    if "base" in content["tyre"]:
-        content["tyre"]["base"] = _moved(content["tyre"]["base"], config.folder, Path(folder))
+    for key in ("base", "priors"):
+        if key in content["tyre"]:
+            content["tyre"][key] = _moved(content["tyre"][key], config.folder, Path(folder))
     return {name: value for name, value in content.items() if value not in ([], {})}
 
 

@@ -20,7 +20,7 @@ from mffit.fit.judgement import judge
 from mffit.fit.known import Known
 from mffit.fit.outliers import outliers
 from mffit.fit.posterior import COVERING
-from mffit.fit.priors import scatters
+from mffit.fit.priors import Prior, of_fleet, scatters
 from mffit.fit.problem import Problem
 from mffit.fit.radius import radius_coefficients
 from mffit.fit.ranges import covered_ranges, envelope
@@ -74,9 +74,10 @@ def fit(
         If there are fewer points than coefficients.
     """
     began = time.perf_counter()
-    known = _before_the_fit(config, points, measured, base)
+    learnt = of_fleet(config)
+    known = _before_the_fit(config, points, measured, base, learnt)
     start = starting_values(known.values, points, measured)
-    plan = _plan(config, points, measured, known, start)
+    plan = _plan(config, points, measured, known, start, learnt)
     problem = _problem(config, points, known.values, measured)
     stated = problem.sigma_Fy, problem.sigma_Mz
 
@@ -142,7 +143,14 @@ def fit(
     )
 
 
-def _plan(config, points: Points, measured, known: Known, start: Mapping[str, float]) -> Plan:
+def _plan(
+    config,
+    points: Points,
+    measured,
+    known: Known,
+    start: Mapping[str, float],
+    learnt: Mapping[str, Prior],
+) -> Plan:
     """What these points can decide, and what is known of it beforehand."""
     rig = rig_numbers(config, measured)
     extra = ["Q_RE0"] if rig and config.rolling_radius else []
@@ -152,6 +160,7 @@ def _plan(config, points: Points, measured, known: Known, start: Mapping[str, fl
         known.origin,
         curved=bool(np.any(points.phi_t)),
     )
+    scatter |= {name: prior.spread for name, prior in learnt.items()}
     none = ODD_TERMS if config.tyre.side == "symmetric" else frozenset()
     held = {name: scatter[name] for row in cover for name in row.held if name not in none}
     if measured.epsilon_gamma is not None:
@@ -161,7 +170,7 @@ def _plan(config, points: Points, measured, known: Known, start: Mapping[str, fl
             held["PECP1"] = measured.epsilon_gamma.u
     return Plan(
         cover,
-        start,
+        {**start, **{name: prior.expected for name, prior in learnt.items()}},
         scatter,
         rig,
         tuple(extra),
@@ -170,13 +179,16 @@ def _plan(config, points: Points, measured, known: Known, start: Mapping[str, fl
     )
 
 
-def _before_the_fit(config, points: Points, measured, base: Tyre | None) -> Known:
+def _before_the_fit(
+    config, points: Points, measured, base: Tyre | None, learnt: Mapping[str, Prior]
+) -> Known:
     """Every value before the fit, and where it comes from."""
     values = base_values(config, base)
     present = base.present if base is not None else frozenset()
     known = Known(values, {row.name: "base" if row.name in present else "default" for row in TABLE})
     if base is None:  # before the fit, because the vertical terms among them decide the rolling radius
         known = known.having(estimates(values), "estimate")
+    known = known.having({name: prior.expected for name, prior in learnt.items()}, "fleet")
     known = known.having(covered_ranges(points), "range")
     r_e = dict(measured.by_load("r_e_measured"))
     if r_e:

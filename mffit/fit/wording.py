@@ -31,6 +31,7 @@ FROM_DATA = ("measured", "fitted", "regularised")
 """Origins of values that these data decided."""
 WORDS = {
     "base": "from base",
+    "fleet": "as tyres of its fleet have it",
     "default": "default, not measured",
     "estimate": "estimate, not measured",
     "regularised": TIED,

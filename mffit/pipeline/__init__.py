@@ -3,7 +3,19 @@
 from mffit.pipeline.building import build
 from mffit.pipeline.diagnosing import diagnose
 from mffit.pipeline.exporting import write_tydex
+from mffit.pipeline.fleets import fleet
 from mffit.pipeline.intake import init_from, write_sniffed
+from mffit.pipeline.many import build_many
 from mffit.pipeline.measuring import align, spin
 
-__all__ = ["align", "build", "diagnose", "init_from", "spin", "write_sniffed", "write_tydex"]
+__all__ = [
+    "align",
+    "build",
+    "build_many",
+    "diagnose",
+    "fleet",
+    "init_from",
+    "spin",
+    "write_sniffed",
+    "write_tydex",
+]

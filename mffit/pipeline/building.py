@@ -35,7 +35,7 @@ from tir import Tyre
 
 USES = ("turn-slip", "normal")
 """What a written file may be for, beside the plain name."""
-WRITTEN = ("result.json", "points.csv", "report.html")
+WRITTEN = ("result.json", "information.json", "points.csv", "report.html")
 """What a run is sure to write beside its property files, known before the work begins."""
 
 
@@ -170,13 +170,18 @@ def write_build(result: BuildResult, out: Path, stretches: Sequence[StretchNote]
         for use, name in result.files.items():
             result.tyres[use].write(folder / name)
         as_json.write(folder / "result.json", as_json.build(result))
+        as_json.write_information(folder / "information.json", result)
         points_table(result).to_csv(folder / "points.csv", index=False)
         if stretches:
             stretch_table(stretches).to_csv(folder / "stretches.csv", index=False)
-        resolved = configuration.resolved(result.config, folder=out)
-        (folder / "resolved.toml").write_bytes(tomli_w.dumps(resolved).encode())
+        (folder / "resolved.toml").write_bytes(resolved_text(result.config, out))
         write_members(result, folder)
         report.write_build(result, folder)
+
+
+def resolved_text(config: Config, out: Path) -> bytes:
+    """The content of ``resolved.toml`` in a folder ``out``."""
+    return tomli_w.dumps(configuration.resolved(config, folder=out)).encode()
 
 
 def points_table(result: BuildResult) -> pd.DataFrame:

@@ -37,5 +37,5 @@ def input_hashes(config: Config) -> dict[str, str]:
 
 
 def _names(config: Config) -> list[str]:
-    names = [sweep.file for sweep in config.sweep] + ([config.tyre.base] if config.tyre.base else [])
-    return list(dict.fromkeys(names))
+    named = (*(sweep.file for sweep in config.sweep), config.tyre.base, config.tyre.priors)
+    return list(dict.fromkeys(name for name in named if name))

@@ -20,6 +20,8 @@ from mffit.pipeline.inputs import input_hashes
 from mffit.rig import FAULT_NAMES, UNITS, RigFaults
 from tir import Tyre
 
+PROGRAM = "program"
+"""Which version wrote a file, among its provenance."""
 RIG = "rig."
 """What opens the name of a rig error among a file's measured quantities."""
 TURN_SLIP = {"turn-slip": "on", "normal": "off", "both": "on or off"}
@@ -39,7 +41,7 @@ def annotator(config: Config, measured: Measured, fitted: FitResult) -> Annotate
 
     def annotated(tyre: Tyre, use: str) -> Tyre:
         provenance = {
-            "program": f"mffit {mffit.__version__}",
+            PROGRAM: f"mffit {mffit.__version__}",
             "use": f"{use}, for simulations with turn slip {TURN_SLIP[use]}",
             "configuration": _settings(config),
             **inputs,

@@ -2,5 +2,6 @@
 
 from mffit.report.build import write_build
 from mffit.report.diagnosis import write_diagnosis
+from mffit.report.fleet import write_fleet
 
-__all__ = ["write_build", "write_diagnosis"]
+__all__ = ["write_build", "write_diagnosis", "write_fleet"]

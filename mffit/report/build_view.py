@@ -22,7 +22,7 @@ from tir.parameters import BY_NAME
 
 PER_LOAD = ("epsilon_gamma", "F_phit", "C_phit", "C_gamma", "C_alpha")
 """What the direct method gives at every load, in the order of the tables."""
-STATUS_ORDER = ("measured", "fitted", "regularised", "estimate", "range", "given", "base", "default")
+STATUS_ORDER = ("measured", "fitted", "regularised", "estimate", "range", "given", "fleet", "base", "default")
 
 
 @dataclass(frozen=True, slots=True)

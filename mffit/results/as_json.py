@@ -4,23 +4,29 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from mffit import fleet as combining
 from mffit.diagnosis import Diagnosis, Found, Gap, wording
 from mffit.diagnosis.noise import Noise
 from mffit.diagnosis.where import Region
 from mffit.fit import Coefficient, Doubt, FitResult, Outlier
 from mffit.fit.files import Files
-from mffit.measured import KEYS, LoadResult, Measured
+from mffit.fleet import Fleet
+from mffit.measured import KEYS, Alignment, LoadResult, Measured
 from mffit.measured import wording as say
+from mffit.recordings import Sniffed
+from mffit.recordings.stretch_table import stretch_table
 from mffit.results.build import BuildResult
+from mffit.results.many import Outcome
 from mffit.rig import UNITS
 from tir import Quantity
+from tir.errors import Problem
 
 
 def build(result: BuildResult) -> dict[str, Any]:
@@ -117,10 +123,125 @@ def diagnosis(found: Diagnosis) -> dict[str, Any]:
     }
 
 
+def alignment(found: Alignment) -> dict[str, Any]:
+    """What ``mffit align --json`` prints; forces in N, ISO signs, the correction in degrees of the rig's axis."""
+    return {
+        "correction_deg": found.correction_deg,
+        "steps": [asdict(step) for step in found.steps],
+        "warnings": list(found.warnings),
+    }
+
+
+def sniffed(found: Sniffed) -> dict[str, Any]:
+    """What ``mffit sniff --json`` prints; conditions in SI."""
+    return {
+        "recordings": [
+            {
+                "file": str(row.path),
+                "format": row.kind,
+                "samples": row.samples,
+                "rate_Hz": row.rate,
+                "seconds": row.seconds,
+                "gaps": row.gaps,
+                "units": dict(zip(row.headings, row.units, strict=True)),
+                "channels": {
+                    name: {**guess._asdict(), "channel": guess.channel.name}
+                    for name, guess in row.guesses.items()
+                },
+            }
+            for row in found.recordings
+        ],
+        "axes": list(found.axes),
+        "conditions": {
+            name: [level._asdict() for level in levels] for name, levels in found.conditions.items()
+        },
+        "points": len(found.points),
+        "stretches": stretch_table(found.reading.stretches).to_dict("records"),
+        "warnings": list(found.reading.warnings),
+    }
+
+
+def problems(path: Path, found: Sequence[Problem]) -> dict[str, Any]:
+    """What ``mffit check --json`` prints."""
+    return {"file": str(path), "problems": [asdict(problem) for problem in found]}
+
+
+def outcome(found: Outcome) -> dict[str, Any]:
+    """One of many builds."""
+    return {
+        "tyre_toml": str(found.source),
+        "name": found.name,
+        "out": None if found.out is None else str(found.out),
+        "state": found.state,
+        "sentence": found.sentence or None,
+        "seconds": found.seconds,
+        "epsilon_gamma": _value(found.epsilon_gamma),
+        "rmse": dict(found.misfit),
+        "warnings": found.warnings,
+        "tir": found.file or None,
+    }
+
+
+def fleet(found: Fleet) -> dict[str, Any]:
+    """The content of ``fleet.json``."""
+    numbers = dict(found.rows[0].numbers)
+    return {
+        "tyres": [
+            {
+                "name": row.specimen.name,
+                "folder": str(row.specimen.folder),
+                "rig": row.rig + 1,
+                "epsilon_gamma": {key: _value(getattr(row, key)) for key in combining.EPSILON},
+                **{key: _value(q) for key, q in row.numbers.items()},
+                "rmse": dict(row.specimen.misfit),
+                "strain": dict(row.strain),
+                "warnings": list(row.specimen.warnings),
+            }
+            for row in found.rows
+        ],
+        "scatter": {
+            name: {**asdict(s), "beyond": s.beyond}
+            for key, name in {
+                **{k: f"epsilon_gamma_{k}" for k in combining.EPSILON},
+                **{k: k for k in numbers},
+            }.items()
+            if (s := found.scatter(key)) is not None
+        },
+        "rigs": [
+            None
+            if rig is None
+            else {
+                "errors": {
+                    n: {"value": value, "stderr": u, "unit": UNITS[n]} for n, (value, u) in rig.rig.items()
+                },
+                "population": {name: asdict(p) for name, p in rig.population.items()},
+            }
+            for rig in found.rigs
+        ],
+        "notes": list(found.notes),
+    }
+
+
+def _value(number: Quantity | None) -> dict[str, Any] | None:
+    return None if number is None else {"value": number.value, "u": number.u}
+
+
+def text(content: Any) -> str:
+    """One of the above as text; numbers that are not finite become null."""
+    return json.dumps(_plain(content), indent=2, ensure_ascii=False, allow_nan=False) + "\n"
+
+
 def write(path: Path, content: Mapping[str, Any]) -> None:
-    """Write one of the above as UTF-8; numbers that are not finite become null."""
-    text = json.dumps(_plain(content), indent=2, ensure_ascii=False, allow_nan=False)
-    path.write_text(text + "\n", encoding="utf-8")
+    """Write one of the above as UTF-8."""
+    path.write_text(text(content), encoding="utf-8")
+
+
+def write_information(path: Path, result: BuildResult) -> None:
+    """Write ``information.json``, a line per key, as programs read it and few people do."""
+    assert result.fit.search is not None
+    content = _plain(combining.to_json(combining.information(result.fit.search)))
+    lines = ",\n".join(f"{json.dumps(key)}: {json.dumps(value)}" for key, value in content.items())
+    path.write_text("{\n" + lines + "\n}\n", encoding="utf-8")
 
 
 def _doubt(row: Doubt) -> dict[str, Any]:

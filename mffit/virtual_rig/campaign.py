@@ -136,6 +136,8 @@ def configuration_of(plan: Plan, machine: Machine, generator: np.random.Generato
     content["rolling_radius"] = radii
     if plan.declared.base_path is not None:
         content["tyre"]["base"] = plan.declared.base_path.name  # its copy stands beside tyre.toml
+    if plan.declared.priors_path is not None:
+        content["tyre"]["priors"] = str(plan.declared.priors_path.absolute())
     # Plain keys before tables, as TOML wants it, the sweeps, which are many, at the end; no empty tables.
     first = [name for name, value in content.items() if not isinstance(value, dict | list | tuple)]
     order = dict.fromkeys([*first, *(name for name in LEADING if name in content), *content])

@@ -3,6 +3,8 @@
 from mffit.report.text.build import build_summary
 from mffit.report.text.diagnosis import diagnosis_summary
 from mffit.report.text.direct import alignment_table, budget_table, spin_summary
+from mffit.report.text.fleet import fleet_summary
+from mffit.report.text.many import lacking, many_line, many_summary
 from mffit.report.text.recordings import sniff_summary
 
 __all__ = [
@@ -10,6 +12,10 @@ __all__ = [
     "budget_table",
     "build_summary",
     "diagnosis_summary",
+    "fleet_summary",
+    "lacking",
+    "many_line",
+    "many_summary",
     "sniff_summary",
     "spin_summary",
 ]

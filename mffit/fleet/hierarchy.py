@@ -1,0 +1,222 @@
+"""One estimate of all tyres of a rig: the rig's errors common to all, every tyre around a population that is estimated too.
+
+Tyre i has numbers x_i and the rig theta, of which its points say ``exp(-z L_i z / 2 + h_i z)`` with ``z = (x_i, theta)``.
+Beforehand ``x_i ~ N(mu, diag(tau^2))``, ``mu ~ N(expected, spread^2)`` and theta as the rig declares, once for all tyres.
+Everything but tau is linear and Gaussian and solved exactly; tau^2 is found by expectation maximisation.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from mffit.fit.priors import scatter
+from mffit.fleet.information import Information
+from tir.parameters import BY_NAME
+
+ENOUGH = 4
+"""Tyres from which on their own scatter is estimated; fewer are held to that of tyres in general."""
+ROUNDS, SETTLED = 200, 1e-3
+"""Rounds at most of the search for the population's scatter, and relative change at which it ends."""
+SPEAKS = 0.8
+"""Share of the declared variance to which one tyre must narrow a rig error to have a say of its own."""
+PINNED = 1e-6
+"""Share of its spread to which the mean of a population of one is held: the tyre itself scatters around it."""
+SMALLEST = 1e-3
+"""Scatter of a population, as a share of that of tyres in general, below which it counts as this."""
+
+
+@dataclass(frozen=True, slots=True)
+class Population:
+    """How one coefficient is spread over the tyres."""
+
+    mean: float
+    u_mean: float
+    scatter: float  #: from tyre to tyre, 1 sigma
+    tyres: int  #: that say something of it
+
+
+@dataclass(frozen=True, slots=True)
+class TyreEstimate:
+    """One tyre as all tyres together show it."""
+
+    names: tuple[str, ...]
+    values: np.ndarray  #: (k,)
+    covariance: np.ndarray  #: (k, k)
+    strain: Mapping[str, float]  #: by rig error: what this tyre says less what the others say, over u
+
+    def number(self, name: str) -> tuple[float, float] | None:
+        """Value and standard uncertainty; None where the tyre's points do not speak of it."""
+        if name not in self.names:
+            return None
+        i = self.names.index(name)
+        return float(self.values[i]), float(np.sqrt(self.covariance[i, i]))
+
+
+@dataclass(frozen=True, slots=True)
+class Hierarchy:
+    """The estimate of one rig and its tyres."""
+
+    tyres: tuple[TyreEstimate, ...]  #: in the order given
+    rig: Mapping[str, tuple[float, float]]  #: rig error -> (value, standard uncertainty)
+    declared: Mapping[str, tuple[float, float]]  #: the same as known beforehand
+    population: Mapping[str, Population]
+
+
+def estimate(found: Sequence[Information]) -> Hierarchy:
+    """All tyres of one rig together; one alone gives its own build's estimate, PECP1 and PECP2 free.
+
+    Parameters
+    ----------
+    found : information of each tyre's build on this rig
+    """
+    model = _Model(found)
+    tau = model.general.copy()
+    learnt = model.count >= ENOUGH
+    for _ in range(ROUNDS if learnt.any() else 0):
+        # One tyre less than there are keeps the scatter off zero, where it would claim to know too much.
+        mean_square = model.solved(tau).squares / np.maximum(model.count - 1, 1)
+        new = np.clip(np.sqrt(mean_square), SMALLEST * model.general, model.general)
+        new = np.where(learnt, new, model.general)
+        moved = np.max(np.abs(np.log(new / tau)))
+        tau = new
+        if moved < SETTLED:
+            break
+    return model.described(tau)
+
+
+class _Model:
+    """The tyres' information in numbers of order one, and the exact solution for a given scatter."""
+
+    def __init__(self, found: Sequence[Information]) -> None:
+        self.found = found
+        self.own = tuple(dict.fromkeys(i.names[k] for i in found for k in i.rows(rig=False)))
+        self.shared = tuple(dict.fromkeys(i.names[k] for i in found for k in i.rows(rig=True)))
+        self.count = np.array([sum(name in i.names for i in found) for name in self.own])
+        self.centre, spread = _prior(found, self.own)
+        self.rig_centre, self.rig_spread = _prior(found, self.shared)
+        width = np.array([BY_NAME[name].width for name in self.own])
+        general = [
+            scatter(n, c, from_base=False, curved=False) for n, c in zip(self.own, self.centre, strict=True)
+        ]
+        size = np.maximum(np.abs(self.centre), 1.0)  # of what has no bounds to tell its size
+        width, scattered = (np.where(np.isfinite(x), x, size) for x in (width, general))
+        self.general = np.where(np.isfinite(spread), spread, scattered)
+        self.known = np.where(np.isfinite(spread), spread, width)  # of the population's mean
+        if len(found) == 1:  # a tyre alone is known as its build knew it
+            self.general, self.known = self.known, PINNED * self.known
+
+    def prior(self) -> tuple[np.ndarray, np.ndarray]:
+        """What is known beforehand of what the tyres share, theta and mu: precision (m + K, m + K) and vector."""
+        spread = np.concatenate([self.rig_spread, self.known])
+        return np.diag(spread**-2.0), np.concatenate([self.rig_centre, self.centre]) * spread**-2.0
+
+    def part(self, one: Information, tau: np.ndarray) -> _Part:
+        """What one tyre says of what all share, its own numbers eliminated."""
+        m, size = len(self.shared), len(self.shared) + len(self.own)
+        own, rig = one.rows(rig=False), one.rows(rig=True)
+        mine = [m + self.own.index(one.names[k]) for k in own]
+        theirs = [self.shared.index(one.names[k]) for k in rig]
+        ties = tau[[k - m for k in mine]] ** -2.0
+        inner = _inverse(one.matrix[np.ix_(own, own)] + np.diag(ties))
+        B = np.zeros((len(own), size))
+        B[:, theirs] = one.matrix[np.ix_(own, rig)]
+        B[range(len(own)), mine] = -ties
+        gain = inner @ B
+        precision, vector = -B.T @ gain, -gain.T @ one.vector[own]
+        precision[np.ix_(theirs, theirs)] += one.matrix[np.ix_(rig, rig)]
+        precision[mine, mine] += ties
+        vector[theirs] += one.vector[rig]
+        return _Part(mine, inner, gain, inner @ one.vector[own], precision, vector)
+
+    def solved(self, tau: np.ndarray) -> _Solved:
+        """Every number's mean and covariance, given the population's scatter (K,)."""
+        precision, vector = self.prior()
+        parts = [self.part(one, tau) for one in self.found]
+        covariance = _inverse(precision + sum(part.precision for part in parts))
+        common = covariance @ (vector + sum(part.vector for part in parts))
+        squares = np.zeros(len(self.own))
+        tyres = []
+        for part in parts:
+            x = part.own - part.gain @ common
+            C = part.inner + part.gain @ covariance @ part.gain.T
+            with_mean = -part.gain @ covariance[:, part.mine]
+            away = np.diag(C) + np.diag(covariance)[part.mine] - 2.0 * np.diag(with_mean)
+            k = [i - len(self.shared) for i in part.mine]
+            squares[k] += (x - common[part.mine]) ** 2 + np.maximum(away, 0.0)
+            tyres.append((x, C))
+        return _Solved(tuple(parts), tuple(tyres), common, covariance, squares)
+
+    def described(self, tau: np.ndarray) -> Hierarchy:
+        """The solution by name."""
+        found, m = self.solved(tau), len(self.shared)
+        u = np.sqrt(np.diag(found.covariance))
+        rig = {n: (float(found.common[k]), float(u[k])) for k, n in enumerate(self.shared)}
+        population = {
+            name: Population(float(found.common[m + k]), float(u[m + k]), float(tau[k]), int(self.count[k]))
+            for k, name in enumerate(self.own)
+        }
+        tyres = tuple(
+            TyreEstimate(tuple(one.names[k] for k in one.rows(rig=False)), x, C, self._strain(part, found))
+            for one, part, (x, C) in zip(self.found, found.parts, found.tyres, strict=True)
+        )
+        known = zip(self.rig_centre.tolist(), self.rig_spread.tolist(), strict=True)
+        return Hierarchy(tyres, rig, dict(zip(self.shared, known, strict=True)), population)
+
+    def _strain(self, part: _Part, found: _Solved) -> dict[str, float]:
+        """How far the rig errors of one tyre alone are from those of all others, over the uncertainty of the difference.
+
+        Both estimates lean on the same prior, and the error that this gives them is counted as the common one that it is.
+        """
+        if len(found.parts) < 2:
+            return {}
+        precision, vector = self.prior()
+        rest = sum(other.precision for other in found.parts if other is not part)
+        C_one, C_rest = _inverse(precision + part.precision), _inverse(precision + rest)
+        others = C_rest @ (vector + sum(other.vector for other in found.parts if other is not part))
+        difference = C_one @ (vector + part.vector) - others
+        leaning = C_one @ part.precision - C_rest @ rest
+        covariance = leaning @ np.diag(1.0 / np.diag(precision)) @ leaning.T
+        covariance += C_one @ part.precision @ C_one + C_rest @ rest @ C_rest
+        u = np.sqrt(np.maximum(np.diag(covariance), 1e-300))
+        speaks = np.diag(C_one) * np.diag(precision) < SPEAKS
+        return {name: float(difference[k] / u[k]) for k, name in enumerate(self.shared) if speaks[k]}
+
+
+@dataclass(frozen=True, slots=True)
+class _Part:
+    """What one tyre adds to what is known of all."""
+
+    mine: list[int]  #: places of the means of its numbers among what all share
+    inner: np.ndarray  #: (k, k) covariance of its numbers, what all share being known
+    gain: np.ndarray  #: (k, m + K) how they follow what all share, with the sign turned
+    own: np.ndarray  #: (k,) its numbers where all of that is zero
+    precision: np.ndarray  #: (m + K, m + K)
+    vector: np.ndarray  #: (m + K,)
+
+
+@dataclass(frozen=True, slots=True)
+class _Solved:
+    parts: tuple[_Part, ...]
+    tyres: tuple[tuple[np.ndarray, np.ndarray], ...]
+    common: np.ndarray  #: (m + K,) rig errors, then the population's means
+    covariance: np.ndarray
+    squares: np.ndarray  #: (K,) expected sum over the tyres of (x - mu)^2
+
+
+def _prior(found: Sequence[Information], names: Sequence[str]) -> tuple[np.ndarray, np.ndarray]:
+    """Centre and spread of what each build knew beforehand: the mean of the centres, the widest spread."""
+    centre, spread = np.zeros(len(names)), np.full(len(names), np.inf)
+    for k, name in enumerate(names):
+        rows = [(i.expected[j], i.spread[j]) for i in found for j, n in enumerate(i.names) if n == name]
+        centre[k] = np.mean([c for c, _ in rows])
+        spread[k] = max(s for _, s in rows)
+    return centre, spread
+
+
+def _inverse(precision: np.ndarray) -> np.ndarray:
+    """Inverse of a symmetric positive precision matrix whose numbers have units of very different size."""
+    scale = np.sqrt(np.diag(precision))
+    return np.linalg.inv(precision / np.outer(scale, scale)) / np.outer(scale, scale)

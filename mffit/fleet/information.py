@@ -1,0 +1,108 @@
+"""What the points of one build say of tyre and rig, what was known beforehand left out."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from mffit.fit.priors import scatter
+from mffit.fit.staged import Fitted
+from mffit.rig import FAULT_NAMES
+
+SPIN = ("PECP1", "PECP2")
+"""Coefficients of which the points speak also where the build holds them at what the direct method found."""
+MEASURED = ("PECP1",)
+"""Of these nothing is known beforehand: a spread at which the fit holds them comes from the same points."""
+
+
+@dataclass(frozen=True, slots=True)
+class Information:
+    """A quadratic log-likelihood, ``-x matrix x / 2 + x vector`` of the numbers ``x`` by name, and their priors.
+
+    To first order around the build's solution. A prior without a spread is none.
+    """
+
+    names: tuple[str, ...]  #: coefficients and rig errors that the points may move
+    values: np.ndarray  #: (k,) where the build ended
+    matrix: np.ndarray  #: (k, k) of the points alone
+    vector: np.ndarray  #: (k,)
+    expected: np.ndarray  #: (k,) centre of what was known beforehand
+    spread: np.ndarray  #: (k,) its standard deviation, inf where nothing was known
+
+    def rows(self, *, rig: bool) -> list[int]:
+        """Which of the numbers are errors of the rig, or which are the tyre's own."""
+        return [i for i, name in enumerate(self.names) if (name in FAULT_NAMES) == rig]
+
+
+def information(fitted: Fitted) -> Information | None:
+    """The information of a fit; None where nothing was free.
+
+    Numbers that a bound or a physical limit holds stay where they are: what the points say of them is not believed.
+    """
+    prior = {n.name: (n.expected, n.spread) for n in fitted.numbers}
+    values = fitted.simulation.values
+    for name in (*fitted.held, *(SPIN if "PECP1" in {*prior, *fitted.held} else ())):
+        value = float(values[name])
+        prior.setdefault(name, (value, fitted.held.get(name, math.inf)))
+    if "PECP2" in prior and "PECP2" not in {n.name for n in fitted.numbers}:
+        prior["PECP2"] = (0.0, scatter("PECP2", 0.0, from_base=False, curved=False))
+    for name in MEASURED:
+        if name in prior:
+            prior[name] = (prior[name][0], math.inf)
+    names = [name for name in prior if name not in fitted.at_bound]
+    if not names:
+        return None
+    problem, simulation = fitted.problem, fitted.simulation
+    at = np.array([simulation.number(name, problem.points) for name in names])
+    here = problem.free(names).linear(at)
+    matrix = here.slope.T @ here.slope
+    centre, spread = zip(*(prior[name] for name in names), strict=True)
+    return Information(
+        tuple(names),
+        at,
+        matrix,
+        matrix @ at - here.slope.T @ here.data,
+        np.array(centre),
+        np.array(spread),
+    )
+
+
+def to_json(found: Information | None) -> dict[str, Any]:
+    """The content of ``information.json``; of the symmetric matrix the rows up to the diagonal."""
+    if found is None:
+        return {"names": []}
+    return {
+        "about": "What the points alone say of the build's numbers x, to first order: "
+        "log-likelihood = vector.x - x.matrix.x/2. Read by `mffit fleet`.",
+        "names": list(found.names),
+        "values": found.values.tolist(),
+        "matrix": [row[: i + 1] for i, row in enumerate(found.matrix.tolist())],
+        "vector": found.vector.tolist(),
+        "expected": found.expected.tolist(),
+        "spread": [None if math.isinf(u) else u for u in found.spread.tolist()],
+    }
+
+
+def from_json(content: Mapping[str, Any]) -> Information:
+    """The record of such a content.
+
+    Raises
+    ------
+    ValueError, KeyError, TypeError
+        It is not of this kind.
+    """
+    names = tuple(str(name) for name in content["names"])
+    k = len(names)
+    matrix = np.zeros((k, k))
+    for i, row in enumerate(content["matrix"]):
+        matrix[i, : i + 1] = row
+    matrix += np.tril(matrix, -1).T
+    vectors = {n: np.array(content[n], dtype=float) for n in ("values", "vector", "expected")}
+    spread = np.array([math.inf if u is None else float(u) for u in content["spread"]])
+    if any(len(v) != k for v in (*vectors.values(), spread)) or not np.all(np.isfinite(matrix)):
+        raise ValueError("names, matrix and vectors are not of one length")
+    return Information(names, vectors["values"], matrix, vectors["vector"], vectors["expected"], spread)

@@ -1,0 +1,53 @@
+"""The fleet page: plots/*.png and fleet.html."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import mffit
+from mffit.fleet import EPSILON, Fleet
+from mffit.quantities import CHANNELS, COMPARED, DIRECT
+from mffit.report import page
+from mffit.rig import MEANINGS, UNITS
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+SPIN = ("PECP1", "PECP2", "PKY6", "PKY7", "PDYP1", "PKYP1", "QDTP1", "QCRP1")
+"""Coefficients of spin and camber stiffness, shown of the population; fleet.json has all."""
+
+
+def write_fleet(found: Fleet, folder: Path, *, priors: bool) -> None:
+    """Write ``plots/*.png`` and ``fleet.html``.
+
+    Parameters
+    ----------
+    found : the record
+    folder : existing folder to write to
+    priors : whether ``priors.json`` stands beside the page
+    """
+    from mffit.report.figures import fleet
+
+    figures: dict[str, Callable[[], Figure]] = {}
+    estimates = {key: words for key, words in EPSILON.items() if any(found.numbers(key))}
+    if estimates:
+        figures["epsilon_gamma"] = partial(fleet.epsilon_of_all, found)
+    figures["numbers"] = partial(fleet.numbers_of_all, found)
+    page.render(
+        "fleet.html.j2",
+        folder / "fleet.html",
+        fleet=found,
+        epsilon=DIRECT["epsilon_gamma"],
+        estimates=estimates,
+        compared=COMPARED,
+        channels=CHANNELS,
+        units=UNITS,
+        meanings=MEANINGS,
+        spin=SPIN,
+        priors=priors,
+        pictures=page.draw(folder, figures),
+        version=mffit.__version__,
+    )

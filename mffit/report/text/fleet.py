@@ -1,0 +1,45 @@
+"""Many tyres, for the terminal."""
+
+from __future__ import annotations
+
+from mffit.fleet import EPSILON, Fleet
+from mffit.quantities import CHANNELS, COMPARED, DIRECT
+from mffit.report.rounding import number, stated, with_u
+from mffit.report.text.layout import blocks, paragraphs, table
+from mffit.rig import UNITS
+
+
+def fleet_summary(found: Fleet) -> str:
+    """What ``mffit fleet`` prints: eps_gamma of every tyre, scatter, the rig."""
+    known = [key for key in EPSILON if any(found.numbers(key))]
+    misfits = [channel.column(name) for name, channel in CHANNELS.items()]
+    head = ("tyre", *(EPSILON[key] for key in known), *misfits)
+    rows = [
+        (
+            row.specimen.name,
+            *(stated(getattr(row, key)) for key in known),
+            *(number(row.specimen.misfit.get(name), digits=3) for name in CHANNELS),
+        )
+        for row in found.rows
+    ]
+    words = {**{key: f"{DIRECT['epsilon_gamma'].ascii}, {EPSILON[key]}" for key in known}}
+    words |= {key: quantity.column(quantity.ascii) for key, quantity in COMPARED.items()}
+    scatters = [
+        (label, number(s.mean, digits=5), number(s.sd, digits=3), number(s.u, digits=3))
+        for key, label in words.items()
+        if (s := found.scatter(key)) is not None
+    ]
+    rigs = [
+        (f"{i} {name}" if len(found.rigs) > 1 else name, with_u(value, u, UNITS[name]))
+        for i, rig in enumerate(found.rigs, 1)
+        if rig is not None
+        for name, (value, u) in rig.rig.items()
+    ]
+    return blocks(
+        [
+            table(head, rows),
+            table(("number", "mean", "scatter", "uncertainty"), scatters),
+            table(("error of the rig", "all tyres together"), rigs) if rigs else "",
+            paragraphs(found.notes),
+        ]
+    )

@@ -1,0 +1,166 @@
+"""Many tyres of one rig: against the whole normal distribution written out, and on drawn fleets whose truth is known."""
+
+from __future__ import annotations
+
+import json
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from mffit.fleet import Information, estimate, to_json
+from mffit.fleet.information import from_json
+
+OWN = ("PDY1", "PKY6", "PECP1")
+RIG = ("F0_N", "gamma_0_deg")
+EXPECTED = np.array([1.1, -1.2, 0.0, 0.0, 0.0])
+SPREAD = np.array([0.3, 0.4, math.inf, 10.0, 0.5])
+POINTS = 12
+
+
+def drawn(rng, x, theta, *, noise=1.0, slopes=None) -> Information:
+    """What some points say whose readings are linear in the numbers."""
+    J = rng.standard_normal((POINTS, 5)) / SLOPES if slopes is None else slopes
+    truth = np.concatenate([x, theta])
+    y = J @ truth + noise * rng.standard_normal(POINTS)
+    at = truth + rng.standard_normal(5) * 0.1  # where a build happened to end says nothing
+    residual = (J @ at - y) / noise
+    matrix = J.T @ J / noise**2
+    vector = matrix @ at - J.T @ residual / noise
+    return Information((*OWN, *RIG), at, matrix, vector, EXPECTED, SPREAD)
+
+
+SLOPES = np.array([0.1, 0.1, 0.1, 5.0, 0.3])
+
+
+def fleet(seed: int, tyres: int, scatter=(0.05, 0.05, 0.08), weak=True):
+    """Tyres of one rig; with ``weak`` their points hardly tell eps_gamma from the rig's offset."""
+    rng = np.random.default_rng(seed)
+    theta = rng.standard_normal(2) * SPREAD[3:]
+    own = np.array([1.2, -1.3, -0.1]) + rng.standard_normal((tyres, 3)) * scatter
+    out = []
+    for x in own:
+        J = rng.standard_normal((POINTS, 5)) / SLOPES
+        if weak:
+            J[:, 3] = J[:, 2] * 0.1 / 5.0 + 0.15 * J[:, 3]
+        out.append(drawn(rng, x, theta, slopes=J))
+    return out, own, theta
+
+
+def test_three_tyres_are_the_whole_normal_distribution_written_out():
+    """Numbers (x_1, x_2, x_3, theta, mu) in one precision matrix; three tyres are too few to learn a scatter."""
+    found, _, _ = fleet(1, 3)
+    k, n = 3, 3
+    size = n * k + 2 + k
+    P, b = np.zeros((size, size)), np.zeros(size)
+    theta, mu = [9, 10], [11, 12, 13]
+    general = np.array([0.3, 0.4, 0.3])  # eps_gamma: a tenth of the width of its bounds, -1.5 to 1.5
+    known = np.array([0.3, 0.4, 3.0])
+    for i, one in enumerate(found):
+        rows = [*range(3 * i, 3 * i + 3), *theta]
+        P[np.ix_(rows, rows)] += one.matrix
+        b[rows] += one.vector
+        for j in range(k):
+            pair = [3 * i + j, mu[j]]
+            P[np.ix_(pair, pair)] += np.array([[1, -1], [-1, 1]]) / general[j] ** 2
+    P[theta, theta] += SPREAD[3:] ** -2.0
+    P[mu, mu] += known**-2.0
+    b[mu] += EXPECTED[:3] * known**-2.0
+    covariance = np.linalg.inv(P)
+    mean = covariance @ b
+    together = estimate(found)
+    for i, tyre in enumerate(together.tyres):
+        np.testing.assert_allclose(tyre.values, mean[3 * i : 3 * i + 3], rtol=1e-8)
+        np.testing.assert_allclose(
+            tyre.covariance, covariance[3 * i : 3 * i + 3, 3 * i : 3 * i + 3], rtol=1e-7
+        )
+    assert together.rig["F0_N"] == pytest.approx((mean[9], math.sqrt(covariance[9, 9])), rel=1e-8)
+    assert together.population["PKY6"].mean == pytest.approx(mean[12], rel=1e-8)
+
+
+def test_one_tyre_is_its_points_and_what_was_known_of_it_once():
+    (one,), _, _ = fleet(2, 1)
+    known = np.array([0.3, 0.4, 3.0, *SPREAD[3:]])  # of eps_gamma nothing but the width of its bounds
+    covariance = np.linalg.inv(one.matrix + np.diag(known**-2.0))
+    mean = covariance @ (one.vector + EXPECTED * known**-2.0)
+    (tyre,) = estimate([one]).tyres
+    np.testing.assert_allclose(tyre.values, mean[:3], rtol=1e-6)
+    np.testing.assert_allclose(tyre.covariance, covariance[:3, :3], rtol=1e-5)
+    assert tyre.strain == {}
+
+
+def test_together_they_are_nearer_to_the_truth_and_as_near_as_they_say():
+    alone, together, pulls = [], [], []
+    for seed in range(15):
+        found, own, _ = fleet(seed, 8)
+        whole = estimate(found)
+        for one, tyre, x in zip(found, whole.tyres, own, strict=True):
+            alone.append(estimate([one]).tyres[0].number("PECP1")[0] - x[2])
+            value, u = tyre.number("PECP1")
+            together.append(value - x[2])
+            pulls.append((value - x[2]) / u)
+    assert np.std(together) < 0.7 * np.std(alone)
+    assert 0.8 < np.std(pulls) < 1.2
+    assert 0.90 < np.mean(np.abs(pulls) < 1.96) < 0.99
+
+
+def test_the_scatter_of_the_population_is_found():
+    """Within a quarter over five fleets of thirty: a standard deviation of thirty is itself 13 % uncertain."""
+    found = np.array(
+        [[estimate(fleet(seed, 30, weak=False)[0]).population[n].scatter for n in OWN] for seed in range(5)]
+    )
+    np.testing.assert_allclose(found.mean(axis=0), [0.05, 0.05, 0.08], rtol=0.25)
+
+
+def test_the_rig_is_known_better_by_many_and_the_declaration_counts_once():
+    by_number = {n: estimate(fleet(3, n)[0]).rig["F0_N"][1] for n in (1, 4, 16)}
+    assert by_number[16] < 0.6 * by_number[4] < 0.4 * by_number[1] < 0.4 * 10.0
+    nothing = [replace(one, matrix=0 * one.matrix, vector=0 * one.vector) for one in fleet(4, 6)[0]]
+    assert estimate(nothing).rig["F0_N"] == pytest.approx((0.0, 10.0))
+
+
+def test_a_tyre_that_was_on_another_rig_stands_out_and_the_others_do_not():
+    found, own, theta = fleet(5, 6, weak=False)
+    found[2] = drawn(np.random.default_rng(6), own[2], theta + np.array([60.0, 0.0]))
+    strain = [abs(tyre.strain["F0_N"]) for tyre in estimate(found).tyres]
+    assert strain[2] > 4.0
+    assert max(s for i, s in enumerate(strain) if i != 2) < 4.0
+
+
+def only(one: Information, keep: list[int]) -> Information:
+    """Of some numbers, the others being known exactly."""
+    return Information(
+        tuple(one.names[i] for i in keep),
+        one.values[keep],
+        one.matrix[np.ix_(keep, keep)],
+        one.vector[keep],
+        one.expected[keep],
+        one.spread[keep],
+    )
+
+
+def test_tyres_of_a_straight_path_have_a_population_and_no_rig():
+    whole = estimate([only(one, [0, 1]) for one in fleet(9, 5)[0]])
+    assert whole.rig == {}
+    assert set(whole.population) == {"PDY1", "PKY6"}
+    assert all(tyre.number("PECP1") is None and tyre.strain == {} for tyre in whole.tyres)
+
+
+def test_tyres_need_not_have_the_same_numbers():
+    found, _, _ = fleet(7, 4)
+    found[1] = only(found[1], [0, 2, 3, 4])
+    whole = estimate(found)
+    assert whole.tyres[1].number("PKY6") is None
+    assert whole.population["PKY6"].tyres == 3
+    assert whole.population["PDY1"].tyres == 4
+
+
+def test_information_is_read_back_as_it_was():
+    one = fleet(8, 1)[0][0]
+    again = from_json(json.loads(json.dumps(to_json(one))))
+    assert again.names == one.names
+    for name in ("values", "matrix", "vector", "expected", "spread"):
+        np.testing.assert_array_equal(getattr(again, name), getattr(one, name))
+    with pytest.raises(ValueError, match="one length"):
+        from_json({**to_json(one), "vector": [1.0]})

@@ -1,0 +1,316 @@
+"""Many tyres: one that fails or dies does not stop the others, what is whole is left as it is, and a page compares them."""
+
+from __future__ import annotations
+
+import contextlib
+import io
+import json
+import os
+import shutil
+import signal
+from pathlib import Path
+
+import pandas as pd
+import pytest
+from small_rigs import SAMPLE, disc
+
+from mffit import config, fleet, pipeline, virtual_rig
+from mffit.cli import main
+from mffit.errors import InputError
+from mffit.fit.priors import of_fleet
+from mffit.output import RECORD, digest
+from mffit.pipeline import many
+from mffit.pipeline.current import is_current
+from mffit.results import Outcome
+
+HOSTILE = "a<img src=x onerror=alert(1)>b"
+
+
+def mffit(*arguments: object) -> tuple[int, str, str]:
+    out, err = io.StringIO(), io.StringIO()
+    code = 0
+    with contextlib.redirect_stdout(out), contextlib.redirect_stderr(err):
+        try:
+            main([str(argument) for argument in arguments])
+        except SystemExit as end:
+            code = end.code if isinstance(end.code, int) else 1
+    return code, out.getvalue(), err.getvalue()
+
+
+@pytest.fixture(scope="module")
+def project(tmp_path_factory):
+    """A small campaign of a simulated tyre, at one load less than others have."""
+    folder = tmp_path_factory.mktemp("many") / "sound"
+    content = disc()
+    content["sweep"] = [s for s in content["sweep"] if s["load_N"] != 2100]
+    content["rolling_radius"] = [{"load_N": 1400}]
+    virtual_rig.simulate(virtual_rig.load_plan(content, folder=SAMPLE), folder, seed=3)
+    return folder
+
+
+@pytest.fixture(scope="module")
+def built(project):
+    """The only build of this module: two tyres by one command, one of which cannot be built."""
+    broken = project.with_name("broken")
+    shutil.copytree(project, broken)
+    (broken / "camber_900.csv").unlink()
+    (broken / "tyre.toml").write_text((broken / "tyre.toml").read_text().replace('"small"', '"broken"'))
+    out = project.with_name("out")
+    return out, mffit("build", broken / "tyre.toml", project / "tyre.toml", "--out", out)
+
+
+def test_one_that_fails_does_not_stop_the_others_and_the_code_says_so(built):
+    out, (code, said, err) = built
+    assert code == 2
+    assert (out / "small" / "small.tir").is_file()
+    assert not (out / "broken").exists()
+    assert "[1/2] broken: refused\n[2/2] small: built in" in err
+    row = next(line for line in said.splitlines() if line.startswith("small"))
+    result = json.loads((out / "small" / "result.json").read_text())
+    assert f"{result['spin']['epsilon_gamma']:.3f} +- {result['spin']['u_epsilon_gamma']:.3f}" in row
+    assert row.endswith(str(out / "small" / "small.tir"))
+    assert "broken: " in said
+    assert "camber_900.csv" in said
+
+
+def test_what_is_whole_is_left_as_it_is(built, project, monkeypatch):
+    out, _ = built
+    monkeypatch.setattr(many, "build", lambda *given, **keys: pytest.fail("built again"))
+    before = {path: path.stat().st_mtime_ns for path in (out / "small").rglob("*")}
+    (outcome,) = pipeline.build_many([project / "tyre.toml"], out)
+    assert outcome.state == "unchanged"
+    assert outcome.file == "small.tir"
+    assert {path: path.stat().st_mtime_ns for path in (out / "small").rglob("*")} == before
+
+
+def edited_sweep(project: Path, out: Path) -> None:
+    path = project / "camber_900.csv"
+    path.write_text(path.read_text().replace("900.0", "900.1", 1))
+
+
+def edited_configuration(project: Path, out: Path) -> None:
+    path = project / "tyre.toml"
+    path.write_text(path.read_text().replace("1400", "1401", 1))
+
+
+def edited_output(project: Path, out: Path) -> None:
+    (out / "small.tir").write_text("edited")
+
+
+def missing_output(project: Path, out: Path) -> None:
+    (out / "report.html").unlink()
+
+
+def _rewritten(out: Path, name: str, content: bytes) -> None:
+    """As if the build had written it so."""
+    record = json.loads((out / RECORD).read_text())
+    (out / name).write_bytes(content)
+    record["files"][name] = f"build:{digest(out / name)}"
+    (out / RECORD).write_text(json.dumps(record))
+
+
+@pytest.mark.parametrize(
+    "change",
+    [None, edited_sweep, edited_configuration, edited_output, missing_output],
+)
+def test_what_changed_is_built_again(built, project, tmp_path, change):
+    # Both folders stay as they stand to each other, which resolved.toml depends on.
+    shutil.copytree(project, tmp_path / "sound")
+    shutil.copytree(built[0] / "small", tmp_path / "out" / "small")
+    toml, out = tmp_path / "sound" / "tyre.toml", tmp_path / "out" / "small"
+    resolved = pipeline.building.resolved_text(config.load(toml), out)
+    _rewritten(out, "resolved.toml", resolved)
+    if change is not None:
+        change(tmp_path / "sound", out)
+    assert is_current(config.load(toml), out) == (change is None)
+
+
+def told_to_die(job: many.Job) -> Outcome:
+    """What a worker does that runs out of memory at one of the tyres."""
+    if job.name == "weak":
+        os.kill(os.getpid(), signal.SIGKILL)
+    return Outcome(job.source, job.name, job.out, "built")
+
+
+@pytest.mark.skipif(os.name == "nt", reason="processes are started and killed otherwise there")
+def test_a_worker_that_is_killed_costs_its_own_tyre_only(tmp_path, monkeypatch):
+    monkeypatch.setattr(many, "STARTED", "fork")  # at once; this process has no threads
+    jobs = [many.Job(Path(name), name, tmp_path) for name in ("a", "weak", "b", "c", "d")]
+    outcomes = list(many.in_processes(jobs, 2, told_to_die))
+    assert {o.name: o.state for o in outcomes} == dict.fromkeys("abcd", "built") | {"weak": "failed"}
+    assert "ended before its time" in next(o.sentence for o in outcomes if o.name == "weak")
+
+
+def test_two_tyres_are_not_built_into_one_folder(project):
+    other = project / "other.toml"
+    other.write_text((project / "tyre.toml").read_text())
+    for keys, said in (({}, "--out"), ({"out": project / "all"}, "both are named")):
+        with pytest.raises(InputError, match=said):
+            pipeline.build_many([project / "tyre.toml", other], **keys)
+    with pytest.raises(InputError, match="twice"):
+        pipeline.build_many([other, other])
+    other.unlink()
+
+
+def test_an_interrupted_run_says_what_is_whole(built, project, monkeypatch):
+    out, _ = built
+    second = project.with_name("second")
+    if not second.exists():
+        shutil.copytree(project, second)
+        text = (second / "tyre.toml").read_text()
+        (second / "tyre.toml").write_text(text.replace('"small"', '"second"'))
+
+    def interrupted(*given, **keys):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(many, "build", interrupted)
+    code, said, err = mffit("build", project / "tyre.toml", second / "tyre.toml", "--out", out)
+    assert code == 130
+    assert "small" in said
+    assert "second" not in said
+    assert "finished tyres are whole" in err
+    assert not (out / "second").exists()
+
+
+@pytest.fixture(scope="module")
+def folders(built, tmp_path_factory):
+    """Five built tyres: the one of this module under other names, one of them hostile."""
+    place = tmp_path_factory.mktemp("specimens")
+    out = []
+    for k in range(5):
+        folder = place / str(k)
+        shutil.copytree(built[0] / "small", folder)
+        result = json.loads((folder / "result.json").read_text())
+        result["tyre"]["name"] = f"tyre {k}" if k else HOSTILE
+        (folder / "result.json").write_text(json.dumps(result))
+        out.append(folder)
+    return out
+
+
+@pytest.fixture(scope="module")
+def compared(folders):
+    out = folders[0].parent / "fleet"
+    return out, mffit("fleet", *folders, "--out", out)
+
+
+def test_the_fleet_compares_and_tightens(compared, folders):
+    out, (code, said, err) = compared
+    assert (code, err) == (0, "")
+    found = json.loads((out / "fleet.json").read_text())
+    result = json.loads((folders[0] / "result.json").read_text())
+    for tyre in found["tyres"]:
+        epsilon = tyre["epsilon_gamma"]
+        assert epsilon["direct"]["value"] == result["spin"]["epsilon_gamma"]
+        assert epsilon["together"]["u"] < epsilon["alone"]["u"] < epsilon["direct"]["u"]
+        assert tyre["C_alpha_N_per_rad"]["u"] > 0.0
+    assert set(found["rigs"][0]["errors"]) == {"F0_N", "gamma_0_deg", "alpha_0_deg", "path_radius_m"}
+    table = pd.read_csv(out / "fleet.csv")
+    assert list(table.name) == [HOSTILE, "tyre 1", "tyre 2", "tyre 3", "tyre 4"]
+    assert table.epsilon_gamma_together[0] == found["tyres"][0]["epsilon_gamma"]["together"]["value"]
+    assert "error of the rig" in said
+
+
+def test_a_stiffness_carries_the_uncertainty_of_its_coefficients(compared, folders):
+    """The cornering stiffness is known as well as its 40 or so points of 3 N say: between one thousandth and one per cent."""
+    row = json.loads((compared[0] / "fleet.json").read_text())["tyres"][0]["C_alpha_N_per_rad"]
+    assert 1e-3 < abs(row["u"] / row["value"]) < 2e-2
+
+
+def test_the_page_shows_a_hostile_name_as_text(compared):
+    html = (compared[0] / "fleet.html").read_text(encoding="utf-8")
+    assert "<img src=x" not in html
+    assert "a&lt;img src=x onerror=alert(1)&gt;b" in html
+
+
+def test_what_the_fleet_knows_serves_a_later_build(compared, project):
+    out, _ = compared
+    text = (project / "tyre.toml").read_text()
+
+    def with_priors(path: Path, **changes: str):
+        content = text.replace("[tyre]\n", f'[tyre]\npriors = "{path}"\n')
+        for old, new in changes.values():
+            content = content.replace(old, new)
+        (project / "later.toml").write_text(content)
+        return config.load(project / "later.toml")
+
+    later = with_priors(out / "priors.json")
+    known = of_fleet(later)
+    population = json.loads((out / "fleet.json").read_text())["rigs"][0]["population"]["PKY6"]
+    assert known["PKY6"].expected == population["mean"]
+    assert known["PKY6"].spread == pytest.approx(
+        (population["u_mean"] ** 2 + population["scatter"] ** 2) ** 0.5
+    )
+    assert pipeline.inputs.input_hashes(later)[str(out / "priors.json")]
+    with pytest.raises(InputError, match="there is no file"):
+        of_fleet(with_priors(out / "nowhere.json"))
+    with pytest.raises(InputError, match=r"is not a priors\.json"):
+        of_fleet(with_priors(out / "fleet.json"))
+    with pytest.raises(InputError, match="FNOMIN 1400, and this one has 1800"):
+        of_fleet(with_priors(out / "priors.json", load=("nominal_load = 1400", "nominal_load = 1800")))
+
+
+@pytest.mark.parametrize(
+    ("spoil", "said"),
+    [
+        (lambda folder: (folder / "result.json").unlink(), "is not a folder that `mffit build` wrote"),
+        (lambda folder: (folder / "result.json").write_text("{"), "cannot be read as JSON"),
+        (lambda folder: (folder / "result.json").write_text("{}"), "is not a whole folder"),
+        (lambda folder: (folder / "information.json").unlink(), "is missing"),
+        (lambda folder: (folder / "information.json").write_text("[]"), "is not what `mffit build` writes"),
+    ],
+)
+def test_a_folder_that_is_no_build_is_named(folders, tmp_path, spoil, said):
+    shutil.copytree(folders[1], tmp_path / "spoilt")
+    spoil(tmp_path / "spoilt")
+    with pytest.raises(InputError, match=said) as refused:
+        fleet.read(tmp_path / "spoilt")
+    assert str(tmp_path / "spoilt") in str(refused.value)
+
+
+def test_one_tyre_is_no_fleet(folders):
+    with pytest.raises(InputError, match="two built tyres or more"):
+        pipeline.fleet([folders[0]])
+    with pytest.raises(InputError, match="each once"):
+        pipeline.fleet([folders[0], folders[0]])
+
+
+@pytest.mark.slow
+def test_a_cluster_builds_on_when_a_worker_is_killed(project, tmp_path):
+    """Two workers of a real scheduler; the one that is at work on a tyre is killed when the first tyre is finished."""
+    distributed = pytest.importorskip("distributed")
+    sources = []
+    for k in range(4):
+        folder = tmp_path / str(k)
+        shutil.copytree(project, folder)
+        text = (folder / "tyre.toml").read_text().replace('"small"', f'"tyre-{k}"')
+        (folder / "tyre.toml").write_text(text)
+        sources.append(folder / "tyre.toml")
+    killed: list[int] = []
+    with distributed.LocalCluster(
+        n_workers=2, threads_per_worker=1, processes=True, dashboard_address=None
+    ) as cluster:
+        with distributed.Client(cluster.scheduler_address) as client:
+            process_of = client.run(os.getpid)
+
+        def kill_one(outcome: Outcome) -> None:
+            if not killed:
+                with distributed.Client(cluster.scheduler_address) as client:
+                    at_work = [address for address, tasks in client.processing().items() if tasks]
+                killed.append(process_of[at_work[0]])
+                os.kill(killed[0], signal.SIGKILL)
+
+        outcomes = pipeline.build_many(
+            sources, tmp_path / "out", dask=cluster.scheduler_address, done=kill_one
+        )
+    assert killed
+    assert [outcome.state for outcome in outcomes] == ["built"] * 4
+    for k in range(4):
+        assert is_current(config.load(sources[k]), tmp_path / "out" / f"tyre-{k}")
+    left = [path.name for path in (tmp_path / "out").iterdir() if path.name.startswith(".")]
+    assert len(left) <= 1  # what the killed worker had begun, for the next run to sweep
+
+
+def test_a_scheduler_that_is_not_there_is_said(project):
+    pytest.importorskip("distributed")
+    with pytest.raises(InputError, match=r"no Dask scheduler answers at ht tp://x"):
+        pipeline.build_many([project / "tyre.toml"], project / "all", dask="ht tp://x")

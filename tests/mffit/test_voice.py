@@ -1,0 +1,91 @@
+"""Every command speaks to people, to programs (--json) or not at all (--quiet)."""
+
+from __future__ import annotations
+
+import json
+import shutil
+from pathlib import Path
+
+import pytest
+from disc_project import disc_project
+from small_plan import SMALL_PLAN
+
+from mffit.cli import commands, main
+
+SAMPLE = Path(__file__).parents[2] / "samples" / "front-120-70"
+
+
+@pytest.fixture(scope="module")
+def place(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("voice")
+    disc_project(folder / "rig").write()
+    shutil.copyfile(SAMPLE / "true.tir", folder / "true.tir")
+    (folder / "rig.toml").write_text(SMALL_PLAN)
+    return folder
+
+
+def said(capsys, *arguments: object) -> tuple[str, str]:
+    main([str(argument) for argument in arguments])
+    return capsys.readouterr()
+
+
+COMMANDS = {
+    "spin": lambda p: ["spin", p / "rig" / "tyre.toml"],
+    "align": lambda p: ["align", p / "rig" / "tyre.toml"],
+    "check": lambda p: ["check", p / "true.tir"],
+    "simulate": lambda p: ["simulate", p / "rig.toml", "--out", p / "simulated"],
+    "sniff": lambda p: ["sniff", p / "rig" / "sideslip_1500.csv"],
+}
+KEYS = {
+    "spin": {"epsilon_gamma", "budget", "per_load"},
+    "align": {"correction_deg", "steps"},
+    "check": {"file", "problems"},
+    "simulate": {"epsilon_gamma", "faults", "seed"},
+    "sniff": {"recordings", "axes", "conditions", "points"},
+}
+
+
+@pytest.mark.parametrize("name", COMMANDS)
+def test_as_text_as_json_and_not_at_all(place, capsys, name):
+    arguments = COMMANDS[name](place)
+    text, _ = said(capsys, *arguments)
+    assert text.strip()
+    document, _ = said(capsys, *arguments, "--json")
+    assert KEYS[name] <= set(json.loads(document))
+    assert said(capsys, *arguments, "--quiet")[0] == ""
+
+
+def test_json_and_page_hold_the_same_number(place, capsys):
+    document, _ = said(capsys, *COMMANDS["spin"](place), "--json")
+    assert json.loads(document) == json.loads((place / "rig" / "out" / "spin.json").read_text())
+
+
+def test_init_names_what_it_wrote(tmp_path, capsys):
+    document, _ = said(capsys, "init", tmp_path / "new", "--json")
+    written = json.loads(document)["written"]
+    assert str(tmp_path / "new" / "tyre.toml") in written
+    assert all(Path(path).is_file() for path in written)
+
+
+@pytest.mark.parametrize("name", [*COMMANDS, "build", "diagnose", "fleet", "init"])
+def test_the_options_are_there(name):
+    assert {"json", "quiet"} <= {option.name for option in commands.commands[name].params}
+
+
+@pytest.mark.parametrize(
+    ("file", "said"),
+    [
+        ("rig.toml", "is a rig.toml, a plan for the virtual rig"),
+        ("true.tir", "is a property file, not a tyre.toml"),
+        ("rig/sideslip_1500.csv", "mffit init --from sideslip_1500.csv DIR"),
+        ("rig", "is a folder"),
+    ],
+)
+@pytest.mark.parametrize("command", ["build", "spin", "diagnose"])
+def test_a_file_that_is_no_tyre_toml_is_told_what_it_is(place, capsys, command, file, said):
+    with pytest.raises(SystemExit) as end:
+        main([command, str(place / file)])
+    assert end.value.code == 2
+    err = capsys.readouterr().err
+    assert said in err
+    assert len(err) < 400
