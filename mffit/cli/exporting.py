@@ -7,6 +7,8 @@ from typing import Any
 
 import click
 
+from mffit.cli.console import Voice, voiced
+
 
 def _shared(command: Any) -> Any:
     """What both commands ask for."""
@@ -31,6 +33,12 @@ def _shared(command: Any) -> Any:
     return command
 
 
+def _report(voice: Voice, written: list[Path]) -> None:
+    names = [str(path) for path in written]
+    voice.say(f"written: {', '.join(names)}")
+    voice.give(lambda: {"written": names})
+
+
 @click.group()
 def export() -> None:
     """A .tir as C99 sources or as an FMU (functional mock-up unit); a project's points as TYDEX."""
@@ -38,12 +46,13 @@ def export() -> None:
 
 @export.command()
 @_shared
-def c(file: Path, out: Path, name: str | None, turn_slip: bool, limits: bool) -> None:
+@voiced
+def c(file: Path, out: Path, name: str | None, turn_slip: bool, limits: bool, voice: Voice) -> None:
     """One header and one source of C99: no allocation, no state, doubles."""
     from mffit.export import write_c
 
     written = write_c(file, out, name=name, turn_slip=turn_slip, limits=limits)
-    click.echo(f"written: {', '.join(map(str, written))}")
+    _report(voice, written)
 
 
 @export.command()
@@ -52,8 +61,16 @@ def c(file: Path, out: Path, name: str | None, turn_slip: bool, limits: bool) ->
     "--fmi", type=click.Choice(["2", "3"]), default="2", show_default=True, help="Version: FMI 2.0 or 3.0."
 )
 @click.option("--sources-only", is_flag=True, help="No binary: the importing program compiles the sources.")
+@voiced
 def fmu(
-    file: Path, out: Path, name: str | None, turn_slip: bool, limits: bool, fmi: str, sources_only: bool
+    file: Path,
+    out: Path,
+    name: str | None,
+    turn_slip: bool,
+    limits: bool,
+    fmi: str,
+    sources_only: bool,
+    voice: Voice,
 ) -> None:
     """An FMU for model exchange and co-simulation, with C sources and a binary for this machine."""
     from mffit.export import write_fmu
@@ -61,7 +78,7 @@ def fmu(
     written = write_fmu(
         file, out, fmi=int(fmi), name=name, turn_slip=turn_slip, limits=limits, sources_only=sources_only
     )
-    click.echo(f"written: {written}")
+    _report(voice, [written])
 
 
 @export.command()
@@ -71,9 +88,10 @@ def fmu(
     type=click.Path(path_type=Path),
     help="Folder to write to [default: out/tydex/ beside TYRE_TOML].",
 )
-def tydex(tyre_toml: Path, out: Path | None) -> None:
+@voiced
+def tydex(tyre_toml: Path, out: Path | None, voice: Voice) -> None:
     """The points of a project as TYDEX 1.3, a file for each sweep."""
     from mffit import pipeline
 
     written = pipeline.write_tydex(tyre_toml, out or tyre_toml.parent / "out" / "tydex")
-    click.echo(f"written: {', '.join(map(str, written))}")
+    _report(voice, written)
