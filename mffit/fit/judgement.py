@@ -100,7 +100,7 @@ def judge(
     size = usual_sizes(points, found)
     noise = np.concatenate([u * k for u, k in zip(stated, fitted.scale, strict=True)])
     fit = leverage(fitted.problem, fitted.numbers, noise)
-    errors = {k: errors_of(predictions(fit, g.index), g, points, size) for k, g in enumerate(found)}
+    errors = {k: errors_of(predictions(fit, g), g, points, size) for k, g in enumerate(found)}
     level = FALSE_ALARM / sum(len(rows) for rows in errors.values())
     suspects = [(e, found[k]) for k, rows in errors.items() for e in rows if e.chance < level]
     usual = _usual_ratios([e for rows in errors.values() for e in rows])
@@ -172,10 +172,10 @@ def _view(points: Points, group: Group, stated, size, signs, refit: Refit, level
         fitted = refit(rest)
     except InputError:  # too few points are left to say anything of this one
         return None
-    part = points.select(group.index)
+    part = points.select(group.shown)
 
     def seen(of: Points) -> dict[str, tuple[Error, Prediction]]:
-        return _predicted(of, fitted, [u[group.index] for u in stated], size)
+        return _predicted(of, fitted, [u[group.shown] for u in stated], size)
 
     declared = {n: e for n, (e, _) in seen(part).items() if e.chance < level and e.share > DOUBTFUL}
     if not declared:
@@ -261,7 +261,7 @@ def _doubts(
         group, error = view.group, view.error
         if any(set(group.index) <= set(d.index) for d in out):
             continue
-        looks = explanation(points.select(group.index), predictions(fit, group.index), simulation, signs)
+        looks = explanation(points.select(group.shown), predictions(fit, group), simulation, signs)
         out.append(
             Doubt(
                 sweep=group.name,

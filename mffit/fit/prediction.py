@@ -1,8 +1,8 @@
 """What all other sweeps say of each sweep: prediction with the sweep left out, from the one fit to all of them.
 
 To first order no second fit is needed. With J the derivatives of a group's residuals r in units of their weight, and C the
-covariance of the fit, the hat matrix is P = J C J^T; without the group its residuals are (I - P)^-1 r, and the prediction itself
-has the covariance (I - P)^-1 - I (Belsley, Kuh and Welsch, Regression Diagnostics, 1980, section 2.1).
+covariance of the fit, the others leave the covariance A^-1 with A = C^-1 - J^T J, and the numbers move by A^-1 J^T r when the
+group is taken out (Belsley, Kuh and Welsch, Regression Diagnostics, 1980, section 2.1, there with the hat matrix J C J^T).
 """
 
 from __future__ import annotations
@@ -24,6 +24,8 @@ MOST = 0.5
 """Share of all points from which on the others say too little of a sweep."""
 UNKNOWN = 1e-3
 """Share of a direction's information that comes from the others below which they say nothing of it."""
+SHOWN = 300
+"""Points of a group at which it is judged; of more, evenly spaced ones say the same."""
 COMMON = tuple(name for name in FAULT_NAMES if name not in ("backlash_deg", "path_radius_m"))
 """Errors of a rig that all sweeps share; they are no contradiction of one sweep, and are let free, to first order."""
 
@@ -37,6 +39,11 @@ class Group:
     index: np.ndarray  #: (m,) rows of the points
     whole: bool  #: all points of a sweep, not those of one condition
 
+    @property
+    def shown(self) -> np.ndarray:
+        """Rows at which the group is judged."""
+        return self.index[:: -(-len(self.index) // SHOWN)]
+
 
 @dataclass(frozen=True, slots=True)
 class Leverage:
@@ -48,7 +55,7 @@ class Leverage:
     noise: (
         np.ndarray
     )  #: (2n,) uncertainty of a sound point, the model's own misfit included; inf: not measured
-    covariance: np.ndarray  #: (k, k)
+    root: np.ndarray  #: (k, k) of the covariance, which is root @ root.T
 
 
 @dataclass(frozen=True, slots=True)
@@ -120,26 +127,41 @@ def leverage(problem: Problem, numbers: Sequence[Number], noise: np.ndarray) -> 
         slope=slopes,
         weight=weight,
         noise=np.where(used, noise, np.inf),
-        covariance=covariance,
+        root=_root(covariance),
     )
 
 
-def predictions(fit: Leverage, index: np.ndarray) -> dict[str, Prediction]:
-    """The channels of a group (m,) as all other points predict them; a channel that was not measured is left out."""
+def _root(covariance: np.ndarray) -> np.ndarray:
+    """A root of the covariance (k, k) of numbers that differ by orders of magnitude."""
+    scale = np.sqrt(np.diag(covariance))
+    size, axes = np.linalg.eigh(covariance / np.outer(scale, scale))
+    return scale[:, None] * axes * np.sqrt(np.maximum(size, 0.0))
+
+
+def predictions(fit: Leverage, group: Group) -> dict[str, Prediction]:
+    """The channels of a group, where it is shown (m,), as all other points predict them; one not measured is left out."""
     n = len(fit.residual) // 2
-    rows = np.concatenate([index, n + index])
-    rows = rows[np.isfinite(fit.noise[rows])]
-    slope, weight = fit.slope[rows], fit.weight[rows]
-    J = slope / weight[:, None]
-    share, axes = np.linalg.eigh(J @ fit.covariance @ J.T)
-    apart = (axes / np.maximum(1.0 - share, UNKNOWN)) @ axes.T  # (I - P)^-1
-    toward = slope @ fit.covariance @ J.T @ apart
-    error = fit.residual[rows] + toward @ (fit.residual[rows] / weight)
-    spread = slope @ fit.covariance @ slope.T + toward @ J @ fit.covariance @ slope.T
-    spread += np.diag(fit.noise[rows] ** 2)
+    rows = _measured(fit, group.index, n)
+    J = fit.slope[rows] / fit.weight[rows][:, None]
+    share, axes = np.linalg.eigh(
+        (J @ fit.root).T @ (J @ fit.root)
+    )  # of the information that comes from the group
+    turned = fit.root @ axes
+    others = (turned / np.maximum(1.0 - share, UNKNOWN)) @ turned.T
+    moved = others @ (J.T @ (fit.residual[rows] / fit.weight[rows]))
+    rows = _measured(fit, group.shown, n)
+    slope = fit.slope[rows]
+    error = fit.residual[rows] + slope @ moved
+    spread = slope @ others @ slope.T + np.diag(fit.noise[rows] ** 2)
     out = {}
     for k, name in enumerate(CHANNELS):
         own = rows >= n if k else rows < n
         if np.any(own):
             out[name] = Prediction(error[own], spread[np.ix_(own, own)])
     return out
+
+
+def _measured(fit: Leverage, index: np.ndarray, n: int) -> np.ndarray:
+    """Rows of the fit's arrays for both channels of some points, where they were measured."""
+    rows = np.concatenate([index, n + index])
+    return rows[np.isfinite(fit.noise[rows])]

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from mffit.fit.prediction import Leverage, groups, predictions
+from mffit.fit.prediction import SHOWN, Group, Leverage, groups, predictions
 from mffit.points import make_points
 
 
@@ -20,7 +20,18 @@ def linear_fit(n: int = 60, k: int = 5, seed: int = 4) -> tuple[Leverage, np.nda
     J = design / weight[:, None]
     covariance = np.linalg.inv(J.T @ J)
     residual = design @ (covariance @ J.T @ (measured / weight)) - measured
-    return Leverage(residual, design, weight, noise, covariance), design, measured
+    return Leverage(residual, design, weight, noise, np.linalg.cholesky(covariance)), design, measured
+
+
+def test_a_large_group_is_shown_at_evenly_spaced_points_and_left_out_whole():
+    fit, design, measured = linear_fit(n=2000)
+    whole = Group("s", "s.csv", np.arange(100, 1300), True)
+    found = predictions(fit, whole)["Fy"].error
+    assert len(found) == len(whole.shown) == SHOWN
+    rest = np.setdiff1d(np.arange(4000), np.concatenate([whole.index, 2000 + whole.index]))
+    J = design[rest] / fit.weight[rest, None]
+    expected = design @ np.linalg.lstsq(J, measured[rest] / fit.weight[rest], rcond=None)[0]
+    assert found == pytest.approx((expected - measured)[whole.shown], rel=1e-8)
 
 
 @pytest.mark.parametrize("index", [np.arange(0, 12), np.arange(30, 34)])
@@ -32,7 +43,7 @@ def test_leaving_out_needs_no_second_fit(index):
     J = design[rest] / fit.weight[rest, None]
     covariance = np.linalg.inv(J.T @ J)
     expected = design @ (covariance @ J.T @ (measured[rest] / fit.weight[rest]))
-    found = predictions(fit, index)
+    found = predictions(fit, Group("s", "s.csv", index, True))
     assert found["Fy"].error == pytest.approx((expected - measured)[index], rel=1e-9)
     assert found["Mz"].error == pytest.approx((expected - measured)[n + index], rel=1e-9)
     spread = design[index] @ covariance @ design[index].T + np.diag(fit.noise[index] ** 2)
