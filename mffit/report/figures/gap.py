@@ -48,17 +48,15 @@ def gap_bars(view: DiagnosisView) -> Figure:
         "bottom": 0.45 / figure.get_figheight(),
         "wspace": 0.22,
     }
-    axes = figure.subplots(1, panels, gridspec_kw=place)
+    axes = figure.subplots(1, panels, sharey=True, gridspec_kw=place)
     for ax, channel in zip(axes, view.channels, strict=False):
         rows = _rows(view, methodcaller("rms", channel.name))
         _bars(ax, rows, channel.noise, view.changed)
-        ax.set_title(f"{channel.name}: rms gap")
+        ax.set_title(f"{channel.symbol}: rms gap")
         ax.set_xlabel(f"measured − simulated [{channel.unit}]")
     _bars(axes[-1], _rows(view, attrgetter("chi2_per_dof")), 1.0, view.changed)
     axes[-1].set_title("χ² per degree of freedom")
     axes[-1].set_xlabel("1 = nothing but noise")
-    for ax in axes[1:]:
-        ax.tick_params(labelleft=False)
     return figure
 
 
@@ -69,20 +67,19 @@ def residuals_before_after(view: DiagnosisView) -> Figure:
     columns = [(channel, when) for channel in view.channels for when in whens]
     limit = colour_limit(view.channels)
     figure, rows = style.panel_grid(
-        [len(columns)] * len(shown), 4, height=1.40, legend=False, margins=(0.70, 0.95), gap=(0.22, 0.36),
+        [len(columns)] * len(shown), 4, height=1.40, gap=(0.22, 0.36),
         share_x=True, share_y=True,
     )  # fmt: skip
     set_limits(rows[0][0], view.points)
     for row, condition in zip(rows, shown, strict=True):
         for ax, (channel, when) in zip(row, columns, strict=True):
             drawn = residual_map(ax, view.points, getattr(channel, when), condition.index, limit)
-            ax.set_title(f"{channel.name}{' ' + when if view.changed else ''}, {condition.title}")
+            ax.set_title(f"{channel.symbol}{' ' + when if view.changed else ''}, {condition.title}")
             if when == "before":
                 _frames(ax, view.frames(channel.name), condition.load)
-    for ax in rows[-1]:
-        ax.set_xlabel(labels.ANGLES["alpha"].axis)
+    style.label_below(rows, labels.ANGLES["alpha"].axis)
     style.label_left(rows, labels.ANGLES["gamma"].axis)
-    colour_bar(figure, drawn, "measured − simulated\n[noise of a point]")
+    colour_bar(figure, drawn, "measured − simulated [noise of a point]")
     return figure
 
 

@@ -94,7 +94,7 @@ def _over_load(ax: Axes, view: BuildView) -> None:
     ax.set_ylim(low, high + 0.3 * (high - low))  # room for the legend
     ax.legend(loc="upper left", borderaxespad=0.0, handlelength=1.4)
     ax.set_xlabel(labels.LOAD.axis)
-    ax.set_ylabel(f"{labels.EPSILON.mathtext} [–], ± 1 u")
+    ax.set_ylabel(f"{labels.EPSILON.short_axis}, ± 1 u")
     ax.set_title("Over the load")
 
 
@@ -117,7 +117,7 @@ def alignment(view: BuildView) -> Figure:
         ax.set_title(labels.LOAD.of(load))
         ax.set_xlabel(labels.ANGLES["alpha"].axis, labelpad=1.5)
         style.few_ticks(ax)
-    style.label_left(rows, CHANNELS["Fy"].column("Fy"))
+    style.label_left(rows, CHANNELS["Fy"].short_axis)
     handles = [
         Line2D([], [], marker="o", color=style.ACCENT, label="rolling forwards"),
         Line2D([], [], ls="--", marker="v", mfc="white", color=style.CONTRAST, label="rolling backwards"),

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import base64
 import re
 import subprocess
 import sys
@@ -16,10 +15,17 @@ from mffit.report import write_build
 PNG = b"\x89PNG\r\n"
 
 
+@pytest.fixture(autouse=True)
+def _date(monkeypatch):
+    monkeypatch.setenv("SOURCE_DATE_EPOCH", "1700000000")
+
+
 @pytest.fixture(scope="module")
 def written(result, tmp_path_factory):
     folder = tmp_path_factory.mktemp("report")
-    write_build(result, folder)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("SOURCE_DATE_EPOCH", "1700000000")
+        write_build(result, folder)
     return folder
 
 
@@ -29,23 +35,34 @@ def page(written):
 
 
 def test_pictures_are_on_disk_and_in_the_page(written, page):
-    on_disk = {base64.b64encode(path.read_bytes()).decode() for path in (written / "plots").glob("*.png")}
-    embedded = {image["src"].removeprefix("data:image/png;base64,") for image in page.images}
-    assert on_disk == embedded
-    assert {path.stem for path in (written / "plots").glob("*.png")} == {
+    drawn = {
         "camber_reduction", "alignment", "parts_Fy", "parts_Mz", "even_parts", "fit_Fy", "fit_Mz",
         "residuals",
     }  # fmt: skip
+    assert {path.stem for path in (written / "plots").glob("*.png")} == set(page.tables) == drawn
+    assert len(page.drawings) == len(drawn)
     assert all(path.read_bytes().startswith(PNG) for path in (written / "plots").glob("*.png"))
 
 
 def test_page_needs_no_network(written, page):
-    assert all(r.startswith(("data:image/png;base64,", "#")) for r in page.references)
+    assert all(r.startswith(("data:text/csv", "data:image/png;base64,", "#")) for r in page.references)
     html = (written / "report.html").read_text(encoding="utf-8")
     assert "<script" not in html
     assert "<link" not in html
     assert "@import" not in html
-    assert "url(" not in html
+    assert all(target.startswith("#") for target in re.findall(r"url\(([^)]*)\)", html))
+
+
+def test_ids_are_unique_and_everything_that_drawings_use_is_there(written, page):
+    assert len(page.ids) == len(set(page.ids))
+    html = (written / "report.html").read_text(encoding="utf-8")
+    assert set(re.findall(r"url\(#([^)]*)\)", html)) <= set(page.ids)
+
+
+def test_the_page_says_when_and_with_what_it_was_made(page):
+    assert "Written 2023-11-14 22:13 UTC by mffit" in page.text
+    assert f"numpy {np.__version__}" in page.text
+    assert "SHA-256" in page.text
 
 
 def test_links_within_the_page_resolve(written, page):
@@ -54,7 +71,7 @@ def test_links_within_the_page_resolve(written, page):
 
 
 def test_every_picture_is_described_in_words(page):
-    assert all(len(image["alt"]) > 20 for image in page.images)
+    assert all(len(said) > 20 for said in page.drawings)
 
 
 def test_warnings_stand_before_everything_else(page):
@@ -72,7 +89,7 @@ def test_every_coefficient_is_listed_with_its_status(page):
         assert re.search(rf"\b{name}\b", page.text)
         assert coefficient.status in page.text
     assert page.text.count("at bound") == 1
-    assert "correlated with PKY2 -0.97" in page.text
+    assert "correlated with PKY2 −0.97" in page.text
 
 
 def test_headline_numbers_are_those_of_the_direct_method(result, page):

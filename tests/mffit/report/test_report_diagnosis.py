@@ -63,7 +63,7 @@ def test_a_diagnosis_fits_a_screen_and_leads_with_its_headline(misaligned):
 def test_a_found_effect_is_shown_with_its_size_and_pictures(misaligned, tmp_path):
     page = written(misaligned, tmp_path)
     assert {p.stem for p in (tmp_path / "plots").iterdir()} == {"gap", "evidence", "gap_maps"}
-    assert len(page.images) == 3
+    assert set(page.tables) == {"gap", "evidence", "gap_maps"}
     assert misaligned.headline in page.text
     assert "alpha_0_deg" in page.text
     assert misaligned.effects[0].effect.physics in page.text
@@ -71,7 +71,7 @@ def test_a_found_effect_is_shown_with_its_size_and_pictures(misaligned, tmp_path
 
 def test_page_needs_no_network(misaligned, tmp_path):
     page = written(misaligned, tmp_path)
-    assert all(r.startswith(("data:image/png;base64,", "#")) for r in page.references)
+    assert all(r.startswith(("data:text/csv", "data:image/png;base64,", "#")) for r in page.references)
 
 
 def test_a_tie_is_stated_with_the_run_that_separates_it(misaligned, tmp_path):
@@ -82,7 +82,7 @@ def test_a_tie_is_stated_with_the_run_that_separates_it(misaligned, tmp_path):
     )
     page = written(dataclasses.replace(misaligned, effects=(found,)), tmp_path)
     assert "these data cannot tell it from ply-steer" in page.text
-    assert "a sideslip sweep at 1400 N with the tyre turned on its rim (expected chi2 50)" in page.text
+    assert "a sideslip sweep at 1400 N with the tyre turned on its rim (expected χ² 50)" in page.text
 
 
 def test_residuals_after_are_noise_where_the_effect_was_found(misaligned):

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from mffit.quantities import CHANNELS
 from mffit.report import style
 from mffit.report.build_view import view_of
 from mffit.report.figures import decomposition, fit, residuals, spin
@@ -46,7 +47,9 @@ def test_raw_curve_is_the_sum_of_its_parts(view):
 
 def test_even_parts_have_a_row_per_channel_and_angle_and_a_column_per_load(view):
     figure = decomposition.even_parts(view)
-    assert titles(figure) == [f"{c}, {load} N" for c in ("Fy", "Fy", "Mz", "Mz") for load in (900, 1500)]
+    assert titles(figure) == [
+        f"{CHANNELS[c].mathtext}, {load} N" for c in ("Fy", "Fy", "Mz", "Mz") for load in (900, 1500)
+    ]
 
 
 def test_fit_draws_every_point(view):
