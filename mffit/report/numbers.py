@@ -14,6 +14,7 @@ import numpy as np
 from mffit.report import style
 
 if TYPE_CHECKING:
+    from matplotlib.artist import Artist
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
     from matplotlib.lines import Line2D
@@ -72,7 +73,7 @@ def _rows(ax: Axes, names: dict[tuple[Any, ...], str]) -> Iterator[Row]:
             said = _said(container, names) or _said(line, names)
             yield from ((said, x, _word(ax, y), *ends) for x, y, *ends in _error_bars(container))
     for line in ax.lines:
-        if line not in drawn and line.get_transform() == ax.transData:
+        if line not in drawn and _in_units(line, ax):
             said = _said(line, names)
             yield from ((said, x, y, "", "", "") for x, y in zip(*_data(line), strict=True))
     for collection in ax.collections:
@@ -84,16 +85,21 @@ def _rows(ax: Axes, names: dict[tuple[Any, ...], str]) -> Iterator[Row]:
         elif isinstance(collection, PolyCollection):
             yield from ((said, x, "", low, high, "") for x, low, high in _band(collection))
     for bar in ax.patches:
-        if isinstance(bar, Rectangle) and bar.get_fill() and bar.get_transform() != ax.transAxes:
+        if isinstance(bar, Rectangle) and bar.get_fill() and _in_units(bar, ax):
             y = _word(ax, bar.get_y() + 0.5 * bar.get_height())
             yield _said(bar, names), bar.get_x() + bar.get_width(), y, "", "", ""
 
 
+def _in_units(artist: Artist, ax: Axes) -> bool:
+    """Whether both coordinates are numbers of the axes; a guide through a whole panel has one that is a share of it."""
+    return artist.get_transform().contains_branch_seperately(ax.transData) == (True, True)
+
+
 def _word(ax: Axes, y: float) -> str | float:
     """What stands at the vertical axis at a place, if words stand there."""
-    from matplotlib.ticker import FixedFormatter
+    from matplotlib.ticker import FixedLocator
 
-    if not isinstance(ax.yaxis.get_major_formatter(), FixedFormatter):
+    if not isinstance(ax.yaxis.get_major_locator(), FixedLocator):
         return y
     places = np.asarray(ax.get_yticks(), dtype=float)
     return ax.get_yticklabels()[int(np.argmin(np.abs(places - y)))].get_text()

@@ -21,6 +21,7 @@ from mffit.report.diagnosis_view import (
     shown_steps,
 )
 from mffit.report.figures.residuals import colour_bar, most_populated, residual_map, set_limits
+from mffit.report.rounding import number
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -104,7 +105,7 @@ def evidence(view: DiagnosisView) -> Figure:
         _candidates(ax, step)
         after = f"beside {' and '.join(step.beside)}" if step.beside else "one effect alone"
         title = f"Step {i + 1}{'' if step.passed else ', nothing passes'}: {after}"
-        ax.set_title(textwrap.shorten(title, 52, placeholder="…"), x=-0.9)
+        ax.set_title(labels.typeset(textwrap.shorten(title, 52, placeholder="…")), x=-0.9)
     present = {c.kind for step in steps for c in step.candidates}
     style.legend_above(
         figure, [Patch(color=c, label=kind) for kind, c in KIND_COLOURS.items() if kind in present]
@@ -127,7 +128,8 @@ def _candidates(ax: Axes, step: RankedStep) -> None:
     ax.axvline(step.threshold, color=style.INK, lw=1.0, ls="--")
     ax.set_xscale("log")
     ax.set_xlim(SMALLEST_GAIN, 8.0 * max(10.0, *gains))
-    ax.set_yticks(range(len(rows)), [textwrap.shorten(c.name, 31, placeholder="…") for c in rows])
+    names = [labels.typeset(textwrap.shorten(c.name, 31, placeholder="…")) for c in rows]
+    ax.set_yticks(range(len(rows)), names)
     ax.set_ylim(len(rows) - 0.4, -0.6)
     ax.grid(axis="y", visible=False)
     ax.minorticks_off()
@@ -138,7 +140,7 @@ def _distances(ax: Axes, rows: Sequence[Candidate], gains: Sequence[float]) -> N
     """How far each candidate is behind the best, at the end of its bar; dark where it may be a tie."""
     for i, (candidate, gain) in enumerate(zip(rows, gains, strict=True)):
         behind = rows[0].gain - candidate.gain
-        said = "best" if i == 0 else f"−{behind:.3g}"
+        said = "best" if i == 0 else number(-behind, 0 if behind >= 10.0 else None, digits=2)
         colour = style.INK if behind < TIE else style.MUTED
         ax.annotate(f" {said}", (gain, i), va="center", fontsize=7.0, color=colour)
 

@@ -11,6 +11,7 @@ import pytest
 from report_toys import made_coefficients, made_result, read_page
 
 from mffit.report import write_build
+from tests.browser import PAPER, PHONE, SCREEN, brightness, complaints, console_errors, look, opened
 
 PNG = b"\x89PNG\r\n"
 
@@ -135,3 +136,43 @@ def test_drawing_touches_no_global_figure_and_importing_loads_no_plot_library(tm
         "assert 'matplotlib.pyplot' not in sys.modules\n"
     )
     subprocess.run([sys.executable, "-W", "error", "-c", code, str(tmp_path / "a.png")], check=True)
+
+
+@pytest.fixture(scope="module")
+def browser(written):
+    with opened(written / "report.html") as found:
+        yield found
+
+
+@pytest.mark.parametrize(
+    ("width", "media"), [(SCREEN, ""), (PHONE, ""), (PAPER, "print")], ids=["screen", "phone", "paper"]
+)
+def test_a_reader_sees_every_picture(browser, width, media):
+    look(browser, width, media=media)
+    assert complaints(browser) == []
+    assert console_errors(browser) == []
+
+
+def test_folded_coefficients_show_when_opened_and_on_paper(browser):
+    look(browser)
+    fold = browser.find_element("css selector", ".fold")
+    table, label = (fold.find_element("css selector", name) for name in (".folded", "label"))
+    assert not table.is_displayed()
+    label.click()
+    assert table.is_displayed()
+    label.click()
+    assert not table.is_displayed()
+    look(browser, PAPER, media="print")
+    assert table.is_displayed()
+
+
+def test_at_night_page_and_pictures_are_dark(browser):
+    drawing = browser.find_element("css selector", ".panels")
+    look(browser)
+    light = brightness(drawing)
+    look(browser, dark=True)
+    dark = brightness(drawing)
+    assert np.median(light) > 0.95
+    assert np.median(dark) < 0.2
+    # What is dark on white is light on black, and what is faint stays faint.
+    assert np.corrcoef(light.ravel(), dark.ravel())[0, 1] < -0.9

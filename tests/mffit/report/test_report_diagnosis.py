@@ -16,6 +16,7 @@ from mffit.diagnosis.ties import Run, Separation
 from mffit.report import style, text, write_diagnosis
 from mffit.report.diagnosis_view import Candidate, RankedStep, view_of
 from mffit.report.figures import gap
+from tests.browser import PAPER, PHONE, complaints, console_errors, look, opened
 
 DENT = -80.0  # N, over 1 deg of sideslip
 
@@ -161,3 +162,14 @@ def test_summary_for_the_terminal(misaligned, unknown, clean):
         said = text.diagnosis_summary(diagnosis)
         assert said.isascii()
         assert all(len(line) <= 110 for line in said.splitlines())
+
+
+def test_a_reader_sees_every_picture_on_screen_phone_and_paper(misaligned, tmp_path):
+    write_diagnosis(misaligned, tmp_path)
+    with opened(tmp_path / "diagnosis.html") as browser:
+        assert complaints(browser) == []
+        look(browser, PHONE)
+        assert complaints(browser) == []
+        look(browser, PAPER, media="print")
+        assert complaints(browser) == []
+        assert console_errors(browser) == []
