@@ -8,10 +8,11 @@ from collections.abc import Callable
 from mffit.quantities import CHANNELS, CONDITIONS, DIAGNOSED, DIRECT
 from tir.parameters import BY_NAME
 
-VERBATIM = frozenset({"code", "style", "svg", "title", "script"})
+VERBATIM = frozenset({"code", "svg", "title"})
 """Elements whose text stays as it is; so does that of class ``mono``."""
 VOID = frozenset({"meta", "img", "br", "col", "input", "link", "hr"})
-TAG = re.compile(r"(<[^>]*>)")
+TAG = re.compile(r"(<script\b.*?</script>|<style\b.*?</style>|<[^>]*>)", re.DOTALL)
+"""A tag, or the whole of an element in which ``<`` is no tag."""
 NAME = re.compile(r"</?([a-zA-Z][\w-]*)")
 
 SYMBOLS = {
@@ -71,7 +72,7 @@ def page(html: str) -> str:
             continue
         out.append(piece)
         name = NAME.match(piece)
-        if name is None or name[1] in VOID or piece.endswith("/>"):
+        if name is None or name[1] in VOID or piece.endswith(("/>", "</script>", "</style>")):
             continue
         if piece.startswith("</"):
             open_tags.pop()

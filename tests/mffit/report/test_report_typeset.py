@@ -30,6 +30,8 @@ def test_sentence(said, shown):
 
 def test_what_is_verbatim_stays():
     page = '<p title="eps_gamma">eps_gamma <code>eps_gamma</code> <td class="n mono">PECP1</td><br>+-</p>'
+    script = "<script>if (a < b && Fy +- c) eps_gamma</script>"
+    assert typeset.page(script + "+-") == script + "±"
     assert typeset.page(page) == (
         f'<p title="eps_gamma">{DIRECT["epsilon_gamma"].html} <code>eps_gamma</code> '
         '<td class="n mono">PECP1</td><br>±</p>'
