@@ -99,10 +99,11 @@ def _word(ax: Axes, y: float) -> str | float:
     """What stands at the vertical axis at a place, if words stand there."""
     from matplotlib.ticker import FixedLocator
 
-    if not isinstance(ax.yaxis.get_major_locator(), FixedLocator):
-        return y
     places = np.asarray(ax.get_yticks(), dtype=float)
-    return ax.get_yticklabels()[int(np.argmin(np.abs(places - y)))].get_text()
+    if not isinstance(ax.yaxis.get_major_locator(), FixedLocator) or not len(places):
+        return y
+    words = ax.yaxis.get_major_formatter().format_ticks(list(places))
+    return words[int(np.argmin(np.abs(places - y)))] or y
 
 
 def _error_bars(container: Any) -> Iterator[tuple[Any, ...]]:
