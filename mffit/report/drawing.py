@@ -62,7 +62,8 @@ def _markup(figure: Figure, name: str) -> str:
         artist.set_gid(f"part-{k}")
     source = _Source(figure, name)
     key = list(_entries(figure))
-    out = ['<div class="panels">']
+    widest = max(_extent(ax).width for ax in panels) + 2.0 * ROOM
+    out = [f'<div class="panels" style="--widest:{_short(widest)}">']
     if key or scales:
         drawn = [source.part(artists, box) for artists, box in key]
         drawn += [source.part([ax], _extent(ax)) for ax in scales]
