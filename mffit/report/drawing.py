@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 Element = ElementTree.Element
 
-DENSE = 500
+DENSE = 200
 """Markers in one panel above which they are drawn as pixels: a page of a hundred thousand elements opens slowly."""
 RASTER_DPI = 144
 ROOM = 1.5

@@ -165,7 +165,7 @@ def ramp(levels: list[float]) -> dict[float, Any]:
     """A colour per level, dark to light in order; readable in grey and with any colour vision."""
     import matplotlib
 
-    shades = matplotlib.colormaps["viridis"](np.linspace(0.0, 0.86, max(len(levels), 1)))
+    shades = matplotlib.colormaps["viridis"](np.linspace(0.0, 0.80, max(len(levels), 1)))
     return {level: tuple(shade) for level, shade in zip(sorted(levels), shades, strict=False)}
 
 
