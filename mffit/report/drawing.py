@@ -23,6 +23,8 @@ Element = ElementTree.Element
 DENSE = 200
 """Markers in one panel above which they are drawn as pixels: a page of a hundred thousand elements opens slowly."""
 RASTER_DPI = 144
+WIDEST = 380.0
+"""Of a panel without its labels [pt]: wider ones could not be read on a telephone."""
 ROOM = 1.5
 """Around a panel [pt], for the ends of thick lines and another machine's letters."""
 POINTS_PER_INCH = 72.0
@@ -58,6 +60,9 @@ def _markup(figure: Figure, name: str) -> str:
     panels = [ax for ax in figure.axes if ax not in scales]
     for ax in panels:
         _thin_out(ax)
+    widest = max(ax.get_window_extent().width for ax in panels)
+    if widest > WIDEST:
+        style.narrowed(figure, WIDEST / widest)
     for k, artist in enumerate(_parts(figure)):
         artist.set_gid(f"part-{k}")
     source = _Source(figure, name)

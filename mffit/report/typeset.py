@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable
 
-from mffit.quantities import CHANNELS, CONDITIONS, DIAGNOSED, DIRECT
+from mffit.quantities import CHANNELS, COMPARED, CONDITIONS, DIAGNOSED, DIRECT
 from tir.parameters import BY_NAME
 
 VERBATIM = frozenset({"code", "svg", "title"})
@@ -19,7 +19,7 @@ SYMBOLS = {
     **{name: channel.html for name, channel in CHANNELS.items()},
     **{
         q.ascii: q.html
-        for table in (CONDITIONS, DIRECT, DIAGNOSED)
+        for table in (CONDITIONS, DIRECT, COMPARED, DIAGNOSED)
         for q in table.values()
         if len(q.ascii) > 1
     },

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import re
 
 import numpy as np
 import pytest
@@ -161,3 +162,11 @@ def crossing(figure):
         for other, b in boxes[:i]
         if min(a.x1, b.x1) - max(a.x0, b.x0) > 1.0 and min(a.y1, b.y1) - max(a.y0, b.y0) > 1.0
     ]
+
+
+@pytest.mark.parametrize("columns", [1, 2])
+def test_no_panel_is_too_wide_for_a_telephone(columns):
+    figure, rows = style.panel_grid([columns], columns)
+    style.label_left(rows, "force")
+    drawn = drawing.markup(figure, "wide")
+    assert float(re.search(r"--widest:([\d.]+)", drawn)[1]) < 440.0
