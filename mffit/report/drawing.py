@@ -23,7 +23,7 @@ Element = ElementTree.Element
 DENSE = 200
 """Markers in one panel above which they are drawn as pixels: a page of a hundred thousand elements opens slowly."""
 RASTER_DPI = 144
-WIDEST = 380.0
+WIDEST = 360.0
 """Of a panel without its labels [pt]: wider ones could not be read on a telephone."""
 ROOM = 1.5
 """Around a panel [pt], for the ends of thick lines and another machine's letters."""
