@@ -6,7 +6,17 @@ import re
 from typing import NamedTuple
 
 GREEK = str.maketrans(
-    {"α": "alpha", "γ": "gamma", "ε": "eps", "φ": "phi", "κ": "kappa", "σ": "sigma", "μ": "mu"}
+    {
+        "α": "alpha",
+        "γ": "gamma",
+        "ε": "eps",
+        "φ": "phi",
+        "κ": "kappa",
+        "σ": "sigma",
+        "μ": "mu",
+        "χ": "chi",
+        "²": "2",
+    }
 )
 
 
@@ -42,6 +52,11 @@ class Quantity(NamedTuple):
         """The label of a picture's axis."""
         return f"{self.word} {self.mathtext} [{self.unit.replace('-', '–')}]"
 
+    @property
+    def short_axis(self) -> str:
+        """The same without the word, where there is little room."""
+        return f"{self.mathtext} [{self.unit.replace('-', '–')}]"
+
     def column(self, name: str) -> str:
         """The heading of a table's column."""
         return f"{name} [{self.unit}]" if self.unit_behind else name
@@ -65,7 +80,7 @@ CHANNELS = {
     "Fy": Quantity("side force", "F_y", "N"),
     "Mz": Quantity("self-aligning moment", "M_z", "Nm"),
 }
-"""Measured channels that are simulated, by their symbol."""
+"""Measured channels that are simulated, by their name in sentences and files."""
 DIRECT = {
     "epsilon_gamma": Quantity("camber reduction factor", "ε_γ", "-"),
     "C_phit": Quantity("turn-slip stiffness", "C_φt", "Nm"),
@@ -103,3 +118,5 @@ COMPARED = {
     "Mz_peak_Nm": Quantity("largest aligning moment", "M_max", "Nm"),
 }
 """What tyres are compared by, beside eps_gamma: of the fitted model at nominal load and pressure on a straight path."""
+DIAGNOSED = {"chi2": Quantity("chi-squared", "χ²", "-")}
+"""What a diagnosis judges by."""

@@ -2,17 +2,48 @@
 
 from __future__ import annotations
 
+import base64
+import io
 import shutil
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
+
+PHONE, SCREEN, PAPER = 420, 1200, 703
+"""Widths in pixels; A4 between the margins of our pages."""
+
+COMPLAINTS = """
+const width = document.documentElement.clientWidth, found = [];
+if (document.documentElement.scrollWidth > width) found.push(`the page is ${document.documentElement.scrollWidth} px wide`);
+for (const drawing of document.querySelectorAll('figure svg')) {
+  const box = drawing.getBoundingClientRect();
+  if (box.width < 5 || box.height < 5) found.push(`nothing to see of ${drawing.textContent.trim().slice(0, 40)}`);
+  if (box.left < 0 || box.right > width + 1) found.push(`outside the page: ${drawing.textContent.trim().slice(0, 40)}`);
+  const scale = box.width / drawing.viewBox.baseVal.width;
+  for (const text of drawing.querySelectorAll('text')) {
+    const said = text.textContent.trim(), place = text.getBoundingClientRect();
+    if (parseFloat(getComputedStyle(text).fontSize) * scale < 7) found.push(`too small to read: ${said}`);
+    if (place.left < box.left - 1 || place.right > box.right + 1 || place.top < box.top - 1 || place.bottom > box.bottom + 1)
+      found.push(`cut off: ${said}`);
+  }
+}
+for (const figure of document.querySelectorAll('figure')) {
+  const texts = [...figure.querySelectorAll('svg text')].map(t => [t.textContent.trim(), t.getBoundingClientRect()]);
+  texts.forEach(([said, a], i) => texts.slice(0, i).forEach(([other, b]) => {
+    if (Math.min(a.right, b.right) - Math.max(a.left, b.left) > 1 && Math.min(a.bottom, b.bottom) - Math.max(a.top, b.top) > 2)
+      found.push(`${said} lies over ${other}`);
+  }));
+}
+return found;
+"""
 
 
 @contextmanager
-def opened(page: Path, width: int = 1200, height: int = 900, dark: bool = False) -> Iterator[Any]:
+def opened(page: Path, width: int = SCREEN, height: int = 900, dark: bool = False) -> Iterator[Any]:
     """The page in headless Chromium (a selenium driver), with its console kept: see ``console_errors``."""
     webdriver = pytest.importorskip("selenium.webdriver")
     chromium, driver = shutil.which("chromium"), shutil.which("chromedriver")
@@ -25,16 +56,36 @@ def opened(page: Path, width: int = 1200, height: int = 900, dark: bool = False)
     options.set_capability("goog:loggingPrefs", {"browser": "ALL"})
     browser = webdriver.Chrome(options=options, service=webdriver.ChromeService(driver))
     try:
-        scheme = [{"name": "prefers-color-scheme", "value": "dark" if dark else "light"}]
-        browser.execute_cdp_cmd("Emulation.setEmulatedMedia", {"features": scheme})
-        size = {"width": width, "height": height, "deviceScaleFactor": 1, "mobile": False}
-        browser.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", size)
+        look(browser, width, height, dark=dark)
         browser.get(page.resolve().as_uri())
         yield browser
     finally:
         browser.quit()
 
 
+def look(
+    browser: Any, width: int = SCREEN, height: int = 900, *, dark: bool = False, media: str = ""
+) -> None:
+    """Another window or another taste; ``media`` "print" shows the page as it would be printed."""
+    scheme = [{"name": "prefers-color-scheme", "value": "dark" if dark else "light"}]
+    browser.execute_cdp_cmd("Emulation.setEmulatedMedia", {"features": scheme, "media": media})
+    size = {"width": width, "height": height, "deviceScaleFactor": 1, "mobile": False}
+    browser.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", size)
+
+
 def console_errors(browser: Any) -> list[str]:
     """What the page complained of since the last call."""
     return [entry["message"] for entry in browser.get_log("browser") if entry["level"] == "SEVERE"]
+
+
+def complaints(browser: Any) -> list[str]:
+    """What a reader would complain of: a page wider than the window, drawings not to be seen, text over text or too small."""
+    return browser.execute_script(COMPLAINTS)
+
+
+def brightness(element: Any) -> np.ndarray:
+    """How an element looks: grey levels (height, width), 0 black to 1 white."""
+    from PIL import Image
+
+    with Image.open(io.BytesIO(base64.b64decode(element.screenshot_as_base64))) as image:
+        return np.asarray(image.convert("L")) / 255.0

@@ -8,6 +8,8 @@ from pathlib import Path
 
 import pytest
 
+import mffit
+import tir
 from mffit.cli import commands
 from mffit.config.problems import known_keys
 from mffit.virtual_rig import plan
@@ -75,6 +77,13 @@ def test_every_command_is_described(command):
 def test_the_readme_names_no_command_that_is_not_there():
     named = set(re.findall(r"`mffit (\w+)", text_of(ROOT / "README.md")))
     assert named <= set(commands.commands), f"README.md names {', '.join(named - set(commands.commands))}"
+
+
+@pytest.mark.parametrize("package", [tir, mffit], ids=lambda package: package.__name__)
+def test_every_public_name_is_in_the_reference(package):
+    page = text_of(DOCS / "api.md")
+    missing = [name for name in package.__all__ if not re.search(rf":: [\w.]+\.{name}\b", page)]
+    assert not missing, f"docs/api.md does not list {', '.join(missing)}"
 
 
 def test_every_key_of_tyre_toml_is_described():

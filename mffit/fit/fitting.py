@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from mffit.config import axis_signs
+from mffit.config.declared import as_declared
 from mffit.fit import weights
 from mffit.fit.coverage import coverage
 from mffit.fit.doubts import Doubt
@@ -83,14 +84,15 @@ def fit(
 
     def judged(of: Fitted, *, only_known: bool = False) -> tuple[Doubt, ...]:
         progress("judging every sweep by all others")
-        return judge(
-            points,
-            of,
-            stated,
-            axis_signs(config),
-            lambda rows: fit_staged(problem.select(rows), start, plan, silent, restarts=False),
-            only_known=only_known,
-        )
+        with as_declared(config):
+            return judge(
+                points,
+                of,
+                stated,
+                axis_signs(config),
+                lambda rows: fit_staged(problem.select(rows), start, plan, silent, restarts=False),
+                only_known=only_known,
+            )
 
     fitted = fit_staged(problem, start, plan, progress, first=lambda of: judged(of, only_known=True))
     doubts = judged(fitted)

@@ -146,11 +146,12 @@ def pecp1_sentence(config, values, measured) -> str:
     if config.spin.pecp1 == "direct":
         return (
             f"PECP1 = {values['PECP1']:.4f} is the measured eps_gamma itself; the finite spin of the disc makes the "
-            "model's turn-slip force differ slightly from the measured one (see epsilon_gamma_model)."
+            "model's turn-slip force differ slightly from the measured one."
         )
     return (
         f"PECP1 = {values['PECP1']:.4f} is the joint estimate of tyre and rig, in which every point counts with its noise "
-        f"and the rig's errors with what [rig] declares; the directly measured eps_gamma is {measured.epsilon_gamma.value:.4f}."
+        "and the rig's errors with the uncertainties declared for them; the directly measured eps_gamma is "
+        f"{measured.epsilon_gamma.value:.4f}."
     )
 
 

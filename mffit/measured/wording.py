@@ -69,7 +69,7 @@ def note(fact: Note) -> str:
         case OneLoad():
             return "PECP2 is 0: one load was measured."
         case SlopeInNoise(slope, u):
-            return f"PECP2 is 0: the slope {slope:.3f} per unit of dfz is within 2 u = {2 * u:.3f}."
+            return f"PECP2 is 0: the slope {slope:.3f} per nominal load is within 2 u = {2 * u:.3f}."
         case EpsilonInNoise():
             return "PECP2 is 0: eps_gamma itself is within 2 u of zero, so a relative slope has no meaning."
         case SlopeTooSteep(largest):

@@ -11,6 +11,7 @@ import numpy as np
 
 from mffit import sweeps as files
 from mffit.config import Config, path_curvature
+from mffit.config.declared import as_declared
 from mffit.errors import InputError
 from mffit.points import levels
 from mffit.points.lag import common
@@ -69,7 +70,8 @@ def read(
     InputError
         On files that cannot be read, data that contradict the declaration, and without any point.
     """
-    found = files.load(config)
+    with as_declared(config):
+        found = files.load(config)
     phi_t = path_curvature(config.rig)
     reduced = [reduce(sweep, phi_t) for sweep in found.sweeps]
     points = concatenate([part.points for part in reduced if len(part.points)] or [reduced[0].points])
@@ -88,7 +90,8 @@ def read(
     if not continuous:
         warnings += _left_out(points)
     if check_physics:
-        warnings += check(steady, config)
+        with as_declared(config):
+            warnings += check(steady, config)
         if config.rig.on_disc:
             check_disc_programme(steady, config)
     warnings += _thin(steady, config)

@@ -86,7 +86,7 @@ def _figures(view: BuildView) -> dict[str, Callable[[], Figure]]:
             out[f"fit_{channel.name}"] = partial(fit.model_against_points, view, channel)
     if view.files is not None:
         out["bands"] = partial(bands.bands, view)
-    scaled = [(c.name, (c.measured - c.model) / _scale(view, c)) for c in view.channels]
+    scaled = [(c.symbol, (c.measured - c.model) / _scale(view, c)) for c in view.channels]
     out["residuals"] = partial(
         residuals.residual_maps, view.points, scaled, view.conditions, RESIDUAL_LIMIT, residual_unit(view)
     )

@@ -46,8 +46,13 @@ class Channel:
         return CHANNELS[self.name].unit
 
     @property
+    def symbol(self) -> str:
+        """As a picture shows it."""
+        return CHANNELS[self.name].mathtext
+
+    @property
     def label(self) -> str:
-        return CHANNELS[self.name].column(self.name)
+        return CHANNELS[self.name].short_axis
 
     @property
     def noise(self) -> float:

@@ -32,6 +32,11 @@ class GapChannel:
     def unit(self) -> str:
         return CHANNELS[self.name].unit
 
+    @property
+    def symbol(self) -> str:
+        """As a picture shows it."""
+        return CHANNELS[self.name].mathtext
+
 
 @dataclass(frozen=True, slots=True)
 class Candidate:

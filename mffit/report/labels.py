@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from mffit.quantities import CONDITIONS, DIRECT
+import re
+
+from mffit.quantities import CHANNELS, CONDITIONS, DIRECT
 
 ANGLES = {"alpha": CONDITIONS["alpha_deg"], "gamma": CONDITIONS["gamma_deg"]}
 """The angles that are varied, by the attribute of the points."""
@@ -13,3 +15,8 @@ EPSILON = DIRECT["epsilon_gamma"]
 def condition(load: float, pressure: float) -> str:
     """Load [N] and pressure [kPa] of a panel."""
     return f"{LOAD.of(load)}, {PRESSURE.of(pressure)}"
+
+
+def typeset(text: str) -> str:
+    """The channels in a text as a picture shows them."""
+    return re.sub(rf"\b({'|'.join(CHANNELS)})\b", lambda m: CHANNELS[m[0]].mathtext, text)

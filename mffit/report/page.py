@@ -8,9 +8,10 @@ from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
+from urllib.parse import quote
 
 from mffit.measured import wording
-from mffit.report import rounding, style
+from mffit.report import drawing, making, numbers, rounding, style, typeset
 
 if TYPE_CHECKING:
     from jinja2 import Environment
@@ -22,12 +23,23 @@ class Picture:
     """A picture on disk and in the page."""
 
     name: str  #: file stem
-    data: str  #: base64 of the PNG
-    width: int  #: pixels
+    drawing: str  #: its panels as HTML
+    table: str  #: the numbers behind it, CSV
+
+    @property
+    def link(self) -> str:
+        """The table as an address that holds it, written in the shorter of both ways."""
+        plain = "," + quote(self.table, safe=",;:.+-=()[]/_")
+        packed = ";base64," + base64.b64encode(self.table.encode()).decode("ascii")
+        return "data:text/csv;charset=utf-8" + min(plain, packed, key=len)
 
 
 def draw(folder: Path, figures: Mapping[str, Callable[[], Figure]]) -> dict[str, Picture]:
-    """Draw every figure into ``folder/plots/<name>.png``.
+    """Draw every figure into ``folder/plots/<name>.png``, and as it stands in the page.
+
+    A figure may be any of matplotlib's: its axes become panels that the page arranges to its width, so keep each readable for
+    itself and at most about 4 inches wide; its legends (:func:`style.legend_above`) and colour scales go on top. What is drawn
+    gets into the table of numbers under the artist's ``label``, or that of the legend's entry that looks the same.
 
     Returns
     -------
@@ -39,16 +51,17 @@ def draw(folder: Path, figures: Mapping[str, Callable[[], Figure]]) -> dict[str,
     pictures = {}
     with style.applied():
         for name, make in figures.items():
-            figure, path = make(), plots / f"{name}.png"
-            style.save(figure, path)
-            data = base64.b64encode(path.read_bytes()).decode("ascii")
-            pictures[name] = Picture(name, data, round(figure.get_figwidth() * style.DPI))
+            figure = make()
+            style.save(figure, plots / f"{name}.png")
+            table = numbers.table(figure)
+            pictures[name] = Picture(name, drawing.markup(figure, name), table)
     return pictures
 
 
 def render(template: str, path: Path, **content: Any) -> None:
-    """Fill a template of ``templates/`` and write it as UTF-8."""
-    path.write_text(_environment().get_template(template).render(**content), encoding="utf-8")
+    """Fill a template of ``templates/``, set its symbols and write it as UTF-8."""
+    html = _environment().get_template(template).render(made=making.made(), **content)
+    path.write_text(typeset.page(html), encoding="utf-8")
 
 
 @cache

@@ -24,6 +24,9 @@ CALM = "#2b8a6e"
 DIVERGING = "RdBu_r"
 """Blue and red, which deuteranopes and protanopes tell apart; white is "within the noise"."""
 
+SCALE = "scale of colours"
+"""Label of the axes that show what colours mean."""
+
 DPI = 110
 WIDTH = 11.0  # inch; the page scales pictures down, never up
 
@@ -109,12 +112,46 @@ def panel_grid(
 
 
 def label_left(rows: list[list[Axes]], label: str) -> None:
-    """The vertical label at the left edge only, in line however wide the numbers are."""
+    """The vertical label, shown at the left edge only, in line however wide the numbers are."""
     for row in rows:
-        ax = row[0]
-        wide = ax.get_position().width * WIDTH
-        ax.set_ylabel(label)
-        ax.yaxis.set_label_coords(-0.50 / wide, 0.5)
+        for ax in row:
+            wide = ax.get_position().width * WIDTH
+            ax.set_ylabel(label)
+            ax.yaxis.set_label_coords(-0.50 / wide, 0.5)
+            ax.yaxis.label.set_visible(ax is row[0])
+            ax.yaxis.label.set_gid(IN_LINE)
+
+
+def label_below(rows: list[list[Axes]], label: str) -> None:
+    """The horizontal label of every panel, shown below the last row only."""
+    for row in rows:
+        for ax in row:
+            ax.set_xlabel(label)
+            ax.xaxis.label.set_visible(row is rows[-1])
+
+
+IN_LINE = "in-line"
+"""Marks a label with a place of its own."""
+
+
+def narrowed(figure: Figure, factor: float) -> None:
+    """Draw the figure less wide with letters of the same size."""
+    figure.set_size_inches(factor * figure.get_figwidth(), figure.get_figheight())
+    for ax in figure.axes:
+        if ax.yaxis.label.get_gid() == IN_LINE:
+            x, y = ax.yaxis.label.get_position()
+            ax.yaxis.set_label_coords(x / factor, y)
+
+
+def stand_alone(figure: Figure) -> None:
+    """Show the labels and numbers that panels share with their neighbours at every one of them."""
+    for ax in figure.axes:
+        ax.xaxis.label.set_visible(True)
+        ax.yaxis.label.set_visible(True)
+        if len(ax.get_shared_x_axes().get_siblings(ax)) > 1:
+            ax.tick_params(labelbottom=True)
+        if len(ax.get_shared_y_axes().get_siblings(ax)) > 1:
+            ax.tick_params(labelleft=True)
 
 
 def legend_above(figure: Figure, handles: list[Any]) -> None:
@@ -142,7 +179,7 @@ def ramp(levels: list[float]) -> dict[float, Any]:
     """A colour per level, dark to light in order; readable in grey and with any colour vision."""
     import matplotlib
 
-    shades = matplotlib.colormaps["viridis"](np.linspace(0.0, 0.86, max(len(levels), 1)))
+    shades = matplotlib.colormaps["viridis"](np.linspace(0.0, 0.80, max(len(levels), 1)))
     return {level: tuple(shade) for level, shade in zip(sorted(levels), shades, strict=False)}
 
 

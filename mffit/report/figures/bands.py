@@ -44,7 +44,7 @@ def bands(view: BuildView) -> Figure:
         for ax, channel in zip(pair, CHANNELS, strict=True):
             for edge in (-1.0, 1.0):
                 ax.axvline(np.degrees(edge * tested[end]), color=style.FAINT, lw=0.8, ls=":")
-            ax.set_title(CHANNELS[channel].column(channel))
+            ax.set_title(CHANNELS[channel].short_axis)
             ax.set_xlabel(labels.ANGLES[over].axis, labelpad=1.5)
             style.few_ticks(ax, x=4)
     handles = [Line2D([], [], color=colours[load], label=labels.LOAD.of(load)) for load in loads]

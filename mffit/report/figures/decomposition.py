@@ -10,6 +10,7 @@ import numpy as np
 from mffit.report import labels, style
 from mffit.report.build_view import BuildView, Channel
 from mffit.report.curves import Curve
+from mffit.report.figures.fit import held
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -59,7 +60,7 @@ def even_parts(view: BuildView) -> Figure:
             ax.axhline(0.0, color=style.FAINT, lw=0.8)
             for curve in (c for c in pure if c.over == over and c.load == load):
                 _even_curve(ax, view, channel, curve)
-            ax.set_title(f"{channel.name}, {labels.LOAD.of(load)}")
+            ax.set_title(f"{channel.symbol}, {labels.LOAD.of(load)}")
             ax.set_xlabel(labels.ANGLES[over].axis, labelpad=1.5)
             style.few_ticks(ax, y=4)
         style.label_left([row], f"even {channel.label}")
@@ -111,8 +112,7 @@ def _title(curve: Curve) -> str:
     condition = labels.condition(curve.load, curve.pressure)
     if abs(curve.held) < 0.5:
         return condition
-    other = labels.ANGLES["gamma" if curve.over == "alpha" else "alpha"]
-    return f"{condition}, {other.symbol} = {curve.held:.0f}°"
+    return f"{condition}, {held(curve)}"
 
 
 def _angle(view: BuildView, curve: Curve) -> np.ndarray:

@@ -51,9 +51,13 @@ def _draw(ax: Axes, view: BuildView, channel: Channel, curve: Curve, colour: Any
     x, line = np.degrees(getattr(view.points, curve.over)[curve.index]), view.lines[curve.key]
     marker, size = (".", 2.0) if len(x) > DENSE else ("o" if curve.forward else "v", 3.2)
     filled = {"mfc": colour, "mew": 0.0} if curve.forward else {"mfc": "white", "mew": 0.8}
-    ax.plot(x, channel.measured[curve.index], ls="none", marker=marker, ms=size, color=colour, **filled)
+    ax.plot(
+        x, channel.measured[curve.index], ls="none", marker=marker, ms=size, color=colour, label=f"{curve.sweep}, {held(curve)}",
+        **filled,
+    )  # fmt: skip
     _mark(ax, view, channel, curve)
-    ax.plot(line.x, line.raw[channel.name], "-" if curve.forward else "--", color=colour, lw=1.0)
+    dashes = "-" if curve.forward else "--"
+    ax.plot(line.x, line.raw[channel.name], dashes, color=colour, lw=1.0, label=f"model, {held(curve)}")
 
 
 def _mark(ax: Axes, view: BuildView, channel: Channel, curve: Curve) -> None:
@@ -70,6 +74,12 @@ def _mark(ax: Axes, view: BuildView, channel: Channel, curve: Curve) -> None:
             mfc="none",
             color=style.CONTRAST,
         )
+
+
+def held(curve: Curve) -> str:
+    """The angle that a curve holds."""
+    other = labels.ANGLES["gamma" if curve.over == "alpha" else "alpha"]
+    return f"{other.symbol} = {number(curve.held, 0)}°"
 
 
 MARKS = {"no weight": ("x", 5.0), "doubtful sweep": ("o", 5.5)}

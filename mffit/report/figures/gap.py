@@ -21,6 +21,7 @@ from mffit.report.diagnosis_view import (
     shown_steps,
 )
 from mffit.report.figures.residuals import colour_bar, most_populated, residual_map, set_limits
+from mffit.report.rounding import number
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -48,17 +49,15 @@ def gap_bars(view: DiagnosisView) -> Figure:
         "bottom": 0.45 / figure.get_figheight(),
         "wspace": 0.22,
     }
-    axes = figure.subplots(1, panels, gridspec_kw=place)
+    axes = figure.subplots(1, panels, sharey=True, gridspec_kw=place)
     for ax, channel in zip(axes, view.channels, strict=False):
         rows = _rows(view, methodcaller("rms", channel.name))
         _bars(ax, rows, channel.noise, view.changed)
-        ax.set_title(f"{channel.name}: rms gap")
+        ax.set_title(f"{channel.symbol}: rms gap")
         ax.set_xlabel(f"measured − simulated [{channel.unit}]")
     _bars(axes[-1], _rows(view, attrgetter("chi2_per_dof")), 1.0, view.changed)
     axes[-1].set_title("χ² per degree of freedom")
     axes[-1].set_xlabel("1 = nothing but noise")
-    for ax in axes[1:]:
-        ax.tick_params(labelleft=False)
     return figure
 
 
@@ -69,20 +68,19 @@ def residuals_before_after(view: DiagnosisView) -> Figure:
     columns = [(channel, when) for channel in view.channels for when in whens]
     limit = colour_limit(view.channels)
     figure, rows = style.panel_grid(
-        [len(columns)] * len(shown), 4, height=1.40, legend=False, margins=(0.70, 0.95), gap=(0.22, 0.36),
+        [len(columns)] * len(shown), 4, height=1.40, gap=(0.22, 0.36),
         share_x=True, share_y=True,
     )  # fmt: skip
     set_limits(rows[0][0], view.points)
     for row, condition in zip(rows, shown, strict=True):
         for ax, (channel, when) in zip(row, columns, strict=True):
             drawn = residual_map(ax, view.points, getattr(channel, when), condition.index, limit)
-            ax.set_title(f"{channel.name}{' ' + when if view.changed else ''}, {condition.title}")
+            ax.set_title(f"{channel.symbol}{' ' + when if view.changed else ''}, {condition.title}")
             if when == "before":
                 _frames(ax, view.frames(channel.name), condition.load)
-    for ax in rows[-1]:
-        ax.set_xlabel(labels.ANGLES["alpha"].axis)
+    style.label_below(rows, labels.ANGLES["alpha"].axis)
     style.label_left(rows, labels.ANGLES["gamma"].axis)
-    colour_bar(figure, drawn, "measured − simulated\n[noise of a point]")
+    colour_bar(figure, drawn, "measured − simulated [noise of a point]")
     return figure
 
 
@@ -107,7 +105,7 @@ def evidence(view: DiagnosisView) -> Figure:
         _candidates(ax, step)
         after = f"beside {' and '.join(step.beside)}" if step.beside else "one effect alone"
         title = f"Step {i + 1}{'' if step.passed else ', nothing passes'}: {after}"
-        ax.set_title(textwrap.shorten(title, 52, placeholder="…"), x=-0.9)
+        ax.set_title(labels.typeset(textwrap.shorten(title, 52, placeholder="…")), x=-0.9)
     present = {c.kind for step in steps for c in step.candidates}
     style.legend_above(
         figure, [Patch(color=c, label=kind) for kind, c in KIND_COLOURS.items() if kind in present]
@@ -130,7 +128,8 @@ def _candidates(ax: Axes, step: RankedStep) -> None:
     ax.axvline(step.threshold, color=style.INK, lw=1.0, ls="--")
     ax.set_xscale("log")
     ax.set_xlim(SMALLEST_GAIN, 8.0 * max(10.0, *gains))
-    ax.set_yticks(range(len(rows)), [textwrap.shorten(c.name, 31, placeholder="…") for c in rows])
+    names = [labels.typeset(textwrap.shorten(c.name, 31, placeholder="…")) for c in rows]
+    ax.set_yticks(range(len(rows)), names)
     ax.set_ylim(len(rows) - 0.4, -0.6)
     ax.grid(axis="y", visible=False)
     ax.minorticks_off()
@@ -141,7 +140,7 @@ def _distances(ax: Axes, rows: Sequence[Candidate], gains: Sequence[float]) -> N
     """How far each candidate is behind the best, at the end of its bar; dark where it may be a tie."""
     for i, (candidate, gain) in enumerate(zip(rows, gains, strict=True)):
         behind = rows[0].gain - candidate.gain
-        said = "best" if i == 0 else f"−{behind:.3g}"
+        said = "best" if i == 0 else number(-behind, 0 if behind >= 10.0 else None, digits=2)
         colour = style.INK if behind < TIE else style.MUTED
         ax.annotate(f" {said}", (gain, i), va="center", fontsize=7.0, color=colour)
 

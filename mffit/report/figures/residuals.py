@@ -35,7 +35,7 @@ def residual_maps(
     """A row of maps per residual (title, (n,) array), a column per condition; one colour scale for all."""
     shown = most_populated(conditions, 6)
     figure, rows = style.panel_grid(
-        [len(shown)] * len(residuals), 6, height=1.45, legend=False, margins=(0.70, 0.95), gap=(0.25, 0.38),
+        [len(shown)] * len(residuals), 6, height=1.45, gap=(0.25, 0.38),
         share_x=True, share_y=True,
     )  # fmt: skip
     set_limits(rows[0][0], points)
@@ -43,10 +43,9 @@ def residual_maps(
         for ax, condition in zip(row, shown, strict=True):
             drawn = residual_map(ax, points, values, condition.index, limit)
             ax.set_title(f"{name}: {condition.title}")
-    for ax in rows[-1]:
-        ax.set_xlabel(labels.ANGLES["alpha"].axis)
+    style.label_below(rows, labels.ANGLES["alpha"].axis)
     style.label_left(rows, labels.ANGLES["gamma"].axis)
-    colour_bar(figure, drawn, f"measured − model\n[{unit}]")
+    colour_bar(figure, drawn, f"measured − model [{unit}]")
     return figure
 
 
@@ -100,10 +99,10 @@ def _camber_range(points: Points) -> float:
 
 
 def colour_bar(figure: Figure, drawn: Any, label: str) -> None:
-    """The scale of the maps, at the right edge."""
+    """The scale of the maps, where other figures have their legend."""
     width, height = figure.get_size_inches()
-    tall = min(2.2, 0.7 * height)
-    box = figure.add_axes((1.0 - 0.80 / width, 0.5 - 0.5 * tall / height, 0.13 / width, tall / height))
-    bar = figure.colorbar(drawn, cax=box)
-    bar.set_label(label)
+    box = figure.add_axes((0.70 / width, 1.0 - 0.19 / height, 2.6 / width, 0.11 / height), label=style.SCALE)
+    bar = figure.colorbar(drawn, cax=box, orientation="horizontal")
     bar.outline.set_linewidth(0.5)
+    box.tick_params(pad=1.5)
+    box.text(1.04, 0.5, label, transform=box.transAxes, va="center", fontsize=8.0)

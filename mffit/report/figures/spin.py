@@ -27,7 +27,7 @@ def camber_reduction(view: BuildView) -> Figure:
     figure = Figure(figsize=(style.WIDTH, 3.1))
     axes = [
         figure.add_axes((left, 0.155, wide, 0.735))
-        for left, wide in ((0.115, 0.215), (0.465, 0.215), (0.745, 0.245))
+        for left, wide in ((0.115, 0.200), (0.490, 0.195), (0.755, 0.235))
     ]
     _among_published(axes[0], view.config.tyre.name, view.measured)
     _budget(axes[1], view.measured)
@@ -38,7 +38,7 @@ def camber_reduction(view: BuildView) -> Figure:
 def _among_published(ax: Axes, name: str, measured: Measured) -> None:
     rows = [(t.name, t.epsilon_gamma, t.u, style.MUTED) for t in TYRES]
     if measured.epsilon_gamma is not None:
-        rows.append((name, measured.epsilon_gamma.value, measured.epsilon_gamma.u, style.ACCENT))
+        rows.append((shortened(name), measured.epsilon_gamma.value, measured.epsilon_gamma.u, style.ACCENT))
     ax.axvline(0.0, color=style.FAINT, lw=0.8)
     for i, (_, value, u, colour) in enumerate(reversed(rows)):
         own = colour == style.ACCENT
@@ -58,6 +58,11 @@ def _among_published(ax: Axes, name: str, measured: Measured) -> None:
     ax.grid(axis="y", visible=False)
     ax.set_xlabel(f"{labels.EPSILON.axis}, ± 1 u")
     ax.set_title("This tyre among published ones")
+
+
+def shortened(name: str, longest: int = 18) -> str:
+    """A name that fits beside a panel."""
+    return name if len(name) <= longest else f"{name[: longest - 1]}…"
 
 
 def _budget(ax: Axes, measured: Measured) -> None:
@@ -94,7 +99,7 @@ def _over_load(ax: Axes, view: BuildView) -> None:
     ax.set_ylim(low, high + 0.3 * (high - low))  # room for the legend
     ax.legend(loc="upper left", borderaxespad=0.0, handlelength=1.4)
     ax.set_xlabel(labels.LOAD.axis)
-    ax.set_ylabel(f"{labels.EPSILON.mathtext} [–], ± 1 u")
+    ax.set_ylabel(f"{labels.EPSILON.short_axis}, ± 1 u")
     ax.set_title("Over the load")
 
 
@@ -117,7 +122,7 @@ def alignment(view: BuildView) -> Figure:
         ax.set_title(labels.LOAD.of(load))
         ax.set_xlabel(labels.ANGLES["alpha"].axis, labelpad=1.5)
         style.few_ticks(ax)
-    style.label_left(rows, CHANNELS["Fy"].column("Fy"))
+    style.label_left(rows, CHANNELS["Fy"].short_axis)
     handles = [
         Line2D([], [], marker="o", color=style.ACCENT, label="rolling forwards"),
         Line2D([], [], ls="--", marker="v", mfc="white", color=style.CONTRAST, label="rolling backwards"),

@@ -18,7 +18,7 @@ NOTES = [
     (notes.Aligned(ANGLE, 12.0, 0.04), "alpha_M = 0.250 +- 0.020 deg (12 N); uncorrected it would move"),
     (notes.LoadSlope(1.25, 0.1), "PECP2 = 1.250 +- 0.100 (k = 1)."),
     (notes.OneLoad(), "one load was measured"),
-    (notes.SlopeInNoise(0.05, 0.07), "the slope 0.050 per unit of dfz is within 2 u = 0.140"),
+    (notes.SlopeInNoise(0.05, 0.07), "the slope 0.050 per nominal load is within 2 u = 0.140"),
     (notes.EpsilonInNoise(), "within 2 u of zero"),
     (notes.SlopeTooSteep(0.93), "would reach 0.93"),
     (notes.StandardUncertainties(), "k = 1"),

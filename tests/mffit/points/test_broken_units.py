@@ -54,3 +54,16 @@ def test_a_channel_that_never_moves_is_dead_whatever_it_reads(tmp_path, column, 
     error = refused(project)
     assert ("sideslip_1000.csv" in str(error.file), error.column) == (True, column)
     assert "dead" in str(error)
+
+
+def test_a_refusal_speaks_of_the_heading_and_the_unit_that_were_declared(tmp_path):
+    project = disc_project(tmp_path)
+    table = project.tables["sideslip_1000.csv"]
+    table["FY"] = table.pop("Fy_N") / 1000.0
+    (sweep,) = (entry for entry in project.config["sweep"] if entry["file"] == "sideslip_1000.csv")
+    sweep["columns"] = {"Fy_N": {"column": "FY", "unit": "lbf"}}
+    error = refused(project)
+    assert error.column == "FY"
+    assert 'Fy_N = { column = "FY", unit = "kN" }' in str(error)
+    assert "FY is declared as lbf" in str(error)
+    assert 'column = "Fy_N"' not in str(error)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from html.parser import HTMLParser
 from pathlib import Path
 from typing import Any
+from urllib.request import urlopen
 
 import numpy as np
 
@@ -150,33 +151,55 @@ def made_result(**changes: Any) -> BuildResult:
     )
 
 
-VOID = frozenset({"meta", "img", "br", "col"})
+VOID = frozenset({"meta", "img", "br", "col", "input"})
+INLINE = frozenset({"sub", "sup", "span", "em", "code", "strong", "a", "i"})
 
 
 class PageReader(HTMLParser):
-    """Collects tags and text; stops at a tag closed out of order."""
+    """Collects tags and text; stops at a tag closed out of order.
+
+    ``text`` is what is read: words of different blocks are apart, a symbol and its index are not.
+    """
 
     def __init__(self) -> None:
         super().__init__()
         self.open: list[str] = []
-        self.images: list[dict[str, str | None]] = []
+        self.drawings: list[str] = []  # what each picture shows, in words
+        self.tables: dict[str, str] = {}  # numbers behind a picture, by its name
         self.references: list[str] = []
+        self.ids: list[str] = []
         self.text = ""
 
     def handle_starttag(self, tag, attrs):
         attributes = dict(attrs)
         if tag not in VOID:
             self.open.append(tag)
-        if tag == "img":
-            self.images.append(attributes)
+        if attributes.get("role") == "img":
+            self.drawings.append(attributes["aria-label"])
+        if "download" in attributes:
+            self.tables[attributes["download"].removesuffix(".csv")] = content(attributes["href"])
+        if "id" in attributes:
+            self.ids.append(attributes["id"])
         self.references += [v for k, v in attributes.items() if k in ("src", "href") and v]
+        self._apart(tag)
 
     def handle_endtag(self, tag):
         assert self.open.pop() == tag
+        self._apart(tag)
 
     def handle_data(self, data):
-        if self.open and self.open[-1] != "style":
-            self.text += data + " "
+        if "style" not in self.open and "svg" not in self.open:
+            self.text += data
+
+    def _apart(self, tag):
+        if tag not in INLINE:
+            self.text += " "
+
+
+def content(address: str) -> str:
+    """What an address holds that starts with ``data:``."""
+    with urlopen(address) as answer:
+        return answer.read().decode()
 
 
 def read_page(path: Path) -> PageReader:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import base64
 import re
 import subprocess
 import sys
@@ -12,14 +11,22 @@ import pytest
 from report_toys import made_coefficients, made_result, read_page
 
 from mffit.report import write_build
+from tests.browser import PAPER, PHONE, SCREEN, brightness, complaints, console_errors, look, opened
 
 PNG = b"\x89PNG\r\n"
+
+
+@pytest.fixture(autouse=True)
+def _date(monkeypatch):
+    monkeypatch.setenv("SOURCE_DATE_EPOCH", "1700000000")
 
 
 @pytest.fixture(scope="module")
 def written(result, tmp_path_factory):
     folder = tmp_path_factory.mktemp("report")
-    write_build(result, folder)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("SOURCE_DATE_EPOCH", "1700000000")
+        write_build(result, folder)
     return folder
 
 
@@ -29,23 +36,34 @@ def page(written):
 
 
 def test_pictures_are_on_disk_and_in_the_page(written, page):
-    on_disk = {base64.b64encode(path.read_bytes()).decode() for path in (written / "plots").glob("*.png")}
-    embedded = {image["src"].removeprefix("data:image/png;base64,") for image in page.images}
-    assert on_disk == embedded
-    assert {path.stem for path in (written / "plots").glob("*.png")} == {
+    drawn = {
         "camber_reduction", "alignment", "parts_Fy", "parts_Mz", "even_parts", "fit_Fy", "fit_Mz",
         "residuals",
     }  # fmt: skip
+    assert {path.stem for path in (written / "plots").glob("*.png")} == set(page.tables) == drawn
+    assert len(page.drawings) == len(drawn)
     assert all(path.read_bytes().startswith(PNG) for path in (written / "plots").glob("*.png"))
 
 
 def test_page_needs_no_network(written, page):
-    assert all(r.startswith(("data:image/png;base64,", "#")) for r in page.references)
+    assert all(r.startswith(("data:text/csv", "data:image/png;base64,", "#")) for r in page.references)
     html = (written / "report.html").read_text(encoding="utf-8")
     assert "<script" not in html
     assert "<link" not in html
     assert "@import" not in html
-    assert "url(" not in html
+    assert all(target.startswith("#") for target in re.findall(r"url\(([^)]*)\)", html))
+
+
+def test_ids_are_unique_and_everything_that_drawings_use_is_there(written, page):
+    assert len(page.ids) == len(set(page.ids))
+    html = (written / "report.html").read_text(encoding="utf-8")
+    assert set(re.findall(r"url\(#([^)]*)\)", html)) <= set(page.ids)
+
+
+def test_the_page_says_when_and_with_what_it_was_made(page):
+    assert "Written 2023-11-14 22:13 UTC by mffit" in page.text
+    assert f"numpy {np.__version__}" in page.text
+    assert "SHA-256" in page.text
 
 
 def test_links_within_the_page_resolve(written, page):
@@ -54,7 +72,7 @@ def test_links_within_the_page_resolve(written, page):
 
 
 def test_every_picture_is_described_in_words(page):
-    assert all(len(image["alt"]) > 20 for image in page.images)
+    assert all(len(said) > 20 for said in page.drawings)
 
 
 def test_warnings_stand_before_everything_else(page):
@@ -72,7 +90,7 @@ def test_every_coefficient_is_listed_with_its_status(page):
         assert re.search(rf"\b{name}\b", page.text)
         assert coefficient.status in page.text
     assert page.text.count("at bound") == 1
-    assert "correlated with PKY2 -0.97" in page.text
+    assert "correlated with PKY2 −0.97" in page.text
 
 
 def test_headline_numbers_are_those_of_the_direct_method(result, page):
@@ -118,3 +136,43 @@ def test_drawing_touches_no_global_figure_and_importing_loads_no_plot_library(tm
         "assert 'matplotlib.pyplot' not in sys.modules\n"
     )
     subprocess.run([sys.executable, "-W", "error", "-c", code, str(tmp_path / "a.png")], check=True)
+
+
+@pytest.fixture(scope="module")
+def browser(written):
+    with opened(written / "report.html") as found:
+        yield found
+
+
+@pytest.mark.parametrize(
+    ("width", "media"), [(SCREEN, ""), (PHONE, ""), (PAPER, "print")], ids=["screen", "phone", "paper"]
+)
+def test_a_reader_sees_every_picture(browser, width, media):
+    look(browser, width, media=media)
+    assert complaints(browser) == []
+    assert console_errors(browser) == []
+
+
+def test_folded_coefficients_show_when_opened_and_on_paper(browser):
+    look(browser)
+    fold = browser.find_element("css selector", ".fold")
+    table, label = (fold.find_element("css selector", name) for name in (".folded", "label"))
+    assert not table.is_displayed()
+    label.click()
+    assert table.is_displayed()
+    label.click()
+    assert not table.is_displayed()
+    look(browser, PAPER, media="print")
+    assert table.is_displayed()
+
+
+def test_at_night_page_and_pictures_are_dark(browser):
+    drawing = browser.find_element("css selector", ".panels")
+    look(browser)
+    light = brightness(drawing)
+    look(browser, dark=True)
+    dark = brightness(drawing)
+    assert np.median(light) > 0.95
+    assert np.median(dark) < 0.2
+    # What is dark on white is light on black, and what is faint stays faint.
+    assert np.corrcoef(light.ravel(), dark.ravel())[0, 1] < -0.9

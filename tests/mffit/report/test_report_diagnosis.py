@@ -16,6 +16,7 @@ from mffit.diagnosis.ties import Run, Separation
 from mffit.report import style, text, write_diagnosis
 from mffit.report.diagnosis_view import Candidate, RankedStep, view_of
 from mffit.report.figures import gap
+from tests.browser import PAPER, PHONE, complaints, console_errors, look, opened
 
 DENT = -80.0  # N, over 1 deg of sideslip
 
@@ -63,7 +64,8 @@ def test_a_diagnosis_fits_a_screen_and_leads_with_its_headline(misaligned):
 def test_a_found_effect_is_shown_with_its_size_and_pictures(misaligned, tmp_path):
     page = written(misaligned, tmp_path)
     assert {p.stem for p in (tmp_path / "plots").iterdir()} == {"gap", "evidence", "gap_maps"}
-    assert len(page.images) == 3
+    assert set(page.tables) == {"gap", "evidence", "gap_maps"}
+    assert page.tables["gap"].count("held out") == 2 * (len(view_of(misaligned).channels) + 1)
     assert misaligned.headline in page.text
     assert "alpha_0_deg" in page.text
     assert misaligned.effects[0].effect.physics in page.text
@@ -71,7 +73,7 @@ def test_a_found_effect_is_shown_with_its_size_and_pictures(misaligned, tmp_path
 
 def test_page_needs_no_network(misaligned, tmp_path):
     page = written(misaligned, tmp_path)
-    assert all(r.startswith(("data:image/png;base64,", "#")) for r in page.references)
+    assert all(r.startswith(("data:text/csv", "data:image/png;base64,", "#")) for r in page.references)
 
 
 def test_a_tie_is_stated_with_the_run_that_separates_it(misaligned, tmp_path):
@@ -82,7 +84,7 @@ def test_a_tie_is_stated_with_the_run_that_separates_it(misaligned, tmp_path):
     )
     page = written(dataclasses.replace(misaligned, effects=(found,)), tmp_path)
     assert "these data cannot tell it from ply-steer" in page.text
-    assert "a sideslip sweep at 1400 N with the tyre turned on its rim (expected chi2 50)" in page.text
+    assert "a sideslip sweep at 1400 N with the tyre turned on its rim (expected χ² 50)" in page.text
 
 
 def test_residuals_after_are_noise_where_the_effect_was_found(misaligned):
@@ -161,3 +163,14 @@ def test_summary_for_the_terminal(misaligned, unknown, clean):
         said = text.diagnosis_summary(diagnosis)
         assert said.isascii()
         assert all(len(line) <= 110 for line in said.splitlines())
+
+
+def test_a_reader_sees_every_picture_on_screen_phone_and_paper(misaligned, tmp_path):
+    write_diagnosis(misaligned, tmp_path)
+    with opened(tmp_path / "diagnosis.html") as browser:
+        assert complaints(browser) == []
+        look(browser, PHONE)
+        assert complaints(browser) == []
+        look(browser, PAPER, media="print")
+        assert complaints(browser) == []
+        assert console_errors(browser) == []

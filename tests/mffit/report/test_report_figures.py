@@ -2,10 +2,15 @@
 
 from __future__ import annotations
 
+import dataclasses
+import re
+
 import numpy as np
 import pytest
+from matplotlib.text import Text
 
-from mffit.report import style
+from mffit.quantities import CHANNELS
+from mffit.report import drawing, style
 from mffit.report.build_view import view_of
 from mffit.report.figures import decomposition, fit, residuals, spin
 from mffit.report.published import TYRES
@@ -46,7 +51,9 @@ def test_raw_curve_is_the_sum_of_its_parts(view):
 
 def test_even_parts_have_a_row_per_channel_and_angle_and_a_column_per_load(view):
     figure = decomposition.even_parts(view)
-    assert titles(figure) == [f"{c}, {load} N" for c in ("Fy", "Fy", "Mz", "Mz") for load in (900, 1500)]
+    assert titles(figure) == [
+        f"{CHANNELS[c].mathtext}, {load} N" for c in ("Fy", "Fy", "Mz", "Mz") for load in (900, 1500)
+    ]
 
 
 def test_fit_draws_every_point(view):
@@ -104,3 +111,62 @@ def test_settings_are_left_as_they_were():
     with style.applied():
         matplotlib.rcParams["font.size"] = 3.0
     assert dict(matplotlib.rcParams) == before
+
+
+def test_a_cloud_of_points_is_one_image_in_the_page_and_a_few_points_are_not():
+    rng = np.random.default_rng(2)
+    for count, images in ((40, 0), (5000, 1)):
+        figure, ((ax,),) = style.panel_grid([1], 1)
+        ax.plot(*rng.standard_normal((2, count)), ls="none", marker=".")
+        drawn = drawing.markup(figure, "cloud")
+        assert drawn.count("<image") == images
+        assert len(drawn) < 200_000
+
+
+def test_panels_carry_the_labels_that_they_shared():
+    figure, rows = style.panel_grid([3], 3, share_x=True, share_y=True)
+    style.label_left(rows, "force")
+    style.label_below(rows, "angle")
+    drawn = drawing.markup(figure, "shared")
+    assert drawn.count(">force<") == drawn.count(">angle<") == drawn.count("<svg") == 3
+
+
+def test_names_of_sweeps_cannot_break_the_page():
+    figure, ((ax,),) = style.panel_grid([1], 1)
+    ax.set_title("<script>alert(1)</script> & more")
+    assert "&lt;script&gt;alert(1)&lt;/script&gt; &amp; more" in drawing.markup(figure, "x")
+
+
+@pytest.mark.parametrize("name", ["front-1", "a very long name of a tyre that somebody gave it"])
+def test_no_label_lies_over_another_in_the_picture(view, name):
+    tyre = view.config.tyre.model_copy(update={"name": name})
+    figure = spin.camber_reduction(
+        dataclasses.replace(view, config=view.config.model_copy(update={"tyre": tyre}))
+    )
+    assert crossing(figure) == []
+
+
+def crossing(figure):
+    """Pairs of texts that lie over each other."""
+    figure.draw_without_rendering()
+    hidden = set()  # numbers of ticks beyond the ends of an axis
+    for axis in (axis for ax in figure.axes for axis in (ax.xaxis, ax.yaxis)):
+        low, high = sorted(axis.get_view_interval())
+        for tick in axis.get_major_ticks():
+            hidden |= set() if low <= tick.get_loc() <= high else {tick.label1, tick.label2}
+    texts = [t for t in figure.findobj(Text) if t.get_visible() and t.get_text().strip() and t not in hidden]
+    boxes = [(t.get_text(), t.get_window_extent()) for t in texts]
+    return [
+        (said, other)
+        for i, (said, a) in enumerate(boxes)
+        for other, b in boxes[:i]
+        if min(a.x1, b.x1) - max(a.x0, b.x0) > 1.0 and min(a.y1, b.y1) - max(a.y0, b.y0) > 1.0
+    ]
+
+
+@pytest.mark.parametrize("columns", [1, 2])
+def test_no_panel_is_too_wide_for_a_telephone(columns):
+    figure, rows = style.panel_grid([columns], columns)
+    style.label_left(rows, "force")
+    drawn = drawing.markup(figure, "wide")
+    assert float(re.search(r"--widest:([\d.]+)", drawn)[1]) < 440.0

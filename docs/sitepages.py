@@ -1,0 +1,123 @@
+"""What the site adds to the pages: navigation from the index's own lists, the table of parameters, links out of the folder."""
+
+from __future__ import annotations
+
+import re
+from itertools import groupby
+from typing import Any
+
+from docutils import nodes
+from docutils.parsers.rst import Directive
+from docutils.utils.math.latex2mathml import tex2mathml
+
+from tir.parameters import TABLE, Parameter
+
+SECTION = re.compile(r"^## (.+)$", re.MULTILINE)
+PAGE = re.compile(r"\]\(([\w/-]+)\.md\)")
+OUTSIDE = re.compile(r"\[([^\]]+)\]\(\.\./([\w./-]+)\)")
+COLUMNS = ("name", "unit", "default", "range", "stage", "seen in", "needs", "equation", "description")
+WIDTHS = (11, 8, 9, 14, 8, 8, 14, 10, 40)
+
+
+def adapted(app: Any, page: str, source: list[str]) -> None:
+    """A page's Markdown as the site takes it."""
+    text = source[0]
+    if page == "index":
+        text = text + "\n" + navigation(text)
+    elif page == "effects/index":
+        text = text + "\n" + toctree("", ["*"], glob=True)
+    if "/" not in page:
+        # The site holds the pages of docs/ only: what lies beside it in the repository is named.
+        text = OUTSIDE.sub(r"\1 (`\2` in the repository)", text)
+    source[0] = text
+
+
+def navigation(text: str) -> str:
+    """A table of contents per section of the index, from the links that stand there."""
+    seen: set[str] = set()
+    trees = []
+    _, *parts = SECTION.split(text)
+    for title, body in zip(parts[::2], parts[1::2], strict=True):
+        pages = [page for page in dict.fromkeys(PAGE.findall(body)) if page not in seen]
+        seen.update(pages)
+        trees.append(toctree(title, pages))
+    return "\n".join(trees)
+
+
+def toctree(caption: str, pages: list[str], *, glob: bool = False) -> str:
+    options = [":hidden:", *([f":caption: {caption}"] if caption else []), *([":glob:"] if glob else [])]
+    return "\n".join(["```{toctree}", *options, "", *pages, "```", ""])
+
+
+class ParameterTable(Directive):
+    """Every parameter of a property file, a table per section, from ``tir/parameters.csv``."""
+
+    def run(self) -> list[nodes.Node]:
+        out: list[nodes.Node] = []
+        for section, rows in groupby(TABLE, key=lambda row: row.section):
+            part = nodes.section(ids=[nodes.make_id(section)], names=[section.lower()])
+            part += nodes.title(text=f"[{section}]")
+            part += table([cells(row) for row in rows])
+            out.append(part)
+        return out
+
+
+def cells(row: Parameter) -> tuple[str, ...]:
+    bounds = "" if row.lower is None and row.upper is None else f"{bound(row.lower)} to {bound(row.upper)}"
+    values = (
+        row.name,
+        row.unit,
+        row.default,
+        bounds,
+        row.stage,
+        row.channel,
+        row.needs,
+        row.equation,
+        row.description,
+    )
+    return tuple(said(value) for value in values)
+
+
+def bound(value: float | None) -> str:
+    return "…" if value is None else f"{value:g}"
+
+
+def said(value: Any) -> str:
+    if isinstance(value, float):
+        return f"{value:g}"
+    return " ".join(map(str, value)) if isinstance(value, tuple | list | frozenset) else str(value or "")
+
+
+def table(rows: list[tuple[str, ...]]) -> nodes.table:
+    """Rows under their headings, without the columns that say nothing here."""
+    shown = [k for k in range(len(COLUMNS)) if any(row[k] for row in rows)]
+    group = nodes.tgroup(cols=len(shown))
+    group += [nodes.colspec(colwidth=WIDTHS[k]) for k in shown]
+    group += nodes.thead("", line([nodes.paragraph(text=COLUMNS[k]) for k in shown]))
+    group += nodes.tbody("", *(line([cell(k, row[k]) for k in shown]) for row in rows))
+    return nodes.table("", group)
+
+
+def line(content: list[nodes.Node]) -> nodes.row:
+    return nodes.row("", *(nodes.entry("", part) for part in content))
+
+
+def cell(column: int, text: str) -> nodes.paragraph:
+    return nodes.paragraph("", "", nodes.literal(text=text)) if column == 0 else nodes.paragraph(text=text)
+
+
+def formula(writer: Any, node: nodes.Element) -> None:
+    """A formula as MathML, which browsers set themselves: the site needs no network."""
+    block = isinstance(node, nodes.math_block)
+    said = tex2mathml(node.astext(), as_block=block)
+    writer.body.append(
+        f'<div style="overflow: auto hidden; padding: 0.6em 0">{said}</div>' if block else said
+    )
+    raise nodes.SkipNode
+
+
+def setup(app: Any) -> dict[str, Any]:
+    app.add_html_math_renderer("mathml", (formula, None), (formula, None))
+    app.add_directive("parameter-table", ParameterTable)
+    app.connect("source-read", adapted)
+    return {"parallel_read_safe": True}

@@ -1,0 +1,60 @@
+"""The table behind a figure holds what is drawn."""
+
+from __future__ import annotations
+
+import csv
+import io
+
+import numpy as np
+import pytest
+
+from mffit.report import style
+from mffit.report.build_view import view_of
+from mffit.report.figures import decomposition, fit, residuals, spin
+from mffit.report.numbers import table
+
+
+@pytest.fixture(scope="module")
+def view(result):
+    return view_of(result)
+
+
+def rows(figure):
+    return list(csv.DictReader(io.StringIO(table(figure))))
+
+
+@pytest.fixture(autouse=True)
+def _settings():
+    with style.applied():
+        yield
+
+
+def test_every_reading_stands_in_the_table_of_the_fit(view):
+    found = rows(fit.model_against_points(view, view.channels[0]))
+    read = [row for row in found if not row["series"].startswith("model")]
+    key = next(name for name in found[0] if name.startswith("y"))
+    assert sorted(float(row[key]) for row in read) == pytest.approx(sorted(view.points.Fy), rel=1e-5)
+    assert {row["x axis"] for row in found} == {"sideslip α [deg]", "camber γ [deg]"}
+
+
+def test_parts_are_named_as_in_the_legend(view):
+    found = rows(decomposition.decomposition(view, view.channels[0]))
+    assert {row["series"].split(":")[0] for row in found} == {"raw reading", "odd part", "even part"}
+
+
+def test_bars_and_error_bars_are_named_by_what_stands_at_the_axis(view):
+    found = rows(spin.camber_reduction(view))
+    budget = {row["y"]: float(row["x"]) for row in found if row["panel"].startswith("What")}
+    assert budget == pytest.approx(
+        {line.source: abs(line.contribution) for line in view.measured.budget}, rel=1e-5
+    )
+    own = next(row for row in found if row["y"] == "front-1")
+    epsilon = view.measured.epsilon_gamma
+    assert float(own["upper"]) - float(own["lower"]) == pytest.approx(2.0 * epsilon.u, rel=1e-4)
+
+
+def test_a_map_gives_the_value_of_every_colour(view):
+    values = np.linspace(-3.0, 3.0, len(view.points))
+    found = rows(residuals.residual_maps(view.points, [("Fy", values)], view.conditions, 4.0, "u"))
+    coloured = sorted(float(row["value"]) for row in found if row["value"])
+    assert coloured == pytest.approx(sorted(values), abs=1e-5)
