@@ -11,12 +11,23 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from mffit.export import write_c, write_fmu
-    from mffit.pipeline import align, build, diagnose, spin, write_tydex
+    from mffit.pipeline import align, build, compare, diagnose, plan, spin, write_tydex
     from mffit.viewer import show
 
 __version__ = "0.1.0"
 
-__all__ = ["align", "build", "diagnose", "show", "spin", "write_c", "write_fmu", "write_tydex"]
+__all__ = [
+    "align",
+    "build",
+    "compare",
+    "diagnose",
+    "plan",
+    "show",
+    "spin",
+    "write_c",
+    "write_fmu",
+    "write_tydex",
+]
 ELSEWHERE = {"show": "mffit.viewer", "write_c": "mffit.export", "write_fmu": "mffit.export"}
 """Public names that are not the pipeline's."""
 

@@ -92,6 +92,18 @@ DIRECT = {
     "alpha_M": Quantity("sideslip misalignment", "α_M", "rad"),
 }
 """What the direct method measures, by the attribute of its records."""
+CHARACTERISTICS = {
+    "epsilon_gamma": DIRECT["epsilon_gamma"],
+    "C_alpha_N_per_rad": DIRECT["C_alpha"],
+    "C_gamma_N_per_rad": DIRECT["C_gamma"],
+    "C_Mz_alpha_Nm_per_rad": Quantity("aligning stiffness", "C_Mα", "Nm/rad"),
+    "C_phit_Nm": DIRECT["C_phit"],
+    "mu_y": Quantity("peak of side force over load", "μ_y", "-"),
+    "Mz_peak_Nm": Quantity("peak of self-aligning moment", "M_zmax", "Nm"),
+    "trail_m": Quantity("pneumatic trail at zero slip", "t_0", "m"),
+    "r_e_m": DIRECT["r_e"],
+}
+"""What an engineer compares first of two tyres, by its key in JSON."""
 MODEL = {
     "Fz": CONDITIONS["Fz_N"],
     "alpha": CONDITIONS["alpha_deg"],

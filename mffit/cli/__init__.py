@@ -8,7 +8,7 @@ from contextlib import redirect_stderr, redirect_stdout
 
 import click
 
-from mffit.cli import building, diagnosing, exporting, files, measuring, projects, rigs
+from mffit.cli import building, comparing, diagnosing, exporting, files, measuring, planning, projects, rigs
 from mffit.cli.console import Unheard
 
 CONTEXT = {"help_option_names": ["-h", "--help"], "max_content_width": 100}
@@ -18,6 +18,8 @@ COMMANDS = (
     measuring.spin,
     measuring.align,
     diagnosing.diagnose,
+    comparing.compare,
+    planning.plan,
     files.check,
     files.show,
     exporting.export,

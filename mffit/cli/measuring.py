@@ -37,8 +37,13 @@ def spin(tyre_toml: Path, out: Path | None, voice: Voice) -> None:
 @click.option(
     "--path-centre", type=click.Choice(["left", "right"]), help="Side of the disc centre, for a CSV file."
 )
+@click.option(
+    "--resolution", type=float, metavar="DEG", help="Smallest angle that the axis can be turned by."
+)
 @voiced
-def align(source: Path, axes: str | None, path_centre: str | None, voice: Voice) -> None:
+def align(
+    source: Path, axes: str | None, path_centre: str | None, resolution: float | None, voice: Voice
+) -> None:
     """Next steering correction from forward and backward zeros, in degrees of the rig's axis."""
     from mffit import pipeline
     from mffit.errors import InputError
@@ -47,7 +52,8 @@ def align(source: Path, axes: str | None, path_centre: str | None, voice: Voice)
 
     if source.suffix != ".toml" and (axes is None or path_centre is None):
         raise InputError("a CSV file needs --axes and --path-centre, as it does not say them itself")
-    alignment = pipeline.align(source, axes=axes, path_centre=path_centre)
+    finest = {} if resolution is None else {"resolution_deg": resolution}
+    alignment = pipeline.align(source, axes=axes, path_centre=path_centre, **finest)
     voice.say(text.alignment_table(alignment))
     voice.warn(alignment.warnings)
     voice.give(lambda: as_json.alignment(alignment))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from mffit.config.models import Config, RigTable
+from mffit.config.models import Config, RigTable, SweepTable
 from tir.conventions import sign
 
 CHANNELS = ("alpha", "gamma", "Fz", "Fx", "Fy", "Mx", "My", "Mz")
@@ -13,9 +13,14 @@ def axis_signs(config: Config) -> dict[str, float]:
     return {channel: sign(config.rig.axes, channel) for channel in CHANNELS}
 
 
-def path_curvature(rig: RigTable) -> float:
-    """Turn slip phi_t of the path [1/m]: -1/R with the centre to the left, 1/R to the right, else 0."""
-    radius = rig.radius
+def path_curvature(rig: RigTable, sweep: SweepTable | None = None) -> float:
+    """Turn slip phi_t of the path [1/m]: -1/R with the centre to the left, 1/R to the right, else 0.
+
+    Of the rig's usual path, or of the one that a sweep was run on.
+    """
+    radius, centre = rig.radius, rig.path_centre
     if radius is None:
         return 0.0
-    return (-1.0 if rig.path_centre == "left" else 1.0) / radius
+    if sweep is not None:
+        radius, centre = sweep.path_radius or radius, sweep.path_centre or centre
+    return (-1.0 if centre == "left" else 1.0) / radius

@@ -225,6 +225,8 @@ class SweepTable(Table):
     file: str
     direction: Literal["forward", "backward"] | None = None  #: None: the file's column, else forward
     mount: Literal["normal", "flipped"] = "normal"
+    path_centre: Literal["left", "right"] | None = None  #: None: as [rig] says
+    path_radius: q.PathRadius | None = None  #: [m]; None: as [rig] says
     columns: Columns = Field(default_factory=dict)
 
 
@@ -302,6 +304,9 @@ class Config(Brief, Table):
             if sweep.file in seen:
                 raise q.wrong(f'"{sweep.file}" is listed twice; remove one', f"sweep.{index}.file")
             seen.add(sweep.file)
+            for key in ("path_centre", "path_radius"):
+                if not self.rig.on_disc and getattr(sweep, key) is not None:
+                    raise q.wrong("a flat track's path is straight; remove it", f"sweep.{index}.{key}")
         return self
 
     @model_validator(mode="after")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import replace
 
@@ -78,7 +79,8 @@ def diagnose(
     if np.any(np.isfinite(points.T)):
         given = replace(given, T_ref_degC=float(np.nanmean(points.T)))
     simulates_spin = config.model.turn_slip and bool(np.any(points.phi_t))
-    start = Simulation(dict(tyre.values), given, simulates_spin, config.model.star)
+    radius = config.rig.radius or math.nan
+    start = Simulation(dict(tyre.values), given, simulates_spin, config.model.star, radius_m=radius)
     refuse_strangers(points, tyre, start)
     points, origin = with_uncertainties(by_condition(points), start)
     inexact = coefficients or declared_inexactness(tyre, config.model.u_coefficients)

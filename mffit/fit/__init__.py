@@ -4,6 +4,7 @@ from mffit.fit.doubts import Doubt
 from mffit.fit.ensemble import ensemble
 from mffit.fit.files import file_names
 from mffit.fit.fitting import fit
+from mffit.fit.freed import with_free_epsilon
 from mffit.fit.outliers import Outlier, marks
 from mffit.fit.posterior import Posterior
 from mffit.fit.result import Agreement, Coefficient, FitResult
@@ -21,4 +22,5 @@ __all__ = [
     "file_names",
     "fit",
     "marks",
+    "with_free_epsilon",
 ]

@@ -34,7 +34,7 @@ class Design:
     coupled: bool  #: sideslip and camber together
     moment: bool  #: Mz measured
     curved: bool  #: path curvature present
-    shifts: bool  #: odd shift terms visible: flat track, or backward runs or flipped mounts on a disc
+    shifts: bool  #: odd shift terms visible: flat track, or on a disc backward runs, flipped mounts or both its sides
     symmetric: bool
 
 
@@ -43,7 +43,8 @@ def design(points: Points, side: str) -> Design:
     curved = bool(np.any(points.phi_t != 0.0))
     load = levels.nearest_labels(points.Fz, levels.LOAD)
     pressures_at = [levels.count(points.p[load == k], levels.PRESSURE) for k in np.unique(load[load >= 0])]
-    both_ways = bool(np.any(points.direction < 0) or np.any(points.mount < 0))
+    both_sides = len(np.unique(np.sign(points.phi_t))) > 1
+    both_ways = bool(np.any(points.direction < 0) or np.any(points.mount < 0) or both_sides)
     gamma, alpha = np.degrees(points.gamma), np.degrees(points.alpha)
     return Design(
         loads=levels.count(points.Fz, levels.LOAD),
@@ -76,7 +77,7 @@ def _missing(row: Parameter, seen: Design) -> str:
     if row.channel == "Mz" and not seen.moment:
         return "Mz was not measured"
     if row.shift and not seen.shifts:
-        return "backward runs or flipped mounts, which tell shifts from turn slip, are absent"
+        return "backward runs, flipped mounts or runs on the other side of the disc, which tell shifts from turn slip, are absent"
     if row.odd and seen.symmetric:
         return "the tyre is declared symmetric"
     return next((reason for need in row.needs if (reason := _unmet(need, seen))), "")

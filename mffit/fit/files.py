@@ -14,7 +14,7 @@ from mffit.fit.normal import derive_both, derive_normal
 from mffit.fit.ranges import NAMES, plausible_ranges, tested_ranges
 from mffit.fit.road import Road, inside, road_grid, weights
 from mffit.fit.start import camber_stiffness_terms
-from mffit.points import Points, main_pressure
+from mffit.points import Points, main_path, main_pressure
 from mffit.quantities import CHANNELS
 from mffit.scatter import rms
 from tir import Tyre
@@ -110,7 +110,7 @@ def make_files(
         terms = camber_stiffness_terms(values, C_gamma, float(points.p[main_pressure(points)].mean()))
         changed["turn-slip"] = {}
         changed["normal"] = derive_normal(model, tested, written, terms, symmetric=symmetric)
-    phi_t = float(points.phi_t[np.argmax(np.abs(points.phi_t))])
+    phi_t = main_path(points)
     if disc and config.spin.exact == "both":
         changed["both"] = derive_both(model, tested, written, terms, phi_t, symmetric=symmetric)
     road = road_grid(tested, written, float(model["FNOMIN"]))

@@ -169,7 +169,8 @@ def _plan(
         if config.spin.pecp1 == "model":
             extra.append("PECP1")
         else:
-            held["PECP1"] = measured.epsilon_gamma.u
+            debiased = measured.epsilon_gamma_debiased if config.spin.pecp1 == "debiased" else None
+            held["PECP1"] = (debiased or measured.epsilon_gamma).u
     return Plan(
         cover,
         {**start, **{name: prior.expected for name, prior in learnt.items()}},
@@ -221,7 +222,9 @@ def _problem(config, points: Points, values, measured) -> Problem:
     disc = config.rig.on_disc
     return Problem(
         points=points,
-        simulation=Simulation(values, known_faults(config, measured), turn_slip=disc),
+        simulation=Simulation(
+            values, known_faults(config, measured), turn_slip=disc, radius_m=config.rig.radius or math.nan
+        ),
         sigma_Fy=weights.stated_or_nominal(points.u_Fy, points.Fy),
         sigma_Mz=weights.stated_or_nominal(points.u_Mz, points.Mz),
         envelope=envelope(covered_ranges(points)),

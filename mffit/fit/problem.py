@@ -12,7 +12,7 @@ from mffit import least_squares
 from mffit.fit.constraints import Envelope, limits
 from mffit.measured import RadiusReading
 from mffit.points import Points
-from mffit.rig import Simulation, declared_radius
+from mffit.rig import Simulation
 from tir.derivatives import gradient, plain, traced
 from tir.outputs import outputs_of
 
@@ -95,7 +95,7 @@ class Problem:
         p = SimpleNamespace(**{**self.simulation.values, **coefficients})
         load = np.array([row.load for row in self.radii])
         measured, u = (np.array([getattr(row, name) for row in self.radii]) for name in ("value", "u"))
-        declared = declared_radius(self.points)
+        declared = self.simulation.declared(self.points)
         R = numbers.get("path_radius_m", self.simulation.number("path_radius_m", self.points))
         follows = np.array([1.0 if row.follows_path else 0.0 for row in self.radii])
         (Re,) = outputs_of(("Re",), p, {"Fz": load, "Vx": self.speed})

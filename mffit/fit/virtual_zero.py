@@ -7,13 +7,15 @@ from typing import Any
 
 import numpy as np
 
-from mffit.points import Points
+from mffit.points import Points, main_path
 from mffit.rig import Simulation
 
 
 def zero_points(points: Points, load: float) -> Points:
     """The condition (0, 0) at the load [N]: forwards, and backwards too where the data have backward runs."""
-    nearest = int(np.argmin(np.abs(points.Fz - load) + 1e-3 * np.abs(points.p - np.median(points.p))))
+    usual = np.flatnonzero(points.phi_t == main_path(points))
+    apart = np.abs(points.Fz - load) + 1e-3 * np.abs(points.p - np.median(points.p))
+    nearest = int(usual[np.argmin(apart[usual])])
     directions = np.array([1, -1] if np.any(points.direction < 0) else [1])
     zero = np.zeros(len(directions))
     chosen = points.select(np.full(len(directions), nearest))

@@ -3,22 +3,40 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import NamedTuple
 
 import numpy as np
 
 from mffit.brief import Brief
 from mffit.errors import InputError
 from mffit.measured import wording
-from mffit.measured.groups import load_groups, zeros
+from mffit.measured.groups import LoadGroup, load_groups, zeros
 from mffit.measured.notes import AxisOff
-from mffit.points import Points
-from tir import conventions
+from mffit.points import Points, main_path
+from tir import Quantity, conventions
 
 FIRST_GUESS = 10.0
 """Cornering stiffness per load of a motorcycle tyre [1/rad], the paper's guess for the first step."""
+GUESS_OFF = 0.5
+"""Relative standard uncertainty of that guess: tyres of cars and motorcycles have 5 to 25."""
 LARGEST_DIFFERENCE = 50.0
 """|F_forward - F_backward| [N] above which the axis counts as not aligned."""
+DEFAULT_U_FORCE, DEFAULT_U_MOMENT = 6.0, 0.6
+"""Standard uncertainty of a point [N], [Nm] where the data give none."""
+RESOLUTION_DEG = 0.01
+"""Smallest angle by which a sideslip axis can usually be turned."""
+SAME_FORCE = 0.1
+"""Zeros that differ by less [N] look the same."""
+
+
+class AtLoad(NamedTuple):
+    """What the direct method makes of the same load."""
+
+    C_alpha: Quantity | None  #: measured cornering stiffness, ISO, negative [N/rad]
+    F_forward: float  #: force at zero, the play taken off [N]; NaN where it is not measured
+    F_backward: float  #: [N]
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,7 +51,16 @@ class AlignmentStep:
     F_slip: float  #: (7) [N]
     C_alpha: float  #: used for the correction, ISO, negative [N/rad]
     correction_deg: float  #: next correction of the steering reading, in degrees of the rig's axis
-    secant: bool  #: C_alpha from two iterations (9), not the guess
+    source: str  #: of C_alpha: "measured" from a sideslip sweep, "secant" of two iterations (9), or "guess"
+    u_deg: float  #: standard uncertainty of the correction
+    reported: tuple[float, float] | None = (
+        None  #: the same zeros as the report has them, where these differ [N]
+    )
+
+    @property
+    def secant(self) -> bool:
+        """Whether C_alpha is from two iterations."""
+        return self.source == "secant"
 
 
 @dataclass(frozen=True, slots=True, repr=False)
@@ -42,23 +69,50 @@ class Alignment(Brief):
 
     steps: tuple[AlignmentStep, ...]
     warnings: tuple[str, ...]
+    resolution_deg: float = field(default=RESOLUTION_DEG)
+
+    @property
+    def last(self) -> tuple[AlignmentStep, ...]:
+        """The last iteration at every load."""
+        return tuple({step.load: step for step in self.steps}.values())
 
     @property
     def correction_deg(self) -> float:
         """The correction to apply now: mean over loads of the last iteration's, weighted with the stiffness."""
-        last = {step.load: step for step in self.steps}
-        weight = np.array([abs(step.C_alpha) for step in last.values()])
-        return float(np.average([step.correction_deg for step in last.values()], weights=weight))
+        return float(self._weights() @ [step.correction_deg for step in self.last])
+
+    @property
+    def u_deg(self) -> float:
+        """Its standard uncertainty."""
+        return float(np.linalg.norm(self._weights() * [step.u_deg for step in self.last]))
+
+    @property
+    def aligned(self) -> bool:
+        """Whether nothing is left to turn: the correction is within its uncertainty, or finer than the axis can be turned."""
+        return abs(self.correction_deg) <= max(self.u_deg, self.resolution_deg)
+
+    def _weights(self) -> np.ndarray:
+        stiffness = np.array([abs(step.C_alpha) for step in self.last])
+        return stiffness / stiffness.sum()
 
 
-def align(points: Points, *, axes: str = "iso", C_alpha: float | None = None) -> Alignment:
+def align(
+    points: Points,
+    *,
+    axes: str = "iso",
+    C_alpha: float | None = None,
+    measured: Mapping[float, AtLoad] | None = None,
+    resolution_deg: float = RESOLUTION_DEG,
+) -> Alignment:
     """Next correction of the sideslip axis from forward and backward zeros.
 
     Parameters
     ----------
     points : with rows at zero sideslip and camber rolled both ways; ``iteration`` numbers repeated steps
     axes : the rig's axes, in which the correction is returned
-    C_alpha : cornering stiffness per load [1/rad], positive; default 10
+    C_alpha : cornering stiffness per load [1/rad], positive, where none is measured; default 10
+    measured : what the direct method finds, by load [N]; its stiffness counts where it is known best
+    resolution_deg : smallest angle by which the axis can be turned [deg]
 
     Raises
     ------
@@ -67,41 +121,83 @@ def align(points: Points, *, axes: str = "iso", C_alpha: float | None = None) ->
     """
     steps: list[AlignmentStep] = []
     for group in load_groups(points):
-        steps += _steps(points, group, axes, C_alpha or FIRST_GUESS)
+        usual = LoadGroup(group.load, group.index[points.phi_t[group.index] == main_path(points)])
+        steps += _steps(points, usual, axes, C_alpha or FIRST_GUESS, (measured or {}).get(group.load))
     if not steps:
         raise InputError(
             "no load has both forward and backward points at zero sideslip and camber: add rows with direction "
             "forward and backward"
         )
-    last = {step.load: step for step in steps}.values()
+    found = Alignment(tuple(steps), (), resolution_deg)
     off = [
         AxisOff(
             step.load, abs(step.F_forward - step.F_backward), LARGEST_DIFFERENCE, abs(step.correction_deg)
         )
-        for step in last
+        for step in found.last
         if abs(step.F_forward - step.F_backward) > LARGEST_DIFFERENCE
     ]
-    return Alignment(tuple(steps), tuple(map(wording.warning, off)))
+    return Alignment(tuple(steps), tuple(map(wording.warning, off)), resolution_deg)
 
 
-def _steps(points: Points, group, axes: str, guess: float) -> list[AlignmentStep]:
+class _Stiffness(NamedTuple):
+    value: float  #: ISO, negative [N/rad]
+    u: float
+    source: str
+
+
+def _steps(
+    points: Points, group: LoadGroup, axes: str, guess: float, known: AtLoad | None
+) -> list[AlignmentStep]:
     forward, backward = zeros(points, group, 1), zeros(points, group, -1)
     iteration = np.nan_to_num(points.iteration, nan=1.0)
+    guessed = _Stiffness(-guess * group.load, GUESS_OFF * guess * group.load, "guess")
     out: list[AlignmentStep] = []
-    before: tuple[float, float] | None = None  # (slip force, correction then applied [rad])
+    before: tuple[float, float, float] | None = None  # slip force, its u, correction then applied [rad]
     for k in np.unique(iteration[np.concatenate([forward, backward])].astype(int)):
         f, b = forward[iteration[forward] == k], backward[iteration[backward] == k]
         if not len(f) or not len(b):
             continue
         F_f, F_b = float(np.mean(points.Fy[f])), float(np.mean(points.Fy[b]))
-        F_slip = (F_f - F_b) / 2.0  # (7)
-        C, secant = -guess * group.load, False
-        if before is not None and abs(before[1]) > 1e-9:
-            found = (F_slip - before[0]) / before[1]  # (9)
-            if found < 0.0:
-                C, secant = found, True
-        correction = -F_slip / C  # (8), (10)
-        rig = conventions.from_iso(axes, "alpha", math.degrees(correction))
-        out.append(AlignmentStep(group.load, int(k), F_f, F_b, (F_f + F_b) / 2.0, F_slip, C, rig, secant))
-        before = (F_slip, correction)
+        F_slip, u_slip = (F_f - F_b) / 2.0, math.hypot(_u(points, f), _u(points, b)) / 2.0  # (7)
+        candidates = [guessed]
+        if before is not None and abs(before[2]) > 1e-9:
+            secant = (F_slip - before[0]) / before[2]  # (9)
+            if secant < 0.0:
+                candidates = [_Stiffness(secant, math.hypot(u_slip, before[1]) / abs(before[2]), "secant")]
+        if known is not None and known.C_alpha is not None:
+            candidates.append(_Stiffness(known.C_alpha.value, known.C_alpha.u, "measured"))
+        C = min(candidates, key=lambda c: c.u / abs(c.value))
+        correction = -F_slip / C.value  # (8), (10)
+        u = math.hypot(u_slip, correction * C.u) / abs(C.value)
+        out.append(
+            AlignmentStep(
+                load=group.load,
+                iteration=int(k),
+                F_forward=F_f,
+                F_backward=F_b,
+                F_turn_slip=(F_f + F_b) / 2.0,
+                F_slip=F_slip,
+                C_alpha=C.value,
+                correction_deg=conventions.from_iso(axes, "alpha", math.degrees(correction)),
+                source=C.source,
+                u_deg=math.degrees(u),
+                reported=_elsewhere(known, F_f, F_b),
+            )
+        )
+        before = (F_slip, u_slip, correction)
     return out
+
+
+def _u(points: Points, rows: np.ndarray) -> float:
+    """Standard uncertainty of the mean force of some points [N]."""
+    u = np.where(np.isfinite(points.u_Fy[rows]), points.u_Fy[rows], DEFAULT_U_FORCE)
+    return float(np.linalg.norm(u)) / len(rows)
+
+
+def _elsewhere(known: AtLoad | None, F_forward: float, F_backward: float) -> tuple[float, float] | None:
+    """The report's zeros where they differ from these."""
+    if known is None:
+        return None
+    there = (known.F_forward, known.F_backward)
+    apart = [abs(a - b) for a, b in zip(there, (F_forward, F_backward), strict=True) if math.isfinite(a)]
+    return there if apart and max(apart) > SAME_FORCE else None

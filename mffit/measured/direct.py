@@ -5,15 +5,17 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from uncertainties import UFloat
 
-from mffit.config import Config
+from mffit.config import Config, path_curvature
 from mffit.errors import InputError
 from mffit.measured import camber_reduction as method
 from mffit.measured import wording
+from mffit.measured.alignment import DEFAULT_U_FORCE, DEFAULT_U_MOMENT
+from mffit.measured.alignment import AtLoad as AxisAtLoad
 from mffit.measured.backlash import backlash_corrected, odd_alpha
 from mffit.measured.groups import STRAIGHT, UPRIGHT, LoadGroup, load_groups, zeros
 from mffit.measured.loads import load_dependence
@@ -26,11 +28,13 @@ from mffit.measured.notes import (
     NothingMeasured,
     NotSeparable,
     SecantNotPossible,
+    SeveralPaths,
     SlopeNotPossible,
     StandardUncertainties,
     StraightPath,
     Trouble,
 )
+from mffit.measured.paths import PathForce, by_path, on_radius, stiffness, u_by_draws
 from mffit.measured.radii import effective_radius_at, measured_effective_radius, measured_path_radius
 from mffit.measured.result import Contribution, LoadResult, Measured
 from mffit.measured.slopes import Secant, Slope, secant_at, slope_at_zero
@@ -45,8 +49,6 @@ CUBIC_SLIP = math.radians(2.0)
 NEAR_ZERO = math.radians(1.2)
 """Within this sideslip a parabola describes the side force to a newton."""
 SHORTEST_CAMBER_SWEEP = math.radians(10.0)
-DEFAULT_U_FORCE, DEFAULT_U_MOMENT = 6.0, 0.6
-"""Standard uncertainty of a point [N], [Nm] where the data give none."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -74,6 +76,7 @@ class AtLoad:
 
     row: LoadResult
     epsilon: UFloat | None
+    per_newton: float = 0.0  #: of eps_gamma by a force that pushes the same way on every path [1/N]
 
 
 def measure(config: Config, points: Points, parts: Parts, base: Tyre | None = None) -> Measured:
@@ -115,6 +118,35 @@ def measure(config: Config, points: Points, parts: Parts, base: Tyre | None = No
     return replace(measured, warnings=(*parts.unpaired, *map(wording.warning, warnings)))
 
 
+def at_the_axis(config: Config, points: Points, parts: Parts) -> dict[float, AxisAtLoad]:
+    """Cornering stiffness and zeros by load [N], for the alignment: whatever the turn-slip force says of the rig."""
+    slip = odd_alpha(points, parts, config)
+    points = backlash_corrected(points, config)
+    out = {}
+    for group in load_groups(points):
+        C_alpha = _cornering(points, parts, slip, group, config)
+        Ca = _number(C_alpha.slope or C_alpha.secant, "cornering stiffness")
+        paths = _zeros_by_path(points, group, Ca, config) if config.rig.on_disc else []
+        zero = paths[0][1] if paths else None
+        out[group.load] = AxisAtLoad(
+            method.quantity(Ca, "N/rad"),
+            zero.forward if zero else math.nan,
+            zero.backward if zero else math.nan,
+        )
+    return out
+
+
+def _cornering(points: Points, parts: Parts, odd_slip, group: LoadGroup, config: Config) -> Stiffness:
+    odd = parts.Fy_odd if config.rig.on_disc else points.Fy
+    slip = _sweep(points, odd, group, "alpha", config)
+    return Stiffness(*_estimates(odd_slip, odd, _u_odd(parts), slip, CUBIC_SLIP, CUBIC_SLIP))
+
+
+def _u_odd(parts: Parts) -> np.ndarray:
+    """Standard uncertainty of the odd side force (n,) [N]."""
+    return np.where(np.isfinite(parts.u_Fy_odd), parts.u_Fy_odd, DEFAULT_U_FORCE / math.sqrt(2.0))
+
+
 def _rig(config: Config, R: UFloat) -> method.RigErrors:
     rig = config.rig
     return method.rig_errors(
@@ -128,13 +160,12 @@ def _rig(config: Config, R: UFloat) -> method.RigErrors:
 
 
 def _at_load(config, points, parts, odd_slip, group: LoadGroup, rig, r_e, warnings) -> AtLoad | None:
-    u_Fy = np.where(np.isfinite(parts.u_Fy_odd), parts.u_Fy_odd, DEFAULT_U_FORCE / math.sqrt(2.0))
+    u_Fy = _u_odd(parts)
     u_Mz = np.where(np.isfinite(parts.u_Mz_odd), parts.u_Mz_odd, DEFAULT_U_MOMENT / math.sqrt(2.0))
     odd_Fy, odd_Mz = (parts.Fy_odd, parts.Mz_odd) if rig else _raw_odd(points)
-    camber = _sweep(points, odd_Fy, group, "gamma")
-    slip = _sweep(points, odd_Fy, group, "alpha")
+    camber = _sweep(points, odd_Fy, group, "gamma", config)
     angle = math.radians(config.camber_stiffness.angle_deg)
-    C_alpha = Stiffness(*_estimates(odd_slip, odd_Fy, u_Fy, slip, CUBIC_SLIP, CUBIC_SLIP))
+    C_alpha = _cornering(points, parts, odd_slip, group, config)
     Ca = _number(C_alpha.slope or C_alpha.secant, "cornering stiffness")
     if Ca is not None:  # the sideslip that backlash leaves in a camber sweep
         odd_Fy = np.where(
@@ -144,25 +175,29 @@ def _at_load(config, points, parts, odd_slip, group: LoadGroup, rig, r_e, warnin
     if C_gamma.slope is None and C_alpha.slope is None and C_gamma.secant is None and rig is None:
         return None
     chosen = _chosen(config, C_gamma, points.gamma[camber], group.load, warnings)
-    zero = _zero(points, group, Ca, config) if rig else None
-    epsilon = turn = alpha_M = moment = None
+    zeros_of = _zeros_by_path(points, group, Ca, config) if rig else []
+    zero = zeros_of[0][1] if zeros_of else None
+    epsilon = C_phit = turn = alpha_M = moment = None
     row_budget: tuple[Contribution, ...] = ()
     u_mc = e_slope = e_secant = None
-    if zero is not None and np.isfinite(zero.forward):
-        force, alpha_M, inputs = _turn_slip(zero, chosen, Ca, rig)
-        sign = float(np.sign(points.phi_t[group.index[0]]))
-        if force.nominal_value * sign <= 0.0:
-            _refuse_inward(force.nominal_value, group.load, alpha_M, config)
-        turn = force
+    per_newton = 0.0
+    if zero is not None:
+        paths = [_turn_slip(z, phi_t, chosen, Ca, rig, config) for phi_t, z in zeros_of]
+        alpha_M = next((path.alpha_M for path in paths if path.alpha_M is not None), None)
+        C_phit, weights = stiffness(paths)
+        sign = paths[0].sign
+        turn = paths[0].force if len(paths) == 1 else sign * C_phit / rig.R
+        if C_phit.nominal_value <= 0.0:
+            _refuse_inward(turn.nominal_value, group.load, alpha_M, config)
         if chosen is not None and r_e is not None:
-            result = method.camber_reduction(force, chosen, r_e, rig.R, sign)
+            result = method.camber_reduction(turn, chosen, r_e, rig.R, sign)
             epsilon, row_budget = result.epsilon_gamma, method.budget(result.epsilon_gamma)
-            u_mc = _monte_carlo(epsilon, inputs, chosen, Ca, r_e, rig, sign, zero)
+            per_newton = epsilon.derivatives.get(rig.offset, 0.0)
+            u_mc = u_by_draws(paths, weights, chosen, r_e, rig)
             e_slope, e_secant = (
-                _epsilon_with(s, force, r_e, rig, sign) for s in (C_gamma.slope, C_gamma.secant)
+                _epsilon_with(s, turn, r_e, rig, sign) for s in (C_gamma.slope, C_gamma.secant)
             )
-            moment = _moment_opinion(points, odd_Mz, u_Mz, group, zero, r_e, rig, sign)
-    C_phit = None if turn is None else float(np.sign(points.phi_t[group.index[0]])) * turn * rig.R
+            moment = _moment_opinion(points, odd_Mz, u_Mz, group, zero, r_e, rig, sign, config)
     row = LoadResult(
         load=group.load,
         C_alpha=method.quantity(Ca, "N/rad"),
@@ -186,8 +221,9 @@ def _at_load(config, points, parts, odd_slip, group: LoadGroup, rig, r_e, warnin
         F_backward=zero.backward if zero else math.nan,
         budget=row_budget,
         u_monte_carlo=u_mc,
+        paths=tuple(phi_t for phi_t, _ in zeros_of),
     )
-    return AtLoad(row, epsilon)
+    return AtLoad(row, epsilon, per_newton)
 
 
 def _raw_odd(points: Points) -> tuple[np.ndarray, np.ndarray]:
@@ -195,9 +231,9 @@ def _raw_odd(points: Points) -> tuple[np.ndarray, np.ndarray]:
     return points.Fy, points.Mz
 
 
-def _sweep(points: Points, odd: np.ndarray, group: LoadGroup, angle: str) -> np.ndarray:
-    """Indices of the group's forward points on the positive branch of a pure camber or sideslip sweep."""
-    i = group.index
+def _sweep(points: Points, odd: np.ndarray, group: LoadGroup, angle: str, config: Config) -> np.ndarray:
+    """Indices of the group's forward points on the positive branch of a pure camber or sideslip sweep at the usual radius."""
+    i = group.index if config.rig.radius is None else on_radius(points, group.index, config.rig.radius)
     i = i[(points.direction[i] > 0) & np.isfinite(odd[i])]
     if angle == "gamma":
         return i[(np.abs(points.alpha[i]) < STRAIGHT) & (points.gamma[i] > UPRIGHT)]
@@ -272,20 +308,33 @@ def _at_zero(
     return float(np.mean(values)), float(np.sqrt(np.sum(u[i] ** 2)) / len(i))
 
 
-def _turn_slip(zero: Zero, C_gamma, C_alpha, rig):
-    """Corrected turn-slip force, alpha_M if known, and the raw forces that enter."""
+def _zeros_by_path(
+    points: Points, group: LoadGroup, C_alpha: UFloat | None, config: Config
+) -> list[tuple[float, Zero]]:
+    """Turn slip of every path with forward zeros at this load, the usual one first, and what was read there."""
+    paths = by_path(points, group, path_curvature(config.rig))
+    found = [(phi_t, _zero(points, part, C_alpha, config)) for phi_t, part in paths]
+    return [(phi_t, zero) for phi_t, zero in found if np.isfinite(zero.forward)]
+
+
+def _turn_slip(zero: Zero, phi_t: float, C_gamma, C_alpha, rig, config: Config) -> PathForce:
+    """Corrected turn-slip force of one path, alpha_M if known, and the raw forces that enter."""
     forward = method.named(zero.forward, zero.u_forward, "noise of the forward zeros", "N")
     Cg = C_gamma if C_gamma is not None else 0.0
     Ca = C_alpha if C_alpha is not None else 0.0
     # The play was taken off the angles already, so only its uncertainty is left to propagate.
     play_error = zero.alpha_b * (rig.half_play - rig.half_play.nominal_value)
+    # The wheel is moved from path to path by known distances, so one error of R is common to all.
+    usual = config.rig.radius
+    assert usual is not None
+    path: dict[str, Any] = {"sign": float(np.sign(phi_t)), "R": rig.R + (1.0 / abs(phi_t) - usual)}
     if not math.isfinite(zero.backward):
         force = method.turn_slip_force(forward, Cg, Ca, rig, play_error, slip_known=False)
-        return force, None, (forward,)
+        return PathForce(force=force, readings=(forward,), alpha_M=None, **path)
     backward = method.named(zero.backward, zero.u_backward, "noise of the backward zeros", "N")
     force = method.turn_slip_force((forward + backward) / 2.0, Cg, Ca, rig, play_error, slip_known=True)
     alpha_M = (forward - backward) / 2.0 / Ca if C_alpha is not None else None
-    return force, alpha_M, (forward, backward)
+    return PathForce(force=force, readings=(forward, backward), alpha_M=alpha_M, **path)
 
 
 def _refuse_inward(force: float, load: float, alpha_M, config) -> None:
@@ -307,30 +356,11 @@ def _epsilon_with(estimate, force, r_e, rig, sign) -> float | None:
     return float(method.camber_reduction(force, estimate.value, r_e, rig.R, sign).epsilon_gamma.nominal_value)
 
 
-def _monte_carlo(epsilon, forces, C_gamma, C_alpha, r_e, rig, sign, zero) -> float:
-    """u(eps_gamma) by random draws of all independent sources."""
-    ratio = r_e / rig.R  # R cancels where r_e comes from a revolution on the same path
-    inputs = [*forces, C_gamma, rig.offset, rig.gamma_0, rig.slip_force, ratio_number(ratio)]
-
-    def formula(*x):
-        force = np.mean(np.broadcast_arrays(*x[: len(forces)]), axis=0) if len(forces) > 1 else x[0]
-        C, offset, gamma_0, slip, r = x[len(forces) :]
-        force = force - offset - C * gamma_0 - (slip if len(forces) == 1 else 0.0)
-        return 1.0 + r * C / (sign * force)
-
-    return method.monte_carlo(formula, inputs)
-
-
-def ratio_number(ratio: UFloat) -> UFloat:
-    """r_e / R as one independent number."""
-    return method.named(ratio.nominal_value, ratio.std_dev, "r_e/R", "-")
-
-
-def _moment_opinion(points, odd_Mz, u_Mz, group, zero, r_e, rig, sign) -> UFloat | None:
+def _moment_opinion(points, odd_Mz, u_Mz, group, zero, r_e, rig, sign, config) -> UFloat | None:
     """eps_gamma from the moments; informational, as it scatters widely."""
     if zero.moment is None:
         return None
-    index = _sweep(points, odd_Mz, group, "gamma")
+    index = _sweep(points, odd_Mz, group, "gamma", config)
     slope = slope_at_zero(points.gamma[index], odd_Mz[index], u_Mz[index], local=CUBIC_CAMBER)
     if slope is None or abs(zero.moment.nominal_value) < 2.0 * zero.moment.std_dev:
         return None
@@ -358,19 +388,23 @@ def _assembled(
     at = min(range(len(known)), key=lambda k: abs(loads[k] - nominal_load))
     law = load_dependence(loads, [epsilon for _, epsilon in known], at, nominal_load)
     row = next(row for row in per_load if row.load == loads[at])
-    axis = _alignment_verdict(config, row)
+    axis = alignment_verdict(config, row)
     misaligned = isinstance(axis, Misaligned)
     if isinstance(axis, Misaligned):
         warnings.append(axis)
-    said = () if isinstance(axis, Misaligned) else (axis,)
-    notes = (*said, law.note, StandardUncertainties(), _conicity(row), ContactWanders())
+    said: tuple[Note, ...] = () if axis is None or isinstance(axis, Misaligned) else (axis,)
+    if len(row.paths) > 1:
+        said = (*said, SeveralPaths(tuple(-1.0 / phi_t for phi_t in row.paths)))
+    notes = (*said, law.note, StandardUncertainties(), _conicity(rows, row), ContactWanders())
     return Measured(per_load, row, law.pecp1, law.pecp2, law.u_pecp2, r_e_loads, misaligned, notes, ())
 
 
-def _alignment_verdict(config: Config, row: LoadResult) -> NotSeparable | Aligned | Misaligned:
-    """Whether the sideslip axis is off by more than the rig's own alignment leaves."""
+def alignment_verdict(config: Config, row: LoadResult) -> NotSeparable | Aligned | Misaligned | None:
+    """Whether the sideslip axis is off by more than the rig's own alignment leaves; None where it does not matter."""
     assert row.F_phit is not None
     force, left = row.F_phit.value, config.rig.u_slip_alignment_N
+    if row.alpha_M is None and min(row.paths) < 0.0 < max(row.paths):
+        return None
     if row.alpha_M is None:
         angle = math.degrees(abs(force / row.C_alpha.value)) if row.C_alpha is not None else None
         return NotSeparable(force, angle, left)
@@ -379,9 +413,12 @@ def _alignment_verdict(config: Config, row: LoadResult) -> NotSeparable | Aligne
     return verdict(row.alpha_M, slip, _shift(row, slip))
 
 
-def _conicity(row: LoadResult) -> Conicity:
+def _conicity(rows: list[AtLoad], row: LoadResult) -> Conicity:
+    """What a plausible conicity would do, which pushes the same way on every path."""
     force = CONICITY * row.load
-    return Conicity(CONICITY, force, _shift(row, force))
+    return Conicity(
+        CONICITY, force, abs(force * next(found.per_newton for found in rows if found.row is row))
+    )
 
 
 def _shift(row: LoadResult, force: float) -> float:

@@ -43,6 +43,13 @@ class NotSeparable:
 
 
 @dataclass(frozen=True, slots=True)
+class SeveralPaths:
+    """Zeros of more than one path were combined."""
+
+    radii: tuple[float, ...]  #: [m], positive with the disc's centre to the left
+
+
+@dataclass(frozen=True, slots=True)
 class Aligned:
     """Forward and backward runs show a sideslip misalignment within what the alignment leaves."""
 
@@ -125,6 +132,7 @@ class AxisOff:
 Note = (
     StraightPath
     | NotSeparable
+    | SeveralPaths
     | Aligned
     | LoadSlope
     | OneLoad

@@ -45,6 +45,7 @@ class LoadResult(Brief):
     F_backward: float  #: [N]; NaN without backward runs
     budget: tuple[Contribution, ...] = ()
     u_monte_carlo: float | None = None  #: u(eps_gamma) from random draws
+    paths: tuple[float, ...] = ()  #: turn slip of every path with zeros, the usual one first [1/m]
 
     @property
     def headline(self) -> str:

@@ -1,20 +1,24 @@
 """The workflows: one screen each, one call per step."""
 
 from mffit.pipeline.building import build
+from mffit.pipeline.comparing import compare
 from mffit.pipeline.diagnosing import diagnose
 from mffit.pipeline.exporting import write_tydex
 from mffit.pipeline.fleets import fleet
 from mffit.pipeline.intake import init_from, write_sniffed
 from mffit.pipeline.many import build_many
 from mffit.pipeline.measuring import align, spin
+from mffit.pipeline.planning import plan
 
 __all__ = [
     "align",
     "build",
     "build_many",
+    "compare",
     "diagnose",
     "fleet",
     "init_from",
+    "plan",
     "spin",
     "write_sniffed",
     "write_tydex",

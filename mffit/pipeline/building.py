@@ -30,7 +30,7 @@ from mffit.progress import Progress, silent
 from mffit.quantities import CHANNELS
 from mffit.recordings.stretch_table import stretch_table
 from mffit.results import BuildResult, as_json
-from mffit.rig import NO_FAULTS
+from mffit.rig import NO_FAULTS, Simulation
 from tir import Tyre
 
 USES = ("turn-slip", "normal")
@@ -83,7 +83,7 @@ def build(
         if sound is not measured:
             measured = sound
             fitted = fitting.fit(config, points, parts, measured, base, progress)
-        bias = finite_spin_bias(config, points, fitted, base)
+        bias = finite_spin_bias(config, points, undistorted(config, fitted), base)
         if bias is not None:
             measured = measured.debiased(bias)
         if bias is not None and config.spin.pecp1 == "debiased":
@@ -149,16 +149,26 @@ def without_outliers(
     return measured if again == measured else again
 
 
-def finite_spin_bias(config: Config, points: Points, fitted: FitResult, base: Tyre | None) -> float | None:
+def finite_spin_bias(
+    config: Config, points: Points, simulation: Simulation | None, base: Tyre | None
+) -> float | None:
     """What the direct method adds to eps_gamma because spin on a disc is not small; None where it does not apply.
 
-    The method is run on what a faultless rig would read, without noise, of the fitted model, whose eps_gamma is known.
+    The method is run on what a faultless rig would read, without noise, of a model whose eps_gamma is known.
     """
+    if simulation is None:
+        return None
+    Fy, Mz = replace(simulation, faults=NO_FAULTS).readings(points)
+    found = epsilon_gamma(without_play(config), points.replace(Fy=Fy, Mz=Mz), base)
+    return None if found is None else found.value - float(simulation.values["PECP1"])
+
+
+def undistorted(config: Config, fitted: FitResult) -> Simulation | None:
+    """The model that tells what finite spin does: PECP1 decided by the points; None where there is no turn slip."""
     if not config.rig.on_disc or fitted.epsilon_gamma_model is None:
         return None
-    Fy, Mz = replace(fitted.simulation, faults=NO_FAULTS).readings(points)
-    found = epsilon_gamma(without_play(config), points.replace(Fy=Fy, Mz=Mz), base)
-    return None if found is None else found.value - float(fitted.simulation.values["PECP1"])
+    assert fitted.search is not None
+    return fitting.with_free_epsilon(fitted.search)
 
 
 def write_build(result: BuildResult, out: Path, stretches: Sequence[StretchNote] = ()) -> None:

@@ -35,21 +35,33 @@ def spin(config: Config | Mapping[str, Any] | str | Path, out: str | Path | None
     return measured
 
 
-def align(source: str | Path, *, axes: str | None = None, path_centre: str | None = None) -> Alignment:
+def align(
+    source: str | Path,
+    *,
+    axes: str | None = None,
+    path_centre: str | None = None,
+    resolution_deg: float = direct.RESOLUTION_DEG,
+) -> Alignment:
     """Next steering correction from forward and backward zeros; see :func:`mffit.measured.align`.
 
     Parameters
     ----------
     source : path of a ``tyre.toml``, or of a bare table
     axes, path_centre : what a bare table does not say itself
+    resolution_deg : smallest angle by which the axis can be turned [deg]
+
+    Notes
+    -----
+    Where the sweeps of a ``tyre.toml`` give the cornering stiffness, it is used; a bare table's zeros need the guess.
     """
     source = Path(source)
     if source.suffix == ".toml":
         config = configuration.load(source)
         points, _ = ingestion.load(config, check_physics=False)
-        return direct.align(points, axes=config.rig.axes)
+        found = direct.at_the_axis(config, points, decomposition.split(points))
+        return direct.align(points, axes=config.rig.axes, measured=found, resolution_deg=resolution_deg)
     points = ingestion.load_table(source, axes=axes, path_centre=path_centre)
-    return direct.align(points, axes=axes or "iso")
+    return direct.align(points, axes=axes or "iso", resolution_deg=resolution_deg)
 
 
 def measure(config: Config, points: Points, base: Tyre | None) -> tuple[Parts, Measured]:

@@ -4,13 +4,22 @@ from __future__ import annotations
 
 from pathlib import Path
 
-import numpy as np
 import pandas as pd
 
+from mffit.comparison import characteristics
 from mffit.results import BuildResult
 from tir import Tyre
 
 FOLDER, INDEX = "ensemble", "index.csv"
+NUMBERS = (
+    "epsilon_gamma",
+    "C_alpha_N_per_rad",
+    "C_gamma_N_per_rad",
+    "C_Mz_alpha_Nm_per_rad",
+    "mu_y",
+    "Mz_peak_Nm",
+)
+"""Columns of the table, beside the file."""
 
 
 def write_members(result: BuildResult, out: Path) -> None:
@@ -33,18 +42,5 @@ def write_members(result: BuildResult, out: Path) -> None:
 
 def numbers(tyre: Tyre, *, turn_slip: bool) -> dict[str, float]:
     """What an engineer compares first, at nominal load and pressure on a straight path; SI units, ISO signs."""
-    load = float(tyre["FNOMIN"])
-    small = np.array([-1e-3, 1e-3])
-    slip = np.radians(np.linspace(0.0, np.degrees(float(tyre["ALPMAX"])), 101))
-    by_slip = tyre(load, alpha=small, turn_slip=turn_slip)
-    by_camber = tyre(load, gamma=small, turn_slip=turn_slip)
-    curve = tyre(load, alpha=slip, turn_slip=turn_slip)
-    step = np.diff(small)[0]
-    return {
-        "epsilon_gamma": float(tyre["PECP1"]),
-        "C_alpha_N_per_rad": float(np.diff(by_slip.Fy)[0] / step),
-        "C_gamma_N_per_rad": float(np.diff(by_camber.Fy)[0] / step),
-        "C_Mz_alpha_Nm_per_rad": float(np.diff(by_slip.Mz)[0] / step),
-        "mu_y": float(np.max(np.abs(curve.Fy)) / load),
-        "Mz_peak_Nm": float(np.max(np.abs(curve.Mz))),
-    }
+    found = characteristics(tyre, float(tyre["FNOMIN"]), turn_slip=turn_slip)
+    return {key: found[key] for key in NUMBERS}

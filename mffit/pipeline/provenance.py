@@ -87,13 +87,13 @@ def known_of_model(
     path : where the model was read; None if it was not
     fresh : whether it was fitted just now
     """
-    posterior = None if path is None else _posterior(tyre, path)
+    posterior = None if path is None else posterior_of(tyre, path)
     if fitted_to(tyre, config) and (fresh or posterior is not None):
         return refitted(tyre, curved=config.rig.on_disc), True
     return (None if config.model.u_coefficients else posterior), False
 
 
-def _posterior(tyre: Tyre, path: Path) -> Inexactness | None:
+def posterior_of(tyre: Tyre, path: Path) -> Inexactness | None:
     """The posterior of the build that wrote a file; None if the file is none of a build or has other values."""
     try:
         result = json.loads((path.parent / "result.json").read_text(encoding="utf-8"))

@@ -1,7 +1,7 @@
 """From rig sweeps to finished points: steady states with standard errors, tested against physics."""
 
 from mffit.points import levels
-from mffit.points.levels import main_pressure
+from mffit.points.levels import main_path, main_pressure
 from mffit.points.loading import load, load_table, read
 from mffit.points.mean import mean_and_error
 from mffit.points.plausibility import check_physics
@@ -14,6 +14,7 @@ __all__ = [
     "levels",
     "load",
     "load_table",
+    "main_path",
     "main_pressure",
     "make_points",
     "mean_and_error",

@@ -102,6 +102,12 @@ def main_pressure(points: Points) -> np.ndarray:
     return level == best
 
 
+def main_path(points: Points) -> float:
+    """Turn slip phi_t [1/m] of the path on which most points were run; 0 on a flat track, or without points."""
+    paths, counts = np.unique(points.phi_t, return_counts=True)
+    return float(paths[counts.argmax()]) if len(paths) else 0.0
+
+
 def _scaled(values: np.ndarray, quantity: Quantity) -> np.ndarray:
     """The values (n,) in tolerances; NaN where they say nothing."""
     values = np.asarray(values, dtype=float)

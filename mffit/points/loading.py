@@ -72,8 +72,8 @@ def read(
     """
     with as_declared(config):
         found = files.load(config)
-    phi_t = path_curvature(config.rig)
-    reduced = [reduce(sweep, phi_t) for sweep in found.sweeps]
+    phi_t = {entry.file: path_curvature(config.rig, entry) for entry in config.sweep}
+    reduced = [reduce(sweep, phi_t[sweep.file]) for sweep in found.sweeps]
     points = concatenate([part.points for part in reduced if len(part.points)] or [reduced[0].points])
     warnings = [*found.warnings, *(sentence for part in reduced for sentence in part.warnings)]
     straight = config.rig.type == "flat-track"
@@ -204,7 +204,8 @@ def _thin(points: Points, config: Config) -> list[str]:
     out = []
     if not np.any(np.isfinite(points.Mz)):
         out.append("Mz_Nm was not measured: only Fy is fitted")
-    if config.rig.on_disc and not np.any(points.direction < 0):
+    one_side = len(np.unique(np.sign(points.phi_t))) == 1
+    if config.rig.on_disc and one_side and not np.any(points.direction < 0):
         out.append(
             "there are no backward runs: sideslip misalignment cannot be told from turn slip and ply-steer"
         )

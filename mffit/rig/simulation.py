@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from mffit.brief import Brief
-from mffit.points import Points
+from mffit.points import Points, main_path
 from mffit.quantities import CHANNELS
 from mffit.rig.faults import FAULT_NAMES, NO_FAULTS, RigFaults
 from mffit.rig.lag import lagged_points
@@ -51,6 +51,7 @@ class Simulation(Brief):
     turn_slip: bool = True  #: whether the simulation knows path curvature and spin
     star: bool = False  #: tan(alpha), sin(gamma) as inputs
     relaxation_m: float = 0.0  #: lag of continuous sweeps [m]
+    radius_m: float = math.nan  #: declared radius of the rig's usual path [m]; NaN: that of most points
 
     @classmethod
     def of(
@@ -66,8 +67,12 @@ class Simulation(Brief):
         if name == RELAXATION:
             return self.relaxation_m
         if name == "path_radius_m" and math.isnan(self.faults.path_radius_m):
-            return declared_radius(points)
+            return self.declared(points)
         return float(getattr(self.faults, name) if name in FAULT_NAMES else self.values[name])
+
+    def declared(self, points: Points) -> float:
+        """Radius of the usual path [m] as declared, which the fault ``path_radius_m`` replaces."""
+        return declared_radius(points) if math.isnan(self.radius_m) else self.radius_m
 
     def with_numbers(self, numbers: Mapping[str, float]) -> Simulation:
         """The same with some coefficients, rig faults or switches replaced."""
@@ -144,7 +149,9 @@ class Simulation(Brief):
                 p = SimpleNamespace(**{**vars(p), scale: scaled})
         phi_t: Any = points.phi_t
         if not math.isnan(plain(fault.path_radius_m)):
-            phi_t = np.sign(points.phi_t) / fault.path_radius_m
+            # What the usual path's radius is off, every other path is off too: the wheel is moved by known distances.
+            apart = path_radii(points) - self.declared(points)
+            phi_t = np.sign(points.phi_t) / (fault.path_radius_m + apart)
         inputs = {
             "Fz": points.Fz,
             "alpha": alpha,
@@ -215,8 +222,13 @@ class Simulation(Brief):
 
 
 def declared_radius(points: Points) -> float:
-    """Path radius [m] that the points were declared with; very large on a straight path."""
-    return 1.0 / max(float(np.max(np.abs(points.phi_t))), 1e-12)
+    """Path radius [m] that most points were declared with; very large on a straight path."""
+    return 1.0 / max(abs(main_path(points)), 1e-12)
+
+
+def path_radii(points: Points) -> np.ndarray:
+    """Declared path radius (n,) of every point [m]; very large on a straight path."""
+    return 1.0 / np.maximum(np.abs(points.phi_t), 1e-12)
 
 
 def reference_speed(points: Points) -> float:

@@ -146,5 +146,6 @@ def configuration_of(plan: Plan, machine: Machine, generator: np.random.Generato
 
 
 def _sweep_entry(sweep: SweepPlan) -> dict[str, Any]:
-    entry = {"file": sweep.file, "direction": sweep.direction, "mount": sweep.mount}
-    return {key: value for key, value in entry.items() if value not in ("forward", "normal")}
+    names = ("file", "direction", "mount", "path_centre", "path_radius")
+    entry = {name: getattr(sweep, name) for name in names}
+    return {key: value for key, value in entry.items() if value not in ("forward", "normal", None)}

@@ -36,7 +36,7 @@ class Machine(NamedTuple):
 
     tyre: Tyre  #: the one that is really on it
     faults: Faults
-    phi_t_sign: int  #: -1 with the path's centre to the left, 0 on a flat track
+    phi_t_sign: int  #: of the usual path: -1 with the centre to the left, 0 on a flat track
     usual_speed: float  #: [m/s], where the speed has no influence
 
 
@@ -76,7 +76,8 @@ def taken_up(moment: Callable[[np.ndarray], np.ndarray], alpha: np.ndarray, half
 def at_the_tyre(machine: Machine, settings: Settings, alpha: np.ndarray) -> Channels:
     """Forces and moments (n,) of the tyre at the true sideslip angle ``alpha`` (n,) [rad]."""
     gamma = settings.gamma + math.radians(machine.faults.gamma_0_deg)
-    phi_t = machine.phi_t_sign / machine.faults.path_radius_m
+    # The scale along which the wheel is moved from path to path is right; its zero is what the radius is off.
+    phi_t = machine.phi_t_sign * settings.side / (machine.faults.path_radius_m + settings.outward)
     mounted = turned_on_rim(machine.tyre.p, settings.mount)
     out, _ = evaluate(
         mounted,

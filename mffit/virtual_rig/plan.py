@@ -14,7 +14,7 @@ from pydantic import BeforeValidator, Field, NonNegativeFloat, PositiveFloat, mo
 
 from mffit.config import Config, path_curvature
 from mffit.config import quantities as q
-from mffit.config.models import Table
+from mffit.config.models import SweepTable, Table
 
 
 def angles(given: Any) -> Any:
@@ -119,6 +119,8 @@ class SweepPlan(Table):
     T_degC: Angles | None = None  #: one temperature, or the first and the last point's
     direction: Literal["forward", "backward"] = "forward"
     mount: Literal["normal", "flipped"] = "normal"
+    path_centre: Literal["left", "right"] | None = None  #: the declared one if not given
+    path_radius: q.PathRadius | None = None  #: [m]; the declared one if not given
     recording: RecordingTable | None = None
 
     @model_validator(mode="after")
@@ -173,6 +175,11 @@ class Plan:
     def phi_t_sign(self) -> int:
         """Sign of the path's turn slip: -1 with the centre to the left, 0 on a flat track."""
         return int(np.sign(path_curvature(self.declared.rig)))
+
+    def path(self, sweep: SweepPlan) -> float:
+        """Turn slip of a sweep's path as declared [1/m]; 0 on a flat track."""
+        entry = SweepTable(file=sweep.file, path_centre=sweep.path_centre, path_radius=sweep.path_radius)
+        return path_curvature(self.declared.rig, entry)
 
     def pressure_kPa(self, sweep: SweepPlan) -> float:
         """Inflation pressure of a sweep [kPa]."""

@@ -12,7 +12,7 @@ from mffit.virtual_rig.plan import Plan, SweepPlan
 
 @dataclass(frozen=True, slots=True)
 class Settings:
-    """What the rig's displays show at every point, ISO-W and SI; arrays (n,)."""
+    """What the rig's displays show at every point of a sweep, ISO-W and SI; arrays (n,)."""
 
     alpha: np.ndarray  #: sideslip angle as read [rad]
     gamma: np.ndarray  #: camber as read [rad]
@@ -23,6 +23,8 @@ class Settings:
     t: np.ndarray  #: when the point was taken [s]
     direction: np.ndarray  #: +1 forward, -1 backward
     mount: np.ndarray  #: +1 normal, -1 tyre turned on its rim
+    side: float = 1.0  #: of the disc: 1 the usual one, -1 the other
+    outward: float = 0.0  #: by how much the path is set wider than the usual one [m]
 
     def __len__(self) -> int:
         return len(self.alpha)
@@ -34,7 +36,9 @@ class Settings:
 
     def at(self, alpha: np.ndarray, gamma: np.ndarray) -> Settings:
         """The same conditions as at the first point, at other angles (m,) [rad]."""
-        repeated = {f.name: np.full(len(alpha), getattr(self, f.name)[0]) for f in fields(self)}
+        values = {f.name: getattr(self, f.name) for f in fields(self)}
+        arrays = {name: value for name, value in values.items() if isinstance(value, np.ndarray)}
+        repeated = {name: np.full(len(alpha), value[0]) for name, value in arrays.items()}
         return replace(self, **repeated | {"alpha": alpha, "gamma": gamma})
 
 
@@ -63,7 +67,14 @@ def _settings(plan: Plan, sweep: SweepPlan, begins: int, pause: float) -> Settin
         t=pause * (begins + np.arange(n)),
         direction=np.full(n, 1 if sweep.direction == "forward" else -1),
         mount=np.full(n, 1 if sweep.mount == "normal" else -1),
+        side=float(np.sign(plan.path(sweep) * plan.phi_t_sign)),
+        outward=_outward(plan, sweep),
     )
+
+
+def _outward(plan: Plan, sweep: SweepPlan) -> float:
+    usual = plan.declared.rig.radius
+    return 0.0 if usual is None else 1.0 / abs(plan.path(sweep)) - usual
 
 
 def usual_speed(sweeps: list[Settings]) -> float:

@@ -59,7 +59,7 @@ def flat(**changes: Any) -> dict[str, Any]:
     return content
 
 
-def built(content: dict[str, Any], folder: Path, seed: int = 3) -> mffit.pipeline.Result:
+def built(content: dict[str, Any], folder: Path, seed: int = 3) -> mffit.results.BuildResult:
     """Simulate and build."""
     virtual_rig.simulate(virtual_rig.load_plan(content, folder=SAMPLE), folder, seed=seed)
     return mffit.build(folder / "tyre.toml")

@@ -16,7 +16,7 @@ from mffit.diagnosis import wording
 from mffit.diagnosis.notes import DirectMethodRedone, ModelFittedFirst
 from mffit.effects import CATALOG
 from mffit.errors import InputError
-from mffit.pipeline.building import finite_spin_bias
+from mffit.pipeline.building import undistorted
 from mffit.pipeline.diagnosing import last_build
 from mffit.pipeline.provenance import rig_of_build
 from mffit.results import as_json
@@ -142,8 +142,8 @@ def test_a_base_file_that_is_not_there_is_named(tmp_path):
         mffit.build(tmp_path / "tyre.toml")
 
 
-def test_alignment_of_a_project_and_of_its_table_are_the_same(tmp_path):
-    """0.3 deg off: the next correction of the reading is -0.3 deg, ply-steer of the tyre included."""
+def test_alignment_of_a_project_knows_the_stiffness_that_its_table_has_to_guess(tmp_path):
+    """0.3 deg off: the next correction is -0.3 deg less the tyre's ply-steer; a guess makes it a third too large."""
     simulated(tmp_path, faults={"alpha_0_deg": 0.3})
     found = mffit.align(tmp_path / "tyre.toml")
     assert len(found.steps) == 3
@@ -153,10 +153,12 @@ def test_alignment_of_a_project_and_of_its_table_are_the_same(tmp_path):
     table.to_csv(tmp_path / "zeros.csv", index=False)
     (alone,) = mffit.align(tmp_path / "zeros.csv", axes="iso", path_centre="left").steps
     (same,) = (s for s in found.steps if s.load == alone.load)
-    assert alone.correction_deg == pytest.approx(
-        same.correction_deg, abs=0.03
-    )  # which has zeros in its sweeps too
-    assert -0.6 < same.correction_deg < -0.3
+    assert alone.F_slip == pytest.approx(same.F_slip, abs=8.0)  # which has zeros in its sweeps too
+    assert (alone.source, same.source) == ("guess", "measured")
+    off = 0.3 + np.degrees(tir.read(SAMPLE / "true.tir")["PHY1"])
+    assert same.correction_deg == pytest.approx(-off, abs=3.0 * same.u_deg)
+    assert same.u_deg < 0.02 < alone.u_deg
+    assert not found.aligned
     sae = tmp_path / "sae"
     simulated(sae, faults={"alpha_0_deg": 0.3}, rig=disc()["rig"] | {"axes": "sae"})
     assert mffit.align(sae / "tyre.toml").correction_deg == pytest.approx(-found.correction_deg, rel=1e-3)
@@ -164,7 +166,7 @@ def test_alignment_of_a_project_and_of_its_table_are_the_same(tmp_path):
 
 def test_a_flat_track_has_no_bias_and_one_file(tmp_path):
     result = built(flat(), tmp_path)
-    assert finite_spin_bias(result.config, result.points, result.fit, None) is None
+    assert undistorted(result.config, result.fit) is None
     assert list(result.files) == ["normal"]
     assert result.tyre is result.tyres["normal"]
     assert np.all(result.parts.paired == "unpaired")

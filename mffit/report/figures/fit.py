@@ -2,26 +2,42 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from typing import TYPE_CHECKING, Any
+from collections.abc import Iterable, Mapping, Sequence
+from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 
+from mffit.points import Points
 from mffit.report import labels, style
-from mffit.report.build_view import BuildView, Channel
+from mffit.report.build_view import Channel
 from mffit.report.curves import Curve
+from mffit.report.lines import Line
 from mffit.report.rounding import number
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
+
+class Overlaid(Protocol):
+    """What this figure needs to know."""
+
+    @property
+    def points(self) -> Points: ...
+    @property
+    def curves(self) -> Sequence[Curve]: ...
+    @property
+    def lines(self) -> Mapping[tuple, Line]: ...
+    def marked(self, channel: str) -> tuple[np.ndarray, np.ndarray]:
+        """Rows of readings without weight, and of the points of doubtful sweeps."""
+
+
 MOST_PANELS = 15
 DENSE = 60
 """Points on one curve above which they are drawn as dots."""
 
 
-def model_against_points(view: BuildView, channel: Channel) -> Figure:
+def model_against_points(view: Overlaid, channel: Channel) -> Figure:
     """One panel per load and pressure: first over sideslip, coloured by camber, then over camber."""
     panels = _panels(view.curves)[:MOST_PANELS]
     groups = [n for n in (sum(p[0] == over for p in panels) for over in ("alpha", "gamma")) if n]
@@ -47,7 +63,7 @@ def _panels(curves: Iterable[Curve]) -> list[tuple[str, float, float, list[Curve
     return [(*key, members) for key, members in sorted(grouped.items())]
 
 
-def _draw(ax: Axes, view: BuildView, channel: Channel, curve: Curve, colour: Any) -> None:
+def _draw(ax: Axes, view: Overlaid, channel: Channel, curve: Curve, colour: Any) -> None:
     x, line = np.degrees(getattr(view.points, curve.over)[curve.index]), view.lines[curve.key]
     marker, size = (".", 2.0) if len(x) > DENSE else ("o" if curve.forward else "v", 3.2)
     filled = {"mfc": colour, "mew": 0.0} if curve.forward else {"mfc": "white", "mew": 0.8}
@@ -60,7 +76,7 @@ def _draw(ax: Axes, view: BuildView, channel: Channel, curve: Curve, colour: Any
     ax.plot(line.x, line.raw[channel.name], dashes, color=colour, lw=1.0, label=f"model, {held(curve)}")
 
 
-def _mark(ax: Axes, view: BuildView, channel: Channel, curve: Curve) -> None:
+def _mark(ax: Axes, view: Overlaid, channel: Channel, curve: Curve) -> None:
     """A cross over every reading without weight, a ring around the points of doubtful sweeps."""
     angle = np.degrees(getattr(view.points, curve.over))
     for rows, (marker, size) in zip(view.marked(channel.name), MARKS.values(), strict=True):
@@ -86,7 +102,7 @@ MARKS = {"no weight": ("x", 5.0), "doubtful sweep": ("o", 5.5)}
 """Marker and size of what does not fit."""
 
 
-def _legend(view: BuildView, channel: Channel, colours: dict[float, Any], backward: bool) -> list[Any]:
+def _legend(view: Overlaid, channel: Channel, colours: dict[float, Any], backward: bool) -> list[Any]:
     from matplotlib.lines import Line2D
 
     handles = [

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from mffit.measured import Measured
+from mffit.points import main_path
 from mffit.quantities import CHANNELS
 from mffit.report import labels, style
 from mffit.report.build_view import BuildView
@@ -132,8 +133,9 @@ def alignment(view: BuildView) -> Figure:
 
 
 def both_directions(view: BuildView) -> list[tuple[float, list[Curve]]]:
-    """By load the upright sideslip curves that cross zero, where both directions were run."""
-    upright = [c for c in view.curves if c.over == "alpha" and abs(c.held) < 0.5 and c.mount > 0]
+    """By load the upright sideslip curves of the usual path that cross zero, where both directions were run."""
+    usual = [c for c in view.curves if view.points.phi_t[c.index[0]] == main_path(view.points)]
+    upright = [c for c in usual if c.over == "alpha" and abs(c.held) < 0.5 and c.mount > 0]
     backward = {(c.load, c.pressure) for c in upright if not c.forward}
     loads = sorted({load for load, _ in backward})[:4]
     return [

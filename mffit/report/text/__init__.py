@@ -1,21 +1,25 @@
 """Plain text for a terminal: functions of records that return str."""
 
 from mffit.report.text.build import build_summary
+from mffit.report.text.compare import comparison_table
 from mffit.report.text.diagnosis import diagnosis_summary
 from mffit.report.text.direct import alignment_table, budget_table, spin_summary
 from mffit.report.text.fleet import fleet_summary
 from mffit.report.text.many import lacking, many_line, many_summary
+from mffit.report.text.plan import plan_summary
 from mffit.report.text.recordings import sniff_summary
 
 __all__ = [
     "alignment_table",
     "budget_table",
     "build_summary",
+    "comparison_table",
     "diagnosis_summary",
     "fleet_summary",
     "lacking",
     "many_line",
     "many_summary",
+    "plan_summary",
     "sniff_summary",
     "spin_summary",
 ]

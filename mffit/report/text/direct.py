@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import math
+import textwrap
 from collections.abc import Sequence
 
 from mffit.measured import Alignment, Contribution, LoadResult, Measured, wording
 from mffit.quantities import CONDITIONS, DIRECT
 from mffit.report.build_view import PER_LOAD
-from mffit.report.rounding import MINUS, number, stated
-from mffit.report.text.layout import blocks, paragraphs, table
+from mffit.report.rounding import number, stated, with_u
+from mffit.report.text.layout import WIDTH, blocks, paragraphs, table
 
 NUMBERS = ("epsilon_gamma", "C_phit", "F_phit", "C_gamma", "C_alpha", "r_e", "R")
 """What is said of the load nearest the nominal one, in this order."""
@@ -58,8 +59,8 @@ def alignment_table(alignment: Alignment) -> str:
             number(step.F_backward, 1),
             number(step.F_turn_slip, 1),
             number(step.F_slip, 1),
-            f"{number(step.C_alpha, 0)} ({'secant' if step.secant else 'guess'})",
-            number(step.correction_deg, 3),
+            f"{number(step.C_alpha, 0)} ({step.source})",
+            with_u(step.correction_deg, step.u_deg),
         )
         for step in alignment.steps
     ]
@@ -71,12 +72,11 @@ def alignment_table(alignment: Alignment) -> str:
         DIRECT["C_alpha"].column(DIRECT["C_alpha"].ascii),
         CONDITIONS["alpha_deg"].column("correction"),
     )
-    correction = alignment.correction_deg
-    sentence = (
-        f"Turn the sideslip axis by {_signed(correction, 3)} deg of the rig's own scale, then measure both "
-        "directions again."
-    )
-    return blocks([table(head, rows, left=0), sentence])
+    return blocks([table(head, rows, left=0), *map(_filled, wording.alignment(alignment))])
+
+
+def _filled(sentence: str) -> str:
+    return textwrap.fill(sentence, WIDTH)
 
 
 def _notes(measured: Measured) -> list[str]:
@@ -135,8 +135,3 @@ def _per_load(rows: Sequence[LoadResult]) -> str:
         for row in rows
     ]
     return table(head, cells, left=0)
-
-
-def _signed(value: float, decimals: int) -> str:
-    text = number(value, decimals)
-    return text if text.startswith(MINUS) else f"+{text}"

@@ -6,8 +6,10 @@ import numpy as np
 import pytest
 
 from mffit.errors import InputError
-from mffit.measured import align
+from mffit.measured import align, wording
+from mffit.measured.alignment import AtLoad
 from mffit.points import make_points
+from tir import Quantity
 
 TURN_SLIP = -300.0  # N
 
@@ -88,3 +90,38 @@ def test_one_direction_alone_is_refused():
     both = zeros(0.5)
     with pytest.raises(InputError, match="both forward and backward"):
         align(both.select(both.direction > 0))
+
+
+MEASURED = {1500.0: AtLoad(Quantity(-11.0 * 1500.0, 165.0, "N/rad"), np.nan, np.nan)}
+
+
+def test_a_measured_stiffness_is_used_before_any_guess():
+    (step,) = align(zeros(0.5), measured=MEASURED).steps
+    assert step.source == "measured"
+    assert step.correction_deg == pytest.approx(-0.5)
+
+
+def test_the_correction_is_as_uncertain_as_forces_and_stiffness():
+    """4 N on each direction leave 4/sqrt(2) N on the slip force; 1 % of the stiffness is 1 % of the correction."""
+    points = zeros(0.5).replace(u_Fy=4.0)
+    (step,) = align(points, measured=MEASURED).steps
+    from_force = np.degrees(4.0 / np.sqrt(2.0) / (11.0 * 1500.0))
+    assert step.u_deg == pytest.approx(np.hypot(from_force, 0.005))
+    assert align(points).steps[0].u_deg > 0.2  # a guessed stiffness may be half as large
+
+
+@pytest.mark.parametrize(("off", "aligned"), [(0.008, True), (0.012, False), (-0.012, False)])
+def test_the_axis_is_aligned_when_the_correction_is_within_its_uncertainty(off, aligned):
+    """u is 4/sqrt(2) N over 11 x 1500 N/rad: 0.0098 deg."""
+    found = align(zeros(off).replace(u_Fy=4.0), measured=MEASURED, resolution_deg=0.001)
+    assert found.aligned is aligned
+    assert wording.alignment(found)[0].startswith("Aligned, stop" if aligned else "Turn the sideslip axis by")
+    assert align(zeros(off), measured=MEASURED, resolution_deg=0.02).aligned
+
+
+def test_zeros_that_the_report_has_otherwise_are_explained():
+    (same,) = align(zeros(0.0), measured={1500.0: AtLoad(None, -300.0, -300.0)}).steps
+    found = align(zeros(0.0), measured={1500.0: AtLoad(None, -275.0, -280.0)})
+    assert same.reported is None
+    assert found.steps[0].reported == (-275.0, -280.0)
+    assert "-275.0 N forwards where it is -300.0 N here" in wording.alignment(found)[-1]

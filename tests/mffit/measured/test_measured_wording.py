@@ -15,6 +15,10 @@ NOTES = [
     (notes.StraightPath(), "it has no turn slip to measure"),
     (notes.NotSeparable(-331.4, 0.97, 25.0), "-331 N at (0, 0) would take 0.97 deg of misalignment"),
     (notes.NotSeparable(-331.4, None, 25.0), "an unknown angle (no sideslip sweep gives C_alpha) of"),
+    (
+        notes.SeveralPaths((1.3, -1.3)),
+        "combines the zeros of 2 paths (disc's centre 1.3 m to the left, 1.3 m to the right)",
+    ),
     (notes.Aligned(ANGLE, 12.0, 0.04), "alpha_M = 0.250 +- 0.020 deg (12 N); uncorrected it would move"),
     (notes.LoadSlope(1.25, 0.1), "PECP2 = 1.250 +- 0.100 (k = 1)."),
     (notes.OneLoad(), "one load was measured"),

@@ -33,7 +33,7 @@ def test_alignment_table_has_a_line_per_load_and_ends_with_the_correction(result
     alignment = align(result.points)
     table = text.alignment_table(alignment)
     assert len(table.split("\n\n")[0].splitlines()) == 2 + len(alignment.steps)
-    assert f"{alignment.correction_deg:+.3f} deg" in table
+    assert f"{alignment.correction_deg:+.3f} +- {alignment.u_deg:.3f} deg" in table
 
 
 def test_build_summary_gives_misfits_and_statuses(result):

@@ -1,0 +1,38 @@
+"""`mffit compare`: file against file, file against data, build against build."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import click
+
+from mffit.cli.console import Voice, voiced
+
+
+@click.command()
+@click.argument("first", type=click.Path(path_type=Path), metavar="A.tir|FOLDER")
+@click.argument("second", type=click.Path(path_type=Path), metavar="B.tir|FOLDER|TYRE_TOML")
+@click.option(
+    "--out",
+    type=click.Path(path_type=Path),
+    help="Folder for the page and the numbers [default: only printed].",
+)
+@click.option(
+    "--turn-slip",
+    type=click.Choice(["on", "off"]),
+    help="Evaluate both files so [default: each as it is meant].",
+)
+@voiced
+def compare(first: Path, second: Path, out: Path | None, turn_slip: str | None, voice: Voice) -> None:
+    """Curves, stiffnesses, peaks, trail and eps_gamma of two files, a file and data, or two builds; differences ranked."""
+    from mffit import pipeline
+    from mffit.report import text
+    from mffit.results import as_json
+
+    both = None if turn_slip is None else turn_slip == "on"
+    with voice.progress() as show:
+        found = pipeline.compare(first, second, turn_slip=both, out=out, progress=show)
+    voice.say(text.comparison_table(found))
+    if out is not None:
+        voice.say(f"written to {out}: compare.html, compare.json")
+    voice.give(lambda: as_json.comparison(found))

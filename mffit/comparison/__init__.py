@@ -1,0 +1,16 @@
+"""Two property files, a file and measured points, or two builds, side by side."""
+
+from mffit.comparison.characteristics import characteristics
+from mffit.comparison.compare import against_points, between
+from mffit.comparison.record import Comparison, CurveGap, Difference, Subject, SweepGap
+
+__all__ = [
+    "Comparison",
+    "CurveGap",
+    "Difference",
+    "Subject",
+    "SweepGap",
+    "against_points",
+    "between",
+    "characteristics",
+]

@@ -1,0 +1,51 @@
+"""What an engineer compares first of two tyres."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from tir import Tyre
+
+SMALL = 1e-3
+"""Angle of a slope [rad], and curvature [1/m]."""
+
+
+def characteristics(
+    tyre: Tyre, load: float, *, turn_slip: bool, pressure: float | None = None, reach: float | None = None
+) -> dict[str, float]:
+    """The numbers of ``mffit.quantities.CHARACTERISTICS`` at a load [N] on a straight path; SI units, ISO signs.
+
+    Parameters
+    ----------
+    tyre : the file
+    load : [N]
+    turn_slip : whether spin acts; without it there is no turn-slip stiffness
+    pressure : [Pa]; default the file's
+    reach : sideslip up to which peaks are looked for [rad]; default the file's ALPMAX
+    """
+    p: Any = {} if pressure is None else {"p": pressure}
+    small = np.array([-SMALL, SMALL])
+    slip = np.linspace(0.0, float(tyre["ALPMAX"]) if reach is None else reach, 101)
+    by_slip = tyre(load, alpha=small, turn_slip=turn_slip, **p)
+    by_camber = tyre(load, gamma=small, turn_slip=turn_slip, **p)
+    curve = tyre(load, alpha=slip, turn_slip=turn_slip, **p)
+    step = 2.0 * SMALL
+    C_alpha = float(np.diff(by_slip.Fy)[0] / step)
+    C_moment = float(np.diff(by_slip.Mz)[0] / step)
+    dfz = load / (float(tyre["FNOMIN"]) * float(tyre["LFZO"])) - 1.0
+    out = {
+        "epsilon_gamma": float(tyre["PECP1"]) * (1.0 + float(tyre["PECP2"]) * dfz),
+        "C_alpha_N_per_rad": C_alpha,
+        "C_gamma_N_per_rad": float(np.diff(by_camber.Fy)[0] / step),
+        "C_Mz_alpha_Nm_per_rad": C_moment,
+        "mu_y": float(np.max(np.abs(curve.Fy)) / load),
+        "Mz_peak_Nm": float(np.max(np.abs(curve.Mz))),
+        "trail_m": -C_moment / C_alpha if C_alpha else float("nan"),
+        "r_e_m": float(tyre.state(load, **p).Re),
+    }
+    if turn_slip:
+        curved = tyre(load, phi_t=small, **p)
+        out["C_phit_Nm"] = float(np.diff(curved.Fy)[0] / step)
+    return out

@@ -1,0 +1,121 @@
+"""The records of a comparison."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from mffit.brief import Brief
+from mffit.points import Points
+from mffit.rig import Simulation
+from tir import Tyre
+from tir.parameters import BY_NAME
+
+WHOLE = frozenset({"epsilon_gamma"})
+"""Numbers of which 1 less the number is what counts: near zero they have no size of their own."""
+
+
+@dataclass(frozen=True, slots=True)
+class Subject:
+    """One side of a comparison."""
+
+    name: str
+    tyre: Tyre
+    turn_slip: bool  #: whether the simulation that it is for computes turn slip
+    names: tuple[str, ...] = ()  #: numbers of the file whose uncertainty is known
+    covariance: np.ndarray | None = None  #: (k, k) of these; None for files of unknown origin
+
+
+@dataclass(frozen=True, slots=True)
+class Difference:
+    """A number of both sides; ``second`` less ``first`` is the difference."""
+
+    key: str  #: of CHARACTERISTICS or DIRECT, or the name of a coefficient
+    load: float | None  #: [N]; None for a coefficient
+    first: float
+    second: float
+    u_first: float | None = None  #: k = 1; None where it is not known
+    u_second: float | None = None
+
+    @property
+    def change(self) -> float:
+        return self.second - self.first
+
+    @property
+    def u(self) -> float | None:
+        """Uncertainty of the difference, both sides independent; None where neither is known."""
+        known = [u for u in (self.u_first, self.u_second) if u is not None]
+        return math.hypot(*known) if known else None
+
+    @property
+    def z(self) -> float | None:
+        """The difference in units of its uncertainty."""
+        return self.change / self.u if self.u else None
+
+    @property
+    def relative(self) -> float:
+        """The change over the size of such a number: its plausible range, one for eps_gamma, else the larger of both."""
+        size = max(abs(self.first), abs(self.second))
+        if self.key in WHOLE:
+            size = 1.0
+        elif self.load is None and math.isfinite(BY_NAME[self.key].width):
+            size = BY_NAME[self.key].width
+        return abs(self.change) / size if size else 0.0
+
+
+def ranked(rows: list[Difference]) -> tuple[Difference, ...]:
+    """Differences that stand out from their uncertainty first, the largest in relation to it at the top; then by share."""
+    return tuple(sorted(rows, key=lambda row: (row.z is None, -abs(row.z or 0.0), -row.relative)))
+
+
+@dataclass(frozen=True, slots=True)
+class CurveGap:
+    """How far two files' curves are apart over an angle at a load, on common ranges."""
+
+    channel: str
+    over: str  #: "alpha" or "gamma"; the other angle is 0
+    load: float  #: [N]
+    x: np.ndarray  #: (m,) [rad]
+    first: np.ndarray  #: (m,) [N] or [Nm]
+    second: np.ndarray
+    half_first: np.ndarray | None  #: half width of the 95 % band; None where it is not known
+    half_second: np.ndarray | None
+
+    @property
+    def rms(self) -> float:
+        return float(np.sqrt(np.mean((self.second - self.first) ** 2)))
+
+    @property
+    def largest(self) -> tuple[float, float]:
+        """The largest difference, with its sign, and where it is [rad]."""
+        k = int(np.argmax(np.abs(self.second - self.first)))
+        return float(self.second[k] - self.first[k]), float(self.x[k])
+
+
+@dataclass(frozen=True, slots=True)
+class SweepGap:
+    """How far a file is from the readings of one sweep: file less measured."""
+
+    sweep: str
+    channel: str
+    rms: float
+    bias: float  #: mean
+    noise: float | None  #: typical stated uncertainty of a reading
+    n: int
+
+
+@dataclass(frozen=True, slots=True)
+class Comparison(Brief):
+    """Two sides and what differs."""
+
+    first: str
+    second: str
+    numbers: tuple[Difference, ...]  #: ranked
+    coefficients: tuple[Difference, ...]  #: ranked; empty against data
+    curves: tuple[CurveGap, ...]
+    sweeps: tuple[SweepGap, ...]  #: against data, worst first
+    notes: tuple[str, ...]
+    points: Points | None = None  #: the data, if one side is measured
+    simulation: Simulation | None = None  #: and what stands against them

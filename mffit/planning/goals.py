@@ -1,0 +1,79 @@
+"""What a plan may aim at."""
+
+from __future__ import annotations
+
+import difflib
+from dataclasses import dataclass
+
+from mffit.effects import CATALOG, Effect
+from mffit.errors import InputError
+from mffit.quantities import CHANNELS, DIRECT
+from tir.parameters import BY_NAME
+
+EPSILON, JOINT, BANDS, TIE = "eps_gamma", "eps_gamma:joint", "bands", "tie"
+GOALS = (EPSILON, JOINT, BANDS, f"{BANDS}:Mz", f"{TIE}:EFFECT")
+"""How goals are written, beside the name of a coefficient."""
+
+
+@dataclass(frozen=True, slots=True)
+class Goal:
+    """The number whose uncertainty is to fall."""
+
+    kind: str  #: EPSILON (direct method), JOINT, BANDS, TIE or "coefficient"
+    name: str = ""  #: of the coefficient, the channel of the bands, or the effect
+    unit: str = "-"
+
+    @property
+    def label(self) -> str:
+        """In ASCII, as tables and JSON call it."""
+        epsilon = DIRECT["epsilon_gamma"].ascii
+        return {
+            EPSILON: f"u({epsilon}) by the direct method",
+            JOINT: f"u({epsilon}) by the joint fit",
+            BANDS: f"95 % band of {self.name}, rms",
+            TIE: f"u of {self.name} beside what it is tied with",
+        }.get(self.kind, f"u({self.name})")
+
+
+def read_goal(text: str, *, on_disc: bool) -> Goal:
+    """A goal as the command line has it: ``eps_gamma``, ``bands``, ``tie:ply-steer`` or a coefficient's name.
+
+    Raises
+    ------
+    InputError
+        The goal is not known, or needs a disc.
+    """
+    kind, _, rest = text.partition(":")
+    if kind == EPSILON and rest in ("", "direct", "joint"):
+        if not on_disc:
+            raise InputError(
+                f'"{text}" needs a disc: a straight path has no turn slip; plan for bands or a coefficient'
+            )
+        return Goal(JOINT if rest == "joint" else EPSILON)
+    if kind == BANDS and (rest or "Fy") in CHANNELS:
+        channel = rest or "Fy"
+        return Goal(BANDS, channel, CHANNELS[channel].unit)
+    if kind == TIE:
+        effect = effect_named(rest)
+        return Goal(TIE, effect.id, "")
+    if text in BY_NAME and BY_NAME[text].stage:
+        return Goal("coefficient", text, BY_NAME[text].unit)
+    if text == "PECP1":
+        return read_goal(EPSILON, on_disc=on_disc)
+    known = [*GOALS, *(row for row in BY_NAME if BY_NAME[row].stage)]
+    near = difflib.get_close_matches(text, known, n=1)
+    hint = f"; did you mean {near[0]}?" if near else f": write {', '.join(GOALS)} or a coefficient's name"
+    raise InputError(f'"{text}" is no goal of a plan{hint}')
+
+
+def effect_named(text: str) -> Effect:
+    """An effect with one number that is tied to others, by its id; hyphens may be missing."""
+    tied = [e for e in CATALOG if e.confusable_with and len(e.free) == 1 and e.kind != "environment"]
+
+    def plain(word: str) -> str:
+        return word.replace("-", "").replace("_", "").lower()
+
+    for effect in tied:
+        if plain(effect.id) == plain(text):
+            return effect
+    raise InputError(f'"{text}" is no effect with a tie; known are {", ".join(effect.id for effect in tied)}')

@@ -1,0 +1,52 @@
+"""What the sweeps at hand identify."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from mffit.diagnosis.needs import missing
+from mffit.effects import CATALOG, Effect
+from mffit.fit import FitResult
+from mffit.measured import Measured
+from mffit.planning.knowledge import Knowledge
+from mffit.planning.record import Identified, Tie
+from mffit.points import Points
+
+
+def tied_pairs(points: Points) -> Iterator[tuple[Effect, Effect]]:
+    """Effects that may be confused with each other, each with one number and visible in such data; tyre effects first."""
+    by_id = {e.id: e for e in CATALOG if len(e.free) == 1 and e.kind != "environment"}
+    seen = set()
+    for effect in by_id.values():
+        for other in effect.confusable_with:
+            pair = frozenset((effect.id, other))
+            if (
+                other in by_id
+                and pair not in seen
+                and not missing(effect, points)
+                and not missing(by_id[other], points)
+            ):
+                seen.add(pair)
+                yield effect, by_id[other]
+
+
+def identified(knowledge: Knowledge, found: FitResult, measured: Measured) -> Identified:
+    """Take apart what a build found."""
+    ties = [
+        Tie(a.id, b.id, (knowledge.usual_size(a) / knowledge.told([], a, [b])) ** 2)
+        for a, b in tied_pairs(knowledge.points)
+    ]
+    staged = {name for row in found.coverage for name in row.free}
+    pairs: dict[frozenset[str], tuple[str, str, float]] = {}
+    for name, row in found.coefficients.items():
+        if row.correlated_with and name in staged and row.correlated_with in staged:
+            pairs.setdefault(
+                frozenset((name, row.correlated_with)), (name, row.correlated_with, row.correlation)
+            )
+    return Identified(
+        cover=found.coverage,
+        tied=tuple(n for n, row in found.coefficients.items() if row.status == "regularised" and n in staged),
+        correlated=tuple(pairs.values()),
+        ties=tuple(ties),
+        budget=measured.budget,
+    )

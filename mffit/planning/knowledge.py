@@ -1,0 +1,161 @@
+"""What a programme tells of every number of tyre and rig: information that adds up from run to run."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from mffit.config import Config
+from mffit.effects import Effect
+from mffit.fit import FitResult, Posterior
+from mffit.fit.coverage import coverage
+from mffit.fit.rig_numbers import rig_numbers
+from mffit.least_squares import inverse
+from mffit.measured import Measured
+from mffit.measured.direct import alignment_verdict
+from mffit.measured.notes import Misaligned
+from mffit.measured.radii import measured_path_radius
+from mffit.planning.runs import Run
+from mffit.points import Points
+from mffit.points.points import concatenate
+from mffit.rig import FAULT_NAMES
+from tir import Quantity
+
+EPSILON = "PECP1"
+
+
+class Knowledge:
+    """The fit's posterior, linear around its solution, for any list of further runs.
+
+    A build of the longer programme frees what its coverage allows, with the priors and weights of this one.
+    """
+
+    def __init__(
+        self,
+        config: Config,
+        points: Points,
+        measured: Measured,
+        found: FitResult,
+        effects: Sequence[Effect] = (),
+    ) -> None:
+        assert found.search is not None
+        search = found.search
+        self.config, self.points, self.measured = config, points, measured
+        self.problem = search.problem
+        self.simulation = search.problem.simulation
+        spread = {n.name: n.spread for n in search.numbers} | dict(search.held)
+        self.rig = tuple(n.name for n in search.numbers if n.name in FAULT_NAMES)
+        staged = {name for row in found.coverage for name in (*row.free, *row.held)}
+        self.extra = tuple(n.name for n in search.numbers if n.name not in staged and n.name not in self.rig)
+        self.usual = {e.free[0].name: self._usual(e) for e in effects}  # size of an effect, 1 sigma
+        self.spread = spread
+        self.names = tuple(dict.fromkeys([*spread, EPSILON, *self.usual]))
+        self._row = {name: k for k, name in enumerate(self.names)}
+        self._at = np.array([self.simulation.number(n, points) for n in self.names])
+        sigma = (search.problem.sigma_Fy, search.problem.sigma_Mz)
+        self._sigma = tuple(
+            float(np.median(s[np.isfinite(s)])) if np.any(np.isfinite(s)) else math.inf for s in sigma
+        )
+        self._base = self._information(self.problem.free(self.names).linear(self._at).slope)
+        self._of_run: dict[str, np.ndarray] = {}
+
+    def posterior(self, runs: Sequence[Run], u_epsilon: float | None) -> Posterior:
+        """The posterior of a build with these runs; ``u_epsilon`` of a PECP1 that is measured, None where it is fitted."""
+        free, spread = self._free(runs), self._spread(runs)
+        if u_epsilon is None:
+            free, spread = list(dict.fromkeys([*free, EPSILON])), {**spread, EPSILON: math.inf}
+        else:
+            free, spread = [n for n in free if n != EPSILON], {**spread, EPSILON: u_epsilon}
+        held = [n for n in spread if n not in free and math.isfinite(spread[n])]
+        return self._solved(self._information_of(runs), free, spread, held)
+
+    def told(self, runs: Sequence[Run], effect: Effect, others: Iterable[Effect]) -> float:
+        """u of an effect's number from the data, beside everything that is fitted and the effects it is confused with."""
+        name = effect.free[0].name
+        partners = {e.free[0].name for e in others}
+        declared = self._spread(runs)
+        free = list(dict.fromkeys([*self._free(runs), EPSILON, *partners, name]))
+        spread = {n: declared.get(n, self.usual.get(n, math.inf)) for n in free}
+        spread[EPSILON] = math.inf
+        spread |= {n: self.usual[n] for n in partners if n not in self.rig}
+        spread[name] = math.inf
+        return self._solved(self._information_of(runs), free, spread, []).stderr[name]
+
+    def usual_size(self, effect: Effect) -> float:
+        """How large an effect usually is."""
+        return self.usual[effect.free[0].name]
+
+    def with_readings(self, run: Run, chance: np.random.Generator | None = None) -> Points:
+        """The set-points of a run with what the rig, as the fit found it, would read there; with noise if ``chance`` is given."""
+        assert run.points is not None
+        read = self.simulation.readings(run.points)
+        if chance is None:
+            return run.points.replace(Fy=read.Fy, Mz=read.Mz)
+        Fy, Mz = (
+            values + (sigma if math.isfinite(sigma) else 0.0) * chance.standard_normal(len(values))
+            for values, sigma in zip(read, self._sigma, strict=True)
+        )
+        return run.points.replace(Fy=Fy, Mz=Mz)
+
+    def _usual(self, effect: Effect) -> float:
+        number = effect.free[0]
+        size = abs(self.simulation.number(number.name, self.points)) if number.relative else 1.0
+        return number.spread * size
+
+    def _free(self, runs: Sequence[Run]) -> list[str]:
+        new = [run.points for run in runs if run.points is not None]
+        cover = coverage(concatenate([self.points, *new]) if new else self.points, self.config.tyre.side)
+        return list(dict.fromkeys([*(name for row in cover for name in row.free), *self.extra, *self.rig]))
+
+    def _spread(self, runs: Sequence[Run]) -> dict[str, float]:
+        """What is known of each number beforehand, once the rig is measured as the runs say."""
+        better = [run for run in runs if run.rig]
+        row = self.measured.nominal
+        if not better or row is None:
+            return self.spread
+        config = self.config
+        for run in better:
+            config = run.declared(config)
+        R = measured_path_radius(config)
+        if R is not None:
+            row = replace(row, R=Quantity(R.nominal_value, R.std_dev, "m"))
+        # A zero that is declared better may turn out to lie beyond what is declared: ply-steer looks like it.
+        misaligned = isinstance(alignment_verdict(config, row), Misaligned)
+        numbers = rig_numbers(config, replace(self.measured, nominal=row, misaligned=misaligned))
+        return self.spread | {n.name: n.spread for n in numbers}
+
+    def _information_of(self, runs: Sequence[Run]) -> np.ndarray:
+        return self._base + sum((self._added(run) for run in runs), np.zeros_like(self._base))
+
+    def _added(self, run: Run) -> np.ndarray:
+        if run.points is None:
+            return np.zeros_like(self._base)
+        if run.name not in self._of_run:
+            n = len(run.points)
+            sigma = [np.full(n, s) for s in self._sigma]
+            seen = replace(
+                self.problem, points=self.with_readings(run), sigma_Fy=sigma[0], sigma_Mz=sigma[1], envelope=None,
+                radii=(),
+            )  # fmt: skip
+            self._of_run[run.name] = self._information(seen.free(self.names).linear(self._at).slope)
+        return self._of_run[run.name]
+
+    @staticmethod
+    def _information(slope: np.ndarray) -> np.ndarray:
+        slope = np.nan_to_num(slope)
+        return slope.T @ slope
+
+    def _solved(
+        self, information: np.ndarray, free: Sequence[str], spread: Mapping[str, float], held: Sequence[str]
+    ) -> Posterior:
+        """As :func:`mffit.fit.posterior.joint`, from the sums that it is made of."""
+        f, h = ([self._row[n] for n in names] for names in (free, held))
+        prior = np.diag([spread.get(n, math.inf) ** -2.0 for n in free])
+        covariance = inverse(information[np.ix_(f, f)] + prior)
+        shift = -covariance @ information[np.ix_(f, h)]
+        known = np.diag([spread[n] ** 2 for n in held])
+        whole = np.block([[covariance + shift @ known @ shift.T, shift @ known], [known @ shift.T, known]])
+        return Posterior((*free, *held), whole)

@@ -1,0 +1,56 @@
+"""A comparison, for the terminal."""
+
+from __future__ import annotations
+
+import textwrap
+
+from mffit.comparison import Comparison, Difference, wording
+from mffit.quantities import CHANNELS
+from mffit.report.rounding import number, with_u
+from mffit.report.text.layout import WIDTH, blocks, paragraphs, table
+
+MOST = 12
+
+
+def comparison_table(found: Comparison) -> str:
+    """What ``mffit compare`` prints: the sentence, the largest differences, the worst sweeps."""
+    parts = [textwrap.fill(wording.headline(found), WIDTH)]
+    if found.numbers:
+        head = ("number", "load", found.first, found.second, "difference", "in u")
+        parts.append(table(head, [_number(row) for row in found.numbers[:MOST]], left=2))
+    if found.coefficients:
+        of_coefficients = ("coefficient", found.first, found.second, "difference", "in u")
+        parts.append(table(of_coefficients, [_coefficient(row) for row in found.coefficients[:MOST]]))
+    if found.sweeps:
+        rows = [
+            (
+                gap.sweep,
+                gap.channel,
+                f"{number(gap.rms, digits=3)} {CHANNELS[gap.channel].unit}",
+                f"{number(gap.bias, digits=3)} {CHANNELS[gap.channel].unit}",
+                number(gap.rms / gap.noise, digits=3) if gap.noise else "–",
+            )
+            for gap in found.sweeps[:MOST]
+        ]
+        parts.append(table(("sweep", "channel", "rms", "bias", "of noise"), rows, left=2))
+    parts.append(paragraphs(found.notes))
+    return blocks(parts)
+
+
+def _number(row: Difference) -> tuple[str, ...]:
+    known = wording.quantity(row)
+    return (known.column(known.word), wording.place(row), *_values(row))
+
+
+def _coefficient(row: Difference) -> tuple[str, ...]:
+    return (row.key, *_values(row))
+
+
+def _values(row: Difference) -> tuple[str, ...]:
+    apart = with_u(row.change, row.u) if row.u else number(row.change, digits=3)
+    return (
+        with_u(row.first, row.u_first),
+        with_u(row.second, row.u_second),
+        apart,
+        number(row.z, 1) if row.z is not None else "–",
+    )

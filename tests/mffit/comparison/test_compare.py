@@ -1,0 +1,143 @@
+"""Two files, a file and data, two builds: what differs, how much, and by how many uncertainties."""
+
+from __future__ import annotations
+
+import json
+import shutil
+
+import numpy as np
+import pytest
+from small_rigs import SAMPLE, built, disc, truth
+
+import mffit
+from mffit.cli import main
+from mffit.comparison import Difference, Subject, between, characteristics, wording
+from mffit.comparison.record import ranked
+from mffit.errors import InputError
+
+
+@pytest.fixture(scope="module")
+def stiffer():
+    return truth().replace(PKY1=1.1 * truth()["PKY1"], PDY1=0.95 * truth()["PDY1"])
+
+
+def by_key(found, load=1400.0):
+    return {row.key: row for row in found.numbers if row.load == pytest.approx(load)}
+
+
+def test_numbers_are_those_of_the_equations():
+    """Slopes at zero as the equations have them; turn-slip stiffness from eps_gamma by (17) with R0 for r_e."""
+    tyre = truth().replace(PHY1=0.0, PHY2=0.0, PVY1=0.0, PVY2=0.0)
+    found = characteristics(tyre, 1400.0, turn_slip=True)
+    state = tyre.state(1400.0)
+    assert found["C_alpha_N_per_rad"] == pytest.approx(float(state.K_ya), rel=2e-3)
+    assert found["epsilon_gamma"] == pytest.approx(tyre["PECP1"])
+    implied = abs(float(state.K_yg0)) * tyre["UNLOADED_RADIUS"] / (1.0 - tyre["PECP1"])
+    assert found["C_phit_Nm"] == pytest.approx(implied, rel=2e-3)
+    assert found["r_e_m"] == pytest.approx(float(state.Re))
+    assert "C_phit_Nm" not in characteristics(tyre, 1400.0, turn_slip=False)
+
+
+def test_a_changed_coefficient_shows_where_it_acts(stiffer):
+    found = between(Subject("a", truth(), True), Subject("b", stiffer, True))
+    rows = by_key(found)
+    assert rows["C_alpha_N_per_rad"].second == pytest.approx(1.1 * rows["C_alpha_N_per_rad"].first, rel=0.01)
+    assert rows["mu_y"].change < 0.0
+    assert rows["epsilon_gamma"].change == 0.0
+    assert {row.key for row in found.coefficients} == {"PKY1", "PDY1"}
+    (worst, *_) = sorted((g for g in found.curves if g.channel == "Fy"), key=lambda g: -g.rms)
+    assert worst.over == "alpha"
+    change, at = worst.largest
+    where = int(np.argmin(np.abs(worst.x - at)))
+    assert change == pytest.approx(worst.second[where] - worst.first[where])
+
+
+def test_equal_files_do_not_differ():
+    found = between(Subject("a", truth(), True), Subject("b", truth(), True))
+    assert not found.coefficients
+    assert all(row.change == 0.0 for row in found.numbers)
+    assert "equal" in wording.headline(found)
+
+
+def test_uncertainties_go_through_to_the_numbers():
+    """One uncertain number, PKY1: the cornering stiffness is proportional to it."""
+    u = 0.02 * abs(truth()["PKY1"])
+    known = Subject("a", truth(), True, ("PKY1",), np.array([[u**2]]))
+    row = by_key(between(known, Subject("b", truth(), True)))["C_alpha_N_per_rad"]
+    assert row.u_first == pytest.approx(0.02 * abs(row.first), rel=0.02)
+    assert row.u_second is None
+    assert row.u == row.u_first
+
+
+def test_what_stands_out_comes_first():
+    rows = [
+        Difference("mu_y", 1.0, 1.0, 1.5),
+        Difference("trail_m", 1.0, 1.0, 1.1, 0.01, None),
+        Difference("r_e_m", 1.0, 0.30, 0.33, 0.003, 0.004),
+    ]
+    first, second, third = ranked(rows)
+    assert (first.key, second.key, third.key) == ("trail_m", "r_e_m", "mu_y")
+    assert second.z == pytest.approx(6.0)
+    assert third.z is None
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    """A project of one load and its build."""
+    content = disc()
+    content["sweep"] = [s for s in content["sweep"] if s["load_N"] == 1400]
+    content["rolling_radius"] = [{"load_N": 1400}]
+    place = tmp_path_factory.mktemp("project")
+    mffit.pipeline.building.write_build(built(content, place), place / "out")
+    return place
+
+
+def test_a_build_is_compared_with_its_uncertainties(folder, stiffer, tmp_path):
+    stiffer.write(tmp_path / "stiffer.tir")
+    found = mffit.compare(folder / "out", tmp_path / "stiffer.tir", turn_slip=True, out=tmp_path / "page")
+    row = by_key(found)["C_alpha_N_per_rad"]
+    assert row.u_first
+    assert abs(row.z) > 5.0
+    written = json.loads((tmp_path / "page" / "compare.json").read_text())
+    assert written["numbers"][0]["in_u"] == found.numbers[0].z
+    page = (tmp_path / "page" / "compare.html").read_text()
+    assert "cornering stiffness" in page
+    assert "curves_Fy" in {path.stem for path in (tmp_path / "page" / "plots").iterdir()}
+
+
+def test_two_builds_of_one_name_are_told_by_their_folders(folder):
+    later = shutil.copytree(folder / "out", folder / "later")
+    found = mffit.compare(folder / "out", later)
+    assert found.first != found.second
+    assert all(row.z == 0.0 for row in found.numbers if row.z is not None)
+
+
+def test_a_file_is_compared_with_data(folder, stiffer, tmp_path):
+    stiffer.write(tmp_path / "stiffer.tir")
+    right, wrong = (
+        mffit.compare(path, folder / "tyre.toml") for path in (SAMPLE / "true.tir", tmp_path / "stiffer.tir")
+    )
+    noise = {gap.sweep: gap.rms / gap.noise for gap in right.sweeps if gap.channel == "Fy"}
+    assert max(noise.values()) < 2.0
+    assert wrong.sweeps[0].rms > 5.0 * wrong.sweeps[0].noise
+    row = by_key(wrong)["C_alpha_N_per_rad"]
+    assert abs(by_key(right)["C_alpha_N_per_rad"].z) < 3.0 < abs(row.z)
+    assert row.change > 0.0  # the data are less stiff, and C_alpha is negative
+
+
+def test_two_sets_of_data_are_refused(folder):
+    with pytest.raises(InputError, match="build each"):
+        mffit.compare(folder / "tyre.toml", folder / "tyre.toml")
+
+
+def test_a_folder_without_a_build_is_refused(tmp_path):
+    with pytest.raises(InputError, match="no folder of a build"):
+        mffit.compare(tmp_path, SAMPLE / "true.tir")
+
+
+def test_the_command_prints_the_differences(capsys):
+    main(["compare", str(SAMPLE / "base.tir"), str(SAMPLE / "true.tir"), "--turn-slip", "on"])
+    said = capsys.readouterr().out
+    assert said.startswith("The curves of base.tir and true.tir differ in Fy by up to")
+    assert "camber reduction factor" in said
+    assert "written to" not in said

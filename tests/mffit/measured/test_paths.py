@@ -1,0 +1,92 @@
+"""Turn slip from several paths: what pushes alike on both sides of the disc, or on two radii, drops out."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from plain_tyre import NEWTON, Plain, R, settings
+
+from mffit.measured import measure
+from mffit.measured.notes import NotSeparable, SeveralPaths
+from mffit.parts import split
+from mffit.points.points import concatenate
+
+OFFSET = 40.0  # N, of the load cell; four times what is declared
+U_OFFSET = 10.0
+
+
+class Narrow(Plain):
+    """The same tyre at 0.7 of the path radius; its turn-slip force grows with the curvature."""
+
+    def turn_slip_force(self, Fz):
+        return super().turn_slip_force(Fz) / 0.7
+
+
+def campaign(*others, backward=True, offset=OFFSET):
+    """The usual path with everything, zeros of the others, each reading too much by the offset."""
+    usual = Plain()
+    whole = usual.campaign(backward=backward)
+    parts = [whole]
+    for tyre in others:
+        points = tyre.campaign(backward=backward)
+        zeros = np.abs(points.alpha) + np.abs(points.gamma) < math.radians(0.2)
+        share = 0.7 if isinstance(tyre, Narrow) else 1.0
+        zeros = points.select(zeros)
+        parts.append(zeros.replace(phi_t=zeros.phi_t / share, sweep=0, sweep_names=("other",)))
+    points = concatenate(parts)
+    return points.replace(Fy=points.Fy + offset)
+
+
+def found(points):
+    config = settings(u_loadcell_offset_N=U_OFFSET, u_slip_alignment_N=20.0)
+    return measure(config, points, split(points))
+
+
+def of_budget(result, source):
+    return next((row.contribution for row in result.budget if row.source == source), 0.0)
+
+
+def test_one_path_takes_the_offset_for_turn_slip():
+    alone = found(campaign())
+    assert abs(alone.epsilon_gamma.value - Plain().epsilon) > 2.0 * alone.epsilon_gamma.u
+    assert of_budget(alone, "load-cell offset") > 0.03
+
+
+@pytest.mark.parametrize("other", [Plain(side=1), Narrow()], ids=["other side", "second radius"])
+def test_a_second_path_takes_it_out(other):
+    alone, both = found(campaign()), found(campaign(other))
+    errors = [abs(r.epsilon_gamma.value - Plain().epsilon) for r in (alone, both)]
+    assert errors[1] < 0.3 * errors[0]
+    assert of_budget(both, "load-cell offset") < 0.25 * of_budget(alone, "load-cell offset")
+    assert both.epsilon_gamma.u < 0.5 * alone.epsilon_gamma.u
+    assert both.nominal.u_monte_carlo == pytest.approx(both.epsilon_gamma.u, rel=0.1)
+
+
+def test_both_sides_count_half_each_and_noise_by_its_number():
+    """Half the difference of two forces of equal noise: u(F) is that of one over the root of two."""
+    alone, both = (found(campaign(*others, offset=0.0)) for others in ((), (Plain(side=1),)))
+    noise = [
+        math.hypot(*(row.contribution for row in r.budget if "noise of the backward" in row.source))
+        for r in (alone, both)
+    ]
+    assert noise[1] == pytest.approx(noise[0] / math.sqrt(2.0), rel=0.1)
+
+
+def test_conicity_and_misalignment_push_alike_on_both_sides():
+    both = found(campaign(Plain(side=1), backward=False))
+    conicity = next(note for note in both.notes if hasattr(note, "share"))
+    assert conicity.shift == pytest.approx(0.0, abs=1e-3)
+    assert of_budget(both, "sideslip alignment") == pytest.approx(0.0, abs=2e-3)
+    assert not any(isinstance(note, NotSeparable) for note in both.notes)
+    assert SeveralPaths((pytest.approx(R), pytest.approx(-R))) in both.notes
+
+
+def test_the_usual_path_is_told_as_before():
+    """Forces and radius of the record stay those of the declared path."""
+    alone, both = found(campaign()), found(campaign(Plain(side=1)))
+    assert both.nominal.F_forward == alone.nominal.F_forward
+    assert both.R == alone.R
+    assert both.C_gamma.value == pytest.approx(alone.C_gamma.value)
+    assert both.F_phit.value == pytest.approx(alone.F_phit.value - OFFSET, abs=NEWTON)

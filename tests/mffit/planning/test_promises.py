@@ -1,0 +1,229 @@
+"""What a plan promises follows from the build's own posterior and budget, and is met on the virtual rig.
+
+``tests/studies/plan_study.py`` repeats the last test for more goals and many rigs.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import json
+import math
+
+import numpy as np
+import pytest
+from small_rigs import SAMPLE, built, disc, truth
+
+from mffit.cli import main
+from mffit.effects import CATALOG
+from mffit.errors import InputError
+from mffit.pipeline.building import finite_spin_bias
+from mffit.pipeline.planning import additions, plan_of, sheet, write_plan
+from mffit.planning import Kind, read_goal, wording
+from mffit.planning.knowledge import Knowledge
+from mffit.planning.runs import candidates
+from mffit.report.text import plan_summary
+from mffit.rig import Simulation
+
+EFFECTS = {effect.id: effect for effect in CATALOG}
+ONE_SIDE = (Kind.OTHER_SIDE, Kind.OTHER_SIDE_CAMBER)
+
+
+@pytest.fixture(scope="module")
+def content():
+    """Two loads of the small campaign on a drawn rig."""
+    content = disc(
+        faults={"F0_N": 8.0, "gamma_0_deg": 0.4, "path_radius_m": 1.325}, spin={"pecp1": "debiased"}
+    )
+    content["sweep"] = [s for s in content["sweep"] if s["load_N"] < 2000]
+    content["rolling_radius"] = content["rolling_radius"][:2]
+    return content
+
+
+@pytest.fixture(scope="module")
+def result(content, tmp_path_factory):
+    return built(content, tmp_path_factory.mktemp("first"))
+
+
+@pytest.fixture(scope="module")
+def knowledge(result):
+    return Knowledge(
+        result.config,
+        result.points,
+        result.measured,
+        result.fit,
+        [EFFECTS["ply-steer"], EFFECTS["sideslip-misalignment"]],
+    )
+
+
+def run_of(result, kind, load=1400):
+    return next(
+        r for r in candidates(result.config, result.points) if r.kind is kind and abs(r.load - load) < 10
+    )
+
+
+def test_without_runs_the_posterior_is_the_builds(result, knowledge):
+    found = knowledge.posterior([], result.fit.search.held["PECP1"]).stderr
+    for name, u in result.fit.posterior.stderr.items():
+        assert found[name] == pytest.approx(u, rel=1e-4), name
+
+
+def test_more_points_never_tell_less(result, knowledge):
+    before = knowledge.posterior([], None).stderr
+    after = knowledge.posterior([run_of(result, Kind.SMALL_CAMBER)], None).stderr
+    # But for what a coefficient held at a wrong value makes of a fitted one.
+    assert all(after[name] <= before[name] * 1.001 for name in before)
+    assert after["PKY6"] < 0.9 * before["PKY6"]
+
+
+def test_the_same_points_again_halve_the_variance_that_noise_makes(result, knowledge):
+    """Curvature of the side force and width of the trail hang on the points alone, not on the rig or on priors."""
+    again = dataclasses.replace(run_of(result, Kind.SIDESLIP), points=result.points)
+    before, after = (knowledge.posterior(runs, None).stderr for runs in ([], [again]))
+    for name in ("PEY1", "QBZ4"):
+        assert after[name] / before[name] == pytest.approx(math.sqrt(0.5), rel=0.05)
+
+
+def test_no_run_on_one_rig_tells_ply_steer_from_misalignment_but_a_geometric_zero_does(result, knowledge):
+    ply, axis = EFFECTS["ply-steer"], EFFECTS["sideslip-misalignment"]
+    before = knowledge.told([], ply, [axis])
+    for kind in (Kind.OTHER_SIDE, Kind.ZEROS, Kind.SECOND_RADIUS, Kind.SIDESLIP):
+        assert knowledge.told([run_of(result, kind)], ply, [axis]) == pytest.approx(before, rel=0.05)
+    zero = run_of(result, Kind.SIDESLIP_ZERO)
+    assert knowledge.told([zero], ply, [axis]) < 0.7 * before
+
+
+@pytest.fixture(scope="module")
+def plan(result):
+    return plan_of(result, read_goal("eps_gamma", on_disc=True), runs=1)
+
+
+def test_the_other_side_of_the_disc_is_found_for_eps_gamma(result, plan):
+    """It takes out the offset and the zero of camber, which are most of the budget."""
+    (step,) = plan.steps
+    assert step.run.kind is Kind.OTHER_SIDE
+    assert plan.now == pytest.approx(result.measured.epsilon_gamma_debiased.u)
+    rest = [
+        r
+        for r in result.measured.budget
+        if r.source not in ("camber alignment", "load-cell offset", "conicity", "finite spin of the disc")
+    ]
+    left = math.hypot(*(r.contribution for r in rest))
+    assert 0.6 * left < plan.then < 1.1 * left
+    assert plan.trials[0].u == pytest.approx(plan.then, rel=0.2)
+
+
+@pytest.fixture(scope="module")
+def longer(content, plan, tmp_path_factory):
+    """The campaign with the runs of the plan, built."""
+    points = plan.steps[0].run.points
+    more = [
+        {
+            "file": f"{way}.csv",
+            "load_N": float(points.Fz[0]),
+            "alpha_deg": np.degrees(points.alpha[points.direction == sign]).round(3).tolist(),
+            "direction": way,
+            "path_centre": "right",
+        }
+        for way, sign in (("forward", 1), ("backward", -1))
+    ]
+    return built({**content, "sweep": [*content["sweep"], *more]}, tmp_path_factory.mktemp("longer"))
+
+
+def test_the_promise_is_met_within_a_fifth_on_the_virtual_rig(result, plan, longer):
+    stated = longer.measured.epsilon_gamma_debiased
+    assert stated.u == pytest.approx(plan.then, rel=0.2)
+    assert abs(stated.value - truth()["PECP1"]) < 3.0 * plan.then
+    of_joint = Knowledge(result.config, result.points, result.measured, result.fit).posterior(
+        [plan.steps[0].run], stated.u
+    )
+    for name in ("PKY6", "QDZ1", "PDY1", "F0_N", "gamma_0_deg"):
+        assert longer.fit.posterior.stderr[name] == pytest.approx(of_joint.stderr[name], rel=0.2), name
+
+
+def test_the_bias_of_finite_spin_is_that_of_the_true_tyre_however_well_its_force_is_known(longer):
+    """A model that holds PECP1 at the biased value bends its other spin coefficients and would find a third of it."""
+    measured = longer.measured
+    found = measured.epsilon_gamma.value - measured.epsilon_gamma_debiased.value
+    true = finite_spin_bias(longer.config, longer.points, Simulation.of(truth()), None)
+    assert found == pytest.approx(true, abs=0.006)
+    assert true > 0.015
+
+
+def test_what_the_rig_cannot_do_is_left_out(result):
+    without = plan_of(result, read_goal("eps_gamma:joint", on_disc=True), runs=2, without=ONE_SIDE)
+    assert without.steps
+    assert not {trial.run.kind for trial in without.trials} & set(ONE_SIDE)
+    assert without.then == without.steps[-1].after < without.now
+
+
+def test_two_runs_that_help_only_together_are_found(result):
+    """PPY2 needs two pressures at two loads: one more pressure at one load tells nothing of it."""
+    found = plan_of(result, read_goal("PPY2", on_disc=True), runs=2)
+    assert [step.run.kind for step in found.steps] == [Kind.PRESSURE, Kind.PRESSURE]
+    assert len({step.run.load for step in found.steps}) == 2
+    assert found.then < 0.3 * found.now
+
+
+def test_sheets_are_in_the_rigs_axes_and_can_be_declared(result, plan):
+    run = plan.steps[0].run
+    sae = result.config.model_copy(update={"rig": result.config.rig.model_copy(update={"axes": "sae"})})
+    assert sheet(sae, run.points).alpha_deg.to_numpy() == pytest.approx(
+        -np.degrees(run.points.alpha), abs=1e-4
+    )
+    text = additions(result.config, [run])
+    assert 'path_centre = "right"' in text
+    assert f'file = "{run.name}.csv"' in text
+    assert "path_radius" not in text
+
+
+@pytest.mark.parametrize(
+    ("goal", "said"),
+    [("PKY66", "did you mean PKY6"), ("tie:rain", "no effect with a tie"), ("bands:Fx", "no goal")],
+)
+def test_a_goal_that_is_not_known_is_refused(goal, said):
+    with pytest.raises(InputError, match=said):
+        read_goal(goal, on_disc=True)
+
+
+def test_a_flat_track_has_no_eps_gamma_to_plan_for():
+    with pytest.raises(InputError, match="needs a disc"):
+        read_goal("eps_gamma", on_disc=False)
+
+
+def test_names_of_runs_are_files_of_their_own(result):
+    names = [run.name for run in candidates(result.config, result.points)]
+    assert len(set(names)) == len(names)
+
+
+def test_what_the_sweeps_identify_is_said(plan):
+    said = " ".join(wording.identified(plan.identified))
+    assert "not seen: " in said
+    assert "pressure" in said
+    assert "Not told apart: ply-steer and sideslip axis misaligned" in said
+
+
+@pytest.mark.parametrize(
+    ("options", "said"),
+    [
+        (["--goal", "PKY66"], "did you mean PKY6"),
+        (["--without", "sun"], "no kind of run"),
+        (["--goal", "bands", "--coefficient", "PKY6"], "exclude each other"),
+    ],
+)
+def test_the_command_refuses_in_a_sentence_before_it_works(options, said, tmp_path, capsys):
+    with pytest.raises(SystemExit) as ended:
+        main(["plan", str(SAMPLE / "tyre.toml"), "--out", str(tmp_path / "plan"), *options])
+    assert ended.value.code == 2
+    assert said in capsys.readouterr().err
+    assert not (tmp_path / "plan").exists()
+
+
+def test_page_numbers_and_sheets_are_written(plan, tmp_path):
+    write_plan(plan, tmp_path / "plan")
+    written = json.loads((tmp_path / "plan" / "plan.json").read_text())
+    assert written["u_then"] == plan.then
+    assert written["runs"][0]["kind"] == "other-side"
+    page = (tmp_path / "plan" / "plan.html").read_text()
+    assert wording.title(plan.steps[0].run) in page
+    assert (tmp_path / "plan" / "runs" / f"{plan.steps[0].run.name}.csv").is_file()
+    assert wording.title(plan.steps[0].run) in plan_summary(plan)

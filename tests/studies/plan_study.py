@@ -1,0 +1,182 @@
+"""What ``mffit plan`` promises against what comes of it: ``python tests/studies/plan_study.py [DRAWS]``.
+
+Rigs are drawn from what they declare and tyres from a sample. Each campaign is built, a plan is made for every goal, its runs
+are simulated on the same rig with the same tyre, and the longer campaign is built. Compared are the promised uncertainty, the
+one that this build states, and the true error over all draws. ``tests/mffit/planning/test_promises.py`` does so once.
+"""
+
+from __future__ import annotations
+
+import argparse
+import copy
+import sys
+import tempfile
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+sys.path.insert(0, str(Path(__file__).parents[2]))
+
+import tir
+from mffit import virtual_rig
+from mffit.pipeline.planning import plan_of
+from mffit.planning import Goal, Kind, Plan, Run, read_goal
+from mffit.planning.runs import BETTER
+from mffit.results import BuildResult
+from mffit.virtual_rig.faults import declared
+from tests.mffit.small_rigs import SAMPLE, built, disc, truth
+
+FAULTS = {
+    "u_loadcell_offset_N": "F0_N",
+    "u_camber_alignment_deg": "gamma_0_deg",
+    "u_slip_alignment_N": "alpha_0_deg",
+    "u_path_radius": "path_radius_m",
+}
+
+
+@dataclass(frozen=True)
+class Task:
+    """A goal, where the file's PECP1 comes from, and what the rig cannot do."""
+
+    goal: str
+    pecp1: str = "debiased"
+    without: tuple[str, ...] = ()
+    runs: int = 2
+
+
+ONE_SIDE = ("other-side", "other-side-camber")
+TASKS = (
+    Task("eps_gamma"),
+    Task("eps_gamma", without=ONE_SIDE),
+    Task("eps_gamma", pecp1="direct", without=(*ONE_SIDE, "second-radius")),
+    Task("eps_gamma:joint", pecp1="model", without=ONE_SIDE),
+    Task("PPY2"),
+    Task("bands:Mz"),
+)
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """One draw of one task."""
+
+    runs: tuple[str, ...]
+    now: float
+    promised: float
+    stated: float
+    error: float
+
+
+def outcomes(seed: int) -> Iterator[tuple[Task, Outcome]]:
+    """Simulate and build; for every task plan, run the plan and build again."""
+    content = disc(faults={"draw": True})
+    true = truth()
+    drawn = virtual_rig.run(virtual_rig.load_plan(content, folder=SAMPLE), true, seed=seed).truth.faults
+    content["faults"] = {name: getattr(drawn, name) for name in (*FAULTS.values(), "backlash_deg")}
+    with tempfile.TemporaryDirectory() as made:
+        for pecp1 in dict.fromkeys(task.pecp1 for task in TASKS):
+            first = built(content | {"spin": {"pecp1": pecp1}}, Path(made) / f"first-{pecp1}", seed)
+            for task in (task for task in TASKS if task.pecp1 == pecp1):
+                goal = read_goal(task.goal, on_disc=True)
+                plan = plan_of(first, goal, runs=task.runs, without=[Kind(word) for word in task.without])
+                longer = extended(content | {"spin": {"pecp1": pecp1}}, plan)
+                second = built(longer, Path(made) / f"second-{TASKS.index(task)}", seed)
+                stated, error = stated_and_error(second, goal, true)
+                names = tuple(step.run.name for step in plan.steps)
+                yield task, Outcome(names, plan.now, plan.then, stated, error)
+
+
+def extended(content: dict[str, Any], plan: Plan) -> dict[str, Any]:
+    """The campaign with the runs of the plan."""
+    content = copy.deepcopy(content)
+    for step in plan.steps:
+        content["sweep"] += list(sweeps(step.run, plan))
+        for key, u in step.run.rig.items():
+            # What was measured better is wrong by less: the same chance, a smaller spread.
+            fault, sure = FAULTS[key], getattr(declared(plan.config.rig), FAULTS[key])
+            content["faults"][fault] = sure + BETTER * (content["faults"][fault] - sure)
+            content["rig"][key] = u
+    return content
+
+
+def sweeps(run: Run, plan: Plan) -> Iterator[dict[str, Any]]:
+    """Set-points of a run as sweeps of the virtual rig: one point each where the angles make no grid."""
+    if run.points is None:
+        return
+    points = run.points
+    usual = plan.config.rig.radius
+    for way in (1, -1):
+        for k, pressure in enumerate(np.unique(points.p)):
+            rows = np.flatnonzero((points.direction == way) & (points.p == pressure))
+            alpha, gamma = np.degrees(points.alpha[rows]).round(6), np.degrees(points.gamma[rows]).round(6)
+            for j, lean in enumerate(np.unique(gamma)):
+                own = rows[gamma == lean]
+                yield (
+                    {
+                        "file": f"{run.name}_{way}_{k}_{j}.csv",
+                        "load_N": float(points.Fz[own[0]]),
+                        "alpha_deg": alpha[gamma == lean].tolist(),
+                        "gamma_deg": [float(lean)],
+                        "p_kPa": 1e-3 * float(pressure),
+                        "direction": "forward" if way > 0 else "backward",
+                        "mount": "normal" if points.mount[own[0]] > 0 else "flipped",
+                        "path_centre": "left" if points.phi_t[own[0]] < 0 else "right",
+                        "path_radius": round(1.0 / abs(float(points.phi_t[own[0]])), 9) or usual,
+                    }
+                    if len(own)
+                    else {}
+                )
+
+
+def stated_and_error(result: BuildResult, goal: Goal, true: tir.Tyre) -> tuple[float, float]:
+    """What the build of the longer campaign states of the goal, and how far it is from the truth."""
+    measured, coefficients = result.measured, result.fit.coefficients
+    if goal.kind == "eps_gamma":
+        debiased = result.config.spin.pecp1 == "debiased"
+        found = measured.epsilon_gamma_debiased if debiased else measured.epsilon_gamma
+        return found.u, found.value - true["PECP1"]
+    if goal.kind == "eps_gamma:joint":
+        return coefficients["PECP1"].stderr, result.fit.tyre["PECP1"] - true["PECP1"]
+    if goal.kind == "coefficient":
+        return coefficients[goal.name].stderr, result.fit.tyre[goal.name] - true[goal.name]
+    again = plan_of(result, goal, runs=0)
+    return again.now, float("nan")
+
+
+def rows(found: dict[Task, list[Outcome]]) -> Iterator[str]:
+    """The table."""
+    head = ("goal", "PECP1", "without", "most frequent list", "u now", "promised")
+    head += ("stated over promised: median (range)", "rms error over promised", "draws")
+    yield f"| {' | '.join(head)} |"
+    yield "|---" * len(head) + "|"
+    for task, all_of in found.items():
+        if not all_of:
+            continue
+        lists = [", ".join(o.runs) for o in all_of]
+        ratio = np.array([o.stated / o.promised for o in all_of])
+        pull = np.array([o.error / o.promised for o in all_of])
+        scatter = f"{np.sqrt(np.mean(pull**2)):.2f}" if np.all(np.isfinite(pull)) else "–"
+        yield (
+            f"| {task.goal} | {task.pecp1} | {', '.join(task.without)} | {max(set(lists), key=lists.count)} "
+            f"| {np.median([o.now for o in all_of]):.3g} | {np.median([o.promised for o in all_of]):.3g} "
+            f"| {np.median(ratio):.2f} ({ratio.min():.2f} to {ratio.max():.2f}) | {scatter} | {len(all_of)} |"
+        )
+
+
+def main() -> None:
+    ask = argparse.ArgumentParser()
+    ask.add_argument("draws", type=int, nargs="?", default=20)
+    ask.add_argument("--first", type=int, default=0)
+    given = ask.parse_args()
+    found: dict[Task, list[Outcome]] = {task: [] for task in TASKS}
+    for seed in range(given.first, given.first + given.draws):
+        for task, outcome in outcomes(seed):
+            found[task].append(outcome)
+            print(seed, task.goal, task.pecp1, outcome, file=sys.stderr, flush=True)
+    print("\n".join(rows(found)))
+
+
+if __name__ == "__main__":
+    main()
