@@ -23,12 +23,17 @@ def decimals_of(u: float, digits: int = 2) -> int:
     return max(0, places - (round(u, places) >= 10.0 ** (digits - places)))
 
 
+LONGEST = 1e7
+"""Numbers from here on are written with a power of ten."""
+
+
 def number(value: float | None, decimals: int | None = None, *, digits: int = 4) -> str:
     """A number with fixed decimals, or else ``digits`` significant ones; a dash where there is none."""
     if value is None or not math.isfinite(value):
         return "–"
     if decimals is None:
-        text = f"{value:.{digits}g}"
+        whole = 10.0**digits <= abs(value) < LONGEST  # all of its digits are shorter than a power of ten
+        text = f"{value:.0f}" if whole else f"{value:.{digits}g}"
     else:
         text = f"{value:.{decimals}f}"
         if float(text) == 0.0:

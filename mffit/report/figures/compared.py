@@ -38,7 +38,7 @@ def curves(found: Comparison, channel: str) -> Figure:
         ax.set_title(f"{labels.LOAD.of(gap.load)}, apart by {gap.rms:.3g} {CHANNELS[channel].unit} rms")
         ax.set_xlabel(labels.ANGLES[gap.over].axis, labelpad=1.5)
         style.few_ticks(ax, x=4)
-    style.label_left(rows, CHANNELS[channel].column(channel))
+    style.label_left(rows, CHANNELS[channel].short_axis)
     handles = [
         Line2D([], [], color=style.ACCENT, label=found.first),
         Line2D([], [], color=style.CONTRAST, ls="--", label=found.second),

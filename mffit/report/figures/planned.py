@@ -15,31 +15,25 @@ if TYPE_CHECKING:
 
 def u_against_runs(plan: Plan) -> Figure:
     """u now and after every run of the list, from zero, each point with what was added."""
-    figure, rows = style.panel_grid([1], 1, height=2.6, legend=False, margins=(0.85, 0.30))
-    ax = rows[0][0]
     values = [plan.now, *(step.after for step in plan.steps)]
     names = ["now", *(f"+ {step.run.name}" for step in plan.steps)]
+    height = 0.28 * len(values) + 0.1
+    figure, rows = style.panel_grid([1], 1, height=height, legend=False, margins=(2.4, 0.60))
+    ax = rows[0][0]
     known = [(k, u) for k, u in enumerate(values) if math.isfinite(u)]
-    bars = ax.bar([k for k, _ in known], [u for _, u in known], width=0.5, color=style.ACCENT)
+    bars = ax.barh([k for k, _ in known], [u for _, u in known], height=0.6, color=style.ACCENT)
     if known and known[0][0] == 0:
         bars[0].set_color(style.FAINT)
-    top = max(u for _, u in known)
     for k, u in known:
-        ax.annotate(wording.shown(plan, u), (k, u), (0, 3), textcoords="offset points", ha="center")
+        ax.annotate(wording.shown(plan, u), (u, k), (3, 0), textcoords="offset points", va="center")
     if plan.told_below is not None:
-        ax.axhline(plan.told_below, color=style.CONTRAST, lw=1.0, ls="--")
-        ax.annotate(
-            "told apart below",
-            (len(values) - 0.6, plan.told_below),
-            (0, 3),
-            textcoords="offset points",
-            ha="right",
-        )
-    ax.set_ylim(0.0, 1.18 * top)
-    ax.set_xlim(-0.6, len(values) - 0.4)
-    ax.set_xticks(range(len(values)), names)
-    ax.grid(axis="x", visible=False)
+        ax.axvline(plan.told_below, color=style.CONTRAST, lw=1.0, ls="--")
+        ax.set_title("dashed: told apart below", loc="right", color=style.CONTRAST)
+    ax.set_xlim(0.0, 1.08 * max(u for _, u in known))
+    ax.set_ylim(len(values) - 0.4, -0.6)
+    ax.set_yticks(range(len(values)), names)
+    ax.grid(axis="y", visible=False)
     epsilon = DIRECT["epsilon_gamma"]
     unit = "" if plan.goal.unit in ("", "-") else f" [{plan.goal.unit}]"
-    ax.set_ylabel(f"{plan.goal.label}{unit}".replace(epsilon.ascii, epsilon.mathtext))
+    ax.set_xlabel(f"{plan.goal.label}{unit}".replace(epsilon.ascii, epsilon.mathtext), labelpad=1.5)
     return figure

@@ -138,11 +138,14 @@ def test_a_curve_is_that_of_the_condition_shown(browser):
 
 
 def test_turn_slip_can_be_switched(browser):
-    """Files of USE_MODE ending in 4 start without; the force at a curvature appears with the switch."""
+    """Files of USE_MODE ending in 5 start with it; the force at a curvature goes with the switch, and comes back."""
     flat = lambda: browser.execute_script(  # noqa: E731
         "return document.getElementById('Fy-phi_t').classList.contains('flat')"
     )
     force = lambda: browser.execute_script("return window.mffit.curve('Fy-phi_t', 0).map(p => p.y)")  # noqa: E731
+    assert not flat()
+    browser.find_element("css selector", "input[value=off]").click()
+    drawn(browser)
     assert flat()
     assert np.ptp(force()) == 0.0
     browser.find_element("css selector", "input[value=on]").click()
