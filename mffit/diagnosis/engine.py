@@ -93,9 +93,9 @@ def diagnose(
     found = explain(
         points, start, stated, candidates, inexact, declared_rig(config, points, start), seen=seen
     )
-    misfit = _misfit(found, points)
+    misfit, worse = _misfit(found, points)
     if found.chosen.effects and misfit > STRANGER:
-        notes.append(HardlyThisTyre(misfit))
+        notes.append(HardlyThisTyre(misfit, worse))
         found = _without_effects(found)
     progress("checking on left-out sweeps")
     given_problem = Problem(points, start, found.plain.noise)
@@ -134,11 +134,14 @@ def _without_effects(found: Explanation) -> Explanation:
     return replace(found, chosen=null, refined=null, coefficients={}, steps=found.steps[:1])
 
 
-def _misfit(found: Explanation, points: Points) -> float:
-    """How far the best explanation misses the points, in units of the noise as stated; a median, for wild readings."""
+def _misfit(found: Explanation, points: Points) -> tuple[float, str]:
+    """How far the best explanation misses the worse channel, in units of its noise as stated; a median, for wild readings."""
+    n, noise = len(points), found.scatter
     residual = np.concatenate([points.Fy, points.Mz]) - found.refined.state.predict(points)
-    noise = found.scatter
-    return robust(residual[noise.used] / noise.stated[noise.used])
+    z = np.where(np.isfinite(noise.stated), residual / noise.stated, np.nan)
+    misfit = {name: robust(rows) for name, rows in zip(CHANNELS, (z[:n], z[n:]), strict=True)}
+    worse = max(misfit, key=lambda name: np.nan_to_num(misfit[name]))
+    return misfit[worse], worse
 
 
 def refuse_strangers(points: Points, tyre: Tyre, start: Simulation) -> None:
@@ -177,7 +180,7 @@ def possible(effects: Sequence[Effect], points: Points, start: Simulation) -> tu
         if lack:
             lacking.setdefault(lack, []).append(effect.id)
         else:
-            out.append(effect)
+            out.append(effect.of_runs(sorted({points.files[k] for k in np.unique(points.file)})))
     return out, [NotVisible(lack, tuple(ids)) for lack, ids in lacking.items()]
 
 

@@ -29,6 +29,7 @@ class HardlyThisTyre:
     """The model is so wrong, whatever is added, that naming an effect would be a guess."""
 
     misfit: float  #: in units of the noise
+    channel: str  #: "Fy" | "Mz", the worse
 
 
 @dataclass(frozen=True, slots=True)

@@ -22,6 +22,8 @@ STATED_WITHIN = math.log(2.0)
 """Standard deviation of the logarithm of what uncertainties are over what they are stated to be."""
 NEEDED = 4.0
 """Gain in log likelihood at which a part of the scatter is accepted."""
+SCALES = (-7.0, 12.0)
+"""Logarithm of the smallest and the largest scale; its prior keeps it near 0 where the data do not insist."""
 LARGEST_GROWTH, LARGEST_MEMORY, LARGEST_SMOOTH = 0.2, 0.97, 0.3
 TAILS = (2.0, 2.5, 3.0, 4.0, 6.0, 10.0, 20.0)
 ROUNDS = 4
@@ -106,7 +108,7 @@ class _Channel:
 
     def _climb(self, start: np.ndarray, free: tuple[int, ...]) -> tuple[np.ndarray, float]:
         bounds = np.array(
-            [(-2.0, 4.0), (0.0, LARGEST_GROWTH), (-0.2, LARGEST_MEMORY), (1e-4, LARGEST_SMOOTH)]
+            [SCALES, (0.0, LARGEST_GROWTH), (-0.2, LARGEST_MEMORY), (1e-4, LARGEST_SMOOTH)]
         )
         unit = np.array([1.0, 0.02, 1.0, 0.05])
         chosen = list(free)

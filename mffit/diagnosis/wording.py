@@ -84,10 +84,10 @@ def note(remark: Note) -> str:
         case NotVisible(needs, effects):
             lack = " and ".join(NEEDS[need] for need in needs)
             return f"Not visible in these data, which lack {lack}: {', '.join(effects)}."
-        case HardlyThisTyre(misfit):
+        case HardlyThisTyre(misfit, channel):
             return (
-                f"Cannot tell: the model misses the points by {misfit:.0f} times their noise even with the best effects "
-                "added, so it is hardly a model of this tyre; fit it first (mffit build)."
+                f"Cannot tell: the model misses the points' {CHANNELS[channel].word} by {misfit:.0f} times its noise even with the best "
+                "effects added, so it is hardly a model of this tyre; fit it first (mffit build)."
             )
         case NoRepair(effects, validation):
             before, after = validation.gap_before, validation.gap_after

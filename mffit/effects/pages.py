@@ -104,6 +104,7 @@ def write(folder: Path, catalog: Sequence[Effect] = CATALOG) -> None:
 
 def _row(free: Free) -> str:
     unit, meaning = _described(free.name)
+    meaning += ", one of them for every run" if free.per_run else ""
     if free.name == "turn_slip":
         return f"| `turn_slip` | {unit} | {meaning} | off to on | – | – |"
     scale = " × its value" if free.relative else ""

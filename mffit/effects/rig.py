@@ -61,8 +61,26 @@ HYSTERESIS = Effect(
     "The force lags behind the angle as it is read, by a fixed angle in either sense of the sweep.",
     (Free("hysteresis_deg", 0.1, (0.0,), -2.0, 2.0),), ("senses",), "changes sign with the sense of the sweep", ("relaxation",),
 )  # fmt: skip
+RUN_OFFSETS_FY = Effect(
+    "run-offsets-fy", "load-cell zero of Fy that differs from run to run", "rig",
+    "The side-force load cell is zeroed before every run, each time a little differently.",
+    (Free("F0_N", 5.0, (0.0,), -1e3, 1e3, per_run=True),), ("runs",), "even, the same within a run", ("loadcell-offset-fy",),
+)  # fmt: skip
+RUN_OFFSETS_MZ = Effect(
+    "run-offsets-mz", "load-cell zero of Mz that differs from run to run", "rig",
+    "The moment load cell is zeroed before every run, each time a little differently.",
+    (Free("M0_Nm", 0.5, (0.0,), -1e2, 1e2, per_run=True),), ("runs", "moment"), "even, the same within a run",
+    ("loadcell-offset-mz",),
+)  # fmt: skip
+RUN_OFFSETS_ALPHA = Effect(
+    "run-offsets-alpha", "sideslip zero that differs from run to run", "rig",
+    "The steering axis is set up anew before every run and stands a little differently each time.",
+    (Free("alpha_0_deg", 0.1, (0.0,), -5.0, 5.0, per_run=True),), ("runs",), "even in alpha, the same within a run",
+    ("sideslip-misalignment",),
+)  # fmt: skip
 
 RIG_EFFECTS = (
     SIDESLIP_MISALIGNMENT, CAMBER_MISALIGNMENT, LOADCELL_OFFSET_FY, LOADCELL_OFFSET_MZ, LOADCELL_GAIN, CROSSTALK_FZ_FY,
     BACKLASH, PATH_RADIUS, STEERING_COMPLIANCE, LOADCELL_NONLINEARITY, HYSTERESIS,
+    RUN_OFFSETS_FY, RUN_OFFSETS_MZ, RUN_OFFSETS_ALPHA,
 )  # fmt: skip

@@ -3,15 +3,18 @@
 from __future__ import annotations
 
 import argparse
+import json
 import sys
 import time
 from collections import Counter
+from collections.abc import Iterable
+from dataclasses import asdict
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "mffit" / "diagnosis"))
 
 import numpy as np
-from blind_hard import SCATTERS, hard, smooth, triples
+from blind_hard import SCATTERS, doubtful, hard, smooth, triples
 from blind_scores import Plan, Verdict, judge, rates, suite
 
 
@@ -23,16 +26,24 @@ def main() -> None:
     parser.add_argument(
         "--hard", action="store_true", help="noise not as stated, inexact models, unknown effects"
     )
+    parser.add_argument(
+        "--doubtful", action="store_true", help="what leaves doubt under these conditions, for the confidence"
+    )
+    parser.add_argument("--keep", type=Path, help="file to which every verdict is added as a line of JSON")
+    parser.add_argument("--reliability", type=Path, nargs="+", help="only the table of kept verdicts")
     options = parser.parse_args()
-    if options.hard:
-        print_hard(options.seed, options.only)
+    if options.reliability:
+        print_calibration(kept(options.reliability))
+        return
+    if options.hard or options.doubtful:
+        print_hard(options)
         return
     verdicts: list[Verdict] = []
     for plan in suite(options.seed, options.repeats):
         if options.only not in plan.name:
             continue
         began = time.perf_counter()
-        verdict = judge(plan.draw())
+        verdict = keep(judge(plan.draw()), options.keep)
         verdicts.append(verdict)
         if not verdict.outright:
             print(f"{verdict.line()}  {time.perf_counter() - began:.1f} s", flush=True)
@@ -41,24 +52,45 @@ def main() -> None:
         print(f"{name:46s} " + (f"{hits:g} of {of:g}, {100.0 * hits / of:.1f} %" if of else f"{hits:.1f}"))
 
 
-def print_hard(seed: int, only: str) -> None:
+def print_hard(options: argparse.Namespace) -> None:
     """A line for every condition: 12 single causes and 6 right models each."""
     print(f"{'row':12s} right first/ties  extras  unexplained  named on empty  worse  shrink  seconds")
     every: list[Verdict] = []
-    for row in SCATTERS:
-        every += judged(row, list(hard(row, seed)), only)
-    every += judged("smooth", list(smooth(seed)), only)
-    every += judged("triples", list(triples(seed)), only)
+    if options.doubtful:
+        every += judged("doubtful", list(doubtful(options.seed)), options)
+    for row in SCATTERS if options.hard else ():
+        every += judged(row, list(hard(row, options.seed)), options)
+    if options.hard:
+        every += judged("smooth", list(smooth(options.seed)), options)
+        every += judged("triples", list(triples(options.seed)), options)
     print_calibration(every)
 
 
-def judged(row: str, plans: list[Plan], only: str) -> list[Verdict]:
+def keep(verdict: Verdict, file: Path | None) -> Verdict:
+    """The verdict, added to a file if there is one."""
+    if file is not None:
+        with file.open("a", encoding="utf-8") as out:
+            out.write(json.dumps(asdict(verdict)) + "\n")
+    return verdict
+
+
+def kept(files: Iterable[Path]) -> list[Verdict]:
+    """Verdicts of earlier runs."""
+    rows = [json.loads(line) for file in files for line in file.read_text(encoding="utf-8").splitlines()]
+    return [Verdict(**{n: _tuples(value) for n, value in row.items()}) for row in rows]
+
+
+def _tuples(value: object) -> object:
+    return tuple(map(_tuples, value)) if isinstance(value, list) else value
+
+
+def judged(row: str, plans: list[Plan], options: argparse.Namespace) -> list[Verdict]:
     """Judge the cases of a row and print it."""
-    if only not in row:
+    if options.only not in row:
         return []
     verdicts = []
     for plan in plans:
-        verdicts.append(judge(plan.draw()))
+        verdicts.append(keep(judge(plan.draw()), options.keep))
         if not verdicts[-1].outright:
             print("    " + verdicts[-1].line(), flush=True)
     caused = [v for v in verdicts if v.causes]
