@@ -116,7 +116,7 @@ def explain(
     seen : whether the model was fitted to these points: what its formulae cannot follow then stays as smooth structure, which
         says nothing against an effect beside it
     """
-    basis, found, at = smooth_basis(points), None, start
+    basis, found, at = smooth_basis(points, start.predict(points)), None, start
     stated = noise
     for _ in range(ROUNDS):
         before = noise

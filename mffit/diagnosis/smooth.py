@@ -44,18 +44,18 @@ class Smooth:
 NO_SMOOTH = Smooth(dict.fromkeys(CHANNELS, 0.0), 0.0)
 
 
-def smooth_basis(points: Points) -> np.ndarray:
+def smooth_basis(points: Points, simulated: np.ndarray) -> np.ndarray:
     """Smooth changes (2n, k) of the readings, Fy and Mz apart, each as large as its order makes it plausible.
 
-    With amplitude 1 they vary together as much as the readings of their channel do.
+    With amplitude 1 they vary together as much as the readings of their channel do. Changes of gain are in proportion to
+    the ``simulated`` readings (2n,): the measured ones carry the errors that they would have to be told from.
     """
     shapes, gains = _shapes(points), _gains(points)
     rows = []
-    for values in (points.Fy, points.Mz):
-        values = np.nan_to_num(values)
-        known = values[values != 0.0]
+    for values, model in zip((points.Fy, points.Mz), np.split(simulated, 2), strict=True):
+        known = values[np.isfinite(values)]
         size = float(np.sqrt(np.mean(known**2))) if len(known) else 0.0
-        columns = np.hstack([size * shapes, values[:, None] * gains])
+        columns = np.hstack([size * shapes, np.nan_to_num(model)[:, None] * gains])
         rows.append(columns * (size / max(float(np.sqrt(np.mean(np.sum(columns**2, axis=1)))), 1e-12)))
     nothing = np.zeros_like(rows[0])
     return np.vstack([np.hstack([rows[0], nothing]), np.hstack([nothing, rows[1]])])
@@ -75,7 +75,7 @@ def _conditions(points: Points) -> list[np.ndarray]:
 
 
 def _gains(points: Points) -> np.ndarray:
-    """Changes (n, k) in proportion to the reading, with load, pressure, temperature, speed, time or direction."""
+    """Changes (n, k) of gain, relative, with load, pressure, temperature, speed, time or direction."""
     columns = [along[:, k] / (1.0 + k) for along in _conditions(points) for k in range(1, along.shape[1])]
     return np.column_stack(columns) if columns else np.zeros((len(points), 0))
 
