@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import replace
 
@@ -245,16 +246,19 @@ def _found(found: Explanation, effect: Effect) -> Found:
         (s for s in steps if s.best.effects[-1].id == effect.id),
         steps[min(len(steps), len(chosen.effects)) - 1],
     )
-    tied = _tied(problem, chosen, step, others)
-    logs = {effect.id: chosen.log_evidence} | {t.effects[-1].id: t.log_evidence for t in tied}
-    top = max(logs.values())
-    share = {name: float(np.exp(v - top)) for name, v in logs.items()}
+    if effect.id in found.predicted:  # evidence says little beside structure that may be anything
+        tied = list(found.predicted[effect.id].tied)
+        share = 1.0 / (1.0 + len(tied))
+    else:
+        rivals = _rivals(problem, chosen, step, others)
+        tied = [r for r in rivals if chosen.log_evidence - r.log_evidence < TIE]
+        share = 1.0 / (1.0 + sum(math.exp(min(r.log_evidence - chosen.log_evidence, 50.0)) for r in rivals))
     separations = [separation(problem.points, chosen, t, problem.noise.Fy, problem.noise.Mz) for t in tied]
     upto = found.refined if not others else step.best
     numbers, stderr = found.refined.numbers, found.refined.stderr
     return Found(
         effect=effect,
-        confidence=found.certainty(effect) * share[effect.id] / sum(share.values()),
+        confidence=found.certainty(effect) * share,
         parameters={n: (numbers[n], stderr.get(n, 0.0)) for n in effect.parameters},
         gap_after=gap(problem.measured - upto.state.predict(problem.points), found.scatter),
         tied_with=tuple(t.effects[-1].id for t in tied),
@@ -263,8 +267,10 @@ def _found(found: Explanation, effect: Effect) -> Found:
     )
 
 
-def _tied(problem: Problem, chosen: Hypothesis, step: Step, others: tuple[Effect, ...]) -> list[Hypothesis]:
-    """Explanations with another effect in the place of one, refitted beside the others, that do as well."""
+def _rivals(
+    problem: Problem, chosen: Hypothesis, step: Step, others: tuple[Effect, ...]
+) -> list[Hypothesis]:
+    """Explanations with another effect in the place of one, refitted beside the others, but for those without a chance."""
     ids = {e.id for e in chosen.effects}
     names = {name for e in others for name in e.parameters}
     kept = {name: value for name, value in chosen.numbers.items() if name in names}
@@ -274,9 +280,7 @@ def _tied(problem: Problem, chosen: Hypothesis, step: Step, others: tuple[Effect
         rival = trial.effects[-1]
         if rival.id in ids or step.best.log_evidence - trial.log_evidence > hopeless:
             continue
-        refitted = problem.fit((*others, rival), kept)
-        if chosen.log_evidence - refitted.log_evidence < TIE:
-            out.append(refitted)
+        out.append(problem.fit((*others, rival), kept))
     return out
 
 

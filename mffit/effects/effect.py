@@ -48,9 +48,14 @@ class Effect:
     def parameters(self) -> tuple[str, ...]:
         return tuple(free.name for free in self.free)
 
+    @property
+    def differs_by_run(self) -> bool:
+        """Whether it frees numbers of single runs."""
+        return any(free.per_run or OF_RUN in free.name for free in self.free)
+
     def of_runs(self, files: Sequence[str]) -> Effect:
         """The same with what differs from run to run written out for these files."""
-        if not any(free.per_run for free in self.free):
+        if not self.differs_by_run:
             return self
         free = [f.of_run(file) if f.per_run else f for f in self.free for file in (files if f.per_run else ("",))]
         return replace(self, free=tuple(free))

@@ -103,7 +103,7 @@ def judged(row: str, plans: list[Plan], options: argparse.Namespace) -> list[Ver
         f"{row:12s} {first}/{ties} of {len(caused)} (all {all_found})  {sum(v.extra for v in verdicts)} extra  "
         f"{sum(v.unexplained for v in verdicts)} of {len(verdicts)} unexplained  "
         f"{sum(bool(v.named) for v in verdicts if not v.causes)} of {len(verdicts) - len(caused)} named on empty  "
-        f"{sum(0.0 < v.shrink < 0.98 for v in verdicts)} worse  "
+        f"{sum(bool(v.named) and v.shrink < 0.98 for v in verdicts)} worse  "
         f"shrink {float(np.median([v.shrink for v in caused or verdicts])):.1f}  "
         f"{float(np.median([v.seconds for v in verdicts])):.1f} s, at most {max(v.seconds for v in verdicts):.1f}",
         flush=True,
