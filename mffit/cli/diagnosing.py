@@ -28,4 +28,4 @@ def diagnose(tyre_toml: Path, model: Path | None, out: Path | None) -> None:
     with progress() as show:
         diagnosis = pipeline.diagnose(tyre_toml, model, out=out, progress=show)
     click.echo(text.diagnosis_summary(diagnosis))
-    click.echo(f"written to {out}: diagnosis.html, diagnosis.json, {diagnosis.model_after}")
+    click.echo(f"written to {out}: diagnosis.html, diagnosis.json, {diagnosis.model_after}, corrected.toml")

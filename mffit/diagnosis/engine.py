@@ -8,7 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from mffit.config import Config
+from mffit.config import Config, axis_signs
 from mffit.diagnosis import wording
 from mffit.diagnosis.candidates import Hypothesis, Problem
 from mffit.diagnosis.conditions import by_condition
@@ -16,6 +16,7 @@ from mffit.diagnosis.declared import declared_rig
 from mffit.diagnosis.explain import Explanation, explain, only_first
 from mffit.diagnosis.inexact import EXACT, Inexactness
 from mffit.diagnosis.inexact import declared as declared_inexactness
+from mffit.diagnosis.limits import limits
 from mffit.diagnosis.needs import missing
 from mffit.diagnosis.noise import Noise, noise_model, with_uncertainties
 from mffit.diagnosis.notes import HardlyThisTyre, NoRepair, Note, NotVisible, OneSweep
@@ -103,7 +104,7 @@ def diagnose(
     found, validation, refused = _confirmed(found, given_problem, inexact, seen=seen)
     if refused is not None:
         notes.append(refused)
-    return _record(found, given_problem, tyre, config, validation, notes)
+    return _record(found, given_problem, tyre, config, validation, notes, candidates)
 
 
 def _confirmed(
@@ -192,6 +193,7 @@ def _record(
     config: Config,
     validation: Validation,
     notes: Sequence[Note],
+    candidates: Sequence[Effect],
 ) -> Diagnosis:
     points, chosen, scatter = given.points, found.chosen, found.scatter
     before, after = given.start.predict(points), found.refined.state.predict(points)
@@ -201,7 +203,8 @@ def _record(
     hardly = any(isinstance(note, HardlyThisTyre) for note in notes)
     unexplained = found.bump.found or found.smooth.found or hardly
     remaining = where(points, residual_after, scatter) if unexplained else ()
-    named = tuple(_found(found, effect) for effect in chosen.effects)
+    named = tuple(_found(found, effect, given) for effect in chosen.effects)
+    known = {i for one in named for i in (one.effect.id, *one.tied_with)}
     return Diagnosis(
         points=points,
         noise=scatter,
@@ -220,7 +223,10 @@ def _record(
         smooth=found.smooth if found.smooth.found else None,
         outliers=tuple(_outlier(points, residual_after, scatter, int(i)) for i in wild(scatter)),
         coefficients=dict(found.coefficients),
+        limits=limits(found.problem, chosen, candidates, known),
+        given=given.start,
         state=found.refined.state,
+        signs=axis_signs(config),
         tyre=_corrected(tyre, found),
         notes=tuple(notes),
         model_after=f"{config.tyre.name}.tir",
@@ -238,7 +244,7 @@ def _outlier(points: Points, residual: np.ndarray, noise: Noise, i: int) -> Outl
     )  # fmt: skip
 
 
-def _found(found: Explanation, effect: Effect) -> Found:
+def _found(found: Explanation, effect: Effect, given: Problem) -> Found:
     """What is said of one accepted effect: judged beside all the others that were accepted."""
     problem, chosen, steps = found.problem, found.chosen, found.steps
     others = tuple(e for e in chosen.effects if e.id != effect.id)
@@ -260,6 +266,7 @@ def _found(found: Explanation, effect: Effect) -> Found:
         effect=effect,
         confidence=found.certainty(effect) * share,
         parameters={n: (numbers[n], stderr.get(n, 0.0)) for n in effect.parameters},
+        before={n: given.start.number(n, given.points) for n in effect.parameters},
         gap_after=gap(problem.measured - upto.state.predict(problem.points), found.scatter),
         tied_with=tuple(t.effects[-1].id for t in tied),
         separation=min(separations, key=lambda s: s.chi2, default=None),

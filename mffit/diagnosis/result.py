@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from mffit.diagnosis import wording
+from mffit.diagnosis.limits import Limit
 from mffit.diagnosis.noise import Noise
 from mffit.diagnosis.notes import Note
 from mffit.diagnosis.selection import Step
@@ -29,6 +30,7 @@ class Found:
     effect: Effect
     confidence: float  #: weight of its evidence among all candidates, ties shared
     parameters: Mapping[str, tuple[float, float]]  #: name -> (value, standard error)
+    before: Mapping[str, float]  #: the same as given
     gap_after: Gap  #: with this and all earlier effects
     tied_with: tuple[str, ...]  #: ids that the data do not tell from it
     separation: Separation | None  #: the run that would, if any is tied
@@ -70,7 +72,10 @@ class Diagnosis:
     coefficients: Mapping[
         str, tuple[float, float]
     ]  #: inexact coefficients as estimated beside the effects: value and error
+    limits: tuple[Limit, ...]  #: how large what was not named can be
+    given: Simulation  #: the simulation as given
     state: Simulation  #: the simulation after all corrections
+    signs: Mapping[str, float]  #: +1 or -1 per channel: what turns ISO-W into the rig's axes
     tyre: Tyre  #: the corrected property file
     notes: tuple[Note, ...]
     model_after: str  #: file name of the corrected model in the output folder

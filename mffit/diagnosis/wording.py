@@ -177,6 +177,26 @@ def outlier(found: Outlier) -> str:
     return f"{place}: {found.channel} off by {size}, {abs(found.z):.0f} times its noise"
 
 
+TO_DO = {
+    "tyre": "nothing at the rig: the corrected property file has it",
+    "environment": "keep it constant, or take it off the readings as the corrected points do; a property file has no place for it",
+}
+"""What to do about effects that are none of the rig's."""
+
+
+def remedy(found: Found, signs: Mapping[str, float]) -> str:
+    """What to do about an effect; numbers in the rig's own axes."""
+    effect = found.effect
+    if effect.switches:
+        return "switch the simulation's turn slip on"
+    if not effect.remedy:
+        return TO_DO.get(effect.kind, "")
+    value, _ = found.parameters[effect.free[0].name]
+    value *= math.prod(signs[axis] for axis in effect.axes)
+    plus = "+" if effect.axes else ""
+    return effect.remedy.format(value=f"{value:{plus}.3g}", opposite=f"{-value:{plus}.3g}")
+
+
 def status(effect: str, before: float, stderr: float) -> str:
     """The reason of a coefficient, in the comments of the corrected property file."""
     return f"diagnosed, {effect}, was {before:.6g}, +- {stderr:.2g}"

@@ -42,11 +42,18 @@ class Effect:
     needs: tuple[str, ...] = ()  #: what the data must vary for the effect to be seen; see effects.needs
     parity: str = ""  #: under alpha, gamma, phi_t -> reversed
     confusable_with: tuple[str, ...] = ()
+    remedy: str = ""  #: what to do at the rig; {value}, {opposite}: the first number in the rig's own axes, with its sign
+    axes: tuple[str, ...] = ()  #: channels in whose axes that number counts
     prior: float = 0.0  #: log prior weight, decides ties only: rig causes before tyre causes
 
     @property
     def parameters(self) -> tuple[str, ...]:
         return tuple(free.name for free in self.free)
+
+    @property
+    def switches(self) -> bool:
+        """Whether it switches the simulation's turn slip on."""
+        return any(free.name == "turn_slip" for free in self.free)
 
     @property
     def differs_by_run(self) -> bool:

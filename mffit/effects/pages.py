@@ -54,6 +54,7 @@ def page(effect: Effect, catalog: Sequence[Effect] = CATALOG) -> str:
         "",
         RESULT[effect.kind],
         "",
+        *_remedy(effect),
         "## What the data must have",
         f"{_sentence(needs)}.",
         "",
@@ -100,6 +101,14 @@ def write(folder: Path, catalog: Sequence[Effect] = CATALOG) -> None:
             path.unlink()
     for name, text in texts.items():
         (folder / name).write_text(text, encoding="utf-8")
+
+
+def _remedy(effect: Effect) -> list[str]:
+    """What to do at the rig, without the number."""
+    if not effect.remedy:
+        return []
+    said = effect.remedy.format(value="the number found", opposite="the opposite of the number found")
+    return ["## What to do at the rig", f"{_sentence([said])}. Signs are those of the rig's own axes.", ""]
 
 
 def _row(free: Free) -> str:

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from mffit.measured import wording
-from mffit.report import rounding, style
+from mffit.report import labels, rounding, style
 
 if TYPE_CHECKING:
     from jinja2 import Environment
@@ -63,6 +63,7 @@ def _environment() -> Environment:
         lstrip_blocks=True,
     )
     environment.filters["note"] = wording.note
+    environment.filters["typeset"] = labels.typeset
     for rounded in (rounding.number, rounding.with_u, rounding.stated, rounding.times, rounding.per_cent):
         environment.filters[rounded.__name__] = rounded
     return environment
