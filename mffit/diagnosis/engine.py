@@ -17,6 +17,7 @@ from mffit.diagnosis.explain import Explanation, explain, only_first
 from mffit.diagnosis.inexact import EXACT, Inexactness
 from mffit.diagnosis.inexact import declared as declared_inexactness
 from mffit.diagnosis.limits import limits
+from mffit.diagnosis.misread import misread
 from mffit.diagnosis.needs import missing
 from mffit.diagnosis.noise import Noise, noise_model, with_uncertainties
 from mffit.diagnosis.notes import HardlyThisTyre, NoRepair, Note, NotVisible, OneSweep
@@ -82,9 +83,14 @@ def diagnose(
     simulates_spin = config.model.turn_slip and bool(np.any(points.phi_t))
     start = Simulation(dict(tyre.values), given, simulates_spin, config.model.star)
     refuse_strangers(points, tyre, start)
+    wrong = misread(points, start, axis_signs(config))
+    if wrong is not None:
+        points = points.select(np.array([name != wrong.sweep for name in points.sweep_names])[points.sweep])
     points, origin = with_uncertainties(by_condition(points), start)
     inexact = coefficients or declared_inexactness(tyre, config.model.u_coefficients)
     candidates, notes = possible(effects, points, start)
+    if wrong is not None:
+        notes.insert(0, wrong)
     if seen:  # what is refitted in any case is no missing effect
         candidates = [e for e in candidates if not set(e.parameters) <= set(inexact.names)]
     if len(np.unique(points.sweep)) < 2:

@@ -9,6 +9,7 @@ import numpy as np
 
 from mffit.diagnosis.candidates import Hypothesis, Problem
 from mffit.effects import Effect
+from mffit.scatter import rms
 
 COVERED = 2.0
 """Standard deviations within which the true size is expected."""
@@ -19,7 +20,7 @@ class Limit:
     """The largest size of an effect that the readings leave open."""
 
     effect: Effect
-    share: float  #: of the size that it usually has (1 sigma); of its largest number if it has several
+    share: float  #: of the size that it usually has (1 sigma); the rms of them if it has several
 
     @property
     def ruled_out(self) -> bool:
@@ -39,10 +40,10 @@ def limits(
     for effect, groups in problem.columns(chosen.state, others).items():
         sizes = []
         for columns in groups:  # where an effect is even in its number, the start that shows it best counts
-            white = problem.noise.whiten(columns)
+            white = problem.noise.whiten(columns[:, np.any(columns != 0.0, axis=0)])
             white = white - Q @ (Q.T @ white)
             covariance = np.linalg.inv(white.T @ white + np.eye(white.shape[1]))
             found = np.abs(covariance @ (white.T @ residual))
-            sizes.append(float(np.max(found + COVERED * np.sqrt(np.diag(covariance)))))
+            sizes.append(rms(found + COVERED * np.sqrt(np.diag(covariance))))
         out.append(Limit(effect, min(sizes)))
     return tuple(sorted(out, key=lambda row: row.share))

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from mffit.diagnosis.misread import Misread
 from tir import Quantity
 
 if TYPE_CHECKING:
@@ -65,6 +66,7 @@ class DirectMethodRedone:
 
 Note = (
     OneSweep
+    | Misread
     | NotVisible
     | HardlyThisTyre
     | NoRepair

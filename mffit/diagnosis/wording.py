@@ -6,6 +6,7 @@ import math
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, assert_never
 
+from mffit.diagnosis.misread import Misread
 from mffit.diagnosis.noise import Noise, Origin
 from mffit.diagnosis.notes import (
     DirectMethodRedone,
@@ -48,7 +49,13 @@ ORIGINS = {
 
 
 def headline(diagnosis: Diagnosis) -> str:
-    """The whole answer in one sentence."""
+    """The whole answer in one sentence, and one more before it if a sweep was written down wrongly."""
+    wrong = next((remark for remark in diagnosis.notes if isinstance(remark, Misread)), None)
+    answer = _answer(diagnosis)
+    return answer if wrong is None else f"{wrong.file} looks like {wrong.looks} and was left out. {answer}"
+
+
+def _answer(diagnosis: Diagnosis) -> str:
     before, after, noise = diagnosis.gap_before, diagnosis.gap_after, diagnosis.noise
     bump = diagnosis.bump
     if not diagnosis.effects:
@@ -81,6 +88,12 @@ def note(remark: Note) -> str:
     match remark:
         case OneSweep():
             return "One sweep cannot tell causes apart: add sweeps at another load, camber or direction."
+        case Misread():
+            return (
+                f"{remark.file}: {remark.sweep} misses the simulation by {100.0 * remark.before:.0f} % of what its sweeps usually "
+                f"read, as no other does; it looks like {remark.looks}, which leaves {100.0 * remark.after:.2g} %. It was left "
+                f"out. In column {remark.column}: {remark.remedy}."
+            )
         case NotVisible(needs, effects):
             lack = " and ".join(NEEDS[need] for need in needs)
             return f"Not visible in these data, which lack {lack}: {', '.join(effects)}."
