@@ -12,6 +12,7 @@ from mffit.config import Config, axis_signs
 from mffit.diagnosis import wording
 from mffit.diagnosis.candidates import Hypothesis, Problem
 from mffit.diagnosis.conditions import by_condition
+from mffit.diagnosis.confidence import tempered
 from mffit.diagnosis.declared import declared_rig
 from mffit.diagnosis.explain import Explanation, explain, only_first
 from mffit.diagnosis.inexact import EXACT, Inexactness
@@ -21,7 +22,7 @@ from mffit.diagnosis.misread import misread
 from mffit.diagnosis.needs import missing
 from mffit.diagnosis.noise import Noise, noise_model, with_uncertainties
 from mffit.diagnosis.notes import HardlyThisTyre, NoRepair, Note, NotVisible, OneSweep
-from mffit.diagnosis.result import Diagnosis, Found, Outlier
+from mffit.diagnosis.result import Diagnosis, Found
 from mffit.diagnosis.scatter import wild
 from mffit.diagnosis.selection import TIE, Step
 from mffit.diagnosis.ties import separation
@@ -30,6 +31,7 @@ from mffit.diagnosis.validate import Validation, gap, validate
 from mffit.diagnosis.where import Region, where
 from mffit.effects import CATALOG, Effect
 from mffit.errors import InputError
+from mffit.fit.outliers import Outlier, outliers
 from mffit.points import Points
 from mffit.progress import Progress, silent
 from mffit.quantities import CHANNELS
@@ -133,7 +135,9 @@ def _confirmed(
 
 
 def _helps(validation: Validation) -> bool:
-    return validation.gap_after.chi2_per_dof < validation.gap_before.chi2_per_dof
+    """Whether left-out sweeps are nearer together, and in no channel farther off."""
+    nearer = validation.gap_after.chi2_per_dof < validation.gap_before.chi2_per_dof
+    return nearer and not validation.raised
 
 
 def _without_effects(found: Explanation) -> Explanation:
@@ -227,7 +231,7 @@ def _record(
         unexplained_where=((_bump_region(found.bump),) if found.bump.found else ()) + remaining[:4],
         bump=found.bump if found.bump.found else None,
         smooth=found.smooth if found.smooth.found else None,
-        outliers=tuple(_outlier(points, residual_after, scatter, int(i)) for i in wild(scatter)),
+        outliers=_outliers(points, after, scatter),
         coefficients=dict(found.coefficients),
         limits=limits(found.problem, chosen, candidates, known),
         given=given.start,
@@ -239,15 +243,15 @@ def _record(
     )
 
 
-def _outlier(points: Points, residual: np.ndarray, noise: Noise, i: int) -> Outlier:
-    n = len(points)
-    channel, k = tuple(CHANNELS)[i >= n], i % n
-    assert noise.weight is not None
-    usual = float(noise.u[i] * np.sqrt(noise.weight[i]))
-    return Outlier(
-        channel, points.sweep_names[points.sweep[k]], points.files[points.file[k]], int(points.line[k]),
-        float(residual[i]), float(residual[i]) / usual,
-    )  # fmt: skip
+def _outliers(points: Points, after: np.ndarray, noise: Noise) -> tuple[Outlier, ...]:
+    """The readings that lost nearly all their weight."""
+    if noise.weight is None:
+        return ()
+    usual = noise.u * np.sqrt(noise.weight)
+    used = usual.copy()
+    used[wild(noise)] = np.inf
+    Fy, Mz = zip(np.split(usual, 2), np.split(used, 2), np.split(after, 2), strict=True)
+    return outliers(points, *((a, b) for a, b in zip(Fy, Mz, strict=True)))
 
 
 def _found(found: Explanation, effect: Effect, given: Problem) -> Found:
@@ -260,17 +264,18 @@ def _found(found: Explanation, effect: Effect, given: Problem) -> Found:
     )
     if effect.id in found.predicted:  # evidence says little beside structure that may be anything
         tied = list(found.predicted[effect.id].tied)
-        share = 1.0 / (1.0 + len(tied))
+        confidence = found.certainty(effect) / (1.0 + len(tied))
     else:
         rivals = _rivals(problem, chosen, step, others)
         tied = [r for r in rivals if chosen.log_evidence - r.log_evidence < TIE]
         share = 1.0 / (1.0 + sum(math.exp(min(r.log_evidence - chosen.log_evidence, 50.0)) for r in rivals))
+        confidence = tempered(found.certainty(effect) * share)
     separations = [separation(problem.points, chosen, t, problem.noise.Fy, problem.noise.Mz) for t in tied]
     upto = found.refined if not others else step.best
     numbers, stderr = found.refined.numbers, found.refined.stderr
     return Found(
         effect=effect,
-        confidence=found.certainty(effect) * share,
+        confidence=confidence,
         parameters={n: (numbers[n], stderr.get(n, 0.0)) for n in effect.parameters},
         before={n: given.start.number(n, given.points) for n in effect.parameters},
         gap_after=gap(problem.measured - upto.state.predict(problem.points), found.scatter),

@@ -18,6 +18,7 @@ from mffit.diagnosis.unknown import Bump
 from mffit.diagnosis.validate import Gap, Validation
 from mffit.diagnosis.where import Region
 from mffit.effects import Effect
+from mffit.fit.outliers import Outlier
 from mffit.points import Points
 from mffit.rig import RigFaults, Simulation
 from tir import Tyre
@@ -35,18 +36,6 @@ class Found:
     tied_with: tuple[str, ...]  #: ids that the data do not tell from it
     separation: Separation | None  #: the run that would, if any is tied
     T_ref: float | None = None  #: temperature from which an effect of temperature counts [degC]
-
-
-@dataclass(frozen=True, slots=True)
-class Outlier:
-    """One reading that contradicts all others and lost its weight."""
-
-    channel: str  #: "Fy" | "Mz"
-    sweep: str
-    file: str
-    line: int  #: in that file, from 1; 0 if unknown
-    residual: float  #: measured minus simulated after all corrections [N] or [Nm]
-    z: float  #: in units of the noise of its neighbours
 
 
 @dataclass(frozen=True, slots=True)

@@ -23,8 +23,9 @@ from mffit.effects import NEEDS
 from mffit.quantities import CHANNELS, CONDITIONS
 
 if TYPE_CHECKING:
-    from mffit.diagnosis.result import Diagnosis, Found, Outlier
+    from mffit.diagnosis.result import Diagnosis, Found
     from mffit.diagnosis.unknown import Bump
+    from mffit.fit.outliers import Outlier
     from mffit.diagnosis.validate import Validation
 
 RUNS = {
@@ -186,8 +187,8 @@ def scatter(noise: Noise) -> list[str]:
 def outlier(found: Outlier) -> str:
     """One wild reading."""
     place = f"{found.sweep}, line {found.line}" if found.line else found.sweep
-    size = f"{found.residual:.3g} {CHANNELS[found.channel].unit}"
-    return f"{place}: {found.channel} off by {size}, {abs(found.z):.0f} times its noise"
+    size = f"{found.measured - found.expected:.3g} {CHANNELS[found.channel].unit}"
+    return f"{place}: {found.channel} off by {size}, {found.ratio:.0f} times its noise"
 
 
 TO_DO = {

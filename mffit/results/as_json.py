@@ -113,7 +113,7 @@ def diagnosis(found: Diagnosis) -> dict[str, Any]:
         "unexplained": found.unexplained,
         "unexplained_where": [_region(region) for region in found.unexplained_where],
         "noise_floor": _noise(found.noise),
-        "outliers": [asdict(outlier) for outlier in found.outliers],
+        "outliers": [_outlier(row) for row in found.outliers],
         "coefficients": {n: {"value": v, "stderr": s} for n, (v, s) in found.coefficients.items()},
         "model_after": found.model_after,
         "notes": wording.notes(found),

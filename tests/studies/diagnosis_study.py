@@ -118,12 +118,12 @@ def print_calibration(verdicts: list[Verdict]) -> None:
         for v in verdicts
         for n, t, c in zip(v.named, v.ties, v.confidence, strict=True)
     ]
-    print("confidence: named, right, right or tied with it")
+    print("confidence: named, mean confidence, right, right or tied with it")
     for low, high in ((0.0, 0.5), (0.5, 0.8), (0.8, 0.95), (0.95, 0.99), (0.99, 1.01)):
-        inside = [(right, tied) for c, right, tied in said if low <= c < high]
-        print(
-            f"  {low:.2f} to {min(high, 1.0):.2f}: {len(inside)}, {sum(r for r, _ in inside)}, {sum(t for _, t in inside)}"
-        )
+        inside = [row for row in said if low <= row[0] < high]
+        mean = f"{100.0 * np.mean([c for c, _, _ in inside]):.0f} %" if inside else "-"
+        right, tied = (sum(row[k] for row in inside) for k in (1, 2))
+        print(f"  {low:.2f} to {min(high, 1.0):.2f}: {len(inside)}, {mean}, {right}, {tied}")
 
 
 def print_confusion(verdicts: list[Verdict]) -> None:
