@@ -103,9 +103,9 @@ def diagnose(
     found = explain(
         points, start, stated, candidates, inexact, declared_rig(config, points, start), seen=seen
     )
-    misfit, worse = _misfit(found, points)
+    misfit, better = _misfit(found, points)
     if found.chosen.effects and misfit > STRANGER:
-        notes.append(HardlyThisTyre(misfit, worse))
+        notes.append(HardlyThisTyre(misfit, better))
         found = _without_effects(found)
     progress("checking on left-out sweeps")
     given_problem = Problem(points, start, found.plain.noise)
@@ -147,13 +147,16 @@ def _without_effects(found: Explanation) -> Explanation:
 
 
 def _misfit(found: Explanation, points: Points) -> tuple[float, str]:
-    """How far the best explanation misses the worse channel, in units of its noise as stated; a median, for wild readings."""
+    """How far the best explanation misses the better channel, in units of its noise as stated; a median, for wild readings.
+
+    A channel that is lost in noise leaves the answers of the other.
+    """
     n, noise = len(points), found.scatter
     residual = np.concatenate([points.Fy, points.Mz]) - found.refined.state.predict(points)
     z = np.where(np.isfinite(noise.stated), residual / noise.stated, np.nan)
     misfit = {name: robust(rows) for name, rows in zip(CHANNELS, (z[:n], z[n:]), strict=True)}
-    worse = max(misfit, key=lambda name: np.nan_to_num(misfit[name]))
-    return misfit[worse], worse
+    better = min(misfit, key=lambda name: np.nan_to_num(misfit[name], nan=np.inf))
+    return misfit[better], better
 
 
 def refuse_strangers(points: Points, tyre: Tyre, start: Simulation) -> None:
@@ -285,9 +288,7 @@ def _found(found: Explanation, effect: Effect, given: Problem) -> Found:
     )
 
 
-def _rivals(
-    problem: Problem, chosen: Hypothesis, step: Step, others: tuple[Effect, ...]
-) -> list[Hypothesis]:
+def _rivals(problem: Problem, chosen: Hypothesis, step: Step, others: tuple[Effect, ...]) -> list[Hypothesis]:
     """Explanations with another effect in the place of one, refitted beside the others, but for those without a chance."""
     ids = {e.id for e in chosen.effects}
     names = {name for e in others for name in e.parameters}

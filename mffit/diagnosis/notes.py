@@ -30,7 +30,7 @@ class HardlyThisTyre:
     """The model is so wrong, whatever is added, that naming an effect would be a guess."""
 
     misfit: float  #: in units of the noise
-    channel: str  #: "Fy" | "Mz", the worse
+    channel: str  #: "Fy" | "Mz", the better
 
 
 @dataclass(frozen=True, slots=True)

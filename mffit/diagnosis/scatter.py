@@ -125,9 +125,7 @@ class _Channel:
         return best
 
     def _climb(self, start: np.ndarray, free: tuple[int, ...]) -> tuple[np.ndarray, float]:
-        bounds = np.array(
-            [SCALES, (0.0, LARGEST_GROWTH), (-0.2, LARGEST_MEMORY), (1e-4, LARGEST_SMOOTH)]
-        )
+        bounds = np.array([SCALES, (0.0, LARGEST_GROWTH), (-0.2, LARGEST_MEMORY), (1e-4, LARGEST_SMOOTH)])
         unit = np.array([1.0, 0.02, 1.0, 0.05])
         chosen = list(free)
 

@@ -25,8 +25,8 @@ from mffit.quantities import CHANNELS, CONDITIONS
 if TYPE_CHECKING:
     from mffit.diagnosis.result import Diagnosis, Found
     from mffit.diagnosis.unknown import Bump
-    from mffit.fit.outliers import Outlier
     from mffit.diagnosis.validate import Validation
+    from mffit.fit.outliers import Outlier
 
 RUNS = {
     Run.BACKWARD: "a backward sideslip sweep at {load:.0f} N",
@@ -91,7 +91,7 @@ def note(remark: Note) -> str:
             return "One sweep cannot tell causes apart: add sweeps at another load, camber or direction."
         case Misread():
             return (
-                f"{remark.file}: {remark.sweep} misses the simulation by {100.0 * remark.before:.0f} % of what its sweeps usually "
+                f"{remark.file}: {remark.sweep} misses the simulation by {100.0 * remark.before:.0f} % of what sweeps usually "
                 f"read, as no other does; it looks like {remark.looks}, which leaves {100.0 * remark.after:.2g} %. It was left "
                 f"out. In column {remark.column}: {remark.remedy}."
             )
@@ -100,8 +100,8 @@ def note(remark: Note) -> str:
             return f"Not visible in these data, which lack {lack}: {', '.join(effects)}."
         case HardlyThisTyre(misfit, channel):
             return (
-                f"Cannot tell: the model misses the points' {CHANNELS[channel].word} by {misfit:.0f} times its noise even with the best "
-                "effects added, so it is hardly a model of this tyre; fit it first (mffit build)."
+                f"Cannot tell: the model misses even the {CHANNELS[channel].word} by {misfit:.0f} times its noise even with the "
+                "best effects added, so it is hardly a model of this tyre; fit it first (mffit build)."
             )
         case NoRepair(effects, validation):
             before, after = validation.gap_before, validation.gap_after
@@ -193,7 +193,7 @@ def outlier(found: Outlier) -> str:
 
 TO_DO = {
     "tyre": "nothing at the rig: the corrected property file has it",
-    "environment": "keep it constant, or take it off the readings as the corrected points do; a property file has no place for it",
+    "environment": "keep it constant, or take it off the readings as the corrected points do; a property file cannot hold it",
 }
 """What to do about effects that are none of the rig's."""
 

@@ -64,5 +64,7 @@ class Effect:
         """The same with what differs from run to run written out for these files."""
         if not self.differs_by_run:
             return self
-        free = [f.of_run(file) if f.per_run else f for f in self.free for file in (files if f.per_run else ("",))]
+        free = [
+            f.of_run(file) if f.per_run else f for f in self.free for file in (files if f.per_run else ("",))
+        ]
         return replace(self, free=tuple(free))

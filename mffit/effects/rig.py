@@ -9,14 +9,14 @@ SIDESLIP_MISALIGNMENT = Effect(
     "The steering axis reads zero while the wheel runs at a small sideslip angle.",
     (Free("alpha_0_deg", 0.2, (0.0,), -5.0, 5.0),), (), "even in alpha; turns with the direction",
     ("ply-steer",),
-    remedy="at its reading of zero turn the steering axis by {opposite} deg and call that zero; or add {value} deg to its readings",
+    remedy="turn the steering axis by {opposite} deg at its reading of zero and call that zero; or add {value} deg to all",
     axes=("alpha",),
 )  # fmt: skip
 CAMBER_MISALIGNMENT = Effect(
     "camber-misalignment", "camber axis misaligned", "rig",
     "The camber axis reads zero while the wheel leans a little.",
     (Free("gamma_0_deg", 0.4, (0.0,), -5.0, 5.0),), (), "even in gamma", ("camber-reduction", "path-radius"),
-    remedy="at its reading of zero lean the wheel by {opposite} deg and call that zero; or add {value} deg to its readings",
+    remedy="lean the wheel by {opposite} deg at its reading of zero and call that zero; or add {value} deg to all",
     axes=("gamma",),
 )  # fmt: skip
 LOADCELL_OFFSET_FY = Effect(

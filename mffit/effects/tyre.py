@@ -27,7 +27,8 @@ PLY_STEER = Effect(
 CONICITY = Effect(
     "conicity", "conicity", "tyre",
     "A tread a little conical pulls to one side whichever way it rolls, until the tyre is turned on its rim.",
-    (Free("PVY1", 0.005, (0.0,), -0.15, 0.15),), (), "even in alpha and gamma", ("crosstalk-fz-fy", "loadcell-offset-fy"), prior=-0.3,
+    (Free("PVY1", 0.005, (0.0,), -0.15, 0.15),), (), "even in alpha and gamma",
+    ("crosstalk-fz-fy", "loadcell-offset-fy"), prior=-0.3,
 )  # fmt: skip
 CAMBER_STIFFNESS = Effect(
     "camber-stiffness", "camber stiffness", "tyre",

@@ -108,7 +108,8 @@ def diagnosis(found: Diagnosis) -> dict[str, Any]:
         "effects": [_effect(effect, found.signs) for effect in found.effects],
         "alternatives": [{"id": name, "confidence": weight} for name, weight in found.ranked_alternatives()],
         "limits": [
-            {"id": row.effect.id, "of_usual_size": row.share, "ruled_out": row.ruled_out} for row in found.limits
+            {"id": row.effect.id, "of_usual_size": row.share, "ruled_out": row.ruled_out}
+            for row in found.limits
         ],
         "unexplained": found.unexplained,
         "unexplained_where": [_region(region) for region in found.unexplained_where],

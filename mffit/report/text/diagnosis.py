@@ -39,7 +39,9 @@ def _effect(found: Found, signs: Mapping[str, float]) -> str:
         f"  {name} = {with_u(value, stderr)}, was {number(found.before[name], digits=4)}"
         for name, (value, stderr) in found.parameters.items()
     ]
-    lines += textwrap.wrap(f"to do: {wording.remedy(found, signs)}", WIDTH - 2, initial_indent="  ", subsequent_indent="  ")
+    lines += textwrap.wrap(
+        f"to do: {wording.remedy(found, signs)}", WIDTH - 2, initial_indent="  ", subsequent_indent="  "
+    )
     if found.tied_with:
         lines.append(f"  not told from: {', '.join(found.tied_with)}")
         lines.append(f"  to separate: {wording.separation(found.separation)}")

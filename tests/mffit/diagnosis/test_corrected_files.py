@@ -52,7 +52,7 @@ def test_numbers_were_and_are_and_say_what_to_do(campaign):
 
 
 def test_a_sweep_under_the_wrong_load_is_named_and_left_out(campaign, tmp_path):
-    case, folder, _ = campaign
+    case = campaign[0]
     write_case(case, tmp_path / "rig", tmp_path / "truth.json")
     path = next(path for path in sorted((tmp_path / "rig").glob("sideslip_*_200kPa.csv")))
     with path.open(newline="") as source:
