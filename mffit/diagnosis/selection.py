@@ -75,13 +75,8 @@ def log_prior(effect: Effect, start: Simulation) -> float:
     return effect.prior + (NEVER_IDENTIFIED if unidentified else -NEVER_IDENTIFIED)
 
 
-def forward_step(
-    problem: Problem, before: Hypothesis, candidates: Sequence[Effect], choice: int | None = None
-) -> Step:
-    """Try every candidate beside the accepted effects, all numbers refitted where that has any prospect.
-
-    ``choice`` is the number of effects that there were to choose from, if others than these.
-    """
+def forward_step(problem: Problem, before: Hypothesis, candidates: Sequence[Effect]) -> Step:
+    """Try every candidate beside the accepted effects, all numbers refitted where that has any prospect."""
     taken = {effect.id for effect in before.effects}
     trials = []
     left = problem.promising(before, [e for e in candidates if e.id not in taken])
@@ -92,7 +87,7 @@ def forward_step(
             effects, evidence = (*before.effects, effect), before.log_evidence + gain
             trials.append(replace(before, effects=effects, log_evidence=evidence))
     trials.sort(key=lambda t: -(t.log_evidence + log_prior(t.effects[-1], problem.start)))
-    return Step(before, tuple(trials), price(choice or len(candidates)), problem.start)
+    return Step(before, tuple(trials), price(len(candidates)), problem.start)
 
 
 def price(candidates: int) -> float:
@@ -106,21 +101,12 @@ def select(problem: Problem, candidates: Sequence[Effect]) -> tuple[Hypothesis, 
     Fits end in local optima, so that a set can look better or worse when it is met again. A set that was left for
     another is therefore never entered a second time, which ends the search after finitely many steps.
     """
-    # What may differ in every run takes on the shape of several small causes at once: these come first.
-    particular = [e for e in candidates if not e.differs_by_run]
-    loose = [e for e in candidates if e.differs_by_run]
     current, steps, left = problem.null, [], set[frozenset[str]]()
     while len(current.effects) < min(MOST_EFFECTS, len(candidates)):
+        step = forward_step(problem, current, candidates)
+        steps.append(step)
         left.add(ids(current))
-        for pool in (particular, loose):
-            if not pool:
-                continue
-            step = forward_step(problem, current, pool, len(candidates))
-            if step.trials:
-                steps.append(step)
-            if step.trials and step.passes and ids(step.best) not in left:
-                break
-        else:
+        if not step.passes or ids(step.best) in left:
             break
         near = [trial.effects[-1] for trial in (*step.trials[:EXCHANGED], *steps[0].trials[:EXCHANGED])]
         current = _exchanged(problem, step.best, tuple(dict.fromkeys(near)), left)
