@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 from mffit.points import Points
-from mffit.rig import NO_FAULTS, Simulation
+from mffit.rig import Simulation
 
 
 def corrected_points(points: Points, state: Simulation) -> Points:
@@ -19,6 +17,6 @@ def corrected_points(points: Points, state: Simulation) -> Points:
     points : raw points (n,), angles as read
     state : the simulation after all corrections, backlash included
     """
-    influence = state.predict(points) - replace(state, faults=NO_FAULTS).predict(points)
+    influence = state.predict(points) - state.faultless.predict(points)
     n = len(points)
     return points.replace(Fy=points.Fy - influence[:n], Mz=points.Mz - influence[n:])

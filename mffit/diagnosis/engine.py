@@ -8,18 +8,21 @@ from dataclasses import replace
 
 import numpy as np
 
-from mffit.config import Config
+from mffit.config import Config, axis_signs
 from mffit.diagnosis import wording
 from mffit.diagnosis.candidates import Hypothesis, Problem
 from mffit.diagnosis.conditions import by_condition
+from mffit.diagnosis.confidence import tempered
 from mffit.diagnosis.declared import declared_rig
 from mffit.diagnosis.explain import Explanation, explain, only_first
 from mffit.diagnosis.inexact import EXACT, Inexactness
 from mffit.diagnosis.inexact import declared as declared_inexactness
+from mffit.diagnosis.limits import limits
+from mffit.diagnosis.misread import misread
 from mffit.diagnosis.needs import missing
 from mffit.diagnosis.noise import Noise, noise_model, with_uncertainties
 from mffit.diagnosis.notes import HardlyThisTyre, NoRepair, Note, NotVisible, OneSweep
-from mffit.diagnosis.result import Diagnosis, Found, Outlier
+from mffit.diagnosis.result import Diagnosis, Found
 from mffit.diagnosis.scatter import wild
 from mffit.diagnosis.selection import TIE, Step
 from mffit.diagnosis.ties import separation
@@ -28,6 +31,7 @@ from mffit.diagnosis.validate import Validation, gap, validate
 from mffit.diagnosis.where import Region, where
 from mffit.effects import CATALOG, Effect
 from mffit.errors import InputError
+from mffit.fit.outliers import Outlier, outliers
 from mffit.points import Points
 from mffit.progress import Progress, silent
 from mffit.quantities import CHANNELS
@@ -82,9 +86,14 @@ def diagnose(
     radius = config.rig.radius or math.nan
     start = Simulation(dict(tyre.values), given, simulates_spin, config.model.star, radius_m=radius)
     refuse_strangers(points, tyre, start)
+    wrong = misread(points, start, axis_signs(config))
+    if wrong is not None:
+        points = points.select(np.array([name != wrong.sweep for name in points.sweep_names])[points.sweep])
     points, origin = with_uncertainties(by_condition(points), start)
     inexact = coefficients or declared_inexactness(tyre, config.model.u_coefficients)
     candidates, notes = possible(effects, points, start)
+    if wrong is not None:
+        notes.insert(0, wrong)
     if seen:  # what is refitted in any case is no missing effect
         candidates = [e for e in candidates if not set(e.parameters) <= set(inexact.names)]
     if len(np.unique(points.sweep)) < 2:
@@ -95,16 +104,16 @@ def diagnose(
     found = explain(
         points, start, stated, candidates, inexact, declared_rig(config, points, start), seen=seen
     )
-    misfit = _misfit(found, points)
+    misfit, better = _misfit(found, points)
     if found.chosen.effects and misfit > STRANGER:
-        notes.append(HardlyThisTyre(misfit))
+        notes.append(HardlyThisTyre(misfit, better))
         found = _without_effects(found)
     progress("checking on left-out sweeps")
     given_problem = Problem(points, start, found.plain.noise)
     found, validation, refused = _confirmed(found, given_problem, inexact, seen=seen)
     if refused is not None:
         notes.append(refused)
-    return _record(found, given_problem, tyre, config, validation, notes)
+    return _record(found, given_problem, tyre, config, validation, notes, candidates)
 
 
 def _confirmed(
@@ -127,7 +136,9 @@ def _confirmed(
 
 
 def _helps(validation: Validation) -> bool:
-    return validation.gap_after.chi2_per_dof < validation.gap_before.chi2_per_dof
+    """Whether left-out sweeps are nearer together, and in no channel farther off."""
+    nearer = validation.gap_after.chi2_per_dof < validation.gap_before.chi2_per_dof
+    return nearer and not validation.raised
 
 
 def _without_effects(found: Explanation) -> Explanation:
@@ -136,11 +147,17 @@ def _without_effects(found: Explanation) -> Explanation:
     return replace(found, chosen=null, refined=null, coefficients={}, steps=found.steps[:1])
 
 
-def _misfit(found: Explanation, points: Points) -> float:
-    """How far the best explanation misses the points, in units of the noise as stated; a median, for wild readings."""
+def _misfit(found: Explanation, points: Points) -> tuple[float, str]:
+    """How far the best explanation misses the better channel, in units of its noise as stated; a median, for wild readings.
+
+    A channel that is lost in noise leaves the answers of the other.
+    """
+    n, noise = len(points), found.scatter
     residual = np.concatenate([points.Fy, points.Mz]) - found.refined.state.predict(points)
-    noise = found.scatter
-    return robust(residual[noise.used] / noise.stated[noise.used])
+    z = np.where(np.isfinite(noise.stated), residual / noise.stated, np.nan)
+    misfit = {name: robust(rows) for name, rows in zip(CHANNELS, (z[:n], z[n:]), strict=True)}
+    better = min(misfit, key=lambda name: np.nan_to_num(misfit[name], nan=np.inf))
+    return misfit[better], better
 
 
 def refuse_strangers(points: Points, tyre: Tyre, start: Simulation) -> None:
@@ -179,7 +196,7 @@ def possible(effects: Sequence[Effect], points: Points, start: Simulation) -> tu
         if lack:
             lacking.setdefault(lack, []).append(effect.id)
         else:
-            out.append(effect)
+            out.append(effect.of_runs(sorted({points.files[k] for k in np.unique(points.file)})))
     return out, [NotVisible(lack, tuple(ids)) for lack, ids in lacking.items()]
 
 
@@ -190,6 +207,7 @@ def _record(
     config: Config,
     validation: Validation,
     notes: Sequence[Note],
+    candidates: Sequence[Effect],
 ) -> Diagnosis:
     points, chosen, scatter = given.points, found.chosen, found.scatter
     before, after = given.start.predict(points), found.refined.state.predict(points)
@@ -199,7 +217,8 @@ def _record(
     hardly = any(isinstance(note, HardlyThisTyre) for note in notes)
     unexplained = found.bump.found or found.smooth.found or hardly
     remaining = where(points, residual_after, scatter) if unexplained else ()
-    named = tuple(_found(found, effect) for effect in chosen.effects)
+    named = tuple(_found(found, effect, given) for effect in chosen.effects)
+    known = {i for one in named for i in (one.effect.id, *one.tied_with)}
     return Diagnosis(
         points=points,
         noise=scatter,
@@ -216,27 +235,30 @@ def _record(
         unexplained_where=((_bump_region(found.bump),) if found.bump.found else ()) + remaining[:4],
         bump=found.bump if found.bump.found else None,
         smooth=found.smooth if found.smooth.found else None,
-        outliers=tuple(_outlier(points, residual_after, scatter, int(i)) for i in wild(scatter)),
+        outliers=_outliers(points, after, scatter),
         coefficients=dict(found.coefficients),
+        limits=limits(found.problem, chosen, candidates, known),
+        given=given.start,
         state=found.refined.state,
+        signs=axis_signs(config),
         tyre=_corrected(tyre, found),
         notes=tuple(notes),
         model_after=f"{config.tyre.name}.tir",
     )
 
 
-def _outlier(points: Points, residual: np.ndarray, noise: Noise, i: int) -> Outlier:
-    n = len(points)
-    channel, k = tuple(CHANNELS)[i >= n], i % n
-    assert noise.weight is not None
-    usual = float(noise.u[i] * np.sqrt(noise.weight[i]))
-    return Outlier(
-        channel, points.sweep_names[points.sweep[k]], points.files[points.file[k]], int(points.line[k]),
-        float(residual[i]), float(residual[i]) / usual,
-    )  # fmt: skip
+def _outliers(points: Points, after: np.ndarray, noise: Noise) -> tuple[Outlier, ...]:
+    """The readings that lost nearly all their weight."""
+    if noise.weight is None:
+        return ()
+    usual = noise.u * np.sqrt(noise.weight)
+    used = usual.copy()
+    used[wild(noise)] = np.inf
+    Fy, Mz = zip(np.split(usual, 2), np.split(used, 2), np.split(after, 2), strict=True)
+    return outliers(points, *((a, b) for a, b in zip(Fy, Mz, strict=True)))
 
 
-def _found(found: Explanation, effect: Effect) -> Found:
+def _found(found: Explanation, effect: Effect, given: Problem) -> Found:
     """What is said of one accepted effect: judged beside all the others that were accepted."""
     problem, chosen, steps = found.problem, found.chosen, found.steps
     others = tuple(e for e in chosen.effects if e.id != effect.id)
@@ -244,17 +266,22 @@ def _found(found: Explanation, effect: Effect) -> Found:
         (s for s in steps if s.best.effects[-1].id == effect.id),
         steps[min(len(steps), len(chosen.effects)) - 1],
     )
-    tied = _tied(problem, chosen, step, others)
-    logs = {effect.id: chosen.log_evidence} | {t.effects[-1].id: t.log_evidence for t in tied}
-    top = max(logs.values())
-    share = {name: float(np.exp(v - top)) for name, v in logs.items()}
+    if effect.id in found.predicted:  # evidence says little beside structure that may be anything
+        tied = list(found.predicted[effect.id].tied)
+        confidence = found.certainty(effect) / (1.0 + len(tied))
+    else:
+        rivals = _rivals(problem, chosen, step, others)
+        tied = [r for r in rivals if chosen.log_evidence - r.log_evidence < TIE]
+        share = 1.0 / (1.0 + sum(math.exp(min(r.log_evidence - chosen.log_evidence, 50.0)) for r in rivals))
+        confidence = tempered(found.certainty(effect) * share)
     separations = [separation(problem.points, chosen, t, problem.noise.Fy, problem.noise.Mz) for t in tied]
     upto = found.refined if not others else step.best
     numbers, stderr = found.refined.numbers, found.refined.stderr
     return Found(
         effect=effect,
-        confidence=found.certainty(effect) * share[effect.id] / sum(share.values()),
+        confidence=confidence,
         parameters={n: (numbers[n], stderr.get(n, 0.0)) for n in effect.parameters},
+        before={n: given.start.number(n, given.points) for n in effect.parameters},
         gap_after=gap(problem.measured - upto.state.predict(problem.points), found.scatter),
         tied_with=tuple(t.effects[-1].id for t in tied),
         separation=min(separations, key=lambda s: s.chi2, default=None),
@@ -262,8 +289,8 @@ def _found(found: Explanation, effect: Effect) -> Found:
     )
 
 
-def _tied(problem: Problem, chosen: Hypothesis, step: Step, others: tuple[Effect, ...]) -> list[Hypothesis]:
-    """Explanations with another effect in the place of one, refitted beside the others, that do as well."""
+def _rivals(problem: Problem, chosen: Hypothesis, step: Step, others: tuple[Effect, ...]) -> list[Hypothesis]:
+    """Explanations with another effect in the place of one, refitted beside the others, but for those without a chance."""
     ids = {e.id for e in chosen.effects}
     names = {name for e in others for name in e.parameters}
     kept = {name: value for name, value in chosen.numbers.items() if name in names}
@@ -273,9 +300,7 @@ def _tied(problem: Problem, chosen: Hypothesis, step: Step, others: tuple[Effect
         rival = trial.effects[-1]
         if rival.id in ids or step.best.log_evidence - trial.log_evidence > hopeless:
             continue
-        refitted = problem.fit((*others, rival), kept)
-        if chosen.log_evidence - refitted.log_evidence < TIE:
-            out.append(refitted)
+        out.append(problem.fit((*others, rival), kept))
     return out
 
 

@@ -10,6 +10,7 @@ import numpy as np
 
 from mffit.diagnosis.candidates import Hypothesis, Problem
 from mffit.diagnosis.inexact import Inexactness
+from mffit.diagnosis.leaving_out import Judged, Prediction, chosen_by_prediction, judged
 from mffit.diagnosis.noise import Noise
 from mffit.diagnosis.scatter import Explained, learned
 from mffit.diagnosis.selection import Step, ids, select
@@ -53,6 +54,9 @@ class Explanation:
     unaided: Mapping[str, float] = field(
         default_factory=dict
     )  #: gain of each effect alone, nothing smooth allowed for
+    predicted: Mapping[str, Judged] = field(
+        default_factory=dict
+    )  #: what left-out sweeps say of each effect, where they were chosen by them
 
     @property
     def scatter(self) -> Noise:
@@ -76,6 +80,8 @@ class Explanation:
 
         ``counted``: less what is left unexplained.
         """
+        if effect.id in self.predicted:
+            return self.predicted[effect.id].confidence
         problem, chosen = self.problem, self.chosen
         others = tuple(e for e in chosen.effects if e.id != effect.id)
         numbers = {n: chosen.numbers[n] for e in others for n in e.parameters}
@@ -116,7 +122,7 @@ def explain(
     seen : whether the model was fitted to these points: what its formulae cannot follow then stays as smooth structure, which
         says nothing against an effect beside it
     """
-    basis, found, at = smooth_basis(points), None, start
+    basis, found, at = smooth_basis(points, start.predict(points)), None, start
     stated = noise
     for _ in range(ROUNDS):
         before = noise
@@ -140,7 +146,19 @@ def explain(
         if same:
             break
     assert found is not None
-    return found
+    return _predicted(found, candidates, inexact) if seen and found.smooth.found else found
+
+
+def _predicted(found: Explanation, candidates: Sequence[Effect], inexact: Inexactness) -> Explanation:
+    """With the effects that predict left-out sweeps, where the model's formulae leave smooth structure in any case.
+
+    Beside structure that may be anything, evidence decides little: what a cause is worth is what it says of other sweeps.
+    """
+    prediction = Prediction(found.plain, inexact)
+    chosen = chosen_by_prediction(prediction, candidates)
+    said = {e.id: judged(prediction, chosen, e, candidates) for e in chosen.effects}
+    bump = found.bumps.best(chosen)
+    return _refined(replace(found, chosen=chosen, bump=bump, predicted=said), inexact)
 
 
 def only_first(found: Explanation, inexact: Inexactness) -> Explanation:
@@ -215,9 +233,11 @@ def _learned(
 ) -> Noise:
     """The scatter that is left when everything that could explain something may do so."""
     problem = Problem(points, state, stated.alone())
-    columns = [GENEROUS * g for groups in problem.columns(state, candidates).values() for g in groups[:2]]
-    columns.append(inexact.columns(points, state))
-    named = np.column_stack([c for c in columns if c.size] or [np.zeros((2 * len(points), 0))])
+    nothing = np.zeros((2 * len(points), 0))
+    columns = {e: groups[:2] for e, groups in problem.columns(state, candidates).items()}
+    runs = np.column_stack([nothing, *(g[0] for e, g in columns.items() if e.differs_by_run)])
+    others = [GENEROUS * g for e, groups in columns.items() if not e.differs_by_run for g in groups]
+    named = np.column_stack([nothing, *others, inexact.columns(points, state)])
     predicted = np.nan_to_num(state.predict(points))
     residual = problem.measured - predicted
     for _ in range(MOST_BUMPS):
@@ -232,7 +252,7 @@ def _learned(
             break
         named = np.column_stack([named, GENEROUS * scan.plausible(bump)])
     return learned(
-        replace(stated, scatter=noise.scatter), residual, Explained(named, basis), predicted
+        replace(stated, scatter=noise.scatter), residual, Explained(named, GENEROUS * runs, basis), predicted
     ).alone()
 
 

@@ -41,6 +41,7 @@ MET: dict[str, Callable[[Points], bool]] = {
     "speeds": lambda p: _spread(p.V) > 0.5,
     "times": lambda p: _spread(p.t) > 60.0,
     "distances": _distance_is_not_time,
+    "runs": lambda p: len(np.unique(p.file)) > 2,
     "senses": _both_senses,
     "continuous": lambda p: bool(np.any(p.continuous)),
 }

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from mffit.diagnosis.misread import Misread
 from tir import Quantity
 
 if TYPE_CHECKING:
@@ -29,6 +30,7 @@ class HardlyThisTyre:
     """The model is so wrong, whatever is added, that naming an effect would be a guess."""
 
     misfit: float  #: in units of the noise
+    channel: str  #: "Fy" | "Mz", the better
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,6 +66,7 @@ class DirectMethodRedone:
 
 Note = (
     OneSweep
+    | Misread
     | NotVisible
     | HardlyThisTyre
     | NoRepair

@@ -9,6 +9,7 @@ import numpy as np
 
 from mffit.brief import Brief
 from mffit.diagnosis import wording
+from mffit.diagnosis.limits import Limit
 from mffit.diagnosis.noise import Noise
 from mffit.diagnosis.notes import Note
 from mffit.diagnosis.selection import Step
@@ -18,6 +19,7 @@ from mffit.diagnosis.unknown import Bump
 from mffit.diagnosis.validate import Gap, Validation
 from mffit.diagnosis.where import Region
 from mffit.effects import Effect
+from mffit.fit.outliers import Outlier
 from mffit.points import Points
 from mffit.rig import RigFaults, Simulation
 from tir import Tyre
@@ -30,22 +32,11 @@ class Found:
     effect: Effect
     confidence: float  #: weight of its evidence among all candidates, ties shared
     parameters: Mapping[str, tuple[float, float]]  #: name -> (value, standard error)
+    before: Mapping[str, float]  #: the same as given
     gap_after: Gap  #: with this and all earlier effects
     tied_with: tuple[str, ...]  #: ids that the data do not tell from it
     separation: Separation | None  #: the run that would, if any is tied
     T_ref: float | None = None  #: temperature from which an effect of temperature counts [degC]
-
-
-@dataclass(frozen=True, slots=True)
-class Outlier:
-    """One reading that contradicts all others and lost its weight."""
-
-    channel: str  #: "Fy" | "Mz"
-    sweep: str
-    file: str
-    line: int  #: in that file, from 1; 0 if unknown
-    residual: float  #: measured minus simulated after all corrections [N] or [Nm]
-    z: float  #: in units of the noise of its neighbours
 
 
 @dataclass(frozen=True, slots=True, repr=False)
@@ -71,7 +62,10 @@ class Diagnosis(Brief):
     coefficients: Mapping[
         str, tuple[float, float]
     ]  #: inexact coefficients as estimated beside the effects: value and error
+    limits: tuple[Limit, ...]  #: how large what was not named can be
+    given: Simulation  #: the simulation as given
     state: Simulation  #: the simulation after all corrections
+    signs: Mapping[str, float]  #: +1 or -1 per channel: what turns ISO-W into the rig's axes
     tyre: Tyre  #: the corrected property file
     notes: tuple[Note, ...]
     model_after: str  #: file name of the corrected model in the output folder

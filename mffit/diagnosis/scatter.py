@@ -22,7 +22,12 @@ STATED_WITHIN = math.log(2.0)
 """Standard deviation of the logarithm of what uncertainties are over what they are stated to be."""
 NEEDED = 4.0
 """Gain in log likelihood at which a part of the scatter is accepted."""
+SCALES = (-7.0, 12.0)
+"""Logarithm of the smallest and the largest scale; its prior keeps it near 0 where the data do not insist."""
 LARGEST_GROWTH, LARGEST_MEMORY, LARGEST_SMOOTH = 0.2, 0.97, 0.3
+NEUTRAL = (0.0, 0.005, 0.3, 0.1)
+"""Logarithm of the scale, growth, memory and smooth amplitude from which the scatter is searched for a second time: a long
+memory and a large scale stand in for each other, and the search ends where it began."""
 TAILS = (2.0, 2.5, 3.0, 4.0, 6.0, 10.0, 20.0)
 ROUNDS = 4
 ENOUGH = 700
@@ -37,6 +42,7 @@ class Explained:
     """What could explain a residual, one prior standard deviation of each as a column (2n, k)."""
 
     named: np.ndarray  #: effects, coefficients, bumps
+    runs: np.ndarray  #: effects that are the same along a run, the rivals of errors that are alike along it
     smooth: np.ndarray  #: low-order structure; its amplitude is found with the scatter
 
 
@@ -58,7 +64,7 @@ def learned(noise: Noise, residual: np.ndarray, explained: Explained, size: np.n
         if len(rows):
             channel = _Channel(
                 noise.stated[rows], np.nan_to_num(residual[rows]), explained.named[rows],
-                explained.smooth[rows], np.abs(np.nan_to_num(size[rows])), noise.chain[rows],
+                explained.runs[rows], explained.smooth[rows], np.abs(np.nan_to_num(size[rows])), noise.chain[rows],
             )  # fmt: skip
             scatter[name], weight[rows] = channel.learned(noise.scatter[name])
     return noise.scattering(scatter, size, weight)
@@ -67,9 +73,10 @@ def learned(noise: Noise, residual: np.ndarray, explained: Explained, size: np.n
 class _Channel:
     """The used readings (m,) of one channel."""
 
-    def __init__(self, stated, residual, named, smooth, size, chain) -> None:
+    def __init__(self, stated, residual, named, runs, smooth, size, chain) -> None:
         self.stated, self.residual, self.size = stated, residual, size
         self.named = named[:, np.any(named != 0.0, axis=0)]
+        self.runs = runs[:, np.any(runs != 0.0, axis=0)]
         self.smooth = smooth[:, np.any(smooth != 0.0, axis=0)]
         order = np.argsort(chain, kind="stable")
         follows = chain[order][1:] == chain[order][:-1]
@@ -79,7 +86,19 @@ class _Channel:
 
     def learned(self, start: Scatter) -> tuple[Scatter, np.ndarray]:
         """The scatter, and the weight of every reading (m,)."""
-        x = np.array([math.log(start.scale), start.growth, start.memory, 0.03])
+        first = np.array([math.log(start.scale), start.growth, start.memory, 0.03])
+        x, tails = self._weighed(first)
+        if x[2] and self.runs.shape[1]:
+            memory, named = self.likelihood(x), self.named
+            self.named = np.hstack([named, self.runs])
+            if self.likelihood(self._parts(x)) - memory > NEEDED:
+                x, tails = self._weighed(x)
+            else:
+                self.named = named
+        return Scatter(math.exp(x[0]), float(x[1]), float(x[2]), tails), self.weight
+
+    def _weighed(self, x: np.ndarray) -> tuple[np.ndarray, float]:
+        """Scale, growth, memory and smooth amplitude (4,) and the tails, the weights found with them."""
         tails = math.inf
         for _ in range(ROUNDS):
             x = self._parts(x)
@@ -90,11 +109,12 @@ class _Channel:
             self.weight = weight
             if settled or (math.isinf(tails) and math.isinf(before)):
                 break
-        return Scatter(math.exp(x[0]), float(x[1]), float(x[2]), tails), self.weight
+        return x, tails
 
     def _parts(self, start: np.ndarray) -> np.ndarray:
         """Scale, growth, memory and smooth amplitude (4,), without the parts that the data do not ask for."""
-        best, whole = self._climb(start, (0, 1, 2, 3))
+        climbs = [self._climb(x, (0, 1, 2, 3)) for x in (start, np.array(NEUTRAL))]
+        best, whole = max(climbs, key=lambda climb: climb[1])
         for part in (1, 2):
             reduced = best.copy()
             reduced[part] = 0.0
@@ -105,9 +125,7 @@ class _Channel:
         return best
 
     def _climb(self, start: np.ndarray, free: tuple[int, ...]) -> tuple[np.ndarray, float]:
-        bounds = np.array(
-            [(-2.0, 4.0), (0.0, LARGEST_GROWTH), (-0.2, LARGEST_MEMORY), (1e-4, LARGEST_SMOOTH)]
-        )
+        bounds = np.array([SCALES, (0.0, LARGEST_GROWTH), (-0.2, LARGEST_MEMORY), (1e-4, LARGEST_SMOOTH)])
         unit = np.array([1.0, 0.02, 1.0, 0.05])
         chosen = list(free)
 
@@ -124,7 +142,7 @@ class _Channel:
             first[chosen] / unit[chosen],
             bounds=bounds[chosen] / unit[chosen][:, None],
             method="L-BFGS-B",
-            options={"maxiter": 12, "ftol": 1e-5},
+            options={"maxiter": 20, "ftol": 1e-6},
         )
         return full(found.x), -float(found.fun)
 

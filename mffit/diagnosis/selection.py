@@ -127,11 +127,16 @@ def _exchanged(
         best = current
         for i in range(len(current.effects)):
             rest = tuple(e for k, e in enumerate(current.effects) if k != i)
-            for other in candidates:
-                others = (*rest, other)
-                if other in current.effects or frozenset(e.id for e in others) in left:
+            new = [
+                e for e in candidates
+                if e not in current.effects and frozenset(o.id for o in (*rest, e)) not in left
+            ]  # fmt: skip
+            without = problem.fit(rest, _numbers_of(rest, current))
+            lacks = best.log_evidence - without.log_evidence
+            for other, gain in problem.promising(without, new):
+                if (1.0 + CLOSE) * gain + HOPE < lacks:
                     continue
-                trial = problem.fit(others, _numbers_of(rest, current))
+                trial = problem.fit((*rest, other), _numbers_of(rest, current))
                 if trial.log_evidence > best.log_evidence + EXCHANGE_GAIN:
                     best = trial
         if best is current:

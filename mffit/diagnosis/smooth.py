@@ -44,30 +44,25 @@ class Smooth:
 NO_SMOOTH = Smooth(dict.fromkeys(CHANNELS, 0.0), 0.0)
 
 
-def smooth_basis(points: Points) -> np.ndarray:
+def smooth_basis(points: Points, simulated: np.ndarray) -> np.ndarray:
     """Smooth changes (2n, k) of the readings, Fy and Mz apart, each as large as its order makes it plausible.
 
-    With amplitude 1 they vary together as much as the readings of their channel do.
+    With amplitude 1 they vary together as much as the readings of their channel do. Changes of gain are in proportion to
+    the ``simulated`` readings (2n,): the measured ones carry the errors that they would have to be told from.
     """
-    shapes = _shapes(points)
-    nothing = np.zeros_like(shapes)
+    shapes, gains = _shapes(points), _gains(points)
     rows = []
-    for values in (points.Fy, points.Mz):
+    for values, model in zip((points.Fy, points.Mz), np.split(simulated, 2), strict=True):
         known = values[np.isfinite(values)]
-        rows.append(shapes * (np.sqrt(np.mean(known**2)) if len(known) else 0.0))
+        size = float(np.sqrt(np.mean(known**2))) if len(known) else 0.0
+        columns = np.hstack([size * shapes, np.nan_to_num(model)[:, None] * gains])
+        rows.append(columns * (size / max(float(np.sqrt(np.mean(np.sum(columns**2, axis=1)))), 1e-12)))
+    nothing = np.zeros_like(rows[0])
     return np.vstack([np.hstack([rows[0], nothing]), np.hstack([nothing, rows[1]])])
 
 
-def _shapes(points: Points) -> np.ndarray:
-    """Products (n, k) of Legendre polynomials, of unit variance altogether."""
-    a = _orders(np.arctan(points.alpha / BEND), ANGLES)
-    g = _orders(points.gamma, ANGLES)
-    angles = {
-        (i, j): a[:, i] * g[:, j]
-        for i, j in itertools.product(range(a.shape[1]), range(g.shape[1]))
-        if i + j <= ANGLES
-    }
-    columns = {(*key, 0): value for key, value in angles.items()}
+def _conditions(points: Points) -> list[np.ndarray]:
+    """Orders (n, k) over everything but the angles."""
     others = [
         (np.log(points.Fz), 2),
         (points.p, 2),
@@ -76,16 +71,32 @@ def _shapes(points: Points) -> np.ndarray:
         (points.t, SLOW),
         (points.direction.astype(float), 1),
     ]
-    for number, (values, most) in enumerate(others, start=1):
-        along = _orders(np.where(np.isfinite(values), values, np.nan), most)
+    return [_orders(np.where(np.isfinite(values), values, np.nan), most) for values, most in others]
+
+
+def _gains(points: Points) -> np.ndarray:
+    """Changes (n, k) of gain, relative, with load, pressure, temperature, speed, time or direction."""
+    columns = [along[:, k] / (1.0 + k) for along in _conditions(points) for k in range(1, along.shape[1])]
+    return np.column_stack(columns) if columns else np.zeros((len(points), 0))
+
+
+def _shapes(points: Points) -> np.ndarray:
+    """Products (n, k) of Legendre polynomials, each as large as its order makes it plausible."""
+    a = _orders(np.arctan(points.alpha / BEND), ANGLES)
+    g = _orders(points.gamma, ANGLES)
+    angles = {
+        (i, j): a[:, i] * g[:, j]
+        for i, j in itertools.product(range(a.shape[1]), range(g.shape[1]))
+        if i + j <= ANGLES
+    }
+    columns = {(*key, 0): value for key, value in angles.items()}
+    for number, along in enumerate(_conditions(points), start=1):
         for k in range(1, along.shape[1]):
             for (i, j), shape in angles.items():
                 if i + j + min(k, 2) <= CROSSED or (k > 2 and i + j <= 1):
                     columns[i, j, 10 * number + k] = shape * along[:, k]
-    scaled = np.column_stack(
-        [value / (1.0 + i + j + key % 10) for (i, j, key), value in columns.items() if np.any(value)]
-    )
-    return scaled / np.sqrt(np.mean(np.sum(scaled**2, axis=1)))
+    scaled = [value / (1.0 + i + j + key % 10) for (i, j, key), value in columns.items() if np.any(value)]
+    return np.column_stack(scaled)
 
 
 def _orders(values: np.ndarray, most: int) -> np.ndarray:

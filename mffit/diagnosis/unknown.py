@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -38,7 +39,7 @@ class Bump:
         return self.gain > NEEDED
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class BumpScan:
     """All bumps that the programme could show."""
 
@@ -46,6 +47,17 @@ class BumpScan:
     bumps: np.ndarray  #: (n, k) unit bumps over the points
     regions: tuple[dict[str, tuple[float, float]], ...]
     spread: Mapping[str, float]  #: plausible amplitude by channel
+
+    @cached_property
+    def _white(self) -> list[tuple[str, int, np.ndarray, np.ndarray]]:
+        """All bumps as seen through the noise: channel, number of the first, shapes (m, k) and their power (k,)."""
+        out = []
+        for channel in self.spread:
+            for first in range(0, len(self.regions), AT_ONCE):
+                shapes = self.noise.whiten(self.column(channel, slice(first, first + AT_ONCE)))
+                power = np.einsum("ij,ij->j", shapes, shapes)
+                out.append((channel, first, shapes.astype(np.float32), power))
+        return out
 
     def best(self, hypothesis: Hypothesis, limit: float = math.inf) -> Bump:
         """The bump that explains most of what the hypothesis leaves, its own freed numbers projected out.
@@ -61,21 +73,20 @@ class BumpScan:
         residual = np.clip(hypothesis.residual, -limit, limit)
         tried = math.log(max(len(self.regions) * len(self.spread), 1))
         best = Bump("Fy", {}, 0.0, -math.inf)
-        for channel, spread in self.spread.items():
-            for first in range(0, len(self.regions), AT_ONCE):
-                shapes = self.noise.whiten(self.column(channel, slice(first, first + AT_ONCE)))
-                score = shapes.T @ residual
-                power = np.einsum("ij,ij->j", shapes, shapes)
-                if Q is not None:
-                    inside = Q.T @ shapes
-                    score -= inside.T @ (Q.T @ residual)
-                    power -= np.einsum("ij,ij->j", inside, inside)
-                precision = np.maximum(power, 0.0) + spread**-2.0
-                gain = 0.5 * score**2 / precision - 0.5 * np.log(precision * spread**2) - tried
-                k = int(np.argmax(gain))
-                if gain[k] > best.gain:
-                    amplitude = float(score[k] / precision[k])
-                    best = Bump(channel, self.regions[first + k], amplitude, float(gain[k]), first + k)
+        for channel, first, shapes, whole in self._white:
+            spread = self.spread[channel]
+            score = (shapes.T @ residual.astype(np.float32)).astype(float)
+            power = whole.copy()
+            if Q is not None:
+                inside = (Q.astype(np.float32).T @ shapes).astype(float)
+                score -= inside.T @ (Q.T @ residual)
+                power -= np.einsum("ij,ij->j", inside, inside)
+            precision = np.maximum(power, 0.0) + spread**-2.0
+            gain = 0.5 * score**2 / precision - 0.5 * np.log(precision * spread**2) - tried
+            k = int(np.argmax(gain))
+            if gain[k] > best.gain:
+                amplitude = float(score[k] / precision[k])
+                best = Bump(channel, self.regions[first + k], amplitude, float(gain[k]), first + k)
         return best
 
     def column(self, channel: str, which: slice) -> np.ndarray:

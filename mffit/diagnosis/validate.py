@@ -9,6 +9,7 @@ import numpy as np
 from mffit.diagnosis.candidates import Hypothesis, Problem
 from mffit.diagnosis.inexact import EXACT, Inexactness
 from mffit.diagnosis.noise import Noise
+from mffit.quantities import CHANNELS
 from mffit.scatter import rms
 
 MOST_FOLDS = 8
@@ -37,6 +38,8 @@ class Validation:
     folds: int  #: groups of whole sweeps, left out in turn
     gap_before: Gap
     gap_after: Gap
+    raised: tuple[str, ...] = ()
+    """Channels that are farther off afterwards, by more than numbers without any meaning would bring by chance."""
 
 
 def gap(residual: np.ndarray, noise: Noise) -> Gap:
@@ -77,4 +80,16 @@ def validate(
             held_out[both] = measured[both] - rest.refine(fitted, inexact)[0].state.predict(chosen)
             if seen:
                 before[both] = measured[both] - rest.refine(rest.null, inexact)[0].state.predict(chosen)
-    return Validation(len(folds), gap(before, problem.noise), gap(held_out, problem.noise))
+    numbers = sum(len(e.free) for e in hypothesis.effects) + len(inexact.names)
+    raised = _raised(before, held_out, problem.noise, numbers)
+    return Validation(len(folds), gap(before, problem.noise), gap(held_out, problem.noise), raised)
+
+
+def _raised(before: np.ndarray, after: np.ndarray, noise: Noise, numbers: int) -> tuple[str, ...]:
+    """Channels whose chi2 rises: ``numbers`` fitted to noise raise that of left-out sweeps by as much, give or take."""
+    u = np.where(np.isfinite(noise.u), noise.u, np.inf)
+    change = np.nan_to_num(after / u) ** 2 - np.nan_to_num(before / u) ** 2
+    chance = numbers + 2.0 * np.sqrt(2.0 * numbers)
+    return tuple(
+        name for name, rows in zip(CHANNELS, np.split(change, 2), strict=True) if rows.sum() > chance
+    )

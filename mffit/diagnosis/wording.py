@@ -6,6 +6,7 @@ import math
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, assert_never
 
+from mffit.diagnosis.misread import Misread
 from mffit.diagnosis.noise import Noise, Origin
 from mffit.diagnosis.notes import (
     DirectMethodRedone,
@@ -22,9 +23,10 @@ from mffit.effects import NEEDS
 from mffit.quantities import CHANNELS, CONDITIONS
 
 if TYPE_CHECKING:
-    from mffit.diagnosis.result import Diagnosis, Found, Outlier
+    from mffit.diagnosis.result import Diagnosis, Found
     from mffit.diagnosis.unknown import Bump
     from mffit.diagnosis.validate import Validation
+    from mffit.fit.outliers import Outlier
 
 RUNS = {
     Run.BACKWARD: "a backward sideslip sweep at {load:.0f} N",
@@ -48,7 +50,13 @@ ORIGINS = {
 
 
 def headline(diagnosis: Diagnosis) -> str:
-    """The whole answer in one sentence."""
+    """The whole answer in one sentence, and one more before it if a sweep was written down wrongly."""
+    wrong = next((remark for remark in diagnosis.notes if isinstance(remark, Misread)), None)
+    answer = _answer(diagnosis)
+    return answer if wrong is None else f"{wrong.file} looks like {wrong.looks} and was left out. {answer}"
+
+
+def _answer(diagnosis: Diagnosis) -> str:
     before, after, noise = diagnosis.gap_before, diagnosis.gap_after, diagnosis.noise
     bump = diagnosis.bump
     if not diagnosis.effects:
@@ -81,13 +89,19 @@ def note(remark: Note) -> str:
     match remark:
         case OneSweep():
             return "One sweep cannot tell causes apart: add sweeps at another load, camber or direction."
+        case Misread():
+            return (
+                f"{remark.file}: {remark.sweep} misses the simulation by {100.0 * remark.before:.0f} % of what sweeps usually "
+                f"read, as no other does; it looks like {remark.looks}, which leaves {100.0 * remark.after:.2g} %. It was left "
+                f"out. In column {remark.column}: {remark.remedy}."
+            )
         case NotVisible(needs, effects):
             lack = " and ".join(NEEDS[need] for need in needs)
             return f"Not visible in these data, which lack {lack}: {', '.join(effects)}."
-        case HardlyThisTyre(misfit):
+        case HardlyThisTyre(misfit, channel):
             return (
-                f"Cannot tell: the model misses the points by {misfit:.0f} times their noise even with the best effects "
-                "added, so it is hardly a model of this tyre; fit it first (mffit build)."
+                f"Cannot tell: the model misses even the {CHANNELS[channel].word} by {misfit:.0f} times its noise even with the "
+                "best effects added, so it is hardly a model of this tyre; fit it first (mffit build)."
             )
         case NoRepair(effects, validation):
             before, after = validation.gap_before, validation.gap_after
@@ -173,8 +187,28 @@ def scatter(noise: Noise) -> list[str]:
 def outlier(found: Outlier) -> str:
     """One wild reading."""
     place = f"{found.sweep}, line {found.line}" if found.line else found.sweep
-    size = f"{found.residual:.3g} {CHANNELS[found.channel].unit}"
-    return f"{place}: {found.channel} off by {size}, {abs(found.z):.0f} times its noise"
+    size = f"{found.measured - found.expected:.3g} {CHANNELS[found.channel].unit}"
+    return f"{place}: {found.channel} off by {size}, {found.ratio:.0f} times its noise"
+
+
+TO_DO = {
+    "tyre": "nothing at the rig: the corrected property file has it",
+    "environment": "keep it constant, or take it off the readings as the corrected points do; a property file cannot hold it",
+}
+"""What to do about effects that are none of the rig's."""
+
+
+def remedy(found: Found, signs: Mapping[str, float]) -> str:
+    """What to do about an effect; numbers in the rig's own axes."""
+    effect = found.effect
+    if effect.switches:
+        return "switch the simulation's turn slip on"
+    if not effect.remedy:
+        return TO_DO.get(effect.kind, "")
+    value, _ = found.parameters[effect.free[0].name]
+    value *= math.prod(signs[axis] for axis in effect.axes)
+    plus = "+" if effect.axes else ""
+    return effect.remedy.format(value=f"{value:{plus}.3g}", opposite=f"{-value:{plus}.3g}")
 
 
 def status(effect: str, before: float, stderr: float) -> str:

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+from mffit.rig import OF_RUN
 
 
 @dataclass(frozen=True, slots=True)
@@ -20,6 +23,11 @@ class Free:
     lower: float = float("-inf")  #: of the number itself, not of its change
     upper: float = float("inf")
     relative: bool = False  #: spread and scan are relative to the current value
+    per_run: bool = False  #: one such number for every run, added to the fault of this name
+
+    def of_run(self, file: str) -> Free:
+        """The number of the run that a file holds."""
+        return replace(self, name=f"{self.name}{OF_RUN}{file}", per_run=False)
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,8 +42,29 @@ class Effect:
     needs: tuple[str, ...] = ()  #: what the data must vary for the effect to be seen; see effects.needs
     parity: str = ""  #: under alpha, gamma, phi_t -> reversed
     confusable_with: tuple[str, ...] = ()
+    remedy: str = ""  #: what to do at the rig; {value}, {opposite}: the first number in the rig's own axes, with its sign
+    axes: tuple[str, ...] = ()  #: channels in whose axes that number counts
     prior: float = 0.0  #: log prior weight, decides ties only: rig causes before tyre causes
 
     @property
     def parameters(self) -> tuple[str, ...]:
         return tuple(free.name for free in self.free)
+
+    @property
+    def switches(self) -> bool:
+        """Whether it switches the simulation's turn slip on."""
+        return any(free.name == "turn_slip" for free in self.free)
+
+    @property
+    def differs_by_run(self) -> bool:
+        """Whether it frees numbers of single runs."""
+        return any(free.per_run or OF_RUN in free.name for free in self.free)
+
+    def of_runs(self, files: Sequence[str]) -> Effect:
+        """The same with what differs from run to run written out for these files."""
+        if not self.differs_by_run:
+            return self
+        free = [
+            f.of_run(file) if f.per_run else f for f in self.free for file in (files if f.per_run else ("",))
+        ]
+        return replace(self, free=tuple(free))

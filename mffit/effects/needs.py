@@ -15,6 +15,7 @@ NEEDS = {
     "speeds": "two speeds",
     "times": "the time of every point (t_s)",
     "distances": "the time of every point (t_s) and speeds that differ during the test",
+    "runs": "at least three runs, each in a file of its own",
     "senses": "sideslip swept both up and down",
     "continuous": "a continuous sweep (time_s, moving alpha)",
 }

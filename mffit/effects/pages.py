@@ -54,6 +54,7 @@ def page(effect: Effect, catalog: Sequence[Effect] = CATALOG) -> str:
         "",
         RESULT[effect.kind],
         "",
+        *_remedy(effect),
         "## What the data must have",
         f"{_sentence(needs)}.",
         "",
@@ -102,8 +103,17 @@ def write(folder: Path, catalog: Sequence[Effect] = CATALOG) -> None:
         (folder / name).write_text(text, encoding="utf-8")
 
 
+def _remedy(effect: Effect) -> list[str]:
+    """What to do at the rig, without the number."""
+    if not effect.remedy:
+        return []
+    said = effect.remedy.format(value="the number found", opposite="the opposite of the number found")
+    return ["## What to do at the rig", f"{_sentence([said])}. Signs are those of the rig's own axes.", ""]
+
+
 def _row(free: Free) -> str:
     unit, meaning = _described(free.name)
+    meaning += ", one of them for every run" if free.per_run else ""
     if free.name == "turn_slip":
         return f"| `turn_slip` | {unit} | {meaning} | off to on | – | – |"
     scale = " × its value" if free.relative else ""

@@ -22,12 +22,13 @@ CAMBER_REDUCTION_LOAD = Effect(
 PLY_STEER = Effect(
     "ply-steer", "ply-steer", "tyre",
     "The belt's outer plies steer the tyre, which shifts the side-force curve sideways and turns with the direction of rolling.",
-    (Free("PHY1", 0.001, (0.0,), -0.03, 0.03),), (), "even in alpha", ("sideslip-misalignment",), -0.5,
+    (Free("PHY1", 0.001, (0.0,), -0.03, 0.03),), (), "even in alpha", ("sideslip-misalignment",), prior=-0.5,
 )  # fmt: skip
 CONICITY = Effect(
     "conicity", "conicity", "tyre",
     "A tread a little conical pulls to one side whichever way it rolls, until the tyre is turned on its rim.",
-    (Free("PVY1", 0.005, (0.0,), -0.15, 0.15),), (), "even in alpha and gamma", ("crosstalk-fz-fy", "loadcell-offset-fy"), -0.3,
+    (Free("PVY1", 0.005, (0.0,), -0.15, 0.15),), (), "even in alpha and gamma",
+    ("crosstalk-fz-fy", "loadcell-offset-fy"), prior=-0.3,
 )  # fmt: skip
 CAMBER_STIFFNESS = Effect(
     "camber-stiffness", "camber stiffness", "tyre",
@@ -82,7 +83,7 @@ TRAIL_CAMBER = Effect(
 RESIDUAL_TORQUE = Effect(
     "residual-torque", "residual torque", "tyre",
     "A moment remains at zero slip, from plies and tread pattern.",
-    (Free("QDZ6", 0.003, (0.0,), -0.1, 0.1),), ("moment",), "even", ("loadcell-offset-mz",), -0.3,
+    (Free("QDZ6", 0.003, (0.0,), -0.1, 0.1),), ("moment",), "even", ("loadcell-offset-mz",), prior=-0.3,
 )  # fmt: skip
 RESIDUAL_TORQUE_CAMBER = Effect(
     "residual-torque-camber", "residual torque with camber", "tyre",

@@ -19,15 +19,16 @@ from mffit.diagnosis.notes import DirectMethodRedone, ModelFittedFirst, ModelOfL
 from mffit.effects import CATALOG, Effect
 from mffit.output import output_folder, refuse_early
 from mffit.pipeline.building import build
+from mffit.pipeline.correcting import CORRECTED_POINTS, CORRECTED_TOML, write_corrected
 from mffit.pipeline.inputs import inputs_of, read_base
 from mffit.pipeline.measuring import epsilon_gamma, without_play
-from mffit.pipeline.provenance import known_of_model, rig_of_build, use_of
+from mffit.pipeline.provenance import fitted_to, known_of_model, rig_of_build, use_of
 from mffit.points import Points
 from mffit.progress import Progress, silent
 from mffit.results import as_json
 from tir import Tyre
 
-WRITTEN = ("diagnosis.json", "diagnosis.html")
+WRITTEN = ("diagnosis.json", "diagnosis.html", CORRECTED_TOML, CORRECTED_POINTS)
 """What a run is sure to write beside a property file, known before the work begins."""
 
 
@@ -66,17 +67,19 @@ def diagnose(
     tyre, choice = chosen_model(config, model, progress)
     with threadpool_limits(1):
         read = model if isinstance(model, str | Path) else last_build(config) if model is None else None
+        same = fitted_to(tyre, config)
         known, seen = known_of_model(
             tyre,
             config,
             None if read is None else Path(read),
+            same=same,
             fresh=any(isinstance(note, ModelFittedFirst) for note in choice),
         )
         diagnosis = find_effects(
             points,
             tyre,
             config,
-            rig=rig_of_build(tyre, config),
+            rig=rig_of_build(tyre, config) if same else None,
             effects=effects,
             coefficients=known,
             seen=seen,
@@ -85,7 +88,7 @@ def diagnose(
     notes = (*choice, *diagnosis.notes, *_redone(config, points, diagnosis, base))
     diagnosis = replace(diagnosis, notes=notes)
     if out is not None:
-        write_diagnosis(diagnosis, Path(out), protected=inputs)
+        write_diagnosis(diagnosis, Path(out), protected=inputs, config=config)
     return diagnosis
 
 
@@ -123,11 +126,18 @@ def _redone(
     return (DirectMethodRedone(causes, before, epsilon_gamma(without_play(config), mended, base)),)
 
 
-def write_diagnosis(diagnosis: Diagnosis, out: Path, protected: Iterable[Path] = ()) -> None:
-    """Write every output of a diagnosis, or nothing; the ``protected`` files were read and are not replaced."""
+def write_diagnosis(
+    diagnosis: Diagnosis, out: Path, protected: Iterable[Path] = (), config: Config | None = None
+) -> None:
+    """Write every output of a diagnosis, or nothing; the ``protected`` files were read and are not replaced.
+
+    With the ``config`` that was diagnosed the corrected points are written as well, and a configuration to build from them.
+    """
     from mffit import report
 
     with output_folder(out, by="diagnose", protected=protected) as folder:
         diagnosis.tyre.write(folder / diagnosis.model_after)
         as_json.write(folder / "diagnosis.json", as_json.diagnosis(diagnosis))
+        if config is not None:
+            write_corrected(diagnosis, config, out, folder)
         report.write_diagnosis(diagnosis, folder)

@@ -59,9 +59,7 @@ def use_of(tyre: Tyre) -> str | None:
 
 
 def rig_of_build(tyre: Tyre, config: Config) -> RigFaults | None:
-    """The rig errors that the build found, if the file was fitted to these very sweeps; None otherwise."""
-    if not fitted_to(tyre, config):
-        return None
+    """The rig errors that a build on these very sweeps found; None if its file does not say."""
     found = {name: tyre.measured[RIG + name].value for name in FAULT_NAMES if RIG + name in tyre.measured}
     return RigFaults(**{"backlash_deg": config.rig.backlash_deg, **found}) if found else None
 
@@ -73,7 +71,7 @@ def fitted_to(tyre: Tyre, config: Config) -> bool:
 
 
 def known_of_model(
-    tyre: Tyre, config: Config, path: Path | None, *, fresh: bool
+    tyre: Tyre, config: Config, path: Path | None, *, same: bool, fresh: bool
 ) -> tuple[Inexactness | None, bool]:
     """What is known of a model's coefficients beside ``model.u_coefficients``, None if nothing is; and whether it was fitted
     to these very sweeps.
@@ -85,10 +83,11 @@ def known_of_model(
     ----------
     tyre, config : the model and what it is compared with
     path : where the model was read; None if it was not
+    same : whether a build fitted it to these very sweeps, see :func:`fitted_to`
     fresh : whether it was fitted just now
     """
     posterior = None if path is None else posterior_of(tyre, path)
-    if fitted_to(tyre, config) and (fresh or posterior is not None):
+    if same and (fresh or posterior is not None):
         return refitted(tyre, curved=config.rig.on_disc), True
     return (None if config.model.u_coefficients else posterior), False
 

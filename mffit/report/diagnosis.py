@@ -30,6 +30,8 @@ def write_diagnosis(diagnosis: Diagnosis, folder: Path) -> None:
 
     view = view_of(diagnosis)
     figures: dict[str, Callable[[], Figure]] = {"gap": partial(gap.gap_bars, view)}
+    if view.shown:
+        figures["curves"] = partial(gap.curves_before_after, view)
     if shown_steps(view):
         figures["evidence"] = partial(gap.evidence, view)
     if view.channels:

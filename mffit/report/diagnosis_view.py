@@ -13,7 +13,9 @@ from mffit.diagnosis.where import Region
 from mffit.effects import CATALOG
 from mffit.points import Points
 from mffit.quantities import CHANNELS
-from mffit.report.curves import Condition, conditions
+from mffit.report.curves import Condition, Curve, conditions, curves
+from mffit.report.lines import Line, model_lines
+from mffit.rig import FAULT_NAMES, OF_RUN, UNITS
 from tir.parameters import BY_NAME
 
 MOST_FRAMES = 3
@@ -62,6 +64,16 @@ class RankedStep:
 
 
 @dataclass(frozen=True, slots=True)
+class Shown:
+    """One sweep with the simulation before and after."""
+
+    word: str  #: why it is shown
+    curve: Curve
+    before: Line
+    after: Line
+
+
+@dataclass(frozen=True, slots=True)
 class DiagnosisView:
     """Everything the diagnosis page needs."""
 
@@ -74,6 +86,8 @@ class DiagnosisView:
     kinds: Mapping[str, str]  #: effect id -> tyre, rig or environment
     names: Mapping[str, str]  #: effect id -> plain name
     descriptions: Mapping[str, str]  #: coefficient -> what it is
+    units: Mapping[str, str]  #: of every number that was found, empty without one
+    shown: tuple[Shown, ...]  #: the worst and the typical sweep
 
     @property
     def changed(self) -> bool:
@@ -109,7 +123,33 @@ def view_of(diagnosis: Diagnosis) -> DiagnosisView:
         kinds={key: effect.kind for key, effect in known.items()},
         names={key: effect.name for key, effect in known.items()},
         descriptions={name: BY_NAME[name].description for name in freed if name in BY_NAME},
+        units={name: _unit(name) for name in freed},
+        shown=_shown(diagnosis, channels),
     )
+
+
+def _unit(name: str) -> str:
+    """Unit of a coefficient or of a rig's fault, of all runs or of one."""
+    fault = name.partition(OF_RUN)[0]
+    unit = UNITS[fault] if fault in FAULT_NAMES else BY_NAME[name].unit if name in BY_NAME else ""
+    return "" if unit == "-" else unit
+
+
+def _shown(diagnosis: Diagnosis, channels: Sequence[GapChannel]) -> tuple[Shown, ...]:
+    """The sweep that the given model misses most, in units of the noise, and the one in the middle."""
+    found = curves(diagnosis.points)
+    if not found or not channels:
+        return ()
+    squares = np.nanmean([c.before**2 for c in channels], axis=0)
+    order = sorted(found, key=lambda curve: float(np.nanmean(squares[curve.index])))
+    chosen = {"Worst": order[-1], "Typical": order[(len(order) - 1) // 2]}
+    if len(order) == 1:
+        chosen.pop("Typical")
+    before, after = (
+        model_lines(simulation, diagnosis.points, list(chosen.values()))
+        for simulation in (diagnosis.given, diagnosis.state)
+    )
+    return tuple(Shown(word, curve, before[curve.key], after[curve.key]) for word, curve in chosen.items())
 
 
 def _ranked(step: Step) -> RankedStep:

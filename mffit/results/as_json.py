@@ -115,12 +115,16 @@ def diagnosis(found: Diagnosis) -> dict[str, Any]:
             "gap_after": _gap(found.validation.gap_after),
         },
         "where": [_region(region) for region in found.where],
-        "effects": [_effect(effect) for effect in found.effects],
+        "effects": [_effect(effect, found.signs) for effect in found.effects],
         "alternatives": [{"id": name, "confidence": weight} for name, weight in found.ranked_alternatives()],
+        "limits": [
+            {"id": row.effect.id, "of_usual_size": row.share, "ruled_out": row.ruled_out}
+            for row in found.limits
+        ],
         "unexplained": found.unexplained,
         "unexplained_where": [_region(region) for region in found.unexplained_where],
         "noise_floor": _noise(found.noise),
-        "outliers": [asdict(outlier) for outlier in found.outliers],
+        "outliers": [_outlier(row) for row in found.outliers],
         "coefficients": {n: {"value": v, "stderr": s} for n, (v, s) in found.coefficients.items()},
         "model_after": found.model_after,
         "notes": wording.notes(found),
@@ -424,14 +428,17 @@ def _region(region: Region) -> dict[str, Any]:
     return {"channel": region.channel, "region": limits, "bias": region.bias, "z": region.z}
 
 
-def _effect(found: Found) -> dict[str, Any]:
+def _effect(found: Found, signs: Mapping[str, float]) -> dict[str, Any]:
     return {
         "id": found.effect.id,
         "name": found.effect.name,
         "kind": found.effect.kind,
         "physics": found.effect.physics,
         "confidence": found.confidence,
-        "parameters": {n: {"value": v, "stderr": s} for n, (v, s) in found.parameters.items()},
+        "parameters": {
+            n: {"was": found.before[n], "value": v, "stderr": s} for n, (v, s) in found.parameters.items()
+        },
+        "to_do": wording.remedy(found, signs),
         "gap_after": _gap(found.gap_after),
         "tied_with": list(found.tied_with),
         "separate_by": wording.separation(found.separation),

@@ -55,3 +55,5 @@ NO_FAULTS = RigFaults()
 FAULT_NAMES: tuple[str, ...] = tuple(row.name for row in fields(RigFaults))
 UNITS: dict[str, str] = {row.name: row.metadata["unit"] for row in fields(RigFaults)}
 MEANINGS: dict[str, str] = {row.name: row.metadata["meaning"] for row in fields(RigFaults)}
+OF_RUN = "@"
+"""Stands between a fault and the file of the one run in which that much is added to it: ``F0_N@zeros.csv``."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import asdict, dataclass, replace
+from dataclasses import asdict, dataclass, field, replace
 from types import SimpleNamespace
 from typing import Any, NamedTuple
 
@@ -13,7 +13,7 @@ import numpy as np
 from mffit.brief import Brief
 from mffit.points import Points, main_path
 from mffit.quantities import CHANNELS
-from mffit.rig.faults import FAULT_NAMES, NO_FAULTS, RigFaults
+from mffit.rig.faults import FAULT_NAMES, NO_FAULTS, OF_RUN, RigFaults
 from mffit.rig.lag import lagged_points
 from mffit.rig.play import Moment, Settled, settled
 from tir import Tyre
@@ -52,6 +52,9 @@ class Simulation(Brief):
     star: bool = False  #: tan(alpha), sin(gamma) as inputs
     relaxation_m: float = 0.0  #: lag of continuous sweeps [m]
     radius_m: float = math.nan  #: declared radius of the rig's usual path [m]; NaN: that of most points
+    of_runs: Mapping[str, float] = field(
+        default_factory=dict
+    )  #: what single runs add to a fault, as ``F0_N@zeros.csv``: [deg], [N] or [Nm]
 
     @classmethod
     def of(
@@ -66,6 +69,8 @@ class Simulation(Brief):
             return float(self.turn_slip)
         if name == RELAXATION:
             return self.relaxation_m
+        if OF_RUN in name:
+            return self.of_runs.get(name, 0.0)
         if name == "path_radius_m" and math.isnan(self.faults.path_radius_m):
             return self.declared(points)
         return float(getattr(self.faults, name) if name in FAULT_NAMES else self.values[name])
@@ -77,14 +82,22 @@ class Simulation(Brief):
     def with_numbers(self, numbers: Mapping[str, float]) -> Simulation:
         """The same with some coefficients, rig faults or switches replaced."""
         faults = {name: value for name, value in numbers.items() if name in FAULT_NAMES}
-        values = {n: v for n, v in numbers.items() if n not in FAULT_NAMES and n not in (SWITCH, RELAXATION)}
+        of_runs = {name: value for name, value in numbers.items() if OF_RUN in name}
+        others = {*FAULT_NAMES, *of_runs, SWITCH, RELAXATION}
+        values = {n: v for n, v in numbers.items() if n not in others}
         return replace(
             self,
             values={**self.values, **values} if values else self.values,
             faults=replace(self.faults, **faults) if faults else self.faults,
             turn_slip=bool(numbers.get(SWITCH, self.turn_slip)),
             relaxation_m=float(numbers.get(RELAXATION, self.relaxation_m)),
+            of_runs={**self.of_runs, **of_runs} if of_runs else self.of_runs,
         )
+
+    @property
+    def faultless(self) -> Simulation:
+        """The same tyre on a perfect rig at reference conditions."""
+        return replace(self, faults=NO_FAULTS, of_runs={})
 
     def readings(self, points: Points) -> Readings:
         """What the rig would report at every point.
@@ -118,7 +131,7 @@ class Simulation(Brief):
 
     def _reported(self, points: Points, numbers: Mapping[str, Traced]) -> tuple[Any, Any]:
         """Fy and Mz as the rig reports them, plain or traced."""
-        fault = self._faults(numbers)
+        fault = self._faults(numbers, points)
         Fy, Mz = self._forces(points, self._true_alpha(points, fault, numbers), fault, numbers)
         environment = _environment(points, fault)
         Fy = fault.gain * Fy * environment
@@ -126,9 +139,14 @@ class Simulation(Brief):
             Fy = Fy * (1.0 + 1e-3 * fault.nonlinearity_per_kN * abs(Fy))
         return Fy + fault.F0_N + fault.crosstalk * points.Fz, Mz * environment + fault.M0_Nm
 
-    def _faults(self, numbers: Mapping[str, Traced]) -> Any:
-        changed = {n: x for n, x in numbers.items() if n in FAULT_NAMES}
-        return SimpleNamespace(**{**asdict(self.faults), **changed})
+    def _faults(self, numbers: Mapping[str, Traced], points: Points) -> Any:
+        """The rig's faults, with what single runs add to them."""
+        fault = {**asdict(self.faults), **{n: x for n, x in numbers.items() if n in FAULT_NAMES}}
+        of_runs = {**self.of_runs, **{n: x for n, x in numbers.items() if OF_RUN in n}}
+        for key, added in of_runs.items():
+            name, _, file = key.partition(OF_RUN)
+            fault[name] = fault[name] + added * of_run(points, file)
+        return SimpleNamespace(**fault)
 
     def _forces(
         self,
@@ -182,7 +200,7 @@ class Simulation(Brief):
             return alpha
         half_play = 0.5 * RADIANS * fault.backlash_deg
 
-        plainly = self._faults({})
+        plainly = self._faults({}, points)
 
         def moment_of(which: np.ndarray) -> Moment:
             part = points if len(which) == len(points) else points.select(which)
@@ -201,7 +219,8 @@ class Simulation(Brief):
         which = np.flatnonzero(rest.floats)
         again = traced({n: x.value for n, x in numbers.items()} | {"alpha": rest.alpha[which]})
         at = again.pop("alpha")
-        Mz = self._moment(points.select(which), at, self._faults(again), again)
+        some = points.select(which)
+        Mz = self._moment(some, at, self._faults(again, some), again)
         slopes = gradient(Mz, [*again.values(), at])
         moves = np.zeros((len(points), len(numbers)))
         turning = slopes[:, -1:]
@@ -219,6 +238,11 @@ class Simulation(Brief):
             return alpha
         step = 1e-4
         return relaxation.derived(alpha, (lagged_points(points, length + step).alpha - alpha) / step)
+
+
+def of_run(points: Points, file: str) -> np.ndarray:
+    """1 at the points (n,) of the run that a file holds, else 0."""
+    return np.array([float(name == file) for name in points.files])[points.file]
 
 
 def declared_radius(points: Points) -> float:
@@ -268,12 +292,16 @@ def _yielding(give: Any, alpha: Any, moment: Callable[[Any], Any], derivatives: 
     held: Any = start
     slope: Any = 0.0
     if k:
-        slope = _moment_slope(moment, start)
+        turned = plain(moment(held))
+        slope = (plain(moment(held + DIFFERENCE)) - turned) / DIFFERENCE
         for _ in range(YIELDINGS):
-            move = (start + k * plain(moment(held)) - held) / (1.0 - k * slope)
+            move = (start + k * turned - held) / (1.0 - k * slope)
             held = held + move
             if np.max(np.abs(move)) < SETTLED:
                 break
+            before, turned = turned, plain(moment(held))
+            far = np.abs(move) > SETTLED
+            slope = np.where(far, (turned - before) / np.where(far, move, 1.0), slope)
     if not derivatives:
         return held
     if k:

@@ -18,7 +18,7 @@ from mffit.effects import CATALOG
 from mffit.errors import InputError
 from mffit.pipeline.building import undistorted
 from mffit.pipeline.diagnosing import last_build
-from mffit.pipeline.provenance import rig_of_build
+from mffit.pipeline.provenance import fitted_to, rig_of_build
 from mffit.results import as_json
 
 OFFSET = [effect for effect in CATALOG if effect.id in ("loadcell-offset-fy", "camber-misalignment")]
@@ -43,7 +43,9 @@ def small(tmp_path_factory):
 def test_a_file_knows_the_rig_of_the_sweeps_it_was_fitted_to(small):
     result, folder = small
     settings = config.load(folder / "tyre.toml")
-    found = rig_of_build(tir.read(last_build(settings)), settings)
+    file = tir.read(last_build(settings))
+    assert fitted_to(file, settings)
+    found = rig_of_build(file, settings)
     for name, (value, _) in result.fit.rig.items():
         assert getattr(found, name) == pytest.approx(value, rel=1e-6), name
     assert abs(found.F0_N - 15.0) < 6.0
@@ -57,7 +59,8 @@ def test_a_file_fitted_to_other_sweeps_does_not(small, tmp_path):
     changed = tmp_path / "sideslip_900.csv"
     changed.write_text(changed.read_text().rstrip("\n") + "\n\n")
     settings = config.load(tmp_path / "tyre.toml")
-    assert rig_of_build(tir.read(folder / "out" / "small.tir"), settings) is None
+    assert not fitted_to(tir.read(folder / "out" / "small.tir"), settings)
+    assert not fitted_to(truth(), settings)
     assert rig_of_build(truth(), settings) is None
 
 

@@ -3,15 +3,18 @@
 from __future__ import annotations
 
 import argparse
+import json
 import sys
 import time
 from collections import Counter
+from collections.abc import Iterable
+from dataclasses import asdict
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "mffit" / "diagnosis"))
 
 import numpy as np
-from blind_hard import SCATTERS, hard, smooth, triples
+from blind_hard import SCATTERS, doubtful, hard, smooth, triples
 from blind_scores import Plan, Verdict, judge, rates, suite
 
 
@@ -23,16 +26,24 @@ def main() -> None:
     parser.add_argument(
         "--hard", action="store_true", help="noise not as stated, inexact models, unknown effects"
     )
+    parser.add_argument(
+        "--doubtful", action="store_true", help="what leaves doubt under these conditions, for the confidence"
+    )
+    parser.add_argument("--keep", type=Path, help="file to which every verdict is added as a line of JSON")
+    parser.add_argument("--reliability", type=Path, nargs="+", help="only the table of kept verdicts")
     options = parser.parse_args()
-    if options.hard:
-        print_hard(options.seed, options.only)
+    if options.reliability:
+        print_calibration(kept(options.reliability))
+        return
+    if options.hard or options.doubtful:
+        print_hard(options)
         return
     verdicts: list[Verdict] = []
     for plan in suite(options.seed, options.repeats):
         if options.only not in plan.name:
             continue
         began = time.perf_counter()
-        verdict = judge(plan.draw())
+        verdict = keep(judge(plan.draw()), options.keep)
         verdicts.append(verdict)
         if not verdict.outright:
             print(f"{verdict.line()}  {time.perf_counter() - began:.1f} s", flush=True)
@@ -41,24 +52,45 @@ def main() -> None:
         print(f"{name:46s} " + (f"{hits:g} of {of:g}, {100.0 * hits / of:.1f} %" if of else f"{hits:.1f}"))
 
 
-def print_hard(seed: int, only: str) -> None:
+def print_hard(options: argparse.Namespace) -> None:
     """A line for every condition: 12 single causes and 6 right models each."""
     print(f"{'row':12s} right first/ties  extras  unexplained  named on empty  worse  shrink  seconds")
     every: list[Verdict] = []
-    for row in SCATTERS:
-        every += judged(row, list(hard(row, seed)), only)
-    every += judged("smooth", list(smooth(seed)), only)
-    every += judged("triples", list(triples(seed)), only)
+    if options.doubtful:
+        every += judged("doubtful", list(doubtful(options.seed)), options)
+    for row in SCATTERS if options.hard else ():
+        every += judged(row, list(hard(row, options.seed)), options)
+    if options.hard:
+        every += judged("smooth", list(smooth(options.seed)), options)
+        every += judged("triples", list(triples(options.seed)), options)
     print_calibration(every)
 
 
-def judged(row: str, plans: list[Plan], only: str) -> list[Verdict]:
+def keep(verdict: Verdict, file: Path | None) -> Verdict:
+    """The verdict, added to a file if there is one."""
+    if file is not None:
+        with file.open("a", encoding="utf-8") as out:
+            out.write(json.dumps(asdict(verdict)) + "\n")
+    return verdict
+
+
+def kept(files: Iterable[Path]) -> list[Verdict]:
+    """Verdicts of earlier runs."""
+    rows = [json.loads(line) for file in files for line in file.read_text(encoding="utf-8").splitlines()]
+    return [Verdict(**{n: _tuples(value) for n, value in row.items()}) for row in rows]
+
+
+def _tuples(value: object) -> object:
+    return tuple(map(_tuples, value)) if isinstance(value, list) else value
+
+
+def judged(row: str, plans: list[Plan], options: argparse.Namespace) -> list[Verdict]:
     """Judge the cases of a row and print it."""
-    if only not in row:
+    if options.only not in row:
         return []
     verdicts = []
     for plan in plans:
-        verdicts.append(judge(plan.draw()))
+        verdicts.append(keep(judge(plan.draw()), options.keep))
         if not verdicts[-1].outright:
             print("    " + verdicts[-1].line(), flush=True)
     caused = [v for v in verdicts if v.causes]
@@ -71,7 +103,7 @@ def judged(row: str, plans: list[Plan], only: str) -> list[Verdict]:
         f"{row:12s} {first}/{ties} of {len(caused)} (all {all_found})  {sum(v.extra for v in verdicts)} extra  "
         f"{sum(v.unexplained for v in verdicts)} of {len(verdicts)} unexplained  "
         f"{sum(bool(v.named) for v in verdicts if not v.causes)} of {len(verdicts) - len(caused)} named on empty  "
-        f"{sum(0.0 < v.shrink < 0.98 for v in verdicts)} worse  "
+        f"{sum(bool(v.named) and v.shrink < 0.98 for v in verdicts)} worse  "
         f"shrink {float(np.median([v.shrink for v in caused or verdicts])):.1f}  "
         f"{float(np.median([v.seconds for v in verdicts])):.1f} s, at most {max(v.seconds for v in verdicts):.1f}",
         flush=True,
@@ -86,12 +118,12 @@ def print_calibration(verdicts: list[Verdict]) -> None:
         for v in verdicts
         for n, t, c in zip(v.named, v.ties, v.confidence, strict=True)
     ]
-    print("confidence: named, right, right or tied with it")
+    print("confidence: named, mean confidence, right, right or tied with it")
     for low, high in ((0.0, 0.5), (0.5, 0.8), (0.8, 0.95), (0.95, 0.99), (0.99, 1.01)):
-        inside = [(right, tied) for c, right, tied in said if low <= c < high]
-        print(
-            f"  {low:.2f} to {min(high, 1.0):.2f}: {len(inside)}, {sum(r for r, _ in inside)}, {sum(t for _, t in inside)}"
-        )
+        inside = [row for row in said if low <= row[0] < high]
+        mean = f"{100.0 * np.mean([c for c, _, _ in inside]):.0f} %" if inside else "-"
+        right, tied = (sum(row[k] for row in inside) for k in (1, 2))
+        print(f"  {low:.2f} to {min(high, 1.0):.2f}: {len(inside)}, {mean}, {right}, {tied}")
 
 
 def print_confusion(verdicts: list[Verdict]) -> None:

@@ -61,6 +61,37 @@ def gap_bars(view: DiagnosisView) -> Figure:
     return figure
 
 
+def curves_before_after(view: DiagnosisView) -> Figure:
+    """The worst and the typical sweep: readings, the simulation as given and with what was added, a panel per channel."""
+    from matplotlib.lines import Line2D
+
+    figure, rows = style.panel_grid([len(view.shown) * len(view.channels)], 4, height=2.1)
+    panels = [(shown, channel) for shown in view.shown for channel in view.channels]
+    for ax, (shown, channel) in zip(rows[0], panels, strict=True):
+        index, over = shown.curve.index, shown.curve.over
+        x = np.degrees(getattr(view.points, over)[index])
+        ax.axhline(0.0, color=style.FAINT, lw=0.8)
+        ax.plot(x, getattr(view.points, channel.name)[index], "o", ms=3.2, mew=0.0, color=style.INK)
+        ax.plot(shown.before.x, shown.before.raw[channel.name], color=style.CONTRAST, lw=1.2, ls="--")
+        if view.changed:
+            ax.plot(shown.after.x, shown.after.raw[channel.name], color=style.ACCENT, lw=1.2)
+        other = labels.ANGLES["gamma" if over == "alpha" else "alpha"]
+        held = f", {other.symbol} {shown.curve.held:.0f}°" if abs(shown.curve.held) >= 0.5 else ""
+        title = f"{shown.word}: {labels.LOAD.of(shown.curve.load)}{held}{'' if shown.curve.forward else ', backward'}"
+        ax.set_title(title)
+        ax.set_xlabel(labels.ANGLES[over].axis, labelpad=1.5)
+        ax.set_ylabel(f"{channel.name} [{channel.unit}]", labelpad=1.0)
+        style.few_ticks(ax)
+    handles = [
+        Line2D([], [], ls="none", marker="o", ms=3.5, color=style.INK, label="measured"),
+        Line2D([], [], ls="--", color=style.CONTRAST, label="simulated as given"),
+    ]
+    if view.changed:
+        handles.append(Line2D([], [], color=style.ACCENT, label="with what was found"))
+    style.legend_above(figure, handles)
+    return figure
+
+
 def residuals_before_after(view: DiagnosisView) -> Figure:
     """Maps side by side: a row per load and pressure, channels before and after, one colour scale for all."""
     shown = most_populated(view.conditions, MOST_CONDITIONS)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import textwrap
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 from mffit.diagnosis import Diagnosis, Found, wording
 from mffit.diagnosis.where import Region
@@ -26,16 +26,22 @@ def diagnosis_summary(diagnosis: Diagnosis) -> str:
     parts = [
         textwrap.fill(diagnosis.headline, WIDTH),
         table(head, [(name, *(number(value, digits=3) for value in values)) for name, *values in rows]),
-        *(_effect(found) for found in diagnosis.effects),
+        *(_effect(found, diagnosis.signs) for found in diagnosis.effects),
         _regions(diagnosis.unexplained_where) if diagnosis.unexplained else "",
         paragraphs(wording.notes(diagnosis)),
     ]
     return blocks(parts)
 
 
-def _effect(found: Found) -> str:
+def _effect(found: Found, signs: Mapping[str, float]) -> str:
     lines = [f"{found.effect.id} ({found.effect.kind}), confidence {per_cent(found.confidence)}"]
-    lines += [f"  {name} = {with_u(value, stderr)}" for name, (value, stderr) in found.parameters.items()]
+    lines += [
+        f"  {name} = {with_u(value, stderr)}, was {number(found.before[name], digits=4)}"
+        for name, (value, stderr) in found.parameters.items()
+    ]
+    lines += textwrap.wrap(
+        f"to do: {wording.remedy(found, signs)}", WIDTH - 2, initial_indent="  ", subsequent_indent="  "
+    )
     if found.tied_with:
         lines.append(f"  not told from: {', '.join(found.tied_with)}")
         lines.append(f"  to separate: {wording.separation(found.separation)}")

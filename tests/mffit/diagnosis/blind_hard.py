@@ -51,8 +51,16 @@ SCATTERS: dict[str, Scatter] = {
     "correlated": _correlated,
     "inexact": _gauss,
     "compliance": _gauss,
+    "runs": _gauss,
 }
 """Every row of the study, and what its readings scatter like; both channels alike."""
+
+ASKED = {
+    "compliance": ("steering-compliance",),
+    "runs": ("run-offsets-fy", "run-offsets-mz", "run-offsets-alpha"),
+}
+"""Causes that are hidden in rows of their own, and in no other."""
+USUAL = [name for name in CAUSES if not any(name in causes for causes in ASKED.values())]
 
 SMOOTH: dict[str, Callable[[Programme, np.ndarray], np.ndarray]] = {
     "slip wave": lambda run, Fy: 45.0 * np.sin(np.radians(20.0) * run.alpha_deg) * (run.Fz / 1500.0),
@@ -66,10 +74,9 @@ SMOOTH: dict[str, Callable[[Programme, np.ndarray], np.ndarray]] = {
 def hard(row: str, seed: int, singles: int = 12, empty: int = 6) -> Iterator[Plan]:
     """Cases of one row: single causes, plain to see and moderate in turn, then cases without any."""
     rng = np.random.default_rng((seed, *row.encode()))
-    usual = [name for name in CAUSES if name != "steering-compliance"]
-    causes = rng.choice(usual, singles, replace=False).tolist()
-    if row == "compliance":
-        causes = ["steering-compliance"] * singles
+    causes = rng.choice(USUAL, singles, replace=False).tolist()
+    if row in ASKED:
+        causes = [name for name in ASKED[row] for _ in range(singles // len(ASKED[row]))]
     for k in range(singles + empty):
         hidden = (str(causes[k]),) if k < singles else ()
         yield _plan(row, hidden, ("large", "moderate")[k % 2], int(rng.integers(1 << 31)))
@@ -87,7 +94,7 @@ def triples(seed: int, count: int = 10) -> Iterator[Plan]:
     from blind_scores import LOOK_ALIKE
 
     rng = np.random.default_rng((seed, 3))
-    names = [name for name in CAUSES if name not in ("turn-slip", "steering-compliance")]
+    names = [name for name in USUAL if name != "turn-slip"]
     for k in range(count):
         while True:
             drawn = tuple(rng.choice(names, 3, replace=False).tolist())
@@ -96,6 +103,21 @@ def triples(seed: int, count: int = 10) -> Iterator[Plan]:
         number = int(rng.integers(1 << 31))
         name = f"triple-{k}-{'+'.join(drawn)}"
         yield Plan(name, lambda name=name, drawn=drawn, n=number: draw_case(name, drawn, "large", n))
+
+
+def doubtful(seed: int) -> Iterator[Plan]:
+    """Cases that leave doubt, under every condition: faint and moderate causes, alone and two together, and none."""
+    from blind_scores import LOOK_ALIKE
+
+    rng = np.random.default_rng((seed, 17))
+    names = [name for name in CAUSES if name != "turn-slip"]
+    for row in (row for row in SCATTERS if row not in ASKED):
+        singles = [(str(name),) for name in rng.choice(names, 9, replace=False)]
+        pairs = [tuple(rng.choice(names, 2, replace=False).tolist()) for _ in range(3)]
+        pairs = [pair for pair in pairs if not any(set(pair) <= alike for alike in LOOK_ALIKE)]
+        for k, causes in enumerate([*singles, *pairs, ()]):
+            level = ("faint", "faint", "moderate")[k % 3]
+            yield _plan(row, causes, level, int(rng.integers(1 << 31)))
 
 
 def _plan(row: str, causes: tuple[str, ...], level: str, seed: int) -> Plan:

@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from types import SimpleNamespace
+from zlib import crc32
 
 import numpy as np
 
@@ -95,15 +96,32 @@ class Machine:
     k_t: float = 0.0  #: [1/s]
     compliance: float = 0.0  #: of the steering: the moment turns the wheel by this [deg/Nm]
 
+    run_Fy: float = 0.0  #: standard deviation of the load cell's zero from run to run [N]
+    run_Mz: float = 0.0  #: [Nm]
+    run_alpha_deg: float = 0.0  #: of the sideslip axis' zero
+    draw: int = 0  #: of what differs from run to run
+
     def with_faults(self, faults: Mapping[str, float]) -> Machine:
         return replace(self, **faults)
+
+
+def of_each_run(run: Programme, size: float, seed: int) -> np.ndarray:
+    """An offset (n,) for every run, drawn from its name, so that it is there again when the run is asked for elsewhere."""
+    names = run.sweep.tolist()
+    drawn = {
+        n: np.random.default_rng((seed, crc32(n.encode()))).normal() if size else 0.0 for n in set(names)
+    }
+    middle = np.mean(list(drawn.values()))  # what all runs have in common is another cause
+    return size * np.array([drawn[name] - middle for name in names])
 
 
 def report(
     tyre: Tyre, machine: Machine, run: Programme, *, turn_slip: bool = True
 ) -> tuple[np.ndarray, np.ndarray]:
     """Fy [N] and Mz [Nm] that the rig reports without noise; arrays (n,)."""
-    alpha = np.deg2rad(run.alpha_deg + machine.alpha_0_deg)
+    alpha = np.deg2rad(
+        run.alpha_deg + machine.alpha_0_deg + of_each_run(run, machine.run_alpha_deg, machine.draw)
+    )
     Fy, Mz = _at_the_tyre(tyre, machine, run, alpha, turn_slip)
     for _ in range(40 if machine.compliance else 0):  # halves its error in each round, or better
         yielding = alpha + np.deg2rad(machine.compliance) * Mz
@@ -117,8 +135,11 @@ def report(
     )
     surroundings = surroundings * (1.0 + machine.k_t * run.t)
     return (
-        machine.gain * surroundings * Fy + machine.F0 + machine.crosstalk * run.Fz,
-        surroundings * Mz + machine.M0,
+        machine.gain * surroundings * Fy
+        + machine.F0
+        + machine.crosstalk * run.Fz
+        + of_each_run(run, machine.run_Fy, machine.draw),
+        surroundings * Mz + machine.M0 + of_each_run(run, machine.run_Mz, machine.draw),
     )
 
 

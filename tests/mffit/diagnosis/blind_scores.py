@@ -22,7 +22,9 @@ from mffit.rig import Simulation
 LOOK_ALIKE = (
     {"sideslip-misalignment", "ply-steer"},
     {"path-radius", "camber-misalignment", "camber-reduction", "camber-reduction-load"},
-    {"conicity", "crosstalk-fz-fy", "loadcell-offset-fy"},
+    {"conicity", "crosstalk-fz-fy", "loadcell-offset-fy", "run-offsets-fy"},
+    {"loadcell-offset-mz", "run-offsets-mz"},
+    {"sideslip-misalignment", "run-offsets-alpha"},
     {"residual-torque", "loadcell-offset-mz"},
     {"spin-trail-loss", "trail-camber"},
 )

@@ -72,6 +72,9 @@ CAUSES: dict[str, Hidden] = {
     "speed": Hidden(machine={"k_V": 0.006}),
     "drift": Hidden(machine={"k_t": 2e-6}),
     "steering-compliance": Hidden(machine={"compliance": 0.006}),
+    "run-offsets-fy": Hidden(machine={"run_Fy": 12.0}),
+    "run-offsets-mz": Hidden(machine={"run_Mz": 1.2}),
+    "run-offsets-alpha": Hidden(machine={"run_alpha_deg": 0.12}),
 }
 """Every effect that steady points on a disc can show."""
 
@@ -151,6 +154,8 @@ def inexact_names(tyre: Tyre) -> list[str]:
 def _hide(cause, target, given: Tyre, true: Tyre, machine: Machine, run, u_coefficients, rng):
     """Put one cause into the truth, at the size whose gap has the wanted chi2; the given model does without it."""
     hidden = CAUSES[cause]
+    if cause.startswith("run-offsets"):
+        machine = machine.with_faults({"draw": int(rng.integers(1 << 31))})
     names = [*hidden.tyre, *hidden.machine]
     signs = {n: (rng.choice((-1.0, 1.0)) if hidden.sign else 1.0) * rng.uniform(0.6, 1.4) for n in names}
     if cause == "camber-reduction-load":

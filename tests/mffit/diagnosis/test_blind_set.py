@@ -14,7 +14,7 @@ OUTRIGHT = (
     "8035-curvature-asymmetry-faint-exact",
     "8042-residual-torque-large-inexact",
     "8082-backlash-moderate-inexact",
-    "8202-spin-torque+crosstalk-fz-fy-large-exact",
+    "8202-camber-reduction-load+speed-large-exact",
     "8400-none-large-inexact",
     "8605-leaned-bump-large-exact",
 )

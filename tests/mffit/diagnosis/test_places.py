@@ -154,6 +154,10 @@ CONDITIONS = {
         {"alpha": [0.0, 0.1, 0.1, 0.0], **TWO_SWEEPS},
         {"alpha": [0.0, 0.1, 0.0, 0.1], **TWO_SWEEPS},
     ),
+    "runs": (
+        {"file": [0, 1, 2, 2], "files": ("a", "b", "c")},
+        {"file": [0, 1, 1, 1], "files": ("a", "b", "c")},
+    ),
     "continuous": ({"continuous": [False, True]}, {"continuous": False}),
 }
 
@@ -161,7 +165,7 @@ CONDITIONS = {
 @pytest.mark.parametrize("need", MET)
 def test_a_need_is_met_by_what_varies_it_and_by_nothing_less(need):
     plain = {"alpha": 0.0, "gamma": 0.0, "Fz": 1400.0, "p": 250e3, "V": 6.0, "phi_t": 0.0}
-    plain["mount"] = [1] * (4 if need in ("distances", "senses") else 2)
+    plain["mount"] = [1] * (4 if need in ("distances", "senses", "runs") else 2)
     enough, too_little = (make_points(**plain | changes) for changes in CONDITIONS[need])
     assert MET[need](enough)
     assert not MET[need](too_little)

@@ -38,7 +38,9 @@ class Table:
         )
 
     def promising(self, before, candidates):
-        return [(effect, 0.0) for effect in candidates]
+        beside = frozenset(e.id for e in before.effects)
+        known = {e: self.evidence.get(beside | {e.id}, (0.0,))[0] for e in candidates}
+        return [(e, max(value - before.log_evidence, 0.0)) for e, value in known.items()]
 
     def fit(self, effects, start=None):
         self.fits += 1

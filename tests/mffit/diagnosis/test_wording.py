@@ -19,11 +19,11 @@ from mffit.diagnosis.notes import (
     NotVisible,
     OneSweep,
 )
-from mffit.diagnosis.result import Outlier
 from mffit.diagnosis.ties import Run, Separation
 from mffit.diagnosis.unknown import Bump
 from mffit.diagnosis.validate import Gap, Validation
 from mffit.effects import NEEDS
+from mffit.fit.outliers import Outlier
 from mffit.results import as_json
 from tir import Quantity
 
@@ -96,7 +96,7 @@ def test_every_run_has_words_and_only_a_telling_one_is_recommended(run):
     [
         (OneSweep(), "One sweep cannot tell"),
         (NotVisible(("curved", "moment"), ("spin-torque",)), "which lack a curved path and Mz: spin-torque."),
-        (HardlyThisTyre(41.7), "by 42 times their noise"),
+        (HardlyThisTyre(41.7, "Mz"), "even the self-aligning moment by 42 times its noise"),
         (
             NoRepair(("camber stiffness",), Validation(8, Gap(36.7, 2.0, 4.0), Gap(37.5, 2.1, 4.2))),
             "No repair is written: camber stiffness would fit these points better, but on sweeps that were left out the "
@@ -123,15 +123,15 @@ def test_every_note_becomes_a_sentence(note, words):
 def test_the_file_keeps_its_keys(camber):
     content = as_json.diagnosis(replace(camber, notes=(OneSweep(),)))
     assert list(content) == [
-        "headline", "gap_before", "gap_after", "validation", "where", "effects", "alternatives", "unexplained",
+        "headline", "gap_before", "gap_after", "validation", "where", "effects", "alternatives", "limits", "unexplained",
         "unexplained_where", "noise_floor", "outliers", "coefficients", "model_after", "notes",
     ]  # fmt: skip
     assert list(content["effects"][0]) == [
-        "id", "name", "kind", "physics", "confidence", "parameters", "gap_after", "tied_with", "separate_by",
+        "id", "name", "kind", "physics", "confidence", "parameters", "to_do", "gap_after", "tied_with", "separate_by",
     ]  # fmt: skip
     assert list(content["where"][0]) == ["channel", "region", "bias", "z"]
     assert content["effects"][0]["separate_by"] == ""
-    assert content["effects"][0]["parameters"]["PKY6"].keys() == {"value", "stderr"}
+    assert content["effects"][0]["parameters"]["PKY6"].keys() == {"was", "value", "stderr"}
     assert content["validation"].keys() == {"method", "gap_before", "gap_after"}
     assert content["notes"] == [wording.note(OneSweep())]
 
@@ -153,5 +153,5 @@ def test_the_noise_is_stated_beside_the_declared_one():
 
 
 def test_a_wild_reading_is_named_by_its_line():
-    said = wording.outlier(Outlier("Fy", "sideslip_900", "sideslip_900.csv", 14, -91.0, -15.2))
+    said = wording.outlier(Outlier("sideslip_900.csv", 14, "sideslip_900", 3, "Fy", 109.0, 200.0, 15.2))
     assert said == "sideslip_900, line 14: Fy off by -91 N, 15 times its noise"

@@ -55,6 +55,9 @@ FREES = {
     "temperature-stiffness": "k_T_stiffness_per_K",
     "wear": "wear_per_km",
     "warm-up": "warm_up",
+    "run-offsets-fy": "F0_N",
+    "run-offsets-mz": "M0_Nm",
+    "run-offsets-alpha": "alpha_0_deg",
 }
 """The ids that files and scripts rely on, and what each at least sets free."""
 

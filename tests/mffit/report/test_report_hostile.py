@@ -11,7 +11,6 @@ from report_toys import TRUE, made_config, made_points, made_result, programme
 
 import tir
 from mffit.diagnosis import diagnose
-from mffit.diagnosis.result import Outlier as Reading
 from mffit.fit import Doubt, Outlier
 from mffit.report import write_build, write_diagnosis
 
@@ -101,7 +100,7 @@ def test_the_diagnosis_shows_hostile_names_as_text(settings, tmp_path):
     found = diagnose(points, tir.read(TRUE), settings)
     found = dataclasses.replace(
         found,
-        outliers=(Reading("Fy", HOSTILE, HOSTILE, 3, 40.0, 9.0),),
+        outliers=(Outlier(HOSTILE, 3, HOSTILE, 0, "Fy", 40.0, 0.0, 9.0),),
         model_after=f"{HOSTILE}.tir",
     )
     write_diagnosis(found, tmp_path)

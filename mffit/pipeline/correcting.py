@@ -1,0 +1,78 @@
+"""The readings without what a diagnosis found wrong at the rig, as files that build."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pandas as pd
+import tomli_w
+
+from mffit.config import Config, resolved
+from mffit.diagnosis import Diagnosis, corrected_points
+from mffit.points import Points
+from mffit.points.loading import settled_sweeps
+
+CORRECTED_TOML, CORRECTED_POINTS = "corrected.toml", "points-corrected.csv"
+FLIPPED_POINTS = "points-corrected-flipped.csv"
+ABOUT = (
+    "# The readings as a faultless rig at reference conditions would have reported them: what a diagnosis found of the rig and\n"
+    "# its surroundings, and the declared play, are taken off. Build it with: mffit build {name}\n\n"
+)
+
+
+def write_corrected(diagnosis: Diagnosis, config: Config, out: Path, folder: Path) -> None:
+    """Write the corrected points and a ``tyre.toml`` that builds from them.
+
+    Parameters
+    ----------
+    diagnosis : what was found
+    config : the configuration that was diagnosed
+    out : where the files will stand in the end
+    folder : where they are written now
+    """
+    points = _mended(diagnosis, config)
+    sweeps: list[dict[str, Any]] = []
+    for mount, name in ((1, CORRECTED_POINTS), (-1, FLIPPED_POINTS)):
+        part = points.select(points.mount == mount)
+        if len(part):
+            corrected_table(part, diagnosis).to_csv(folder / name, index=False, lineterminator="\n")
+            sweeps.append({"file": name, "mount": "normal" if mount > 0 else "flipped"})
+    content = resolved(config, out)
+    content["sweep"] = sweeps
+    content["rig"] |= {"backlash_deg": 0.0, "force_frame": "W", "moments": "contact"}
+    text = ABOUT.format(name=CORRECTED_TOML) + tomli_w.dumps(content)
+    (folder / CORRECTED_TOML).write_text(text, encoding="utf-8", newline="\n")
+
+
+def corrected_table(points: Points, diagnosis: Diagnosis) -> pd.DataFrame:
+    """Corrected points with the headings of sweep files, in the rig's own axes; a row per point."""
+    sign = diagnosis.signs
+    columns = {
+        "run": np.array(points.sweep_names, dtype=object)[points.sweep],
+        "alpha_deg": sign["alpha"] * np.degrees(points.alpha),
+        "gamma_deg": sign["gamma"] * np.degrees(points.gamma),
+        "Fz_N": points.Fz,
+        "p_kPa": 1e-3 * points.p,
+        "V_mps": points.V,
+        "direction": np.where(points.direction > 0, "forward", "backward"),
+        "T_degC": points.T,
+        "t_s": points.t,
+        "Fy_N": sign["Fy"] * points.Fy,
+        "Mz_Nm": sign["Mz"] * points.Mz,
+        "u_Fy_N": points.u_Fy,
+        "u_Mz_Nm": points.u_Mz,
+    }
+    known = {n: c for n, c in columns.items() if c.dtype.kind not in "f" or np.isfinite(c).any()}
+    return pd.DataFrame(known).replace([np.inf, -np.inf], np.nan)
+
+
+def _mended(diagnosis: Diagnosis, config: Config) -> Points:
+    """The diagnosed points as finished ones, the lag of moving sweeps that was found taken off their angle."""
+    points = corrected_points(diagnosis.points, diagnosis.state)
+    if not np.any(points.continuous):
+        return points
+    if config.rig.on_disc:
+        return points.select(~points.continuous)
+    return settled_sweeps(points, (diagnosis.state.relaxation_m, 0.0))

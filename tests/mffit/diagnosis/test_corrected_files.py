@@ -1,0 +1,82 @@
+"""What a diagnosis writes beside the model: corrected points that build without the rig's fault, and a sweep named as misread."""
+
+from __future__ import annotations
+
+import csv
+import json
+
+import numpy as np
+import pytest
+from blind_rig import Machine, report
+from blind_set import draw_case, write_case
+
+from mffit import pipeline
+from mffit.diagnosis.confidence import tempered
+from mffit.diagnosis.misread import Misread
+
+
+@pytest.fixture(scope="module")
+def campaign(tmp_path_factory):
+    """A campaign with a camber axis that is off, and the folder of its diagnosis."""
+    folder = tmp_path_factory.mktemp("corrected")
+    case = draw_case("rig", ("camber-misalignment",), "large", 11)
+    write_case(case, folder / "rig", folder / "truth.json")
+    found = pipeline.diagnose(folder / "rig" / "tyre.toml", folder / "rig" / "given.tir", out=folder / "out")
+    return case, folder, found
+
+
+def test_the_corrected_points_build_a_cleaner_tyre(campaign):
+    case, folder, _ = campaign
+    truth = np.concatenate(report(case.true, Machine(), case.run))
+
+    def error(config) -> np.ndarray:
+        """Rms of Fy [N] and Mz [Nm] of the tyre that is built, against the true one on a perfect rig."""
+        away = np.concatenate(report(pipeline.build(config).tyres["turn-slip"], Machine(), case.run)) - truth
+        return np.sqrt(np.mean(away.reshape(2, -1) ** 2, axis=1))
+
+    before, after = error(folder / "rig" / "tyre.toml"), error(folder / "out" / "corrected.toml")
+    assert abs(case.machine.gamma_0_deg) > 0.4
+    assert after[0] < 0.6 * before[0]
+    assert after[1] < before[1]
+
+
+def test_numbers_were_and_are_and_say_what_to_do(campaign):
+    case, folder, found = campaign
+    effect = json.loads((folder / "out" / "diagnosis.json").read_text())["effects"][0]
+    row = effect["parameters"]["gamma_0_deg"]
+    assert row["was"] == 0.0
+    assert row["value"] == pytest.approx(case.machine.gamma_0_deg, abs=4.0 * row["stderr"])
+    # true camber = reading + gamma_0: at its zero the wheel leans by gamma_0 and has to be leaned back
+    assert f"lean the wheel by {-row['value']:+.3g} deg" in effect["to_do"]
+    assert all(limit.ruled_out for limit in found.limits if limit.effect.id == "loadcell-gain")
+
+
+def test_a_sweep_under_the_wrong_load_is_named_and_left_out(campaign, tmp_path):
+    case = campaign[0]
+    write_case(case, tmp_path / "rig", tmp_path / "truth.json")
+    path = next(path for path in sorted((tmp_path / "rig").glob("sideslip_*_200kPa.csv")))
+    with path.open(newline="") as source:
+        rows = list(csv.DictReader(source))
+    right = rows[0]["Fz_N"]
+    for row in rows:
+        row["Fz_N"] = str(2.0 * float(right))
+    with path.open("w", newline="") as target:
+        writer = csv.DictWriter(target, rows[0].keys())
+        writer.writeheader()
+        writer.writerows(rows)
+    found = pipeline.diagnose(tmp_path / "rig" / "tyre.toml", tmp_path / "rig" / "given.tir")
+    (wrong,) = [note for note in found.notes if isinstance(note, Misread)]
+    assert wrong.file == path.name
+    assert wrong.looks == f"run at a load of {float(right):.4g} N"
+    assert [one.effect.id for one in found.effects] == ["camber-misalignment"]
+    assert path.stem not in {found.points.sweep_names[k] for k in found.points.sweep}
+
+
+def test_confidence_is_milder_than_evidence_and_keeps_its_order():
+    said = [tempered(w) for w in (0.0, 0.1, 0.5, 0.9, 0.99, 1.0)]
+    assert said == sorted(said)
+    assert said[0] == 0.0
+    assert said[-1] == 1.0
+    assert said[2] == pytest.approx(0.5)
+    assert 0.5 < said[3] < 0.9
+    assert tempered(0.2) == pytest.approx(1.0 - tempered(0.8))
