@@ -80,7 +80,7 @@ def curves_before_after(view: DiagnosisView) -> Figure:
         title = f"{shown.word}: {labels.LOAD.of(shown.curve.load)}{held}{'' if shown.curve.forward else ', backward'}"
         ax.set_title(title)
         ax.set_xlabel(labels.ANGLES[over].axis, labelpad=1.5)
-        ax.set_ylabel(f"{channel.name} [{channel.unit}]", labelpad=1.0)
+        ax.set_ylabel(f"{channel.symbol} [{channel.unit}]", labelpad=1.0)
         style.few_ticks(ax)
     handles = [
         Line2D([], [], ls="none", marker="o", ms=3.5, color=style.INK, label="measured"),
