@@ -305,11 +305,16 @@ def _rivals(problem: Problem, chosen: Hypothesis, step: Step, others: tuple[Effe
 
 
 def _alternatives(steps: Sequence[Step], chosen: Hypothesis) -> dict[str, float]:
-    """Weights of what was not accepted: in the first step if something was, else in the last."""
+    """Weights of what was not accepted: in the first step if something was, else in the last.
+
+    None where the choice was made by prediction against the weight of evidence.
+    """
     if not steps:
         return {}
     accepted = {effect.id for effect in chosen.effects}
     source = steps[0 if chosen.effects else -1].weights()
+    if accepted and max(source, key=source.__getitem__) not in accepted:
+        return {}
     return {name: w for name, w in source.items() if name not in accepted and name != "none" and w > 1e-4}
 
 

@@ -43,6 +43,8 @@ RUNS = {
     Run.WIDE: "a sideslip sweep at {load:.0f} N on a path of twice the radius",
     Run.STRAIGHT_CAMBER: "a camber sweep at {load:.0f} N on a straight path",
 }
+LIKELY = 0.5
+"""Confidence below which the answer is not stated as one."""
 ORIGINS = {
     Origin.STATED: "stated uncertainties",
     Origin.SCATTER: "scatter between neighbouring points",
@@ -71,9 +73,12 @@ def _answer(diagnosis: Diagnosis) -> str:
             f"There is structure that no effect of the library describes: {bump.channel} is off by {bump.amplitude:.3g} "
             f"{CHANNELS[bump.channel].unit} around {_around(bump)}."
         )
-    verb, pronoun = ("effect is", "it") if len(diagnosis.effects) == 1 else ("effects are", "them")
+    named, one = " and ".join(map(_named, diagnosis.effects)), len(diagnosis.effects) == 1
+    said = f"The missing {'effect is' if one else 'effects are'} {named}"
+    if min(_of_its_tie(found, diagnosis.alternatives) for found in diagnosis.effects) < LIKELY:
+        said = f"The nearest explanation, not a sure one, is {named}"
     sentence = (
-        f"The missing {verb} {' and '.join(map(_named, diagnosis.effects))}: with {pronoun} the side force misses by "
+        f"{said}: with {'it' if one else 'them'} the side force misses by "
         f"{after.Fy_rmse_N:.1f} N rms instead of {before.Fy_rmse_N:.1f} N (noise {noise.Fy:.1f} N)"
     )
     if not diagnosis.unexplained:
@@ -82,6 +87,11 @@ def _answer(diagnosis: Diagnosis) -> str:
         f"{bump.channel} stays unexplained around {_around(bump)}" if bump else "the rest stays unexplained"
     )
     return f"{sentence}; {rest}."
+
+
+def _of_its_tie(found: Found, alternatives: Mapping[str, float]) -> float:
+    """Confidence that it is this effect or one of those it is tied with."""
+    return found.confidence + sum(alternatives.get(other, 0.0) for other in found.tied_with)
 
 
 def note(remark: Note) -> str:

@@ -70,6 +70,14 @@ def test_an_effect_is_named_with_what_it_is_tied_with(camber):
     )
 
 
+def test_what_is_not_likely_is_not_stated_and_a_tie_counts_as_one(camber):
+    found = replace(camber.effects[0], confidence=0.4, tied_with=("path-radius",))
+    alone = replace(camber, effects=(found,), alternatives={})
+    assert alone.headline.startswith("The nearest explanation, not a sure one, is camber stiffness (or")
+    tied = replace(camber, effects=(found,), alternatives={"path-radius": 0.4})
+    assert tied.headline.startswith("The missing effect is camber stiffness (or")
+
+
 @pytest.mark.parametrize(
     ("region", "words"),
     [
