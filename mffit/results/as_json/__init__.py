@@ -1,0 +1,25 @@
+"""The JSON files: made from the records here and nowhere else, with the keys that users' scripts rely on."""
+
+from mffit.results.as_json.of_build import build, fit, spin, write_information
+from mffit.results.as_json.of_diagnosis import diagnosis
+from mffit.results.as_json.of_fleet import fleet, outcome
+from mffit.results.as_json.of_input import alignment, problems, sniffed
+from mffit.results.as_json.of_plan import comparison, plan
+from mffit.results.as_json.values import text, write
+
+__all__ = [
+    "alignment",
+    "build",
+    "comparison",
+    "diagnosis",
+    "fit",
+    "fleet",
+    "outcome",
+    "plan",
+    "problems",
+    "sniffed",
+    "spin",
+    "text",
+    "write",
+    "write_information",
+]

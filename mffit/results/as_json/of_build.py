@@ -1,0 +1,172 @@
+"""A build: what was measured, fitted and written."""
+
+from __future__ import annotations
+
+import json
+import math
+from dataclasses import asdict
+from pathlib import Path
+from typing import Any
+
+from mffit import fleet as combining
+from mffit.fit import Coefficient, Doubt, FitResult, Outlier
+from mffit.fit.files import Files
+from mffit.measured import KEYS, LoadResult, Measured
+from mffit.measured import wording as say
+from mffit.results.as_json.values import plain, stated
+from mffit.results.build import BuildResult
+from mffit.rig import UNITS
+
+
+def build(result: BuildResult) -> dict[str, Any]:
+    """The content of ``result.json``."""
+    return {
+        "tyre": result.config.tyre.model_dump(exclude_none=True),
+        "spin": spin(result.measured),
+        "fit": fit(result.fit),
+        "tir": result.tir_path,
+        "files": dict(result.files),
+        "warnings": list(result.warnings),
+        "doubts": [_doubt(row) for row in result.fit.doubts],
+        "outliers": [outlier(row) for row in result.fit.outliers],
+    }
+
+
+def spin(measured: Measured) -> dict[str, Any]:
+    """The content of ``spin.json``, which is the ``spin`` part of ``result.json``; SI units, ISO signs, u with k = 1."""
+    row = measured.nominal
+    numbers = {key: value for key, value in _load(row).items() if key != "load_N"}
+    return numbers | {
+        "epsilon_gamma_model": measured.epsilon_gamma_model,
+        **stated("epsilon_gamma_debiased", measured.epsilon_gamma_debiased),
+        "pecp1": measured.pecp1,
+        "pecp2": measured.pecp2,
+        "u_pecp2": measured.u_pecp2,
+        "budget": [line._asdict() for line in measured.budget],
+        "u_epsilon_gamma_monte_carlo": row.u_monte_carlo if row else None,
+        "misaligned": measured.misaligned,
+        "coverage_factor": 1,
+        "notes": [say.note(fact) for fact in measured.notes],
+        "per_load": [_load(other) for other in measured.per_load],
+    }
+
+
+def fit(found: FitResult) -> dict[str, Any]:
+    """The ``fit`` part of ``result.json``."""
+    return {
+        "channels": {name: asdict(row) for name, row in found.channels.items()},
+        "odd": {name: asdict(row) for name, row in found.odd.items()},
+        "coefficients": {name: _coefficient(row) for name, row in found.coefficients.items()},
+        "rig": {
+            name: {"value": value, "stderr": u, "unit": UNITS[name]} for name, (value, u) in found.rig.items()
+        },
+        "posterior": {
+            "names": list(found.posterior.names),
+            "covariance": found.posterior.covariance.tolist(),
+        },
+        "stages": [
+            {
+                "name": stage.name,
+                "parameters": list(stage.parameters),
+                "rmse_Fy_N": stage.rmse_Fy,
+                "rmse_Mz_Nm": stage.rmse_Mz,
+            }
+            for stage in found.stages
+        ],
+        "coverage": [
+            {
+                "stage": row.stage,
+                "supported": row.supported,
+                "held": list(row.held),
+                "missing": list(row.missing),
+            }
+            for row in found.coverage
+        ],
+        "files": _files(found.files) if found.files is not None else {},
+        "explanations": list(found.explanations),
+        "seconds": found.seconds,
+    }
+
+
+def write_information(path: Path, result: BuildResult) -> None:
+    """Write ``information.json``, a line per key, as programs read it and few people do."""
+    assert result.fit.search is not None
+    content = plain(combining.to_json(combining.information(result.fit.search)))
+    lines = ",\n".join(f"{json.dumps(key)}: {json.dumps(value)}" for key, value in content.items())
+    path.write_text("{\n" + lines + "\n}\n", encoding="utf-8")
+
+
+def _doubt(row: Doubt) -> dict[str, Any]:
+    return {
+        "sweep": row.sweep,
+        "file": row.file,
+        "channel": row.channel,
+        "rms": row.rms,
+        "ratio": row.ratio,
+        "share": row.share,
+        "looks_like": row.looks or None,
+    }
+
+
+def outlier(row: Outlier) -> dict[str, Any]:
+    return {
+        "file": row.file,
+        "line": row.line or None,
+        "sweep": row.sweep,
+        "channel": row.channel,
+        "measured": row.measured,
+        "expected": row.expected,
+        "ratio": row.ratio,
+    }
+
+
+def _load(row: LoadResult | None) -> dict[str, Any]:
+    """The numbers of one load; all null if nothing was measured."""
+    out: dict[str, Any] = {"load_N": row and row.load}
+    for name, key in KEYS.items():
+        out |= stated(key, getattr(row, name, None))
+    if row is None:
+        return out
+    out |= {"epsilon_gamma_secant": row.epsilon_secant, "epsilon_gamma_slope": row.epsilon_slope}
+    out |= stated("epsilon_gamma_moment", row.epsilon_moment)
+    out |= stated("alpha_M_deg", row.alpha_M, scale=math.degrees(1.0))
+    return out | {"F_forward_N": row.F_forward, "F_backward_N": row.F_backward}
+
+
+def _coefficient(found: Coefficient) -> dict[str, Any]:
+    partner = found.correlated_with or None
+    return {
+        "value": found.value,
+        "stderr": found.stderr,
+        "stage": found.stage,
+        "fixed": found.fixed,
+        "at_bound": found.at_bound,
+        "interval_95": list(found.interval) if found.interval else None,
+        "status": found.status,
+        "origin": found.origin or found.status,
+        "correlated_with": partner,
+        "correlation": found.correlation if partner else None,
+    }
+
+
+def _files(files: Files) -> dict[str, Any]:
+    """How good each written file is, by use, and the ranges."""
+    out: dict[str, Any] = {
+        use: {
+            "USE_MODE": int(file.tyre["USE_MODE"]),
+            **{
+                place: {channel: asdict(misfit) for channel, misfit in channels.items()}
+                for place, channels in file.misfit.items()
+            },
+            "camber_stiffness_N_per_rad": file.camber_stiffness,
+        }
+        for use, file in files.by_use.items()
+    }
+    for use, names in files.changed.items():
+        out[use]["coefficients"] = {name: files.by_use[use].tyre[name] for name in names}
+    if files.lacking:
+        out["normal"] |= {
+            "camber_stiffness_loss": files.stiffness_loss,
+            "turn_slip_force_lacking_N": {f"{radius:g} m": force for radius, force in files.lacking.items()},
+        }
+    return {**out, "ranges": {"tested": dict(files.tested), "written": dict(files.written)}}

@@ -1,0 +1,46 @@
+"""Numbers, and text of JSON that any reader takes."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from tir import Quantity
+
+
+def text(content: Any) -> str:
+    """A document as text; numbers that are not finite become null."""
+    return json.dumps(plain(content), indent=2, ensure_ascii=False, allow_nan=False) + "\n"
+
+
+def write(path: Path, content: Mapping[str, Any]) -> None:
+    """Write a document as UTF-8."""
+    path.write_text(text(content), encoding="utf-8")
+
+
+def plain(value: Any) -> Any:
+    """JSON has no NaN and no numpy types."""
+    if isinstance(value, Mapping):
+        return {str(key): plain(item) for key, item in value.items()}
+    if isinstance(value, list | tuple | np.ndarray):
+        return [plain(item) for item in value]
+    if isinstance(value, np.generic):
+        value = value.item()
+    if isinstance(value, float) and not math.isfinite(value):
+        return None
+    return value
+
+
+def stated(key: str, number: Quantity | None, scale: float = 1.0) -> dict[str, float | None]:
+    if number is None:
+        return {key: None, f"u_{key}": None}
+    return {key: scale * number.value, f"u_{key}": scale * number.u}
+
+
+def value_of(number: Quantity | None) -> dict[str, Any] | None:
+    return None if number is None else {"value": number.value, "u": number.u}
