@@ -30,6 +30,8 @@ USUAL_SMOOTH = 0.03
 CLIPPED = 3.0
 """Standard deviations beyond which a reading counts no more in the search for bumps."""
 MOST_BUMPS = 2
+PROVEN = 2.0
+"""Standard errors from nothing at which a number is left."""
 CERTAIN = 0.5
 """Certainty below which nothing is named beside smooth structure without a name."""
 EXPLAINS = 0.9
@@ -158,7 +160,28 @@ def _predicted(found: Explanation, candidates: Sequence[Effect], inexact: Inexac
     chosen = chosen_by_prediction(prediction, candidates)
     said = {e.id: judged(prediction, chosen, e, candidates) for e in chosen.effects}
     bump = found.bumps.best(chosen)
-    return _refined(replace(found, chosen=chosen, bump=bump, predicted=said), inexact)
+    return _of_some_size(_refined(replace(found, chosen=chosen, bump=bump, predicted=said), inexact), inexact)
+
+
+def _of_some_size(found: Explanation, inexact: Inexactness) -> Explanation:
+    """Without effects of which nothing is left once the model's coefficients are estimated beside them."""
+    problem, refined = found.problem, found.refined
+
+    def left(effect: Effect) -> bool:
+        return any(
+            abs(refined.numbers[n] - problem.start.number(n, problem.points))
+            > PROVEN * refined.stderr.get(n, 0.0)
+            for n in effect.parameters
+        )
+
+    kept = tuple(effect for effect in found.chosen.effects if left(effect))
+    if len(kept) == len(found.chosen.effects):
+        return found
+    numbers = {n: found.chosen.numbers[n] for e in kept for n in e.parameters}
+    chosen = problem.fit(kept, numbers) if kept else problem.null
+    return _of_some_size(
+        _refined(replace(found, chosen=chosen, bump=found.bumps.best(chosen)), inexact), inexact
+    )
 
 
 def only_first(found: Explanation, inexact: Inexactness) -> Explanation:

@@ -43,9 +43,7 @@ class Separation:
 
 def candidate_runs(points: Points) -> tuple[tuple[Run, Points], ...]:
     """Runs a rig could add: the other direction or mount, other loads, radii, cambers, pressures and speeds."""
-    main = points.select(
-        main_pressure(points) & (points.direction > 0) & (points.mount > 0) & ~points.continuous
-    )
+    main = points.select(main_pressure(points) & (points.direction > 0) & (points.mount > 0))
     loads = np.unique(np.round(main.Fz, -1))
     load = float(np.median(main.Fz))
     reach = float(np.max(np.abs(main.alpha)))
@@ -89,8 +87,14 @@ def separation(points: Points, a: Hypothesis, b: Hypothesis, noise_Fy: float, no
 
 
 def _line(points: Points, load: float, alpha=0.0, gamma=0.0) -> Points:
-    """Points along one angle, everything else as at the point nearest the load."""
+    """Steady points along one angle, everything else as at the point nearest the load."""
     n = max(np.size(alpha), np.size(gamma))
     nearest = int(np.argmin(np.abs(points.Fz - load)))
     line = points.select(np.full(n, nearest))
-    return line.replace(alpha=np.broadcast_to(alpha, n), gamma=np.broadcast_to(gamma, n), Fz=np.full(n, load))
+    return line.replace(
+        alpha=np.broadcast_to(alpha, n),
+        gamma=np.broadcast_to(gamma, n),
+        Fz=np.full(n, load),
+        continuous=np.zeros(n, bool),
+        time=np.full(n, np.nan),
+    )

@@ -195,6 +195,14 @@ def test_the_usual_runs_are_what_they_are_called():
     )
 
 
+def test_a_recording_that_never_stands_still_has_runs_to_add_too():
+    """The added points are steady ones, whatever the recorded were."""
+    points = read(programme()).replace(continuous=True, time=np.linspace(0.0, 99.0, len(programme())))
+    runs = candidate_runs(points)
+    assert len(runs) == len(candidate_runs(read(programme())))
+    assert not any(added.continuous.any() or np.isfinite(added.time).any() for _, added in runs)
+
+
 def test_the_gap_in_numbers():
     points = read(programme(), faults=RigFaults(F0_N=9.0, M0_Nm=-1.2))
     chosen = problem(points)
