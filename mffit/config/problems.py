@@ -128,7 +128,7 @@ def _unknown(key: str) -> str:
 
 def _split(key: str) -> tuple[str, str]:
     """Table and name of a key, as :func:`known_keys` lists them."""
-    parts = [part for part in key.split(".") if not part.isdigit()]
+    parts = [part for part in key.split(".") if not part.isdigit()] or [key]
     if parts[:2] == ["sweep", "columns"] and len(parts) == 4:
         parts[2] = "*"
     return ".".join(parts[:-1]), parts[-1]

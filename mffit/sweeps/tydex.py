@@ -62,7 +62,7 @@ def read_tydex(path: Path) -> RawTable:
         value = _float(constant.words[0]) if constant.words else math.nan
         if constant.name not in columns and math.isfinite(value):
             columns[constant.name], units[constant.name] = np.full(len(lines), value), constant.unit
-    about = {e.name: " ".join(e.words) for _, line in sections["HEADER"] if (e := _entry(line)).name}
+    about = {e.name: " ".join(e.words) for _, line in sections.get("HEADER", []) if (e := _entry(line)).name}
     return RawTable(
         headings=tuple(columns),
         units=tuple(units[name] for name in columns),

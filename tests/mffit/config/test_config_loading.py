@@ -303,3 +303,11 @@ def test_a_plan_of_the_virtual_rig_is_told_for_what_it_is():
     with pytest.raises(InputError, match="mffit simulate") as error:
         config.load(Path(__file__).parents[3] / "samples" / "front-120-70" / "rig.toml")
     assert "did you mean" not in str(error.value)
+
+
+def test_a_table_named_by_a_number_is_refused_with_its_line(tmp_path):
+    """Numbers count the entries of lists. Found by tests/studies/fuzz_readers.py."""
+    (tmp_path / "tyre.toml").write_text(f"{MINIMAL}\n[9]\n")
+    with pytest.raises(InputError, match="is unknown; known here are tyre, rig") as caught:
+        config.load(tmp_path / "tyre.toml")
+    assert (caught.value.key, caught.value.line) == ("9", 16)

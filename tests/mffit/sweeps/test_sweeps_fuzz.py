@@ -56,6 +56,11 @@ def test_any_bytes(name):
     tried()
 
 
+def test_a_header_that_is_no_section_is_no_reason_to_stop():
+    """Found by tests/studies/fuzz_readers.py."""
+    outcome("a.tdx", b"x**HEADER\n**MEASURCHANNELS\nFYW x N\n**MEASURDATA\n1\n")
+
+
 @EXAMPLES
 @given(st.lists(st.lists(CELLS, max_size=6), max_size=8), st.sampled_from([",", ";", "\t", "|", " "]))
 def test_any_cells(rows, separator):
