@@ -72,7 +72,7 @@ class Traced(np.lib.mixins.NDArrayOperatorsMixin):
             return NotImplemented
         chosen, a, b = args
         out = np.where(chosen, plain(a), plain(b))
-        return self._derived(out, (a, b), (np.where(chosen, 1.0, 0.0), np.where(chosen, 0.0, 1.0)))
+        return self._derived(out, (a, b), of_choice(chosen))
 
     def derived(self, value: Any, partial: Any) -> Traced:
         """A number that follows from this one by a step with a known derivative."""
@@ -81,6 +81,11 @@ class Traced(np.lib.mixins.NDArrayOperatorsMixin):
     def _derived(self, value: Any, inputs: Sequence[Any], partials: Sequence[Any]) -> Traced:
         parents = tuple((x, d) for x, d in zip(inputs, partials, strict=True) if isinstance(x, Traced))
         return Traced(value, self.tape, parents)
+
+
+def of_choice(chosen: Any) -> tuple[Any, Any]:
+    """What ``where`` passes on: its partial derivatives by what it chooses from."""
+    return np.where(chosen, 1.0, 0.0), np.where(chosen, 0.0, 1.0)
 
 
 def plain(x: Any) -> Any:

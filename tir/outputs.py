@@ -19,7 +19,7 @@ def outputs_of(
     turn_slip: bool = False,
     star: bool = False,
 ) -> list[Any]:
-    """Forces or states by name, as :func:`tir.evaluate.evaluate` has them; several times as fast, and no complex numbers.
+    """Forces or states by name, as :func:`tir.evaluate.evaluate` has them, but for complex numbers.
 
     Parameters
     ----------

@@ -88,7 +88,8 @@ def step(
         u = np.where(slow, _no_growth(u, contact.u, _sliding(state.sigma_x, state.mu_x, Fz, state.K_xk)), u)
         v = np.where(slow, _no_growth(v, contact.v, _sliding(state.sigma_y, state.mu_y, Fz, state.K_ya)), v)
     after = Contact(_plain(np.where(loaded, u, 0.0)), _plain(np.where(loaded, v, 0.0)))
-    return after, forces(tyre, after, Fz, Vx, Vsx, Vsy, gamma, phi_t, p, damping=damping, limits=limits)
+    slip = _slip(tyre, state, after, Vx, Vsx, Vsy, damping)
+    return after, _at(tyre, slip, Fz, Vx, gamma, phi_t, p, limits)
 
 
 def forces(
@@ -107,11 +108,25 @@ def forces(
 ) -> Forces:
     """The forces of a deflected contact; arguments as in :func:`step`."""
     state = tyre.state(Fz, 0.0, gamma, 0.0, phi_t, Vx, p, limits=limits)
+    return _at(tyre, _slip(tyre, state, contact, Vx, Vsx, Vsy, damping), Fz, Vx, gamma, phi_t, p, limits)
+
+
+def _slip(
+    tyre: Tyre, state: State, contact: Contact, Vx: Any, Vsx: Any, Vsy: Any, damping: float
+) -> tuple[Any, Any]:
+    """kappa' and alpha' [rad] of a deflected contact, with what damping adds to them."""
     kappa, alpha = slips(state, contact, Vx)
     if damping:
         share = _way(Vx) * damping * _fading(Vx, tyre["VXLOW"])
         kappa = kappa - share * np.asarray(Vsx) / state.K_xk
         alpha = np.arctan(np.tan(alpha) + share * np.asarray(Vsy) / np.abs(state.K_ya))
+    return kappa, alpha
+
+
+def _at(
+    tyre: Tyre, slip: tuple[Any, Any], Fz: Any, Vx: Any, gamma: Any, phi_t: Any, p: Any, limits: bool
+) -> Forces:
+    kappa, alpha = slip
     return tyre(Fz, _plain(alpha), gamma, _plain(kappa), phi_t, Vx, p, limits=limits)
 
 

@@ -5,10 +5,8 @@ from __future__ import annotations
 from collections.abc import Collection, Mapping
 from typing import Any
 
-import numpy as np
-
 from tir.codegen.graph import UFUNCS, Node
-from tir.derivatives import PARTIALS
+from tir.derivatives import PARTIALS, of_choice
 
 SMOOTH = {name: PARTIALS[ufunc] for name, ufunc in UFUNCS.items() if ufunc in PARTIALS}
 
@@ -58,8 +56,7 @@ def _moved(nodes: list[Node], wrt: Collection[str]) -> list[bool]:
 def _partials(node: Node) -> tuple[Any, ...]:
     """Partial derivatives of an operation by its arguments; a comparison has none."""
     if node.operation == "where":
-        chosen = node.arguments[0]
-        return 0.0, np.where(chosen, 1.0, 0.0), np.where(chosen, 0.0, 1.0)
+        return 0.0, *of_choice(node.arguments[0])
     if node.operation not in SMOOTH:
         return (0.0,) * len(node.arguments)
     return SMOOTH[node.operation](node, *node.arguments)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import operator
-import threading
 from collections.abc import Mapping, Sequence
 from functools import lru_cache
 from typing import Any, NamedTuple
@@ -27,8 +26,6 @@ IN_FLOATS = {
     "where": lambda chosen, a, b: a if chosen else b,
 }
 """For what depends on the tyre alone and is a single number as a rule: an array function costs ten times as much on it."""
-ONE_AT_A_TIME = threading.Lock()
-"""Derivatives are added to a graph that all threads share."""
 
 
 class Replay(NamedTuple):
@@ -88,25 +85,27 @@ def replay(
     Replay
         of the outputs, and then for each output its derivatives by ``wrt``
     """
-    with ONE_AT_A_TIME:
-        found = _on_symbols(switches, still)
-        wanted = {name: found[name] for name in outputs}
-        slopes = _derivatives(switches, outputs, still) if wrt else {}
-    return _replay([*wanted.values(), *(slopes.get((name, x), 0.0) for name in outputs for x in wrt)])
+    if not wrt:
+        return _replay(list(_on_symbols(switches, outputs, still).values()))
+    found, slopes = _with_derivatives(switches, outputs, still)
+    return _replay([*found.values(), *(slopes.get((name, x), 0.0) for name in outputs for x in wrt)])
+
+
+def _on_symbols(switches: Switches, outputs: tuple[str, ...], still: tuple[str, ...]) -> dict[str, Any]:
+    found = run_on_symbols(switches, {}, dict.fromkeys(still, 0.0))
+    return {name: found[name] for name in outputs}
 
 
 @lru_cache(maxsize=8)
-def _on_symbols(switches: Switches, still: tuple[str, ...]) -> Mapping[str, Any]:
-    return run_on_symbols(switches, {}, dict.fromkeys(still, 0.0))
-
-
-@lru_cache(maxsize=8)
-def _derivatives(
+def _with_derivatives(
     switches: Switches, outputs: tuple[str, ...], still: tuple[str, ...]
-) -> Mapping[tuple[str, str], Any]:
-    """Of the outputs by every parameter and input; what is not asked for later is not computed later."""
-    found = _on_symbols(switches, still)
-    return derivatives({name: found[name] for name in outputs}, {*NUMBERS, *INPUTS} - set(still))
+) -> tuple[dict[str, Any], Mapping[tuple[str, str], Any]]:
+    """The outputs, and their derivatives by every parameter and input in the same graph, which is complete then.
+
+    What is not asked for later is not computed later.
+    """
+    found = _on_symbols(switches, outputs, still)
+    return found, derivatives(found, {*NUMBERS, *INPUTS} - set(still))
 
 
 def _replay(results: Sequence[Any]) -> Replay:
