@@ -139,6 +139,13 @@ def inverse(information: np.ndarray) -> np.ndarray:
     )
 
 
+def root(covariance: np.ndarray) -> np.ndarray:
+    """A matrix (k, k) whose product with its transpose is the covariance of numbers that differ by orders of magnitude."""
+    scale = np.sqrt(np.maximum(np.diag(covariance), 1e-300))
+    size, axes = np.linalg.eigh(covariance / np.outer(scale, scale))
+    return scale[:, None] * axes * np.sqrt(np.maximum(size, 0.0))
+
+
 def _step(problem, cost, x, value, gradient, curvature, lower, upper, damping):
     """The next place that is better, its cost and the damping to go on with; None if there is none."""
     pushed = ((x <= lower) & (gradient > 0.0)) | ((x >= upper) & (gradient < 0.0))

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from mffit.fit.priors import scatter
+from mffit.least_squares import root
 from mffit.points import Points
 from mffit.rig import Simulation
 from tir import Tyre
@@ -78,5 +79,4 @@ def refitted(tyre: Tyre, *, curved: bool) -> Inexactness:
 
 def correlated(names: Sequence[str], expected: np.ndarray, covariance: np.ndarray) -> Inexactness:
     """The posterior of an earlier fit as prior."""
-    size, axes = np.linalg.eigh(covariance)
-    return Inexactness(tuple(names), np.asarray(expected), axes * np.sqrt(np.maximum(size, 0.0)))
+    return Inexactness(tuple(names), np.asarray(expected), root(covariance))

@@ -42,7 +42,7 @@ class Posterior(Brief):
         rows = [i for i, name in enumerate(self.names) if name not in FAULT_NAMES]
         slopes = tyre.sensitivities(points, [self.names[i] for i in rows])[1]
         covariance = self.covariance[np.ix_(rows, rows)]
-        widths = [np.sqrt(np.maximum(np.einsum("ni,ij,nj->n", s, covariance, s), 0.0)) for s in slopes]
+        widths = [spread_through(s, covariance) for s in slopes]
         return COVERING * widths[0], COVERING * widths[1]
 
 
@@ -62,10 +62,29 @@ def joint(problem: Problem, solution: Solution, held: Mapping[str, float]) -> Po
         return Posterior(solution.names, covariance)
     at = np.array([problem.simulation.number(name, problem.points) for name in names])
     slope = problem.free(names).linear(at).slope
-    shift = -covariance @ (solution.jacobian.T @ slope)
-    spread = np.diag(np.array(list(held.values())) ** 2)
-    whole = np.block([[covariance + shift @ spread @ shift.T, shift @ spread], [spread @ shift.T, spread]])
-    return Posterior((*solution.names, *names), whole)
+    return beside_held(solution.names, covariance, held, solution.jacobian.T @ slope)
+
+
+def beside_held(
+    free: Sequence[str], covariance: np.ndarray, held: Mapping[str, float], shared: np.ndarray
+) -> Posterior:
+    """The posterior of free and held numbers.
+
+    Parameters
+    ----------
+    free : names (k,) of the numbers of the covariance (k, k), the held ones taken as exact
+    held : spread of the others (m,)
+    shared : (k, m) ``J^T J_held``, the information that the data have of both together
+    """
+    shift = -covariance @ shared
+    known = np.diag(np.array(list(held.values())) ** 2)
+    whole = np.block([[covariance + shift @ known @ shift.T, shift @ known], [known @ shift.T, known]])
+    return Posterior((*free, *held), whole)
+
+
+def spread_through(slopes: np.ndarray, covariance: np.ndarray) -> np.ndarray:
+    """Standard deviation (n,) that a covariance (k, k) has where the slopes by its numbers are (n, k)."""
+    return np.sqrt(np.maximum(np.einsum("ni,ij,nj->n", slopes, covariance, slopes), 0.0))
 
 
 def strongest_correlations(posterior: Posterior, of: Sequence[str]) -> dict[str, tuple[str, float]]:

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from mffit.fit.problem import Problem
-from mffit.least_squares import Number, inverse
+from mffit.least_squares import Number, inverse, root
 from mffit.points import Points, levels
 from mffit.quantities import CHANNELS
 from mffit.rig import FAULT_NAMES
@@ -127,15 +127,8 @@ def leverage(problem: Problem, numbers: Sequence[Number], noise: np.ndarray) -> 
         slope=slopes,
         weight=weight,
         noise=np.where(used, noise, np.inf),
-        root=_root(covariance),
+        root=root(covariance),
     )
-
-
-def _root(covariance: np.ndarray) -> np.ndarray:
-    """A root of the covariance (k, k) of numbers that differ by orders of magnitude."""
-    scale = np.sqrt(np.diag(covariance))
-    size, axes = np.linalg.eigh(covariance / np.outer(scale, scale))
-    return scale[:, None] * axes * np.sqrt(np.maximum(size, 0.0))
 
 
 def predictions(fit: Leverage, group: Group) -> dict[str, Prediction]:

@@ -14,6 +14,7 @@ import numpy as np
 
 from mffit.fit.priors import scatter
 from mffit.fleet.information import Information
+from mffit.least_squares import inverse
 from tir.parameters import BY_NAME
 
 ENOUGH = 4
@@ -120,7 +121,7 @@ class _Model:
         mine = [m + self.own.index(one.names[k]) for k in own]
         theirs = [self.shared.index(one.names[k]) for k in rig]
         ties = tau[[k - m for k in mine]] ** -2.0
-        inner = _inverse(one.matrix[np.ix_(own, own)] + np.diag(ties))
+        inner = inverse(one.matrix[np.ix_(own, own)] + np.diag(ties))
         B = np.zeros((len(own), size))
         B[:, theirs] = one.matrix[np.ix_(own, rig)]
         B[range(len(own)), mine] = -ties
@@ -135,7 +136,7 @@ class _Model:
         """Every number's mean and covariance, given the population's scatter (K,)."""
         precision, vector = self.prior()
         parts = [self.part(one, tau) for one in self.found]
-        covariance = _inverse(precision + sum(part.precision for part in parts))
+        covariance = inverse(precision + sum(part.precision for part in parts))
         common = covariance @ (vector + sum(part.vector for part in parts))
         squares = np.zeros(len(self.own))
         tyres = []
@@ -174,7 +175,7 @@ class _Model:
             return {}
         precision, vector = self.prior()
         rest = sum(other.precision for other in found.parts if other is not part)
-        C_one, C_rest = _inverse(precision + part.precision), _inverse(precision + rest)
+        C_one, C_rest = inverse(precision + part.precision), inverse(precision + rest)
         others = C_rest @ (vector + sum(other.vector for other in found.parts if other is not part))
         difference = C_one @ (vector + part.vector) - others
         leaning = C_one @ part.precision - C_rest @ rest
@@ -214,9 +215,3 @@ def _prior(found: Sequence[Information], names: Sequence[str]) -> tuple[np.ndarr
         centre[k] = np.mean([c for c, _ in rows])
         spread[k] = max(s for _, s in rows)
     return centre, spread
-
-
-def _inverse(precision: np.ndarray) -> np.ndarray:
-    """Inverse of a symmetric positive precision matrix whose numbers have units of very different size."""
-    scale = np.sqrt(np.diag(precision))
-    return np.linalg.inv(precision / np.outer(scale, scale)) / np.outer(scale, scale)

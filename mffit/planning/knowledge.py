@@ -12,6 +12,7 @@ from mffit.config import Config
 from mffit.effects import Effect
 from mffit.fit import FitResult, Posterior
 from mffit.fit.coverage import coverage
+from mffit.fit.posterior import beside_held
 from mffit.fit.rig_numbers import rig_numbers
 from mffit.least_squares import inverse
 from mffit.measured import Measured
@@ -24,7 +25,7 @@ from mffit.points.points import concatenate
 from mffit.rig import FAULT_NAMES
 from tir import Quantity
 
-EPSILON = "PECP1"
+PECP1 = "PECP1"
 
 
 class Knowledge:
@@ -52,7 +53,7 @@ class Knowledge:
         self.extra = tuple(n.name for n in search.numbers if n.name not in staged and n.name not in self.rig)
         self.usual = {e.free[0].name: self._usual(e) for e in effects}  # size of an effect, 1 sigma
         self.spread = spread
-        self.names = tuple(dict.fromkeys([*spread, EPSILON, *self.usual]))
+        self.names = tuple(dict.fromkeys([*spread, PECP1, *self.usual]))
         self._row = {name: k for k, name in enumerate(self.names)}
         self._at = np.array([self.simulation.number(n, points) for n in self.names])
         sigma = (search.problem.sigma_Fy, search.problem.sigma_Mz)
@@ -66,9 +67,9 @@ class Knowledge:
         """The posterior of a build with these runs; ``u_epsilon`` of a PECP1 that is measured, None where it is fitted."""
         free, spread = self._free(runs), self._spread(runs)
         if u_epsilon is None:
-            free, spread = list(dict.fromkeys([*free, EPSILON])), {**spread, EPSILON: math.inf}
+            free, spread = list(dict.fromkeys([*free, PECP1])), {**spread, PECP1: math.inf}
         else:
-            free, spread = [n for n in free if n != EPSILON], {**spread, EPSILON: u_epsilon}
+            free, spread = [n for n in free if n != PECP1], {**spread, PECP1: u_epsilon}
         held = [n for n in spread if n not in free and math.isfinite(spread[n])]
         return self._solved(self._information_of(runs), free, spread, held)
 
@@ -77,9 +78,9 @@ class Knowledge:
         name = effect.free[0].name
         partners = {e.free[0].name for e in others}
         declared = self._spread(runs)
-        free = list(dict.fromkeys([*self._free(runs), EPSILON, *partners, name]))
+        free = list(dict.fromkeys([*self._free(runs), PECP1, *partners, name]))
         spread = {n: declared.get(n, self.usual.get(n, math.inf)) for n in free}
-        spread[EPSILON] = math.inf
+        spread[PECP1] = math.inf
         spread |= {n: self.usual[n] for n in partners if n not in self.rig}
         spread[name] = math.inf
         return self._solved(self._information_of(runs), free, spread, []).stderr[name]
@@ -155,7 +156,4 @@ class Knowledge:
         f, h = ([self._row[n] for n in names] for names in (free, held))
         prior = np.diag([spread.get(n, math.inf) ** -2.0 for n in free])
         covariance = inverse(information[np.ix_(f, f)] + prior)
-        shift = -covariance @ information[np.ix_(f, h)]
-        known = np.diag([spread[n] ** 2 for n in held])
-        whole = np.block([[covariance + shift @ known @ shift.T, shift @ known], [known @ shift.T, known]])
-        return Posterior((*free, *held), whole)
+        return beside_held(free, covariance, {n: spread[n] for n in held}, information[np.ix_(f, h)])

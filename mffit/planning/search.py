@@ -13,12 +13,11 @@ from mffit.config import Config
 from mffit.diagnosis.ties import TELLING
 from mffit.effects import CATALOG, Effect
 from mffit.fit import FitResult
-from mffit.fit.posterior import COVERING
+from mffit.fit.posterior import COVERING, spread_through
 from mffit.measured import Measured
 from mffit.planning.goals import BANDS, EPSILON, JOINT, TIE, Goal, effect_named
 from mffit.planning.identified import identified, tied_pairs
-from mffit.planning.knowledge import EPSILON as PECP1
-from mffit.planning.knowledge import Knowledge
+from mffit.planning.knowledge import PECP1, Knowledge
 from mffit.planning.record import Plan, Step, Trial
 from mffit.planning.runs import Kind, Run, candidates
 from mffit.points import Points, main_pressure, make_points
@@ -163,7 +162,7 @@ class _Outlook:
             rows = [posterior.names.index(n) for n in names if n in posterior.names]
             columns = [k for k, n in enumerate(names) if n in posterior.names]
             C, G = posterior.covariance[np.ix_(rows, rows)], slopes[:, columns]
-            return COVERING * rms(np.sqrt(np.maximum(np.einsum("ni,ij,nj->n", G, C, G), 0.0)))
+            return COVERING * rms(spread_through(G, C))
         return _finite(posterior.stderr.get(self.goal.name))
 
     @property
