@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-import mffit
 from mffit.measured import LARGEST_DIFFERENCE, wording
 from mffit.quantities import CHANNELS, CONDITIONS, DIRECT
 from mffit.report import page, published
@@ -61,7 +60,6 @@ def write_build(result: BuildResult, folder: Path) -> None:
         per_load=PER_LOAD,
         aligned_below=LARGEST_DIFFERENCE,
         degrees=math.degrees(1.0),
-        version=mffit.__version__,
     )
 
 

@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-import mffit
 from mffit.comparison import Comparison, wording
 from mffit.quantities import CHANNELS
 from mffit.report import page
@@ -56,7 +55,6 @@ def write_comparison(found: Comparison, folder: Path) -> None:
         channels=CHANNELS,
         most=MOST_ROWS,
         pictures=page.draw(folder, _figures(found)),
-        version=mffit.__version__,
     )
 
 

@@ -7,7 +7,6 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-import mffit
 from mffit.diagnosis import Diagnosis, wording
 from mffit.diagnosis.selection import TIE
 from mffit.quantities import CHANNELS
@@ -45,5 +44,4 @@ def write_diagnosis(diagnosis: Diagnosis, folder: Path) -> None:
         tie=TIE,
         channels=CHANNELS,
         pictures=page.draw(folder, figures),
-        version=mffit.__version__,
     )

@@ -7,7 +7,6 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-import mffit
 from mffit.fleet import EPSILON, Fleet
 from mffit.quantities import CHANNELS, COMPARED, DIRECT
 from mffit.report import page
@@ -49,5 +48,4 @@ def write_fleet(found: Fleet, folder: Path, *, priors: bool) -> None:
         spin=SPIN,
         priors=priors,
         pictures=page.draw(folder, figures),
-        version=mffit.__version__,
     )

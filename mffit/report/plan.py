@@ -7,7 +7,6 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-import mffit
 from mffit.planning import Plan, wording
 from mffit.quantities import DIRECT
 from mffit.report import page
@@ -40,5 +39,4 @@ def write_plan(plan: Plan, folder: Path) -> None:
         epsilon=DIRECT["epsilon_gamma"].html,
         trials=plan.trials[:SHOWN],
         pictures=page.draw(folder, figures),
-        version=mffit.__version__,
     )
