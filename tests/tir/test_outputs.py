@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import tir
+from tir.derivatives import gradient, traced
 from tir.equations.forces import Forces
 from tir.errors import TirError
 from tir.evaluate import evaluate, turned_on_rim
@@ -80,3 +81,22 @@ def test_zeros_where_python_would_stop(p):
 def test_a_zero_divisor_is_named(p):
     with pytest.raises(TirError, match="FNOMIN is 0"):
         outputs_of(("Fy",), SimpleNamespace(**{**vars(p), "FNOMIN": 0.0}), {"Fz": 1000.0})
+
+
+def test_programs_that_come_and_go_leave_derivatives_as_they_are(p):
+    """More combinations of inputs than are kept at a time, between two questions about the same one."""
+    conditions = {name: x[:20] for name, x in drawn().items()}
+    values = dict(vars(p))
+
+    def by(*names):
+        numbers = traced({name: float(values[name]) for name in names})
+        return gradient(
+            outputs_of(("Fy",), SimpleNamespace(**{**values, **numbers}), conditions)[0], [*numbers.values()]
+        )
+
+    both = by("PKY1", "PDY1")
+    inputs = ["alpha", "gamma", "kappa", "phi_t"]
+    for k in range(2 ** len(inputs)):
+        some = {"Fz": conditions["Fz"]} | {n: conditions[n] for i, n in enumerate(inputs) if k >> i & 1}
+        outputs_of(("Fy",), p, some)
+    assert by("PDY1")[:, 0] == pytest.approx(both[:, 1], rel=1e-12)
