@@ -111,9 +111,9 @@ def test_tir_does_not_know_mffit():
 
 def test_tir_needs_nothing_but_numpy():
     allowed = {"tir", "numpy"} | set(sys.stdlib_module_names)
-    compiler, drawing = {"numba", "llvmlite", "casadi"}, {"matplotlib"}
+    compiler, drawing = {"llvmlite", "casadi"}, {"matplotlib"}
     wrong = [
-        f"{place(path, line)}: tir imports {name}; it may use numpy and the standard library, in tir/codegen numba and casadi, "
+        f"{place(path, line)}: tir imports {name}; it may use numpy and the standard library, in codegen llvmlite and casadi, "
         f"in tir/drawing.py matplotlib"
         for path in modules("tir")
         for line, name in imports(path)
@@ -130,7 +130,7 @@ def test_tir_imports_what_is_optional_only_when_asked():
         [
             sys.executable,
             "-c",
-            "import sys, tir; print(*{'matplotlib', 'numba', 'casadi'} & set(sys.modules))",
+            "import sys, tir; print(*{'matplotlib', 'llvmlite', 'casadi'} & set(sys.modules))",
         ],
         capture_output=True,
         text=True,

@@ -9,7 +9,6 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from functools import partial
 from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any
 
@@ -17,22 +16,23 @@ import numpy as np
 
 from tir.codegen import arrays as in_arrays
 from tir.codegen import kernel, single
-from tir.codegen.program import INPUTS, NUMBERS, Switches
+from tir.codegen.kernel import LANES
+from tir.codegen.program import NUMBERS, Switches
 from tir.equations.forces import Forces, State
 from tir.evaluate import evaluate, refuse_zero_divisors
 
 if TYPE_CHECKING:
     from tir.tyre import Tyre
 
-BLOCK = 4096
-"""Conditions that are computed together, so that what is between input and output stays in the processor's cache."""
+BLOCK = 8192
+"""Conditions that numpy computes together, so that what is between input and output stays in the processor's cache."""
 COMPILE_FROM = 100_000
 """Conditions of one call from which on the compiled kernel is worth loading, or compiling once after installation."""
-LANES = 8
-"""Conditions of the widest common vector instruction."""
-THREADS_FROM = 8 * BLOCK
+THREADS_FROM = 32_768
 """Conditions of one call from which on they are shared out to threads."""
 FORCES, STATE = Forces._fields, State._fields
+DOUBLE = np.dtype(float)
+ONLY_DOUBLES = {DOUBLE}
 
 
 def compile_kernels(
@@ -42,7 +42,7 @@ def compile_kernels(
     limits: bool = False,
     kinds: Sequence[str] = ("batch", "one"),
 ) -> None:
-    """Compile the model with numba, or load it from the cache, for every call that follows in this process.
+    """Make machine code of the model, or load it from the cache, for every call that follows in this process.
 
     Without this, calls of 100 000 conditions and more do so for themselves; smaller ones, and single ones, go through
     numpy and Python's floats.
@@ -56,7 +56,7 @@ def compile_kernels(
     Raises
     ------
     TirError
-        If numba is not installed (``pip install mffit[fast]``).
+        If llvmlite is not installed (``pip install mffit[fast]``).
     """
     for on in (False, True) if turn_slip is None else (turn_slip,):
         for kind in kinds:
@@ -72,41 +72,26 @@ def forces(tyre: Tyre, inputs: Sequence[Any], switches: Switches) -> Forces:
     arrays = [np.asarray(x) for x in inputs]
     if not _real(arrays):
         return evaluate(tyre.p, *inputs, **switches._asdict())[0]
-    shape = _common_shape(arrays)
-    if shape == ():
+    shapes = {a.shape for a in arrays} - {()}
+    if not shapes:
         return Forces(*_one(tyre, arrays, switches, FORCES))
-    flat = arrays if len(shape) == 1 and _stretched(arrays) else [_flat(a, shape) for a in arrays]
-    out = _many(tyre, flat, math.prod(shape), switches)
+    shape = shapes.pop() if len(shapes) == 1 else np.broadcast_shapes(*shapes, *(a.shape for a in arrays))
+    if shapes or len(shape) > 1:
+        arrays = [a if a.ndim == 0 else np.broadcast_to(a, shape).reshape(-1) for a in arrays]
+    out = _many(tyre, arrays, math.prod(shape), switches)
     return Forces(*(out if len(shape) == 1 else out.reshape(len(FORCES), *shape)))
 
 
 def state(tyre: Tyre, inputs: Sequence[Any], switches: Switches) -> State:
     """State for the same; see :meth:`tir.Tyre.state`."""
     arrays = [np.asarray(x) for x in inputs]
-    if _real(arrays) and _common_shape(arrays) == ():
+    if _real(arrays) and all(a.shape == () for a in arrays):
         return State(*_one(tyre, arrays, switches, STATE))
     return _evaluated(tyre, inputs, switches)[1]
 
 
 def _real(arrays: Sequence[np.ndarray]) -> bool:
-    return all(a.dtype.kind in "fiub" for a in arrays)
-
-
-def _common_shape(arrays: Sequence[np.ndarray]) -> tuple[int, ...]:
-    shapes = {a.shape for a in arrays} - {()}
-    if not shapes:
-        return ()
-    return shapes.pop() if len(shapes) == 1 else np.broadcast_shapes(*shapes)
-
-
-def _stretched(arrays: Sequence[np.ndarray]) -> bool:
-    """Whether each is a single number, or as long as the longest."""
-    return len({a.size for a in arrays if a.ndim}) == 1
-
-
-def _flat(a: np.ndarray, shape: tuple[int, ...]) -> np.ndarray:
-    """One number, or one per condition."""
-    return a if a.ndim == 0 else (a if a.shape == shape else np.broadcast_to(a, shape)).reshape(-1)
+    return {a.dtype for a in arrays} == ONLY_DOUBLES or all(a.dtype.kind in "fiub" for a in arrays)
 
 
 def _one(tyre: Tyre, inputs: Sequence[np.ndarray], switches: Switches, outputs: tuple[str, ...]) -> tuple:
@@ -140,30 +125,23 @@ def function_of(tyre: Tyre, switches: Switches, outputs: tuple[str, ...] = FORCE
     """The tyre as a function of floats, kept with the tyre; None if a parameter is no real number."""
     key = switches if outputs is FORCES else (outputs, switches)
     if key not in tyre.prepared:
+        run = _kernel_of(tyre, "one", switches) if outputs is FORCES else None
         values = _values(tyre)
-        compiled = LOADED.get(("one", switches)) if outputs is FORCES else None
-        if values is None:
-            return None
-        if compiled is None:
-            tyre.prepared[key] = single.run_of(values, switches, outputs)
-        else:
-            constants = np.array(single.constants(compiled.prepare, values))
-            tyre.prepared[key] = partial(compiled.run, constants)
+        if run is None and values is not None:
+            run = single.run_of(values, switches, outputs)
+        tyre.prepared[key] = run
     return tyre.prepared[key]
 
 
-def _batch_of(tyre: Tyre, switches: Switches) -> Callable | None:
-    """The loop over conditions with the tyre's constants, kept with the tyre; None if it is not loaded."""
-    key = ("batch", switches)
-    if key not in LOADED:
+def _kernel_of(tyre: Tyre, kind: str, switches: Switches) -> Callable | None:
+    """A kernel bound to the tyre, kept with the tyre; None if it is not loaded or a parameter is no real number."""
+    loaded = LOADED.get((kind, switches))
+    if loaded is None:
         return None
-    if key not in tyre.prepared:
+    if (kind, switches) not in tyre.prepared:
         values = _values(tyre)
-        if values is None:
-            return None
-        constants = np.array(single.constants(LOADED[key].prepare, values))
-        tyre.prepared[key] = partial(LOADED[key].run, constants)
-    return tyre.prepared[key]
+        tyre.prepared[kind, switches] = None if values is None else loaded.run_of(values)
+    return tyre.prepared[kind, switches]
 
 
 def _values(tyre: Tyre) -> dict[str, float] | None:
@@ -179,16 +157,11 @@ def _many(tyre: Tyre, inputs: Sequence[np.ndarray], n: int, switches: Switches) 
     """Forces (6, n) of inputs that are single numbers or (n,)."""
     if n >= COMPILE_FROM and ("batch", switches) not in LOADED and kernel.available():
         compile_kernels(**switches._asdict(), kinds=("batch",))
-    run = _batch_of(tyre, switches)
-    if run is not None and n <= BLOCK:
-        return _computed(run, inputs, slice(0, n), *_space(n))
+    run = _kernel_of(tyre, "batch", switches)
+    if run is not None:
+        return _in_vectors(run, inputs, n)
     out = np.empty((len(FORCES), n))
-    if run is None:
-        _in_numpy(_arrays_of(tyre, switches), inputs, out)
-    elif n < THREADS_FROM:
-        _in_blocks(run, inputs, out, 0, n)
-    else:
-        _in_threads(run, inputs, out)
+    _in_numpy(_arrays_of(tyre, switches), inputs, out)
     return out
 
 
@@ -212,37 +185,17 @@ def _in_numpy(run: Callable, inputs: Sequence[np.ndarray], out: np.ndarray) -> N
                 row[start : start + BLOCK] = force
 
 
-def _space(n: int) -> tuple[np.ndarray, np.ndarray]:
-    """Room for the inputs and forces of n conditions, up to whole vector instructions."""
-    size = -(-n // LANES) * LANES
-    return np.ones((len(INPUTS), size)), np.empty((len(FORCES), size))
-
-
-def _computed(
-    run: Callable, inputs: Sequence[np.ndarray], block: slice, packed: np.ndarray, found: np.ndarray
-) -> np.ndarray:
-    """Forces of a block of conditions, in ``found``; one array of inputs spares the compiler many cases."""
-    n = block.stop - block.start
-    for row, x in zip(packed, inputs, strict=True):
-        row[:n] = x[block] if x.ndim else x
-    run(packed, packed.shape[1], found)
-    return found[:, :n]
-
-
-def _in_blocks(run: Callable, inputs: Sequence[np.ndarray], out: np.ndarray, first: int, last: int) -> None:
-    packed, found = _space(BLOCK)
-    for start in range(first, last, BLOCK):
-        block = slice(start, min(start + BLOCK, last))
-        out[:, block] = _computed(run, inputs, block, packed, found)
-
-
-def _in_threads(run: Callable, inputs: Sequence[np.ndarray], out: np.ndarray) -> None:
-    n, threads = out.shape[1], kernel.threads()
-    share = BLOCK * -(-n // (BLOCK * threads))
-    with ThreadPoolExecutor(threads) as pool:
-        done = [
-            pool.submit(_in_blocks, run, inputs, out, first, min(first + share, n))
-            for first in range(0, n, share)
-        ]
-    for part in done:
-        part.result()
+def _in_vectors(run: Callable, inputs: Sequence[np.ndarray], n: int) -> np.ndarray:
+    whole = [np.asarray(x, DOUBLE, "C") for x in inputs]
+    if n < LANES:
+        whole = [x if x.ndim == 0 else np.append(x, np.ones(LANES - n)) for x in whole]
+    out = np.empty((len(FORCES), max(n, LANES)))
+    if n < THREADS_FROM:
+        run(*whole, out, 0, out.shape[1])
+    else:
+        share = -(-n // kernel.threads())
+        with ThreadPoolExecutor() as pool:
+            parts = [pool.submit(run, *whole, out, at, min(at + share, n)) for at in range(0, n, share)]
+        for part in parts:
+            part.result()
+    return out if n >= LANES else out[:, :n]

@@ -185,13 +185,14 @@ class Tyre:
             p = self.values["INFLPRES"]
         # the way of a simulation that asks for one condition after the other: no array, no look at what is general
         if (
-            type(Fz) is float
-            and type(alpha) is float
-            and type(gamma) is float
-            and type(kappa) is float
-            and type(phi_t) is float
-            and type(Vx) is float
-            and type(p) is float
+            float
+            is type(Fz)
+            is type(alpha)
+            is type(gamma)
+            is type(kappa)
+            is type(phi_t)
+            is type(Vx)
+            is type(p)
         ):
             try:
                 run = self.prepared[turn_slip, star, limits]

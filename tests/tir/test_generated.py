@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import importlib.util
 import itertools
 import math
 import subprocess
@@ -25,7 +24,7 @@ VECTORS = Path(__file__).parent / "vectors"
 ALL_SWITCHES = [Switches(*on) for on in itertools.product((False, True), repeat=3)]
 TOLERANCE = 1e-12
 """Of the value, or of 1e-3 of the channel's largest: hundreds of roundings in another order."""
-needs_numba = pytest.mark.skipif(importlib.util.find_spec("numba") is None, reason="numba is not installed")
+needs_llvm = pytest.mark.skipif(not kernel.available(), reason="llvmlite is not installed")
 
 
 @pytest.fixture(scope="module", params=["MagicFormula62", "moto_front"])
@@ -91,7 +90,7 @@ def test_floats_equal_the_equations(tyre, conditions, switches):
     assert {type(x) for found in (*forces, *state) for x in found} == {float}
 
 
-@needs_numba
+@needs_llvm
 @pytest.mark.parametrize("switches", [Switches(), Switches(True), Switches(True, True, True)], ids=str)
 def test_the_compiled_loop_equals_the_equations(tyre, conditions, switches, compiled):
     compiled(switches, "batch")
@@ -103,7 +102,7 @@ def test_the_compiled_loop_equals_the_equations(tyre, conditions, switches, comp
             assert_equal(found, [np.tile(x, times) for x in wanted], Forces._fields)
 
 
-@needs_numba
+@needs_llvm
 def test_the_compiled_single_call_equals_the_equations(tyre, conditions, compiled):
     switches = Switches(True, False, True)
     compiled(switches, "one")
@@ -127,32 +126,72 @@ def compiled(monkeypatch):
     return load
 
 
-@needs_numba
-def test_elementary_functions_are_those_of_the_libm():
-    from tir.codegen import vector_math
+@pytest.fixture(scope="module")
+def in_lanes():
+    """Functions of :mod:`tir.codegen.vector_math` as functions of arrays (n,) with n a multiple of the lanes."""
+    ir = pytest.importorskip("llvmlite.ir")
+    import ctypes
 
+    from llvmlite import binding
+
+    from tir.codegen import vector_math
+    from tir.codegen.instructions import DOUBLE, Number, repeated
+
+    vector = ir.VectorType(DOUBLE, kernel.LANES)
+
+    def compiled(name: str, *more: float):
+        text = ir.Module()
+        pointer = vector.as_pointer()
+        function = ir.Function(text, ir.FunctionType(ir.VoidType(), [pointer, pointer]), "f")
+        builder = ir.IRBuilder(function.append_basic_block())
+        x = Number(builder, builder.load(function.args[0], align=8))
+        others = (Number(builder, repeated(vector, y)) for y in more)
+        found = getattr(vector_math, name)(x, *others)
+        builder.store(found.value, function.args[1], align=8)
+        builder.ret_void()
+        machine = kernel._machine()
+        engine = binding.create_mcjit_compiler(binding.parse_assembly(""), machine)
+        engine.add_object_file(binding.ObjectFileRef.from_data(kernel._compiled(str(text), machine)))
+        engine.finalize_object()
+        run = ctypes.CFUNCTYPE(None, ctypes.c_void_p, ctypes.c_void_p)(engine.get_function_address("f"))
+
+        def of(x) -> np.ndarray:
+            n = np.size(x)
+            padded = np.append(x, np.ones(-n % kernel.LANES))
+            out = np.empty_like(padded)
+            for at in range(0, padded.size, kernel.LANES):
+                run(padded[at:].ctypes.data, out[at:].ctypes.data)
+            return out[:n]
+
+        of.engine = engine
+        return of
+
+    return compiled
+
+
+def test_elementary_functions_are_those_of_the_libm(in_lanes):
     angles = np.concatenate([np.linspace(-9.0, 9.0, 4001), np.geomspace(1e-300, 1e6, 500), [0.0]])
-    ratios = np.linspace(-0.999, 1.0, 1001)
-    positive = np.geomspace(1e-6, 1e3, 1001)
     for name, x in (
         ("sin", angles),
         ("cos", angles),
         ("tan", angles),
         ("arctan", np.append(angles, [np.inf, -np.inf])),
-        ("arccos", ratios),
+        ("arccos", np.linspace(-0.999, 1.0, 1001)),
         ("exp", np.linspace(-700.0, 700.0, 2001)),
     ):
-        function = getattr(vector_math, name)
-        found, wanted = np.array([function(v) for v in x]), getattr(np, name)(x)
+        function = in_lanes(name)
+        found, wanted = function(x), getattr(np, name)(x)
         assert np.max(np.abs(found / np.where(wanted == 0.0, 1.0, wanted) - (wanted != 0.0))) < 3e-15, name
-        assert math.isnan(function(math.nan)), name
-    for y in (0.85, -0.4, 2.0, -3.0, 0.0):
-        found = np.array([vector_math.power(v, y) for v in positive])
-        assert found == pytest.approx(positive**y, rel=1e-14)
-        for base in (0.0, -2.0, math.inf, math.nan):
-            with np.errstate(all="ignore"):
-                wanted = float(np.power(np.float64(base), y))
-            assert vector_math.power(base, y) == pytest.approx(wanted, nan_ok=True), (base, y)
+        assert np.all(np.isnan(function(np.full(8, np.nan)))), name
+
+
+@pytest.mark.parametrize("y", [0.85, -0.4, 2.0, -3.0, 0.0])
+def test_powers_are_those_of_the_libm(in_lanes, y):
+    power, positive = in_lanes("power", y), np.geomspace(1e-6, 1e3, 1001)
+    assert power(positive) == pytest.approx(positive**y, rel=1e-14)
+    edges = np.array([0.0, -2.0, math.inf, math.nan])
+    with np.errstate(all="ignore"):
+        assert power(edges) == pytest.approx(np.power(edges, y), nan_ok=True)
 
 
 def test_shapes_broadcast_and_scalars_stay_floats(tyre):
@@ -174,14 +213,66 @@ def test_blocks_are_put_together_in_order(tyre, monkeypatch):
     assert np.array_equal(np.array(tyre(2000.0, alpha)), np.array(whole))
 
 
-def test_a_tyre_without_numba_is_told_what_to_install(monkeypatch):
+@needs_llvm
+def test_the_compiled_loop_takes_few_conditions_other_strides_and_other_kinds(tyre, compiled):
+    compiled(Switches(), "batch")
+    alpha = np.linspace(-0.2, 0.2, 51)
+    whole = np.array(evaluate(tyre.p, np.full(51, 2000.0), alpha)[0])
+    for part in (
+        slice(0, 1),
+        slice(0, 7),
+        slice(0, 8),
+        slice(0, 9),
+        slice(None, None, 3),
+        slice(None, None, -1),
+    ):
+        assert_equal(tyre(2000.0, alpha[part]), whole[:, part], Forces._fields)
+    assert_equal(
+        tyre(np.array([2000, 3000]), 0.1), evaluate(tyre.p, np.array([2e3, 3e3]), 0.1)[0], Forces._fields
+    )
+    column = tyre(2000.0, alpha.reshape(17, 3).T)
+    assert_equal(column, np.array([row.reshape(17, 3).T for row in whole]), Forces._fields)
+
+
+@needs_llvm
+@pytest.mark.parametrize(
+    ("kind", "arguments"),
+    [
+        ("one", ()),
+        ("one", (1.0,) * 6 + ("no number",)),
+        ("batch", (np.ones(8),) * 7),
+        ("batch", (np.ones(8),) * 7 + (b"not to be written", 0, 8)),
+        ("batch", (np.ones(16)[::2],) * 7 + (np.ones((6, 8)), 0, 8)),
+    ],
+)
+def test_machine_code_refuses_what_it_was_not_made_for(tyre, kind, arguments):
+    run = kernel.load(kind, Switches()).run_of(calls._values(tyre))
+    with pytest.raises((TypeError, ValueError, BufferError)):
+        run(*arguments)
+
+
+@needs_llvm
+def test_damaged_machine_code_in_the_cache_is_made_again(tyre, tmp_path, monkeypatch):
+    monkeypatch.setattr(kernel, "cache_folder", lambda: tmp_path)
+    load = kernel.load.__wrapped__
+    load("one", Switches())
+    (kept,) = tmp_path.iterdir()
+    whole = kept.read_bytes()
+    for damaged in (whole[:-100], whole[:3000] + b"\0" * 40 + whole[3040:], b"", b"no seal"):
+        kept.write_bytes(damaged)
+        run = load("one", Switches()).run_of(calls._values(tyre))
+        assert run(2e3, 0.05, 0.0, 0.0, 0.0, 16.0, 2e5) == pytest.approx(tyre(2e3, 0.05, p=2e5, Vx=16.0))
+        assert kept.read_bytes() == whole
+
+
+def test_a_tyre_without_llvm_is_told_what_to_install(monkeypatch):
     monkeypatch.setattr(kernel, "available", lambda: False)
     kernel.load.cache_clear()
     with pytest.raises(tir.TirError, match=r"pip install mffit\[fast\]"):
         tir.compile_kernels()
 
 
-def test_large_calls_without_numba_go_through_numpy(monkeypatch, tyre):
+def test_large_calls_without_llvm_go_through_numpy(monkeypatch, tyre):
     monkeypatch.setattr(kernel, "available", lambda: False)
     monkeypatch.setattr(calls, "COMPILE_FROM", 1)
     monkeypatch.setattr(calls, "LOADED", {})
@@ -190,7 +281,7 @@ def test_large_calls_without_numba_go_through_numpy(monkeypatch, tyre):
 
 
 @pytest.mark.parametrize("switches", ALL_SWITCHES, ids=str)
-def test_arrays_without_numba_equal_the_equations(tyre, conditions, switches, monkeypatch):
+def test_arrays_without_llvm_equal_the_equations(tyre, conditions, switches, monkeypatch):
     """Each input as an array, and as a single number beside arrays."""
     monkeypatch.setattr(calls, "LOADED", {})
     with np.errstate(all="ignore"):
@@ -242,7 +333,7 @@ def test_the_name_of_a_tyre_fits_a_screen(tyre):
 
 
 def test_importing_tir_imports_no_compiler():
-    code = "import sys, tir; print([m for m in ('numba', 'llvmlite', 'scipy', 'pandas') if m in sys.modules])"
+    code = "import sys, tir; print([m for m in ('llvmlite', 'scipy', 'pandas') if m in sys.modules])"
     found = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert found.stdout.strip() == "[]"
 

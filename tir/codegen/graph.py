@@ -92,6 +92,10 @@ def _compute(operation: str, arguments: tuple[Any, ...]) -> float | bool:
         return _number(UFUNCS[operation](*arguments))
 
 
+def _is_node(x: Any) -> bool:
+    return isinstance(x, Node)
+
+
 def _is(x: Any, value: float) -> bool:
     return not isinstance(x, Node) and x == value
 
@@ -119,6 +123,8 @@ def _multiply(graph: Graph, a: Any, b: Any) -> Any:
         return b
     if _is(a, -1.0):
         return graph.apply("negative", b)
+    if not isinstance(a, Node) and _made_by(b, "where") and not any(map(_is_node, b.arguments[1:])):
+        return graph.apply("where", b.arguments[0], *(a * x for x in b.arguments[1:]))
     if _is_sign_of(a, b) or _is_sign_of(b, a):
         return graph.apply("absolute", a if _is_sign_of(b, a) else b)
     return _with_factors_in_front(graph, a, b)
@@ -164,6 +170,13 @@ def _negative(graph: Graph, a: Any) -> Any:
     return None
 
 
+def _cos(graph: Graph, a: Any) -> Any:
+    if not _made_by(a, "arctan"):
+        return None
+    (x,) = a.arguments
+    return graph.apply("divide", 1.0, graph.apply("sqrt", 1.0 + x * x))
+
+
 def _where(graph: Graph, chosen: Any, a: Any, b: Any) -> Any:
     if not isinstance(chosen, Node):
         return a if chosen else b
@@ -202,6 +215,7 @@ RULES: dict[str, Callable[..., Any]] = {
     "divide": _divide,
     "power": _power,
     "negative": _negative,
+    "cos": _cos,
     "where": _where,
     "both": _both,
 }

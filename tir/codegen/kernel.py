@@ -1,125 +1,140 @@
-"""The model compiled by numba: loops over many conditions as vector instructions, or one condition.
+"""The model as machine code, made with LLVM once per machine and kept in a folder of the user's cache.
 
-The source is generated once and kept in a folder of the user's cache, whose name is a hash of everything that the
-machine code follows from; numba keeps the machine code beside it.
+The name of the folder is a hash of everything that the machine code follows from.
 """
 
 from __future__ import annotations
 
+import ctypes
 import hashlib
 import importlib.util
 import os
 import sys
 import tempfile
-from collections.abc import Callable
+from array import array
+from collections.abc import Callable, Mapping
 from functools import cache
 from importlib.resources import files as resources
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from tir.codegen.program import INPUTS, Program, Switches, trace
-from tir.codegen.source import COMMON, FUNCTIONS, Dialect, assignments, function, name_of, preparation
+from tir.codegen.program import Switches, trace
+from tir.codegen.single import constants, preparation_of
 from tir.equations.forces import Forces
 from tir.errors import TirError
 
-BRANCHLESS = Dialect({**COMMON, "where": "select({}, {}, {})", "both": "({} & {})"}, inline=False)
 SOURCES = ("equations", "codegen", "evaluate.py", "derivatives.py", "parameters.csv")
 """What the machine code follows from."""
-HEAD = f"""from math import sqrt
-from numba import njit
-from tir.codegen.intrinsics import OPTIONS, select
-from tir.codegen.vector_math import {", ".join(name for name in FUNCTIONS if name != "sqrt")}
-
-"""
-SIGNATURES = {
-    "batch": "void(float64[::1], float64[:, ::1], int64, float64[:, ::1])",
-    "one": f"UniTuple(float64, {len(Forces._fields)})(float64[::1], {', '.join(['float64'] * len(INPUTS))})",
-}
+LANES = 8
+"""Conditions that are computed together: as many as the widest common vector has doubles; narrower machines split them."""
+FASTCALL = 0x80
+"""CPython's METH_FASTCALL."""
 
 
 class Kernel(NamedTuple):
-    """The model for some switches, compiled."""
+    """The model for some switches as machine code."""
 
+    definition: Any  #: what Python knows of the built-in function
+    keep: Any  #: what the machine code lives in
     prepare: Callable[..., tuple[float, ...]]  #: see :func:`tir.codegen.source.preparation`
-    run: Callable[..., Any]
-    """``batch(constants, inputs (7, m), n, forces (6, m))`` computes the first n columns; ``one(constants, *inputs)`` returns the
-    six forces."""
+
+    def run_of(self, values: Mapping[str, float]) -> Callable[..., Any]:
+        """The function of :func:`tir.codegen.entry.module`, bound to a tyre."""
+        bind = ctypes.pythonapi.PyCFunction_NewEx
+        bind.argtypes, bind.restype = (ctypes.c_void_p, ctypes.py_object, ctypes.py_object), ctypes.py_object
+        numbers = array("d", constants(self.prepare, values)).tobytes()
+        keeps_alive = self
+        return bind(ctypes.addressof(self.definition), numbers, keeps_alive)
 
 
-@cache
-def available() -> bool:
-    """Whether numba is installed and runs with the numpy that is there; imports it."""
-    try:
-        import numba  # noqa: F401
-    except ImportError:
-        return False
-    return True
+class _Definition(ctypes.Structure):
+    """CPython's ``PyMethodDef``."""
 
-
-def threads() -> int:
-    """How many threads a large call may use: numba's own setting (``numba.set_num_threads``, NUMBA_NUM_THREADS)."""
-    import numba
-
-    return int(numba.get_num_threads())
-
-
-@cache
-def load(kind: str, switches: Switches) -> Kernel:
-    """The kernel "batch" or "one", from the cache or compiled, which takes some seconds.
-
-    Raises
-    ------
-    TirError
-        If numba is not installed.
-    """
-    if not available():
-        raise TirError(
-            "compiled kernels need numba, which is not installed or does not run here: pip install mffit[fast]"
-        )
-    name = "_".join([kind, *(word for word, on in switches._asdict().items() if on)])
-    path = cache_folder() / f"{name}.py"
-    if not path.exists():
-        _write(path, source(kind, switches))
-    spec = importlib.util.spec_from_file_location(f"tir_kernels_{name}", path)
-    assert spec is not None
-    assert spec.loader is not None
-    module = importlib.util.module_from_spec(spec)
-    sys.modules[spec.name] = module  # numba's cache looks it up by name
-    spec.loader.exec_module(module)
-    return Kernel(module.prepare, getattr(module, kind))
-
-
-def source(kind: str, switches: Switches) -> str:
-    """The Python source that numba compiles."""
-    program = trace(switches, Forces._fields)
-    free = kind == "batch"  # letting other threads run costs a single call a tenth of its time
-    decorator = f'@njit("{SIGNATURES[kind]}", cache=True, nogil={free}, **OPTIONS)\n'
-    return HEAD + preparation(program) + "\n\n" + decorator + {"batch": _batch, "one": _one}[kind](program)
-
-
-def _unpacked(program: Program) -> list[str]:
-    return [f"{name_of(node)} = constants[{i}]" for i, node in enumerate(program.constants)]
-
-
-def _batch(program: Program) -> str:
-    lines, results = assignments(program.per_point, program.outputs.values(), BRANCHLESS)
-    inputs = [f"{name} = inputs[{i}, i]" for i, name in enumerate(INPUTS)]
-    outputs = [f"forces[{i}, i] = {x}" for i, x in enumerate(results)]
-    loop = ["for i in range(n):", *(f"    {line}" for line in (*inputs, *lines, *outputs))]
-    return function("batch(constants, inputs, n, forces)", [*_unpacked(program), *loop])
-
-
-def _one(program: Program) -> str:
-    lines, results = assignments(program.per_point, program.outputs.values(), BRANCHLESS)
-    return function(
-        f"one(constants, {', '.join(INPUTS)})",
-        [*_unpacked(program), *lines, f"return ({', '.join(results)})"],
+    _fields_ = (
+        ("name", ctypes.c_char_p),
+        ("address", ctypes.c_void_p),
+        ("flags", ctypes.c_int),
+        ("doc", ctypes.c_char_p),
     )
 
 
 @cache
+def available() -> bool:
+    """Whether machine code can be made and called here: llvmlite, CPython, 64 bits."""
+    return (
+        sys.implementation.name == "cpython"
+        and sys.maxsize > 2**32
+        and importlib.util.find_spec("llvmlite") is not None
+    )
+
+
+def threads() -> int:
+    """How many threads a large call may use: OMP_NUM_THREADS, else the processors that this process may use."""
+    asked = os.environ.get("OMP_NUM_THREADS", "")
+    if asked.isdigit() and int(asked) > 0:
+        return int(asked)
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+
+
+@cache
+def load(kind: str, switches: Switches) -> Kernel:
+    """The kernel "batch" or "one", from the cache or compiled, which takes a second or two.
+
+    Raises
+    ------
+    TirError
+        If llvmlite is not installed.
+    """
+    if not available():
+        raise TirError(
+            "compiled kernels need llvmlite, which is not installed or does not run here: pip install mffit[fast]"
+        )
+    from llvmlite import binding
+
+    machine = _machine()
+    path = cache_folder() / f"{'_'.join([kind, *(word for word, on in switches._asdict().items() if on)])}.o"
+    code = _read(path)
+    if code is None:
+        from tir.codegen import entry
+
+        code = _compiled(entry.module(kind, trace(switches, Forces._fields)), machine)
+        _write(path, code)
+    engine = binding.create_mcjit_compiler(binding.parse_assembly(""), machine)
+    engine.add_object_file(binding.ObjectFileRef.from_data(code))
+    engine.finalize_object()
+    definition = _Definition(kind.encode(), engine.get_function_address(kind), FASTCALL, None)
+    return Kernel(definition, engine, preparation_of(switches, Forces._fields))
+
+
+def _machine() -> Any:
+    """The processor that this process runs on, and the functions of Python that the machine code calls."""
+    from llvmlite import binding
+
+    from tir.codegen.entry import API
+
+    binding.initialize_native_target()
+    binding.initialize_native_asmprinter()
+    for name in API:
+        binding.add_symbol(name, ctypes.cast(getattr(ctypes.pythonapi, name), ctypes.c_void_p).value)
+    return binding.Target.from_default_triple().create_target_machine(
+        cpu=binding.get_host_cpu_name(), features=binding.get_host_cpu_features().flatten(), opt=3,
+        codemodel="jitdefault", jit=True,
+    )  # fmt: skip
+
+
+def _compiled(text: str, machine: Any) -> bytes:
+    from llvmlite import binding
+
+    module = binding.parse_assembly(text)
+    module.triple, module.data_layout = machine.triple, str(machine.target_data)
+    passes = binding.create_pass_builder(machine, binding.create_pipeline_tuning_options(speed_level=3))
+    passes.getModulePassManager().run(module, passes)
+    return machine.emit_object(module)
+
+
+@cache
 def cache_folder() -> Path:
-    """Where the kernels of these very sources are kept; created if need be."""
+    """Where the kernels of these very sources and this processor are kept; created if need be."""
     folder = _user_cache() / f"kernels-{_fingerprint()}"
     try:
         folder.mkdir(parents=True, exist_ok=True)
@@ -130,16 +145,23 @@ def cache_folder() -> Path:
 
 
 def _user_cache() -> Path:
-    if "NUMBA_CACHE_DIR" in os.environ:
-        return Path(os.environ["NUMBA_CACHE_DIR"]) / "tir"
     if sys.platform == "win32":
         return Path(os.environ.get("LOCALAPPDATA", Path.home() / "AppData" / "Local")) / "tir"
     return Path(os.environ.get("XDG_CACHE_HOME", Path.home() / ".cache")) / "tir"
 
 
 def _fingerprint() -> str:
-    """Numba notices another processor or another numba by itself, but no edit outside the compiled file."""
-    found = hashlib.sha256()
+    """Of the sources, of LLVM and of the processor."""
+    from llvmlite import __version__, binding
+
+    here = (
+        __version__,
+        sys.version,
+        binding.get_process_triple(),
+        binding.get_host_cpu_name(),
+        binding.get_host_cpu_features().flatten(),
+    )
+    found = hashlib.sha256("\0".join(here).encode())
     for name in SOURCES:
         place = resources("tir") / name
         parts = sorted(place.iterdir(), key=lambda x: x.name) if place.is_dir() else [place]
@@ -149,9 +171,22 @@ def _fingerprint() -> str:
     return found.hexdigest()[:20]
 
 
-def _write(path: Path, text: str) -> None:
+def _read(path: Path) -> bytes | None:
+    """What was kept; None if there is nothing, or nothing whole."""
+    try:
+        seal, code = path.read_bytes().split(b"\n", 1)
+    except (OSError, ValueError):
+        return None
+    return code if seal == _seal(code) else None
+
+
+def _write(path: Path, code: bytes) -> None:
     """Whole or not at all: several processes may write the same file at the same time."""
     handle, temporary = tempfile.mkstemp(dir=path.parent, suffix=".part")
-    with os.fdopen(handle, "w", encoding="ascii") as stream:
-        stream.write(text)
+    with os.fdopen(handle, "wb") as stream:
+        stream.write(_seal(code) + b"\n" + code)
     os.replace(temporary, path)
+
+
+def _seal(code: bytes) -> bytes:
+    return hashlib.sha256(code).hexdigest().encode()

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping
 from functools import cache
+from types import FunctionType
 from typing import Any
 
 import numpy as np
@@ -22,7 +23,12 @@ NUMPY = {name: getattr(np, name) for name in FUNCTIONS}
 def _compiled(switches: Switches, outputs: tuple[str, ...]) -> tuple[Any, Any]:
     program, namespace = trace(switches, outputs), dict(MATH)
     exec(preparation(program) + conditions(program), namespace)
-    return namespace["prepare"], namespace["make"]
+    return namespace["prepare"], namespace["run"]
+
+
+def preparation_of(switches: Switches, outputs: tuple[str, ...]) -> Callable[..., tuple[float, ...]]:
+    """See :func:`tir.codegen.source.preparation`."""
+    return _compiled(switches, outputs)[0]
 
 
 def constants(prepare: Callable[..., tuple[float, ...]], values: Mapping[str, float]) -> tuple[float, ...]:
@@ -40,6 +46,10 @@ def run_of(values: Mapping[str, float], switches: Switches, outputs: tuple[str, 
 
     Raises what Python's arithmetic raises where numpy's gives NaN or infinity.
     """
-    prepare, make = _compiled(switches, outputs)
-    run: Run = make(constants(prepare, values))
-    return run
+    prepare, run = _compiled(switches, outputs)
+    return with_defaults(run, constants(prepare, values))
+
+
+def with_defaults(run: FunctionType, last: tuple[float, ...]) -> Run:
+    """A function whose last arguments are given: as defaults, since Python reads nothing faster than an argument."""
+    return FunctionType(run.__code__, run.__globals__, run.__name__, last)

@@ -102,13 +102,12 @@ def preparation(program: Program) -> str:
 
 
 def conditions(program: Program, dialect: Dialect = PYTHON) -> str:
-    """Python source of ``make(constants)``, which gives the function of the operating condition."""
+    """Python source of ``run(<inputs>, <constants>)``: the outputs in an operating condition."""
     lines, results = assignments(program.per_point, program.outputs.values(), dialect)
     if dialect.release:
         lines = _released(lines, results)
-    run = function(f"run({', '.join(INPUTS)})", [*lines, _returned(results)])
-    unpacked = f"({', '.join(map(name_of, program.constants))},) = constants"
-    return function("make(constants)", [unpacked, *run.splitlines(), "return run"])
+    given = (*INPUTS, *map(name_of, program.constants))
+    return function(f"run({', '.join(given)})", [*lines, _returned(results)])
 
 
 def _released(lines: list[str], results: list[str]) -> list[str]:

@@ -3,15 +3,14 @@
 Each polynomial interpolates its function at the Chebyshev nodes of a reduced range; results are good to 4e-16 of their
 size (``power`` to 2e-15), angles of ``sin``, ``cos`` and ``tan`` up to 1e6 rad. NaN gives NaN.
 
-The functions are for numba: ``select``, ``bits`` and ``number`` are one instruction each, see
-:mod:`tir.codegen.intrinsics`.
+The numbers are those of :mod:`tir.codegen.instructions`.
 """
 
 from __future__ import annotations
 
 import math
 
-from tir.codegen.intrinsics import bits, compiled, number, select
+from tir.codegen.instructions import bits, number, select, sqrt
 
 ROUND = 6755399441055744.0
 """1.5 2^52: added and taken off again it rounds to an integer, which meanwhile stands in the lowest bits."""
@@ -27,7 +26,6 @@ INTEGER_IN_BITS = 4841369599423283200
 """Bits of 1.0, the bits behind the exponent, and the bits of 2^52, to which an integer can be added."""
 
 
-@compiled
 def sin(x):
     turns = x * PER_PI + ROUND
     n = turns - ROUND
@@ -35,7 +33,6 @@ def sin(x):
     return _sin_in_half_turn(r, bits(turns))
 
 
-@compiled
 def cos(x):
     turns = (x * PER_PI - 0.5) + ROUND
     n = (turns - ROUND) + 0.5
@@ -43,7 +40,6 @@ def cos(x):
     return -_sin_in_half_turn(r, bits(turns))
 
 
-@compiled
 def _sin_in_half_turn(r, half_turns):
     """sin(r) for abs(r) <= pi/2, negative where the number of half turns is odd."""
     s = r * r
@@ -55,12 +51,10 @@ def _sin_in_half_turn(r, half_turns):
     return number(bits(value) ^ (half_turns << 63))
 
 
-@compiled
 def tan(x):
     return sin(x) / cos(x)
 
 
-@compiled
 def arctan(x):
     t = abs(x)
     steep, middle = t > TAN_3PI_8, t > TAN_PI_8
@@ -78,13 +72,11 @@ def arctan(x):
     return select(x < 0.0, -value, value)
 
 
-@compiled
 def arccos(x):
     """For -1 < x <= 1."""
-    return 2.0 * arctan(math.sqrt((1.0 - x) / (1.0 + x)))
+    return 2.0 * arctan(sqrt((1.0 - x) / (1.0 + x)))
 
 
-@compiled
 def exp(x):
     x = select(x > 709.0, 709.0, select(x < -708.0, -708.0, x))
     turns = x * PER_LN2 + ROUND
@@ -98,7 +90,6 @@ def exp(x):
     return (1.0 + (r + (r * r) * tail)) * number((bits(turns) << 52) + EXPONENT_OF_ONE)
 
 
-@compiled
 def log(x):
     """Of abs(x)."""
     whole = bits(abs(x))
@@ -117,7 +108,6 @@ def log(x):
     return select(x == 0.0, -math.inf, select(abs(x) < math.inf, value, abs(x)))
 
 
-@compiled
 def power(x, y):
     """As numpy's: 1 for y = 0, NaN for a negative x unless y is an integer."""
     exponent = y * log(x)

@@ -1,0 +1,238 @@
+"""The model as machine code that Python calls like one of its own built-in functions. Imports llvmlite, so late.
+
+A function is bound to the constants of a tyre, which it gets as ``self``: the doubles of a ``bytes`` object. What is handed
+over follows CPython's C interface, METH_FASTCALL: no converting layer stands between the call and the arithmetic.
+"""
+
+from __future__ import annotations
+
+import operator
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any
+
+from llvmlite import ir
+
+from tir.codegen import vector_math
+from tir.codegen.graph import Node
+from tir.codegen.instructions import DOUBLE, INTEGER, SHORT, Number, in_every_lane, repeated, select, sqrt
+from tir.codegen.kernel import LANES
+from tir.codegen.program import INPUTS, Program
+from tir.codegen.source import FUNCTIONS
+
+POINTER = ir.IntType(8).as_pointer()
+PAIR = ir.VectorType(DOUBLE, 2)
+"""What a single condition is computed in, twice the same: choices between numbers are a fifth faster in vectors."""
+BUFFER = ir.ArrayType(INTEGER, 10)
+"""Python's ``Py_buffer``: the address is its first word, the length in bytes its third."""
+API = {
+    "PyFloat_AsDouble": (DOUBLE, [POINTER]),
+    "PyFloat_FromDouble": (POINTER, [DOUBLE]),
+    "PyLong_AsSsize_t": (INTEGER, [POINTER]),
+    "PyLong_FromLong": (POINTER, [INTEGER]),
+    "PyTuple_New": (POINTER, [INTEGER]),
+    "PyTuple_SetItem": (SHORT, [POINTER, INTEGER, POINTER]),
+    "PyBytes_AsString": (POINTER, [POINTER]),
+    "PyErr_Occurred": (POINTER, []),
+    "PyErr_BadArgument": (SHORT, []),
+    "PyObject_GetBuffer": (SHORT, [POINTER, POINTER, SHORT]),
+    "PyBuffer_Release": (ir.VoidType(), [POINTER]),
+    "PyEval_SaveThread": (POINTER, []),
+    "PyEval_RestoreThread": (ir.VoidType(), [POINTER]),
+    "Py_DecRef": (ir.VoidType(), [POINTER]),
+}  # fmt: skip
+"""What is used of Python's C interface."""
+OPERATIONS: dict[str, Callable[..., Any]] = {
+    "add": operator.add,
+    "subtract": operator.sub,
+    "multiply": operator.mul,
+    "divide": operator.truediv,
+    "negative": operator.neg,
+    "absolute": abs,
+    "less": operator.lt,
+    "less_equal": operator.le,
+    "greater": operator.gt,
+    "greater_equal": operator.ge,
+    "both": operator.and_,
+    "where": select,
+    "sqrt": sqrt,
+    **{name: getattr(vector_math, name) for name in FUNCTIONS if name != "sqrt"},
+}
+
+
+def module(kind: str, program: Program) -> str:
+    """The function "one" or "batch" in the words of LLVM.
+
+    ``one(*INPUTS)`` takes floats and returns the six forces as floats. ``batch(*INPUTS, forces, first, last)`` takes buffers of
+    doubles, each of a single number or of one per condition, and writes conditions ``first`` to ``last`` of the buffer
+    ``forces`` (6, n); n is LANES or more. It lets other threads run.
+    """
+    text = ir.Module(name=kind)
+    signature = ir.FunctionType(POINTER, [POINTER, POINTER.as_pointer(), INTEGER])
+    body = ir.IRBuilder(ir.Function(text, signature, kind).append_basic_block())
+    {"one": _one, "batch": _batch}[kind](_Caller(body), program)
+    return str(text)
+
+
+class _Caller:
+    """Calls of Python's C interface, and the arguments of the function that is written."""
+
+    def __init__(self, builder: ir.IRBuilder):
+        self.builder = builder
+        self.bound, self.arguments, self.count = builder.function.args
+
+    def call(self, name: str, *arguments: ir.Value) -> ir.Value:
+        """Call a function of the interface."""
+        known = self.builder.module.globals.get(name)
+        result, kinds = API[name]
+        return self.builder.call(
+            known or ir.Function(self.builder.module, ir.FunctionType(result, kinds), name), arguments
+        )
+
+    def argument(self, i: int) -> ir.Value:
+        """The i-th argument, a Python object."""
+        return self.builder.load(self.builder.gep(self.arguments, [ir.Constant(INTEGER, i)]))
+
+    def leave_if(self, failed: ir.Value, *, before: Callable[[], object] = lambda: None) -> None:
+        """Return to Python, where an error is set, if one was found."""
+        with self.builder.if_then(failed, likely=False):
+            before()
+            self.builder.ret(ir.Constant(POINTER, None))
+
+    def expect(self, count: int) -> None:
+        """Refuse another number of arguments."""
+        wrong = self.builder.icmp_signed("!=", self.count, ir.Constant(INTEGER, count))
+        self.leave_if(wrong, before=lambda: self.call("PyErr_BadArgument"))
+
+    def failed(self) -> ir.Value:
+        """Whether an error is set."""
+        return self.builder.icmp_unsigned("!=", self.call("PyErr_Occurred"), ir.Constant(POINTER, None))
+
+    def constants(self) -> ir.Value:
+        """Address of the tyre's constants."""
+        return self.builder.bitcast(self.call("PyBytes_AsString", self.bound), DOUBLE.as_pointer())
+
+
+def _one(python: _Caller, program: Program) -> None:
+    builder = python.builder
+    python.expect(len(INPUTS))
+    given = [python.call("PyFloat_AsDouble", python.argument(i)) for i in range(len(INPUTS))]
+    python.leave_if(python.failed())
+    inputs = {name: in_every_lane(builder, PAIR, x) for name, x in zip(INPUTS, given, strict=True)}
+    pairs = _computed(builder, program, python.constants(), inputs)
+    forces = [builder.extract_element(pair, ir.Constant(SHORT, 0)) for pair in pairs]
+    out = python.call("PyTuple_New", ir.Constant(INTEGER, len(forces)))
+    python.leave_if(builder.icmp_unsigned("==", out, ir.Constant(POINTER, None)))
+    for i, force in enumerate(forces):
+        python.call("PyTuple_SetItem", out, ir.Constant(INTEGER, i), python.call("PyFloat_FromDouble", force))
+    python.leave_if(python.failed(), before=lambda: python.call("Py_DecRef", out))
+    builder.ret(out)
+
+
+def _batch(python: _Caller, program: Program) -> None:
+    builder, count = python.builder, len(INPUTS)
+    python.expect(count + 3)
+    views = [builder.alloca(BUFFER) for _ in range(count + 1)]
+    for view in views:
+        builder.store(ir.Constant(BUFFER, None), view)
+    buffers = [builder.bitcast(view, POINTER) for view in views]
+
+    def release() -> None:
+        for buffer in buffers:
+            python.call("PyBuffer_Release", buffer)  # one that was never taken is left alone
+
+    for i, buffer in enumerate(buffers):
+        writable = ir.Constant(SHORT, int(i == count))
+        status = python.call("PyObject_GetBuffer", python.argument(i), buffer, writable)
+        python.leave_if(builder.icmp_signed("<", status, ir.Constant(SHORT, 0)), before=release)
+    first, last = (python.call("PyLong_AsSsize_t", python.argument(count + i)) for i in (1, 2))
+    python.leave_if(python.failed(), before=release)
+
+    vector = ir.VectorType(DOUBLE, LANES)
+    inputs = {name: _input(builder, vector, view) for name, view in zip(INPUTS, views, strict=False)}
+    forces, size = _address_and_size(builder, views[-1])
+    stride = builder.udiv(size, ir.Constant(INTEGER, 8 * len(program.outputs)))
+    constants = python.constants()
+    thread = python.call("PyEval_SaveThread")
+    _loop(builder, program, vector, constants, inputs, (forces, stride), (first, last))
+    python.call("PyEval_RestoreThread", thread)
+    release()
+    builder.ret(python.call("PyLong_FromLong", ir.Constant(INTEGER, 0)))
+
+
+def _address_and_size(builder: ir.IRBuilder, view: ir.Value) -> tuple[ir.Value, ir.Value]:
+    zero = ir.Constant(SHORT, 0)
+    words = [builder.load(builder.gep(view, [zero, ir.Constant(SHORT, i)])) for i in (0, 2)]
+    return builder.inttoptr(words[0], DOUBLE.as_pointer()), words[1]
+
+
+def _input(builder: ir.IRBuilder, vector: ir.VectorType, view: ir.Value) -> tuple[ir.Value, ir.Value]:
+    """Address of an input and its step from condition to condition: a single number is repeated in a vector of its own."""
+    address, size = _address_and_size(builder, view)
+    repeated = builder.alloca(vector)
+    builder.store(in_every_lane(builder, vector, builder.load(address)), repeated)
+    single = builder.icmp_unsigned("==", size, ir.Constant(INTEGER, 8))
+    return (
+        builder.select(single, builder.bitcast(repeated, DOUBLE.as_pointer()), address),
+        builder.select(single, ir.Constant(INTEGER, 0), ir.Constant(INTEGER, 1)),
+    )
+
+
+def _loop(
+    builder: ir.IRBuilder,
+    program: Program,
+    vector: ir.VectorType,
+    constants: ir.Value,
+    inputs: Mapping[str, tuple[ir.Value, ir.Value]],
+    forces: tuple[ir.Value, ir.Value],
+    span: tuple[ir.Value, ir.Value],
+) -> None:
+    """Vector after vector; the last one goes back as far as it must to be whole."""
+    address, stride = forces
+    first, last = span
+    before = builder.block
+    loop, done = builder.append_basic_block("conditions"), builder.append_basic_block("done")
+    lanes = ir.Constant(INTEGER, LANES)
+    builder.cbranch(builder.icmp_signed("<", first, last), loop, done)
+    builder.position_at_end(loop)
+    at = builder.phi(INTEGER)
+    latest = builder.sub(last, lanes)
+    begin = builder.select(builder.icmp_signed("<", at, latest), at, latest)
+    given = {
+        name: builder.load(_as_vector(builder, vector, x, builder.mul(begin, step)), align=8)
+        for name, (x, step) in inputs.items()
+    }
+    found = _computed(builder, program, constants, given)
+    for i, force in enumerate(found):
+        row = builder.mul(stride, ir.Constant(INTEGER, i))
+        builder.store(force, _as_vector(builder, vector, address, builder.add(row, begin)), align=8)
+    following = builder.add(at, lanes)
+    at.add_incoming(first, before)
+    at.add_incoming(following, builder.block)
+    builder.cbranch(builder.icmp_signed("<", following, last), loop, done)
+    builder.position_at_end(done)
+
+
+def _as_vector(builder: ir.IRBuilder, vector: ir.VectorType, address: ir.Value, offset: ir.Value) -> ir.Value:
+    return builder.bitcast(builder.gep(address, [offset]), vector.as_pointer())
+
+
+def _computed(
+    builder: ir.IRBuilder, program: Program, constants: ir.Value, inputs: Mapping[str, ir.Value]
+) -> Sequence[ir.Value]:
+    """The program's outputs, of as many conditions as the inputs have lanes."""
+    type_ = next(iter(inputs.values())).type
+    known: dict[int, Any] = {}
+
+    def value(x: Any) -> Any:
+        return known[x.number] if isinstance(x, Node) else x
+
+    for i, node in enumerate(program.constants):
+        x = builder.load(builder.gep(constants, [ir.Constant(INTEGER, i)]))
+        known[node.number] = Number(builder, in_every_lane(builder, type_, x))
+    for node in program.per_point:
+        if node.operation == "symbol":
+            known[node.number] = Number(builder, inputs[node.name])
+        else:
+            known[node.number] = OPERATIONS[node.operation](*map(value, node.arguments))
+    results = map(value, program.outputs.values())
+    return [x.value if isinstance(x, Number) else repeated(type_, x) for x in results]
