@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from tir.codegen.program import Switches, trace
 from tir.document import Document, Line
+from tir.equations.forces import Forces
 from tir.errors import Problem
 from tir.parameters import BY_NAME, REGULAR, TABLE
 from tir.targets import Target
@@ -36,18 +38,28 @@ def _content(tyre: Tyre, target: Target) -> Iterator[Problem]:
             "FITTYP",
         )
     if target.complete and tyre.document is not None:
-        missing = [
-            r.name for r in TABLE if r.files in REGULAR and r.name not in (*tyre.present, *target.without)
-        ]
-        if missing:
-            shown = ", ".join(missing[:6]) + (f" and {len(missing) - 6} more" if len(missing) > 6 else "")
-            yield Problem("error", f"every key has to be there, and {shown} are not: tyre.expand() adds them")
+        missing = {r.name for r in TABLE if r.files in REGULAR} - {*tyre.present, *target.without}
+        yield from _missing(missing, target.turn_slip)
     if not target.turn_slip and int(tyre["USE_MODE"]) % 10 == 5:
         yield Problem(
             "warning",
             "it computes no turn slip, so that camber and spin come out wrong: use the file for turn slip off",
             "USE_MODE",
         )
+
+
+def _missing(names: set[str], turn_slip: bool) -> Iterator[Problem]:
+    """Keys that a program wants whole files for: it cannot do without those of the forces."""
+    forces = set(trace(Switches(turn_slip, limits=True), Forces._fields).parameters)
+    for level, some, why in (
+        ("error", names & forces, "the forces need every key"),
+        ("warning", names - forces, "the forces do without, but the program may want every key"),
+    ):
+        shown = [row.name for row in TABLE if row.name in some]
+        if shown:
+            more = f" and {len(shown) - 6} more" if len(shown) > 6 else ""
+            lacks = f"the file lacks {', '.join(shown[:6])}{more}"
+            yield Problem(level, f"{lacks}; {why}: tyre.expand() adds what is missing")
 
 
 def _text(tyre: Tyre, document: Document, target: Target) -> Iterator[Problem]:

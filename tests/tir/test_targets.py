@@ -203,6 +203,15 @@ class TestCheckOfText:
             assert any(f"line {self.number_of(mangled, key)}" in s for s in found), found
 
 
+def test_only_keys_of_the_forces_are_called_indispensable(tyre):
+    """A program that computes no turn slip does without the coefficients of turn slip."""
+    text = tyre.expand().text("mftyre")
+    for key, level in (("PKY4", "error"), ("MC_CONTOUR_A", "warning"), ("PKYP1", "warning")):
+        lacking = interpret(parse_document(re.sub(rf"(?m)^{key} .*\n", "", text)))
+        found = [p.level for p in check(lacking, ["simscape"]) if f"lacks {key};" in p.sentence]
+        assert found == [level]
+
+
 def test_the_order_of_sections_is_the_manuals(tyre):
     heads = [line.section for line in parse_document(tyre.text("mftyre")).lines if line.head]
     assert heads == ["MDI_HEADER", "UNITS", *SECTIONS]
