@@ -26,6 +26,7 @@ from mffit.measured.notes import (
     Note,
     NothingMeasured,
     NotSeparable,
+    PathsContradict,
     SeveralPaths,
     StandardUncertainties,
     StraightPath,
@@ -156,7 +157,11 @@ def _at_load(config, points, parts, odd_slip, group: LoadGroup, rig, r_e, warnin
     if zero is not None:
         paths = [turn_slip(z, phi_t, chosen, Ca, rig, config) for phi_t, z in zeros_of]
         alpha_M = next((path.alpha_M for path in paths if path.alpha_M is not None), None)
-        C_phit, weights = stiffness(paths)
+        combined = stiffness(paths)
+        C_phit = combined.C_phit
+        if combined.contradictory:
+            said = tuple(Quantity(C.nominal_value, C.std_dev, "Nm") for C in combined.of_paths)
+            warnings.append(PathsContradict(group.load, tuple(-1.0 / phi_t for phi_t, _ in zeros_of), said))
         sign = paths[0].sign
         turn = paths[0].force if len(paths) == 1 else sign * C_phit / rig.R
         if C_phit.nominal_value <= 0.0:
@@ -165,7 +170,7 @@ def _at_load(config, points, parts, odd_slip, group: LoadGroup, rig, r_e, warnin
             result = method.camber_reduction(turn, chosen, r_e, rig.R, sign)
             epsilon, row_budget = result.epsilon_gamma, method.budget(result.epsilon_gamma)
             per_newton = epsilon.derivatives.get(rig.offset, 0.0)
-            u_mc = u_by_draws(paths, weights, chosen, r_e, rig)
+            u_mc = u_by_draws(paths, combined.weights, chosen, r_e, rig)
             e_slope, e_secant = (
                 epsilon_with(s, turn, r_e, rig, sign) for s in (C_gamma.slope, C_gamma.secant)
             )

@@ -129,6 +129,15 @@ class AxisOff:
     correction_deg: float
 
 
+@dataclass(frozen=True, slots=True)
+class PathsContradict:
+    """The zeros of the paths say different turn-slip stiffnesses, beyond all that is known to be uncertain."""
+
+    load: float  #: [N]
+    radii: tuple[float, ...]  #: [m], positive with the disc's centre to the left
+    C_phit: tuple[Quantity, ...]  #: [Nm]
+
+
 Note = (
     StraightPath
     | NotSeparable
@@ -144,5 +153,5 @@ Note = (
     | ContactWanders
 )
 """To be known beside the numbers."""
-Trouble = SlopeNotPossible | SecantNotPossible | NothingMeasured | Misaligned | AxisOff
+Trouble = SlopeNotPossible | SecantNotPossible | NothingMeasured | Misaligned | AxisOff | PathsContradict
 """To be acted on."""

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
+from scipy.special import chdtrc
 from uncertainties import UFloat
 
 from mffit.measured.camber_reduction import RigErrors, monte_carlo, named
@@ -27,11 +28,24 @@ class PathForce(NamedTuple):
     alpha_M: UFloat | None  #: sideslip misalignment [rad]; None without backward runs
 
 
+OTHER_RADIUS = 0.15
+"""Share by which the stiffness of another radius may differ: its spin is of another size, and C_phit falls with it."""
+UNLIKELY = 1e-3
+"""Chance below which paths are said to contradict each other."""
+
+
 class Stiffness(NamedTuple):
     """The turn-slip stiffness and how much each path counts in it."""
 
     C_phit: UFloat  #: [Nm]
     weights: np.ndarray  #: (k,), sum 1
+    of_paths: tuple[UFloat, ...]  #: what each path says alone [Nm]
+    chance: float  #: that paths that measure the same differ by so much; 1 for one path
+
+    @property
+    def contradictory(self) -> bool:
+        """Whether the paths say different things, beyond what is known to be uncertain."""
+        return self.chance < UNLIKELY
 
 
 def by_path(points: Points, group: LoadGroup, usual: float) -> list[tuple[float, LoadGroup]]:
@@ -54,12 +68,22 @@ def stiffness(paths: Sequence[PathForce]) -> Stiffness:
     """
     single = [path.sign * path.force * path.R for path in paths]
     if len(single) == 1:
-        return Stiffness(single[0], np.ones(1))
+        return Stiffness(single[0], np.ones(1), tuple(single), 1.0)
     errors = covariance(single)
     errors += RIDGE * np.diag(np.diag(errors))
     weights = np.linalg.solve(errors, np.ones(len(single)))
     weights /= weights.sum()
-    return Stiffness(sum(w * C for w, C in zip(weights.tolist(), single, strict=True)), weights)
+    together = sum(w * C for w, C in zip(weights.tolist(), single, strict=True))
+    return Stiffness(together, weights, tuple(single), _chance(paths, single, errors, together.nominal_value))
+
+
+def _chance(
+    paths: Sequence[PathForce], single: Sequence[UFloat], errors: np.ndarray, together: float
+) -> float:
+    R = np.array([path.R.nominal_value for path in paths])
+    of_spin = OTHER_RADIUS * together * ~np.isclose(R, R[0], rtol=1e-6)
+    off = np.array([C.nominal_value for C in single]) - together
+    return float(chdtrc(len(single) - 1, off @ np.linalg.solve(errors + np.diag(of_spin**2), off)))
 
 
 def u_by_draws(

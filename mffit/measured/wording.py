@@ -17,6 +17,7 @@ from mffit.measured.notes import (
     NothingMeasured,
     NotSeparable,
     OneLoad,
+    PathsContradict,
     SecantNotPossible,
     SeveralPaths,
     SlopeInNoise,
@@ -64,7 +65,7 @@ def note(fact: Note) -> str:
                 "for the alignment."
             )
         case SeveralPaths(radii):
-            paths = ", ".join(f"{abs(R):.3g} m to the {'left' if R > 0.0 else 'right'}" for R in radii)
+            paths = ", ".join(map(_where, radii))
             return (
                 f"The turn-slip stiffness combines the zeros of {len(radii)} paths (disc's centre {paths}) so that its "
                 "uncertainty is least: what pushes alike on all of them drops out."
@@ -125,8 +126,22 @@ def warning(fact: Trouble) -> str:
                 f"at {load:.0f} N forward and backward forces differ by {difference:.0f} N ({limit:.0f} N is the limit): the "
                 f"sideslip axis is off by about {correction:.2f} deg"
             )
+        case PathsContradict(load, radii, C_phit):
+            said = ", ".join(
+                f"{C.value:.0f} +- {C.u:.0f} Nm (disc's centre {_where(R)})"
+                for R, C in zip(radii, C_phit, strict=True)
+            )
+            return (
+                f"at {load:.0f} N the zeros of the paths contradict each other: they say turn-slip stiffnesses of {said}; "
+                "look for a path_centre or path_radius that is not the run's, or an offset, a camber zero or an alignment worse "
+                "than declared"
+            )
         case _:
             assert_never(fact)
+
+
+def _where(R: float) -> str:
+    return f"{abs(R):.3g} m to the {'left' if R > 0.0 else 'right'}"
 
 
 def _found(fact: Aligned | Misaligned) -> str:

@@ -37,6 +37,10 @@ WARNINGS = [
         notes.AxisOff(900.0, 64.2, 50.0, 0.213),
         "differ by 64 N (50 N is the limit): the sideslip axis is off by about 0.21",
     ),
+    (
+        notes.PathsContradict(1400.0, (1.3, -1.3), (Quantity(51.2, 3.0, "Nm"), Quantity(-20.0, 4.0, "Nm"))),
+        "51 +- 3 Nm (disc's centre 1.3 m to the left), -20 +- 4 Nm (disc's centre 1.3 m to the right); look for",
+    ),
     (notes.Misaligned(ANGLE, -60.0, 0.2), "differ by 120 N"),
 ]
 

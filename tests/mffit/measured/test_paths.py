@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 
 import numpy as np
 import pytest
@@ -90,3 +91,27 @@ def test_the_usual_path_is_told_as_before():
     assert both.R == alone.R
     assert both.C_gamma.value == pytest.approx(alone.C_gamma.value)
     assert both.F_phit.value == pytest.approx(alone.F_phit.value - OFFSET, abs=NEWTON)
+
+
+def contradictions(result) -> list[str]:
+    return [warning for warning in result.warnings if "contradict each other" in warning]
+
+
+@pytest.mark.parametrize("other", [Plain(side=1), Narrow()], ids=["other side", "second radius"])
+def test_paths_that_agree_within_what_is_declared_are_not_said_to_contradict(other):
+    assert not contradictions(found(campaign(other, offset=0.5 * U_OFFSET)))
+
+
+def test_an_offset_beyond_what_is_declared_makes_the_paths_contradict():
+    """Each path takes it for turn slip, with the opposite sign."""
+    (warning,) = contradictions(found(campaign(Plain(side=1), offset=8.0 * U_OFFSET)))
+    left, right = (float(x) for x in re.findall(r"(\S+) \+- \S+ Nm", warning))
+    assert abs(left - right) == pytest.approx(2.0 * 8.0 * U_OFFSET * R, abs=1.0 + NEWTON * R)
+    assert warning.index("to the left") < warning.index("to the right")
+
+
+def test_a_radius_that_is_not_the_runs_makes_the_paths_contradict():
+    """Zeros of 1.3 m declared as of 0.5 m."""
+    points = campaign(Plain(side=1), offset=0.0)
+    wrong = np.where(points.phi_t > 0.0, points.phi_t * R / 0.5, points.phi_t)
+    assert contradictions(found(points.replace(phi_t=wrong)))
