@@ -13,11 +13,14 @@ from mffit.errors import InputError
 from mffit.measured import camber_reduction as method
 from mffit.measured.alignment import DEFAULT_U_FORCE, DEFAULT_U_MOMENT
 from mffit.measured.groups import UPRIGHT, LoadGroup, zeros
+from mffit.measured.notes import ZerosDisagree
 from mffit.measured.paths import PathForce, by_path
 from mffit.measured.slopes import slope_at_zero
 from mffit.measured.stiffnesses import CUBIC_CAMBER, sweep
 from mffit.points import Points
 
+UNLIKE = 5.0
+"""Standard uncertainties of a difference beyond which two zeros are not of the same path."""
 NEAR_ZERO = math.radians(1.2)
 """Within this sideslip a parabola describes the side force to a newton."""
 
@@ -76,6 +79,30 @@ def _at_zero(
         return float((cov @ A.T @ (y[near] / u[near]))[2]), float(np.sqrt(cov[2, 2]))
     values = y[i] - (slope * points.alpha[i] if slope is not None else 0.0)
     return float(np.mean(values)), float(np.sqrt(np.sum(u[i] ** 2)) / len(i))
+
+
+def unlike_zeros(
+    points: Points, phi_t: float, group: LoadGroup, C_alpha: UFloat | None, config: Config
+) -> list[ZerosDisagree]:
+    """Sweeps of one load, path and direction whose zeros are further apart than mounting the wheel again explains."""
+    slope = C_alpha.nominal_value if C_alpha is not None else -10.0 * group.load
+    group = LoadGroup(group.load, group.index[np.isclose(points.phi_t[group.index], phi_t)])
+    u_again = config.rig.u_slip_alignment_N
+    out = []
+    for direction in (1, -1):
+        i = zeros(points, group, direction)
+        i = i[np.isfinite(points.Fy[i])]
+        force = points.Fy[i] - direction * slope * points.alpha[i]
+        found = sorted(
+            (float(np.mean(force[points.sweep[i] == k])), int(k)) for k in np.unique(points.sweep[i])
+        )
+        if found and found[-1][0] - found[0][0] > UNLIKE * math.sqrt(2.0) * math.hypot(
+            u_again, DEFAULT_U_FORCE
+        ):
+            (least, a), (most, b) = found[0], found[-1]
+            names = (points.sweep_names[a], points.sweep_names[b])
+            out.append(ZerosDisagree(group.load, direction < 0, names, (least, most)))
+    return out
 
 
 def zeros_by_path(

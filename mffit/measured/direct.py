@@ -14,7 +14,14 @@ from mffit.measured import camber_reduction as method
 from mffit.measured import wording
 from mffit.measured.alignment import DEFAULT_U_MOMENT
 from mffit.measured.alignment import AtLoad as AxisAtLoad
-from mffit.measured.at_zero import epsilon_with, moment_opinion, refuse_inward, turn_slip, zeros_by_path
+from mffit.measured.at_zero import (
+    epsilon_with,
+    moment_opinion,
+    refuse_inward,
+    turn_slip,
+    unlike_zeros,
+    zeros_by_path,
+)
 from mffit.measured.backlash import backlash_corrected, odd_alpha
 from mffit.measured.groups import LoadGroup, load_groups
 from mffit.measured.loads import load_dependence
@@ -155,6 +162,8 @@ def _at_load(config, points, parts, odd_slip, group: LoadGroup, rig, r_e, warnin
     u_mc = e_slope = e_secant = None
     per_newton = 0.0
     if zero is not None:
+        for phi_t, _ in zeros_of:
+            warnings += unlike_zeros(points, phi_t, group, Ca, config)
         paths = [turn_slip(z, phi_t, chosen, Ca, rig, config) for phi_t, z in zeros_of]
         alpha_M = next((path.alpha_M for path in paths if path.alpha_M is not None), None)
         combined = stiffness(paths)

@@ -138,6 +138,16 @@ class PathsContradict:
     C_phit: tuple[Quantity, ...]  #: [Nm]
 
 
+@dataclass(frozen=True, slots=True)
+class ZerosDisagree:
+    """Sweeps that are declared alike read zeros that are not."""
+
+    load: float  #: [N]
+    backward: bool
+    sweeps: tuple[str, str]
+    forces: tuple[float, float]  #: [N]
+
+
 Note = (
     StraightPath
     | NotSeparable
@@ -153,5 +163,13 @@ Note = (
     | ContactWanders
 )
 """To be known beside the numbers."""
-Trouble = SlopeNotPossible | SecantNotPossible | NothingMeasured | Misaligned | AxisOff | PathsContradict
+Trouble = (
+    SlopeNotPossible
+    | SecantNotPossible
+    | NothingMeasured
+    | Misaligned
+    | AxisOff
+    | PathsContradict
+    | ZerosDisagree
+)
 """To be acted on."""

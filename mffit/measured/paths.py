@@ -28,8 +28,8 @@ class PathForce(NamedTuple):
     alpha_M: UFloat | None  #: sideslip misalignment [rad]; None without backward runs
 
 
-OTHER_RADIUS = 0.15
-"""Share by which the stiffness of another radius may differ: its spin is of another size, and C_phit falls with it."""
+FINITE_SPIN = 0.05
+"""Standard uncertainty of the share by which C_phit falls per square of the turn slip [m^2]; sample tyres have 0.03."""
 UNLIKELY = 1e-3
 """Chance below which paths are said to contradict each other."""
 
@@ -71,19 +71,24 @@ def stiffness(paths: Sequence[PathForce]) -> Stiffness:
         return Stiffness(single[0], np.ones(1), tuple(single), 1.0)
     errors = covariance(single)
     errors += RIDGE * np.diag(np.diag(errors))
-    weights = np.linalg.solve(errors, np.ones(len(single)))
-    weights /= weights.sum()
+    weights = _weights(errors)
     together = sum(w * C for w, C in zip(weights.tolist(), single, strict=True))
-    return Stiffness(together, weights, tuple(single), _chance(paths, single, errors, together.nominal_value))
+    return Stiffness(together, weights, tuple(single), _chance(paths, single, errors))
 
 
-def _chance(
-    paths: Sequence[PathForce], single: Sequence[UFloat], errors: np.ndarray, together: float
-) -> float:
-    R = np.array([path.R.nominal_value for path in paths])
-    of_spin = OTHER_RADIUS * together * ~np.isclose(R, R[0], rtol=1e-6)
-    off = np.array([C.nominal_value for C in single]) - together
-    return float(chdtrc(len(single) - 1, off @ np.linalg.solve(errors + np.diag(of_spin**2), off)))
+def _weights(errors: np.ndarray) -> np.ndarray:
+    """Shares (k,) of numbers in their mean of least uncertainty, by their covariance (k, k)."""
+    weights = np.linalg.solve(errors, np.ones(len(errors)))
+    return weights / weights.sum()
+
+
+def _chance(paths: Sequence[PathForce], single: Sequence[UFloat], errors: np.ndarray) -> float:
+    said = np.array([C.nominal_value for C in single])
+    spin = np.array([1.0 / path.R.nominal_value**2 for path in paths])
+    of_spin = FINITE_SPIN * np.mean(said) * (spin - spin[0])
+    errors = errors + np.outer(of_spin, of_spin)
+    off = said - _weights(errors) @ said
+    return float(chdtrc(len(single) - 1, off @ np.linalg.solve(errors, off)))
 
 
 def u_by_draws(

@@ -26,6 +26,7 @@ from mffit.measured.notes import (
     StandardUncertainties,
     StraightPath,
     Trouble,
+    ZerosDisagree,
 )
 from mffit.measured.result import Measured
 
@@ -125,6 +126,12 @@ def warning(fact: Trouble) -> str:
             return (
                 f"at {load:.0f} N forward and backward forces differ by {difference:.0f} N ({limit:.0f} N is the limit): the "
                 f"sideslip axis is off by about {correction:.2f} deg"
+            )
+        case ZerosDisagree(load, backward, sweeps, forces):
+            return (
+                f"at {load:.0f} N the {'backward' if backward else 'forward'} zeros of {sweeps[0]} and {sweeps[1]} are "
+                f"{forces[0]:.0f} N and {forces[1]:.0f} N, which are no readings of one path: look for a sweep whose "
+                "path_centre, path_radius or direction is not declared, or an axis that was moved between them"
             )
         case PathsContradict(load, radii, C_phit):
             said = ", ".join(

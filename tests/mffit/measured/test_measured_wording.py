@@ -41,6 +41,10 @@ WARNINGS = [
         notes.PathsContradict(1400.0, (1.3, -1.3), (Quantity(51.2, 3.0, "Nm"), Quantity(-20.0, 4.0, "Nm"))),
         "51 +- 3 Nm (disc's centre 1.3 m to the left), -20 +- 4 Nm (disc's centre 1.3 m to the right); look for",
     ),
+    (
+        notes.ZerosDisagree(900.0, True, ("a", "b"), (-120.0, 310.0)),
+        "at 900 N the backward zeros of a and b are -120 N and 310 N, which are no readings of one path",
+    ),
     (notes.Misaligned(ANGLE, -60.0, 0.2), "differ by 120 N"),
 ]
 

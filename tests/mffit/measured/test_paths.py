@@ -115,3 +115,15 @@ def test_a_radius_that_is_not_the_runs_makes_the_paths_contradict():
     points = campaign(Plain(side=1), offset=0.0)
     wrong = np.where(points.phi_t > 0.0, points.phi_t * R / 0.5, points.phi_t)
     assert contradictions(found(points.replace(phi_t=wrong)))
+
+
+@pytest.mark.parametrize("direction", [1, -1])
+def test_zeros_of_the_other_side_that_are_declared_as_of_the_usual_path_are_told(direction):
+    """Without its path_centre the sweep pulls the mean of the zeros to nothing, and eps_gamma anywhere."""
+    points = campaign(Plain(side=1), offset=0.0)
+    assert not [warning for warning in found(points).warnings if "no readings of one path" in warning]
+    undeclared = (points.phi_t > 0.0) & (points.direction == direction)
+    wrong = found(points.replace(phi_t=np.where(undeclared, -points.phi_t, points.phi_t)))
+    (warning,) = [warning for warning in wrong.warnings if "no readings of one path" in warning]
+    assert "other" in warning
+    assert ("backward" if direction < 0 else "forward") in warning
