@@ -83,6 +83,15 @@ def complaints(browser: Any) -> list[str]:
     return browser.execute_script(COMPLAINTS)
 
 
+def assert_readable(page: Path) -> None:
+    """On a screen, on a telephone and on paper."""
+    with opened(page) as browser:
+        for width, media in ((SCREEN, ""), (PHONE, ""), (PAPER, "print")):
+            look(browser, width, media=media)
+            assert complaints(browser) == [], f"{page.name} at {width} px"
+            assert console_errors(browser) == []
+
+
 def brightness(element: Any) -> np.ndarray:
     """How an element looks: grey levels (height, width), 0 black to 1 white."""
     from PIL import Image

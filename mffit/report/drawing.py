@@ -25,6 +25,8 @@ DENSE = 200
 RASTER_DPI = 144
 WIDEST = 360.0
 """Of a panel without its labels [pt]: wider ones could not be read on a telephone."""
+WITH_LETTERS = 400.0
+"""The same with its labels [pt]."""
 ROOM = 1.5
 """Around a panel [pt], for the ends of thick lines and another machine's letters."""
 POINTS_PER_INCH = 72.0
@@ -60,9 +62,12 @@ def _markup(figure: Figure, name: str) -> str:
     panels = [ax for ax in figure.axes if ax not in scales]
     for ax in panels:
         _thin_out(ax)
-    widest = max(ax.get_window_extent().width for ax in panels)
-    if widest > WIDEST:
-        style.narrowed(figure, WIDEST / widest)
+    for ax in panels:
+        inside = ax.get_window_extent().width
+        beside = _extent(ax).width - inside  # letters, which keep their size
+        fits = min(WIDEST, WITH_LETTERS - beside)
+        if inside > fits > 0.0:
+            style.narrowed(figure, fits / inside)
     for k, artist in enumerate(_parts(figure)):
         artist.set_gid(f"part-{k}")
     source = _Source(figure, name)

@@ -22,6 +22,7 @@ from mffit.output import RECORD, digest
 from mffit.pipeline import many
 from mffit.pipeline.current import is_current
 from mffit.results import Outcome
+from tests.browser import assert_readable
 
 HOSTILE = "a<img src=x onerror=alert(1)>b"
 
@@ -220,6 +221,10 @@ def test_the_page_shows_a_hostile_name_as_text(compared):
     html = (compared[0] / "fleet.html").read_text(encoding="utf-8")
     assert "<img src=x" not in html
     assert "a&lt;img src=x onerror=alert(1)&gt;b" in html
+
+
+def test_a_reader_sees_every_picture_of_the_page(compared):
+    assert_readable(compared[0] / "fleet.html")
 
 
 def test_what_the_fleet_knows_serves_a_later_build(compared, project):

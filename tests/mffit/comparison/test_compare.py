@@ -14,6 +14,7 @@ from mffit.cli import main
 from mffit.comparison import Difference, Subject, between, characteristics, wording
 from mffit.comparison.record import ranked
 from mffit.errors import InputError
+from tests.browser import assert_readable
 
 
 @pytest.fixture(scope="module")
@@ -103,6 +104,12 @@ def test_a_build_is_compared_with_its_uncertainties(folder, stiffer, tmp_path):
     page = (tmp_path / "page" / "compare.html").read_text()
     assert "cornering stiffness" in page
     assert "curves_Fy" in {path.stem for path in (tmp_path / "page" / "plots").iterdir()}
+
+
+def test_a_reader_sees_every_picture_of_the_page(folder, stiffer, tmp_path):
+    stiffer.write(tmp_path / "stiffer.tir")
+    mffit.compare(folder / "out", tmp_path / "stiffer.tir", out=tmp_path)
+    assert_readable(tmp_path / "compare.html")
 
 
 def test_two_builds_of_one_name_are_told_by_their_folders(folder):

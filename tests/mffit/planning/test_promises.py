@@ -23,6 +23,7 @@ from mffit.planning.knowledge import Knowledge
 from mffit.planning.runs import candidates
 from mffit.report.text import plan_summary
 from mffit.rig import Simulation
+from tests.browser import assert_readable
 
 EFFECTS = {effect.id: effect for effect in CATALOG}
 ONE_SIDE = (Kind.OTHER_SIDE, Kind.OTHER_SIDE_CAMBER)
@@ -216,6 +217,11 @@ def test_the_command_refuses_in_a_sentence_before_it_works(options, said, tmp_pa
     assert ended.value.code == 2
     assert said in capsys.readouterr().err
     assert not (tmp_path / "plan").exists()
+
+
+def test_a_reader_sees_every_picture_of_the_page(plan, tmp_path):
+    write_plan(plan, tmp_path)
+    assert_readable(tmp_path / "plan.html")
 
 
 def test_page_numbers_and_sheets_are_written(plan, tmp_path):
