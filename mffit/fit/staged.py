@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -25,6 +25,8 @@ from tir.parameters import BY_NAME
 
 ENOUGH_FOR_A_STAGE = 600
 """Points used in a stage before the polish; more would only cost time, as the polish uses all."""
+MORE_BY = 8
+"""Times as many points in each pass of a large fit; the last pass has all."""
 DECIDED = 0.5
 """A coefficient counts as fitted, not as tied, if its standard error is below this share of what was known before."""
 FALSE_MINIMUM = 1.3
@@ -181,9 +183,12 @@ def _used_by(stage: Stage, points: Points) -> np.ndarray:
 
 def _polish(stated: Problem, plan: Plan) -> Fitted:
     """All free numbers together: balance the channels, discount outliers, look along the valley where it is bent."""
-    problem, _ = _reweighted(stated)
-    rough = _solved(_thinned(problem), plan, tolerance=1e-3)
-    problem, scale = _reweighted(stated.with_values(rough.values))
+    near = stated
+    for step in _steps(len(stated.points)):
+        thinned = _thinned(_reweighted(near)[0], step)
+        last = step <= MORE_BY  # the passes with all points are then cheap enough to do the rest
+        near = near.with_values(_solved(thinned, plan, tolerance=1e-3 if last else 1e-6).values)
+    problem, scale = _reweighted(near)
     problem, solution = _settled(problem, plan)
     valley = follow(problem, _numbers_of(problem, plan), solution, _decided(solution, plan))
     if valley is not None and valley.better:
@@ -259,10 +264,22 @@ def _reweighted(problem: Problem) -> tuple[Problem, tuple[float, float]]:
     return dataclasses.replace(problem, sigma_Fy=out[0], sigma_Mz=out[1]), (scales[0], scales[1])
 
 
-def _thinned(problem: Problem) -> Problem:
-    """Every k-th point: enough to come near the solution, at a part of the cost."""
-    step = len(problem.points) // ENOUGH_FOR_A_STAGE
-    return problem if step <= 1 else problem.select(np.arange(0, len(problem.points), step))
+def _steps(n: int) -> Iterator[int]:
+    """For n points: every how many of them count on the way to the solution, fewer and fewer left out."""
+    step = max(1, n // ENOUGH_FOR_A_STAGE)
+    yield step
+    while step > MORE_BY**2:
+        step //= MORE_BY
+        yield step
+
+
+def _thinned(problem: Problem, step: int) -> Problem:
+    """Every k-th point, each counted k times so that what was known before weighs as much as it does beside all."""
+    if step == 1:
+        return problem
+    part = problem.select(np.arange(0, len(problem.points), step))
+    share = 1.0 / math.sqrt(step)
+    return dataclasses.replace(part, sigma_Fy=share * part.sigma_Fy, sigma_Mz=share * part.sigma_Mz)
 
 
 def _record(problem: Problem, name: str, title: str, parameters: Sequence[str]) -> StageRecord:
