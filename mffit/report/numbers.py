@@ -22,6 +22,8 @@ if TYPE_CHECKING:
 COLUMNS = ("panel", "series", "x axis", "x", "y axis", "y", "lower", "upper", "value")
 """``lower`` and ``upper`` are ends of an error bar or band, ``value`` what a colour stands for."""
 DIGITS = 6
+LONGEST = 1000
+"""Points of one series that stand in the page: more would make it too large to open."""
 MATHTEXT = re.compile(r"\$_\{(\w+)\}\$")
 
 Row = tuple[Any, ...]
@@ -74,20 +76,28 @@ def _rows(ax: Axes, names: dict[tuple[Any, ...], str]) -> Iterator[Row]:
             yield from ((said, x, _word(ax, y), *ends) for x, y, *ends in _error_bars(container))
     for line in ax.lines:
         if line not in drawn and _in_units(line, ax):
-            said = _said(line, names)
-            yield from ((said, x, y, "", "", "") for x, y in zip(*_data(line), strict=True))
+            x, y = _data(line)
+            some, said = _some(len(x), _said(line, names))
+            yield from ((said, *at, "", "", "") for at in zip(x[some], y[some], strict=True))
     for collection in ax.collections:
         said = _said(collection, names)
         if isinstance(collection, PathCollection):
             offsets, values = np.asarray(collection.get_offsets()), collection.get_array()
-            shown = [""] * len(offsets) if values is None else values
-            yield from ((said, x, y, "", "", value) for (x, y), value in zip(offsets, shown, strict=True))
+            shown = np.full(len(offsets), "") if values is None else np.asarray(values)
+            some, said = _some(len(offsets), said)
+            yield from ((said, *at, "", "", v) for at, v in zip(offsets[some], shown[some], strict=True))
         elif isinstance(collection, PolyCollection):
             yield from ((said, x, "", low, high, "") for x, low, high in _band(collection))
     for bar in ax.patches:
         if isinstance(bar, Rectangle) and bar.get_fill() and _in_units(bar, ax):
             y = _word(ax, bar.get_y() + 0.5 * bar.get_height())
             yield _said(bar, names), bar.get_x() + bar.get_width(), y, "", "", ""
+
+
+def _some(n: int, said: str) -> tuple[slice, str]:
+    """What of a long series stands in the page, and what it is called then; points.csv has every reading."""
+    step = -(-n // LONGEST)
+    return (slice(None, None, step), f"{said}, every {step}th") if step > 1 else (slice(None), said)
 
 
 def _in_units(artist: Artist, ax: Axes) -> bool:

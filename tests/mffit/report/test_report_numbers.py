@@ -58,3 +58,20 @@ def test_a_map_gives_the_value_of_every_colour(view):
     found = rows(residuals.residual_maps(view.points, [("Fy", values)], view.conditions, 4.0, "u"))
     coloured = sorted(float(row["value"]) for row in found if row["value"])
     assert coloured == pytest.approx(sorted(values), abs=1e-5)
+
+
+def test_of_a_long_series_the_page_holds_some_and_says_so(monkeypatch):
+    from matplotlib.figure import Figure
+
+    from mffit.report import numbers
+
+    monkeypatch.setattr(numbers, "LONGEST", 10)
+    figure = Figure()
+    ax = figure.subplots()
+    ax.plot(np.arange(95.0), np.arange(95.0) ** 2)
+    ax.scatter(np.arange(9.0), np.arange(9.0), c=np.arange(9.0))
+    found = rows(figure)
+    line = [row for row in found if row["series"]]
+    assert {row["series"].rpartition(", ")[2] for row in line} == {"every 10th"}
+    assert [float(row["x"]) for row in line] == list(np.arange(0.0, 95.0, 10.0))
+    assert len(found) - len(line) == 9
