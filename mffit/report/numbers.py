@@ -76,9 +76,9 @@ def _rows(ax: Axes, names: dict[tuple[Any, ...], str]) -> Iterator[Row]:
             yield from ((said, x, _word(ax, y), *ends) for x, y, *ends in _error_bars(container))
     for line in ax.lines:
         if line not in drawn and _in_units(line, ax):
-            x, y = _data(line)
-            some, said = _some(len(x), _said(line, names))
-            yield from ((said, *at, "", "", "") for at in zip(x[some], y[some], strict=True))
+            places = np.column_stack(_data(line))
+            some, said = _some(len(places), _said(line, names))
+            yield from ((said, *at, "", "", "") for at in places[some])
     for collection in ax.collections:
         said = _said(collection, names)
         if isinstance(collection, PathCollection):
