@@ -14,10 +14,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from tir.codegen import arrays as in_arrays
 from tir.codegen import kernel, single
 from tir.codegen.kernel import LANES
-from tir.codegen.program import NUMBERS, Switches
+from tir.codegen.program import INPUTS, NUMBERS, Switches
+from tir.codegen.replay import replay
 from tir.equations.forces import Forces, State
 from tir.evaluate import evaluate, refuse_zero_divisors
 
@@ -172,17 +172,17 @@ def _arrays_of(tyre: Tyre, switches: Switches) -> Callable:
         values = _values(tyre)
         if values is None:
             return lambda *block: _evaluated(tyre, block, switches)[0]
-        tyre.prepared[key] = in_arrays.run_of(values, switches)
+        program = replay(switches, FORCES)
+        tyre.prepared[key] = lambda *block: program({**values, **dict(zip(INPUTS, block, strict=True))})
     return tyre.prepared[key]
 
 
 def _in_numpy(run: Callable, inputs: Sequence[np.ndarray], out: np.ndarray) -> None:
     whole = [np.asarray(x, dtype=float) for x in inputs]
-    with np.errstate(all="ignore"):  # as the compiled code: NaN and infinity say enough
-        for start in range(0, out.shape[1], BLOCK):
-            found = run(*(x[()] if x.ndim == 0 else x[start : start + BLOCK] for x in whole))
-            for row, force in zip(out, found, strict=True):
-                row[start : start + BLOCK] = force
+    for start in range(0, out.shape[1], BLOCK):
+        found = run(*(x[()] if x.ndim == 0 else x[start : start + BLOCK] for x in whole))
+        for row, force in zip(out, found, strict=True):
+            row[start : start + BLOCK] = force
 
 
 def _in_vectors(run: Callable, inputs: Sequence[np.ndarray], n: int) -> np.ndarray:

@@ -13,9 +13,10 @@ import pytest
 
 import tir
 from tir import calls
-from tir.codegen import kernel, single, source
+from tir.codegen import kernel, single
 from tir.codegen.graph import INPUT, PARAMETER, Graph
 from tir.codegen.program import INPUTS, Switches, trace
+from tir.codegen.replay import replay
 from tir.equations.forces import Forces, State
 from tir.evaluate import evaluate
 from tir.parameters import TABLE
@@ -300,17 +301,10 @@ def test_whole_numbers_and_short_floats_are_computed_as_doubles(tyre):
     assert found.Fy == pytest.approx([tyre(float(Fz), 0.0625, p=float(p)).Fy for Fz, p in rows], rel=1e-12)
 
 
-def test_the_code_for_arrays_keeps_no_array_longer_than_needed():
-    from tir.codegen import arrays
-
-    text = source.conditions(trace(Switches(True), Forces._fields), arrays.DIALECT)
-    gone: set[str] = set()
-    for line in text.splitlines():
-        names = set(source.VARIABLE.findall(line))
-        assert not names & gone, f"{names & gone} is used after it was deleted"
-        if line.strip().startswith("del "):
-            gone |= names
-    assert len(gone) > 100
+def test_a_replay_takes_its_places_again(tyre):
+    """So that what is between inputs and forces stays in the processor's cache."""
+    program = replay(Switches(True), Forces._fields)
+    assert program.room < 0.6 * (len(program.operations) + len(program.symbols))
 
 
 def test_a_called_tyre_goes_to_other_processes(tyre):

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import re
 from collections import Counter
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
@@ -14,7 +13,6 @@ from tir.codegen.program import INPUTS, Program
 
 FUNCTIONS = ("sqrt", "exp", "sin", "cos", "tan", "arctan", "arccos", "power")
 COMPARISONS = ("less", "less_equal", "greater", "greater_equal", "both")
-VARIABLE = re.compile(r"\bv\d+\b")
 LONGEST = 400
 """Characters of an expression that may stand inside another one."""
 
@@ -29,7 +27,6 @@ class Dialect:
     flag: str = "{} = {}"  #: assignment of a truth value
     beyond: tuple[str, str] = ("inf", "nan")  #: what is no finite number
     inline: bool = True  #: whether what is used once stands where it is used
-    release: bool = False  #: whether a variable is deleted once nothing needs it any more
 
     def literal(self, x: float | bool) -> str:
         """A number as text; read back it is the same one."""
@@ -101,26 +98,11 @@ def preparation(program: Program) -> str:
     return function(f"prepare(p, {', '.join(FUNCTIONS)})", [*given, *lines, _returned(results)])
 
 
-def conditions(program: Program, dialect: Dialect = PYTHON) -> str:
+def conditions(program: Program) -> str:
     """Python source of ``run(<inputs>, <constants>)``: the outputs in an operating condition."""
-    lines, results = assignments(program.per_point, program.outputs.values(), dialect)
-    if dialect.release:
-        lines = _released(lines, results)
+    lines, results = assignments(program.per_point, program.outputs.values(), PYTHON)
     given = (*INPUTS, *map(name_of, program.constants))
     return function(f"run({', '.join(given)})", [*lines, _returned(results)])
-
-
-def _released(lines: list[str], results: list[str]) -> list[str]:
-    """With a ``del`` behind the last use of each variable, so that its memory is taken again while the cache has it."""
-    made = {line.partition(" = ")[0] for line in lines}
-    needed = set(VARIABLE.findall(" ".join(results)))
-    out: list[str] = []
-    for line in reversed(lines):
-        last = sorted((made & set(VARIABLE.findall(line))) - needed)
-        needed.update(last)
-        out += [f"del {', '.join(last)}"] if last else []
-        out.append(line)
-    return out[::-1]
 
 
 def function(head: str, lines: Iterable[str]) -> str:
