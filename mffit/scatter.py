@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
 import numpy as np
 
 NORMAL = 1.482602218505602
@@ -18,3 +20,9 @@ def robust(x: np.ndarray, centre: float = 0.0) -> float:
     """Standard deviation of the core of finite values around a centre; NaN if there are none."""
     x = x[np.isfinite(x)]
     return NORMAL * float(np.median(np.abs(x - centre))) if len(x) else float("nan")
+
+
+def usual_size(groups: Iterable[np.ndarray]) -> float:
+    """Median of the groups' root mean squares; NaN if no group has a finite value."""
+    sizes = np.array([rms(group) for group in groups])
+    return float(np.median(sizes[np.isfinite(sizes)])) if np.isfinite(sizes).any() else float("nan")

@@ -1,6 +1,6 @@
 """Two property files, a file and measured points, or two builds, side by side."""
 
-from mffit.comparison.characteristics import characteristics
+from mffit.comparison.characteristics import characteristics, with_u
 from mffit.comparison.compare import against_points, between
 from mffit.comparison.record import Comparison, CurveGap, Difference, Subject, SweepGap
 
@@ -13,4 +13,5 @@ __all__ = [
     "against_points",
     "between",
     "characteristics",
+    "with_u",
 ]

@@ -2,12 +2,17 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
 
 from tir import Tyre
+from tir.parameters import BY_NAME
 
+STEP = 0.05
+"""Step of a coefficient for a slope, in its standard errors, of which a tenth of what is plausible is the most."""
 SMALL = 1e-3
 """Angle of a slope [rad], and curvature [1/m]."""
 
@@ -49,3 +54,34 @@ def characteristics(
         curved = tyre(load, phi_t=small, **p)
         out["C_phit_Nm"] = float(np.diff(curved.Fy)[0] / step)
     return out
+
+
+def with_u(
+    tyre: Tyre, names: Sequence[str], covariance: np.ndarray | None, of: Callable[[Tyre], Mapping[str, float]]
+) -> tuple[Mapping[str, float], dict[str, float]]:
+    """Numbers of a tyre, and their standard uncertainties to first order.
+
+    Parameters
+    ----------
+    tyre : the file
+    names : coefficients (k,) whose covariance is known
+    covariance : (k, k); None if nothing is known
+    of : gives the numbers of a tyre
+
+    Returns
+    -------
+    numbers, uncertainties
+        The latter are empty without a covariance, and lack what is not finite.
+    """
+    here = of(tyre)
+    if covariance is None:
+        return here, {}
+    slopes = {key: np.zeros(len(names)) for key in here}
+    for k, (name, u) in enumerate(zip(names, np.sqrt(np.maximum(np.diag(covariance), 0.0)), strict=True)):
+        step = STEP * min(float(u), 0.1 * BY_NAME[name].width)
+        if step > 0.0:
+            there = of(tyre.replace(**{name: float(tyre[name]) + step}))
+            for key, value in here.items():
+                slopes[key][k] = (there[key] - value) / step
+    found = {key: math.sqrt(max(float(g @ covariance @ g), 0.0)) for key, g in slopes.items()}
+    return here, {key: u for key, u in found.items() if math.isfinite(u)}

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping, Sequence
+from functools import partial
 
 import numpy as np
 
-from mffit.comparison.characteristics import characteristics
+from mffit.comparison.characteristics import characteristics, with_u
 from mffit.comparison.record import Comparison, CurveGap, Difference, Subject, SweepGap, ranked
 from mffit.fit import Posterior
 from mffit.measured import KEYS, LoadResult
@@ -21,8 +21,6 @@ LOADS = (0.6, 1.0, 1.4)
 """Loads of the numbers and curves over the nominal one, as far as both files' ranges go."""
 STEPS = 61
 DIRECT_ROWS = ("epsilon_gamma", "C_phit", "C_gamma", "C_alpha", "F_phit")
-STEP = 0.05
-"""Step of a coefficient for a slope, in its standard errors."""
 
 
 def between(first: Subject, second: Subject) -> Comparison:
@@ -45,7 +43,13 @@ def between(first: Subject, second: Subject) -> Comparison:
     reach = {key: min(float(t[key]) for t in (a, b)) for key in ("ALPMAX", "CAMMAX")}
     numbers = []
     for load in loads:
-        sides = [_numbers_with_u(side, load, pressure, reach["ALPMAX"]) for side in (first, second)]
+        sides = [
+            with_u(
+                side.tyre, side.names, side.covariance,
+                partial(characteristics, load=load, turn_slip=side.turn_slip, pressure=pressure, reach=reach["ALPMAX"]),
+            )
+            for side in (first, second)
+        ]  # fmt: skip
         for key in sides[0][0]:
             if key in sides[1][0]:
                 a_value, b_value = (side[0][key] for side in sides)
@@ -55,29 +59,6 @@ def between(first: Subject, second: Subject) -> Comparison:
     return Comparison(
         first.name, second.name, ranked(numbers), _coefficients(first, second), tuple(curves), (), _notes(first, second)
     )  # fmt: skip
-
-
-def _numbers_with_u(
-    side: Subject, load: float, pressure: float, reach: float
-) -> tuple[dict[str, float], dict[str, float]]:
-    """The characteristic numbers and their uncertainties, to first order; the latter empty where nothing is known."""
-
-    def of(changes: Mapping[str, float]) -> dict[str, float]:
-        tyre = side.tyre.replace(**changes) if changes else side.tyre
-        return characteristics(tyre, load, turn_slip=side.turn_slip, pressure=pressure, reach=reach)
-
-    here = of({})
-    if side.covariance is None:
-        return here, {}
-    steps = STEP * np.sqrt(np.maximum(np.diag(side.covariance), 0.0))
-    slopes = {key: np.zeros(len(side.names)) for key in here}
-    for k, (name, step) in enumerate(zip(side.names, steps, strict=True)):
-        if step > 0.0:
-            moved = of({name: float(side.tyre[name]) + step})
-            for key, value in here.items():
-                slopes[key][k] = (moved[key] - value) / step
-    u = {key: math.sqrt(max(float(g @ side.covariance @ g), 0.0)) for key, g in slopes.items()}
-    return here, {key: value for key, value in u.items() if math.isfinite(value)}
 
 
 def _curves(

@@ -11,7 +11,7 @@ from mffit.points import Points, levels
 from mffit.points.mistakes import MISTAKES
 from mffit.quantities import CHANNELS, CONDITIONS
 from mffit.rig import Simulation
-from mffit.scatter import robust
+from mffit.scatter import robust, usual_size
 
 GROSS = 0.15
 """Share of a channel's usual size from which on a sweep is looked at."""
@@ -57,7 +57,7 @@ def misread(points: Points, start: Simulation, signs: Mapping[str, float]) -> Mi
     if len(numbers) < FEWEST_SWEEPS:
         return None
     parts = [points.select(points.sweep == k) for k in numbers]
-    size = {name: _usual([getattr(p, name) / p.Fz for p in parts]) for name in CHANNELS}
+    size = {name: usual_size(getattr(p, name) / p.Fz for p in parts) for name in CHANNELS}
     off = [_off(part, start, size) for part in parts]
     usual = {name: float(np.median([o[name] for o in off if name in o] or [np.nan])) for name in CHANNELS}
     found = []
@@ -79,12 +79,6 @@ def misread(points: Points, start: Simulation, signs: Mapping[str, float]) -> Mi
         if best is not None:
             found.append(best)
     return found[0] if len(found) == 1 else None
-
-
-def _usual(readings: list[np.ndarray]) -> float:
-    """Median rms of readings per load."""
-    sizes = [float(np.sqrt(np.nanmean(r**2))) for r in readings if np.isfinite(r).any()]
-    return float(np.median(sizes)) if sizes else float("nan")
 
 
 def _mistakes(

@@ -17,6 +17,7 @@ from mffit.errors import InputError
 from mffit.export import compiler, variables
 from mffit.export.names import c_of, identifier
 from mffit.output import output_folder
+from mffit.templates import environment
 
 if TYPE_CHECKING:
     from jinja2 import Environment
@@ -131,16 +132,10 @@ def _filled(template: str, content: Mapping[str, Any]) -> str:
     return _environment().get_template(template).render(**content)
 
 
+def _is_markup(template: str | None) -> bool:
+    return template is not None and ".xml" in template
+
+
 @cache
 def _environment() -> Environment:
-    from jinja2 import Environment, PackageLoader, StrictUndefined
-
-    environment = Environment(
-        loader=PackageLoader("mffit.export"),
-        autoescape=lambda template: template is not None and ".xml" in template,
-        undefined=StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-        keep_trailing_newline=True,
-    )
-    return environment
+    return environment("mffit.export", autoescape=_is_markup, keep_trailing_newline=True)

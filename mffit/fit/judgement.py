@@ -18,7 +18,7 @@ from mffit.points.mistakes import MISTAKES, Mistake
 from mffit.quantities import CHANNELS
 from mffit.rig import Simulation
 from mffit.scatter import rms as root_mean_square
-from mffit.scatter import robust
+from mffit.scatter import robust, usual_size
 
 FALSE_ALARM = 0.01
 """Probability that chance alone makes any sweep of a sound campaign significant (Bonferroni)."""
@@ -97,7 +97,7 @@ def judge(
     found = groups(points)
     if len(found) < 3:
         return ()
-    size = usual_sizes(points, found)
+    size = {c: usual_size((getattr(points, c) / points.Fz)[g.index] for g in found) for c in CHANNELS}
     noise = np.concatenate([u * k for u, k in zip(stated, fitted.scale, strict=True)])
     fit = leverage(fitted.problem, fitted.numbers, noise)
     errors = {k: errors_of(predictions(fit, g), g, points, size) for k, g in enumerate(found)}
@@ -119,15 +119,6 @@ def judge(
         raise _refusal(refused)
     doubtful = [v for v in views if v.error.ratio > usual and v.error.vague < DOUBTFUL]
     return _doubts(points, doubtful, fit, fitted.simulation, signs)
-
-
-def usual_sizes(points: Points, found: list[Group]) -> dict[str, float]:
-    """Size of each channel per load, the median of all groups' rms [1] or [m]."""
-    out = {}
-    for name in CHANNELS:
-        reading = getattr(points, name) / points.Fz
-        out[name] = float(np.nanmedian([np.sqrt(np.nanmean(reading[g.index] ** 2)) for g in found]))
-    return out
 
 
 def errors_of(

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -11,6 +12,7 @@ import pandas as pd
 from threadpoolctl import threadpool_limits
 
 from mffit import fleet as combining
+from mffit.comparison import with_u
 from mffit.errors import InputError
 from mffit.fit import priors
 from mffit.fleet import Fleet, Hierarchy, Row, Specimen, TyreEstimate
@@ -20,11 +22,8 @@ from mffit.progress import Progress, silent
 from mffit.quantities import COMPARED
 from mffit.results import as_json
 from tir import Quantity, Tyre
-from tir.parameters import BY_NAME
 
 WRITTEN = ("fleet.html", "fleet.json", "fleet.csv", "priors.json")
-STEP = 0.1
-"""Step of a coefficient, in units of its uncertainty, for the slope of a stiffness or peak."""
 
 
 def fleet(
@@ -95,22 +94,9 @@ def _row(specimen: Specimen, rig: int) -> Row:
 
 def _compared(tyre: Tyre, known: TyreEstimate | None, *, turn_slip: bool) -> dict[str, Quantity]:
     """Stiffnesses and peaks with the uncertainty that the coefficients give them, to first order."""
-    here = numbers(tyre, turn_slip=turn_slip)
-    slopes = []
-    u = np.sqrt(np.diag(known.covariance)) if known else np.zeros(0)
-    for name, spread in zip(known.names if known else (), u, strict=True):
-        at = float(tyre[name])
-        step = STEP * min(float(spread), 0.1 * BY_NAME[name].width)
-        there = numbers(tyre.replace(**{name: at + step}), turn_slip=turn_slip)
-        slopes.append([(there[key] - here[key]) / step for key in COMPARED])
-    variance = np.zeros(len(COMPARED))
-    if known:
-        J = np.array(slopes)
-        variance = np.einsum("ik,ij,jk->k", J, known.covariance, J)
-    return {
-        key: Quantity(here[key], float(math.sqrt(max(v, 0.0))), unit.unit)
-        for (key, unit), v in zip(COMPARED.items(), variance, strict=True)
-    }
+    names, covariance = (known.names, known.covariance) if known else ((), np.zeros((0, 0)))
+    here, u = with_u(tyre, names, covariance, partial(numbers, turn_slip=turn_slip))
+    return {key: Quantity(here[key], u.get(key, 0.0), unit.unit) for key, unit in COMPARED.items()}
 
 
 def _epsilon(found: TyreEstimate | None) -> Quantity | None:

@@ -12,6 +12,7 @@ from urllib.parse import quote
 
 from mffit.measured import wording
 from mffit.report import drawing, making, numbers, rounding, style, typeset
+from mffit.templates import environment
 
 if TYPE_CHECKING:
     from jinja2 import Environment
@@ -66,16 +67,8 @@ def render(template: str, path: Path, **content: Any) -> None:
 
 @cache
 def _environment() -> Environment:
-    from jinja2 import Environment, PackageLoader, StrictUndefined
-
-    environment = Environment(
-        loader=PackageLoader("mffit.report"),
-        autoescape=True,
-        undefined=StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-    )
-    environment.filters["note"] = wording.note
+    found = environment("mffit.report")
+    found.filters["note"] = wording.note
     for rounded in (rounding.number, rounding.with_u, rounding.stated, rounding.times, rounding.per_cent):
-        environment.filters[rounded.__name__] = rounded
-    return environment
+        found.filters[rounded.__name__] = rounded
+    return found

@@ -15,6 +15,7 @@ from typing import Any
 import mffit
 from mffit.errors import InputError
 from mffit.quantities import MODEL
+from mffit.templates import environment
 from mffit.viewer.controls import settings
 from mffit.viewer.named import Given, described, named
 from mffit.viewer.panels import OUTPUTS, PANELS
@@ -122,22 +123,17 @@ def _quantity(name: str) -> dict[str, Any]:
 
 
 def _filled(data: dict[str, Any], names: list[str]) -> str:
-    from jinja2 import Environment, PackageLoader, StrictUndefined
-
-    environment = Environment(
-        loader=PackageLoader("mffit.viewer"),
-        autoescape=True,
-        undefined=StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-    )
-    return environment.get_template("show.html.j2").render(
-        data=data,
-        names=names,
-        panels=PANELS,
-        quantities=MODEL,
-        models={mode: javascript(OUTPUTS, turn_slip=mode == "on") for mode in ("off", "on")},
-        version=mffit.__version__,
+    return (
+        environment("mffit.viewer")
+        .get_template("show.html.j2")
+        .render(
+            data=data,
+            names=names,
+            panels=PANELS,
+            quantities=MODEL,
+            models={mode: javascript(OUTPUTS, turn_slip=mode == "on") for mode in ("off", "on")},
+            version=mffit.__version__,
+        )
     )
 
 
