@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping
 from typing import NamedTuple
 
 import numpy as np
-from scipy.stats import chi2, norm
+from scipy.special import chdtrc, ndtri
 
 from mffit.errors import InputError
 from mffit.fit.doubts import Doubt
@@ -143,7 +143,7 @@ def error_of(name: str, prediction: Prediction, size: float) -> Error:
         rms=rms,
         ratio=float(np.sqrt(total / len(kept))),
         share=max(rms - SURE * open_, 0.0) / size,
-        chance=float(chi2.sf(total, len(kept))),
+        chance=float(chdtrc(len(kept), total)),
         vague=open_ / size,
     )
 
@@ -153,7 +153,7 @@ def _usual_ratios(errors: list[Error]) -> float:
     ratio = np.log([max(e.ratio, 1e-9) for e in errors])
     middle = float(np.median(ratio))
     scatter = robust(ratio, middle)
-    return float(np.exp(middle + norm.isf(FALSE_ALARM / len(errors)) * scatter))
+    return float(np.exp(middle - ndtri(FALSE_ALARM / len(errors)) * scatter))
 
 
 def _view(points: Points, group: Group, stated, size, signs, refit: Refit, level: float) -> View | None:

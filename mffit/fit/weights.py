@@ -8,7 +8,7 @@ from its neighbours in the sweep alike is no property of the tyre: it does not c
 from __future__ import annotations
 
 import numpy as np
-from scipy.stats import norm
+from scipy.special import ndtri
 
 from mffit.scatter import robust
 
@@ -60,7 +60,7 @@ def standing_out(residual: np.ndarray, scale: float, sweep: np.ndarray) -> np.nd
     known = np.isfinite(apart)
     # Less than the stated uncertainty is no scatter to judge by: points without noise would all stand out.
     local = max(robust_scale(apart[known]), 1.0)
-    far = float(norm.isf(FALSE_ALARM / (2.0 * len(used))))
+    far = float(-ndtri(FALSE_ALARM / (2.0 * len(used))))
     out[used] = known & (np.abs(apart) > far * local) & (np.abs(residual[used]) > far * scale)
     return out
 

@@ -11,10 +11,12 @@ from mffit.recordings import Sniffed, project_text, sniff
 from mffit.recordings.project_file import slug
 from mffit.recordings.sniffed import configuration_of
 from mffit.recordings.stretch_table import stretch_table
+from mffit.sweeps import formats
 
 STRETCHES = "stretches.csv"
 
 
+@formats.reading_once()
 def init_from(
     files: Sequence[str | Path],
     folder: str | Path,

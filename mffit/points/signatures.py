@@ -12,7 +12,7 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
-from scipy.stats import t
+from scipy.special import stdtrit
 
 from mffit.points.points import Points
 from mffit.points.requirements import at_zero
@@ -44,7 +44,7 @@ class Slope(NamedTuple):
     @property
     def sign(self) -> int:
         """+1 or -1 if beyond doubt, else 0."""
-        clear = float(t.isf(DOUBT, max(self.freedom, 1))) * self.error
+        clear = float(-stdtrit(max(self.freedom, 1), DOUBT)) * self.error
         return int(np.sign(self.value)) if abs(self.value) > clear else 0
 
 

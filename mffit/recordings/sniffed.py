@@ -69,6 +69,7 @@ class Sniffed:
         return self.reading.points
 
 
+@formats.reading_once()
 def sniff(paths: Sequence[str | Path]) -> Sniffed:
     """Look into recordings.
 

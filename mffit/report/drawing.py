@@ -27,6 +27,8 @@ WIDEST = 360.0
 """Of a panel without its labels [pt]: wider ones could not be read on a telephone."""
 WITH_LETTERS = 400.0
 """The same with its labels [pt]."""
+NARROW = 180.0
+"""Of a panel without its labels that needs no look [pt]."""
 ROOM = 1.5
 """Around a panel [pt], for the ends of thick lines and another machine's letters."""
 POINTS_PER_INCH = 72.0
@@ -64,6 +66,8 @@ def _markup(figure: Figure, name: str) -> str:
         _thin_out(ax)
     for ax in panels:
         inside = ax.get_window_extent().width
+        if inside < NARROW:
+            continue
         beside = _extent(ax).width - inside  # letters, which keep their size
         fits = min(WIDEST, WITH_LETTERS - beside)
         if inside > fits > 0.0:
@@ -72,14 +76,15 @@ def _markup(figure: Figure, name: str) -> str:
         artist.set_gid(f"part-{k}")
     source = _Source(figure, name)
     key = list(_entries(figure))
-    widest = max(_extent(ax).width for ax in panels) + 2.0 * ROOM
+    extents = {ax: _extent(ax) for ax in panels}
+    widest = max(box.width for box in extents.values()) + 2.0 * ROOM
     out = [f'<div class="panels" style="--widest:{_short(widest)}">']
     if key or scales:
         drawn = [source.part(artists, box) for artists, box in key]
         drawn += [source.part([ax], _extent(ax)) for ax in scales]
         out += ['<div class="key">', *drawn, "</div>"]
     for row in _rows(panels):
-        boxes = [_extent(ax) for ax in row]
+        boxes = [extents[ax] for ax in row]
         low, high = min(box.y0 for box in boxes), max(box.y1 for box in boxes)
         out.append('<div class="row">')
         for ax, box in zip(row, boxes, strict=True):

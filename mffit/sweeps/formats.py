@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from contextvars import ContextVar
+from dataclasses import replace
 from pathlib import Path
 from typing import NamedTuple
 
@@ -29,12 +32,34 @@ FORMATS = (
     Format("Parquet", (".parquet",), read_parquet),
     Format("TYDEX", (".tdx", ".tdx.gz"), read_tydex),
 )
+LARGEST_KEPT = 5_000_000
+"""Cells of a file that is kept."""
+_KEPT: ContextVar[dict[Path, RawTable] | None] = ContextVar("kept", default=None)
 ENDINGS = tuple(ending for kind in FORMATS for ending in kind.endings)
 
 
 def read(path: Path) -> RawTable:
     """Read a file by the ending of its name; a name with another ending is read as CSV."""
-    return next((kind for kind in FORMATS if reads(kind, path)), FORMATS[0]).read(path)
+    kept, place = _KEPT.get(), path.absolute()
+    if kept is not None and place in kept:
+        return replace(kept[place], path=path)
+    found = next((kind for kind in FORMATS if reads(kind, path)), FORMATS[0]).read(path)
+    if kept is not None and len(found) * len(found.headings) < LARGEST_KEPT:
+        kept[place] = found
+    return found
+
+
+@contextmanager
+def reading_once() -> Iterator[None]:
+    """Within it every file is read once, however often it is looked at; large ones are not kept in memory."""
+    if _KEPT.get() is not None:
+        yield
+        return
+    token = _KEPT.set({})
+    try:
+        yield
+    finally:
+        _KEPT.reset(token)
 
 
 def reads(kind: Format, path: Path) -> bool:

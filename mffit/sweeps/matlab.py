@@ -18,6 +18,7 @@ from typing import Any
 import numpy as np
 
 from mffit.errors import InputError
+from mffit.sweeps import matlab_apart
 from mffit.sweeps.extras import needed
 from mffit.sweeps.matlab_apart import LARGEST_TEXT, TEXTS, TROUBLE, short
 from mffit.sweeps.raw_table import RawTable
@@ -27,8 +28,6 @@ HDF5_AT = (0, 512)
 """Where an HDF5 file begins: MATLAB puts a text of 512 bytes in front."""
 LONGEST = 600.0
 """Time for the reader [s], many times what the largest recording takes."""
-PACKAGES = Path(__file__).parents[2]
-"""Where this package lies, so that the other process finds it."""
 
 
 def read_mat(path: Path) -> RawTable:
@@ -82,9 +81,9 @@ def _is_hdf5(path: Path) -> bool:
 def _classic(path: Path) -> dict[str, Any]:
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
-        command = [sys.executable, "-m", "mffit.sweeps.matlab_apart", str(path.absolute()), name]
+        command = [sys.executable, "-P", matlab_apart.__file__, str(path.absolute()), name]
         try:
-            subprocess.run(command, check=True, timeout=LONGEST, capture_output=True, cwd=PACKAGES)
+            subprocess.run(command, check=True, timeout=LONGEST, capture_output=True)
         except (subprocess.CalledProcessError, subprocess.TimeoutExpired):
             raise InputError("is damaged: its sizes cannot be right; save it again", file=path) from None
         trouble = folder / TROUBLE

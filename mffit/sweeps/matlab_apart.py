@@ -1,7 +1,8 @@
 """MATLAB files of v4 to v7 in a process of their own: scipy's reader may crash on a damaged one, which no exception tells.
 
-``python -m mffit.sweeps.matlab_apart FILE OUT`` writes what :func:`mffit.sweeps.matlab.read_mat` needs to know to the folder
-OUT, or a sentence's middle to OUT/trouble.txt. Numbers and texts only, nothing that could be code.
+``python -P matlab_apart.py FILE OUT``, which imports nothing of mffit, writes what
+:func:`mffit.sweeps.matlab.read_mat` needs to know to the folder OUT, or a sentence's middle to OUT/trouble.txt. Numbers and
+texts only, nothing that could be code.
 """
 
 from __future__ import annotations
