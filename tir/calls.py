@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from concurrent.futures import ThreadPoolExecutor
 from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any
 
@@ -193,6 +192,9 @@ def _in_vectors(run: Callable, inputs: Sequence[np.ndarray], n: int) -> np.ndarr
     if n < THREADS_FROM:
         run(*whole, out, 0, out.shape[1])
     else:
+        # not before it is needed: import tir is to be quick
+        from concurrent.futures import ThreadPoolExecutor
+
         share = -(-n // kernel.threads())
         with ThreadPoolExecutor() as pool:
             parts = [pool.submit(run, *whole, out, at, min(at + share, n)) for at in range(0, n, share)]

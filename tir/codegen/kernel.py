@@ -6,7 +6,6 @@ The name of the folder is a hash of everything that the machine code follows fro
 from __future__ import annotations
 
 import ctypes
-import hashlib
 import importlib.util
 import os
 import sys
@@ -152,6 +151,8 @@ def _user_cache() -> Path:
 
 def _fingerprint() -> str:
     """Of the sources, of LLVM and of the processor."""
+    import hashlib  # not before it is needed: import tir is to be quick
+
     from llvmlite import __version__, binding
 
     here = (
@@ -189,4 +190,6 @@ def _write(path: Path, code: bytes) -> None:
 
 
 def _seal(code: bytes) -> bytes:
+    import hashlib
+
     return hashlib.sha256(code).hexdigest().encode()
