@@ -212,11 +212,19 @@ def points_table(result: BuildResult) -> pd.DataFrame:
 
 
 def origin(points: Points) -> dict[str, np.ndarray]:
-    """Where every point comes from, by the columns of points.csv."""
+    """Where every point comes from, by the columns of points.csv; a straight path has no radius."""
+    curved = np.abs(points.phi_t)
+    path = {
+        "path_centre": np.where(points.phi_t < 0.0, "left", "right"),
+        "path_radius_m": np.divide(1.0, curved, out=np.full(len(points), np.nan), where=curved > 0.0).round(
+            6
+        ),
+    }
     return {
         "file": np.array([Path(name).name for name in points.files], dtype=object)[points.file],
         "line": points.line,
         "sweep": np.array(points.sweep_names, dtype=object)[points.sweep],
         "direction": np.where(points.direction > 0, "forward", "backward"),
         "mount": np.where(points.mount > 0, "normal", "flipped"),
+        **(path if np.any(curved) else {}),
     }

@@ -10,6 +10,7 @@ from mffit import config as configuration
 from mffit import virtual_rig
 from mffit.config import path_curvature
 from mffit.errors import InputError
+from mffit.pipeline.building import origin
 from mffit.points import make_points
 from mffit.rig import RigFaults, Simulation
 
@@ -58,3 +59,13 @@ def test_a_flat_track_has_no_other_path():
     declared = {name: content[name] for name in ("tyre", "rig")}
     with pytest.raises(InputError, match="straight"):
         configuration.load(declared | {"sweep": [{"file": "a.csv", "path_centre": "right"}]}, folder=SAMPLE)
+
+
+def test_points_csv_names_the_path_of_every_point():
+    phi_t = np.array([-1.0 / DECLARED, 1.0 / 0.9])
+    said = origin(make_points(0.0, 0.0, 1400.0, p=250e3, V=6.0, phi_t=phi_t))
+    assert list(said["path_centre"]) == ["left", "right"]
+    assert said["path_radius_m"] == pytest.approx([DECLARED, 0.9])
+    assert "path_radius_m" not in origin(
+        make_points(0.0, 0.0, np.array([1400.0, 900.0]), p=250e3, V=6.0, phi_t=0.0)
+    )
