@@ -16,7 +16,7 @@ from mffit.diagnosis.limits import limits
 from mffit.diagnosis.noise import Noise
 from mffit.diagnosis.notes import HardlyThisTyre, Note
 from mffit.diagnosis.result import Diagnosis, Found
-from mffit.diagnosis.scatter import wild
+from mffit.diagnosis.scatter import WILD, wild
 from mffit.diagnosis.selection import TIE, Step
 from mffit.diagnosis.ties import separation
 from mffit.diagnosis.unknown import Bump
@@ -88,12 +88,13 @@ def answer(
 
 
 def _outliers(points: Points, after: np.ndarray, noise: Noise) -> tuple[Outlier, ...]:
-    """The readings that lost nearly all their weight."""
+    """The readings that lost nearly all their weight, and stand out of what was found too."""
     if noise.weight is None:
         return ()
     usual = noise.u * np.sqrt(noise.weight)
+    off = np.abs(np.concatenate([points.Fy, points.Mz]) - after)
     used = usual.copy()
-    used[wild(noise)] = np.inf
+    used[[i for i in wild(noise) if off[i] > WILD * usual[i]]] = np.inf
     Fy, Mz = zip(np.split(usual, 2), np.split(used, 2), np.split(after, 2), strict=True)
     return outliers(points, *((a, b) for a, b in zip(Fy, Mz, strict=True)))
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -16,6 +17,8 @@ from mffit.points.loading import settled_sweeps
 
 CORRECTED_TOML, CORRECTED_POINTS = "corrected.toml", "points-corrected.csv"
 FLIPPED_POINTS = "points-corrected-flipped.csv"
+NOT_ALWAYS = ("Mz", "T", "t")
+"""Channels that one sweep may have and another lack, whereas a file has them in every row or in none."""
 ABOUT = (
     "# The readings as a faultless rig at reference conditions would have reported them: what a diagnosis found of the rig and\n"
     "# its surroundings, and the declared play, are taken off. Build it with: mffit build {name}\n\n"
@@ -34,11 +37,9 @@ def write_corrected(diagnosis: Diagnosis, config: Config, out: Path, folder: Pat
     """
     points = _mended(diagnosis, config)
     sweeps: list[dict[str, Any]] = []
-    for mount, name in ((1, CORRECTED_POINTS), (-1, FLIPPED_POINTS)):
-        part = points.select(points.mount == mount)
-        if len(part):
-            corrected_table(part, diagnosis).to_csv(folder / name, index=False, lineterminator="\n")
-            sweeps.append({"file": name, "mount": "normal" if mount > 0 else "flipped"})
+    for name, part in _files(points):
+        corrected_table(part, diagnosis).to_csv(folder / name, index=False, lineterminator="\n")
+        sweeps.append({"file": name, "mount": "normal" if part.mount[0] > 0 else "flipped"})
     content = resolved(config, out)
     content["sweep"] = sweeps
     content["rig"] |= {"backlash_deg": 0.0, "force_frame": "W", "moments": "contact"}
@@ -66,6 +67,16 @@ def corrected_table(points: Points, diagnosis: Diagnosis) -> pd.DataFrame:
     }
     known = {n: c for n, c in columns.items() if c.dtype.kind not in "f" or np.isfinite(c).any()}
     return pd.DataFrame(known).replace([np.inf, -np.inf], np.nan)
+
+
+def _files(points: Points) -> Iterator[tuple[str, Points]]:
+    """Names of the files, and the points of each: one mount, and the same channels in every row."""
+    for mount, name in ((1, CORRECTED_POINTS), (-1, FLIPPED_POINTS)):
+        channels = np.column_stack([np.isfinite(getattr(points, channel)) for channel in NOT_ALWAYS])
+        kinds = np.unique(channels[points.mount == mount], axis=0)[::-1]
+        for k, kind in enumerate(kinds, 1):
+            rows = (points.mount == mount) & np.all(channels == kind, axis=1)
+            yield name if k == 1 else name.replace(".csv", f"-{k}.csv"), points.select(rows)
 
 
 def _mended(diagnosis: Diagnosis, config: Config) -> Points:
