@@ -18,6 +18,7 @@ from tir.codegen.kernel import LANES
 from tir.codegen.program import INPUTS, NUMBERS, Switches
 from tir.codegen.replay import replay
 from tir.equations.forces import Forces, State
+from tir.errors import TirError
 from tir.evaluate import evaluate, refuse_zero_divisors
 
 if TYPE_CHECKING:
@@ -55,8 +56,12 @@ def compile_kernels(
     Raises
     ------
     TirError
-        If llvmlite is not installed (``pip install mffit[fast]``).
+        If llvmlite is not installed (``pip install mffit[fast]``), or a kind is not known.
     """
+    kinds = (kinds,) if isinstance(kinds, str) else tuple(kinds)
+    unknown = set(kinds) - set(kernel.KINDS)
+    if unknown:
+        raise TirError(f"{sorted(unknown)[0]} is no kind of kernel; known are {', '.join(kernel.KINDS)}")
     for on in (False, True) if turn_slip is None else (turn_slip,):
         for kind in kinds:
             LOADED[kind, Switches(on, star, limits)] = kernel.load(kind, Switches(on, star, limits))
@@ -70,14 +75,17 @@ def forces(tyre: Tyre, inputs: Sequence[Any], switches: Switches) -> Forces:
     """Forces for :data:`~tir.codegen.program.INPUTS`, every one given; see :meth:`tir.Tyre.__call__`."""
     arrays = [np.asarray(x) for x in inputs]
     if not _real(arrays):
-        return evaluate(tyre.p, *inputs, **switches._asdict())[0]
+        return _evaluated(tyre, _of_any_kind(inputs, arrays), switches)[0]
     shapes = {a.shape for a in arrays} - {()}
     if not shapes:
         return Forces(*_one(tyre, arrays, switches, FORCES))
     shape = shapes.pop() if len(shapes) == 1 else np.broadcast_shapes(*shapes, *(a.shape for a in arrays))
+    flat = arrays
     if shapes or len(shape) > 1:
-        arrays = [a if a.ndim == 0 else np.broadcast_to(a, shape).reshape(-1) for a in arrays]
-    out = _many(tyre, arrays, math.prod(shape), switches)
+        flat = [a if a.ndim == 0 else np.broadcast_to(a, shape).reshape(-1) for a in arrays]
+    out = _many(tyre, flat, math.prod(shape), switches)
+    if out is None:
+        return _evaluated(tyre, arrays, switches)[0]
     return Forces(*(out if len(shape) == 1 else out.reshape(len(FORCES), *shape)))
 
 
@@ -86,7 +94,12 @@ def state(tyre: Tyre, inputs: Sequence[Any], switches: Switches) -> State:
     arrays = [np.asarray(x) for x in inputs]
     if _real(arrays) and all(a.shape == () for a in arrays):
         return State(*_one(tyre, arrays, switches, STATE))
-    return _evaluated(tyre, inputs, switches)[1]
+    return _evaluated(tyre, _of_any_kind(inputs, arrays), switches)[1]
+
+
+def _of_any_kind(inputs: Sequence[Any], arrays: Sequence[np.ndarray]) -> list[Any]:
+    """Inputs for the equations: arrays but for traced numbers, of which numpy knows nothing."""
+    return [x if a.dtype == object else a[()] for x, a in zip(inputs, arrays, strict=True)]
 
 
 def _real(arrays: Sequence[np.ndarray]) -> bool:
@@ -102,18 +115,18 @@ def _one(tyre: Tyre, inputs: Sequence[np.ndarray], switches: Switches, outputs: 
             return run(*numbers)
     except (ArithmeticError, ValueError):
         pass
-    with np.errstate(all="ignore"):
-        found = _evaluated(tyre, [np.float64(x) for x in numbers], switches)
+    found = _evaluated(tyre, [np.float64(x) for x in numbers], switches)
     return tuple(_plain(x) for x in found[outputs is STATE])
 
 
 def _evaluated(tyre: Tyre, inputs: Sequence[Any], switches: Switches) -> tuple[Forces, State]:
     """The equations in numpy; where two parameters alone make Python's arithmetic raise, with numpy's numbers for them."""
-    try:
-        return evaluate(tyre.p, *inputs, **switches._asdict())
-    except ArithmeticError:
-        numbers = {k: np.float64(v) if type(v) in (float, int) else v for k, v in vars(tyre.p).items()}
-        return evaluate(SimpleNamespace(**numbers), *inputs, **switches._asdict())
+    with np.errstate(all="ignore"):
+        try:
+            return evaluate(tyre.p, *inputs, **switches._asdict())
+        except ArithmeticError:
+            numbers = {k: np.float64(v) if type(v) in (float, int) else v for k, v in vars(tyre.p).items()}
+            return evaluate(SimpleNamespace(**numbers), *inputs, **switches._asdict())
 
 
 def _plain(x: Any) -> Any:
@@ -126,9 +139,9 @@ def function_of(tyre: Tyre, switches: Switches, outputs: tuple[str, ...] = FORCE
     if key not in tyre.prepared:
         run = _kernel_of(tyre, "one", switches) if outputs is FORCES else None
         values = _values(tyre)
-        if run is None and values is not None:
-            run = single.run_of(values, switches, outputs)
-        tyre.prepared[key] = run
+        if values is None:
+            return None
+        tyre.prepared[key] = run or single.run_of(values, switches, outputs)
     return tyre.prepared[key]
 
 
@@ -152,25 +165,28 @@ def _values(tyre: Tyre) -> dict[str, float] | None:
     return {name: float(x) for name, x in given.items()}
 
 
-def _many(tyre: Tyre, inputs: Sequence[np.ndarray], n: int, switches: Switches) -> np.ndarray:
-    """Forces (6, n) of inputs that are single numbers or (n,)."""
+def _many(tyre: Tyre, inputs: Sequence[np.ndarray], n: int, switches: Switches) -> np.ndarray | None:
+    """Forces (6, n) of inputs that are single numbers or (n,); None if a parameter is no real number."""
     if n >= COMPILE_FROM and ("batch", switches) not in LOADED and kernel.available():
         compile_kernels(**switches._asdict(), kinds=("batch",))
     run = _kernel_of(tyre, "batch", switches)
     if run is not None:
         return _in_vectors(run, inputs, n)
+    run = _arrays_of(tyre, switches)
+    if run is None:
+        return None
     out = np.empty((len(FORCES), n))
-    _in_numpy(_arrays_of(tyre, switches), inputs, out)
+    _in_numpy(run, inputs, out)
     return out
 
 
-def _arrays_of(tyre: Tyre, switches: Switches) -> Callable:
-    """The tyre as a function of arrays, kept with the tyre; the equations as they are if a parameter is no real number."""
+def _arrays_of(tyre: Tyre, switches: Switches) -> Callable | None:
+    """The tyre as a function of arrays, kept with the tyre; None if a parameter is no real number."""
     key = ("arrays", switches)
     if key not in tyre.prepared:
         values = _values(tyre)
         if values is None:
-            return lambda *block: _evaluated(tyre, block, switches)[0]
+            return None
         program = replay(switches, FORCES)
         tyre.prepared[key] = lambda *block: program({**values, **dict(zip(INPUTS, block, strict=True))})
     return tyre.prepared[key]
@@ -195,7 +211,7 @@ def _in_vectors(run: Callable, inputs: Sequence[np.ndarray], n: int) -> np.ndarr
         # not before it is needed: import tir is to be quick
         from concurrent.futures import ThreadPoolExecutor
 
-        share = -(-n // kernel.threads())
+        share = max(-(-n // kernel.threads()), BLOCK)
         with ThreadPoolExecutor() as pool:
             parts = [pool.submit(run, *whole, out, at, min(at + share, n)) for at in range(0, n, share)]
         for part in parts:

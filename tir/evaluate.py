@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from numbers import Real
 from types import SimpleNamespace
 from typing import Any
 
@@ -119,7 +120,7 @@ def turned_on_rim(p: Any, turned: Any) -> SimpleNamespace:
 def refuse_zero_divisors(p) -> None:
     for name in DIVISORS:
         value = getattr(p, name)
-        if isinstance(value, float | int) and value == 0.0:
+        if isinstance(value, Real) and value == 0.0:
             raise TirError(f"{name} is 0, and the equations divide by it: give its value", name=name)
 
 

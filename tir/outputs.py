@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from typing import Any
 
 from tir.codegen.program import INPUTS, NUMBERS, Switches
 from tir.codegen.replay import replay
 from tir.derivatives import Traced, plain
+from tir.equations.forces import Forces, State
+from tir.errors import TirError
 from tir.evaluate import refuse_zero_divisors
 
 
@@ -37,8 +39,12 @@ def outputs_of(
     Raises
     ------
     TirError
-        If a value by which the equations divide is 0.
+        If a value by which the equations divide is 0, a name is no output or no input, or the load is not given.
     """
+    _known(names, Forces._fields + State._fields, "output")
+    _known(inputs, INPUTS, "input")
+    if "Fz" not in inputs:
+        raise TirError("the load Fz is not among the inputs; give it")
     refuse_zero_divisors(p)
     given = {"Vx": p.LONGVL, "pressure": p.INFLPRES, **inputs}
     still = tuple(name for name in INPUTS if name not in given)
@@ -54,6 +60,14 @@ def outputs_of(
         Traced(value, tape, tuple(zip(leaves.values(), row, strict=True)))
         for value, row in zip(found[: len(names)], slopes, strict=True)
     ]
+
+
+def _known(names: Iterable[str], among: tuple[str, ...], what: str) -> None:
+    if isinstance(names, str):
+        raise TirError(f"names of {what}s are asked for, and {names!r} is a text; write ({names!r},)")
+    for name in names:
+        if name not in among:
+            raise TirError(f"{name} is no {what}; known are {', '.join(among)}", name=name)
 
 
 def _real(x: Any) -> Any:

@@ -14,6 +14,7 @@ from mffit.config import Config, path_curvature
 from mffit.config.declared import as_declared
 from mffit.errors import InputError
 from mffit.points import levels
+from mffit.points.faulty import DRIVEN
 from mffit.points.lag import common
 from mffit.points.plausibility import check_physics as check
 from mffit.points.points import Points, concatenate
@@ -105,10 +106,12 @@ def _nothing(reduced: Sequence[Reduced]) -> str:
     for note in (note for part in reduced for note in part.stretches if note.dropped):
         reasons[note.dropped] = reasons.get(note.dropped, 0.0) + note.end_s - note.begin_s
     most = f" (most of the time: {max(reasons, key=lambda reason: reasons[reason])})" if reasons else ""
-    return (
-        f"no sweep rests long enough for a steady point{most}; hold every set-point for some seconds, or leave out "
-        "column time_s to take each row for a finished point"
-    )
+    if not any(part.stretches for part in reduced):
+        return f"there is no point left: all are {DRIVEN}"
+    remedy = "hold every set-point for some seconds"
+    if DRIVEN not in reasons:
+        remedy += ", or leave out column time_s to take each row for a finished point"
+    return f"no sweep rests long enough for a steady point{most}; {remedy}"
 
 
 def settled_sweeps(points: Points, lag: tuple[float, float]) -> Points:

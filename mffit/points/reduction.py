@@ -10,7 +10,7 @@ from mffit.errors import InputError
 from mffit.points import averaging, remarks
 from mffit.points import lag as lags
 from mffit.points.choice import chosen
-from mffit.points.faulty import faults
+from mffit.points.faulty import driven, faults
 from mffit.points.lag import UNKNOWN, Lag
 from mffit.points.points import Points, concatenate
 from mffit.points.stretch import PLATEAU, SWEEP, Stretch, StretchNote
@@ -50,7 +50,8 @@ def reduce(sweep: Sweep, phi_t: float) -> Reduced:
         The time of a series does not rise.
     """
     if not sweep.is_series:
-        return Reduced(averaging.rows_as_points(sweep, phi_t, np.arange(len(sweep))), ())
+        free = np.flatnonzero(~driven(sweep))
+        return Reduced(averaging.rows_as_points(sweep, phi_t, free), remarks.driven(sweep, free))
     sweep, repeated = _without_repeats(sweep)
     _check_time(sweep)
     wrong = faults(sweep)

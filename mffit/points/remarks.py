@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from mffit.points.faulty import Fault
+from mffit.points.faulty import DRIVEN, Fault
 from mffit.points.lag import Lag
 from mffit.points.stretch import PLATEAU, SWEEP, Stretch, StretchNote
 from mffit.sweeps import Sweep
@@ -16,6 +16,15 @@ SHOWN = 3
 def left_out(sweep: Sweep, wrong: list[Fault], tried: list[Stretch]) -> tuple[str, ...]:
     """Sentences about plateaus, samples and sweeps that give no point."""
     return (*_dropped(sweep, tried), *_said(sweep, wrong, tried))
+
+
+def driven(sweep: Sweep, free: np.ndarray) -> tuple[str, ...]:
+    """A sentence about finished points that were driven or braked; ``free`` are the rows of the others."""
+    lost = np.setdiff1d(np.arange(len(sweep)), free)
+    if not len(lost):
+        return ()
+    rows = f"{len(lost)} of {len(sweep)} points are" if len(lost) > 1 else "one point is"
+    return (f"{sweep.file}:{int(sweep.line[lost[0]])}: {rows} {DRIVEN}; left out",)
 
 
 def note(sweep: Sweep, stretch: Stretch, label: str, points: int, lag: Lag) -> StretchNote:

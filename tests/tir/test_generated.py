@@ -253,6 +253,55 @@ def test_machine_code_refuses_what_it_was_not_made_for(tyre, kind, arguments):
 
 
 @needs_llvm
+@pytest.mark.parametrize("asked", ["1", "3", "100000", "4,2", "²", ""])
+def test_any_number_of_threads_gives_the_same(tyre, compiled, monkeypatch, asked):
+    compiled(Switches(), "batch")
+    monkeypatch.setenv("OMP_NUM_THREADS", asked)
+    alpha = np.linspace(-0.2, 0.2, calls.THREADS_FROM + 5)
+    assert tyre(2000.0, alpha).Fy[::1000] == pytest.approx(tyre(2000.0, alpha[::1000]).Fy, rel=1e-12)
+
+
+@needs_llvm
+def test_a_part_shorter_than_a_vector_stays_within_its_arrays(tyre):
+    run = kernel.load("batch", Switches()).run_of(calls._values(tyre))
+    alpha, out = np.linspace(-0.2, 0.2, 32), np.zeros((6, 32))
+    given = (np.array(2e3), alpha, *(np.array(x) for x in (0.0, 0.0, 0.0, 16.0, 2e5)))
+    for first, last in ((0, 3), (3, 7), (7, 8), (30, 32), (8, 31)):
+        run(*given, out, first, last)
+    assert_equal(out, tyre(2e3, alpha, p=2e5, Vx=16.0), Forces._fields)
+
+
+@pytest.mark.parametrize("given", ["", "relative/cache"])
+def test_a_cache_folder_that_says_nothing_is_the_usual_one(monkeypatch, given):
+    monkeypatch.setattr(sys, "platform", "linux")
+    monkeypatch.setenv("XDG_CACHE_HOME", given)
+    assert kernel._user_cache() == Path.home() / ".cache" / "tir"
+
+
+def test_an_unknown_kind_of_kernel_is_refused():
+    with pytest.raises(tir.TirError, match="batch, one"):
+        tir.compile_kernels(kinds=("many",))
+
+
+def test_parameters_that_are_complex_or_arrays_go_through_with_arrays_of_inputs(tyre):
+    """A complex step of a parameter is its derivative; a parameter may differ from condition to condition."""
+    step, alpha = 1e-20, np.linspace(-0.1, 0.1, 5)
+    moved = tyre.replace(PKY2=tyre["PKY2"] + 1j * step)
+    ones = [moved(2000.0, float(a)).Fy.imag / step for a in alpha]
+    assert moved(2000.0, alpha).Fy.imag / step == pytest.approx(ones)
+    n = calls.BLOCK + 3
+    many = tyre.replace(PKY2=np.linspace(1.0, 2.0, n))(2000.0, np.full(n, 0.05)).Fy
+    for k in (0, n - 1):
+        assert many[k] == pytest.approx(tyre.replace(PKY2=1.0 + k / (n - 1))(2000.0, 0.05).Fy)
+
+
+def test_lists_are_arrays_for_states_too(tyre):
+    assert tyre.state([2e3, 3e3], [0.01, 0.02]).K_ya == pytest.approx(
+        [tyre.state(2e3, 0.01).K_ya, tyre.state(3e3, 0.02).K_ya]
+    )
+
+
+@needs_llvm
 def test_damaged_machine_code_in_the_cache_is_made_again(tyre, tmp_path, monkeypatch):
     monkeypatch.setattr(kernel, "cache_folder", lambda: tmp_path)
     load = kernel.load.__wrapped__

@@ -100,3 +100,25 @@ def test_programs_that_come_and_go_leave_derivatives_as_they_are(p):
         some = {"Fz": conditions["Fz"]} | {n: conditions[n] for i, n in enumerate(inputs) if k >> i & 1}
         outputs_of(("Fy",), p, some)
     assert by("PDY1")[:, 0] == pytest.approx(both[:, 1], rel=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("names", "inputs", "said"),
+    [
+        (("Fy",), {"fz": 4e3}, "fz is no input"),
+        (("Fy",), {"Fz": 4e3, "p": 1e5}, "p is no input"),
+        (("Fq",), {"Fz": 4e3}, "Fq is no output"),
+        ("Fy", {"Fz": 4e3}, "is a text"),
+        (("Fy",), {"alpha": 0.1}, "load Fz"),
+    ],
+)
+def test_names_that_are_none_are_refused(names, inputs, said):
+    tyre = tir.Tyre.from_values({"FNOMIN": 4e3, "UNLOADED_RADIUS": 0.3})
+    with pytest.raises(tir.TirError, match=said):
+        outputs_of(names, tyre.p, inputs)
+
+
+def test_an_output_asked_for_twice_comes_twice():
+    tyre = tir.Tyre.from_values({"FNOMIN": 4e3, "UNLOADED_RADIUS": 0.3})
+    first, second = outputs_of(("Fy", "Fy"), tyre.p, {"Fz": 4e3, "alpha": 0.1})
+    assert first == second

@@ -196,6 +196,9 @@ def _loop(
     builder.position_at_end(loop)
     at = builder.phi(INTEGER)
     latest = builder.sub(last, lanes)
+    latest = builder.select(
+        builder.icmp_signed("<", latest, ir.Constant(INTEGER, 0)), ir.Constant(INTEGER, 0), latest
+    )
     begin = builder.select(builder.icmp_signed("<", at, latest), at, latest)
     given = {
         name: builder.load(_as_vector(builder, vector, x, builder.mul(begin, step)), align=8)

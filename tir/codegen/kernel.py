@@ -26,6 +26,7 @@ SOURCES = ("equations", "codegen", "evaluate.py", "derivatives.py", "parameters.
 """What the machine code follows from."""
 LANES = 8
 """Conditions that are computed together: as many as the widest common vector has doubles; narrower machines split them."""
+KINDS = ("batch", "one")
 FASTCALL = 0x80
 """CPython's METH_FASTCALL."""
 
@@ -69,8 +70,8 @@ def available() -> bool:
 
 def threads() -> int:
     """How many threads a large call may use: OMP_NUM_THREADS, else the processors that this process may use."""
-    asked = os.environ.get("OMP_NUM_THREADS", "")
-    if asked.isdigit() and int(asked) > 0:
+    asked = os.environ.get("OMP_NUM_THREADS", "").partition(",")[0].strip()  # of the outermost level
+    if asked.isascii() and asked.isdigit() and int(asked) > 0:
         return int(asked)
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
@@ -145,8 +146,9 @@ def cache_folder() -> Path:
 
 def _user_cache() -> Path:
     if sys.platform == "win32":
-        return Path(os.environ.get("LOCALAPPDATA", Path.home() / "AppData" / "Local")) / "tir"
-    return Path(os.environ.get("XDG_CACHE_HOME", Path.home() / ".cache")) / "tir"
+        return Path(os.environ.get("LOCALAPPDATA") or Path.home() / "AppData" / "Local") / "tir"
+    given = Path(os.environ.get("XDG_CACHE_HOME", ""))  # counts only if absolute, by its own specification
+    return (given if given.is_absolute() else Path.home() / ".cache") / "tir"
 
 
 def _fingerprint() -> str:

@@ -120,9 +120,12 @@ def replay(
         of the outputs, and then for each output its derivatives by ``wrt``
     """
     if not wrt:
-        return _replay(list(_on_symbols(switches, outputs, still).values()))
+        found = _on_symbols(switches, outputs, still)
+        return _replay([found[name] for name in outputs])
     found, slopes = _with_derivatives(switches, outputs, still)
-    return _replay([*found.values(), *(slopes.get((name, x), 0.0) for name in outputs for x in wrt)])
+    return _replay(
+        [*(found[name] for name in outputs), *(slopes.get((name, x), 0.0) for name in outputs for x in wrt)]
+    )
 
 
 def _on_symbols(switches: Switches, outputs: tuple[str, ...], still: tuple[str, ...]) -> dict[str, Any]:

@@ -148,6 +148,15 @@ def clipped(table):
     table["FY"] = table["FY"].clip(upper=1800.0)
 
 
+def hard_clipped(table):
+    """A third of all samples: a channel that is mostly at its ends does not pass for one of few digits."""
+    table["FY"] = table["FY"].clip(-900.0, 900.0)
+
+
+def stuck_angle(table):
+    table.loc[2000:2200, "SA"] = table["SA"][2000]
+
+
 def spiky(table):
     table.loc[[700, 900, 2600], "FY"] += 4000.0
 
@@ -174,6 +183,7 @@ def impossible(table):
         (cold, "cold"),
         (stuck, "Fy stuck"),
         (clipped, "Fy clipped"),
+        (stuck_angle, "alpha stuck while Fy moves"),
         (spiky, "spikes of Fy"),
         (off_the_belt, "no load"),
         (silent, "no reading of Fy"),
@@ -189,6 +199,25 @@ def test_what_is_no_measurement_is_left_out_with_its_reason(read, change, said):
     truth = side_force(found.points.alpha, found.points.gamma, found.points.Fz, side=0.0)
     assert np.max(np.abs(found.points.Fy - truth)) < 80.0
     assert 0.5 * len(whole.points) < len(found.points) < 1.02 * len(whole.points)
+
+
+def test_the_worse_a_channel_is_clipped_the_less_is_kept_of_it(read):
+    found = read(spoilt(hard_clipped))
+    assert any("Fy clipped" in warning for warning in found.warnings)
+    assert len(found.points) < 0.6 * len(read(recording()).points)
+    truth = side_force(found.points.alpha, found.points.gamma, found.points.Fz, side=0.0)
+    assert np.sqrt(np.mean((found.points.Fy - truth) ** 2)) < 60.0
+
+
+def test_driven_rows_without_time_are_left_out_too(read):
+    """And nobody is advised to leave out the time because the wheel was driven throughout."""
+    table = spoilt(driven).drop(columns="ET")
+    found = read(table)
+    assert len(found.points) == len(table) - 301
+    assert any("301 of" in warning and "driven or braked" in warning for warning in found.warnings)
+    table["SL"] = 0.08
+    with pytest.raises(InputError, match="no point left: all are driven or braked"):
+        read(table)
 
 
 @pytest.mark.parametrize("axes", ["iso", "adapted-sae"])
