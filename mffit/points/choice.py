@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from mffit.points.faulty import Fault
-from mffit.points.steady import TRANSIENT_ROLL, Settings, settled, stretches
+from mffit.points.steady import TRANSIENT_ROLL, Scale, Settings, settled, stretches
 from mffit.points.stretch import MOVE, PLATEAU, SWEEP, Stretch
 from mffit.sweeps import Sweep
 
@@ -22,18 +22,24 @@ WANDERING_LOAD = 0.5
 """Range of the load within a sweep (5th to 95th percentile), per median, beyond which it is no sweep at one load."""
 
 
-def chosen(sweep: Sweep, wrong: list[Fault]) -> list[Stretch]:
+def settings_of(sweep: Sweep) -> Settings:
+    """What the rig was told to do in a time series."""
+    return Settings(sweep.time, sweep.alpha, sweep.gamma, sweep.Fz, sweep.p, sweep.V)
+
+
+def chosen(sweep: Sweep, wrong: list[Fault], scale: Scale | None) -> list[Stretch]:
     """All stretches of a recording in time order, without their transients, or with the reason why they give no point.
 
     Parameters
     ----------
     sweep : a time series
     wrong : what is wrong with samples of it
+    scale : usual size of the settings in the whole campaign; of this series if None
     """
-    return _judged(sweep, _stretches(sweep, wrong))
+    return _judged(sweep, _stretches(sweep, wrong, scale))
 
 
-def _stretches(sweep: Sweep, wrong: list[Fault]) -> list[Stretch]:
+def _stretches(sweep: Sweep, wrong: list[Fault], scale: Scale | None) -> list[Stretch]:
     """The stretches between the faults that end one, and those faults."""
     n = len(sweep)
     if n < 2:
@@ -45,11 +51,11 @@ def _stretches(sweep: Sweep, wrong: list[Fault]) -> list[Stretch]:
     if np.all(reason >= 0):
         return [Stretch(0, n, ends[reason[0]].reason, MOVE)]
     cuts = np.r_[np.flatnonzero(np.diff(reason)) + 1, np.flatnonzero(np.diff(sweep.direction)) + 1]
-    settings = Settings(sweep.time, sweep.alpha, sweep.gamma, sweep.Fz, sweep.p, sweep.V)
+    settings = settings_of(sweep)
     if np.any(reason >= 0):
         settings = Settings(*(np.where(np.isfinite(x), x, 0.0) for x in settings))
     found = []
-    for stretch in stretches(settings, sweep.point, cuts.tolist()):
+    for stretch in stretches(settings, sweep.point, cuts.tolist(), scale):
         k = int(reason[stretch.begin]) if sweep.point is None else -1
         found.append(stretch if k < 0 else Stretch(stretch.begin, stretch.end, ends[k].reason, MOVE))
     return _merged(found)
@@ -78,7 +84,7 @@ def _merged(found: list[Stretch]) -> list[Stretch]:
 
 def _judged(sweep: Sweep, found: list[Stretch]) -> list[Stretch]:
     """The stretches without their transients, or with the reason why they give no point."""
-    settings = Settings(sweep.time, sweep.alpha, sweep.gamma, sweep.Fz, sweep.p, sweep.V)
+    settings = settings_of(sweep)
     responses = [(sweep.Fy, HARMLESS_FORCE * float(np.nanmedian(sweep.Fz)), "N")]
     if np.all(np.isfinite(sweep.Mz)):
         responses.append((sweep.Mz, HARMLESS_ARM * float(np.nanmedian(sweep.Fz)), "Nm"))

@@ -14,12 +14,14 @@ from mffit.config import Config, path_curvature
 from mffit.config.declared import as_declared
 from mffit.errors import InputError
 from mffit.points import levels
+from mffit.points.choice import settings_of
 from mffit.points.faulty import DRIVEN
 from mffit.points.lag import common
 from mffit.points.plausibility import check_physics as check
 from mffit.points.points import Points, concatenate
 from mffit.points.reduction import Reduced, reduce
 from mffit.points.requirements import check_disc_programme
+from mffit.points.steady import scale_of
 from mffit.points.stretch import StretchNote
 from mffit.scatter import rms
 from tir.conventions import FLIPPED
@@ -74,7 +76,9 @@ def read(
     with as_declared(config):
         found = files.load(config)
     phi_t = {entry.file: path_curvature(config.rig, entry) for entry in config.sweep}
-    reduced = [reduce(sweep, phi_t[sweep.file]) for sweep in found.sweeps]
+    series = [settings_of(sweep) for sweep in found.sweeps if sweep.is_series]
+    scale = scale_of(series) if series else None
+    reduced = [reduce(sweep, phi_t[sweep.file], scale) for sweep in found.sweeps]
     points = concatenate([part.points for part in reduced if len(part.points)] or [reduced[0].points])
     warnings = [*found.warnings, *(sentence for part in reduced for sentence in part.warnings)]
     straight = config.rig.type == "flat-track"

@@ -13,6 +13,7 @@ from mffit.points.choice import chosen
 from mffit.points.faulty import driven, faults
 from mffit.points.lag import UNKNOWN, Lag
 from mffit.points.points import Points, concatenate
+from mffit.points.steady import Scale
 from mffit.points.stretch import PLATEAU, SWEEP, Stretch, StretchNote
 from mffit.sweeps import Sweep
 from mffit.sweeps.assembly import rows_of
@@ -30,13 +31,14 @@ class Reduced(NamedTuple):
     lags: tuple[Lag, ...] = ()  #: of each sweep name in ``points``
 
 
-def reduce(sweep: Sweep, phi_t: float) -> Reduced:
+def reduce(sweep: Sweep, phi_t: float, scale: Scale | None = None) -> Reduced:
     """Points of one sweep.
 
     Parameters
     ----------
     sweep : finished points or a time series
     phi_t : turn slip of the path [1/m]
+    scale : usual size of the settings in all time series of the campaign, by which changes are judged; of this one if None
 
     Returns
     -------
@@ -56,7 +58,7 @@ def reduce(sweep: Sweep, phi_t: float) -> Reduced:
     _check_time(sweep)
     wrong = faults(sweep)
     bad = np.any([fault.which for fault in wrong], axis=0) if wrong else np.zeros(len(sweep), dtype=bool)
-    tried = chosen(sweep, wrong)
+    tried = chosen(sweep, wrong, scale)
     labels = _labels(sweep, tried)
     plateaus = [stretch for stretch in tried if stretch.kind == PLATEAU and not stretch.dropped]
     swept = [stretch for stretch in tried if stretch.kind == SWEEP and not stretch.dropped]

@@ -54,7 +54,12 @@ class Settings(NamedTuple):
     V: np.ndarray  #: [m/s]
 
 
-def stretches(settings: Settings, point: np.ndarray | None = None, cuts: Sequence[int] = ()) -> list[Stretch]:
+def stretches(
+    settings: Settings,
+    point: np.ndarray | None = None,
+    cuts: Sequence[int] = (),
+    scale: Scale | None = None,
+) -> list[Stretch]:
     """The stretches of a series in time order, transients included.
 
     Parameters
@@ -63,6 +68,7 @@ def stretches(settings: Settings, point: np.ndarray | None = None, cuts: Sequenc
     point : (n,) label of the point of every sample, "" between points; None finds the stretches from the
         settings
     cuts : samples before which something else begins, beside the gaps in time
+    scale : usual size of each setting in the whole campaign; of this series if None
 
     Returns
     -------
@@ -75,7 +81,7 @@ def stretches(settings: Settings, point: np.ndarray | None = None, cuts: Sequenc
         edges = np.flatnonzero(point[1:] != point[:-1]) + 1
         bounds = zip(np.r_[0, edges], np.r_[edges, n], strict=True)
         return [Stretch(int(begin), int(end)) for begin, end in bounds if point[begin] != ""]
-    scale = scale_of(settings)
+    scale = scale or scale_of([settings])
     edges = np.unique(np.r_[0, gaps(settings.time), np.asarray(cuts, dtype=int), n])
     found: list[Stretch] = []
     for begin, end in itertools.pairwise(edges.tolist()):
@@ -211,10 +217,13 @@ class Scale(NamedTuple):
     V: float
 
 
-def scale_of(settings: Settings) -> Scale:
-    """Median size of each setting, of a sample of a long recording."""
-    some = max(len(settings.time) // SAMPLED, 1)
-    return Scale(*(float(np.median(np.abs(getattr(settings, name)[::some]))) for name in Scale._fields))
+def scale_of(series: Sequence[Settings]) -> Scale:
+    """Median size of each setting, of a sample of long recordings."""
+    some = max(sum(len(settings.time) for settings in series) // SAMPLED, 1)
+    sizes = (np.abs(np.concatenate([getattr(s, name)[::some] for s in series])) for name in Scale._fields)
+    return Scale(
+        *(float(np.median(size[np.isfinite(size)])) if np.isfinite(size).any() else 0.0 for size in sizes)
+    )
 
 
 class Moves(NamedTuple):
@@ -236,7 +245,7 @@ def moves(settings: Settings, scale: Scale | None = None) -> Moves:
     scale : usual size of each setting in the whole recording; of this series if None
     """
     n = len(settings.time)
-    scale = scale or scale_of(settings)
+    scale = scale or scale_of([settings])
     lag = _samples(settings, LAG)
     masks = {}
     for name in Moves._fields:
