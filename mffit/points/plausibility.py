@@ -15,6 +15,7 @@ import numpy as np
 
 from mffit.config import Config
 from mffit.errors import InputError
+from mffit.points.lone_lean import lone_lean
 from mffit.points.magnitudes import check_magnitudes, check_pressures
 from mffit.points.points import Points
 from mffit.points.signatures import WEAK_FORCE, Signatures, pooled, signatures
@@ -62,13 +63,14 @@ def check_physics(points: Points, config: Config) -> list[str]:
         raise _refusal(wrong, found, points, config)
     _check_every_file(points)
     _check_moment_point(points, config)
+    warnings = lone_lean(points)
     if np.isfinite(found.outward) and found.outward < WEAK_FORCE:
-        return [
+        warnings.append(
             f"the force at alpha = gamma = 0 is {100 * found.outward:.1f} % of the load along the "
             "turn slip, too little to "
             "measure turn slip; check the alignment of the sideslip axis"
-        ]
-    return []
+        )
+    return warnings
 
 
 def _check_moment_point(points: Points, config: Config) -> None:
