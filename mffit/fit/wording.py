@@ -155,6 +155,8 @@ def pecp1_sentence(config, values, measured) -> str:
     )
 
 
+EXPLAINED = 0.5
+"""Share of a channel's variance below which a model says next to nothing of it."""
 NOT_TRUSTED = 2.0
 """Misfit in units of the stated noise above which a file is not to be trusted."""
 CARRIES = 1.5
@@ -172,6 +174,14 @@ def distrust(fitted: Fitted, points: Points, model: Readings) -> list[str]:
             out.append(
                 f"the file is not to be trusted: the model misses {name} by {scale:.1f} times the stated uncertainty"
                 f"{_carriers(points, (reading - measured) / u)}; look at these sweeps, or run mffit diagnose"
+            )
+        known = np.isfinite(measured)
+        size = rms(measured[known] - np.mean(measured[known])) if np.any(known) else 0.0
+        share = 1.0 - (rms(reading - measured) / size) ** 2 if size > 0.0 else 1.0
+        if share < EXPLAINED:
+            out.append(
+                f"the file is not to be trusted: the model explains {100.0 * max(share, 0.0):.0f} % of the variance of {name}; "
+                "are these readings of free rolling at steady state, and their units and axes right?"
             )
     return out
 
