@@ -35,6 +35,8 @@ ADDED = [
     "sweep",
     "direction",
     "mount",
+    "path_centre",
+    "path_radius_m",
 ]
 
 
