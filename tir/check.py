@@ -11,11 +11,10 @@ from tir.consumers import stumbles
 from tir.envelope import over_the_range
 from tir.equations import normalise
 from tir.errors import Problem
-from tir.parameters import TABLE
+from tir.parameters import TABLE, TURN_SLIP
 from tir.targets import known_target, use_mode_words
 from tir.tyre import Tyre
 
-TURN_SLIP = "TURNSLIP_COEFFICIENTS"
 KEYS_OF_52 = (
     "PHY3", "PTX1", "PTX2", "PTX3", "PTY1", "PTY2", "QTZ1", "MBELT", "LGAX", "LGAY", "LGAZ", "LSGKP", "LSGAL", "LKYG",
 )  # fmt: skip

@@ -43,6 +43,7 @@ class Condition:
     value: Callable[[float], float] = lambda margin: margin  #: what to print, from the margin
     outside: str = ""  #: sentence where it holds inside only; "" if nobody minds
     slips: bool = False  #: whether it depends on sideslip and longitudinal slip
+    camber: bool = True  #: whether it depends on camber
 
 
 CONDITIONS = (
@@ -71,6 +72,7 @@ CONDITIONS = (
         "error",
         lambda p, q: -stiffness.cornering_stiffness(p, q, 0.0),
         "the cornering stiffness is not negative at zero camber (ISO-W), at {where}: the file is in other axes, or wrong",
+        camber=False,
     ),
     Condition(
         "PKY3",
@@ -84,12 +86,14 @@ CONDITIONS = (
         "warning",
         lambda p, q: np.where(p.PKX1 == 0.0, 1.0, stiffness.longitudinal_slip_stiffness(p, q)),
         "the longitudinal slip stiffness is not positive at {where}",
+        camber=False,
     ),
     Condition(
         "PKY6",
         "warning",
         lambda p, q: 1e-9 - stiffness.camber_stiffness(p, q),
         "camber pushes against the lean at {where}: a normal tyre has PKY6 < 0 in ISO-W",
+        camber=False,
     ),
     Condition(
         "PEY1",
@@ -137,7 +141,7 @@ def over_the_range(tyre: Tyre) -> Iterator[Problem]:
         if np.isnan(margin):
             yield Problem(
                 "error",
-                f"{condition.name} and its like give no number at {_place(point, condition.slips)}",
+                f"{condition.name} and its like give no number at {_place(point, condition)}",
                 condition.name,
             )
             return
@@ -147,7 +151,7 @@ def over_the_range(tyre: Tyre) -> Iterator[Problem]:
             margin, point = worst(tyre, condition.measure, around)
             sentence, level = condition.outside if margin <= 0.0 else "", "warning"
         if sentence:
-            text = sentence.format(where=_place(point, condition.slips), worst=condition.value(margin))
+            text = sentence.format(where=_place(point, condition), worst=condition.value(margin))
             yield Problem(level, text, condition.name)
 
 
@@ -190,7 +194,12 @@ def _box(tyre: Tyre) -> np.ndarray:
     return box
 
 
-def _place(point: np.ndarray, slips: bool) -> str:
+def _place(point: np.ndarray, condition: Condition) -> str:
     Fz, gamma, pressure, alpha, kappa = point
-    text = f"{Fz:.0f} N, {np.degrees(gamma):.0f} deg camber, {pressure / 1e3:.0f} kPa"
-    return f"{text}, {np.degrees(alpha):.0f} deg sideslip, kappa {kappa:.2g}" if slips else text
+    parts = [f"{Fz:.0f} N"]
+    if condition.camber:
+        parts.append(f"{np.degrees(gamma):.0f} deg camber")
+    parts.append(f"{pressure / 1e3:.0f} kPa")
+    if condition.slips:
+        parts += [f"{np.degrees(alpha):.0f} deg sideslip", f"kappa {kappa:.2g}"]
+    return ", ".join(parts)

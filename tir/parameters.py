@@ -10,6 +10,7 @@ from typing import NamedTuple
 
 REGULAR = ("", "motorcycle", "62")
 """Words of the column ``files`` of which a file that is complete for every program has the keys."""
+TURN_SLIP = "TURNSLIP_COEFFICIENTS"
 NORMAL_MODE = ("LATERAL_COEFFICIENTS", "ALIGNING_COEFFICIENTS")
 
 

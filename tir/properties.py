@@ -13,8 +13,8 @@ from tir.codegen.program import Switches, trace
 from tir.document import Document, Line, read_document
 from tir.equations.forces import Forces, State
 from tir.errors import Problem, TirError
-from tir.parameters import BY_NAME, TABLE, Parameter
-from tir.targets import TARGETS
+from tir.parameters import BY_NAME, TABLE, TURN_SLIP, Parameter
+from tir.targets import FITTYPS, TARGETS, fittyps_text
 from tir.tyre import Quantity, Tyre
 from tir.units import KINDS, factor
 
@@ -33,6 +33,10 @@ ESSENTIAL_COEFFICIENTS = ("PCY1", "PDY1", "PKY1")
 HEADER = ("MDI_HEADER", "UNITS")
 MEASURED = re.compile(r"^\s*!\s*measured:\s*(\S+)\s+(\S+)\s+u\s+(\S+)\s+(\S+)\s*$")
 PROVENANCE = re.compile(r"^\s*!\s*provenance:\s*([^:]+):\s*(.*?)\s*$")
+NUMBER = re.compile(
+    r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[edED][+-]?\d+)?|[+-]?(?:inf|infinity|nan)", re.ASCII | re.IGNORECASE
+)
+"""What files hold as numbers, Fortran's exponent among it; Python alone takes more, as 1_5 for 15."""
 STATUS = re.compile(
     r"^(fitted|measured|tied|default|from base|estimate|covered|regularised|given|diagnosed)\b"
 )
@@ -83,6 +87,7 @@ def interpret(document: Document) -> Tyre:
             status[line.key] = line.comment
     _refuse_other_versions(values, extra, document)
     _refuse_truncated(values, document)
+    problems += _about_a_cut_number(values, document)
     stated = {line.key for line in entries if stands_for(line)}
     problems += _about_missing(values, stated) + _about_unknown(extra)
     complete = {row.name: row.default for row in TABLE} | values
@@ -121,7 +126,10 @@ def units_of(document: Document, problems: list[Problem]) -> dict[str, str]:
         words[line.key] = word
         if KINDS[line.key][word] != 1.0:
             problems.append(
-                _warning(f"{line.key} is in {word}; all values are converted to SI on reading", line)
+                _warning(
+                    f"{line.key} is in {unquoted(line.value)}; all values are converted to SI on reading",
+                    line,
+                )
             )
     return words
 
@@ -158,10 +166,9 @@ def _value(
 
 
 def _number(text: str) -> float | None:
-    try:
-        return float(re.sub(r"(?<=[\d.])[dD](?=[+-]?\d)", "e", text))
-    except ValueError:
+    if not NUMBER.fullmatch(text):
         return None
+    return float(re.sub(r"(?<=[\d.])[dD]", "e", text))
 
 
 @cache
@@ -183,8 +190,10 @@ def _refuse_other_versions(values, extra, document: Document) -> None:
             "renamed: fit the tyre's data anew, or name an MF 6.1 or 6.2 file",
             path=document.path,
         )
-    if version is not None and version not in (60, 61, 62):
-        raise TirError(f"has FITTYP {version:g}, and only 61 and 62 are known here", path=document.path)
+    if version is not None and version not in FITTYPS:
+        raise TirError(
+            f"has FITTYP {version:g}, and only {fittyps_text()} are known here", path=document.path
+        )
 
 
 def _refuse_truncated(values, document: Document) -> None:
@@ -203,6 +212,29 @@ def _refuse_truncated(values, document: Document) -> None:
             "has none of PCY1, PDY1, PKY1: the coefficients are missing, so the file is cut short",
             path=document.path,
         )
+
+
+def _about_a_cut_number(values, document: Document) -> list[Problem]:
+    """A file that ends in the middle of a line may end in the middle of its number; what is left of it reads well."""
+    line = document.lines[-1]
+    row = stands_for(line)
+    if row is None or row.kind == "text" or line.start + len(line.value) < len(line.text):
+        return []  # what follows the number says that it is whole
+    behind = [other for other in TABLE if other.order > row.order and other.files == ""]
+    if not behind or any(other.name in values for other in behind):
+        return []
+    said = (
+        f"{line.key} = {line.value} is the end of the file, without a line end and with nothing of what follows in others, "
+        f"{behind[0].name} and more"
+    )
+    if all(other.section == TURN_SLIP != row.section for other in behind):  # which many whole files lack
+        return [_warning(f"{said}: look whether the file was cut short", line)]
+    raise TirError(
+        f"{said}: the file is cut short; take the whole one, or end the line if the number is right",
+        path=document.path,
+        line=line.number,
+        name=line.key,
+    )
 
 
 def _about_missing(values, stated) -> list[Problem]:
@@ -255,8 +287,10 @@ def _structured_comments(document: Document) -> tuple[dict[str, Quantity], dict[
     for line in document.lines:
         found = MEASURED.match(line.text)
         if found:
-            name, value, u, unit = found.groups()
-            measured[name] = Quantity(float(value), float(u), unit)
+            name, unit = found.group(1, 4)
+            value, u = (_number(text) for text in found.group(2, 3))
+            if value is not None and u is not None:
+                measured[name] = Quantity(value, u, unit)
         found = PROVENANCE.match(line.text)
         if found:
             provenance[found.group(1).strip()] = found.group(2)

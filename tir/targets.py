@@ -87,6 +87,14 @@ TARGETS: dict[str, Target] = {
     )
 }
 DEFAULT = "mftyre"
+FITTYPS = tuple(sorted({version for target in TARGETS.values() for version in target.fittyps}))
+"""Versions of the Magic Formula that are read."""
+
+
+def fittyps_text() -> str:
+    """:data:`FITTYPS` as words."""
+    *others, last = map(str, FITTYPS)
+    return f"{', '.join(others)} and {last}"
 
 
 def target_of(name: str) -> Target:

@@ -124,6 +124,7 @@ def test_units_other_than_si_are_converted(tmp_path, tyre):
     assert found["ALPMAX"] == pytest.approx(0.349, abs=1e-3)
     assert found["NOMPRES"] == pytest.approx(250e3)
     assert found["PKY1"] == tyre["PKY1"]
+    assert any("FORCE is in kN;" in p.sentence for p in found.problems)
 
 
 @pytest.mark.parametrize(
@@ -144,6 +145,20 @@ def test_units_other_than_si_are_converted(tmp_path, tyre):
         (TEXT[: TEXT.index("[LATERAL")], ["PCY1", "cut short"]),
         (TEXT[: TEXT.index("[VERTICAL]")], ["FNOMIN"]),
         (TEXT.replace("'meter'", "'cubit'"), ["cubit", "meter"]),
+        (
+            TEXT.replace("PDY1                     = 1.27", "PDY1 = 1_27"),
+            ["PDY1", "1_27", "a number was expected"],
+        ),
+        (
+            TEXT.replace("PDY1                     = 1.27", "PDY1 = \u0661.27").encode(),
+            ["PDY1", "a number was expected"],
+        ),
+        (TEXT.replace("PDY1                     = 1.27", "PDY1 = 0x10"), ["PDY1", "a number was expected"]),
+        (TEXT.replace("FITTYP                   = 62", "FITTYP = 63"), ["63", "only 60, 61 and 62"]),
+        (
+            TEXT[: TEXT.index("1.27\n") + 3],
+            [f":{TEXT[: TEXT.index('1.27')].count(chr(10)) + 1}:", "PDY1 = 1.2", "cut short"],
+        ),
     ],
     ids=[
         "empty",
@@ -161,6 +176,11 @@ def test_units_other_than_si_are_converted(tmp_path, tyre):
         "truncated",
         "shorter",
         "unit",
+        "underscore",
+        "arabic",
+        "hexadecimal",
+        "63",
+        "cut",
     ],
 )
 def test_what_cannot_be_used_is_refused_with_the_place_and_the_remedy(tmp_path, mangled, words):
@@ -170,6 +190,40 @@ def test_what_cannot_be_used_is_refused_with_the_place_and_the_remedy(tmp_path, 
     assert "t.tir" in text
     assert all(word in text for word in words), text
     assert "\n" not in text
+
+
+@pytest.mark.parametrize("turn_slip", [True, False])
+def test_a_whole_file_may_lack_its_last_line_end(tmp_path, tyre, turn_slip):
+    whole = TEXT if turn_slip else TEXT[: TEXT.index("[TURNSLIP")]
+    whole = whole.rstrip("\r\n$-")
+    assert whole[-1].isdigit()
+    assert read_text(tmp_path, whole) == read_text(tmp_path, whole + "\n")
+
+
+def test_a_file_that_ends_behind_a_whole_number_is_read(tmp_path):
+    """Short on purpose, or cut: what was read of it is right."""
+    end = TEXT.index("1.27\n") + 4
+    for finish in ("\n", " ", " $ friction"):
+        assert read_text(tmp_path, TEXT[:end] + finish)["PDY1"] == 1.27
+
+
+def test_a_file_cut_within_a_number_of_the_lateral_coefficients_is_refused(tmp_path):
+    section = TEXT[TEXT.index("[LATERAL") : TEXT.index("[ROLLING")]
+    for line in re.findall(r"\w+ += [-\d.]+", section):
+        with pytest.raises(tir.TirError, match=line.split()[0]):
+            read_text(tmp_path, TEXT[: TEXT.index(line) + len(line) - 1])
+
+
+def test_a_file_that_may_be_cut_before_the_turn_slip_is_told_of(tmp_path):
+    whole = TEXT[: TEXT.index("[TURNSLIP")].rstrip("\r\n$-")
+    for text, told in ((whole, True), (whole + "\n", False)):
+        assert any(p.name == "SSZ4" for p in read_text(tmp_path, text).problems) is told
+
+
+def test_a_measured_quantity_that_is_no_number_is_a_comment(tmp_path, tyre):
+    found = read_text(tmp_path, "! measured: epsilon_gamma about u 0.1 -\n! measured: C 2 u 0.1 Nm\n" + TEXT)
+    assert found == tyre
+    assert found.measured == {"C": tir.Quantity(2.0, 0.1, "Nm")}
 
 
 def test_what_no_force_needs_may_be_blank_or_text(tmp_path, tyre):
@@ -345,3 +399,17 @@ def test_the_worst_point_is_found_between_the_points_of_a_coarse_grid(tyre):
     margin, place = worst(tyre, lambda p, q: (q.gamma - 0.317) ** 2 + ((q.Fz - 1234.0) / 1e4) ** 2, box)
     assert margin < 1e-5
     assert place[:2] == pytest.approx([1234.0, 0.317], abs=30.0)
+
+
+def test_a_condition_names_no_input_that_it_does_not_depend_on(tyre):
+    from tir.envelope import CONDITIONS, _measured
+
+    point = np.array([[2000.0], [0.0], [2.3e5], [0.1], [0.1]])
+    leaning, slipping = point.copy(), point.copy()
+    leaning[1], slipping[3:] = 0.3, 0.02
+    for condition in CONDITIONS:
+        here, there, elsewhere = (_measured(tyre, condition.measure, p) for p in (point, leaning, slipping))
+        assert condition.camber or np.all(here == there), condition.sentence
+        assert condition.slips or np.all(here == elsewhere), condition.sentence
+    (sentence,) = [p.sentence for p in check(tyre.replace(PKY1=12.6)) if "at zero camber" in p.sentence]
+    assert "deg camber" not in sentence
