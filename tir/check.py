@@ -12,13 +12,15 @@ from tir.envelope import over_the_range
 from tir.equations import normalise
 from tir.errors import Problem
 from tir.parameters import TABLE, TURN_SLIP
-from tir.targets import known_target, use_mode_words
+from tir.plausible import SHAPES, SINGLE, broken
+from tir.targets import UNKNOWN_DIGIT, known_target, use_mode_words
 from tir.tyre import Tyre
 
 KEYS_OF_52 = (
     "PHY3", "PTX1", "PTX2", "PTX3", "PTY1", "PTY2", "QTZ1", "MBELT", "LGAX", "LGAY", "LGAZ", "LSGKP", "LSGAL", "LKYG",
 )  # fmt: skip
 """Coefficients that only the 5.2 generation has."""
+SIDES = ("LEFT", "RIGHT", "SYMMETRIC")
 RANGES = (
     ("PRESMIN", "PRESMAX"),
     ("FZMIN", "FZMAX"),
@@ -42,7 +44,7 @@ def check(tyre: Tyre, targets: Iterable[str] = ()) -> list[Problem]:
         If a target is unknown.
     """
     programs = [known_target(name) for name in targets]
-    found = [*_dimensions(tyre), *_ranges(tyre), *_mode(tyre), *_old_keys(tyre)]
+    found = [*_dimensions(tyre), *broken(tyre, SINGLE), *_ranges(tyre), *_mode(tyre), *_old_keys(tyre)]
     if not any(problem.level == "error" for problem in found):
         with np.errstate(all="ignore"):
             found += [*_shape(tyre), *over_the_range(tyre), *_clamps(tyre), *_spin(tyre), *_moments(tyre)]
@@ -84,13 +86,19 @@ def _dimensions(tyre: Tyre) -> Iterator[Problem]:
         if tyre[name] <= 0:
             remedy = "reverse its sign" if tyre[name] < 0 else "give its value"
             yield _error(name, f"{name} is {tyre[name]:g}, and it must be positive; {remedy}")
-    if 0 < tyre["NOMPRES"] < 5e3:
-        yield _warning("NOMPRES", f"NOMPRES is {tyre['NOMPRES']:g} Pa: it looks like kPa or bar; write Pa")
+    if 0.0 < tyre["VERTICAL_STIFFNESS"] * R0 < tyre["FNOMIN"]:
+        yield _error(
+            "VERTICAL_STIFFNESS",
+            f"VERTICAL_STIFFNESS is {tyre['VERTICAL_STIFFNESS']:g} N/m: under FNOMIN the tyre would give way by more than its "
+            "radius; it looks like N/mm, write N/m",
+        )
     scaled = [row.name for row in TABLE if row.scaling and tyre[row.name] != 1.0]
     if scaled:
         yield _warning(
             scaled[0], f"scaling factors differ from 1: {', '.join(scaled)}; fitted files have 1 throughout"
         )
+    if str(tyre["TYRESIDE"]).upper() not in SIDES:
+        yield _warning("TYRESIDE", f"TYRESIDE is '{tyre['TYRESIDE']}': write one of {', '.join(SIDES)}")
     odd = [row.name for row in TABLE if row.odd and tyre[row.name]]
     if str(tyre["TYRESIDE"]).upper().startswith("SYM") and odd:
         yield _warning("TYRESIDE", f"TYRESIDE is symmetric, but the odd terms {', '.join(odd)} are not 0")
@@ -100,9 +108,6 @@ def _ranges(tyre: Tyre) -> Iterator[Problem]:
     for low, high in RANGES:
         if tyre[low] >= tyre[high]:
             yield _error(low, f"{low} {tyre[low]:g} is not below {high} {tyre[high]:g}")
-    for name, largest in (("ALPMAX", 1.7), ("CAMMAX", 1.6)):
-        if tyre[name] > largest:
-            yield _warning(name, f"{name} is {tyre[name]:g}: it looks like degrees; write radians")
     if 0 < tyre["CAMMAX"] < 0.15 and tyre["MC_CONTOUR_A"] > 0:
         yield _warning(
             "CAMMAX",
@@ -151,8 +156,7 @@ def _clamps(tyre: Tyre) -> Iterator[Problem]:
 
 def _shape(tyre: Tyre) -> Iterator[Problem]:
     p = tyre.p
-    if p.PCY1 * p.LCY <= 0 or p.QCZ1 <= 0:
-        yield _error("PCY1", "the shape factors PCY1 and QCZ1 must be positive")
+    yield from broken(tyre, SHAPES)
     ratio = float(tyre.state(float(p.FNOMIN)).Re) / p.UNLOADED_RADIUS
     if not 0.85 < ratio < 1.05:
         yield _warning(
@@ -166,6 +170,10 @@ def _mode(tyre: Tyre) -> Iterator[Problem]:
     mode, given = int(tyre["USE_MODE"]), "USE_MODE" in tyre.present
     turn_slip, road = mode % 10 == 5, mode // 100 % 10
     block = [row.name for row in TABLE if row.section == TURN_SLIP and row.files == ""]
+    if tyre["USE_MODE"] != mode:
+        yield _warning("USE_MODE", f"USE_MODE is {tyre['USE_MODE']:g}, and it counts in whole numbers")
+    elif UNKNOWN_DIGIT in use_mode_words(mode):
+        yield _warning("USE_MODE", f"USE_MODE {mode} means {use_mode_words(mode)}: see the program's manual")
     if given and turn_slip and not any(name in tyre.present for name in block):
         yield _warning(
             "USE_MODE",

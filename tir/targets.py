@@ -135,6 +135,7 @@ HUNDREDS_DIGIT = {
     4: "2D road",
     5: "3D road",
 }
+UNKNOWN_DIGIT = "unknown digit"
 
 
 def use_mode_words(mode: float) -> str:
@@ -145,7 +146,7 @@ def use_mode_words(mode: float) -> str:
         TENS_DIGIT.get(number // 10 % 10),
         UNITS_DIGIT.get(number % 10),
     )
-    return ", ".join(part or "unknown digit" for part in parts)
+    return ", ".join(part or UNKNOWN_DIGIT for part in parts)
 
 
 def vendor(mode: float) -> str:

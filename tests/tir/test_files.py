@@ -362,11 +362,49 @@ class TestCheck:
             ({"LONGVL": 0.0}, "error", "LONGVL"),
             ({"TYRESIDE": "SYMMETRIC", "QSX1": 0.01}, "warning", "QSX1"),
             ({"NOMPRES": 250.0, "INFLPRES": 250.0}, "warning", "kPa"),
+            ({"NOMPRES": 1.8e9}, "warning", "write Pa"),
+            ({"ALPMIN": -30.0}, "warning", "ALPMIN is -30 rad: it looks like degrees"),
+            ({"CAMMIN": -60.0}, "warning", "CAMMIN is -60 rad: it looks like degrees"),
+            ({"LATERAL_STIFFNESS": 0.0}, "warning", "relaxation"),
+            ({"LONGITUDINAL_STIFFNESS": -3e5}, "warning", "relaxation"),
+            ({"PCX1": 0.0}, "error", "PCX1"),
+            ({"LCY": -1.0}, "error", "LCY"),
+            ({"QBZ1": -1.0}, "error", "QBZ1"),
+            ({"MASS": -4.4}, "error", "MASS is -4.4 kg"),
+            ({"BELT_IYY": -0.2}, "error", "BELT_IYY is -0.2 kg m2"),
+            ({"WIDTH": 120.0}, "warning", "millimetres"),
+            ({"RIM_WIDTH": 7.0}, "warning", "inches"),
+            ({"USE_MODE": 999.0}, "warning", "unknown digit"),
+            ({"USE_MODE": 4.5}, "warning", "whole"),
+            ({"TYRESIDE": "UP"}, "warning", "TYRESIDE is 'UP'"),
+            ({"VERTICAL_STIFFNESS": 150.0}, "error", "N/mm"),
         ],
     )
     def test_a_planted_fault_is_named(self, tyre, change, level, words):
         found = check(tyre.replace(**change))
         assert any(p.level == level and words in p.sentence for p in found), [p.sentence for p in found]
+
+    def test_a_stiffness_in_other_units_is_no_wrong_radius(self, tyre):
+        assert not [p for p in check(tyre.replace(VERTICAL_STIFFNESS=150.0)) if p.name == "BREFF"]
+
+    def test_what_cannot_be_said_of_force_that_was_not_measured_is_not_said(self, tyre):
+        """Files of cornering tests alone hold zeros for Fx."""
+        assert not [p for p in check(tyre.replace(PDX1=0.0, PCX1=0.0)) if p.name == "PCX1"]
+
+    @pytest.mark.parametrize(
+        "harmless",
+        [
+            {"GRAVITY": -9.81},
+            {"WIDTH": 0.9, "RIM_WIDTH": 0.8, "FNOMIN": 4e4, "VERTICAL_STIFFNESS": 1e6},
+            {"NOMPRES": 1.5e6, "INFLPRES": 1.5e6},
+            {"TYRESIDE": "Right"},
+            {"USE_MODE": -14.0},
+        ],
+        ids=["gravity", "lorry", "aircraft", "lower case", "the other side"],
+    )
+    def test_what_real_tyres_have_is_no_wrong_value(self, tyre, harmless):
+        sentences = " ".join(p.sentence for p in check(tyre.replace(**harmless)))
+        assert not re.search("looks like|write|must|unknown|GRAVITY", sentences), sentences
 
     def test_a_file_of_mf61_is_not_told_of_what_it_cannot_have(self, tmp_path):
         found = read_text(tmp_path, (VECTORS / "MagicFormula61.tir").read_text(encoding="ascii"))

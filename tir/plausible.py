@@ -1,0 +1,66 @@
+"""What single values of a file cannot be, or can only be in another unit: a record for each rule."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import dataclass
+
+from tir.errors import Problem
+from tir.parameters import BY_NAME, TABLE
+from tir.tyre import Tyre
+
+
+@dataclass(frozen=True, slots=True)
+class Rule:
+    """Something that is wrong with the value of a key, whatever the others are."""
+
+    keys: tuple[str, ...]
+    broken: Callable[[float], bool]
+    sentence: str  #: what it looks like, or what to do
+    level: str = "warning"
+    amplitude: str = ""  #: key without which nobody minds, as it is then a factor of nothing
+
+
+SINGLE = (
+    Rule(("NOMPRES", "INFLPRES"), lambda x: 0.0 < x < 5e3, "it looks like kPa or bar; write Pa"),
+    Rule(("NOMPRES", "INFLPRES"), lambda x: x > 1e7, "no tyre bears it; write Pa"),
+    Rule(("ALPMIN", "ALPMAX"), lambda x: abs(x) > 1.7, "it looks like degrees; write radians"),
+    Rule(("CAMMIN", "CAMMAX"), lambda x: abs(x) > 1.6, "it looks like degrees; write radians"),
+    Rule(("WIDTH", "RIM_WIDTH"), lambda x: x > 2.0, "it looks like millimetres or inches; write metres"),
+    Rule(
+        tuple(row.name for row in TABLE if row.unit in ("kg", "kg m2")),
+        lambda x: x < 0.0,
+        "it must not be negative",
+        "error",
+    ),
+    Rule(
+        ("LONGITUDINAL_STIFFNESS", "LATERAL_STIFFNESS"),
+        lambda x: x <= 0.0,
+        "the relaxation length is the slip stiffness over it; give its value",
+    ),
+)
+"""Dimensions, limits and masses."""
+SHAPES = tuple(
+    Rule((name,), lambda x: x <= 0.0, f"the {what} must be positive", "error", amplitude)
+    for name, what, amplitude in (
+        ("PCX1", "shape factor", "PDX1"),
+        ("PCY1", "shape factor", ""),
+        ("QCZ1", "shape factor", ""),
+        ("QBZ1", "slope factor", "QDZ1"),
+        ("LCX", "scale of a shape factor", "PDX1"),
+        ("LCY", "scale of a shape factor", ""),
+    )
+)
+"""Coefficients that give the curves their shape."""
+
+
+def broken(tyre: Tyre, rules: Iterable[Rule]) -> Iterator[Problem]:
+    """A problem for every key that breaks a rule."""
+    for rule in rules:
+        if rule.amplitude and tyre[rule.amplitude] == 0.0:
+            continue
+        for name in rule.keys:
+            if rule.broken(tyre[name]):
+                unit = BY_NAME[name].unit.replace("-", "")
+                value = f"{tyre[name]:g} {unit}".strip()
+                yield Problem(rule.level, f"{name} is {value}: {rule.sentence}", name)
