@@ -30,20 +30,20 @@ RANGES = (
 )
 
 
-def check(tyre: Tyre, targets: Iterable[str] = ()) -> list[Problem]:
+def check(tyre: Tyre, targets: str | Iterable[str] = ()) -> list[Problem]:
     """Problems of the tyre; level "error" where it cannot be simulated sensibly, "warning" where one should look.
 
     Parameters
     ----------
     tyre : its file's text is looked at too, if it was read from one
-    targets : programs that are to read the file, see :data:`tir.targets.TARGETS`
+    targets : program or programs that are to read the file, see :data:`tir.targets.TARGETS`
 
     Raises
     ------
     TirError
         If a target is unknown.
     """
-    programs = [known_target(name) for name in targets]
+    programs = [known_target(name) for name in ([targets] if isinstance(targets, str) else targets)]
     found = [*_dimensions(tyre), *broken(tyre, SINGLE), *_ranges(tyre), *_mode(tyre), *_old_keys(tyre)]
     if not any(problem.level == "error" for problem in found):
         with np.errstate(all="ignore"):

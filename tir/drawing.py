@@ -70,7 +70,10 @@ def notebook(tyre: Tyre) -> str:
     try:
         figure = plot(tyre, panels=PANELS[:2])
     except TirError:
-        return said + _table(tyre)
+        try:
+            return said + _table(tyre)
+        except TirError as error:  # a readable file by which nothing can be computed
+            return f"{said}<div>{html.escape(str(error))}</div>"
     figure.set_size_inches(7.0, 2.4)
     stream = io.BytesIO()
     figure.savefig(stream, dpi=DPI, format="png", facecolor="white")

@@ -1,4 +1,4 @@
-"""What can be wrong with a property file: one exception class and one record; imports nothing of ours."""
+"""What can be wrong with a property file: one exception class and one record, and how many; imports nothing of ours."""
 
 from __future__ import annotations
 
@@ -37,3 +37,9 @@ class Problem:
     sentence: str  #: what, where and what to do
     name: str = ""  #: the key concerned
     line: int | None = None
+
+
+def counted(number: int, what: str) -> str:
+    """A number of things in words, of which the first has the plural: "1 key of MF 6.2", "2 keys of MF 6.2"."""
+    head, *rest = what.split(" ", 1)
+    return " ".join([str(number), head + "s" * (number != 1), *rest])

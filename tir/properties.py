@@ -12,7 +12,7 @@ from types import MappingProxyType
 from tir.codegen.program import Switches, trace
 from tir.document import Document, Line, read_document
 from tir.equations.forces import Forces, State
-from tir.errors import Problem, TirError
+from tir.errors import Problem, TirError, counted
 from tir.parameters import BY_NAME, TABLE, TURN_SLIP, Parameter
 from tir.targets import FITTYPS, TARGETS, fittyps_text
 from tir.tyre import Quantity, Tyre
@@ -246,23 +246,16 @@ def _about_missing(values, stated) -> list[Problem]:
         if row.name not in stated and (row.files == "" or (row.files == "62" and version not in (60, 61)))
     ]
     if version == 60:
-        rest = f"; {_counted(missing, 'key')} of 6.1 that it lacks take their defaults" if missing else ""
+        rest = f"; {counted(len(missing), 'key')} of 6.1 that it lacks take their defaults" if missing else ""
         return [Problem("warning", f"FITTYP 60 is read as MF 6.1{rest}", "FITTYP")]
     out = []
     if version is None:
         out.append(Problem("warning", "FITTYP is missing; the file is read as MF 6.2", "FITTYP"))
     if missing:
         mf, verbs = "6.1" if version == 61 else "6.2", "is" if len(missing) == 1 else "are"
-        sentence = (
-            f"{_counted(missing, f'key of MF {mf}')} {verbs} missing, defaults are taken: {_some(missing)}"
-        )
+        sentence = f"{counted(len(missing), f'key of MF {mf}')} {verbs} missing, defaults are taken: {_some(missing)}"
         out.append(Problem("warning", sentence))
     return out
-
-
-def _counted(names: Sequence[str], what: str) -> str:
-    head, *rest = what.split(" ", 1)
-    return " ".join([str(len(names)), head + "s" * (len(names) != 1), *rest])
 
 
 def _some(names: Sequence[str]) -> str:
@@ -278,7 +271,7 @@ def _about_unknown(extra) -> list[Problem]:
     if not names:
         return []
     said = "is no MF 6.2 parameter and is" if len(names) == 1 else "are no MF 6.2 parameters and are"
-    sentence = f"{_counted(names, 'key')} {said} kept but not used: {_some(names)}"
+    sentence = f"{counted(len(names), 'key')} {said} kept but not used: {_some(names)}"
     return [Problem("warning", sentence)]
 
 

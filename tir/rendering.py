@@ -83,7 +83,10 @@ def value_text(row: Parameter, value: Any) -> str:
         If a number is not finite.
     """
     if row.kind == "text":
-        return f"'{comment_text(str(value))}'"
+        text = comment_text(str(value))
+        if "'" not in text:
+            return f"'{text}'"
+        return '"' + text.replace('"', "'") + '"'  # a file knows no sign that takes both
     number = float(value)
     if not math.isfinite(number):
         raise TirError(f"{row.name} is {number}, and a file can only hold numbers", name=row.name)

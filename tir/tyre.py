@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import reprlib
 from collections import Counter
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, KeysView, Mapping
 from dataclasses import dataclass, field, fields, replace
 from functools import cached_property
 from inspect import Parameter, Signature
+from numbers import Complex, Number
 from pathlib import Path
 from types import MappingProxyType, SimpleNamespace
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -15,8 +17,9 @@ from tir import calls
 from tir.codegen.program import Switches
 from tir.document import Document
 from tir.equations.forces import Forces, State
-from tir.errors import Problem, TirError
+from tir.errors import Problem, TirError, counted
 from tir.parameters import BY_NAME, TABLE
+from tir.targets import FITTYPS, fittyps_text
 
 if TYPE_CHECKING:
     from tir.drawing import Figure
@@ -63,9 +66,9 @@ class Tyre:
         Raises
         ------
         TirError
-            For a name that MF 6.2 does not have.
+            For a name that MF 6.2 does not have, a value that is none of its kind, or another version's FITTYP.
         """
-        _known(given)
+        _usable(given)
         values = {row.name: row.default for row in TABLE} | dict(given)
         return cls(MappingProxyType(values), frozenset(given))
 
@@ -75,11 +78,22 @@ class Tyre:
         except KeyError:
             raise KeyError(f"MF 6.2 has no parameter {name}") from None
 
+    def __contains__(self, name: object) -> bool:
+        return name in self.values
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self.values)
+
+    def keys(self) -> KeysView[str]:
+        """Names of all parameters, those that are defaults among them."""
+        return self.values.keys()
+
     def __eq__(self, other: object) -> bool:
         return isinstance(other, Tyre) and dict(self.values) == dict(other.values)
 
     def __hash__(self) -> int:
-        return hash(tuple(sorted((k, str(v)) for k, v in self.values.items())))
+        """Of what can be hashed; values of other kinds, as arrays, leave it to the comparison."""
+        return hash(frozenset((k, v) for k, v in self.values.items() if isinstance(v, str | Complex)))
 
     def __repr__(self) -> str:
         """The tyre in a few lines; ``tyre.values`` holds everything."""
@@ -91,7 +105,7 @@ class Tyre:
             lines.append("origins: " + ", ".join(f"{n} {word}" for word, n in origins.most_common(6)))
         lines += [f"{name} = {q.value:.6g} +- {q.u:.2g} {q.unit}" for name, q in [*self.measured.items()][:6]]
         if self.problems:
-            lines.append(f"{len(self.problems)} problems on reading, see tyre.problems")
+            lines.append(f"{counted(len(self.problems), 'problem')} on reading, see tyre.problems")
         return "<" + "\n ".join(lines) + ">"
 
     def _repr_html_(self) -> str:
@@ -116,8 +130,8 @@ class Tyre:
         return {}
 
     def replace(self, **changes: float | str) -> Tyre:
-        """A copy with some values changed; their status is dropped."""
-        _known(changes)
+        """A copy with some values changed; their status is dropped. Raises as :meth:`from_values`."""
+        _usable(changes)
         status = {name: text for name, text in self.status.items() if name not in changes}
         return replace(
             self,
@@ -301,7 +315,22 @@ def _rebuilt(plain: dict[str, Any]) -> Tyre:
     return Tyre(**frozen)
 
 
-def _known(names) -> None:
-    for name in names:
+def _usable(given: Mapping[str, Any]) -> None:
+    """Refuses names that MF 6.2 does not have, and values with which nothing can be computed."""
+    for name, value in given.items():
         if name not in BY_NAME:
             raise TirError(f"MF 6.2 has no parameter {name}", name=name)
+        text = BY_NAME[name].kind == "text"
+        if not (isinstance(value, str) if text else _calculable(value)):
+            expected = "text" if text else "number"
+            raise TirError(f"{name} is {reprlib.repr(value)}, and a {expected} was expected", name=name)
+    version = given.get("FITTYP", FITTYPS[-1])
+    if version not in FITTYPS:
+        raise TirError(f"FITTYP is {version}, and only {fittyps_text()} are known here", name="FITTYP")
+
+
+def _calculable(value: Any) -> bool:
+    """Whether it is a number, or stands for some: an array, a traced number, a symbol of another program."""
+    if isinstance(value, Number):
+        return isinstance(value, Complex)  # decimal numbers do not go together with floats
+    return hasattr(value, "__neg__") and hasattr(value, "__truediv__")

@@ -20,13 +20,15 @@ def check(file: Path, targets: str, voice: Voice) -> None:
     import tir
     from mffit.results import as_json
     from tir.check import check as problems_of
+    from tir.errors import counted
 
     tyre = tir.read(file)
-    problems = [*tyre.problems, *problems_of(tyre, targets.split(",") if targets else ())]
+    names = [name.strip() for name in targets.split(",")]
+    problems = [*tyre.problems, *problems_of(tyre, filter(None, names))]
     for problem in problems:
         voice.say(f"{problem.level}: {problem.sentence}")
     errors = sum(problem.level == "error" for problem in problems)
-    voice.say(f"{file}: {errors} errors, {len(problems) - errors} warnings")
+    voice.say(f"{file}: {counted(errors, 'error')}, {counted(len(problems) - errors, 'warning')}")
     voice.give(lambda: as_json.problems(file, problems))
     if errors:
         raise SystemExit(2)

@@ -10,6 +10,7 @@ import pytest
 from disc_project import disc_project
 from small_plan import SMALL_PLAN
 
+import tir
 from mffit.cli import commands, main
 
 SAMPLE = Path(__file__).parents[2] / "samples" / "front-120-70"
@@ -89,3 +90,15 @@ def test_a_file_that_is_no_tyre_toml_is_told_what_it_is(place, capsys, command, 
     err = capsys.readouterr().err
     assert said in err
     assert len(err) < 400
+
+
+def test_names_of_programs_may_have_blanks_and_the_count_is_grammar(tmp_path, capsys):
+    sound, named = (SAMPLE / "true.tir", ("--for", "mftyre, mfeval,"))
+    assert (
+        said(capsys, "check", sound, *named)[0] == said(capsys, "check", sound, "--for", "mftyre,mfeval")[0]
+    )
+    wrong = tmp_path / "t.tir"
+    tir.read(sound).replace(MASS=-1.0).write(wrong)
+    with pytest.raises(SystemExit):
+        main(["check", str(wrong)])
+    assert "t.tir: 1 error, " in capsys.readouterr().out

@@ -50,6 +50,13 @@ def test_a_notebook_shows_a_small_picture():
     assert len(shown) < 60_000
 
 
+def test_a_tyre_of_which_nothing_can_be_computed_is_text_in_a_notebook():
+    shown = tir.read(FILE).replace(VERTICAL_STIFFNESS=0.0)._repr_html_()
+    assert "VERTICAL_STIFFNESS is 0" in shown
+    assert "UNLOADED_RADIUS" in shown
+    assert "<img" not in shown
+
+
 def test_what_a_file_says_is_text_in_a_notebook():
     tyre = tir.read(FILE).annotate(measured={"<img src=x>": tir.Quantity(1.0, 0.1, "<b>")})
     assert "<img src=x>" not in tyre._repr_html_()

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import re
+from decimal import Decimal
+from fractions import Fraction
 from pathlib import Path
 
 import numpy as np
@@ -296,6 +298,65 @@ def test_a_name_that_mf62_does_not_have_is_refused(tyre):
         tyre.replace(PKY99=1.0)
 
 
+@pytest.mark.parametrize("value", [None, "text", [1.0], {"a": 1}, Decimal("1.5"), Path("a")])
+def test_a_value_with_which_nothing_can_be_computed_is_refused_by_its_name(tyre, value):
+    for make in (tyre.replace, lambda **given: tir.Tyre.from_values(given)):
+        with pytest.raises(tir.TirError, match=r"PKY1 is .*a number was expected"):
+            make(PKY1=value)
+    with pytest.raises(tir.TirError, match="TYRESIDE is 3, and a text"):
+        tyre.replace(TYRESIDE=3)
+
+
+def test_numbers_of_every_kind_are_values(tyre):
+    for value in (
+        -12,
+        -12.5 + 1e-3j,
+        np.float32(-12.0),
+        np.int64(-12),
+        np.array([-12.0, -13.0]),
+        Fraction(-25, 2),
+    ):
+        assert np.all(tyre.replace(PKY1=value)["PKY1"] == value)
+
+
+def test_a_version_that_is_not_computed_is_refused(tyre):
+    with pytest.raises(tir.TirError, match="FITTYP is 52, and only 60, 61 and 62"):
+        tir.Tyre.from_values({"FITTYP": 52})
+    assert "MF 6.1" in repr(tyre.replace(FITTYP=61))
+
+
+def test_equal_tyres_have_equal_hashes(tyre):
+    whole, point, numpy_s = (tyre.replace(FNOMIN=x) for x in (1500, 1500.0, np.float64(1500.0)))
+    assert whole == point == numpy_s
+    assert hash(whole) == hash(point) == hash(numpy_s)
+    assert len({whole, point, numpy_s, tyre.replace(FNOMIN=1501.0)}) == 2
+    hash(tyre.replace(PKY1=np.array([-12.0, -13.0])))
+
+
+def test_a_tyre_is_a_mapping_of_its_parameters(tyre):
+    assert "PKY1" in tyre
+    assert "PKY99" not in tyre
+    assert 0 not in tyre
+    assert list(tyre) == list(tyre.keys())
+    assert dict(tyre) == dict(tyre.values)
+    assert {row.name for row in TABLE} == set(tyre)
+
+
+@pytest.mark.parametrize("text", ["O'Neil front", "'quoted'", 'size 4.50" front', "left"])
+def test_text_with_quotes_comes_back(tmp_path, tyre, text):
+    tyre.replace(TYRESIDE=text).write(tmp_path / "merged.tir")
+    tyre.replace(TYRESIDE=text).write(tmp_path / "new.tir", target="mftyre")
+    for name in ("merged.tir", "new.tir"):
+        again = tir.read(tmp_path / name)
+        assert again["TYRESIDE"] == text
+        assert again["LONGVL"] == tyre["LONGVL"]
+
+
+def test_text_with_both_quotes_damages_nothing_else(tmp_path, tyre):
+    tyre.replace(TYRESIDE="""5" 'x'""").write(tmp_path / "t.tir")
+    assert tir.read(tmp_path / "t.tir").replace(TYRESIDE="LEFT") == tyre
+
+
 class TestOtherReaders:
     """What every reader can rely on; their habits one by one are in test_targets.py."""
 
@@ -383,6 +444,9 @@ class TestCheck:
     def test_a_planted_fault_is_named(self, tyre, change, level, words):
         found = check(tyre.replace(**change))
         assert any(p.level == level and words in p.sentence for p in found), [p.sentence for p in found]
+
+    def test_one_program_may_be_named_alone(self, tyre):
+        assert check(tyre, "chrono") == check(tyre, ["chrono"]) != check(tyre)
 
     def test_a_stiffness_in_other_units_is_no_wrong_radius(self, tyre):
         assert not [p for p in check(tyre.replace(VERTICAL_STIFFNESS=150.0)) if p.name == "BREFF"]
