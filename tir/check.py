@@ -13,7 +13,7 @@ from tir.equations import normalise
 from tir.errors import Problem
 from tir.parameters import TABLE, TURN_SLIP
 from tir.plausible import SHAPES, SINGLE, broken
-from tir.targets import UNKNOWN_DIGIT, known_target, use_mode_words
+from tir.targets import FITTYPS, UNKNOWN_DIGIT, fittyps_text, known_target, use_mode_words
 from tir.tyre import Tyre
 
 KEYS_OF_52 = (
@@ -191,6 +191,8 @@ def _mode(tyre: Tyre) -> Iterator[Problem]:
             "USE_MODE",
             f"USE_MODE {mode} means {use_mode_words(mode)}, and by MC_CONTOUR_A this is {tyre_is}",
         )
+    if tyre["FITTYP"] not in FITTYPS:
+        yield _error("FITTYP", f"FITTYP is {tyre['FITTYP']:g}, and only {fittyps_text()} are known here")
     if tyre["FITTYP"] in (60, 61):
         newer = [
             r.name for r in TABLE if r.files == "62" and r.name in tyre.present and tyre[r.name] != r.default

@@ -19,7 +19,7 @@ from tir.document import Document
 from tir.equations.forces import Forces, State
 from tir.errors import Problem, TirError, counted
 from tir.parameters import BY_NAME, TABLE
-from tir.targets import FITTYPS, fittyps_text
+from tir.targets import FITTYPS
 
 if TYPE_CHECKING:
     from tir.drawing import Figure
@@ -66,7 +66,7 @@ class Tyre:
         Raises
         ------
         TirError
-            For a name that MF 6.2 does not have, a value that is none of its kind, or another version's FITTYP.
+            For a name that MF 6.2 does not have, or a value that is none of its kind.
         """
         _usable(given)
         values = {row.name: row.default for row in TABLE} | dict(given)
@@ -99,7 +99,11 @@ class Tyre:
         """The tyre in a few lines; ``tyre.values`` holds everything."""
         given = f"{len(self.present)} of {len(TABLE)} keys given"
         origins = Counter(text.split()[0].rstrip(":,") for text in self.status.values())
-        head = f"Tyre of MF 6.{int(self['FITTYP']) % 10}, FNOMIN {self['FNOMIN']:g} N, "
+        version = self["FITTYP"]
+        name = (
+            f"of MF 6.{int(version) % 10}" if version in FITTYPS else f"with the unknown FITTYP {version:g}"
+        )
+        head = f"Tyre {name}, FNOMIN {self['FNOMIN']:g} N, "
         lines = [f"{head}UNLOADED_RADIUS {self['UNLOADED_RADIUS']:g} m; {given}"]
         if origins:
             lines.append("origins: " + ", ".join(f"{n} {word}" for word, n in origins.most_common(6)))
@@ -324,9 +328,6 @@ def _usable(given: Mapping[str, Any]) -> None:
         if not (isinstance(value, str) if text else _calculable(value)):
             expected = "text" if text else "number"
             raise TirError(f"{name} is {reprlib.repr(value)}, and a {expected} was expected", name=name)
-    version = given.get("FITTYP", FITTYPS[-1])
-    if version not in FITTYPS:
-        raise TirError(f"FITTYP is {version}, and only {fittyps_text()} are known here", name="FITTYP")
 
 
 def _calculable(value: Any) -> bool:

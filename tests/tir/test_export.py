@@ -98,9 +98,18 @@ def test_the_code_allocates_nothing_and_keeps_nothing():
     }
 
 
-@pytest.mark.parametrize("name", ["2front", "a b", "double", ""])
-def test_a_name_that_is_none_in_c_is_refused(name):
-    with pytest.raises(tir.TirError, match="no name in C"):
+@pytest.mark.parametrize(
+    ("name", "words"),
+    [
+        ("2front", "no name in C"),
+        ("a b", "no name in C"),
+        ("", "no name in C"),
+        ("double", "tyre_double"),
+        ("Math", "tyre_Math"),
+    ],
+)
+def test_a_name_that_is_none_in_c_is_refused(name, words):
+    with pytest.raises(tir.TirError, match=words):
         tir.export_c(tir.Tyre.from_values({}), name=name)
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import keyword
 import re
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -33,6 +32,18 @@ OUTPUT_TEXTS = {
     "sigma_x": "longitudinal relaxation length [m]", "sigma_y": "lateral relaxation length [m]",
     "Re": "effective rolling radius [m]", "omega": "speed of rotation [rad/s]", "trail": "pneumatic trail [m]",
 }  # fmt: skip
+WORDS = {
+    "auto", "break", "case", "char", "const", "continue", "default", "do", "double", "else", "enum",
+    "extern", "float", "for", "goto", "if", "inline", "int", "long", "register", "restrict", "return",
+    "short", "signed", "sizeof", "static", "struct", "switch", "typedef", "union", "unsigned", "void",
+    "volatile", "while",
+}  # fmt: skip
+HEADERS = {
+    "assert", "complex", "ctype", "errno", "fenv", "float", "inttypes", "iso646", "limits", "locale",
+    "math", "setjmp", "signal", "stdalign", "stdarg", "stdatomic", "stdbool", "stddef", "stdint", "stdio",
+    "stdlib", "stdnoreturn", "string", "tgmath", "threads", "time", "uchar", "wchar", "wctype",
+}  # fmt: skip
+"""Of the standard library: a file of the same name beside the source would be included in its place."""
 C = Dialect(
     {
         **COMMON,
@@ -78,10 +89,9 @@ def export_c(
     Raises
     ------
     TirError
-        If the name is none in C, or a value is no finite number or a zero by which the equations divide.
+        If the name is none in C or taken there, or a value is no finite number or a zero by which the equations divide.
     """
-    if not re.fullmatch(r"[A-Za-z][A-Za-z0-9_]*", name) or keyword.iskeyword(name) or name in C_WORDS:
-        raise TirError(f"{name!r} is no name in C: use letters, digits and underscores")
+    _refuse_name(name)
     refuse_zero_divisors(tyre.p)
     values = {key: float(tyre[key]) for key in NUMBERS}
     broken = [key for key, value in values.items() if value - value != 0.0]
@@ -93,20 +103,16 @@ def export_c(
     return Code(_header(name, switches), _source(name, forces, state))
 
 
-C_WORDS = {
-    "double",
-    "int",
-    "long",
-    "short",
-    "char",
-    "float",
-    "void",
-    "struct",
-    "union",
-    "enum",
-    "static",
-    "const",
-}
+def _refuse_name(name: str) -> None:
+    if not re.fullmatch(r"[A-Za-z][A-Za-z0-9_]*", name):
+        raise TirError(f"{name!r} is no name in C: use letters, digits and underscores, a letter first")
+    if taken(name):
+        raise TirError(f"{name!r} is a word or a header of C itself: use another name, as tyre_{name}")
+
+
+def taken(name: str) -> bool:
+    """Whether C or its library have the name; in a file system without capitals Math.h stands in the place of math.h."""
+    return name in WORDS or name.lower() in HEADERS
 
 
 def _parameters() -> str:

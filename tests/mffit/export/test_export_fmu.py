@@ -253,3 +253,14 @@ def test_bad_choices_end_in_one_sentence(tmp_path, capsys, arguments, said):
     assert end.value.code == 2
     assert said in capsys.readouterr().err
     assert not list(tmp_path.iterdir())
+
+
+@needs_compiler
+@pytest.mark.parametrize("stem", ["math", "int", "front"])
+def test_a_file_may_be_called_as_c_calls_something(tmp_path, stem):
+    shutil.copyfile(FILE, tmp_path / f"{stem}.tir")
+    header, source = write_c(tmp_path / f"{stem}.tir", tmp_path / "out")
+    name = stem if stem == "front" else f"tyre_{stem}"
+    assert (header.name, source.name) == (f"{name}.h", f"{name}.c")
+    command = [str(COMPILER), "-std=c99", "-Wall", "-Werror", "-fsyntax-only", "-I.", source.name]
+    subprocess.run(command, cwd=tmp_path / "out", check=True)
