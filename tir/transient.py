@@ -56,7 +56,7 @@ def step(
     ----------
     tyre : with the file's relaxation (LONGITUDINAL_STIFFNESS, LATERAL_STIFFNESS, PCFX1-3, PCFY1-3)
     contact : before the step
-    dt : length of the step [s]
+    dt : length of the step [s]; infinite for the steady state
     Fz : load [N], float or (n,) as every input; without load the contact is lost, and springs back
     Vx : speed of the contact along the wheel [m/s], < 0 rolls backwards
     Vsx : longitudinal slip speed Vx - Re omega [m/s]; kappa = -Vsx/Vx in steady state
@@ -80,14 +80,14 @@ def step(
     constant push it creeps.
     """
     state = tyre.state(Fz, 0.0, gamma, 0.0, phi_t, Vx, p, limits=limits)
-    loaded = np.asarray(Fz) > 0.0
+    lifted = np.asarray(Fz) <= 0.0
     slow = np.abs(Vx) < tyre["VXLOW"]
     with np.errstate(divide="ignore", invalid="ignore"):
         u = _dragged(contact.u, -np.asarray(Vsx), np.abs(Vx), state.sigma_x, dt)
         v = _dragged(contact.v, np.asarray(Vsy), np.abs(Vx), state.sigma_y, dt)
         u = np.where(slow, _no_growth(u, contact.u, _sliding(state.sigma_x, state.mu_x, Fz, state.K_xk)), u)
         v = np.where(slow, _no_growth(v, contact.v, _sliding(state.sigma_y, state.mu_y, Fz, state.K_ya)), v)
-    after = Contact(_plain(np.where(loaded, u, 0.0)), _plain(np.where(loaded, v, 0.0)))
+    after = Contact(_plain(np.where(lifted, 0.0, u)), _plain(np.where(lifted, 0.0, v)))
     slip = _slip(tyre, state, after, Vx, Vsx, Vsy, damping)
     return after, _at(tyre, slip, Fz, Vx, gamma, phi_t, p, limits)
 
@@ -118,8 +118,8 @@ def _slip(
     kappa, alpha = slips(state, contact, Vx)
     if damping:
         share = _way(Vx) * damping * _fading(Vx, tyre["VXLOW"])
-        kappa = kappa - share * np.asarray(Vsx) / state.K_xk
-        alpha = np.arctan(np.tan(alpha) + share * np.asarray(Vsy) / np.abs(state.K_ya))
+        kappa = kappa - _ratio(share * np.asarray(Vsx), state.K_xk)
+        alpha = np.arctan(np.tan(alpha) + _ratio(share * np.asarray(Vsy), np.abs(state.K_ya)))
     return kappa, alpha
 
 
@@ -143,13 +143,17 @@ def _way(Vx: Any) -> Any:
 
 def _dragged(x: Any, speed: Any, rolling: Any, sigma: Any, dt: float) -> Any:
     """Exact solution of dx/dt + rolling/sigma x = speed after dt; x + speed dt where nothing rolls."""
-    z = rolling * dt / sigma
+    z = np.where(rolling > 0.0, rolling * dt / sigma, 0.0)
     mean = np.where(z > 0.0, -np.expm1(-z) / np.where(z > 0.0, z, 1.0), 1.0)
-    return np.asarray(x) * np.exp(-z) + speed * dt * mean
+    time = sigma / rolling if np.isinf(dt) else dt * mean  # for which the speed counts
+    gone = np.where(speed == 0.0, 0.0, speed * time)
+    # a contact without slip stiffness is not held to the road: it has no deflection
+    return np.where(sigma == 0.0, 0.0, np.asarray(x) * np.exp(-z) + gone)
 
 
 def _sliding(sigma: Any, mu: Any, Fz: Any, stiffness: Any) -> Any:
-    return np.abs(FULL_SLIDING * mu * np.asarray(Fz) * sigma / stiffness)
+    stiffness = np.asarray(stiffness)
+    return np.where(stiffness == 0.0, 0.0, np.abs(FULL_SLIDING * mu * np.asarray(Fz) * sigma / stiffness))
 
 
 def _no_growth(x: Any, before: Any, limit: Any) -> Any:

@@ -145,3 +145,39 @@ def test_arrays_are_many_wheels():
         assert type(single.u) is float and type(alone.Fy) is float  # noqa: PT018
         assert (after.u[i], after.v[i]) == pytest.approx(tuple(single), rel=1e-12)
         assert [f[i] for f in forces] == pytest.approx(list(alone), rel=1e-10, abs=1e-10)
+
+
+@pytest.mark.parametrize("Vx", [20.0, -10.0, 0.2])
+def test_an_endless_step_ends_in_the_steady_state(Vx):
+    kappa, alpha = 0.02, -0.03
+    contact, forces = step(TYRE, Contact(0.01, -0.02), np.inf, Fz, Vx, -kappa * Vx, Vx * np.tan(alpha))
+    assert np.all(np.isfinite(contact))
+    for found, right in zip(forces, TYRE(Fz, alpha, 0.0, kappa, Vx=Vx), strict=True):
+        assert found == pytest.approx(right, rel=1e-9, abs=1e-6)
+
+
+def test_an_endless_step_at_standstill_keeps_what_nobody_moves_and_slides_where_pushed():
+    kept, _ = step(TYRE, Contact(1e-4, -1e-4), np.inf, Fz, 0.0)
+    assert kept == (1e-4, -1e-4)
+    far = step(TYRE, Contact(), 1e3, Fz, 0.0, Vsy=0.1)[0]
+    endless = step(TYRE, Contact(), np.inf, Fz, 0.0, Vsy=0.1)[0]
+    assert endless == far
+    assert endless.v > 0.0
+
+
+@pytest.mark.parametrize("Vx", [0.0, 10.0])
+@pytest.mark.parametrize("damping", [0.0, 500.0])
+def test_a_tyre_without_cornering_stiffness_has_no_deflection_sideways(Vx, damping):
+    loose = SYMMETRIC.replace(PKY1=0.0)
+    contact, forces = step(loose, Contact(0.0, 0.01), 0.1, Fz, Vx, Vsy=0.5, damping=damping)
+    assert contact == (0.0, 0.0)
+    assert np.all(np.isfinite(forces))
+
+
+def test_a_load_that_is_no_number_is_not_taken_for_none():
+    contact, forces = step(TYRE, Contact(0.01, 0.01), 0.01, np.array([np.nan, Fz, 0.0]), 10.0)
+    assert np.isnan(contact.u[0])
+    assert np.isnan(contact.v[0])
+    assert np.isnan(forces.Fy[0])
+    assert np.isfinite(contact.v[1])
+    assert contact.v[2] == 0.0
