@@ -32,7 +32,7 @@ def with_globs_expanded(
     found_lines = {key: line for key, line in lines.items() if not key.startswith("sweep.")}
     for index, entry in enumerate(sweeps):
         own = {key: line for key, line in lines.items() if f"{key}.".startswith(f"sweep.{index}.")}
-        names = _matches(entry["file"], folder) if _is_wild(entry, folder) else [None]
+        names = matches(entry["file"], folder) if _is_wild(entry, folder) else [None]
         if not names:
             raise InputError(
                 f'no file in {folder.absolute()} matches "{entry["file"]}"; correct the pattern',
@@ -49,10 +49,15 @@ def with_globs_expanded(
 
 def _is_wild(entry: Any, folder: Path) -> bool:
     file = entry.get("file") if isinstance(entry, Mapping) else None
-    return isinstance(file, str) and bool(WILD & set(file)) and not (folder / file).exists()
+    return isinstance(file, str) and is_wild(file, folder)
 
 
-def _matches(pattern: str, folder: Path) -> list[str]:
+def is_wild(file: str, folder: Path) -> bool:
+    """Whether a name is a pattern and not that of an existing file."""
+    return bool(WILD & set(file)) and not (folder / file).exists()
+
+
+def matches(pattern: str, folder: Path) -> list[str]:
     """Files that a pattern matches, named relative to the folder, or absolute if the pattern is."""
     start = Path(pattern)
     root = Path(start.anchor) if start.is_absolute() else folder

@@ -2,18 +2,44 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+from collections.abc import Mapping
+from typing import Annotated, NamedTuple
 
 from pydantic import AfterValidator
 from pydantic_core import PydanticCustomError
+from scipy import constants
+
+
+class Other(NamedTuple):
+    """Other units in which a number may have been written."""
+
+    write: str  #: the right unit, in words
+    units: Mapping[str, float]  #: by their words, in the right unit
+    lower: float  #: what is usual, in the right unit
+    upper: float
+
+    def hint(self, value: float) -> str:
+        """The units in which the value would be a usual one; empty if there is none."""
+        fitting = [
+            words for words, factor in self.units.items() if self.lower <= value * factor <= self.upper
+        ]
+        return f"it looks like {' or '.join(fitting)}, write {self.write}" if fitting else ""
 
 
 class _Range:
     """Refuses a number outside ``lower`` to ``upper``; ``below`` and ``above`` say what it usually is."""
 
-    def __init__(self, lower: float, upper: float, unit: str, below: str = "", above: str = "") -> None:
+    def __init__(
+        self,
+        lower: float,
+        upper: float,
+        unit: str,
+        below: str = "",
+        above: str = "",
+        other: Other | None = None,
+    ) -> None:
         self.lower, self.upper, self.unit = lower, upper, unit
-        self.below, self.above = below, above
+        self.below, self.above, self.other = below, above, other
 
     def __call__(self, value: float) -> float:
         if value < self.lower and value > 0.0:
@@ -25,6 +51,8 @@ class _Range:
         return value
 
     def _refusal(self, value: float, hint: str) -> PydanticCustomError:
+        if hint and self.other is not None:
+            hint = self.other.hint(value) or hint
         sentence = f"{value:g} {self.unit} is outside {self.lower:g} to {self.upper:g} {self.unit}"
         return wrong(f"{sentence}; {hint}" if hint else f"{sentence}; correct it")
 
@@ -36,7 +64,20 @@ def wrong(sentence: str, key: str = "") -> PydanticCustomError:
 
 MILLIMETRES = "it looks like millimetres, write metres"
 
-WheelRadius = Annotated[float, AfterValidator(_Range(0.03, 1.5, "m", above=MILLIMETRES))]
+RADII = Other(
+    "metres",
+    {"inches": constants.inch, "centimetres": constants.centi, "millimetres": constants.milli},
+    0.1,
+    0.6,
+)
+PRESSURES = Other(
+    "kilopascals",
+    {"psi": constants.psi / constants.kilo, "bar": constants.bar / constants.kilo},
+    40.0,
+    1000.0,
+)
+
+WheelRadius = Annotated[float, AfterValidator(_Range(0.03, 1.5, "m", above=MILLIMETRES, other=RADII))]
 Width = Annotated[float, AfterValidator(_Range(0.01, 1.0, "m", above=MILLIMETRES))]
 PathRadius = Annotated[float, AfterValidator(_Range(0.2, 100.0, "m", above=MILLIMETRES))]
 Length = Annotated[float, AfterValidator(_Range(1e-3, 100.0, "m", above=MILLIMETRES))]
@@ -47,7 +88,12 @@ Pressure = Annotated[
     float,
     AfterValidator(
         _Range(
-            20.0, 2000.0, "kPa", below="it looks like bar, write kilopascals", above="it looks like pascals"
+            20.0,
+            2000.0,
+            "kPa",
+            below="it looks like bar, write kilopascals",
+            above="it looks like pascals",
+            other=PRESSURES,
         )
     ),
 ]

@@ -5,11 +5,12 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
+from mffit import config as configuration
 from mffit.errors import InputError
 from mffit.output import must_be_new, new_files
 from mffit.recordings import Sniffed, project_text, sniff
 from mffit.recordings.project_file import slug
-from mffit.recordings.sniffed import configuration_of
+from mffit.recordings.sniffed import STAND_IN, configuration_of
 from mffit.recordings.stretch_table import stretch_table
 from mffit.sweeps import formats
 
@@ -30,7 +31,7 @@ def init_from(
 
     Parameters
     ----------
-    files : recordings as the rig wrote them; they stay where they are
+    files : recordings as the rig wrote them, also as patterns; they stay where they are
     folder : created if need be; existing files are never touched
     unloaded_radius : [m]
     nominal_load : [N]
@@ -45,7 +46,7 @@ def init_from(
     Raises
     ------
     InputError
-        A recording cannot be read, radius or load is missing, a file is there already, or no axes fit.
+        A recording cannot be read, radius, load or pressure is missing or out of range, a file is there already, or no axes fit.
     """
     for value, option, unit in (
         (unloaded_radius, "unloaded-radius", "M"),
@@ -53,8 +54,15 @@ def init_from(
     ):
         if value is None:
             raise InputError(f"recordings do not say it: give --{option} {unit}")
+    _check_tyre(name, unloaded_radius, nominal_load, nominal_pressure)
     folder = Path(folder)
-    sniffed = sniff(files)
+    sniffed = sniff(files, unloaded_radius=unloaded_radius)
+    files = [recording.path for recording in sniffed.recordings]
+    if nominal_pressure is None and not any("p_kPa" in r.guesses for r in sniffed.recordings):
+        raise InputError(
+            "no pressure is measured, so nothing says the nominal one: give --nominal-pressure KPA",
+            file=files[0],
+        )
     if not len(sniffed.points):
         raise InputError(sniffed.reading.warnings[-1], file=files[0])
     if not sniffed.axes:
@@ -72,6 +80,17 @@ def init_from(
         name=name,
     )
     return sniffed, _written(folder, sniffed, text)
+
+
+def _check_tyre(name: str | None, radius: float | None, load: float | None, pressure: float | None) -> None:
+    """Refuse, under the name of its option, what the written configuration would be refused for."""
+    given = {"name": name, "unloaded_radius": radius, "nominal_load": load, "nominal_pressure": pressure}
+    tyre = {"name": "tyre", **STAND_IN, **{key: value for key, value in given.items() if value is not None}}
+    try:
+        configuration.load({"tyre": tyre, "rig": {"type": "flat-track"}, "sweep": [{"file": "any.csv"}]})
+    except InputError as error:
+        key = (error.key or "").rpartition(".")[2].replace("_", "-")
+        raise InputError(error.sentence, key=f"--{key}") from None
 
 
 def write_sniffed(sniffed: Sniffed, folder: str | Path) -> list[Path]:

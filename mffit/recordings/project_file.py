@@ -16,6 +16,7 @@ from mffit.recordings.sniffed import Sniffed
 from mffit.sweeps.formats import stem
 
 LONGEST = 60
+TYRE_IN_TITLE = re.compile(r"\b(?:tyre|tire|reifen)\s*[:=]\s*(.*\S)", re.IGNORECASE)
 
 
 def project_text(
@@ -39,9 +40,8 @@ def project_text(
     name : of the output files; None takes the first recording's
     """
     first = sniffed.recordings[0]
-    said = next(
-        (r.about[key] for r in sniffed.recordings for key in ("tireid", "title") if r.about.get(key)), ""
-    )
+    said = next((found for r in sniffed.recordings if (found := named_tyre(r.about))), "")
+    title = next((r.about["title"] for r in sniffed.recordings if r.about.get("title")), "")
     usual = (
         float(np.median(sniffed.points.p[main_pressure(sniffed.points)])) if len(sniffed.points) else np.nan
     )
@@ -56,6 +56,8 @@ def project_text(
     ]
     if said:
         lines.append(f"size = {quoted(said[:LONGEST])}  # as the recording names the tyre")
+    elif title:
+        lines.append(f'# size = ""  # the recording has the title: {_one_line(title)[:LONGEST]}')
     lines += [
         _given("unloaded_radius", unloaded_radius, "m"),
         _given("nominal_load", nominal_load, "N, FNOMIN"),
@@ -78,11 +80,15 @@ def project_text(
     lines += _axes(sniffed)
     shared = _shared(sniffed)
     lines += ["", "[columns]  # of all files"]
+    said_of_all = [remark for remark in first.remarks if all(remark in r.remarks for r in sniffed.recordings)]
+    lines += [f"# {_one_line(remark)}" for remark in said_of_all]
     lines += [
         _column(guess) for guess in shared.values() if guess.heading != guess.channel.name or guess.unit
     ]
     for recording in sniffed.recordings:
-        lines += ["", "[[sweep]]", f"file = {quoted(relative(recording.path, folder))}"]
+        lines += ["", "[[sweep]]"]
+        lines += [f"# {_one_line(remark)}" for remark in recording.remarks if remark not in said_of_all]
+        lines += [f"file = {quoted(relative(recording.path, folder))}"]
         own = {
             key: guess
             for key, guess in recording.guesses.items()
@@ -92,6 +98,14 @@ def project_text(
             lines.append("[sweep.columns]")
             lines += [_column(guess) for guess in own.values()]
     return "\n".join(lines) + "\n"
+
+
+def named_tyre(about: Mapping[str, str]) -> str:
+    """What a recording says of its tyre; a title may be of anything and counts only from the word tyre on."""
+    if about.get("tireid"):
+        return about["tireid"]
+    behind = TYRE_IN_TITLE.search(about.get("title", ""))
+    return behind[1].strip() if behind else ""
 
 
 def _axes(sniffed: Sniffed) -> list[str]:
@@ -124,7 +138,7 @@ def _column(guess: Guess) -> str:
     name, heading = guess.channel.name, quoted(guess.heading)
     if guess.unit:
         text = f"{name} = {{ column = {heading}, unit = {quoted(guess.unit)} }}"
-        note = f"the file states no unit: {guess.lower:.3g} to {guess.upper:.3g} look like {guess.unit}"
+        note = f"the file states no unit: {guess.why}"
     else:
         text = f"{name} = {heading}"
         note = f"in {guess.stated}, as the file says" if guess.stated else ""

@@ -11,6 +11,7 @@ import numpy as np
 
 from mffit import config as configuration
 from mffit.config import Config
+from mffit.config.globs import is_wild, matches
 from mffit.errors import InputError
 from mffit.points import levels
 from mffit.points.loading import Reading, read
@@ -23,6 +24,7 @@ from mffit.recordings.guess import Guess, guesses, numbers
 from mffit.sweeps import formats
 from mffit.sweeps.channels import CHANNELS
 from mffit.sweeps.raw_table import RawTable
+from mffit.sweeps.units import converted
 from tir.conventions import FLIPPED
 
 STAND_IN = {"unloaded_radius": 0.3, "nominal_load": 1500.0, "nominal_pressure": 250.0}
@@ -42,6 +44,7 @@ class Recording(NamedTuple):
     rate: float  #: samples per second; NaN for finished points
     seconds: float  #: from first to last
     gaps: int  #: in time
+    remarks: tuple[str, ...]  #: what is doubtful about its columns
 
 
 class Level(NamedTuple):
@@ -70,33 +73,48 @@ class Sniffed:
 
 
 @formats.reading_once()
-def sniff(paths: Sequence[str | Path]) -> Sniffed:
+def sniff(paths: Sequence[str | Path], *, unloaded_radius: float | None = None) -> Sniffed:
     """Look into recordings.
+
+    Parameters
+    ----------
+    paths : files, also as patterns like ``runs/*.csv``
+    unloaded_radius : [m], with which a speed of rotation has to agree; None where it is not known
 
     Raises
     ------
     InputError
-        A file cannot be read, lacks a required channel, or the same file is named twice.
+        A file cannot be read, a pattern matches none, a file lacks a required channel, or the same file is named twice.
     """
-    files = [Path(path) for path in paths]
+    files = [file for path in paths for file in files_of(path)]
     if not files:
         raise InputError("no file is named; name one recording or more")
     twice = [file for k, file in enumerate(files) if file in files[:k]]
     if twice:
         raise InputError("is named twice; remove one", file=twice[0])
-    recordings = tuple(_recording(file) for file in files)
+    recordings = tuple(_recording(file, unloaded_radius) for file in files)
     axes = _first_axes(recordings)
     config = configuration_of(recordings, axes)
     reading = read(config, check_physics=False, may_be_empty=True)
     agreeing, wrong = axes_of(reading.points, axes, load_falls=axes == "sae")
     if agreeing and agreeing[0] != axes:
         reading = read(configuration_of(recordings, agreeing[0]), check_physics=False, may_be_empty=True)
-    return Sniffed(recordings, agreeing, wrong, reading, conditions_of(reading))
+    return Sniffed(recordings, agreeing, wrong, reading, conditions_of(recordings, reading))
 
 
-def _recording(path: Path) -> Recording:
+def files_of(path: str | Path) -> list[Path]:
+    """The files that a name or a pattern stands for, in the order of their names."""
+    if not is_wild(str(path), Path()):
+        return [Path(path)]
+    found = matches(str(path), Path())
+    if not found:
+        raise InputError("no file matches this pattern; correct it", file=path)
+    return [Path(name) for name in found]
+
+
+def _recording(path: Path, unloaded_radius: float | None) -> Recording:
     raw = formats.read(path)
-    found = guesses(raw)
+    found, remarks = guesses(raw, unloaded_radius=unloaded_radius)
     missing = [channel for channel in CHANNELS if channel.required and channel.name not in found]
     if missing:
         raise InputError(
@@ -108,14 +126,19 @@ def _recording(path: Path) -> Recording:
     kind = next(kind.name for kind in formats.FORMATS if formats.reads(kind, path))
     rate, seconds, holes = _clock(raw, found)
     return Recording(
-        path, kind, raw.headings, raw.units, len(raw), found, dict(raw.about), rate, seconds, holes
+        path, kind, raw.headings, raw.units, len(raw), found, dict(raw.about), rate, seconds, holes, remarks
     )
 
 
 def _clock(raw: RawTable, found: dict[str, Guess]) -> tuple[float, float, int]:
     if "time_s" not in found:
         return float("nan"), float("nan"), 0
-    time = numbers(raw.cells[raw.headings.index(found["time_s"].heading)])
+    clock = found["time_s"]
+    time = converted(
+        numbers(raw.cells[raw.headings.index(clock.heading)]),
+        clock.unit or clock.stated or clock.channel.unit,
+        clock.channel.unit,
+    )
     steps = np.diff(time)
     usual = float(np.median(steps)) if len(steps) else float("nan")
     if not usual > 0.0:
@@ -169,8 +192,15 @@ def axes_of(points: Points, declared: str, *, load_falls: bool) -> tuple[tuple[s
     )
 
 
-def conditions_of(reading: Reading) -> dict[str, tuple[Level, ...]]:
-    """The levels of every setting among the stretches that give points, or among finished points."""
+READ_FROM = {levels.PRESSURE.name: "p_kPa", levels.SPEED.name: "V_mps"}
+"""Channels of the settings that a file need not hold."""
+
+
+def conditions_of(recordings: Sequence[Recording], reading: Reading) -> dict[str, tuple[Level, ...]]:
+    """The levels of every setting among the stretches that give points, or among finished points.
+
+    A setting that no recording holds has none.
+    """
     kept = [note for note in reading.stretches if note.kind != MOVE and not note.dropped]
     points = reading.points
     values = {
@@ -179,7 +209,11 @@ def conditions_of(reading: Reading) -> dict[str, tuple[Level, ...]]:
         levels.PRESSURE: 1e3 * np.array([note.p_kPa for note in kept]) if kept else points.p,
         levels.SPEED: points.V,
     }
-    return {quantity.name: _levels(found, quantity) for quantity, found in values.items()}
+    measured = {name for recording in recordings for name in recording.guesses}
+    return {
+        quantity.name: _levels(found, quantity) if READ_FROM.get(quantity.name, "Fz_N") in measured else ()
+        for quantity, found in values.items()
+    }
 
 
 def _levels(values: np.ndarray, quantity: levels.Quantity) -> tuple[Level, ...]:

@@ -232,9 +232,9 @@ def _bytes(path: Path, most: int = -1) -> bytes:
         with _opened(path) as file:
             return file.read(most)
     except FileNotFoundError:
-        raise InputError("there is no such file; correct its name in [[sweep]] file", file=path) from None
+        raise InputError("there is no such file; correct its name", file=path) from None
     except IsADirectoryError:
-        raise InputError("is a folder; name the CSV file in it", file=path) from None
+        raise InputError(f'is a folder; name the files in it, as "{path}/*.csv"', file=path) from None
     except (gzip.BadGzipFile, EOFError, zlib.error):
         raise InputError("is not a complete gzip file; compress it again", file=path) from None
     except OSError as error:

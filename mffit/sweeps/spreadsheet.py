@@ -31,7 +31,7 @@ def read_xlsx(path: Path) -> RawTable:
     except InputError:
         raise
     except FileNotFoundError:
-        raise InputError("there is no such file; correct its name in [[sweep]] file", file=path) from None
+        raise InputError("there is no such file; correct its name", file=path) from None
     except Exception as error:  # a damaged workbook fails in whatever way its parts happen to lead to
         said = " ".join(str(error).split())[:80]
         raise InputError(

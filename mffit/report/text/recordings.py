@@ -27,7 +27,10 @@ def sniff_summary(sniffed: Sniffed) -> str:
             _axes(sniffed),
             _conditions(sniffed),
             _stretches(sniffed),
-            paragraphs(sniffed.reading.warnings),
+            paragraphs(
+                [f"{r.path}: {remark}" for r in sniffed.recordings for remark in r.remarks]
+                + list(sniffed.reading.warnings)
+            ),
         ]
     )
 
@@ -47,7 +50,7 @@ def _file(recording: Recording) -> str:
     rate = (
         f", {recording.rate:.4g} samples per second over {recording.seconds:.0f} s, {recording.gaps} gaps in time"
         if np.isfinite(recording.rate)
-        else " without a time channel: every row counts as a finished point"
+        else " without a time channel"
     )
     head = f"{recording.path}: {recording.kind}, {recording.samples} rows{rate}"
     about = "; ".join(f"{key}: {text[:90]}" for key, text in recording.about.items())
@@ -74,7 +77,9 @@ def _conditions(sniffed: Sniffed) -> str:
     rows = []
     for name, levels in sniffed.conditions.items():
         unit, factor, digits = WORDS[name]
-        rows.append((name, unit, ", ".join(_level(level, factor, digits) for level in levels)))
+        rows.append(
+            (name, unit, ", ".join(_level(level, factor, digits) for level in levels) or "not measured")
+        )
     return table(("setting", "unit", "conditions found (times)"), rows, left=3)
 
 

@@ -40,6 +40,7 @@ def sniffed(found: Sniffed) -> dict[str, Any]:
                     name: {**guess._asdict(), "channel": guess.channel.name}
                     for name, guess in row.guesses.items()
                 },
+                "remarks": list(row.remarks),
             }
             for row in found.recordings
         ],
