@@ -105,7 +105,18 @@ def sniff(paths: Sequence[str | Path], *, unloaded_radius: float | None = None) 
 def files_of(path: str | Path) -> list[Path]:
     """The files that a name or a pattern stands for, in the order of their names."""
     if not is_wild(str(path), Path()):
-        return [Path(path)]
+        file = Path(path)
+        if not file.exists():
+            raise InputError("there is no such file; correct its name", file=file)
+        if file.is_dir():
+            inside = sorted(
+                each.name for each in file.iterdir() if each.name.lower().endswith(formats.ENDINGS)
+            )
+            remedy = (
+                f'name those in it, as "{file}/*{Path(inside[0]).suffix}"' if inside else "name a recording"
+            )
+            raise InputError(f"is a folder; {remedy}", file=file)
+        return [file]
     found = matches(str(path), Path())
     if not found:
         raise InputError("no file matches this pattern; correct it", file=path)

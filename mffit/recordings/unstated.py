@@ -35,6 +35,7 @@ class Choice(NamedTuple):
 
 LARGEST_RADIANS = 1.6
 LARGEST_KILONEWTONS = 100.0
+MOST_GRIP = 5.0
 LEAST_ARM = 1e-3  # m, of the largest moment over the largest load
 FASTEST_MPS = 25.0
 PRESSURES = ("bar", "psi", "kPa", "MPa", "Pa")
@@ -54,24 +55,17 @@ def choices(found: Mapping[str, Found]) -> dict[str, Choice]:
     out: dict[str, Choice] = {}
     known = {name: column.unit for name, column in found.items() if column.unit}
 
-    def one_unit(kind: str, unit_of: Mapping[str, Found]) -> None:
-        group = {name: column for name, column in found.items() if column.channel.unit == kind}
-        said = next((column for name, column in group.items() if name in known), None)
-        unit = said.unit if said else _unit_of_group(kind, group, _load(unit_of, known))
-        alike = ", ".join(column.heading for column in group.values())
-        for name, column in group.items():
-            if name in known:
-                continue
-            why = (
-                f"{_range(column)} taken for {unit}, as {said.heading} is"
-                if said
-                else _look_like(column, unit) + (f"; {alike} share a unit" if len(group) > 1 else "")
-            )
-            out[name] = Choice(unit, why)
-        known.update({name: unit for name in group if name not in known})
-
     for kind in ("deg", "N", "N m"):
-        one_unit(kind, found)
+        group = {name: column for name, column in found.items() if column.channel.unit == kind}
+        for alike in _apart(group):
+            said = next((column for name, column in alike.items() if name in known), None)
+            unit = said.unit if said else _unit_of_group(kind, alike, _load(found, known))
+            also = f"; {', '.join(c.heading for c in alike.values())} share a unit" if len(alike) > 1 else ""
+            for name, column in alike.items():
+                if name not in known:
+                    taken = f"{_range(column)} taken for {unit}, as {said.heading} is" if said else ""
+                    out[name] = Choice(unit, taken or _look_like(column, unit) + also)
+            known |= {name: unit for name in alike if name not in known}
     for name, column in found.items():
         if name in known or not column.channel.unit:
             continue
@@ -86,6 +80,15 @@ def choices(found: Mapping[str, Found]) -> dict[str, Choice]:
         if name in out:
             known[name] = out[name].unit
     return out
+
+
+def _apart(group: Mapping[str, Found]) -> list[dict[str, Found]]:
+    """Columns of one kind that share a unit: all, unless forces are larger numbers than any tyre's grip allows."""
+    load = {name: column for name, column in group.items() if name == "Fz_N"}
+    rest = {name: column for name, column in group.items() if name not in load}
+    if load and max((c.size for c in rest.values()), default=0.0) > MOST_GRIP * load["Fz_N"].size:
+        return [load, rest]
+    return [dict(group)] if group else []
 
 
 def _range(column: Found) -> str:

@@ -234,7 +234,7 @@ def _bytes(path: Path, most: int = -1) -> bytes:
     except FileNotFoundError:
         raise InputError("there is no such file; correct its name", file=path) from None
     except IsADirectoryError:
-        raise InputError(f'is a folder; name the files in it, as "{path}/*.csv"', file=path) from None
+        raise InputError("is a folder; name the files in it", file=path) from None
     except (gzip.BadGzipFile, EOFError, zlib.error):
         raise InputError("is not a complete gzip file; compress it again", file=path) from None
     except OSError as error:

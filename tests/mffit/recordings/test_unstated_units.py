@@ -1,0 +1,220 @@
+"""What a recording does not state: units decided by columns together, and doubts that are said."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from mffit import pipeline
+from mffit.errors import InputError
+from mffit.recordings import project_text, sniff
+from mffit.recordings.guess import guesses
+from mffit.report import text
+from mffit.sweeps.raw_table import RawTable
+
+N = 2000
+STEP = 0.01  # s
+WAVE = np.sin(np.linspace(0.0, 40.0, N))
+GIVEN = {"unloaded_radius": 0.2, "nominal_load": 1500.0}
+
+
+def columns(**other) -> dict[str, np.ndarray]:
+    """A sweep to 9 deg and back at 11 m/s and 83 kPa, in SI but for deg and kPa."""
+    usual = {
+        "ET": 30.0 + STEP * np.arange(N), "V": np.full(N, 11.0), "SA": 9.0 * WAVE, "IA": np.full(N, 1.0), "P": np.full(N, 83.0),
+        "FX": 60.0 * WAVE, "FY": -2300.0 * WAVE, "FZ": np.full(N, 2500.0), "MX": 30.0 * WAVE, "MZ": 60.0 * WAVE,
+        "TSTC": np.full(N, 60.0),
+    }  # fmt: skip
+    return {name: values for name, values in (usual | other).items() if values is not None}
+
+
+def guessed(units=None, radius=None, **other):
+    held = columns(**other)
+    raw = RawTable(
+        headings=tuple(held),
+        units=tuple((units or {}).get(name, "") for name in held),
+        cells=tuple(held.values()),
+        lines=range(2, N + 2),
+        path=Path("a.csv"),
+        heading_line=1,
+    )
+    return guesses(raw, unloaded_radius=radius)
+
+
+def units(**other) -> dict[str, str]:
+    return {name: guess.unit for name, guess in guessed(**other).found.items()}
+
+
+def test_angles_forces_and_moments_share_their_units():
+    found = units()
+    assert {found["alpha_deg"], found["gamma_deg"]} == {"deg"}
+    assert {found["Fx_N"], found["Fy_N"], found["Fz_N"]} == {"N"}
+    assert {found["Mx_Nm"], found["Mz_Nm"]} == {"N m"}
+    in_rad = units(SA=np.radians(9.0 * WAVE), IA=np.radians(np.full(N, 1.0)))
+    assert {in_rad["alpha_deg"], in_rad["gamma_deg"]} == {"rad"}
+    usual = columns()
+    thousandth = {name: usual[name] / 1e3 for name in ("FX", "FY", "FZ", "MX", "MZ")}
+    in_kN = units(**thousandth)
+    assert {in_kN["Fx_N"], in_kN["Fy_N"], in_kN["Fz_N"]} == {"kN"}
+    assert {in_kN["Mx_Nm"], in_kN["Mz_Nm"]} == {"kN m"}
+
+
+def test_a_load_in_kN_beside_forces_in_N_is_seen_by_the_grip():
+    found = units(FZ=np.full(N, 2.5))
+    assert (found["Fz_N"], found["Fy_N"], found["Fx_N"]) == ("kN", "N", "N")
+
+
+def test_a_column_takes_the_unit_that_another_of_its_kind_states():
+    found = guessed(units={"FZ": "lbf", "SA": "rad"}).found
+    assert (found["Fy_N"].unit, found["gamma_deg"].unit, found["Fz_N"].unit) == ("lbf", "rad", "")
+    assert "as FZ is" in found["Fy_N"].why
+
+
+@pytest.mark.parametrize(
+    ("pressure", "load", "unit", "also"),
+    [
+        (10.0, 2500.0, "psi", "bar"),
+        (2.2, 4000.0, "bar", ""),
+        (0.83, 2500.0, "bar", ""),
+        (32.0, 4000.0, "psi", ""),
+        (83.0, 2500.0, "kPa", "psi"),
+        (230.0, 4000.0, "kPa", ""),
+        (83e3, 2500.0, "Pa", ""),
+        (8.0, 30_000.0, "bar", "psi"),
+    ],
+)
+def test_a_pressure_is_that_of_a_tyre_and_what_else_it_may_be_is_said(pressure, load, unit, also):
+    guess = guessed(P=np.full(N, pressure), FZ=np.full(N, load)).found["p_kPa"]
+    assert guess.unit == unit
+    assert also in guess.why
+
+
+@pytest.mark.parametrize(("factor", "unit"), [(1.0, "s"), (1e3, "ms"), (1e6, "us")])
+def test_the_unit_of_time_is_that_in_which_machines_steer(factor, unit):
+    assert units(ET=factor * STEP * np.arange(N))["time_s"] == unit
+
+
+def test_a_time_of_no_unit_that_fits_is_called_unknown():
+    assert "not known" in guessed(ET=1e9 * STEP * np.arange(N)).found["time_s"].why
+    assert "not known" in guessed(SA=np.zeros(N)).found["time_s"].why
+
+
+def test_one_american_unit_casts_doubt_on_those_that_nobody_states():
+    remark = " ".join(guessed(P=np.full(N, 12.0)).remarks)
+    for words in ("P is in psi", "FZ (N or lbf)", "MZ (N m or in-lb)", "mph", "degF", 'unit = "lbf"'):
+        assert words in remark
+    assert not guessed().remarks
+    stated = {"FZ": "N", "MZ": "N-m", "V": "kph", "TSTC": "deg C"}
+    assert not any(
+        "lbf" in remark or "mph" in remark for remark in guessed(units=stated | {"P": "psi"}).remarks
+    )
+
+
+def test_a_wheel_that_turns_as_the_road_runs_is_kept_and_no_other():
+    turning = 11.0 / 0.195  # rad/s
+    assert units(N=np.full(N, turning))["omega_radps"] == "rad/s"
+    assert units(N=np.full(N, turning * 60.0 / (2.0 * np.pi)))["omega_radps"] == "rpm"
+    for wrong in ({"N": 0.4 * WAVE}, {"N": np.full(N, turning), "V": None}):
+        found = guessed(**wrong)
+        assert "omega_radps" not in found.found
+        assert any("N" in remark and "left out" in remark for remark in found.remarks)
+    assert "omega_radps" in guessed(N=np.full(N, turning), units={"N": "rad/s"}, radius=0.2).found
+    assert "omega_radps" not in guessed(N=np.full(N, turning), units={"N": "rad/s"}, radius=0.4).found
+
+
+def test_a_missing_moment_names_columns_in_a_unit_of_moments():
+    found = guessed(MZ=None, Torque=60.0 * WAVE, units={"Torque": "in-lb", "FZ": "N"})
+    assert any("Mz_Nm" in remark and "Torque" in remark for remark in found.remarks)
+
+
+@pytest.mark.parametrize(
+    ("heading", "channel"),
+    [
+        ("Self aligning torque", "Mz_Nm"), ("Surface temp", "T_degC"), ("Reifendruck", "p_kPa"), ("Kippmoment", "Mx_Nm"),
+        ("Längskraft", "Fx_N"),
+    ],
+)  # fmt: skip
+def test_headings_of_laboratories(heading, channel):
+    without = {"Mz_Nm": "MZ", "T_degC": "TSTC", "p_kPa": "P", "Mx_Nm": "MX", "Fx_N": "FX"}[channel]
+    held = columns()
+    assert guessed(**{without: None, heading: held[without]}).found[channel].heading == heading
+
+
+def table(**other) -> str:
+    """Finished points as CSV in SAE axes, each cell as it stands."""
+    alpha = np.repeat(np.linspace(-8.0, 8.0, 9), 2)
+    load = np.tile([1000.0, 2000.0], 9)
+    held = {
+        "SA": alpha, "IA": 2.0 + 0.0 * alpha, "FZ": -load, "FY": -load * np.sin(np.arctan(0.2 * alpha)) + 5.0,
+        "MZ": 0.02 * load * np.sin(0.15 * alpha), **other,
+    }  # fmt: skip
+    held = {name: np.broadcast_to(values, len(alpha)) for name, values in held.items()}
+    rows = [",".join(str(cell) for cell in row) for row in zip(*held.values(), strict=True)]
+    return "\n".join([",".join(held), *rows]) + "\n"
+
+
+def test_no_pressure_is_said_and_asked_for(tmp_path):
+    (tmp_path / "a.csv").write_text(table())
+    found = sniff([tmp_path / "a.csv"])
+    assert found.conditions["pressure"] == ()
+    assert found.conditions["load"]
+    assert text.sniff_summary(found).count("not measured") == 2  # nor is a speed
+    with pytest.raises(InputError, match="--nominal-pressure"):
+        pipeline.init_from([tmp_path / "a.csv"], tmp_path / "p", **GIVEN)
+    assert not (tmp_path / "p").exists()
+
+
+def test_rows_without_time_are_counted_as_points_aloud(tmp_path):
+    (tmp_path / "a.csv").write_text(table(Timestamp="2024-04-03 10:00:00.000"))
+    found = sniff([tmp_path / "a.csv"])
+    for said in (
+        text.sniff_summary(found).replace("\n  ", " "),
+        project_text(found, tmp_path, unloaded_radius=None, nominal_load=None),
+    ):
+        assert "no time: each of 18 rows is taken for a finished point" in said
+        assert 'column "Timestamp" holds clock times' in said
+
+
+@pytest.mark.parametrize(
+    ("option", "value", "hint"),
+    [
+        ("unloaded_radius", 205.7, "millimetres"),
+        ("unloaded_radius", 8.1, "inches"),
+        ("nominal_load", 1.5, "kilonewtons"),
+        ("nominal_pressure", 0.83, "bar"),
+        ("nominal_pressure", 12.0, "psi"),
+        ("name", "a/b", "cannot name"),
+    ],
+)
+def test_what_a_build_would_refuse_is_refused_before_anything_is_read(tmp_path, option, value, hint):
+    with pytest.raises(InputError, match=hint) as caught:
+        pipeline.init_from([tmp_path / "none.csv"], tmp_path / "p", **{**GIVEN, option: value})
+    assert caught.value.key == f"--{option.replace('_', '-')}"
+
+
+def test_files_are_named_by_pattern_and_a_folder_is_told_what_it_holds(tmp_path):
+    for name in "ba":
+        (tmp_path / f"{name}.dat").write_text(table(P=83.0))
+    assert [r.path.name for r in sniff([f"{tmp_path}/*.dat"]).recordings] == ["a.dat", "b.dat"]
+    with pytest.raises(InputError, match="no file matches"):
+        sniff([f"{tmp_path}/*.mat"])
+    with pytest.raises(InputError, match=r"is a folder; name those in it, as .*\*\.dat"):
+        sniff([tmp_path])
+    with pytest.raises(InputError, match="no such file; correct its name$"):
+        sniff([tmp_path / "nosuch.mat"])
+
+
+@pytest.mark.parametrize(
+    ("title", "size"),
+    [
+        ("Prüfstand Müller, Messung vom 3.4.2024", None),
+        ("Prüfstand Müller Reifen: 16x7.5-10", "16x7.5-10"),
+        ("title=Belt Tire=Maker 16x7.5-10", "Maker 16x7.5-10"),
+    ],
+)
+def test_a_title_names_a_tyre_only_where_it_says_so(tmp_path, title, size):
+    (tmp_path / "a.csv").write_text(f"{title.replace(',', ' ')}\n{table(P=83.0)}", encoding="utf-8")
+    written = project_text(sniff([tmp_path / "a.csv"]), tmp_path, unloaded_radius=0.2, nominal_load=1500.0)
+    assert (f'size = "{size}"' in written) if size else "\nsize" not in written
