@@ -210,9 +210,12 @@ def customary(found: Mapping[str, Found], units: Mapping[str, str], open_: Seque
     open_ : channels whose unit is a choice
     """
     american = {spelt(unit) for unit in CUSTOMARY.values()}
+    settled = {column.channel.unit for column in found.values() if column.unit}
     sign = next((name for name in found if spelt(units.get(name, "")) in american), None)
     doubtful = [
-        name for name in open_ if found[name].channel.unit in CUSTOMARY and spelt(units[name]) not in american
+        name
+        for name in open_
+        if found[name].channel.unit in CUSTOMARY.keys() - settled and spelt(units[name]) not in american
     ]
     if sign is None or not doubtful:
         return ""

@@ -202,7 +202,7 @@ def test_files_are_named_by_pattern_and_a_folder_is_told_what_it_holds(tmp_path)
         sniff([f"{tmp_path}/*.mat"])
     with pytest.raises(InputError, match=r"is a folder; name those in it, as .*\*\.dat"):
         sniff([tmp_path])
-    with pytest.raises(InputError, match="no such file; correct its name$"):
+    with pytest.raises(InputError, match=r"no such file; correct its name$"):
         sniff([tmp_path / "nosuch.mat"])
 
 
