@@ -96,6 +96,12 @@ def test_the_unit_of_time_is_that_in_which_machines_steer(factor, unit):
     assert units(ET=factor * STEP * np.arange(N))["time_s"] == unit
 
 
+def test_a_step_of_one_is_a_second_or_a_millisecond_by_the_rate_of_the_steering():
+    slow = 9.0 * np.sin(np.linspace(0.0, 2.0, N))
+    assert units(ET=np.arange(N), SA=slow)["time_s"] == "ms"
+    assert units(ET=np.arange(N), SA=9.0 * np.sin(np.linspace(0.0, 200.0, N)))["time_s"] == "s"
+
+
 def test_a_time_of_no_unit_that_fits_is_called_unknown():
     assert "not known" in guessed(ET=1e9 * STEP * np.arange(N)).found["time_s"].why
     assert "not known" in guessed(SA=np.zeros(N)).found["time_s"].why
