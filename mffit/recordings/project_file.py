@@ -12,7 +12,7 @@ import tomli_w
 
 from mffit.points import main_pressure
 from mffit.recordings.guess import Guess
-from mffit.recordings.sniffed import Sniffed
+from mffit.recordings.sniffed import Sniffed, holding, points_from
 from mffit.sweeps.formats import stem
 
 LONGEST = 60
@@ -42,10 +42,8 @@ def project_text(
     first = sniffed.recordings[0]
     said = next((found for r in sniffed.recordings if (found := named_tyre(r.about))), "")
     title = next((r.about["title"] for r in sniffed.recordings if r.about.get("title")), "")
-    usual = (
-        float(np.median(sniffed.points.p[main_pressure(sniffed.points)])) if len(sniffed.points) else np.nan
-    )
-    has_pressure = any("p_kPa" in r.guesses for r in sniffed.recordings)
+    measured = points_from(sniffed.points, holding(sniffed.recordings, "p_kPa"))
+    usual = float(np.median(measured.p[main_pressure(measured)])) if len(measured) else np.nan
     speeds = sniffed.conditions["speed"]
     speed = max(speeds, key=lambda level: level.stretches).value if speeds else 10.0
     lines = [
@@ -64,7 +62,7 @@ def project_text(
     ]
     if nominal_pressure is not None:
         lines.append(f"nominal_pressure = {nominal_pressure:g}  # kPa, NOMPRES")
-    elif has_pressure and np.isfinite(usual):
+    elif np.isfinite(usual):
         lines.append(
             f"nominal_pressure = {usual / 1e3:.0f}  # kPa, NOMPRES: the middle one of those at which most was run"
         )

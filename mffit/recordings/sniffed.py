@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import NamedTuple
@@ -203,28 +203,33 @@ def axes_of(points: Points, declared: str, *, load_falls: bool) -> tuple[tuple[s
     )
 
 
-READ_FROM = {levels.PRESSURE.name: "p_kPa", levels.SPEED.name: "V_mps"}
-"""Channels of the settings that a file need not hold."""
-
-
 def conditions_of(recordings: Sequence[Recording], reading: Reading) -> dict[str, tuple[Level, ...]]:
     """The levels of every setting among the stretches that give points, or among finished points.
 
-    A setting that no recording holds has none.
+    Pressure and speed count where they were measured; a setting that no recording holds has no level.
     """
     kept = [note for note in reading.stretches if note.kind != MOVE and not note.dropped]
     points = reading.points
+    pressed = holding(recordings, "p_kPa")
     values = {
         levels.LOAD: np.array([note.Fz_N for note in kept]) if kept else points.Fz,
         levels.CAMBER: np.radians([note.gamma_deg for note in kept]) if kept else points.gamma,
-        levels.PRESSURE: 1e3 * np.array([note.p_kPa for note in kept]) if kept else points.p,
-        levels.SPEED: points.V,
+        levels.PRESSURE: 1e3 * np.array([note.p_kPa for note in kept if note.file in pressed])
+        if kept
+        else points_from(points, pressed).p,
+        levels.SPEED: points_from(points, holding(recordings, "V_mps")).V,
     }
-    measured = {name for recording in recordings for name in recording.guesses}
-    return {
-        quantity.name: _levels(found, quantity) if READ_FROM.get(quantity.name, "Fz_N") in measured else ()
-        for quantity, found in values.items()
-    }
+    return {quantity.name: _levels(found, quantity) for quantity, found in values.items()}
+
+
+def holding(recordings: Sequence[Recording], channel: str) -> frozenset[str]:
+    """The files that hold a channel, as points and stretches name them."""
+    return frozenset(str(r.path.absolute()) for r in recordings if channel in r.guesses)
+
+
+def points_from(points: Points, files: Collection[str]) -> Points:
+    """The points of some files."""
+    return points.select(np.array([file in files for file in points.files], dtype=bool)[points.file])
 
 
 def _levels(values: np.ndarray, quantity: levels.Quantity) -> tuple[Level, ...]:

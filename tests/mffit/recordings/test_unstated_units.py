@@ -172,6 +172,15 @@ def test_no_pressure_is_said_and_asked_for(tmp_path):
     assert not (tmp_path / "p").exists()
 
 
+def test_only_measured_pressures_count(tmp_path):
+    """Two files without pressure beside one with it: the stand-in for theirs is nobody's measurement."""
+    for name, more in (("a", {}), ("b", {}), ("c", {"P": 83.0})):
+        (tmp_path / f"{name}.csv").write_text(table(**more))
+    found = sniff([f"{tmp_path}/*.csv"])
+    assert [(round(level.value), level.stretches) for level in found.conditions["pressure"]] == [(83_000, 18)]
+    assert "nominal_pressure = 83 " in project_text(found, tmp_path, unloaded_radius=0.2, nominal_load=1500.0)
+
+
 def test_rows_without_time_are_counted_as_points_aloud(tmp_path):
     (tmp_path / "a.csv").write_text(table(Timestamp="2024-04-03 10:00:00.000"))
     found = sniff([tmp_path / "a.csv"])
