@@ -49,6 +49,7 @@ def plan(
             tyre_toml, coefficient or goal, runs=runs, without=without, out=out, progress=show
         )
     voice.say(text.plan_summary(found))
-    sheets = ", runs (sheets to fill in)" if found.steps else ""
+    inside = "sheets to fill in" if found.points else "what changes in tyre.toml"
+    sheets = f", runs ({inside})" if found.steps else ""
     voice.say(f"written to {out}: plan.html, plan.json{sheets}")
     voice.give(lambda: as_json.plan(found))

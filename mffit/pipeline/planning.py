@@ -162,9 +162,13 @@ def sheet(config: Config, points: Points) -> pd.DataFrame:
 
 
 def additions(config: Config, runs: Sequence[Run]) -> str:
-    """What tyre.toml gains by the runs, as text to copy from."""
+    """What tyre.toml gains by the runs, as TOML that can stand behind it; what changes in a table it has is a comment."""
     usual = configuration.path_curvature(config.rig)
-    lines = ["# Copy to tyre.toml once the sheets are filled in; the files are named as in this folder."]
+    lines = [
+        "# Copy to tyre.toml once the sheets are filled in; the files are named as in this folder."
+        if any(run.points is not None for run in runs)
+        else "# What changes in tyre.toml once this has been measured."
+    ]
     for run in runs:
         lines += ["", f"# {wording.title(run)}", *wording.instructions(run)]
         if run.points is None:

@@ -8,11 +8,13 @@ from dataclasses import dataclass
 from mffit.effects import CATALOG, Effect
 from mffit.errors import InputError
 from mffit.quantities import CHANNELS, DIRECT
+from mffit.rig import UNITS
 from tir.parameters import BY_NAME
 
 EPSILON, JOINT, BANDS, TIE = "eps_gamma", "eps_gamma:joint", "bands", "tie"
 GOALS = (EPSILON, JOINT, BANDS, f"{BANDS}:Mz", f"{TIE}:EFFECT")
 """How goals are written, beside the name of a coefficient."""
+NAMES = {effect.id: effect.name for effect in CATALOG}
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,8 +33,17 @@ class Goal:
             EPSILON: f"u({epsilon}) by the direct method",
             JOINT: f"u({epsilon}) by the joint fit",
             BANDS: f"95 % band of {self.name}, rms",
-            TIE: f"u of {self.name} beside what it is tied with",
+            TIE: f"u of {self._tied} beside what it is tied with",
         }.get(self.kind, f"u({self.name})")
+
+    @property
+    def _tied(self) -> str:
+        """The effect's name; a coefficient has a scale of its own and is named too."""
+        effect = next((e for e in CATALOG if e.id == self.name), None)
+        if effect is None:
+            return self.name
+        number = effect.free[0].name
+        return f"{effect.name} ({number})" if number in BY_NAME else effect.name
 
 
 def read_goal(text: str, *, on_disc: bool) -> Goal:
@@ -55,7 +66,8 @@ def read_goal(text: str, *, on_disc: bool) -> Goal:
         return Goal(BANDS, channel, CHANNELS[channel].unit)
     if kind == TIE:
         effect = effect_named(rest)
-        return Goal(TIE, effect.id, "")
+        number = effect.free[0].name
+        return Goal(TIE, effect.id, UNITS[number] if number in UNITS else BY_NAME[number].unit)
     if text in BY_NAME and BY_NAME[text].stage:
         return Goal("coefficient", text, BY_NAME[text].unit)
     if text == "PECP1":

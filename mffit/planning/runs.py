@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from enum import Enum
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -15,6 +15,7 @@ from mffit.config.models import RollingRadiusTable
 from mffit.measured.radii import measured_path_radius
 from mffit.points import Points, levels, main_path, main_pressure
 from mffit.points.points import concatenate
+from mffit.quantities import CHANNELS, CONDITIONS, DIRECT
 from mffit.rig import reference_speed
 
 ZEROS_DEG = (-1.0, -0.5, 0.0, 0.5, 1.0)
@@ -53,13 +54,20 @@ class Kind(Enum):
     PATH_RADIUS = "path-radius"
 
 
+class Declared(NamedTuple):
+    """An uncertainty that [rig] declares."""
+
+    key: str
+    unit: str
+
+
 DECLARED = {
-    Kind.CAMBER_ZERO: "u_camber_alignment_deg",
-    Kind.LOADCELL_ZERO: "u_loadcell_offset_N",
-    Kind.SIDESLIP_ZERO: "u_slip_alignment_N",
-    Kind.PATH_RADIUS: "u_path_radius",
+    Kind.CAMBER_ZERO: Declared("u_camber_alignment_deg", CONDITIONS["gamma_deg"].unit),
+    Kind.LOADCELL_ZERO: Declared("u_loadcell_offset_N", CHANNELS["Fy"].unit),
+    Kind.SIDESLIP_ZERO: Declared("u_slip_alignment_N", f"{CHANNELS['Fy'].unit} of {CHANNELS['Fy'].word}"),
+    Kind.PATH_RADIUS: Declared("u_path_radius", DIRECT["R"].unit),
 }
-"""Better measurements of the rig, and the key of [rig] that each lowers."""
+"""Better measurements of the rig, and what of [rig] each lowers."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -195,7 +203,7 @@ def _on_the_disc(seen: _Programme) -> Iterator[Run]:
 def _of_the_rig(seen: _Programme, r_e: float | None) -> Iterator[Run]:
     """Better measurements of the rig itself."""
     rig, R = seen.config.rig, measured_path_radius(seen.config)
-    for kind, key in DECLARED.items():
+    for kind, (key, _) in DECLARED.items():
         u = float(R.std_dev) if kind is Kind.PATH_RADIUS and R is not None else getattr(rig, key)
         if u:
             yield Run(kind, seen.load, rig={key: BETTER * u})

@@ -5,13 +5,11 @@ from __future__ import annotations
 import math
 
 from mffit.diagnosis.ties import TELLING
-from mffit.effects import CATALOG
-from mffit.planning.goals import BANDS, EPSILON, JOINT, TIE
+from mffit.planning.goals import BANDS, EPSILON, JOINT, NAMES, TIE
 from mffit.planning.record import Identified, Plan, Step, Tie
 from mffit.planning.runs import BETTER, DECLARED, NARROWER, Kind, Run
 from mffit.quantities import CONDITIONS, DIRECT
 
-NAMES = {effect.id: effect.name for effect in CATALOG}
 EPS = DIRECT["epsilon_gamma"].ascii
 LOAD = CONDITIONS["Fz_N"]
 
@@ -50,7 +48,7 @@ REASONS = {
     Kind.SMALL_CAMBER: "The camber stiffness is the slope at zero; cambers up to 20 deg decide it.",
     Kind.CAMBER: "More points over camber, for the camber stiffness and the shape of the camber force.",
     Kind.SIDESLIP: "More points over sideslip, for cornering stiffness, peak and trail.",
-    Kind.COUPLED: "What camber does to the side-force curve shows only where both angles act together.",
+    Kind.COUPLED: "What camber does to the curves over sideslip shows only where both angles act together.",
     Kind.LOAD: "What changes with load is known better the farther the loads are apart.",
     Kind.PRESSURE: "What pressure does shows at two pressures, and at two loads whether it acts on the stiffness or on its load.",
     Kind.REVOLUTION: f"Without an effective radius there is no {EPS}.",
@@ -64,8 +62,8 @@ REASONS = {
 def title(run: Run) -> str:
     """The run in a few words."""
     if run.kind in DECLARED:
-        (key, value), *_ = run.rig.items()
-        return f"{TITLES[run.kind]} ({key} = {value:.2g})"
+        (value,) = run.rig.values()
+        return f"{TITLES[run.kind]}, known to {value:.2g} {DECLARED[run.kind].unit}"
     more = f", {run.camber_deg:g} deg" if run.camber_deg else ""
     more += f", {CONDITIONS['p_kPa'].of(run.pressure_kPa)}" if run.pressure_kPa else ""
     return f"{TITLES[run.kind]}, {LOAD.of(run.load)}{more}"
@@ -86,12 +84,29 @@ def headline(plan: Plan) -> str:
     if not plan.steps:
         return (
             f"No run in the list lowers {plan.goal.label}, which is {shown(plan, plan.now)}, by 5 % or more: look at the "
-            "budget and the ties for what holds it."
+            f"budget and the ties for what holds it.{_reached(plan)}"
         )
     count = len(plan.steps)
     runs = "1 addition" if count == 1 else f"{count} additions"
     cost = f" with {plan.points} points" if plan.points else ""
-    return f"{runs}{cost}: {plan.goal.label} from {shown(plan, plan.now)} to {shown(plan, plan.then)}."
+    return f"{runs}{cost}: {plan.goal.label} from {shown(plan, plan.now)} to {shown(plan, plan.then)}.{_reached(plan)}"
+
+
+def _reached(plan: Plan) -> str:
+    """Whether a tie is broken by the whole list; empty for other goals."""
+    if plan.told_below is None:
+        return ""
+    below = f"below {shown(plan, plan.told_below)}"
+    if plan.now < plan.told_below:
+        return f" It is told apart already, which is so {below}."
+    if plan.then < plan.told_below:
+        return f" That tells it apart, which is so {below}."
+    return f" The tie stays: told apart would be {below}."
+
+
+def measure(plan: Plan) -> str:
+    """What the goal's number is, for headings: a band is no standard uncertainty."""
+    return "95 % band" if plan.goal.kind == BANDS else "u"
 
 
 def shown(plan: Plan, u: float) -> str:
@@ -119,19 +134,20 @@ def promise(plan: Plan) -> str:
             "three loads, rms; from the posterior, linear around the present solution."
         ),
         TIE: (
-            f"The promise is for {plan.goal.name} from the data, beside everything that is fitted and with the effects that it "
-            f"is confused with free; told apart where it is below {_third(plan)}."
+            f"The promise is for {NAMES.get(plan.goal.name, plan.goal.name)} from the data, beside everything that is fitted "
+            f"and with the effects that it is confused with free; told apart where it is below {_third(plan)}."
         ),
     }.get(
         plan.goal.kind,
         "The promise is for the standard error in the file, from the posterior, linear around the present solution.",
     )
-    return f"{estimate} All are one standard deviation (k = 1), at the noise that your points have now."
+    size = "" if plan.goal.kind == BANDS else " one standard deviation (k = 1),"
+    return f"{estimate} All numbers are{size} at the noise that your points have now."
 
 
 def _third(plan: Plan) -> str:
     return (
-        f"a third of its usual size, {plan.told_below:.2g}"
+        f"a third of its usual size, {shown(plan, plan.told_below)}"
         if plan.told_below
         else "a third of its usual size"
     )
@@ -200,7 +216,8 @@ def instructions(run: Run) -> list[str]:
     """Lines for tyre.toml, without the readings."""
     if run.rig:
         share = f"{BETTER:.2g} of what is declared now"
-        return ["[rig]", *(f"{key} = {value:.3g}  # {share}" for key, value in run.rig.items())]
+        # As comments: tyre.toml has its [rig] already, and a table stands in a file once.
+        return [f"# change in [rig]: {key} = {value:.3g} ({share})" for key, value in run.rig.items()]
     if run.revolution is not None:
         return [
             "[[rolling_radius]]",

@@ -13,7 +13,7 @@ ALONE = 6
 
 def plan_summary(plan: Plan) -> str:
     """What ``mffit plan`` prints: what is identified, the list, what others would bring alone."""
-    head = ("run", "points", "u now", "u then")
+    head = ("run", "points", f"{wording.measure(plan)} now", f"{wording.measure(plan)} then")
     rows = [
         (
             wording.title(step.run),

@@ -13,7 +13,7 @@ from mffit.planning import wording as planned
 
 
 def plan(found: Plan) -> dict[str, Any]:
-    """The content of ``plan.json``; uncertainties in the unit of the goal, k = 1, null where nothing is measured."""
+    """The content of ``plan.json``; uncertainties in the goal's unit, k = 1 but for bands, null where nothing is measured."""
     seen = found.identified
     return {
         "goal": {

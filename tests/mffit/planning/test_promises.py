@@ -8,6 +8,7 @@ from __future__ import annotations
 import dataclasses
 import json
 import math
+import tomllib
 
 import numpy as np
 import pytest
@@ -20,7 +21,7 @@ from mffit.pipeline.building import finite_spin_bias
 from mffit.pipeline.planning import additions, plan_of, sheet, write_plan
 from mffit.planning import Kind, read_goal, wording
 from mffit.planning.knowledge import Knowledge
-from mffit.planning.runs import candidates
+from mffit.planning.runs import DECLARED, candidates
 from mffit.report.text import plan_summary
 from mffit.rig import Simulation
 from tests.browser import assert_readable
@@ -175,6 +176,38 @@ def test_sheets_are_in_the_rigs_axes_and_can_be_declared(result, plan):
     assert 'path_centre = "right"' in text
     assert f'file = "{run.name}.csv"' in text
     assert "path_radius" not in text
+
+
+def test_what_tyre_toml_gains_can_stand_behind_it_whatever_the_runs(result):
+    """A second [rig] would make it no TOML at all."""
+    config = result.config.model_copy(update={"rolling_radius": ()})
+    runs = candidates(config, result.points, 0.3)
+    assert {run.kind for run in runs} == set(Kind)
+    told = tomllib.loads("[rig]\naxes = 'iso'\n" + additions(config, runs))
+    assert {row["file"] for row in told["sweep"]} == {f"{r.name}.csv" for r in runs if r.points is not None}
+    assert set(told["rig"]) == {"axes"}
+    of_the_rig = additions(config, [r for r in runs if r.rig])
+    assert "sheet" not in of_the_rig
+    assert tomllib.loads(of_the_rig) == {}
+    for key, _ in DECLARED.values():
+        assert f"# change in [rig]: {key} = " in of_the_rig
+
+
+@pytest.mark.parametrize(("after", "said"), [(0.9, "The tie stays"), (0.2, "That tells it apart")])
+def test_a_plan_says_whether_the_tie_is_broken(plan, after, said):
+    goal = read_goal("tie:ply-steer", on_disc=True)
+    tied = dataclasses.replace(
+        plan, goal=goal, now=1.0, told_below=0.3, steps=(dataclasses.replace(plan.steps[0], after=after),)
+    )
+    assert said in wording.headline(tied)
+    assert said not in wording.headline(plan)
+
+
+def test_a_band_is_no_standard_deviation(plan):
+    bands = dataclasses.replace(plan, goal=read_goal("bands:Mz", on_disc=True))
+    assert "k = 1" in plan_summary(plan)
+    assert "k = 1" not in plan_summary(bands)
+    assert "95 % band now" in plan_summary(bands)
 
 
 @pytest.mark.parametrize(
