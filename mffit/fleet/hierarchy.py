@@ -21,8 +21,10 @@ ENOUGH = 4
 """Tyres from which on their own scatter is estimated; fewer are held to that of tyres in general."""
 ROUNDS, SETTLED = 200, 1e-3
 """Rounds at most of the search for the population's scatter, and relative change at which it ends."""
+FEWEST = 2
+"""Tyres of which there is a population."""
 SPEAKS = 0.8
-"""Share of the declared variance to which one tyre must narrow a rig error to have a say of its own."""
+"""Share of the variance known beforehand to which one tyre must narrow a number to have a say of its own."""
 PINNED = 1e-6
 """Share of its spread to which the mean of a population of one is held: the tyre itself scatters around it."""
 SMALLEST = 1e-3
@@ -37,6 +39,11 @@ class Population:
     u_mean: float
     scatter: float  #: from tyre to tyre, 1 sigma
     tyres: int  #: that say something of it
+
+    @property
+    def assumed(self) -> bool:
+        """Whether the scatter is that of tyres in general, as these are too few to show their own."""
+        return self.tyres < ENOUGH
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,7 +70,7 @@ class Hierarchy:
     tyres: tuple[TyreEstimate, ...]  #: in the order given
     rig: Mapping[str, tuple[float, float]]  #: rig error -> (value, standard uncertainty)
     declared: Mapping[str, tuple[float, float]]  #: the same as known beforehand
-    population: Mapping[str, Population]
+    population: Mapping[str, Population]  #: of coefficients of which two tyres or more say something
 
 
 def estimate(found: Sequence[Information]) -> Hierarchy:
@@ -106,6 +113,12 @@ class _Model:
         width, scattered = (np.where(np.isfinite(x), x, size) for x in (width, general))
         self.general = np.where(np.isfinite(spread), spread, scattered)
         self.known = np.where(np.isfinite(spread), spread, width)  # of the population's mean
+        self.telling = np.array(
+            [
+                sum(_tells(i, name, u) for i in found)
+                for name, u in zip(self.own, self.known.tolist(), strict=True)
+            ]
+        )
         if len(found) == 1:  # a tyre alone is known as its build knew it
             self.general, self.known = self.known, PINNED * self.known
 
@@ -156,8 +169,9 @@ class _Model:
         u = np.sqrt(np.diag(found.covariance))
         rig = {n: (float(found.common[k]), float(u[k])) for k, n in enumerate(self.shared)}
         population = {
-            name: Population(float(found.common[m + k]), float(u[m + k]), float(tau[k]), int(self.count[k]))
+            name: Population(float(found.common[m + k]), float(u[m + k]), float(tau[k]), int(self.telling[k]))
             for k, name in enumerate(self.own)
+            if self.telling[k] >= FEWEST
         }
         tyres = tuple(
             TyreEstimate(tuple(one.names[k] for k in one.rows(rig=False)), x, C, self._strain(part, found))
@@ -205,6 +219,14 @@ class _Solved:
     common: np.ndarray  #: (m + K,) rig errors, then the population's means
     covariance: np.ndarray
     squares: np.ndarray  #: (K,) expected sum over the tyres of (x - mu)^2
+
+
+def _tells(one: Information, name: str, known: float) -> bool:
+    """Whether a tyre's points narrow a number that is known so well beforehand, everything else being known."""
+    if name not in one.names:
+        return False
+    k = one.names.index(name)
+    return bool(1.0 / (1.0 + one.matrix[k, k] * known**2) < SPEAKS)
 
 
 def _prior(found: Sequence[Information], names: Sequence[str]) -> tuple[np.ndarray, np.ndarray]:

@@ -13,6 +13,7 @@ from threadpoolctl import threadpool_limits
 
 from mffit import fleet as combining
 from mffit.comparison import with_u
+from mffit.effects import FAULT_WORDS
 from mffit.errors import InputError
 from mffit.fit import priors
 from mffit.fleet import Fleet, Hierarchy, Row, Specimen, TyreEstimate
@@ -129,25 +130,27 @@ def _notes(rows: Sequence[Row], rigs: Sequence[Hierarchy | None]) -> list[str]:
     if len(rigs) > 1:
         out.append(
             f"The builds were told of {len(rigs)} different rigs (the table [rig] of each): the tyres of each are estimated "
-            "together, and priors.json is written for one rig only."
+            "together. priors.json is not written, as it is for one rig."
         )
     for row in rows:
         # Where all tyres leave the declaration, each that leans on it alone seems to differ from the others.
         worst = max(row.strain.keys() - far, key=lambda name: abs(row.strain[name]), default="")
         if worst and abs(row.strain[worst]) > combining.STRAINED:
             out.append(
-                f"{row.specimen.name}: its own {worst} lies {abs(row.strain[worst]):.0f} standard deviations from that of the "
-                "other tyres; if the rig was adjusted in between, it is another rig: leave this tyre out."
+                f"{row.specimen.name}: its own error of the rig, {FAULT_WORDS[worst]}, lies {abs(row.strain[worst]):.0f} "
+                "standard deviations from that of the other tyres; if the rig was adjusted in between, it is another rig: "
+                "leave this tyre out."
             )
     for name, times in far.items():
         out.append(
-            f"All tyres together put {name} {times:.0f} standard deviations from what [rig] declares: the declaration is too "
-            "tight, or the tyres share something that the model lacks; then believe the direct method."
+            f"All tyres together put an error of the rig, {FAULT_WORDS[name]}, {times:.0f} standard deviations from what [rig] "
+            "declares: the declaration is too tight, or the tyres share something that the model lacks; then believe the "
+            "direct method."
         )
     if len({_nominal(row.specimen.tyre) for row in rows}) > 1:
         out.append(
-            "The tyres have different nominal loads or pressures, from which coefficients count: the population mixes them, "
-            "and priors.json is not written."
+            "The tyres have different nominal loads or pressures, from which coefficients count: the population mixes them"
+            + (", and priors.json is not written." if len(rigs) == 1 else ".")
         )
     return out
 

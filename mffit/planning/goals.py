@@ -14,7 +14,6 @@ from tir.parameters import BY_NAME
 EPSILON, JOINT, BANDS, TIE = "eps_gamma", "eps_gamma:joint", "bands", "tie"
 GOALS = (EPSILON, JOINT, BANDS, f"{BANDS}:Mz", f"{TIE}:EFFECT")
 """How goals are written, beside the name of a coefficient."""
-NAMES = {effect.id: effect.name for effect in CATALOG}
 
 
 @dataclass(frozen=True, slots=True)

@@ -5,7 +5,8 @@ from __future__ import annotations
 import math
 
 from mffit.diagnosis.ties import TELLING
-from mffit.planning.goals import BANDS, EPSILON, JOINT, NAMES, TIE
+from mffit.effects import NAMES
+from mffit.planning.goals import BANDS, EPSILON, JOINT, TIE
 from mffit.planning.record import Identified, Plan, Step, Tie
 from mffit.planning.runs import BETTER, DECLARED, NARROWER, Kind, Run
 from mffit.quantities import CONDITIONS, DIRECT

@@ -7,7 +7,8 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from mffit.fleet import EPSILON, Fleet
+from mffit.effects import FAULT_WORDS
+from mffit.fleet import ENOUGH, EPSILON, Fleet
 from mffit.quantities import CHANNELS, COMPARED, DIRECT
 from mffit.report import page
 from mffit.rig import MEANINGS, UNITS
@@ -45,6 +46,8 @@ def write_fleet(found: Fleet, folder: Path, *, priors: bool) -> None:
         channels=CHANNELS,
         units=UNITS,
         meanings=MEANINGS,
+        words=FAULT_WORDS,
+        enough=ENOUGH,
         spin=SPIN,
         priors=priors,
         pictures=page.draw(folder, figures),

@@ -209,6 +209,9 @@ def test_the_fleet_compares_and_tightens(compared, folders):
     assert list(table.name) == [HOSTILE, "tyre 1", "tyre 2", "tyre 3", "tyre 4"]
     assert table.epsilon_gamma_together[0] == found["tyres"][0]["epsilon_gamma"]["together"]["value"]
     assert "error of the rig" in said
+    assert "load-cell zero of Fy" in said
+    assert "F0_N" not in said + (out / "fleet.html").read_text()
+    assert found["notes"] == []
 
 
 def test_a_stiffness_carries_the_uncertainty_of_its_coefficients(compared, folders):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from mffit.effects import FAULT_WORDS
 from mffit.fleet import EPSILON, Fleet
 from mffit.quantities import CHANNELS, COMPARED, DIRECT
 from mffit.report.rounding import number, stated, with_u
@@ -30,7 +31,10 @@ def fleet_summary(found: Fleet) -> str:
         if (s := found.scatter(key)) is not None
     ]
     rigs = [
-        (f"{i} {name}" if len(found.rigs) > 1 else name, with_u(value, u, UNITS[name]))
+        (
+            f"{i} {FAULT_WORDS[name]}" if len(found.rigs) > 1 else FAULT_WORDS[name],
+            with_u(value, u, UNITS[name]),
+        )
         for i, rig in enumerate(found.rigs, 1)
         if rig is not None
         for name, (value, u) in rig.rig.items()

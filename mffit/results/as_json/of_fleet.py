@@ -60,8 +60,11 @@ def fleet(found: Fleet) -> dict[str, Any]:
                 "errors": {
                     n: {"value": value, "stderr": u, "unit": UNITS[n]} for n, (value, u) in rig.rig.items()
                 },
-                "population": {name: asdict(p) for name, p in rig.population.items()},
+                "population": {
+                    name: {**asdict(p), "assumed": p.assumed} for name, p in rig.population.items()
+                },
             }
             for rig in found.rigs
         ],
+        "notes": list(found.notes),
     }

@@ -88,6 +88,19 @@ def test_one_tyre_is_its_points_and_what_was_known_of_it_once():
     np.testing.assert_allclose(tyre.values, mean[:3], rtol=1e-6)
     np.testing.assert_allclose(tyre.covariance, covariance[:3, :3], rtol=1e-5)
     assert tyre.strain == {}
+    assert estimate([one]).population == {}
+
+
+def test_a_population_is_of_coefficients_that_two_tyres_speak_of():
+    """No turn slip acts on a straight path: its coefficient is among the numbers, and the points say nothing of it."""
+    found, _, _ = fleet(5, 3)
+    silent = np.eye(5)
+    silent[1, 1] = 0.0
+    found[1:] = [replace(i, matrix=silent @ i.matrix @ silent, vector=silent @ i.vector) for i in found[1:]]
+    whole = estimate(found)
+    assert set(whole.population) == {"PDY1", "PECP1"}
+    assert all(p.tyres == 3 and p.assumed for p in whole.population.values())
+    assert not estimate(fleet(6, 4)[0]).population["PKY6"].assumed
 
 
 def test_together_they_are_nearer_to_the_truth_and_as_near_as_they_say():
