@@ -14,6 +14,10 @@ from mffit.quantities import CONDITIONS, DIRECT
 from tir import Quantity
 
 
+CONICITY, FINITE_SPIN = "conicity", "finite spin of the disc"
+"""Sources that join the budget once a model has been fitted; the random draws are made before."""
+
+
 class Contribution(NamedTuple):
     """One line of the budget."""
 
@@ -141,9 +145,9 @@ class Measured(Brief):
         assert row is not None
         assert direct is not None
         conicity = [
-            Contribution("conicity", n.force, "N", n.shift) for n in self.notes if isinstance(n, Conicity)
+            Contribution(CONICITY, n.force, "N", n.shift) for n in self.notes if isinstance(n, Conicity)
         ]
-        spin = Contribution("finite spin of the disc", abs(bias), "-", abs(bias))
+        spin = Contribution(FINITE_SPIN, abs(bias), "-", abs(bias))
         u = math.hypot(direct.u, *(line.contribution for line in conicity))
         whole = Quantity(direct.value, math.hypot(u, bias), direct.unit)
         named = dataclasses.replace(row, epsilon_gamma=whole, budget=(*row.budget, *conicity, spin))

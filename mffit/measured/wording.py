@@ -28,7 +28,7 @@ from mffit.measured.notes import (
     Trouble,
     ZerosDisagree,
 )
-from mffit.measured.result import Measured
+from mffit.measured.result import CONICITY, FINITE_SPIN, Measured
 
 if TYPE_CHECKING:
     from mffit.measured.alignment import Alignment
@@ -48,6 +48,28 @@ def epsilon_values(measured: Measured) -> str:
         f"measured {direct.value:.3f}, of which {direct.value - debiased.value:+.3f} is what the finite spin of the disc adds to "
         f"the direct method{joint}; all are within their uncertainty if they differ by less than {2.0 * direct.u:.3f}"
     )
+
+
+def why_no_slope(measured: Measured) -> str:
+    """The one reason for which the file has no load slope; empty if it has one."""
+    for fact in measured.notes:
+        if isinstance(fact, OneLoad | SlopeInNoise | EpsilonInNoise | SlopeTooSteep):
+            return note(fact)
+    return ""
+
+
+def by_draws(measured: Measured) -> str:
+    """u(eps_gamma) by random draws, and what of the budget it is to be compared with; empty without draws."""
+    row = measured.nominal
+    if row is None or row.u_monte_carlo is None or row.epsilon_gamma is None:
+        return ""
+    said = f"{row.u_monte_carlo:.4f} by random draws"
+    later = [line for line in row.budget if line.source in (CONICITY, FINITE_SPIN)]
+    if not later:
+        return said
+    rest = math.sqrt(max(row.epsilon_gamma.u**2 - sum(line.contribution**2 for line in later), 0.0))
+    sources = " and ".join(line.source for line in later)
+    return f"{said}, which leave out {sources}; without them the budget gives {rest:.4f}"
 
 
 def note(fact: Note) -> str:

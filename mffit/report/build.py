@@ -55,6 +55,7 @@ def write_build(result: BuildResult, folder: Path) -> None:
         channels=CHANNELS,
         places=PLACES,
         epsilon_values=wording.epsilon_values(result.measured),
+        of_spin=wording,
         conditions=CONDITIONS,
         direct=DIRECT,
         per_load=PER_LOAD,

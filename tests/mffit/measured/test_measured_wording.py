@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import math
+from dataclasses import MISSING, fields
 
 import pytest
 
-from mffit.measured import notes, wording
+from mffit.measured import LoadResult, Measured, notes, wording
 from tir import Quantity
 
 ANGLE = Quantity(math.radians(0.25), math.radians(0.02), "rad")
@@ -64,3 +65,27 @@ def test_a_warning_is_a_sentence_with_its_numbers(fact, words):
 def test_no_fact_is_without_words():
     assert {type(fact) for fact, _ in NOTES} == set(notes.Note.__args__)
     assert {type(fact) for fact, _ in WARNINGS} == set(notes.Trouble.__args__)
+
+
+def at_one_load(*remarks):
+    """eps_gamma with u 0.05 at one load, all of it known before the fit."""
+    empty = dict.fromkeys((f.name for f in fields(LoadResult) if f.default is MISSING), None)
+    row = LoadResult(
+        **empty | {"load": 1400.0, "epsilon_gamma": Quantity(-0.1, 0.05, "-")}, u_monte_carlo=0.0501
+    )
+    return Measured((row,), row, -0.1, 0.0, 0.4, {}, False, remarks, ())
+
+
+def test_random_draws_are_compared_with_what_they_draw():
+    before = at_one_load(notes.Conicity(0.005, 7.0, 0.03))
+    assert wording.by_draws(before) == "0.0501 by random draws"
+    after = before.debiased(0.04)
+    assert after.epsilon_gamma.u == pytest.approx(math.hypot(0.05, 0.03, 0.04))
+    assert "leave out conicity and finite spin of the disc" in wording.by_draws(after)
+    assert wording.by_draws(after).endswith("the budget gives 0.0500")
+
+
+def test_the_reason_for_no_load_slope_is_the_one_that_applied():
+    said = wording.why_no_slope(at_one_load(notes.ContactWanders(), notes.SlopeInNoise(0.02, 0.043)))
+    assert said == wording.note(notes.SlopeInNoise(0.02, 0.043))
+    assert wording.why_no_slope(at_one_load(notes.LoadSlope(0.4, 0.1))) == ""
