@@ -109,15 +109,26 @@ def _notes(first: Subject, second: Subject) -> tuple[str, ...]:
         out.append(
             f"{on.name} is for simulations with turn slip on, {off.name} for turn slip off; each is evaluated as it is meant."
         )
-    unknown = [side.name for side in (first, second) if side.covariance is None]
-    if unknown:
+    unknown = [side for side in (first, second) if side.covariance is None]
+    bare = [side.name for side in unknown if not side.told_of]
+    if bare:
         out.append(
-            f"Nothing tells how uncertain {' or '.join(unknown)} is: result.json of a build beside the file would."
+            f"Nothing tells how uncertain {' or '.join(bare)} is: result.json of a build beside the file would."
         )
-    elif len({first.name, second.name}) == 2:
+    out += [
+        f"How uncertain {side.name} is, is not told: the covariance in the result.json beside it belongs to {side.told_of}."
+        for side in unknown
+        if side.told_of
+    ]
+    if not unknown and len({first.name, second.name}) == 2:
+        shared = first.rig is not None and first.rig == second.rig
         out.append(
-            "Both sides count as independent; errors of one rig that both builds share are counted twice, so differences between "
-            "builds of one rig stand out more than stated."
+            "Both sides count as independent"
+            + (
+                "; both builds are of one rig, whose errors are counted twice, so differences stand out more than stated."
+                if shared
+                else "."
+            )
         )
     return tuple(out)
 
@@ -144,7 +155,7 @@ def against_points(
     readings = simulation.readings(points)
     sweeps = []
     for channel in CHANNELS:
-        apart = getattr(readings, channel) - getattr(points, channel)
+        apart = getattr(points, channel) - getattr(readings, channel)
         u = getattr(points, f"u_{channel}")
         for k in np.unique(points.sweep):
             rows = (points.sweep == k) & np.isfinite(apart)

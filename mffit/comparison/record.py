@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -26,6 +28,8 @@ class Subject:
     turn_slip: bool  #: whether the simulation that it is for computes turn slip
     names: tuple[str, ...] = ()  #: numbers of the file whose uncertainty is known
     covariance: np.ndarray | None = None  #: (k, k) of these; None for files of unknown origin
+    told_of: str = ""  #: the other file whose covariance the result.json beside this one holds
+    rig: Mapping[str, Any] | None = None  #: what its build was told of the rig
 
 
 @dataclass(frozen=True, slots=True)
@@ -96,7 +100,7 @@ class CurveGap:
 
 @dataclass(frozen=True, slots=True)
 class SweepGap:
-    """How far a file is from the readings of one sweep: file less measured."""
+    """How far the readings of one sweep are from a file: measured less file, as the data are the second side."""
 
     sweep: str
     channel: str

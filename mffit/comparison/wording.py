@@ -34,6 +34,8 @@ def headline(found: Comparison) -> str:
                 parts.append(f"{channel} by {total:.3g} {known.unit} rms")
         return f"{found.first} misses {found.second}: {' and '.join(parts)}; {_standing_out(found)}."
     gap = {c: max((g.rms for g in found.curves if g.channel == c), default=0.0) for c in CHANNELS}
+    if not any(gap.values()):
+        return f"The curves of {found.first} and {found.second} do not differ; {_standing_out(found)}."
     said = " and ".join(f"{c} by up to {gap[c]:.3g} {q.unit} rms" for c, q in CHANNELS.items())
     return f"The curves of {found.first} and {found.second} differ in {said}; {_standing_out(found)}."
 

@@ -13,7 +13,6 @@ from mffit.measured.notes import Conicity, Note
 from mffit.quantities import CONDITIONS, DIRECT
 from tir import Quantity
 
-
 CONICITY, FINITE_SPIN = "conicity", "finite spin of the disc"
 """Sources that join the budget once a model has been fitted; the random draws are made before."""
 

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import json
+import tomllib
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -15,6 +17,7 @@ from mffit.comparison import Comparison, Subject, against_points, between
 from mffit.config import Config
 from mffit.diagnosis.inexact import Inexactness
 from mffit.errors import InputError
+from mffit.fleet.specimen import RESOLVED
 from mffit.measured import LoadResult
 from mffit.output import output_folder
 from mffit.pipeline.inputs import inputs_of, read_base
@@ -71,10 +74,10 @@ def compare(
     else:
         sides = [_subject(path) for path in paths]
         if sides[0].name == sides[1].name:
-            sides = [
-                replace(side, name=f"{path.parent.name if path.is_file() else path.name}/{side.name}")
-                for side, path in zip(sides, paths, strict=True)
+            files = [
+                path / side.name if path.is_dir() else path for path, side in zip(paths, sides, strict=True)
             ]
+            sides = [replace(side, name=name) for side, name in zip(sides, _apart(*files), strict=True)]
         if turn_slip is not None:
             sides = [replace(side, turn_slip=turn_slip) for side in sides]
         progress("comparing")
@@ -96,8 +99,32 @@ def _subject(path: Path) -> Subject:
         path = path / _file_of_build(path)
     tyre = tir.read(path)
     posterior = posterior_of(tyre, path)
-    names, covariance = _known(posterior) if posterior is not None else ((), None)
-    return Subject(path.name, tyre, _turn_slip(tyre), names, covariance)
+    written = _beside(path)
+    rig = written.get("rig")
+    if posterior is None:
+        main = str(written.get("tir", ""))
+        return Subject(path.name, tyre, _turn_slip(tyre), told_of="" if main == path.name else main, rig=rig)
+    return Subject(path.name, tyre, _turn_slip(tyre), *_known(posterior), rig=rig)
+
+
+def _beside(path: Path) -> dict[str, Any]:
+    """What a build beside the file says of the file that its covariance is of, ``tir``, and of its ``rig``."""
+    try:
+        result = json.loads((path.parent / RESULT).read_text(encoding="utf-8"))
+        resolved = tomllib.loads((path.parent / RESOLVED).read_text(encoding="utf-8"))
+        return {"tir": result["tir"], "rig": resolved["rig"]}
+    except (OSError, ValueError, KeyError, TypeError):
+        return {}
+
+
+def _apart(first: Path, second: Path) -> tuple[str, str]:
+    """The shortest ends of two paths that differ; both whole if they are one."""
+    parts = [path.resolve().parts for path in (first, second)]
+    for k in range(2, max(map(len, parts)) + 1):
+        a, b = ("/".join(p[-k:]) for p in parts)
+        if a != b:
+            return a, b
+    return str(first), str(second)
 
 
 def _known(posterior: Inexactness) -> tuple[tuple[str, ...], np.ndarray]:

@@ -32,7 +32,8 @@ def comparison_table(found: Comparison) -> str:
             )
             for gap in found.sweeps[:MOST]
         ]
-        parts.append(table(("sweep", "channel", "rms", "bias", "of noise"), rows, left=2))
+        mean = f"mean, {found.second} less {found.first}"
+        parts.append(table(("sweep", "channel", "rms", mean, "rms over noise"), rows, left=2))
     parts.append(paragraphs(found.notes))
     return blocks(parts)
 

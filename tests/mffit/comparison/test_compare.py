@@ -14,6 +14,7 @@ from mffit.cli import main
 from mffit.comparison import Difference, Subject, between, characteristics, wording
 from mffit.comparison.record import ranked
 from mffit.errors import InputError
+from mffit.pipeline.building import write_build
 from tests.browser import assert_readable
 
 
@@ -53,11 +54,27 @@ def test_a_changed_coefficient_shows_where_it_acts(stiffer):
     assert change == pytest.approx(worst.second[where] - worst.first[where])
 
 
+def test_the_covariance_of_another_file_is_said_to_be_one():
+    plain = Subject("a-normal.tir", truth(), False, told_of="a.tir")
+    (note,) = between(Subject("a.tir", truth(), False, ("PKY1",), np.eye(1)), plain).notes
+    assert "a-normal.tir" in note
+    assert "belongs to a.tir" in note
+    assert "would" not in note
+
+
+@pytest.mark.parametrize(("rig", "shared"), [({"radius": 1.0}, True), ({"radius": 2.0}, False)])
+def test_only_builds_of_one_rig_share_its_errors(rig, shared):
+    a = Subject("a", truth(), True, ("PKY1",), np.eye(1), rig={"radius": 1.0})
+    (note,) = between(a, Subject("b", truth(), True, ("PKY1",), np.eye(1), rig=rig)).notes
+    assert "independent" in note
+    assert ("of one rig" in note) == shared
+
+
 def test_equal_files_do_not_differ():
     found = between(Subject("a", truth(), True), Subject("b", truth(), True))
     assert not found.coefficients
     assert all(row.change == 0.0 for row in found.numbers)
-    assert "equal" in wording.headline(found)
+    assert "do not differ; all numbers are equal" in wording.headline(found)
 
 
 def test_uncertainties_go_through_to_the_numbers():
@@ -89,7 +106,7 @@ def folder(tmp_path_factory):
     content["sweep"] = [s for s in content["sweep"] if s["load_N"] == 1400]
     content["rolling_radius"] = [{"load_N": 1400}]
     place = tmp_path_factory.mktemp("project")
-    mffit.pipeline.building.write_build(built(content, place), place / "out")
+    write_build(built(content, place), place / "out")
     return place
 
 
@@ -117,6 +134,7 @@ def test_two_builds_of_one_name_are_told_by_their_folders(folder):
     found = mffit.compare(folder / "out", later)
     assert found.first != found.second
     assert all(row.z == 0.0 for row in found.numbers if row.z is not None)
+    assert "of one rig" in " ".join(found.notes)
 
 
 def test_a_file_is_compared_with_data(folder, stiffer, tmp_path):
@@ -130,6 +148,12 @@ def test_a_file_is_compared_with_data(folder, stiffer, tmp_path):
     row = by_key(wrong)["C_alpha_N_per_rad"]
     assert abs(by_key(right)["C_alpha_N_per_rad"].z) < 3.0 < abs(row.z)
     assert row.change > 0.0  # the data are less stiff, and C_alpha is negative
+    # The same sign by sweep.
+    readings = wrong.simulation.readings(wrong.points)
+    for gap in wrong.sweeps:
+        rows = np.array([wrong.points.sweep_names[k] == gap.sweep for k in wrong.points.sweep])
+        apart = getattr(wrong.points, gap.channel)[rows] - getattr(readings, gap.channel)[rows]
+        assert gap.bias == pytest.approx(np.nanmean(apart))
 
 
 def test_two_sets_of_data_are_refused(folder):
