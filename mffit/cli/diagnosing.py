@@ -30,5 +30,8 @@ def diagnose(tyre_toml: Path, model: Path | None, out: Path | None, voice: Voice
     with voice.progress() as show:
         diagnosis = pipeline.diagnose(tyre_toml, model, out=out, progress=show)
     voice.say(text.diagnosis_summary(diagnosis))
-    voice.say(f"written to {out}: diagnosis.html, diagnosis.json, {diagnosis.model_after}, corrected.toml")
+    model_after = (
+        diagnosis.model_after if diagnosis.effects else f"{diagnosis.model_after} (the model as given)"
+    )
+    voice.say(f"written to {out}: diagnosis.html, diagnosis.json, {model_after}, corrected.toml")
     voice.give(lambda: as_json.diagnosis(diagnosis))

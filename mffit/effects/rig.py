@@ -9,14 +9,16 @@ SIDESLIP_MISALIGNMENT = Effect(
     "The steering axis reads zero while the wheel runs at a small sideslip angle.",
     (Free("alpha_0_deg", 0.2, (0.0,), -5.0, 5.0),), (), "even in alpha; turns with the direction",
     ("ply-steer",),
-    remedy="turn the steering axis by {opposite} deg at its reading of zero and call that zero; or add {value} deg to all",
+    remedy="turn the steering axis by {opposite} deg at its reading of zero and call that zero; or add {value} deg "
+    "to all readings of the sideslip angle",
     axes=("alpha",),
 )  # fmt: skip
 CAMBER_MISALIGNMENT = Effect(
     "camber-misalignment", "camber axis misaligned", "rig",
     "The camber axis reads zero while the wheel leans a little.",
     (Free("gamma_0_deg", 0.4, (0.0,), -5.0, 5.0),), (), "even in gamma", ("camber-reduction", "path-radius"),
-    remedy="lean the wheel by {opposite} deg at its reading of zero and call that zero; or add {value} deg to all",
+    remedy="lean the wheel by {opposite} deg at its reading of zero and call that zero; or add {value} deg "
+    "to all readings of the camber angle",
     axes=("gamma",),
 )  # fmt: skip
 LOADCELL_OFFSET_FY = Effect(

@@ -122,7 +122,8 @@ def ranges_sentence(files: Files) -> str:
     )
     return (
         f"Tested: {t['FZMIN']:.0f} to {t['FZMAX']:.0f} N, sideslip to {np.degrees(t['ALPMAX']):.1f} deg, camber to "
-        f"{np.degrees(t['CAMMAX']):.1f} deg, {tested_pressure}. The ranges in the file are wider, as simulators clamp to them: "
+        f"{np.degrees(t['CAMMAX']):.1f} deg, {tested_pressure}. The file allows more where its range is "
+        "wider, as simulators clamp to it: "
         f"the model stays plausible, not measured, over {w['FZMIN']:.0f} to {w['FZMAX']:.0f} N, "
         f"{np.degrees(w['ALPMAX']):.0f} deg of sideslip, {np.degrees(w['CAMMAX']):.0f} deg of camber, "
         f"{w['PRESMIN'] / 1e3:.0f} to {w['PRESMAX'] / 1e3:.0f} kPa."

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from mffit.config import Config
+from mffit.effects import FAULT_WORDS
 from mffit.fit import Agreement, Coefficient, Doubt, Outlier, Posterior, StageRecord
 from mffit.fit.coverage import StageCoverage
 from mffit.fit.files import Files
@@ -194,7 +195,9 @@ def coefficient_rows(coefficients: Mapping[str, Coefficient]) -> tuple[Row, ...]
                 at_bound=c.at_bound,
                 stage=c.stage,
                 status=c.status,
-                correlation=f"{c.correlated_with} {c.correlation:+.2f}" if c.correlated_with else "",
+                correlation=f"{FAULT_WORDS.get(c.correlated_with, c.correlated_with)} {c.correlation:+.2f}"
+                if c.correlated_with
+                else "",
             )
         )
     return tuple(rows)

@@ -10,7 +10,7 @@ import numpy as np
 from mffit.diagnosis import Diagnosis
 from mffit.diagnosis.selection import Step
 from mffit.diagnosis.where import Region
-from mffit.effects import CATALOG
+from mffit.effects import CATALOG, FAULT_WORDS
 from mffit.points import Points
 from mffit.quantities import CHANNELS
 from mffit.report.curves import Condition, Curve, conditions, curves
@@ -87,6 +87,7 @@ class DiagnosisView:
     names: Mapping[str, str]  #: effect id -> plain name
     descriptions: Mapping[str, str]  #: coefficient -> what it is
     units: Mapping[str, str]  #: of every number that was found, empty without one
+    words: Mapping[str, str]  #: what numbers of the rig among them are called
     shown: tuple[Shown, ...]  #: the worst and the typical sweep
 
     @property
@@ -124,6 +125,7 @@ def view_of(diagnosis: Diagnosis) -> DiagnosisView:
         names={key: effect.name for key, effect in known.items()},
         descriptions={name: BY_NAME[name].description for name in freed if name in BY_NAME},
         units={name: _unit(name) for name in freed},
+        words={name: word for name in freed if (word := _word(name))},
         shown=_shown(diagnosis, channels),
     )
 
@@ -133,6 +135,12 @@ def _unit(name: str) -> str:
     fault = name.partition(OF_RUN)[0]
     unit = UNITS[fault] if fault in FAULT_NAMES else BY_NAME[name].unit if name in BY_NAME else ""
     return "" if unit == "-" else unit
+
+
+def _word(name: str) -> str:
+    """What a number of the rig, of all runs or of one, is called; empty for a coefficient."""
+    fault, of, file = name.partition(OF_RUN)
+    return f"{FAULT_WORDS[fault]}, {file}" if of else FAULT_WORDS.get(fault, "")
 
 
 def _shown(diagnosis: Diagnosis, channels: Sequence[GapChannel]) -> tuple[Shown, ...]:
