@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from tir.codegen.program import Switches, trace
 from tir.document import Document, Line
 from tir.equations.forces import Forces
-from tir.errors import Problem
+from tir.errors import Problem, some
 from tir.parameters import BY_NAME, REGULAR, TABLE
 from tir.targets import Target
 from tir.tyre import Tyre
@@ -51,15 +51,13 @@ def _content(tyre: Tyre, target: Target) -> Iterator[Problem]:
 def _missing(names: set[str], turn_slip: bool) -> Iterator[Problem]:
     """Keys that a program wants whole files for: it cannot do without those of the forces."""
     forces = set(trace(Switches(turn_slip, limits=True), Forces._fields).parameters)
-    for level, some, why in (
+    for level, those, why in (
         ("error", names & forces, "the forces need every key"),
         ("warning", names - forces, "the forces do without, but the program may want every key"),
     ):
-        shown = [row.name for row in TABLE if row.name in some]
+        shown = [row.name for row in TABLE if row.name in those]
         if shown:
-            more = f" and {len(shown) - 6} more" if len(shown) > 6 else ""
-            lacks = f"the file lacks {', '.join(shown[:6])}{more}"
-            yield Problem(level, f"{lacks}; {why}: tyre.expand() adds what is missing")
+            yield Problem(level, f"the file lacks {some(shown)}; {why}: tyre.expand() adds what is missing")
 
 
 def _text(tyre: Tyre, document: Document, target: Target) -> Iterator[Problem]:

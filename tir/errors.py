@@ -1,7 +1,8 @@
-"""What can be wrong with a property file: one exception class and one record, and how many; imports nothing of ours."""
+"""What can be wrong with a property file: one exception class and one record, how many and which; imports nothing of ours."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -43,3 +44,8 @@ def counted(number: int, what: str) -> str:
     """A number of things in words, of which the first has the plural: "1 key of MF 6.2", "2 keys of MF 6.2"."""
     head, *rest = what.split(" ", 1)
     return " ".join([str(number), head + "s" * (number != 1), *rest])
+
+
+def some(names: Sequence[str]) -> str:
+    """The first of many names, and how many there are beside."""
+    return ", ".join(names[:6]) + (f" and {len(names) - 6} more" if len(names) > 6 else "")

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Sequence
 from functools import cache
 from pathlib import Path
 from types import MappingProxyType
@@ -12,7 +11,7 @@ from types import MappingProxyType
 from tir.codegen.program import Switches, trace
 from tir.document import Document, Line, read_document
 from tir.equations.forces import Forces, State
-from tir.errors import Problem, TirError, counted
+from tir.errors import Problem, TirError, counted, some
 from tir.parameters import BY_NAME, TABLE, TURN_SLIP, Parameter
 from tir.targets import FITTYPS, TARGETS, fittyps_text
 from tir.tyre import Quantity, Tyre
@@ -253,13 +252,11 @@ def _about_missing(values, stated) -> list[Problem]:
         out.append(Problem("warning", "FITTYP is missing; the file is read as MF 6.2", "FITTYP"))
     if missing:
         mf, verbs = "6.1" if version == 61 else "6.2", "is" if len(missing) == 1 else "are"
-        sentence = f"{counted(len(missing), f'key of MF {mf}')} {verbs} missing, defaults are taken: {_some(missing)}"
+        sentence = (
+            f"{counted(len(missing), f'key of MF {mf}')} {verbs} missing, defaults are taken: {some(missing)}"
+        )
         out.append(Problem("warning", sentence))
     return out
-
-
-def _some(names: Sequence[str]) -> str:
-    return ", ".join(names[:6]) + (f" and {len(names) - 6} more" if len(names) > 6 else "")
 
 
 def _about_unknown(extra) -> list[Problem]:
@@ -271,7 +268,7 @@ def _about_unknown(extra) -> list[Problem]:
     if not names:
         return []
     said = "is no MF 6.2 parameter and is" if len(names) == 1 else "are no MF 6.2 parameters and are"
-    sentence = f"{counted(len(names), 'key')} {said} kept but not used: {_some(names)}"
+    sentence = f"{counted(len(names), 'key')} {said} kept but not used: {some(names)}"
     return [Problem("warning", sentence)]
 
 

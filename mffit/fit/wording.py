@@ -9,7 +9,7 @@ import numpy as np
 from mffit.fit.doubts import Doubt
 from mffit.fit.files import DECIDED, FileFigures, Files
 from mffit.fit.outliers import Outlier
-from mffit.fit.result import Coefficient
+from mffit.fit.result import Coefficient, agreement
 from mffit.fit.staged import Fitted
 from mffit.points import Points
 from mffit.quantities import CHANNELS
@@ -176,9 +176,7 @@ def distrust(fitted: Fitted, points: Points, model: Readings) -> list[str]:
                 f"the file is not to be trusted: the model misses {name} by {scale:.1f} times the stated uncertainty"
                 f"{_carriers(points, (reading - measured) / u)}; look at these sweeps, or run mffit diagnose"
             )
-        known = np.isfinite(measured)
-        size = rms(measured[known] - np.mean(measured[known])) if np.any(known) else 0.0
-        share = 1.0 - (rms(reading - measured) / size) ** 2 if size > 0.0 else 1.0
+        share = agreement(reading, measured).r2
         if share < EXPLAINED:
             out.append(
                 f"the file is not to be trusted: the model explains {100.0 * max(share, 0.0):.0f} % of the variance of {name}; "

@@ -38,7 +38,7 @@ class Zero(NamedTuple):
 
 def _zero(points: Points, group: LoadGroup, C_alpha: UFloat | None, config: Config) -> Zero:
     """Forces and moments at zero sideslip in both directions, backlash taken off."""
-    slope = C_alpha.nominal_value if C_alpha is not None else -10.0 * group.load
+    slope = _slope(C_alpha, group)
     u_Fy = np.where(np.isfinite(points.u_Fy), points.u_Fy, DEFAULT_U_FORCE)
     u_Mz = np.where(np.isfinite(points.u_Mz), points.u_Mz, DEFAULT_U_MOMENT)
     forward = _at_zero(points, group, 1, points.Fy, u_Fy, slope)
@@ -53,6 +53,11 @@ def _zero(points: Points, group: LoadGroup, C_alpha: UFloat | None, config: Conf
     i = zeros(points, group, 1)
     play_sign = float(np.sign(np.mean(points.alpha[i]))) if len(i) and config.rig.backlash_deg else 0.0
     return Zero(forward[0], backward[0], forward[1], backward[1], moment, play_sign)
+
+
+def _slope(C_alpha: UFloat | None, group: LoadGroup) -> float:
+    """The cornering stiffness [N/rad]; a usual one where none was measured."""
+    return float(C_alpha.nominal_value) if C_alpha is not None else -10.0 * group.load
 
 
 def _at_zero(
@@ -85,7 +90,7 @@ def unlike_zeros(
     points: Points, phi_t: float, group: LoadGroup, C_alpha: UFloat | None, config: Config
 ) -> list[ZerosDisagree]:
     """Sweeps of one load, path and direction whose zeros are further apart than mounting the wheel again explains."""
-    slope = C_alpha.nominal_value if C_alpha is not None else -10.0 * group.load
+    slope = _slope(C_alpha, group)
     group = LoadGroup(group.load, group.index[np.isclose(points.phi_t[group.index], phi_t)])
     u_again = config.rig.u_slip_alignment_N
     out = []

@@ -7,6 +7,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy.ndimage import median_filter
 
+from mffit.points.steady import runs
 from mffit.scatter import robust
 from mffit.sweeps import Sweep
 
@@ -86,9 +87,8 @@ def _still(values: np.ndarray, rate: float) -> np.ndarray:
 def _while_moving(stuck: np.ndarray, Fy: np.ndarray) -> np.ndarray:
     """Those of the runs of a mask (n,) in which the side force moves by more than its noise can."""
     noise = robust(np.diff(Fy)) / np.sqrt(2.0)
-    edges = np.flatnonzero(np.diff(np.r_[False, stuck, False].astype(np.int8)))
     out = np.zeros_like(stuck)
-    for begin, end in zip(edges[::2], edges[1::2], strict=True):
+    for begin, end in runs(stuck):
         out[begin:end] = np.ptp(Fy[begin:end]) > MOVED * noise
     return out
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 
 from mffit.errors import InputError
-from mffit.points.mistakes import factor
 from mffit.points.points import Points
 from mffit.points.signatures import slope
+from mffit.sweeps.units import factor
 
 STEEPEST = {"alpha": 120.0, "gamma": 12.0}
 """Slopes of side force per load [1/rad] that no tyre comes near; radians read as degrees are 57-fold."""

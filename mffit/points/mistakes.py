@@ -4,12 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from functools import cache, partial
-
-import numpy as np
+from functools import partial
 
 from mffit.points.points import Points
-from mffit.sweeps.units import converted
+from mffit.sweeps.units import factor
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,12 +33,6 @@ def _swapped(points: Points, signs: Mapping[str, float]) -> Points:
 
 def _in_unit(points: Points, signs: Mapping[str, float], channel: str, unit: str, house: str) -> Points:
     return points.replace(**{channel: factor(unit, house) * getattr(points, channel)})
-
-
-@cache
-def factor(unit: str, house: str) -> float:
-    """How many of the ``house`` unit one ``unit`` is."""
-    return float(converted(np.ones(1), unit, house)[0])
 
 
 def _reversed(channel: str, column: str, what: str) -> Mistake:

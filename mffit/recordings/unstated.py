@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from mffit.sweeps.channels import BY_NAME, Channel
-from mffit.sweeps.units import converted, spelt
+from mffit.sweeps.units import converted, factor, spelt
 
 
 class Found(NamedTuple):
@@ -116,13 +116,13 @@ def _load(found: Mapping[str, Found], known: Mapping[str, str]) -> float:
     """The largest load [N]; 0 while its unit is open."""
     if "Fz_N" not in found or "Fz_N" not in known:
         return 0.0
-    return float(converted(np.array([found["Fz_N"].size]), known["Fz_N"], "N")[0])
+    return factor(known["Fz_N"], "N") * found["Fz_N"].size
 
 
 def _pressure(column: Found, load: float) -> Choice:
     """The unit that gives the pressure of a tyre, with the others that are not out of the question."""
     middle = float(np.nanmedian(np.abs(column.values)))
-    in_kPa = {unit: float(converted(np.array([middle]), unit, "kPa")[0]) for unit in PRESSURES}
+    in_kPa = {unit: factor(unit, "kPa") * middle for unit in PRESSURES}
     least, most = OF_A_LORRY if load > LORRY else USUAL
     possible = [unit for unit in PRESSURES if POSSIBLE[0] <= in_kPa[unit] <= POSSIBLE[1]]
     usual = [unit for unit in possible if least <= in_kPa[unit] <= most]
@@ -141,7 +141,7 @@ def _time(column: Found, angle: Found | None, unit: str) -> Choice:
         return Choice("s", f"{_range(column)} taken for s, but without a moving angle the unit is not known")
     step, rate = motion
     for each in TIMES:
-        seconds = float(converted(np.ones(1), each, "s")[0])
+        seconds = factor(each, "s")
         if STEPS[0] <= step * seconds <= STEPS[1] and RATES[0] <= rate / seconds <= RATES[1]:
             why = f"steps of {step:.3g} look like {each}, in which the angle moves at {rate / seconds:.2g} deg/s"
             return Choice(each, why)

@@ -59,6 +59,12 @@ def converted(values: np.ndarray, unit: str, target: str) -> np.ndarray:
         raise UnknownUnitError(f'"{unit}" is no unit') from None
 
 
+@cache
+def factor(unit: str, house: str) -> float:
+    """How many of the ``house`` unit one ``unit`` is."""
+    return float(converted(np.ones(1), unit, house)[0])
+
+
 def is_unit(text: str) -> bool:
     """Whether a text names a unit, also the spellings of laboratories and words for no unit."""
     import pint
