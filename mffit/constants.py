@@ -1,0 +1,19 @@
+"""Numbers of judgement that several folders share; each folder's own are in its ``constants.py``."""
+
+from __future__ import annotations
+
+from tir.constant import Real
+
+USUAL_CORNERING_STIFFNESS = Real(
+    10.0,
+    "1/rad",
+    "Cornering stiffness over load of a usual tyre, where none was measured yet.",
+    "Mottola and Massaro 2022, section 3: first step of the alignment",
+)
+USUAL_U_FORCE = Real(6.0, "N", "Standard uncertainty of Fy of a finished point that states none.")
+USUAL_U_MOMENT = Real(0.6, "Nm", "Standard uncertainty of Mz of a finished point that states none.")
+EXPLAINED_SHARE = Real(
+    1.0 / 3.0,
+    "-",
+    "A known mistake explains an error if less than this share of the error is left when the mistake is undone.",
+)
