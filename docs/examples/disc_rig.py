@@ -14,10 +14,11 @@ import numpy as np
 
 import tir
 from mffit import config, points, virtual_rig
-from mffit.rig import NO_FAULTS, RigFaults, Simulation
+from mffit.rig import Simulation
+from mffit.rig_errors import NO_FAULTS, Faults
 
 
-def models(tyre: tir.Tyre, faults: RigFaults) -> dict[str, Simulation]:
+def models(tyre: tir.Tyre, faults: Faults) -> dict[str, Simulation]:
     """The right simulation and two that lack something."""
     return {
         "path and faults": Simulation.of(tyre, faults),
@@ -38,7 +39,7 @@ def compare(rig_toml: str, folder: str) -> tuple[points.Points, Mapping[str, tup
     tyre = tir.read(virtual_rig.load_plan(rig_toml).tyre_path)
     measured, _ = points.load(config.load(f"{folder}/tyre.toml"))
     left = {}
-    for name, simulation in models(tyre, RigFaults(**asdict(truth.faults))).items():
+    for name, simulation in models(tyre, truth.faults).items():
         found = simulation.readings(measured)
         left[name] = (measured.Fy - found.Fy, measured.Mz - found.Mz)
     return measured, left

@@ -5,14 +5,18 @@ from mffit.config.loading import load
 from mffit.config.models import Config, RigTable, RollingRadiusTable, SweepTable, TyreTable
 from mffit.config.radii import effective_radius, path_radius, wheel_turn
 from mffit.config.resolved import resolved
+from mffit.config.rig_declaration import Declaration, declared_faults, declared_rig
 
 __all__ = [
     "Config",
+    "Declaration",
     "RigTable",
     "RollingRadiusTable",
     "SweepTable",
     "TyreTable",
     "axis_signs",
+    "declared_faults",
+    "declared_rig",
     "effective_radius",
     "load",
     "path_curvature",

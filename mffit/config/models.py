@@ -6,7 +6,7 @@ Every ``u_`` is one standard deviation (k = 1). Units are those of the file, as 
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from pydantic import (
     AfterValidator,
@@ -15,15 +15,16 @@ from pydantic import (
     ConfigDict,
     Field,
     PrivateAttr,
+    create_model,
     model_validator,
 )
+from uncertainties import ufloat
 
 from mffit.brief import Brief
+from mffit.config import constants
 from mffit.config import quantities as q
 from mffit.config.radii import effective_radius, path_radius
-
-U_DECLARED_RADIUS = 0.0018
-"""Standard uncertainty [m] of a declared path radius when none is given: the paper's statement for (19)."""
+from mffit.rig_errors import BY_NAME, DECLARED, Declared
 
 FORBIDDEN_IN_NAMES = set('/\\:*?"<>|') | {chr(code) for code in range(32)}
 
@@ -79,8 +80,28 @@ ALSO_CALLED = {"calspan": "sae"}
 """Other names of axes: Calspan's flat belt, as the tyre test consortium publishes it, reports in SAE axes."""
 
 
-class RigTable(Table):
-    """[rig]: the machine, its axes and how well it is known."""
+U_RANGES = {"N": q.UForce, "deg": q.UAngle, "m": q.ULength}
+"""Accepted range of a standard uncertainty by its unit."""
+
+
+def _u_field(declared: Declared) -> tuple[Any, float | None]:
+    """Type and default of the key that declares the uncertainty of a rig error."""
+    accepted: Any = U_RANGES[declared.unit]
+    return (accepted | None, None) if declared.default is None else (accepted, float(declared.default))
+
+
+if TYPE_CHECKING:
+    Uncertainties = Table
+else:
+    Uncertainties = create_model(
+        "Uncertainties",
+        __base__=Table,
+        **{error.declared.key: _u_field(error.declared) for error in DECLARED},
+    )
+
+
+class RigTable(Uncertainties):
+    """[rig]: the machine, its axes and how well it is known; a key ``u_...`` for every declared rig error."""
 
     type: Literal["rotating-disk", "flat-track"] = "rotating-disk"
     axes: Annotated[
@@ -91,13 +112,8 @@ class RigTable(Table):
     path_centre: Literal["left", "right"] = "left"
     path_radius: q.PathRadius | None = None  #: [m]
     path: PathTable | None = None
-    u_path_radius: q.ULength | None = None  #: [m]; overrides the propagation of (19)
     u_length: q.ULength = 0.001  #: each tape measure [m]
     backlash_deg: q.Play = 0.0  #: full play of the sideslip axis
-    u_backlash_deg: q.UAngle = 0.0
-    u_loadcell_offset_N: q.UForce = 10.0
-    u_camber_alignment_deg: q.UAngle = 0.5
-    u_slip_alignment_N: q.UForce = 25.0
 
     @property
     def on_disc(self) -> bool:
@@ -111,11 +127,26 @@ class RigTable(Table):
             return None
         return self.path_radius if self.path is None else path_radius(**self.path.model_dump())
 
+    def u(self, name: str) -> float:
+        """Standard uncertainty of a rig error in the unit of its key; 0 if it is not declared.
+
+        Parameters
+        ----------
+        name : of the rig error, such as "F0_N"
+        """
+        declared = BY_NAME[name].declared
+        given = None if declared is None else getattr(self, declared.key)
+        if given is None and self.path is not None:
+            return path_radius(
+                **{key: ufloat(x, self.u_length) for key, x in self.path.model_dump().items()}
+            ).s
+        return given or 0.0
+
     @model_validator(mode="before")
     @classmethod
     def _default_u(cls, given: Any) -> Any:
         if isinstance(given, dict) and "path_radius" in given and "u_path_radius" not in given:
-            return {**given, "u_path_radius": U_DECLARED_RADIUS}
+            return {**given, "u_path_radius": float(constants.U_GIVEN_PATH_RADIUS)}
         return given
 
     @model_validator(mode="after")
@@ -137,9 +168,9 @@ class RigTable(Table):
                 f"gives a path radius of {radius:g} m, outside 0.2 to 100 m; check the four lengths",
                 "rig.path",
             )
-        if self.u_path_radius is not None and self.u_path_radius > 0.1 * radius:
+        if self.u("path_radius_m") > 0.1 * radius:
             raise q.wrong(
-                f"{self.u_path_radius:g} m is more than a tenth of the path radius; write it in metres",
+                f"{self.u('path_radius_m'):g} m is more than a tenth of the path radius; write it in metres",
                 "rig.u_path_radius",
             )
         return self

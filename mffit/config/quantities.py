@@ -26,7 +26,7 @@ class Other(NamedTuple):
         return f"it looks like {' or '.join(fitting)}, write {self.write}" if fitting else ""
 
 
-class _Range:
+class Range:
     """Refuses a number outside ``lower`` to ``upper``; ``below`` and ``above`` say what it usually is."""
 
     def __init__(
@@ -77,17 +77,17 @@ PRESSURES = Other(
     1000.0,
 )
 
-WheelRadius = Annotated[float, AfterValidator(_Range(0.03, 1.5, "m", above=MILLIMETRES, other=RADII))]
-Width = Annotated[float, AfterValidator(_Range(0.01, 1.0, "m", above=MILLIMETRES))]
-PathRadius = Annotated[float, AfterValidator(_Range(0.2, 100.0, "m", above=MILLIMETRES))]
-Length = Annotated[float, AfterValidator(_Range(1e-3, 100.0, "m", above=MILLIMETRES))]
+WheelRadius = Annotated[float, AfterValidator(Range(0.03, 1.5, "m", above=MILLIMETRES, other=RADII))]
+Width = Annotated[float, AfterValidator(Range(0.01, 1.0, "m", above=MILLIMETRES))]
+PathRadius = Annotated[float, AfterValidator(Range(0.2, 100.0, "m", above=MILLIMETRES))]
+Length = Annotated[float, AfterValidator(Range(1e-3, 100.0, "m", above=MILLIMETRES))]
 Load = Annotated[
-    float, AfterValidator(_Range(20.0, 2e5, "N", below="it looks like kilonewtons, write newtons"))
+    float, AfterValidator(Range(20.0, 2e5, "N", below="it looks like kilonewtons, write newtons"))
 ]
 Pressure = Annotated[
     float,
     AfterValidator(
-        _Range(
+        Range(
             20.0,
             2000.0,
             "kPa",
@@ -97,14 +97,14 @@ Pressure = Annotated[
         )
     ),
 ]
-Speed = Annotated[float, AfterValidator(_Range(0.01, 150.0, "m/s", above="write metres per second"))]
+Speed = Annotated[float, AfterValidator(Range(0.01, 150.0, "m/s", above="write metres per second"))]
 EstimateAngle = Annotated[
-    float, AfterValidator(_Range(1.0, 60.0, "deg", below="it looks like radians, write degrees"))
+    float, AfterValidator(Range(1.0, 60.0, "deg", below="it looks like radians, write degrees"))
 ]
-Play = Annotated[float, AfterValidator(_Range(0.0, 10.0, "deg", above="write the full play in degrees"))]
-Revolutions = Annotated[float, AfterValidator(_Range(0.0, 1e4, "revolutions"))]
-Inclination = Annotated[float, AfterValidator(_Range(-360.0, 720.0, "deg"))]
-ULength = Annotated[float, AfterValidator(_Range(0.0, 0.1, "m", above=MILLIMETRES))]
-UForce = Annotated[float, AfterValidator(_Range(0.0, 1e4, "N"))]
-UAngle = Annotated[float, AfterValidator(_Range(0.0, 20.0, "deg"))]
-Fraction = Annotated[float, AfterValidator(_Range(0.0, 1.0, "of the value", above="write 0.05 for 5 %"))]
+Play = Annotated[float, AfterValidator(Range(0.0, 10.0, "deg", above="write the full play in degrees"))]
+Revolutions = Annotated[float, AfterValidator(Range(0.0, 1e4, "revolutions"))]
+Inclination = Annotated[float, AfterValidator(Range(-360.0, 720.0, "deg"))]
+ULength = Annotated[float, AfterValidator(Range(0.0, 0.1, "m", above=MILLIMETRES))]
+UForce = Annotated[float, AfterValidator(Range(0.0, 1e4, "N"))]
+UAngle = Annotated[float, AfterValidator(Range(0.0, 20.0, "deg"))]
+Fraction = Annotated[float, AfterValidator(Range(0.0, 1.0, "of the value", above="write 0.05 for 5 %"))]

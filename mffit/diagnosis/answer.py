@@ -126,7 +126,7 @@ def _found(found: Explanation, effect: Effect, given: Problem) -> Found:
         gap_after=gap(problem.measured - upto.state.predict(problem.points), found.scatter),
         tied_with=tuple(t.effects[-1].id for t in tied),
         separation=min(separations, key=lambda s: s.chi2, default=None),
-        T_ref=chosen.state.faults.T_ref_degC if "temperatures" in effect.needs else None,
+        T_ref=chosen.state.faults["T_ref_degC"] if "temperatures" in effect.needs else None,
     )
 
 

@@ -8,11 +8,11 @@ from dataclasses import replace
 
 import numpy as np
 
-from mffit.config import Config, axis_signs
+from mffit.config import Config, axis_signs, declared_faults
 from mffit.diagnosis.answer import answer
 from mffit.diagnosis.candidates import Problem
 from mffit.diagnosis.conditions import by_condition
-from mffit.diagnosis.declared import declared_rig
+from mffit.diagnosis.declared import declared_priors
 from mffit.diagnosis.explain import Explanation, explain, only_first
 from mffit.diagnosis.inexact import EXACT, Inexactness
 from mffit.diagnosis.inexact import declared as declared_inexactness
@@ -27,7 +27,8 @@ from mffit.errors import InputError
 from mffit.points import Points
 from mffit.progress import Progress, silent
 from mffit.quantities import CHANNELS
-from mffit.rig import RigFaults, Simulation
+from mffit.rig import Simulation
+from mffit.rig_errors import Faults
 from mffit.scatter import robust
 from tir import Tyre
 
@@ -41,7 +42,7 @@ def diagnose(
     tyre: Tyre,
     config: Config,
     *,
-    rig: RigFaults | None = None,
+    rig: Faults | None = None,
     effects: Sequence[Effect] = CATALOG,
     coefficients: Inexactness | None = None,
     seen: bool = False,
@@ -70,9 +71,9 @@ def diagnose(
         If points and model cannot belong together, or are too few.
     """
     progress("comparing simulation and measurement")
-    given = rig or RigFaults(backlash_deg=config.rig.backlash_deg)
+    given = rig or declared_faults(config.rig)
     if np.any(np.isfinite(points.T)):
-        given = replace(given, T_ref_degC=float(np.nanmean(points.T)))
+        given = given.replace(T_ref_degC=float(np.nanmean(points.T)))
     simulates_spin = config.model.turn_slip and bool(np.any(points.phi_t))
     radius = config.rig.radius or math.nan
     start = Simulation(dict(tyre.values), given, simulates_spin, config.model.star, radius_m=radius)
@@ -93,7 +94,7 @@ def diagnose(
     progress("trying every effect")
     stated = noise_model(points, start, 0.0, origin)
     found = explain(
-        points, start, stated, candidates, inexact, declared_rig(config, points, start), seen=seen
+        points, start, stated, candidates, inexact, declared_priors(config, points, start), seen=seen
     )
     misfit, better = _misfit(found, points)
     if found.chosen.effects and misfit > STRANGER:

@@ -8,7 +8,7 @@ import numpy as np
 
 from mffit.effects import Effect
 from mffit.points import Points
-from mffit.rig.simulation import distance_km, sense
+from mffit.rig import distance_km, sense
 
 
 def _spread(x: np.ndarray) -> float:

@@ -21,7 +21,8 @@ from mffit.diagnosis.where import Region
 from mffit.effects import Effect
 from mffit.fit.outliers import Outlier
 from mffit.points import Points
-from mffit.rig import RigFaults, Simulation
+from mffit.rig import Simulation
+from mffit.rig_errors import Faults
 from tir import Tyre
 
 
@@ -71,7 +72,7 @@ class Diagnosis(Brief):
     model_after: str  #: file name of the corrected model in the output folder
 
     @property
-    def faults(self) -> RigFaults:
+    def faults(self) -> Faults:
         """Rig faults and environment terms that were found."""
         return self.state.faults
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
-from mffit.rig import OF_RUN
+from mffit.rig_errors import OF_RUN
 
 
 @dataclass(frozen=True, slots=True)
@@ -17,7 +17,7 @@ class Free:
     finite.
     """
 
-    name: str  #: coefficient of the file, field of RigFaults, or "turn_slip"
+    name: str  #: coefficient of the file, rig error, or "turn_slip"
     spread: float
     scan: tuple[float, ...] = (0.0,)
     lower: float = float("-inf")  #: of the number itself, not of its change

@@ -10,17 +10,11 @@ from pathlib import Path
 from mffit.effects.catalog import CATALOG
 from mffit.effects.effect import Effect, Free
 from mffit.effects.needs import NEEDS
-from mffit.rig import FAULT_NAMES, MEANINGS, UNITS
+from mffit.rig_errors import BY_NAME as RIG_ERRORS_BY_NAME
 from tir.parameters import BY_NAME
 
-NEITHER = {
-    "turn_slip": ("–", "whether the simulation has turn slip"),
-    "relaxation_m": (
-        "m",
-        "relaxation length: sigma d(alpha')/ds + alpha' = alpha, the force answers to alpha'",
-    ),
-}
-"""Unit and meaning of what is neither a coefficient of the file nor a fault of the rig."""
+SWITCHES = {"turn_slip": ("–", "whether the simulation has turn slip")}
+"""Unit and meaning of what is neither a coefficient of the file nor a rig error."""
 RESULT = {
     "tyre": "It becomes coefficients of the corrected `.tir`, with the reason in their comments.",
     "rig": "It becomes a correction of the readings, and the direct method is redone with it; the tyre's file does not change.",
@@ -125,10 +119,10 @@ def _row(free: Free) -> str:
 
 def _described(name: str) -> tuple[str, str]:
     """Unit and meaning of a number."""
-    if name in NEITHER:
-        return NEITHER[name]
-    if name in FAULT_NAMES:
-        return UNITS[name], MEANINGS[name]
+    if name in SWITCHES:
+        return SWITCHES[name]
+    if name in RIG_ERRORS_BY_NAME:
+        return RIG_ERRORS_BY_NAME[name].unit, RIG_ERRORS_BY_NAME[name].meaning
     row = BY_NAME[name]
     return row.unit, row.description + (f" ({row.equation})" if row.equation else "")
 

@@ -110,15 +110,9 @@ SPIN_TORQUE = Effect(
     "A contact patch that is turned resists with a moment of its own.",
     (Free("QCRP1", 0.1, (0.005, 0.03, 0.1, 0.2, -0.03, -0.06), 0.0, 1.5),), ("spin", "moment"), "odd in phi",
 )  # fmt: skip
-RELAXATION = Effect(
-    "relaxation", "relaxation length", "tyre",
-    "Side force builds up over a rolled distance, so a moving sweep lags behind its angle.",
-    (Free("relaxation_m", 0.2, (0.05, 0.15, 0.3), 0.0, 2.0),), ("continuous",), "depends on the sense of the sweep",
-)  # fmt: skip
-
 TYRE_EFFECTS = (
     TURN_SLIP, CAMBER_REDUCTION, CAMBER_REDUCTION_LOAD, PLY_STEER, CONICITY, CAMBER_STIFFNESS, CAMBER_THRUST_CURVATURE,
     CAMBER_GRIP, CAMBER_CORNERING_STIFFNESS, LOAD_GRIP, LOAD_CORNERING_STIFFNESS, PRESSURE, CURVATURE_ASYMMETRY,
     TRAIL_LOAD, TRAIL_CAMBER, RESIDUAL_TORQUE, RESIDUAL_TORQUE_CAMBER, SPIN_GRIP_LOSS, SPIN_STIFFNESS_LOSS,
-    SPIN_TRAIL_LOSS, SPIN_TORQUE, RELAXATION,
+    SPIN_TRAIL_LOSS, SPIN_TORQUE,
 )  # fmt: skip

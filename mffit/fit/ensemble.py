@@ -12,7 +12,7 @@ from mffit.fit.constraints import MARGIN, violations
 from mffit.fit.problem import Problem
 from mffit.fit.staged import Fitted
 from mffit.least_squares import Number
-from mffit.rig import FAULT_NAMES
+from mffit.rig_errors import BY_NAME as RIG_ERRORS
 from tir.parameters import BY_NAME
 
 SPARE = 3
@@ -66,7 +66,7 @@ def _member(fitted: Fitted, random: np.random.Generator) -> dict[str, float]:
     solution = least_squares.solve(
         least_squares.Problem(residual, linear), numbers, max_steps=12, tolerance=1e-4
     )
-    return at | {n: v for n, v in solution.values.items() if n not in FAULT_NAMES}
+    return at | {n: v for n, v in solution.values.items() if n not in RIG_ERRORS}
 
 
 def _moved(number: Number, problem: Problem, random: np.random.Generator) -> Number:

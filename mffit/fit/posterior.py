@@ -11,7 +11,8 @@ from mffit.brief import Brief
 from mffit.fit.problem import Problem
 from mffit.least_squares import Solution
 from mffit.points import Points
-from mffit.rig import FAULT_NAMES, Simulation
+from mffit.rig import Simulation
+from mffit.rig_errors import BY_NAME as RIG_ERRORS
 
 COVERING = 1.959964
 """Standard deviations on either side of a normal distribution that hold 95 % of it."""
@@ -39,7 +40,7 @@ class Posterior(Brief):
         tyre : the fitted tyre without rig errors
         points : conditions; only the set-points are used
         """
-        rows = [i for i, name in enumerate(self.names) if name not in FAULT_NAMES]
+        rows = [i for i, name in enumerate(self.names) if name not in RIG_ERRORS]
         slopes = tyre.sensitivities(points, [self.names[i] for i in rows])[1]
         covariance = self.covariance[np.ix_(rows, rows)]
         widths = [spread_through(s, covariance) for s in slopes]

@@ -16,7 +16,7 @@ from mffit.fit.problem import Problem
 from mffit.least_squares import Number, inverse, root
 from mffit.points import Points, levels
 from mffit.quantities import CHANNELS
-from mffit.rig import FAULT_NAMES
+from mffit.rig_errors import RIG_ERRORS
 
 FEWEST = 4
 """Points that make a sweep."""
@@ -26,7 +26,11 @@ UNKNOWN = 1e-3
 """Share of a direction's information that comes from the others below which they say nothing of it."""
 SHOWN = 300
 """Points of a group at which it is judged; of more, evenly spaced ones say the same."""
-COMMON = tuple(name for name in FAULT_NAMES if name not in ("backlash_deg", "path_radius_m"))
+COMMON = tuple(
+    error.name
+    for error in RIG_ERRORS
+    if error.kind != "tyre" and error.name not in ("backlash_deg", "path_radius_m")
+)
 """Errors of a rig that all sweeps share; they are no contradiction of one sweep, and are let free, to first order."""
 
 

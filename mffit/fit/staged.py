@@ -19,7 +19,8 @@ from mffit.fit.stages import STAGES, WITH_CAMBER, Stage, StageRecord
 from mffit.least_squares import Number, Solution, solve
 from mffit.points import Points, main_pressure
 from mffit.progress import Progress, silent
-from mffit.rig import FAULT_NAMES, Simulation
+from mffit.rig import Simulation
+from mffit.rig_errors import BY_NAME as RIG_ERRORS
 from mffit.scatter import rms
 from tir.parameters import BY_NAME
 
@@ -212,7 +213,7 @@ def _polish(stated: Problem, plan: Plan) -> Fitted:
     )
 
 
-RIG = frozenset(FAULT_NAMES)
+RIG = frozenset(RIG_ERRORS)
 
 
 def _decided(solution: Solution, plan: Plan) -> frozenset[str]:

@@ -11,7 +11,7 @@ import numpy as np
 
 from mffit.fit.priors import scatter
 from mffit.fit.staged import Fitted
-from mffit.rig import FAULT_NAMES
+from mffit.rig_errors import BY_NAME as RIG_ERRORS
 
 SPIN = ("PECP1", "PECP2")
 """Coefficients of which the points speak also where the build holds them at what the direct method found."""
@@ -35,7 +35,7 @@ class Information:
 
     def rows(self, *, rig: bool) -> list[int]:
         """Which of the numbers are errors of the rig, or which are the tyre's own."""
-        return [i for i, name in enumerate(self.names) if (name in FAULT_NAMES) == rig]
+        return [i for i, name in enumerate(self.names) if (name in RIG_ERRORS) == rig]
 
 
 def information(fitted: Fitted) -> Information | None:

@@ -1,6 +1,6 @@
 """Numbers read straight off the data, with budgets: alignment, radii, stiffnesses, turn-slip force, eps_gamma."""
 
-from mffit.measured.alignment import LARGEST_DIFFERENCE, RESOLUTION_DEG, Alignment, AlignmentStep, align
+from mffit.measured.alignment import Alignment, AlignmentStep, align
 from mffit.measured.backlash import backlash_corrected, odd_alpha
 from mffit.measured.camber_reduction import DirectInputs, TurnSlip, direct_method
 from mffit.measured.direct import at_the_axis, measure
@@ -9,8 +9,6 @@ from mffit.measured.result import KEYS, Contribution, LoadResult, Measured
 
 __all__ = [
     "KEYS",
-    "LARGEST_DIFFERENCE",
-    "RESOLUTION_DEG",
     "Alignment",
     "AlignmentStep",
     "Contribution",

@@ -10,29 +10,17 @@ from typing import NamedTuple
 import numpy as np
 
 from mffit.brief import Brief
+from mffit.constants import USUAL_CORNERING_STIFFNESS, USUAL_U_FORCE
 from mffit.errors import InputError
-from mffit.measured import wording
+from mffit.measured import constants, wording
 from mffit.measured.groups import LoadGroup, load_groups, zeros
 from mffit.measured.notes import AxisOff
 from mffit.points import Points, main_path
 from tir import Quantity, conventions
 
-FIRST_GUESS = 10.0
-"""Cornering stiffness per load of a motorcycle tyre [1/rad], the paper's guess for the first step."""
-GUESS_OFF = 0.5
-"""Relative standard uncertainty of that guess: tyres of cars and motorcycles have 5 to 25."""
-LARGEST_DIFFERENCE = 50.0
-"""|F_forward - F_backward| [N] above which the axis counts as not aligned."""
-DEFAULT_U_FORCE, DEFAULT_U_MOMENT = 6.0, 0.6
-"""Standard uncertainty of a point [N], [Nm] where the data give none."""
-RESOLUTION_DEG = 0.01
-"""Smallest angle by which a sideslip axis can usually be turned."""
-SAME_FORCE = 0.1
-"""Zeros that differ by less [N] look the same."""
 
-
-class AtLoad(NamedTuple):
-    """What the direct method makes of the same load."""
+class AxisAtLoad(NamedTuple):
+    """Results of the direct method at the same load."""
 
     C_alpha: Quantity | None  #: measured cornering stiffness, ISO, negative [N/rad]
     F_forward: float  #: force at zero, the play taken off [N]; NaN where it is not measured
@@ -69,7 +57,7 @@ class Alignment(Brief):
 
     steps: tuple[AlignmentStep, ...]
     warnings: tuple[str, ...]
-    resolution_deg: float = field(default=RESOLUTION_DEG)
+    resolution_deg: float = field(default=constants.AXIS_RESOLUTION)
 
     @property
     def last(self) -> tuple[AlignmentStep, ...]:
@@ -101,8 +89,8 @@ def align(
     *,
     axes: str = "iso",
     C_alpha: float | None = None,
-    measured: Mapping[float, AtLoad] | None = None,
-    resolution_deg: float = RESOLUTION_DEG,
+    measured: Mapping[float, AxisAtLoad] | None = None,
+    resolution_deg: float = constants.AXIS_RESOLUTION,
 ) -> Alignment:
     """Next correction of the sideslip axis from forward and backward zeros.
 
@@ -122,7 +110,9 @@ def align(
     steps: list[AlignmentStep] = []
     for group in load_groups(points):
         usual = LoadGroup(group.load, group.index[points.phi_t[group.index] == main_path(points)])
-        steps += _steps(points, usual, axes, C_alpha or FIRST_GUESS, (measured or {}).get(group.load))
+        steps += _steps(
+            points, usual, axes, C_alpha or USUAL_CORNERING_STIFFNESS, (measured or {}).get(group.load)
+        )
     if not steps:
         raise InputError(
             "no load has both forward and backward points at zero sideslip and camber: add rows with direction "
@@ -131,10 +121,13 @@ def align(
     found = Alignment(tuple(steps), (), resolution_deg)
     off = [
         AxisOff(
-            step.load, abs(step.F_forward - step.F_backward), LARGEST_DIFFERENCE, abs(step.correction_deg)
+            step.load,
+            abs(step.F_forward - step.F_backward),
+            constants.LARGEST_DIFFERENCE,
+            abs(step.correction_deg),
         )
         for step in found.last
-        if abs(step.F_forward - step.F_backward) > LARGEST_DIFFERENCE
+        if abs(step.F_forward - step.F_backward) > constants.LARGEST_DIFFERENCE
     ]
     return Alignment(tuple(steps), tuple(map(wording.warning, off)), resolution_deg)
 
@@ -146,11 +139,11 @@ class _Stiffness(NamedTuple):
 
 
 def _steps(
-    points: Points, group: LoadGroup, axes: str, guess: float, known: AtLoad | None
+    points: Points, group: LoadGroup, axes: str, guess: float, known: AxisAtLoad | None
 ) -> list[AlignmentStep]:
     forward, backward = zeros(points, group, 1), zeros(points, group, -1)
     iteration = np.nan_to_num(points.iteration, nan=1.0)
-    guessed = _Stiffness(-guess * group.load, GUESS_OFF * guess * group.load, "guess")
+    guessed = _Stiffness(-guess * group.load, constants.GUESSED_STIFFNESS_U * guess * group.load, "guess")
     out: list[AlignmentStep] = []
     before: tuple[float, float, float] | None = None  # slip force, its u, correction then applied [rad]
     for k in np.unique(iteration[np.concatenate([forward, backward])].astype(int)):
@@ -190,14 +183,14 @@ def _steps(
 
 def _u(points: Points, rows: np.ndarray) -> float:
     """Standard uncertainty of the mean force of some points [N]."""
-    u = np.where(np.isfinite(points.u_Fy[rows]), points.u_Fy[rows], DEFAULT_U_FORCE)
+    u = np.where(np.isfinite(points.u_Fy[rows]), points.u_Fy[rows], USUAL_U_FORCE)
     return float(np.linalg.norm(u)) / len(rows)
 
 
-def _elsewhere(known: AtLoad | None, F_forward: float, F_backward: float) -> tuple[float, float] | None:
+def _elsewhere(known: AxisAtLoad | None, F_forward: float, F_backward: float) -> tuple[float, float] | None:
     """The report's zeros where they differ from these."""
     if known is None:
         return None
     there = (known.F_forward, known.F_backward)
     apart = [abs(a - b) for a, b in zip(there, (F_forward, F_backward), strict=True) if math.isfinite(a)]
-    return there if apart and max(apart) > SAME_FORCE else None
+    return there if apart and max(apart) > constants.SAME_ZERO else None

@@ -6,12 +6,10 @@ import numpy as np
 from scipy.special import ndtr
 
 from mffit.config import Config
+from mffit.constants import USUAL_CORNERING_STIFFNESS, USUAL_U_MOMENT
+from mffit.measured import constants
 from mffit.parts import Parts
 from mffit.points import Points
-
-TYPICAL_STIFFNESS = 10.0
-"""Cornering stiffness over load [1/rad] that turns the doubt about an angle into one about the force."""
-TYPICAL_MOMENT_NOISE = 0.6  # Nm
 
 
 def backlash_shift(Mz: np.ndarray, u_Mz: np.ndarray, play: float) -> tuple[np.ndarray, np.ndarray]:
@@ -19,23 +17,23 @@ def backlash_shift(Mz: np.ndarray, u_Mz: np.ndarray, play: float) -> tuple[np.nd
 
     Where the moment is no larger than its noise its sign is in doubt: the shift is then the expectation over both signs.
     """
-    noise = np.where(np.isfinite(u_Mz) & (u_Mz > 0), u_Mz, TYPICAL_MOMENT_NOISE)
+    noise = np.where(np.isfinite(u_Mz) & (u_Mz > 0), u_Mz, USUAL_U_MOMENT)
     positive = ndtr(Mz / noise)
     return -0.5 * play * (2.0 * positive - 1.0), play * np.sqrt(positive * (1.0 - positive))
 
 
 def backlash_corrected(points: Points, config: Config) -> Points:
-    """The points with the sideslip angle that the wheel really had, and the doubt about it in u_Fy.
+    """The points with the sideslip angle that the wheel really had, and the uncertainty of its sign in u_Fy.
 
     Points without Mz take the sign of the moment that the path curvature causes at zero slip.
     """
     play = np.radians(config.rig.backlash_deg)
     if play == 0.0:
         return points
-    assumed = 1e3 * np.sign(points.phi_t) * points.direction
+    assumed = constants.PLAY_DOUBT_MOMENT * np.sign(points.phi_t) * points.direction
     shift, u = backlash_shift(np.where(np.isfinite(points.Mz), points.Mz, assumed), points.u_Mz, play)
     return points.replace(
-        alpha=points.alpha + shift, u_Fy=np.hypot(points.u_Fy, TYPICAL_STIFFNESS * points.Fz * u)
+        alpha=points.alpha + shift, u_Fy=np.hypot(points.u_Fy, USUAL_CORNERING_STIFFNESS * points.Fz * u)
     )
 
 

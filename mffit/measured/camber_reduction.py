@@ -7,29 +7,26 @@ that enters twice (R is in r_e and in C_phit) is counted with its correlation.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 import numpy as np
 from uncertainties import UFloat, ufloat
 
+from mffit.measured import constants
 from mffit.measured.result import Contribution
+from mffit.rig_errors import BY_NAME, DECLARED, AtZero, Declared
 from tir import Quantity
-
-DRAWS = 20_000
-EXACT = 1e-12
-"""Stands in for an uncertainty of zero, which the propagation does not accept."""
 
 
 @dataclass(frozen=True, slots=True)
-class RigErrors:
-    """Rig errors common to all loads, as numbers with uncertainty; build with :func:`rig_errors`."""
+class RigDoubts:
+    """What is uncertain of the rig, common to all loads."""
 
-    offset: UFloat  #: load-cell offset F0 [N]
-    gamma_0: UFloat  #: camber misalignment [rad]
-    slip_force: UFloat  #: force of the residual sideslip misalignment [N]
-    half_play: UFloat  #: backlash/2 [rad]
+    errors: Mapping[
+        str, UFloat
+    ]  #: deviation of each declared rig error from its declared value, in the declared unit
     R: UFloat  #: path radius [m]
 
 
@@ -41,38 +38,53 @@ class TurnSlip(NamedTuple):
     epsilon_gamma: UFloat
 
 
-def rig_errors(
-    *, u_offset: float, u_gamma_0: float, u_slip_force: float, half_play: float, u_half_play: float, R: UFloat
-) -> RigErrors:
-    """Rig errors from their standard uncertainties [N, rad, N, rad, rad]; all but the play are nominally zero."""
-    return RigErrors(
-        offset=named(0.0, u_offset, "load-cell offset", "N"),
-        gamma_0=named(0.0, u_gamma_0, "camber alignment", "rad"),
-        slip_force=named(0.0, u_slip_force, "sideslip alignment", "N"),
-        half_play=named(half_play, u_half_play, "backlash", "rad"),
-        R=R,
-    )
+def rig_doubts(u: Mapping[str, float], R: UFloat) -> RigDoubts:
+    """The declared rig errors with their standard uncertainties ``u``, by name and in the declared unit."""
+    errors = {}
+    for error in DECLARED:
+        declared = error.declared
+        assert declared is not None
+        if declared.force_at_zero or declared.camber_stiffness:
+            errors[error.name] = named(0.0, u.get(error.name, 0.0), declared.source, declared.unit)
+    return RigDoubts(errors, R)
 
 
 def named(value: float, u: float, source: str, unit: str) -> UFloat:
     """A number with uncertainty whose tag says what it is and in which unit."""
-    return ufloat(value, max(u, EXACT), f"{source}|{unit}")
+    return ufloat(value, max(u, constants.EXACT_U), f"{source}|{unit}")
 
 
-def turn_slip_force(
-    F_raw: Any, C_gamma: Any, C_alpha: Any, rig: RigErrors, alpha_b: Any, *, slip_known: bool
-) -> Any:
-    """Turn-slip force [N] from the raw force at (0, 0); (23) in ISO signs.
+def turn_slip_force(F_raw: Any, errors: Mapping[str, Any], at: AtZero, *, both_directions: bool) -> Any:
+    """Turn-slip force [N]: the raw force at (0, 0) less what the rig errors add to it; (23) in ISO signs.
 
     Parameters
     ----------
-    F_raw : raw force [N]
-    C_gamma, C_alpha : stiffnesses [N/rad]
-    alpha_b : sideslip that backlash makes of the reading 0 [rad]; -(play/2) sign(Mz)
-    slip_known : the slip force was removed by the mean of both directions, so alignment does not enter
+    F_raw : raw force [N], the mean of both directions if both were run
+    errors : rig errors by name, in the declared unit
+    at : stiffnesses of the tyre and side of the play
+    both_directions : what turns with the direction of rolling is not in the mean
     """
-    force = F_raw - rig.offset - C_gamma * rig.gamma_0 - C_alpha * alpha_b
-    return force if slip_known else force - rig.slip_force
+    force = F_raw
+    for name, number in errors.items():
+        declared = _declared(name)
+        if declared.force_at_zero and not (both_directions and declared.turns_with_direction):
+            force = force - declared.force_at_zero(number, at)
+    return force
+
+
+def true_camber_stiffness(C_gamma: Any, errors: Mapping[str, Any], at: AtZero) -> Any:
+    """Camber stiffness [N/rad]: the slope over the camber reading, rolling forwards, less what the rig errors add to it."""
+    for name, number in errors.items():
+        declared = _declared(name)
+        if declared.camber_stiffness:
+            C_gamma = C_gamma - declared.camber_stiffness(number, at)
+    return C_gamma
+
+
+def _declared(name: str) -> Declared:
+    declared = BY_NAME[name].declared
+    assert declared is not None
+    return declared
 
 
 def camber_reduction(F_phit: Any, C_gamma: Any, r_e: Any, R: Any, phi_sign: float) -> TurnSlip:
@@ -113,7 +125,10 @@ def monte_carlo(function: Any, inputs: Sequence[UFloat], seed: int = 1) -> float
     Half the distance between the 15.87 % and 84.13 % quantiles, because a ratio has heavy tails.
     """
     rng = np.random.default_rng(seed)
-    drawn = [rng.normal(x.nominal_value, x.std_dev, DRAWS) if x.std_dev else x.nominal_value for x in inputs]
+    drawn = [
+        rng.normal(x.nominal_value, x.std_dev, constants.MONTE_CARLO_DRAWS) if x.std_dev else x.nominal_value
+        for x in inputs
+    ]
     values = function(*drawn)
     low, high = np.quantile(values, [0.158655, 0.841345])
     return float(high - low) / 2.0
@@ -142,17 +157,18 @@ class DirectInputs:
 def direct_method(given: DirectInputs) -> TurnSlip:
     """Turn-slip force, stiffness and eps_gamma from plain numbers."""
     R = named(given.R, given.u_R, "path radius", "m")
-    rig = rig_errors(
-        u_offset=given.u_offset,
-        u_gamma_0=given.u_gamma_0,
-        u_slip_force=given.u_slip_force,
-        half_play=abs(given.alpha_b),
-        u_half_play=given.u_alpha_b,
-        R=R,
+    rig = rig_doubts(
+        {
+            "F0_N": given.u_offset,
+            "gamma_0_deg": math.degrees(given.u_gamma_0),
+            "alpha_0_deg": given.u_slip_force,
+            "backlash_deg": math.degrees(2.0 * given.u_alpha_b),
+        },
+        R,
     )
     C_gamma = named(given.C_gamma, given.u_C_gamma, "camber stiffness", "N/rad")
     F = named(given.F_raw, given.u_F_raw, "noise of the zeros", "N")
-    sign = math.copysign(1.0, given.alpha_b)
-    force = turn_slip_force(F, C_gamma, given.C_alpha, rig, sign * rig.half_play, slip_known=False)
+    at = AtZero(given.C_alpha, C_gamma, math.copysign(1.0, given.alpha_b))
+    force = turn_slip_force(F - given.C_alpha * given.alpha_b, rig.errors, at, both_directions=False)
     r_e = named(given.r_e, given.u_r_e, "effective radius", "m")
     return camber_reduction(force, C_gamma, r_e, R, math.copysign(1.0, given.F_raw))

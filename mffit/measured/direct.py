@@ -3,22 +3,21 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 from uncertainties import UFloat
 
 from mffit.config import Config
+from mffit.constants import USUAL_U_MOMENT
 from mffit.measured import camber_reduction as method
-from mffit.measured import wording
-from mffit.measured.alignment import DEFAULT_U_MOMENT
-from mffit.measured.alignment import AtLoad as AxisAtLoad
+from mffit.measured import constants, wording
+from mffit.measured.alignment import AxisAtLoad
 from mffit.measured.at_zero import (
-    epsilon_with,
-    moment_opinion,
+    ZeroReadings,
     refuse_inward,
-    turn_slip,
+    turn_slip_of_path,
     unlike_zeros,
     zeros_by_path,
 )
@@ -39,35 +38,76 @@ from mffit.measured.notes import (
     StraightPath,
     Trouble,
 )
-from mffit.measured.paths import stiffness, u_by_draws
+from mffit.measured.paths import PathForce, TurnSlipStiffness, turn_slip_stiffness, u_by_draws
 from mffit.measured.radii import effective_radius_at, measured_effective_radius, measured_path_radius
-from mffit.measured.result import Contribution, LoadResult, Measured
+from mffit.measured.result import LoadResult, Measured
+from mffit.measured.slopes import Secant, Slope, slope_at_zero
 from mffit.measured.stiffnesses import (
-    CUBIC_CAMBER,
-    Stiffness,
-    camber_stiffness,
+    Estimates,
+    chosen_camber_stiffness,
     cornering,
     estimates,
     number,
-    raw_odd,
     sweep,
     u_odd,
 )
 from mffit.parts import Parts
 from mffit.points import Points
+from mffit.rig_errors import DECLARED, AtZero
 from tir import Quantity, Tyre
-
-CONICITY = 0.002
-"""A plausible one, of the load."""
 
 
 @dataclass(frozen=True, slots=True)
-class AtLoad:
-    """Numbers with uncertainty of one load, before they become a record."""
+class _Evidence:
+    """What the direct method works on, common to all loads."""
+
+    config: Config
+    points: Points  #: the play taken off the sideslip angles
+    parts: Parts
+    odd_slip: np.ndarray  #: (n,) sideslip to which the odd part of every point belongs [rad]
+    rig: method.RigDoubts | None  #: None on a straight path
+    radii: Mapping[float, UFloat]  #: measured effective radius [m] by load [N]
+    base: Tyre | None
+
+
+@dataclass(frozen=True, slots=True)
+class _Slopes:
+    """The stiffnesses of one load."""
+
+    C_alpha: UFloat | None  #: [N/rad]
+    C_gamma: UFloat | None  #: as read off the sweep by the configured method [N/rad]
+    camber: Estimates
+    exists: bool  #: whether anything could be estimated
+
+
+@dataclass(frozen=True, slots=True)
+class _Turning:
+    """Turn-slip force and stiffness of one load."""
+
+    zeros: ZeroReadings  #: of the usual path
+    phi_t: tuple[float, ...]  #: of every path [1/m]
+    paths: tuple[PathForce, ...]
+    stiffness: TurnSlipStiffness
+    force: UFloat  #: on the usual path [N]
+
+    @property
+    def sign(self) -> float:
+        """Sign of the usual path's turn slip."""
+        return self.paths[0].sign
+
+    @property
+    def alpha_M(self) -> UFloat | None:
+        """Sideslip misalignment [rad] of the first path that was run both ways."""
+        return next((path.alpha_M for path in self.paths if path.alpha_M is not None), None)
+
+
+@dataclass(frozen=True, slots=True)
+class _AtLoad:
+    """The result of one load, and what the next steps need of eps_gamma."""
 
     row: LoadResult
     epsilon: UFloat | None
-    per_newton: float = 0.0  #: of eps_gamma by a force that pushes the same way on every path [1/N]
+    per_newton: float  #: derivative of eps_gamma by a force that is the same on every path [1/N]
 
 
 def measure(config: Config, points: Points, parts: Parts, base: Tyre | None = None) -> Measured:
@@ -90,163 +130,217 @@ def measure(config: Config, points: Points, parts: Parts, base: Tyre | None = No
     InputError
         If the turn-slip force points towards the centre of the disc.
     """
-    disc = config.rig.on_disc
+    evidence = _evidence(config, points, parts, base)
     warnings: list[Trouble] = []
-    slip = odd_alpha(points, parts, config)
-    points = backlash_corrected(points, config)
-    R = measured_path_radius(config)
-    radii = measured_effective_radius(config, R)
-    rig = _rig(config, R) if disc else None
     rows = []
-    for group in load_groups(points):
-        found = _at_load(
-            config, points, parts, slip, group, rig, effective_radius_at(group.load, radii, base), warnings
-        )
-        if found is not None:
-            rows.append(found)
-    measured_loads = {load: float(r.nominal_value) for load, r in radii.items()}
-    measured = _assembled(config, rows, measured_loads, warnings, disc)
-    return replace(measured, warnings=(*parts.unpaired, *map(wording.warning, warnings)))
+    for group in load_groups(evidence.points):
+        found, troubles = _at_load(evidence, group)
+        rows += [] if found is None else [found]
+        warnings += troubles
+    measured, troubles = _assembled(evidence, rows)
+    return replace(measured, warnings=(*parts.unpaired, *map(wording.warning, [*warnings, *troubles])))
 
 
 def at_the_axis(config: Config, points: Points, parts: Parts) -> dict[float, AxisAtLoad]:
-    """Cornering stiffness and zeros by load [N], for the alignment: whatever the turn-slip force says of the rig."""
-    slip = odd_alpha(points, parts, config)
-    points = backlash_corrected(points, config)
+    """Cornering stiffness and zeros by load [N] for the alignment, whatever the sign of the turn-slip force."""
+    evidence = _evidence(config, points, parts, None)
     out = {}
-    for group in load_groups(points):
-        C_alpha = cornering(points, parts, slip, group, config)
-        Ca = number(C_alpha.slope or C_alpha.secant, "cornering stiffness")
-        paths = zeros_by_path(points, group, Ca, config) if config.rig.on_disc else []
+    for group in load_groups(evidence.points):
+        C_alpha = _cornering_stiffness(evidence, group)
+        paths = zeros_by_path(evidence.points, group, C_alpha, config) if evidence.rig else []
         zero = paths[0][1] if paths else None
         out[group.load] = AxisAtLoad(
-            method.quantity(Ca, "N/rad"),
+            method.quantity(C_alpha, "N/rad"),
             zero.forward if zero else math.nan,
             zero.backward if zero else math.nan,
         )
     return out
 
 
-def _rig(config: Config, R: UFloat) -> method.RigErrors:
-    rig = config.rig
-    return method.rig_errors(
-        u_offset=rig.u_loadcell_offset_N,
-        u_gamma_0=math.radians(rig.u_camber_alignment_deg),
-        u_slip_force=rig.u_slip_alignment_N,
-        half_play=math.radians(rig.backlash_deg) / 2.0,
-        u_half_play=math.radians(rig.u_backlash_deg) / 2.0,
-        R=R,
+def _evidence(config: Config, points: Points, parts: Parts, base: Tyre | None) -> _Evidence:
+    R = measured_path_radius(config)
+    u = {error.name: config.rig.u(error.name) for error in DECLARED}
+    return _Evidence(
+        config=config,
+        points=backlash_corrected(points, config),
+        parts=parts,
+        odd_slip=odd_alpha(points, parts, config),
+        rig=None if R is None else method.rig_doubts(u, R),
+        radii=measured_effective_radius(config, R),
+        base=base,
     )
 
 
-def _at_load(config, points, parts, odd_slip, group: LoadGroup, rig, r_e, warnings) -> AtLoad | None:
-    u_Fy = u_odd(parts)
-    u_Mz = np.where(np.isfinite(parts.u_Mz_odd), parts.u_Mz_odd, DEFAULT_U_MOMENT / math.sqrt(2.0))
-    odd_Fy, odd_Mz = (parts.Fy_odd, parts.Mz_odd) if rig else raw_odd(points)
-    camber = sweep(points, odd_Fy, group, "gamma", config)
-    angle = math.radians(config.camber_stiffness.angle_deg)
-    C_alpha = cornering(points, parts, odd_slip, group, config)
-    Ca = number(C_alpha.slope or C_alpha.secant, "cornering stiffness")
-    if Ca is not None:  # the sideslip that backlash leaves in a camber sweep
-        odd_Fy = np.where(
-            np.isin(np.arange(len(points)), camber), odd_Fy - Ca.nominal_value * odd_slip, odd_Fy
+def _at_load(evidence: _Evidence, group: LoadGroup) -> tuple[_AtLoad | None, list[Trouble]]:
+    """Everything that the direct method finds at one load; None if there is nothing."""
+    slopes, troubles = _slopes(evidence, group)
+    if evidence.rig is None:
+        return (_straight(group, slopes) if slopes.exists else None), troubles
+    turning, more = _turning(evidence, group, slopes)
+    r_e = effective_radius_at(group.load, evidence.radii, evidence.base)
+    return _result(evidence, group, slopes, turning, r_e), troubles + more
+
+
+def _slopes(evidence: _Evidence, group: LoadGroup) -> tuple[_Slopes, list[Trouble]]:
+    """Cornering and camber stiffness, from the odd curves on a disc and from the curves themselves on a straight path."""
+    config, points = evidence.config, evidence.points
+    C_alpha = _cornering_stiffness(evidence, group)
+    odd_Fy = evidence.parts.Fy_odd if evidence.rig else points.Fy
+    index = sweep(points, odd_Fy, group, "gamma", config)
+    if C_alpha is not None:  # less the force of the sideslip that backlash leaves in a camber sweep
+        in_sweep = np.isin(np.arange(len(points)), index)
+        odd_Fy = np.where(in_sweep, odd_Fy - C_alpha.nominal_value * evidence.odd_slip, odd_Fy)
+    local, angle = constants.CUBIC_CAMBER.rad, math.radians(config.camber_stiffness.angle_deg)
+    camber = estimates(points.gamma, odd_Fy, u_odd(evidence.parts), index, local, angle)
+    largest = points.gamma[index].max(initial=0.0)
+    C_gamma, trouble = chosen_camber_stiffness(config, camber, largest, group.load)
+    exists = not (C_alpha is None and camber.slope is None and camber.secant is None)
+    return _Slopes(C_alpha, C_gamma, camber, exists), [trouble] if trouble else []
+
+
+def _cornering_stiffness(evidence: _Evidence, group: LoadGroup) -> UFloat | None:
+    found = cornering(evidence.points, evidence.parts, evidence.odd_slip, group, evidence.config)
+    return number(found.slope or found.secant, "cornering stiffness")
+
+
+def _turning(evidence: _Evidence, group: LoadGroup, slopes: _Slopes) -> tuple[_Turning | None, list[Trouble]]:
+    """Turn-slip force and stiffness from the zeros of every path; None without zeros."""
+    config, points, rig = evidence.config, evidence.points, evidence.rig
+    assert rig is not None
+    found = zeros_by_path(points, group, slopes.C_alpha, config)
+    if not found:
+        return None, []
+    troubles: list[Trouble] = []
+    for phi_t, _ in found:
+        troubles += unlike_zeros(points, phi_t, group, slopes.C_alpha, config)
+    both = (slopes.C_alpha, slopes.C_gamma)
+    paths = tuple(turn_slip_of_path(zero, phi_t, both, rig, config) for phi_t, zero in found)
+    combined = turn_slip_stiffness(paths)
+    if combined.contradictory:
+        alone = tuple(Quantity(C.nominal_value, C.std_dev, "Nm") for C in combined.of_paths)
+        troubles.append(PathsContradict(group.load, tuple(-1.0 / phi_t for phi_t, _ in found), alone))
+    force = paths[0].force if len(paths) == 1 else paths[0].sign * combined.C_phit / rig.R
+    turning = _Turning(found[0][1], tuple(phi_t for phi_t, _ in found), paths, combined, force)
+    if combined.C_phit.nominal_value <= 0.0:
+        refuse_inward(force.nominal_value, group.load, turning.alpha_M, config)
+    return turning, troubles
+
+
+def _straight(group: LoadGroup, slopes: _Slopes) -> _AtLoad:
+    return _AtLoad(_row(group, slopes, None, slopes.C_gamma), None, 0.0)
+
+
+def _result(
+    evidence: _Evidence, group: LoadGroup, slopes: _Slopes, turning: _Turning | None, r_e: UFloat | None
+) -> _AtLoad:
+    """The record of one load of a disc, with eps_gamma where everything that it needs was measured."""
+    rig = evidence.rig
+    assert rig is not None
+    C_gamma = slopes.C_gamma
+    if C_gamma is not None and slopes.C_alpha is not None:
+        C_gamma = method.true_camber_stiffness(
+            C_gamma, rig.errors, AtZero(slopes.C_alpha.nominal_value, C_gamma.nominal_value, 0.0)
         )
-    C_gamma = Stiffness(*estimates(points.gamma, odd_Fy, u_Fy, camber, CUBIC_CAMBER, angle))
-    if C_gamma.slope is None and C_alpha.slope is None and C_gamma.secant is None and rig is None:
-        return None
-    chosen = camber_stiffness(config, C_gamma, points.gamma[camber], group.load, warnings)
-    zeros_of = zeros_by_path(points, group, Ca, config) if rig else []
-    zero = zeros_of[0][1] if zeros_of else None
-    epsilon = C_phit = turn = alpha_M = moment = None
-    row_budget: tuple[Contribution, ...] = ()
-    u_mc = e_slope = e_secant = None
-    per_newton = 0.0
-    if zero is not None:
-        for phi_t, _ in zeros_of:
-            warnings += unlike_zeros(points, phi_t, group, Ca, config)
-        paths = [turn_slip(z, phi_t, chosen, Ca, rig, config) for phi_t, z in zeros_of]
-        alpha_M = next((path.alpha_M for path in paths if path.alpha_M is not None), None)
-        combined = stiffness(paths)
-        C_phit = combined.C_phit
-        if combined.contradictory:
-            said = tuple(Quantity(C.nominal_value, C.std_dev, "Nm") for C in combined.of_paths)
-            warnings.append(PathsContradict(group.load, tuple(-1.0 / phi_t for phi_t, _ in zeros_of), said))
-        sign = paths[0].sign
-        turn = paths[0].force if len(paths) == 1 else sign * C_phit / rig.R
-        if C_phit.nominal_value <= 0.0:
-            refuse_inward(turn.nominal_value, group.load, alpha_M, config)
-        if chosen is not None and r_e is not None:
-            result = method.camber_reduction(turn, chosen, r_e, rig.R, sign)
-            epsilon, row_budget = result.epsilon_gamma, method.budget(result.epsilon_gamma)
-            per_newton = epsilon.derivatives.get(rig.offset, 0.0)
-            u_mc = u_by_draws(paths, combined.weights, chosen, r_e, rig)
-            e_slope, e_secant = (
-                epsilon_with(s, turn, r_e, rig, sign) for s in (C_gamma.slope, C_gamma.secant)
-            )
-            moment = moment_opinion(points, odd_Mz, u_Mz, group, zero, r_e, rig, sign, config)
-    row = LoadResult(
-        load=group.load,
-        C_alpha=method.quantity(Ca, "N/rad"),
-        C_gamma=method.quantity(chosen, "N/rad"),
-        C_gamma_slope=None
-        if C_gamma.slope is None
-        else Quantity(C_gamma.slope.value, C_gamma.slope.u, "N/rad"),
-        C_gamma_secant=None
-        if C_gamma.secant is None
-        else Quantity(C_gamma.secant.value, C_gamma.secant.u, "N/rad"),
-        r_e=method.quantity(r_e, "m"),
-        R=method.quantity(rig.R, "m") if rig else None,
-        F_phit=method.quantity(turn, "N"),
-        C_phit=method.quantity(C_phit, "Nm"),
-        epsilon_gamma=method.quantity(epsilon, "-"),
-        epsilon_slope=e_slope,
-        epsilon_secant=e_secant,
-        epsilon_moment=method.quantity(moment, "-"),
-        alpha_M=method.quantity(alpha_M, "rad"),
-        F_forward=zero.forward if zero else math.nan,
-        F_backward=zero.backward if zero else math.nan,
-        budget=row_budget,
-        u_monte_carlo=u_mc,
-        paths=tuple(phi_t for phi_t, _ in zeros_of),
+    row = replace(
+        _row(group, slopes, turning, C_gamma), r_e=method.quantity(r_e, "m"), R=method.quantity(rig.R, "m")
     )
-    return AtLoad(row, epsilon, per_newton)
+    if turning is None or slopes.C_gamma is None or r_e is None:
+        return _AtLoad(row, None, 0.0)
+    epsilon = method.camber_reduction(turning.force, C_gamma, r_e, rig.R, turning.sign).epsilon_gamma
+
+    def with_estimate(estimate: Slope | Secant | None) -> float | None:
+        if estimate is None:
+            return None
+        other = method.camber_reduction(turning.force, estimate.value, r_e, rig.R, turning.sign)
+        return float(other.epsilon_gamma.nominal_value)
+
+    row = replace(
+        row,
+        epsilon_gamma=method.quantity(epsilon, "-"),
+        epsilon_slope=with_estimate(slopes.camber.slope),
+        epsilon_secant=with_estimate(slopes.camber.secant),
+        epsilon_moment=method.quantity(_from_moments(evidence, group, turning, r_e), "-"),
+        budget=method.budget(epsilon),
+        u_monte_carlo=u_by_draws(turning.paths, turning.stiffness.weights, slopes.C_gamma, r_e, rig),
+    )
+    return _AtLoad(row, epsilon, epsilon.derivatives.get(rig.errors["F0_N"], 0.0))
 
 
-def _assembled(
-    config: Config,
-    rows: list[AtLoad],
-    r_e_loads: Mapping[float, float],
-    warnings: list[Trouble],
-    disc: bool,
-) -> Measured:
-    nominal_load = config.tyre.nominal_load
+def _row(group: LoadGroup, slopes: _Slopes, turning: _Turning | None, C_gamma: UFloat | None) -> LoadResult:
+    """The record of one load without eps_gamma."""
+    return LoadResult(
+        load=group.load,
+        C_alpha=method.quantity(slopes.C_alpha, "N/rad"),
+        C_gamma=method.quantity(C_gamma, "N/rad"),
+        C_gamma_slope=_estimated(slopes.camber.slope),
+        C_gamma_secant=_estimated(slopes.camber.secant),
+        F_phit=method.quantity(turning.force, "N") if turning else None,
+        C_phit=method.quantity(turning.stiffness.C_phit, "Nm") if turning else None,
+        alpha_M=method.quantity(turning.alpha_M, "rad") if turning else None,
+        F_forward=turning.zeros.forward if turning else math.nan,
+        F_backward=turning.zeros.backward if turning else math.nan,
+        paths=turning.phi_t if turning else (),
+    )
+
+
+def _estimated(estimate: Slope | Secant | None) -> Quantity | None:
+    return None if estimate is None else Quantity(estimate.value, estimate.u, "N/rad")
+
+
+def _from_moments(evidence: _Evidence, group: LoadGroup, turning: _Turning, r_e: UFloat) -> UFloat | None:
+    """eps_gamma from the moments; informational, as it scatters widely."""
+    moment, parts, rig = turning.zeros.moment, evidence.parts, evidence.rig
+    assert rig is not None
+    if moment is None or abs(moment.nominal_value) < constants.CLEAR_MOMENT * moment.std_dev:
+        return None
+    u = np.where(np.isfinite(parts.u_Mz_odd), parts.u_Mz_odd, USUAL_U_MOMENT / math.sqrt(2.0))
+    index = sweep(evidence.points, parts.Mz_odd, group, "gamma", evidence.config)
+    slope = slope_at_zero(
+        evidence.points.gamma[index], parts.Mz_odd[index], u[index], local=constants.CUBIC_CAMBER.rad
+    )
+    if slope is None:
+        return None
+    C = method.named(slope.value, slope.u, "camber moment stiffness", "Nm/rad")
+    return 1.0 + r_e * C / (turning.sign * moment * rig.R)
+
+
+def _assembled(evidence: _Evidence, rows: Sequence[_AtLoad]) -> tuple[Measured, list[Trouble]]:
+    """The results of all loads together, with eps_gamma over load and the remarks."""
+    nominal_load = evidence.config.tyre.nominal_load
     per_load = tuple(found.row for found in rows)
-    known = [(found.row.load, found.epsilon) for found in rows if found.epsilon is not None]
+    r_e_loads = {load: float(r.nominal_value) for load, r in evidence.radii.items()}
+    known = [found for found in rows if found.epsilon is not None]
     if not known:
         nearest = min(per_load, key=lambda row: abs(row.load - nominal_load), default=None)
-        if disc:
-            warnings.append(NothingMeasured())
-        notes: tuple[Note, ...] = () if disc else (StraightPath(),)
-        return Measured(per_load, nearest, None, 0.0, None, r_e_loads, False, notes, ())
-    loads = [load for load, _ in known]
+        notes: tuple[Note, ...] = () if evidence.rig else (StraightPath(),)
+        nothing: list[Trouble] = [NothingMeasured()] if evidence.rig else []
+        return Measured(per_load, nearest, None, 0.0, None, r_e_loads, False, notes, ()), nothing
+    loads = [found.row.load for found in known]
     at = min(range(len(known)), key=lambda k: abs(loads[k] - nominal_load))
-    law = load_dependence(loads, [epsilon for _, epsilon in known], at, nominal_load)
-    row = next(row for row in per_load if row.load == loads[at])
-    axis = alignment_verdict(config, row)
+    law = load_dependence(
+        loads, [found.epsilon for found in known if found.epsilon is not None], at, nominal_load
+    )
+    nominal = known[at]
+    axis = alignment_verdict(evidence.config, nominal.row)
     misaligned = isinstance(axis, Misaligned)
-    if isinstance(axis, Misaligned):
-        warnings.append(axis)
-    said: tuple[Note, ...] = () if axis is None or isinstance(axis, Misaligned) else (axis,)
-    if len(row.paths) > 1:
-        said = (*said, SeveralPaths(tuple(-1.0 / phi_t for phi_t in row.paths)))
-    notes = (*said, law.note, StandardUncertainties(), _conicity(rows, row), ContactWanders())
-    return Measured(per_load, row, law.pecp1, law.pecp2, law.u_pecp2, r_e_loads, misaligned, notes, ())
+    notes = (
+        *(() if axis is None or isinstance(axis, Misaligned) else (axis,)),
+        *([SeveralPaths(tuple(-1.0 / phi_t for phi_t in nominal.row.paths))] if len(nominal.row.paths) > 1 else []),
+        law.note,
+        StandardUncertainties(),
+        _conicity(nominal),
+        ContactWanders(),
+    )  # fmt: skip
+    measured = Measured(
+        per_load, nominal.row, law.pecp1, law.pecp2, law.u_pecp2, r_e_loads, misaligned, notes, ()
+    )
+    return measured, [axis] if isinstance(axis, Misaligned) else []
 
 
 def alignment_verdict(config: Config, row: LoadResult) -> NotSeparable | Aligned | Misaligned | None:
     """Whether the sideslip axis is off by more than the rig's own alignment leaves; None where it does not matter."""
     assert row.F_phit is not None
-    force, left = row.F_phit.value, config.rig.u_slip_alignment_N
+    force, left = row.F_phit.value, config.rig.u("alpha_0_deg")
     if row.alpha_M is None and min(row.paths) < 0.0 < max(row.paths):
         return None
     if row.alpha_M is None:
@@ -257,16 +351,14 @@ def alignment_verdict(config: Config, row: LoadResult) -> NotSeparable | Aligned
     return verdict(row.alpha_M, slip, _shift(row, slip))
 
 
-def _conicity(rows: list[AtLoad], row: LoadResult) -> Conicity:
-    """What a plausible conicity would do, which pushes the same way on every path."""
-    force = CONICITY * row.load
-    return Conicity(
-        CONICITY, force, abs(force * next(found.per_newton for found in rows if found.row is row))
-    )
+def _conicity(found: _AtLoad) -> Conicity:
+    """The effect of a plausible conicity, which has the same sign on every path."""
+    force = constants.PLAUSIBLE_CONICITY * found.row.load
+    return Conicity(constants.PLAUSIBLE_CONICITY, force, abs(force * found.per_newton))
 
 
 def _shift(row: LoadResult, force: float) -> float:
-    """How far eps_gamma moves by a force [N] that is taken for turn slip."""
+    """Change of eps_gamma by a force [N] that is taken for turn slip."""
     assert row.epsilon_gamma is not None
     assert row.F_phit is not None
     return abs((1.0 - row.epsilon_gamma.value) * force / row.F_phit.value)

@@ -1,4 +1,4 @@
-"""Which points belong to which load, and which of them the direct method reads."""
+"""Points by load, and those among them that the direct method reads as zeros."""
 
 from __future__ import annotations
 
@@ -6,10 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from mffit.measured import constants
 from mffit.points import Points, levels, main_pressure
-
-UPRIGHT = np.radians(0.5)
-STRAIGHT = np.radians(0.3)
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,9 +30,13 @@ def zeros(points: Points, group: LoadGroup, direction: int) -> np.ndarray:
     """Indices of the group's points at zero sideslip and camber, rolling in ``direction`` (+1, -1)."""
     i = group.index
     near = (
-        (np.abs(points.alpha[i]) < STRAIGHT)
-        & (np.abs(points.gamma[i]) < UPRIGHT)
+        (np.abs(points.alpha[i]) < constants.ZERO_SIDESLIP.rad)
+        & (np.abs(points.gamma[i]) < constants.ZERO_CAMBER.rad)
         & (points.direction[i] == direction)
     )
     i = i[near]
-    return i[np.abs(points.alpha[i]) < np.min(np.abs(points.alpha[i])) + np.radians(0.05)] if len(i) else i
+    return (
+        i[np.abs(points.alpha[i]) < np.min(np.abs(points.alpha[i])) + constants.SAME_SIDESLIP.rad]
+        if len(i)
+        else i
+    )

@@ -8,9 +8,8 @@ from typing import NamedTuple
 import numpy as np
 from uncertainties import UFloat
 
+from mffit.measured import constants
 from mffit.measured.notes import EpsilonInNoise, LoadSlope, Note, OneLoad, SlopeInNoise, SlopeTooSteep
-
-LARGEST_EPSILON = 0.9
 
 
 class LoadDependence(NamedTuple):
@@ -51,11 +50,11 @@ def load_dependence(
     u_pecp2 = u / max(abs(pecp1), 1e-12)
     span = [pecp1 + slope * (load - loads[nominal]) / Fz0 for load in loads]
     why: Note
-    if abs(slope) <= 2.0 * u:
+    if abs(slope) <= constants.SIGNIFICANT_SLOPE * u:
         why = SlopeInNoise(slope, u)
-    elif abs(pecp1) <= 2.0 * at_nominal.std_dev:
+    elif abs(pecp1) <= constants.SIGNIFICANT_SLOPE * at_nominal.std_dev:
         why = EpsilonInNoise()
-    elif max(span) >= LARGEST_EPSILON:
+    elif max(span) >= constants.LARGEST_EPSILON:
         why = SlopeTooSteep(max(span))
     else:
         return LoadDependence(pecp1, slope / pecp1, u_pecp2, LoadSlope(slope / pecp1, u_pecp2))

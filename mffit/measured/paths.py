@@ -9,43 +9,43 @@ import numpy as np
 from scipy.special import chdtrc
 from uncertainties import UFloat
 
-from mffit.measured.camber_reduction import RigErrors, monte_carlo, named
+from mffit.measured import constants
+from mffit.measured.camber_reduction import (
+    RigDoubts,
+    monte_carlo,
+    named,
+    true_camber_stiffness,
+    turn_slip_force,
+)
 from mffit.measured.groups import LoadGroup
 from mffit.measured.loads import covariance
 from mffit.points import Points
-
-RIDGE = 1e-9
-"""Share of the variances that keeps the weights defined where paths have nothing but shared errors."""
+from mffit.rig_errors import AtZero
 
 
 class PathForce(NamedTuple):
-    """What the zeros of one path say."""
+    """The turn-slip force of one path."""
 
     sign: float  #: of phi_t
     R: UFloat  #: path radius [m]
-    force: UFloat  #: turn-slip force, corrected (23) [N]
-    readings: tuple[UFloat, ...]  #: raw force forwards [N], and backwards where that was run
+    at: AtZero  #: stiffnesses of the tyre and side of the play there
+    readings: tuple[UFloat, ...]  #: raw force forwards [N], and backwards if that was run
+    force: UFloat  #: corrected (23) [N]
     alpha_M: UFloat | None  #: sideslip misalignment [rad]; None without backward runs
 
 
-FINITE_SPIN = 0.05
-"""Standard uncertainty of the share by which C_phit falls per square of the turn slip [m^2]; sample tyres have 0.03."""
-UNLIKELY = 1e-3
-"""Chance below which paths are said to contradict each other."""
-
-
-class Stiffness(NamedTuple):
-    """The turn-slip stiffness and how much each path counts in it."""
+class TurnSlipStiffness(NamedTuple):
+    """The turn-slip stiffness and the weight of each path in it."""
 
     C_phit: UFloat  #: [Nm]
     weights: np.ndarray  #: (k,), sum 1
-    of_paths: tuple[UFloat, ...]  #: what each path says alone [Nm]
-    chance: float  #: that paths that measure the same differ by so much; 1 for one path
+    of_paths: tuple[UFloat, ...]  #: by each path alone [Nm]
+    chance: float  #: probability that paths of one stiffness differ by so much; 1 for one path
 
     @property
     def contradictory(self) -> bool:
-        """Whether the paths say different things, beyond what is known to be uncertain."""
-        return self.chance < UNLIKELY
+        """Whether the paths differ beyond all known uncertainty."""
+        return self.chance < constants.CONTRADICTION_CHANCE
 
 
 def by_path(points: Points, group: LoadGroup, usual: float) -> list[tuple[float, LoadGroup]]:
@@ -56,28 +56,28 @@ def by_path(points: Points, group: LoadGroup, usual: float) -> list[tuple[float,
 
 
 def on_radius(points: Points, index: np.ndarray, radius: float) -> np.ndarray:
-    """Those of the points (m,) that ran at the usual path radius [m], on either side of the disc; all if none did."""
+    """Indices of the points at the usual path radius [m], on either side of the disc; all if there are none."""
     usual = index[np.isclose(np.abs(points.phi_t[index]), 1.0 / radius, rtol=1e-6)]
     return usual if len(usual) else index
 
 
-def stiffness(paths: Sequence[PathForce]) -> Stiffness:
-    """C_phit = F/phi_t (21) of every path, in the combination that has the least uncertainty.
+def turn_slip_stiffness(paths: Sequence[PathForce]) -> TurnSlipStiffness:
+    """C_phit = F/phi_t (21), the paths weighted for the least uncertainty.
 
-    The rig's errors are shared: what pushes the same way on both sides of the disc, or on two radii, drops out.
+    The rig errors are common to all paths: a force of the same sign on both sides of the disc, or on two radii, cancels.
     """
     single = [path.sign * path.force * path.R for path in paths]
     if len(single) == 1:
-        return Stiffness(single[0], np.ones(1), tuple(single), 1.0)
+        return TurnSlipStiffness(single[0], np.ones(1), tuple(single), 1.0)
     errors = covariance(single)
-    errors += RIDGE * np.diag(np.diag(errors))
+    errors += constants.SHARED_ERROR_RIDGE * np.diag(np.diag(errors))
     weights = _weights(errors)
     together = sum(w * C for w, C in zip(weights.tolist(), single, strict=True))
-    return Stiffness(together, weights, tuple(single), _chance(paths, single, errors))
+    return TurnSlipStiffness(together, weights, tuple(single), _chance(paths, single, errors))
 
 
 def _weights(errors: np.ndarray) -> np.ndarray:
-    """Shares (k,) of numbers in their mean of least uncertainty, by their covariance (k, k)."""
+    """Weights (k,) of the mean with the least uncertainty, from the covariance (k, k) of its terms."""
     weights = np.linalg.solve(errors, np.ones(len(errors)))
     return weights / weights.sum()
 
@@ -85,31 +85,41 @@ def _weights(errors: np.ndarray) -> np.ndarray:
 def _chance(paths: Sequence[PathForce], single: Sequence[UFloat], errors: np.ndarray) -> float:
     said = np.array([C.nominal_value for C in single])
     spin = np.array([1.0 / path.R.nominal_value**2 for path in paths])
-    of_spin = FINITE_SPIN * np.mean(said) * (spin - spin[0])
+    of_spin = constants.FINITE_SPIN_SHARE * np.mean(said) * (spin - spin[0])
     errors = errors + np.outer(of_spin, of_spin)
     off = said - _weights(errors) @ said
     return float(chdtrc(len(single) - 1, off @ np.linalg.solve(errors, off)))
 
 
 def u_by_draws(
-    paths: Sequence[PathForce], weights: np.ndarray, C_gamma: UFloat, r_e: UFloat, rig: RigErrors
+    paths: Sequence[PathForce], weights: np.ndarray, C_gamma: UFloat, r_e: UFloat, rig: RigDoubts
 ) -> float:
-    """u(eps_gamma) by random draws of all independent sources."""
-    # R cancels where r_e comes from a revolution on the same path
+    """u(eps_gamma) by random draws of all independent sources.
+
+    Parameters
+    ----------
+    paths, weights : (k,) as in :class:`TurnSlipStiffness`
+    C_gamma : camber stiffness as read off the sweep [N/rad]
+    r_e : effective radius [m]
+    rig : the uncertain rig errors
+    """
+    # R cancels where r_e comes from a revolution on the same path.
     ratio = r_e / rig.R
     of_first = named(ratio.nominal_value, ratio.std_dev, "r_e/R", "-")
     relative = [rig.R.nominal_value / path.R.nominal_value for path in paths]
     readings = [reading for path in paths for reading in path.readings]
 
-    def formula(*x):
-        forces = list(x[: len(readings)])
-        C, offset, gamma_0, slip, r = x[len(readings) :]
+    def formula(*drawn):
+        forces, others = list(drawn[: len(readings)]), drawn[len(readings) :]
+        C, r, errors = others[0], others[1], dict(zip(rig.errors, others[2:], strict=True))
+        C = true_camber_stiffness(C, errors, paths[0].at)
         total = 0.0
         for path, weight, R in zip(paths, weights, relative, strict=True):
-            known = len(path.readings) > 1
-            force = sum(forces.pop(0) for _ in path.readings) / len(path.readings)
-            force = force - offset - C * gamma_0 - (0.0 if known else slip)
+            mean = sum(forces.pop(0) for _ in path.readings) / len(path.readings)
+            force = turn_slip_force(
+                mean, errors, path.at._replace(C_gamma=C), both_directions=len(path.readings) > 1
+            )
             total = total + weight * path.sign * force / R
         return 1.0 + r * C / total
 
-    return monte_carlo(formula, [*readings, C_gamma, rig.offset, rig.gamma_0, rig.slip_force, of_first])
+    return monte_carlo(formula, [*readings, C_gamma, of_first, *rig.errors.values()])

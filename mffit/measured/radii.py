@@ -7,9 +7,9 @@ from typing import NamedTuple
 
 import numpy as np
 from uncertainties import UFloat
-from uncertainties import ufloat as _ufloat
 
-from mffit.config import Config, path_radius
+from mffit.config import Config, wheel_turn
+from mffit.measured import constants
 from mffit.measured.camber_reduction import named
 from tir import Tyre
 
@@ -17,15 +17,9 @@ from tir import Tyre
 def measured_path_radius(config: Config) -> UFloat | None:
     """R [m] from the four tape measures or as given; None on a flat track."""
     rig = config.rig
-    if rig.type == "flat-track":
+    if rig.radius is None:
         return None
-    if rig.path is None:
-        assert rig.path_radius is not None
-        return named(rig.path_radius, rig.u_path_radius or 0.0, "path radius", "m")
-    R = path_radius(**{k: _ufloat(v, rig.u_length) for k, v in rig.path.model_dump().items()})
-    return named(
-        R.nominal_value, R.std_dev if rig.u_path_radius is None else rig.u_path_radius, "path radius", "m"
-    )
+    return named(rig.radius, rig.u("path_radius_m"), "path radius", "m")
 
 
 def measured_effective_radius(config: Config, R: UFloat | None) -> dict[float, UFloat]:
@@ -39,11 +33,7 @@ def measured_effective_radius(config: Config, R: UFloat | None) -> dict[float, U
             continue
         arcs = named(0.0, np.sqrt(2.0) * row.u_arc_m, "disc notches", "m")
         assert R is not None
-        assert row.revolutions is not None
-        assert row.angle_end_deg is not None
-        assert row.angle_start_deg is not None
-        turned = 2.0 * np.pi * row.revolutions + np.radians(row.angle_end_deg - row.angle_start_deg)
-        angle = named(turned, np.sqrt(2.0) * np.radians(row.u_angle_deg), "wheel angle", "rad")
+        angle = named(wheel_turn(row), np.sqrt(2.0) * np.radians(row.u_angle_deg), "wheel angle", "rad")
         out[load] = (2.0 * np.pi * R + arcs) / angle
     return out
 
@@ -66,7 +56,12 @@ def radius_readings(config: Config) -> tuple[RadiusReading, ...]:
         own = [u for source, u in r_e.error_components().items() if source is not R]
         follows = R is not None and R in r_e.derivatives
         rows.append(
-            RadiusReading(load, float(r_e.nominal_value), max(float(np.hypot.reduce(own)), 1e-5), follows)
+            RadiusReading(
+                load,
+                float(r_e.nominal_value),
+                max(float(np.hypot.reduce(own)), constants.LEAST_RADIUS_U),
+                follows,
+            )
         )
     return tuple(rows)
 
@@ -77,7 +72,7 @@ def effective_radius_at(load: float, measured: Mapping[float, UFloat], base: Tyr
         return None
     nearest = min(measured, key=lambda other: abs(np.log(other / load)))
     r_e = measured[nearest]
-    if abs(nearest - load) < 0.02 * load or base is None:
+    if abs(nearest - load) < constants.NEAREST_RADIUS_LOAD * load or base is None:
         return r_e
     shape = base.state(np.array([nearest, load])).Re
     return r_e * float(shape[1] / shape[0])

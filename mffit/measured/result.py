@@ -31,21 +31,21 @@ class LoadResult(Brief):
     """Everything measured at one load; quantities in SI and ISO signs, u with k = 1."""
 
     load: float  #: [N]
-    C_alpha: Quantity | None  #: [N/rad]
-    C_gamma: Quantity | None  #: the chosen estimate [N/rad]
-    C_gamma_slope: Quantity | None
-    C_gamma_secant: Quantity | None
-    r_e: Quantity | None  #: [m]
-    R: Quantity | None  #: [m]
-    F_phit: Quantity | None  #: turn-slip force, corrected (23) [N]
-    C_phit: Quantity | None  #: [Nm]
-    epsilon_gamma: Quantity | None
-    epsilon_slope: float | None
-    epsilon_secant: float | None
-    epsilon_moment: Quantity | None
-    alpha_M: Quantity | None  #: sideslip misalignment from backward runs [rad]
-    F_forward: float  #: mean raw force of the forward zeros, backlash removed [N]
-    F_backward: float  #: [N]; NaN without backward runs
+    C_alpha: Quantity | None = None  #: [N/rad]
+    C_gamma: Quantity | None = None  #: the chosen estimate, less what the rig adds [N/rad]
+    C_gamma_slope: Quantity | None = None
+    C_gamma_secant: Quantity | None = None
+    r_e: Quantity | None = None  #: [m]
+    R: Quantity | None = None  #: [m]
+    F_phit: Quantity | None = None  #: turn-slip force, corrected (23) [N]
+    C_phit: Quantity | None = None  #: [Nm]
+    epsilon_gamma: Quantity | None = None
+    epsilon_slope: float | None = None
+    epsilon_secant: float | None = None
+    epsilon_moment: Quantity | None = None
+    alpha_M: Quantity | None = None  #: sideslip misalignment from backward runs [rad]
+    F_forward: float = math.nan  #: mean raw force of the forward zeros, backlash removed [N]
+    F_backward: float = math.nan  #: [N]; NaN without backward runs
     budget: tuple[Contribution, ...] = ()
     u_monte_carlo: float | None = None  #: u(eps_gamma) from random draws
     paths: tuple[float, ...] = ()  #: turn slip of every path with zeros, the usual one first [1/m]

@@ -6,6 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from mffit.measured import constants
+
 
 @dataclass(frozen=True, slots=True)
 class Slope:
@@ -48,7 +50,7 @@ def slope_at_zero(x: np.ndarray, y: np.ndarray, u: np.ndarray, *, local: float) 
     cubic = np.nan
     if len(np.unique(np.round(x[near], 4))) >= 3:
         cubic, _ = _cubic(x[near], y[near], u[near])
-    difference = abs(shape - cubic) if np.isfinite(cubic) else 0.05 * abs(shape)
+    difference = abs(shape - cubic) if np.isfinite(cubic) else constants.SLOPE_WITHOUT_CUBIC * abs(shape)
     return Slope(shape, float(np.hypot(u_shape, difference / 2.0)), u_shape, float(cubic), len(x))
 
 
@@ -56,10 +58,14 @@ def secant_at(x: np.ndarray, y: np.ndarray, u: np.ndarray, angle: float) -> Seca
     """Secant y/x at the angle [rad], interpolated between the neighbours; None beyond the sweep."""
     order = np.argsort(x)
     x, y, u = x[order], y[order], u[order]
-    if not len(x) or angle > x[-1] * 1.02 or angle < x[0] * 0.98:
+    if (
+        not len(x)
+        or angle > x[-1] * (1.0 + constants.SECANT_REACH)
+        or angle < x[0] * (1.0 - constants.SECANT_REACH)
+    ):
         return None
     nearest = int(np.argmin(np.abs(x - angle)))
-    if abs(x[nearest] - angle) < 0.02 * angle:
+    if abs(x[nearest] - angle) < constants.SECANT_REACH * angle:
         same = np.abs(x - x[nearest]) < 1e-3
         return Secant(
             float(np.mean(y[same] / x[same])),

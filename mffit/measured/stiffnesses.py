@@ -9,60 +9,56 @@ import numpy as np
 from uncertainties import UFloat
 
 from mffit.config import Config
+from mffit.constants import USUAL_U_FORCE
 from mffit.measured import camber_reduction as method
-from mffit.measured.alignment import DEFAULT_U_FORCE
-from mffit.measured.groups import STRAIGHT, UPRIGHT, LoadGroup
+from mffit.measured import constants
+from mffit.measured.groups import LoadGroup
 from mffit.measured.notes import SecantNotPossible, SlopeNotPossible, Trouble
 from mffit.measured.paths import on_radius
 from mffit.measured.slopes import Secant, Slope, secant_at, slope_at_zero
 from mffit.parts import Parts
 from mffit.points import Points
 
-CUBIC_CAMBER = math.radians(20.0)
-CUBIC_SLIP = math.radians(2.0)
-"""Angles within which a cubic describes the odd part."""
-SHORTEST_CAMBER_SWEEP = math.radians(10.0)
-
 
 @dataclass(frozen=True, slots=True)
-class Stiffness:
-    """A stiffness at one load as the two estimates of it."""
+class Estimates:
+    """The two estimates of a stiffness at one load."""
 
     slope: Slope | None
     secant: Secant | None
 
 
-def cornering(points: Points, parts: Parts, odd_slip, group: LoadGroup, config: Config) -> Stiffness:
-    """Of sideslip at zero camber."""
+def cornering(points: Points, parts: Parts, odd_slip, group: LoadGroup, config: Config) -> Estimates:
+    """Cornering stiffness at zero camber."""
     odd = parts.Fy_odd if config.rig.on_disc else points.Fy
-    slip = sweep(points, odd, group, "alpha", config)
-    return Stiffness(*estimates(odd_slip, odd, u_odd(parts), slip, CUBIC_SLIP, CUBIC_SLIP))
+    slip, local = sweep(points, odd, group, "alpha", config), constants.CUBIC_SIDESLIP.rad
+    return estimates(odd_slip, odd, u_odd(parts), slip, local, local)
 
 
-def camber_stiffness(
-    config, stiffness: Stiffness, gamma, load: float, warnings: list[Trouble]
-) -> UFloat | None:
-    """C_gamma by the configured method; the other one, with a warning, if the sweep is too short for it."""
-    wanted = config.camber_stiffness.method
-    angle = config.camber_stiffness.angle_deg
-    slope_possible = stiffness.slope is not None and gamma.max() >= SHORTEST_CAMBER_SWEEP
-    if wanted == "slope" and not slope_possible and stiffness.secant is not None:
-        warnings.append(SlopeNotPossible(load, angle))
-        return number(stiffness.secant, "camber stiffness")
-    if wanted == "secant" and stiffness.secant is None and stiffness.slope is not None:
-        warnings.append(SecantNotPossible(load, angle))
-        return number(stiffness.slope, "camber stiffness")
-    return number(stiffness.slope if wanted == "slope" else stiffness.secant, "camber stiffness")
+def chosen_camber_stiffness(
+    config: Config, found: Estimates, largest: float, load: float
+) -> tuple[UFloat | None, Trouble | None]:
+    """C_gamma by the configured method; the other one, with a warning, if the sweep is too short for it.
+
+    Parameters
+    ----------
+    config : names the method
+    found : both estimates
+    largest : camber that the sweep reaches [rad]
+    load : [N]
+    """
+    wanted, angle = config.camber_stiffness.method, config.camber_stiffness.angle_deg
+    slope_possible = found.slope is not None and largest >= constants.SHORTEST_CAMBER_SWEEP.rad
+    if wanted == "slope" and not slope_possible and found.secant is not None:
+        return number(found.secant, "camber stiffness"), SlopeNotPossible(load, angle)
+    if wanted == "secant" and found.secant is None and found.slope is not None:
+        return number(found.slope, "camber stiffness"), SecantNotPossible(load, angle)
+    return number(found.slope if wanted == "slope" else found.secant, "camber stiffness"), None
 
 
 def u_odd(parts: Parts) -> np.ndarray:
     """Standard uncertainty of the odd side force (n,) [N]."""
-    return np.where(np.isfinite(parts.u_Fy_odd), parts.u_Fy_odd, DEFAULT_U_FORCE / math.sqrt(2.0))
-
-
-def raw_odd(points: Points) -> tuple[np.ndarray, np.ndarray]:
-    """On a straight path the curve itself, less its value at zero, stands for the odd part."""
-    return points.Fy, points.Mz
+    return np.where(np.isfinite(parts.u_Fy_odd), parts.u_Fy_odd, USUAL_U_FORCE / math.sqrt(2.0))
 
 
 def sweep(points: Points, odd: np.ndarray, group: LoadGroup, angle: str, config: Config) -> np.ndarray:
@@ -70,14 +66,32 @@ def sweep(points: Points, odd: np.ndarray, group: LoadGroup, angle: str, config:
     i = group.index if config.rig.radius is None else on_radius(points, group.index, config.rig.radius)
     i = i[(points.direction[i] > 0) & np.isfinite(odd[i])]
     if angle == "gamma":
-        return i[(np.abs(points.alpha[i]) < STRAIGHT) & (points.gamma[i] > UPRIGHT)]
-    return i[(np.abs(points.gamma[i]) < UPRIGHT) & (points.alpha[i] > np.radians(0.15))]
+        return i[
+            (np.abs(points.alpha[i]) < constants.ZERO_SIDESLIP.rad)
+            & (points.gamma[i] > constants.ZERO_CAMBER.rad)
+        ]
+    return i[
+        (np.abs(points.gamma[i]) < constants.ZERO_CAMBER.rad)
+        & (points.alpha[i] > constants.SMALLEST_SIDESLIP.rad)
+    ]
 
 
-def estimates(x, odd, u, index, local, angle) -> tuple[Slope | None, Secant | None]:
+def estimates(
+    x: np.ndarray, odd: np.ndarray, u: np.ndarray, index: np.ndarray, local: float, angle: float
+) -> Estimates:
+    """Slope at zero and secant at an angle of an odd curve.
+
+    Parameters
+    ----------
+    x, odd, u : (n,) angles [rad], odd part and its standard uncertainty
+    index : of the points to use
+    local : up to where a cubic describes the curve [rad]
+    angle : of the secant [rad]
+    """
     x, y, u = x[index], odd[index], u[index]
-    return slope_at_zero(x, y, u, local=local), secant_at(x, y, u, angle)
+    return Estimates(slope_at_zero(x, y, u, local=local), secant_at(x, y, u, angle))
 
 
 def number(estimate: Slope | Secant | None, source: str) -> UFloat | None:
+    """An estimate as a number with uncertainty [N/rad]."""
     return None if estimate is None else method.named(estimate.value, estimate.u, source, "N/rad")

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, assert_never
+from typing import assert_never
 
 from mffit.measured.notes import (
     Aligned,
@@ -29,9 +29,6 @@ from mffit.measured.notes import (
     ZerosDisagree,
 )
 from mffit.measured.result import CONICITY, FINITE_SPIN, Measured
-
-if TYPE_CHECKING:
-    from mffit.measured.alignment import Alignment
 
 
 def epsilon_values(measured: Measured) -> str:
@@ -179,44 +176,3 @@ def _found(fact: Aligned | Misaligned) -> str:
         f"alpha_M = {alpha_M:.3f} +- {u:.3f} deg ({fact.slip:.0f} N); uncorrected it would move eps_gamma by "
         f"{fact.shift:.2f}"
     )
-
-
-def alignment(found: Alignment) -> list[str]:
-    """What to do with the axis now, and why zeros differ from the report's."""
-    correction, u = found.correction_deg, found.u_deg
-    step = f"{correction:+.3f} +- {u:.3f} deg of the rig's own scale (k = 1)"
-    if found.aligned:
-        finer = (
-            "its uncertainty"
-            if abs(correction) <= u
-            else f"what the axis can be turned by, {found.resolution_deg:g} deg"
-        )
-        out = [f"Aligned, stop: the correction {step} is within {finer}."]
-    else:
-        out = [f"Turn the sideslip axis by {step}, then measure both directions again."]
-    if any(row.source == "guess" for row in found.last):
-        out.append(
-            "C_alpha is guessed from the load, which makes the correction uncertain; a sideslip sweep in tyre.toml, or a second "
-            "iteration, gives it."
-        )
-    rows = [row for row in found.last if row.reported is not None]
-    if rows:
-        said = "; ".join(
-            f"at {row.load:.0f} N "
-            + " and ".join(
-                f"{there:.1f} N {way} where it is {here:.1f} N here"
-                for way, there, here in zip(
-                    ("forwards", "backwards"),
-                    row.reported or (),
-                    (row.F_forward, row.F_backward),
-                    strict=True,
-                )
-                if math.isfinite(there)
-            )
-            for row in rows
-        )
-        out.append(
-            "The zeros above are plain means of the readings at zero, as the rig shows them. The report takes the play of the "
-            f"axis off and, where five angles were run near zero, reads zero from a parabola through them: {said}."
-        )
-    return out

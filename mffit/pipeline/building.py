@@ -30,7 +30,8 @@ from mffit.progress import Progress, silent
 from mffit.quantities import CHANNELS
 from mffit.recordings.stretch_table import stretch_table
 from mffit.results import BuildResult, as_json
-from mffit.rig import NO_FAULTS, Simulation
+from mffit.rig import Simulation
+from mffit.rig_errors import NO_FAULTS
 from tir import Tyre
 
 USES = ("turn-slip", "normal")

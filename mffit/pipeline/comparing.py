@@ -14,7 +14,7 @@ import tir
 from mffit import config as configuration
 from mffit import points as ingestion
 from mffit.comparison import Comparison, Subject, against_points, between
-from mffit.config import Config
+from mffit.config import Config, declared_faults
 from mffit.diagnosis.inexact import Inexactness
 from mffit.errors import InputError
 from mffit.fleet.specimen import RESOLVED
@@ -25,7 +25,8 @@ from mffit.pipeline.measuring import measure, without_play
 from mffit.pipeline.provenance import posterior_of, use_of
 from mffit.progress import Progress, silent
 from mffit.results import as_json
-from mffit.rig import NO_FAULTS, RigFaults, Simulation
+from mffit.rig import Simulation
+from mffit.rig_errors import NO_FAULTS
 from tir import Tyre
 
 RESULT = "result.json"
@@ -151,7 +152,7 @@ def _with_data(subject: Subject, config: Config) -> Comparison:
     points, _ = ingestion.load(config)
     base = read_base(config)
     turn_slip = config.model.turn_slip and config.rig.on_disc
-    faults = RigFaults(backlash_deg=config.rig.backlash_deg)
+    faults = declared_faults(config.rig)
     simulation = Simulation.of(subject.tyre, faults, turn_slip=turn_slip, star=config.model.star)
     if config.rig.radius is not None:
         simulation = replace(simulation, radius_m=config.rig.radius)

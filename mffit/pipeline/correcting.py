@@ -86,4 +86,4 @@ def _mended(diagnosis: Diagnosis, config: Config) -> Points:
         return points
     if config.rig.on_disc:
         return points.select(~points.continuous)
-    return settled_sweeps(points, (diagnosis.state.relaxation_m, 0.0))
+    return settled_sweeps(points, (diagnosis.state.faults["relaxation_m"], 0.0))

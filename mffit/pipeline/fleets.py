@@ -13,7 +13,6 @@ from threadpoolctl import threadpool_limits
 
 from mffit import fleet as combining
 from mffit.comparison import with_u
-from mffit.effects import FAULT_WORDS
 from mffit.errors import InputError
 from mffit.fit import priors
 from mffit.fleet import Fleet, Hierarchy, Row, Specimen, TyreEstimate
@@ -22,6 +21,7 @@ from mffit.pipeline.members import numbers
 from mffit.progress import Progress, silent
 from mffit.quantities import COMPARED
 from mffit.results import as_json
+from mffit.rig_errors import WORDS
 from tir import Quantity, Tyre
 
 WRITTEN = ("fleet.html", "fleet.json", "fleet.csv", "priors.json")
@@ -137,13 +137,13 @@ def _notes(rows: Sequence[Row], rigs: Sequence[Hierarchy | None]) -> list[str]:
         worst = max(row.strain.keys() - far, key=lambda name: abs(row.strain[name]), default="")
         if worst and abs(row.strain[worst]) > combining.STRAINED:
             out.append(
-                f"{row.specimen.name}: its own error of the rig, {FAULT_WORDS[worst]}, lies {abs(row.strain[worst]):.0f} "
+                f"{row.specimen.name}: its own error of the rig, {WORDS[worst]}, lies {abs(row.strain[worst]):.0f} "
                 "standard deviations from that of the other tyres; if the rig was adjusted in between, it is another rig: "
                 "leave this tyre out."
             )
     for name, times in far.items():
         out.append(
-            f"All tyres together put an error of the rig, {FAULT_WORDS[name]}, {times:.0f} standard deviations from what [rig] "
+            f"All tyres together put an error of the rig, {WORDS[name]}, {times:.0f} standard deviations from what [rig] "
             "declares: the declaration is too tight, or the tyres share something that the model lacks; then believe the "
             "direct method."
         )

@@ -40,7 +40,7 @@ def align(
     *,
     axes: str | None = None,
     path_centre: str | None = None,
-    resolution_deg: float = direct.RESOLUTION_DEG,
+    resolution_deg: float = direct.constants.AXIS_RESOLUTION,
 ) -> Alignment:
     """Next steering correction from forward and backward zeros; see :func:`mffit.measured.align`.
 

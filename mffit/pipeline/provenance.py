@@ -12,12 +12,13 @@ import numpy as np
 
 import mffit
 import tir
-from mffit.config import Config
+from mffit.config import Config, declared_faults
 from mffit.diagnosis.inexact import Inexactness, correlated, refitted
 from mffit.fit import FitResult
 from mffit.measured import Measured
 from mffit.pipeline.inputs import input_hashes
-from mffit.rig import FAULT_NAMES, UNITS, RigFaults
+from mffit.rig_errors import BY_NAME as RIG_ERRORS
+from mffit.rig_errors import Faults
 from tir import Tyre
 
 PROGRAM = "program"
@@ -37,7 +38,9 @@ Annotate = Callable[[Tyre, str], Tyre]
 def annotator(config: Config, measured: Measured, fitted: FitResult) -> Annotate:
     """What a build says in each of its files; the inputs are hashed once for all of them."""
     inputs = _inputs(config)
-    rig = {RIG + name: tir.Quantity(value, u, UNITS[name]) for name, (value, u) in fitted.rig.items()}
+    rig = {
+        RIG + name: tir.Quantity(value, u, RIG_ERRORS[name].unit) for name, (value, u) in fitted.rig.items()
+    }
 
     def annotated(tyre: Tyre, use: str) -> Tyre:
         provenance = {
@@ -58,10 +61,10 @@ def use_of(tyre: Tyre) -> str | None:
     return found[1] if found else None
 
 
-def rig_of_build(tyre: Tyre, config: Config) -> RigFaults | None:
+def rig_of_build(tyre: Tyre, config: Config) -> Faults | None:
     """The rig errors that a build on these very sweeps found; None if its file does not say."""
-    found = {name: tyre.measured[RIG + name].value for name in FAULT_NAMES if RIG + name in tyre.measured}
-    return RigFaults(**{"backlash_deg": config.rig.backlash_deg, **found}) if found else None
+    found = {name: tyre.measured[RIG + name].value for name in RIG_ERRORS if RIG + name in tyre.measured}
+    return declared_faults(config.rig).replace(**found) if found else None
 
 
 def fitted_to(tyre: Tyre, config: Config) -> bool:

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from mffit.effects import CATALOG, Effect
 from mffit.errors import InputError
 from mffit.quantities import CHANNELS, DIRECT
-from mffit.rig import UNITS
+from mffit.rig_errors import UNITS
 from tir.parameters import BY_NAME
 
 EPSILON, JOINT, BANDS, TIE = "eps_gamma", "eps_gamma:joint", "bands", "tie"

@@ -22,7 +22,7 @@ from mffit.measured.radii import measured_path_radius
 from mffit.planning.runs import Run
 from mffit.points import Points
 from mffit.points.points import concatenate
-from mffit.rig import FAULT_NAMES
+from mffit.rig_errors import BY_NAME as RIG_ERRORS
 from tir import Quantity
 
 PECP1 = "PECP1"
@@ -48,7 +48,7 @@ class Knowledge:
         self.problem = search.problem
         self.simulation = search.problem.simulation
         spread = {n.name: n.spread for n in search.numbers} | dict(search.held)
-        self.rig = tuple(n.name for n in search.numbers if n.name in FAULT_NAMES)
+        self.rig = tuple(n.name for n in search.numbers if n.name in RIG_ERRORS)
         staged = {name for row in found.coverage for name in (*row.free, *row.held)}
         self.extra = tuple(n.name for n in search.numbers if n.name not in staged and n.name not in self.rig)
         self.usual = {e.free[0].name: self._usual(e) for e in effects}  # size of an effect, 1 sigma

@@ -23,7 +23,8 @@ from mffit.planning.runs import Kind, Run, candidates
 from mffit.points import Points, main_pressure, make_points
 from mffit.points.points import concatenate
 from mffit.progress import Progress, silent
-from mffit.rig import FAULT_NAMES, Simulation
+from mffit.rig import Simulation
+from mffit.rig_errors import BY_NAME as RIG_ERRORS
 from mffit.scatter import rms
 
 WORTH = 0.05
@@ -237,7 +238,7 @@ class _Outlook:
         where = make_points(
             alpha, gamma, np.repeat(loads, 2 * STEPS), p=float(self.found.tyre["NOMPRES"]), V=10.0, phi_t=0.0
         )
-        names = [n for n in self.knowledge.names if n not in FAULT_NAMES]
+        names = [n for n in self.knowledge.names if n not in RIG_ERRORS]
         tyre = Simulation.of(self.found.tyre, turn_slip=self.config.rig.on_disc)
         return names, getattr(tyre.sensitivities(where, names)[1], self.goal.name)
 

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from mffit.measured import LARGEST_DIFFERENCE, wording
+from mffit.measured import constants, wording
 from mffit.quantities import CHANNELS, CONDITIONS, DIRECT
 from mffit.report import page, published
 from mffit.report.build_view import PER_LOAD, STATUS_ORDER, BuildView, Channel, Row, view_of
@@ -59,7 +59,7 @@ def write_build(result: BuildResult, folder: Path) -> None:
         conditions=CONDITIONS,
         direct=DIRECT,
         per_load=PER_LOAD,
-        aligned_below=LARGEST_DIFFERENCE,
+        aligned_below=constants.LARGEST_DIFFERENCE,
         degrees=math.degrees(1.0),
     )
 

@@ -8,7 +8,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from mffit.config import Config
-from mffit.effects import FAULT_WORDS
 from mffit.fit import Agreement, Coefficient, Doubt, Outlier, Posterior, StageRecord
 from mffit.fit.coverage import StageCoverage
 from mffit.fit.files import Files
@@ -18,6 +17,7 @@ from mffit.quantities import CHANNELS
 from mffit.report.curves import Condition, Curve, conditions, curves
 from mffit.report.lines import Line, model_lines
 from mffit.results import BuildResult
+from mffit.rig_errors import WORDS
 from tir import Tyre
 from tir.parameters import BY_NAME
 
@@ -195,7 +195,7 @@ def coefficient_rows(coefficients: Mapping[str, Coefficient]) -> tuple[Row, ...]
                 at_bound=c.at_bound,
                 stage=c.stage,
                 status=c.status,
-                correlation=f"{FAULT_WORDS.get(c.correlated_with, c.correlated_with)} {c.correlation:+.2f}"
+                correlation=f"{WORDS.get(c.correlated_with, c.correlated_with)} {c.correlation:+.2f}"
                 if c.correlated_with
                 else "",
             )

@@ -10,12 +10,13 @@ import numpy as np
 from mffit.diagnosis import Diagnosis
 from mffit.diagnosis.selection import Step
 from mffit.diagnosis.where import Region
-from mffit.effects import CATALOG, FAULT_WORDS
+from mffit.effects import CATALOG
 from mffit.points import Points
 from mffit.quantities import CHANNELS
 from mffit.report.curves import Condition, Curve, conditions, curves
 from mffit.report.lines import Line, model_lines
-from mffit.rig import FAULT_NAMES, OF_RUN, UNITS
+from mffit.rig_errors import BY_NAME as RIG_ERRORS
+from mffit.rig_errors import OF_RUN, WORDS
 from tir.parameters import BY_NAME
 
 MOST_FRAMES = 3
@@ -133,14 +134,14 @@ def view_of(diagnosis: Diagnosis) -> DiagnosisView:
 def _unit(name: str) -> str:
     """Unit of a coefficient or of a rig's fault, of all runs or of one."""
     fault = name.partition(OF_RUN)[0]
-    unit = UNITS[fault] if fault in FAULT_NAMES else BY_NAME[name].unit if name in BY_NAME else ""
+    unit = RIG_ERRORS[fault].unit if fault in RIG_ERRORS else BY_NAME[name].unit if name in BY_NAME else ""
     return "" if unit == "-" else unit
 
 
 def _word(name: str) -> str:
     """What a number of the rig, of all runs or of one, is called; empty for a coefficient."""
     fault, of, file = name.partition(OF_RUN)
-    return f"{FAULT_WORDS[fault]}, {file}" if of else FAULT_WORDS.get(fault, "")
+    return f"{WORDS[fault]}, {file}" if of else WORDS.get(fault, "")
 
 
 def _shown(diagnosis: Diagnosis, channels: Sequence[GapChannel]) -> tuple[Shown, ...]:

@@ -7,11 +7,10 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from mffit.effects import FAULT_WORDS
 from mffit.fleet import ENOUGH, EPSILON, Fleet
 from mffit.quantities import CHANNELS, COMPARED, DIRECT
 from mffit.report import page
-from mffit.rig import MEANINGS, UNITS
+from mffit.rig_errors import MEANINGS, UNITS, WORDS
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -46,7 +45,7 @@ def write_fleet(found: Fleet, folder: Path, *, priors: bool) -> None:
         channels=CHANNELS,
         units=UNITS,
         meanings=MEANINGS,
-        words=FAULT_WORDS,
+        words=WORDS,
         enough=ENOUGH,
         spin=SPIN,
         priors=priors,

@@ -1,17 +1,6 @@
-"""What a rig makes of a tyre: the readings it reports, with its own faults and the environment's influence."""
+"""The forward model: the readings that a rig reports of a tyre, its own errors and the environment's influence included."""
 
-from mffit.rig.faults import FAULT_NAMES, MEANINGS, NO_FAULTS, OF_RUN, UNITS, RigFaults
-from mffit.rig.simulation import Readings, Simulation, declared_radius, reference_speed
+from mffit.rig.histories import distance_km, reference_speed, sense
+from mffit.rig.simulation import Readings, Simulation
 
-__all__ = [
-    "FAULT_NAMES",
-    "MEANINGS",
-    "NO_FAULTS",
-    "OF_RUN",
-    "UNITS",
-    "Readings",
-    "RigFaults",
-    "Simulation",
-    "declared_radius",
-    "reference_speed",
-]
+__all__ = ["Readings", "Simulation", "distance_km", "reference_speed", "sense"]

@@ -7,31 +7,51 @@ import numpy as np
 from mffit.points import Points
 
 
-def lagged_points(points: Points, relaxation: float) -> Points:
-    """The points with the angle that the force answers to: ``sigma d(alpha')/ds + alpha' = alpha``.
+def lagged_angle(points: Points, sigma: float) -> tuple[np.ndarray, np.ndarray]:
+    """Sideslip angle (n,) that the force answers to [rad], and its derivative by the relaxation length [rad/m].
 
-    Exact for an angle that moves linearly over the rolled distance between samples, however far these are apart. Where
-    the wheel stands still the lag stays as it is. Every sweep begins settled.
+    ``sigma d(alpha')/ds + alpha' = alpha``. Exact for an angle that moves linearly over the rolled distance between
+    samples, however far these are apart. Where the wheel does not roll, the lag stays constant. Every sweep begins
+    settled; steady points have no lag.
 
     Parameters
     ----------
-    points : with ``continuous`` samples, in any order; steady points are left alone
-    relaxation : relaxation length sigma [m]
+    points : (n,) in any order, with ``continuous`` samples
+    sigma : relaxation length [m]
 
     Notes
     -----
-    With q the distance of a step over sigma and phi = (1 - exp(-q))/q, the step from (alpha_0, alpha_0') to alpha_1 ends at
-    alpha_1' = alpha_1 - phi (alpha_1 - alpha_0) - exp(-q) (alpha_0 - alpha_0').
+    Over a step of length d from (alpha_0, alpha_0') to alpha_1, with q = d/sigma and f = (1 - exp(-q))/q, the lag
+    b = alpha - alpha' becomes b_1 = f (alpha_1 - alpha_0) + exp(-q) b_0.
     """
-    alpha = points.alpha.copy()
+    alpha, slope = points.alpha.copy(), np.zeros(len(points))
     for k in np.unique(points.sweep[points.continuous]):
         rows = np.flatnonzero(points.continuous & (points.sweep == k))
         rows = rows[np.argsort(points.time[rows], kind="stable")]
-        V, read = points.V[rows], points.alpha[rows]
-        q = np.diff(points.time[rows]) * 0.5 * (V[:-1] + V[1:]) / relaxation
-        phi = np.where(q > 0.0, -np.expm1(-q) / np.where(q > 0.0, q, 1.0), 1.0)
-        behind = 0.0  # alpha - alpha'
-        for i, (moved, share, kept) in enumerate(zip(np.diff(read), phi, np.exp(-q), strict=True), start=1):
-            behind = share * moved + kept * behind
-            alpha[rows[i]] = read[i] - behind
-    return points.replace(alpha=alpha)
+        V = points.V[rows]
+        steps = np.diff(points.time[rows]) * 0.5 * (V[:-1] + V[1:])
+        lag, by_sigma = _lag(np.diff(points.alpha[rows]), steps, sigma)
+        alpha[rows] -= lag
+        slope[rows] = -by_sigma
+    return alpha, slope
+
+
+def _lag(moved: np.ndarray, steps: np.ndarray, sigma: float) -> tuple[np.ndarray, np.ndarray]:
+    """Lag (m + 1,) [rad] after steps (m,) of angle [rad] and distance [m], and its derivative by sigma [rad/m]."""
+    rolls = steps > 0.0
+    distance = np.where(rolls, steps, 1.0)
+    if sigma:
+        kept = np.where(rolls, np.exp(-distance / sigma), 1.0)
+        share = np.where(rolls, (1.0 - kept) * sigma / distance, 1.0)
+        share_slope = np.where(rolls, (share - kept) / sigma, 0.0)
+        kept_slope = np.where(rolls, kept * distance / sigma**2, 0.0)
+    else:
+        kept = share = np.where(rolls, 0.0, 1.0)
+        share_slope = np.where(rolls, 1.0 / distance, 0.0)
+        kept_slope = np.zeros_like(kept)
+    lag, by_sigma = np.zeros(len(moved) + 1), np.zeros(len(moved) + 1)
+    rows = zip(moved, share, kept, share_slope, kept_slope, strict=True)
+    for i, (move, f, e, f_slope, e_slope) in enumerate(rows):
+        lag[i + 1] = f * move + e * lag[i]
+        by_sigma[i + 1] = f_slope * move + e_slope * lag[i] + e * by_sigma[i]
+    return lag, by_sigma

@@ -1,4 +1,4 @@
-"""Play of the steering axis: at which sideslip the moment of the tyre holds a wheel that is free between two stops."""
+"""Play of the steering axis: the sideslip at which the moment of the tyre holds a wheel that is free between two stops."""
 
 from __future__ import annotations
 
@@ -7,9 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-STEPS, CLOSE = 12, 1e-7
-"""Steps of the search for the angle without moment at most, and the step [rad] that ends it: what is left after a step
-of that size is its square and less."""
+from mffit.rig import constants
 
 Moment = Callable[[np.ndarray], np.ndarray]
 """Aligning moment [Nm] at sideslip angles (m,) [rad]."""
@@ -24,7 +22,7 @@ class Settled(NamedTuple):
 
 
 def settled(moment_of: Callable[[np.ndarray], Moment], alpha: np.ndarray, half_play: float) -> Settled:
-    """Rest of a wheel that may turn by ``half_play`` to either side of ``alpha``.
+    """Where a wheel comes to rest that may turn by ``half_play`` to either side of ``alpha``.
 
     Parameters
     ----------
@@ -33,16 +31,14 @@ def settled(moment_of: Callable[[np.ndarray], Moment], alpha: np.ndarray, half_p
     half_play : [rad]
     """
     n = len(alpha)
-    both = moment_of(
-        np.tile(np.arange(n), 2)
-    )  # of both stops at once: the cost is in the call, not in the number
+    both = moment_of(np.tile(np.arange(n), 2))  # both stops in one call, as a call costs more than its points
     lower, upper = np.split(both(np.concatenate([alpha - half_play, alpha + half_play])), 2)
-    # Two stops that both hold it: it lies at the one to which the moment in the middle turns it.
+    # If both stops would hold it, the moment in the middle decides to which of them the wheel turns.
     middle = moment_of(np.arange(n))(alpha) if np.any((lower > 0.0) & (upper < 0.0)) else lower + upper
     at_lower, at_upper = lower > 0.0, upper < 0.0
     side = np.where(at_lower & (~at_upper | (middle > 0.0)), 1.0, -1.0)
     floats = ~at_lower & ~at_upper
-    rest = np.where(floats, alpha, np.nan)  # in the middle where no moment turns it at all
+    rest = np.where(floats, alpha, np.nan)  # the middle, where no moment acts at all
     which = np.flatnonzero(floats & (lower < upper))
     if len(which):
         rest[which] = _without_moment(
@@ -62,28 +58,28 @@ def _without_moment(
     at_a: np.ndarray,
     at_b: np.ndarray,
 ) -> np.ndarray:
-    """Root (m,) between ``a`` and ``b``, where the moment has opposite signs: a chord, then parabolas lying on their side.
+    """Root (m,) between ``a`` and ``b``, where the moment has opposite signs: a secant, then inverse quadratic steps.
 
-    The moment is nearly straight over so small an angle, so that two evaluations do; scipy's root finder costs ten
+    The moment is nearly linear over so small an angle, so two evaluations are enough; scipy's root finder costs ten
     times as much here.
     """
     x = a - at_a * (b - a) / (at_b - at_a)
-    for _ in range(STEPS):
+    for _ in range(constants.LONGEST_ZERO_SEARCH):
         value = moment(x)
-        beside = _on_its_side((a, b, x), (at_a, at_b, value))
+        proposed = _inverse_quadratic((a, b, x), (at_a, at_b, value))
         below = value < 0.0  # as at ``a``
         a, at_a = np.where(below, x, a), np.where(below, value, at_a)
         b, at_b = np.where(below, b, x), np.where(below, at_b, value)
-        inside = (beside > a) & (beside < b)  # false for NaN, too
-        following = np.where(value == 0.0, x, np.where(inside, beside, 0.5 * (a + b)))
+        inside = (proposed > a) & (proposed < b)  # false for NaN, too
+        following = np.where(value == 0.0, x, np.where(inside, proposed, 0.5 * (a + b)))
         moved, x = np.abs(following - x), following
-        if np.all(moved < CLOSE):
+        if np.all(moved < constants.ZERO_SEARCH_STEP):
             break
     return x
 
 
-def _on_its_side(x: tuple[np.ndarray, ...], y: tuple[np.ndarray, ...]) -> np.ndarray:
-    """Where the parabola x(y) through three places (m,) each passes y = 0."""
+def _inverse_quadratic(x: tuple[np.ndarray, ...], y: tuple[np.ndarray, ...]) -> np.ndarray:
+    """Zero (m,) of the parabola x(y) through three points (m,) each."""
     (x0, x1, x2), (y0, y1, y2) = x, y
     with np.errstate(divide="ignore", invalid="ignore"):
         return (

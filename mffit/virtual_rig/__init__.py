@@ -3,11 +3,11 @@
 Its data are what ``mffit build`` is tested with, and a way to try a test plan before going to the rig.
 """
 
+from mffit.rig_errors import Faults
 from mffit.virtual_rig.campaign import Campaign, run
-from mffit.virtual_rig.faults import Faults
 from mffit.virtual_rig.loading import load_plan
-from mffit.virtual_rig.plan import Plan
+from mffit.virtual_rig.plan import RigPlan
 from mffit.virtual_rig.simulate import simulate
 from mffit.virtual_rig.truth import DirectTruth, Truth
 
-__all__ = ["Campaign", "DirectTruth", "Faults", "Plan", "Truth", "load_plan", "run", "simulate"]
+__all__ = ["Campaign", "DirectTruth", "Faults", "RigPlan", "Truth", "load_plan", "run", "simulate"]

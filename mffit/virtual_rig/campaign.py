@@ -9,9 +9,10 @@ import numpy as np
 import pandas as pd
 
 from mffit.errors import InputError
-from mffit.virtual_rig.faults import Faults, drawn, given
+from mffit.rig_errors import Faults
+from mffit.virtual_rig.faults import drawn, given
 from mffit.virtual_rig.machine import Channels, Machine, steady
-from mffit.virtual_rig.plan import NoiseTable, Plan, SweepPlan
+from mffit.virtual_rig.plan import NoiseTable, RigPlan, SweepPlan
 from mffit.virtual_rig.recording import record
 from mffit.virtual_rig.revolution import written_down
 from mffit.virtual_rig.settings import Settings, settings_of, usual_speed
@@ -32,7 +33,7 @@ class Campaign:
     truth: Truth
 
 
-def run(plan: Plan, tyre: Tyre, seed: int | None = None) -> Campaign:
+def run(plan: RigPlan, tyre: Tyre, seed: int | None = None) -> Campaign:
     """Test a tyre on the virtual rig.
 
     Parameters
@@ -49,7 +50,7 @@ def run(plan: Plan, tyre: Tyre, seed: int | None = None) -> Campaign:
     seed = plan.tables.seed if seed is None else seed
     if seed < 0:
         raise InputError(f"the seed is {seed}; give a whole number, 0 or larger")
-    # Every sweep has a stream of chance of its own, so that a sweep more does not change the others.
+    # Every sweep has random numbers of its own, so that one more sweep does not change the others.
     for_faults, for_radii, *for_sweeps = np.random.SeedSequence(seed).spawn(2 + len(plan.tables.sweep))
     faults = faults_of(plan, tyre, np.random.default_rng(for_faults))
     sweeps = settings_of(plan)
@@ -62,22 +63,24 @@ def run(plan: Plan, tyre: Tyre, seed: int | None = None) -> Campaign:
     return Campaign(tables, configuration_of(plan, machine, np.random.default_rng(for_radii)), truth)
 
 
-def faults_of(plan: Plan, tyre: Tyre, generator: np.random.Generator) -> Faults:
-    """The faults of the plan, the missing ones drawn if it asks for that."""
+def faults_of(plan: RigPlan, tyre: Tyre, generator: np.random.Generator) -> Faults:
+    """The rig errors of the plan; those it does not give are drawn if it asks for that."""
     table, rig = plan.tables.faults, plan.declared.rig
-    if rig.radius is None and table.path_radius_m is not None:
+    values = table.values()
+    if rig.radius is None and "path_radius_m" in values:
         raise InputError("a flat track has no path radius; remove it", key="faults.path_radius_m")
     if not table.draw:
-        return given(rig, table.values())
+        return given(rig, values)
     nominal = plan.declared.tyre.nominal_load
     C_alpha = float(tyre.state(nominal, Vx=plan.tables.conditions.V_mps).K_ya)
-    return drawn(rig, table.values(), C_alpha, generator)
+    return drawn(rig, values, C_alpha, generator)
 
 
 def sweep_table(
-    plan: Plan, machine: Machine, sweep: SweepPlan, settings: Settings, generator: np.random.Generator
+    plan: RigPlan, machine: Machine, sweep: SweepPlan, settings: Settings, generator: np.random.Generator
 ) -> pd.DataFrame:
     """Run one sweep, as finished points or as a recording."""
+    machine = machine.with_faults(sweep.faults.values())
     if sweep.recording is not None:
         return recorded_table(plan, record(machine, settings, sweep.recording, generator))
     return point_table(
@@ -95,7 +98,7 @@ def scattered(forces: Channels, noise: NoiseTable, generator: np.random.Generato
     )
 
 
-def truth_of(plan: Plan, machine: Machine, seed: int) -> Truth:
+def truth_of(plan: RigPlan, machine: Machine, seed: int) -> Truth:
     """What the campaign would find without faults and noise, at its loads and the nominal one."""
     nominal = plan.declared.tyre.nominal_load
     loads = sorted({sweep.load_N for sweep in plan.tables.sweep})
@@ -104,23 +107,24 @@ def truth_of(plan: Plan, machine: Machine, seed: int) -> Truth:
         nominal=rows[nominal],
         per_load=tuple(rows[load] for load in loads),
         faults=machine.faults,
+        faults_of_sweeps={s.file: s.faults.values() for s in plan.tables.sweep if s.faults.values()},
         coefficients=coefficients_of(machine.tyre),
         seed=seed,
     )
 
 
-def _direct(plan: Plan, machine: Machine, load: float) -> DirectTruth:
+def _direct(plan: RigPlan, machine: Machine, load: float) -> DirectTruth:
     return direct_truth(
         machine.tyre,
         load,
         speed=plan.tables.conditions.V_mps,
         pressure=1e3 * plan.declared.tyre.nominal_pressure,
-        phi_t=machine.phi_t_sign / machine.faults.path_radius_m,
-        R=machine.faults.path_radius_m,
+        phi_t=machine.phi_t_sign / machine.faults["path_radius_m"],
+        R=machine.faults["path_radius_m"],
     )
 
 
-def configuration_of(plan: Plan, machine: Machine, generator: np.random.Generator) -> dict[str, Any]:
+def configuration_of(plan: RigPlan, machine: Machine, generator: np.random.Generator) -> dict[str, Any]:
     """The content of tyre.toml: the declaration, the measured rolling radii and the sweeps."""
     content = plan.declared.model_dump(exclude_unset=True)
     content["sweep"] = [_sweep_entry(sweep) for sweep in plan.tables.sweep]
@@ -128,7 +132,7 @@ def configuration_of(plan: Plan, machine: Machine, generator: np.random.Generato
         written_down(
             row,
             _direct(plan, machine, row.load_N).r_e_m,
-            machine.faults.path_radius_m,
+            machine.faults["path_radius_m"],
             generator,
         )
         for row in plan.tables.rolling_radius

@@ -1,4 +1,4 @@
-"""From the text of ``rig.toml`` to a :class:`Plan`, or one sentence saying what to put right."""
+"""From the text of ``rig.toml`` to a :class:`RigPlan`, or one sentence saying what to put right."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from mffit import config as configuration
 from mffit.config.locate import lines_of_keys
 from mffit.errors import InputError
 from mffit.virtual_rig import plan
-from mffit.virtual_rig.plan import Plan, RigTables
+from mffit.virtual_rig.plan import RigPlan, RigTables
 
 OWN = frozenset(RigTables.model_fields)
 """Tables that only ``rig.toml`` has; all others are those of ``tyre.toml``."""
@@ -23,7 +23,7 @@ KEYS = sorted({key for table in (RigTables, *plan.TABLES) for key in table.model
 """Every key of those tables, to guess what a misspelt one was meant to be."""
 
 
-def load_plan(source: str | Path | Mapping[str, Any], *, folder: str | Path | None = None) -> Plan:
+def load_plan(source: str | Path | Mapping[str, Any], *, folder: str | Path | None = None) -> RigPlan:
     """Read and check a virtual test campaign.
 
     Parameters
@@ -58,7 +58,7 @@ def _text(path: Path) -> str:
         raise InputError(f"cannot be read ({error}); give a text file in UTF-8", file=path) from None
 
 
-def _checked(content: Mapping[str, Any], path: Path | None, folder: Path, lines: dict[str, int]) -> Plan:
+def _checked(content: Mapping[str, Any], path: Path | None, folder: Path, lines: dict[str, int]) -> RigPlan:
     own = {key: value for key, value in content.items() if key in OWN}
     try:
         tables = RigTables.model_validate(own)
@@ -78,7 +78,7 @@ def _checked(content: Mapping[str, Any], path: Path | None, folder: Path, lines:
         raise InputError(
             "a flat track has no disc to turn; give u_effective_radius", file=path, key="rolling_radius"
         )
-    return Plan(declared, tables, folder)
+    return RigPlan(declared, tables, folder)
 
 
 def _problem(error: ValidationError, path: Path | None, lines: dict[str, int]) -> InputError:

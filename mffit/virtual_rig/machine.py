@@ -1,24 +1,22 @@
 """The tyre on the faulty rig: what it really does, and what the rig reports of it.
 
-The faults are worked out here a second time, apart from :mod:`mffit.rig`, so that a mistake there cannot
-hide in the data that are meant to show it. Everything is in ISO-W, contact frame.
+Every rig error has a formula of its own here, independent of the one in its record, so that a mistake there cannot hide in
+the data that are meant to reveal it. Everything is in ISO-W, contact frame.
 """
 
 from __future__ import annotations
 
-import math
-from collections.abc import Callable
-from typing import NamedTuple
+from collections.abc import Callable, Mapping
+from types import SimpleNamespace
+from typing import Any, NamedTuple
 
 import numpy as np
 
-from mffit.virtual_rig.faults import Faults
+from mffit.rig_errors import Faults
+from mffit.virtual_rig import constants
 from mffit.virtual_rig.settings import Settings
 from tir import Tyre
 from tir.evaluate import evaluate, turned_on_rim
-
-REFERENCE_TEMPERATURE = 25.0  # degC, where the property file holds
-HALVINGS = 20  # of the play, which leave a millionth of it
 
 
 class Channels(NamedTuple):
@@ -32,12 +30,66 @@ class Channels(NamedTuple):
 
 
 class Machine(NamedTuple):
-    """A tyre on a rig."""
+    """A tyre on a rig; ``with_faults`` is the same rig during a sweep with errors of its own."""
 
     tyre: Tyre  #: the one that is really on it
-    faults: Faults
+    faults: Faults  #: with the true path radius
     phi_t_sign: int  #: of the usual path: -1 with the centre to the left, 0 on a flat track
     usual_speed: float  #: [m/s], where the speed has no influence
+
+    def with_faults(self, added: Mapping[str, float]) -> Machine:
+        """The same with some errors larger by what is ``added``."""
+        return self._replace(
+            faults=self.faults.replace(**{name: self.faults[name] + x for name, x in added.items()})
+        )
+
+
+Formula = Callable[[float, Settings, Machine], np.ndarray | float]
+"""(size of the error, settings (n,), machine) -> what it adds or by what it multiplies."""
+
+
+def _leant(s: Settings, m: Machine) -> np.ndarray:
+    """True camber (n,) [rad]."""
+    return np.deg2rad(np.rad2deg(s.gamma) + m.faults["gamma_0_deg"])
+
+
+def _kelvin(s: Settings, m: Machine) -> np.ndarray:
+    return s.T - m.faults["T_ref_degC"]
+
+
+STEERS: dict[str, Formula] = {
+    "alpha_0_deg": lambda x, s, m: np.deg2rad(x),
+    "camber_skew_deg": lambda x, s, m: np.deg2rad(x * np.sin(_leant(s, m))),
+    "hysteresis_deg": lambda x, s, m: np.where(s.sense > 0, -1.0, np.where(s.sense < 0, 1.0, 0.0)) * np.deg2rad(x),
+}  # fmt: skip
+"""Added to the sideslip angle as read [rad]."""
+LEANS: dict[str, Formula] = {"gamma_0_deg": lambda x, s, m: np.deg2rad(x)}
+"""Added to the camber as read [rad]."""
+LOADS: dict[str, Formula] = {
+    "load_camber": lambda x, s, m: 1.0 + x * (1.0 - np.cos(2.0 * _leant(s, m))) / 2.0
+}
+"""Factors on the load."""
+SCALES: dict[str, tuple[str, Formula]] = {
+    "k_T_grip_per_K": ("LMUY", lambda x, s, m: 1.0 + x * _kelvin(s, m)),
+    "k_T_stiffness_per_K": ("LKY", lambda x, s, m: 1.0 + x * _kelvin(s, m)),
+}
+"""Factors on scaling factors of the tyre."""
+SURROUNDINGS: dict[str, Formula] = {
+    "k_T_per_K": lambda x, s, m: 1.0 + x * _kelvin(s, m),
+    "k_V_per_mps": lambda x, s, m: 1.0 + x * (s.V - m.usual_speed),
+    "k_t_per_s": lambda x, s, m: 1.0 + x * s.t,
+    "wear_per_km": lambda x, s, m: 1.0 + x * s.rolled_m / 1000.0,
+    "warm_up": lambda x, s, m: 1.0 - x / np.exp(s.rolled_m / 1000.0),
+}
+"""Factors on Fy and Mz."""
+YIELDS = ("compliance_deg_per_Nm", "backlash_deg")
+"""Errors of the angle for which moment and angle must agree; see :func:`true_alpha`."""
+CELL = ("gain", "nonlinearity_per_kN", "crosstalk", "F0_N", "M0_Nm")
+"""Errors of the load cells; see :func:`reported`."""
+ELSEWHERE = ("path_radius_m", "T_ref_degC", "relaxation_m")
+"""The path in :func:`at_the_tyre`, the temperature in the factors, the lag in :mod:`mffit.virtual_rig.recording`."""
+FORMULAE = (*STEERS, *LEANS, *LOADS, *SCALES, *SURROUNDINGS, *YIELDS, *CELL, *ELSEWHERE)
+"""Names of the rig errors that have a formula here."""
 
 
 def steady(machine: Machine, settings: Settings) -> Channels:
@@ -46,12 +98,24 @@ def steady(machine: Machine, settings: Settings) -> Channels:
 
 
 def true_alpha(machine: Machine, settings: Settings) -> np.ndarray:
-    """Sideslip angle (n,) that the tyre really has [rad]: reading, misalignment and play."""
-    alpha = settings.alpha + math.radians(machine.faults.alpha_0_deg)
-    half_play = math.radians(machine.faults.backlash_deg) / 2.0
-    if half_play == 0.0:
-        return alpha
-    return taken_up(lambda x: at_the_tyre(machine, settings, x).Mz, alpha, half_play)
+    """Sideslip angle (n,) that the tyre really has [rad]: reading, misalignment, compliance and play."""
+    alpha = settings.alpha + _sum(STEERS, settings, machine)
+
+    def moment(x: np.ndarray) -> np.ndarray:
+        return at_the_tyre(machine, settings, x).Mz
+
+    give, play = (np.deg2rad(machine.faults[name]) for name in YIELDS)
+    if give:
+        alpha = yielded(moment, alpha, give)
+    return taken_up(moment, alpha, play / 2.0) if play else alpha
+
+
+def yielded(moment: Callable[[np.ndarray], np.ndarray], alpha: np.ndarray, give: float) -> np.ndarray:
+    """Angle (n,) [rad] at which a steering that turns by ``give`` [rad/Nm] carries the moment of the wheel."""
+    held = alpha
+    for _ in range(constants.YIELDING_ROUNDS):
+        held = alpha + give * moment(held)
+    return held
 
 
 def taken_up(moment: Callable[[np.ndarray], np.ndarray], alpha: np.ndarray, half_play: float) -> np.ndarray:
@@ -65,7 +129,7 @@ def taken_up(moment: Callable[[np.ndarray], np.ndarray], alpha: np.ndarray, half
     either = moment(alpha) > 0.0
     held_at_lower = at_lower & (~at_upper | either)
     floats = ~at_lower & ~at_upper
-    for _ in range(HALVINGS if floats.any() else 0):
+    for _ in range(constants.PLAY_HALVINGS if floats.any() else 0):
         middle = 0.5 * (lower + upper)
         turns_back = moment(middle) > 0.0
         lower, upper = np.where(turns_back, lower, middle), np.where(turns_back, middle, upper)
@@ -75,15 +139,14 @@ def taken_up(moment: Callable[[np.ndarray], np.ndarray], alpha: np.ndarray, half
 
 def at_the_tyre(machine: Machine, settings: Settings, alpha: np.ndarray) -> Channels:
     """Forces and moments (n,) of the tyre at the true sideslip angle ``alpha`` (n,) [rad]."""
-    gamma = settings.gamma + math.radians(machine.faults.gamma_0_deg)
-    # The scale along which the wheel is moved from path to path is right; its zero is what the radius is off.
-    phi_t = machine.phi_t_sign * settings.side / (machine.faults.path_radius_m + settings.outward)
-    mounted = turned_on_rim(machine.tyre.p, settings.mount)
+    # The scale along which the wheel is moved between paths is right; an error of the radius shifts its zero.
+    phi_t = machine.phi_t_sign * settings.side / (machine.faults["path_radius_m"] + settings.outward)
+    mounted = turned_on_rim(_scaled(machine, settings), settings.mount)
     out, _ = evaluate(
         mounted,
-        settings.Fz,
+        settings.Fz * _product(LOADS, settings, machine),
         alpha,
-        gamma,
+        settings.gamma + _sum(LEANS, settings, machine),
         0.0,
         phi_t,
         settings.Vx,
@@ -94,10 +157,32 @@ def at_the_tyre(machine: Machine, settings: Settings, alpha: np.ndarray) -> Chan
 
 
 def reported(machine: Machine, settings: Settings, true: Channels) -> Channels:
-    """What the load cells make of the true forces and moments."""
-    faults = machine.faults
-    warmth = 1.0 + faults.k_T_per_K * (settings.T - REFERENCE_TEMPERATURE)
-    speed = 1.0 + faults.k_V_per_mps * (settings.V - machine.usual_speed)
-    surroundings = warmth * speed * (1.0 + faults.k_t_per_s * settings.t)
-    Fy = faults.gain * surroundings * true.Fy + faults.F0_N + faults.crosstalk * true.Fz
-    return true._replace(Fy=Fy, Mz=surroundings * true.Mz + faults.M0_Nm)
+    """Readings of the load cells under the true forces and moments; the load reads as it was set."""
+    faults, surroundings = machine.faults, _product(SURROUNDINGS, settings, machine)
+    seen = faults["gain"] * surroundings * true.Fy
+    bent = seen + faults["nonlinearity_per_kN"] * np.sign(seen) * seen**2 / 1000.0
+    return true._replace(
+        Fy=bent + faults["F0_N"] + faults["crosstalk"] * true.Fz,
+        Mz=surroundings * true.Mz + faults["M0_Nm"],
+        Fz=settings.Fz,
+    )
+
+
+def _scaled(machine: Machine, settings: Settings) -> Any:
+    """Coefficients of the tyre at the temperatures of the settings."""
+    values: dict[str, Any] = dict(machine.tyre.values)
+    for error, (name, formula) in SCALES.items():
+        if machine.faults[error]:
+            values[name] = values[name] * formula(machine.faults[error], settings, machine)
+    return SimpleNamespace(**values)
+
+
+def _sum(formulae: dict[str, Formula], settings: Settings, machine: Machine) -> np.ndarray | float:
+    return sum(formula(machine.faults[name], settings, machine) for name, formula in formulae.items())
+
+
+def _product(formulae: dict[str, Formula], settings: Settings, machine: Machine) -> np.ndarray | float:
+    out: np.ndarray | float = 1.0
+    for name, formula in formulae.items():
+        out = out * formula(machine.faults[name], settings, machine)
+    return out

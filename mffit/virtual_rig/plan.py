@@ -7,14 +7,24 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import numpy as np
-from pydantic import BeforeValidator, Field, NonNegativeFloat, PositiveFloat, model_validator
+from pydantic import (
+    AfterValidator,
+    BeforeValidator,
+    Field,
+    NonNegativeFloat,
+    PositiveFloat,
+    create_model,
+    model_validator,
+)
 
 from mffit.config import Config, path_curvature
 from mffit.config import quantities as q
 from mffit.config.models import SweepTable, Table
+from mffit.rig_errors import BY_NAME as RIG_ERROR_NAMES
+from mffit.rig_errors import RIG_ERRORS, RigError
 
 
 def angles(given: Any) -> Any:
@@ -44,25 +54,32 @@ class TruthTable(Table):
     tyre: str  #: property file, relative to rig.toml
 
 
-class FaultsTable(Table):
-    """[faults]: what is wrong with the rig; see :class:`mffit.virtual_rig.Faults`."""
+def _error_field(error: RigError) -> tuple[Any, None]:
+    """Type and default of the key of a rig error."""
+    accepted: Any = Annotated[float, AfterValidator(q.Range(error.lower, error.upper, error.unit))]
+    return accepted | None, None
 
-    draw: bool = False  #: draw every fault not given here from the uncertainties declared in [rig]
-    alpha_0_deg: float | None = None
-    gamma_0_deg: float | None = None
-    gain: PositiveFloat | None = None
-    F0_N: float | None = None
-    crosstalk: float | None = None
-    M0_Nm: float | None = None
-    backlash_deg: NonNegativeFloat | None = None
-    path_radius_m: q.PathRadius | None = None
-    k_T_per_K: float | None = None
-    k_V_per_mps: float | None = None
-    k_t_per_s: float | None = None
+
+if TYPE_CHECKING:
+    RigErrorValues = Table
+else:
+    RigErrorValues = create_model(
+        "RigErrorValues", __base__=Table, **{error.name: _error_field(error) for error in RIG_ERRORS}
+    )
+
+
+class OwnFaultsTable(RigErrorValues):
+    """[sweep.faults]: rig errors that one sweep has in addition to those of the rig."""
 
     def values(self) -> dict[str, float]:
-        """The faults that stand in the file."""
-        return self.model_dump(exclude={"draw"}, exclude_none=True)
+        """The rig errors given in the file."""
+        return self.model_dump(include=set(RIG_ERROR_NAMES), exclude_none=True)
+
+
+class FaultsTable(OwnFaultsTable):
+    """[faults]: the errors of the rig, a key for each record of :mod:`mffit.rig_errors`."""
+
+    draw: bool = False  #: draw every declared error that is not given from its uncertainty in [rig]
 
 
 class NoiseTable(Table):
@@ -121,6 +138,7 @@ class SweepPlan(Table):
     mount: Literal["normal", "flipped"] = "normal"
     path_centre: Literal["left", "right"] | None = None  #: the declared one if not given
     path_radius: q.PathRadius | None = None  #: [m]; the declared one if not given
+    faults: OwnFaultsTable = OwnFaultsTable()
     recording: RecordingTable | None = None
 
     @model_validator(mode="after")
@@ -133,6 +151,7 @@ class SweepPlan(Table):
 TABLES = (
     TruthTable,
     FaultsTable,
+    OwnFaultsTable,
     NoiseTable,
     ConditionsTable,
     RollingRadiusPlan,
@@ -159,7 +178,7 @@ class RigTables(Table):
 
 
 @dataclass(frozen=True, slots=True)
-class Plan:
+class RigPlan:
     """A virtual test campaign: the rig as declared in ``tyre.toml`` and what is behind it."""
 
     declared: Config  #: what tyre.toml will say, but for the rolling radii

@@ -36,9 +36,8 @@ def record(
     time, alpha, gamma = course(settings, table)
     seen = settings.at(alpha, gamma)
     state = machine.tyre.state(settings.Fz[0], Vx=settings.Vx[0], p=settings.p[0])
-    true = at_the_tyre(
-        machine, seen, lagged(true_alpha(machine, seen), settings.V[0], state.sigma_y, table.rate_Hz)
-    )
+    sigma = machine.faults["relaxation_m"] or state.sigma_y
+    true = at_the_tyre(machine, seen, lagged(true_alpha(machine, seen), settings.V[0], sigma, table.rate_Hz))
     forces = reported(machine, seen, true)
     turned = settings.V[0] / state.Re * time
     forces = forces._replace(

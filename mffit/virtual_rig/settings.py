@@ -1,4 +1,4 @@
-"""From the plan's sweeps to what the operator sets, point by point."""
+"""Settings of the operator, point by point, from the sweeps of the plan."""
 
 from __future__ import annotations
 
@@ -6,13 +6,15 @@ import math
 from dataclasses import dataclass, fields, replace
 
 import numpy as np
+from scipy.integrate import cumulative_trapezoid
 
-from mffit.virtual_rig.plan import Plan, SweepPlan
+from mffit.virtual_rig import constants
+from mffit.virtual_rig.plan import RigPlan, SweepPlan
 
 
 @dataclass(frozen=True, slots=True)
 class Settings:
-    """What the rig's displays show at every point of a sweep, ISO-W and SI; arrays (n,)."""
+    """Settings as the displays of the rig show them at every point of a sweep, ISO-W and SI; arrays (n,)."""
 
     alpha: np.ndarray  #: sideslip angle as read [rad]
     gamma: np.ndarray  #: camber as read [rad]
@@ -23,11 +25,19 @@ class Settings:
     t: np.ndarray  #: when the point was taken [s]
     direction: np.ndarray  #: +1 forward, -1 backward
     mount: np.ndarray  #: +1 normal, -1 tyre turned on its rim
+    rolled_m: np.ndarray  #: distance rolled since the start of the campaign [m]
     side: float = 1.0  #: of the disc: 1 the usual one, -1 the other
     outward: float = 0.0  #: by how much the path is set wider than the usual one [m]
 
     def __len__(self) -> int:
         return len(self.alpha)
+
+    @property
+    def sense(self) -> np.ndarray:
+        """Sense (n,) in which the wheel was steered to each point: 1 up, -1 down, 0 held; that of the next for the first."""
+        steps = np.diff(self.alpha)
+        steps = np.where(np.abs(steps) > constants.SENSE_STEP.rad, np.sign(steps), 0.0)
+        return np.concatenate([steps[:1], steps]) if len(steps) else np.zeros(len(self.alpha))
 
     @property
     def Vx(self) -> np.ndarray:
@@ -42,7 +52,7 @@ class Settings:
         return replace(self, **repeated | {"alpha": alpha, "gamma": gamma})
 
 
-def settings_of(plan: Plan) -> list[Settings]:
+def settings_of(plan: RigPlan) -> list[Settings]:
     """The settings of every sweep, in the order of the plan; time runs on from sweep to sweep."""
     pause = plan.tables.conditions.seconds_per_point or 0.0
     found: list[Settings] = []
@@ -50,10 +60,20 @@ def settings_of(plan: Plan) -> list[Settings]:
     for sweep in plan.tables.sweep:
         found.append(_settings(plan, sweep, begins, pause))
         begins += len(found[-1])
-    return found
+    return _rolled(found)
 
 
-def _settings(plan: Plan, sweep: SweepPlan, begins: int, pause: float) -> Settings:
+def _rolled(sweeps: list[Settings]) -> list[Settings]:
+    """The same with the distance rolled: the speed changes steadily from point to point."""
+    if not sweeps:
+        return []
+    t, V = (np.concatenate([getattr(sweep, name) for sweep in sweeps]) for name in ("t", "V"))
+    distance = cumulative_trapezoid(V, t, initial=0.0)
+    ends = np.cumsum([len(sweep) for sweep in sweeps])[:-1]
+    return [replace(s, rolled_m=d) for s, d in zip(sweeps, np.split(distance, ends), strict=True)]
+
+
+def _settings(plan: RigPlan, sweep: SweepPlan, begins: int, pause: float) -> Settings:
     gamma, alpha = (grid.ravel() for grid in np.meshgrid(sweep.gamma_deg, sweep.alpha_deg, indexing="ij"))
     n = len(alpha)
     temperatures = plan.temperatures_degC(sweep)
@@ -67,12 +87,13 @@ def _settings(plan: Plan, sweep: SweepPlan, begins: int, pause: float) -> Settin
         t=pause * (begins + np.arange(n)),
         direction=np.full(n, 1 if sweep.direction == "forward" else -1),
         mount=np.full(n, 1 if sweep.mount == "normal" else -1),
+        rolled_m=np.zeros(n),
         side=float(np.sign(plan.path(sweep) * plan.phi_t_sign)),
         outward=_outward(plan, sweep),
     )
 
 
-def _outward(plan: Plan, sweep: SweepPlan) -> float:
+def _outward(plan: RigPlan, sweep: SweepPlan) -> float:
     usual = plan.declared.rig.radius
     return 0.0 if usual is None else 1.0 / abs(plan.path(sweep)) - usual
 

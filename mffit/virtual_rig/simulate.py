@@ -10,12 +10,14 @@ import tir
 from mffit.output import output_folder
 from mffit.virtual_rig.campaign import run
 from mffit.virtual_rig.loading import load_plan
-from mffit.virtual_rig.plan import Plan
+from mffit.virtual_rig.plan import RigPlan
 from mffit.virtual_rig.truth import Truth
 from mffit.virtual_rig.writing import TRUTH, write
 
 
-def simulate(plan: Plan | Mapping[str, Any] | str | Path, out: str | Path, seed: int | None = None) -> Truth:
+def simulate(
+    plan: RigPlan | Mapping[str, Any] | str | Path, out: str | Path, seed: int | None = None
+) -> Truth:
     """Run a virtual test campaign and write what a rig would hand over.
 
     Parameters
@@ -36,7 +38,7 @@ def simulate(plan: Plan | Mapping[str, Any] | str | Path, out: str | Path, seed:
         nothing is written then.
     """
     read = [Path(plan)] if isinstance(plan, str | Path) else []
-    plan = plan if isinstance(plan, Plan) else load_plan(plan)
+    plan = plan if isinstance(plan, RigPlan) else load_plan(plan)
     read += [path for path in (plan.tyre_path, plan.declared.base_path) if path is not None]
     campaign = run(plan, tir.read(plan.tyre_path), seed)
     with output_folder(Path(out), by="simulate", protected=read, record=TRUTH) as folder:

@@ -7,7 +7,7 @@ import pandas as pd
 
 from mffit.virtual_rig.frames import in_wheel_carrier
 from mffit.virtual_rig.machine import Channels
-from mffit.virtual_rig.plan import Plan, SweepPlan
+from mffit.virtual_rig.plan import RigPlan, SweepPlan
 from mffit.virtual_rig.recording import Recording
 from mffit.virtual_rig.settings import Settings
 from tir.conventions import from_iso
@@ -20,7 +20,7 @@ RECORDED_DECIMALS = {"alpha_deg": 2, "gamma_deg": 2, "Fz_N": 0, "Fy_N": 0, "Mz_N
 """A logger's resolution: far below its noise, and a third of the file's size."""
 
 
-def point_table(plan: Plan, sweep: SweepPlan, settings: Settings, forces: Channels) -> pd.DataFrame:
+def point_table(plan: RigPlan, sweep: SweepPlan, settings: Settings, forces: Channels) -> pd.DataFrame:
     """One row per finished point (n,); ``forces`` is in ISO-W with the noise in it."""
     table = _channels(plan, settings, forces)
     noise = plan.tables.noise
@@ -31,14 +31,14 @@ def point_table(plan: Plan, sweep: SweepPlan, settings: Settings, forces: Channe
     return table.round(DECIMALS)
 
 
-def recorded_table(plan: Plan, recording: Recording) -> pd.DataFrame:
+def recorded_table(plan: RigPlan, recording: Recording) -> pd.DataFrame:
     """One row per sample of a recorded sweep (m,)."""
     table = _channels(plan, recording.settings, recording.forces)
     table.insert(0, "time_s", recording.time)
     return table.round(DECIMALS | RECORDED_DECIMALS)
 
 
-def _channels(plan: Plan, settings: Settings, forces: Channels) -> pd.DataFrame:
+def _channels(plan: RigPlan, settings: Settings, forces: Channels) -> pd.DataFrame:
     rig = plan.declared.rig
     if rig.force_frame == "C":
         forces = in_wheel_carrier(forces, settings.gamma)

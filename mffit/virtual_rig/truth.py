@@ -7,11 +7,11 @@ from collections.abc import Callable
 from dataclasses import asdict, dataclass
 from typing import Any
 
-from mffit.virtual_rig.faults import Faults
+from mffit.rig_errors import Faults
+from mffit.virtual_rig import constants
 from tir import Tyre
 from tir.parameters import TABLE
 
-STEP = 1e-6  # rad and 1/m; rounding and curvature both stay below 1e-6 of the slope
 SECTIONS = ("LATERAL_COEFFICIENTS", "ALIGNING_COEFFICIENTS", "TURNSLIP_COEFFICIENTS")
 
 
@@ -43,19 +43,21 @@ class Truth:
     nominal: DirectTruth
     per_load: tuple[DirectTruth, ...]
     faults: Faults
+    faults_of_sweeps: dict[str, dict[str, float]]  #: what single sweeps add to them, by file
     coefficients: dict[str, float]  #: of the tyre's side force, aligning moment and turn slip
     seed: int
 
     def to_json(self) -> dict[str, Any]:
         """The content of truth.json; the flat-track path radius is null."""
-        faults = asdict(self.faults)
-        if math.isinf(self.faults.path_radius_m):
+        faults: dict[str, float | None] = dict(self.faults)
+        if math.isinf(self.faults["path_radius_m"]):
             faults["path_radius_m"] = None
         return {
             **asdict(self.nominal),
             "pecp1": self.coefficients["PECP1"],
             "pecp2": self.coefficients["PECP2"],
             "faults": faults,
+            "faults_of_sweeps": self.faults_of_sweeps,
             "per_load": [asdict(row) for row in self.per_load],
             "coefficients": self.coefficients,
             "seed": self.seed,
@@ -102,7 +104,7 @@ def direct_truth(
 
 def slope(force: Callable[[float], float]) -> float:
     """Slope at zero by central differences."""
-    return (force(STEP) - force(-STEP)) / (2.0 * STEP)
+    return (force(constants.TRUTH_STEP) - force(-constants.TRUTH_STEP)) / (2.0 * constants.TRUTH_STEP)
 
 
 def coefficients_of(tyre: Tyre) -> dict[str, float]:

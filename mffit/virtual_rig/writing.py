@@ -13,13 +13,13 @@ import pandas as pd
 import tomli_w
 
 from mffit.virtual_rig.campaign import Campaign
-from mffit.virtual_rig.plan import Plan
+from mffit.virtual_rig.plan import RigPlan
 
 TRUTH = "truth.json"
 """What is true behind the data; also lists the files of the campaign, so that a later run knows them."""
 
 
-def write(campaign: Campaign, plan: Plan, folder: Path) -> None:
+def write(campaign: Campaign, plan: RigPlan, folder: Path) -> None:
     """Write sweeps, ``tyre.toml``, ``truth.json`` and a copy of the base file into an existing folder."""
     for name, table in campaign.tables.items():
         write_table(table, folder / name)

@@ -26,7 +26,7 @@ from mffit.pipeline.planning import plan_of
 from mffit.planning import Goal, Kind, Plan, Run, read_goal
 from mffit.planning.runs import BETTER
 from mffit.results import BuildResult
-from mffit.virtual_rig.faults import declared
+from mffit.virtual_rig.faults import as_declared
 from tests.mffit.small_rigs import SAMPLE, built, disc, truth
 
 FAULTS = {
@@ -74,7 +74,7 @@ def outcomes(seed: int) -> Iterator[tuple[Task, Outcome]]:
     content = disc(faults={"draw": True})
     true = truth()
     drawn = virtual_rig.run(virtual_rig.load_plan(content, folder=SAMPLE), true, seed=seed).truth.faults
-    content["faults"] = {name: getattr(drawn, name) for name in (*FAULTS.values(), "backlash_deg")}
+    content["faults"] = {name: drawn[name] for name in (*FAULTS.values(), "backlash_deg")}
     with tempfile.TemporaryDirectory() as made:
         for pecp1 in dict.fromkeys(task.pecp1 for task in TASKS):
             first = built(content | {"spin": {"pecp1": pecp1}}, Path(made) / f"first-{pecp1}", seed)
@@ -95,7 +95,7 @@ def extended(content: dict[str, Any], plan: Plan) -> dict[str, Any]:
         content["sweep"] += list(sweeps(step.run, plan))
         for key, u in step.run.rig.items():
             # What was measured better is wrong by less: the same chance, a smaller spread.
-            fault, sure = FAULTS[key], getattr(declared(plan.config.rig), FAULTS[key])
+            fault, sure = FAULTS[key], as_declared(plan.config.rig)[FAULTS[key]]
             content["faults"][fault] = sure + BETTER * (content["faults"][fault] - sure)
             content["rig"][key] = u
     return content

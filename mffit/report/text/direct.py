@@ -6,7 +6,7 @@ import math
 import textwrap
 from collections.abc import Sequence
 
-from mffit.measured import Alignment, Contribution, LoadResult, Measured, wording
+from mffit.measured import Alignment, Contribution, LoadResult, Measured, alignment_wording, wording
 from mffit.quantities import CONDITIONS, DIRECT
 from mffit.report.build_view import PER_LOAD
 from mffit.report.rounding import number, stated, with_u
@@ -72,7 +72,7 @@ def alignment_table(alignment: Alignment) -> str:
         DIRECT["C_alpha"].column(DIRECT["C_alpha"].ascii),
         CONDITIONS["alpha_deg"].column("correction"),
     )
-    return blocks([table(head, rows, left=0), *map(_filled, wording.alignment(alignment))])
+    return blocks([table(head, rows, left=0), *map(_filled, alignment_wording.advice(alignment))])
 
 
 def _filled(sentence: str) -> str:

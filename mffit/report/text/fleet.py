@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from mffit.effects import FAULT_WORDS
 from mffit.fleet import EPSILON, Fleet
 from mffit.quantities import CHANNELS, COMPARED, DIRECT
 from mffit.report.rounding import number, stated, with_u
 from mffit.report.text.layout import blocks, paragraphs, table
-from mffit.rig import UNITS
+from mffit.rig_errors import UNITS, WORDS
 
 
 def fleet_summary(found: Fleet) -> str:
@@ -32,7 +31,7 @@ def fleet_summary(found: Fleet) -> str:
     ]
     rigs = [
         (
-            f"{i} {FAULT_WORDS[name]}" if len(found.rigs) > 1 else FAULT_WORDS[name],
+            f"{i} {WORDS[name]}" if len(found.rigs) > 1 else WORDS[name],
             with_u(value, u, UNITS[name]),
         )
         for i, rig in enumerate(found.rigs, 1)

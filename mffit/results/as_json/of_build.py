@@ -15,7 +15,7 @@ from mffit.measured import KEYS, LoadResult, Measured
 from mffit.measured import wording as say
 from mffit.results.as_json.values import plain, stated
 from mffit.results.build import BuildResult
-from mffit.rig import UNITS
+from mffit.rig_errors import UNITS
 
 
 def build(result: BuildResult) -> dict[str, Any]:

@@ -9,7 +9,7 @@ from mffit import fleet as combining
 from mffit.fleet import Fleet
 from mffit.results.as_json.values import value_of
 from mffit.results.many import Outcome
-from mffit.rig import UNITS
+from mffit.rig_errors import UNITS
 
 
 def outcome(found: Outcome) -> dict[str, Any]:

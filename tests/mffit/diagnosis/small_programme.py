@@ -11,7 +11,8 @@ import tir
 from mffit.diagnosis.candidates import Problem
 from mffit.diagnosis.noise import noise_model
 from mffit.points import Points, make_points
-from mffit.rig import NO_FAULTS, RigFaults, Simulation
+from mffit.rig import Simulation
+from mffit.rig_errors import NO_FAULTS, Faults
 
 TYRE = tir.read(Path(__file__).parents[3] / "samples" / "front-120-70" / "true.tir")
 U_FY, U_MZ = 6.0, 0.6
@@ -35,7 +36,7 @@ def programme(**changes: Any) -> Points:
 
 
 def read(
-    points: Points, tyre: tir.Tyre = TYRE, faults: RigFaults = NO_FAULTS, noise: int | None = None
+    points: Points, tyre: tir.Tyre = TYRE, faults: Faults = NO_FAULTS, noise: int | None = None
 ) -> Points:
     """The points with the readings of a tyre on a rig; ``noise`` is the seed of theirs."""
     Fy, Mz = Simulation.of(tyre, faults).readings(points)

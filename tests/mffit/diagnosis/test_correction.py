@@ -15,9 +15,10 @@ from mffit import parts
 from mffit.diagnosis import corrected_points, diagnose
 from mffit.diagnosis.result import Diagnosis
 from mffit.measured import measure
-from mffit.rig import RigFaults, Simulation
+from mffit.rig import Simulation
+from mffit.rig_errors import Faults
 
-FAULTS = RigFaults(
+FAULTS = Faults(
     alpha_0_deg=0.3, gamma_0_deg=-0.6, gain=1.03, F0_N=-12.0, crosstalk=0.01, M0_Nm=0.8, k_T_per_K=0.001, k_V_per_mps=0.004,
     k_t_per_s=1e-6,
 )  # fmt: skip

@@ -15,7 +15,8 @@ from mffit.diagnosis.selection import Step, log_prior
 from mffit.diagnosis.ties import Run, candidate_runs, separation
 from mffit.diagnosis.validate import gap, validate
 from mffit.effects import CATALOG, Effect, Free
-from mffit.rig import RigFaults, Simulation
+from mffit.rig import Simulation
+from mffit.rig_errors import Faults
 
 BY_ID = {effect.id: effect for effect in CATALOG}
 OFFSET = BY_ID["loadcell-offset-fy"]
@@ -24,7 +25,7 @@ OFFSET = BY_ID["loadcell-offset-fy"]
 @pytest.mark.parametrize("offset", [0.0, 5.0, -20.0])
 def test_evidence_of_an_offset_in_closed_form(offset):
     """Gauss with a Gaussian prior: the integral over the one number is exact."""
-    points = read(programme(), faults=RigFaults(F0_N=offset), noise=1)
+    points = read(programme(), faults=Faults(F0_N=offset), noise=1)
     chosen = problem(points)
     found = chosen.fit((OFFSET,))
     residual = points.Fy - Simulation.of(TYRE).readings(points).Fy
@@ -64,7 +65,7 @@ def test_a_number_that_the_data_do_not_touch_keeps_its_spread_and_brings_nothing
 @pytest.mark.parametrize("play", [0.15, 0.3])
 def test_an_effect_without_slope_at_zero_is_found_from_its_scan(play):
     """Play is even in its number at zero: only a start away from it sees it."""
-    chosen = problem(read(programme(), faults=RigFaults(backlash_deg=play)))
+    chosen = problem(read(programme(), faults=Faults(backlash_deg=play)))
     found = chosen.fit((BY_ID["backlash"],))
     assert found.numbers["backlash_deg"] == pytest.approx(play, abs=0.01)
     assert found.chi2 < 0.05 * chosen.null.chi2
@@ -72,7 +73,7 @@ def test_an_effect_without_slope_at_zero_is_found_from_its_scan(play):
 
 def test_numbers_of_one_effect_need_not_be_scanned_alike():
     """The play from three starts, the load cell beside it from one."""
-    points = read(programme(), faults=RigFaults(backlash_deg=0.3, F0_N=10.0))
+    points = read(programme(), faults=Faults(backlash_deg=0.3, F0_N=10.0))
     loose = Effect("loose", "loose", "rig", "", (*BY_ID["backlash"].free, *OFFSET.free))
     found = problem(points).fit((loose,))
     assert found.numbers == {
@@ -93,7 +94,7 @@ def test_turn_slip_is_switched_on():
 
 def test_two_hidden_effects_are_fitted_together():
     true = TYRE.replace(PKY6=1.1 * float(TYRE["PKY6"]))
-    chosen = problem(read(programme(), true, RigFaults(M0_Nm=1.5)))
+    chosen = problem(read(programme(), true, Faults(M0_Nm=1.5)))
     found = chosen.fit((BY_ID["camber-stiffness"], BY_ID["loadcell-offset-mz"]))
     assert found.numbers["PKY6"] == pytest.approx(true["PKY6"], rel=0.01)
     assert found.numbers["M0_Nm"] == pytest.approx(1.5, abs=0.05)
@@ -101,7 +102,7 @@ def test_two_hidden_effects_are_fitted_together():
 
 
 def test_a_channel_that_was_not_measured_brings_nothing():
-    points = read(programme(), faults=RigFaults(F0_N=12.0, M0_Nm=2.0), noise=3)
+    points = read(programme(), faults=Faults(F0_N=12.0, M0_Nm=2.0), noise=3)
     without = points.replace(Mz=np.nan, u_Mz=np.inf)
     assert len(problem(without).null.residual) == len(points)
     found = problem(without).fit((OFFSET,))
@@ -151,7 +152,7 @@ def test_two_offsets_differ_by_their_square_at_every_point_of_the_best_run():
     """Of the usual runs those with most points win: 13 sideslip angles, (9/6)^2 each."""
     points = read(programme())
     null = problem(points).null
-    other = replace(null, state=Simulation.of(TYRE, RigFaults(F0_N=9.0, M0_Nm=0.3)))
+    other = replace(null, state=Simulation.of(TYRE, Faults(F0_N=9.0, M0_Nm=0.3)))
     best = separation(points, null, other, U_FY, U_MZ)
     assert best.chi2 == pytest.approx(13 * (1.5**2 + 0.5**2))
     assert separation(points, null, other, U_FY, float("nan")).chi2 == pytest.approx(13 * 1.5**2)
@@ -204,7 +205,7 @@ def test_a_recording_that_never_stands_still_has_runs_to_add_too():
 
 
 def test_the_gap_in_numbers():
-    points = read(programme(), faults=RigFaults(F0_N=9.0, M0_Nm=-1.2))
+    points = read(programme(), faults=Faults(F0_N=9.0, M0_Nm=-1.2))
     chosen = problem(points)
     found = gap(chosen.measured - chosen.start.predict(points), chosen.noise)
     assert found.Fy_rmse_N == pytest.approx(9.0)
@@ -215,7 +216,7 @@ def test_the_gap_in_numbers():
 
 def test_a_sweep_left_out_is_predicted_from_the_others():
     """An offset of 12 N in all sweeps but one, which lacks it: left out, that one is off by what the others say."""
-    points = read(programme(), faults=RigFaults(F0_N=12.0))
+    points = read(programme(), faults=Faults(F0_N=12.0))
     odd_one = points.sweep == 4
     points = points.replace(Fy=np.where(odd_one, points.Fy - 12.0, points.Fy))
     chosen = problem(points)

@@ -18,7 +18,8 @@ from mffit.diagnosis.unknown import bump_scan
 from mffit.effects import CATALOG
 from mffit.errors import InputError
 from mffit.points import make_points
-from mffit.rig import RigFaults, Simulation
+from mffit.rig import Simulation
+from mffit.rig_errors import Faults
 
 BY_ID = {effect.id: effect for effect in CATALOG}
 
@@ -311,7 +312,7 @@ SETTINGS = config.load(
 
 def three_effects(understated: float, strange: float = 0.0, alike: int = 1, strange_moment: float = 0.0):
     """Three hidden effects; beside the noise something ``strange`` [N, Nm] that is the same at some neighbours."""
-    points = read(programme(), HIDDEN, RigFaults(M0_Nm=6.0), noise=9)
+    points = read(programme(), HIDDEN, Faults(M0_Nm=6.0), noise=9)
     n, rng = len(points), np.random.default_rng(3)
     Fy, Mz = (
         reading + size * np.repeat(rng.standard_normal(n), alike)[:n]

@@ -12,13 +12,14 @@ from mffit.diagnosis.selection import forward_step
 from mffit.diagnosis.ties import Run, separation
 from mffit.diagnosis.validate import validate
 from mffit.effects import CATALOG
-from mffit.rig import RigFaults, Simulation
+from mffit.rig import Simulation
+from mffit.rig_errors import Faults
 
 BY_ID = {effect.id: effect for effect in CATALOG}
 
 
 def problem(case, points, u_coefficients=0.0):
-    state = Simulation(dict(case.given.values), RigFaults(), True, False)
+    state = Simulation(dict(case.given.values), Faults(), True, False)
     return Problem(points, state, noise_model(points, state, u_coefficients))
 
 

@@ -12,7 +12,8 @@ import pytest
 
 import tir
 from mffit.points import make_points
-from mffit.rig import RigFaults, Simulation
+from mffit.rig import Simulation
+from mffit.rig_errors import Faults
 
 TYRE = tir.read(Path(__file__).parents[3] / "samples" / "front-120-70" / "true.tir")
 ANGLES = np.radians([-6.0, -3.0, -1.0, 0.0, 1.0, 3.0, 6.0])
@@ -25,7 +26,7 @@ PLAIN = TYRE.replace(
 def change(numbers, *, alpha=ANGLES, gamma=0.0, phi_t=0.0, channel="Fy", load=1500.0, **conditions):
     """What the numbers change in a channel, (n,), of a plain tyre."""
     points = make_points(alpha, gamma, load, p=250e3, V=6.0, phi_t=phi_t, **conditions)
-    start = Simulation(dict(PLAIN.values), RigFaults(), bool(phi_t), False)
+    start = Simulation(dict(PLAIN.values), Faults(), bool(phi_t), False)
     after = start.with_numbers(numbers).predict(points) - start.predict(points)
     n = len(points)
     return after[:n] if channel == "Fy" else after[n:]
@@ -117,7 +118,7 @@ def test_the_path_pushes_outwards_and_a_larger_radius_less():
 )
 def test_environment_scales_both_channels(channel, numbers, conditions, share):
     points = make_points(ANGLES, 0.0, 1500.0, p=250e3, V=6.0, phi_t=0.0)
-    whole = Simulation(dict(PLAIN.values), RigFaults(), False, False).predict(points)
+    whole = Simulation(dict(PLAIN.values), Faults(), False, False).predict(points)
     whole = whole[: len(points)] if channel == "Fy" else whole[len(points) :]
     assert np.max(np.abs(whole)) > 1.0
     assert change(numbers, channel=channel, **conditions) == pytest.approx(share * whole, rel=1e-9)

@@ -10,7 +10,8 @@ from mffit.fit import ensemble
 from mffit.fit.profile import follow
 from mffit.least_squares import Linear, Number, Problem, solve
 from mffit.points import make_points
-from mffit.rig import FAULT_NAMES, Simulation
+from mffit.rig import Simulation
+from mffit.rig_errors import BY_NAME as RIG_ERRORS
 
 
 @pytest.fixture(scope="module")
@@ -34,7 +35,7 @@ def test_the_band_is_the_covariance_seen_through_the_slopes(fitted):
     )
     where = make_points(alpha, gamma, Fz, p=250e3, V=10.0, phi_t=0.0)
     half = posterior.band(Simulation.of(tyre), where)
-    names = [n for n in posterior.names if n not in FAULT_NAMES]
+    names = [n for n in posterior.names if n not in RIG_ERRORS]
     rows = [posterior.names.index(n) for n in names]
 
     def forces(**changed):

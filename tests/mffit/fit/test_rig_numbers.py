@@ -13,7 +13,7 @@ from tir import Quantity
 
 DOUBTS = {
     "u_loadcell_offset_N": 8.0, "u_camber_alignment_deg": 0.3, "u_slip_alignment_N": 20.0, "backlash_deg": 0.2,
-    "u_backlash_deg": 0.05,
+    "u_backlash_deg": 0.05, "u_camber_skew_deg": 0.15,
 }  # fmt: skip
 ALPHA_M = Quantity(math.radians(0.7), math.radians(0.02), "rad")
 
@@ -48,6 +48,7 @@ def test_every_declared_doubt_is_a_prior_of_that_width():
         "gamma_0_deg": (0.0, 0.3),
         "alpha_0_deg": (0.0, pytest.approx(math.degrees(20.0 / 18000.0))),
         "path_radius_m": (1.3, 0.002),
+        "camber_skew_deg": (0.0, 0.15),
         "backlash_deg": (0.2, 0.05),
     }
     for number in found.values():
@@ -61,18 +62,18 @@ def test_a_misalignment_is_known_as_it_was_measured():
     """True sideslip is the reading plus alpha_M; what was declared was too tight then, and ply-steer may have its share."""
     number = by_name(rig(), direct(misaligned=True))["alpha_0_deg"]
     assert (number.expected, number.spread) == (0.0, pytest.approx(0.7))
-    assert known_faults(rig(), direct(misaligned=True)).alpha_0_deg == pytest.approx(0.7)
+    assert known_faults(rig(), direct(misaligned=True))["alpha_0_deg"] == pytest.approx(0.7)
 
 
 def test_what_the_alignment_leaves_is_not_taken_off_beforehand():
     faults = known_faults(rig(), direct())
-    assert faults.alpha_0_deg == 0.0
-    assert faults.backlash_deg == 0.2
+    assert faults["alpha_0_deg"] == 0.0
+    assert faults["backlash_deg"] == 0.2
 
 
 def test_without_backward_runs_nothing_is_known_of_the_misalignment():
     measured = direct(alpha_M=None)
-    assert known_faults(rig(), measured).alpha_0_deg == 0.0
+    assert known_faults(rig(), measured)["alpha_0_deg"] == 0.0
     assert by_name(rig(), measured)["alpha_0_deg"].expected == 0.0
 
 
@@ -84,7 +85,7 @@ def test_without_a_sideslip_sweep_ten_per_load_turns_the_force_into_an_angle():
 @pytest.mark.parametrize(
     ("key", "name"),
     [("u_loadcell_offset_N", "F0_N"), ("u_camber_alignment_deg", "gamma_0_deg"), ("u_slip_alignment_N", "alpha_0_deg"),
-     ("u_backlash_deg", "backlash_deg")],
+     ("u_backlash_deg", "backlash_deg"), ("u_camber_skew_deg", "camber_skew_deg")],
 )  # fmt: skip
 def test_what_is_exact_is_no_number_of_the_fit(key, name):
     assert name not in by_name(rig(**{key: 0.0}), direct())

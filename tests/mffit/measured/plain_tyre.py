@@ -64,7 +64,9 @@ class Plain:
 
 def settings(*, tyre=None, camber_stiffness=None, radius=True, **rig: Any) -> Config:
     """A configuration of the disc: hardly a doubt about the rig but what is given."""
-    sure = {"u_loadcell_offset_N": 0.0, "u_camber_alignment_deg": 0.0, "u_slip_alignment_N": 1.0}
+    sure = {
+        "u_loadcell_offset_N": 0.0, "u_camber_alignment_deg": 0.0, "u_slip_alignment_N": 1.0, "u_camber_skew_deg": 0.0,
+    }  # fmt: skip
     content = {
         "tyre": {"name": "plain", "unloaded_radius": 0.3, "nominal_load": 1500.0, "nominal_pressure": 250.0}
         | (tyre or {}),

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from mffit.errors import InputError
-from mffit.measured import align, wording
-from mffit.measured.alignment import AtLoad
+from mffit.measured import align, alignment_wording
+from mffit.measured.alignment import AxisAtLoad
 from mffit.points import make_points
 from tir import Quantity
 
@@ -92,7 +92,7 @@ def test_one_direction_alone_is_refused():
         align(both.select(both.direction > 0))
 
 
-MEASURED = {1500.0: AtLoad(Quantity(-11.0 * 1500.0, 165.0, "N/rad"), np.nan, np.nan)}
+MEASURED = {1500.0: AxisAtLoad(Quantity(-11.0 * 1500.0, 165.0, "N/rad"), np.nan, np.nan)}
 
 
 def test_a_measured_stiffness_is_used_before_any_guess():
@@ -115,13 +115,15 @@ def test_the_axis_is_aligned_when_the_correction_is_within_its_uncertainty(off, 
     """u is 4/sqrt(2) N over 11 x 1500 N/rad: 0.0098 deg."""
     found = align(zeros(off).replace(u_Fy=4.0), measured=MEASURED, resolution_deg=0.001)
     assert found.aligned is aligned
-    assert wording.alignment(found)[0].startswith("Aligned, stop" if aligned else "Turn the sideslip axis by")
+    assert alignment_wording.advice(found)[0].startswith(
+        "Aligned, stop" if aligned else "Turn the sideslip axis by"
+    )
     assert align(zeros(off), measured=MEASURED, resolution_deg=0.02).aligned
 
 
 def test_zeros_that_the_report_has_otherwise_are_explained():
-    (same,) = align(zeros(0.0), measured={1500.0: AtLoad(None, -300.0, -300.0)}).steps
-    found = align(zeros(0.0), measured={1500.0: AtLoad(None, -275.0, -280.0)})
+    (same,) = align(zeros(0.0), measured={1500.0: AxisAtLoad(None, -300.0, -300.0)}).steps
+    found = align(zeros(0.0), measured={1500.0: AxisAtLoad(None, -275.0, -280.0)})
     assert same.reported is None
     assert found.steps[0].reported == (-275.0, -280.0)
-    assert "-275.0 N forwards where it is -300.0 N here" in wording.alignment(found)[-1]
+    assert "-275.0 N forwards where it is -300.0 N here" in alignment_wording.advice(found)[-1]

@@ -120,6 +120,18 @@ def test_each_doubt_about_the_rig_counts_as_the_force_it_makes(rig, source, forc
         assert units[source] == (pytest.approx(0.5), "deg")
 
 
+def test_camber_skew_counts_through_the_camber_stiffness():
+    """A wheel that steers by 0.2 deg sin(gamma) as it leans adds C_alpha 0.2 deg to the slope over camber."""
+    tyre = Plain()
+    result = measured(tyre, u_camber_skew_deg=0.2)
+    u_slope = 12.0 * 1500.0 * 0.2 * DEGREE
+    C_phit = tyre.turn_slip_force(1500.0) * tyre.side * R
+    expected = abs(R_E * u_slope / C_phit)
+    assert contributions(result)["camber skew"] == pytest.approx(expected, rel=0.02)
+    assert result.nominal.u_monte_carlo == pytest.approx(result.epsilon_gamma.u, rel=0.03)
+    assert result.C_gamma.u == pytest.approx(math.hypot(u_slope, result.nominal.C_gamma_slope.u), rel=0.02)
+
+
 def test_without_backward_runs_the_alignment_is_in_doubt():
     tyre = Plain()
     result = measured(tyre, points=tyre.campaign(backward=False), u_slip_alignment_N=30.0)

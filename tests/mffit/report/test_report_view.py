@@ -13,12 +13,13 @@ import tir
 from mffit.report.build_view import coefficient_rows, view_of
 from mffit.report.curves import curves
 from mffit.report.lines import model_lines
-from mffit.rig import RigFaults, Simulation
+from mffit.rig import Simulation
+from mffit.rig_errors import Faults
 
 
 def test_line_includes_the_faults_that_are_known():
     points = made_points(programme())
-    faults = RigFaults(alpha_0_deg=0.4, backlash_deg=0.17)
+    faults = Faults(alpha_0_deg=0.4, backlash_deg=0.17)
     rig = Simulation.of(tir.read(TRUE), faults)
     found = curves(points)
     read, lines = rig.readings(points), model_lines(rig, points, found)

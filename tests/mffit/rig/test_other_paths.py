@@ -12,7 +12,8 @@ from mffit.config import path_curvature
 from mffit.errors import InputError
 from mffit.pipeline.building import origin
 from mffit.points import make_points
-from mffit.rig import RigFaults, Simulation
+from mffit.rig import Simulation
+from mffit.rig_errors import Faults
 
 DECLARED, TRUE = 1.323, 1.330  # m
 PATHS = ({}, {"path_centre": "right"}, {"path_radius": 0.9}, {"path_centre": "right", "path_radius": 1.6})
@@ -32,7 +33,7 @@ def test_both_forward_models_run_every_path():
     assert [{k: v for k, v in e.items() if k != "file"} for e in campaign.configuration["sweep"]] == list(
         PATHS
     )
-    simulation = Simulation.of(truth(), RigFaults(**faults))
+    simulation = Simulation.of(truth(), Faults(**faults))
     for entry in campaign.configuration["sweep"]:
         table = campaign.tables[entry["file"]]
         rig = configuration.load(campaign.configuration, folder=SAMPLE).rig
@@ -48,7 +49,7 @@ def test_both_forward_models_run_every_path():
 
 def test_an_error_of_the_radius_is_common_to_all_paths():
     points = make_points(0.0, 0.0, 1400.0, p=250e3, V=6.0, phi_t=np.array([-1.0 / DECLARED, 1.0 / 0.9]))
-    off = Simulation.of(truth(), RigFaults(path_radius_m=TRUE))
+    off = Simulation.of(truth(), Faults(path_radius_m=TRUE))
     moved = points.replace(phi_t=np.array([-1.0 / TRUE, 1.0 / (0.9 + TRUE - DECLARED)]))
     again = Simulation(off.values, off.faults, radius_m=DECLARED).readings(points)
     assert again.Fy == pytest.approx(Simulation.of(truth()).readings(moved).Fy)

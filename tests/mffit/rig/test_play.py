@@ -7,9 +7,9 @@ import pytest
 
 import tir
 from mffit.points import make_points
-from mffit.rig import RigFaults, Simulation
+from mffit.rig import Simulation
 from mffit.rig.play import settled
-from mffit.virtual_rig.faults import Faults
+from mffit.rig_errors import Faults
 from mffit.virtual_rig.machine import Machine, steady
 from mffit.virtual_rig.settings import Settings
 
@@ -32,7 +32,7 @@ def points():
 
 @pytest.fixture(scope="module")
 def simulation(tyre):
-    return Simulation.of(tyre, RigFaults(backlash_deg=PLAY, path_radius_m=RADIUS, alpha_0_deg=0.03))
+    return Simulation.of(tyre, Faults(backlash_deg=PLAY, path_radius_m=RADIUS, alpha_0_deg=0.03))
 
 
 def test_the_rig_reads_what_the_virtual_rig_reports(tyre, points, simulation):
@@ -40,7 +40,7 @@ def test_the_rig_reads_what_the_virtual_rig_reports(tyre, points, simulation):
     n = len(points)
     settings = Settings(
         points.alpha, points.gamma, points.Fz, points.p, points.V, np.full(n, 25.0), np.zeros(n),
-        points.direction, points.mount,
+        points.direction, points.mount, np.zeros(n),
     )  # fmt: skip
     expected = steady(machine, settings)
     read = simulation.readings(points)

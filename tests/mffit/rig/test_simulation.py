@@ -2,20 +2,38 @@
 
 from __future__ import annotations
 
-from dataclasses import fields, replace
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
 import tir
 from mffit.points import make_points
-from mffit.rig import NO_FAULTS, RigFaults, Simulation
-from mffit.rig.simulation import RELAXATION
+from mffit.rig import Simulation
+from mffit.rig_errors import BY_NAME, NO_FAULTS, Faults
 
-FAULTS = RigFaults(
-    0.3, -0.4, 1.02, 8.0, 0.01, 0.5, 0.2, 1.31, 1e-3, 2e-3, 1e-6, 0.0, 0.02, 0.1, 1e-3, -1e-3, 1e-3, 0.02
-)  # fmt: skip
-YIELDING = replace(FAULTS, backlash_deg=0.0, compliance_deg_per_Nm=0.006)
+FAULTS = Faults(
+    alpha_0_deg=0.3,
+    camber_skew_deg=0.4,
+    gamma_0_deg=-0.4,
+    load_camber=-0.05,
+    gain=1.02,
+    nonlinearity_per_kN=0.02,
+    F0_N=8.0,
+    crosstalk=0.01,
+    M0_Nm=0.5,
+    backlash_deg=0.2,
+    path_radius_m=1.31,
+    hysteresis_deg=0.1,
+    k_T_per_K=1e-3,
+    k_T_grip_per_K=1e-3,
+    k_T_stiffness_per_K=-1e-3,
+    k_V_per_mps=2e-3,
+    k_t_per_s=1e-6,
+    wear_per_km=1e-3,
+    warm_up=0.02,
+)
+YIELDING = FAULTS.replace(backlash_deg=0.0, compliance_deg_per_Nm=0.006)
 """A steering that gives way to the moment; without play, whose side is held while derivatives are taken."""
 STEPS = {"k_t_per_s": 1e-9, "k_T_per_K": 1e-6, "crosstalk": 1e-5}
 
@@ -36,9 +54,7 @@ def simulation():
     return Simulation.of(tir.read("samples/front-120-70/true.tir"), FAULTS)
 
 
-@pytest.mark.parametrize(
-    "name", [*(f.name for f in fields(RigFaults)), "PKY1", "PECP1", "PHY1", "QDZ8", "PVY1"]
-)
+@pytest.mark.parametrize("name", [*BY_NAME, "PKY1", "PECP1", "PHY1", "QDZ8", "PVY1"])
 def test_a_sensitivity_is_the_slope_of_the_readings(points, simulation, name):
     step = STEPS.get(name, 1e-5)
     value = simulation.number(name, points)
@@ -62,7 +78,7 @@ def test_a_yielding_steering_passes_every_slope_on(points, simulation, name):
 def test_a_wheel_on_a_yielding_steering_stands_where_moment_and_steering_agree(points):
     tyre = tir.read("samples/front-120-70/true.tir")
     normal = points.replace(mount=1)
-    plain, soft = (Simulation.of(tyre, RigFaults(compliance_deg_per_Nm=k)) for k in (0.0, 0.01))
+    plain, soft = (Simulation.of(tyre, Faults(compliance_deg_per_Nm=k)) for k in (0.0, 0.01))
     Mz = soft.readings(normal).Mz
     turned = normal.replace(alpha=normal.alpha + np.radians(0.01 * Mz))
     assert plain.readings(turned).Mz == pytest.approx(Mz, abs=1e-4)
@@ -82,9 +98,9 @@ def test_the_lag_of_a_continuous_sweep_has_a_slope_too(simulation):
     sweep = make_points(
         0.1 * np.sin(time), 0.0, 1400.0, p=250e3, V=2.0, phi_t=-1 / 1.323, continuous=True, time=time
     )
-    lagging = simulation.with_numbers({RELAXATION: 0.3})
-    up, down = (lagging.with_numbers({RELAXATION: 0.3 + s}).predict(sweep) for s in (1e-4, -1e-4))
-    _, slope = lagging.sensitivities(sweep, [RELAXATION])
+    lagging = simulation.with_numbers({"relaxation_m": 0.3})
+    up, down = (lagging.with_numbers({"relaxation_m": 0.3 + s}).predict(sweep) for s in (1e-4, -1e-4))
+    _, slope = lagging.sensitivities(sweep, ["relaxation_m"])
     expected = (up - down) / 2e-4
     assert np.concatenate(slope)[:, 0] == pytest.approx(expected, abs=2e-3 * np.max(np.abs(expected)))
 

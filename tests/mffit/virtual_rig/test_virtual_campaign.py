@@ -54,7 +54,7 @@ def test_drawn_faults_scatter_as_declared(content, folder, tyre):
         "path_radius_m": (1.323, 0.0018),
     }
     for name, (mean, u) in expected.items():
-        values = [getattr(faults, name) for faults in drawn]
+        values = [faults[name] for faults in drawn]
         # 1500 draws: u to 1.8 %, the mean to 0.026 u
         assert np.std(values) == pytest.approx(u, rel=0.08)
         assert np.mean(values) == pytest.approx(mean, abs=0.1 * u)
@@ -66,9 +66,20 @@ def test_a_fault_that_is_given_is_not_drawn_and_leaves_the_others_alone(content,
         return faults_of(plan, tyre, np.random.default_rng(7))
 
     free, fixed = faults(), faults(gamma_0_deg=0.25, gain=1.02)
-    assert fixed.gamma_0_deg == 0.25
-    assert fixed.gain == 1.02
-    assert (fixed.alpha_0_deg, fixed.F0_N) == (free.alpha_0_deg, free.F0_N)
+    assert fixed["gamma_0_deg"] == 0.25
+    assert fixed["gain"] == 1.02
+    assert (fixed["alpha_0_deg"], fixed["F0_N"]) == (free["alpha_0_deg"], free["F0_N"])
+
+
+def test_a_sweep_may_have_errors_of_its_own(run):
+    """What a load cell that is zeroed anew before a run adds to that run, and to no other."""
+    sweeps = [{"file": f"{name}.csv", "load_N": 1400, "alpha_deg": [-2.0, 2.0]} for name in "ab"]
+    plain = run(sweep=sweeps)
+    shifted = run(sweep=[sweeps[0], sweeps[1] | {"faults": {"F0_N": 7.0, "M0_Nm": -0.5}}])
+    for channel, added in (("Fy_N", 7.0), ("Mz_Nm", -0.5)):
+        assert np.allclose(shifted.tables["a.csv"][channel], plain.tables["a.csv"][channel])
+        assert np.allclose(shifted.tables["b.csv"][channel] - plain.tables["b.csv"][channel], added, atol=0.011)
+    assert shifted.truth.to_json()["faults_of_sweeps"] == {"b.csv": {"F0_N": 7.0, "M0_Nm": -0.5}}
 
 
 def test_the_disc_revolution_gives_the_true_radius_within_its_uncertainty(run):

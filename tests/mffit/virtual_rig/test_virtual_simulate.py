@@ -26,7 +26,7 @@ def test_sweeps_configuration_and_truth_are_written(plan, tmp_path, tyre):
     written = json.loads((tmp_path / "out" / "truth.json").read_text())
     assert written["epsilon_gamma"] == truth.nominal.epsilon_gamma
     assert written["coefficients"]["PKY1"] == tyre["PKY1"]
-    assert written["faults"]["alpha_0_deg"] == truth.faults.alpha_0_deg
+    assert written["faults"]["alpha_0_deg"] == truth.faults["alpha_0_deg"]
     content = tomllib.loads((tmp_path / "out" / "tyre.toml").read_text())
     assert [sweep["file"] for sweep in content["sweep"]] == [
         "sideslip.csv",

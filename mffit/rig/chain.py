@@ -1,0 +1,198 @@
+"""The chain from the set-points as read, through the tyre, to the readings of the load cells."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from functools import cached_property
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+
+from mffit.points import Points
+from mffit.quantities import CHANNELS
+from mffit.rig import constants
+from mffit.rig.histories import distance_km, path_radii, reference_speed, sense
+from mffit.rig.lag import lagged_angle
+from mffit.rig.play import settled
+from mffit.rig_errors import AFTER, BEFORE, RigError
+from tir.derivatives import Traced, gradient, plain, traced
+from tir.evaluate import turned_on_rim
+from tir.outputs import outputs_of
+
+
+class Chain:
+    """One passage of points through rig and tyre; every quantity may be plain or traced.
+
+    The public attributes are what the formulae of :mod:`mffit.rig_errors` use.
+
+    Parameters
+    ----------
+    points : set-points (n,) as read
+    coefficients : every value of the property file
+    numbers : every rig error, scalar or (n,)
+    usual_radius : declared radius of the usual path [m]
+    turn_slip, star : as in :class:`mffit.rig.Simulation`
+    """
+
+    def __init__(
+        self,
+        points: Points,
+        coefficients: Mapping[str, Any],
+        numbers: Mapping[str, Any],
+        *,
+        usual_radius: float,
+        turn_slip: bool,
+        star: bool,
+    ) -> None:
+        self.points, self.numbers = points, numbers
+        self._usual_radius, self._modes = usual_radius, {"turn_slip": turn_slip, "star": star}
+        if np.any(points.mount < 0):
+            coefficients = vars(turned_on_rim(SimpleNamespace(**coefficients), points.mount))
+        self._coefficients = dict(coefficients)
+        self._quantities: dict[str, Any] = {
+            name: getattr(points, name) for name in ("alpha", "gamma", "Fz", "phi_t")
+        }
+
+    def readings(self) -> list[Any]:
+        """Reading of every channel (n,): [N] or [Nm]."""
+        self._pass(BEFORE)
+        forces = self._tyre(tuple(CHANNELS), self._quantities["alpha"])
+        self._quantities.update(zip(CHANNELS, forces, strict=True))
+        self._pass(AFTER)
+        return [self._quantities[channel] for channel in CHANNELS]
+
+    def _pass(self, errors: Iterable[RigError]) -> None:
+        """Let rig errors act on what they change."""
+        for error in errors:
+            number = self.numbers[error.name]
+            if error.formula is None or not (isinstance(number, Traced) or error.acts(number)):
+                continue
+            for name in error.acts_on:
+                owner = self._quantities if name in self._quantities else self._coefficients
+                owner[name] = error.formula(number, owner[name], self)
+
+    @property
+    def gamma(self) -> Any:
+        """Camber (n,) [rad]."""
+        return self._quantities["gamma"]
+
+    @property
+    def Fz(self) -> Any:
+        """Load (n,) [N]."""
+        return self._quantities["Fz"]
+
+    @cached_property
+    def beyond_usual_path(self) -> np.ndarray:
+        """Distance (n,) of each path from the usual one, outwards [m]."""
+        return path_radii(self.points) - self._usual_radius
+
+    @cached_property
+    def warmth(self) -> Any:
+        """Temperature above the reference (n,) [K]; 0 where it was not measured."""
+        known = np.isfinite(self.points.T)
+        return np.where(known, np.nan_to_num(self.points.T) - self.numbers["T_ref_degC"], 0.0)
+
+    @cached_property
+    def speed_above_usual(self) -> np.ndarray:
+        """Speed above the most frequent one (n,) [m/s]; 0 where it was not measured."""
+        return np.nan_to_num(self.points.V - reference_speed(self.points))
+
+    @cached_property
+    def time(self) -> np.ndarray:
+        """Time of every point (n,) [s]; 0 where it is not known."""
+        return np.nan_to_num(self.points.t)
+
+    @cached_property
+    def distance_km(self) -> np.ndarray:
+        """Distance rolled (n,) [km]."""
+        return distance_km(self.points)
+
+    @cached_property
+    def sense(self) -> np.ndarray:
+        """Sense (n,) of the sweep: 1, -1, or 0 where the angle was held."""
+        return sense(self.points)
+
+    def lagged(self, alpha: np.ndarray, sigma: Any) -> Any:
+        """Sideslip (n,) [rad] behind the reading ``alpha`` by the relaxation length ``sigma`` [m]."""
+        follows, slope = lagged_angle(self.points.replace(alpha=alpha), plain(sigma))
+        return sigma.derived(follows, slope) if isinstance(sigma, Traced) else follows
+
+    def turned_by_moment(self, alpha: Any, give: Any) -> Any:
+        """Sideslip (n,) [rad] of a wheel that its own moment turns by ``give`` [rad/Nm] from ``alpha``."""
+        k, start = float(plain(give)), plain(alpha)
+        held = np.broadcast_to(start, len(self.points))
+        slope: Any = 0.0
+        if k:
+            settled_conditions = self._without_history()
+            for _ in range(constants.LONGEST_YIELDING):
+                moment, slope = settled_conditions.moment_and_slope(held)
+                move = (start + k * moment - held) / (1.0 - k * slope)
+                held = held + move
+                if np.max(np.abs(move)) < constants.YIELDING_STEP:
+                    break
+        if not self._traced:
+            return held
+        # One Newton step on traced numbers: its value is the angle found, its derivatives are those of the solution.
+        return held + (alpha + give * self._moment(held) - held) / (1.0 - k * slope)
+
+    def held_in_play(self, alpha: Any, half_play: Any) -> Any:
+        """Sideslip (n,) [rad] of a wheel that is free by ``half_play`` [rad] to either side of ``alpha``."""
+        conditions = self._without_history()
+        middle = np.broadcast_to(plain(alpha), len(self.points))
+        rest = settled(
+            lambda rows: lambda angle: conditions._moment(angle, rows), middle, float(plain(half_play))
+        )
+        held = alpha - half_play * rest.side
+        if not np.any(rest.floats):
+            return held
+        return np.where(rest.floats, self._following_root(np.where(rest.floats, rest.alpha, middle)), held)
+
+    def moment_and_slope(self, alpha: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Aligning moment (n,) [Nm] of plain conditions at sideslip ``alpha`` (n,) [rad], and dMz/dalpha [Nm/rad]."""
+        at = traced({"alpha": alpha})["alpha"]
+        Mz = self._moment(at)
+        return plain(Mz), gradient(Mz, [at])[..., 0]
+
+    def _following_root(self, alpha: np.ndarray) -> Any:
+        """Angles without moment (n,) that move with the traced numbers so that the moment stays zero."""
+        Mz = self._moment(alpha)
+        if not isinstance(Mz, Traced):
+            return alpha
+        _, slope = self._without_history().moment_and_slope(alpha)
+        by_moment = np.divide(-1.0, slope, out=np.zeros_like(slope), where=slope != 0.0)
+        return alpha + by_moment * (Mz - plain(Mz))
+
+    def _moment(self, alpha: Any, rows: np.ndarray | None = None) -> Any:
+        return self._tyre(("Mz",), alpha, rows)[0]
+
+    def _tyre(self, wanted: tuple[str, ...], alpha: Any, rows: np.ndarray | None = None) -> list[Any]:
+        """Some outputs of the tyre at its true sideslip angle ``alpha`` [rad]; of some rows only."""
+        conditions = {
+            **{name: self._quantities[name] for name in ("Fz", "gamma", "phi_t")},
+            "Vx": self.points.Vx,
+            "pressure": self.points.p,
+        }
+        p = self._coefficients
+        if rows is not None:
+            conditions, p = ({k: _of_rows(v, rows) for k, v in each.items()} for each in (conditions, p))
+        inputs = {**conditions, "alpha": alpha}
+        return outputs_of(wanted, SimpleNamespace(**p), inputs, **self._modes)
+
+    @property
+    def _traced(self) -> bool:
+        """Whether any number is traced."""
+        known = (*self._coefficients.values(), *self.numbers.values())
+        return any(isinstance(value, Traced) for value in known)
+
+    def _without_history(self) -> Chain:
+        """The same conditions with plain values only."""
+        other = object.__new__(Chain)
+        vars(other).update(vars(self))
+        for name in ("_coefficients", "_quantities"):
+            setattr(other, name, {key: plain(value) for key, value in getattr(self, name).items()})
+        return other
+
+
+def _of_rows(value: Any, rows: np.ndarray) -> Any:
+    return value[rows] if np.ndim(value) else value

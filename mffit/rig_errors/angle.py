@@ -1,0 +1,189 @@
+"""Errors between the sideslip angle as read and the one that the tyre runs at, in the order in which they act."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from mffit.rig_errors import constants
+from mffit.rig_errors.record import RADIANS, Appearance, Declared, Place, RigError
+
+RELAXATION = RigError(
+    name="relaxation_m",
+    unit="m",
+    meaning="relaxation length sigma of moving sweeps: sigma d(alpha')/ds + alpha' = alpha, the force answers to alpha'",
+    kind="tyre",
+    place=Place.ANGLE,
+    acts_on=("alpha",),
+    formula=lambda sigma, alpha, at: at.lagged(alpha, sigma),
+    spread=0.2,
+    scan=(0.05, 0.15, 0.3),
+    lower=0.0,
+    upper=2.0,
+    seen_as=(
+        Appearance(
+            id="relaxation",
+            name="relaxation length",
+            physics="Side force builds up over a rolled distance, so a moving sweep lags behind its angle.",
+            parity="depends on the sense of the sweep",
+            needs=("continuous",),
+        ),
+    ),
+)
+SIDESLIP_ZERO = RigError(
+    name="alpha_0_deg",
+    unit="deg",
+    meaning="true sideslip angle = reading + alpha_0",
+    kind="rig",
+    place=Place.ANGLE,
+    acts_on=("alpha",),
+    formula=lambda zero, alpha, at: alpha + zero * RADIANS,
+    spread=0.2,
+    lower=-5.0,
+    upper=5.0,
+    seen_as=(
+        Appearance(
+            id="sideslip-misalignment",
+            name="sideslip axis misaligned",
+            physics="The steering axis reads zero while the wheel runs at a small sideslip angle.",
+            parity="even in alpha; turns with the direction",
+            confusable_with=("ply-steer",),
+            remedy="turn the steering axis by {opposite} deg at its reading of zero and call that zero; or add {value} deg "
+            "to all readings of the sideslip angle",
+            axes=("alpha",),
+        ),
+        Appearance(
+            id="run-offsets-alpha",
+            name="sideslip zero that differs from run to run",
+            physics="The steering axis is set up again before every run, each time at a slightly different angle.",
+            parity="even in alpha, the same within a run",
+            needs=("runs",),
+            confusable_with=("sideslip-misalignment",),
+            remedy="set the steering axis up against a stop before every run; or add the values of the table to the "
+            "readings of each run",
+            per_run=True,
+            spread=0.1,
+        ),
+    ),
+    declared=Declared(
+        key="u_slip_alignment_N",
+        unit="N",
+        default=constants.SIDESLIP_FORCE,
+        source="sideslip alignment",
+        force_at_zero=lambda force, at: force,
+        turns_with_direction=True,
+    ),
+)
+HYSTERESIS = RigError(
+    name="hysteresis_deg",
+    unit="deg",
+    meaning="true sideslip angle = reading - hysteresis sense, sense 1 or -1 as the sweep goes up or down",
+    kind="rig",
+    place=Place.ANGLE,
+    acts_on=("alpha",),
+    formula=lambda width, alpha, at: alpha - width * (RADIANS * at.sense),
+    spread=0.1,
+    lower=-2.0,
+    upper=2.0,
+    seen_as=(
+        Appearance(
+            id="hysteresis",
+            name="hysteresis of sideslip sweeps",
+            physics="The force lags behind the angle as read, by a fixed angle in either sense of the sweep.",
+            parity="changes sign with the sense of the sweep",
+            needs=("senses",),
+            confusable_with=("relaxation",),
+            remedy="free the sideslip drive; or subtract {value} deg from its readings where they rise and add it where "
+            "they fall",
+        ),
+    ),
+)
+COMPLIANCE = RigError(
+    name="compliance_deg_per_Nm",
+    unit="deg/Nm",
+    meaning="true sideslip angle = reading + compliance Mz",
+    kind="rig",
+    place=Place.ANGLE,
+    acts_on=("alpha",),
+    formula=lambda give, alpha, at: at.turned_by_moment(alpha, give * RADIANS),
+    spread=0.004,
+    lower=-0.05,
+    upper=0.05,
+    seen_as=(
+        Appearance(
+            id="steering-compliance",
+            name="compliance of the steering axis",
+            physics="The aligning moment turns the wheel a little, as the steering and its frame are not rigid.",
+            parity="odd",
+            needs=("moment", "slip"),
+            confusable_with=("backlash", "pressure"),
+            remedy="stiffen the steering; or add {value} deg for every Nm of the reported moment to its readings",
+            axes=("alpha", "Mz"),
+        ),
+    ),
+)
+BACKLASH = RigError(
+    name="backlash_deg",
+    unit="deg",
+    meaning="full play; true sideslip angle = reading - play/2 sign(Mz)",
+    kind="rig",
+    place=Place.ANGLE,
+    acts_on=("alpha",),
+    formula=lambda play, alpha, at: at.held_in_play(alpha, 0.5 * RADIANS * play),
+    spread=0.2,
+    scan=(0.05, 0.15, 0.3),
+    lower=0.0,
+    upper=3.0,
+    seen_as=(
+        Appearance(
+            id="backlash",
+            name="backlash of the sideslip axis",
+            physics="The moment on the wheel takes up the play of the steering, so the angle is off by half the play "
+            "against the moment.",
+            parity="partly odd",
+            needs=("moment",),
+            remedy="take the play of {value} deg out of the steering axis, or declare it as backlash_deg under [rig]",
+        ),
+    ),
+    declared=Declared(
+        key="u_backlash_deg",
+        unit="deg",
+        default=0.0,
+        source="backlash",
+        value="backlash_deg",
+        force_at_zero=lambda play, at: 0.5 * RADIANS * at.C_alpha * at.side_of_play * play,
+    ),
+)
+CAMBER_SKEW = RigError(
+    name="camber_skew_deg",
+    unit="deg",
+    meaning="true sideslip angle = reading + camber_skew sin(true camber)",
+    kind="rig",
+    place=Place.ANGLE,
+    acts_on=("alpha",),
+    formula=lambda skew, alpha, at: alpha + skew * RADIANS * np.sin(at.gamma),
+    spread=0.2,
+    lower=-5.0,
+    upper=5.0,
+    seen_as=(
+        Appearance(
+            id="camber-skew",
+            name="camber axis not square to the steering axis",
+            physics="Leaning the wheel also steers it a little, as the camber axis is not square to the steering axis.",
+            parity="odd in gamma; turns with the direction",
+            needs=("camber",),
+            confusable_with=("camber-stiffness",),
+            remedy="square the camber axis to the steering axis; or add {value} deg times the sine of the camber angle to all "
+            "readings of the sideslip angle",
+            axes=("alpha", "gamma"),
+        ),
+    ),
+    declared=Declared(
+        key="u_camber_skew_deg",
+        unit="deg",
+        default=constants.CAMBER_SKEW,
+        source="camber skew",
+        camber_stiffness=lambda skew, at: RADIANS * at.C_alpha * skew,
+    ),
+)
+
+ANGLE_ERRORS = (RELAXATION, SIDESLIP_ZERO, CAMBER_SKEW, HYSTERESIS, COMPLIANCE, BACKLASH)

@@ -1,0 +1,28 @@
+"""All rig errors in one list, in the order of the chain from reading to reading."""
+
+from __future__ import annotations
+
+from mffit.rig_errors.angle import ANGLE_ERRORS
+from mffit.rig_errors.conditions import CONDITION_ERRORS
+from mffit.rig_errors.environment import COEFFICIENT_ERRORS, ENVIRONMENT_ERRORS
+from mffit.rig_errors.force import FORCE_ERRORS
+from mffit.rig_errors.record import BEFORE_THE_TYRE, RigError
+
+RIG_ERRORS: tuple[RigError, ...] = (
+    *CONDITION_ERRORS,
+    *COEFFICIENT_ERRORS,
+    *ANGLE_ERRORS,
+    *ENVIRONMENT_ERRORS,
+    *FORCE_ERRORS,
+)
+BY_NAME: dict[str, RigError] = {error.name: error for error in RIG_ERRORS}
+BEFORE = tuple(error for error in RIG_ERRORS if error.place in BEFORE_THE_TYRE)
+"""Those between the readings of the set-points and the conditions of the tyre."""
+AFTER = tuple(error for error in RIG_ERRORS if error.place not in (*BEFORE_THE_TYRE, None))
+"""Those between the forces of the tyre and their readings."""
+DECLARED = tuple(error for error in RIG_ERRORS if error.declared is not None)
+"""Those whose uncertainty ``[rig]`` states."""
+UNITS = {error.name: error.unit for error in RIG_ERRORS}
+MEANINGS = {error.name: error.meaning for error in RIG_ERRORS}
+WORDS = {error.name: error.seen_as[0].name for error in RIG_ERRORS if error.seen_as}
+"""What a reader calls a number of the rig, by its name."""

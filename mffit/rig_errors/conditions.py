@@ -1,0 +1,96 @@
+"""Errors of camber, load and path: between what the rig is set to and what the tyre runs at."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from mffit.rig_errors import constants
+from mffit.rig_errors.record import RADIANS, Appearance, Declared, Place, RigError
+
+CAMBER_ZERO = RigError(
+    name="gamma_0_deg",
+    unit="deg",
+    meaning="true camber = reading + gamma_0",
+    kind="rig",
+    place=Place.CAMBER,
+    acts_on=("gamma",),
+    formula=lambda zero, gamma, at: gamma + zero * RADIANS,
+    spread=0.4,
+    lower=-5.0,
+    upper=5.0,
+    seen_as=(
+        Appearance(
+            id="camber-misalignment",
+            name="camber axis misaligned",
+            physics="The camber axis reads zero while the wheel leans a little.",
+            parity="even in gamma",
+            confusable_with=("camber-reduction", "path-radius"),
+            remedy="lean the wheel by {opposite} deg at its reading of zero and call that zero; or add {value} deg "
+            "to all readings of the camber angle",
+            axes=("gamma",),
+        ),
+    ),
+    declared=Declared(
+        key="u_camber_alignment_deg",
+        unit="deg",
+        default=constants.CAMBER_ZERO,
+        source="camber alignment",
+        force_at_zero=lambda zero, at: RADIANS * at.C_gamma * zero,
+    ),
+)
+LOAD_CAMBER = RigError(
+    name="load_camber",
+    unit="-",
+    meaning="true load = reading times 1 + load_camber sin(true camber)^2",
+    kind="rig",
+    place=Place.LOAD,
+    acts_on=("Fz",),
+    formula=lambda share, Fz, at: Fz * (1.0 + share * np.sin(at.gamma) ** 2),
+    spread=0.03,
+    lower=-0.5,
+    upper=0.5,
+    seen_as=(
+        Appearance(
+            id="load-camber",
+            name="load that changes with camber",
+            physics="The load on the tyre falls, or rises, as the wheel leans, because its cell leans with it or is no longer "
+            "above the contact point.",
+            parity="odd in alpha and gamma",
+            needs=("camber",),
+            confusable_with=("camber-grip", "camber-thrust-curvature"),
+            remedy="hold the load constant over camber by a cell under the disc; or multiply the reported load by 1 + {value} "
+            "times the square of the sine of the camber angle",
+        ),
+    ),
+)
+PATH_RADIUS = RigError(
+    name="path_radius_m",
+    unit="m",
+    meaning="true radius of the path",
+    kind="rig",
+    place=Place.PATH,
+    acts_on=("phi_t",),
+    # An error of the usual path's radius is common to all paths: the wheel is moved between them by known distances.
+    formula=lambda radius, phi_t, at: np.sign(phi_t) / (radius + at.beyond_usual_path),
+    undisturbed=math.nan,
+    spread=0.03,
+    lower=0.1,
+    upper=100.0,
+    relative=True,
+    seen_as=(
+        Appearance(
+            id="path-radius",
+            name="path radius",
+            physics="The contact point runs on another radius than declared.",
+            parity="as turn slip",
+            needs=("curved",),
+            confusable_with=("camber-reduction",),
+            remedy="measure the four lengths of the path again; path_radius under [rig] should be {value} m",
+        ),
+    ),
+    declared=Declared(key="u_path_radius", unit="m", default=None, source="path radius", value="radius"),
+)
+
+CONDITION_ERRORS = (CAMBER_ZERO, LOAD_CAMBER, PATH_RADIUS)

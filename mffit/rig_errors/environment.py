@@ -1,0 +1,183 @@
+"""Influences of the surroundings and of wear on the tyre while it is tested."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from mffit.rig_errors import constants
+from mffit.rig_errors.record import Appearance, Place, RigError
+
+WARMTH = "(T - T_ref), T_ref the mean temperature of the data unless it is fitted"
+FORCES = ("Fy", "Mz")
+
+TEMPERATURE_GRIP = RigError(
+    name="k_T_grip_per_K",
+    unit="1/K",
+    meaning=f"friction times 1 + k {WARMTH}",
+    kind="environment",
+    place=Place.COEFFICIENTS,
+    acts_on=("LMUY",),
+    formula=lambda k, scale, at: scale * (1.0 + k * at.warmth),
+    spread=0.002,
+    lower=-0.05,
+    upper=0.05,
+    seen_as=(
+        Appearance(
+            id="temperature-grip",
+            name="friction with tyre temperature",
+            physics="The friction of rubber depends on its temperature: the peak of the curves moves, their slope at zero "
+            "stays.",
+            parity="as the forces",
+            needs=("temperatures",),
+            confusable_with=("temperature",),
+        ),
+    ),
+)
+TEMPERATURE_STIFFNESS = RigError(
+    name="k_T_stiffness_per_K",
+    unit="1/K",
+    meaning=f"cornering stiffness times 1 + k {WARMTH}",
+    kind="environment",
+    place=Place.COEFFICIENTS,
+    acts_on=("LKY",),
+    formula=lambda k, scale, at: scale * (1.0 + k * at.warmth),
+    spread=0.002,
+    lower=-0.05,
+    upper=0.05,
+    seen_as=(
+        Appearance(
+            id="temperature-stiffness",
+            name="cornering stiffness with tyre temperature",
+            physics="Warm rubber is softer: the slope of the side force at zero changes, its peak stays.",
+            parity="as the forces",
+            needs=("temperatures",),
+            confusable_with=("temperature",),
+        ),
+    ),
+)
+TEMPERATURE = RigError(
+    name="k_T_per_K",
+    unit="1/K",
+    meaning=f"Fy and Mz times 1 + k_T {WARMTH}",
+    kind="environment",
+    place=Place.ENVIRONMENT,
+    acts_on=FORCES,
+    formula=lambda k, force, at: force * (1.0 + k * at.warmth),
+    spread=0.001,
+    lower=-0.05,
+    upper=0.05,
+    seen_as=(
+        Appearance(
+            id="temperature",
+            name="tyre temperature",
+            physics="Warm rubber grips and stiffens differently: forces scale with temperature.",
+            parity="as the forces",
+            needs=("temperatures",),
+            confusable_with=("drift", "temperature-grip", "temperature-stiffness"),
+            together_with=("T_ref_degC",),
+        ),
+    ),
+)
+REFERENCE_TEMPERATURE = RigError(
+    name="T_ref_degC",
+    unit="degC",
+    meaning="temperature at which the model holds",
+    kind="environment",
+    place=None,
+    undisturbed=constants.REFERENCE_TEMPERATURE,
+    spread=10.0,
+    lower=-40.0,
+    upper=200.0,
+)
+SPEED = RigError(
+    name="k_V_per_mps",
+    unit="s/m",
+    meaning="Fy and Mz times 1 + k_V (V - V_ref), V_ref the most frequent speed",
+    kind="environment",
+    place=Place.ENVIRONMENT,
+    acts_on=FORCES,
+    formula=lambda k, force, at: force * (1.0 + k * at.speed_above_usual),
+    spread=0.005,
+    lower=-0.2,
+    upper=0.2,
+    seen_as=(
+        Appearance(
+            id="speed",
+            name="speed",
+            physics="Friction and carcass depend on speed: forces scale with it.",
+            parity="as the forces",
+            needs=("speeds",),
+        ),
+    ),
+)
+DRIFT = RigError(
+    name="k_t_per_s",
+    unit="1/s",
+    meaning="Fy and Mz times 1 + k_t t, t the time at which the point was taken",
+    kind="environment",
+    place=Place.ENVIRONMENT,
+    acts_on=FORCES,
+    formula=lambda k, force, at: force * (1.0 + k * at.time),
+    spread=1e-6,
+    lower=-1e-3,
+    upper=1e-3,
+    seen_as=(
+        Appearance(
+            id="drift",
+            name="drift over the test",
+            physics="Wear and ageing change the forces with time.",
+            parity="as the forces",
+            needs=("times",),
+            confusable_with=("temperature",),
+        ),
+    ),
+)
+WEAR = RigError(
+    name="wear_per_km",
+    unit="1/km",
+    meaning="Fy and Mz times 1 + wear s, s the distance rolled",
+    kind="environment",
+    place=Place.ENVIRONMENT,
+    acts_on=FORCES,
+    formula=lambda wear, force, at: force * (1.0 + wear * at.distance_km),
+    spread=3e-4,
+    lower=-0.1,
+    upper=0.1,
+    seen_as=(
+        Appearance(
+            id="wear",
+            name="wear over the distance rolled",
+            physics="The tread wears with every kilometre, which changes the forces.",
+            parity="as the forces",
+            needs=("distances",),
+            confusable_with=("drift",),
+        ),
+    ),
+)
+WARM_UP = RigError(
+    name="warm_up",
+    unit="-",
+    meaning="Fy and Mz times 1 - warm_up exp(-s/1 km), s the distance rolled",
+    kind="environment",
+    place=Place.ENVIRONMENT,
+    acts_on=FORCES,
+    formula=lambda share, force, at: (
+        force * (1.0 - share * np.exp(-at.distance_km / constants.WARM_UP_DISTANCE))
+    ),
+    spread=0.03,
+    lower=-0.5,
+    upper=0.5,
+    seen_as=(
+        Appearance(
+            id="warm-up",
+            name="warm-up at the start",
+            physics="A tyre that starts cold has other forces until it has rolled about a kilometre.",
+            parity="as the forces",
+            needs=("times",),
+            confusable_with=("temperature",),
+        ),
+    ),
+)
+
+COEFFICIENT_ERRORS = (REFERENCE_TEMPERATURE, TEMPERATURE_GRIP, TEMPERATURE_STIFFNESS)
+ENVIRONMENT_ERRORS = (TEMPERATURE, DRIFT, WEAR, WARM_UP, SPEED)

@@ -1,0 +1,73 @@
+"""The rig errors of one rig: a value for every record."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping
+
+from mffit.rig_errors.catalog import BY_NAME, RIG_ERRORS
+
+OF_RUN = "@"
+"""Separates the name of an error from the file of the one run in which that much is added to it: ``F0_N@zeros.csv``."""
+
+
+class Faults(Mapping[str, float]):
+    """Values of all rig errors by name, in ISO-W and the unit of the name; immutable.
+
+    Parameters
+    ----------
+    values : those that differ from a perfect rig
+
+    Raises
+    ------
+    KeyError
+        There is no rig error of such a name.
+
+    Examples
+    --------
+    >>> faults = Faults(F0_N=8.0)
+    >>> faults["F0_N"], faults["gain"]
+    (8.0, 1.0)
+    """
+
+    __slots__ = ("_values",)
+
+    def __init__(self, **values: float) -> None:
+        unknown = sorted(set(values) - set(BY_NAME))
+        if unknown:
+            raise KeyError(f"{unknown[0]} is no rig error")
+        self._values = {error.name: float(values.get(error.name, error.undisturbed)) for error in RIG_ERRORS}
+
+    def __getitem__(self, name: str) -> float:
+        return self._values[name]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._values)
+
+    def __len__(self) -> int:
+        return len(self._values)
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, Faults) and self.disturbed == other.disturbed
+
+    def __hash__(self) -> int:
+        return hash(frozenset(self.disturbed.items()))
+
+    def __repr__(self) -> str:
+        return f"Faults({', '.join(f'{name}={value!r}' for name, value in self.disturbed.items())})"
+
+    def replace(self, **values: float) -> Faults:
+        """The same with some values replaced."""
+        return Faults(**{**self._values, **values})
+
+    @property
+    def disturbed(self) -> dict[str, float]:
+        """The values that differ from a perfect rig."""
+        return {
+            name: value
+            for name, value in self._values.items()
+            if not math.isnan(value) and value != BY_NAME[name].undisturbed
+        }
+
+
+NO_FAULTS = Faults()

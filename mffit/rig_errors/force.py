@@ -1,0 +1,158 @@
+"""Errors of the load cells: between the force of the tyre and its reading, in the order in which they act."""
+
+from __future__ import annotations
+
+from mffit.rig_errors import constants
+from mffit.rig_errors.record import Appearance, Declared, Place, RigError
+
+FORCE = "reported Fy = gain Fy + F0 + crosstalk Fz"
+
+GAIN = RigError(
+    name="gain",
+    unit="-",
+    meaning=FORCE,
+    kind="rig",
+    place=Place.FORCE,
+    acts_on=("Fy",),
+    formula=lambda gain, Fy, at: gain * Fy,
+    undisturbed=1.0,
+    spread=0.02,
+    lower=0.5,
+    upper=2.0,
+    seen_as=(
+        Appearance(
+            id="loadcell-gain",
+            name="calibration of Fy",
+            physics="The side-force channel reads a few per cent too much or too little.",
+            parity="as Fy",
+            remedy="calibrate the side-force channel; or divide its readings by {value}",
+        ),
+    ),
+)
+NONLINEARITY = RigError(
+    name="nonlinearity_per_kN",
+    unit="1/kN",
+    meaning="reported Fy times 1 + nonlinearity |Fy|",
+    kind="rig",
+    place=Place.FORCE,
+    acts_on=("Fy",),
+    formula=lambda growth, Fy, at: Fy * (1.0 + 1e-3 * growth * abs(Fy)),
+    spread=0.01,
+    lower=-0.2,
+    upper=0.2,
+    seen_as=(
+        Appearance(
+            id="loadcell-nonlinearity",
+            name="nonlinearity of the Fy load cell",
+            physics="The side-force channel reads large forces a little larger, or smaller, than in proportion.",
+            parity="as Fy",
+            needs=("slip",),
+            confusable_with=("loadcell-gain",),
+            remedy="calibrate the side-force channel at large forces: its readings grow by {value} per kN too much",
+        ),
+    ),
+)
+CROSSTALK = RigError(
+    name="crosstalk",
+    unit="-",
+    meaning=FORCE,
+    kind="rig",
+    place=Place.FORCE,
+    acts_on=("Fy",),
+    formula=lambda share, Fy, at: Fy + share * at.Fz,
+    spread=0.01,
+    lower=-0.3,
+    upper=0.3,
+    seen_as=(
+        Appearance(
+            id="crosstalk-fz-fy",
+            name="crosstalk of Fz into Fy",
+            physics="Part of the vertical load appears in the side-force channel.",
+            parity="even, proportional to load",
+            needs=("loads",),
+            confusable_with=("conicity", "loadcell-offset-fy"),
+            remedy="level the load cell or calibrate its cross terms; or subtract {value} of the load from the side force",
+            axes=("Fy",),
+        ),
+    ),
+)
+FORCE_ZERO = RigError(
+    name="F0_N",
+    unit="N",
+    meaning=FORCE,
+    kind="rig",
+    place=Place.FORCE,
+    acts_on=("Fy",),
+    formula=lambda zero, Fy, at: Fy + zero,
+    spread=10.0,
+    lower=-1e3,
+    upper=1e3,
+    seen_as=(
+        Appearance(
+            id="loadcell-offset-fy",
+            name="load-cell zero of Fy",
+            physics="The side-force load cell was zeroed while the tyre was still deformed.",
+            parity="even, the same at every load",
+            confusable_with=("conicity", "crosstalk-fz-fy"),
+            remedy="zero the side-force channel with the tyre off the ground; or subtract {value} N from its readings",
+            axes=("Fy",),
+        ),
+        Appearance(
+            id="run-offsets-fy",
+            name="load-cell zero of Fy that differs from run to run",
+            physics="The side-force load cell is zeroed before every run, each time a little differently.",
+            parity="even, the same within a run",
+            needs=("runs",),
+            confusable_with=("loadcell-offset-fy",),
+            remedy="zero the side-force channel in the same state before every run; or subtract the value of the table from "
+            "each run",
+            per_run=True,
+            spread=5.0,
+        ),
+    ),
+    declared=Declared(
+        key="u_loadcell_offset_N",
+        unit="N",
+        default=constants.LOADCELL_ZERO,
+        source="load-cell offset",
+        force_at_zero=lambda zero, at: zero,
+    ),
+)
+MOMENT_ZERO = RigError(
+    name="M0_Nm",
+    unit="Nm",
+    meaning="reported Mz = Mz + M0",
+    kind="rig",
+    place=Place.FORCE,
+    acts_on=("Mz",),
+    formula=lambda zero, Mz, at: Mz + zero,
+    spread=1.0,
+    lower=-1e2,
+    upper=1e2,
+    seen_as=(
+        Appearance(
+            id="loadcell-offset-mz",
+            name="load-cell zero of Mz",
+            physics="The moment load cell was zeroed while the tyre was still twisted.",
+            parity="even, the same at every load",
+            needs=("moment",),
+            confusable_with=("residual-torque",),
+            remedy="zero the moment channel with the tyre off the ground; or subtract {value} Nm from its readings",
+            axes=("Mz",),
+        ),
+        Appearance(
+            id="run-offsets-mz",
+            name="load-cell zero of Mz that differs from run to run",
+            physics="The moment load cell is zeroed before every run, each time a little differently.",
+            parity="even, the same within a run",
+            needs=("runs", "moment"),
+            confusable_with=("loadcell-offset-mz",),
+            remedy="zero the moment channel in the same state before every run; or subtract the value of the table from "
+            "each run",
+            per_run=True,
+            spread=0.5,
+        ),
+    ),
+)
+
+FORCE_ERRORS = (GAIN, NONLINEARITY, CROSSTALK, FORCE_ZERO, MOMENT_ZERO)

@@ -1,0 +1,107 @@
+"""The contract of a rig error: one record holds everything that the program knows about it."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from enum import Enum
+from typing import Any, NamedTuple
+
+import numpy as np
+
+RADIANS = math.pi / 180.0
+
+Formula = Callable[[Any, Any, Any], Any]
+"""(number of the error, quantity before it, state of the chain) -> quantity after it."""
+
+
+class Place(Enum):
+    """Place in the chain from reading to reading at which an error acts; the value is its heading in the docs."""
+
+    CAMBER = "Camber angle"
+    LOAD = "Load"
+    PATH = "Path"
+    COEFFICIENTS = "Coefficients of the tyre"
+    ANGLE = "Sideslip angle"
+    ENVIRONMENT = "Forces of the tyre in its environment"
+    FORCE = "Reading of the force"
+
+
+BEFORE_THE_TYRE = (Place.CAMBER, Place.LOAD, Place.PATH, Place.COEFFICIENTS, Place.ANGLE)
+"""Sideslip comes last: compliance and play need the moment of the tyre under all other conditions."""
+
+
+class AtZero(NamedTuple):
+    """What the direct method knows where it corrects the force at zero sideslip and camber."""
+
+    C_alpha: Any  #: cornering stiffness [N/rad], ISO, negative
+    C_gamma: Any  #: camber stiffness [N/rad], ISO, negative
+    side_of_play: float  #: sign of the sideslip that backlash adds to a reading of zero
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Declared:
+    """How ``[rig]`` declares an error, and what a declared error does to the direct method.
+
+    The two functions take the error in the declared unit. Both give the false part of the raw reading, which the method
+    takes off.
+    """
+
+    key: str  #: key of [rig] with the standard uncertainty
+    unit: str  #: of that key; "N" for an angle that is declared as the side force that it causes
+    default: float | None  #: if the key is missing; None: it follows from other keys
+    source: str  #: name in the uncertainty budget
+    value: str = ""  #: attribute of RigTable with the declared value; empty: the undisturbed one
+    force_at_zero: Callable[[Any, AtZero], Any] | None = None  #: force at zero angles [N]
+    camber_stiffness: Callable[[Any, AtZero], Any] | None = None  #: slope over camber, forwards [N/rad]
+    turns_with_direction: bool = False  #: the force changes sign with the direction of rolling
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Appearance:
+    """How a diagnosis sees an error: as one number for the whole test, or as one per run."""
+
+    id: str  #: of the effect
+    name: str
+    physics: str  #: one sentence
+    parity: str  #: under alpha, gamma, phi_t -> reversed
+    needs: tuple[str, ...] = ()  #: what the data must vary; keys of effects.needs
+    confusable_with: tuple[str, ...] = ()  #: ids of effects
+    remedy: str = (
+        ""  #: what to do at the rig; {value}, {opposite}: the number in the rig's axes, and its negative
+    )
+    axes: tuple[str, ...] = ()  #: channels whose signs in the rig's axes apply to the number
+    per_run: bool = False
+    spread: float | None = None  #: usual size where it differs from the record's
+    together_with: tuple[str, ...] = ()  #: further numbers that are free with it
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RigError:
+    """One way in which a rig, its environment or its motion makes a reading differ from the steady tyre.
+
+    The number, in ISO-W, changes the quantities in ``acts_on`` by ``formula``.
+    """
+
+    name: str  #: with the unit, as in [faults], JSON and the property file
+    unit: str
+    meaning: str  #: the formula in words
+    kind: str  #: "rig" | "environment" | "tyre"
+    place: Place | None  #: None: it only takes part in the formulae of others
+    acts_on: tuple[str, ...] = ()  #: alpha, gamma, Fz, phi_t, Fy, Mz or coefficients
+    formula: Formula | None = None
+    undisturbed: float = 0.0  #: value without the error; NaN: as declared
+    spread: float  #: usual size, 1 sigma
+    scan: tuple[float, ...] = (
+        0.0,
+    )  #: changes from which a fit starts; an even effect needs some other than 0
+    lower: float = -math.inf
+    upper: float = math.inf
+    relative: bool = False  #: spread and scan are relative to the value
+    seen_as: tuple[Appearance, ...] = ()
+    declared: Declared | None = None
+
+    def acts(self, number: Any) -> bool:
+        """Whether a plain number, or any of an array, differs from the undisturbed value."""
+        return bool(np.any((number != self.undisturbed) & ~np.isnan(number)))

@@ -1,0 +1,147 @@
+"""Every rig error, in the chain and by the independent formula of the virtual rig."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+import tir
+from mffit.points import make_points
+from mffit.rig import Simulation
+from mffit.rig.lag import lagged_angle
+from mffit.rig_errors import BY_NAME, RIG_ERRORS, Faults, Place
+from mffit.virtual_rig.machine import FORMULAE, Machine, steady
+from mffit.virtual_rig.recording import lagged
+from mffit.virtual_rig.settings import Settings
+
+R, LOAD = 1.323, 1400.0
+SIZES = {
+    "relaxation_m": 0.4,
+    "path_radius_m": 1.40,
+    "gain": 1.03,
+    "T_ref_degC": 40.0,
+    "backlash_deg": 0.3,
+}
+"""Sizes of those whose double usual size would be no sensible one."""
+BESIDE = {"T_ref_degC": {"k_T_per_K": 0.002}}
+"""What an error needs beside it to show."""
+
+
+def size(name: str) -> float:
+    return SIZES.get(name, 2.0 * BY_NAME[name].spread)
+
+
+@pytest.fixture(scope="module")
+def tyre():
+    return tir.read("samples/front-120-70/true.tir")
+
+
+@pytest.fixture(scope="module")
+def settings() -> Settings:
+    """Sideslip up and down at six conditions, all other channels varied; one sweep, times with changing speed."""
+    up = np.linspace(-7.0, 7.0, 15)
+    alpha = np.radians(np.concatenate([up, up[::-1] + 0.5]))
+    n = len(alpha)
+    rng = np.random.default_rng(5)
+    t = np.sort(rng.uniform(0.0, 900.0, n))
+    V = np.where(t < 500.0, 6.0, 9.0)
+    rolled = [0.5 * (V[i] + V[i + 1]) * (t[i + 1] - t[i]) for i in range(n - 1)]
+    return Settings(
+        alpha=alpha,
+        gamma=np.radians(rng.uniform(-50.0, 50.0, n)),
+        Fz=np.full(n, LOAD),
+        p=np.full(n, 240e3),
+        V=V,
+        T=rng.uniform(20.0, 60.0, n),
+        t=t,
+        direction=np.where(np.arange(n) % 3 == 0, -1, 1),
+        mount=np.where(np.arange(n) % 4 == 0, -1, 1),
+        rolled_m=t[0] * V[0] + np.cumsum([0.0, *rolled]),
+    )
+
+
+def by_the_chain(tyre, s: Settings, **faults):
+    points = make_points(
+        s.alpha, s.gamma, s.Fz, p=s.p, V=s.V, phi_t=-1 / R, T=s.T, t=s.t, direction=s.direction, mount=s.mount
+    )
+    return Simulation.of(tyre, Faults(**faults)).readings(points)
+
+
+def by_the_virtual_rig(tyre, s: Settings, **faults):
+    return steady(Machine(tyre, Faults(**{"path_radius_m": R, **faults}), -1, 6.0), s)
+
+
+STEADY = [error.name for error in RIG_ERRORS if error.name != "relaxation_m"]
+
+
+def test_every_rig_error_has_an_independent_formula():
+    missing = sorted(set(BY_NAME) - set(FORMULAE))
+    assert not missing, f"mffit/virtual_rig/machine.py has no formula for {', '.join(missing)}"
+    assert sorted(FORMULAE) == sorted(BY_NAME)
+
+
+@pytest.mark.parametrize("name", STEADY)
+def test_the_chain_agrees_with_the_independent_formula(tyre, settings, name):
+    """Away from both ends, where "up" and "down" mean different things at the turning point."""
+    faults = {name: size(name), **BESIDE.get(name, {})}
+    chain, rig = by_the_chain(tyre, settings, **faults), by_the_virtual_rig(tyre, settings, **faults)
+    inside = np.r_[1:14, 16:29] if name == "hysteresis_deg" else slice(None)
+    np.testing.assert_allclose(chain.Fy[inside], rig.Fy[inside], rtol=1e-8, atol=1e-3)
+    np.testing.assert_allclose(chain.Mz[inside], rig.Mz[inside], rtol=1e-8, atol=1e-5)
+
+
+@pytest.mark.parametrize("name", STEADY)
+def test_the_comparison_would_see_a_wrong_sign_or_size(tyre, settings, name):
+    """Half the error, or its reverse, is far outside the tolerance of the comparison."""
+    beside, undisturbed = BESIDE.get(name, {}), BY_NAME[name].undisturbed
+    if math.isnan(undisturbed):
+        undisturbed = R
+    whole = by_the_chain(tyre, settings, **{name: size(name), **beside})
+    for share in (0.5, -1.0):
+        value = undisturbed + share * (size(name) - undisturbed)
+        if value < BY_NAME[name].lower:
+            continue
+        other = by_the_chain(tyre, settings, **{name: value, **beside})
+        apart = max(np.max(np.abs(a - b)) for a, b in zip(whole, other, strict=True))
+        assert apart > 0.05
+
+
+def test_the_lag_agrees_with_the_independent_filter():
+    rate, V, sigma = 20.0, 6.0, SIZES["relaxation_m"]
+    time = np.arange(400) / rate
+    alpha = np.radians(5.0 * np.sin(1.3 * time))
+    points = make_points(alpha, 0.0, LOAD, p=240e3, V=V, phi_t=0.0, continuous=True, time=time)
+    follows, slope = lagged_angle(points, sigma)
+    np.testing.assert_allclose(follows, lagged(alpha, V, sigma, rate), atol=1e-12)
+    up, down = (lagged(alpha, V, sigma + step, rate) for step in (1e-6, -1e-6))
+    np.testing.assert_allclose(slope, (up - down) / 2e-6, atol=1e-8)
+
+
+@pytest.mark.parametrize("error", RIG_ERRORS, ids=lambda error: error.name)
+def test_a_record_is_complete(error):
+    assert error.unit
+    assert error.meaning
+    assert (
+        error.lower
+        < (error.undisturbed if not math.isnan(error.undisturbed) else R) + error.spread
+        < error.upper
+    )
+    if error.place is None:
+        assert error.formula is None
+        return
+    assert isinstance(error.place, Place)
+    assert error.acts_on
+    assert error.seen_as, "no effect shows it"
+
+
+def test_an_unknown_error_is_refused_by_name():
+    with pytest.raises(KeyError, match="slack is no rig error"):
+        Faults(slack=1.0)
+
+
+def test_faults_compare_by_what_is_disturbed():
+    assert Faults(F0_N=3.0) == Faults().replace(F0_N=3.0) != Faults()
+    assert repr(Faults(F0_N=3.0)) == "Faults(F0_N=3.0)"
+    assert hash(Faults(F0_N=3.0)) == hash(Faults(F0_N=3.0))
