@@ -5,114 +5,254 @@ from __future__ import annotations
 from mffit.effects.effect import Effect, Free
 
 TURN_SLIP = Effect(
-    "turn-slip", "turn slip not simulated", "tyre",
-    "On a curved path the contact patch turns as it rolls, which pushes the tyre outwards and twists it.",
-    (Free("turn_slip", 1.0),), ("curved",), "odd in phi_t",
-)  # fmt: skip
+    id="turn-slip",
+    name="turn slip not simulated",
+    kind="tyre",
+    physics="On a curved path the contact patch turns as it rolls, which pushes the tyre outwards and twists it.",
+    free=(Free(name="turn_slip", spread=1.0),),
+    needs=("curved",),
+    parity="odd in phi_t",
+)
 CAMBER_REDUCTION = Effect(
-    "camber-reduction", "camber reduction factor", "tyre",
-    "The flattened crown passes on only a share of the camber's spin, so camber and path curvature count differently.",
-    (Free("PECP1", 0.3, (0.0, 0.2, -0.2), -1.5, 0.95),), ("curved",), "odd in phi_t", ("path-radius", "camber-misalignment"),
-)  # fmt: skip
+    id="camber-reduction",
+    name="camber reduction factor",
+    kind="tyre",
+    physics="The flattened crown passes on only a share of the camber's spin, so camber and path curvature count differently.",
+    free=(Free(name="PECP1", spread=0.3, scan=(0.0, 0.2, -0.2), lower=-1.5, upper=0.95),),
+    needs=("curved",),
+    parity="odd in phi_t",
+    confusable_with=(
+        "path-radius",
+        "camber-misalignment",
+    ),
+)
 CAMBER_REDUCTION_LOAD = Effect(
-    "camber-reduction-load", "camber reduction factor over load", "tyre",
-    "The share of the camber's spin that the crown passes on changes as load flattens it.",
-    (Free("PECP2", 1.0, (0.5, -0.5), -8.0, 8.0),), ("curved", "loads"), "odd in phi_t",
-)  # fmt: skip
+    id="camber-reduction-load",
+    name="camber reduction factor over load",
+    kind="tyre",
+    physics="The share of the camber's spin that the crown passes on changes as load flattens it.",
+    free=(Free(name="PECP2", spread=1.0, scan=(0.5, -0.5), lower=-8.0, upper=8.0),),
+    needs=(
+        "curved",
+        "loads",
+    ),
+    parity="odd in phi_t",
+)
 PLY_STEER = Effect(
-    "ply-steer", "ply-steer", "tyre",
-    "The belt's outer plies steer the tyre, which shifts the side-force curve sideways and turns with the direction of rolling.",
-    (Free("PHY1", 0.001, (0.0,), -0.03, 0.03),), (), "even in alpha", ("sideslip-misalignment",), prior=-0.5,
-)  # fmt: skip
+    id="ply-steer",
+    name="ply-steer",
+    kind="tyre",
+    physics="The belt's outer plies steer the tyre, which shifts the side-force curve and turns with the direction of "
+    "rolling.",
+    free=(Free(name="PHY1", spread=0.001, lower=-0.03, upper=0.03),),
+    parity="even in alpha",
+    confusable_with=("sideslip-misalignment",),
+    prior=-0.5,
+)
 CONICITY = Effect(
-    "conicity", "conicity", "tyre",
-    "A tread a little conical pulls to one side whichever way it rolls, until the tyre is turned on its rim.",
-    (Free("PVY1", 0.005, (0.0,), -0.15, 0.15),), (), "even in alpha and gamma",
-    ("crosstalk-fz-fy", "loadcell-offset-fy"), prior=-0.3,
-)  # fmt: skip
+    id="conicity",
+    name="conicity",
+    kind="tyre",
+    physics="A tread a little conical pulls to one side whichever way it rolls, until the tyre is turned on its rim.",
+    free=(Free(name="PVY1", spread=0.005, lower=-0.15, upper=0.15),),
+    parity="even in alpha and gamma",
+    confusable_with=(
+        "crosstalk-fz-fy",
+        "loadcell-offset-fy",
+    ),
+    prior=-0.3,
+)
 CAMBER_STIFFNESS = Effect(
-    "camber-stiffness", "camber stiffness", "tyre",
-    "The side force per degree of lean at small camber differs from the model's.",
-    (Free("PKY6", 0.15, (0.0,), -8.0, 2.0, relative=True),), ("camber",), "odd in gamma and phi_t",
-)  # fmt: skip
+    id="camber-stiffness",
+    name="camber stiffness",
+    kind="tyre",
+    physics="The side force per degree of lean at small camber differs from the model's.",
+    free=(Free(name="PKY6", spread=0.15, lower=-8.0, upper=2.0, relative=True),),
+    needs=("camber",),
+    parity="odd in gamma and phi_t",
+)
 CAMBER_THRUST_CURVATURE = Effect(
-    "camber-thrust-curvature", "camber force beyond the shift of the curve", "tyre",
-    "Part of the camber force does not saturate with slip but adds to it.",
-    (Free("PVY3", 0.2, (0.0,), -3.0, 3.0),), ("camber",), "odd in gamma",
-)  # fmt: skip
+    id="camber-thrust-curvature",
+    name="camber force beyond the shift of the curve",
+    kind="tyre",
+    physics="Part of the camber force does not saturate with slip but adds to it.",
+    free=(Free(name="PVY3", spread=0.2, lower=-3.0, upper=3.0),),
+    needs=("camber",),
+    parity="odd in gamma",
+)
 CAMBER_GRIP = Effect(
-    "camber-grip", "loss of grip with camber", "tyre",
-    "A leaned tyre presses unevenly and loses peak side force.",
-    (Free("PDY3", 0.2, (0.0,), -3.0, 20.0),), ("camber",), "odd",
-)  # fmt: skip
+    id="camber-grip",
+    name="loss of grip with camber",
+    kind="tyre",
+    physics="A leaned tyre presses unevenly and loses peak side force.",
+    free=(Free(name="PDY3", spread=0.2, lower=-3.0, upper=20.0),),
+    needs=("camber",),
+    parity="odd",
+)
 CAMBER_CORNERING_STIFFNESS = Effect(
-    "camber-cornering-stiffness", "cornering stiffness with camber", "tyre",
-    "A leaned tyre has another cornering stiffness than an upright one.",
-    (Free("PKY3", 0.1, (0.0,), -1.0, 3.0),), ("coupled",), "odd",
-)  # fmt: skip
+    id="camber-cornering-stiffness",
+    name="cornering stiffness with camber",
+    kind="tyre",
+    physics="A leaned tyre has another cornering stiffness than an upright one.",
+    free=(Free(name="PKY3", spread=0.1, lower=-1.0, upper=3.0),),
+    needs=("coupled",),
+    parity="odd",
+)
 LOAD_GRIP = Effect(
-    "load-grip", "grip over load", "tyre",
-    "Friction falls, or rises, with contact pressure.",
-    (Free("PDY2", 0.1, (0.0,), -1.5, 1.5),), ("loads",), "odd",
-)  # fmt: skip
+    id="load-grip",
+    name="grip over load",
+    kind="tyre",
+    physics="Friction falls, or rises, with contact pressure.",
+    free=(Free(name="PDY2", spread=0.1, lower=-1.5, upper=1.5),),
+    needs=("loads",),
+    parity="odd",
+)
 LOAD_CORNERING_STIFFNESS = Effect(
-    "load-cornering-stiffness", "cornering stiffness over load", "tyre",
-    "Cornering stiffness grows with load at first and then less and less; the load of its maximum differs.",
-    (Free("PKY2", 0.2, (0.0,), 0.2, 12.0, relative=True),), ("loads",), "odd",
-)  # fmt: skip
+    id="load-cornering-stiffness",
+    name="cornering stiffness over load",
+    kind="tyre",
+    physics="Cornering stiffness grows with load at first and then less and less; the load of its maximum differs.",
+    free=(Free(name="PKY2", spread=0.2, lower=0.2, upper=12.0, relative=True),),
+    needs=("loads",),
+    parity="odd",
+)
 PRESSURE = Effect(
-    "pressure", "inflation pressure", "tyre",
-    "Pressure changes carcass and contact patch: stiffness, grip, camber stiffness and trail.",
-    (Free("PPY1", 0.3), Free("PPY2", 0.3), Free("PPY3", 0.2), Free("PPY5", 0.3), Free("PPZ1", 0.3)), ("pressures",), "odd",
-)  # fmt: skip
+    id="pressure",
+    name="inflation pressure",
+    kind="tyre",
+    physics="Pressure changes carcass and contact patch: stiffness, grip, camber stiffness and trail.",
+    free=(
+        Free(name="PPY1", spread=0.3),
+        Free(name="PPY2", spread=0.3),
+        Free(name="PPY3", spread=0.2),
+        Free(name="PPY5", spread=0.3),
+        Free(name="PPZ1", spread=0.3),
+    ),
+    needs=("pressures",),
+    parity="odd",
+)
 CURVATURE_ASYMMETRY = Effect(
-    "curvature-asymmetry", "asymmetry of the side-force curve", "tyre",
-    "The curve bends differently on its two sides.",
-    (Free("PEY3", 0.1, (0.0,), -1.0, 1.0),), ("slip",), "even in alpha",
-)  # fmt: skip
+    id="curvature-asymmetry",
+    name="asymmetry of the side-force curve",
+    kind="tyre",
+    physics="The curve bends differently on its two sides.",
+    free=(Free(name="PEY3", spread=0.1, lower=-1.0, upper=1.0),),
+    needs=("slip",),
+    parity="even in alpha",
+)
 TRAIL_LOAD = Effect(
-    "trail-load", "pneumatic trail over load", "tyre",
-    "The contact patch grows with load and the trail with it, not in proportion.",
-    (Free("QDZ2", 0.02, (0.0,), -0.2, 0.2),), ("loads", "moment"), "odd",
-)  # fmt: skip
+    id="trail-load",
+    name="pneumatic trail over load",
+    kind="tyre",
+    physics="The contact patch grows with load and the trail with it, not in proportion.",
+    free=(Free(name="QDZ2", spread=0.02, lower=-0.2, upper=0.2),),
+    needs=(
+        "loads",
+        "moment",
+    ),
+    parity="odd",
+)
 TRAIL_CAMBER = Effect(
-    "trail-camber", "pneumatic trail with camber", "tyre",
-    "A leaned tyre stands on another part of its crown, with another contact length.",
-    (Free("QDZ3", 0.07), Free("QDZ4", 0.2)), ("coupled", "moment"), "odd",
-)  # fmt: skip
+    id="trail-camber",
+    name="pneumatic trail with camber",
+    kind="tyre",
+    physics="A leaned tyre stands on another part of its crown, with another contact length.",
+    free=(
+        Free(name="QDZ3", spread=0.07),
+        Free(name="QDZ4", spread=0.2),
+    ),
+    needs=(
+        "coupled",
+        "moment",
+    ),
+    parity="odd",
+)
 RESIDUAL_TORQUE = Effect(
-    "residual-torque", "residual torque", "tyre",
-    "A moment remains at zero slip, from plies and tread pattern.",
-    (Free("QDZ6", 0.003, (0.0,), -0.1, 0.1),), ("moment",), "even", ("loadcell-offset-mz",), prior=-0.3,
-)  # fmt: skip
+    id="residual-torque",
+    name="residual torque",
+    kind="tyre",
+    physics="A moment remains at zero slip, from plies and tread pattern.",
+    free=(Free(name="QDZ6", spread=0.003, lower=-0.1, upper=0.1),),
+    needs=("moment",),
+    parity="even",
+    confusable_with=("loadcell-offset-mz",),
+    prior=-0.3,
+)
 RESIDUAL_TORQUE_CAMBER = Effect(
-    "residual-torque-camber", "residual torque with camber", "tyre",
-    "Camber twists the contact patch, which leaves a moment at zero slip.",
-    (Free("QDZ8", 0.02, (0.0,), -1.0, 1.0),), ("camber", "moment"), "odd",
-)  # fmt: skip
+    id="residual-torque-camber",
+    name="residual torque with camber",
+    kind="tyre",
+    physics="Camber twists the contact patch, which leaves a moment at zero slip.",
+    free=(Free(name="QDZ8", spread=0.02, lower=-1.0, upper=1.0),),
+    needs=(
+        "camber",
+        "moment",
+    ),
+    parity="odd",
+)
 SPIN_GRIP_LOSS = Effect(
-    "spin-grip-loss", "loss of grip by spin", "tyre",
-    "A turning contact patch uses part of the grip for the turning.",
-    (Free("PDYP1", 0.3, (0.1, 0.3, 0.6, -0.1, -0.3), 0.0, 4.0),), ("spin",), "even in phi",
-)  # fmt: skip
+    id="spin-grip-loss",
+    name="loss of grip by spin",
+    kind="tyre",
+    physics="A turning contact patch uses part of the grip for the turning.",
+    free=(Free(name="PDYP1", spread=0.3, scan=(0.1, 0.3, 0.6, -0.1, -0.3), lower=0.0, upper=4.0),),
+    needs=("spin",),
+    parity="even in phi",
+)
 SPIN_STIFFNESS_LOSS = Effect(
-    "spin-stiffness-loss", "loss of cornering stiffness by spin", "tyre",
-    "A turning contact patch yields more easily to sideslip.",
-    (Free("PKYP1", 1.0, (0.3, 0.8, 2.0, -0.3, -0.8), 0.0, 12.0),), ("spin",), "even in phi",
-)  # fmt: skip
+    id="spin-stiffness-loss",
+    name="loss of cornering stiffness by spin",
+    kind="tyre",
+    physics="A turning contact patch yields more easily to sideslip.",
+    free=(Free(name="PKYP1", spread=1.0, scan=(0.3, 0.8, 2.0, -0.3, -0.8), lower=0.0, upper=12.0),),
+    needs=("spin",),
+    parity="even in phi",
+)
 SPIN_TRAIL_LOSS = Effect(
-    "spin-trail-loss", "loss of trail by spin", "tyre",
-    "Spin builds its own stresses along the contact patch, which bring the side force nearer to its middle.",
-    (Free("QDTP1", 3.0, (0.5, 1.5, 3.0, -0.5, -1.5), 0.0, 25.0),), ("spin", "moment"), "even in phi",
-)  # fmt: skip
+    id="spin-trail-loss",
+    name="loss of trail by spin",
+    kind="tyre",
+    physics="Spin builds its own stresses along the contact patch, which bring the side force nearer to its middle.",
+    free=(Free(name="QDTP1", spread=3.0, scan=(0.5, 1.5, 3.0, -0.5, -1.5), lower=0.0, upper=25.0),),
+    needs=(
+        "spin",
+        "moment",
+    ),
+    parity="even in phi",
+)
 SPIN_TORQUE = Effect(
-    "spin-torque", "turn-slip moment", "tyre",
-    "A contact patch that is turned resists with a moment of its own.",
-    (Free("QCRP1", 0.1, (0.005, 0.03, 0.1, 0.2, -0.03, -0.06), 0.0, 1.5),), ("spin", "moment"), "odd in phi",
-)  # fmt: skip
+    id="spin-torque",
+    name="turn-slip moment",
+    kind="tyre",
+    physics="A contact patch that is turned resists with a moment of its own.",
+    free=(Free(name="QCRP1", spread=0.1, scan=(0.005, 0.03, 0.1, 0.2, -0.03, -0.06), lower=0.0, upper=1.5),),
+    needs=(
+        "spin",
+        "moment",
+    ),
+    parity="odd in phi",
+)
+
 TYRE_EFFECTS = (
-    TURN_SLIP, CAMBER_REDUCTION, CAMBER_REDUCTION_LOAD, PLY_STEER, CONICITY, CAMBER_STIFFNESS, CAMBER_THRUST_CURVATURE,
-    CAMBER_GRIP, CAMBER_CORNERING_STIFFNESS, LOAD_GRIP, LOAD_CORNERING_STIFFNESS, PRESSURE, CURVATURE_ASYMMETRY,
-    TRAIL_LOAD, TRAIL_CAMBER, RESIDUAL_TORQUE, RESIDUAL_TORQUE_CAMBER, SPIN_GRIP_LOSS, SPIN_STIFFNESS_LOSS,
-    SPIN_TRAIL_LOSS, SPIN_TORQUE,
-)  # fmt: skip
+    TURN_SLIP,
+    CAMBER_REDUCTION,
+    CAMBER_REDUCTION_LOAD,
+    PLY_STEER,
+    CONICITY,
+    CAMBER_STIFFNESS,
+    CAMBER_THRUST_CURVATURE,
+    CAMBER_GRIP,
+    CAMBER_CORNERING_STIFFNESS,
+    LOAD_GRIP,
+    LOAD_CORNERING_STIFFNESS,
+    PRESSURE,
+    CURVATURE_ASYMMETRY,
+    TRAIL_LOAD,
+    TRAIL_CAMBER,
+    RESIDUAL_TORQUE,
+    RESIDUAL_TORQUE_CAMBER,
+    SPIN_GRIP_LOSS,
+    SPIN_STIFFNESS_LOSS,
+    SPIN_TRAIL_LOSS,
+    SPIN_TORQUE,
+)

@@ -9,11 +9,10 @@ import pytest
 
 from mffit.effects import CATALOG, NEEDS
 from mffit.effects.effect import Effect, Free
-from mffit.effects.pages import SWITCHES, page, pages
+from mffit.reference.effects import SWITCHES, page
 from mffit.rig_errors import BY_NAME as RIG_ERRORS
 from tir.parameters import BY_NAME
 
-DOCS = Path(__file__).parents[3] / "docs" / "effects"
 PROMISED = Path(__file__).with_name("promised_effects.csv")
 """Ids of effects that files and scripts of users rely on, and the numbers that each at least frees."""
 
@@ -60,8 +59,3 @@ def test_numbers_of_the_rig_are_all_described(error):
     free = Free(error.name, 1.0)
     row = page(Effect("mine", "mine", "rig", "A rig does this.", (free,)), CATALOG)
     assert f"| `{error.name}` | {error.unit} | {error.meaning} |" in row
-
-
-def test_the_pages_are_current():
-    written = {path.name: path.read_text(encoding="utf-8") for path in DOCS.glob("*.md")}
-    assert written == pages(), "run: python -m mffit.effects.pages docs/effects"

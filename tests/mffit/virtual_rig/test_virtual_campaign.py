@@ -78,7 +78,9 @@ def test_a_sweep_may_have_errors_of_its_own(run):
     shifted = run(sweep=[sweeps[0], sweeps[1] | {"faults": {"F0_N": 7.0, "M0_Nm": -0.5}}])
     for channel, added in (("Fy_N", 7.0), ("Mz_Nm", -0.5)):
         assert np.allclose(shifted.tables["a.csv"][channel], plain.tables["a.csv"][channel])
-        assert np.allclose(shifted.tables["b.csv"][channel] - plain.tables["b.csv"][channel], added, atol=0.011)
+        assert np.allclose(
+            shifted.tables["b.csv"][channel] - plain.tables["b.csv"][channel], added, atol=0.011
+        )
     assert shifted.truth.to_json()["faults_of_sweeps"] == {"b.csv": {"F0_N": 7.0, "M0_Nm": -0.5}}
 
 

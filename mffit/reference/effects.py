@@ -1,16 +1,12 @@
-"""A page of documentation per effect, written from the records: ``python -m mffit.effects.pages docs/effects``."""
+"""The pages of the effects."""
 
 from __future__ import annotations
 
 import math
-import sys
 from collections.abc import Sequence
-from pathlib import Path
 
-from mffit.effects.catalog import CATALOG
-from mffit.effects.effect import Effect, Free
-from mffit.effects.needs import NEEDS
-from mffit.rig_errors import BY_NAME as RIG_ERRORS_BY_NAME
+from mffit.effects import CATALOG, NEEDS, Effect, Free
+from mffit.rig_errors import BY_NAME as RIG_ERRORS
 from tir.parameters import BY_NAME
 
 SWITCHES = {"turn_slip": ("–", "whether the simulation has turn slip")}
@@ -86,17 +82,6 @@ def pages(catalog: Sequence[Effect] = CATALOG) -> dict[str, str]:
     return {"index.md": index(catalog)} | {f"{effect.id}.md": page(effect, catalog) for effect in catalog}
 
 
-def write(folder: Path, catalog: Sequence[Effect] = CATALOG) -> None:
-    """Write all pages, and remove those of effects that are no longer there."""
-    folder.mkdir(parents=True, exist_ok=True)
-    texts = pages(catalog)
-    for path in folder.glob("*.md"):
-        if path.name not in texts:
-            path.unlink()
-    for name, text in texts.items():
-        (folder / name).write_text(text, encoding="utf-8")
-
-
 def _remedy(effect: Effect) -> list[str]:
     """What to do at the rig, without the number."""
     if not effect.remedy:
@@ -121,8 +106,8 @@ def _described(name: str) -> tuple[str, str]:
     """Unit and meaning of a number."""
     if name in SWITCHES:
         return SWITCHES[name]
-    if name in RIG_ERRORS_BY_NAME:
-        return RIG_ERRORS_BY_NAME[name].unit, RIG_ERRORS_BY_NAME[name].meaning
+    if name in RIG_ERRORS:
+        return RIG_ERRORS[name].unit, RIG_ERRORS[name].meaning
     row = BY_NAME[name]
     return row.unit, row.description + (f" ({row.equation})" if row.equation else "")
 
@@ -134,7 +119,3 @@ def _listed(words: Sequence[str]) -> str:
 def _sentence(words: Sequence[str]) -> str:
     text = _listed(words)
     return text[:1].upper() + text[1:]
-
-
-if __name__ == "__main__":
-    write(Path(sys.argv[1] if len(sys.argv) > 1 else "docs/effects"))

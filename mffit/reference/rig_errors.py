@@ -1,0 +1,56 @@
+"""The page of all rig errors."""
+
+from __future__ import annotations
+
+import math
+
+from mffit.rig_errors import AFTER, BEFORE, RIG_ERRORS, RigError
+
+INTRODUCTION = """\
+# Rig errors
+
+All that can make the reading of a rig differ from the steady tyre, in the order of the chain from reading to reading: the
+angles and the load as read become those at the tyre, the tyre answers, and its forces become readings. Everything is in
+ISO-W. This page is written from the records in `mffit/rig_errors`; the fit, the uncertainty budget, the
+[diagnosis](diagnosis.md), the [virtual rig](simulate.md) and `mffit plan` use the same ones.
+
+"Declared by" names the key of `[rig]` with the standard uncertainty: such an error is a number of the fit with that prior.
+The others are searched for by a diagnosis only. The limits hold for fits and for `[faults]` of the virtual rig.
+"""
+
+
+def page() -> str:
+    """The page in Markdown: a table per place in the chain."""
+    lines = [INTRODUCTION]
+    ordered = (*BEFORE, *AFTER)
+    for place in dict.fromkeys(error.place for error in ordered):
+        assert place is not None
+        lines += [f"## {place.value}", *_table([error for error in ordered if error.place is place]), ""]
+    lines += ["## Beside these", *_table([error for error in RIG_ERRORS if error.place is None])]
+    return "\n".join(lines) + "\n"
+
+
+def _table(errors: list[RigError]) -> list[str]:
+    head = [
+        "| number | unit | meaning | usual size | limits | declared by | effects |",
+        "|---|---|---|---|---|---|---|",
+    ]
+    return head + [_row(error) for error in errors]
+
+
+def _row(error: RigError) -> str:
+    scale = " × its value" if error.relative else ""
+    declared = "–"
+    if error.declared is not None:
+        default = error.declared.default
+        declared = f"`{error.declared.key}` [{error.declared.unit}]" + (
+            f", {default:g} if silent" if default is not None else ""
+        )
+    effects = ", ".join(f"[{seen.name}](effects/{seen.id}.md)" for seen in error.seen_as) or "–"
+    limits = f"{_bound(error.lower)} to {_bound(error.upper)}"
+    meaning = error.meaning.replace("|Fy|", r"\|Fy\|")
+    return f"| `{error.name}` | {error.unit} | {meaning} | {error.spread:g}{scale} | {limits} | {declared} | {effects} |"
+
+
+def _bound(x: float) -> str:
+    return ("–∞" if x < 0 else "∞") if math.isinf(x) else f"{x:g}"

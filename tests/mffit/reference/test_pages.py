@@ -1,0 +1,25 @@
+"""The generated pages of the documentation are those of the records."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from mffit import reference
+from mffit.reference import write
+
+DOCS = Path(__file__).parents[3] / "docs"
+
+
+def test_the_pages_are_current(tmp_path):
+    written = {name: (DOCS / name).read_text(encoding="utf-8") for name in reference.pages()}
+    assert written == reference.pages(), "run: python -m mffit.reference docs"
+    effects = {f"effects/{path.name}" for path in (DOCS / "effects").glob("*.md")}
+    assert effects <= set(written), "docs/effects has a page of an effect that does not exist"
+
+
+def test_a_page_of_an_effect_that_is_gone_is_removed(tmp_path):
+    (tmp_path / "effects").mkdir()
+    (tmp_path / "effects" / "gone.md").write_text("x")
+    write(tmp_path)
+    assert not (tmp_path / "effects" / "gone.md").exists()
+    assert (tmp_path / "rig-errors.md").is_file()
