@@ -2,10 +2,10 @@
 
 ``python motorcycle_cornering.py front.tir rear.tir [--lean 45] [--picture FILE.png]``
 
-The model is one rigid body of machine and rider with two wheels, a steered front wheel and toroidal tyres. All six force and
-moment equations hold, gyroscopic moments of the wheels included. Neglected: pitch from steering, the offset of the fork's mass from the
-steering axis, aerodynamic drag. x forwards along the rear wheel's track, y left, z up; in a left-hand corner, yaw rate, lean,
-steering angle and steering torque are positive.
+The model is one rigid body of machine and rider with two wheels, a steered front wheel and toroidal tyres. All six force
+and moment equations hold, including gyroscopic moments of the wheels. Neglected: pitch from steering, offset of the
+fork's mass from the steering axis, aerodynamic drag. x forwards along the rear wheel's track, y left, z up; in a left-hand
+corner, yaw rate, lean, steering angle and steering torque are positive.
 """
 
 from __future__ import annotations
