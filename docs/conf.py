@@ -1,4 +1,4 @@
-"""How the pages become a site: ``sphinx-build -W docs build/docs``. Every page stays readable as Markdown without it."""
+"""Sphinx configuration: ``sphinx-build -W docs build/docs`` makes the site. The pages are readable as Markdown without it."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ html_theme_options = {"navigation_with_keys": True}
 
 myst_enable_extensions = ["dollarmath"]
 myst_heading_anchors = 4
-suppress_warnings = ["myst.header"]  # a page may begin its tables at the level that reads best
+suppress_warnings = ["myst.header"]  # a page may skip heading levels
 
 autodoc_member_order = "bysource"
 autodoc_typehints = "description"

@@ -1,4 +1,4 @@
-"""What the site adds to the pages: navigation from the index's own lists, the table of parameters, links out of the folder."""
+"""Sphinx extension: navigation from the lists of the index, table of parameters, links to files outside docs, MathML."""
 
 from __future__ import annotations
 
@@ -20,20 +20,20 @@ WIDTHS = (11, 8, 9, 14, 8, 8, 14, 10, 40)
 
 
 def adapted(app: Any, page: str, source: list[str]) -> None:
-    """A page's Markdown as the site takes it."""
+    """Change the Markdown of a page, ``source[0]``, in place before Sphinx parses it."""
     text = source[0]
     if page == "index":
         text = text + "\n" + navigation(text)
     elif page == "effects/index":
         text = text + "\n" + toctree("", ["*"], glob=True)
     if "/" not in page:
-        # The site holds the pages of docs/ only: what lies beside it in the repository is named.
+        # The site contains docs/ only; a link to another file of the repository becomes its path.
         text = OUTSIDE.sub(r"\1 (`\2` in the repository)", text)
     source[0] = text
 
 
 def navigation(text: str) -> str:
-    """A table of contents per section of the index, from the links that stand there."""
+    """Hidden tables of contents, one per section of the index, from the links in it."""
     seen: set[str] = set()
     trees = []
     _, *parts = SECTION.split(text)
@@ -50,7 +50,7 @@ def toctree(caption: str, pages: list[str], *, glob: bool = False) -> str:
 
 
 class ParameterTable(Directive):
-    """Every parameter of a property file, a table per section, from ``tir/parameters.csv``."""
+    """Directive ``parameter-table``: a table of parameters per section, from ``tir/parameters.csv``."""
 
     def run(self) -> list[nodes.Node]:
         out: list[nodes.Node] = []
@@ -75,21 +75,21 @@ def cells(row: Parameter) -> tuple[str, ...]:
         row.equation,
         row.description,
     )
-    return tuple(said(value) for value in values)
+    return tuple(cell_text(value) for value in values)
 
 
 def bound(value: float | None) -> str:
     return "…" if value is None else f"{value:g}"
 
 
-def said(value: Any) -> str:
+def cell_text(value: Any) -> str:
     if isinstance(value, float):
         return f"{value:g}"
     return " ".join(map(str, value)) if isinstance(value, tuple | list | frozenset) else str(value or "")
 
 
 def table(rows: list[tuple[str, ...]]) -> nodes.table:
-    """Rows under their headings, without the columns that say nothing here."""
+    """Table with headings, without columns that are empty in all rows."""
     shown = [k for k in range(len(COLUMNS)) if any(row[k] for row in rows)]
     group = nodes.tgroup(cols=len(shown))
     group += [nodes.colspec(colwidth=WIDTHS[k]) for k in shown]
@@ -107,11 +107,11 @@ def cell(column: int, text: str) -> nodes.paragraph:
 
 
 def formula(writer: Any, node: nodes.Element) -> None:
-    """A formula as MathML, which browsers set themselves: the site needs no network."""
+    """Write a formula as MathML, which browsers render without a script from the network."""
     block = isinstance(node, nodes.math_block)
-    said = tex2mathml(node.astext(), as_block=block)
+    mathml = tex2mathml(node.astext(), as_block=block)
     writer.body.append(
-        f'<div style="overflow: auto hidden; padding: 0.6em 0">{said}</div>' if block else said
+        f'<div style="overflow: auto hidden; padding: 0.6em 0">{mathml}</div>' if block else mathml
     )
     raise nodes.SkipNode
 

@@ -3,9 +3,16 @@
 from __future__ import annotations
 
 import re
+import shlex
+import shutil
+import textwrap
 import tomllib
+from dataclasses import dataclass
+from importlib.util import find_spec
+from itertools import zip_longest
 from pathlib import Path
 
+import click
 import pytest
 
 import mffit
@@ -19,11 +26,52 @@ DOCS = ROOT / "docs"
 PAGES = [ROOT / "README.md", ROOT / "samples" / "README.md", *sorted(DOCS.rglob("*.md"))]
 LINK = re.compile(r"\[[^\]]*\]\(([^)\s]+)\)")
 KEY = r"`{0}`|\[[\w.]*\b{0}\]"
-FENCE = re.compile(r"^```.*?^```", re.MULTILINE | re.DOTALL)
+FENCE = re.compile(r"^ *```.*?^ *```", re.MULTILINE | re.DOTALL)
+
+
+BLOCK = re.compile(
+    r"(?:^ *<!-- (?P<word>not run|needs):(?P<marker>.*?)-->\n)?"
+    r"^(?P<indent> *)```(?P<language>[\w{}-]*)\n(?P<text>.*?)^(?P=indent)```$",
+    re.MULTILINE | re.DOTALL,
+)
+SHELLS = ("", "bash", "sh", "console")
+
+
+@dataclass(frozen=True)
+class Block:
+    """A fenced block of a page. ``<!-- not run: why -->`` above it, or ``<!-- needs: package -->``, keeps it from being run."""
+
+    language: str
+    text: str
+    line: int  #: of its first line in the page
+    word: str | None = None
+    marker: str | None = None
+
+    @property
+    def can_run(self) -> bool:
+        return self.word is None or (self.word == "needs" and find_spec(self.marker.strip()) is not None)
 
 
 def text_of(page: Path) -> str:
     return page.read_text(encoding="utf-8")
+
+
+def name_of(page: Path) -> str:
+    return str(page.relative_to(ROOT))
+
+
+def blocks(page: Path) -> list[Block]:
+    text = text_of(page)
+    return [
+        Block(
+            language=found["language"],
+            text=textwrap.dedent(found["text"]),
+            line=text.count("\n", 0, found.start("text")) + 1,
+            word=found["word"],
+            marker=found["marker"],
+        )
+        for found in BLOCK.finditer(text)
+    ]
 
 
 def anchors(page: Path) -> set[str]:
@@ -32,7 +80,7 @@ def anchors(page: Path) -> set[str]:
     return {re.sub(r"[^\w\- ]", "", heading.lower()).replace(" ", "-") for heading in headings}
 
 
-@pytest.mark.parametrize("page", PAGES, ids=lambda page: str(page.relative_to(ROOT)))
+@pytest.mark.parametrize("page", PAGES, ids=name_of)
 def test_links_resolve(page):
     broken = []
     for target in LINK.findall(FENCE.sub("", text_of(page))):
@@ -42,7 +90,7 @@ def test_links_resolve(page):
         found = (page.parent / file).resolve() if file else page
         if not found.exists() or (anchor and anchor not in anchors(found)):
             broken.append(target)
-    assert not broken, f"{page.relative_to(ROOT)} links to {', '.join(broken)}, which is not there"
+    assert not broken, f"{name_of(page)} links to {', '.join(broken)}, which is not there"
 
 
 def test_every_page_is_reached_from_the_index():
@@ -94,19 +142,122 @@ def test_every_key_of_tyre_toml_is_described():
 
 
 def test_every_key_of_rig_toml_is_described():
-    page = text_of(DOCS / "simulate.md")
+    page = text_of(DOCS / "simulate.md") + text_of(DOCS / "rig-errors.md")
     keys = {key for table in (plan.RigTables, *plan.TABLES) for key in table.model_fields}
     missing = sorted(key for key in keys if not re.search(KEY.format(key), page))
     assert not missing, f"docs/simulate.md does not describe {', '.join(missing)}"
 
 
-@pytest.mark.parametrize(
-    "example", re.findall(r"^```python\n(.*?)```", text_of(ROOT / "README.md"), re.DOTALL | re.MULTILINE)
-)
-def test_the_examples_of_the_readme_run(example, tmp_path, monkeypatch):
-    (tmp_path / "samples").symlink_to(ROOT / "samples")
+@pytest.fixture
+def reader(tmp_path, monkeypatch):
+    """A reader's folder: the samples, and the files that pages call front.tir and rear.tir."""
+    shutil.copytree(ROOT / "samples", tmp_path / "samples")
+    for name, sample in (("front.tir", "front-120-70"), ("rear.tir", "rear-190-55")):
+        shutil.copy(ROOT / "samples" / sample / "true.tir", tmp_path / name)
     monkeypatch.chdir(tmp_path)
-    exec(compile(example, "README.md", "exec"), {})
+    monkeypatch.setenv("MPLBACKEND", "agg")
+    return tmp_path
+
+
+WITH_PYTHON = [page for page in PAGES if any(block.language == "python" for block in blocks(page))]
+
+
+@pytest.mark.parametrize("page", WITH_PYTHON, ids=name_of)
+def test_the_python_of_a_page_runs(page, reader):
+    """All blocks of a page in one namespace, in their order, as somebody would who reads it from the top."""
+    names: dict[str, object] = {"__name__": "page"}
+    for block in blocks(page):
+        if block.language == "python" and block.can_run:
+            source = "\n" * (block.line - 1) + block.text  # a traceback then names the line of the page
+            exec(compile(source, str(page), "exec", dont_inherit=True), names)
+
+
+def test_every_block_that_is_not_run_says_why():
+    unexplained = [
+        f"{name_of(page)}:{block.line}"
+        for page in PAGES
+        for block in blocks(page)
+        if block.marker is not None and not block.marker.strip()
+    ]
+    assert not unexplained, f"<!-- not run: --> without a reason at {', '.join(unexplained)}"
+
+
+def wrong_in_command(line: str) -> str | None:
+    """What the command line ``mffit ...`` does not know, as a sentence; None if all of it exists."""
+    words = shlex.split(line, comments=True)[1:]
+    command: click.Command = commands
+    while isinstance(command, click.Group) and words and not words[0].startswith("-"):
+        name = words.pop(0)
+        if name not in command.commands:
+            return f"{line}: there is no command {name}"
+        command = command.commands[name]
+    options = {
+        name: option for option in command.params for name in (*option.opts, *option.secondary_opts)
+    } | {"--help": None, "-h": None}
+    for word, following in zip_longest(words, words[1:]):
+        if not word.startswith("-"):
+            continue
+        if word not in options:
+            return f"{line}: {command.name} has no option {word}"
+        kind = getattr(options[word], "type", None)
+        if isinstance(kind, click.Choice) and following not in kind.choices:
+            return f"{line}: {word} does not take {following}"
+    return None
+
+
+def commands_on(page: Path) -> list[str]:
+    """Every ``mffit ...`` of a page's shell blocks and of its running text."""
+    lines = [line for block in blocks(page) if block.language in SHELLS for line in block.text.splitlines()]
+    parts = [part.strip() for line in lines for part in line.split("&&")]
+    inline = re.findall(r"`(mffit [^`]*)`", FENCE.sub("", text_of(page)))
+    calls = [part for part in parts if re.match(r"(\S*/)?mffit ", part)]
+    return [call.replace("\\|", "|") for call in (*calls, *inline)]
+
+
+@pytest.mark.parametrize("page", [page for page in PAGES if page.name != "changelog.md"], ids=name_of)
+def test_the_commands_on_a_page_exist_with_their_options(page):
+    wrong = [sentence for call in commands_on(page) if (sentence := wrong_in_command(call))]
+    assert not wrong, f"{name_of(page)}: {'; '.join(wrong)}"
+
+
+@pytest.mark.parametrize("page", PAGES, ids=name_of)
+def test_the_scripts_that_a_page_runs_are_in_the_repository(page):
+    shell = "\n".join(block.text for block in blocks(page) if block.language in SHELLS)
+    named = re.findall(r"\bpython3? ((?:docs|tests)/\S+\.py)", shell + "\n" + text_of(page))
+    missing = sorted({script for script in named if not (ROOT / script).exists()})
+    assert not missing, f"{name_of(page)} runs {', '.join(missing)}, which is not there"
+
+
+def options_of(command: click.Command) -> set[str]:
+    """The long options of a command and of those below it."""
+    if isinstance(command, click.Group):
+        return set().union(*(options_of(below) for below in command.commands.values()))
+    return {
+        name
+        for option in command.params
+        for name in (*option.opts, *option.secondary_opts)
+        if name[:2] == "--"
+    }
+
+
+def test_every_option_is_described():
+    pages = "\n".join(text_of(page) for page in PAGES)
+    missing = sorted(option for option in options_of(commands) if not re.search(rf"{option}\b", pages))
+    assert not missing, f"no page mentions {', '.join(missing)}"
+
+
+@pytest.mark.parametrize("page", PAGES, ids=name_of)
+def test_toml_on_a_page_has_known_tables_and_keys(page):
+    known = known_keys()
+    unknown = []
+    for block in blocks(page):
+        if block.language == "toml" and block.can_run:
+            for name, table in tomllib.loads(block.text).items():
+                if name not in known[""]:
+                    unknown.append(f"[{name}]")
+                for row in table if isinstance(table, list) else [table]:
+                    unknown += [f"{name}.{key}" for key in row if name in known and key not in known[name]]
+    assert not unknown, f"{name_of(page)} shows {', '.join(unknown)}, which tyre.toml does not know"
 
 
 def test_the_readme_says_how_to_run_and_how_to_test():

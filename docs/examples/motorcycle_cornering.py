@@ -1,11 +1,11 @@
-"""A motorcycle in a steady corner: what the camber reduction factor does to steering torque and sideslip.
+"""Steering torque and sideslip of a motorcycle in a steady corner, for two values of the camber reduction factor.
 
 ``python motorcycle_cornering.py front.tir rear.tir [--lean 45] [--picture FILE.png]``
 
-One rigid body with rider and two wheels, a steered front wheel, toroidal tyres; forces and moments balance in all six
-directions, with the wheels' gyroscopic moments. Left out: pitch as the front is steered, the mass of the fork off its
-axis, drag of the air. x forwards along the rear wheel's track, y left, z up; a left-hand corner has positive yaw rate, lean,
-steering angle and steering torque.
+The model is one rigid body of machine and rider with two wheels, a steered front wheel and toroidal tyres. All six force
+and moment equations hold, including gyroscopic moments of the wheels. Neglected: pitch from steering, offset of the
+fork's mass from the steering axis, aerodynamic drag. x forwards along the rear wheel's track, y left, z up; in a left-hand
+corner, yaw rate, lean, steering angle and steering torque are positive.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ import tir
 G = 9.81
 UP = np.array([0.0, 0.0, 1.0])
 DEFAULT = 0.5
-"""The camber reduction factor of nearly every file that nobody measured."""
+"""Camber reduction factor of nearly all files in which it was not measured."""
 
 
 @dataclass(frozen=True)
@@ -44,14 +44,14 @@ class Motorcycle:
 
 
 class Corner(NamedTuple):
-    """A steady state."""
+    """A steady corner."""
 
     yaw_rate: float  #: [rad/s]
-    steer: float  #: angle of the handlebar [rad]
-    torque: float  #: that the rider has to hold, > 0 to the left [Nm]
+    steer: float  #: steering angle [rad]
+    torque: float  #: torque that the rider applies, > 0 to the left [Nm]
     sideslip: tuple[float, float]  #: front and rear [rad]
     loads: tuple[float, float]  #: front and rear [N]
-    residuals: np.ndarray  #: what is left of forces and moments (6,) [N, Nm]
+    residuals: np.ndarray  #: of the force and moment equations (6,) [N, Nm]
 
 
 def corner(machine: Motorcycle, speed: float, lean: float) -> Corner:
@@ -60,7 +60,7 @@ def corner(machine: Motorcycle, speed: float, lean: float) -> Corner:
     Raises
     ------
     ValueError
-        If there is none.
+        If no steady corner was found.
     """
     yaw_rate = G * math.tan(lean) / speed
     steer = machine.wheelbase * yaw_rate / speed * math.cos(lean)
@@ -81,13 +81,13 @@ def corner(machine: Motorcycle, speed: float, lean: float) -> Corner:
 def _balance(
     machine: Motorcycle, speed: float, lean: float, slide, yaw_rate, steer, kappa, load_front, load_rear
 ):
-    """What is missing to balance (6,), and steering torque and sideslip angles.
+    """Residuals of the force and moment equations (6,), and steering torque with the sideslip angles.
 
-    slide is the speed of the rear contact to the left, kappa the rear tyre's longitudinal slip that drives the machine.
+    slide: lateral speed of the rear contact, to the left; kappa: longitudinal slip of the rear tyre, which drives the machine.
     """
     leaning = _rotation(np.array([1.0, 0.0, 0.0]), -lean)
     front_radius, rear_radius = machine.front["UNLOADED_RADIUS"], machine.rear["UNLOADED_RADIUS"]
-    # the machine upright, seen from the middle of the rear wheel
+    # positions of the upright machine, from the centre of the rear wheel
     middle = np.array([machine.b, 0.0, machine.h - rear_radius])
     hub = np.array([machine.wheelbase, 0.0, front_radius - rear_radius])
     axis = np.array([-math.sin(machine.caster), 0.0, math.cos(machine.caster)])
@@ -148,25 +148,25 @@ def _balance(
 
 
 def _rotation(axis: np.ndarray, angle: float) -> np.ndarray:
-    """The matrix of a turn by angle [rad] about a unit vector (Rodrigues)."""
+    """Rotation matrix for angle [rad] about a unit vector (Rodrigues)."""
     x, y, z = axis
     cross = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
     return np.eye(3) + math.sin(angle) * cross + (1.0 - math.cos(angle)) * cross @ cross
 
 
 def _lowest(axle: np.ndarray, radius: float, crown: float) -> np.ndarray:
-    """From the middle of a wheel to its contact: a torus on the road."""
+    """Vector from the centre of a wheel to its contact point; the tyre is a torus."""
     upwards = UP - (UP @ axle) * axle
     return -(radius - crown) * upwards / np.linalg.norm(upwards) - crown * UP
 
 
 def with_factor(machine: Motorcycle, front: float, rear: float) -> Motorcycle:
-    """The same machine on tyres of these camber reduction factors."""
+    """The same machine on tyres with these camber reduction factors."""
     return Motorcycle(machine.front.replace(PECP1=front), machine.rear.replace(PECP1=rear))
 
 
 def picture(speeds: np.ndarray, runs: dict[str, list[Corner]], path: str) -> None:
-    """Steering torque and sideslip over speed."""
+    """Draw steering torque and sideslip over speed."""
     import matplotlib.pyplot as plt
 
     figure, axes = plt.subplots(1, 3, figsize=(9, 2.8), layout="constrained")

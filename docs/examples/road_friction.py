@@ -1,6 +1,6 @@
-"""An effect of your own, in your own file: the road under the tyre is not that of the model.
+"""An effect defined outside the library: the test road has another friction than the road of the model.
 
-Run it beside a campaign: ``python road_friction.py tyre.toml model.tir``.
+Run it on a campaign: ``python road_friction.py tyre.toml model.tir``.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ ROAD_FRICTION = Effect(
     id="road-friction",
     name="friction of the road",
     kind="tyre",
-    physics="The road of the test has another friction than the one that the model was made for.",
+    physics="The friction of the test road differs from that of the road for which the model was made.",
     free=(Free("LMUY", spread=0.05, lower=0.3, upper=2.0),),
     needs=("slip",),
     parity="as Fy",

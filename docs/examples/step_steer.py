@@ -1,9 +1,9 @@
-"""Step steer of a single-track car: how the lag of the tyres shapes the answer.
+"""Response of a single-track car to a step of the steering angle, with and without the lag of the tyres.
 
 ``python step_steer.py front.tir [rear.tir] [--picture FILE.png]``
 
-Two axles on a line, each with two tyres that mirror each other, constant speed, no roll. x forwards, y left, yaw to the
-left is positive. The contact of each axle lags as ``tir.transient`` has it.
+Two axles, each with a pair of mirrored tyres; constant speed, no roll. x forwards, y left; yaw to the left is positive.
+The lag is that of ``tir.transient``.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ G = 9.81
 
 @dataclass(frozen=True)
 class Car:
-    """Mass, yaw inertia and the distances of the axles from the centre of gravity."""
+    """Tyres, mass, yaw inertia and distances of the axles from the centre of gravity."""
 
     front: tir.Tyre
     rear: tir.Tyre
@@ -39,19 +39,19 @@ class Car:
 
 
 def axle_force(tyre: tir.Tyre, load: float, alpha: float, Vx: float) -> float:
-    """Side force [N] of two tyres that mirror each other, in steady state at sideslip alpha [rad]."""
+    """Steady side force [N] of a pair of mirrored tyres at sideslip alpha [rad]."""
     return tyre(load, alpha, Vx=Vx).Fy - tyre(load, -alpha, Vx=Vx).Fy
 
 
 def axle_stiffnesses(car: Car, Vx: float, small: float = 1e-5) -> tuple[float, float]:
-    """Cornering stiffness of the front and the rear axle [N/rad], positive: the slope of the side force at zero."""
+    """Cornering stiffness of front and rear axle [N/rad]: magnitude of the slope of the side force at zero."""
     pairs = zip((car.front, car.rear), car.loads, strict=True)
     front, rear = (-axle_force(tyre, load, small, Vx) / small for tyre, load in pairs)
     return front, rear
 
 
 def understeer_gradient(car: Car, Vx: float) -> float:
-    """K [rad s2/m] of delta = L/R + K ay: mass over wheelbase times (b/C_front - a/C_rear)."""
+    """Understeer gradient K [rad s2/m] in delta = L/R + K ay: K = m/L (b/C_front - a/C_rear)."""
     front, rear = axle_stiffnesses(car, Vx)
     return car.mass / (car.a + car.b) * (car.b / front - car.a / rear)
 
@@ -59,7 +59,7 @@ def understeer_gradient(car: Car, Vx: float) -> float:
 def simulate(
     car: Car, Vx: float, delta: float, seconds: float, *, lag: bool = True, dt: float = 1e-3
 ) -> dict[str, np.ndarray]:
-    """Steer by delta [rad] at once, at speed Vx [m/s].
+    """Motion of the car after a step of the steering angle by delta [rad] at speed Vx [m/s].
 
     Returns
     -------
@@ -96,7 +96,7 @@ def simulate(
 
 
 def picture(runs: dict[str, dict[str, np.ndarray]], path: str) -> None:
-    """Yaw rate and lateral acceleration over time."""
+    """Draw yaw rate and lateral acceleration over time."""
     import matplotlib.pyplot as plt
 
     figure, axes = plt.subplots(1, 2, figsize=(8, 2.8), layout="constrained")

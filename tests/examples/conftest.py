@@ -1,4 +1,4 @@
-"""The worked examples of docs/examples, loaded as a reader runs them."""
+"""Fixtures that load and run the examples of docs/examples."""
 
 from __future__ import annotations
 
@@ -13,14 +13,14 @@ ROOT = Path(__file__).parents[2]
 
 @pytest.fixture(scope="session")
 def example():
-    """An example as a module, by its name."""
+    """Function that loads an example as a module by its name."""
 
     def load(name: str):
         spec = importlib.util.spec_from_file_location(
             f"example_{name}", ROOT / "docs" / "examples" / f"{name}.py"
         )
         module = importlib.util.module_from_spec(spec)
-        sys.modules[spec.name] = module  # dataclasses look their module up
+        sys.modules[spec.name] = module  # dataclasses look up their module there
         spec.loader.exec_module(module)
         return module
 
@@ -29,7 +29,7 @@ def example():
 
 @pytest.fixture
 def run(example, monkeypatch, capsys):
-    """An example run as a script; what it printed."""
+    """Function that runs an example as a script and returns its output."""
 
     def run(name: str, *arguments: str) -> str:
         monkeypatch.setattr(sys, "argv", [f"{name}.py", *map(str, arguments)])

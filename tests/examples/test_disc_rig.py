@@ -1,4 +1,4 @@
-"""The virtual rig's files against the forward model, which works the rig's faults out by itself."""
+"""Sweeps of the virtual rig against the forward model, which computes the rig errors independently."""
 
 from __future__ import annotations
 
@@ -46,24 +46,22 @@ def plan(folder: Path, noise: str = "") -> Path:
     return file
 
 
-def test_the_sweeps_are_reproduced(example, tmp_path):
-    """To the digits of the files, with every fault at work."""
-    measured, left = example("disc_rig").compare(plan(tmp_path), tmp_path / "out")
+def test_the_forward_model_reproduces_the_sweeps(example, tmp_path):
+    """To the digits of the files, with all rig errors acting."""
+    measured, residuals = example("disc_rig").compare(plan(tmp_path), tmp_path / "out")
     assert len(measured) == 66
-    Fy, Mz = left["path and faults"]
+    Fy, Mz = residuals["path and rig errors"]
     assert np.max(np.abs(Fy)) < 0.02
     assert np.max(np.abs(Mz)) < 0.002
-    lacking = {name: np.sqrt(np.mean(rest[0] ** 2)) for name, rest in left.items()}
-    assert (
-        lacking["straight path"] > 5.0 * lacking["path, a perfect rig"] > 1000.0 * lacking["path and faults"]
-    )
+    rms = {name: np.sqrt(np.mean(rest[0] ** 2)) for name, rest in residuals.items()}
+    assert rms["straight path"] > 5.0 * rms["path, no rig errors"] > 1000.0 * rms["path and rig errors"]
 
 
-def test_with_noise_the_noise_is_left(run, tmp_path):
-    """66 points: the root mean square of 6 N and 0.6 Nm is that to 35 per cent, four of its standard deviations."""
+def test_the_residuals_are_the_noise(run, tmp_path):
+    """The rms of 66 points scatters by 9 %; the bound of 35 % is four standard deviations."""
     out = run("disc_rig", plan(tmp_path, NOISE), tmp_path / "out", "--picture", tmp_path / "a.png")
     assert "66 points" in out
-    words = next(line for line in out.splitlines() if line.startswith("path and faults")).split()
+    words = next(line for line in out.splitlines() if line.startswith("path and rig errors")).split()
     assert float(words[words.index("Fy") + 1]) == pytest.approx(6.0, rel=0.35)
     assert float(words[words.index("Mz") + 1]) == pytest.approx(0.6, rel=0.35)
     assert (tmp_path / "a.png").read_bytes().startswith(b"\x89PNG")

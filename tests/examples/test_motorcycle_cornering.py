@@ -1,4 +1,4 @@
-"""The leaning motorcycle: balance, what a point mass does, symmetry, and the work of the camber reduction factor."""
+"""The motorcycle example: equilibrium, limit of a point mass, symmetry, influence of the camber reduction factor."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ def corners(case):
     return module.corner(machine, 20.0, LEAN), module.corner(default, 20.0, LEAN)
 
 
-def test_nothing_is_left_of_forces_and_moments(case, corners):
+def test_forces_and_moments_are_in_equilibrium(case, corners):
     _, machine = case
     for corner in corners:
         assert np.max(np.abs(corner.residuals)) < 1e-6
@@ -39,15 +39,15 @@ def test_nothing_is_left_of_forces_and_moments(case, corners):
 
 
 def test_the_assumed_factor_changes_torque_and_sideslip(corners):
-    """Both stand for the same side force, as lean and speed are the same; the sideslip has to make it up."""
+    """Lean and speed are equal, so the side force is; sideslip compensates for the other factor."""
     measured, default = corners
     assert default.yaw_rate == pytest.approx(measured.yaw_rate, rel=0.01)
     assert abs(default.torque / measured.torque - 1.0) > 0.02
     assert math.degrees(default.sideslip[0] - measured.sideslip[0]) > 0.1
 
 
-def test_the_front_slips_by_the_force_that_the_factor_takes_away(case, corners):
-    """The change of side force at the old slip, over the cornering stiffness there, is the change of slip."""
+def test_the_change_of_front_sideslip_is_lost_force_over_stiffness(case, corners):
+    """The change of sideslip is the change of side force at equal sideslip divided by the cornering stiffness there."""
     module, machine = case
     measured, default = corners
     Vx, load, gamma = 20.0, measured.loads[0], -LEAN
@@ -61,8 +61,8 @@ def test_the_front_slips_by_the_force_that_the_factor_takes_away(case, corners):
     assert default.sideslip[0] - alpha == pytest.approx(-force / stiffness, rel=0.15)
 
 
-def test_without_width_and_spin_it_leans_as_a_point_mass(case):
-    """tan(lean) = a / g, with the acceleration of the centre of gravity, which leans into the corner."""
+def test_without_tyre_width_and_wheel_spin_it_leans_like_a_point_mass(case):
+    """tan(lean) = a / g, with a the acceleration of the centre of gravity, which is on a smaller radius than the tyres."""
     module, machine = case
     flat = dict.fromkeys(
         ("QSX1", "QSX2", "QSX3", "QSX4", "QSX9", "QSX10", "QSX12", "QSX13", "QSX14", "QDZ8", "QDZ9"), 0.0
@@ -77,8 +77,8 @@ def test_without_width_and_spin_it_leans_as_a_point_mass(case):
         assert math.tan(lean) == pytest.approx(inwards / 9.81, rel=2e-3)
 
 
-def test_width_and_spinning_wheels_take_more_lean(case):
-    """The contact moves inwards on a wide tyre, and the wheels resist: less acceleration for the same lean."""
+def test_tyre_width_and_spinning_wheels_require_more_lean(case):
+    """On a wide tyre the contact moves inwards, and gyroscopic moments act outwards: less acceleration at equal lean."""
     module, machine = case
     thin = replace(machine, crowns=(0.0, 0.0))
     light = replace(machine, spins=(0.0, 0.0))
@@ -87,7 +87,7 @@ def test_width_and_spinning_wheels_take_more_lean(case):
     assert module.corner(light, 20.0, LEAN).yaw_rate > 1.005 * yaw_rate
 
 
-def test_the_other_hand_is_the_mirror_image(case):
+def test_a_right_hand_corner_mirrors_a_left_hand_one(case):
     module, machine = case
     even = replace(machine, front=machine.front.replace(**ODD), rear=machine.rear.replace(**ODD))
     left, right = module.corner(even, 15.0, LEAN), module.corner(even, 15.0, -LEAN)
@@ -96,7 +96,7 @@ def test_the_other_hand_is_the_mirror_image(case):
     assert right.steer == pytest.approx(-left.steer, rel=1e-6)
 
 
-def test_it_runs_as_the_page_says(run, tmp_path):
+def test_the_command_on_the_page_runs(run, tmp_path):
     out = run("motorcycle_cornering", FRONT, REAR, "--picture", tmp_path / "a.png")
     assert len(out.splitlines()) == 7
     assert (tmp_path / "a.png").read_bytes().startswith(b"\x89PNG")

@@ -129,10 +129,10 @@ def sound(campaign: Campaign, rng: np.random.Generator) -> list[str]:
 
 
 MISTAKES: dict[str, Spoil] = {
-    "sideslip reversed in one file": scaled("alpha_deg", -1.0, "alpha_deg"),
-    "camber reversed in one file": scaled("gamma_deg", -1.0, "gamma_deg"),
-    "side force reversed in one file": scaled("Fy_N", -1.0),
-    "moment reversed in one file": scaled("Mz_Nm", -1.0),
+    "sign of sideslip reversed in one file": scaled("alpha_deg", -1.0, "alpha_deg"),
+    "sign of camber reversed in one file": scaled("gamma_deg", -1.0, "gamma_deg"),
+    "sign of side force reversed in one file": scaled("Fy_N", -1.0),
+    "sign of moment reversed in one file": scaled("Mz_Nm", -1.0),
     "headings of sideslip and camber exchanged": swapped,
     "backward runs not declared": undeclared,
     "load in kgf in one file": scaled("Fz_N", 1.0 / 9.80665),
@@ -141,8 +141,8 @@ MISTAKES: dict[str, Spoil] = {
     "side force in kgf in one file": scaled("Fy_N", 1.0 / 9.80665),
     "moment in N mm in one file": scaled("Mz_Nm", 1e3),
     "moment in kN m in one file": scaled("Mz_Nm", 1e-3),
-    "moment dead in every file": everywhere("Mz_Nm", 0.0),
-    "moment dead in one file": scaled("Mz_Nm", 0.0),
+    "moment zero in every file": everywhere("Mz_Nm", 0.0),
+    "moment zero in one file": scaled("Mz_Nm", 0.0),
     "sideslip in rad in one file": scaled("alpha_deg", np.pi / 180.0, "alpha_deg"),
     "camber in rad in one file": scaled("gamma_deg", np.pi / 180.0, "gamma_deg"),
     "pressure in psi in one file": scaled("p_kPa", 1.0 / 6.894757),
