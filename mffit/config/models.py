@@ -90,18 +90,8 @@ def _u_field(declared: Declared) -> tuple[Any, float | None]:
     return (accepted | None, None) if declared.default is None else (accepted, float(declared.default))
 
 
-if TYPE_CHECKING:
-    Uncertainties = Table
-else:
-    Uncertainties = create_model(
-        "Uncertainties",
-        __base__=Table,
-        **{error.declared.key: _u_field(error.declared) for error in DECLARED},
-    )
-
-
-class RigTable(Uncertainties):
-    """[rig]: the machine, its axes and how well it is known; a key ``u_...`` for every declared rig error."""
+class MachineTable(Table):
+    """[rig] without the keys ``u_...`` of the rig errors: the machine and its axes."""
 
     type: Literal["rotating-disk", "flat-track"] = "rotating-disk"
     axes: Annotated[
@@ -150,7 +140,7 @@ class RigTable(Uncertainties):
         return given
 
     @model_validator(mode="after")
-    def _one_radius(self) -> RigTable:
+    def _one_radius(self) -> MachineTable:
         if self.type == "flat-track":
             return self
         if self.path_radius is None and self.path is None:
@@ -174,6 +164,17 @@ class RigTable(Uncertainties):
                 "rig.u_path_radius",
             )
         return self
+
+
+if TYPE_CHECKING:
+    RigTable = MachineTable
+else:
+    RigTable = create_model(
+        "RigTable",
+        __base__=MachineTable,
+        __doc__="[rig]: the machine, its axes, and a key ``u_...`` for every declared rig error.",
+        **{error.declared.key: _u_field(error.declared) for error in DECLARED},
+    )
 
 
 class RollingRadiusTable(Table):

@@ -92,9 +92,9 @@ def simulated(
 ) -> tuple[np.ndarray, np.ndarray]:
     """Fy and Mz in the rig's SAE axes, with the rig errors that the build states."""
     rig = {name: entry["value"] for name, entry in result["fit"]["rig"].items()}
-    assert set(rig) == {"F0_N", "gamma_0_deg", "alpha_0_deg", "path_radius_m"}
-    alpha = -np.radians(table["alpha_deg"]) + np.radians(rig["alpha_0_deg"])
+    assert set(rig) == {"F0_N", "gamma_0_deg", "alpha_0_deg", "camber_skew_deg", "path_radius_m"}
     gamma = np.radians(table["gamma_deg"] + rig["gamma_0_deg"])
+    alpha = np.radians(-table["alpha_deg"] + rig["alpha_0_deg"] + rig["camber_skew_deg"] * np.sin(gamma))
     forces = tyre(
         table["Fz_N"].to_numpy(),
         alpha.to_numpy(),

@@ -204,7 +204,13 @@ def test_the_fleet_compares_and_tightens(compared, folders):
         assert epsilon["direct"]["value"] == result["spin"]["epsilon_gamma"]
         assert epsilon["together"]["u"] < epsilon["alone"]["u"] < epsilon["direct"]["u"]
         assert tyre["C_alpha_N_per_rad"]["u"] > 0.0
-    assert set(found["rigs"][0]["errors"]) == {"F0_N", "gamma_0_deg", "alpha_0_deg", "path_radius_m"}
+    assert set(found["rigs"][0]["errors"]) == {
+        "F0_N",
+        "gamma_0_deg",
+        "alpha_0_deg",
+        "camber_skew_deg",
+        "path_radius_m",
+    }
     table = pd.read_csv(out / "fleet.csv")
     assert list(table.name) == [HOSTILE, "tyre 1", "tyre 2", "tyre 3", "tyre 4"]
     assert table.epsilon_gamma_together[0] == found["tyres"][0]["epsilon_gamma"]["together"]["value"]

@@ -51,7 +51,7 @@ def test_corrections_undo_the_faults(right_model):
     """Readings of the tests' own faulty rig, corrected, are the readings of that rig without faults."""
     case, _, points = right_model
     Fy, Mz = report(case.true, SAME_FAULTS, case.run)
-    state = Simulation(dict(case.true.values), replace(FAULTS, T_ref_degC=USUAL_TEMPERATURE), True, False)
+    state = Simulation(dict(case.true.values), FAULTS.replace(T_ref_degC=USUAL_TEMPERATURE), True, False)
     corrected = corrected_points(points.replace(Fy=Fy, Mz=Mz), state)
     clean_Fy, clean_Mz = report(case.true, Machine(), case.run)
     assert corrected.Fy == pytest.approx(clean_Fy, abs=1e-6)
@@ -78,7 +78,7 @@ def test_misaligned_wheel_of_the_paper_is_named_and_eps_gamma_restored(misalignm
     found: Diagnosis = diagnose(points, case.given, config)
     assert found.effects[0].effect.id == "sideslip-misalignment"
     assert not found.effects[0].tied_with
-    assert found.faults.alpha_0_deg == pytest.approx(misalignment, abs=0.02)
+    assert found.faults["alpha_0_deg"] == pytest.approx(misalignment, abs=0.02)
     forward = points.select(points.direction > 0)
 
     def eps_gamma(chosen):

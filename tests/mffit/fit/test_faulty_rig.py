@@ -16,9 +16,10 @@ from mffit import virtual_rig
 
 @pytest.fixture(scope="module")
 def misaligned(tmp_path_factory):
-    """Half a degree of sideslip, camber and load cell within what the rig declares."""
-    faults = {"alpha_0_deg": 0.5, "gamma_0_deg": 0.4, "F0_N": 8.0}
-    return built(disc(faults=faults), tmp_path_factory.mktemp("misaligned"))
+    """Half a degree of sideslip, camber and load cell within what the rig declares; a square camber axis."""
+    content = disc(faults={"alpha_0_deg": 0.5, "gamma_0_deg": 0.4, "F0_N": 8.0})
+    content["rig"] = content["rig"] | {"u_camber_skew_deg": 0.0}
+    return built(content, tmp_path_factory.mktemp("misaligned"))
 
 
 def test_the_misalignment_is_taken_off_the_angles(misaligned):

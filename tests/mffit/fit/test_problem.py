@@ -12,7 +12,8 @@ from mffit.fit.constraints import Envelope
 from mffit.fit.problem import Problem
 from mffit.measured import RadiusReading
 from mffit.points import make_points
-from mffit.rig import NO_FAULTS, Simulation
+from mffit.rig import Simulation
+from mffit.rig_errors import NO_FAULTS
 
 N = 12
 ENVELOPE = Envelope(Fz=(900.0, 2100.0), gamma=0.5, alpha=0.14, pressure=(2e5, 3e5))

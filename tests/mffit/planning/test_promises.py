@@ -32,12 +32,13 @@ ONE_SIDE = (Kind.OTHER_SIDE, Kind.OTHER_SIDE_CAMBER)
 
 @pytest.fixture(scope="module")
 def content():
-    """Two loads of the small campaign on a drawn rig."""
+    """Two loads of the small campaign on a drawn rig with a square camber axis."""
     content = disc(
         faults={"F0_N": 8.0, "gamma_0_deg": 0.4, "path_radius_m": 1.325}, spin={"pecp1": "debiased"}
     )
     content["sweep"] = [s for s in content["sweep"] if s["load_N"] < 2000]
     content["rolling_radius"] = content["rolling_radius"][:2]
+    content["rig"] = content["rig"] | {"u_camber_skew_deg": 0.0}
     return content
 
 
