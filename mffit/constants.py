@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from tir.constant import Real
+from tir.constant import Count, Real
 
 USUAL_CORNERING_STIFFNESS = Real(
     10.0,
@@ -16,4 +16,9 @@ EXPLAINED_SHARE = Real(
     1.0 / 3.0,
     "-",
     "A known mistake explains an error if less than this share of the error is left when the mistake is undone.",
+)
+LONGEST_QUOTE = Count(
+    60,
+    "characters",
+    "Messages quote at most this much of a file: a quotation mark that is never closed takes in half of it.",
 )

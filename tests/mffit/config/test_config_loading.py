@@ -187,6 +187,14 @@ def test_a_loaded_configuration_is_given_back(tmp_path):
         ("[tyre]", "path_centre = 'left'\n[tyre]", "path_centre", 1, "[rig]"),
         ("[rig]", "[spin]\nexact = 'all'\n[rig]", "spin.exact", 8, "'turn-slip'"),
         ("front-1", "../front", "tyre.name", 2, "cannot name"),
+        (
+            "[rig]",
+            "[columns]\nFy_N = { clumn = 'FY' }\n[rig]",
+            "columns.Fy_N.clumn",
+            8,
+            'did you mean "column"',
+        ),
+        ("[rig]", "rim_radius = 0.4\n[rig]", "tyre.rim_radius", 7, "not smaller than the unloaded radius"),
     ],
 )
 def test_what_is_wrong_is_said_with_key_and_line(tmp_path, old, new, key, line, said):
@@ -292,9 +300,9 @@ x = { z = 1 }
 
 
 def test_known_keys_cover_every_table():
-    known = known_keys()
+    known = known_keys(config.Config)
     assert set(known) == {
-        "", "tyre", "rig", "rig.path", "rolling_radius", "camber_stiffness", "spin", "model", "sweep",
+        "", "tyre", "rig", "rig.path", "rolling_radius", "camber_stiffness", "spin", "model", "columns.*", "sweep",
         "sweep.columns.*",
     }  # fmt: skip
 

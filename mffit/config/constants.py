@@ -1,0 +1,22 @@
+"""Numbers of judgement of the configuration; the plausible ranges of single keys are in ``quantities.py``."""
+
+from __future__ import annotations
+
+from tir.constant import Real, Series
+
+LIKENESS_OF_KEYS = Real(
+    0.6, "-", "An unknown key is taken for a misspelt one if the texts are this alike, as difflib counts it."
+)
+ROLLING_OVER_UNLOADED_RADIUS = Series(
+    (0.85, 1.05),
+    "-",
+    "Effective over unloaded radius of a free-rolling tyre lies between these; a diameter or a wrong path radius does not.",
+)
+RADIUS_RATIO_OF_A_DIAMETER = Series(
+    (1.8, 2.2),
+    "-",
+    "Effective over unloaded radius between these means that path_radius is a diameter: the ratio is twice the usual one.",
+)
+LARGEST_U_OF_A_RADIUS = Real(
+    0.1, "-", "A standard uncertainty above this share of its radius was written in another unit."
+)
