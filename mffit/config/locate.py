@@ -1,4 +1,4 @@
-"""In which line of a TOML text each key stands; knows nothing of what a key means."""
+"""Line numbers of the keys of a TOML text."""
 
 from __future__ import annotations
 
@@ -12,8 +12,7 @@ QUOTED = re.compile(r'"(?:\\.|[^"\\])*"|\'[^\']*\'|#.*')
 def lines_of_keys(text: str) -> dict[str, int]:
     """Line, from 1, of every key and table of a valid TOML text, by dotted name.
 
-    Entries of an array of tables carry their number from 0: ``sweep.0.file``. Keys of an inline table are not
-    listed: they stand where the table does.
+    Entries of an array of tables are numbered from 0: ``sweep.0.file``. Keys of an inline table are not listed.
     """
     found: dict[str, int] = {}
     count: dict[str, int] = {}
@@ -39,7 +38,7 @@ def _joined(table: str, key: str) -> str:
 
 
 def _numbered(name: str, count: dict[str, int], is_array: bool) -> str:
-    """The table's name with the running number of every array of tables in it."""
+    """The table's name with the current number of every array of tables in it."""
     path = ""
     parts = name.split(".")
     for depth, part in enumerate(parts):
@@ -52,7 +51,7 @@ def _numbered(name: str, count: dict[str, int], is_array: bool) -> str:
 
 
 def _after(line: str, fence: str, depth: int) -> tuple[str, int]:
-    """State behind a line: the open multi-line quote, if any, and how many brackets of a value are open."""
+    """State after a line: the open multi-line quotation mark, "" without one, and the number of open brackets."""
     while True:
         if fence:
             end = line.find(fence)
