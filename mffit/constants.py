@@ -17,6 +17,11 @@ EXPLAINED_SHARE = Real(
     "-",
     "A known mistake explains an error if less than this share of the error is left when the mistake is undone.",
 )
+LIKENESS_OF_MISSPELT = Real(
+    0.6,
+    "-",
+    "A key or heading is taken for a misspelt one if it is at least this like it, as difflib measures likeness.",
+)
 LONGEST_QUOTE = Count(
     60,
     "characters",

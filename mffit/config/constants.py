@@ -4,9 +4,6 @@ from __future__ import annotations
 
 from tir.constant import Real, Series
 
-LIKENESS_OF_KEYS = Real(
-    0.6, "-", "An unknown key is taken for a misspelt one if the texts are this alike, as difflib counts it."
-)
 ROLLING_OVER_UNLOADED_RADIUS = Series(
     (0.85, 1.05),
     "-",

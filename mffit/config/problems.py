@@ -13,7 +13,7 @@ from typing import Any, NamedTuple, TypeVar
 
 from pydantic import BaseModel, ValidationError
 
-from mffit.config import constants
+from mffit import constants
 from mffit.errors import InputError, shortened
 
 Keys = Mapping[str, tuple[str, ...]]
@@ -81,7 +81,7 @@ def _mistake(detail: Any, lines: dict[str, int], known: Keys) -> _Mistake:
     if detail["type"] != "extra_forbidden":
         return _Mistake(key, line, _sentence(detail, key, lines))
     table, name = _split(key, known)
-    near = difflib.get_close_matches(name, known.get(table, ()), n=1, cutoff=constants.LIKENESS_OF_KEYS)
+    near = difflib.get_close_matches(name, known.get(table, ()), n=1, cutoff=constants.LIKENESS_OF_MISSPELT)
     if not near:
         return _Mistake(key, line, _unknown(table, name, known), is_unknown=True)
     meant = f"{key.rpartition('.')[0]}.{near[0]}".lstrip(".")

@@ -272,7 +272,7 @@ def test_an_uncertainty_of_zero_in_one_row_is_no_traceback(project, capsys):
     )
     code, err = run(capsys, "spin", project.write())
     assert code == 0, err
-    assert "zeros.csv:6: column u_Fy_N: 0 is no uncertainty" in err
+    assert "zeros.csv:6: column u_Fy_N: 0 is not above zero; treated as not stated" in err
 
 
 @pytest.mark.parametrize(

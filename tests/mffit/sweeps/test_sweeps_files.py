@@ -100,8 +100,8 @@ CELLS = {
     "unit": (4, "1500.0", "1.5 kN", "Fz_N", 'unit = "kN"'),
     "text": (3, "1500.0", "heavy", "Fz_N", "text"),
     "decimal comma": (5, "1500.0", '"1500,5"', "Fz_N", "write 1500.5"),
-    "NaN": (2, "1500.0", "NaN", "Fz_N", "no measurement"),
-    "infinity": (6, "1500.0", "inf", "Fz_N", "no measurement"),
+    "NaN": (2, "1500.0", "NaN", "Fz_N", "is not a measurement"),
+    "infinity": (6, "1500.0", "inf", "Fz_N", "is not a measurement"),
     "blank": (7, "1500.0", "", "Fz_N", "empty"),
     "zero load": (7, "1500.0", "0", "Fz_N", "zero"),
     "mixed sign": (8, "1500.0", "-1500", "Fz_N", "another sign"),
@@ -130,7 +130,7 @@ WHOLE = {
     "too many cells": (b"alpha_deg,gamma_deg,Fz_N,Fy_N\n0,0,1500,-300,7\n", 2, "5 cells under 4 headings"),
     "duplicate headings": (b"alpha_deg,gamma_deg,Fz_N,Fy_N,Fz_N\n0,0,1500,-300,1\n", 1, "twice"),
     "empty heading": (b"alpha_deg,,Fz_N,Fy_N\n0,0,1500,-300\n", 1, "heading 2 is empty"),
-    "no headings": (b"0,0,1500,-300\n1,0,1500,-500\n", 1, "headings should be"),
+    "no headings": (b"0,0,1500,-300\n1,0,1500,-500\n", 1, "numbers instead of headings"),
     "missing column": (b"alpha_deg,gamma_deg,Fz_N,FY\n0,0,1500,-300\n", 1, 'column = "FY"'),
     "kilonewtons": (b"alpha_deg,gamma_deg,Fz_N,Fy_N\n0,0,1.5,-300\n", 2, "kN"),
     "all loads negative": (b"alpha_deg,gamma_deg,Fz_N,Fy_N\n0,0,-1500,-300\n", 2, 'axes = "sae"'),
@@ -195,8 +195,8 @@ def test_headings_units_and_signs_are_mapped(project):
     [
         ({"Fy": "Fy_N"}, 'did you mean "Fy_N"'),
         ({"Fy_N": "FY"}, 'no heading "FY"'),
-        ({"Fy_N": {"unit": "kPa"}}, "cannot be turned into N"),
-        ({"Fy_N": {"unit": "stone throws"}}, "is no unit"),
+        ({"Fy_N": {"unit": "kPa"}}, "cannot be converted to N"),
+        ({"Fy_N": {"unit": "stone throws"}}, "is not a unit"),
     ],
 )
 def test_a_bad_mapping_is_refused(project, columns, said):
@@ -267,9 +267,7 @@ def test_an_uncertainty_not_above_zero_counts_as_not_stated(project, u, more):
     u_Fy = sweep_named(found, NAME).u_Fy
     np.testing.assert_array_equal(np.isfinite(u_Fy), [k == 0 or k >= len(u) for k in range(len(u_Fy))])
     (warning,) = found.warnings
-    assert re.search(
-        rf"{NAME}:3: column u_Fy_N: {u[1]:g} is no uncertainty and counts as not stated", warning
-    )
+    assert re.search(rf"{NAME}:3: column u_Fy_N: {u[1]:g} is not above zero; treated as not stated", warning)
     assert more in warning
 
 
@@ -309,7 +307,7 @@ def test_a_new_format_is_a_reader_and_a_record(project, monkeypatch):
     path = project.write()
     path.write_text(path.read_text().replace(NAME, "rig.raw"))
     (project.folder / "rig.raw").write_bytes(b"")
-    assert "is no .csv or .csv.gz" in refusal(path).sentence
+    assert "is not in a known format (.csv .csv.gz" in refusal(path).sentence
     extended = (*formats.FORMATS, formats.Format("RAW", (".raw",), numbers))
     monkeypatch.setattr(formats, "FORMATS", extended)
     monkeypatch.setattr(loading, "ENDINGS", (*formats.ENDINGS, ".raw"))

@@ -146,7 +146,7 @@ BROKEN = {
     "g.tdx": (b"alpha,beta\n", "**HEADER"),
     "h.tdx": (b"**HEADER\n**MEASURCHANNELS\n**END\n", "no channels"),
     "i.tdx": (b"**HEADER\n**MEASURCHANNELS\nFYW x N\n**MEASURDATA\n1 2\n", "2 values for 1"),
-    "j.tdx": (b"**HEADER\n**MEASURCHANNELS\nFYW x N\n**MEASURDATA\none\n", "no number"),
+    "j.tdx": (b"**HEADER\n**MEASURCHANNELS\nFYW x N\n**MEASURDATA\none\n", "is not a number"),
     "k.dat": (b"", "empty"),
 }
 
