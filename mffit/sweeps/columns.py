@@ -274,19 +274,29 @@ def _in_contract_unit(source: _Source, values: np.ndarray) -> np.ndarray:
 def _in_range(source: _Source, values: np.ndarray) -> _Read:
     """The values, all in their plausible range; rare spikes of a recording become NaN."""
     channel = source.channel
-    outside = (values < channel.lower) | (values > channel.upper)
+    outside = _outside(values, channel)
     if not np.any(outside):
         return _Read(values)
     row, count = int(outside.argmax()), int(outside.sum())
     unit = f" {channel.unit}" if channel.unit else ""
     sentence = f"{values[row]:g}{unit} is outside {channel.lower:g} to {channel.upper:g}{unit}"
-    if source.may_have_gaps and count <= constants.LARGEST_SHARE_OF_SPIKES * len(values):
+    if not implausible(values, channel, may_have_gaps=source.may_have_gaps):
         also = f" (with {counted(count - 1, 'more sample')})" if count > 1 else ""
         warning = source.refusal(f"{sentence}{also}; treated as missing", row)
         return _Read(np.where(outside, np.nan, values), (str(warning),))
     hint = channel.below if values[row] < channel.lower else channel.above
     remedy = f"{hint}, convert it or name its unit under [sweep.columns]" if hint else "correct it"
     raise source.refusal(f"{sentence}; {remedy}", row)
+
+
+def _outside(values: np.ndarray, channel: Channel) -> np.ndarray:
+    return (values < channel.lower) | (values > channel.upper)
+
+
+def implausible(values: np.ndarray, channel: Channel, *, may_have_gaps: bool) -> bool:
+    """Whether more values (n,) are outside the plausible range of the channel than spikes of a recording explain."""
+    share = constants.LARGEST_SHARE_OF_SPIKES if may_have_gaps else 0.0
+    return bool(np.sum(_outside(values, channel)) > share * len(values))
 
 
 def _positive(source: _Source, read: _Read) -> _Read:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import tomllib
 from pathlib import Path
 
 import numpy as np
@@ -69,7 +70,7 @@ def test_a_load_in_kN_beside_forces_in_N_is_seen_by_the_grip():
 def test_a_column_takes_the_unit_that_another_of_its_kind_states():
     found = guessed(units={"FZ": "lbf", "SA": "rad"}).found
     assert (found["Fy_N"].unit, found["gamma_deg"].unit, found["Fz_N"].unit) == ("lbf", "rad", "")
-    assert "as FZ is" in found["Fy_N"].why
+    assert "like FZ" in found["Fy_N"].why
 
 
 @pytest.mark.parametrize(
@@ -139,11 +140,13 @@ def test_a_missing_moment_names_columns_in_a_unit_of_moments():
     ("heading", "channel"),
     [
         ("Self aligning torque", "Mz_Nm"), ("Surface temp", "T_degC"), ("Reifendruck", "p_kPa"), ("Kippmoment", "Mx_Nm"),
-        ("Längskraft", "Fx_N"),
+        ("Längskraft", "Fx_N"), ("MTS Running Time", "time_s"),
     ],
 )  # fmt: skip
 def test_headings_of_laboratories(heading, channel):
-    without = {"Mz_Nm": "MZ", "T_degC": "TSTC", "p_kPa": "P", "Mx_Nm": "MX", "Fx_N": "FX"}[channel]
+    without = {"Mz_Nm": "MZ", "T_degC": "TSTC", "p_kPa": "P", "Mx_Nm": "MX", "Fx_N": "FX", "time_s": "ET"}[
+        channel
+    ]
     held = columns()
     assert guessed(**{without: None, heading: held[without]}).found[channel].heading == heading
 
@@ -188,7 +191,7 @@ def test_rows_without_time_are_counted_as_points_aloud(tmp_path):
         text.sniff_summary(found).replace("\n  ", " "),
         project_text(found, tmp_path, unloaded_radius=None, nominal_load=None),
     ):
-        assert "no time: each of 18 rows is taken for a finished point" in said
+        assert "no time: each of 18 rows is treated as a finished point" in said
         assert 'column "Timestamp" holds clock times' in said
 
 
@@ -215,7 +218,7 @@ def test_files_are_named_by_pattern_and_a_folder_is_told_what_it_holds(tmp_path)
     assert [r.path.name for r in sniff([f"{tmp_path}/*.dat"]).recordings] == ["a.dat", "b.dat"]
     with pytest.raises(InputError, match="no file matches"):
         sniff([f"{tmp_path}/*.mat"])
-    with pytest.raises(InputError, match=r"is a folder; name those in it, as .*\*\.dat"):
+    with pytest.raises(InputError, match=r"is a folder; name the files in it, for example .*\*\.dat"):
         sniff([tmp_path])
     with pytest.raises(InputError, match=r"no such file; correct its name$"):
         sniff([tmp_path / "nosuch.mat"])
@@ -227,9 +230,32 @@ def test_files_are_named_by_pattern_and_a_folder_is_told_what_it_holds(tmp_path)
         ("Prüfstand Müller, Messung vom 3.4.2024", None),
         ("Prüfstand Müller Reifen: 16x7.5-10", "16x7.5-10"),
         ("title=Belt Tire=Maker 16x7.5-10", "Maker 16x7.5-10"),
+        ("Tire: Maker 16x7.5-10\n[DATA]", "Maker 16x7.5-10"),
+        ("Tire:\n[DATA]", None),
     ],
 )
 def test_a_title_names_a_tyre_only_where_it_says_so(tmp_path, title, size):
     (tmp_path / "a.csv").write_text(f"{title.replace(',', ' ')}\n{table(P=83.0)}", encoding="utf-8")
     written = project_text(sniff([tmp_path / "a.csv"]), tmp_path, unloaded_radius=0.2, nominal_load=1500.0)
     assert (f'size = "{size}"' in written) if size else "\nsize" not in written
+
+
+def test_a_column_of_doubtful_unit_is_left_out_and_the_rest_is_read(tmp_path):
+    """Temperatures of 300 look like neither degC nor a range of the channel; they must not end sniff."""
+    (tmp_path / "a.csv").write_text(table(P=83.0, TSTC=300.0))
+    found = sniff([tmp_path / "a.csv"])
+    assert "T_degC" not in found.recordings[0].guesses
+    assert "p_kPa" in found.recordings[0].guesses
+    (remark,) = [r for r in found.recordings[0].remarks if "TSTC" in r]
+    assert remark.startswith("TSTC (300 to 300) is left out: in degC it is not within -60 to 250 degC")
+    written = project_text(found, tmp_path, unloaded_radius=0.2, nominal_load=1500.0)
+    assert "# TSTC (300 to 300) is left out" in written
+    assert "T_degC" not in tomllib.loads(written)["columns"]
+
+
+def test_a_spike_in_a_recording_is_no_doubt_about_its_unit():
+    spike = np.full(N, 60.0)
+    spike[7] = 3000.0
+    assert guessed(TSTC=spike).found["T_degC"].heading == "TSTC"
+    spike[: N // 10] = 3000.0
+    assert "T_degC" not in guessed(TSTC=spike).found
