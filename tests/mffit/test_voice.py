@@ -76,7 +76,7 @@ def test_the_options_are_there(name):
 @pytest.mark.parametrize(
     ("file", "said"),
     [
-        ("rig.toml", "is a rig.toml, a plan for the virtual rig"),
+        ("rig.toml", "so it is a rig.toml for the virtual rig: run `mffit simulate`"),
         ("true.tir", "is a property file, not a tyre.toml"),
         ("rig/sideslip_1500.csv", "mffit init --from sideslip_1500.csv DIR"),
         ("rig", "is a folder"),
