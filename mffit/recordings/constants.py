@@ -15,22 +15,24 @@ LARGEST_FORCE_IN_KILONEWTONS = Real(
     "kN",
     "Forces that all stay below this number are in kilonewtons: no sweep has loads of only 100 N.",
 )
-GRIP_BEYOND_ANY_TYRE = Real(
+GRIP_THAT_MEANS_ANOTHER_UNIT = Real(
     5.0,
     "-",
     "If another force is more than this times the load, the load has another unit than the other forces.",
 )
-SHORTEST_LEVER_ARM = Real(
+SHORTEST_LEVER_ARM_IN_RECORDING = Real(
     1e-3, "m", "If the largest moment over the largest load is below this, the moments are in kN m."
 )
 FASTEST_SPEED_IN_METRES = Real(
     25.0, "m/s", "Speeds below this number are in m/s, larger ones in km/h: rigs run at 90 km/h at most."
 )
-USUAL_PRESSURES = Series((50.0, 400.0), "kPa", "Pressures of the tyres of cars, motorcycles and racing cars.")
-LORRY_PRESSURES = Series((400.0, 1200.0), "kPa", "Pressures of the tyres of lorries.")
-POSSIBLE_PRESSURES = Series((40.0, 1200.0), "kPa", "Pressures outside this range belong to no tyre.")
+CAR_TYRE_PRESSURES = Series(
+    (50.0, 400.0), "kPa", "Pressures of the tyres of cars, motorcycles and racing cars."
+)
+LORRY_TYRE_PRESSURES = Series((400.0, 1200.0), "kPa", "Pressures of the tyres of lorries.")
+ANY_TYRE_PRESSURES = Series((40.0, 1200.0), "kPa", "Pressures outside this range belong to no tyre.")
 LORRY_LOAD = Real(10_000.0, "N", "If the largest load exceeds this, the tyre is one of a lorry.")
-TIME_STEPS = Series((1e-5, 5.0), "s", "Time between samples of a moving angle.")
+RECORDED_TIME_STEPS = Series((1e-5, 5.0), "s", "Time between samples of a moving angle.")
 STEERING_RATES = Series((0.02, 100.0), "deg/s", "Rates at which rigs steer.")
 STEERING_PERCENTILE = Real(
     95.0, "%", "The rate of steering is this percentile of the rates, so that pauses do not count."

@@ -36,6 +36,11 @@ class Guess(NamedTuple):
     why: str = ""  #: reason for a unit that nothing states
 
     @property
+    def unit_of_readings(self) -> str:
+        """The unit in which the file's readings are."""
+        return self.unit or self.stated or self.channel.unit
+
+    @property
     def column(self) -> Column:
         """The guess as an entry of ``[columns]``."""
         return Column(column=self.heading, unit=self.unit or None)

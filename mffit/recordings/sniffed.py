@@ -163,8 +163,7 @@ class _Clock(NamedTuple):
 def _clock(raw: RawTable, guess: Guess | None) -> _Clock:
     if guess is None:
         return _Clock()
-    unit = guess.unit or guess.stated or guess.channel.unit
-    time = converted(numbers(raw.column(guess.heading)), unit, guess.channel.unit)
+    time = converted(numbers(raw.column(guess.heading)), guess.unit_of_readings, guess.channel.unit)
     step = float(np.median(np.diff(time))) if len(time) > 1 else np.nan
     if not step > 0.0:
         return _Clock()

@@ -68,7 +68,7 @@ def _groups(kind: str, found: Mapping[str, Found]) -> list[dict[str, Found]]:
     load = {name: column for name, column in group.items() if name == "Fz_N"}
     rest = {name: column for name, column in group.items() if name not in load}
     largest = max((column.size for column in rest.values()), default=0.0)
-    if load and largest > constants.GRIP_BEYOND_ANY_TYRE * load["Fz_N"].size:
+    if load and largest > constants.GRIP_THAT_MEANS_ANOTHER_UNIT * load["Fz_N"].size:
         return [load, rest]
     return [group] if group else []
 
@@ -94,7 +94,7 @@ def _fitting_unit(kind: str, group: Mapping[str, Found], load: float) -> str:
         return "rad" if size < constants.LARGEST_ANGLE_IN_RADIANS else "deg"
     if kind == "N":
         return "kN" if size < constants.LARGEST_FORCE_IN_KILONEWTONS else "N"
-    return "kN m" if 0.0 < size < constants.SHORTEST_LEVER_ARM * load else "N m"
+    return "kN m" if 0.0 < size < constants.SHORTEST_LEVER_ARM_IN_RECORDING * load else "N m"
 
 
 def _own_unit(name: str, found: Mapping[str, Found], chosen: Mapping[str, Choice]) -> Choice:
@@ -136,8 +136,8 @@ def _pressure(column: Found, load: float) -> Choice:
     middle = float(np.nanmedian(np.abs(column.values)))
     in_kPa = {unit: factor(unit, "kPa") * middle for unit in PRESSURE_UNITS}
     is_lorry = load > constants.LORRY_LOAD
-    possible = [unit for unit in PRESSURE_UNITS if _within(in_kPa[unit], constants.POSSIBLE_PRESSURES)]
-    likely = constants.LORRY_PRESSURES if is_lorry else constants.USUAL_PRESSURES
+    possible = [unit for unit in PRESSURE_UNITS if _within(in_kPa[unit], constants.ANY_TYRE_PRESSURES)]
+    likely = constants.LORRY_TYRE_PRESSURES if is_lorry else constants.CAR_TYRE_PRESSURES
     usual = [unit for unit in possible if _within(in_kPa[unit], likely)]
     unit = next(iter(usual or possible), column.channel.unit)
     others = [f"{other} ({in_kPa[other]:.0f} kPa)" for other in possible if other != unit]
@@ -159,7 +159,7 @@ def _time(column: Found, alpha_deg: np.ndarray | None) -> Choice:
     step, rate = motion
     for unit in TIME_UNITS:
         seconds = factor(unit, "s")
-        if _within(step * seconds, constants.TIME_STEPS) and _within(
+        if _within(step * seconds, constants.RECORDED_TIME_STEPS) and _within(
             rate / seconds, constants.STEERING_RATES
         ):
             why = f"steps of {step:.3g} look like {unit}, in which the angle moves at {rate / seconds:.2g} deg/s"

@@ -28,6 +28,12 @@ BYTES_THAT_SHOW_DIALECT = Count(
     "bytes",
     "Separator, decimal comma and encoding are found from the start of a file of this length.",
 )
+BYTES_THAT_SHOW_BINARY = Count(
+    4096, "bytes", "A file with a zero byte within this length is binary, not text."
+)
+UNPACKED_OVER_PACKED = Real(
+    4.0, "-", "Estimate of the size of a .gz file of text after unpacking, over its size on disk."
+)
 LINES_THAT_SHOW_DIALECT = Count(200, "lines", "Lines from which separator and decimal comma are found.")
 SHARE_OF_REGULAR_LINES = Real(
     0.5,

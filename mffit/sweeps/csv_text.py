@@ -29,8 +29,6 @@ UTF16_MARKS = (b"\xff\xfe", b"\xfe\xff")
 SEPARATORS = ("\t", ";", "|", ",")
 """Sorted by priority: a comma is last, because it may also be a decimal comma."""
 BLANKS = " "
-PACKED_RATIO = 4
-"""Estimate of unpacked over packed size."""
 HEAD = constants.BYTES_THAT_SHOW_DIALECT
 NUMBER_WITH_POINT = re.compile(r"[-+]?\d*\.\d*(?:[eE][-+]?\d+)?")
 
@@ -115,7 +113,7 @@ def _encoding(head: bytes) -> str | None:
     """Encoding of a text; None for binary data."""
     if head.startswith(UTF16_MARKS):
         return "utf-16"
-    if b"\0" in head[:4096]:
+    if b"\0" in head[: constants.BYTES_THAT_SHOW_BINARY]:
         return None
     try:
         # The excerpt may end within a character.
@@ -226,5 +224,6 @@ def _text(path: Path, dialect: Dialect) -> str:
         return raw.decode("utf-16" if dialect.encoding == "utf-16" else "latin-1", errors="replace")
 
 
-def _size(path: Path) -> int:
-    return path.stat().st_size * (PACKED_RATIO if is_packed(path) else 1)
+def _size(path: Path) -> float:
+    """Size of the unpacked file in bytes; an estimate if it is packed."""
+    return path.stat().st_size * (constants.UNPACKED_OVER_PACKED if is_packed(path) else 1.0)

@@ -1,4 +1,4 @@
-"""A corpus of broken inputs, each made from a small sound project by one change, and the sentence that each ends with.
+"""A corpus of broken inputs, each made from a small sound project by one change, with the sentence for each.
 
 What is in tests/mffit/test_bad_input.py is not repeated here. Nothing is fitted: all of these are found on the way in.
 """
@@ -28,7 +28,7 @@ WHOLE_TIR = tir.Tyre.from_values({"FNOMIN": 1500.0, "PKY1": -12.0}).text()
 
 
 def toml(old: str, new: str, count: int = 1) -> Change:
-    """Other words in tyre.toml."""
+    """Replaces words in tyre.toml."""
 
     def change(project: Project) -> Path:
         path = project.write()
@@ -50,12 +50,12 @@ def whole_toml(content: bytes) -> Change:
 
 
 def under(table: str, key: str) -> Change:
-    """A key more at the head of a table."""
+    """Adds a key at the head of a table."""
     return toml(f"[{table}]\n", f"[{table}]\n{key}\n")
 
 
 def of_sweep(**keys: Any) -> Change:
-    """Keys more in the [[sweep]] of one file."""
+    """Adds keys to the [[sweep]] of one file."""
 
     def change(project: Project) -> Path:
         for entry in project.config["sweep"]:
@@ -67,7 +67,7 @@ def of_sweep(**keys: Any) -> Change:
 
 
 def csv(content: str | bytes) -> Change:
-    """Another content of one file."""
+    """Replaces the content of one file."""
 
     def change(project: Project) -> Path:
         path = project.write()
@@ -78,7 +78,7 @@ def csv(content: str | bytes) -> Change:
 
 
 def words(old: str, new: str) -> Change:
-    """Other words in one file."""
+    """Replaces words in one file."""
 
     def change(project: Project) -> Path:
         path = project.write()
@@ -90,7 +90,7 @@ def words(old: str, new: str) -> Change:
 
 
 def column(file: str = SWEEP, **made: Any) -> Change:
-    """Other values in columns of one file: a value, or a function of the column's own."""
+    """Replaces columns of one file by a value, or by a function of the column."""
 
     def change(project: Project) -> Path:
         table = project.tables[file]
@@ -102,7 +102,7 @@ def column(file: str = SWEEP, **made: Any) -> Change:
 
 
 def other(name: str, content: str | bytes) -> Change:
-    """One sweep in a file of another name."""
+    """Moves one sweep to a file of another name."""
 
     def change(project: Project) -> Path:
         for entry in project.config["sweep"]:
@@ -117,7 +117,7 @@ def other(name: str, content: str | bytes) -> Change:
 
 
 def base(content: str | bytes) -> Change:
-    """A base file of this content."""
+    """Adds a base file with this content."""
 
     def change(project: Project) -> Path:
         project.config["tyre"]["base"] = "base.tir"

@@ -1,4 +1,4 @@
-"""The sentence a user sees is made in one place."""
+"""The text of an error is made in one place."""
 
 from __future__ import annotations
 
@@ -21,11 +21,11 @@ from mffit.errors import InputError, readable, shortened
         ({"key": "tyre.name"}, "tyre.name: is wrong; correct it"),
     ],
 )
-def test_the_place_stands_in_front(place, text):
+def test_the_text_begins_with_the_place(place, text):
     assert str(InputError("is wrong; correct it", **place)) == text
 
 
-def test_it_is_one_line_whatever_is_quoted():
+def test_the_text_is_one_line_even_with_a_quoted_line_break():
     assert "\n" not in str(InputError('"a\n b" is no number'))
 
 
