@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
 
 from mffit.cli.console import Voice, out_option, voiced
-from mffit.progress import Progress, silent
 
 if TYPE_CHECKING:
     from mffit.results import Outcome
@@ -65,24 +63,6 @@ def _build(tyre_toml: Path, out: Path | None, ensemble: int, voice: Voice) -> No
         click.echo(f"{result.tir_path} is not to be trusted: see above", err=True)
 
 
-@dataclass
-class _Batch:
-    """The tyres of one command, as they are finished."""
-
-    total: int
-    voice: Voice
-    show: Progress = silent
-    finished: list[Outcome] = field(default_factory=list)
-
-    def done(self, outcome: Outcome) -> None:
-        """Take note of a tyre and print a line about it."""
-        from mffit.report import text
-
-        self.finished.append(outcome)
-        self.voice.tell(text.many_line(outcome, len(self.finished), self.total))
-        self.show(f"{len(self.finished)} of {self.total} finished")
-
-
 def _build_many(
     tyre_tomls: tuple[Path, ...],
     out: Path | None,
@@ -95,16 +75,19 @@ def _build_many(
     from mffit.report import text
     from mffit.results import as_json
 
-    batch = _Batch(total=len(tyre_tomls), voice=voice)
-    finished, interrupted = batch.finished, False
+    finished: list[Outcome] = []
+    interrupted = False
     with voice.progress() as show:
-        batch.show = show
+
+        def done(outcome: Outcome) -> None:
+            finished.append(outcome)
+            voice.tell(text.many_line(outcome, len(finished), len(tyre_tomls)))
+            show(f"{len(finished)} of {len(tyre_tomls)} finished")
+
         show(f"building {len(tyre_tomls)} tyres")
         try:
-            found = pipeline.build_many(
-                tyre_tomls, out, jobs=jobs, dask=dask, ensemble=ensemble, done=batch.done
-            )
-            finished = list(found)
+            ordered = pipeline.build_many(tyre_tomls, out, jobs=jobs, dask=dask, ensemble=ensemble, done=done)
+            finished = list(ordered)
         except KeyboardInterrupt:
             interrupted = True
     if finished:

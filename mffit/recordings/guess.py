@@ -13,9 +13,9 @@ from typing import NamedTuple
 import numpy as np
 
 from mffit.config.models import Column
-from mffit.recordings.unstated import Choice, Found, choices, customary, rotation
+from mffit.recordings.unstated import Choice, Found, choices, customary
 from mffit.sweeps.channels import BY_NAME, CHANNELS, Channel
-from mffit.sweeps.columns import implausible, numbers
+from mffit.sweeps.columns import numbers
 from mffit.sweeps.raw_table import RawTable
 from mffit.sweeps.units import UnknownUnitError, converted
 
@@ -53,25 +53,6 @@ class Guesses(NamedTuple):
     remarks: tuple[str, ...]
 
 
-class _Columns(NamedTuple):
-    """Columns of numbers, by channel, and the units chosen for those that state none."""
-
-    found: dict[str, Found]
-    chosen: dict[str, Choice]
-
-    def without(self, name: str) -> _Columns:
-        return _Columns(
-            {key: found for key, found in self.found.items() if key != name},
-            {key: choice for key, choice in self.chosen.items() if key != name},
-        )
-
-    @property
-    def units(self) -> dict[str, str]:
-        """Of every column, stated or chosen."""
-        stated = {name: column.unit or column.channel.unit for name, column in self.found.items()}
-        return stated | {name: choice.unit for name, choice in self.chosen.items()}
-
-
 def guesses(raw: RawTable, *, unloaded_radius: float | None = None) -> Guesses:
     """The channels found in a file.
 
@@ -80,20 +61,18 @@ def guesses(raw: RawTable, *, unloaded_radius: float | None = None) -> Guesses:
     raw : the file's cells
     unloaded_radius : [m], to check the speed of rotation; None if it is not known
     """
-    found = _number_columns(raw)
-    columns, remarks = _with_rotation(_Columns(found, choices(found)), unloaded_radius)
-    if doubt := customary(columns.found, columns.units, list(columns.chosen)):
+    columns = _number_columns(raw)
+    chosen, left_out = choices(columns, unloaded_radius)
+    remarks = [*left_out.values()]
+    columns = {name: column for name, column in columns.items() if name not in left_out}
+    if doubt := customary(columns, chosen):
         remarks.append(doubt)
-    columns, left_out = _plausible(columns)
-    remarks += left_out
-    guessed = _labels(raw) | {
-        name: _guess(raw, column, columns.chosen.get(name)) for name, column in columns.found.items()
-    }
-    if "Mz_Nm" not in guessed:
-        remarks += _without_moment(raw, {guess.heading for guess in guessed.values()})
-    if "time_s" not in guessed:
+    found = {name: _guess(raw, column, chosen.get(name)) for name, column in columns.items()} | _labels(raw)
+    if "Mz_Nm" not in found:
+        remarks += _without_moment(raw, {guess.heading for guess in found.values()})
+    if "time_s" not in found:
         remarks.append(_without_time(raw))
-    ordered = {channel.name: guessed[channel.name] for channel in CHANNELS if channel.name in guessed}
+    ordered = {channel.name: found[channel.name] for channel in CHANNELS if channel.name in found}
     return Guesses(ordered, tuple(remarks))
 
 
@@ -149,39 +128,6 @@ def _labels(raw: RawTable) -> dict[str, Guess]:
         if heading == channel.name or len(np.unique(np.asarray(raw.column(heading)))) > 1:
             found[channel.name] = Guess(channel, heading)
     return found
-
-
-def _with_rotation(columns: _Columns, unloaded_radius: float | None) -> tuple[_Columns, list[str]]:
-    """The columns with the speed of rotation only if it agrees with the speed; and why it is left out."""
-    turning = columns.found.get("omega_radps")
-    if turning is None or turning.heading == "omega_radps":
-        return columns, []
-    unit, left_out = rotation(columns.found, columns.units.get("V_mps", ""), unloaded_radius)
-    if left_out:
-        return columns.without("omega_radps"), [left_out]
-    if turning.unit:
-        return columns, []
-    choice = Choice(unit, f"in {unit} they agree with {columns.found['V_mps'].heading}")
-    return _Columns(columns.found, columns.chosen | {"omega_radps": choice}), []
-
-
-def _plausible(columns: _Columns) -> tuple[_Columns, list[str]]:
-    """The columns without optional ones whose readings are implausible; and why they are left out."""
-    remarks = []
-    units, is_series = columns.units, "time_s" in columns.found
-    for name, column in list(columns.found.items()):
-        channel = column.channel
-        if channel.required or name == "time_s":
-            continue
-        values = converted(column.values, units[name], channel.unit)
-        if implausible(values, channel, may_have_gaps=is_series):
-            columns = columns.without(name)
-            limits = f"{channel.lower:g} to {channel.upper:g} {channel.unit}".strip()
-            remarks.append(
-                f"{column.heading} ({column.range}) is left out: in {units[name] or 'plain numbers'} it is not within {limits}; "
-                f"if it is {channel.name}, write it with its true unit under [columns]"
-            )
-    return columns, remarks
 
 
 def _guess(raw: RawTable, column: Found, choice: Choice | None) -> Guess:

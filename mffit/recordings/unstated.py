@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from typing import NamedTuple
 
 import numpy as np
 
 from mffit.recordings import constants
 from mffit.sweeps.channels import BY_NAME, Channel
+from mffit.sweeps.columns import implausible
 from mffit.sweeps.units import converted, factor, spelt
 
 
@@ -39,6 +40,13 @@ class Choice(NamedTuple):
     why: str  #: follows "the file states no unit: "
 
 
+class Choices(NamedTuple):
+    """What is decided about the columns of a file, by channel."""
+
+    chosen: dict[str, Choice]
+    left_out: dict[str, str]  #: why a column is left out
+
+
 KINDS_OF_ONE_UNIT = ("deg", "N", "N m")
 """Channels with these contract units usually share a unit in a file."""
 PRESSURE_UNITS = ("bar", "psi", "kPa", "MPa", "Pa")
@@ -50,8 +58,14 @@ CUSTOMARY = {"N": "lbf", "N m": "in-lb", "kPa": "psi", "m/s": "mph", "degC": "de
 """American units by the contract's."""
 
 
-def choices(found: Mapping[str, Found]) -> dict[str, Choice]:
-    """Units of the columns for which nothing states one, by channel; ``omega_radps`` is left to :func:`rotation`."""
+def choices(found: Mapping[str, Found], radius: float | None) -> Choices:
+    """Units of the columns for which nothing states one, and optional columns that are implausible in any unit.
+
+    Parameters
+    ----------
+    found : columns of numbers by channel
+    radius : unloaded [m]; None if it is not known
+    """
     chosen: dict[str, Choice] = {}
     for kind in KINDS_OF_ONE_UNIT:
         for group in _groups(kind, found):
@@ -59,7 +73,14 @@ def choices(found: Mapping[str, Found]) -> dict[str, Choice]:
     for name, column in found.items():
         if not column.unit and column.channel.unit and name not in chosen and name != "omega_radps":
             chosen[name] = _own_unit(name, found, chosen)
-    return chosen
+    rotation = _rotation(found, chosen, radius)
+    left_out = {"omega_radps": rotation} if isinstance(rotation, str) else {}
+    if isinstance(rotation, Choice):
+        chosen["omega_radps"] = rotation
+    for name in found:
+        if name not in left_out and (reason := _implausible(name, found, chosen)):
+            left_out[name] = reason
+    return Choices({name: chosen[name] for name in chosen if name not in left_out}, left_out)
 
 
 def _groups(kind: str, found: Mapping[str, Found]) -> list[dict[str, Found]]:
@@ -187,65 +208,62 @@ def _motion(time: np.ndarray, alpha_deg: np.ndarray) -> tuple[float, float] | No
     return step, float(np.percentile(rates, constants.STEERING_PERCENTILE))
 
 
-def rotation(found: Mapping[str, Found], speed_unit: str, radius: float | None) -> tuple[str, str]:
-    """The unit of the wheel's speed of rotation that fits the speed of the contact point, or why the column is left out.
-
-    Parameters
-    ----------
-    found : with ``omega_radps``
-    speed_unit : of ``V_mps``; "" without such a column
-    radius : unloaded [m]; None if it is not known
-
-    Returns
-    -------
-    unit, why not
-        One of them is empty.
-    """
-    column = found["omega_radps"]
-    if not speed_unit:
-        return (
-            "",
-            f"{column.heading} is left out: without a speed it cannot be checked that it is the wheel's",
-        )
-    speed = np.abs(converted(found["V_mps"].values, speed_unit, "m/s"))
+def _rotation(
+    found: Mapping[str, Found], chosen: Mapping[str, Choice], radius: float | None
+) -> Choice | str | None:
+    """The unit in which a speed of rotation is that of the wheel, or why it is left out; None if there is nothing to choose."""
+    column, speed = found.get("omega_radps"), found.get("V_mps")
+    if column is None or column.heading == "omega_radps":
+        return None
+    if speed is None:
+        return f"{column.heading} is left out: without a speed it cannot be checked that it is the wheel's"
+    V = np.abs(converted(speed.values, _unit_of("V_mps", found, chosen), "m/s"))
     lengths = BY_NAME["RL_m"]
-    least, most = (
-        (lengths.lower, lengths.upper)
-        if radius is None
-        else (share * radius for share in constants.ROLLING_RADIUS_RANGE)
-    )
-    middle = np.sqrt(least * most)
+    limits = (lengths.lower, lengths.upper)
+    if radius is not None:
+        limits = tuple(share * radius for share in constants.ROLLING_RADIUS_RANGE)
     fits: dict[str, float] = {}
     for unit in (column.unit,) if column.unit else ROTATION_UNITS:
         omega = np.abs(converted(column.values, unit, "rad/s"))
-        seen = np.isfinite(omega) & np.isfinite(speed) & (speed > 0.0)
+        seen = np.isfinite(omega) & np.isfinite(V) & (V > 0.0)
         with np.errstate(divide="ignore"):
-            ratio = float(np.median(speed[seen] / omega[seen])) if np.any(seen) else np.inf
-        if least <= ratio <= most:
-            fits[unit] = abs(np.log(ratio / middle))
-    if fits:
-        return min(fits, key=lambda unit: fits[unit]), ""
-    return "", (
-        f"{column.heading} ({column.range}) is left out: at the speed in {found['V_mps'].heading}, no wheel of this size "
-        "turns at this rate"
+            ratio = float(np.median(V[seen] / omega[seen])) if np.any(seen) else np.inf
+        if _within(ratio, limits):
+            fits[unit] = abs(np.log(ratio / np.sqrt(np.prod(limits))))
+    if not fits:
+        return (
+            f"{column.heading} ({column.range}) is left out: at the speed in {speed.heading}, no wheel of this size turns at "
+            "this rate"
+        )
+    unit = min(fits, key=lambda unit: fits[unit])
+    return None if column.unit else Choice(unit, f"in {unit} they agree with {speed.heading}")
+
+
+def _implausible(name: str, found: Mapping[str, Found], chosen: Mapping[str, Choice]) -> str:
+    """Why an optional column is left out: its readings are outside the plausible range; "" if they are not."""
+    column, channel = found[name], found[name].channel
+    if channel.required or name == "time_s":
+        return ""
+    unit = _unit_of(name, found, chosen)
+    values = converted(column.values, unit, channel.unit)
+    if not implausible(values, channel, may_have_gaps="time_s" in found):
+        return ""
+    limits = f"{channel.lower:g} to {channel.upper:g} {channel.unit}".rstrip()
+    return (
+        f"{column.heading} ({column.range}) is left out: in {unit or 'plain numbers'} it is not within {limits}; if it is "
+        f"{channel.name}, write it with its true unit under [columns]"
     )
 
 
-def customary(found: Mapping[str, Found], units: Mapping[str, str], open_: Sequence[str]) -> str:
-    """A remark if one column is in an American unit and others state none; "" otherwise.
-
-    Parameters
-    ----------
-    found : the columns
-    units : of all of them
-    open_ : channels whose unit was chosen
-    """
+def customary(found: Mapping[str, Found], chosen: Mapping[str, Choice]) -> str:
+    """A remark if one column is in an American unit and others state none; "" otherwise."""
+    units = {name: _unit_of(name, found, chosen) for name in found}
     american = {spelt(unit) for unit in CUSTOMARY.values()}
     settled = {column.channel.unit for column in found.values() if column.unit}
-    sign = next((name for name in found if spelt(units.get(name, "")) in american), None)
+    sign = next((name for name in found if spelt(units[name]) in american), None)
     doubtful = [
         name
-        for name in open_
+        for name in chosen
         if found[name].channel.unit in CUSTOMARY.keys() - settled and spelt(units[name]) not in american
     ]
     if sign is None or not doubtful:
