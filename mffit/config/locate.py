@@ -29,6 +29,16 @@ def lines_of_keys(text: str) -> dict[str, int]:
     return found
 
 
+def line_of(key: str, lines: dict[str, int]) -> int | None:
+    """Line of a dotted key, else of the table around it; ``[table]`` may be written for the first ``[[table]]``."""
+    while key:
+        for candidate in (key, key.replace(".0", "", 1)):
+            if candidate in lines:
+                return lines[candidate]
+        key = key.rpartition(".")[0]
+    return None
+
+
 def _dotted(name: str) -> str:
     return ".".join(part.strip().strip("\"'") for part in name.split("."))
 

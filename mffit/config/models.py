@@ -21,6 +21,7 @@ from pydantic import (
 from mffit.brief import Brief
 from mffit.config import constants
 from mffit.config import quantities as q
+from mffit.config.locate import line_of
 from mffit.config.radii import effective_radius, path_radius
 
 U_DECLARED_RADIUS = 0.0018
@@ -279,11 +280,7 @@ class Config(Brief, Table):
 
     def line_of(self, key: str) -> int | None:
         """Line of a dotted key (``sweep.2.file`` for the third sweep), else of the table around it; None without either."""
-        while key:
-            if key in self._lines:
-                return self._lines[key]
-            key = key.rpartition(".")[0]
-        return None
+        return line_of(key, self._lines)
 
     @model_validator(mode="before")
     @classmethod

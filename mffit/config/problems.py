@@ -14,6 +14,7 @@ from typing import Any, NamedTuple, TypeVar
 from pydantic import BaseModel, ValidationError
 
 from mffit import constants
+from mffit.config.locate import line_of
 from mffit.errors import InputError, shortened
 
 Keys = Mapping[str, tuple[str, ...]]
@@ -77,7 +78,7 @@ def validated(
 
 def _mistake(detail: Any, lines: dict[str, int], known: Keys) -> _Mistake:
     key = _key_at_fault(detail)
-    line = _line(key, lines)
+    line = line_of(key, lines) or (1 if lines else None)
     if detail["type"] != "extra_forbidden":
         return _Mistake(key, line, _sentence(detail, key, lines))
     table, name = _split(key, known)
@@ -98,16 +99,6 @@ def _key_at_fault(detail: Any) -> str:
     if loc and named and named[0] == loc[0]:
         named = named[1:]
     return ".".join([*loc, *named])
-
-
-def _line(key: str, lines: dict[str, int]) -> int | None:
-    """Line of the key, else of the table around it; ``[table]`` may be written for the first ``[[table]]``."""
-    while key:
-        for candidate in (key, key.replace(".0", "", 1)):
-            if candidate in lines:
-                return lines[candidate]
-        key = key.rpartition(".")[0]
-    return 1 if lines else None
 
 
 def _shown(key: str, lines: dict[str, int]) -> str:

@@ -22,15 +22,8 @@ class TomlKind(NamedTuple):
     elsewise: Callable[[Path], str]  #: what to do with a file that is neither TOML nor a property file
 
 
-class TomlFile(NamedTuple):
-    """What a TOML file holds."""
-
-    content: dict[str, Any]
-    lines: dict[str, int]  #: of every key, see :func:`lines_of_keys`
-
-
-def read_toml(path: Path, kind: TomlKind) -> TomlFile:
-    """Content and lines of a TOML file.
+def read_toml(path: Path, kind: TomlKind) -> tuple[dict[str, Any], dict[str, int]]:
+    """Content of a TOML file, and the line of every key (see :func:`lines_of_keys`).
 
     Raises
     ------
@@ -51,7 +44,7 @@ def read_toml(path: Path, kind: TomlKind) -> TomlFile:
         raise _syntax_error(error, path, text) from None
     if not is_toml and content.keys().isdisjoint(kind.tables):
         raise _other_file(path, kind)
-    return TomlFile(content, lines_of_keys(text))
+    return content, lines_of_keys(text)
 
 
 def _bytes(path: Path, kind: TomlKind) -> bytes:
