@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from tir.constant import Real
+from tir.constant import Count, Real
 
 USUAL_CORNERING_STIFFNESS = Real(
     10.0,
@@ -16,4 +16,14 @@ EXPLAINED_SHARE = Real(
     1.0 / 3.0,
     "-",
     "A known mistake explains an error if less than this share of the error is left when the mistake is undone.",
+)
+LIKENESS_OF_MISSPELT = Real(
+    0.6,
+    "-",
+    "A key or heading is taken for a misspelt one if it is at least this like it, as difflib measures likeness.",
+)
+LONGEST_QUOTE = Count(
+    60,
+    "characters",
+    "Messages quote at most this much of a file: a quotation mark that is never closed takes in half of it.",
 )

@@ -1,24 +1,28 @@
-"""What a user has to put right, said in one sentence.
+"""Errors that the user can correct, each one sentence.
 
 Only :class:`InputError` reaches the user without a traceback: the command line prints ``mffit: <sentence>``
-and exits with 2. Everything else is a bug of ours. This module imports nothing of ours, so all may import it.
+and exits with 2. Any other exception is a bug in mffit. Every module may import this one.
 """
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
+
+from mffit import constants
 
 
 class InputError(Exception):
-    """Bad input: what is wrong, where it stands and what to do about it.
+    """Bad input: what is wrong, where, and how to correct it.
 
     Parameters
     ----------
-    sentence : what is there, why it is wrong and what to do; without the place
-    file : the file at fault; its place opens the text, ``file:line: ...``
+    sentence : what was found, why it is wrong and what to do; without the place
+    file : the file at fault; the text begins with it, ``file:line: ...``
     line : line in ``file``, counted from 1
     column : heading of the CSV column at fault
-    key : dotted key of ``tyre.toml`` at fault, as ``rig.path_radius``
+    key : dotted key of ``tyre.toml`` at fault, for example ``rig.path_radius``
 
     Notes
     -----
@@ -50,3 +54,33 @@ class InputError(Exception):
         elif self.column is not None:
             place += f"column {self.column}: "
         return place + self.sentence
+
+
+@contextmanager
+def readable(
+    path: Path,
+    *,
+    missing: str = "there is no such file; correct its name",
+    folder: str = "is a folder; name the files in it",
+) -> Iterator[None]:
+    """Within this block, an operating system error while reading ``path`` becomes an :class:`InputError`.
+
+    Parameters
+    ----------
+    path : the file that is read
+    missing, folder : sentences for a file that does not exist, and for a folder of this name
+    """
+    try:
+        yield
+    except FileNotFoundError:
+        raise InputError(missing, file=path) from None
+    except IsADirectoryError:
+        raise InputError(folder, file=path) from None
+    except OSError as error:
+        raise InputError(f"cannot be read ({error.strerror}); check its permissions", file=path) from None
+
+
+def shortened(text: object) -> str:
+    """The text on one line, short enough to be quoted in a message."""
+    line = " ".join(str(text).split())
+    return line if len(line) <= constants.LONGEST_QUOTE else f"{line[: constants.LONGEST_QUOTE]}..."

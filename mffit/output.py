@@ -1,4 +1,4 @@
-"""A folder that is written whole or not at all, and never over what somebody else put there."""
+"""Output folders that are written completely or not at all, and never over files of somebody else."""
 
 from __future__ import annotations
 
@@ -18,21 +18,34 @@ from typing import NamedTuple
 from mffit.errors import InputError
 
 RECORD = ".mffit.json"
-"""The usual record of a folder: each file that a run wrote there, with its SHA-256 and the command that did."""
+"""Usual name of the record: the files that mffit wrote to a folder, each with its SHA-256 and the command."""
 
 ABOUT = "Written by mffit: it replaces the files listed here, while they are unchanged, and no others."
 
 READY = ".ready.json"
-"""Stands in a temporary folder from the moment in which its files begin to move: the next run ends what a killed one began."""
-NO_ROOM = frozenset({errno.ENOSPC, errno.EROFS, errno.EDQUOT, errno.EFBIG})
-"""What a full or read-only disk says."""
+"""In a temporary folder as soon as its files begin to move; from it the next run completes what a killed run began."""
+
+DISK_FULL = frozenset({errno.ENOSPC, errno.EROFS, errno.EDQUOT, errno.EFBIG})
+"""Errors of a full or read-only disk."""
+
+ELSEWHERE = "name another folder with --out"
 
 
 class Entry(NamedTuple):
-    """What a record says of a file; ``by:sha256`` in JSON."""
+    """A written file in the record; ``by:sha256`` in JSON."""
 
     by: str  #: the command that wrote it
     sha256: str
+
+
+class _Target(NamedTuple):
+    """A folder that a run writes to; see :func:`output_folder`."""
+
+    out: Path
+    by: str
+    protected: tuple[Path, ...]
+    outdated: frozenset[str]
+    record: str
 
 
 @contextmanager
@@ -44,91 +57,95 @@ def output_folder(
     outdated: Iterable[str] = (),
     record: str = RECORD,
 ) -> Iterator[Path]:
-    """A temporary folder beside ``out`` whose files go to ``out`` only if the block succeeds.
+    """A temporary folder beside ``out`` whose files move to ``out`` only if the block succeeds.
 
     Parameters
     ----------
-    out : folder to write to; made if need be
-    by : the command that writes, so that it clears away only pictures of its own
+    out : folder to write to; created if necessary
+    by : the command that writes; only files of the same command are ever removed
     protected : files that the run reads
-    outdated : names that would pass for this run's output if an earlier one left them
-    record : JSON file of ``out`` that lists, under ``files``, what was written; one of the run's own JSON
-        files may serve, which then carries that key
+    outdated : names of files that would be mistaken for this run's output if an earlier run left them
+    record : JSON file of ``out`` that lists the written files under ``files``; it may be a JSON file of the run
+        itself, which then gets that key
 
     Raises
     ------
     InputError
-        ``out`` cannot be written to, or a file in the way is not this program's to replace; ``out`` is as
-        it was then.
+        ``out`` cannot be written to, or a file there may not be replaced; ``out`` is then unchanged.
 
     Notes
     -----
-    A file of ``out`` is replaced only if an earlier run wrote it and nobody changed it since (the record
-    tells), or if it would get the bytes that it has. A file that the run reads is never replaced by other
-    bytes, whoever wrote it. Files that the run does not write stay. In folders within ``out`` (``plots``),
-    what an earlier run of the same command wrote, and this one does not, goes, if it is unchanged.
+    A file in ``out`` is replaced only if an earlier run wrote it and it is unchanged since (by the record), or if the new
+    content is the same. A file that the run reads is never replaced by other content. Files that the run does not write stay.
+    In folders within ``out`` (``plots``), files that an earlier run of the same command wrote, and this one does not, are
+    removed if they are unchanged.
 
-    An interrupted or failing run leaves ``out`` as it was. A killed one leaves its temporary folder, which
-    the next run to the same place removes: its name tells machine and process. If it was killed while its
-    finished files were moving, the next run moves the rest first.
+    An interrupted or failed run leaves ``out`` unchanged. A killed run leaves its temporary folder, whose name has machine
+    and process; the next run to the same place removes it. If the run was killed while its finished files were moving, the
+    next run moves the others first.
     """
-    parent = out.absolute().parent
-    if out.exists() and not out.is_dir():
-        raise InputError(f"{out} is a file, and the output needs a folder: name another with --out")
-    try:
-        parent.mkdir(parents=True, exist_ok=True)
-        _remove_litter(out.absolute())
-        temporary = Path(tempfile.mkdtemp(prefix=f"{_prefix(out.name)}{os.getpid()}-", dir=parent))
-    except OSError as error:
-        raise InputError(
-            f"cannot write to {parent} ({error.strerror}): name another folder with --out"
-        ) from error
+    target = _Target(out, by, tuple(protected), frozenset(outdated), record)
+    temporary = _temporary_folder(out)
     try:
         yield temporary
-        files = sorted(path for path in temporary.rglob("*") if path.is_file())
-        written = {path.relative_to(temporary).as_posix(): digest(path) for path in files}
-        recorded = _recorded(out, record)
-        # A record lists itself by being one.
-        itself = {record: Entry(by, digest(out / record))} if recorded else {}
-        _refuse(out, written, recorded | itself, protected)
-        try:
-            _move(temporary, out, written, recorded, by, record, frozenset(outdated))
-        except OSError as error:
-            raise InputError(
-                f"cannot be written to ({error.strerror}: {error.filename}); close what uses it or name another "
-                "folder with --out",
-                file=out,
-            ) from error
+        _publish(temporary, target)
     except OSError as error:
-        if error.errno not in NO_ROOM:
+        if error.errno not in DISK_FULL:
             raise
         raise InputError(
-            f"cannot be written to ({error.strerror}); make room or name another folder with --out", file=out
+            f"cannot be written to ({error.strerror}); free some space or {ELSEWHERE}", file=out
         ) from error
     finally:
         shutil.rmtree(temporary, ignore_errors=True)
 
 
+def _temporary_folder(out: Path) -> Path:
+    """A new folder beside ``out``; folders that killed runs left are removed."""
+    parent = out.absolute().parent
+    if out.exists() and not out.is_dir():
+        raise InputError(f"is a file, but the output needs a folder; {ELSEWHERE}", file=out)
+    try:
+        parent.mkdir(parents=True, exist_ok=True)
+        _remove_litter(out.absolute())
+        return Path(tempfile.mkdtemp(prefix=f"{_prefix(out.name)}{os.getpid()}-", dir=parent))
+    except OSError as error:
+        raise InputError(f"cannot be written to ({error.strerror}); {ELSEWHERE}", file=parent) from error
+
+
+def _publish(temporary: Path, target: _Target) -> None:
+    """Move the finished files to their places, or raise and leave the output as it was."""
+    written = _digests(temporary)
+    recorded = _recorded(target.out, target.record)
+    # The record does not list itself, but its presence shows who wrote it.
+    itself = {target.record: Entry(target.by, digest(target.out / target.record))} if recorded else {}
+    _refuse(target.out, written, recorded | itself, target.protected)
+    try:
+        _move(temporary, target, written, recorded)
+    except OSError as error:
+        raise InputError(
+            f"cannot be written to ({error.strerror}: {error.filename}); close the program that uses it or {ELSEWHERE}",
+            file=target.out,
+        ) from error
+
+
 def refuse_early(out: Path, names: Collection[str], protected: Iterable[Path] = ()) -> None:
-    """Refuse before the work what :func:`output_folder` would refuse after it, as far as names are known.
+    """Raise before the work, if the names of the files are known, what :func:`output_folder` would raise after it.
 
     Raises
     ------
     InputError
-        One of ``names`` stands in ``out`` and is not this program's to replace.
+        ``out`` has a file of one of the names that may not be replaced.
     """
     if out.is_dir():
         _refuse(out, dict.fromkeys(names, ""), _recorded(out, RECORD), protected)
 
 
 def written_by(out: Path, by: str, record: str = RECORD) -> frozenset[str]:
-    """Files of ``out`` that the command ``by`` wrote and that are as it left them; empty where nothing is recorded."""
+    """Files of ``out`` that the command ``by`` wrote and that are unchanged; empty without a record."""
     try:
         recorded = _recorded(out, record)
         return frozenset(
-            name
-            for name, entry in recorded.items()
-            if entry.by == by and (out / name).is_file() and digest(out / name) == entry.sha256
+            name for name, entry in recorded.items() if entry.by == by and _is_unchanged(out, name, entry)
         )
     except (InputError, OSError):
         return frozenset()
@@ -139,64 +156,68 @@ def digest(path: Path) -> str:
     return hashlib.sha256(path.read_bytes()).hexdigest()
 
 
+def _digests(folder: Path) -> dict[str, str]:
+    """SHA-256 of every file in a folder, by its relative name."""
+    files = sorted(path for path in folder.rglob("*") if path.is_file())
+    return {path.relative_to(folder).as_posix(): digest(path) for path in files}
+
+
+def _is_unchanged(out: Path, name: str, entry: Entry) -> bool:
+    return (out / name).is_file() and digest(out / name) == entry.sha256
+
+
 def _refuse(
     out: Path,
     written: Mapping[str, str],
     recorded: Mapping[str, Entry],
     protected: Iterable[Path],
 ) -> None:
-    """Raise if a file of ``written`` would replace one that it must not."""
+    """Raise if a file of ``written`` would replace one that must stay."""
     inputs = [path for path in protected if path.exists()]
     for name, new in written.items():
         target = out / name
         for folder in list(target.parents)[: len(PurePosixPath(name).parents) - 1]:
             if folder.exists() and not folder.is_dir():
                 raise InputError(
-                    "is a file where the output has a folder; move it away or name another folder with --out",
+                    f"is a file, but the output needs a folder of this name; move it away or {ELSEWHERE}",
                     file=folder,
                 )
         if not os.path.lexists(target):
             continue
         if not target.is_file():
             raise InputError(
-                "is no file, and the output writes one there; move it away or name another folder with --out",
+                f"is not a file, but the output writes a file of this name; move it away or {ELSEWHERE}",
                 file=target,
             )
-        old = digest(target)
-        if old == new:
-            continue
-        if any(os.path.samefile(target, path) for path in inputs):
-            raise InputError(
-                "is an input of this run, and its output would replace it; name another folder with --out",
-                file=target,
-            )
-        if name not in recorded:
-            raise InputError(
-                "would be replaced, and no run of mffit is known to have written it; move it away or name "
-                "another folder with --out",
-                file=target,
-            )
-        if recorded[name].sha256 != old:
-            raise InputError(
-                "would be replaced, and was changed since mffit wrote it; move it away or name another folder "
-                "with --out",
-                file=target,
-            )
+        reason = _reason_to_keep(target, new, recorded.get(name), inputs)
+        if reason:
+            raise InputError(reason, file=target)
+
+
+def _reason_to_keep(target: Path, new: str, entry: Entry | None, inputs: Iterable[Path]) -> str:
+    """Why a file must not be replaced by one of the SHA-256 ``new``; "" if it may."""
+    old = digest(target)
+    if old == new:
+        return ""
+    if any(os.path.samefile(target, path) for path in inputs):
+        return f"is an input of this run, and the output would replace it; {ELSEWHERE}"
+    if entry is None:
+        return (
+            f"would be replaced, but no run of mffit is known to have written it; move it away or {ELSEWHERE}"
+        )
+    if entry.sha256 != old:
+        return f"would be replaced, but it was changed since mffit wrote it; move it away or {ELSEWHERE}"
+    return ""
 
 
 def _move(
-    temporary: Path,
-    out: Path,
-    written: Mapping[str, str],
-    recorded: Mapping[str, Entry],
-    by: str,
-    record: str,
-    outdated: frozenset[str],
+    temporary: Path, target: _Target, written: Mapping[str, str], recorded: Mapping[str, Entry]
 ) -> None:
-    """Put the files in their places, take away stale ones, and record it."""
-    stale = _stale(out, written, recorded, by, outdated)
+    """Move the files to their places, remove outdated ones, and write the record."""
+    out, record = target.out, target.record
+    stale = _stale(target, written, recorded)
     kept = {name: entry for name, entry in recorded.items() if name not in stale and (out / name).is_file()}
-    entries = kept | {name: Entry(by, new) for name, new in written.items() if name != record}
+    entries = kept | {name: Entry(target.by, new) for name, new in written.items() if name != record}
     file = temporary / record
     content = json.loads(file.read_text(encoding="utf-8")) if record in written else {"about": ABOUT}
     content["files"] = {name: ":".join(entry) for name, entry in sorted(entries.items())}
@@ -207,7 +228,7 @@ def _move(
 
 
 def _carry(temporary: Path, out: Path, names: Iterable[str], stale: Iterable[str], record: str) -> None:
-    """Move the files, take the stale ones away, and the record last: it tells of a whole folder."""
+    """Move the files and remove the stale ones; the record is last, so that it describes a complete folder."""
     for name in names:
         (out / name).parent.mkdir(exist_ok=True)
         os.replace(temporary / name, out / name)
@@ -216,45 +237,37 @@ def _carry(temporary: Path, out: Path, names: Iterable[str], stale: Iterable[str
     os.replace(temporary / record, out / record)
 
 
-def _end(dead: Path, out: Path) -> None:
-    """Move what a killed run had finished and not yet moved; nothing if somebody changed a file since."""
+def _complete(dead: Path, out: Path) -> None:
+    """Move the files that a killed run had finished but not moved; none if somebody changed a file since."""
     ready = json.loads((dead / READY).read_text(encoding="utf-8"))
     record = ready["record"]
     if not (dead / record).is_file():
         return
     recorded = _recorded(out, record)
-    left = {path.relative_to(dead).as_posix(): digest(path) for path in dead.rglob("*") if path.is_file()}
-    moving = {name: new for name, new in left.items() if name not in (READY, record)}
+    moving = {name: new for name, new in _digests(dead).items() if name not in (READY, record)}
     _refuse(out, moving, recorded, ())
-    unchanged = [
-        n
-        for n in ready["stale"]
-        if n in recorded and (out / n).is_file() and digest(out / n) == recorded[n].sha256
-    ]
-    _carry(dead, out, moving, unchanged, record)
+    stale = [name for name in ready["stale"] if name in recorded and _is_unchanged(out, name, recorded[name])]
+    _carry(dead, out, moving, stale, record)
 
 
-def _stale(
-    out: Path, written: Mapping[str, str], recorded: Mapping[str, Entry], by: str, outdated: frozenset[str]
-) -> list[str]:
-    """Files of an earlier run of this command, unchanged since, that this run did not write again.
+def _stale(target: _Target, written: Mapping[str, str], recorded: Mapping[str, Entry]) -> list[str]:
+    """Unchanged files of an earlier run of this command that this run did not write again.
 
-    In the folders that it wrote to all of them; beside them those that would pass for its own, ``outdated``.
+    All in the folders that this run wrote to; outside them only those called ``outdated``.
     """
     folders = {PurePosixPath(name).parent for name in written} - {PurePosixPath(".")}
     return [
         name
         for name, entry in recorded.items()
         if name not in written
-        and (PurePosixPath(name).parent in folders or name in outdated)
-        and entry.by == by
-        and (out / name).is_file()
-        and digest(out / name) == entry.sha256
+        and (PurePosixPath(name).parent in folders or name in target.outdated)
+        and entry.by == target.by
+        and _is_unchanged(target.out, name, entry)
     ]
 
 
 def _recorded(out: Path, record: str) -> dict[str, Entry]:
-    """What earlier runs wrote, by name relative to ``out``; a record of our own name must be one."""
+    """Files that earlier runs wrote, by name relative to ``out``; a file called RECORD that is not a record is refused."""
     path = out / record
     try:
         files = json.loads(path.read_text(encoding="utf-8"))["files"]
@@ -275,19 +288,19 @@ def _prefix(name: str) -> str:
 
 
 def _remove_litter(out: Path) -> None:
-    """Remove temporary folders for ``out`` whose process, on this machine, is no more; first what they had finished moves."""
+    """Remove temporary folders of ended processes of this machine; files that these had finished are moved first."""
     prefix = _prefix(out.name)
     for path in out.parent.iterdir():
         found = re.fullmatch(r"(\d+)-\w{8}", path.name.removeprefix(prefix))
         if path.name.startswith(prefix) and found and path.is_dir() and not _alive(int(found[1])):
             if (path / READY).is_file():
                 with suppress(InputError, OSError, ValueError, LookupError, TypeError):
-                    _end(path, out)
+                    _complete(path, out)
             shutil.rmtree(path, ignore_errors=True)
 
 
 def _alive(pid: int) -> bool:
-    """Whether the process runs; taken to be so on Windows, where asking with a signal would end it."""
+    """Whether the process runs; always true on Windows, where a signal to ask would end it."""
     if os.name == "nt":
         return True
     try:
@@ -300,14 +313,14 @@ def _alive(pid: int) -> bool:
 
 
 def must_be_new(folder: Path, names: Iterable[str]) -> None:
-    """Refuse a folder that holds one of the names already."""
+    """Raise if the folder has a file of one of the names."""
     for name in names:
         if (folder / name).exists():
-            raise InputError("is there already; name another folder or move it away", file=folder / name)
+            raise InputError("is there already; move it away or name another folder", file=folder / name)
 
 
 def new_files(folder: Path, contents: Mapping[str, str]) -> list[Path]:
-    """Write texts as new files of a folder, none of which may be there already; returns their paths.
+    """Paths of new files of a folder, written with the given texts.
 
     Raises
     ------

@@ -1,11 +1,11 @@
-"""How a long run tells what it is doing."""
+"""Progress messages of long runs."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 
 Progress = Callable[[str], None]
-"""Called with a short sentence whenever a step begins."""
+"""Called with a short sentence at the beginning of every step."""
 
 
 class Silent:
@@ -15,7 +15,7 @@ class Silent:
         pass
 
     def __repr__(self) -> str:
-        return "silent"  # what a help text has for a default
+        return "silent"  # the default as help() shows it
 
 
 silent = Silent()

@@ -1,4 +1,4 @@
-"""How a property file says to where a range was tested: written and read back."""
+"""The limit to which a range was tested, as a comment in a property file: writing and reading."""
 
 from __future__ import annotations
 
@@ -6,11 +6,11 @@ import re
 
 
 def words_on_tested(end: float, unit: str) -> str:
-    """The end of a comment on a range's limit."""
+    """The comment on a limit of a range, up to which it was tested."""
     return f"tested to {end:.6g} {unit}"
 
 
 def end_tested(comment: str) -> float | None:
-    """To where the data went, in SI, if the comment says it."""
+    """The tested limit in SI; None if the comment has none."""
     found = re.search(r"\btested to (-?[\d.]+(?:e[+-]?\d+)?)", comment)
     return float(found[1]) if found else None

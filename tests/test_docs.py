@@ -18,6 +18,7 @@ import pytest
 import mffit
 import tir
 from mffit.cli import commands
+from mffit.config import Config
 from mffit.config.problems import known_keys
 from mffit.virtual_rig import plan
 
@@ -136,7 +137,7 @@ def test_every_public_name_is_in_the_reference(package):
 
 def test_every_key_of_tyre_toml_is_described():
     page = text_of(DOCS / "configuration.md")
-    keys = {key for keys in known_keys().values() for key in keys}
+    keys = {key for keys in known_keys(Config).values() for key in keys}
     missing = sorted(key for key in keys if not re.search(KEY.format(key), page))
     assert not missing, f"docs/configuration.md does not describe {', '.join(missing)}"
 

@@ -1,4 +1,4 @@
-"""The command line: a thin shell over the Python API; a module per group of commands."""
+"""The command line, a thin layer over the Python API; one module per group of commands."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from contextlib import redirect_stderr, redirect_stdout
 import click
 
 from mffit.cli import building, comparing, diagnosing, exporting, files, measuring, planning, projects, rigs
-from mffit.cli.console import Unheard
+from mffit.cli.console import PipeTolerant
 
 CONTEXT = {"help_option_names": ["-h", "--help"], "max_content_width": 100}
 COMMANDS = (
@@ -32,7 +32,7 @@ COMMANDS = (
 @click.group(context_settings=CONTEXT)
 @click.version_option(package_name="mffit", prog_name="mffit")
 def commands() -> None:
-    """From tyre-rig sweeps to an MF-6.2 property file with a measured camber reduction factor."""
+    """Make MF-6.2 property files from tyre-rig sweeps, with a measured camber reduction factor."""
 
 
 for command in COMMANDS:
@@ -40,8 +40,8 @@ for command in COMMANDS:
 
 
 def main(arguments: list[str] | None = None) -> None:
-    """Entry point: exit 0 done, 2 bad input or usage with one sentence, 1 a bug."""
-    with redirect_stdout(Unheard(sys.stdout)), redirect_stderr(Unheard(sys.stderr)):
+    """Entry point; exits with 0 if done, with 2 and one sentence on bad input or usage, with 1 on a bug."""
+    with redirect_stdout(PipeTolerant(sys.stdout)), redirect_stderr(PipeTolerant(sys.stderr)):
         _run(arguments)
 
 
@@ -58,9 +58,8 @@ def _run(arguments: list[str] | None) -> None:
     except OSError as error:
         if error.errno != errno.ENOSPC:
             raise
-        click.echo(
-            f"mffit: no room is left on the disk ({error.filename or 'what is printed'}); make some", err=True
-        )
+        place = error.filename or "standard output"
+        click.echo(f"mffit: the disk is full ({place}); free some space and run again", err=True)
         sys.exit(2)
     except click.ClickException as error:
         error.show()

@@ -1,37 +1,44 @@
-"""`mffit build`: sweeps to property file, of one tyre or of many; `mffit fleet`: many built tyres together."""
+"""`mffit build`: property files of one tyre or of many; `mffit fleet`: comparison of built tyres."""
 
 from __future__ import annotations
 
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import click
 
-from mffit.cli.console import Voice, voiced
+from mffit.cli.console import Voice, out_option, voiced
 
-MANY_BUILT = 2
-"""Tyres from which on they are compared."""
+if TYPE_CHECKING:
+    from mffit.results import Outcome
+
+FEWEST_TYRES_TO_COMPARE = 2
 
 
 @click.command()
 @click.argument(
     "tyre_tomls", nargs=-1, required=True, type=click.Path(path_type=Path), metavar="TYRE_TOML..."
 )
-@click.option(
-    "--out",
-    type=click.Path(path_type=Path),
-    help="Folder to write to; of several tyres each in a folder of its name, with a page that compares them "
-    "[default: out/ beside each TYRE_TOML].",
+@out_option(
+    "Folder to write to [default: out/ beside each TYRE_TOML]. With several tyres, each gets a folder of its name, and a page "
+    "compares them."
 )
 @click.option(
-    "--ensemble", type=click.IntRange(0), default=0, help="Files to draw from what the fit leaves uncertain."
+    "--ensemble",
+    type=click.IntRange(0),
+    default=0,
+    help="Number of files to draw from the posterior of the fit.",
 )
-@click.option("--jobs", type=click.IntRange(1), default=1, help="Of several tyres, how many at a time.")
+@click.option("--jobs", type=click.IntRange(1), default=1, help="Number of tyres to build at the same time.")
 @click.option("--dask", metavar="ADDRESS", help="Build on the workers of this Dask scheduler.")
 @voiced
 def build(
     tyre_tomls: tuple[Path, ...], out: Path | None, ensemble: int, jobs: int, dask: str | None, voice: Voice
 ) -> None:
-    """Run the whole pipeline: sweeps to .tir, result.json, report.html."""
+    """Make the property file from the sweeps.
+
+    Runs the whole pipeline and writes .tir, result.json, report.html, points.csv and plots.
+    """
     if len(tyre_tomls) > 1 or dask:
         _build_many(tyre_tomls, out, ensemble, jobs, dask, voice)
     else:
@@ -65,62 +72,77 @@ def _build_many(
     voice: Voice,
 ) -> None:
     from mffit import pipeline
-    from mffit.errors import InputError
     from mffit.report import text
-    from mffit.results import Outcome, as_json
+    from mffit.results import as_json
 
     finished: list[Outcome] = []
-    state = None
-
-    def done(outcome: Outcome) -> None:
-        finished.append(outcome)
-        voice.tell(text.many_line(outcome, len(finished), len(tyre_tomls)))
-        if state is not None:
-            state(f"{len(finished)} of {len(tyre_tomls)} finished")
-
     interrupted = False
     with voice.progress() as show:
-        state = show
+
+        def done(outcome: Outcome) -> None:
+            finished.append(outcome)
+            voice.tell(text.many_line(outcome, len(finished), len(tyre_tomls)))
+            show(f"{len(finished)} of {len(tyre_tomls)} finished")
+
         show(f"building {len(tyre_tomls)} tyres")
         try:
-            finished = [
-                *pipeline.build_many(tyre_tomls, out, jobs=jobs, dask=dask, ensemble=ensemble, done=done)
-            ]
+            ordered = pipeline.build_many(tyre_tomls, out, jobs=jobs, dask=dask, ensemble=ensemble, done=done)
+            finished = list(ordered)
         except KeyboardInterrupt:
             interrupted = True
     if finished:
         voice.say(text.many_summary(finished))
-    whole = [outcome.out for outcome in finished if outcome.out is not None and outcome.whole]
-    if out is not None and len(whole) >= MANY_BUILT and not interrupted:
-        try:
-            pipeline.fleet(whole, out)
-            voice.say(f"\nwritten to {out}: fleet.html, fleet.json, fleet.csv")
-        except InputError as error:
-            voice.warn([f"the tyres are not compared: {error}"])
+    if out is not None and not interrupted:
+        _compare_built(finished, out, voice)
     voice.give(lambda: [as_json.outcome(outcome) for outcome in finished])
+    _end(finished, interrupted, voice)
+
+
+def _compare_built(finished: list[Outcome], out: Path, voice: Voice) -> None:
+    """Compare the tyres that were built completely."""
+    from mffit import pipeline
+    from mffit.errors import InputError
+
+    whole = [outcome.out for outcome in finished if outcome.out is not None and outcome.whole]
+    if len(whole) < FEWEST_TYRES_TO_COMPARE:
+        return
+    try:
+        pipeline.fleet(whole, out)
+        voice.say(f"\nwritten to {out}: fleet.html, fleet.json, fleet.csv")
+    except InputError as error:
+        voice.warn([f"the tyres are not compared: {error}"])
+
+
+def _end(finished: list[Outcome], interrupted: bool, voice: Voice) -> None:
+    """Name the tyres that were not built, and exit with the code of the worst."""
+    from mffit.report import text
+
     if voice.json or voice.quiet:
         for outcome in finished:
             if not outcome.whole:
                 click.echo(f"mffit: {text.lacking(outcome)}", err=True)
     if interrupted:
         click.echo(
-            "mffit: interrupted; finished tyres are whole, the same command goes on with the others", err=True
+            "mffit: interrupted; the finished tyres are complete, and the same command continues with the others",
+            err=True,
         )
         raise SystemExit(130)
-    if any(outcome.state == "refused" for outcome in finished):
+    states = {outcome.state for outcome in finished}
+    if "refused" in states:
         raise SystemExit(2)
-    if any(outcome.state == "failed" for outcome in finished):
+    if "failed" in states:
         raise SystemExit(1)
 
 
 @click.command()
 @click.argument("folders", nargs=-1, required=True, type=click.Path(path_type=Path), metavar="DIR...")
-@click.option(
-    "--out", type=click.Path(path_type=Path), help="Folder for fleet.html, .json, .csv, priors.json."
-)
+@out_option("Folder for fleet.html, fleet.json, fleet.csv and priors.json [default: only printed].")
 @voiced
 def fleet(folders: tuple[Path, ...], out: Path | None, voice: Voice) -> None:
-    """Compare built tyres (the folders that `build` wrote); those of one rig are estimated together."""
+    """Compare built tyres.
+
+    DIR is a folder that `mffit build` wrote. Tyres that were measured on one rig are estimated together.
+    """
     from mffit import pipeline
     from mffit.report import text
     from mffit.results import as_json

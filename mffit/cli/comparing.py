@@ -1,4 +1,4 @@
-"""`mffit compare`: file against file, file against data, build against build."""
+"""`mffit compare`: two property files, a file and data, or two builds."""
 
 from __future__ import annotations
 
@@ -6,25 +6,24 @@ from pathlib import Path
 
 import click
 
-from mffit.cli.console import Voice, voiced
+from mffit.cli.console import Voice, out_option, voiced
 
 
 @click.command()
 @click.argument("first", type=click.Path(path_type=Path), metavar="A.tir|FOLDER")
 @click.argument("second", type=click.Path(path_type=Path), metavar="B.tir|FOLDER|TYRE_TOML")
-@click.option(
-    "--out",
-    type=click.Path(path_type=Path),
-    help="Folder for the page and the numbers [default: only printed].",
-)
+@out_option("Folder for compare.html and compare.json [default: nothing is written].")
 @click.option(
     "--turn-slip",
     type=click.Choice(["on", "off"]),
-    help="Evaluate both files so [default: each as it is meant].",
+    help="Evaluate both files with turn slip on or off [default: each as intended].",
 )
 @voiced
 def compare(first: Path, second: Path, out: Path | None, turn_slip: str | None, voice: Voice) -> None:
-    """Curves, stiffnesses, peaks, trail and eps_gamma of two files, a file and data, or two builds; differences ranked."""
+    """Compare two property files, a file and data, or two builds.
+
+    Ranks the differences of curves, stiffnesses, peaks, trail and eps_gamma.
+    """
     from mffit import pipeline
     from mffit.report import text
     from mffit.results import as_json

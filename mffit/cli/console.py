@@ -1,4 +1,4 @@
-"""What every command says in the same way: results as text or JSON, warnings, progress, and silence to a reader who left."""
+"""What all commands share: results as text or JSON, warnings, progress, common arguments, and closed pipes."""
 
 from __future__ import annotations
 
@@ -6,22 +6,30 @@ import functools
 import os
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import AbstractContextManager, contextmanager, nullcontext
+from pathlib import Path
 from typing import Any
 
 import click
 
 from mffit.progress import Progress, silent
 
+tyre_toml_argument = click.argument("tyre_toml", type=click.Path(path_type=Path))
+
+
+def out_option(help_text: str, **settings: Any) -> Callable[..., Any]:
+    """The option ``--out`` with a path."""
+    return click.option("--out", type=click.Path(path_type=Path), help=help_text, **settings)
+
 
 def warn(warnings: Iterable[str]) -> None:
-    """Warnings go to stderr, one line each."""
+    """Print warnings to stderr, one line each."""
     for sentence in warnings:
         click.echo(f"warning: {sentence}", err=True)
 
 
 @contextmanager
 def progress() -> Iterator[Progress]:
-    """A spinner with the running step on a terminal; silence elsewhere."""
+    """A spinner with the current step on a terminal; nothing elsewhere."""
     from rich.console import Console
 
     console = Console(stderr=True)
@@ -33,7 +41,7 @@ def progress() -> Iterator[Progress]:
 
 
 class Voice:
-    """How a command speaks: text for people, one JSON document for programs, or neither.
+    """Output of a command: text for people, one JSON document for programs, or neither.
 
     Warnings and errors go to stderr in any case.
     """
@@ -42,45 +50,45 @@ class Voice:
         self.json, self.quiet = json, quiet
 
     def say(self, text: str, *, end: str = "\n") -> None:
-        """A result for people, on stdout."""
+        """Print a result for people to stdout."""
         if not (self.json or self.quiet):
             click.echo(text + end, nl=False)
 
     def give(self, content: Callable[[], Any]) -> None:
-        """The same result for programs; worked out only where it is asked for."""
+        """Print the result for programs; ``content`` is called only if ``--json`` asks for it."""
         if self.json:
             from mffit.results import as_json
 
             click.echo(as_json.text(content()), nl=False)
 
     def tell(self, sentence: str) -> None:
-        """What goes on, line by line, on stderr."""
+        """Print a line about the progress to stderr."""
         if not self.quiet:
             click.echo(sentence, err=True)
 
     def warn(self, warnings: Iterable[str]) -> None:
-        """As :func:`warn`, in any case."""
+        """As :func:`warn`, even with ``--quiet``."""
         warn(warnings)
 
     def progress(self) -> AbstractContextManager[Progress]:
-        """As :func:`progress`, unless nothing is to be said."""
+        """As :func:`progress`; nothing with ``--quiet``."""
         return nullcontext(silent) if self.quiet else progress()
 
 
 def voiced(command: Callable[..., Any]) -> Callable[..., Any]:
-    """Give a command ``--json`` and ``--quiet``, and hand it a :class:`Voice` as ``voice``."""
+    """The command with the options ``--json`` and ``--quiet``, called with a :class:`Voice` as ``voice``."""
 
     @click.option("--json", "json", is_flag=True, help="Print the result as JSON instead of text.")
     @click.option("--quiet", "-q", is_flag=True, help="Print warnings and errors only.")
     @functools.wraps(command)
-    def heard(*args: Any, json: bool, quiet: bool, **keys: Any) -> Any:
+    def with_voice(*args: Any, json: bool, quiet: bool, **keys: Any) -> Any:
         return command(*args, voice=Voice(json=json, quiet=quiet), **keys)
 
-    return heard
+    return with_voice
 
 
-class Unheard:
-    """A stream that goes on in silence when its reader leaves (``mffit ... | head -1``): no failure of the command."""
+class PipeTolerant:
+    """Output stream that ignores a closed pipe (``mffit ... | head -1``)."""
 
     def __init__(self, stream: Any) -> None:
         self._stream = stream
@@ -92,17 +100,17 @@ class Unheard:
         try:
             return self._stream.write(text)
         except BrokenPipeError:
-            self._give_up()
+            self._discard_the_rest()
             return len(text)
 
     def flush(self) -> None:
         try:
             self._stream.flush()
         except BrokenPipeError:
-            self._give_up()
+            self._discard_the_rest()
 
-    def _give_up(self) -> None:
-        """Send the rest, also what Python flushes at its end, nowhere."""
+    def _discard_the_rest(self) -> None:
+        """Redirect to the null device, so that Python's own flush at exit does not fail either."""
         nowhere = os.open(os.devnull, os.O_WRONLY)
         os.dup2(nowhere, self._stream.fileno())
         os.close(nowhere)

@@ -1,4 +1,4 @@
-"""`mffit diagnose`: what a simulation is missing."""
+"""`mffit diagnose`: effects that a simulation lacks."""
 
 from __future__ import annotations
 
@@ -6,22 +6,23 @@ from pathlib import Path
 
 import click
 
-from mffit.cli.console import Voice, voiced
+from mffit.cli.console import Voice, out_option, tyre_toml_argument, voiced
 
 
 @click.command()
-@click.argument("tyre_toml", type=click.Path(path_type=Path))
+@tyre_toml_argument
 @click.option(
-    "--model", type=click.Path(path_type=Path), help="The simulation's .tir [default: the last build's]."
-)
-@click.option(
-    "--out",
+    "--model",
     type=click.Path(path_type=Path),
-    help="Folder to write to [default: out/diagnosis/ beside TYRE_TOML].",
+    help="The simulation's .tir [default: that of the last build].",
 )
+@out_option("Folder to write to [default: out/diagnosis/ beside TYRE_TOML].")
 @voiced
 def diagnose(tyre_toml: Path, model: Path | None, out: Path | None, voice: Voice) -> None:
-    """Find where simulation and measurement disagree, name the missing effect, show the gap shrink."""
+    """Find effects that a simulation lacks.
+
+    Shows where simulation and measurement disagree, names the effects that explain it, and corrects the model.
+    """
     from mffit import pipeline
     from mffit.report import text
     from mffit.results import as_json

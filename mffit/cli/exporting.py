@@ -1,4 +1,4 @@
-"""A property file or a project's points for other programs: `mffit export c`, `fmu`, `tydex`."""
+"""`mffit export`: a property file as C code or FMU, or a project's points as TYDEX."""
 
 from __future__ import annotations
 
@@ -7,26 +7,22 @@ from typing import Any
 
 import click
 
-from mffit.cli.console import Voice, voiced
+from mffit.cli.console import Voice, out_option, tyre_toml_argument, voiced
 
 
-def _shared(command: Any) -> Any:
-    """What both commands ask for."""
+def _code_options(command: Any) -> Any:
+    """The command with the arguments and options of all exports to code."""
     for decorator in reversed(
         (
             click.argument("file", type=click.Path(path_type=Path), metavar="FILE.tir"),
+            out_option("Folder to write to.", default="export", show_default=True),
             click.option(
-                "--out",
-                type=click.Path(path_type=Path),
-                default="export",
-                show_default=True,
-                help="Folder to write to.",
+                "--name", default=None, help="Name in the code [default: made from the file's name]."
             ),
-            click.option("--name", default=None, help="Name in the code [default: made of the file's]."),
             click.option(
-                "--turn-slip/--no-turn-slip", default=True, show_default=True, help="Whether spin acts."
+                "--turn-slip/--no-turn-slip", default=True, show_default=True, help="Whether turn slip is on."
             ),
-            click.option("--limits", is_flag=True, help="Hold the inputs to the file's ranges."),
+            click.option("--limits", is_flag=True, help="Limit the inputs to the ranges of the file."),
         )
     ):
         command = decorator(command)
@@ -41,14 +37,17 @@ def _report(voice: Voice, written: list[Path]) -> None:
 
 @click.group()
 def export() -> None:
-    """A .tir as C99 sources or as an FMU (functional mock-up unit); a project's points as TYDEX."""
+    """Export a property file as C code or FMU, or points as TYDEX."""
 
 
 @export.command()
-@_shared
+@_code_options
 @voiced
 def c(file: Path, out: Path, name: str | None, turn_slip: bool, limits: bool, voice: Voice) -> None:
-    """One header and one source of C99: no allocation, no state, doubles."""
+    """Export a property file as C99 code.
+
+    Writes one header and one source in double precision, without memory allocation or state.
+    """
     from mffit.export import write_c
 
     written = write_c(file, out, name=name, turn_slip=turn_slip, limits=limits)
@@ -56,11 +55,17 @@ def c(file: Path, out: Path, name: str | None, turn_slip: bool, limits: bool, vo
 
 
 @export.command()
-@_shared
+@_code_options
 @click.option(
-    "--fmi", type=click.Choice(["2", "3"]), default="2", show_default=True, help="Version: FMI 2.0 or 3.0."
+    "--fmi",
+    type=click.Choice(["2", "3"]),
+    default="2",
+    show_default=True,
+    help="Version of the standard: FMI 2.0 or 3.0.",
 )
-@click.option("--sources-only", is_flag=True, help="No binary: the importing program compiles the sources.")
+@click.option(
+    "--sources-only", is_flag=True, help="Without a binary: the importing program compiles the sources."
+)
 @voiced
 def fmu(
     file: Path,
@@ -72,7 +77,10 @@ def fmu(
     sources_only: bool,
     voice: Voice,
 ) -> None:
-    """An FMU for model exchange and co-simulation, with C sources and a binary for this machine."""
+    """Export a property file as an FMU (functional mock-up unit).
+
+    For model exchange and co-simulation, with C sources and a binary for this machine.
+    """
     from mffit.export import write_fmu
 
     written = write_fmu(
@@ -82,15 +90,11 @@ def fmu(
 
 
 @export.command()
-@click.argument("tyre_toml", type=click.Path(path_type=Path))
-@click.option(
-    "--out",
-    type=click.Path(path_type=Path),
-    help="Folder to write to [default: out/tydex/ beside TYRE_TOML].",
-)
+@tyre_toml_argument
+@out_option("Folder to write to [default: out/tydex/ beside TYRE_TOML].")
 @voiced
 def tydex(tyre_toml: Path, out: Path | None, voice: Voice) -> None:
-    """The points of a project as TYDEX 1.3, a file for each sweep."""
+    """Export the points of a project as TYDEX 1.3, one file per sweep."""
     from mffit import pipeline
 
     written = pipeline.write_tydex(tyre_toml, out or tyre_toml.parent / "out" / "tydex")

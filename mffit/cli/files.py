@@ -1,4 +1,4 @@
-"""Commands on property files alone: `mffit check` and `mffit show`."""
+"""Commands on property files: `mffit check` and `mffit show`."""
 
 from __future__ import annotations
 
@@ -6,17 +6,24 @@ from pathlib import Path
 
 import click
 
-from mffit.cli.console import Voice, voiced
+from mffit.cli.console import Voice, out_option, voiced
 
 
 @click.command()
 @click.argument("file", type=click.Path(path_type=Path), metavar="FILE.tir")
 @click.option(
-    "--for", "targets", default="", metavar="NAMES", help="Programs that are to read it: mftyre,simscape,..."
+    "--for",
+    "targets",
+    default="",
+    metavar="NAMES",
+    help="Programs that must be able to read it: mftyre,simscape,...",
 )
 @voiced
 def check(file: Path, targets: str, voice: Voice) -> None:
-    """Check a .tir: units, missing and unknown keys, physics over the file's own ranges."""
+    """Check a property file.
+
+    Looks at units, missing and unknown keys, and physics over the ranges of the file.
+    """
     import tir
     from mffit.results import as_json
     from tir.check import check as problems_of
@@ -38,13 +45,14 @@ def check(file: Path, targets: str, voice: Voice) -> None:
 @click.argument(
     "files", type=click.Path(path_type=Path), nargs=-1, required=True, metavar="FILE.tir [MORE.tir]..."
 )
-@click.option(
-    "--out", type=click.Path(path_type=Path), help="Page to write [default: FILE.html in this folder]."
-)
-@click.option("--open", "open_it", is_flag=True, help="Open the page in the browser.")
+@out_option("Page to write [default: FILE.html in the current folder].")
+@click.option("--open", "open_it", is_flag=True, help="Open the page in a browser.")
 @voiced
 def show(files: tuple[Path, ...], out: Path | None, open_it: bool, voice: Voice) -> None:
-    """Curves of several .tir over one another, in a page with sliders."""
+    """Draw the curves of property files.
+
+    Writes a page with sliders for the conditions; several files are drawn in the same panels.
+    """
     import mffit
 
     out = out or Path(f"{files[0].stem}.html")

@@ -1,4 +1,4 @@
-"""`mffit spin` and `mffit align`: what is measured without a fit."""
+"""`mffit spin` and `mffit align`: direct measurements, without a fit."""
 
 from __future__ import annotations
 
@@ -6,17 +6,18 @@ from pathlib import Path
 
 import click
 
-from mffit.cli.console import Voice, voiced
+from mffit.cli.console import Voice, out_option, tyre_toml_argument, voiced
 
 
 @click.command()
-@click.argument("tyre_toml", type=click.Path(path_type=Path))
-@click.option(
-    "--out", type=click.Path(path_type=Path), help="Folder to write to [default: out/ beside TYRE_TOML]."
-)
+@tyre_toml_argument
+@out_option("Folder to write to [default: out/ beside TYRE_TOML].")
 @voiced
 def spin(tyre_toml: Path, out: Path | None, voice: Voice) -> None:
-    """Alignment check and direct method only: eps_gamma with its uncertainty budget."""
+    """Measure eps_gamma directly.
+
+    Checks the alignment and applies the direct method, without a fit; prints eps_gamma with its uncertainty budget.
+    """
     from mffit import pipeline
     from mffit.report import text
     from mffit.results import as_json
@@ -33,25 +34,28 @@ def spin(tyre_toml: Path, out: Path | None, voice: Voice) -> None:
 
 @click.command()
 @click.argument("source", type=click.Path(path_type=Path), metavar="TYRE_TOML|FILE.csv")
-@click.option("--axes", type=click.Choice(["iso", "sae", "adapted-sae"]), help="Axes of a bare CSV file.")
 @click.option(
-    "--path-centre", type=click.Choice(["left", "right"]), help="Side of the disc centre, for a CSV file."
+    "--axes", type=click.Choice(["iso", "sae", "adapted-sae"]), help="Axes of a CSV file without a tyre.toml."
 )
 @click.option(
-    "--resolution", type=float, metavar="DEG", help="Smallest angle that the axis can be turned by."
+    "--path-centre", type=click.Choice(["left", "right"]), help="Side of the disc's centre for such a file."
 )
+@click.option("--resolution", type=float, metavar="DEG", help="Smallest step of the steering axis.")
 @voiced
 def align(
     source: Path, axes: str | None, path_centre: str | None, resolution: float | None, voice: Voice
 ) -> None:
-    """Next steering correction from forward and backward zeros, in degrees of the rig's axis."""
+    """Compute the next steering correction.
+
+    Uses forward and backward points at zero angles; the correction is in degrees of the rig's axis.
+    """
     from mffit import pipeline
     from mffit.errors import InputError
     from mffit.report import text
     from mffit.results import as_json
 
     if source.suffix != ".toml" and (axes is None or path_centre is None):
-        raise InputError("a CSV file needs --axes and --path-centre, as it does not say them itself")
+        raise InputError("a CSV file does not state axes and path centre; give --axes and --path-centre")
     finest = {} if resolution is None else {"resolution_deg": resolution}
     alignment = pipeline.align(source, axes=axes, path_centre=path_centre, **finest)
     voice.say(text.alignment_table(alignment))

@@ -1,4 +1,4 @@
-"""`mffit plan`: which further runs would tell most."""
+"""`mffit plan`: the most informative further runs."""
 
 from __future__ import annotations
 
@@ -6,25 +6,24 @@ from pathlib import Path
 
 import click
 
-from mffit.cli.console import Voice, voiced
+from mffit.cli.console import Voice, out_option, tyre_toml_argument, voiced
 
 
 @click.command()
-@click.argument("tyre_toml", type=click.Path(path_type=Path))
+@tyre_toml_argument
 @click.option(
     "--goal",
-    help="eps_gamma, eps_gamma:joint, bands, bands:Mz, or tie:EFFECT [default: what PECP1 comes from].",
+    help="What to make more certain: eps_gamma, eps_gamma:joint, bands, bands:Mz, or tie:EFFECT "
+    "[default: the source of PECP1].",
 )
-@click.option("--coefficient", metavar="NAME", help="Aim at the standard error of a coefficient instead.")
+@click.option("--coefficient", metavar="NAME", help="Make this coefficient more certain instead.")
 @click.option(
-    "--runs", type=click.IntRange(1, 10), default=3, show_default=True, help="Length of the list at most."
-)
-@click.option(
-    "--without", multiple=True, metavar="KIND", help="Kind of run that this rig cannot make; may be repeated."
+    "--runs", type=click.IntRange(1, 10), default=3, show_default=True, help="Largest number of runs."
 )
 @click.option(
-    "--out", type=click.Path(path_type=Path), help="Folder to write to [default: out/plan/ beside TYRE_TOML]."
+    "--without", multiple=True, metavar="KIND", help="Kind of run that the rig cannot make; may be repeated."
 )
+@out_option("Folder to write to [default: out/plan/ beside TYRE_TOML].")
 @voiced
 def plan(
     tyre_toml: Path,
@@ -35,14 +34,17 @@ def plan(
     out: Path | None,
     voice: Voice,
 ) -> None:
-    """What the sweeps identify, and the shortest list of further runs that would tell most."""
+    """Plan the most informative further runs.
+
+    Shows what the present sweeps identify, and the shortest list of runs that would add most.
+    """
     from mffit import pipeline
     from mffit.errors import InputError
     from mffit.report import text
     from mffit.results import as_json
 
     if goal and coefficient:
-        raise InputError("--goal and --coefficient exclude each other; give one")
+        raise InputError("--goal and --coefficient exclude each other; give only one")
     out = out or tyre_toml.parent / "out" / "plan"
     with voice.progress() as show:
         found = pipeline.plan(

@@ -1,4 +1,4 @@
-"""`mffit sniff` and `mffit init`: what recordings hold, and a project to start from."""
+"""`mffit sniff` and `mffit init`: content of recordings, and a project to start from."""
 
 from __future__ import annotations
 
@@ -6,17 +6,18 @@ from pathlib import Path
 
 import click
 
-from mffit.cli.console import Voice, voiced
+from mffit.cli.console import Voice, out_option, voiced
 
 
 @click.command()
 @click.argument("files", nargs=-1, required=True, type=click.Path(path_type=Path), metavar="FILE...")
-@click.option(
-    "--out", type=click.Path(path_type=Path), help="Folder for tyre.toml, stretches.csv and pictures."
-)
+@out_option("Folder for tyre.toml, stretches.csv and pictures [default: only printed].")
 @voiced
 def sniff(files: tuple[Path, ...], out: Path | None, voice: Voice) -> None:
-    """What recordings hold: channels, units, axes, conditions, stretches, and the tyre.toml for them."""
+    """Show the content of recordings.
+
+    Prints channels, units, axes, conditions and stretches, and a tyre.toml for the recordings.
+    """
     from mffit import pipeline, recordings
     from mffit.report import text
     from mffit.results import as_json
@@ -27,8 +28,7 @@ def sniff(files: tuple[Path, ...], out: Path | None, voice: Voice) -> None:
     voice.say(text.sniff_summary(found))
     voice.give(lambda: as_json.sniffed(found))
     if out is None:
-        folder = Path()
-        project = recordings.project_text(found, folder, unloaded_radius=None, nominal_load=None)
+        project = recordings.project_text(found, Path(), unloaded_radius=None, nominal_load=None)
         voice.say("\n" + project, end="")
         return
     for path in pipeline.write_sniffed(found, out):

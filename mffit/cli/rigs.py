@@ -1,4 +1,4 @@
-"""`mffit simulate`: a virtual rig."""
+"""`mffit simulate`: sweeps of a virtual rig."""
 
 from __future__ import annotations
 
@@ -6,16 +6,21 @@ from pathlib import Path
 
 import click
 
-from mffit.cli.console import Voice, voiced
+from mffit.cli.console import Voice, out_option, voiced
 
 
 @click.command()
 @click.argument("rig_toml", type=click.Path(path_type=Path))
-@click.option("--out", type=click.Path(path_type=Path), required=True, help="Folder to write to.")
-@click.option("--seed", type=int, default=None, help="Seed of noise and drawn faults [default: the file's].")
+@out_option("Folder to write to.", required=True)
+@click.option(
+    "--seed", type=int, default=None, help="Seed of noise and drawn faults [default: that of the file]."
+)
 @voiced
 def simulate(rig_toml: Path, out: Path, seed: int | None, voice: Voice) -> None:
-    """Virtual rig: write sweeps that `build` reads, and truth.json."""
+    """Simulate the sweeps of a virtual rig.
+
+    Writes sweeps and a tyre.toml that `mffit build` reads, and the true values in truth.json.
+    """
     from mffit import virtual_rig
 
     with voice.progress() as show:

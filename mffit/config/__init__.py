@@ -1,4 +1,4 @@
-"""``tyre.toml``: its tables as frozen records, read with errors that name file, line and key."""
+"""``tyre.toml`` as frozen records; errors name file, line and key."""
 
 from mffit.config.axes import axis_signs, path_curvature
 from mffit.config.loading import load

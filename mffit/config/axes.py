@@ -1,4 +1,4 @@
-"""Signs between the rig's axes and ours, and the curvature of the rig's path."""
+"""Signs between the rig's axes and ISO-W, and the curvature of the rig's path."""
 
 from __future__ import annotations
 
@@ -9,14 +9,17 @@ CHANNELS = ("alpha", "gamma", "Fz", "Fx", "Fy", "Mx", "My", "Mz")
 
 
 def axis_signs(config: Config) -> dict[str, float]:
-    """+1 or -1 per channel: what turns ISO-W into the rig's axes, and back."""
+    """Sign of each channel, +1 or -1, that converts ISO-W to the rig's axes and back."""
     return {channel: sign(config.rig.axes, channel) for channel in CHANNELS}
 
 
 def path_curvature(rig: RigTable, sweep: SweepTable | None = None) -> float:
-    """Turn slip phi_t of the path [1/m]: -1/R with the centre to the left, 1/R to the right, else 0.
+    """Turn slip phi_t of the path [1/m]: -1/R with the centre to the left, 1/R to the right, 0 on a straight path.
 
-    Of the rig's usual path, or of the one that a sweep was run on.
+    Parameters
+    ----------
+    rig : the rig with its usual path
+    sweep : a sweep, which may have a path of its own; None for the usual path
     """
     radius, centre = rig.radius, rig.path_centre
     if radius is None:

@@ -1,4 +1,4 @@
-"""Data that contradict what a configuration declares are refused in the words of that configuration."""
+"""Errors about a column that name the heading and the unit declared for it."""
 
 from __future__ import annotations
 
@@ -12,14 +12,14 @@ from mffit.errors import InputError
 
 @contextmanager
 def as_declared(config: Config) -> Iterator[None]:
-    """Refusals of a column within this block name the heading that the file has and the unit that was declared for it."""
+    """Within this block, errors about a column name its heading in the file and the unit declared for it."""
     try:
         yield
     except InputError as error:
-        raise _said(error, config) from None
+        raise _with_heading(error, config) from None
 
 
-def _said(error: InputError, config: Config) -> InputError:
+def _with_heading(error: InputError, config: Config) -> InputError:
     declared = _declared(error, config)
     if declared is None:
         return error
@@ -31,7 +31,7 @@ def _said(error: InputError, config: Config) -> InputError:
 
 
 def _declared(error: InputError, config: Config) -> Column | None:
-    """What the configuration says of the column at fault, if it says anything."""
+    """The declaration of the column at fault; None without one."""
     if error.column is None or error.file is None:
         return None
     for entry in config.sweep:

@@ -1,4 +1,4 @@
-"""``file = "runs/*.mat"`` in a [[sweep]]: one entry for every file it matches."""
+"""Expansion of patterns in [[sweep]]: ``file = "runs/*.mat"`` becomes one entry per matching file."""
 
 from __future__ import annotations
 
@@ -14,9 +14,9 @@ WILD = frozenset("*?[")
 def with_globs_expanded(
     content: Mapping[str, Any], path: Path | None, folder: Path, lines: dict[str, int]
 ) -> tuple[Mapping[str, Any], dict[str, int]]:
-    """The content with every pattern replaced by its files in the order of their names, and the lines to go with it.
+    """The content with one entry per file in place of every pattern, sorted by name, and the lines of its keys.
 
-    A name of an existing file stays what it is, whatever letters it has.
+    The name of an existing file is never a pattern, even if it contains ``*``, ``?`` or ``[``.
 
     Raises
     ------
@@ -53,12 +53,12 @@ def _is_wild(entry: Any, folder: Path) -> bool:
 
 
 def is_wild(file: str, folder: Path) -> bool:
-    """Whether a name is a pattern and not that of an existing file."""
+    """Whether the text is a pattern; the name of an existing file is none."""
     return bool(WILD & set(file)) and not (folder / file).exists()
 
 
 def matches(pattern: str, folder: Path) -> list[str]:
-    """Files that a pattern matches, named relative to the folder, or absolute if the pattern is."""
+    """Names of the files that match a pattern, sorted; relative to the folder unless the pattern is absolute."""
     start = Path(pattern)
     root = Path(start.anchor) if start.is_absolute() else folder
     relative = str(start.relative_to(start.anchor)) if start.is_absolute() else pattern

@@ -1,4 +1,4 @@
-"""In which line of a TOML text each key stands; knows nothing of what a key means."""
+"""Line numbers of the keys of a TOML text."""
 
 from __future__ import annotations
 
@@ -12,8 +12,7 @@ QUOTED = re.compile(r'"(?:\\.|[^"\\])*"|\'[^\']*\'|#.*')
 def lines_of_keys(text: str) -> dict[str, int]:
     """Line, from 1, of every key and table of a valid TOML text, by dotted name.
 
-    Entries of an array of tables carry their number from 0: ``sweep.0.file``. Keys of an inline table are not
-    listed: they stand where the table does.
+    Entries of an array of tables are numbered from 0: ``sweep.0.file``. Keys of an inline table are not listed.
     """
     found: dict[str, int] = {}
     count: dict[str, int] = {}
@@ -30,6 +29,16 @@ def lines_of_keys(text: str) -> dict[str, int]:
     return found
 
 
+def line_of(key: str, lines: dict[str, int]) -> int | None:
+    """Line of a dotted key, else of the table around it; ``[table]`` may be written for the first ``[[table]]``."""
+    while key:
+        for candidate in (key, key.replace(".0", "", 1)):
+            if candidate in lines:
+                return lines[candidate]
+        key = key.rpartition(".")[0]
+    return None
+
+
 def _dotted(name: str) -> str:
     return ".".join(part.strip().strip("\"'") for part in name.split("."))
 
@@ -39,7 +48,7 @@ def _joined(table: str, key: str) -> str:
 
 
 def _numbered(name: str, count: dict[str, int], is_array: bool) -> str:
-    """The table's name with the running number of every array of tables in it."""
+    """The table's name with the current number of every array of tables in it."""
     path = ""
     parts = name.split(".")
     for depth, part in enumerate(parts):
@@ -52,7 +61,7 @@ def _numbered(name: str, count: dict[str, int], is_array: bool) -> str:
 
 
 def _after(line: str, fence: str, depth: int) -> tuple[str, int]:
-    """State behind a line: the open multi-line quote, if any, and how many brackets of a value are open."""
+    """State after a line: the open multi-line quotation mark, "" without one, and the number of open brackets."""
     while True:
         if fence:
             end = line.find(fence)

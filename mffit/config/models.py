@@ -1,4 +1,4 @@
-"""The tables of ``tyre.toml`` as frozen records: keys, types, defaults and what must not be.
+"""The tables of ``tyre.toml`` as frozen records: keys, types, defaults and checks between keys.
 
 Every ``u_`` is one standard deviation (k = 1). Units are those of the file, as the key or the comment says.
 """
@@ -23,6 +23,7 @@ from uncertainties import ufloat
 from mffit.brief import Brief
 from mffit.config import constants
 from mffit.config import quantities as q
+from mffit.config.locate import line_of
 from mffit.config.radii import effective_radius, path_radius
 from mffit.rig_errors import BY_NAME, DECLARED, Declared
 
@@ -30,7 +31,7 @@ FORBIDDEN_IN_NAMES = set('/\\:*?"<>|') | {chr(code) for code in range(32)}
 
 
 class Table(BaseModel):
-    """One table of the file: nothing unknown, nothing coerced, no NaN, never changed."""
+    """One table of the file, frozen: unknown keys, values of another type and NaN are refused."""
 
     model_config = ConfigDict(frozen=True, extra="forbid", strict=True, allow_inf_nan=False)
 
@@ -42,7 +43,7 @@ def _file_stem(name: str) -> str:
 
 
 class TyreTable(Table):
-    """[tyre]: what is known of the tyre beforehand."""
+    """[tyre]: what is known about the tyre before the fit."""
 
     name: Annotated[str, AfterValidator(_file_stem)]  #: stem of the output file
     size: str = "-"
@@ -53,16 +54,16 @@ class TyreTable(Table):
     nominal_pressure: q.Pressure  #: NOMPRES [kPa]
     nominal_speed: q.Speed = 10.0  #: LONGVL [m/s]
     side: Literal["left", "right", "symmetric"] = "left"  #: TYRESIDE of the measured tyre
-    base: str | None = None  #: file from which coefficients come that are not fitted
-    priors: str | None = None  #: what a fleet of such tyres knows of them
+    base: str | None = None  #: property file with the coefficients that are not fitted
+    priors: str | None = None  #: JSON file with priors from a fleet of such tyres
 
     @model_validator(mode="after")
     def _rim_inside_tyre(self) -> TyreTable:
         if self.rim_radius is not None and self.rim_radius >= self.unloaded_radius:
             raise q.wrong(
-                f"{self.rim_radius:g} m is not smaller than the unloaded radius {self.unloaded_radius:g} m; "
+                f"{self.rim_radius:g} m is not smaller than the unloaded radius, {self.unloaded_radius:g} m; "
                 "write the rim's radius in metres, not its diameter",
-                "tyre.rim_radius",
+                "rim_radius",
             )
         return self
 
@@ -77,7 +78,7 @@ class PathTable(Table):
 
 
 ALSO_CALLED = {"calspan": "sae"}
-"""Other names of axes: Calspan's flat belt, as the tyre test consortium publishes it, reports in SAE axes."""
+"""Other names of axes: data of Calspan's flat belt, published by the tyre test consortium, are in SAE axes."""
 
 
 U_RANGES = {"N": q.UForce, "deg": q.UAngle, "m": q.ULength}
@@ -150,7 +151,7 @@ class MachineTable(Table):
                 "rig.path_radius",
             )
         if self.path_radius is not None and self.path is not None:
-            raise q.wrong("stands beside [rig.path]; keep one of the two", "rig.path_radius")
+            raise q.wrong("is given beside [rig.path]; keep one of the two", "rig.path_radius")
         radius = self.radius
         assert radius is not None
         if not 0.2 <= radius <= 100.0:
@@ -158,7 +159,7 @@ class MachineTable(Table):
                 f"gives a path radius of {radius:g} m, outside 0.2 to 100 m; check the four lengths",
                 "rig.path",
             )
-        if self.u("path_radius_m") > 0.1 * radius:
+        if self.u("path_radius_m") > constants.LARGEST_U_OF_A_RADIUS * radius:
             raise q.wrong(
                 f"{self.u('path_radius_m'):g} m is more than a tenth of the path radius; write it in metres",
                 "rig.u_path_radius",
@@ -180,7 +181,7 @@ else:
 class RollingRadiusTable(Table):
     """[rolling_radius]: one disc revolution (18), or the effective radius itself."""
 
-    load_N: q.Load | None = None  #: nominal_load if not given
+    load_N: q.Load | None = None  #: default nominal_load
     revolutions: q.Revolutions | None = None  #: whole turns of the wheel
     angle_start_deg: q.Inclination | None = None
     angle_end_deg: q.Inclination | None = None
@@ -199,37 +200,34 @@ class RollingRadiusTable(Table):
         turned = (self.revolutions, self.angle_start_deg, self.angle_end_deg)
         if self.effective_radius is None and None in turned:
             raise q.wrong(
-                "needs revolutions, angle_start_deg and angle_end_deg, or effective_radius with "
-                "u_effective_radius",
-                "rolling_radius",
+                "is incomplete; give revolutions, angle_start_deg and angle_end_deg, or effective_radius with "
+                "u_effective_radius"
             )
         if self.effective_radius is not None and any(value is not None for value in turned):
             raise q.wrong(
-                "stands beside a measured revolution; keep one of the two", "rolling_radius.effective_radius"
+                "is given as well as a measured revolution; keep one of the two", "effective_radius"
             )
         if self.effective_radius is not None and self.u_effective_radius is None:
-            raise q.wrong(
-                "is missing beside effective_radius; add it in metres", "rolling_radius.u_effective_radius"
-            )
+            raise q.wrong("is missing, but effective_radius needs it; add it in metres", "u_effective_radius")
         return self
 
 
 class CamberStiffnessTable(Table):
-    """[camber_stiffness]: how C_gamma is estimated; both ways are reported."""
+    """[camber_stiffness]: the estimate of C_gamma that counts; both are reported."""
 
     method: Literal["slope", "secant"] = "slope"
     angle_deg: q.EstimateAngle = 15.0
 
 
 class SpinTable(Table):
-    """[spin]: which of the two files carries the plain name, and where PECP1 comes from."""
+    """[spin]: which of the two files gets the plain name, and the source of PECP1."""
 
     exact: Literal["turn-slip", "normal", "both"] = "turn-slip"
     pecp1: Literal["direct", "debiased", "model"] = "direct"
 
 
 class ModelTable(Table):
-    """[model]: how the simulation to compare with runs."""
+    """[model]: settings of the simulation that measurements are compared with."""
 
     turn_slip: bool = True
     star: bool = False
@@ -237,33 +235,36 @@ class ModelTable(Table):
 
 
 class Column(Table):
-    """Where a contract column stands in a file with other headings or units."""
+    """Heading, unit and scale of a sweep column in a file with other headings or units."""
 
-    column: str | None = None  #: heading in the file; the contract's own if None
-    unit: str | None = None  #: the contract's own if None
+    column: str | None = None  #: heading in the file; None: the column's own name
+    unit: str | None = None  #: None: as the file says, else the column's own unit
     scale: float = 1.0
 
 
-def _heading(given: Any) -> Any:
+def _as_column(given: Any) -> Any:
+    """A heading alone as a table."""
     return {"column": given} if isinstance(given, str) else given
 
 
-Columns = dict[str, Annotated[Column, BeforeValidator(_heading)]]
+Columns = dict[str, Annotated[Column, BeforeValidator(_as_column)]]
 
 
 class SweepTable(Table):
     """[[sweep]]: one file."""
 
     file: str
-    direction: Literal["forward", "backward"] | None = None  #: None: the file's column, else forward
+    direction: Literal["forward", "backward"] | None = (
+        None  #: None: the file's column if it has one, else forward
+    )
     mount: Literal["normal", "flipped"] = "normal"
-    path_centre: Literal["left", "right"] | None = None  #: None: as [rig] says
-    path_radius: q.PathRadius | None = None  #: [m]; None: as [rig] says
+    path_centre: Literal["left", "right"] | None = None  #: None: that of [rig]
+    path_radius: q.PathRadius | None = None  #: [m]; None: that of [rig]
     columns: Columns = Field(default_factory=dict)
 
 
 def _list_of_tables(given: Any) -> Any:
-    """TOML gives one table or a list of them; records hold tuples."""
+    """One table or a list of tables, as TOML gives them, as a tuple."""
     return (given,) if isinstance(given, dict) else tuple(given) if isinstance(given, list) else given
 
 
@@ -276,7 +277,7 @@ class Config(Brief, Table):
     camber_stiffness: CamberStiffnessTable = CamberStiffnessTable()
     spin: SpinTable = SpinTable()
     model: ModelTable = ModelTable()
-    columns: Columns = Field(default_factory=dict)  #: of all files; a sweep's own come before them
+    columns: Columns = Field(default_factory=dict)  #: of all files; those of a sweep take precedence
     sweep: Annotated[tuple[SweepTable, ...], BeforeValidator(_list_of_tables)]
 
     _path: Path | None = PrivateAttr(default=None)
@@ -290,36 +291,32 @@ class Config(Brief, Table):
 
     @property
     def path(self) -> Path | None:
-        """The file this came from; None for a mapping."""
+        """The file that was read; None for a mapping."""
         return self._path
 
     @property
     def folder(self) -> Path:
-        """Where relative file names start."""
+        """Folder to which relative file names refer."""
         return self._folder
 
     @property
     def base_path(self) -> Path | None:
-        """The base property file; None if there is none."""
+        """The base property file; None if none is named."""
         return None if self.tyre.base is None else self._folder / self.tyre.base
 
     @property
     def priors_path(self) -> Path | None:
-        """What a fleet of such tyres knows; None if none is named."""
+        """The file with priors from a fleet; None if none is named."""
         return None if self.tyre.priors is None else self._folder / self.tyre.priors
 
     def line_of(self, key: str) -> int | None:
-        """Line of a dotted key, ``sweep.2.file`` for the third sweep; of the table around it if absent."""
-        while key:
-            if key in self._lines:
-                return self._lines[key]
-            key = key.rpartition(".")[0]
-        return None
+        """Line of a dotted key (``sweep.2.file`` for the third sweep), else of the table around it; None without either."""
+        return line_of(key, self._lines)
 
     @model_validator(mode="before")
     @classmethod
     def _load_of_radius(cls, given: Any) -> Any:
-        """A rolling radius without a load was taken at the nominal one."""
+        """A rolling radius without a load holds at the nominal load."""
         if not isinstance(given, dict) or not isinstance(given.get("tyre"), dict):
             return given
         rows, load = _list_of_tables(given.get("rolling_radius", ())), given["tyre"].get("nominal_load")
@@ -328,7 +325,7 @@ class Config(Brief, Table):
         return {**given, "rolling_radius": tuple({"load_N": load, **row} for row in rows)}
 
     @model_validator(mode="after")
-    def _some_sweep(self) -> Config:
+    def _sweeps_agree_with_rig(self) -> Config:
         if not self.sweep:
             raise q.wrong('is empty; add a [[sweep]] with file = "..." for each measured file', "sweep")
         seen: set[str] = set()
@@ -338,35 +335,40 @@ class Config(Brief, Table):
             seen.add(sweep.file)
             for key in ("path_centre", "path_radius"):
                 if not self.rig.on_disc and getattr(sweep, key) is not None:
-                    raise q.wrong("a flat track's path is straight; remove it", f"sweep.{index}.{key}")
+                    raise q.wrong(
+                        "is given, but the path of a flat track is straight; remove it",
+                        f"sweep.{index}.{key}",
+                    )
         return self
 
     @model_validator(mode="after")
     def _rolling_radius_near_unloaded(self) -> Config:
-        """A free-rolling radius lies a little below the unloaded one; a diameter or a wrong R does not."""
         R, R0 = self.rig.radius, self.tyre.unloaded_radius
         for index, row in enumerate(self.rolling_radius):
             key = f"rolling_radius.{index}"
             if row.is_measured and R is None:
                 raise q.wrong(
-                    "a disc revolution was given for a flat track; give effective_radius instead", key
+                    "has a disc revolution, but the rig is a flat track; give effective_radius instead", key
                 )
             r_e = effective_radius(row, R) if row.effective_radius is None else row.effective_radius
-            if not 0.85 * R0 <= r_e <= 1.05 * R0:
+            least, most = constants.ROLLING_OVER_UNLOADED_RADIUS
+            if not least * R0 <= r_e <= most * R0:
                 raise q.wrong(_radius_sentence(r_e, R0, row.is_measured), key)
-            if row.u_effective_radius is not None and row.u_effective_radius > 0.1 * r_e:
+            u = row.u_effective_radius
+            if u is not None and u > constants.LARGEST_U_OF_A_RADIUS * r_e:
                 raise q.wrong(
-                    f"{row.u_effective_radius:g} m is more than a tenth of the radius; write it in metres",
+                    f"{u:g} m is more than a tenth of the radius; write it in metres",
                     f"{key}.u_effective_radius",
                 )
         return self
 
 
 def _radius_sentence(r_e: float, R0: float, measured: bool) -> str:
-    sentence = f"gives an effective radius of {r_e:.4g} m, {r_e / R0:.2f} of the unloaded radius {R0:g} m"
+    ratio = r_e / R0
+    sentence = f"gives an effective radius of {r_e:.4g} m, {ratio:.2f} times the unloaded radius of {R0:g} m"
     if not measured:
         return f"{sentence}; check both, in metres"
-    ratio = r_e / R0
-    if 1.8 < ratio < 2.2:
+    least, most = constants.RADIUS_RATIO_OF_A_DIAMETER
+    if least < ratio < most:
         return f"{sentence}; path_radius looks like a diameter, halve it"
     return f"{sentence}; check path_radius, revolutions and the angles, which are in degrees"

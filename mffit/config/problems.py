@@ -1,16 +1,26 @@
-"""What pydantic finds wrong, as one sentence with file, line and key."""
+"""What pydantic finds wrong in the tables of a TOML file, as one sentence with file, line and key.
+
+Nothing here knows a table: the keys to suggest are read from the pydantic models.
+"""
 
 from __future__ import annotations
 
 import difflib
 import re
+from collections.abc import Mapping
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, TypeVar
 
 from pydantic import BaseModel, ValidationError
 
-from mffit.config.models import Column, Config
-from mffit.errors import InputError
+from mffit import constants
+from mffit.config.locate import line_of
+from mffit.errors import InputError, shortened
+
+Keys = Mapping[str, tuple[str, ...]]
+"""The keys of every table by its dotted name; "" is the top of the file, ``*`` any key."""
+
+Model = TypeVar("Model", bound=BaseModel)
 
 KINDS = {
     "float_type": "a number",
@@ -22,87 +32,117 @@ KINDS = {
     "dict_type": "a table",
     "tuple_type": "a table or an array of tables",
 }
+"""By pydantic's type of error, what the value should be."""
+
+NUMBER_IN_QUOTES = re.compile(r"\s*[-+]?[\d.]+\s*")
 
 
-class _Problem(NamedTuple):
+class _Mistake(NamedTuple):
     key: str  #: dotted, entries of an array counted from 0
     line: int | None
     sentence: str
-    cures: str  #: dotted key that is missing only because of this one
+    is_unknown: bool = False
+    meant: str = ""  #: dotted key that an unknown one probably is; empty if none is near
 
 
-def first_problem(error: ValidationError, path: Path | None, lines: dict[str, int]) -> InputError:
-    """The problem to solve first, with the keys of all others.
+def validated(
+    model: type[Model], content: Mapping[str, Any], *, path: Path | None, lines: dict[str, int], known: Keys
+) -> Model:
+    """The content as a model.
 
     Parameters
     ----------
-    error : what pydantic found
+    model : of the whole file
+    content : its tables
     path : the file, None for a mapping
     lines : line of every key, see :func:`lines_of_keys`
+    known : keys of every table of the file, see :func:`known_keys`
+
+    Raises
+    ------
+    InputError
+        The problem to solve first, with the keys of all others.
     """
-    problems = [_problem(detail, lines) for detail in error.errors()]
+    try:
+        return model.model_validate(dict(content))
+    except ValidationError as error:
+        mistakes = [_mistake(detail, lines, known) for detail in error.errors()]
     # A misspelt key is often the one that is missing: name it first.
-    problems.sort(key=lambda problem: (not problem.sentence.startswith("is unknown"), problem.line or 0))
-    first = problems[0]
-    cured = {problem.cures for problem in problems}
-    others = {problem.key for problem in problems[1:]} - {first.key} - cured
-    sentence = first.sentence
-    if others:
-        sentence += f" (also wrong: {', '.join(_shown(key, lines) for key in sorted(others))})"
-    return InputError(sentence, file=path, line=first.line, key=_shown(first.key, lines))
+    mistakes.sort(key=lambda mistake: (not mistake.is_unknown, mistake.line or 0))
+    first = mistakes[0]
+    solved = {first.key, *(mistake.meant for mistake in mistakes)}
+    others = sorted({mistake.key for mistake in mistakes} - solved)
+    also = f" (also wrong: {', '.join(_shown(key, lines) for key in others)})" if others else ""
+    raise InputError(first.sentence + also, file=path, line=first.line, key=_shown(first.key, lines))
 
 
-def _problem(detail: Any, lines: dict[str, int]) -> _Problem:
-    loc = detail["loc"]
-    key = detail.get("ctx", {}).get("key") or ".".join(str(part) for part in loc)
-    if len(loc) > 1 and isinstance(loc[1], int) and not key.startswith(f"{loc[0]}.{loc[1]}"):
-        # A table that names its own key does not know which entry of the array it is.
-        key = f"{loc[0]}.{loc[1]}" + key.removeprefix(str(loc[0]))
-    near = _nearest(key) if detail["type"] == "extra_forbidden" else ""
-    cures = f"{key.rpartition('.')[0]}.{near}".lstrip(".") if near else ""
-    return _Problem(key, _line(key, lines), _sentence(detail, key, near), cures)
+def _mistake(detail: Any, lines: dict[str, int], known: Keys) -> _Mistake:
+    key = _key_at_fault(detail)
+    line = line_of(key, lines) or (1 if lines else None)
+    if detail["type"] != "extra_forbidden":
+        return _Mistake(key, line, _sentence(detail, key, lines))
+    table, name = _split(key, known)
+    near = difflib.get_close_matches(name, known.get(table, ()), n=1, cutoff=constants.LIKENESS_OF_MISSPELT)
+    if not near:
+        return _Mistake(key, line, _unknown(table, name, known), is_unknown=True)
+    meant = f"{key.rpartition('.')[0]}.{near[0]}".lstrip(".")
+    return _Mistake(key, line, f'is unknown; did you mean "{near[0]}"?', is_unknown=True, meant=meant)
 
 
-def _line(key: str, lines: dict[str, int]) -> int | None:
-    """Line of the key, else of the table around it; a single table may stand for the first of many."""
-    while key:
-        for candidate in (key, key.replace(".0", "", 1)):
-            if candidate in lines:
-                return lines[candidate]
-        key = key.rpartition(".")[0]
-    return 1 if lines else None
+def _key_at_fault(detail: Any) -> str:
+    """Dotted key: the place that pydantic gives, and within it the key that a validator of ours names.
+
+    A validator names a key from the top of the file without the numbers of entries (``rig.path``), or within its own table.
+    """
+    loc = [str(part) for part in detail["loc"]]
+    named = [part for part in detail.get("ctx", {}).get("key", "").split(".") if part]
+    if loc and named and named[0] == loc[0]:
+        named = named[1:]
+    return ".".join([*loc, *named])
 
 
 def _shown(key: str, lines: dict[str, int]) -> str:
-    """The key as a user reads it: ``sweep[3].file`` counts from 1; a table that is alone is not counted."""
+    """The key as a message gives it: ``sweep[3].file`` counts from 1; a single ``[table]`` is not counted."""
     table = key.partition(".")[0]
     if table in lines:
         key = key.replace(f"{table}.0", table, 1)
     return re.sub(r"\.(\d+)(?=\.|$)", lambda found: f"[{int(found[1]) + 1}]", key)
 
 
-def _sentence(detail: Any, key: str, near: str) -> str:
-    kind, given = detail["type"], detail["input"]
+def _sentence(detail: Any, key: str, lines: dict[str, int]) -> str:
+    kind, given, context = detail["type"], detail["input"], detail.get("ctx", {})
     if kind == "sentence":
-        return detail["ctx"]["sentence"]
+        return context["sentence"]
     if kind == "missing":
-        table = re.sub(r"\.\d+$", "", key.rpartition(".")[0])
-        return f"is missing; add it to [{table}]" if table else f"is missing; add the table [{key}]"
-    if kind == "extra_forbidden":
-        return f'is unknown; did you mean "{near}"?' if near else _unknown(key)
+        return _missing(key, lines)
     if kind == "literal_error":
-        return f"{_quoted(given)} is none of {detail['ctx']['expected']}; choose one of them"
-    if kind == "float_type" and isinstance(given, str) and re.fullmatch(r"\s*[-+]?[\d.]+\s*", given):
+        return f"{_quoted(given)} is not allowed; write {context['expected']}"
+    if kind == "greater_than":
+        return f"{given:g} is not above {context['gt']:g}; correct it"
+    if kind == "greater_than_equal":
+        return f"{given:g} is below {context['ge']:g}; correct it"
+    if kind == "too_short":
+        return "is empty; give at least one"
+    if kind == "float_type" and isinstance(given, str) and NUMBER_IN_QUOTES.fullmatch(given):
         return f'"{given}" is a text, not a number; remove the quotes'
     if kind in KINDS:
         return f"{_quoted(given)} is not {KINDS[kind]}; write one"
-    said = detail["msg"]
-    return f"{said[:1].lower()}{said[1:]}; correct it"
+    message = detail["msg"]
+    return f"{message[:1].lower()}{message[1:]}; correct it"
+
+
+def _missing(key: str, lines: dict[str, int]) -> str:
+    table = key.rpartition(".")[0]
+    if not table:
+        return f"is missing; add the table [{key}]"
+    name = re.sub(r"\.\d+$", "", table)
+    is_entry = name != table and name not in lines
+    return f"is missing; add it to {f'[[{name}]]' if is_entry else f'[{name}]'}"
 
 
 def _quoted(given: Any) -> str:
     if isinstance(given, str):
-        return f'"{given}"' if len(given) <= 60 else f'"{given[:60]}..."'
+        return f'"{shortened(given)}"'
     if isinstance(given, bool):
         return "true" if given else "false"
     if isinstance(given, dict):
@@ -110,46 +150,46 @@ def _quoted(given: Any) -> str:
     return "a list" if isinstance(given, list | tuple) else str(given)
 
 
-def _nearest(key: str) -> str:
-    """The known key of the same table that is spelt most like this one; empty if none is near."""
-    table, name = _split(key)
-    near = difflib.get_close_matches(name, known_keys().get(table, ()), n=1, cutoff=0.6)
-    return near[0] if near else ""
-
-
-def _unknown(key: str) -> str:
-    table, name = _split(key)
-    known = known_keys()
+def _unknown(table: str, name: str, known: Keys) -> str:
     homes = [home for home, keys in known.items() if name in keys and home != table]
     if homes:
-        return f"is unknown here; it belongs {f'to [{homes[0]}]' if homes[0] else 'to the top of the file'}"
+        return f"is unknown here; move it to {f'[{homes[0]}]' if homes[0] else 'the top of the file'}"
     return f"is unknown; known here are {', '.join(known.get(table, known['']))}"
 
 
-def _split(key: str) -> tuple[str, str]:
-    """Table and name of a key, as :func:`known_keys` lists them."""
-    parts = [part for part in key.split(".") if not part.isdigit()] or [key]
-    if parts[:2] == ["sweep", "columns"] and len(parts) == 4:
-        parts[2] = "*"
-    return ".".join(parts[:-1]), parts[-1]
+def _split(key: str, known: Keys) -> tuple[str, str]:
+    """Table and name of a key, as ``known`` lists them."""
+    *parts, name = [part for part in key.split(".") if not part.isdigit()] or [key]
+    table = ".".join(parts)
+    free = ".".join([*parts[:-1], "*"])
+    return (free if table not in known and free in known else table), name
 
 
-def known_keys() -> dict[str, tuple[str, ...]]:
-    """The keys of every table, by its dotted name; "" is the top of the file."""
+def known_keys(*models: type[BaseModel]) -> dict[str, tuple[str, ...]]:
+    """The keys of every table of a file.
+
+    Parameters
+    ----------
+    models : of the file's tables; where two have a table of one name, the first counts. At the top of the file the keys of
+        all count.
+    """
     known: dict[str, tuple[str, ...]] = {}
 
-    def collect(model: type[BaseModel], name: str) -> None:
-        known[name] = tuple(model.model_fields)
-        for field, info in model.model_fields.items():
-            for inner in _models(info.annotation):
-                collect(inner, f"{name}.{field}" if name else field)
+    def collect(model: type[BaseModel], table: str) -> None:
+        known.setdefault(table, tuple(model.model_fields))
+        for name, field in model.model_fields.items():
+            for inner, below in _models(field.annotation):
+                collect(inner, ".".join(part for part in (table, name, below) if part))
 
-    collect(Config, "")
-    known["sweep.columns.*"] = tuple(Column.model_fields)
+    for model in models:
+        collect(model, "")
+    known[""] = tuple(dict.fromkeys(name for model in models for name in model.model_fields))
     return known
 
 
-def _models(annotation: Any) -> list[type[BaseModel]]:
+def _models(annotation: Any, below: str = "") -> list[tuple[type[BaseModel], str]]:
+    """Models within the type of a field, with ``*`` for those that stand under keys of any name."""
     if isinstance(annotation, type) and issubclass(annotation, BaseModel):
-        return [] if annotation is Column else [annotation]
-    return [model for inner in getattr(annotation, "__args__", ()) for model in _models(inner)]
+        return [(annotation, below)]
+    below = "*" if getattr(annotation, "__origin__", None) is dict else below
+    return [found for inner in getattr(annotation, "__args__", ()) for found in _models(inner, below)]

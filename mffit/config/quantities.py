@@ -1,8 +1,9 @@
-"""Numbers of ``tyre.toml``: the range in which they make sense, and what a value outside it usually is."""
+"""Plausible ranges of the numbers of ``tyre.toml``, with a remedy for values outside them."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 from typing import Annotated, NamedTuple
 
 from pydantic import AfterValidator
@@ -10,71 +11,61 @@ from pydantic_core import PydanticCustomError
 from scipy import constants
 
 
-class Other(NamedTuple):
-    """Other units in which a number may have been written."""
+class OtherUnits(NamedTuple):
+    """Units in which a number may have been written by mistake."""
 
     write: str  #: the right unit, in words
-    units: Mapping[str, float]  #: by their words, in the right unit
-    lower: float  #: what is usual, in the right unit
+    units: Mapping[str, float]  #: factor to the right unit, by the words for the wrong one
+    lower: float  #: usual range, in the right unit
     upper: float
 
     def hint(self, value: float) -> str:
-        """The units in which the value would be a usual one; empty if there is none."""
+        """The units in which the value would be usual, as a remedy; empty if there is none."""
         fitting = [
             words for words, factor in self.units.items() if self.lower <= value * factor <= self.upper
         ]
         return f"it looks like {' or '.join(fitting)}, write {self.write}" if fitting else ""
 
 
+@dataclass(frozen=True, eq=False)
 class Range:
-    """Refuses a number outside ``lower`` to ``upper``; ``below`` and ``above`` say what it usually is."""
+    """Validator that refuses a number outside ``lower`` to ``upper``."""
 
-    def __init__(
-        self,
-        lower: float,
-        upper: float,
-        unit: str,
-        below: str = "",
-        above: str = "",
-        other: Other | None = None,
-    ) -> None:
-        self.lower, self.upper, self.unit = lower, upper, unit
-        self.below, self.above, self.other = below, above, other
+    lower: float
+    upper: float
+    unit: str
+    below: str = ""  #: remedy for a positive number below the range
+    above: str = ""  #: remedy for a number above the range
+    other: OtherUnits | None = None  #: finds a better remedy from the value
 
     def __call__(self, value: float) -> float:
-        if value < self.lower and value > 0.0:
-            raise self._refusal(value, self.below)
-        if value < self.lower:
-            raise self._refusal(value, "")
-        if value > self.upper:
-            raise self._refusal(value, self.above)
-        return value
-
-    def _refusal(self, value: float, hint: str) -> PydanticCustomError:
+        if self.lower <= value <= self.upper:
+            return value
+        hint = self.above if value > self.upper else self.below if value > 0.0 else ""
         if hint and self.other is not None:
             hint = self.other.hint(value) or hint
         sentence = f"{value:g} {self.unit} is outside {self.lower:g} to {self.upper:g} {self.unit}"
-        return wrong(f"{sentence}; {hint}" if hint else f"{sentence}; correct it")
+        raise wrong(f"{sentence}; {hint or 'correct it'}")
 
 
 def wrong(sentence: str, key: str = "") -> PydanticCustomError:
-    """A refusal in our own words; ``key`` is the dotted key at fault when the value itself does not tell."""
+    """An error whose sentence the user reads unchanged; ``key`` is the dotted key at fault if it is not the value checked."""
     return PydanticCustomError("sentence", "{sentence}", {"sentence": sentence, "key": key})
 
 
 MILLIMETRES = "it looks like millimetres, write metres"
 
-RADII = Other(
-    "metres",
-    {"inches": constants.inch, "centimetres": constants.centi, "millimetres": constants.milli},
-    0.1,
-    0.6,
+RADII = OtherUnits(
+    write="metres",
+    units={"inches": constants.inch, "centimetres": constants.centi, "millimetres": constants.milli},
+    lower=0.1,
+    upper=0.6,
 )
-PRESSURES = Other(
-    "kilopascals",
-    {"psi": constants.psi / constants.kilo, "bar": constants.bar / constants.kilo},
-    40.0,
-    1000.0,
+PRESSURES = OtherUnits(
+    write="kilopascals",
+    units={"psi": constants.psi / constants.kilo, "bar": constants.bar / constants.kilo},
+    lower=40.0,
+    upper=1000.0,
 )
 
 WheelRadius = Annotated[float, AfterValidator(Range(0.03, 1.5, "m", above=MILLIMETRES, other=RADII))]
@@ -92,7 +83,7 @@ Pressure = Annotated[
             2000.0,
             "kPa",
             below="it looks like bar, write kilopascals",
-            above="it looks like pascals",
+            above="it looks like pascals, write kilopascals",
             other=PRESSURES,
         )
     ),

@@ -1,6 +1,6 @@
-"""The two radii of the direct method from what the tape measure and the inclinometer say, (18) and (19).
+"""The two radii of the direct method from tape measure and inclinometer, (18) and (19).
 
-The formulae take plain numbers as well as numbers that carry an uncertainty.
+The formulae accept plain numbers and numbers with an uncertainty.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ def path_radius(shaft_diameter: Any, L_B: Any, L_C: Any, L_D: Any) -> Any:
 
 
 def wheel_turn(row: Any) -> float:
-    """Angle [rad] by which the wheel turned during one disc revolution: whole turns and the rest."""
+    """Angle [rad] by which the wheel turned during one disc revolution: whole turns plus the remaining angle."""
     return 2.0 * math.pi * row.revolutions + math.radians(row.angle_end_deg - row.angle_start_deg)
 
 

@@ -1,4 +1,4 @@
-"""The configuration as it was run, ready to be written and run again."""
+"""The configuration of a run as plain TOML types, for ``resolved.toml``."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from mffit.config.models import Config
 
 
 def resolved(config: Config, folder: str | Path) -> dict[str, Any]:
-    """Every key with its value, defaults filled in, keys without a value left out.
+    """Every key with its value, including defaults; keys without a value are left out.
 
     Parameters
     ----------
@@ -20,8 +20,8 @@ def resolved(config: Config, folder: str | Path) -> dict[str, Any]:
     Returns
     -------
     dict
-        Plain TOML types. Relative file names stay relative, now to ``folder``, where that lies inside the
-        configuration's own folder, so that both may be moved together; all others are absolute.
+        Plain TOML types. If ``folder`` is inside the configuration's own folder, relative file names become relative to
+        ``folder``, so that both folders can be moved together; otherwise they become absolute.
     """
     content = config.model_dump(exclude_none=True)
     content["rolling_radius"] = list(content["rolling_radius"])

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from datetime import datetime
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
@@ -12,9 +12,8 @@ from mffit import __version__
 from mffit.config import Config
 from mffit.errors import InputError
 from mffit.points import Points
-
-LONGEST_NAME, LONGEST_TEXT = 10, 30
-MISSING = "NOTAVAIL"
+from mffit.sweeps import tydex_format
+from mffit.sweeps.tydex_format import MARK, MISSING, REMARK, fixed_row
 
 
 class Channel(NamedTuple):
@@ -63,33 +62,30 @@ def tydex_texts(points: Points, config: Config) -> dict[str, str]:
 
 def _lines(name: str, points: Points, config: Config) -> Iterator[str]:
     there = [channel for channel in CHANNELS if np.any(np.isfinite(channel.of(points)))]
-    yield "**HEADER"
-    yield _row("RELEASE", "Release of TYDEX-Format", "", "1.3")
-    yield _row("MEASID", "Measurement ID", "", name)
-    yield _row("SUPPLIER", "Data supplier", "", f"mffit {__version__}")
-    yield _row("DATE", "Date", "", f"{datetime.now():%d-%b-%y}")
-    yield "**COMMENTS"
-    yield from _remarks(points, config)
-    yield "**CONSTANTS"
-    yield _row("OVALLDIA", "Overall diameter", "m", repr(2.0 * config.tyre.unloaded_radius))
-    yield "**MEASURCHANNELS"
+    yield f"{MARK}{tydex_format.HEADER}"
+    yield fixed_row("RELEASE", "Release of TYDEX-Format", "", tydex_format.RELEASE)
+    yield fixed_row("MEASID", "Measurement ID", "", name)
+    yield fixed_row("SUPPLIER", "Data supplier", "", f"mffit {__version__}")
+    yield fixed_row("DATE", "Date", "", f"{datetime.now():%d-%b-%y}")
+    yield f"{MARK}{tydex_format.COMMENTS}"
+    for remark in _remarks(points, config):
+        yield f"{REMARK} {remark}"
+    yield f"{MARK}{tydex_format.CONSTANTS}"
+    yield fixed_row("OVALLDIA", "Overall diameter", "m", repr(2.0 * config.tyre.unloaded_radius))
+    yield f"{MARK}{tydex_format.CHANNELS}"
     for channel in there:
-        yield _row(channel.name, channel.words, channel.unit, "1", "0", "0")
-    yield "**MEASURDATA"  # with the number of rows behind it, as some write, other readers do not know it
+        yield fixed_row(channel.name, channel.words, channel.unit, "1", "0", "0")
+    # Some programs write the number of rows after **MEASURDATA; not all readers accept it.
+    yield f"{MARK}{tydex_format.DATA}"
     for row in np.column_stack([channel.of(points) for channel in there]).tolist():
         yield " ".join(repr(x) if np.isfinite(x) else MISSING for x in row)
-    yield "**END"
+    yield f"{MARK}{tydex_format.END}"
 
 
 def _remarks(points: Points, config: Config) -> Iterator[str]:
-    yield f"! {config.tyre.name}: steady points, ISO-W axes, forces in the contact frame, nothing corrected"
-    yield f"! rolling {'forwards' if np.all(points.direction > 0) else 'backwards'}"
+    yield f"{config.tyre.name}: steady points, ISO-W axes, forces in the contact frame, nothing corrected"
+    yield f"rolling {'forwards' if np.all(points.direction > 0) else 'backwards'}"
     if np.any(points.mount < 0):
-        yield "! tyre turned on its rim"
+        yield "tyre turned on its rim"
     if np.any(points.phi_t):
-        yield f"! on a path of {1.0 / np.max(np.abs(points.phi_t)):.6g} m radius, turn slip {points.phi_t[0]:+.6g} 1/m"
-
-
-def _row(name: str, words: str, unit: str, *values: Any) -> str:
-    head = f"{name[:LONGEST_NAME]:<10}{words[:LONGEST_TEXT]:<30}{unit:<10}"
-    return (head + " ".join(map(str, values))).rstrip()
+        yield f"on a path of {1.0 / np.max(np.abs(points.phi_t)):.6g} m radius, turn slip {points.phi_t[0]:+.6g} 1/m"

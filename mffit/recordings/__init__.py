@@ -1,4 +1,4 @@
-"""What a recording holds, and the project to go with it: columns, units, axes, conditions, stretches."""
+"""Content of recordings (columns, units, axes, conditions, stretches), and a project for them."""
 
 from mffit.recordings.project_file import project_text
 from mffit.recordings.sniffed import Sniffed, sniff

@@ -1,7 +1,7 @@
 """Which heading of a file is which channel, and in which unit.
 
-A heading is taken only where a name that laboratories use is all of it. The unit is the file's; where the file states
-none it is the one whose numbers make sense (``unstated``), and the guess says so, to be written down and read.
+A heading is a channel only if the whole heading is a name that laboratories use. The unit is that of the file. If the file
+states none, it is the unit in which the numbers are plausible (``unstated``); the guess says so, for the user to check.
 """
 
 from __future__ import annotations
@@ -11,12 +11,12 @@ from collections.abc import Collection
 from typing import NamedTuple
 
 import numpy as np
-import pandas as pd
 
 from mffit.config.models import Column
-from mffit.recordings.unstated import Choice, Found, choices, customary, rotation
+from mffit.recordings.unstated import Choice, Found, choices, customary
 from mffit.sweeps.channels import BY_NAME, CHANNELS, Channel
-from mffit.sweeps.raw_table import Cells, RawTable
+from mffit.sweeps.columns import numbers
+from mffit.sweeps.raw_table import RawTable
 from mffit.sweeps.units import UnknownUnitError, converted
 
 CLOCK = re.compile(r"\d{1,4}[-./]\d{1,2}[-./]\d{1,4}[T ]+\d{1,2}:\d|\d{1,2}:\d\d:\d\d")
@@ -24,25 +24,30 @@ CLOCK = re.compile(r"\d{1,4}[-./]\d{1,2}[-./]\d{1,4}[T ]+\d{1,2}:\d|\d{1,2}:\d\d
 
 
 class Guess(NamedTuple):
-    """Where a channel stands in a file."""
+    """The column of a file that is a channel."""
 
     channel: Channel
     heading: str
-    stated: str  #: unit as the file states it, "" where it does not
-    unit: str  #: unit to write down: "" where the file or the heading says it
-    assumed: bool  #: the unit is neither stated nor in the heading
-    lower: float  #: range of the readings, in the file's unit
-    upper: float
-    why: str = ""  #: what an assumed unit rests on
+    stated: str = ""  #: unit as the file states it, "" if it does not
+    unit: str = ""  #: unit to write to ``tyre.toml``; "" if the file or the heading states it
+    assumed: bool = False  #: neither the file nor the heading states the unit
+    lower: float = np.nan  #: range of the readings, in the file's unit
+    upper: float = np.nan
+    why: str = ""  #: reason for a unit that nothing states
+
+    @property
+    def unit_of_readings(self) -> str:
+        """The unit in which the file's readings are."""
+        return self.unit or self.stated or self.channel.unit
 
     @property
     def column(self) -> Column:
-        """The guess as ``[columns]`` has it."""
+        """The guess as an entry of ``[columns]``."""
         return Column(column=self.heading, unit=self.unit or None)
 
 
 class Guesses(NamedTuple):
-    """The channels of a file, by the contract's names, and what is to be said of them."""
+    """The channels of a file, by the contract's names, with remarks for the user."""
 
     found: dict[str, Guess]
     remarks: tuple[str, ...]
@@ -54,62 +59,51 @@ def guesses(raw: RawTable, *, unloaded_radius: float | None = None) -> Guesses:
     Parameters
     ----------
     raw : the file's cells
-    unloaded_radius : [m], with which a speed of rotation has to agree; None where it is not known
+    unloaded_radius : [m], to check the speed of rotation; None if it is not known
     """
-    spelt = {_plain(heading): heading for heading in reversed(raw.headings)}
-    columns: dict[str, Found] = {}
-    labels: dict[str, Guess] = {}
-    taken: set[str] = set()
-    for channel in CHANNELS:
-        names = [channel.name, *channel.aliases] if channel.kind == "number" else [channel.name]
-        for name in names:
-            heading = spelt.get(_plain(name))
-            if heading is None or heading in taken:
-                continue
-            if channel.kind != "number":
-                cells = raw.cells[raw.headings.index(heading)]
-                if heading != channel.name and len(np.unique(np.asarray(cells))) < 2:
-                    continue  # one label for all says nothing
-                labels[channel.name] = Guess(channel, heading, "", "", False, np.nan, np.nan)
-            elif (column := _column(raw, channel, heading)) is not None:
-                columns[channel.name] = column
-            else:
-                continue
-            taken.add(heading)
-            break
-    chosen = choices(columns)
-    units = {name: column.unit or column.channel.unit for name, column in columns.items()}
-    units |= {name: choice.unit for name, choice in chosen.items()}
-    remarks = []
-    turning = columns.get("omega_radps")
-    if turning is not None and turning.heading != "omega_radps":
-        unit, left_out = rotation(columns, units.get("V_mps", ""), unloaded_radius)
-        if left_out:
-            remarks.append(left_out)
-            del columns["omega_radps"]
-        elif not turning.unit:
-            chosen["omega_radps"] = Choice(unit, f"as {unit} they agree with {columns['V_mps'].heading}")
-    if said := customary(columns, units, list(chosen)):
-        remarks.append(said)
-    found = {name: _guess(raw, column, chosen.get(name)) for name, column in columns.items()} | labels
+    columns = _number_columns(raw)
+    chosen, left_out = choices(columns, unloaded_radius)
+    remarks = [*left_out.values()]
+    columns = {name: column for name, column in columns.items() if name not in left_out}
+    if doubt := customary(columns, chosen):
+        remarks.append(doubt)
+    found = {name: _guess(raw, column, chosen.get(name)) for name, column in columns.items()} | _labels(raw)
     if "Mz_Nm" not in found:
         remarks += _without_moment(raw, {guess.heading for guess in found.values()})
     if "time_s" not in found:
         remarks.append(_without_time(raw))
-    return Guesses(
-        {channel.name: found[channel.name] for channel in CHANNELS if channel.name in found}, tuple(remarks)
-    )
+    ordered = {channel.name: found[channel.name] for channel in CHANNELS if channel.name in found}
+    return Guesses(ordered, tuple(remarks))
 
 
-def _plain(heading: str) -> str:
+def _headings(raw: RawTable) -> dict[str, str]:
+    """The first heading of each spelling, without regard to case, blanks and hyphens."""
+    return {simplified(heading): heading for heading in reversed(raw.headings)}
+
+
+def simplified(heading: str) -> str:
+    """A heading or name without differences of case, blanks and hyphens."""
     return heading.lower().replace(" ", "_").replace("-", "_")
 
 
+def _number_columns(raw: RawTable) -> dict[str, Found]:
+    """Columns of numbers that are channels; the first known name with suitable readings counts."""
+    headings = _headings(raw)
+    found: dict[str, Found] = {}
+    for channel in CHANNELS:
+        if channel.kind != "number":
+            continue
+        candidates = [headings.get(simplified(name)) for name in (channel.name, *channel.aliases)]
+        columns = (_column(raw, channel, heading) for heading in candidates if heading is not None)
+        column = next((column for column in columns if column is not None), None)
+        if column is not None:
+            found[channel.name] = column
+    return found
+
+
 def _column(raw: RawTable, channel: Channel, heading: str) -> Found | None:
-    """The heading as this channel; None if its unit or its values are of another kind."""
-    k = raw.headings.index(heading)
-    stated = raw.units[k]
-    values = numbers(raw.cells[k])
+    """The column of a heading as this channel; None without readings or with a unit of another dimension."""
+    stated, values = raw.unit(heading), numbers(raw.column(heading))
     if not np.any(np.isfinite(values)) or (stated and not _is_of_kind(stated, channel)):
         return None
     return Found(channel, heading, stated or (channel.unit if heading == channel.name else ""), values)
@@ -123,12 +117,30 @@ def _is_of_kind(unit: str, channel: Channel) -> bool:
     return True
 
 
+def _labels(raw: RawTable) -> dict[str, Guess]:
+    """Columns that are labels or directions, by their own names; under another spelling only if the labels differ."""
+    headings = _headings(raw)
+    found = {}
+    for channel in CHANNELS:
+        heading = headings.get(simplified(channel.name))
+        if channel.kind == "number" or heading is None:
+            continue
+        if heading == channel.name or len(np.unique(np.asarray(raw.column(heading)))) > 1:
+            found[channel.name] = Guess(channel, heading)
+    return found
+
+
 def _guess(raw: RawTable, column: Found, choice: Choice | None) -> Guess:
-    lower, upper = float(np.nanmin(column.values)), float(np.nanmax(column.values))
-    stated = raw.units[raw.headings.index(column.heading)]
-    if choice is None:
-        return Guess(column.channel, column.heading, stated, "", False, lower, upper)
-    return Guess(column.channel, column.heading, stated, choice.unit, True, lower, upper, choice.why)
+    return Guess(
+        channel=column.channel,
+        heading=column.heading,
+        stated=raw.unit(column.heading),
+        unit="" if choice is None else choice.unit,
+        assumed=choice is not None,
+        lower=float(np.nanmin(column.values)),
+        upper=float(np.nanmax(column.values)),
+        why="" if choice is None else choice.why,
+    )
 
 
 def _without_moment(raw: RawTable, taken: Collection[str]) -> list[str]:
@@ -142,24 +154,15 @@ def _without_moment(raw: RawTable, taken: Collection[str]) -> list[str]:
     if not near:
         return []
     return [
-        f"no heading is known to be {moment.name} ({moment.description}); in a unit of moments and not used: "
-        f'{", ".join(near)}; if it is there, name it under [columns], as in {moment.name} = "{near[0]}"'
+        f"no heading is known to be {moment.name} ({moment.description}); unused columns in a unit of moments: "
+        f'{", ".join(near)}; if one of them is {moment.name}, name it under [columns], for example {moment.name} = "{near[0]}"'
     ]
 
 
 def _without_time(raw: RawTable) -> str:
-    """That every row counts, and which column holds clock times instead of seconds."""
-    sentence = f"no time: each of {len(raw)} rows is taken for a finished point"
+    """That every row counts as a point, and which column has clock times instead of seconds."""
+    sentence = f"no time: each of {len(raw)} rows is treated as a finished point"
     for heading, cells in zip(raw.headings, raw.cells, strict=True):
         if not isinstance(cells, np.ndarray) and len(cells) and CLOCK.match(str(cells[0])):
             return f'{sentence}; column "{heading}" holds clock times ("{cells[0]}"): write seconds in a column time_s'
-    return (
-        f'{sentence}; if they are samples of a recording, name its time, as in time_s = "..." under [columns]'
-    )
-
-
-def numbers(cells: Cells) -> np.ndarray:
-    """A column's numbers (n,), NaN where there is none."""
-    if isinstance(cells, np.ndarray):
-        return cells
-    return pd.to_numeric(pd.Series(list(cells), dtype=object), errors="coerce").to_numpy(dtype=float)
+    return f'{sentence}; if they are samples of a recording, name its time under [columns], for example time_s = "..."'

@@ -1,4 +1,4 @@
-"""``mffit sniff``: what recordings hold, with the axes that physics says."""
+"""``mffit sniff``: channels, conditions and axes of recordings; the axes are those that agree with physics."""
 
 from __future__ import annotations
 
@@ -20,15 +20,16 @@ from mffit.points.points import Points
 from mffit.points.signatures import signatures
 from mffit.points.steady import gaps
 from mffit.points.stretch import MOVE
-from mffit.recordings.guess import Guess, guesses, numbers
+from mffit.recordings.guess import Guess, guesses
 from mffit.sweeps import formats
 from mffit.sweeps.channels import CHANNELS
+from mffit.sweeps.columns import numbers
 from mffit.sweeps.raw_table import RawTable
 from mffit.sweeps.units import converted
 from tir.conventions import FLIPPED
 
 STAND_IN = {"unloaded_radius": 0.3, "nominal_load": 1500.0, "nominal_pressure": 250.0}
-"""Of a tyre of which nothing is known yet; no result of reading depends on it."""
+"""Placeholder for a tyre that is not known yet; no result of reading depends on it."""
 
 
 class Recording(NamedTuple):
@@ -42,13 +43,13 @@ class Recording(NamedTuple):
     guesses: dict[str, Guess]
     about: dict[str, str]
     rate: float  #: samples per second; NaN for finished points
-    seconds: float  #: from first to last
-    gaps: int  #: in time
-    remarks: tuple[str, ...]  #: what is doubtful about its columns
+    seconds: float  #: from first to last sample
+    gaps: int  #: number of gaps in time
+    remarks: tuple[str, ...]  #: doubts about its columns
 
 
 class Level(NamedTuple):
-    """One condition that the recordings return to."""
+    """One value of a setting, at which there are stretches."""
 
     value: float  #: in SI
     stretches: int
@@ -59,36 +60,36 @@ class Sniffed:
     """What recordings hold."""
 
     recordings: tuple[Recording, ...]
-    axes: tuple[str, ...]  #: that agree with physics, the likeliest first; empty if none does
-    wrong: tuple[str, ...]  #: what the likeliest axes contradict, if none agrees
+    axes: tuple[str, ...]  #: axes that agree with physics, the likeliest first; empty if none does
+    wrong: tuple[str, ...]  #: contradictions with physics under the axes first tried
     reading: Reading  #: points and stretches under the likeliest axes
     conditions: dict[
         str, tuple[Level, ...]
-    ]  #: by quantity: load [N], camber [rad], pressure [Pa], speed [m/s]
+    ]  #: levels of load [N], camber [rad], pressure [Pa] and speed [m/s]
 
     @property
     def points(self) -> Points:
-        """Under the likeliest axes."""
+        """Points under the likeliest axes."""
         return self.reading.points
 
 
 @formats.reading_once()
 def sniff(paths: Sequence[str | Path], *, unloaded_radius: float | None = None) -> Sniffed:
-    """Look into recordings.
+    """The content of recordings.
 
     Parameters
     ----------
     paths : files, also as patterns like ``runs/*.csv``
-    unloaded_radius : [m], with which a speed of rotation has to agree; None where it is not known
+    unloaded_radius : [m], to check the speed of rotation; None if it is not known
 
     Raises
     ------
     InputError
-        A file cannot be read, a pattern matches none, a file lacks a required channel, or the same file is named twice.
+        A file cannot be read or lacks a required channel, a pattern matches no file, or a file is named twice.
     """
     files = [file for path in paths for file in files_of(path)]
     if not files:
-        raise InputError("no file is named; name one recording or more")
+        raise InputError("no file is named; name at least one recording")
     twice = [file for k, file in enumerate(files) if file in files[:k]]
     if twice:
         raise InputError("is named twice; remove one", file=twice[0])
@@ -103,24 +104,24 @@ def sniff(paths: Sequence[str | Path], *, unloaded_radius: float | None = None) 
 
 
 def files_of(path: str | Path) -> list[Path]:
-    """The files that a name or a pattern stands for, in the order of their names."""
-    if not is_wild(str(path), Path()):
-        file = Path(path)
-        if not file.exists():
-            raise InputError("there is no such file; correct its name", file=file)
-        if file.is_dir():
-            inside = sorted(
-                each.name for each in file.iterdir() if each.name.lower().endswith(formats.ENDINGS)
-            )
-            remedy = (
-                f'name those in it, as "{file}/*{Path(inside[0]).suffix}"' if inside else "name a recording"
-            )
-            raise InputError(f"is a folder; {remedy}", file=file)
-        return [file]
-    found = matches(str(path), Path())
-    if not found:
-        raise InputError("no file matches this pattern; correct it", file=path)
-    return [Path(name) for name in found]
+    """The files that a name or a pattern means, sorted by name."""
+    if is_wild(str(path), Path()):
+        found = matches(str(path), Path())
+        if not found:
+            raise InputError("no file matches this pattern; correct it", file=path)
+        return [Path(name) for name in found]
+    file = Path(path)
+    if file.is_dir():
+        inside = sorted(each.name for each in file.iterdir() if each.name.lower().endswith(formats.ENDINGS))
+        remedy = (
+            f'name the files in it, for example "{file}/*{Path(inside[0]).suffix}"'
+            if inside
+            else "name a recording"
+        )
+        raise InputError(f"is a folder; {remedy}", file=file)
+    if not file.exists():
+        raise InputError("there is no such file; correct its name", file=file)
+    return [file]
 
 
 def _recording(path: Path, unloaded_radius: float | None) -> Recording:
@@ -129,42 +130,54 @@ def _recording(path: Path, unloaded_radius: float | None) -> Recording:
     missing = [channel for channel in CHANNELS if channel.required and channel.name not in found]
     if missing:
         raise InputError(
-            f"no heading is known to be {' or '.join(channel.name for channel in missing)} ({', '.join(raw.headings)} are "
-            "there); name them under [columns] of a tyre.toml",
+            f"no heading is known to be {' or '.join(channel.name for channel in missing)} (the headings are "
+            f"{', '.join(raw.headings)}); name them under [columns] of a tyre.toml",
             file=path,
             line=raw.heading_line,
         )
     kind = next(kind.name for kind in formats.FORMATS if formats.reads(kind, path))
-    rate, seconds, holes = _clock(raw, found)
+    clock = _clock(raw, found.get("time_s"))
     return Recording(
-        path, kind, raw.headings, raw.units, len(raw), found, dict(raw.about), rate, seconds, holes, remarks
+        path=path,
+        kind=kind,
+        headings=raw.headings,
+        units=raw.units,
+        samples=len(raw),
+        guesses=found,
+        about=dict(raw.about),
+        rate=clock.rate,
+        seconds=clock.seconds,
+        gaps=clock.gaps,
+        remarks=remarks,
     )
 
 
-def _clock(raw: RawTable, found: dict[str, Guess]) -> tuple[float, float, int]:
-    if "time_s" not in found:
-        return float("nan"), float("nan"), 0
-    clock = found["time_s"]
-    time = converted(
-        numbers(raw.cells[raw.headings.index(clock.heading)]),
-        clock.unit or clock.stated or clock.channel.unit,
-        clock.channel.unit,
-    )
-    steps = np.diff(time)
-    usual = float(np.median(steps)) if len(steps) else float("nan")
-    if not usual > 0.0:
-        return float("nan"), float("nan"), 0
-    return 1.0 / usual, float(time[-1] - time[0]), len(gaps(time))
+class _Clock(NamedTuple):
+    """Sampling of a recording; NaN and 0 for finished points."""
+
+    rate: float = np.nan
+    seconds: float = np.nan
+    gaps: int = 0
+
+
+def _clock(raw: RawTable, guess: Guess | None) -> _Clock:
+    if guess is None:
+        return _Clock()
+    time = converted(numbers(raw.column(guess.heading)), guess.unit_of_readings, guess.channel.unit)
+    step = float(np.median(np.diff(time))) if len(time) > 1 else np.nan
+    if not step > 0.0:
+        return _Clock()
+    return _Clock(rate=1.0 / step, seconds=float(time[-1] - time[0]), gaps=len(gaps(time)))
 
 
 def _first_axes(recordings: Sequence[Recording]) -> str:
-    """Axes that the sign of the load allows."""
+    """Axes with the sign of the load in the recordings."""
     negative = [r.guesses["Fz_N"].lower + r.guesses["Fz_N"].upper < 0.0 for r in recordings]
     return "sae" if any(negative) else "iso"
 
 
 def configuration_of(recordings: Sequence[Recording], axes: str) -> Config:
-    """A configuration that reads these files and stands for no tyre."""
+    """A configuration that reads these files, with a placeholder for the tyre."""
     sweeps = [
         {
             "file": str(recording.path.absolute()),
@@ -183,13 +196,13 @@ def configuration_of(recordings: Sequence[Recording], axes: str) -> Config:
 
 
 def axes_of(points: Points, declared: str, *, load_falls: bool) -> tuple[tuple[str, ...], tuple[str, ...]]:
-    """The axes under which points do what every tyre does, and what they contradict under the declared ones.
+    """The axes under which the points behave like a tyre, and the contradictions under the declared axes.
 
     Parameters
     ----------
     points : read under ``declared``
     declared : axes
-    load_falls : the load is reported as a negative force, which only some axes do
+    load_falls : the load is reported as a negative force, as in some axes only
     """
     agreeing = []
     for axes in (declared, *(axes for axes in FLIPPED if axes != declared)):
@@ -204,9 +217,9 @@ def axes_of(points: Points, declared: str, *, load_falls: bool) -> tuple[tuple[s
 
 
 def conditions_of(recordings: Sequence[Recording], reading: Reading) -> dict[str, tuple[Level, ...]]:
-    """The levels of every setting among the stretches that give points, or among finished points.
+    """The levels of every setting, of the stretches that give points or of finished points.
 
-    Pressure and speed count where they were measured; a setting that no recording holds has no level.
+    Pressure and speed count only if measured; a setting that no recording holds has no level.
     """
     kept = [note for note in reading.stretches if note.kind != MOVE and not note.dropped]
     points = reading.points
@@ -223,7 +236,7 @@ def conditions_of(recordings: Sequence[Recording], reading: Reading) -> dict[str
 
 
 def holding(recordings: Sequence[Recording], channel: str) -> frozenset[str]:
-    """The files that hold a channel, as points and stretches name them."""
+    """The files that hold a channel, by the names that points and stretches have."""
     return frozenset(str(r.path.absolute()) for r in recordings if channel in r.guesses)
 
 

@@ -15,6 +15,6 @@ DIGITS = {
 
 
 def stretch_table(notes: Sequence[StretchNote]) -> pd.DataFrame:
-    """One row per stretch, in the order of the recordings; angles in ISO signs."""
+    """One row per stretch in the order of the recordings; angles in ISO signs."""
     table = pd.DataFrame(list(notes), columns=list(StretchNote._fields))
     return table.round(DIGITS)

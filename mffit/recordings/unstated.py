@@ -1,13 +1,15 @@
-"""Units that a file does not state: columns of one kind are decided together, and each choice says what it rests on."""
+"""Units that a file does not state: columns of one kind are decided together, and each choice comes with its reason."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from typing import NamedTuple
 
 import numpy as np
 
+from mffit.recordings import constants
 from mffit.sweeps.channels import BY_NAME, Channel
+from mffit.sweeps.columns import implausible
 from mffit.sweeps.units import converted, factor, spelt
 
 
@@ -16,205 +18,252 @@ class Found(NamedTuple):
 
     channel: Channel
     heading: str
-    unit: str  #: as stated, or the contract's under the contract's heading; "" where nothing says it
+    unit: str  #: as stated, or the contract's unit under the contract's heading; "" if neither gives it
     values: np.ndarray  #: (n,), NaN where there is no reading
 
     @property
     def size(self) -> float:
-        """The largest reading; one spike does not make another unit."""
+        """The largest reading except for spikes; 0 without readings."""
         seen = np.abs(self.values[np.isfinite(self.values)])
-        return float(np.percentile(seen, 99.5)) if len(seen) else 0.0
+        return float(np.percentile(seen, constants.PERCENTILE_OF_SIZE)) if len(seen) else 0.0
+
+    @property
+    def range(self) -> str:
+        """Lowest and highest reading, for a sentence."""
+        return f"{np.nanmin(self.values):.3g} to {np.nanmax(self.values):.3g}"
 
 
 class Choice(NamedTuple):
     """A unit that no file states."""
 
     unit: str
-    why: str  #: after "the file states no unit: "
+    why: str  #: follows "the file states no unit: "
 
 
-LARGEST_RADIANS = 1.6
-LARGEST_KILONEWTONS = 100.0
-MOST_GRIP = 5.0
-LEAST_ARM = 1e-3  # m, of the largest moment over the largest load
-FASTEST_MPS = 25.0
-PRESSURES = ("bar", "psi", "kPa", "MPa", "Pa")
-"""In the order in which they are believed."""
-USUAL, POSSIBLE, OF_A_LORRY = (50.0, 400.0), (40.0, 1200.0), (400.0, 1200.0)  # kPa
-LORRY = 10_000.0  # N
-TIMES = ("s", "ms", "us")
-STEPS = (1e-5, 5.0)  # s, between samples of a moving angle
-RATES = (0.02, 100.0)  # deg/s, of steering
-TRAVEL, WINDOW = 1.0, 20  # deg an angle must move to say something, samples over which its rate is taken
+class Choices(NamedTuple):
+    """What is decided about the columns of a file, by channel."""
+
+    chosen: dict[str, Choice]
+    left_out: dict[str, str]  #: why a column is left out
+
+
+KINDS_OF_ONE_UNIT = ("deg", "N", "N m")
+"""Channels with these contract units usually share a unit in a file."""
+PRESSURE_UNITS = ("bar", "psi", "kPa", "MPa", "Pa")
+"""Sorted by priority."""
+TIME_UNITS = ("s", "ms", "us")
+"""Sorted by priority."""
+ROTATION_UNITS = ("rad/s", "rpm")
 CUSTOMARY = {"N": "lbf", "N m": "in-lb", "kPa": "psi", "m/s": "mph", "degC": "degF"}
-"""What American laboratories write for the contract's units."""
+"""American units by the contract's."""
 
 
-def choices(found: Mapping[str, Found]) -> dict[str, Choice]:
-    """Units of the columns whose unit nothing states, by channel."""
-    out: dict[str, Choice] = {}
-    known = {name: column.unit for name, column in found.items() if column.unit}
+def choices(found: Mapping[str, Found], radius: float | None) -> Choices:
+    """Units of the columns for which nothing states one, and optional columns that are implausible in any unit.
 
-    for kind in ("deg", "N", "N m"):
-        group = {name: column for name, column in found.items() if column.channel.unit == kind}
-        for alike in _apart(group):
-            said = next((column for name, column in alike.items() if name in known), None)
-            unit = said.unit if said else _unit_of_group(kind, alike, _load(found, known))
-            also = f"; {', '.join(c.heading for c in alike.values())} share a unit" if len(alike) > 1 else ""
-            for name, column in alike.items():
-                if name not in known:
-                    taken = f"{_range(column)} taken for {unit}, as {said.heading} is" if said else ""
-                    out[name] = Choice(unit, taken or _look_like(column, unit) + also)
-            known |= {name: unit for name in alike if name not in known}
+    Parameters
+    ----------
+    found : columns of numbers by channel
+    radius : unloaded [m]; None if it is not known
+    """
+    chosen: dict[str, Choice] = {}
+    for kind in KINDS_OF_ONE_UNIT:
+        for group in _groups(kind, found):
+            chosen |= _shared_unit(kind, group, _load(found, chosen))
     for name, column in found.items():
-        if name in known or not column.channel.unit:
-            continue
-        if column.channel.unit == "kPa":
-            out[name] = _pressure(column, _load(found, known))
-        elif name == "time_s":
-            out[name] = _time(column, found.get("alpha_deg"), known.get("alpha_deg", "deg"))
-        elif name == "V_mps":
-            out[name] = _as_it_looks(column, "m/s" if column.size < FASTEST_MPS else "km/h")
-        elif name != "omega_radps":
-            out[name] = _as_it_looks(column, column.channel.unit)
-        if name in out:
-            known[name] = out[name].unit
-    return out
+        if not column.unit and column.channel.unit and name not in chosen and name != "omega_radps":
+            chosen[name] = _own_unit(name, found, chosen)
+    rotation = _rotation(found, chosen, radius)
+    left_out = {"omega_radps": rotation} if isinstance(rotation, str) else {}
+    if isinstance(rotation, Choice):
+        chosen["omega_radps"] = rotation
+    for name in found:
+        if name not in left_out and (reason := _implausible(name, found, chosen)):
+            left_out[name] = reason
+    return Choices({name: chosen[name] for name in chosen if name not in left_out}, left_out)
 
 
-def _apart(group: Mapping[str, Found]) -> list[dict[str, Found]]:
-    """Columns of one kind that share a unit: all, unless forces are larger numbers than any tyre's grip allows."""
+def _groups(kind: str, found: Mapping[str, Found]) -> list[dict[str, Found]]:
+    """Columns of one kind that share a unit: all, unless forces exceed the load more than the grip of any tyre allows."""
+    group = {name: column for name, column in found.items() if column.channel.unit == kind}
     load = {name: column for name, column in group.items() if name == "Fz_N"}
     rest = {name: column for name, column in group.items() if name not in load}
-    if load and max((c.size for c in rest.values()), default=0.0) > MOST_GRIP * load["Fz_N"].size:
+    largest = max((column.size for column in rest.values()), default=0.0)
+    if load and largest > constants.GRIP_THAT_MEANS_ANOTHER_UNIT * load["Fz_N"].size:
         return [load, rest]
-    return [dict(group)] if group else []
+    return [group] if group else []
 
 
-def _range(column: Found) -> str:
-    return f"{np.nanmin(column.values):.3g} to {np.nanmax(column.values):.3g}"
+def _shared_unit(kind: str, group: Mapping[str, Found], load: float) -> dict[str, Choice]:
+    """One unit for all columns of a group that state none: that of another column, else the one that fits."""
+    stated = next((column for column in group.values() if column.unit), None)
+    unit = stated.unit if stated else _fitting_unit(kind, group, load)
+    headings = ", ".join(column.heading for column in group.values())
+    shared = f"; {headings} share a unit" if len(group) > 1 else ""
+
+    def reason(column: Found) -> str:
+        if stated:
+            return f"{column.range} assumed to be in {unit}, like {stated.heading}"
+        return _look_like(column, unit) + shared
+
+    return {name: Choice(unit, reason(column)) for name, column in group.items() if not column.unit}
 
 
-def _look_like(column: Found, unit: str) -> str:
-    return f"{_range(column)} look like {unit}"
+def _fitting_unit(kind: str, group: Mapping[str, Found], load: float) -> str:
+    size = max(column.size for column in group.values())
+    if kind == "deg":
+        return "rad" if size < constants.LARGEST_ANGLE_IN_RADIANS else "deg"
+    if kind == "N":
+        return "kN" if size < constants.LARGEST_FORCE_IN_KILONEWTONS else "N"
+    return "kN m" if 0.0 < size < constants.SHORTEST_LEVER_ARM_IN_RECORDING * load else "N m"
 
 
-def _as_it_looks(column: Found, unit: str) -> Choice:
+def _own_unit(name: str, found: Mapping[str, Found], chosen: Mapping[str, Choice]) -> Choice:
+    """The unit of a column that shares it with no other."""
+    column = found[name]
+    unit = column.channel.unit
+    if unit == "kPa":
+        return _pressure(column, _load(found, chosen))
+    if name == "time_s":
+        return _time(column, _sideslip_deg(found, chosen))
+    if name == "V_mps" and column.size >= constants.FASTEST_SPEED_IN_METRES:
+        unit = "km/h"
     return Choice(unit, _look_like(column, unit))
 
 
-def _unit_of_group(kind: str, group: Mapping[str, Found], load: float) -> str:
-    size = max((column.size for column in group.values()), default=0.0)
-    if kind == "deg":
-        return "rad" if size < LARGEST_RADIANS else "deg"
-    if kind == "N":
-        return "kN" if size < LARGEST_KILONEWTONS else "N"
-    return "kN m" if 0.0 < size < LEAST_ARM * load else "N m"
+def _unit_of(name: str, found: Mapping[str, Found], chosen: Mapping[str, Choice]) -> str:
+    """Unit of a column, stated or chosen; "" while it is open."""
+    return found[name].unit or (chosen[name].unit if name in chosen else "")
 
 
-def _load(found: Mapping[str, Found], known: Mapping[str, str]) -> float:
+def _load(found: Mapping[str, Found], chosen: Mapping[str, Choice]) -> float:
     """The largest load [N]; 0 while its unit is open."""
-    if "Fz_N" not in found or "Fz_N" not in known:
-        return 0.0
-    return factor(known["Fz_N"], "N") * found["Fz_N"].size
+    unit = _unit_of("Fz_N", found, chosen) if "Fz_N" in found else ""
+    return factor(unit, "N") * found["Fz_N"].size if unit else 0.0
+
+
+def _sideslip_deg(found: Mapping[str, Found], chosen: Mapping[str, Choice]) -> np.ndarray | None:
+    if "alpha_deg" not in found:
+        return None
+    return converted(found["alpha_deg"].values, _unit_of("alpha_deg", found, chosen), "deg")
+
+
+def _look_like(column: Found, unit: str) -> str:
+    return f"{column.range} look like {unit}"
 
 
 def _pressure(column: Found, load: float) -> Choice:
-    """The unit that gives the pressure of a tyre, with the others that are not out of the question."""
+    """The unit that gives the pressure of a tyre, with the other units that are possible."""
     middle = float(np.nanmedian(np.abs(column.values)))
-    in_kPa = {unit: factor(unit, "kPa") * middle for unit in PRESSURES}
-    least, most = OF_A_LORRY if load > LORRY else USUAL
-    possible = [unit for unit in PRESSURES if POSSIBLE[0] <= in_kPa[unit] <= POSSIBLE[1]]
-    usual = [unit for unit in possible if least <= in_kPa[unit] <= most]
+    in_kPa = {unit: factor(unit, "kPa") * middle for unit in PRESSURE_UNITS}
+    is_lorry = load > constants.LORRY_LOAD
+    possible = [unit for unit in PRESSURE_UNITS if _within(in_kPa[unit], constants.ANY_TYRE_PRESSURES)]
+    likely = constants.LORRY_TYRE_PRESSURES if is_lorry else constants.CAR_TYRE_PRESSURES
+    usual = [unit for unit in possible if _within(in_kPa[unit], likely)]
     unit = next(iter(usual or possible), column.channel.unit)
     others = [f"{other} ({in_kPa[other]:.0f} kPa)" for other in possible if other != unit]
     own = "" if unit == column.channel.unit else f" ({in_kPa[unit]:.0f} kPa)"
-    also = f"{own}, less likely {' or '.join(others)}" if others else own
-    return Choice(unit, _look_like(column, unit) + also)
+    also = f", less likely {' or '.join(others)}" if others else ""
+    return Choice(unit, _look_like(column, unit) + own + also)
 
 
-def _time(column: Found, angle: Found | None, unit: str) -> Choice:
-    """The unit in which an angle is steered as fast as machines steer."""
-    alpha = None if angle is None else converted(angle.values, unit, "deg")
-    motion = None if alpha is None else _motion(column.values, alpha)
+def _within(value: float, limits: tuple[float, ...]) -> bool:
+    least, most = limits
+    return least <= value <= most
+
+
+def _time(column: Found, alpha_deg: np.ndarray | None) -> Choice:
+    """The unit in which the sideslip angle moves as fast as rigs steer."""
+    motion = None if alpha_deg is None else _motion(column.values, alpha_deg)
     if motion is None:
-        return Choice("s", f"{_range(column)} taken for s, but without a moving angle the unit is not known")
+        return Choice("s", f"{column.range} assumed to be in s; without a moving angle the unit is not known")
     step, rate = motion
-    for each in TIMES:
-        seconds = factor(each, "s")
-        if STEPS[0] <= step * seconds <= STEPS[1] and RATES[0] <= rate / seconds <= RATES[1]:
-            why = f"steps of {step:.3g} look like {each}, in which the angle moves at {rate / seconds:.2g} deg/s"
-            return Choice(each, why)
+    for unit in TIME_UNITS:
+        seconds = factor(unit, "s")
+        if _within(step * seconds, constants.RECORDED_TIME_STEPS) and _within(
+            rate / seconds, constants.STEERING_RATES
+        ):
+            why = f"steps of {step:.3g} look like {unit}, in which the angle moves at {rate / seconds:.2g} deg/s"
+            return Choice(unit, why)
     return Choice(
-        "s", f"steps of {step:.3g} taken for s, but the angle would move at {rate:.2g} deg/s: unit not known"
+        "s",
+        f"steps of {step:.3g} assumed to be in s, but the angle would move at {rate:.2g} deg/s: unit not known",
     )
 
 
-def _motion(time: np.ndarray, alpha: np.ndarray) -> tuple[float, float] | None:
-    """Usual step and rate of the steering [deg], per unit of time; None without both."""
-    seen = np.isfinite(time) & np.isfinite(alpha)
-    time, alpha = time[seen], alpha[seen]
-    width = WINDOW if len(time) > 4 * WINDOW else 1
-    if len(time) <= 4 or np.ptp(alpha) < TRAVEL:
+def _motion(time: np.ndarray, alpha_deg: np.ndarray) -> tuple[float, float] | None:
+    """Usual step of time and rate of steering [deg], per unit of time; None if the angle does not move."""
+    seen = np.isfinite(time) & np.isfinite(alpha_deg)
+    time, alpha_deg = time[seen], alpha_deg[seen]
+    if len(time) < constants.FEWEST_SAMPLES_FOR_RATE or np.ptp(alpha_deg) < constants.STEERING_TRAVEL:
         return None
+    long_enough = len(time) > constants.RATES_PER_RECORDING * constants.SAMPLES_PER_RATE
+    width = constants.SAMPLES_PER_RATE if long_enough else 1
     step = float(np.median(np.diff(time)))
-    apart = time[width:] - time[:-width]
-    rates = np.abs(alpha[width:] - alpha[:-width])[apart > 0.0] / apart[apart > 0.0]
-    return (step, float(np.percentile(rates, 95.0))) if step > 0.0 and len(rates) else None
+    elapsed = time[width:] - time[:-width]
+    forwards = elapsed > 0.0
+    rates = np.abs(alpha_deg[width:] - alpha_deg[:-width])[forwards] / elapsed[forwards]
+    if not (step > 0.0 and len(rates)):
+        return None
+    return step, float(np.percentile(rates, constants.STEERING_PERCENTILE))
 
 
-def rotation(found: Mapping[str, Found], speed_unit: str, radius: float | None) -> tuple[str, str]:
-    """The unit of the wheel's speed that fits the speed of the contact point, or why the column is left out.
-
-    Parameters
-    ----------
-    found : with ``omega_radps``
-    speed_unit : of ``V_mps``; "" where there is none
-    radius : unloaded [m]; None where it is not known
-
-    Returns
-    -------
-    unit, why not
-        One of them is empty.
-    """
-    column = found["omega_radps"]
-    if not speed_unit:
-        return "", f"{column.heading} is left out: without a speed nothing says that it is the wheel's"
-    speed = np.abs(converted(found["V_mps"].values, speed_unit, "m/s"))
+def _rotation(
+    found: Mapping[str, Found], chosen: Mapping[str, Choice], radius: float | None
+) -> Choice | str | None:
+    """The unit in which a speed of rotation is that of the wheel, or why it is left out; None if there is nothing to choose."""
+    column, speed = found.get("omega_radps"), found.get("V_mps")
+    if column is None or column.heading == "omega_radps":
+        return None
+    if speed is None:
+        return f"{column.heading} is left out: without a speed it cannot be checked that it is the wheel's"
+    V = np.abs(converted(speed.values, _unit_of("V_mps", found, chosen), "m/s"))
     lengths = BY_NAME["RL_m"]
-    least, most = (lengths.lower, lengths.upper) if radius is None else (0.75 * radius, 1.25 * radius)
-    middle = np.sqrt(least * most)
+    limits = (lengths.lower, lengths.upper)
+    if radius is not None:
+        limits = tuple(share * radius for share in constants.ROLLING_RADIUS_RANGE)
     fits: dict[str, float] = {}
-    for unit in (column.unit,) if column.unit else ("rad/s", "rpm"):
+    for unit in (column.unit,) if column.unit else ROTATION_UNITS:
         omega = np.abs(converted(column.values, unit, "rad/s"))
-        seen = np.isfinite(omega) & np.isfinite(speed) & (speed > 0.0)
+        seen = np.isfinite(omega) & np.isfinite(V) & (V > 0.0)
         with np.errstate(divide="ignore"):
-            ratio = float(np.median(speed[seen] / omega[seen])) if np.any(seen) else np.inf
-        if least <= ratio <= most:
-            fits[unit] = abs(np.log(ratio / middle))
-    if fits:
-        return min(fits, key=lambda unit: fits[unit]), ""
-    return "", (
-        f"{column.heading} ({_range(column)}) is left out: at the speed of {found['V_mps'].heading} no wheel of this size "
-        "turns like that"
+            ratio = float(np.median(V[seen] / omega[seen])) if np.any(seen) else np.inf
+        if _within(ratio, limits):
+            fits[unit] = abs(np.log(ratio / np.sqrt(np.prod(limits))))
+    if not fits:
+        return (
+            f"{column.heading} ({column.range}) is left out: at the speed in {speed.heading}, no wheel of this size turns at "
+            "this rate"
+        )
+    unit = min(fits, key=lambda unit: fits[unit])
+    return None if column.unit else Choice(unit, f"in {unit} they agree with {speed.heading}")
+
+
+def _implausible(name: str, found: Mapping[str, Found], chosen: Mapping[str, Choice]) -> str:
+    """Why an optional column is left out: its readings are outside the plausible range; "" if they are not."""
+    column, channel = found[name], found[name].channel
+    if channel.required or name == "time_s":
+        return ""
+    unit = _unit_of(name, found, chosen)
+    values = converted(column.values, unit, channel.unit)
+    if not implausible(values, channel, may_have_gaps="time_s" in found):
+        return ""
+    limits = f"{channel.lower:g} to {channel.upper:g} {channel.unit}".rstrip()
+    return (
+        f"{column.heading} ({column.range}) is left out: in {unit or 'plain numbers'} it is not within {limits}; if it is "
+        f"{channel.name}, write it with its true unit under [columns]"
     )
 
 
-def customary(found: Mapping[str, Found], units: Mapping[str, str], open_: Sequence[str]) -> str:
-    """What to say where one column is in an American unit and others state none; empty if that is not so.
-
-    Parameters
-    ----------
-    found : the columns
-    units : of all of them
-    open_ : channels whose unit is a choice
-    """
+def customary(found: Mapping[str, Found], chosen: Mapping[str, Choice]) -> str:
+    """A remark if one column is in an American unit and others state none; "" otherwise."""
+    units = {name: _unit_of(name, found, chosen) for name in found}
     american = {spelt(unit) for unit in CUSTOMARY.values()}
     settled = {column.channel.unit for column in found.values() if column.unit}
-    sign = next((name for name in found if spelt(units.get(name, "")) in american), None)
+    sign = next((name for name in found if spelt(units[name]) in american), None)
     doubtful = [
         name
-        for name in open_
+        for name in chosen
         if found[name].channel.unit in CUSTOMARY.keys() - settled and spelt(units[name]) not in american
     ]
     if sign is None or not doubtful:
@@ -224,7 +273,7 @@ def customary(found: Mapping[str, Found], units: Mapping[str, str], open_: Seque
     ]
     first = found[doubtful[0]]
     return (
-        f"{found[sign].heading} is in {units[sign]}, so these may be in American units, too, and nothing states them: "
-        f"{', '.join(pairs)}; if so, write unit = under [columns], as in {first.channel.name} = "
+        f"{found[sign].heading} is in {units[sign]}, so columns without a stated unit may be in American units, too: "
+        f"{', '.join(pairs)}; if they are, write the unit under [columns], for example {first.channel.name} = "
         f'{{ column = "{first.heading}", unit = "{CUSTOMARY[first.channel.unit]}" }}'
     )

@@ -1,35 +1,34 @@
-"""One file to sweeps in ISO-W and SI: the only place where a rig's units and signs exist."""
+"""From the columns of a file to sweeps in ISO-W and SI; the signs of a rig are converted here and nowhere else."""
 
 from __future__ import annotations
 
+import math
 from dataclasses import fields, replace
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from mffit.errors import InputError
+from mffit.sweeps import constants
 from mffit.sweeps.columns import Columns
 from mffit.sweeps.formats import stem
 from mffit.sweeps.sweep import Sweep
 from tir.conventions import FLIPPED, to_iso
 
-SMALLEST_LOAD = 20.0
-"""Loads that are all below this [N] are taken for kilonewtons."""
-
 
 class Circumstances(NamedTuple):
-    """What a file does not say itself."""
+    """What the configuration says about a file."""
 
     axes: str  #: of the rig
-    file: str  #: name to report
-    direction: int  #: +1 or -1, where the file has no such column
-    mount: int
-    pressure: float  #: where not measured [Pa]
-    speed: float  #: where not measured [m/s]
+    file: str  #: name as in ``tyre.toml``
+    direction: int = 1  #: +1 or -1, if the file has no such column
+    mount: int = 1  #: +1 normal, -1 tyre turned on its rim
+    pressure: float = math.nan  #: [Pa], if not measured
+    speed: float = math.nan  #: [m/s], if not measured
 
 
 def sweeps_of(columns: Columns, given: Circumstances) -> list[Sweep]:
-    """The sweeps of a file: one per ``run``, or the whole file; forces stay in the rig's frame."""
+    """The sweeps of a file, one per ``run``, or one for the whole file; forces stay in the rig's frame."""
     check_loads(columns, given.axes)
     whole = _sweep(columns, given)
     if "run" not in columns.table:
@@ -43,7 +42,7 @@ def _sweep(columns: Columns, given: Circumstances) -> Sweep:
     table, n = columns.table, len(columns.raw)
 
     def column(name: str, missing: float = np.nan) -> np.ndarray:
-        # A channel that was not measured takes no memory, however long the recording.
+        # A channel that was not measured takes no memory, even in a long recording.
         return table[name].to_numpy(dtype=float) if name in table else np.broadcast_to(missing, (n,))
 
     def iso(channel: str, name: str) -> np.ndarray:
@@ -76,7 +75,7 @@ def _sweep(columns: Columns, given: Circumstances) -> Sweep:
 
 
 def rows_of(sweep: Sweep, rows: np.ndarray, name: str) -> Sweep:
-    """Some rows (m,) of a sweep as one of its own."""
+    """A sweep made of some rows (m,) of another."""
     values = {field.name: getattr(sweep, field.name) for field in fields(sweep)}
     arrays: dict[str, Any] = {
         field: value[rows] for field, value in values.items() if isinstance(value, np.ndarray)
@@ -85,14 +84,14 @@ def rows_of(sweep: Sweep, rows: np.ndarray, name: str) -> Sweep:
 
 
 def usual_sign(Fz: np.ndarray) -> float:
-    """Sign of most loads (n,): 1.0 or -1.0."""
+    """Sign of the majority of loads (n,): 1.0 or -1.0."""
     return -1.0 if np.sum(Fz < 0.0) > np.sum(Fz > 0.0) else 1.0
 
 
 def check_loads(columns: Columns, axes: str) -> None:
-    """Refuse loads of the wrong sign for the axes or in kilonewtons; in a table of points also zero and mixed ones.
+    """Refuse loads in kilonewtons or of the wrong sign for the axes; in a table of points also zero loads and mixed signs.
 
-    A recording may begin with the tyre off the belt, where the load is noise about zero.
+    A recording may begin with the tyre off the belt, so that the load is noise about zero.
     """
     Fz = columns.table["Fz_N"].to_numpy(dtype=float)
 
@@ -101,23 +100,22 @@ def check_loads(columns: Columns, axes: str) -> None:
 
     is_series = "time_s" in columns.table
     if is_series and not np.any(np.isfinite(Fz) & (Fz != 0.0)):
-        raise refuse(0, "the load is never other than zero; map the column that holds it")
+        raise refuse(0, "the load is zero in all rows; map the column that holds it under [sweep.columns]")
     if not is_series and np.any(Fz == 0.0):
         raise refuse(int((Fz == 0.0).argmax()), "the load is zero; remove the rows without load")
     if not is_series and np.any(Fz > 0.0) and np.any(Fz < 0.0):
         rare = int(((Fz > 0.0) if np.mean(Fz > 0.0) < 0.5 else (Fz < 0.0)).argmax())
-        raise refuse(
-            rare, f"{Fz[rare]:g} N has another sign than the other loads; correct it or remove the row"
-        )
+        raise refuse(rare, f"{Fz[rare]:g} N has another sign than most loads; correct it or remove the row")
     if usual_sign(Fz) < 0.0 and "Fz" not in FLIPPED[axes]:
         raise refuse(
             int((Fz < 0.0).argmax()),
-            f"loads are negative, which {axes} axes do not have; if the rig reports in SAE axes, set "
+            f"loads are negative, but in {axes} axes they are positive; if the rig reports in SAE axes, set "
             'axes = "sae", else map the column with scale = -1 under [sweep.columns]',
         )
-    if np.nanmax(np.abs(Fz)) < SMALLEST_LOAD:
+    largest = np.nanmax(np.abs(Fz))
+    if largest < constants.SMALLEST_LOAD_IN_NEWTONS:
         raise refuse(
             0,
-            f"the largest load is {np.nanmax(np.abs(Fz)):g} N, which looks like kN; write newtons, or "
+            f"the largest load is {largest:g} N, which looks like kN; write newtons, or "
             'Fz_N = { column = "Fz_N", unit = "kN" } under [sweep.columns]',
         )

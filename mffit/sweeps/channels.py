@@ -1,4 +1,4 @@
-"""The columns a sweep file may have, from ``channels.csv``; knows no file and no axes."""
+"""The columns that a sweep file may have, from ``channels.csv``."""
 
 from __future__ import annotations
 
@@ -7,6 +7,8 @@ import difflib
 from collections.abc import Iterable
 from dataclasses import dataclass
 from importlib import resources
+
+from mffit import constants
 
 
 @dataclass(frozen=True, slots=True)
@@ -19,9 +21,9 @@ class Channel:
     lower: float  #: plausible range, in ``unit``
     upper: float
     required: bool
-    below: str  #: what a value under the range usually is
-    above: str  #: what a value over the range usually is
-    aliases: tuple[str, ...]  #: headings that rigs use; never taken silently, as they do not say their unit
+    below: str  #: what a value below the range usually is
+    above: str  #: what a value above the range usually is
+    aliases: tuple[str, ...]  #: headings that rigs use; they do not state a unit, so they are only suggested
     description: str
 
 
@@ -49,20 +51,22 @@ BY_NAME = {channel.name: channel for channel in CHANNELS}
 
 
 def nearest_heading(channel: Channel, headings: Iterable[str]) -> str:
-    """The heading of a file that most likely is this channel; empty if none is near."""
+    """The heading of a file that most likely is this channel; "" if none is."""
     headings = list(headings)
-    spelt = {heading.lower(): heading for heading in headings}
+    written = {heading.lower(): heading for heading in headings}
     for alias in (channel.name, *channel.aliases):
-        if alias.lower() in spelt:
-            return spelt[alias.lower()]
-    near = difflib.get_close_matches(channel.name.lower(), spelt, n=1, cutoff=0.6)
+        if alias.lower() in written:
+            return written[alias.lower()]
+    near = difflib.get_close_matches(
+        channel.name.lower(), written, n=1, cutoff=constants.LIKENESS_OF_MISSPELT
+    )
     stem = channel.name.rpartition("_")[0].lower() or channel.name.lower()
-    starts = [heading for low, heading in spelt.items() if low.startswith(stem)]
-    return spelt[near[0]] if near else starts[0] if starts else ""
+    starts = [heading for low, heading in written.items() if low.startswith(stem)]
+    return written[near[0]] if near else starts[0] if starts else ""
 
 
-def nearest_channel(heading: str, *, likeness: float = 0.8) -> str:
-    """The channel whose name is spelt most like a heading; empty below a ``likeness`` of 0 to 1."""
+def nearest_channel(heading: str, *, likeness: float) -> str:
+    """The channel whose name is most like a heading; "" if none is as like as ``likeness``, from 0 to 1."""
     lower = {name.lower(): name for name in BY_NAME}
     near = difflib.get_close_matches(heading.lower(), lower, n=1, cutoff=likeness)
     return lower[near[0]] if near else ""

@@ -5,33 +5,34 @@ from __future__ import annotations
 import re
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 import pandas as pd
 
 from mffit.config.models import Column
-from mffit.errors import InputError
+from mffit.errors import InputError, shortened
+from mffit.sweeps import constants
 from mffit.sweeps.channels import BY_NAME, CHANNELS, Channel, nearest_channel, nearest_heading
+from mffit.sweeps.decimal_comma import has_decimal_comma, with_decimal_point
 from mffit.sweeps.raw_table import Cells, RawTable
 from mffit.sweeps.units import UnknownUnitError, converted
+from tir.errors import counted
 
 DIRECTIONS = {"forward": 1, "backward": -1, "1": 1, "+1": 1, "-1": -1}
 UNCERTAINTIES = ("u_Fy_N", "u_Mz_Nm")
 MAY_BE_BLANK = frozenset({"iteration", "point", *UNCERTAINTIES})
-LONGEST_QUOTE = 40
 NUMBER_WITH_UNIT = re.compile(r"[-+]?[\d.]+(?:[eE][-+]?\d+)?\s*([^\d\s.,+-].*)")
 NO_READING = ("", "nan", "inf", "infinity", "na", "n/a", "null", "notavail")
-FEW = 0.01
-"""Share of a recording's samples up to which readings outside the plausible range are spikes, not another unit."""
-DECIMAL_COMMA = re.compile(r"[-+]?\d+,\d+")
+"""What recorders write, in lower case, where there is no reading."""
 
 
 @dataclass(frozen=True, slots=True)
 class Columns:
-    """A file's columns as reported, row-aligned with ``lines``."""
+    """A file's columns as reported; rows as in ``raw``."""
 
     raw: RawTable
-    table: pd.DataFrame  #: contract columns in contract units, then whatever else the file holds, as text
+    table: pd.DataFrame  #: contract columns in contract units, then all other columns of the file as text
     direction: np.ndarray | None  #: +1 or -1 (n,), None without such a column
     warnings: tuple[str, ...]
 
@@ -40,9 +41,34 @@ class Columns:
         return int(self.raw.lines[row])
 
 
-def _mapped(mapping: Mapping[str, Column], name: str) -> str | None:
-    """The heading that a mapping gives a contract column; None if it does not name the column."""
-    return (mapping[name].column or name) if name in mapping else None
+class _Source(NamedTuple):
+    """Where a channel is found in a file."""
+
+    raw: RawTable
+    channel: Channel
+    heading: str
+    mapped: Column | None  #: unit and scale that ``tyre.toml`` gives; None if it does not name this heading
+    may_have_gaps: bool
+
+    @property
+    def cells(self) -> Cells:
+        return self.raw.column(self.heading)
+
+    @property
+    def stated_unit(self) -> str:
+        return self.raw.unit(self.heading)
+
+    def refusal(self, sentence: str, row: int) -> InputError:
+        """The error about a cell of this column."""
+        line = int(self.raw.lines[row])
+        return InputError(sentence, file=self.raw.path, line=line, column=self.heading)
+
+
+class _Read(NamedTuple):
+    """A column in the contract's unit."""
+
+    values: np.ndarray  #: (n,)
+    warnings: tuple[str, ...] = ()
 
 
 def read_columns(raw: RawTable, mapping: Mapping[str, Column], shared: Collection[str] = ()) -> Columns:
@@ -52,157 +78,170 @@ def read_columns(raw: RawTable, mapping: Mapping[str, Column], shared: Collectio
     ----------
     raw : the file's cells
     mapping : ``[sweep.columns]``: contract column -> heading, unit and scale; its keys are contract columns
-    shared : those of its keys that come from ``[columns]``, which serves all files: headings that this file lacks
-        are passed over unless the column is required
+    shared : those of its keys that come from ``[columns]``, which applies to all files: if a file lacks the heading, the key
+        is ignored unless the column is required
 
     Notes
     -----
     A recording (``time_s``) may have gaps: cells without a number, and rare samples outside the plausible range, which
-    become NaN. In a table of points each of them is refused.
+    become NaN. In a table of points each of them is an error.
 
     Raises
     ------
     InputError
-        A column is missing, a cell is no finite number, or a value is outside its plausible range.
+        A column is missing, a cell is not a finite number, or a value is outside its plausible range.
     """
-    sources = {name: column.column or name for name, column in mapping.items()}
-    for name in set(shared) & set(sources):
-        if sources[name] not in raw.headings and (name in raw.headings or not BY_NAME[name].required):
-            del sources[name]
-    for channel in CHANNELS:
-        if channel.name not in sources and channel.name in raw.headings:
-            sources[channel.name] = channel.name
-    _check_sources(raw, sources)
-    cells = dict(zip(raw.headings, raw.cells, strict=True))
+    headings = _headings(raw, mapping, shared)
     found: dict[str, np.ndarray] = {}
     warnings: list[str] = []
     for channel in CHANNELS:
-        if channel.name in sources:
-            heading = sources[channel.name]
-            gaps = "time_s" in sources and channel.name != "time_s"
-            own = mapping.get(channel.name) if heading == _mapped(mapping, channel.name) else None
-            values = _channel(raw, channel, heading, cells, own, gaps=gaps, say=warnings)
-            if values is not None:
-                found[channel.name] = values
-    for name in UNCERTAINTIES:
-        if name in found:
-            found[name], said = _stated(raw, sources[name], found[name])
-            warnings += said
-    taken = set(sources.values()) | set(sources)
-    extras = {heading: column for heading, column in cells.items() if heading not in taken}
+        if channel.name not in headings:
+            continue
+        read = _read(_source(raw, channel, headings, mapping))
+        if read is not None:
+            found[channel.name] = read.values
+            warnings += read.warnings
+    taken = {*headings, *headings.values()}
+    extras = {heading: raw.column(heading) for heading in raw.headings if heading not in taken}
+    warnings += _misspelt(raw, extras, found)
     direction = found.get("direction")
     if direction is not None:
         found["direction"] = np.where(direction > 0, "forward", "backward")
-    order = sorted(found, key=lambda name: raw.headings.index(sources[name]))
+    order = sorted(found, key=lambda name: raw.headings.index(headings[name]))
     table = pd.DataFrame({**{name: found[name] for name in order}, **extras}, copy=False)
-    return Columns(raw, table, direction, (*warnings, *_misspelt(raw, extras, found)))
+    return Columns(raw, table, direction, tuple(warnings))
 
 
-def _check_sources(raw: RawTable, sources: Mapping[str, str]) -> None:
-    """Every mapped heading is there, and every required column has one."""
-    for name, heading in sources.items():
-        if heading not in raw.headings:
-            near = nearest_heading(BY_NAME[name], raw.headings)
-            hint = f'; the nearest heading is "{near}"' if near else f"; there are {', '.join(raw.headings)}"
-            sentence = f'there is no heading "{heading}", which [sweep.columns] {name} names{hint}'
-            raise InputError(sentence, file=raw.path, line=raw.heading_line)
+def _headings(raw: RawTable, mapping: Mapping[str, Column], shared: Collection[str]) -> dict[str, str]:
+    """The heading of every contract column that the file has."""
+    headings = {name: column.column or name for name, column in mapping.items()}
+    for name in set(shared) & set(headings):
+        if headings[name] not in raw.headings and (name in raw.headings or not BY_NAME[name].required):
+            del headings[name]
     for channel in CHANNELS:
-        if channel.required and channel.name not in sources:
+        if channel.name not in headings and channel.name in raw.headings:
+            headings[channel.name] = channel.name
+    for name, heading in headings.items():
+        if heading not in raw.headings:
+            raise _not_in_file(raw, name, heading)
+    for channel in CHANNELS:
+        if channel.required and channel.name not in headings:
             raise _missing(raw, channel)
+    return headings
+
+
+def _not_in_file(raw: RawTable, name: str, heading: str) -> InputError:
+    near = nearest_heading(BY_NAME[name], raw.headings)
+    hint = f'the nearest heading is "{near}"' if near else f"the headings are {', '.join(raw.headings)}"
+    sentence = f'has no heading "{heading}", which [sweep.columns] gives for {name}; {hint}'
+    return InputError(sentence, file=raw.path, line=raw.heading_line)
 
 
 def _missing(raw: RawTable, channel: Channel) -> InputError:
     near = nearest_heading(channel, raw.headings)
-    unit = channel.unit
     remedy = (
-        f'if "{near}" is it, put {channel.name} = {{ column = "{near}", unit = "{unit}" }}, with its true '
+        f'if it is "{near}", write {channel.name} = {{ column = "{near}", unit = "{channel.unit}" }}, with its true '
         "unit, under [sweep.columns]"
         if near
-        else f"add it, or name its heading under [sweep.columns] ({', '.join(raw.headings)} are there)"
+        else f"add it, or give its heading under [sweep.columns] (the headings are {', '.join(raw.headings)})"
     )
     sentence = f"is missing ({channel.description}); {remedy}"
     return InputError(sentence, file=raw.path, line=raw.heading_line, column=channel.name)
 
 
-def _channel(
-    raw: RawTable,
-    channel: Channel,
-    heading: str,
-    cells: Mapping[str, Cells],
-    column: Column | None,
-    *,
-    gaps: bool,
-    say: list[str],
-) -> np.ndarray | None:
-    """One column (n,) in the contract's unit; None if all its cells are blank."""
-    given = cells[heading]
-    if bool(np.all(np.isnan(given))) if isinstance(given, np.ndarray) else all(map(_is_blank, given)):
+def _source(
+    raw: RawTable, channel: Channel, headings: Mapping[str, str], mapping: Mapping[str, Column]
+) -> _Source:
+    mapped, heading = mapping.get(channel.name), headings[channel.name]
+    if mapped is not None and heading != (mapped.column or channel.name):
+        mapped = None
+    return _Source(
+        raw=raw,
+        channel=channel,
+        heading=heading,
+        mapped=mapped,
+        may_have_gaps="time_s" in headings and channel.name != "time_s",
+    )
+
+
+def _read(source: _Source) -> _Read | None:
+    """One column in the contract's unit; None if all its cells are blank."""
+    cells, channel = source.cells, source.channel
+    if _all_blank(cells):
         if channel.required:
-            raise InputError(
-                "has no values; complete it", file=raw.path, line=int(raw.lines[0]), column=heading
-            )
+            raise source.refusal("has no values; complete it", 0)
         return None
     if channel.kind == "label":
-        different, where = np.unique(np.asarray(given), return_inverse=True)
-        return np.array([_text(cell) for cell in different.tolist()], dtype=object)[where]
+        different, where = np.unique(np.asarray(cells), return_inverse=True)
+        return _Read(np.array([_text(cell) for cell in different.tolist()], dtype=object)[where])
     if channel.kind == "direction":
-        return _directions(raw, heading, given)
-    values = _numbers(raw, channel, heading, given, gaps=gaps)
-    values = _in_contract_unit(values, raw, channel, heading, column)
-    return _in_range(raw, channel, heading, values, gaps=gaps, say=say)
+        return _Read(_directions(source))
+    read = _in_range(source, _in_contract_unit(source, _numbers(source)))
+    return _positive(source, read) if channel.name in UNCERTAINTIES else read
 
 
-def _directions(raw: RawTable, heading: str, given: Cells) -> np.ndarray:
-    different, where = np.unique(np.asarray(given), return_inverse=True)
+def _directions(source: _Source) -> np.ndarray:
+    cells = source.cells
+    different, where = np.unique(np.asarray(cells), return_inverse=True)
     words = [_text(cell).lower() for cell in different.tolist()]
     wrong = np.array([word not in DIRECTIONS for word in words])[where]
     if np.any(wrong):
         row = int(wrong.argmax())
-        sentence = f'"{_cut(_text(given[row]))}" is no direction; write forward or backward'
-        raise InputError(sentence, file=raw.path, line=int(raw.lines[row]), column=heading)
+        raise source.refusal(
+            f'"{shortened(_text(cells[row]))}" is not a direction; write forward or backward', row
+        )
     return np.array([DIRECTIONS.get(word, 0) for word in words])[where]
 
 
-def _numbers(raw: RawTable, channel: Channel, heading: str, given: Cells, *, gaps: bool) -> np.ndarray:
-    if isinstance(given, np.ndarray):
-        values = given
-    else:
-        values = pd.to_numeric(pd.Series(given, dtype=object), errors="coerce").to_numpy(dtype=float)
+def _numbers(source: _Source) -> np.ndarray:
+    cells = source.cells
+    values = numbers(cells)
     bad = ~np.isfinite(values)
     if not np.any(bad):
         return values
-    if gaps:
-        bad &= np.array([not _is_gap(cell) for cell in np.asarray(given, dtype=object)])
+    if source.may_have_gaps:
+        bad &= np.array([not _is_gap(cell) for cell in np.asarray(cells, dtype=object)])
         values = np.where(np.isinf(values), np.nan, values)
-    elif channel.name in MAY_BE_BLANK:
-        bad &= np.array([not _is_blank(cell) for cell in given])
+    elif source.channel.name in MAY_BE_BLANK:
+        bad &= np.array([not _is_blank(cell) for cell in cells])
     if np.any(bad):
         row = int(bad.argmax())
-        sentence = _bad_cell(_text(given[row]), channel)
-        raise InputError(sentence, file=raw.path, line=int(raw.lines[row]), column=heading)
+        raise source.refusal(_bad_cell(_text(cells[row]), source.channel), row)
     return values
 
 
+def numbers(cells: Cells) -> np.ndarray:
+    """A column's numbers (n,), NaN for cells that are not numbers."""
+    if isinstance(cells, np.ndarray):
+        return cells
+    return pd.to_numeric(pd.Series(list(cells), dtype=object), errors="coerce").to_numpy(dtype=float)
+
+
 def _bad_cell(cell: str, channel: Channel) -> str:
-    """Why a cell is no finite number and what to do."""
-    cell = _cut(cell)
+    """Why a cell is not a finite number, and what to do."""
     if cell == "":
         return "this cell is empty; complete it or remove the row"
-    if cell.lower().lstrip("+-") in NO_READING:
-        return f'"{cell}" is no measurement; complete it or remove the row'
-    if DECIMAL_COMMA.fullmatch(cell):
-        return f'"{cell}" has a decimal comma; write {cell.replace(",", ".")}'
+    quoted = f'"{shortened(cell)}"'
+    if _is_gap(cell):
+        return f"{quoted} is not a measurement; complete it or remove the row"
+    if has_decimal_comma(cell):
+        return f"{quoted} has a decimal comma; write {with_decimal_point(cell)}"
     unit = NUMBER_WITH_UNIT.fullmatch(cell)
     if unit:
         return (
-            f'"{cell}" has a unit in the cell; write the number alone, in {channel.unit}, or with '
-            f'unit = "{unit[1].strip()}" for this column under [sweep.columns]'
+            f"{quoted} has a unit in the cell; write the number alone, in {channel.unit}, or with "
+            f'unit = "{shortened(unit[1])}" for this column under [sweep.columns]'
         )
-    return f'"{cell}" is a text where a number in {channel.unit or "plain digits"} should be; correct it'
+    expected = f"a number in {channel.unit}" if channel.unit else "a plain number"
+    return f"{quoted} is a text where {expected} is expected; correct it"
+
+
+def _all_blank(cells: Cells) -> bool:
+    return bool(np.all(np.isnan(cells))) if isinstance(cells, np.ndarray) else all(map(_is_blank, cells))
 
 
 def _is_blank(cell: str | float) -> bool:
-    """Whether a cell holds nothing: no text, or the NaN that stands for it in a format of numbers."""
+    """Whether a cell is empty: "", or NaN in formats of numbers."""
     return not cell if isinstance(cell, str) else bool(np.isnan(cell))
 
 
@@ -215,88 +254,77 @@ def _text(cell: str | float) -> str:
     return cell if isinstance(cell, str) else f"{cell:g}"
 
 
-def _cut(cell: str) -> str:
-    """A cell short enough to be quoted; a quote that is never closed swallows half a file."""
-    return cell if len(cell) <= LONGEST_QUOTE else f"{cell[:LONGEST_QUOTE]}..."
-
-
-def _in_contract_unit(
-    values: np.ndarray, raw: RawTable, channel: Channel, heading: str, column: Column | None
-) -> np.ndarray:
-    """Values in the contract's unit, from the unit that ``tyre.toml`` names, else from the file's own."""
-    scale = 1.0 if column is None else column.scale
-    named = None if column is None else column.unit
-    unit = named or raw.units[raw.headings.index(heading)]
+def _in_contract_unit(source: _Source, values: np.ndarray) -> np.ndarray:
+    """Values in the contract's unit, from the unit that ``tyre.toml`` names, else from that of the file."""
+    channel, mapped = source.channel, source.mapped
+    scale, named = (1.0, None) if mapped is None else (mapped.scale, mapped.unit)
+    unit = named or source.stated_unit
     if not unit:
         return scale * values
-
-    def refuse(sentence: str) -> InputError:
-        if named:
-            return InputError(sentence, key=f"columns.{channel.name}.unit")
-        return InputError(sentence, file=raw.path, line=raw.heading_line, column=heading)
-
-    if not channel.unit and named and channel.kind != "number":
-        raise refuse("has no unit; remove it")
     try:
         return scale * converted(values, unit, channel.unit)
     except UnknownUnitError as error:
-        raise refuse(f"{error}; name the unit of the file's column") from None
+        sentence = f"{error}; correct the unit of this column"
+        if named:
+            raise InputError(sentence, key=f"columns.{channel.name}.unit") from None
+        raw = source.raw
+        raise InputError(sentence, file=raw.path, line=raw.heading_line, column=source.heading) from None
 
 
-def _in_range(
-    raw: RawTable, channel: Channel, heading: str, values: np.ndarray, *, gaps: bool, say: list[str]
-) -> np.ndarray:
-    """The values (n,), all in their plausible range or, few of a recording, NaN."""
-    outside = (values < channel.lower) | (values > channel.upper)
+def _in_range(source: _Source, values: np.ndarray) -> _Read:
+    """The values, all in their plausible range; rare spikes of a recording become NaN."""
+    channel = source.channel
+    outside = _outside(values, channel)
     if not np.any(outside):
-        return values
-    row, number = int(outside.argmax()), int(outside.sum())
+        return _Read(values)
+    row, count = int(outside.argmax()), int(outside.sum())
     unit = f" {channel.unit}" if channel.unit else ""
-    said = f"{values[row]:g}{unit} is outside {channel.lower:g} to {channel.upper:g}{unit}"
-    line = int(raw.lines[row])
-    if gaps and number <= FEW * len(values):
-        more = f", as {number - 1} more" if number > 1 else ""
-        say.append(f"{raw.path}:{line}: column {heading}: {said}{more}; taken for no reading")
-        return np.where(outside, np.nan, values)
+    sentence = f"{values[row]:g}{unit} is outside {channel.lower:g} to {channel.upper:g}{unit}"
+    if not implausible(values, channel, may_have_gaps=source.may_have_gaps):
+        also = f" (with {counted(count - 1, 'more sample')})" if count > 1 else ""
+        warning = source.refusal(f"{sentence}{also}; treated as missing", row)
+        return _Read(np.where(outside, np.nan, values), (str(warning),))
     hint = channel.below if values[row] < channel.lower else channel.above
-    sentence = (
-        f"{said}; {hint or 'correct it'}"
-        f"{', convert it or name its unit under [sweep.columns]' if hint else ''}"
-    )
-    raise InputError(sentence, file=raw.path, line=line, column=heading)
+    remedy = f"{hint}, convert it or name its unit under [sweep.columns]" if hint else "correct it"
+    raise source.refusal(f"{sentence}; {remedy}", row)
 
 
-def _stated(raw: RawTable, heading: str, values: np.ndarray) -> tuple[np.ndarray, list[str]]:
-    """Uncertainties (n,), NaN where none is stated, and what to say: a point of no uncertainty would count for all."""
-    none = values <= 0.0
-    if not np.any(none):
-        return values, []
-    row, number = int(none.argmax()), int(none.sum())
-    if not np.any(values > 0.0):
-        raise InputError(
-            "is not above zero in any row, and a standard uncertainty is; complete or remove the column",
-            file=raw.path,
-            line=int(raw.lines[row]),
-            column=heading,
+def _outside(values: np.ndarray, channel: Channel) -> np.ndarray:
+    return (values < channel.lower) | (values > channel.upper)
+
+
+def implausible(values: np.ndarray, channel: Channel, *, may_have_gaps: bool) -> bool:
+    """Whether more values (n,) are outside the plausible range of the channel than spikes of a recording explain."""
+    share = constants.LARGEST_SHARE_OF_SPIKES if may_have_gaps else 0.0
+    return bool(np.sum(_outside(values, channel)) > share * len(values))
+
+
+def _positive(source: _Source, read: _Read) -> _Read:
+    """Uncertainties, NaN where not above zero: a point of zero uncertainty would outweigh all others."""
+    wrong = read.values <= 0.0
+    if not np.any(wrong):
+        return read
+    row, count = int(wrong.argmax()), int(wrong.sum())
+    if not np.any(read.values > 0.0):
+        raise source.refusal(
+            "is not above zero in any row, as a standard uncertainty must be; complete or remove the column",
+            row,
         )
-    more = f", as in {number - 1} more rows" if number > 1 else ""
-    sentence = (
-        f"{raw.path}:{raw.lines[row]}: column {heading}: {values[row]:g} is no uncertainty and counts as not "
-        f"stated{more}"
-    )
-    return np.where(none, np.nan, values), [sentence]
+    also = f" here and in {counted(count - 1, 'more row')}" if count > 1 else ""
+    warning = source.refusal(f"{read.values[row]:g} is not above zero; treated as not stated{also}", row)
+    return _Read(np.where(wrong, np.nan, read.values), (*read.warnings, str(warning)))
 
 
 def _is_constant(cells: Cells) -> bool:
-    """Whether an unused column says nothing about its rows; of text it is not asked."""
+    """Whether an unused column of numbers has one value in all rows."""
     return isinstance(cells, np.ndarray) and bool(np.all(cells == cells[0]))
 
 
 def _misspelt(raw: RawTable, extras: Mapping[str, Cells], found: Mapping[str, object]) -> list[str]:
-    """Warnings for headings that look like a channel that would otherwise be missing."""
+    """Warnings about unused headings that look like a channel that was not found."""
     sentences = []
     for heading, cells in extras.items():
-        near = nearest_channel(heading)
+        near = nearest_channel(heading, likeness=constants.LIKENESS_OF_UNUSED_HEADING)
         if near and near not in found and not _is_constant(cells):
             sentences.append(f'{raw.path}: column "{heading}" is not used; if it is {near}, rename it')
     return sentences

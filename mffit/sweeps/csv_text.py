@@ -1,48 +1,48 @@
-"""The reader of text tables: CSV of any dialect, tab-separated ``.dat`` with title and unit lines, blanks between columns.
+"""The reader of text tables: CSV of any dialect, tab-separated ``.dat`` with title and unit lines, columns between blanks.
 
 Separator, decimal comma and encoding are found from the first lines. A small file is read cell by cell, so that an
-error can name the cell; a large one by pandas, which is fifty times as fast, and cell by cell where pandas gives up.
+error can name the cell. A large file is read by pandas, which is fifty times as fast, and cell by cell if pandas fails.
 """
 
 from __future__ import annotations
 
 import csv
-import gzip
 import io
 import re
 import zlib
 from collections import Counter
 from collections.abc import Iterator
 from pathlib import Path
-from typing import IO, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 import pandas as pd
 
 from mffit.errors import InputError
+from mffit.sweeps import constants
+from mffit.sweeps.decimal_comma import has_decimal_comma, with_decimal_point
+from mffit.sweeps.file_bytes import first_bytes, is_packed, opened
 from mffit.sweeps.grid import Head, head_of, table_of
 from mffit.sweeps.raw_table import Cells, RawTable
 
 UTF16_MARKS = (b"\xff\xfe", b"\xfe\xff")
 SEPARATORS = ("\t", ";", "|", ",")
-"""In the order in which they are believed: a comma may also be a decimal comma."""
+"""Sorted by priority: a comma is last, because it may also be a decimal comma."""
 BLANKS = " "
-LARGE = 2_000_000  # bytes
-HEAD = 65_536  # bytes from which the dialect is found
-DECIMAL_COMMA = re.compile(r"[-+]?\d*,\d+(?:[eE][-+]?\d+)?")
-DECIMAL_POINT = re.compile(r"[-+]?\d*\.\d*(?:[eE][-+]?\d+)?")
+HEAD = constants.BYTES_THAT_SHOW_DIALECT
+NUMBER_WITH_POINT = re.compile(r"[-+]?\d*\.\d*(?:[eE][-+]?\d+)?")
 
 
 class Dialect(NamedTuple):
     """How a text file writes its cells."""
 
     separator: str
-    comma: bool  #: decimals follow a comma
+    has_comma: bool  #: decimal comma instead of point
     encoding: str
 
 
 def read_csv(path: Path) -> RawTable:
-    """Read a text table, also ``.gz``; blank lines and ``#`` lines are passed over.
+    """Read a text table, also ``.gz``; blank lines and lines that begin with ``#`` are skipped.
 
     Raises
     ------
@@ -50,7 +50,7 @@ def read_csv(path: Path) -> RawTable:
         The file is missing, empty, not text, ragged, without data, or a heading is empty or appears twice.
     """
     dialect = _dialect(path)
-    if _size(path) > LARGE:
+    if _size(path) > constants.LARGE_TEXT_FILE:
         found = _fast(path, dialect)
         if found is not None:
             return found
@@ -66,24 +66,29 @@ def read_csv(path: Path) -> RawTable:
 
 
 def _dialect(path: Path) -> Dialect:
-    head = _bytes(path, HEAD)
+    head = first_bytes(path, HEAD)
     encoding = _encoding(head)
     if encoding is None:
         raise InputError("is binary, not plain text; save it as CSV in UTF-8", file=path)
     text = head.decode(encoding, errors="replace")
     if len(head) == HEAD:
         text = text[: text.rfind("\n")] if "\n" in text else text
-    lines = [line for line in text.splitlines() if line.strip() and not line.lstrip().startswith("#")][:200]
-    separator = next((mark for mark in SEPARATORS if _fits(lines, mark)), None)
-    if separator is None:
-        counts = Counter(len(line.split()) for line in lines)
-        separator = BLANKS if counts and counts.most_common(1)[0][0] > 1 else ","
-        if separator == BLANKS and any("," in line for line in lines[:1]):
-            separator = ","
+    lines = [line for line in text.splitlines() if line.strip() and not line.lstrip().startswith("#")]
+    lines = lines[: constants.LINES_THAT_SHOW_DIALECT]
+    separator = _separator(lines)
     cells = [cell.strip() for line in lines[1:] for cell in _split(line, separator)]
-    commas = sum(bool(DECIMAL_COMMA.fullmatch(cell)) for cell in cells)
-    points = sum(bool(DECIMAL_POINT.fullmatch(cell)) for cell in cells)
-    return Dialect(separator, separator != "," and commas > 0 and points == 0, encoding)
+    has_comma = separator != "," and any(map(has_decimal_comma, cells))
+    return Dialect(separator, has_comma and not any(map(NUMBER_WITH_POINT.fullmatch, cells)), encoding)
+
+
+def _separator(lines: list[str]) -> str:
+    """The first separator that makes rows of equal length, else blanks, else a comma."""
+    for mark in SEPARATORS:
+        if _fits(lines, mark):
+            return mark
+    counts = Counter(len(line.split()) for line in lines)
+    has_columns = bool(counts) and counts.most_common(1)[0][0] > 1
+    return BLANKS if has_columns and "," not in lines[0] else ","
 
 
 def _fits(lines: list[str], separator: str) -> bool:
@@ -92,7 +97,7 @@ def _fits(lines: list[str], separator: str) -> bool:
         return False
     counts = Counter(len(_split(line, separator)) for line in lines)
     usual, number = counts.most_common(1)[0]
-    return usual > 1 and number >= 0.5 * len(lines)
+    return usual > 1 and number >= constants.SHARE_OF_REGULAR_LINES * len(lines)
 
 
 def _split(line: str, separator: str) -> list[str]:
@@ -105,12 +110,13 @@ def _split(line: str, separator: str) -> list[str]:
 
 
 def _encoding(head: bytes) -> str | None:
+    """Encoding of a text; None for binary data."""
     if head.startswith(UTF16_MARKS):
         return "utf-16"
-    if b"\0" in head[:4096]:
+    if b"\0" in head[: constants.BYTES_THAT_SHOW_BINARY]:
         return None
     try:
-        # The end of the excerpt may cut a letter in two.
+        # The excerpt may end within a character.
         head[: max(len(head) - 4, 0) if len(head) == HEAD else len(head)].decode("utf-8-sig")
     except UnicodeDecodeError:
         return "latin-1"
@@ -127,7 +133,7 @@ def _rows(text: str, dialect: Dialect) -> Iterator[tuple[int, tuple[str, ...]]]:
     reader = csv.reader(io.StringIO(text, newline=""), delimiter=dialect.separator)
     before = 0
     for cells in reader:
-        # A quoted cell may span lines: the row begins behind where the one before it ended.
+        # A quoted cell may span lines, so a row begins one line after the end of the row before it.
         line, before = before + 1, reader.line_num
         row = tuple(_point(cell.strip(), dialect) for cell in cells)
         if any(row) and not row[0].startswith("#"):
@@ -135,18 +141,18 @@ def _rows(text: str, dialect: Dialect) -> Iterator[tuple[int, tuple[str, ...]]]:
 
 
 def _point(cell: str, dialect: Dialect) -> str:
-    return cell.replace(",", ".") if dialect.comma and DECIMAL_COMMA.fullmatch(cell) else cell
+    return with_decimal_point(cell) if dialect.has_comma else cell
 
 
 def _fast(path: Path, dialect: Dialect) -> RawTable | None:
-    """The table by pandas; None where it is not sure of every row."""
+    """The table as read by pandas; None if pandas fails or the line of each row is not certain."""
     head, line = _head(path, dialect)
     separator = r"\s+" if dialect.separator == BLANKS else dialect.separator
     try:
         table = pd.read_csv(
             path,
             sep=separator,
-            decimal="," if dialect.comma else ".",
+            decimal="," if dialect.has_comma else ".",
             header=None,
             names=list(head.headings),
             index_col=False,
@@ -157,7 +163,7 @@ def _fast(path: Path, dialect: Dialect) -> RawTable | None:
             encoding_errors="replace",
             engine="c",
             on_bad_lines="error",
-            compression="gzip" if path.name.endswith(".gz") else None,
+            compression="gzip" if is_packed(path) else None,
         )
         lines = _lines(path, line, len(table))
     except (ValueError, OSError, EOFError, zlib.error, MemoryError):
@@ -177,7 +183,7 @@ def _fast(path: Path, dialect: Dialect) -> RawTable | None:
 
 def _head(path: Path, dialect: Dialect) -> tuple[Head, int]:
     """The head of a large file and the number of its last line."""
-    text = _bytes(path, HEAD).decode(dialect.encoding, errors="replace")
+    text = first_bytes(path, HEAD).decode(dialect.encoding, errors="replace")
     found = list(_rows(text[: text.rfind("\n")], dialect))
     head = head_of([row for _, row in found], [line for line, _ in found], path)
     return head, found[head.rows - 1][0]
@@ -190,52 +196,34 @@ def _column(column: pd.Series) -> Cells:
 
 
 def _lines(path: Path, head: int, rows: int) -> range | np.ndarray | None:
-    """Line of every row behind the head; None if the lines are not the rows."""
+    """Line of every row after the head; None if lines and rows do not match."""
     count, last = 0, b"\n"
-    with _opened(path) as file:
+    with opened(path) as file:
         while chunk := file.read(1 << 20):
             count += chunk.count(b"\n")
             last = chunk[-1:]
     count += last != b"\n"
     if count - head == rows:
         return range(head + 1, head + 1 + rows)
-    passed_over = []
-    with _opened(path) as file:
+    skipped = []
+    with opened(path) as file:
         for number, line in enumerate(file, start=1):
             if number > head and (not line.strip() or line.lstrip().startswith(b"#")):
-                passed_over.append(number)
-    if count - head - len(passed_over) != rows:
+                skipped.append(number)
+    if count - head - len(skipped) != rows:
         return None
     every = np.arange(head + 1, count + 1)
-    return every[~np.isin(every, passed_over)]
+    return every[~np.isin(every, skipped)]
 
 
 def _text(path: Path, dialect: Dialect) -> str:
-    raw = _bytes(path)
+    raw = first_bytes(path)
     try:
         return raw.decode(dialect.encoding)
     except UnicodeDecodeError:
         return raw.decode("utf-16" if dialect.encoding == "utf-16" else "latin-1", errors="replace")
 
 
-def _size(path: Path) -> int:
-    return path.stat().st_size * (4 if path.name.endswith(".gz") else 1)
-
-
-def _opened(path: Path) -> IO[bytes]:
-    return gzip.open(path, "rb") if path.name.endswith(".gz") else path.open("rb")  # type: ignore[return-value]
-
-
-def _bytes(path: Path, most: int = -1) -> bytes:
-    """The file's first bytes, unpacked; all of them by default."""
-    try:
-        with _opened(path) as file:
-            return file.read(most)
-    except FileNotFoundError:
-        raise InputError("there is no such file; correct its name", file=path) from None
-    except IsADirectoryError:
-        raise InputError("is a folder; name the files in it", file=path) from None
-    except (gzip.BadGzipFile, EOFError, zlib.error):
-        raise InputError("is not a complete gzip file; compress it again", file=path) from None
-    except OSError as error:
-        raise InputError(f"cannot be read ({error.strerror}); check its permissions", file=path) from None
+def _size(path: Path) -> float:
+    """Size of the unpacked file in bytes; an estimate if it is packed."""
+    return path.stat().st_size * (constants.UNPACKED_OVER_PACKED if is_packed(path) else 1.0)

@@ -1,16 +1,24 @@
-"""Libraries that only some file formats need: imported when such a file comes."""
+"""What the readers of binary formats share: libraries imported when needed, and errors about damaged files."""
 
 from __future__ import annotations
 
 import importlib
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
-from mffit.errors import InputError
+from mffit.errors import InputError, readable, shortened
 
 
 def needed(module: str, what: str, path: Path) -> Any:
-    """The module, or a sentence that says how to get it."""
+    """The module.
+
+    Raises
+    ------
+    InputError
+        It is not installed; says how to install it.
+    """
     try:
         return importlib.import_module(module)
     except ImportError:
@@ -18,3 +26,21 @@ def needed(module: str, what: str, path: Path) -> Any:
             f'{what} are read with {module}, which is not installed; run pip install "mffit[formats]"',
             file=path,
         ) from None
+
+
+def damaged(path: Path, kind: str, reason: object) -> InputError:
+    """The error about a file that its library cannot read."""
+    return InputError(f"is not a readable {kind} ({shortened(reason)}); save it again", file=path)
+
+
+@contextmanager
+def undamaged(path: Path, kind: str) -> Iterator[None]:
+    """Within this block, any error becomes an :class:`InputError`: libraries fail on a damaged file in countless ways."""
+    with readable(path):
+        path.open("rb").close()
+    try:
+        yield
+    except InputError:
+        raise
+    except Exception as error:
+        raise damaged(path, kind, str(error) or type(error).__name__) from None

@@ -1,4 +1,4 @@
-"""The file formats that sweeps come in; a new one is a reader and one record here."""
+"""The file formats of sweeps; a new one is a reader and one record here."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import NamedTuple
 
+from mffit.sweeps import constants
 from mffit.sweeps.csv_text import read_csv
 from mffit.sweeps.matlab import read_mat
 from mffit.sweeps.parquet import read_parquet
@@ -20,8 +21,8 @@ from mffit.sweeps.tydex import read_tydex
 class Format(NamedTuple):
     """One file format."""
 
-    name: str  #: as people call it
-    endings: tuple[str, ...]  #: of file names
+    name: str  #: for messages
+    endings: tuple[str, ...]  #: of file names, in lower case
     read: Callable[[Path], RawTable]  #: raises InputError with file and line
 
 
@@ -32,26 +33,24 @@ FORMATS = (
     Format("Parquet", (".parquet",), read_parquet),
     Format("TYDEX", (".tdx", ".tdx.gz"), read_tydex),
 )
-LARGEST_KEPT = 5_000_000
-"""Cells of a file that is kept."""
 _KEPT: ContextVar[dict[Path, RawTable] | None] = ContextVar("kept", default=None)
 ENDINGS = tuple(ending for kind in FORMATS for ending in kind.endings)
 
 
 def read(path: Path) -> RawTable:
-    """Read a file by the ending of its name; a name with another ending is read as CSV."""
+    """Read a file in the format that the ending of its name says, CSV by default."""
     kept, place = _KEPT.get(), path.absolute()
     if kept is not None and place in kept:
         return replace(kept[place], path=path)
     found = next((kind for kind in FORMATS if reads(kind, path)), FORMATS[0]).read(path)
-    if kept is not None and len(found) * len(found.headings) < LARGEST_KEPT:
+    if kept is not None and len(found) * len(found.headings) < constants.LARGEST_TABLE_KEPT:
         kept[place] = found
     return found
 
 
 @contextmanager
 def reading_once() -> Iterator[None]:
-    """Within it every file is read once, however often it is looked at; large ones are not kept in memory."""
+    """Within this block, every file is read only once; large files are not kept in memory."""
     if _KEPT.get() is not None:
         yield
         return
@@ -63,12 +62,12 @@ def reading_once() -> Iterator[None]:
 
 
 def reads(kind: Format, path: Path) -> bool:
-    """Whether files of this name are of this format."""
+    """Whether the ending of the name belongs to the format."""
     return path.name.lower().endswith(kind.endings)
 
 
 def stem(path: str) -> str:
-    """The file's name without folder and ending."""
+    """The name of a file without folder and without the ending of a known format."""
     name = Path(path).name
     ending = max((ending for ending in ENDINGS if name.lower().endswith(ending)), key=len, default="")
     return name[: len(name) - len(ending)]

@@ -1,9 +1,8 @@
 """From the wheel-carrier frame C to the contact frame W, and from the wheel centre to the contact point.
 
-Both share the x axis. C leans with the wheel: with camber ``gamma > 0`` the top of the wheel goes to -y, so
-that ``z_C = (0, -sin gamma, cos gamma)`` and ``y_C = (0, cos gamma, sin gamma)``. A force ``(Fy, Fz)`` of W
-reads ``Fy_C = Fy cos gamma + Fz sin gamma``, ``Fz_C = Fz cos gamma - Fy sin gamma``; moments about one point
-likewise. The lever from contact point to wheel centre lies along z_C and leaves Mz alone.
+Both frames share the x axis. C leans with the wheel: a camber ``gamma > 0`` moves the top of the wheel to -y, so
+that ``z_C = (0, -sin gamma, cos gamma)`` and ``y_C = (0, cos gamma, sin gamma)``. A force ``(Fy, Fz)`` in W
+is ``Fy_C = Fy cos gamma + Fz sin gamma``, ``Fz_C = Fz cos gamma - Fy sin gamma`` in C; so are moments about the same point.
 """
 
 from __future__ import annotations
@@ -13,14 +12,12 @@ from dataclasses import replace
 
 import numpy as np
 
+from mffit.sweeps import constants
 from mffit.sweeps.sweep import Sweep
-
-CAMBERED = np.radians(5.0)
-"""Below this camber both readings of the load agree within its control."""
 
 
 def to_contact_frame(sweep: Sweep, *, load_is_vertical: bool) -> Sweep:
-    """Turn the forces and moments of a sweep from C to W.
+    """The sweep with forces and moments turned from C to W.
 
     Parameters
     ----------
@@ -29,7 +26,7 @@ def to_contact_frame(sweep: Sweep, *, load_is_vertical: bool) -> Sweep:
 
     Notes
     -----
-    Without My the rolling resistance about the W axis is neglected beside the aligning moment.
+    If My was not measured, the contribution of rolling resistance to Mz is neglected.
     """
     c, s = np.cos(sweep.gamma), np.sin(sweep.gamma)
     if load_is_vertical:
@@ -42,18 +39,18 @@ def to_contact_frame(sweep: Sweep, *, load_is_vertical: bool) -> Sweep:
 
 
 def to_contact_point(sweep: Sweep, *, unloaded_radius: float) -> Sweep:
-    """Moments about the wheel centre as moments about the contact point.
+    """The sweep with moments about the contact point instead of the wheel centre.
 
     Parameters
     ----------
     sweep : rows in ISO signs, frame W
-    unloaded_radius : lever [m] where the file has no loaded radius (``RL_m``)
+    unloaded_radius : lever [m] if the file has no loaded radius (``RL_m``)
 
     Notes
     -----
-    The centre lies at ``l = RL (0, -sin gamma, cos gamma)`` from the contact point, and ``M = M_centre + l x F``: Mx loses
-    ``RL (Fy cos gamma + Fz sin gamma)``, My gains ``RL Fx cos gamma`` and Mz ``RL Fx sin gamma``. Where Fx was not
-    measured the wheel is taken to roll freely.
+    The centre is at ``l = RL (0, -sin gamma, cos gamma)`` from the contact point, and ``M = M_centre + l x F``: Mx decreases
+    by ``RL (Fy cos gamma + Fz sin gamma)``, My increases by ``RL Fx cos gamma`` and Mz by ``RL Fx sin gamma``. If Fx was not
+    measured, the wheel is assumed to roll freely.
     """
     table, zero = sweep.table, np.zeros(len(sweep))
     lever = table["RL_m"].to_numpy(float) if "RL_m" in table else zero + unloaded_radius
@@ -68,18 +65,19 @@ def to_contact_point(sweep: Sweep, *, unloaded_radius: float) -> Sweep:
 
 
 def load_is_vertical(sweeps: Sequence[Sweep]) -> bool:
-    """Whether the load column of rows in frame C is the vertical load all the same.
+    """Whether the load column is the vertical load, although the forces are in frame C.
 
-    Rigs control the vertical load. Along a cambered sweep it changes little from row to row; of the two
-    readings of the column the one is taken in which it does so. Without such sweeps it makes no difference.
+    Rigs control the vertical load, so it varies little along a cambered sweep. The interpretation of the column with the
+    smaller variation is right. Without cambered sweeps both give the same forces.
     """
     as_given, turned = [], []
     for sweep in sweeps:
-        if np.max(np.abs(sweep.gamma)) < CAMBERED:
+        if np.max(np.abs(sweep.gamma)) < constants.CAMBER_THAT_TURNS_LOAD.rad:
             continue
         as_given.append(np.abs(np.diff(sweep.Fz)) / sweep.Fz[1:])
         vertical = to_contact_frame(sweep, load_is_vertical=False).Fz
         turned.append(np.abs(np.diff(vertical)) / sweep.Fz[1:])
     if not as_given:
         return False
-    return bool(np.median(np.concatenate(as_given)) < 0.5 * np.median(np.concatenate(turned)))
+    limit = constants.STEADIER_LOAD_RATIO * np.median(np.concatenate(turned))
+    return bool(np.median(np.concatenate(as_given)) < limit)

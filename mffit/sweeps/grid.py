@@ -1,4 +1,4 @@
-"""From rows of cells to a table: title lines, headings, a row of units, data. Shared by text files and spreadsheets."""
+"""From rows of cells to a table of title, headings, units and data; for text files and spreadsheets."""
 
 from __future__ import annotations
 
@@ -9,38 +9,40 @@ from pathlib import Path
 from typing import NamedTuple
 
 from mffit.errors import InputError
+from mffit.sweeps import constants
+from mffit.sweeps.decimal_comma import with_decimal_point
 from mffit.sweeps.raw_table import RawTable
 from mffit.sweeps.units import is_unit
 
 Row = Sequence[str | float]
 
 WITH_UNIT = re.compile(r"^(.*\S)\s*[\[(]\s*([^\[\]()]*)\s*[\])]$")
-"""A heading with its unit behind it: ``FY [N]``, ``Fz (kN)``."""
+"""A heading followed by its unit: ``FY [N]``, ``Fz (kN)``."""
 
 
 class Head(NamedTuple):
-    """What stands above the data."""
+    """The rows above the data."""
 
     headings: tuple[str, ...]
     units: tuple[str, ...]
-    at: int  #: number of the row of headings, from 0
-    rows: int  #: rows up to and including headings and units
-    title: str  #: whatever stands above the headings
+    at: int  #: index of the row of headings
+    rows: int  #: number of rows up to and including headings and units
+    title: str  #: text above the headings
 
 
 def table_of(rows: Sequence[Row], lines: Sequence[int], path: Path) -> RawTable:
-    """A table of rows, blank and comment rows left out already or empty.
+    """A table made of rows; rows without any text are skipped.
 
     Parameters
     ----------
-    rows : cells stripped of blanks, "" where there is nothing
+    rows : cells stripped of blanks, "" for an empty one
     lines : line of each row in the file, from 1
     path : of the file, for errors
 
     Raises
     ------
     InputError
-        No headings, no data, a heading that is empty or stands twice, or a row of another length.
+        There are no headings or no data, a heading is empty or appears twice, or a row has another length.
     """
     filled = [(row, line) for row, line in zip(rows, lines, strict=True) if any(cell != "" for cell in row)]
     head = head_of([row for row, _ in filled], [line for _, line in filled], path)
@@ -49,7 +51,7 @@ def table_of(rows: Sequence[Row], lines: Sequence[int], path: Path) -> RawTable:
     width = len(head.headings)
     if not data:
         raise InputError(
-            "has headings but no data; add one row per point or remove its [[sweep]]",
+            "has headings but no data; add one row per point, or remove the [[sweep]] of this file",
             file=path,
             line=heading_line,
         )
@@ -69,16 +71,17 @@ def table_of(rows: Sequence[Row], lines: Sequence[int], path: Path) -> RawTable:
 
 
 def head_of(rows: Sequence[Row], lines: Sequence[int], path: Path) -> Head:
-    """Headings and units of the first rows of a table, none of them empty; see :func:`table_of`."""
+    """Headings and units in the first rows of a table; see :func:`table_of`."""
     if not rows:
-        raise InputError("is empty; it needs one line of headings and one row per point", file=path)
+        raise InputError("is empty; write one line of headings and one row per point", file=path)
     widths = Counter(_width(row) for row in rows)
     usual = max(widths, key=lambda width: (widths[width], width))
-    at = next((k for k, row in enumerate(rows) if 2 * sum(c != "" for c in row) > usual), 0)
+    fewest = constants.SHARE_OF_CELLS_IN_HEADINGS * usual
+    at = next((k for k, row in enumerate(rows) if sum(c != "" for c in row) > fewest), 0)
     found = _trimmed(rows[at])
     headings = tuple(str(cell) for cell in found)
     if all(is_number(cell) for cell in found):
-        sentence = "there are numbers where the headings should be; add a first line of headings"
+        sentence = "has numbers instead of headings; add a first line of headings"
         raise InputError(sentence, file=path, line=lines[at])
     units, used = _units(rows, at, len(headings))
     split = [
@@ -93,14 +96,14 @@ def head_of(rows: Sequence[Row], lines: Sequence[int], path: Path) -> Head:
 
 
 def _units(rows: Sequence[Row], at: int, width: int) -> tuple[tuple[str, ...], int]:
-    """The row of units below the headings, if there is one, and how many rows stand above the data."""
+    """Units in the row below the headings, all "" without such a row; and the number of rows above the data."""
     nothing = ("",) * width, at + 1
     if at + 1 >= len(rows):
         return nothing
     row = _trimmed(rows[at + 1])
     texts = [str(cell).strip("[]() ") for cell in row]
-    said = [text for text in texts if text]
-    if any(is_number(cell) for cell in row) or len(row) > width or not all(is_unit(text) for text in said):
+    stated = [text for text in texts if text]
+    if any(is_number(cell) for cell in row) or len(row) > width or not all(is_unit(text) for text in stated):
         return nothing
     return (*texts, *("",) * (width - len(texts))), at + 2
 
@@ -111,7 +114,7 @@ def _check_headings(path: Path, line: int, headings: tuple[str, ...]) -> None:
         raise InputError(f"heading {number} is empty; name or remove that column", file=path, line=line)
     twice = [heading for number, heading in enumerate(headings) if heading in headings[:number]]
     if twice:
-        raise InputError("stands twice; rename or remove one", file=path, line=line, column=twice[0])
+        raise InputError("appears twice; rename or remove one", file=path, line=line, column=twice[0])
 
 
 def _trimmed(row: Row) -> Row:
@@ -119,16 +122,16 @@ def _trimmed(row: Row) -> Row:
 
 
 def _width(row: Row) -> int:
-    """Number of cells up to the last that holds something."""
+    """Number of cells up to the last that is not empty."""
     return max((k + 1 for k, cell in enumerate(row) if cell != ""), default=0)
 
 
 def is_number(cell: str | float) -> bool:
-    """Whether a cell is a number, also with a decimal comma."""
+    """Whether a cell is a number, with a decimal point or comma."""
     if not isinstance(cell, str):
         return True
     try:
-        float(cell.replace(",", ".", 1))
+        float(with_decimal_point(cell))
     except ValueError:
         return False
     return True

@@ -1,8 +1,7 @@
-"""All files of a configuration, or a single table, as sweeps in ISO-W."""
+"""Sweeps in ISO-W from all files of a configuration, or from a single file."""
 
 from __future__ import annotations
 
-import math
 from pathlib import Path
 
 import numpy as np
@@ -10,6 +9,7 @@ import numpy as np
 from mffit.config import Config
 from mffit.config.models import SweepTable
 from mffit.errors import InputError
+from mffit.sweeps import constants
 from mffit.sweeps.assembly import Circumstances, sweeps_of
 from mffit.sweeps.channels import BY_NAME, nearest_channel
 from mffit.sweeps.columns import Columns, read_columns
@@ -29,7 +29,7 @@ def load(config: Config) -> Sweeps:
     Raises
     ------
     InputError
-        A file cannot be read or a value in it cannot be right; names file, line and column.
+        A file cannot be read, or a value in it is impossible; names file, line and column.
     """
     found: list[Sweep] = []
     warnings: list[str] = []
@@ -57,7 +57,7 @@ def load(config: Config) -> Sweeps:
 
 
 def load_file(path: str | Path, *, axes: str) -> Sweeps:
-    """Read one file without a configuration; pressure and speed are NaN where it does not hold them.
+    """Read one file without a configuration; pressure and speed are NaN if it does not have them.
 
     Parameters
     ----------
@@ -65,7 +65,7 @@ def load_file(path: str | Path, *, axes: str) -> Sweeps:
     axes : "iso", "sae" or "adapted-sae"
     """
     columns = read_columns(read(Path(path)), {})
-    given = Circumstances(axes, str(path), 1, 1, math.nan, math.nan)
+    given = Circumstances(axes=axes, file=str(path))
     return Sweeps(tuple(sweeps_of(columns, given)), columns.warnings)
 
 
@@ -82,12 +82,15 @@ def _columns(config: Config, index: int, entry: SweepTable) -> Columns:
             key = f"columns.{name}"
             raise InputError(_unknown(name), file=config.path, line=config.line_of(key), key=key)
     if not entry.file.lower().endswith(ENDINGS):
-        names = " or ".join(kind.name for kind in FORMATS)
-        raise refuse(f'"{entry.file}" is no {" or ".join(ENDINGS)} file; export it as {names}', "file")
+        *names, last = (kind.name for kind in FORMATS)
+        raise refuse(
+            f'"{entry.file}" is not in a known format ({" ".join(ENDINGS)}); export it as {", ".join(names)} or {last}',
+            "file",
+        )
     path = config.folder / entry.file
     if not path.exists():
         raise refuse(
-            f'there is no file "{entry.file}" in {config.folder.absolute()}; correct the name', "file"
+            f'there is no file "{entry.file}" in {config.folder.absolute()}; correct its name', "file"
         )
     raw = read(path)
     try:
@@ -104,9 +107,9 @@ def _columns(config: Config, index: int, entry: SweepTable) -> Columns:
 
 
 def _unknown(name: str) -> str:
-    near = nearest_channel(name, likeness=0.5)
-    hint = f'did you mean "{near}"?' if near else f"known are {', '.join(BY_NAME)}"
-    return f"is no column of a sweep; {hint}"
+    near = nearest_channel(name, likeness=constants.LIKENESS_OF_MAPPED_COLUMN)
+    hint = f'did you mean "{near}"?' if near else f"known columns are {', '.join(BY_NAME)}"
+    return f"is not a column of a sweep; {hint}"
 
 
 def _contradicting(columns: Columns, entry: SweepTable, direction: int) -> list[str]:
@@ -115,9 +118,8 @@ def _contradicting(columns: Columns, entry: SweepTable, direction: int) -> list[
     if not differs:
         return []
     return [
-        f"{entry.file}: {differs} rows of column direction are not {entry.direction}, as [[sweep]] "
-        "says; the column "
-        "counts"
+        f"{entry.file}: {differs} rows of column direction are not {entry.direction}, the direction of the [[sweep]]; "
+        "the column is used"
     ]
 
 
@@ -126,10 +128,10 @@ def _in_contact_frame(sweeps: list[Sweep]) -> tuple[list[Sweep], list[str]]:
     warnings = []
     if vertical:
         warnings.append(
-            "Fz_N does not vary with camber and is taken for the vertical load, although force_frame is C"
+            "Fz_N does not vary with camber, so it is treated as the vertical load, although force_frame is C"
         )
     if any(np.any(np.isfinite(sweep.Mz) & ~np.isfinite(sweep.My)) for sweep in sweeps):
         warnings.append(
-            "My_Nm is missing, so rolling resistance is neglected where Mz is turned from frame C to W"
+            "My_Nm is missing, so rolling resistance is neglected when Mz is turned from frame C to W"
         )
     return [to_contact_frame(sweep, load_is_vertical=vertical) for sweep in sweeps], warnings

@@ -1,8 +1,7 @@
-"""MATLAB files of v4 to v7 in a process of their own: scipy's reader may crash on a damaged one, which no exception tells.
+"""MATLAB files of v4 to v7, read in a process of their own: scipy's reader may crash the process on a damaged file.
 
-``python -P matlab_apart.py FILE OUT``, which imports nothing of mffit, writes what
-:func:`mffit.sweeps.matlab.read_mat` needs to know to the folder OUT, or a sentence's middle to OUT/trouble.txt. Numbers and
-texts only, nothing that could be code.
+``python -P matlab_apart.py FILE OUT`` imports nothing of mffit. It writes the numbers and texts of the file to the folder OUT
+for :func:`mffit.sweeps.matlab.read_mat`, or the reason why it cannot be read to OUT/trouble.txt.
 """
 
 from __future__ import annotations
@@ -14,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-LARGEST_TEXT = 10_000
+LARGEST_TEXT = 10_000  # letters; not a record of constants.py, which this module must not import
 TROUBLE, TEXTS = "trouble.txt", "texts.json"
 
 
@@ -46,11 +45,6 @@ def _texts(cells: Any) -> list[str]:
     return found
 
 
-def short(error: BaseException) -> str:
-    """What a library says of a damaged file, in one line."""
-    return " ".join(str(error).split())[:80] or type(error).__name__
-
-
 def main(source: str, out: str) -> None:
     """Load the file and write its vectors as ``0.npy``, ``1.npy`` ..., in the order of ``texts.json``."""
     folder = Path(out)
@@ -59,10 +53,11 @@ def main(source: str, out: str) -> None:
         for k, value in enumerate(content.values()):
             if isinstance(value, np.ndarray):
                 np.save(folder / f"{k}.npy", value, allow_pickle=False)
-        told = {n: None if isinstance(v, np.ndarray) else v for n, v in content.items()}
-        (folder / TEXTS).write_text(json.dumps(told), encoding="utf-8")
-    except Exception as error:  # a damaged file fails in whatever way its bytes happen to lead to
-        (folder / TROUBLE).write_text(short(error), encoding="utf-8", errors="replace")
+        texts = {n: None if isinstance(v, np.ndarray) else v for n, v in content.items()}
+        (folder / TEXTS).write_text(json.dumps(texts), encoding="utf-8")
+    except Exception as error:  # scipy fails on a damaged file in countless ways
+        reason = str(error) or type(error).__name__
+        (folder / TROUBLE).write_text(reason, encoding="utf-8", errors="replace")
 
 
 if __name__ == "__main__":

@@ -7,29 +7,25 @@ from pathlib import Path
 import numpy as np
 
 from mffit.errors import InputError
-from mffit.sweeps.extras import needed
+from mffit.sweeps.extras import needed, undamaged
 from mffit.sweeps.raw_table import Cells, RawTable
 
 
 def read_parquet(path: Path) -> RawTable:
-    """Read a ``.parquet`` file: columns of numbers and texts; a column's metadata ``unit`` or ``units`` is its unit.
+    """Read a ``.parquet`` file of numbers and texts; the unit of a column is its metadata ``unit`` or ``units``.
 
     Raises
     ------
     InputError
-        The file is no Parquet file, has no rows or headings twice, or pyarrow is not installed.
+        The file is not a Parquet file, has no rows, has a heading twice, or pyarrow is not installed.
     """
     needed("pyarrow", "Parquet files", path)
     parquet = needed("pyarrow.parquet", "Parquet files", path)
-    try:
-        with parquet.ParquetFile(path) as file:
-            table = file.read()
-    except Exception as error:  # a damaged file fails in whatever way its bytes happen to lead to
-        said = " ".join(str(error).split())[:80]
-        raise InputError(f"is no Parquet file that can be read ({said}); save it again", file=path) from None
+    with undamaged(path, "Parquet file"), parquet.ParquetFile(path) as file:
+        table = file.read()
     headings = tuple(str(name).strip() for name in table.column_names)
     if len(set(headings)) < len(headings) or "" in headings:
-        raise InputError("has a heading that is empty or stands twice; rename that column", file=path)
+        raise InputError("has a heading that is empty or appears twice; rename that column", file=path)
     if not table.num_rows or not headings:
         raise InputError("has no rows; write one per point or sample", file=path)
     return RawTable(
@@ -54,5 +50,5 @@ def _cells(column: object) -> Cells:
 
 def _unit(field: object) -> str:
     about = getattr(field, "metadata", None) or {}
-    said = about.get(b"unit") or about.get(b"units") or b""
-    return said.decode("utf-8", errors="replace").strip()
+    unit = about.get(b"unit") or about.get(b"units") or b""
+    return unit.decode("utf-8", errors="replace").strip()

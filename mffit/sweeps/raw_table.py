@@ -1,4 +1,4 @@
-"""A file as headings and cells, with the line of every row; knows no heading, no unit and no format."""
+"""A file as headings and cells with the line of every row, before headings and units are interpreted."""
 
 from __future__ import annotations
 
@@ -9,24 +9,28 @@ from pathlib import Path
 import numpy as np
 
 Cells = Sequence[str | float] | np.ndarray
-"""One column (n,): an array of floats where the reader is sure of all of them, else cells as they stand."""
+"""One column (n,): an array of floats if all cells are numbers in the file, else the cells as written."""
 
 
 @dataclass(frozen=True, slots=True)
 class RawTable:
-    """What a reader makes of one file; ``lines`` and every column of ``cells`` are of equal length (n,)."""
+    """What a reader finds in one file; ``lines`` and every column of ``cells`` have the same length (n,)."""
 
     headings: tuple[str, ...]
-    units: tuple[str, ...]  #: as the file states them, "" where it does not
-    cells: tuple[Cells, ...]  #: a column under each heading; text is stripped of blanks
-    lines: (
-        Sequence[int] | np.ndarray
-    )  #: line of each row in the file, counted from 1; in binary formats its number
+    units: tuple[str, ...]  #: as the file states them, "" if it does not
+    cells: tuple[Cells, ...]  #: one column per heading; text is stripped of blanks
+    lines: Sequence[int] | np.ndarray  #: from 1, of each row; in binary formats the number of the row
     path: Path
-    heading_line: int | None  #: None where the format has no lines
-    about: Mapping[str, str] = field(
-        default_factory=dict
-    )  #: what the file says of itself: tyre, test, source
+    heading_line: int | None  #: None in formats without lines
+    about: Mapping[str, str] = field(default_factory=dict)  #: the file's own texts: tyre, test, source, title
 
     def __len__(self) -> int:
         return len(self.lines)
+
+    def column(self, heading: str) -> Cells:
+        """The cells under a heading."""
+        return self.cells[self.headings.index(heading)]
+
+    def unit(self, heading: str) -> str:
+        """The unit that the file states for a heading; "" if it states none."""
+        return self.units[self.headings.index(heading)]

@@ -1,4 +1,4 @@
-"""The record of one sweep: rows as measured, turned to ISO-W and SI."""
+"""The record of one sweep: measured rows in ISO-W and SI."""
 
 from __future__ import annotations
 
@@ -14,11 +14,11 @@ from mffit.brief import Brief
 class Sweep(Brief):
     """Rows of one sweep in ISO-W, contact frame W, SI; arrays are (n,), all NaN for a channel not measured.
 
-    The rows are finished points, or samples of a time series if ``time`` is there.
+    The rows are finished points, or samples of a time series if ``time`` is finite.
     """
 
     name: str
-    file: str  #: as ``tyre.toml`` names it
+    file: str  #: name as in ``tyre.toml``
     alpha: np.ndarray  #: sideslip angle as read [rad]
     gamma: np.ndarray  #: camber as read [rad]
     Fz: np.ndarray  #: load, positive [N]
@@ -26,19 +26,21 @@ class Sweep(Brief):
     Mz: np.ndarray  #: [Nm]
     Mx: np.ndarray  #: [Nm]
     My: np.ndarray  #: [Nm]
-    p: np.ndarray  #: pressure, nominal where not measured [Pa]
-    V: np.ndarray  #: speed, positive, nominal where not measured [m/s]
+    p: np.ndarray  #: pressure, nominal if not measured [Pa]
+    V: np.ndarray  #: speed, positive, nominal if not measured [m/s]
     T: np.ndarray  #: tyre temperature [degC]
-    t: np.ndarray  #: when a finished point was taken [s]
+    t: np.ndarray  #: time at which a finished point was taken [s]
     u_Fy: np.ndarray  #: standard uncertainty [N]
     u_Mz: np.ndarray  #: standard uncertainty [Nm]
     iteration: np.ndarray  #: step of the steering alignment
     direction: np.ndarray  #: +1 forward, -1 backward
     mount: int  #: +1 normal, -1 tyre turned on its rim
     time: np.ndarray  #: time of a sample [s]; NaN for finished points
-    point: np.ndarray | None  #: label of the point a sample belongs to, "" between points; None if not given
+    point: (
+        np.ndarray | None
+    )  #: label of the point that a sample belongs to, "" between points; None without labels
     line: np.ndarray  #: line in the file, from 1
-    table: pd.DataFrame  #: columns as reported, contract names and units, rig's axes
+    table: pd.DataFrame  #: columns as reported, in the contract's names and units and the rig's axes
 
     def __len__(self) -> int:
         return len(self.alpha)
@@ -51,7 +53,7 @@ class Sweep(Brief):
 
 @dataclass(frozen=True, slots=True, repr=False)
 class Sweeps(Brief):
-    """All sweeps of a configuration, in its order, and what is worth knowing about them."""
+    """All sweeps of a configuration, in its order, with warnings."""
 
     sweeps: tuple[Sweep, ...]
     warnings: tuple[str, ...]

@@ -1,27 +1,22 @@
-"""The reader of TYDEX files, release 1.3 as text: fixed or free columns, constants, factors and offsets.
-
-Columns of a row: name 10 letters, description 30, unit 10, then 10 each. A channel's row goes on with a factor, an
-offset of the measured and an offset of the physical value: physical = factor (measured + offset 1) + offset 2.
-"""
+"""The reader of TYDEX files: fixed or free columns, constants, factors and offsets; see :mod:`mffit.sweeps.tydex_format`."""
 
 from __future__ import annotations
 
-import gzip
 import math
-import zlib
 from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
 
-from mffit.errors import InputError
+from mffit.errors import InputError, shortened
+from mffit.sweeps import tydex_format
+from mffit.sweeps.file_bytes import first_bytes
 from mffit.sweeps.raw_table import RawTable
+from mffit.sweeps.tydex_format import CHANNELS, CONSTANTS, DATA, HEADER, MARK, MISSING, REMARK, FixedRow
 from mffit.sweeps.units import is_unit
 
-NAME, UNIT, VALUES = 10, 40, 50
-"""Where the name ends, the unit begins and the numbers begin."""
-WIDTH = 10
-MISSING = "NOTAVAIL"
+Numbered = list[tuple[int, str]]
+"""Lines with their numbers, from 1."""
 
 
 class Entry(NamedTuple):
@@ -29,7 +24,7 @@ class Entry(NamedTuple):
 
     name: str
     unit: str
-    words: tuple[str, ...]  #: what stands behind the unit
+    words: tuple[str, ...]  #: what follows the unit
 
 
 def read_tydex(path: Path) -> RawTable:
@@ -39,30 +34,19 @@ def read_tydex(path: Path) -> RawTable:
     ------
     InputError
         The file is binary (National Instruments writes another ``.tdx``), has no ``**HEADER``, channels or data, or a
-        row of data has not one number for each channel.
+        row of data does not have one number for each channel.
     """
     sections = _sections(path)
-    channels = [_entry(line) for _, line in sections.get("MEASURCHANNELS", [])]
-    if not channels:
-        raise InputError("has no channels; it needs **MEASURCHANNELS with a row for each", file=path)
-    twice = [c.name for k, c in enumerate(channels) if c.name in [other.name for other in channels[:k]]]
-    if twice:
-        raise InputError("stands twice in **MEASURCHANNELS; rename one", file=path, column=twice[0])
-    lines, data = [], []
-    for number, line in sections.get("MEASURDATA", []):
-        data.append(_numbers(line, len(channels), path, number))
-        lines.append(number)
-    if not data:
-        raise InputError("has no data; it needs **MEASURDATA with a row for each sample", file=path)
-    values = np.array(data, dtype=float)
-    columns = {c.name: _physical(c, values[:, k]) for k, c in enumerate(channels)}
-    units = {c.name: c.unit for c in channels}
-    for _, line in sections.get("CONSTANTS", []):
+    channels = _channels(sections.get(CHANNELS, []), path)
+    lines, values = _data(sections.get(DATA, []), len(channels), path)
+    columns = {channel.name: _physical(channel, values[:, k]) for k, channel in enumerate(channels)}
+    units = {channel.name: channel.unit for channel in channels}
+    for _, line in sections.get(CONSTANTS, []):
         constant = _entry(line)
         value = _float(constant.words[0]) if constant.words else math.nan
         if constant.name not in columns and math.isfinite(value):
             columns[constant.name], units[constant.name] = np.full(len(lines), value), constant.unit
-    about = {e.name: " ".join(e.words) for _, line in sections.get("HEADER", []) if (e := _entry(line)).name}
+    header = [_entry(line) for _, line in sections.get(HEADER, [])]
     return RawTable(
         headings=tuple(columns),
         units=tuple(units[name] for name in columns),
@@ -70,75 +54,93 @@ def read_tydex(path: Path) -> RawTable:
         lines=lines,
         path=path,
         heading_line=None,
-        about=about,
+        about={entry.name: " ".join(entry.words) for entry in header if entry.name},
     )
 
 
-def _sections(path: Path) -> dict[str, list[tuple[int, str]]]:
-    """Numbered lines of every section, without blank lines and ``!`` comments."""
-    found: dict[str, list[tuple[int, str]]] = {}
+def _sections(path: Path) -> dict[str, Numbered]:
+    """Numbered lines of every section, without blank lines and remarks."""
+    found: dict[str, Numbered] = {}
     section = ""
     for number, line in enumerate(_text(path).splitlines(), start=1):
-        line = line.expandtabs(WIDTH).rstrip()
-        if line.startswith("**"):
-            section = (line[2:].split() or [""])[0].upper()  # **MEASURDATA may go on with the number of rows
+        line = line.expandtabs(tydex_format.VALUE).rstrip()
+        if line.startswith(MARK):
+            section = (line[2:].split() or [""])[0].upper()  # the number of rows may follow **MEASURDATA
             found.setdefault(section, [])
-        elif section and line.strip() and not line.lstrip().startswith("!"):
+        elif section and line.strip() and not line.lstrip().startswith(REMARK):
             found[section].append((number, line))
     return found
 
 
 def _text(path: Path) -> str:
-    try:
-        raw = path.read_bytes()
-        raw = gzip.decompress(raw) if path.name.lower().endswith(".gz") else raw
-    except (gzip.BadGzipFile, EOFError, zlib.error):
-        raise InputError("is not a complete gzip file; compress it again", file=path) from None
-    except OSError as error:
-        raise InputError(f"cannot be read ({error.strerror}); check its permissions", file=path) from None
-    text = raw.decode("latin-1")
-    if "**HEADER" in text.upper() and "\0" not in text:
-        return text
+    text = first_bytes(path).decode("latin-1")
     if "\0" in text:
         raise InputError(
-            "is binary: a National Instruments .tdx goes with a .tdm file and is no TYDEX; export it as CSV",
+            "is binary: a National Instruments .tdx, which belongs to a .tdm file, and not TYDEX; export it as CSV",
             file=path,
         )
-    raise InputError("is no TYDEX file, as **HEADER is not in it; export it as TYDEX 1.3 or CSV", file=path)
+    if f"{MARK}{HEADER}" not in text.upper():
+        raise InputError(
+            f"is not a TYDEX file: it has no {MARK}{HEADER}; export it as TYDEX {tydex_format.RELEASE} or CSV",
+            file=path,
+        )
+    return text
+
+
+def _channels(lines: Numbered, path: Path) -> list[Entry]:
+    channels = [_entry(line) for _, line in lines]
+    if not channels:
+        raise InputError(f"has no channels; add {MARK}{CHANNELS} with a row for each", file=path)
+    names = [channel.name for channel in channels]
+    twice = [name for k, name in enumerate(names) if name in names[:k]]
+    if twice:
+        raise InputError(f"is listed twice in {MARK}{CHANNELS}; rename one", file=path, column=twice[0])
+    return channels
+
+
+def _data(lines: Numbered, count: int, path: Path) -> tuple[list[int], np.ndarray]:
+    """Line of every row and its numbers (n, count)."""
+    if not lines:
+        raise InputError(f"has no data; add {MARK}{DATA} with a row for each sample", file=path)
+    values = [_numbers(line, count, path, number) for number, line in lines]
+    return [number for number, _ in lines], np.array(values, dtype=float)
 
 
 def _entry(line: str) -> Entry:
-    """A row of fixed columns, or of free ones where the fixed ones do not make sense."""
-    name, unit, words = line[:NAME].strip(), line[UNIT:VALUES].strip(), line[VALUES:].split()
-    if " " not in name and is_unit(unit) and line[NAME:UNIT].strip() != line[NAME:].strip():
-        return Entry(name, unit, tuple(words))
+    """A row by its fixed columns, or by its words where the fixed columns make no sense."""
+    row = FixedRow.of(line)
+    if " " not in row.name and is_unit(row.unit) and (row.unit or row.values):
+        return Entry(row.name, row.unit, tuple(row.values.split()))
     tokens = line.split()
-    behind = len(tokens)
-    while behind > 1 and (math.isfinite(_float(tokens[behind - 1])) or tokens[behind - 1] == MISSING):
-        behind -= 1
-    has_unit = behind > 1 and is_unit(tokens[behind - 1])
-    return Entry(tokens[0], tokens[behind - 1] if has_unit else "", tuple(tokens[behind:]))
+    end = len(tokens)
+    while end > 1 and (math.isfinite(_float(tokens[end - 1])) or tokens[end - 1] == MISSING):
+        end -= 1
+    has_unit = end > 1 and is_unit(tokens[end - 1])
+    return Entry(tokens[0], tokens[end - 1] if has_unit else "", tuple(tokens[end:]))
 
 
 def _physical(channel: Entry, values: np.ndarray) -> np.ndarray:
-    factor, before, behind = ([_float(word) for word in channel.words] + [math.nan] * 3)[:3]
-    factor = factor if math.isfinite(factor) else 1.0
-    before = before if math.isfinite(before) else 0.0
-    behind = behind if math.isfinite(behind) else 0.0
-    return factor * (values + before) + behind
+    defaults = (1.0, 0.0, 0.0)
+    stated = [_float(word) for word in channel.words[: len(defaults)]]
+    given = [
+        value if math.isfinite(value) else default for value, default in zip(stated, defaults, strict=False)
+    ]
+    factor, before, after = (*given, *defaults[len(given) :])
+    return factor * (values + before) + after
 
 
 def _numbers(line: str, count: int, path: Path, number: int) -> list[float]:
     words = line.split()
     if len(words) != count:  # full columns leave no blank between them
-        words = [line[k : k + WIDTH].strip() for k in range(0, len(line), WIDTH)]
+        width = tydex_format.VALUE
+        words = [line[k : k + width].strip() for k in range(0, len(line), width)]
     if len(words) != count or any(" " in word for word in words):
         sentence = f"has {len(line.split())} values for {count} channels; complete or remove this row"
         raise InputError(sentence, file=path, line=number)
     found = [_float(word) for word in words]
     for word, value in zip(words, found, strict=True):
         if not math.isfinite(value) and word.upper() not in (MISSING, "NAN", ""):
-            raise InputError(f'"{word[:40]}" is no number; correct it', file=path, line=number)
+            raise InputError(f'"{shortened(word)}" is not a number; correct it', file=path, line=number)
     return found
 
 

@@ -1,6 +1,6 @@
-"""From the unit a file or a user names to the contract's unit; pint is imported only when a unit is named.
+"""From the unit that a file or a user names to the contract's unit; pint is imported only when a unit is named.
 
-Laboratories spell units in ways that no units library knows; ``unit_spellings.csv`` turns them into pint's.
+Laboratories have spellings of units that pint does not know; ``unit_spellings.csv`` translates them.
 """
 
 from __future__ import annotations
@@ -13,8 +13,10 @@ from typing import Any
 
 import numpy as np
 
+from mffit.sweeps import constants
+
 MOMENT = re.compile(r"^((?:da|k|M|m)?N)[-.·* ]?(mm|cm|m)$")
-"""Moments as people write them, N-m and N.m and Nm; pint wants a space between force and length."""
+"""Usual spellings of moments, N-m and N.m and Nm; pint needs a space between force and length."""
 
 
 class UnknownUnitError(ValueError):
@@ -27,12 +29,12 @@ def converted(values: np.ndarray, unit: str, target: str) -> np.ndarray:
     Parameters
     ----------
     values : (n,) in ``unit``
-    unit, target : names of units, e.g. ``"kN"``, ``"lbf ft"``, ``"degF"``, ``"km/h"``; "" has no dimension
+    unit, target : names of units, e.g. ``"kN"``, ``"lbf ft"``, ``"degF"``, ``"km/h"``; "" is dimensionless
 
     Raises
     ------
     UnknownUnitError
-        ``unit`` is no unit, or none of the kind of ``target``.
+        ``unit`` is not a unit, or has another dimension than ``target``.
 
     Examples
     --------
@@ -48,48 +50,48 @@ def converted(values: np.ndarray, unit: str, target: str) -> np.ndarray:
     if known == wanted:
         return values
     if not is_unit(unit):
-        raise UnknownUnitError(f'"{unit}" is no unit')
+        raise UnknownUnitError(f'"{unit}" is not a unit')
     registry = _registry()
     try:
         return np.asarray(registry.Quantity(values, known).to(wanted).magnitude)
     except pint.DimensionalityError:
-        raise UnknownUnitError(f'"{unit}" cannot be turned into {target or "a plain number"}') from None
-    except (pint.PintError, AttributeError, AssertionError, TypeError, ValueError, RecursionError):
-        # pint's parser lets these through when the text is no expression of units at all.
-        raise UnknownUnitError(f'"{unit}" is no unit') from None
+        raise UnknownUnitError(f'"{unit}" cannot be converted to {target or "a plain number"}') from None
+    except (pint.PintError, *PARSER_FAILURES):
+        raise UnknownUnitError(f'"{unit}" is not a unit') from None
 
 
 @cache
 def factor(unit: str, house: str) -> float:
-    """How many of the ``house`` unit one ``unit`` is."""
+    """One ``unit`` in the unit ``house``."""
     return float(converted(np.ones(1), unit, house)[0])
 
 
 def is_unit(text: str) -> bool:
-    """Whether a text names a unit, also the spellings of laboratories and words for no unit."""
+    """Whether a text names a unit, in pint's spelling or a laboratory's; words for "dimensionless" count."""
     import pint
 
     known = spelt(text)
     if known == "":
         return True
-    if len(known) > LONGEST or not EXPRESSION.fullmatch(known):
+    if len(known) > constants.LONGEST_UNIT or not EXPRESSION.fullmatch(known):
         return False
     try:
         _registry().parse_units(known)
-    except (pint.PintError, AttributeError, AssertionError, TypeError, ValueError, RecursionError):
+    except (pint.PintError, *PARSER_FAILURES):
         return False
     return True
 
 
-LONGEST = 24
+PARSER_FAILURES = (AttributeError, AssertionError, TypeError, ValueError, RecursionError)
+"""What pint's parser raises, besides its own errors, on a text that is not an expression of units."""
 TERM = r"(?:[^\W\d_]+|%|°[CF]?)(?:_[^\W\d_]+)*(?:(?:\*\*|\^)?-?\d(?!\d)|[²³])?"
 EXPRESSION = re.compile(rf"(?:1/)?{TERM}(?: ?[ */·] ?{TERM})*")
-"""What an expression of units looks like, so that pint's parser, which also calculates, sees nothing else."""
+"""Form of an expression of units; nothing else is given to pint's parser, because it also evaluates arithmetic."""
 
 
 @cache
 def spelt(unit: str) -> str:
-    """The unit as pint spells it; "" for a word that means none."""
+    """The unit in pint's spelling; "" for a word that means dimensionless."""
     unit = unit.strip()
     plain = spellings().get(unit.lower())
     return MOMENT.sub(r"\1 \2", unit) if plain is None else plain
@@ -97,7 +99,7 @@ def spelt(unit: str) -> str:
 
 @cache
 def spellings() -> dict[str, str]:
-    """What laboratories write, in lower case, and the unit as pint spells it."""
+    """Pint's spelling by the spelling of laboratories, in lower case."""
     text = resources.files(__package__).joinpath("unit_spellings.csv").read_text(encoding="utf-8")
     return {row["written"]: row["unit"] for row in csv.DictReader(text.splitlines())}
 

@@ -1,4 +1,4 @@
-"""Bad input ends every command with exit 2, one sentence with its place and remedy, and nothing written."""
+"""On bad input, every command exits with 2 and one sentence with place and remedy, and writes nothing."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ SWEEP = "sideslip_1500.csv"
 
 
 def run(capsys, *arguments: object) -> tuple[int, str]:
-    """Exit code and what went to stderr."""
+    """Exit code and stderr."""
     try:
         main([str(argument) for argument in arguments])
         code = 0
@@ -32,7 +32,7 @@ def snapshot(folder: Path) -> dict[str, bytes]:
 
 
 def assert_refused(capsys, project: Project, path: Path, said: str, command: str = "build") -> None:
-    """Exit 2 and one sentence; a folder with earlier output is left as it was."""
+    """The command exits with 2 and one sentence; a folder with earlier output is unchanged."""
     out = project.folder / "out"
     out.mkdir(exist_ok=True)
     (out / "result.json").write_text("earlier")
@@ -123,7 +123,7 @@ def without_zero(project: Project) -> Path:
 
 
 def inward(project: Project) -> Path:
-    """A force at (0, 0) towards the centre, as only a wrong path centre gives."""
+    """A force at (0, 0) towards the centre, which only a wrong path centre gives."""
     for table in project.tables.values():
         table["Fy_N"] += 2.0 * 0.22 * table["Fz_N"]
     return project.write()
@@ -191,12 +191,12 @@ def test_build_refuses(project, capsys, case):
 
 @pytest.mark.parametrize("command", ["spin", "diagnose"])
 @pytest.mark.parametrize("case", ["missing file", "unknown key", "wrong axes", "NaN"])
-def test_the_other_commands_refuse_alike(project, capsys, command, case):
+def test_the_other_commands_refuse_in_the_same_way(project, capsys, command, case):
     change, said = CASES[case]
     assert_refused(capsys, project, change(project), said, command)
 
 
-def test_align_refuses_alike(project, capsys):
+def test_align_refuses_in_the_same_way(project, capsys):
     path = CASES["NaN"][0](project)
     code, err = run(capsys, "align", path)
     assert code == 2
@@ -206,14 +206,14 @@ def test_align_refuses_alike(project, capsys):
     assert ":5: column Fz_N" in err
 
 
-def test_a_bare_table_must_be_told_its_axes(project, capsys):
+def test_a_csv_file_needs_the_axes_option(project, capsys):
     project.write()
     code, err = run(capsys, "align", project.folder / SWEEP)
     assert code == 2
     assert "--axes" in err
 
 
-def test_nothing_is_made_where_there_was_nothing(project, capsys, tmp_path):
+def test_no_output_folder_is_created(project, capsys, tmp_path):
     path = CASES["wrong axes"][0](project)
     code, _ = run(capsys, "build", path, "--out", tmp_path / "fresh")
     assert code == 2
@@ -253,7 +253,7 @@ def unpaired(project: Project) -> None:
 
 
 @pytest.mark.parametrize("thin", [single_load, short_camber, without_moment, forwards_only, unpaired])
-def test_thin_data_warn_and_go_on(project, capsys, thin):
+def test_thin_data_give_a_warning_and_a_result(project, capsys, thin):
     thin(project)
     code, err = run(capsys, "spin", project.write())
     assert code == 0, err
@@ -265,14 +265,14 @@ def test_the_undamaged_project_is_fine(project, capsys):
     assert code == 0, err
 
 
-def test_an_uncertainty_of_zero_in_one_row_is_no_traceback(project, capsys):
-    """It divided by zero where the forces at zero are averaged."""
+def test_an_uncertainty_of_zero_in_one_row_gives_a_warning(project, capsys):
+    """Averaging the forces at zero once divided by it."""
     project.add(
         "zeros.csv", rows(np.linspace(-1.0, 1.0, 9), 0.0).assign(u_Fy_N=[6.0] * 4 + [0.0] + [6.0] * 4)
     )
     code, err = run(capsys, "spin", project.write())
     assert code == 0, err
-    assert "zeros.csv:6: column u_Fy_N: 0 is no uncertainty" in err
+    assert "zeros.csv:6: column u_Fy_N: 0 is not above zero; treated as not stated" in err
 
 
 @pytest.mark.parametrize(
@@ -283,7 +283,7 @@ def test_an_uncertainty_of_zero_in_one_row_is_no_traceback(project, capsys):
         ({"axes": "iso", "path_centre": "up"}, 'path_centre = "up" is not known'),
     ],
 )
-def test_align_of_a_bare_table_says_what_it_must_be_told(project, options, said):
+def test_align_of_a_csv_file_names_the_missing_option(project, options, said):
     project.write()
     with pytest.raises(InputError, match=said):
         mffit.align(project.folder / SWEEP, **options)

@@ -1,4 +1,4 @@
-"""A corpus of broken inputs, each made from a small sound project by one change, and the sentence that each ends with.
+"""A corpus of broken inputs, each made from a small sound project by one change, with the sentence for each.
 
 What is in tests/mffit/test_bad_input.py is not repeated here. Nothing is fitted: all of these are found on the way in.
 """
@@ -28,7 +28,7 @@ WHOLE_TIR = tir.Tyre.from_values({"FNOMIN": 1500.0, "PKY1": -12.0}).text()
 
 
 def toml(old: str, new: str, count: int = 1) -> Change:
-    """Other words in tyre.toml."""
+    """Replaces words in tyre.toml."""
 
     def change(project: Project) -> Path:
         path = project.write()
@@ -50,12 +50,12 @@ def whole_toml(content: bytes) -> Change:
 
 
 def under(table: str, key: str) -> Change:
-    """A key more at the head of a table."""
+    """Adds a key at the head of a table."""
     return toml(f"[{table}]\n", f"[{table}]\n{key}\n")
 
 
 def of_sweep(**keys: Any) -> Change:
-    """Keys more in the [[sweep]] of one file."""
+    """Adds keys to the [[sweep]] of one file."""
 
     def change(project: Project) -> Path:
         for entry in project.config["sweep"]:
@@ -67,7 +67,7 @@ def of_sweep(**keys: Any) -> Change:
 
 
 def csv(content: str | bytes) -> Change:
-    """Another content of one file."""
+    """Replaces the content of one file."""
 
     def change(project: Project) -> Path:
         path = project.write()
@@ -78,7 +78,7 @@ def csv(content: str | bytes) -> Change:
 
 
 def words(old: str, new: str) -> Change:
-    """Other words in one file."""
+    """Replaces words in one file."""
 
     def change(project: Project) -> Path:
         path = project.write()
@@ -90,7 +90,7 @@ def words(old: str, new: str) -> Change:
 
 
 def column(file: str = SWEEP, **made: Any) -> Change:
-    """Other values in columns of one file: a value, or a function of the column's own."""
+    """Replaces columns of one file by a value, or by a function of the column."""
 
     def change(project: Project) -> Path:
         table = project.tables[file]
@@ -102,7 +102,7 @@ def column(file: str = SWEEP, **made: Any) -> Change:
 
 
 def other(name: str, content: str | bytes) -> Change:
-    """One sweep in a file of another name."""
+    """Moves one sweep to a file of another name."""
 
     def change(project: Project) -> Path:
         for entry in project.config["sweep"]:
@@ -117,7 +117,7 @@ def other(name: str, content: str | bytes) -> Change:
 
 
 def base(content: str | bytes) -> Change:
-    """A base file of this content."""
+    """Adds a base file with this content."""
 
     def change(project: Project) -> Path:
         project.config["tyre"]["base"] = "base.tir"
@@ -163,7 +163,7 @@ CORPUS: dict[str, tuple[Change, str]] = {
     # tyre.toml by its keys
     "sweeps for sweep": (toml("[[sweep]]", "[[sweeps]]", 99), 'sweeps: is unknown; did you mean "sweep"?'),
     "rigg for rig": (toml("[rig]", "[rigg]"), 'tyre.toml:11: rigg: is unknown; did you mean "rig"?'),
-    "a key of another table": (under("rig", "nominal_load = 1500.0"), "it belongs to [tyre]"),
+    "a key of another table": (under("rig", "nominal_load = 1500.0"), "move it to [tyre]"),
     "a number in quotes": (
         toml("nominal_load = 1500.0", 'nominal_load = "1500"'),
         'nominal_load: "1500" is a text, not a number',
@@ -180,22 +180,28 @@ CORPUS: dict[str, tuple[Change, str]] = {
     "an uncertainty in mm": (under("rig", "u_path_radius = 1.8"), "rig.u_path_radius: 1.8 m is outside"),
     "a rim outside its tyre": (
         under("tyre", "rim_radius = 0.4"),
-        "is not smaller than the unloaded radius 0.3 m",
+        "is not smaller than the unloaded radius, 0.3 m",
     ),
-    "an unknown side": (under("tyre", 'side = "links"'), "tyre.side: \"links\" is none of 'left', 'right'"),
-    "unknown axes": (toml('"iso"', '"ISO8855"'), "rig.axes: \"ISO8855\" is none of 'iso', 'sae'"),
+    "an unknown side": (
+        under("tyre", 'side = "links"'),
+        "tyre.side: \"links\" is not allowed; write 'left', 'right'",
+    ),
+    "unknown axes": (toml('"iso"', '"ISO8855"'), "rig.axes: \"ISO8855\" is not allowed; write 'iso', 'sae'"),
     "a name with a path": (toml('"toy"', '"../toy"'), '"../toy" cannot name the output files'),
     "no radius of the path": (toml("path_radius = 1.323\n", ""), "is missing for a rotating disc"),
     "a file listed twice": (toml(CAMBER, "camber_1000.csv"), '"camber_1000.csv" is listed twice'),
-    "a file without a name": (toml(CAMBER, ""), 'sweep[6].file: "" is no .csv'),
-    "a folder for a file": (toml(CAMBER, "."), 'sweep[6].file: "." is no .csv'),
+    "a file without a name": (toml(CAMBER, ""), 'sweep[6].file: "" is not in a known format'),
+    "a folder for a file": (toml(CAMBER, "."), 'sweep[6].file: "." is not in a known format'),
     "a pattern that fits nothing": (toml(CAMBER, "none/*.csv"), 'matches "none/*.csv"; correct the pattern'),
-    "an unknown direction": (of_sweep(direction="astern"), "is none of 'forward' or 'backward'"),
-    "an unknown unit": (of_sweep(columns={"Fy_N": {"unit": "furlong"}}), '"furlong" cannot be turned into N'),
-    "a unit of another kind": (of_sweep(columns={"Fy_N": {"unit": "deg"}}), '"deg" cannot be turned into N'),
+    "an unknown direction": (of_sweep(direction="astern"), "is not allowed; write 'forward' or 'backward'"),
+    "an unknown unit": (
+        of_sweep(columns={"Fy_N": {"unit": "furlong"}}),
+        '"furlong" cannot be converted to N',
+    ),
+    "a unit of another kind": (of_sweep(columns={"Fy_N": {"unit": "deg"}}), '"deg" cannot be converted to N'),
     "a column of no contract": (
         of_sweep(columns={"Fy_kN": "Fy_N"}),
-        'no column of a sweep; did you mean "Fy_N"?',
+        'not a column of a sweep; did you mean "Fy_N"?',
     ),
     "a heading not in the file": (of_sweep(columns={"Fy_N": "FY"}), 'no heading "FY"'),
     # base files
@@ -220,7 +226,7 @@ CORPUS: dict[str, tuple[Change, str]] = {
     # cells
     "no load at all": (column(Fz_N=np.nan), ":2: column Fz_N: has no values"),
     "no force at all": (column(Fy_N=np.nan), ":2: column Fy_N: has no values"),
-    "n/a for a force": (column(Fy_N="n/a"), ':2: column Fy_N: "n/a" is no measurement'),
+    "n/a for a force": (column(Fy_N="n/a"), ':2: column Fy_N: "n/a" is not a measurement'),
     "400 deg of sideslip": (words("-6.0", "400.0"), ":3: column alpha_deg: 400 deg is outside -60 to 60 deg"),
     "110 deg of camber": (
         column(CAMBER, gamma_deg=lambda x: 2.2 * x),
@@ -231,20 +237,23 @@ CORPUS: dict[str, tuple[Change, str]] = {
     "a negative speed": (column(V_mps=-6.0), "speeds are positive and direction says backward"),
     "a direction in words": (
         column(direction="astern"),
-        '"astern" is no direction; write forward or backward',
+        '"astern" is not a direction; write forward or backward',
     ),
     "negative uncertainties": (column(u_Fy_N=-6.0), "u_Fy_N: is not above zero in any row"),
     "a wild load": (words("1500.0", "1500000.0"), ":2: column Fz_N: 1.5e+06 N is outside"),
     # other formats
-    "text for MATLAB": (other("sideslip.mat", HEAD), "is no MATLAB file that can be read"),
-    "MATLAB's head alone": (other("sideslip.mat", b"MATLAB 5.0 MAT-file" + b" " * 200), "is no MATLAB file"),
-    "text for Excel": (other("sideslip.xlsx", HEAD), "is no Excel workbook that can be read"),
+    "text for MATLAB": (other("sideslip.mat", HEAD), "is not a readable MATLAB file"),
+    "MATLAB's head alone": (
+        other("sideslip.mat", b"MATLAB 5.0 MAT-file" + b" " * 200),
+        "is not a readable MATLAB file",
+    ),
+    "text for Excel": (other("sideslip.xlsx", HEAD), "is not a readable Excel workbook"),
     "Excel without force": (other("sideslip.xlsx", NO_FORCE), "sideslip.xlsx:1: column Fy_N: is missing"),
     "an empty workbook": (other("sideslip.xlsx", NO_TABLE), "has no sheet with a table"),
-    "text for Parquet": (other("sideslip.parquet", HEAD), "is no Parquet file that can be read"),
+    "text for Parquet": (other("sideslip.parquet", HEAD), "is not a readable Parquet file"),
     "words in Parquet": (other("sideslip.parquet", HEAVY), 'column Fz_N: "heavy" is a text'),
-    "TYDEX without channels": (other("sideslip.tdx", "**HEADER\n**END\n"), "it needs **MEASURCHANNELS"),
-    "binary TYDEX": (other("sideslip.tdx", b"**HEADER\n\0\0\0\1"), "goes with a .tdm file and is no TYDEX"),
+    "TYDEX without channels": (other("sideslip.tdx", "**HEADER\n**END\n"), "add **MEASURCHANNELS"),
+    "binary TYDEX": (other("sideslip.tdx", b"**HEADER\n\0\0\0\1"), "belongs to a .tdm file, and not TYDEX"),
     # one sweep that does not belong to the others
     "a tenth of the load": (column(Fz_N=150.0), "side forces reach 12 times the load (150 N)"),
     "a dead force": (column(Fy_N=0.0), "Fy_N: is 0 in every row, so the channel was dead"),

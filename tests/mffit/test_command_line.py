@@ -1,4 +1,4 @@
-"""The way through the command line: every file that build, diagnose and spin write is read back."""
+"""Every file that build, diagnose and spin write from the command line is read back."""
 
 from __future__ import annotations
 
@@ -49,7 +49,7 @@ def mffit(*arguments: object) -> int:
 
 
 def disc(folder: Path) -> Project:
-    """A build whose file is the fitted model itself, so that its model columns can be worked out from it."""
+    """A build whose file is the fitted model itself, so that its model columns can be computed from it."""
     project = disc_project(folder)
     project.config["spin"] = {"exact": "turn-slip"}
     project.each(Mz_Nm=-1, Fy_N=-1, alpha_deg=-1)  # readings in axes other than those inside
@@ -150,7 +150,7 @@ def test_the_measured_quantities_in_the_file_are_those_of_the_json(tyre, result)
         assert tyre.measured[key].u == pytest.approx(result["spin"][f"u_{key}"])
 
 
-def test_drawn_files_are_read_back_beside_the_numbers_of_their_index(built, tyre, result):
+def test_drawn_files_agree_with_their_index(built, tyre, result):
     index = pd.read_csv(built / "out" / "ensemble" / "index.csv")
     assert len(index) == 2
     for row in index.itertuples():
@@ -180,10 +180,10 @@ def test_points_are_the_input_with_parts_and_model(built, points, result):
     assert upright["Fy_even_N"].mean() == pytest.approx(0.22 * 1500.0, abs=10.0)
 
 
-def test_the_model_columns_are_what_the_file_gives(built, points, tyre, result):
+def test_the_model_columns_are_computed_from_the_file(built, points, tyre, result):
     given, direction = measured_rows(built)
     Fy, Mz = simulated(tyre, given, direction, result)
-    # The file is the fitted model to the last digit, and rounding is all that is left.
+    # The file is the fitted model to the last digit, so only rounding differs.
     np.testing.assert_allclose(points["Fy_model_N"], Fy, rtol=1e-9, atol=1e-6)
     np.testing.assert_allclose(points["Mz_model_Nm"], Mz, rtol=1e-9, atol=1e-6)
 
@@ -258,7 +258,7 @@ def test_the_corrected_model_holds_the_effects_numbers(diagnosed):
             assert model[name] == pytest.approx(number["value"], rel=1e-12)
 
 
-def test_the_build_is_as_it_was_after_the_diagnosis(built, diagnosed, tyre):
+def test_a_diagnosis_does_not_change_the_build(built, diagnosed, tyre):
     assert tir.read(built / "out" / "toy.tir") == tyre
 
 
@@ -291,7 +291,7 @@ def test_spin_of_the_paper_tables_prints_no_nan(case, tmp_path, capsys):
     assert "nan" not in (said.out + said.err).lower()
 
 
-def test_spin_of_a_flat_track_says_why_there_is_no_factor(tmp_path, capsys):
+def test_spin_on_a_flat_track_explains_why_there_is_no_factor(tmp_path, capsys):
     project = disc_project(tmp_path / "rig")
     project.config |= {"rig": {"type": "flat-track", "axes": "iso"}, "rolling_radius": [], "sweep": []}
     project.tables = {}
@@ -305,7 +305,7 @@ def test_spin_of_a_flat_track_says_why_there_is_no_factor(tmp_path, capsys):
 
 
 def shell(*arguments: object, **keys) -> subprocess.CompletedProcess:
-    """The program as a process of its own."""
+    """The program in a separate process."""
     command = [sys.executable, "-m", "mffit.cli", *map(str, arguments)]
     return subprocess.run(
         command, env=os.environ | {"PYTHONPATH": str(ROOT)}, check=False, timeout=60, **keys
@@ -324,7 +324,7 @@ def test_a_process_ends_with_2_on_bad_input_and_writes_nothing(tmp_path):
 @pytest.mark.parametrize(
     ("arguments", "code"), [(["--help"], 0), (["check", "good.tir"], 0), (["check", "bad.tir"], 2)]
 )
-def test_a_reader_that_leaves_is_no_failure(arguments, code, tmp_path):
+def test_a_closed_pipe_is_not_an_error(arguments, code, tmp_path):
     text = (ROOT / "samples" / "front-120-70" / "true.tir").read_text()
     (tmp_path / "good.tir").write_text(text)
     tir.read(tmp_path / "good.tir").replace(PCY1=-1.3).write(tmp_path / "bad.tir")

@@ -25,7 +25,7 @@ def test_the_configuration_is_valid_and_its_files_are_there(tmp_path):
 def test_its_commented_keys_are_valid_too(tmp_path):
     """Every key of the contract stands in the template, as itself or as a comment."""
     text = init_project(tmp_path / "new")[0].read_text()
-    keys = {key for table, names in known_keys().items() if table for key in names}
+    keys = {key for table, names in known_keys(config.Config).items() if table for key in names}
     shown = {key for key in keys if f"{key} =" in text or f"[{key}" in text or f".{key}]" in text}
     assert keys - shown == {"mount"}
     assignment = re.compile(r"# (?=\w+ = )")

@@ -169,7 +169,7 @@ def test_an_interrupted_run_says_what_is_whole(built, project, monkeypatch):
     assert code == 130
     assert "small" in said
     assert "second" not in said
-    assert "finished tyres are whole" in err
+    assert "finished tyres are complete" in err
     assert not (out / "second").exists()
 
 

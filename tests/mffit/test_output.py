@@ -1,4 +1,4 @@
-"""Nothing is replaced or deleted that this program did not write: refused with the file's name, all else kept."""
+"""Files that mffit did not write are never replaced or deleted; the error names the file."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ def write(out: Path, by: str = "build", protected=(), **contents: str) -> None:
 
 
 def assert_kept(out: Path, said: str, **keys) -> None:
-    """The run is refused, and the folder and its neighbours are as they were."""
+    """The run is refused, and the folder and its neighbours are unchanged."""
     before = snapshot(out.parent)
     with pytest.raises(InputError, match=said):
         write(out, **keys)
@@ -71,7 +71,7 @@ def test_a_file_that_the_run_reads_is_not_replaced_whoever_wrote_it(tmp_path):
     assert_kept(out, "a: is an input", a="2", protected=[tmp_path / "out" / ".." / "out" / "a"])
 
 
-def test_the_same_bytes_are_no_loss(tmp_path):
+def test_a_file_may_be_replaced_by_the_same_bytes(tmp_path):
     out = tmp_path / "out"
     out.mkdir()
     (out / "a").write_text("1")
@@ -79,7 +79,7 @@ def test_the_same_bytes_are_no_loss(tmp_path):
     assert (out / "a").read_text() == "1"
 
 
-def test_stale_pictures_go_and_everything_else_stays(tmp_path):
+def test_only_stale_pictures_are_removed(tmp_path):
     out = tmp_path / "out"
     write(out, a="1", plots__old="1", plots__edited="1", plots__kept="1")
     write(out, by="diagnose", plots__other="1")
@@ -98,14 +98,14 @@ def test_a_folder_and_a_file_are_not_exchanged(tmp_path, made):
     assert_kept(out, "move it away", a="1", plots__p="1")
 
 
-def test_a_foreign_file_of_the_records_name_is_not_taken_for_one(tmp_path):
+def test_a_foreign_file_with_the_name_of_the_record_is_refused(tmp_path):
     out = tmp_path / "out"
     out.mkdir()
     (out / RECORD).write_text("[]")
     assert_kept(out, "move it away", a="1")
 
 
-def test_a_dead_runs_folder_is_removed_and_a_living_ones_is_not(tmp_path):
+def test_the_folder_of_a_dead_run_is_removed_and_that_of_a_live_one_stays(tmp_path):
     code = (
         "import os, sys; from pathlib import Path; from mffit.output import output_folder\n"
         "with output_folder(Path(sys.argv[1])) as folder:\n"
@@ -138,7 +138,7 @@ with output.output_folder(Path(sys.argv[1]), by="build") as folder:
 
 @pytest.fixture
 def half_moved(tmp_path):
-    """A folder of which one of three files is of a later run, killed while its files were moving."""
+    """A folder with one of the three files of a later run that was killed while its files were moving."""
     out = tmp_path / "out"
     write(out, a="1", b="1", plots__old="1")
     ended = subprocess.run([sys.executable, "-c", KILLED_WHILE_MOVING, str(out)], check=False)
@@ -147,7 +147,7 @@ def half_moved(tmp_path):
     return out
 
 
-def test_a_run_killed_while_its_files_were_moving_is_ended_by_the_next(half_moved):
+def test_a_run_killed_while_moving_files_is_completed_by_the_next(half_moved):
     write(half_moved, c="3")
     assert {name: text for name, text in snapshot(half_moved).items() if name != RECORD} == {
         "a": b"2", "b": b"2", "plots/p": b"2", "c": b"3",
@@ -155,7 +155,7 @@ def test_a_run_killed_while_its_files_were_moving_is_ended_by_the_next(half_move
     assert not list(half_moved.parent.glob(".out-*"))
 
 
-def test_it_is_not_ended_over_what_somebody_changed_since(half_moved):
+def test_it_is_not_completed_over_a_file_that_was_changed_since(half_moved):
     (half_moved / "b").write_text("mine")
     write(half_moved, c="3")
     assert (half_moved / "b").read_text() == "mine"
@@ -164,7 +164,7 @@ def test_it_is_not_ended_over_what_somebody_changed_since(half_moved):
 
 @pytest.mark.parametrize("code", [errno.ENOSPC, errno.EROFS])
 @pytest.mark.parametrize("where", ["write", "mkdtemp", "replace"])
-def test_a_full_or_read_only_disk_is_said_in_a_sentence(tmp_path, monkeypatch, code, where):
+def test_a_full_or_read_only_disk_gives_one_sentence(tmp_path, monkeypatch, code, where):
     out = tmp_path / "out"
     write(out, a="1")
 
@@ -189,7 +189,7 @@ def test_a_full_or_read_only_disk_is_said_in_a_sentence(tmp_path, monkeypatch, c
     assert not list(tmp_path.glob(".out-*"))
 
 
-def test_what_would_be_refused_at_the_end_is_refused_before_the_work(tmp_path):
+def test_a_file_that_may_not_be_replaced_is_refused_before_the_work(tmp_path):
     (tmp_path / "a").write_text("mine")
     refuse_early(tmp_path, ["b"])
     with pytest.raises(InputError, match="no run of mffit"):
@@ -240,7 +240,7 @@ def test_build_into_the_project_does_not_replace(project, capsys, make):
     assert_command_refused(capsys, project.folder, name, "build", project.write(), "--out", project.folder)
 
 
-def test_build_asks_for_all_its_property_files_before_the_fit(project, monkeypatch):
+def test_build_checks_all_its_property_files_before_the_fit(project, monkeypatch):
     sibling_of_somebody_else(project)
     monkeypatch.setattr("mffit.fit.fit", lambda *given: pytest.fail("fitted before it was refused"))
     with pytest.raises(InputError, match="toy-normal"):
@@ -295,7 +295,7 @@ def test_simulate_replaces_its_own_files_until_they_are_edited(campaign, capsys)
     assert_command_refused(capsys, campaign, "tyre.toml", *command, "--seed", "6")
 
 
-def test_simulate_takes_a_base_file_from_another_folder_along(campaign, tmp_path):
+def test_simulate_copies_a_base_file_from_another_folder(campaign, tmp_path):
     (campaign / "tyres").mkdir()
     (campaign / "base.tir").rename(campaign / "tyres" / "base.tir")
     (campaign / "rig.toml").write_text(PLAN.replace('"base.tir"', '"tyres/base.tir"'))

@@ -1,4 +1,4 @@
-"""Whatever stands in a file that is not a recording (tests/mffit/sweeps has those), its reader gives a record or one sentence."""
+"""For any content of a file, its reader returns a record or raises one sentence; tests/mffit/sweeps covers recordings."""
 
 from __future__ import annotations
 
@@ -67,7 +67,7 @@ TIR = tir.Tyre.from_values({"FNOMIN": 1500.0, "UNLOADED_RADIUS": 0.3}).text()
 
 
 def in_a_project(name: str, read: Callable[[Path], Any]) -> Callable[[bytes], Any]:
-    """Read the folder of a small project after one of its files got this content."""
+    """Reads the folder of a small project in which one file has this content."""
 
     def tried(content: bytes) -> None:
         with tempfile.TemporaryDirectory() as made:
@@ -136,7 +136,7 @@ SPLICES = st.lists(
 
 
 def spliced(text: bytes, changes: list[tuple[float, int, bytes]]) -> bytes:
-    """Some bytes taken out and others put in, at places given as shares of the length."""
+    """The bytes with some replaced, at positions given as shares of the length."""
     for place, cut, new in changes:
         at = int(place * len(text))
         text = text[:at] + new + text[at + cut :]
@@ -144,12 +144,12 @@ def spliced(text: bytes, changes: list[tuple[float, int, bytes]]) -> bytes:
 
 
 @pytest.mark.parametrize("name", WHOLE)
-def test_a_sound_one_is_read(name):
+def test_a_sound_file_is_read(name):
     in_a_project(name, READERS[name])(WHOLE[name].encode())
 
 
 @pytest.mark.parametrize("name", WHOLE)
-def test_any_damage_is_told_in_one_sentence(name):
+def test_any_damage_gives_one_sentence(name):
     tried = in_a_project(name, READERS[name])
 
     @EXAMPLES
@@ -173,7 +173,7 @@ JSON = st.recursive(
 
 
 @pytest.mark.parametrize("name", [name for name in WHOLE if name.endswith(".json")])
-def test_any_json_is_told_in_one_sentence(name):
+def test_any_json_gives_a_record_or_one_sentence(name):
     tried = in_a_project(name, READERS[name])
 
     @EXAMPLES

@@ -1,4 +1,4 @@
-"""Every command speaks to people, to programs (--json) or not at all (--quiet)."""
+"""Every command prints text for people, JSON for programs (--json), or nothing (--quiet)."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ KEYS = {
 
 
 @pytest.mark.parametrize("name", COMMANDS)
-def test_as_text_as_json_and_not_at_all(place, capsys, name):
+def test_output_is_text_or_json_or_nothing(place, capsys, name):
     arguments = COMMANDS[name](place)
     text, _ = said(capsys, *arguments)
     assert text.strip()
@@ -56,7 +56,7 @@ def test_as_text_as_json_and_not_at_all(place, capsys, name):
     assert said(capsys, *arguments, "--quiet")[0] == ""
 
 
-def test_json_and_page_hold_the_same_number(place, capsys):
+def test_printed_and_written_json_are_the_same(place, capsys):
     document, _ = said(capsys, *COMMANDS["spin"](place), "--json")
     assert json.loads(document) == json.loads((place / "rig" / "out" / "spin.json").read_text())
 
@@ -76,14 +76,14 @@ def test_the_options_are_there(name):
 @pytest.mark.parametrize(
     ("file", "said"),
     [
-        ("rig.toml", "is a rig.toml, a plan for the virtual rig"),
+        ("rig.toml", "so it is a rig.toml for the virtual rig: run `mffit simulate`"),
         ("true.tir", "is a property file, not a tyre.toml"),
         ("rig/sideslip_1500.csv", "mffit init --from sideslip_1500.csv DIR"),
         ("rig", "is a folder"),
     ],
 )
 @pytest.mark.parametrize("command", ["build", "spin", "diagnose"])
-def test_a_file_that_is_no_tyre_toml_is_told_what_it_is(place, capsys, command, file, said):
+def test_a_file_of_another_kind_is_recognised(place, capsys, command, file, said):
     with pytest.raises(SystemExit) as end:
         main([command, str(place / file)])
     assert end.value.code == 2
@@ -92,7 +92,7 @@ def test_a_file_that_is_no_tyre_toml_is_told_what_it_is(place, capsys, command, 
     assert len(err) < 400
 
 
-def test_names_of_programs_may_have_blanks_and_the_count_is_grammar(tmp_path, capsys):
+def test_names_of_programs_may_have_blanks_and_counts_are_grammatical(tmp_path, capsys):
     sound, named = (SAMPLE / "true.tir", ("--for", "mftyre, mfeval,"))
     assert (
         said(capsys, "check", sound, *named)[0] == said(capsys, "check", sound, "--for", "mftyre,mfeval")[0]

@@ -1,4 +1,4 @@
-"""``resolved.toml`` says everything and means the same."""
+"""``resolved.toml`` has every key and the same meaning."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from mffit import config
 
 
 def settings(found: config.Config) -> dict:
-    """Everything but the names of files, which depend on where the configuration lies."""
+    """Everything except the names of files, which depend on the folder of the configuration."""
     return found.model_dump(exclude={"sweep": {"__all__": {"file"}}, "tyre": {"base"}})
 
 

@@ -1,4 +1,4 @@
-"""From a recording to a property file with nothing typed by hand but radius and load."""
+"""From a recording to a property file, given only radius and load."""
 
 from __future__ import annotations
 
@@ -57,18 +57,18 @@ def iso(table: pd.DataFrame) -> pd.DataFrame:
         (lambda t: t.assign(FY=-t["FY"]), ()),
     ],
 )
-def test_physics_tells_the_axes(tmp_path, turned, axes):
+def test_the_axes_follow_from_physics(tmp_path, turned, axes):
     assert sniff([write_mat(turned(recording(pressures=(83.0,))), tmp_path / "a.mat")]).axes == axes
 
 
-def test_an_upright_wheel_leaves_the_axes_open_and_says_so(tmp_path):
+def test_without_camber_the_axes_stay_open_with_a_remark(tmp_path):
     table = iso(recording(cambers=(0.0,), pressures=(83.0,)))
     found = sniff([write_mat(table, tmp_path / "a.mat")])
     assert set(found.axes) == {"iso", "sae"}
     assert "too little camber" in text.sniff_summary(found)
 
 
-def test_units_that_a_file_does_not_state_are_written_down_as_assumed(tmp_path):
+def test_units_that_a_file_does_not_state_are_marked_as_assumed(tmp_path):
     table = recording(pressures=(83.0,))
     table = table.assign(P=table["P"] / 100.0, FZ=table["FZ"] / 1e3, V=table["V"] / 3.6)
     table.to_csv(tmp_path / "a.csv", index=False)
@@ -117,7 +117,7 @@ def test_the_written_project_is_valid_and_its_resolved_form_too(machine, tmp_pat
     assert again.columns == found.columns
 
 
-def test_what_recordings_do_not_say_is_asked_for(machine, tmp_path):
+def test_a_value_that_recordings_do_not_state_is_asked_for(machine, tmp_path):
     with pytest.raises(InputError, match="--unloaded-radius"):
         pipeline.init_from([machine], tmp_path / "p", unloaded_radius=None, nominal_load=1500.0)
     assert not (tmp_path / "p").exists()
@@ -131,7 +131,7 @@ def test_nothing_is_overwritten(machine, tmp_path):
     assert [path.name for path in tmp_path.iterdir()] == ["tyre.toml"]
 
 
-def test_a_driven_recording_is_described_and_makes_no_project(tmp_path):
+def test_a_driven_recording_is_described_but_gives_no_project(tmp_path):
     table = recording(pressures=(83.0,))
     table["SL"] = 0.1 * np.sin(np.arange(len(table)) / 50.0)
     table["SL"] += 0.2

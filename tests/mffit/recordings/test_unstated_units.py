@@ -1,7 +1,8 @@
-"""What a recording does not state: units decided by columns together, and doubts that are said."""
+"""Units that a recording does not state are decided for related columns together; doubts are reported."""
 
 from __future__ import annotations
 
+import tomllib
 from pathlib import Path
 
 import numpy as np
@@ -21,7 +22,7 @@ GIVEN = {"unloaded_radius": 0.2, "nominal_load": 1500.0}
 
 
 def columns(**other) -> dict[str, np.ndarray]:
-    """A sweep to 9 deg and back at 11 m/s and 83 kPa, in SI but for deg and kPa."""
+    """A sweep to 9 deg and back at 11 m/s and 83 kPa, in SI except for deg and kPa."""
     usual = {
         "ET": 30.0 + STEP * np.arange(N), "V": np.full(N, 11.0), "SA": 9.0 * WAVE, "IA": np.full(N, 1.0), "P": np.full(N, 83.0),
         "FX": 60.0 * WAVE, "FY": -2300.0 * WAVE, "FZ": np.full(N, 2500.0), "MX": 30.0 * WAVE, "MZ": 60.0 * WAVE,
@@ -61,15 +62,15 @@ def test_angles_forces_and_moments_share_their_units():
     assert {in_kN["Mx_Nm"], in_kN["Mz_Nm"]} == {"kN m"}
 
 
-def test_a_load_in_kN_beside_forces_in_N_is_seen_by_the_grip():
+def test_a_load_in_kN_beside_forces_in_N_is_recognised_by_the_grip():
     found = units(FZ=np.full(N, 2.5))
     assert (found["Fz_N"], found["Fy_N"], found["Fx_N"]) == ("kN", "N", "N")
 
 
-def test_a_column_takes_the_unit_that_another_of_its_kind_states():
+def test_a_column_gets_the_unit_that_another_of_its_kind_states():
     found = guessed(units={"FZ": "lbf", "SA": "rad"}).found
     assert (found["Fy_N"].unit, found["gamma_deg"].unit, found["Fz_N"].unit) == ("lbf", "rad", "")
-    assert "as FZ is" in found["Fy_N"].why
+    assert "like FZ" in found["Fy_N"].why
 
 
 @pytest.mark.parametrize(
@@ -85,29 +86,29 @@ def test_a_column_takes_the_unit_that_another_of_its_kind_states():
         (8.0, 30_000.0, "bar", "psi"),
     ],
 )
-def test_a_pressure_is_that_of_a_tyre_and_what_else_it_may_be_is_said(pressure, load, unit, also):
+def test_the_unit_gives_the_pressure_of_a_tyre_and_alternatives_are_named(pressure, load, unit, also):
     guess = guessed(P=np.full(N, pressure), FZ=np.full(N, load)).found["p_kPa"]
     assert guess.unit == unit
     assert also in guess.why
 
 
 @pytest.mark.parametrize(("factor", "unit"), [(1.0, "s"), (1e3, "ms"), (1e6, "us")])
-def test_the_unit_of_time_is_that_in_which_machines_steer(factor, unit):
+def test_the_unit_of_time_gives_a_usual_rate_of_steering(factor, unit):
     assert units(ET=factor * STEP * np.arange(N))["time_s"] == unit
 
 
-def test_a_step_of_one_is_a_second_or_a_millisecond_by_the_rate_of_the_steering():
+def test_the_rate_of_steering_distinguishes_steps_of_a_second_and_a_millisecond():
     slow = 9.0 * np.sin(np.linspace(0.0, 2.0, N))
     assert units(ET=np.arange(N), SA=slow)["time_s"] == "ms"
     assert units(ET=np.arange(N), SA=9.0 * np.sin(np.linspace(0.0, 200.0, N)))["time_s"] == "s"
 
 
-def test_a_time_of_no_unit_that_fits_is_called_unknown():
+def test_a_time_that_fits_no_unit_is_called_unknown():
     assert "not known" in guessed(ET=1e9 * STEP * np.arange(N)).found["time_s"].why
     assert "not known" in guessed(SA=np.zeros(N)).found["time_s"].why
 
 
-def test_one_american_unit_casts_doubt_on_those_that_nobody_states():
+def test_one_american_unit_casts_doubt_on_unstated_ones():
     remark = " ".join(guessed(P=np.full(N, 12.0)).remarks)
     for words in ("P is in psi", "FZ (N or lbf)", "MZ (N m or in-lb)", "mph", "degF", 'unit = "lbf"'):
         assert words in remark
@@ -118,7 +119,7 @@ def test_one_american_unit_casts_doubt_on_those_that_nobody_states():
     )
 
 
-def test_a_wheel_that_turns_as_the_road_runs_is_kept_and_no_other():
+def test_a_speed_of_rotation_is_kept_only_if_it_agrees_with_the_speed():
     turning = 11.0 / 0.195  # rad/s
     assert units(N=np.full(N, turning))["omega_radps"] == "rad/s"
     assert units(N=np.full(N, turning * 60.0 / (2.0 * np.pi)))["omega_radps"] == "rpm"
@@ -139,17 +140,19 @@ def test_a_missing_moment_names_columns_in_a_unit_of_moments():
     ("heading", "channel"),
     [
         ("Self aligning torque", "Mz_Nm"), ("Surface temp", "T_degC"), ("Reifendruck", "p_kPa"), ("Kippmoment", "Mx_Nm"),
-        ("Längskraft", "Fx_N"),
+        ("Längskraft", "Fx_N"), ("MTS Running Time", "time_s"),
     ],
 )  # fmt: skip
 def test_headings_of_laboratories(heading, channel):
-    without = {"Mz_Nm": "MZ", "T_degC": "TSTC", "p_kPa": "P", "Mx_Nm": "MX", "Fx_N": "FX"}[channel]
+    without = {"Mz_Nm": "MZ", "T_degC": "TSTC", "p_kPa": "P", "Mx_Nm": "MX", "Fx_N": "FX", "time_s": "ET"}[
+        channel
+    ]
     held = columns()
     assert guessed(**{without: None, heading: held[without]}).found[channel].heading == heading
 
 
 def table(**other) -> str:
-    """Finished points as CSV in SAE axes, each cell as it stands."""
+    """Finished points as CSV in SAE axes; cells are written unchanged."""
     alpha = np.repeat(np.linspace(-8.0, 8.0, 9), 2)
     load = np.tile([1000.0, 2000.0], 9)
     held = {
@@ -161,7 +164,7 @@ def table(**other) -> str:
     return "\n".join([",".join(held), *rows]) + "\n"
 
 
-def test_no_pressure_is_said_and_asked_for(tmp_path):
+def test_a_missing_pressure_is_reported_and_asked_for(tmp_path):
     (tmp_path / "a.csv").write_text(table())
     found = sniff([tmp_path / "a.csv"])
     assert found.conditions["pressure"] == ()
@@ -173,7 +176,7 @@ def test_no_pressure_is_said_and_asked_for(tmp_path):
 
 
 def test_only_measured_pressures_count(tmp_path):
-    """Two files without pressure beside one with it: the stand-in for theirs is nobody's measurement."""
+    """Two files without pressure beside one with it: the placeholder for the others does not count as a measurement."""
     for name, more in (("a", {}), ("b", {}), ("c", {"P": 83.0})):
         (tmp_path / f"{name}.csv").write_text(table(**more))
     found = sniff([f"{tmp_path}/*.csv"])
@@ -181,14 +184,14 @@ def test_only_measured_pressures_count(tmp_path):
     assert "nominal_pressure = 83 " in project_text(found, tmp_path, unloaded_radius=0.2, nominal_load=1500.0)
 
 
-def test_rows_without_time_are_counted_as_points_aloud(tmp_path):
+def test_rows_without_time_are_reported_as_points(tmp_path):
     (tmp_path / "a.csv").write_text(table(Timestamp="2024-04-03 10:00:00.000"))
     found = sniff([tmp_path / "a.csv"])
     for said in (
         text.sniff_summary(found).replace("\n  ", " "),
         project_text(found, tmp_path, unloaded_radius=None, nominal_load=None),
     ):
-        assert "no time: each of 18 rows is taken for a finished point" in said
+        assert "no time: each of 18 rows is treated as a finished point" in said
         assert 'column "Timestamp" holds clock times' in said
 
 
@@ -203,19 +206,19 @@ def test_rows_without_time_are_counted_as_points_aloud(tmp_path):
         ("name", "a/b", "cannot name"),
     ],
 )
-def test_what_a_build_would_refuse_is_refused_before_anything_is_read(tmp_path, option, value, hint):
+def test_a_value_that_a_build_would_refuse_is_refused_before_reading(tmp_path, option, value, hint):
     with pytest.raises(InputError, match=hint) as caught:
         pipeline.init_from([tmp_path / "none.csv"], tmp_path / "p", **{**GIVEN, option: value})
     assert caught.value.key == f"--{option.replace('_', '-')}"
 
 
-def test_files_are_named_by_pattern_and_a_folder_is_told_what_it_holds(tmp_path):
+def test_files_are_named_by_pattern_and_a_folder_is_refused_with_its_pattern(tmp_path):
     for name in "ba":
         (tmp_path / f"{name}.dat").write_text(table(P=83.0))
     assert [r.path.name for r in sniff([f"{tmp_path}/*.dat"]).recordings] == ["a.dat", "b.dat"]
     with pytest.raises(InputError, match="no file matches"):
         sniff([f"{tmp_path}/*.mat"])
-    with pytest.raises(InputError, match=r"is a folder; name those in it, as .*\*\.dat"):
+    with pytest.raises(InputError, match=r"is a folder; name the files in it, for example .*\*\.dat"):
         sniff([tmp_path])
     with pytest.raises(InputError, match=r"no such file; correct its name$"):
         sniff([tmp_path / "nosuch.mat"])
@@ -227,9 +230,32 @@ def test_files_are_named_by_pattern_and_a_folder_is_told_what_it_holds(tmp_path)
         ("Prüfstand Müller, Messung vom 3.4.2024", None),
         ("Prüfstand Müller Reifen: 16x7.5-10", "16x7.5-10"),
         ("title=Belt Tire=Maker 16x7.5-10", "Maker 16x7.5-10"),
+        ("Tire: Maker 16x7.5-10\n[DATA]", "Maker 16x7.5-10"),
+        ("Tire:\n[DATA]", None),
     ],
 )
-def test_a_title_names_a_tyre_only_where_it_says_so(tmp_path, title, size):
+def test_a_title_names_a_tyre_only_after_the_word_tyre(tmp_path, title, size):
     (tmp_path / "a.csv").write_text(f"{title.replace(',', ' ')}\n{table(P=83.0)}", encoding="utf-8")
     written = project_text(sniff([tmp_path / "a.csv"]), tmp_path, unloaded_radius=0.2, nominal_load=1500.0)
     assert (f'size = "{size}"' in written) if size else "\nsize" not in written
+
+
+def test_a_column_of_doubtful_unit_is_left_out_and_the_rest_is_read(tmp_path):
+    """A temperature of 300 is impossible in degC; it must not end sniff."""
+    (tmp_path / "a.csv").write_text(table(P=83.0, TSTC=300.0))
+    found = sniff([tmp_path / "a.csv"])
+    assert "T_degC" not in found.recordings[0].guesses
+    assert "p_kPa" in found.recordings[0].guesses
+    (remark,) = [r for r in found.recordings[0].remarks if "TSTC" in r]
+    assert remark.startswith("TSTC (300 to 300) is left out: in degC it is not within -60 to 250 degC")
+    written = project_text(found, tmp_path, unloaded_radius=0.2, nominal_load=1500.0)
+    assert "# TSTC (300 to 300) is left out" in written
+    assert "T_degC" not in tomllib.loads(written)["columns"]
+
+
+def test_a_spike_in_a_recording_casts_no_doubt_on_its_unit():
+    spike = np.full(N, 60.0)
+    spike[7] = 3000.0
+    assert guessed(TSTC=spike).found["T_degC"].heading == "TSTC"
+    spike[: N // 10] = 3000.0
+    assert "T_degC" not in guessed(TSTC=spike).found

@@ -1,13 +1,16 @@
-"""The table of columns is whole, and guesses headings as people write them."""
+"""The table of columns is complete, and headings are guessed from usual spellings."""
 
 from __future__ import annotations
 
 import re
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
+from mffit.export.tydex import CHANNELS as TYDEX_CHANNELS
+from mffit.recordings.guess import simplified
 from mffit.sweeps.channels import BY_NAME, CHANNELS, nearest_channel, nearest_heading
 from mffit.sweeps.units import UnknownUnitError, converted, is_unit, spellings
 
@@ -23,9 +26,9 @@ def test_the_columns_are_those_of_the_contract():
     assert [c.name for c in CHANNELS if c.required] == ["alpha_deg", "gamma_deg", "Fz_N", "Fy_N"]
 
 
-def test_every_row_is_whole():
-    aliases = [alias.lower() for channel in CHANNELS for alias in channel.aliases]
-    assert len(set(aliases)) == len(aliases)
+def test_every_row_is_complete():
+    names = [n for channel in CHANNELS for n in set(map(simplified, (channel.name, *channel.aliases)))]
+    assert len(set(names)) == len(names)
     for channel in CHANNELS:
         assert channel.kind in ("number", "label", "direction")
         assert channel.lower < channel.upper
@@ -69,14 +72,14 @@ def test_every_spelling_is_in_the_documentation():
 @pytest.mark.parametrize(
     "text", ["FY", "heavy", "forward", "left", "a**9**9**9", "m**99", "1500.0", "N" * 99, "()"]
 )
-def test_what_is_no_unit_is_not_tried(text):
-    """pint's parser also calculates: a tower of powers would never return."""
+def test_a_text_that_is_not_a_unit_is_not_parsed(text):
+    """pint's parser also evaluates arithmetic: a tower of powers would never return."""
     assert not is_unit(text)
 
 
 def test_a_misspelt_channel_is_guessed_and_a_foreign_heading_is_not():
-    assert nearest_channel("mz_nm") == "Mz_Nm"
-    assert nearest_channel("operator") == ""
+    assert nearest_channel("mz_nm", likeness=0.8) == "Mz_Nm"
+    assert nearest_channel("operator", likeness=0.8) == ""
 
 
 @pytest.mark.parametrize(
@@ -113,3 +116,13 @@ def test_units_of_rigs_are_converted(value, unit, target, expected):
 def test_other_units_are_refused(unit):
     with pytest.raises(UnknownUnitError):
         converted(np.array([1.0]), unit, "N")
+
+
+@pytest.mark.parametrize("written", TYDEX_CHANNELS, ids=lambda written: written.name)
+def test_a_name_that_tydex_export_writes_is_known_to_its_reader(written):
+    """The alias belongs to the channel from which the numbers come, and the unit can be converted."""
+    fields = ("alpha", "gamma", "Fz", "Fy", "Mx", "My", "Mz", "p", "V", "T")
+    source = written.of(SimpleNamespace(**{field: field for field in fields}))
+    (channel,) = [channel for channel in CHANNELS if written.name in channel.aliases]
+    assert channel.name.rpartition("_")[0] == source
+    assert np.isfinite(converted(np.ones(1), written.unit, channel.unit)).all()

@@ -1,4 +1,4 @@
-"""Files as rigs and spreadsheets write them: read right, or refused with file, line, column and remedy."""
+"""Files written by rigs and spreadsheets are read correctly, or refused with file, line, column and remedy."""
 
 from __future__ import annotations
 
@@ -100,8 +100,8 @@ CELLS = {
     "unit": (4, "1500.0", "1.5 kN", "Fz_N", 'unit = "kN"'),
     "text": (3, "1500.0", "heavy", "Fz_N", "text"),
     "decimal comma": (5, "1500.0", '"1500,5"', "Fz_N", "write 1500.5"),
-    "NaN": (2, "1500.0", "NaN", "Fz_N", "no measurement"),
-    "infinity": (6, "1500.0", "inf", "Fz_N", "no measurement"),
+    "NaN": (2, "1500.0", "NaN", "Fz_N", "is not a measurement"),
+    "infinity": (6, "1500.0", "inf", "Fz_N", "is not a measurement"),
     "blank": (7, "1500.0", "", "Fz_N", "empty"),
     "zero load": (7, "1500.0", "0", "Fz_N", "zero"),
     "mixed sign": (8, "1500.0", "-1500", "Fz_N", "another sign"),
@@ -130,7 +130,7 @@ WHOLE = {
     "too many cells": (b"alpha_deg,gamma_deg,Fz_N,Fy_N\n0,0,1500,-300,7\n", 2, "5 cells under 4 headings"),
     "duplicate headings": (b"alpha_deg,gamma_deg,Fz_N,Fy_N,Fz_N\n0,0,1500,-300,1\n", 1, "twice"),
     "empty heading": (b"alpha_deg,,Fz_N,Fy_N\n0,0,1500,-300\n", 1, "heading 2 is empty"),
-    "no headings": (b"0,0,1500,-300\n1,0,1500,-500\n", 1, "headings should be"),
+    "no headings": (b"0,0,1500,-300\n1,0,1500,-500\n", 1, "numbers instead of headings"),
     "missing column": (b"alpha_deg,gamma_deg,Fz_N,FY\n0,0,1500,-300\n", 1, 'column = "FY"'),
     "kilonewtons": (b"alpha_deg,gamma_deg,Fz_N,Fy_N\n0,0,1.5,-300\n", 2, "kN"),
     "all loads negative": (b"alpha_deg,gamma_deg,Fz_N,Fy_N\n0,0,-1500,-300\n", 2, 'axes = "sae"'),
@@ -195,8 +195,8 @@ def test_headings_units_and_signs_are_mapped(project):
     [
         ({"Fy": "Fy_N"}, 'did you mean "Fy_N"'),
         ({"Fy_N": "FY"}, 'no heading "FY"'),
-        ({"Fy_N": {"unit": "kPa"}}, "cannot be turned into N"),
-        ({"Fy_N": {"unit": "stone throws"}}, "is no unit"),
+        ({"Fy_N": {"unit": "kPa"}}, "cannot be converted to N"),
+        ({"Fy_N": {"unit": "stone throws"}}, "is not a unit"),
     ],
 )
 def test_a_bad_mapping_is_refused(project, columns, said):
@@ -212,13 +212,13 @@ def test_a_misspelt_optional_column_is_pointed_out(project):
     assert any("Mz_nm" in w and "Mz_Nm" in w for w in warnings)
 
 
-def test_foreign_columns_come_along_as_text(project):
+def test_columns_without_a_channel_are_kept_as_text(project):
     project.tables[NAME]["operator"] = "J"
     found = sweep_named(load(project.write()), NAME)
     assert set(found.table["operator"]) == {"J"}
 
 
-def test_the_direction_column_counts_and_a_contradiction_is_said(project):
+def test_the_direction_column_is_used_and_a_contradiction_is_warned_about(project):
     table = project.tables[NAME]
     table["direction"] = np.where(table["alpha_deg"] > 0, "backward", "forward")
     assert np.array_equal(
@@ -230,7 +230,7 @@ def test_the_direction_column_counts_and_a_contradiction_is_said(project):
     assert np.sum(sweep_named(found, NAME).direction < 0) == 6
 
 
-def test_runs_are_sweeps_of_their_own(project):
+def test_each_run_is_a_sweep(project):
     table = project.tables[NAME]
     table["run"] = np.where(table["alpha_deg"] > 0, "left", "right")
     found = [sweep for sweep in load(project.write()).sweeps if sweep.file == NAME]
@@ -238,7 +238,7 @@ def test_runs_are_sweeps_of_their_own(project):
     assert sum(len(sweep) for sweep in found) == len(table)
 
 
-def test_sae_loads_are_taken_with_either_sign(project):
+def test_sae_loads_may_have_either_sign(project):
     project.config["rig"]["axes"] = "sae"
     reference = sweep_named(load(project.write()), NAME)
     project.each(Fz_N=-1.0)
@@ -247,14 +247,14 @@ def test_sae_loads_are_taken_with_either_sign(project):
     assert np.all(found.Fz > 0.0)
 
 
-def test_a_bare_table_needs_no_configuration(project):
+def test_a_single_file_is_read_without_a_configuration(project):
     path = project.write()
     found = sweeps.load_file(project.folder / NAME, axes="adapted-sae").sweeps[0]
     np.testing.assert_array_equal(found.Fy, -sweep_named(load(path), NAME).Fy)
 
 
 def with_uncertainties(project, *u):
-    """The sweep with ``u_Fy_N``, 6 N but for its first rows."""
+    """The sweep with ``u_Fy_N``: the given values in its first rows, 6 N in all others."""
     table = project.tables[NAME]
     column = [*u, *[6.0] * (len(table) - len(u))]
     project.tables[NAME] = table.assign(u_Fy_N=column)
@@ -262,14 +262,12 @@ def with_uncertainties(project, *u):
 
 
 @pytest.mark.parametrize(("u", "more"), [((6.0, 0.0), ""), ((6.0, -999.0, 0.0), "1 more")])
-def test_an_uncertainty_not_above_zero_counts_as_not_stated(project, u, more):
+def test_an_uncertainty_not_above_zero_is_treated_as_not_stated(project, u, more):
     found = load(with_uncertainties(project, *u))
     u_Fy = sweep_named(found, NAME).u_Fy
     np.testing.assert_array_equal(np.isfinite(u_Fy), [k == 0 or k >= len(u) for k in range(len(u_Fy))])
     (warning,) = found.warnings
-    assert re.search(
-        rf"{NAME}:3: column u_Fy_N: {u[1]:g} is no uncertainty and counts as not stated", warning
-    )
+    assert re.search(rf"{NAME}:3: column u_Fy_N: {u[1]:g} is not above zero; treated as not stated", warning)
     assert more in warning
 
 
@@ -309,7 +307,7 @@ def test_a_new_format_is_a_reader_and_a_record(project, monkeypatch):
     path = project.write()
     path.write_text(path.read_text().replace(NAME, "rig.raw"))
     (project.folder / "rig.raw").write_bytes(b"")
-    assert "is no .csv or .csv.gz" in refusal(path).sentence
+    assert "is not in a known format (.csv .csv.gz" in refusal(path).sentence
     extended = (*formats.FORMATS, formats.Format("RAW", (".raw",), numbers))
     monkeypatch.setattr(formats, "FORMATS", extended)
     monkeypatch.setattr(loading, "ENDINGS", (*formats.ENDINGS, ".raw"))
@@ -323,14 +321,14 @@ def test_a_new_format_is_a_reader_and_a_record(project, monkeypatch):
     assert found.name == "rig.raw:1"
 
 
-def test_a_unit_that_the_file_states_and_nobody_knows_is_refused(project):
+def test_an_unknown_unit_in_the_file_is_refused(project):
     raw = formats.read(project.write().parent / NAME)
     strange = replace(raw, units=("furlong per", *raw.units[1:]))
     with pytest.raises(InputError, match=f"{NAME}:1: column alpha_deg: .*furlong"):
         read_columns(strange, {})
 
 
-def test_the_name_of_a_sweep_is_its_files_without_ending():
+def test_the_name_of_a_sweep_is_that_of_its_file_without_the_ending():
     assert [formats.stem(name) for name in ("a/b.csv", "b.csv.gz", "b.c.odt", "B.MAT")] == [
         "b",
         "b",

@@ -1,4 +1,4 @@
-"""The same table in every format reads the same; what is broken is one sentence."""
+"""The same table reads the same in every format; a broken file is refused in one sentence."""
 
 from __future__ import annotations
 
@@ -121,7 +121,7 @@ def test_every_format_gives_the_same_numbers(tmp_path, name):
 
 
 @pytest.mark.parametrize("name", ["five.mat", "seven.mat"])
-def test_what_a_recording_says_of_itself_is_kept(tmp_path, name):
+def test_the_texts_of_a_recording_are_kept(tmp_path, name):
     WRITERS[name](tmp_path / name)
     raw = formats.read(tmp_path / name)
     assert raw.about["tireid"].startswith("Tyre A")
@@ -146,7 +146,7 @@ BROKEN = {
     "g.tdx": (b"alpha,beta\n", "**HEADER"),
     "h.tdx": (b"**HEADER\n**MEASURCHANNELS\n**END\n", "no channels"),
     "i.tdx": (b"**HEADER\n**MEASURCHANNELS\nFYW x N\n**MEASURDATA\n1 2\n", "2 values for 1"),
-    "j.tdx": (b"**HEADER\n**MEASURCHANNELS\nFYW x N\n**MEASURDATA\none\n", "no number"),
+    "j.tdx": (b"**HEADER\n**MEASURCHANNELS\nFYW x N\n**MEASURDATA\none\n", "is not a number"),
     "k.dat": (b"", "empty"),
 }
 
@@ -183,7 +183,7 @@ def config(folder, **changes):
     return configuration.load({**content, **changes}, folder=folder)
 
 
-def test_one_map_and_one_pattern_serve_all_files(tmp_path):
+def test_one_mapping_and_one_pattern_apply_to_all_files(tmp_path):
     for k in (2, 1, 10):
         write_mat(TABLE, tmp_path / f"run{k}.mat")
     (tmp_path / "runs.txt").write_text("not this one")
@@ -194,13 +194,13 @@ def test_one_map_and_one_pattern_serve_all_files(tmp_path):
     np.testing.assert_allclose(found[0].Fz, -TABLE["FZ"])
 
 
-def test_a_files_own_map_comes_before_the_one_for_all(tmp_path):
+def test_the_mapping_of_a_file_precedes_the_shared_one(tmp_path):
     write_mat(TABLE.rename(columns={"FY": "FYW"}), tmp_path / "run1.mat")
     found = sweeps.load(config(tmp_path, sweep=[{"file": "run1.mat", "columns": {"Fy_N": "FYW"}}])).sweeps
     np.testing.assert_allclose(found[0].Fy, -TABLE["FY"])
 
 
-def test_a_file_may_lack_what_the_map_for_all_names_unless_it_is_required(tmp_path):
+def test_a_file_may_lack_an_optional_column_of_the_shared_mapping(tmp_path):
     write_mat(TABLE.drop(columns="TSTC"), tmp_path / "run1.mat")
     assert np.all(np.isnan(sweeps.load(config(tmp_path)).sweeps[0].T))
     write_mat(TABLE.drop(columns="FY"), tmp_path / "run1.mat")
@@ -220,7 +220,7 @@ def test_a_pattern_without_files_is_refused_with_its_line(tmp_path):
 
 
 def test_lines_are_right_in_a_large_file_with_remarks(tmp_path):
-    """Read by pandas, which passes over blank and comment lines without counting them."""
+    """pandas reads the file; it skips blank and comment lines without counting them."""
     table = pd.DataFrame({"alpha_deg": 0.0, "gamma_deg": 0.0, "Fz_N": 1500.0, "Fy_N": np.arange(60_000.0)})
     text = table.to_csv(index=False).splitlines()
     text.insert(100, "# a remark")

@@ -47,7 +47,7 @@ forces = st.floats(-4000.0, 4000.0)
 def test_forces_and_moments_in_c_come_back_in_w(gamma, Fy, Fz, Mz, My):
     y, z = axes_of_the_wheel(np.radians(gamma))
     force, torque = np.array([0.0, Fy, Fz]), np.array([0.0, My, Mz])
-    if force @ z < 1.0:  # pulled off the wheel: no load a file may hold
+    if force @ z < 1.0:  # pulled off the wheel: not a load that a file may hold
         return
     carried = sweep(gamma, force @ y, force @ z, torque @ z, torque @ y)
     found = to_contact_frame(carried, load_is_vertical=False)

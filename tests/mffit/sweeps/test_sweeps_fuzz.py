@@ -1,4 +1,4 @@
-"""Whatever the bytes of a file are, a reader gives a table or one sentence."""
+"""For any bytes in a file, a reader returns a table or raises one sentence."""
 
 from __future__ import annotations
 
@@ -56,7 +56,7 @@ def test_any_bytes(name):
     tried()
 
 
-def test_a_header_that_is_no_section_is_no_reason_to_stop():
+def test_a_header_outside_a_section_does_not_stop_the_reader():
     """Found by tests/studies/fuzz_readers.py."""
     outcome("a.tdx", b"x**HEADER\n**MEASURCHANNELS\nFYW x N\n**MEASURDATA\n1\n")
 
@@ -108,7 +108,7 @@ def test_a_damaged_mat_file(changes, length):
 
 
 def test_a_mat_file_that_crashes_the_library_is_refused_with_a_sentence(tmp_path):
-    """A flat data type in place of another makes scipy's reader read where nothing is."""
+    """A flat data type in place of another makes scipy's reader access memory that is not its own."""
     damaged = bytearray(MAT)
     damaged[560] = 14
     path = tmp_path / "a.mat"

@@ -37,7 +37,7 @@ def test_a_plan_is_read(written):
 @pytest.mark.parametrize(
     ("old", "new", "sentence"),
     [
-        ("load_N = 1400\n", "", "rig.toml:13: sweep[1].load_N: is missing; add it"),
+        ("load_N = 1400\n", "", "rig.toml:13: sweep[1].load_N: is missing; add it to [[sweep]]"),
         ("alpha_deg =", "alfa_deg =", 'sweep[1].alfa_deg: is unknown; did you mean "alpha_deg"?'),
         ("unloaded_radius =", "unloded_radius =", 'tyre.unloded_radius: is unknown; did you mean "unloaded'),
         ("path_radius = 1.323", "path_radius = 1323", "rig.toml:11: rig.path_radius: 1323 m is outside"),
@@ -45,8 +45,13 @@ def test_a_plan_is_read(written):
         ("[-2, 0, 2]", "{ from = -2, to = 2, step = 0 }", "correct step"),
         ("[-2, 0, 2]", "{ from = -2, to = 2, step = 0.3 }", "correct step"),
         ("[-2, 0, 2]", "{ from = -2, to = 2 }", "needs from, to and step"),
-        ("[truth]", "[truth", "is not valid TOML"),
+        ("[truth]", "[truth", "rig.toml:1: is not valid TOML"),
         ("[-2, 0, 2]", '["a"]', "sweep[1].alpha_deg"),
+        ("[-2, 0, 2]", "[]", "sweep[1].alpha_deg: is empty; give at least one"),
+        ("[tyre]", "[niose]\nFy_N = 1\n[tyre]", 'rig.toml:4: niose: is unknown; did you mean "noise"?'),
+        ("[tyre]", "[noise]\ngain = 1.0\n[tyre]", "rig.toml:5: noise.gain: is unknown here; move it to [faults]"),
+        ("[tyre]", "[noise]\nMy_Nm = -1.0\n[tyre]", "rig.toml:5: noise.My_Nm: -1 is below 0; correct it"),
+        ("[truth]", "[faults]\ngain = 0.0\n[truth]", "rig.toml:2: faults.gain: 0 is not above 0; correct it"),
     ],
 )  # fmt: skip
 def test_a_mistake_is_named_with_its_place(written, old, new, sentence):
@@ -67,3 +72,20 @@ def test_a_flat_track_has_no_path_radius(content, folder, tmp_path):
     with pytest.raises(InputError, match="no path radius"):
         simulate(load_plan(content, folder=folder), tmp_path / "out")
     assert not (tmp_path / "out").exists()
+
+
+@pytest.mark.parametrize(
+    ("name", "content", "sentence"),
+    [
+        ("rig.toml", None, "there is no such file; `mffit init --sample"),
+        ("rig.toml", SMALL_PLAN.encode("utf-16"), "is not UTF-8 text"),
+        ("tyre.tir", b"$ a comment", "is a property file, not a rig.toml"),
+        ("run.csv", b"alpha_deg,gamma_deg\n0,0\n", "is not a rig.toml"),
+    ],
+)
+def test_another_file_is_named_for_what_it_is(tmp_path, name, content, sentence):
+    if content is not None:
+        (tmp_path / name).write_bytes(content)
+    with pytest.raises(InputError) as caught:
+        load_plan(tmp_path / name)
+    assert sentence in str(caught.value)
