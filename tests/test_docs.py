@@ -249,7 +249,7 @@ def test_every_option_is_described():
 
 @pytest.mark.parametrize("page", PAGES, ids=name_of)
 def test_toml_on_a_page_has_known_tables_and_keys(page):
-    known = known_keys()
+    known = known_keys(Config, plan.RigTables)
     unknown = []
     for block in blocks(page):
         if block.language == "toml" and block.can_run:

@@ -44,7 +44,8 @@ class Range:
         hint = self.above if value > self.upper else self.below if value > 0.0 else ""
         if hint and self.other is not None:
             hint = self.other.hint(value) or hint
-        sentence = f"{value:g} {self.unit} is outside {self.lower:g} to {self.upper:g} {self.unit}"
+        unit = f" {self.unit}" if self.unit != "-" else ""
+        sentence = f"{value:g}{unit} is outside {self.lower:g} to {self.upper:g}{unit}"
         raise wrong(f"{sentence}; {hint or 'correct it'}")
 
 

@@ -51,7 +51,7 @@ def test_a_plan_is_read(written):
         ("[tyre]", "[niose]\nFy_N = 1\n[tyre]", 'rig.toml:4: niose: is unknown; did you mean "noise"?'),
         ("[tyre]", "[noise]\ngain = 1.0\n[tyre]", "rig.toml:5: noise.gain: is unknown here; move it to [faults]"),
         ("[tyre]", "[noise]\nMy_Nm = -1.0\n[tyre]", "rig.toml:5: noise.My_Nm: -1 is below 0; correct it"),
-        ("[truth]", "[faults]\ngain = 0.0\n[truth]", "rig.toml:2: faults.gain: 0 is not above 0; correct it"),
+        ("[truth]", "[faults]\ngain = 0.0\n[truth]", "rig.toml:2: faults.gain: 0 is outside 0.5 to 2; correct it"),
     ],
 )  # fmt: skip
 def test_a_mistake_is_named_with_its_place(written, old, new, sentence):
