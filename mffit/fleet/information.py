@@ -9,8 +9,8 @@ from typing import Any
 
 import numpy as np
 
+from mffit.fit.fitted import Fitted
 from mffit.fit.priors import scatter
-from mffit.fit.staged import Fitted
 from mffit.rig import FAULT_NAMES
 
 SPIN = ("PECP1", "PECP2")

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.optimize import least_squares
 
-from mffit.least_squares import Linear, Number, Problem, solve
+from mffit.least_squares import LeastSquaresProblem, Linear, Number, solve
 
 RNG = np.random.default_rng(5)
 A = RNG.normal(size=(30, 3))
@@ -14,7 +14,7 @@ TRUE = np.array([1.0, -2.0, 0.5])
 DATA = A @ TRUE + 0.1 * RNG.normal(size=30)
 
 
-def linear_problem(limit: float = np.inf) -> Problem:
+def linear_problem(limit: float = np.inf) -> LeastSquaresProblem:
     """A straight line in three numbers, the first of which may be limited with a heavy penalty."""
 
     def limits(x):
@@ -24,7 +24,7 @@ def linear_problem(limit: float = np.inf) -> Problem:
         slope = np.array([[1e4 if x[0] > limit else 0.0, 0.0, 0.0]])
         return Linear(A @ x - DATA, A, limits(x), slope)
 
-    return Problem(lambda x: (A @ x - DATA, limits(x)), linear)
+    return LeastSquaresProblem(lambda x: (A @ x - DATA, limits(x)), linear)
 
 
 def numbers(**changes) -> list[Number]:
@@ -82,5 +82,5 @@ def test_a_curved_problem_ends_where_scipy_ends():
         return Linear(residual(v), slope, np.zeros(0), np.zeros((0, 3)))
 
     start = [Number("D", 1.0), Number("C", 1.0), Number("B", 1.0)]
-    found = solve(Problem(lambda v: (residual(v), np.zeros(0)), linear), start, tolerance=1e-12)
+    found = solve(LeastSquaresProblem(lambda v: (residual(v), np.zeros(0)), linear), start, tolerance=1e-12)
     assert list(found.values.values()) == pytest.approx(least_squares(residual, np.ones(3)).x, abs=1e-4)

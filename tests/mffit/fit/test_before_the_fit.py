@@ -11,9 +11,9 @@ from small_rigs import truth
 
 import tir
 from mffit.fit import ranges
+from mffit.fit.agreement import agreement
 from mffit.fit.radius import radius_coefficients
 from mffit.fit.ranges import plausible_ranges
-from mffit.fit.result import agreement
 from mffit.fit.start import camber_stiffness_terms, starting_values
 from mffit.fit.virtual_zero import epsilon_gamma_of_model, zero_points
 from mffit.points import make_points
@@ -122,7 +122,7 @@ def test_the_models_own_factor_is_pecp1_where_spin_is_small(tyre):
     R = 2000.0
     points = make_points([0.0, 0.0], 0.0, 1400.0, p=250e3, V=6.0, phi_t=-1 / R, direction=[1, -1])
     r_e = float(model.state(1400.0, Vx=6.0).Re)
-    assert epsilon_gamma_of_model(model.values, points, 1400.0, r_e, R) == pytest.approx(-0.2, abs=0.003)
+    assert epsilon_gamma_of_model(model.values, points, 1400.0, r_e) == pytest.approx(-0.2, abs=0.003)
 
 
 def test_the_zeros_of_the_model_are_run_as_the_data_were(tyre):

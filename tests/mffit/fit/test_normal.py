@@ -12,10 +12,10 @@ import pytest
 import mffit
 import tir
 from mffit.diagnosis.notes import ModelFittedFirst
+from mffit.fit.comments import whole_words
 from mffit.fit.files import file_names, use_mode
 from mffit.fit.imitation import forces
 from mffit.fit.normal import derive_both, derive_normal
-from mffit.fit.wording import whole_words
 from mffit.pipeline.diagnosing import chosen_model
 from mffit.pipeline.provenance import use_of
 from mffit.results import as_json

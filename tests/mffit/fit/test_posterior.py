@@ -8,7 +8,7 @@ import pytest
 import mffit
 from mffit.fit import ensemble
 from mffit.fit.profile import follow
-from mffit.least_squares import Linear, Number, Problem, solve
+from mffit.least_squares import LeastSquaresProblem, Linear, Number, solve
 from mffit.points import make_points
 from mffit.rig import FAULT_NAMES, Simulation
 
@@ -78,7 +78,7 @@ class Banana:
     def with_values(self, values):
         return Banana(**{**self.held, **values})
 
-    def free(self, names) -> Problem:
+    def free(self, names) -> LeastSquaresProblem:
         def linear(at) -> Linear:
             now = {**self.held, **dict(zip(names, at, strict=True))}
             x, y = now["x"], now["y"]
@@ -86,7 +86,7 @@ class Banana:
             slope = np.array([slopes[n] for n in names]).T
             return Linear(np.array([x, (y - x * x) / 0.05]), slope, np.zeros(0), np.zeros((0, len(names))))
 
-        return Problem(lambda at: (linear(at).data, np.zeros(0)), linear)
+        return LeastSquaresProblem(lambda at: (linear(at).data, np.zeros(0)), linear)
 
 
 def test_a_bent_valley_is_followed_to_where_95_per_cent_end():
@@ -103,12 +103,12 @@ def test_a_bent_valley_is_followed_to_where_95_per_cent_end():
 
 def test_a_straight_valley_is_left_to_the_covariance():
     class Line(Banana):
-        def free(self, names) -> Problem:
+        def free(self, names) -> LeastSquaresProblem:
             def linear(at) -> Linear:
                 slope = np.array([[1.0, 1.0], [0.0, 20.0]])
                 return Linear(slope @ at, slope, np.zeros(0), np.zeros((0, 2)))
 
-            return Problem(lambda at: (linear(at).data, np.zeros(0)), linear)
+            return LeastSquaresProblem(lambda at: (linear(at).data, np.zeros(0)), linear)
 
     numbers = [Number("x", 0.1, -50.0, 50.0, spread=100.0), Number("y", 0.0, -50.0, 50.0, spread=100.0)]
     best = solve(Line().free(["x", "y"]), numbers)

@@ -9,7 +9,7 @@ import pytest
 from small_rigs import truth
 
 from mffit.fit.constraints import Envelope
-from mffit.fit.problem import Problem
+from mffit.fit.problem import FitProblem
 from mffit.measured import RadiusReading
 from mffit.points import make_points
 from mffit.rig import NO_FAULTS, Simulation
@@ -20,7 +20,7 @@ RADII = (RadiusReading(900.0, 0.2960, 2e-4, True), RadiusReading(2100.0, 0.2935,
 
 
 @pytest.fixture(scope="module")
-def problem() -> Problem:
+def problem() -> FitProblem:
     rng = np.random.default_rng(4)
     tyre = truth()
     points = make_points(
@@ -33,12 +33,16 @@ def problem() -> Problem:
     sigma_Fy, sigma_Mz = np.full(N, 6.0), np.full(N, 0.6)
     sigma_Fy[5] = np.inf
     simulation = Simulation(dict(tyre.values), NO_FAULTS)
-    return Problem(points, simulation, sigma_Fy, sigma_Mz, None, RADII, 6.0)
+    return FitProblem(points, simulation, {"Fy": sigma_Fy, "Mz": sigma_Mz}, None, RADII, 6.0)
+
+
+def in_a_row(by_channel) -> np.ndarray:
+    return np.concatenate([by_channel["Fy"], by_channel["Mz"]])
 
 
 def test_the_misfit_is_in_units_of_the_uncertainty(problem):
-    assert problem.misfit() == pytest.approx(np.zeros(2 * N), abs=1e-9)
-    off = problem.with_values({"F0_N": 12.0, "M0_Nm": -0.3}).misfit()
+    assert in_a_row(problem.misfit()) == pytest.approx(np.zeros(2 * N), abs=1e-9)
+    off = in_a_row(problem.with_values({"F0_N": 12.0, "M0_Nm": -0.3}).misfit())
     expected = np.concatenate([np.full(N, 2.0), np.full(N, -0.5)])
     expected[[5, N + 3]] = 0.0  # not used, not measured
     assert off == pytest.approx(expected)
@@ -86,6 +90,6 @@ def test_derivatives_are_the_differences_of_the_residuals(problem, name):
 
 def test_part_of_the_points_keeps_their_weights(problem):
     part = problem.select(np.array([5, 7]))
-    assert list(part.sigma_Fy) == [np.inf, 6.0]
+    assert list(part.sigma["Fy"]) == [np.inf, 6.0]
     assert len(part.points) == 2
     assert part.points.Fz[1] == problem.points.Fz[7]

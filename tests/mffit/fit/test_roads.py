@@ -9,10 +9,11 @@ import pytest
 from small_rigs import SAMPLE, disc, truth
 
 from mffit import config, points, virtual_rig
-from mffit.fit.files import GIVEN, decisions, file_names, make_files
-from mffit.fit.known import Known
+from mffit.fit.comments import file_comments
+from mffit.fit.files import decisions, file_names, make_files
+from mffit.fit.known import GIVEN, Known
 from mffit.fit.road import Road, inside, road_grid, weights
-from mffit.fit.wording import file_comments, ranges_sentence, sentences
+from mffit.fit.wording import file_sentences, ranges_sentence
 from tir.parameters import TABLE
 
 TESTED = {
@@ -159,7 +160,7 @@ def test_upright_both_files_are_equal_and_only_camber_terms_differ(files):
 
 def test_the_sentences_hold_the_figures(files):
     made, _ = files
-    said = " ".join(sentences(made, file_names("small", "turn-slip", True)))
+    said = " ".join(file_sentences(made, file_names("small", "turn-slip", True)))
     normal = made.by_use["normal"].straight
     assert f"to {normal['Fy'].weighted:.0f} N and {normal['Mz'].weighted:.1f} Nm rms" in said
     assert f"{made.stiffness_loss:.0%} less camber stiffness" in said

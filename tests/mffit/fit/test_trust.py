@@ -9,7 +9,7 @@ from small_rigs import FY, LOADS, MZ, SAMPLE, flat
 
 import mffit
 from mffit import virtual_rig
-from mffit.fit.staged import SHAPES
+from mffit.fit.start import ALTERNATIVE_STARTS
 
 
 @pytest.fixture(scope="module")
@@ -38,4 +38,4 @@ def test_it_says_first_that_it_is_not_to_be_trusted_and_where(rough):
 
 def test_it_tries_every_other_shape(rough):
     (said,) = (w for w in rough.fit.warnings if "started again" in w)
-    assert all(shape in said for shape in SHAPES)
+    assert all(shape in said for shape in ALTERNATIVE_STARTS)

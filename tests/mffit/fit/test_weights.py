@@ -5,16 +5,17 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from mffit.fit import weights
-from mffit.fit.weights import enlarged, standing_out
+from mffit.fit import constants, weights
+from mffit.fit.weights import enlarged, outlying
 
 
 def test_an_outlier_pulls_no_harder_the_further_it_lies():
     """Huber: with the uncertainty so enlarged the pull r / sigma^2 is that of the border for every residual beyond it."""
     residual = np.array([0.5, -3.9, 4.0, 8.0, -40.0, 400.0])
+    threshold = constants.HUBER_THRESHOLD
     for scale in (1.0, 2.5):
         pull = scale * residual / weights.huber(scale * residual, scale) ** 2
-        assert pull == pytest.approx(scale * np.clip(residual, -weights.OUTLIER, weights.OUTLIER))
+        assert pull == pytest.approx(scale * np.clip(residual, -threshold, threshold))
 
 
 def test_only_rare_residuals_of_pure_noise_are_outliers():
@@ -46,7 +47,7 @@ def test_uncertainties_are_the_stated_ones_else_a_hundredth_of_the_span():
 def test_noise_alone_stands_out_as_rarely_as_said():
     rng = np.random.default_rng(8)
     sweep = np.repeat(np.arange(20), 20)
-    alarms = sum(np.any(standing_out(rng.standard_normal(400), 1.0, sweep)) for _ in range(400))
+    alarms = sum(np.any(outlying(rng.standard_normal(400), 1.0, sweep)) for _ in range(400))
     assert alarms <= 12  # 4 expected at 1 %; 12 or more has a chance of one in a thousand
 
 
@@ -56,7 +57,7 @@ def test_planted_readings_are_found_and_nothing_else():
     residual = rng.standard_normal(400)
     planted = rng.permutation(400)[:8]
     residual[planted] += 15.0 * rng.choice([-1.0, 1.0], 8)
-    assert set(np.flatnonzero(standing_out(residual, 1.0, sweep))) == set(planted)
+    assert set(np.flatnonzero(outlying(residual, 1.0, sweep))) == set(planted)
 
 
 def test_a_stretch_that_the_model_misses_is_no_outlier():
@@ -72,11 +73,11 @@ def test_a_stretch_that_the_model_misses_is_no_outlier():
 def test_two_points_have_no_neighbours_to_judge_them():
     residual = np.array([0.3, -0.2, 0.1, 0.4, 60.0, -0.3])
     sweep = np.array([0, 0, 0, 0, 1, 1])
-    assert not np.any(standing_out(residual, 1.0, sweep))
+    assert not np.any(outlying(residual, 1.0, sweep))
 
 
 def test_unused_points_are_left_alone():
     residual = np.zeros(30)
     residual[::2] = np.random.default_rng(2).standard_normal(15)
     residual[10] = 50.0
-    assert list(np.flatnonzero(standing_out(residual, 1.0, np.zeros(30, int)))) == [10]
+    assert list(np.flatnonzero(outlying(residual, 1.0, np.zeros(30, int)))) == [10]
