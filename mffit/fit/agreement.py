@@ -52,7 +52,7 @@ def with_points(readings: Readings, points: Points) -> dict[str, Agreement]:
 
 
 def with_odd_part(values: Mapping[str, Any], points: Points, parts: Parts) -> dict[str, Agreement]:
-    """By channel, the agreement of a file for turn slip off with the odd part, from which the split removes the odd shift terms."""
+    """By channel, the agreement of a file for turn slip off with the odd part, which holds no odd shift terms."""
     straight = points.replace(
         alpha=parts.alpha_odd, phi_t=np.zeros(len(points)), direction=np.ones_like(points.direction)
     )

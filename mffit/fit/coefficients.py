@@ -10,6 +10,7 @@ from mffit.fit.files import Files
 from mffit.fit.fitted import Fitted
 from mffit.fit.known import Known
 from mffit.least_squares import touches
+from tir import Quantity
 from tir.parameters import BY_NAME, TABLE
 
 
@@ -30,7 +31,7 @@ class Coefficient:
 
 
 def coefficient_records(
-    known: Known, fitted: Fitted, fitted_after: Mapping[str, float]
+    known: Known, fitted: Fitted, fitted_after: Mapping[str, Quantity]
 ) -> dict[str, Coefficient]:
     """The record of every number of the fitted model.
 
@@ -38,9 +39,11 @@ def coefficient_records(
     ----------
     known : every value after the fit
     fitted : the fit
-    fitted_after : standard uncertainty of coefficients that were fitted after the others
+    fitted_after : coefficients that were fitted after the others
     """
-    stderr = {name: fitted.posterior.stderr[name] for name in fitted.values} | dict(fitted_after)
+    stderr = {name: fitted.posterior.stderr[name] for name in fitted.values} | {
+        n: q.u for n, q in fitted_after.items()
+    }
     out = {}
     for row in TABLE:
         if row.kind != "number":

@@ -31,7 +31,7 @@ WORDS = {
 def file_comments(
     files: Files, origin: Mapping[str, str], coefficients: Mapping[str, Coefficient]
 ) -> dict[str, dict[str, str]]:
-    """By use of each file, the comment of every value: its origin, its standard uncertainty, its meaning if it is no coefficient."""
+    """By use of each file, the comment of every value: origin, standard uncertainty, meaning if it is not a coefficient."""
     comments = {row.name: _comment(row, origin[row.name], files.tested) for row in TABLE}
     comments |= {name: _data_comment(c) for name, c in coefficients.items() if c.status in FROM_DATA}
     return {

@@ -88,7 +88,10 @@ def _missing(row: Parameter, seen: Design) -> str:
     if row.channel == "Mz" and not seen.moment:
         return "Mz was not measured"
     if row.shift and not seen.shifts:
-        return "backward runs, flipped mounts or runs on the other side of the disc are missing, which separate shifts from turn slip"
+        return (
+            "backward runs, flipped mounts or runs on the other side of the disc are missing, "
+            "which separate shifts from turn slip"
+        )
     if row.odd and seen.symmetric:
         return "the tyre is declared symmetric"
     return next((reason for need in row.needs if (reason := _unmet(need, seen))), "")

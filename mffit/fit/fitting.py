@@ -6,6 +6,8 @@ import time
 from collections.abc import Mapping
 from typing import Any
 
+import numpy as np
+
 from mffit.config import axis_signs
 from mffit.config.declared import as_declared
 from mffit.fit import agreement
@@ -65,15 +67,14 @@ def fit(
     problem = fit_problem(config, points, measured, known.values)
     fitted, doubts = _fitted_and_judged(config, problem, start, plan, progress)
     readings = fitted.simulation.readings(points)
-    outlying = outliers(points, tuple(problem.sigma.values()), tuple(fitted.problem.sigma.values()), readings)
+    outlying = outliers(points, _sigma(problem), _sigma(fitted.problem), readings)
 
     progress("deriving the files and judging them")
     known = known_after_fit(known, fitted.values, fitted.regularised, base)
     rolling = rolling_resistance(known.values, points)
-    known = known.deciding(decisions(config)).having(
-        {n: found.value for n, found in rolling.items()}, "fitted"
-    )
-    coefficients = coefficient_records(known, fitted, {n: found.u for n, found in rolling.items()})
+    known = known.having({name: QSY1.value for name, QSY1 in rolling.items()}, "fitted")
+    known = known.deciding(decisions(config))
+    coefficients = coefficient_records(known, fitted, rolling)
     files = make_files(config, known, points, base, dict(measured.by_load("C_gamma")))
     files = files.annotated(file_comments(files, known.origin, coefficients))
     use = config.spin.exact if config.rig.on_disc else "normal"
@@ -115,7 +116,7 @@ def _fitted_and_judged(
             return judge(
                 problem.points,
                 fitted,
-                tuple(problem.sigma.values()),
+                _sigma(problem),
                 axis_signs(config),
                 lambda rows: fit_staged(problem.select(rows), start, plan, silent, restarts=False),
                 only_known=only_known,
@@ -125,6 +126,11 @@ def _fitted_and_judged(
         problem, start, plan, progress, before_restarts=lambda first: judged(first, only_known=True)
     )
     return fitted, judged(fitted)
+
+
+def _sigma(problem: FitProblem) -> tuple[np.ndarray, np.ndarray]:
+    """Uncertainty of Fy and Mz (n,) that the problem uses as weight."""
+    return problem.sigma["Fy"], problem.sigma["Mz"]
 
 
 def _epsilon_gamma(values: Mapping[str, Any], points: Points, measured: Any) -> float | None:

@@ -11,6 +11,7 @@ import numpy as np
 from mffit.fit import constants
 from mffit.fit.imitation import forces
 from mffit.fit.road import Road, inside, weights
+from mffit.fit.virtual_zero import BESIDE_ZERO
 from mffit.scatter import rms
 from tir import Tyre
 from tir.derivatives import gradient, traced
@@ -80,6 +81,6 @@ class Reference(NamedTuple):
 
 def camber_stiffness(tyre: Tyre, load: float, *, turn_slip: bool) -> float:
     """Slope of Fy over camber at zero on a straight path [N/rad]."""
-    camber = traced({"gamma": 0.0})
+    camber = traced({"gamma": np.array(BESIDE_ZERO)})
     (Fy,) = outputs_of(("Fy",), tyre.p, {"Fz": load, **camber}, turn_slip=turn_slip)
-    return float(gradient(Fy, list(camber.values()))[0])
+    return float(gradient(Fy, list(camber.values())).mean())

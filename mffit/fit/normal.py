@@ -69,7 +69,8 @@ def derive_both(
     """Coefficients of one file for turn slip on and off, where they differ from the fitted model.
 
     Three goals have equal weight: the fitted model on the disc and on a straight path, both reproduced with turn slip, and on a
-    straight path reproduced without. Camber and turn-slip coefficients are free; the upright wheel on a straight path stays exact.
+    straight path reproduced without. Camber and turn-slip coefficients are free, so that the upright wheel on a straight path
+    stays exact.
 
     Parameters
     ----------

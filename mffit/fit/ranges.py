@@ -62,11 +62,11 @@ def plausible_ranges(
     """The ranges to write: as far beyond the tested ones as the model stays plausible.
 
     Simulations hold their inputs to the ranges of the file or fade forces out beyond them: with the tested ranges, forces would
-    stop following the sideslip beyond 8 degrees, for example. Wished are a tenth of the smallest and one and a half of the largest
-    load, 20 degrees of sideslip, and a fifth of the pressure beyond the tested ones. The camber range grows by half, up to 45
+    stop following the sideslip at 8 degrees, for example. Wished are a tenth of the smallest and one and a half of the largest
+    load, 20 degrees of sideslip, and pressures a fifth beyond the tested ones. The camber range grows by half, up to 45
     degrees; beyond, the quadratic term of the curvature would cost more inside the range than it gains outside. Each end
-    goes as far as the limits of :mod:`mffit.fit.constraints` hold and the side force neither reverses nor falls below half its
-    peak.
+    goes as far as the limits of :mod:`mffit.fit.constraints` hold and the side force neither reverses nor falls below half
+    its peak.
 
     Parameters
     ----------

@@ -52,8 +52,9 @@ def starting_values(values: Mapping[str, Any], points: Points, measured: Measure
         start |= _cornering_stiffness_terms(start, C_alpha)
     if C_gamma:
         # With turn slip on, camber acts through the rolling spin: the force is that of K_yg0 times R0 / r_e.
-        curved = measured.r_e and np.any(points.phi_t)
-        rolling = measured.r_e.value / start["UNLOADED_RADIUS"] if curved else 1.0
+        rolling = 1.0
+        if measured.r_e is not None and np.any(points.phi_t):
+            rolling = measured.r_e.value / start["UNLOADED_RADIUS"]
         C_gamma = {load: rolling * value for load, value in C_gamma.items()}
         start |= camber_stiffness_terms(start, C_gamma, float(points.p[main_pressure(points)].mean()))
     return start
@@ -95,7 +96,8 @@ def _cornering_stiffness_terms(
     if len(load) == 1:
         shape = np.sin(values["PKY4"] * np.arctan(load[0] / values["PKY2"]))
         return {"PKY1": float(stiffness[0] / shape)}
-    PKY2 = np.linspace(*constants.LOAD_OF_PEAK_STIFFNESS, constants.LOAD_OF_PEAK_STIFFNESS_STEPS)
+    lowest, highest = constants.LOAD_OF_PEAK_STIFFNESS
+    PKY2 = np.linspace(lowest, highest, constants.LOAD_OF_PEAK_STIFFNESS_STEPS)
     shapes = np.sin(values["PKY4"] * np.arctan(load / PKY2[:, None]))
     PKY1 = (shapes @ stiffness) / np.sum(shapes**2, axis=1)
     best = int(np.sum((shapes * PKY1[:, None] - stiffness) ** 2, axis=1).argmin())

@@ -11,6 +11,9 @@ import numpy as np
 from mffit.points import Points, main_path
 from mffit.rig import Simulation
 
+BESIDE_ZERO = (-1e-9, 1e-9)
+"""Camber angles [rad] on either side of zero, where PKY3 |camber| gives the side force a kink: a slope is the mean of both."""
+
 
 def zero_points(points: Points, load: float) -> Points:
     """The condition (0, 0) at the load [N], as it was run: forwards, and backwards too where the data have backward runs."""
@@ -36,8 +39,9 @@ def epsilon_gamma_of_model(values: Mapping[str, Any], points: Points, load: floa
     load : at which the turn-slip force was measured [N]
     r_e : measured effective radius [m]
     """
-    zero = zero_points(points, load)
-    readings, slopes = Simulation(values).sensitivities(zero, ["gamma_0_deg"])
-    C_phit = float(readings.Fy.mean()) / float(zero.phi_t[0])
-    C_gamma = math.degrees(float(slopes.Fy[0, 0]))  # per degree to per radian; forwards
+    tyre, zero = Simulation(values), zero_points(points, load)
+    C_phit = float(tyre.readings(zero).Fy.mean()) / float(zero.phi_t[0])
+    both_sides = zero.select(np.zeros(2, int)).replace(gamma=np.array(BESIDE_ZERO))  # forwards
+    slopes = tyre.sensitivities(both_sides, ["gamma_0_deg"])[1].Fy
+    C_gamma = math.degrees(float(slopes.mean()))  # per degree to per radian
     return 1.0 + r_e * C_gamma / C_phit
