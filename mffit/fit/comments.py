@@ -6,7 +6,8 @@ from collections.abc import Mapping
 
 from mffit.fit import constants
 from mffit.fit.coefficients import Coefficient
-from mffit.fit.files import DECIDED, Files
+from mffit.fit.files import Files
+from mffit.fit.known import DECIDED
 from mffit.tested import words_on_tested
 from tir.parameters import TABLE, Parameter
 

@@ -69,12 +69,12 @@ def _rows(p: Any, envelope: Envelope) -> list[Any]:
 
 def _grid(envelope: Envelope) -> list[np.ndarray]:
     """Load, camber and pressure of the conditions at which the limits are tested."""
-    Fz = np.linspace(*envelope.Fz, constants.LIMIT_GRID_LOADS)
-    gamma = (
-        np.linspace(-envelope.gamma, envelope.gamma, constants.LIMIT_GRID_CAMBERS)
-        if envelope.gamma > 0
-        else np.zeros(1)
-    )
+    loads, cambers, pressures = (int(n) for n in constants.LIMIT_GRID)
     low, high = envelope.pressure
-    pressure = np.linspace(low, high, constants.LIMIT_GRID_PRESSURES) if high > low else np.array([low])
-    return list(np.meshgrid(Fz, gamma, pressure))
+    return list(
+        np.meshgrid(
+            np.linspace(*envelope.Fz, loads),
+            np.linspace(-envelope.gamma, envelope.gamma, cambers if envelope.gamma > 0 else 1) + 0.0,
+            np.linspace(low, high, pressures if high > low else 1),
+        )
+    )

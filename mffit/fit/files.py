@@ -7,17 +7,14 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from mffit.fit import constants
-from mffit.fit.known import GIVEN, Known
+from mffit.fit.known import Known
 from mffit.fit.misfit import FileFigures, Reference
-from mffit.fit.normal import derive_both, derive_normal
-from mffit.fit.ranges import NAMES, plausible_ranges, tested_ranges
+from mffit.fit.normal import derive
+from mffit.fit.ranges import plausible_ranges, tested_ranges
 from mffit.fit.road import road_grid
 from mffit.fit.start import camber_stiffness_terms
 from mffit.points import Points, main_path, main_pressure
 from tir import Tyre
-
-DECIDED = ("TYRESIDE", "USE_MODE", "FITTYP")
-"""Values that the build itself decides."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -98,10 +95,11 @@ def _changed(
         return {"normal": {}}
     symmetric = config.tyre.side == "symmetric"
     terms = camber_stiffness_terms(model, C_gamma, float(points.p[main_pressure(points)].mean()))
-    changed = {"turn-slip": {}, "normal": derive_normal(model, tested, written, terms, symmetric=symmetric)}
+    changed = {"turn-slip": {}, "normal": derive(model, tested, written, terms, symmetric=symmetric)}
     if config.spin.exact == "both":
-        phi_t = main_path(points)
-        changed["both"] = derive_both(model, tested, written, terms, phi_t, symmetric=symmetric)
+        changed["both"] = derive(
+            model, tested, written, terms, both_on=main_path(points), symmetric=symmetric
+        )
     return changed
 
 
@@ -121,12 +119,6 @@ def use_mode(values: Mapping[str, Any], use: str) -> int:
     """
     contact = 200 if float(values["MC_CONTOUR_A"]) > 0.0 else 100
     return contact + 20 + (4 if use == "normal" else 5)
-
-
-def decisions(config: Any) -> dict[str, str]:
-    """Origin of the values that the configuration or the build itself decides."""
-    given = [name for name, key in GIVEN.items() if getattr(config.tyre, key) is not None]
-    return {**dict.fromkeys(NAMES, "range"), **dict.fromkeys((*DECIDED, *given), "given")}
 
 
 def file_names(name: str, exact: str, on_disc: bool) -> dict[str, str]:

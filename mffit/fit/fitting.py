@@ -14,7 +14,7 @@ from mffit.fit import agreement
 from mffit.fit.coefficients import coefficient_records, of_file
 from mffit.fit.comments import file_comments
 from mffit.fit.doubts import Doubt
-from mffit.fit.files import decisions, make_files
+from mffit.fit.files import make_files
 from mffit.fit.fit_warnings import distrust, warnings
 from mffit.fit.fitted import Fitted
 from mffit.fit.judgement import judge
@@ -73,7 +73,6 @@ def fit(
     known = known_after_fit(known, fitted.values, fitted.regularised, base)
     rolling = rolling_resistance(known.values, points)
     known = known.having({name: QSY1.value for name, QSY1 in rolling.items()}, "fitted")
-    known = known.deciding(decisions(config))
     coefficients = coefficient_records(known, fitted, rolling)
     files = make_files(config, known, points, base, dict(measured.by_load("C_gamma")))
     files = files.annotated(file_comments(files, known.origin, coefficients))

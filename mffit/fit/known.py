@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import dataclasses
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
@@ -17,18 +16,8 @@ from mffit.rig import reference_speed
 from tir import Tyre
 from tir.parameters import BY_NAME, TABLE
 
-GIVEN = {
-    "FNOMIN": "nominal_load",
-    "NOMPRES": "nominal_pressure",
-    "INFLPRES": "nominal_pressure",
-    "LONGVL": "nominal_speed",
-    "UNLOADED_RADIUS": "unloaded_radius",
-    "WIDTH": "width",
-    "RIM_RADIUS": "rim_radius",
-}
-"""Values of the property file that ``[tyre]`` of tyre.toml states, by its keys."""
-IN_KPA = ("NOMPRES", "INFLPRES")
-"""Those of them that tyre.toml states in kPa."""
+DECIDED = ("TYRESIDE", "USE_MODE", "FITTYP")
+"""Values that the build itself decides."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,10 +31,6 @@ class Known:
         """The same with some values replaced; without ``origin`` they keep theirs."""
         words = dict.fromkeys(found, origin) if origin else {}
         return Known({**self.values, **found}, {**self.origin, **words})
-
-    def deciding(self, origin: Mapping[str, str]) -> Known:
-        """The same values with another origin for some."""
-        return dataclasses.replace(self, origin={**self.origin, **origin})
 
 
 def known_before_fit(
@@ -61,10 +46,13 @@ def known_before_fit(
     base : property file with the values that are not fitted, if there is one
     fleet : priors that a fleet of similar tyres gives
     """
-    stated = base.present if base is not None else frozenset()
+    template, stated = (base, base.present) if base is not None else (Tyre.from_values({}), frozenset())
     known = Known(
-        _base_values(config, base), {row.name: "base" if row.name in stated else "default" for row in TABLE}
+        values=dict(template.values),
+        origin={row.name: "base" if row.name in stated else "default" for row in TABLE},
     )
+    known = known.having({name: known.values[name] for name in DECIDED}, "given")
+    known = known.having(given_values(config.tyre), "given")
     if base is None:  # already here, because the vertical terms among them decide the rolling radius
         known = known.having(estimates(known.values), "estimate")
     known = known.having({name: prior.expected for name, prior in fleet.items()}, "fleet")
@@ -102,14 +90,17 @@ def known_after_fit(
     return known
 
 
-def _base_values(config: Any, base: Tyre | None) -> dict[str, Any]:
-    """The base file's values, or the table's defaults, with what tyre.toml states of the tyre."""
-    values = dict((base if base is not None else Tyre.from_values({})).values)
-    for name, key in GIVEN.items():
-        stated = getattr(config.tyre, key)
-        if stated is not None:
-            values[name] = stated * 1e3 if name in IN_KPA else stated
-    if config.tyre.side:
-        values["TYRESIDE"] = config.tyre.side.upper()
-    values["FITTYP"] = 62
-    return values
+def given_values(tyre: Any) -> dict[str, Any]:
+    """Values that ``[tyre]`` of tyre.toml states, in the units of :mod:`tir`, and the one that marks MF 6.2."""
+    given = {
+        "FNOMIN": tyre.nominal_load,
+        "NOMPRES": tyre.nominal_pressure * 1e3,
+        "INFLPRES": tyre.nominal_pressure * 1e3,
+        "LONGVL": tyre.nominal_speed,
+        "UNLOADED_RADIUS": tyre.unloaded_radius,
+        "WIDTH": tyre.width,
+        "RIM_RADIUS": tyre.rim_radius,
+        "TYRESIDE": tyre.side.upper() if tyre.side else None,
+        "FITTYP": 62,
+    }
+    return {name: value for name, value in given.items() if value is not None}

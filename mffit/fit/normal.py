@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -13,7 +13,6 @@ from mffit.fit.ranges import envelope
 from mffit.fit.road import Road, camber_lines, road_grid, weights
 from mffit.fit.stages import ODD_TERMS, STAGES
 from mffit.least_squares import Number
-from mffit.quantities import CHANNELS
 from tir.parameters import BY_NAME
 
 CAMBER_STIFFNESS = ("PKY6", "PKY7")
@@ -29,95 +28,40 @@ STARTS: Mapping[str, tuple[Mapping[str, float], ...]] = {
 """By channel, changes of the model's values from which the search starts; the best end is kept."""
 
 
-def derive_normal(
+def derive(
     values: Mapping[str, Any],
     tested: Mapping[str, float],
     written: Mapping[str, float],
     measured: Mapping[str, float],
     *,
+    both_on: float | None = None,
     symmetric: bool = False,
 ) -> dict[str, float]:
-    """Coefficients of the file for turn slip off, where they differ from the fitted model.
+    """Coefficients of a derived file, where they differ from the fitted model.
 
-    The goal is the fitted model on a straight path, turn slip on, over the written ranges. Only coefficients that act through
-    camber are free, so that the upright wheel stays exact.
+    The goal of the file for turn slip off is the fitted model on a straight path over the written ranges. The file for both
+    uses has three goals of equal weight: the same, the model on a straight path reproduced with turn slip, and the model
+    on the disc. Only coefficients that act through camber or spin are free, so that the upright wheel on a straight path stays
+    exact. Fy comes first, because its shifts enter Mz. The search starts from several values on a coarse grid, and the best
+    end is refined on the fine grid.
 
     Parameters
     ----------
     values : the fitted model, meant for turn slip on
     tested, written : ranges of the data and of the file, by name of the file's limits
     measured : PKY6 and PKY7 of the measured camber stiffness, from :func:`mffit.fit.start.camber_stiffness_terms`; may be empty
+    both_on : for the file for both uses, curvature of the disc's path [1/m]; None for the file for turn slip off
     symmetric : hold the terms that a symmetric tyre does not have
     """
-
-    def goals(road: Road) -> tuple[Goal, ...]:
-        return (goal(values, road, weights(road, tested), turn_slip=False),)
-
-    free = {"Fy": CAMBER_FORCE, "Mz": CAMBER_MOMENT}
-    return _derived(values, tested, written, measured, goals, free, symmetric=symmetric)
-
-
-def derive_both(
-    values: Mapping[str, Any],
-    tested: Mapping[str, float],
-    written: Mapping[str, float],
-    measured: Mapping[str, float],
-    phi_t: float,
-    *,
-    symmetric: bool = False,
-) -> dict[str, float]:
-    """Coefficients of one file for turn slip on and off, where they differ from the fitted model.
-
-    Three goals have equal weight: the fitted model on the disc and on a straight path, both reproduced with turn slip, and on a
-    straight path reproduced without. Camber and turn-slip coefficients are free, so that the upright wheel on a straight path
-    stays exact.
-
-    Parameters
-    ----------
-    phi_t : curvature of the disc's path [1/m]
-    others : as of :func:`derive_normal`
-    """
-
-    def goals(road: Road) -> tuple[Goal, ...]:
-        weight = weights(road, tested)
-        return (
-            goal(values, road, weight, turn_slip=True, phi_t=phi_t),
-            goal(values, road, weight, turn_slip=True),
-            goal(values, road, weight, turn_slip=False),
-        )
-
-    spin = {channel: [n for n in SPIN if BY_NAME[n].channel == channel] for channel in CHANNELS}
-    free = {"Fy": (*CAMBER_FORCE, *spin["Fy"]), "Mz": (*CAMBER_MOMENT, *spin["Mz"])}
-    return _derived(values, tested, written, measured, goals, free, symmetric=symmetric)
-
-
-def _derived(
-    values: Mapping[str, Any],
-    tested: Mapping[str, float],
-    written: Mapping[str, float],
-    measured: Mapping[str, float],
-    goals: Callable[[Road], tuple[Goal, ...]],
-    free: Mapping[str, Sequence[str]],
-    *,
-    symmetric: bool,
-) -> dict[str, float]:
-    """The free values that come nearest to the goals, where they differ from the model's.
-
-    Fy comes first, because its shifts enter Mz. The search starts from several values on a coarse grid, and the best end is
-    refined on the fine grid.
-    """
-    nominal = float(values["FNOMIN"])
-    coarse, fine = (road_grid(tested, written, nominal, dense=dense) for dense in (False, True))
+    roads = [road_grid(tested, written, float(values["FNOMIN"]), dense=dense) for dense in (False, True)]
+    coarse, fine = (_goals(values, road, tested, both_on) for road in roads)
+    free = _free(both=both_on is not None, symmetric=symmetric)
     found = dict(values)
     for channel, names in free.items():
-        moving = [n for n in names if not (symmetric and n in ODD_TERMS)]
-        lines = _lines(values, written) if channel == "Fy" else None
-        on_coarse, on_fine = (
-            Imitation(channel, dict(found), goals(road), envelope(written), lines) for road in (coarse, fine)
-        )
-        begin = {name: measured.get(name, float(values[name])) for name in moving}
+        limits = (envelope(written), _lines(values, written) if channel == "Fy" else None)
+        begin = {name: measured.get(name, float(values[name])) for name in names}
         ends = [
-            on_coarse.solve(
+            Imitation(channel, found, coarse, *limits).solve(
                 _numbers({**begin, **start}, measured),
                 steps=constants.COARSE_GRID_STEPS,
                 tolerance=constants.COARSE_GRID_TOLERANCE,
@@ -125,12 +69,37 @@ def _derived(
             for start in STARTS[channel]
         ]
         best = min(ends, key=lambda end: end.cost)
-        found |= on_fine.solve(
+        refined = Imitation(channel, found, fine, *limits).solve(
             _numbers(best.values, measured),
             steps=constants.FINE_GRID_STEPS,
             tolerance=constants.REFIT_TOLERANCE,
-        ).values
+        )
+        found = {**found, **refined.values}
     return {name: found[name] for names in free.values() for name in names if found[name] != values[name]}
+
+
+def _goals(
+    values: Mapping[str, Any], road: Road, tested: Mapping[str, float], both_on: float | None
+) -> tuple[Goal, ...]:
+    weight = weights(road, tested)
+    without = goal(values, road, weight, turn_slip=False)
+    if both_on is None:
+        return (without,)
+    return (
+        goal(values, road, weight, turn_slip=True, phi_t=both_on),
+        goal(values, road, weight, turn_slip=True),
+        without,
+    )
+
+
+def _free(*, both: bool, symmetric: bool) -> dict[str, list[str]]:
+    """By channel, the free coefficients."""
+    absent = ODD_TERMS if symmetric else frozenset()
+    out = {}
+    for channel, camber in (("Fy", CAMBER_FORCE), ("Mz", CAMBER_MOMENT)):
+        spin = [name for name in SPIN if both and BY_NAME[name].channel == channel]
+        out[channel] = [name for name in (*camber, *spin) if name not in absent]
+    return out
 
 
 def _lines(values: Mapping[str, Any], written: Mapping[str, float]) -> Lines:

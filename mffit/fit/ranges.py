@@ -116,11 +116,12 @@ def _worst_violation(model: Any, ranges: Mapping[str, float]) -> float:
 def _keeps_its_force(model: Any, ranges: Mapping[str, float], tested_alpha: float, turn_slip: bool) -> bool:
     """Whether the side force opposes large sideslip up to the end of the range, at each load, upright and cambered."""
     begin = min(tested_alpha, constants.REMAINING_FORCE_ALPHA)
-    slip = np.linspace(begin, ranges["ALPMAX"], constants.REMAINING_FORCE_ANGLES)
+    angles, loads = (int(n) for n in constants.REMAINING_FORCE_GRID)
+    slip = np.linspace(begin, ranges["ALPMAX"], angles)
     alpha, gamma, Fz = np.meshgrid(
         np.concatenate([-slip[::-1], slip]),
         np.array(constants.REMAINING_FORCE_CAMBERS) * ranges["CAMMAX"],
-        np.linspace(ranges["FZMIN"], ranges["FZMAX"], constants.REMAINING_FORCE_LOADS),
+        np.linspace(ranges["FZMIN"], ranges["FZMAX"], loads),
         indexing="ij",
     )
     Fy = evaluate(model, Fz, alpha, gamma, turn_slip=turn_slip)[0].Fy

@@ -52,9 +52,9 @@ def road_grid(
 
 def camber_lines(written: Mapping[str, float]) -> tuple[Road, int]:
     """Lines of camber without sideslip over the written range, one per load; and the number of conditions of each."""
-    n = constants.CAMBER_LINE_ANGLES
+    loads, n = (int(k) for k in constants.CAMBER_LINE_GRID)
     Fz, gamma = np.meshgrid(
-        np.linspace(written["FZMIN"], written["FZMAX"], constants.CAMBER_LINE_LOADS),
+        np.linspace(written["FZMIN"], written["FZMAX"], loads),
         np.linspace(-written["CAMMAX"], written["CAMMAX"], n),
         indexing="ij",
     )

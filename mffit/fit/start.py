@@ -96,8 +96,8 @@ def _cornering_stiffness_terms(
     if len(load) == 1:
         shape = np.sin(values["PKY4"] * np.arctan(load[0] / values["PKY2"]))
         return {"PKY1": float(stiffness[0] / shape)}
-    lowest, highest = constants.LOAD_OF_PEAK_STIFFNESS
-    PKY2 = np.linspace(lowest, highest, constants.LOAD_OF_PEAK_STIFFNESS_STEPS)
+    lowest, highest = constants.PKY2_STARTS
+    PKY2 = np.linspace(lowest, highest, constants.PKY2_START_COUNT)
     shapes = np.sin(values["PKY4"] * np.arctan(load / PKY2[:, None]))
     PKY1 = (shapes @ stiffness) / np.sum(shapes**2, axis=1)
     best = int(np.sum((shapes * PKY1[:, None] - stiffness) ** 2, axis=1).argmin())

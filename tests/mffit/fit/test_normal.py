@@ -15,7 +15,7 @@ from mffit.diagnosis.notes import ModelFittedFirst
 from mffit.fit.comments import whole_words
 from mffit.fit.files import file_names, use_mode
 from mffit.fit.imitation import forces
-from mffit.fit.normal import derive_both, derive_normal
+from mffit.fit.normal import derive
 from mffit.pipeline.diagnosing import chosen_model
 from mffit.pipeline.provenance import use_of
 from mffit.results import as_json
@@ -178,8 +178,8 @@ def test_one_file_for_both_uses_is_better_than_either_in_the_other_ones_use(samp
     values, tested = dict(truth.values), normal_study.tested(truth)
     written = {**tested}
     terms = {name: values[name] for name in ("PKY6", "PKY7")}
-    both = {**values, **derive_both(values, tested, written, terms, -1 / 1.323)}
-    normal = {**values, **derive_normal(values, tested, written, terms)}
+    both = {**values, **derive(values, tested, written, terms, both_on=-1 / 1.323)}
+    normal = {**values, **derive(values, tested, written, terms)}
     road = normal_study.box(values["FNOMIN"], values["NOMPRES"])
 
     def misfit(file, *, turn_slip, phi_t=0.0):

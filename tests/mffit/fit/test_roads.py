@@ -9,9 +9,10 @@ import pytest
 from small_rigs import SAMPLE, disc, truth
 
 from mffit import config, points, virtual_rig
+from mffit.fit import ranges
 from mffit.fit.comments import file_comments
-from mffit.fit.files import decisions, file_names, make_files
-from mffit.fit.known import GIVEN, Known
+from mffit.fit.files import file_names, make_files
+from mffit.fit.known import Known, given_values
 from mffit.fit.road import Road, inside, road_grid, weights
 from mffit.fit.wording import file_sentences, ranges_sentence
 from tir.parameters import TABLE
@@ -77,7 +78,8 @@ def files(tmp_path_factory):
     virtual_rig.simulate(virtual_rig.load_plan(disc(), folder=SAMPLE), folder, seed=3)
     settings = config.load(folder / "tyre.toml")
     loaded, _ = points.load(settings)
-    known = Known(truth().values, {row.name: "base" for row in TABLE}).deciding(decisions(settings))
+    known = Known(truth().values, {row.name: "base" for row in TABLE})
+    known = known.having(ranges.covered_ranges(loaded), "range").having(given_values(settings.tyre), "given")
     made = make_files(settings, known, loaded, truth(), {})
     return made.annotated(file_comments(made, known.origin, {})), known.origin
 
@@ -139,7 +141,8 @@ def test_every_value_says_where_it_is_from(files):
         assert comments["FZMAX"] == "estimate, checked plausible, tested to 2100 N"
         assert comments["FNOMIN"].startswith("given in tyre.toml")
         assert comments["USE_MODE"].startswith("given by this build")
-    assert {status[name] for name in GIVEN} == {"given"}
+    given = ("FNOMIN", "NOMPRES", "INFLPRES", "LONGVL", "UNLOADED_RADIUS", "WIDTH", "RIM_RADIUS")
+    assert {status[name] for name in given} == {"given"}
     assert made.changed
     assert (
         made.by_use["normal"].tyre.status[made.changed["normal"][0]]
