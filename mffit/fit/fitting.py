@@ -1,4 +1,4 @@
-"""From points and direct measurements to the property files: one screen of calls."""
+"""``fit``: from points and direct measurements to the property files."""
 
 from __future__ import annotations
 
@@ -69,7 +69,7 @@ def fit(
     readings = fitted.simulation.readings(points)
     outlying = outliers(points, _sigma(problem), _sigma(fitted.problem), readings)
 
-    progress("deriving the files and judging them")
+    progress("deriving the property files")
     known = known_after_fit(known, fitted.values, fitted.regularised, base)
     rolling = rolling_resistance(known.values, points)
     known = known.having({name: QSY1.value for name, QSY1 in rolling.items()}, "fitted")
@@ -110,7 +110,7 @@ def _fitted_and_judged(
     """The fit to all points, and the sweeps that contradict the others; one beyond plausibility ends the build."""
 
     def judged(fitted: Fitted, *, only_known: bool = False) -> tuple[Doubt, ...]:
-        progress("judging every sweep by all others")
+        progress("predicting each sweep from the others")
         with as_declared(config):
             return judge(
                 problem.points,

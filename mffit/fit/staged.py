@@ -130,6 +130,6 @@ def _require_enough_points(points: Points, free: Sequence[str]) -> None:
         available = int(np.sum(np.isfinite(values)))
         if needed and available <= needed:
             raise InputError(
-                f"{available} points of {channel} cannot determine the {needed} coefficients that these sweeps call "
-                "for: add points (more angles per sweep), or sweeps at fewer loads, cambers and pressures"
+                f"{available} points of {channel} cannot determine the {needed} coefficients that these sweeps "
+                "free: add points (more angles per sweep), or sweeps at fewer loads, cambers and pressures"
             )

@@ -1,4 +1,4 @@
-"""The one least-squares against answers that are known in closed form, and against scipy."""
+"""The least-squares solver against answers in closed form and against scipy."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ DATA = A @ TRUE + 0.1 * RNG.normal(size=30)
 
 
 def linear_problem(limit: float = np.inf) -> LeastSquaresProblem:
-    """A straight line in three numbers, the first of which may be limited with a heavy penalty."""
+    """A problem that is linear in three numbers, with a limit of the first one as a steep penalty."""
 
     def limits(x):
         return np.array([1e4 * max(x[0] - limit, 0.0)])
@@ -47,7 +47,7 @@ def test_a_prior_counts_as_one_more_reading():
     assert found.covariance == pytest.approx(np.linalg.inv(rows.T @ rows), rel=1e-9)
 
 
-def test_a_bound_holds_and_is_said():
+def test_a_bound_holds_and_is_reported():
     found = solve(linear_problem(), numbers(a={"lower": -3.0, "upper": 0.4}), tolerance=1e-12)
     bounded = least_squares(
         lambda x: A @ x - DATA, np.zeros(3), bounds=([-3, -9, -9], [0.4, 9, 9]), xtol=1e-14
@@ -56,7 +56,7 @@ def test_a_bound_holds_and_is_said():
     assert list(found.values.values()) == pytest.approx(bounded.x, abs=1e-5)
 
 
-def test_a_limit_holds_is_said_and_is_no_information():
+def test_a_limit_holds_is_reported_and_does_not_enter_the_covariance():
     found = solve(linear_problem(limit=0.4), numbers(), tolerance=1e-12)
     assert found.values["a"] == pytest.approx(0.4, abs=1e-3)
     assert found.at_limit == {"a"}

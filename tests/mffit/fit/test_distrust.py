@@ -1,4 +1,4 @@
-"""A file whose model says next to nothing of a channel is not to be trusted, whatever noise is stated or not."""
+"""A file whose model explains little of a channel is not to be trusted, with or without stated noise."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ def told(Mz: np.ndarray, model: np.ndarray) -> tuple[str, ...]:
     return distrust(FITTED, points, SimpleNamespace(Fy=Fy, Mz=model))
 
 
-def test_a_moment_that_the_model_does_not_follow_is_told_with_its_share():
+def test_a_moment_that_the_model_does_not_explain_is_stated_with_its_share():
     trail = 30.0 * np.sin(30.0 * ALPHA)
     assert told(trail + RNG.normal(0.0, 2.0, 40), trail) == ()
     (said,) = told(trail + RNG.normal(0.0, 90.0, 40), trail)
@@ -28,5 +28,5 @@ def test_a_moment_that_the_model_does_not_follow_is_told_with_its_share():
     assert "of the variance of Mz" in said
 
 
-def test_a_channel_that_was_not_measured_is_no_reason():
+def test_a_channel_that_was_not_measured_does_not_count():
     assert told(np.full(40, np.nan), np.zeros(40)) == ()

@@ -1,4 +1,4 @@
-"""What a fit leaves uncertain: bands, draws and bent valleys, against finite differences, counting and a known banana."""
+"""Uncertainty of a fit: bands, draws and bent valleys, against finite differences, counting and a banana in closed form."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ def fitted(tmp_path_factory):
     return mffit.build(folder / "tyre.toml").fit
 
 
-def test_the_band_is_the_covariance_seen_through_the_slopes(fitted):
+def test_the_band_is_the_propagated_covariance(fitted):
     posterior, tyre = fitted.posterior, fitted.tyre
     alpha, gamma, Fz = (
         np.radians([0.0, 3.0, -6.0]),
@@ -49,7 +49,7 @@ def test_the_band_is_the_covariance_seen_through_the_slopes(fitted):
     assert np.array(half) == pytest.approx(1.96 * np.sqrt(variance), rel=1e-3)
 
 
-def test_draws_scatter_as_the_standard_errors_say(fitted):
+def test_draws_scatter_by_the_standard_errors(fitted):
     members = ensemble(fitted.search, 8, seed=1)
     assert len(members) == 8
     names = [n for n, c in fitted.coefficients.items() if c.stderr and not c.at_bound and n in members[0]]
@@ -89,7 +89,7 @@ class Banana:
         return LeastSquaresProblem(lambda at: (linear(at).data, np.zeros(0)), linear)
 
 
-def test_a_bent_valley_is_followed_to_where_95_per_cent_end():
+def test_a_bent_valley_is_followed_to_the_ends_of_the_95_per_cent_interval():
     numbers = [Number("x", 0.1, -50.0, 50.0, spread=100.0), Number("y", 0.0, -50.0, 50.0, spread=100.0)]
     problem = Banana()
     best = solve(problem.free(["x", "y"]), numbers, tolerance=1e-10)
@@ -101,7 +101,7 @@ def test_a_bent_valley_is_followed_to_where_95_per_cent_end():
     assert low == pytest.approx(-0.1, abs=0.02)
 
 
-def test_a_straight_valley_is_left_to_the_covariance():
+def test_a_straight_valley_keeps_the_interval_of_the_covariance():
     class Line(Banana):
         def free(self, names) -> LeastSquaresProblem:
             def linear(at) -> Linear:

@@ -49,7 +49,7 @@ def test_the_misfit_is_in_units_of_the_uncertainty(problem):
 
 
 def test_a_measured_radius_counts_as_a_reading(problem):
-    """One from a revolution of the disc grows with the path radius, one given by itself does not."""
+    """A radius from a revolution of the disc is proportional to the path radius; a given one is not."""
     Re = problem.simulation.values, truth().state(np.array([900.0, 2100.0]), Vx=6.0).Re
     residual, _ = problem.free(["path_radius_m"]).residual(np.array([1.323]))
     assert residual[2 * N :] == pytest.approx((Re[1] - [0.2960, 0.2935]) / [2e-4, 4e-4])
@@ -74,7 +74,7 @@ def test_a_measured_radius_counts_as_a_reading(problem):
     ],
 )
 def test_derivatives_are_the_differences_of_the_residuals(problem, name):
-    """With limits broken too: the curvature beyond 1 on purpose."""
+    """Broken limits too: the curvature exceeds 1 on purpose."""
     bent = replace(problem.with_values({"PEY1": 1.1, "QEZ1": 1.2}), envelope=ENVELOPE)
     chosen = bent.free([name, "PCY1"])
     x = np.array([bent.simulation.number(name, bent.points), 1.4])
@@ -88,7 +88,7 @@ def test_derivatives_are_the_differences_of_the_residuals(problem, name):
     assert np.any(here.limits > 0.0)
 
 
-def test_part_of_the_points_keeps_their_weights(problem):
+def test_selected_points_keep_their_weights(problem):
     part = problem.select(np.array([5, 7]))
     assert list(part.sigma["Fy"]) == [np.inf, 6.0]
     assert len(part.points) == 2
