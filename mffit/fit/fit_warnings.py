@@ -29,13 +29,17 @@ def warnings(
     doubts : sweeps that contradict the others
     outlying : readings without weight
     """
-    return (
-        *distrusted,
-        *_restarts(fitted),
-        *_bounds(fitted),
-        *(_doubt(doubt) for doubt in doubts),
-        *_outliers(outlying),
-    )
+    out = [*distrusted]
+    if fitted.attempts:
+        attempts = ", ".join(fitted.attempts)
+        out.append(f"the fit was started again from {attempts}; the best of all fits is kept")
+    if fitted.at_bound:
+        names = ", ".join(sorted(fitted.at_bound))
+        out.append(f"at the bound of plausible values: {names}; check the sweeps that determine them")
+    out += [_doubt(doubt) for doubt in doubts]
+    if outlying:
+        out.append(_outliers(outlying))
+    return tuple(out)
 
 
 def distrust(fitted: Fitted, points: Points, readings: Readings) -> tuple[str, ...]:
@@ -74,19 +78,6 @@ def _where(points: Points, z: np.ndarray) -> str:
     return f", most of it in {', '.join(points.sweep_names[k] for k in worst)}" if worst else ""
 
 
-def _restarts(fitted: Fitted) -> list[str]:
-    if not fitted.attempts:
-        return []
-    return [f"the fit was started again from {', '.join(fitted.attempts)}; the best of all fits is kept"]
-
-
-def _bounds(fitted: Fitted) -> list[str]:
-    if not fitted.at_bound:
-        return []
-    names = ", ".join(sorted(fitted.at_bound))
-    return [f"at the bound of plausible values: {names}; check the sweeps that determine them"]
-
-
 def _doubt(doubt: Doubt) -> str:
     explained = f"; it looks like {doubt.looks}" if doubt.looks else ""
     return (
@@ -96,10 +87,8 @@ def _doubt(doubt: Doubt) -> str:
     )
 
 
-def _outliers(outlying: Sequence[Outlier]) -> list[str]:
-    """One sentence about the readings without weight, the worst by name."""
-    if not outlying:
-        return []
+def _outliers(outlying: Sequence[Outlier]) -> str:
+    """The readings without weight, the worst by name."""
     worst = sorted(outlying, key=lambda o: -o.ratio)[: constants.OUTLIERS_NAMED]
     named = "; ".join(
         f"{o.place} {o.channel} = {o.measured:.4g} {CHANNELS[o.channel].unit} where {o.expected:.4g} is expected"
@@ -113,4 +102,4 @@ def _outliers(outlying: Sequence[Outlier]) -> list[str]:
         if len(outlying) == 1
         else f"{len(outlying)} readings are outliers in their sweeps and have"
     )
-    return [f"{count} no weight: {named}{more}; correct or remove the wrong readings"]
+    return f"{count} no weight: {named}{more}; correct or remove the wrong readings"

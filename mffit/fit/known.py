@@ -91,7 +91,7 @@ def known_after_fit(
 
 
 def given_values(tyre: Any) -> dict[str, Any]:
-    """Values that ``[tyre]`` of tyre.toml states, in the units of :mod:`tir`, and the one that marks MF 6.2."""
+    """Values that ``[tyre]`` of tyre.toml states, in the units of :mod:`tir`, and FITTYP of MF 6.2."""
     given = {
         "FNOMIN": tyre.nominal_load,
         "NOMPRES": tyre.nominal_pressure * 1e3,

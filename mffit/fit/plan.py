@@ -1,4 +1,4 @@
-"""What a fit frees, and what is known of each number beforehand."""
+"""The free numbers of a fit and their priors."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ from tir.parameters import BY_NAME
 
 @dataclass(frozen=True, slots=True)
 class FitPlan:
-    """What a fit frees and what is known of it beforehand."""
+    """The free numbers of a fit, their priors, and the numbers that are held."""
 
     cover: tuple[StageCoverage, ...]
     expected: Mapping[str, float]  #: centre of every coefficient's prior

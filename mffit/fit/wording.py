@@ -1,4 +1,4 @@
-"""Explanations of a fit in sentences: which file is for which use, what it costs, what was tested, where PECP1 comes from."""
+"""Explanations of a fit in sentences: which file is for which use, its misfit, what was tested, where PECP1 comes from."""
 
 from __future__ import annotations
 
@@ -13,15 +13,7 @@ from mffit.fit.ranges import single_pressure
 
 
 def explanations(config: Any, files: Files, values: Mapping[str, Any], measured: Any) -> list[str]:
-    """Everything that the report explains about the files, the most important first.
-
-    Parameters
-    ----------
-    config : the validated ``tyre.toml``
-    files : the files of the build
-    values : every value of the fitted model
-    measured : the direct method's result
-    """
+    """Everything that the report explains about the files, the most important first."""
     names = file_names(config.tyre.name, config.spin.exact, config.rig.on_disc)
     out = file_sentences(files, names)
     if measured.epsilon_gamma is not None:
@@ -30,13 +22,7 @@ def explanations(config: Any, files: Files, values: Mapping[str, Any], measured:
 
 
 def file_sentences(files: Files, names: Mapping[str, str]) -> list[str]:
-    """Which file is for which use, what the file for turn slip off costs, and what was tested.
-
-    Parameters
-    ----------
-    files : the files of the build
-    names : of the written files, by use
-    """
+    """Which file (``names``, by use) is for which use, how far it is from the fitted model, and what was tested."""
     if not files.lacking:
         return [_flat_track_sentence(files, names["normal"]), ranges_sentence(files)]
     both = [_both_sentence(files.by_use["both"], names["both"])] if "both" in files.by_use else []
@@ -117,14 +103,7 @@ def ranges_sentence(files: Files) -> str:
 
 
 def pecp1_sentence(source: str, PECP1: float, epsilon_gamma: float) -> str:
-    """Where PECP1 comes from.
-
-    Parameters
-    ----------
-    source : ``spin.pecp1`` of tyre.toml
-    PECP1 : of the fitted model
-    epsilon_gamma : measured directly
-    """
+    """Where PECP1 comes from; ``source`` is ``spin.pecp1`` of tyre.toml, ``epsilon_gamma`` the measured value."""
     if source == "debiased":
         return (
             f"PECP1 = {PECP1:.4f} is the measured eps_gamma {epsilon_gamma:.4f} less the bias that the finite spin of the "

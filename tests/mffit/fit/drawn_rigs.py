@@ -56,7 +56,7 @@ class Draw:
         default_factory=dict
     )  #: share of conditions whose truth the 95 % band holds
     seconds: float = 0.0
-    doubted: int = 0  #: sweeps that the build doubts, of which none is unsound
+    doubted: int = 0  #: sweeps that the build doubts, although all are sound
     refused: str = ""  #: the sentence with which it ended; everything else is empty then
 
 
