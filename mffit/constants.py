@@ -27,3 +27,14 @@ LONGEST_QUOTE = Count(
     "characters",
     "Messages quote at most this much of a file: a quotation mark that is never closed takes in half of it.",
 )
+COVERAGE_FACTOR_95 = Real(1.959964, "-", "Coverage factor of a 95 % interval of a normal distribution.")
+AT_BOUND_SHARE = Real(
+    1e-4,
+    "-",
+    "Distance from a bound, over the width between both bounds, at which a number counts as at the bound.",
+)
+HELD_BY_LIMIT_SHARE = Real(
+    0.1, "-", "A number counts as held by physical limits if they supply this share of its stiffness."
+)
+LEAST_SQUARES_FIRST_DAMPING = Real(1e-3, "-", "Damping at which the Levenberg-Marquardt search starts.")
+LEAST_SQUARES_LARGEST_DAMPING = Real(1e12, "-", "Damping at which the Levenberg-Marquardt search gives up.")

@@ -11,8 +11,7 @@ import numpy as np
 from mffit.diagnosis.inexact import EXACT, Inexactness
 from mffit.diagnosis.noise import Noise
 from mffit.effects import Effect, Free
-from mffit.least_squares import Linear, Number, solve
-from mffit.least_squares import Problem as LeastSquares
+from mffit.least_squares import LeastSquaresProblem, Linear, Number, solve
 from mffit.points import Points
 from mffit.rig import Simulation
 
@@ -138,7 +137,7 @@ class Problem:
                 here.limits_slope,
             )
 
-        found = solve(LeastSquares(residual, linear), numbers, max_steps=STEPS, tolerance=CONVERGED)
+        found = solve(LeastSquaresProblem(residual, linear), numbers, max_steps=STEPS, tolerance=CONVERGED)
         values = {**fixed, **found.values}
         errors = dict(zip(found.names, np.sqrt(np.diag(found.covariance)).tolist(), strict=True))
         own = {n: values[n] for n in (*fixed, *(free.name for free in frees))}
@@ -253,7 +252,7 @@ class Problem:
         )
         return min(math.log(within + BEYOND_DECLARED), 0.0)
 
-    def within(self, names: Sequence[str], fixed: Mapping[str, float]) -> LeastSquares:
+    def within(self, names: Sequence[str], fixed: Mapping[str, float]) -> LeastSquaresProblem:
         """Simulated minus measured in units of the joint uncertainty, as functions of the named numbers."""
         nothing = np.zeros(0)
 
@@ -269,4 +268,4 @@ class Problem:
             rows = np.where(np.isfinite(self.measured)[:, None], np.concatenate(slope), 0.0)
             return Linear(data, self.noise.whiten(rows), nothing, np.zeros((0, len(names))))
 
-        return LeastSquares(residual, linear)
+        return LeastSquaresProblem(residual, linear)

@@ -1,5 +1,7 @@
 """Points and direct measurements to an MF-6.2 tyre with standard errors."""
 
+from mffit.fit.agreement import Agreement
+from mffit.fit.coefficients import Coefficient
 from mffit.fit.doubts import Doubt
 from mffit.fit.ensemble import ensemble
 from mffit.fit.files import file_names
@@ -7,7 +9,7 @@ from mffit.fit.fitting import fit
 from mffit.fit.freed import with_free_epsilon
 from mffit.fit.outliers import Outlier, marks
 from mffit.fit.posterior import Posterior
-from mffit.fit.result import Agreement, Coefficient, FitResult
+from mffit.fit.result import FitResult
 from mffit.fit.stages import StageRecord
 
 __all__ = [

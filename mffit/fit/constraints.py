@@ -1,14 +1,15 @@
-"""Physical limits that the fitted model keeps over the whole range it is written for, not only at the data."""
+"""Physical limits that the fitted model keeps over the whole range of the file, not only at the points."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
 
+from mffit.fit import constants
+from tir.derivatives import Traced, gradient, plain
 from tir.equations import aligning, lateral, normalise, stiffness
-
-MARGIN = 0.02
 
 
 class Envelope(NamedTuple):
@@ -25,40 +26,55 @@ class Envelope(NamedTuple):
         return _grid(self)[0].size
 
 
-def violations(p, envelope: Envelope) -> np.ndarray:
-    """How far each limit is broken on a grid over the envelope, dimensionless, 0 where it is kept; shape (k,)."""
-    rows = limits(p, envelope)
-    return np.maximum(np.concatenate([np.broadcast_to(row, envelope.size) for row in rows]), 0.0)
+def violations(p: Any, envelope: Envelope) -> np.ndarray:
+    """Violation (k,) of each limit at each condition of the envelope, dimensionless; 0 where the limit is kept."""
+    return np.maximum(limits(p, envelope)[0], 0.0)
 
 
-def limits(p, envelope: Envelope) -> list[Any]:
-    """Each limit on a grid over the envelope, dimensionless: above 0 where it is broken; rows (envelope.size,).
+def limits(p: Any, envelope: Envelope, by: Sequence[Traced] = ()) -> tuple[np.ndarray, np.ndarray]:
+    """Every limit at every condition of the envelope (k,), above 0 where broken, and its derivatives (k, m).
+
+    Parameters
+    ----------
+    p : the property file's values as attributes, plain or traced
+    envelope : ranges over which the limits must hold
+    by : the m traced values to differentiate by
+    """
+    rows, n = _rows(p, envelope), envelope.size
+    value = np.concatenate([np.broadcast_to(plain(row), n) for row in rows])
+    slope = np.concatenate([np.broadcast_to(gradient(row, by), (n, len(by))) for row in rows])
+    return value, slope
+
+
+def _rows(p: Any, envelope: Envelope) -> list[Any]:
+    """Each limit at the conditions of the envelope (n,), dimensionless: above 0 where it is broken.
 
     Limits: mu_y > 0, cornering stiffness < 0, E_y <= 1 on both sides of the curve, B_t > 0, E_t <= 1 on both sides,
-    trail at zero slip not negative, shape factor of the pressure terms > 0.
+    trail at zero slip not negative.
     """
     Fz, gamma, pressure = (axis.ravel() for axis in _grid(envelope))
     q = normalise.inputs(p, Fz, Fz, 0.0, 0.0, gamma, 0.0, pressure, False, False)
-    rows = []
-    mu_y = stiffness.lateral_friction(p, q, gamma)
-    rows.append(0.1 - mu_y)
-    K_ya = stiffness.cornering_stiffness(p, q, gamma) / Fz
-    rows.append((K_ya + 0.5) / 5.0)
     B_t = aligning.slope_factor(p, q)
+    rows = [
+        constants.LEAST_FRICTION - stiffness.lateral_friction(p, q, gamma),
+        (stiffness.cornering_stiffness(p, q, gamma) / Fz + constants.LEAST_CORNERING_STIFFNESS) / 5.0,
+    ]
     for side in (-1.0, 1.0):
         rows.append(lateral.curvature(p, q, gamma, side) - 1.0)
         rows.append(aligning.curvature(p, q, B_t, side * envelope.alpha) - 1.0)
-    rows.append((0.3 - B_t) / 10.0)
-    rows.append((0.0005 - aligning.trail_at_zero(p, q)) / 0.1)
-    return [row + MARGIN for row in rows]
+    rows.append((constants.LEAST_TRAIL_SLOPE_FACTOR - B_t) / 10.0)
+    rows.append((constants.LEAST_TRAIL - aligning.trail_at_zero(p, q)) / 0.1)
+    return [row + constants.LIMIT_MARGIN for row in rows]
 
 
 def _grid(envelope: Envelope) -> list[np.ndarray]:
-    Fz = np.linspace(*envelope.Fz, 3)
-    gamma = np.linspace(-envelope.gamma, envelope.gamma, 5) if envelope.gamma > 0 else np.zeros(1)
-    pressure = (
-        np.linspace(*envelope.pressure, 2)
-        if envelope.pressure[1] > envelope.pressure[0]
-        else np.array(envelope.pressure[:1])
+    """Load, camber and pressure of the conditions at which the limits are tested."""
+    loads, cambers, pressures = (int(n) for n in constants.LIMIT_GRID)
+    low, high = envelope.pressure
+    return list(
+        np.meshgrid(
+            np.linspace(*envelope.Fz, loads),
+            np.linspace(-envelope.gamma, envelope.gamma, cambers if envelope.gamma > 0 else 1) + 0.0,
+            np.linspace(low, high, pressures if high > low else 1),
+        )
     )
-    return list(np.meshgrid(Fz, gamma, pressure))

@@ -1,4 +1,4 @@
-"""What the data can support: which coefficients may be freed, and what is missing for the others."""
+"""Which coefficients the data determine, and what is missing for the others."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from mffit.fit import constants
 from mffit.fit.stages import STAGES
 from mffit.points import Points, levels
 from tir.parameters import BY_NAME, Need, Parameter
@@ -20,12 +21,12 @@ class StageCoverage:
     supported: bool
     free: tuple[str, ...]
     held: tuple[str, ...]
-    missing: tuple[str, ...]  #: what the data would need for the held ones, as sentences
+    missing: tuple[str, ...]  #: what the data lack for the held ones, as sentences
 
 
 @dataclass(frozen=True, slots=True)
 class Design:
-    """The set-points of a data set, counted."""
+    """Numbers of levels of the set-points of a data set."""
 
     loads: int
     pressures: int
@@ -34,24 +35,25 @@ class Design:
     coupled: bool  #: sideslip and camber together
     moment: bool  #: Mz measured
     curved: bool  #: path curvature present
-    shifts: bool  #: odd shift terms visible: flat track, or on a disc backward runs, flipped mounts or both its sides
+    shifts: bool  #: odd shift terms are separable: flat track, or disc with backward runs, flipped mounts or both sides
     symmetric: bool
 
 
 def design(points: Points, side: str) -> Design:
-    """Count what was varied."""
+    """The numbers of levels that were run."""
     curved = bool(np.any(points.phi_t != 0.0))
     load = levels.nearest_labels(points.Fz, levels.LOAD)
     pressures_at = [levels.count(points.p[load == k], levels.PRESSURE) for k in np.unique(load[load >= 0])]
     both_sides = len(np.unique(np.sign(points.phi_t))) > 1
     both_ways = bool(np.any(points.direction < 0) or np.any(points.mount < 0) or both_sides)
-    gamma, alpha = np.degrees(points.gamma), np.degrees(points.alpha)
+    cambered = np.abs(points.gamma) > constants.ZERO_CAMBER_LIMIT.rad
+    slipping = np.abs(points.alpha) > constants.COUPLED_ALPHA.rad
     return Design(
         loads=levels.count(points.Fz, levels.LOAD),
         pressures=levels.count(points.p, levels.PRESSURE),
         pressure_loads=sum(n > 1 for n in pressures_at),
         cambers=levels.count(np.abs(points.gamma), levels.CAMBER),
-        coupled=bool(np.any((np.abs(gamma) > 1.0) & (np.abs(alpha) > 0.5))),
+        coupled=bool(np.any(cambered & slipping)),
         moment=bool(np.any(np.isfinite(points.Mz))),
         curved=curved,
         shifts=both_ways or not curved,
@@ -68,23 +70,35 @@ def coverage(points: Points, side: str) -> tuple[StageCoverage, ...]:
         free = tuple(name for name, reason in reasons.items() if not reason)
         held = tuple(name for name, reason in reasons.items() if reason)
         missing = tuple(dict.fromkeys(reason for reason in reasons.values() if reason))
-        rows.append(StageCoverage(stage.name, stage.title, bool(free), free, held, missing))
+        rows.append(
+            StageCoverage(
+                stage=stage.name,
+                title=stage.title,
+                supported=bool(free),
+                free=free,
+                held=held,
+                missing=missing,
+            )
+        )
     return tuple(rows)
 
 
 def _missing(row: Parameter, seen: Design) -> str:
-    """Why the coefficient cannot be seen; empty if it can."""
+    """Why these data do not determine the coefficient; empty if they do."""
     if row.channel == "Mz" and not seen.moment:
         return "Mz was not measured"
     if row.shift and not seen.shifts:
-        return "backward runs, flipped mounts or runs on the other side of the disc, which tell shifts from turn slip, are absent"
+        return (
+            "backward runs, flipped mounts or runs on the other side of the disc are missing, "
+            "which separate shifts from turn slip"
+        )
     if row.odd and seen.symmetric:
         return "the tyre is declared symmetric"
     return next((reason for need in row.needs if (reason := _unmet(need, seen))), "")
 
 
 def _unmet(need: Need, seen: Design) -> str:
-    """The sentence for what a coefficient needs and these data do not vary; empty if they do."""
+    """The sentence about an unmet need of a coefficient; empty if the data meet it."""
     run, sentence = {
         "camber": (seen.cambers - 1, "no camber was run"),
         "coupled": (seen.coupled, "no sweep combines sideslip and camber"),
@@ -93,8 +107,8 @@ def _unmet(need: Need, seen: Design) -> str:
         "pressures": (seen.pressures, f"{need.levels} pressures are needed, {seen.pressures} run"),
         "pressure_loads": (
             seen.pressure_loads,
-            f"pressures were run at {'one load' if seen.pressure_loads else 'different loads'} only, which cannot tell "
-            "the pressure effect on cornering stiffness from that on the load of its peak",
+            f"pressures were run at {'one load' if seen.pressure_loads else 'different loads'} only, which does not "
+            "separate the pressure effect on cornering stiffness from that on the load of its peak",
         ),
     }[need.word]
     return sentence if run < need.levels else ""

@@ -7,23 +7,19 @@ from types import SimpleNamespace
 
 import numpy as np
 
-from mffit import least_squares
-from mffit.fit.constraints import MARGIN, violations
-from mffit.fit.problem import Problem
-from mffit.fit.staged import Fitted
-from mffit.least_squares import Number
+from mffit.fit import constants
+from mffit.fit.constraints import violations
+from mffit.fit.fitted import Fitted
+from mffit.least_squares import LeastSquaresProblem, Linear, Number, solve
 from mffit.rig_errors import BY_NAME as RIG_ERRORS
 from tir.parameters import BY_NAME
-
-SPARE = 3
-"""Draws per member, at most, before one that breaks a physical limit ends the search."""
 
 
 def ensemble(fitted: Fitted, count: int, *, seed: int = 0) -> list[dict[str, float]]:
     """Coefficients of ``count`` tyres drawn from the posterior, each within the physical limits of the fit.
 
-    Every measurement is moved by its own uncertainty, every prior and every held value by its spread, and the fit is made
-    anew from where it ended: exact for a linear problem, and the limits hold in every member.
+    Each measurement is moved by its own uncertainty, each prior and each held value by its spread, and the fit is repeated from
+    its solution. This is exact for a linear problem, and every member keeps the limits.
 
     Parameters
     ----------
@@ -32,26 +28,29 @@ def ensemble(fitted: Fitted, count: int, *, seed: int = 0) -> list[dict[str, flo
     seed : of the random numbers; the same seed gives the same members
     """
     random = np.random.default_rng(seed)
+    envelope = fitted.problem.envelope
+    allowed = constants.DRAWN_LIMIT_MARGINS * constants.LIMIT_MARGIN
     members: list[dict[str, float]] = []
-    for _ in range(SPARE * count):
+    for _ in range(constants.DRAWS_PER_MEMBER * count):
         if len(members) == count:
             break
-        member = _member(fitted, random)
-        values = {**fitted.simulation.values, **member}
-        envelope = fitted.problem.envelope
-        if envelope is None or np.max(violations(SimpleNamespace(**values), envelope)) <= 2.0 * MARGIN:
+        member = _drawn(fitted, random)
+        p = SimpleNamespace(**{**fitted.simulation.values, **member})
+        if envelope is None or np.max(violations(p, envelope)) <= allowed:
             members.append(member)
     return members
 
 
-def _member(fitted: Fitted, random: np.random.Generator) -> dict[str, float]:
-    at = {
-        n: float(np.clip(fitted.simulation.values[n] + u * random.standard_normal(), *BY_NAME[n].bounds))
-        for n, u in fitted.held.items()
+def _drawn(fitted: Fitted, random: np.random.Generator) -> dict[str, float]:
+    """Coefficients of one tyre."""
+    values = fitted.simulation.values
+    held = {
+        name: float(np.clip(values[name] + u * random.standard_normal(), *BY_NAME[name].bounds))
+        for name, u in fitted.held.items()
     }
-    problem = fitted.problem.with_values(at)
-    numbers = [_moved(number, fitted.problem, random) for number in fitted.numbers]
-    free = problem.free([n.name for n in numbers])
+    starts = fitted.problem.starting_here(fitted.numbers)
+    numbers = [_with_drawn_prior(number, random) for number in starts]
+    free = fitted.problem.with_values(held).free([n.name for n in numbers])
     rows = len(free.residual(np.array([n.start for n in numbers]))[0])
     noise = random.standard_normal(rows)
 
@@ -59,21 +58,22 @@ def _member(fitted: Fitted, random: np.random.Generator) -> dict[str, float]:
         data, limits = free.residual(x)
         return data - noise, limits
 
-    def linear(x: np.ndarray) -> least_squares.Linear:
+    def linear(x: np.ndarray) -> Linear:
         here = free.linear(x)
         return dataclasses.replace(here, data=here.data - noise)
 
-    solution = least_squares.solve(
-        least_squares.Problem(residual, linear), numbers, max_steps=12, tolerance=1e-4
+    solution = solve(
+        LeastSquaresProblem(residual, linear),
+        numbers,
+        max_steps=constants.REFIT_STEPS,
+        tolerance=constants.REFIT_TOLERANCE,
     )
-    return at | {n: v for n, v in solution.values.items() if n not in RIG_ERRORS}
+    return held | {name: v for name, v in solution.values.items() if name not in RIG_ERRORS}
 
 
-def _moved(number: Number, problem: Problem, random: np.random.Generator) -> Number:
-    """The number from where the fit ended, with what is known of it moved by its spread."""
-    start = problem.simulation.number(number.name, problem.points)
+def _with_drawn_prior(number: Number, random: np.random.Generator) -> Number:
+    """The number with the centre of its prior moved by the prior's spread."""
     shift = random.standard_normal()
-    known = number.expected + number.spread * shift if np.isfinite(number.spread) else number.expected
-    return dataclasses.replace(
-        number, start=float(np.clip(start, number.lower, number.upper)), expected=known
-    )
+    if not np.isfinite(number.spread):
+        return number
+    return dataclasses.replace(number, expected=number.expected + number.spread * shift)

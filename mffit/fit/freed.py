@@ -1,29 +1,27 @@
-"""The fitted rig and tyre with PECP1 decided by the points."""
+"""The fitted tyre and rig with PECP1 decided by the points."""
 
 from __future__ import annotations
 
-import dataclasses
-
-from mffit.fit.staged import Fitted
+from mffit.fit import constants
+from mffit.fit.fitted import Fitted
 from mffit.least_squares import Number, solve
 from mffit.rig import Simulation
 from tir.parameters import BY_NAME
-
-NAME = "PECP1"
 
 
 def with_free_epsilon(fitted: Fitted) -> Simulation:
     """The simulation refitted from its solution with PECP1 free.
 
-    A model whose PECP1 is held a little off bends its other spin coefficients to meet the points, and what finite spin
-    makes of its slopes with them.
+    If PECP1 is held at a value that is a little off, the other spin coefficients compensate for it, which distorts the effect of
+    finite spin on the slopes of the model.
     """
-    at = {n.name: fitted.problem.simulation.number(n.name, fitted.problem.points) for n in fitted.numbers}
-    if NAME in at:
+    name, problem = "PECP1", fitted.problem
+    if any(number.name == name for number in fitted.numbers):
         return fitted.simulation
-    numbers = [dataclasses.replace(n, start=at[n.name]) for n in fitted.numbers]
-    row = BY_NAME[NAME]
-    held = float(fitted.simulation.values[NAME])
-    numbers.append(Number(NAME, row.inside(held), *row.bounds, expected=held))
-    solution = solve(fitted.problem.free([n.name for n in numbers]), numbers, tolerance=1e-5)
-    return fitted.problem.with_values(solution.values).simulation
+    row, held = BY_NAME[name], float(fitted.simulation.values[name])
+    free = Number(name, row.inside(held), *row.bounds, expected=held)
+    numbers = [*problem.starting_here(fitted.numbers), free]
+    solution = solve(
+        problem.free([n.name for n in numbers]), numbers, tolerance=constants.FREE_EPSILON_TOLERANCE
+    )
+    return problem.with_values(solution.values).simulation

@@ -1,4 +1,4 @@
-"""Coefficients with which one file imitates a model that the formula in that use cannot be: least squares over a range."""
+"""Fit of a file for one use (such as turn slip off) to the forces of the fitted model: least squares over the file's ranges."""
 
 from __future__ import annotations
 
@@ -8,34 +8,31 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from mffit import least_squares
+from mffit.fit import constants
 from mffit.fit.constraints import Envelope, limits
 from mffit.fit.road import Road
-from mffit.least_squares import Linear, Number
+from mffit.least_squares import LeastSquaresProblem, Linear, Number, Solution, solve
 from mffit.quantities import CHANNELS
 from mffit.rig import Readings
 from tir.derivatives import gradient, plain, traced
 from tir.outputs import outputs_of
 
-SCALE = {"Fy": 0.01, "Mz": 0.001}
-"""Unit of the residual, per nominal load [N/N, m]: the size of the misfit that the formula cannot avoid."""
-LIMIT_WEIGHT = 15.0
-"""Residual per unit of a broken limit, the rms misfit being of the order of 1."""
+MISFIT_UNIT = {"Fy": constants.MISFIT_UNIT_FY, "Mz": constants.MISFIT_UNIT_MZ}
+"""By channel, unit of the residual over nominal load [N/N, m]."""
 
 
 class Goal(NamedTuple):
-    """What the file is to reproduce in one use."""
+    """Forces that the file is to reproduce in one use."""
 
     road: Road
     turn_slip: bool  #: whether the simulation computes turn slip
     phi_t: float  #: path curvature, ISO, of every condition [1/m]
-    Fy: np.ndarray  #: (n,) [N]
-    Mz: np.ndarray  #: (n,) [Nm]
+    forces: Readings
     weight: np.ndarray  #: (n,)
 
 
 class Lines(NamedTuple):
-    """Lines over camber along which the side force may not turn back."""
+    """Lines of camber along which the side force may fall only where the model's falls."""
 
     road: Road
     points: int  #: conditions of each line
@@ -44,15 +41,15 @@ class Lines(NamedTuple):
 
 def forces(values: Mapping[str, Any], road: Road, *, turn_slip: bool, phi_t: float = 0.0) -> Readings:
     """Fy [N] and Mz [Nm] of a file on the road."""
-    return Readings(*_wanted(tuple(CHANNELS), values, road, turn_slip, phi_t))
+    return Readings(*_outputs(tuple(CHANNELS), values, road, turn_slip, phi_t))
 
 
 def force(channel: str, values: Mapping[str, Any], road: Road, *, turn_slip: bool, phi_t: float = 0.0) -> Any:
-    """One of the two, plain or traced."""
-    return _wanted((channel,), values, road, turn_slip, phi_t)[0]
+    """One channel of a file on the road, plain or traced."""
+    return _outputs((channel,), values, road, turn_slip, phi_t)[0]
 
 
-def _wanted(
+def _outputs(
     names: tuple[str, ...], values: Mapping[str, Any], road: Road, turn_slip: bool, phi_t: float
 ) -> list[Any]:
     path = {"phi_t": phi_t} if phi_t else {}
@@ -62,62 +59,69 @@ def _wanted(
 def goal(
     model: Mapping[str, Any], road: Road, weight: np.ndarray, *, turn_slip: bool, phi_t: float = 0.0
 ) -> Goal:
-    """A goal that the model itself sets, which is right with turn slip on."""
-    out = forces(model, road, turn_slip=True, phi_t=phi_t)
-    return Goal(road, turn_slip, phi_t, out.Fy, out.Mz, weight)
+    """The forces of the fitted model, which is meant for turn slip on, as the goal of a file for ``turn_slip``."""
+    return Goal(road, turn_slip, phi_t, forces(model, road, turn_slip=True, phi_t=phi_t), weight)
 
 
 class Imitation(NamedTuple):
-    """One channel of a file against its goals."""
+    """One channel of a file and its goals."""
 
     channel: str  #: "Fy" or "Mz"
     fixed: Mapping[str, Any]  #: every value of the file
     goals: tuple[Goal, ...]
-    envelope: Envelope  #: where the physical limits hold
+    envelope: Envelope  #: over which the physical limits hold
     lines: Lines | None = None
 
-    def solve(self, numbers: Sequence[Number], *, steps: int, tolerance: float) -> least_squares.Solution:
-        """The nearest file, with the numbers free."""
+    def solve(self, numbers: Sequence[Number], *, steps: int, tolerance: float) -> Solution:
+        """The coefficients that come nearest to the goals."""
         names = [n.name for n in numbers]
 
         def residual(x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-            here = self._rows(dict(zip(names, x.tolist(), strict=True)), derive=False)
+            here = self._residuals(dict(zip(names, x.tolist(), strict=True)), derive=False)
             return here.data, here.limits
 
         def linear(x: np.ndarray) -> Linear:
-            return self._rows(dict(zip(names, x.tolist(), strict=True)), derive=True)
+            return self._residuals(dict(zip(names, x.tolist(), strict=True)), derive=True)
 
-        problem = least_squares.Problem(residual, linear)
-        return least_squares.solve(problem, numbers, max_steps=steps, tolerance=tolerance)
+        problem = LeastSquaresProblem(residual, linear)
+        return solve(problem, numbers, max_steps=steps, tolerance=tolerance)
 
-    def _rows(self, free: Mapping[str, float], *, derive: bool) -> Linear:
-        """Misfits, weighted; broken limits and camber thrust that turns back; with derivatives if wanted."""
+    @property
+    def _unit(self) -> float:
+        """Unit of the residual [N] or [Nm]."""
+        return MISFIT_UNIT[self.channel] * float(self.fixed["FNOMIN"])
+
+    def _residuals(self, free: Mapping[str, float], *, derive: bool) -> Linear:
+        """Weighted misfits and broken limits, with derivatives by the free values if wanted."""
         numbers: Mapping[str, Any] = traced(free) if derive else free
         values = {**self.fixed, **numbers}
-        wrt = list(numbers.values()) if derive else []
-        unit = SCALE[self.channel] * float(self.fixed["FNOMIN"])
+        by = list(numbers.values()) if derive else []
         data, slopes = [], []
         for goal in self.goals:
             out = force(self.channel, values, goal.road, turn_slip=goal.turn_slip, phi_t=goal.phi_t)
-            factor = np.sqrt(goal.weight / goal.weight.sum()) / unit
-            data.append((plain(out) - getattr(goal, self.channel)) * factor)
-            slopes.append(gradient(out, wrt) * factor[:, None])
-        broken, broken_slopes = self._broken(values, wrt, unit)
+            factor = np.sqrt(goal.weight / goal.weight.sum()) / self._unit
+            data.append((plain(out) - getattr(goal.forces, self.channel)) * factor)
+            slopes.append(gradient(out, by) * factor[:, None])
+        broken, broken_slopes = self._broken(values, by)
         return Linear(np.concatenate(data), np.concatenate(slopes), broken, broken_slopes)
 
-    def _broken(
-        self, values: Mapping[str, Any], wrt: list[Any], unit: float
-    ) -> tuple[np.ndarray, np.ndarray]:
-        size = self.envelope.size
-        rows = limits(SimpleNamespace(**values), self.envelope)
-        value = [LIMIT_WEIGHT * np.broadcast_to(plain(row), size) for row in rows]
-        slope = [LIMIT_WEIGHT * np.broadcast_to(gradient(row, wrt), (size, len(wrt))) for row in rows]
+    def _broken(self, values: Mapping[str, Any], by: list[Any]) -> tuple[np.ndarray, np.ndarray]:
+        """Violations of the physical limits and of the lines of camber, with derivatives."""
+        value, slope = limits(SimpleNamespace(**values), self.envelope, by)
+        weight = constants.LIMIT_WEIGHT_OF_DERIVED_FILE
+        over, by_number = weight * value, weight * slope
         if self.lines is not None:
-            Fy = force("Fy", values, self.lines.road, turn_slip=False)
-            shape = (len(self.lines.falls), self.lines.points)
-            steps = np.diff(plain(Fy).reshape(shape))
-            value.append((np.where(self.lines.falls, steps, 0.0) / unit).ravel())
-            by = np.diff(gradient(Fy, wrt).reshape(*shape, len(wrt)), axis=1) / unit
-            slope.append(by.reshape(steps.size, len(wrt)))
-        over = np.concatenate(value)
-        return np.maximum(over, 0.0), np.concatenate(slope) * (over > 0.0)[:, None]
+            reversal, reversal_slope = self._reversal(values, by, self.lines)
+            over = np.concatenate([over, reversal])
+            by_number = np.concatenate([by_number, reversal_slope])
+        return np.maximum(over, 0.0), by_number * (over > 0.0)[:, None]
+
+    def _reversal(
+        self, values: Mapping[str, Any], by: list[Any], lines: Lines
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """Steps of the side force along the lines of camber, above 0 where it rises and the model's falls."""
+        Fy = force("Fy", values, lines.road, turn_slip=False)
+        shape = (len(lines.falls), lines.points)
+        steps = np.diff(plain(Fy).reshape(shape))
+        slope = np.diff(gradient(Fy, by).reshape(*shape, len(by)), axis=1) / self._unit
+        return (np.where(lines.falls, steps, 0.0) / self._unit).ravel(), slope.reshape(steps.size, len(by))

@@ -11,8 +11,8 @@ from scipy.special import chdtrc, ndtri
 from mffit.errors import InputError
 from mffit.fit.doubts import Doubt
 from mffit.fit.explanation import explanation
+from mffit.fit.fitted import Fitted
 from mffit.fit.prediction import Group, Leverage, Prediction, groups, leverage, predictions
-from mffit.fit.staged import Fitted
 from mffit.points import Points
 from mffit.points.mistakes import MISTAKES, Mistake
 from mffit.quantities import CHANNELS
@@ -98,7 +98,7 @@ def judge(
     if len(found) < 3:
         return ()
     size = {c: usual_size((getattr(points, c) / points.Fz)[g.index] for g in found) for c in CHANNELS}
-    noise = np.concatenate([u * k for u, k in zip(stated, fitted.scale, strict=True)])
+    noise = np.concatenate([u * k for u, k in zip(stated, fitted.scale.values(), strict=True)])
     fit = leverage(fitted.problem, fitted.numbers, noise)
     errors = {k: errors_of(predictions(fit, g), g, points, size) for k, g in enumerate(found)}
     level = FALSE_ALARM / sum(len(rows) for rows in errors.values())
@@ -209,7 +209,7 @@ def _predicted(part: Points, fitted: Fitted, stated, size) -> dict[str, tuple[Er
     out, slope = fitted.simulation.sensitivities(part, fitted.posterior.names)
     load = float(np.mean(part.Fz))
     found = {}
-    for name, u, scale in zip(CHANNELS, stated, fitted.scale, strict=True):
+    for name, u, scale in zip(CHANNELS, stated, fitted.scale.values(), strict=True):
         known = np.isfinite(u) & np.isfinite(getattr(part, name))
         if not np.any(known):
             continue

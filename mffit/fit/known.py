@@ -1,25 +1,106 @@
-"""Every value of the file together with the word that says where it comes from."""
+"""Every value of the property file with its origin, before and after the fit."""
 
 from __future__ import annotations
 
-import dataclasses
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
+from mffit.fit.estimates import estimates
+from mffit.fit.priors import Prior
+from mffit.fit.radius import radius_coefficients
+from mffit.fit.ranges import covered_ranges
+from mffit.fit.stages import ODD_TERMS
+from mffit.points import Points
+from mffit.rig import reference_speed
+from tir import Tyre
+from tir.parameters import BY_NAME, TABLE
+
+DECIDED = ("TYRESIDE", "USE_MODE", "FITTYP")
+"""Values that the build itself decides."""
+
 
 @dataclass(frozen=True, slots=True)
 class Known:
-    """Values by name, and the origin of each: measured, fitted, regularised, base, default, estimate, range or given."""
+    """Values by name, and the origin of each: measured, fitted, regularised, base, default, estimate, fleet, range, given."""
 
     values: Mapping[str, Any]
     origin: Mapping[str, str]
 
     def having(self, found: Mapping[str, Any], origin: str = "") -> Known:
-        """The same with some values replaced; without a word their origin stays what it was."""
+        """The same with some values replaced; without ``origin`` they keep theirs."""
         words = dict.fromkeys(found, origin) if origin else {}
         return Known({**self.values, **found}, {**self.origin, **words})
 
-    def deciding(self, origin: Mapping[str, str]) -> Known:
-        """The same values, some of which someone has decided."""
-        return dataclasses.replace(self, origin={**self.origin, **origin})
+
+def known_before_fit(
+    config: Any, points: Points, measured: Any, base: Tyre | None, fleet: Mapping[str, Prior]
+) -> Known:
+    """Every value before the fit.
+
+    Parameters
+    ----------
+    config : the validated ``tyre.toml``
+    points : raw points
+    measured : the direct method's result
+    base : property file with the values that are not fitted, if there is one
+    fleet : priors that a fleet of similar tyres gives
+    """
+    template, stated = (base, base.present) if base is not None else (Tyre.from_values({}), frozenset())
+    known = Known(
+        values=dict(template.values),
+        origin={row.name: "base" if row.name in stated else "default" for row in TABLE},
+    )
+    known = known.having({name: known.values[name] for name in DECIDED}, "given")
+    known = known.having(given_values(config.tyre), "given")
+    if base is None:  # already here, because the vertical terms among them decide the rolling radius
+        known = known.having(estimates(known.values), "estimate")
+    known = known.having({name: prior.expected for name, prior in fleet.items()}, "fleet")
+    known = known.having(covered_ranges(points), "range")
+    r_e = dict(measured.by_load("r_e_measured"))
+    if r_e:
+        known = known.having(radius_coefficients(known.values, r_e, reference_speed(points)), "measured")
+    if measured.epsilon_gamma is not None:
+        known = known.having({"PECP1": measured.pecp1, "PECP2": measured.pecp2}, "measured")
+    if config.tyre.side == "symmetric":
+        known = known.having(dict.fromkeys(ODD_TERMS, 0.0), "given")
+    return known
+
+
+def known_after_fit(
+    known: Known, fitted: Mapping[str, float], regularised: frozenset[str], base: Tyre | None
+) -> Known:
+    """The values with the fitted ones in their place, and the estimates that follow from these.
+
+    Parameters
+    ----------
+    known : before the fit
+    fitted : fitted coefficients; one that belongs to no stage keeps its origin
+    regularised : those of them that the priors decide as much as the points
+    base : property file with the values that are not fitted, if there is one
+    """
+    for name, value in fitted.items():
+        origin = "regularised" if name in regularised else "fitted" if BY_NAME[name].stage else ""
+        known = known.having({name: value}, origin)
+    if base is None:  # again, because friction and stiffness among them follow the fitted ones
+        found = estimates(known.values)
+        known = known.having(
+            {name: v for name, v in found.items() if known.origin[name] != "measured"}, "estimate"
+        )
+    return known
+
+
+def given_values(tyre: Any) -> dict[str, Any]:
+    """Values that ``[tyre]`` of tyre.toml states, in the units of :mod:`tir`, and FITTYP of MF 6.2."""
+    given = {
+        "FNOMIN": tyre.nominal_load,
+        "NOMPRES": tyre.nominal_pressure * 1e3,
+        "INFLPRES": tyre.nominal_pressure * 1e3,
+        "LONGVL": tyre.nominal_speed,
+        "UNLOADED_RADIUS": tyre.unloaded_radius,
+        "WIDTH": tyre.width,
+        "RIM_RADIUS": tyre.rim_radius,
+        "TYRESIDE": tyre.side.upper() if tyre.side else None,
+        "FITTYP": 62,
+    }
+    return {name: value for name, value in given.items() if value is not None}

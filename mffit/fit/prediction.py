@@ -12,7 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from mffit.fit.problem import Problem
+from mffit.fit.problem import FitProblem
 from mffit.least_squares import Number, inverse, root
 from mffit.points import Points, levels
 from mffit.quantities import CHANNELS
@@ -104,7 +104,7 @@ def _conditions(points: Points) -> Iterator[Group]:
                 yield Group(f"{sweep.name} at {said}", sweep.file, rows, False)
 
 
-def leverage(problem: Problem, numbers: Sequence[Number], noise: np.ndarray) -> Leverage:
+def leverage(problem: FitProblem, numbers: Sequence[Number], noise: np.ndarray) -> Leverage:
     """Residuals and derivatives of a fit at its solution.
 
     Parameters
@@ -120,7 +120,7 @@ def leverage(problem: Problem, numbers: Sequence[Number], noise: np.ndarray) -> 
     slopes = np.concatenate(slope)
     measured = np.concatenate([points.Fy, points.Mz])
     used = np.isfinite(measured) & np.isfinite(noise)
-    weight = np.where(used, np.concatenate([problem.sigma_Fy, problem.sigma_Mz]), np.inf)
+    weight = np.where(used, np.concatenate(list(problem.sigma.values())), np.inf)
     residual = np.where(used, np.concatenate(out) - np.nan_to_num(measured), 0.0)
     J = slopes / weight[:, None]
     covariance = inverse(J.T @ J + np.diag([n.spread**-2.0 for n in numbers] + [0.0] * len(common)))

@@ -1,55 +1,48 @@
-"""What is known of a coefficient before its own tyre is measured."""
+"""Prior knowledge of the coefficients: from similar tyres, from the table's default, from a fleet."""
 
 from __future__ import annotations
 
 import json
 from collections.abc import Mapping
+from pathlib import Path
 from typing import Any, NamedTuple
 
 from mffit.errors import InputError
+from mffit.fit import constants
 from mffit.fit.stages import SMALL_ON_A_DISC
 from tir.parameters import BY_NAME
 
-RELATIVE = 0.3
-"""How far coefficients of similar tyres scatter around each other, relative, 1 sigma."""
-SIMILAR, ANY = 0.05, 0.1
-"""Share of the width between a coefficient's bounds by which it scatters at least: around the value of another tyre, and
-around the table's default."""
-
-SAME = 0.01
-"""Relative difference of nominal load or pressure up to which coefficients of two tyres mean the same."""
-
 
 class Prior(NamedTuple):
-    """What is known of one coefficient beforehand."""
+    """Prior of one coefficient."""
 
     expected: float
     spread: float  #: 1 sigma
 
 
 def scatter(name: str, expected: float, *, from_base: bool, curved: bool) -> float:
-    """How far the coefficient of this tyre may be from the expected value, 1 sigma.
+    """Standard deviation of this tyre's coefficient around the expected value.
 
     Parameters
     ----------
     name : coefficient
     expected : value of the base file, else the default
-    from_base : whether a base file states it; 0 in a base file states nothing
+    from_base : whether a base file states it; a base file's 0 counts as not stated
     curved : whether the path is curved
     """
     if curved and name in SMALL_ON_A_DISC:
         return SMALL_ON_A_DISC[name]
-    share = SIMILAR if from_base and expected else ANY
-    return max(RELATIVE * abs(expected), share * BY_NAME[name].width)
+    share = constants.LEAST_SPREAD_BASE_FILE if from_base and expected else constants.LEAST_SPREAD_DEFAULT
+    return max(constants.SIMILAR_TYRES_SPREAD * abs(expected), share * BY_NAME[name].width)
 
 
 def scatters(names: Mapping[str, float], origin: Mapping[str, str], *, curved: bool) -> dict[str, float]:
-    """The same of every named coefficient with its expected value."""
+    """Standard deviation of every named coefficient around its expected value."""
     return {n: scatter(n, value, from_base=origin[n] == "base", curved=curved) for n, value in names.items()}
 
 
 def fleet_content(nominal: Mapping[str, float], tyres: int, priors: Mapping[str, Prior]) -> dict[str, Any]:
-    """The file with which a fleet of tyres serves later builds; ``nominal`` has FNOMIN [N] and NOMPRES [Pa]."""
+    """Content of the priors file that a fleet gives to later builds; ``nominal`` has FNOMIN [N] and NOMPRES [Pa]."""
     return {
         "about": "What tyres like these have in common, for later builds: name this file as [tyre] priors in tyre.toml.",
         "tyres": tyres,
@@ -59,37 +52,47 @@ def fleet_content(nominal: Mapping[str, float], tyres: int, priors: Mapping[str,
 
 
 def of_fleet(config: Any) -> dict[str, Prior]:
-    """What the fleet that ``[tyre] priors`` names knows of each coefficient; empty if none is named.
+    """The prior of each coefficient from the fleet that ``[tyre] priors`` names; empty if none is named.
 
     Raises
     ------
     InputError
-        The file is not one of a fleet, or the fleet has another nominal load or pressure.
+        The file was not written by a fleet, or the fleet has another nominal load or pressure.
     """
     path = config.priors_path
     if path is None:
         return {}
     place = {"file": config.path, "line": config.line_of("tyre.priors"), "key": "tyre.priors"}
     try:
-        content = json.loads(path.read_text(encoding="utf-8"))
-        nominal = {name: float(value) for name, value in content["nominal"].items()}
-        found = {
-            str(name): Prior(float(row["expected"]), float(row["spread"]))
-            for name, row in content["coefficients"].items()
-        }
+        nominal, found = _read(path)
     except FileNotFoundError:
         raise InputError(f"there is no file {path}; `mffit fleet` writes one", **place) from None
     except (OSError, ValueError, LookupError, TypeError, AttributeError):
         raise InputError(f"{path} is not a priors.json of `mffit fleet`; name one", **place) from None
     own = {"FNOMIN": config.tyre.nominal_load, "NOMPRES": 1e3 * config.tyre.nominal_pressure}
     for name, value in own.items():
-        if not abs(nominal.get(name, 0.0) - value) <= SAME * value:
+        theirs = nominal.get(name, 0.0)
+        if not abs(theirs - value) <= constants.SAME_NOMINAL_CONDITION * value:
             raise InputError(
-                f"{path} is of tyres with {name} {nominal.get(name, 0.0):g}, and this one has {value:g}: coefficients "
-                "count from it; name a fleet of the same, or none",
+                f"{path} holds priors of tyres with {name} {theirs:g}, but this tyre has {value:g}, and coefficients are "
+                f"relative to it; name the priors of tyres with the same {name}, or none",
                 **place,
             )
     wrong = sorted(n for n, p in found.items() if n not in BY_NAME or not p.spread > 0.0)
     if wrong:
-        raise InputError(f"{path} has no use for {wrong[0]}; write it again with `mffit fleet`", **place)
+        raise InputError(
+            f"{path}: {wrong[0]} is not a coefficient with a positive spread; write the file again with `mffit fleet`",
+            **place,
+        )
     return found
+
+
+def _read(path: Path) -> tuple[dict[str, float], dict[str, Prior]]:
+    """Nominal load and pressure, and the priors, of a file of :func:`fleet_content`."""
+    content = json.loads(path.read_text(encoding="utf-8"))
+    nominal = {name: float(value) for name, value in content["nominal"].items()}
+    priors = {
+        str(name): Prior(float(row["expected"]), float(row["spread"]))
+        for name, row in content["coefficients"].items()
+    }
+    return nominal, priors

@@ -1,124 +1,177 @@
-"""The least-squares problem: what the simulation says at the raw points, against what was measured."""
+"""The least-squares problem of the fit: readings of the simulation against the measured points."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 
-from mffit import least_squares
+from mffit.fit import constants, weights
 from mffit.fit.constraints import Envelope, limits
-from mffit.measured import RadiusReading
+from mffit.fit.radius import effective_radius
+from mffit.fit.ranges import covered_ranges, envelope
+from mffit.fit.rig_numbers import known_faults
+from mffit.least_squares import LeastSquaresProblem, Linear, Number
+from mffit.measured import RadiusReading, radius_readings
 from mffit.points import Points
-from mffit.rig import Simulation
+from mffit.quantities import CHANNELS
+from mffit.rig import Readings, Simulation, reference_speed
 from tir.derivatives import gradient, plain, traced
-from tir.outputs import outputs_of
-
-LIMIT_WEIGHT = 3000.0
-"""Residual in units of noise per unit of violation; large enough to hold, small enough to keep the problem smooth."""
 
 
 @dataclass(frozen=True, slots=True)
-class Problem:
-    """Points with their weights and the simulation to start from; residuals for any choice of free numbers."""
+class FitProblem:
+    """Points with their weights and a simulation; residuals for any choice of free numbers."""
 
     points: Points
-    simulation: Simulation
-    sigma_Fy: np.ndarray  #: (n,) standard uncertainty used as weight [N]; inf where not used
-    sigma_Mz: np.ndarray  #: (n,) [Nm]
+    simulation: Simulation  #: from whose numbers a search starts
+    sigma: Mapping[str, np.ndarray]
+    """By channel, standard uncertainty (n,) used as weight [N] or [Nm]; inf where the channel is not used."""
     envelope: Envelope | None = None  #: over which the physical limits hold
     radii: tuple[RadiusReading, ...] = ()  #: measured effective radii, which count as data
     speed: float = 1.0  #: at which they were measured [m/s]
 
-    def select(self, index: np.ndarray) -> Problem:
+    def select(self, index: np.ndarray) -> FitProblem:
         """The problem of some points (m,)."""
-        return replace(
-            self,
-            points=self.points.select(index),
-            sigma_Fy=self.sigma_Fy[index],
-            sigma_Mz=self.sigma_Mz[index],
-        )
+        sigma = {name: u[index] for name, u in self.sigma.items()}
+        return replace(self, points=self.points.select(index), sigma=sigma)
 
-    def with_values(self, values) -> Problem:
-        """The same from another start."""
+    def thinned(self, stride: int) -> FitProblem:
+        """The problem of every ``stride``-th point, each counted that often so that priors keep their relative weight."""
+        if stride == 1:
+            return self
+        part = self.select(np.arange(0, len(self.points), stride))
+        share = 1.0 / np.sqrt(stride)
+        return replace(part, sigma={name: share * u for name, u in part.sigma.items()})
+
+    def with_values(self, values: Mapping[str, float]) -> FitProblem:
+        """The same problem with some numbers of the simulation replaced."""
         return replace(self, simulation=self.simulation.with_numbers(values))
 
-    def misfit(self) -> np.ndarray:
-        """(model - measured) / sigma at the start for Fy and then Mz, shape (2n,); 0 where a channel is not used."""
-        out = self.simulation.readings(self.points)
-        return np.concatenate([self._weighted(out.Fy, 0), self._weighted(out.Mz, 1)])
+    def value(self, name: str) -> float:
+        """Current value of a coefficient or rig error."""
+        return self.simulation.number(name, self.points)
 
-    def free(self, names: Sequence[str]) -> least_squares.Problem:
+    def starting_here(self, numbers: Sequence[Number]) -> list[Number]:
+        """The numbers with their current values as starting values."""
+        return [replace(n, start=self.value(n.name)) for n in numbers]
+
+    def reweighted(self) -> tuple[FitProblem, dict[str, float]]:
+        """The problem with weights from its own misfit, and by channel the robust misfit over sigma, at least 1.
+
+        A channel that the model misses by more than the noise must not dominate the other one.
+        """
+        found = {name: weights.enlarged(z, self.points.sweep) for name, z in self.misfit().items()}
+        sigma = {name: self.sigma[name] * factor for name, (factor, _) in found.items()}
+        return replace(self, sigma=sigma), {name: scale for name, (_, scale) in found.items()}
+
+    def misfit(self, readings: Readings | None = None) -> dict[str, np.ndarray]:
+        """By channel, (model - measured) / sigma (n,); 0 where the channel is not used.
+
+        Parameters
+        ----------
+        readings : of the simulation, if they are known already
+        """
+        readings = self.simulation.readings(self.points) if readings is None else readings
+        out = {}
+        for name, sigma in self.sigma.items():
+            measured = np.nan_to_num(getattr(self.points, name))
+            out[name] = np.where(self._used(name), (getattr(readings, name) - measured) / sigma, 0.0)
+        return out
+
+    def free(self, names: Sequence[str]) -> LeastSquaresProblem:
         """Residuals and derivatives with the named numbers free."""
 
-        def at(x: np.ndarray) -> Problem:
+        def at(x: np.ndarray) -> FitProblem:
             return self.with_values(dict(zip(names, x.tolist(), strict=True)))
 
         def residual(x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
             here = at(x)
-            return np.concatenate([here.misfit(), here._radii([])[0]]), here._limits([])[0]
+            data = np.concatenate([*here.misfit().values(), here._radii([])[0]])
+            return data, here._broken_limits([])[0]
 
-        def linear(x: np.ndarray) -> least_squares.Linear:
+        def linear(x: np.ndarray) -> Linear:
             here = at(x)
-            out, slope = here.simulation.sensitivities(here.points, names)
-            radii, radii_slope = here._radii(names)
-            limits, limits_slope = here._limits(names)
-            rows = [here._weighted(out.Fy, 0), here._weighted(out.Mz, 1), radii]
+            readings, by_channel = here.simulation.sensitivities(here.points, names)
             slopes = [
-                slope.Fy / here.sigma_Fy[:, None] * here._used(0)[:, None],
-                slope.Mz / here.sigma_Mz[:, None] * here._used(1)[:, None],
-                radii_slope,
+                getattr(by_channel, name) / sigma[:, None] * here._used(name)[:, None]
+                for name, sigma in here.sigma.items()
             ]
-            return least_squares.Linear(np.concatenate(rows), np.concatenate(slopes), limits, limits_slope)
+            radii, radii_slope = here._radii(names)
+            broken, broken_slope = here._broken_limits(names)
+            return Linear(
+                data=np.concatenate([*here.misfit(readings).values(), radii]),
+                slope=np.concatenate([*slopes, radii_slope]),
+                limits=broken,
+                limits_slope=broken_slope,
+            )
 
-        return least_squares.Problem(residual, linear)
+        return LeastSquaresProblem(residual, linear)
 
-    def _channel(self, channel: int) -> tuple[np.ndarray, np.ndarray]:
-        return ((self.points.Fy, self.sigma_Fy), (self.points.Mz, self.sigma_Mz))[channel]
-
-    def _used(self, channel: int) -> np.ndarray:
-        measured, sigma = self._channel(channel)
-        return np.isfinite(sigma) & np.isfinite(measured)
-
-    def _weighted(self, model: np.ndarray, channel: int) -> np.ndarray:
-        measured, sigma = self._channel(channel)
-        return np.where(self._used(channel), (model - np.nan_to_num(measured)) / sigma, 0.0)
+    def _used(self, channel: str) -> np.ndarray:
+        return np.isfinite(self.sigma[channel]) & np.isfinite(getattr(self.points, channel))
 
     def _radii(self, names: Sequence[str]) -> tuple[np.ndarray, np.ndarray]:
-        """Effective radii of the model against the measured ones, which follow the path radius they were taken on."""
+        """Residuals of the measured effective radii and their derivatives.
+
+        A radius that was measured over a path length is proportional to the path radius.
+        """
         if not self.radii:
             return np.zeros(0), np.zeros((0, len(names)))
-        numbers = traced({name: self.simulation.number(name, self.points) for name in names})
-        coefficients = {n: x for n, x in numbers.items() if n in self.simulation.values}
-        p = SimpleNamespace(**{**self.simulation.values, **coefficients})
+        numbers = traced({name: self.value(name) for name in names})
+        coefficients = {name: x for name, x in numbers.items() if name in self.simulation.values}
         load = np.array([row.load for row in self.radii])
         measured, u = (np.array([getattr(row, name) for row in self.radii]) for name in ("value", "u"))
         declared = self.simulation.declared(self.points)
-        R = numbers.get("path_radius_m", self.simulation.number("path_radius_m", self.points))
+        R = numbers.get("path_radius_m", self.value("path_radius_m"))
         follows = np.array([1.0 if row.follows_path else 0.0 for row in self.radii])
-        (Re,) = outputs_of(("Re",), p, {"Fz": load, "Vx": self.speed})
+        Re = effective_radius({**self.simulation.values, **coefficients}, load, self.speed)
         out = (Re - measured * (1.0 + follows * (R / declared - 1.0))) / u
         slope = np.broadcast_to(gradient(out, list(numbers.values())), (len(load), len(names)))
         return np.broadcast_to(plain(out), len(load)), slope
 
-    def _limits(self, names: Sequence[str]) -> tuple[np.ndarray, np.ndarray]:
-        """Broken physical limits of the model."""
+    def _broken_limits(self, names: Sequence[str]) -> tuple[np.ndarray, np.ndarray]:
+        """Violations of the physical limits as residuals, and their derivatives."""
         if self.envelope is None:
             return np.zeros(0), np.zeros((0, len(names)))
-        coefficients = traced(
-            {name: float(self.simulation.values[name]) for name in names if name in self.simulation.values}
-        )
-        rows = limits(SimpleNamespace(**{**self.simulation.values, **coefficients}), self.envelope)
-        m = self.envelope.size
-        slope = np.zeros((len(rows) * m, len(names)))
-        columns = [k for k, name in enumerate(names) if name in coefficients]
-        value = np.concatenate([np.broadcast_to(plain(row), m) for row in rows])
-        if columns:
-            wrt = list(coefficients.values())
-            slope[:, columns] = np.concatenate(
-                [np.broadcast_to(gradient(row, wrt), (m, len(wrt))) for row in rows]
-            )
+        values = self.simulation.values
+        coefficients = traced({name: float(values[name]) for name in names if name in values})
+        p = SimpleNamespace(**{**values, **coefficients})
+        value, by_coefficient = limits(p, self.envelope, list(coefficients.values()))
+        slope = np.zeros((len(value), len(names)))
+        slope[:, [k for k, name in enumerate(names) if name in coefficients]] = by_coefficient
         broken = value > 0.0
-        return LIMIT_WEIGHT * np.where(broken, value, 0.0), LIMIT_WEIGHT * slope * broken[:, None]
+        weight = constants.LIMIT_WEIGHT_OF_FIT
+        return weight * np.where(broken, value, 0.0), weight * slope * broken[:, None]
+
+
+def fit_problem(config: Any, points: Points, measured: Any, values: Mapping[str, Any]) -> FitProblem:
+    """The problem before the fit: points as read, weights as stated, rig errors as far as they are known.
+
+    Parameters
+    ----------
+    config : the validated ``tyre.toml``
+    points : raw points, angles as read
+    measured : the direct method's result
+    values : every value of the property file before the fit
+    """
+    disc = config.rig.on_disc
+    return FitProblem(
+        points=points,
+        simulation=Simulation(
+            values=values,
+            faults=known_faults(config, measured),
+            turn_slip=disc,
+            radius_m=config.rig.radius or float("nan"),
+        ),
+        sigma={
+            name: weights.stated_or_nominal(getattr(points, f"u_{name}"), getattr(points, name))
+            for name in CHANNELS
+        },
+        envelope=envelope(covered_ranges(points)),
+        radii=radius_readings(config) if disc else (),
+        speed=reference_speed(points),
+    )

@@ -1,108 +1,106 @@
-"""Intervals where the curvature at the best fit misleads: the valley of equally good fits is followed instead."""
+"""Profile intervals along a bent valley of equally good fits, where the curvature at the best fit misleads."""
 
 from __future__ import annotations
 
-import dataclasses
 from collections.abc import Collection, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from mffit.fit.posterior import COVERING
-from mffit.fit.problem import Problem
+from mffit.constants import COVERAGE_FACTOR_95
+from mffit.fit import constants
+from mffit.fit.problem import FitProblem
 from mffit.least_squares import Number, Solution, solve
 
-PROBE = 2.0
-"""Standard errors away from the best fit at which the sum of squares is compared with its quadratic form."""
-BENT = 3.0
-"""Ratio of the two from which on the valley counts as bent."""
-ENOUGH = 300
-"""Points that show whether a valley is bent."""
-DIRECTIONS = 8
-"""The least determined directions, along which valleys are looked for."""
-MOST_STEPS = 7
-"""Steps along the valley to either side."""
-STRIDE = 1.7
-"""Growth of the steps."""
+ALLOWED_RISE = COVERAGE_FACTOR_95**2
+"""Rise of the sum of squares up to which a fit belongs to the 95 % interval of one number."""
 
 
 @dataclass(frozen=True, slots=True)
 class Valley:
-    """Equally good fits along one coefficient, as far as 95 % reach."""
+    """Equally good fits along one number, up to the ends of its 95 % interval."""
 
-    along: str  #: the coefficient that was moved
-    intervals: Mapping[str, tuple[float, float]]  #: 95 % intervals of all that move with it
-    better: Mapping[
-        str, float
-    ]  #: a fit met on the way that is better than the best one; empty if there is none
+    along: str  #: the number that was moved
+    intervals: Mapping[str, tuple[float, float]]  #: 95 % intervals of all numbers that move with it
+    better: Mapping[str, float]  #: a fit on the way that is better than the best one; empty if there is none
 
 
 def follow(
-    problem: Problem, numbers: Sequence[Number], solution: Solution, among: Collection[str]
+    problem: FitProblem, numbers: Sequence[Number], solution: Solution, among: Collection[str]
 ) -> Valley | None:
-    """Follow the most bent valley to both sides until the sum of squares has risen by 3.84.
+    """The most bent valley, followed to both sides until the sum of squares has risen by 3.84.
 
     Parameters
     ----------
     problem : at the solution
     numbers : that were free
     solution : the best fit
-    among : the numbers that the data decide; of the others the prior's spread is interval enough
+    among : names of the numbers that the points determine; the prior's spread suffices as interval of the others
 
     Returns
     -------
-    Valley, or None where the quadratic form is a fair picture of the sum of squares everywhere
+    Valley, or None where the sum of squares is close to its quadratic form along all directions
     """
     along = _most_bent(problem, numbers, solution, among)
     if not along:
         return None
-    best = np.array(list(solution.values.values()))
-    errors = np.sqrt(np.diag(solution.covariance))
-    ends, better, least = [best - COVERING * errors, best + COVERING * errors], {}, solution.cost
+    best, errors = np.array(list(solution.values.values())), np.sqrt(np.diag(solution.covariance))
+    low, high = best - COVERAGE_FACTOR_95 * errors, best + COVERAGE_FACTOR_95 * errors
+    better, least = {}, solution.cost
     for side in (-1.0, 1.0):
         for place, rise in _walk(problem, numbers, solution, along, side):
             if solution.cost + rise < least:
                 better, least = dict(zip(solution.names, place.tolist(), strict=True)), solution.cost + rise
-            # What is left of the allowed rise is the width across the valley.
-            across = errors * np.sqrt(np.maximum(COVERING**2 - max(rise, 0.0), 0.0))
+            # The rest of the allowed rise is the width across the valley.
+            across = errors * np.sqrt(np.maximum(ALLOWED_RISE - max(rise, 0.0), 0.0))
             across[solution.names.index(along)] = 0.0
-            ends = [np.minimum(ends[0], place - across), np.maximum(ends[1], place + across)]
-    moved = (best - ends[0] > 1.01 * COVERING * errors) | (ends[1] - best > 1.01 * COVERING * errors)
-    lower, upper = (np.array([getattr(n, end) for n in numbers]) for end in ("lower", "upper"))
-    intervals = {
-        name: (float(max(ends[0][i], lower[i])), float(min(ends[1][i], upper[i])))
-        for i, name in enumerate(solution.names)
-        if moved[i]
+            low, high = np.minimum(low, place - across), np.maximum(high, place + across)
+    return Valley(
+        along=along,
+        intervals=_wider(numbers, best, errors, low, high),
+        better=better if least < constants.BETTER_ON_PROFILE * solution.cost else {},
+    )
+
+
+def _wider(
+    numbers: Sequence[Number], best: np.ndarray, errors: np.ndarray, low: np.ndarray, high: np.ndarray
+) -> dict[str, tuple[float, float]]:
+    """The intervals, within the bounds, that exceed those from the curvature."""
+    usual = constants.WIDER_INTERVAL * COVERAGE_FACTOR_95 * errors
+    wider = (best - low > usual) | (high - best > usual)
+    return {
+        n.name: (float(max(low[i], n.lower)), float(min(high[i], n.upper)))
+        for i, n in enumerate(numbers)
+        if wider[i]
     }
-    return Valley(along, intervals, better if least < 0.999 * solution.cost else {})
 
 
 def _most_bent(
-    problem: Problem, numbers: Sequence[Number], solution: Solution, among: Collection[str]
+    problem: FitProblem, numbers: Sequence[Number], solution: Solution, among: Collection[str]
 ) -> str:
-    """The number that moves most along the direction in which the sum of squares is least like its quadratic form.
+    """The number that moves most along the direction in which the sum of squares differs most from its quadratic form.
 
-    Looked at are the directions that the data determine least; empty if it is a fair picture along all of them.
+    The least determined directions are probed; empty if the quadratic form is good along all of them.
     """
     best = np.array(list(solution.values.values()))
     held = solution.at_bound | solution.at_limit
     rows = [i for i, n in enumerate(numbers) if n.name in among and n.name not in held]
     if not rows:
         return ""
-    step = max(len(problem.points) // ENOUGH, 1)
-    part = problem.select(np.arange(0, len(problem.points), step))
-    at = part.free(solution.names)
-    here = at.linear(best)
-    worst, name = BENT, ""
+    stride = max(len(problem.points) // constants.PROBE_POINTS, 1)
+    part = problem.select(np.arange(0, len(problem.points), stride)).free(solution.names)
+    here = part.linear(best)
+    probe = constants.PROBE_DISTANCE
+    worst, name = float(constants.BENT_VALLEY_RATIO), ""
     for direction in _least_determined(solution.covariance, rows, [numbers[i].spread for i in rows]):
-        for side in (-PROBE, PROBE):
+        for side in (-probe, probe):
             trial = best + side * direction
             if any(not n.lower <= v <= n.upper for n, v in zip(numbers, trial, strict=True)):
                 continue
-            data, limits = at.residual(trial)
+            data, limits = part.residual(trial)
             expected = here.data + here.slope @ (trial - best)
-            bent = data @ data + limits @ limits - here.limits @ here.limits - expected @ expected
-            ratio = 1.0 + bent * step / PROBE**2
+            excess = data @ data + limits @ limits - here.limits @ here.limits - expected @ expected
+            ratio = 1.0 + excess * stride / probe**2
             if ratio > worst:
                 own = np.abs(direction) / np.sqrt(np.diag(solution.covariance))
                 worst, name = ratio, numbers[max(rows, key=lambda i: own[i])].name
@@ -110,51 +108,47 @@ def _most_bent(
 
 
 def _least_determined(covariance: np.ndarray, rows: list[int], spread: list[float]) -> list[np.ndarray]:
-    """Directions (k,) of one standard error in the named rows, the widest first, everything else following."""
+    """Directions (k,) of one standard error in the named rows, the widest first; the other numbers are refitted."""
     scale = np.where(np.isfinite(spread), spread, 1.0)
     own = covariance[np.ix_(rows, rows)]
     size, axes = np.linalg.eigh(own / np.outer(scale, scale))
-    follow_up = covariance[:, rows] @ np.linalg.inv(own)
-    return [
-        follow_up @ (scale * axes[:, j] * np.sqrt(max(size[j], 0.0))) for j in np.argsort(-size)[:DIRECTIONS]
-    ]
-
-
-def _known(number: Number, value: float) -> float:
-    """What a number's prior adds to the sum of squares; nothing where nothing is known."""
-    return ((value - number.expected) / number.spread) ** 2
+    refitted = covariance[:, rows] @ np.linalg.inv(own)
+    widest = np.argsort(-size)[: constants.PROBED_DIRECTIONS]
+    return [refitted @ (scale * axes[:, j] * np.sqrt(max(size[j], 0.0))) for j in widest]
 
 
 def _walk(
-    problem: Problem, numbers: Sequence[Number], solution: Solution, along: str, side: float
+    problem: FitProblem, numbers: Sequence[Number], solution: Solution, along: str, side: float
 ) -> Iterator[tuple[np.ndarray, float]]:
-    """Fits with one number moved further and further, everything else refitted; with the rise of the sum of squares."""
+    """Fits with one number moved further and further, all others refitted, and the rise of the sum of squares."""
     i = solution.names.index(along)
-    lower, upper = numbers[i].lower, numbers[i].upper
-    allowed = COVERING**2
     before, risen = np.array(list(solution.values.values())), 0.0
-    length = side * COVERING * float(np.sqrt(solution.covariance[i, i]))
-    for _ in range(MOST_STEPS):
-        value = float(np.clip(before[i] + length, lower, upper))
+    length = side * COVERAGE_FACTOR_95 * float(np.sqrt(solution.covariance[i, i]))
+    for _ in range(constants.PROFILE_STEPS):
+        value = float(np.clip(before[i] + length, numbers[i].lower, numbers[i].upper))
         if value == before[i]:
             return
         place, cost = _refitted(problem, numbers, before, i, value)
         rise = cost - solution.cost
-        if rise > allowed:  # the end lies in between, where the sum of squares is taken as quadratic
+        if rise > ALLOWED_RISE:  # the end lies in between, where the sum of squares is taken as quadratic
             near, far = np.sqrt(max(risen, 0.0)), np.sqrt(rise)
-            yield before + (np.sqrt(allowed) - near) / (far - near) * (place - before), allowed
+            yield before + (np.sqrt(ALLOWED_RISE) - near) / (far - near) * (place - before), ALLOWED_RISE
             return
         yield place, rise
-        before, risen, length = place, rise, STRIDE * length
+        before, risen, length = place, rise, constants.PROFILE_STEP_GROWTH * length
 
 
 def _refitted(
-    problem: Problem, numbers: Sequence[Number], start: np.ndarray, i: int, value: float
+    problem: FitProblem, numbers: Sequence[Number], start: np.ndarray, i: int, value: float
 ) -> tuple[np.ndarray, float]:
     """The best fit with one number held at a value, and its sum of squares."""
-    begun = [dataclasses.replace(n, start=x) for n, x in zip(numbers, start.tolist(), strict=True)]
-    others = begun[:i] + begun[i + 1 :]
-    held = problem.with_values({numbers[i].name: value})
-    found = solve(held.free([n.name for n in others]), others, max_steps=12, tolerance=1e-4)
+    moving = [replace(n, start=x) for n, x in zip(numbers, start.tolist(), strict=True)]
+    held = moving.pop(i)
+    found = solve(
+        problem.with_values({held.name: value}).free([n.name for n in moving]),
+        moving,
+        max_steps=constants.REFIT_STEPS,
+        tolerance=constants.REFIT_TOLERANCE,
+    )
     place = np.insert(np.array(list(found.values.values())), i, value)
-    return place, found.cost + _known(numbers[i], value)
+    return place, found.cost + ((value - held.expected) / held.spread) ** 2

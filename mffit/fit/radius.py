@@ -1,4 +1,4 @@
-"""Radius coefficients: the file's effective rolling radius at the tested loads is the measured one."""
+"""Radius coefficients with which the file's effective rolling radius is the measured one."""
 
 from __future__ import annotations
 
@@ -8,13 +8,19 @@ from typing import Any
 
 import numpy as np
 
-from tir.evaluate import evaluate
+from tir.derivatives import gradient, plain, traced
+from tir.outputs import outputs_of
+
+
+def effective_radius(values: Mapping[str, Any], loads: np.ndarray, speed: float) -> Any:
+    """Effective rolling radius [m] at loads (n,) [N] and a speed [m/s], plain or traced as the values are."""
+    return outputs_of(("Re",), SimpleNamespace(**values), {"Fz": loads, "Vx": speed})[0]
 
 
 def radius_coefficients(
     values: Mapping[str, Any], r_e: Mapping[float, float], speed: float
 ) -> dict[str, float]:
-    """Q_RE0, and DREFF where several loads were measured, such that Re(Fz) passes through the measurements.
+    """Q_RE0, and DREFF where several loads were measured, with which Re(Fz) passes through the measurements.
 
     Parameters
     ----------
@@ -24,22 +30,15 @@ def radius_coefficients(
 
     Notes
     -----
-    Re is linear in Q_RE0 and DREFF but for the small centrifugal growth, so two Newton steps are exact to rounding.
+    Re is linear in Q_RE0 and DREFF but for the small centrifugal growth, so two Gauss-Newton steps are exact to rounding.
     """
     names = ("Q_RE0", "DREFF") if len(r_e) > 1 else ("Q_RE0",)
     loads, target = np.array(list(r_e)), np.array(list(r_e.values()))
-    current = {name: float(values[name]) for name in names}
-
-    def error(trial):
-        p = SimpleNamespace(**{**values, **trial})
-        return target - evaluate(p, loads, Vx=speed)[1].Re
-
+    found = {name: float(values[name]) for name in names}
     for _ in range(3):
-        residual = error(current)
-        slopes = np.empty((len(loads), len(names)))
-        for column, name in enumerate(names):
-            step = 1e-6
-            slopes[:, column] = (residual - error({**current, name: current[name] + step})) / step
-        change = np.linalg.lstsq(slopes, residual, rcond=None)[0]
-        current = {name: current[name] + float(d) for name, d in zip(names, change, strict=True)}
-    return current
+        numbers = traced(found)
+        Re = effective_radius({**values, **numbers}, loads, speed)
+        slope = np.broadcast_to(gradient(Re, list(numbers.values())), (len(loads), len(names)))
+        change = np.linalg.lstsq(slope, target - plain(Re), rcond=None)[0]
+        found = {name: found[name] + float(d) for name, d in zip(names, change, strict=True)}
+    return found

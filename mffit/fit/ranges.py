@@ -2,28 +2,22 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping
 from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 
-from mffit.fit.constraints import MARGIN, Envelope, violations
+from mffit.fit import constants
+from mffit.fit.constraints import Envelope, violations
 from mffit.points import Points
 from tir.evaluate import evaluate
 
-SHARES = (1.0, 0.75, 0.5, 0.25)
-"""Shares of the way from the tested end of a range to the wished one that are tried, the longest first."""
-SIDESLIP, CAMBER = math.radians(20.0), math.radians(45.0)
-LOW_LOAD, HIGH_LOAD, PRESSURE = 0.1, 1.5, 0.2
-REMAINING = 0.5
-"""Share of its peak that the side force keeps up to the end of the sideslip range of a plausible tyre."""
 NAMES = ("PRESMIN", "PRESMAX", "FZMIN", "FZMAX", "ALPMIN", "ALPMAX", "CAMMIN", "CAMMAX")
 
 
 def tested_ranges(points: Points) -> dict[str, float]:
-    """FZ, ALP, CAM and PRES limits [N, rad, Pa] of the set-points, exactly as run."""
+    """FZ, ALP, CAM and PRES limits [N, rad, Pa] of the set-points."""
     alpha, gamma = float(np.max(np.abs(points.alpha))), float(np.max(np.abs(points.gamma)))
     return {
         "PRESMIN": float(np.min(points.p)),
@@ -37,12 +31,18 @@ def tested_ranges(points: Points) -> dict[str, float]:
     }
 
 
-def covered_ranges(points: Points) -> dict[str, float]:
-    """The tested ranges for the fit's own limits; a pressure run alone gets 10 % either way."""
-    ranges = tested_ranges(points)
+def single_pressure(ranges: Mapping[str, float]) -> bool:
+    """Whether only one pressure was run."""
     low, high = ranges["PRESMIN"], ranges["PRESMAX"]
-    if high - low < 0.05 * high:
-        ranges["PRESMIN"], ranges["PRESMAX"] = 0.9 * low, 1.1 * high
+    return high - low < constants.SINGLE_PRESSURE_SPREAD * high
+
+
+def covered_ranges(points: Points) -> dict[str, float]:
+    """The tested ranges for the fit's own limits; a single pressure is widened to either side."""
+    ranges = tested_ranges(points)
+    if single_pressure(ranges):
+        ranges["PRESMIN"] *= 1.0 - constants.SINGLE_PRESSURE_COVER
+        ranges["PRESMAX"] *= 1.0 + constants.SINGLE_PRESSURE_COVER
     return ranges
 
 
@@ -61,38 +61,43 @@ def plausible_ranges(
 ) -> dict[str, float]:
     """The ranges to write: as far beyond the tested ones as the model stays plausible.
 
-    Simulations hold their inputs to the ranges of the file or fade forces out beyond them, so that tested ranges would
-    make a wheel with 9 degrees of sideslip stop answering. Wished are a tenth of the smallest and one and a half of the
-    largest load, 20 degrees of sideslip, a fifth of the pressure either way. Camber grows by half, to 45 degrees at most,
-    and not at all beyond: there the quadratic term of the curvature makes the formula worse inside for what it wins
-    outside. Each end goes as far as the limits of :mod:`mffit.fit.constraints` hold and the side force neither reverses
-    nor falls below half its peak.
+    Simulations hold their inputs to the ranges of the file or fade forces out beyond them: with the tested ranges, forces would
+    stop following the sideslip at 8 degrees, for example. Wished are a tenth of the smallest and one and a half of the largest
+    load, 20 degrees of sideslip, and pressures a fifth beyond the tested ones. The camber range grows by half, up to 45
+    degrees; beyond, the quadratic term of the curvature would cost more inside the range than it gains outside. Each end
+    goes as far as the limits of :mod:`mffit.fit.constraints` hold and the side force neither reverses nor falls below half
+    its peak.
 
     Parameters
     ----------
     values : every value of the file
     tested : from :func:`tested_ranges`
-    turn_slip : whether the model is right with turn slip on
+    turn_slip : whether the model is meant for turn slip on
     """
     model = SimpleNamespace(**values)
-    alpha, gamma = tested["ALPMAX"], tested["CAMMAX"]
-    wished = {
-        "FZMIN": LOW_LOAD * tested["FZMIN"],
-        "FZMAX": HIGH_LOAD * tested["FZMAX"],
-        "PRESMIN": (1.0 - PRESSURE) * tested["PRESMIN"],
-        "PRESMAX": (1.0 + PRESSURE) * tested["PRESMAX"],
-        "CAMMAX": max(gamma, min(1.5 * gamma, CAMBER)),
-        "ALPMAX": max(SIDESLIP, alpha),
-    }
+    alpha = tested["ALPMAX"]
     ranges = dict(tested)
-    breach = max(MARGIN, _breach(model, ranges)) + 1e-9
-    for name, end in wished.items():
-        for share in SHARES:
+    allowed = max(constants.LIMIT_MARGIN, _worst_violation(model, ranges)) + 1e-9
+    for name, end in _wished_ends(tested).items():
+        for share in constants.RANGE_SHARES:
             wider = _with_end(ranges, name, tested[name] + share * (end - tested[name]))
-            if _breach(model, wider) <= breach and _holds_its_force(model, wider, alpha, turn_slip):
+            if _worst_violation(model, wider) <= allowed and _keeps_its_force(model, wider, alpha, turn_slip):
                 ranges = wider
                 break
     return ranges
+
+
+def _wished_ends(tested: Mapping[str, float]) -> dict[str, float]:
+    alpha, gamma = tested["ALPMAX"], tested["CAMMAX"]
+    wider_gamma = min(constants.WRITTEN_CAMMAX_GROWTH * gamma, constants.WRITTEN_CAMMAX.rad)
+    return {
+        "FZMIN": constants.WRITTEN_FZMIN_SHARE * tested["FZMIN"],
+        "FZMAX": constants.WRITTEN_FZMAX_SHARE * tested["FZMAX"],
+        "PRESMIN": (1.0 - constants.WRITTEN_PRESSURE_SHARE) * tested["PRESMIN"],
+        "PRESMAX": (1.0 + constants.WRITTEN_PRESSURE_SHARE) * tested["PRESMAX"],
+        "CAMMAX": max(gamma, wider_gamma),
+        "ALPMAX": max(constants.WRITTEN_ALPMAX.rad, alpha),
+    }
 
 
 def _with_end(ranges: Mapping[str, float], name: str, value: float) -> dict[str, float]:
@@ -100,23 +105,26 @@ def _with_end(ranges: Mapping[str, float], name: str, value: float) -> dict[str,
     return {**ranges, name: value, **mirrored}
 
 
-def _breach(model: Any, ranges: Mapping[str, float]) -> float:
-    """The worst violation of a physical limit, the loads below and above the middle looked at in turn."""
+def _worst_violation(model: Any, ranges: Mapping[str, float]) -> float:
+    """The largest violation of a physical limit, tested on a grid for each half of the load range."""
     low, high = ranges["FZMIN"], ranges["FZMAX"]
     middle = 0.5 * (low + high)
     halves = ((low, middle), (middle, high))
     return max(float(violations(model, envelope(ranges)._replace(Fz=loads)).max()) for loads in halves)
 
 
-def _holds_its_force(model: Any, ranges: Mapping[str, float], tested_alpha: float, turn_slip: bool) -> bool:
-    """Whether the side force opposes large sideslip up to the end of the range, at every load, upright and leant."""
-    slip = np.linspace(min(tested_alpha, 0.07), ranges["ALPMAX"], 13)
+def _keeps_its_force(model: Any, ranges: Mapping[str, float], tested_alpha: float, turn_slip: bool) -> bool:
+    """Whether the side force opposes large sideslip up to the end of the range, at each load, upright and cambered."""
+    begin = min(tested_alpha, constants.REMAINING_FORCE_ALPHA)
+    angles, loads = (int(n) for n in constants.REMAINING_FORCE_GRID)
+    slip = np.linspace(begin, ranges["ALPMAX"], angles)
     alpha, gamma, Fz = np.meshgrid(
         np.concatenate([-slip[::-1], slip]),
-        np.array([-0.5, 0.0, 0.5]) * ranges["CAMMAX"],
-        np.linspace(ranges["FZMIN"], ranges["FZMAX"], 3),
+        np.array(constants.REMAINING_FORCE_CAMBERS) * ranges["CAMMAX"],
+        np.linspace(ranges["FZMIN"], ranges["FZMAX"], loads),
         indexing="ij",
     )
     Fy = evaluate(model, Fz, alpha, gamma, turn_slip=turn_slip)[0].Fy
     span = Fy[: len(slip)][::-1] - Fy[len(slip) :]  # of opposite sideslip, so that camber thrust cancels
-    return bool(np.all(span > 0.0) and np.all(span[-1] >= REMAINING * span.max(axis=0)))
+    remaining = constants.LEAST_REMAINING_FORCE * span.max(axis=0)
+    return bool(np.all(span > 0.0) and np.all(span[-1] >= remaining))

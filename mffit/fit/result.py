@@ -1,4 +1,4 @@
-"""The records that the fit returns."""
+"""The result of a fit."""
 
 from __future__ import annotations
 
@@ -8,94 +8,48 @@ from dataclasses import dataclass
 import numpy as np
 
 from mffit.brief import Brief
+from mffit.fit.agreement import Agreement
+from mffit.fit.coefficients import Coefficient
 from mffit.fit.coverage import StageCoverage
 from mffit.fit.doubts import Doubt
 from mffit.fit.files import Files
+from mffit.fit.fitted import Fitted
 from mffit.fit.outliers import Outlier
 from mffit.fit.posterior import Posterior
-from mffit.fit.staged import Fitted
 from mffit.fit.stages import StageRecord
 from mffit.quantities import CHANNELS
 from mffit.rig import Simulation
-from mffit.scatter import rms
 from tir import Tyre
-
-
-@dataclass(frozen=True, slots=True)
-class Coefficient:
-    """One coefficient of the written file and how it came by its value."""
-
-    value: float
-    stderr: float | None  #: k = 1; None if held
-    stage: str
-    fixed: bool
-    at_bound: bool
-    status: str  #: measured | fitted | regularised | default | base
-    correlated_with: str = ""  #: the coefficient with the largest correlation, if above 0.95
-    correlation: float = 0.0
-    interval: tuple[float, float] | None = None  #: of 95 %; None if held
-    origin: str = ""  #: where the value comes from, as the file's comment says it
-
-
-@dataclass(frozen=True, slots=True)
-class Agreement:
-    """How one channel of the model agrees with the points."""
-
-    rmse: float
-    nrmse: float  #: rmse over the range of the measured values
-    r2: float
-    max_abs: float
-    n: int
 
 
 @dataclass(frozen=True, slots=True, repr=False)
 class FitResult(Brief):
-    """The fitted tyre and everything the report says of it."""
+    """The fitted tyre and everything that the report needs."""
 
-    tyre: Tyre  #: the fitted model, right with turn slip on
-    written: Tyre  #: what the .tir with the plain name holds: the same, or its derivative for turn slip off
-    coefficients: Mapping[str, Coefficient]
-    channels: Mapping[str, Agreement]  #: of ``tyre`` on the raw points, turn slip on
-    odd: Mapping[str, Agreement]  #: of the file for turn slip off on the odd part, turn slip off
-    simulation: Simulation  #: ``tyre`` on the rig as the fit found it
+    tyre: Tyre  #: the fitted model, meant for turn slip on
+    written: Tyre  #: the .tir with the plain name: the fitted model or the file for turn slip off
+    coefficients: Mapping[str, Coefficient]  #: of ``written``
+    channels: Mapping[str, Agreement]  #: of ``tyre`` with the raw points, turn slip on
+    odd: Mapping[str, Agreement]  #: of the file for turn slip off with the odd part, turn slip off
+    simulation: Simulation  #: ``tyre`` on the rig as fitted
     rig: Mapping[str, tuple[float, float]]  #: rig error -> (value, standard error)
     Fy_model: np.ndarray  #: (n,) [N]
     Mz_model: np.ndarray  #: (n,) [Nm]
-    posterior: Posterior  #: what the fit leaves uncertain
+    posterior: Posterior  #: joint uncertainty of tyre and rig
     stages: tuple[StageRecord, ...]
     coverage: tuple[StageCoverage, ...]
     explanations: tuple[str, ...]
     warnings: tuple[str, ...]
     seconds: float
-    epsilon_gamma_model: float | None = None
-    doubts: tuple[Doubt, ...] = ()  #: sweeps that do not fit the others
-    outliers: tuple[Outlier, ...] = ()  #: single readings that count with no weight
-    distrusted: tuple[
-        str, ...
-    ] = ()  #: why the file is not to be trusted; among the warnings too, first of all
-    search: Fitted | None = None  #: where the search ended, to draw tyres from
-    files: Files | None = None  #: every file that is written, and how good each is
+    epsilon_gamma_model: float | None = None  #: of the fitted model; None on a flat track
+    doubts: tuple[Doubt, ...] = ()  #: sweeps that contradict the others
+    outliers: tuple[Outlier, ...] = ()  #: single readings without weight
+    distrusted: tuple[str, ...] = ()  #: why the file is not to be trusted; the first of the warnings too
+    search: Fitted | None = None  #: the end of the search, from which tyres are drawn
+    files: Files | None = None  #: every written file and its misfit
 
     @property
     def headline(self) -> str:
-        """How far the model is from the points."""
+        """The misfit of each measured channel."""
         gaps = {name: found for name, found in self.channels.items() if found.n}
         return ", ".join(f"{name} rmse {x.rmse:.3g} {CHANNELS[name].unit}" for name, x in gaps.items())
-
-
-def agreement(model: np.ndarray, measured: np.ndarray) -> Agreement:
-    """Compare a channel (n,); points where it was not measured do not count."""
-    used = np.isfinite(model) & np.isfinite(measured)
-    difference, measured = (model - measured)[used], measured[used]
-    if not len(measured):
-        return Agreement(float("nan"), float("nan"), float("nan"), float("nan"), 0)
-    rmse = rms(difference)
-    spread = float(np.ptp(measured))
-    variance = float(np.var(measured))
-    return Agreement(
-        rmse=rmse,
-        nrmse=rmse / spread if spread > 0 else float("nan"),
-        r2=1.0 - rmse**2 / variance if variance > 0 else float("nan"),
-        max_abs=float(np.max(np.abs(difference))),
-        n=len(measured),
-    )

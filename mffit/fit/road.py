@@ -1,4 +1,4 @@
-"""Conditions on a straight path over the ranges of a file, and how much each counts."""
+"""Conditions on a straight path over the ranges of a file, and their weights."""
 
 from __future__ import annotations
 
@@ -7,8 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-OUTSIDE, CORNER = 0.02, 0.5
-SLIP, LEAN = np.radians(4.0), np.radians(25.0)
+from mffit.fit import constants
 
 
 class Road(NamedTuple):
@@ -20,23 +19,30 @@ class Road(NamedTuple):
     pressure: np.ndarray  #: [Pa]
 
 
+class _Density(NamedTuple):
+    """Numbers of values of a grid."""
+
+    gamma: int
+    alpha_tested: int
+    alpha_beyond: int  #: to either side
+    Fz_tested: int
+
+
+COARSE, FINE = _Density(7, 7, 1, 2), _Density(11, 13, 3, 4)
+
+
 def road_grid(
     tested: Mapping[str, float], written: Mapping[str, float], nominal_load: float, *, dense: bool = True
 ) -> Road:
-    """Conditions over the written ranges: denser inside the tested ones, other pressures at one load."""
-    sides, inner, outer = (11, 13, 3) if dense else (7, 7, 1)
-    gamma = np.linspace(-written["CAMMAX"], written["CAMMAX"], sides)
-    inside = np.linspace(-tested["ALPMAX"], tested["ALPMAX"], inner)
-    beyond = np.linspace(tested["ALPMAX"], written["ALPMAX"], outer + 1)[1:]
+    """Conditions over the written ranges: denser inside the tested ones, pressures off the middle at one load only."""
+    density = FINE if dense else COARSE
+    gamma = np.linspace(-written["CAMMAX"], written["CAMMAX"], density.gamma)
+    inside = np.linspace(-tested["ALPMAX"], tested["ALPMAX"], density.alpha_tested)
+    beyond = np.linspace(tested["ALPMAX"], written["ALPMAX"], density.alpha_beyond + 1)[1:]
     alpha = np.unique(np.concatenate([-beyond, inside, beyond]))
     main = 0.5 * (tested["PRESMIN"] + tested["PRESMAX"])
-    loads = np.unique(
-        [
-            written["FZMIN"],
-            *np.linspace(tested["FZMIN"], tested["FZMAX"], 4 if dense else 2),
-            written["FZMAX"],
-        ]
-    )
+    within = np.linspace(tested["FZMIN"], tested["FZMAX"], density.Fz_tested)
+    loads = np.unique([written["FZMIN"], *within, written["FZMAX"]])
     middle = float(np.clip(nominal_load, tested["FZMIN"], tested["FZMAX"]))
     cases = [(load, main) for load in loads]
     cases += [(middle, pressure) for pressure in sorted({written["PRESMIN"], written["PRESMAX"]} - {main})]
@@ -45,10 +51,10 @@ def road_grid(
 
 
 def camber_lines(written: Mapping[str, float]) -> tuple[Road, int]:
-    """Camber alone, over the whole range, at three loads; and the conditions of each."""
-    n = 17
+    """Lines of camber without sideslip over the written range, one per load; and the number of conditions of each."""
+    loads, n = (int(k) for k in constants.CAMBER_LINE_GRID)
     Fz, gamma = np.meshgrid(
-        np.linspace(written["FZMIN"], written["FZMAX"], 3),
+        np.linspace(written["FZMIN"], written["FZMAX"], loads),
         np.linspace(-written["CAMMAX"], written["CAMMAX"], n),
         indexing="ij",
     )
@@ -57,19 +63,20 @@ def camber_lines(written: Mapping[str, float]) -> tuple[Road, int]:
 
 
 def weights(road: Road, tested: Mapping[str, float]) -> np.ndarray:
-    """Weight (n,) of each condition: what a vehicle visits counts more than the corners of the ranges.
+    """Weight (n,) of each condition: conditions that vehicles reach count more than the corners of the ranges.
 
-    A wheel leans far with little sideslip and slips far with little lean; both at once is a fall. Inside the tested
-    ranges the weight is ``1/2 + 1/2 / (1 + (alpha/4 deg * gamma/25 deg)**2)``: 1 along both axes, nearly 1/2 in the
-    corner of 8 deg of sideslip and 50 deg of camber. Conditions that only the written ranges hold count a fiftieth:
-    enough to keep the file plausible there, too little to cost newtons where there are data.
+    A wheel with much camber has little sideslip and a wheel with much sideslip has little camber; both at once is a fall. Inside
+    the tested ranges the weight is ``1/2 + 1/2 / (1 + (alpha/4 deg * gamma/25 deg)**2)``: 1 along both axes, nearly 1/2 in
+    the corner of 8 deg of sideslip and 50 deg of camber. Conditions outside the tested ranges have a fiftieth of it.
     """
-    both = (road.alpha / SLIP * road.gamma / LEAN) ** 2
-    return np.where(inside(road, tested), 1.0, OUTSIDE) * (CORNER + (1.0 - CORNER) / (1.0 + both))
+    both = (road.alpha / constants.ROAD_ALPHA_SCALE.rad * road.gamma / constants.ROAD_GAMMA_SCALE.rad) ** 2
+    corner = constants.WEIGHT_IN_CORNER
+    share = np.where(inside(road, tested), 1.0, constants.WEIGHT_OUTSIDE_TESTED)
+    return share * (corner + (1.0 - corner) / (1.0 + both))
 
 
 def inside(road: Road, tested: Mapping[str, float]) -> np.ndarray:
-    """Which conditions (n,) lie inside the tested ranges."""
+    """Mask (n,) of the conditions inside the tested ranges; rounding of their ends does not count."""
     within = np.abs(road.alpha) <= tested["ALPMAX"] + 1e-9
     within &= np.abs(road.gamma) <= tested["CAMMAX"] + 1e-9
     within &= (road.Fz >= 0.999 * tested["FZMIN"]) & (road.Fz <= 1.001 * tested["FZMAX"])

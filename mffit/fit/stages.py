@@ -1,4 +1,4 @@
-"""The stages of the fit, in order, and the kinds of coefficients that the table marks."""
+"""The stages of the fit, in order, and groups of coefficients that the parameter table marks."""
 
 from __future__ import annotations
 
@@ -11,25 +11,26 @@ from tir.parameters import TABLE
 class Stage:
     """One step of the staged fit.
 
-    It frees the coefficients that the table assigns to it, together with those of the stages in ``reopened``: each stage
-    starts near its solution, and what an earlier one got slightly wrong for lack of data can still move.
+    It frees the coefficients that the parameter table assigns to it and those of the stages in ``reopened``, so that small
+    errors of earlier stages, which had less data, can still be corrected.
     """
 
     name: str  #: the word in the table's ``stage`` column
     title: str
-    channels: tuple[str, ...]  #: measured channels it is fitted to
-    reopened: tuple[str, ...] = ()  #: earlier stages whose coefficients move again
+    channels: tuple[str, ...]  #: measured channels that it is fitted to
+    reopened: tuple[str, ...] = ()  #: earlier stages whose coefficients are free again
     zero_camber: bool = False  #: uses only points without camber
-    main_pressure: bool = False  #: uses only points at the pressure of most of the programme
+    main_pressure: bool = False  #: uses only points at the most frequent pressure
 
     @property
     def parameters(self) -> tuple[str, ...]:
+        """Coefficients that the parameter table assigns to the stage."""
         return tuple(row.name for row in TABLE if row.stage == self.name)
 
 
 @dataclass(frozen=True, slots=True)
 class StageRecord:
-    """What one stage of the fit did."""
+    """The coefficients of one stage and the misfit after it."""
 
     name: str
     title: str
@@ -50,11 +51,11 @@ STAGES = (
 )
 
 ODD_TERMS = frozenset(row.name for row in TABLE if row.odd)
-"""Terms that a tyre of perfect mirror symmetry does not have."""
+"""Coefficients that are zero for a tyre of perfect mirror symmetry."""
 SHIFT_TERMS = frozenset(row.name for row in TABLE if row.shift)
-"""Odd terms that on a disc live in the even part, beside turn slip: only backward runs or flipped mounts show them."""
+"""Odd terms that a disc shows in the even part together with turn slip; backward runs or flipped mounts separate them."""
 SMALL_ON_A_DISC = {row.name: row.disc_spread for row in TABLE if row.disc_spread is not None}
-"""Spread, 1 sigma, of what a disc shows only beside something larger: conicity beside the turn-slip force, ply-steer beside the
-zero of the sideslip axis. They are held to the size that road tyres have."""
+"""Prior standard deviation, from road tyres, of coefficients that a disc shows only together with a larger effect: conicity with
+the turn-slip force, ply-steer with the zero of the sideslip axis."""
 WITH_CAMBER = frozenset(row.name for row in TABLE for need in row.needs if need.word in ("camber", "coupled"))
-"""Coefficients that act only on a leaning wheel."""
+"""Coefficients that act only on a cambered wheel."""

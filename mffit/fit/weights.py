@@ -1,8 +1,8 @@
-"""How much each point counts: the measurement uncertainty, the misfit of the model itself, outliers.
+"""Weights of the points: from their uncertainty, from the misfit of the model, and from outliers.
 
-Two kinds of residual lose weight. Those beyond four robust standard deviations pull with a constant force instead of one that
-grows (Huber), as a model may miss a stretch of a sweep by more than the noise. A single reading that is far from the model and
-from its neighbours in the sweep alike is no property of the tyre: it does not count at all.
+Two kinds of residual lose weight. Residuals beyond the Huber threshold pull with a constant force instead of a growing one,
+because a model may miss a stretch of a sweep by more than the noise. An outlier, a single reading far from the model and from its
+neighbours in the sweep, is a mistake of the measurement: its weight is zero.
 """
 
 from __future__ import annotations
@@ -10,71 +10,76 @@ from __future__ import annotations
 import numpy as np
 from scipy.special import ndtri
 
+from mffit.fit import constants
 from mffit.scatter import robust
-
-OUTLIER = 4.0
-"""Residuals beyond this many robust standard deviations lose weight (Huber)."""
 
 
 def stated_or_nominal(u: np.ndarray, values: np.ndarray) -> np.ndarray:
-    """Uncertainty (n,) per point: as stated, else 1 % of the channel's spread; inf where the channel is missing."""
+    """Uncertainty (n,) of each point: as stated, else a share of the channel's range; inf where the channel is missing."""
     measured = np.isfinite(values)
-    nominal = 0.01 * np.ptp(values[measured]) if np.any(measured) else 1.0
+    nominal = constants.NOMINAL_NOISE_SHARE * np.ptp(values[measured]) if np.any(measured) else 1.0
     u = np.where(np.isfinite(u) & (u > 0), u, max(nominal, 1e-9))
     return np.where(measured, u, np.inf)
 
 
 def robust_scale(residual: np.ndarray) -> float:
-    """Standard deviation of the residuals' core, from the median absolute value."""
+    """Standard deviation of the residuals' core, from the median absolute value; zeros do not count."""
     residual = residual[residual != 0.0]
     return robust(residual) if len(residual) else 1.0
 
 
 def huber(residual: np.ndarray, scale: float) -> np.ndarray:
-    """Factor (n,) >= 1 by which the uncertainty of outlying points is enlarged."""
-    size = np.abs(residual) / (OUTLIER * scale)
+    """Factor (n,) >= 1 that enlarges the uncertainty of points beyond the Huber threshold."""
+    size = np.abs(residual) / (constants.HUBER_THRESHOLD * scale)
     return np.sqrt(np.maximum(size, 1.0))
 
 
-FALSE_ALARM = 0.01
-"""Probability that noise alone makes any reading of a channel stand out (Bonferroni)."""
-NEIGHBOURS = (-2, -1, 1, 2)
-"""Rows of the same sweep, before and after, whose residuals a sound reading shares."""
+def enlarged(residual: np.ndarray, sweep: np.ndarray) -> tuple[np.ndarray, float]:
+    """Factor (n,) on the uncertainty of each point, infinite for outliers; and the robust scale, at least 1.
+
+    Parameters
+    ----------
+    residual : (n,) in units of the stated uncertainty; 0 where a point is not used
+    sweep : (n,) index of each point's sweep
+    """
+    scale = max(robust_scale(residual), 1.0)
+    factor = scale * huber(residual, scale)
+    return np.where(outlying(residual, scale, sweep), np.inf, factor), scale
 
 
-def standing_out(residual: np.ndarray, scale: float, sweep: np.ndarray) -> np.ndarray:
-    """Mask (n,) of single readings that neither the model nor the neighbours in their sweep agree with.
+def outlying(residual: np.ndarray, scale: float, sweep: np.ndarray) -> np.ndarray:
+    """Mask (n,) of single readings that contradict both the model and their neighbours in the sweep.
 
     Parameters
     ----------
     residual : (n,) in units of the uncertainty, rows in the order of measuring; 0 where a point is not used
     scale : standard deviation of the residuals' core, at least 1
-    sweep : (n,) which sweep each point belongs to
+    sweep : (n,) index of each point's sweep
     """
     used = np.flatnonzero(residual != 0.0)
     out = np.zeros(len(residual), dtype=bool)
     if not len(used):
         return out
     used = used[np.argsort(sweep[used], kind="stable")]
-    apart = residual[used] - _of_neighbours(residual[used], sweep[used])
+    apart = residual[used] - _expected_from_neighbours(residual[used], sweep[used])
     known = np.isfinite(apart)
-    # Less than the stated uncertainty is no scatter to judge by: points without noise would all stand out.
+    # At least the stated uncertainty: among points without noise every tiny difference would count as an outlier.
     local = max(robust_scale(apart[known]), 1.0)
-    far = float(-ndtri(FALSE_ALARM / (2.0 * len(used))))
+    far = float(-ndtri(constants.OUTLIER_FALSE_ALARM / (2.0 * len(used))))
     out[used] = known & (np.abs(apart) > far * local) & (np.abs(residual[used]) > far * scale)
     return out
 
 
-def _of_neighbours(residual: np.ndarray, sweep: np.ndarray) -> np.ndarray:
-    """What the residuals beside each one in its sweep (n,) let expect; NaN where there are fewer than two.
+def _expected_from_neighbours(residual: np.ndarray, sweep: np.ndarray) -> np.ndarray:
+    """Residual (n,) that the neighbours in the sweep suggest; NaN where there are fewer than two.
 
-    Their median, or the straight line through those beside it if that is nearer: on a stretch that the model misses the
-    residuals run in a line, and at the end of a sweep all neighbours lie on one side.
+    It is their median, or the straight line through two of them if that is nearer: along a stretch that the model misses the
+    residuals follow a line, and at the end of a sweep all neighbours lie on one side.
     """
-    n = len(residual)
-    beside = np.full((n, len(NEIGHBOURS)), np.nan)
-    for k, step in enumerate(NEIGHBOURS):
-        there = np.arange(n) + step
+    n, offsets = len(residual), constants.OUTLIER_NEIGHBOURS
+    beside = np.full((n, len(offsets)), np.nan)
+    for k, offset in enumerate(offsets):
+        there = np.arange(n) + offset
         inside = (there >= 0) & (there < n)
         inside[inside] = sweep[there[inside]] == sweep[inside]
         beside[inside, k] = residual[there[inside]]
@@ -91,16 +96,3 @@ def _of_neighbours(residual: np.ndarray, sweep: np.ndarray) -> np.ndarray:
     ):
         out = np.where(np.abs(residual - line) < np.abs(residual - out), line, out)
     return out
-
-
-def enlarged(residual: np.ndarray, sweep: np.ndarray) -> tuple[np.ndarray, float]:
-    """Factor (n,) on the uncertainty of each point, infinite where a reading stands out, and the robust scale, at least 1.
-
-    Parameters
-    ----------
-    residual : (n,) in units of the stated uncertainty; 0 where a point is not used
-    sweep : (n,) which sweep each point belongs to
-    """
-    scale = max(robust_scale(residual), 1.0)
-    factor = scale * huber(residual, scale)
-    return np.where(standing_out(residual, scale, sweep), np.inf, factor), scale

@@ -1,232 +1,120 @@
-"""What the fit has to say, in words: comments of the files, which file is for what, and warnings."""
+"""Explanations of a fit in sentences: which file is for which use, its misfit, what was tested, where PECP1 comes from."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
+from typing import Any
 
 import numpy as np
 
-from mffit.fit.doubts import Doubt
-from mffit.fit.files import DECIDED, FileFigures, Files
-from mffit.fit.outliers import Outlier
-from mffit.fit.result import Coefficient, agreement
-from mffit.fit.staged import Fitted
-from mffit.points import Points
-from mffit.quantities import CHANNELS
-from mffit.rig import Readings
-from mffit.scatter import rms
-from mffit.tested import words_on_tested
-from tir.parameters import TABLE, Parameter
-
-LONGEST = 66
-"""Characters of a comment that fit on a line of the file."""
-DERIVED = {
-    "normal": "fitted to the model without path curvature",
-    "both": "fitted to the model with and without turn slip",
-}
-SHOWN = 5
-"""Outlying readings named in the sentence."""
-TIED = "tied to its expected value"
-FROM_DATA = ("measured", "fitted", "regularised")
-"""Origins of values that these data decided."""
-WORDS = {
-    "base": "from base",
-    "fleet": "as tyres of its fleet have it",
-    "default": "default, not measured",
-    "estimate": "estimate, not measured",
-    "regularised": TIED,
-    "range": "estimate, checked plausible",
-    "given": "given in tyre.toml",
-}
+from mffit.fit.files import Files, file_names
+from mffit.fit.misfit import FileFigures
+from mffit.fit.ranges import single_pressure
 
 
-def file_comments(
-    files: Files, origin: Mapping[str, str], coefficients: Mapping[str, Coefficient]
-) -> dict[str, dict[str, str]]:
-    """Comments of every value by use: where it comes from, how uncertain it is, what it is if that is no coefficient."""
-    every = {row.name: _comment(row, origin[row.name], files.tested) for row in TABLE}
-    every |= {name: status_comment(c) for name, c in coefficients.items() if c.status in FROM_DATA}
-    return {
-        use: {**every, **dict.fromkeys(files.changed.get(use, ()), DERIVED.get(use, ""))}
-        for use in files.by_use
-    }
+def explanations(config: Any, files: Files, values: Mapping[str, Any], measured: Any) -> list[str]:
+    """Everything that the report explains about the files, the most important first."""
+    names = file_names(config.tyre.name, config.spin.exact, config.rig.on_disc)
+    out = file_sentences(files, names)
+    if measured.epsilon_gamma is not None:
+        out.append(pecp1_sentence(config.spin.pecp1, float(values["PECP1"]), measured.epsilon_gamma.value))
+    return out
 
 
-def _comment(row: Parameter, origin: str, tested: Mapping[str, float]) -> str:
-    words = "given by this build" if row.name in DECIDED else WORDS.get(origin, origin)
-    if row.name in tested:
-        words = f"{words}, {words_on_tested(tested[row.name], row.unit)}"
-    elif not row.section.endswith("_COEFFICIENTS"):
-        words = f"{words}: {row.description}"
-    return whole_words(words)
-
-
-def whole_words(text: str, longest: int = LONGEST) -> str:
-    """The text, cut between words if it is too long for a line."""
-    return text if len(text) <= longest else text[: longest + 1].rsplit(" ", 1)[0].rstrip(",:")
-
-
-def sentences(files: Files, names: Mapping[str, str]) -> list[str]:
-    """Which file is for what, first of all, and what the file for turn slip off costs."""
+def file_sentences(files: Files, names: Mapping[str, str]) -> list[str]:
+    """Which file (``names``, by use) is for which use, how far it is from the fitted model, and what was tested."""
     if not files.lacking:
-        return [
-            f"Give {names['normal']} to the simulator with turn slip off (USE_MODE "
-            f"{int(files.by_use['normal'].tyre['USE_MODE'])}): a straight path does not measure turn slip.",
-            ranges_sentence(files),
-        ]
-    normal = files.by_use["normal"]
-    fy, mz = normal.straight["Fy"], normal.straight["Mz"]
-    modes = {use: int(f.tyre["USE_MODE"]) for use, f in files.by_use.items()}
-    lacking = ", ".join(f"{force:.0f} N at {radius:g} m" for radius, force in files.lacking.items())
-    first, doubt = [], " If you do not know, it is the second one."
-    if "both" in files.by_use:
-        first, doubt = [both_sentence(files.by_use["both"], names["both"])], ""
+        return [_flat_track_sentence(files, names["normal"]), ranges_sentence(files)]
+    both = [_both_sentence(files.by_use["both"], names["both"])] if "both" in files.by_use else []
     return [
-        *first,
-        f"Give {names['turn-slip']} to a simulator that computes turn slip, which is the turning of the wheel about the "
-        f"vertical along a curve (its USE_MODE ends in 5, here {modes['turn-slip']}); give {names['normal']} to every other "
-        f"simulator (USE_MODE ends in 4, here {modes['normal']}).{doubt} Swapped, "
-        "camber forces come out wrong.",
+        *both,
+        _use_sentence(files, names),
         f"{names['turn-slip']} is the fitted model itself.",
-        f"{names['normal']} reproduces it on a straight path to {fy.weighted:.0f} N and {mz.weighted:.1f} Nm rms where "
-        f"vehicles run ({fy.rms:.0f} N and {mz.rms:.1f} Nm over everything tested, {fy.largest:.0f} N at most): camber "
-        "changes grip through spin, and without spin the formula has no term of that shape. Upright the two are equal.",
-        f"{names['normal']} has {files.stiffness_loss:.0%} {'less' if files.stiffness_loss >= 0 else 'more'} camber "
-        f"stiffness at zero camber than the model, and lacks the turn-slip force of curved roads (upright, nominal load; "
-        f"by radius): {lacking}.",
+        _misfit_sentence(files.by_use["normal"], names["normal"]),
+        _lacking_sentence(files, names["normal"]),
         ranges_sentence(files),
     ]
 
 
-def both_sentence(file: FileFigures, name: str) -> str:
-    """What the one file for both uses is good for."""
-    without, straight, disc = (
-        file.misfit[p]["Fy"].weighted for p in ("straight", "straight_with_turn_slip", "disc")
-    )
+def _flat_track_sentence(files: Files, name: str) -> str:
     return (
-        f"Give {name} to a simulator of which you do not know whether it computes turn slip: it misses the fitted model by "
-        f"{disc:.0f} N on the disc and {straight:.0f} N on a straight path with turn slip (USE_MODE "
-        f"{int(file.tyre['USE_MODE'])}) "
-        f"and by {without:.0f} N on a straight path without it (make the last digit of USE_MODE 4). Each of the other two "
-        "files is better in its own use."
+        f"Give {name} to the simulator with turn slip off (USE_MODE {_mode(files.by_use['normal'])}): a straight path "
+        "does not measure turn slip."
     )
+
+
+def _use_sentence(files: Files, names: Mapping[str, str]) -> str:
+    unsure = "" if "both" in files.by_use else f" If you do not know, use {names['normal']}."
+    return (
+        f"Give {names['turn-slip']} to a simulator that computes turn slip, the rotation of the wheel about the vertical "
+        f"along a curved path (its USE_MODE ends in 5, here {_mode(files.by_use['turn-slip'])}). Give {names['normal']} to "
+        f"every other simulator (its USE_MODE ends in 4, here {_mode(files.by_use['normal'])}).{unsure} With the wrong "
+        "file the camber forces are wrong."
+    )
+
+
+def _misfit_sentence(normal: FileFigures, name: str) -> str:
+    Fy, Mz = normal.straight["Fy"], normal.straight["Mz"]
+    return (
+        f"{name} reproduces the fitted model on a straight path to {Fy.weighted:.0f} N and {Mz.weighted:.1f} Nm rms in the "
+        f"conditions that vehicles reach ({Fy.rms:.0f} N and {Mz.rms:.1f} Nm rms over everything tested, {Fy.largest:.0f} N "
+        "at most). The reason is that camber changes the grip through spin, for which the formula without spin has no "
+        "term. For an upright wheel the two files are equal."
+    )
+
+
+def _lacking_sentence(files: Files, name: str) -> str:
+    compared = "less" if files.stiffness_loss >= 0 else "more"
+    forces = ", ".join(f"{force:.0f} N at {radius:g} m" for radius, force in files.lacking.items())
+    return (
+        f"{name} has {files.stiffness_loss:.0%} {compared} camber stiffness at zero camber than the fitted model, and lacks "
+        f"the turn-slip force of curved roads (upright wheel, nominal load, by radius): {forces}."
+    )
+
+
+def _both_sentence(file: FileFigures, name: str) -> str:
+    places = ("straight", "straight_with_turn_slip", "disc")
+    without, straight, disc = (file.misfit[place]["Fy"].weighted for place in places)
+    return (
+        f"Give {name} to a simulator if you do not know whether it computes turn slip. It differs from the fitted model by "
+        f"{disc:.0f} N on the disc and {straight:.0f} N on a straight path with turn slip (USE_MODE {_mode(file)}), and by "
+        f"{without:.0f} N on a straight path without turn slip (change the last digit of USE_MODE to 4). Each of the other "
+        "two files is better in its own use."
+    )
+
+
+def _mode(file: FileFigures) -> int:
+    return int(file.tyre["USE_MODE"])
 
 
 def ranges_sentence(files: Files) -> str:
     """What was tested and what the files allow."""
-    t, w = files.tested, files.written
-    tested_pressure = (
-        f"{t['PRESMIN'] / 1e3:.0f} kPa only"
-        if t["PRESMAX"] - t["PRESMIN"] < 0.05 * t["PRESMAX"]
-        else f"{t['PRESMIN'] / 1e3:.0f} to {t['PRESMAX'] / 1e3:.0f} kPa"
-    )
+    tested, written = files.tested, files.written
+    low, high = (f"{tested[name] / 1e3:.0f}" for name in ("PRESMIN", "PRESMAX"))
+    pressures = f"{low} kPa only" if single_pressure(tested) else f"{low} to {high} kPa"
     return (
-        f"Tested: {t['FZMIN']:.0f} to {t['FZMAX']:.0f} N, sideslip to {np.degrees(t['ALPMAX']):.1f} deg, camber to "
-        f"{np.degrees(t['CAMMAX']):.1f} deg, {tested_pressure}. The file allows more where its range is "
-        "wider, as simulators clamp to it: "
-        f"the model stays plausible, not measured, over {w['FZMIN']:.0f} to {w['FZMAX']:.0f} N, "
-        f"{np.degrees(w['ALPMAX']):.0f} deg of sideslip, {np.degrees(w['CAMMAX']):.0f} deg of camber, "
-        f"{w['PRESMIN'] / 1e3:.0f} to {w['PRESMAX'] / 1e3:.0f} kPa."
+        f"Tested: {tested['FZMIN']:.0f} to {tested['FZMAX']:.0f} N, sideslip to {np.degrees(tested['ALPMAX']):.1f} deg, "
+        f"camber to {np.degrees(tested['CAMMAX']):.1f} deg, {pressures}. The ranges in the file are wider where the model "
+        "stays plausible, because simulators limit their inputs to them: "
+        f"{written['FZMIN']:.0f} to {written['FZMAX']:.0f} N, {np.degrees(written['ALPMAX']):.0f} deg of sideslip, "
+        f"{np.degrees(written['CAMMAX']):.0f} deg of camber, {written['PRESMIN'] / 1e3:.0f} to "
+        f"{written['PRESMAX'] / 1e3:.0f} kPa. Beyond the tested conditions nothing was measured."
     )
 
 
-def status_comment(coefficient: Coefficient) -> str:
-    """How the file's comment states the origin of a value."""
-    text = TIED if coefficient.status == "regularised" else coefficient.status
-    if coefficient.stderr is not None and not coefficient.fixed:
-        text += f" +- {coefficient.stderr:.2g}"
-    return text + (", at bound" if coefficient.at_bound else "")
-
-
-def pecp1_sentence(config, values, measured) -> str:
-    if config.spin.pecp1 == "debiased":
+def pecp1_sentence(source: str, PECP1: float, epsilon_gamma: float) -> str:
+    """Where PECP1 comes from; ``source`` is ``spin.pecp1`` of tyre.toml, ``epsilon_gamma`` the measured value."""
+    if source == "debiased":
         return (
-            f"PECP1 = {values['PECP1']:.4f} is the measured eps_gamma {measured.epsilon_gamma.value:.4f} less what the "
-            "finite spin of the disc adds to it."
+            f"PECP1 = {PECP1:.4f} is the measured eps_gamma {epsilon_gamma:.4f} less the bias that the finite spin of the "
+            "disc adds to it."
         )
-    if config.spin.pecp1 == "direct":
+    if source == "direct":
         return (
-            f"PECP1 = {values['PECP1']:.4f} is the measured eps_gamma itself; the finite spin of the disc makes the "
-            "model's turn-slip force differ slightly from the measured one."
+            f"PECP1 = {PECP1:.4f} is the measured eps_gamma itself. Because the spin of the disc is not small, the model's "
+            "turn-slip force differs slightly from the measured one."
         )
     return (
-        f"PECP1 = {values['PECP1']:.4f} is the joint estimate of tyre and rig, in which every point counts with its noise "
-        "and the rig's errors with the uncertainties declared for them; the directly measured eps_gamma is "
-        f"{measured.epsilon_gamma.value:.4f}."
+        f"PECP1 = {PECP1:.4f} is the joint estimate of tyre and rig, in which every point counts with its noise and every "
+        f"rig error with its declared uncertainty. The directly measured eps_gamma is {epsilon_gamma:.4f}."
     )
-
-
-EXPLAINED = 0.5
-"""Share of a channel's variance below which a model says next to nothing of it."""
-NOT_TRUSTED = 2.0
-"""Misfit in units of the stated noise above which a file is not to be trusted."""
-CARRIES = 1.5
-"""A sweep carries the misfit if its own is this many times that of all points."""
-
-
-def distrust(fitted: Fitted, points: Points, model: Readings) -> list[str]:
-    """Why the file is not to be trusted; empty for a sound fit."""
-    out = []
-    for name, reading, measured, u, scale in (
-        ("Fy", model.Fy, points.Fy, points.u_Fy, fitted.scale[0]),
-        ("Mz", model.Mz, points.Mz, points.u_Mz, fitted.scale[1]),
-    ):
-        if scale > NOT_TRUSTED and np.any(np.isfinite(u)):
-            out.append(
-                f"the file is not to be trusted: the model misses {name} by {scale:.1f} times the stated uncertainty"
-                f"{_carriers(points, (reading - measured) / u)}; look at these sweeps, or run mffit diagnose"
-            )
-        share = agreement(reading, measured).r2
-        if share < EXPLAINED:
-            out.append(
-                f"the file is not to be trusted: the model explains {100.0 * max(share, 0.0):.0f} % of the variance of {name}; "
-                "are these readings of free rolling at steady state, and their units and axes right?"
-            )
-    return out
-
-
-def warnings(fitted: Fitted) -> list[str]:
-    """What else a user must know of the fit."""
-    out = []
-    if fitted.attempts:
-        out.append(f"the fit was started again from {', '.join(fitted.attempts)}; the best of all is kept")
-    if fitted.at_bound:
-        out.append(
-            f"at the bound of plausible values: {', '.join(sorted(fitted.at_bound))}; check the sweeps that decide them"
-        )
-    return out
-
-
-def _carriers(points: Points, z: np.ndarray) -> str:
-    """The sweeps that carry a misfit (n,), in words."""
-    known = np.isfinite(z)
-    total = rms(z)
-    own = {k: rms(z[points.sweep == k]) for k in np.unique(points.sweep[known])}
-    worst = [k for k in sorted(own, key=lambda k: -own[k]) if own[k] > CARRIES * total][:3]
-    return f", most of it in {', '.join(points.sweep_names[k] for k in worst)}" if worst else ""
-
-
-def doubtful(fact: Doubt) -> str:
-    """A sweep that does not fit the others."""
-    explained = f"; it looks like {fact.looks}" if fact.looks else ""
-    return (
-        f"{fact.sweep} does not fit the other sweeps: predicted from them, {fact.channel} is out by {fact.rms:.3g} "
-        f"{CHANNELS[fact.channel].unit}, at least {100 * fact.share:.0f} % of its usual size and {fact.ratio:.1f} times what "
-        f"noise and model explain{explained}; check this sweep or repeat it"
-    )
-
-
-def standing_out(found: Sequence[Outlier]) -> str:
-    """The readings without weight, the worst by name."""
-    worst = sorted(found, key=lambda o: -o.ratio)[:SHOWN]
-    said = "; ".join(
-        f"{o.place} {o.channel} = {o.measured:.4g} {CHANNELS[o.channel].unit} where {o.expected:.4g} is expected"
-        for o in worst
-    )
-    more = f"; and {len(found) - len(worst)} more, all in result.json" if len(found) > len(worst) else ""
-    count = (
-        "1 reading stands out of its sweep and carries"
-        if len(found) == 1
-        else f"{len(found)} readings stand out of their sweeps and carry"
-    )
-    return f"{count} no weight: {said}{more}; correct or remove what is wrong"

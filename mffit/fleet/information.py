@@ -9,8 +9,8 @@ from typing import Any
 
 import numpy as np
 
+from mffit.fit.fitted import Fitted
 from mffit.fit.priors import scatter
-from mffit.fit.staged import Fitted
 from mffit.rig_errors import BY_NAME as RIG_ERRORS
 
 SPIN = ("PECP1", "PECP2")

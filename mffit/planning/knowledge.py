@@ -56,7 +56,7 @@ class Knowledge:
         self.names = tuple(dict.fromkeys([*spread, PECP1, *self.usual]))
         self._row = {name: k for k, name in enumerate(self.names)}
         self._at = np.array([self.simulation.number(n, points) for n in self.names])
-        sigma = (search.problem.sigma_Fy, search.problem.sigma_Mz)
+        sigma = search.problem.sigma.values()
         self._sigma = tuple(
             float(np.median(s[np.isfinite(s)])) if np.any(np.isfinite(s)) else math.inf for s in sigma
         )
@@ -136,11 +136,8 @@ class Knowledge:
             return np.zeros_like(self._base)
         if run.name not in self._of_run:
             n = len(run.points)
-            sigma = [np.full(n, s) for s in self._sigma]
-            seen = replace(
-                self.problem, points=self.with_readings(run), sigma_Fy=sigma[0], sigma_Mz=sigma[1], envelope=None,
-                radii=(),
-            )  # fmt: skip
+            sigma = {name: np.full(n, s) for name, s in zip(self.problem.sigma, self._sigma, strict=True)}
+            seen = replace(self.problem, points=self.with_readings(run), sigma=sigma, envelope=None, radii=())
             self._of_run[run.name] = self._information(seen.free(self.names).linear(self._at).slope)
         return self._of_run[run.name]
 

@@ -10,10 +10,11 @@ from typing import NamedTuple
 import numpy as np
 
 from mffit.config import Config
+from mffit.constants import COVERAGE_FACTOR_95
 from mffit.diagnosis.ties import TELLING
 from mffit.effects import CATALOG, Effect
 from mffit.fit import FitResult
-from mffit.fit.posterior import COVERING, spread_through
+from mffit.fit.posterior import spread_through
 from mffit.measured import Measured
 from mffit.planning.goals import BANDS, EPSILON, JOINT, TIE, Goal, effect_named
 from mffit.planning.identified import identified, tied_pairs
@@ -163,7 +164,7 @@ class _Outlook:
             rows = [posterior.names.index(n) for n in names if n in posterior.names]
             columns = [k for k, n in enumerate(names) if n in posterior.names]
             C, G = posterior.covariance[np.ix_(rows, rows)], slopes[:, columns]
-            return COVERING * rms(spread_through(G, C))
+            return COVERAGE_FACTOR_95 * rms(spread_through(G, C))
         return _finite(posterior.stderr.get(self.goal.name))
 
     @property

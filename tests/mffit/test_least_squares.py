@@ -1,4 +1,4 @@
-"""The one least-squares against answers that are known in closed form, and against scipy."""
+"""The least-squares solver against answers in closed form and against scipy."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.optimize import least_squares
 
-from mffit.least_squares import Linear, Number, Problem, solve
+from mffit.least_squares import LeastSquaresProblem, Linear, Number, solve
 
 RNG = np.random.default_rng(5)
 A = RNG.normal(size=(30, 3))
@@ -14,8 +14,8 @@ TRUE = np.array([1.0, -2.0, 0.5])
 DATA = A @ TRUE + 0.1 * RNG.normal(size=30)
 
 
-def linear_problem(limit: float = np.inf) -> Problem:
-    """A straight line in three numbers, the first of which may be limited with a heavy penalty."""
+def linear_problem(limit: float = np.inf) -> LeastSquaresProblem:
+    """A problem that is linear in three numbers, with a limit of the first one as a steep penalty."""
 
     def limits(x):
         return np.array([1e4 * max(x[0] - limit, 0.0)])
@@ -24,7 +24,7 @@ def linear_problem(limit: float = np.inf) -> Problem:
         slope = np.array([[1e4 if x[0] > limit else 0.0, 0.0, 0.0]])
         return Linear(A @ x - DATA, A, limits(x), slope)
 
-    return Problem(lambda x: (A @ x - DATA, limits(x)), linear)
+    return LeastSquaresProblem(lambda x: (A @ x - DATA, limits(x)), linear)
 
 
 def numbers(**changes) -> list[Number]:
@@ -47,7 +47,7 @@ def test_a_prior_counts_as_one_more_reading():
     assert found.covariance == pytest.approx(np.linalg.inv(rows.T @ rows), rel=1e-9)
 
 
-def test_a_bound_holds_and_is_said():
+def test_a_bound_holds_and_is_reported():
     found = solve(linear_problem(), numbers(a={"lower": -3.0, "upper": 0.4}), tolerance=1e-12)
     bounded = least_squares(
         lambda x: A @ x - DATA, np.zeros(3), bounds=([-3, -9, -9], [0.4, 9, 9]), xtol=1e-14
@@ -56,7 +56,7 @@ def test_a_bound_holds_and_is_said():
     assert list(found.values.values()) == pytest.approx(bounded.x, abs=1e-5)
 
 
-def test_a_limit_holds_is_said_and_is_no_information():
+def test_a_limit_holds_is_reported_and_does_not_enter_the_covariance():
     found = solve(linear_problem(limit=0.4), numbers(), tolerance=1e-12)
     assert found.values["a"] == pytest.approx(0.4, abs=1e-3)
     assert found.at_limit == {"a"}
@@ -82,5 +82,5 @@ def test_a_curved_problem_ends_where_scipy_ends():
         return Linear(residual(v), slope, np.zeros(0), np.zeros((0, 3)))
 
     start = [Number("D", 1.0), Number("C", 1.0), Number("B", 1.0)]
-    found = solve(Problem(lambda v: (residual(v), np.zeros(0)), linear), start, tolerance=1e-12)
+    found = solve(LeastSquaresProblem(lambda v: (residual(v), np.zeros(0)), linear), start, tolerance=1e-12)
     assert list(found.values.values()) == pytest.approx(least_squares(residual, np.ones(3)).x, abs=1e-4)

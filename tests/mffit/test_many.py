@@ -259,7 +259,7 @@ def test_what_the_fleet_knows_serves_a_later_build(compared, project):
         of_fleet(with_priors(out / "nowhere.json"))
     with pytest.raises(InputError, match=r"is not a priors\.json"):
         of_fleet(with_priors(out / "fleet.json"))
-    with pytest.raises(InputError, match="FNOMIN 1400, and this one has 1800"):
+    with pytest.raises(InputError, match="FNOMIN 1400, but this tyre has 1800"):
         of_fleet(with_priors(out / "priors.json", load=("nominal_load = 1400", "nominal_load = 1800")))
 
 

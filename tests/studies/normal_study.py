@@ -21,7 +21,7 @@ from scipy.optimize import least_squares
 import tir
 from mffit.fit.constraints import Envelope, violations
 from mffit.fit.imitation import forces
-from mffit.fit.normal import CAMBER_FORCE, CAMBER_MOMENT, derive_normal
+from mffit.fit.normal import CAMBER_FORCE, CAMBER_MOMENT, derive
 from mffit.fit.ranges import plausible_ranges
 from mffit.fit.road import Road, weights
 from tir.parameters import BY_NAME
@@ -105,7 +105,7 @@ def outcome(tyre: tir.Tyre, *, with_limit: bool = True) -> Outcome:
     values, data = dict(tyre.values), tested(tyre)
     began = time.perf_counter()
     written = plausible_ranges(values, data, turn_slip=True)
-    normal = {**values, **derive_normal(values, data, written, {n: values[n] for n in ("PKY6", "PKY7")})}
+    normal = {**values, **derive(values, data, written, {n: values[n] for n in ("PKY6", "PKY7")})}
     seconds = time.perf_counter() - began
     road = box(values["FNOMIN"], values["NOMPRES"])
     true, made = forces(values, road, turn_slip=True), forces(normal, road, turn_slip=False)

@@ -40,7 +40,7 @@ def tables(draws: dict[str, list[Draw]]) -> Iterable[str]:
     ended = [(kind, d) for kind, rows in draws.items() for d in rows if d.refused]
     draws = {kind: [d for d in rows if not d.refused] for kind, rows in draws.items()}
     everything = [d for rows in draws.values() for d in rows]
-    yield f"Refused, though sound: {len(ended)}. Builds with a doubted sweep: {sum(d.doubted > 0 for d in everything)}.\n"
+    yield f"Sound campaigns refused: {len(ended)}. Builds with a doubted sweep: {sum(d.doubted > 0 for d in everything)}.\n"
     for kind, d in ended:
         yield f"* {kind}: {d.refused}"
     yield "## Misfit over stated noise\n"

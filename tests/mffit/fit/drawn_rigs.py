@@ -28,9 +28,9 @@ SAMPLES = Path(__file__).parents[3] / "samples"
 SAMPLE = SAMPLES / "front-120-70"
 STAGED = tuple(row.name for row in TABLE if row.stage)
 NO_FORCE_AT_REST = dict.fromkeys(("PHX1", "PHX2", "PVX1", "PVX2"), 0.0)
-"""No longitudinal force without longitudinal slip: its moment grows with camber and would hide in QDZ6 and QDZ8."""
+"""No longitudinal force without longitudinal slip: its moment grows with camber, and the fit would assign it to QDZ6 and QDZ8."""
 SAFE = 1.959964
-"""Standard errors on either side that hold 95 %."""
+"""Coverage factor of 95 % intervals."""
 
 
 @dataclass(frozen=True)
@@ -46,7 +46,7 @@ class Kind:
 
 @dataclass
 class Draw:
-    """What one build made of one drawn campaign."""
+    """Differences of one build of a drawn campaign from the truth."""
 
     misfit: dict[str, float] = field(default_factory=dict)  #: rms over stated noise, by channel
     pulls: dict[str, float] = field(default_factory=dict)  #: (found - true) / standard error
@@ -56,7 +56,7 @@ class Draw:
         default_factory=dict
     )  #: share of conditions whose truth the 95 % band holds
     seconds: float = 0.0
-    doubted: int = 0  #: sweeps that the build doubts, of which none is unsound
+    doubted: int = 0  #: sweeps that the build doubts, although all are sound
     refused: str = ""  #: the sentence with which it ended; everything else is empty then
 
 
@@ -137,7 +137,7 @@ def _compared(result: Any, true: tir.Tyre, known: Mapping[str, Any], rng: np.ran
 
 
 def _in_bands(fit, true, ranges, phi_t, rng, n: int = 400) -> dict[str, float]:
-    """Share of drawn conditions within the ranges at which the 95 % band of the fitted tyre holds the true one."""
+    """Share of drawn conditions within the ranges at which the 95 % band of the fitted tyre contains the true one."""
 
     def drawn(low: str, high: str) -> np.ndarray:
         return rng.uniform(ranges[low], ranges[high], n)

@@ -1,4 +1,4 @@
-"""What is read off the data before the fit: starts, radii and ranges, each against the tyre that they are to describe."""
+"""Starting values, radii and ranges that are read off the data before the fit, against the tyre that made the data."""
 
 from __future__ import annotations
 
@@ -11,9 +11,9 @@ from small_rigs import truth
 
 import tir
 from mffit.fit import ranges
+from mffit.fit.agreement import agreement
 from mffit.fit.radius import radius_coefficients
 from mffit.fit.ranges import plausible_ranges
-from mffit.fit.result import agreement
 from mffit.fit.start import camber_stiffness_terms, starting_values
 from mffit.fit.virtual_zero import epsilon_gamma_of_model, zero_points
 from mffit.points import make_points
@@ -36,7 +36,7 @@ def camber_slope(tyre, Fz, **condition):
 @pytest.mark.parametrize("changes", [{}, {"LKYC": 1.2}, {"LFZO": 1.1}, {"PPY5": -0.3}])
 @pytest.mark.parametrize("loads", [LOADS[:1], LOADS[::2], LOADS])
 def test_camber_terms_give_the_measured_stiffness(tyre, loads, changes):
-    """Slopes on a line over load, as K_yg0 / Fz is: all are met; PVY3 and PHY terms add none here."""
+    """Specific stiffnesses on a straight line over load, as K_yg0 / Fz is, are all reproduced; PVY3 and PHY terms are zero."""
     model = tyre.replace(PVY3=0.0, PVY4=0.0, PKY7=0.1, **changes)
     specific = -1.1 - 0.2 * (np.array(loads) / 1400.0 - 1.0)
     measured = dict(zip(loads, np.array(loads) * specific, strict=True))
@@ -45,7 +45,7 @@ def test_camber_terms_give_the_measured_stiffness(tyre, loads, changes):
         assert camber_slope(found, load, p=220e3) == pytest.approx(stiffness, rel=1e-3)
 
 
-def test_of_loads_off_a_line_the_nominal_one_is_met(tyre):
+def test_off_a_straight_line_the_stiffness_at_nominal_load_is_reproduced(tyre):
     model = tyre.replace(PVY3=0.0, PVY4=0.0)
     measured = {900.0: -1000.0, 1400.0: -1500.0, 2100.0: -2500.0}
     found = model.replace(**camber_stiffness_terms(model.values, measured, 250e3))
@@ -97,8 +97,8 @@ def test_the_start_has_the_measured_camber_stiffness_as_the_rig_reads_it(tyre, p
     assert camber_slope(begun, 1400.0, Vx=6.0, **condition) == pytest.approx(-1500.0, rel=5e-3)
 
 
-def test_where_zero_is_a_dead_end_the_start_is_not_zero():
-    """Without trail and slope factor the moment knows neither of them."""
+def test_the_start_is_not_zero_where_all_derivatives_vanish_at_zero():
+    """With trail and slope factor both zero, the moment does not depend on either of them."""
     empty = tir.Tyre.from_values({}).replace(FNOMIN=1400.0, UNLOADED_RADIUS=0.3, QBZ1=0.0, QDZ1=0.0)
     start = starting_values(empty.values, campaign(truth()), measured_of({}, {}))
     assert start["QBZ1"] > 1.0
@@ -112,20 +112,31 @@ def test_the_files_radius_passes_through_the_measured_ones(tyre, loads):
     measured = {load: 0.297 - 3e-6 * load for load in loads}
     found = tyre.replace(**radius_coefficients(tyre.values, measured, 6.0))
     for load, r_e in measured.items():
-        assert found.state(load, Vx=6.0).Re == pytest.approx(r_e, abs=1e-8)
+        assert found.state(load, Vx=6.0).Re == pytest.approx(r_e, abs=1e-12)
     assert found.state(loads[0], Vx=30.0).Re > measured[loads[0]]  # it grows with speed
 
 
-def test_the_models_own_factor_is_pecp1_where_spin_is_small(tyre):
+def test_the_models_own_epsilon_gamma_is_pecp1_where_spin_is_small(tyre):
     """(17) on a wide path: both stiffnesses at zero spin."""
     model = tyre.replace(PHY1=0.0, PHY2=0.0, PVY1=0.0, PVY2=0.0, PECP1=-0.2)
     R = 2000.0
     points = make_points([0.0, 0.0], 0.0, 1400.0, p=250e3, V=6.0, phi_t=-1 / R, direction=[1, -1])
     r_e = float(model.state(1400.0, Vx=6.0).Re)
-    assert epsilon_gamma_of_model(model.values, points, 1400.0, r_e, R) == pytest.approx(-0.2, abs=0.003)
+    assert epsilon_gamma_of_model(model.values, points, 1400.0, r_e) == pytest.approx(-0.2, abs=0.003)
 
 
-def test_the_zeros_of_the_model_are_run_as_the_data_were(tyre):
+def test_the_models_own_epsilon_gamma_is_that_of_the_mean_slope_at_zero_camber(tyre):
+    """(17) by differences; the side force has a kink at zero camber (PKY3 |camber|), where a slope is the mean of both sides."""
+    model = tyre.replace(PKY3=1.0, PHY1=0.0, PHY2=0.0)
+    condition, step = {"phi_t": -0.7, "Vx": 6.0, "p": 250e3}, 1e-7
+    points = make_points([0.0], 0.0, 1400.0, p=250e3, V=6.0, phi_t=-0.7)
+    up, zero, down = (float(model(1400.0, gamma=g, **condition).Fy) for g in (step, 0.0, -step))
+    assert abs((up - zero) - (zero - down)) > 0.01 * abs(up - zero)
+    expected = 1.0 + 0.29 * (up - down) / (2.0 * step) / (zero / -0.7)
+    assert epsilon_gamma_of_model(model.values, points, 1400.0, 0.29) == pytest.approx(expected, abs=1e-6)
+
+
+def test_the_model_is_evaluated_at_zero_under_the_conditions_of_the_data(tyre):
     points = make_points(
         [0.1, 0.05], 0.3, [900.0, 1400.0], p=[200e3, 250e3], V=6.0, phi_t=-0.7, direction=[1, -1]
     )
@@ -169,7 +180,7 @@ TESTED = {
 }  # fmt: skip
 
 
-def test_a_sound_model_may_go_as_far_as_is_wished(tyre):
+def test_a_sound_model_gets_the_wished_ranges(tyre):
     sound = tyre.replace(PDY2=0.0, PEY2=0.0, PEY4=0.0, PEY5=0.0, PDY3=0.0)
     found = plausible_ranges(sound.values, TESTED, turn_slip=False)
     assert found["FZMIN"] == pytest.approx(90.0)
@@ -186,8 +197,8 @@ def test_camber_grows_by_half_to_45_degrees_and_never_shrinks(tyre, tested, writ
     assert found["CAMMAX"] == pytest.approx(written)
 
 
-def test_a_model_that_loses_its_grip_is_not_allowed_there(tyre):
-    """mu = 1.2 - 1.2 (Fz/1400 - 1) is 0.6 at 2100 N, 0.15 at 2625 and gone at 2800: half the way is the last share."""
+def test_the_load_range_ends_before_the_grip_is_lost(tyre):
+    """mu = 1.2 - 1.2 (Fz/1400 - 1) is 0.6 at 2100 N, 0.15 at 2625 and 0 at 2800: half of the way is the last plausible share."""
     weak = tyre.replace(PDY1=1.2, PDY2=-1.2, PEY1=0.0, PEY2=0.0, PEY4=0.0, PEY5=0.0, PDY3=0.0)
     found = plausible_ranges(weak.values, TESTED, turn_slip=False)
     assert found["FZMAX"] == pytest.approx(2100.0 + 0.5 * 1050.0)
@@ -195,7 +206,7 @@ def test_a_model_that_loses_its_grip_is_not_allowed_there(tyre):
 
 
 def test_a_side_force_that_reverses_ends_the_sideslip_range(tyre):
-    """sin(C atan(...)) with C = 2.4 comes back to zero: at 20 deg it has lost more than half its peak."""
+    """sin(C atan(...)) with C = 2.4 returns to zero: at 20 deg the force is below half its peak."""
     hunched = tyre.replace(PCY1=2.4, PEY1=0.0, PEY2=0.0, PEY4=0.0, PEY5=0.0, PDY3=0.0, PDY2=0.0)
     found = plausible_ranges(hunched.values, TESTED, turn_slip=False)
     assert TESTED["ALPMAX"] <= found["ALPMAX"] < math.radians(20.0)

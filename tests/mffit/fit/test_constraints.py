@@ -1,4 +1,4 @@
-"""Each physical limit bites where the equations' own factor crosses it, and only there."""
+"""Each physical limit is broken exactly where the factor of the equations exceeds it."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ FLAT = dict.fromkeys(("PEY2", "PEY3", "PEY4", "PEY5", "QEZ2", "QEZ3", "QEZ4", "Q
 
 @pytest.fixture(scope="module")
 def sound() -> tir.Tyre:
-    """A tyre inside every limit."""
+    """A tyre that keeps every limit."""
     tyre = tir.read(SAMPLES / "front-120-70" / "true.tir").replace(
         **FLAT, PEY1=0.5, QEZ1=0.5, QBZ4=0.0, QBZ5=0.0
     )
@@ -41,17 +41,17 @@ def sound() -> tir.Tyre:
         {"PPZ1": 6.0},
     ],
 )
-def test_a_broken_limit_is_felt(sound, change):
+def test_a_broken_limit_is_a_violation(sound, change):
     assert np.any(violations(sound.replace(**change).p, ENVELOPE))
 
 
 @pytest.mark.parametrize("factor", ["E_y", "E_t"])
-def test_the_limit_grows_by_what_the_factor_exceeds_it(sound, factor):
+def test_the_violation_grows_with_the_factor(sound, factor):
     name = {"E_y": "PEY1", "E_t": "QEZ1"}[factor]
     low, high = (violations(sound.replace(**{name: value}).p, ENVELOPE).max() for value in (1.1, 1.3))
     assert high - low == pytest.approx(0.2, rel=1e-9)
 
 
-def test_the_limit_of_the_curvature_is_that_of_the_force(sound):
-    """With LEY the force's E_y is 0.75, whatever PEY1 says."""
+def test_the_limit_applies_to_the_scaled_curvature(sound):
+    """With LEY = 0.5 the E_y of the force is 0.75, although PEY1 is 1.5."""
     assert not np.any(violations(sound.replace(PEY1=1.5, LEY=0.5).p, ENVELOPE))

@@ -1,4 +1,4 @@
-"""What a programme of sweeps can show of a tyre, and what it says is missing."""
+"""Which coefficients a programme of sweeps determines, and what is missing for the others."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ def test_pressures_at_one_load_hold_the_pressure_effect_on_the_load_of_peak_stif
     assert design(programme(*LOADS, *PRESSURES), "").pressure_loads == 1
 
 
-def test_different_pressures_at_different_loads_are_no_pressures_at_a_load():
+def test_one_pressure_per_load_holds_the_pressure_effect_on_the_load_of_peak_stiffness():
     found = held(programme(*LOADS[:4], (2100.0, 200.0, 0.0), (2100.0, 200.0, 20.0)))
     assert found["PPY2"].startswith("pressures were run at different loads only")
 
@@ -76,8 +76,8 @@ def test_a_symmetric_tyre_has_no_odd_terms():
     assert set(found) == {row.name for row in TABLE if row.odd and row.stage}
 
 
-def test_every_stage_knows_the_needs_of_its_coefficients():
-    """A word that the coverage does not know would be a KeyError for the first user whose data come so far."""
+def test_the_coverage_has_a_rule_for_every_need_in_the_table():
+    """A need without a rule would raise a KeyError in the first campaign that meets the other needs."""
     assert len(coverage(programme((1500.0, 250.0, 0.0)), "")) == len(coverage(programme(*FULL), ""))
 
 

@@ -1,4 +1,4 @@
-"""What is not measured is estimated: every estimate lies where road tyres lie."""
+"""Estimates of what was not measured lie within the range of road tyres."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ SIZES = {"motorcycle": (1400.0, 0.2992, 0.12), "car": (4000.0, 0.32, 0.205)}
 
 @pytest.fixture(params=SIZES, scope="module")
 def tyre(request) -> tir.Tyre:
-    """Lateral coefficients of a road tyre, everything else estimated."""
+    """Lateral coefficients of a road tyre; all others are estimates."""
     Fz, R0, width = SIZES[request.param]
     known = tir.Tyre.from_values({}).replace(
         FNOMIN=Fz, UNLOADED_RADIUS=R0, WIDTH=width, PCY1=1.4, PDY1=1.1, PDY2=-0.1, PEY1=-1.0, PKY1=-16.0, PKY2=1.6, QSX2=0.0
@@ -38,14 +38,14 @@ def test_the_tyre_brakes_as_hard_as_it_corners(tyre):
     assert 0.6 < Fx[-1] / Fx.max() < 1.0
 
 
-def test_braking_takes_from_cornering_and_cornering_from_braking(tyre):
+def test_braking_reduces_the_side_force_and_cornering_the_braking_force(tyre):
     Fz = tyre["FNOMIN"]
     alone, both = tyre(Fz, 0.06), tyre(Fz, 0.06, kappa=-0.1)
     assert 0.2 < both.Fy / alone.Fy < 0.95
     assert 0.2 < tyre(Fz, 0.12, kappa=-0.05).Fx / tyre(Fz, kappa=-0.05).Fx < 0.95
 
 
-def test_it_sinks_by_a_twentieth_of_its_radius(tyre):
+def test_its_static_deflection_is_a_twentieth_of_its_radius(tyre):
     sunk = tyre["FNOMIN"] / tyre["VERTICAL_STIFFNESS"]
     assert sunk == pytest.approx(0.05 * tyre["UNLOADED_RADIUS"])
     # Hysteresis of rubber: at 10 Hz, 2 to 10 % of critical stiffness.
@@ -65,13 +65,13 @@ def test_the_relaxation_length_is_some_tenths_of_a_metre(tyre):
     assert 0.02 < state.sigma_x < 0.5
 
 
-def test_it_rolls_with_a_hundredth_of_the_load(tyre):
+def test_its_rolling_resistance_is_a_hundredth_of_the_load(tyre):
     Fz = tyre["FNOMIN"]
     assert -tyre(Fz, Vx=20.0).My / (Fz * tyre["UNLOADED_RADIUS"]) == pytest.approx(0.01, rel=0.3)
 
 
-def test_a_leaning_wheel_is_pushed_upright_by_the_width_of_its_tread(tyre):
-    """The contact wanders by less than half the width; ISO-W: a wheel leant to -y is turned back by positive Mx."""
+def test_a_cambered_wheel_is_pushed_upright_by_the_width_of_its_tread(tyre):
+    """The contact wanders by less than half the width; ISO-W: positive Mx turns a wheel cambered to -y back."""
     Fz = tyre["FNOMIN"]
     arm = (tyre(Fz, gamma=0.2).Mx - tyre(Fz, gamma=-0.2).Mx) / (2.0 * 0.2 * Fz)
     assert 0.05 < abs(arm) / tyre["WIDTH"] < 1.0

@@ -1,4 +1,4 @@
-"""A rig that is off is told from the tyre, with uncertainties that hold."""
+"""Rig errors are separated from the tyre, with uncertainties that contain the truth."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ def misaligned(tmp_path_factory):
 
 
 def test_the_misalignment_is_taken_off_the_angles(misaligned):
-    """With its sign. Ply-steer cannot be told from it: their sum is known, and each to what is usual of ply-steer, 0.002 rad."""
+    """With its sign. Its sum with ply-steer is known, and each of them to 0.002 rad, the prior of ply-steer."""
     value, u = misaligned.fit.rig["alpha_0_deg"]
     assert misaligned.measured.misaligned
     sum_found = value + math.degrees(misaligned.fit.tyre["PHY1"])
@@ -35,30 +35,30 @@ def test_the_misalignment_is_taken_off_the_angles(misaligned):
     assert channels["Mz"].rmse < 1.1 * MZ
 
 
-def test_the_file_is_of_the_aligned_tyre(misaligned):
+def test_the_file_describes_the_aligned_tyre(misaligned):
     alpha = np.radians(np.linspace(-7.0, 7.0, 29))
     made, true = (tyre(1400.0, alpha, phi_t=-1 / 1.323, Vx=6.0) for tyre in (misaligned.fit.tyre, truth()))
-    # Half a degree would be 190 N; the doubt about camber and load cell is one of some 15 N.
+    # Half a degree would be 190 N; the uncertainty from camber and load cell is some 15 N.
     assert np.max(np.abs(made.Fy - true.Fy)) < 40.0
 
 
 def test_rig_errors_lie_within_their_uncertainties(misaligned):
-    """PECP1 is held at the measured eps_gamma, whose error a camber zero would hide: that doubt belongs to the zero too."""
+    """PECP1 is held at the measured eps_gamma. A camber zero compensates for its error, so that the zero is as uncertain."""
     rig = misaligned.fit.rig
     for name, true in (("gamma_0_deg", 0.4), ("F0_N", 8.0), ("path_radius_m", 1.323)):
         value, u = rig[name]
         assert abs(value - true) < 2.5 * u, name
 
 
-def test_the_camber_zero_is_as_doubtful_as_eps_gamma(misaligned):
-    """F = r_e C_gamma / (R (1 - eps)) at zero moves by F u / (1 - eps), which a camber of r_e u / R (1 - eps)^2 undoes."""
+def test_the_camber_zero_is_as_uncertain_as_eps_gamma(misaligned):
+    """F = r_e C_gamma / (R (1 - eps)) at zero moves by F u / (1 - eps), which a camber of r_e u / R (1 - eps)^2 compensates."""
     epsilon, r_e = misaligned.measured.epsilon_gamma, misaligned.measured.r_e.value
     hidden = math.degrees(r_e * epsilon.u / 1.323 / (1.0 - epsilon.value) ** 2)
     assert misaligned.fit.rig["gamma_0_deg"][1] == pytest.approx(hidden, rel=0.15)
 
 
-def test_fitted_coefficients_scatter_about_the_truth_as_they_say(misaligned):
-    """Half a hundred pulls, many of them correlated; ply-steer took the misalignment's place and is left out."""
+def test_fitted_coefficients_scatter_about_the_truth_by_their_standard_errors(misaligned):
+    """Some fifty pulls, many of them correlated; ply-steer is left out, because the misalignment is not separable from it."""
     coefficients, true = misaligned.fit.coefficients, truth()
     pulls = {
         name: (c.value - true[name]) / c.stderr
@@ -71,8 +71,8 @@ def test_fitted_coefficients_scatter_about_the_truth_as_they_say(misaligned):
     assert np.max(np.abs(values)) < 4.0
 
 
-def test_what_few_points_do_not_tell_stays_near_the_base_file(misaligned):
-    """A hundred points on one disc know of spin how stiffness and trail fall, not the shape of every curve."""
+def test_coefficients_that_few_points_do_not_determine_stay_near_the_base_file(misaligned):
+    """A hundred points on one disc show how spin reduces stiffness and trail, but not the shape of every curve."""
     coefficients, base = misaligned.fit.coefficients, tir.read(SAMPLE / "base.tir")
     for name in ("PHYP1", "PHYP2", "PDYP3", "QCRP2", "QBRP1", "QDRP1"):
         found = coefficients[name]
@@ -98,13 +98,13 @@ def test_every_stage_brings_its_channel_nearer_to_the_noise(misaligned):
     assert {"F0_N", "gamma_0_deg", "alpha_0_deg", "path_radius_m"} <= set(stages["polish"].parameters)
 
 
-def test_coefficients_that_only_their_combination_decides_say_so(misaligned):
+def test_coefficients_of_which_only_a_combination_is_determined_name_each_other(misaligned):
     told = {n: c for n, c in misaligned.fit.coefficients.items() if c.correlated_with}
     assert told
     for name, found in told.items():
         assert found.correlated_with != name
         assert 0.95 < abs(found.correlation) <= 1.0
-    # Where the stiffness peaks and how high it is cannot be told apart well over loads that all lie below the peak.
+    # Where the stiffness peaks and how high it is are hardly separable over loads that all lie below the peak.
     assert told["PKY2"].correlated_with in ("PKY1", "PKY4")
 
 
@@ -114,14 +114,14 @@ def test_rolling_resistance_comes_from_the_measured_moment(misaligned):
     assert misaligned.fit.coefficients["QSY1"].status == "fitted"
 
 
-def test_without_that_moment_it_stays_an_estimate(tmp_path):
+def test_without_a_measured_moment_rolling_resistance_stays_an_estimate(tmp_path):
     content = flat(noise={"Fy_N": FY, "Mz_Nm": MZ})
     result = built(content, tmp_path)
     assert result.fit.coefficients["QSY1"].status != "fitted"
 
 
 def test_some_readings_far_off_do_not_move_the_rest(tmp_path):
-    """Three of a hundred points miss by 100 times the noise, as when a cell slips."""
+    """Three of a hundred points are off by 100 times the noise, as when a load cell slips."""
     content = flat()
     virtual_rig.simulate(virtual_rig.load_plan(content, folder=SAMPLE), tmp_path, seed=4)
     clean = mffit.build(tmp_path / "tyre.toml").fit

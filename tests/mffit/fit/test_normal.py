@@ -1,4 +1,4 @@
-"""The file for simulations without turn slip, and what the written file promises."""
+"""The file for simulations without turn slip, and what both files state."""
 
 from __future__ import annotations
 
@@ -12,10 +12,10 @@ import pytest
 import mffit
 import tir
 from mffit.diagnosis.notes import ModelFittedFirst
+from mffit.fit.comments import whole_words
 from mffit.fit.files import file_names, use_mode
 from mffit.fit.imitation import forces
-from mffit.fit.normal import derive_both, derive_normal
-from mffit.fit.wording import whole_words
+from mffit.fit.normal import derive
 from mffit.pipeline.diagnosing import chosen_model
 from mffit.pipeline.provenance import use_of
 from mffit.results import as_json
@@ -55,7 +55,7 @@ def test_both_files_are_written_each_for_its_use(built):
     assert as_json.build(result)["tir"] == "front-120-70.tir"
 
 
-def test_exact_says_which_file_carries_the_plain_name():
+def test_exact_selects_the_file_with_the_plain_name():
     names = {"turn-slip": "a-turn-slip.tir", "normal": "a.tir"}
     assert file_names("a", "normal", True) == names
     assert file_names("a", "turn-slip", False) == {"normal": "a.tir"}
@@ -111,7 +111,7 @@ def test_camber_thrust_does_not_turn_back_where_the_model_does_not(result):
         assert np.all(made[model < 0.0] < 1.0)
 
 
-def test_what_the_normal_file_lacks_is_stated(result):
+def test_the_missing_force_and_stiffness_of_the_normal_file_are_stated(result):
     files = result.fit.files
     assert 0.0 < files.stiffness_loss < 0.25
     forces = list(files.lacking.values())
@@ -129,7 +129,7 @@ def test_limits_hold_over_the_written_ranges(result, use):
     assert not sentences
 
 
-def test_written_ranges_go_beyond_the_tests_and_say_what_was_tested(result):
+def test_written_ranges_exceed_the_tested_ones_and_state_them(result):
     tyre, tested = result.tyre, result.fit.files.tested
     assert np.degrees(tyre["ALPMAX"]) == pytest.approx(20.0)
     assert np.degrees(tested["CAMMAX"]) == pytest.approx(50.0, abs=0.5)
@@ -154,7 +154,7 @@ def test_no_comment_is_cut_within_a_word():
     assert whole_words("short", 10) == "short"
 
 
-def test_every_fitted_value_says_so_in_the_file(result, tmp_path):
+def test_fitted_values_have_their_standard_error_in_the_file(result, tmp_path):
     result.tyre.write(tmp_path / "t.tir")
     again = tir.read(tmp_path / "t.tir")
     assert again == result.tyre
@@ -178,8 +178,8 @@ def test_one_file_for_both_uses_is_better_than_either_in_the_other_ones_use(samp
     values, tested = dict(truth.values), normal_study.tested(truth)
     written = {**tested}
     terms = {name: values[name] for name in ("PKY6", "PKY7")}
-    both = {**values, **derive_both(values, tested, written, terms, -1 / 1.323)}
-    normal = {**values, **derive_normal(values, tested, written, terms)}
+    both = {**values, **derive(values, tested, written, terms, both_on=-1 / 1.323)}
+    normal = {**values, **derive(values, tested, written, terms)}
     road = normal_study.box(values["FNOMIN"], values["NOMPRES"])
 
     def misfit(file, *, turn_slip, phi_t=0.0):

@@ -1,4 +1,4 @@
-"""What a fit leaves uncertain: bands, draws and bent valleys, against finite differences, counting and a known banana."""
+"""Uncertainty of a fit: bands, draws and bent valleys, against finite differences, counting and a banana in closed form."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ import pytest
 import mffit
 from mffit.fit import ensemble
 from mffit.fit.profile import follow
-from mffit.least_squares import Linear, Number, Problem, solve
+from mffit.least_squares import LeastSquaresProblem, Linear, Number, solve
 from mffit.points import make_points
 from mffit.rig import Simulation
 from mffit.rig_errors import BY_NAME as RIG_ERRORS
@@ -26,7 +26,7 @@ def fitted(tmp_path_factory):
     return mffit.build(folder / "tyre.toml").fit
 
 
-def test_the_band_is_the_covariance_seen_through_the_slopes(fitted):
+def test_the_band_is_the_propagated_covariance(fitted):
     posterior, tyre = fitted.posterior, fitted.tyre
     alpha, gamma, Fz = (
         np.radians([0.0, 3.0, -6.0]),
@@ -50,7 +50,7 @@ def test_the_band_is_the_covariance_seen_through_the_slopes(fitted):
     assert np.array(half) == pytest.approx(1.96 * np.sqrt(variance), rel=1e-3)
 
 
-def test_draws_scatter_as_the_standard_errors_say(fitted):
+def test_draws_scatter_by_the_standard_errors(fitted):
     members = ensemble(fitted.search, 8, seed=1)
     assert len(members) == 8
     names = [n for n, c in fitted.coefficients.items() if c.stderr and not c.at_bound and n in members[0]]
@@ -79,7 +79,7 @@ class Banana:
     def with_values(self, values):
         return Banana(**{**self.held, **values})
 
-    def free(self, names) -> Problem:
+    def free(self, names) -> LeastSquaresProblem:
         def linear(at) -> Linear:
             now = {**self.held, **dict(zip(names, at, strict=True))}
             x, y = now["x"], now["y"]
@@ -87,10 +87,10 @@ class Banana:
             slope = np.array([slopes[n] for n in names]).T
             return Linear(np.array([x, (y - x * x) / 0.05]), slope, np.zeros(0), np.zeros((0, len(names))))
 
-        return Problem(lambda at: (linear(at).data, np.zeros(0)), linear)
+        return LeastSquaresProblem(lambda at: (linear(at).data, np.zeros(0)), linear)
 
 
-def test_a_bent_valley_is_followed_to_where_95_per_cent_end():
+def test_a_bent_valley_is_followed_to_the_ends_of_the_95_per_cent_interval():
     numbers = [Number("x", 0.1, -50.0, 50.0, spread=100.0), Number("y", 0.0, -50.0, 50.0, spread=100.0)]
     problem = Banana()
     best = solve(problem.free(["x", "y"]), numbers, tolerance=1e-10)
@@ -102,14 +102,14 @@ def test_a_bent_valley_is_followed_to_where_95_per_cent_end():
     assert low == pytest.approx(-0.1, abs=0.02)
 
 
-def test_a_straight_valley_is_left_to_the_covariance():
+def test_a_straight_valley_keeps_the_interval_of_the_covariance():
     class Line(Banana):
-        def free(self, names) -> Problem:
+        def free(self, names) -> LeastSquaresProblem:
             def linear(at) -> Linear:
                 slope = np.array([[1.0, 1.0], [0.0, 20.0]])
                 return Linear(slope @ at, slope, np.zeros(0), np.zeros((0, 2)))
 
-            return Problem(lambda at: (linear(at).data, np.zeros(0)), linear)
+            return LeastSquaresProblem(lambda at: (linear(at).data, np.zeros(0)), linear)
 
     numbers = [Number("x", 0.1, -50.0, 50.0, spread=100.0), Number("y", 0.0, -50.0, 50.0, spread=100.0)]
     best = solve(Line().free(["x", "y"]), numbers)

@@ -9,7 +9,7 @@ import pytest
 from small_rigs import truth
 
 from mffit.fit.constraints import Envelope
-from mffit.fit.problem import Problem
+from mffit.fit.problem import FitProblem
 from mffit.measured import RadiusReading
 from mffit.points import make_points
 from mffit.rig import Simulation
@@ -21,7 +21,7 @@ RADII = (RadiusReading(900.0, 0.2960, 2e-4, True), RadiusReading(2100.0, 0.2935,
 
 
 @pytest.fixture(scope="module")
-def problem() -> Problem:
+def problem() -> FitProblem:
     rng = np.random.default_rng(4)
     tyre = truth()
     points = make_points(
@@ -34,19 +34,23 @@ def problem() -> Problem:
     sigma_Fy, sigma_Mz = np.full(N, 6.0), np.full(N, 0.6)
     sigma_Fy[5] = np.inf
     simulation = Simulation(dict(tyre.values), NO_FAULTS)
-    return Problem(points, simulation, sigma_Fy, sigma_Mz, None, RADII, 6.0)
+    return FitProblem(points, simulation, {"Fy": sigma_Fy, "Mz": sigma_Mz}, None, RADII, 6.0)
+
+
+def in_a_row(by_channel) -> np.ndarray:
+    return np.concatenate([by_channel["Fy"], by_channel["Mz"]])
 
 
 def test_the_misfit_is_in_units_of_the_uncertainty(problem):
-    assert problem.misfit() == pytest.approx(np.zeros(2 * N), abs=1e-9)
-    off = problem.with_values({"F0_N": 12.0, "M0_Nm": -0.3}).misfit()
+    assert in_a_row(problem.misfit()) == pytest.approx(np.zeros(2 * N), abs=1e-9)
+    off = in_a_row(problem.with_values({"F0_N": 12.0, "M0_Nm": -0.3}).misfit())
     expected = np.concatenate([np.full(N, 2.0), np.full(N, -0.5)])
     expected[[5, N + 3]] = 0.0  # not used, not measured
     assert off == pytest.approx(expected)
 
 
 def test_a_measured_radius_counts_as_a_reading(problem):
-    """One from a revolution of the disc grows with the path radius, one given by itself does not."""
+    """A radius from a revolution of the disc is proportional to the path radius; a given one is not."""
     Re = problem.simulation.values, truth().state(np.array([900.0, 2100.0]), Vx=6.0).Re
     residual, _ = problem.free(["path_radius_m"]).residual(np.array([1.323]))
     assert residual[2 * N :] == pytest.approx((Re[1] - [0.2960, 0.2935]) / [2e-4, 4e-4])
@@ -71,7 +75,7 @@ def test_a_measured_radius_counts_as_a_reading(problem):
     ],
 )
 def test_derivatives_are_the_differences_of_the_residuals(problem, name):
-    """With limits broken too: the curvature beyond 1 on purpose."""
+    """Broken limits too: the curvature exceeds 1 on purpose."""
     bent = replace(problem.with_values({"PEY1": 1.1, "QEZ1": 1.2}), envelope=ENVELOPE)
     chosen = bent.free([name, "PCY1"])
     x = np.array([bent.simulation.number(name, bent.points), 1.4])
@@ -85,8 +89,8 @@ def test_derivatives_are_the_differences_of_the_residuals(problem, name):
     assert np.any(here.limits > 0.0)
 
 
-def test_part_of_the_points_keeps_their_weights(problem):
+def test_selected_points_keep_their_weights(problem):
     part = problem.select(np.array([5, 7]))
-    assert list(part.sigma_Fy) == [np.inf, 6.0]
+    assert list(part.sigma["Fy"]) == [np.inf, 6.0]
     assert len(part.points) == 2
     assert part.points.Fz[1] == problem.points.Fz[7]

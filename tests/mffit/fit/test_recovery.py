@@ -15,7 +15,7 @@ from tir.parameters import BY_NAME
 
 @pytest.fixture(scope="module")
 def sound_rig(tmp_path_factory):
-    """A build from a rig without faults that says so, noise as declared."""
+    """A build from a rig without faults, declared as such, and with noise as declared."""
     content = plan_content()
     content["faults"] = {}
     content["rig"] |= {
@@ -33,7 +33,7 @@ def test_residuals_are_the_noise(sound_rig):
 
 
 @pytest.mark.parametrize(("phi_t", "Fy", "Mz"), [(-1 / 1.323, 5.5, 0.6), (0.0, 8.0, 1.0)])
-def test_the_model_meets_the_truth_between_the_points(sound_rig, phi_t, Fy, Mz):
+def test_the_model_agrees_with_the_truth_between_the_points(sound_rig, phi_t, Fy, Mz):
     error = model_error(
         sound_rig.fit.tyre, tir.read(SAMPLE / "true.tir"), phi_t, np.array([900.0, 1400.0, 2000.0])
     )
@@ -57,8 +57,8 @@ def test_debiased_is_the_direct_method_less_its_error_on_noise_free_readings(sou
     assert measured.epsilon_gamma.u == pytest.approx(np.hypot(measured.epsilon_gamma_debiased.u, bias))
 
 
-def test_a_coefficient_that_the_data_do_not_decide_stays_where_it_is_expected():
-    """At 0 in a base file nothing is known of it: within a tenth of its bounds; else within 30 %, at least a twentieth."""
+def test_the_prior_is_thirty_per_cent_and_at_least_a_share_of_the_bounds():
+    """A twentieth around a base file's value, a tenth around a default; a base file's 0 counts as a default."""
     assert scatter("PKY1", -18.0, from_base=True, curved=True) == pytest.approx(5.4)
     width = BY_NAME["PPY2"].width
     assert scatter("PPY2", 0.0, from_base=True, curved=True) == pytest.approx(0.1 * width)

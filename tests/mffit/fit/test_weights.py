@@ -1,20 +1,21 @@
-"""How much a point counts: what it states, what the model misses, and what an outlier is worth."""
+"""Weights of points: from the stated uncertainty, from the misfit, and of outliers."""
 
 from __future__ import annotations
 
 import numpy as np
 import pytest
 
-from mffit.fit import weights
-from mffit.fit.weights import enlarged, standing_out
+from mffit.fit import constants, weights
+from mffit.fit.weights import enlarged, outlying
 
 
-def test_an_outlier_pulls_no_harder_the_further_it_lies():
-    """Huber: with the uncertainty so enlarged the pull r / sigma^2 is that of the border for every residual beyond it."""
+def test_beyond_the_threshold_the_pull_of_a_residual_is_constant():
+    """Huber: with the enlarged uncertainty the pull r / sigma^2 of every residual beyond the threshold is the same."""
     residual = np.array([0.5, -3.9, 4.0, 8.0, -40.0, 400.0])
+    threshold = constants.HUBER_THRESHOLD
     for scale in (1.0, 2.5):
         pull = scale * residual / weights.huber(scale * residual, scale) ** 2
-        assert pull == pytest.approx(scale * np.clip(residual, -weights.OUTLIER, weights.OUTLIER))
+        assert pull == pytest.approx(scale * np.clip(residual, -threshold, threshold))
 
 
 def test_only_rare_residuals_of_pure_noise_are_outliers():
@@ -23,13 +24,13 @@ def test_only_rare_residuals_of_pure_noise_are_outliers():
     assert weights.huber(np.array([18.0]), 3.0)[0] > 1.1
 
 
-def test_the_core_of_a_normal_scatter_is_its_deviation():
+def test_the_robust_scale_of_normal_noise_is_its_standard_deviation():
     noise = np.random.default_rng(2).normal(0.0, 3.0, 20_000)
     noise[:500] = 1e4
     assert weights.robust_scale(noise) == pytest.approx(3.0, rel=0.05)
 
 
-def test_points_that_are_not_used_do_not_make_the_scatter_small():
+def test_unused_points_do_not_reduce_the_robust_scale():
     residual = np.concatenate([np.zeros(500), np.random.default_rng(3).normal(0.0, 2.0, 400)])
     assert weights.robust_scale(residual) == pytest.approx(2.0, rel=0.1)
     assert weights.robust_scale(np.zeros(5)) == 1.0
@@ -43,23 +44,23 @@ def test_uncertainties_are_the_stated_ones_else_a_hundredth_of_the_span():
     assert np.all(weights.stated_or_nominal(np.full(2, np.nan), np.full(2, 7.0)) > 0.0)
 
 
-def test_noise_alone_stands_out_as_rarely_as_said():
+def test_noise_alone_gives_outliers_at_the_stated_rate():
     rng = np.random.default_rng(8)
     sweep = np.repeat(np.arange(20), 20)
-    alarms = sum(np.any(standing_out(rng.standard_normal(400), 1.0, sweep)) for _ in range(400))
+    alarms = sum(np.any(outlying(rng.standard_normal(400), 1.0, sweep)) for _ in range(400))
     assert alarms <= 12  # 4 expected at 1 %; 12 or more has a chance of one in a thousand
 
 
-def test_planted_readings_are_found_and_nothing_else():
+def test_planted_outliers_are_found_and_nothing_else():
     rng = np.random.default_rng(9)
     sweep = np.repeat(np.arange(20), 20)
     residual = rng.standard_normal(400)
     planted = rng.permutation(400)[:8]
     residual[planted] += 15.0 * rng.choice([-1.0, 1.0], 8)
-    assert set(np.flatnonzero(standing_out(residual, 1.0, sweep))) == set(planted)
+    assert set(np.flatnonzero(outlying(residual, 1.0, sweep))) == set(planted)
 
 
-def test_a_stretch_that_the_model_misses_is_no_outlier():
+def test_a_stretch_that_the_model_misses_is_not_an_outlier():
     rng = np.random.default_rng(10)
     sweep = np.repeat(np.arange(20), 20)
     residual = rng.standard_normal(400)
@@ -69,14 +70,14 @@ def test_a_stretch_that_the_model_misses_is_no_outlier():
     assert factor[50] > 2.0  # but it pulls less than its size
 
 
-def test_two_points_have_no_neighbours_to_judge_them():
+def test_points_with_fewer_than_two_neighbours_are_not_outliers():
     residual = np.array([0.3, -0.2, 0.1, 0.4, 60.0, -0.3])
     sweep = np.array([0, 0, 0, 0, 1, 1])
-    assert not np.any(standing_out(residual, 1.0, sweep))
+    assert not np.any(outlying(residual, 1.0, sweep))
 
 
-def test_unused_points_are_left_alone():
+def test_unused_points_are_never_outliers():
     residual = np.zeros(30)
     residual[::2] = np.random.default_rng(2).standard_normal(15)
     residual[10] = 50.0
-    assert list(np.flatnonzero(standing_out(residual, 1.0, np.zeros(30, int)))) == [10]
+    assert list(np.flatnonzero(outlying(residual, 1.0, np.zeros(30, int)))) == [10]

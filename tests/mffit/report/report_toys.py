@@ -11,9 +11,12 @@ import numpy as np
 
 import tir
 from mffit import config, measured, parts
+from mffit.fit.agreement import agreement
+from mffit.fit.coefficients import Coefficient
 from mffit.fit.coverage import coverage
 from mffit.fit.posterior import Posterior
-from mffit.fit.result import Coefficient, FitResult, StageRecord, agreement
+from mffit.fit.result import FitResult
+from mffit.fit.stages import StageRecord
 from mffit.points import Points, make_points
 from mffit.results import BuildResult
 from mffit.rig import Simulation

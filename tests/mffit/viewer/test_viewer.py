@@ -12,8 +12,7 @@ import mffit
 import tir
 from mffit.cli import main
 from mffit.errors import InputError
-from mffit.fit.wording import words_on_tested
-from mffit.tested import end_tested
+from mffit.tested import end_tested, words_on_tested
 from mffit.viewer.controls import settings
 from mffit.viewer.named import described, named, tell_apart
 

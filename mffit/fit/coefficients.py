@@ -1,0 +1,90 @@
+"""One record per coefficient: its value, its uncertainty and where both come from."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+
+from mffit.constants import COVERAGE_FACTOR_95
+from mffit.fit.files import Files
+from mffit.fit.fitted import Fitted
+from mffit.fit.known import Known
+from mffit.least_squares import touches
+from tir import Quantity
+from tir.parameters import BY_NAME, TABLE
+
+
+@dataclass(frozen=True, slots=True)
+class Coefficient:
+    """One coefficient of the written file and the origin of its value."""
+
+    value: float
+    stderr: float | None  #: standard uncertainty; None if held
+    stage: str
+    fixed: bool
+    at_bound: bool
+    status: str  #: measured | fitted | regularised | default | base | estimate | fleet | range | given
+    correlated_with: str = ""  #: the coefficient with the largest correlation, if this is strong
+    correlation: float = 0.0
+    interval: tuple[float, float] | None = None  #: of 95 %; None if held
+    origin: str = ""  #: as the file's comment states it
+
+
+def coefficient_records(
+    known: Known, fitted: Fitted, fitted_after: Mapping[str, Quantity]
+) -> dict[str, Coefficient]:
+    """The record of every number of the fitted model.
+
+    Parameters
+    ----------
+    known : every value after the fit
+    fitted : the fit
+    fitted_after : coefficients that were fitted after the others
+    """
+    stderr = {name: fitted.posterior.stderr[name] for name in fitted.values} | {
+        n: q.u for n, q in fitted_after.items()
+    }
+    out = {}
+    for row in TABLE:
+        if row.kind != "number":
+            continue
+        name, value, u = row.name, float(known.values[row.name]), stderr.get(row.name)
+        partner, correlation = fitted.correlation.get(name, ("", 0.0))
+        out[name] = Coefficient(
+            value=value,
+            stderr=u,
+            stage=row.stage,
+            fixed=u is None,
+            at_bound=name in fitted.at_bound,
+            status=known.origin[name],
+            correlated_with=partner,
+            correlation=correlation,
+            interval=None if u is None else fitted.intervals.get(name, _interval(value, u)),
+        )
+    return out
+
+
+def _interval(value: float, u: float) -> tuple[float, float]:
+    """The 95 % interval from the curvature of the sum of squares."""
+    return value - COVERAGE_FACTOR_95 * u, value + COVERAGE_FACTOR_95 * u
+
+
+def of_file(files: Files, use: str, coefficients: Mapping[str, Coefficient]) -> dict[str, Coefficient]:
+    """The records of the file for a use, which has values of its own where it is derived from the fitted model."""
+    tyre = files.by_use[use].tyre
+    derived = files.changed.get(use, ())
+    out = {}
+    for name, record in coefficients.items():
+        value, origin = float(tyre[name]), tyre.status[name]
+        out[name] = replace(record, value=value, origin=origin)
+        if name in derived:
+            out[name] = Coefficient(
+                value=value,
+                stderr=None,
+                stage=record.stage,
+                fixed=False,
+                at_bound=touches(value, *BY_NAME[name].bounds),
+                status="fitted",
+                origin=origin,
+            )
+    return out

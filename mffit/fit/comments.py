@@ -1,0 +1,63 @@
+"""Comments of the property file: where each value comes from and how uncertain it is."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from mffit.fit import constants
+from mffit.fit.coefficients import Coefficient
+from mffit.fit.files import Files
+from mffit.fit.known import DECIDED
+from mffit.tested import words_on_tested
+from tir.parameters import TABLE, Parameter
+
+DERIVED = {
+    "normal": "fitted to the model without path curvature",
+    "both": "fitted to the model with and without turn slip",
+}
+TIED = "tied to its expected value"
+FROM_DATA = ("measured", "fitted", "regularised")
+"""Origins of values that these data decided."""
+WORDS = {
+    "base": "from base",
+    "fleet": "as tyres of its fleet have it",
+    "default": "default, not measured",
+    "estimate": "estimate, not measured",
+    "regularised": TIED,
+    "range": "estimate, checked plausible",
+    "given": "given in tyre.toml",
+}
+
+
+def file_comments(
+    files: Files, origin: Mapping[str, str], coefficients: Mapping[str, Coefficient]
+) -> dict[str, dict[str, str]]:
+    """By use of each file, the comment of every value: origin, standard uncertainty, meaning if it is not a coefficient."""
+    comments = {row.name: _comment(row, origin[row.name], files.tested) for row in TABLE}
+    comments |= {name: _data_comment(c) for name, c in coefficients.items() if c.status in FROM_DATA}
+    return {
+        use: {**comments, **dict.fromkeys(files.changed.get(use, ()), DERIVED.get(use, ""))}
+        for use in files.by_use
+    }
+
+
+def _comment(row: Parameter, origin: str, tested: Mapping[str, float]) -> str:
+    words = "given by this build" if row.name in DECIDED else WORDS.get(origin, origin)
+    if row.name in tested:
+        words = f"{words}, {words_on_tested(tested[row.name], row.unit)}"
+    elif not row.section.endswith("_COEFFICIENTS"):
+        words = f"{words}: {row.description}"
+    return whole_words(words)
+
+
+def _data_comment(coefficient: Coefficient) -> str:
+    """The comment of a value that these data decided."""
+    text = TIED if coefficient.status == "regularised" else coefficient.status
+    if coefficient.stderr is not None and not coefficient.fixed:
+        text += f" +- {coefficient.stderr:.2g}"
+    return text + (", at bound" if coefficient.at_bound else "")
+
+
+def whole_words(text: str, longest: int = constants.COMMENT_LENGTH) -> str:
+    """The text, cut between words if it is too long for a line."""
+    return text if len(text) <= longest else text[: longest + 1].rsplit(" ", 1)[0].rstrip(",:")

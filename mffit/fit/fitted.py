@@ -1,0 +1,40 @@
+"""The record of a finished search: values, errors and weights at the solution."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from mffit.fit.posterior import Posterior
+from mffit.fit.problem import FitProblem
+from mffit.fit.stages import StageRecord
+from mffit.least_squares import Number
+from mffit.rig import Simulation
+
+
+@dataclass(frozen=True, slots=True)
+class Fitted:
+    """Values and errors of the free numbers after the polish."""
+
+    values: Mapping[str, float]  #: coefficients
+    rig: Mapping[str, tuple[float, float]]  #: rig error -> (value, standard error)
+    correlation: Mapping[
+        str, tuple[str, float]
+    ]  #: the strongest of each number, with its partner, if it is strong
+    posterior: Posterior  #: of tyre and rig, held values included
+    intervals: Mapping[str, tuple[float, float]]
+    """95 % intervals of the numbers of a bent valley of equally good fits."""
+    problem: FitProblem  #: at the solution, with the final weights
+    numbers: tuple[Number, ...]  #: that were free in the end
+    held: Mapping[str, float]  #: standard uncertainty of coefficients that the fit took as exact
+    at_bound: frozenset[str]  #: numbers at their own bound or at a physical limit
+    regularised: frozenset[str]  #: coefficients that the priors decide as much as the points
+    scale: Mapping[str, float]  #: by channel, robust misfit over stated uncertainty
+    cost: float  #: sum of squares of data, priors and broken limits
+    stages: tuple[StageRecord, ...] = ()
+    attempts: tuple[str, ...] = ()  #: alternative starting values that were tried
+
+    @property
+    def simulation(self) -> Simulation:
+        """The fitted tyre on the rig as fitted."""
+        return self.problem.simulation
