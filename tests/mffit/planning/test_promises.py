@@ -19,15 +19,15 @@ from mffit.effects import CATALOG
 from mffit.errors import InputError
 from mffit.pipeline.building import finite_spin_bias
 from mffit.pipeline.planning import additions, plan_of, sheet, write_plan
-from mffit.planning import Kind, read_goal, wording
+from mffit.planning import ADDITIONS, addition_named, read_goal, wording
 from mffit.planning.knowledge import Knowledge
-from mffit.planning.runs import DECLARED, candidates
+from mffit.planning.runs import candidates
 from mffit.report.text import plan_summary
 from mffit.rig import Simulation
 from tests.browser import assert_readable
 
 EFFECTS = {effect.id: effect for effect in CATALOG}
-ONE_SIDE = (Kind.OTHER_SIDE, Kind.OTHER_SIDE_CAMBER)
+ONE_SIDE = ("other-side", "other-side-camber")
 
 
 @pytest.fixture(scope="module")
@@ -59,7 +59,9 @@ def knowledge(result):
 
 def run_of(result, kind, load=1400):
     return next(
-        r for r in candidates(result.config, result.points) if r.kind is kind and abs(r.load - load) < 10
+        r
+        for r in candidates(result.config, result.points)
+        if r.addition.id == kind and abs(r.load - load) < 10
     )
 
 
@@ -71,7 +73,7 @@ def test_without_runs_the_posterior_is_the_builds(result, knowledge):
 
 def test_more_points_never_tell_less(result, knowledge):
     before = knowledge.posterior([], None).stderr
-    after = knowledge.posterior([run_of(result, Kind.SMALL_CAMBER)], None).stderr
+    after = knowledge.posterior([run_of(result, "small-camber")], None).stderr
     # But for what a coefficient held at a wrong value makes of a fitted one.
     assert all(after[name] <= before[name] * 1.001 for name in before)
     assert after["PKY6"] < 0.9 * before["PKY6"]
@@ -79,7 +81,7 @@ def test_more_points_never_tell_less(result, knowledge):
 
 def test_the_same_points_again_halve_the_variance_that_noise_makes(result, knowledge):
     """Curvature of the side force and width of the trail hang on the points alone, not on the rig or on priors."""
-    again = dataclasses.replace(run_of(result, Kind.SIDESLIP), points=result.points)
+    again = dataclasses.replace(run_of(result, "sideslip"), points=result.points)
     before, after = (knowledge.posterior(runs, None).stderr for runs in ([], [again]))
     for name in ("PEY1", "QBZ4"):
         assert after[name] / before[name] == pytest.approx(math.sqrt(0.5), rel=0.05)
@@ -87,11 +89,11 @@ def test_the_same_points_again_halve_the_variance_that_noise_makes(result, knowl
 
 def test_no_run_on_one_rig_tells_ply_steer_from_misalignment_but_a_geometric_zero_does(result, knowledge):
     ply, axis = EFFECTS["ply-steer"], EFFECTS["sideslip-misalignment"]
-    before = knowledge.told([], ply, [axis])
-    for kind in (Kind.OTHER_SIDE, Kind.ZEROS, Kind.SECOND_RADIUS, Kind.SIDESLIP):
-        assert knowledge.told([run_of(result, kind)], ply, [axis]) == pytest.approx(before, rel=0.05)
-    zero = run_of(result, Kind.SIDESLIP_ZERO)
-    assert knowledge.told([zero], ply, [axis]) < 0.7 * before
+    before = knowledge.u_of_effect([], ply, [axis])
+    for kind in ("other-side", "zeros", "second-radius", "sideslip"):
+        assert knowledge.u_of_effect([run_of(result, kind)], ply, [axis]) == pytest.approx(before, rel=0.05)
+    zero = run_of(result, "sideslip-zero")
+    assert knowledge.u_of_effect([zero], ply, [axis]) < 0.7 * before
 
 
 @pytest.fixture(scope="module")
@@ -102,7 +104,7 @@ def plan(result):
 def test_the_other_side_of_the_disc_is_found_for_eps_gamma(result, plan):
     """It takes out the offset and the zero of camber, which are most of the budget."""
     (step,) = plan.steps
-    assert step.run.kind is Kind.OTHER_SIDE
+    assert step.run.addition.id == "other-side"
     assert plan.now == pytest.approx(result.measured.epsilon_gamma_debiased.u)
     rest = [
         r
@@ -152,16 +154,21 @@ def test_the_bias_of_finite_spin_is_that_of_the_true_tyre_however_well_its_force
 
 
 def test_what_the_rig_cannot_do_is_left_out(result):
-    without = plan_of(result, read_goal("eps_gamma:joint", on_disc=True), runs=2, without=ONE_SIDE)
+    without = plan_of(
+        result,
+        read_goal("eps_gamma:joint", on_disc=True),
+        runs=2,
+        without=[addition_named(word) for word in ONE_SIDE],
+    )
     assert without.steps
-    assert not {trial.run.kind for trial in without.trials} & set(ONE_SIDE)
+    assert not {trial.run.addition.id for trial in without.trials} & set(ONE_SIDE)
     assert without.then == without.steps[-1].after < without.now
 
 
 def test_two_runs_that_help_only_together_are_found(result):
     """PPY2 needs two pressures at two loads: one more pressure at one load tells nothing of it."""
     found = plan_of(result, read_goal("PPY2", on_disc=True), runs=2)
-    assert [step.run.kind for step in found.steps] == [Kind.PRESSURE, Kind.PRESSURE]
+    assert [step.run.addition.id for step in found.steps] == ["pressure", "pressure"]
     assert len({step.run.load for step in found.steps}) == 2
     assert found.then < 0.3 * found.now
 
@@ -182,18 +189,20 @@ def test_what_tyre_toml_gains_can_stand_behind_it_whatever_the_runs(result):
     """A second [rig] would make it no TOML at all."""
     config = result.config.model_copy(update={"rolling_radius": ()})
     runs = candidates(config, result.points, 0.3)
-    assert {run.kind for run in runs} == set(Kind)
+    assert {run.addition for run in runs} == set(ADDITIONS)
     told = tomllib.loads("[rig]\naxes = 'iso'\n" + additions(config, runs))
     assert {row["file"] for row in told["sweep"]} == {f"{r.name}.csv" for r in runs if r.points is not None}
     assert set(told["rig"]) == {"axes"}
     of_the_rig = additions(config, [r for r in runs if r.rig])
     assert "sheet" not in of_the_rig
     assert tomllib.loads(of_the_rig) == {}
-    for key, _ in DECLARED.values():
+    declared = [addition.declares for addition in ADDITIONS if addition.declares]
+    assert len(declared) == 4
+    for key in declared:
         assert f"# change in [rig]: {key} = " in of_the_rig
 
 
-@pytest.mark.parametrize(("after", "said"), [(0.9, "The tie stays"), (0.2, "That tells it apart")])
+@pytest.mark.parametrize(("after", "said"), [(0.9, "The tie remains"), (0.2, "That separates the effects")])
 def test_a_plan_says_whether_the_tie_is_broken(plan, after, said):
     goal = read_goal("tie:ply-steer", on_disc=True)
     tied = dataclasses.replace(
@@ -212,7 +221,11 @@ def test_a_band_is_no_standard_deviation(plan):
 
 @pytest.mark.parametrize(
     ("goal", "said"),
-    [("PKY66", "did you mean PKY6"), ("tie:rain", "no effect with a tie"), ("bands:Fx", "no goal")],
+    [
+        ("PKY66", "did you mean PKY6"),
+        ("tie:rain", "not an effect that can be tied"),
+        ("bands:Fx", "not a goal"),
+    ],
 )
 def test_a_goal_that_is_not_known_is_refused(goal, said):
     with pytest.raises(InputError, match=said):
@@ -231,9 +244,9 @@ def test_names_of_runs_are_files_of_their_own(result):
 
 def test_what_the_sweeps_identify_is_said(plan):
     said = " ".join(wording.identified(plan.identified))
-    assert "not seen: " in said
+    assert "not visible: " in said
     assert "pressure" in said
-    assert "Not told apart: ply-steer and sideslip axis misaligned" in said
+    assert "Not separated: ply-steer and sideslip axis misaligned" in said
 
 
 @pytest.mark.parametrize(
