@@ -106,12 +106,11 @@ def estimates(plan: Plan) -> str:
     """Both uncertainties of eps_gamma, now and after the list; empty without a disc."""
     if plan.joint_now is None and plan.direct_now is None and not any(step.direct for step in plan.steps):
         return ""
-    pairs = [("direct method", plan.direct_now, None), ("joint fit", plan.joint_now, None)]
+    direct, joint = _u(plan.direct_now), _u(plan.joint_now)
     if plan.steps:
-        last = plan.steps[-1]
-        pairs = [("direct method", plan.direct_now, last.direct), ("joint fit", plan.joint_now, last.joint)]
-    parts = [f"{name} {_u(now)}" + (f" -> {_u(then)}" if plan.steps else "") for name, now, then in pairs]
-    return f"u({EPS}): {'; '.join(parts)}."
+        direct += f" -> {_u(plan.steps[-1].direct)}"
+        joint += f" -> {_u(plan.steps[-1].joint)}"
+    return f"u({EPS}): direct method {direct}; joint fit {joint}."
 
 
 def _u(u: float | None) -> str:

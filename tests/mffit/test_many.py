@@ -19,7 +19,7 @@ from mffit.cli import main
 from mffit.errors import InputError
 from mffit.fit.priors import of_fleet
 from mffit.output import RECORD, digest
-from mffit.pipeline import many
+from mffit.pipeline import many, workers
 from mffit.pipeline.current import is_current
 from mffit.results import Outcome
 from tests.browser import assert_readable
@@ -119,14 +119,14 @@ def test_what_changed_is_built_again(built, project, tmp_path, change):
     shutil.copytree(project, tmp_path / "sound")
     shutil.copytree(built[0] / "small", tmp_path / "out" / "small")
     toml, out = tmp_path / "sound" / "tyre.toml", tmp_path / "out" / "small"
-    resolved = pipeline.building.resolved_text(config.load(toml), out)
+    resolved = pipeline.build_output.resolved_text(config.load(toml), out)
     _rewritten(out, "resolved.toml", resolved)
     if change is not None:
         change(tmp_path / "sound", out)
     assert is_current(config.load(toml), out) == (change is None)
 
 
-def told_to_die(job: many.Job) -> Outcome:
+def told_to_die(job: workers.Job) -> Outcome:
     """What a worker does that runs out of memory at one of the tyres."""
     if job.name == "weak":
         os.kill(os.getpid(), signal.SIGKILL)
@@ -135,11 +135,11 @@ def told_to_die(job: many.Job) -> Outcome:
 
 @pytest.mark.skipif(os.name == "nt", reason="processes are started and killed otherwise there")
 def test_a_worker_that_is_killed_costs_its_own_tyre_only(tmp_path, monkeypatch):
-    monkeypatch.setattr(many, "STARTED", "fork")  # at once; this process has no threads
-    jobs = [many.Job(Path(name), name, tmp_path) for name in ("a", "weak", "b", "c", "d")]
-    outcomes = list(many.in_processes(jobs, 2, told_to_die))
+    monkeypatch.setattr(workers, "START_METHOD", "fork")  # faster; this process has no threads
+    jobs = [workers.Job(Path(name), name, tmp_path) for name in ("a", "weak", "b", "c", "d")]
+    outcomes = list(workers.in_processes(jobs, 2, told_to_die))
     assert {o.name: o.state for o in outcomes} == dict.fromkeys("abcd", "built") | {"weak": "failed"}
-    assert "ended before its time" in next(o.sentence for o in outcomes if o.name == "weak")
+    assert "its process ended early" in next(o.sentence for o in outcomes if o.name == "weak")
 
 
 def test_two_tyres_are_not_built_into_one_folder(project):
@@ -276,9 +276,9 @@ def test_a_folder_that_is_no_build_is_named(folders, tmp_path, spoil, said):
 
 
 def test_one_tyre_is_no_fleet(folders):
-    with pytest.raises(InputError, match="two built tyres or more"):
+    with pytest.raises(InputError, match="two or more built tyres"):
         pipeline.fleet([folders[0]])
-    with pytest.raises(InputError, match="each once"):
+    with pytest.raises(InputError, match="each named once"):
         pipeline.fleet([folders[0], folders[0]])
 
 

@@ -16,9 +16,9 @@ from mffit.diagnosis import wording
 from mffit.diagnosis.notes import DirectMethodRedone, ModelFittedFirst
 from mffit.effects import CATALOG
 from mffit.errors import InputError
-from mffit.pipeline.building import undistorted
 from mffit.pipeline.diagnosing import last_build
 from mffit.pipeline.provenance import fitted_to, rig_of_build
+from mffit.pipeline.refining import undistorted
 from mffit.results import as_json
 
 OFFSET = [effect for effect in CATALOG if effect.id in ("loadcell-offset-fy", "camber-misalignment")]

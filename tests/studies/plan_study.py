@@ -79,7 +79,9 @@ def outcomes(seed: int) -> Iterator[tuple[Task, Outcome]]:
             first = built(content | {"spin": {"pecp1": pecp1}}, Path(made) / f"first-{pecp1}", seed)
             for task in (task for task in TASKS if task.pecp1 == pecp1):
                 goal = read_goal(task.goal, on_disc=True)
-                plan = plan_of(first, goal, runs=task.runs, without=[addition_named(word) for word in task.without])
+                plan = plan_of(
+                    first, goal, runs=task.runs, without=[addition_named(word) for word in task.without]
+                )
                 longer = extended(content | {"spin": {"pecp1": pecp1}}, plan)
                 second = built(longer, Path(made) / f"second-{TASKS.index(task)}", seed)
                 stated, error = stated_and_error(second, goal, true)
@@ -95,7 +97,9 @@ def extended(content: dict[str, Any], plan: Plan) -> dict[str, Any]:
         for key, u in step.run.rig.items():
             # What was measured better is wrong by less: the same chance, a smaller spread.
             fault, sure = FAULTS[key], getattr(declared(plan.config.rig), FAULTS[key])
-            content["faults"][fault] = sure + constants.PLAN_RIG_IMPROVEMENT * (content["faults"][fault] - sure)
+            content["faults"][fault] = sure + constants.PLAN_RIG_IMPROVEMENT * (
+                content["faults"][fault] - sure
+            )
             content["rig"][key] = u
     return content
 

@@ -1,4 +1,4 @@
-"""A plan, and a comparison."""
+"""JSON of a plan and of a comparison."""
 
 from __future__ import annotations
 
