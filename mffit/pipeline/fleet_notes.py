@@ -17,8 +17,8 @@ def fleet_notes(rows: Sequence[Row], rigs: Sequence[Hierarchy | None]) -> list[s
         *_several_rigs(rigs),
         *(note for row in rows for note in _outlying(row, far)),
         *(
-            f"All tyres together put an error of the rig, {FAULT_WORDS[name]}, {ratio:.0f} standard deviations from the value that "
-            "[rig] declares: the declaration is too tight, or the tyres share an effect that the model lacks; in the second "
+            f"All tyres together put an error of the rig, {FAULT_WORDS[name]}, {ratio:.0f} standard deviations from the "
+            "value in [rig]: the declaration is too tight, or the tyres share an effect that the model lacks; in the second "
             "case rely on the direct method."
             for name, ratio in far.items()
         ),
