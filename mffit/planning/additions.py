@@ -30,10 +30,13 @@ class Addition:
     id: str  #: ``kind`` in plan.json, and the word for ``--without``
     title: str
     reason: str  #: what it measures and why that helps
-    settles: tuple[str, ...]  #: ids of the effects about which it informs most
+    settles: tuple[str, ...]  #: ids of effects whose uncertainty it lowers markedly
     loads: Literal[
         "each", "nominal", "new"
     ]  #: one run at each load of the programme, at the nominal load, at each new load
+    loads: Literal["each", "nominal", "new"] = (
+        "each"  #: each load of the programme, the nominal one, each new load
+    )
     lines: tuple[Line, ...] = ()  #: none for a measurement of the rig
     disc_only: bool = False
     mount: Literal[1, -1] = 1
@@ -58,8 +61,7 @@ ADDITIONS = (
         id="zeros",
         title="zeros both ways again",
         reason="More points at zero average the noise out of the turn-slip force.",
-        settles=("camber-reduction",),
-        loads="each",
+        settles=("loadcell-offset-mz",),
         lines=_ZEROS,
         disc_only=True,
     ),
@@ -70,8 +72,7 @@ ADDITIONS = (
             "The path curves the other way and the turn-slip force changes sign; load-cell offset, zeros of the axes, ply-steer "
             "and conicity keep theirs. Half the difference is turn slip alone."
         ),
-        settles=("camber-reduction", "loadcell-offset-fy", "camber-misalignment"),
-        loads="each",
+        settles=("camber-reduction", "camber-misalignment"),
         lines=_ZEROS,
         disc_only=True,
         radius=-1.0,
@@ -84,7 +85,6 @@ ADDITIONS = (
             "cambers include zero, so the run also measures the turn-slip force."
         ),
         settles=("camber-reduction", "camber-misalignment"),
-        loads="each",
         lines=_SMALL_CAMBERS,
         disc_only=True,
         radius=-1.0,
@@ -95,8 +95,7 @@ ADDITIONS = (
         reason=(
             "Turn slip grows with the path's curvature; load-cell offset, zeros of the axes and conicity do not depend on it."
         ),
-        settles=("camber-reduction", "loadcell-offset-fy", "camber-misalignment"),
-        loads="each",
+        settles=("path-radius", "camber-reduction", "camber-misalignment"),
         lines=_ZEROS,
         disc_only=True,
         radius=constants.PLAN_SECOND_RADIUS_FACTOR,
@@ -106,7 +105,6 @@ ADDITIONS = (
         title="small cambers, closely spaced",
         reason="The camber stiffness is the slope at zero; cambers up to 20 deg determine it.",
         settles=("camber-stiffness",),
-        loads="each",
         lines=_SMALL_CAMBERS,
         disc_only=True,
     ),
@@ -116,7 +114,7 @@ ADDITIONS = (
         reason=(
             f"A camber error makes a force like turn slip; it is often the largest line in the budget of {_EPSILON}."
         ),
-        settles=("camber-misalignment",),
+        settles=("camber-misalignment", "camber-reduction"),
         loads="nominal",
         disc_only=True,
         declares="u_camber_alignment_deg",
@@ -165,7 +163,7 @@ ADDITIONS = (
         id="flipped",
         title="sideslip sweep with the tyre turned on its rim",
         reason="Conicity changes sign with the tyre turned on its rim; every rig error keeps its sign.",
-        settles=("conicity",),
+        settles=("conicity", "crosstalk-fz-fy", "residual-torque"),
         loads="nominal",
         lines=(Line("alpha", constants.PLAN_FLIPPED_SHARES),),
         mount=-1,
@@ -175,23 +173,26 @@ ADDITIONS = (
         title="sideslip sweep",
         reason="More points over sideslip, for cornering stiffness, peak and trail.",
         settles=("curvature-asymmetry",),
-        loads="each",
         lines=_SIDESLIP,
     ),
     Addition(
         id="camber",
         title="camber sweep",
         reason="More points over camber, for the camber stiffness and the shape of the camber force.",
-        settles=("camber-stiffness", "camber-thrust-curvature"),
-        loads="each",
+        settles=("camber-stiffness",),
         lines=_CAMBER,
     ),
     Addition(
         id="coupled",
         title="sideslip sweeps at camber of both signs",
         reason="How camber changes the curves over sideslip is visible only where both angles act together.",
-        settles=("camber-grip", "camber-cornering-stiffness", "trail-camber", "residual-torque-camber"),
-        loads="each",
+        settles=(
+            "camber-grip",
+            "camber-thrust-curvature",
+            "camber-cornering-stiffness",
+            "spin-trail-loss",
+            "spin-torque",
+        ),
         lines=tuple(Line("alpha", constants.PLAN_SWEEP_SHARES, camber_side=side) for side in (-1, 1)),
         cambers=constants.PLAN_COUPLED_CAMBERS,
     ),
@@ -203,7 +204,6 @@ ADDITIONS = (
             "itself or the load at which the stiffness peaks."
         ),
         settles=("pressure",),
-        loads="each",
         lines=(*_SIDESLIP, *_CAMBER),
         pressures=constants.PLAN_NEW_PRESSURE_FACTORS,
     ),
@@ -211,7 +211,13 @@ ADDITIONS = (
         id="load",
         title="sideslip and camber sweep at a new load",
         reason="The farther the loads are apart, the better the data determine what changes with load.",
-        settles=("load-grip", "load-cornering-stiffness", "trail-load"),
+        settles=(
+            "load-grip",
+            "trail-load",
+            "camber-reduction-load",
+            "loadcell-offset-fy",
+            "steering-compliance",
+        ),
         loads="new",
         lines=(*_SIDESLIP, *_CAMBER),
     ),
