@@ -12,7 +12,7 @@ import tomllib
 
 import numpy as np
 import pytest
-from small_rigs import SAMPLE, built, disc, truth
+from small_rigs import LOADS, SAMPLE, built, disc, truth
 
 from mffit.cli import main
 from mffit.effects import CATALOG
@@ -33,12 +33,8 @@ ONE_SIDE = ("other-side", "other-side-camber")
 @pytest.fixture(scope="module")
 def content():
     """Two loads of the small campaign on a drawn rig."""
-    content = disc(
-        faults={"F0_N": 8.0, "gamma_0_deg": 0.4, "path_radius_m": 1.325}, spin={"pecp1": "debiased"}
-    )
-    content["sweep"] = [s for s in content["sweep"] if s["load_N"] < 2000]
-    content["rolling_radius"] = content["rolling_radius"][:2]
-    return content
+    faults = {"F0_N": 8.0, "gamma_0_deg": 0.4, "path_radius_m": 1.325}
+    return disc(LOADS[:2], faults=faults, spin={"pecp1": "debiased"})
 
 
 @pytest.fixture(scope="module")
