@@ -2,7 +2,7 @@
 
 The errors of the rigs are drawn from their declared uncertainties. Each campaign is built, a plan is made for every goal, its
 runs are simulated on the same rig with the same tyre, and the longer campaign is built. The predicted uncertainty is compared
-with the one that this build states and with the true error over all draws. ``tests/mffit/planning/test_promises.py`` does so
+with the one that this build states and with the true error over all draws. ``tests/mffit/planning/test_predictions.py`` does so
 for one draw.
 """
 

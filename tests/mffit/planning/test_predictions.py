@@ -228,16 +228,6 @@ def test_the_additions_to_tyre_toml_are_valid_toml_behind_it(result):
         assert f"# change in [rig]: {key} = " in of_the_rig
 
 
-@pytest.mark.parametrize(("after", "said"), [(0.9, "The tie remains"), (0.2, "That separates the effects")])
-def test_the_headline_says_whether_the_tie_is_resolved(plan, after, said):
-    goal = read_goal("tie:ply-steer", on_disc=True)
-    tied = dataclasses.replace(
-        plan, goal=goal, now=1.0, told_below=0.3, steps=(dataclasses.replace(plan.steps[0], after=after),)
-    )
-    assert said in wording.headline(tied)
-    assert said not in wording.headline(plan)
-
-
 def test_a_band_is_not_called_a_standard_uncertainty(plan):
     bands = dataclasses.replace(plan, goal=read_goal("bands:Mz", on_disc=True))
     assert "k = 1" in plan_summary(plan)
@@ -261,11 +251,6 @@ def test_an_unknown_goal_is_refused(goal, said):
 def test_a_flat_track_has_no_eps_gamma_to_plan_for():
     with pytest.raises(InputError, match="needs a disc"):
         read_goal("eps_gamma", on_disc=False)
-
-
-def test_runs_have_unique_names(result):
-    names = [run.name for run in candidates(result.config, result.points)]
-    assert len(set(names)) == len(names)
 
 
 def test_the_plan_lists_what_the_sweeps_identify(plan):
