@@ -31,12 +31,7 @@ class Addition:
     title: str
     reason: str  #: what it measures and why that helps
     settles: tuple[str, ...]  #: ids of effects whose uncertainty it lowers markedly
-    loads: Literal[
-        "each", "nominal", "new"
-    ]  #: one run at each load of the programme, at the nominal load, at each new load
-    loads: Literal["each", "nominal", "new"] = (
-        "each"  #: each load of the programme, the nominal one, each new load
-    )
+    loads: Literal["each", "nominal", "new"] = "each"  #: each or nominal: of the programme
     lines: tuple[Line, ...] = ()  #: none for a measurement of the rig
     disc_only: bool = False
     mount: Literal[1, -1] = 1
