@@ -155,6 +155,18 @@ ADDITIONS = (
         revolution=True,
     ),
     Addition(
+        id="backward-camber",
+        title="camber sweep rolled backwards",
+        reason=(
+            "Rolled backwards, the force of camber keeps its sign; the force of sideslip changes sign, with that of a camber axis "
+            "that is not square to the steering axis."
+        ),
+        settles=("loadcell-offset-mz", "spin-trail-loss"),
+        loads="nominal",
+        lines=(Line("gamma", constants.PLAN_SWEEP_SHARES, direction=-1),),
+        disc_only=True,
+    ),
+    Addition(
         id="flipped",
         title="sideslip sweep with the tyre turned on its rim",
         reason="Conicity changes sign with the tyre turned on its rim; every rig error keeps its sign.",

@@ -47,6 +47,7 @@ def runs(programme):
         ("second-radius", ZEROS * 2, 0.0, 0.7 * R, (900, 1400)),
         ("other-side-camber", 0.0, SMALL, -R, (900, 1400)),
         ("small-camber", 0.0, SMALL, R, (900, 1400)),
+        ("backward-camber", 0.0, CAMBER * SHARES, R, (1400,)),
         ("flipped", SLIP * SHARES[3:-3], 0.0, R, (1400,)),
         ("sideslip", SLIP * SHARES, 0.0, R, (900, 1400)),
         ("camber", 0.0, CAMBER * SHARES, R, (900, 1400)),
@@ -64,7 +65,7 @@ def test_set_points(runs, kind, alpha, gamma, path, loads):
         assert points.Fz == pytest.approx(np.full(n, run.load))
         assert points.p == pytest.approx(np.full(n, PRESSURE))
         assert points.mount.tolist() == [-1 if kind == "flipped" else 1] * n
-        backward = 5 if len(np.atleast_1d(alpha)) == 10 else 0
+        backward = n if kind == "backward-camber" else 5 if len(np.atleast_1d(alpha)) == 10 else 0
         assert points.direction.tolist() == [1] * (n - backward) + [-1] * backward
         assert np.all(np.isnan(points.Fy))
         assert np.all(np.isnan(points.Mz))
