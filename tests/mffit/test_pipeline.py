@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import re
 
 import numpy as np
@@ -16,6 +17,7 @@ from mffit.diagnosis import wording
 from mffit.diagnosis.notes import DirectMethodRedone, ModelFittedFirst
 from mffit.effects import CATALOG
 from mffit.errors import InputError
+from mffit.pipeline.build_output import origin
 from mffit.pipeline.diagnosing import last_build
 from mffit.pipeline.provenance import fitted_to, rig_of_build
 from mffit.pipeline.refining import undistorted
@@ -81,6 +83,46 @@ def test_the_json_gives_the_origin_as_the_file_does(small):
     assert len(on_disk.status.keys() & origin.keys()) > 200
     for name in on_disk.status.keys() & origin.keys():
         assert origin[name] == on_disk.status[name], name
+
+
+def test_the_json_states_the_measured_numbers(small):
+    result, folder = small
+    text = (folder / "out" / "result.json").read_text(encoding="utf-8")
+    spin, fit = json.loads(text)["spin"], json.loads(text)["fit"]
+    row = result.measured.nominal
+    assert (spin["epsilon_gamma"], spin["u_epsilon_gamma"]) == (row.epsilon_gamma.value, row.epsilon_gamma.u)
+    assert spin["alpha_M_deg"] == pytest.approx(np.degrees(row.alpha_M.value))
+    assert spin["u_alpha_M_deg"] == pytest.approx(np.degrees(row.alpha_M.u))
+    assert spin["coverage_factor"] == 1
+    assert [load["load_N"] for load in spin["per_load"]] == [load.load for load in result.measured.per_load]
+    assert (spin["F_forward_N"], spin["F_backward_N"]) == (row.F_forward, row.F_backward)
+    assert set(fit["files"]) == {"turn-slip", "normal", "ranges"}
+    paired = [name for name, entry in fit["coefficients"].items() if entry["correlated_with"]]
+    assert paired
+    for name, entry in fit["coefficients"].items():
+        assert (entry["correlation"] is None) == (name not in paired)
+        assert (entry["interval_95"] is None) == entry["fixed"]
+
+
+def test_the_points_are_written_with_their_parts_and_their_origin(small):
+    result, folder = small
+    table = pd.read_csv(folder / "out" / "points.csv")
+    both = table[["Fy_odd_N", "Fy_even_N"]].notna().all(axis=1)
+    assert both.any()
+    assert (table.Fy_odd_N + table.Fy_even_N)[both].to_numpy() == pytest.approx(table.Fy_N[both].to_numpy())
+    assert (table.Mz_odd_Nm + table.Mz_even_Nm)[both].to_numpy() == pytest.approx(
+        table.Mz_Nm[both].to_numpy()
+    )
+    assert np.std(table.Fy_model_N - table.Fy_N) < 6.0
+    assert set(table.file) == {sweep.file for sweep in result.config.sweep}
+    assert (table.direction == "backward").tolist() == [name.startswith("backward") for name in table.file]
+    assert set(table.path_centre) == {"left"}
+    assert table.path_radius_m.to_numpy() == pytest.approx(np.full(len(table), 1.323))
+    n = len(result.points)
+    flipped = origin(result.points.replace(mount=np.where(np.arange(n) < 2, -1, 1), phi_t=0.5))
+    assert flipped["mount"].tolist() == ["flipped"] * 2 + ["normal"] * (n - 2)
+    assert set(flipped["path_centre"]) == {"right"}
+    assert "path_centre" not in origin(result.points.replace(phi_t=0.0))
 
 
 def note_of(diagnosis) -> str:

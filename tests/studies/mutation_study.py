@@ -64,13 +64,16 @@ TESTS: dict[str, tuple[str, ...]] = {
         f"{SUITE}/measured", "tests/test_paper_tables.py", f"{FIT}/test_faulty_rig.py", f"{FIT}/test_recovery.py",
     ),
     "mffit/pipeline": (
-        MANY, PIPELINE, f"{SUITE}/comparison", f"{SUITE}/planning", f"{SUITE}/rig/test_other_paths.py",
+        f"{SUITE}/test_fleet_notes.py", MANY, PIPELINE, f"{SUITE}/comparison", f"{SUITE}/planning", f"{SUITE}/rig/test_other_paths.py",
         f"{SUITE}/recordings/test_sniff.py", f"{FIT}/test_normal.py", COMMANDS, f"{DIAGNOSIS}/test_corrected_files.py",
     ),
     "mffit/planning": (f"{SUITE}/planning",),
     "mffit/points": (POINTS, BAD_INPUT, CORPUS, f"{SUITE}/recordings", f"{FIT}/test_trust.py"),
     "mffit/recordings": (f"{SUITE}/recordings", f"{POINTS}/test_points_recordings.py", CORPUS, COMMANDS),
-    "mffit/results": (PIPELINE, COMMANDS, MANY, f"{SUITE}/planning", f"{DIAGNOSIS}/test_wording.py", f"{SUITE}/measured"),
+    "mffit/results": (
+        f"{SUITE}/test_json.py", f"{SUITE}/planning/test_plan_wording.py", PIPELINE, MANY, f"{SUITE}/comparison",
+        f"{DIAGNOSIS}/test_wording.py",
+    ),
     "mffit/rig": (f"{SUITE}/rig", f"{SUITE}/virtual_rig", f"{SUITE}/effects", DIAGNOSIS),
     "mffit/sweeps": (f"{SUITE}/sweeps", POINTS, f"{SUITE}/recordings", BAD_INPUT, CORPUS, f"{SUITE}/test_readers_fuzz.py"),
     "mffit/virtual_rig": (f"{SUITE}/virtual_rig", "tests/test_samples.py", f"{SUITE}/rig/test_other_paths.py"),
