@@ -158,8 +158,8 @@ ADDITIONS = (
         id="backward-camber",
         title="camber sweep rolled backwards",
         reason=(
-            "Rolled backwards, the force of camber keeps its sign; the force of sideslip changes sign, with that of a camber axis "
-            "that is not square to the steering axis."
+            "Rolled backwards, the force of camber keeps its sign and the force of sideslip changes it. The run separates camber "
+            "from the sideslip of a camber axis that is not square to the steering axis."
         ),
         settles=("loadcell-offset-mz", "spin-trail-loss"),
         loads="nominal",
@@ -242,5 +242,5 @@ def addition_named(word: str) -> Addition:
         No addition has it.
     """
     if word not in BY_ID:
-        raise InputError(f'"{word}" is no kind of run; known are {", ".join(BY_ID)}')
+        raise InputError(f'"{word}" is not a kind of run; the kinds are {", ".join(BY_ID)}')
     return BY_ID[word]

@@ -64,8 +64,9 @@ TESTS: dict[str, tuple[str, ...]] = {
         f"{SUITE}/measured", "tests/test_paper_tables.py", f"{FIT}/test_faulty_rig.py", f"{FIT}/test_recovery.py",
     ),
     "mffit/pipeline": (
-        f"{SUITE}/test_fleet_notes.py", MANY, PIPELINE, f"{SUITE}/comparison", f"{SUITE}/planning", f"{SUITE}/rig/test_other_paths.py",
-        f"{SUITE}/recordings/test_sniff.py", f"{FIT}/test_normal.py", COMMANDS, f"{DIAGNOSIS}/test_corrected_files.py",
+        f"{SUITE}/test_fleet_notes.py", MANY, PIPELINE, f"{SUITE}/comparison", f"{SUITE}/planning", COMMANDS,
+        f"{SUITE}/rig/test_other_paths.py", f"{SUITE}/recordings/test_sniff.py", f"{FIT}/test_normal.py",
+        f"{DIAGNOSIS}/test_corrected_files.py",
     ),
     "mffit/planning": (f"{SUITE}/planning",),
     "mffit/points": (POINTS, BAD_INPUT, CORPUS, f"{SUITE}/recordings", f"{FIT}/test_trust.py"),

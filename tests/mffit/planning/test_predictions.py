@@ -109,7 +109,7 @@ def test_an_addition_settles_what_it_names(result, addition):
 def test_additions_are_looked_up_by_id():
     assert {addition_named(addition.id) for addition in ADDITIONS} == set(ADDITIONS)
     assert addition_named("other-side").radius < 0.0
-    with pytest.raises(InputError, match="known are zeros, other-side, "):
+    with pytest.raises(InputError, match="the kinds are zeros, other-side, "):
         addition_named("sun")
 
 
@@ -264,7 +264,7 @@ def test_the_plan_lists_what_the_sweeps_identify(plan):
     ("options", "said"),
     [
         (["--goal", "PKY66"], "did you mean PKY6"),
-        (["--without", "sun"], "no kind of run"),
+        (["--without", "sun"], "is not a kind of run"),
         (["--goal", "bands", "--coefficient", "PKY6"], "exclude each other"),
     ],
 )
