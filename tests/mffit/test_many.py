@@ -201,8 +201,16 @@ def test_the_fleet_compares_and_reduces_uncertainties(compared, folders):
         assert epsilon["direct"]["value"] == result["spin"]["epsilon_gamma"]
         assert epsilon["together"]["u"] < epsilon["alone"]["u"] < epsilon["direct"]["u"]
         assert tyre["C_alpha_N_per_rad"]["u"] > 0.0
+        assert tyre["rig"] == 1  # counted from 1, as on the page
+        assert tyre["rmse"] == {name: row["rmse"] for name, row in result["fit"]["channels"].items()}
+        assert tyre["warnings"] == result["warnings"]
     assert set(found["rigs"][0]["errors"]) == {"F0_N", "gamma_0_deg", "alpha_0_deg", "path_radius_m"}
+    assert found["scatter"]["epsilon_gamma_direct"]["tyres"] == 5
+    assert found["scatter"]["epsilon_gamma_direct"]["beyond"] == 0.0  # five times the same tyre
     table = pd.read_csv(out / "fleet.csv")
+    assert table.rig.tolist() == [1] * 5
+    assert table.warnings.tolist() == [len(result["warnings"])] * 5
+    assert table.rmse_Fy.to_numpy() == pytest.approx(result["fit"]["channels"]["Fy"]["rmse"])
     assert list(table.name) == [HOSTILE, "tyre 1", "tyre 2", "tyre 3", "tyre 4"]
     assert table.epsilon_gamma_together[0] == found["tyres"][0]["epsilon_gamma"]["together"]["value"]
     assert "error of the rig" in said
