@@ -1,4 +1,4 @@
-"""A headless browser for pages that are to be looked at; tests that need one are skipped where there is none."""
+"""A headless browser to check pages; tests that need one are skipped if it is not installed."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ const width = document.documentElement.clientWidth, found = [];
 if (document.documentElement.scrollWidth > width) found.push(`the page is ${document.documentElement.scrollWidth} px wide`);
 for (const drawing of document.querySelectorAll('figure svg')) {
   const box = drawing.getBoundingClientRect();
-  if (box.width < 5 || box.height < 5) found.push(`nothing to see of ${drawing.textContent.trim().slice(0, 40)}`);
+  if (box.width < 5 || box.height < 5) found.push(`invisible: ${drawing.textContent.trim().slice(0, 40)}`);
   if (box.left < 0 || box.right > width + 1) found.push(`outside the page: ${drawing.textContent.trim().slice(0, 40)}`);
   const scale = box.width / drawing.viewBox.baseVal.width;
   for (const text of drawing.querySelectorAll('text')) {
@@ -66,7 +66,7 @@ def opened(page: Path, width: int = SCREEN, height: int = 900, dark: bool = Fals
 def look(
     browser: Any, width: int = SCREEN, height: int = 900, *, dark: bool = False, media: str = ""
 ) -> None:
-    """Another window or another taste; ``media`` "print" shows the page as it would be printed."""
+    """Change window size and colour scheme; ``media`` "print" shows the printed page."""
     scheme = [{"name": "prefers-color-scheme", "value": "dark" if dark else "light"}]
     browser.execute_cdp_cmd("Emulation.setEmulatedMedia", {"features": scheme, "media": media})
     size = {"width": width, "height": height, "deviceScaleFactor": 1, "mobile": False}
@@ -74,17 +74,17 @@ def look(
 
 
 def console_errors(browser: Any) -> list[str]:
-    """What the page complained of since the last call."""
+    """Errors in the console since the last call."""
     return [entry["message"] for entry in browser.get_log("browser") if entry["level"] == "SEVERE"]
 
 
 def complaints(browser: Any) -> list[str]:
-    """What a reader would complain of: a page wider than the window, drawings not to be seen, text over text or too small."""
+    """Defects of the layout: a page wider than the window, invisible drawings, text that overlaps or is too small."""
     return browser.execute_script(COMPLAINTS)
 
 
 def assert_readable(page: Path) -> None:
-    """On a screen, on a telephone and on paper."""
+    """The page has no layout defects on a screen, on a telephone and on paper."""
     with opened(page) as browser:
         for width, media in ((SCREEN, ""), (PHONE, ""), (PAPER, "print")):
             look(browser, width, media=media)
@@ -93,7 +93,7 @@ def assert_readable(page: Path) -> None:
 
 
 def brightness(element: Any) -> np.ndarray:
-    """How an element looks: grey levels (height, width), 0 black to 1 white."""
+    """A screenshot of an element as grey levels (height, width), 0 black to 1 white."""
     from PIL import Image
 
     with Image.open(io.BytesIO(base64.b64decode(element.screenshot_as_base64))) as image:

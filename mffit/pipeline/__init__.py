@@ -1,4 +1,4 @@
-"""The workflows: one screen each, one call per step."""
+"""The workflows, one module each, one call per step."""
 
 from mffit.pipeline.building import build
 from mffit.pipeline.comparing import compare

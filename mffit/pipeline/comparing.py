@@ -4,18 +4,16 @@ from __future__ import annotations
 
 import json
 import tomllib
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
-
-import numpy as np
 
 import tir
 from mffit import config as configuration
 from mffit import points as ingestion
 from mffit.comparison import Comparison, Subject, against_points, between
 from mffit.config import Config, declared_faults
-from mffit.diagnosis.inexact import Inexactness
 from mffit.errors import InputError
 from mffit.fleet.specimen import RESOLVED
 from mffit.measured import LoadResult
@@ -23,6 +21,7 @@ from mffit.output import output_folder
 from mffit.pipeline.inputs import inputs_of, read_base
 from mffit.pipeline.measuring import measure, without_play
 from mffit.pipeline.provenance import posterior_of, use_of
+from mffit.points import Points
 from mffit.progress import Progress, silent
 from mffit.results import as_json
 from mffit.rig import Simulation
@@ -45,15 +44,15 @@ def compare(
     Parameters
     ----------
     first, second : property file, folder of a build, or (one of the two) a ``tyre.toml`` with its sweeps
-    turn_slip : evaluate both files with turn slip on, or off; default each as it is meant
+    turn_slip : evaluate both files with turn slip on, or off; default as each file is intended
     out : folder to write to; nothing is written if None
     progress : called with a sentence before each step
 
     Returns
     -------
     Comparison
-        Numbers, curves and coefficients, the differences ranked; with uncertainties where a build's ``result.json`` is beside
-        the file.
+        Numbers, curves and coefficients, with the differences ranked; with uncertainties if a build's ``result.json`` is
+        beside the file.
 
     Raises
     ------
@@ -61,55 +60,54 @@ def compare(
         A file cannot be read, or both sides are data.
     """
     paths = [Path(first), Path(second)]
-    data = [path.suffix.lower() == ".toml" for path in paths]
-    if all(data):
+    data = [path for path in paths if path.suffix.lower() == ".toml"]
+    files = [path for path in paths if path not in data]
+    if not files:
         raise InputError(
             f"{paths[0]} and {paths[1]} are both measured data; build each, then compare the two folders"
         )
-    read = [path for path, is_data in zip(paths, data, strict=True) if not is_data]
-    if any(data):
-        config = configuration.load(paths[data.index(True)])
-        read += inputs_of(config)
+    if data:
+        config = configuration.load(data[0])
         progress("reading sweeps")
-        found = _with_data(_subject(read[0]), config)
+        found = _with_data(_subject(files[0]), config)
+        files += inputs_of(config)
     else:
-        sides = [_subject(path) for path in paths]
-        if sides[0].name == sides[1].name:
-            files = [
-                path / side.name if path.is_dir() else path for path, side in zip(paths, sides, strict=True)
-            ]
-            sides = [replace(side, name=name) for side, name in zip(sides, _apart(*files), strict=True)]
+        sides = _with_names_apart([_subject(path) for path in paths], paths)
         if turn_slip is not None:
             sides = [replace(side, turn_slip=turn_slip) for side in sides]
         progress("comparing")
         found = between(*sides)
     if out is not None:
-        from mffit import report
-
         progress("writing the page")
-        protected = [path for path in read if path.is_file()]
-        with output_folder(Path(out), by="compare", protected=protected) as folder:
-            as_json.write(folder / "compare.json", as_json.comparison(found))
-            report.write_comparison(found, folder)
+        write_comparison(found, Path(out), read=files)
     return found
 
 
+def write_comparison(found: Comparison, out: Path, read: Sequence[Path]) -> None:
+    """Write every output of a comparison, or nothing; the files that were ``read`` are not replaced."""
+    from mffit import report
+
+    with output_folder(out, by="compare", protected=[path for path in read if path.is_file()]) as folder:
+        as_json.write(folder / "compare.json", as_json.comparison(found))
+        report.write_comparison(found, folder)
+
+
 def _subject(path: Path) -> Subject:
-    """A property file, or that of a build's folder, with what its build knows of its uncertainty."""
+    """A property file, or that of a build's folder, with its covariance if its build is beside it."""
     if path.is_dir():
         path = path / _file_of_build(path)
     tyre = tir.read(path)
+    built = _build_beside(path)
+    subject = Subject(path.name, tyre, _turn_slip(tyre), rig=built.get("rig"))
     posterior = posterior_of(tyre, path)
-    written = _beside(path)
-    rig = written.get("rig")
-    if posterior is None:
-        main = str(written.get("tir", ""))
-        return Subject(path.name, tyre, _turn_slip(tyre), told_of="" if main == path.name else main, rig=rig)
-    return Subject(path.name, tyre, _turn_slip(tyre), *_known(posterior), rig=rig)
+    if posterior is not None:
+        return replace(subject, names=posterior.names, covariance=posterior.root @ posterior.root.T)
+    main = str(built.get("tir", ""))
+    return replace(subject, told_of="" if main == path.name else main)
 
 
-def _beside(path: Path) -> dict[str, Any]:
-    """What a build beside the file says of the file that its covariance is of, ``tir``, and of its ``rig``."""
+def _build_beside(path: Path) -> dict[str, Any]:
+    """Of the build in the same folder: the file that its covariance describes, ``tir``, and its ``rig``; else empty."""
     try:
         result = json.loads((path.parent / RESULT).read_text(encoding="utf-8"))
         resolved = tomllib.loads((path.parent / RESOLVED).read_text(encoding="utf-8"))
@@ -118,8 +116,32 @@ def _beside(path: Path) -> dict[str, Any]:
         return {}
 
 
-def _apart(first: Path, second: Path) -> tuple[str, str]:
-    """The shortest ends of two paths that differ; both whole if they are one."""
+def _file_of_build(folder: Path) -> str:
+    """Name of the property file with the plain name in the folder of a build."""
+    try:
+        return str(json.loads((folder / RESULT).read_text(encoding="utf-8"))["tir"])
+    except (OSError, ValueError, KeyError, TypeError):
+        raise InputError(
+            f"{folder} is not the folder of a build: it has no {RESULT} that names a property file; give the .tir itself"
+        ) from None
+
+
+def _turn_slip(tyre: Tyre) -> bool:
+    """Whether the file is meant for turn slip: from its provenance, otherwise from USE_MODE."""
+    use = use_of(tyre)
+    return use == "turn-slip" if use is not None else int(tyre["USE_MODE"]) % 10 == 5
+
+
+def _with_names_apart(sides: list[Subject], paths: Sequence[Path]) -> list[Subject]:
+    """The subjects; those with one name get as much of their paths as makes the names differ."""
+    if sides[0].name != sides[1].name:
+        return sides
+    files = [path / side.name if path.is_dir() else path for path, side in zip(paths, sides, strict=True)]
+    return [replace(side, name=name) for side, name in zip(sides, _shortest_names(*files), strict=True)]
+
+
+def _shortest_names(first: Path, second: Path) -> tuple[str, str]:
+    """The shortest trailing parts of two paths that differ; both in full if the paths are the same."""
     parts = [path.resolve().parts for path in (first, second)]
     for k in range(2, max(map(len, parts)) + 1):
         a, b = ("/".join(p[-k:]) for p in parts)
@@ -128,27 +150,8 @@ def _apart(first: Path, second: Path) -> tuple[str, str]:
     return str(first), str(second)
 
 
-def _known(posterior: Inexactness) -> tuple[tuple[str, ...], np.ndarray]:
-    return posterior.names, posterior.root @ posterior.root.T
-
-
-def _file_of_build(folder: Path) -> str:
-    try:
-        return str(json.loads((folder / RESULT).read_text(encoding="utf-8"))["tir"])
-    except (OSError, ValueError, KeyError, TypeError):
-        raise InputError(
-            f"{folder} is no folder of a build: it has no {RESULT} that names a property file; give the .tir itself"
-        ) from None
-
-
-def _turn_slip(tyre: Tyre) -> bool:
-    """Whether the file is meant for simulations that compute turn slip: as its build says, else as USE_MODE does."""
-    use = use_of(tyre)
-    return use == "turn-slip" if use is not None else int(tyre["USE_MODE"]) % 10 == 5
-
-
 def _with_data(subject: Subject, config: Config) -> Comparison:
-    """The file against the sweeps, simulated as the rig is declared and as [model] says."""
+    """The file against the sweeps, simulated with the declared rig and the settings of [model]."""
     points, _ = ingestion.load(config)
     base = read_base(config)
     turn_slip = config.model.turn_slip and config.rig.on_disc
@@ -157,15 +160,14 @@ def _with_data(subject: Subject, config: Config) -> Comparison:
     if config.rig.radius is not None:
         simulation = replace(simulation, radius_m=config.rig.radius)
     faultless = replace(simulation, faults=NO_FAULTS).readings(points)
-    of_file = points.replace(Fy=faultless.Fy, Mz=faultless.Mz)
 
-    def direct(declared: Config, rows: ingestion.Points) -> tuple[LoadResult, ...]:
+    def direct(declared: Config, rows: Points) -> tuple[LoadResult, ...]:
         try:
             return measure(declared, rows, base)[1].per_load
-        except InputError:  # without turn slip in the simulation the force has no direction
+        except InputError:  # a simulation without turn slip has no turn-slip force to measure
             return ()
 
+    measured = direct(config, points)
+    of_file = direct(without_play(config), points.replace(Fy=faultless.Fy, Mz=faultless.Mz))
     name = config.path.name if config.path is not None else config.tyre.name
-    return against_points(
-        subject, simulation, points, direct(config, points), direct(without_play(config), of_file), name
-    )
+    return against_points(subject, simulation, points, measured, of_file, name)

@@ -1,4 +1,4 @@
-"""The readings without what a diagnosis found wrong at the rig, as files that build."""
+"""The readings corrected for the rig errors that a diagnosis found, as files that build."""
 
 from __future__ import annotations
 
@@ -18,10 +18,10 @@ from mffit.points.loading import settled_sweeps
 CORRECTED_TOML, CORRECTED_POINTS = "corrected.toml", "points-corrected.csv"
 FLIPPED_POINTS = "points-corrected-flipped.csv"
 NOT_ALWAYS = ("Mz", "T", "t")
-"""Channels that one sweep may have and another lack, whereas a file has them in every row or in none."""
+"""Channels that only some sweeps may have; a file has each of them in every row or in none."""
 ABOUT = (
-    "# The readings as a faultless rig at reference conditions would have reported them: what a diagnosis found of the rig and\n"
-    "# its surroundings, and the declared play, are taken off. Build it with: mffit build {name}\n\n"
+    "# The readings that a rig without errors would have given at reference conditions: corrected for the rig and environment\n"
+    "# effects of a diagnosis and for the declared backlash. Build it with: mffit build {name}\n\n"
 )
 
 
@@ -32,10 +32,10 @@ def write_corrected(diagnosis: Diagnosis, config: Config, out: Path, folder: Pat
     ----------
     diagnosis : what was found
     config : the configuration that was diagnosed
-    out : where the files will stand in the end
-    folder : where they are written now
+    out : final folder of the files
+    folder : temporary folder to write them to
     """
-    points = _mended(diagnosis, config)
+    points = _corrected(diagnosis, config)
     sweeps: list[dict[str, Any]] = []
     for name, part in _files(points):
         corrected_table(part, diagnosis).to_csv(folder / name, index=False, lineterminator="\n")
@@ -48,7 +48,7 @@ def write_corrected(diagnosis: Diagnosis, config: Config, out: Path, folder: Pat
 
 
 def corrected_table(points: Points, diagnosis: Diagnosis) -> pd.DataFrame:
-    """Corrected points with the headings of sweep files, in the rig's own axes; a row per point."""
+    """Corrected points with the headings of sweep files in the rig's axes, a row per point."""
     sign = diagnosis.signs
     columns = {
         "run": np.array(points.sweep_names, dtype=object)[points.sweep],
@@ -70,7 +70,7 @@ def corrected_table(points: Points, diagnosis: Diagnosis) -> pd.DataFrame:
 
 
 def _files(points: Points) -> Iterator[tuple[str, Points]]:
-    """Names of the files, and the points of each: one mount, and the same channels in every row."""
+    """Name and points of each file: one mount, and the same channels in every row."""
     for mount, name in ((1, CORRECTED_POINTS), (-1, FLIPPED_POINTS)):
         channels = np.column_stack([np.isfinite(getattr(points, channel)) for channel in NOT_ALWAYS])
         kinds = np.unique(channels[points.mount == mount], axis=0)[::-1]
@@ -79,8 +79,8 @@ def _files(points: Points) -> Iterator[tuple[str, Points]]:
             yield name if k == 1 else name.replace(".csv", f"-{k}.csv"), points.select(rows)
 
 
-def _mended(diagnosis: Diagnosis, config: Config) -> Points:
-    """The diagnosed points as finished ones, the lag of moving sweeps that was found taken off their angle."""
+def _corrected(diagnosis: Diagnosis, config: Config) -> Points:
+    """The corrected points, steady: the angles of moving sweeps are corrected for the lag that was found."""
     points = corrected_points(diagnosis.points, diagnosis.state)
     if not np.any(points.continuous):
         return points

@@ -1,4 +1,4 @@
-"""Whether the output of a build is there, whole, and of these very inputs."""
+"""Whether the output of an earlier build is complete and current."""
 
 from __future__ import annotations
 
@@ -9,20 +9,20 @@ import mffit
 import tir
 from mffit.config import Config
 from mffit.output import written_by
-from mffit.pipeline.building import WRITTEN, resolved_text
+from mffit.pipeline.build_output import WRITTEN, resolved_text
 from mffit.pipeline.members import FOLDER
 from mffit.pipeline.provenance import PROGRAM, fitted_to
 from tir.errors import TirError
 
 
 def is_current(config: Config, out: Path, *, ensemble: int = 0) -> bool:
-    """Whether a build into ``out`` would write what is there: same version, configuration and inputs, nothing missing or edited.
+    """Whether ``out`` holds a complete, unedited build of this version, configuration and inputs.
 
     Parameters
     ----------
-    config : as it would be built
-    out : folder of an earlier build, which may not be there
-    ensemble : number of drawn files that there should be
+    config : configuration of the build
+    out : folder of an earlier build; it need not exist
+    ensemble : number of drawn files required; 0 accepts any
     """
     kept = written_by(out, "build")
     try:

@@ -1,4 +1,4 @@
-"""``mffit diagnose``: what a simulation lacks."""
+"""``mffit diagnose``: which effects explain the difference between a simulation and the measurement."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ from mffit.results import as_json
 from tir import Tyre
 
 WRITTEN = ("diagnosis.json", "diagnosis.html", CORRECTED_TOML, CORRECTED_POINTS)
-"""What a run is sure to write beside a property file, known before the work begins."""
+"""Files that every diagnosis writes beside its property file."""
 
 
 def diagnose(
@@ -40,20 +40,20 @@ def diagnose(
     effects: Sequence[Effect] = CATALOG,
     progress: Progress = silent,
 ) -> Diagnosis:
-    """Find where a simulation's model and the measurement disagree, and what explains it.
+    """Find where a simulation's model and the measurement disagree, and which effects explain it.
 
     Parameters
     ----------
     config : path of a ``tyre.toml``, its content, or a loaded Config
-    model : the model that the simulation uses; default the last build's file, else one fitted now
+    model : the model that the simulation uses; default the file of the last build, otherwise one fitted now
     out : folder to write to; nothing is written if None
-    effects : the library of effects, to which records of your own may be added
+    effects : the effects to test; add records of your own to the default
     progress : called with a sentence before each step
 
     Returns
     -------
     Diagnosis
-        With the direct method redone where a rig effect was found.
+        With the direct method repeated on corrected points if a rig effect was found.
     """
     config = configuration.load(config)
     progress("reading sweeps")
@@ -66,12 +66,11 @@ def diagnose(
         refuse_early(Path(out), (f"{config.tyre.name}.tir", *WRITTEN), inputs)
     tyre, choice = chosen_model(config, model, progress)
     with threadpool_limits(1):
-        read = model if isinstance(model, str | Path) else last_build(config) if model is None else None
         same = fitted_to(tyre, config)
         known, seen = known_of_model(
             tyre,
             config,
-            None if read is None else Path(read),
+            _file_of_model(config, model),
             same=same,
             fresh=any(isinstance(note, ModelFittedFirst) for note in choice),
         )
@@ -95,7 +94,7 @@ def diagnose(
 def chosen_model(
     config: Config, model: Tyre | str | Path | None, progress: Progress
 ) -> tuple[Tyre, tuple[Note, ...]]:
-    """The simulation's model, as given, else the last build's, else fitted now; and what to say of the choice."""
+    """The given model, otherwise that of the last build, otherwise one fitted now; and notes on the choice."""
     if isinstance(model, Tyre):
         return model, ()
     if model is not None:
@@ -109,29 +108,36 @@ def chosen_model(
     return fitted, (ModelFittedFirst(turn_slip=wanted == "turn-slip"),)
 
 
+def _file_of_model(config: Config, model: Tyre | str | Path | None) -> Path | None:
+    """The file beside which a build may have left its posterior."""
+    if isinstance(model, Tyre):
+        return None
+    return last_build(config) if model is None else Path(model)
+
+
 def last_build(config: Config) -> Path:
-    """Where a build writes its property file by default."""
+    """Default path of the property file of a build."""
     return config.folder / "out" / f"{config.tyre.name}.tir"
 
 
 def _redone(
     config: Config, points: Points, diagnosis: Diagnosis, base: Tyre | None
 ) -> tuple[DirectMethodRedone, ...]:
-    """The direct method with the rig's faults taken off, if any were found."""
+    """The direct method on points corrected for the rig effects, if any were found."""
     causes = tuple(found.effect.name for found in diagnosis.effects if found.effect.kind == "rig")
     if not config.rig.on_disc or not causes:
         return ()
-    mended = corrected_points(points, diagnosis.state)
+    corrected = corrected_points(points, diagnosis.state)
     before = epsilon_gamma(config, points, base)
-    return (DirectMethodRedone(causes, before, epsilon_gamma(without_play(config), mended, base)),)
+    return (DirectMethodRedone(causes, before, epsilon_gamma(without_play(config), corrected, base)),)
 
 
 def write_diagnosis(
     diagnosis: Diagnosis, out: Path, protected: Iterable[Path] = (), config: Config | None = None
 ) -> None:
-    """Write every output of a diagnosis, or nothing; the ``protected`` files were read and are not replaced.
+    """Write every output of a diagnosis, or nothing; the ``protected`` files, which were read, are not replaced.
 
-    With the ``config`` that was diagnosed the corrected points are written as well, and a configuration to build from them.
+    With ``config``, the corrected points and a configuration to build from them are written as well.
     """
     from mffit import report
 

@@ -13,7 +13,7 @@ from mffit.pipeline.inputs import inputs_of
 
 
 def write_tydex(config: Config | str | Path, out: str | Path) -> list[Path]:
-    """Write the points of a project, as ``mffit build`` uses them, as TYDEX 1.3: one file for each sweep.
+    """Write the points that ``mffit build`` would use as TYDEX 1.3, one file per sweep.
 
     Parameters
     ----------
@@ -23,12 +23,12 @@ def write_tydex(config: Config | str | Path, out: str | Path) -> list[Path]:
     Returns
     -------
     list of Path
-        What was written.
+        The files written.
 
     Raises
     ------
     InputError
-        The sweeps cannot be read, two would have the same name, or the folder cannot be written to.
+        The sweeps cannot be read, two have the same name, or the folder cannot be written to.
     """
     config, out = configuration.load(config), Path(out)
     texts = tydex_texts(ingestion.read(config).points, config)

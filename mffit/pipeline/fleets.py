@@ -2,75 +2,70 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping, Sequence
 from functools import partial
 from pathlib import Path
 
 import numpy as np
-import pandas as pd
 from threadpoolctl import threadpool_limits
 
 from mffit import fleet as combining
 from mffit.comparison import with_u
 from mffit.errors import InputError
-from mffit.fit import priors
 from mffit.fleet import Fleet, Hierarchy, Row, Specimen, TyreEstimate
-from mffit.output import output_folder, refuse_early
+from mffit.output import refuse_early
+from mffit.pipeline.fleet_notes import fleet_notes
+from mffit.pipeline.fleet_output import WRITTEN, write_fleet
 from mffit.pipeline.members import numbers
 from mffit.progress import Progress, silent
 from mffit.quantities import COMPARED
-from mffit.results import as_json
-from mffit.rig_errors import WORDS
 from tir import Quantity, Tyre
-
-WRITTEN = ("fleet.html", "fleet.json", "fleet.csv", "priors.json")
 
 
 def fleet(
     folders: Sequence[str | Path], out: str | Path | None = None, *, progress: Progress = silent
 ) -> Fleet:
-    """Compare built tyres, and estimate those of one rig together, its errors common to all.
+    """Compare built tyres, and estimate those of one rig together with common rig errors.
 
     Parameters
     ----------
-    folders : what ``mffit build`` wrote, two or more
+    folders : two or more folders that ``mffit build`` wrote
     out : folder for ``fleet.html``, ``fleet.json``, ``fleet.csv`` and ``priors.json``; nothing is written if None
     progress : called with a sentence before each step
 
     Raises
     ------
     InputError
-        A folder is not a whole one of a build, or one is given twice, or fewer than two are.
+        A folder is not complete or not of a build, one is given twice, or fewer than two are given.
     """
     places = [Path(folder) for folder in folders]
     if len({place.resolve() for place in places}) < max(len(places), 2):
-        raise InputError("a fleet needs two built tyres or more, each once: mffit fleet DIR DIR...")
+        raise InputError("a fleet needs two or more built tyres, each named once: mffit fleet DIR DIR...")
     if out is not None:
         refuse_early(Path(out), WRITTEN)
     progress("reading the builds")
     specimens = [combining.read(place) for place in places]
-    kinds = _kinds(specimens)
+    rig_of = _rig_indices(specimens)
     with threadpool_limits(1):
         progress(f"estimating {len(specimens)} tyres together")
         rigs = tuple(
-            _together([s for s, kind in zip(specimens, kinds, strict=True) if kind == k])
-            for k in range(max(kinds) + 1)
+            _estimated([s for s, rig in zip(specimens, rig_of, strict=True) if rig == k])
+            for k in range(max(rig_of) + 1)
         )
         rows = []
-        for specimen, kind in zip(specimens, kinds, strict=True):
+        for specimen, rig in zip(specimens, rig_of, strict=True):
             progress(f"comparing {specimen.name}")
-            rows.append(_row(specimen, kind))
+            rows.append(_row(specimen, rig))
     shown = _with_estimates(rows, rigs)
-    found = Fleet(shown, rigs, tuple(_notes(shown, rigs)))
+    found = Fleet(shown, rigs, tuple(fleet_notes(shown, rigs)))
     if out is not None:
         progress("writing the page")
         write_fleet(found, Path(out))
     return found
 
 
-def _kinds(specimens: Sequence[Specimen]) -> list[int]:
-    """Which rig each was on: builds that were told the very same of their rig."""
+def _rig_indices(specimens: Sequence[Specimen]) -> list[int]:
+    """The rig of each build, counted from 0; builds with the same [rig] table share a rig."""
     seen: list[Mapping] = []
     out = []
     for specimen in specimens:
@@ -80,21 +75,20 @@ def _kinds(specimens: Sequence[Specimen]) -> list[int]:
     return out
 
 
-def _together(specimens: Sequence[Specimen]) -> Hierarchy | None:
+def _estimated(specimens: Sequence[Specimen]) -> Hierarchy | None:
+    """The joint estimate of specimens; None if none has its information."""
     known = [s.information for s in specimens if s.information is not None]
     return combining.estimate(known) if known else None
 
 
 def _row(specimen: Specimen, rig: int) -> Row:
-    alone = None
-    if specimen.information is not None:
-        alone = combining.estimate([specimen.information]).tyres[0]
-    compared = _compared(specimen.tyre, alone, turn_slip=specimen.on_disc)
-    return Row(specimen, rig, compared, _epsilon(alone))
+    alone = _estimated([specimen])
+    tyre = alone.tyres[0] if alone is not None else None
+    return Row(specimen, rig, _compared(specimen.tyre, tyre, turn_slip=specimen.on_disc), _epsilon(tyre))
 
 
 def _compared(tyre: Tyre, known: TyreEstimate | None, *, turn_slip: bool) -> dict[str, Quantity]:
-    """Stiffnesses and peaks with the uncertainty that the coefficients give them, to first order."""
+    """Stiffnesses and peaks with the first-order uncertainty that the coefficients give them."""
     names, covariance = (known.names, known.covariance) if known else ((), np.zeros((0, 0)))
     here, u = with_u(tyre, names, covariance, partial(numbers, turn_slip=turn_slip))
     return {key: Quantity(here[key], u.get(key, 0.0), unit.unit) for key, unit in COMPARED.items()}
@@ -106,7 +100,7 @@ def _epsilon(found: TyreEstimate | None) -> Quantity | None:
 
 
 def _with_estimates(rows: Sequence[Row], rigs: Sequence[Hierarchy | None]) -> tuple[Row, ...]:
-    """The rows with what the tyres of each rig say of them together, where there are two or more."""
+    """The rows with the joint estimates of each rig."""
     left = [list(rig.tyres) if rig is not None else [] for rig in rigs]
     out = []
     for row in rows:
@@ -116,90 +110,3 @@ def _with_estimates(rows: Sequence[Row], rigs: Sequence[Hierarchy | None]) -> tu
         tyre = left[row.rig].pop(0)
         out.append(combining.with_estimate(row, _epsilon(tyre), tyre.strain))
     return tuple(out)
-
-
-def _notes(rows: Sequence[Row], rigs: Sequence[Hierarchy | None]) -> list[str]:
-    out = []
-    far = {
-        name: abs(value - rig.declared[name][0]) / rig.declared[name][1]
-        for rig in rigs
-        if rig is not None
-        for name, (value, _) in rig.rig.items()
-        if abs(value - rig.declared[name][0]) > combining.FAR * rig.declared[name][1]
-    }
-    if len(rigs) > 1:
-        out.append(
-            f"The builds were told of {len(rigs)} different rigs (the table [rig] of each): the tyres of each are estimated "
-            "together. priors.json is not written, as it is for one rig."
-        )
-    for row in rows:
-        # Where all tyres leave the declaration, each that leans on it alone seems to differ from the others.
-        worst = max(row.strain.keys() - far, key=lambda name: abs(row.strain[name]), default="")
-        if worst and abs(row.strain[worst]) > combining.STRAINED:
-            out.append(
-                f"{row.specimen.name}: its own error of the rig, {WORDS[worst]}, lies {abs(row.strain[worst]):.0f} "
-                "standard deviations from that of the other tyres; if the rig was adjusted in between, it is another rig: "
-                "leave this tyre out."
-            )
-    for name, times in far.items():
-        out.append(
-            f"All tyres together put an error of the rig, {WORDS[name]}, {times:.0f} standard deviations from what [rig] "
-            "declares: the declaration is too tight, or the tyres share something that the model lacks; then believe the "
-            "direct method."
-        )
-    if len({_nominal(row.specimen.tyre) for row in rows}) > 1:
-        out.append(
-            "The tyres have different nominal loads or pressures, from which coefficients count: the population mixes them"
-            + (", and priors.json is not written." if len(rigs) == 1 else ".")
-        )
-    return out
-
-
-def _nominal(tyre: Tyre) -> tuple[float, float]:
-    return float(tyre["FNOMIN"]), float(tyre["NOMPRES"])
-
-
-def later(found: Fleet) -> dict | None:
-    """The content of ``priors.json``; None where there are too few tyres, several rigs or several kinds."""
-    if len(found.rigs) > 1 or len({_nominal(row.specimen.tyre) for row in found.rows}) > 1:
-        return None
-    rig = found.rigs[0]
-    return None if rig is None else content_of(rig, found.rows[0].specimen.tyre, len(found.rows))
-
-
-def content_of(rig: Hierarchy, tyre: Tyre, tyres: int) -> dict | None:
-    """What a number of tyres, of which one is given, tell later builds; None where they are too few."""
-    known = {
-        name: priors.Prior(p.mean, math.hypot(p.u_mean, p.scatter))
-        for name, p in rig.population.items()
-        if p.tyres >= combining.ENOUGH
-    }
-    load, pressure = _nominal(tyre)
-    return priors.fleet_content({"FNOMIN": load, "NOMPRES": pressure}, tyres, known) if known else None
-
-
-def table(found: Fleet) -> pd.DataFrame:
-    """The content of ``fleet.csv``: a row per specimen."""
-    rows = []
-    for row in found.rows:
-        numbers = {f"epsilon_gamma_{key}": getattr(row, key) for key in combining.EPSILON} | dict(row.numbers)
-        out = {"name": row.specimen.name, "folder": str(row.specimen.folder), "rig": row.rig + 1}
-        for key, q in numbers.items():
-            out |= {key: None if q is None else q.value, f"u_{key}": None if q is None else q.u}
-        out |= {f"rmse_{channel}": value for channel, value in row.specimen.misfit.items()}
-        rows.append(out | {"warnings": len(row.specimen.warnings)})
-    return pd.DataFrame(rows)
-
-
-def write_fleet(found: Fleet, out: Path) -> None:
-    """Write every output of a fleet, or nothing."""
-    from mffit import report
-
-    known = later(found)
-    read = [row.specimen.folder / combining.INFORMATION for row in found.rows]
-    with output_folder(out, by="fleet", protected=read, outdated=WRITTEN) as folder:
-        table(found).to_csv(folder / "fleet.csv", index=False)
-        as_json.write(folder / "fleet.json", as_json.fleet(found))
-        if known is not None:
-            as_json.write(folder / "priors.json", known)
-        report.write_fleet(found, folder, priors=known is not None)

@@ -1,4 +1,4 @@
-"""What a run reads and says while it runs."""
+"""The files that a command reads."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from tir import Tyre
 
 
 def read_base(config: Config) -> Tyre | None:
-    """The base file of the configuration, if it names one."""
+    """The base file that the configuration names; None without one."""
     if config.tyre.base is None:
         return None
     path = config.folder / config.tyre.base
@@ -26,13 +26,13 @@ def read_base(config: Config) -> Tyre | None:
 
 
 def inputs_of(config: Config) -> list[Path]:
-    """Every file that a run of this configuration reads."""
+    """Every file that a command reads for this configuration."""
     files = [config.folder / name for name in _names(config)]
     return files if config.path is None else [config.path, *files]
 
 
 def input_hashes(config: Config) -> dict[str, str]:
-    """First 16 hex digits of the SHA-256 of every input file, by its name as the configuration gives it."""
+    """First 16 hex digits of the SHA-256 of every input file, by the name that the configuration gives."""
     return {name: digest(config.folder / name)[:16] for name in _names(config)}
 
 

@@ -31,12 +31,12 @@ def init_from(
 
     Parameters
     ----------
-    files : recordings as the rig wrote them, also as patterns; they stay where they are
-    folder : created if need be; existing files are never touched
+    files : recordings as the rig wrote them, or patterns; they are not moved
+    folder : created if necessary; existing files are never replaced
     unloaded_radius : [m]
     nominal_load : [N]
-    nominal_pressure : [kPa]; default the pressure at which most was run
-    name : of the output files; default the first recording's
+    nominal_pressure : [kPa]; default the pressure of most samples
+    name : name of the output files; default that of the first recording
 
     Returns
     -------
@@ -46,31 +46,12 @@ def init_from(
     Raises
     ------
     InputError
-        A recording cannot be read, radius, load or pressure is missing or out of range, a file is there already, or no axes fit.
+        A recording cannot be read, radius, load or pressure is missing or out of range, a file exists already, or no axes fit.
     """
-    for value, option, unit in (
-        (unloaded_radius, "unloaded-radius", "M"),
-        (nominal_load, "nominal-load", "N"),
-    ):
-        if value is None:
-            raise InputError(f"recordings do not say it: give --{option} {unit}")
     _check_tyre(name, unloaded_radius, nominal_load, nominal_pressure)
     folder = Path(folder)
     sniffed = sniff(files, unloaded_radius=unloaded_radius)
-    files = [recording.path for recording in sniffed.recordings]
-    if nominal_pressure is None and not any("p_kPa" in r.guesses for r in sniffed.recordings):
-        raise InputError(
-            "no pressure is measured, so nothing says the nominal one: give --nominal-pressure KPA",
-            file=files[0],
-        )
-    if not len(sniffed.points):
-        raise InputError(sniffed.reading.warnings[-1], file=files[0])
-    if not sniffed.axes:
-        raise InputError(
-            f"no known axes fit: in ISO signs {' and '.join(sniffed.wrong)}, as no tyre does; write the tyre.toml with "
-            "`mffit init DIR` and map the column that has the wrong sign with scale = -1",
-            file=files[0],
-        )
+    _check_recordings(sniffed, nominal_pressure)
     text = project_text(
         sniffed,
         folder,
@@ -83,7 +64,10 @@ def init_from(
 
 
 def _check_tyre(name: str | None, radius: float | None, load: float | None, pressure: float | None) -> None:
-    """Refuse, under the name of its option, what the written configuration would be refused for."""
+    """Refuse missing values and values that the configuration would refuse, under the names of their options."""
+    for value, option in ((radius, "unloaded-radius M"), (load, "nominal-load N")):
+        if value is None:
+            raise InputError(f"the recordings do not contain it: give --{option}")
     given = {"name": name, "unloaded_radius": radius, "nominal_load": load, "nominal_pressure": pressure}
     tyre = {"name": "tyre", **STAND_IN, **{key: value for key, value in given.items() if value is not None}}
     try:
@@ -93,8 +77,26 @@ def _check_tyre(name: str | None, radius: float | None, load: float | None, pres
         raise InputError(error.sentence, key=f"--{key}") from None
 
 
+def _check_recordings(sniffed: Sniffed, nominal_pressure: float | None) -> None:
+    """Refuse recordings from which no project can be made."""
+    first = sniffed.recordings[0].path
+    if nominal_pressure is None and not any("p_kPa" in r.guesses for r in sniffed.recordings):
+        raise InputError(
+            "no pressure is measured, so the nominal pressure is unknown: give --nominal-pressure KPA",
+            file=first,
+        )
+    if not len(sniffed.points):
+        raise InputError(sniffed.reading.warnings[-1], file=first)
+    if not sniffed.axes:
+        raise InputError(
+            f"no known axes fit: in ISO signs {' and '.join(sniffed.wrong)}, which no tyre does; write the tyre.toml with "
+            "`mffit init DIR` and map the column that has the wrong sign with scale = -1",
+            file=first,
+        )
+
+
 def write_sniffed(sniffed: Sniffed, folder: str | Path) -> list[Path]:
-    """Write what recordings hold: ``tyre.toml`` without radius and load, ``stretches.csv``, a picture of each."""
+    """Write ``tyre.toml`` without radius and load, ``stretches.csv`` and a picture of each recording."""
     folder = Path(folder)
     return _written(folder, sniffed, project_text(sniffed, folder, unloaded_radius=None, nominal_load=None))
 
@@ -114,7 +116,7 @@ def _written(folder: Path, sniffed: Sniffed, text: str) -> list[Path]:
 
 
 def _picture(sniffed: Sniffed, k: int, path: Path) -> None:
-    """The picture of one recording."""
+    """Write the picture of recording number ``k``."""
     from mffit import sweeps
     from mffit.report import style
     from mffit.report.figures.recording import recording

@@ -1,4 +1,4 @@
-"""``mffit spin`` and ``mffit align``: what is read off the data without a model."""
+"""``mffit spin`` and ``mffit align``: measurements that need no tyre model."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ from tir import Tyre
 
 
 def spin(config: Config | Mapping[str, Any] | str | Path, out: str | Path | None = None) -> Measured:
-    """Alignment check and direct method only; writes ``spin.json`` if ``out`` is given."""
+    """The alignment check and the direct method only; writes ``spin.json`` if ``out`` is given."""
     config = configuration.load(config)
     points, warnings = ingestion.load(config)
     _, measured = measure(config, points, read_base(config))
@@ -47,12 +47,12 @@ def align(
     Parameters
     ----------
     source : path of a ``tyre.toml``, or of a bare table
-    axes, path_centre : what a bare table does not say itself
-    resolution_deg : smallest angle by which the axis can be turned [deg]
+    axes, path_centre : axes and side of the path centre of a bare table
+    resolution_deg : smallest angle by which the axis can be adjusted [deg]
 
     Notes
     -----
-    Where the sweeps of a ``tyre.toml`` give the cornering stiffness, it is used; a bare table's zeros need the guess.
+    The cornering stiffness is measured if the sweeps of a ``tyre.toml`` allow it; a bare table needs the usual one.
     """
     source = Path(source)
     if source.suffix == ".toml":
@@ -65,14 +65,14 @@ def align(
 
 
 def measure(config: Config, points: Points, base: Tyre | None) -> tuple[Parts, Measured]:
-    """Split the points and measure directly."""
+    """The odd and even parts of the points, and the direct measurements."""
     parts = decomposition.split(points)
     measured = direct.measure(config, points, parts, base)
     return replace(parts, alpha_odd=direct.odd_alpha(points, parts, config)), measured
 
 
 def epsilon_gamma(config: Config, points: Points, base: Tyre | None) -> tir.Quantity | None:
-    """eps_gamma of the points, None where the direct method fails on them."""
+    """eps_gamma of the points by the direct method; None if the method fails."""
     try:
         return direct.measure(config, points, decomposition.split(points), base).epsilon_gamma
     except InputError:
@@ -80,5 +80,5 @@ def epsilon_gamma(config: Config, points: Points, base: Tyre | None) -> tir.Quan
 
 
 def without_play(config: Config) -> Config:
-    """The configuration of the same rig with a steering axis that has no play."""
+    """The configuration of the same rig without backlash."""
     return config.model_copy(update={"rig": config.rig.model_copy(update={"backlash_deg": 0.0})})

@@ -1,4 +1,4 @@
-"""Tyres drawn from what a build leaves uncertain: a property file each, and a table of what they differ in."""
+"""Tyres drawn from the posterior of a build: a property file each, and a table of their characteristics."""
 
 from __future__ import annotations
 
@@ -19,13 +19,13 @@ NUMBERS = (
     "mu_y",
     "Mz_peak_Nm",
 )
-"""Columns of the table, beside the file."""
+"""Columns of the table, after the file."""
 
 
 def write_members(result: BuildResult, out: Path) -> None:
-    """Write ``ensemble/<name>-001.tir`` and so on, and ``ensemble/index.csv``; nothing if none were drawn.
+    """Write ``ensemble/<name>-001.tir`` and so on, and ``ensemble/index.csv``; nothing without members.
 
-    Every member is a fitted model for turn slip on (off, on a flat track), within the physical limits of the fit.
+    Every member is a model for turn slip on (off on a flat track) within the physical limits of the fit.
     """
     members = result.members
     if not members:
@@ -41,6 +41,6 @@ def write_members(result: BuildResult, out: Path) -> None:
 
 
 def numbers(tyre: Tyre, *, turn_slip: bool) -> dict[str, float]:
-    """What an engineer compares first, at nominal load and pressure on a straight path; SI units, ISO signs."""
+    """The main characteristics at nominal load and pressure on a straight path; SI units, ISO signs."""
     found = characteristics(tyre, float(tyre["FNOMIN"]), turn_slip=turn_slip)
     return {key: found[key] for key in NUMBERS}

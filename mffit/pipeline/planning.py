@@ -1,4 +1,4 @@
-"""``mffit plan``: which further runs would tell most."""
+"""``mffit plan``: which further runs would lower an uncertainty most."""
 
 from __future__ import annotations
 
@@ -15,19 +15,20 @@ from mffit import config as configuration
 from mffit.config import Config
 from mffit.errors import InputError
 from mffit.output import output_folder, refuse_early
-from mffit.pipeline.building import build, finite_spin_bias, undistorted
+from mffit.pipeline.building import build
 from mffit.pipeline.inputs import inputs_of, read_base
 from mffit.pipeline.measuring import measure
-from mffit.planning import Goal, Kind, Plan, Run, read_goal, wording
+from mffit.pipeline.refining import finite_spin_bias, undistorted
+from mffit.planning import Addition, Goal, Plan, Run, addition_named, read_goal, wording
 from mffit.planning.goals import BANDS, EPSILON, JOINT
-from mffit.planning.search import DirectU
+from mffit.planning.outlook import Direct, DirectU
 from mffit.points import Points
 from mffit.progress import Progress, silent
 from mffit.results import BuildResult, as_json
 
 WRITTEN = ("plan.json", "plan.html")
 SHEETS = "runs"
-"""Folder of the sheets to fill in at the rig."""
+"""Folder with the sheets to fill in at the rig."""
 
 
 def plan(
@@ -46,27 +47,27 @@ def plan(
     config : path of a ``tyre.toml``, its content, or a loaded Config
     goal : ``"eps_gamma"`` (direct method), ``"eps_gamma:joint"``, ``"bands"``, ``"bands:Mz"``, ``"tie:ply-steer"`` or the name of
         a coefficient; default the eps_gamma that the file's PECP1 comes from, on a flat track ``"bands"``
-    runs : length of the list at most
-    without : kinds of runs that this rig cannot make, such as ``"other-side"``
+    runs : largest number of runs in the list
+    without : kinds of runs that this rig cannot make, for example ``"other-side"``
     out : folder to write to; nothing is written if None
     progress : called with a sentence before each step
 
     Returns
     -------
     Plan
-        What every run leaves uncertain, one standard deviation.
+        The list, and the uncertainty after each run, one standard deviation.
 
     Raises
     ------
     InputError
-        On bad input, and if the goal or a kind of run is not known.
+        The input is wrong, or the goal or a kind of run is unknown.
     """
     config = configuration.load(config)
-    aim = _aim(config, goal)  # a goal that is not known ends the run before the work begins
-    kinds = [_kind(word) for word in without]
+    aim = _aim(config, goal)  # an unknown goal or kind ends the command before the work begins
+    excluded = [addition_named(word) for word in without]
     if out is not None:
         refuse_early(Path(out), WRITTEN, inputs_of(config))
-    found = plan_of(build(config, progress=progress), aim, runs=runs, without=kinds, progress=progress)
+    found = plan_of(build(config, progress=progress), aim, runs=runs, without=excluded, progress=progress)
     if out is not None:
         progress("writing the page")
         write_plan(found, Path(out))
@@ -78,31 +79,11 @@ def plan_of(
     goal: Goal | None = None,
     *,
     runs: int = 3,
-    without: Collection[Kind] = (),
+    without: Collection[Addition] = (),
     progress: Progress = silent,
 ) -> Plan:
-    """:func:`plan` for a build that has been made."""
-    config, base = result.config, read_base(result.config)
-    of_spin = undistorted(config, result.fit)
-
-    def direct(declared: Config, points: Points) -> DirectU | None:
-        try:
-            _, raw = measure(declared, points, base)
-        except InputError:
-            return None
-        if raw.epsilon_gamma is None:
-            return None
-        bias = finite_spin_bias(declared, points, of_spin, base)
-        if bias is None:
-            return DirectU(raw.epsilon_gamma.u, raw.epsilon_gamma.u)
-        whole = raw.debiased(bias)
-        assert whole.epsilon_gamma is not None
-        assert whole.epsilon_gamma_debiased is not None
-        debiased = whole.epsilon_gamma_debiased.u
-        if declared.spin.pecp1 == "debiased":
-            return DirectU(debiased, debiased)
-        return DirectU(whole.epsilon_gamma.u, raw.epsilon_gamma.u)
-
+    """:func:`plan` for a finished build."""
+    config = result.config
     with threadpool_limits(1):  # the matrices are small: threads cost more than they bring
         return search.plan(
             config,
@@ -110,30 +91,48 @@ def plan_of(
             result.measured,
             result.fit,
             goal or _aim(config, None),
-            direct,
+            _direct_method(result),
             most=runs,
             without=without,
             progress=progress,
         )
 
 
+def _direct_method(result: BuildResult) -> Direct:
+    """The direct method as a build runs it, with the bias of finite spin of this build's model."""
+    base, model = read_base(result.config), undistorted(result.config, result.fit)
+
+    def direct(config: Config, points: Points) -> DirectU | None:
+        try:
+            _, measured = measure(config, points, base)
+        except InputError:
+            return None
+        raw = measured.epsilon_gamma
+        if raw is None:
+            return None
+        bias = finite_spin_bias(config, points, model, base)
+        if bias is None:
+            return DirectU(stated=raw.u, held=raw.u)
+        measured = measured.debiased(bias)
+        assert measured.epsilon_gamma is not None
+        assert measured.epsilon_gamma_debiased is not None
+        if config.spin.pecp1 == "debiased":
+            u = measured.epsilon_gamma_debiased.u
+            return DirectU(stated=u, held=u)
+        return DirectU(stated=measured.epsilon_gamma.u, held=raw.u)
+
+    return direct
+
+
 def _aim(config: Config, goal: str | None) -> Goal:
-    """The goal as given, else what the file's PECP1 comes from, else the bands."""
+    """The given goal, else the eps_gamma that determines PECP1, else the bands."""
     disc = config.rig.on_disc
     usual = (JOINT if config.spin.pecp1 == "model" else EPSILON) if disc else BANDS
     return read_goal(goal or usual, on_disc=disc)
 
 
-def _kind(word: str) -> Kind:
-    try:
-        return Kind(word)
-    except ValueError:
-        known = ", ".join(kind.value for kind in Kind)
-        raise InputError(f'"{word}" is no kind of run; known are {known}') from None
-
-
 def write_plan(found: Plan, out: Path) -> None:
-    """Write every output of a plan, or nothing: page, numbers, and a sheet of set-points for every run."""
+    """Write every output of a plan, or nothing: the page, the numbers, and a sheet of set-points per run."""
     from mffit import report
 
     with output_folder(out, by="plan", protected=inputs_of(found.config)) as folder:
@@ -151,7 +150,7 @@ def write_plan(found: Plan, out: Path) -> None:
 
 
 def sheet(config: Config, points: Points) -> pd.DataFrame:
-    """The set-points of a run in the rig's axes and the contract's columns; the readings are left to fill in."""
+    """The set-points of a run in the rig's axes and the columns of sweep files; the readings are empty."""
     signs = configuration.axis_signs(config)
     angles = {name: np.degrees(getattr(points, name)) * signs[name] + 0.0 for name in ("alpha", "gamma")}
     table = pd.DataFrame({f"{name}_deg": values.round(4) for name, values in angles.items()})
@@ -162,23 +161,28 @@ def sheet(config: Config, points: Points) -> pd.DataFrame:
 
 
 def additions(config: Config, runs: Sequence[Run]) -> str:
-    """What tyre.toml gains by the runs, as TOML that can stand behind it; what changes in a table it has is a comment."""
+    """TOML to append to tyre.toml for these runs; changes to tables that it already has are comments."""
     usual = configuration.path_curvature(config.rig)
     lines = [
-        "# Copy to tyre.toml once the sheets are filled in; the files are named as in this folder."
+        "# Append to tyre.toml once the sheets are filled in; the file names are those of this folder."
         if any(run.points is not None for run in runs)
-        else "# What changes in tyre.toml once this has been measured."
+        else "# Change in tyre.toml once this has been measured."
     ]
     for run in runs:
         lines += ["", f"# {wording.title(run)}", *wording.instructions(run)]
-        if run.points is None:
-            continue
-        lines += ["[[sweep]]", f'file = "{run.name}.csv"']
-        phi_t = float(run.points.phi_t[0])
-        if run.points.mount[0] < 0:
-            lines.append('mount = "flipped"')
-        if phi_t * usual < 0.0:
-            lines.append(f'path_centre = "{"left" if phi_t < 0.0 else "right"}"')
-        if not np.isclose(abs(phi_t), abs(usual)):
-            lines.append(f"path_radius = {1.0 / abs(phi_t):.4f}")
+        if run.points is not None:
+            lines += _sweep_table(f"{run.name}.csv", run.points, usual)
     return "\n".join(lines) + "\n"
+
+
+def _sweep_table(file: str, points: Points, usual: float) -> list[str]:
+    """Lines of the [[sweep]] table of a run, with the path where it is not the ``usual`` curvature [1/m]."""
+    lines = ["[[sweep]]", f'file = "{file}"']
+    phi_t = float(points.phi_t[0])
+    if points.mount[0] < 0:
+        lines.append('mount = "flipped"')
+    if phi_t * usual < 0.0:
+        lines.append(f'path_centre = "{"left" if phi_t < 0.0 else "right"}"')
+    if not np.isclose(abs(phi_t), abs(usual)):
+        lines.append(f"path_radius = {1.0 / abs(phi_t):.4f}")
+    return lines

@@ -1,4 +1,4 @@
-"""What a property file says of its making, written and read back."""
+"""The origin of a property file: what its comments state, written and read."""
 
 from __future__ import annotations
 
@@ -16,27 +16,28 @@ from mffit.config import Config, declared_faults
 from mffit.diagnosis.inexact import Inexactness, correlated, refitted
 from mffit.fit import FitResult
 from mffit.measured import Measured
+from mffit.pipeline import constants
 from mffit.pipeline.inputs import input_hashes
 from mffit.rig_errors import BY_NAME as RIG_ERRORS
 from mffit.rig_errors import Faults
 from tir import Tyre
 
 PROGRAM = "program"
-"""Which version wrote a file, among its provenance."""
+"""Key of the version that wrote a file."""
 RIG = "rig."
-"""What opens the name of a rig error among a file's measured quantities."""
+"""Prefix of rig errors among the measured quantities of a file."""
 TURN_SLIP = {"turn-slip": "on", "normal": "off", "both": "on or off"}
-"""What each use of a file means for the simulation's turn slip."""
+"""Setting of the simulation's turn slip for each use of a file."""
 PLAIN = " /\\!#$&'()+,;=@[]{}~"
-"""What may stand in a file's name, beside letters and digits, without being written as %XX in a property file."""
+"""Characters of file names that are written in comments without %XX, beside letters and digits."""
 
 
 Annotate = Callable[[Tyre, str], Tyre]
-"""The tyre, of a use, with its measured quantities and provenance as structured comments."""
+"""Adds measured quantities and provenance as structured comments to the tyre for a use."""
 
 
 def annotator(config: Config, measured: Measured, fitted: FitResult) -> Annotate:
-    """What a build says in each of its files; the inputs are hashed once for all of them."""
+    """The annotation of all files of a build; the inputs are hashed once."""
     inputs = _inputs(config)
     rig = {
         RIG + name: tir.Quantity(value, u, RIG_ERRORS[name].unit) for name, (value, u) in fitted.rig.items()
@@ -55,20 +56,20 @@ def annotator(config: Config, measured: Measured, fitted: FitResult) -> Annotate
 
 
 def use_of(tyre: Tyre) -> str | None:
-    """Which use a built file is for, "turn-slip", "normal" or "both", as its provenance says; None for files from elsewhere."""
-    said = tyre.provenance.get("use") or tyre.provenance.get("configuration", "")
-    found = re.match(r"(?:spin\.exact )?(turn-slip|normal|both)\b", said)
+    """The use of a built file, "turn-slip", "normal" or "both", from its provenance; None for other files."""
+    stated = tyre.provenance.get("use") or tyre.provenance.get("configuration", "")
+    found = re.match(r"(?:spin\.exact )?(turn-slip|normal|both)\b", stated)
     return found[1] if found else None
 
 
 def rig_of_build(tyre: Tyre, config: Config) -> Faults | None:
-    """The rig errors that a build on these very sweeps found; None if its file does not say."""
+    """The rig errors that the build found, from the comments of its file; None without them."""
     found = {name: tyre.measured[RIG + name].value for name in RIG_ERRORS if RIG + name in tyre.measured}
     return declared_faults(config.rig).replace(**found) if found else None
 
 
 def fitted_to(tyre: Tyre, config: Config) -> bool:
-    """Whether a build fitted the file to these very sweeps."""
+    """Whether a build fitted the file to the present sweeps."""
     of_file = {name: digest for name, digest in tyre.provenance.items() if name.startswith("input ")}
     return bool(of_file) and of_file == _inputs(config)
 
@@ -76,17 +77,17 @@ def fitted_to(tyre: Tyre, config: Config) -> bool:
 def known_of_model(
     tyre: Tyre, config: Config, path: Path | None, *, same: bool, fresh: bool
 ) -> tuple[Inexactness | None, bool]:
-    """What is known of a model's coefficients beside ``model.u_coefficients``, None if nothing is; and whether it was fitted
-    to these very sweeps.
+    """The uncertainty of a model's coefficients, None if unknown; and whether the model was fitted to the present sweeps.
 
-    Fitted to these sweeps they may move again; of a build on other sweeps its posterior says how far. A file counts as a
-    build's only if result.json beside it has the same values: it may have been edited since.
+    Coefficients fitted to the present sweeps are fitted again; those of a build on other sweeps have that build's posterior.
+    ``model.u_coefficients`` takes precedence over a posterior. A file counts as built only if result.json beside it has the
+    same values, because it may have been edited since.
 
     Parameters
     ----------
-    tyre, config : the model and what it is compared with
-    path : where the model was read; None if it was not
-    same : whether a build fitted it to these very sweeps, see :func:`fitted_to`
+    tyre, config : the model and the configuration of the sweeps
+    path : file of the model; None if it was not read from a file
+    same : whether a build fitted it to the present sweeps, see :func:`fitted_to`
     fresh : whether it was fitted just now
     """
     posterior = None if path is None else posterior_of(tyre, path)
@@ -96,7 +97,7 @@ def known_of_model(
 
 
 def posterior_of(tyre: Tyre, path: Path) -> Inexactness | None:
-    """The posterior of the build that wrote a file; None if the file is none of a build or has other values."""
+    """The posterior of the build that wrote a file; None if no build did or the file was edited."""
     try:
         result = json.loads((path.parent / "result.json").read_text(encoding="utf-8"))
         posterior, values = result["fit"]["posterior"], result["fit"]["coefficients"]
@@ -106,12 +107,15 @@ def posterior_of(tyre: Tyre, path: Path) -> Inexactness | None:
         expected = {name: float(row["value"]) for name, row in values.items()}
     except (OSError, ValueError, KeyError, TypeError, IndexError):
         return None
-    same = all(np.isclose(float(tyre[n]), v, rtol=1e-6, atol=1e-12) for n, v in expected.items())
+    same = all(
+        np.isclose(float(tyre[n]), v, rtol=constants.UNEDITED_TOLERANCE, atol=1e-12)
+        for n, v in expected.items()
+    )
     return correlated(names, np.array([expected[n] for n in names]), covariance) if names and same else None
 
 
 def _inputs(config: Config) -> dict[str, str]:
-    """The hashes of the inputs as a property file's provenance: ASCII, and no colon in a name."""
+    """Hashes of the inputs as entries of the provenance, whose names are ASCII without colons."""
     return {f"input {quote(name, safe=PLAIN)}": known for name, known in input_hashes(config).items()}
 
 

@@ -1,20 +1,24 @@
-"""What the sweeps of a project identify, and which further runs would tell most."""
+"""What the sweeps of a project identify, and which further runs would lower an uncertainty most."""
 
+from mffit.planning.additions import ADDITIONS, BY_ID, Addition, addition_named
 from mffit.planning.goals import GOALS, Goal, read_goal
 from mffit.planning.record import Identified, Plan, Step, Tie, Trial
-from mffit.planning.runs import Kind, Run, candidates
+from mffit.planning.runs import Run, candidates
 from mffit.planning.search import plan
 
 __all__ = [
+    "ADDITIONS",
+    "BY_ID",
     "GOALS",
+    "Addition",
     "Goal",
     "Identified",
-    "Kind",
     "Plan",
     "Run",
     "Step",
     "Tie",
     "Trial",
+    "addition_named",
     "candidates",
     "plan",
     "read_goal",

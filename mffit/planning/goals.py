@@ -1,4 +1,4 @@
-"""What a plan may aim at."""
+"""The goals of a plan: numbers whose uncertainty is to fall."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from tir.parameters import BY_NAME
 
 EPSILON, JOINT, BANDS, TIE = "eps_gamma", "eps_gamma:joint", "bands", "tie"
 GOALS = (EPSILON, JOINT, BANDS, f"{BANDS}:Mz", f"{TIE}:EFFECT")
-"""How goals are written, beside the name of a coefficient."""
+"""How goals are written; the name of a coefficient is a goal too."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -26,18 +26,18 @@ class Goal:
 
     @property
     def label(self) -> str:
-        """In ASCII, as tables and JSON call it."""
+        """Name of the uncertainty in tables and JSON, in ASCII."""
         epsilon = DIRECT["epsilon_gamma"].ascii
         return {
             EPSILON: f"u({epsilon}) by the direct method",
             JOINT: f"u({epsilon}) by the joint fit",
             BANDS: f"95 % band of {self.name}, rms",
-            TIE: f"u of {self._tied} beside what it is tied with",
+            TIE: f"u of {self._tied} with its rival effects free",
         }.get(self.kind, f"u({self.name})")
 
     @property
     def _tied(self) -> str:
-        """The effect's name; a coefficient has a scale of its own and is named too."""
+        """The effect's name, with the coefficient in whose unit u is given."""
         effect = next((e for e in CATALOG if e.id == self.name), None)
         if effect is None:
             return self.name
@@ -46,7 +46,7 @@ class Goal:
 
 
 def read_goal(text: str, *, on_disc: bool) -> Goal:
-    """A goal as the command line has it: ``eps_gamma``, ``bands``, ``tie:ply-steer`` or a coefficient's name.
+    """A goal from its text: ``eps_gamma``, ``bands``, ``tie:ply-steer`` or a coefficient's name.
 
     Raises
     ------
@@ -57,7 +57,7 @@ def read_goal(text: str, *, on_disc: bool) -> Goal:
     if kind == EPSILON and rest in ("", "direct", "joint"):
         if not on_disc:
             raise InputError(
-                f'"{text}" needs a disc: a straight path has no turn slip; plan for bands or a coefficient'
+                f'"{text}" needs a disc, because there is no turn slip on a straight path; choose bands or a coefficient'
             )
         return Goal(JOINT if rest == "joint" else EPSILON)
     if kind == BANDS and (rest or "Fy") in CHANNELS:
@@ -74,11 +74,11 @@ def read_goal(text: str, *, on_disc: bool) -> Goal:
     known = [*GOALS, *(row for row in BY_NAME if BY_NAME[row].stage)]
     near = difflib.get_close_matches(text, known, n=1)
     hint = f"; did you mean {near[0]}?" if near else f": write {', '.join(GOALS)} or a coefficient's name"
-    raise InputError(f'"{text}" is no goal of a plan{hint}')
+    raise InputError(f'"{text}" is not a goal of a plan{hint}')
 
 
 def effect_named(text: str) -> Effect:
-    """An effect with one number that is tied to others, by its id; hyphens may be missing."""
+    """The effect with this id, hyphens optional; it must have one number and possible rivals."""
     tied = [e for e in CATALOG if e.confusable_with and len(e.free) == 1 and e.kind != "environment"]
 
     def plain(word: str) -> str:
@@ -87,4 +87,6 @@ def effect_named(text: str) -> Effect:
     for effect in tied:
         if plain(effect.id) == plain(text):
             return effect
-    raise InputError(f'"{text}" is no effect with a tie; known are {", ".join(effect.id for effect in tied)}')
+    raise InputError(
+        f'"{text}" is not an effect that can be tied; known are {", ".join(effect.id for effect in tied)}'
+    )

@@ -1,4 +1,4 @@
-"""What the sweeps at hand identify."""
+"""What the present sweeps identify, and what they leave open."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from mffit.points import Points
 
 
 def tied_pairs(points: Points) -> Iterator[tuple[Effect, Effect]]:
-    """Effects that may be confused with each other, each with one number and visible in such data; tyre effects first."""
+    """Pairs of effects that may be confused with each other and are visible in the data, each with a single number."""
     by_id = {e.id: e for e in CATALOG if len(e.free) == 1 and e.kind != "environment"}
     seen = set()
     for effect in by_id.values():
@@ -31,9 +31,9 @@ def tied_pairs(points: Points) -> Iterator[tuple[Effect, Effect]]:
 
 
 def identified(knowledge: Knowledge, found: FitResult, measured: Measured) -> Identified:
-    """Take apart what a build found."""
+    """Coverage, correlations, ties and budget of a build."""
     ties = [
-        Tie(a.id, b.id, (knowledge.usual_size(a) / knowledge.told([], a, [b])) ** 2)
+        Tie(a.id, b.id, (knowledge.usual_size(a) / knowledge.u_of_effect([], a, [b])) ** 2)
         for a, b in tied_pairs(knowledge.points)
     ]
     staged = {name for row in found.coverage for name in row.free}
@@ -45,7 +45,9 @@ def identified(knowledge: Knowledge, found: FitResult, measured: Measured) -> Id
             )
     return Identified(
         cover=found.coverage,
-        tied=tuple(n for n, row in found.coefficients.items() if row.status == "regularised" and n in staged),
+        from_prior=tuple(
+            n for n, row in found.coefficients.items() if row.status == "regularised" and n in staged
+        ),
         correlated=tuple(pairs.values()),
         ties=tuple(ties),
         budget=measured.budget,

@@ -1,4 +1,4 @@
-"""What a programme tells of every number of tyre and rig: information that adds up from run to run."""
+"""Information of a measuring programme about every number of tyre and rig; the information of runs adds up."""
 
 from __future__ import annotations
 
@@ -29,9 +29,9 @@ PECP1 = "PECP1"
 
 
 class Knowledge:
-    """The fit's posterior, linear around its solution, for any list of further runs.
+    """The fit's posterior for any list of further runs, linearised at the present solution.
 
-    A build of the longer programme frees what its coverage allows, with the priors and weights of this one.
+    The build of a longer programme is assumed to free what its coverage allows, with the priors and weights of this build.
     """
 
     def __init__(
@@ -47,24 +47,20 @@ class Knowledge:
         self.config, self.points, self.measured = config, points, measured
         self.problem = search.problem
         self.simulation = search.problem.simulation
-        spread = {n.name: n.spread for n in search.numbers} | dict(search.held)
+        self.spread = {n.name: n.spread for n in search.numbers} | dict(search.held)
         self.rig = tuple(n.name for n in search.numbers if n.name in RIG_ERRORS)
         staged = {name for row in found.coverage for name in (*row.free, *row.held)}
         self.extra = tuple(n.name for n in search.numbers if n.name not in staged and n.name not in self.rig)
-        self.usual = {e.free[0].name: self._usual(e) for e in effects}  # size of an effect, 1 sigma
-        self.spread = spread
-        self.names = tuple(dict.fromkeys([*spread, PECP1, *self.usual]))
+        self.usual = {e.free[0].name: self._usual(e) for e in effects}  # 1 sigma
+        self.names = tuple(dict.fromkeys([*self.spread, PECP1, *self.usual]))
         self._row = {name: k for k, name in enumerate(self.names)}
         self._at = np.array([self.simulation.number(n, points) for n in self.names])
-        sigma = search.problem.sigma.values()
-        self._sigma = tuple(
-            float(np.median(s[np.isfinite(s)])) if np.any(np.isfinite(s)) else math.inf for s in sigma
-        )
+        self._sigma = {channel: _median_or_infinite(s) for channel, s in search.problem.sigma.items()}
         self._base = self._information(self.problem.free(self.names).linear(self._at).slope)
         self._of_run: dict[str, np.ndarray] = {}
 
     def posterior(self, runs: Sequence[Run], u_epsilon: float | None) -> Posterior:
-        """The posterior of a build with these runs; ``u_epsilon`` of a PECP1 that is measured, None where it is fitted."""
+        """The posterior of a build with these runs; ``u_epsilon`` is u of a measured PECP1, None if PECP1 is fitted."""
         free, spread = self._free(runs), self._spread(runs)
         if u_epsilon is None:
             free, spread = list(dict.fromkeys([*free, PECP1])), {**spread, PECP1: math.inf}
@@ -73,10 +69,10 @@ class Knowledge:
         held = [n for n in spread if n not in free and math.isfinite(spread[n])]
         return self._solved(self._information_of(runs), free, spread, held)
 
-    def told(self, runs: Sequence[Run], effect: Effect, others: Iterable[Effect]) -> float:
-        """u of an effect's number from the data, beside everything that is fitted and the effects it is confused with."""
+    def u_of_effect(self, runs: Sequence[Run], effect: Effect, rivals: Iterable[Effect]) -> float:
+        """u of an effect's number from the data alone, with the fitted numbers and its rival effects free."""
         name = effect.free[0].name
-        partners = {e.free[0].name for e in others}
+        partners = {e.free[0].name for e in rivals}
         declared = self._spread(runs)
         free = list(dict.fromkeys([*self._free(runs), PECP1, *partners, name]))
         spread = {n: declared.get(n, self.usual.get(n, math.inf)) for n in free}
@@ -86,18 +82,18 @@ class Knowledge:
         return self._solved(self._information_of(runs), free, spread, []).stderr[name]
 
     def usual_size(self, effect: Effect) -> float:
-        """How large an effect usually is."""
+        """Usual size of an effect's number, 1 sigma."""
         return self.usual[effect.free[0].name]
 
-    def with_readings(self, run: Run, chance: np.random.Generator | None = None) -> Points:
-        """The set-points of a run with what the rig, as the fit found it, would read there; with noise if ``chance`` is given."""
+    def with_readings(self, run: Run, draw: np.random.Generator | None = None) -> Points:
+        """The set-points of a run with the readings that the fitted rig would give; with noise if ``draw`` is given."""
         assert run.points is not None
         read = self.simulation.readings(run.points)
-        if chance is None:
+        if draw is None:
             return run.points.replace(Fy=read.Fy, Mz=read.Mz)
         Fy, Mz = (
-            values + (sigma if math.isfinite(sigma) else 0.0) * chance.standard_normal(len(values))
-            for values, sigma in zip(read, self._sigma, strict=True)
+            values + (sigma if math.isfinite(sigma) else 0.0) * draw.standard_normal(len(values))
+            for values, sigma in zip(read, self._sigma.values(), strict=True)
         )
         return run.points.replace(Fy=Fy, Mz=Mz)
 
@@ -112,7 +108,7 @@ class Knowledge:
         return list(dict.fromkeys([*(name for row in cover for name in row.free), *self.extra, *self.rig]))
 
     def _spread(self, runs: Sequence[Run]) -> dict[str, float]:
-        """What is known of each number beforehand, once the rig is measured as the runs say."""
+        """Prior spread of each number once the rig has been measured as the runs demand."""
         better = [run for run in runs if run.rig]
         row = self.measured.nominal
         if not better or row is None:
@@ -123,7 +119,7 @@ class Knowledge:
         R = measured_path_radius(config)
         if R is not None:
             row = replace(row, R=Quantity(R.nominal_value, R.std_dev, "m"))
-        # A zero that is declared better may turn out to lie beyond what is declared: ply-steer looks like it.
+        # With a smaller declared uncertainty the measured zero may exceed it, because ply-steer looks like misalignment.
         misaligned = isinstance(alignment_verdict(config, row), Misaligned)
         numbers = rig_numbers(config, replace(self.measured, nominal=row, misaligned=misaligned))
         return self.spread | {n.name: n.spread for n in numbers}
@@ -136,7 +132,7 @@ class Knowledge:
             return np.zeros_like(self._base)
         if run.name not in self._of_run:
             n = len(run.points)
-            sigma = {name: np.full(n, s) for name, s in zip(self.problem.sigma, self._sigma, strict=True)}
+            sigma = {channel: np.full(n, s) for channel, s in self._sigma.items()}
             seen = replace(self.problem, points=self.with_readings(run), sigma=sigma, envelope=None, radii=())
             self._of_run[run.name] = self._information(seen.free(self.names).linear(self._at).slope)
         return self._of_run[run.name]
@@ -149,8 +145,13 @@ class Knowledge:
     def _solved(
         self, information: np.ndarray, free: Sequence[str], spread: Mapping[str, float], held: Sequence[str]
     ) -> Posterior:
-        """As :func:`mffit.fit.posterior.joint`, from the sums that it is made of."""
+        """Like :func:`mffit.fit.posterior.joint`, computed from the information matrix."""
         f, h = ([self._row[n] for n in names] for names in (free, held))
         prior = np.diag([spread.get(n, math.inf) ** -2.0 for n in free])
         covariance = inverse(information[np.ix_(f, f)] + prior)
         return beside_held(free, covariance, {n: spread[n] for n in held}, information[np.ix_(f, h)])
+
+
+def _median_or_infinite(sigma: np.ndarray) -> float:
+    known = sigma[np.isfinite(sigma)]
+    return float(np.median(known)) if len(known) else math.inf

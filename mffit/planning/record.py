@@ -15,32 +15,32 @@ from mffit.planning.runs import Run
 
 @dataclass(frozen=True, slots=True)
 class Tie:
-    """Two effects and whether the sweeps tell them apart."""
+    """Two effects and how well the sweeps separate them."""
 
     effect: str  #: id
     other: str  #: id
-    chi2: float  #: expected between them for an effect of the usual size
+    chi2: float  #: expected chi-squared between them for an effect of the usual size
 
     @property
     def told(self) -> bool:
-        """Whether they are told apart."""
+        """Whether the sweeps separate them."""
         return self.chi2 >= TELLING
 
 
 @dataclass(frozen=True, slots=True)
 class Identified:
-    """What the sweeps at hand say."""
+    """What the present sweeps identify."""
 
-    cover: tuple[StageCoverage, ...]  #: per stage what is freed, what is held and why
-    tied: tuple[str, ...]  #: freed coefficients of which the data say less than what is known beforehand
-    correlated: tuple[tuple[str, str, float], ...]  #: coefficients that trade places, and their correlation
+    cover: tuple[StageCoverage, ...]  #: per stage: what is freed, what is held and why
+    from_prior: tuple[str, ...]  #: freed coefficients that the prior determines more than the data
+    correlated: tuple[tuple[str, str, float], ...]  #: pairs of coefficients and their correlation
     ties: tuple[Tie, ...]
     budget: tuple[Contribution, ...]  #: of eps_gamma by the direct method; empty on a flat track
 
 
 @dataclass(frozen=True, slots=True)
 class Trial:
-    """A run and what it would leave uncertain, made alone or after those before it."""
+    """A run made alone, and the uncertainty that it would leave."""
 
     run: Run
     u: float  #: of the goal, in its unit
@@ -48,12 +48,12 @@ class Trial:
 
 @dataclass(frozen=True, slots=True)
 class Step:
-    """A run of the plan, in the order in which they are made."""
+    """One run of the list."""
 
     run: Run
     before: float  #: uncertainty of the goal without it
-    after: float  #: and with it
-    direct: float | None  #: u(eps_gamma) by the direct method after it; None where there is none
+    after: float  #: with it
+    direct: float | None  #: u(eps_gamma) of the direct method after it; None without a disc
     joint: float | None  #: u(PECP1) of the joint fit of tyre and rig after it
 
 
@@ -64,12 +64,12 @@ class Plan(Brief):
     config: Config
     goal: Goal
     identified: Identified
-    now: float  #: uncertainty of the goal as it is; infinite where it is not measured
+    now: float  #: present uncertainty of the goal; infinite if it is not measured
     direct_now: float | None
     joint_now: float | None
-    steps: tuple[Step, ...]  #: the shortest list
+    steps: tuple[Step, ...]  #: the list, in the order in which the runs are made
     trials: tuple[Trial, ...]  #: every candidate made alone, best first
-    told_below: float | None = None  #: of a tie: uncertainty from which on the effects are told apart
+    told_below: float | None = None  #: of a tie: uncertainty below which the effects are separated
 
     @property
     def then(self) -> float:

@@ -5,76 +5,26 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
-from enum import Enum
-from typing import Any, NamedTuple
+from itertools import groupby
+from typing import Any
 
 import numpy as np
 
 from mffit.config import Config
 from mffit.config.models import RollingRadiusTable
 from mffit.measured.radii import measured_path_radius
+from mffit.planning import constants
+from mffit.planning.additions import ADDITIONS, Addition, Line
 from mffit.points import Points, levels, main_path, main_pressure
 from mffit.points.points import concatenate
-from mffit.quantities import CHANNELS, CONDITIONS, DIRECT
 from mffit.rig import reference_speed
-
-ZEROS_DEG = (-1.0, -0.5, 0.0, 0.5, 1.0)
-NEAR_DEG = (-20.0, -15.0, -12.5, -10.0, -7.5, -5.0, -2.5, 0.0, 2.5, 5.0, 7.5, 10.0, 12.5, 15.0, 20.0)
-SHARES = (-1.0, -0.75, -0.5, -0.375, -0.25, -0.125, -0.0625, 0.0, 0.0625, 0.125, 0.25, 0.375, 0.5, 0.75, 1.0)
-"""Angles of a full sweep over the largest one that was run."""
-CAMBERS_DEG = (10.0, 20.0, 35.0)
-LOADS = (0.7, 1.3)
-"""New loads over the smallest and the largest one."""
-PRESSURES = (0.8, 1.2)
-"""New pressures over the programme's."""
-NARROWER = 0.7
-"""Second path radius over the usual one: within the disc, and far enough from it."""
-BETTER = 1.0 / 3.0
-"""A better measurement of the rig over the declared uncertainty."""
-
-
-class Kind(Enum):
-    """Kinds of runs, by the word that leaves them out."""
-
-    ZEROS = "zeros"
-    OTHER_SIDE = "other-side"
-    OTHER_SIDE_CAMBER = "other-side-camber"
-    SECOND_RADIUS = "second-radius"
-    FLIPPED = "flipped"
-    SMALL_CAMBER = "small-camber"
-    CAMBER = "camber"
-    SIDESLIP = "sideslip"
-    COUPLED = "coupled"
-    LOAD = "load"
-    PRESSURE = "pressure"
-    REVOLUTION = "revolution"
-    CAMBER_ZERO = "camber-zero"
-    LOADCELL_ZERO = "loadcell-zero"
-    SIDESLIP_ZERO = "sideslip-zero"
-    PATH_RADIUS = "path-radius"
-
-
-class Declared(NamedTuple):
-    """An uncertainty that [rig] declares."""
-
-    key: str
-    unit: str
-
-
-DECLARED = {
-    Kind.CAMBER_ZERO: Declared("u_camber_alignment_deg", CONDITIONS["gamma_deg"].unit),
-    Kind.LOADCELL_ZERO: Declared("u_loadcell_offset_N", CHANNELS["Fy"].unit),
-    Kind.SIDESLIP_ZERO: Declared("u_slip_alignment_N", f"{CHANNELS['Fy'].unit} of {CHANNELS['Fy'].word}"),
-    Kind.PATH_RADIUS: Declared("u_path_radius", DIRECT["R"].unit),
-}
-"""Better measurements of the rig, and what of [rig] each lowers."""
 
 
 @dataclass(frozen=True, slots=True)
 class Run:
     """One entry of a plan: points to run, or a number of the rig to measure better."""
 
-    kind: Kind
+    addition: Addition
     load: float  #: [N]
     points: Points | None = None  #: set-points in ISO-W, without readings; None for a measurement
     camber_deg: float = 0.0  #: of coupled sweeps
@@ -89,10 +39,10 @@ class Run:
 
     @property
     def name(self) -> str:
-        """A name for files, which no other candidate has."""
+        """Stem of the run's files, unique among the candidates."""
         camber = f"-{self.camber_deg:.0f}deg" if self.camber_deg else ""
         pressure = f"-{self.pressure_kPa:.0f}kPa" if self.pressure_kPa else ""
-        return f"{self.kind.value}-{self.load:.0f}N{camber}{pressure}"
+        return f"{self.addition.id}-{self.load:.0f}N{camber}{pressure}"
 
     def declared(self, config: Config) -> Config:
         """The configuration once this has been done."""
@@ -105,22 +55,34 @@ class Run:
 
 
 def candidates(config: Config, points: Points, r_e: float | None = None) -> tuple[Run, ...]:
-    """Runs that a rig could add to these points.
+    """Every run that a rig could add to these points, load by load.
 
     Parameters
     ----------
     config : what is declared of the rig
     points : the programme so far
-    r_e : effective radius at the nominal load [m] as the model has it, to foresee a disc revolution
+    r_e : effective radius of the model at the nominal load [m], to predict a disc revolution
     """
-    return tuple(_all(_Programme(config, points), r_e))
+    programme = _Programme(config, points)
+    possible = [addition for addition in ADDITIONS if config.rig.on_disc or not addition.disc_only]
+    found: list[Run] = []
+    for loads, group in groupby(possible, key=lambda addition: addition.loads):
+        additions = list(group)
+        for load in programme.loads_of(loads):
+            for addition in additions:
+                if addition.declares:
+                    found += _better_declared(config, addition, load)
+                elif addition.revolution:
+                    found += _revolution(config, addition, load, r_e)
+                else:
+                    found += _with_points(programme, addition, load)
+    return tuple(found)
 
 
 class _Programme:
-    """What was run, and lines of new set-points like it."""
+    """What has been run, and new set-points like it."""
 
     def __init__(self, config: Config, points: Points) -> None:
-        self.config = config
         main = main_pressure(points) & (points.direction > 0) & (points.mount > 0) & ~points.continuous
         self.points, self.main = points, points.select(main if np.any(main) else np.ones(len(points), bool))
         level = levels.labels(self.main.Fz, levels.LOAD)
@@ -128,91 +90,91 @@ class _Programme:
             float(np.mean(self.main.Fz[level == k])) for k in range(level.max(initial=-1) + 1)
         )
         self.load = min(self.loads, key=lambda load: abs(load - config.tyre.nominal_load))
-        self.slip = float(np.degrees(np.max(np.abs(self.main.alpha))))
-        self.lean = float(np.degrees(np.max(np.abs(self.main.gamma))))
+        self.largest = {
+            name: float(np.degrees(np.max(np.abs(getattr(self.main, name))))) for name in ("alpha", "gamma")
+        }
         self.pressure = float(np.mean(self.main.p))
+        self.phi_t = main_path(self.main)
 
-    def line(self, load: float, alpha: Any = 0.0, gamma: Any = 0.0, **changes: Any) -> Points:
-        """Set-points (n,) at angles in degrees, otherwise as most of the programme ran."""
-        alpha, gamma = np.broadcast_arrays(np.atleast_1d(alpha).astype(float), gamma)
-        usual = np.flatnonzero(self.main.phi_t == main_path(self.main))[0]
-        like = self.main.select(np.full(len(alpha), usual))
+    def loads_of(self, which: str) -> list[float]:
+        """Loads [N] at which additions are run."""
+        low, high = constants.PLAN_NEW_LOAD_FACTORS
+        new = [low * self.loads[0], high * self.loads[-1]]
+        return {"each": self.loads, "nominal": [self.load], "new": new}[which]
+
+    def angles(self, line: Line) -> np.ndarray:
+        """Angles (n,) of a line [deg]."""
+        if line.angles.unit == "deg":
+            return np.array(line.angles)
+        if line.over == "gamma" and not self.largest["gamma"] > constants.PLAN_SMALLEST_CAMBER_SWEPT:
+            return np.array(constants.PLAN_SMALL_CAMBERS)
+        return self.largest[line.over] * np.array(line.angles)
+
+    def cambers(self, addition: Addition, load: float) -> list[float]:
+        """Cambers [deg] of an addition's coupled sweeps that the programme lacks at a load; [0] for other additions."""
+        if addition.cambers is None:
+            return [0.0]
+        near = np.abs(self.main.Fz / load - 1.0) < constants.PLAN_COUPLED_LOAD_TOLERANCE
+        swept = near & (np.abs(self.main.alpha) > constants.PLAN_COUPLED_SIDESLIP.rad)
+        run_already = np.round(np.abs(np.degrees(self.main.gamma[swept])))
+        most = max(self.largest["gamma"], constants.PLAN_SMALL_CAMBERS[-1])
+        return [camber for camber in addition.cambers if camber not in run_already and camber <= most]
+
+    def line(self, line: Line, addition: Addition, *, load: float, camber_deg: float, p: float) -> Points:
+        """Set-points (n,) of one line of an addition."""
+        angles = np.radians(self.angles(line))
+        usual = np.flatnonzero(self.main.phi_t == self.phi_t)[0]
+        like = self.main.select(np.full(len(angles), usual))
         given = {
-            "alpha": np.radians(alpha), "gamma": np.radians(gamma), "Fz": load, "p": self.pressure,
-            "V": reference_speed(self.main), "phi_t": main_path(self.main), "direction": 1, "mount": 1,
-            "line": 0, "sweep": 0, "file": 0, "sweep_names": ("planned",), "files": ("",),
+            "alpha": 0.0, "gamma": np.radians(line.camber_side * camber_deg), "Fz": load, "p": p,
+            "V": reference_speed(self.main), "phi_t": self.phi_t / addition.radius, "direction": line.direction,
+            "mount": addition.mount, "line": 0, "sweep": 0, "file": 0, "sweep_names": ("planned",), "files": ("",),
         }  # fmt: skip
         unknown = dict.fromkeys(("Fy", "Mz", "Mx", "My", "t", "time", "iteration"), np.nan)
-        noise = {name: _typical(getattr(self.points, name)) for name in ("u_Fy", "u_Mz", "T")}
-        return like.replace(**(given | unknown | noise | changes))
-
-    def both_ways(self, load: float, alpha: Any, **changes: Any) -> Points:
-        """The same angles rolled forwards and backwards."""
-        ways = [self.line(load, alpha, direction=way, **changes) for way in (1, -1)]
-        return concatenate(ways)
-
-    def cambers_at(self, load: float) -> np.ndarray:
-        """Cambers [deg] at which a load was swept over sideslip."""
-        near = np.abs(self.main.Fz / load - 1.0) < 0.05
-        used = near & (np.abs(self.main.alpha) > np.radians(0.5))
-        return np.unique(np.round(np.abs(np.degrees(self.main.gamma[used]))))
+        typical = {name: _median(getattr(self.points, name)) for name in ("u_Fy", "u_Mz", "T")}
+        return like.replace(**(given | {line.over: angles} | unknown | typical))
 
 
-def _typical(values: np.ndarray) -> float:
+def _median(values: np.ndarray) -> float:
+    """The median of the finite values, NaN if there are none."""
     known = values[np.isfinite(values)]
     return float(np.median(known)) if len(known) else math.nan
 
 
-def _all(seen: _Programme, r_e: float | None) -> Iterator[Run]:
-    disc = seen.config.rig.on_disc
-    slip, lean = seen.slip * np.array(SHARES), seen.lean * np.array(SHARES)
-    if not seen.lean > 1.0:
-        lean = np.array(NEAR_DEG)
-    if disc:
-        yield from _on_the_disc(seen)
-        yield from _of_the_rig(seen, r_e)
-    yield Run(Kind.FLIPPED, seen.load, seen.line(seen.load, slip[3:-3], mount=-1))
-    for load in seen.loads:
-        yield Run(Kind.SIDESLIP, load, seen.line(load, slip))
-        yield Run(Kind.CAMBER, load, seen.line(load, 0.0, lean))
-        for camber in CAMBERS_DEG:
-            if camber not in seen.cambers_at(load) and camber <= max(seen.lean, NEAR_DEG[-1]):
-                sides = [seen.line(load, slip, side * camber) for side in (-1.0, 1.0)]
-                yield Run(Kind.COUPLED, load, concatenate(sides), camber_deg=camber)
-        for factor in PRESSURES:
-            p = factor * seen.pressure
-            sweeps = [seen.line(load, slip, p=p), seen.line(load, 0.0, lean, p=p)]
-            yield Run(Kind.PRESSURE, load, concatenate(sweeps), pressure_kPa=1e-3 * p)
-    for load in (LOADS[0] * seen.loads[0], LOADS[1] * seen.loads[-1]):
-        yield Run(Kind.LOAD, load, concatenate([seen.line(load, slip), seen.line(load, 0.0, lean)]))
+def _with_points(programme: _Programme, addition: Addition, load: float) -> Iterator[Run]:
+    """The runs of an addition at one load: one per camber and pressure."""
+    for camber in programme.cambers(addition, load):
+        for factor in addition.pressures or (1.0,):
+            p = factor * programme.pressure
+            lines = [
+                programme.line(line, addition, load=load, camber_deg=camber, p=p) for line in addition.lines
+            ]
+            yield Run(
+                addition,
+                load,
+                concatenate(lines),
+                camber_deg=camber,
+                pressure_kPa=None if addition.pressures is None else 1e-3 * p,
+            )
 
 
-def _on_the_disc(seen: _Programme) -> Iterator[Run]:
-    """Runs that concern turn slip."""
-    usual = main_path(seen.main)
-    other = -usual
-    narrow = math.copysign(abs(usual) / NARROWER, usual)
-    for load in seen.loads:
-        yield Run(Kind.ZEROS, load, seen.both_ways(load, ZEROS_DEG))
-        yield Run(Kind.OTHER_SIDE, load, seen.both_ways(load, ZEROS_DEG, phi_t=other))
-        yield Run(Kind.OTHER_SIDE_CAMBER, load, seen.line(load, 0.0, NEAR_DEG, phi_t=other))
-        yield Run(Kind.SECOND_RADIUS, load, seen.both_ways(load, ZEROS_DEG, phi_t=narrow))
-        yield Run(Kind.SMALL_CAMBER, load, seen.line(load, 0.0, NEAR_DEG))
+def _better_declared(config: Config, addition: Addition, load: float) -> Iterator[Run]:
+    """A better measurement of a number of the rig whose uncertainty is declared."""
+    R = measured_path_radius(config) if addition.declares == "u_path_radius" else None
+    u = getattr(config.rig, addition.declares) if R is None else float(R.std_dev)
+    if u:
+        yield Run(addition, load, rig={addition.declares: constants.PLAN_RIG_IMPROVEMENT * u})
 
 
-def _of_the_rig(seen: _Programme, r_e: float | None) -> Iterator[Run]:
-    """Better measurements of the rig itself."""
-    rig, R = seen.config.rig, measured_path_radius(seen.config)
-    for kind, (key, _) in DECLARED.items():
-        u = float(R.std_dev) if kind is Kind.PATH_RADIUS and R is not None else getattr(rig, key)
-        if u:
-            yield Run(kind, seen.load, rig={key: BETTER * u})
-    if not seen.config.rolling_radius and r_e is not None and rig.radius is not None:
-        turns, rest = divmod(rig.radius / r_e, 1.0)
-        table = RollingRadiusTable(
-            load_N=round(seen.load, 1),
-            revolutions=turns,
-            angle_start_deg=0.0,
-            angle_end_deg=round(360.0 * rest, 1),
-        )
-        yield Run(Kind.REVOLUTION, seen.load, revolution=table)
+def _revolution(config: Config, addition: Addition, load: float, r_e: float | None) -> Iterator[Run]:
+    """The disc revolution that would measure r_e, where none was made."""
+    if config.rolling_radius or r_e is None or config.rig.radius is None:
+        return
+    turns, rest = divmod(config.rig.radius / r_e, 1.0)
+    table = RollingRadiusTable(
+        load_N=round(load, 1),
+        revolutions=turns,
+        angle_start_deg=0.0,
+        angle_end_deg=round(360.0 * rest, 1),
+    )
+    yield Run(addition, load, revolution=table)

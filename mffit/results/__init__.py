@@ -1,4 +1,4 @@
-"""What the workflows return, and the JSON that is made of it."""
+"""The results of the workflows, and their JSON."""
 
 from mffit.results.build import BuildResult
 from mffit.results.many import Outcome

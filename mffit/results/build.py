@@ -16,7 +16,7 @@ from tir import Tyre
 
 @dataclass(frozen=True, slots=True, repr=False)
 class BuildResult(Brief):
-    """Everything a build produces."""
+    """The results of a build."""
 
     config: Config
     points: Points
@@ -24,15 +24,15 @@ class BuildResult(Brief):
     measured: Measured
     fit: FitResult
     files: Mapping[str, str]  #: name of each file by use, "turn-slip" or "normal"
-    tyres: Mapping[str, Tyre]  #: what each of them holds
-    plain: str  #: the use whose file carries the plain name
+    tyres: Mapping[str, Tyre]  #: the tyre of each file, by use
+    plain: str  #: the use whose file has the plain name
     warnings: tuple[str, ...]
     seconds: float
-    members: tuple[Tyre, ...] = ()  #: drawn from what the fit leaves uncertain, if any were asked for
+    members: tuple[Tyre, ...] = ()  #: drawn from the posterior, if requested
 
     @property
     def headline(self) -> str:
-        """Which tyre, its eps_gamma if it was measured, and how well the model meets the points."""
+        """Name of the tyre, its eps_gamma if measured, and the misfit of the model."""
         return ", ".join(filter(None, (self.config.tyre.name, self.measured.headline, self.fit.headline)))
 
     @property
@@ -42,7 +42,7 @@ class BuildResult(Brief):
 
     @property
     def tyre(self) -> Tyre:
-        """What the file with the plain name holds."""
+        """The tyre of the file with the plain name."""
         return self.tyres[self.plain]
 
     @property

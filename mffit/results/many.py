@@ -1,4 +1,4 @@
-"""The record of one tyre among many that were built."""
+"""The outcome of one of many builds."""
 
 from __future__ import annotations
 
@@ -14,13 +14,13 @@ State = Literal["built", "unchanged", "refused", "failed"]
 
 @dataclass(frozen=True, slots=True)
 class Outcome:
-    """What became of one ``tyre.toml``."""
+    """How the build of one ``tyre.toml`` ended."""
 
     source: Path  #: the tyre.toml
-    name: str  #: of the tyre, or of the file where that could not be read
-    out: Path | None  #: folder of its output
-    state: State  #: refused: by its input; failed: by a bug or a worker that died
-    sentence: str = ""  #: why, if it has no output
+    name: str  #: of the tyre; path of the file if it cannot be read
+    out: Path | None  #: output folder
+    state: State  #: refused: bad input; failed: a bug, or a worker that died
+    sentence: str = ""  #: the reason, without output
     seconds: float = 0.0
     epsilon_gamma: Quantity | None = None
     misfit: Mapping[str, float] = field(default_factory=dict)  #: rms by channel, [N] and [Nm]
@@ -29,9 +29,9 @@ class Outcome:
 
     @property
     def whole(self) -> bool:
-        """Whether its output is there."""
+        """Whether its output is complete."""
         return self.state in ("built", "unchanged")
 
     def having(self, **changes: Any) -> Outcome:
-        """The same with some fields replaced."""
+        """A copy with some fields replaced."""
         return replace(self, **changes)

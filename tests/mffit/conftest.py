@@ -1,4 +1,4 @@
-"""A disc rig in a folder, for everything that starts from files."""
+"""A disc rig in a folder, for tests that start from files."""
 
 from __future__ import annotations
 

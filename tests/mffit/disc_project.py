@@ -1,8 +1,7 @@
-"""A small campaign on a disc, from a tyre of four lines, with every file open to damage.
+"""A small campaign on a disc, from a tyre model of four lines; tests may change every file.
 
-The tyre shares with real ones only what the way in relies on: the signs and rough sizes of its slopes, a
-camber thrust of about 0.7 Fz tan(gamma), and a turn-slip force of a fifth of the load. Nothing here comes
-from the project's model.
+The tyre has only the properties that reading and checking rely on: signs and rough sizes of its slopes, a camber thrust of
+about 0.7 Fz tan(gamma), and a turn-slip force of a fifth of the load. It is independent of the project's model.
 """
 
 from __future__ import annotations
@@ -26,7 +25,7 @@ def side_force(alpha: Any, gamma: Any, Fz: Any, *, side: float = -1.0, direction
 
 
 def moment(alpha: Any, gamma: Any, Fz: Any, *, side: float = -1.0, direction: Any = 1.0) -> Any:
-    """Mz [Nm], ISO-W: restoring with a trail that fades, and the spin of the path."""
+    """Mz [Nm], ISO-W: a trail that decreases with sideslip, and the moment of path curvature."""
     return Fz * (
         0.2 * alpha * np.exp(-((alpha / 0.1) ** 2)) - 0.006 * np.sin(gamma) + 0.004 * side * direction
     )
@@ -42,7 +41,7 @@ def rows(
     seed: int = 1,
     side: float = -1.0,
 ) -> pd.DataFrame:
-    """Finished points in the contract's columns, ISO-W."""
+    """Finished points with the columns of sweep files, ISO-W."""
     alpha_deg, gamma_deg = (a.astype(float) for a in np.broadcast_arrays(alpha_deg, gamma_deg))
     alpha, gamma = np.radians(alpha_deg), np.radians(gamma_deg)
     scatter = np.random.default_rng(seed).standard_normal((2, len(alpha)))
@@ -72,7 +71,7 @@ class Project:
     tables: dict[str, pd.DataFrame] = field(default_factory=dict)
 
     def add(self, file: str, table: pd.DataFrame, **keys: Any) -> None:
-        """One more sweep."""
+        """Add a sweep."""
         self.tables[file] = table
         self.config["sweep"].append({"file": file, **keys})
 
@@ -82,13 +81,13 @@ class Project:
         self.config["sweep"] = [entry for entry in self.config["sweep"] if entry["file"] in files]
 
     def each(self, **columns: float) -> None:
-        """Multiply columns of every file."""
+        """Multiply columns of every file by factors."""
         for table in self.tables.values():
             for name, factor in columns.items():
                 table[name] = table[name] * factor
 
     def write(self) -> Path:
-        """Write everything and give the path of ``tyre.toml``."""
+        """Write all files; returns the path of ``tyre.toml``."""
         self.folder.mkdir(parents=True, exist_ok=True)
         for name, table in self.tables.items():
             table.to_csv(self.folder / name, index=False)
@@ -102,11 +101,11 @@ class Project:
         return path
 
     def text(self, file: str) -> str:
-        """What stands in a file that has been written."""
+        """The content of a written file."""
         return (self.folder / file).read_text()
 
     def overwrite(self, file: str, content: str | bytes) -> None:
-        """Put something else into a file that has been written."""
+        """Replace the content of a written file."""
         path = self.folder / file
         path.write_bytes(content if isinstance(content, bytes) else content.encode())
 
@@ -117,7 +116,7 @@ ZEROS = np.array([-0.5, 0.0, 0.0, 0.5])
 
 
 def disc_project(folder: Path) -> Project:
-    """Two loads, sideslip, camber and zeros both ways; ISO axes, path centre to the left."""
+    """Sideslip, camber and zeros both ways at two loads; ISO axes, path centre on the left."""
     config: dict[str, Any] = {
         "tyre": {
             "name": "toy",

@@ -1,13 +1,14 @@
-"""A flat-belt machine that writes recordings the way such machines do, from the four-line tyre of ``disc_project``.
+"""Recordings of a flat-belt machine, from the tyre model of ``disc_project``.
 
-SAE axes, km/h, centimetres, one file with everything in it: sweeps of sideslip up and down, the load stepped between
-them, camber and pressure now and then. The tyre lags by a first-order filter along the rolled distance and loses grip with
-the heat that it makes; neither comes from the project's own code.
+SAE axes, km/h, all conditions in one file: sideslip sweeps up and down, a load step between sweeps, camber and pressure
+less often. The tyre lags by a first-order filter along the rolled distance and loses grip with the heat that it generates;
+both are independent of the project's code.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from itertools import product
 from pathlib import Path
 
 import numpy as np
@@ -38,24 +39,20 @@ def recording(
     gaps: bool = False,
     seed: int = 1,
 ) -> pd.DataFrame:
-    """Samples in the machine's own words; every condition is swept once, 0 -> 9 -> 0 -> -9 -> 0 deg.
+    """Samples under the machine's headings; one sideslip sweep 0 -> 9 -> 0 -> -9 -> 0 deg per condition.
 
     Parameters
     ----------
     sigma : relaxation length [m]
     grip_per_K : share of the side force lost per degree of tread temperature
     rest_s : at zero sideslip before each sweep, while the load changes over its first half second
-    gaps : only the sweeps are written, with the clock running on
+    gaps : write only the sweeps, with the true times
     """
     random = np.random.default_rng(seed)
     swept, resting = round(sweep_s * RATE), round(rest_s * RATE)
     phase = np.arange(swept) / swept
     triangle = 9.0 * (1.0 - np.abs((4.0 * phase + 1.0) % 4.0 - 2.0))
-    parts = []
-    for p in pressures:
-        for gamma in cambers:
-            for load in loads:
-                parts.append((p, gamma, load))
+    parts = list(product(pressures, cambers, loads))
     alpha = np.concatenate([np.r_[np.zeros(resting), triangle] for _ in parts])
     each = resting + swept
     Fz, gamma, p = (np.repeat([part[k] for part in parts], each).astype(float) for k in (2, 1, 0))
@@ -67,7 +64,9 @@ def recording(
     if sigma:
         keeps = np.exp(-SPEED / RATE / sigma)
         follows = lfilter([1.0 - keeps], [1.0, -keeps], follows)
-    heat = lfilter([0.004], [1.0, -0.996], np.abs(alpha))  # follows the work done with some seconds' delay
+    heat = lfilter(
+        [0.004], [1.0, -0.996], np.abs(alpha)
+    )  # low-pass of the sideslip, with a time constant of 2.5 s
     T = 55.0 + 3.0 * heat
     grip = 1.0 - grip_per_K * (T - 55.0)
     real = Fz * (1.0 + 0.01 * random.standard_normal(n))

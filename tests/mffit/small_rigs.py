@@ -1,7 +1,8 @@
-"""Small campaigns of the virtual rig, which fit in a second or two; the tyre's truth is the front sample's."""
+"""Small campaigns of the virtual rig with the tyre of the front sample; they are built in a second or two."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -21,10 +22,10 @@ def truth() -> tir.Tyre:
     return tir.read(SAMPLE / "true.tir")
 
 
-def disc(**changes: Any) -> dict[str, Any]:
-    """Sideslip, camber, zeros both ways at three loads, one coupled sweep; tables added or replaced."""
+def disc(loads: Sequence[int] = LOADS, **changes: Any) -> dict[str, Any]:
+    """Plan of a campaign: sideslip, camber and zeros both ways at each load, one coupled sweep; ``changes`` replace tables."""
     sweeps: list[dict[str, Any]] = []
-    for load in LOADS:
+    for load in loads:
         sweeps += [
             {"file": f"sideslip_{load}.csv", "load_N": load, "alpha_deg": SLIP},
             {"file": f"camber_{load}.csv", "load_N": load, "gamma_deg": LEAN},
@@ -47,19 +48,24 @@ def disc(**changes: Any) -> dict[str, Any]:
             "nominal_pressure": 250, "base": "base.tir",
         },
         "rig": {"path_radius": 1.323, "u_path_radius": 0.0018},
-        "rolling_radius": [{"load_N": load} for load in LOADS],
+        "rolling_radius": [{"load_N": load} for load in loads],
         "sweep": sweeps,
     } | changes  # fmt: skip
 
 
 def flat(**changes: Any) -> dict[str, Any]:
-    """The forward sweeps on a flat track."""
+    """Plan of the forward sweeps on a flat track."""
     content = disc(rig={"type": "flat-track"}, rolling_radius=[], **changes)
     content["sweep"] = [s for s in content["sweep"] if s.get("direction") != "backward"]
     return content
 
 
+def simulated(content: dict[str, Any], folder: Path, seed: int = 3) -> virtual_rig.Truth:
+    """Write the project of a simulated campaign to a folder; returns the truth."""
+    return virtual_rig.simulate(virtual_rig.load_plan(content, folder=SAMPLE), folder, seed=seed)
+
+
 def built(content: dict[str, Any], folder: Path, seed: int = 3) -> mffit.results.BuildResult:
-    """Simulate and build."""
-    virtual_rig.simulate(virtual_rig.load_plan(content, folder=SAMPLE), folder, seed=seed)
+    """The build of a simulated campaign."""
+    simulated(content, folder, seed)
     return mffit.build(folder / "tyre.toml")

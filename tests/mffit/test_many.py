@@ -1,4 +1,4 @@
-"""Many tyres: one that fails or dies does not stop the others, what is whole is left as it is, and a page compares them."""
+"""Many tyres: a failure does not stop the others, current output is left unchanged, and a page compares the tyres."""
 
 from __future__ import annotations
 
@@ -12,14 +12,14 @@ from pathlib import Path
 
 import pandas as pd
 import pytest
-from small_rigs import SAMPLE, disc
+from small_rigs import LOADS, disc, simulated
 
-from mffit import config, fleet, pipeline, virtual_rig
+from mffit import config, fleet, pipeline
 from mffit.cli import main
 from mffit.errors import InputError
 from mffit.fit.priors import of_fleet
 from mffit.output import RECORD, digest
-from mffit.pipeline import many
+from mffit.pipeline import many, workers
 from mffit.pipeline.current import is_current
 from mffit.results import Outcome
 from tests.browser import assert_readable
@@ -40,18 +40,15 @@ def mffit(*arguments: object) -> tuple[int, str, str]:
 
 @pytest.fixture(scope="module")
 def project(tmp_path_factory):
-    """A small campaign of a simulated tyre, at one load less than others have."""
+    """A small campaign of a simulated tyre at two loads."""
     folder = tmp_path_factory.mktemp("many") / "sound"
-    content = disc()
-    content["sweep"] = [s for s in content["sweep"] if s["load_N"] != 2100]
-    content["rolling_radius"] = [{"load_N": 1400}]
-    virtual_rig.simulate(virtual_rig.load_plan(content, folder=SAMPLE), folder, seed=3)
+    simulated(disc(LOADS[:2], rolling_radius=[{"load_N": 1400}]), folder)
     return folder
 
 
 @pytest.fixture(scope="module")
 def built(project):
-    """The only build of this module: two tyres by one command, one of which cannot be built."""
+    """The only build of this module: one command for two tyres, one of which cannot be built."""
     broken = project.with_name("broken")
     shutil.copytree(project, broken)
     (broken / "camber_900.csv").unlink()
@@ -60,7 +57,7 @@ def built(project):
     return out, mffit("build", broken / "tyre.toml", project / "tyre.toml", "--out", out)
 
 
-def test_one_that_fails_does_not_stop_the_others_and_the_code_says_so(built):
+def test_a_failure_does_not_stop_the_others_and_sets_the_exit_code(built):
     out, (code, said, err) = built
     assert code == 2
     assert (out / "small" / "small.tir").is_file()
@@ -74,7 +71,7 @@ def test_one_that_fails_does_not_stop_the_others_and_the_code_says_so(built):
     assert "camber_900.csv" in said
 
 
-def test_what_is_whole_is_left_as_it_is(built, project, monkeypatch):
+def test_current_output_is_left_unchanged(built, project, monkeypatch):
     out, _ = built
     monkeypatch.setattr(many, "build", lambda *given, **keys: pytest.fail("built again"))
     before = {path: path.stat().st_mtime_ns for path in (out / "small").rglob("*")}
@@ -103,7 +100,7 @@ def missing_output(project: Path, out: Path) -> None:
 
 
 def _rewritten(out: Path, name: str, content: bytes) -> None:
-    """As if the build had written it so."""
+    """Replace a file as if the build had written it."""
     record = json.loads((out / RECORD).read_text())
     (out / name).write_bytes(content)
     record["files"][name] = f"build:{digest(out / name)}"
@@ -114,32 +111,32 @@ def _rewritten(out: Path, name: str, content: bytes) -> None:
     "change",
     [None, edited_sweep, edited_configuration, edited_output, missing_output],
 )
-def test_what_changed_is_built_again(built, project, tmp_path, change):
-    # Both folders stay as they stand to each other, which resolved.toml depends on.
+def test_changed_input_or_output_is_built_again(built, project, tmp_path, change):
+    # resolved.toml depends on the relative position of both folders, which the copies keep.
     shutil.copytree(project, tmp_path / "sound")
     shutil.copytree(built[0] / "small", tmp_path / "out" / "small")
     toml, out = tmp_path / "sound" / "tyre.toml", tmp_path / "out" / "small"
-    resolved = pipeline.building.resolved_text(config.load(toml), out)
+    resolved = pipeline.build_output.resolved_text(config.load(toml), out)
     _rewritten(out, "resolved.toml", resolved)
     if change is not None:
         change(tmp_path / "sound", out)
     assert is_current(config.load(toml), out) == (change is None)
 
 
-def told_to_die(job: many.Job) -> Outcome:
-    """What a worker does that runs out of memory at one of the tyres."""
+def dies_at_weak(job: workers.Job) -> Outcome:
+    """A worker that is killed at one of the tyres, as for lack of memory."""
     if job.name == "weak":
         os.kill(os.getpid(), signal.SIGKILL)
     return Outcome(job.source, job.name, job.out, "built")
 
 
-@pytest.mark.skipif(os.name == "nt", reason="processes are started and killed otherwise there")
-def test_a_worker_that_is_killed_costs_its_own_tyre_only(tmp_path, monkeypatch):
-    monkeypatch.setattr(many, "STARTED", "fork")  # at once; this process has no threads
-    jobs = [many.Job(Path(name), name, tmp_path) for name in ("a", "weak", "b", "c", "d")]
-    outcomes = list(many.in_processes(jobs, 2, told_to_die))
+@pytest.mark.skipif(os.name == "nt", reason="processes are started and killed differently there")
+def test_a_killed_worker_costs_only_its_own_tyre(tmp_path, monkeypatch):
+    monkeypatch.setattr(workers, "START_METHOD", "fork")  # faster; this process has no threads
+    jobs = [workers.Job(Path(name), name, tmp_path) for name in ("a", "weak", "b", "c", "d")]
+    outcomes = list(workers.in_processes(jobs, 2, dies_at_weak))
     assert {o.name: o.state for o in outcomes} == dict.fromkeys("abcd", "built") | {"weak": "failed"}
-    assert "ended before its time" in next(o.sentence for o in outcomes if o.name == "weak")
+    assert "its process ended early" in next(o.sentence for o in outcomes if o.name == "weak")
 
 
 def test_two_tyres_are_not_built_into_one_folder(project):
@@ -153,7 +150,7 @@ def test_two_tyres_are_not_built_into_one_folder(project):
     other.unlink()
 
 
-def test_an_interrupted_run_says_what_is_whole(built, project, monkeypatch):
+def test_an_interrupted_run_lists_the_finished_tyres(built, project, monkeypatch):
     out, _ = built
     second = project.with_name("second")
     if not second.exists():
@@ -194,7 +191,7 @@ def compared(folders):
     return out, mffit("fleet", *folders, "--out", out)
 
 
-def test_the_fleet_compares_and_tightens(compared, folders):
+def test_the_fleet_compares_and_reduces_uncertainties(compared, folders):
     out, (code, said, err) = compared
     assert (code, err) == (0, "")
     found = json.loads((out / "fleet.json").read_text())
@@ -204,6 +201,9 @@ def test_the_fleet_compares_and_tightens(compared, folders):
         assert epsilon["direct"]["value"] == result["spin"]["epsilon_gamma"]
         assert epsilon["together"]["u"] < epsilon["alone"]["u"] < epsilon["direct"]["u"]
         assert tyre["C_alpha_N_per_rad"]["u"] > 0.0
+        assert tyre["rig"] == 1  # counted from 1, as on the page
+        assert tyre["rmse"] == {name: row["rmse"] for name, row in result["fit"]["channels"].items()}
+        assert tyre["warnings"] == result["warnings"]
     assert set(found["rigs"][0]["errors"]) == {
         "F0_N",
         "gamma_0_deg",
@@ -211,7 +211,12 @@ def test_the_fleet_compares_and_tightens(compared, folders):
         "camber_skew_deg",
         "path_radius_m",
     }
+    assert found["scatter"]["epsilon_gamma_direct"]["tyres"] == 5
+    assert found["scatter"]["epsilon_gamma_direct"]["beyond"] == 0.0  # five times the same tyre
     table = pd.read_csv(out / "fleet.csv")
+    assert table.rig.tolist() == [1] * 5
+    assert table.warnings.tolist() == [len(result["warnings"])] * 5
+    assert table.rmse_Fy.to_numpy() == pytest.approx(result["fit"]["channels"]["Fy"]["rmse"])
     assert list(table.name) == [HOSTILE, "tyre 1", "tyre 2", "tyre 3", "tyre 4"]
     assert table.epsilon_gamma_together[0] == found["tyres"][0]["epsilon_gamma"]["together"]["value"]
     assert "error of the rig" in said
@@ -221,7 +226,7 @@ def test_the_fleet_compares_and_tightens(compared, folders):
 
 
 def test_a_stiffness_carries_the_uncertainty_of_its_coefficients(compared, folders):
-    """The cornering stiffness is known as well as its 40 or so points of 3 N say: between one thousandth and one per cent."""
+    """About 40 points of 3 N determine the cornering stiffness to between one thousandth and two per cent."""
     row = json.loads((compared[0] / "fleet.json").read_text())["tyres"][0]["C_alpha_N_per_rad"]
     assert 1e-3 < abs(row["u"] / row["value"]) < 2e-2
 
@@ -232,11 +237,11 @@ def test_the_page_shows_a_hostile_name_as_text(compared):
     assert "a&lt;img src=x onerror=alert(1)&gt;b" in html
 
 
-def test_a_reader_sees_every_picture_of_the_page(compared):
+def test_the_page_is_readable(compared):
     assert_readable(compared[0] / "fleet.html")
 
 
-def test_what_the_fleet_knows_serves_a_later_build(compared, project):
+def test_a_later_build_uses_the_priors_of_the_fleet(compared, project):
     out, _ = compared
     text = (project / "tyre.toml").read_text()
 
@@ -273,7 +278,7 @@ def test_what_the_fleet_knows_serves_a_later_build(compared, project):
         (lambda folder: (folder / "information.json").write_text("[]"), "is not what `mffit build` writes"),
     ],
 )
-def test_a_folder_that_is_no_build_is_named(folders, tmp_path, spoil, said):
+def test_a_folder_that_is_not_a_build_is_named(folders, tmp_path, spoil, said):
     shutil.copytree(folders[1], tmp_path / "spoilt")
     spoil(tmp_path / "spoilt")
     with pytest.raises(InputError, match=said) as refused:
@@ -281,16 +286,16 @@ def test_a_folder_that_is_no_build_is_named(folders, tmp_path, spoil, said):
     assert str(tmp_path / "spoilt") in str(refused.value)
 
 
-def test_one_tyre_is_no_fleet(folders):
-    with pytest.raises(InputError, match="two built tyres or more"):
+def test_a_fleet_needs_two_tyres(folders):
+    with pytest.raises(InputError, match="two or more built tyres"):
         pipeline.fleet([folders[0]])
-    with pytest.raises(InputError, match="each once"):
+    with pytest.raises(InputError, match="each named once"):
         pipeline.fleet([folders[0], folders[0]])
 
 
 @pytest.mark.slow
-def test_a_cluster_builds_on_when_a_worker_is_killed(project, tmp_path):
-    """Two workers of a real scheduler; the one that is at work on a tyre is killed when the first tyre is finished."""
+def test_a_cluster_continues_when_a_worker_is_killed(project, tmp_path):
+    """Two workers of a real scheduler; when the first tyre is finished, a worker that is building is killed."""
     distributed = pytest.importorskip("distributed")
     sources = []
     for k in range(4):
@@ -321,10 +326,10 @@ def test_a_cluster_builds_on_when_a_worker_is_killed(project, tmp_path):
     for k in range(4):
         assert is_current(config.load(sources[k]), tmp_path / "out" / f"tyre-{k}")
     left = [path.name for path in (tmp_path / "out").iterdir() if path.name.startswith(".")]
-    assert len(left) <= 1  # what the killed worker had begun, for the next run to sweep
+    assert len(left) <= 1  # temporary folder of the killed worker, which the next run removes
 
 
-def test_a_scheduler_that_is_not_there_is_said(project):
+def test_an_absent_scheduler_is_reported(project):
     pytest.importorskip("distributed")
     with pytest.raises(InputError, match=r"no Dask scheduler answers at ht tp://x"):
         pipeline.build_many([project / "tyre.toml"], project / "all", dask="ht tp://x")

@@ -1,46 +1,46 @@
-"""The workflows as calls: what a build knows of its rig, what a diagnosis makes of it, where PECP1 comes from."""
+"""The workflows as calls: rig errors in built files, diagnosis of a build, the source of PECP1."""
 
 from __future__ import annotations
 
+import json
 import re
 
 import numpy as np
 import pandas as pd
 import pytest
-from small_rigs import MZ, SAMPLE, built, disc, flat, truth
+from small_rigs import MZ, SAMPLE, built, disc, flat, simulated, truth
 
 import mffit
 import tir
-from mffit import config, virtual_rig
+from mffit import config
 from mffit.diagnosis import wording
 from mffit.diagnosis.notes import DirectMethodRedone, ModelFittedFirst
 from mffit.effects import CATALOG
 from mffit.errors import InputError
-from mffit.pipeline.building import undistorted
+from mffit.pipeline.build_output import origin
 from mffit.pipeline.diagnosing import last_build
 from mffit.pipeline.provenance import fitted_to, rig_of_build
+from mffit.pipeline.refining import undistorted
 from mffit.results import as_json
 
 OFFSET = [effect for effect in CATALOG if effect.id in ("loadcell-offset-fy", "camber-misalignment")]
 MOMENT = [effect for effect in CATALOG if effect.id in ("loadcell-offset-mz", "residual-torque-camber")]
 
 
-def simulated(folder, **changes):
-    """A small campaign in a folder; its truth."""
-    return virtual_rig.simulate(
-        virtual_rig.load_plan(disc(**changes), folder=SAMPLE), folder, seed=6
-    ).to_json()
+def campaign(folder, **changes):
+    """The truth of a small campaign simulated into a folder."""
+    return simulated(disc(**changes), folder, seed=6).to_json()
 
 
 @pytest.fixture(scope="module")
 def small(tmp_path_factory):
-    """A build of a rig with a load cell 15 N off, and where it was written."""
+    """A build of a rig whose load cell is 15 N off, and its folder."""
     folder = tmp_path_factory.mktemp("small")
-    simulated(folder, faults={"F0_N": 15.0})
+    campaign(folder, faults={"F0_N": 15.0})
     return mffit.build(folder / "tyre.toml", folder / "out"), folder
 
 
-def test_a_file_knows_the_rig_of_the_sweeps_it_was_fitted_to(small):
+def test_a_built_file_contains_the_rig_errors_of_its_sweeps(small):
     result, folder = small
     settings = config.load(folder / "tyre.toml")
     file = tir.read(last_build(settings))
@@ -51,7 +51,7 @@ def test_a_file_knows_the_rig_of_the_sweeps_it_was_fitted_to(small):
     assert abs(found["F0_N"] - 15.0) < 6.0
 
 
-def test_a_file_fitted_to_other_sweeps_does_not(small, tmp_path):
+def test_a_file_fitted_to_other_sweeps_has_no_rig_errors_for_these(small, tmp_path):
     _, folder = small
     for path in folder.glob("*.*"):
         if path.is_file():
@@ -65,7 +65,7 @@ def test_a_file_fitted_to_other_sweeps_does_not(small, tmp_path):
 
 
 def test_the_build_explains_its_own_points(small):
-    """Diagnosed with the file and the rig of the build, nothing is left; with the tyre's truth the load cell is."""
+    """A diagnosis with the file and rig of the build finds nothing; with the true tyre it finds the load cell."""
     _, folder = small
     own = mffit.diagnose(folder / "tyre.toml", effects=OFFSET)
     assert not own.effects
@@ -85,16 +85,56 @@ def test_the_json_gives_the_origin_as_the_file_does(small):
         assert origin[name] == on_disk.status[name], name
 
 
-def said(diagnosis) -> str:
+def test_the_json_states_the_measured_numbers(small):
+    result, folder = small
+    text = (folder / "out" / "result.json").read_text(encoding="utf-8")
+    spin, fit = json.loads(text)["spin"], json.loads(text)["fit"]
+    row = result.measured.nominal
+    assert (spin["epsilon_gamma"], spin["u_epsilon_gamma"]) == (row.epsilon_gamma.value, row.epsilon_gamma.u)
+    assert spin["alpha_M_deg"] == pytest.approx(np.degrees(row.alpha_M.value))
+    assert spin["u_alpha_M_deg"] == pytest.approx(np.degrees(row.alpha_M.u))
+    assert spin["coverage_factor"] == 1
+    assert [load["load_N"] for load in spin["per_load"]] == [load.load for load in result.measured.per_load]
+    assert (spin["F_forward_N"], spin["F_backward_N"]) == (row.F_forward, row.F_backward)
+    assert set(fit["files"]) == {"turn-slip", "normal", "ranges"}
+    paired = [name for name, entry in fit["coefficients"].items() if entry["correlated_with"]]
+    assert paired
+    for name, entry in fit["coefficients"].items():
+        assert (entry["correlation"] is None) == (name not in paired)
+        assert (entry["interval_95"] is None) == entry["fixed"]
+
+
+def test_the_points_are_written_with_their_parts_and_their_origin(small):
+    result, folder = small
+    table = pd.read_csv(folder / "out" / "points.csv")
+    both = table[["Fy_odd_N", "Fy_even_N"]].notna().all(axis=1)
+    assert both.any()
+    assert (table.Fy_odd_N + table.Fy_even_N)[both].to_numpy() == pytest.approx(table.Fy_N[both].to_numpy())
+    assert (table.Mz_odd_Nm + table.Mz_even_Nm)[both].to_numpy() == pytest.approx(
+        table.Mz_Nm[both].to_numpy()
+    )
+    assert np.std(table.Fy_model_N - table.Fy_N) < 6.0
+    assert set(table.file) == {sweep.file for sweep in result.config.sweep}
+    assert (table.direction == "backward").tolist() == [name.startswith("backward") for name in table.file]
+    assert set(table.path_centre) == {"left"}
+    assert table.path_radius_m.to_numpy() == pytest.approx(np.full(len(table), 1.323))
+    n = len(result.points)
+    flipped = origin(result.points.replace(mount=np.where(np.arange(n) < 2, -1, 1), phi_t=0.5))
+    assert flipped["mount"].tolist() == ["flipped"] * 2 + ["normal"] * (n - 2)
+    assert set(flipped["path_centre"]) == {"right"}
+    assert "path_centre" not in origin(result.points.replace(phi_t=0.0))
+
+
+def note_of(diagnosis) -> str:
     (note,) = (wording.note(n) for n in diagnosis.notes if isinstance(n, DirectMethodRedone))
     return note
 
 
 def test_the_direct_method_is_redone_without_the_fault(tmp_path):
-    """60 N on the load cell: eps = 1 + r_e C_gamma / (F R) with F wrong by 60 N, and with 60 N less."""
-    true = simulated(tmp_path, faults={"F0_N": -60.0})
+    """60 N on the load cell: eps = 1 + r_e C_gamma / (F R) with F wrong by 60 N, then with the correct F."""
+    true = campaign(tmp_path, faults={"F0_N": -60.0})
     found = mffit.diagnose(tmp_path / "tyre.toml", SAMPLE / "true.tir", effects=OFFSET)
-    note = said(found)
+    note = note_of(found)
     before, u_before, after, u_after = map(float, re.findall(r"(?<![\w.])-?\d+\.\d+", note)[:4])
     measured = mffit.spin(tmp_path / "tyre.toml").epsilon_gamma
     assert (before, u_before) == (
@@ -107,12 +147,12 @@ def test_the_direct_method_is_redone_without_the_fault(tmp_path):
     assert 1.0 - before == pytest.approx((1.0 - after) / (1.0 + 60.0 / abs(force)), rel=0.05)
 
 
-def test_a_fault_that_the_method_allows_for_leaves_the_factor(tmp_path):
-    """The moment's load cell is not in the turn-slip force."""
-    simulated(tmp_path, faults={"M0_Nm": 10.0 * MZ})
+def test_a_moment_offset_does_not_change_the_factor(tmp_path):
+    """The offset of the moment does not enter the turn-slip force."""
+    campaign(tmp_path, faults={"M0_Nm": 10.0 * MZ})
     found = mffit.diagnose(tmp_path / "tyre.toml", SAMPLE / "true.tir", effects=MOMENT)
     assert [f.effect.id for f in found.effects] == ["loadcell-offset-mz"]
-    assert said(found).startswith("eps_gamma stays ")
+    assert note_of(found).startswith("eps_gamma stays ")
 
 
 def test_where_pecp1_comes_from(small, tmp_path):
@@ -121,33 +161,32 @@ def test_where_pecp1_comes_from(small, tmp_path):
     assert result.measured.epsilon_gamma_model != result.measured.epsilon_gamma.value
     stated = f"PECP1 = {result.tyre['PECP1']:.4f} is the measured eps_gamma itself"
     assert sum(stated in sentence for sentence in result.fit.explanations) == 1
-    simulated(tmp_path, faults={"F0_N": 15.0}, spin={"pecp1": "debiased"})
+    campaign(tmp_path, faults={"F0_N": 15.0}, spin={"pecp1": "debiased"})
     debiased = mffit.build(tmp_path / "tyre.toml")
     bias = result.measured.epsilon_gamma.value - result.measured.epsilon_gamma_debiased.value
     assert debiased.tyre["PECP1"] == pytest.approx(result.measured.epsilon_gamma.value - bias, abs=0.005)
     assert debiased.measured.pecp1 == debiased.tyre["PECP1"]
-    # The load cell is off, and the direct method does not know: the bias alone is known without the data's error.
+    # The load-cell offset affects eps_gamma but not its bias, so noise-free data without offset have the same bias.
     noise_free = direct_of_truth(tmp_path / "clean")
     assert bias == pytest.approx(noise_free - truth()["PECP1"], abs=0.02)
 
 
 def direct_of_truth(folder) -> float:
     """eps_gamma of the direct method on noise-free readings of the true tyre."""
-    content = disc(noise={})
-    virtual_rig.simulate(virtual_rig.load_plan(content, folder=SAMPLE), folder, seed=1)
+    simulated(disc(noise={}), folder, seed=1)
     return mffit.spin(folder / "tyre.toml").epsilon_gamma.value
 
 
-def test_a_base_file_that_is_not_there_is_named(tmp_path):
-    simulated(tmp_path)
+def test_a_missing_base_file_is_named(tmp_path):
+    campaign(tmp_path)
     (tmp_path / "base.tir").unlink()
     with pytest.raises(InputError, match=r"base file .*base\.tir does not exist"):
         mffit.build(tmp_path / "tyre.toml")
 
 
-def test_alignment_of_a_project_knows_the_stiffness_that_its_table_has_to_guess(tmp_path):
-    """0.3 deg off: the next correction is -0.3 deg less the tyre's ply-steer; a guess makes it a third too large."""
-    simulated(tmp_path, faults={"alpha_0_deg": 0.3})
+def test_alignment_of_a_project_uses_the_measured_stiffness(tmp_path):
+    """0.3 deg off: the next correction is -0.3 deg minus ply-steer; the usual stiffness makes it a third too large."""
+    campaign(tmp_path, faults={"alpha_0_deg": 0.3})
     found = mffit.align(tmp_path / "tyre.toml")
     assert len(found.steps) == 3
     table = pd.concat(
@@ -156,14 +195,14 @@ def test_alignment_of_a_project_knows_the_stiffness_that_its_table_has_to_guess(
     table.to_csv(tmp_path / "zeros.csv", index=False)
     (alone,) = mffit.align(tmp_path / "zeros.csv", axes="iso", path_centre="left").steps
     (same,) = (s for s in found.steps if s.load == alone.load)
-    assert alone.F_slip == pytest.approx(same.F_slip, abs=8.0)  # which has zeros in its sweeps too
+    assert alone.F_slip == pytest.approx(same.F_slip, abs=8.0)  # the sweeps of the project contain zeros too
     assert (alone.source, same.source) == ("guess", "measured")
     off = 0.3 + np.degrees(tir.read(SAMPLE / "true.tir")["PHY1"])
     assert same.correction_deg == pytest.approx(-off, abs=3.0 * same.u_deg)
     assert same.u_deg < 0.02 < alone.u_deg
     assert not found.aligned
     sae = tmp_path / "sae"
-    simulated(sae, faults={"alpha_0_deg": 0.3}, rig=disc()["rig"] | {"axes": "sae"})
+    campaign(sae, faults={"alpha_0_deg": 0.3}, rig=disc()["rig"] | {"axes": "sae"})
     assert mffit.align(sae / "tyre.toml").correction_deg == pytest.approx(-found.correction_deg, rel=1e-3)
 
 

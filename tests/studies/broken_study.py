@@ -1,8 +1,8 @@
-"""What becomes of broken data: `python tests/studies/broken_study.py --help`; prints the table of docs/broken-data.md.
+"""How a build treats broken data: `python tests/studies/broken_study.py --help`; prints the table of docs/broken-data.md.
 
-Campaigns of the samples on drawn rigs, one mistake in each, in a file drawn by lot. "named": the build ends with the name of
-a file that holds the mistake. "doubted": it warns of that sweep, or lists the reading. The rest of the draws are sound:
-their alarms are counted.
+The campaigns of the samples on drawn rigs, each with one mistake in a random file. "named": the build refuses a file with the
+mistake by name. "doubted": it warns about that sweep, or lists the reading as an outlier. The other draws are sound; their
+false alarms are counted.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ NAMES = ("flat-track", "front-120-70", "rear-190-55")
 
 @dataclass
 class Campaign:
-    """A simulated campaign that can be spoilt before it is built."""
+    """A simulated campaign whose files can be changed before it is built."""
 
     folder: Path
     config: dict[str, Any]
@@ -50,11 +50,11 @@ class Campaign:
 
 
 Spoil = Callable[[Campaign, np.random.Generator], list[str]]
-"""Puts a mistake into a campaign and says into which files; none if it has no such file."""
+"""Puts a mistake into a campaign; returns the files with the mistake, none if the campaign has no suitable file."""
 
 
 def scaled(column: str, factor: float, swept: str = "") -> Spoil:
-    """One file with a column times a number."""
+    """A mistake that multiplies a column of one file."""
 
     def spoil(campaign: Campaign, rng: np.random.Generator) -> list[str]:
         names = campaign.varied(swept) if swept else list(campaign.tables)
@@ -68,7 +68,7 @@ def scaled(column: str, factor: float, swept: str = "") -> Spoil:
 
 
 def everywhere(column: str, factor: float) -> Spoil:
-    """Every file with a column times a number."""
+    """A mistake that multiplies a column of every file."""
 
     def spoil(campaign: Campaign, rng: np.random.Generator) -> list[str]:
         for table in campaign.tables.values():
@@ -79,7 +79,7 @@ def everywhere(column: str, factor: float) -> Spoil:
 
 
 def reading(column: str, value: float) -> Spoil:
-    """One reading replaced."""
+    """A mistake that replaces one reading."""
 
     def spoil(campaign: Campaign, rng: np.random.Generator) -> list[str]:
         name = str(rng.choice(list(campaign.tables)))
@@ -91,7 +91,7 @@ def reading(column: str, value: float) -> Spoil:
 
 
 def off(column: str, amount: float) -> Spoil:
-    """One file with a zero offset."""
+    """A mistake that adds an offset to a column of one file."""
 
     def spoil(campaign: Campaign, rng: np.random.Generator) -> list[str]:
         name = str(rng.choice(list(campaign.tables)))
@@ -110,7 +110,7 @@ def swapped(campaign: Campaign, rng: np.random.Generator) -> list[str]:
 
 
 def undeclared(campaign: Campaign, rng: np.random.Generator) -> list[str]:
-    """Backward runs that nobody says are backward."""
+    """Backward runs that are not declared as backward."""
     found = [entry for entry in campaign.config["sweep"] if entry.pop("direction", "") == "backward"]
     return [entry["file"] for entry in found]
 
@@ -170,7 +170,7 @@ def drawn(sample: str, seed: int, folder: Path) -> Campaign:
 
 
 def outcome(sample: str, spoil: Spoil, seed: int) -> str:
-    """What a build says: named, doubted, another file, silent; "-" where the campaign has no such file."""
+    """The verdict of a build: named, doubted, another file or silent; "-" if the campaign has no suitable file."""
     with tempfile.TemporaryDirectory() as made:
         campaign = drawn(sample, seed, Path(made))
         files = spoil(campaign, np.random.default_rng(seed))
@@ -180,12 +180,12 @@ def outcome(sample: str, spoil: Spoil, seed: int) -> str:
         try:
             result = mffit.build(path)
         except InputError as error:
-            said = str(error)
-            return "named" if any(name in said for name in files) else f"another file: {said}"
-        told = [doubt.file for doubt in result.fit.doubts] + [row.file for row in result.fit.outliers]
-        if any(name in files for name in told):
+            message = str(error)
+            return "named" if any(name in message for name in files) else f"another file: {message}"
+        suspected = [doubt.file for doubt in result.fit.doubts] + [row.file for row in result.fit.outliers]
+        if any(name in files for name in suspected):
             return "doubted"
-        return "another file: " + ", ".join(told) if told else "silent"
+        return "another file: " + ", ".join(suspected) if suspected else "silent"
 
 
 def draws(count: int) -> Iterator[tuple[str, str, int]]:
@@ -196,21 +196,21 @@ def draws(count: int) -> Iterator[tuple[str, str, int]]:
 
 
 def main(count: int, clean: int) -> None:
-    """Print the table, and the draws that were not told."""
+    """Print the table, and the draws whose mistake was not found."""
     table: dict[tuple[str, str], Counter[str]] = {}
     for mistake, sample, seed in draws(count):
-        said = outcome(sample, MISTAKES[mistake], seed)
-        table.setdefault((mistake, sample), Counter())[said.split(":")[0]] += 1
-        if said not in ("named", "doubted", "-"):
-            print(f"{mistake}, {sample}, seed {seed}: {said}", file=sys.stderr, flush=True)
+        verdict = outcome(sample, MISTAKES[mistake], seed)
+        table.setdefault((mistake, sample), Counter())[verdict.split(":")[0]] += 1
+        if verdict not in ("named", "doubted", "-"):
+            print(f"{mistake}, {sample}, seed {seed}: {verdict}", file=sys.stderr, flush=True)
     print(f"| mistake | {' | '.join(NAMES)} |")
     print("|---|" + "---|" * len(NAMES))
     for mistake in MISTAKES:
         cells = [table.get((mistake, sample), Counter()) for sample in NAMES]
-        said = [
+        texts = [
             ", ".join(f"{n} {word}" if word != "-" else "-" for word, n in cell.items()) for cell in cells
         ]
-        print(f"| {mistake} | {' | '.join(said)} |")
+        print(f"| {mistake} | {' | '.join(texts)} |")
     alarms = [(s, k) for k in range(clean) for s in NAMES if outcome(s, sound, 10_000 + k) != "silent"]
     print(f"\nSound campaigns: {len(alarms)} alarms in {clean * len(NAMES)} builds {alarms or ''}")
 

@@ -1,4 +1,4 @@
-"""Print how often the diagnosis names a hidden cause: ``python tests/studies/diagnosis_study.py --help``."""
+"""How often the diagnosis names a hidden cause: ``python tests/studies/diagnosis_study.py --help``."""
 
 from __future__ import annotations
 
@@ -24,13 +24,17 @@ def main() -> None:
     parser.add_argument("--repeats", type=int, default=1, help="how many sets")
     parser.add_argument("--only", default="", help="only cases whose name contains this")
     parser.add_argument(
-        "--hard", action="store_true", help="noise not as stated, inexact models, unknown effects"
+        "--hard", action="store_true", help="wrongly stated noise, inexact models, unknown effects"
     )
     parser.add_argument(
-        "--doubtful", action="store_true", help="what leaves doubt under these conditions, for the confidence"
+        "--doubtful",
+        action="store_true",
+        help="cases that remain ambiguous under these conditions, to calibrate the confidence",
     )
-    parser.add_argument("--keep", type=Path, help="file to which every verdict is added as a line of JSON")
-    parser.add_argument("--reliability", type=Path, nargs="+", help="only the table of kept verdicts")
+    parser.add_argument("--keep", type=Path, help="file to which every verdict is appended as a line of JSON")
+    parser.add_argument(
+        "--reliability", type=Path, nargs="+", help="print only the table of these kept verdicts"
+    )
     options = parser.parse_args()
     if options.reliability:
         print_calibration(kept(options.reliability))
@@ -53,7 +57,7 @@ def main() -> None:
 
 
 def print_hard(options: argparse.Namespace) -> None:
-    """A line for every condition: 12 single causes and 6 right models each."""
+    """Print a line per condition, each with 12 single causes and 6 correct models."""
     print(f"{'row':12s} right first/ties  extras  unexplained  named on empty  worse  shrink  seconds")
     every: list[Verdict] = []
     if options.doubtful:
@@ -67,7 +71,7 @@ def print_hard(options: argparse.Namespace) -> None:
 
 
 def keep(verdict: Verdict, file: Path | None) -> Verdict:
-    """The verdict, added to a file if there is one."""
+    """The verdict, after appending it to the file if one is given."""
     if file is not None:
         with file.open("a", encoding="utf-8") as out:
             out.write(json.dumps(asdict(verdict)) + "\n")
@@ -85,7 +89,7 @@ def _tuples(value: object) -> object:
 
 
 def judged(row: str, plans: list[Plan], options: argparse.Namespace) -> list[Verdict]:
-    """Judge the cases of a row and print it."""
+    """The verdicts of the cases of a row; prints the row."""
     if options.only not in row:
         return []
     verdicts = []
@@ -112,22 +116,22 @@ def judged(row: str, plans: list[Plan], options: argparse.Namespace) -> list[Ver
 
 
 def print_calibration(verdicts: list[Verdict]) -> None:
-    """How often named effects are right, by the confidence they are given."""
-    said = [
+    """Print how often named effects are right, by their confidence."""
+    named = [
         (c, n in v.causes, bool({n, *t} & set(v.causes)))
         for v in verdicts
         for n, t, c in zip(v.named, v.ties, v.confidence, strict=True)
     ]
     print("confidence: named, mean confidence, right, right or tied with it")
     for low, high in ((0.0, 0.5), (0.5, 0.8), (0.8, 0.95), (0.95, 0.99), (0.99, 1.01)):
-        inside = [row for row in said if low <= row[0] < high]
+        inside = [row for row in named if low <= row[0] < high]
         mean = f"{100.0 * np.mean([c for c, _, _ in inside]):.0f} %" if inside else "-"
         right, tied = (sum(row[k] for row in inside) for k in (1, 2))
         print(f"  {low:.2f} to {min(high, 1.0):.2f}: {len(inside)}, {mean}, {right}, {tied}")
 
 
 def print_confusion(verdicts: list[Verdict]) -> None:
-    """Hidden effect against first named one, single hidden effects only; hits are counted, misses named."""
+    """Print the first named effect by hidden effect, for single hidden effects."""
     print("\nhidden -> named first (number of cases)")
     single = [v for v in verdicts if len(v.causes) == 1 and not v.structure]
     for cause in dict.fromkeys(v.causes[0] for v in single):

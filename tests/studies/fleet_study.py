@@ -1,8 +1,8 @@
-"""Does one estimate of all tyres of a rig tighten each one's eps_gamma? `python tests/studies/fleet_study.py --rigs 2`.
+"""Does the joint estimate of all tyres of a rig reduce the error of each eps_gamma? `python tests/studies/fleet_study.py`.
 
-Every rig has its own load-cell offset, misalignments and path radius, drawn from what it declares and common to its tyres;
-every tyre is a sample's with all fitted coefficients up to a tenth off and an eps_gamma of its own, built with the settings
-that a user has without choosing any. Prints error and coverage of eps_gamma before and after; docs/fleet.md has the table.
+Each rig has its own load-cell offset, misalignments and path radius, drawn from their declared uncertainties and common to
+its tyres. Each tyre is that of a sample with all fitted coefficients up to a tenth off and an eps_gamma of its own, built with
+default settings. Prints error and coverage of eps_gamma before and after; docs/fleet.md has the table.
 """
 
 from __future__ import annotations
@@ -25,16 +25,17 @@ from drawn_rigs import NO_FORCE_AT_REST, SAFE, SAMPLES, STAGED, model_error, pla
 import mffit
 import tir
 from mffit import fleet, pipeline, virtual_rig
+from mffit.scatter import rms
 
 EPSILON_OFF = 0.08
-"""Scatter of eps_gamma from tyre to tyre, 1 sigma."""
+"""Standard deviation of eps_gamma between tyres."""
 SHARED = ("alpha_0_deg", "gamma_0_deg", "F0_N", "backlash_deg", "path_radius_m")
 ESTIMATES = ("direct method", "joint estimate of each build", "joint estimate of the fleet")
 
 
 @dataclass
 class Rig:
-    """What became of one rig."""
+    """Errors of the estimates for one rig."""
 
     epsilon: list[list[tuple[float, float]]] = field(default_factory=list)  #: tyre, estimate: (error, u)
     pulls: dict[str, float] = field(default_factory=dict)  #: of its own errors, (found - true) / u
@@ -50,7 +51,7 @@ def drawn_tyre(sample: str, rng: np.random.Generator) -> tir.Tyre:
 
 
 def campaign(folder: Path, true: tir.Tyre, sample: str, faults: dict[str, Any], seed: int, **how: Any) -> Any:
-    """Simulate one tyre; the project is in ``folder/rig``."""
+    """Simulate one tyre into the project ``folder/rig``; returns the truth."""
     folder.mkdir()
     true.write(folder / "drawn.tir")
     tir.read(SAMPLES / sample / "base.tir").replace(**NO_FORCE_AT_REST).write(folder / "base.tir")
@@ -62,7 +63,7 @@ def campaign(folder: Path, true: tir.Tyre, sample: str, faults: dict[str, Any], 
 
 
 def one_rig(seed: int, tyres: int, sample: str, later: int) -> Rig:
-    """A rig with its tyres, and ``later`` tyres measured by thin campaigns with and without the fleet's priors."""
+    """Estimates for a rig with its tyres, and for ``later`` tyres in thin campaigns with and without the fleet's priors."""
     rng = np.random.default_rng(5000 + seed)
     out, faults, known = Rig(), {}, []
     with tempfile.TemporaryDirectory() as made:
@@ -82,7 +83,7 @@ def one_rig(seed: int, tyres: int, sample: str, later: int) -> Rig:
                 out.epsilon[k].append((value - eps, u))
         out.pulls = {n: (v - faults[n]) / u for n, (v, u) in together.rig.items() if n in faults}
         priors = Path(made) / "priors.json"
-        priors.write_text(json.dumps(pipeline.fleets.content_of(together, result.fit.tyre, tyres)))
+        priors.write_text(json.dumps(pipeline.fleet_output.priors_of_rig(together, result.fit.tyre, tyres)))
         for k in range(later):
             folder, true = Path(made) / f"later {k}", drawn_tyre(sample, rng)
             campaign(folder, true, sample, faults, 1000 * seed + 500 + k, pecp1="model", thin=True)
@@ -96,10 +97,6 @@ def one_rig(seed: int, tyres: int, sample: str, later: int) -> Rig:
                 out.later[name].append((found.fit.tyre["PECP1"] - true["PECP1"], Fy))
                 print(",", end="", file=sys.stderr, flush=True)
     return out
-
-
-def rms(values: Any) -> float:
-    return float(np.sqrt(np.mean(np.square(values))))
 
 
 def main() -> None:
@@ -121,7 +118,7 @@ def main() -> None:
         e, u = errors[:, k, 0], errors[:, k, 1]
         inside = np.mean(np.abs(e) < SAFE * u)
         print(f"| {name} | {rms(e):.4f} | {np.max(np.abs(e)):.4f} | {np.mean(u):.4f} | {inside:.0%} |")
-    print("\nrig errors of the fleet, found less true over u:")
+    print("\nrig errors of the fleet, (found - true) / u:")
     for rig in rigs:
         print("  " + ", ".join(f"{name} {pull:+.2f}" for name, pull in rig.pulls.items()))
     if given.later:

@@ -1,9 +1,9 @@
-"""Files mutated by coverage, for every reader: `python tests/studies/fuzz_readers.py csv -max_total_time=60`.
+"""Coverage-guided fuzzing of every reader: `python tests/studies/fuzz_readers.py csv -max_total_time=60`.
 
-The first argument is what is read: csv, dat, xlsx, parquet, tdx (sweeps), tir, toml; the others are libFuzzer's. It starts from
-the samples, and ends at the first file that is neither read nor refused in one sentence, which it keeps as crash-*. MATLAB
-files are read in a process of their own, where coverage is not seen; hypothesis tries those in the tests. Needs the extra
-``studies``.
+The first argument is the kind of file: csv, dat, xlsx, parquet, tdx (sweeps), tir or toml; the others are those of libFuzzer.
+The run starts from the samples and stops at the first file that is neither read nor refused in one sentence; that file is kept
+as crash-*. MATLAB files are read in a separate process, where coverage is not visible; hypothesis covers them in the tests.
+Needs the extra ``studies``.
 """
 
 from __future__ import annotations
@@ -42,7 +42,7 @@ READERS: dict[str, Callable[[Path], object]] = {
 
 
 def corpus(kind: str, folder: Path) -> None:
-    """Sound files to begin with, small ones."""
+    """Write small sound files to start from."""
     import pandas as pd
 
     table = pd.read_csv(SAMPLE / "camber_900N.csv").head(4)
@@ -67,13 +67,13 @@ def main() -> None:
 
     def tried(content: bytes) -> None:
         place.write_bytes(content)
-        said = "nothing"
+        message = "nothing"
         try:
             read(place)
         except (InputError, TirError) as error:
-            said = str(error)
-        assert said.strip()
-        assert "\n" not in said
+            message = str(error)
+        assert message.strip()
+        assert "\n" not in message
 
     atheris.Setup([sys.argv[0], *sys.argv[2:], str(seeds)], tried)
     atheris.Fuzz()

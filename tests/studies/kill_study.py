@@ -1,7 +1,8 @@
-"""What is left when a build is killed? `python tests/studies/kill_study.py 50`.
+"""Which files does a killed build leave? `python tests/studies/kill_study.py 50`.
 
-A small tyre has been built. Then it is built again, changed, and killed with SIGKILL at a random moment, and again. After
-every kill the output must be the earlier or the later one, whole, and a run that then ends must leave no temporary folder.
+A small tyre is built, then built again with a change and killed with SIGKILL at a random moment, repeatedly. After every kill
+the output must be the complete earlier one or the complete later one, and the next complete run must leave no temporary
+folder.
 """
 
 from __future__ import annotations
@@ -20,9 +21,8 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "mffit"))
 
-from small_rigs import SAMPLE, disc
+from small_rigs import LOADS, disc, simulated
 
-from mffit import virtual_rig
 from mffit.output import RECORD, digest
 
 ROOT = Path(__file__).parents[2]
@@ -39,13 +39,13 @@ def started(folder: Path) -> subprocess.Popen:
 
 
 def state(out: Path) -> str:
-    """Which size the output states, if all of it is as its record says; else what is wrong."""
+    """The tyre size that a complete output states; otherwise what is wrong with it."""
     record = json.loads((out / RECORD).read_text(encoding="utf-8"))["files"]
     wrong = [
         n for n, entry in record.items() if not (out / n).is_file() or digest(out / n) != entry.split(":")[1]
     ]
     if wrong:
-        return f"not whole: {wrong[0]} and {len(wrong) - 1} more"
+        return f"incomplete: {wrong[0]} and {len(wrong) - 1} more"
     return json.loads((out / "result.json").read_text(encoding="utf-8"))["tyre"]["size"]
 
 
@@ -63,10 +63,7 @@ def main() -> None:
     rng = random.Random(1)
     with tempfile.TemporaryDirectory() as made:
         folder = Path(made) / "tyre"
-        content = disc()
-        content["sweep"] = [s for s in content["sweep"] if s["load_N"] != 2100]
-        content["rolling_radius"] = [{"load_N": 1400}]
-        virtual_rig.simulate(virtual_rig.load_plan(content, folder=SAMPLE), folder, seed=3)
+        simulated(disc(LOADS[:2], rolling_radius=[{"load_N": 1400}]), folder)
         text = (folder / "tyre.toml").read_text(encoding="utf-8")
 
         def sized(size: str) -> None:
@@ -94,7 +91,7 @@ def main() -> None:
             process.send_signal(signal.SIGKILL)
             process.wait()
             now = state(folder / "out")
-            word = {known: "the earlier one, whole", f"run {k}": "the later one, whole"}.get(now, now)
+            word = {known: "the earlier one, complete", f"run {k}": "the later one, complete"}.get(now, now)
             found[word + (" (ended before the kill)" if ended else "")] += 1
             left[len(litter(folder))] += 1
             known = now if now.startswith("run") else known

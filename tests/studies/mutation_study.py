@@ -1,17 +1,19 @@
-"""Would the tests notice? Small wrong changes to the code, one at a time, and how many of them no test sees.
+"""Do the tests notice errors? Small wrong changes to the code, one at a time, and those that no test detects.
 
-`python tests/studies/mutation_study.py 150 --seed 1` draws 150 changes, runs the tests of the changed folder on each, in a copy
-of the tree, and prints the share that survives and the survivors. Needs cosmic-ray, which makes the changes: swapped
+`python tests/studies/mutation_study.py 150 --seed 1` draws 150 changes, runs the tests of the changed room on each in a copy
+of the tree, and prints the survivors and their share. `--rooms mffit/planning mffit/results --each` draws that many from each
+of these rooms; `--json FILE` keeps the results, also of an interrupted run. Needs cosmic-ray, which makes the changes: swapped
 operators and comparisons, numbers one larger or smaller, dropped signs and ``not``, swapped ``and``/``or``, True/False, loops
-that never run. ``<`` for ``<=`` is not among them: on measured numbers it
-changes nothing.
+that never run. ``<`` for ``<=`` is left out, because it makes no difference for measured numbers.
 """
 
 from __future__ import annotations
 
 import argparse
 import ast
+import contextlib
 import difflib
+import json
 import os
 import random
 import shutil
@@ -20,29 +22,36 @@ import subprocess
 import sys
 import tempfile
 import time
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from importlib import import_module
 from itertools import count, islice
 from multiprocessing import get_context
 from multiprocessing.process import BaseProcess
 from pathlib import Path
+from typing import Any
 
 ROOT = Path(__file__).parents[2]
-FIT, DIAGNOSIS = "tests/mffit/fit", "tests/mffit/diagnosis"
-PIPELINE, COMMANDS = "tests/mffit/test_pipeline.py", "tests/mffit/test_command_line.py"
-EQUATIONS = (
-    "tests/tir/test_reference_vectors.py",
-    "tests/tir/test_physics.py",
-    "tests/tir",
-    "tests/mffit/rig",
-)
+SUITE = "tests/mffit"
+FIT, DIAGNOSIS, POINTS = f"{SUITE}/fit", f"{SUITE}/diagnosis", f"{SUITE}/points"
+PIPELINE, COMMANDS, MANY = (f"{SUITE}/test_{name}.py" for name in ("pipeline", "command_line", "many"))
+BAD_INPUT, CORPUS = f"{SUITE}/test_bad_input.py", f"{SUITE}/test_broken_corpus.py"
+EQUATIONS = ("tests/tir/test_reference_vectors.py", "tests/tir/test_physics.py", "tests/tir", f"{SUITE}/rig")
 TESTS: dict[str, tuple[str, ...]] = {
+    "tir": ("tests/tir", f"{SUITE}/export", f"{SUITE}/viewer"),
     "tir/equations": (*EQUATIONS, f"{FIT}/test_constraints.py", f"{FIT}/test_estimates.py"),
     "tir/evaluate.py": EQUATIONS,
-    "mffit/measured": (
-        "tests/mffit/measured", "tests/test_paper_tables.py", f"{FIT}/test_faulty_rig.py", f"{FIT}/test_recovery.py",
+    "mffit/cli": (COMMANDS, f"{SUITE}/test_init_project.py", f"{SUITE}/test_voice.py", f"{SUITE}/export", MANY),
+    "mffit/comparison": (f"{SUITE}/comparison",),
+    "mffit/config": (f"{SUITE}/config", BAD_INPUT, f"{SUITE}/virtual_rig/test_virtual_plan.py", COMMANDS),
+    "mffit/diagnosis": (
+        *(f"{DIAGNOSIS}/test_{name}.py" for name in (
+            "selection", "thresholds", "evidence", "places", "conditions", "wording", "steps",
+        )),
+        DIAGNOSIS,
     ),
+    "mffit/effects": (f"{SUITE}/effects", f"{DIAGNOSIS}/test_wording.py", DIAGNOSIS),
+    "mffit/export": (f"{SUITE}/export",),
     "mffit/fit": (
         *(f"{FIT}/test_{name}.py" for name in (
             "constraints", "coverage", "weights", "estimates", "rig_numbers", "before_the_fit", "problem", "shapes", "roads",
@@ -50,15 +59,27 @@ TESTS: dict[str, tuple[str, ...]] = {
         )),
         PIPELINE, FIT,
     ),
-    "mffit/diagnosis": (
-        *(f"{DIAGNOSIS}/test_{name}.py" for name in (
-            "selection", "thresholds", "evidence", "places", "conditions", "wording", "steps",
-        )),
-        DIAGNOSIS,
+    "mffit/fleet": (f"{SUITE}/fleet", MANY),
+    "mffit/measured": (
+        f"{SUITE}/measured", "tests/test_paper_tables.py", f"{FIT}/test_faulty_rig.py", f"{FIT}/test_recovery.py",
     ),
-    "mffit/pipeline": (PIPELINE, COMMANDS, FIT, f"{DIAGNOSIS}/test_correction.py", "tests/mffit/test_bad_input.py"),
+    "mffit/pipeline": (
+        f"{SUITE}/test_fleet_notes.py", MANY, PIPELINE, f"{SUITE}/comparison", f"{SUITE}/planning", COMMANDS,
+        f"{SUITE}/rig/test_other_paths.py", f"{SUITE}/recordings/test_sniff.py", f"{FIT}/test_normal.py",
+        f"{DIAGNOSIS}/test_corrected_files.py",
+    ),
+    "mffit/planning": (f"{SUITE}/planning",),
+    "mffit/points": (POINTS, BAD_INPUT, CORPUS, f"{SUITE}/recordings", f"{FIT}/test_trust.py"),
+    "mffit/recordings": (f"{SUITE}/recordings", f"{POINTS}/test_points_recordings.py", CORPUS, COMMANDS),
+    "mffit/results": (
+        f"{SUITE}/test_json.py", f"{SUITE}/planning/test_plan_wording.py", PIPELINE, MANY, f"{SUITE}/comparison",
+        f"{DIAGNOSIS}/test_wording.py",
+    ),
+    "mffit/rig": (f"{SUITE}/rig", f"{SUITE}/virtual_rig", f"{SUITE}/effects", DIAGNOSIS),
+    "mffit/sweeps": (f"{SUITE}/sweeps", POINTS, f"{SUITE}/recordings", BAD_INPUT, CORPUS, f"{SUITE}/test_readers_fuzz.py"),
+    "mffit/virtual_rig": (f"{SUITE}/virtual_rig", "tests/test_samples.py", f"{SUITE}/rig/test_other_paths.py"),
 }  # fmt: skip
-"""Folder that is changed -> the tests that ought to notice, the quick ones first."""
+"""Room, which is a folder or module -> the tests that should detect a change in it, fast ones first."""
 SWAPS = (
     *(f"BinaryOperator_{a}_{b}" for a, b in (
         ("Add", "Sub"), ("Sub", "Add"), ("Mul", "Div"), ("Div", "Mul"), ("Pow", "Mul"), ("BitAnd", "BitOr"),
@@ -84,55 +105,67 @@ PRELOADED = (
     "lmfit", "pydantic", "uncertainties", "pint", "matplotlib.figure", "matplotlib.backends.backend_agg", "jinja2", "click",
     "rich.console", "tomli_w", "pytest",
 )  # fmt: skip
-LONGEST = 3600.0  # s
-ROOT_TEXT: dict[str, str] = {}
-"""Modules as they are, by name."""
+LONGEST_BASELINE = 3600.0  # s
 STAMPS = count(1_000_000_000)
+"""A new modification time for every written module: equal times would let Python use the compiled code of the last one."""
 
 
 @dataclass(frozen=True)
 class Mutant:
     """One changed module."""
 
-    folder: str  #: key of TESTS
-    module: str
+    room: str  #: key of TESTS
+    module: str  #: "" for the unchanged room
     operator: str
+    original: str
     code: str
     change: str  #: the lines before and after
 
 
+def unchanged(room: str) -> Mutant:
+    """The room without a change, whose tests must pass."""
+    return Mutant(room, module="", operator="", original="", code="", change="")
+
+
 @dataclass(frozen=True)
 class Outcome:
-    """What the tests made of a mutant."""
+    """Verdict of the tests on a mutant."""
 
     mutant: Mutant
     killed_by: str  #: first failing test, "timeout", or "" for a survivor
     seconds: float
 
     def line(self) -> str:
-        """For whoever watches."""
+        """The verdict in one line, and the change if no test detected it."""
         m = self.mutant
-        what = f"{m.module} {m.operator}" if m.module else f"{m.folder} as it is"
+        what = f"{m.module} {m.operator}" if m.module else f"{m.room} unchanged"
         end = self.killed_by[:100] or ("SURVIVES\n" + m.change if m.code else "passes")
         return f"{self.seconds:5.0f} s {what} {end}"
 
 
-def places(folder: str) -> Iterator[tuple[str, Path, str, int]]:
-    """Folder, module, operator and occurrence of every change that could be made."""
+def modules(room: str) -> list[Path]:
+    """The modules of a room, without those of a room inside it."""
+    path = ROOT / room
+    found = sorted(path.rglob("*.py")) if path.is_dir() else [path]
+    inner = [ROOT / other for other in TESTS if other.startswith(f"{room}/")]
+    return [module for module in found if not any(module.is_relative_to(other) for other in inner)]
+
+
+def places(room: str) -> Iterator[tuple[str, Path, str, int]]:
+    """Room, module, operator and occurrence of every possible change."""
     from cosmic_ray.ast import ast_nodes, get_ast
     from cosmic_ray.plugins import get_operator
 
-    path = ROOT / folder
-    for module in sorted(path.rglob("*.py")) if path.is_dir() else [path]:
+    for module in modules(room):
         nodes = list(ast_nodes(get_ast(module.read_text(encoding="utf-8"))))
         for name in OPERATORS:
             operator = get_operator(name)()
             for occurrence in range(sum(len(list(operator.mutation_positions(node))) for node in nodes)):
-                yield folder, module, name, occurrence
+                yield room, module, name, occurrence
 
 
-def mutant(folder: str, module: Path, operator: str, occurrence: int) -> Mutant | None:
-    """The change made; None if what is executed stays the same, as in an annotation."""
+def mutant(room: str, module: Path, operator: str, occurrence: int) -> Mutant | None:
+    """The changed module; None if the executed code is the same, for example in an annotation."""
     from cosmic_ray.mutating import mutate_code
     from cosmic_ray.plugins import get_operator
 
@@ -140,13 +173,18 @@ def mutant(folder: str, module: Path, operator: str, occurrence: int) -> Mutant 
     code = mutate_code(source, get_operator(operator)(), occurrence)
     if code is None or _executed(code) in ("", _executed(source)):
         return None
-    name = str(module.relative_to(ROOT))
-    ROOT_TEXT[name] = source
-    return Mutant(folder, name, operator.removeprefix("core/"), code, _change(source, code))
+    return Mutant(
+        room=room,
+        module=str(module.relative_to(ROOT)),
+        operator=operator.removeprefix("core/"),
+        original=source,
+        code=code,
+        change=_change(source, code),
+    )
 
 
 def _executed(source: str) -> str:
-    """The code without annotations and decorators of records; "" if it is no Python any more."""
+    """The code without annotations and decorators of records; "" if it is not valid Python."""
     try:
         tree = ast.parse(source)
     except SyntaxError:
@@ -157,7 +195,7 @@ def _executed(source: str) -> str:
         if isinstance(node, ast.FunctionDef):
             node.returns = None
         if isinstance(node, ast.ClassDef):
-            node.decorator_list = []  # whether a record is frozen is for mypy to watch
+            node.decorator_list = []  # mypy checks that records are frozen
     return ast.dump(tree)
 
 
@@ -170,17 +208,19 @@ def _change(before: str, after: str) -> str:
     return "\n".join(lines)
 
 
-def drawn(size: int, seed: int, only: str) -> list[Mutant]:
-    """A sample of all changes, each as likely as any other; the same for the same seed and code."""
-    everything = [place for folder in TESTS if only in folder for place in places(folder)]
-    print(f"{len(everything)} places for a change", flush=True)
+def drawn(size: int, seed: int, rooms: Sequence[str], *, each: bool) -> list[Mutant]:
+    """Random changes of the rooms together, or ``size`` of each; the same for the same seed and code."""
+    if each:
+        return [mutant for room in rooms for mutant in drawn(size, seed, [room], each=False)]
+    everything = [place for room in rooms for place in places(room)]
+    print(f"{len(everything)} possible changes in {', '.join(rooms)}", flush=True)
     random.Random(seed).shuffle(everything)
     made = (mutant(*place) for place in everything)
     return list(islice((m for m in made if m is not None), size))
 
 
 def copy_of_the_tree(at: Path) -> Path:
-    """What git would commit, as it is now."""
+    """A copy of all files that git would commit now, in ``at``."""
     listed = subprocess.run(
         ["git", "ls-files", "--cached", "--others", "--exclude-standard", "-z"],
         cwd=ROOT,
@@ -196,7 +236,7 @@ def copy_of_the_tree(at: Path) -> Path:
 
 
 def started(tree: Path, tests: tuple[str, ...], output: Path) -> BaseProcess:
-    """A process that runs the tests in a copy of the tree; what is imported here already, it need not import again."""
+    """A process that runs the tests in a copy of the tree; forked, so that the preloaded packages need no import."""
     process = get_context("fork").Process(target=_pytest, args=(tree, tests, output))
     process.start()
     return process
@@ -212,9 +252,8 @@ def _pytest(tree: Path, tests: tuple[str, ...], output: Path) -> None:
             os.dup2(stream.fileno(), descriptor)
     import pytest
 
-    files = dict.fromkeys(
-        str(file) for test in tests for file in _files(Path(test))
-    )  # a folder would come in its own order
+    # Files instead of folders, because pytest would collect a folder in its own order.
+    files = dict.fromkeys(str(file) for test in tests for file in _files(Path(test)))
     code = pytest.main(["-x", "-q", "-p", "no:cacheprovider", "--no-header", "--tb=no", *files])
     sys.stdout.flush()
     os._exit(int(code))
@@ -237,13 +276,13 @@ def verdict(process: BaseProcess, output: Path) -> str:
     return failed[0] if failed else text[-200:].strip() or f"exit code {process.exitcode}"
 
 
-def judged(sample: list[Mutant], workers: int) -> list[Outcome]:
-    """Run the tests of every mutant, each worker in a copy of its own; first those of every folder as they are."""
+def judged(sample: list[Mutant], workers: int) -> Iterator[Outcome]:
+    """Outcomes of the mutants, each worker in its own copy of the tree; the unchanged rooms are tested first."""
     for name in PRELOADED:
-        import_module(name)
-    waiting = [Mutant(folder, "", "", "", "") for folder in dict.fromkeys(m.folder for m in sample)] + sample
+        with contextlib.suppress(ImportError):
+            import_module(name)
+    waiting = [unchanged(room) for room in dict.fromkeys(m.room for m in sample)] + sample
     waiting.reverse()
-    out: list[Outcome] = []
     limit: dict[str, float] = {}
     with tempfile.TemporaryDirectory() as scratch:
         trees = [copy_of_the_tree(Path(scratch) / str(k)) for k in range(workers)]
@@ -252,65 +291,99 @@ def judged(sample: list[Mutant], workers: int) -> list[Outcome]:
             for tree in trees:
                 if tree not in running and waiting:
                     mutant = waiting.pop()
-                    _write(tree, mutant, mutant.code)
-                    process = started(tree, TESTS[mutant.folder], tree.with_suffix(".txt"))
+                    _write(tree, mutant.module, mutant.code)
+                    process = started(tree, TESTS[mutant.room], tree.with_suffix(".txt"))
                     running[tree] = mutant, process, time.monotonic()
             time.sleep(0.05)
             for tree, (mutant, process, began) in list(running.items()):
                 seconds = time.monotonic() - began
-                if process.is_alive() and seconds < limit.get(mutant.folder, LONGEST):
+                if process.is_alive() and seconds < limit.get(mutant.room, LONGEST_BASELINE):
                     continue
                 found = Outcome(mutant, verdict(process, tree.with_suffix(".txt")), seconds)
-                _write(tree, mutant, "")
+                _write(tree, mutant.module, mutant.original)
                 del running[tree]
                 print(found.line(), flush=True)
-                if mutant.code:
-                    out.append(found)
+                if mutant.module:
+                    yield found
                 elif found.killed_by:
-                    sys.exit(f"the tests of {mutant.folder} fail without any change: {found.killed_by}")
+                    sys.exit(f"the tests of {mutant.room} fail without any change: {found.killed_by}")
                 else:
-                    limit[mutant.folder] = 120.0 + 5.0 * seconds
-    return out
+                    limit[mutant.room] = 120.0 + 5.0 * seconds
 
 
-def _write(tree: Path, mutant: Mutant, code: str) -> None:
-    """The mutant's code into its module, or what stood there before; the time of a file tells compiled code apart."""
-    if mutant.module:
-        (tree / mutant.module).write_text(code or (ROOT_TEXT[mutant.module]), encoding="utf-8")
+def _write(tree: Path, module: str, code: str) -> None:
+    """Replace a module of a copy, with a modification time of its own."""
+    if module:
+        (tree / module).write_text(code, encoding="utf-8")
         stamp = next(STAMPS)
-        os.utime(tree / mutant.module, (stamp, stamp))
+        os.utime(tree / module, (stamp, stamp))
 
 
 def report(outcomes: list[Outcome]) -> str:
-    """Survivors, and their share by folder."""
+    """The survivors, and their share by room."""
     lines = ["", "Survivors"]
     for out in outcomes:
         if not out.killed_by:
             lines += [f"\n{out.mutant.module} ({out.mutant.operator})", out.mutant.change]
     lines += ["", "| changed | mutants | survive | share |", "|---|---|---|---|"]
-    for folder in [*TESTS, ""]:
-        of = [o for o in outcomes if o.mutant.folder == folder or not folder]
+    for room in [*TESTS, ""]:
+        of = [o for o in outcomes if o.mutant.room == room or not room]
         alive = sum(not o.killed_by for o in of)
         if of:
             lines.append(
-                f"| {f'`{folder}`' if folder else 'all'} | {len(of)} | {alive} | {alive / len(of):.0%} |"
+                f"| {f'`{room}`' if room else 'all'} | {len(of)} | {alive} | {alive / len(of):.0%} |"
             )
     return "\n".join(lines)
 
 
+def content(outcomes: list[Outcome], seed: int) -> dict[str, Any]:
+    """The content of the results file: per room how many changes were drawn and survived, then every change."""
+    rooms = dict.fromkeys(o.mutant.room for o in outcomes)
+    alive = [o.mutant.room for o in outcomes if not o.killed_by]
+    drawn = [o.mutant.room for o in outcomes]
+    return {
+        "seed": seed,
+        "rooms": {room: {"drawn": drawn.count(room), "survived": alive.count(room)} for room in rooms},
+        "survivors": [_row(o) for o in outcomes if not o.killed_by],
+        "killed": [_row(o) | {"by": o.killed_by, "seconds": o.seconds} for o in outcomes if o.killed_by],
+    }
+
+
+def _row(found: Outcome) -> dict[str, Any]:
+    m = found.mutant
+    return {"room": m.room, "module": m.module, "operator": m.operator, "change": m.change}
+
+
 def main() -> None:
     arguments = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    arguments.add_argument("count", type=int, nargs="?", default=150, help="how many changes to draw")
+    arguments.add_argument("count", type=int, nargs="?", default=150, help="number of changes to draw")
     arguments.add_argument("--seed", type=int, default=1)
-    arguments.add_argument("--only", default="", help="part of a folder's name, to look at that one alone")
-    arguments.add_argument("--workers", type=int, default=2)
+    arguments.add_argument(
+        "--rooms",
+        nargs="+",
+        choices=list(TESTS),
+        default=list(TESTS),
+        metavar="ROOM",
+        help="rooms to draw from",
+    )
+    arguments.add_argument("--each", action="store_true", help="draw COUNT changes from each room")
+    arguments.add_argument("--json", type=Path, help="results file, written after every change")
+    arguments.add_argument("--workers", type=int, default=2, help="tests that run at the same time")
     given = arguments.parse_args()
     os.environ |= dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"), "1")
     try:
         import cosmic_ray  # noqa: F401
     except ImportError:
-        sys.exit("the changes are made by cosmic-ray: pip install 'mffit[studies]'")
-    print(report(judged(drawn(given.count, given.seed, given.only), given.workers)))
+        sys.exit("cosmic-ray, which makes the changes, is not installed: pip install 'mffit[studies]'")
+    missing = [name for room in given.rooms for name in (room, *TESTS[room]) if not (ROOT / name).exists()]
+    if missing:
+        sys.exit(f"{', '.join(dict.fromkeys(missing))}: no such file or folder; correct TESTS in {__file__}")
+    outcomes: list[Outcome] = []
+    for outcome in judged(drawn(given.count, given.seed, given.rooms, each=given.each), given.workers):
+        outcomes.append(outcome)
+        if given.json is not None:
+            given.json.write_text(json.dumps(content(outcomes, given.seed), indent=1), encoding="utf-8")
+    print(report(outcomes))
 
 
 if __name__ == "__main__":

@@ -1,9 +1,9 @@
-"""How near the file for turn slip off comes to the formula's own limit, for tyres of known truth.
+"""How close the file for turn slip off comes to the limit of the formula, for tyres of known truth.
 
     python tests/studies/normal_study.py [TRUE.tir ...]
 
-Both columns are rms over sideslip 8 deg, camber 50 deg, 0.7 to 1.4 nominal load, against the tyre itself with turn slip
-on and a straight path. "limit": the same terms optimised for this box alone, without weights, ties or any range beyond.
+All misfits are rms over sideslip 8 deg, camber 50 deg, 0.7 to 1.4 nominal load, against the tyre itself with turn slip on and a
+straight path. "limit": the same terms optimised for these conditions alone, without weights, ties or limits outside them.
 """
 
 from __future__ import annotations
@@ -46,7 +46,7 @@ class Outcome(NamedTuple):
 
 
 def box(nominal_load: float, pressure: float) -> Road:
-    """The conditions over which files are judged."""
+    """The conditions at which files are compared."""
     axes = np.meshgrid(
         np.linspace(0.7, 1.4, 5) * nominal_load,
         np.radians(np.linspace(-8, 8, 17)),
@@ -68,7 +68,7 @@ def tested(tyre: tir.Tyre) -> dict[str, float]:
 
 
 def limit(values: Mapping[str, Any], road: Road) -> tuple[float, float]:
-    """The least rms misfit of Fy [N] and Mz [Nm] that the camber terms allow on the road."""
+    """The smallest rms misfits of Fy [N] and Mz [Nm] that the camber terms can reach on the road."""
     best = dict(values)
     ends = []
     for channel, names in (("Fy", CAMBER_FORCE), ("Mz", CAMBER_MOMENT)):

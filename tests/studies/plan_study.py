@@ -1,8 +1,9 @@
-"""What ``mffit plan`` promises against what comes of it: ``python tests/studies/plan_study.py [DRAWS]``.
+"""Predictions of ``mffit plan`` against the outcome: ``python tests/studies/plan_study.py [DRAWS]``.
 
-Rigs are drawn from what they declare and tyres from a sample. Each campaign is built, a plan is made for every goal, its runs
-are simulated on the same rig with the same tyre, and the longer campaign is built. Compared are the promised uncertainty, the
-one that this build states, and the true error over all draws. ``tests/mffit/planning/test_promises.py`` does so once.
+The errors of the rigs are drawn from their declared uncertainties. Each campaign is built, a plan is made for every goal, its
+runs are simulated on the same rig with the same tyre, and the longer campaign is built. The predicted uncertainty is compared
+with the one that this build states and with the true error over all draws. ``tests/mffit/planning/test_predictions.py`` does so
+for one draw.
 """
 
 from __future__ import annotations
@@ -23,8 +24,7 @@ sys.path.insert(0, str(Path(__file__).parents[2]))
 import tir
 from mffit import virtual_rig
 from mffit.pipeline.planning import plan_of
-from mffit.planning import Goal, Kind, Plan, Run, read_goal
-from mffit.planning.runs import BETTER
+from mffit.planning import Goal, Plan, Run, addition_named, constants, read_goal
 from mffit.results import BuildResult
 from mffit.virtual_rig.faults import as_declared
 from tests.mffit.small_rigs import SAMPLE, built, disc, truth
@@ -39,7 +39,7 @@ FAULTS = {
 
 @dataclass(frozen=True)
 class Task:
-    """A goal, where the file's PECP1 comes from, and what the rig cannot do."""
+    """A goal, the source of PECP1, and the runs that the rig cannot make."""
 
     goal: str
     pecp1: str = "debiased"
@@ -70,7 +70,7 @@ class Outcome:
 
 
 def outcomes(seed: int) -> Iterator[tuple[Task, Outcome]]:
-    """Simulate and build; for every task plan, run the plan and build again."""
+    """Outcomes of all tasks for one draw: simulate, build, plan, simulate the plan, build again."""
     content = disc(faults={"draw": True})
     true = truth()
     drawn = virtual_rig.run(virtual_rig.load_plan(content, folder=SAMPLE), true, seed=seed).truth.faults
@@ -80,7 +80,9 @@ def outcomes(seed: int) -> Iterator[tuple[Task, Outcome]]:
             first = built(content | {"spin": {"pecp1": pecp1}}, Path(made) / f"first-{pecp1}", seed)
             for task in (task for task in TASKS if task.pecp1 == pecp1):
                 goal = read_goal(task.goal, on_disc=True)
-                plan = plan_of(first, goal, runs=task.runs, without=[Kind(word) for word in task.without])
+                plan = plan_of(
+                    first, goal, runs=task.runs, without=[addition_named(word) for word in task.without]
+                )
                 longer = extended(content | {"spin": {"pecp1": pecp1}}, plan)
                 second = built(longer, Path(made) / f"second-{TASKS.index(task)}", seed)
                 stated, error = stated_and_error(second, goal, true)
@@ -94,15 +96,17 @@ def extended(content: dict[str, Any], plan: Plan) -> dict[str, Any]:
     for step in plan.steps:
         content["sweep"] += list(sweeps(step.run, plan))
         for key, u in step.run.rig.items():
-            # What was measured better is wrong by less: the same chance, a smaller spread.
+            # The error of a better measurement is smaller: the same draw, scaled.
             fault, sure = FAULTS[key], as_declared(plan.config.rig)[FAULTS[key]]
-            content["faults"][fault] = sure + BETTER * (content["faults"][fault] - sure)
+            content["faults"][fault] = sure + constants.PLAN_RIG_IMPROVEMENT * (
+                content["faults"][fault] - sure
+            )
             content["rig"][key] = u
     return content
 
 
 def sweeps(run: Run, plan: Plan) -> Iterator[dict[str, Any]]:
-    """Set-points of a run as sweeps of the virtual rig: one point each where the angles make no grid."""
+    """Set-points of a run as sweeps of the virtual rig, one sweep per camber."""
     if run.points is None:
         return
     points = run.points
@@ -131,7 +135,7 @@ def sweeps(run: Run, plan: Plan) -> Iterator[dict[str, Any]]:
 
 
 def stated_and_error(result: BuildResult, goal: Goal, true: tir.Tyre) -> tuple[float, float]:
-    """What the build of the longer campaign states of the goal, and how far it is from the truth."""
+    """The uncertainty of the goal in the build of the longer campaign, and its true error."""
     measured, coefficients = result.measured, result.fit.coefficients
     if goal.kind == "eps_gamma":
         debiased = result.config.spin.pecp1 == "debiased"

@@ -1,7 +1,7 @@
-"""Does a build find the truth, and do its intervals hold it? `python tests/studies/recovery_study.py 200 --jobs 2`.
+"""Does a build find the truth, and do its intervals contain it? `python tests/studies/recovery_study.py 200 --jobs 2`.
 
-Prints the three tables of docs/recovery.md: misfit, truth, coverage; front and rear tyres, each with a base file up to 30 %
-off, without one, and with a thin campaign.
+Prints the three tables of docs/recovery.md (misfit, truth, coverage) for front and rear tyres, each with a base file up to 30 %
+off, without a base file, and with a thin campaign.
 """
 
 from __future__ import annotations
@@ -27,8 +27,8 @@ KINDS = {
     )
     for sample in ("front-120-70", "rear-190-55")
 }
-SELDOM = 0.3
-"""A coefficient fitted in fewer than this share of builds is not in the table."""
+SMALLEST_SHARE_OF_BUILDS = 0.3
+"""A coefficient fitted in a smaller share of the builds is left out of the table."""
 
 
 def run(job: tuple[int, str]) -> tuple[str, Draw]:
@@ -67,7 +67,7 @@ def tables(draws: dict[str, list[Draw]]) -> Iterable[str]:
     yield "|---|---|---|---|---|"
     for name in dict.fromkeys(n for d in everything for n in d.pulls):
         x = np.array([d.pulls[name] for d in everything if name in d.pulls])
-        if len(x) >= SELDOM * len(everything):
+        if len(x) >= SMALLEST_SHARE_OF_BUILDS * len(everything):
             inside = np.mean([d.inside[name] for d in everything if name in d.inside])
             yield f"| {name} | {len(x)} | {inside:.0%} | {np.mean(x):+.2f} | {np.std(x):.2f} |"
     for name in everything[0].bands:

@@ -28,7 +28,7 @@ def u_against_runs(plan: Plan) -> Figure:
         ax.annotate(wording.shown(plan, u), (u, k), (3, 0), textcoords="offset points", va="center")
     if plan.told_below is not None:
         ax.axvline(plan.told_below, color=style.CONTRAST, lw=1.0, ls="--")
-        ax.set_title("dashed: told apart below", loc="right", color=style.CONTRAST)
+        ax.set_title("dashed: separated below", loc="right", color=style.CONTRAST)
     ax.set_xlim(0.0, 1.08 * max(u for _, u in known))
     ax.set_ylim(len(values) - 0.4, -0.6)
     ax.set_yticks(range(len(values)), names)

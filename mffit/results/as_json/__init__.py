@@ -1,4 +1,4 @@
-"""The JSON files: made from the records here and nowhere else, with the keys that users' scripts rely on."""
+"""The JSON of all records, made only here, with the keys that users' scripts rely on."""
 
 from mffit.results.as_json.of_build import build, fit, spin, write_information
 from mffit.results.as_json.of_diagnosis import diagnosis

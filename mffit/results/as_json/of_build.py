@@ -1,4 +1,4 @@
-"""A build: what was measured, fitted and written."""
+"""JSON of a build: measurements, fit and files."""
 
 from __future__ import annotations
 
@@ -89,7 +89,7 @@ def fit(found: FitResult) -> dict[str, Any]:
 
 
 def write_information(path: Path, result: BuildResult) -> None:
-    """Write ``information.json``, a line per key, as programs read it and few people do."""
+    """Write ``information.json``, one line per key, because it is mainly read by programs."""
     assert result.fit.search is not None
     content = plain(combining.to_json(combining.information(result.fit.search)))
     lines = ",\n".join(f"{json.dumps(key)}: {json.dumps(value)}" for key, value in content.items())
@@ -121,7 +121,7 @@ def outlier(row: Outlier) -> dict[str, Any]:
 
 
 def _load(row: LoadResult | None) -> dict[str, Any]:
-    """The numbers of one load; all null if nothing was measured."""
+    """The numbers at one load; all null without a measurement."""
     out: dict[str, Any] = {"load_N": row and row.load}
     for name, key in KEYS.items():
         out |= stated(key, getattr(row, name, None))
@@ -150,7 +150,7 @@ def _coefficient(found: Coefficient) -> dict[str, Any]:
 
 
 def _files(files: Files) -> dict[str, Any]:
-    """How good each written file is, by use, and the ranges."""
+    """Misfits of each written file by use, and the ranges."""
     out: dict[str, Any] = {
         use: {
             "USE_MODE": int(file.tyre["USE_MODE"]),

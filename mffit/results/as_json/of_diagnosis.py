@@ -1,4 +1,4 @@
-"""A diagnosis."""
+"""JSON of a diagnosis."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ def diagnosis(found: Diagnosis) -> dict[str, Any]:
 
 
 def _noise(noise: Noise) -> dict[str, Any]:
-    """The noise that was found, beside the one that was stated."""
+    """The estimated and the stated noise."""
     return {
         "Fy_N": noise.Fy,
         "Mz_Nm": noise.Mz,

@@ -1,4 +1,4 @@
-"""Many tyres: how each build ended, and what they say together."""
+"""JSON of many builds and of a fleet."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from mffit.rig_errors import UNITS
 
 
 def outcome(found: Outcome) -> dict[str, Any]:
-    """One of many builds."""
+    """One of many builds, as ``mffit build --json`` prints it."""
     return {
         "tyre_toml": str(found.source),
         "name": found.name,

@@ -1,4 +1,4 @@
-"""What recordings, zeros and property files hold."""
+"""JSON of recordings, alignments and checks of property files."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from tir.errors import Problem
 
 
 def alignment(found: Alignment) -> dict[str, Any]:
-    """What ``mffit align --json`` prints; forces in N, ISO signs, the correction in degrees of the rig's axis."""
+    """The output of ``mffit align --json``; forces in N, ISO signs, the correction in degrees of the rig's axis."""
     return {
         "correction_deg": found.correction_deg,
         "u_correction_deg": found.u_deg,
@@ -25,7 +25,7 @@ def alignment(found: Alignment) -> dict[str, Any]:
 
 
 def sniffed(found: Sniffed) -> dict[str, Any]:
-    """What ``mffit sniff --json`` prints; conditions in SI."""
+    """The output of ``mffit sniff --json``; conditions in SI."""
     return {
         "recordings": [
             {
@@ -55,5 +55,5 @@ def sniffed(found: Sniffed) -> dict[str, Any]:
 
 
 def problems(path: Path, found: Sequence[Problem]) -> dict[str, Any]:
-    """What ``mffit check --json`` prints."""
+    """The output of ``mffit check --json``."""
     return {"file": str(path), "problems": [asdict(problem) for problem in found]}

@@ -1,4 +1,4 @@
-"""A plan, and a comparison."""
+"""JSON of a plan and of a comparison."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from mffit.planning import wording as planned
 
 
 def plan(found: Plan) -> dict[str, Any]:
-    """The content of ``plan.json``; uncertainties in the goal's unit, k = 1 but for bands, null where nothing is measured."""
+    """The content of ``plan.json``; uncertainties in the goal's unit, k = 1 except for bands; null if not measured."""
     seen = found.identified
     return {
         "goal": {
@@ -46,7 +46,7 @@ def plan(found: Plan) -> dict[str, Any]:
 
 
 def comparison(found: Comparison) -> dict[str, Any]:
-    """The content of ``compare.json``; SI units, ISO signs, u with k = 1, null where it is not known."""
+    """The content of ``compare.json``; SI units, ISO signs, u with k = 1, null if unknown."""
     return {
         "first": found.first,
         "second": found.second,
@@ -76,7 +76,7 @@ def _difference(row: Difference) -> dict[str, Any]:
 def _run(run: Run) -> dict[str, Any]:
     return {
         "name": run.name,
-        "kind": run.kind.value,
+        "kind": run.addition.id,
         "title": planned.title(run),
         "reason": planned.reason(run),
         "points": run.cost,

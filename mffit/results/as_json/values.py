@@ -1,4 +1,4 @@
-"""Numbers, and text of JSON that any reader takes."""
+"""Numbers and text of standard JSON, without NaN."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from tir import Quantity
 
 
 def text(content: Any) -> str:
-    """A document as text; numbers that are not finite become null."""
+    """A document as text; non-finite numbers become null."""
     return json.dumps(plain(content), indent=2, ensure_ascii=False, allow_nan=False) + "\n"
 
 
@@ -24,7 +24,7 @@ def write(path: Path, content: Mapping[str, Any]) -> None:
 
 
 def plain(value: Any) -> Any:
-    """JSON has no NaN and no numpy types."""
+    """The value in types of standard JSON, null for NaN and infinity."""
     if isinstance(value, Mapping):
         return {str(key): plain(item) for key, item in value.items()}
     if isinstance(value, list | tuple | np.ndarray):
@@ -37,10 +37,12 @@ def plain(value: Any) -> Any:
 
 
 def stated(key: str, number: Quantity | None, scale: float = 1.0) -> dict[str, float | None]:
+    """A number under ``key`` and its standard uncertainty under ``u_`` + key, both times ``scale``."""
     if number is None:
         return {key: None, f"u_{key}": None}
     return {key: scale * number.value, f"u_{key}": scale * number.u}
 
 
 def value_of(number: Quantity | None) -> dict[str, Any] | None:
+    """A number and its standard uncertainty."""
     return None if number is None else {"value": number.value, "u": number.u}

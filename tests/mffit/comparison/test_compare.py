@@ -14,7 +14,7 @@ from mffit.cli import main
 from mffit.comparison import Difference, Subject, between, characteristics, wording
 from mffit.comparison.record import ranked
 from mffit.errors import InputError
-from mffit.pipeline.building import write_build
+from mffit.pipeline.build_output import write_build
 from tests.browser import assert_readable
 
 
@@ -162,7 +162,7 @@ def test_two_sets_of_data_are_refused(folder):
 
 
 def test_a_folder_without_a_build_is_refused(tmp_path):
-    with pytest.raises(InputError, match="no folder of a build"):
+    with pytest.raises(InputError, match="not the folder of a build"):
         mffit.compare(tmp_path, SAMPLE / "true.tir")
 
 

@@ -10,7 +10,7 @@ from mffit import config as configuration
 from mffit import virtual_rig
 from mffit.config import path_curvature
 from mffit.errors import InputError
-from mffit.pipeline.building import origin
+from mffit.pipeline.build_output import origin
 from mffit.points import make_points
 from mffit.rig import Simulation
 from mffit.rig_errors import Faults

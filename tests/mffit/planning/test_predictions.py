@@ -1,4 +1,4 @@
-"""What a plan promises follows from the build's own posterior and budget, and is met on the virtual rig.
+"""Predictions of a plan follow from the build's posterior and budget, and come true on the virtual rig.
 
 ``tests/studies/plan_study.py`` repeats the last test for more goals and many rigs.
 """
@@ -12,32 +12,29 @@ import tomllib
 
 import numpy as np
 import pytest
-from small_rigs import SAMPLE, built, disc, truth
+from small_rigs import LOADS, SAMPLE, built, disc, truth
 
 from mffit.cli import main
 from mffit.effects import CATALOG
 from mffit.errors import InputError
-from mffit.pipeline.building import finite_spin_bias
 from mffit.pipeline.planning import additions, plan_of, sheet, write_plan
-from mffit.planning import Kind, read_goal, wording
+from mffit.pipeline.refining import finite_spin_bias
+from mffit.planning import ADDITIONS, addition_named, read_goal, wording
 from mffit.planning.knowledge import Knowledge
-from mffit.planning.runs import DECLARED, candidates
+from mffit.planning.runs import candidates
 from mffit.report.text import plan_summary
 from mffit.rig import Simulation
 from tests.browser import assert_readable
 
 EFFECTS = {effect.id: effect for effect in CATALOG}
-ONE_SIDE = (Kind.OTHER_SIDE, Kind.OTHER_SIDE_CAMBER)
+ONE_SIDE = ("other-side", "other-side-camber")
 
 
 @pytest.fixture(scope="module")
 def content():
     """Two loads of the small campaign on a drawn rig with a square camber axis."""
-    content = disc(
-        faults={"F0_N": 8.0, "gamma_0_deg": 0.4, "path_radius_m": 1.325}, spin={"pecp1": "debiased"}
-    )
-    content["sweep"] = [s for s in content["sweep"] if s["load_N"] < 2000]
-    content["rolling_radius"] = content["rolling_radius"][:2]
+    faults = {"F0_N": 8.0, "gamma_0_deg": 0.4, "path_radius_m": 1.325}
+    content = disc(LOADS[:2], faults=faults, spin={"pecp1": "debiased"})
     content["rig"] = content["rig"] | {"u_camber_skew_deg": 0.0}
     return content
 
@@ -60,7 +57,9 @@ def knowledge(result):
 
 def run_of(result, kind, load=1400):
     return next(
-        r for r in candidates(result.config, result.points) if r.kind is kind and abs(r.load - load) < 10
+        r
+        for r in candidates(result.config, result.points)
+        if r.addition.id == kind and abs(r.load - load) < 10
     )
 
 
@@ -70,29 +69,59 @@ def test_without_runs_the_posterior_is_the_builds(result, knowledge):
         assert found[name] == pytest.approx(u, rel=1e-4), name
 
 
-def test_more_points_never_tell_less(result, knowledge):
+def test_more_points_never_raise_an_uncertainty(result, knowledge):
     before = knowledge.posterior([], None).stderr
-    after = knowledge.posterior([run_of(result, Kind.SMALL_CAMBER)], None).stderr
-    # But for what a coefficient held at a wrong value makes of a fitted one.
+    after = knowledge.posterior([run_of(result, "small-camber")], None).stderr
+    # The tolerance: a held coefficient contributes to the u of a fitted one.
     assert all(after[name] <= before[name] * 1.001 for name in before)
     assert after["PKY6"] < 0.9 * before["PKY6"]
 
 
-def test_the_same_points_again_halve_the_variance_that_noise_makes(result, knowledge):
-    """Curvature of the side force and width of the trail hang on the points alone, not on the rig or on priors."""
-    again = dataclasses.replace(run_of(result, Kind.SIDESLIP), points=result.points)
+def test_the_same_points_again_halve_the_variance_due_to_noise(result, knowledge):
+    """Only the points determine curvature of the side force and width of the trail, not the rig or priors."""
+    again = dataclasses.replace(run_of(result, "sideslip"), points=result.points)
     before, after = (knowledge.posterior(runs, None).stderr for runs in ([], [again]))
     for name in ("PEY1", "QBZ4"):
         assert after[name] / before[name] == pytest.approx(math.sqrt(0.5), rel=0.05)
 
 
-def test_no_run_on_one_rig_tells_ply_steer_from_misalignment_but_a_geometric_zero_does(result, knowledge):
+@pytest.mark.parametrize("addition", ADDITIONS, ids=lambda addition: addition.id)
+def test_an_addition_settles_what_it_names(result, addition):
+    """A run lowers u of an effect beside its rivals by a twelfth or more; a better declaration lowers that of its rig error."""
+    effects = [EFFECTS[name] for name in addition.settles if len(EFFECTS[name].free) == 1]
+    rivals = {
+        e.id: [EFFECTS[name] for name in e.confusable_with if len(EFFECTS[name].free) == 1] for e in effects
+    }
+    everything = {e.id: e for e in (*effects, *(r for rows in rivals.values() for r in rows))}
+    knowledge = Knowledge(
+        result.config, result.points, result.measured, result.fit, list(everything.values())
+    )
+    runs = [run for run in candidates(result.config, result.points) if run.addition is addition]
+    assert runs or addition.id == "revolution"  # the rig of this campaign has one
+    for effect in effects if runs else ():
+        name = effect.free[0].name
+        if addition.declares and effect.kind == "rig":
+            before, after = (knowledge.posterior(more, None).stderr[name] for more in ([], runs))
+        else:
+            before = knowledge.u_of_effect([], effect, rivals[effect.id])
+            after = min(knowledge.u_of_effect([run], effect, rivals[effect.id]) for run in runs)
+        assert after < (11.0 / 12.0) * before, effect.id
+
+
+def test_additions_are_looked_up_by_id():
+    assert {addition_named(addition.id) for addition in ADDITIONS} == set(ADDITIONS)
+    assert addition_named("other-side").radius < 0.0
+    with pytest.raises(InputError, match="the kinds are zeros, other-side, "):
+        addition_named("sun")
+
+
+def test_no_run_on_one_rig_separates_ply_steer_from_misalignment_but_a_geometric_zero_does(result, knowledge):
     ply, axis = EFFECTS["ply-steer"], EFFECTS["sideslip-misalignment"]
-    before = knowledge.told([], ply, [axis])
-    for kind in (Kind.OTHER_SIDE, Kind.ZEROS, Kind.SECOND_RADIUS, Kind.SIDESLIP):
-        assert knowledge.told([run_of(result, kind)], ply, [axis]) == pytest.approx(before, rel=0.05)
-    zero = run_of(result, Kind.SIDESLIP_ZERO)
-    assert knowledge.told([zero], ply, [axis]) < 0.7 * before
+    before = knowledge.u_of_effect([], ply, [axis])
+    for kind in ("other-side", "zeros", "second-radius", "sideslip"):
+        assert knowledge.u_of_effect([run_of(result, kind)], ply, [axis]) == pytest.approx(before, rel=0.05)
+    zero = run_of(result, "sideslip-zero")
+    assert knowledge.u_of_effect([zero], ply, [axis]) < 0.7 * before
 
 
 @pytest.fixture(scope="module")
@@ -100,10 +129,10 @@ def plan(result):
     return plan_of(result, read_goal("eps_gamma", on_disc=True), runs=1)
 
 
-def test_the_other_side_of_the_disc_is_found_for_eps_gamma(result, plan):
-    """It takes out the offset and the zero of camber, which are most of the budget."""
+def test_the_other_side_of_the_disc_is_chosen_for_eps_gamma(result, plan):
+    """It removes the load-cell offset and the camber zero, the largest lines of the budget."""
     (step,) = plan.steps
-    assert step.run.kind is Kind.OTHER_SIDE
+    assert step.run.addition.id == "other-side"
     assert plan.now == pytest.approx(result.measured.epsilon_gamma_debiased.u)
     rest = [
         r
@@ -117,7 +146,7 @@ def test_the_other_side_of_the_disc_is_found_for_eps_gamma(result, plan):
 
 @pytest.fixture(scope="module")
 def longer(content, plan, tmp_path_factory):
-    """The campaign with the runs of the plan, built."""
+    """The build of the campaign with the runs of the plan."""
     points = plan.steps[0].run.points
     more = [
         {
@@ -143,8 +172,8 @@ def test_the_promise_is_met_within_a_fifth_on_the_virtual_rig(result, plan, long
         assert longer.fit.posterior.stderr[name] == pytest.approx(of_joint.stderr[name], rel=0.2), name
 
 
-def test_the_bias_of_finite_spin_is_that_of_the_true_tyre_however_well_its_force_is_known(longer):
-    """A model that holds PECP1 at the biased value bends its other spin coefficients and would find a third of it."""
+def test_the_bias_of_finite_spin_is_that_of_the_true_tyre(longer):
+    """A model that holds PECP1 at the biased value compensates with other spin coefficients and would find a third of it."""
     measured = longer.measured
     found = measured.epsilon_gamma.value - measured.epsilon_gamma_debiased.value
     true = finite_spin_bias(longer.config, longer.points, Simulation.of(truth()), None)
@@ -152,22 +181,27 @@ def test_the_bias_of_finite_spin_is_that_of_the_true_tyre_however_well_its_force
     assert true > 0.015
 
 
-def test_what_the_rig_cannot_do_is_left_out(result):
-    without = plan_of(result, read_goal("eps_gamma:joint", on_disc=True), runs=2, without=ONE_SIDE)
+def test_runs_that_the_rig_cannot_make_are_left_out(result):
+    without = plan_of(
+        result,
+        read_goal("eps_gamma:joint", on_disc=True),
+        runs=2,
+        without=[addition_named(word) for word in ONE_SIDE],
+    )
     assert without.steps
-    assert not {trial.run.kind for trial in without.trials} & set(ONE_SIDE)
+    assert not {trial.run.addition.id for trial in without.trials} & set(ONE_SIDE)
     assert without.then == without.steps[-1].after < without.now
 
 
 def test_two_runs_that_help_only_together_are_found(result):
-    """PPY2 needs two pressures at two loads: one more pressure at one load tells nothing of it."""
+    """PPY2 needs two pressures at two loads; one more pressure at one load does not inform about it."""
     found = plan_of(result, read_goal("PPY2", on_disc=True), runs=2)
-    assert [step.run.kind for step in found.steps] == [Kind.PRESSURE, Kind.PRESSURE]
+    assert [step.run.addition.id for step in found.steps] == ["pressure", "pressure"]
     assert len({step.run.load for step in found.steps}) == 2
     assert found.then < 0.3 * found.now
 
 
-def test_sheets_are_in_the_rigs_axes_and_can_be_declared(result, plan):
+def test_sheets_are_in_the_rigs_axes_and_their_path_is_declared(result, plan):
     run = plan.steps[0].run
     sae = result.config.model_copy(update={"rig": result.config.rig.model_copy(update={"axes": "sae"})})
     assert sheet(sae, run.points).alpha_deg.to_numpy() == pytest.approx(
@@ -179,32 +213,24 @@ def test_sheets_are_in_the_rigs_axes_and_can_be_declared(result, plan):
     assert "path_radius" not in text
 
 
-def test_what_tyre_toml_gains_can_stand_behind_it_whatever_the_runs(result):
-    """A second [rig] would make it no TOML at all."""
+def test_the_additions_to_tyre_toml_are_valid_toml_behind_it(result):
+    """A second [rig] table would be a TOML error."""
     config = result.config.model_copy(update={"rolling_radius": ()})
     runs = candidates(config, result.points, 0.3)
-    assert {run.kind for run in runs} == set(Kind)
-    told = tomllib.loads("[rig]\naxes = 'iso'\n" + additions(config, runs))
-    assert {row["file"] for row in told["sweep"]} == {f"{r.name}.csv" for r in runs if r.points is not None}
-    assert set(told["rig"]) == {"axes"}
+    assert {run.addition for run in runs} == set(ADDITIONS)
+    read = tomllib.loads("[rig]\naxes = 'iso'\n" + additions(config, runs))
+    assert {row["file"] for row in read["sweep"]} == {f"{r.name}.csv" for r in runs if r.points is not None}
+    assert set(read["rig"]) == {"axes"}
     of_the_rig = additions(config, [r for r in runs if r.rig])
     assert "sheet" not in of_the_rig
     assert tomllib.loads(of_the_rig) == {}
-    for key, _ in DECLARED.values():
+    declared = [addition.declares for addition in ADDITIONS if addition.declares]
+    assert len(declared) == 4
+    for key in declared:
         assert f"# change in [rig]: {key} = " in of_the_rig
 
 
-@pytest.mark.parametrize(("after", "said"), [(0.9, "The tie stays"), (0.2, "That tells it apart")])
-def test_a_plan_says_whether_the_tie_is_broken(plan, after, said):
-    goal = read_goal("tie:ply-steer", on_disc=True)
-    tied = dataclasses.replace(
-        plan, goal=goal, now=1.0, told_below=0.3, steps=(dataclasses.replace(plan.steps[0], after=after),)
-    )
-    assert said in wording.headline(tied)
-    assert said not in wording.headline(plan)
-
-
-def test_a_band_is_no_standard_deviation(plan):
+def test_a_band_is_not_called_a_standard_uncertainty(plan):
     bands = dataclasses.replace(plan, goal=read_goal("bands:Mz", on_disc=True))
     assert "k = 1" in plan_summary(plan)
     assert "k = 1" not in plan_summary(bands)
@@ -213,9 +239,13 @@ def test_a_band_is_no_standard_deviation(plan):
 
 @pytest.mark.parametrize(
     ("goal", "said"),
-    [("PKY66", "did you mean PKY6"), ("tie:rain", "no effect with a tie"), ("bands:Fx", "no goal")],
+    [
+        ("PKY66", "did you mean PKY6"),
+        ("tie:rain", "not an effect that can be tied"),
+        ("bands:Fx", "not a goal"),
+    ],
 )
-def test_a_goal_that_is_not_known_is_refused(goal, said):
+def test_an_unknown_goal_is_refused(goal, said):
     with pytest.raises(InputError, match=said):
         read_goal(goal, on_disc=True)
 
@@ -225,27 +255,22 @@ def test_a_flat_track_has_no_eps_gamma_to_plan_for():
         read_goal("eps_gamma", on_disc=False)
 
 
-def test_names_of_runs_are_files_of_their_own(result):
-    names = [run.name for run in candidates(result.config, result.points)]
-    assert len(set(names)) == len(names)
-
-
-def test_what_the_sweeps_identify_is_said(plan):
+def test_the_plan_lists_what_the_sweeps_identify(plan):
     said = " ".join(wording.identified(plan.identified))
-    assert "not seen: " in said
+    assert "not visible: " in said
     assert "pressure" in said
-    assert "Not told apart: ply-steer and sideslip axis misaligned" in said
+    assert "Not separated: ply-steer and sideslip axis misaligned" in said
 
 
 @pytest.mark.parametrize(
     ("options", "said"),
     [
         (["--goal", "PKY66"], "did you mean PKY6"),
-        (["--without", "sun"], "no kind of run"),
+        (["--without", "sun"], "is not a kind of run"),
         (["--goal", "bands", "--coefficient", "PKY6"], "exclude each other"),
     ],
 )
-def test_the_command_refuses_in_a_sentence_before_it_works(options, said, tmp_path, capsys):
+def test_the_command_refuses_bad_options_before_it_builds(options, said, tmp_path, capsys):
     with pytest.raises(SystemExit) as ended:
         main(["plan", str(SAMPLE / "tyre.toml"), "--out", str(tmp_path / "plan"), *options])
     assert ended.value.code == 2
@@ -253,7 +278,7 @@ def test_the_command_refuses_in_a_sentence_before_it_works(options, said, tmp_pa
     assert not (tmp_path / "plan").exists()
 
 
-def test_a_reader_sees_every_picture_of_the_page(plan, tmp_path):
+def test_the_page_is_readable(plan, tmp_path):
     write_plan(plan, tmp_path)
     assert_readable(tmp_path / "plan.html")
 

@@ -1,0 +1,83 @@
+"""The files that a build writes."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import tomli_w
+
+from mffit import config as configuration
+from mffit import fit as fitting
+from mffit.config import Config
+from mffit.output import output_folder
+from mffit.pipeline.inputs import inputs_of
+from mffit.pipeline.members import write_members
+from mffit.points import Points
+from mffit.points.stretch import StretchNote
+from mffit.recordings.stretch_table import stretch_table
+from mffit.results import BuildResult, as_json
+
+USES = ("turn-slip", "normal")
+"""Uses of a property file that are part of its name where it is not the plain one."""
+WRITTEN = ("result.json", "information.json", "points.csv", "report.html")
+"""Files that every build writes beside its property files."""
+
+
+def write_build(result: BuildResult, out: Path, stretches: Sequence[StretchNote] = ()) -> None:
+    """Write every output of a build, or nothing; ``stretches`` of recordings go to ``stretches.csv``."""
+    from mffit import report
+
+    siblings = [f"{result.config.tyre.name}-{use}.tir" for use in USES]
+    with output_folder(out, by="build", protected=inputs_of(result.config), outdated=siblings) as folder:
+        for use, name in result.files.items():
+            result.tyres[use].write(folder / name)
+        as_json.write(folder / "result.json", as_json.build(result))
+        as_json.write_information(folder / "information.json", result)
+        points_table(result).to_csv(folder / "points.csv", index=False)
+        if stretches:
+            stretch_table(stretches).to_csv(folder / "stretches.csv", index=False)
+        (folder / "resolved.toml").write_bytes(resolved_text(result.config, out))
+        write_members(result, folder)
+        report.write_build(result, folder)
+
+
+def resolved_text(config: Config, out: Path) -> bytes:
+    """The content of ``resolved.toml`` in a folder ``out``."""
+    return tomli_w.dumps(configuration.resolved(config, folder=out)).encode()
+
+
+def points_table(result: BuildResult) -> pd.DataFrame:
+    """The content of ``points.csv``: the input columns, the odd and even parts and the model at every point."""
+    table = result.points.table.copy()
+    parts, fit = result.parts, result.fit
+    signs = configuration.axis_signs(result.config)
+    table["Fy_odd_N"], table["Fy_even_N"] = parts.Fy_odd * signs["Fy"], parts.Fy_even * signs["Fy"]
+    table["Mz_odd_Nm"], table["Mz_even_Nm"] = parts.Mz_odd * signs["Mz"], parts.Mz_even * signs["Mz"]
+    table["Fy_model_N"], table["Mz_model_Nm"] = fit.Fy_model * signs["Fy"], fit.Mz_model * signs["Mz"]
+    table["paired"] = parts.paired
+    table["outlier"] = fitting.marks(fit.outliers, len(table))
+    table["doubtful"] = np.isin(np.arange(len(table)), [row for doubt in fit.doubts for row in doubt.index])
+    for name, values in origin(result.points).items():
+        if name not in table:  # a column of the input with this heading takes precedence
+            table[name] = values
+    return table
+
+
+def origin(points: Points) -> dict[str, np.ndarray]:
+    """File, line, sweep and path of every point, by column of ``points.csv``; a straight path has no radius."""
+    curvature = np.abs(points.phi_t)
+    radius = np.divide(1.0, curvature, out=np.full(len(points), np.nan), where=curvature > 0.0)
+    columns = {
+        "file": np.array([Path(name).name for name in points.files], dtype=object)[points.file],
+        "line": points.line,
+        "sweep": np.array(points.sweep_names, dtype=object)[points.sweep],
+        "direction": np.where(points.direction > 0, "forward", "backward"),
+        "mount": np.where(points.mount > 0, "normal", "flipped"),
+    }
+    if np.any(curvature):
+        columns["path_centre"] = np.where(points.phi_t < 0.0, "left", "right")
+        columns["path_radius_m"] = radius.round(6)
+    return columns

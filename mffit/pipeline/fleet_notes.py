@@ -1,0 +1,67 @@
+"""What the user of a fleet should know: several rigs, outlying tyres, declarations that are too tight."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+from mffit import fleet as combining
+from mffit.fleet import Hierarchy, Row
+from mffit.pipeline.fleet_output import nominal_conditions
+from mffit.rig_errors import WORDS
+
+
+def fleet_notes(rows: Sequence[Row], rigs: Sequence[Hierarchy | None]) -> list[str]:
+    """The sentences, in the order in which the page shows them."""
+    far = _far_from_declared(rigs)
+    return [
+        *_several_rigs(rigs),
+        *(note for row in rows for note in _outlying(row, far)),
+        *(
+            f"All tyres together put an error of the rig, {WORDS[name]}, {ratio:.0f} standard deviations from the "
+            "value in [rig]: the declaration is too tight, or the tyres share an effect that the model lacks; in the second "
+            "case rely on the direct method."
+            for name, ratio in far.items()
+        ),
+        *_mixed_conditions(rows, rigs),
+    ]
+
+
+def _far_from_declared(rigs: Sequence[Hierarchy | None]) -> dict[str, float]:
+    """Rig errors far from their declaration: distance in declared standard deviations by name."""
+    far = {}
+    for rig in filter(None, rigs):
+        for name, (value, _) in rig.rig.items():
+            expected, u = rig.declared[name]
+            if abs(value - expected) > combining.FAR * u:
+                far[name] = abs(value - expected) / u
+    return far
+
+
+def _several_rigs(rigs: Sequence[Hierarchy | None]) -> list[str]:
+    if len(rigs) == 1:
+        return []
+    return [
+        f"The builds declare {len(rigs)} different rigs (their tables [rig] differ): the tyres of each rig are estimated "
+        "together. priors.json is not written, because it is for one rig."
+    ]
+
+
+def _outlying(row: Row, far: Mapping[str, float]) -> list[str]:
+    """A tyre whose rig error disagrees with the other tyres."""
+    # If all tyres are far from the declaration, every single tyre, which follows it, seems to disagree with the others.
+    worst = max(row.strain.keys() - far, key=lambda name: abs(row.strain[name]), default="")
+    if not worst or abs(row.strain[worst]) <= combining.STRAINED:
+        return []
+    return [
+        f"{row.specimen.name}: its own error of the rig, {WORDS[worst]}, lies {abs(row.strain[worst]):.0f} standard "
+        "deviations from that of the other tyres; if the rig was adjusted in between, it is another rig: leave this tyre out."
+    ]
+
+
+def _mixed_conditions(rows: Sequence[Row], rigs: Sequence[Hierarchy | None]) -> list[str]:
+    if len({nominal_conditions(row.specimen.tyre) for row in rows}) == 1:
+        return []
+    return [
+        "The tyres have different nominal loads or pressures, to which the coefficients refer: the population mixes them"
+        + (", and priors.json is not written." if len(rigs) == 1 else ".")
+    ]

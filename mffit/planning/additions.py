@@ -1,0 +1,246 @@
+"""What ``mffit plan`` may add to a programme: one record per kind of run or rig measurement."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Literal, NamedTuple
+
+from mffit.errors import InputError
+from mffit.planning import constants
+from mffit.quantities import CHANNELS, CONDITIONS, DIRECT
+from tir.constant import Series
+
+_EPSILON = DIRECT["epsilon_gamma"].ascii
+
+
+class Line(NamedTuple):
+    """Set-points along one angle; everything not given here is as in most of the programme."""
+
+    over: Literal["alpha", "gamma"]
+    angles: Series  #: in degrees, or without unit: over the largest angle that was run
+    direction: Literal[1, -1] = 1  #: 1 forward, -1 backward
+    camber_side: Literal[-1, 0, 1] = 0  #: of a coupled sweep
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Addition:
+    """One kind of run, or one number of the rig to measure better."""
+
+    id: str  #: ``kind`` in plan.json, and the word for ``--without``
+    title: str
+    reason: str  #: what it measures and why that helps
+    settles: tuple[str, ...]  #: ids of effects whose uncertainty it lowers markedly
+    loads: Literal["each", "nominal", "new"] = "each"  #: each or nominal: of the programme
+    lines: tuple[Line, ...] = ()  #: none for a measurement of the rig
+    disc_only: bool = False
+    mount: Literal[1, -1] = 1
+    radius: float = 1.0  #: path radius over the programme's; negative: centre on the other side
+    cambers: Series | None = None  #: of coupled sweeps, one run per camber
+    pressures: Series | None = None  #: over the programme's pressure, one run per pressure
+    declares: str = ""  #: the uncertainty in [rig] that a better measurement lowers
+    declares_unit: str = ""
+    revolution: bool = False  #: adds a [rolling_radius] table
+
+
+_ZEROS = (
+    Line("alpha", constants.PLAN_ZERO_ANGLES),
+    Line("alpha", constants.PLAN_ZERO_ANGLES, direction=-1),
+)
+_SMALL_CAMBERS = (Line("gamma", constants.PLAN_SMALL_CAMBERS),)
+_SIDESLIP = (Line("alpha", constants.PLAN_SWEEP_SHARES),)
+_CAMBER = (Line("gamma", constants.PLAN_SWEEP_SHARES),)
+
+ADDITIONS = (
+    Addition(
+        id="zeros",
+        title="zeros both ways again",
+        reason="More points at zero average the noise out of the turn-slip force.",
+        settles=("loadcell-offset-mz",),
+        lines=_ZEROS,
+        disc_only=True,
+    ),
+    Addition(
+        id="other-side",
+        title="zeros both ways on the other side of the disc",
+        reason=(
+            "The path curves the other way and the turn-slip force changes sign; load-cell offset, zeros of the axes, ply-steer "
+            "and conicity keep theirs. Half the difference is turn slip alone."
+        ),
+        settles=("camber-reduction", "camber-misalignment"),
+        lines=_ZEROS,
+        disc_only=True,
+        radius=-1.0,
+    ),
+    Addition(
+        id="other-side-camber",
+        title="small cambers on the other side of the disc",
+        reason=(
+            "The effects of camber and path curvature add on one side of the disc and oppose each other on the other side. The "
+            "cambers include zero, so the run also measures the turn-slip force."
+        ),
+        settles=("camber-reduction", "camber-misalignment"),
+        lines=_SMALL_CAMBERS,
+        disc_only=True,
+        radius=-1.0,
+    ),
+    Addition(
+        id="second-radius",
+        title=f"zeros both ways at {constants.PLAN_SECOND_RADIUS_FACTOR:g} of the path radius",
+        reason=(
+            "Turn slip grows with the path's curvature; load-cell offset, zeros of the axes and conicity do not depend on it."
+        ),
+        settles=("path-radius", "camber-reduction", "camber-misalignment"),
+        lines=_ZEROS,
+        disc_only=True,
+        radius=constants.PLAN_SECOND_RADIUS_FACTOR,
+    ),
+    Addition(
+        id="small-camber",
+        title="small cambers, closely spaced",
+        reason="The camber stiffness is the slope at zero; cambers up to 20 deg determine it.",
+        settles=("camber-stiffness",),
+        lines=_SMALL_CAMBERS,
+        disc_only=True,
+    ),
+    Addition(
+        id="camber-zero",
+        title="better zero of the camber axis",
+        reason=(
+            f"A camber error makes a force like turn slip; it is often the largest line in the budget of {_EPSILON}."
+        ),
+        settles=("camber-misalignment", "camber-reduction"),
+        loads="nominal",
+        disc_only=True,
+        declares="u_camber_alignment_deg",
+        declares_unit=CONDITIONS["gamma_deg"].unit,
+    ),
+    Addition(
+        id="loadcell-zero",
+        title="better zero of the side-force cell",
+        reason="The offset of an unloaded side-force cell adds to the turn-slip force.",
+        settles=("loadcell-offset-fy",),
+        loads="nominal",
+        disc_only=True,
+        declares="u_loadcell_offset_N",
+        declares_unit=CHANNELS["Fy"].unit,
+    ),
+    Addition(
+        id="sideslip-zero",
+        title="better zero of the sideslip axis",
+        reason="A geometric zero of the steering separates misalignment from ply-steer; no run on a single rig can.",
+        settles=("sideslip-misalignment", "ply-steer"),
+        loads="nominal",
+        disc_only=True,
+        declares="u_slip_alignment_N",
+        declares_unit=f"{CHANNELS['Fy'].unit} of {CHANNELS['Fy'].word}",
+    ),
+    Addition(
+        id="path-radius",
+        title="better path radius",
+        reason="The curvature of the path is known as well as its radius.",
+        settles=("path-radius",),
+        loads="nominal",
+        disc_only=True,
+        declares="u_path_radius",
+        declares_unit=DIRECT["R"].unit,
+    ),
+    Addition(
+        id="revolution",
+        title="one revolution of the disc",
+        reason=f"{_EPSILON} cannot be measured without an effective radius.",
+        settles=("camber-reduction",),
+        loads="nominal",
+        disc_only=True,
+        revolution=True,
+    ),
+    Addition(
+        id="backward-camber",
+        title="camber sweep rolled backwards",
+        reason=(
+            "Rolled backwards, the force of camber keeps its sign and the force of sideslip changes it. The run separates camber "
+            "from the sideslip of a camber axis that is not square to the steering axis."
+        ),
+        settles=("loadcell-offset-mz", "spin-trail-loss"),
+        loads="nominal",
+        lines=(Line("gamma", constants.PLAN_SWEEP_SHARES, direction=-1),),
+        disc_only=True,
+    ),
+    Addition(
+        id="flipped",
+        title="sideslip sweep with the tyre turned on its rim",
+        reason="Conicity changes sign with the tyre turned on its rim; every rig error keeps its sign.",
+        settles=("conicity", "crosstalk-fz-fy", "residual-torque"),
+        loads="nominal",
+        lines=(Line("alpha", constants.PLAN_FLIPPED_SHARES),),
+        mount=-1,
+    ),
+    Addition(
+        id="sideslip",
+        title="sideslip sweep",
+        reason="More points over sideslip, for cornering stiffness, peak and trail.",
+        settles=("curvature-asymmetry",),
+        lines=_SIDESLIP,
+    ),
+    Addition(
+        id="camber",
+        title="camber sweep",
+        reason="More points over camber, for the camber stiffness and the shape of the camber force.",
+        settles=("camber-stiffness",),
+        lines=_CAMBER,
+    ),
+    Addition(
+        id="coupled",
+        title="sideslip sweeps at camber of both signs",
+        reason="How camber changes the curves over sideslip is visible only where both angles act together.",
+        settles=(
+            "camber-grip",
+            "camber-thrust-curvature",
+            "camber-cornering-stiffness",
+            "spin-trail-loss",
+            "spin-torque",
+        ),
+        lines=tuple(Line("alpha", constants.PLAN_SWEEP_SHARES, camber_side=side) for side in (-1, 1)),
+        cambers=constants.PLAN_COUPLED_CAMBERS,
+    ),
+    Addition(
+        id="pressure",
+        title="sideslip and camber sweep at another pressure",
+        reason=(
+            "Two pressures show the effect of pressure. With two loads as well, they show whether it changes the stiffness "
+            "itself or the load at which the stiffness peaks."
+        ),
+        settles=("pressure",),
+        lines=(*_SIDESLIP, *_CAMBER),
+        pressures=constants.PLAN_NEW_PRESSURE_FACTORS,
+    ),
+    Addition(
+        id="load",
+        title="sideslip and camber sweep at a new load",
+        reason="The farther the loads are apart, the better the data determine what changes with load.",
+        settles=(
+            "load-grip",
+            "trail-load",
+            "camber-reduction-load",
+            "loadcell-offset-fy",
+            "steering-compliance",
+        ),
+        loads="new",
+        lines=(*_SIDESLIP, *_CAMBER),
+    ),
+)
+"""In the order in which they are tried; of equally good ones with as many points the first is taken."""
+BY_ID: Mapping[str, Addition] = {addition.id: addition for addition in ADDITIONS}
+
+
+def addition_named(word: str) -> Addition:
+    """The addition with this id.
+
+    Raises
+    ------
+    InputError
+        No addition has it.
+    """
+    if word not in BY_ID:
+        raise InputError(f'"{word}" is not a kind of run; the kinds are {", ".join(BY_ID)}')
+    return BY_ID[word]

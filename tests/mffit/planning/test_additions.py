@@ -1,0 +1,152 @@
+"""The set-points that a plan proposes are those of docs/plan.md, at the loads, paths and pressures of the programme."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from small_rigs import LOADS, disc, flat, simulated
+
+from mffit import config as configuration
+from mffit import points as ingestion
+from mffit.planning import ADDITIONS, candidates
+
+DOCS = Path(__file__).parents[3] / "docs" / "plan.md"
+R, R_E, SLIP, CAMBER, PRESSURE = 1.323, 0.3, 8.0, 45.0, 250e3
+ZEROS = [-1.0, -0.5, 0.0, 0.5, 1.0]
+SMALL = [-20, -15, -12.5, -10, -7.5, -5, -2.5, 0, 2.5, 5, 7.5, 10, 12.5, 15, 20]
+SHARES = np.array(
+    [-1, -0.75, -0.5, -0.375, -0.25, -0.125, -0.0625, 0, 0.0625, 0.125, 0.25, 0.375, 0.5, 0.75, 1]
+)
+FULL = [*(SLIP * SHARES), *np.zeros(15)]
+LEANED = [*np.zeros(15), *(CAMBER * SHARES)]
+
+
+@pytest.fixture(scope="module")
+def programme(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("programme")
+    simulated(disc(LOADS[:2], rolling_radius=[]), folder)
+    config = configuration.load(folder / "tyre.toml")
+    return config, ingestion.load(config)[0]
+
+
+@pytest.fixture(scope="module")
+def runs(programme):
+    found: dict[str, list] = {}
+    for run in candidates(*programme, R_E):
+        found.setdefault(run.addition.id, []).append(run)
+    return found
+
+
+@pytest.mark.parametrize(
+    ("kind", "alpha", "gamma", "path", "loads"),
+    [
+        ("zeros", ZEROS * 2, 0.0, R, (900, 1400)),
+        ("other-side", ZEROS * 2, 0.0, -R, (900, 1400)),
+        ("second-radius", ZEROS * 2, 0.0, 0.7 * R, (900, 1400)),
+        ("other-side-camber", 0.0, SMALL, -R, (900, 1400)),
+        ("small-camber", 0.0, SMALL, R, (900, 1400)),
+        ("backward-camber", 0.0, CAMBER * SHARES, R, (1400,)),
+        ("flipped", SLIP * SHARES[3:-3], 0.0, R, (1400,)),
+        ("sideslip", SLIP * SHARES, 0.0, R, (900, 1400)),
+        ("camber", 0.0, CAMBER * SHARES, R, (900, 1400)),
+        ("load", FULL, LEANED, R, (0.7 * 900, 1.3 * 1400)),
+    ],
+)
+def test_set_points(runs, kind, alpha, gamma, path, loads):
+    assert [run.load for run in runs[kind]] == pytest.approx(loads, abs=0.1)
+    for run in runs[kind]:
+        points = run.points
+        n = run.cost
+        assert np.degrees(points.alpha) == pytest.approx(np.broadcast_to(alpha, n))
+        assert np.degrees(points.gamma) == pytest.approx(np.broadcast_to(gamma, n))
+        assert points.phi_t == pytest.approx(np.full(n, -1.0 / path))
+        assert points.Fz == pytest.approx(np.full(n, run.load))
+        assert points.p == pytest.approx(np.full(n, PRESSURE))
+        assert points.mount.tolist() == [-1 if kind == "flipped" else 1] * n
+        backward = n if kind == "backward-camber" else 5 if len(np.atleast_1d(alpha)) == 10 else 0
+        assert points.direction.tolist() == [1] * (n - backward) + [-1] * backward
+        assert np.all(np.isnan(points.Fy))
+        assert np.all(np.isnan(points.Mz))
+        assert points.u_Fy == pytest.approx(np.full(n, 3.0))  # the typical one of the programme
+
+
+def test_coupled_sweeps_lean_to_both_sides_where_the_programme_has_none(runs):
+    """The programme has 20 deg at 1400 N."""
+    assert [(round(run.load), run.camber_deg) for run in runs["coupled"]] == [
+        (900, 10), (900, 20), (900, 35), (1400, 10), (1400, 35),
+    ]  # fmt: skip
+    for run in runs["coupled"]:
+        assert np.degrees(run.points.alpha) == pytest.approx([*(SLIP * SHARES)] * 2)
+        assert np.degrees(run.points.gamma) == pytest.approx([-run.camber_deg] * 15 + [run.camber_deg] * 15)
+
+
+def test_pressures_are_a_fifth_lower_and_higher(runs):
+    assert [round(run.pressure_kPa) for run in runs["pressure"]] == [200, 300, 200, 300]
+    for run in runs["pressure"]:
+        assert np.degrees(run.points.alpha) == pytest.approx(FULL)
+        assert np.degrees(run.points.gamma) == pytest.approx(LEANED)
+        assert run.points.p == pytest.approx(np.full(30, 1e3 * run.pressure_kPa))
+
+
+def test_a_number_of_the_rig_is_measured_three_times_better(runs, programme):
+    for addition in (addition for addition in ADDITIONS if addition.declares):
+        (run,) = runs[addition.id]
+        assert run.rig == {
+            addition.declares: pytest.approx(getattr(programme[0].rig, addition.declares) / 3.0)
+        }
+        assert run.cost == 0
+        assert getattr(run.declared(programme[0]).rig, addition.declares) == run.rig[addition.declares]
+
+
+def test_the_path_radius_from_tape_measures_has_a_propagated_uncertainty(programme):
+    config, points = programme
+    rig = config.rig.model_dump() | {"path_radius": None, "u_path_radius": None, "u_length": 0.001}
+    rig["path"] = {"shaft_diameter": 0.1, "L_B": 1.2, "L_C": 1.25, "L_D": 1.1}
+    measured = config.model_copy(update={"rig": type(config.rig).model_validate(rig)})
+    (run,) = (run for run in candidates(measured, points) if run.addition.id == "path-radius")
+    assert 3.0 * run.rig["u_path_radius"] == pytest.approx(0.0013, abs=0.0007)  # 1 mm each
+
+
+def test_a_disc_revolution_turns_the_wheel_by_the_ratio_of_the_radii(runs, programme):
+    """1.323 m over 0.3 m: four turns and 0.41 of a turn."""
+    (run,) = runs["revolution"]
+    table = run.revolution
+    assert (table.revolutions, table.angle_start_deg, table.angle_end_deg) == (4, 0.0, 147.6)
+    assert table.load_N == pytest.approx(1400.0, abs=0.1)
+    assert run.declared(programme[0]).rolling_radius == (table,)
+
+
+def test_a_known_rolling_radius_needs_no_revolution(programme, runs):
+    config, points = programme
+    known = runs["revolution"][0].declared(config)
+    assert "revolution" not in {run.addition.id for run in candidates(known, points, R_E)}
+
+
+def test_without_a_camber_sweep_small_cambers_are_proposed(programme):
+    config, points = programme
+    upright = points.select(np.abs(points.gamma) < np.radians(0.9))
+    (run, *_) = (run for run in candidates(config, upright) if run.addition.id == "camber")
+    assert np.degrees(run.points.gamma) == pytest.approx(SMALL)
+    cambers = {run.camber_deg for run in candidates(config, upright) if run.addition.id == "coupled"}
+    assert cambers == {10, 20}
+
+
+def test_a_flat_track_has_no_runs_about_turn_slip(tmp_path):
+    simulated(flat(), tmp_path)
+    config = configuration.load(tmp_path / "tyre.toml")
+    found = {run.addition.id for run in candidates(config, ingestion.load(config)[0])}
+    assert found == {"flipped", "sideslip", "camber", "coupled", "pressure", "load"}
+
+
+def test_runs_have_unique_names(programme):
+    names = [run.name for run in candidates(*programme, R_E)]
+    assert len(set(names)) == len(names)
+    assert {"zeros-900N", "coupled-1400N-35deg", "pressure-900N-300kPa"} <= set(names)
+
+
+def test_the_documentation_lists_every_kind():
+    text = DOCS.read_text(encoding="utf-8")
+    missing = [addition.id for addition in ADDITIONS if f"`{addition.id}`" not in text]
+    assert not missing, f"docs/plan.md lacks {', '.join(missing)}"

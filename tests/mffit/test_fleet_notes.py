@@ -1,0 +1,61 @@
+"""The notes of a fleet: when each is written, and with which numbers."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+
+import pytest
+
+from mffit.pipeline.fleet_notes import fleet_notes
+from mffit.pipeline.fleet_output import nominal_conditions, priors_of_fleet
+from mffit.rig_errors import WORDS
+
+
+def rig(F0_N=0.0):
+    """A joint estimate whose load-cell offset is declared as 0 +- 10 N."""
+    return SimpleNamespace(
+        rig={"F0_N": (F0_N, 1.0), "gamma_0_deg": (0.0, 0.1)}, declared={"F0_N": (0.0, 10.0), "gamma_0_deg": (0.0, 0.5)}
+    )  # fmt: skip
+
+
+def row(name="a", load=1400.0, **strain):
+    specimen = SimpleNamespace(name=name, tyre={"FNOMIN": load, "NOMPRES": 250e3})
+    return SimpleNamespace(specimen=specimen, strain=strain)
+
+
+def test_a_fleet_that_agrees_has_no_notes():
+    assert fleet_notes([row(F0_N=2.0, gamma_0_deg=-2.0), row("b")], [rig(F0_N=20.0)]) == []
+
+
+@pytest.mark.parametrize("sign", [-1.0, 1.0])
+def test_a_rig_far_from_its_declaration_is_reported_in_declared_deviations(sign):
+    (note,) = fleet_notes([row(), row("b")], [rig(F0_N=sign * 60.0)])
+    assert f"{WORDS['F0_N']}, 6 standard deviations" in note
+    assert "direct method" in note
+
+
+def test_a_tyre_on_a_changed_rig_is_named_with_its_worst_error():
+    (note,) = fleet_notes([row(F0_N=-5.0, gamma_0_deg=9.0), row("b", F0_N=1.0)], [rig()])
+    assert note.startswith(f"a: its own error of the rig, {WORDS['gamma_0_deg']}, lies 9 standard")
+
+
+def test_a_rig_far_from_its_declaration_does_not_blame_single_tyres():
+    (note,) = fleet_notes([row(F0_N=-9.0), row("b", F0_N=9.0)], [rig(F0_N=60.0)])
+    assert note.startswith("All tyres together")
+
+
+def test_several_rigs_are_reported_and_have_no_priors():
+    (note,) = fleet_notes([row(), row("b")], [rig(), None])
+    assert "2 different rigs" in note
+    assert "priors.json is not written" in note
+    assert priors_of_fleet(SimpleNamespace(rigs=(rig(), rig()), rows=(row(),))) is None
+
+
+def test_different_nominal_loads_are_reported_and_have_no_priors():
+    rows = [row(), row("b", load=1500.0)]
+    (note,) = fleet_notes(rows, [rig()])
+    assert "different nominal loads" in note
+    assert note.endswith("and priors.json is not written.")
+    assert fleet_notes(rows, [rig(), rig()])[-1].endswith("mixes them.")
+    assert priors_of_fleet(SimpleNamespace(rigs=(rig(),), rows=tuple(rows))) is None
+    assert nominal_conditions(rows[1].specimen.tyre) == (1500.0, 250e3)
