@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from mffit.config import Config
-from mffit.diagnosis.ties import TELLING
+from mffit.diagnosis.constants import SEPARATING_CHI2
 from mffit.effects import CATALOG, Effect
 from mffit.fit import FitResult
 from mffit.fit.posterior import COVERING, spread_through
@@ -168,7 +168,11 @@ class _Outlook:
     @property
     def told_below(self) -> float | None:
         """Uncertainty of a tie's effect from which on it is told apart; None for other goals."""
-        return None if self.effect is None else self.knowledge.usual_size(self.effect) / math.sqrt(TELLING)
+        return (
+            None
+            if self.effect is None
+            else self.knowledge.usual_size(self.effect) / math.sqrt(SEPARATING_CHI2)
+        )
 
     def epsilons(self, runs: Sequence[Run]) -> tuple[float | None, float | None]:
         """u(eps_gamma) of the direct method and of the joint fit."""

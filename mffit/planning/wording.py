@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from mffit.diagnosis.ties import TELLING
+from mffit.diagnosis.constants import SEPARATING_CHI2
 from mffit.effects import NAMES
 from mffit.planning.goals import BANDS, EPSILON, JOINT, TIE
 from mffit.planning.record import Identified, Plan, Step, Tie
@@ -209,7 +209,7 @@ def tie(pair: Tie) -> str:
     """Two effects that the sweeps do not tell apart."""
     return (
         f"Not told apart: {NAMES[pair.effect]} and {NAMES[pair.other]} (expected chi2 {pair.chi2:.1f} between them, "
-        f"{TELLING:g} would do)."
+        f"{SEPARATING_CHI2:g} would do)."
     )
 
 

@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 
 import tir
-from mffit.diagnosis.candidates import Problem
-from mffit.diagnosis.noise import noise_model
+from mffit.diagnosis.problem import DiagnosisProblem
+from mffit.diagnosis.stated import stated_noise
 from mffit.points import Points, make_points
 from mffit.rig import NO_FAULTS, RigFaults, Simulation
 
@@ -45,7 +45,6 @@ def read(
     return points.replace(Fy=Fy, Mz=Mz)
 
 
-def problem(points: Points, tyre: tir.Tyre = TYRE) -> Problem:
+def problem(points: Points, tyre: tir.Tyre = TYRE) -> DiagnosisProblem:
     """Those readings against the tyre, independent noise as stated."""
-    start = Simulation.of(tyre)
-    return Problem(points, start, noise_model(points, start, 0.0))
+    return DiagnosisProblem(points, Simulation.of(tyre), stated_noise(points))

@@ -13,6 +13,7 @@ from blind_set import draw_case, write_case
 from mffit import pipeline
 from mffit.diagnosis.confidence import tempered
 from mffit.diagnosis.misread import Misread
+from mffit.rounding import rounded
 
 
 @pytest.fixture(scope="module")
@@ -47,7 +48,7 @@ def test_numbers_were_and_are_and_say_what_to_do(campaign):
     assert row["was"] == 0.0
     assert row["value"] == pytest.approx(case.machine.gamma_0_deg, abs=4.0 * row["stderr"])
     # true camber = reading + gamma_0: at its zero the wheel leans by gamma_0 and has to be leaned back
-    assert f"lean the wheel by {-row['value']:+.3g} deg" in effect["to_do"]
+    assert f"lean the wheel by {rounded(-row['value'], row['stderr'], '+')} deg" in effect["to_do"]
     assert all(limit.ruled_out for limit in found.limits if limit.effect.id == "loadcell-gain")
 
 

@@ -42,7 +42,7 @@ def test_a_tyre_effect_becomes_a_coefficient_with_its_reason(stiffer_camber, tmp
     found.tyre.write(tmp_path / "after.tir")
     after = tir.read(tmp_path / "after.tir")
     assert after["PKY6"] == pytest.approx(value, rel=1e-6)
-    assert "camber-stiffness" in after.status["PKY6"]
+    assert "camber stiffness" in after.status["PKY6"]
     assert all(after[name] == case.given[name] for name in case.given.values if name != "PKY6")
 
 

@@ -9,11 +9,12 @@ import numpy as np
 import pytest
 from small_programme import TYRE, U_FY, U_MZ, problem, programme, read
 
-from mffit.diagnosis.candidates import Hypothesis, Problem
-from mffit.diagnosis.noise import noise_model
+from mffit.diagnosis.hypothesis import Hypothesis
+from mffit.diagnosis.problem import DiagnosisProblem
 from mffit.diagnosis.selection import Step, log_prior
+from mffit.diagnosis.stated import stated_noise
 from mffit.diagnosis.ties import Run, candidate_runs, separation
-from mffit.diagnosis.validate import gap, validate
+from mffit.diagnosis.validation import gap, validate
 from mffit.effects import CATALOG, Effect, Free
 from mffit.rig import RigFaults, Simulation
 
@@ -85,7 +86,7 @@ def test_turn_slip_is_switched_on():
     """A simulation without spin misses the turn-slip force of the disc; the switch is no number with an error."""
     points = read(programme())
     start = Simulation.of(TYRE, turn_slip=False)
-    found = Problem(points, start, noise_model(points, start, 0.0)).fit((BY_ID["turn-slip"],))
+    found = DiagnosisProblem(points, start, stated_noise(points)).fit((BY_ID["turn-slip"],))
     assert dict(found.numbers) == {"turn_slip": 1.0}
     assert found.chi2 == pytest.approx(0.0, abs=1e-9)
     assert not found.stderr

@@ -35,7 +35,9 @@ def test_without_pressures_or_temperature_the_report_says_what_cannot_be_seen(st
     case, config, points = stiffer_camber
     found = diagnose(points.select(points.p == 250e3).replace(T=np.nan), case.given, config)
     assert [f.effect.id for f in found.effects] == ["camber-stiffness"]
-    lacking = {note.needs: note.effects for note in found.notes if isinstance(note, NotVisible)}
+    lacking = {
+        note.needs: tuple(e.id for e in note.effects) for note in found.notes if isinstance(note, NotVisible)
+    }
     assert lacking[("pressures",)] == ("pressure",)
     assert lacking[("temperatures",)] == ("temperature", "temperature-grip", "temperature-stiffness")
     assert not {"pressure", "temperature"} & set(found.alternatives)
@@ -76,4 +78,8 @@ def test_forces_alone_are_enough_for_an_effect_on_forces(stiffer_camber):
     case, config, points = stiffer_camber
     found = diagnose(points.replace(Mz=np.nan, u_Mz=np.nan), case.given, config)
     assert [f.effect.id for f in found.effects] == ["camber-stiffness"]
-    assert any("residual-torque" in n.effects and "moment" in n.needs for n in found.notes)
+    assert any(
+        "residual-torque" in {e.id for e in n.effects} and "moment" in n.needs
+        for n in found.notes
+        if isinstance(n, NotVisible)
+    )

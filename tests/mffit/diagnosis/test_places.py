@@ -10,11 +10,13 @@ from small_programme import TYRE, U_FY, U_MZ, problem, programme, read
 
 from mffit import config
 from mffit.diagnosis import diagnose, where
-from mffit.diagnosis.engine import possible, refuse_strangers
-from mffit.diagnosis.needs import MET, missing
-from mffit.diagnosis.noise import Origin, Scatter, noise_model, with_uncertainties
+from mffit.diagnosis.bumps import bump_scan
+from mffit.diagnosis.inexact import declared
+from mffit.diagnosis.needs import MET, missing, possible
+from mffit.diagnosis.noise import Noise, Origin, Scatter
 from mffit.diagnosis.notes import HardlyThisTyre, NotVisible
-from mffit.diagnosis.unknown import bump_scan
+from mffit.diagnosis.stated import stated_noise, with_uncertainties
+from mffit.diagnosis.strangers import refuse_strangers
 from mffit.effects import CATALOG
 from mffit.errors import InputError
 from mffit.points import make_points
@@ -178,7 +180,7 @@ def test_what_cannot_be_seen_is_not_tried():
         {"camber-reduction", "temperature", "turn-slip", "pressure", "relaxation"}
     )
     assert {e.id for e in tried} >= {"ply-steer", "camber-stiffness", "loadcell-gain"}
-    lacking = {id for note in notes if isinstance(note, NotVisible) for id in note.effects}
+    lacking = {e.id for note in notes if isinstance(note, NotVisible) for e in note.effects}
     assert {e.id for e in CATALOG} - {e.id for e in tried} - {"turn-slip"} <= lacking | {"turn-slip"}
     assert all(missing(e, points) == () for e in tried)
 
@@ -194,7 +196,7 @@ def test_a_model_of_another_size_is_refused(factor, refused):
     points = read(programme())
     tyre = TYRE.replace(FNOMIN=float(np.median(points.Fz)) / factor)
     if refused:
-        with pytest.raises(InputError, match="order apart"):
+        with pytest.raises(InputError, match="differ by an order of magnitude"):
             refuse_strangers(points, tyre, Simulation.of(TYRE))
     else:
         refuse_strangers(points, tyre, Simulation.of(TYRE))
@@ -203,13 +205,13 @@ def test_a_model_of_another_size_is_refused(factor, refused):
 def test_twelve_points_are_the_fewest():
     points = read(programme())
     refuse_strangers(points.select(np.arange(12)), TYRE, Simulation.of(TYRE))
-    with pytest.raises(InputError, match="11 points are too few for a diagnosis: measure at least 12"):
+    with pytest.raises(InputError, match="11 points are too few for a diagnosis; measure at least 12"):
         refuse_strangers(points.select(np.arange(11)), TYRE, Simulation.of(TYRE))
 
 
 def test_moments_in_other_axes_are_refused_by_name():
     points = read(programme())
-    with pytest.raises(InputError, match="simulated and measured Mz run against each other"):
+    with pytest.raises(InputError, match="simulated and measured Mz have opposite signs"):
         refuse_strangers(points.replace(Mz=-points.Mz), TYRE, Simulation.of(TYRE))
 
 
@@ -242,6 +244,11 @@ def test_sweeps_too_short_for_a_scatter_get_a_hundredth_of_the_span():
     assert found.u_Fy == pytest.approx(0.01 * np.ptp(few.Fy - wrong.Fy))
 
 
+def inexact_noise(points, u_coefficients) -> Noise:
+    """The stated noise, and the readings' changes by inexact coefficients."""
+    return stated_noise(points).sharing(declared(TYRE, u_coefficients).columns(points, Simulation.of(TYRE)))
+
+
 def covariance(noise):
     """Of the used readings: what whitening makes one."""
     white = noise.whiten(np.eye(len(noise.u)))[:, noise.used]
@@ -251,8 +258,7 @@ def covariance(noise):
 def test_inexact_coefficients_correlate_the_readings():
     """cov = u^2 + sum over coefficients of (u_c c dF/dc)^2, with products between readings."""
     points = read(programme()).select(np.arange(0, 60, 4))
-    start = Simulation.of(TYRE)
-    exact, inexact = (noise_model(points, start, u) for u in (0.0, 0.02))
+    exact, inexact = stated_noise(points), inexact_noise(points, 0.02)
     up, down = (
         Simulation.of(TYRE.replace(PDY1=float(TYRE["PDY1"]) * f)).predict(points) for f in (1.001, 0.999)
     )
@@ -273,7 +279,7 @@ def test_part_of_the_readings_keeps_their_covariance():
     points = read(programme())
     nothing, all_of_it = np.zeros(2 * len(points)), np.ones(2 * len(points))
     remembered = {"Fy": Scatter(memory=0.8), "Mz": Scatter(memory=0.3)}
-    noise = noise_model(points, Simulation.of(TYRE), 0.02).scattering(remembered, nothing, all_of_it)
+    noise = inexact_noise(points, 0.02).scattering(remembered, nothing, all_of_it)
     keep = points.sweep != 1
     both = np.concatenate([keep, keep])
     whole, part = covariance(noise), covariance(noise.subset(keep))
@@ -282,7 +288,7 @@ def test_part_of_the_readings_keeps_their_covariance():
 
 def test_a_larger_scatter_leaves_the_model_as_inexact_as_it_was():
     points = read(programme())
-    noise = noise_model(points, Simulation.of(TYRE), 0.02)
+    noise = inexact_noise(points, 0.02)
     nothing, all_of_it = np.zeros(2 * len(points)), np.ones(2 * len(points))
     thrice = noise.scattering(dict.fromkeys(("Fy", "Mz"), Scatter(scale=3.0)), nothing, all_of_it)
     larger = covariance(thrice) - covariance(noise)

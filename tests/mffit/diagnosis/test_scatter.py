@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from mffit.diagnosis.noise import Noise, Scatter
-from mffit.diagnosis.scatter import Explained, learned, wild
+from mffit.diagnosis.scatter import Explained, learned
+from mffit.diagnosis.tails import outlying
 
 N, SWEEPS = 400, 20
 FORCE = 1500.0 * np.sin(np.linspace(0.0, 40.0, N))
@@ -62,7 +63,7 @@ def test_wild_readings_are_listed_and_lose_their_weight(rng):
     off = np.sort(rng.choice(N, 8, replace=False))
     noise[off] += rng.choice((-90.0, 90.0), 8)
     learned_noise = found(noise)
-    listed = wild(learned_noise)
+    listed = outlying(learned_noise)
     assert set(off) <= set(listed)
     assert len(listed) <= 10
     assert np.all(learned_noise.u[off] > 20.0)

@@ -7,8 +7,9 @@ import math
 import numpy as np
 import pytest
 
-from mffit.diagnosis.candidates import Hypothesis
-from mffit.diagnosis.selection import MARGIN, ids, price, select
+from mffit.diagnosis.constants import EVIDENCE_MARGIN
+from mffit.diagnosis.hypothesis import Hypothesis
+from mffit.diagnosis.selection import price, select
 from mffit.effects import Effect, Free
 
 MOST_FITS = 500
@@ -51,7 +52,7 @@ class Table:
 
 
 def chosen(problem, *effects):
-    return sorted(ids(select(problem, effects)[0]))
+    return sorted(select(problem, effects)[0].ids)
 
 
 @pytest.mark.parametrize("side", [-0.05, 0.05])
@@ -61,7 +62,7 @@ def test_an_effect_is_kept_for_the_price_for_which_it_is_taken(side):
     problem = Table(
         a=(100.0,), b=(20.0,), c=(0.0,), ab=(100.0 + b,), ac=(100.0,), bc=(20.0,), abc=(100.0 + b,)
     )
-    assert math.log(2.0) + MARGIN < b
+    assert math.log(2.0) + EVIDENCE_MARGIN < b
     assert chosen(problem, A, B, C) == (["a", "b"] if side > 0.0 else ["a"])
 
 

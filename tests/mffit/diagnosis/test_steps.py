@@ -6,20 +6,20 @@ import numpy as np
 import pytest
 
 from mffit.diagnosis import diagnose, gap, where
-from mffit.diagnosis.candidates import Problem
-from mffit.diagnosis.noise import noise_model
+from mffit.diagnosis.problem import DiagnosisProblem
 from mffit.diagnosis.selection import forward_step
+from mffit.diagnosis.stated import stated_noise
 from mffit.diagnosis.ties import Run, separation
-from mffit.diagnosis.validate import validate
+from mffit.diagnosis.validation import validate
 from mffit.effects import CATALOG
 from mffit.rig import RigFaults, Simulation
 
 BY_ID = {effect.id: effect for effect in CATALOG}
 
 
-def problem(case, points, u_coefficients=0.0):
+def problem(case, points):
     state = Simulation(dict(case.given.values), RigFaults(), True, False)
-    return Problem(points, state, noise_model(points, state, u_coefficients))
+    return DiagnosisProblem(points, state, stated_noise(points))
 
 
 def test_a_right_model_leaves_one_chi2_per_reading(right_model):
