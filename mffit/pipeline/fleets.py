@@ -16,7 +16,7 @@ from mffit.comparison import with_u
 from mffit.effects import FAULT_WORDS
 from mffit.errors import InputError
 from mffit.fit import priors
-from mffit.fleet import Fleet, Hierarchy, Row, Specimen, TyreEstimate
+from mffit.fleet import Fleet, Hierarchy, Row, Specimen, TyreEstimate, constants
 from mffit.output import output_folder, refuse_early
 from mffit.pipeline.members import numbers
 from mffit.progress import Progress, silent
@@ -125,7 +125,7 @@ def _notes(rows: Sequence[Row], rigs: Sequence[Hierarchy | None]) -> list[str]:
         for rig in rigs
         if rig is not None
         for name, (value, _) in rig.rig.items()
-        if abs(value - rig.declared[name][0]) > combining.FAR * rig.declared[name][1]
+        if abs(value - rig.declared[name][0]) > constants.RIG_FAR_FROM_DECLARED * rig.declared[name][1]
     }
     if len(rigs) > 1:
         out.append(
@@ -135,7 +135,7 @@ def _notes(rows: Sequence[Row], rigs: Sequence[Hierarchy | None]) -> list[str]:
     for row in rows:
         # Where all tyres leave the declaration, each that leans on it alone seems to differ from the others.
         worst = max(row.strain.keys() - far, key=lambda name: abs(row.strain[name]), default="")
-        if worst and abs(row.strain[worst]) > combining.STRAINED:
+        if worst and abs(row.strain[worst]) > constants.STRAINED_RIG:
             out.append(
                 f"{row.specimen.name}: its own error of the rig, {FAULT_WORDS[worst]}, lies {abs(row.strain[worst]):.0f} "
                 "standard deviations from that of the other tyres; if the rig was adjusted in between, it is another rig: "
@@ -172,7 +172,7 @@ def content_of(rig: Hierarchy, tyre: Tyre, tyres: int) -> dict | None:
     known = {
         name: priors.Prior(p.mean, math.hypot(p.u_mean, p.scatter))
         for name, p in rig.population.items()
-        if p.tyres >= combining.ENOUGH
+        if p.tyres >= constants.FEWEST_TYRES_FOR_SCATTER
     }
     load, pressure = _nominal(tyre)
     return priors.fleet_content({"FNOMIN": load, "NOMPRES": pressure}, tyres, known) if known else None

@@ -8,7 +8,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from mffit.effects import FAULT_WORDS
-from mffit.fleet import ENOUGH, EPSILON, Fleet
+from mffit.fleet import EPSILON, Fleet
+from mffit.fleet.constants import FEWEST_TYRES_FOR_SCATTER
 from mffit.quantities import CHANNELS, COMPARED, DIRECT
 from mffit.report import page
 from mffit.rig import MEANINGS, UNITS
@@ -47,7 +48,7 @@ def write_fleet(found: Fleet, folder: Path, *, priors: bool) -> None:
         units=UNITS,
         meanings=MEANINGS,
         words=FAULT_WORDS,
-        enough=ENOUGH,
+        enough=FEWEST_TYRES_FOR_SCATTER,
         spin=SPIN,
         priors=priors,
         pictures=page.draw(folder, figures),

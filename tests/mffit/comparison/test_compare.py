@@ -55,7 +55,7 @@ def test_a_changed_coefficient_shows_where_it_acts(stiffer):
 
 
 def test_the_covariance_of_another_file_is_said_to_be_one():
-    plain = Subject("a-normal.tir", truth(), False, told_of="a.tir")
+    plain = Subject("a-normal.tir", truth(), False, covariance_of="a.tir")
     (note,) = between(Subject("a.tir", truth(), False, ("PKY1",), np.eye(1)), plain).notes
     assert "a-normal.tir" in note
     assert "belongs to a.tir" in note
