@@ -82,13 +82,14 @@ def _shapes(points: Points) -> np.ndarray:
         for i, j in itertools.product(range(a.shape[1]), range(g.shape[1]))
         if i + j <= most
     }
-    columns = {(*key, 0): value for key, value in angles.items()}
-    for number, along in enumerate(_conditions(points), start=1):
+    columns = [(i + j, shape) for (i, j), shape in angles.items()]
+    for along in _conditions(points):
         for k in range(1, along.shape[1]):
             for (i, j), shape in angles.items():
+                # Higher orders, which only time has, are combined with the simplest shapes alone.
                 if i + j + min(k, 2) <= constants.MOST_CROSS_ORDER or (k > 2 and i + j <= 1):
-                    columns[i, j, 10 * number + k] = shape * along[:, k]
-    scaled = [value / (1.0 + i + j + key % 10) for (i, j, key), value in columns.items() if np.any(value)]
+                    columns.append((i + j + k, shape * along[:, k]))
+    scaled = [shape / (1.0 + order) for order, shape in columns if np.any(shape)]
     return np.column_stack(scaled)
 
 
