@@ -168,7 +168,7 @@ def _direct(measured: Sequence[LoadResult], simulated: Sequence[LoadResult]) -> 
         Difference(key=KEYS[key], load=data.load, first=a.value, second=b.value, u_second=b.u)
         for data in measured
         for file in simulated
-        if abs(file.load / data.load - 1.0) < constants.SAME_LOAD
+        if abs(file.load / data.load - 1.0) < constants.COMPARED_SAME_LOAD
         for key in DIRECT_ROWS
         if (a := getattr(file, key)) is not None and (b := getattr(data, key)) is not None
     ]

@@ -111,7 +111,7 @@ def _outliers(points: Points, after: np.ndarray, noise: Noise) -> tuple[Outlier,
     usual = noise.u * np.sqrt(noise.weight)
     off = np.abs(np.concatenate([points.Fy, points.Mz]) - after)
     used = usual.copy()
-    used[[i for i in outlying(noise) if off[i] > constants.OUTLIER_RATIO * usual[i]]] = np.inf
+    used[[i for i in outlying(noise) if off[i] > constants.DIAGNOSED_OUTLIER_RATIO * usual[i]]] = np.inf
     Fy, Mz = zip(np.split(usual, 2), np.split(used, 2), np.split(after, 2), strict=True)
     return outliers(points, *((a, b) for a, b in zip(Fy, Mz, strict=True)))
 

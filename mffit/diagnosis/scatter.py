@@ -93,14 +93,14 @@ def _of_channel(channel: Channel, runs: np.ndarray, start: Scatter) -> tuple[Sca
 def _weighted(channel: Channel, parts: Parts) -> tuple[Channel, Parts, float]:
     """The channel with its weights, and the parts and degrees of freedom that were found in turn with them."""
     tails = math.inf
-    for _ in range(constants.MOST_WEIGHT_ROUNDS):
+    for _ in range(constants.MOST_READING_WEIGHT_ROUNDS):
         parts = _accepted(channel, parts)
         z = channel.standardised(parts)
         before, (tails, width) = tails, heavy_tails(z)
         weight = weights(z, tails, width)
         change = np.max(np.abs(np.sqrt(weight) - np.sqrt(channel.weight)))
         channel = replace(channel, weight=weight)
-        if change < constants.WEIGHT_SETTLED or (math.isinf(tails) and math.isinf(before)):
+        if change < constants.READING_WEIGHT_SETTLED or (math.isinf(tails) and math.isinf(before)):
             break
     return channel, parts, tails
 

@@ -50,7 +50,7 @@ def _channel(
             f"all {column} are zero; give real standard uncertainties, or leave the column out", column=column
         )
     if np.all(known[measured]):
-        floor = constants.LEAST_STATED_SHARE * np.median(stated[known][stated[known] > 0])
+        floor = constants.LEAST_STATED_NOISE_SHARE * np.median(stated[known][stated[known] > 0])
         return np.where(measured, np.maximum(stated, floor), np.inf), Origin.STATED
     u = np.where(known, stated, neighbour_noise(points, values - simulated))
     return np.where(measured, u, np.inf), Origin.SCATTER

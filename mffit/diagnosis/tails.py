@@ -42,5 +42,5 @@ def outlying(noise: Noise) -> np.ndarray:
     tails = np.repeat([noise.scatter[name].tails for name in CHANNELS], half)
     heavy = np.isfinite(tails) & np.isfinite(noise.stated)
     known = np.where(heavy, tails, 1.0)
-    lost = noise.weight < (known + 1.0) / (known + constants.OUTLIER_RATIO**2)
+    lost = noise.weight < (known + 1.0) / (known + constants.DIAGNOSED_OUTLIER_RATIO**2)
     return np.flatnonzero(heavy & lost)

@@ -68,13 +68,13 @@ def candidate_runs(points: Points) -> tuple[tuple[Run, Points], ...]:
     main = points.select(main_pressure(points) & (points.direction > 0) & (points.mount > 0))
     load = float(np.median(main.Fz))
     loads = np.unique(np.round(main.Fz, -1))
-    lower, higher = np.array(constants.RUN_OTHER_LOADS) * (loads.min(), loads.max())
+    lower, higher = np.array(constants.TIE_RUN_OTHER_LOADS) * (loads.min(), loads.max())
     reach = float(np.max(np.abs(main.alpha)))
-    slip = _line(main, load, alpha=np.linspace(-reach, reach, constants.RUN_SIDESLIP_POINTS))
-    camber = _line(main, load, gamma=np.radians(constants.RUN_CAMBERS))
-    warmer = np.nan_to_num(slip.T, nan=constants.RUN_UNKNOWN_TEMPERATURE) + constants.RUN_WARMER
+    slip = _line(main, load, alpha=np.linspace(-reach, reach, constants.TIE_RUN_SIDESLIP_POINTS))
+    camber = _line(main, load, gamma=np.radians(constants.TIE_RUN_CAMBERS))
+    warmer = np.nan_to_num(slip.T, nan=constants.TIE_RUN_UNKNOWN_TEMPERATURE) + constants.TIE_RUN_WARMER
     end = float(np.max(np.nan_to_num(points.t)))
-    later = constants.RUN_LATER_SHARE * end + constants.RUN_LATER
+    later = constants.TIE_RUN_LATER_SHARE * end + constants.TIE_RUN_LATER
     runs = [
         (Run.BACKWARD, slip.replace(direction=-1)),
         (Run.TURNED_ON_RIM, slip.replace(mount=-1)),
@@ -82,16 +82,16 @@ def candidate_runs(points: Points) -> tuple[tuple[Run, Points], ...]:
         (Run.OTHER_LOAD, slip.replace(Fz=lower)),
         (Run.CAMBER, camber),
         (Run.BACKWARD_CAMBER, camber.replace(direction=-1)),
-        (Run.LEANED, slip.replace(gamma=constants.RUN_LEANED.rad)),
-        (Run.LOW_PRESSURE, slip.replace(p=constants.RUN_LOW_PRESSURE * slip.p)),
-        (Run.FAST, slip.replace(V=constants.RUN_FAST * slip.V)),
+        (Run.LEANED, slip.replace(gamma=constants.TIE_RUN_LEANED.rad)),
+        (Run.LOW_PRESSURE, slip.replace(p=constants.TIE_RUN_LOW_PRESSURE * slip.p)),
+        (Run.FAST, slip.replace(V=constants.TIE_RUN_FAST * slip.V)),
         (Run.WARM, slip.replace(T=warmer)),
         (Run.LATE, slip.replace(t=later)),
     ]
     if np.any(points.phi_t):
         runs += [
             (Run.STRAIGHT, slip.replace(phi_t=0.0)),
-            (Run.WIDE, slip.replace(phi_t=slip.phi_t / constants.RUN_WIDE)),
+            (Run.WIDE, slip.replace(phi_t=slip.phi_t / constants.TIE_RUN_WIDE)),
             (Run.STRAIGHT_CAMBER, camber.replace(phi_t=0.0)),
         ]
     return tuple(runs)

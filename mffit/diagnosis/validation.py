@@ -92,7 +92,9 @@ def validate(
 def _folds(sweep: np.ndarray) -> list[np.ndarray]:
     """Groups of the sweeps of points (n,)."""
     sweeps, many = np.unique(sweep), len(sweep) >= constants.MANY_POINTS_TO_VALIDATE
-    count = min(constants.FOLDS_OF_MANY_POINTS if many else constants.MOST_FOLDS, len(sweeps))
+    count = min(
+        constants.VALIDATION_FOLDS_OF_MANY_POINTS if many else constants.MOST_VALIDATION_FOLDS, len(sweeps)
+    )
     return [sweeps[k::count] for k in range(count)]
 
 

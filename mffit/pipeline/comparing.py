@@ -103,7 +103,9 @@ def _subject(path: Path) -> Subject:
     rig = written.get("rig")
     if posterior is None:
         main = str(written.get("tir", ""))
-        return Subject(path.name, tyre, _turn_slip(tyre), covariance_of="" if main == path.name else main, rig=rig)
+        return Subject(
+            path.name, tyre, _turn_slip(tyre), covariance_of="" if main == path.name else main, rig=rig
+        )
     return Subject(path.name, tyre, _turn_slip(tyre), *_known(posterior), rig=rig)
 
 

@@ -37,7 +37,7 @@ def programme(**changes: Any) -> Points:
 def read(
     points: Points, tyre: tir.Tyre = TYRE, faults: RigFaults = NO_FAULTS, noise: int | None = None
 ) -> Points:
-    """The points with the readings of a tyre on a rig; ``noise`` is the seed of theirs."""
+    """The points with the readings of a tyre on a rig; ``noise`` is the seed of their noise."""
     Fy, Mz = Simulation.of(tyre, faults).readings(points)
     if noise is not None:
         drawn = np.random.default_rng(noise).standard_normal((2, len(points)))
@@ -46,5 +46,5 @@ def read(
 
 
 def problem(points: Points, tyre: tir.Tyre = TYRE) -> DiagnosisProblem:
-    """Those readings against the tyre, independent noise as stated."""
+    """The readings against the tyre, with independent noise as stated."""
     return DiagnosisProblem(points, Simulation.of(tyre), stated_noise(points))

@@ -1,4 +1,4 @@
-"""One file may hold a whole programme: conditions are cut where something that was held steps."""
+"""Sweeps of a file with a whole programme are cut where a held condition steps."""
 
 from __future__ import annotations
 
@@ -68,7 +68,7 @@ def test_samples_between_two_loads_do_not_join_their_conditions():
     assert len(cut.sweep_names) == 2
 
 
-def test_a_bump_is_looked_for_within_each_load_despite_samples_between_them():
+def test_bumps_are_sought_within_each_load_despite_samples_between_them():
     Fz = np.concatenate([np.full(200, 900.0), np.linspace(900.0, 1500.0, 12), np.full(200, 1500.0)])
     masks = _parts(make_points(0.0, 0.0, Fz, p=250e3, V=6.0, phi_t=-0.76))
     loads = [(region["Fz_N"], mask.sum()) for region, mask in masks if "Fz_N" in region]

@@ -1,4 +1,4 @@
-"""What was found is added: as coefficients, as corrected readings, as a term beside the file."""
+"""Effects that were found become coefficients, corrected readings, or terms beside the file."""
 
 from __future__ import annotations
 
@@ -58,7 +58,7 @@ def test_corrections_undo_the_faults(right_model):
     assert corrected.phi_t == pytest.approx(points.phi_t)
 
 
-def test_a_term_of_the_environment_stands_beside_the_file(tmp_path):
+def test_an_environment_effect_leaves_the_file_unchanged(tmp_path):
     case = draw_case("warm", ("temperature",), "large", 21)
     config, points = loaded(case, tmp_path)
     found = diagnose(points, case.given, config)
@@ -103,7 +103,7 @@ def _with_misalignment(case, alpha_0_deg):
 
 
 def _true_eps_gamma(case):
-    """Of (17): slopes at zero with turn slip acting, at the nominal load."""
+    """eps_gamma by (17) from slopes at zero at the nominal load."""
     load, step = float(case.true["FNOMIN"]), 1e-6
     forces = [
         [float(case.true(load, gamma=g, phi_t=p, Vx=6.0, turn_slip=True).Fy) for g, p in ((s, 0.0), (0.0, s))]

@@ -1,4 +1,4 @@
-"""A diagnosis holds facts; its sentences say them, and nothing that is not so."""
+"""The sentences about a diagnosis state its facts and nothing else."""
 
 from __future__ import annotations
 
@@ -44,24 +44,24 @@ def camber(stiffer_camber) -> Diagnosis:
     return diagnose(points, case.given, config)
 
 
-def test_a_misfit_without_a_place_is_not_given_one(nothing):
-    """The best of the bumps that were tried, but not found, was named as the place."""
+def test_a_misfit_without_a_bump_has_no_place(nothing):
+    """The best bump that was tried was once named, although none was found."""
     said = wording.headline(replace(nothing, unexplained=True))
     assert "no effect of the library explains it" in said
     assert "around" not in said
 
 
-def test_a_rest_without_a_place_is_not_given_one(camber):
+def test_an_unexplained_rest_without_a_bump_has_no_place(camber):
     said = wording.headline(replace(camber, unexplained=True, bump=None))
     assert said.endswith("; the rest stays unexplained.")
 
 
-def test_structure_is_given_its_size_and_place(nothing):
+def test_a_bump_is_stated_with_its_size_and_place(nothing):
     said = wording.headline(replace(nothing, unexplained=True, bump=BUMP))
     assert "Mz is off by -6.2 Nm around sideslip -4 to -2.5 deg and load 1400 to 1600 N." in said
 
 
-def test_an_effect_is_named_with_what_it_is_tied_with(camber):
+def test_an_effect_is_named_with_its_ties(camber):
     assert camber.headline.startswith("The missing effect is camber stiffness: with it the rms misfit is")
     tied = replace(camber.effects[0], tied=(BY_ID["path-radius"],))
     assert tied.tied_with == ("path-radius",)
@@ -69,7 +69,7 @@ def test_an_effect_is_named_with_what_it_is_tied_with(camber):
     assert "camber stiffness (or path radius, not separable here)" in said
 
 
-def test_what_is_not_likely_is_not_stated_and_a_tie_counts_as_one(camber):
+def test_an_unlikely_effect_is_called_uncertain_and_a_tie_counts_as_one(camber):
     found = replace(camber.effects[0], confidence=0.4, tied=(BY_ID["path-radius"],))
     alone = replace(camber, effects=(found,), alternatives={})
     assert wording.headline(alone).startswith(
@@ -90,12 +90,12 @@ def test_what_is_not_likely_is_not_stated_and_a_tie_counts_as_one(camber):
         ({}, []),
     ],
 )
-def test_a_place_is_said_in_words(region, words):
+def test_a_region_in_words(region, words):
     assert wording.place(region) == words
 
 
 @pytest.mark.parametrize("run", Run)
-def test_every_run_has_words_and_only_a_telling_one_is_recommended(run):
+def test_every_run_has_words_and_only_a_separating_one_is_recommended(run):
     assert wording.separation(Separation(run, 1500.0, 40.0)).endswith("(expected chi2 40)")
     assert wording.separation(Separation(run, 1500.0, 2.0)).startswith("none of the usual runs")
 
@@ -164,6 +164,6 @@ def test_the_noise_is_stated_beside_the_declared_one():
     assert Mz == "The noise of Mz is 0.6 Nm (stated 0.6 Nm)."
 
 
-def test_a_wild_reading_is_named_by_its_line():
+def test_an_outlier_is_named_by_its_line():
     said = wording.outlier(Outlier("sideslip_900.csv", 14, "sideslip_900", 3, "Fy", 109.0, 200.0, 15.2))
     assert said == "sideslip_900, line 14: Fy off by -91 N, 15 times its noise"
