@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from enum import Enum, auto
+from enum import Enum
 
 import numpy as np
 
@@ -11,23 +11,11 @@ from mffit.diagnosis import constants
 from mffit.diagnosis.hypothesis import Hypothesis
 from mffit.points import Points, main_pressure
 
-
-class Run(Enum):
-    """A run that could be added to the programme."""
-
-    BACKWARD = auto()
-    TURNED_ON_RIM = auto()
-    OTHER_LOAD = auto()
-    CAMBER = auto()
-    BACKWARD_CAMBER = auto()
-    LEANED = auto()
-    LOW_PRESSURE = auto()
-    FAST = auto()
-    WARM = auto()
-    LATE = auto()
-    STRAIGHT = auto()
-    WIDE = auto()
-    STRAIGHT_CAMBER = auto()
+Run = Enum(
+    "Run",
+    "BACKWARD TURNED_ON_RIM OTHER_LOAD CAMBER BACKWARD_CAMBER LEANED LOW_PRESSURE FAST WARM LATE STRAIGHT WIDE STRAIGHT_CAMBER",
+)
+"""A run that could be added to the programme."""
 
 
 @dataclass(frozen=True, slots=True)
