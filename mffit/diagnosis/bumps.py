@@ -59,7 +59,7 @@ class BumpScan:
         Parameters
         ----------
         hypothesis : with the residuals that the bump has to explain
-        limit : standard deviations at which residuals are clipped, so that an outlier is no bump
+        limit : standard deviations at which residuals are clipped, so that an outlier does not make a bump
         """
         axes = hypothesis.axes
         residual = np.clip(hypothesis.residual, -limit, limit)

@@ -51,7 +51,7 @@ def diagnose(
     rig : known rig errors; default the declared play alone
     effects : the library to choose from; add your own records to the catalogue's
     coefficients : prior of the model's coefficients; default from ``model.u_coefficients``
-    seen : whether the model was fitted to these very points
+    seen : whether the model was fitted to these points
     progress : called with a sentence before each step
 
     Returns

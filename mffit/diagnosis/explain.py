@@ -59,9 +59,8 @@ def explain(
         columns = inexact.columns(points, start if found is None else found.refined.state)
         problem = DiagnosisProblem(points, at, noise.sharing(columns), declared, offset)
         last = found
-        if (
-            found is None and inexact
-        ):  # coefficients linearised at the start look like structure without a name
+        # Coefficients linearised at the start look like structure without a name: it competes from the second round on.
+        if found is None and inexact:
             found = selected(problem, candidates, basis)
         else:
             found = competed(problem, columns, candidates, basis)

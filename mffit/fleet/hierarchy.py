@@ -57,7 +57,7 @@ class Hierarchy:
 
     tyres: tuple[TyreEstimate, ...]  #: in the order given
     rig: Mapping[str, tuple[float, float]]  #: rig error -> (value, standard uncertainty)
-    declared: Mapping[str, tuple[float, float]]  #: the same as known beforehand
+    declared: Mapping[str, tuple[float, float]]  #: the same as declared
     population: Mapping[str, Population]  #: of coefficients that at least two tyres inform
 
 
