@@ -1,4 +1,4 @@
-"""Two property files, a file and measured points, or two builds, side by side."""
+"""Comparison of two property files, of a file with measured points, or of two builds."""
 
 from mffit.comparison.characteristics import characteristics, with_u
 from mffit.comparison.compare import against_points, between

@@ -1,4 +1,4 @@
-"""What an engineer compares first of two tyres."""
+"""The numbers by which engineers compare two tyres first: stiffnesses, peaks, trail, radius."""
 
 from __future__ import annotations
 
@@ -8,35 +8,31 @@ from typing import Any
 
 import numpy as np
 
+from mffit.comparison import constants
 from tir import Tyre
 from tir.parameters import BY_NAME
-
-STEP = 0.05
-"""Step of a coefficient for a slope, in its standard errors, of which a tenth of what is plausible is the most."""
-SMALL = 1e-3
-"""Angle of a slope [rad], and curvature [1/m]."""
 
 
 def characteristics(
     tyre: Tyre, load: float, *, turn_slip: bool, pressure: float | None = None, reach: float | None = None
 ) -> dict[str, float]:
-    """The numbers of ``mffit.quantities.CHARACTERISTICS`` at a load [N] on a straight path; SI units, ISO signs.
+    """The numbers of ``mffit.quantities.CHARACTERISTICS`` on a straight path; SI units, ISO signs.
 
     Parameters
     ----------
     tyre : the file
     load : [N]
-    turn_slip : whether spin acts; without it there is no turn-slip stiffness
+    turn_slip : whether the simulation computes spin; without it there is no turn-slip stiffness
     pressure : [Pa]; default the file's
-    reach : sideslip up to which peaks are looked for [rad]; default the file's ALPMAX
+    reach : sideslip up to which peaks are sought [rad]; default the file's ALPMAX
     """
     p: Any = {} if pressure is None else {"p": pressure}
-    small = np.array([-SMALL, SMALL])
-    slip = np.linspace(0.0, float(tyre["ALPMAX"]) if reach is None else reach, 101)
-    by_slip = tyre(load, alpha=small, turn_slip=turn_slip, **p)
-    by_camber = tyre(load, gamma=small, turn_slip=turn_slip, **p)
+    slip = np.linspace(0.0, float(tyre["ALPMAX"]) if reach is None else reach, constants.COMPARED_PEAK_POINTS)
+    angles = np.array([-1.0, 1.0]) * constants.COMPARED_SLOPE_ANGLE
+    by_slip = tyre(load, alpha=angles, turn_slip=turn_slip, **p)
+    by_camber = tyre(load, gamma=angles, turn_slip=turn_slip, **p)
     curve = tyre(load, alpha=slip, turn_slip=turn_slip, **p)
-    step = 2.0 * SMALL
+    step = 2.0 * constants.COMPARED_SLOPE_ANGLE
     C_alpha = float(np.diff(by_slip.Fy)[0] / step)
     C_moment = float(np.diff(by_slip.Mz)[0] / step)
     dfz = load / (float(tyre["FNOMIN"]) * float(tyre["LFZO"])) - 1.0
@@ -51,34 +47,35 @@ def characteristics(
         "r_e_m": float(tyre.state(load, **p).Re),
     }
     if turn_slip:
-        curved = tyre(load, phi_t=small, **p)
-        out["C_phit_Nm"] = float(np.diff(curved.Fy)[0] / step)
+        curved = tyre(load, phi_t=np.array([-1.0, 1.0]) * constants.COMPARED_SLOPE_CURVATURE, **p)
+        out["C_phit_Nm"] = float(np.diff(curved.Fy)[0] / (2.0 * constants.COMPARED_SLOPE_CURVATURE))
     return out
 
 
 def with_u(
     tyre: Tyre, names: Sequence[str], covariance: np.ndarray | None, of: Callable[[Tyre], Mapping[str, float]]
 ) -> tuple[Mapping[str, float], dict[str, float]]:
-    """Numbers of a tyre, and their standard uncertainties to first order.
+    """Numbers of a tyre and their standard uncertainties, to first order.
 
     Parameters
     ----------
     tyre : the file
     names : coefficients (k,) whose covariance is known
-    covariance : (k, k); None if nothing is known
-    of : gives the numbers of a tyre
+    covariance : (k, k); None if it is unknown
+    of : function that computes the numbers of a tyre
 
     Returns
     -------
     numbers, uncertainties
-        The latter are empty without a covariance, and lack what is not finite.
+        Uncertainties are empty without a covariance; infinite ones are left out.
     """
     here = of(tyre)
     if covariance is None:
         return here, {}
     slopes = {key: np.zeros(len(names)) for key in here}
     for k, (name, u) in enumerate(zip(names, np.sqrt(np.maximum(np.diag(covariance), 0.0)), strict=True)):
-        step = STEP * min(float(u), 0.1 * BY_NAME[name].width)
+        widest = constants.COMPARED_LARGEST_STEP * BY_NAME[name].width
+        step = constants.COMPARED_COEFFICIENT_STEP * min(float(u), widest)
         if step > 0.0:
             there = of(tyre.replace(**{name: float(tyre[name]) + step}))
             for key, value in here.items():

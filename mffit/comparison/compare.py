@@ -1,12 +1,13 @@
-"""Comparing: numbers, curves and coefficients of two files, or a file with the points of a rig."""
+"""Two files, or a file and the points of a rig: numbers, curves and coefficients compared."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from functools import partial
 
 import numpy as np
 
+from mffit.comparison import constants, wording
 from mffit.comparison.characteristics import characteristics, with_u
 from mffit.comparison.record import Comparison, CurveGap, Difference, Subject, SweepGap, ranked
 from mffit.fit import Posterior
@@ -17,9 +18,6 @@ from mffit.rig import Simulation
 from mffit.scatter import rms
 from tir.parameters import TABLE
 
-LOADS = (0.6, 1.0, 1.4)
-"""Loads of the numbers and curves over the nominal one, as far as both files' ranges go."""
-STEPS = 61
 DIRECT_ROWS = ("epsilon_gamma", "C_phit", "C_gamma", "C_alpha", "F_phit")
 
 
@@ -28,55 +26,76 @@ def between(first: Subject, second: Subject) -> Comparison:
 
     Parameters
     ----------
-    first, second : with the covariance of their numbers where a build says it; both are taken as independent
+    first, second : with the covariance of their numbers if a build states it; both are treated as independent
 
     Returns
     -------
     Comparison
-        On the ranges that both files allow, on a straight path, at the first one's nominal pressure.
+        Within the ranges of both files, on a straight path, at the nominal pressure of the first.
     """
-    a, b = first.tyre, second.tyre
-    nominal = float(a["FNOMIN"])
-    lower, upper = max(float(t["FZMIN"]) for t in (a, b)), min(float(t["FZMAX"]) for t in (a, b))
-    loads = list(dict.fromkeys(float(np.clip(share * nominal, lower, upper)) for share in LOADS))
-    pressure = float(a["NOMPRES"])
-    reach = {key: min(float(t[key]) for t in (a, b)) for key in ("ALPMAX", "CAMMAX")}
-    numbers = []
-    for load in loads:
-        sides = [
-            with_u(
-                side.tyre, side.names, side.covariance,
-                partial(characteristics, load=load, turn_slip=side.turn_slip, pressure=pressure, reach=reach["ALPMAX"]),
-            )
-            for side in (first, second)
-        ]  # fmt: skip
-        for key in sides[0][0]:
-            if key in sides[1][0]:
-                a_value, b_value = (side[0][key] for side in sides)
-                u_a, u_b = (side[1].get(key) for side in sides)
-                numbers.append(Difference(key, load, a_value, b_value, u_a, u_b))
+    tyres = (first.tyre, second.tyre)
+    lower, upper = max(float(t["FZMIN"]) for t in tyres), min(float(t["FZMAX"]) for t in tyres)
+    nominal, pressure = float(first.tyre["FNOMIN"]), float(first.tyre["NOMPRES"])
+    within = (float(np.clip(share * nominal, lower, upper)) for share in constants.COMPARED_LOADS)
+    loads = list(dict.fromkeys(within))
+    reach = {key: min(float(t[key]) for t in tyres) for key in ("ALPMAX", "CAMMAX")}
+    numbers = [row for load in loads for row in _numbers(first, second, load, pressure, reach["ALPMAX"])]
     curves = [gap for load in loads for gap in _curves(first, second, load, pressure, reach)]
     return Comparison(
-        first.name, second.name, ranked(numbers), _coefficients(first, second), tuple(curves), (), _notes(first, second)
-    )  # fmt: skip
+        first=first.name,
+        second=second.name,
+        numbers=ranked(numbers),
+        coefficients=_coefficients(first, second),
+        curves=tuple(curves),
+        sweeps=(),
+        notes=wording.notes_between(first, second),
+    )
+
+
+def _numbers(
+    first: Subject, second: Subject, load: float, pressure: float, reach: float
+) -> Iterator[Difference]:
+    """The numbers that both files have at a load [N] and a pressure [Pa], peaks sought up to ``reach`` [rad]."""
+    (a, u_a), (b, u_b) = (
+        with_u(
+            side.tyre,
+            side.names,
+            side.covariance,
+            partial(characteristics, load=load, turn_slip=side.turn_slip, pressure=pressure, reach=reach),
+        )
+        for side in (first, second)
+    )
+    for key in a:
+        if key in b:
+            yield Difference(
+                key=key, load=load, first=a[key], second=b[key], u_first=u_a.get(key), u_second=u_b.get(key)
+            )
 
 
 def _curves(
     first: Subject, second: Subject, load: float, pressure: float, reach: Mapping[str, float]
-) -> list[CurveGap]:
-    out = []
+) -> Iterator[CurveGap]:
+    """The curves of every channel over sideslip and over camber."""
     for over, end in (("alpha", "ALPMAX"), ("gamma", "CAMMAX")):
-        x = np.linspace(-reach[end], reach[end], STEPS)
+        x = np.linspace(-reach[end], reach[end], constants.COMPARED_POINTS)
         angles = (x, 0.0 * x) if over == "alpha" else (0.0 * x, x)
         where = make_points(*angles, load, p=pressure, V=float(first.tyre["LONGVL"]), phi_t=0.0)
-        sides = [_curve(side, where) for side in (first, second)]
+        (a, half_a), (b, half_b) = (_curve(side, where) for side in (first, second))
         for k, channel in enumerate(CHANNELS):
-            values, halves = [side[0][k] for side in sides], [side[1] and side[1][k] for side in sides]
-            out.append(CurveGap(channel, over, load, x, *values, *halves))
-    return out
+            yield CurveGap(
+                channel=channel,
+                over=over,
+                load=load,
+                x=x,
+                first=a[k],
+                second=b[k],
+                half_first=None if half_a is None else half_a[k],
+                half_second=None if half_b is None else half_b[k],
+            )
 
 
 def _curve(side: Subject, where: Points) -> tuple[Sequence[np.ndarray], tuple[np.ndarray, np.ndarray] | None]:
+    """Readings of a file on a perfect rig, and the half widths of their bands."""
     simulation = Simulation.of(side.tyre, turn_slip=side.turn_slip)
     band = None
     if side.covariance is not None:
@@ -86,51 +105,29 @@ def _curve(side: Subject, where: Points) -> tuple[Sequence[np.ndarray], tuple[np
 
 def _coefficients(first: Subject, second: Subject) -> tuple[Difference, ...]:
     """Coefficients that differ."""
-    errors = [
+    u_first, u_second = (
         {}
-        if s.covariance is None
-        else dict(zip(s.names, np.sqrt(np.diag(s.covariance)).tolist(), strict=True))
-        for s in (first, second)
-    ]
+        if side.covariance is None
+        else dict(zip(side.names, np.sqrt(np.diag(side.covariance)).tolist(), strict=True))
+        for side in (first, second)
+    )
     rows = []
     for row in TABLE:
         if row.kind != "number" or not row.section.endswith("_COEFFICIENTS"):
             continue
-        a, b = float(first.tyre[row.name]), float(second.tyre[row.name])
+        name, a, b = row.name, float(first.tyre[row.name]), float(second.tyre[row.name])
         if a != b:
-            rows.append(Difference(row.name, None, a, b, *(e.get(row.name) for e in errors)))
-    return ranked(rows)
-
-
-def _notes(first: Subject, second: Subject) -> tuple[str, ...]:
-    out = []
-    if first.turn_slip != second.turn_slip:
-        on, off = (first, second) if first.turn_slip else (second, first)
-        out.append(
-            f"{on.name} is for simulations with turn slip on, {off.name} for turn slip off; each is evaluated as it is meant."
-        )
-    unknown = [side for side in (first, second) if side.covariance is None]
-    bare = [side.name for side in unknown if not side.told_of]
-    if bare:
-        out.append(
-            f"Nothing tells how uncertain {' or '.join(bare)} is: result.json of a build beside the file would."
-        )
-    out += [
-        f"How uncertain {side.name} is, is not told: the covariance in the result.json beside it belongs to {side.told_of}."
-        for side in unknown
-        if side.told_of
-    ]
-    if not unknown and len({first.name, second.name}) == 2:
-        shared = first.rig is not None and first.rig == second.rig
-        out.append(
-            "Both sides count as independent"
-            + (
-                "; both builds are of one rig, whose errors are counted twice, so differences stand out more than stated."
-                if shared
-                else "."
+            rows.append(
+                Difference(
+                    key=name,
+                    load=None,
+                    first=a,
+                    second=b,
+                    u_first=u_first.get(name),
+                    u_second=u_second.get(name),
+                )
             )
-        )
-    return tuple(out)
+    return ranked(rows)
 
 
 def against_points(
@@ -148,40 +145,54 @@ def against_points(
     subject : the file, the first side
     simulation : the file on the rig as it is declared
     points : the data, the second side
-    measured : what the direct method finds in the points
-    simulated : what it finds in the readings that the rig would give of the file
+    measured : results of the direct method for the points
+    simulated : the same for the readings that the rig would give of the file
     name : of the data
     """
-    readings = simulation.readings(points)
-    sweeps = []
-    for channel in CHANNELS:
-        apart = getattr(points, channel) - getattr(readings, channel)
-        u = getattr(points, f"u_{channel}")
-        for k in np.unique(points.sweep):
-            rows = (points.sweep == k) & np.isfinite(apart)
-            if np.any(rows):
-                known = u[rows][np.isfinite(u[rows])]
-                noise = float(np.median(known)) if len(known) else None
-                found = apart[rows]
-                sweeps.append(
-                    SweepGap(
-                        points.sweep_names[k], channel, rms(found), float(found.mean()), noise, len(found)
-                    )
-                )
-    numbers = [
-        Difference(KEYS[key], data.load, a.value, b.value, None, b.u)
+    return Comparison(
+        first=subject.name,
+        second=name,
+        numbers=ranked(_direct(measured, simulated)),
+        coefficients=(),
+        curves=(),
+        sweeps=_sweeps(points, simulation),
+        notes=(wording.note_on_data(subject.name),),
+        points=points,
+        simulation=simulation,
+    )
+
+
+def _direct(measured: Sequence[LoadResult], simulated: Sequence[LoadResult]) -> list[Difference]:
+    """Results of the direct method for the file and for the data, at the loads that both have."""
+    return [
+        Difference(key=KEYS[key], load=data.load, first=a.value, second=b.value, u_second=b.u)
         for data in measured
         for file in simulated
-        if abs(file.load / data.load - 1.0) < 0.02
+        if abs(file.load / data.load - 1.0) < constants.COMPARED_SAME_LOAD
         for key in DIRECT_ROWS
         if (a := getattr(file, key)) is not None and (b := getattr(data, key)) is not None
     ]
-    size = {channel: max(rms(getattr(points, channel)[np.isfinite(getattr(points, channel))]), 1e-9)
-            for channel in CHANNELS if np.any(np.isfinite(getattr(points, channel)))}  # fmt: skip
-    worst = sorted(sweeps, key=lambda gap: -gap.rms / (gap.noise or size[gap.channel]))
-    notes = (
-        f"The numbers of {subject.name} are what the direct method finds in what the rig would read of it at these very points.",
-    )
-    return Comparison(
-        subject.name, name, ranked(numbers), (), (), tuple(worst), notes, points=points, simulation=simulation
-    )
+
+
+def _sweeps(points: Points, simulation: Simulation) -> tuple[SweepGap, ...]:
+    """The gap of every sweep and channel; the largest first, in units of the noise or else of the channel's size."""
+    readings = simulation.readings(points)
+    found: list[tuple[float, SweepGap]] = []
+    for channel in CHANNELS:
+        apart, u = getattr(points, channel) - getattr(readings, channel), getattr(points, f"u_{channel}")
+        size = max(rms(getattr(points, channel)), 1e-9)
+        for k in np.unique(points.sweep):
+            rows = (points.sweep == k) & np.isfinite(apart)
+            if not np.any(rows):
+                continue
+            known = u[rows][np.isfinite(u[rows])]
+            gap = SweepGap(
+                sweep=points.sweep_names[k],
+                channel=channel,
+                rms=rms(apart[rows]),
+                bias=float(apart[rows].mean()),
+                noise=float(np.median(known)) if len(known) else None,
+                n=int(rows.sum()),
+            )
+            found.append((gap.rms / (gap.noise or size), gap))
+    return tuple(gap for _, gap in sorted(found, key=lambda item: -item[0]))

@@ -15,8 +15,8 @@ from mffit.rig import Simulation
 from tir import Tyre
 from tir.parameters import BY_NAME
 
-WHOLE = frozenset({"epsilon_gamma"})
-"""Numbers of which 1 less the number is what counts: near zero they have no size of their own."""
+OF_ORDER_ONE = frozenset({"epsilon_gamma"})
+"""Numbers whose differences count in absolute terms: they may be near zero."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -25,22 +25,22 @@ class Subject:
 
     name: str
     tyre: Tyre
-    turn_slip: bool  #: whether the simulation that it is for computes turn slip
-    names: tuple[str, ...] = ()  #: numbers of the file whose uncertainty is known
-    covariance: np.ndarray | None = None  #: (k, k) of these; None for files of unknown origin
-    told_of: str = ""  #: the other file whose covariance the result.json beside this one holds
-    rig: Mapping[str, Any] | None = None  #: what its build was told of the rig
+    turn_slip: bool  #: whether the simulation that uses the file computes turn slip
+    names: tuple[str, ...] = ()  #: coefficients whose uncertainty is known
+    covariance: np.ndarray | None = None  #: (k, k) of these; None if it is unknown
+    covariance_of: str = ""  #: another file, if the result.json beside this one holds the covariance of that
+    rig: Mapping[str, Any] | None = None  #: the table [rig] of its build
 
 
 @dataclass(frozen=True, slots=True)
 class Difference:
-    """A number of both sides; ``second`` less ``first`` is the difference."""
+    """A number of both sides; the difference is ``second`` minus ``first``."""
 
     key: str  #: of CHARACTERISTICS or DIRECT, or the name of a coefficient
     load: float | None  #: [N]; None for a coefficient
     first: float
     second: float
-    u_first: float | None = None  #: k = 1; None where it is not known
+    u_first: float | None = None  #: k = 1; None if unknown
     u_second: float | None = None
 
     @property
@@ -49,7 +49,7 @@ class Difference:
 
     @property
     def u(self) -> float | None:
-        """Uncertainty of the difference, both sides independent; None where neither is known."""
+        """Uncertainty of the difference of independent sides; None if both are unknown."""
         known = [u for u in (self.u_first, self.u_second) if u is not None]
         return math.hypot(*known) if known else None
 
@@ -60,9 +60,9 @@ class Difference:
 
     @property
     def relative(self) -> float:
-        """The change over the size of such a number: its plausible range, one for eps_gamma, else the larger of both."""
+        """The change over the plausible range of a coefficient, over 1 for eps_gamma, else over the larger side."""
         size = max(abs(self.first), abs(self.second))
-        if self.key in WHOLE:
+        if self.key in OF_ORDER_ONE:
             size = 1.0
         elif self.load is None and math.isfinite(BY_NAME[self.key].width):
             size = BY_NAME[self.key].width
@@ -70,13 +70,13 @@ class Difference:
 
 
 def ranked(rows: list[Difference]) -> tuple[Difference, ...]:
-    """Differences that stand out from their uncertainty first, the largest in relation to it at the top; then by share."""
+    """Differences with a known uncertainty first, by their ratio to it; then the others, by relative size."""
     return tuple(sorted(rows, key=lambda row: (row.z is None, -abs(row.z or 0.0), -row.relative)))
 
 
 @dataclass(frozen=True, slots=True)
 class CurveGap:
-    """How far two files' curves are apart over an angle at a load, on common ranges."""
+    """Two files' curves over an angle at a load, on their common range."""
 
     channel: str
     over: str  #: "alpha" or "gamma"; the other angle is 0
@@ -84,7 +84,7 @@ class CurveGap:
     x: np.ndarray  #: (m,) [rad]
     first: np.ndarray  #: (m,) [N] or [Nm]
     second: np.ndarray
-    half_first: np.ndarray | None  #: half width of the 95 % band; None where it is not known
+    half_first: np.ndarray | None  #: half width of the 95 % band; None if unknown
     half_second: np.ndarray | None
 
     @property
@@ -93,14 +93,14 @@ class CurveGap:
 
     @property
     def largest(self) -> tuple[float, float]:
-        """The largest difference, with its sign, and where it is [rad]."""
+        """The largest difference, with its sign, and its angle [rad]."""
         k = int(np.argmax(np.abs(self.second - self.first)))
         return float(self.second[k] - self.first[k]), float(self.x[k])
 
 
 @dataclass(frozen=True, slots=True)
 class SweepGap:
-    """How far the readings of one sweep are from a file: measured less file, as the data are the second side."""
+    """Readings of one sweep against a file: measured minus file."""
 
     sweep: str
     channel: str
@@ -112,7 +112,7 @@ class SweepGap:
 
 @dataclass(frozen=True, slots=True)
 class Comparison(Brief):
-    """Two sides and what differs."""
+    """Two sides and their differences."""
 
     first: str
     second: str
@@ -121,5 +121,5 @@ class Comparison(Brief):
     curves: tuple[CurveGap, ...]
     sweeps: tuple[SweepGap, ...]  #: against data, worst first
     notes: tuple[str, ...]
-    points: Points | None = None  #: the data, if one side is measured
-    simulation: Simulation | None = None  #: and what stands against them
+    points: Points | None = None  #: the data, if the second side is measured
+    simulation: Simulation | None = None  #: the file on the rig, compared with these data

@@ -1,16 +1,16 @@
-"""The sentences about a comparison: written here and nowhere else."""
+"""The sentences about a comparison."""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 
-from mffit.comparison.record import Comparison, Difference
+from mffit.comparison import constants
+from mffit.comparison.record import Comparison, Difference, Subject
 from mffit.measured import KEYS
 from mffit.quantities import CHANNELS, CHARACTERISTICS, CONDITIONS, DIRECT, Quantity
 from tir.parameters import BY_NAME
 
-STANDS_OUT = 2.0
-"""Differences of this many standard uncertainties stand out."""
 OF_DIRECT = {key: DIRECT[name] for name, key in KEYS.items()}
 
 
@@ -23,7 +23,7 @@ def quantity(row: Difference) -> Quantity:
 
 
 def headline(found: Comparison) -> str:
-    """What differs most, in a sentence."""
+    """The largest differences in a sentence."""
     if found.sweeps:
         parts = []
         for channel, known in CHANNELS.items():
@@ -31,22 +31,24 @@ def headline(found: Comparison) -> str:
             if rows:
                 n = sum(gap.n for gap in rows)
                 total = math.sqrt(sum(gap.n * gap.rms**2 for gap in rows) / n)
-                parts.append(f"{channel} by {total:.3g} {known.unit} rms")
-        return f"{found.first} misses {found.second}: {' and '.join(parts)}; {_standing_out(found)}."
+                parts.append(f"{total:.3g} {known.unit} rms in {channel}")
+        return f"{found.first} misses {found.second} by {' and '.join(parts)}; {_significant(found)}."
     gap = {c: max((g.rms for g in found.curves if g.channel == c), default=0.0) for c in CHANNELS}
     if not any(gap.values()):
-        return f"The curves of {found.first} and {found.second} do not differ; {_standing_out(found)}."
+        return f"The curves of {found.first} and {found.second} do not differ; {_significant(found)}."
     said = " and ".join(f"{c} by up to {gap[c]:.3g} {q.unit} rms" for c, q in CHANNELS.items())
-    return f"The curves of {found.first} and {found.second} differ in {said}; {_standing_out(found)}."
+    return f"The curves of {found.first} and {found.second} differ in {said}; {_significant(found)}."
 
 
-def _standing_out(found: Comparison) -> str:
-    rows = [row for row in found.numbers if row.z is not None and abs(row.z) > STANDS_OUT]
+def _significant(found: Comparison) -> str:
+    """The numbers that differ beyond their uncertainty, or else the largest relative difference."""
+    limit = constants.SIGNIFICANT_DIFFERENCE
+    rows = [row for row in found.numbers if row.z is not None and abs(row.z) > limit]
     if rows:
         names = list(dict.fromkeys(quantity(row).word for row in rows))
-        return f"beyond {STANDS_OUT:g} u: {', '.join(names)}"
+        return f"numbers that differ by more than {limit:g} u: {', '.join(names)}"
     if any(row.z is not None for row in found.numbers):
-        return f"no number differs by more than {STANDS_OUT:g} u"
+        return f"no number differs by more than {limit:g} u"
     largest = max(found.numbers, key=lambda row: row.relative, default=None)
     if largest is None or not largest.relative:
         return "all numbers are equal"
@@ -54,5 +56,48 @@ def _standing_out(found: Comparison) -> str:
 
 
 def place(row: Difference) -> str:
-    """Where a number holds."""
+    """Condition at which a number holds; empty for a coefficient."""
     return "" if row.load is None else CONDITIONS["Fz_N"].of(row.load)
+
+
+def notes_between(first: Subject, second: Subject) -> tuple[str, ...]:
+    """Remarks on a comparison of two files: their use, and what is known of their uncertainty."""
+    return (*_on_use(first, second), *_on_uncertainty(first, second))
+
+
+def _on_use(first: Subject, second: Subject) -> Iterator[str]:
+    if first.turn_slip != second.turn_slip:
+        on, off = (first, second) if first.turn_slip else (second, first)
+        yield (
+            f"{on.name} is for simulations with turn slip on, {off.name} for turn slip off; each is evaluated for its own use."
+        )
+
+
+def _on_uncertainty(first: Subject, second: Subject) -> Iterator[str]:
+    unknown = [side for side in (first, second) if side.covariance is None]
+    bare = [side.name for side in unknown if not side.covariance_of]
+    if bare:
+        yield f"The uncertainty of {' and '.join(bare)} is unknown, because no result.json of a build is beside the file."
+    for side in unknown:
+        if side.covariance_of:
+            yield (
+                f"The uncertainty of {side.name} is unknown: the covariance in the result.json beside it belongs to "
+                f"{side.covariance_of}."
+            )
+    if unknown or first.name == second.name:
+        return
+    if first.rig is not None and first.rig == second.rig:
+        yield (
+            "Both sides are treated as independent. As both builds are of one rig, its errors are counted twice: differences are "
+            "more significant than stated."
+        )
+    else:
+        yield "Both sides are treated as independent."
+
+
+def note_on_data(file: str) -> str:
+    """The remark on a comparison of a file with data."""
+    return (
+        f"The numbers of {file} are those that the direct method finds in its simulated readings at the same points, so that the "
+        "method's own bias is the same on both sides."
+    )

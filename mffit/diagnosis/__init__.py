@@ -1,9 +1,22 @@
-"""Find where simulation and measurement disagree, name the missing effect, add it, show the gap shrink."""
+"""What a simulation lacks: its gap to the measurement, where it is, the missing effects, and the corrected model.
+
+The modules in the order of the method (:mod:`engine` is the sequence):
+
+1. ``strangers``, ``misread``, ``conditions``: points and model belong together; sweeps are cut at their conditions.
+2. ``stated``, ``noise``: the covariance of the readings as stated. ``inexact``, ``declared``: priors of coefficients and rig.
+3. ``where``: regions in which measurement and simulation disagree.
+4. ``needs``, ``priors``, ``problem``, ``hypothesis``: candidates, and the fit and evidence of a set of effects.
+5. ``explain``: the rounds. ``learning``, ``scatter``, ``marginal``, ``tails`` find the real noise; ``selection`` the effects;
+   ``bumps``, ``smooth``, ``rivals`` structure without a name; ``prediction`` judges effects by left-out sweeps.
+6. ``validation``, ``confirmation``: the part that left-out sweeps confirm.
+7. ``ties``, ``confidence``, ``limits``: rivals of each effect, the run that separates them, sizes that are ruled out.
+8. ``answer``, ``result``, ``notes``, ``wording``, ``correction``: the record, its sentences, corrected points.
+"""
 
 from mffit.diagnosis.correction import corrected_points
 from mffit.diagnosis.engine import diagnose
 from mffit.diagnosis.result import Diagnosis, Found
-from mffit.diagnosis.validate import Gap, gap, validate
+from mffit.diagnosis.validation import Gap, gap, validate
 from mffit.diagnosis.where import where
 
 __all__ = ["Diagnosis", "Found", "Gap", "corrected_points", "diagnose", "gap", "validate", "where"]

@@ -1,26 +1,28 @@
-"""What a diagnosis says: the record of an explanation, every effect judged beside its rivals."""
+"""The record of a diagnosis, made from an explanation: every effect judged beside its rivals."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
 from mffit.config import Config, axis_signs
-from mffit.diagnosis import wording
-from mffit.diagnosis.candidates import Hypothesis, Problem
+from mffit.diagnosis import constants, wording
+from mffit.diagnosis.bumps import Bump
 from mffit.diagnosis.confidence import tempered
-from mffit.diagnosis.explain import Explanation
+from mffit.diagnosis.explanation import Explanation
+from mffit.diagnosis.hypothesis import Hypothesis
 from mffit.diagnosis.limits import limits
 from mffit.diagnosis.noise import Noise
 from mffit.diagnosis.notes import HardlyThisTyre, Note
+from mffit.diagnosis.problem import DiagnosisProblem
 from mffit.diagnosis.result import Diagnosis, Found
-from mffit.diagnosis.scatter import WILD, wild
-from mffit.diagnosis.selection import TIE, Step
+from mffit.diagnosis.selection import Step
+from mffit.diagnosis.tails import outlying
 from mffit.diagnosis.ties import separation
-from mffit.diagnosis.unknown import Bump
-from mffit.diagnosis.validate import Validation, gap
+from mffit.diagnosis.validation import Validation, gap
 from mffit.diagnosis.where import Region, where
 from mffit.effects import Effect
 from mffit.fit.outliers import Outlier, outliers
@@ -31,7 +33,7 @@ from tir.parameters import BY_NAME
 
 def answer(
     found: Explanation,
-    given: Problem,
+    given: DiagnosisProblem,
     tyre: Tyre,
     config: Config,
     validation: Validation,
@@ -42,37 +44,36 @@ def answer(
 
     Parameters
     ----------
-    found : what explains the readings, as far as left-out sweeps confirm it
-    given : readings and simulation before
+    found : the explanation as far as left-out sweeps confirm it
+    given : readings, and the simulation before
     tyre, config : the model that was given
-    validation : what left-out sweeps say
+    validation : the gap on left-out sweeps
     notes : remarks so far
     candidates : effects that the data can show
     """
     points, chosen, scatter = given.points, found.chosen, found.scatter
-    before, after = given.start.predict(points), found.refined.state.predict(points)
-    if not chosen.effects and not found.coefficients:
-        after = before
-    residual_before, residual_after = given.measured - before, given.measured - after
+    before = after = given.start.predict(points)
+    if chosen.effects or found.coefficients:
+        after = found.refined.state.predict(points)
     hardly = any(isinstance(note, HardlyThisTyre) for note in notes)
     unexplained = found.bump.found or found.smooth.found or hardly
-    remaining = where(points, residual_after, scatter) if unexplained else ()
     named = tuple(_found(found, effect, given) for effect in chosen.effects)
     known = {i for one in named for i in (one.effect.id, *one.tied_with)}
-    return Diagnosis(
+    diagnosis = Diagnosis(
+        headline="",
         points=points,
         noise=scatter,
         before=before,
         after=after,
-        gap_before=gap(residual_before, scatter),
-        gap_after=gap(residual_after, scatter),
+        gap_before=gap(given.measured - before, scatter),
+        gap_after=gap(given.measured - after, scatter),
         validation=validation,
-        where=where(points, residual_before, scatter),
+        where=where(points, given.measured - before, scatter),
         effects=named,
         alternatives=_alternatives(found.steps, chosen),
         steps=tuple(found.steps),
         unexplained=unexplained,
-        unexplained_where=((_bump_region(found.bump),) if found.bump.found else ()) + remaining[:4],
+        unexplained_where=_remaining(found, given.measured - after) if unexplained else (),
         bump=found.bump if found.bump.found else None,
         smooth=found.smooth if found.smooth.found else None,
         outliers=_outliers(points, after, scatter),
@@ -85,98 +86,109 @@ def answer(
         notes=tuple(notes),
         model_after=f"{config.tyre.name}.tir",
     )
+    return replace(diagnosis, headline=wording.headline(diagnosis))
+
+
+def _remaining(found: Explanation, residual: np.ndarray) -> tuple[Region, ...]:
+    """Regions that stay unexplained, the bump first."""
+    regions = where(found.problem.points, residual, found.scatter)[: constants.MOST_UNEXPLAINED_REGIONS]
+    return (_bump_region(found.bump), *regions) if found.bump.found else regions
+
+
+def _bump_region(bump: Bump) -> Region:
+    return Region(
+        channel=bump.channel,
+        region=bump.region,
+        bias=bump.amplitude,
+        z=float(np.sign(bump.amplitude) * np.sqrt(2.0 * max(bump.gain, 0.0))),
+    )
 
 
 def _outliers(points: Points, after: np.ndarray, noise: Noise) -> tuple[Outlier, ...]:
-    """The readings that lost nearly all their weight, and stand out of what was found too."""
+    """The readings that lost nearly all their weight and are far from the corrected model too."""
     if noise.weight is None:
         return ()
     usual = noise.u * np.sqrt(noise.weight)
     off = np.abs(np.concatenate([points.Fy, points.Mz]) - after)
     used = usual.copy()
-    used[[i for i in wild(noise) if off[i] > WILD * usual[i]]] = np.inf
+    used[[i for i in outlying(noise) if off[i] > constants.DIAGNOSED_OUTLIER_RATIO * usual[i]]] = np.inf
     Fy, Mz = zip(np.split(usual, 2), np.split(used, 2), np.split(after, 2), strict=True)
     return outliers(points, *((a, b) for a, b in zip(Fy, Mz, strict=True)))
 
 
-def _found(found: Explanation, effect: Effect, given: Problem) -> Found:
-    """What is said of one accepted effect: judged beside all the others that were accepted."""
+def _found(found: Explanation, effect: Effect, given: DiagnosisProblem) -> Found:
+    """The record of one accepted effect, judged beside all the others that were accepted."""
     problem, chosen, steps = found.problem, found.chosen, found.steps
-    others = tuple(e for e in chosen.effects if e.id != effect.id)
+    alone = len(chosen.effects) == 1
     step = next(
         (s for s in steps if s.best.effects[-1].id == effect.id),
         steps[min(len(steps), len(chosen.effects)) - 1],
     )
-    if effect.id in found.predicted:  # evidence says little beside structure that may be anything
-        tied = list(found.predicted[effect.id].tied)
-        confidence = found.certainty(effect) / (1.0 + len(tied))
-    else:
-        rivals = _rivals(problem, chosen, step, others)
-        tied = [r for r in rivals if chosen.log_evidence - r.log_evidence < TIE]
-        share = 1.0 / (1.0 + sum(math.exp(min(r.log_evidence - chosen.log_evidence, 50.0)) for r in rivals))
-        confidence = tempered(found.certainty(effect) * share)
+    tied, confidence = _judged(found, effect, step)
     separations = [separation(problem.points, chosen, t, problem.noise.Fy, problem.noise.Mz) for t in tied]
-    upto = found.refined if not others else step.best
+    with_it = (found.refined if alone else step.best).state
     numbers, stderr = found.refined.numbers, found.refined.stderr
     return Found(
         effect=effect,
         confidence=confidence,
         parameters={n: (numbers[n], stderr.get(n, 0.0)) for n in effect.parameters},
         before={n: given.start.number(n, given.points) for n in effect.parameters},
-        gap_after=gap(problem.measured - upto.state.predict(problem.points), found.scatter),
-        tied_with=tuple(t.effects[-1].id for t in tied),
+        gap_after=gap(problem.measured - with_it.predict(problem.points), found.scatter),
+        tied=tuple(rival.effects[-1] for rival in tied),
         separation=min(separations, key=lambda s: s.chi2, default=None),
         T_ref=chosen.state.faults["T_ref_degC"] if "temperatures" in effect.needs else None,
     )
 
 
-def _rivals(problem: Problem, chosen: Hypothesis, step: Step, others: tuple[Effect, ...]) -> list[Hypothesis]:
-    """Explanations with another effect in the place of one, refitted beside the others, but for those without a chance."""
-    ids = {e.id for e in chosen.effects}
-    names = {name for e in others for name in e.parameters}
-    kept = {name: value for name, value in chosen.numbers.items() if name in names}
-    hopeless = 40.0 + (0.5 * abs(step.gain) if others else 0.0)
-    out = []
-    for trial in step.trials:
-        rival = trial.effects[-1]
-        if rival.id in ids or step.best.log_evidence - trial.log_evidence > hopeless:
-            continue
-        out.append(problem.fit((*others, rival), kept))
-    return out
+def _judged(found: Explanation, effect: Effect, step: Step) -> tuple[Sequence[Hypothesis], float]:
+    """Explanations with another effect in the place of one that are as good, and the confidence in this one."""
+    if effect.id in found.predicted:  # beside structure that may be anything, evidence decides little
+        tied = found.predicted[effect.id].tied
+        return tied, found.certainty(effect) / (1.0 + len(tied))
+    evidence = found.chosen.log_evidence
+    rivals = _rivals(found.problem, found.chosen, effect, step)
+    weights = [math.exp(min(rival.log_evidence - evidence, 50.0)) for rival in rivals]
+    tied = tuple(r for r in rivals if evidence - r.log_evidence < constants.TIED_EVIDENCE)
+    return tied, tempered(found.certainty(effect) * (1.0 / (1.0 + sum(weights))))
+
+
+def _rivals(problem: DiagnosisProblem, chosen: Hypothesis, effect: Effect, step: Step) -> list[Hypothesis]:
+    """Explanations with another effect in the place of one, refitted beside the others; hopeless ones are left out."""
+    others = chosen.others(effect)
+    kept = chosen.numbers_of(others)
+    hopeless = constants.HOPELESS_RIVAL + (constants.HOPELESS_SHARE * abs(step.gain) if others else 0.0)
+    return [
+        problem.fit((*others, trial.effects[-1]), kept)
+        for trial in step.trials
+        if trial.effects[-1].id not in chosen.ids and step.best.log_evidence - trial.log_evidence <= hopeless
+    ]
 
 
 def _alternatives(steps: Sequence[Step], chosen: Hypothesis) -> dict[str, float]:
-    """Weights of what was not accepted: in the first step if something was, else in the last.
+    """Weights of the effects that were not accepted: in the first step if one was accepted, else in the last.
 
-    None where the choice was made by prediction against the weight of evidence.
+    Empty if left-out sweeps decided against the weight of evidence.
     """
     if not steps:
         return {}
-    accepted = {effect.id for effect in chosen.effects}
-    source = steps[0 if chosen.effects else -1].weights()
-    if accepted and max(source, key=source.__getitem__) not in accepted:
+    weights = steps[0 if chosen.effects else -1].weights()
+    if chosen.effects and max(weights, key=weights.__getitem__) not in chosen.ids:
         return {}
-    return {name: w for name, w in source.items() if name not in accepted and name != "none" and w > 1e-4}
-
-
-def _bump_region(bump: Bump) -> Region:
-    return Region(
-        bump.channel,
-        bump.region,
-        bump.amplitude,
-        float(np.sign(bump.amplitude) * np.sqrt(2.0 * max(bump.gain, 0.0))),
-    )
+    return {
+        name: weight
+        for name, weight in weights.items()
+        if name not in chosen.ids and name != "none" and weight > constants.LEAST_ALTERNATIVE
+    }
 
 
 def _corrected(tyre: Tyre, found: Explanation) -> Tyre:
-    """The property file with the tyre effects as coefficients and their reason in the comments."""
-    changes, status = {}, {}
-    for name, (value, error) in found.coefficients.items():
-        changes[name], status[name] = value, wording.adjusted(float(tyre[name]), error)
+    """The property file with the estimated coefficients, and the reason of each in its comment."""
+    changes = {name: value for name, (value, _) in found.coefficients.items()}
+    status = {name: wording.adjusted(float(tyre[name]), u) for name, (_, u) in found.coefficients.items()}
     for effect in found.chosen.effects:
         for name in effect.parameters:
             if name in BY_NAME:
                 changes[name] = found.refined.numbers[name]
                 error = found.refined.stderr.get(name, 0.0)
-                status[name] = wording.status(effect.id, float(tyre[name]), error)
+                status[name] = wording.status(effect, float(tyre[name]), error)
     return tyre.replace(**changes).annotate(status=status) if changes else tyre

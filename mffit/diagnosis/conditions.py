@@ -1,20 +1,17 @@
-"""Conditions that were held while something else was swept: what is left out together when a model is validated."""
+"""Points grouped by the conditions that were held: these groups are left out together when a model is validated."""
 
 from __future__ import annotations
 
 import numpy as np
 
+from mffit.diagnosis import constants
 from mffit.points import Points, levels
-
-FEWEST_PER_LEVEL = 8
-"""Fewer points at a setting make it a swept quantity, not a held one."""
 
 
 def by_condition(points: Points) -> Points:
-    """The points with sweeps cut where a held quantity steps.
+    """The points with sweeps cut where load, camber, pressure or speed steps.
 
-    A file that holds a whole programme is no single sweep: load, camber, pressure and speed step between its parts.
-    What moves nearly from point to point is what was swept, and is not cut.
+    A file may hold a whole programme. A quantity that changes from point to point was swept and does not cut.
 
     Parameters
     ----------
@@ -22,8 +19,8 @@ def by_condition(points: Points) -> Points:
 
     Returns
     -------
-    The same points in the same order; ``sweep`` counts conditions, whose names are the sweep's with a number where
-    one sweep held several.
+    The same points in the same order; ``sweep`` numbers the conditions, named after their sweep, with a number if the sweep
+    held several.
     """
     held = (
         (points.Fz, levels.LOAD),
@@ -47,5 +44,5 @@ def by_condition(points: Points) -> Points:
 def _held(values: np.ndarray, quantity: levels.Quantity) -> np.ndarray:
     """Number (n,) of the level at which each value was held; all 0 if the quantity was swept or never changed."""
     level = levels.nearest_labels(values, quantity)
-    many = len(values) < FEWEST_PER_LEVEL * (level.max() + 1)
+    many = len(values) < constants.FEWEST_POINTS_OF_A_CONDITION * (level.max() + 1)
     return np.zeros_like(level) if many or levels.spread(values, quantity) else level

@@ -1,4 +1,4 @@
-"""Rig faults and environment terms taken off the points, for the direct method to be redone."""
+"""Readings without the rig's errors and the influence of the environment."""
 
 from __future__ import annotations
 
@@ -7,16 +7,17 @@ from mffit.rig import Simulation
 
 
 def corrected_points(points: Points, state: Simulation) -> Points:
-    """Points as a faultless rig at reference conditions would have reported them at the same readings.
+    """Points as a faultless rig at reference conditions would have reported them at the same readings of the angles.
 
-    What the faults do to a reading is taken from the diagnosed model: with and without them. So the set-points stay
-    mirror images of each other, which shifted angles would not.
+    The influence of the faults on a reading is that of the diagnosed model. Shifting the angles instead would break the
+    mirror symmetry of the set-points.
 
     Parameters
     ----------
     points : raw points (n,), angles as read
     state : the simulation after all corrections, backlash included
     """
-    influence = state.predict(points) - state.faultless.predict(points)
-    n = len(points)
-    return points.replace(Fy=points.Fy - influence[:n], Mz=points.Mz - influence[n:])
+    faulty, faultless = state.readings(points), state.faultless.readings(points)
+    return points.replace(
+        Fy=points.Fy - (faulty.Fy - faultless.Fy), Mz=points.Mz - (faulty.Mz - faultless.Mz)
+    )

@@ -1,4 +1,4 @@
-"""How inexact the given model's coefficients are: uncertain numbers with a prior, estimated together with the effects."""
+"""How inexact the given model's coefficients are: numbers with a prior that are estimated beside the effects."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from mffit.fit.priors import scatter
-from mffit.least_squares import root
+from mffit.least_squares import LeastSquaresProblem, Linear, root
 from mffit.points import Points
 from mffit.rig import Simulation
 from tir import Tyre
@@ -28,24 +28,44 @@ class Inexactness:
 
     def columns(self, points: Points, state: Simulation) -> np.ndarray:
         """Changes of the readings (2n, k), one prior standard deviation each."""
-        if not self.names:
-            return np.zeros((2 * len(points), 0))
-        _, slope = state.sensitivities(points, self.names)
-        return np.nan_to_num(np.concatenate(slope)) @ self.root
+        return self._slopes(points, state) @ self.root
 
     def moved(self, points: Points, state: Simulation, at: Simulation) -> np.ndarray:
-        """What has to be added to readings (2n,) for the prior to be centred where ``at`` has left it.
+        """Change of the readings (2n,) that moves the centre of the prior to the coefficients of ``at``.
 
-        ``state`` is where :meth:`columns` are taken.
+        ``state`` is the simulation at which :meth:`columns` are taken.
         """
-        if not self.names:
-            return np.zeros(2 * len(points))
-        _, slope = state.sensitivities(points, self.names)
         away = np.array([float(at.values[name]) for name in self.names]) - self.expected
-        return np.nan_to_num(np.concatenate(slope)) @ away
+        return self._slopes(points, state) @ away
+
+    def _slopes(self, points: Points, state: Simulation) -> np.ndarray:
+        """Derivatives of the readings (2n, k) by the coefficients."""
+        if not self.names:
+            return np.zeros((2 * len(points), 0))
+        return np.nan_to_num(np.concatenate(state.sensitivities(points, self.names)[1]))
+
+    def added_to(self, problem: LeastSquaresProblem, first: int) -> LeastSquaresProblem:
+        """The problem with this prior as additional residuals of its numbers from ``first`` on."""
+        precision = np.linalg.pinv(self.root)
+
+        def residual(x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+            data, limits = problem.residual(x)
+            return np.concatenate([data, precision @ (x[first:] - self.expected)]), limits
+
+        def linear(x: np.ndarray) -> Linear:
+            here = problem.linear(x)
+            rows = np.hstack([np.zeros((len(precision), first)), precision])
+            return Linear(
+                data=np.concatenate([here.data, precision @ (x[first:] - self.expected)]),
+                slope=np.vstack([here.slope, rows]),
+                limits=here.limits,
+                limits_slope=here.limits_slope,
+            )
+
+        return LeastSquaresProblem(residual, linear)
 
     def without(self, names: frozenset[str]) -> Inexactness:
-        """The prior of the others, whatever these are."""
+        """The prior of the other coefficients, integrated over these."""
         kept = [k for k, name in enumerate(self.names) if name not in names]
         if len(kept) == len(self.names):
             return self
@@ -57,7 +77,7 @@ EXACT = Inexactness((), np.empty(0), np.empty((0, 0)))
 
 
 def declared(tyre: Tyre, u_coefficients: float) -> Inexactness:
-    """Every P.Y. and Q.Z. coefficient that the file has, off by a share of itself."""
+    """Independent relative errors of every nonzero P.Y. and Q.Z. coefficient of a file."""
     if u_coefficients <= 0.0:
         return EXACT
     names = [row.name for row in TABLE if row.normal_mode and float(tyre[row.name])]
@@ -66,9 +86,9 @@ def declared(tyre: Tyre, u_coefficients: float) -> Inexactness:
 
 
 def refitted(tyre: Tyre, *, curved: bool) -> Inexactness:
-    """The coefficients that a build fitted, free to move again as far as coefficients of similar tyres scatter.
+    """The coefficients that a build fitted, with the scatter of similar tyres as prior.
 
-    For points that were already used to fit them: what is known of them beyond that is in these points.
+    For points that the build used already: they hold everything else that is known of these coefficients.
     """
     fitted = [row.name for row in TABLE if row.kind == "number" and "+-" in tyre.status.get(row.name, "")]
     spread = {n: scatter(n, float(tyre[n]), from_base=True, curved=curved) for n in fitted}

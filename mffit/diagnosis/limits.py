@@ -1,4 +1,4 @@
-"""What was not found: how large each other effect can be without contradicting the readings."""
+"""How large each effect that was not named can be without contradicting the readings."""
 
 from __future__ import annotations
 
@@ -7,20 +7,19 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from mffit.diagnosis.candidates import Hypothesis, Problem
+from mffit.diagnosis import constants
+from mffit.diagnosis.hypothesis import Hypothesis, outside
+from mffit.diagnosis.problem import DiagnosisProblem
 from mffit.effects import Effect
 from mffit.scatter import rms
-
-COVERED = 2.0
-"""Standard deviations within which the true size is expected."""
 
 
 @dataclass(frozen=True, slots=True)
 class Limit:
-    """The largest size of an effect that the readings leave open."""
+    """The largest size of an effect that agrees with the readings."""
 
     effect: Effect
-    share: float  #: of the size that it usually has (1 sigma); the rms of them if it has several
+    share: float  #: over its usual size (1 sigma); rms over its numbers if it has several
 
     @property
     def ruled_out(self) -> bool:
@@ -29,21 +28,19 @@ class Limit:
 
 
 def limits(
-    problem: Problem, chosen: Hypothesis, candidates: Sequence[Effect], known: Collection[str]
+    problem: DiagnosisProblem, chosen: Hypothesis, candidates: Sequence[Effect], known: Collection[str]
 ) -> tuple[Limit, ...]:
-    """The limits of all candidates but those named or tied (``known`` ids), to first order beside what was chosen."""
-    residual, Q = chosen.residual, np.empty((len(chosen.residual), 0))
-    if chosen.jacobian.shape[1]:
-        Q = np.linalg.qr(chosen.jacobian)[0]
+    """The limits of all candidates but those named or tied (``known`` ids), to first order beside the chosen effects."""
+    axes, out = chosen.axes, []
     others = [e for e in candidates if e.id not in known and not e.switches]
-    out = []
     for effect, groups in problem.columns(chosen.state, others).items():
         sizes = []
-        for columns in groups:  # where an effect is even in its number, the start that shows it best counts
-            white = problem.noise.whiten(columns[:, np.any(columns != 0.0, axis=0)])
-            white = white - Q @ (Q.T @ white)
+        for (
+            columns
+        ) in groups:  # of an effect that is even in its number, the start at which it is most visible counts
+            white = outside(axes, problem.noise.whiten(columns[:, np.any(columns != 0.0, axis=0)]))
             covariance = np.linalg.inv(white.T @ white + np.eye(white.shape[1]))
-            found = np.abs(covariance @ (white.T @ residual))
-            sizes.append(rms(found + COVERED * np.sqrt(np.diag(covariance))))
+            found = np.abs(covariance @ (white.T @ chosen.residual))
+            sizes.append(rms(found + constants.LIMIT_COVERAGE * np.sqrt(np.diag(covariance))))
         out.append(Limit(effect, min(sizes)))
     return tuple(sorted(out, key=lambda row: row.share))

@@ -1,14 +1,16 @@
-"""Whether the data can show an effect at all."""
+"""Which effects the data can show."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
 import numpy as np
 
+from mffit.diagnosis import constants
+from mffit.diagnosis.notes import NotVisible
 from mffit.effects import Effect
 from mffit.points import Points
-from mffit.rig import distance_km, sense
+from mffit.rig import Simulation, distance_km, sense
 
 
 def _spread(x: np.ndarray) -> float:
@@ -16,32 +18,38 @@ def _spread(x: np.ndarray) -> float:
     return float(np.ptp(x)) if len(x) else 0.0
 
 
+def _coupled(points: Points) -> bool:
+    leaned = np.abs(points.gamma) > constants.VISIBLE_COUPLED_CAMBER
+    return bool(np.any(leaned & (np.abs(points.alpha) > constants.VISIBLE_COUPLED_SIDESLIP)))
+
+
 def _both_senses(points: Points) -> bool:
     way = sense(points)
-    return bool(min(np.sum(way > 0), np.sum(way < 0)) > 0.1 * len(points))
+    return bool(min(np.sum(way > 0), np.sum(way < 0)) > constants.VISIBLE_SENSE_SHARE * len(points))
 
 
 def _distance_is_not_time(points: Points) -> bool:
     known = np.isfinite(points.t)
-    if _spread(points.t) <= 60.0 or _spread(points.V) <= 0.5:
+    if _spread(points.t) <= constants.VISIBLE_TIME or _spread(points.V) <= constants.VISIBLE_SPEED:
         return False
-    return float(np.corrcoef(points.t[known], distance_km(points)[known])[0, 1]) < 0.98
+    likeness = float(np.corrcoef(points.t[known], distance_km(points)[known])[0, 1])
+    return likeness < constants.DISTANCE_LIKE_TIME
 
 
 MET: dict[str, Callable[[Points], bool]] = {
     "curved": lambda p: bool(np.any(p.phi_t)),
-    "spin": lambda p: bool(np.any(p.phi_t)) or _spread(p.gamma) > 0.2,
-    "camber": lambda p: _spread(p.gamma) > 0.03,
-    "coupled": lambda p: bool(np.any((np.abs(p.gamma) > 0.02) & (np.abs(p.alpha) > 0.01))),
-    "slip": lambda p: _spread(p.alpha) > 0.05,
-    "loads": lambda p: _spread(np.log(p.Fz)) > 0.1,
-    "pressures": lambda p: _spread(p.p) > 10e3,
+    "spin": lambda p: bool(np.any(p.phi_t)) or _spread(p.gamma) > constants.VISIBLE_SPIN_CAMBER,
+    "camber": lambda p: _spread(p.gamma) > constants.VISIBLE_CAMBER,
+    "coupled": _coupled,
+    "slip": lambda p: _spread(p.alpha) > constants.VISIBLE_SIDESLIP,
+    "loads": lambda p: _spread(np.log(p.Fz)) > constants.VISIBLE_LOAD_RANGE,
+    "pressures": lambda p: _spread(p.p) > constants.VISIBLE_PRESSURE,
     "moment": lambda p: bool(np.any(np.isfinite(p.Mz))),
-    "temperatures": lambda p: _spread(p.T) > 3.0,
-    "speeds": lambda p: _spread(p.V) > 0.5,
-    "times": lambda p: _spread(p.t) > 60.0,
+    "temperatures": lambda p: _spread(p.T) > constants.VISIBLE_TEMPERATURE,
+    "speeds": lambda p: _spread(p.V) > constants.VISIBLE_SPEED,
+    "times": lambda p: _spread(p.t) > constants.VISIBLE_TIME,
     "distances": _distance_is_not_time,
-    "runs": lambda p: len(np.unique(p.file)) > 2,
+    "runs": lambda p: len(np.unique(p.file)) >= constants.VISIBLE_RUNS,
     "senses": _both_senses,
     "continuous": lambda p: bool(np.any(p.continuous)),
 }
@@ -49,5 +57,23 @@ MET: dict[str, Callable[[Points], bool]] = {
 
 
 def missing(effect: Effect, points: Points) -> tuple[str, ...]:
-    """The needs of the effect that the data do not meet; empty if it can be seen."""
+    """The needs of the effect that the data do not meet; empty if it is visible."""
     return tuple(need for need in effect.needs if not MET[need](points))
+
+
+def possible(
+    effects: Sequence[Effect], points: Points, start: Simulation
+) -> tuple[list[Effect], list[NotVisible]]:
+    """Effects that the data can show, and notes on the others."""
+    out: list[Effect] = []
+    lacking: dict[tuple[str, ...], list[Effect]] = {}
+    files = sorted({points.files[k] for k in np.unique(points.file)})
+    for effect in effects:
+        if effect.switches and start.turn_slip:
+            continue
+        lack = missing(effect, points)
+        if lack:
+            lacking.setdefault(lack, []).append(effect)
+        else:
+            out.append(effect.of_runs(files))
+    return out, [NotVisible(needs=lack, effects=tuple(hidden)) for lack, hidden in lacking.items()]

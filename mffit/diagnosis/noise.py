@@ -1,4 +1,4 @@
-"""How uncertain every reading is, and how uncertain the given model is: the covariance that residuals are judged by."""
+"""The covariance that residuals are judged by: noise of the readings, and changes that several readings share."""
 
 from __future__ import annotations
 
@@ -11,12 +11,7 @@ import numpy as np
 from scipy.sparse import csc_matrix
 from scipy.sparse.linalg import SuperLU, splu
 
-from mffit.errors import InputError
-from mffit.points import Points
 from mffit.quantities import CHANNELS
-from mffit.rig import Simulation
-from mffit.scatter import robust
-from tir.parameters import TABLE
 
 
 class Origin(Enum):
@@ -28,20 +23,20 @@ class Origin(Enum):
 
 @dataclass(frozen=True, slots=True)
 class Scatter:
-    """What the readings of one channel scatter like, beside what was stated of them."""
+    """How the readings of one channel scatter, relative to their stated uncertainties."""
 
     scale: float = 1.0  #: uncertainty over the stated one
-    growth: float = 0.0  #: a part in proportion to the reading, added in squares
+    growth: float = 0.0  #: standard uncertainty over the reading, added in quadrature
     memory: float = 0.0  #: correlation from one point to the next along a sweep
     tails: float = np.inf  #: degrees of freedom of Student's t, infinite where the scatter is normal
 
 
 @dataclass(frozen=True)
 class Noise:
-    """Standard uncertainties, how they hang together, and the whitening that goes with them.
+    """Covariance of the readings, and the whitening that goes with it.
 
-    The covariance is D M D + S S': independent uncertainties D, M with ``memory`` to the power of the distance along each
-    sweep, and columns S of changes that several readings share, one standard deviation each.
+    The covariance is D M D + S S': independent uncertainties D; M with ``memory`` to the power of the distance along each
+    sweep; and columns S of changes that several readings share, one standard deviation each.
     """
 
     u: np.ndarray  #: (2n,) standard uncertainty of every reading; inf where missing
@@ -49,38 +44,32 @@ class Noise:
     chain: np.ndarray  #: (2n,) number of the sweep and channel along which errors may be correlated
     origin: Origin | None  #: of the uncertainties of Fy; None if it was not measured
     scatter: Mapping[str, Scatter] = field(default_factory=lambda: dict.fromkeys(CHANNELS, Scatter()))
-    weight: np.ndarray | None = None  #: (2n,) of each reading; below 1 where it is wild; None: all 1
-    shared: np.ndarray | None = (
-        None  #: (2n, k) changes by inexactness of the model, one standard deviation each
-    )
+    weight: np.ndarray | None = None  #: (2n,) of each reading, below 1 for outliers; None: all 1
+    shared: np.ndarray | None = None  #: (2n, k) changes that readings share, one standard deviation each
 
     @property
     def Fy(self) -> float:
         """Typical noise of Fy [N]."""
-        return _typical(self.u[: len(self.u) // 2])
+        return _typical(self.u, "Fy")
 
     @property
     def Mz(self) -> float:
         """Typical noise of Mz [Nm]; NaN if Mz was not measured."""
-        return _typical(self.u[len(self.u) // 2 :])
+        return _typical(self.u, "Mz")
 
     def typically_stated(self, channel: str) -> float:
         """Typical uncertainty of a channel as stated."""
-        n = len(self.stated) // 2
-        return _typical(self.stated[:n] if channel == "Fy" else self.stated[n:])
+        return _typical(self.stated, channel)
 
     @cached_property
     def used(self) -> np.ndarray:
-        """Indices (m,) of the readings that count."""
+        """Indices (m,) of the readings that were measured."""
         return np.flatnonzero(np.isfinite(self.u))
 
     @cached_property
     def _links(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Of the used readings: which follow another in their sweep, which one that is, and the memory between them."""
-        chain = self.chain[self.used]
-        order = np.argsort(chain, kind="stable")
-        follows = chain[order][1:] == chain[order][:-1]
-        later, earlier = order[1:][follows], order[:-1][follows]
+        """Positions of used readings that follow another with memory, of that other, and the memory between them."""
+        later, earlier = links(self.chain[self.used])
         memory = np.where(
             self.used[later] < len(self.u) // 2, self.scatter["Fy"].memory, self.scatter["Mz"].memory
         )
@@ -89,7 +78,7 @@ class Noise:
 
     @cached_property
     def _axes(self) -> tuple[np.ndarray, np.ndarray]:
-        """Orthogonal directions (m, k) of the shared changes, whitened, and their variances (k,)."""
+        """Orthonormal directions (m, k) of the shared changes, whitened, and their variances (k,)."""
         if self.shared is None or not self.shared.shape[1]:
             return np.empty((len(self.used), 0)), np.empty(0)
         white = self._independent(self.shared[self.used])
@@ -98,8 +87,8 @@ class Noise:
         return white @ (turn[:, some] / np.sqrt(variance[some])), variance[some]
 
     @cached_property
-    def _forget(self) -> SuperLU:
-        """The factors of the transposed whitening of what runs along sweeps."""
+    def _transposed(self) -> SuperLU:
+        """The factors of the transposed whitening without shared changes."""
         m = len(self.used)
         later, earlier, memory = self._links
         own = np.ones(m)
@@ -110,7 +99,7 @@ class Noise:
         return splu(csc_matrix((values, (rows, columns)), shape=(m, m)))
 
     def _independent(self, x: np.ndarray) -> np.ndarray:
-        """Used readings' differences (m,) or (m, k) freed of their own uncertainty and of the memory along sweeps."""
+        """Differences of used readings (m,) or (m, k), whitened without shared changes."""
         z = (x.T / self.u[self.used]).T
         later, earlier, memory = self._links
         if not len(later):
@@ -120,7 +109,7 @@ class Noise:
         return out
 
     def whiten(self, x: np.ndarray) -> np.ndarray:
-        """Readings' differences (2n,) or (2n, k) in units of their joint uncertainty: (m,) or (m, k)."""
+        """Differences of readings (2n,) or (2n, k) in units of their joint uncertainty: (m,) or (m, k)."""
         z = self._independent(x[self.used])
         axes, variance = self._axes
         if not len(variance):
@@ -132,7 +121,7 @@ class Noise:
         """Standard error of the sum of some used readings, by their position among the used ones."""
         chosen = np.zeros(len(self.used))
         chosen[rows] = 1.0
-        y = self._forget.solve(chosen)
+        y = self._transposed.solve(chosen)
         axes, variance = self._axes
         return float(np.sqrt(y @ y + variance @ (axes.T @ y) ** 2))
 
@@ -149,11 +138,11 @@ class Noise:
         )
 
     def alone(self) -> Noise:
-        """The scatter of the readings without the model's inexactness."""
+        """The scatter of the readings without shared changes."""
         return replace(self, shared=None)
 
     def sharing(self, *columns: np.ndarray) -> Noise:
-        """The same scatter with these changes (2n, k) shared, and no others."""
+        """The same scatter with these shared changes (2n, k), and no others."""
         given = [c for c in columns if c.size]
         return replace(self, shared=np.column_stack(given) if given else None)
 
@@ -163,93 +152,28 @@ class Noise:
         Parameters
         ----------
         scatter : by channel
-        size : (2n,) readings that the growing part is in proportion to
+        size : (2n,) readings in proportion to which the noise may grow
         weight : (2n,) of each reading
         """
-        n = len(self.stated) // 2
-        u = np.empty(2 * n)
-        for name, rows in (("Fy", slice(0, n)), ("Mz", slice(n, 2 * n))):
-            s = scatter[name]
-            u[rows] = np.hypot(s.scale * self.stated[rows], s.growth * np.nan_to_num(size[rows]))
+        halves = zip(CHANNELS, np.split(self.stated, 2), np.split(np.nan_to_num(size), 2), strict=True)
+        u = np.concatenate(
+            [
+                np.hypot(scatter[c].scale * stated, scatter[c].growth * reading)
+                for c, stated, reading in halves
+            ]
+        )
         return replace(self, u=u / np.sqrt(weight), scatter=dict(scatter), weight=weight)
 
 
-def with_uncertainties(points: Points, state: Simulation) -> tuple[Points, Origin | None]:
-    """The points with a standard uncertainty for every reading, and where it comes from.
-
-    As stated, else from the scatter of measured minus simulated between neighbouring points of each sweep, from which the
-    curve itself has largely gone.
-
-    Raises
-    ------
-    InputError
-        If all stated uncertainties are zero.
-    """
-    n, simulated = len(points), state.predict(points)
-    Fy, origin = _channel(points, points.Fy, points.u_Fy, simulated[:n], "u_Fy_N")
-    Mz, _ = _channel(points, points.Mz, points.u_Mz, simulated[n:], "u_Mz_Nm")
-    return points.replace(u_Fy=Fy, u_Mz=Mz), origin
+def links(chain: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Positions of the readings (m,) that follow another of their chain, and of those that they follow."""
+    order = np.argsort(chain, kind="stable")
+    follows = chain[order][1:] == chain[order][:-1]
+    return order[1:][follows], order[:-1][follows]
 
 
-def noise_model(
-    points: Points, state: Simulation, u_coefficients: float, origin: Origin | None = None
-) -> Noise:
-    """Covariance of the readings: their own uncertainties (finite where used) and the model's inexactness.
-
-    Parameters
-    ----------
-    points : with uncertainties as :func:`with_uncertainties` gives them
-    state : the simulation whose coefficients are inexact
-    u_coefficients : relative standard uncertainty of the P.Y. and Q.Z. coefficients
-    origin : where the uncertainties come from
-    """
-    u = np.concatenate([points.u_Fy, points.u_Mz])
-    chain = np.concatenate([points.sweep, points.sweep + 1 + points.sweep.max(initial=0)])
-    noise = Noise(u=u, stated=u, chain=chain, origin=origin)
-    if u_coefficients <= 0.0:
-        return noise
-    return noise.sharing(u_coefficients * coefficient_jacobian(points, state))
-
-
-def coefficient_jacobian(points: Points, state: Simulation) -> np.ndarray:
-    """Change of the readings (2n, k) per relative change of each P.Y. and Q.Z. coefficient."""
-    names = [row.name for row in TABLE if row.normal_mode and state.values[row.name]]
-    _, slope = state.sensitivities(points, names)
-    return np.nan_to_num(np.concatenate(slope) * [float(state.values[name]) for name in names])
-
-
-def _typical(u: np.ndarray) -> float:
-    known = u[np.isfinite(u)]
+def _typical(u: np.ndarray, channel: str) -> float:
+    """Median uncertainty of a channel of readings (2n,); NaN if it was not measured."""
+    half = dict(zip(CHANNELS, np.split(u, 2), strict=True))[channel]
+    known = half[np.isfinite(half)]
     return float(np.median(known)) if len(known) else float("nan")
-
-
-def _channel(
-    points: Points, values: np.ndarray, stated: np.ndarray, simulated: np.ndarray, column: str
-) -> tuple[np.ndarray, Origin | None]:
-    """Uncertainty (n,) of one channel; inf where it was not measured."""
-    measured = np.isfinite(values)
-    if not np.any(measured):
-        return np.full(len(points), np.inf), None
-    known = measured & np.isfinite(stated)
-    if np.any(known) and np.all(stated[known] <= 0.0):
-        raise InputError(
-            f"all {column} are zero; give real standard uncertainties, or leave the column out", column=column
-        )
-    if np.all(known[measured]):
-        floor = 0.05 * np.median(stated[known][stated[known] > 0])
-        return np.where(measured, np.maximum(stated, floor), np.inf), Origin.STATED
-    guess = neighbour_noise(points, values - simulated)
-    u = np.where(known, stated, guess)
-    return np.where(measured, u, np.inf), Origin.SCATTER
-
-
-def neighbour_noise(points: Points, values: np.ndarray) -> float:
-    """Robust noise of a channel from third differences along each sweep, which a smooth curve hardly has."""
-    out = []
-    for k in np.unique(points.sweep):
-        rows = np.flatnonzero((points.sweep == k) & np.isfinite(values))
-        if len(rows) >= 6:
-            out.append(np.diff(values[rows], 3) / np.sqrt(20.0))
-    if not out:
-        return max(0.01 * float(np.ptp(values[np.isfinite(values)])), 1e-9)
-    return max(robust(np.concatenate(out)), 1e-9)

@@ -1,20 +1,18 @@
-"""What a diagnosis has to remark beside its findings: facts, put into sentences by :mod:`mffit.diagnosis.wording`."""
+"""Remarks of a diagnosis beside its findings: facts, put into sentences by :mod:`mffit.diagnosis.wording`."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 from mffit.diagnosis.misread import Misread
+from mffit.diagnosis.validation import Validation
+from mffit.effects import Effect
 from tir import Quantity
-
-if TYPE_CHECKING:
-    from mffit.diagnosis.validate import Validation
 
 
 @dataclass(frozen=True, slots=True)
 class OneSweep:
-    """There is one sweep only, which cannot tell causes apart."""
+    """There is only one sweep, which cannot separate causes."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -22,20 +20,20 @@ class NotVisible:
     """Effects that the data cannot show."""
 
     needs: tuple[str, ...]  #: what the data lack, keys of ``mffit.effects.NEEDS``
-    effects: tuple[str, ...]  #: ids
+    effects: tuple[Effect, ...]
 
 
 @dataclass(frozen=True, slots=True)
 class HardlyThisTyre:
-    """The model is so wrong, whatever is added, that naming an effect would be a guess."""
+    """The model is so wrong even with the best effects that naming one would be a guess."""
 
     misfit: float  #: in units of the noise
-    channel: str  #: "Fy" | "Mz", the better
+    channel: str  #: "Fy" | "Mz", whichever fits better
 
 
 @dataclass(frozen=True, slots=True)
 class NoRepair:
-    """The best explanation raises the gap on left-out sweeps, so that nothing is repaired."""
+    """The best explanation raises the gap on left-out sweeps and is not written."""
 
     effects: tuple[str, ...]  #: their names
     validation: Validation
@@ -43,23 +41,23 @@ class NoRepair:
 
 @dataclass(frozen=True, slots=True)
 class ModelOfLastBuild:
-    """The model is a file of the last build that does not carry the plain name."""
+    """The model is a file of the last build, other than the one with the plain name."""
 
     file: str
 
 
 @dataclass(frozen=True, slots=True)
 class ModelFittedFirst:
-    """No model was given and no build was there, so one was fitted to the same points."""
+    """Without a given model or an earlier build, a model was fitted to the same points."""
 
-    turn_slip: bool  #: whether the simulation computes it
+    turn_slip: bool  #: whether the simulation computes turn slip
 
 
 @dataclass(frozen=True, slots=True)
 class DirectMethodRedone:
-    """eps_gamma with the rig's faults in the readings and without them; None where it could not be measured."""
+    """eps_gamma with and without the rig's faults in the readings; None where it could not be measured."""
 
-    causes: tuple[str, ...]  #: plain names of the faults
+    causes: tuple[str, ...]  #: names of the faults
     before: Quantity | None
     after: Quantity | None
 

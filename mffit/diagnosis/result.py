@@ -1,22 +1,21 @@
-"""The record of a diagnosis: everything that a report says of it."""
+"""The record of a diagnosis."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
 from mffit.brief import Brief
-from mffit.diagnosis import wording
+from mffit.diagnosis.bumps import Bump
 from mffit.diagnosis.limits import Limit
 from mffit.diagnosis.noise import Noise
 from mffit.diagnosis.notes import Note
 from mffit.diagnosis.selection import Step
 from mffit.diagnosis.smooth import Smooth
 from mffit.diagnosis.ties import Separation
-from mffit.diagnosis.unknown import Bump
-from mffit.diagnosis.validate import Gap, Validation
+from mffit.diagnosis.validation import Gap, Validation
 from mffit.diagnosis.where import Region
 from mffit.effects import Effect
 from mffit.fit.outliers import Outlier
@@ -35,15 +34,21 @@ class Found:
     parameters: Mapping[str, tuple[float, float]]  #: name -> (value, standard error)
     before: Mapping[str, float]  #: the same as given
     gap_after: Gap  #: with this and all earlier effects
-    tied_with: tuple[str, ...]  #: ids that the data do not tell from it
-    separation: Separation | None  #: the run that would, if any is tied
-    T_ref: float | None = None  #: temperature from which an effect of temperature counts [degC]
+    tied: tuple[Effect, ...]  #: effects that explain the data as well in its place
+    separation: Separation | None  #: the run that separates them, if any is tied
+    T_ref: float | None = None  #: reference temperature of an effect of temperature [degC]
+
+    @property
+    def tied_with(self) -> tuple[str, ...]:
+        """Ids of the tied effects."""
+        return tuple(effect.id for effect in self.tied)
 
 
 @dataclass(frozen=True, slots=True, repr=False)
 class Diagnosis(Brief):
     """Where simulation and measurement disagree, what explains it, and what remains."""
 
+    headline: str = field()  #: the answer in one sentence; replaces the property of Brief
     points: Points
     noise: Noise
     before: np.ndarray  #: readings of the given model (2n,), Fy [N] then Mz [Nm]
@@ -53,34 +58,28 @@ class Diagnosis(Brief):
     validation: Validation
     where: tuple[Region, ...]
     effects: tuple[Found, ...]
-    alternatives: Mapping[str, float]  #: id -> confidence of what was not accepted
+    alternatives: Mapping[str, float]  #: id -> confidence of effects that were not accepted
     steps: tuple[Step, ...]
     unexplained: bool
     unexplained_where: tuple[Region, ...]
     bump: Bump | None
     smooth: Smooth | None  #: smooth structure without a name
     outliers: tuple[Outlier, ...]
-    coefficients: Mapping[
-        str, tuple[float, float]
-    ]  #: inexact coefficients as estimated beside the effects: value and error
-    limits: tuple[Limit, ...]  #: how large what was not named can be
+    coefficients: Mapping[str, tuple[float, float]]
+    """Inexact coefficients as estimated beside the effects: name -> (value, standard error)."""
+    limits: tuple[Limit, ...]  #: how large effects that were not named can be
     given: Simulation  #: the simulation as given
     state: Simulation  #: the simulation after all corrections
-    signs: Mapping[str, float]  #: +1 or -1 per channel: what turns ISO-W into the rig's axes
+    signs: Mapping[str, float]  #: +1 or -1 per channel: the rig's axes over ISO-W
     tyre: Tyre  #: the corrected property file
     notes: tuple[Note, ...]
     model_after: str  #: file name of the corrected model in the output folder
 
     @property
     def faults(self) -> Faults:
-        """Rig faults and environment terms that were found."""
+        """Rig faults and environment terms of the corrected simulation."""
         return self.state.faults
 
-    @property
-    def headline(self) -> str:
-        """The whole answer in one sentence."""
-        return wording.headline(self)
-
     def ranked_alternatives(self) -> list[tuple[str, float]]:
-        """Id and confidence of what was not accepted, likeliest first."""
+        """Id and confidence of effects that were not accepted, likeliest first."""
         return sorted(self.alternatives.items(), key=lambda item: -item[1])

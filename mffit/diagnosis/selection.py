@@ -1,4 +1,4 @@
-"""Which effects the data call for: forward steps, exchange and backward check, on evidence."""
+"""Effects that the data ask for: forward steps, exchange and backward check, by evidence."""
 
 from __future__ import annotations
 
@@ -6,30 +6,19 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
-from mffit.diagnosis.candidates import PROMISING, Hypothesis, Problem
+from mffit.diagnosis import constants
+from mffit.diagnosis.hypothesis import Hypothesis
+from mffit.diagnosis.problem import DiagnosisProblem, refitted
 from mffit.effects import Effect
 from mffit.rig import Simulation
+from tir.parameters import BY_NAME
 
-MOST_EFFECTS = 4
-EXCHANGED = 4
-"""Candidates that may take the place of an accepted effect: the best of the step, the others have no chance."""
-EXCHANGE_GAIN = 1.0
-"""Log evidence by which a set must be better than the one it takes the place of."""
-FEWEST_FITTED = 4
-"""Candidates of a step that are fitted in full in any case."""
-CLOSE, HOPE = 0.1, 2.0
-"""Gain to first order, relative to the largest and in log evidence, below which the others are not."""
-MARGIN = 4.0
-"""Log evidence an effect must bring beyond what picking the best of the whole list brings by chance."""
-NEVER_IDENTIFIED = 1.0
-"""Log prior odds of a coefficient at zero over rig effects, and of those over a coefficient that the model has."""
-TIE = 1.5
-"""Difference of log evidence below which two effects are not told apart."""
+Ids = frozenset[str]
 
 
 @dataclass(frozen=True, slots=True)
 class Step:
-    """One forward step: how every candidate did beside the effects accepted before."""
+    """One forward step: every candidate beside the effects accepted before."""
 
     before: Hypothesis
     trials: tuple[Hypothesis, ...]  #: best first, each with one effect more than ``before``
@@ -64,103 +53,97 @@ class Step:
 
 
 def log_prior(effect: Effect, start: Simulation) -> float:
-    """What is known before the data: decides the order among effects that they hardly tell apart.
+    """Log prior of an effect; it orders effects that the data hardly separate.
 
-    A coefficient that the given model has at exactly zero was never identified and is likelier to be what is missing than
-    one that the model already has.
+    A coefficient that the given model has at exactly zero was never identified. It is likelier to be missing than one that
+    the model already has.
     """
-    if effect.kind != "tyre" or "turn_slip" in effect.parameters or "relaxation_m" in effect.parameters:
+    if effect.kind != "tyre" or not all(name in BY_NAME for name in effect.parameters):
         return effect.prior
     unidentified = all(float(start.values[name]) == 0.0 for name in effect.parameters)
-    return effect.prior + (NEVER_IDENTIFIED if unidentified else -NEVER_IDENTIFIED)
-
-
-def forward_step(problem: Problem, before: Hypothesis, candidates: Sequence[Effect]) -> Step:
-    """Try every candidate beside the accepted effects, all numbers refitted where that has any prospect."""
-    taken = {effect.id for effect in before.effects}
-    trials = []
-    left = problem.promising(before, [e for e in candidates if e.id not in taken])
-    for rank, (effect, gain) in enumerate(left):
-        if rank < FEWEST_FITTED or (rank < PROMISING and gain > max(HOPE, CLOSE * left[0][1])):
-            trials.append(problem.fit((*before.effects, effect), before.numbers))
-        else:  # to first order
-            effects, evidence = (*before.effects, effect), before.log_evidence + gain
-            trials.append(replace(before, effects=effects, log_evidence=evidence))
-    trials.sort(key=lambda t: -(t.log_evidence + log_prior(t.effects[-1], problem.start)))
-    return Step(before, tuple(trials), price(len(candidates)), problem.start)
+    return effect.prior + (1.0 if unidentified else -1.0) * constants.UNIDENTIFIED_LOG_ODDS
 
 
 def price(candidates: int) -> float:
-    """Log evidence that an effect must bring to be taken, and to be kept: the choice among all candidates, and a margin."""
-    return math.log(max(candidates, 1)) + MARGIN
+    """Log evidence that an effect must add to be taken, and to be kept: the choice among all candidates, and a margin."""
+    return math.log(max(candidates, 1)) + constants.EVIDENCE_MARGIN
 
 
-def select(problem: Problem, candidates: Sequence[Effect]) -> tuple[Hypothesis, list[Step]]:
-    """Forward steps until nothing passes; after each, exchange and drop what became needless.
+def select(problem: DiagnosisProblem, candidates: Sequence[Effect]) -> tuple[Hypothesis, list[Step]]:
+    """Forward steps until nothing passes; after each, exchange effects and drop one that became needless.
 
-    Fits end in local optima, so that a set can look better or worse when it is met again. A set that was left for
-    another is therefore never entered a second time, which ends the search after finitely many steps.
+    A fit may end in a local optimum, so that a set can look better or worse when it is met again. A set that was replaced is
+    therefore never entered a second time, which ends the search.
     """
-    current, steps, left = problem.null, [], set[frozenset[str]]()
-    while len(current.effects) < min(MOST_EFFECTS, len(candidates)):
+    current, steps, left = problem.null, [], set[Ids]()
+    while len(current.effects) < min(constants.MOST_EFFECTS, len(candidates)):
         step = forward_step(problem, current, candidates)
         steps.append(step)
-        left.add(ids(current))
-        if not step.passes or ids(step.best) in left:
+        left.add(current.ids)
+        if not step.passes or step.best.ids in left:
             break
-        near = [trial.effects[-1] for trial in (*step.trials[:EXCHANGED], *steps[0].trials[:EXCHANGED])]
+        most = constants.MOST_EXCHANGE_CANDIDATES
+        near = [trial.effects[-1] for trial in (*step.trials[:most], *steps[0].trials[:most])]
         current = _exchanged(problem, step.best, tuple(dict.fromkeys(near)), left)
         current = _without_needless(problem, current, step.threshold, left)
     return current, steps
 
 
-def ids(hypothesis: Hypothesis) -> frozenset[str]:
-    """The set of effects of a hypothesis, whatever their order."""
-    return frozenset(effect.id for effect in hypothesis.effects)
+def forward_step(problem: DiagnosisProblem, before: Hypothesis, candidates: Sequence[Effect]) -> Step:
+    """Every candidate beside the accepted effects; those with any prospect are fitted in full."""
+    trials = []
+    ranked = problem.promising(before, [e for e in candidates if e.id not in before.ids])
+    for rank, (effect, gain) in enumerate(ranked):
+        effects = (*before.effects, effect)
+        hope = max(constants.PROMISING_GAIN, constants.PROMISING_SHARE * ranked[0][1])
+        if rank < constants.FEWEST_CANDIDATES_FITTED or (
+            rank < constants.MOST_CANDIDATES_FITTED and gain > hope
+        ):
+            trials.append(problem.fit(effects, before.numbers))
+        else:  # to first order
+            trials.append(replace(before, effects=effects, log_evidence=before.log_evidence + gain))
+    trials.sort(key=lambda t: -(t.log_evidence + log_prior(t.effects[-1], problem.start)))
+    return Step(before=before, trials=tuple(trials), threshold=price(len(candidates)), start=problem.start)
 
 
 def _exchanged(
-    problem: Problem, current: Hypothesis, candidates: Sequence[Effect], left: set[frozenset[str]]
+    problem: DiagnosisProblem, current: Hypothesis, candidates: Sequence[Effect], left: set[Ids]
 ) -> Hypothesis:
-    """Exchange single effects while that helps; adds to ``left`` what was given up."""
+    """The hypothesis after exchanges of single effects that help; adds replaced sets to ``left``."""
     for _ in range(2 if len(current.effects) > 1 else 0):
         best = current
-        for i in range(len(current.effects)):
-            rest = tuple(e for k, e in enumerate(current.effects) if k != i)
-            new = [
-                e for e in candidates
-                if e not in current.effects and frozenset(o.id for o in (*rest, e)) not in left
-            ]  # fmt: skip
-            without = problem.fit(rest, _numbers_of(rest, current))
+        for effect in current.effects:
+            rest = current.others(effect)
+            new = [e for e in candidates if e not in current.effects and _ids(*rest, e) not in left]
+            without = refitted(problem, current, rest)
             lacks = best.log_evidence - without.log_evidence
             for other, gain in problem.promising(without, new):
-                if (1.0 + CLOSE) * gain + HOPE < lacks:
+                if (1.0 + constants.PROMISING_SHARE) * gain + constants.PROMISING_GAIN < lacks:
                     continue
-                trial = problem.fit((*rest, other), _numbers_of(rest, current))
-                if trial.log_evidence > best.log_evidence + EXCHANGE_GAIN:
+                trial = problem.fit((*rest, other), current.numbers_of(rest))
+                if trial.log_evidence > best.log_evidence + constants.EXCHANGE_GAIN:
                     best = trial
         if best is current:
             break
-        left.add(ids(current))
+        left.add(current.ids)
         current = best
     return current
 
 
 def _without_needless(
-    problem: Problem, current: Hypothesis, needed: float, left: set[frozenset[str]]
+    problem: DiagnosisProblem, current: Hypothesis, needed: float, left: set[Ids]
 ) -> Hypothesis:
-    """Drop the first effect beside the others that brings less than ``needed``; adds to ``left`` what was given up."""
+    """The hypothesis without the first effect that adds less than ``needed``; adds a replaced set to ``left``."""
     for effect in current.effects if len(current.effects) > 1 else ():
-        rest = tuple(e for e in current.effects if e.id != effect.id)
-        if frozenset(e.id for e in rest) in left:
+        rest = current.others(effect)
+        if _ids(*rest) in left:
             continue
-        without = problem.fit(rest, _numbers_of(rest, current))
+        without = refitted(problem, current, rest)
         if current.log_evidence - without.log_evidence < needed:
-            left.add(ids(current))
+            left.add(current.ids)
             return without
     return current
 
 
-def _numbers_of(effects: Sequence[Effect], hypothesis: Hypothesis) -> dict[str, float]:
-    names = {name for effect in effects for name in effect.parameters}
-    return {name: value for name, value in hypothesis.numbers.items() if name in names}
+def _ids(*effects: Effect) -> Ids:
+    return frozenset(effect.id for effect in effects)

@@ -1,4 +1,4 @@
-"""Smooth structure that no effect describes: low-order curves over all conditions, the global rival of every effect."""
+"""Smooth structure without a name: low-order curves over all conditions, the global rival of every named effect."""
 
 from __future__ import annotations
 
@@ -10,23 +10,15 @@ import numpy as np
 from numpy.polynomial.legendre import legvander
 from scipy.linalg import cholesky, solve_triangular
 
-from mffit.diagnosis.candidates import Hypothesis
+from mffit.diagnosis import constants
+from mffit.diagnosis.hypothesis import Hypothesis, outside
 from mffit.diagnosis.noise import Noise
 from mffit.points import Points
 from mffit.quantities import CHANNELS
+from mffit.scatter import rms
 
-BEND = np.radians(4.0)
-"""Sideslip over which side force saturates: the curves are finer below it than beyond."""
-ANGLES = 5
-"""Largest order over sideslip and camber together."""
-CROSSED = 3
-"""Largest order of a product of angles with load or another condition."""
-SLOW = 6
-"""Largest order over time."""
-AMPLITUDES = np.geomspace(0.001, 0.3, 12)
-"""Sizes that are tried, relative to the channel."""
-NEEDED = 8.0
-"""Log evidence, the choice of the amplitude paid for, at which smooth structure counts as found."""
+SMALLEST, LARGEST = constants.SMOOTH_AMPLITUDES
+AMPLITUDES = np.geomspace(SMALLEST, LARGEST, constants.SMOOTH_AMPLITUDES_TRIED)
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,23 +30,22 @@ class Smooth:
 
     @property
     def found(self) -> bool:
-        return self.gain > NEEDED
+        return self.gain > constants.STRUCTURE_EVIDENCE
 
 
 NO_SMOOTH = Smooth(dict.fromkeys(CHANNELS, 0.0), 0.0)
 
 
 def smooth_basis(points: Points, simulated: np.ndarray) -> np.ndarray:
-    """Smooth changes (2n, k) of the readings, Fy and Mz apart, each as large as its order makes it plausible.
+    """Smooth changes (2n, k) of the readings, separate for Fy and Mz, smaller the higher their order.
 
-    With amplitude 1 they vary together as much as the readings of their channel do. Changes of gain are in proportion to
-    the ``simulated`` readings (2n,): the measured ones carry the errors that they would have to be told from.
+    At amplitude 1 they vary together as much as the readings of their channel do. Changes of gain are proportional to the
+    ``simulated`` readings (2n,), because the measured ones contain the errors to be explained.
     """
     shapes, gains = _shapes(points), _gains(points)
     rows = []
     for values, model in zip((points.Fy, points.Mz), np.split(simulated, 2), strict=True):
-        known = values[np.isfinite(values)]
-        size = float(np.sqrt(np.mean(known**2))) if len(known) else 0.0
+        size = float(np.nan_to_num(rms(values)))
         columns = np.hstack([size * shapes, np.nan_to_num(model)[:, None] * gains])
         rows.append(columns * (size / max(float(np.sqrt(np.mean(np.sum(columns**2, axis=1)))), 1e-12)))
     nothing = np.zeros_like(rows[0])
@@ -62,13 +53,14 @@ def smooth_basis(points: Points, simulated: np.ndarray) -> np.ndarray:
 
 
 def _conditions(points: Points) -> list[np.ndarray]:
-    """Orders (n, k) over everything but the angles."""
+    """Legendre polynomials (n, k) over every condition but the angles."""
+    few = constants.MOST_CONDITION_ORDER
     others = [
-        (np.log(points.Fz), 2),
-        (points.p, 2),
-        (points.T, 2),
-        (points.V, 2),
-        (points.t, SLOW),
+        (np.log(points.Fz), few),
+        (points.p, few),
+        (points.T, few),
+        (points.V, few),
+        (points.t, constants.MOST_TIME_ORDER),
         (points.direction.astype(float), 1),
     ]
     return [_orders(np.where(np.isfinite(values), values, np.nan), most) for values, most in others]
@@ -81,21 +73,23 @@ def _gains(points: Points) -> np.ndarray:
 
 
 def _shapes(points: Points) -> np.ndarray:
-    """Products (n, k) of Legendre polynomials, each as large as its order makes it plausible."""
-    a = _orders(np.arctan(points.alpha / BEND), ANGLES)
-    g = _orders(points.gamma, ANGLES)
+    """Products (n, k) of Legendre polynomials over angles and conditions, smaller the higher their order."""
+    most = constants.MOST_ANGLE_ORDER
+    a = _orders(np.arctan(points.alpha / constants.SATURATION_SIDESLIP.rad), most)
+    g = _orders(points.gamma, most)
     angles = {
         (i, j): a[:, i] * g[:, j]
         for i, j in itertools.product(range(a.shape[1]), range(g.shape[1]))
-        if i + j <= ANGLES
+        if i + j <= most
     }
-    columns = {(*key, 0): value for key, value in angles.items()}
-    for number, along in enumerate(_conditions(points), start=1):
+    columns = [(i + j, shape) for (i, j), shape in angles.items()]
+    for along in _conditions(points):
         for k in range(1, along.shape[1]):
             for (i, j), shape in angles.items():
-                if i + j + min(k, 2) <= CROSSED or (k > 2 and i + j <= 1):
-                    columns[i, j, 10 * number + k] = shape * along[:, k]
-    scaled = [value / (1.0 + i + j + key % 10) for (i, j, key), value in columns.items() if np.any(value)]
+                # Higher orders, which only time has, are combined with the simplest shapes alone.
+                if i + j + min(k, 2) <= constants.MOST_CROSS_ORDER or (k > 2 and i + j <= 1):
+                    columns.append((i + j + k, shape * along[:, k]))
+    scaled = [shape / (1.0 + order) for order, shape in columns if np.any(shape)]
     return np.column_stack(scaled)
 
 
@@ -111,20 +105,18 @@ def _orders(values: np.ndarray, most: int) -> np.ndarray:
 
 @dataclass(frozen=True, slots=True)
 class SmoothScan:
-    """All smooth structure that the programme could show, whitened once."""
+    """All smooth structure that the programme could show."""
 
     shapes: np.ndarray  #: (m, k) whitened
     half: int  #: columns of Fy; the others are of Mz
 
     def best(self, hypothesis: Hypothesis) -> Smooth:
-        """The amplitudes that explain most of what the hypothesis leaves, its own freed numbers projected out."""
-        shapes, residual = self.shapes, hypothesis.residual
-        if hypothesis.jacobian.shape[1]:
-            Q, _ = np.linalg.qr(hypothesis.jacobian)
-            shapes, residual = shapes - Q @ (Q.T @ shapes), residual - Q @ (Q.T @ residual)
+        """The amplitudes that explain most of a hypothesis' residual, its own freed numbers projected out."""
+        axes = hypothesis.axes
+        shapes, residual = outside(axes, self.shapes), outside(axes, hypothesis.residual)
         power, score = shapes.T @ shapes, shapes.T @ residual
         size, gain = [0.0, 0.0], 0.0
-        for channel in (0, 1, 0):  # seen through inexact coefficients the channels hang together
+        for channel in (0, 1, 0):  # inexact coefficients correlate the channels
             for amplitude in AMPLITUDES:
                 trial = [amplitude if k == channel else size[k] for k in (0, 1)]
                 value = _gain(power, score, np.repeat(trial, (self.half, len(score) - self.half)))
@@ -134,7 +126,7 @@ class SmoothScan:
 
 
 def smooth_scan(basis: np.ndarray, noise: Noise) -> SmoothScan:
-    """The basis as seen through the noise."""
+    """The basis, whitened."""
     return SmoothScan(noise.whiten(basis), basis.shape[1] // 2)
 
 
@@ -145,7 +137,7 @@ def amplified(basis: np.ndarray, smooth: Smooth) -> np.ndarray:
 
 
 def _gain(power: np.ndarray, score: np.ndarray, amplitude: np.ndarray) -> float:
-    """Log evidence of smooth structure of given amplitudes (k,), their choice paid for."""
+    """Log evidence of smooth structure of given amplitudes (k,), less the price of their choice."""
     some = amplitude > 0.0
     scaled = amplitude[some]
     root = cholesky(

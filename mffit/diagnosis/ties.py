@@ -1,100 +1,95 @@
-"""Effects that the data cannot tell apart, and the run that would."""
+"""The run that would separate two explanations."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from enum import Enum, auto
+from enum import Enum
 
 import numpy as np
 
-from mffit.diagnosis.candidates import Hypothesis
+from mffit.diagnosis import constants
+from mffit.diagnosis.hypothesis import Hypothesis
 from mffit.points import Points, main_pressure
 
-TELLING = 9.0
-"""Expected chi2 between two explanations at which a run is worth making."""
-
-
-class Run(Enum):
-    """A run that could be added to the programme."""
-
-    BACKWARD = auto()
-    TURNED_ON_RIM = auto()
-    OTHER_LOAD = auto()
-    CAMBER = auto()
-    BACKWARD_CAMBER = auto()
-    LEANED = auto()
-    LOW_PRESSURE = auto()
-    FAST = auto()
-    WARM = auto()
-    LATE = auto()
-    STRAIGHT = auto()
-    WIDE = auto()
-    STRAIGHT_CAMBER = auto()
+Run = Enum(
+    "Run",
+    "BACKWARD TURNED_ON_RIM OTHER_LOAD CAMBER BACKWARD_CAMBER LEANED LOW_PRESSURE FAST WARM LATE STRAIGHT WIDE STRAIGHT_CAMBER",
+)
+"""A run that could be added to the programme."""
 
 
 @dataclass(frozen=True, slots=True)
 class Separation:
-    """The best run to tell two explanations apart, and what it would bring."""
+    """The run that separates two explanations best."""
 
     run: Run
-    load: float  #: at which it would be run [N]
-    chi2: float  #: expected, for the explanations as fitted
+    load: float  #: of the run [N]
+    chi2: float  #: expected between the explanations as fitted
 
-
-def candidate_runs(points: Points) -> tuple[tuple[Run, Points], ...]:
-    """Runs a rig could add: the other direction or mount, other loads, radii, cambers, pressures and speeds."""
-    main = points.select(main_pressure(points) & (points.direction > 0) & (points.mount > 0))
-    loads = np.unique(np.round(main.Fz, -1))
-    load = float(np.median(main.Fz))
-    reach = float(np.max(np.abs(main.alpha)))
-    slip = _line(main, load, alpha=np.linspace(-reach, reach, 13))
-    camber = _line(main, load, gamma=np.radians([-40, -25, -15, -8, -4, 0, 4, 8, 15, 25, 40]))
-    backward = -np.ones(len(slip), int)
-    warmer = np.nan_to_num(slip.T, nan=25.0) + 20.0
-    later = np.full(len(slip), 1.2 * float(np.max(np.nan_to_num(points.t))) + 600.0)
-    runs = [
-        (Run.BACKWARD, slip.replace(direction=backward)),
-        (Run.TURNED_ON_RIM, slip.replace(mount=backward)),
-        (Run.OTHER_LOAD, slip.replace(Fz=np.full(len(slip), 1.4 * loads.max()))),
-        (Run.OTHER_LOAD, slip.replace(Fz=np.full(len(slip), 0.5 * loads.min()))),
-        (Run.CAMBER, camber),
-        (Run.BACKWARD_CAMBER, camber.replace(direction=backward[: len(camber)])),
-        (Run.LEANED, slip.replace(gamma=np.full(len(slip), np.radians(20.0)))),
-        (Run.LOW_PRESSURE, slip.replace(p=0.8 * slip.p)),
-        (Run.FAST, slip.replace(V=2.0 * slip.V)),
-        (Run.WARM, slip.replace(T=warmer)),
-        (Run.LATE, slip.replace(t=later)),
-    ]
-    if np.any(points.phi_t):
-        runs += [
-            (Run.STRAIGHT, slip.replace(phi_t=np.zeros(len(slip)))),
-            (Run.WIDE, slip.replace(phi_t=slip.phi_t / 2.0)),
-            (Run.STRAIGHT_CAMBER, camber.replace(phi_t=np.zeros(len(camber)))),
-        ]
-    return tuple(runs)
+    @property
+    def worthwhile(self) -> bool:
+        """Whether the run would decide between them."""
+        return self.chi2 >= constants.SEPARATING_CHI2
 
 
 def separation(points: Points, a: Hypothesis, b: Hypothesis, noise_Fy: float, noise_Mz: float) -> Separation:
-    """The candidate run at which the two refitted explanations differ most."""
+    """The candidate run at which two refitted explanations differ most.
+
+    Parameters
+    ----------
+    points : the programme to which a run could be added
+    a, b : the explanations
+    noise_Fy, noise_Mz : standard uncertainty of a reading [N], [Nm]; NaN without a moment
+    """
     found = []
     for run, added in candidate_runs(points):
         n, difference = len(added), a.state.predict(added) - b.state.predict(added)
         chi2 = float(np.sum((difference[:n] / noise_Fy) ** 2))
         if np.isfinite(noise_Mz):
             chi2 += float(np.sum((difference[n:] / noise_Mz) ** 2))
-        found.append(Separation(run, float(added.Fz[0]), chi2))
+        found.append(Separation(run=run, load=float(added.Fz[0]), chi2=chi2))
     return max(found, key=lambda s: s.chi2)
 
 
-def _line(points: Points, load: float, alpha=0.0, gamma=0.0) -> Points:
+def candidate_runs(points: Points) -> tuple[tuple[Run, Points], ...]:
+    """Runs that a rig could add: the other direction or mount, other loads, radii, cambers, pressures and speeds."""
+    main = points.select(main_pressure(points) & (points.direction > 0) & (points.mount > 0))
+    load = float(np.median(main.Fz))
+    loads = np.unique(np.round(main.Fz, -1))
+    lower, higher = np.array(constants.TIE_RUN_OTHER_LOADS) * (loads.min(), loads.max())
+    reach = float(np.max(np.abs(main.alpha)))
+    slip = _line(main, load, alpha=np.linspace(-reach, reach, constants.TIE_RUN_SIDESLIP_POINTS))
+    camber = _line(main, load, gamma=np.radians(constants.TIE_RUN_CAMBERS))
+    warmer = np.nan_to_num(slip.T, nan=constants.TIE_RUN_UNKNOWN_TEMPERATURE) + constants.TIE_RUN_WARMER
+    end = float(np.max(np.nan_to_num(points.t)))
+    later = constants.TIE_RUN_LATER_SHARE * end + constants.TIE_RUN_LATER
+    runs = [
+        (Run.BACKWARD, slip.replace(direction=-1)),
+        (Run.TURNED_ON_RIM, slip.replace(mount=-1)),
+        (Run.OTHER_LOAD, slip.replace(Fz=higher)),
+        (Run.OTHER_LOAD, slip.replace(Fz=lower)),
+        (Run.CAMBER, camber),
+        (Run.BACKWARD_CAMBER, camber.replace(direction=-1)),
+        (Run.LEANED, slip.replace(gamma=constants.TIE_RUN_LEANED.rad)),
+        (Run.LOW_PRESSURE, slip.replace(p=constants.TIE_RUN_LOW_PRESSURE * slip.p)),
+        (Run.FAST, slip.replace(V=constants.TIE_RUN_FAST * slip.V)),
+        (Run.WARM, slip.replace(T=warmer)),
+        (Run.LATE, slip.replace(t=later)),
+    ]
+    if np.any(points.phi_t):
+        runs += [
+            (Run.STRAIGHT, slip.replace(phi_t=0.0)),
+            (Run.WIDE, slip.replace(phi_t=slip.phi_t / constants.TIE_RUN_WIDE)),
+            (Run.STRAIGHT_CAMBER, camber.replace(phi_t=0.0)),
+        ]
+    return tuple(runs)
+
+
+def _line(
+    points: Points, load: float, alpha: np.ndarray | float = 0.0, gamma: np.ndarray | float = 0.0
+) -> Points:
     """Steady points along one angle, everything else as at the point nearest the load."""
     n = max(np.size(alpha), np.size(gamma))
     nearest = int(np.argmin(np.abs(points.Fz - load)))
     line = points.select(np.full(n, nearest))
-    return line.replace(
-        alpha=np.broadcast_to(alpha, n),
-        gamma=np.broadcast_to(gamma, n),
-        Fz=np.full(n, load),
-        continuous=np.zeros(n, bool),
-        time=np.full(n, np.nan),
-    )
+    return line.replace(alpha=alpha, gamma=gamma, Fz=load, continuous=False, time=np.nan)

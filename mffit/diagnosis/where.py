@@ -1,20 +1,18 @@
-"""Where measurement and simulation disagree: regions that stand out, with size and significance."""
+"""Regions of the programme in which measurement and simulation disagree, with size and significance."""
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
 from scipy.stats import false_discovery_control, norm
 
+from mffit.diagnosis import constants
 from mffit.diagnosis.noise import Noise
 from mffit.points import Points, levels
 
-FALSE_DISCOVERY = 0.01
-FEWEST = 4
-MOST_REGIONS = 12
-MOST_BINS = 6
 PAIRS = (
     ("alpha_deg", "gamma_deg"),
     ("alpha_deg", "Fz_N"),
@@ -22,6 +20,7 @@ PAIRS = (
     ("alpha_deg", "direction"),
     ("Fz_N", "p_kPa"),
 )
+Range = tuple[float, float]
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,13 +28,13 @@ class Region:
     """A part of the programme in which one channel is off on average."""
 
     channel: str  #: "Fy" | "Mz"
-    region: dict[str, tuple[float, float]]
+    region: dict[str, Range]
     bias: float  #: mean of measured minus simulated [N] or [Nm]
-    z: float  #: in standard errors, correlations counted
+    z: float  #: in standard errors, correlations included
 
 
 def where(points: Points, residual: np.ndarray, noise: Noise) -> tuple[Region, ...]:
-    """Regions whose mean residual differs from zero, false discovery held at 1 %.
+    """Regions whose mean residual differs from zero, at a false discovery rate of 1 %.
 
     Parameters
     ----------
@@ -45,39 +44,50 @@ def where(points: Points, residual: np.ndarray, noise: Noise) -> tuple[Region, .
 
     Returns
     -------
-    Up to twelve regions, the most significant first; one that only repeats a stronger one's points is left out.
+    tuple of Region
+        Up to twelve, the most significant first, without those that only repeat the points of a more significant one.
     """
-    found, p_values = [], []
-    position = np.full(len(residual), -1)
-    position[noise.used] = np.arange(len(noise.used))
-    n = len(points)
-    for region, mask in _cells(points):
-        for channel, offset in (("Fy", 0), ("Mz", n)):
-            rows = position[np.flatnonzero(mask) + offset]
-            rows = rows[rows >= 0]
-            if len(rows) < FEWEST:
-                continue
-            values = residual[noise.used[rows]]
-            error = noise.error_of_sum(rows) / len(rows)
-            z = float(values.mean()) / error
-            found.append((Region(channel, region, float(values.mean()), z), frozenset(rows.tolist())))
-            p_values.append(2.0 * norm.sf(abs(z)))
+    found = list(_tested(points, residual, noise))
     if not found:
         return ()
+    p_values = [2.0 * norm.sf(abs(region.z)) for region, _ in found]
     adjusted = false_discovery_control(np.clip(p_values, 1e-300, 1.0))
-    passing = [found[i] for i in np.flatnonzero(adjusted < FALSE_DISCOVERY)]
+    passing = [found[k] for k in np.flatnonzero(adjusted < constants.REGION_FALSE_DISCOVERY)]
     passing.sort(key=lambda item: -abs(item[0].z))
-    kept: list[tuple[Region, frozenset]] = []
-    for region, members in passing:
-        if all(len(members & other) < 0.6 * min(len(members), len(other)) for _, other in kept):
+    return _distinct(passing)
+
+
+def _tested(points: Points, residual: np.ndarray, noise: Noise) -> Iterator[tuple[Region, frozenset[int]]]:
+    """Every cell and channel with its mean residual, and the readings in it."""
+    position = np.full(len(residual), -1)
+    position[noise.used] = np.arange(len(noise.used))
+    for region, mask in _cells(points):
+        for channel, first in (("Fy", 0), ("Mz", len(points))):
+            rows = position[np.flatnonzero(mask) + first]
+            rows = rows[rows >= 0]
+            if len(rows) < constants.FEWEST_READINGS_OF_A_REGION:
+                continue
+            bias = float(residual[noise.used[rows]].mean())
+            z = bias / (noise.error_of_sum(rows) / len(rows))
+            yield Region(channel=channel, region=region, bias=bias, z=z), frozenset(rows.tolist())
+
+
+def _distinct(ranked: list[tuple[Region, frozenset[int]]]) -> tuple[Region, ...]:
+    """The first regions that do not repeat the readings of one before them."""
+    kept: list[tuple[Region, frozenset[int]]] = []
+    for region, members in ranked:
+        if all(
+            len(members & other) < constants.REGION_OVERLAP * min(len(members), len(other))
+            for _, other in kept
+        ):
             kept.append((region, members))
-        if len(kept) == MOST_REGIONS:
+        if len(kept) == constants.MOST_REGIONS:
             break
     return tuple(region for region, _ in kept)
 
 
-def _cells(points: Points):
-    """Cells of single variables and of pairs."""
+def _cells(points: Points) -> Iterator[tuple[dict[str, Range], np.ndarray]]:
+    """Ranges and masks (n,) of the bins of single variables and of pairs."""
     bins = _bins(points)
     for name, cells in bins.items():
         for limits, mask in cells:
@@ -86,11 +96,12 @@ def _cells(points: Points):
         for limits_a, mask_a in bins.get(a, ()):
             for limits_b, mask_b in bins.get(b, ()):
                 mask = mask_a & mask_b
-                if mask.sum() >= FEWEST:
+                if mask.sum() >= constants.FEWEST_READINGS_OF_A_REGION:
                     yield {a: limits_a, b: limits_b}, mask
 
 
-def _bins(points: Points) -> dict[str, list[tuple[tuple[float, float], np.ndarray]]]:
+def _bins(points: Points) -> dict[str, list[tuple[Range, np.ndarray]]]:
+    """Bins of every variable that has at least two."""
     variables = {
         "alpha_deg": np.degrees(points.alpha),
         "gamma_deg": np.degrees(points.gamma),
@@ -104,21 +115,22 @@ def _bins(points: Points) -> dict[str, list[tuple[tuple[float, float], np.ndarra
     return {name: cells for name, values in variables.items() if len(cells := _cut(values)) > 1}
 
 
-def _cut(values: np.ndarray) -> list[tuple[tuple[float, float], np.ndarray]]:
-    """At most six bins: the levels that the values keep to where there are few, else equal counts."""
+def _cut(values: np.ndarray) -> list[tuple[Range, np.ndarray]]:
+    """Bins of values (n,): their levels if there are few, else quantiles."""
+    fewest, most = constants.FEWEST_READINGS_OF_A_REGION, constants.MOST_REGION_BINS
     finite = values[np.isfinite(values)]
-    if len(finite) < 2 * FEWEST or np.ptp(finite) == 0.0:
+    if len(finite) < 2 * fewest or np.ptp(finite) == 0.0:
         return []
-    tenth = levels.Quantity("tenth of the range", 0.1 * float(np.ptp(finite)))
-    level = levels.nearest_labels(values, tenth)
+    width = levels.Quantity("share of the range", constants.REGION_LEVEL_WIDTH * float(np.ptp(finite)))
+    level = levels.nearest_labels(values, width)
     number = int(level.max()) + 1
-    if 1 < number <= MOST_BINS and not levels.spread(values, tenth):
+    if 1 < number <= most and not levels.spread(values, width):
         masks = [level == k for k in range(number)]
     else:
-        edges = np.unique(np.quantile(finite, np.linspace(0.0, 1.0, MOST_BINS + 1)))
+        edges = np.unique(np.quantile(finite, np.linspace(0.0, 1.0, most + 1)))
         masks = [(values >= low) & (values <= high) for low, high in pairwise(edges)]
     return [
         ((float(values[mask].min()), float(values[mask].max())), mask)
         for mask in masks
-        if mask.sum() >= FEWEST
+        if mask.sum() >= fewest
     ]

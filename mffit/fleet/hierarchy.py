@@ -1,8 +1,8 @@
-"""One estimate of all tyres of a rig: the rig's errors common to all, every tyre around a population that is estimated too.
+"""Joint estimate of all tyres of a rig: common rig errors, and tyres that scatter around a population estimated with them.
 
-Tyre i has numbers x_i and the rig theta, of which its points say ``exp(-z L_i z / 2 + h_i z)`` with ``z = (x_i, theta)``.
-Beforehand ``x_i ~ N(mu, diag(tau^2))``, ``mu ~ N(expected, spread^2)`` and theta as the rig declares, once for all tyres.
-Everything but tau is linear and Gaussian and solved exactly; tau^2 is found by expectation maximisation.
+Tyre i has numbers x_i, the rig has errors theta. The likelihood of its points is ``exp(-z L_i z / 2 + h_i z)`` with
+``z = (x_i, theta)``. The priors are ``x_i ~ N(mu, diag(tau^2))``, ``mu ~ N(expected, spread^2)`` and theta as the rig declares,
+once for all tyres. Everything but tau is linear and Gaussian and solved exactly; tau^2 is found by expectation maximisation.
 """
 
 from __future__ import annotations
@@ -13,50 +13,38 @@ from dataclasses import dataclass
 import numpy as np
 
 from mffit.fit.priors import scatter
+from mffit.fleet import constants
 from mffit.fleet.information import Information
 from mffit.least_squares import inverse
 from tir.parameters import BY_NAME
 
-ENOUGH = 4
-"""Tyres from which on their own scatter is estimated; fewer are held to that of tyres in general."""
-ROUNDS, SETTLED = 200, 1e-3
-"""Rounds at most of the search for the population's scatter, and relative change at which it ends."""
-FEWEST = 2
-"""Tyres of which there is a population."""
-SPEAKS = 0.8
-"""Share of the variance known beforehand to which one tyre must narrow a number to have a say of its own."""
-PINNED = 1e-6
-"""Share of its spread to which the mean of a population of one is held: the tyre itself scatters around it."""
-SMALLEST = 1e-3
-"""Scatter of a population, as a share of that of tyres in general, below which it counts as this."""
-
 
 @dataclass(frozen=True, slots=True)
 class Population:
-    """How one coefficient is spread over the tyres."""
+    """Distribution of one coefficient over the tyres."""
 
     mean: float
     u_mean: float
     scatter: float  #: from tyre to tyre, 1 sigma
-    tyres: int  #: that say something of it
+    tyres: int  #: whose points inform it
 
     @property
     def assumed(self) -> bool:
-        """Whether the scatter is that of tyres in general, as these are too few to show their own."""
-        return self.tyres < ENOUGH
+        """Whether the scatter is that of tyres in general, because these tyres are too few."""
+        return self.tyres < constants.FEWEST_TYRES_FOR_SCATTER
 
 
 @dataclass(frozen=True, slots=True)
 class TyreEstimate:
-    """One tyre as all tyres together show it."""
+    """One tyre in the joint estimate."""
 
     names: tuple[str, ...]
     values: np.ndarray  #: (k,)
     covariance: np.ndarray  #: (k, k)
-    strain: Mapping[str, float]  #: by rig error: what this tyre says less what the others say, over u
+    strain: Mapping[str, float]  #: by rig error: estimate of this tyre minus that of the others, over u
 
     def number(self, name: str) -> tuple[float, float] | None:
-        """Value and standard uncertainty; None where the tyre's points do not speak of it."""
+        """Value and standard uncertainty; None if the number was not free in the tyre's build."""
         if name not in self.names:
             return None
         i = self.names.index(name)
@@ -69,12 +57,12 @@ class Hierarchy:
 
     tyres: tuple[TyreEstimate, ...]  #: in the order given
     rig: Mapping[str, tuple[float, float]]  #: rig error -> (value, standard uncertainty)
-    declared: Mapping[str, tuple[float, float]]  #: the same as known beforehand
-    population: Mapping[str, Population]  #: of coefficients of which two tyres or more say something
+    declared: Mapping[str, tuple[float, float]]  #: the same as declared
+    population: Mapping[str, Population]  #: of coefficients that at least two tyres inform
 
 
 def estimate(found: Sequence[Information]) -> Hierarchy:
-    """All tyres of one rig together; one alone gives its own build's estimate, PECP1 and PECP2 free.
+    """Estimate all tyres of one rig together; for one tyre, its own build's estimate with PECP1 and PECP2 free.
 
     Parameters
     ----------
@@ -82,21 +70,22 @@ def estimate(found: Sequence[Information]) -> Hierarchy:
     """
     model = _Model(found)
     tau = model.general.copy()
-    learnt = model.count >= ENOUGH
-    for _ in range(ROUNDS if learnt.any() else 0):
-        # One tyre less than there are keeps the scatter off zero, where it would claim to know too much.
+    learnt = model.count >= constants.FEWEST_TYRES_FOR_SCATTER
+    for _ in range(constants.MOST_SCATTER_ROUNDS if learnt.any() else 0):
+        # Division by one tyre less keeps the scatter off zero, where it would be overconfident.
         mean_square = model.solved(tau).squares / np.maximum(model.count - 1, 1)
-        new = np.clip(np.sqrt(mean_square), SMALLEST * model.general, model.general)
+        smallest = constants.SMALLEST_SCATTER_SHARE * model.general
+        new = np.clip(np.sqrt(mean_square), smallest, model.general)
         new = np.where(learnt, new, model.general)
         moved = np.max(np.abs(np.log(new / tau)))
         tau = new
-        if moved < SETTLED:
+        if moved < constants.SCATTER_CONVERGED:
             break
     return model.described(tau)
 
 
 class _Model:
-    """The tyres' information in numbers of order one, and the exact solution for a given scatter."""
+    """The tyres' information, and the exact solution for a given scatter."""
 
     def __init__(self, found: Sequence[Information]) -> None:
         self.found = found
@@ -109,26 +98,26 @@ class _Model:
         general = [
             scatter(n, c, from_base=False, curved=False) for n, c in zip(self.own, self.centre, strict=True)
         ]
-        size = np.maximum(np.abs(self.centre), 1.0)  # of what has no bounds to tell its size
+        size = np.maximum(np.abs(self.centre), 1.0)  # of coefficients without bounds
         width, scattered = (np.where(np.isfinite(x), x, size) for x in (width, general))
         self.general = np.where(np.isfinite(spread), spread, scattered)
         self.known = np.where(np.isfinite(spread), spread, width)  # of the population's mean
-        self.telling = np.array(
+        self.informing = np.array(
             [
-                sum(_tells(i, name, u) for i in found)
+                sum(_informs(i, name, u) for i in found)
                 for name, u in zip(self.own, self.known.tolist(), strict=True)
             ]
         )
-        if len(found) == 1:  # a tyre alone is known as its build knew it
-            self.general, self.known = self.known, PINNED * self.known
+        if len(found) == 1:  # the prior of its build, which had no population
+            self.general, self.known = self.known, constants.PINNED_MEAN_SHARE * self.known
 
     def prior(self) -> tuple[np.ndarray, np.ndarray]:
-        """What is known beforehand of what the tyres share, theta and mu: precision (m + K, m + K) and vector."""
+        """Prior of the common numbers, theta and mu: precision (m + K, m + K) and vector."""
         spread = np.concatenate([self.rig_spread, self.known])
         return np.diag(spread**-2.0), np.concatenate([self.rig_centre, self.centre]) * spread**-2.0
 
     def part(self, one: Information, tau: np.ndarray) -> _Part:
-        """What one tyre says of what all share, its own numbers eliminated."""
+        """Information of one tyre about the common numbers, its own numbers eliminated."""
         m, size = len(self.shared), len(self.shared) + len(self.own)
         own, rig = one.rows(rig=False), one.rows(rig=True)
         mine = [m + self.own.index(one.names[k]) for k in own]
@@ -146,7 +135,7 @@ class _Model:
         return _Part(mine, inner, gain, inner @ one.vector[own], precision, vector)
 
     def solved(self, tau: np.ndarray) -> _Solved:
-        """Every number's mean and covariance, given the population's scatter (K,)."""
+        """Mean and covariance of every number, given the population's scatter (K,)."""
         precision, vector = self.prior()
         parts = [self.part(one, tau) for one in self.found]
         covariance = inverse(precision + sum(part.precision for part in parts))
@@ -169,9 +158,14 @@ class _Model:
         u = np.sqrt(np.diag(found.covariance))
         rig = {n: (float(found.common[k]), float(u[k])) for k, n in enumerate(self.shared)}
         population = {
-            name: Population(float(found.common[m + k]), float(u[m + k]), float(tau[k]), int(self.telling[k]))
+            name: Population(
+                mean=float(found.common[m + k]),
+                u_mean=float(u[m + k]),
+                scatter=float(tau[k]),
+                tyres=int(self.informing[k]),
+            )
             for k, name in enumerate(self.own)
-            if self.telling[k] >= FEWEST
+            if self.informing[k] >= constants.FEWEST_TYRES_OF_A_POPULATION
         }
         tyres = tuple(
             TyreEstimate(tuple(one.names[k] for k in one.rows(rig=False)), x, C, self._strain(part, found))
@@ -181,9 +175,9 @@ class _Model:
         return Hierarchy(tyres, rig, dict(zip(self.shared, known, strict=True)), population)
 
     def _strain(self, part: _Part, found: _Solved) -> dict[str, float]:
-        """How far the rig errors of one tyre alone are from those of all others, over the uncertainty of the difference.
+        """Rig errors of one tyre alone minus those of all others, over the uncertainty of the difference.
 
-        Both estimates lean on the same prior, and the error that this gives them is counted as the common one that it is.
+        Both estimates share a prior; the error that it causes in both is treated as common.
         """
         if len(found.parts) < 2:
             return {}
@@ -192,22 +186,22 @@ class _Model:
         C_one, C_rest = inverse(precision + part.precision), inverse(precision + rest)
         others = C_rest @ (vector + sum(other.vector for other in found.parts if other is not part))
         difference = C_one @ (vector + part.vector) - others
-        leaning = C_one @ part.precision - C_rest @ rest
-        covariance = leaning @ np.diag(1.0 / np.diag(precision)) @ leaning.T
+        by_prior = C_one @ part.precision - C_rest @ rest
+        covariance = by_prior @ np.diag(1.0 / np.diag(precision)) @ by_prior.T
         covariance += C_one @ part.precision @ C_one + C_rest @ rest @ C_rest
         u = np.sqrt(np.maximum(np.diag(covariance), 1e-300))
-        speaks = np.diag(C_one) * np.diag(precision) < SPEAKS
-        return {name: float(difference[k] / u[k]) for k, name in enumerate(self.shared) if speaks[k]}
+        informed = np.diag(C_one) * np.diag(precision) < constants.INFORMED_VARIANCE_SHARE
+        return {name: float(difference[k] / u[k]) for k, name in enumerate(self.shared) if informed[k]}
 
 
 @dataclass(frozen=True, slots=True)
 class _Part:
-    """What one tyre adds to what is known of all."""
+    """Contribution of one tyre to the joint estimate."""
 
-    mine: list[int]  #: places of the means of its numbers among what all share
-    inner: np.ndarray  #: (k, k) covariance of its numbers, what all share being known
-    gain: np.ndarray  #: (k, m + K) how they follow what all share, with the sign turned
-    own: np.ndarray  #: (k,) its numbers where all of that is zero
+    mine: list[int]  #: positions of the means of its numbers among the common numbers
+    inner: np.ndarray  #: (k, k) covariance of its numbers, given the common ones
+    gain: np.ndarray  #: (k, m + K) negative derivative of its numbers by the common ones
+    own: np.ndarray  #: (k,) its numbers if the common ones are zero
     precision: np.ndarray  #: (m + K, m + K)
     vector: np.ndarray  #: (m + K,)
 
@@ -221,16 +215,16 @@ class _Solved:
     squares: np.ndarray  #: (K,) expected sum over the tyres of (x - mu)^2
 
 
-def _tells(one: Information, name: str, known: float) -> bool:
-    """Whether a tyre's points narrow a number that is known so well beforehand, everything else being known."""
+def _informs(one: Information, name: str, known: float) -> bool:
+    """Whether a tyre's points narrow the prior of a number, everything else given."""
     if name not in one.names:
         return False
     k = one.names.index(name)
-    return bool(1.0 / (1.0 + one.matrix[k, k] * known**2) < SPEAKS)
+    return bool(1.0 / (1.0 + one.matrix[k, k] * known**2) < constants.INFORMED_VARIANCE_SHARE)
 
 
 def _prior(found: Sequence[Information], names: Sequence[str]) -> tuple[np.ndarray, np.ndarray]:
-    """Centre and spread of what each build knew beforehand: the mean of the centres, the widest spread."""
+    """Centre and spread of the builds' priors: mean of the centres, widest spread."""
     centre, spread = np.zeros(len(names)), np.full(len(names), np.inf)
     for k, name in enumerate(names):
         rows = [(i.expected[j], i.spread[j]) for i in found for j, n in enumerate(i.names) if n == name]

@@ -1,4 +1,4 @@
-"""What the points of one build say of tyre and rig, what was known beforehand left out."""
+"""Information of one build's points about tyre and rig, without its priors."""
 
 from __future__ import annotations
 
@@ -14,34 +14,34 @@ from mffit.fit.priors import scatter
 from mffit.rig_errors import BY_NAME as RIG_ERRORS
 
 SPIN = ("PECP1", "PECP2")
-"""Coefficients of which the points speak also where the build holds them at what the direct method found."""
+"""Coefficients that the points inform even if the build holds them at the result of the direct method."""
 MEASURED = ("PECP1",)
-"""Of these nothing is known beforehand: a spread at which the fit holds them comes from the same points."""
+"""Coefficients without a prior: a spread at which the fit holds them comes from the same points."""
 
 
 @dataclass(frozen=True, slots=True)
 class Information:
-    """A quadratic log-likelihood, ``-x matrix x / 2 + x vector`` of the numbers ``x`` by name, and their priors.
+    """A quadratic log-likelihood ``-x matrix x / 2 + x vector`` of the numbers ``x``, and their priors.
 
-    To first order around the build's solution. A prior without a spread is none.
+    To first order around the build's solution.
     """
 
-    names: tuple[str, ...]  #: coefficients and rig errors that the points may move
-    values: np.ndarray  #: (k,) where the build ended
+    names: tuple[str, ...]  #: free coefficients and rig errors
+    values: np.ndarray  #: (k,) solution of the build
     matrix: np.ndarray  #: (k, k) of the points alone
     vector: np.ndarray  #: (k,)
-    expected: np.ndarray  #: (k,) centre of what was known beforehand
-    spread: np.ndarray  #: (k,) its standard deviation, inf where nothing was known
+    expected: np.ndarray  #: (k,) centre of the prior
+    spread: np.ndarray  #: (k,) its standard deviation, inf without a prior
 
     def rows(self, *, rig: bool) -> list[int]:
-        """Which of the numbers are errors of the rig, or which are the tyre's own."""
+        """Positions of the rig errors, or of the tyre's own numbers."""
         return [i for i, name in enumerate(self.names) if (name in RIG_ERRORS) == rig]
 
 
 def information(fitted: Fitted) -> Information | None:
-    """The information of a fit; None where nothing was free.
+    """The information of a fit; None if nothing was free.
 
-    Numbers that a bound or a physical limit holds stay where they are: what the points say of them is not believed.
+    Numbers at a bound or a physical limit are left out: the likelihood is not quadratic there.
     """
     prior = {n.name: (n.expected, n.spread) for n in fitted.numbers}
     values = fitted.simulation.values
@@ -62,21 +62,21 @@ def information(fitted: Fitted) -> Information | None:
     matrix = here.slope.T @ here.slope
     centre, spread = zip(*(prior[name] for name in names), strict=True)
     return Information(
-        tuple(names),
-        at,
-        matrix,
-        matrix @ at - here.slope.T @ here.data,
-        np.array(centre),
-        np.array(spread),
+        names=tuple(names),
+        values=at,
+        matrix=matrix,
+        vector=matrix @ at - here.slope.T @ here.data,
+        expected=np.array(centre),
+        spread=np.array(spread),
     )
 
 
 def to_json(found: Information | None) -> dict[str, Any]:
-    """The content of ``information.json``; of the symmetric matrix the rows up to the diagonal."""
+    """The content of ``information.json``; the symmetric matrix as rows up to the diagonal."""
     if found is None:
         return {"names": []}
     return {
-        "about": "What the points alone say of the build's numbers x, to first order: "
+        "about": "Information of the points alone about the build's numbers x, to first order: "
         "log-likelihood = vector.x - x.matrix.x/2. Read by `mffit fleet`.",
         "names": list(found.names),
         "values": found.values.tolist(),
@@ -88,12 +88,12 @@ def to_json(found: Information | None) -> dict[str, Any]:
 
 
 def from_json(content: Mapping[str, Any]) -> Information:
-    """The record of such a content.
+    """The record of the content of ``information.json``.
 
     Raises
     ------
     ValueError, KeyError, TypeError
-        It is not of this kind.
+        The content is something else.
     """
     names = tuple(str(name) for name in content["names"])
     k = len(names)
@@ -104,5 +104,5 @@ def from_json(content: Mapping[str, Any]) -> Information:
     vectors = {n: np.array(content[n], dtype=float) for n in ("values", "vector", "expected")}
     spread = np.array([math.inf if u is None else float(u) for u in content["spread"]])
     if any(len(v) != k for v in (*vectors.values(), spread)) or not np.all(np.isfinite(matrix)):
-        raise ValueError("names, matrix and vectors are not of one length")
-    return Information(names, vectors["values"], matrix, vectors["vector"], vectors["expected"], spread)
+        raise ValueError("names, matrix and vectors must have one length")
+    return Information(names=names, matrix=matrix, spread=spread, **vectors)

@@ -1,4 +1,4 @@
-"""The record of a fleet: every specimen's numbers, what each rig's tyres say together, what later builds may use of it."""
+"""The record of a fleet: the numbers of every specimen, and the joint estimate of each rig's tyres."""
 
 from __future__ import annotations
 
@@ -10,20 +10,16 @@ import numpy as np
 
 from mffit.fleet.hierarchy import Hierarchy
 from mffit.fleet.specimen import Specimen
+from mffit.scatter import rms
 from tir import Quantity
-
-STRAINED = 4.0
-"""Standard deviations from which on the rig of one tyre is not that of the others."""
-FAR = 3.0
-"""Standard deviations of the declaration from which on the common rig is not the declared one."""
 
 
 @dataclass(frozen=True, slots=True)
 class Row:
-    """One specimen; eps_gamma three ways, None where it was not measured."""
+    """One specimen with three estimates of eps_gamma, None if not measured."""
 
     specimen: Specimen
-    rig: int  #: which of the fleet's rigs
+    rig: int  #: number of its rig in the fleet
     numbers: Mapping[str, Quantity]  #: stiffnesses and peaks of the fitted model
     alone: Quantity | None = None  #: eps_gamma, joint estimate of its own build
     together: Quantity | None = None  #: eps_gamma, joint estimate of all tyres of its rig
@@ -37,7 +33,7 @@ class Row:
 
 @dataclass(frozen=True, slots=True)
 class Scatter:
-    """How one number differs from tyre to tyre, beside what is known of each."""
+    """Scatter of one number from tyre to tyre, and its uncertainty."""
 
     mean: float
     sd: float  #: between the tyres
@@ -46,7 +42,7 @@ class Scatter:
 
     @property
     def beyond(self) -> float:
-        """Scatter that the uncertainties do not explain."""
+        """Scatter beyond the uncertainties."""
         return math.sqrt(max(self.sd**2 - self.u**2, 0.0))
 
 
@@ -55,7 +51,7 @@ class Fleet:
     """All specimens, rig by rig."""
 
     rows: tuple[Row, ...]
-    rigs: tuple[Hierarchy | None, ...]  #: None where no points of its builds say anything
+    rigs: tuple[Hierarchy | None, ...]  #: None if no build of the rig has free numbers
     notes: tuple[str, ...]
 
     def numbers(self, key: str) -> list[Quantity | None]:
@@ -65,7 +61,7 @@ class Fleet:
         return [row.numbers.get(key) for row in self.rows]
 
     def scatter(self, key: str) -> Scatter | None:
-        """Of one number over all specimens that have it; None of fewer than two."""
+        """Scatter of one number over all specimens that have it; None for fewer than two."""
         found = [q for q in self.numbers(key) if q is not None]
         return scatter_of(found) if len(found) > 1 else None
 
@@ -75,15 +71,15 @@ EPSILON = {
     "alone": "joint estimate of its own build",
     "together": "joint estimate of all tyres",
 }
-"""The three estimates of eps_gamma and what they are."""
+"""The three estimates of eps_gamma in words."""
 
 
 def scatter_of(found: Sequence[Quantity]) -> Scatter:
-    """Mean, scatter and typical uncertainty of two numbers or more."""
+    """Mean, scatter and typical uncertainty of at least two numbers."""
     values, u = np.array([q.value for q in found]), np.array([q.u for q in found])
-    return Scatter(float(values.mean()), float(values.std(ddof=1)), float(np.sqrt(np.mean(u**2))), len(found))
+    return Scatter(mean=float(values.mean()), sd=float(values.std(ddof=1)), u=rms(u), tyres=len(found))
 
 
 def with_estimate(row: Row, together: Quantity | None, strain: Mapping[str, float]) -> Row:
-    """The row with what all tyres of its rig say of it."""
+    """The row with the joint estimate of all tyres of its rig."""
     return replace(row, together=together, strain=strain)

@@ -1,4 +1,4 @@
-"""One build read back from its folder, for what many of them say together."""
+"""One build, read back from its folder."""
 
 from __future__ import annotations
 
@@ -26,8 +26,8 @@ class Specimen:
     tyre: Tyre  #: the fitted model
     file: str  #: the property file with the plain name
     on_disc: bool
-    rig: Mapping[str, Any]  #: the table [rig] that the build was told
-    information: Information | None  #: None where nothing was free
+    rig: Mapping[str, Any]  #: the table [rig] of the build
+    information: Information | None  #: None if nothing was free
     epsilon_gamma: Quantity | None  #: of the direct method
     misfit: Mapping[str, float]  #: rms by channel, [N] and [Nm]
     warnings: tuple[str, ...]
@@ -39,13 +39,14 @@ def read(folder: str | Path) -> Specimen:
     Raises
     ------
     InputError
-        It is none, or not a whole one.
+        The folder is something else, or incomplete.
     """
     folder = Path(folder)
     if not (folder / RESULT).is_file():
-        near = "; its folder out/ is" if (folder / "out" / RESULT).is_file() else ""
+        inside = (folder / "out" / RESULT).is_file()
         raise InputError(
-            f"is not a folder that `mffit build` wrote, as it holds no {RESULT}{near}; name such a folder",
+            f"contains no {RESULT}, so `mffit build` did not write it; give "
+            + ("its folder out/" if inside else "a folder that it wrote"),
             file=folder,
         )
     result = _json(folder / RESULT)
@@ -71,18 +72,22 @@ def read(folder: str | Path) -> Specimen:
         )
     except (OSError, LookupError, TypeError, ValueError, AttributeError, StopIteration):
         raise InputError(
-            "is not a whole folder of `mffit build`; build this tyre again", file=folder
+            "is incomplete, or not written by `mffit build`; build this tyre again", file=folder
         ) from None
 
 
 def _information(path: Path) -> Information | None:
     if not path.is_file():
-        raise InputError("is missing, as in builds of earlier versions; build this tyre again", file=path)
+        raise InputError(
+            "is missing, as after a build by an earlier version; build this tyre again", file=path
+        )
     content = _json(path)
     try:
         return from_json(content) if content["names"] else None
     except (LookupError, TypeError, ValueError, AttributeError):
-        raise InputError("is not what `mffit build` writes; build this tyre again", file=path) from None
+        raise InputError(
+            "was not written by `mffit build`, or was changed; build this tyre again", file=path
+        ) from None
 
 
 def _json(path: Path) -> Any:

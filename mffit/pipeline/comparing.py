@@ -103,7 +103,7 @@ def _subject(path: Path) -> Subject:
     if posterior is not None:
         return replace(subject, names=posterior.names, covariance=posterior.root @ posterior.root.T)
     main = str(built.get("tir", ""))
-    return replace(subject, told_of="" if main == path.name else main)
+    return replace(subject, covariance_of="" if main == path.name else main)
 
 
 def _build_beside(path: Path) -> dict[str, Any]:

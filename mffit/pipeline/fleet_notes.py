@@ -32,7 +32,7 @@ def _far_from_declared(rigs: Sequence[Hierarchy | None]) -> dict[str, float]:
     for rig in filter(None, rigs):
         for name, (value, _) in rig.rig.items():
             expected, u = rig.declared[name]
-            if abs(value - expected) > combining.FAR * u:
+            if abs(value - expected) > combining.constants.RIG_FAR_FROM_DECLARED * u:
                 far[name] = abs(value - expected) / u
     return far
 
@@ -50,7 +50,7 @@ def _outlying(row: Row, far: Mapping[str, float]) -> list[str]:
     """A tyre whose rig error disagrees with the other tyres."""
     # If all tyres are far from the declaration, every single tyre, which follows it, seems to disagree with the others.
     worst = max(row.strain.keys() - far, key=lambda name: abs(row.strain[name]), default="")
-    if not worst or abs(row.strain[worst]) <= combining.STRAINED:
+    if not worst or abs(row.strain[worst]) <= combining.constants.STRAINED_RIG:
         return []
     return [
         f"{row.specimen.name}: its own error of the rig, {WORDS[worst]}, lies {abs(row.strain[worst]):.0f} standard "

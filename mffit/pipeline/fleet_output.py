@@ -44,7 +44,7 @@ def priors_of_rig(rig: Hierarchy, tyre: Tyre, tyres: int) -> dict | None:
     known = {
         name: priors.Prior(p.mean, math.hypot(p.u_mean, p.scatter))
         for name, p in rig.population.items()
-        if p.tyres >= combining.ENOUGH
+        if p.tyres >= combining.constants.FEWEST_TYRES_FOR_SCATTER
     }
     load, pressure = nominal_conditions(tyre)
     return priors.fleet_content({"FNOMIN": load, "NOMPRES": pressure}, tyres, known) if known else None

@@ -10,7 +10,7 @@ import numpy as np
 
 from mffit.config import Config
 from mffit.constants import COVERAGE_FACTOR_95
-from mffit.diagnosis.ties import TELLING
+from mffit.diagnosis.constants import SEPARATING_CHI2
 from mffit.effects import CATALOG, Effect
 from mffit.fit import FitResult
 from mffit.fit.posterior import spread_through
@@ -87,7 +87,11 @@ class Outlook:
     @property
     def told_below(self) -> float | None:
         """Uncertainty of a tie's effect below which the tie is resolved; None for other goals."""
-        return None if self.effect is None else self.knowledge.usual_size(self.effect) / math.sqrt(TELLING)
+        return (
+            None
+            if self.effect is None
+            else self.knowledge.usual_size(self.effect) / math.sqrt(SEPARATING_CHI2)
+        )
 
     def epsilons(self, runs: Sequence[Run]) -> tuple[float | None, float | None]:
         """u(eps_gamma) of the direct method and of the joint fit."""

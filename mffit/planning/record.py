@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from mffit.brief import Brief
 from mffit.config import Config
-from mffit.diagnosis.ties import TELLING
+from mffit.diagnosis.constants import SEPARATING_CHI2
 from mffit.fit.coverage import StageCoverage
 from mffit.measured import Contribution
 from mffit.planning.goals import Goal
@@ -24,7 +24,7 @@ class Tie:
     @property
     def told(self) -> bool:
         """Whether the sweeps separate them."""
-        return self.chi2 >= TELLING
+        return self.chi2 >= SEPARATING_CHI2
 
 
 @dataclass(frozen=True, slots=True)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from mffit.diagnosis.ties import TELLING
+from mffit.diagnosis.constants import SEPARATING_CHI2
 from mffit.effects import NAMES
 from mffit.planning import constants
 from mffit.planning.goals import BANDS, EPSILON, JOINT, TIE
@@ -152,8 +152,8 @@ def _coverage(found: Identified) -> list[str]:
 def tie(pair: Tie) -> str:
     """Two effects that the sweeps do not separate."""
     return (
-        f"Not separated: {NAMES[pair.effect]} and {NAMES[pair.other]} (expected chi2 {pair.chi2:.1f} between them, {TELLING:g} "
-        "would suffice)."
+        f"Not separated: {NAMES[pair.effect]} and {NAMES[pair.other]} (expected chi2 {pair.chi2:.1f} between them, "
+        f"{SEPARATING_CHI2:g} would suffice)."
     )
 
 

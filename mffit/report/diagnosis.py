@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from mffit.diagnosis import Diagnosis, wording
-from mffit.diagnosis.selection import TIE
+from mffit.diagnosis.constants import TIED_EVIDENCE
 from mffit.quantities import CHANNELS
 from mffit.report import page
 from mffit.report.diagnosis_view import shown_steps, view_of
@@ -41,7 +41,7 @@ def write_diagnosis(diagnosis: Diagnosis, folder: Path) -> None:
         view=view,
         d=diagnosis,
         say=wording,
-        tie=TIE,
+        tie=TIED_EVIDENCE,
         channels=CHANNELS,
         pictures=page.draw(folder, figures),
     )

@@ -10,7 +10,6 @@ import numpy as np
 from mffit.diagnosis import Diagnosis
 from mffit.diagnosis.selection import Step
 from mffit.diagnosis.where import Region
-from mffit.effects import CATALOG
 from mffit.points import Points
 from mffit.quantities import CHANNELS
 from mffit.report.curves import Condition, Curve, conditions, curves
@@ -84,8 +83,6 @@ class DiagnosisView:
     channels: tuple[GapChannel, ...]
     diagnosis: Diagnosis
     steps: tuple[RankedStep, ...]
-    kinds: Mapping[str, str]  #: effect id -> tyre, rig or environment
-    names: Mapping[str, str]  #: effect id -> plain name
     descriptions: Mapping[str, str]  #: coefficient -> what it is
     units: Mapping[str, str]  #: of every number that was found, empty without one
     words: Mapping[str, str]  #: what numbers of the rig among them are called
@@ -113,7 +110,6 @@ def view_of(diagnosis: Diagnosis) -> DiagnosisView:
         before, after = ((measured - model[rows]) / u for model in (diagnosis.before, diagnosis.after))
         if np.isfinite(before).any():
             channels.append(GapChannel(name, before, after, noise))
-    known = {e.id: e for e in (*CATALOG, *(t.effects[-1] for s in diagnosis.steps for t in s.trials))}
     freed = {name for found in diagnosis.effects for name in found.parameters}
     return DiagnosisView(
         title=diagnosis.model_after.removesuffix(".tir"),
@@ -122,8 +118,6 @@ def view_of(diagnosis: Diagnosis) -> DiagnosisView:
         channels=tuple(channels),
         diagnosis=diagnosis,
         steps=tuple(_ranked(step) for step in diagnosis.steps),
-        kinds={key: effect.kind for key, effect in known.items()},
-        names={key: effect.name for key, effect in known.items()},
         descriptions={name: BY_NAME[name].description for name in freed if name in BY_NAME},
         units={name: _unit(name) for name in freed},
         words={name: word for name in freed if (word := _word(name))},

@@ -7,7 +7,8 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from mffit.fleet import ENOUGH, EPSILON, Fleet
+from mffit.fleet import EPSILON, Fleet
+from mffit.fleet.constants import FEWEST_TYRES_FOR_SCATTER
 from mffit.quantities import CHANNELS, COMPARED, DIRECT
 from mffit.report import page
 from mffit.rig_errors import MEANINGS, UNITS, WORDS
@@ -46,7 +47,7 @@ def write_fleet(found: Fleet, folder: Path, *, priors: bool) -> None:
         units=UNITS,
         meanings=MEANINGS,
         words=WORDS,
-        enough=ENOUGH,
+        enough=FEWEST_TYRES_FOR_SCATTER,
         spin=SPIN,
         priors=priors,
         pictures=page.draw(folder, figures),

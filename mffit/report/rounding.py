@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 
+from mffit.rounding import decimals_of
 from tir import Quantity
 
 MINUS = "\N{MINUS SIGN}"
@@ -13,14 +14,6 @@ PLAIN = str.maketrans({MINUS: "-", "±": "+-", "×": "x", "–": "-"})
 def ascii_only(text: str) -> str:
     """The same in characters that any terminal shows and any program reads back."""
     return text.translate(PLAIN)
-
-
-def decimals_of(u: float, digits: int = 2) -> int:
-    """Decimals that show ``digits`` significant digits of an uncertainty; negative ones are cut to 0."""
-    if not (math.isfinite(u) and u > 0.0):
-        return 0
-    places = digits - 1 - math.floor(math.log10(u))
-    return max(0, places - (round(u, places) >= 10.0 ** (digits - places)))
 
 
 LONGEST = 1e7

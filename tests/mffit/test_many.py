@@ -271,11 +271,20 @@ def test_a_later_build_uses_the_priors_of_the_fleet(compared, project):
 @pytest.mark.parametrize(
     ("spoil", "said"),
     [
-        (lambda folder: (folder / "result.json").unlink(), "is not a folder that `mffit build` wrote"),
+        (
+            lambda folder: (folder / "result.json").unlink(),
+            "contains no result.json, so `mffit build` did not write it",
+        ),
         (lambda folder: (folder / "result.json").write_text("{"), "cannot be read as JSON"),
-        (lambda folder: (folder / "result.json").write_text("{}"), "is not a whole folder"),
+        (
+            lambda folder: (folder / "result.json").write_text("{}"),
+            "is incomplete, or not written by `mffit build`",
+        ),
         (lambda folder: (folder / "information.json").unlink(), "is missing"),
-        (lambda folder: (folder / "information.json").write_text("[]"), "is not what `mffit build` writes"),
+        (
+            lambda folder: (folder / "information.json").write_text("[]"),
+            "was not written by `mffit build`, or was changed",
+        ),
     ],
 )
 def test_a_folder_that_is_not_a_build_is_named(folders, tmp_path, spoil, said):

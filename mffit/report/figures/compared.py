@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from mffit.comparison import Comparison, wording
+from mffit.comparison.constants import SIGNIFICANT_DIFFERENCE
 from mffit.quantities import CHANNELS
 from mffit.report import labels, style
 
@@ -54,9 +55,9 @@ def differences(found: Comparison) -> Figure:
     figure, panels = style.panel_grid([1], 1, height=height, legend=False, margins=(3.3, 0.30))
     ax = panels[0][0]
     z = [float(row.z or 0.0) for row in rows]
-    far = [abs(value) > wording.STANDS_OUT for value in z]
+    far = [abs(value) > SIGNIFICANT_DIFFERENCE for value in z]
     ax.barh(range(len(rows)), z, height=0.6, color=[style.CONTRAST if f else style.FAINT for f in far])
-    for edge in (-wording.STANDS_OUT, wording.STANDS_OUT):
+    for edge in (-SIGNIFICANT_DIFFERENCE, SIGNIFICANT_DIFFERENCE):
         ax.axvline(edge, color=style.MUTED, lw=0.8, ls="--")
     ax.set_yticks(range(len(rows)), [f"{wording.quantity(row).word}, {wording.place(row)}" for row in rows])
     ax.set_ylim(-0.6, len(rows) - 0.4)

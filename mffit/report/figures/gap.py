@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from mffit.diagnosis import Gap
-from mffit.diagnosis.selection import TIE
+from mffit.diagnosis.constants import TIED_EVIDENCE
 from mffit.diagnosis.where import Region
 from mffit.report import labels, style
 from mffit.report.diagnosis_view import (
@@ -172,7 +172,7 @@ def _distances(ax: Axes, rows: Sequence[Candidate], gains: Sequence[float]) -> N
     for i, (candidate, gain) in enumerate(zip(rows, gains, strict=True)):
         behind = rows[0].gain - candidate.gain
         said = "best" if i == 0 else number(-behind, 0 if behind >= 10.0 else None, digits=2)
-        colour = style.INK if behind < TIE else style.MUTED
+        colour = style.INK if behind < TIED_EVIDENCE else style.MUTED
         ax.annotate(f" {said}", (gain, i), va="center", fontsize=7.0, color=colour)
 
 

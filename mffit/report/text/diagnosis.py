@@ -34,7 +34,7 @@ def diagnosis_summary(diagnosis: Diagnosis) -> str:
 
 
 def _effect(found: Found, signs: Mapping[str, float]) -> str:
-    lines = [f"{found.effect.id} ({found.effect.kind}), confidence {per_cent(found.confidence)}"]
+    lines = [f"{found.effect.name} ({found.effect.kind}), confidence {per_cent(found.confidence)}"]
     lines += [
         f"  {name} = {with_u(value, stderr)}, was {number(found.before[name], digits=4)}"
         for name, (value, stderr) in found.parameters.items()
@@ -42,8 +42,8 @@ def _effect(found: Found, signs: Mapping[str, float]) -> str:
     lines += textwrap.wrap(
         f"to do: {wording.remedy(found, signs)}", WIDTH - 2, initial_indent="  ", subsequent_indent="  "
     )
-    if found.tied_with:
-        lines.append(f"  not told from: {', '.join(found.tied_with)}")
+    if found.tied:
+        lines.append(f"  not separable from: {', '.join(effect.name for effect in found.tied)}")
         lines.append(f"  to separate: {wording.separation(found.separation)}")
     return "\n".join(lines)
 

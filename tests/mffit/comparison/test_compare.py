@@ -1,4 +1,4 @@
-"""Two files, a file and data, two builds: what differs, how much, and by how many uncertainties."""
+"""Differences of two files, of a file and data, and of two builds, with their uncertainties."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ def by_key(found, load=1400.0):
 
 
 def test_numbers_are_those_of_the_equations():
-    """Slopes at zero as the equations have them; turn-slip stiffness from eps_gamma by (17) with R0 for r_e."""
+    """Slopes at zero as in the equations; turn-slip stiffness from eps_gamma by (17) with R0 for r_e."""
     tyre = truth().replace(PHY1=0.0, PHY2=0.0, PVY1=0.0, PVY2=0.0)
     found = characteristics(tyre, 1400.0, turn_slip=True)
     state = tyre.state(1400.0)
@@ -54,8 +54,8 @@ def test_a_changed_coefficient_shows_where_it_acts(stiffer):
     assert change == pytest.approx(worst.second[where] - worst.first[where])
 
 
-def test_the_covariance_of_another_file_is_said_to_be_one():
-    plain = Subject("a-normal.tir", truth(), False, told_of="a.tir")
+def test_the_covariance_of_another_file_is_not_used():
+    plain = Subject("a-normal.tir", truth(), False, covariance_of="a.tir")
     (note,) = between(Subject("a.tir", truth(), False, ("PKY1",), np.eye(1)), plain).notes
     assert "a-normal.tir" in note
     assert "belongs to a.tir" in note
@@ -77,7 +77,7 @@ def test_equal_files_do_not_differ():
     assert "do not differ; all numbers are equal" in wording.headline(found)
 
 
-def test_uncertainties_go_through_to_the_numbers():
+def test_uncertainties_propagate_to_the_numbers():
     """One uncertain number, PKY1: the cornering stiffness is proportional to it."""
     u = 0.02 * abs(truth()["PKY1"])
     known = Subject("a", truth(), True, ("PKY1",), np.array([[u**2]]))
@@ -87,7 +87,7 @@ def test_uncertainties_go_through_to_the_numbers():
     assert row.u == row.u_first
 
 
-def test_what_stands_out_comes_first():
+def test_significant_differences_come_first():
     rows = [
         Difference("mu_y", 1.0, 1.0, 1.5),
         Difference("trail_m", 1.0, 1.0, 1.1, 0.01, None),
@@ -129,7 +129,7 @@ def test_a_reader_sees_every_picture_of_the_page(folder, stiffer, tmp_path):
     assert_readable(tmp_path / "compare.html")
 
 
-def test_two_builds_of_one_name_are_told_by_their_folders(folder):
+def test_two_builds_of_one_name_are_called_by_their_folders(folder):
     later = shutil.copytree(folder / "out", folder / "later")
     found = mffit.compare(folder / "out", later)
     assert found.first != found.second

@@ -1,4 +1,4 @@
-"""Blind campaigns as laboratories have them: noise that is not as stated, models off everywhere, effects without a name."""
+"""Blind campaigns under laboratory conditions: noise other than stated, inexact models, effects outside the library."""
 
 from __future__ import annotations
 
@@ -53,13 +53,13 @@ SCATTERS: dict[str, Scatter] = {
     "compliance": _gauss,
     "runs": _gauss,
 }
-"""Every row of the study, and what its readings scatter like; both channels alike."""
+"""Every row of the study and its noise, the same for both channels."""
 
 ASKED = {
     "compliance": ("steering-compliance",),
     "runs": ("run-offsets-fy", "run-offsets-mz", "run-offsets-alpha"),
 }
-"""Causes that are hidden in rows of their own, and in no other."""
+"""Causes that have a row of their own."""
 USUAL = [name for name in CAUSES if not any(name in causes for causes in ASKED.values())]
 
 SMOOTH: dict[str, Callable[[Programme, np.ndarray], np.ndarray]] = {
@@ -68,11 +68,11 @@ SMOOTH: dict[str, Callable[[Programme, np.ndarray], np.ndarray]] = {
     "tidal gain": lambda run, Fy: 0.04 * Fy * np.sin(run.t / 3000.0),
     "load hump": lambda run, Fy: 50.0 * np.cos(2.5 * run.Fz / run.Fz.mean()) * np.tanh(run.alpha_deg / 2.0),
 }
-"""Smooth changes of Fy that no record of the library has."""
+"""Smooth changes of Fy outside the library."""
 
 
 def hard(row: str, seed: int, singles: int = 12, empty: int = 6) -> Iterator[Plan]:
-    """Cases of one row: single causes, plain to see and moderate in turn, then cases without any."""
+    """Cases of one row: single causes, plain and moderate in turn, then cases without any."""
     rng = np.random.default_rng((seed, *row.encode()))
     causes = rng.choice(USUAL, singles, replace=False).tolist()
     if row in ASKED:
@@ -90,7 +90,7 @@ def smooth(seed: int, repeats: int = 3) -> Iterator[Plan]:
 
 
 def triples(seed: int, count: int = 10) -> Iterator[Plan]:
-    """Three causes that do not look alike, exact models."""
+    """Three causes with different signatures, exact models."""
     from blind_scores import LOOK_ALIKE
 
     rng = np.random.default_rng((seed, 3))
@@ -106,7 +106,7 @@ def triples(seed: int, count: int = 10) -> Iterator[Plan]:
 
 
 def doubtful(seed: int) -> Iterator[Plan]:
-    """Cases that leave doubt, under every condition: faint and moderate causes, alone and two together, and none."""
+    """Doubtful cases under every condition: faint and moderate causes, single, in pairs, and none."""
     from blind_scores import LOOK_ALIKE
 
     rng = np.random.default_rng((seed, 17))

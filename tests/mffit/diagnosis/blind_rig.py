@@ -1,7 +1,7 @@
-"""A disc rig of its own for blind cases: its programme, its faults and its noise.
+"""An independent disc rig for blind cases: its programme, its faults and its noise.
 
-Nothing of ``mffit`` is used here. The faults are written down again, from their definitions, so that a mistake in
-:mod:`mffit.rig` shows as a wrong diagnosis. Only the tyre's forces come from ``tir``, which has references of its own.
+It uses nothing of ``mffit``. The faults are coded again from their definitions, so that a mistake in :mod:`mffit.rig` causes a
+wrong diagnosis. Only the tyre's forces come from ``tir``, which has its own reference tests.
 """
 
 from __future__ import annotations
@@ -46,7 +46,7 @@ class Programme:
         return len(self.alpha_deg)
 
     def where(self, mask: np.ndarray) -> Programme:
-        """Some of the set-points, times and temperatures as they were."""
+        """Some of the set-points, with their times and temperatures."""
         return replace(self, **{name: values[mask] for name, values in vars(self).items()})
 
 
@@ -81,7 +81,7 @@ def disc_programme(nominal: float, rng: np.random.Generator) -> Programme:
 
 @dataclass(frozen=True)
 class Machine:
-    """What is wrong with the rig, ISO-W; the default is nothing."""
+    """Errors of the rig, ISO-W; the default is a perfect rig."""
 
     R: float = 1.323  #: true path radius [m], centre to the left
     alpha_0_deg: float = 0.0
@@ -106,7 +106,7 @@ class Machine:
 
 
 def of_each_run(run: Programme, size: float, seed: int) -> np.ndarray:
-    """An offset (n,) for every run, drawn from its name, so that it is there again when the run is asked for elsewhere."""
+    """An offset (n,) for every run, drawn from its name, so that the same run always has the same offset."""
     names = run.sweep.tolist()
     drawn = {
         n: np.random.default_rng((seed, crc32(n.encode()))).normal() if size else 0.0 for n in set(names)
@@ -144,10 +144,10 @@ def report(
 
 
 def resting(moment: Callable[[np.ndarray], np.ndarray], alpha: np.ndarray, play: float, Mz: np.ndarray):
-    """Where wheels come to rest that are loose by ``play`` about ``alpha`` and start there with the moment ``Mz``; (n,).
+    """Angles (n,) at which wheels come to rest that have play about ``alpha`` and start there with the moment ``Mz``.
 
     A positive moment turns the wheel to smaller angles, a negative one to larger, until it meets the end of the play or
-    a point where the moment has turned round; there it floats without moment.
+    a point where the moment changes sign; there it floats without moment.
     """
     way = np.where(Mz > 0.0, -1.0, 1.0)
     start, turned = np.zeros(len(alpha)), np.full(len(alpha), np.nan)
@@ -169,7 +169,7 @@ def resting(moment: Callable[[np.ndarray], np.ndarray], alpha: np.ndarray, play:
 def _at_the_tyre(
     tyre, machine: Machine, run: Programme, alpha, turn_slip: bool
 ) -> tuple[np.ndarray, np.ndarray]:
-    """True Fy and Mz at true sideslip; a tyre turned on its rim and a tyre rolling backwards are both asked for."""
+    """True Fy and Mz at true sideslip, for every mount and direction."""
     Fy, Mz = np.empty(len(run)), np.empty(len(run))
     gamma = np.deg2rad(run.gamma_deg + machine.gamma_0_deg)
     for flipped in (False, True):

@@ -1,4 +1,4 @@
-"""Which cases make a blind set, and how a diagnosis of each is judged."""
+"""The cases of a blind set, and the score of a diagnosis."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ LOOK_ALIKE = (
     {"residual-torque", "loadcell-offset-mz"},
     {"spin-trail-loss", "trail-camber"},
 )
-"""Two of one group would be a case that the data cannot decide."""
+"""Effects with one signature; the data cannot decide between two of a group."""
 
 
 def loaded(case: Case, folder: Path) -> tuple[Config, Points]:
@@ -40,7 +40,7 @@ def loaded(case: Case, folder: Path) -> tuple[Config, Points]:
 
 @dataclass(frozen=True)
 class Plan:
-    """A case that can be drawn when its turn comes."""
+    """A case that is drawn when it is needed."""
 
     name: str
     draw: Callable[[], Case]
@@ -48,7 +48,7 @@ class Plan:
 
 @dataclass(frozen=True)
 class Verdict:
-    """What was hidden, what was named, and how well the correction works."""
+    """Hidden and named causes, and the quality of the correction."""
 
     name: str
     causes: tuple[str, ...]
@@ -65,21 +65,21 @@ class Verdict:
 
     @property
     def outright(self) -> bool:
-        """Everything as it should be, nothing left open."""
+        """Whether everything is right and nothing is left open."""
         if self.structure:
             return self.unexplained and self.right_region and not self.named
         return set(self.named) == set(self.causes) and not any(self.ties) and not self.unexplained
 
     @property
     def extra(self) -> int:
-        """Effects named that neither were hidden nor are tied with a hidden one."""
+        """Named effects that were not hidden and are not tied with a hidden one."""
         tied = [set(ties) for ties in self.ties]
         return sum(
             n not in self.causes and not t & set(self.causes) for n, t in zip(self.named, tied, strict=True)
         )
 
     def found(self, cause: str) -> bool:
-        """Whether a cause is named, or tied with something that is."""
+        """Whether a cause is named or tied with a named effect."""
         return cause in self.named or any(cause in ties for ties in self.ties)
 
     def line(self) -> str:
@@ -107,7 +107,7 @@ def singles(seed: int, levels: Sequence[str] = ("large", "moderate", "faint")) -
 
 
 def pairs(seed: int, count: int = 20) -> Iterator[Plan]:
-    """Two effects that do not look alike, turn slip left out: it is either simulated or not, and then dwarfs the other."""
+    """Two effects with different signatures; not turn slip, which would dwarf the other."""
     rng = np.random.default_rng(seed)
     names = [name for name in CAUSES if name != "turn-slip"]
     for k in range(count):
@@ -119,13 +119,13 @@ def pairs(seed: int, count: int = 20) -> Iterator[Plan]:
 
 
 def nothing(seed: int, count: int = 20) -> Iterator[Plan]:
-    """A model that is right, or as inexact as it says."""
+    """A model that is right, or as inexact as declared."""
     for k in range(count):
         yield _plan((), "large", 1000 * seed + 400 + k, exact=bool(k % 2))
 
 
 def unknown(seed: int, count: int = 12) -> Iterator[Plan]:
-    """Structure without a name, in turn all shapes."""
+    """Structure without a name, all shapes in turn."""
     shapes = tuple(STRUCTURES)
     for k in range(count):
         yield _plan((), "large", 1000 * seed + 600 + k, exact=bool(k % 2), structure=shapes[k % len(shapes)])
@@ -138,7 +138,7 @@ def _plan(causes, level, seed, *, exact, structure=None) -> Plan:
 
 
 def judge(case: Case) -> Verdict:
-    """Write the case to files, diagnose it as a user would, and compare with what was hidden."""
+    """Write the case to files, diagnose it as a user would, and compare with the hidden causes."""
     with tempfile.TemporaryDirectory() as scratch:
         folder = Path(scratch) / "case"
         write_case(case, folder, Path(scratch) / "truth.json")
@@ -160,7 +160,7 @@ def judge(case: Case) -> Verdict:
 
 
 def _right_region(case: Case, diagnosis: Diagnosis) -> bool:
-    """Whether the first region that is called unexplained holds the structure, and not half the programme with it."""
+    """Whether the first unexplained region contains the structure and is not half of the programme."""
     if case.structure is None or not diagnosis.unexplained_where:
         return False
     first = diagnosis.unexplained_where[0]
@@ -173,7 +173,7 @@ def _right_region(case: Case, diagnosis: Diagnosis) -> bool:
 
 
 def _shrink(case: Case, diagnosis: Diagnosis) -> float:
-    """How much nearer the corrected simulation is to the noise-free truth, halfway between the measured angles."""
+    """Ratio of the gaps to the noise-free truth before and after, halfway between the measured angles."""
     run = case.run
     between = run.where(np.abs(run.alpha_deg) < 8.0)
     offset = np.where(between.gamma_deg == 0.0, 0.25, 0.0)
@@ -194,7 +194,7 @@ def _shrink(case: Case, diagnosis: Diagnosis) -> float:
 
 
 def rates(verdicts: list[Verdict]) -> dict[str, tuple[float, float]]:
-    """The rates by which a set is judged: count, and of how many."""
+    """The rates of a set: hits and number of cases."""
     single = [v for v in verdicts if len(v.causes) == 1]
     pairs = [v for v in verdicts if len(v.causes) == 2]
     none = [v for v in verdicts if not v.causes and not v.structure]

@@ -1,7 +1,7 @@
-"""Blind cases: a campaign, the model that a simulation would use, and, apart from both, what was hidden.
+"""Blind cases: a campaign, the model that a simulation would use, and, kept apart, the hidden causes.
 
-A cause is drawn with its sign and direction; its size is set by the chi2 of the gap that it leaves in noise-free
-readings, with what the given model's stated inexactness can take up projected out.
+A cause is drawn with its sign and direction. Its size is set by the chi2 of the gap that it leaves in noise-free
+readings after the declared inexactness of the given model is projected out.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ PRESSURE = ("PPY1", "PPY2", "PPY3", "PPY5", "PPZ1")
 
 @dataclass(frozen=True)
 class Hidden:
-    """How one cause is put into the truth: what changes for size 1, and from where."""
+    """One cause of the truth: its change at size 1, and where it starts."""
 
     tyre: Mapping[str, float] = field(default_factory=dict)  #: change of a coefficient
     relative: bool = False  #: changes are relative to the coefficient
@@ -81,7 +81,7 @@ CAUSES: dict[str, Hidden] = {
 
 @dataclass(frozen=True)
 class Case:
-    """One campaign and its secret."""
+    """One campaign and its hidden causes."""
 
     name: str
     kind: str
@@ -99,7 +99,7 @@ class Case:
     structure: Mapping[str, object] | None = None  #: what no effect describes
 
     def noise_free(self, run: Programme) -> tuple[np.ndarray, np.ndarray]:
-        """Truth at other set-points, for measuring how far a corrected model is from it."""
+        """Truth at other set-points, to compare a corrected model with."""
         Fy, Mz = report(self.true, self.machine, run)
         return _with_structure(self.structure, run, Fy, Mz, self.true)
 
@@ -147,12 +147,12 @@ def random_tyre(kind: str, rng: np.random.Generator) -> Tyre:
 
 
 def inexact_names(tyre: Tyre) -> list[str]:
-    """The coefficients that ``u_coefficients`` speaks of."""
+    """The coefficients that ``u_coefficients`` refers to."""
     return [n for n, value in tyre.values.items() if INEXACT.fullmatch(n) and value]
 
 
 def _hide(cause, target, given: Tyre, true: Tyre, machine: Machine, run, u_coefficients, rng):
-    """Put one cause into the truth, at the size whose gap has the wanted chi2; the given model does without it."""
+    """Add one cause to the truth, at the size whose gap has the wanted chi2; the given model lacks it."""
     hidden = CAUSES[cause]
     if cause.startswith("run-offsets"):
         machine = machine.with_faults({"draw": int(rng.integers(1 << 31))})
@@ -180,7 +180,7 @@ def _hide(cause, target, given: Tyre, true: Tyre, machine: Machine, run, u_coeff
 
 
 def _size_with(target: float, chi2: Callable[[float], float]) -> float:
-    """Size at which the gap has the wanted chi2, by bisection of its logarithm; at most that of a large cause."""
+    """Size at which the gap has the wanted chi2, by bisection of its logarithm, up to that of a large cause."""
     low, high = np.log(1e-4), np.log(1.3)
     if chi2(float(np.exp(high))) < target:
         return float(np.exp(high))
@@ -191,7 +191,7 @@ def _size_with(target: float, chi2: Callable[[float], float]) -> float:
 
 
 def chi2_of_gap(given: Tyre, run: Programme, u_coefficients: float) -> Callable[[np.ndarray], float]:
-    """chi2 of a gap (2n,), what relative errors ``u_coefficients`` of the coefficients would leave discounted."""
+    """chi2 of a gap (2n,), relative errors ``u_coefficients`` of the coefficients integrated out."""
     u = np.repeat([U_FY, U_MZ], len(run))
     if not u_coefficients:
         return lambda gap: float(np.sum((gap / u) ** 2))
@@ -225,7 +225,7 @@ STRUCTURES: dict[str, dict[str, object]] = {
 
 
 def draw_structure(shape: str, rng: np.random.Generator) -> dict[str, object]:
-    """Structure of some shape, its side, sign and size drawn."""
+    """Structure of one shape, with drawn side, sign and size."""
     drawn = dict(STRUCTURES[shape], shape=shape)
     drawn["centre"] = float(rng.choice((-1.0, 1.0)) * rng.uniform(*drawn["centre"]))
     drawn["size"] = float(rng.choice((-1.0, 1.0)) * rng.uniform(0.7, 1.3) * drawn["size"])
@@ -247,7 +247,7 @@ def _with_structure(structure, run: Programme, Fy, Mz, tyre: Tyre) -> tuple[np.n
 
 
 def write_case(case: Case, folder: Path, truth: Path) -> None:
-    """The campaign into ``folder``, what was hidden into the file ``truth``."""
+    """Write the campaign to ``folder`` and its hidden causes to the file ``truth``."""
     folder.mkdir(parents=True)
     case.given.write(folder / "given.tir")
     names = list(dict.fromkeys(case.run.sweep.tolist()))
@@ -275,7 +275,7 @@ def write_case(case: Case, folder: Path, truth: Path) -> None:
 
 
 def _rolling_radius(case: Case) -> float:
-    """What a revolution of the disc would give at the nominal load [m]."""
+    """Effective radius from a revolution of the disc at the nominal load [m]."""
     return float(case.true.state(float(case.true["FNOMIN"]), Vx=6.0).Re)
 
 

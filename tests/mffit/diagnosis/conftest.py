@@ -1,4 +1,4 @@
-"""Small campaigns that several tests look at."""
+"""Small campaigns that several tests share."""
 
 from __future__ import annotations
 

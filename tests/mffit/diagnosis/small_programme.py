@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 
 import tir
-from mffit.diagnosis.candidates import Problem
-from mffit.diagnosis.noise import noise_model
+from mffit.diagnosis.problem import DiagnosisProblem
+from mffit.diagnosis.stated import stated_noise
 from mffit.points import Points, make_points
 from mffit.rig import Simulation
 from mffit.rig_errors import NO_FAULTS, Faults
@@ -38,7 +38,7 @@ def programme(**changes: Any) -> Points:
 def read(
     points: Points, tyre: tir.Tyre = TYRE, faults: Faults = NO_FAULTS, noise: int | None = None
 ) -> Points:
-    """The points with the readings of a tyre on a rig; ``noise`` is the seed of theirs."""
+    """The points with the readings of a tyre on a rig; ``noise`` is the seed of their noise."""
     Fy, Mz = Simulation.of(tyre, faults).readings(points)
     if noise is not None:
         drawn = np.random.default_rng(noise).standard_normal((2, len(points)))
@@ -46,7 +46,6 @@ def read(
     return points.replace(Fy=Fy, Mz=Mz)
 
 
-def problem(points: Points, tyre: tir.Tyre = TYRE) -> Problem:
-    """Those readings against the tyre, independent noise as stated."""
-    start = Simulation.of(tyre)
-    return Problem(points, start, noise_model(points, start, 0.0))
+def problem(points: Points, tyre: tir.Tyre = TYRE) -> DiagnosisProblem:
+    """The readings against the tyre, with independent noise as stated."""
+    return DiagnosisProblem(points, Simulation.of(tyre), stated_noise(points))

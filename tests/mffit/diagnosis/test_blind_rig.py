@@ -1,4 +1,4 @@
-"""The tests' own rig holds a loose wheel as the virtual rig does, which has it in other words."""
+"""The tests' own rig and the virtual rig agree on wheels with play; their codes are independent."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ ALPHA = np.radians(np.linspace(-2.0, 2.0, 81))
 
 @pytest.mark.parametrize("zero_deg", [0.0, 0.13, -0.77])
 @pytest.mark.parametrize("sense", [1.0, -1.0])
-def test_loose_wheels_come_to_rest_at_the_same_angles(zero_deg, sense):
+def test_wheels_with_play_come_to_rest_at_the_same_angles(zero_deg, sense):
     def moment(alpha):
         return sense * np.sin(alpha - np.radians(zero_deg))
 
@@ -25,7 +25,7 @@ def test_loose_wheels_come_to_rest_at_the_same_angles(zero_deg, sense):
     assert rest[decided] == pytest.approx(other[decided], abs=PLAY / 2**16)
 
 
-def test_a_wheel_floats_where_its_moment_turns_round_within_the_play():
+def test_a_wheel_floats_if_its_moment_changes_sign_within_the_play():
     zero = np.radians(0.05)
     rest = resting(lambda alpha: alpha - zero, ALPHA, PLAY, ALPHA - zero)
     within = np.abs(ALPHA - zero) < PLAY / 2.0

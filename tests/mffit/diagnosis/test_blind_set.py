@@ -1,6 +1,6 @@
-"""A blind set: what is hidden is named, and nothing is named that is not there.
+"""A blind set: hidden causes are named, and no others.
 
-The normal run has a case of each sort; with ``-m slow`` the rates of a larger set are asked for, with room for the chance
+The normal run has a case of each sort; ``-m slow`` tests the rates of a larger set, with a margin for the chance
 of few cases. ``tests/studies/diagnosis_study.py`` runs whole sets.
 """
 
@@ -26,14 +26,14 @@ def plans():
 
 
 @pytest.mark.parametrize("name", OUTRIGHT)
-def test_what_is_hidden_is_named_and_nothing_else(name):
-    """One of each sort, each of which the data decide."""
+def test_hidden_causes_are_named_and_no_others(name):
+    """One case of each sort that the data decide."""
     verdict = judge(next(plan for plan in plans() if plan.name == name).draw())
     assert verdict.outright, verdict.line()
     assert verdict.structure or not verdict.causes or verdict.shrink > 2.0, verdict.line()
 
 
-def test_effects_of_one_signature_are_called_a_tie():
+def test_effects_of_one_signature_are_reported_as_a_tie():
     verdict = judge(next(p for p in plans() if p.name == "8007-ply-steer-moderate-exact").draw())
     assert {*verdict.named, *verdict.ties[0]} == {"ply-steer", "sideslip-misalignment"}
 
@@ -79,16 +79,16 @@ def test_both_of_two_are_found(verdicts):
 
 
 @pytest.mark.slow
-def test_hardly_anything_extra_is_named(verdicts):
+def test_false_extra_effects_are_rare(verdicts):
     assert share(verdicts, "false extra effects") <= 0.1
 
 
 @pytest.mark.slow
-def test_structure_without_a_name_is_called_unexplained_where_it_is(verdicts):
+def test_structure_without_a_name_is_reported_as_unexplained_in_its_region(verdicts):
     assert share(verdicts, "unknown: unexplained, right region") == 1.0
     assert share(verdicts, "unknown: not forced onto an effect") == 1.0
 
 
 @pytest.mark.slow
-def test_the_corrected_model_is_nearer_to_the_truth_where_nothing_was_measured(verdicts):
+def test_the_corrected_model_is_nearer_to_the_truth_between_the_points(verdicts):
     assert rates(verdicts)["median gap shrinkage"][0] >= 5.0

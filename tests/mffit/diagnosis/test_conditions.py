@@ -1,11 +1,11 @@
-"""One file may hold a whole programme: conditions are cut where something that was held steps."""
+"""Sweeps of a file with a whole programme are cut where a held condition steps."""
 
 from __future__ import annotations
 
 import numpy as np
 
+from mffit.diagnosis.bumps import _parts
 from mffit.diagnosis.conditions import by_condition
-from mffit.diagnosis.unknown import _masks
 from mffit.diagnosis.where import _cut
 from mffit.points import make_points
 
@@ -68,9 +68,9 @@ def test_samples_between_two_loads_do_not_join_their_conditions():
     assert len(cut.sweep_names) == 2
 
 
-def test_a_bump_is_looked_for_within_each_load_despite_samples_between_them():
+def test_bumps_are_sought_within_each_load_despite_samples_between_them():
     Fz = np.concatenate([np.full(200, 900.0), np.linspace(900.0, 1500.0, 12), np.full(200, 1500.0)])
-    masks = _masks(make_points(0.0, 0.0, Fz, p=250e3, V=6.0, phi_t=-0.76))
+    masks = _parts(make_points(0.0, 0.0, Fz, p=250e3, V=6.0, phi_t=-0.76))
     loads = [(region["Fz_N"], mask.sum()) for region, mask in masks if "Fz_N" in region]
     assert len(loads) == 2
     assert sum(number for _, number in loads) == len(Fz)

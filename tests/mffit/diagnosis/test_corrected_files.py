@@ -1,4 +1,4 @@
-"""What a diagnosis writes beside the model: corrected points that build without the rig's fault, and a sweep named as misread."""
+"""Files of a diagnosis beside the model: corrected points that build without the rig's fault; a misread sweep is named."""
 
 from __future__ import annotations
 
@@ -13,11 +13,12 @@ from blind_set import draw_case, write_case
 from mffit import pipeline
 from mffit.diagnosis.confidence import tempered
 from mffit.diagnosis.misread import Misread
+from mffit.rounding import rounded
 
 
 @pytest.fixture(scope="module")
 def campaign(tmp_path_factory):
-    """A campaign with a camber axis that is off, and the folder of its diagnosis."""
+    """A campaign with a misaligned camber axis, and the folder of its diagnosis."""
     folder = tmp_path_factory.mktemp("corrected")
     case = draw_case("rig", ("camber-misalignment",), "large", 11)
     write_case(case, folder / "rig", folder / "truth.json")
@@ -30,7 +31,7 @@ def test_the_corrected_points_build_a_cleaner_tyre(campaign):
     truth = np.concatenate(report(case.true, Machine(), case.run))
 
     def error(config) -> np.ndarray:
-        """Rms of Fy [N] and Mz [Nm] of the tyre that is built, against the true one on a perfect rig."""
+        """Rms error of Fy [N] and Mz [Nm] of the built tyre on a perfect rig."""
         away = np.concatenate(report(pipeline.build(config).tyres["turn-slip"], Machine(), case.run)) - truth
         return np.sqrt(np.mean(away.reshape(2, -1) ** 2, axis=1))
 
@@ -40,18 +41,18 @@ def test_the_corrected_points_build_a_cleaner_tyre(campaign):
     assert after[1] < before[1]
 
 
-def test_numbers_were_and_are_and_say_what_to_do(campaign):
+def test_a_rig_effect_has_values_before_and_after_and_a_remedy(campaign):
     case, folder, found = campaign
     effect = json.loads((folder / "out" / "diagnosis.json").read_text())["effects"][0]
     row = effect["parameters"]["gamma_0_deg"]
     assert row["was"] == 0.0
     assert row["value"] == pytest.approx(case.machine.gamma_0_deg, abs=4.0 * row["stderr"])
     # true camber = reading + gamma_0: at its zero the wheel leans by gamma_0 and has to be leaned back
-    assert f"lean the wheel by {-row['value']:+.3g} deg" in effect["to_do"]
+    assert f"lean the wheel by {rounded(-row['value'], row['stderr'], '+')} deg" in effect["to_do"]
     assert all(limit.ruled_out for limit in found.limits if limit.effect.id == "loadcell-gain")
 
 
-def test_a_sweep_under_the_wrong_load_is_named_and_left_out(campaign, tmp_path):
+def test_a_sweep_with_a_wrong_load_is_named_and_left_out(campaign, tmp_path):
     case = campaign[0]
     write_case(case, tmp_path / "rig", tmp_path / "truth.json")
     path = next(path for path in sorted((tmp_path / "rig").glob("sideslip_*_200kPa.csv")))
@@ -72,7 +73,7 @@ def test_a_sweep_under_the_wrong_load_is_named_and_left_out(campaign, tmp_path):
     assert path.stem not in {found.points.sweep_names[k] for k in found.points.sweep}
 
 
-def test_confidence_is_milder_than_evidence_and_keeps_its_order():
+def test_confidence_is_below_the_weight_of_evidence_and_keeps_its_order():
     said = [tempered(w) for w in (0.0, 0.1, 0.5, 0.9, 0.99, 1.0)]
     assert said == sorted(said)
     assert said[0] == 0.0

@@ -1,4 +1,4 @@
-"""What was found is added: as coefficients, as corrected readings, as a term beside the file."""
+"""Effects that were found become coefficients, corrected readings, or terms beside the file."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ def test_a_tyre_effect_becomes_a_coefficient_with_its_reason(stiffer_camber, tmp
     found.tyre.write(tmp_path / "after.tir")
     after = tir.read(tmp_path / "after.tir")
     assert after["PKY6"] == pytest.approx(value, rel=1e-6)
-    assert "camber-stiffness" in after.status["PKY6"]
+    assert "camber stiffness" in after.status["PKY6"]
     assert all(after[name] == case.given[name] for name in case.given.values if name != "PKY6")
 
 
@@ -59,7 +59,7 @@ def test_corrections_undo_the_faults(right_model):
     assert corrected.phi_t == pytest.approx(points.phi_t)
 
 
-def test_a_term_of_the_environment_stands_beside_the_file(tmp_path):
+def test_an_environment_effect_leaves_the_file_unchanged(tmp_path):
     case = draw_case("warm", ("temperature",), "large", 21)
     config, points = loaded(case, tmp_path)
     found = diagnose(points, case.given, config)
@@ -104,7 +104,7 @@ def _with_misalignment(case, alpha_0_deg):
 
 
 def _true_eps_gamma(case):
-    """Of (17): slopes at zero with turn slip acting, at the nominal load."""
+    """eps_gamma by (17) from slopes at zero at the nominal load."""
     load, step = float(case.true["FNOMIN"]), 1e-6
     forces = [
         [float(case.true(load, gamma=g, phi_t=p, Vx=6.0, turn_slip=True).Fy) for g, p in ((s, 0.0), (0.0, s))]

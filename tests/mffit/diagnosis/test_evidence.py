@@ -1,4 +1,4 @@
-"""The weight of a hypothesis against closed forms: one number that adds to every reading, a number the data do not touch."""
+"""Evidence of a hypothesis against closed forms."""
 
 from __future__ import annotations
 
@@ -9,11 +9,12 @@ import numpy as np
 import pytest
 from small_programme import TYRE, U_FY, U_MZ, problem, programme, read
 
-from mffit.diagnosis.candidates import Hypothesis, Problem
-from mffit.diagnosis.noise import noise_model
+from mffit.diagnosis.hypothesis import Hypothesis
+from mffit.diagnosis.problem import DiagnosisProblem
 from mffit.diagnosis.selection import Step, log_prior
+from mffit.diagnosis.stated import stated_noise
 from mffit.diagnosis.ties import Run, candidate_runs, separation
-from mffit.diagnosis.validate import gap, validate
+from mffit.diagnosis.validation import gap, validate
 from mffit.effects import CATALOG, Effect, Free
 from mffit.rig import Simulation
 from mffit.rig_errors import Faults
@@ -24,7 +25,7 @@ OFFSET = BY_ID["loadcell-offset-fy"]
 
 @pytest.mark.parametrize("offset", [0.0, 5.0, -20.0])
 def test_evidence_of_an_offset_in_closed_form(offset):
-    """Gauss with a Gaussian prior: the integral over the one number is exact."""
+    """Gaussian noise and a Gaussian prior: the integral over the one number is exact."""
     points = read(programme(), faults=Faults(F0_N=offset), noise=1)
     chosen = problem(points)
     found = chosen.fit((OFFSET,))
@@ -53,8 +54,8 @@ def test_evidence_of_an_offset_in_closed_form(offset):
         (Free("QSX12", 0.5, (0.0,), -2.0, 3.0, relative=True), 0.5 * 0.2 * 5.0),
     ],
 )
-def test_a_number_that_the_data_do_not_touch_keeps_its_spread_and_brings_nothing(free, spread):
-    """Relative to the coefficient; to a fifth of its bounds where the model has none."""
+def test_a_number_without_influence_keeps_its_spread_and_adds_no_evidence(free, spread):
+    """The spread is relative to the coefficient, or to a fifth of its range if the model has it at zero."""
     chosen = problem(read(programme(), noise=2))
     found = chosen.fit((Effect("x", "x", "tyre", "", (free,)),))
     assert found.stderr[free.name] == pytest.approx(spread)
@@ -64,15 +65,15 @@ def test_a_number_that_the_data_do_not_touch_keeps_its_spread_and_brings_nothing
 
 @pytest.mark.parametrize("play", [0.15, 0.3])
 def test_an_effect_without_slope_at_zero_is_found_from_its_scan(play):
-    """Play is even in its number at zero: only a start away from it sees it."""
+    """Forces are even in the play: only a start away from zero finds it."""
     chosen = problem(read(programme(), faults=Faults(backlash_deg=play)))
     found = chosen.fit((BY_ID["backlash"],))
     assert found.numbers["backlash_deg"] == pytest.approx(play, abs=0.01)
     assert found.chi2 < 0.05 * chosen.null.chi2
 
 
-def test_numbers_of_one_effect_need_not_be_scanned_alike():
-    """The play from three starts, the load cell beside it from one."""
+def test_numbers_of_one_effect_may_have_different_scans():
+    """The play has three starts, the load cell one."""
     points = read(programme(), faults=Faults(backlash_deg=0.3, F0_N=10.0))
     loose = Effect("loose", "loose", "rig", "", (*BY_ID["backlash"].free, *OFFSET.free))
     found = problem(points).fit((loose,))
@@ -83,10 +84,10 @@ def test_numbers_of_one_effect_need_not_be_scanned_alike():
 
 
 def test_turn_slip_is_switched_on():
-    """A simulation without spin misses the turn-slip force of the disc; the switch is no number with an error."""
+    """A simulation without spin misses the turn-slip force of the disc; the switch has no standard error."""
     points = read(programme())
     start = Simulation.of(TYRE, turn_slip=False)
-    found = Problem(points, start, noise_model(points, start, 0.0)).fit((BY_ID["turn-slip"],))
+    found = DiagnosisProblem(points, start, stated_noise(points)).fit((BY_ID["turn-slip"],))
     assert dict(found.numbers) == {"turn_slip": 1.0}
     assert found.chi2 == pytest.approx(0.0, abs=1e-9)
     assert not found.stderr
@@ -101,7 +102,7 @@ def test_two_hidden_effects_are_fitted_together():
     assert found.residual @ found.residual == pytest.approx(found.chi2)
 
 
-def test_a_channel_that_was_not_measured_brings_nothing():
+def test_a_channel_that_was_not_measured_is_ignored():
     points = read(programme(), faults=Faults(F0_N=12.0, M0_Nm=2.0), noise=3)
     without = points.replace(Mz=np.nan, u_Mz=np.inf)
     assert len(problem(without).null.residual) == len(points)
@@ -110,7 +111,7 @@ def test_a_channel_that_was_not_measured_brings_nothing():
 
 
 def step(**evidence: float) -> Step:
-    """Candidates beside nothing, evidence 0 for nothing; every one a rig effect with the prior of its name's length."""
+    """A first step of rig effects whose prior grows with the length of their name; no effect has evidence 0."""
     nothing = np.empty(0)
 
     def hypothesis(effects, value):
@@ -139,7 +140,7 @@ def test_a_step_passes_from_its_threshold_on(value, passes):
     assert found.best.effects[0].id == "a"
 
 
-def test_a_coefficient_that_the_model_does_not_have_is_likelier_to_be_missing():
+def test_a_coefficient_at_zero_is_likelier_to_be_missing():
     absent, present = TYRE.replace(PVY3=0.0), TYRE.replace(PVY3=0.4)
     effect = BY_ID["camber-thrust-curvature"]
     one, other = (log_prior(effect, Simulation.of(tyre)) for tyre in (absent, present))
@@ -148,8 +149,8 @@ def test_a_coefficient_that_the_model_does_not_have_is_likelier_to_be_missing():
         assert log_prior(BY_ID[name], Simulation.of(TYRE)) == BY_ID[name].prior
 
 
-def test_two_offsets_differ_by_their_square_at_every_point_of_the_best_run():
-    """Of the usual runs those with most points win: 13 sideslip angles, (9/6)^2 each."""
+def test_expected_chi2_between_two_offsets_is_their_square_at_every_point():
+    """The runs with most points are best: 13 sideslip angles, (9/6)^2 each."""
     points = read(programme())
     null = problem(points).null
     other = replace(null, state=Simulation.of(TYRE, Faults(F0_N=9.0, M0_Nm=0.3)))
@@ -158,7 +159,7 @@ def test_two_offsets_differ_by_their_square_at_every_point_of_the_best_run():
     assert separation(points, null, other, U_FY, float("nan")).chi2 == pytest.approx(13 * 1.5**2)
 
 
-def test_the_usual_runs_are_what_they_are_called():
+def test_the_usual_runs_have_the_conditions_of_their_names():
     points = read(programme(T=30.0))
     loads = {}
     for run, added in candidate_runs(points):
@@ -196,8 +197,8 @@ def test_the_usual_runs_are_what_they_are_called():
     )
 
 
-def test_a_recording_that_never_stands_still_has_runs_to_add_too():
-    """The added points are steady ones, whatever the recorded were."""
+def test_runs_can_be_added_to_a_continuous_recording():
+    """The added points are steady, the recorded ones are not."""
     points = read(programme()).replace(continuous=True, time=np.linspace(0.0, 99.0, len(programme())))
     runs = candidate_runs(points)
     assert len(runs) == len(candidate_runs(read(programme())))

@@ -1,4 +1,4 @@
-"""Noise that is not as stated, models off everywhere, effects without a name: the right name, or none.
+"""With wrong noise, inexact models and effects outside the library, the right effect is named, or none.
 
 A case of each sort; ``tests/studies/diagnosis_study.py --hard`` runs whole sets.
 """
@@ -23,26 +23,26 @@ def case(name):
 
 
 @pytest.mark.parametrize("name", NAMED)
-def test_what_is_hidden_is_named_whatever_the_noise(name):
+def test_hidden_causes_are_named_whatever_the_noise(name):
     verdict = judge(case(name))
     assert verdict.outright, verdict.line()
     assert verdict.shrink > 5.0, verdict.line()
 
 
-def test_a_model_off_everywhere_is_repaired_where_nobody_measured():
+def test_an_inexact_model_is_repaired_between_the_points():
     """3 % in every coefficient beside the effect: both are estimated, so that the file is better at new points."""
     verdict = judge(case("inexact-temperature-moderate-322253524"))
     assert verdict.outright, verdict.line()
     assert verdict.shrink > 5.0, verdict.line()
 
 
-def test_errors_that_remember_each_other_are_no_effect():
+def test_correlated_errors_are_not_an_effect():
     verdict = judge(case("correlated-none-large-227047202"))
     assert not verdict.named
     assert not verdict.unexplained
 
 
-def test_a_smooth_effect_outside_the_library_is_not_explained_away():
+def test_a_smooth_effect_outside_the_library_stays_unexplained():
     verdict = judge(list(smooth(SEED))[2].draw())
     assert not verdict.named
     assert verdict.unexplained

@@ -1,4 +1,4 @@
-"""Where a misfit lies, and structure that no effect has: places that were put in are found with their size."""
+"""Regions of misfit and structure without a name are found with their place and size."""
 
 from __future__ import annotations
 
@@ -10,11 +10,13 @@ from small_programme import TYRE, U_FY, U_MZ, problem, programme, read
 
 from mffit import config
 from mffit.diagnosis import diagnose, where
-from mffit.diagnosis.engine import possible, refuse_strangers
-from mffit.diagnosis.needs import MET, missing
-from mffit.diagnosis.noise import Origin, Scatter, noise_model, with_uncertainties
+from mffit.diagnosis.bumps import bump_scan
+from mffit.diagnosis.inexact import declared
+from mffit.diagnosis.needs import MET, missing, possible
+from mffit.diagnosis.noise import Noise, Origin, Scatter
 from mffit.diagnosis.notes import HardlyThisTyre, NotVisible
-from mffit.diagnosis.unknown import bump_scan
+from mffit.diagnosis.stated import stated_noise, with_uncertainties
+from mffit.diagnosis.strangers import refuse_strangers
 from mffit.effects import CATALOG
 from mffit.errors import InputError
 from mffit.points import make_points
@@ -58,7 +60,7 @@ def test_a_shift_in_one_part_is_found_there(name, mask, limits):
 
 
 def test_significance_is_the_mean_over_its_standard_error():
-    """9 points of one camber sweep side by side: z = 30 / (6 / sqrt(m))."""
+    """z = 30 / (6 / sqrt(m)) for m points of 6 N that are 30 N off."""
     points = read(programme())
     chosen = problem(points)
     residual = np.zeros(2 * len(points))
@@ -70,7 +72,7 @@ def test_significance_is_the_mean_over_its_standard_error():
     assert first.region == {"Fz_N": (1800.0, 1800.0)}
 
 
-def test_a_region_is_not_told_twice():
+def test_a_region_is_listed_once():
     points = read(programme(), noise=6)
     chosen = problem(points)
     residual = chosen.measured - chosen.start.predict(points)
@@ -124,7 +126,7 @@ def test_noise_has_no_bump():
         assert not bump_scan(chosen.points, chosen.noise).best(chosen.null).found
 
 
-def test_what_a_hypothesis_can_take_up_is_no_bump():
+def test_a_misfit_that_a_hypothesis_explains_is_not_a_bump():
     """A camber stiffness off by a tenth looks like structure over camber until it is freed."""
     chosen = problem(read(programme(), TYRE.replace(PKY6=1.1 * float(TYRE["PKY6"])), noise=1))
     scan = bump_scan(chosen.points, chosen.noise)
@@ -164,7 +166,7 @@ CONDITIONS = {
 
 
 @pytest.mark.parametrize("need", MET)
-def test_a_need_is_met_by_what_varies_it_and_by_nothing_less(need):
+def test_a_need_is_met_above_its_threshold_only(need):
     plain = {"alpha": 0.0, "gamma": 0.0, "Fz": 1400.0, "p": 250e3, "V": 6.0, "phi_t": 0.0}
     plain["mount"] = [1] * (4 if need in ("distances", "senses", "runs") else 2)
     enough, too_little = (make_points(**plain | changes) for changes in CONDITIONS[need])
@@ -172,20 +174,20 @@ def test_a_need_is_met_by_what_varies_it_and_by_nothing_less(need):
     assert not MET[need](too_little)
 
 
-def test_what_cannot_be_seen_is_not_tried():
+def test_invisible_effects_are_not_tried():
     points = read(programme(phi_t=0.0, T=np.nan))
     tried, notes = possible(CATALOG, points, Simulation.of(TYRE))
     assert {e.id for e in tried}.isdisjoint(
         {"camber-reduction", "temperature", "turn-slip", "pressure", "relaxation"}
     )
     assert {e.id for e in tried} >= {"ply-steer", "camber-stiffness", "loadcell-gain"}
-    lacking = {id for note in notes if isinstance(note, NotVisible) for id in note.effects}
+    lacking = {e.id for note in notes if isinstance(note, NotVisible) for e in note.effects}
     assert {e.id for e in CATALOG} - {e.id for e in tried} - {"turn-slip"} <= lacking | {"turn-slip"}
     assert all(missing(e, points) == () for e in tried)
 
 
 @pytest.mark.parametrize("simulated", [True, False])
-def test_turn_slip_is_missing_only_where_it_is_not_simulated(simulated):
+def test_turn_slip_is_a_candidate_only_if_it_is_not_simulated(simulated):
     tried, _ = possible(CATALOG, read(programme()), Simulation.of(TYRE, turn_slip=simulated))
     assert ("turn-slip" in {e.id for e in tried}) is not simulated
 
@@ -195,7 +197,7 @@ def test_a_model_of_another_size_is_refused(factor, refused):
     points = read(programme())
     tyre = TYRE.replace(FNOMIN=float(np.median(points.Fz)) / factor)
     if refused:
-        with pytest.raises(InputError, match="order apart"):
+        with pytest.raises(InputError, match="differ by an order of magnitude"):
             refuse_strangers(points, tyre, Simulation.of(TYRE))
     else:
         refuse_strangers(points, tyre, Simulation.of(TYRE))
@@ -204,18 +206,18 @@ def test_a_model_of_another_size_is_refused(factor, refused):
 def test_twelve_points_are_the_fewest():
     points = read(programme())
     refuse_strangers(points.select(np.arange(12)), TYRE, Simulation.of(TYRE))
-    with pytest.raises(InputError, match="11 points are too few for a diagnosis: measure at least 12"):
+    with pytest.raises(InputError, match="11 points are too few for a diagnosis; measure at least 12"):
         refuse_strangers(points.select(np.arange(11)), TYRE, Simulation.of(TYRE))
 
 
 def test_moments_in_other_axes_are_refused_by_name():
     points = read(programme())
-    with pytest.raises(InputError, match="simulated and measured Mz run against each other"):
+    with pytest.raises(InputError, match="simulated and measured Mz have opposite signs"):
         refuse_strangers(points.replace(Mz=-points.Mz), TYRE, Simulation.of(TYRE))
 
 
 def test_the_scatter_of_neighbours_is_the_noise():
-    """Smooth curves with 6 N on them; nothing stated. Third differences of white noise have 20 times its variance."""
+    """Smooth curves with 6 N of noise, no uncertainty stated. Third differences of white noise have 20 times its variance."""
     alpha = np.tile(np.radians(np.linspace(-8.0, 8.0, 161)), 4)
     points = make_points(
         alpha,
@@ -243,8 +245,13 @@ def test_sweeps_too_short_for_a_scatter_get_a_hundredth_of_the_span():
     assert found.u_Fy == pytest.approx(0.01 * np.ptp(few.Fy - wrong.Fy))
 
 
+def inexact_noise(points, u_coefficients) -> Noise:
+    """The stated noise with inexact coefficients."""
+    return stated_noise(points).sharing(declared(TYRE, u_coefficients).columns(points, Simulation.of(TYRE)))
+
+
 def covariance(noise):
-    """Of the used readings: what whitening makes one."""
+    """Covariance of the used readings, from their whitening."""
     white = noise.whiten(np.eye(len(noise.u)))[:, noise.used]
     return np.linalg.inv(white.T @ white)
 
@@ -252,8 +259,7 @@ def covariance(noise):
 def test_inexact_coefficients_correlate_the_readings():
     """cov = u^2 + sum over coefficients of (u_c c dF/dc)^2, with products between readings."""
     points = read(programme()).select(np.arange(0, 60, 4))
-    start = Simulation.of(TYRE)
-    exact, inexact = (noise_model(points, start, u) for u in (0.0, 0.02))
+    exact, inexact = stated_noise(points), inexact_noise(points, 0.02)
     up, down = (
         Simulation.of(TYRE.replace(PDY1=float(TYRE["PDY1"]) * f)).predict(points) for f in (1.001, 0.999)
     )
@@ -269,21 +275,21 @@ def test_inexact_coefficients_correlate_the_readings():
     assert inexact.error_of_sum(np.array([0, 1])) == pytest.approx(math.sqrt(whole[:2, :2].sum()))
 
 
-def test_part_of_the_readings_keeps_their_covariance():
-    """Inexact coefficients, and errors that remember each other along the sweeps that are left."""
+def test_a_subset_of_readings_keeps_their_covariance():
+    """With inexact coefficients, and errors that are correlated along sweeps."""
     points = read(programme())
     nothing, all_of_it = np.zeros(2 * len(points)), np.ones(2 * len(points))
     remembered = {"Fy": Scatter(memory=0.8), "Mz": Scatter(memory=0.3)}
-    noise = noise_model(points, Simulation.of(TYRE), 0.02).scattering(remembered, nothing, all_of_it)
+    noise = inexact_noise(points, 0.02).scattering(remembered, nothing, all_of_it)
     keep = points.sweep != 1
     both = np.concatenate([keep, keep])
     whole, part = covariance(noise), covariance(noise.subset(keep))
     assert part == pytest.approx(whole[np.ix_(both, both)], rel=1e-6, abs=1e-6)
 
 
-def test_a_larger_scatter_leaves_the_model_as_inexact_as_it_was():
+def test_a_larger_scatter_does_not_change_the_inexactness_of_the_model():
     points = read(programme())
-    noise = noise_model(points, Simulation.of(TYRE), 0.02)
+    noise = inexact_noise(points, 0.02)
     nothing, all_of_it = np.zeros(2 * len(points)), np.ones(2 * len(points))
     thrice = noise.scattering(dict.fromkeys(("Fy", "Mz"), Scatter(scale=3.0)), nothing, all_of_it)
     larger = covariance(thrice) - covariance(noise)
@@ -311,7 +317,7 @@ SETTINGS = config.load(
 
 
 def three_effects(understated: float, strange: float = 0.0, alike: int = 1, strange_moment: float = 0.0):
-    """Three hidden effects; beside the noise something ``strange`` [N, Nm] that is the same at some neighbours."""
+    """Three hidden effects, and beside the noise a ``strange`` error [N, Nm] that ``alike`` neighbours share."""
     points = read(programme(), HIDDEN, Faults(M0_Nm=6.0), noise=9)
     n, rng = len(points), np.random.default_rng(3)
     Fy, Mz = (
@@ -346,8 +352,8 @@ def test_noise_larger_than_stated_is_found_and_does_not_hide_the_effects():
     assert answers(found)["M0_Nm"][1] == pytest.approx(answers(stated)["M0_Nm"][1], rel=0.25)
 
 
-def test_a_misfit_that_neighbours_share_counts_as_fewer_readings():
-    """Of the same size, but alike at three neighbours: the answers become less certain than their number promises."""
+def test_errors_that_neighbours_share_count_as_fewer_readings():
+    """Errors of the same size, common to three neighbours, make the answers less certain."""
     independent, shared = (three_effects(1.0, strange=20.0, alike=alike) for alike in (1, 3))
     assert independent.noise.scatter["Fy"].memory == 0.0
     # Two of three neighbours share 20 N of hypot(20, 6) N.
@@ -360,8 +366,8 @@ def test_a_misfit_that_neighbours_share_counts_as_fewer_readings():
         assert 1.25 < per_noise[1] / per_noise[0] < 2.2, name
 
 
-def test_a_channel_lost_in_noise_leaves_the_answers_of_the_other():
-    """Forces scatter by 100 N where 2.4 N are stated: theirs are worth little, those of the moments as much as ever."""
+def test_a_noisy_channel_does_not_spoil_the_answers_of_the_other():
+    """Forces scatter by 100 N instead of the stated 2.4 N; moments keep their weight."""
     found, quiet = three_effects(2.5, strange=100.0), three_effects(2.5)
     assert found.noise.Fy == pytest.approx(math.hypot(100.0, U_FY), rel=0.2)
     assert found.noise.Mz == pytest.approx(U_MZ, rel=0.2)
@@ -370,8 +376,8 @@ def test_a_channel_lost_in_noise_leaves_the_answers_of_the_other():
     assert answers(found)["PDY2"][1] > 5.0 * answers(quiet)["PDY2"][1]
 
 
-def test_a_model_that_nothing_helps_is_hardly_of_this_tyre():
-    """Whatever is added, both channels miss by 42 times what is stated: naming a cause would be a guess."""
+def test_a_model_that_no_effect_improves_hardly_belongs_to_this_tyre():
+    """With any effects, both channels miss by 42 times their stated noise: naming a cause would be a guess."""
     found = three_effects(2.5, strange=100.0, strange_moment=10.0)
     (note,) = (n for n in found.notes if isinstance(n, HardlyThisTyre))
     assert note.misfit == pytest.approx(math.hypot(100.0, U_FY) / (U_FY / 2.5), rel=0.15)

@@ -1,4 +1,4 @@
-"""Sweeps that never rest lag behind their angle by a rolled distance."""
+"""Forces of continuous sweeps lag behind their angle by a rolled distance."""
 
 from __future__ import annotations
 
@@ -90,7 +90,7 @@ def test_the_lag_is_exact_at_uneven_steps_whatever_the_order_of_the_rows():
     assert found == pytest.approx(expected[shuffled], abs=1e-8)
 
 
-def test_a_wheel_that_stands_still_keeps_its_lag():
+def test_a_wheel_at_rest_keeps_its_lag():
     """The force answers to rolled distance: steering a wheel at rest moves alpha alone."""
     time = np.array([0.0, 0.5, 1.0, 1.0, 2.0])
     alpha = np.radians([1.0, 2.0, 3.0, 3.5, 4.0])
@@ -98,7 +98,7 @@ def test_a_wheel_that_stands_still_keeps_its_lag():
     assert np.degrees(standing) == pytest.approx(np.ones(5), abs=1e-12)
 
 
-def test_steps_of_no_distance_change_nothing_of_what_follows():
+def test_steps_without_distance_do_not_change_later_samples():
     time, alpha = np.array([0.0, 0.2, 0.5, 0.9]), np.radians([0.0, 2.0, 3.0, 1.0])
     once = lagged_angle(moving(alpha, time, 2.0), SIGMA)[0]
     twice = lagged_angle(moving(np.repeat(alpha, 2), np.repeat(time, 2), 2.0), SIGMA)[0]

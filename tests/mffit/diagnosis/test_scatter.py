@@ -1,4 +1,4 @@
-"""The noise is found in the readings, part by part, and only where it is."""
+"""Every part of the noise is found in the readings, and only if it is there."""
 
 from __future__ import annotations
 
@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from mffit.diagnosis.noise import Noise, Scatter
-from mffit.diagnosis.scatter import Explained, learned, wild
+from mffit.diagnosis.scatter import Explained, learned
+from mffit.diagnosis.tails import outlying
 
 N, SWEEPS = 400, 20
 FORCE = 1500.0 * np.sin(np.linspace(0.0, 40.0, N))
@@ -47,7 +48,7 @@ def test_noise_that_grows_with_the_force(rng):
     assert scatter.scale == pytest.approx(1.0, abs=0.4)
 
 
-def test_errors_that_remember_each_other_along_a_sweep(rng):
+def test_errors_that_are_correlated_along_a_sweep(rng):
     noise = rng.normal(0.0, 6.0, N)
     for i in range(1, N):
         if i % (N // SWEEPS):
@@ -57,12 +58,12 @@ def test_errors_that_remember_each_other_along_a_sweep(rng):
     assert scatter.scale == pytest.approx(1.0, abs=0.35)
 
 
-def test_wild_readings_are_listed_and_lose_their_weight(rng):
+def test_outliers_are_listed_and_lose_their_weight(rng):
     noise = rng.normal(0.0, 6.0, N)
     off = np.sort(rng.choice(N, 8, replace=False))
     noise[off] += rng.choice((-90.0, 90.0), 8)
     learned_noise = found(noise)
-    listed = wild(learned_noise)
+    listed = outlying(learned_noise)
     assert set(off) <= set(listed)
     assert len(listed) <= 10
     assert np.all(learned_noise.u[off] > 20.0)
@@ -70,15 +71,15 @@ def test_wild_readings_are_listed_and_lose_their_weight(rng):
     assert np.median(learned_noise.u[usual]) == pytest.approx(6.0, rel=0.25)
 
 
-def test_what_an_effect_could_bring_is_no_noise(rng):
+def test_misfit_that_an_effect_could_explain_is_not_noise(rng):
     shape = np.concatenate([np.cos(np.linspace(0.0, 9.0, N)), np.zeros(N)])[:, None]
     scatter = found(rng.normal(0.0, 6.0, N) + 80.0 * shape[:N, 0], 100.0 * shape).scatter["Fy"]
     assert scatter.scale == pytest.approx(1.0, abs=0.15)
     assert scatter.memory == 0.0
 
 
-def test_whitening_makes_the_covariance_one():
-    """Against the covariance written out: own uncertainty, memory along sweeps, shared changes."""
+def test_whitened_readings_have_unit_covariance():
+    """Against the explicit covariance: independent uncertainty, memory along sweeps, shared changes."""
     rng = np.random.default_rng(1)
     n, u = 30, rng.uniform(1.0, 3.0, 60)
     u[40] = np.inf

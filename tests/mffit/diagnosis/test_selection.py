@@ -1,4 +1,4 @@
-"""The search for effects ends, whatever the evidence of the sets that it meets."""
+"""The search for effects ends for any evidence."""
 
 from __future__ import annotations
 
@@ -7,12 +7,13 @@ import math
 import numpy as np
 import pytest
 
-from mffit.diagnosis.candidates import Hypothesis
-from mffit.diagnosis.selection import MARGIN, ids, price, select
+from mffit.diagnosis.constants import EVIDENCE_MARGIN
+from mffit.diagnosis.hypothesis import Hypothesis
+from mffit.diagnosis.selection import price, select
 from mffit.effects import Effect, Free
 
 MOST_FITS = 500
-"""Far beyond what a search among three effects needs."""
+"""Far more than a search among three effects needs."""
 
 
 def effect(name: str) -> Effect:
@@ -23,7 +24,7 @@ A, B, C = (effect(name) for name in "abc")
 
 
 class Table:
-    """A problem whose evidence stands in a table; several numbers are what successive fits of a set end in."""
+    """A problem with tabulated evidence; several numbers are the results of successive fits of a set."""
 
     def __init__(self, **evidence: tuple[float, ...]) -> None:
         self.evidence = {frozenset(names): list(values) for names, values in evidence.items()}
@@ -51,21 +52,21 @@ class Table:
 
 
 def chosen(problem, *effects):
-    return sorted(ids(select(problem, effects)[0]))
+    return sorted(select(problem, effects)[0].ids)
 
 
 @pytest.mark.parametrize("side", [-0.05, 0.05])
-def test_an_effect_is_kept_for_the_price_for_which_it_is_taken(side):
-    """Between the prices of two and of three candidates it was taken, dropped, and taken again."""
+def test_an_effect_is_kept_for_the_price_at_which_it_was_added(side):
+    """Between the prices of two and of three candidates it was once added, dropped, and added again."""
     b = price(3) + side
     problem = Table(
         a=(100.0,), b=(20.0,), c=(0.0,), ab=(100.0 + b,), ac=(100.0,), bc=(20.0,), abc=(100.0 + b,)
     )
-    assert math.log(2.0) + MARGIN < b
+    assert math.log(2.0) + EVIDENCE_MARGIN < b
     assert chosen(problem, A, B, C) == (["a", "b"] if side > 0.0 else ["a"])
 
 
-def test_the_search_ends_where_a_set_looks_worse_at_every_visit():
+def test_the_search_ends_if_a_set_looks_worse_at_every_visit():
     """With b, a looks needless; without a, b is worth nothing; and a fit of a and b always ends somewhere better."""
     rising = tuple(100.0 + 10.0 * k for k in range(MOST_FITS))
     problem = Table(a=(60.0,), b=(50.0, *rising), c=(0.0,), ab=rising, ac=(60.0,), bc=(50.0,), abc=(90.0,))

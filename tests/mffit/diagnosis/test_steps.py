@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 
 from mffit.diagnosis import diagnose, gap, where
-from mffit.diagnosis.candidates import Problem
-from mffit.diagnosis.noise import noise_model
+from mffit.diagnosis.problem import DiagnosisProblem
 from mffit.diagnosis.selection import forward_step
+from mffit.diagnosis.stated import stated_noise
 from mffit.diagnosis.ties import Run, separation
-from mffit.diagnosis.validate import validate
+from mffit.diagnosis.validation import validate
 from mffit.effects import CATALOG
 from mffit.rig import Simulation
 from mffit.rig_errors import Faults
@@ -18,9 +18,9 @@ from mffit.rig_errors import Faults
 BY_ID = {effect.id: effect for effect in CATALOG}
 
 
-def problem(case, points, u_coefficients=0.0):
+def problem(case, points):
     state = Simulation(dict(case.given.values), Faults(), True, False)
-    return Problem(points, state, noise_model(points, state, u_coefficients))
+    return DiagnosisProblem(points, state, stated_noise(points))
 
 
 def test_a_right_model_leaves_one_chi2_per_reading(right_model):
@@ -32,13 +32,13 @@ def test_a_right_model_leaves_one_chi2_per_reading(right_model):
     assert found.Fy_rmse_N == pytest.approx(6.0, rel=0.15)
 
 
-def test_nothing_stands_out_of_noise(right_model):
+def test_noise_has_hardly_a_significant_region(right_model):
     case, _, points = right_model
     chosen = problem(case, points)
     assert len(where(points, chosen.measured - chosen.start.predict(points), chosen.noise)) <= 1
 
 
-def test_a_place_that_is_off_is_found_with_its_size(right_model):
+def test_a_shifted_region_is_found_with_its_size(right_model):
     case, _, points = right_model
     chosen = problem(case, points)
     residual = chosen.measured - chosen.start.predict(points)
@@ -62,8 +62,8 @@ def test_the_forward_step_ranks_the_hidden_effect_first(stiffer_camber):
     assert step.weights()["camber-stiffness"] > 0.99
 
 
-def test_inexact_coefficients_are_no_missing_effect(right_model):
-    """A model 1 % off in every coefficient has a gap; stated as such, the gap is no effect."""
+def test_inexact_coefficients_are_not_a_missing_effect(right_model):
+    """A model 1 % off in every coefficient has a gap; if that is declared, no effect is named."""
     case, config, points = right_model
     rng = np.random.default_rng(2)
     names = [n for n in case.given.values if n.startswith(("PK", "PD", "PC", "QB", "QD")) and n[2:3] in "YZ"]
@@ -84,7 +84,7 @@ def test_left_out_sweeps_confirm_a_true_effect(stiffer_camber):
 
 
 def test_the_flipped_mount_separates_conicity_from_a_load_cell(right_model):
-    """Computed from the refitted explanations, not looked up: the proposed run must tell them apart."""
+    """The proposed run is computed from the refitted explanations and must separate them."""
     case, _, points = right_model
     chosen = problem(case, points)
     conical = chosen.start.with_numbers({"PVY1": float(case.given["PVY1"]) + 0.004})

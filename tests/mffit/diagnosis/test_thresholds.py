@@ -1,4 +1,4 @@
-"""What an effect must bring, as docs/diagnosis.md states it: the logarithm of the number of candidates plus 4."""
+"""The price of an effect as docs/diagnosis.md states it: the logarithm of the number of candidates plus 4."""
 
 from __future__ import annotations
 
@@ -8,11 +8,11 @@ from itertools import combinations
 import pytest
 from test_selection import A, B, C, Table, chosen, effect
 
-from mffit.diagnosis.selection import ids, select
+from mffit.diagnosis.selection import select
 
 
 def evidence(**worth: float) -> dict[str, tuple[float, ...]]:
-    """Of every set, as the sum of what its effects are worth."""
+    """Evidence of every set: the sum over its effects."""
     sets = [c for k in range(1, len(worth) + 1) for c in combinations(worth, k)]
     return {"".join(names): (sum(worth[n] for n in names),) for names in sets}
 
@@ -23,7 +23,7 @@ def test_the_first_effect_pays_for_the_choice_among_all(above, taken):
 
 
 @pytest.mark.parametrize(("above", "taken"), [(-0.1, ["a"]), (0.1, ["a", "b"])])
-def test_so_does_the_second(above, taken):
+def test_the_second_effect_pays_the_same(above, taken):
     assert chosen(Table(**evidence(a=60.0, b=math.log(3.0) + 4.0 + above, c=0.0)), A, B, C) == taken
 
 
@@ -38,13 +38,13 @@ def test_more_candidates_are_a_higher_price():
 def test_four_effects_are_the_most():
     problem = Table(**evidence(a=60.0, b=50.0, c=40.0, d=30.0, e=25.0))
     best, steps = select(problem, [effect(name) for name in "abcde"])
-    assert ids(best) == set("abcd")
+    assert best.ids == set("abcd")
     assert len(steps) == 4
 
 
 def test_all_of_a_small_library_may_be_taken():
     best, steps = select(Table(**evidence(a=60.0, b=50.0)), [A, B])
-    assert ids(best) == {"a", "b"}
+    assert best.ids == {"a", "b"}
     assert len(steps) == 2
 
 
@@ -56,7 +56,7 @@ def test_a_set_is_exchanged_for_one_that_is_better_by_one(gain, taken):
     assert chosen(problem, A, B, C) == taken
 
 
-def test_what_became_needless_is_dropped():
-    """c alone was first; a and b together do without it."""
+def test_an_effect_that_became_needless_is_dropped():
+    """c is added first; a and b together make it needless."""
     problem = Table(a=(50.0,), b=(45.0,), c=(60.0,), ab=(120.0,), ac=(90.0,), bc=(70.0,), abc=(121.0,))
     assert chosen(problem, A, B, C) == ["a", "b"]

@@ -1,4 +1,4 @@
-"""A diagnosis holds facts; its sentences say them, and nothing that is not so."""
+"""The sentences about a diagnosis state its facts and nothing else."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from mffit.diagnosis import Diagnosis, diagnose, wording
+from mffit.diagnosis.bumps import Bump
 from mffit.diagnosis.needs import MET
 from mffit.diagnosis.noise import Noise, Scatter
 from mffit.diagnosis.notes import (
@@ -20,13 +21,13 @@ from mffit.diagnosis.notes import (
     OneSweep,
 )
 from mffit.diagnosis.ties import Run, Separation
-from mffit.diagnosis.unknown import Bump
-from mffit.diagnosis.validate import Gap, Validation
-from mffit.effects import NEEDS
+from mffit.diagnosis.validation import Gap, Validation
+from mffit.effects import CATALOG, NEEDS
 from mffit.fit.outliers import Outlier
 from mffit.results import as_json
 from tir import Quantity
 
+BY_ID = {effect.id: effect for effect in CATALOG}
 RIGHT, WRONG = Quantity(-0.06, 0.05, "-"), Quantity(0.2, 0.07, "-")
 BUMP = Bump("Mz", {"alpha_deg": (-4.0, -2.5), "Fz_N": (1400.0, 1600.0)}, -6.2, 30.0)
 
@@ -43,39 +44,39 @@ def camber(stiffer_camber) -> Diagnosis:
     return diagnose(points, case.given, config)
 
 
-def test_a_misfit_without_a_place_is_not_given_one(nothing):
-    """The best of the bumps that were tried, but not found, was named as the place."""
-    said = replace(nothing, unexplained=True).headline
+def test_a_misfit_without_a_bump_has_no_place(nothing):
+    """The best bump that was tried was once named, although none was found."""
+    said = wording.headline(replace(nothing, unexplained=True))
     assert "no effect of the library explains it" in said
     assert "around" not in said
 
 
-def test_a_rest_without_a_place_is_not_given_one(camber):
-    said = replace(camber, unexplained=True, bump=None).headline
+def test_an_unexplained_rest_without_a_bump_has_no_place(camber):
+    said = wording.headline(replace(camber, unexplained=True, bump=None))
     assert said.endswith("; the rest stays unexplained.")
 
 
-def test_structure_is_given_its_size_and_place(nothing):
-    said = replace(nothing, unexplained=True, bump=BUMP).headline
+def test_a_bump_is_stated_with_its_size_and_place(nothing):
+    said = wording.headline(replace(nothing, unexplained=True, bump=BUMP))
     assert "Mz is off by -6.2 Nm around sideslip -4 to -2.5 deg and load 1400 to 1600 N." in said
 
 
-def test_an_effect_is_named_with_what_it_is_tied_with(camber):
-    assert camber.headline.startswith(
-        "The missing effect is camber stiffness: with it the side force misses by"
-    )
-    tied = replace(camber.effects[0], tied_with=("path-radius",))
-    assert (
-        "camber stiffness (or path-radius, not separable here)" in replace(camber, effects=(tied,)).headline
-    )
+def test_an_effect_is_named_with_its_ties(camber):
+    assert camber.headline.startswith("The missing effect is camber stiffness: with it the rms misfit is")
+    tied = replace(camber.effects[0], tied=(BY_ID["path-radius"],))
+    assert tied.tied_with == ("path-radius",)
+    said = wording.headline(replace(camber, effects=(tied,)))
+    assert "camber stiffness (or path radius, not separable here)" in said
 
 
-def test_what_is_not_likely_is_not_stated_and_a_tie_counts_as_one(camber):
-    found = replace(camber.effects[0], confidence=0.4, tied_with=("path-radius",))
+def test_an_unlikely_effect_is_called_uncertain_and_a_tie_counts_as_one(camber):
+    found = replace(camber.effects[0], confidence=0.4, tied=(BY_ID["path-radius"],))
     alone = replace(camber, effects=(found,), alternatives={})
-    assert alone.headline.startswith("The nearest explanation, not a sure one, is camber stiffness (or")
+    assert wording.headline(alone).startswith(
+        "The best explanation, though uncertain, is camber stiffness (or"
+    )
     tied = replace(camber, effects=(found,), alternatives={"path-radius": 0.4})
-    assert tied.headline.startswith("The missing effect is camber stiffness (or")
+    assert wording.headline(tied).startswith("The missing effect is camber stiffness (or")
 
 
 @pytest.mark.parametrize(
@@ -89,12 +90,12 @@ def test_what_is_not_likely_is_not_stated_and_a_tie_counts_as_one(camber):
         ({}, []),
     ],
 )
-def test_a_place_is_said_in_words(region, words):
+def test_a_region_in_words(region, words):
     assert wording.place(region) == words
 
 
 @pytest.mark.parametrize("run", Run)
-def test_every_run_has_words_and_only_a_telling_one_is_recommended(run):
+def test_every_run_has_words_and_only_a_separating_one_is_recommended(run):
     assert wording.separation(Separation(run, 1500.0, 40.0)).endswith("(expected chi2 40)")
     assert wording.separation(Separation(run, 1500.0, 2.0)).startswith("none of the usual runs")
 
@@ -102,13 +103,16 @@ def test_every_run_has_words_and_only_a_telling_one_is_recommended(run):
 @pytest.mark.parametrize(
     ("note", "words"),
     [
-        (OneSweep(), "One sweep cannot tell"),
-        (NotVisible(("curved", "moment"), ("spin-torque",)), "which lack a curved path and Mz: spin-torque."),
-        (HardlyThisTyre(41.7, "Mz"), "even the self-aligning moment by 42 times its noise"),
+        (OneSweep(), "One sweep cannot separate causes"),
+        (
+            NotVisible(("curved", "moment"), (BY_ID["spin-torque"],)),
+            "which lack a curved path and Mz: turn-slip moment.",
+        ),
+        (HardlyThisTyre(41.7, "Mz"), "misses the self-aligning moment by 42 times its noise"),
         (
             NoRepair(("camber stiffness",), Validation(8, Gap(36.7, 2.0, 4.0), Gap(37.5, 2.1, 4.2))),
-            "No repair is written: camber stiffness would fit these points better, but on sweeps that were left out the "
-            "side force misses by 37.5 N instead of 36.7 N",
+            "No repair is written: camber stiffness would fit these points better, but on left-out sweeps the side force misses "
+            "by 37.5 N instead of 36.7 N and the self-aligning moment misses by 2.1 Nm instead of 2 Nm.",
         ),
         (ModelOfLastBuild("front-normal.tir"), "The model is front-normal.tir of the last build."),
         (ModelFittedFirst(turn_slip=False), "simulations with turn slip off."),
@@ -116,11 +120,11 @@ def test_every_run_has_words_and_only_a_telling_one_is_recommended(run):
         (DirectMethodRedone(("backlash",), None, RIGHT), "cannot be measured with backlash"),
         (
             DirectMethodRedone(("backlash",), RIGHT, RIGHT),
-            "stays -0.06 +- 0.05 (k = 1) with backlash corrected",
+            "stays -0.060 +- 0.050 (k = 1) with backlash corrected",
         ),
         (
             DirectMethodRedone(("backlash", "gain"), WRONG, RIGHT),
-            "was 0.20 +- 0.07 with backlash and gain; corrected it is -0.06 +- 0.05 (k = 1).",
+            "was 0.200 +- 0.070 with backlash and gain; corrected it is -0.060 +- 0.050 (k = 1).",
         ),
     ],
 )
@@ -154,12 +158,12 @@ def test_the_noise_is_stated_beside_the_declared_one():
     noise = Noise(u=u * np.repeat([2.0, 1.0], 10), stated=u, chain=np.zeros(20), origin=None, scatter=parts)
     Fy, Mz = wording.scatter(noise)
     assert Fy.startswith(
-        "Fy scatters by 12 N, stated were 6 N; it grows by 1.5 % of the reading; errors along a sweep"
+        "The noise of Fy is 12 N (stated 6 N); it grows with the reading, by 1.5 % of it; neighbouring errors of a sweep"
     )
     assert "lost their weight" in Fy
-    assert Mz == "Mz scatters by 0.6 Nm, stated were 0.6 Nm."
+    assert Mz == "The noise of Mz is 0.6 Nm (stated 0.6 Nm)."
 
 
-def test_a_wild_reading_is_named_by_its_line():
+def test_an_outlier_is_named_by_its_line():
     said = wording.outlier(Outlier("sideslip_900.csv", 14, "sideslip_900", 3, "Fy", 109.0, 200.0, 15.2))
     assert said == "sideslip_900, line 14: Fy off by -91 N, 15 times its noise"

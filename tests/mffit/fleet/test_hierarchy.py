@@ -1,4 +1,4 @@
-"""Many tyres of one rig: against the whole normal distribution written out, and on drawn fleets whose truth is known."""
+"""Joint estimate of many tyres of one rig: against the explicit normal distribution, and on drawn fleets with known truth."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ POINTS = 12
 
 
 def drawn(rng, x, theta, *, noise=1.0, slopes=None) -> Information:
-    """What some points say whose readings are linear in the numbers."""
+    """Information of points whose readings are linear in the numbers."""
     J = rng.standard_normal((POINTS, 5)) / SLOPES if slopes is None else slopes
     truth = np.concatenate([x, theta])
     y = J @ truth + noise * rng.standard_normal(POINTS)
@@ -35,7 +35,7 @@ SLOPES = np.array([0.1, 0.1, 0.1, 5.0, 0.3])
 
 
 def fleet(seed: int, tyres: int, scatter=(0.05, 0.05, 0.08), weak=True):
-    """Tyres of one rig; with ``weak`` their points hardly tell eps_gamma from the rig's offset."""
+    """Tyres of one rig; with ``weak`` their points hardly separate eps_gamma from the rig's offset."""
     rng = np.random.default_rng(seed)
     theta = rng.standard_normal(2) * SPREAD[3:]
     own = np.array([1.2, -1.3, -0.1]) + rng.standard_normal((tyres, 3)) * scatter
@@ -48,7 +48,7 @@ def fleet(seed: int, tyres: int, scatter=(0.05, 0.05, 0.08), weak=True):
     return out, own, theta
 
 
-def test_three_tyres_are_the_whole_normal_distribution_written_out():
+def test_three_tyres_agree_with_the_explicit_normal_distribution():
     """Numbers (x_1, x_2, x_3, theta, mu) in one precision matrix; three tyres are too few to learn a scatter."""
     found, _, _ = fleet(1, 3)
     k, n = 3, 3
@@ -79,9 +79,9 @@ def test_three_tyres_are_the_whole_normal_distribution_written_out():
     assert together.population["PKY6"].mean == pytest.approx(mean[12], rel=1e-8)
 
 
-def test_one_tyre_is_its_points_and_what_was_known_of_it_once():
+def test_one_tyre_alone_has_the_posterior_of_its_points_and_priors():
     (one,), _, _ = fleet(2, 1)
-    known = np.array([0.3, 0.4, 3.0, *SPREAD[3:]])  # of eps_gamma nothing but the width of its bounds
+    known = np.array([0.3, 0.4, 3.0, *SPREAD[3:]])  # eps_gamma has only the width of its bounds
     covariance = np.linalg.inv(one.matrix + np.diag(known**-2.0))
     mean = covariance @ (one.vector + EXPECTED * known**-2.0)
     (tyre,) = estimate([one]).tyres
@@ -91,8 +91,8 @@ def test_one_tyre_is_its_points_and_what_was_known_of_it_once():
     assert estimate([one]).population == {}
 
 
-def test_a_population_is_of_coefficients_that_two_tyres_speak_of():
-    """No turn slip acts on a straight path: its coefficient is among the numbers, and the points say nothing of it."""
+def test_a_population_needs_two_tyres_that_inform_a_coefficient():
+    """A number may be free although the points do not inform it, as turn slip on a straight path."""
     found, _, _ = fleet(5, 3)
     silent = np.eye(5)
     silent[1, 1] = 0.0
@@ -103,7 +103,7 @@ def test_a_population_is_of_coefficients_that_two_tyres_speak_of():
     assert not estimate(fleet(6, 4)[0]).population["PKY6"].assumed
 
 
-def test_together_they_are_nearer_to_the_truth_and_as_near_as_they_say():
+def test_joint_estimates_are_nearer_to_the_truth_and_their_uncertainty_is_right():
     alone, together, pulls = [], [], []
     for seed in range(15):
         found, own, _ = fleet(seed, 8)
@@ -126,14 +126,14 @@ def test_the_scatter_of_the_population_is_found():
     np.testing.assert_allclose(found.mean(axis=0), [0.05, 0.05, 0.08], rtol=0.25)
 
 
-def test_the_rig_is_known_better_by_many_and_the_declaration_counts_once():
+def test_many_tyres_determine_the_rig_better_and_the_declaration_counts_once():
     by_number = {n: estimate(fleet(3, n)[0]).rig["F0_N"][1] for n in (1, 4, 16)}
     assert by_number[16] < 0.6 * by_number[4] < 0.4 * by_number[1] < 0.4 * 10.0
     nothing = [replace(one, matrix=0 * one.matrix, vector=0 * one.vector) for one in fleet(4, 6)[0]]
     assert estimate(nothing).rig["F0_N"] == pytest.approx((0.0, 10.0))
 
 
-def test_a_tyre_that_was_on_another_rig_stands_out_and_the_others_do_not():
+def test_only_a_tyre_of_another_rig_is_strained():
     found, own, theta = fleet(5, 6, weak=False)
     found[2] = drawn(np.random.default_rng(6), own[2], theta + np.array([60.0, 0.0]))
     strain = [abs(tyre.strain["F0_N"]) for tyre in estimate(found).tyres]
@@ -142,7 +142,7 @@ def test_a_tyre_that_was_on_another_rig_stands_out_and_the_others_do_not():
 
 
 def only(one: Information, keep: list[int]) -> Information:
-    """Of some numbers, the others being known exactly."""
+    """The information about some numbers, given the others."""
     return Information(
         tuple(one.names[i] for i in keep),
         one.values[keep],

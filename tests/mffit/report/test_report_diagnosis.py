@@ -11,8 +11,9 @@ from report_toys import TRUE, made_config, made_points, programme, read_page
 import tir
 from mffit.brief import HEIGHT, WIDTH
 from mffit.diagnosis import diagnose
-from mffit.diagnosis.selection import TIE
+from mffit.diagnosis.constants import TIED_EVIDENCE
 from mffit.diagnosis.ties import Run, Separation
+from mffit.effects import CATALOG
 from mffit.report import style, text, write_diagnosis
 from mffit.report.diagnosis_view import Candidate, RankedStep, view_of
 from mffit.report.figures import gap
@@ -80,7 +81,7 @@ def test_page_needs_no_network(misaligned, tmp_path):
 def test_a_tie_is_stated_with_the_run_that_separates_it(misaligned, tmp_path):
     found = dataclasses.replace(
         misaligned.effects[0],
-        tied_with=("ply-steer",),
+        tied=tuple(effect for effect in CATALOG if effect.id == "ply-steer"),
         separation=Separation(Run.TURNED_ON_RIM, 1400.0, 50.0),
     )
     page = written(dataclasses.replace(misaligned, effects=(found,)), tmp_path)
@@ -114,7 +115,7 @@ def test_evidence_ranks_the_named_effect_first(misaligned):
 
 @pytest.mark.parametrize(("share", "tied"), [(0.99, True), (1.01, False)])
 def test_picture_and_verdict_call_the_same_distance_a_tie(misaligned, share, tied):
-    gains = (50.0, 50.0 - share * TIE)
+    gains = (50.0, 50.0 - share * TIED_EVIDENCE)
     step = RankedStep((), tuple(Candidate(f"{g}", f"{g}", "rig", g) for g in gains), 5.0)
     with style.applied():
         ax = gap.evidence(dataclasses.replace(view_of(misaligned), steps=(step,))).axes[0]
@@ -123,7 +124,7 @@ def test_picture_and_verdict_call_the_same_distance_a_tie(misaligned, share, tie
 
 
 def test_the_page_states_the_margin_of_the_verdict(misaligned, tmp_path):
-    assert f"within {TIE:g} the data do not tell them apart" in written(misaligned, tmp_path).text
+    assert f"within {TIED_EVIDENCE:g} the data do not tell them apart" in written(misaligned, tmp_path).text
 
 
 def test_colour_scale_never_blows_up_noise_nor_hides_what_is_left(clean, misaligned):

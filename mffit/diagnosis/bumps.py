@@ -1,0 +1,163 @@
+"""Local structure without a name: a bump anywhere in the programme, the rival of every named effect."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from mffit.diagnosis import constants
+from mffit.diagnosis.hypothesis import Hypothesis
+from mffit.diagnosis.noise import Noise
+from mffit.points import Points, levels
+
+Ranges = dict[str, tuple[float, float]]
+"""Column -> smallest and largest value."""
+
+
+@dataclass(frozen=True, slots=True)
+class Bump:
+    """The best-fitting local structure."""
+
+    channel: str  #: "Fy" | "Mz"
+    region: Ranges
+    amplitude: float  #: [N] or [Nm]
+    gain: float  #: log evidence, the search paid for
+    number: int = -1  #: of its shape among those tried
+
+    @property
+    def found(self) -> bool:
+        return self.gain > constants.STRUCTURE_EVIDENCE
+
+
+@dataclass(frozen=True)
+class BumpScan:
+    """All bumps that the programme could show."""
+
+    noise: Noise
+    bumps: np.ndarray  #: (n, k) unit bumps over the points
+    regions: tuple[Ranges, ...]
+    spread: Mapping[str, float]  #: usual amplitude by channel
+
+    @cached_property
+    def _white(self) -> list[tuple[str, int, np.ndarray, np.ndarray]]:
+        """Whitened bumps in blocks: channel, number of the first, shapes (m, k) and their power (k,)."""
+        out, block = [], constants.BUMPS_WHITENED_TOGETHER
+        for channel in self.spread:
+            for first in range(0, len(self.regions), block):
+                shapes = self.noise.whiten(self.column(channel, slice(first, first + block)))
+                power = np.einsum("ij,ij->j", shapes, shapes)
+                out.append((channel, first, shapes.astype(np.float32), power))
+        return out
+
+    def best(self, hypothesis: Hypothesis, limit: float = math.inf) -> Bump:
+        """The bump that explains most of a hypothesis' residual, its own freed numbers projected out.
+
+        Parameters
+        ----------
+        hypothesis : with the residuals that the bump has to explain
+        limit : standard deviations at which residuals are clipped, so that an outlier does not make a bump
+        """
+        axes = hypothesis.axes
+        residual = np.clip(hypothesis.residual, -limit, limit)
+        tried = math.log(max(len(self.regions) * len(self.spread), 1))
+        best = Bump("Fy", {}, 0.0, -math.inf)
+        for channel, first, shapes, whole in self._white:
+            spread = self.spread[channel]
+            inside = (axes.astype(np.float32).T @ shapes).astype(float)
+            score = (shapes.T @ residual.astype(np.float32)).astype(float) - inside.T @ (axes.T @ residual)
+            power = whole - np.einsum("ij,ij->j", inside, inside)
+            precision = np.maximum(power, 0.0) + spread**-2.0
+            gain = 0.5 * score**2 / precision - 0.5 * np.log(precision * spread**2) - tried
+            k = int(np.argmax(gain))
+            if gain[k] > best.gain:
+                amplitude = float(score[k] / precision[k])
+                best = Bump(channel, self.regions[first + k], amplitude, float(gain[k]), first + k)
+        return best
+
+    def column(self, channel: str, which: slice) -> np.ndarray:
+        """Some unit bumps of a channel as changes of the readings (2n, k)."""
+        shapes = self.bumps[:, which].astype(float)
+        nothing = np.zeros_like(shapes)
+        return np.vstack([shapes, nothing] if channel == "Fy" else [nothing, shapes])
+
+    def plausible(self, bump: Bump) -> np.ndarray:
+        """A bump as a change of the readings (2n, 1) at its usual amplitude."""
+        return self.spread[bump.channel] * self.column(bump.channel, slice(bump.number, bump.number + 1))
+
+
+def bump_scan(points: Points, noise: Noise) -> BumpScan:
+    """Bumps over sideslip or camber: everywhere, or within one load, one side of camber, or backward runs."""
+    parts = _parts(points)
+    shapes, regions = [], []
+    for column, centre, width, bell in _bells(points):
+        for region, mask in parts:
+            shape = bell * mask
+            if np.sum(shape > 0.5) >= 2:
+                shapes.append(shape.astype(np.float32))
+                regions.append(_narrowed(region, column, centre - width, centre + width))
+    spread = {
+        name: constants.BUMP_AMPLITUDE * float(np.nanmax(np.abs(values)))
+        for name, values in (("Fy", points.Fy), ("Mz", points.Mz))
+        if np.any(np.isfinite(values))
+    }
+    bumps = np.column_stack(shapes) if shapes else np.empty((len(points), 0), np.float32)
+    return BumpScan(noise, bumps, tuple(regions), spread)
+
+
+def _bells(points: Points) -> Iterator[tuple[str, float, float, np.ndarray]]:
+    """Column, centre, width [deg] and height (n,) of Gaussian bells along sideslip and along camber."""
+    for column, angle, widths in (
+        ("alpha_deg", points.alpha, constants.BUMP_WIDTHS_SIDESLIP),
+        ("gamma_deg", points.gamma, constants.BUMP_WIDTHS_CAMBER),
+    ):
+        degrees = np.degrees(angle)
+        for centre in _centres(degrees):
+            for width in widths:
+                bell = np.exp(-0.5 * ((degrees - centre) / width) ** 2)
+                yield column, centre, width, np.where(bell < constants.BUMP_CUT, 0.0, bell)
+
+
+def _narrowed(region: Ranges, column: str, low: float, high: float) -> Ranges:
+    """The region with one range cut to the bump."""
+    before = region.get(column, (-np.inf, np.inf))
+    return {**region, column: (float(max(low, before[0])), float(min(high, before[1])))}
+
+
+def _centres(degrees: np.ndarray) -> np.ndarray:
+    """Centres of bumps: the angles in steps of half a degree, or fewer evenly spaced ones."""
+    most, steps = constants.MOST_BUMP_CENTRES, np.unique(np.round(degrees * 2.0) / 2.0)
+    return steps if len(steps) <= most else np.linspace(steps[0], steps[-1], most)
+
+
+def _parts(points: Points) -> list[tuple[Ranges, np.ndarray]]:
+    """Parts of the programme to which a bump may be confined, with their masks (n,)."""
+    return [
+        ({}, np.ones(len(points))),
+        *_sides_of_camber(points),
+        *_loads(points),
+        *(
+            [({"direction": (-1.0, -1.0)}, (points.direction < 0) * 1.0)]
+            if np.any(points.direction < 0)
+            else []
+        ),
+    ]
+
+
+def _sides_of_camber(points: Points) -> Iterator[tuple[Ranges, np.ndarray]]:
+    gamma, upright = np.degrees(points.gamma), constants.BUMP_UPRIGHT
+    for low, high in ((-90.0, -upright), (-upright, upright), (upright, 90.0)):
+        mask = (gamma >= low) & (gamma <= high)
+        if 2 <= mask.sum() < len(points):
+            yield {"gamma_deg": (max(low, float(gamma.min())), min(high, float(gamma.max())))}, mask * 1.0
+
+
+def _loads(points: Points) -> Iterator[tuple[Ranges, np.ndarray]]:
+    level = levels.nearest_labels(points.Fz, levels.LOAD)
+    number = int(level.max()) + 1
+    for k in range(number) if 1 < number <= constants.MOST_LOADS_WITH_BUMPS else ():
+        mask = level == k
+        yield {"Fz_N": (float(points.Fz[mask].min()), float(points.Fz[mask].max()))}, mask * 1.0

@@ -1,0 +1,98 @@
+"""An explanation of the readings, and how certain each of its effects is."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from mffit.diagnosis.bumps import Bump, BumpScan
+from mffit.diagnosis.hypothesis import Hypothesis
+from mffit.diagnosis.inexact import Inexactness
+from mffit.diagnosis.noise import Noise
+from mffit.diagnosis.prediction import Judged
+from mffit.diagnosis.problem import DiagnosisProblem, refitted
+from mffit.diagnosis.selection import Step
+from mffit.diagnosis.smooth import Smooth, smooth_scan
+from mffit.effects import Effect
+
+
+@dataclass(frozen=True, slots=True)
+class Explanation:
+    """Effects, structure without a name, and the noise beside which they were found."""
+
+    problem: DiagnosisProblem  #: as it was judged: readings, model, and covariance with everything inexact
+    chosen: Hypothesis
+    steps: list[Step]
+    bump: Bump  #: best local structure in the residual
+    smooth: Smooth  #: smooth structure in the residual; part of the covariance if found
+    bumps: BumpScan
+    basis: np.ndarray  #: (2n, k) of the smooth structure
+    refined: Hypothesis  #: the chosen effects, the coefficients of the model estimated beside them
+    coefficients: Mapping[str, tuple[float, float]] = field(default_factory=dict)
+    """Inexact coefficients as estimated: name -> (value, standard error)."""
+    unaided: Mapping[str, float] = field(default_factory=dict)
+    """Gain of each effect alone, without smooth structure beside it."""
+    predicted: Mapping[str, Judged] = field(default_factory=dict)
+    """Support of each effect by left-out sweeps, if the effects were chosen by prediction."""
+
+    @property
+    def scatter(self) -> Noise:
+        """The scatter of the readings alone."""
+        return self.problem.noise.alone()
+
+    @property
+    def plain(self) -> DiagnosisProblem:
+        """The problem in which coefficients are fitted rather than integrated out.
+
+        Smooth structure is left out of its covariance: a model predicts best if it follows the readings as far as it can.
+        For the same reason errors have no memory here if there is smooth structure.
+        """
+        noise = self.scatter
+        if self.smooth.found:
+            noise = replace(noise, scatter={c: replace(s, memory=0.0) for c, s in noise.scatter.items()})
+        return DiagnosisProblem(self.problem.points, self.problem.start, noise, self.problem.declared)
+
+    def choosing(self, chosen: Hypothesis) -> Explanation:
+        """The same with other effects, not yet refined."""
+        return replace(self, chosen=chosen, refined=chosen, bump=self.bumps.best(chosen))
+
+    def only(self, effects: tuple[Effect, ...]) -> Explanation:
+        """The same with some of its effects, fitted again by themselves."""
+        return self.choosing(refitted(self.problem, self.chosen, effects))
+
+    def with_coefficients(self, inexact: Inexactness) -> Explanation:
+        """The same with the model's coefficients estimated beside the effects."""
+        refined, coefficients = self.plain.refine(self.chosen, inexact)
+        return replace(self, refined=refined, coefficients=coefficients)
+
+    def withdrawn(self) -> Explanation:
+        """Nothing named, nothing repaired."""
+        null = self.problem.null
+        return replace(self, chosen=null, refined=null, coefficients={}, steps=self.steps[:1])
+
+    def certainty(self, effect: Effect, *, counted: bool = True) -> float:
+        """Probability of an effect against its absence with the best structure without a name in its place.
+
+        Parameters
+        ----------
+        effect : one of the chosen
+        counted : whether misfit that stays unexplained lowers the certainty
+        """
+        if effect.id in self.predicted:
+            return self.predicted[effect.id].confidence
+        chosen = self.chosen
+        without = refitted(self.problem, chosen, chosen.others(effect))
+        gain, left = chosen.log_evidence - without.log_evidence, self.left(chosen)
+        against = gain + left - self.left(without) - math.log(max(len(self.steps[0].trials), 1))
+        open_ = left + (self.smooth.gain if self.smooth.found else 0.0) if counted else 0.0
+        explains = max(gain, self.unaided.get(effect.id, 0.0), 0.0)
+        share = explains / (explains + open_) if open_ else 1.0
+        return float(share / (1.0 + math.exp(-float(np.clip(against, -500.0, 500.0)))))
+
+    def left(self, hypothesis: Hypothesis) -> float:
+        """Log evidence of the best structure without a name beside a hypothesis; 0 without any."""
+        smooth = smooth_scan(self.basis, self.problem.noise).best(hypothesis)
+        return max(self.bumps.best(hypothesis).gain, smooth.gain, 0.0)

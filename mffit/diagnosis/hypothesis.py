@@ -1,0 +1,49 @@
+"""A set of effects, fitted together and weighed."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from mffit.effects import Effect
+from mffit.rig import Simulation
+
+
+@dataclass(frozen=True, slots=True)
+class Hypothesis:
+    """A set of effects with fitted numbers."""
+
+    effects: tuple[Effect, ...]
+    numbers: Mapping[str, float]  #: fitted value of every freed number
+    stderr: Mapping[str, float]
+    chi2: float
+    log_evidence: float  #: up to a constant that all hypotheses about the same data share
+    state: Simulation
+    residual: np.ndarray  #: whitened, (m,)
+    jacobian: np.ndarray  #: whitened, per freed number (m, k)
+
+    @property
+    def ids(self) -> frozenset[str]:
+        """The set of effects, whatever their order."""
+        return frozenset(effect.id for effect in self.effects)
+
+    @property
+    def axes(self) -> np.ndarray:
+        """Orthonormal directions (m, k) of the whitened readings that the fitted numbers can follow."""
+        return np.linalg.qr(self.jacobian)[0] if self.jacobian.shape[1] else self.jacobian
+
+    def others(self, effect: Effect) -> tuple[Effect, ...]:
+        """All effects but one."""
+        return tuple(other for other in self.effects if other.id != effect.id)
+
+    def numbers_of(self, effects: Sequence[Effect]) -> dict[str, float]:
+        """The fitted numbers of some of the effects."""
+        names = {name for effect in effects for name in effect.parameters}
+        return {name: value for name, value in self.numbers.items() if name in names}
+
+
+def outside(axes: np.ndarray, x: np.ndarray) -> np.ndarray:
+    """Whitened changes (m,) or (m, k) without their part along orthonormal axes."""
+    return x - axes @ (axes.T @ x)

@@ -1,0 +1,83 @@
+"""The scatter of the readings, learned beside everything that could explain their misfit."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from mffit.diagnosis import constants
+from mffit.diagnosis.bumps import bump_scan
+from mffit.diagnosis.inexact import Inexactness
+from mffit.diagnosis.noise import Noise
+from mffit.diagnosis.problem import DiagnosisProblem
+from mffit.diagnosis.scatter import Explained, learned
+from mffit.effects import Effect
+from mffit.points import Points
+from mffit.quantities import CHANNELS
+from mffit.rig import Simulation
+from mffit.scatter import robust
+
+
+def learned_noise(
+    stated: Noise,
+    before: Noise,
+    points: Points,
+    state: Simulation,
+    candidates: Sequence[Effect],
+    inexact: Inexactness,
+    basis: np.ndarray,
+) -> Noise:
+    """The noise with the scatter that stays when every candidate, coefficient and structure may explain the misfit.
+
+    Parameters
+    ----------
+    stated, before : as stated, and as found in the last round, where the search starts
+    points, state : readings and the simulation that they are compared with
+    candidates, inexact, basis : what could explain the misfit
+    """
+    problem = DiagnosisProblem(points, state, stated.alone())
+    predicted = np.nan_to_num(state.predict(points))
+    residual = problem.measured - predicted
+    nothing = np.zeros((2 * len(points), 0))
+    # The slope of each effect, and the first finite step of a number without slope at zero.
+    columns = {e: groups[:2] for e, groups in problem.columns(state, candidates).items()}
+    runs = np.column_stack([nothing, *(g[0] for e, g in columns.items() if e.differs_by_run)])
+    others = [g for e, groups in columns.items() if not e.differs_by_run for g in groups]
+    generous = constants.GENEROUS_EFFECT_SIZE
+    named = np.column_stack([nothing, *(generous * g for g in others), inexact.columns(points, state)])
+    named = _with_bumps(problem, residual, named, basis)
+    explained = Explained(named=named, runs=generous * runs, smooth=basis)
+    return learned(replace(stated, scatter=before.scatter), residual, explained, predicted).alone()
+
+
+def _with_bumps(
+    problem: DiagnosisProblem, residual: np.ndarray, named: np.ndarray, basis: np.ndarray
+) -> np.ndarray:
+    """What could explain the misfit (2n, k), with the bumps that are found beside it."""
+    points = problem.points
+    for _ in range(constants.MOST_BUMPS_SET_ASIDE):
+        allowed = problem.noise.sharing(named, constants.ASSUMED_SMOOTH_AMPLITUDE * basis)
+        white = allowed.whiten(np.nan_to_num(residual))
+        first = allowed.used < len(points)
+        for rows in (first, ~first):
+            white[rows] /= max(robust(white[rows]), 1e-9) if rows.any() else 1.0
+        scan = bump_scan(points, allowed)
+        bump = scan.best(replace(problem.null, residual=white), constants.BUMP_RESIDUAL_CLIP)
+        if not bump.found:
+            break
+        named = np.column_stack([named, constants.GENEROUS_EFFECT_SIZE * scan.plausible(bump)])
+    return named
+
+
+def settled(before: Noise, after: Noise) -> bool:
+    """Whether the scatter changed so little that the effects need not be judged again."""
+    used = after.used
+    change = np.abs(np.log(after.u[used] / before.u[used]))
+    memory = [abs(after.scatter[c].memory - before.scatter[c].memory) for c in CHANNELS]
+    return not (
+        np.median(change) > constants.SCATTER_SETTLED
+        or np.quantile(change, 0.95) > constants.SCATTER_SETTLED_TAIL
+        or max(memory) > constants.SCATTER_SETTLED
+    )

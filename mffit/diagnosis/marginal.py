@@ -1,0 +1,99 @@
+"""Likelihood of the scatter of one channel, everything that could explain its residual integrated out."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import NamedTuple
+
+import numpy as np
+from scipy.linalg import cho_solve, cholesky, solve_triangular
+
+from mffit.diagnosis import constants
+from mffit.diagnosis.noise import links
+
+
+class Parts(NamedTuple):
+    """The numbers of a scatter that its likelihood depends on."""
+
+    log_scale: float
+    growth: float
+    memory: float
+    smooth: float  #: amplitude of smooth structure, relative to the channel
+
+
+@dataclass(frozen=True)
+class Channel:
+    """The used readings (m,) of one channel."""
+
+    stated: np.ndarray  #: standard uncertainty
+    residual: np.ndarray  #: measured minus simulated
+    size: np.ndarray  #: readings in proportion to which the noise may grow
+    chain: np.ndarray  #: number of the sweep of each reading
+    named: np.ndarray  #: (m, k) changes that effects could bring, one prior standard deviation each
+    smooth: np.ndarray  #: (m, k) the same of smooth structure, at amplitude 1
+    weight: np.ndarray  #: weight of each reading
+
+    def beside(self, columns: np.ndarray) -> Channel:
+        """The same with further changes (m, k) that could explain the residual."""
+        return replace(self, named=np.hstack([self.named, columns]))
+
+    def likelihood(self, parts: Parts) -> float:
+        """Logarithm of the marginal likelihood, with the prior of the scale; of some whole sweeps if there are many."""
+        r, A, log = self._white(parts, *self._sample)
+        root = _factor(A)
+        b = solve_triangular(root, A.T @ r, lower=True, check_finite=False)
+        log += float(np.sum(np.log(np.diag(root))))
+        prior = parts.log_scale / math.log(constants.STATED_NOISE_FACTOR)
+        return -0.5 * float(r @ r - b @ b) - log - 0.5 * prior**2
+
+    def standardised(self, parts: Parts) -> np.ndarray:
+        """Every reading (m,) against its prediction from all others, in units of their joint uncertainty at weight 1."""
+        r, A, _ = self._white(parts, np.arange(len(self.stated)), links(self.chain))
+        root = _factor(A)
+        left = r - A @ cho_solve((root, True), A.T @ r, check_finite=False)
+        B = solve_triangular(root, A.T, lower=True, check_finite=False)
+        variance = np.maximum(1.0 - np.sum(B * B, axis=0), 1e-3)
+        if parts.memory:
+            return left / np.sqrt(variance)
+        own = 1.0 / np.sqrt(self.weight)  # uncertainty of the reading, in units of that at weight 1
+        predicted = (1.0 / variance - 1.0) * own**2  # variance of its prediction by all others
+        return left / variance * own / np.sqrt(1.0 + predicted)
+
+    @cached_property
+    def _sample(self) -> tuple[np.ndarray, tuple[np.ndarray, np.ndarray]]:
+        """Indices of the readings that the likelihood uses, and their links along sweeps."""
+        rows = _some_sweeps(self.chain)
+        return rows, links(self.chain[rows])
+
+    def _white(
+        self, parts: Parts, rows: np.ndarray, linked: tuple[np.ndarray, np.ndarray]
+    ) -> tuple[np.ndarray, np.ndarray, float]:
+        """Residual and columns of some readings in units of their scatter, and the log determinant of that division."""
+        u = np.hypot(math.exp(parts.log_scale) * self.stated, parts.growth * self.size) / np.sqrt(self.weight)
+        u = u[rows]
+        A = np.column_stack([self.residual[rows], self.named[rows], parts.smooth * self.smooth[rows]])
+        A /= u[:, None]
+        log = float(np.sum(np.log(u)))
+        if parts.memory:
+            own = math.sqrt(1.0 - parts.memory**2)
+            later, earlier = linked
+            A[later] = (A[later] - parts.memory * A[earlier]) / own
+            log += len(later) * math.log(own)
+        return A[:, 0], A[:, 1:], log
+
+
+def _factor(A: np.ndarray) -> np.ndarray:
+    """Lower Cholesky factor of A'A + 1."""
+    return cholesky(A.T @ A + np.eye(A.shape[1]), lower=True, check_finite=False)
+
+
+def _some_sweeps(chain: np.ndarray) -> np.ndarray:
+    """Indices of every k-th sweep if there are more readings than scale, growth and memory need; else of all."""
+    names = np.unique(chain)
+    stride = min(
+        math.ceil(len(chain) / constants.READINGS_FOR_SCATTER),
+        max(len(names) // constants.FEWEST_SWEEPS_FOR_SCATTER, 1),
+    )
+    return np.flatnonzero(np.isin(chain, names[::stride]))

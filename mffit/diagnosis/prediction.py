@@ -1,0 +1,142 @@
+"""Effects judged by how well they predict left-out sweeps, for a model whose formulae cannot follow the points."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.stats import norm
+
+from mffit.diagnosis import constants
+from mffit.diagnosis.hypothesis import Hypothesis
+from mffit.diagnosis.inexact import Inexactness
+from mffit.diagnosis.problem import DiagnosisProblem, refitted
+from mffit.effects import Effect
+
+
+@dataclass(frozen=True, slots=True)
+class Predicted:
+    """Misfit of every sweep when it is predicted from all others."""
+
+    chi2: np.ndarray  #: (s, 2) by sweep and channel, Fy and Mz
+
+    @property
+    def total(self) -> float:
+        return float(np.sum(self.chi2))
+
+    def falls(self, other: Predicted) -> float:
+        """By how many standard errors over the sweeps ``other`` predicts better."""
+        return _z(np.sum(self.chi2 - other.chi2, axis=1))
+
+    def raised(self, other: Predicted) -> bool:
+        """Whether ``other`` predicts one of the channels worse, beyond chance."""
+        return any(_z(column) < -constants.WORSE_PREDICTION for column in (self.chi2 - other.chi2).T)
+
+
+def _z(change: np.ndarray) -> float:
+    error = float(np.std(change, ddof=1)) / np.sqrt(len(change))
+    return float(np.mean(change)) / error if error > 0.0 else 0.0
+
+
+class Prediction:
+    """Left-out sweeps predicted to first order, every number estimated again without them.
+
+    Parameters
+    ----------
+    problem : points, model and the scatter of the readings alone
+    inexact : prior of the model's coefficients, which are estimated again as well
+    """
+
+    def __init__(self, problem: DiagnosisProblem, inexact: Inexactness) -> None:
+        self.problem, self.inexact = problem, inexact
+        used, n = problem.noise.used, len(problem.points)
+        self.channel = (used >= n).astype(int)
+        _, self.sweep = np.unique(problem.points.sweep[used % n], return_inverse=True)
+        self.sweeps = int(self.sweep.max(initial=-1)) + 1
+        columns = inexact.columns(problem.points, problem.start)
+        self.joint = problem.seen_through(problem.noise.sharing(columns))
+
+    def of(self, hypothesis: Hypothesis, *more: np.ndarray) -> Predicted:
+        """The prediction with the numbers of a hypothesis free, and more changes of the readings (2n, k)."""
+        problem, state = self.problem, hypothesis.state
+        columns = [self.inexact.columns(problem.points, state), *more]
+        columns += [groups[0] for groups in problem.columns(state, hypothesis.effects).values()]
+        C = problem.noise.whiten(np.column_stack(columns))
+        r = problem.whitened(state)
+        A, b = C.T @ C + np.eye(C.shape[1]), C.T @ r
+        chi2 = np.zeros((self.sweeps, 2))
+        for k in range(self.sweeps):
+            rows = np.flatnonzero(self.sweep == k)
+            out = C[rows]
+            error = r[rows] - out @ np.linalg.solve(A - out.T @ out, b - out.T @ r[rows])
+            chi2[k] = np.bincount(self.channel[rows], error**2, minlength=2)
+        return Predicted(chi2)
+
+    def beyond_noise(self, predicted: Predicted) -> float:
+        """Misfit that the noise does not explain."""
+        return max(predicted.total - len(self.sweep), 0.0)
+
+    def without(self, chosen: Hypothesis, effect: Effect) -> Hypothesis:
+        """The hypothesis less one of its effects, fitted again."""
+        others = chosen.others(effect)
+        return refitted(self.joint, chosen, others) if others else self.problem.null
+
+
+def chosen_by_prediction(prediction: Prediction, candidates: Sequence[Effect]) -> Hypothesis:
+    """Forward steps: add the effect that predicts left-out sweeps best, while they improve beyond chance.
+
+    An effect that predicts a channel worse is never added. One that a later effect makes needless is dropped for good.
+    """
+    current, left = prediction.problem.null, list(candidates)
+    needed = float(norm.isf(constants.PREDICTION_FALSE_ALARM / max(len(candidates), 1)))
+    if prediction.sweeps < constants.FEWEST_SWEEPS_TO_PREDICT:
+        return current
+    while len(current.effects) < constants.MOST_EFFECTS:
+        added = _best_addition(prediction, current, left, needed)
+        if added is None:
+            break
+        left.remove(added)
+        current = prediction.joint.fit((*current.effects, added), current.numbers)
+        for effect in current.effects[:-1]:
+            without = prediction.without(current, effect)
+            if prediction.of(without).falls(prediction.of(current)) < needed:
+                current = without
+    return current
+
+
+def _best_addition(
+    prediction: Prediction, current: Hypothesis, candidates: Sequence[Effect], needed: float
+) -> Effect | None:
+    """The candidate that lowers the misfit of left-out sweeps most, if by enough and beyond chance."""
+    before = prediction.of(current)
+    most, best = constants.LEAST_PREDICTED_SHARE * prediction.beyond_noise(before), None
+    for effect, groups in prediction.problem.columns(current.state, candidates).items():
+        for columns in groups:
+            after = prediction.of(current, columns)
+            gain = float(np.sum(before.chi2 - after.chi2))
+            if gain > most and before.falls(after) > needed and not before.raised(after):
+                most, best = gain, effect
+    return best
+
+
+@dataclass(frozen=True, slots=True)
+class Judged:
+    """The support that left-out sweeps give an effect that was chosen by them."""
+
+    confidence: float  #: share of their misfit beyond the noise that the effect removes
+    tied: tuple[Hypothesis, ...]  #: with another effect in its place, no worse beyond chance
+
+
+def judged(prediction: Prediction, chosen: Hypothesis, effect: Effect, rivals: Sequence[Effect]) -> Judged:
+    """Compare a chosen effect with its absence and with others in its place."""
+    without, present = prediction.without(chosen, effect), prediction.of(chosen)
+    taken = max(prediction.of(without).total - present.total, 0.0)
+    left = prediction.beyond_noise(present)
+    tied = []
+    others = [e for e in rivals if e not in chosen.effects]
+    for rival, groups in prediction.problem.columns(without.state, others).items():
+        near = min((prediction.of(without, columns) for columns in groups), key=lambda p: p.total)
+        if near.falls(present) < constants.WORSE_PREDICTION:
+            tied.append(prediction.joint.fit((*without.effects, rival), without.numbers))
+    return Judged(taken / max(taken + left, 1e-9), tuple(tied))

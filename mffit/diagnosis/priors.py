@@ -1,0 +1,75 @@
+"""What is known of the numbers of an effect beforehand: scale, prior, starting values, and the rig owner's declaration."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+
+from mffit.diagnosis import constants
+from mffit.effects import Effect, Free
+from mffit.least_squares import Number
+from mffit.points import Points
+from mffit.rig import Simulation
+
+SWITCH = "turn_slip"
+
+
+def moving(effects: Sequence[Effect]) -> list[Free]:
+    """The numbers that effects free; a switch is none."""
+    return [free for effect in effects for free in effect.free if free.name != SWITCH]
+
+
+def switched(effects: Sequence[Effect]) -> dict[str, float]:
+    """The switches that effects turn on."""
+    return {SWITCH: 1.0} if any(effect.switches for effect in effects) else {}
+
+
+def anchor(free: Free, start: Simulation, points: Points) -> tuple[float, float]:
+    """Current value of a number, and the unit of its spread and scan."""
+    current = start.number(free.name, points)
+    if not free.relative:
+        return current, 1.0
+    # A coefficient that the model has at zero gives no scale; the width of its plausible range does.
+    return current, abs(current) if current else constants.ZERO_COEFFICIENT_SCALE * (free.upper - free.lower)
+
+
+def number(free: Free, at: Mapping[str, float], start: Simulation, points: Points) -> Number:
+    """A number with its prior around the current value, starting from ``at`` if that holds it."""
+    current, unit = anchor(free, start, points)
+    return Number(
+        name=free.name,
+        start=at.get(free.name, current),
+        lower=free.lower,
+        upper=free.upper,
+        expected=current,
+        spread=free.spread * unit,
+    )
+
+
+def starts(
+    effect: Effect, at: Mapping[str, float], start: Simulation, points: Points
+) -> list[dict[str, float]]:
+    """Starting values of a fit: those known already, and those of every step of the effect's scan."""
+    trials = []
+    for k in range(max(len(free.scan) for free in effect.free)):
+        trial = dict(at)
+        for free in moving((effect,)):
+            if free.name not in at:
+                current, unit = anchor(free, start, points)
+                change = free.scan[min(k, len(free.scan) - 1)]
+                trial[free.name] = float(np.clip(current + change * unit, free.lower, free.upper))
+        trials.append(trial)
+    return trials
+
+
+def beyond_declaration(known: Number, value: float, declared: Mapping[str, tuple[float, float]]) -> float:
+    """Log prior of a rig error against its declaration; never positive, as the spread is paid for already."""
+    if known.name not in declared:
+        return 0.0
+    expected, u = declared[known.name]
+    near = -0.5 * ((value - expected) / u) ** 2 + 0.5 * ((value - known.expected) / known.spread) ** 2
+    narrower = math.log(known.spread / u) if u < known.spread else 0.0
+    worse = constants.RIGS_WORSE_THAN_DECLARED
+    return min(math.log((1.0 - worse) * math.exp(min(near + narrower, 30.0)) + worse), 0.0)

@@ -1,0 +1,211 @@
+"""The data, their noise and the model to start from; fits hypotheses and weighs their evidence."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from mffit.diagnosis import constants
+from mffit.diagnosis.hypothesis import Hypothesis, outside
+from mffit.diagnosis.inexact import EXACT, Inexactness
+from mffit.diagnosis.noise import Noise
+from mffit.diagnosis.priors import anchor, beyond_declaration, moving, number, starts, switched
+from mffit.effects import Effect, Free
+from mffit.least_squares import LeastSquaresProblem, Linear, Number, Solution, solve
+from mffit.points import Points
+from mffit.rig import Simulation
+
+
+class DiagnosisProblem:
+    """Readings against a simulation.
+
+    Parameters
+    ----------
+    points, start, noise : what was measured, the model, and how uncertain both are
+    declared : declared rig errors: name -> (value, standard uncertainty)
+    offset : (2n,) added to the readings if ``start`` is not at the centre of the coefficients' prior
+    """
+
+    def __init__(
+        self,
+        points: Points,
+        start: Simulation,
+        noise: Noise,
+        declared: Mapping[str, tuple[float, float]] | None = None,
+        offset: np.ndarray | None = None,
+    ) -> None:
+        self.points, self.start, self.noise = points, start, noise
+        self.declared, self.offset = declared or {}, offset
+        self.measured = np.concatenate([points.Fy, points.Mz])
+        if offset is not None:
+            self.measured = self.measured + offset
+        self.null = self.evaluate((), {})
+
+    def part(self, keep: np.ndarray) -> DiagnosisProblem:
+        """The same with some of the points (mask (n,))."""
+        offset = None if self.offset is None else self.offset[np.concatenate([keep, keep])]
+        return DiagnosisProblem(
+            self.points.select(keep), self.start, self.noise.subset(keep), self.declared, offset
+        )
+
+    def seen_through(self, noise: Noise) -> DiagnosisProblem:
+        """The same with another noise."""
+        return DiagnosisProblem(self.points, self.start, noise, self.declared, self.offset)
+
+    def whitened(self, state: Simulation) -> np.ndarray:
+        """Measured minus simulated in units of the joint uncertainty (m,)."""
+        return self.noise.whiten(np.nan_to_num(self.measured - state.predict(self.points)))
+
+    def evaluate(self, effects: Sequence[Effect], numbers: Mapping[str, float]) -> Hypothesis:
+        """A hypothesis at given numbers, not fitted."""
+        state = self.start.with_numbers(numbers)
+        residual = self.whitened(state)
+        chi2 = float(residual @ residual)
+        return Hypothesis(
+            effects=tuple(effects),
+            numbers=dict(numbers),
+            stderr={},
+            chi2=chi2,
+            log_evidence=-0.5 * chi2,
+            state=state,
+            residual=residual,
+            jacobian=np.empty((len(residual), 0)),
+        )
+
+    def fit(self, effects: Sequence[Effect], start: Mapping[str, float] | None = None) -> Hypothesis:
+        """The best fit of all numbers of the effects; the last effect starts from every value of its scan."""
+        trials = starts(effects[-1], start or {}, self.start, self.points)
+        return max((self._fitted(effects, trial) for trial in trials), key=lambda found: found.log_evidence)
+
+    def refine(
+        self, chosen: Hypothesis, inexact: Inexactness = EXACT
+    ) -> tuple[Hypothesis, dict[str, tuple[float, float]]]:
+        """The hypothesis with the model's coefficients estimated too, and these: name -> (value, standard error)."""
+        frees = moving(chosen.effects)
+        prior = inexact.without(frozenset(free.name for free in frees))
+        if not prior:
+            return chosen, {}
+        fixed = switched(chosen.effects)
+        numbers = [number(free, chosen.numbers, self.start, self.points) for free in frees]
+        numbers += [Number(name, float(self.start.values[name])) for name in prior.names]
+        plain = DiagnosisProblem(self.points, self.start, self.noise, self.declared)
+        found = solve(
+            prior.added_to(plain.within([n.name for n in numbers], fixed), first=len(frees)),
+            numbers,
+            max_steps=constants.MOST_HYPOTHESIS_STEPS,
+            tolerance=constants.HYPOTHESIS_CONVERGED,
+        )
+        values, errors = {**fixed, **found.values}, _standard_errors(found)
+        own = {name: values[name] for name in (*fixed, *(free.name for free in frees))}
+        refined = replace(
+            chosen,
+            numbers=own,
+            stderr={name: errors[name] for name in own if name in errors},
+            state=self.start.with_numbers(values),
+        )
+        return refined, {name: (values[name], errors[name]) for name in prior.names}
+
+    def promising(self, before: Hypothesis, candidates: Sequence[Effect]) -> list[tuple[Effect, float]]:
+        """Candidates with their gain in log evidence to first order, best first."""
+        axes = before.axes
+        residual = outside(axes, before.residual)
+        out = []
+        for effect, groups in self.columns(before.state, candidates).items():
+            gains = [0.0]
+            for columns in groups:
+                white = outside(axes, self.noise.whiten(columns))
+                power = white.T @ white + np.eye(white.shape[1])
+                score = white.T @ residual
+                gains.append(0.5 * float(score @ np.linalg.solve(power, score) - np.linalg.slogdet(power)[1]))
+            out.append((effect, max(gains)))
+        return sorted(out, key=lambda row: -row[1])
+
+    def columns(self, state: Simulation, effects: Sequence[Effect]) -> dict[Effect, list[np.ndarray]]:
+        """Changes of the readings (2n, k) by each effect at its usual size: to first order, and from each start."""
+        names = [free.name for free in moving(effects)]
+        slopes = np.empty((len(self.measured), 0))
+        if names:
+            slopes = np.nan_to_num(np.concatenate(state.sensitivities(self.points, names)[1]))
+        here, first, out = np.nan_to_num(state.predict(self.points)), 0, {}
+        for effect in effects:
+            frees = moving((effect,))
+            own = slopes[:, first : first + len(frees)]
+            first += len(frees)
+            if effect.switches:
+                out[effect] = [self._moved(state, switched((effect,)), here)[:, None]]
+                continue
+            spreads = [free.spread * anchor(free, self.start, self.points)[1] for free in frees]
+            out[effect] = [own * spreads]
+            if len(frees) == 1:
+                out[effect] += self._scanned(state, frees[0], spreads[0], here)
+        return out
+
+    def _scanned(self, state: Simulation, free: Free, spread: float, here: np.ndarray) -> list[np.ndarray]:
+        """Changes of the readings (2n, 1) by finite steps to every start of a number, scaled to its usual size."""
+        value, unit = state.number(free.name, self.points), anchor(free, self.start, self.points)[1]
+        places = [float(np.clip(value + step * unit, free.lower, free.upper)) for step in free.scan if step]
+        return [
+            (self._moved(state, {free.name: place}, here) * (spread / (place - value)))[:, None]
+            for place in places
+            if place != value
+        ]
+
+    def _moved(self, state: Simulation, numbers: Mapping[str, float], here: np.ndarray) -> np.ndarray:
+        """Change of the readings (2n,) when some numbers change."""
+        return np.nan_to_num(state.with_numbers(numbers).predict(self.points)) - here
+
+    def _fitted(self, effects: Sequence[Effect], start: Mapping[str, float]) -> Hypothesis:
+        """The fit from one start, with its evidence (Laplace approximation)."""
+        fixed = switched(effects)
+        numbers = [number(free, start, self.start, self.points) for free in moving(effects)]
+        found = solve(
+            self.within([n.name for n in numbers], fixed),
+            numbers,
+            max_steps=constants.MOST_HYPOTHESIS_STEPS,
+            tolerance=constants.HYPOTHESIS_CONVERGED,
+        )
+        values = {**fixed, **found.values}
+        occam = 0.0
+        if numbers:
+            scaled = found.jacobian * np.array([n.spread for n in numbers])
+            occam = 0.5 * float(np.linalg.slogdet(scaled.T @ scaled + np.eye(len(numbers)))[1])
+        known = sum(beyond_declaration(n, values[n.name], self.declared) for n in numbers)
+        return Hypothesis(
+            effects=tuple(effects),
+            numbers=values,
+            stderr=_standard_errors(found),
+            chi2=float(found.data @ found.data),
+            log_evidence=-0.5 * found.cost - occam + known,
+            state=self.start.with_numbers(values),
+            residual=-found.data,
+            jacobian=-found.jacobian,
+        )
+
+    def within(self, names: Sequence[str], fixed: Mapping[str, float]) -> LeastSquaresProblem:
+        """Simulated minus measured in units of the joint uncertainty, as functions of the named numbers."""
+        nothing = np.zeros(0)
+
+        def at(x: np.ndarray) -> Simulation:
+            return self.start.with_numbers({**fixed, **dict(zip(names, x.tolist(), strict=True))})
+
+        def residual(x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+            return -self.whitened(at(x)), nothing
+
+        def linear(x: np.ndarray) -> Linear:
+            out, slope = at(x).sensitivities(self.points, names)
+            data = self.noise.whiten(np.nan_to_num(np.concatenate(out) - self.measured))
+            rows = np.where(np.isfinite(self.measured)[:, None], np.concatenate(slope), 0.0)
+            return Linear(data, self.noise.whiten(rows), nothing, np.zeros((0, len(names))))
+
+        return LeastSquaresProblem(residual, linear)
+
+
+def refitted(problem: DiagnosisProblem, chosen: Hypothesis, effects: Sequence[Effect]) -> Hypothesis:
+    """Some of the effects of a hypothesis, fitted again by themselves."""
+    return problem.fit(effects, chosen.numbers_of(effects)) if effects else problem.null
+
+
+def _standard_errors(found: Solution) -> dict[str, float]:
+    return dict(zip(found.names, np.sqrt(np.diag(found.covariance)).tolist(), strict=True))

@@ -1,0 +1,68 @@
+"""The noise as stated with the readings, or as neighbouring points show it where nothing is stated."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from mffit.diagnosis import constants
+from mffit.diagnosis.noise import Noise, Origin
+from mffit.errors import InputError
+from mffit.points import Points
+from mffit.rig import Simulation
+from mffit.scatter import robust
+
+TINY = 1e-9
+
+
+def with_uncertainties(points: Points, state: Simulation) -> tuple[Points, Origin | None]:
+    """The points with a standard uncertainty for every reading, and its origin.
+
+    Missing uncertainties are estimated from the scatter of measured minus simulated between neighbouring points of each sweep.
+
+    Raises
+    ------
+    InputError
+        All stated uncertainties are zero.
+    """
+    simulated = state.readings(points)
+    Fy, origin = _channel(points, points.Fy, points.u_Fy, simulated.Fy, "u_Fy_N")
+    Mz, _ = _channel(points, points.Mz, points.u_Mz, simulated.Mz, "u_Mz_Nm")
+    return points.replace(u_Fy=Fy, u_Mz=Mz), origin
+
+
+def stated_noise(points: Points, origin: Origin | None = None) -> Noise:
+    """Independent noise as the points state it, with the sweeps along which errors may be correlated."""
+    u = np.concatenate([points.u_Fy, points.u_Mz])
+    chain = np.concatenate([points.sweep, points.sweep + 1 + points.sweep.max(initial=0)])
+    return Noise(u=u, stated=u, chain=chain, origin=origin)
+
+
+def _channel(
+    points: Points, values: np.ndarray, stated: np.ndarray, simulated: np.ndarray, column: str
+) -> tuple[np.ndarray, Origin | None]:
+    """Uncertainty (n,) of one channel; inf where it was not measured."""
+    measured = np.isfinite(values)
+    if not np.any(measured):
+        return np.full(len(points), np.inf), None
+    known = measured & np.isfinite(stated)
+    if np.any(known) and np.all(stated[known] <= 0.0):
+        raise InputError(
+            f"all {column} are zero; give real standard uncertainties, or leave the column out", column=column
+        )
+    if np.all(known[measured]):
+        floor = constants.LEAST_STATED_NOISE_SHARE * np.median(stated[known][stated[known] > 0])
+        return np.where(measured, np.maximum(stated, floor), np.inf), Origin.STATED
+    u = np.where(known, stated, neighbour_noise(points, values - simulated))
+    return np.where(measured, u, np.inf), Origin.SCATTER
+
+
+def neighbour_noise(points: Points, values: np.ndarray) -> float:
+    """Robust noise of a channel from third differences along each sweep, in which a smooth curve nearly vanishes."""
+    sweeps = [values[(points.sweep == k) & np.isfinite(values)] for k in np.unique(points.sweep)]
+    # White noise of variance 1 has third differences of variance 1 + 9 + 9 + 1.
+    differences = [
+        np.diff(x, 3) / np.sqrt(20.0) for x in sweeps if len(x) >= constants.FEWEST_POINTS_FOR_NEIGHBOURS
+    ]
+    if differences:
+        return max(robust(np.concatenate(differences)), TINY)
+    return max(constants.NOISE_SHARE_OF_SPAN * float(np.ptp(values[np.isfinite(values)])), TINY)

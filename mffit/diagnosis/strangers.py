@@ -1,0 +1,69 @@
+"""Whether model and points belong together."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from mffit.diagnosis import constants
+from mffit.diagnosis.explanation import Explanation
+from mffit.diagnosis.notes import HardlyThisTyre
+from mffit.errors import InputError
+from mffit.points import Points
+from mffit.quantities import CHANNELS
+from mffit.rig import Simulation
+from mffit.scatter import robust
+from tir import Tyre
+
+
+def refuse_strangers(points: Points, tyre: Tyre, start: Simulation) -> None:
+    """Raise an error with the likely cause if model and data cannot belong together.
+
+    Raises
+    ------
+    InputError
+        Too few points, loads of another order of magnitude, or readings in other axes.
+    """
+    if len(points) < constants.FEWEST_POINTS_TO_DIAGNOSE:
+        raise InputError(
+            f"{len(points)} points are too few for a diagnosis; measure at least {constants.FEWEST_POINTS_TO_DIAGNOSE}"
+        )
+    ratio, most = float(np.median(points.Fz)) / float(tyre["FNOMIN"]), constants.LOAD_RATIO_OF_ANOTHER_TYRE
+    if not 1.0 / most < ratio < most:
+        raise InputError(
+            f"the loads of the data (median {np.median(points.Fz):.0f} N) and FNOMIN of the model ({tyre['FNOMIN']:.0f} N) "
+            "differ by an order of magnitude: the model belongs to another tyre, or one of them is not in newtons; check the "
+            "model and the unit of the loads"
+        )
+    simulated = start.readings(points)
+    for channel in CHANNELS:
+        model, measured = getattr(simulated, channel), getattr(points, channel)
+        known = np.isfinite(measured)
+        if not np.any(known) or np.std(model[known]) == 0.0 or np.std(measured[known]) == 0.0:
+            continue
+        agreement = float(np.corrcoef(model[known], measured[known])[0, 1])
+        if agreement < constants.OPPOSED_CORRELATION:
+            raise InputError(
+                f"simulated and measured {channel} have opposite signs (correlation {agreement:.2f}): data or model use other "
+                "axes; check [rig] axes and the signs of PKY1 and PKY6"
+            )
+
+
+def named_of_this_tyre(found: Explanation) -> tuple[Explanation, HardlyThisTyre | None]:
+    """The explanation, without effects if even the best ones leave a misfit far beyond the noise."""
+    misfit, channel = _misfit(found)
+    if found.chosen.effects and misfit > constants.MISFIT_OF_ANOTHER_TYRE:
+        return found.withdrawn(), HardlyThisTyre(misfit, channel)
+    return found, None
+
+
+def _misfit(found: Explanation) -> tuple[float, str]:
+    """Robust misfit of the explanation in units of the stated noise, for the channel that fits better.
+
+    If one channel is mostly noise, the misfit of the other channel decides.
+    """
+    points, noise = found.problem.points, found.scatter
+    residual = np.concatenate([points.Fy, points.Mz]) - found.refined.state.predict(points)
+    z = np.where(np.isfinite(noise.stated), residual / noise.stated, np.nan)
+    misfit = {name: robust(rows) for name, rows in zip(CHANNELS, np.split(z, 2), strict=True)}
+    better = min(misfit, key=lambda name: np.nan_to_num(misfit[name], nan=np.inf))
+    return misfit[better], better

@@ -1,0 +1,46 @@
+"""Heavy tails of the scatter: the t distribution of the residuals, and the readings that lose their weight with it."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from scipy.stats import norm, t
+
+from mffit.diagnosis import constants
+from mffit.diagnosis.noise import Noise
+from mffit.quantities import CHANNELS
+from mffit.scatter import rms, robust
+
+
+def heavy_tails(z: np.ndarray) -> tuple[float, float]:
+    """Degrees of freedom and width of Student's t that standardised residuals (m,) follow; infinite if they are normal."""
+    width = rms(z)
+    best = float(np.sum(norm.logpdf(z, scale=width))) + constants.SCATTER_PART_GAIN
+    found = (math.inf, width)
+    core = robust(z) or 1.0
+    for dof in constants.TAIL_DEGREES_OF_FREEDOM:
+        width = core
+        for _ in range(30):  # expectation maximisation, converged after about ten
+            width = math.sqrt(float(np.mean((dof + 1.0) * z**2 / (dof + (z / width) ** 2))))
+        value = float(np.sum(t.logpdf(z, dof, scale=width)))
+        if value > best:
+            best, found = value, (dof, width)
+    return found
+
+
+def weights(z: np.ndarray, tails: float, width: float) -> np.ndarray:
+    """Weight (m,) of every reading with standardised residual ``z``."""
+    return np.ones(len(z)) if math.isinf(tails) else (tails + 1.0) / (tails + (z / width) ** 2)
+
+
+def outlying(noise: Noise) -> np.ndarray:
+    """Indices of readings that lost nearly all their weight."""
+    if noise.weight is None:
+        return np.empty(0, dtype=int)
+    half = len(noise.weight) // 2
+    tails = np.repeat([noise.scatter[name].tails for name in CHANNELS], half)
+    heavy = np.isfinite(tails) & np.isfinite(noise.stated)
+    known = np.where(heavy, tails, 1.0)
+    lost = noise.weight < (known + 1.0) / (known + constants.DIAGNOSED_OUTLIER_RATIO**2)
+    return np.flatnonzero(heavy & lost)

@@ -1,0 +1,108 @@
+"""The gap on left-out sweeps: it must shrink where the effects were not fitted."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from mffit.diagnosis import constants
+from mffit.diagnosis.hypothesis import Hypothesis
+from mffit.diagnosis.inexact import EXACT, Inexactness
+from mffit.diagnosis.noise import Noise
+from mffit.diagnosis.problem import DiagnosisProblem
+from mffit.quantities import CHANNELS
+from mffit.scatter import rms
+
+
+@dataclass(frozen=True, slots=True)
+class Gap:
+    """Measured minus simulated, in one number per channel."""
+
+    Fy_rmse_N: float
+    Mz_rmse_Nm: float
+    chi2_per_dof: float
+
+    def rms(self, channel: str) -> float:
+        """Of "Fy" [N] or "Mz" [Nm]."""
+        return {"Fy": self.Fy_rmse_N, "Mz": self.Mz_rmse_Nm}[channel]
+
+
+@dataclass(frozen=True, slots=True)
+class Validation:
+    """The gap on left-out sweeps."""
+
+    folds: int  #: groups of whole sweeps, left out in turn
+    gap_before: Gap
+    gap_after: Gap
+    raised: tuple[str, ...] = ()
+    """Channels whose gap grows by more than numbers fitted to mere noise would raise it by chance."""
+
+    @property
+    def helps(self) -> bool:
+        """Whether the gap shrinks, and grows in no channel."""
+        return self.gap_after.chi2_per_dof < self.gap_before.chi2_per_dof and not self.raised
+
+
+def gap(residual: np.ndarray, noise: Noise) -> Gap:
+    """Gap of residuals (2n,), Fy then Mz; chi2 without correlations, as the gap in newtons is."""
+    z = residual[noise.used] / noise.u[noise.used]
+    Fy, Mz = np.split(residual, 2)
+    return Gap(Fy_rmse_N=rms(Fy), Mz_rmse_Nm=rms(Mz), chi2_per_dof=float(z @ z) / max(len(z), 1))
+
+
+def validate(
+    problem: DiagnosisProblem, hypothesis: Hypothesis, inexact: Inexactness = EXACT, *, seen: bool = False
+) -> Validation:
+    """Refit the hypothesis without each group of sweeps and predict that group.
+
+    Parameters
+    ----------
+    problem : with the scatter of the readings alone, or with whatever else the fits shall allow for
+    hypothesis : its effects, and where to start
+    inexact : prior of the model's coefficients, which are refitted as well
+    seen : whether the model was fitted to these points: it is then refitted without the group for the gap before too, which
+        it would otherwise predict from itself
+    """
+    points = problem.points
+    measured = np.concatenate([points.Fy, points.Mz])
+    before = measured - problem.start.predict(points)
+    after = before.copy()
+    folds = _folds(points.sweep)
+    for fold in folds:
+        out = np.isin(points.sweep, fold)
+        if not (hypothesis.effects or inexact) or out.all():
+            continue
+        rest, chosen, both = problem.part(~out), points.select(out), np.concatenate([out, out])
+        fitted = rest.evaluate(hypothesis.effects, hypothesis.numbers)
+        if hypothesis.effects and not inexact:
+            fitted = rest.fit(hypothesis.effects, hypothesis.numbers)
+        after[both] = measured[both] - rest.refine(fitted, inexact)[0].state.predict(chosen)
+        if seen:
+            before[both] = measured[both] - rest.refine(rest.null, inexact)[0].state.predict(chosen)
+    noise, numbers = problem.noise, sum(len(e.free) for e in hypothesis.effects) + len(inexact.names)
+    return Validation(
+        folds=len(folds),
+        gap_before=gap(before, noise),
+        gap_after=gap(after, noise),
+        raised=_raised(before, after, noise, numbers),
+    )
+
+
+def _folds(sweep: np.ndarray) -> list[np.ndarray]:
+    """Groups of the sweeps of points (n,)."""
+    sweeps, many = np.unique(sweep), len(sweep) >= constants.MANY_POINTS_TO_VALIDATE
+    count = min(
+        constants.VALIDATION_FOLDS_OF_MANY_POINTS if many else constants.MOST_VALIDATION_FOLDS, len(sweeps)
+    )
+    return [sweeps[k::count] for k in range(count)]
+
+
+def _raised(before: np.ndarray, after: np.ndarray, noise: Noise, numbers: int) -> tuple[str, ...]:
+    """Channels whose chi2 rises beyond chance: ``numbers`` fitted to noise raise that of left-out sweeps by as much."""
+    u = np.where(np.isfinite(noise.u), noise.u, np.inf)
+    change = np.nan_to_num(after / u) ** 2 - np.nan_to_num(before / u) ** 2
+    chance = numbers + constants.RAISED_GAP * np.sqrt(2.0 * numbers)
+    return tuple(
+        name for name, rows in zip(CHANNELS, np.split(change, 2), strict=True) if rows.sum() > chance
+    )
