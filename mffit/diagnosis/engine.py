@@ -16,7 +16,6 @@ from mffit.diagnosis.declared import declared_rig
 from mffit.diagnosis.explain import Explanation, explain, only_first
 from mffit.diagnosis.inexact import EXACT, Inexactness
 from mffit.diagnosis.inexact import declared as declared_inexactness
-from mffit.diagnosis.misread import misread
 from mffit.diagnosis.needs import missing
 from mffit.diagnosis.noise import noise_model, with_uncertainties
 from mffit.diagnosis.notes import HardlyThisTyre, NoRepair, Note, NotVisible, OneSweep
@@ -29,6 +28,7 @@ from mffit.progress import Progress, silent
 from mffit.quantities import CHANNELS
 from mffit.rig import RigFaults, Simulation
 from mffit.scatter import robust
+from mffit.suspicion import misread
 from tir import Tyre
 
 FEWEST_POINTS = 12

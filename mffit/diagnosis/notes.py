@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from mffit.diagnosis.misread import Misread
+from mffit.suspicion import Misread
 from tir import Quantity
 
 if TYPE_CHECKING:

@@ -19,9 +19,9 @@ from mffit.diagnosis.unknown import Bump
 from mffit.diagnosis.validate import Gap, Validation
 from mffit.diagnosis.where import Region
 from mffit.effects import Effect
-from mffit.fit.outliers import Outlier
 from mffit.points import Points
 from mffit.rig import RigFaults, Simulation
+from mffit.suspicion import Outlier
 from tir import Tyre
 
 

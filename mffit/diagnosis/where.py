@@ -109,7 +109,7 @@ def _cut(values: np.ndarray) -> list[tuple[tuple[float, float], np.ndarray]]:
     finite = values[np.isfinite(values)]
     if len(finite) < 2 * FEWEST or np.ptp(finite) == 0.0:
         return []
-    tenth = levels.Quantity("tenth of the range", 0.1 * float(np.ptp(finite)))
+    tenth = levels.LevelKind("tenth of the range", 0.1 * float(np.ptp(finite)))
     level = levels.nearest_labels(values, tenth)
     number = int(level.max()) + 1
     if 1 < number <= MOST_BINS and not levels.spread(values, tenth):

@@ -6,7 +6,6 @@ import math
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, assert_never
 
-from mffit.diagnosis.misread import Misread
 from mffit.diagnosis.noise import Noise, Origin
 from mffit.diagnosis.notes import (
     DirectMethodRedone,
@@ -21,12 +20,13 @@ from mffit.diagnosis.notes import (
 from mffit.diagnosis.ties import TELLING, Run, Separation
 from mffit.effects import NEEDS
 from mffit.quantities import CHANNELS, CONDITIONS
+from mffit.suspicion import Misread, about
 
 if TYPE_CHECKING:
     from mffit.diagnosis.result import Diagnosis, Found
     from mffit.diagnosis.unknown import Bump
     from mffit.diagnosis.validate import Validation
-    from mffit.fit.outliers import Outlier
+    from mffit.suspicion import Outlier
 
 RUNS = {
     Run.BACKWARD: "a backward sideslip sweep at {load:.0f} N",
@@ -100,11 +100,7 @@ def note(remark: Note) -> str:
         case OneSweep():
             return "One sweep cannot tell causes apart: add sweeps at another load, camber or direction."
         case Misread():
-            return (
-                f"{remark.file}: {remark.sweep} misses the simulation by {100.0 * remark.before:.0f} % of what sweeps usually "
-                f"read, as no other does; it looks like {remark.looks}, which leaves {100.0 * remark.after:.2g} %. It was left "
-                f"out. In column {remark.column}: {remark.remedy}."
-            )
+            return about(remark)
         case NotVisible(needs, effects):
             lack = " and ".join(NEEDS[need] for need in needs)
             return f"Not visible in these data, which lack {lack}: {', '.join(effects)}."

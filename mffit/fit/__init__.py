@@ -1,11 +1,9 @@
 """Points and direct measurements to an MF-6.2 tyre with standard errors."""
 
-from mffit.fit.doubts import Doubt
 from mffit.fit.ensemble import ensemble
 from mffit.fit.files import file_names
 from mffit.fit.fitting import fit
 from mffit.fit.freed import with_free_epsilon
-from mffit.fit.outliers import Outlier, marks
 from mffit.fit.posterior import Posterior
 from mffit.fit.result import Agreement, Coefficient, FitResult
 from mffit.fit.stages import StageRecord
@@ -13,14 +11,11 @@ from mffit.fit.stages import StageRecord
 __all__ = [
     "Agreement",
     "Coefficient",
-    "Doubt",
     "FitResult",
-    "Outlier",
     "Posterior",
     "StageRecord",
     "ensemble",
     "file_names",
     "fit",
-    "marks",
     "with_free_epsilon",
 ]

@@ -14,12 +14,9 @@ from mffit.config import axis_signs
 from mffit.config.declared import as_declared
 from mffit.fit import weights
 from mffit.fit.coverage import coverage
-from mffit.fit.doubts import Doubt
 from mffit.fit.estimates import estimates
 from mffit.fit.files import Files, decisions, file_names, make_files
-from mffit.fit.judgement import judge
 from mffit.fit.known import Known
-from mffit.fit.outliers import outliers
 from mffit.fit.posterior import COVERING
 from mffit.fit.priors import Prior, of_fleet, scatters
 from mffit.fit.problem import Problem
@@ -32,12 +29,9 @@ from mffit.fit.stages import ODD_TERMS, STAGES
 from mffit.fit.start import base_values, starting_values
 from mffit.fit.virtual_zero import epsilon_gamma_of_model
 from mffit.fit.wording import (
-    distrust,
-    doubtful,
     file_comments,
     pecp1_sentence,
     sentences,
-    standing_out,
     warnings,
 )
 from mffit.least_squares import touches
@@ -45,7 +39,18 @@ from mffit.measured import radius_readings
 from mffit.parts import Parts
 from mffit.points import Points
 from mffit.progress import Progress, silent
+from mffit.quantities import CHANNELS
 from mffit.rig import Simulation, reference_speed
+from mffit.suspicion import (
+    Campaign,
+    Doubt,
+    Misfit,
+    When,
+    about,
+    after_the_fit,
+    distrust,
+    outliers,
+)
 from tir import Tyre
 from tir.parameters import BY_NAME, TABLE
 
@@ -82,20 +87,20 @@ def fit(
     problem = _problem(config, points, known.values, measured)
     stated = problem.sigma_Fy, problem.sigma_Mz
 
-    def judged(of: Fitted, *, only_known: bool = False) -> tuple[Doubt, ...]:
+    campaign = Campaign(
+        points=points,
+        stated=stated,
+        signs=axis_signs(config),
+        refit=lambda rows: fit_staged(problem.select(rows), start, plan, silent, restarts=False),
+    )
+
+    def judged(of: Fitted, when: When) -> tuple[Doubt, ...]:
         progress("judging every sweep by all others")
         with as_declared(config):
-            return judge(
-                points,
-                of,
-                stated,
-                axis_signs(config),
-                lambda rows: fit_staged(problem.select(rows), start, plan, silent, restarts=False),
-                only_known=only_known,
-            )
+            return after_the_fit(campaign, of, when)
 
-    fitted = fit_staged(problem, start, plan, progress, first=lambda of: judged(of, only_known=True))
-    doubts = judged(fitted)
+    fitted = fit_staged(problem, start, plan, progress, first=lambda of: judged(of, When.FIRST))
+    doubts = judged(fitted, When.AFTER)
     known = _after_the_fit(known, fitted, base)
     progress("deriving the files and judging them")
     known = known.deciding(decisions(config))
@@ -110,16 +115,21 @@ def fit(
         explanations.append(pecp1_sentence(config, known.values, measured))
     use = config.spin.exact if disc else "normal"
     readings = fitted.simulation.readings(points)
-    untrusted = distrust(fitted, points, readings)
+    channels = {name: agreement(getattr(readings, name), getattr(points, name)) for name in CHANNELS}
+    untrusted = distrust(
+        Misfit(
+            points=points,
+            model=readings,
+            scale=fitted.scale,
+            r2={name: found.r2 for name, found in channels.items()},
+        )
+    )
     singled = outliers(points, stated, (fitted.problem.sigma_Fy, fitted.problem.sigma_Mz), readings)
     return FitResult(
         tyre=written.by_use["turn-slip" if disc else "normal"].tyre,
         written=written.by_use[use].tyre,
         coefficients=_of_file(written, use, coefficients),
-        channels={
-            "Fy": agreement(readings.Fy, points.Fy),
-            "Mz": agreement(readings.Mz, points.Mz),
-        },
+        channels=channels,
         odd=_odd_agreement(written.by_use["normal"].tyre.values, points, parts),
         Fy_model=readings.Fy,
         Mz_model=readings.Mz,
@@ -130,12 +140,12 @@ def fit(
         stages=fitted.stages,
         coverage=plan.cover,
         explanations=tuple(explanations),
-        distrusted=tuple(untrusted),
+        distrusted=untrusted,
         warnings=(
             *untrusted,
             *warnings(fitted),
-            *(doubtful(fact) for fact in doubts),
-            *([standing_out(singled)] if singled else []),
+            *(about(doubt) for doubt in doubts),
+            *([about(singled)] if singled else []),
         ),
         doubts=doubts,
         outliers=singled,

@@ -9,15 +9,14 @@ import numpy as np
 
 from mffit.brief import Brief
 from mffit.fit.coverage import StageCoverage
-from mffit.fit.doubts import Doubt
 from mffit.fit.files import Files
-from mffit.fit.outliers import Outlier
 from mffit.fit.posterior import Posterior
 from mffit.fit.staged import Fitted
 from mffit.fit.stages import StageRecord
 from mffit.quantities import CHANNELS
 from mffit.rig import Simulation
 from mffit.scatter import rms
+from mffit.suspicion import Doubt, Outlier
 from tir import Tyre
 
 

@@ -2,19 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 
 import numpy as np
 
-from mffit.fit.doubts import Doubt
 from mffit.fit.files import DECIDED, FileFigures, Files
-from mffit.fit.outliers import Outlier
-from mffit.fit.result import Coefficient, agreement
+from mffit.fit.result import Coefficient
 from mffit.fit.staged import Fitted
-from mffit.points import Points
-from mffit.quantities import CHANNELS
-from mffit.rig import Readings
-from mffit.scatter import rms
 from mffit.tested import words_on_tested
 from tir.parameters import TABLE, Parameter
 
@@ -24,8 +18,6 @@ DERIVED = {
     "normal": "fitted to the model without path curvature",
     "both": "fitted to the model with and without turn slip",
 }
-SHOWN = 5
-"""Outlying readings named in the sentence."""
 TIED = "tied to its expected value"
 FROM_DATA = ("measured", "fitted", "regularised")
 """Origins of values that these data decided."""
@@ -156,35 +148,6 @@ def pecp1_sentence(config, values, measured) -> str:
     )
 
 
-EXPLAINED = 0.5
-"""Share of a channel's variance below which a model says next to nothing of it."""
-NOT_TRUSTED = 2.0
-"""Misfit in units of the stated noise above which a file is not to be trusted."""
-CARRIES = 1.5
-"""A sweep carries the misfit if its own is this many times that of all points."""
-
-
-def distrust(fitted: Fitted, points: Points, model: Readings) -> list[str]:
-    """Why the file is not to be trusted; empty for a sound fit."""
-    out = []
-    for name, reading, measured, u, scale in (
-        ("Fy", model.Fy, points.Fy, points.u_Fy, fitted.scale[0]),
-        ("Mz", model.Mz, points.Mz, points.u_Mz, fitted.scale[1]),
-    ):
-        if scale > NOT_TRUSTED and np.any(np.isfinite(u)):
-            out.append(
-                f"the file is not to be trusted: the model misses {name} by {scale:.1f} times the stated uncertainty"
-                f"{_carriers(points, (reading - measured) / u)}; look at these sweeps, or run mffit diagnose"
-            )
-        share = agreement(reading, measured).r2
-        if share < EXPLAINED:
-            out.append(
-                f"the file is not to be trusted: the model explains {100.0 * max(share, 0.0):.0f} % of the variance of {name}; "
-                "are these readings of free rolling at steady state, and their units and axes right?"
-            )
-    return out
-
-
 def warnings(fitted: Fitted) -> list[str]:
     """What else a user must know of the fit."""
     out = []
@@ -195,38 +158,3 @@ def warnings(fitted: Fitted) -> list[str]:
             f"at the bound of plausible values: {', '.join(sorted(fitted.at_bound))}; check the sweeps that decide them"
         )
     return out
-
-
-def _carriers(points: Points, z: np.ndarray) -> str:
-    """The sweeps that carry a misfit (n,), in words."""
-    known = np.isfinite(z)
-    total = rms(z)
-    own = {k: rms(z[points.sweep == k]) for k in np.unique(points.sweep[known])}
-    worst = [k for k in sorted(own, key=lambda k: -own[k]) if own[k] > CARRIES * total][:3]
-    return f", most of it in {', '.join(points.sweep_names[k] for k in worst)}" if worst else ""
-
-
-def doubtful(fact: Doubt) -> str:
-    """A sweep that does not fit the others."""
-    explained = f"; it looks like {fact.looks}" if fact.looks else ""
-    return (
-        f"{fact.sweep} does not fit the other sweeps: predicted from them, {fact.channel} is out by {fact.rms:.3g} "
-        f"{CHANNELS[fact.channel].unit}, at least {100 * fact.share:.0f} % of its usual size and {fact.ratio:.1f} times what "
-        f"noise and model explain{explained}; check this sweep or repeat it"
-    )
-
-
-def standing_out(found: Sequence[Outlier]) -> str:
-    """The readings without weight, the worst by name."""
-    worst = sorted(found, key=lambda o: -o.ratio)[:SHOWN]
-    said = "; ".join(
-        f"{o.place} {o.channel} = {o.measured:.4g} {CHANNELS[o.channel].unit} where {o.expected:.4g} is expected"
-        for o in worst
-    )
-    more = f"; and {len(found) - len(worst)} more, all in result.json" if len(found) > len(worst) else ""
-    count = (
-        "1 reading stands out of its sweep and carries"
-        if len(found) == 1
-        else f"{len(found)} readings stand out of their sweeps and carry"
-    )
-    return f"{count} no weight: {said}{more}; correct or remove what is wrong"

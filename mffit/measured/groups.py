@@ -24,7 +24,7 @@ def load_groups(points: Points) -> tuple[LoadGroup, ...]:
     """Group the steady points at the programme's main pressure by load, rising; points between loads are left out."""
     used = np.flatnonzero(main_pressure(points) & (points.mount > 0) & ~points.continuous)
     level = levels.labels(points.Fz[used], levels.LOAD)
-    parts = [used[level == k] for k in range(level.max(initial=levels.NONE) + 1)]
+    parts = [used[level == k] for k in range(level.max(initial=levels.NO_LEVEL) + 1)]
     return tuple(LoadGroup(float(np.mean(points.Fz[part])), part) for part in parts)
 
 

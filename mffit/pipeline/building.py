@@ -15,12 +15,11 @@ from threadpoolctl import threadpool_limits
 
 from mffit import config as configuration
 from mffit import fit as fitting
-from mffit import points as ingestion
 from mffit.config import Config
 from mffit.fit import FitResult
 from mffit.measured import Measured
 from mffit.output import output_folder, refuse_early
-from mffit.pipeline.inputs import inputs_of, read_base
+from mffit.pipeline.inputs import inputs_of, read_base, read_points
 from mffit.pipeline.measuring import epsilon_gamma, measure, without_play
 from mffit.pipeline.members import write_members
 from mffit.pipeline.provenance import Annotate, annotator
@@ -31,6 +30,7 @@ from mffit.quantities import CHANNELS
 from mffit.recordings.stretch_table import stretch_table
 from mffit.results import BuildResult, as_json
 from mffit.rig import NO_FAULTS, Simulation
+from mffit.suspicion import marks
 from tir import Tyre
 
 USES = ("turn-slip", "normal")
@@ -68,7 +68,7 @@ def build(
     began = time.perf_counter()
     config = configuration.load(config)
     progress("reading sweeps")
-    reading = ingestion.read(config)
+    reading = read_points(config)
     points, warnings = reading.points, reading.warnings
     base = read_base(config)
     progress("measuring the camber reduction factor")
@@ -203,7 +203,7 @@ def points_table(result: BuildResult) -> pd.DataFrame:
     table["Mz_odd_Nm"], table["Mz_even_Nm"] = parts.Mz_odd * signs["Mz"], parts.Mz_even * signs["Mz"]
     table["Fy_model_N"], table["Mz_model_Nm"] = fit.Fy_model * signs["Fy"], fit.Mz_model * signs["Mz"]
     table["paired"] = parts.paired
-    table["outlier"] = fitting.marks(fit.outliers, len(table))
+    table["outlier"] = marks(fit.outliers, len(table))
     table["doubtful"] = np.isin(np.arange(len(table)), [row for doubt in fit.doubts for row in doubt.index])
     for name, values in origin(result.points).items():
         if name not in table:  # a heading of the user's own stays

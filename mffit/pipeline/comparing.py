@@ -12,7 +12,6 @@ import numpy as np
 
 import tir
 from mffit import config as configuration
-from mffit import points as ingestion
 from mffit.comparison import Comparison, Subject, against_points, between
 from mffit.config import Config
 from mffit.diagnosis.inexact import Inexactness
@@ -20,9 +19,10 @@ from mffit.errors import InputError
 from mffit.fleet.specimen import RESOLVED
 from mffit.measured import LoadResult
 from mffit.output import output_folder
-from mffit.pipeline.inputs import inputs_of, read_base
+from mffit.pipeline.inputs import inputs_of, read_base, read_points
 from mffit.pipeline.measuring import measure, without_play
 from mffit.pipeline.provenance import posterior_of, use_of
+from mffit.points import Points
 from mffit.progress import Progress, silent
 from mffit.results import as_json
 from mffit.rig import NO_FAULTS, RigFaults, Simulation
@@ -148,7 +148,7 @@ def _turn_slip(tyre: Tyre) -> bool:
 
 def _with_data(subject: Subject, config: Config) -> Comparison:
     """The file against the sweeps, simulated as the rig is declared and as [model] says."""
-    points, _ = ingestion.load(config)
+    points = read_points(config).points
     base = read_base(config)
     turn_slip = config.model.turn_slip and config.rig.on_disc
     faults = RigFaults(backlash_deg=config.rig.backlash_deg)
@@ -158,7 +158,7 @@ def _with_data(subject: Subject, config: Config) -> Comparison:
     faultless = replace(simulation, faults=NO_FAULTS).readings(points)
     of_file = points.replace(Fy=faultless.Fy, Mz=faultless.Mz)
 
-    def direct(declared: Config, rows: ingestion.Points) -> tuple[LoadResult, ...]:
+    def direct(declared: Config, rows: Points) -> tuple[LoadResult, ...]:
         try:
             return measure(declared, rows, base)[1].per_load
         except InputError:  # without turn slip in the simulation the force has no direction

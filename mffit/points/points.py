@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields
 from typing import Any
 
@@ -13,6 +13,13 @@ from mffit.brief import Brief
 
 INTEGER = frozenset({"direction", "mount", "sweep", "file", "line"})
 SHARED = frozenset({"sweep_names", "files", "table"})
+OPTIONAL: Mapping[str, Any] = {
+    **dict.fromkeys(("Fy", "Mz", "Mx", "My", "T", "t", "u_Fy", "u_Mz", "iteration", "time"), np.nan),
+    **dict.fromkeys(("direction", "mount"), 1),
+    **dict.fromkeys(("sweep", "file", "line"), 0),
+    "continuous": False,
+}
+"""Values of the fields that :func:`make_points` is not given: not measured, forward, normal mount, one sweep."""
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
@@ -95,44 +102,21 @@ def make_points(
     gamma: Any,
     Fz: Any,
     *,
-    p: Any,
-    V: Any,
-    phi_t: Any,
-    Fy: Any = np.nan,
-    Mz: Any = np.nan,
-    Mx: Any = np.nan,
-    My: Any = np.nan,
-    T: Any = np.nan,
-    t: Any = np.nan,
-    u_Fy: Any = np.nan,
-    u_Mz: Any = np.nan,
-    iteration: Any = np.nan,
-    direction: Any = 1,
-    mount: Any = 1,
-    continuous: Any = False,
-    time: Any = np.nan,
-    sweep: Any = 0,
-    file: Any = 0,
-    line: Any = 0,
     sweep_names: Sequence[str] = ("sweep",),
     files: Sequence[str] = ("",),
     table: pd.DataFrame | None = None,
+    **fields: Any,
 ) -> Points:
-    """Build points from arrays or scalars, ISO-W and SI, units as in :class:`Points`.
+    """Points from arrays or scalars in ISO-W and SI.
 
     Parameters
     ----------
     alpha, gamma : scalar or (n,) [rad]
     Fz : scalar or (n,) load, positive [N]
-    p : scalar or (n,) pressure [Pa]
-    V : scalar or (n,) speed, positive [m/s]
-    phi_t : scalar or (n,) turn slip [1/m]; -1/R with the disc's centre to the left, 0 on a flat track
-    Fy, Mz, Mx, My, T, t, u_Fy, u_Mz, iteration, time : scalar or (n,); NaN where not measured
-    direction, mount : scalar or (n,), +1 or -1
-    continuous : scalar or (n,) bool
-    sweep, file, line : scalar or (n,) int
-    sweep_names, files : what ``sweep`` and ``file`` count
+    sweep_names, files : names that the fields ``sweep`` and ``file`` count
     table : input columns as reported, (n,) rows; empty if not given
+    fields : other fields of :class:`Points`, scalar or (n,); ``p``, ``V`` and ``phi_t`` are required, the others are
+        optional (``OPTIONAL`` has their defaults)
 
     Returns
     -------
@@ -141,17 +125,17 @@ def make_points(
 
     Raises
     ------
+    TypeError
+        A required field is missing, or a field is unknown.
     ValueError
-        Lengths disagree, or ``direction`` or ``mount`` is something else than +1 or -1.
+        Lengths disagree, or ``direction`` or ``mount`` is neither +1 nor -1.
     """
-    given = {
-        "alpha": alpha, "gamma": gamma, "Fz": Fz, "p": p, "V": V, "phi_t": phi_t, "Fy": Fy, "Mz": Mz,
-        "Mx": Mx, "My": My, "T": T, "t": t, "u_Fy": u_Fy, "u_Mz": u_Mz, "iteration": iteration,
-        "direction": direction, "mount": mount, "continuous": continuous, "time": time,
-        "sweep": sweep, "file": file, "line": line,
-    }  # fmt: skip
+    given = {**OPTIONAL, "alpha": alpha, "gamma": gamma, "Fz": Fz, **fields}
+    if set(given) != set(ARRAYS):
+        wrong = sorted(set(given) ^ set(ARRAYS))
+        raise TypeError(f"make_points is not given, or does not know, {', '.join(wrong)}")
     n = np.broadcast(*(np.atleast_1d(values) for values in given.values())).size
-    arrays = {name: _filled(name, values, n) for name, values in given.items()}
+    arrays = {name: _filled(name, given[name], n) for name in ARRAYS}
     for name in ("direction", "mount"):
         if not np.all(np.abs(arrays[name]) == 1):
             raise ValueError(f"{name} must be +1 or -1 at every point")

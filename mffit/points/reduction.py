@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from mffit.errors import InputError
-from mffit.points import averaging, remarks
+from mffit.points import averaging, constants, remarks
 from mffit.points import lag as lags
 from mffit.points.choice import chosen
 from mffit.points.faulty import driven, faults
@@ -18,12 +18,9 @@ from mffit.points.stretch import PLATEAU, SWEEP, Stretch, StretchNote
 from mffit.sweeps import Sweep
 from mffit.sweeps.assembly import rows_of
 
-MOST_REPEATED = 0.01
-"""Share of samples with the time of the one before that a recorder may have written twice."""
-
 
 class Reduced(NamedTuple):
-    """Points of one sweep, and what was left out of them."""
+    """Points of one sweep, and what was left out."""
 
     points: Points
     warnings: tuple[str, ...]
@@ -43,8 +40,8 @@ def reduce(sweep: Sweep, phi_t: float, scale: Scale | None = None) -> Reduced:
     Returns
     -------
     Reduced
-        Where an angle keeps moving, means over a tenth of a second, marked ``continuous``, every stretch of them a sweep
-        of its own name; else means over the plateaus.
+        Means over the plateaus; where an angle keeps moving, means over a tenth of a second, marked ``continuous``, with
+        every stretch as a sweep of its own.
 
     Raises
     ------
@@ -82,7 +79,7 @@ def reduce(sweep: Sweep, phi_t: float, scale: Scale | None = None) -> Reduced:
 
 
 def _labels(sweep: Sweep, tried: list[Stretch]) -> dict[Stretch, str]:
-    """The sweep that the points of each stretch belong to: sweeps within a recording have a number, left out or not."""
+    """Name of the sweep of each stretch: sweeps within a recording are numbered, dropped ones too."""
     numbers = np.cumsum([stretch.kind == SWEEP for stretch in tried]).tolist()
     return {
         stretch: f"{sweep.name}:{k:02d}" if stretch.kind == SWEEP else sweep.name
@@ -95,23 +92,23 @@ def _lag(sweep: Sweep, stretch: Stretch, bad: np.ndarray) -> Lag:
     rows = np.flatnonzero(~bad[stretch.begin : stretch.end]) + stretch.begin
     if len(rows) < 2 or np.ptp(sweep.alpha[rows]) < np.ptp(sweep.gamma[rows]):
         return UNKNOWN
-    time, V = sweep.time[rows], sweep.V[rows]
-    rolled = np.r_[0.0, np.cumsum(np.diff(time) * 0.5 * (V[1:] + V[:-1]))]
+    time = sweep.time[rows]
+    rolled = lags.rolled_distance(time, sweep.V[rows])
     if not rolled[-1] > 0.0 or np.any(np.diff(rolled) <= 0.0):
         return UNKNOWN
     return lags.measure(
-        sweep.alpha[rows], sweep.Fy[rows], rolled, round(averaging.CONTINUOUS_STEP / np.median(np.diff(time)))
+        sweep.alpha[rows], sweep.Fy[rows], rolled, round(constants.AVERAGED_TIME / np.median(np.diff(time)))
     )
 
 
 def _without_repeats(sweep: Sweep) -> tuple[Sweep, tuple[str, ...]]:
-    """The series without the few samples that a recorder wrote twice, and what to say of them."""
+    """The series without the few samples that a recorder wrote twice, and a sentence about them."""
     repeated = np.flatnonzero(np.diff(sweep.time) == 0.0) + 1
-    if not len(repeated) or len(repeated) > MOST_REPEATED * len(sweep):
+    if not len(repeated) or len(repeated) > constants.MOST_REPEATED_SAMPLES * len(sweep):
         return sweep, ()
     kept = np.delete(np.arange(len(sweep)), repeated)
-    said = f"{sweep.file}:{int(sweep.line[repeated[0]])}: {len(repeated)} samples have the time of the one before; left out"
-    return rows_of(sweep, kept, sweep.name), (said,)
+    sentence = f"{sweep.file}:{int(sweep.line[repeated[0]])}: {len(repeated)} samples have the time of the one before; left out"
+    return rows_of(sweep, kept, sweep.name), (sentence,)
 
 
 def _check_time(sweep: Sweep) -> None:

@@ -12,7 +12,7 @@ from blind_set import draw_case, write_case
 
 from mffit import pipeline
 from mffit.diagnosis.confidence import tempered
-from mffit.diagnosis.misread import Misread
+from mffit.suspicion import Misread
 
 
 @pytest.fixture(scope="module")

@@ -23,8 +23,8 @@ from mffit.diagnosis.ties import Run, Separation
 from mffit.diagnosis.unknown import Bump
 from mffit.diagnosis.validate import Gap, Validation
 from mffit.effects import NEEDS
-from mffit.fit.outliers import Outlier
 from mffit.results import as_json
+from mffit.suspicion import Outlier
 from tir import Quantity
 
 RIGHT, WRONG = Quantity(-0.06, 0.05, "-"), Quantity(0.2, 0.07, "-")

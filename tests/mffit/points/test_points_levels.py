@@ -8,7 +8,7 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from mffit.points import levels, make_points
-from mffit.points.levels import CAMBER, LOAD, NONE, PRESSURE, SIDESLIP, SPEED, Quantity
+from mffit.points.levels import CAMBER, LOAD, NO_LEVEL, PRESSURE, SIDESLIP, SPEED, LevelKind
 
 QUANTITIES = (LOAD, CAMBER, PRESSURE, SPEED, SIDESLIP)
 RELAXED = settings(deadline=None, max_examples=60)
@@ -16,7 +16,7 @@ quantities = st.sampled_from(QUANTITIES)
 seeds = st.integers(0, 2**31)
 
 
-def placed(steps: np.ndarray, quantity: Quantity) -> np.ndarray:
+def placed(steps: np.ndarray, quantity: LevelKind) -> np.ndarray:
     """Values of a quantity that lie at these multiples of its tolerance."""
     if quantity.relative:
         return 1000.0 * np.exp(quantity.tolerance * np.asarray(steps))
@@ -71,7 +71,7 @@ def test_a_ramp_between_two_levels_is_no_level():
     steps = np.concatenate([np.zeros(400), np.linspace(0.0, 10.0, 20), np.full(400, 10.0)])
     found = levels.labels(placed(steps, LOAD), LOAD)
     assert found.max() == 1
-    assert np.all(found[(steps > 1.1) & (steps < 8.9)] == NONE)
+    assert np.all(found[(steps > 1.1) & (steps < 8.9)] == NO_LEVEL)
 
 
 @RELAXED
@@ -135,7 +135,7 @@ def test_missing_values_belong_nowhere():
 
 def test_a_value_between_levels_takes_the_nearest_ones_value():
     values = np.array([250e3] * 20 + [300e3] * 20 + [270e3])
-    assert levels.labels(values, PRESSURE)[-1] == NONE
+    assert levels.labels(values, PRESSURE)[-1] == NO_LEVEL
     assert levels.level_values(values, PRESSURE)[-1] == 250e3
 
 

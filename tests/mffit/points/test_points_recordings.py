@@ -11,6 +11,7 @@ from flat_belt import CAMBERS, LOADS, RATE, SPEED, recording, write_mat
 from mffit import config as configuration
 from mffit import points
 from mffit.errors import InputError
+from mffit.pipeline.inputs import read_points
 from mffit.points import lag
 from mffit.points.stretch import MOVE, SWEEP
 
@@ -22,9 +23,12 @@ COLUMNS = {
 
 @pytest.fixture
 def read(tmp_path):
-    def reading(table: pd.DataFrame, axes: str = "calspan", **keys) -> points.loading.Reading:
+    def reading(
+        table: pd.DataFrame, axes: str = "calspan", *, judged: bool = True, **keys
+    ) -> points.loading.Reading:
         file = write_mat(table, tmp_path / "run.mat")
-        return points.read(
+        reader = read_points if judged else points.read
+        return reader(
             configuration.load(
                 {
                     "tyre": {
@@ -274,7 +278,7 @@ def test_moves_between_plateaus_are_no_sweeps(read):
     table["FY"] = -side_force(np.radians(alpha), 0.0, 1500.0, side=0.0) + 5.0 * random.standard_normal(
         len(time)
     )
-    found = read(table, check_physics=False)
+    found = read(table, judged=False)
     assert not kept(found)
     assert len(found.points) == 8
     assert {note.dropped for note in found.stretches if note.kind == MOVE} == {"moves between set-points"}

@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import partial
 
-from mffit.points.points import Points
+from mffit.points import Points
 from mffit.sweeps.units import factor
 
 

@@ -5,8 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from mffit.fit.prediction import SHOWN, Group, Leverage, groups, predictions
 from mffit.points import make_points
+from mffit.suspicion.constants import MOST_POINTS_SHOWN
+from mffit.suspicion.prediction import Group, Leverage, groups, predictions
 
 
 def linear_fit(n: int = 60, k: int = 5, seed: int = 4) -> tuple[Leverage, np.ndarray, np.ndarray]:
@@ -27,7 +28,7 @@ def test_a_large_group_is_shown_at_evenly_spaced_points_and_left_out_whole():
     fit, design, measured = linear_fit(n=2000)
     whole = Group("s", "s.csv", np.arange(100, 1300), True)
     found = predictions(fit, whole)["Fy"].error
-    assert len(found) == len(whole.shown) == SHOWN
+    assert len(found) == len(whole.shown) == MOST_POINTS_SHOWN
     rest = np.setdiff1d(np.arange(4000), np.concatenate([whole.index, 2000 + whole.index]))
     J = design[rest] / fit.weight[rest, None]
     expected = design @ np.linalg.lstsq(J, measured[rest] / fit.weight[rest], rcond=None)[0]

@@ -11,8 +11,8 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from mffit import config as configuration
-from mffit import points
 from mffit.errors import InputError
+from mffit.pipeline.inputs import read_points
 from tir.conventions import FLIPPED
 
 COLUMNS = {"alpha": "alpha_deg", "Fy": "Fy_N", "Mz": "Mz_Nm"}
@@ -24,7 +24,7 @@ def report_in(project, axes: str) -> None:
 
 
 def load(project):
-    return points.load(configuration.load(project.write()))
+    return read_points(configuration.load(project.write()))[:2]
 
 
 def refusal(project) -> InputError:
