@@ -44,6 +44,7 @@ from mffit.rig import Simulation, reference_speed
 from mffit.suspicion import (
     Campaign,
     Doubt,
+    FittedModel,
     Misfit,
     When,
     about,
@@ -91,13 +92,13 @@ def fit(
         points=points,
         stated=stated,
         signs=axis_signs(config),
-        refit=lambda rows: fit_staged(problem.select(rows), start, plan, silent, restarts=False),
+        refit=lambda rows: _solved(fit_staged(problem.select(rows), start, plan, silent, restarts=False)),
     )
 
     def judged(of: Fitted, when: When) -> tuple[Doubt, ...]:
         progress("judging every sweep by all others")
         with as_declared(config):
-            return after_the_fit(campaign, of, when)
+            return after_the_fit(campaign, _solved(of), when)
 
     fitted = fit_staged(problem, start, plan, progress, first=lambda of: judged(of, When.FIRST))
     doubts = judged(fitted, When.AFTER)
@@ -152,6 +153,19 @@ def fit(
         seconds=time.perf_counter() - began,
         epsilon_gamma_model=_epsilon_of_model(known.values, points, measured),
         files=written,
+    )
+
+
+def _solved(fitted: Fitted) -> FittedModel:
+    """The fit as the suspicions see it."""
+    return FittedModel(
+        points=fitted.problem.points,
+        simulation=fitted.simulation,
+        weights=(fitted.problem.sigma_Fy, fitted.problem.sigma_Mz),
+        numbers=fitted.numbers,
+        names=fitted.posterior.names,
+        covariance=fitted.posterior.covariance,
+        scale=fitted.scale,
     )
 
 

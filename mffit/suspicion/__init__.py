@@ -12,6 +12,7 @@ from mffit.suspicion.declarations import under_axes
 from mffit.suspicion.misread import Misread
 from mffit.suspicion.others import Campaign, Doubt
 from mffit.suspicion.outliers import Outlier, marks, outliers
+from mffit.suspicion.prediction import FittedModel
 from mffit.suspicion.rule import When
 from mffit.suspicion.rules import RULES
 from mffit.suspicion.slopes import signatures
@@ -21,6 +22,7 @@ __all__ = [
     "RULES",
     "Campaign",
     "Doubt",
+    "FittedModel",
     "Misfit",
     "Misread",
     "Outlier",

@@ -14,8 +14,9 @@ from mffit.quantities import CHANNELS
 from mffit.rig import Simulation
 from mffit.suspicion import declarations, outliers
 from mffit.suspicion.misread import Misread
-from mffit.suspicion.others import Campaign, Doubt, Fitted, evidence
+from mffit.suspicion.others import Campaign, Doubt, evidence
 from mffit.suspicion.outliers import Outlier
+from mffit.suspicion.prediction import FittedModel
 from mffit.suspicion.rule import Finding, Outcome, Rule, Subject, When
 from mffit.suspicion.rules import NO_TYRE, RULES
 from mffit.suspicion.slopes import Signatures
@@ -53,7 +54,7 @@ def _before(points: Points, config: Config) -> Iterator[tuple[Rule, str | None, 
         data: Sequence[tuple[str | None, Points]] = ()
         if subject is Subject.FILE:
             data = parts
-        elif subject is Subject.CAMPAIGN:
+        elif subject is Subject.ALL_FILES:
             data = [(None, points)]
         for file, part in data:
             for rule in same:
@@ -61,7 +62,7 @@ def _before(points: Points, config: Config) -> Iterator[tuple[Rule, str | None, 
                     yield rule, file, finding
 
 
-def after_the_fit(campaign: Campaign, fitted: Fitted, when: When = When.AFTER) -> tuple[Doubt, ...]:
+def after_the_fit(campaign: Campaign, fitted: FittedModel, when: When = When.AFTER) -> tuple[Doubt, ...]:
     """Sweeps that do not fit the others, judged by what all others predict.
 
     Parameters

@@ -4,13 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, NamedTuple, Protocol
+from typing import Any, NamedTuple
 
 import numpy as np
 from scipy.special import chdtrc, ndtri
 
 from mffit.errors import InputError
-from mffit.least_squares import Number
 from mffit.points import Points
 from mffit.quantities import CHANNELS
 from mffit.rig import Simulation
@@ -19,42 +18,16 @@ from mffit.suspicion import constants
 from mffit.suspicion.explanation import explanation
 from mffit.suspicion.mistakes import MISTAKES, Mistake
 from mffit.suspicion.prediction import (
+    FittedModel,
     Group,
     Leverage,
     Prediction,
-    Weighted,
     groups,
     leverage,
     predictions,
 )
 from mffit.suspicion.rule import Finding
 from mffit.suspicion.undoing import Away, explaining
-
-
-class Posterior(Protocol):
-    """Names and joint covariance of the numbers that a fit leaves uncertain."""
-
-    @property
-    def names(self) -> tuple[str, ...]: ...
-    @property
-    def covariance(self) -> np.ndarray: ...
-
-
-class Fitted(Protocol):
-    """What a fit has to offer: its solution, weights, free numbers and their covariance."""
-
-    @property
-    def problem(self) -> Weighted: ...
-    @property
-    def numbers(self) -> Sequence[Number]: ...
-    @property
-    def posterior(self) -> Posterior: ...
-    @property
-    def scale(self) -> tuple[float, float]:
-        """Robust misfit over stated uncertainty, Fy and Mz."""
-
-    @property
-    def simulation(self) -> Simulation: ...
 
 
 class Campaign(NamedTuple):
@@ -64,7 +37,7 @@ class Campaign(NamedTuple):
     stated: tuple[np.ndarray, np.ndarray]
     """Uncertainty of Fy [N] and of Mz [Nm] before any weighting, (n,); inf where not measured."""
     signs: Mapping[str, float]  #: +1 or -1 per channel: from ISO-W to the rig's axes
-    refit: Callable[[np.ndarray], Fitted]  #: the fit to some rows (m,) only
+    refit: Callable[[np.ndarray], FittedModel]  #: the fit to some rows (m,) only
 
 
 class Error(NamedTuple):
@@ -122,7 +95,7 @@ class Evidence(NamedTuple):
     views: tuple[View, ...]
 
 
-def evidence(campaign: Campaign, fitted: Fitted) -> Evidence | None:
+def evidence(campaign: Campaign, fitted: FittedModel) -> Evidence | None:
     """Views of the sweeps that are off, the worst first; None with too few sweeps to compare.
 
     Notes
@@ -135,7 +108,7 @@ def evidence(campaign: Campaign, fitted: Fitted) -> Evidence | None:
         return None
     size = {c: usual_size((getattr(points, c) / points.Fz)[g.index] for g in found) for c in CHANNELS}
     noise = np.concatenate([u * k for u, k in zip(campaign.stated, fitted.scale, strict=True)])
-    fit = leverage(fitted.problem, fitted.numbers, noise)
+    fit = leverage(fitted, noise)
     errors = [(e, g) for g in found for e in _errors(predictions(fit, g), points.Fz[g.index], size)]
     level = constants.FALSE_ALARM_OF_SWEEPS / len(errors)
     usual = _usual_ratio([e for e, _ in errors])
@@ -279,10 +252,10 @@ def _view(campaign: Campaign, group: Group, size: Mapping[str, float], level: fl
 
 
 def _predicted(
-    part: Points, fitted: Fitted, stated: Sequence[np.ndarray], size: Mapping[str, float]
+    part: Points, fitted: FittedModel, stated: Sequence[np.ndarray], size: Mapping[str, float]
 ) -> Iterator[tuple[Error, bool]]:
     """Errors of a fit at points (m,) that were not in it, by channel, and whether they are small beside the readings."""
-    out, slope = fitted.simulation.sensitivities(part, list(fitted.posterior.names))
+    out, slope = fitted.simulation.sensitivities(part, list(fitted.names))
     load = float(np.mean(part.Fz))
     for name, u, scale in zip(CHANNELS, stated, fitted.scale, strict=True):
         known = np.isfinite(u) & np.isfinite(getattr(part, name))
@@ -292,7 +265,7 @@ def _predicted(
         J = getattr(slope, name)[known]
         prediction = Prediction(
             error=predicted - measured,
-            covariance=J @ fitted.posterior.covariance @ J.T + np.diag((scale * u[known]) ** 2),
+            covariance=J @ fitted.covariance @ J.T + np.diag((scale * u[known]) ** 2),
         )
         error = _error(name, prediction, size[name] * load)
         yield error, error.rms <= constants.MATCHED_SHARE * min(rms(measured), rms(predicted))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -72,7 +73,7 @@ def marks(found: Iterable[Outlier], n: int) -> np.ndarray:
     return out
 
 
-def in_words(found: Sequence[Outlier]) -> dict[str, str]:
+def in_words(found: Sequence[Outlier]) -> dict[str, Any]:
     """Facts for the sentence about all outliers, the worst by name."""
     worst = sorted(found, key=lambda o: -o.ratio)[: constants.OUTLIERS_IN_SENTENCE]
     named = "; ".join(
@@ -80,9 +81,4 @@ def in_words(found: Sequence[Outlier]) -> dict[str, str]:
         for o in worst
     )
     more = f"; and {len(found) - len(worst)} more, all in result.json" if len(found) > len(worst) else ""
-    one = len(found) == 1
-    return {
-        "count": "1 reading does" if one else f"{len(found)} readings do",
-        "have": "its sweep and has" if one else "their sweeps and have",
-        "named": named + more,
-    }
+    return {"number": len(found), "named": named + more}

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from typing import Protocol
 
 import numpy as np
 
@@ -23,17 +22,17 @@ COMMON = tuple(name for name in FAULT_NAMES if name not in ("backlash_deg", "pat
 """Rig errors that all sweeps share: they contradict no single sweep and are free, to first order."""
 
 
-class Weighted(Protocol):
-    """Points with the simulation that was fitted to them and the weights that the fit used."""
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class FittedModel:
+    """A fit at its solution."""
 
-    @property
-    def points(self) -> Points: ...
-    @property
-    def simulation(self) -> Simulation: ...
-    @property
-    def sigma_Fy(self) -> np.ndarray: ...
-    @property
-    def sigma_Mz(self) -> np.ndarray: ...
+    points: Points  #: (n,)
+    simulation: Simulation
+    weights: tuple[np.ndarray, np.ndarray]  #: uncertainty that the fit used, Fy [N] and Mz [Nm], (n,)
+    numbers: Sequence[Number]  #: that were free, (k,), with their priors
+    names: tuple[str, ...]  #: of all uncertain numbers, (j,)
+    covariance: np.ndarray  #: (j, j)
+    scale: tuple[float, float]  #: robust misfit over stated uncertainty, Fy and Mz
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -108,26 +107,25 @@ def _conditions(points: Points) -> Iterator[Group]:
                 yield Group(name=f"{sweep.name} at {said}", file=sweep.file, index=rows, whole=False)
 
 
-def leverage(fit: Weighted, numbers: Sequence[Number], noise: np.ndarray) -> Leverage:
-    """Residuals and derivatives of a fit at its solution.
+def leverage(fit: FittedModel, noise: np.ndarray) -> Leverage:
+    """Residuals and derivatives of a fit.
 
     Parameters
     ----------
-    fit : at the solution
-    numbers : that were free, (k,), with their priors
+    fit : at its solution
     noise : uncertainty of a sound point [N], [Nm], (2n,) of Fy and then Mz; inf where not measured
     """
     points = fit.points
-    free = [n.name for n in numbers]
+    free = [n.name for n in fit.numbers]
     common = [name for name in COMMON if name not in free]
     out, slope = fit.simulation.sensitivities(points, [*free, *common])
     slopes = np.concatenate(slope)
     measured = np.concatenate([points.Fy, points.Mz])
     used = np.isfinite(measured) & np.isfinite(noise)
-    weight = np.where(used, np.concatenate([fit.sigma_Fy, fit.sigma_Mz]), np.inf)
+    weight = np.where(used, np.concatenate(fit.weights), np.inf)
     residual = np.where(used, np.concatenate(out) - np.nan_to_num(measured), 0.0)
     J = slopes / weight[:, None]
-    covariance = inverse(J.T @ J + np.diag([n.spread**-2.0 for n in numbers] + [0.0] * len(common)))
+    covariance = inverse(J.T @ J + np.diag([n.spread**-2.0 for n in fit.numbers] + [0.0] * len(common)))
     gradient = J.T @ (residual / weight)
     gradient[: len(free)] = 0.0  # the fit has converged in its own numbers
     return Leverage(

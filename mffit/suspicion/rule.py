@@ -28,7 +28,7 @@ class Subject(StrEnum):
     FILE = "one file"
     SIGN = "sign of a slope"
     SIZE = "size of a slope"
-    CAMPAIGN = "all files"
+    ALL_FILES = "all files"
     SWEEP = "one sweep against all others"
     MODEL = "the fitted model"
     READINGS = "single readings"
@@ -60,11 +60,11 @@ class Rule:
     """One suspicion."""
 
     id: str
-    when: tuple[When, ...]
+    when: tuple[When, ...] = (When.BEFORE,)
     subject: Subject
     looks_at: str  #: what is compared, in words
-    limits: tuple[float, ...]  #: records of ``constants.py``
-    outcome: Outcome
+    limits: tuple[float, ...] = ()  #: records of ``constants.py``
+    outcome: Outcome = Outcome.REFUSED
     sentence: str  #: filled with the facts of a finding
     find: Callable[..., Iterable[Any]]  #: what it takes and finds depends on the subject
 

@@ -11,7 +11,7 @@ from functools import partial
 
 from mffit.constants import EXPLAINED_SHARE
 from mffit.points.faulty import FAULTS
-from mffit.suspicion import campaign, constants, declarations, misread, others, outliers, single_files, trust
+from mffit.suspicion import all_files, constants, declarations, misread, others, outliers, single_files, trust
 from mffit.suspicion.rule import Finding, Outcome, Rule, Subject, When
 from mffit.suspicion.slopes import Signatures
 
@@ -44,7 +44,6 @@ SAMPLES = tuple(
 NO_TYRE = (
     Rule(
         id="force-rises-with-sideslip",
-        when=(When.BEFORE,),
         subject=Subject.SIGN,
         looks_at="slope of Fy over sideslip, rolling forwards",
         limits=(constants.CHANCE_OF_OTHER_SIGN,),
@@ -54,7 +53,6 @@ NO_TYRE = (
     ),
     Rule(
         id="force-rises-with-camber",
-        when=(When.BEFORE,),
         subject=Subject.SIGN,
         looks_at="slope of Fy over camber, rolling forwards",
         limits=(constants.CHANCE_OF_OTHER_SIGN,),
@@ -64,7 +62,6 @@ NO_TYRE = (
     ),
     Rule(
         id="camber-force-too-steep",
-        when=(When.BEFORE,),
         subject=Subject.SIZE,
         looks_at="slope of Fy per load over camber, plus two standard errors",
         limits=(constants.STEEPEST_CAMBER_STIFFNESS,),
@@ -78,7 +75,6 @@ NO_TYRE = (
     ),
     Rule(
         id="camber-thrust",
-        when=(When.BEFORE,),
         subject=Subject.SIZE,
         looks_at="-Fy over Fz tan(gamma) at large camber of both signs",
         limits=(constants.SMALLEST_CAMBER_THRUST, constants.LARGEST_CAMBER_THRUST),
@@ -95,7 +91,6 @@ NO_TYRE = (
     ),
     Rule(
         id="moment-falls-with-sideslip",
-        when=(When.BEFORE,),
         subject=Subject.SIGN,
         looks_at="slope of Mz over sideslip, rolling forwards",
         limits=(constants.CHANCE_OF_OTHER_SIGN,),
@@ -105,7 +100,6 @@ NO_TYRE = (
     ),
     Rule(
         id="force-falls-with-sideslip-backwards",
-        when=(When.BEFORE,),
         subject=Subject.SIGN,
         looks_at="slope of Fy over sideslip, rolling backwards",
         limits=(constants.CHANCE_OF_OTHER_SIGN,),
@@ -115,7 +109,6 @@ NO_TYRE = (
     ),
     Rule(
         id="turn-slip-force-inwards",
-        when=(When.BEFORE,),
         subject=Subject.SIZE,
         looks_at="Fy per load at alpha = gamma = 0, outwards, mean of both directions",
         limits=(constants.WEAK_TURN_SLIP_FORCE,),
@@ -131,21 +124,17 @@ RULES: tuple[Rule, ...] = (
     *SAMPLES,
     Rule(
         id="copied-sweep",
-        when=(When.BEFORE,),
-        subject=Subject.CAMPAIGN,
+        subject=Subject.ALL_FILES,
         looks_at="readings of a sweep that are all in another sweep",
         limits=(constants.FEWEST_ROWS_OF_A_COPY,),
-        outcome=Outcome.REFUSED,
         sentence="holds exactly the readings of {first}; remove one of the two, or correct the one that was copied by mistake",
-        find=campaign.copied_sweep,
+        find=all_files.copied_sweep,
     ),
     Rule(
         id="angle-in-radians",
-        when=(When.BEFORE,),
         subject=Subject.FILE,
         looks_at="slope of Fy per load over sideslip and over camber, forwards and backwards",
         limits=(constants.STEEPEST_OVER_SIDESLIP, constants.STEEPEST_OVER_CAMBER),
-        outcome=Outcome.REFUSED,
         sentence=(
             "reaches only {largest:.3g} deg, over which the side force changes by {steepness:.0f} times the load per radian; "
             'the angles look like radians: write degrees, or {column} = {{ column = "{column}", unit = "rad" }} under '
@@ -155,17 +144,14 @@ RULES: tuple[Rule, ...] = (
     ),
     Rule(
         id="dead-channel",
-        when=(When.BEFORE,),
         subject=Subject.FILE,
         looks_at="Mz and Fy that are the same in every row although the angles change",
         limits=(constants.FEWEST_ROWS_OF_A_DEAD_CHANNEL,),
-        outcome=Outcome.REFUSED,
         sentence="is {reading:g} in every row, so the channel was dead; {remedy}",
         find=single_files.dead_channel,
     ),
     Rule(
         id="force-in-kilonewtons",
-        when=(When.BEFORE,),
         subject=Subject.FILE,
         looks_at="largest Fy per load at angles that show a force",
         limits=(
@@ -173,7 +159,6 @@ RULES: tuple[Rule, ...] = (
             constants.CAMBER_THAT_SHOWS_FORCE,
             constants.SMALLEST_FRICTION,
         ),
-        outcome=Outcome.REFUSED,
         sentence=(
             "is at most {largest:.3g} N at loads of {load:.0f} N, which looks like kN; write newtons, or "
             'Fy_N = {{ column = "Fy_N", unit = "kN" }} under [sweep.columns]'
@@ -182,11 +167,9 @@ RULES: tuple[Rule, ...] = (
     ),
     Rule(
         id="lone-load",
-        when=(When.BEFORE,),
         subject=Subject.FILE,
         looks_at="largest load over all others of the file",
         limits=(constants.LONE_LOAD, constants.FEWEST_ROWS_OF_A_LONE_LOAD),
-        outcome=Outcome.REFUSED,
         sentence=(
             "{load:.6g} N is far above all other loads of the file, which are at most {others:.6g} N; correct or remove the row"
         ),
@@ -194,21 +177,17 @@ RULES: tuple[Rule, ...] = (
     ),
     Rule(
         id="wild-force",
-        when=(When.BEFORE,),
         subject=Subject.FILE,
         looks_at="Fy per load of one or two rows",
         limits=(constants.LARGEST_FRICTION,),
-        outcome=Outcome.REFUSED,
         sentence="{force:.6g} N is {friction:.0f} times the load, which no tyre reaches; correct or remove the row",
         find=single_files.wild_force,
     ),
     Rule(
         id="load-in-another-unit",
-        when=(When.BEFORE,),
         subject=Subject.FILE,
         looks_at="Fy per load of more rows",
         limits=(constants.LARGEST_FRICTION, constants.FEWEST_POINTS_OF_FRICTION),
-        outcome=Outcome.REFUSED,
         sentence=(
             "side forces reach {friction:.0f} times the load ({load:.0f} N), which no tyre does: the load looks like kgf, or "
             'the force like another unit; map it with its unit, Fz_N = {{ column = "Fz_N", unit = "kgf" }} in [sweep.columns]'
@@ -217,21 +196,17 @@ RULES: tuple[Rule, ...] = (
     ),
     Rule(
         id="moment-in-newton-millimetres",
-        when=(When.BEFORE,),
         subject=Subject.FILE,
         looks_at="|Mz| over load",
         limits=(constants.LONGEST_ARM,),
-        outcome=Outcome.REFUSED,
         sentence="reaches {arm:.0f} m times the load, which looks like N mm; name its unit under [sweep.columns]",
         find=single_files.arm_too_long,
     ),
     Rule(
         id="pressure-in-psi",
-        when=(When.BEFORE,),
         subject=Subject.FILE,
         looks_at="median pressure over the nominal one, as it is and read as psi",
         limits=(constants.LOWEST_PRESSURE,),
-        outcome=Outcome.REFUSED,
         sentence=(
             "is {pressure:.3g} kPa, far from the nominal {nominal:.3g} kPa, and looks like psi; write kPa, or "
             'p_kPa = {{ column = "p_kPa", unit = "psi" }} under [sweep.columns]'
@@ -241,31 +216,26 @@ RULES: tuple[Rule, ...] = (
     *NO_TYRE,
     Rule(
         id="declaration-contradicted",
-        when=(When.BEFORE,),
-        subject=Subject.CAMPAIGN,
+        subject=Subject.ALL_FILES,
         looks_at="the contradictions above, under the declared and under all other axes, frames and path centres",
         limits=(constants.WEAKEST_CAMBER_STIFFNESS,),
-        outcome=Outcome.REFUSED,
         sentence="with {declared}, {wrong} in ISO signs, as no tyre does; {remedy}",
         find=partial(declarations.contradicted, slope_rules=NO_TYRE),
     ),
     Rule(
         id="reversed-file",
-        when=(When.BEFORE,),
-        subject=Subject.CAMPAIGN,
+        subject=Subject.ALL_FILES,
         looks_at="the signs of the slopes above, file by file, with the scatter of all files",
         limits=(constants.CHANCE_OF_OTHER_SIGN,),
-        outcome=Outcome.REFUSED,
         sentence=(
             "{what} {where}, against all the others: its sign or its direction of rolling looks reversed; correct the file, "
             'write direction = "backward" in its [[sweep]], or map {column} with scale = -1 under [sweep.columns]'
         ),
-        find=partial(campaign.reversed_file, signs=SIGNS),
+        find=partial(all_files.reversed_file, signs=SIGNS),
     ),
     Rule(
         id="moments-about-another-point",
-        when=(When.BEFORE,),
-        subject=Subject.CAMPAIGN,
+        subject=Subject.ALL_FILES,
         looks_at="lever arm of Mx over Fy of the upright wheel, per unloaded radius",
         limits=(
             constants.LEVER_OF_OTHER_MOMENT_POINT,
@@ -273,42 +243,36 @@ RULES: tuple[Rule, ...] = (
             constants.FORCE_RANGE_OF_MOMENT_POINT,
             constants.FEWEST_POINTS_OF_MOMENT_POINT,
         ),
-        outcome=Outcome.REFUSED,
         sentence=(
             'with moments = "{declared}", Mx_Nm changes by {lever:.2f} m times Fy_N, which is about the wheel\'s radius; about '
             'the contact point it hardly changes; the data agree with moments = "{other}"'
         ),
-        find=campaign.other_moment_point,
+        find=all_files.other_moment_point,
     ),
     Rule(
         id="one-sided-on-a-disc",
-        when=(When.BEFORE,),
-        subject=Subject.CAMPAIGN,
+        subject=Subject.ALL_FILES,
         looks_at="signs of the angles on a disc",
         limits=(constants.ZERO_SIDESLIP, constants.ZERO_CAMBER),
-        outcome=Outcome.REFUSED,
         sentence=(
             "runs only from {smallest:.3g} to {largest:.3g} deg in ISO signs, and on a disc both signs are needed to separate "
             "turn slip; add the mirrored points"
         ),
-        find=campaign.one_sided_on_disc,
+        find=all_files.one_sided_on_disc,
     ),
     Rule(
         id="no-zero-on-a-disc",
-        when=(When.BEFORE,),
-        subject=Subject.CAMPAIGN,
+        subject=Subject.ALL_FILES,
         looks_at="forward points at alpha = gamma = 0 on a disc",
         limits=(constants.ZERO_SIDESLIP, constants.ZERO_CAMBER),
-        outcome=Outcome.REFUSED,
         sentence=(
             "no forward point has alpha_deg = 0 and gamma_deg = 0, where the turn-slip force is measured; add one per load"
         ),
-        find=campaign.no_zero_on_disc,
+        find=all_files.no_zero_on_disc,
     ),
     Rule(
         id="lone-lean",
-        when=(When.BEFORE,),
-        subject=Subject.CAMPAIGN,
+        subject=Subject.ALL_FILES,
         looks_at="sign of camber, sweep by sweep",
         limits=(constants.LEANING, constants.FEWEST_LEANING_SWEEPS),
         outcome=Outcome.WARNED,
@@ -316,12 +280,11 @@ RULES: tuple[Rule, ...] = (
             "{sweep} leans {degrees:.1f} deg to the other side than all {others} other sweeps with camber: if that was not "
             "meant, correct the sign of its gamma_deg"
         ),
-        find=campaign.lone_lean,
+        find=all_files.lone_lean,
     ),
     Rule(
         id="weak-turn-slip-force",
-        when=(When.BEFORE,),
-        subject=Subject.CAMPAIGN,
+        subject=Subject.ALL_FILES,
         looks_at="Fy per load at alpha = gamma = 0, outwards, mean of both directions",
         limits=(constants.WEAK_TURN_SLIP_FORCE,),
         outcome=Outcome.WARNED,
@@ -329,7 +292,7 @@ RULES: tuple[Rule, ...] = (
             "the force at alpha = gamma = 0 is {percent:.1f} % of the load along the turn slip, too little to measure turn "
             "slip; check the alignment of the sideslip axis"
         ),
-        find=campaign.weak_turn_slip,
+        find=all_files.weak_turn_slip,
     ),
     Rule(
         id="known-mistake",
@@ -342,7 +305,6 @@ RULES: tuple[Rule, ...] = (
             EXPLAINED_SHARE,
             constants.MATCHED_SHARE,
         ),
-        outcome=Outcome.REFUSED,
         sentence=(
             "contradicts all other sweeps: predicted from them, {channel} is out by {rms:.3g} {unit}, at least {percent:.0f} % "
             "of its usual size{condition}; it looks like {looks}, which leaves {left:.2g} %: {remedy}"
@@ -355,7 +317,6 @@ RULES: tuple[Rule, ...] = (
         subject=Subject.SWEEP,
         looks_at="error of the prediction from all other sweeps, and uncertainty of the prediction",
         limits=(constants.FALSE_ALARM_OF_SWEEPS, constants.IMPLAUSIBLE_SHARE, constants.GROSS_SHARE),
-        outcome=Outcome.REFUSED,
         sentence=(
             "contradicts all other sweeps: predicted from them, {channel} is out by {rms:.3g} {unit}, at least {percent:.0f} % "
             "of its usual size{condition}, and no reversed sign, exchanged column or unit explains it; check this "
@@ -385,10 +346,9 @@ RULES: tuple[Rule, ...] = (
         id="outlying-reading",
         when=(When.AFTER,),
         subject=Subject.READINGS,
-        looks_at="residual, and its distance from the neighbours' residuals in the sweep (limits: the fit's weights)",
-        limits=(),
+        looks_at="residual, and its distance from the neighbours' residuals in the sweep; the weights of the fit have the limits",
         outcome=Outcome.LEFT_OUT,
-        sentence="{count} not fit {have} no weight: {named}; correct or remove what is wrong",
+        sentence="readings that do not fit their sweep have no weight ({number}): {named}; correct or remove what is wrong",
         find=outliers.outliers,
     ),
     Rule(
