@@ -1,4 +1,4 @@
-"""Means of a recording over its steady stretches and along its sweeps, as points."""
+"""Points from means of a recording over its steady stretches and along its sweeps."""
 
 from __future__ import annotations
 
@@ -106,11 +106,10 @@ def _points(
     table: pd.DataFrame,
     first: np.ndarray,
 ) -> Points:
-    values: dict[str, Any] = {
-        name: means.get(name, getattr(sweep, name)[first]) for name in CHANNELS if name not in means
-    }
+    """Points from means by channel, and from the first samples for every other channel."""
+    values: dict[str, Any] = {name: getattr(sweep, name)[first] for name in CHANNELS} | means
     return make_points(
-        **{**values, **means},
+        **values,
         phi_t=phi_t,
         direction=sweep.direction[first],
         mount=sweep.mount,

@@ -1,4 +1,4 @@
-"""The record of finished measuring points: what every later step starts from."""
+"""The record of finished measuring points, from which every later step starts."""
 
 from __future__ import annotations
 
@@ -19,16 +19,15 @@ OPTIONAL: Mapping[str, Any] = {
     **dict.fromkeys(("sweep", "file", "line"), 0),
     "continuous": False,
 }
-"""Values of the fields that :func:`make_points` is not given: not measured, forward, normal mount, one sweep."""
+"""Defaults of :func:`make_points`: not measured, forwards, normal mount, one sweep of one file."""
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
 class Points(Brief):
     """Steady points in ISO-W, contact frame W, SI; arrays are (n,) and read-only.
 
-    Angles are the rig's readings turned to ISO; no correction is applied to anything. A channel that was not
-    measured is all NaN, except pressure and speed, for which the nominal value stands in. Built by
-    :func:`make_points`.
+    Angles are the rig's readings in ISO axes; nothing is corrected. A channel that was not measured is all NaN, except
+    pressure and speed, which are nominal then. Built by :func:`make_points`.
     """
 
     alpha: np.ndarray  #: sideslip angle as read [rad]
@@ -62,7 +61,7 @@ class Points(Brief):
 
     @property
     def headline(self) -> str:
-        """How many there are."""
+        """Number of points and sweeps, in words."""
         return f"{len(self)} in {len(self.sweep_names)} sweeps"
 
     @property
@@ -85,9 +84,7 @@ class Points(Brief):
 
     def replace(self, **arrays: Any) -> Points:
         """A copy with some fields changed; scalars are broadcast to (n,)."""
-        unknown = set(arrays) - set(FIELDS)
-        if unknown:
-            raise TypeError(f"Points has no field {', '.join(sorted(unknown))}")
+        _refuse_unknown(arrays)
         taken = {name: arrays.get(name, getattr(self, name)) for name in ARRAYS}
         shared = {name: arrays.get(name, getattr(self, name)) for name in SHARED}
         return _sealed({name: _filled(name, taken[name], len(self)) for name in ARRAYS}, **shared)
@@ -131,9 +128,9 @@ def make_points(
         Lengths disagree, or ``direction`` or ``mount`` is neither +1 nor -1.
     """
     given = {**OPTIONAL, "alpha": alpha, "gamma": gamma, "Fz": Fz, **fields}
-    if set(given) != set(ARRAYS):
-        wrong = sorted(set(given) ^ set(ARRAYS))
-        raise TypeError(f"make_points is not given, or does not know, {', '.join(wrong)}")
+    if missing := [name for name in ARRAYS if name not in given]:
+        raise TypeError(f"make_points needs {', '.join(missing)}")
+    _refuse_unknown(given)
     n = np.broadcast(*(np.atleast_1d(values) for values in given.values())).size
     arrays = {name: _filled(name, given[name], n) for name in ARRAYS}
     for name in ("direction", "mount"):
@@ -156,6 +153,12 @@ def concatenate(parts: Sequence[Points]) -> Points:
     )
     table = pd.concat([part.table for part in parts], ignore_index=True)
     return _sealed(arrays, sweep_names=sweep_names, files=files, table=table)
+
+
+def _refuse_unknown(given: Mapping[str, Any]) -> None:
+    unknown = sorted(set(given) - set(FIELDS))
+    if unknown:
+        raise TypeError(f"Points has no field {', '.join(unknown)}")
 
 
 def _renumbered(index: np.ndarray, old: Sequence[str], new: Sequence[str]) -> np.ndarray:

@@ -1,4 +1,4 @@
-"""The mistakes that are made in writing a sweep down: one record each, with the points as they would be without it."""
+"""Known mistakes in recording a sweep, one record each."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from mffit.points import Points
 from mffit.sweeps.units import factor
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Mistake:
     """A way in which one sweep contradicts all the others."""
 
@@ -18,12 +18,12 @@ class Mistake:
     column: str  #: heading at fault
     remedy: str  #: what to do about it
     undone: Callable[[Points, Mapping[str, float]], Points]
-    """The points without it; takes the signs that turn ISO-W into the rig's axes, by channel."""
-    beyond_doubt: bool = True  #: False where a sound tyre or rig can look almost like it
+    """The points without it; takes the signs from ISO-W to the rig's axes, by channel."""
+    beyond_doubt: bool = True  #: False if a sound tyre or rig can look almost like it
 
 
-def _turned(points: Points, signs: Mapping[str, float], channels: tuple[str, ...]) -> Points:
-    return points.replace(**{name: -getattr(points, name) for name in channels})
+def _negated(points: Points, _: Mapping[str, float], *, fields: tuple[str, ...]) -> Points:
+    return points.replace(**{name: -getattr(points, name) for name in fields})
 
 
 def _swapped(points: Points, signs: Mapping[str, float]) -> Points:
@@ -31,74 +31,71 @@ def _swapped(points: Points, signs: Mapping[str, float]) -> Points:
     return points.replace(alpha=sign * points.gamma, gamma=sign * points.alpha)
 
 
-def _in_unit(points: Points, signs: Mapping[str, float], channel: str, unit: str, house: str) -> Points:
-    return points.replace(**{channel: factor(unit, house) * getattr(points, channel)})
+def _converted(points: Points, _: Mapping[str, float], *, field: str, unit: str, expected: str) -> Points:
+    return points.replace(**{field: factor(unit, expected) * getattr(points, field)})
 
 
-def _reversed(channel: str, column: str, what: str) -> Mistake:
+def _reversed(field: str, column: str, what: str) -> Mistake:
     return Mistake(
-        f"{what} reversed",
-        column,
-        f"correct its sign, or map {column} with scale = -1 under [sweep.columns]",
-        partial(_turned, channels=(channel,)),
+        looks=f"{what} reversed",
+        column=column,
+        remedy=f"correct its sign, or map {column} with scale = -1 under [sweep.columns]",
+        undone=partial(_negated, fields=(field,)),
     )
 
 
-def _unit(channel: str, column: str, what: str, unit: str, house: str) -> Mistake:
+def _in_unit(field: str, column: str, what: str, *, unit: str, expected: str) -> Mistake:
     return Mistake(
-        f"{what} in {unit}",
-        column,
-        f'write {house}, or {column} = {{ column = "{column}", unit = "{unit}" }} under [sweep.columns]',
-        partial(_in_unit, channel=channel, unit=unit, house=house),
+        looks=f"{what} in {unit}",
+        column=column,
+        remedy=f'write {expected}, or {column} = {{ column = "{column}", unit = "{unit}" }} under [sweep.columns]',
+        undone=partial(_converted, field=field, unit=unit, expected=expected),
     )
 
 
-FORCE, LOAD, MOMENT = (
-    ("Fy", "Fy_N", "its side force"),
-    ("Fz", "Fz_N", "its load"),
-    ("Mz", "Mz_Nm", "its moment"),
-)
-SIDESLIP, CAMBER = ("alpha", "alpha_deg", "its sideslip"), ("gamma", "gamma_deg", "its camber")
+FORCE = ("Fy", "Fy_N", "its side force")
+LOAD = ("Fz", "Fz_N", "its load")
+MOMENT = ("Mz", "Mz_Nm", "its moment")
+SIDESLIP = ("alpha", "alpha_deg", "its sideslip")
+CAMBER = ("gamma", "gamma_deg", "its camber")
+PRESSURE = ("p", "p_kPa", "its pressure")
 
 MISTAKES: tuple[Mistake, ...] = (
-    _reversed(*SIDESLIP),
-    _reversed(*CAMBER),
-    _reversed(*FORCE),
-    _reversed(*MOMENT),
+    *(_reversed(*channel) for channel in (SIDESLIP, CAMBER, FORCE, MOMENT)),
     Mistake(
-        "sideslip and camber exchanged",
-        "alpha_deg",
-        "correct the headings alpha_deg and gamma_deg",
-        _swapped,
+        looks="sideslip and camber exchanged",
+        column="alpha_deg",
+        remedy="correct the headings alpha_deg and gamma_deg",
+        undone=_swapped,
     ),
     Mistake(
-        "the direction of rolling undeclared or wrong",
-        "direction",
-        'write direction = "backward" (or "forward") in its [[sweep]]',
-        lambda points, signs: points.replace(direction=-points.direction),
+        looks="the direction of rolling undeclared or wrong",
+        column="direction",
+        remedy='write direction = "backward" (or "forward") in its [[sweep]]',
+        undone=partial(_negated, fields=("direction",)),
     ),
     Mistake(
-        "side force and moment in other axes",
-        "Fy_N",
-        "correct the signs of Fy_N and Mz_Nm",
-        partial(_turned, channels=("Fy", "Mz")),
+        looks="side force and moment in other axes",
+        column="Fy_N",
+        remedy="correct the signs of Fy_N and Mz_Nm",
+        undone=partial(_negated, fields=("Fy", "Mz")),
     ),
     Mistake(
-        "sideslip, side force and moment in other axes",
-        "alpha_deg",
-        "correct the signs of alpha_deg, Fy_N and Mz_Nm",
-        partial(_turned, channels=("alpha", "Fy", "Mz")),
+        looks="sideslip, side force and moment in other axes",
+        column="alpha_deg",
+        remedy="correct the signs of alpha_deg, Fy_N and Mz_Nm",
+        undone=partial(_negated, fields=("alpha", "Fy", "Mz")),
     ),
     Mistake(
-        "the tyre turned on its rim",
-        "mount",
-        'write mount = "flipped" (or "normal") in its [[sweep]]',
-        lambda points, signs: points.replace(mount=-points.mount),
+        looks="the tyre turned on its rim",
+        column="mount",
+        remedy='write mount = "flipped" (or "normal") in its [[sweep]]',
+        undone=partial(_negated, fields=("mount",)),
         beyond_doubt=False,
     ),
-    *(_unit(*LOAD, unit, "N") for unit in ("kgf", "lbf")),
-    *(_unit(*FORCE, unit, "N") for unit in ("kN", "kgf", "lbf")),
-    *(_unit(*MOMENT, unit, "N m") for unit in ("N mm", "kN m", "lbf ft")),
-    *(_unit(*angle, "rad", "deg") for angle in (SIDESLIP, CAMBER)),
-    _unit("p", "p_kPa", "its pressure", "psi", "kPa"),
+    *(_in_unit(*LOAD, unit=unit, expected="N") for unit in ("kgf", "lbf")),
+    *(_in_unit(*FORCE, unit=unit, expected="N") for unit in ("kN", "kgf", "lbf")),
+    *(_in_unit(*MOMENT, unit=unit, expected="N m") for unit in ("N mm", "kN m", "lbf ft")),
+    *(_in_unit(*angle, unit="rad", expected="deg") for angle in (SIDESLIP, CAMBER)),
+    _in_unit(*PRESSURE, unit="psi", expected="kPa"),
 )
