@@ -9,9 +9,7 @@ SAME_CAMBER = Real(0.25, "deg", "Camber angles within this are one set-point for
 SAME_LOAD = Real(0.04, "-", "Loads within this share are one condition for the search of mirrors.")
 SAME_PRESSURE = Real(6.0, "kPa", "Pressures within this are one condition for the search of mirrors.")
 SAME_SPEED = Real(0.1, "-", "Speeds within this share are one condition for the search of mirrors.")
-OTHER_SWEEP_DISTANCE = Real(
-    10.0, "deg", "Added to the distance of a mirror in another sweep: one in the same sweep is preferred."
-)
+OTHER_SWEEP_DISTANCE = Real(10.0, "deg", "Added to the distance of a mirror that is in another sweep.")
 FEWEST_ANGLES_TO_INTERPOLATE = Count(3, "-", "Different angles along which a missing mirror is interpolated.")
 REPEATED_ANGLE = Real(
     1e-3, "deg", "Angles within this are repetitions of one angle when mirrors are interpolated."

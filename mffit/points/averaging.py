@@ -23,6 +23,8 @@ def rows_as_points(sweep: Sweep, phi_t: float, rows: np.ndarray) -> Points:
 
 def over_plateaus(sweep: Sweep, phi_t: float, kept: list[Stretch]) -> Points:
     """Means over the stretches, with their standard errors if the file states none."""
+    if not kept:
+        return _no_points(sweep, phi_t)
     parts = [slice(stretch.begin, stretch.end) for stretch in kept]
     means = {name: np.array([np.mean(getattr(sweep, name)[part]) for part in parts]) for name in CHANNELS}
     for channel, u in (("Fy", "u_Fy"), ("Mz", "u_Mz")):
@@ -49,12 +51,14 @@ def _averaged_table(table: pd.DataFrame, parts: list[slice]) -> pd.DataFrame:
 
 
 def along_sweeps(
-    sweep: Sweep, phi_t: float, stretches: list[Stretch], labels: list[str], bad: np.ndarray
+    sweep: Sweep, phi_t: float, stretches: list[Stretch], labels: list[str], faulty: np.ndarray
 ) -> Points:
     """Means over short blocks of sweeps, without faulty samples."""
+    if not stretches:
+        return _no_points(sweep, phi_t)
     whole, begins, numbers, count = [], [], [], 0
     for k, stretch in enumerate(stretches):
-        rows = np.flatnonzero(~bad[stretch.begin : stretch.end]) + stretch.begin
+        rows = np.flatnonzero(~faulty[stretch.begin : stretch.end]) + stretch.begin
         first, size = _blocks(sweep, rows)
         enough = np.diff(np.r_[first, len(rows)]) >= constants.FILLED_BLOCK * size
         whole.append(rows)
@@ -97,6 +101,10 @@ def _blocks(sweep: Sweep, rows: np.ndarray) -> tuple[np.ndarray, int]:
     size = max(1, round(step / interval))
     block = np.floor((time - time[0]) / (size * interval) + 1e-6)
     return np.r_[0, np.flatnonzero(np.diff(block)) + 1], size
+
+
+def _no_points(sweep: Sweep, phi_t: float) -> Points:
+    return rows_as_points(sweep, phi_t, np.zeros(0, dtype=int))
 
 
 def _points(

@@ -1,4 +1,4 @@
-"""One sweep to points: finished rows as they are, a recording averaged over its steady stretches and along its sweeps."""
+"""One sweep to points: finished rows unchanged, recordings averaged over steady stretches and along moving sweeps."""
 
 from __future__ import annotations
 
@@ -8,10 +8,9 @@ import numpy as np
 
 from mffit.errors import InputError
 from mffit.points import averaging, constants, remarks
-from mffit.points import lag as lags
 from mffit.points.choice import chosen
 from mffit.points.faulty import driven, faults
-from mffit.points.lag import UNKNOWN, Lag
+from mffit.points.lag import UNKNOWN, Lag, measure, rolled_distance
 from mffit.points.points import Points, concatenate
 from mffit.points.steady import Scale
 from mffit.points.stretch import PLATEAU, SWEEP, Stretch, StretchNote
@@ -25,7 +24,7 @@ class Reduced(NamedTuple):
     points: Points
     warnings: tuple[str, ...]
     stretches: tuple[StretchNote, ...] = ()  #: of a recording, in time order
-    lags: tuple[Lag, ...] = ()  #: of each sweep name in ``points``
+    lags: tuple[Lag, ...] = ()  #: of the moving sweeps that give points
 
 
 def reduce(sweep: Sweep, phi_t: float, scale: Scale | None = None) -> Reduced:
@@ -35,7 +34,7 @@ def reduce(sweep: Sweep, phi_t: float, scale: Scale | None = None) -> Reduced:
     ----------
     sweep : finished points or a time series
     phi_t : turn slip of the path [1/m]
-    scale : usual size of the settings in all time series of the campaign, by which changes are judged; of this one if None
+    scale : usual size of the settings in all time series of the campaign, to judge changes; None: of this series alone
 
     Returns
     -------
@@ -50,31 +49,29 @@ def reduce(sweep: Sweep, phi_t: float, scale: Scale | None = None) -> Reduced:
     """
     if not sweep.is_series:
         free = np.flatnonzero(~driven(sweep))
-        return Reduced(averaging.rows_as_points(sweep, phi_t, free), remarks.driven(sweep, free))
+        return Reduced(
+            points=averaging.rows_as_points(sweep, phi_t, free), warnings=remarks.driven(sweep, free)
+        )
     sweep, repeated = _without_repeats(sweep)
     _check_time(sweep)
     wrong = faults(sweep)
-    bad = np.any([fault.which for fault in wrong], axis=0) if wrong else np.zeros(len(sweep), dtype=bool)
     tried = chosen(sweep, wrong, scale)
     labels = _labels(sweep, tried)
     plateaus = [stretch for stretch in tried if stretch.kind == PLATEAU and not stretch.dropped]
     swept = [stretch for stretch in tried if stretch.kind == SWEEP and not stretch.dropped]
-    parts, became = [], dict.fromkeys(plateaus, (1, UNKNOWN))
-    if plateaus:
-        parts.append(averaging.over_plateaus(sweep, phi_t, plateaus))
-    if swept:
-        along = averaging.along_sweeps(sweep, phi_t, swept, [labels[stretch] for stretch in swept], bad)
-        counts = np.bincount(along.sweep, minlength=len(swept)).tolist()
-        became |= {s: (count, _lag(sweep, s, bad)) for s, count in zip(swept, counts, strict=True)}
-        parts.append(along)
-    if not parts:
-        parts.append(averaging.rows_as_points(sweep, phi_t, np.zeros(0, dtype=int)))
-    found = tuple(became[stretch][1] for stretch in swept)
+    faulty = np.any([fault.which for fault in wrong], axis=0) if wrong else np.zeros(len(sweep), dtype=bool)
+    steady = averaging.over_plateaus(sweep, phi_t, plateaus)
+    moving = averaging.along_sweeps(sweep, phi_t, swept, [labels[stretch] for stretch in swept], faulty)
+    lags = {stretch: _lag(sweep, stretch, faulty) for stretch in swept}
+    counts = np.bincount(moving.sweep, minlength=len(swept)).tolist()
+    number = dict.fromkeys(plateaus, 1) | dict(zip(swept, counts, strict=True))
     return Reduced(
-        concatenate(parts),
-        (*repeated, *remarks.left_out(sweep, wrong, tried)),
-        tuple(remarks.note(sweep, s, labels[s], *became.get(s, (0, UNKNOWN))) for s in tried),
-        found if swept and not plateaus else (UNKNOWN, *found),
+        points=concatenate([part for part in (steady, moving) if len(part)] or [steady]),
+        warnings=(*repeated, *remarks.left_out(sweep, wrong, tried)),
+        stretches=tuple(
+            remarks.note(sweep, s, labels[s], number.get(s, 0), lags.get(s, UNKNOWN)) for s in tried
+        ),
+        lags=tuple(lags.values()),
     )
 
 
@@ -87,16 +84,16 @@ def _labels(sweep: Sweep, tried: list[Stretch]) -> dict[Stretch, str]:
     }
 
 
-def _lag(sweep: Sweep, stretch: Stretch, bad: np.ndarray) -> Lag:
+def _lag(sweep: Sweep, stretch: Stretch, faulty: np.ndarray) -> Lag:
     """The lag of a sweep of the sideslip angle."""
-    rows = np.flatnonzero(~bad[stretch.begin : stretch.end]) + stretch.begin
+    rows = np.flatnonzero(~faulty[stretch.begin : stretch.end]) + stretch.begin
     if len(rows) < 2 or np.ptp(sweep.alpha[rows]) < np.ptp(sweep.gamma[rows]):
         return UNKNOWN
     time = sweep.time[rows]
-    rolled = lags.rolled_distance(time, sweep.V[rows])
+    rolled = rolled_distance(time, sweep.V[rows])
     if not rolled[-1] > 0.0 or np.any(np.diff(rolled) <= 0.0):
         return UNKNOWN
-    return lags.measure(
+    return measure(
         sweep.alpha[rows], sweep.Fy[rows], rolled, round(constants.AVERAGED_TIME / np.median(np.diff(time)))
     )
 

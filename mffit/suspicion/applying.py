@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import asdict
 from itertools import groupby
 
 import numpy as np
@@ -109,26 +110,14 @@ def about(finding: Doubt | Misread | Sequence[Outlier]) -> str:
     match finding:
         case Doubt():
             facts = {
-                "sweep": finding.sweep,
-                "channel": finding.channel,
-                "rms": finding.rms,
                 "unit": CHANNELS[finding.channel].unit,
                 "percent": 100 * finding.share,
-                "ratio": finding.ratio,
                 "explained": f"; it looks like {finding.looks}" if finding.looks else "",
             }
-            return _rule("doubtful-sweep").said(facts)
+            return _rule("doubtful-sweep").said(asdict(finding) | facts)
         case Misread():
-            facts = {
-                "file": finding.file,
-                "sweep": finding.sweep,
-                "percent": 100 * finding.before,
-                "looks": finding.looks,
-                "left": 100 * finding.after,
-                "column": finding.column,
-                "remedy": finding.remedy,
-            }
-            return _rule("misread-sweep").said(facts)
+            facts = {"percent": 100 * finding.before, "left": 100 * finding.after}
+            return _rule("misread-sweep").said(asdict(finding) | facts)
         case _:
             return _rule("outlying-reading").said(outliers.in_words(finding))
 
