@@ -1,4 +1,4 @@
-"""Which point is the mirror image (-alpha, -gamma) of which, under the same condition."""
+"""Pairs of points at (alpha, gamma) and (-alpha, -gamma) under the same condition."""
 
 from __future__ import annotations
 

@@ -15,7 +15,7 @@ ROLLING_IN = f"the first {constants.TRANSIENT_ROLL:g} m of rolling behind a gap 
 
 
 def settings_of(sweep: Sweep) -> Settings:
-    """What the rig was told to do in a time series."""
+    """The settings of a time series."""
     return Settings(sweep.time, sweep.alpha, sweep.gamma, sweep.Fz, sweep.p, sweep.V)
 
 

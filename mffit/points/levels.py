@@ -1,8 +1,8 @@
 """Levels of the set-points: the conditions that a test plan repeats.
 
-A level is a dense place among the values, found densest first: a few values on the way from one level to the
-next neither join two levels nor make one of their own. Where the values are spread evenly no place is denser
-than the others; they are cut into levels between one and two tolerances apart, so that they count as varied.
+A level is a place where values are dense; the densest is found first. So a few values on the way from one level to the
+next neither join two levels nor form one themselves. Evenly spread values, without a dense place, are cut into levels
+between one and two tolerances apart, so that they count as varied.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ NO_LEVEL = -1
 
 
 def labels(values: np.ndarray, kind: LevelKind) -> np.ndarray:
-    """Number (n,) of the level of each value, rising from 0 with the value; ``NO_LEVEL`` for those between levels.
+    """Number (n,) of the level of each value, rising with the value from 0; ``NO_LEVEL`` for values between levels.
 
     Parameters
     ----------
@@ -50,7 +50,7 @@ def labels(values: np.ndarray, kind: LevelKind) -> np.ndarray:
 
 
 def nearest_labels(values: np.ndarray, kind: LevelKind) -> np.ndarray:
-    """As :func:`labels`, but values between levels are given to the nearest one; ``NO_LEVEL`` for NaN only."""
+    """As :func:`labels`, with values between levels assigned to the nearest one; ``NO_LEVEL`` for NaN only."""
     scaled = _scaled(values, kind)
     return _nearest(scaled, _centres(scaled))
 

@@ -198,7 +198,7 @@ def _thin(points: Points, config: Config) -> list[str]:
     one_side = len(np.unique(np.sign(points.phi_t))) == 1
     if config.rig.on_disc and one_side and not np.any(points.direction < 0):
         out.append(
-            "there are no backward runs: sideslip misalignment cannot be told from turn slip and ply-steer"
+            "there are no backward runs: sideslip misalignment cannot be separated from turn slip and ply-steer"
         )
     if levels.count(points.Fz, levels.LOAD) == 1:
         out.append(f"there is one load only ({np.mean(points.Fz):.0f} N): terms that vary with load are held")

@@ -1,4 +1,4 @@
-"""What all files together hold: copies, a file or sweep of another sign than all others, and what a disc needs."""
+"""Checks of all files together: copies, a file or sweep of another sign than all others, and the needs of a disc."""
 
 from __future__ import annotations
 
@@ -65,7 +65,7 @@ def _with_common_scatter(each: list[Signatures]) -> list[Signatures]:
 
 
 def lone_lean(points: Points, config: Config) -> Iterator[Finding]:
-    """The one sweep that leans the other way; nothing if one sweep holds both signs, as those of a disc do."""
+    """The one sweep that leans the other way, unless a sweep holds both signs, as sweeps on a disc do."""
     sides: dict[int, float] = {}
     for k in np.unique(points.sweep).tolist():
         gamma = points.gamma[points.sweep == k]

@@ -101,7 +101,7 @@ def misread(points: Points, simulation: Simulation, signs: Mapping[str, float]) 
 
 
 def contradictions(found: Signatures) -> list[str]:
-    """What no tyre does, as the beginnings of sentences; empty for plausible signatures."""
+    """What the signatures show that no tyre does, as beginnings of sentences; empty for plausible ones."""
     return declarations.broken(NO_TYRE, found)
 
 

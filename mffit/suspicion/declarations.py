@@ -1,4 +1,4 @@
-"""Which other axes, frame or path centre the data agree with, if they contradict the declared ones.
+"""Search for other axes, frames and path centres if the data contradict the declared ones.
 
 Every alternative is tried on the data. A sideslip axis that is a degree out does not look like wrong axes, as it
 shifts the curves without reversing a slope.
@@ -29,7 +29,7 @@ class Alternative(NamedTuple):
 
 
 def broken(rules: Sequence[Rule], found: Signatures) -> list[str]:
-    """What no tyre does, as the beginnings of sentences; empty for plausible data."""
+    """The broken rules, as beginnings of sentences; empty for plausible data."""
     return [rule.said(finding.facts) for rule in rules for finding in rule.find(found)]
 
 

@@ -74,7 +74,7 @@ SHIFTS = (
 def explanation(
     points: Points, errors: Mapping[str, Prediction], simulation: Simulation, signs: Mapping[str, float]
 ) -> str:
-    """What explains most of the errors of a sweep, in words; empty if nothing does.
+    """What explains most of the errors of a sweep, in words; empty if no known cause does.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Every sweep against all others: which ones are off, and what a fit without them says."""
+"""Every sweep against all others: sweeps that are off, and the fits without them."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ from mffit.suspicion.undoing import Away, explaining
 
 
 class Campaign(NamedTuple):
-    """What all sweeps are judged by."""
+    """What the judgement of all sweeps needs."""
 
     points: Points  #: raw points (n,)
     stated: tuple[np.ndarray, np.ndarray]
@@ -61,7 +61,7 @@ class View(NamedTuple):
 
     @property
     def facts(self) -> dict[str, Any]:
-        """What the sentences say about it."""
+        """Facts for the sentences."""
         return {
             "channel": self.error.channel,
             "unit": CHANNELS[self.error.channel].unit,
@@ -82,7 +82,7 @@ class Doubt:
     rms: float  #: error of the prediction [N] or [Nm]
     ratio: float  #: in units of a sound sweep's error
     share: float  #: of the channel's usual size at this load
-    looks: str  #: what would explain it, empty if nothing known does
+    looks: str  #: what would explain it; empty if no known cause does
 
 
 class Evidence(NamedTuple):
@@ -153,11 +153,11 @@ def doubtful_sweep(seen: Evidence) -> Iterator[Doubt]:
     doubtful = [
         v for v in seen.views if v.error.ratio > seen.usual and v.error.vague < constants.DOUBTFUL_SHARE
     ]
-    told: list[set[int]] = []
+    seen_rows: list[set[int]] = []
     for v in sorted(doubtful, key=lambda v: (not v.group.whole, -v.error.ratio)):
-        if any(set(v.group.index) <= rows for rows in told):
+        if any(set(v.group.index) <= rows for rows in seen_rows):
             continue
-        told.append(set(v.group.index))
+        seen_rows.append(set(v.group.index))
         part, errors = seen.campaign.points.select(v.group.shown), predictions(seen.leverage, v.group)
         yield Doubt(
             sweep=v.group.name,

@@ -1,7 +1,7 @@
 """All suspicions, in the order in which they are applied: what each looks at, when, its limits, outcome and sentence.
 
-The functions named here find the cases; ``applying`` runs them. Nothing else in mffit judges whether readings are
-plausible.
+The functions named here find the cases, and ``applying`` runs them. Two kinds of checks are elsewhere: values outside the
+range of their column end the reading of a file (``sweeps``), and the fit decides the weight of single readings.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from mffit.suspicion.slopes import Signatures
 
 
 def _where(holds: Callable[[Signatures], bool], column: str, **facts: Callable[[Signatures], float]):
-    """Finds the case in which something holds for the signatures."""
+    """A function that finds one case if something holds for the signatures."""
 
     def find(found: Signatures) -> Iterator[Finding]:
         if holds(found):
@@ -39,7 +39,7 @@ SAMPLES = tuple(
     )
     for fault in FAULTS
 )
-"""Applied by ``points.reduction``, as the samples are left out of the means that it makes."""
+"""Applied by ``points.reduction``, which leaves these samples out of its means."""
 
 NO_TYRE = (
     Rule(
@@ -117,7 +117,7 @@ NO_TYRE = (
         find=_where(lambda found: found.outward < -constants.WEAK_TURN_SLIP_FORCE, "Fy_N"),
     ),
 )
-"""What no tyre does. ``declaration-contradicted`` makes one sentence of these."""
+"""What no tyre does; ``declaration-contradicted`` joins these to one sentence."""
 SIGNS = tuple(rule for rule in NO_TYRE if rule.subject is Subject.SIGN)
 
 RULES: tuple[Rule, ...] = (
@@ -278,7 +278,7 @@ RULES: tuple[Rule, ...] = (
         outcome=Outcome.WARNED,
         sentence=(
             "{sweep} leans {degrees:.1f} deg to the other side than all {others} other sweeps with camber: if that was not "
-            "meant, correct the sign of its gamma_deg"
+            "intended, correct the sign of its gamma_deg"
         ),
         find=all_files.lone_lean,
     ),

@@ -1,7 +1,4 @@
-"""What one file holds that no tyre and no connected channel gives: mostly numbers in another unit.
-
-Units can make every number plausible by itself and all of them together impossible.
-"""
+"""Checks of one file: mostly for numbers in another unit, which can be plausible one by one and impossible together."""
 
 from __future__ import annotations
 

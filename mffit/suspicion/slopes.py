@@ -52,7 +52,7 @@ def pooled(slopes: Sequence[Slope]) -> list[Slope]:
 
 
 class Signatures(NamedTuple):
-    """What the data look like under some declaration, per unit of load."""
+    """Slopes and forces per unit of load, under some declaration."""
 
     cornering: Slope  #: dFy/dalpha forwards [1/rad]; negative
     camber: Slope  #: dFy/dgamma [1/rad]; negative

@@ -36,7 +36,7 @@ def test_a_mistake_that_spoils_another_channel_explains_nothing():
     assert found(after, {"Fy": 100.0}) is None
 
 
-def test_an_error_as_large_as_the_readings_is_no_explanation():
+def test_a_mistake_that_leaves_an_error_as_large_as_the_readings_explains_nothing():
     assert found({REVERSED: {"Fy": Away(1.0, 0.01, matched=False)}}, {"Fy": 100.0}) is None
 
 
