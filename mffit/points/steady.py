@@ -235,11 +235,6 @@ def moves(settings: Settings, scale: Scale | None = None) -> Moves:
     return Moves(**masks)
 
 
-def moving(settings: Settings) -> np.ndarray:
-    """Mask (n,) of the samples near a change of a setting."""
-    return np.logical_or.reduce(moves(settings))
-
-
 def _noise(values: np.ndarray) -> float:
     """Standard deviation of a setting's noise, from the median step between samples."""
     return robust(np.diff(values)) / math.sqrt(2.0) if len(values) > 1 else 0.0

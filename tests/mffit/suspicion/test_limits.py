@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 from mffit.points import Points, make_points
-from mffit.suspicion import RULES
+from mffit.suspicion import RULES, signatures
+from mffit.suspicion.slopes import Slope, slope
 
 CONFIG = SimpleNamespace(
     tyre=SimpleNamespace(nominal_pressure=250.0, unloaded_radius=0.3),
@@ -74,6 +75,44 @@ def test_a_sound_file_is_not_suspected(rule):
     assert found(rule, SOUND) == 0
 
 
+def test_a_slope_is_significant_from_four_standard_errors_on():
+    assert Slope(value=4.02, error=1.0, freedom=10**6, scatter=1.0).sign == 1
+    assert Slope(value=-4.02, error=1.0, freedom=10**6, scatter=1.0).sign == -1
+    assert Slope(value=4.0, error=1.0, freedom=10**6, scatter=1.0).sign == 0
+
+
+def test_a_slope_needs_four_points_and_a_range_of_angles():
+    everything = np.ones(4, dtype=bool)
+    fine, finer = (tyre(alpha=np.radians([0.0, 0.007, 0.014, span])) for span in (0.021, 0.019))
+    assert np.isfinite(slope(fine, fine.Fy, "alpha", everything).value)
+    assert np.isnan(slope(finer, finer.Fy, "alpha", everything).value)
+    assert np.isnan(slope(fine, fine.Fy, "alpha", everything & (fine.alpha > 0.0)).value)
+
+
+@pytest.mark.parametrize(
+    ("name", "angle", "limit"),
+    [
+        ("cornering", "alpha", 4.0),
+        ("cornering", "gamma", 5.0),
+        ("camber", "gamma", 25.0),
+        ("camber", "alpha", 1.5),
+        ("aligning", "alpha", 3.0),
+        ("aligning", "gamma", 5.0),
+    ],
+)
+def test_slopes_are_read_from_small_angles_only(name, angle, limit):
+    """One more point adds a degree of freedom if it is within the limit."""
+    alpha, gamma = np.tile(np.radians([-1.0, 0.0, 1.0]), 3), np.repeat(np.radians([-1.0, 0.0, 1.0]), 3)
+
+    def freedom(degrees: float) -> int:
+        one = {"alpha": 0.0, "gamma": 0.0} | {angle: np.radians(degrees)}
+        points = tyre(np.append(alpha, one["alpha"]), np.append(gamma, one["gamma"]))
+        return getattr(signatures(points), name).freedom
+
+    plain = getattr(signatures(tyre(alpha, gamma)), name).freedom
+    assert (freedom(limit + 0.05), freedom(limit - 0.05)) == (plain, plain + 1)
+
+
 def sweeps(*parts: Points) -> Points:
     """Several sweeps, a file each."""
     number = np.repeat(np.arange(len(parts)), [len(part) for part in parts])
@@ -112,10 +151,13 @@ def test_without_a_path_there_is_no_turn_slip_force_to_be_weak():
 
 @pytest.mark.parametrize(("lever", "cases"), [(0.16, 1), (-0.16, 1), (0.14, 0)])
 def test_moments_follow_the_force_with_half_the_radius_only_about_another_point(lever, cases):
-    twice = tyre(alpha=np.r_[ALPHA, ALPHA])
-    assert found("moments-about-another-point", twice.replace(Mx=lever * twice.Fy)) == cases
-    few = twice.select(np.arange(9))
-    assert found("moments-about-another-point", few.replace(Mx=lever * few.Fy)) == 0
+    ten = tyre(alpha=np.r_[ALPHA, ALPHA[:3]], gamma=np.radians(1.9))
+    assert found("moments-about-another-point", ten.replace(Mx=lever * ten.Fy)) == cases
+    nine = ten.select(np.arange(9))
+    leaning = ten.replace(gamma=np.radians(2.1))
+    weak = ten.replace(Fy=0.24 * ten.Fy)
+    for other in (nine, leaning, weak):
+        assert found("moments-about-another-point", other.replace(Mx=lever * other.Fy)) == 0
 
 
 def test_a_disc_needs_both_signs_and_a_zero_within_three_tenths_of_a_degree():
