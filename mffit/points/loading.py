@@ -62,6 +62,10 @@ def read(config: Config, *, continuous: bool = False, may_be_empty: bool = False
     ------
     InputError
         A file cannot be read, or no point is found.
+
+    Notes
+    -----
+    Whether the points are plausible is judged by :func:`mffit.suspicion.before_the_fit`.
     """
     with as_declared(config):
         found = files.load(config)
@@ -116,7 +120,7 @@ def settled_sweeps(points: Points, lag: tuple[float, float]) -> Points:
     if np.isfinite(value) and abs(value) > constants.PROVEN_LAG * u:
         for k in np.unique(points.sweep[points.continuous]):
             rows = np.flatnonzero(points.continuous & (points.sweep == k))
-            if len(rows) < 3:
+            if len(rows) < 3:  # too few for a gradient
                 continue
             rolled = rolled_distance(points.time[rows], points.V[rows])
             taken[rows] = value * np.gradient(points.alpha[rows], rolled)
@@ -138,7 +142,7 @@ def _of_motion(reduced: Sequence[Reduced], lag: tuple[float, float]) -> list[str
     hysteresis = rms(np.array([one.hysteresis for one in known]))
     return [
         f"the side force of {len(known)} continuous sweeps lags {1e3 * value:.0f} +- {1e3 * u:.0f} mm of rolling (k = 1) behind "
-        f"the sideslip angle: {said}; what is left of the difference between the ways up and down is +-{hysteresis:.0f} N"
+        f"the sideslip angle: {said}; the remaining difference between the ways up and down is +-{hysteresis:.0f} N"
     ]
 
 
@@ -147,7 +151,7 @@ def load_table(path: str | Path, *, axes: str | None = None, path_centre: str | 
 
     Parameters
     ----------
-    path : file with the contract's headings
+    path : file with the headings of docs/files.md
     axes : "iso", "sae" or "adapted-sae"
     path_centre : "left" or "right"; the radius is unknown, so phi_t is -1 or 1 and only its sign has a meaning
 
@@ -178,6 +182,7 @@ def _given(name: str, value: str | None, choice: tuple[str, ...], path: str | Pa
 
 
 def _completed(sweep: files.Sweep) -> files.Sweep:
+    """The sweep with a pressure and a speed."""
     filled = {
         name: np.where(np.isfinite(getattr(sweep, name)), getattr(sweep, name), value)
         for name, value in STAND_IN.items()
@@ -186,6 +191,7 @@ def _completed(sweep: files.Sweep) -> files.Sweep:
 
 
 def _moving(points: Points) -> list[str]:
+    """Sentences about files that keep moving."""
     names = [points.files[index] for index in np.unique(points.file[points.continuous])]
     return [f"{name}: keeps moving and gives no steady point; only mffit diagnose uses it" for name in names]
 

@@ -54,7 +54,7 @@ class Points(Brief):
     line: np.ndarray  #: line in that file, counted from 1
     sweep_names: tuple[str, ...]
     files: tuple[str, ...]
-    table: pd.DataFrame  #: input columns as reported: contract names and units, rig's axes; a row per point
+    table: pd.DataFrame  #: input columns as in docs/files.md, rig's axes; a row per point
 
     def __len__(self) -> int:
         return len(self.alpha)

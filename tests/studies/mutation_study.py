@@ -43,6 +43,11 @@ TESTS: dict[str, tuple[str, ...]] = {
     "mffit/measured": (
         "tests/mffit/measured", "tests/test_paper_tables.py", f"{FIT}/test_faulty_rig.py", f"{FIT}/test_recovery.py",
     ),
+    "mffit/points": ("tests/mffit/points", "tests/mffit/suspicion/test_declarations.py"),
+    "mffit/suspicion": (
+        *(f"tests/mffit/suspicion/test_{name}.py" for name in ("limits", "undoing", "prediction", "distrust", "broken_units")),
+        "tests/mffit/suspicion", f"{DIAGNOSIS}/test_corrected_files.py",
+    ),
     "mffit/fit": (
         *(f"{FIT}/test_{name}.py" for name in (
             "constraints", "coverage", "weights", "estimates", "rig_numbers", "before_the_fit", "problem", "shapes", "roads",
