@@ -17,6 +17,7 @@ CONFIG = SimpleNamespace(
     path=None,
     line_of=lambda key: None,
 )
+DEG = np.radians(1.0)
 ALPHA = np.radians([-6.0, -3.0, -1.0, 0.0, 1.0, 3.0, 6.0])
 
 
@@ -53,6 +54,8 @@ SINGLE_FILES = [
     ("dead-channel", tyre(alpha=ALPHA[:4], Mz=3.7), tyre(alpha=ALPHA[:3], Mz=3.7)),
     ("force-in-kilonewtons", tyre(Fy=28.0 * np.sign(ALPHA)), tyre(Fy=32.0 * np.sign(ALPHA))),
     ("force-in-kilonewtons", tyre(alpha=ALPHA[:3], Fy=28.0).select([0, 1, 0]), tyre(alpha=ALPHA[:3], Fy=28.0)),
+    ("force-in-kilonewtons", tyre(alpha=[DEG * 2.1] * 3, Fy=28.0), tyre(alpha=[DEG * 1.9] * 3, Fy=28.0)),
+    ("force-in-kilonewtons", tyre(0.0, [DEG * 5.1] * 3, Fy=28.0), tyre(0.0, [DEG * 4.9] * 3, Fy=28.0)),
     ("lone-load", tyre(Fz=changed(LOADS, [2], 7510.0), Fy=FORCE), tyre(Fz=changed(LOADS, [2], 7490.0), Fy=FORCE)),
     ("lone-load", tyre(alpha=ALPHA[:4], Fz=[1e3, 1e3, 1e3, 6e3]), tyre(alpha=ALPHA[:3], Fz=[1e3, 1e3, 6e3])),
     ("wild-force", tyre(Fy=changed(FORCE, [1, 2], 6010.0)), tyre(Fy=changed(FORCE, [1, 2], 5990.0))),
@@ -126,6 +129,8 @@ def sweeps(*parts: Points) -> Points:
 
 def test_four_equal_rows_in_any_order_are_a_copy_and_three_are_not():
     assert found("copied-sweep", sweeps(SOUND, SOUND.select([3, 1, 0, 2, 6, 5, 4]))) == 1
+    four = SOUND.select(np.arange(4))
+    assert found("copied-sweep", sweeps(four, four)) == 1
     assert found("copied-sweep", sweeps(FEW, FEW)) == 0
     assert found("copied-sweep", sweeps(SOUND, SOUND.replace(Fy=changed(FORCE, [2], 300.0)))) == 0
 
