@@ -38,3 +38,9 @@ HELD_BY_LIMIT_SHARE = Real(
 )
 LEAST_SQUARES_FIRST_DAMPING = Real(1e-3, "-", "Damping at which the Levenberg-Marquardt search starts.")
 LEAST_SQUARES_LARGEST_DAMPING = Real(1e12, "-", "Damping at which the Levenberg-Marquardt search gives up.")
+ZERO_SIDESLIP = Real(
+    0.3, "deg", "Points within this sideslip as read count as straight: zeros and camber sweeps."
+)
+ZERO_CAMBER = Real(
+    0.5, "deg", "Points within this camber as read count as upright: zeros and sideslip sweeps."
+)

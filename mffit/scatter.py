@@ -1,4 +1,4 @@
-"""How far numbers scatter: the one root mean square, and the one measure that outliers do not move."""
+"""Scatter of numbers: root mean square, and a standard deviation that is robust against outliers."""
 
 from __future__ import annotations
 

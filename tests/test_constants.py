@@ -6,6 +6,7 @@ import ast
 import copy
 import importlib
 import pickle
+import re
 from collections import Counter
 from pathlib import Path
 
@@ -61,3 +62,15 @@ def test_only_degrees_have_radians():
     assert Real(180.0, "deg", "x").rad == pytest.approx(3.141592653589793)
     with pytest.raises(ValueError, match="not in degrees"):
         _ = Real(1.0, "m", "x").rad
+
+
+def test_every_constant_is_used():
+    """By its name, somewhere in the code outside its own definition."""
+    code = "\n".join(
+        path.read_text(encoding="utf-8")
+        for package in ("tir", "mffit")
+        for path in (ROOT / package).rglob("*.py")
+    )
+    words = Counter(re.findall(r"\b[A-Z][A-Z0-9_]+\w*\b", code))
+    unused = sorted(name for module in MODULES for name in constants(module) if words[name] < 2)
+    assert not unused, f"no code uses {', '.join(unused)}"

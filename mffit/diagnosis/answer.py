@@ -25,8 +25,8 @@ from mffit.diagnosis.ties import separation
 from mffit.diagnosis.validation import Validation, gap
 from mffit.diagnosis.where import Region, where
 from mffit.effects import Effect
-from mffit.fit.outliers import Outlier, outliers
 from mffit.points import Points
+from mffit.suspicion import Outlier, outliers
 from tir import Tyre
 from tir.parameters import BY_NAME
 

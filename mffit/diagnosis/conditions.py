@@ -41,7 +41,7 @@ def by_condition(points: Points) -> Points:
     return points.replace(sweep=sweep, sweep_names=tuple(names))
 
 
-def _held(values: np.ndarray, quantity: levels.Quantity) -> np.ndarray:
+def _held(values: np.ndarray, quantity: levels.LevelKind) -> np.ndarray:
     """Number (n,) of the level at which each value was held; all 0 if the quantity was swept or never changed."""
     level = levels.nearest_labels(values, quantity)
     many = len(values) < constants.FEWEST_POINTS_OF_A_CONDITION * (level.max() + 1)

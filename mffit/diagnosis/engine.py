@@ -15,7 +15,6 @@ from mffit.diagnosis.declared import declared_priors
 from mffit.diagnosis.explain import explain
 from mffit.diagnosis.inexact import Inexactness
 from mffit.diagnosis.inexact import declared as declared_inexactness
-from mffit.diagnosis.misread import Misread, misread
 from mffit.diagnosis.needs import possible
 from mffit.diagnosis.notes import Note, OneSweep
 from mffit.diagnosis.problem import DiagnosisProblem
@@ -27,6 +26,7 @@ from mffit.points import Points
 from mffit.progress import Progress, silent
 from mffit.rig import Simulation
 from mffit.rig_errors import Faults
+from mffit.suspicion import Misread, misread
 from tir import Tyre
 
 

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from mffit.diagnosis.misread import Misread
 from mffit.diagnosis.validation import Validation
 from mffit.effects import Effect
+from mffit.suspicion import Misread
 from tir import Quantity
 
 

@@ -18,10 +18,10 @@ from mffit.diagnosis.ties import Separation
 from mffit.diagnosis.validation import Gap, Validation
 from mffit.diagnosis.where import Region
 from mffit.effects import Effect
-from mffit.fit.outliers import Outlier
 from mffit.points import Points
 from mffit.rig import Simulation
 from mffit.rig_errors import Faults
+from mffit.suspicion import Outlier
 from tir import Tyre
 
 

@@ -121,7 +121,7 @@ def _cut(values: np.ndarray) -> list[tuple[Range, np.ndarray]]:
     finite = values[np.isfinite(values)]
     if len(finite) < 2 * fewest or np.ptp(finite) == 0.0:
         return []
-    width = levels.Quantity("share of the range", constants.REGION_LEVEL_WIDTH * float(np.ptp(finite)))
+    width = levels.LevelKind("share of the range", constants.REGION_LEVEL_WIDTH * float(np.ptp(finite)))
     level = levels.nearest_labels(values, width)
     number = int(level.max()) + 1
     if 1 < number <= most and not levels.spread(values, width):

@@ -8,7 +8,6 @@ from typing import assert_never
 
 from mffit.diagnosis import constants
 from mffit.diagnosis.bumps import Bump
-from mffit.diagnosis.misread import Misread
 from mffit.diagnosis.noise import Noise, Origin
 from mffit.diagnosis.notes import (
     DirectMethodRedone,
@@ -24,9 +23,9 @@ from mffit.diagnosis.result import Diagnosis, Found
 from mffit.diagnosis.ties import Run, Separation
 from mffit.diagnosis.validation import Gap, Validation
 from mffit.effects import NEEDS, Effect
-from mffit.fit.outliers import Outlier
 from mffit.quantities import CHANNELS, CONDITIONS
 from mffit.rounding import rounded
+from mffit.suspicion import Misread, Outlier, about
 from tir import Quantity
 
 RUNS = {
@@ -128,11 +127,7 @@ def note(remark: Note) -> str:
         case OneSweep():
             return "One sweep cannot separate causes: add sweeps at another load, camber or direction."
         case Misread():
-            return (
-                f"{remark.file}: {remark.sweep} misses the simulation by {100.0 * remark.before:.0f} % of the usual reading, far "
-                f"more than any other sweep. It looks like {remark.looks}; without this mistake {100.0 * remark.after:.2g} % "
-                f"remain. The sweep was left out. In column {remark.column}: {remark.remedy}."
-            )
+            return about(remark)
         case NotVisible(needs, effects):
             lack = " and ".join(NEEDS[need] for need in needs)
             return f"Not visible in these data, which lack {lack}: {', '.join(e.name for e in effects)}."

@@ -2,12 +2,10 @@
 
 from mffit.fit.agreement import Agreement
 from mffit.fit.coefficients import Coefficient
-from mffit.fit.doubts import Doubt
 from mffit.fit.ensemble import ensemble
 from mffit.fit.files import file_names
 from mffit.fit.fitting import fit
 from mffit.fit.freed import with_free_epsilon
-from mffit.fit.outliers import Outlier, marks
 from mffit.fit.posterior import Posterior
 from mffit.fit.result import FitResult
 from mffit.fit.stages import StageRecord
@@ -15,14 +13,11 @@ from mffit.fit.stages import StageRecord
 __all__ = [
     "Agreement",
     "Coefficient",
-    "Doubt",
     "FitResult",
-    "Outlier",
     "Posterior",
     "StageRecord",
     "ensemble",
     "file_names",
     "fit",
-    "marks",
     "with_free_epsilon",
 ]

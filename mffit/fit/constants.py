@@ -131,16 +131,7 @@ COARSE_GRID_STEPS = Count(25, "-", "Least-squares steps on the coarse grid at mo
 COARSE_GRID_TOLERANCE = Real(1e-3, "-", "Relative gain that ends the search on the coarse grid.")
 FINE_GRID_STEPS = Count(30, "-", "Least-squares steps on the fine grid at most.")
 
-# Warnings and comments
-TRUSTED_EXPLAINED_VARIANCE = Real(
-    0.5, "-", "Least share of a channel's variance that a trusted model explains."
-)
-TRUSTED_MISFIT = Real(2.0, "-", "Largest misfit over the stated noise of a trusted file.")
-MISFITTING_SWEEP_RATIO = Real(
-    1.5, "-", "A sweep is named if its misfit is this many times that of all points."
-)
-MISFITTING_SWEEPS_NAMED = Count(3, "-", "Sweeps that are named with a large misfit at most.")
-OUTLIERS_NAMED = Count(5, "-", "Outliers that the warning names at most.")
+# Comments
 COMMENT_LENGTH = Count(66, "-", "Characters of a comment that fit on a line of the property file.")
 
 # Rig errors

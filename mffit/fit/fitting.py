@@ -13,13 +13,10 @@ from mffit.config.declared import as_declared
 from mffit.fit import agreement
 from mffit.fit.coefficients import coefficient_records, of_file
 from mffit.fit.comments import file_comments
-from mffit.fit.doubts import Doubt
 from mffit.fit.files import make_files
-from mffit.fit.fit_warnings import distrust, warnings
+from mffit.fit.fit_warnings import warnings
 from mffit.fit.fitted import Fitted
-from mffit.fit.judgement import judge
 from mffit.fit.known import known_after_fit, known_before_fit
-from mffit.fit.outliers import outliers
 from mffit.fit.plan import FitPlan, fit_plan
 from mffit.fit.priors import of_fleet
 from mffit.fit.problem import FitProblem, fit_problem
@@ -32,6 +29,7 @@ from mffit.fit.wording import explanations
 from mffit.parts import Parts
 from mffit.points import Points
 from mffit.progress import Progress, silent
+from mffit.suspicion import Campaign, Doubt, FittedModel, Misfit, When, after_the_fit, distrust, outliers
 from tir import Tyre
 
 
@@ -78,12 +76,14 @@ def fit(
     files = files.annotated(file_comments(files, known.origin, coefficients))
     use = config.spin.exact if config.rig.on_disc else "normal"
 
-    distrusted = distrust(fitted, points, readings)
+    channels = agreement.with_points(readings, points)
+    r2 = {name: found.r2 for name, found in channels.items()}
+    distrusted = distrust(Misfit(points=points, model=readings, scale=fitted.scale, r2=r2))
     return FitResult(
         tyre=files.by_use["turn-slip" if config.rig.on_disc else "normal"].tyre,
         written=files.by_use[use].tyre,
         coefficients=of_file(files, use, coefficients),
-        channels=agreement.with_points(readings, points),
+        channels=channels,
         odd=agreement.with_odd_part(files.by_use["normal"].tyre.values, points, parts),
         simulation=fitted.simulation,
         rig=fitted.rig,
@@ -109,22 +109,35 @@ def _fitted_and_judged(
 ) -> tuple[Fitted, tuple[Doubt, ...]]:
     """The fit to all points, and the sweeps that contradict the others; one beyond plausibility ends the build."""
 
-    def judged(fitted: Fitted, *, only_known: bool = False) -> tuple[Doubt, ...]:
+    campaign = Campaign(
+        points=problem.points,
+        stated=_sigma(problem),
+        signs=axis_signs(config),
+        refit=lambda rows: _as_model(fit_staged(problem.select(rows), start, plan, silent, restarts=False)),
+    )
+
+    def judged(fitted: Fitted, when: When) -> tuple[Doubt, ...]:
         progress("predicting each sweep from the others")
         with as_declared(config):
-            return judge(
-                problem.points,
-                fitted,
-                _sigma(problem),
-                axis_signs(config),
-                lambda rows: fit_staged(problem.select(rows), start, plan, silent, restarts=False),
-                only_known=only_known,
-            )
+            return after_the_fit(campaign, _as_model(fitted), when)
 
     fitted = fit_staged(
-        problem, start, plan, progress, before_restarts=lambda first: judged(first, only_known=True)
+        problem, start, plan, progress, before_restarts=lambda first: judged(first, When.FIRST)
     )
-    return fitted, judged(fitted)
+    return fitted, judged(fitted, When.AFTER)
+
+
+def _as_model(fitted: Fitted) -> FittedModel:
+    """The fit as the rules of suspicion use it."""
+    return FittedModel(
+        points=fitted.problem.points,
+        simulation=fitted.simulation,
+        weights=fitted.problem.sigma,
+        numbers=fitted.numbers,
+        names=fitted.posterior.names,
+        covariance=fitted.posterior.covariance,
+        scale=fitted.scale,
+    )
 
 
 def _sigma(problem: FitProblem) -> tuple[np.ndarray, np.ndarray]:

@@ -11,14 +11,13 @@ from mffit.brief import Brief
 from mffit.fit.agreement import Agreement
 from mffit.fit.coefficients import Coefficient
 from mffit.fit.coverage import StageCoverage
-from mffit.fit.doubts import Doubt
 from mffit.fit.files import Files
 from mffit.fit.fitted import Fitted
-from mffit.fit.outliers import Outlier
 from mffit.fit.posterior import Posterior
 from mffit.fit.stages import StageRecord
 from mffit.quantities import CHANNELS
 from mffit.rig import Simulation
+from mffit.suspicion import Doubt, Outlier
 from tir import Tyre
 
 

@@ -9,7 +9,7 @@ import numpy as np
 from uncertainties import UFloat
 
 from mffit.config import Config, path_curvature
-from mffit.constants import USUAL_CORNERING_STIFFNESS, USUAL_U_FORCE, USUAL_U_MOMENT
+from mffit.constants import USUAL_CORNERING_STIFFNESS, USUAL_U_FORCE, USUAL_U_MOMENT, ZERO_CAMBER
 from mffit.errors import InputError
 from mffit.measured import camber_reduction as method
 from mffit.measured import constants
@@ -80,7 +80,7 @@ def _at_zero(
     reach = constants.PARABOLA_SIDESLIP.rad
     near = group.index[
         (np.abs(points.alpha[group.index]) < reach)
-        & (np.abs(points.gamma[group.index]) < constants.ZERO_CAMBER.rad)
+        & (np.abs(points.gamma[group.index]) < ZERO_CAMBER.rad)
         & (points.direction[group.index] == direction)
         & np.isfinite(y[group.index])
     ]

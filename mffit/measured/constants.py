@@ -18,13 +18,7 @@ LARGEST_DIFFERENCE = Real(
 AXIS_RESOLUTION = Real(0.01, "deg", "Smallest angle by which a sideslip axis can usually be turned.")
 SAME_ZERO = Real(0.1, "N", "Zeros that differ by less are shown as one number.")
 
-ZERO_CAMBER = Real(
-    0.5, "deg", "Points within this camber count as upright where zeros and sideslip sweeps are read."
-)
-ZERO_SIDESLIP = Real(
-    0.3, "deg", "Points within this sideslip count as straight where zeros and camber sweeps are read."
-)
-SAME_SIDESLIP = Real(0.05, "deg", "Zeros whose sideslip differs by less are averaged.")
+AVERAGED_ZEROS = Real(0.05, "deg", "Zeros whose sideslip differs by less are averaged.")
 SMALLEST_SIDESLIP = Real(0.15, "deg", "Points of a sideslip sweep below this angle count as zeros.")
 PARABOLA_SIDESLIP = Real(1.2, "deg", "Within this sideslip a parabola describes the side force to a newton.")
 POINTS_FOR_PARABOLA = Count(

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from mffit.constants import ZERO_CAMBER, ZERO_SIDESLIP
 from mffit.measured import constants
 from mffit.points import Points, levels, main_pressure
 
@@ -22,7 +23,7 @@ def load_groups(points: Points) -> tuple[LoadGroup, ...]:
     """Group the steady points at the programme's main pressure by load, rising; points between loads are left out."""
     used = np.flatnonzero(main_pressure(points) & (points.mount > 0) & ~points.continuous)
     level = levels.labels(points.Fz[used], levels.LOAD)
-    parts = [used[level == k] for k in range(level.max(initial=levels.NONE) + 1)]
+    parts = [used[level == k] for k in range(level.max(initial=levels.NO_LEVEL) + 1)]
     return tuple(LoadGroup(float(np.mean(points.Fz[part])), part) for part in parts)
 
 
@@ -30,13 +31,13 @@ def zeros(points: Points, group: LoadGroup, direction: int) -> np.ndarray:
     """Indices of the group's points at zero sideslip and camber, rolling in ``direction`` (+1, -1)."""
     i = group.index
     near = (
-        (np.abs(points.alpha[i]) < constants.ZERO_SIDESLIP.rad)
-        & (np.abs(points.gamma[i]) < constants.ZERO_CAMBER.rad)
+        (np.abs(points.alpha[i]) < ZERO_SIDESLIP.rad)
+        & (np.abs(points.gamma[i]) < ZERO_CAMBER.rad)
         & (points.direction[i] == direction)
     )
     i = i[near]
     return (
-        i[np.abs(points.alpha[i]) < np.min(np.abs(points.alpha[i])) + constants.SAME_SIDESLIP.rad]
+        i[np.abs(points.alpha[i]) < np.min(np.abs(points.alpha[i])) + constants.AVERAGED_ZEROS.rad]
         if len(i)
         else i
     )

@@ -9,7 +9,7 @@ import numpy as np
 from uncertainties import UFloat
 
 from mffit.config import Config
-from mffit.constants import USUAL_U_FORCE
+from mffit.constants import USUAL_U_FORCE, ZERO_CAMBER, ZERO_SIDESLIP
 from mffit.measured import camber_reduction as method
 from mffit.measured import constants
 from mffit.measured.groups import LoadGroup
@@ -66,13 +66,9 @@ def sweep(points: Points, odd: np.ndarray, group: LoadGroup, angle: str, config:
     i = group.index if config.rig.radius is None else on_radius(points, group.index, config.rig.radius)
     i = i[(points.direction[i] > 0) & np.isfinite(odd[i])]
     if angle == "gamma":
-        return i[
-            (np.abs(points.alpha[i]) < constants.ZERO_SIDESLIP.rad)
-            & (points.gamma[i] > constants.ZERO_CAMBER.rad)
-        ]
+        return i[(np.abs(points.alpha[i]) < ZERO_SIDESLIP.rad) & (points.gamma[i] > ZERO_CAMBER.rad)]
     return i[
-        (np.abs(points.gamma[i]) < constants.ZERO_CAMBER.rad)
-        & (points.alpha[i] > constants.SMALLEST_SIDESLIP.rad)
+        (np.abs(points.gamma[i]) < ZERO_CAMBER.rad) & (points.alpha[i] > constants.SMALLEST_SIDESLIP.rad)
     ]
 
 

@@ -1,4 +1,4 @@
-"""Mirror symmetry: which point is the reflection of which, and the odd and even part of what was measured."""
+"""Mirror symmetry: pairs of mirrored points, and the odd and even part of the readings."""
 
 from mffit.parts.mirror import Mirrors, Tolerance, find_mirrors
 from mffit.parts.split import Parts, split

@@ -1,4 +1,4 @@
-"""Which point is the mirror image (-alpha, -gamma) of which, under the same condition."""
+"""Pairs of points at (alpha, gamma) and (-alpha, -gamma) under the same condition."""
 
 from __future__ import annotations
 
@@ -8,22 +8,23 @@ from typing import NamedTuple
 import numpy as np
 from scipy.interpolate import PchipInterpolator
 
+from mffit.parts import constants
 from mffit.points import Points
 
 
 @dataclass(frozen=True, slots=True)
 class Tolerance:
-    """How far set-points may differ and still count as the same."""
+    """How far set-points may differ and still count as one."""
 
-    alpha_deg: float = 0.05
-    gamma_deg: float = 0.25
-    load: float = 0.04  #: relative
-    pressure_kPa: float = 6.0
-    speed: float = 0.1  #: relative
+    alpha_deg: float = constants.SAME_SIDESLIP
+    gamma_deg: float = constants.SAME_CAMBER
+    load: float = constants.SAME_LOAD  #: relative
+    pressure_kPa: float = constants.SAME_PRESSURE
+    speed: float = constants.SAME_SPEED  #: relative
 
 
 class Mirrors(NamedTuple):
-    """For every point (n,): its mirror's readings, and how they were found."""
+    """Readings of the mirror of every point (n,), and how they were found."""
 
     partner: np.ndarray  #: index of the mirror; -1 if interpolated or unpaired
     Fy: np.ndarray  #: side force of the mirror [N]; NaN if unpaired
@@ -46,10 +47,10 @@ def same_condition(points: Points, i: int, tolerance: Tolerance) -> np.ndarray:
 
 
 def find_mirrors(points: Points, tolerance: Tolerance = Tolerance()) -> Mirrors:
-    """Find the mirror of every point: a measured one within tolerance, else interpolated along the mirrored sweep.
+    """The mirror of every point: a measured one within tolerance, otherwise one interpolated along the mirrored sweep.
 
-    A mirror in the same sweep is preferred to one in another. Interpolation runs over alpha at the mirrored camber, or
-    over gamma at the mirrored sideslip, never beyond the ends and never across conditions.
+    A mirror in the same sweep is preferred. Readings are interpolated over alpha at the mirrored camber, or over gamma at
+    the mirrored sideslip, within one condition and without extrapolation.
     """
     n = len(points)
     partner = np.full(n, -1)
@@ -61,7 +62,7 @@ def find_mirrors(points: Points, tolerance: Tolerance = Tolerance()) -> Mirrors:
         d_alpha, d_gamma = np.abs(alpha + alpha[i]), np.abs(gamma + gamma[i])
         close = same & (d_alpha < tolerance.alpha_deg) & (d_gamma < tolerance.gamma_deg)
         if np.any(close):
-            distance = d_alpha + d_gamma + 10.0 * (points.sweep != points.sweep[i])
+            distance = d_alpha + d_gamma + constants.OTHER_SWEEP_DISTANCE * (points.sweep != points.sweep[i])
             j = int(np.argmin(np.where(close, distance, np.inf)))
             partner[i], paired[i] = j, "exact"
             for name, found in values.items():
@@ -80,16 +81,16 @@ def find_mirrors(points: Points, tolerance: Tolerance = Tolerance()) -> Mirrors:
 
 
 def _interpolated(points: Points, line: np.ndarray, x: np.ndarray, at: float) -> dict[str, float] | None:
-    """Readings at ``at`` along the points of ``line``; None outside them or with fewer than three."""
+    """Readings at ``at``, interpolated along the points of ``line``; None outside their range or with too few of them."""
     index = np.flatnonzero(line)
-    levels = np.unique(np.round(x[index], 3))
-    if len(levels) < 3 or not levels[0] <= at <= levels[-1]:
+    angles = np.unique(np.round(x[index], 3))
+    if len(angles) < constants.FEWEST_ANGLES_TO_INTERPOLATE or not angles[0] <= at <= angles[-1]:
         return None
-    groups = [index[np.abs(x[index] - level) < 1e-3] for level in levels]
+    groups = [index[np.abs(x[index] - angle) < constants.REPEATED_ANGLE] for angle in angles]
     out = {}
     for name in ("Fy", "Mz"):
         means = np.array([np.mean(getattr(points, name)[g]) for g in groups])
-        out[name] = float(PchipInterpolator(levels, means)(at)) if np.all(np.isfinite(means)) else np.nan
-    nearest = groups[int(np.argmin(np.abs(levels - at)))][0]
+        out[name] = float(PchipInterpolator(angles, means)(at)) if np.all(np.isfinite(means)) else np.nan
+    nearest = groups[int(np.argmin(np.abs(angles - at)))][0]
     out["u_Fy"], out["u_Mz"] = float(points.u_Fy[nearest]), float(points.u_Mz[nearest])
     return out

@@ -1,4 +1,4 @@
-"""Symmetric decomposition (4), (25): what turns round with the angles, and what does not."""
+"""Symmetric decomposition (4), (25): the part of the readings that changes sign with the angles, and the rest."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from mffit.brief import Brief
+from mffit.parts import constants
 from mffit.parts.mirror import Tolerance, find_mirrors
 from mffit.points import Points
 
@@ -24,18 +25,29 @@ class Parts(Brief):
     paired: np.ndarray  #: "exact" | "interpolated" | "unpaired"
     partner: np.ndarray  #: index of the mirror, -1 if interpolated or unpaired
     unpaired: tuple[str, ...]  #: one sentence per sweep with unpaired points
-    alpha_odd: np.ndarray  #: sideslip to which the odd part belongs [rad]; the reading, unless play is known
+    alpha_odd: np.ndarray  #: sideslip of the odd part [rad]: the reading, corrected for known play
 
 
 def split(points: Points, tolerance: Tolerance = Tolerance()) -> Parts:  # noqa: B008 - frozen
     """Decompose Fy and Mz of every point by mirror symmetry.
 
-    On a straight path nothing has to be removed: all points stay unpaired, without remark.
+    On a straight path there is no turn slip to remove: all points stay unpaired, without a remark.
     """
     n = len(points)
     if not np.any(points.phi_t):
         nan = np.full(n, np.nan)
-        return Parts(nan, nan, nan, nan, nan, nan, np.full(n, "unpaired"), np.full(n, -1), (), points.alpha)
+        return Parts(
+            Fy_odd=nan,
+            Fy_even=nan,
+            Mz_odd=nan,
+            Mz_even=nan,
+            u_Fy_odd=nan,
+            u_Mz_odd=nan,
+            paired=np.full(n, "unpaired"),
+            partner=np.full(n, -1),
+            unpaired=(),
+            alpha_odd=points.alpha,
+        )
     mirrors = find_mirrors(points, tolerance)
     Fy_odd, Mz_odd = (points.Fy - mirrors.Fy) / 2.0, (points.Mz - mirrors.Mz) / 2.0
     return Parts(
@@ -53,13 +65,14 @@ def split(points: Points, tolerance: Tolerance = Tolerance()) -> Parts:  # noqa:
 
 
 def _sentences(points: Points, unpaired: np.ndarray) -> tuple[str, ...]:
-    out = []
+    """A sentence per sweep about the points of the mask (n,)."""
+    out, most = [], constants.UNPAIRED_IN_SENTENCE
     for k in np.unique(points.sweep[unpaired]):
         rows = np.flatnonzero(unpaired & (points.sweep == k))
         shown = ", ".join(
-            f"({np.degrees(points.alpha[i]):.2g}, {np.degrees(points.gamma[i]):.2g})" for i in rows[:4]
+            f"({np.degrees(points.alpha[i]):.2g}, {np.degrees(points.gamma[i]):.2g})" for i in rows[:most]
         )
-        more = f" and {len(rows) - 4} more" if len(rows) > 4 else ""
+        more = f" and {len(rows) - most} more" if len(rows) > most else ""
         out.append(
             f"{points.sweep_names[k]}: {len(rows)} points have no mirror (-alpha, -gamma) and count only as raw points: "
             f"(alpha, gamma) = {shown}{more} deg"

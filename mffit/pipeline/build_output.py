@@ -10,7 +10,6 @@ import pandas as pd
 import tomli_w
 
 from mffit import config as configuration
-from mffit import fit as fitting
 from mffit.config import Config
 from mffit.output import output_folder
 from mffit.pipeline.inputs import inputs_of
@@ -19,6 +18,7 @@ from mffit.points import Points
 from mffit.points.stretch import StretchNote
 from mffit.recordings.stretch_table import stretch_table
 from mffit.results import BuildResult, as_json
+from mffit.suspicion import marks
 
 USES = ("turn-slip", "normal")
 """Uses of a property file that are part of its name where it is not the plain one."""
@@ -58,7 +58,7 @@ def points_table(result: BuildResult) -> pd.DataFrame:
     table["Mz_odd_Nm"], table["Mz_even_Nm"] = parts.Mz_odd * signs["Mz"], parts.Mz_even * signs["Mz"]
     table["Fy_model_N"], table["Mz_model_Nm"] = fit.Fy_model * signs["Fy"], fit.Mz_model * signs["Mz"]
     table["paired"] = parts.paired
-    table["outlier"] = fitting.marks(fit.outliers, len(table))
+    table["outlier"] = marks(fit.outliers, len(table))
     table["doubtful"] = np.isin(np.arange(len(table)), [row for doubt in fit.doubts for row in doubt.index])
     for name, values in origin(result.points).items():
         if name not in table:  # a column of the input with this heading takes precedence

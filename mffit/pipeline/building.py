@@ -12,14 +12,13 @@ from threadpoolctl import threadpool_limits
 
 from mffit import config as configuration
 from mffit import fit as fitting
-from mffit import points as ingestion
 from mffit.config import Config
 from mffit.fit import FitResult
 from mffit.measured import Measured
 from mffit.output import refuse_early
 from mffit.parts import Parts
 from mffit.pipeline.build_output import WRITTEN, write_build
-from mffit.pipeline.inputs import inputs_of, read_base
+from mffit.pipeline.inputs import inputs_of, read_base, read_points
 from mffit.pipeline.measuring import measure
 from mffit.pipeline.provenance import Annotate, annotator
 from mffit.pipeline.refining import finite_spin_bias, undistorted, without_outliers
@@ -58,7 +57,7 @@ def build(
     began = time.perf_counter()
     config = configuration.load(config)
     progress("reading sweeps")
-    reading = ingestion.read(config)
+    reading = read_points(config)
     base = read_base(config)
     progress("measuring the camber reduction factor")
     parts, measured = measure(config, reading.points, base)

@@ -11,14 +11,13 @@ from typing import Any
 
 import tir
 from mffit import config as configuration
-from mffit import points as ingestion
 from mffit.comparison import Comparison, Subject, against_points, between
 from mffit.config import Config, declared_faults
 from mffit.errors import InputError
 from mffit.fleet.specimen import RESOLVED
 from mffit.measured import LoadResult
 from mffit.output import output_folder
-from mffit.pipeline.inputs import inputs_of, read_base
+from mffit.pipeline.inputs import inputs_of, read_base, read_points
 from mffit.pipeline.measuring import measure, without_play
 from mffit.pipeline.provenance import posterior_of, use_of
 from mffit.points import Points
@@ -152,7 +151,7 @@ def _shortest_names(first: Path, second: Path) -> tuple[str, str]:
 
 def _with_data(subject: Subject, config: Config) -> Comparison:
     """The file against the sweeps, simulated with the declared rig and the settings of [model]."""
-    points, _ = ingestion.load(config)
+    points = read_points(config).points
     base = read_base(config)
     turn_slip = config.model.turn_slip and config.rig.on_disc
     faults = declared_faults(config.rig)

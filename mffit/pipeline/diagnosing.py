@@ -11,7 +11,6 @@ from threadpoolctl import threadpool_limits
 
 import tir
 from mffit import config as configuration
-from mffit import points as ingestion
 from mffit.config import Config
 from mffit.diagnosis import Diagnosis, corrected_points
 from mffit.diagnosis import diagnose as find_effects
@@ -20,7 +19,7 @@ from mffit.effects import CATALOG, Effect
 from mffit.output import output_folder, refuse_early
 from mffit.pipeline.building import build
 from mffit.pipeline.correcting import CORRECTED_POINTS, CORRECTED_TOML, write_corrected
-from mffit.pipeline.inputs import inputs_of, read_base
+from mffit.pipeline.inputs import inputs_of, read_base, read_points
 from mffit.pipeline.measuring import epsilon_gamma, without_play
 from mffit.pipeline.provenance import fitted_to, known_of_model, rig_of_build, use_of
 from mffit.points import Points
@@ -57,7 +56,7 @@ def diagnose(
     """
     config = configuration.load(config)
     progress("reading sweeps")
-    points, _ = ingestion.load(config, continuous=True)
+    points = read_points(config, continuous=True).points
     base = read_base(config)
     inputs = [*inputs_of(config), last_build(config)]
     if isinstance(model, str | Path):

@@ -5,11 +5,10 @@ from __future__ import annotations
 from pathlib import Path
 
 from mffit import config as configuration
-from mffit import points as ingestion
 from mffit.config import Config
 from mffit.export.tydex import tydex_texts
 from mffit.output import output_folder
-from mffit.pipeline.inputs import inputs_of
+from mffit.pipeline.inputs import inputs_of, read_points
 
 
 def write_tydex(config: Config | str | Path, out: str | Path) -> list[Path]:
@@ -31,7 +30,7 @@ def write_tydex(config: Config | str | Path, out: str | Path) -> list[Path]:
         The sweeps cannot be read, two have the same name, or the folder cannot be written to.
     """
     config, out = configuration.load(config), Path(out)
-    texts = tydex_texts(ingestion.read(config).points, config)
+    texts = tydex_texts(read_points(config).points, config)
     with output_folder(out, by="export", protected=inputs_of(config)) as folder:
         for name, text in texts.items():
             (folder / f"{name}.tdx").write_text(text, encoding="latin-1", errors="replace", newline="\r\n")

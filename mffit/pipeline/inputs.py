@@ -5,10 +5,25 @@ from __future__ import annotations
 from pathlib import Path
 
 import tir
+from mffit import points
 from mffit.config import Config
 from mffit.errors import InputError
 from mffit.output import digest
+from mffit.points.loading import Reading
+from mffit.suspicion import before_the_fit
 from tir import Tyre
+
+
+def read_points(config: Config, *, continuous: bool = False) -> Reading:
+    """The points of a configuration, refused or warned about if they are not plausible.
+
+    Parameters
+    ----------
+    config : the checked ``tyre.toml``
+    continuous : see :func:`mffit.points.read`
+    """
+    found = points.read(config, continuous=continuous)
+    return found._replace(warnings=(*found.warnings, *before_the_fit(found.points, config)))
 
 
 def read_base(config: Config) -> Tyre | None:

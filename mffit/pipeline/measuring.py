@@ -17,7 +17,7 @@ from mffit.errors import InputError
 from mffit.measured import Alignment, Measured
 from mffit.output import output_folder
 from mffit.parts import Parts
-from mffit.pipeline.inputs import inputs_of, read_base
+from mffit.pipeline.inputs import inputs_of, read_base, read_points
 from mffit.points import Points
 from mffit.results import as_json
 from tir import Tyre
@@ -26,7 +26,7 @@ from tir import Tyre
 def spin(config: Config | Mapping[str, Any] | str | Path, out: str | Path | None = None) -> Measured:
     """The alignment check and the direct method only; writes ``spin.json`` if ``out`` is given."""
     config = configuration.load(config)
-    points, warnings = ingestion.load(config)
+    points, warnings, _ = read_points(config)
     _, measured = measure(config, points, read_base(config))
     measured = replace(measured, warnings=(*warnings, *measured.warnings))
     if out is not None:
@@ -57,7 +57,7 @@ def align(
     source = Path(source)
     if source.suffix == ".toml":
         config = configuration.load(source)
-        points, _ = ingestion.load(config, check_physics=False)
+        points, _ = ingestion.load(config)
         found = direct.at_the_axis(config, points, decomposition.split(points))
         return direct.align(points, axes=config.rig.axes, measured=found, resolution_deg=resolution_deg)
     points = ingestion.load_table(source, axes=axes, path_centre=path_centre)

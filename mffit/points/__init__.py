@@ -1,15 +1,13 @@
-"""From rig sweeps to finished points: steady states with standard errors, tested against physics."""
+"""From rig sweeps to finished points: steady states with standard errors."""
 
 from mffit.points import levels
 from mffit.points.levels import main_path, main_pressure
 from mffit.points.loading import load, load_table, read
 from mffit.points.mean import mean_and_error
-from mffit.points.plausibility import check_physics
 from mffit.points.points import Points, concatenate, make_points
 
 __all__ = [
     "Points",
-    "check_physics",
     "concatenate",
     "levels",
     "load",

@@ -1,4 +1,4 @@
-"""Means of a recording over its steady stretches and along its sweeps, as points."""
+"""Points from means of a recording over its steady stretches and along its sweeps."""
 
 from __future__ import annotations
 
@@ -7,29 +7,29 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
+from mffit.points import constants
 from mffit.points.mean import mean_and_error
 from mffit.points.points import Points, make_points
 from mffit.points.stretch import Stretch
 from mffit.sweeps import Sweep
 
 CHANNELS = ("alpha", "gamma", "Fz", "p", "V", "Fy", "Mz", "Mx", "My", "T", "t", "u_Fy", "u_Mz", "iteration")
-CONTINUOUS_STEP = 0.1  # s, over which a continuous sweep is averaged
-CONTINUOUS_ANGLE = np.radians(0.5)
-"""Angle [rad] over which it is averaged at most."""
 
 
 def rows_as_points(sweep: Sweep, phi_t: float, rows: np.ndarray) -> Points:
-    """Rows (n,) of a sweep as they stand."""
+    """Some rows of a sweep as points."""
     return _points(sweep, phi_t, {}, sweep.table, rows)
 
 
 def over_plateaus(sweep: Sweep, phi_t: float, kept: list[Stretch]) -> Points:
-    """Means over the stretches; their standard errors where the file states none."""
+    """Means over the stretches, with their standard errors if the file states none."""
+    if not kept:
+        return _no_points(sweep, phi_t)
     parts = [slice(stretch.begin, stretch.end) for stretch in kept]
     means = {name: np.array([np.mean(getattr(sweep, name)[part]) for part in parts]) for name in CHANNELS}
     for channel, u in (("Fy", "u_Fy"), ("Mz", "u_Mz")):
         errors = np.array([mean_and_error(getattr(sweep, channel)[part])[1] for part in parts])
-        # A record without any scatter does not say how good it is.
+        # A record without scatter does not show how exact it is.
         means[u] = np.where(np.isfinite(means[u]), means[u], np.where(errors > 0.0, errors, np.nan))
     table = _averaged_table(sweep.table, parts)
     table["u_Fy_N"], table["u_Mz_Nm"] = means["u_Fy"], means["u_Mz"]
@@ -38,7 +38,7 @@ def over_plateaus(sweep: Sweep, phi_t: float, kept: list[Stretch]) -> Points:
 
 
 def _averaged_table(table: pd.DataFrame, parts: list[slice]) -> pd.DataFrame:
-    """Mean of every number and first of every text; without time, so that rows read as finished points."""
+    """Mean of every number and first of every text; without time, so that the rows are read as finished points."""
     averaged = {
         name: [
             column.iloc[part].mean() if pd.api.types.is_numeric_dtype(column) else column.iloc[part.start]
@@ -51,14 +51,16 @@ def _averaged_table(table: pd.DataFrame, parts: list[slice]) -> pd.DataFrame:
 
 
 def along_sweeps(
-    sweep: Sweep, phi_t: float, stretches: list[Stretch], labels: list[str], bad: np.ndarray
+    sweep: Sweep, phi_t: float, stretches: list[Stretch], labels: list[str], faulty: np.ndarray
 ) -> Points:
-    """Means over a tenth of a second, or half a degree, of sweeps; faulty samples left out."""
+    """Means over short blocks of sweeps, without faulty samples."""
+    if not stretches:
+        return _no_points(sweep, phi_t)
     whole, begins, numbers, count = [], [], [], 0
     for k, stretch in enumerate(stretches):
-        rows = np.flatnonzero(~bad[stretch.begin : stretch.end]) + stretch.begin
+        rows = np.flatnonzero(~faulty[stretch.begin : stretch.end]) + stretch.begin
         first, size = _blocks(sweep, rows)
-        enough = np.diff(np.r_[first, len(rows)]) >= 0.5 * size
+        enough = np.diff(np.r_[first, len(rows)]) >= constants.FILLED_BLOCK * size
         whole.append(rows)
         begins.append(np.column_stack([first + count, enough]))
         numbers.append(np.full(len(first), k))
@@ -68,7 +70,7 @@ def along_sweeps(
     counts = np.diff(np.r_[first, len(rows)])
 
     def mean(values: np.ndarray) -> np.ndarray:
-        if values.strides == (0,):  # not measured, or the same throughout
+        if values.strides == (0,):  # not measured, or one value for all samples
             return np.broadcast_to(values[:1], (int(enough.sum()),))
         return (np.add.reduceat(values[rows], first) / counts)[enough]
 
@@ -89,14 +91,20 @@ def along_sweeps(
 
 
 def _blocks(sweep: Sweep, rows: np.ndarray) -> tuple[np.ndarray, int]:
-    """First of the rows of every block to be averaged, and how many samples one should have."""
+    """First row of every block that is averaged, and the usual number of samples in a block."""
     time = sweep.time[rows]
-    interval = float(np.median(np.diff(time))) if len(rows) > 1 else CONTINUOUS_STEP
+    interval = float(np.median(np.diff(time))) if len(rows) > 1 else constants.AVERAGED_TIME
     moved = max(float(np.median(np.abs(np.diff(x[rows])))) for x in (sweep.alpha, sweep.gamma)) / interval
-    step = min(CONTINUOUS_STEP, CONTINUOUS_ANGLE / moved) if moved > 0.0 else CONTINUOUS_STEP
+    step = float(constants.AVERAGED_TIME)
+    if moved > 0.0:
+        step = min(step, constants.AVERAGED_ANGLE.rad / moved)
     size = max(1, round(step / interval))
     block = np.floor((time - time[0]) / (size * interval) + 1e-6)
     return np.r_[0, np.flatnonzero(np.diff(block)) + 1], size
+
+
+def _no_points(sweep: Sweep, phi_t: float) -> Points:
+    return rows_as_points(sweep, phi_t, np.zeros(0, dtype=int))
 
 
 def _points(
@@ -106,11 +114,10 @@ def _points(
     table: pd.DataFrame,
     first: np.ndarray,
 ) -> Points:
-    values: dict[str, Any] = {
-        name: means.get(name, getattr(sweep, name)[first]) for name in CHANNELS if name not in means
-    }
+    """Points from means by channel, and from the first samples for every other channel."""
+    values: dict[str, Any] = {name: getattr(sweep, name)[first] for name in CHANNELS} | means
     return make_points(
-        **{**values, **means},
+        **values,
         phi_t=phi_t,
         direction=sweep.direction[first],
         mount=sweep.mount,

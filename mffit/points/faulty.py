@@ -2,112 +2,200 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from dataclasses import dataclass
+from itertools import groupby
 from typing import NamedTuple
 
 import numpy as np
 from scipy.ndimage import median_filter
 
-from mffit.points.steady import runs
+from mffit.points import constants
+from mffit.points.stretch import runs
 from mffit.scatter import robust
 from mffit.sweeps import Sweep
 
-UNLOADED = 0.1
-"""Load, per usual load of the recording, below which the tyre does not roll on its belt."""
-FREE = 0.02
-"""Longitudinal slip up to which the wheel counts as rolling freely."""
 DRIVEN = "driven or braked, and only free rolling is fitted"
-STUCK = 0.5  # s of one value to the last digit
-FEWEST_STUCK = 20  # samples of it
-CLIPPED = 6  # samples in a row at the very end of a channel's range
-CHANGES = 0.8
-"""Share of samples that differ from the one before, from which on a value that stays is suspicious."""
-MOVED = 12.0
-"""Range of the side force, per noise of a sample, that is no noise of an axis at rest."""
-SPIKE = 12.0
-"""Standard deviations of the noise from the median of five samples."""
-SPIKE_SHARE = 0.15
-"""The same per usual load, for a force; a moment spikes by this arm [m]:"""
-SPIKE_ARM = 0.03
-WINDOW = 5
+SENSORS = ("Fy", "Mz", "Fz")
 
 
 class Fault(NamedTuple):
-    """Samples that are no measurement, and what is wrong with them."""
+    """Samples that are no measurement, and why."""
 
     which: np.ndarray  #: mask (n,)
     reason: str
-    stretch: bool  #: it ends the stretch around it; else the samples alone are left out
+    ends_stretch: bool  #: it ends the stretch around it; otherwise only the samples are left out
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class FaultRule:
+    """One kind of faulty samples."""
+
+    id: str
+    looks_at: str
+    limits: tuple[float, ...] = ()
+    reason: str  #: with {channel}
+    channels: tuple[str, ...] = ("",)
+    ends_stretch: bool = True
+    find: Callable[[Sweep, str], np.ndarray]  #: mask (n,)
 
 
 def driven(sweep: Sweep) -> np.ndarray:
     """Samples or points (n,) at which the wheel does not roll freely."""
     if "kappa" not in sweep.table:
         return np.zeros(len(sweep), dtype=bool)
-    return np.abs(sweep.table["kappa"].to_numpy(dtype=float)) > FREE
+    return np.abs(sweep.table["kappa"].to_numpy(dtype=float)) > constants.FREE_ROLLING_SLIP
 
 
 def faults(sweep: Sweep) -> list[Fault]:
-    """Everything wrong with the samples of a series."""
-    usual = float(np.nanmedian(np.abs(sweep.Fz))) if np.any(np.isfinite(sweep.Fz)) else 0.0
+    """All faults of the samples of a series, in the order of the rules; neighbouring rules channel by channel."""
     found = []
-    for name in ("alpha", "gamma", "Fz", "Fy"):
-        found.append(Fault(~np.isfinite(getattr(sweep, name)), f"no reading of {name}", True))
-    found.append(Fault(sweep.Fz < UNLOADED * usual, "no load on the tyre", True))
-    found.append(Fault(driven(sweep), DRIVEN, True))
-    rate = 1.0 / max(float(np.median(np.diff(sweep.time))), 1e-9) if len(sweep) > 1 else 1.0
-    for name, size in (("Fy", SPIKE_SHARE), ("Mz", SPIKE_ARM), ("Fz", SPIKE_SHARE)):
-        values = getattr(sweep, name)
-        if values.strides == (0,) or np.all(np.isnan(values)):
-            continue
-        found.append(Fault(_spikes(values, size * usual), f"spikes of {name}", False))
-        at_end = (values == np.nanmax(values)) | (values == np.nanmin(values))
-        if not _lively(values, ~at_end):
-            continue
-        clipped = _runs(at_end, CLIPPED)
-        found.append(Fault(clipped, f"{name} clipped", True))
-        found.append(Fault(_still(values, rate) & ~clipped, f"{name} stuck", True))
-    # An axis that holds a set-point may rest to the last digit; the tyre then answers to nothing new.
-    stuck = _still(sweep.alpha, rate) & _lively(sweep.alpha, np.ones(len(sweep), dtype=bool))
-    if np.any(stuck):
-        found.append(Fault(_while_moving(stuck, sweep.Fy), "alpha stuck while Fy moves", True))
+    for channels, rules in groupby(FAULTS, key=lambda rule: rule.channels):
+        same = list(rules)
+        for channel in channels:
+            for rule in same:
+                reason = rule.reason.format(channel=channel)
+                found.append(Fault(rule.find(sweep, channel), reason, rule.ends_stretch))
     return [fault for fault in found if np.any(fault.which)]
 
 
-def _lively(values: np.ndarray, some: np.ndarray) -> bool:
-    """Whether nearly every sample differs from the one before, as those of a sensor do, among ``some`` (n,)."""
-    steps = np.diff(values)[some[1:] & some[:-1]]
-    return bool(len(steps)) and float(np.mean(steps != 0.0)) >= CHANGES
+def _usual_load(sweep: Sweep) -> float:
+    return float(np.nanmedian(np.abs(sweep.Fz))) if np.any(np.isfinite(sweep.Fz)) else 0.0
 
 
-def _still(values: np.ndarray, rate: float) -> np.ndarray:
-    """Samples (n,) in runs of one value to the last digit."""
-    return _runs(np.r_[False, np.diff(values) == 0.0], max(FEWEST_STUCK, round(STUCK * rate)) - 1)
+def _unloaded(sweep: Sweep, _: str) -> np.ndarray:
+    return sweep.Fz < constants.UNLOADED * _usual_load(sweep)
 
 
-def _while_moving(stuck: np.ndarray, Fy: np.ndarray) -> np.ndarray:
-    """Those of the runs of a mask (n,) in which the side force moves by more than its noise can."""
-    noise = robust(np.diff(Fy)) / np.sqrt(2.0)
-    out = np.zeros_like(stuck)
-    for begin, end in runs(stuck):
-        out[begin:end] = np.ptp(Fy[begin:end]) > MOVED * noise
+def _spiking(sweep: Sweep, channel: str) -> np.ndarray:
+    """Samples far from the median of their neighbours."""
+    values = getattr(sweep, channel)
+    if not _measured(values):
+        return np.zeros(len(sweep), dtype=bool)
+    smallest = constants.SPIKE_OF_MOMENT if channel == "Mz" else constants.SPIKE_OF_FORCE
+    away = np.abs(values - median_filter(values, constants.SPIKE_WINDOW, mode="nearest"))
+    finite = away[np.isfinite(away)]
+    if not len(finite):
+        return np.zeros(len(sweep), dtype=bool)
+    noise = robust(finite[:: max(len(finite) // constants.MOST_SAMPLES_FOR_NOISE, 1)])
+    return away > max(constants.SPIKE_OVER_NOISE * noise, smallest * _usual_load(sweep))
+
+
+def _clipped(sweep: Sweep, channel: str) -> np.ndarray:
+    """Runs of samples at the end of the channel's range."""
+    values = getattr(sweep, channel)
+    if not _measured(values) or not _lively(values, ~_at_end(values)):
+        return np.zeros(len(sweep), dtype=bool)
+    return _long_runs(_at_end(values), constants.CLIPPED_SAMPLES)
+
+
+def _stuck(sweep: Sweep, channel: str) -> np.ndarray:
+    """Runs of one value within the channel's range."""
+    values = getattr(sweep, channel)
+    if not _measured(values) or not _lively(values, ~_at_end(values)):
+        return np.zeros(len(sweep), dtype=bool)
+    return _still(sweep, values) & ~_clipped(sweep, channel)
+
+
+def _stuck_while_moving(sweep: Sweep, channel: str) -> np.ndarray:
+    """Runs of one value in which the side force moves by more than its noise.
+
+    An axis that holds a set-point may rest to the last digit; the side force does not move then.
+    """
+    out = np.zeros(len(sweep), dtype=bool)
+    values = getattr(sweep, channel)
+    if _lively(values, np.ones(len(sweep), dtype=bool)):
+        noise = robust(np.diff(sweep.Fy)) / np.sqrt(2.0)
+        for begin, end in runs(_still(sweep, values)):
+            out[begin:end] = np.ptp(sweep.Fy[begin:end]) > constants.MOVED_FORCE * noise
     return out
 
 
-def _spikes(values: np.ndarray, smallest: float) -> np.ndarray:
-    away = np.abs(values - median_filter(values, WINDOW, mode="nearest"))
-    finite = away[np.isfinite(away)]
-    if not len(finite):
-        return np.zeros(len(values), dtype=bool)
-    noise = robust(finite[:: max(len(finite) // 100_000, 1)])
-    return away > max(SPIKE * noise, smallest)
+def _measured(values: np.ndarray) -> bool:
+    """Whether a channel has readings of its own; one value for all samples is broadcast."""
+    return values.strides != (0,) and not np.all(np.isnan(values))
 
 
-def _runs(mask: np.ndarray, shortest: int) -> np.ndarray:
-    """The samples (n,) of a mask that stand in runs of at least ``shortest``."""
+def _at_end(values: np.ndarray) -> np.ndarray:
+    return (values == np.nanmax(values)) | (values == np.nanmin(values))
+
+
+def _lively(values: np.ndarray, some: np.ndarray) -> bool:
+    """Whether nearly every sample among ``some`` (n,) differs from the one before, as those of a sensor do."""
+    steps = np.diff(values)[some[1:] & some[:-1]]
+    return bool(len(steps)) and float(np.mean(steps != 0.0)) >= constants.LIVELY_SHARE
+
+
+def _still(sweep: Sweep, values: np.ndarray) -> np.ndarray:
+    """Samples (n,) in long runs of one value to the last digit."""
+    rate = 1.0 / max(float(np.median(np.diff(sweep.time))), 1e-9) if len(sweep) > 1 else 1.0
+    shortest = max(constants.FEWEST_STUCK_SAMPLES, round(constants.STUCK_TIME * rate)) - 1
+    return _long_runs(np.r_[False, np.diff(values) == 0.0], shortest)
+
+
+def _long_runs(mask: np.ndarray, shortest: int) -> np.ndarray:
+    """The samples (n,) of a mask in runs of at least ``shortest``."""
     edges = np.flatnonzero(np.diff(np.r_[False, mask, False].astype(np.int8)))
-    begin, end = edges[::2], edges[1::2]
-    long = end - begin >= shortest
+    long = edges[1::2] - edges[::2] >= shortest
     out = np.zeros(len(mask) + 1, dtype=np.int32)
-    np.add.at(out, begin[long], 1)
-    np.add.at(out, end[long], -1)
+    out[edges[::2][long]] = 1
+    out[edges[1::2][long]] = -1
     return np.cumsum(out)[:-1] > 0
+
+
+FAULTS = (
+    FaultRule(
+        id="no-reading",
+        looks_at="samples without a number",
+        reason="no reading of {channel}",
+        channels=("alpha", "gamma", "Fz", "Fy"),
+        find=lambda sweep, channel: ~np.isfinite(getattr(sweep, channel)),
+    ),
+    FaultRule(
+        id="no-load",
+        looks_at="load over the usual load of the recording",
+        limits=(constants.UNLOADED,),
+        reason="no load on the tyre",
+        find=_unloaded,
+    ),
+    FaultRule(
+        id="driven-or-braked",
+        looks_at="longitudinal slip",
+        limits=(constants.FREE_ROLLING_SLIP,),
+        reason=DRIVEN,
+        find=lambda sweep, _: driven(sweep),
+    ),
+    FaultRule(
+        id="spike",
+        looks_at="distance of a reading from the median of its neighbours",
+        limits=(constants.SPIKE_OVER_NOISE, constants.SPIKE_OF_FORCE, constants.SPIKE_OF_MOMENT),
+        reason="spikes of {channel}",
+        channels=SENSORS,
+        ends_stretch=False,
+        find=_spiking,
+    ),
+    FaultRule(
+        id="clipped-channel",
+        looks_at="readings in a row at the end of the channel's range",
+        limits=(constants.CLIPPED_SAMPLES, constants.LIVELY_SHARE),
+        reason="{channel} clipped",
+        channels=SENSORS,
+        find=_clipped,
+    ),
+    FaultRule(
+        id="stuck-channel",
+        looks_at="readings in a row of one value, of a channel that changes otherwise",
+        limits=(constants.STUCK_TIME, constants.FEWEST_STUCK_SAMPLES, constants.LIVELY_SHARE),
+        reason="{channel} stuck",
+        channels=SENSORS,
+        find=_stuck,
+    ),
+    FaultRule(
+        id="stuck-angle",
+        looks_at="sideslip readings in a row of one value while the side force moves",
+        limits=(constants.STUCK_TIME, constants.FEWEST_STUCK_SAMPLES, constants.MOVED_FORCE),
+        reason="{channel} stuck while Fy moves",
+        channels=("alpha",),
+        find=_stuck_while_moving,
+    ),
+)

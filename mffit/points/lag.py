@@ -1,8 +1,8 @@
-"""What a moving sweep owes to its motion: the lag of the side force, and the hysteresis that is left without it.
+"""Lag of the side force in a moving sweep, and the hysteresis that is left without the lag.
 
 A tyre answers to a change of its sideslip angle over its relaxation length, and filters delay channels; both shift the
-curve along the angle, up and down in opposite senses. Where the side force is zero nothing else tells the two ways apart:
-heat and friction act in proportion to the force. So the shift is read there, and only there.
+curve along the angle, in opposite senses on the ways up and down. Heat and friction also separate the two ways, but in
+proportion to the force. So the shift is read at zero side force only.
 """
 
 from __future__ import annotations
@@ -13,21 +13,12 @@ from typing import NamedTuple
 import numpy as np
 from scipy.ndimage import uniform_filter1d
 
+from mffit.points import constants
 from mffit.scatter import rms, robust
-
-NEAR_ZERO = 0.25
-"""Side force, per largest of its sweep, within which its curve is straight enough to be read at zero."""
-FEWEST = 8
-"""Points on each way, within that."""
-WORST = 1e8
-"""Condition number beyond which the points do not fix the lines: one side of zero is missing."""
-FEWEST_SWEEPS = 3
-"""Sweeps whose scatter tells how well their median is known."""
-BINS = 25
 
 
 class Lag(NamedTuple):
-    """Of one sweep."""
+    """Lag and hysteresis of one sweep."""
 
     lag: float  #: rolled distance by which the force lags behind the angle [m]; negative where the angle is delayed more
     u: float  #: its standard uncertainty [m], from the scatter of the points
@@ -51,24 +42,24 @@ def measure(alpha: np.ndarray, Fy: np.ndarray, s: np.ndarray, smooth: int = 1) -
     Returns
     -------
     Lag
-        ``UNKNOWN`` where the sweep does not go through zero force both ways.
+        ``UNKNOWN`` if the sweep does not go through zero force both ways.
     """
-    if len(alpha) < 4 * FEWEST:
+    if len(alpha) < 4 * constants.FEWEST_POINTS_AT_ZERO:
         return UNKNOWN
     rate = np.gradient(uniform_filter1d(alpha, max(smooth, 1), mode="nearest"), s)
     usual = float(np.median(np.abs(rate)))
     ways = [np.sign(rate) == way for way in (1.0, -1.0)]
-    near = np.abs(Fy) < NEAR_ZERO * np.max(np.abs(Fy))
-    even = np.abs(np.abs(rate) - usual) < 0.5 * usual
+    near = np.abs(Fy) < constants.FORCE_NEAR_ZERO * np.max(np.abs(Fy))
+    even = np.abs(np.abs(rate) - usual) < constants.EVEN_RATE * usual
     crossings = [_crossing(Fy[way & near & even], alpha[way & near & even]) for way in ways]
     if usual == 0.0 or not all(np.isfinite(crossing.alpha) for crossing in crossings):
         return UNKNOWN
     up, down = crossings
     lag = 0.5 * (up.alpha - down.alpha) / usual
     one_line = 0.5 * (up.of_one_line - down.of_one_line) / usual
-    # What is left of the difference once the lag is taken off the angle.
+    # The difference of the two ways with the lag taken off the angle.
     moved = alpha - lag * rate
-    edges = np.linspace(moved.min(), moved.max(), BINS + 1)
+    edges = np.linspace(moved.min(), moved.max(), constants.BINS_OF_HYSTERESIS + 1)
     means = [_binned(moved[way], Fy[way], edges) for way in ways]
     difference = means[0] - means[1]
     known = np.isfinite(difference)
@@ -79,9 +70,9 @@ def measure(alpha: np.ndarray, Fy: np.ndarray, s: np.ndarray, smooth: int = 1) -
 
 
 class Crossing(NamedTuple):
-    """Of one way through zero force."""
+    """Angle at which one way of a sweep goes through zero force."""
 
-    alpha: float  #: angle there [rad], by two lines with a common end at zero force
+    alpha: float  #: [rad], by two lines with a common end at zero force
     u: float  #: its standard error [rad]
     of_one_line: float  #: the same angle by one straight line [rad]
 
@@ -89,16 +80,16 @@ class Crossing(NamedTuple):
 def _crossing(Fy: np.ndarray, alpha: np.ndarray) -> Crossing:
     """The angle at zero force, from the points about it.
 
-    A way that begins cold and ends hot is steeper on one side of zero, which one line would take for a shift.
+    A way that begins cold and ends hot is steeper on one side of zero; a single line would show that as a shift.
     """
-    if len(Fy) < FEWEST or Fy.min() > 0.0 or Fy.max() < 0.0:
+    if len(Fy) < constants.FEWEST_POINTS_AT_ZERO or Fy.min() > 0.0 or Fy.max() < 0.0:
         return Crossing(np.nan, np.nan, np.nan)
     x = Fy / np.max(np.abs(Fy))
     design = np.column_stack([np.ones(len(Fy)), x.clip(min=0.0), x.clip(max=0.0)])
     found, *_ = np.linalg.lstsq(design, alpha, rcond=None)
     residual = alpha - design @ found
     normal = design.T @ design
-    if np.linalg.cond(normal) > WORST:
+    if np.linalg.cond(normal) > constants.WORST_CONDITION_AT_ZERO:
         return Crossing(np.nan, np.nan, np.nan)
     variance = float(residual @ residual) / (len(Fy) - 3)
     straight = float(np.polynomial.polynomial.polyfit(x, alpha, 1)[0])
@@ -106,26 +97,31 @@ def _crossing(Fy: np.ndarray, alpha: np.ndarray) -> Crossing:
 
 
 def _binned(x: np.ndarray, y: np.ndarray, edges: np.ndarray) -> np.ndarray:
-    """Means of ``y`` (k,) between the edges (k + 1,); NaN where there is none."""
+    """Means of ``y`` (k,) between the edges (k + 1,); NaN in empty bins."""
     where = np.clip(np.searchsorted(edges, x, side="right") - 1, 0, len(edges) - 2)
     count = np.bincount(where, minlength=len(edges) - 1)
     with np.errstate(invalid="ignore"):
         return np.bincount(where, weights=y, minlength=len(edges) - 1) / np.where(count > 0, count, np.nan)
 
 
-def common(lags: Sequence[Lag]) -> tuple[float, float]:
-    """The lag of a recording [m] and its standard uncertainty: one tyre on one rig; NaN where no sweep tells.
+def rolled_distance(time: np.ndarray, V: np.ndarray) -> np.ndarray:
+    """Distance (n,) rolled since the first sample [m], at speeds ``V`` (n,)."""
+    return np.r_[0.0, np.cumsum(np.diff(time) * 0.5 * (V[1:] + V[:-1]))]
 
-    The uncertainty is that of the median of the sweeps, from their scatter, and that of the curve's shape.
+
+def common(lags: Sequence[Lag]) -> tuple[float, float]:
+    """The lag of all sweeps of a recording [m] and its standard uncertainty; NaN if no sweep shows it.
+
+    The uncertainty combines that of the median, from the scatter of the sweeps, and that of the curve's shape.
     """
-    told = [found for found in lags if np.isfinite(found.lag)]
-    if not told:
+    sweeps = [found for found in lags if np.isfinite(found.lag)]
+    if not sweeps:
         return np.nan, np.nan
-    known = np.array([found.lag for found in told])
-    shape = float(np.median([found.u_shape for found in told]))
-    if len(told) < FEWEST_SWEEPS:
-        own = float(np.hypot.reduce([found.u for found in told])) / len(told)
+    known = np.array([found.lag for found in sweeps])
+    shape = float(np.median([found.u_shape for found in sweeps]))
+    if len(sweeps) < constants.FEWEST_SWEEPS_OF_LAG:
+        own = float(np.hypot.reduce([found.u for found in sweeps])) / len(sweeps)
         return float(np.mean(known)), float(np.hypot(own, shape))
     middle = float(np.median(known))
     scatter = robust(known, middle)
-    return middle, float(np.hypot(1.2533 * scatter / np.sqrt(len(known)), shape))  # of a median
+    return middle, float(np.hypot(1.2533 * scatter / np.sqrt(len(known)), shape))  # sqrt(pi / 2): of a median

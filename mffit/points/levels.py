@@ -1,8 +1,8 @@
-"""Levels of the set-points: the conditions that a test plan repeats, and how closely a rig keeps to them.
+"""Levels of the set-points: the conditions that a test plan repeats.
 
-A level is a dense place among the values, found densest first: a few values on the way from one level to the
-next neither join two levels nor make one of their own. Where the values are spread evenly no place is denser
-than the others; they are cut into levels between one and two tolerances apart, so that they count as varied.
+A level is a place where values are dense; the densest is found first. So a few values on the way from one level to the
+next neither join two levels nor form one themselves. Evenly spread values, without a dense place, are cut into levels
+between one and two tolerances apart, so that they count as varied.
 """
 
 from __future__ import annotations
@@ -11,80 +11,71 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from mffit.points import constants
 from mffit.points.points import Points
 
 
 @dataclass(frozen=True, slots=True)
-class Quantity:
-    """A quantity that a test plan sets, and how near two values of it are the same setting."""
+class LevelKind:
+    """A setting of a test plan, and how near two values of it are the same level."""
 
     name: str
-    tolerance: (
-        float  #: values further apart than this may be two levels; a rig's scatter is a third of it or less
-    )
+    tolerance: float  #: values further apart than this may be two levels
     relative: bool = False  #: the tolerance is a share of the value, which is positive
 
 
-LOAD = Quantity("load", 0.08, relative=True)  # [N]
-CAMBER = Quantity("camber", np.radians(0.8))  # [rad]
-PRESSURE = Quantity("pressure", 10e3)  # [Pa]
-SPEED = Quantity("speed", 0.1, relative=True)  # [m/s]
-SIDESLIP = Quantity("sideslip", np.radians(0.4))  # [rad]
+LOAD = LevelKind("load", constants.LOAD_LEVEL_TOLERANCE, relative=True)  # [N]
+CAMBER = LevelKind("camber", constants.CAMBER_LEVEL_TOLERANCE.rad)  # [rad]
+PRESSURE = LevelKind("pressure", constants.PRESSURE_LEVEL_TOLERANCE)  # [Pa]
+SPEED = LevelKind("speed", constants.SPEED_LEVEL_TOLERANCE, relative=True)  # [m/s]
+SIDESLIP = LevelKind("sideslip", constants.SIDESLIP_LEVEL_TOLERANCE.rad)  # [rad]
 
-SMALLEST_SHARE = 0.02
-"""Values a level needs, per value of the largest level."""
-FLANK = 0.3
-"""Density, relative to the densest place half a tolerance away, below which values are the flank of that place."""
-CLOSE = 1.0 / 3.0
-"""Distance from a level, in tolerances, within which most values of a setting lie that was held."""
-MOST_AWAY = 0.3
-"""Share of values further away than that from which the values are spread rather than held."""
-NONE = -1
+NO_LEVEL = -1
 """Label of a value that belongs to no level."""
 
 
-def labels(values: np.ndarray, quantity: Quantity) -> np.ndarray:
-    """Number (n,) of the level of each value, rising from 0 with the value; ``NONE`` for those between levels.
+def labels(values: np.ndarray, kind: LevelKind) -> np.ndarray:
+    """Number (n,) of the level of each value, rising with the value from 0; ``NO_LEVEL`` for values between levels.
 
     Parameters
     ----------
     values : (n,); NaN belongs to no level
-    quantity : what the values are
+    kind : what the values are
     """
-    scaled = _scaled(values, quantity)
+    scaled = _scaled(values, kind)
     centres = _centres(scaled)
     found = _nearest(scaled, centres)
     far = np.abs(scaled - _at(centres, found)) >= 1.0
-    return np.where(far, NONE, found)
+    return np.where(far, NO_LEVEL, found)
 
 
-def nearest_labels(values: np.ndarray, quantity: Quantity) -> np.ndarray:
-    """As :func:`labels`, but values between levels are given to the nearest one; ``NONE`` for NaN only."""
-    scaled = _scaled(values, quantity)
+def nearest_labels(values: np.ndarray, kind: LevelKind) -> np.ndarray:
+    """As :func:`labels`, with values between levels assigned to the nearest one; ``NO_LEVEL`` for NaN only."""
+    scaled = _scaled(values, kind)
     return _nearest(scaled, _centres(scaled))
 
 
-def level_values(values: np.ndarray, quantity: Quantity) -> np.ndarray:
+def level_values(values: np.ndarray, kind: LevelKind) -> np.ndarray:
     """Median (n,) of the level nearest to each value; NaN stays NaN."""
     values = np.asarray(values, dtype=float)
-    own, near = labels(values, quantity), nearest_labels(values, quantity)
-    medians = np.array([np.median(values[own == k]) for k in range(near.max(initial=NONE) + 1)])
+    own, near = labels(values, kind), nearest_labels(values, kind)
+    medians = np.array([np.median(values[own == k]) for k in range(near.max(initial=NO_LEVEL) + 1)])
     return _at(medians, near)
 
 
-def count(values: np.ndarray, quantity: Quantity) -> int:
+def count(values: np.ndarray, kind: LevelKind) -> int:
     """Number of levels among the values; evenly spread values are three or more from four tolerances on."""
-    return len(_centres(_scaled(values, quantity)))
+    return len(_centres(_scaled(values, kind)))
 
 
-def spread(values: np.ndarray, quantity: Quantity) -> bool:
-    """Whether the values wander through their range rather than keep to two levels or more."""
-    scaled = _scaled(values, quantity)
+def spread(values: np.ndarray, kind: LevelKind) -> bool:
+    """Whether the values wander through their range instead of keeping to two or more levels."""
+    scaled = _scaled(values, kind)
     centres = _centres(scaled)
     if len(centres) < 2:
         return False
     away = np.abs(scaled - _at(centres, _nearest(scaled, centres)))
-    return bool(np.mean(away[np.isfinite(away)] > CLOSE) > MOST_AWAY)
+    return bool(np.mean(away[np.isfinite(away)] > constants.HELD_DISTANCE) > constants.MOST_AWAY_FROM_LEVELS)
 
 
 def main_pressure(points: Points) -> np.ndarray:
@@ -108,12 +99,12 @@ def main_path(points: Points) -> float:
     return float(paths[counts.argmax()]) if len(paths) else 0.0
 
 
-def _scaled(values: np.ndarray, quantity: Quantity) -> np.ndarray:
-    """The values (n,) in tolerances; NaN where they say nothing."""
+def _scaled(values: np.ndarray, kind: LevelKind) -> np.ndarray:
+    """The values (n,) in tolerances; NaN where they are not finite."""
     values = np.asarray(values, dtype=float)
-    if quantity.relative:
+    if kind.relative:
         values = np.log(np.where(values > 0.0, values, np.nan))
-    return np.where(np.isfinite(values), values, np.nan) / quantity.tolerance
+    return np.where(np.isfinite(values), values, np.nan) / kind.tolerance
 
 
 def _centres(scaled: np.ndarray) -> np.ndarray:
@@ -131,15 +122,15 @@ def _centres(scaled: np.ndarray) -> np.ndarray:
             places.append(place)
             sizes.append(len(about))
         left = left[np.abs(left - place) >= 1.0]
-    # The square root is about the scatter of a count: of few values even one may be a level.
-    fewest = max(np.sqrt(max(sizes)) / 3.0, SMALLEST_SHARE * max(sizes))
+    # A third of the square root is below the scatter of a count: among few values a single one may be a level.
+    fewest = max(np.sqrt(max(sizes)) / 3.0, constants.SMALLEST_LEVEL * max(sizes))
     return np.sort([place for place, size in zip(places, sizes, strict=True) if size >= fewest])
 
 
 def _is_flank(place: float, known: np.ndarray, density: np.ndarray) -> bool:
     """Whether a place belongs to the slope of a denser one."""
     about = density[np.abs(known - place) <= 0.5]
-    return bool(_within(np.array([place]), known, 0.5)[0] < FLANK * about.max())
+    return bool(_within(np.array([place]), known, 0.5)[0] < constants.LEVEL_FLANK * about.max())
 
 
 def _within(places: np.ndarray, ordered: np.ndarray, distance: float) -> np.ndarray:
@@ -149,13 +140,13 @@ def _within(places: np.ndarray, ordered: np.ndarray, distance: float) -> np.ndar
 
 
 def _nearest(scaled: np.ndarray, centres: np.ndarray) -> np.ndarray:
-    """Number (n,) of the nearest centre; ``NONE`` for NaN."""
+    """Number (n,) of the nearest centre; ``NO_LEVEL`` for NaN."""
     if not len(centres):
-        return np.full(len(scaled), NONE)
+        return np.full(len(scaled), NO_LEVEL)
     near = np.searchsorted((centres[1:] + centres[:-1]) / 2.0, scaled)
-    return np.where(np.isfinite(scaled), near, NONE)
+    return np.where(np.isfinite(scaled), near, NO_LEVEL)
 
 
 def _at(values: np.ndarray, index: np.ndarray) -> np.ndarray:
-    """``values`` at the numbers (n,), NaN at ``NONE``."""
+    """``values`` at the numbers (n,), NaN at ``NO_LEVEL``."""
     return np.append(values, np.nan)[index]

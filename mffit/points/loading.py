@@ -13,65 +13,59 @@ from mffit import sweeps as files
 from mffit.config import Config, path_curvature
 from mffit.config.declared import as_declared
 from mffit.errors import InputError
-from mffit.points import levels
+from mffit.points import constants, levels
 from mffit.points.choice import settings_of
 from mffit.points.faulty import DRIVEN
-from mffit.points.lag import common
-from mffit.points.plausibility import check_physics as check
+from mffit.points.lag import common, rolled_distance
 from mffit.points.points import Points, concatenate
 from mffit.points.reduction import Reduced, reduce
-from mffit.points.requirements import check_disc_programme
 from mffit.points.steady import scale_of
 from mffit.points.stretch import StretchNote
 from mffit.scatter import rms
 from tir.conventions import FLIPPED
 
 SIDES = ("left", "right")
-PROVEN = 2.0
-"""Standard uncertainties by which a lag differs from none."""
-STAND_IN = {"p": 250e3, "V": 1.0}
-"""Pressure [Pa] and speed [m/s] of a bare table that holds none; alignment depends on neither."""
+STAND_IN = {"p": constants.STAND_IN_PRESSURE, "V": constants.STAND_IN_SPEED}
 
 
 class Reading(NamedTuple):
-    """The points of a configuration, and how they came about."""
+    """The points of a configuration, with warnings and the stretches of its recordings."""
 
     points: Points
     warnings: tuple[str, ...]
     stretches: tuple[StretchNote, ...]  #: of all recordings
 
 
-def load(
-    config: Config, *, check_physics: bool = True, continuous: bool = False
-) -> tuple[Points, tuple[str, ...]]:
+def load(config: Config, *, continuous: bool = False) -> tuple[Points, tuple[str, ...]]:
     """Points and warnings of :func:`read`."""
-    found = read(config, check_physics=check_physics, continuous=continuous)
+    found = read(config, continuous=continuous)
     return found.points, found.warnings
 
 
-def read(
-    config: Config, *, check_physics: bool = True, continuous: bool = False, may_be_empty: bool = False
-) -> Reading:
+def read(config: Config, *, continuous: bool = False, may_be_empty: bool = False) -> Reading:
     """Read the sweeps of a configuration as points in ISO-W.
 
     Parameters
     ----------
     config : the checked ``tyre.toml``
-    check_physics : test the declared axes, frame and path centre, and what a disc needs, against the data
     continuous : keep the samples of sweeps that never rest, marked ``continuous``, with the angle as read
-    may_be_empty : recordings without a single point are no error
+    may_be_empty : return no points instead of raising an error if no recording gives one
 
     Returns
     -------
     Reading
-        On a straight path the means along continuous sweeps are points like any others unless ``continuous`` asks for
-        them as they are: there the lag behind the sideslip angle is measured and taken off the angle. On a disc, whose
-        parts are taken from pairs of steady points, they are left out.
+        On a straight path the means along continuous sweeps become points like any others: the lag behind the sideslip
+        angle is measured and taken off the angle, unless ``continuous`` asks for the samples as read. On a disc, which
+        needs pairs of steady points, they are left out.
 
     Raises
     ------
     InputError
-        On files that cannot be read, data that contradict the declaration, and without any point.
+        A file cannot be read, or no point is found.
+
+    Notes
+    -----
+    Whether the points are plausible is judged by :func:`mffit.suspicion.before_the_fit`.
     """
     with as_declared(config):
         found = files.load(config)
@@ -93,19 +87,14 @@ def read(
             return Reading(steady, (*warnings, _nothing(reduced)), notes)
         raise InputError(_nothing(reduced), file=config.path)
     if not continuous:
-        warnings += _left_out(points)
-    if check_physics:
-        with as_declared(config):
-            warnings += check(steady, config)
-        if config.rig.on_disc:
-            check_disc_programme(steady, config)
+        warnings += _moving(points)
     warnings += _thin(steady, config)
     kept = points if continuous else steady
     return Reading(kept, tuple(warnings), notes)
 
 
 def _nothing(reduced: Sequence[Reduced]) -> str:
-    """Why there is no point at all."""
+    """A sentence about recordings that give no point."""
     reasons: dict[str, float] = {}
     for note in (note for part in reduced for note in part.stretches if note.dropped):
         reasons[note.dropped] = reasons.get(note.dropped, 0.0) + note.end_s - note.begin_s
@@ -119,42 +108,41 @@ def _nothing(reduced: Sequence[Reduced]) -> str:
 
 
 def settled_sweeps(points: Points, lag: tuple[float, float]) -> Points:
-    """Continuous sweeps as points: the angle is the one that the force answers to.
+    """Continuous sweeps as points, at the angle that the force answers to.
 
     Parameters
     ----------
-    points : with ``continuous`` samples, of which every sweep has a name of its own
+    points : with ``continuous`` samples; every sweep has a name of its own
     lag : rolled distance by which the force lags, and its standard uncertainty [m]; taken off where it is proven
     """
     value, u = lag
     alpha, taken = points.alpha.copy(), np.zeros(len(points))
-    if np.isfinite(value) and abs(value) > PROVEN * u:
+    if np.isfinite(value) and abs(value) > constants.PROVEN_LAG * u:
         for k in np.unique(points.sweep[points.continuous]):
             rows = np.flatnonzero(points.continuous & (points.sweep == k))
-            if len(rows) < 3:
+            if len(rows) < 3:  # too few for a gradient
                 continue
-            time, V = points.time[rows], points.V[rows]
-            rolled = np.r_[0.0, np.cumsum(np.diff(time) * 0.5 * (V[1:] + V[:-1]))]
+            rolled = rolled_distance(points.time[rows], points.V[rows])
             taken[rows] = value * np.gradient(points.alpha[rows], rolled)
     table = points.table.assign(alpha_lag_deg=np.degrees(taken)) if np.any(taken) else points.table
     return points.replace(alpha=alpha - taken, continuous=False, time=np.nan, table=table)
 
 
 def _of_motion(reduced: Sequence[Reduced], lag: tuple[float, float]) -> list[str]:
-    """What motion did to the sweeps, in a sentence."""
+    """A sentence about the lag and hysteresis of the moving sweeps."""
     known = [one for part in reduced for one in part.lags if np.isfinite(one.lag)]
     if not known:
         return [
             "no sweep goes through zero side force both ways, so the lag of the force behind the sideslip angle is "
-            "not known and not taken off; sweep up and down"
+            "unknown and not taken off; sweep up and down"
         ]
     value, u = lag
-    proven = abs(value) > PROVEN * u
+    proven = abs(value) > constants.PROVEN_LAG * u
     said = "taken off the angle" if proven else "not proven and not taken off"
     hysteresis = rms(np.array([one.hysteresis for one in known]))
     return [
         f"the side force of {len(known)} continuous sweeps lags {1e3 * value:.0f} +- {1e3 * u:.0f} mm of rolling (k = 1) behind "
-        f"the sideslip angle: {said}; what is left of the difference between the ways up and down is +-{hysteresis:.0f} N"
+        f"the sideslip angle: {said}; the remaining difference between the ways up and down is +-{hysteresis:.0f} N"
     ]
 
 
@@ -163,29 +151,29 @@ def load_table(path: str | Path, *, axes: str | None = None, path_centre: str | 
 
     Parameters
     ----------
-    path : file with the contract's headings
+    path : file with the headings of docs/files.md
     axes : "iso", "sae" or "adapted-sae"
-    path_centre : "left" or "right"; the radius is unknown, so that phi_t is -1 or 1 and says only the side
+    path_centre : "left" or "right"; the radius is unknown, so phi_t is -1 or 1 and only its sign has a meaning
 
     Raises
     ------
     InputError
-        ``axes`` or ``path_centre`` is not said, as a table does not hold it, or the file cannot be read.
+        ``axes`` or ``path_centre`` is not given, or the file cannot be read.
 
     Notes
     -----
     A continuous sweep has no zero points and is left out.
     """
-    axes = _said("axes", axes, tuple(FLIPPED), path)
-    path_centre = _said("path_centre", path_centre, SIDES, path)
+    axes = _given("axes", axes, tuple(FLIPPED), path)
+    path_centre = _given("path_centre", path_centre, SIDES, path)
     phi_t = -1.0 if path_centre == "left" else 1.0
     found = files.load_file(path, axes=axes).sweeps
     points = concatenate([reduce(_completed(sweep), phi_t).points for sweep in found])
     return points.select(~points.continuous)
 
 
-def _said(name: str, value: str | None, choice: tuple[str, ...], path: str | Path) -> str:
-    """The value of what a bare table cannot say itself."""
+def _given(name: str, value: str | None, choice: tuple[str, ...], path: str | Path) -> str:
+    """The value of a fact that a bare table cannot hold."""
     if value in choice:
         return value
     found = f"does not say the rig's {name}" if value is None else f'{name} = "{value}" is not known'
@@ -194,6 +182,7 @@ def _said(name: str, value: str | None, choice: tuple[str, ...], path: str | Pat
 
 
 def _completed(sweep: files.Sweep) -> files.Sweep:
+    """The sweep with a pressure and a speed."""
     filled = {
         name: np.where(np.isfinite(getattr(sweep, name)), getattr(sweep, name), value)
         for name, value in STAND_IN.items()
@@ -201,20 +190,21 @@ def _completed(sweep: files.Sweep) -> files.Sweep:
     return replace(sweep, p=filled["p"], V=filled["V"])
 
 
-def _left_out(points: Points) -> list[str]:
+def _moving(points: Points) -> list[str]:
+    """Sentences about files that keep moving."""
     names = [points.files[index] for index in np.unique(points.file[points.continuous])]
     return [f"{name}: keeps moving and gives no steady point; only mffit diagnose uses it" for name in names]
 
 
 def _thin(points: Points, config: Config) -> list[str]:
-    """What the data lack without being wrong."""
+    """Sentences about what the data lack."""
     out = []
     if not np.any(np.isfinite(points.Mz)):
         out.append("Mz_Nm was not measured: only Fy is fitted")
     one_side = len(np.unique(np.sign(points.phi_t))) == 1
     if config.rig.on_disc and one_side and not np.any(points.direction < 0):
         out.append(
-            "there are no backward runs: sideslip misalignment cannot be told from turn slip and ply-steer"
+            "there are no backward runs: sideslip misalignment cannot be separated from turn slip and ply-steer"
         )
     if levels.count(points.Fz, levels.LOAD) == 1:
         out.append(f"there is one load only ({np.mean(points.Fz):.0f} N): terms that vary with load are held")

@@ -1,15 +1,14 @@
-"""The mean of a noisy record and what it is worth when neighbouring samples resemble each other."""
+"""The mean of a noisy record and its standard error if neighbouring samples are correlated."""
 
 from __future__ import annotations
 
 import numpy as np
 
-LARGEST_ORDER = 4
-"""Of the autoregressive process: two for the noise and two for a ripple, such as once per revolution."""
+from mffit.points import constants
 
 
 def mean_and_error(x: np.ndarray) -> tuple[float, float]:
-    """Mean of a stationary series (n,) and its standard error, with the autocorrelation counted.
+    """Mean of a stationary series (n,) and its standard error, autocorrelation included.
 
     Parameters
     ----------
@@ -25,9 +24,8 @@ def mean_and_error(x: np.ndarray) -> tuple[float, float]:
     Var(mean) = g sigma^2 / n, where g, the statistical inefficiency, is the number of samples that count as
     one. It is the spectral density at zero frequency of an autoregressive process, e / (1 - sum a_k)^2 over
     sigma^2, whose coefficients come from Burg's recursion and whose order from the Bayesian information
-    criterion. A window over the autocorrelation function needs twice the record for the same certainty. As
-    the mean is taken from the same record, ``g`` of its ``n`` samples are lost to it, in the variance and in
-    ``g`` itself.
+    criterion. A window over the autocorrelation function needs twice the record for the same certainty.
+    Estimating the mean from the same record costs ``g`` of its ``n`` samples, in the variance and in ``g`` itself.
     """
     n, mean = len(x), float(np.mean(x))
     if n < 2 or not np.isfinite(mean):
@@ -56,7 +54,7 @@ def autoregression(centred: np.ndarray) -> tuple[np.ndarray, float]:
     coefficients = np.zeros(0)
     innovation = float(np.mean(centred**2))
     best = (n * np.log(innovation), coefficients, innovation)
-    for order in range(1, min(LARGEST_ORDER, n // 4) + 1):
+    for order in range(1, min(constants.LARGEST_ORDER_OF_NOISE, n // 4) + 1):
         power = float(np.dot(forward, forward) + np.dot(backward, backward))
         if power <= 1e-24 * n * innovation:
             break

@@ -1,8 +1,8 @@
-"""The record of finished measuring points: what every later step starts from."""
+"""The record of finished measuring points, from which every later step starts."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields
 from typing import Any
 
@@ -13,15 +13,21 @@ from mffit.brief import Brief
 
 INTEGER = frozenset({"direction", "mount", "sweep", "file", "line"})
 SHARED = frozenset({"sweep_names", "files", "table"})
+OPTIONAL: Mapping[str, Any] = {
+    **dict.fromkeys(("Fy", "Mz", "Mx", "My", "T", "t", "u_Fy", "u_Mz", "iteration", "time"), np.nan),
+    **dict.fromkeys(("direction", "mount"), 1),
+    **dict.fromkeys(("sweep", "file", "line"), 0),
+    "continuous": False,
+}
+"""Defaults of :func:`make_points`: not measured, forwards, normal mount, one sweep of one file."""
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
 class Points(Brief):
     """Steady points in ISO-W, contact frame W, SI; arrays are (n,) and read-only.
 
-    Angles are the rig's readings turned to ISO; no correction is applied to anything. A channel that was not
-    measured is all NaN, except pressure and speed, for which the nominal value stands in. Built by
-    :func:`make_points`.
+    Angles are the rig's readings in ISO axes; nothing is corrected. A channel that was not measured is all NaN, except
+    pressure and speed, which are nominal then. Built by :func:`make_points`.
     """
 
     alpha: np.ndarray  #: sideslip angle as read [rad]
@@ -48,14 +54,14 @@ class Points(Brief):
     line: np.ndarray  #: line in that file, counted from 1
     sweep_names: tuple[str, ...]
     files: tuple[str, ...]
-    table: pd.DataFrame  #: input columns as reported: contract names and units, rig's axes; a row per point
+    table: pd.DataFrame  #: input columns as in docs/files.md, rig's axes; a row per point
 
     def __len__(self) -> int:
         return len(self.alpha)
 
     @property
     def headline(self) -> str:
-        """How many there are."""
+        """Number of points and sweeps, in words."""
         return f"{len(self)} in {len(self.sweep_names)} sweeps"
 
     @property
@@ -78,9 +84,7 @@ class Points(Brief):
 
     def replace(self, **arrays: Any) -> Points:
         """A copy with some fields changed; scalars are broadcast to (n,)."""
-        unknown = set(arrays) - set(FIELDS)
-        if unknown:
-            raise TypeError(f"Points has no field {', '.join(sorted(unknown))}")
+        _refuse_unknown(arrays)
         taken = {name: arrays.get(name, getattr(self, name)) for name in ARRAYS}
         shared = {name: arrays.get(name, getattr(self, name)) for name in SHARED}
         return _sealed({name: _filled(name, taken[name], len(self)) for name in ARRAYS}, **shared)
@@ -95,44 +99,21 @@ def make_points(
     gamma: Any,
     Fz: Any,
     *,
-    p: Any,
-    V: Any,
-    phi_t: Any,
-    Fy: Any = np.nan,
-    Mz: Any = np.nan,
-    Mx: Any = np.nan,
-    My: Any = np.nan,
-    T: Any = np.nan,
-    t: Any = np.nan,
-    u_Fy: Any = np.nan,
-    u_Mz: Any = np.nan,
-    iteration: Any = np.nan,
-    direction: Any = 1,
-    mount: Any = 1,
-    continuous: Any = False,
-    time: Any = np.nan,
-    sweep: Any = 0,
-    file: Any = 0,
-    line: Any = 0,
     sweep_names: Sequence[str] = ("sweep",),
     files: Sequence[str] = ("",),
     table: pd.DataFrame | None = None,
+    **fields: Any,
 ) -> Points:
-    """Build points from arrays or scalars, ISO-W and SI, units as in :class:`Points`.
+    """Points from arrays or scalars in ISO-W and SI.
 
     Parameters
     ----------
     alpha, gamma : scalar or (n,) [rad]
     Fz : scalar or (n,) load, positive [N]
-    p : scalar or (n,) pressure [Pa]
-    V : scalar or (n,) speed, positive [m/s]
-    phi_t : scalar or (n,) turn slip [1/m]; -1/R with the disc's centre to the left, 0 on a flat track
-    Fy, Mz, Mx, My, T, t, u_Fy, u_Mz, iteration, time : scalar or (n,); NaN where not measured
-    direction, mount : scalar or (n,), +1 or -1
-    continuous : scalar or (n,) bool
-    sweep, file, line : scalar or (n,) int
-    sweep_names, files : what ``sweep`` and ``file`` count
+    sweep_names, files : names that the fields ``sweep`` and ``file`` count
     table : input columns as reported, (n,) rows; empty if not given
+    fields : other fields of :class:`Points`, scalar or (n,); ``p``, ``V`` and ``phi_t`` are required, the others are
+        optional (``OPTIONAL`` has their defaults)
 
     Returns
     -------
@@ -141,17 +122,17 @@ def make_points(
 
     Raises
     ------
+    TypeError
+        A required field is missing, or a field is unknown.
     ValueError
-        Lengths disagree, or ``direction`` or ``mount`` is something else than +1 or -1.
+        Lengths disagree, or ``direction`` or ``mount`` is neither +1 nor -1.
     """
-    given = {
-        "alpha": alpha, "gamma": gamma, "Fz": Fz, "p": p, "V": V, "phi_t": phi_t, "Fy": Fy, "Mz": Mz,
-        "Mx": Mx, "My": My, "T": T, "t": t, "u_Fy": u_Fy, "u_Mz": u_Mz, "iteration": iteration,
-        "direction": direction, "mount": mount, "continuous": continuous, "time": time,
-        "sweep": sweep, "file": file, "line": line,
-    }  # fmt: skip
+    given = {**OPTIONAL, "alpha": alpha, "gamma": gamma, "Fz": Fz, **fields}
+    if missing := [name for name in ARRAYS if name not in given]:
+        raise TypeError(f"make_points needs {', '.join(missing)}")
+    _refuse_unknown(given)
     n = np.broadcast(*(np.atleast_1d(values) for values in given.values())).size
-    arrays = {name: _filled(name, values, n) for name, values in given.items()}
+    arrays = {name: _filled(name, given[name], n) for name in ARRAYS}
     for name in ("direction", "mount"):
         if not np.all(np.abs(arrays[name]) == 1):
             raise ValueError(f"{name} must be +1 or -1 at every point")
@@ -172,6 +153,12 @@ def concatenate(parts: Sequence[Points]) -> Points:
     )
     table = pd.concat([part.table for part in parts], ignore_index=True)
     return _sealed(arrays, sweep_names=sweep_names, files=files, table=table)
+
+
+def _refuse_unknown(given: Mapping[str, Any]) -> None:
+    unknown = sorted(set(given) - set(FIELDS))
+    if unknown:
+        raise TypeError(f"Points has no field {', '.join(unknown)}")
 
 
 def _renumbered(index: np.ndarray, old: Sequence[str], new: Sequence[str]) -> np.ndarray:

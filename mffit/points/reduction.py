@@ -1,4 +1,4 @@
-"""One sweep to points: finished rows as they are, a recording averaged over its steady stretches and along its sweeps."""
+"""One sweep to points: finished rows unchanged, recordings averaged over steady stretches and along moving sweeps."""
 
 from __future__ import annotations
 
@@ -7,28 +7,24 @@ from typing import NamedTuple
 import numpy as np
 
 from mffit.errors import InputError
-from mffit.points import averaging, remarks
-from mffit.points import lag as lags
+from mffit.points import averaging, constants, remarks
 from mffit.points.choice import chosen
 from mffit.points.faulty import driven, faults
-from mffit.points.lag import UNKNOWN, Lag
+from mffit.points.lag import UNKNOWN, Lag, measure, rolled_distance
 from mffit.points.points import Points, concatenate
 from mffit.points.steady import Scale
 from mffit.points.stretch import PLATEAU, SWEEP, Stretch, StretchNote
 from mffit.sweeps import Sweep
 from mffit.sweeps.assembly import rows_of
 
-MOST_REPEATED = 0.01
-"""Share of samples with the time of the one before that a recorder may have written twice."""
-
 
 class Reduced(NamedTuple):
-    """Points of one sweep, and what was left out of them."""
+    """Points of one sweep, and what was left out."""
 
     points: Points
     warnings: tuple[str, ...]
     stretches: tuple[StretchNote, ...] = ()  #: of a recording, in time order
-    lags: tuple[Lag, ...] = ()  #: of each sweep name in ``points``
+    lags: tuple[Lag, ...] = ()  #: of the moving sweeps that give points
 
 
 def reduce(sweep: Sweep, phi_t: float, scale: Scale | None = None) -> Reduced:
@@ -38,13 +34,13 @@ def reduce(sweep: Sweep, phi_t: float, scale: Scale | None = None) -> Reduced:
     ----------
     sweep : finished points or a time series
     phi_t : turn slip of the path [1/m]
-    scale : usual size of the settings in all time series of the campaign, by which changes are judged; of this one if None
+    scale : usual size of the settings in all time series of the campaign, to judge changes; None: of this series alone
 
     Returns
     -------
     Reduced
-        Where an angle keeps moving, means over a tenth of a second, marked ``continuous``, every stretch of them a sweep
-        of its own name; else means over the plateaus.
+        Means over the plateaus; where an angle keeps moving, means over a tenth of a second, marked ``continuous``, with
+        every stretch as a sweep of its own.
 
     Raises
     ------
@@ -53,36 +49,34 @@ def reduce(sweep: Sweep, phi_t: float, scale: Scale | None = None) -> Reduced:
     """
     if not sweep.is_series:
         free = np.flatnonzero(~driven(sweep))
-        return Reduced(averaging.rows_as_points(sweep, phi_t, free), remarks.driven(sweep, free))
+        return Reduced(
+            points=averaging.rows_as_points(sweep, phi_t, free), warnings=remarks.driven(sweep, free)
+        )
     sweep, repeated = _without_repeats(sweep)
     _check_time(sweep)
     wrong = faults(sweep)
-    bad = np.any([fault.which for fault in wrong], axis=0) if wrong else np.zeros(len(sweep), dtype=bool)
     tried = chosen(sweep, wrong, scale)
     labels = _labels(sweep, tried)
     plateaus = [stretch for stretch in tried if stretch.kind == PLATEAU and not stretch.dropped]
     swept = [stretch for stretch in tried if stretch.kind == SWEEP and not stretch.dropped]
-    parts, became = [], dict.fromkeys(plateaus, (1, UNKNOWN))
-    if plateaus:
-        parts.append(averaging.over_plateaus(sweep, phi_t, plateaus))
-    if swept:
-        along = averaging.along_sweeps(sweep, phi_t, swept, [labels[stretch] for stretch in swept], bad)
-        counts = np.bincount(along.sweep, minlength=len(swept)).tolist()
-        became |= {s: (count, _lag(sweep, s, bad)) for s, count in zip(swept, counts, strict=True)}
-        parts.append(along)
-    if not parts:
-        parts.append(averaging.rows_as_points(sweep, phi_t, np.zeros(0, dtype=int)))
-    found = tuple(became[stretch][1] for stretch in swept)
+    faulty = np.any([fault.which for fault in wrong], axis=0) if wrong else np.zeros(len(sweep), dtype=bool)
+    steady = averaging.over_plateaus(sweep, phi_t, plateaus)
+    moving = averaging.along_sweeps(sweep, phi_t, swept, [labels[stretch] for stretch in swept], faulty)
+    lags = {stretch: _lag(sweep, stretch, faulty) for stretch in swept}
+    counts = np.bincount(moving.sweep, minlength=len(swept)).tolist()
+    number = dict.fromkeys(plateaus, 1) | dict(zip(swept, counts, strict=True))
     return Reduced(
-        concatenate(parts),
-        (*repeated, *remarks.left_out(sweep, wrong, tried)),
-        tuple(remarks.note(sweep, s, labels[s], *became.get(s, (0, UNKNOWN))) for s in tried),
-        found if swept and not plateaus else (UNKNOWN, *found),
+        points=concatenate([part for part in (steady, moving) if len(part)] or [steady]),
+        warnings=(*repeated, *remarks.left_out(sweep, wrong, tried)),
+        stretches=tuple(
+            remarks.note(sweep, s, labels[s], number.get(s, 0), lags.get(s, UNKNOWN)) for s in tried
+        ),
+        lags=tuple(lags.values()),
     )
 
 
 def _labels(sweep: Sweep, tried: list[Stretch]) -> dict[Stretch, str]:
-    """The sweep that the points of each stretch belong to: sweeps within a recording have a number, left out or not."""
+    """Name of the sweep of each stretch: sweeps within a recording are numbered, dropped ones too."""
     numbers = np.cumsum([stretch.kind == SWEEP for stretch in tried]).tolist()
     return {
         stretch: f"{sweep.name}:{k:02d}" if stretch.kind == SWEEP else sweep.name
@@ -90,28 +84,28 @@ def _labels(sweep: Sweep, tried: list[Stretch]) -> dict[Stretch, str]:
     }
 
 
-def _lag(sweep: Sweep, stretch: Stretch, bad: np.ndarray) -> Lag:
+def _lag(sweep: Sweep, stretch: Stretch, faulty: np.ndarray) -> Lag:
     """The lag of a sweep of the sideslip angle."""
-    rows = np.flatnonzero(~bad[stretch.begin : stretch.end]) + stretch.begin
+    rows = np.flatnonzero(~faulty[stretch.begin : stretch.end]) + stretch.begin
     if len(rows) < 2 or np.ptp(sweep.alpha[rows]) < np.ptp(sweep.gamma[rows]):
         return UNKNOWN
-    time, V = sweep.time[rows], sweep.V[rows]
-    rolled = np.r_[0.0, np.cumsum(np.diff(time) * 0.5 * (V[1:] + V[:-1]))]
+    time = sweep.time[rows]
+    rolled = rolled_distance(time, sweep.V[rows])
     if not rolled[-1] > 0.0 or np.any(np.diff(rolled) <= 0.0):
         return UNKNOWN
-    return lags.measure(
-        sweep.alpha[rows], sweep.Fy[rows], rolled, round(averaging.CONTINUOUS_STEP / np.median(np.diff(time)))
+    return measure(
+        sweep.alpha[rows], sweep.Fy[rows], rolled, round(constants.AVERAGED_TIME / np.median(np.diff(time)))
     )
 
 
 def _without_repeats(sweep: Sweep) -> tuple[Sweep, tuple[str, ...]]:
-    """The series without the few samples that a recorder wrote twice, and what to say of them."""
+    """The series without the few samples that a recorder wrote twice, and a sentence about them."""
     repeated = np.flatnonzero(np.diff(sweep.time) == 0.0) + 1
-    if not len(repeated) or len(repeated) > MOST_REPEATED * len(sweep):
+    if not len(repeated) or len(repeated) > constants.MOST_REPEATED_SAMPLES * len(sweep):
         return sweep, ()
     kept = np.delete(np.arange(len(sweep)), repeated)
-    said = f"{sweep.file}:{int(sweep.line[repeated[0]])}: {len(repeated)} samples have the time of the one before; left out"
-    return rows_of(sweep, kept, sweep.name), (said,)
+    sentence = f"{sweep.file}:{int(sweep.line[repeated[0]])}: {len(repeated)} samples have the time of the one before; left out"
+    return rows_of(sweep, kept, sweep.name), (sentence,)
 
 
 def _check_time(sweep: Sweep) -> None:

@@ -1,21 +1,19 @@
-"""What became of every stretch of a recording: rows of a table, and sentences about what was left out."""
+"""Rows of a table about every stretch of a recording, and sentences about what was left out."""
 
 from __future__ import annotations
 
 import numpy as np
 
+from mffit.points import constants
 from mffit.points.faulty import DRIVEN, Fault
 from mffit.points.lag import Lag
 from mffit.points.stretch import PLATEAU, SWEEP, Stretch, StretchNote
 from mffit.sweeps import Sweep
 
-SHOWN = 3
-"""Dropped stretches named one by one."""
-
 
 def left_out(sweep: Sweep, wrong: list[Fault], tried: list[Stretch]) -> tuple[str, ...]:
-    """Sentences about plateaus, samples and sweeps that give no point."""
-    return (*_dropped(sweep, tried), *_said(sweep, wrong, tried))
+    """Sentences about plateaus, samples and sweeps that are left out."""
+    return (*_of_plateaus(sweep, tried), *_of_samples_and_sweeps(sweep, wrong, tried))
 
 
 def driven(sweep: Sweep, free: np.ndarray) -> tuple[str, ...]:
@@ -28,7 +26,7 @@ def driven(sweep: Sweep, free: np.ndarray) -> tuple[str, ...]:
 
 
 def note(sweep: Sweep, stretch: Stretch, label: str, points: int, lag: Lag) -> StretchNote:
-    """The row of a stretch, with its number of points and its lag."""
+    """The row about a stretch."""
     part = slice(stretch.begin, stretch.end)
     last = stretch.end - 1
 
@@ -60,8 +58,8 @@ def note(sweep: Sweep, stretch: Stretch, label: str, points: int, lag: Lag) -> S
     )
 
 
-def _said(sweep: Sweep, wrong: list[Fault], tried: list[Stretch]) -> tuple[str, ...]:
-    """What was left out beside plateaus: faulty samples, and sweeps with their reason."""
+def _of_samples_and_sweeps(sweep: Sweep, wrong: list[Fault], tried: list[Stretch]) -> tuple[str, ...]:
+    """Sentences about faulty samples, and about dropped sweeps with their reasons."""
     out = []
     for fault in wrong:
         first, number = int(np.argmax(fault.which)), int(np.sum(fault.which))
@@ -72,23 +70,29 @@ def _said(sweep: Sweep, wrong: list[Fault], tried: list[Stretch]) -> tuple[str, 
     swept = [s for s in tried if s.kind == SWEEP]
     lost = [s for s in swept if s.dropped]
     if lost:
-        named = "; ".join(f"at {sweep.time[s.begin]:.1f} s {s.dropped}" for s in lost[:SHOWN])
-        more = f" and {len(lost) - SHOWN} more" if len(lost) > SHOWN else ""
-        out.append(f"{sweep.file}: {len(lost)} of {len(swept)} sweeps are left out: {named}{more}")
+        named = _named([f"at {sweep.time[s.begin]:.1f} s {s.dropped}" for s in lost])
+        out.append(f"{sweep.file}: {len(lost)} of {len(swept)} sweeps are left out: {named}")
     return tuple(out)
 
 
-def _dropped(sweep: Sweep, found: list[Stretch]) -> tuple[str, ...]:
+def _of_plateaus(sweep: Sweep, found: list[Stretch]) -> tuple[str, ...]:
+    """A sentence about the plateaus that were dropped."""
     tried = [stretch for stretch in found if stretch.kind == PLATEAU]
     dropped = [stretch for stretch in tried if stretch.dropped]
     if not dropped:
         return ()
-    named = [
-        f"at {sweep.time[stretch.begin]:.1f} s ({np.degrees(sweep.alpha[stretch.begin]):.2f} deg sideslip, "
-        f"{np.degrees(sweep.gamma[stretch.begin]):.2f} deg camber) {stretch.dropped}"
-        for stretch in dropped[:SHOWN]
-    ]
-    more = f" and {len(dropped) - SHOWN} more" if len(dropped) > SHOWN else ""
-    return (
-        f"{sweep.file}: {len(dropped)} of {len(tried)} steady stretches give no point: {'; '.join(named)}{more}",
+    named = _named(
+        [
+            f"at {sweep.time[stretch.begin]:.1f} s ({np.degrees(sweep.alpha[stretch.begin]):.2f} deg sideslip, "
+            f"{np.degrees(sweep.gamma[stretch.begin]):.2f} deg camber) {stretch.dropped}"
+            for stretch in dropped
+        ]
     )
+    return (f"{sweep.file}: {len(dropped)} of {len(tried)} steady stretches give no point: {named}",)
+
+
+def _named(places: list[str]) -> str:
+    """The first places, and the number of the others."""
+    shown = constants.STRETCHES_IN_SENTENCE
+    more = f" and {len(places) - shown} more" if len(places) > shown else ""
+    return "; ".join(places[:shown]) + more

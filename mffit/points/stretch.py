@@ -1,8 +1,10 @@
-"""The record of one stretch of a recording: what became of it, and why it gives no point if it gives none."""
+"""The record of one stretch of a recording: what it is, and why it is dropped if it gives no point."""
 
 from __future__ import annotations
 
 from typing import NamedTuple
+
+import numpy as np
 
 PLATEAU, SWEEP, MOVE = "plateau", "sweep", "transition"
 
@@ -13,11 +15,13 @@ class Stretch(NamedTuple):
     begin: int
     end: int
     dropped: str = ""  #: why they give no point; empty if they do
-    kind: str = PLATEAU  #: the settings rest, one angle is swept, or something else
+    kind: str = (
+        PLATEAU  #: ``PLATEAU``: all settings rest; ``SWEEP``: one angle moves; ``MOVE``: anything else
+    )
 
 
 class StretchNote(NamedTuple):
-    """A stretch in a user's words: one row of ``stretches.csv``."""
+    """One row of ``stretches.csv``, in a user's words and units."""
 
     file: str
     sweep: str  #: label of the sweep it belongs to
@@ -37,3 +41,9 @@ class StretchNote(NamedTuple):
     u_lag_m: float
     hysteresis_N: float  #: half the difference between the ways up and down, rms
     dropped: str  #: why it gives no point; empty if it does
+
+
+def runs(mask: np.ndarray) -> list[tuple[int, int]]:
+    """Begin and end (excluded) of every run of a mask (n,)."""
+    edges = np.flatnonzero(np.diff(np.r_[False, mask, False].astype(np.int8)))
+    return [(int(begin), int(end)) for begin, end in zip(edges[::2], edges[1::2], strict=True)]

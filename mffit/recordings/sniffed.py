@@ -15,12 +15,11 @@ from mffit.config.globs import is_wild, matches
 from mffit.errors import InputError
 from mffit.points import levels
 from mffit.points.loading import Reading, read
-from mffit.points.plausibility import contradictions, under_axes
 from mffit.points.points import Points
-from mffit.points.signatures import signatures
 from mffit.points.steady import gaps
 from mffit.points.stretch import MOVE
 from mffit.recordings.guess import Guess, guesses
+from mffit.suspicion import contradictions, signatures, under_axes
 from mffit.sweeps import formats
 from mffit.sweeps.channels import CHANNELS
 from mffit.sweeps.columns import numbers
@@ -96,10 +95,10 @@ def sniff(paths: Sequence[str | Path], *, unloaded_radius: float | None = None) 
     recordings = tuple(_recording(file, unloaded_radius) for file in files)
     axes = _first_axes(recordings)
     config = configuration_of(recordings, axes)
-    reading = read(config, check_physics=False, may_be_empty=True)
+    reading = read(config, may_be_empty=True)
     agreeing, wrong = axes_of(reading.points, axes, load_falls=axes == "sae")
     if agreeing and agreeing[0] != axes:
-        reading = read(configuration_of(recordings, agreeing[0]), check_physics=False, may_be_empty=True)
+        reading = read(configuration_of(recordings, agreeing[0]), may_be_empty=True)
     return Sniffed(recordings, agreeing, wrong, reading, conditions_of(recordings, reading))
 
 
@@ -245,7 +244,7 @@ def points_from(points: Points, files: Collection[str]) -> Points:
     return points.select(np.array([file in files for file in points.files], dtype=bool)[points.file])
 
 
-def _levels(values: np.ndarray, quantity: levels.Quantity) -> tuple[Level, ...]:
+def _levels(values: np.ndarray, quantity: levels.LevelKind) -> tuple[Level, ...]:
     near = levels.nearest_labels(values, quantity)
     return tuple(
         Level(float(np.median(values[near == k])), int(np.sum(near == k)))

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from mffit.config import Config
-from mffit.fit import Agreement, Coefficient, Doubt, Outlier, Posterior, StageRecord
+from mffit.fit import Agreement, Coefficient, Posterior, StageRecord
 from mffit.fit.coverage import StageCoverage
 from mffit.fit.files import Files
 from mffit.measured import Measured
@@ -18,6 +18,7 @@ from mffit.report.curves import Condition, Curve, conditions, curves
 from mffit.report.lines import Line, model_lines
 from mffit.results import BuildResult
 from mffit.rig_errors import WORDS
+from mffit.suspicion import Doubt, Outlier
 from tir import Tyre
 from tir.parameters import BY_NAME
 

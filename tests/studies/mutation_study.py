@@ -52,6 +52,10 @@ TESTS: dict[str, tuple[str, ...]] = {
     ),
     "mffit/effects": (f"{SUITE}/effects", f"{DIAGNOSIS}/test_wording.py", DIAGNOSIS),
     "mffit/export": (f"{SUITE}/export",),
+    "mffit/suspicion": (
+        *(f"tests/mffit/suspicion/test_{name}.py" for name in ("limits", "undoing", "prediction", "distrust", "broken_units")),
+        "tests/mffit/suspicion", f"{DIAGNOSIS}/test_corrected_files.py",
+    ),
     "mffit/fit": (
         *(f"{FIT}/test_{name}.py" for name in (
             "constraints", "coverage", "weights", "estimates", "rig_numbers", "before_the_fit", "problem", "shapes", "roads",

@@ -9,13 +9,14 @@ from pathlib import Path
 from typing import Any
 
 from mffit import fleet as combining
-from mffit.fit import Coefficient, Doubt, FitResult, Outlier
+from mffit.fit import Coefficient, FitResult
 from mffit.fit.files import Files
 from mffit.measured import KEYS, LoadResult, Measured
 from mffit.measured import wording as say
 from mffit.results.as_json.values import plain, stated
 from mffit.results.build import BuildResult
 from mffit.rig_errors import UNITS
+from mffit.suspicion import Doubt, Outlier
 
 
 def build(result: BuildResult) -> dict[str, Any]:

@@ -12,8 +12,8 @@ from blind_set import draw_case, write_case
 
 from mffit import pipeline
 from mffit.diagnosis.confidence import tempered
-from mffit.diagnosis.misread import Misread
 from mffit.rounding import rounded
+from mffit.suspicion import Misread
 
 
 @pytest.fixture(scope="module")

@@ -23,8 +23,8 @@ from mffit.diagnosis.notes import (
 from mffit.diagnosis.ties import Run, Separation
 from mffit.diagnosis.validation import Gap, Validation
 from mffit.effects import CATALOG, NEEDS
-from mffit.fit.outliers import Outlier
 from mffit.results import as_json
+from mffit.suspicion import Outlier
 from tir import Quantity
 
 BY_ID = {effect.id: effect for effect in CATALOG}

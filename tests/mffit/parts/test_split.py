@@ -61,7 +61,7 @@ def test_mirrors_are_never_taken_from_another_condition(other):
 
 
 @given(st.lists(st.integers(-40, 40), min_size=3, max_size=12, unique=True))
-def test_whatever_the_levels_the_parts_come_back(levels):
+def test_the_parts_come_back_at_any_levels(levels):
     alpha_deg = np.array(sorted({*levels, *(-level for level in levels)})) / 5.0
     points, odd, even = sweep(alpha_deg)
     parts = split(points)

@@ -1,4 +1,4 @@
-"""Levels are those of the test plan, whatever the rig does on its way between them."""
+"""Levels are those of the test plan; what the rig does on its way between them makes no level."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from mffit.points import levels, make_points
-from mffit.points.levels import CAMBER, LOAD, NONE, PRESSURE, SIDESLIP, SPEED, Quantity
+from mffit.points.levels import CAMBER, LOAD, NO_LEVEL, PRESSURE, SIDESLIP, SPEED, LevelKind
 
 QUANTITIES = (LOAD, CAMBER, PRESSURE, SPEED, SIDESLIP)
 RELAXED = settings(deadline=None, max_examples=60)
@@ -16,7 +16,7 @@ quantities = st.sampled_from(QUANTITIES)
 seeds = st.integers(0, 2**31)
 
 
-def placed(steps: np.ndarray, quantity: Quantity) -> np.ndarray:
+def placed(steps: np.ndarray, quantity: LevelKind) -> np.ndarray:
     """Values of a quantity that lie at these multiples of its tolerance."""
     if quantity.relative:
         return 1000.0 * np.exp(quantity.tolerance * np.asarray(steps))
@@ -67,11 +67,11 @@ def test_stragglers_do_not_merge_two_levels(between, quantity, seed):
     assert not levels.spread(values, quantity)
 
 
-def test_a_ramp_between_two_levels_is_no_level():
+def test_values_on_a_ramp_between_two_levels_form_no_level():
     steps = np.concatenate([np.zeros(400), np.linspace(0.0, 10.0, 20), np.full(400, 10.0)])
     found = levels.labels(placed(steps, LOAD), LOAD)
     assert found.max() == 1
-    assert np.all(found[(steps > 1.1) & (steps < 8.9)] == NONE)
+    assert np.all(found[(steps > 1.1) & (steps < 8.9)] == NO_LEVEL)
 
 
 @RELAXED
@@ -97,7 +97,7 @@ def test_load_control_of_two_per_cent_does_not_split_a_level(seed, n):
     assert levels.count(loads, LOAD) == 1
 
 
-def test_a_wide_level_has_flanks_and_no_neighbours():
+def test_the_flanks_of_a_wide_level_are_not_levels():
     """Load control of 3 %: the tails lie beyond the tolerance."""
     loads = 1500.0 * (1.0 + 0.03 * np.random.default_rng(4).standard_normal(2000))
     assert np.sum(np.abs(np.log(loads / 1500.0)) > LOAD.tolerance) > 10
@@ -114,7 +114,7 @@ def test_load_control_of_two_per_cent_keeps_a_programme_apart(seed):
     np.testing.assert_array_equal(levels.nearest_labels(loads, LOAD), which)
 
 
-def test_single_points_are_levels_where_there_is_nothing_else():
+def test_single_points_are_levels_if_all_points_are_single():
     assert levels.count(np.array([900.0, 1400.0, 2100.0]), LOAD) == 3
 
 
@@ -122,7 +122,7 @@ def test_a_few_points_at_another_pressure_are_a_level():
     assert levels.count(np.repeat([200e3, 250e3], [6, 200]), PRESSURE) == 2
 
 
-def test_missing_values_belong_nowhere():
+def test_missing_values_belong_to_no_level():
     values = np.array([np.nan, 250e3, 250e3])
     assert (
         list(levels.labels(values, PRESSURE)) == list(levels.nearest_labels(values, PRESSURE)) == [-1, 0, 0]
@@ -133,9 +133,9 @@ def test_missing_values_belong_nowhere():
     assert np.all(np.isnan(levels.level_values(values[:1], PRESSURE)))
 
 
-def test_a_value_between_levels_takes_the_nearest_ones_value():
+def test_a_value_between_levels_takes_the_value_of_the_nearest():
     values = np.array([250e3] * 20 + [300e3] * 20 + [270e3])
-    assert levels.labels(values, PRESSURE)[-1] == NONE
+    assert levels.labels(values, PRESSURE)[-1] == NO_LEVEL
     assert levels.level_values(values, PRESSURE)[-1] == 250e3
 
 

@@ -1,4 +1,4 @@
-"""The standard error of a mean tells the truth about correlated noise."""
+"""The standard error of a mean is right for correlated noise."""
 
 from __future__ import annotations
 

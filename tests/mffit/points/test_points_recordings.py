@@ -1,4 +1,4 @@
-"""Recordings of a flat belt come back as sweeps, with what motion did to them measured, and everything left out named."""
+"""Recordings of a flat belt become sweeps: lag and hysteresis are measured, and everything left out is named."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ from flat_belt import CAMBERS, LOADS, RATE, SPEED, recording, write_mat
 from mffit import config as configuration
 from mffit import points
 from mffit.errors import InputError
+from mffit.pipeline.inputs import read_points
 from mffit.points import lag
 from mffit.points.stretch import MOVE, SWEEP
 
@@ -22,9 +23,12 @@ COLUMNS = {
 
 @pytest.fixture
 def read(tmp_path):
-    def reading(table: pd.DataFrame, axes: str = "calspan", **keys) -> points.loading.Reading:
+    def reading(
+        table: pd.DataFrame, axes: str = "calspan", *, judged: bool = True, **keys
+    ) -> points.loading.Reading:
         file = write_mat(table, tmp_path / "run.mat")
-        return points.read(
+        reader = read_points if judged else points.read
+        return reader(
             configuration.load(
                 {
                     "tyre": {
@@ -65,7 +69,7 @@ def test_every_condition_is_a_sweep_of_its_own(read, gaps):
     assert not np.any(found.points.continuous)
 
 
-def test_every_sample_is_in_one_stretch_and_those_left_out_say_why(read):
+def test_every_sample_is_in_one_stretch_and_dropped_ones_have_a_reason(read):
     table = recording()
     notes = read(table).stretches
     covered = np.zeros(len(table), dtype=int)
@@ -102,7 +106,7 @@ def test_the_lag_is_measured_and_taken_off(read, sigma):
     np.testing.assert_allclose(-found.table["alpha_deg"], np.degrees(found.alpha), atol=0.25)
 
 
-def test_heat_is_no_lag(read):
+def test_heat_is_not_taken_for_lag(read):
     """A tyre that loses 1 % of its grip per degree differs between up and down, but not where the force is zero."""
     found = read(recording(grip_per_K=0.01))
     lags = [note.lag_m for note in kept(found) if np.isfinite(note.lag_m)]
@@ -191,7 +195,7 @@ def impossible(table):
         (impossible, "no reading"),
     ],
 )
-def test_what_is_no_measurement_is_left_out_with_its_reason(read, change, said):
+def test_faulty_samples_are_left_out_with_a_reason(read, change, said):
     whole = read(recording())
     found = read(spoilt(change))
     sentences = " ".join([*found.warnings, *(note.dropped for note in found.stretches)])
@@ -201,7 +205,7 @@ def test_what_is_no_measurement_is_left_out_with_its_reason(read, change, said):
     assert 0.5 * len(whole.points) < len(found.points) < 1.02 * len(whole.points)
 
 
-def test_the_worse_a_channel_is_clipped_the_less_is_kept_of_it(read):
+def test_more_clipping_leaves_fewer_points(read):
     found = read(spoilt(hard_clipped))
     assert any("Fy clipped" in warning for warning in found.warnings)
     assert len(found.points) < 0.6 * len(read(recording()).points)
@@ -234,7 +238,7 @@ def test_a_reversed_channel_is_caught(read, column):
         read(table)
 
 
-def test_the_one_sweep_that_leans_the_other_way_is_remarked_on(read):
+def test_a_warning_names_the_one_sweep_that_leans_the_other_way(read):
     table = recording()
     sound = read(table)
     assert not [warning for warning in sound.warnings if "other side" in warning]
@@ -254,14 +258,14 @@ def test_samples_written_twice_are_left_out(read):
     assert len(found.points) == len(read(table).points)
 
 
-def test_a_recording_that_is_driven_throughout_says_so(read):
+def test_a_recording_that_is_driven_throughout_is_refused_with_the_reason(read):
     table = recording()
     table["SL"] = 0.1
     with pytest.raises(InputError, match="driven or braked"):
         read(table)
 
 
-def test_moves_between_plateaus_are_no_sweeps(read):
+def test_moves_between_plateaus_are_not_taken_for_sweeps(read):
     """A staircase of set-points with moves of 4 deg between them."""
     time = np.arange(8000) / RATE
     stations = np.repeat([0.0, 4.0, 8.0, 4.0, 0.0, -4.0, -8.0, -4.0], 2)
@@ -274,7 +278,7 @@ def test_moves_between_plateaus_are_no_sweeps(read):
     table["FY"] = -side_force(np.radians(alpha), 0.0, 1500.0, side=0.0) + 5.0 * random.standard_normal(
         len(time)
     )
-    found = read(table, check_physics=False)
+    found = read(table, judged=False)
     assert not kept(found)
     assert len(found.points) == 8
     assert {note.dropped for note in found.stretches if note.kind == MOVE} == {"moves between set-points"}

@@ -1,4 +1,4 @@
-"""Time series come back as the points they rested at, and say what was left out."""
+"""Time series become the points at which they rested, with warnings about what was left out."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from scipy.signal import lfilter
 from mffit import config as configuration
 from mffit import points
 from mffit.errors import InputError
-from mffit.points.steady import Settings, moving, stretches
+from mffit.points.steady import Settings, moves, stretches
 
 RATE = 20.0
 SIGMA = 0.4  # relaxation length [m]
@@ -151,7 +151,7 @@ def test_steps_of_load_alone_make_new_stretches():
     settings = Settings(time, still, still, Fz, np.full(2 * n, 250e3), np.full(2 * n, V))
     found = [stretch for stretch in stretches(settings) if not stretch.dropped]
     assert len(found) == 2
-    assert moving(settings)[n]
+    assert np.logical_or.reduce(moves(settings))[n]
     assert found[0].end <= n <= found[1].begin
 
 
@@ -168,14 +168,14 @@ def test_a_sweep_that_never_rests_is_kept_for_the_diagnosis_only(project):
     assert np.median(np.diff(part.time)) == pytest.approx(0.1, rel=0.01)
 
 
-def test_a_creeping_sweep_is_no_plateau(project):
+def test_a_creeping_sweep_is_not_taken_for_a_plateau(project):
     """0.05 deg/s changes by less than a set-point's step within any second."""
     project.add("creep.csv", series(np.array([-6.0, 6.0]), hold=1.0, steering=0.05, noise=2.0))
     _, warnings = load(project)
     assert any("keeps moving" in w for w in warnings)
 
 
-def test_nothing_steady_at_all_is_refused_with_the_remedy(project):
+def test_a_recording_without_steady_stretches_is_refused_with_the_remedy(project):
     project.tables.clear()
     project.config["sweep"].clear()
     project.add("moving.csv", series(np.array([-8.0, 8.0]), hold=0.5))
@@ -192,7 +192,7 @@ def test_time_that_does_not_rise_is_refused_with_the_line(project):
     assert (caught.value.line, caught.value.column) == (9, "time_s")
 
 
-def test_runs_of_a_series_have_clocks_of_their_own(project):
+def test_every_run_of_a_series_has_its_own_clock(project):
     project.add("series.csv", pd.concat([series().assign(run="a"), series(seed=5).assign(run="b")]))
     found, _ = load(project)
     part = of_file(found, "series.csv")

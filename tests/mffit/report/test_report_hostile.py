@@ -11,8 +11,8 @@ from report_toys import TRUE, made_config, made_points, made_result, programme
 
 import tir
 from mffit.diagnosis import diagnose
-from mffit.fit import Doubt, Outlier
 from mffit.report import write_build, write_diagnosis
+from mffit.suspicion import Doubt, Outlier
 
 HOSTILE = "<img src=x onerror=alert(1)>\"'$^&amp;</style></title><script>alert(2)</script>"
 """Breaks out of an element, an attribute, a style sheet, a title and the type setting of a picture."""

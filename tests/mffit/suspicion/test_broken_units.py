@@ -16,7 +16,7 @@ def refused(project) -> InputError:
     return error.value
 
 
-def test_a_sweep_under_two_names_is_refused_with_both(tmp_path):
+def test_a_sweep_under_two_names_is_refused_with_both_names(tmp_path):
     project = disc_project(tmp_path)
     project.add("copy.csv", project.tables["camber_1000.csv"].sample(frac=1.0, random_state=1))
     error = refused(project)
@@ -24,7 +24,7 @@ def test_a_sweep_under_two_names_is_refused_with_both(tmp_path):
     assert "camber_1000" in str(error)
 
 
-def test_the_same_condition_measured_twice_is_no_copy(tmp_path):
+def test_the_same_condition_measured_twice_is_not_taken_for_a_copy(tmp_path):
     project = disc_project(tmp_path)
     again = project.tables["camber_1000.csv"].copy()
     again["Fy_N"] += np.random.default_rng(3).normal(0.0, 5.0, len(again)).round(2)
@@ -48,7 +48,7 @@ def test_one_load_far_above_its_sweep_is_named_with_its_line(tmp_path):
 
 
 @pytest.mark.parametrize(("column", "stuck"), [("Mz_Nm", 3.7), ("Fy_N", -812.5)])
-def test_a_channel_that_never_moves_is_dead_whatever_it_reads(tmp_path, column, stuck):
+def test_a_channel_that_never_moves_is_dead_at_any_reading(tmp_path, column, stuck):
     project = disc_project(tmp_path)
     project.tables["sideslip_1000.csv"][column] = stuck
     error = refused(project)
@@ -56,7 +56,7 @@ def test_a_channel_that_never_moves_is_dead_whatever_it_reads(tmp_path, column, 
     assert "dead" in str(error)
 
 
-def test_a_refusal_speaks_of_the_heading_and_the_unit_that_were_declared(tmp_path):
+def test_a_refusal_names_the_declared_heading_and_unit(tmp_path):
     project = disc_project(tmp_path)
     table = project.tables["sideslip_1000.csv"]
     table["FY"] = table.pop("Fy_N") / 1000.0

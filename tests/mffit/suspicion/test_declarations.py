@@ -1,4 +1,4 @@
-"""The declaration against the data: every wrong one is refused by its name, and no right one is."""
+"""The declaration against the data: every wrong declaration is refused by name, and no right one is."""
 
 from __future__ import annotations
 
@@ -11,8 +11,8 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from mffit import config as configuration
-from mffit import points
 from mffit.errors import InputError
+from mffit.pipeline.inputs import read_points
 from tir.conventions import FLIPPED
 
 COLUMNS = {"alpha": "alpha_deg", "Fy": "Fy_N", "Mz": "Mz_Nm"}
@@ -24,7 +24,7 @@ def report_in(project, axes: str) -> None:
 
 
 def load(project):
-    return points.load(configuration.load(project.write()))
+    return read_points(configuration.load(project.write()))[:2]
 
 
 def refusal(project) -> InputError:
@@ -126,7 +126,7 @@ def test_backward_runs_labelled_forward_in_their_angles_are_refused(project):
     noise=st.floats(0.0, 25.0),
     seed=st.integers(0, 10_000),
 )
-def test_rig_faults_are_no_wrong_axes(tmp_path_factory, shift, offset, camber, noise, seed):
+def test_rig_faults_are_not_taken_for_wrong_axes(tmp_path_factory, shift, offset, camber, noise, seed):
     """A sideslip axis up to a degree out, camber zero, load-cell zero and noise: backward runs are there."""
     project = disc_project(tmp_path_factory.mktemp("rig"))
     for number, (name, table) in enumerate(list(project.tables.items())):
@@ -139,7 +139,7 @@ def test_rig_faults_are_no_wrong_axes(tmp_path_factory, shift, offset, camber, n
     load(project)
 
 
-def test_a_force_turned_round_by_misalignment_is_no_wrong_centre_with_backward_runs(project):
+def test_with_backward_runs_a_force_reversed_by_misalignment_is_not_taken_for_a_wrong_centre(project):
     """1 deg at 13 Fz/rad is 0.227 Fz, against a turn-slip force of 0.22 Fz."""
     for name, table in project.tables.items():
         way = -1 if name.startswith("backward") else 1
@@ -223,7 +223,7 @@ def test_a_flat_track_needs_no_mirrors_and_no_zero(project):
         (lambda p: [t.pop("Mz_Nm") for t in p.tables.values()], "Mz_Nm was not measured"),
     ],
 )
-def test_thin_programmes_warn_and_go_on(project, spoil, said):
+def test_thin_programmes_cause_warnings_only(project, spoil, said):
     spoil(project)
     _, warnings = load(project)
     assert any(said in sentence for sentence in warnings)

@@ -5,8 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from mffit.fit.prediction import SHOWN, Group, Leverage, groups, predictions
 from mffit.points import make_points
+from mffit.suspicion.constants import MOST_POINTS_SHOWN
+from mffit.suspicion.prediction import Group, Leverage, groups, predictions
 
 
 def linear_fit(n: int = 60, k: int = 5, seed: int = 4) -> tuple[Leverage, np.ndarray, np.ndarray]:
@@ -27,7 +28,7 @@ def test_a_large_group_is_shown_at_evenly_spaced_points_and_left_out_whole():
     fit, design, measured = linear_fit(n=2000)
     whole = Group("s", "s.csv", np.arange(100, 1300), True)
     found = predictions(fit, whole)["Fy"].error
-    assert len(found) == len(whole.shown) == SHOWN
+    assert len(found) == len(whole.shown) == MOST_POINTS_SHOWN
     rest = np.setdiff1d(np.arange(4000), np.concatenate([whole.index, 2000 + whole.index]))
     J = design[rest] / fit.weight[rest, None]
     expected = design @ np.linalg.lstsq(J, measured[rest] / fit.weight[rest], rcond=None)[0]
@@ -35,7 +36,7 @@ def test_a_large_group_is_shown_at_evenly_spaced_points_and_left_out_whole():
 
 
 @pytest.mark.parametrize("index", [np.arange(0, 12), np.arange(30, 34)])
-def test_leaving_out_needs_no_second_fit(index):
+def test_the_prediction_agrees_with_a_second_fit_without_the_sweep(index):
     fit, design, measured = linear_fit()
     n = len(measured) // 2
     rows = np.concatenate([index, n + index])
@@ -50,7 +51,7 @@ def test_leaving_out_needs_no_second_fit(index):
     assert found["Fy"].covariance == pytest.approx(spread, rel=1e-9)
 
 
-def test_files_are_sweeps_and_a_file_of_everything_falls_into_its_conditions():
+def test_files_are_sweeps_and_a_file_of_everything_is_split_into_conditions():
     alpha = np.tile(np.radians(np.linspace(-8, 8, 11)), 6)
     Fz = np.repeat([1000.0, 1500.0, 2000.0], 22)
     gamma = np.radians(np.tile(np.repeat([0.0, 10.0], 11), 3))

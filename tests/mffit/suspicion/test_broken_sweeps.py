@@ -1,4 +1,4 @@
-"""One broken file among sound ones ends with its name."""
+"""One broken file among sound ones is refused by its name."""
 
 from __future__ import annotations
 

@@ -1,7 +1,7 @@
-"""Slopes and forces whose sign or size every tyre shares, read off the points; knows no declaration.
+"""Slopes and forces whose sign and size all tyres share, read from points alone.
 
-For any tyre in ISO-W, rolling forwards: side force falls with sideslip and with camber, the aligning moment
-rises with sideslip, and the turn-slip force has the sign of phi_t, away from the path's centre. Rolling
+For every tyre in ISO-W that rolls forwards, side force falls with sideslip and with camber, the aligning moment
+rises with sideslip, and the turn-slip force has the sign of phi_t: it points away from the path's centre. Rolling
 backwards, side force rises with the sideslip reading.
 """
 
@@ -14,27 +14,13 @@ from typing import NamedTuple
 import numpy as np
 from scipy.special import stdtrit
 
-from mffit.points.points import Points
-from mffit.points.requirements import at_zero
-
-SMALL_SLIP = np.radians(4.0)
-SMALL_CAMBER = np.radians(25.0)
-SMALL_SLIP_OF_MOMENT = np.radians(3.0)
-"""The aligning moment turns back earlier than the side force."""
-UPRIGHT = np.radians(5.0)
-STRAIGHT = np.radians(1.5)
-LARGE_CAMBER = np.radians(20.0)
-DOUBT = 3e-5
-"""Probability of a slope of the other sign (Student's t) below which its sign counts; 4 standard errors of many points."""
-SMALLEST_RANGE = np.radians(0.02)
-"""A smaller range of angles [rad] has no slope."""
-WEAK_FORCE = 0.01
-"""A turn-slip force below this share of the load has no direction."""
-FEWEST = 4
+from mffit.constants import ZERO_CAMBER, ZERO_SIDESLIP
+from mffit.points import Points
+from mffit.suspicion import constants
 
 
 class Slope(NamedTuple):
-    """A slope with its standard error; NaN where the points do not tell."""
+    """A slope with its standard error; NaN where the points do not determine it."""
 
     value: float
     error: float
@@ -43,23 +29,23 @@ class Slope(NamedTuple):
 
     @property
     def sign(self) -> int:
-        """+1 or -1 if beyond doubt, else 0."""
-        clear = float(-stdtrit(max(self.freedom, 1), DOUBT)) * self.error
+        """+1 or -1 if the sign is significant, else 0."""
+        clear = float(-stdtrit(max(self.freedom, 1), constants.CHANCE_OF_OTHER_SIGN)) * self.error
         return int(np.sign(self.value)) if abs(self.value) > clear else 0
 
 
-UNKNOWN = Slope(np.nan, np.nan, 0, np.nan)
+UNKNOWN = Slope(value=np.nan, error=np.nan, freedom=0, scatter=np.nan)
 
 
 def pooled(slopes: Sequence[Slope]) -> list[Slope]:
-    """The slopes of several files with the scatter that they have in common: five points alone hardly know theirs."""
+    """The slopes of several files with the scatter of all: five points alone hardly determine theirs."""
     known = [s for s in slopes if s.freedom]
     freedom = sum(s.freedom for s in known)
     if not freedom:
         return list(slopes)
     scatter = math.sqrt(sum(s.freedom * s.scatter**2 for s in known) / freedom)
     return [
-        Slope(s.value, s.error * scatter / s.scatter, freedom, scatter)
+        Slope(value=s.value, error=s.error * scatter / s.scatter, freedom=freedom, scatter=scatter)
         if s.freedom and s.scatter > 0.0
         else s
         for s in slopes
@@ -67,7 +53,7 @@ def pooled(slopes: Sequence[Slope]) -> list[Slope]:
 
 
 class Signatures(NamedTuple):
-    """What the data look like under some declaration, per unit of load."""
+    """Slopes and forces per unit of load, under some declaration."""
 
     cornering: Slope  #: dFy/dalpha forwards [1/rad]; negative
     camber: Slope  #: dFy/dgamma [1/rad]; negative
@@ -78,12 +64,13 @@ class Signatures(NamedTuple):
 
 
 def signatures(points: Points) -> Signatures:
-    """Read the signatures off steady points in normal mount."""
+    """The signatures of steady points in normal mount."""
     points = points.select(points.mount > 0) if np.any(points.mount > 0) else points
     forward = points.direction > 0
-    upright = (np.abs(points.alpha) <= SMALL_SLIP) & (np.abs(points.gamma) <= UPRIGHT)
-    straight = (np.abs(points.alpha) <= STRAIGHT) & (np.abs(points.gamma) <= SMALL_CAMBER)
-    gentle = np.abs(points.alpha) <= SMALL_SLIP_OF_MOMENT
+    sideslip, camber = np.abs(points.alpha), np.abs(points.gamma)
+    upright = (sideslip <= constants.SIDESLIP_OF_SLOPES.rad) & (camber <= constants.UPRIGHT_FOR_SLOPES.rad)
+    straight = (sideslip <= constants.STRAIGHT_FOR_SLOPES.rad) & (camber <= constants.CAMBER_OF_SLOPES.rad)
+    gentle = sideslip <= constants.SIDESLIP_OF_MOMENT_SLOPE.rad
     return Signatures(
         cornering=slope(points, points.Fy, "alpha", forward & upright),
         camber=slope(points, points.Fy, "gamma", forward & straight),
@@ -95,7 +82,7 @@ def signatures(points: Points) -> Signatures:
 
 
 def slope(points: Points, response: np.ndarray, angle: str, used: np.ndarray) -> Slope:
-    """Slope at the origin of ``response`` per load over an angle, beside the other angle.
+    """Slope of ``response`` per load over an angle, with a linear term of the other angle.
 
     Parameters
     ----------
@@ -107,8 +94,7 @@ def slope(points: Points, response: np.ndarray, angle: str, used: np.ndarray) ->
     used = used & np.isfinite(response)
     other = points.gamma if angle == "alpha" else points.alpha
     x, y = getattr(points, angle)[used], (response / points.Fz)[used]
-    # Two points make no slope with an error, and equal angles none at all.
-    if len(x) < FEWEST or np.ptp(x) < SMALLEST_RANGE:
+    if len(x) < constants.FEWEST_POINTS_OF_SLOPE or np.ptp(x) < constants.SMALLEST_RANGE_OF_SLOPE.rad:
         return UNKNOWN
     columns = [np.ones_like(x), x]
     if np.ptp(other[used]) > 0.0:
@@ -120,11 +106,17 @@ def slope(points: Points, response: np.ndarray, angle: str, used: np.ndarray) ->
         return UNKNOWN
     scatter = float(np.sqrt(np.sum((y - design @ solution) ** 2) / freedom))
     error = scatter * float(np.sqrt(np.linalg.inv(design.T @ design)[1, 1]))
-    return Slope(float(solution[1]), error, freedom, scatter)
+    return Slope(value=float(solution[1]), error=error, freedom=int(freedom), scatter=scatter)
+
+
+def at_zero(points: Points) -> np.ndarray:
+    """Mask (n,) of the points at zero sideslip and camber."""
+    upright = np.abs(np.degrees(points.gamma)) <= ZERO_CAMBER
+    return upright & (np.abs(np.degrees(points.alpha)) <= ZERO_SIDESLIP)
 
 
 def _outward(points: Points) -> float:
-    """Mean of forward and backward zeros, which sideslip misalignment and ply-steer leave alone."""
+    """Mean of forward and backward zeros, which sideslip misalignment and ply-steer do not change."""
     zero = at_zero(points) & (points.phi_t != 0.0)
     outward = points.Fy * np.sign(points.phi_t) / points.Fz
     ways = [outward[zero & (points.direction == way)] for way in (1, -1)]
@@ -133,8 +125,10 @@ def _outward(points: Points) -> float:
 
 
 def _thrust(points: Points) -> float:
-    """Odd camber thrust at large camber; NaN without both signs of it."""
-    used = (np.abs(points.alpha) <= STRAIGHT) & (np.abs(points.gamma) > LARGE_CAMBER) & (points.direction > 0)
+    """Odd camber thrust at large camber; NaN without both signs of camber."""
+    straight = np.abs(points.alpha) <= constants.STRAIGHT_FOR_SLOPES.rad
+    leaning = np.abs(points.gamma) > constants.CAMBER_OF_THRUST.rad
+    used = straight & leaning & (points.direction > 0)
     Fy, Fz, gamma = points.Fy[used], points.Fz[used], points.gamma[used]
     if not (np.any(gamma > 0) and np.any(gamma < 0)):
         return float("nan")

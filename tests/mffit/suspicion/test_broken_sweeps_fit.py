@@ -1,4 +1,4 @@
-"""Sweeps that only the fit can tell from sound ones: named where impossible, doubted where odd, left alone where sound."""
+"""Broken sweeps that only the fit shows: impossible ones are named, odd ones doubted, sound ones left alone."""
 
 from __future__ import annotations
 
@@ -83,7 +83,7 @@ def test_a_sweep_that_no_mistake_explains_is_still_named(tmp_path):
     assert str(error.file) == "sideslip_1400N_10deg.csv"
 
 
-def test_a_file_with_a_zero_offset_is_doubted_and_the_offset_told(tmp_path):
+def test_a_file_with_a_zero_offset_is_doubted_and_the_offset_named(tmp_path):
     campaign = Campaign(tmp_path, "flat-track", seed=3)
     campaign.tables["sideslip_1400N_20deg.csv"]["Fy_N"] += 120.0
     result = campaign.build()

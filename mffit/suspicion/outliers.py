@@ -1,14 +1,16 @@
-"""Single readings that stand out of their sweep: they are listed, and the fit does not follow them."""
+"""Single readings that do not fit their sweep: they are listed, and have no weight in the fit."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
 from mffit.points import Points
 from mffit.quantities import CHANNELS
+from mffit.suspicion import constants
 
 
 @dataclass(frozen=True, slots=True)
@@ -21,7 +23,7 @@ class Outlier:
     row: int  #: of the points
     channel: str
     measured: float  #: [N] or [Nm], in ISO-W as all of these
-    expected: float  #: what the fitted model reads there
+    expected: float  #: by the fitted model
     ratio: float  #: their difference in units of the uncertainty
 
     @property
@@ -35,7 +37,7 @@ def outliers(
     weights: tuple[np.ndarray, np.ndarray],
     model: tuple[np.ndarray, np.ndarray],
 ) -> tuple[Outlier, ...]:
-    """The readings that the fit gave no weight, in the order of the points.
+    """The readings to which the fit gave no weight, in the order of the points.
 
     Parameters
     ----------
@@ -64,8 +66,19 @@ def outliers(
 
 
 def marks(found: Iterable[Outlier], n: int) -> np.ndarray:
-    """What stands out at every point (n,): "", "Fy", "Mz" or "Fy Mz"."""
+    """Outlying channels of every point (n,): "", "Fy", "Mz" or "Fy Mz"."""
     out = np.full(n, "", dtype=object)
     for o in found:
         out[o.row] = f"{out[o.row]} {o.channel}".strip()
     return out
+
+
+def in_words(found: Sequence[Outlier]) -> dict[str, Any]:
+    """Facts for the sentence about all outliers, the worst by name."""
+    worst = sorted(found, key=lambda o: -o.ratio)[: constants.OUTLIERS_IN_SENTENCE]
+    named = "; ".join(
+        f"{o.place} {o.channel} = {o.measured:.4g} {CHANNELS[o.channel].unit} where {o.expected:.4g} is expected"
+        for o in worst
+    )
+    more = f"; and {len(found) - len(worst)} more, all in result.json" if len(found) > len(worst) else ""
+    return {"number": len(found), "named": named + more}

@@ -1,4 +1,4 @@
-"""What all other sweeps say of each sweep: prediction with the sweep left out, from the one fit to all of them.
+"""Prediction of each sweep from all others, computed from the one fit to all of them.
 
 To first order no second fit is needed. With J the derivatives of a group's residuals r in units of their weight, and C the
 covariance of the fit, the others leave the covariance A^-1 with A = C^-1 - J^T J, and the numbers move by A^-1 J^T r when the
@@ -7,31 +7,37 @@ group is taken out (Belsley, Kuh and Welsch, Regression Diagnostics, 1980, secti
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
-from mffit.fit.problem import FitProblem
 from mffit.least_squares import Number, inverse, root
 from mffit.points import Points, levels
 from mffit.quantities import CHANNELS
+from mffit.rig import Simulation
 from mffit.rig_errors import RIG_ERRORS
+from mffit.suspicion import constants
 
-FEWEST = 4
-"""Points that make a sweep."""
-MOST = 0.5
-"""Share of all points from which on the others say too little of a sweep."""
-UNKNOWN = 1e-3
-"""Share of a direction's information that comes from the others below which they say nothing of it."""
-SHOWN = 300
-"""Points of a group at which it is judged; of more, evenly spaced ones say the same."""
 COMMON = tuple(
     error.name
     for error in RIG_ERRORS
     if error.kind != "tyre" and error.name not in ("backlash_deg", "path_radius_m")
 )
-"""Errors of a rig that all sweeps share; they are no contradiction of one sweep, and are let free, to first order."""
+"""Rig errors that all sweeps share: they contradict no single sweep and are free, to first order."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class FittedModel:
+    """A fit at its solution."""
+
+    points: Points  #: (n,)
+    simulation: Simulation
+    weights: Mapping[str, np.ndarray]  #: by channel, uncertainty that the fit used (n,) [N], [Nm]
+    numbers: Sequence[Number]  #: that were free, (k,), with their priors
+    names: tuple[str, ...]  #: of all uncertain numbers, (j,)
+    covariance: np.ndarray  #: (j, j)
+    scale: Mapping[str, float]  #: by channel, robust misfit over stated uncertainty
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -41,12 +47,12 @@ class Group:
     name: str  #: for sentences
     file: str
     index: np.ndarray  #: (m,) rows of the points
-    whole: bool  #: all points of a sweep, not those of one condition
+    whole: bool  #: all points of a sweep rather than those of one condition
 
     @property
     def shown(self) -> np.ndarray:
-        """Rows at which the group is judged."""
-        return self.index[:: -(-len(self.index) // SHOWN)]
+        """Rows at which the group is predicted."""
+        return self.index[:: -(-len(self.index) // constants.MOST_POINTS_SHOWN)]
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,31 +62,31 @@ class Leverage:
     residual: np.ndarray  #: (2n,) model less measured [N], [Nm]
     slope: np.ndarray  #: (2n, k) derivative by the free numbers
     weight: np.ndarray  #: (2n,) uncertainty that the fit used [N], [Nm]; inf: not used
-    noise: (
-        np.ndarray
-    )  #: (2n,) uncertainty of a sound point, the model's own misfit included; inf: not measured
+    noise: np.ndarray  #: (2n,) uncertainty of a sound point, model misfit included; inf: not measured
     root: np.ndarray  #: (k, k) of the covariance, which is root @ root.T
 
 
 @dataclass(frozen=True, slots=True)
 class Prediction:
-    """One channel of a group as the others predict it."""
+    """One channel of a group as the other sweeps predict it."""
 
     error: np.ndarray  #: (m,) prediction less measured [N] or [Nm]
     covariance: np.ndarray  #: (m, m) of a sound sweep's error: its noise and the prediction's
 
 
 def groups(points: Points) -> list[Group]:
-    """Every sweep, and where one holds several loads, pressures, directions or cambers each of these by itself."""
+    """Every sweep, and every load, pressure, direction and camber of a sweep that holds several."""
     found = [*_sweeps(points), *_conditions(points)]
     unique = {tuple(group.index): group for group in reversed(found)}
-    return [g for g in reversed(unique.values()) if FEWEST <= len(g.index) <= MOST * len(points)]
+    fewest, most = constants.FEWEST_POINTS_OF_A_SWEEP, constants.LARGEST_SWEEP * len(points)
+    return [g for g in reversed(unique.values()) if fewest <= len(g.index) <= most]
 
 
 def _sweeps(points: Points) -> Iterator[Group]:
     for k in np.unique(points.sweep):
         index = np.flatnonzero(points.sweep == k)
-        yield Group(points.sweep_names[k], points.files[points.file[index[0]]], index, True)
+        file = points.files[points.file[index[0]]]
+        yield Group(name=points.sweep_names[k], file=file, index=index, whole=True)
 
 
 def _conditions(points: Points) -> Iterator[Group]:
@@ -91,43 +97,44 @@ def _conditions(points: Points) -> Iterator[Group]:
         i = sweep.index
         own = levels.count(points.gamma[i], levels.CAMBER)
         keys = np.column_stack([load[i], pressure[i], points.direction[i], points.mount[i]])
-        # A sweep of camber is not a condition per angle.
-        if own * FEWEST <= len(i) and not levels.spread(points.gamma[i], levels.CAMBER):
+        # In a sweep of camber the angles are not conditions.
+        few = own * constants.FEWEST_POINTS_OF_A_SWEEP <= len(i)
+        by_camber = few and not levels.spread(points.gamma[i], levels.CAMBER)
+        if by_camber:
             keys = np.column_stack([keys, camber[i]])
         for key in np.unique(keys, axis=0):
             rows = i[np.all(keys == key, axis=1)]
             if len(rows) < len(i):
                 part = points.select(rows)
                 said = f"{np.mean(part.Fz):.0f} N, {np.mean(part.p) / 1e3:.0f} kPa"
-                if keys.shape[1] > 4:
+                if by_camber:
                     said += f", camber {np.degrees(np.mean(part.gamma)):z.0f} deg"
-                yield Group(f"{sweep.name} at {said}", sweep.file, rows, False)
+                yield Group(name=f"{sweep.name} at {said}", file=sweep.file, index=rows, whole=False)
 
 
-def leverage(problem: FitProblem, numbers: Sequence[Number], noise: np.ndarray) -> Leverage:
-    """Residuals and derivatives of a fit at its solution.
+def leverage(fit: FittedModel, noise: np.ndarray) -> Leverage:
+    """Residuals and derivatives of a fit.
 
     Parameters
     ----------
-    problem : at the solution, with the weights that the fit used
-    numbers : that were free, (k,), with their priors
+    fit : at its solution
     noise : uncertainty of a sound point [N], [Nm], (2n,) of Fy and then Mz; inf where not measured
     """
-    points = problem.points
-    free = [n.name for n in numbers]
+    points = fit.points
+    free = [n.name for n in fit.numbers]
     common = [name for name in COMMON if name not in free]
-    out, slope = problem.simulation.sensitivities(points, [*free, *common])
+    out, slope = fit.simulation.sensitivities(points, [*free, *common])
     slopes = np.concatenate(slope)
     measured = np.concatenate([points.Fy, points.Mz])
     used = np.isfinite(measured) & np.isfinite(noise)
-    weight = np.where(used, np.concatenate(list(problem.sigma.values())), np.inf)
+    weight = np.where(used, np.concatenate(list(fit.weights.values())), np.inf)
     residual = np.where(used, np.concatenate(out) - np.nan_to_num(measured), 0.0)
     J = slopes / weight[:, None]
-    covariance = inverse(J.T @ J + np.diag([n.spread**-2.0 for n in numbers] + [0.0] * len(common)))
-    push = J.T @ (residual / weight)
-    push[: len(free)] = 0.0  # the fit has ended: it is balanced in its own numbers
+    covariance = inverse(J.T @ J + np.diag([n.spread**-2.0 for n in fit.numbers] + [0.0] * len(common)))
+    gradient = J.T @ (residual / weight)
+    gradient[: len(free)] = 0.0  # the fit has converged in its own numbers
     return Leverage(
-        residual=np.where(used, residual - slopes @ (covariance @ push), 0.0),
+        residual=np.where(used, residual - slopes @ (covariance @ gradient), 0.0),
         slope=slopes,
         weight=weight,
         noise=np.where(used, noise, np.inf),
@@ -136,15 +143,14 @@ def leverage(problem: FitProblem, numbers: Sequence[Number], noise: np.ndarray) 
 
 
 def predictions(fit: Leverage, group: Group) -> dict[str, Prediction]:
-    """The channels of a group, where it is shown (m,), as all other points predict them; one not measured is left out."""
+    """The measured channels of a group at the rows that it shows (m,), as all other points predict them."""
     n = len(fit.residual) // 2
     rows = _measured(fit, group.index, n)
     J = fit.slope[rows] / fit.weight[rows][:, None]
-    share, axes = np.linalg.eigh(
-        (J @ fit.root).T @ (J @ fit.root)
-    )  # of the information that comes from the group
+    # Eigenvalues: the share of the information about each direction that comes from the group.
+    share, axes = np.linalg.eigh((J @ fit.root).T @ (J @ fit.root))
     turned = fit.root @ axes
-    others = (turned / np.maximum(1.0 - share, UNKNOWN)) @ turned.T
+    others = (turned / np.maximum(1.0 - share, constants.INFORMATION_OF_OTHERS)) @ turned.T
     moved = others @ (J.T @ (fit.residual[rows] / fit.weight[rows]))
     rows = _measured(fit, group.shown, n)
     slope = fit.slope[rows]
@@ -154,7 +160,7 @@ def predictions(fit: Leverage, group: Group) -> dict[str, Prediction]:
     for k, name in enumerate(CHANNELS):
         own = rows >= n if k else rows < n
         if np.any(own):
-            out[name] = Prediction(error[own], spread[np.ix_(own, own)])
+            out[name] = Prediction(error=error[own], covariance=spread[np.ix_(own, own)])
     return out
 
 

@@ -1,0 +1,40 @@
+"""Which readings are suspected, and what follows: ``rules`` lists all suspicions, ``applying`` runs them."""
+
+from mffit.suspicion.applying import (
+    about,
+    after_the_fit,
+    before_the_fit,
+    contradictions,
+    distrust,
+    misread,
+)
+from mffit.suspicion.declarations import under_axes
+from mffit.suspicion.misread import Misread
+from mffit.suspicion.others import Campaign, Doubt
+from mffit.suspicion.outliers import Outlier, marks, outliers
+from mffit.suspicion.prediction import FittedModel
+from mffit.suspicion.rule import When
+from mffit.suspicion.rules import RULES
+from mffit.suspicion.slopes import signatures
+from mffit.suspicion.trust import Misfit
+
+__all__ = [
+    "RULES",
+    "Campaign",
+    "Doubt",
+    "FittedModel",
+    "Misfit",
+    "Misread",
+    "Outlier",
+    "When",
+    "about",
+    "after_the_fit",
+    "before_the_fit",
+    "contradictions",
+    "distrust",
+    "marks",
+    "misread",
+    "outliers",
+    "signatures",
+    "under_axes",
+]

@@ -1,0 +1,153 @@
+"""Search for other axes, frames and path centres if the data contradict the declared ones.
+
+Every alternative is tried on the data. A sideslip axis that is a degree out does not look like wrong axes, as it
+shifts the curves without reversing a slope.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from functools import partial
+from typing import NamedTuple
+
+import numpy as np
+
+from mffit.config import Config
+from mffit.points import Points
+from mffit.suspicion import constants
+from mffit.suspicion.rule import Finding, Rule
+from mffit.suspicion.slopes import Signatures, signatures
+from tir.conventions import FLIPPED
+
+
+class Alternative(NamedTuple):
+    """Another declaration."""
+
+    remedy: str  #: what to write
+    key: str
+    points: Callable[[], Points]  #: as they would be then
+
+
+def broken(rules: Sequence[Rule], found: Signatures) -> list[str]:
+    """The broken rules, as beginnings of sentences; empty for plausible data."""
+    return [rule.said(finding.facts) for rule in rules for finding in rule.find(found)]
+
+
+def contradicted(points: Points, config: Config, slope_rules: Sequence[Rule]) -> Iterator[Finding]:
+    """A declaration under which the data break ``slope_rules``, with the declarations under which they do not."""
+    found = signatures(points)
+    wrong = broken(slope_rules, found)
+    if not wrong:
+        return
+
+    def fits(other: Alternative) -> bool:
+        """Whether the data agree with another declaration, and also show a camber response under it."""
+        seen = signatures(other.points())
+        return not broken(slope_rules, seen) and not seen.camber.value > constants.WEAKEST_CAMBER_STIFFNESS
+
+    fitting = [other for other in _alternatives(points, config) if fits(other)]
+    fitting = fitting or [other for other in _pairs(points, config) if fits(other)]
+    if fitting:
+        remedy = f"the data agree with {' or with '.join(dict.fromkeys(other.remedy for other in fitting))}"
+        key = fitting[0].key
+    else:
+        remedy = (
+            "no other axes, frame or path centre fits: check the signs of alpha_deg, gamma_deg, Fy_N, Mz_Nm"
+        )
+        key = "rig.axes"
+    shown = constants.CONTRADICTIONS_IN_SENTENCE
+    facts = {
+        "declared": _declared(config),
+        "wrong": " and ".join(wrong[:shown]) + (", among others," if len(wrong) > shown else ""),
+        "remedy": remedy + _or_misaligned(points, found, len(wrong)),
+    }
+    yield Finding(facts, file=config.path, line=config.line_of(key), key=key)
+
+
+def _or_misaligned(points: Points, found: Signatures, contradictions: int) -> str:
+    """The other cause of a turn-slip force towards the centre, if that is all that is wrong and no backward run decides."""
+    inward = found.outward < -constants.WEAK_TURN_SLIP_FORCE
+    if (
+        not inward
+        or contradictions > 1
+        or np.any(points.direction < 0)
+        or not np.isfinite(found.cornering.value)
+    ):
+        return ""
+    degrees = abs(np.degrees(found.outward / found.cornering.value))
+    return f", or the sideslip axis is out by more than {degrees:.1f} deg, which backward runs would show"
+
+
+def _declared(config: Config) -> str:
+    rig = config.rig
+    said = f'axes = "{rig.axes}", force_frame = "{rig.force_frame}"'
+    return said if rig.type == "flat-track" else f'{said}, path_centre = "{rig.path_centre}"'
+
+
+def _alternatives(points: Points, config: Config) -> list[Alternative]:
+    """Every declaration that differs in one thing."""
+    rig = config.rig
+    frame = "C" if rig.force_frame == "W" else "W"
+    side = "right" if rig.path_centre == "left" else "left"
+    others = [
+        Alternative(f'axes = "{axes}"', "rig.axes", partial(under_axes, points, rig.axes, axes))
+        for axes in FLIPPED
+        if axes != rig.axes
+    ]
+    if rig.on_disc:
+        others.append(
+            Alternative(
+                f'path_centre = "{side}"', "rig.path_centre", lambda: points.replace(phi_t=-points.phi_t)
+            )
+        )
+    others += [
+        Alternative(
+            f'force_frame = "{frame}"', "rig.force_frame", partial(_other_frame, points, frame, vertical)
+        )
+        for vertical in (False, True)
+    ]
+    return [
+        *others,
+        Alternative(
+            'the other sign of Mz: Mz_Nm = { column = "Mz_Nm", scale = -1 } under [sweep.columns]',
+            "sweep",
+            lambda: points.replace(Mz=-points.Mz),
+        ),
+        Alternative(
+            "backward runs reported in the rig's axes: their alpha_deg has the other sign, or direction is wrong",
+            "sweep",
+            lambda: points.replace(alpha=np.where(points.direction < 0, -points.alpha, points.alpha)),
+        ),
+    ]
+
+
+def _pairs(points: Points, config: Config) -> list[Alternative]:
+    """Other axes together with the other path centre or frame."""
+    pairs = []
+    for axes in FLIPPED:
+        if axes == config.rig.axes:
+            continue
+        turned = under_axes(points, config.rig.axes, axes)
+        for other in _alternatives(turned, config):
+            if other.key in ("rig.path_centre", "rig.force_frame"):
+                pairs.append(Alternative(f'axes = "{axes}" and {other.remedy}', "rig.axes", other.points))
+    return pairs
+
+
+def under_axes(points: Points, declared: str, other: str) -> Points:
+    """The points as they would be if ``other`` axes had been declared."""
+    changed = FLIPPED[declared] ^ FLIPPED[other]
+    turned = [name for name in ("alpha", "Fy", "Mz") if name in changed]
+    return points.replace(**{name: -getattr(points, name) for name in turned})
+
+
+def _other_frame(points: Points, frame: str, vertical: bool) -> Points:
+    """The points as they would be in the other ``frame``; ``vertical``: the load is vertical in both."""
+    c, s = np.cos(points.gamma), np.sin(points.gamma)
+    # From C to W where C is the alternative, and back to what the rig gave where C was declared.
+    s = s if frame == "C" else -s
+    if not vertical:
+        return points.replace(Fy=c * points.Fy - s * points.Fz, Fz=c * points.Fz + s * points.Fy)
+    return points.replace(
+        Fy=(points.Fy - s * points.Fz) / c if frame == "C" else c * points.Fy - s * points.Fz
+    )

@@ -1,0 +1,128 @@
+"""What the error of a doubtful sweep looks like: a known mistake, or one number that is off."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from mffit.points import Points
+from mffit.rig import Simulation
+from mffit.suspicion import constants
+from mffit.suspicion.mistakes import MISTAKES
+from mffit.suspicion.prediction import Prediction
+
+DEGREES = float(np.degrees(1.0))
+STEP = 1e-4
+"""Step of the difference quotient over a set-point [rad], or relative for load and pressure."""
+Shape = Callable[[Points, Simulation], Mapping[str, np.ndarray]]
+"""Change of prediction less measured, per unit of a number, by channel."""
+
+
+@dataclass(frozen=True, slots=True)
+class Shift:
+    """One number of a sweep that may be off."""
+
+    looks: str  #: with {} for the number
+    shape: Shape
+    unit: float = 1.0  #: by which the number is multiplied in the sentence
+    start: float = 0.0  #: added to it there
+    sign: str = ""  #: channel whose sign in the rig's axes the number has
+
+
+def _constant(channel: str) -> Shape:
+    return lambda points, simulation: {channel: -np.ones(len(points))}
+
+
+def _gain(channel: str) -> Shape:
+    return lambda points, simulation: {channel: -getattr(simulation.readings(points), channel)}
+
+
+def _set_point(name: str, relative: bool = False) -> Shape:
+    def shape(points: Points, simulation: Simulation) -> Mapping[str, np.ndarray]:
+        value = getattr(points, name)
+        moved = points.replace(**{name: value * (1.0 + STEP) if relative else value + STEP})
+        here, there = simulation.readings(points), simulation.readings(moved)
+        return {"Fy": (here.Fy - there.Fy) / STEP, "Mz": (here.Mz - there.Mz) / STEP}
+
+    return shape
+
+
+SHIFTS = (
+    Shift("a zero offset of {:+.3g} N in Fy_N", _constant("Fy"), sign="Fy"),
+    Shift("a zero offset of {:+.3g} Nm in Mz_Nm", _constant("Mz"), sign="Mz"),
+    Shift("a gain of {:.3g} in Fy_N", _gain("Fy"), start=1.0),
+    Shift("a gain of {:.3g} in Mz_Nm", _gain("Mz"), start=1.0),
+    Shift(
+        "a sideslip axis that is {:+.2g} deg out",
+        _set_point("alpha"),
+        unit=DEGREES,
+        sign="alpha",
+    ),
+    Shift(
+        "a camber axis that is {:+.2g} deg out",
+        _set_point("gamma"),
+        unit=DEGREES,
+        sign="gamma",
+    ),
+    Shift("a load that was {:+.2g} % off", _set_point("Fz", relative=True), unit=100.0),
+    Shift("a pressure that was {:+.2g} % off", _set_point("p", relative=True), unit=100.0),
+)
+
+
+def explanation(
+    points: Points, errors: Mapping[str, Prediction], simulation: Simulation, signs: Mapping[str, float]
+) -> str:
+    """What explains most of the errors of a sweep, in words; empty if no known cause does.
+
+    Parameters
+    ----------
+    points : of the sweep (m,)
+    errors : prediction of each channel less what was measured
+    simulation : as fitted
+    signs : +1 or -1 per channel: from ISO-W to the rig's axes
+    """
+    before = _chi2(errors, {n: e.error for n, e in errors.items()})
+    best, said = constants.EXPLAINED_BY_ONE_NUMBER * before, ""
+    for mistake in MISTAKES:
+        gained = before - _chi2(errors, _undone(points, errors, simulation, mistake.undone(points, signs)))
+        if gained > best:
+            best, said = gained, mistake.looks
+    for shift in SHIFTS:
+        gained, size = _fitted(points, errors, shift.shape(points, simulation))
+        if gained > best:
+            best = gained
+            said = shift.looks.format(shift.start + shift.unit * signs.get(shift.sign, 1.0) * size)
+    return said
+
+
+def _undone(
+    points: Points, errors: Mapping[str, Prediction], simulation: Simulation, changed: Points
+) -> dict[str, np.ndarray]:
+    """The errors with a mistake undone, to first order."""
+    here, there = simulation.readings(points), simulation.readings(changed)
+    moved = {}
+    for n, e in errors.items():
+        known = np.isfinite(getattr(points, n))
+        change = getattr(there, n) - getattr(here, n) - getattr(changed, n) + getattr(points, n)
+        moved[n] = e.error + change[known]
+    return moved
+
+
+def _fitted(
+    points: Points, errors: Mapping[str, Prediction], shapes: Mapping[str, np.ndarray]
+) -> tuple[float, float]:
+    """Chi-square that a multiple of the shapes removes, and the multiple."""
+    curvature = gradient = 0.0
+    for n, e in errors.items():
+        if n in shapes:
+            shape = shapes[n][np.isfinite(getattr(points, n))]
+            solved = np.linalg.solve(e.covariance, shape)
+            curvature += float(shape @ solved)
+            gradient += float(e.error @ solved)
+    return (gradient**2 / curvature, gradient / curvature) if curvature > 0.0 else (0.0, 0.0)
+
+
+def _chi2(errors: Mapping[str, Prediction], moved: Mapping[str, np.ndarray]) -> float:
+    return sum(float(moved[n] @ np.linalg.solve(e.covariance, moved[n])) for n, e in errors.items())

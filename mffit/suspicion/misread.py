@@ -1,0 +1,154 @@
+"""The one sweep that a simulation misses because it was recorded wrongly.
+
+It is reversed, in another unit, or labelled with another load, camber or pressure than it was run at.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from functools import partial
+
+import numpy as np
+
+from mffit.points import Points, levels
+from mffit.quantities import CHANNELS, CONDITIONS
+from mffit.rig import Simulation
+from mffit.scatter import robust, usual_size
+from mffit.suspicion import constants
+from mffit.suspicion.mistakes import MISTAKES, Mistake
+from mffit.suspicion.undoing import Away, explaining
+
+LABELS = (("Fz", "Fz_N", levels.LOAD), ("gamma", "gamma_deg", levels.CAMBER), ("p", "p_kPa", levels.PRESSURE))
+TO_COLUMN = {"Fz": 1.0, "gamma": float(np.degrees(1.0)), "p": 1e-3}
+"""From SI to the unit of the column."""
+
+
+@dataclass(frozen=True, slots=True)
+class Misread:
+    """One sweep that looks like a known mistake."""
+
+    sweep: str
+    file: str
+    looks: str
+    column: str
+    remedy: str
+    before: float  #: how far it is off, as a share of the usual size of the channel that is worst
+    after: float  #: with the mistake undone
+
+
+def misread_sweep(points: Points, simulation: Simulation, signs: Mapping[str, float]) -> Iterator[Misread]:
+    """The sweep that is much further off than all others, if a known mistake explains it.
+
+    If several sweeps look like that, the model or the rig is at fault.
+
+    Parameters
+    ----------
+    points : as declared (n,)
+    simulation : as given; it may miss all sweeps for another reason
+    signs : +1 or -1 per channel: from ISO-W to the rig's axes
+    """
+    numbers, counts = np.unique(points.sweep, return_counts=True)
+    numbers = numbers[counts >= constants.FEWEST_POINTS_OF_A_MISREAD_SWEEP]
+    if len(numbers) < constants.FEWEST_SWEEPS_FOR_MISREAD:
+        return
+    parts = [points.select(points.sweep == k) for k in numbers]
+    size = {name: usual_size(getattr(p, name) / p.Fz for p in parts) for name in CHANNELS}
+
+    def away(of: Points) -> dict[str, Away]:
+        return {n: Away(error=e, share=e) for n, e in _off(of, simulation, size).items()}
+
+    off = [_off(part, simulation, size) for part in parts]
+    usual = {name: float(np.median([o[name] for o in off if name in o] or [np.nan])) for name in CHANNELS}
+    found = []
+    for part, before in zip(parts, off, strict=True):
+        gross = _gross(before, [o for o in off if o is not before], usual)
+        tolerated = {
+            n: max(
+                constants.CORRECTED_OVER_USUAL * usual[n],
+                constants.MISREAD_SHARE,
+                0.0 if n in gross else before[n],
+            )
+            for n in before
+        }
+        candidates = _candidates(part, points, signs) if gross else ()
+        best = explaining(candidates, gross, away, tolerated)
+        if best is not None:
+            found.append(
+                Misread(
+                    sweep=part.sweep_names[part.sweep[0]],
+                    file=part.files[part.file[0]],
+                    looks=best.mistake.looks,
+                    column=best.mistake.column,
+                    remedy=best.mistake.remedy,
+                    before=max(gross.values()),
+                    after=best.left,
+                )
+            )
+    if len(found) == 1:
+        yield found[0]
+
+
+def _gross(
+    own: Mapping[str, float], others: list[dict[str, float]], usual: Mapping[str, float]
+) -> dict[str, float]:
+    """Channels of a sweep that are much further off than usual and than any other sweep's."""
+    worst = {name: max((o[name] for o in others if name in o), default=0.0) for name in own}
+    return {
+        name: error
+        for name, error in own.items()
+        if error
+        > max(
+            constants.MISREAD_SHARE,
+            constants.MISREAD_OVER_USUAL * usual[name],
+            constants.MISREAD_OVER_WORST * worst[name],
+        )
+    }
+
+
+def _candidates(part: Points, points: Points, signs: Mapping[str, float]) -> Iterator[tuple[Mistake, Points]]:
+    """Known mistakes, and labels of other sweeps, with the points of a sweep as they are without them."""
+    wrong_labels = (_wrong_labels(part, points, signs, *label) for label in LABELS)
+    for mistake in (*(m for m in MISTAKES if m.beyond_doubt), *(m for some in wrong_labels for m in some)):
+        yield mistake, mistake.undone(part, signs)
+
+
+def _wrong_labels(
+    part: Points,
+    points: Points,
+    signs: Mapping[str, float],
+    channel: str,
+    column: str,
+    kind: levels.LevelKind,
+) -> Iterator[Mistake]:
+    """A sweep that was run at another level of a condition than its column says, for every other level."""
+    held = getattr(part, channel)
+    here = float(np.mean(held))
+    if levels.spread(held, kind):
+        return
+    for level in np.unique(np.round(levels.level_values(getattr(points, channel), kind), 9)):
+        if abs(level - here) > kind.tolerance * (here if kind.relative else 1.0):
+            word, _, unit = CONDITIONS[column]
+            size = signs.get(channel, 1.0) * level * TO_COLUMN[channel]
+            run = f"{abs(size) if channel == 'Fz' else size:.4g} {unit}"
+            yield Mistake(
+                looks=f"run at a {word} of {run}",
+                column=column,
+                remedy=f"write the {word} that was run, {run}",
+                undone=partial(_moved, channel=channel, step=level - here),
+            )
+
+
+def _moved(points: Points, signs: Mapping[str, float], channel: str, step: float) -> Points:
+    return points.replace(**{channel: getattr(points, channel) + step})
+
+
+def _off(part: Points, simulation: Simulation, size: Mapping[str, float]) -> dict[str, float]:
+    """Median error of each channel of some points, as a share of its usual size."""
+    out = simulation.readings(part)
+    load = float(np.mean(part.Fz))
+    return {
+        name: robust((getattr(part, name) - getattr(out, name)) / (size[name] * load))
+        for name in CHANNELS
+        if np.isfinite(size[name]) and np.isfinite(getattr(part, name)).any()
+    }

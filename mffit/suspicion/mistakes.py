@@ -1,0 +1,101 @@
+"""Known mistakes in recording a sweep, one record each."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from functools import partial
+
+from mffit.points import Points
+from mffit.sweeps.units import factor
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Mistake:
+    """A way in which one sweep contradicts all the others."""
+
+    looks: str  #: what the sweep looks like
+    column: str  #: heading at fault
+    remedy: str  #: what to do about it
+    undone: Callable[[Points, Mapping[str, float]], Points]
+    """The points without it; takes the signs from ISO-W to the rig's axes, by channel."""
+    beyond_doubt: bool = True  #: False if a sound tyre or rig can look almost like it
+
+
+def _negated(points: Points, _: Mapping[str, float], *, fields: tuple[str, ...]) -> Points:
+    return points.replace(**{name: -getattr(points, name) for name in fields})
+
+
+def _swapped(points: Points, signs: Mapping[str, float]) -> Points:
+    sign = signs["alpha"] * signs["gamma"]
+    return points.replace(alpha=sign * points.gamma, gamma=sign * points.alpha)
+
+
+def _converted(points: Points, _: Mapping[str, float], *, field: str, unit: str, expected: str) -> Points:
+    return points.replace(**{field: factor(unit, expected) * getattr(points, field)})
+
+
+def _reversed(field: str, column: str, what: str) -> Mistake:
+    return Mistake(
+        looks=f"{what} reversed",
+        column=column,
+        remedy=f"correct its sign, or map {column} with scale = -1 under [sweep.columns]",
+        undone=partial(_negated, fields=(field,)),
+    )
+
+
+def _in_unit(field: str, column: str, what: str, *, unit: str, expected: str) -> Mistake:
+    return Mistake(
+        looks=f"{what} in {unit}",
+        column=column,
+        remedy=f'write {expected}, or {column} = {{ column = "{column}", unit = "{unit}" }} under [sweep.columns]',
+        undone=partial(_converted, field=field, unit=unit, expected=expected),
+    )
+
+
+FORCE = ("Fy", "Fy_N", "its side force")
+LOAD = ("Fz", "Fz_N", "its load")
+MOMENT = ("Mz", "Mz_Nm", "its moment")
+SIDESLIP = ("alpha", "alpha_deg", "its sideslip")
+CAMBER = ("gamma", "gamma_deg", "its camber")
+PRESSURE = ("p", "p_kPa", "its pressure")
+
+MISTAKES: tuple[Mistake, ...] = (
+    *(_reversed(*channel) for channel in (SIDESLIP, CAMBER, FORCE, MOMENT)),
+    Mistake(
+        looks="sideslip and camber exchanged",
+        column="alpha_deg",
+        remedy="correct the headings alpha_deg and gamma_deg",
+        undone=_swapped,
+    ),
+    Mistake(
+        looks="the direction of rolling undeclared or wrong",
+        column="direction",
+        remedy='write direction = "backward" (or "forward") in its [[sweep]]',
+        undone=partial(_negated, fields=("direction",)),
+    ),
+    Mistake(
+        looks="side force and moment in other axes",
+        column="Fy_N",
+        remedy="correct the signs of Fy_N and Mz_Nm",
+        undone=partial(_negated, fields=("Fy", "Mz")),
+    ),
+    Mistake(
+        looks="sideslip, side force and moment in other axes",
+        column="alpha_deg",
+        remedy="correct the signs of alpha_deg, Fy_N and Mz_Nm",
+        undone=partial(_negated, fields=("alpha", "Fy", "Mz")),
+    ),
+    Mistake(
+        looks="the tyre turned on its rim",
+        column="mount",
+        remedy='write mount = "flipped" (or "normal") in its [[sweep]]',
+        undone=partial(_negated, fields=("mount",)),
+        beyond_doubt=False,
+    ),
+    *(_in_unit(*LOAD, unit=unit, expected="N") for unit in ("kgf", "lbf")),
+    *(_in_unit(*FORCE, unit=unit, expected="N") for unit in ("kN", "kgf", "lbf")),
+    *(_in_unit(*MOMENT, unit=unit, expected="N m") for unit in ("N mm", "kN m", "lbf ft")),
+    *(_in_unit(*angle, unit="rad", expected="deg") for angle in (SIDESLIP, CAMBER)),
+    _in_unit(*PRESSURE, unit="psi", expected="kPa"),
+)

@@ -1,0 +1,271 @@
+"""Every sweep against all others: sweeps that are off, and the fits without them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any, NamedTuple
+
+import numpy as np
+from scipy.special import chdtrc, ndtri
+
+from mffit.errors import InputError
+from mffit.points import Points
+from mffit.quantities import CHANNELS
+from mffit.rig import Simulation
+from mffit.scatter import rms, robust, usual_size
+from mffit.suspicion import constants
+from mffit.suspicion.explanation import explanation
+from mffit.suspicion.mistakes import MISTAKES, Mistake
+from mffit.suspicion.prediction import (
+    FittedModel,
+    Group,
+    Leverage,
+    Prediction,
+    groups,
+    leverage,
+    predictions,
+)
+from mffit.suspicion.rule import Finding
+from mffit.suspicion.undoing import Away, explaining
+
+
+class Campaign(NamedTuple):
+    """What the judgement of all sweeps needs."""
+
+    points: Points  #: raw points (n,)
+    stated: tuple[np.ndarray, np.ndarray]
+    """Uncertainty of Fy [N] and of Mz [Nm] before any weighting, (n,); inf where not measured."""
+    signs: Mapping[str, float]  #: +1 or -1 per channel: from ISO-W to the rig's axes
+    refit: Callable[[np.ndarray], FittedModel]  #: the fit to some rows (m,) only
+
+
+class Error(NamedTuple):
+    """How far a channel of a sweep is from what all others predict."""
+
+    channel: str
+    rms: float  #: [N] or [Nm], without the worst points
+    ratio: float  #: in units of a sound sweep's error
+    share: float  #: of the channel's usual size at this load, less the prediction's uncertainty
+    chance: float  #: probability that a sound sweep is as far off
+    vague: float  #: standard error of the prediction, noise included, as a share of the usual size
+
+
+class View(NamedTuple):
+    """One sweep as seen from the fit to all others."""
+
+    group: Group
+    error: Error  #: of its worst channel
+    mistake: Mistake | None  #: that explains it
+    left: float  #: share of the usual size that is left when the mistake is undone
+
+    @property
+    def facts(self) -> dict[str, Any]:
+        """Facts for the sentences."""
+        return {
+            "channel": self.error.channel,
+            "unit": CHANNELS[self.error.channel].unit,
+            "rms": self.error.rms,
+            "percent": 100 * self.error.share,
+            "condition": "" if self.group.whole else f" ({self.group.name})",
+        }
+
+
+@dataclass(frozen=True, slots=True)
+class Doubt:
+    """A sweep that does not fit the others, without being impossible."""
+
+    sweep: str  #: its name, with the conditions where only these are meant
+    file: str
+    index: np.ndarray  #: (m,) rows of the points
+    channel: str
+    rms: float  #: error of the prediction [N] or [Nm]
+    ratio: float  #: in units of a sound sweep's error
+    share: float  #: of the channel's usual size at this load
+    looks: str  #: what would explain it; empty if no known cause does
+
+
+class Evidence(NamedTuple):
+    """All sweeps that are off, as seen by the fits without them."""
+
+    campaign: Campaign
+    simulation: Simulation  #: fitted to all sweeps
+    leverage: Leverage
+    usual: float  #: largest ratio that the scatter among the sweeps explains
+    views: tuple[View, ...]
+
+
+def evidence(campaign: Campaign, fitted: FittedModel) -> Evidence | None:
+    """Views of the sweeps that are off, the worst first; None with too few sweeps to compare.
+
+    Notes
+    -----
+    The search ends at the first sweep that a known mistake explains.
+    """
+    points = campaign.points
+    found = groups(points)
+    if len(found) < constants.FEWEST_SWEEPS_TO_COMPARE:
+        return None
+    size = {c: usual_size((getattr(points, c) / points.Fz)[g.index] for g in found) for c in CHANNELS}
+    noise = np.concatenate([u * k for u, k in zip(campaign.stated, fitted.scale.values(), strict=True)])
+    fit = leverage(fitted, noise)
+    errors = [(e, g) for g in found for e in _errors(predictions(fit, g), points.Fz[g.index], size)]
+    level = constants.FALSE_ALARM_OF_SWEEPS / len(errors)
+    usual = _usual_ratio([e for e, _ in errors])
+    views = []
+    for group in _suspects(errors, level, usual):
+        view = _view(campaign, group, size, level)
+        if view is not None:
+            views.append(view)
+        if view is not None and view.mistake is not None:
+            break
+    return Evidence(
+        campaign=campaign, simulation=fitted.simulation, leverage=fit, usual=usual, views=tuple(views)
+    )
+
+
+def known_mistake(seen: Evidence) -> Iterator[Finding]:
+    """The worst sweep that a known mistake explains."""
+    explained = [v for v in seen.views if v.mistake is not None]
+    if explained:
+        v = max(explained, key=lambda v: v.error.share)
+        assert v.mistake is not None
+        facts = {**v.facts, "looks": v.mistake.looks, "left": 100 * v.left, "remedy": v.mistake.remedy}
+        yield Finding(facts, file=v.group.file, column=v.mistake.column)
+
+
+def implausible_sweep(seen: Evidence) -> Iterator[Finding]:
+    """The worst sweep that contradicts the others, if they predict it with certainty."""
+    refused = [
+        v
+        for v in seen.views
+        if v.error.share > constants.IMPLAUSIBLE_SHARE and v.error.vague < constants.GROSS_SHARE
+    ]
+    if refused:
+        v = max(refused, key=lambda v: v.error.share)
+        others = dict.fromkeys(other.group.file for other in refused if other.group.file != v.group.file)
+        perhaps = f", or {' or '.join(others)}, which contradicts it" if others else ""
+        yield Finding({**v.facts, "perhaps": perhaps}, file=v.group.file)
+
+
+def doubtful_sweep(seen: Evidence) -> Iterator[Doubt]:
+    """Sweeps that are further off than the others, by their worst channel; a sweep's conditions only if itself is not."""
+    doubtful = [
+        v for v in seen.views if v.error.ratio > seen.usual and v.error.vague < constants.DOUBTFUL_SHARE
+    ]
+    seen_rows: list[set[int]] = []
+    for v in sorted(doubtful, key=lambda v: (not v.group.whole, -v.error.ratio)):
+        if any(set(v.group.index) <= rows for rows in seen_rows):
+            continue
+        seen_rows.append(set(v.group.index))
+        part, errors = seen.campaign.points.select(v.group.shown), predictions(seen.leverage, v.group)
+        yield Doubt(
+            sweep=v.group.name,
+            file=v.group.file,
+            index=v.group.index,
+            channel=v.error.channel,
+            rms=v.error.rms,
+            ratio=v.error.ratio,
+            share=v.error.share,
+            looks=explanation(part, errors, seen.simulation, seen.campaign.signs),
+        )
+
+
+def _suspects(errors: list[tuple[Error, Group]], level: float, usual: float) -> list[Group]:
+    """Groups with a significant and large error, the worst first."""
+    odd = [
+        (e, g)
+        for e, g in errors
+        if e.chance < level
+        and (e.share > constants.GROSS_SHARE or (e.share > constants.DOUBTFUL_SHARE and e.ratio > usual))
+    ]
+    worst_first = [g for _, g in sorted(odd, key=lambda pair: (not pair[1].whole, -pair[0].ratio))]
+    return list({id(g): g for g in worst_first}.values())[: constants.MOST_SUSPECTS]
+
+
+def _errors(channels: Mapping[str, Prediction], Fz: np.ndarray, size: Mapping[str, float]) -> list[Error]:
+    """Errors of a prediction, channel by channel, at loads (m,)."""
+    load = float(np.mean(Fz))
+    return [_error(name, one, size[name] * load) for name, one in channels.items()]
+
+
+def _error(name: str, prediction: Prediction, size: float) -> Error:
+    """Size and significance of a prediction's error, without the worst points."""
+    error, covariance = prediction.error, prediction.covariance
+    own = np.sqrt(np.diag(covariance))
+    number = max(1, int((1.0 - constants.SHARE_OF_WORST_POINTS) * len(error)))
+    kept = np.argsort(np.abs(error) / own)[:number]
+    e, V = error[kept], covariance[np.ix_(kept, kept)]
+    chi2 = float(e @ np.linalg.solve(V, e))
+    uncertain = rms(own[kept])
+    return Error(
+        channel=name,
+        rms=rms(e),
+        ratio=float(np.sqrt(chi2 / len(kept))),
+        share=max(rms(e) - constants.SURE_ERRORS * uncertain, 0.0) / size,
+        chance=float(chdtrc(len(kept), chi2)),
+        vague=uncertain / size,
+    )
+
+
+def _usual_ratio(errors: list[Error]) -> float:
+    """The largest ratio that the scatter among the sweeps explains: a model misses each of them differently."""
+    ratio = np.log([max(e.ratio, 1e-9) for e in errors])
+    middle = float(np.median(ratio))
+    return float(
+        np.exp(middle - ndtri(constants.FALSE_ALARM_OF_SWEEPS / len(errors)) * robust(ratio, middle))
+    )
+
+
+def _view(campaign: Campaign, group: Group, size: Mapping[str, float], level: float) -> View | None:
+    """The group against a fit without it; None if it is not off, or if the other points are too few for a fit."""
+    rest = np.setdiff1d(np.arange(len(campaign.points)), group.index)
+    try:
+        fitted = campaign.refit(rest)
+    except InputError:
+        return None
+    part = campaign.points.select(group.shown)
+    stated = [u[group.shown] for u in campaign.stated]
+
+    def away(of: Points) -> dict[str, Away]:
+        return {
+            e.channel: Away(error=e.rms, share=e.share, matched=matched)
+            for e, matched in _predicted(of, fitted, stated, size)
+        }
+
+    off = [
+        e
+        for e, _ in _predicted(part, fitted, stated, size)
+        if e.chance < level and e.share > constants.DOUBTFUL_SHARE
+    ]
+    if not off:
+        return None
+    gross = {e.channel: e.rms for e in off if e.share > constants.GROSS_SHARE}
+    undone = ((m, m.undone(part, campaign.signs)) for m in MISTAKES if m.beyond_doubt and gross)
+    best = explaining(undone, gross, away, dict.fromkeys(CHANNELS, constants.GROSS_SHARE))
+    return View(
+        group=group,
+        error=max(off, key=lambda e: e.share),
+        mistake=None if best is None else best.mistake,
+        left=1.0 if best is None else best.left,
+    )
+
+
+def _predicted(
+    part: Points, fitted: FittedModel, stated: Sequence[np.ndarray], size: Mapping[str, float]
+) -> Iterator[tuple[Error, bool]]:
+    """Errors of a fit at points (m,) that were not in it, by channel, and whether they are small beside the readings."""
+    out, slope = fitted.simulation.sensitivities(part, list(fitted.names))
+    load = float(np.mean(part.Fz))
+    for name, u, scale in zip(CHANNELS, stated, fitted.scale.values(), strict=True):
+        known = np.isfinite(u) & np.isfinite(getattr(part, name))
+        if not np.any(known):
+            continue
+        measured, predicted = getattr(part, name)[known], getattr(out, name)[known]
+        J = getattr(slope, name)[known]
+        prediction = Prediction(
+            error=predicted - measured,
+            covariance=J @ fitted.covariance @ J.T + np.diag((scale * u[known]) ** 2),
+        )
+        error = _error(name, prediction, size[name] * load)
+        yield error, error.rms <= constants.MATCHED_SHARE * min(rms(measured), rms(predicted))

@@ -1,0 +1,62 @@
+"""The documentation of all suspicions, written from the rules: ``python -m mffit.suspicion.page > docs/suspicion.md``."""
+
+from __future__ import annotations
+
+import re
+
+import mffit.constants
+import mffit.points.constants
+from mffit.suspicion import constants
+from mffit.suspicion.rule import Rule, When
+from mffit.suspicion.rules import RULES
+
+HEAD = """# Suspicions
+
+Every rule by which readings are suspected, in the order in which the rules are applied. This page is made from
+`mffit/suspicion/rules.py` by `python -m mffit.suspicion.page > docs/suspicion.md`. [Broken data](broken-data.md)
+describes the method, and how well it works.
+"""
+NAMES = {
+    id(value): name
+    for module in (mffit.constants, mffit.points.constants, constants)
+    for name, value in vars(module).items()
+    if name.isupper()
+}
+
+
+def page() -> str:
+    """The page in Markdown: a table per occasion."""
+    return "\n".join([HEAD, *(_section(when) for when in When)])
+
+
+def _section(when: When) -> str:
+    rows = [_row(rule) for rule in RULES if when in rule.when]
+    head = "| rule | looks at | limits | outcome | sentence |\n|---|---|---|---|---|"
+    return f"## {str(when).capitalize()}\n{head}\n" + "\n".join(rows) + "\n"
+
+
+def _row(rule: Rule) -> str:
+    cells = (
+        f"`{rule.id}`",
+        f"{rule.subject}: {rule.looks_at}",
+        "<br>".join(_limit(limit) for limit in rule.limits),
+        rule.outcome,
+        _template(rule.sentence),
+    )
+    return "| " + " | ".join(cell.replace("|", r"\|") for cell in cells) + " |"
+
+
+def _limit(limit: float) -> str:
+    unit = getattr(limit, "unit", "-")
+    value = f"{limit:.3g}" if unit == "-" else f"{limit:.3g} {unit}"
+    return f"{NAMES[id(limit)].lower().replace('_', ' ')} {value}"
+
+
+def _template(sentence: str) -> str:
+    """The sentence with the name of every fact in italics, and with the braces of TOML as they are printed."""
+    named = re.sub(r"(?<!\{)\{(\w+)(:[^}]*)?\}(?!\})", r"*\1*", sentence)
+    return named.replace("{{", "{").replace("}}", "}")
+
+
+if __name__ == "__main__":
+    print(page(), end="")

@@ -1,0 +1,50 @@
+"""Why a fitted model is not to be trusted: its misfit is far above the noise, or it explains little of a channel."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from mffit.points import Points
+from mffit.quantities import CHANNELS
+from mffit.rig import Readings
+from mffit.scatter import rms
+from mffit.suspicion import constants
+
+
+class Misfit(NamedTuple):
+    """A fitted model beside the points."""
+
+    points: Points
+    model: Readings  #: what it reads at the points
+    scale: Mapping[str, float]  #: by channel, robust misfit over stated uncertainty
+    r2: Mapping[str, float]  #: share of the variance that it explains, by channel
+
+
+def above_noise(misfit: Misfit) -> Iterator[dict[str, Any]]:
+    """Channels with a stated uncertainty that the model misses by more than noise, and the sweeps with most of it."""
+    points = misfit.points
+    for name, scale in misfit.scale.items():
+        u = getattr(points, f"u_{name}")
+        if scale > constants.MISFIT_OVER_NOISE and np.any(np.isfinite(u)):
+            z = (getattr(misfit.model, name) - getattr(points, name)) / u
+            yield {"channel": name, "scale": scale, "carriers": _carriers(points, z)}
+
+
+def unexplained(misfit: Misfit) -> Iterator[dict[str, Any]]:
+    """Channels of whose variance the model explains little."""
+    for name in CHANNELS:
+        if misfit.r2[name] < constants.EXPLAINED_VARIANCE:
+            yield {"channel": name, "percent": 100.0 * max(misfit.r2[name], 0.0)}
+
+
+def _carriers(points: Points, z: np.ndarray) -> str:
+    """The sweeps with most of a misfit (n,), in words."""
+    known = np.isfinite(z)
+    total = rms(z)
+    own = {k: rms(z[points.sweep == k]) for k in np.unique(points.sweep[known])}
+    large = [k for k in sorted(own, key=lambda k: -own[k]) if own[k] > constants.CARRIED_MISFIT * total]
+    names = ", ".join(points.sweep_names[k] for k in large[: constants.SWEEPS_NAMED_WITH_MISFIT])
+    return f", most of it in {names}" if names else ""

@@ -1,0 +1,180 @@
+"""Every rule before the fit applies just beyond its limit, and not just within it."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from mffit.points import Points, make_points
+from mffit.suspicion import RULES, signatures
+from mffit.suspicion.slopes import Slope, slope
+
+CONFIG = SimpleNamespace(
+    tyre=SimpleNamespace(nominal_pressure=250.0, unloaded_radius=0.3),
+    rig=SimpleNamespace(on_disc=True, moments="contact"),
+    path=None,
+    line_of=lambda key: None,
+)
+DEG = np.radians(1.0)
+ALPHA = np.radians([-6.0, -3.0, -1.0, 0.0, 1.0, 3.0, 6.0])
+
+
+def tyre(alpha=ALPHA, gamma=0.0, Fz=1500.0, **fields) -> Points:
+    """Points of a plain tyre; fields are overridden."""
+    alpha, gamma, Fz = np.broadcast_arrays(alpha, gamma, Fz)
+    Fy = -Fz * np.tanh(12.0 * np.asarray(alpha) + np.asarray(gamma))
+    return make_points(
+        alpha, gamma, Fz, **{"p": 250e3, "V": 6.0, "phi_t": 0.0, "Fy": Fy, "Mz": -0.03 * Fy} | fields
+    )
+
+
+def found(rule: str, points: Points) -> int:
+    """Number of cases in which a rule applies."""
+    (one,) = (each for each in RULES if each.id == rule)
+    return len(list(one.find(points, CONFIG)))
+
+
+def changed(values: np.ndarray, rows: list[int], to: float) -> np.ndarray:
+    values = np.array(values, dtype=float)
+    values[rows] = to
+    return values
+
+
+SOUND = tyre()
+FEW = SOUND.select(np.arange(3))
+FORCE = SOUND.Fy
+LOADS = np.full(7, 1500.0)
+SINGLE_FILES = [
+    ("angle-in-radians", tyre(Fy=-1500.0 * 125.0 * ALPHA), tyre(Fy=-1500.0 * 115.0 * ALPHA)),
+    ("angle-in-radians", tyre(gamma=ALPHA, alpha=0.0, Fy=-19500.0 * ALPHA), tyre(gamma=ALPHA, alpha=0.0, Fy=-16500.0 * ALPHA)),
+    ("dead-channel", tyre(Mz=3.7), tyre(Mz=changed(np.full(7, 3.7), [2], 3.8))),
+    ("dead-channel", tyre(Fy=-80.0), tyre(alpha=0.02, Fy=-80.0, Mz=2.0)),
+    ("dead-channel", tyre(alpha=ALPHA[:4], Mz=3.7), tyre(alpha=ALPHA[:3], Mz=3.7)),
+    ("force-in-kilonewtons", tyre(Fy=28.0 * np.sign(ALPHA)), tyre(Fy=32.0 * np.sign(ALPHA))),
+    ("force-in-kilonewtons", tyre(alpha=ALPHA[:3], Fy=28.0).select([0, 1, 0]), tyre(alpha=ALPHA[:3], Fy=28.0)),
+    ("force-in-kilonewtons", tyre(alpha=[DEG * 2.1] * 3, Fy=28.0), tyre(alpha=[DEG * 1.9] * 3, Fy=28.0)),
+    ("force-in-kilonewtons", tyre(0.0, [DEG * 5.1] * 3, Fy=28.0), tyre(0.0, [DEG * 4.9] * 3, Fy=28.0)),
+    ("lone-load", tyre(Fz=changed(LOADS, [2], 7510.0), Fy=FORCE), tyre(Fz=changed(LOADS, [2], 7490.0), Fy=FORCE)),
+    ("lone-load", tyre(alpha=ALPHA[:4], Fz=[1e3, 1e3, 1e3, 6e3]), tyre(alpha=ALPHA[:3], Fz=[1e3, 1e3, 6e3])),
+    ("wild-force", tyre(Fy=changed(FORCE, [1, 2], 6010.0)), tyre(Fy=changed(FORCE, [1, 2], 5990.0))),
+    ("wild-force", tyre(Fy=changed(FORCE, [1, 2], 6010.0)), tyre(Fy=changed(FORCE, [1, 2, 3], 6010.0))),
+    ("load-in-another-unit", tyre(Fy=changed(FORCE, [1, 2, 3], 6010.0)), tyre(Fy=changed(FORCE, [1, 2], 6010.0))),
+    ("moment-in-newton-millimetres", tyre(Mz=changed(FORCE, [0], -1510.0)), tyre(Mz=0.99 * FORCE)),
+    ("pressure-in-psi", tyre(p=36e3), tyre(p=88e3)),
+    ("pressure-in-psi", tyre(p=13e3), tyre(p=12e3)),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("rule", "beyond", "within"), SINGLE_FILES)
+def test_a_file_is_suspected_beyond_the_limit_only(rule, beyond, within):
+    assert found(rule, beyond) >= 1
+    assert found(rule, within) == 0
+
+
+@pytest.mark.parametrize("rule", {rule for rule, *_ in SINGLE_FILES})
+def test_a_sound_file_is_not_suspected(rule):
+    assert found(rule, SOUND) == 0
+
+
+def test_a_slope_is_significant_from_four_standard_errors_on():
+    assert Slope(value=4.02, error=1.0, freedom=10**6, scatter=1.0).sign == 1
+    assert Slope(value=-4.02, error=1.0, freedom=10**6, scatter=1.0).sign == -1
+    assert Slope(value=4.0, error=1.0, freedom=10**6, scatter=1.0).sign == 0
+
+
+def test_a_slope_needs_four_points_and_a_range_of_angles():
+    everything = np.ones(4, dtype=bool)
+    fine, finer = (tyre(alpha=np.radians([0.0, 0.007, 0.014, span])) for span in (0.021, 0.019))
+    assert np.isfinite(slope(fine, fine.Fy, "alpha", everything).value)
+    assert np.isnan(slope(finer, finer.Fy, "alpha", everything).value)
+    assert np.isnan(slope(SOUND, SOUND.Fy, "alpha", np.arange(7) < 3).value)
+
+
+@pytest.mark.parametrize(
+    ("name", "angle", "limit"),
+    [
+        ("cornering", "alpha", 4.0),
+        ("cornering", "gamma", 5.0),
+        ("camber", "gamma", 25.0),
+        ("camber", "alpha", 1.5),
+        ("aligning", "alpha", 3.0),
+        ("aligning", "gamma", 5.0),
+    ],
+)
+def test_slopes_are_read_from_small_angles_only(name, angle, limit):
+    """One more point adds a degree of freedom if it is within the limit."""
+    alpha, gamma = np.tile(np.radians([-1.0, 0.0, 1.0]), 3), np.repeat(np.radians([-1.0, 0.0, 1.0]), 3)
+
+    def freedom(degrees: float) -> int:
+        one = {"alpha": 0.0, "gamma": 0.0} | {angle: np.radians(degrees)}
+        points = tyre(np.append(alpha, one["alpha"]), np.append(gamma, one["gamma"]))
+        return getattr(signatures(points), name).freedom
+
+    plain = getattr(signatures(tyre(alpha, gamma)), name).freedom
+    assert (freedom(limit + 0.05), freedom(limit - 0.05)) == (plain, plain + 1)
+
+
+def sweeps(*parts: Points) -> Points:
+    """Several sweeps, a file each."""
+    number = np.repeat(np.arange(len(parts)), [len(part) for part in parts])
+    names = tuple(f"s{k}" for k in range(len(parts)))
+    arrays = {
+        name: np.concatenate([getattr(part, name) for part in parts])
+        for name in ("alpha", "gamma", "Fz", "p", "V", "phi_t", "Fy", "Mz", "Mx", "direction")
+    }
+    return make_points(**arrays, sweep=number, file=number, sweep_names=names, files=names)
+
+
+def test_four_equal_rows_in_any_order_are_a_copy_and_three_are_not():
+    assert found("copied-sweep", sweeps(SOUND, SOUND.select([3, 1, 0, 2, 6, 5, 4]))) == 1
+    four = SOUND.select(np.arange(4))
+    assert found("copied-sweep", sweeps(four, four)) == 1
+    assert found("copied-sweep", sweeps(FEW, FEW)) == 0
+    assert found("copied-sweep", sweeps(SOUND, SOUND.replace(Fy=changed(FORCE, [2], 300.0)))) == 0
+
+
+def test_one_sweep_of_four_that_leans_the_other_way_is_named():
+    left, right = tyre(gamma=np.radians(5.0)), tyre(gamma=np.radians(-5.0))
+    assert found("lone-lean", sweeps(left, left, left, right)) == 1
+    assert found("lone-lean", sweeps(left, left, right)) == 0
+    assert found("lone-lean", sweeps(left, left, left, right, right)) == 0
+    assert found("lone-lean", sweeps(left, left, left, tyre(alpha=0.0, gamma=ALPHA), right)) == 0
+    assert found("lone-lean", sweeps(left, left, left, tyre(gamma=-0.6 * DEG))) == 1
+    assert found("lone-lean", sweeps(left, left, left, tyre(gamma=-0.4 * DEG))) == 0
+
+
+@pytest.mark.parametrize(("share", "cases"), [(0.009, 1), (0.011, 0), (-0.5, 1)])
+def test_a_turn_slip_force_is_weak_below_a_hundredth_of_the_load(share, cases):
+    zero = tyre(alpha=[0.0], Fy=-share * 1500.0, phi_t=-0.76)
+    assert found("weak-turn-slip-force", zero) == cases
+
+
+def test_without_a_path_there_is_no_turn_slip_force_to_be_weak():
+    assert found("weak-turn-slip-force", SOUND) == 0
+
+
+@pytest.mark.parametrize(("lever", "cases"), [(0.16, 1), (-0.16, 1), (0.14, 0)])
+def test_moments_follow_the_force_with_half_the_radius_only_about_another_point(lever, cases):
+    ten = tyre(alpha=np.r_[ALPHA, ALPHA[:3]], gamma=np.radians(1.9))
+    assert found("moments-about-another-point", ten.replace(Mx=lever * ten.Fy)) == cases
+    nine = ten.select(np.arange(9))
+    leaning = ten.replace(gamma=np.radians(2.1))
+    per_range = 1500.0 / np.ptp(ten.Fy)
+    weak, enough = (ten.replace(Fy=share * per_range * ten.Fy) for share in (0.45, 0.55))
+    assert found("moments-about-another-point", enough.replace(Mx=lever * enough.Fy)) == cases
+    for other in (nine, leaning, weak):
+        assert found("moments-about-another-point", other.replace(Mx=lever * other.Fy)) == 0
+
+
+def test_a_disc_needs_both_signs_and_a_zero_within_three_tenths_of_a_degree():
+    assert found("one-sided-on-a-disc", SOUND) == 0
+    assert found("one-sided-on-a-disc", tyre(alpha=ALPHA[2:])) == 0
+    assert found("one-sided-on-a-disc", tyre(alpha=ALPHA[3:])) == 1
+    assert found("no-zero-on-a-disc", SOUND) == 0
+    assert found("no-zero-on-a-disc", tyre(alpha=np.radians([-1.0, 0.29]))) == 0
+    assert found("no-zero-on-a-disc", tyre(alpha=np.radians([-1.0, 0.31]))) == 1
+    assert found("no-zero-on-a-disc", SOUND.replace(direction=-1)) == 1
+    assert found("no-zero-on-a-disc", tyre(gamma=np.radians(0.49))) == 0
+    assert found("no-zero-on-a-disc", tyre(gamma=np.radians(0.51))) == 1

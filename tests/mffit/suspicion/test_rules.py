@@ -1,0 +1,28 @@
+"""The list of suspicions: named once, limited by records, documented."""
+
+from __future__ import annotations
+
+from collections import Counter
+from pathlib import Path
+
+import pytest
+
+from mffit.suspicion import RULES
+from mffit.suspicion.page import page
+from tir.constant import Count, Real
+
+DOCS = Path(__file__).parents[3] / "docs"
+
+
+def test_every_rule_has_a_name_of_its_own():
+    assert not [name for name, number in Counter(rule.id for rule in RULES).items() if number > 1]
+
+
+@pytest.mark.parametrize("rule", RULES, ids=lambda rule: rule.id)
+def test_the_limits_of_a_rule_are_records_with_unit_and_reason(rule):
+    assert all(isinstance(limit, Real | Count) for limit in rule.limits)
+
+
+def test_the_page_is_current():
+    written = (DOCS / "suspicion.md").read_text(encoding="utf-8")
+    assert written == page(), "run: python -m mffit.suspicion.page > docs/suspicion.md"
