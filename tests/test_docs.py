@@ -67,6 +67,15 @@ def test_every_dependency_has_a_reason():
     )
 
 
+def test_the_table_of_parameters_is_explained():
+    """Every column, and every word for what the data must vary."""
+    page = text_of(DOCS / "parameters.md")
+    columns = (ROOT / "tir" / "parameters.csv").read_text(encoding="ascii").splitlines()[0].split(",")
+    needs = {need.word for row in tir.parameters.TABLE for need in row.needs}
+    for word in (*columns, *needs):
+        assert f"`{word}`" in page or f"`{word}:2`" in page, f"docs/parameters.md does not explain {word}"
+
+
 @pytest.mark.parametrize("command", sorted(commands.commands))
 def test_every_command_is_described(command):
     assert any(f"mffit {command}" in text_of(page) for page in DOCS.glob("*.md")), (

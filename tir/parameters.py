@@ -27,7 +27,7 @@ class Parameter:
 
     name: str
     section: str
-    order: int  #: place in a written file
+    order: int  #: place in a written file: its row of the table, from 1
     kind: str  #: "number" or "text"
     unit: str  #: SI; "-" dimensionless, "" for text
     default: float | str  #: value of a key that a file does not have
@@ -91,16 +91,16 @@ class Parameter:
 
 def _load() -> tuple[Parameter, ...]:
     text = (resources("tir") / "parameters.csv").read_text(encoding="ascii")
-    return tuple(_parameter(row) for row in csv.DictReader(text.splitlines()))
+    return tuple(_parameter(i, row) for i, row in enumerate(csv.DictReader(text.splitlines()), start=1))
 
 
-def _parameter(row: dict[str, str]) -> Parameter:
+def _parameter(order: int, row: dict[str, str]) -> Parameter:
     number = row["kind"] == "number"
     tie, _, spread = row["tied"].partition(":")
     return Parameter(
         name=row["name"],
         section=row["section"],
-        order=int(row["order"]),
+        order=order,
         kind=row["kind"],
         unit=row["unit"],
         default=float(row["default"]) if number else row["default"],
