@@ -19,7 +19,7 @@ def check(file: Path, targets: str, voice: Voice) -> None:
     """Check a .tir: units, missing and unknown keys, physics over the file's own ranges."""
     import tir
     from mffit.results import as_json
-    from tir.check import check as problems_of
+    from tir.checking import check as problems_of
     from tir.errors import counted
 
     tyre = tir.read(file)

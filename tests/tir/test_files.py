@@ -13,7 +13,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import tir
-from tir.check import check
+from tir.checking import check
 from tir.parameters import TABLE
 
 VECTORS = Path(__file__).parent / "vectors"

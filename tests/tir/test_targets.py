@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 import tir
-from tir.check import check
+from tir.checking import check
 from tir.document import parse_document
 from tir.parameters import SECTIONS, TABLE
 from tir.properties import interpret
