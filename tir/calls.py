@@ -56,7 +56,7 @@ def compile_kernels(
     Raises
     ------
     TirError
-        If llvmlite is not installed (``pip install mffit[fast]``), or a kind is not known.
+        If llvmlite is not installed (``pip install llvmlite``), or a kind is not known.
     """
     kinds = (kinds,) if isinstance(kinds, str) else tuple(kinds)
     unknown = set(kinds) - set(kernel.KINDS)

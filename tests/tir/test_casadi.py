@@ -34,7 +34,7 @@ def test_without_casadi_it_says_what_to_install(monkeypatch, tyre):
     import sys
 
     monkeypatch.setitem(sys.modules, "casadi", None)
-    with pytest.raises(tir.TirError, match=r"pip install mffit\[casadi\]"):
+    with pytest.raises(tir.TirError, match="pip install casadi"):
         tir.casadi_function(tyre)
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
@@ -13,7 +14,7 @@ from tir.evaluate import evaluate
 from tir.outputs import outputs_of
 from tir.parameters import TABLE
 
-SAMPLE = "samples/front-120-70/true.tir"
+SAMPLE = Path(__file__).parent / "vectors" / "moto_front.tir"
 STEP = 1e-30
 COEFFICIENTS = [row.name for row in TABLE if row.stage]
 

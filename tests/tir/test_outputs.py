@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
@@ -14,7 +15,7 @@ from tir.errors import TirError
 from tir.evaluate import evaluate, turned_on_rim
 from tir.outputs import outputs_of
 
-SAMPLE = "samples/front-120-70/true.tir"
+SAMPLE = Path(__file__).parent / "vectors" / "moto_front.tir"
 FORCES = Forces._fields
 
 

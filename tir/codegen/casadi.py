@@ -44,12 +44,12 @@ def casadi_function(
     Raises
     ------
     TirError
-        If casadi is not installed (``pip install mffit[casadi]``), or a value is a zero by which the equations divide.
+        If casadi is not installed (``pip install casadi``), or a value is a zero by which the equations divide.
     """
     try:
         import casadi
     except ImportError:
-        raise TirError("this needs casadi, which is not installed: pip install mffit[casadi]") from None
+        raise TirError("this needs casadi, which is not installed: pip install casadi") from None
     refuse_zero_divisors(tyre.p)
     program = trace(Switches(turn_slip, star, limits), outputs, {key: float(tyre[key]) for key in NUMBERS})
     inputs = {key: casadi.SX.sym(key) for key in INPUTS}

@@ -87,7 +87,7 @@ def load(kind: str, switches: Switches) -> Kernel:
     """
     if not available():
         raise TirError(
-            "compiled kernels need llvmlite, which is not installed or does not run here: pip install mffit[fast]"
+            "compiled kernels need llvmlite, which is not installed or does not run here: pip install llvmlite"
         )
     from llvmlite import binding
 
