@@ -306,8 +306,8 @@ def must_be_new(folder: Path, names: Iterable[str]) -> None:
             raise InputError("is there already; name another folder or move it away", file=folder / name)
 
 
-def new_files(folder: Path, contents: Mapping[str, str]) -> list[Path]:
-    """Write texts as new files of a folder, none of which may be there already; returns their paths.
+def new_files(folder: Path, contents: Mapping[str, str | bytes]) -> list[Path]:
+    """Write new files into a folder, none of which may be there already; returns their paths.
 
     Raises
     ------
@@ -318,7 +318,7 @@ def new_files(folder: Path, contents: Mapping[str, str]) -> list[Path]:
     try:
         folder.mkdir(parents=True, exist_ok=True)
         for name, content in contents.items():
-            (folder / name).write_text(content, encoding="utf-8", newline="\n")
+            (folder / name).write_bytes(content.encode() if isinstance(content, str) else content)
     except (FileExistsError, NotADirectoryError):
         raise InputError("is a file; name a folder", file=folder) from None
     except OSError as error:
