@@ -205,7 +205,7 @@ def test_the_fleet_compares_and_tightens(compared, folders):
         assert epsilon["together"]["u"] < epsilon["alone"]["u"] < epsilon["direct"]["u"]
         assert tyre["C_alpha_N_per_rad"]["u"] > 0.0
     assert set(found["rigs"][0]["errors"]) == {"F0_N", "gamma_0_deg", "alpha_0_deg", "path_radius_m"}
-    table = pd.read_csv(out / "fleet.csv")
+    table = pd.read_csv(out / "fleet.csv", float_precision="round_trip")
     assert list(table.name) == [HOSTILE, "tyre 1", "tyre 2", "tyre 3", "tyre 4"]
     assert table.epsilon_gamma_together[0] == found["tyres"][0]["epsilon_gamma"]["together"]["value"]
     assert "error of the rig" in said

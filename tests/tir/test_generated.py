@@ -23,7 +23,8 @@ from tir.parameters import TABLE
 
 VECTORS = Path(__file__).parent / "vectors"
 ALL_SWITCHES = [Switches(*on) for on in itertools.product((False, True), repeat=3)]
-TOLERANCE = 1e-12
+TOLERANCE = 1e-12 if np.lib.NumpyVersion(np.__version__) >= "2.0.0" else 3e-12
+"""numpy 1 computes tan and arctan three units in the last place off, numpy 2 one; the edges magnify that."""
 """Of the value, or of 1e-3 of the channel's largest: hundreds of roundings in another order."""
 needs_llvm = pytest.mark.skipif(not kernel.available(), reason="llvmlite is not installed")
 
@@ -381,6 +382,7 @@ def test_importing_tir_imports_no_compiler():
     assert found.stdout.strip() == "[]"
 
 
+@needs_llvm
 def test_the_cache_notices_every_edit(tmp_path, monkeypatch):
     import shutil
 
