@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from tir import constants
 from tir.codegen import kernel, single
 from tir.codegen.kernel import LANES
 from tir.codegen.program import INPUTS, NUMBERS, Switches
@@ -24,12 +25,9 @@ from tir.evaluate import evaluate, refuse_zero_divisors
 if TYPE_CHECKING:
     from tir.tyre import Tyre
 
-BLOCK = 8192
-"""Conditions that numpy computes together, so that what is between input and output stays in the processor's cache."""
-COMPILE_FROM = 100_000
-"""Conditions of one call from which on the compiled kernel is worth loading, or compiling once after installation."""
-THREADS_FROM = 32_768
-"""Conditions of one call from which on they are shared out to threads."""
+BLOCK = int(constants.CONDITIONS_PER_BLOCK)
+COMPILE_FROM = int(constants.COMPILE_FROM_CONDITIONS)
+THREADS_FROM = int(constants.THREADS_FROM_CONDITIONS)
 FORCES, STATE = Forces._fields, State._fields
 DOUBLE = np.dtype(float)
 ONLY_DOUBLES = {DOUBLE}

@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from tir import constants
 from tir.consumers import stumbles
 from tir.envelope import over_the_range
 from tir.equations import normalise
@@ -75,8 +76,10 @@ def _warning(name: str, sentence: str) -> Problem:
 
 def _dimensions(tyre: Tyre) -> Iterator[Problem]:
     R0 = tyre["UNLOADED_RADIUS"]
-    if not 0.05 < R0 < 1.5:
-        hint = "it looks like millimetres" if R0 > 50 else "a radius in metres was expected"
+    smallest, largest = constants.RADIUS_RANGE
+    if not smallest < R0 < largest:
+        millimetres = R0 > constants.RADIUS_IN_MILLIMETRES
+        hint = "it looks like millimetres" if millimetres else "a radius in metres was expected"
         yield _error("UNLOADED_RADIUS", f"UNLOADED_RADIUS is {R0:g}: {hint}; correct it or [UNITS] LENGTH")
     if tyre["RIM_RADIUS"] >= R0:
         yield _warning(
@@ -108,7 +111,7 @@ def _ranges(tyre: Tyre) -> Iterator[Problem]:
     for low, high in RANGES:
         if tyre[low] >= tyre[high]:
             yield _error(low, f"{low} {tyre[low]:g} is not below {high} {tyre[high]:g}")
-    if 0 < tyre["CAMMAX"] < 0.15 and tyre["MC_CONTOUR_A"] > 0:
+    if 0 < tyre["CAMMAX"] < constants.NARROW_CAMBER_RANGE and tyre["MC_CONTOUR_A"] > 0:
         yield _warning(
             "CAMMAX",
             f"CAMMAX is {np.degrees(tyre['CAMMAX']):.1f} deg on a motorcycle tyre: simulations hold camber to it without notice",
@@ -132,22 +135,23 @@ def _ranges(tyre: Tyre) -> Iterator[Problem]:
 def _clamps(tyre: Tyre) -> Iterator[Problem]:
     """Ranges so narrow that simulations hold inputs to them which vehicles reach."""
     Fz = float(tyre["FNOMIN"])
-    alpha = np.radians(np.linspace(0.1, 30.0, 300))
+    alpha = np.radians(np.linspace(*constants.SIDESLIP_FOR_THE_PEAK, constants.STEPS_FOR_THE_PEAK))
     force = np.abs(tyre(Fz, alpha).Fy)
     peak = float(alpha[np.argmax(force)])
-    if force.max() > 0.0 and tyre["ALPMAX"] < peak and tyre["ALPMAX"] < np.radians(15.0):
+    if force.max() > 0.0 and tyre["ALPMAX"] < min(peak, constants.NARROW_SIDESLIP_RANGE.rad):
         share = abs(tyre(Fz, float(tyre["ALPMAX"])).Fy) / float(force.max())
         yield _warning(
             "ALPMAX",
             f"simulations hold sideslip to ALPMAX, {np.degrees(tyre['ALPMAX']):.1f} deg, where the side force at nominal load "
             f"is {share:.0%} of its peak",
         )
-    if tyre["FZMAX"] < 1.5 * tyre["FNOMIN"]:
+    low, high = (share * tyre["FNOMIN"] for share in constants.LOADS_TO_REACH)
+    if tyre["FZMAX"] < high:
         yield _warning(
             "FZMAX",
             f"simulations hold the load to FZMAX, {tyre['FZMAX'] / tyre['FNOMIN']:.2f} of the nominal one, in the formula",
         )
-    if tyre["FZMIN"] > 0.2 * tyre["FNOMIN"]:
+    if tyre["FZMIN"] > low:
         yield _warning(
             "FZMIN",
             f"below FZMIN, {tyre['FZMIN']:g} N, simulations fade or scale forces and moments, each in its way",
@@ -158,7 +162,8 @@ def _shape(tyre: Tyre) -> Iterator[Problem]:
     p = tyre.p
     yield from broken(tyre, SHAPES)
     ratio = float(tyre.state(float(p.FNOMIN)).Re) / p.UNLOADED_RADIUS
-    if not 0.85 < ratio < 1.05:
+    smallest, largest = constants.EFFECTIVE_RADIUS_RANGE
+    if not smallest < ratio < largest:
         yield _warning(
             "BREFF",
             f"the effective radius is {ratio:.2f} of the unloaded one: check BREFF, DREFF, FREFF, Q_RE0",
@@ -213,9 +218,10 @@ def _old_keys(tyre: Tyre) -> Iterator[Problem]:
 
 def _spin(tyre: Tyre) -> Iterator[Problem]:
     p = tyre.p
-    load = np.linspace(max(p.FZMIN, 0.02 * p.FNOMIN), p.FZMAX, 21)
+    lowest = max(p.FZMIN, constants.LOWEST_SEARCHED_LOAD * p.FNOMIN)
+    load = np.linspace(lowest, p.FZMAX, constants.LOADS_FOR_EPS_GAMMA)
     eps = normalise.camber_reduction(p, normalise.relative_load(p, load))
-    if np.any(np.abs(eps - 1.0) < 0.1) or np.ptp(np.sign(eps - 1.0)) > 0:
+    if np.any(np.abs(eps - 1.0) < constants.EPS_GAMMA_NEAR_ONE) or np.ptp(np.sign(eps - 1.0)) > 0:
         yield _warning(
             "PECP1", "eps_gamma comes near 1 within the load range, where the turn-slip stiffness is infinite"
         )
@@ -233,7 +239,8 @@ def _spin(tyre: Tyre) -> Iterator[Problem]:
     Fz = float(p.FNOMIN)
     with_spin, without = (float(np.diff(tyre(Fz, gamma=gamma, turn_slip=on).Fy)[0]) for on in (True, False))
     expected = without * p.UNLOADED_RADIUS / tyre.state(Fz).Re
-    if abs(without) > 1e-9 and abs(with_spin - expected) > 0.01 * abs(expected):
+    mismatch = abs(with_spin - expected) > constants.CAMBER_FORCE_MISMATCH * abs(expected)
+    if abs(without) > constants.NO_CAMBER_FORCE and mismatch:
         yield _warning(
             "PHYP1",
             "camber force with turn slip on is not that with turn slip off times R0/Re: check PHYP1-4",

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from tir.codegen.program import Switches, trace
+from tir.constants import LONGEST_READABLE_LINE
 from tir.document import Document, Line
 from tir.equations.forces import Forces
 from tir.errors import Problem, some
@@ -15,8 +16,6 @@ from tir.units import KINDS
 
 FIRST_OF_MODEL = 3
 """Keys of [MODEL] that a reader by position takes: version, side, reference speed."""
-LONGEST = 200
-"""Characters of a line that the shortest buffers hold."""
 
 
 def stumbles(tyre: Tyre, target: Target) -> Iterator[Problem]:
@@ -66,7 +65,7 @@ def _text(tyre: Tyre, document: Document, target: Target) -> Iterator[Problem]:
         line = next(line for line in document.lines if not line.text.isascii())
         yield Problem("warning", f"line {line.number} holds signs beyond ASCII", line=line.number)
     for line in document.lines:
-        if len(line.text) >= LONGEST:
+        if len(line.text) >= LONGEST_READABLE_LINE:
             yield Problem(
                 "warning", f"line {line.number} has {len(line.text)} characters", line.key, line.number
             )

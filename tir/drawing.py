@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from tir import constants
 from tir.errors import TirError
 
 if TYPE_CHECKING:
@@ -18,10 +19,11 @@ if TYPE_CHECKING:
 
     from tir.tyre import Tyre
 
-SHARES = (0.5, 1.0, 1.5)
-"""Loads that are drawn, as shares of the nominal one."""
-WIDEST = {"alpha": math.radians(15.0), "kappa": 0.3, "gamma": math.radians(50.0)}
-"""How far the inputs go, if the file's range goes as far."""
+WIDEST = {
+    "alpha": constants.DRAWN_SIDESLIP.rad,
+    "kappa": constants.DRAWN_SLIP,
+    "gamma": constants.DRAWN_CAMBER.rad,
+}
 KEYS = {"alpha": ("ALPMIN", "ALPMAX"), "kappa": ("KPUMIN", "KPUMAX"), "gamma": ("CAMMIN", "CAMMAX")}
 PANELS = (("alpha", "Fy"), ("alpha", "Mz"), ("kappa", "Fx"), ("gamma", "Fy"))
 LABELS = {
@@ -29,8 +31,6 @@ LABELS = {
     "Fx": "$F_x$ [N]", "Fy": "$F_y$ [N]", "Mz": "$M_z$ [Nm]",
 }  # fmt: skip
 ANGLES = ("alpha", "gamma")
-POINTS = 161
-DPI = 80
 
 
 def plot(
@@ -45,11 +45,15 @@ def plot(
         from matplotlib.figure import Figure
     except ImportError:
         raise TirError("drawing needs matplotlib, which is not installed: pip install matplotlib") from None
-    at = [share * float(tyre["FNOMIN"]) for share in SHARES] if loads is None else [float(x) for x in loads]
+    at = (
+        [share * float(tyre["FNOMIN"]) for share in constants.DRAWN_LOADS]
+        if loads is None
+        else [float(x) for x in loads]
+    )
     rows = math.ceil(len(panels) / 2)
     figure = Figure(figsize=(8.4, 2.7 * rows), layout="constrained")
     for ax, (x, y) in zip(figure.subplots(rows, 2, squeeze=False).flat, panels, strict=True):
-        given = np.linspace(*_reach(tyre, x), POINTS)
+        given = np.linspace(*_reach(tyre, x), constants.POINTS_PER_CURVE)
         inputs: dict[str, Any] = {x: given}
         for i, Fz in enumerate(at):
             forces = tyre(Fz, **inputs, turn_slip=turn_slip)
@@ -76,7 +80,7 @@ def notebook(tyre: Tyre) -> str:
             return f"{said}<div>{html.escape(str(error))}</div>"
     figure.set_size_inches(7.0, 2.4)
     stream = io.BytesIO()
-    figure.savefig(stream, dpi=DPI, format="png", facecolor="white")
+    figure.savefig(stream, dpi=constants.NOTEBOOK_DPI, format="png", facecolor="white")
     data = base64.b64encode(stream.getvalue()).decode("ascii")
     return f'{said}<img alt="side force and aligning moment over sideslip at three loads" src="data:image/png;base64,{data}">'
 
@@ -86,7 +90,7 @@ def _table(tyre: Tyre) -> str:
     angles = (-4.0, -2.0, 0.0, 2.0, 4.0)
     head = "".join(f"<th>{angle:g} deg</th>" for angle in angles)
     lines = []
-    for share in SHARES:
+    for share in constants.DRAWN_LOADS:
         Fz = share * float(tyre["FNOMIN"])
         found = tyre(Fz, np.radians(angles)).Fy
         lines.append(f"<tr><th>{Fz:.0f} N</th>{''.join(f'<td>{Fy:.0f} N</td>' for Fy in found)}</tr>")

@@ -8,26 +8,20 @@ from typing import Any
 
 import numpy as np
 
+from tir import constants
 from tir.equations import aligning, lateral, longitudinal, normalise, stiffness
 from tir.errors import Problem
 from tir.tyre import Tyre
 
-AXES = (
-    ("FZMIN", "FZMAX", 7),
-    ("CAMMIN", "CAMMAX", 9),
-    ("PRESMIN", "PRESMAX", 5),
-    ("ALPMIN", "ALPMAX", 9),
-    ("KPUMIN", "KPUMAX", 5),
+RANGES = (
+    ("FZMIN", "FZMAX"),
+    ("CAMMIN", "CAMMAX"),
+    ("PRESMIN", "PRESMAX"),
+    ("ALPMIN", "ALPMAX"),
+    ("KPUMIN", "KPUMAX"),
 )
-"""The ranges searched, and how many values of each are tried at a time."""
-ROUNDS = 4
-"""How often the search narrows to the neighbourhood of the worst point."""
-BEYOND = 0.1
-"""How far outside a range "just outside" is, as a share of its width."""
-SLIGHT = 0.01
-"""Share of a force that may turn round: less than a rig can tell from none."""
-WIDEST = 1.05
-"""Camber [rad] beyond which no tyre is judged, whatever its file allows."""
+"""The ranges searched, in the order of :data:`tir.constants.VALUES_PER_SEARCHED_RANGE`."""
+SLIGHT, FRICTION = constants.REVERSED_FORCE_SHARE, constants.CREDIBLE_FRICTION
 
 Measure = Callable[[Any, normalise.Inputs], Any]
 
@@ -57,9 +51,9 @@ CONDITIONS = (
     Condition(
         "PDY1",
         "warning",
-        lambda p, q: 4.0 - stiffness.lateral_friction(p, q, q.gamma),
+        lambda p, q: FRICTION - stiffness.lateral_friction(p, q, q.gamma),
         "the lateral friction coefficient is {worst:.1f} at {where}",
-        lambda margin: 4.0 - margin,
+        lambda margin: FRICTION - margin,
     ),
     Condition(
         "PDX1",
@@ -133,9 +127,10 @@ def over_the_range(tyre: Tyre) -> Iterator[Problem]:
     """What the tyre breaks within its ranges, and just outside."""
     box = _box(tyre)
     width = box[1] - box[0]
-    around = np.array([box[0] - BEYOND * width, box[1] + BEYOND * width])
-    around[0, 0] = max(around[0, 0], 0.2 * box[0, 0])
-    around[0, 2] = max(around[0, 2], 0.2 * box[0, 2])
+    reach = constants.JUST_OUTSIDE * width
+    around = np.array([box[0] - reach, box[1] + reach])
+    for k in (0, 2):  # load and pressure stay positive
+        around[0, k] = max(around[0, k], constants.LOWEST_SHARE_OUTSIDE * box[0, k])
     for condition in CONDITIONS:
         margin, point = worst(tyre, condition.measure, box)
         if np.isnan(margin):
@@ -161,9 +156,10 @@ def worst(tyre: Tyre, measure: Measure, box: np.ndarray) -> tuple[float, np.ndar
     NaN where the measure is no number.
     """
     low, high = box
+    counts = [int(n) for n in constants.VALUES_PER_SEARCHED_RANGE]
     best, place = np.inf, low
-    for _ in range(ROUNDS):
-        axes = [np.linspace(a, b, n) for a, b, (_, _, n) in zip(low, high, AXES, strict=True)]
+    for _ in range(constants.ROUNDS_OF_THE_SEARCH):
+        axes = [np.linspace(a, b, n) for a, b, n in zip(low, high, counts, strict=True)]
         points = np.stack([axis.ravel() for axis in np.meshgrid(*axes, indexing="ij")])
         found = np.broadcast_to(_measured(tyre, measure, points), points.shape[1:])
         i = int(np.argmax(np.isnan(found))) if np.any(np.isnan(found)) else int(np.argmin(found))
@@ -171,7 +167,7 @@ def worst(tyre: Tyre, measure: Measure, box: np.ndarray) -> tuple[float, np.ndar
             return float("nan"), points[:, i]
         if found[i] < best:
             best, place = float(found[i]), points[:, i]
-        step = (high - low) / [n - 1 for _, _, n in AXES]
+        step = (high - low) / [n - 1 for n in counts]
         low, high = np.maximum(box[0], place - step), np.minimum(box[1], place + step)
     return best, place
 
@@ -185,12 +181,13 @@ def _measured(tyre: Tyre, measure: Measure, points: np.ndarray) -> Any:
 
 def _box(tyre: Tyre) -> np.ndarray:
     """The file's ranges, without what no tyre meets."""
-    box = np.array([[float(tyre[name]) for name in ends] for *ends, _ in AXES]).T
-    box[0, 0] = max(box[0, 0], 0.02 * tyre["FNOMIN"])
-    box[:, 1] = np.clip(box[:, 1], -WIDEST, WIDEST)
-    pressure = np.clip(box[:, 2], 0.5 * tyre["NOMPRES"], 1.5 * tyre["NOMPRES"])
+    box = np.array([[float(tyre[name]) for name in ends] for ends in RANGES]).T
+    box[0, 0] = max(box[0, 0], constants.LOWEST_SEARCHED_LOAD * tyre["FNOMIN"])
+    box[:, 1] = np.clip(box[:, 1], -constants.SEARCHED_CAMBER, constants.SEARCHED_CAMBER)
+    least, most = (share * tyre["NOMPRES"] for share in constants.SEARCHED_PRESSURES)
+    pressure = np.clip(box[:, 2], least, most)
     box[:, 2] = pressure if pressure[0] < pressure[1] else tyre["NOMPRES"]
-    box[:, 3] = np.clip(box[:, 3], -0.5, 0.5)
+    box[:, 3] = np.clip(box[:, 3], -constants.SEARCHED_SIDESLIP, constants.SEARCHED_SIDESLIP)
     return box
 
 

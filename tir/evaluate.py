@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from tir.constants import SMALLEST_LOAD
 from tir.equations import forces, normalise
 from tir.equations.elementary import select
 from tir.equations.forces import Forces, Loads, State
@@ -16,8 +17,7 @@ from tir.parameters import TABLE
 
 CONICITY = tuple(row.name for row in TABLE if row.conicity)
 DIVISORS = tuple(row.name for row in TABLE if row.divisor)
-SMALLEST_LOAD = 1e-6
-"""Load [N] that stands in for Fz <= 0, where several formulae are 0/0; the forces returned there are exactly 0."""
+NEARLY_UNLOADED = float(SMALLEST_LOAD)
 
 
 def evaluate(
@@ -77,7 +77,7 @@ def forwards(
 ) -> tuple[Forces, State]:
     """The model of a wheel that rolls forwards, ``Vx`` >= 0; arguments as in :func:`evaluate`, every one given."""
     unloaded = np.real(Fz) <= 0.0
-    Fz_given, kappa_given = select(unloaded, SMALLEST_LOAD, Fz), kappa
+    Fz_given, kappa_given = select(unloaded, NEARLY_UNLOADED, Fz), kappa
     Fz, Fz_moment, loads = Fz_given, Fz_given, Loads(Fz_given, Fz_given)
     if limits:
         Fz = _clip(Fz_given, None, p.FZMAX)

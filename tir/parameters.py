@@ -8,6 +8,8 @@ from dataclasses import dataclass
 from importlib.resources import files as resources
 from typing import NamedTuple
 
+from tir.constants import MARGIN_INSIDE_RANGE
+
 REGULAR = ("", "motorcycle", "62")
 """Words of the column ``files`` of which a file that is complete for every program has the keys."""
 TURN_SLIP = "TURNSLIP_COEFFICIENTS"
@@ -60,7 +62,7 @@ class Parameter:
     def inside(self, value: float) -> float:
         """The value a little inside the plausible range: a search that starts on a bound can be held there."""
         lower, upper = self.bounds
-        margin = 1e-3 * self.width if math.isfinite(self.width) else 0.0
+        margin = MARGIN_INSIDE_RANGE * self.width if math.isfinite(self.width) else 0.0
         return min(max(value, lower + margin), upper - margin)
 
     @property

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 
+from tir import constants
 from tir.errors import Problem
 from tir.parameters import BY_NAME, TABLE
 from tir.tyre import Tyre
@@ -22,11 +23,27 @@ class Rule:
 
 
 SINGLE = (
-    Rule(("NOMPRES", "INFLPRES"), lambda x: 0.0 < x < 5e3, "it looks like kPa or bar; write Pa"),
-    Rule(("NOMPRES", "INFLPRES"), lambda x: x > 1e7, "no tyre bears it; write Pa"),
-    Rule(("ALPMIN", "ALPMAX"), lambda x: abs(x) > 1.7, "it looks like degrees; write radians"),
-    Rule(("CAMMIN", "CAMMAX"), lambda x: abs(x) > 1.6, "it looks like degrees; write radians"),
-    Rule(("WIDTH", "RIM_WIDTH"), lambda x: x > 2.0, "it looks like millimetres or inches; write metres"),
+    Rule(
+        ("NOMPRES", "INFLPRES"),
+        lambda x: 0.0 < x < constants.LOWEST_PRESSURE,
+        "it looks like kPa or bar; write Pa",
+    ),
+    Rule(("NOMPRES", "INFLPRES"), lambda x: x > constants.HIGHEST_PRESSURE, "no tyre holds it; write Pa"),
+    Rule(
+        ("ALPMIN", "ALPMAX"),
+        lambda x: abs(x) > constants.LARGEST_SIDESLIP_LIMIT,
+        "it looks like degrees; write radians",
+    ),
+    Rule(
+        ("CAMMIN", "CAMMAX"),
+        lambda x: abs(x) > constants.LARGEST_CAMBER_LIMIT,
+        "it looks like degrees; write radians",
+    ),
+    Rule(
+        ("WIDTH", "RIM_WIDTH"),
+        lambda x: x > constants.WIDEST_TYRE,
+        "it looks like millimetres or inches; write metres",
+    ),
     Rule(
         tuple(row.name for row in TABLE if row.unit in ("kg", "kg m2")),
         lambda x: x < 0.0,

@@ -6,14 +6,12 @@ import math
 from collections.abc import Iterator
 from typing import Any
 
+from tir.constants import LONGEST_WRITTEN_LINE
 from tir.errors import TirError
 from tir.parameters import BY_NAME, SECTIONS, TABLE, Parameter
 from tir.targets import Target, use_mode_words, vendor
 from tir.tyre import Tyre
 from tir.units import SI
-
-WIDTH = 118
-"""Characters of the longest line; some readers stop at 120."""
 
 
 def render(tyre: Tyre, target: Target) -> str:
@@ -71,7 +69,7 @@ def structured_comments(tyre: Tyre) -> Iterator[str]:
 def entry(key: str, value: str, comment: str = "") -> str:
     """One line with a key."""
     line = f"{key:<24} = {value}"
-    return f"{line:<50} ${comment_text(comment)}"[:WIDTH] if comment else line
+    return f"{line:<50} ${comment_text(comment)}"[:LONGEST_WRITTEN_LINE] if comment else line
 
 
 def value_text(row: Parameter, value: Any) -> str:

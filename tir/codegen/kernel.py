@@ -17,15 +17,15 @@ from importlib.resources import files as resources
 from pathlib import Path
 from typing import Any, NamedTuple
 
+from tir.codegen.constants import VECTOR_LANES
 from tir.codegen.program import Switches, trace
 from tir.codegen.single import constants, preparation_of
 from tir.equations.forces import Forces
 from tir.errors import TirError
 
-SOURCES = ("equations", "codegen", "evaluate.py", "derivatives.py", "parameters.csv")
+SOURCES = ("equations", "codegen", "constants.py", "evaluate.py", "derivatives.py", "parameters.csv")
 """What the machine code follows from."""
-LANES = 8
-"""Conditions that are computed together: as many as the widest common vector has doubles; narrower machines split them."""
+LANES = int(VECTOR_LANES)
 KINDS = ("batch", "one")
 FASTCALL = 0x80
 """CPython's METH_FASTCALL."""

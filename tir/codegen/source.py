@@ -8,13 +8,12 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
+from tir.codegen.constants import LONGEST_INLINED_EXPRESSION
 from tir.codegen.graph import Node
 from tir.codegen.program import INPUTS, Program
 
 FUNCTIONS = ("sqrt", "exp", "sin", "cos", "tan", "arctan", "arccos", "power")
 COMPARISONS = ("less", "less_equal", "greater", "greater_equal", "both")
-LONGEST = 400
-"""Characters of an expression that may stand inside another one."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -83,7 +82,7 @@ def assignments(
     lines = []
     for node in nodes:
         text = dialect.templates[node.operation].format(*map(written, node.arguments))
-        if dialect.inline and uses[node.number] == 1 and len(text) < LONGEST:
+        if dialect.inline and uses[node.number] == 1 and len(text) < LONGEST_INLINED_EXPRESSION:
             inside[node.number] = text
             continue
         form = dialect.flag if node.operation in COMPARISONS else dialect.number
