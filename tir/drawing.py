@@ -1,4 +1,4 @@
-"""Pictures of a tyre; matplotlib is imported when one is asked for."""
+"""Pictures of a tyre; matplotlib is imported on first use."""
 
 from __future__ import annotations
 
@@ -69,14 +69,14 @@ def plot(
 
 
 def notebook(tyre: Tyre) -> str:
-    """What a notebook shows of a tyre: its few lines, and a small picture if matplotlib is there."""
+    """HTML for a notebook: the lines of the repr, and a small picture if matplotlib is installed."""
     said = "".join(f"<div>{html.escape(line)}</div>" for line in repr(tyre).strip("<>").splitlines())
     try:
         figure = plot(tyre, panels=PANELS[:2])
     except TirError:
         try:
             return said + _table(tyre)
-        except TirError as error:  # a readable file by which nothing can be computed
+        except TirError as error:  # a file that can be read, but not evaluated
             return f"{said}<div>{html.escape(str(error))}</div>"
     figure.set_size_inches(7.0, 2.4)
     stream = io.BytesIO()
@@ -86,7 +86,7 @@ def notebook(tyre: Tyre) -> str:
 
 
 def _table(tyre: Tyre) -> str:
-    """Forces at some sideslip and load, where no picture can be drawn."""
+    """Table of side forces at some angles and loads, for when no picture can be drawn."""
     angles = (-4.0, -2.0, 0.0, 2.0, 4.0)
     head = "".join(f"<th>{angle:g} deg</th>" for angle in angles)
     lines = []
@@ -98,14 +98,14 @@ def _table(tyre: Tyre) -> str:
 
 
 def _reach(tyre: Tyre, name: str) -> tuple[float, float]:
-    """From where to where an input is drawn [SI]."""
+    """First and last drawn value of an input [SI]."""
     widest = WIDEST[name]
     low, high = (min(max(float(tyre[key]), -widest), widest) for key in KEYS[name])
     return (low, high) if low < high else (-widest, widest)
 
 
 def _shade(i: int, n: int) -> Any:
-    """Dark to light, in order."""
+    """Colour of curve i of n, dark to light."""
     import matplotlib
 
     return matplotlib.colormaps["viridis"](0.8 * i / max(n - 1, 1))

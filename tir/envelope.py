@@ -1,4 +1,4 @@
-"""Physics of a tyre over its whole range: each condition is searched for its worst point, inside and just outside."""
+"""Physical conditions over the whole range of a tyre: each is searched for its worst point, inside and just outside."""
 
 from __future__ import annotations
 
@@ -28,14 +28,14 @@ Measure = Callable[[Any, normalise.Inputs], Any]
 
 @dataclass(frozen=True, slots=True)
 class Condition:
-    """Something that must stay above zero."""
+    """A quantity that must stay above zero."""
 
-    name: str  #: the key to look at first
+    name: str  #: the key to check first
     level: str  #: "error" or "warning"
     measure: Measure
     sentence: str  #: with {where} and {worst}
-    value: Callable[[float], float] = lambda margin: margin  #: what to print, from the margin
-    outside: str = ""  #: sentence where it holds inside only; "" if nobody minds
+    value: Callable[[float], float] = lambda margin: margin  #: the number to print, from the margin
+    outside: str = ""  #: sentence if the condition holds inside the ranges only; "" if that does not matter
     slips: bool = False  #: whether it depends on sideslip and longitudinal slip
     camber: bool = True  #: whether it depends on camber
 
@@ -86,21 +86,21 @@ CONDITIONS = (
         "PKY6",
         "warning",
         lambda p, q: 1e-9 - stiffness.camber_stiffness(p, q),
-        "camber pushes against the lean at {where}: a normal tyre has PKY6 < 0 in ISO-W",
+        "the camber force has the wrong sign at {where}: a normal tyre has PKY6 < 0 in ISO-W",
         camber=False,
     ),
     Condition(
         "PEY1",
         "warning",
         lambda p, q: 1.0 - np.maximum(*(lateral.curvature(p, q, q.gamma, side) for side in (-1.0, 1.0))),
-        "the curvature E_y reaches {worst:.2f} > 1 at {where}: simulations may hold it at 1",
+        "the curvature E_y reaches {worst:.2f} > 1 at {where}: simulations may limit it to 1",
         lambda margin: 1.0 - margin,
     ),
     Condition(
         "QEZ1",
         "warning",
         lambda p, q: 1.0 - aligning.curvature(p, q, aligning.slope_factor(p, q), q.alpha),
-        "the curvature E_t of the trail reaches {worst:.2f} > 1 at {where}: simulations may hold it at 1",
+        "the curvature E_t of the trail reaches {worst:.2f} > 1 at {where}: simulations may limit it to 1",
         lambda margin: 1.0 - margin,
         slips=True,
     ),
@@ -108,7 +108,7 @@ CONDITIONS = (
         "RBY1",
         "warning",
         lambda p, q: SLIGHT + lateral.combined_weight(p, q),
-        "longitudinal slip turns the side force round: G_yk is {worst:.2f} at {where}",
+        "longitudinal slip reverses the side force: G_yk is {worst:.2f} at {where}",
         lambda margin: margin - SLIGHT,
         slips=True,
     ),
@@ -116,7 +116,7 @@ CONDITIONS = (
         "RBX1",
         "warning",
         lambda p, q: SLIGHT + longitudinal.combined_weight(p, q),
-        "sideslip turns the longitudinal force round: G_xa is {worst:.2f} at {where}",
+        "sideslip reverses the longitudinal force: G_xa is {worst:.2f} at {where}",
         lambda margin: margin - SLIGHT,
         slips=True,
     ),
@@ -124,7 +124,7 @@ CONDITIONS = (
 
 
 def over_the_range(tyre: Tyre) -> Iterator[Problem]:
-    """What the tyre breaks within its ranges, and just outside."""
+    """Problems for the conditions that the tyre violates within its ranges or just outside."""
     box = _box(tyre)
     width = box[1] - box[0]
     reach = constants.JUST_OUTSIDE * width
@@ -136,7 +136,7 @@ def over_the_range(tyre: Tyre) -> Iterator[Problem]:
         if np.isnan(margin):
             yield Problem(
                 "error",
-                f"{condition.name} and its like give no number at {_place(point, condition)}",
+                f"{condition.name} and related coefficients give no number at {_place(point, condition)}",
                 condition.name,
             )
             return
@@ -153,7 +153,7 @@ def over_the_range(tyre: Tyre) -> Iterator[Problem]:
 def worst(tyre: Tyre, measure: Measure, box: np.ndarray) -> tuple[float, np.ndarray]:
     """The smallest value over a box (2, 5) of Fz [N], gamma [rad], pressure [Pa], alpha [rad], kappa, and where.
 
-    NaN where the measure is no number.
+    NaN, and the place, if the measure is NaN anywhere.
     """
     low, high = box
     counts = [int(n) for n in constants.VALUES_PER_SEARCHED_RANGE]
@@ -180,7 +180,7 @@ def _measured(tyre: Tyre, measure: Measure, points: np.ndarray) -> Any:
 
 
 def _box(tyre: Tyre) -> np.ndarray:
-    """The file's ranges, without what no tyre meets."""
+    """The file's ranges, reduced to what tyres are used for."""
     box = np.array([[float(tyre[name]) for name in ends] for ends in RANGES]).T
     box[0, 0] = max(box[0, 0], constants.LOWEST_SEARCHED_LOAD * tyre["FNOMIN"])
     box[:, 1] = np.clip(box[:, 1], -constants.SEARCHED_CAMBER, constants.SEARCHED_CAMBER)

@@ -1,7 +1,7 @@
-"""What a tyre changes in the text it was read from: the characters of changed values, and nothing beside them.
+"""The text that a tyre was read from, with its changes: only the characters of changed values differ.
 
-Keys that are given and that the file lacks are added to their section; a key's comment is replaced where it states an origin
-of the value that no longer holds, or where there is a new one to state.
+Keys that the tyre gives and the file lacks are added to their section. The comment of a key is replaced if the origin of its
+value has changed.
 """
 
 from __future__ import annotations
@@ -52,12 +52,12 @@ def merged(tyre: Tyre, document: Document) -> Document:
 
 
 def _text(row: Parameter, value: Any, words: dict[str, str], line: Line | None = None) -> str:
-    """The value in the file's units and in the quotes of the line."""
+    """The value as text, in the file's units and with the quotes of the line."""
     if row.kind == "text":
         text = value_text(row, value)
         quoted = line is None or not line.value or line.value[0] in "'\""
         return text.replace("'", line.value[0] if line and line.value else "'") if quoted else unquoted(text)
-    value_text(row, value)  # refuses what is no number
+    value_text(row, value)  # raises if the value is not finite
     wanted, size = float(value), factor(row.unit, words)
     found = wanted / size
     near = (found, math.nextafter(found, -math.inf), math.nextafter(found, math.inf))
@@ -67,7 +67,7 @@ def _text(row: Parameter, value: Any, words: dict[str, str], line: Line | None =
 def _places(
     document: Document, rows: list[Parameter], lines: dict[str, Line], tyre: Tyre, words: dict[str, str]
 ) -> dict[int, list[str]]:
-    """New lines by the number of the line that they follow: behind the key that precedes them in the table."""
+    """New lines, by the number of the line that each follows: that of the preceding key of the table."""
     heads = {line.section: line.number for line in reversed(document.lines) if line.head}
     last = document.lines[-1].number
     if not document.lines[-1].text:

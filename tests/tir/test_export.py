@@ -101,14 +101,14 @@ def test_the_code_allocates_nothing_and_keeps_nothing():
 @pytest.mark.parametrize(
     ("name", "words"),
     [
-        ("2front", "no name in C"),
-        ("a b", "no name in C"),
-        ("", "no name in C"),
+        ("2front", "not a valid name in C"),
+        ("a b", "not a valid name in C"),
+        ("", "not a valid name in C"),
         ("double", "tyre_double"),
         ("Math", "tyre_Math"),
     ],
 )
-def test_a_name_that_is_none_in_c_is_refused(name, words):
+def test_a_name_that_is_invalid_in_c_is_refused(name, words):
     with pytest.raises(tir.TirError, match=words):
         tir.export_c(tir.Tyre.from_values({}), name=name)
 

@@ -104,10 +104,10 @@ def test_a_file_of_mf60_is_told_so_in_one_sentence(tmp_path):
 
 
 @pytest.mark.parametrize(("shape", "told"), [(1.005, False), (1.05, True)])
-def test_a_side_force_that_turns_round_by_less_than_a_rig_can_see_is_no_problem(tyre, shape, told):
+def test_a_side_force_reversed_by_less_than_a_rig_can_see_is_accepted(tyre, shape, told):
     """The weight cos(C atan(B kappa)) tends to cos(C pi / 2): -0.8 % for C = 1.005, -7.8 % for 1.05."""
     steep = tyre.replace(RBY1=1e4, RBY2=0.0, RCY1=shape, REY1=0.0, REY2=0.0, RHY1=0.0, RHY2=0.0)
-    assert any("turns the side force round" in p.sentence for p in check(steep)) is told
+    assert any("reverses the side force" in p.sentence for p in check(steep)) is told
 
 
 def test_mass_of_units_and_mass_of_inertia_are_two_things(tyre):
@@ -138,13 +138,13 @@ def test_units_other_than_si_are_converted(tmp_path, tyre):
         (TEXT.replace("FITTYP                   = 62", "FITTYP = 6"), ["5.2", "fit"]),
         (TEXT.replace("= 62", "= 21").replace("'USER'", "'MF_05'"), ["5.2"]),
         (TEXT.replace("PDY1                     = 1.27", "PDY1 = 1,27"), ["PDY1", "1.27", ":"]),
-        (TEXT.replace("PDY1                     = 1.27", "PDY1 ="), ["PDY1", "cut short"]),
+        (TEXT.replace("PDY1                     = 1.27", "PDY1 ="), ["PDY1", "truncated"]),
         (TEXT.replace("PDY1                     = 1.27", "PDY1 = nan"), ["PDY1"]),
-        (TEXT.rstrip().removesuffix("0.88"), ["QDRP1", "cut short"]),
+        (TEXT.rstrip().removesuffix("0.88"), ["QDRP1", "truncated"]),
         (TEXT.replace("UNLOADED_RADIUS", "!UNLOADED_RADIUS"), ["UNLOADED_RADIUS to [DIMENSION]"]),
         (TEXT.replace("FITTYP                   = 62", "FITTYP = 52"), ["MF-MCTyre", "motorcycle"]),
         (TEXT.replace("FITTYP                   = 62", "FITTYP = 21"), ["MF-Tyre 5.2"]),
-        (TEXT[: TEXT.index("[LATERAL")], ["PCY1", "cut short"]),
+        (TEXT[: TEXT.index("[LATERAL")], ["PCY1", "truncated"]),
         (TEXT[: TEXT.index("[VERTICAL]")], ["FNOMIN"]),
         (TEXT.replace("'meter'", "'cubit'"), ["cubit", "meter"]),
         (
@@ -159,7 +159,7 @@ def test_units_other_than_si_are_converted(tmp_path, tyre):
         (TEXT.replace("FITTYP                   = 62", "FITTYP = 63"), ["63", "only 60, 61 and 62"]),
         (
             TEXT[: TEXT.index("1.27\n") + 3],
-            [f":{TEXT[: TEXT.index('1.27')].count(chr(10)) + 1}:", "PDY1 = 1.2", "cut short"],
+            [f":{TEXT[: TEXT.index('1.27')].count(chr(10)) + 1}:", "PDY1 = 1.2", "truncated"],
         ),
     ],
     ids=[
@@ -299,11 +299,11 @@ def test_a_name_that_mf62_does_not_have_is_refused(tyre):
 
 
 @pytest.mark.parametrize("value", [None, "text", [1.0], {"a": 1}, Decimal("1.5"), Path("a")])
-def test_a_value_with_which_nothing_can_be_computed_is_refused_by_its_name(tyre, value):
+def test_a_value_of_the_wrong_kind_is_refused_by_its_name(tyre, value):
     for make in (tyre.replace, lambda **given: tir.Tyre.from_values(given)):
         with pytest.raises(tir.TirError, match=r"PKY1 is .*a number was expected"):
             make(PKY1=value)
-    with pytest.raises(tir.TirError, match="TYRESIDE is 3, and a text"):
+    with pytest.raises(tir.TirError, match="TYRESIDE is 3, but a text"):
         tyre.replace(TYRESIDE=3)
 
 
@@ -403,16 +403,16 @@ class TestCheck:
             ({"PEY1": 3.0, "PEY2": 0.0}, "warning", "E_y"),
             ({"PECP1": 1.0}, "warning", "eps_gamma"),
             ({"PECP1": 0.5, "PECP2": 0.0, "MC_CONTOUR_A": 0.1}, "warning", "common default 0.5"),
-            ({"PECP1": 0.93, "PECP2": 0.0}, "warning", "eps_gamma comes near 1"),
+            ({"PECP1": 0.93, "PECP2": 0.0}, "warning", "eps_gamma comes close to 1"),
             (TURN_SLIP_DEFAULTS, "warning", "common defaults"),
             ({"USE_MODE": 225.0}, "warning", "licence"),
             ({"USE_MODE": 124.0, "MC_CONTOUR_A": 0.1}, "warning", "motorcycle"),
             ({"FITTYP": 61.0, "Q_CAM1": 0.4}, "warning", "Q_CAM1"),
-            ({"QSX4": 0.1, "QSX12": 0.1}, "warning", "alternatives"),
+            ({"QSX4": 0.1, "QSX12": 0.1}, "warning", "same effect"),
             ({"INFLPRES": 900e3, "PRESMAX": 400e3}, "warning", "PRESMAX"),
             ({"ALPMIN": -0.03, "ALPMAX": 0.03}, "warning", "of its peak"),
-            ({"FZMAX": 1600.0}, "warning", "hold the load"),
-            ({"FZMIN": 900.0}, "warning", "fade"),
+            ({"FZMAX": 1600.0}, "warning", "limit the load"),
+            ({"FZMIN": 900.0}, "warning", "reduces forces"),
             ({"PKY3": 1.2, "CAMMAX": 0.8, "CAMMIN": -0.8}, "warning", "just outside"),
             ({"RBY1": 30.0, "RCY1": 2.5, "REY1": 0.0}, "warning", "G_yk"),
             ({"CAMMAX": 50.0}, "warning", "degrees"),

@@ -106,9 +106,9 @@ def test_programs_that_come_and_go_leave_derivatives_as_they_are(p):
 @pytest.mark.parametrize(
     ("names", "inputs", "said"),
     [
-        (("Fy",), {"fz": 4e3}, "fz is no input"),
-        (("Fy",), {"Fz": 4e3, "p": 1e5}, "p is no input"),
-        (("Fq",), {"Fz": 4e3}, "Fq is no output"),
+        (("Fy",), {"fz": 4e3}, "fz is not an input"),
+        (("Fy",), {"Fz": 4e3, "p": 1e5}, "p is not an input"),
+        (("Fq",), {"Fz": 4e3}, "Fq is not an output"),
         ("Fy", {"Fz": 4e3}, "is a text"),
         (("Fy",), {"alpha": 0.1}, "load Fz"),
     ],
