@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from tir import constants
-from tir.consumers import stumbles
+from tir.consumers import target_problems
 from tir.envelope import over_the_range
 from tir.equations import normalise
 from tir.errors import Problem
@@ -50,7 +50,7 @@ def check(tyre: Tyre, targets: str | Iterable[str] = ()) -> list[Problem]:
         with np.errstate(all="ignore"):
             found += [*_shape(tyre), *over_the_range(tyre), *_clamps(tyre), *_spin(tyre), *_moments(tyre)]
     for target in programs:
-        found += stumbles(tyre, target)
+        found += target_problems(tyre, target)
     return [_with_line(problem, tyre) for problem in found]
 
 

@@ -18,7 +18,7 @@ FIRST_OF_MODEL = 3
 """Keys of [MODEL] that a program uses that reads by position: version, side, reference speed."""
 
 
-def stumbles(tyre: Tyre, target: Target) -> Iterator[Problem]:
+def target_problems(tyre: Tyre, target: Target) -> Iterator[Problem]:
     """Problems of the tyre in one program, and of its file's text if it has one."""
     if target.refusal:
         yield Problem("error", f"{target.name} {target.refusal}")

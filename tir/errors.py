@@ -43,7 +43,7 @@ class Problem:
 
 
 def counted(number: int, what: str) -> str:
-    """A number of things in words, of which the first has the plural: "1 key of MF 6.2", "2 keys of MF 6.2"."""
+    """A number and a noun, with the plural on the first word: "1 key of MF 6.2", "2 keys of MF 6.2"."""
     head, *rest = what.split(" ", 1)
     return " ".join([str(number), head + "s" * (number != 1), *rest])
 

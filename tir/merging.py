@@ -12,7 +12,7 @@ from typing import Any
 
 from tir.document import Document, Line
 from tir.parameters import SECTIONS, TABLE, Parameter
-from tir.properties import MEASURED, PROVENANCE, interpret, stands_for, units_of, unquoted
+from tir.properties import MEASURED, PROVENANCE, interpret, parameter_of, units_of, unquoted
 from tir.rendering import comment_text, entry, remark, structured_comments, value_text
 from tir.tyre import Tyre
 from tir.units import factor
@@ -29,7 +29,7 @@ def merged(tyre: Tyre, document: Document) -> Document:
     before, words = interpret(document), units_of(document, [])
     lines: dict[str, Line] = {}
     for line in document.entries:
-        if stands_for(line) is not None:
+        if parameter_of(line) is not None:
             lines.setdefault(line.key, line)
     added = [row for row in TABLE if row.name not in lines and row.name in tyre.present]
     changed = {}

@@ -1,4 +1,4 @@
-"""The parameter table as frozen records; knows no file syntax and no equation."""
+"""The parameter table as frozen records; contains no file syntax and no equation."""
 
 from __future__ import annotations
 

@@ -66,7 +66,7 @@ def interpret(document: Document) -> Tyre:
     extra: dict[str, str] = {}
     status: dict[str, str] = {}
     for line in entries:
-        row = stands_for(line)
+        row = parameter_of(line)
         if row is None:
             if line.section not in HEADER:
                 extra[f"{line.section}.{line.key}"] = line.value
@@ -87,7 +87,7 @@ def interpret(document: Document) -> Tyre:
     _refuse_other_versions(values, extra, document)
     _refuse_truncated(values, document)
     problems += _about_a_cut_number(values, document)
-    stated = {line.key for line in entries if stands_for(line)}
+    stated = {line.key for line in entries if parameter_of(line)}
     problems += _about_missing(values, stated) + _about_unknown(extra)
     complete = {row.name: row.default for row in TABLE} | values
     measured, provenance = _structured_comments(document)
@@ -103,7 +103,7 @@ def interpret(document: Document) -> Tyre:
     )
 
 
-def stands_for(line: Line) -> Parameter | None:
+def parameter_of(line: Line) -> Parameter | None:
     """The parameter of a line with a key; None in the header and for keys that are not in MF 6.2."""
     return None if line.section in HEADER else BY_NAME.get(line.key)
 
@@ -214,7 +214,7 @@ def _refuse_truncated(values, document: Document) -> None:
 def _about_a_cut_number(values, document: Document) -> list[Problem]:
     """A problem, or an error, if the file ends without a line end and may be truncated within its last number."""
     line = document.lines[-1]
-    row = stands_for(line)
+    row = parameter_of(line)
     if row is None or row.kind == "text" or line.start + len(line.value) < len(line.text):
         return []  # text after the number shows that the number is complete
     behind = [other for other in TABLE if other.order > row.order and other.files == ""]

@@ -62,7 +62,7 @@ def test_a_tyre_of_which_nothing_can_be_computed_is_text_in_a_notebook():
     assert "<img" not in shown
 
 
-def test_what_a_file_says_is_text_in_a_notebook():
+def test_text_of_a_file_is_escaped_in_a_notebook():
     tyre = tir.read(FILE).annotate(measured={"<img src=x>": tir.Quantity(1.0, 0.1, "<b>")})
     assert "<img src=x>" not in tyre._repr_html_()
 

@@ -123,7 +123,7 @@ def test_numbers_beyond_all_bounds_are_written_as_c_has_them(tmp_path):
     assert function(2000.0, 0.03, 0.1, 0.01, -0.2, 10.0, 2.2e5).sigma_y == float("inf")
 
 
-def test_values_of_which_no_code_can_be_made_are_named():
+def test_values_that_code_cannot_hold_are_named():
     with pytest.raises(tir.TirError, match="LMUY is 0"):
         tir.export_c(tir.Tyre.from_values({"LMUY": 0.0}))
     with pytest.raises(tir.TirError, match="PKY1 is nan"):

@@ -247,7 +247,7 @@ def test_the_compiled_loop_takes_few_conditions_other_strides_and_other_kinds(ty
         ("batch", (np.ones(16)[::2],) * 7 + (np.ones((6, 8)), 0, 8)),
     ],
 )
-def test_machine_code_refuses_what_it_was_not_made_for(tyre, kind, arguments):
+def test_machine_code_refuses_wrong_arguments(tyre, kind, arguments):
     run = kernel.load(kind, Switches()).run_of(calls._values(tyre))
     with pytest.raises((TypeError, ValueError, BufferError)):
         run(*arguments)
@@ -273,7 +273,7 @@ def test_a_part_shorter_than_a_vector_stays_within_its_arrays(tyre):
 
 
 @pytest.mark.parametrize("given", ["", "relative/cache"])
-def test_a_cache_folder_that_says_nothing_is_the_usual_one(monkeypatch, given):
+def test_an_unusable_cache_variable_gives_the_usual_folder(monkeypatch, given):
     monkeypatch.setattr(sys, "platform", "linux")
     monkeypatch.setenv("XDG_CACHE_HOME", given)
     assert kernel._user_cache() == Path.home() / ".cache" / "tir"
@@ -316,7 +316,7 @@ def test_damaged_machine_code_in_the_cache_is_made_again(tyre, tmp_path, monkeyp
         assert kept.read_bytes() == whole
 
 
-def test_a_tyre_without_llvm_is_told_what_to_install(monkeypatch):
+def test_without_llvm_the_message_names_the_package(monkeypatch):
     monkeypatch.setattr(kernel, "available", lambda: False)
     kernel.load.cache_clear()
     with pytest.raises(tir.TirError, match="pip install llvmlite"):
@@ -357,7 +357,7 @@ def test_a_replay_takes_its_places_again(tyre):
     assert program.room < 0.6 * (len(program.operations) + len(program.symbols))
 
 
-def test_a_called_tyre_goes_to_other_processes(tyre):
+def test_a_called_tyre_can_be_pickled(tyre):
     import pickle
 
     noted = tyre.annotate(measured={"C": tir.Quantity(1.0, 0.1, "N")})
@@ -445,7 +445,7 @@ class TestGraph:
         assert constant.level == PARAMETER
         assert rest is x * y
 
-    def test_an_operation_that_no_language_knows_is_refused(self, graph):
+    def test_an_unsupported_operation_is_refused(self, graph):
         with pytest.raises(TypeError):
             np.sinh(graph.symbol("x", INPUT))
 

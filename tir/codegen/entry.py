@@ -13,9 +13,9 @@ from typing import Any
 from llvmlite import ir
 
 from tir.codegen import vector_math
+from tir.codegen.constants import VECTOR_LANES
 from tir.codegen.graph import Node
 from tir.codegen.instructions import DOUBLE, INTEGER, SHORT, Number, in_every_lane, repeated, select, sqrt
-from tir.codegen.kernel import LANES
 from tir.codegen.program import INPUTS, Program
 from tir.codegen.source import FUNCTIONS
 
@@ -64,7 +64,7 @@ def module(kind: str, program: Program) -> str:
 
     ``one(*INPUTS)`` takes floats and returns the six forces as floats. ``batch(*INPUTS, forces, first, last)`` takes buffers of
     doubles, each of a single number or of one per condition, and writes conditions ``first`` to ``last`` of the buffer
-    ``forces`` (6, n); n is LANES or more. It lets other threads run.
+    ``forces`` (6, n); n is VECTOR_LANES or more. It lets other threads run.
     """
     text = ir.Module(name=kind)
     signature = ir.FunctionType(POINTER, [POINTER, POINTER.as_pointer(), INTEGER])
@@ -147,7 +147,7 @@ def _batch(python: _Caller, program: Program) -> None:
     first, last = (python.call("PyLong_AsSsize_t", python.argument(count + i)) for i in (1, 2))
     python.leave_if(python.failed(), before=release)
 
-    vector = ir.VectorType(DOUBLE, LANES)
+    vector = ir.VectorType(DOUBLE, VECTOR_LANES)
     inputs = {name: _input(builder, vector, view) for name, view in zip(INPUTS, views, strict=False)}
     forces, size = _address_and_size(builder, views[-1])
     stride = builder.udiv(size, ir.Constant(INTEGER, 8 * len(program.outputs)))
@@ -191,7 +191,7 @@ def _loop(
     first, last = span
     before = builder.block
     loop, done = builder.append_basic_block("conditions"), builder.append_basic_block("done")
-    lanes = ir.Constant(INTEGER, LANES)
+    lanes = ir.Constant(INTEGER, VECTOR_LANES)
     builder.cbranch(builder.icmp_signed("<", first, last), loop, done)
     builder.position_at_end(loop)
     at = builder.phi(INTEGER)
