@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from mffit.pipeline import align, build, compare, diagnose, plan, spin, write_tydex
     from mffit.viewer import show
 
-__version__ = "0.1.0"
+    __version__: str
 
 __all__ = [
     "align",
@@ -33,7 +33,14 @@ ELSEWHERE = {"show": "mffit.viewer", "write_c": "mffit.export", "write_fmu": "mf
 
 
 def __getattr__(name: str) -> Any:
-    """Import a workflow when it is first asked for: most need scipy and pandas."""
+    """A workflow, imported when it is first asked for because most need scipy and pandas; or the version."""
+    if name == "__version__":
+        from importlib.metadata import PackageNotFoundError, version
+
+        try:
+            return version("mffit")
+        except PackageNotFoundError:  # a source tree that nobody installed
+            return "unknown"
     if name in __all__:
         from importlib import import_module
 
@@ -42,5 +49,5 @@ def __getattr__(name: str) -> Any:
 
 
 def __dir__() -> list[str]:
-    """The public names, imported yet or not."""
-    return sorted([*__all__, *(name for name in globals() if name.startswith("__"))])
+    """The public names, whether imported yet or not."""
+    return sorted([*__all__, "__version__", *(name for name in globals() if name.startswith("__"))])

@@ -1,16 +1,18 @@
-"""``mffit init``: a commented ``tyre.toml`` and CSV files with nothing but headings."""
+"""``mffit init``: a commented ``tyre.toml`` with empty CSV files, or a copy of a sample."""
 
 from __future__ import annotations
 
 import tomllib
 from importlib import resources
+from importlib.resources.abc import Traversable
 from pathlib import Path
 
+from mffit.errors import InputError
 from mffit.output import new_files
 from mffit.sweeps.channels import CHANNELS
 
 OFFERED = ("alpha_deg", "gamma_deg", "Fz_N", "Fy_N", "Mz_Nm", "p_kPa", "V_mps", "T_degC")
-"""Headings of the templates: what a rig usually knows of a finished point."""
+"""Headings of the templates: the channels that a rig usually reports for a finished point."""
 
 
 def init_project(folder: str | Path) -> list[Path]:
@@ -35,6 +37,42 @@ def init_project(folder: str | Path) -> list[Path]:
     names = [entry["file"] for entry in tomllib.loads(template)["sweep"]]
     contents = {"tyre.toml": template} | {name: headings() for name in names}
     return new_files(folder, contents)
+
+
+def copy_sample(name: str, folder: str | Path) -> list[Path]:
+    """Copy a sample that comes with the package; existing files are never touched.
+
+    Parameters
+    ----------
+    name : one of :func:`sample_names`
+    folder : created if need be
+
+    Returns
+    -------
+    list of Path
+        The files written, ``tyre.toml`` first.
+
+    Raises
+    ------
+    InputError
+        There is no such sample, one of the files is there already, or the folder cannot be written to.
+    """
+    if name not in sample_names():
+        raise InputError(f"there is no sample {name!r}; choose one of {', '.join(sample_names())}")
+    files = [entry for entry in _samples().joinpath(name).iterdir() if entry.is_file()]
+    files.sort(key=lambda file: (file.name != "tyre.toml", file.name))
+    return new_files(Path(folder), {file.name: file.read_bytes() for file in files})
+
+
+def sample_names() -> list[str]:
+    """The samples of the package: folders that hold a ``tyre.toml``."""
+    return sorted(entry.name for entry in _samples().iterdir() if entry.joinpath("tyre.toml").is_file())
+
+
+def _samples() -> Traversable:
+    """The folder of the samples: inside an installed package, beside the package in a source tree."""
+    installed = resources.files("mffit").joinpath("samples")
+    return installed if installed.is_dir() else Path(__file__).parents[1] / "samples"
 
 
 def headings() -> str:

@@ -319,8 +319,8 @@ def must_be_new(folder: Path, names: Iterable[str]) -> None:
             raise InputError("is there already; move it away or name another folder", file=folder / name)
 
 
-def new_files(folder: Path, contents: Mapping[str, str]) -> list[Path]:
-    """Paths of new files of a folder, written with the given texts.
+def new_files(folder: Path, contents: Mapping[str, str | bytes]) -> list[Path]:
+    """Paths of new files of a folder, written with the given contents.
 
     Raises
     ------
@@ -331,7 +331,7 @@ def new_files(folder: Path, contents: Mapping[str, str]) -> list[Path]:
     try:
         folder.mkdir(parents=True, exist_ok=True)
         for name, content in contents.items():
-            (folder / name).write_text(content, encoding="utf-8", newline="\n")
+            (folder / name).write_bytes(content.encode() if isinstance(content, str) else content)
     except (FileExistsError, NotADirectoryError):
         raise InputError("is a file; name a folder", file=folder) from None
     except OSError as error:

@@ -19,6 +19,7 @@ MODULES = sorted(
     ".".join(path.relative_to(ROOT).with_suffix("").parts)
     for package in ("tir", "mffit")
     for path in (ROOT / package).rglob("constants.py")
+    if "build" not in path.parts  # what `pip install ./tir` leaves behind
 )
 
 

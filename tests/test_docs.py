@@ -101,6 +101,43 @@ def test_every_page_is_reached_from_the_index():
     assert not missing, f"docs/index.md does not link to {', '.join(missing)}"
 
 
+DISTRIBUTIONS = [ROOT / "pyproject.toml", ROOT / "tir" / "pyproject.toml"]
+
+
+def test_both_distributions_and_the_changelog_have_one_version():
+    projects = [tomllib.loads(text_of(file))["project"] for file in DISTRIBUTIONS]
+    newest = re.search(r"^## (\S+)", text_of(DOCS / "changelog.md"), re.MULTILINE)
+    assert newest
+    assert {project["version"] for project in projects} | {newest[1]} == {projects[0]["version"]}
+
+
+def test_tir_by_itself_declares_what_mffit_declares():
+    both = [tomllib.loads(text_of(file))["project"] for file in DISTRIBUTIONS]
+    whole, alone = (
+        {
+            *project["dependencies"],
+            *(line for extra in project["optional-dependencies"].values() for line in extra),
+        }
+        for project in both
+    )
+    assert alone <= whole
+    assert text_of(ROOT / "LICENSE") == text_of(ROOT / "tir" / "LICENSE")
+
+
+@pytest.mark.parametrize("file", DISTRIBUTIONS, ids=["mffit", "tir"])
+def test_the_description_on_a_package_index_needs_no_other_file(file):
+    """A link or a picture that is relative to the repository is broken there."""
+    readme = file.parent / tomllib.loads(text_of(file))["project"]["readme"]
+    relative = [target for target in LINK.findall(text_of(readme)) if not target.startswith("#")]
+    assert not relative, f"{readme.relative_to(ROOT)} links to {', '.join(relative)}"
+
+
+def test_every_package_of_tir_is_in_its_distribution():
+    packages = tomllib.loads(text_of(DISTRIBUTIONS[1]))["tool"]["setuptools"]["packages"]
+    folders = [path.parent for path in (ROOT / "tir").rglob("__init__.py") if "build" not in path.parts]
+    assert sorted(packages) == sorted(".".join(folder.relative_to(ROOT).parts) for folder in folders)
+
+
 def test_every_dependency_has_a_reason():
     project = tomllib.loads(text_of(ROOT / "pyproject.toml"))["project"]
     extras = [line for lines in project["optional-dependencies"].values() for line in lines]
@@ -114,6 +151,15 @@ def test_every_dependency_has_a_reason():
     assert explained <= names, (
         f"docs/dependencies.md explains {', '.join(sorted(explained - names))}, not used"
     )
+
+
+def test_the_table_of_parameters_is_explained():
+    """Every column, and every word for what the data must vary."""
+    page = text_of(DOCS / "parameters.md")
+    columns = (ROOT / "tir" / "parameters.csv").read_text(encoding="ascii").splitlines()[0].split(",")
+    needs = {need.word for row in tir.parameters.TABLE for need in row.needs}
+    for word in (*columns, *needs):
+        assert f"`{word}`" in page or f"`{word}:2`" in page, f"docs/parameters.md does not explain {word}"
 
 
 @pytest.mark.parametrize("command", sorted(commands.commands))

@@ -11,12 +11,14 @@ from pathlib import Path
 
 import pytest
 
+from tir.parameters import TABLE
+
 ROOT = Path(__file__).parents[1]
 ARCHITECTURE = "docs/architecture.md"
 
 
 def modules(package: str) -> list[Path]:
-    return sorted((ROOT / package).rglob("*.py"))
+    return sorted(path for path in (ROOT / package).rglob("*.py") if "build" not in path.parts)
 
 
 def imports(path: Path) -> Iterator[tuple[int, str]]:
@@ -121,6 +123,18 @@ def test_tir_needs_nothing_but_numpy():
         not in allowed
         | (compiler if "codegen" in path.parts else set())
         | (drawing if path.name == "drawing.py" else set())
+    ]
+    assert not wrong, "\n".join(wrong)
+
+
+def test_mffit_writes_no_equation_again():
+    """A formula of the Magic Formula outside tir/equations would use its coefficients by name."""
+    coefficients = {row.name for row in TABLE if row.section.endswith("COEFFICIENTS") and not row.scaling}
+    wrong = [
+        f"{place(path, node.lineno)}: uses {node.attr}; call the function of tir/equations instead"
+        for path in modules("mffit")
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8")))
+        if isinstance(node, ast.Attribute) and node.attr in coefficients
     ]
     assert not wrong, "\n".join(wrong)
 

@@ -8,6 +8,7 @@ True
 
 from tir import transient
 from tir.calls import compile_kernels
+from tir.checking import check
 from tir.codegen.c99 import export_c
 from tir.codegen.casadi import casadi_function
 from tir.equations.forces import Forces, State
@@ -23,6 +24,7 @@ __all__ = [
     "TirError",
     "Tyre",
     "casadi_function",
+    "check",
     "compile_kernels",
     "export_c",
     "read",

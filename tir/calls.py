@@ -1,7 +1,7 @@
-"""How a call of a tyre is carried out: one condition in floats, many in blocks, other kinds of numbers as they are.
+"""Calls of a tyre: a scalar call in Python floats, arrays in blocks, other numbers directly through the equations.
 
-Real numbers go through code generated from the equations where that is faster; complex and traced ones, as derivatives
-need them, through :func:`tir.evaluate.evaluate`.
+Real numbers use code generated from the equations where that is faster. Complex and traced numbers, which derivatives
+need, use :func:`tir.evaluate.evaluate`.
 """
 
 from __future__ import annotations
@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from tir import constants
 from tir.codegen import kernel, single
 from tir.codegen.kernel import LANES
 from tir.codegen.program import INPUTS, NUMBERS, Switches
@@ -24,12 +25,9 @@ from tir.evaluate import evaluate, refuse_zero_divisors
 if TYPE_CHECKING:
     from tir.tyre import Tyre
 
-BLOCK = 8192
-"""Conditions that numpy computes together, so that what is between input and output stays in the processor's cache."""
-COMPILE_FROM = 100_000
-"""Conditions of one call from which on the compiled kernel is worth loading, or compiling once after installation."""
-THREADS_FROM = 32_768
-"""Conditions of one call from which on they are shared out to threads."""
+BLOCK = int(constants.CONDITIONS_PER_BLOCK)
+COMPILE_FROM = int(constants.COMPILE_FROM_CONDITIONS)
+THREADS_FROM = int(constants.THREADS_FROM_CONDITIONS)
 FORCES, STATE = Forces._fields, State._fields
 DOUBLE = np.dtype(float)
 ONLY_DOUBLES = {DOUBLE}
@@ -42,10 +40,10 @@ def compile_kernels(
     limits: bool = False,
     kinds: Sequence[str] = ("batch", "one"),
 ) -> None:
-    """Make machine code of the model, or load it from the cache, for every call that follows in this process.
+    """Compile the model to machine code, or load it from the cache, for all later calls in this process.
 
-    Without this, calls of 100 000 conditions and more do so for themselves; smaller ones, and single ones, go through
-    numpy and Python's floats.
+    Without this, only calls with 100 000 conditions or more compile the model by themselves; smaller calls use numpy,
+    scalar calls Python's floats.
 
     Parameters
     ----------
@@ -56,19 +54,21 @@ def compile_kernels(
     Raises
     ------
     TirError
-        If llvmlite is not installed (``pip install mffit[fast]``), or a kind is not known.
+        If llvmlite is not installed (``pip install llvmlite``), or a kind is unknown.
     """
     kinds = (kinds,) if isinstance(kinds, str) else tuple(kinds)
     unknown = set(kinds) - set(kernel.KINDS)
     if unknown:
-        raise TirError(f"{sorted(unknown)[0]} is no kind of kernel; known are {', '.join(kernel.KINDS)}")
+        raise TirError(
+            f"{sorted(unknown)[0]} is an unknown kind of kernel; use one of {', '.join(kernel.KINDS)}"
+        )
     for on in (False, True) if turn_slip is None else (turn_slip,):
         for kind in kinds:
             LOADED[kind, Switches(on, star, limits)] = kernel.load(kind, Switches(on, star, limits))
 
 
 LOADED: dict[tuple[str, Switches], kernel.Kernel] = {}
-"""The kernels of this process."""
+"""The kernels loaded in this process."""
 
 
 def forces(tyre: Tyre, inputs: Sequence[Any], switches: Switches) -> Forces:
@@ -98,7 +98,7 @@ def state(tyre: Tyre, inputs: Sequence[Any], switches: Switches) -> State:
 
 
 def _of_any_kind(inputs: Sequence[Any], arrays: Sequence[np.ndarray]) -> list[Any]:
-    """Inputs for the equations: arrays but for traced numbers, of which numpy knows nothing."""
+    """Inputs for the equations: numpy numbers, except traced ones, which are passed on unchanged."""
     return [x if a.dtype == object else a[()] for x, a in zip(inputs, arrays, strict=True)]
 
 
@@ -107,7 +107,7 @@ def _real(arrays: Sequence[np.ndarray]) -> bool:
 
 
 def _one(tyre: Tyre, inputs: Sequence[np.ndarray], switches: Switches, outputs: tuple[str, ...]) -> tuple:
-    """Floats in, floats out; where Python's arithmetic raises, numpy's NaN or infinity."""
+    """Outputs of a scalar call as floats; NaN or infinity, as numpy has them, where Python's arithmetic raises."""
     numbers = [float(x) for x in inputs]
     run = function_of(tyre, switches, outputs)
     try:
@@ -120,7 +120,7 @@ def _one(tyre: Tyre, inputs: Sequence[np.ndarray], switches: Switches, outputs: 
 
 
 def _evaluated(tyre: Tyre, inputs: Sequence[Any], switches: Switches) -> tuple[Forces, State]:
-    """The equations in numpy; where two parameters alone make Python's arithmetic raise, with numpy's numbers for them."""
+    """Forces and state by the equations in numpy; with parameters as numpy numbers if Python's arithmetic raises."""
     with np.errstate(all="ignore"):
         try:
             return evaluate(tyre.p, *inputs, **switches._asdict())
@@ -134,7 +134,7 @@ def _plain(x: Any) -> Any:
 
 
 def function_of(tyre: Tyre, switches: Switches, outputs: tuple[str, ...] = FORCES) -> Callable | None:
-    """The tyre as a function of floats, kept with the tyre; None if a parameter is no real number."""
+    """The tyre as a function of floats, cached in the tyre; None if a parameter is not a real number."""
     key = switches if outputs is FORCES else (outputs, switches)
     if key not in tyre.prepared:
         run = _kernel_of(tyre, "one", switches) if outputs is FORCES else None
@@ -146,7 +146,7 @@ def function_of(tyre: Tyre, switches: Switches, outputs: tuple[str, ...] = FORCE
 
 
 def _kernel_of(tyre: Tyre, kind: str, switches: Switches) -> Callable | None:
-    """A kernel bound to the tyre, kept with the tyre; None if it is not loaded or a parameter is no real number."""
+    """A kernel bound to the tyre, cached in the tyre; None if it is not loaded or a parameter is not a real number."""
     loaded = LOADED.get((kind, switches))
     if loaded is None:
         return None
@@ -157,7 +157,7 @@ def _kernel_of(tyre: Tyre, kind: str, switches: Switches) -> Callable | None:
 
 
 def _values(tyre: Tyre) -> dict[str, float] | None:
-    """The numbers as floats; refuses zeros by which the equations divide."""
+    """The parameters as floats; None if one is not a real number. Refuses zeros by which the equations divide."""
     refuse_zero_divisors(tyre.p)
     given = {name: tyre.values[name] for name in NUMBERS}
     if not all(isinstance(x, float | int | np.floating | np.integer) for x in given.values()):
@@ -166,7 +166,7 @@ def _values(tyre: Tyre) -> dict[str, float] | None:
 
 
 def _many(tyre: Tyre, inputs: Sequence[np.ndarray], n: int, switches: Switches) -> np.ndarray | None:
-    """Forces (6, n) of inputs that are single numbers or (n,); None if a parameter is no real number."""
+    """Forces (6, n) of inputs that are scalars or (n,); None if a parameter is not a real number."""
     if n >= COMPILE_FROM and ("batch", switches) not in LOADED and kernel.available():
         compile_kernels(**switches._asdict(), kinds=("batch",))
     run = _kernel_of(tyre, "batch", switches)
@@ -181,7 +181,7 @@ def _many(tyre: Tyre, inputs: Sequence[np.ndarray], n: int, switches: Switches) 
 
 
 def _arrays_of(tyre: Tyre, switches: Switches) -> Callable | None:
-    """The tyre as a function of arrays, kept with the tyre; None if a parameter is no real number."""
+    """The tyre as a function of arrays, cached in the tyre; None if a parameter is not a real number."""
     key = ("arrays", switches)
     if key not in tyre.prepared:
         values = _values(tyre)
@@ -208,7 +208,7 @@ def _in_vectors(run: Callable, inputs: Sequence[np.ndarray], n: int) -> np.ndarr
     if n < THREADS_FROM:
         run(*whole, out, 0, out.shape[1])
     else:
-        # not before it is needed: import tir is to be quick
+        # imported late, so that import tir is quick
         from concurrent.futures import ThreadPoolExecutor
 
         share = max(-(-n // kernel.threads()), BLOCK)

@@ -1,4 +1,4 @@
-"""Numbers that somebody judged: constants with their unit, the reason for their value and the study that set it.
+"""Numbers of judgement: constants with their unit, the reason for their value and the study that set it.
 
 Each folder keeps its own in a module ``constants.py``, and ``docs/constants.md`` lists them all.
 
@@ -16,11 +16,11 @@ from typing import Any, Self
 
 
 class _Judged:
-    """What every such number carries."""
+    """Unit, reason and study of a constant."""
 
     unit: str  #: "-" for a ratio, a count or a probability
     why: str  #: one or two sentences
-    study: str  #: study, data set or publication that set the value; empty if it is plain judgement
+    study: str  #: study, data set or publication that set the value; empty where none did
 
     def _describe(self, unit: str, why: str, study: str) -> Self:
         self.unit, self.why, self.study = unit, why, study

@@ -1,10 +1,11 @@
-"""What a program would stumble over in the very text of a file."""
+"""Problems that one program would have with the text of a file."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 
 from tir.codegen.program import Switches, trace
+from tir.constants import LONGEST_READABLE_LINE
 from tir.document import Document, Line
 from tir.equations.forces import Forces
 from tir.errors import Problem, some
@@ -14,13 +15,11 @@ from tir.tyre import Tyre
 from tir.units import KINDS
 
 FIRST_OF_MODEL = 3
-"""Keys of [MODEL] that a reader by position takes: version, side, reference speed."""
-LONGEST = 200
-"""Characters of a line that the shortest buffers hold."""
+"""Keys of [MODEL] that a program uses that reads by position: version, side, reference speed."""
 
 
-def stumbles(tyre: Tyre, target: Target) -> Iterator[Problem]:
-    """Problems of the tyre, and of its file's text if it has one, in a program."""
+def target_problems(tyre: Tyre, target: Target) -> Iterator[Problem]:
+    """Problems of the tyre in one program, and of its file's text if it has one."""
     if target.refusal:
         yield Problem("error", f"{target.name} {target.refusal}")
         return
@@ -34,7 +33,7 @@ def _content(tyre: Tyre, target: Target) -> Iterator[Problem]:
         known = ", ".join(map(str, target.fittyps))
         yield Problem(
             "error",
-            f'FITTYP {version} is not read, only {known}: write the file with target="{target.name}"',
+            f'FITTYP {version} is not supported, only {known}: write the file with target="{target.name}"',
             "FITTYP",
         )
     if target.complete and tyre.document is not None:
@@ -43,37 +42,37 @@ def _content(tyre: Tyre, target: Target) -> Iterator[Problem]:
     if not target.turn_slip and int(tyre["USE_MODE"]) % 10 == 5:
         yield Problem(
             "warning",
-            "it computes no turn slip, so that camber and spin come out wrong: use the file for turn slip off",
+            "it computes no turn slip, so camber and spin would be wrong: use the file for turn slip off",
             "USE_MODE",
         )
 
 
 def _missing(names: set[str], turn_slip: bool) -> Iterator[Problem]:
-    """Keys that a program wants whole files for: it cannot do without those of the forces."""
+    """Missing keys, for a program that needs complete files: an error for keys of the forces, else a warning."""
     forces = set(trace(Switches(turn_slip, limits=True), Forces._fields).parameters)
     for level, those, why in (
         ("error", names & forces, "the forces need every key"),
-        ("warning", names - forces, "the forces do without, but the program may want every key"),
+        ("warning", names - forces, "the forces do not need them, but the program may require every key"),
     ):
         shown = [row.name for row in TABLE if row.name in those]
         if shown:
-            yield Problem(level, f"the file lacks {some(shown)}; {why}: tyre.expand() adds what is missing")
+            yield Problem(level, f"the file lacks {some(shown)}; {why}: tyre.expand() adds the missing keys")
 
 
 def _text(tyre: Tyre, document: Document, target: Target) -> Iterator[Problem]:
     keys = {line.key: line for line in reversed(document.entries)}
     if not document.text.isascii():
         line = next(line for line in document.lines if not line.text.isascii())
-        yield Problem("warning", f"line {line.number} holds signs beyond ASCII", line=line.number)
+        yield Problem("warning", f"line {line.number} has characters outside ASCII", line=line.number)
     for line in document.lines:
-        if len(line.text) >= LONGEST:
+        if len(line.text) >= LONGEST_READABLE_LINE:
             yield Problem(
                 "warning", f"line {line.number} has {len(line.text)} characters", line.key, line.number
             )
         if target.dollar_only and line.key and "!" in line.text[line.start :].split("$")[0]:
             yield Problem(
                 "error",
-                f"line {line.number}: only $ opens a comment, so that {line.key} is read as text",
+                f"line {line.number}: only $ starts a comment here, so {line.key} would be read as text",
                 line.key,
                 line.number,
             )
@@ -90,14 +89,14 @@ def _other_units(document: Document) -> Iterator[Problem]:
         if kind.get(line.value.strip("'\" ").lower(), 1.0) != 1.0:
             yield Problem(
                 "error",
-                f"line {line.number}: {line.key} in {line.value} is ignored and every number taken for SI",
+                f"line {line.number}: {line.key} in {line.value} is ignored, and every number is taken as SI",
                 line.key,
                 line.number,
             )
 
 
 def _out_of_place(tyre: Tyre, document: Document, target: Target) -> Iterator[Problem]:
-    """The first key of each section of which a reader that counts lines takes another one's value."""
+    """For each section, the first key that a program which counts lines would read from a wrong line."""
     sections = dict.fromkeys(row.section for row in TABLE)
     for section in sections:
         rows = [
@@ -115,14 +114,16 @@ def _out_of_place(tyre: Tyre, document: Document, target: Target) -> Iterator[Pr
                 found = line.key or "a line without a key"
                 yield Problem(
                     "error",
-                    f"line {line.number}: lines are counted, and {found} stands in the place of {name}",
+                    f"line {line.number}: the program counts lines, and {found} is where it expects {name}",
                     name,
                     line.number,
                 )
                 break
         else:
             if len(body) < len(rows):
-                yield Problem("error", f"[{section}] lacks lines, and lines are counted", rows[len(body)])
+                yield Problem(
+                    "error", f"[{section}] has too few lines for a program that counts lines", rows[len(body)]
+                )
 
 
 def _keys_of_its_own(keys: dict[str, Line], target: Target) -> Iterator[Problem]:
@@ -133,12 +134,15 @@ def _keys_of_its_own(keys: dict[str, Line], target: Target) -> Iterator[Problem]
         line = keys["USER_SUB_ID"]
         yield Problem(
             "error",
-            f"line {line.number}: USER_SUB_ID is the old way to name the model, FUNCTION_NAME the one of 6.2; keep one",
+            f"line {line.number}: USER_SUB_ID names the model in old files, FUNCTION_NAME in those of 6.2; keep one of them",
             "USER_SUB_ID",
             line.number,
         )
     for line in keys.values():
         if not line.section and line.key in BY_NAME:
             yield Problem(
-                "error", f"line {line.number}: {line.key} stands before any [SECTION]", line.key, line.number
+                "error",
+                f"line {line.number}: {line.key} comes before the first [SECTION]",
+                line.key,
+                line.number,
             )

@@ -1,8 +1,8 @@
 """Exact derivatives of the equations by reverse accumulation: one formula, any number of columns.
 
-The equations run once on :class:`Traced` numbers, which remember what was done to them. As every output of the Magic Formula
-belongs to one operating condition, the way back costs a few evaluations of the formula whatever the number of inputs and
-coefficients asked for, and nothing is summed over conditions.
+The equations run once on :class:`Traced` numbers, which record the operations applied to them. Every output of the Magic
+Formula belongs to one operating condition. So the reverse pass costs a few evaluations of the formula, however many inputs
+and coefficients are differentiated, and nothing is summed over conditions.
 
 >>> from tir.derivatives import gradient, traced
 >>> x, = traced({"x": 2.0}).values()
@@ -37,13 +37,13 @@ PARTIALS: dict[Any, Rule] = {
     np.power: lambda out, a, b: (b * a ** (b - 1.0), out * np.log(np.where(np.real(a) > 0.0, a, 1.0))),
     np.maximum: lambda out, a, b: (np.where(a >= b, 1.0, 0.0), np.where(a >= b, 0.0, 1.0)),
 }
-"""What each elementary operation passes on: its partial derivatives from its result and its arguments."""
+"""Partial derivatives of each elementary operation, from its result and its arguments."""
 
 COMPARISONS = {np.less, np.less_equal, np.greater, np.greater_equal, np.equal, np.not_equal}
 
 
 class Traced(np.lib.mixins.NDArrayOperatorsMixin):
-    """A number, or an array of one per operating condition, that remembers where it came from."""
+    """A number, or an array with one per operating condition, that records how it was computed."""
 
     __slots__ = ("parents", "tape", "value")
 
@@ -53,7 +53,7 @@ class Traced(np.lib.mixins.NDArrayOperatorsMixin):
 
     @property
     def real(self) -> Any:
-        """The plain value, on which the equations decide."""
+        """The plain value, which comparisons in the equations use."""
         return self.value
 
     def __array_ufunc__(self, ufunc: Any, method: str, *inputs: Any, **kwargs: Any) -> Any:
@@ -75,7 +75,7 @@ class Traced(np.lib.mixins.NDArrayOperatorsMixin):
         return self._derived(out, (a, b), of_choice(chosen))
 
     def derived(self, value: Any, partial: Any) -> Traced:
-        """A number that follows from this one by a step with a known derivative."""
+        """A number computed from this one, with the derivative given."""
         return Traced(value, self.tape, ((self, partial),))
 
     def _derived(self, value: Any, inputs: Sequence[Any], partials: Sequence[Any]) -> Traced:
@@ -84,28 +84,28 @@ class Traced(np.lib.mixins.NDArrayOperatorsMixin):
 
 
 def of_choice(chosen: Any) -> tuple[Any, Any]:
-    """What ``where`` passes on: its partial derivatives by what it chooses from."""
+    """Partial derivatives of ``where`` by its two alternatives."""
     return np.where(chosen, 1.0, 0.0), np.where(chosen, 0.0, 1.0)
 
 
 def plain(x: Any) -> Any:
-    """The value without its history."""
+    """The value without its record."""
     return x.value if isinstance(x, Traced) else x
 
 
 def traced(values: Mapping[str, Any]) -> dict[str, Traced]:
-    """The numbers to differentiate with respect to, on a tape of their own.
+    """The numbers to differentiate by, on a new tape.
 
     Parameters
     ----------
-    values : scalar or (n,) each; floats, no integers
+    values : floats, scalar or (n,) each; not integers
     """
     tape: list[Traced] = []
     return {name: Traced(value, tape) for name, value in values.items()}
 
 
 def following(value: Any, numbers: Sequence[Traced], partials: np.ndarray) -> Traced:
-    """A number (n,) found by other means, with its known derivatives (n, k) by the traced numbers."""
+    """A number (n,) computed by other means, with its known derivatives (n, k) by the traced numbers."""
     parents = tuple(zip(numbers, np.moveaxis(np.asarray(partials), -1, 0), strict=True))
     return Traced(value, numbers[0].tape, parents)
 
@@ -116,7 +116,7 @@ def gradient(output: Any, wrt: Sequence[Traced]) -> np.ndarray:
     Parameters
     ----------
     output : scalar or (n,), computed from traced numbers
-    wrt : k of them; one that is an array (n,) belongs to the conditions one by one
+    wrt : k of them; an array (n,) has one element per condition
 
     Returns
     -------

@@ -1,4 +1,4 @@
-"""Property-file text as lines, byte for byte: sections, keys and comments with their places; knows no key's meaning."""
+"""Property-file text as lines, byte for byte: sections, keys and comments with their places, but not their meaning."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ class Line:
     text: str  #: without the line end
     section: str = ""  #: section in force, upper case
     key: str = ""  #: upper case; "" if the line holds none
-    value: str = ""  #: without comment and blanks; quotes kept
+    value: str = ""  #: without comment and surrounding blanks, with quotes
     comment: str = ""
     end: str = ""  #: the line end; "" behind the last line
     start: int = 0  #: column at which the value begins
@@ -35,7 +35,7 @@ class Line:
         return not self.key and SECTION.match(self.text) is not None
 
     def with_value(self, value: str) -> Line:
-        """The line with another value and every other character as it was."""
+        """The line with another value and all other characters unchanged."""
         if value == self.value:
             return self
         rest = self.text[self.start + len(self.value) :]
@@ -52,7 +52,7 @@ class Line:
 
 @dataclass(frozen=True, slots=True, repr=False)
 class Document:
-    """A whole file: its lines as read, and what is needed to write it back."""
+    """A whole file: its lines as read, its encoding and its path."""
 
     lines: tuple[Line, ...]
     encoding: str
@@ -68,31 +68,31 @@ class Document:
 
     @property
     def text(self) -> str:
-        """Every character of the file, its line ends as they are."""
+        """The whole text of the file, with its own line ends."""
         return "".join(line.text + line.end for line in self.lines)
 
     @property
     def content(self) -> bytes:
-        """Every byte of the file."""
+        """The bytes of the file."""
         return self.text.encode(self.encoding)
 
     @property
     def line_end(self) -> str:
-        """The line end that most lines have; CR LF if there is none."""
+        """The most frequent line end; CR LF if there is none."""
         known = Counter(line.end for line in self.lines if line.end)
         return known.most_common(1)[0][0] if known else "\r\n"
 
     def changed(self, lines: dict[int, Line]) -> Document:
-        """With other lines in the place of those of these numbers."""
+        """The document with some lines replaced, by line number."""
         return replace(self, lines=tuple(lines.get(line.number, line) for line in self.lines))
 
     def without(self, numbers: Iterable[int]) -> Document:
-        """Without the lines of these numbers; the others keep theirs."""
+        """The document without the lines of these numbers; the others keep their numbers."""
         gone = set(numbers)
         return replace(self, lines=tuple(line for line in self.lines if line.number not in gone))
 
     def inserted(self, texts: dict[int, list[str]]) -> Document:
-        """With new lines behind those of these numbers (0: before the first), numbered anew."""
+        """The document with new lines after those of these numbers (0: before the first), renumbered."""
         end, out = self.line_end, [text + self.line_end for text in texts.get(0, [])]
         for line in self.lines:
             out.append(line.text + line.end)
@@ -105,7 +105,7 @@ class Document:
 
 
 def read_document(path: str | Path) -> Document:
-    """Read a file of any of the usual encodings and line ends.
+    """The document read from a file in any usual encoding and with any line ends.
 
     Raises
     ------
@@ -124,7 +124,7 @@ def read_document(path: str | Path) -> Document:
 
 
 def parse_document(text: str, *, encoding: str = "ascii", path: str = "") -> Document:
-    """Cut text into lines and recognise sections, keys and comments."""
+    """The document of a text: lines with their sections, keys and comments."""
     pieces = LINE_END.split(text)
     lines, section, table = [], "", False
     for number, content in enumerate(pieces[::2], start=1):
@@ -150,7 +150,7 @@ def parse_document(text: str, *, encoding: str = "ascii", path: str = "") -> Doc
 
 
 def split_comment(text: str) -> tuple[str, str]:
-    """Value and comment of what stands behind the equals sign; quotes protect comment signs."""
+    """Value and comment from the text after the equals sign; comment signs within quotes belong to the value."""
     quoted = QUOTED.match(text.strip())
     if quoted:
         rest = text.strip()[quoted.end() :]

@@ -1,4 +1,4 @@
-"""Pictures of a tyre; matplotlib is imported when one is asked for."""
+"""Pictures of a tyre; matplotlib is imported on first use."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from tir import constants
 from tir.errors import TirError
 
 if TYPE_CHECKING:
@@ -18,10 +19,11 @@ if TYPE_CHECKING:
 
     from tir.tyre import Tyre
 
-SHARES = (0.5, 1.0, 1.5)
-"""Loads that are drawn, as shares of the nominal one."""
-WIDEST = {"alpha": math.radians(15.0), "kappa": 0.3, "gamma": math.radians(50.0)}
-"""How far the inputs go, if the file's range goes as far."""
+WIDEST = {
+    "alpha": constants.DRAWN_SIDESLIP.rad,
+    "kappa": constants.DRAWN_SLIP,
+    "gamma": constants.DRAWN_CAMBER.rad,
+}
 KEYS = {"alpha": ("ALPMIN", "ALPMAX"), "kappa": ("KPUMIN", "KPUMAX"), "gamma": ("CAMMIN", "CAMMAX")}
 PANELS = (("alpha", "Fy"), ("alpha", "Mz"), ("kappa", "Fx"), ("gamma", "Fy"))
 LABELS = {
@@ -29,8 +31,6 @@ LABELS = {
     "Fx": "$F_x$ [N]", "Fy": "$F_y$ [N]", "Mz": "$M_z$ [Nm]",
 }  # fmt: skip
 ANGLES = ("alpha", "gamma")
-POINTS = 161
-DPI = 80
 
 
 def plot(
@@ -45,11 +45,15 @@ def plot(
         from matplotlib.figure import Figure
     except ImportError:
         raise TirError("drawing needs matplotlib, which is not installed: pip install matplotlib") from None
-    at = [share * float(tyre["FNOMIN"]) for share in SHARES] if loads is None else [float(x) for x in loads]
+    at = (
+        [share * float(tyre["FNOMIN"]) for share in constants.DRAWN_LOADS]
+        if loads is None
+        else [float(x) for x in loads]
+    )
     rows = math.ceil(len(panels) / 2)
     figure = Figure(figsize=(8.4, 2.7 * rows), layout="constrained")
     for ax, (x, y) in zip(figure.subplots(rows, 2, squeeze=False).flat, panels, strict=True):
-        given = np.linspace(*_reach(tyre, x), POINTS)
+        given = np.linspace(*_reach(tyre, x), constants.POINTS_PER_CURVE)
         inputs: dict[str, Any] = {x: given}
         for i, Fz in enumerate(at):
             forces = tyre(Fz, **inputs, turn_slip=turn_slip)
@@ -65,28 +69,28 @@ def plot(
 
 
 def notebook(tyre: Tyre) -> str:
-    """What a notebook shows of a tyre: its few lines, and a small picture if matplotlib is there."""
+    """HTML for a notebook: the lines of the repr, and a small picture if matplotlib is installed."""
     said = "".join(f"<div>{html.escape(line)}</div>" for line in repr(tyre).strip("<>").splitlines())
     try:
         figure = plot(tyre, panels=PANELS[:2])
     except TirError:
         try:
             return said + _table(tyre)
-        except TirError as error:  # a readable file by which nothing can be computed
+        except TirError as error:  # a file that can be read, but not evaluated
             return f"{said}<div>{html.escape(str(error))}</div>"
     figure.set_size_inches(7.0, 2.4)
     stream = io.BytesIO()
-    figure.savefig(stream, dpi=DPI, format="png", facecolor="white")
+    figure.savefig(stream, dpi=constants.NOTEBOOK_DPI, format="png", facecolor="white")
     data = base64.b64encode(stream.getvalue()).decode("ascii")
     return f'{said}<img alt="side force and aligning moment over sideslip at three loads" src="data:image/png;base64,{data}">'
 
 
 def _table(tyre: Tyre) -> str:
-    """Forces at some sideslip and load, where no picture can be drawn."""
+    """Table of side forces at some angles and loads, for when no picture can be drawn."""
     angles = (-4.0, -2.0, 0.0, 2.0, 4.0)
     head = "".join(f"<th>{angle:g} deg</th>" for angle in angles)
     lines = []
-    for share in SHARES:
+    for share in constants.DRAWN_LOADS:
         Fz = share * float(tyre["FNOMIN"])
         found = tyre(Fz, np.radians(angles)).Fy
         lines.append(f"<tr><th>{Fz:.0f} N</th>{''.join(f'<td>{Fy:.0f} N</td>' for Fy in found)}</tr>")
@@ -94,14 +98,14 @@ def _table(tyre: Tyre) -> str:
 
 
 def _reach(tyre: Tyre, name: str) -> tuple[float, float]:
-    """From where to where an input is drawn [SI]."""
+    """First and last drawn value of an input [SI]."""
     widest = WIDEST[name]
     low, high = (min(max(float(tyre[key]), -widest), widest) for key in KEYS[name])
     return (low, high) if low < high else (-widest, widest)
 
 
 def _shade(i: int, n: int) -> Any:
-    """Dark to light, in order."""
+    """Colour of curve i of n, dark to light."""
     import matplotlib
 
     return matplotlib.colormaps["viridis"](0.8 * i / max(n - 1, 1))

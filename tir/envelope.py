@@ -1,4 +1,4 @@
-"""Physics of a tyre over its whole range: each condition is searched for its worst point, inside and just outside."""
+"""Physical conditions over the whole range of a tyre: each is searched for its worst point, inside and just outside."""
 
 from __future__ import annotations
 
@@ -8,40 +8,34 @@ from typing import Any
 
 import numpy as np
 
+from tir import constants
 from tir.equations import aligning, lateral, longitudinal, normalise, stiffness
 from tir.errors import Problem
 from tir.tyre import Tyre
 
-AXES = (
-    ("FZMIN", "FZMAX", 7),
-    ("CAMMIN", "CAMMAX", 9),
-    ("PRESMIN", "PRESMAX", 5),
-    ("ALPMIN", "ALPMAX", 9),
-    ("KPUMIN", "KPUMAX", 5),
+RANGES = (
+    ("FZMIN", "FZMAX"),
+    ("CAMMIN", "CAMMAX"),
+    ("PRESMIN", "PRESMAX"),
+    ("ALPMIN", "ALPMAX"),
+    ("KPUMIN", "KPUMAX"),
 )
-"""The ranges searched, and how many values of each are tried at a time."""
-ROUNDS = 4
-"""How often the search narrows to the neighbourhood of the worst point."""
-BEYOND = 0.1
-"""How far outside a range "just outside" is, as a share of its width."""
-SLIGHT = 0.01
-"""Share of a force that may turn round: less than a rig can tell from none."""
-WIDEST = 1.05
-"""Camber [rad] beyond which no tyre is judged, whatever its file allows."""
+"""The ranges searched, in the order of :data:`tir.constants.VALUES_PER_SEARCHED_RANGE`."""
+SLIGHT, FRICTION = constants.REVERSED_FORCE_SHARE, constants.CREDIBLE_FRICTION
 
 Measure = Callable[[Any, normalise.Inputs], Any]
 
 
 @dataclass(frozen=True, slots=True)
 class Condition:
-    """Something that must stay above zero."""
+    """A quantity that must stay above zero."""
 
-    name: str  #: the key to look at first
+    name: str  #: the key to check first
     level: str  #: "error" or "warning"
     measure: Measure
     sentence: str  #: with {where} and {worst}
-    value: Callable[[float], float] = lambda margin: margin  #: what to print, from the margin
-    outside: str = ""  #: sentence where it holds inside only; "" if nobody minds
+    value: Callable[[float], float] = lambda margin: margin  #: the number to print, from the margin
+    outside: str = ""  #: sentence if the condition holds inside the ranges only; "" if that does not matter
     slips: bool = False  #: whether it depends on sideslip and longitudinal slip
     camber: bool = True  #: whether it depends on camber
 
@@ -57,9 +51,9 @@ CONDITIONS = (
     Condition(
         "PDY1",
         "warning",
-        lambda p, q: 4.0 - stiffness.lateral_friction(p, q, q.gamma),
+        lambda p, q: FRICTION - stiffness.lateral_friction(p, q, q.gamma),
         "the lateral friction coefficient is {worst:.1f} at {where}",
-        lambda margin: 4.0 - margin,
+        lambda margin: FRICTION - margin,
     ),
     Condition(
         "PDX1",
@@ -92,21 +86,21 @@ CONDITIONS = (
         "PKY6",
         "warning",
         lambda p, q: 1e-9 - stiffness.camber_stiffness(p, q),
-        "camber pushes against the lean at {where}: a normal tyre has PKY6 < 0 in ISO-W",
+        "the camber force has the wrong sign at {where}: a normal tyre has PKY6 < 0 in ISO-W",
         camber=False,
     ),
     Condition(
         "PEY1",
         "warning",
         lambda p, q: 1.0 - np.maximum(*(lateral.curvature(p, q, q.gamma, side) for side in (-1.0, 1.0))),
-        "the curvature E_y reaches {worst:.2f} > 1 at {where}: simulations may hold it at 1",
+        "the curvature E_y reaches {worst:.2f} > 1 at {where}: simulations may limit it to 1",
         lambda margin: 1.0 - margin,
     ),
     Condition(
         "QEZ1",
         "warning",
         lambda p, q: 1.0 - aligning.curvature(p, q, aligning.slope_factor(p, q), q.alpha),
-        "the curvature E_t of the trail reaches {worst:.2f} > 1 at {where}: simulations may hold it at 1",
+        "the curvature E_t of the trail reaches {worst:.2f} > 1 at {where}: simulations may limit it to 1",
         lambda margin: 1.0 - margin,
         slips=True,
     ),
@@ -114,7 +108,7 @@ CONDITIONS = (
         "RBY1",
         "warning",
         lambda p, q: SLIGHT + lateral.combined_weight(p, q),
-        "longitudinal slip turns the side force round: G_yk is {worst:.2f} at {where}",
+        "longitudinal slip reverses the side force: G_yk is {worst:.2f} at {where}",
         lambda margin: margin - SLIGHT,
         slips=True,
     ),
@@ -122,7 +116,7 @@ CONDITIONS = (
         "RBX1",
         "warning",
         lambda p, q: SLIGHT + longitudinal.combined_weight(p, q),
-        "sideslip turns the longitudinal force round: G_xa is {worst:.2f} at {where}",
+        "sideslip reverses the longitudinal force: G_xa is {worst:.2f} at {where}",
         lambda margin: margin - SLIGHT,
         slips=True,
     ),
@@ -130,18 +124,19 @@ CONDITIONS = (
 
 
 def over_the_range(tyre: Tyre) -> Iterator[Problem]:
-    """What the tyre breaks within its ranges, and just outside."""
+    """Problems for the conditions that the tyre violates within its ranges or just outside."""
     box = _box(tyre)
     width = box[1] - box[0]
-    around = np.array([box[0] - BEYOND * width, box[1] + BEYOND * width])
-    around[0, 0] = max(around[0, 0], 0.2 * box[0, 0])
-    around[0, 2] = max(around[0, 2], 0.2 * box[0, 2])
+    reach = constants.JUST_OUTSIDE * width
+    around = np.array([box[0] - reach, box[1] + reach])
+    for k in (0, 2):  # load and pressure stay positive
+        around[0, k] = max(around[0, k], constants.LOWEST_SHARE_OUTSIDE * box[0, k])
     for condition in CONDITIONS:
         margin, point = worst(tyre, condition.measure, box)
         if np.isnan(margin):
             yield Problem(
                 "error",
-                f"{condition.name} and its like give no number at {_place(point, condition)}",
+                f"{condition.name} and related coefficients give no number at {_place(point, condition)}",
                 condition.name,
             )
             return
@@ -158,12 +153,13 @@ def over_the_range(tyre: Tyre) -> Iterator[Problem]:
 def worst(tyre: Tyre, measure: Measure, box: np.ndarray) -> tuple[float, np.ndarray]:
     """The smallest value over a box (2, 5) of Fz [N], gamma [rad], pressure [Pa], alpha [rad], kappa, and where.
 
-    NaN where the measure is no number.
+    NaN, and the place, if the measure is NaN anywhere.
     """
     low, high = box
+    counts = [int(n) for n in constants.VALUES_PER_SEARCHED_RANGE]
     best, place = np.inf, low
-    for _ in range(ROUNDS):
-        axes = [np.linspace(a, b, n) for a, b, (_, _, n) in zip(low, high, AXES, strict=True)]
+    for _ in range(constants.ROUNDS_OF_THE_SEARCH):
+        axes = [np.linspace(a, b, n) for a, b, n in zip(low, high, counts, strict=True)]
         points = np.stack([axis.ravel() for axis in np.meshgrid(*axes, indexing="ij")])
         found = np.broadcast_to(_measured(tyre, measure, points), points.shape[1:])
         i = int(np.argmax(np.isnan(found))) if np.any(np.isnan(found)) else int(np.argmin(found))
@@ -171,7 +167,7 @@ def worst(tyre: Tyre, measure: Measure, box: np.ndarray) -> tuple[float, np.ndar
             return float("nan"), points[:, i]
         if found[i] < best:
             best, place = float(found[i]), points[:, i]
-        step = (high - low) / [n - 1 for _, _, n in AXES]
+        step = (high - low) / [n - 1 for n in counts]
         low, high = np.maximum(box[0], place - step), np.minimum(box[1], place + step)
     return best, place
 
@@ -184,13 +180,14 @@ def _measured(tyre: Tyre, measure: Measure, points: np.ndarray) -> Any:
 
 
 def _box(tyre: Tyre) -> np.ndarray:
-    """The file's ranges, without what no tyre meets."""
-    box = np.array([[float(tyre[name]) for name in ends] for *ends, _ in AXES]).T
-    box[0, 0] = max(box[0, 0], 0.02 * tyre["FNOMIN"])
-    box[:, 1] = np.clip(box[:, 1], -WIDEST, WIDEST)
-    pressure = np.clip(box[:, 2], 0.5 * tyre["NOMPRES"], 1.5 * tyre["NOMPRES"])
+    """The file's ranges, reduced to what tyres are used for."""
+    box = np.array([[float(tyre[name]) for name in ends] for ends in RANGES]).T
+    box[0, 0] = max(box[0, 0], constants.LOWEST_SEARCHED_LOAD * tyre["FNOMIN"])
+    box[:, 1] = np.clip(box[:, 1], -constants.SEARCHED_CAMBER, constants.SEARCHED_CAMBER)
+    least, most = (share * tyre["NOMPRES"] for share in constants.SEARCHED_PRESSURES)
+    pressure = np.clip(box[:, 2], least, most)
     box[:, 2] = pressure if pressure[0] < pressure[1] else tyre["NOMPRES"]
-    box[:, 3] = np.clip(box[:, 3], -0.5, 0.5)
+    box[:, 3] = np.clip(box[:, 3], -constants.SEARCHED_SIDESLIP, constants.SEARCHED_SIDESLIP)
     return box
 
 

@@ -1,10 +1,12 @@
-"""What can be wrong with a property file: one exception class and one record, how many and which; imports nothing of ours."""
+"""What can be wrong with a property file: one exception class, one record, and the words for lists of names."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
+
+from tir.constants import NAMES_IN_A_SENTENCE
 
 
 class TirError(Exception):
@@ -41,11 +43,12 @@ class Problem:
 
 
 def counted(number: int, what: str) -> str:
-    """A number of things in words, of which the first has the plural: "1 key of MF 6.2", "2 keys of MF 6.2"."""
+    """A number and a noun, with the plural on the first word: "1 key of MF 6.2", "2 keys of MF 6.2"."""
     head, *rest = what.split(" ", 1)
     return " ".join([str(number), head + "s" * (number != 1), *rest])
 
 
 def some(names: Sequence[str]) -> str:
-    """The first of many names, and how many there are beside."""
-    return ", ".join(names[:6]) + (f" and {len(names) - 6} more" if len(names) > 6 else "")
+    """The first of many names, and the number of the others."""
+    shown = NAMES_IN_A_SENTENCE
+    return ", ".join(names[:shown]) + (f" and {len(names) - shown} more" if len(names) > shown else "")

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from tir.constants import SMALLEST_LOAD
 from tir.equations import forces, normalise
 from tir.equations.elementary import select
 from tir.equations.forces import Forces, Loads, State
@@ -16,8 +17,7 @@ from tir.parameters import TABLE
 
 CONICITY = tuple(row.name for row in TABLE if row.conicity)
 DIVISORS = tuple(row.name for row in TABLE if row.divisor)
-SMALLEST_LOAD = 1e-6
-"""Load [N] that stands in for Fz <= 0, where several formulae are 0/0; the forces returned there are exactly 0."""
+NEARLY_UNLOADED = float(SMALLEST_LOAD)
 
 
 def evaluate(
@@ -75,9 +75,9 @@ def evaluate(
 def forwards(
     p, Fz, alpha, gamma, kappa, phi_t, Vx, pressure, turn_slip, star, limits
 ) -> tuple[Forces, State]:
-    """The model of a wheel that rolls forwards, ``Vx`` >= 0; arguments as in :func:`evaluate`, every one given."""
+    """The model of a wheel that rolls forwards, ``Vx`` >= 0; arguments as in :func:`evaluate`, all given."""
     unloaded = np.real(Fz) <= 0.0
-    Fz_given, kappa_given = select(unloaded, SMALLEST_LOAD, Fz), kappa
+    Fz_given, kappa_given = select(unloaded, NEARLY_UNLOADED, Fz), kappa
     Fz, Fz_moment, loads = Fz_given, Fz_given, Loads(Fz_given, Fz_given)
     if limits:
         Fz = _clip(Fz_given, None, p.FZMAX)
@@ -95,9 +95,9 @@ def forwards(
 def either_way(
     p, backwards, Fz, alpha, gamma, kappa, phi_t, Vx, pressure, turn_slip, star, limits
 ) -> tuple[Forces, State]:
-    """Forwards, and where ``backwards`` holds seen from a frame turned half a revolution about z.
+    """The model for either direction: where ``backwards`` holds, in a frame turned by half a revolution about z.
 
-    In that frame the wheel rolls forwards, turned on its rim.
+    In that frame the wheel rolls forwards and is turned on its rim.
     """
     turned = select(backwards, -1.0, 1.0)
     out, state = forwards(
@@ -118,10 +118,11 @@ def turned_on_rim(p: Any, turned: Any) -> SimpleNamespace:
 
 
 def refuse_zero_divisors(p) -> None:
+    """Raise TirError if a parameter by which the equations divide is 0."""
     for name in DIVISORS:
         value = getattr(p, name)
         if isinstance(value, Real) and value == 0.0:
-            raise TirError(f"{name} is 0, and the equations divide by it: give its value", name=name)
+            raise TirError(f"{name} is 0, but the equations divide by it: give its value", name=name)
 
 
 def _clip(x, lower, upper):
@@ -131,7 +132,7 @@ def _clip(x, lower, upper):
 
 
 def _loads_below_range(p, Fz, Fz_given) -> tuple[Any, Loads]:
-    """Loads for the moments: below FZMIN they fade faster than the load, so that an unloaded wheel has no moment."""
+    """Loads for the moments: below FZMIN these fall faster than the load, so that an unloaded wheel has no moment."""
     below = np.real(Fz) < p.FZMIN
     floor = select(p.FZMIN > 0.0, p.FZMIN, 1.0)
     Fz_moment = select(below, p.FZMIN, Fz)

@@ -1,7 +1,7 @@
-"""What a tyre changes in the text it was read from: the characters of changed values, and nothing beside them.
+"""The text that a tyre was read from, with its changes: only the characters of changed values differ.
 
-Keys that are given and that the file lacks are added to their section; a key's comment is replaced where it states an origin
-of the value that no longer holds, or where there is a new one to state.
+Keys that the tyre gives and the file lacks are added to their section. The comment of a key is replaced if the origin of its
+value has changed.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from typing import Any
 
 from tir.document import Document, Line
 from tir.parameters import SECTIONS, TABLE, Parameter
-from tir.properties import MEASURED, PROVENANCE, interpret, stands_for, units_of, unquoted
+from tir.properties import MEASURED, PROVENANCE, interpret, parameter_of, units_of, unquoted
 from tir.rendering import comment_text, entry, remark, structured_comments, value_text
 from tir.tyre import Tyre
 from tir.units import factor
@@ -29,7 +29,7 @@ def merged(tyre: Tyre, document: Document) -> Document:
     before, words = interpret(document), units_of(document, [])
     lines: dict[str, Line] = {}
     for line in document.entries:
-        if stands_for(line) is not None:
+        if parameter_of(line) is not None:
             lines.setdefault(line.key, line)
     added = [row for row in TABLE if row.name not in lines and row.name in tyre.present]
     changed = {}
@@ -52,12 +52,12 @@ def merged(tyre: Tyre, document: Document) -> Document:
 
 
 def _text(row: Parameter, value: Any, words: dict[str, str], line: Line | None = None) -> str:
-    """The value in the file's units and in the quotes of the line."""
+    """The value as text, in the file's units and with the quotes of the line."""
     if row.kind == "text":
         text = value_text(row, value)
         quoted = line is None or not line.value or line.value[0] in "'\""
         return text.replace("'", line.value[0] if line and line.value else "'") if quoted else unquoted(text)
-    value_text(row, value)  # refuses what is no number
+    value_text(row, value)  # raises if the value is not finite
     wanted, size = float(value), factor(row.unit, words)
     found = wanted / size
     near = (found, math.nextafter(found, -math.inf), math.nextafter(found, math.inf))
@@ -67,7 +67,7 @@ def _text(row: Parameter, value: Any, words: dict[str, str], line: Line | None =
 def _places(
     document: Document, rows: list[Parameter], lines: dict[str, Line], tyre: Tyre, words: dict[str, str]
 ) -> dict[int, list[str]]:
-    """New lines by the number of the line that they follow: behind the key that precedes them in the table."""
+    """New lines, by the number of the line that each follows: that of the preceding key of the table."""
     heads = {line.section: line.number for line in reversed(document.lines) if line.head}
     last = document.lines[-1].number
     if not document.lines[-1].text:

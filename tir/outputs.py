@@ -1,4 +1,4 @@
-"""Some outputs of the equations, of plain numbers or with exact derivatives, without computing the others."""
+"""Some outputs of the equations, plain or with exact derivatives, without computing the others."""
 
 from __future__ import annotations
 
@@ -21,30 +21,30 @@ def outputs_of(
     turn_slip: bool = False,
     star: bool = False,
 ) -> list[Any]:
-    """Forces or states by name, as :func:`tir.evaluate.evaluate` has them, but for complex numbers.
+    """Forces or states by name, equal to those of :func:`tir.evaluate.evaluate`; not for complex numbers.
 
     Parameters
     ----------
     names : fields of :class:`tir.equations.forces.Forces` and ``State``, e.g. ``("Fy", "Mz")``
     p : object with the file's parameter names as attributes: floats, arrays (n,) or :class:`~tir.derivatives.Traced`
-    inputs : some of :data:`~tir.codegen.program.INPUTS`, SI and radians, scalar or (n,), real or traced; slip and
-        angles that are not given are 0, Vx is LONGVL and pressure INFLPRES
-    turn_slip, star : as of ``evaluate``
+    inputs : some of :data:`~tir.codegen.program.INPUTS`, SI and radians, scalar or (n,), real or traced; missing
+        slips and angles are 0, Vx is LONGVL and pressure INFLPRES
+    turn_slip, star : as for ``evaluate``
 
     Returns
     -------
     list
-        One for each name: of the broadcast shape, or Traced if it follows from a traced number.
+        One for each name: of the broadcast shape, or Traced if it depends on a traced number.
 
     Raises
     ------
     TirError
-        If a value by which the equations divide is 0, a name is no output or no input, or the load is not given.
+        If a value by which the equations divide is 0, a name is unknown, or the load is missing.
     """
     _known(names, Forces._fields + State._fields, "output")
     _known(inputs, INPUTS, "input")
     if "Fz" not in inputs:
-        raise TirError("the load Fz is not among the inputs; give it")
+        raise TirError("the load Fz is missing among the inputs; give it")
     refuse_zero_divisors(p)
     given = {"Vx": p.LONGVL, "pressure": p.INFLPRES, **inputs}
     still = tuple(name for name in INPUTS if name not in given)
@@ -64,12 +64,12 @@ def outputs_of(
 
 def _known(names: Iterable[str], among: tuple[str, ...], what: str) -> None:
     if isinstance(names, str):
-        raise TirError(f"names of {what}s are asked for, and {names!r} is a text; write ({names!r},)")
+        raise TirError(f"{names!r} is a text where a tuple of {what} names was expected; write ({names!r},)")
     for name in names:
         if name not in among:
-            raise TirError(f"{name} is no {what}; known are {', '.join(among)}", name=name)
+            raise TirError(f"{name} is not an {what}; use {', '.join(among)}", name=name)
 
 
 def _real(x: Any) -> Any:
-    """Whole numbers as floats: numpy has no negative powers of integers."""
+    """The number, integers as floats because numpy has no negative powers of integers."""
     return float(x) if isinstance(x, int) else x

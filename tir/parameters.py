@@ -1,4 +1,4 @@
-"""The parameter table as frozen records; knows no file syntax and no equation."""
+"""The parameter table as frozen records; contains no file syntax and no equation."""
 
 from __future__ import annotations
 
@@ -8,17 +8,19 @@ from dataclasses import dataclass
 from importlib.resources import files as resources
 from typing import NamedTuple
 
+from tir.constants import MARGIN_INSIDE_RANGE
+
 REGULAR = ("", "motorcycle", "62")
-"""Words of the column ``files`` of which a file that is complete for every program has the keys."""
+"""Words of the column ``files``: a file with all keys of these rows is complete for every program."""
 TURN_SLIP = "TURNSLIP_COEFFICIENTS"
 NORMAL_MODE = ("LATERAL_COEFFICIENTS", "ALIGNING_COEFFICIENTS")
 
 
 class Need(NamedTuple):
-    """Something that has to be varied before a coefficient can be seen in the data."""
+    """A condition that the data must vary before a coefficient can be identified."""
 
     word: str  #: see docs/parameters.md
-    levels: int  #: so many at least; 1 where it only has to be there
+    levels: int  #: at least this many levels; 1 if presence is enough
 
 
 @dataclass(frozen=True, slots=True)
@@ -27,25 +29,27 @@ class Parameter:
 
     name: str
     section: str
-    order: int  #: place in a written file
+    order: int  #: place in a written file: its row of the table, from 1
     kind: str  #: "number" or "text"
     unit: str  #: SI; "-" dimensionless, "" for text
-    default: float | str  #: value of a key that a file does not have
+    default: float | str  #: value of a key that the file lacks
     lower: float | None  #: plausible range, used by the fit; None where nothing is fitted
     upper: float | None
     divisor: bool  #: the equations divide by it, so that it cannot be 0
     stage: str  #: stage of the fit that frees it; "" where nothing is fitted
-    channel: str  #: force or moment that must be measured to see it; "" for no coefficient of one
+    channel: (
+        str  #: force or moment that must be measured to identify it; "" if it is not a coefficient of one
+    )
     symmetry: frozenset[str]  #: "odd", "shift", "conicity"; see the properties of these names
     disc_spread: float | None  #: spread around the base file's value to which runs on a disc hold it, 1 sigma
     needs: tuple[Need, ...]  #: what the data must vary
-    files: str  #: which ones have it, see docs/parameters.md; "" for every one, :data:`REGULAR` for a complete one
-    equation: str  #: where it enters
+    files: str  #: which files have the key, see docs/parameters.md; "" for all, :data:`REGULAR` for complete ones
+    equation: str  #: the equation that contains it
     description: str
 
     @property
     def bounds(self) -> tuple[float, float]:
-        """The plausible range; all numbers where the table has none."""
+        """The plausible range; infinite if the table has none."""
         return (
             -math.inf if self.lower is None else self.lower,
             math.inf if self.upper is None else self.upper,
@@ -58,24 +62,24 @@ class Parameter:
         return upper - lower
 
     def inside(self, value: float) -> float:
-        """The value a little inside the plausible range: a search that starts on a bound can be held there."""
+        """The value, moved slightly inside the plausible range: a search that starts on a bound can stay there."""
         lower, upper = self.bounds
-        margin = 1e-3 * self.width if math.isfinite(self.width) else 0.0
+        margin = MARGIN_INSIDE_RANGE * self.width if math.isfinite(self.width) else 0.0
         return min(max(value, lower + margin), upper - margin)
 
     @property
     def odd(self) -> bool:
-        """Whether a tyre of perfect mirror symmetry does not have it."""
+        """Whether it is 0 for a mirror-symmetric tyre."""
         return "odd" in self.symmetry
 
     @property
     def shift(self) -> bool:
-        """Whether it is an odd term that on a disc lives in the even part, beside turn slip."""
+        """Whether it is an odd term that a disc shows in the even part, together with turn slip."""
         return "shift" in self.symmetry
 
     @property
     def conicity(self) -> bool:
-        """Whether it changes sign with the tyre turned on its rim."""
+        """Whether it changes sign when the tyre is turned on its rim."""
         return "conicity" in self.symmetry
 
     @property
@@ -91,16 +95,16 @@ class Parameter:
 
 def _load() -> tuple[Parameter, ...]:
     text = (resources("tir") / "parameters.csv").read_text(encoding="ascii")
-    return tuple(_parameter(row) for row in csv.DictReader(text.splitlines()))
+    return tuple(_parameter(i, row) for i, row in enumerate(csv.DictReader(text.splitlines()), start=1))
 
 
-def _parameter(row: dict[str, str]) -> Parameter:
+def _parameter(order: int, row: dict[str, str]) -> Parameter:
     number = row["kind"] == "number"
     tie, _, spread = row["tied"].partition(":")
     return Parameter(
         name=row["name"],
         section=row["section"],
-        order=int(row["order"]),
+        order=order,
         kind=row["kind"],
         unit=row["unit"],
         default=float(row["default"]) if number else row["default"],

@@ -1,10 +1,11 @@
-"""What single values of a file cannot be, or can only be in another unit: a record for each rule."""
+"""Rules for single values: those that are impossible, or only possible in another unit. One record per rule."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 
+from tir import constants
 from tir.errors import Problem
 from tir.parameters import BY_NAME, TABLE
 from tir.tyre import Tyre
@@ -12,21 +13,41 @@ from tir.tyre import Tyre
 
 @dataclass(frozen=True, slots=True)
 class Rule:
-    """Something that is wrong with the value of a key, whatever the others are."""
+    """A condition under which the value of a key is wrong, whatever the other values are."""
 
     keys: tuple[str, ...]
     broken: Callable[[float], bool]
-    sentence: str  #: what it looks like, or what to do
+    sentence: str  #: what the value looks like, or what to do
     level: str = "warning"
-    amplitude: str = ""  #: key without which nobody minds, as it is then a factor of nothing
+    amplitude: str = ""  #: the rule applies only if this key is not 0, because the value multiplies it
 
 
 SINGLE = (
-    Rule(("NOMPRES", "INFLPRES"), lambda x: 0.0 < x < 5e3, "it looks like kPa or bar; write Pa"),
-    Rule(("NOMPRES", "INFLPRES"), lambda x: x > 1e7, "no tyre bears it; write Pa"),
-    Rule(("ALPMIN", "ALPMAX"), lambda x: abs(x) > 1.7, "it looks like degrees; write radians"),
-    Rule(("CAMMIN", "CAMMAX"), lambda x: abs(x) > 1.6, "it looks like degrees; write radians"),
-    Rule(("WIDTH", "RIM_WIDTH"), lambda x: x > 2.0, "it looks like millimetres or inches; write metres"),
+    Rule(
+        ("NOMPRES", "INFLPRES"),
+        lambda x: 0.0 < x < constants.LOWEST_PRESSURE,
+        "it looks like kPa or bar; write Pa",
+    ),
+    Rule(
+        ("NOMPRES", "INFLPRES"),
+        lambda x: x > constants.HIGHEST_PRESSURE,
+        "no tyre holds that pressure; write Pa",
+    ),
+    Rule(
+        ("ALPMIN", "ALPMAX"),
+        lambda x: abs(x) > constants.LARGEST_SIDESLIP_LIMIT,
+        "it looks like degrees; write radians",
+    ),
+    Rule(
+        ("CAMMIN", "CAMMAX"),
+        lambda x: abs(x) > constants.LARGEST_CAMBER_LIMIT,
+        "it looks like degrees; write radians",
+    ),
+    Rule(
+        ("WIDTH", "RIM_WIDTH"),
+        lambda x: x > constants.WIDEST_TYRE,
+        "it looks like millimetres or inches; write metres",
+    ),
     Rule(
         tuple(row.name for row in TABLE if row.unit in ("kg", "kg m2")),
         lambda x: x < 0.0,
@@ -36,7 +57,7 @@ SINGLE = (
     Rule(
         ("LONGITUDINAL_STIFFNESS", "LATERAL_STIFFNESS"),
         lambda x: x <= 0.0,
-        "the relaxation length is the slip stiffness over it; give its value",
+        "the relaxation length is divided by it; give its value",
     ),
 )
 """Dimensions, limits and masses."""
@@ -51,7 +72,7 @@ SHAPES = tuple(
         ("LCY", "scale of a shape factor", ""),
     )
 )
-"""Coefficients that give the curves their shape."""
+"""Coefficients of the shape of the curves."""
 
 
 def broken(tyre: Tyre, rules: Iterable[Rule]) -> Iterator[Problem]:

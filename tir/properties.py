@@ -1,4 +1,4 @@
-"""Property files: Document and table to Tyre."""
+"""Reading property files: Document and table to Tyre."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ OLD_FITTYPS = {
 }
 OLD_FORMATS = {"MF_05", "PAC2002", "MF-TYRE", "PAC_MC"}
 OF_PROGRAMS = {"SWITCH_INTEG"} | {key for target in TARGETS.values() for key in target.more}
-"""Keys of [MODEL] by which single programs are told how to run the model; no parameters of the tyre."""
+"""Keys of [MODEL] that control how a program runs the model; they are not parameters of the tyre."""
 ESSENTIAL = ("UNLOADED_RADIUS", "FNOMIN")
 ESSENTIAL_COEFFICIENTS = ("PCY1", "PDY1", "PKY1")
 HEADER = ("MDI_HEADER", "UNITS")
@@ -35,22 +35,22 @@ PROVENANCE = re.compile(r"^\s*!\s*provenance:\s*([^:]+):\s*(.*?)\s*$")
 NUMBER = re.compile(
     r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[edED][+-]?\d+)?|[+-]?(?:inf|infinity|nan)", re.ASCII | re.IGNORECASE
 )
-"""What files hold as numbers, Fortran's exponent among it; Python alone takes more, as 1_5 for 15."""
+"""Numbers as files have them, with Fortran's exponents. Python's ``float`` alone would accept 1_5 as 15."""
 STATUS = re.compile(
     r"^(fitted|measured|tied|default|from base|estimate|covered|regularised|given|diagnosed)\b"
 )
 
 
 def read(path: str | Path) -> Tyre:
-    """Read a ``.tir`` file of MF 6.1 or 6.2.
+    """The tyre of a ``.tir`` file of MF 6.1 or 6.2.
 
-    Units other than SI are converted, missing keys take the table's defaults; whatever looks odd is listed in
-    ``Tyre.problems`` with its line.
+    Units other than SI are converted, and missing keys take the defaults of the table. ``Tyre.problems`` lists everything
+    unusual with its line.
 
     Raises
     ------
     TirError
-        If the file is no property file, is truncated, holds an unreadable number, or is of another MF version.
+        If the file is not a property file, is truncated, contains an unreadable number, or has another MF version.
     """
     return interpret(read_document(path))
 
@@ -66,17 +66,17 @@ def interpret(document: Document) -> Tyre:
     extra: dict[str, str] = {}
     status: dict[str, str] = {}
     for line in entries:
-        row = stands_for(line)
+        row = parameter_of(line)
         if row is None:
             if line.section not in HEADER:
                 extra[f"{line.section}.{line.key}"] = line.value
             continue
         if line.key in values:
-            problems.append(_warning(f"{line.key} stands twice; the first value is used", line))
+            problems.append(_warning(f"{line.key} appears twice; the first value is used", line))
             continue
         if not line.section:
             problems.append(
-                _warning(f"{line.key} stands before any [SECTION]; it is read all the same", line)
+                _warning(f"{line.key} comes before the first [SECTION]; it is read all the same", line)
             )
         value = _value(row, line, words, document, problems)
         if value is None:
@@ -87,7 +87,7 @@ def interpret(document: Document) -> Tyre:
     _refuse_other_versions(values, extra, document)
     _refuse_truncated(values, document)
     problems += _about_a_cut_number(values, document)
-    stated = {line.key for line in entries if stands_for(line)}
+    stated = {line.key for line in entries if parameter_of(line)}
     problems += _about_missing(values, stated) + _about_unknown(extra)
     complete = {row.name: row.default for row in TABLE} | values
     measured, provenance = _structured_comments(document)
@@ -103,13 +103,13 @@ def interpret(document: Document) -> Tyre:
     )
 
 
-def stands_for(line: Line) -> Parameter | None:
-    """The parameter that a line with a key gives; None in the header and for keys that MF 6.2 does not have."""
+def parameter_of(line: Line) -> Parameter | None:
+    """The parameter of a line with a key; None in the header and for keys that are not in MF 6.2."""
     return None if line.section in HEADER else BY_NAME.get(line.key)
 
 
 def units_of(document: Document, problems: list[Problem]) -> dict[str, str]:
-    """The file's word for each kind of unit."""
+    """The unit that the file states for each kind of quantity."""
     words = {}
     for line in document.entries:
         if line.section != "UNITS" or line.key not in KINDS or line.key in words:
@@ -118,7 +118,7 @@ def units_of(document: Document, problems: list[Problem]) -> dict[str, str]:
         if word not in KINDS[line.key]:
             known = ", ".join(sorted(KINDS[line.key]))
             raise TirError(
-                f"{line.key} = {line.value} is no known unit: use one of {known}",
+                f"{line.key} = {line.value} is an unknown unit: use one of {known}",
                 path=document.path,
                 line=line.number,
             )
@@ -136,7 +136,7 @@ def units_of(document: Document, problems: list[Problem]) -> dict[str, str]:
 def _value(
     row: Parameter, line: Line, words: dict[str, str], document: Document, problems: list[Problem]
 ) -> float | str | None:
-    """The value in the table's unit; None with a problem where there is none and the file can still be used."""
+    """The value in the unit of the table; None, with a problem added, if it is missing and the file can still be used."""
     if row.kind == "text" and line.value:
         return unquoted(line.value)
     text = unquoted(line.value)
@@ -146,21 +146,21 @@ def _value(
     if not text:
         if row.name in (*ESSENTIAL, *ESSENTIAL_COEFFICIENTS) or line.number == len(document.lines):
             raise TirError(
-                f"{line.key} has no value: the file is damaged or cut short here",
+                f"{line.key} has no value: the file is damaged or truncated here",
                 path=document.path,
                 line=line.number,
                 name=line.key,
             )
         problems.append(_warning(f"{line.key} has no value and takes its default", line))
         return None
-    said = f'{line.key} is "{text}", and a number was expected' if number is None else ""
+    said = f'{line.key} is "{text}", but a number was expected' if number is None else ""
     said = said or f"{line.key} is {text}, which no formula can use"
     if row.name not in _needed():
-        problems.append(_warning(f"{said}; no force needs it, so that its default is taken", line))
+        problems.append(_warning(f"{said}; no force needs it, so its default is taken", line))
         return None
     remedy = ": give a number"
     if number is None and "," in text:
-        remedy = f"; a decimal comma is not a number here, write {text.replace(',', '.')}"
+        remedy = f"; decimal commas are not allowed, write {text.replace(',', '.')}"
     raise TirError(f"{said}{remedy}", path=document.path, line=line.number, name=line.key)
 
 
@@ -172,7 +172,7 @@ def _number(text: str) -> float | None:
 
 @cache
 def _needed() -> frozenset[str]:
-    """Parameters that some force or other result depends on."""
+    """Parameters that any force or other result depends on."""
     program = trace(Switches(True, False, True), Forces._fields + State._fields)
     return frozenset(program.parameters) | {"LONGVL", "INFLPRES", "FITTYP"}
 
@@ -185,14 +185,12 @@ def _refuse_other_versions(values, extra, document: Document) -> None:
         if version in OLD_FITTYPS:
             name = f"FITTYP {version:g}: {OLD_FITTYPS[version]}"
         raise TirError(
-            f"is a file of the MF 5.2 generation ({name}); its coefficients mean something else in MF 6.2, so it cannot be "
-            "renamed: fit the tyre's data anew, or name an MF 6.1 or 6.2 file",
+            f"is a file of the MF 5.2 generation ({name}); its coefficients have another meaning in MF 6.2, so "
+            "renaming it does not help: fit the tyre's data again, or give an MF 6.1 or 6.2 file",
             path=document.path,
         )
     if version is not None and version not in FITTYPS:
-        raise TirError(
-            f"has FITTYP {version:g}, and only {fittyps_text()} are known here", path=document.path
-        )
+        raise TirError(f"has FITTYP {version:g}, but only {fittyps_text()} are supported", path=document.path)
 
 
 def _refuse_truncated(values, document: Document) -> None:
@@ -200,36 +198,38 @@ def _refuse_truncated(values, document: Document) -> None:
     missing = [name for name in ESSENTIAL if name not in values]
     if missing:
         homes = " and ".join(f"{name} to [{BY_NAME[name].section}]" for name in missing)
-        remedy = f"add {homes}" if coefficients else "the file is cut short, or of another tyre model"
+        remedy = f"add {homes}" if coefficients else "the file is truncated, or belongs to another tyre model"
         raise TirError(
-            f"lacks {' and '.join(missing)}, without which no force can be computed: {remedy}",
+            f"lacks {' and '.join(missing)}, which every force needs: {remedy}",
             path=document.path,
             name=missing[0],
         )
     if not coefficients:
         raise TirError(
-            "has none of PCY1, PDY1, PKY1: the coefficients are missing, so the file is cut short",
+            "has none of PCY1, PDY1, PKY1: the coefficients are missing, so the file is truncated",
             path=document.path,
         )
 
 
 def _about_a_cut_number(values, document: Document) -> list[Problem]:
-    """A file that ends in the middle of a line may end in the middle of its number; what is left of it reads well."""
+    """A problem, or an error, if the file ends without a line end and may be truncated within its last number."""
     line = document.lines[-1]
-    row = stands_for(line)
+    row = parameter_of(line)
     if row is None or row.kind == "text" or line.start + len(line.value) < len(line.text):
-        return []  # what follows the number says that it is whole
+        return []  # text after the number shows that the number is complete
     behind = [other for other in TABLE if other.order > row.order and other.files == ""]
     if not behind or any(other.name in values for other in behind):
         return []
     said = (
-        f"{line.key} = {line.value} is the end of the file, without a line end and with nothing of what follows in others, "
+        f"the file ends with {line.key} = {line.value}, without a line end and without the keys that usually follow, "
         f"{behind[0].name} and more"
     )
-    if all(other.section == TURN_SLIP != row.section for other in behind):  # which many whole files lack
-        return [_warning(f"{said}: look whether the file was cut short", line)]
+    if all(
+        other.section == TURN_SLIP != row.section for other in behind
+    ):  # many complete files lack this section
+        return [_warning(f"{said}: check whether the file was truncated", line)]
     raise TirError(
-        f"{said}: the file is cut short; take the whole one, or end the line if the number is right",
+        f"{said}: the file is truncated; use the complete one, or end the line if the number is right",
         path=document.path,
         line=line.number,
         name=line.key,
@@ -237,7 +237,7 @@ def _about_a_cut_number(values, document: Document) -> list[Problem]:
 
 
 def _about_missing(values, stated) -> list[Problem]:
-    """Keys that a file of its version has; those that stand there without a usable value were told of already."""
+    """Problems for missing keys of the file's version; those without a usable value have been reported already."""
     version = values.get("FITTYP")
     missing = [
         row.name
@@ -245,7 +245,9 @@ def _about_missing(values, stated) -> list[Problem]:
         if row.name not in stated and (row.files == "" or (row.files == "62" and version not in (60, 61)))
     ]
     if version == 60:
-        rest = f"; {counted(len(missing), 'key')} of 6.1 that it lacks take their defaults" if missing else ""
+        rest = (
+            f"; {counted(len(missing), 'key')} of 6.1 are missing and take their defaults" if missing else ""
+        )
         return [Problem("warning", f"FITTYP 60 is read as MF 6.1{rest}", "FITTYP")]
     out = []
     if version is None:
@@ -267,7 +269,7 @@ def _about_unknown(extra) -> list[Problem]:
     ]
     if not names:
         return []
-    said = "is no MF 6.2 parameter and is" if len(names) == 1 else "are no MF 6.2 parameters and are"
+    said = "is not an MF 6.2 parameter and is" if len(names) == 1 else "are not MF 6.2 parameters and are"
     sentence = f"{counted(len(names), 'key')} {said} kept but not used: {some(names)}"
     return [Problem("warning", sentence)]
 

@@ -1,4 +1,4 @@
-"""A property file written anew: every key in the order of the table, ASCII, CR LF, one form that every reader takes."""
+"""A new property file: every key in the order of the table, ASCII, CR LF, in a form that every program reads."""
 
 from __future__ import annotations
 
@@ -6,18 +6,16 @@ import math
 from collections.abc import Iterator
 from typing import Any
 
+from tir.constants import LONGEST_WRITTEN_LINE
 from tir.errors import TirError
 from tir.parameters import BY_NAME, SECTIONS, TABLE, Parameter
 from tir.targets import Target, use_mode_words, vendor
 from tir.tyre import Tyre
 from tir.units import SI
 
-WIDTH = 118
-"""Characters of the longest line; some readers stop at 120."""
-
 
 def render(tyre: Tyre, target: Target) -> str:
-    """The complete file as text; keys without a value of their own say so in their comment.
+    """The complete file as text; the comment of a key marks a default.
 
     Raises
     ------
@@ -46,7 +44,7 @@ def render(tyre: Tyre, target: Target) -> str:
 
 
 def _written(row: Parameter, tyre: Tyre, target: Target) -> bool:
-    """A key that no common program knows goes into a file only if it matters."""
+    """Whether a key is written; one that common programs do not know only if it differs from its default."""
     if row.files == "62" and _value(BY_NAME["FITTYP"], tyre, target) < 62:
         return False
     return row.name not in target.without and (row.files != "rare" or tyre[row.name] != row.default)
@@ -60,7 +58,7 @@ def _value(row: Parameter, tyre: Tyre, target: Target) -> Any:
 
 
 def structured_comments(tyre: Tyre) -> Iterator[str]:
-    """Provenance and measured quantities as comment lines that ``tir.read`` gives back."""
+    """Provenance and measured quantities as comment lines that ``tir.read`` understands."""
     for key, text in tyre.provenance.items():
         yield f"! provenance: {comment_text(key)}: {comment_text(text)}"
     for name, q in tyre.measured.items():
@@ -71,11 +69,11 @@ def structured_comments(tyre: Tyre) -> Iterator[str]:
 def entry(key: str, value: str, comment: str = "") -> str:
     """One line with a key."""
     line = f"{key:<24} = {value}"
-    return f"{line:<50} ${comment_text(comment)}"[:WIDTH] if comment else line
+    return f"{line:<50} ${comment_text(comment)}"[:LONGEST_WRITTEN_LINE] if comment else line
 
 
 def value_text(row: Parameter, value: Any) -> str:
-    """The value as it stands in a file in SI; read back it is the same.
+    """The value as text in SI; it reads back as the same value.
 
     Raises
     ------
@@ -86,15 +84,17 @@ def value_text(row: Parameter, value: Any) -> str:
         text = comment_text(str(value))
         if "'" not in text:
             return f"'{text}'"
-        return '"' + text.replace('"', "'") + '"'  # a file knows no sign that takes both
+        return '"' + text.replace('"', "'") + '"'  # a file cannot hold both kinds of quotes
     number = float(value)
     if not math.isfinite(number):
-        raise TirError(f"{row.name} is {number}, and a file can only hold numbers", name=row.name)
+        raise TirError(
+            f"{row.name} is {number}, but a file can only hold finite numbers; change it", name=row.name
+        )
     return str(int(number)) if number.is_integer() and abs(number) < 1e15 else repr(number)
 
 
 def remark(row: Parameter, tyre: Tyre) -> str:
-    """The comment of a key: where its value comes from, else what it is."""
+    """The comment of a key: the origin of its value, else its description."""
     if row.name in tyre.status:
         return tyre.status[row.name]
     if row.name not in tyre.present:

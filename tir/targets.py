@@ -1,4 +1,4 @@
-"""The programs for which a property file can be written, and what each of them needs said differently."""
+"""The programs for which a property file can be written, and what differs in the file for each."""
 
 from __future__ import annotations
 
@@ -18,24 +18,24 @@ class Target:
     """A program that reads property files."""
 
     name: str
-    program: str  #: what it is, in a few words
+    program: str  #: description in a few words
     fittyps: tuple[int, ...]  #: versions that it reads; the first is written
-    without: tuple[str, ...] = ()  #: keys that it is not given
-    values: Mapping[str, Any] = field(default_factory=dict)  #: keys of the table that are always these
-    more: Mapping[str, str] = field(default_factory=dict)  #: keys of its own in [MODEL], with their text
+    without: tuple[str, ...] = ()  #: keys that are left out
+    values: Mapping[str, Any] = field(default_factory=dict)  #: fixed values of keys of the table
+    more: Mapping[str, str] = field(default_factory=dict)  #: additional keys in [MODEL], with their text
     turn_slip: bool = True  #: whether it can compute turn slip
-    complete: bool = False  #: whether every key has to be there
-    si: bool = False  #: whether it takes every number for SI, whatever [UNITS] says
-    positions: bool = False  #: whether it counts lines instead of reading keys
-    dollar_only: bool = False  #: whether only a dollar sign opens a comment
-    refusal: str = ""  #: why nothing can be written for it
+    complete: bool = False  #: whether it needs every key
+    si: bool = False  #: whether it ignores [UNITS] and takes every number as SI
+    positions: bool = False  #: whether it reads values by line number instead of by key
+    dollar_only: bool = False  #: whether only a dollar sign starts a comment
+    refusal: str = ""  #: reason if no file can be written for it
 
 
 TARGETS: dict[str, Target] = {
     target.name: target
     for target in (
         Target("mftyre", "MF-Tyre/MF-Swift 6.2 and what has it built in", (62, 61, 60), ADAMS),
-        Target("mf61", "programs that know MF 6.1 and no 6.2", (61, 60), (*ADAMS, *ONLY_62)),
+        Target("mf61", "programs that read MF 6.1 but not 6.2", (61, 60), (*ADAMS, *ONLY_62)),
         Target(
             "adams",
             "MF-Tyre/MF-Swift 6.2 in Adams",
@@ -78,8 +78,8 @@ TARGETS: dict[str, Target] = {
                 "PAC2002",
                 (),
                 refusal=(
-                    "computes PAC2002, another formula: its coefficients are not those of MF 6.2, so that a renamed file would "
-                    "be read as another tyre, or without complaint as none. Fit PAC2002 to the forces of this tyre"
+                    "computes PAC2002, another formula with other coefficients than MF 6.2: it would read a renamed file as "
+                    "another tyre without any message. Fit PAC2002 to the forces of this tyre"
                 ),
             )
             for name in ("chrono", "pac2002")
@@ -88,11 +88,11 @@ TARGETS: dict[str, Target] = {
 }
 DEFAULT = "mftyre"
 FITTYPS = tuple(sorted({version for target in TARGETS.values() for version in target.fittyps}))
-"""Versions of the Magic Formula that are read."""
+"""Versions of the Magic Formula that ``tir`` reads."""
 
 
 def fittyps_text() -> str:
-    """:data:`FITTYPS` as words."""
+    """:data:`FITTYPS` in words: "60, 61 and 62"."""
     *others, last = map(str, FITTYPS)
     return f"{', '.join(others)} and {last}"
 
@@ -103,18 +103,18 @@ def target_of(name: str) -> Target:
     Raises
     ------
     TirError
-        If there is none, or if it cannot use an MF 6.2 tyre.
+        If the name is unknown, or the program cannot use an MF 6.2 tyre.
     """
     target = known_target(name)
     if target.refusal:
-        raise TirError(f"nothing can be written for {name}: it {target.refusal}")
+        raise TirError(f"no file can be written for {name}: it {target.refusal}")
     return target
 
 
 def known_target(name: str) -> Target:
     """The program of this name, whether or not it can use an MF 6.2 tyre; raises as :func:`target_of`."""
     if name not in TARGETS:
-        raise TirError(f"{name} is no known program: use one of {', '.join(TARGETS)}")
+        raise TirError(f"{name} is an unknown program: use one of {', '.join(TARGETS)}")
     return TARGETS[name]
 
 
@@ -139,7 +139,7 @@ UNKNOWN_DIGIT = "unknown digit"
 
 
 def use_mode_words(mode: float) -> str:
-    """What a USE_MODE asks of MF-Tyre/MF-Swift, digit by digit; the thousands are its own business."""
+    """Meaning of a USE_MODE for MF-Tyre/MF-Swift, digit by digit; the thousands are ignored."""
     number = abs(int(mode))
     parts = (
         HUNDREDS_DIGIT.get(number // 100 % 10),

@@ -7,9 +7,9 @@ state. With its deflections against the wheel, u forwards and v to the right [m]
     dv/dt + |Vx| / sigma_y v =  Vsy        tan(alpha') = sgn(Vx) v / sigma_y
 
 (H. B. Pacejka, Tire and Vehicle Dynamics, 3rd ed., section 7.2.1, equations 7.7 and 7.9, in the signs of this package.)
-sigma_x and sigma_y are the slip stiffness over the carcass stiffness (A8, A9), so that at standstill, where du/dt = -Vsx, what is
-left is a spring of the carcass stiffness. Each step solves the equations exactly for speeds that
-stay constant in it: steps of any length are stable.
+sigma_x and sigma_y are the slip stiffness over the carcass stiffness (A8, A9). At standstill du/dt = -Vsx, and a spring of
+the carcass stiffness remains. Each step solves the equations exactly for speeds that are constant within it, so steps of any
+length are stable.
 """
 
 from __future__ import annotations
@@ -56,16 +56,16 @@ def step(
     ----------
     tyre : with the file's relaxation (LONGITUDINAL_STIFFNESS, LATERAL_STIFFNESS, PCFX1-3, PCFY1-3)
     contact : before the step
-    dt : length of the step [s]; infinite for the steady state
-    Fz : load [N], float or (n,) as every input; without load the contact is lost, and springs back
+    dt : length of the step [s]; infinite gives the steady state
+    Fz : load [N], float or (n,) as every input; without load the contact is lost and springs back
     Vx : speed of the contact along the wheel [m/s], < 0 rolls backwards
     Vsx : longitudinal slip speed Vx - Re omega [m/s]; kappa = -Vsx/Vx in steady state
     Vsy : lateral slip speed [m/s]; alpha = atan(Vsy/Vx) in steady state
     gamma : camber [rad]
-    phi_t : turn slip [1/m], which has no lag here; None for turn slip off
+    phi_t : turn slip [1/m], without lag; None for turn slip off
     p : inflation pressure [Pa], default INFLPRES
-    damping : of the contact at standstill [Ns/m], which fades up to VXLOW; without one a car that has stopped rocks on
-        its carcass for ever
+    damping : of the contact at standstill [Ns/m], which fades out towards VXLOW; without it a car that has stopped
+        rocks on its carcass for ever
     limits : as in a call of the tyre
 
     Returns
@@ -114,7 +114,7 @@ def forces(
 def _slip(
     tyre: Tyre, state: State, contact: Contact, Vx: Any, Vsx: Any, Vsy: Any, damping: float
 ) -> tuple[Any, Any]:
-    """kappa' and alpha' [rad] of a deflected contact, with what damping adds to them."""
+    """kappa' and alpha' [rad] of a deflected contact, damping included."""
     kappa, alpha = slips(state, contact, Vx)
     if damping:
         share = _way(Vx) * damping * _fading(Vx, tyre["VXLOW"])
@@ -137,7 +137,7 @@ def slips(state: State, contact: Contact, Vx: Any) -> tuple[Any, Any]:
 
 
 def _way(Vx: Any) -> Any:
-    """-1 rolling backwards, where slips are measured by the speed backwards, else 1."""
+    """-1 if the wheel rolls backwards, where slips are relative to the backward speed, else 1."""
     return np.where(np.asarray(Vx) < 0.0, -1.0, 1.0)
 
 
@@ -145,9 +145,9 @@ def _dragged(x: Any, speed: Any, rolling: Any, sigma: Any, dt: float) -> Any:
     """Exact solution of dx/dt + rolling/sigma x = speed after dt; x + speed dt where nothing rolls."""
     z = np.where(rolling > 0.0, rolling * dt / sigma, 0.0)
     mean = np.where(z > 0.0, -np.expm1(-z) / np.where(z > 0.0, z, 1.0), 1.0)
-    time = sigma / rolling if np.isinf(dt) else dt * mean  # for which the speed counts
+    time = sigma / rolling if np.isinf(dt) else dt * mean  # effective time for which the slip speed acts
     gone = np.where(speed == 0.0, 0.0, speed * time)
-    # a contact without slip stiffness is not held to the road: it has no deflection
+    # a contact without slip stiffness has no grip on the road, so no deflection
     return np.where(sigma == 0.0, 0.0, np.asarray(x) * np.exp(-z) + gone)
 
 

@@ -28,7 +28,7 @@ EMPTY: Mapping[str, Any] = MappingProxyType({})
 
 
 class Quantity(NamedTuple):
-    """A measured quantity as it stands in a file's structured comments."""
+    """A measured quantity, as the structured comments of a file state it."""
 
     value: float
     u: float  #: standard uncertainty, k = 1
@@ -39,34 +39,34 @@ class Quantity(NamedTuple):
 class Tyre:
     """``tyre(Fz, alpha, gamma, kappa, phi_t, Vx, p)`` gives forces and moments: MF 6.2 in steady state, N, rad, m/s, Pa, ISO-W.
 
-    Make one with ``tir.read("front.tir")`` or :meth:`from_values`; the fields are filled by these, not by hand.
+    Create one with ``tir.read("front.tir")`` or :meth:`from_values`; they fill the fields.
 
     >>> tyre = Tyre.from_values({"FNOMIN": 1500.0, "UNLOADED_RADIUS": 0.3})
     >>> tyre(1500.0, alpha=0.02).Fy < 0
     True
 
-    ``tyre["PKY1"]`` is a parameter in SI, ``tyre.replace(PKY1=-20.0)`` a copy with another value, ``tyre.state(...)`` what the
-    model knows beside the forces, ``tyre.plot()`` a figure, ``tyre.write("other.tir")`` writes a file. Axes and signs:
+    ``tyre["PKY1"]`` is a parameter in SI, ``tyre.replace(PKY1=-20.0)`` a copy with another value, ``tyre.state(...)`` the
+    other results of the model, ``tyre.plot()`` a figure. ``tyre.write("other.tir")`` writes a file. Axes and signs:
     :mod:`tir.conventions`.
     """
 
     values: Mapping[str, float | str]  #: every parameter of the table; defaults where the file has none
-    present: frozenset[str] = frozenset()  #: names that stood in the file or were given
+    present: frozenset[str] = frozenset()  #: names in the file, or given later
     status: Mapping[str, str] = field(default_factory=lambda: EMPTY)  #: name -> origin of the value
     measured: Mapping[str, Quantity] = field(default_factory=lambda: EMPTY)
     provenance: Mapping[str, str] = field(default_factory=lambda: EMPTY)
     extra: Mapping[str, str] = field(default_factory=lambda: EMPTY)  #: "SECTION.KEY" -> text of unknown keys
-    problems: tuple[Problem, ...] = ()  #: what the reader stumbled over
+    problems: tuple[Problem, ...] = ()  #: problems found on reading
     document: Document | None = field(default=None, repr=False)  #: the file's text, which is kept on writing
 
     @classmethod
     def from_values(cls, given: Mapping[str, float | str]) -> Tyre:
-        """A tyre from some values; the table's defaults fill the rest.
+        """A tyre from some values; the others take the defaults of the table.
 
         Raises
         ------
         TirError
-            For a name that MF 6.2 does not have, or a value that is none of its kind.
+            For a name that is not in MF 6.2, or a value of the wrong kind.
         """
         _usable(given)
         values = {row.name: row.default for row in TABLE} | dict(given)
@@ -85,14 +85,14 @@ class Tyre:
         return iter(self.values)
 
     def keys(self) -> KeysView[str]:
-        """Names of all parameters, those that are defaults among them."""
+        """Names of all parameters, including those with default values."""
         return self.values.keys()
 
     def __eq__(self, other: object) -> bool:
         return isinstance(other, Tyre) and dict(self.values) == dict(other.values)
 
     def __hash__(self) -> int:
-        """Of what can be hashed; values of other kinds, as arrays, leave it to the comparison."""
+        """Hash of the values that can be hashed; arrays, for example, are left out."""
         return hash(frozenset((k, v) for k, v in self.values.items() if isinstance(v, str | Complex)))
 
     def __repr__(self) -> str:
@@ -113,24 +113,24 @@ class Tyre:
         return "<" + "\n ".join(lines) + ">"
 
     def _repr_html_(self) -> str:
-        """For notebooks: the same lines, and a small picture."""
+        """HTML for notebooks: the lines of the repr, and a small picture."""
         from tir.drawing import notebook
 
         return notebook(self)
 
     def __reduce__(self) -> tuple[Any, ...]:
-        """For other processes: everything but the functions made for calls."""
+        """For pickling: all fields, without the functions prepared for calls."""
         plain = {key: dict(x) if isinstance(x, Mapping) else x for key, x in _fields(self).items()}
         return _rebuilt, (plain,)
 
     @cached_property
     def p(self) -> SimpleNamespace:
-        """The parameters as attributes, as the equations take them."""
+        """The parameters as attributes, for the equations."""
         return SimpleNamespace(**self.values)
 
     @cached_property
     def prepared(self) -> dict[Any, Any]:
-        """Functions made of the tyre for calls with floats and arrays; see :mod:`tir.calls`."""
+        """Cached functions for calls with floats and arrays; see :mod:`tir.calls`."""
         return {}
 
     def replace(self, **changes: float | str) -> Tyre:
@@ -201,7 +201,7 @@ class Tyre:
             Vx = self.values["LONGVL"]
         if p is None:
             p = self.values["INFLPRES"]
-        # the way of a simulation that asks for one condition after the other: no array, no look at what is general
+        # fast path for scalar calls: no array, no type checks beyond floats
         if (
             float
             is type(Fz)
@@ -234,7 +234,7 @@ class Tyre:
         star: bool = False,
         limits: bool = False,
     ) -> State:
-        """Everything else the model knows of the condition: stiffnesses, radius, trail, spin; arguments as in a call."""
+        """The other results at the condition: stiffnesses, radius, trail, spin; arguments as in a call."""
         inputs = (
             Fz,
             alpha,
@@ -252,13 +252,13 @@ class Tyre:
 
         Parameters
         ----------
-        loads : loads [N], a curve each; default: half, once and one and a half times FNOMIN
+        loads : loads [N], one curve each; default: 0.5, 1 and 1.5 times FNOMIN
         turn_slip : as in a call of the tyre
 
         Returns
         -------
         matplotlib.figure.Figure
-            Ranges are the file's, as far as they are usual. ``figure.savefig("front.png")`` keeps it.
+            Ranges are those of the file, up to usual values. ``figure.savefig("front.png")`` saves it.
 
         Raises
         ------
@@ -270,10 +270,10 @@ class Tyre:
         return plot(self, loads=loads, turn_slip=turn_slip)
 
     def expand(self) -> Tyre:
-        """A copy in which every key that the file lacks is given with the table's default, marked as not measured.
+        """A copy in which missing keys are given with the defaults of the table, marked as not measured.
 
-        Without this, missing keys stay missing in a written file: for MF-Tyre an absent key means that it is to be
-        estimated, which is something else than the default of this table.
+        Without this, missing keys stay missing in a written file: MF-Tyre estimates the value of an
+        absent key, which differs from the default of this table.
         """
         known = {"", "some", "motorcycle"} | (set() if self.values["FITTYP"] in (60, 61) else {"62"})
         missing = [row.name for row in TABLE if row.name not in self.present and row.files in known]
@@ -285,9 +285,8 @@ class Tyre:
 
         Parameters
         ----------
-        target : for which program, see :data:`tir.targets.TARGETS`; the complete file, written anew. Without one, a tyre that
-            was read gives its file's own text, in which only what was changed or added differs; any other tyre gives the
-            file for MF-Tyre.
+        target : name of a program, see :data:`tir.targets.TARGETS`; gives a complete new file for it. Without one, a tyre that
+            was read gives the text of its file with only its changes, and any other tyre gives the file for MF-Tyre.
 
         Raises
         ------
@@ -305,7 +304,7 @@ class Tyre:
         write(self, path, target)
 
 
-# What help prints first: a tyre is read or made from values, and its fields are no call that anybody writes.
+# help() prints this signature first: nobody creates a tyre by filling its fields.
 SIGNATURE = Signature([Parameter(name, Parameter.POSITIONAL_OR_KEYWORD) for name in ("self", "values")])
 Tyre.__init__.__signature__ = SIGNATURE  # type: ignore[attr-defined]
 
@@ -320,18 +319,18 @@ def _rebuilt(plain: dict[str, Any]) -> Tyre:
 
 
 def _usable(given: Mapping[str, Any]) -> None:
-    """Refuses names that MF 6.2 does not have, and values with which nothing can be computed."""
+    """Raise TirError for names that are not in MF 6.2 and for values of the wrong kind."""
     for name, value in given.items():
         if name not in BY_NAME:
             raise TirError(f"MF 6.2 has no parameter {name}", name=name)
         text = BY_NAME[name].kind == "text"
         if not (isinstance(value, str) if text else _calculable(value)):
             expected = "text" if text else "number"
-            raise TirError(f"{name} is {reprlib.repr(value)}, and a {expected} was expected", name=name)
+            raise TirError(f"{name} is {reprlib.repr(value)}, but a {expected} was expected", name=name)
 
 
 def _calculable(value: Any) -> bool:
-    """Whether it is a number, or stands for some: an array, a traced number, a symbol of another program."""
+    """Whether the equations can compute with it: a number, an array, a traced number, a symbol of another program."""
     if isinstance(value, Number):
-        return isinstance(value, Complex)  # decimal numbers do not go together with floats
+        return isinstance(value, Complex)  # a Decimal does not combine with floats
     return hasattr(value, "__neg__") and hasattr(value, "__truediv__")

@@ -63,12 +63,12 @@ PRODUCTS: dict[str, tuple[tuple[str, int], ...]] = {
 
 
 def factor(unit: str, words: Mapping[str, str]) -> float:
-    """What a number in the file's units is multiplied with to be in the table's unit.
+    """The factor from a number in the file's units to the unit of the table.
 
     Parameters
     ----------
     unit : unit of the table, e.g. "N/m"
-    words : the file's word per kind, e.g. {"LENGTH": "mm"}; a kind that is missing is SI, and a pressure without its own
+    words : the file's word per kind, e.g. {"LENGTH": "mm"}; a missing kind is SI, and a pressure without its own
         word is the file's force per area
     """
     if unit == "Pa" and "PRESSURE" in words:

@@ -1,4 +1,4 @@
-"""Property files written: the file's own text with its changes, or a new one for a program."""
+"""Writing property files: the file's own text with its changes, or a new file for a program."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ def content(tyre: Tyre, target: str | None = None) -> tuple[str, str]:
         document = merged(tyre, tyre.document)
         return document.text, document.encoding
     chosen = target_of(target or DEFAULT)
-    if target is None:  # nobody named a program: what was given of another one's keys is kept
+    if target is None:  # without a named program, keys of other programs that were given are kept
         own = {row.name for row in TABLE if tyre[row.name] != row.default}
         chosen = replace(chosen, without=tuple(name for name in chosen.without if name not in own))
     return render(tyre, chosen), "ascii"

@@ -26,12 +26,11 @@ def check(file: Path, targets: str, voice: Voice) -> None:
     """
     import tir
     from mffit.results import as_json
-    from tir.check import check as problems_of
     from tir.errors import counted
 
     tyre = tir.read(file)
     names = [name.strip() for name in targets.split(",")]
-    problems = [*tyre.problems, *problems_of(tyre, filter(None, names))]
+    problems = [*tyre.problems, *tir.check(tyre, filter(None, names))]
     for problem in problems:
         voice.say(f"{problem.level}: {problem.sentence}")
     errors = sum(problem.level == "error" for problem in problems)

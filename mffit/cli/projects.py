@@ -38,19 +38,27 @@ def sniff(files: tuple[Path, ...], out: Path | None, voice: Voice) -> None:
 @click.command()
 @click.argument("paths", nargs=-1, required=True, type=click.Path(path_type=Path), metavar="[FILE...] DIR")
 @click.option("--from", "recorded", is_flag=True, help="From the recordings FILE... before DIR.")
+@click.option("--sample", metavar="S", help="A copy of a sample: flat-track, front-120-70 or rear-190-55.")
 @click.option("--unloaded-radius", type=float, metavar="M", help="With --from: of the tyre, in metres.")
 @click.option("--nominal-load", type=float, metavar="N", help="With --from: FNOMIN, in newtons.")
 @click.option("--nominal-pressure", type=float, metavar="KPA", help="With --from [default: as most was run].")
 @click.option("--name", help="With --from: of the output files [default: the first recording's].")
 @voiced
 def init(
-    paths: tuple[Path, ...], recorded: bool, name: str | None, voice: Voice, **tyre: float | None
+    paths: tuple[Path, ...],
+    recorded: bool,
+    sample: str | None,
+    name: str | None,
+    voice: Voice,
+    **tyre: float | None,
 ) -> None:
-    """Write a commented tyre.toml and empty CSV templates, or with --from a project for recordings."""
+    """Write a commented tyre.toml and empty CSV templates, with --from a project for recordings, or a sample."""
     from mffit.errors import InputError
-    from mffit.init_project import init_project
+    from mffit.init_project import copy_sample, init_project
 
     *files, folder = paths
+    if recorded and sample is not None:
+        raise InputError("--from and --sample exclude each other; give one of them")
     if recorded:
         from mffit import pipeline
         from mffit.report import text
@@ -65,6 +73,8 @@ def init(
         raise InputError(
             f"one folder only; recordings go behind --from: mffit init --from {files[0]} {folder}"
         )
+    elif sample is not None:
+        written = copy_sample(sample, folder)
     else:
         written = init_project(folder)
     for path in written:

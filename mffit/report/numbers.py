@@ -102,7 +102,7 @@ def _some(n: int, said: str) -> tuple[slice, str]:
 
 def _in_units(artist: Artist, ax: Axes) -> bool:
     """Whether both coordinates are numbers of the axes; a guide through a whole panel has one that is a share of it."""
-    return artist.get_transform().contains_branch_seperately(ax.transData) == (True, True)
+    return all(artist.get_transform().contains_branch_seperately(ax.transData))
 
 
 def _word(ax: Axes, y: float) -> str | float:

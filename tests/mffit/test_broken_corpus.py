@@ -209,7 +209,7 @@ CORPUS: dict[str, tuple[Change, str]] = {
     "a binary base file": (base(b"\0\1\2\3" * 40), "base.tir: is UTF-16 or binary"),
     "a base file in words": (
         base(WHOLE_TIR.replace("-12", "zwölf")),
-        'PKY1 is "zwölf", and a number was expected',
+        'PKY1 is "zwölf", but a number was expected',
     ),
     "a page for a base file": (base("<html><body>404</body></html>"), "holds no 'KEY = value' line"),
     # tables as text

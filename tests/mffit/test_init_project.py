@@ -4,13 +4,19 @@ from __future__ import annotations
 
 import re
 import tomllib
+from pathlib import Path
 
+import click
 import pytest
+from click.testing import CliRunner
 
 from mffit import config, sweeps
+from mffit.cli import projects
 from mffit.config.problems import known_keys
 from mffit.errors import InputError
-from mffit.init_project import init_project
+from mffit.init_project import copy_sample, init_project, sample_names
+
+SAMPLES = Path(__file__).parents[2] / "samples"
 
 
 def test_the_configuration_is_valid_and_its_files_are_there(tmp_path):
@@ -43,3 +49,48 @@ def test_a_file_is_no_folder(tmp_path):
     (tmp_path / "file").write_text("")
     with pytest.raises(InputError, match="folder"):
         init_project(tmp_path / "file")
+
+
+@pytest.mark.parametrize("name", ["flat-track", "front-120-70", "rear-190-55"])
+def test_a_sample_is_copied_byte_for_byte_and_loads(tmp_path, name):
+    paths = copy_sample(name, tmp_path / "mine")
+    assert paths[0] == tmp_path / "mine" / "tyre.toml"
+    assert {path.name for path in paths} == {
+        path.name for path in (SAMPLES / name).iterdir() if path.is_file()
+    }
+    assert all(path.read_bytes() == (SAMPLES / name / path.name).read_bytes() for path in paths)
+    assert len(config.load(paths[0]).sweep) > 10
+    assert sweeps.load(config.load(paths[0])).sweeps
+
+
+def test_the_help_names_every_sample():
+    help_text = projects.init.get_help(click.Context(projects.init)).replace("\n", " ")
+    assert all(name in help_text for name in sample_names())
+
+
+def test_an_unknown_sample_is_answered_with_those_there_are(tmp_path):
+    with pytest.raises(
+        InputError, match=r"no sample 'front'; choose one of flat-track, front-120-70, rear-190-55"
+    ):
+        copy_sample("front", tmp_path / "new")
+    assert not (tmp_path / "new").exists()
+
+
+def test_a_sample_overwrites_nothing(tmp_path):
+    (tmp_path / "base.tir").write_text("mine")
+    with pytest.raises(InputError, match="there already"):
+        copy_sample("front-120-70", tmp_path)
+    assert [path.name for path in tmp_path.iterdir()] == ["base.tir"]
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (["--from", "a.csv", "--sample", "front-120-70", "new"], "exclude each other"),
+        (["--sample", "front-120-70", "one", "two"], "one folder only"),
+    ],
+)
+def test_a_sample_goes_into_one_folder_and_with_nothing_else(arguments, message):
+    found = CliRunner().invoke(projects.init, arguments)
+    assert isinstance(found.exception, InputError)
+    assert message in str(found.exception)

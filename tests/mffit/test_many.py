@@ -213,7 +213,7 @@ def test_the_fleet_compares_and_reduces_uncertainties(compared, folders):
     }
     assert found["scatter"]["epsilon_gamma_direct"]["tyres"] == 5
     assert found["scatter"]["epsilon_gamma_direct"]["beyond"] == 0.0  # five times the same tyre
-    table = pd.read_csv(out / "fleet.csv")
+    table = pd.read_csv(out / "fleet.csv", float_precision="round_trip")
     assert table.rig.tolist() == [1] * 5
     assert table.warnings.tolist() == [len(result["warnings"])] * 5
     assert table.rmse_Fy.to_numpy() == pytest.approx(result["fit"]["channels"]["Fy"]["rmse"])

@@ -22,7 +22,7 @@ with atheris.instrument_imports(include=["mffit", "tir"]):
     from mffit.pipeline.exporting import write_tydex
     from mffit.recordings.guess import guesses
     from mffit.sweeps import formats
-    from tir.check import check
+    from tir.checking import check
     from tir.errors import TirError
 
 SAMPLE = Path(__file__).parents[2] / "samples" / "front-120-70"

@@ -30,11 +30,11 @@ def conditions() -> list[list[float]]:
     ).T.tolist()  # fmt: skip
 
 
-def test_without_casadi_it_says_what_to_install(monkeypatch, tyre):
+def test_without_casadi_the_message_names_the_package(monkeypatch, tyre):
     import sys
 
     monkeypatch.setitem(sys.modules, "casadi", None)
-    with pytest.raises(tir.TirError, match=r"pip install mffit\[casadi\]"):
+    with pytest.raises(tir.TirError, match="pip install casadi"):
         tir.casadi_function(tyre)
 
 

@@ -77,12 +77,12 @@ def test_a_change_moves_the_characters_of_its_value_only(tmp_path, change, old, 
     assert before == old or name in ("PKY1", "FNOMIN")
 
 
-def test_a_value_set_to_what_it_was_changes_nothing(tmp_path):
+def test_setting_a_value_to_itself_changes_nothing(tmp_path):
     tyre = read_bytes(tmp_path, WILD.encode())
     assert written(tyre.replace(PDY1=1.27), tmp_path) == WILD.encode()
 
 
-def test_defaults_are_no_content(tmp_path):
+def test_defaults_are_not_written_into_a_file_that_lacks_them(tmp_path):
     """For MF-Tyre a missing key means another thing than the default of the table."""
     text = re.sub(r"(?m)^(QSY8|MASS|Q_CAM1|PECP2) .*\n", "", TEXT)
     tyre = read_bytes(tmp_path, text.encode())
@@ -110,7 +110,7 @@ def test_keys_that_the_file_lacks_join_their_section_in_the_order_of_the_table(t
     assert set(text.splitlines()) <= set(again.text().splitlines())
 
 
-def test_what_is_known_of_a_value_stands_behind_it(tmp_path):
+def test_the_origin_of_a_value_is_its_comment(tmp_path):
     tyre = read_bytes(tmp_path, WILD.encode())
     noted = tyre.replace(PKY1=-13.0).annotate(
         status={"PKY1": "fitted +- 0.1"},
@@ -143,7 +143,7 @@ def test_changed_values_are_written_in_the_files_units(name, value):
     assert again["PKY1"] == tyre["PKY1"]
 
 
-def test_what_cannot_be_written_is_refused_before_anything_is(tmp_path):
+def test_a_value_that_cannot_be_written_is_refused_before_writing(tmp_path):
     tyre = read_bytes(tmp_path, WILD.encode())
     with pytest.raises(tir.TirError, match="PKY1"):
         tyre.replace(PKY1=float("nan")).write(tmp_path / "new.tir")

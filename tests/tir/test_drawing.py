@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import builtins
 import pydoc
+from importlib.util import find_spec
 from pathlib import Path
 
 import numpy as np
@@ -11,6 +12,7 @@ import pytest
 
 import tir
 
+needs_matplotlib = pytest.mark.skipif(find_spec("matplotlib") is None, reason="matplotlib is not installed")
 FILE = Path(__file__).parent / "vectors" / "moto_front.tir"
 
 
@@ -26,6 +28,7 @@ def without_matplotlib(monkeypatch):
     monkeypatch.setattr(builtins, "__import__", refused)
 
 
+@needs_matplotlib
 def test_the_lines_are_the_forces_at_the_loads_asked_for():
     tyre = tir.read(FILE)
     figure = tyre.plot(loads=[1000.0, 2000.0])
@@ -39,11 +42,13 @@ def test_the_lines_are_the_forces_at_the_loads_asked_for():
     assert {text.get_text() for text in figure.legends[0].get_texts()} == {"1000 N", "2000 N"}
 
 
+@needs_matplotlib
 def test_turn_slip_is_drawn_when_asked_for():
     plain, spun = (tir.read(FILE).plot(turn_slip=on).axes[3].lines[0].get_ydata() for on in (False, True))
     assert np.max(np.abs(plain - spun)) > 10.0
 
 
+@needs_matplotlib
 def test_a_notebook_shows_a_small_picture():
     shown = tir.read(FILE)._repr_html_()
     assert shown.count("data:image/png;base64,") == 1
@@ -57,7 +62,7 @@ def test_a_tyre_of_which_nothing_can_be_computed_is_text_in_a_notebook():
     assert "<img" not in shown
 
 
-def test_what_a_file_says_is_text_in_a_notebook():
+def test_text_of_a_file_is_escaped_in_a_notebook():
     tyre = tir.read(FILE).annotate(measured={"<img src=x>": tir.Quantity(1.0, 0.1, "<b>")})
     assert "<img src=x>" not in tyre._repr_html_()
 

@@ -11,12 +11,11 @@ import numpy as np
 import pytest
 
 import tir
-from tir.check import check
+from tir.checking import check
 from tir.equations import aligning, lateral, normalise
 from tir.parameters import TABLE
 
-ROOT = Path(__file__).parents[2]
-MODULES = sorted((ROOT / "tir" / "equations").glob("*.py"))
+MODULES = sorted((Path(tir.__file__).parent / "equations").glob("*.py"))
 TWICE = {"QCZ1": "the shape of the trail and of its curvature's side"} | dict.fromkeys(
     ("QDZ8", "QDZ9", "QDZ10", "QDZ11"), "residual torque, and its stiffness without pressure"
 )
@@ -41,8 +40,7 @@ def test_only_elementary_functions_are_called(path):
 
 def test_every_coefficient_enters_one_formula_only():
     """A formula written again somewhere would use its coefficients again."""
-    paths = [*MODULES, ROOT / "mffit" / "fit" / "constraints.py"]
-    used = Counter(n.attr for path in paths for n in ast.walk(tree(path)) if isinstance(n, ast.Attribute))
+    used = Counter(n.attr for path in MODULES for n in ast.walk(tree(path)) if isinstance(n, ast.Attribute))
     coefficients = [r.name for r in TABLE if r.section.endswith("COEFFICIENTS") and not r.scaling]
     assert {name for name in coefficients if used[name] != 1} == set(TWICE)
 

@@ -14,7 +14,7 @@ TYRE = tir.read(Path(__file__).parent / "vectors" / "moto_front.tir")
 INSIDE = {"kappa": 0.01, "alpha": 0.03, "gamma": 0.1, "pressure": float(TYRE["NOMPRES"])}
 
 
-def test_unless_told_otherwise_nothing_is_limited_and_nothing_spins():
+def test_limits_and_turn_slip_are_off_by_default():
     """Angles as they are, path curvature ignored, at LONGVL and INFLPRES."""
     beyond = 3.0 * float(TYRE["ALPMAX"])
     plain = evaluate(TYRE.p, 1800.0, beyond, 0.2)[0]

@@ -101,14 +101,14 @@ def test_the_code_allocates_nothing_and_keeps_nothing():
 @pytest.mark.parametrize(
     ("name", "words"),
     [
-        ("2front", "no name in C"),
-        ("a b", "no name in C"),
-        ("", "no name in C"),
+        ("2front", "not a valid name in C"),
+        ("a b", "not a valid name in C"),
+        ("", "not a valid name in C"),
         ("double", "tyre_double"),
         ("Math", "tyre_Math"),
     ],
 )
-def test_a_name_that_is_none_in_c_is_refused(name, words):
+def test_a_name_that_is_invalid_in_c_is_refused(name, words):
     with pytest.raises(tir.TirError, match=words):
         tir.export_c(tir.Tyre.from_values({}), name=name)
 
@@ -123,7 +123,7 @@ def test_numbers_beyond_all_bounds_are_written_as_c_has_them(tmp_path):
     assert function(2000.0, 0.03, 0.1, 0.01, -0.2, 10.0, 2.2e5).sigma_y == float("inf")
 
 
-def test_values_of_which_no_code_can_be_made_are_named():
+def test_values_that_code_cannot_hold_are_named():
     with pytest.raises(tir.TirError, match="LMUY is 0"):
         tir.export_c(tir.Tyre.from_values({"LMUY": 0.0}))
     with pytest.raises(tir.TirError, match="PKY1 is nan"):

@@ -23,7 +23,8 @@ from tir.parameters import TABLE
 
 VECTORS = Path(__file__).parent / "vectors"
 ALL_SWITCHES = [Switches(*on) for on in itertools.product((False, True), repeat=3)]
-TOLERANCE = 1e-12
+TOLERANCE = 1e-12 if np.lib.NumpyVersion(np.__version__) >= "2.0.0" else 3e-12
+"""numpy 1 computes tan and arctan three units in the last place off, numpy 2 one; the edges magnify that."""
 """Of the value, or of 1e-3 of the channel's largest: hundreds of roundings in another order."""
 needs_llvm = pytest.mark.skipif(not kernel.available(), reason="llvmlite is not installed")
 
@@ -246,7 +247,7 @@ def test_the_compiled_loop_takes_few_conditions_other_strides_and_other_kinds(ty
         ("batch", (np.ones(16)[::2],) * 7 + (np.ones((6, 8)), 0, 8)),
     ],
 )
-def test_machine_code_refuses_what_it_was_not_made_for(tyre, kind, arguments):
+def test_machine_code_refuses_wrong_arguments(tyre, kind, arguments):
     run = kernel.load(kind, Switches()).run_of(calls._values(tyre))
     with pytest.raises((TypeError, ValueError, BufferError)):
         run(*arguments)
@@ -272,7 +273,7 @@ def test_a_part_shorter_than_a_vector_stays_within_its_arrays(tyre):
 
 
 @pytest.mark.parametrize("given", ["", "relative/cache"])
-def test_a_cache_folder_that_says_nothing_is_the_usual_one(monkeypatch, given):
+def test_an_unusable_cache_variable_gives_the_usual_folder(monkeypatch, given):
     monkeypatch.setattr(sys, "platform", "linux")
     monkeypatch.setenv("XDG_CACHE_HOME", given)
     assert kernel._user_cache() == Path.home() / ".cache" / "tir"
@@ -315,10 +316,10 @@ def test_damaged_machine_code_in_the_cache_is_made_again(tyre, tmp_path, monkeyp
         assert kept.read_bytes() == whole
 
 
-def test_a_tyre_without_llvm_is_told_what_to_install(monkeypatch):
+def test_without_llvm_the_message_names_the_package(monkeypatch):
     monkeypatch.setattr(kernel, "available", lambda: False)
     kernel.load.cache_clear()
-    with pytest.raises(tir.TirError, match=r"pip install mffit\[fast\]"):
+    with pytest.raises(tir.TirError, match="pip install llvmlite"):
         tir.compile_kernels()
 
 
@@ -356,7 +357,7 @@ def test_a_replay_takes_its_places_again(tyre):
     assert program.room < 0.6 * (len(program.operations) + len(program.symbols))
 
 
-def test_a_called_tyre_goes_to_other_processes(tyre):
+def test_a_called_tyre_can_be_pickled(tyre):
     import pickle
 
     noted = tyre.annotate(measured={"C": tir.Quantity(1.0, 0.1, "N")})
@@ -381,6 +382,7 @@ def test_importing_tir_imports_no_compiler():
     assert found.stdout.strip() == "[]"
 
 
+@needs_llvm
 def test_the_cache_notices_every_edit(tmp_path, monkeypatch):
     import shutil
 
@@ -406,7 +408,8 @@ def test_every_module_that_computes_is_in_the_key_of_the_cache():
         for name in kernel.SOURCES
         for f in ([package / name] if "." in name else (package / name).glob("*.py"))
     ]
-    harmless = {"tir.errors", "tir.parameters", "tir.tyre"}  # words, the table that is covered, a type
+    # words, the table that is covered, types
+    harmless = {"tir.errors", "tir.parameters", "tir.tyre", "tir.constant"}
     for path in covered:
         if path.suffix != ".py":
             continue
@@ -442,7 +445,7 @@ class TestGraph:
         assert constant.level == PARAMETER
         assert rest is x * y
 
-    def test_an_operation_that_no_language_knows_is_refused(self, graph):
+    def test_an_unsupported_operation_is_refused(self, graph):
         with pytest.raises(TypeError):
             np.sinh(graph.symbol("x", INPUT))
 

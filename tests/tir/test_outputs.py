@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
@@ -14,7 +15,7 @@ from tir.errors import TirError
 from tir.evaluate import evaluate, turned_on_rim
 from tir.outputs import outputs_of
 
-SAMPLE = "samples/front-120-70/true.tir"
+SAMPLE = Path(__file__).parent / "vectors" / "moto_front.tir"
 FORCES = Forces._fields
 
 
@@ -54,7 +55,7 @@ def test_one_condition_in_floats(p):
     same(outputs_of(FORCES, p, one, turn_slip=True), evaluate(p, **one, turn_slip=True)[0])
 
 
-def test_what_is_not_given_is_what_the_equations_take(p):
+def test_missing_inputs_take_the_defaults_of_the_equations(p):
     load = {"Fz": np.array([700.0, 1400.0])}
     same(outputs_of(("Fy", "Mz"), p, load, turn_slip=True), evaluate(p, **load, turn_slip=True)[0][1::4])
     assert outputs_of(("Re",), p, load)[0] == pytest.approx(evaluate(p, **load)[1].Re)
@@ -105,14 +106,14 @@ def test_programs_that_come_and_go_leave_derivatives_as_they_are(p):
 @pytest.mark.parametrize(
     ("names", "inputs", "said"),
     [
-        (("Fy",), {"fz": 4e3}, "fz is no input"),
-        (("Fy",), {"Fz": 4e3, "p": 1e5}, "p is no input"),
-        (("Fq",), {"Fz": 4e3}, "Fq is no output"),
+        (("Fy",), {"fz": 4e3}, "fz is not an input"),
+        (("Fy",), {"Fz": 4e3, "p": 1e5}, "p is not an input"),
+        (("Fq",), {"Fz": 4e3}, "Fq is not an output"),
         ("Fy", {"Fz": 4e3}, "is a text"),
         (("Fy",), {"alpha": 0.1}, "load Fz"),
     ],
 )
-def test_names_that_are_none_are_refused(names, inputs, said):
+def test_unknown_names_are_refused(names, inputs, said):
     tyre = tir.Tyre.from_values({"FNOMIN": 4e3, "UNLOADED_RADIUS": 0.3})
     with pytest.raises(tir.TirError, match=said):
         outputs_of(names, tyre.p, inputs)

@@ -79,7 +79,7 @@ def test_rolling_backwards_flips_slip_and_ply_steer_only(tyre):
 
 
 @pytest.mark.parametrize("condition", [{}, {"limits": True}, {"phi_t": -0.5}, {"Vx": -8.0}])
-def test_a_load_that_is_no_number_gives_no_number(tyre, condition):
+def test_a_load_of_nan_gives_nan(tyre, condition):
     forces = tyre(np.array([np.nan, 2000.0, 0.0]), 0.05, 0.1, 0.01, **condition)
     alone = tyre(float("nan"), np.array([0.05, 0.02]), 0.1, 0.01, **condition)
     one = tyre(float("nan"), 0.05, 0.1, 0.01, **condition)

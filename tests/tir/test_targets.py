@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 import tir
-from tir.check import check
+from tir.checking import check
 from tir.document import parse_document
 from tir.parameters import SECTIONS, TABLE
 from tir.properties import interpret
@@ -114,7 +114,7 @@ def test_reading_by_position(tyre):
         assert len(section(name)) == count, name
 
 
-def test_adams_is_told_in_the_words_of_62_only(tyre):
+def test_a_file_for_adams_names_the_model_as_62_does(tyre):
     keys = {line.key: line.value for line in parse_document(tyre.text("adams")).entries}
     assert keys["FUNCTION_NAME"].startswith("'TNO_DelftTyre")
     assert keys["N_TIRE_STATES"] == "5"

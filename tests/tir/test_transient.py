@@ -63,7 +63,7 @@ def test_at_standstill_the_contact_is_a_spring_of_the_files_stiffness():
     assert (forces.Fx - rest.Fx) / small == pytest.approx(longitudinal, rel=1e-3)
 
 
-def test_pushed_for_an_hour_at_standstill_it_slides_and_comes_back():
+def test_pushed_for_an_hour_at_standstill_the_contact_slides_and_springs_back():
     contact, forces = step(TYRE, Contact(), 3600.0, Fz, 0.0, Vsy=1.0)
     assert -1.2 * TYRE.state(Fz).mu_y * Fz < forces.Fy < -0.7 * TYRE.state(Fz).mu_y * Fz
     reach = contact.v
@@ -156,7 +156,7 @@ def test_an_endless_step_ends_in_the_steady_state(Vx):
         assert found == pytest.approx(right, rel=1e-9, abs=1e-6)
 
 
-def test_an_endless_step_at_standstill_keeps_what_nobody_moves_and_slides_where_pushed():
+def test_an_endless_step_at_standstill_slides_only_where_pushed():
     kept, _ = step(TYRE, Contact(1e-4, -1e-4), np.inf, Fz, 0.0)
     assert kept == (1e-4, -1e-4)
     far = step(TYRE, Contact(), 1e3, Fz, 0.0, Vsy=0.1)[0]
@@ -174,7 +174,7 @@ def test_a_tyre_without_cornering_stiffness_has_no_deflection_sideways(Vx, dampi
     assert np.all(np.isfinite(forces))
 
 
-def test_a_load_that_is_no_number_is_not_taken_for_none():
+def test_a_load_of_nan_is_not_taken_for_no_load():
     contact, forces = step(TYRE, Contact(0.01, 0.01), 0.01, np.array([np.nan, Fz, 0.0]), 10.0)
     assert np.isnan(contact.u[0])
     assert np.isnan(contact.v[0])

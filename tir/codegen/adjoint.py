@@ -12,10 +12,10 @@ SMOOTH = {name: PARTIALS[ufunc] for name, ufunc in UFUNCS.items() if ufunc in PA
 
 
 def derivatives(outputs: Mapping[str, Any], wrt: Collection[str]) -> dict[tuple[str, str], Any]:
-    """Each output's derivative by each named symbol: a node, or a number; what is missing is zero.
+    """The derivative of each output by each named symbol: a node or a number; missing pairs are zero.
 
-    Reverse accumulation over the graph: every output belongs to one operating condition, so that nothing is summed over
-    conditions and a coefficient's column costs what its own operations cost.
+    Reverse accumulation over the graph: every output belongs to one operating condition, so nothing is summed over
+    conditions, and the column of a coefficient costs only its own operations.
     """
     out: dict[tuple[str, str], Any] = {}
     for name, result in outputs.items():
@@ -45,7 +45,7 @@ def _by_symbol(result: Node, wrt: Collection[str]) -> dict[str, Any]:
 
 
 def _moved(nodes: list[Node], wrt: Collection[str]) -> list[bool]:
-    """Whether each node follows from a symbol that is asked for."""
+    """Whether each node depends on a symbol in ``wrt``."""
     moves: list[bool] = []
     for node in nodes:
         by_arguments = any(isinstance(a, Node) and moves[a.number] for a in node.arguments)
@@ -54,7 +54,7 @@ def _moved(nodes: list[Node], wrt: Collection[str]) -> list[bool]:
 
 
 def _partials(node: Node) -> tuple[Any, ...]:
-    """Partial derivatives of an operation by its arguments; a comparison has none."""
+    """Partial derivatives of an operation by its arguments; zeros for a comparison."""
     if node.operation == "where":
         return 0.0, *of_choice(node.arguments[0])
     if node.operation not in SMOOTH:

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from tir.tyre import Tyre
 
 STATES = ("K_ya", "K_xk", "sigma_x", "sigma_y", "Re", "omega", "trail")
-"""What a simulation needs beside the forces."""
+"""Outputs that a simulation needs in addition to the forces."""
 INPUT_TEXTS = {
     "Fz": "vertical load [N]",
     "alpha": "sideslip angle atan(Vsy/Vx) [rad]",
@@ -43,7 +43,7 @@ HEADERS = {
     "math", "setjmp", "signal", "stdalign", "stdarg", "stdatomic", "stdbool", "stddef", "stdint", "stdio",
     "stdlib", "stdnoreturn", "string", "tgmath", "threads", "time", "uchar", "wchar", "wctype",
 }  # fmt: skip
-"""Of the standard library: a file of the same name beside the source would be included in its place."""
+"""Headers of the standard library: a file of the same name beside the source would be included instead."""
 C = Dialect(
     {
         **COMMON,
@@ -77,7 +77,7 @@ def export_c(
     Parameters
     ----------
     tyre : its values become constants of the code
-    name : of the files, and in front of the names inside
+    name : name of the files, and prefix of the names inside
     turn_slip, star, limits : as in a call of the tyre
 
     Returns
@@ -89,14 +89,17 @@ def export_c(
     Raises
     ------
     TirError
-        If the name is none in C or taken there, or a value is no finite number or a zero by which the equations divide.
+        If the name is invalid or reserved in C, a value is not finite, or a value by which the equations divide is 0.
     """
     _refuse_name(name)
     refuse_zero_divisors(tyre.p)
     values = {key: float(tyre[key]) for key in NUMBERS}
     broken = [key for key, value in values.items() if value - value != 0.0]
     if broken:
-        raise TirError(f"{broken[0]} is {values[broken[0]]}, and no code can be made of it", name=broken[0])
+        raise TirError(
+            f"{broken[0]} is {values[broken[0]]}, which C code cannot hold; give a finite number",
+            name=broken[0],
+        )
     switches = Switches(turn_slip, star, limits)
     forces = trace(switches, Forces._fields, values)
     state = trace(switches, STATES, values)
@@ -105,13 +108,15 @@ def export_c(
 
 def _refuse_name(name: str) -> None:
     if not re.fullmatch(r"[A-Za-z][A-Za-z0-9_]*", name):
-        raise TirError(f"{name!r} is no name in C: use letters, digits and underscores, a letter first")
+        raise TirError(
+            f"{name!r} is not a valid name in C: use letters, digits and underscores, starting with a letter"
+        )
     if taken(name):
-        raise TirError(f"{name!r} is a word or a header of C itself: use another name, as tyre_{name}")
+        raise TirError(f"{name!r} is a keyword or a header of C: use another name, for example tyre_{name}")
 
 
 def taken(name: str) -> bool:
-    """Whether C or its library have the name; in a file system without capitals Math.h stands in the place of math.h."""
+    """Whether C or its library uses the name. Some file systems ignore case, so Math.h would replace math.h."""
     return name in WORDS or name.lower() in HEADERS
 
 

@@ -1,4 +1,4 @@
-"""A tyre as a function of CasADi, with its exact derivatives, from the same equations. Imports casadi when asked."""
+"""A tyre as a function of CasADi, with its exact derivatives, from the same equations. Imports casadi on first use."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ OPERATORS = {
     "greater_equal": operator.ge,
 }  # fmt: skip
 NAMES = {"absolute": "fabs", "where": "if_else", "both": "logic_and"}
-"""CasADi's functions that are called otherwise than here."""
+"""Functions that have another name in CasADi."""
 
 
 def casadi_function(
@@ -37,19 +37,19 @@ def casadi_function(
     Parameters
     ----------
     tyre : its values become constants
-    name : of the function
+    name : name of the function
     outputs : fields of Forces and State, one output each, in this order
     turn_slip, star, limits : as in a call of the tyre
 
     Raises
     ------
     TirError
-        If casadi is not installed (``pip install mffit[casadi]``), or a value is a zero by which the equations divide.
+        If casadi is not installed (``pip install casadi``), or a value by which the equations divide is 0.
     """
     try:
         import casadi
     except ImportError:
-        raise TirError("this needs casadi, which is not installed: pip install mffit[casadi]") from None
+        raise TirError("casadi_function needs casadi, which is not installed: pip install casadi") from None
     refuse_zero_divisors(tyre.p)
     program = trace(Switches(turn_slip, star, limits), outputs, {key: float(tyre[key]) for key in NUMBERS})
     inputs = {key: casadi.SX.sym(key) for key in INPUTS}
@@ -66,5 +66,5 @@ def casadi_function(
         operation: Any = OPERATORS[word] if word in OPERATORS else getattr(casadi, word)
         known[node.number] = operation(*map(of, node.arguments))
     results = [casadi.SX(of(x)) for x in program.outputs.values()]
-    options = {"allow_duplicate_io_names": True}  # Fz goes in, and comes out inside the limits
+    options = {"allow_duplicate_io_names": True}  # Fz is an input, and an output within the limits
     return casadi.Function(name, [*inputs.values()], results, [*inputs], [*outputs], options)

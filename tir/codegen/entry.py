@@ -1,7 +1,7 @@
-"""The model as machine code that Python calls like one of its own built-in functions. Imports llvmlite, so late.
+"""The model as machine code that Python calls like its own built-in functions. Imports llvmlite, so import it late.
 
-A function is bound to the constants of a tyre, which it gets as ``self``: the doubles of a ``bytes`` object. What is handed
-over follows CPython's C interface, METH_FASTCALL: no converting layer stands between the call and the arithmetic.
+A function is bound to the constants of a tyre, which are its ``self``: the doubles of a ``bytes`` object. Arguments
+follow CPython's C interface METH_FASTCALL, without a converting layer between the call and the arithmetic.
 """
 
 from __future__ import annotations
@@ -13,15 +13,15 @@ from typing import Any
 from llvmlite import ir
 
 from tir.codegen import vector_math
+from tir.codegen.constants import VECTOR_LANES
 from tir.codegen.graph import Node
 from tir.codegen.instructions import DOUBLE, INTEGER, SHORT, Number, in_every_lane, repeated, select, sqrt
-from tir.codegen.kernel import LANES
 from tir.codegen.program import INPUTS, Program
 from tir.codegen.source import FUNCTIONS
 
 POINTER = ir.IntType(8).as_pointer()
 PAIR = ir.VectorType(DOUBLE, 2)
-"""What a single condition is computed in, twice the same: choices between numbers are a fifth faster in vectors."""
+"""A scalar call computes the same condition twice in a vector: choices between numbers are a fifth faster there."""
 BUFFER = ir.ArrayType(INTEGER, 10)
 """Python's ``Py_buffer``: the address is its first word, the length in bytes its third."""
 API = {
@@ -40,7 +40,7 @@ API = {
     "PyEval_RestoreThread": (ir.VoidType(), [POINTER]),
     "Py_DecRef": (ir.VoidType(), [POINTER]),
 }  # fmt: skip
-"""What is used of Python's C interface."""
+"""Functions of Python's C interface that the machine code calls."""
 OPERATIONS: dict[str, Callable[..., Any]] = {
     "add": operator.add,
     "subtract": operator.sub,
@@ -60,11 +60,11 @@ OPERATIONS: dict[str, Callable[..., Any]] = {
 
 
 def module(kind: str, program: Program) -> str:
-    """The function "one" or "batch" in the words of LLVM.
+    """The function "one" or "batch" as LLVM assembly.
 
     ``one(*INPUTS)`` takes floats and returns the six forces as floats. ``batch(*INPUTS, forces, first, last)`` takes buffers of
     doubles, each of a single number or of one per condition, and writes conditions ``first`` to ``last`` of the buffer
-    ``forces`` (6, n); n is LANES or more. It lets other threads run.
+    ``forces`` (6, n); n is VECTOR_LANES or more. It lets other threads run.
     """
     text = ir.Module(name=kind)
     signature = ir.FunctionType(POINTER, [POINTER, POINTER.as_pointer(), INTEGER])
@@ -74,7 +74,7 @@ def module(kind: str, program: Program) -> str:
 
 
 class _Caller:
-    """Calls of Python's C interface, and the arguments of the function that is written."""
+    """Writes calls of Python's C interface, and reads the arguments of the function."""
 
     def __init__(self, builder: ir.IRBuilder):
         self.builder = builder
@@ -93,13 +93,13 @@ class _Caller:
         return self.builder.load(self.builder.gep(self.arguments, [ir.Constant(INTEGER, i)]))
 
     def leave_if(self, failed: ir.Value, *, before: Callable[[], object] = lambda: None) -> None:
-        """Return to Python, where an error is set, if one was found."""
+        """Return to Python with the error that is set, if ``failed``."""
         with self.builder.if_then(failed, likely=False):
             before()
             self.builder.ret(ir.Constant(POINTER, None))
 
     def expect(self, count: int) -> None:
-        """Refuse another number of arguments."""
+        """Set an error and return unless there are ``count`` arguments."""
         wrong = self.builder.icmp_signed("!=", self.count, ir.Constant(INTEGER, count))
         self.leave_if(wrong, before=lambda: self.call("PyErr_BadArgument"))
 
@@ -138,7 +138,7 @@ def _batch(python: _Caller, program: Program) -> None:
 
     def release() -> None:
         for buffer in buffers:
-            python.call("PyBuffer_Release", buffer)  # one that was never taken is left alone
+            python.call("PyBuffer_Release", buffer)  # releasing an empty buffer has no effect
 
     for i, buffer in enumerate(buffers):
         writable = ir.Constant(SHORT, int(i == count))
@@ -147,7 +147,7 @@ def _batch(python: _Caller, program: Program) -> None:
     first, last = (python.call("PyLong_AsSsize_t", python.argument(count + i)) for i in (1, 2))
     python.leave_if(python.failed(), before=release)
 
-    vector = ir.VectorType(DOUBLE, LANES)
+    vector = ir.VectorType(DOUBLE, VECTOR_LANES)
     inputs = {name: _input(builder, vector, view) for name, view in zip(INPUTS, views, strict=False)}
     forces, size = _address_and_size(builder, views[-1])
     stride = builder.udiv(size, ir.Constant(INTEGER, 8 * len(program.outputs)))
@@ -166,7 +166,7 @@ def _address_and_size(builder: ir.IRBuilder, view: ir.Value) -> tuple[ir.Value, 
 
 
 def _input(builder: ir.IRBuilder, vector: ir.VectorType, view: ir.Value) -> tuple[ir.Value, ir.Value]:
-    """Address of an input and its step from condition to condition: a single number is repeated in a vector of its own."""
+    """Address of an input and its step between conditions; a scalar is repeated in a vector of its own."""
     address, size = _address_and_size(builder, view)
     repeated = builder.alloca(vector)
     builder.store(in_every_lane(builder, vector, builder.load(address)), repeated)
@@ -186,12 +186,12 @@ def _loop(
     forces: tuple[ir.Value, ir.Value],
     span: tuple[ir.Value, ir.Value],
 ) -> None:
-    """Vector after vector; the last one goes back as far as it must to be whole."""
+    """Loop over vectors; the last one overlaps the one before, so that it is full."""
     address, stride = forces
     first, last = span
     before = builder.block
     loop, done = builder.append_basic_block("conditions"), builder.append_basic_block("done")
-    lanes = ir.Constant(INTEGER, LANES)
+    lanes = ir.Constant(INTEGER, VECTOR_LANES)
     builder.cbranch(builder.icmp_signed("<", first, last), loop, done)
     builder.position_at_end(loop)
     at = builder.phi(INTEGER)
@@ -222,7 +222,7 @@ def _as_vector(builder: ir.IRBuilder, vector: ir.VectorType, address: ir.Value, 
 def _computed(
     builder: ir.IRBuilder, program: Program, constants: ir.Value, inputs: Mapping[str, ir.Value]
 ) -> Sequence[ir.Value]:
-    """The program's outputs, of as many conditions as the inputs have lanes."""
+    """The outputs of the program, one condition per lane of the inputs."""
     type_ = next(iter(inputs.values())).type
     known: dict[int, Any] = {}
 

@@ -1,4 +1,4 @@
-"""Numbers that note what is done to them, each operation once: the equations as a graph."""
+"""Numbers that record the operations applied to them, each once: the equations as a graph."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ class Node(np.lib.mixins.NDArrayOperatorsMixin):
 
     @property
     def real(self) -> Node:
-        """Itself: only real numbers are noted."""
+        """Itself, because only real numbers are recorded."""
         return self
 
     def __array_ufunc__(self, ufunc: Any, method: str, *inputs: Any, **kwargs: Any) -> Any:
@@ -47,18 +47,18 @@ class Node(np.lib.mixins.NDArrayOperatorsMixin):
 
 
 class Graph:
-    """Every operation of a run, equal ones once, in an order in which each comes after its arguments."""
+    """Every operation of a run, equal ones once, each after its arguments."""
 
     def __init__(self) -> None:
         self.nodes: list[Node] = []
         self._known: dict[Any, Node] = {}
 
     def symbol(self, name: str, level: int) -> Node:
-        """A number that is given from outside: a parameter or an input."""
+        """A node for a parameter or an input."""
         return self._node("symbol", (), level, name)
 
     def apply(self, operation: str, *arguments: Any) -> Any:
-        """The result of an operation: a plain number if it can be had now, else a node, an old one if there is one."""
+        """The result of an operation: a plain number if all arguments are, else a node, reused if the operation exists."""
         arguments = tuple(a if isinstance(a, Node) else _number(a) for a in arguments)
         if not any(isinstance(a, Node) for a in arguments):
             return _compute(operation, arguments)
@@ -131,7 +131,7 @@ def _multiply(graph: Graph, a: Any, b: Any) -> Any:
 
 
 def _with_factors_in_front(graph: Graph, a: Any, b: Any) -> Any:
-    """Factors of the tyre are multiplied with each other first, so that this is done once per tyre."""
+    """A product with the factors of the tyre first, so that they are multiplied once per tyre."""
     if level(a) < INPUT and level(b) == INPUT and _made_by(b, "multiply") and level(b.arguments[0]) < INPUT:
         return graph.apply("multiply", graph.apply("multiply", a, b.arguments[0]), b.arguments[1])
     if level(a) == INPUT:
@@ -219,4 +219,4 @@ RULES: dict[str, Callable[..., Any]] = {
     "where": _where,
     "both": _both,
 }
-"""What is simpler and the same to rounding, also of numbers that are infinite or none; None where nothing is."""
+"""Rules for a simpler equal expression, equal to rounding for infinity and NaN too; None if there is none."""

@@ -12,7 +12,7 @@ MAY_BE_ONE = ("contract",)
 
 
 class Number:
-    """What an instruction gives: a vector of float64, of integers of 64 bits or of truth values."""
+    """The result of an instruction: a vector of float64, of 64-bit integers or of truth values."""
 
     __slots__ = ("builder", "value")
 
@@ -20,7 +20,7 @@ class Number:
         self.builder, self.value = builder, value
 
     def like(self, x: Any) -> ir.Value:
-        """An operand beside this number: another one's value, or a constant in each lane."""
+        """The other operand of an operation: the value of a Number, or a constant in every lane."""
         return x.value if isinstance(x, Number) else repeated(self.value.type, x)
 
     def _given(self, instruction: Any, *operands: Any, **options: Any) -> Number:
@@ -105,7 +105,7 @@ def repeated(type_: ir.VectorType, x: Any) -> ir.Constant:
 
 
 def select(chosen: Any, a: Any, b: Any) -> Any:
-    """a where chosen, else b; both are computed, so that nothing branches."""
+    """a where chosen, else b; both are computed, so there is no branch."""
     if isinstance(chosen, bool):
         return a if chosen else b
     type_ = ir.VectorType(DOUBLE, chosen.value.type.count)

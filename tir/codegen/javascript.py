@@ -1,4 +1,4 @@
-"""The model as JavaScript, for pages that evaluate tyres where there is no Python."""
+"""The model as JavaScript, for pages that evaluate tyres without Python."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from tir.codegen.source import COMMON, FUNCTIONS, Dialect, assignments
 from tir.equations.forces import Forces
 
 MATH = {"absolute": "abs", "arctan": "atan", "arccos": "acos", "power": "pow"}
-"""JavaScript's functions that are called otherwise than here."""
+"""Functions that have another name in JavaScript."""
 JAVASCRIPT = Dialect(
     {
         **COMMON,
@@ -30,7 +30,7 @@ def javascript(
     star: bool = False,
     limits: bool = False,
 ) -> str:
-    """The model, of any tyre, as one JavaScript expression.
+    """The model, for any tyre, as one JavaScript expression.
 
     Its value is a function of the tyre's parameters (an object by name) that returns a function of
     :data:`~tir.codegen.program.INPUTS` in this order (ISO-W, SI, radians), which returns an object of the outputs.

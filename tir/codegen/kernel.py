@@ -1,6 +1,6 @@
-"""The model as machine code, made with LLVM once per machine and kept in a folder of the user's cache.
+"""The model as machine code, compiled with LLVM once per machine and cached in a folder of the user.
 
-The name of the folder is a hash of everything that the machine code follows from.
+The name of the folder is a hash of everything that the machine code depends on.
 """
 
 from __future__ import annotations
@@ -17,29 +17,29 @@ from importlib.resources import files as resources
 from pathlib import Path
 from typing import Any, NamedTuple
 
+from tir.codegen.constants import VECTOR_LANES
 from tir.codegen.program import Switches, trace
 from tir.codegen.single import constants, preparation_of
 from tir.equations.forces import Forces
 from tir.errors import TirError
 
-SOURCES = ("equations", "codegen", "evaluate.py", "derivatives.py", "parameters.csv")
-"""What the machine code follows from."""
-LANES = 8
-"""Conditions that are computed together: as many as the widest common vector has doubles; narrower machines split them."""
+SOURCES = ("equations", "codegen", "constants.py", "evaluate.py", "derivatives.py", "parameters.csv")
+"""Files that the machine code depends on."""
+LANES = int(VECTOR_LANES)
 KINDS = ("batch", "one")
 FASTCALL = 0x80
 """CPython's METH_FASTCALL."""
 
 
 class Kernel(NamedTuple):
-    """The model for some switches as machine code."""
+    """The model as machine code, for one combination of switches."""
 
-    definition: Any  #: what Python knows of the built-in function
-    keep: Any  #: what the machine code lives in
+    definition: Any  #: CPython's record of the built-in function
+    keep: Any  #: owner of the memory of the machine code
     prepare: Callable[..., tuple[float, ...]]  #: see :func:`tir.codegen.source.preparation`
 
     def run_of(self, values: Mapping[str, float]) -> Callable[..., Any]:
-        """The function of :func:`tir.codegen.entry.module`, bound to a tyre."""
+        """The function of :func:`tir.codegen.entry.module`, bound to the values of a tyre."""
         bind = ctypes.pythonapi.PyCFunction_NewEx
         bind.argtypes, bind.restype = (ctypes.c_void_p, ctypes.py_object, ctypes.py_object), ctypes.py_object
         numbers = array("d", constants(self.prepare, values)).tobytes()
@@ -60,7 +60,7 @@ class _Definition(ctypes.Structure):
 
 @cache
 def available() -> bool:
-    """Whether machine code can be made and called here: llvmlite, CPython, 64 bits."""
+    """Whether machine code can be compiled and called here: needs llvmlite, CPython and 64 bits."""
     return (
         sys.implementation.name == "cpython"
         and sys.maxsize > 2**32
@@ -69,8 +69,8 @@ def available() -> bool:
 
 
 def threads() -> int:
-    """How many threads a large call may use: OMP_NUM_THREADS, else the processors that this process may use."""
-    asked = os.environ.get("OMP_NUM_THREADS", "").partition(",")[0].strip()  # of the outermost level
+    """Number of threads for a large call: OMP_NUM_THREADS, else the processors available to this process."""
+    asked = os.environ.get("OMP_NUM_THREADS", "").partition(",")[0].strip()  # the outermost level only
     if asked.isascii() and asked.isdigit() and int(asked) > 0:
         return int(asked)
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
@@ -78,7 +78,7 @@ def threads() -> int:
 
 @cache
 def load(kind: str, switches: Switches) -> Kernel:
-    """The kernel "batch" or "one", from the cache or compiled, which takes a second or two.
+    """The kernel "batch" or "one", from the cache, or else compiled within a second or two.
 
     Raises
     ------
@@ -87,7 +87,7 @@ def load(kind: str, switches: Switches) -> Kernel:
     """
     if not available():
         raise TirError(
-            "compiled kernels need llvmlite, which is not installed or does not run here: pip install mffit[fast]"
+            "compiled kernels need llvmlite, which is not installed or not supported here: pip install llvmlite"
         )
     from llvmlite import binding
 
@@ -107,7 +107,7 @@ def load(kind: str, switches: Switches) -> Kernel:
 
 
 def _machine() -> Any:
-    """The processor that this process runs on, and the functions of Python that the machine code calls."""
+    """LLVM's description of this processor; also makes the functions of Python known that the machine code calls."""
     from llvmlite import binding
 
     from tir.codegen.entry import API
@@ -134,7 +134,7 @@ def _compiled(text: str, machine: Any) -> bytes:
 
 @cache
 def cache_folder() -> Path:
-    """Where the kernels of these very sources and this processor are kept; created if need be."""
+    """Folder of the kernels for exactly these sources and this processor; created if need be."""
     folder = _user_cache() / f"kernels-{_fingerprint()}"
     try:
         folder.mkdir(parents=True, exist_ok=True)
@@ -147,13 +147,13 @@ def cache_folder() -> Path:
 def _user_cache() -> Path:
     if sys.platform == "win32":
         return Path(os.environ.get("LOCALAPPDATA") or Path.home() / "AppData" / "Local") / "tir"
-    given = Path(os.environ.get("XDG_CACHE_HOME", ""))  # counts only if absolute, by its own specification
+    given = Path(os.environ.get("XDG_CACHE_HOME", ""))  # valid only if absolute, by its specification
     return (given if given.is_absolute() else Path.home() / ".cache") / "tir"
 
 
 def _fingerprint() -> str:
-    """Of the sources, of LLVM and of the processor."""
-    import hashlib  # not before it is needed: import tir is to be quick
+    """Hash of the sources, of LLVM and of the processor."""
+    import hashlib  # imported late, so that import tir is quick
 
     from llvmlite import __version__, binding
 
@@ -175,7 +175,7 @@ def _fingerprint() -> str:
 
 
 def _read(path: Path) -> bytes | None:
-    """What was kept; None if there is nothing, or nothing whole."""
+    """The cached machine code; None if there is none or it is damaged."""
     try:
         seal, code = path.read_bytes().split(b"\n", 1)
     except (OSError, ValueError):
@@ -184,7 +184,7 @@ def _read(path: Path) -> bytes | None:
 
 
 def _write(path: Path, code: bytes) -> None:
-    """Whole or not at all: several processes may write the same file at the same time."""
+    """Write the file in one step, because several processes may write it at the same time."""
     handle, temporary = tempfile.mkstemp(dir=path.parent, suffix=".part")
     with os.fdopen(handle, "wb") as stream:
         stream.write(_seal(code) + b"\n" + code)

@@ -1,4 +1,4 @@
-"""A run of the model noted down: what is computed once per tyre, what per operating condition."""
+"""A recorded run of the model: the operations per tyre and those per operating condition."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ NUMBERS = tuple(row.name for row in TABLE if row.kind == "number")
 
 
 class Switches(NamedTuple):
-    """What the model is asked for beside its inputs; each combination is a program of its own."""
+    """Options of the model; each combination has a program of its own."""
 
     turn_slip: bool = False
     star: bool = False
@@ -25,7 +25,7 @@ class Switches(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class Program:
-    """Operations in order, and what they give.
+    """Operations in order, and their results.
 
     ``per_tyre`` depends on parameters only, ``per_point`` on inputs too; ``constants`` are those of ``per_tyre``, parameters
     themselves included, that the rest uses.
@@ -38,7 +38,7 @@ class Program:
 
     @property
     def parameters(self) -> tuple[str, ...]:
-        """Names of the parameters that have a say in the outputs and no value in the program."""
+        """Names of the parameters that the outputs depend on and that have no value in the program."""
         return tuple(node.name for node in self.per_tyre if node.operation == "symbol")
 
 
@@ -70,7 +70,7 @@ def run_on_symbols(
 
 
 def needed(results: Collection[Any]) -> list[Node]:
-    """Every node that the results follow from, in order."""
+    """Every node that the results depend on, in order."""
     wanted = {x.number: x for x in results if isinstance(x, Node)}
     if not wanted:
         return []

@@ -1,4 +1,4 @@
-"""A program run again operation by operation, in numpy: no compiler, and only what the wanted outputs need."""
+"""A program repeated operation by operation in numpy: no compiler, and only the operations that the outputs need."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ IN_FLOATS = {
     "greater": operator.gt,
     "where": lambda chosen, a, b: a if chosen else b,
 }
-"""For what depends on the tyre alone and is a single number as a rule: an array function costs ten times as much on it."""
+"""Functions for what depends on the tyre alone, usually scalars: an array function takes ten times as long."""
 
 
 @cache
@@ -55,7 +55,7 @@ def _cos(x: Any) -> Any:
 
 
 def _tangent_in_vectors() -> bool:
-    """Whether numpy says so; older ones do not say."""
+    """Whether numpy reports this instruction set; False if it does not report any."""
     if not hasattr(np.lib, "introspect"):
         return False
     kinds = np.lib.introspect.opt_func_info(func_name="^tan$", signature="^d").get("tan", {}).values()
@@ -63,12 +63,12 @@ def _tangent_in_vectors() -> bool:
 
 
 class Replay(NamedTuple):
-    """Operations on a row of places: first the symbols', then the constants', then what the operations give.
+    """Operations on a list of places: the symbols first, then the constants, then the results of operations.
 
     A place is used again when nothing needs what is in it any more, so that large arrays stay in the processor's cache.
     """
 
-    symbols: tuple[str, ...]  #: names of the values that are asked for
+    symbols: tuple[str, ...]  #: names of the values that a run needs
     constants: tuple[Any, ...]
     room: int  #: number of places
     operations: tuple[tuple[Any, ...], ...]  #: (function, place of the result, places of the arguments)
@@ -76,7 +76,7 @@ class Replay(NamedTuple):
     results: tuple[int, ...]  #: places of the outputs
 
     def __call__(self, values: Mapping[str, Any]) -> list[Any]:
-        """The outputs from numbers by name, scalars or arrays that broadcast with each other."""
+        """The outputs, from numbers by name: scalars or arrays that broadcast."""
         given = [*(values[name] for name in self.symbols), *self.constants]
         given += [None] * (self.room - len(given))
         with np.errstate(all="ignore"):
@@ -105,11 +105,11 @@ def _run(operations: tuple[tuple[Any, ...], ...], at: list[Any]) -> list[Any]:
 def replay(
     switches: Switches, outputs: tuple[str, ...], wrt: tuple[str, ...] = (), still: tuple[str, ...] = ()
 ) -> Replay:
-    """The program that gives some forces or states and their derivatives.
+    """The program for some forces or states and their derivatives.
 
     Parameters
     ----------
-    switches : what the model is asked for
+    switches : options of the model
     outputs : fields of Forces and State
     wrt : parameters and inputs to differentiate by
     still : inputs that are zero
@@ -139,7 +139,7 @@ def _with_derivatives(
 ) -> tuple[dict[str, Any], Mapping[tuple[str, str], Any]]:
     """The outputs, and their derivatives by every parameter and input in the same graph, which is complete then.
 
-    What is not asked for later is not computed later.
+    A replay computes only the derivatives that it needs.
     """
     found = _on_symbols(switches, outputs, still)
     return found, derivatives(found, {*NUMBERS, *INPUTS} - set(still))
@@ -175,7 +175,7 @@ def _replay(results: Sequence[Any]) -> Replay:
 
 
 def _allocated(nodes: Sequence[Node], kept: frozenset[Any], place: dict[Any, int]) -> int:
-    """Give every operation's result a place that is free when it is made; the number of places in all."""
+    """Number of places, after giving the result of every operation a place that is free by then."""
     given, room = frozenset(place), len(place)
     last = {_key(a): i for i, node in enumerate(nodes) for a in node.arguments}
     free: list[int] = []
@@ -190,5 +190,5 @@ def _allocated(nodes: Sequence[Node], kept: frozenset[Any], place: dict[Any, int
 
 
 def _key(x: Any) -> Any:
-    """What an argument is known by; 0 and False are not the same."""
+    """Key of an argument; 0 and False have different keys."""
     return x.number if isinstance(x, Node) else (type(x), x)

@@ -32,7 +32,7 @@ def preparation_of(switches: Switches, outputs: tuple[str, ...]) -> Callable[...
 
 
 def constants(prepare: Callable[..., tuple[float, ...]], values: Mapping[str, float]) -> tuple[float, ...]:
-    """The constants of a tyre as Python floats; where Python's division by zero raises, as numpy has them."""
+    """The constants of a tyre as Python floats; where Python's arithmetic raises, NaN or infinity as in numpy."""
     try:
         return prepare(values, **MATH)
     except (ArithmeticError, ValueError):
@@ -44,12 +44,12 @@ def constants(prepare: Callable[..., tuple[float, ...]], values: Mapping[str, fl
 def run_of(values: Mapping[str, float], switches: Switches, outputs: tuple[str, ...]) -> Run:
     """The tyre as a function of :data:`~tir.codegen.program.INPUTS` in floats.
 
-    Raises what Python's arithmetic raises where numpy's gives NaN or infinity.
+    Raises ArithmeticError or ValueError where numpy gives NaN or infinity.
     """
     prepare, run = _compiled(switches, outputs)
     return with_defaults(run, constants(prepare, values))
 
 
 def with_defaults(run: FunctionType, last: tuple[float, ...]) -> Run:
-    """A function whose last arguments are given: as defaults, since Python reads nothing faster than an argument."""
+    """A copy of the function with values for its last arguments, as defaults: Python reads arguments fastest."""
     return FunctionType(run.__code__, run.__globals__, run.__name__, last)

@@ -1,4 +1,4 @@
-"""A program written down as assignments, in the words of a language."""
+"""A program as text: assignments in the syntax of a language."""
 
 from __future__ import annotations
 
@@ -8,28 +8,27 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
+from tir.codegen.constants import LONGEST_INLINED_EXPRESSION
 from tir.codegen.graph import Node
 from tir.codegen.program import INPUTS, Program
 
 FUNCTIONS = ("sqrt", "exp", "sin", "cos", "tan", "arctan", "arccos", "power")
 COMPARISONS = ("less", "less_equal", "greater", "greater_equal", "both")
-LONGEST = 400
-"""Characters of an expression that may stand inside another one."""
 
 
 @dataclass(frozen=True, slots=True)
 class Dialect:
-    """How a language writes an operation: a template by its name, with braces where the arguments go."""
+    """Syntax of a language: for each operation a template with braces for the arguments."""
 
     templates: Mapping[str, str]
     truth: tuple[str, str] = ("False", "True")
     number: str = "{} = {}"  #: assignment of a number
     flag: str = "{} = {}"  #: assignment of a truth value
-    beyond: tuple[str, str] = ("inf", "nan")  #: what is no finite number
-    inline: bool = True  #: whether what is used once stands where it is used
+    beyond: tuple[str, str] = ("inf", "nan")  #: infinity and NaN
+    inline: bool = True  #: whether an expression that is used once is written inside the one that uses it
 
     def literal(self, x: float | bool) -> str:
-        """A number as text; read back it is the same one."""
+        """A number as text that reads back as the same number."""
         if isinstance(x, bool):
             return self.truth[x]
         if math.isfinite(x):
@@ -51,7 +50,7 @@ COMMON = {
     **{name: f"{name}({{}})" for name in FUNCTIONS},
     "power": "power({}, {})",
 }
-"""What all languages write alike."""
+"""Templates that all languages share."""
 PYTHON = Dialect({**COMMON, "where": "({1} if {0} else {2})", "both": "({} and {})"})
 
 
@@ -67,7 +66,7 @@ def assignments(
 
     Parameters
     ----------
-    nodes : in order; symbols and nodes that are not among them are taken for variables that are there
+    nodes : in order; symbols and other nodes are taken for existing variables
     results : nodes or numbers
     """
     nodes, results = [node for node in nodes if node.operation != "symbol"], list(results)
@@ -83,7 +82,7 @@ def assignments(
     lines = []
     for node in nodes:
         text = dialect.templates[node.operation].format(*map(written, node.arguments))
-        if dialect.inline and uses[node.number] == 1 and len(text) < LONGEST:
+        if dialect.inline and uses[node.number] == 1 and len(text) < LONGEST_INLINED_EXPRESSION:
             inside[node.number] = text
             continue
         form = dialect.flag if node.operation in COMPARISONS else dialect.number
@@ -92,14 +91,14 @@ def assignments(
 
 
 def preparation(program: Program) -> str:
-    """Python source of ``prepare(p, <functions>)``: the program's constants of a tyre from its values by name."""
+    """Python source of ``prepare(p, <functions>)``: the constants of the program for a tyre, from its values by name."""
     lines, results = assignments(program.per_tyre, program.constants, PYTHON)
     given = [f'{name} = p["{name}"]' for name in program.parameters]
     return function(f"prepare(p, {', '.join(FUNCTIONS)})", [*given, *lines, _returned(results)])
 
 
 def conditions(program: Program) -> str:
-    """Python source of ``run(<inputs>, <constants>)``: the outputs in an operating condition."""
+    """Python source of ``run(<inputs>, <constants>)``: the outputs at an operating condition."""
     lines, results = assignments(program.per_point, program.outputs.values(), PYTHON)
     given = (*INPUTS, *map(name_of, program.constants))
     return function(f"run({', '.join(given)})", [*lines, _returned(results)])

@@ -1,7 +1,7 @@
-"""Elementary functions without branches, which a compiler can turn into vector instructions.
+"""Elementary functions without branches, so that a compiler can use vector instructions.
 
-Each polynomial interpolates its function at the Chebyshev nodes of a reduced range; results are good to 4e-16 of their
-size (``power`` to 2e-15), angles of ``sin``, ``cos`` and ``tan`` up to 1e6 rad. NaN gives NaN.
+Each polynomial interpolates its function at the Chebyshev nodes of a reduced range; relative errors are below 4e-16
+(``power``: 2e-15), angles of ``sin``, ``cos`` and ``tan`` up to 1e6 rad. NaN gives NaN.
 
 The numbers are those of :mod:`tir.codegen.instructions`.
 """
@@ -13,10 +13,10 @@ import math
 from tir.codegen.instructions import bits, number, select, sqrt
 
 ROUND = 6755399441055744.0
-"""1.5 2^52: added and taken off again it rounds to an integer, which meanwhile stands in the lowest bits."""
+"""1.5 2^52: adding and subtracting it rounds to an integer, which is in the lowest bits in between."""
 PI_1, PI_2, PI_3 = 3.1415926534682512, 1.2154201012607932e-10, 4.044532497591901e-21
 LN2_1, LN2_2 = 0.6931471804855391, 7.440617110012397e-11
-"""pi and ln 2 as sums of short numbers, of which small multiples are exact."""
+"""pi and ln 2 as sums of numbers with few digits, so that small multiples of each are exact."""
 PER_PI, PER_LN2 = 1.0 / math.pi, 1.0 / math.log(2.0)
 HALF_PI, HALF_PI_REST = math.pi / 2.0, 6.123233995736766e-17
 TAN_PI_8, TAN_3PI_8 = math.sqrt(2.0) - 1.0, math.sqrt(2.0) + 1.0

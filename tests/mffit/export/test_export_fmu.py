@@ -245,7 +245,7 @@ def test_the_switches_reach_the_code(tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("arguments", "said"), [(["--name", "3x"], "no name in C"), (["--fmi", "1"], "Invalid value")]
+    ("arguments", "said"), [(["--name", "3x"], "not a valid name in C"), (["--fmi", "1"], "Invalid value")]
 )
 def test_bad_choices_end_in_one_sentence(tmp_path, capsys, arguments, said):
     with pytest.raises(SystemExit) as end:

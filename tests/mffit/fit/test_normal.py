@@ -19,7 +19,7 @@ from mffit.fit.normal import derive
 from mffit.pipeline.diagnosing import chosen_model
 from mffit.pipeline.provenance import use_of
 from mffit.results import as_json
-from tir.check import check
+from tir.checking import check
 from tir.parameters import TABLE
 
 ROOT = Path(__file__).parents[3]

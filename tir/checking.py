@@ -1,4 +1,4 @@
-"""What a simulation would stumble over: physical checks of a tyre over its own ranges. Raises nothing, repairs nothing."""
+"""Problems that a tyre would cause in a simulation: physical checks over its own ranges. Raises nothing, repairs nothing."""
 
 from __future__ import annotations
 
@@ -7,7 +7,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from tir.consumers import stumbles
+from tir import constants
+from tir.consumers import target_problems
 from tir.envelope import over_the_range
 from tir.equations import normalise
 from tir.errors import Problem
@@ -31,12 +32,12 @@ RANGES = (
 
 
 def check(tyre: Tyre, targets: str | Iterable[str] = ()) -> list[Problem]:
-    """Problems of the tyre; level "error" where it cannot be simulated sensibly, "warning" where one should look.
+    """Problems of the tyre: level "error" if it cannot be simulated sensibly, "warning" if the engineer should check it.
 
     Parameters
     ----------
-    tyre : its file's text is looked at too, if it was read from one
-    targets : program or programs that are to read the file, see :data:`tir.targets.TARGETS`
+    tyre : if it was read from a file, the text of the file is checked too
+    targets : name or names of the programs that will read the file, see :data:`tir.targets.TARGETS`
 
     Raises
     ------
@@ -49,12 +50,12 @@ def check(tyre: Tyre, targets: str | Iterable[str] = ()) -> list[Problem]:
         with np.errstate(all="ignore"):
             found += [*_shape(tyre), *over_the_range(tyre), *_clamps(tyre), *_spin(tyre), *_moments(tyre)]
     for target in programs:
-        found += stumbles(tyre, target)
+        found += target_problems(tyre, target)
     return [_with_line(problem, tyre) for problem in found]
 
 
 def _with_line(problem: Problem, tyre: Tyre) -> Problem:
-    """With the line of the file on which the key stands."""
+    """The problem with the line of the file that holds its key."""
     if problem.line is not None or tyre.document is None:
         return problem
     lines = [
@@ -75,8 +76,10 @@ def _warning(name: str, sentence: str) -> Problem:
 
 def _dimensions(tyre: Tyre) -> Iterator[Problem]:
     R0 = tyre["UNLOADED_RADIUS"]
-    if not 0.05 < R0 < 1.5:
-        hint = "it looks like millimetres" if R0 > 50 else "a radius in metres was expected"
+    smallest, largest = constants.RADIUS_RANGE
+    if not smallest < R0 < largest:
+        millimetres = R0 > constants.RADIUS_IN_MILLIMETRES
+        hint = "it looks like millimetres" if millimetres else "a radius in metres was expected"
         yield _error("UNLOADED_RADIUS", f"UNLOADED_RADIUS is {R0:g}: {hint}; correct it or [UNITS] LENGTH")
     if tyre["RIM_RADIUS"] >= R0:
         yield _warning(
@@ -85,11 +88,11 @@ def _dimensions(tyre: Tyre) -> Iterator[Problem]:
     for name in [row.name for row in TABLE if row.divisor] + ["INFLPRES"]:
         if tyre[name] <= 0:
             remedy = "reverse its sign" if tyre[name] < 0 else "give its value"
-            yield _error(name, f"{name} is {tyre[name]:g}, and it must be positive; {remedy}")
+            yield _error(name, f"{name} is {tyre[name]:g}, but it must be positive; {remedy}")
     if 0.0 < tyre["VERTICAL_STIFFNESS"] * R0 < tyre["FNOMIN"]:
         yield _error(
             "VERTICAL_STIFFNESS",
-            f"VERTICAL_STIFFNESS is {tyre['VERTICAL_STIFFNESS']:g} N/m: under FNOMIN the tyre would give way by more than its "
+            f"VERTICAL_STIFFNESS is {tyre['VERTICAL_STIFFNESS']:g} N/m: under FNOMIN the tyre would deflect by more than its "
             "radius; it looks like N/mm, write N/m",
         )
     scaled = [row.name for row in TABLE if row.scaling and tyre[row.name] != 1.0]
@@ -108,17 +111,17 @@ def _ranges(tyre: Tyre) -> Iterator[Problem]:
     for low, high in RANGES:
         if tyre[low] >= tyre[high]:
             yield _error(low, f"{low} {tyre[low]:g} is not below {high} {tyre[high]:g}")
-    if 0 < tyre["CAMMAX"] < 0.15 and tyre["MC_CONTOUR_A"] > 0:
+    if 0 < tyre["CAMMAX"] < constants.NARROW_CAMBER_RANGE and tyre["MC_CONTOUR_A"] > 0:
         yield _warning(
             "CAMMAX",
-            f"CAMMAX is {np.degrees(tyre['CAMMAX']):.1f} deg on a motorcycle tyre: simulations hold camber to it without notice",
+            f"CAMMAX is {np.degrees(tyre['CAMMAX']):.1f} deg on a motorcycle tyre: simulations limit camber to it silently",
         )
     for name in ("INFLPRES", "NOMPRES"):
         if not tyre["PRESMIN"] <= tyre[name] <= tyre["PRESMAX"]:
             yield _warning(
                 name,
                 f"{name} {tyre[name]:g} lies outside PRESMIN {tyre['PRESMIN']:g} to PRESMAX {tyre['PRESMAX']:g}: simulations "
-                "hold the pressure to the range",
+                "limit the pressure to the range",
             )
     if not tyre["FZMIN"] <= tyre["FNOMIN"] <= tyre["FZMAX"]:
         yield _warning(
@@ -130,27 +133,29 @@ def _ranges(tyre: Tyre) -> Iterator[Problem]:
 
 
 def _clamps(tyre: Tyre) -> Iterator[Problem]:
-    """Ranges so narrow that simulations hold inputs to them which vehicles reach."""
+    """Problems of ranges that vehicles exceed: simulations limit their inputs to the range."""
     Fz = float(tyre["FNOMIN"])
-    alpha = np.radians(np.linspace(0.1, 30.0, 300))
+    first, last = constants.SIDESLIP_FOR_THE_PEAK
+    alpha = np.radians(np.linspace(first, last, constants.STEPS_FOR_THE_PEAK))
     force = np.abs(tyre(Fz, alpha).Fy)
     peak = float(alpha[np.argmax(force)])
-    if force.max() > 0.0 and tyre["ALPMAX"] < peak and tyre["ALPMAX"] < np.radians(15.0):
+    if force.max() > 0.0 and tyre["ALPMAX"] < min(peak, constants.NARROW_SIDESLIP_RANGE.rad):
         share = abs(tyre(Fz, float(tyre["ALPMAX"])).Fy) / float(force.max())
         yield _warning(
             "ALPMAX",
-            f"simulations hold sideslip to ALPMAX, {np.degrees(tyre['ALPMAX']):.1f} deg, where the side force at nominal load "
+            f"simulations limit sideslip to ALPMAX, {np.degrees(tyre['ALPMAX']):.1f} deg, where the side force at nominal load "
             f"is {share:.0%} of its peak",
         )
-    if tyre["FZMAX"] < 1.5 * tyre["FNOMIN"]:
+    low, high = (share * tyre["FNOMIN"] for share in constants.LOADS_TO_REACH)
+    if tyre["FZMAX"] < high:
         yield _warning(
             "FZMAX",
-            f"simulations hold the load to FZMAX, {tyre['FZMAX'] / tyre['FNOMIN']:.2f} of the nominal one, in the formula",
+            f"simulations limit the load in the formulae to FZMAX, {tyre['FZMAX'] / tyre['FNOMIN']:.2f} times the nominal load",
         )
-    if tyre["FZMIN"] > 0.2 * tyre["FNOMIN"]:
+    if tyre["FZMIN"] > low:
         yield _warning(
             "FZMIN",
-            f"below FZMIN, {tyre['FZMIN']:g} N, simulations fade or scale forces and moments, each in its way",
+            f"below FZMIN, {tyre['FZMIN']:g} N, every simulation reduces forces and moments by a rule of its own",
         )
 
 
@@ -158,7 +163,8 @@ def _shape(tyre: Tyre) -> Iterator[Problem]:
     p = tyre.p
     yield from broken(tyre, SHAPES)
     ratio = float(tyre.state(float(p.FNOMIN)).Re) / p.UNLOADED_RADIUS
-    if not 0.85 < ratio < 1.05:
+    smallest, largest = constants.EFFECTIVE_RADIUS_RANGE
+    if not smallest < ratio < largest:
         yield _warning(
             "BREFF",
             f"the effective radius is {ratio:.2f} of the unloaded one: check BREFF, DREFF, FREFF, Q_RE0",
@@ -166,39 +172,43 @@ def _shape(tyre: Tyre) -> Iterator[Problem]:
 
 
 def _mode(tyre: Tyre) -> Iterator[Problem]:
-    """What USE_MODE and FITTYP say against what the file holds."""
+    """Contradictions between USE_MODE or FITTYP and the rest of the file."""
     mode, given = int(tyre["USE_MODE"]), "USE_MODE" in tyre.present
     turn_slip, road = mode % 10 == 5, mode // 100 % 10
     block = [row.name for row in TABLE if row.section == TURN_SLIP and row.files == ""]
     if tyre["USE_MODE"] != mode:
-        yield _warning("USE_MODE", f"USE_MODE is {tyre['USE_MODE']:g}, and it counts in whole numbers")
+        yield _warning(
+            "USE_MODE", f"USE_MODE is {tyre['USE_MODE']:g}, but only whole numbers are defined; write one"
+        )
     elif UNKNOWN_DIGIT in use_mode_words(mode):
         yield _warning("USE_MODE", f"USE_MODE {mode} means {use_mode_words(mode)}: see the program's manual")
     if given and turn_slip and not any(name in tyre.present for name in block):
         yield _warning(
             "USE_MODE",
-            f"USE_MODE {mode} asks for turn slip, and [{TURN_SLIP}] is not there: a simulation estimates it",
+            f"USE_MODE {mode} asks for turn slip, but the file has no [{TURN_SLIP}]: a simulation estimates it",
         )
     if given and turn_slip:
         yield _warning(
             "USE_MODE",
-            f"USE_MODE {mode} asks for turn slip, which in MF-Tyre/MF-Swift takes the Swift licence",
+            f"USE_MODE {mode} asks for turn slip, which needs the Swift licence in MF-Tyre/MF-Swift",
         )
     round_section = tyre["MC_CONTOUR_A"] > 0
     if given and round_section != (road == 2) and road in (1, 2):
-        tyre_is = "a motorcycle tyre" if round_section else "no motorcycle tyre"
+        tyre_is = "is" if round_section else "is not"
         yield _warning(
             "USE_MODE",
-            f"USE_MODE {mode} means {use_mode_words(mode)}, and by MC_CONTOUR_A this is {tyre_is}",
+            f"USE_MODE {mode} means {use_mode_words(mode)}, but by MC_CONTOUR_A this {tyre_is} a motorcycle tyre",
         )
     if tyre["FITTYP"] not in FITTYPS:
-        yield _error("FITTYP", f"FITTYP is {tyre['FITTYP']:g}, and only {fittyps_text()} are known here")
+        yield _error("FITTYP", f"FITTYP is {tyre['FITTYP']:g}, but only {fittyps_text()} are supported")
     if tyre["FITTYP"] in (60, 61):
         newer = [
             r.name for r in TABLE if r.files == "62" and r.name in tyre.present and tyre[r.name] != r.default
         ]
         if newer:
-            yield _warning("FITTYP", f"FITTYP {tyre['FITTYP']:g} does not know {', '.join(newer)}")
+            yield _warning(
+                "FITTYP", f"FITTYP {tyre['FITTYP']:g} has no {', '.join(newer)}; programs ignore them"
+            )
 
 
 def _old_keys(tyre: Tyre) -> Iterator[Problem]:
@@ -207,17 +217,19 @@ def _old_keys(tyre: Tyre) -> Iterator[Problem]:
     if old:
         yield _warning(
             old[0],
-            f"{', '.join(old)} are keys of MF 5.2, which MF 6 does not read: was an old file renamed?",
+            f"{', '.join(old)} are keys of MF 5.2, which MF 6 ignores: was an old file renamed?",
         )
 
 
 def _spin(tyre: Tyre) -> Iterator[Problem]:
     p = tyre.p
-    load = np.linspace(max(p.FZMIN, 0.02 * p.FNOMIN), p.FZMAX, 21)
+    lowest = max(p.FZMIN, constants.LOWEST_SEARCHED_LOAD * p.FNOMIN)
+    load = np.linspace(lowest, p.FZMAX, constants.LOADS_FOR_EPS_GAMMA)
     eps = normalise.camber_reduction(p, normalise.relative_load(p, load))
-    if np.any(np.abs(eps - 1.0) < 0.1) or np.ptp(np.sign(eps - 1.0)) > 0:
+    if np.any(np.abs(eps - 1.0) < constants.EPS_GAMMA_NEAR_ONE) or np.ptp(np.sign(eps - 1.0)) > 0:
         yield _warning(
-            "PECP1", "eps_gamma comes near 1 within the load range, where the turn-slip stiffness is infinite"
+            "PECP1",
+            "eps_gamma comes close to 1 within the load range; at 1 the turn-slip stiffness is infinite",
         )
     rows = [row for row in TABLE if row.section == TURN_SLIP and row.files == ""]
     default = all(tyre[row.name] == row.default for row in rows) and rows[0].name in tyre.present
@@ -233,10 +245,11 @@ def _spin(tyre: Tyre) -> Iterator[Problem]:
     Fz = float(p.FNOMIN)
     with_spin, without = (float(np.diff(tyre(Fz, gamma=gamma, turn_slip=on).Fy)[0]) for on in (True, False))
     expected = without * p.UNLOADED_RADIUS / tyre.state(Fz).Re
-    if abs(without) > 1e-9 and abs(with_spin - expected) > 0.01 * abs(expected):
+    mismatch = abs(with_spin - expected) > constants.CAMBER_FORCE_MISMATCH * abs(expected)
+    if abs(without) > constants.NO_CAMBER_FORCE and mismatch:
         yield _warning(
             "PHYP1",
-            "camber force with turn slip on is not that with turn slip off times R0/Re: check PHYP1-4",
+            "the camber force with turn slip on differs from the one with turn slip off times R0/Re: check PHYP1-4",
         )
 
 
@@ -246,7 +259,8 @@ def _moments(tyre: Tyre) -> Iterator[Problem]:
     second = any(tyre[f"QSX{i}"] for i in (12, 13, 14))
     if first and second:
         yield _warning(
-            "QSX12", "QSX4-11 and QSX12-14 are both used: they are alternatives for the same effect"
+            "QSX12",
+            "QSX4-11 and QSX12-14 are both used, although they describe the same effect: set one group to 0",
         )
     step = np.array([-1e-3, 1e-3])
     if float(np.diff(tyre(float(p.FNOMIN), step).Mz)[0]) <= 0:
