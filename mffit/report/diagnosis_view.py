@@ -12,32 +12,21 @@ from mffit.diagnosis.selection import Step
 from mffit.diagnosis.where import Region
 from mffit.effects import CATALOG, FAULT_WORDS
 from mffit.points import Points
-from mffit.quantities import CHANNELS
+from mffit.report import constants
+from mffit.report.channel import NamedChannel
 from mffit.report.curves import Condition, Curve, conditions, curves
 from mffit.report.lines import Line, model_lines
 from mffit.rig import FAULT_NAMES, OF_RUN, UNITS
 from tir.parameters import BY_NAME
 
-MOST_FRAMES = 3
 
-
-@dataclass(frozen=True, slots=True)
-class GapChannel:
+@dataclass(frozen=True, slots=True, kw_only=True)
+class GapChannel(NamedChannel):
     """One channel before and after: measured minus simulated in units of the noise of each point, (n,)."""
 
-    name: str
     before: np.ndarray
     after: np.ndarray
-    noise: float  #: typical of a point, in ``unit``
-
-    @property
-    def unit(self) -> str:
-        return CHANNELS[self.name].unit
-
-    @property
-    def symbol(self) -> str:
-        """As a picture shows it."""
-        return CHANNELS[self.name].mathtext
+    noise: float  #: of a typical point, in ``unit``
 
 
 @dataclass(frozen=True, slots=True)
@@ -96,9 +85,11 @@ class DiagnosisView:
         return bool(self.diagnosis.effects)
 
     def frames(self, channel: str) -> list[Region]:
-        """Regions of a channel to be framed in the maps; more of them would hide the map."""
+        """Regions of a channel to be framed in the maps, unexplained ones first."""
         all_regions = (*self.diagnosis.unexplained_where, *self.diagnosis.where)
-        return [region for region in all_regions if region.channel == channel][:MOST_FRAMES]
+        return [region for region in all_regions if region.channel == channel][
+            : constants.MOST_FRAMES_PER_MAP
+        ]
 
 
 def view_of(diagnosis: Diagnosis) -> DiagnosisView:
@@ -111,7 +102,7 @@ def view_of(diagnosis: Diagnosis) -> DiagnosisView:
         u = np.where(np.isfinite(diagnosis.noise.u[rows]), diagnosis.noise.u[rows], np.nan)
         before, after = ((measured - model[rows]) / u for model in (diagnosis.before, diagnosis.after))
         if np.isfinite(before).any():
-            channels.append(GapChannel(name, before, after, noise))
+            channels.append(GapChannel(name=name, before=before, after=after, noise=noise))
     known = {e.id: e for e in (*CATALOG, *(t.effects[-1] for s in diagnosis.steps for t in s.trials))}
     freed = {name for found in diagnosis.effects for name in found.parameters}
     return DiagnosisView(
@@ -170,5 +161,5 @@ def _ranked(step: Step) -> RankedStep:
 
 
 def shown_steps(view: DiagnosisView) -> Sequence[RankedStep]:
-    """The steps worth a picture: those with candidates, at most three."""
-    return [step for step in view.steps if step.candidates][:3]
+    """The first steps that have candidates."""
+    return [step for step in view.steps if step.candidates][: constants.MOST_STEPS_DRAWN]

@@ -9,10 +9,9 @@ import numpy as np
 
 from mffit.points import Points
 from mffit.quantities import CHANNELS
+from mffit.report import constants
 from mffit.report.curves import Curve
 from mffit.rig import Simulation
-
-STEPS = 41
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,9 +37,10 @@ def model_lines(simulation: Simulation, points: Points, curves: Sequence[Curve])
     grid = _along(points, curves)
     mirrored = grid.replace(alpha=-grid.alpha, gamma=-grid.gamma)
     here, there = (simulation.readings(p) for p in (grid, mirrored))
+    steps = constants.STEPS_OF_MODEL_LINE
     lines = {}
     for i, curve in enumerate(curves):
-        rows = slice(i * STEPS, (i + 1) * STEPS)
+        rows = slice(i * steps, (i + 1) * steps)
         lines[curve.key] = Line(
             x=np.degrees(getattr(grid, curve.over)[rows]),
             raw={name: getattr(here, name)[rows] for name in CHANNELS},
@@ -50,15 +50,16 @@ def model_lines(simulation: Simulation, points: Points, curves: Sequence[Curve])
 
 
 def _along(points: Points, curves: Sequence[Curve]) -> Points:
-    """Points every 1/40 of each curve's range."""
+    """Points at equal distances along each curve's range."""
+    steps = constants.STEPS_OF_MODEL_LINE
     columns: dict[str, list[np.ndarray]] = {name: [] for name in ("alpha", "gamma", "Fz", "p", "V")}
     for curve in curves:
         for name, values in columns.items():
             here = getattr(points, name)[curve.index]
             values.append(
-                np.linspace(here.min(), here.max(), STEPS)
+                np.linspace(here.min(), here.max(), steps)
                 if name == curve.over
-                else np.full(STEPS, np.median(here))
+                else np.full(steps, np.median(here))
             )
-    rows = np.repeat([curve.index[0] for curve in curves], STEPS)
+    rows = np.repeat([curve.index[0] for curve in curves], steps)
     return points.select(rows).replace(**{name: np.concatenate(values) for name, values in columns.items()})

@@ -9,7 +9,7 @@ from importlib.metadata import version
 
 import mffit
 
-LIBRARIES = ("numpy", "scipy", "matplotlib")
+LIBRARIES = ("numpy", "scipy", "pillow")
 
 
 def made() -> dict[str, str]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 
+from mffit.report import constants
 from tir import Quantity
 
 MINUS = "\N{MINUS SIGN}"
@@ -23,16 +24,14 @@ def decimals_of(u: float, digits: int = 2) -> int:
     return max(0, places - (round(u, places) >= 10.0 ** (digits - places)))
 
 
-LONGEST = 1e7
-"""Numbers from here on are written with a power of ten."""
-
-
 def number(value: float | None, decimals: int | None = None, *, digits: int = 4) -> str:
     """A number with fixed decimals, or else ``digits`` significant ones; a dash where there is none."""
     if value is None or not math.isfinite(value):
         return "–"
     if decimals is None:
-        whole = 10.0**digits <= abs(value) < LONGEST  # all of its digits are shorter than a power of ten
+        whole = (
+            10.0**digits <= abs(value) < constants.LARGEST_PLAIN_NUMBER
+        )  # all of its digits are shorter than a power of ten
         text = f"{value:.0f}" if whole else f"{value:.{digits}g}"
     else:
         text = f"{value:.{decimals}f}"

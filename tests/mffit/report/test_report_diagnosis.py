@@ -13,7 +13,7 @@ from mffit.brief import HEIGHT, WIDTH
 from mffit.diagnosis import diagnose
 from mffit.diagnosis.selection import TIE
 from mffit.diagnosis.ties import Run, Separation
-from mffit.report import style, text, write_diagnosis
+from mffit.report import constants, style, text, write_diagnosis
 from mffit.report.diagnosis_view import Candidate, RankedStep, view_of
 from mffit.report.figures import gap
 from tests.browser import PAPER, PHONE, complaints, console_errors, look, opened
@@ -97,29 +97,26 @@ def test_residuals_after_are_noise_where_the_effect_was_found(misaligned):
 
 def test_maps_before_and_after_share_one_scale(misaligned):
     view = view_of(misaligned)
-    with style.applied():
-        figure = gap.residuals_before_after(view)
-    maps = figure.axes[:-1]
-    assert len(maps) == 2 * len(view.channels) * len(view.conditions)
-    assert len({ax.collections[0].get_clim() for ax in maps}) == 1
+    sheet = gap.residuals_before_after(view)
+    assert len(sheet.panels) == 2 * len(view.channels) * len(view.conditions)
+    assert {panel.series[0].limit for panel in sheet.panels} == {sheet.scale.limit}
 
 
 def test_evidence_ranks_the_named_effect_first(misaligned):
-    with style.applied():
-        ax = gap.evidence(view_of(misaligned)).axes[0]
-    assert ax.get_yticklabels()[0].get_text() == misaligned.effects[0].effect.name
-    widths = [bar.get_width() for bar in ax.patches]
-    assert widths == sorted(widths, reverse=True)
+    panel = gap.evidence(view_of(misaligned)).panels[0]
+    assert panel.y.words[0] == misaligned.effects[0].effect.name
+    lengths = list(panel.series[0].lengths)
+    assert lengths == sorted(lengths, reverse=True)
 
 
 @pytest.mark.parametrize(("share", "tied"), [(0.99, True), (1.01, False)])
 def test_picture_and_verdict_call_the_same_distance_a_tie(misaligned, share, tied):
     gains = (50.0, 50.0 - share * TIE)
     step = RankedStep((), tuple(Candidate(f"{g}", f"{g}", "rig", g) for g in gains), 5.0)
-    with style.applied():
-        ax = gap.evidence(dataclasses.replace(view_of(misaligned), steps=(step,))).axes[0]
-    behind = next(t for t in ax.texts if "best" not in t.get_text())
-    assert behind.get_color() == (style.INK if tied else style.MUTED)
+    panel = gap.evidence(dataclasses.replace(view_of(misaligned), steps=(step,))).panels[0]
+    best, behind = panel.notes
+    assert best.text == "best"
+    assert behind.colour == (style.INK if tied else style.MUTED)
 
 
 def test_the_page_states_the_margin_of_the_verdict(misaligned, tmp_path):
@@ -127,9 +124,9 @@ def test_the_page_states_the_margin_of_the_verdict(misaligned, tmp_path):
 
 
 def test_colour_scale_never_blows_up_noise_nor_hides_what_is_left(clean, misaligned):
-    assert gap.colour_limit(view_of(clean).channels) == gap.SMALLEST_LIMIT
-    loud = gap.GapChannel("Fy", np.full(9, 500.0), np.zeros(9), 6.0)
-    assert gap.colour_limit([loud]) == gap.LARGEST_LIMIT
+    assert gap.colour_limit(view_of(clean).channels) == constants.SMALLEST_GAP_SCALE
+    loud = gap.GapChannel(name="Fy", before=np.full(9, 500.0), after=np.zeros(9), noise=6.0)
+    assert gap.colour_limit([loud]) == constants.LARGEST_GAP_SCALE
 
 
 def test_nothing_missing_is_said_plainly(clean, tmp_path):

@@ -1,0 +1,40 @@
+"""Pictures as records: figures describe panels, and one layout gives the SVG of the page and the PNG beside it.
+
+``records`` say what is shown, ``layout`` turns a panel into a few plain shapes, ``svg`` and ``png`` write the same shapes.
+"""
+
+from mffit.report.drawing.records import (
+    Axis,
+    Band,
+    Bars,
+    ColourScale,
+    ErrorBars,
+    Frame,
+    Guide,
+    Look,
+    Map,
+    Note,
+    Panel,
+    Sheet,
+    Span,
+    Trace,
+    in_rows,
+)
+
+__all__ = [
+    "Axis",
+    "Band",
+    "Bars",
+    "ColourScale",
+    "ErrorBars",
+    "Frame",
+    "Guide",
+    "Look",
+    "Map",
+    "Note",
+    "Panel",
+    "Sheet",
+    "Span",
+    "Trace",
+    "in_rows",
+]
