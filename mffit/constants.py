@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from tir.constant import Real
+from tir.constant import Count, Real
 
 USUAL_CORNERING_STIFFNESS = Real(
     10.0,
@@ -17,3 +17,7 @@ EXPLAINED_SHARE = Real(
     "-",
     "A known mistake explains an error if less than this share of the error is left when the mistake is undone.",
 )
+LARGEST_PLAIN_NUMBER = Real(1e7, "-", "Larger numbers are written with a power of ten.")
+SMALLEST_PLAIN_U = Real(1e-6, "-", "A number with a smaller uncertainty is written with a power of ten.")
+TERMINAL_WIDTH = Count(100, "-", "Characters per line of what is printed to a terminal; two windows fit side by side.")
+LINES_PER_RECORD = Count(28, "-", "Lines of a record's repr at most, so that a terminal window shows it whole.")

@@ -1,4 +1,4 @@
-"""Measured points as TYDEX files, release 1.3: one for each sweep, free columns, every digit."""
+"""Measured points as TYDEX files, release 1.3: one per sweep, with all digits of the numbers."""
 
 from __future__ import annotations
 
@@ -13,12 +13,13 @@ from mffit.config import Config
 from mffit.errors import InputError
 from mffit.points import Points
 
-LONGEST_NAME, LONGEST_TEXT = 10, 30
+NAME_WIDTH, TEXT_WIDTH, UNIT_WIDTH = 10, 30, 10
+"""Characters of the columns of a line, fixed by the format."""
 MISSING = "NOTAVAIL"
 
 
-class Channel(NamedTuple):
-    """A channel of TYDEX: at most ten letters, and where its numbers come from."""
+class TydexChannel(NamedTuple):
+    """A channel of TYDEX: its name of at most ten letters, and its numbers."""
 
     name: str
     words: str
@@ -27,42 +28,42 @@ class Channel(NamedTuple):
 
 
 CHANNELS = (
-    Channel("SLIPANGL", "slip angle", "rad", lambda p: p.alpha),
-    Channel("INCLANGL", "inclination angle", "rad", lambda p: p.gamma),
-    Channel("FZW", "vertical force", "N", lambda p: p.Fz),
-    Channel("FYW", "lateral force", "N", lambda p: p.Fy),
-    Channel("MXW", "overturning moment", "Nm", lambda p: p.Mx),
-    Channel("MYW", "rolling resistance moment", "Nm", lambda p: p.My),
-    Channel("MZW", "self aligning moment", "Nm", lambda p: p.Mz),
-    Channel("INFLPRES", "inflation pressure", "Pa", lambda p: p.p),
-    Channel("TRAJVELW", "trajectory velocity", "m/s", lambda p: p.V),
-    Channel("TYRETEMP", "tyre temperature", "degC", lambda p: p.T),
+    TydexChannel("SLIPANGL", "slip angle", "rad", lambda p: p.alpha),
+    TydexChannel("INCLANGL", "inclination angle", "rad", lambda p: p.gamma),
+    TydexChannel("FZW", "vertical force", "N", lambda p: p.Fz),
+    TydexChannel("FYW", "lateral force", "N", lambda p: p.Fy),
+    TydexChannel("MXW", "overturning moment", "Nm", lambda p: p.Mx),
+    TydexChannel("MYW", "rolling resistance moment", "Nm", lambda p: p.My),
+    TydexChannel("MZW", "self aligning moment", "Nm", lambda p: p.Mz),
+    TydexChannel("INFLPRES", "inflation pressure", "Pa", lambda p: p.p),
+    TydexChannel("TRAJVELW", "trajectory velocity", "m/s", lambda p: p.V),
+    TydexChannel("TYRETEMP", "tyre temperature", "degC", lambda p: p.T),
 )
-"""In TYDEX W axes, which are those of ISO; a channel that was not measured is left out."""
+"""In TYDEX W axes, which are the ISO axes; channels that were not measured are left out."""
 
 
 def tydex_texts(points: Points, config: Config) -> dict[str, str]:
-    """The text of a file for each sweep, by a name that is no path.
+    """The text of a file for each sweep, by a name without folders.
 
-    Read again with ``axes = "iso"`` the files give the same points to rounding. Direction, mount and path curvature, for
-    which TYDEX has no channel, stand in the comments.
+    Reading the files with ``axes = "iso"`` gives the same points to rounding. Direction, mount and path curvature are in the
+    comments, as TYDEX has no channels for them.
 
     Raises
     ------
     InputError
-        Two sweeps would have the same name.
+        Two sweeps would get the same name.
     """
     texts: dict[str, str] = {}
     for k in np.unique(points.sweep):
         name = "".join(c if c.isalnum() or c in "-_." else "_" for c in points.sweep_names[k])
         if name in texts:
-            raise InputError(f'two sweeps would both be written as "{name}.tdx"; rename one of their files')
+            raise InputError(f'two sweeps have the same file name "{name}.tdx"; rename one of their files')
         texts[name] = "\n".join([*_lines(name, points.select(points.sweep == k), config), ""])
     return texts
 
 
 def _lines(name: str, points: Points, config: Config) -> Iterator[str]:
-    there = [channel for channel in CHANNELS if np.any(np.isfinite(channel.of(points)))]
+    measured = [channel for channel in CHANNELS if np.any(np.isfinite(channel.of(points)))]
     yield "**HEADER"
     yield _row("RELEASE", "Release of TYDEX-Format", "", "1.3")
     yield _row("MEASID", "Measurement ID", "", name)
@@ -73,10 +74,10 @@ def _lines(name: str, points: Points, config: Config) -> Iterator[str]:
     yield "**CONSTANTS"
     yield _row("OVALLDIA", "Overall diameter", "m", repr(2.0 * config.tyre.unloaded_radius))
     yield "**MEASURCHANNELS"
-    for channel in there:
+    for channel in measured:
         yield _row(channel.name, channel.words, channel.unit, "1", "0", "0")
-    yield "**MEASURDATA"  # with the number of rows behind it, as some write, other readers do not know it
-    for row in np.column_stack([channel.of(points) for channel in there]).tolist():
+    yield "**MEASURDATA"  # without the number of rows, which not all readers accept
+    for row in np.column_stack([channel.of(points) for channel in measured]).tolist():
         yield " ".join(repr(x) if np.isfinite(x) else MISSING for x in row)
     yield "**END"
 
@@ -91,5 +92,5 @@ def _remarks(points: Points, config: Config) -> Iterator[str]:
 
 
 def _row(name: str, words: str, unit: str, *values: Any) -> str:
-    head = f"{name[:LONGEST_NAME]:<10}{words[:LONGEST_TEXT]:<30}{unit:<10}"
+    head = f"{name[:NAME_WIDTH]:<{NAME_WIDTH}}{words[:TEXT_WIDTH]:<{TEXT_WIDTH}}{unit:<{UNIT_WIDTH}}"
     return (head + " ".join(map(str, values))).rstrip()

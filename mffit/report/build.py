@@ -55,6 +55,7 @@ def write_build(result: BuildResult, folder: Path) -> None:
         per_load=PER_LOAD,
         aligned_below=LARGEST_DIFFERENCE,
         degrees=math.degrees(1.0),
+        radians=math.radians(1.0),
     )
 
 

@@ -8,13 +8,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from mffit.config import Config
-from mffit.effects import FAULT_WORDS
 from mffit.fit import Agreement, Coefficient, Doubt, Outlier, Posterior, StageRecord
 from mffit.fit.coverage import StageCoverage
 from mffit.fit.files import Files
 from mffit.measured import Measured
 from mffit.points import Points
 from mffit.quantities import CHANNELS
+from mffit.report import words
 from mffit.report.channel import NamedChannel
 from mffit.report.curves import Condition, Curve, conditions, curves
 from mffit.report.lines import Line, model_lines
@@ -192,7 +192,7 @@ def coefficient_rows(coefficients: Mapping[str, Coefficient]) -> tuple[Coefficie
                 at_bound=c.at_bound,
                 stage=c.stage,
                 status=c.status,
-                correlation=f"{FAULT_WORDS.get(c.correlated_with, c.correlated_with)} {c.correlation:+.2f}"
+                correlation=f"{words.of_number(c.correlated_with)} {c.correlation:+.2f}"
                 if c.correlated_with
                 else "",
             )

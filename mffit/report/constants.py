@@ -107,6 +107,3 @@ MOST_CANDIDATE_RUNS_IN_TERMINAL = Count(6, "-", "Candidate runs listed in a term
 MOST_ROWS_IN_TERMINAL = Count(
     12, "-", "Rows of a table in a terminal, if a file or the page holds all of them."
 )
-TERMINAL_WIDTH = Count(100, "-", "Characters of a line in a terminal.")
-LARGEST_PLAIN_NUMBER = Real(1e7, "-", "Larger numbers are written with a power of ten.")
-SMALLEST_PLAIN_U = Real(1e-6, "-", "Numbers with a smaller uncertainty are written with a power of ten.")

@@ -1,4 +1,4 @@
-"""What the diagnosis page shows, taken from the diagnosis in this one place."""
+"""Everything that the diagnosis page shows, taken from the diagnosis in one place."""
 
 from __future__ import annotations
 
@@ -10,13 +10,12 @@ import numpy as np
 from mffit.diagnosis import Diagnosis
 from mffit.diagnosis.selection import Step
 from mffit.diagnosis.where import Region
-from mffit.effects import CATALOG, FAULT_WORDS
+from mffit.effects import CATALOG
 from mffit.points import Points
-from mffit.report import constants
+from mffit.report import constants, words
 from mffit.report.channel import NamedChannel
 from mffit.report.curves import Condition, Curve, conditions, curves
 from mffit.report.lines import Line, model_lines
-from mffit.rig import FAULT_NAMES, OF_RUN, UNITS
 from tir.parameters import BY_NAME
 
 
@@ -31,12 +30,12 @@ class GapChannel(NamedChannel):
 
 @dataclass(frozen=True, slots=True)
 class Candidate:
-    """One effect as it did in one step."""
+    """One effect in one step."""
 
     id: str
     name: str
     kind: str
-    gain: float  #: in log evidence over the step before
+    gain: float  #: of log evidence over the step before
 
 
 @dataclass(frozen=True, slots=True)
@@ -75,13 +74,13 @@ class DiagnosisView:
     kinds: Mapping[str, str]  #: effect id -> tyre, rig or environment
     names: Mapping[str, str]  #: effect id -> plain name
     descriptions: Mapping[str, str]  #: coefficient -> what it is
-    units: Mapping[str, str]  #: of every number that was found, empty without one
-    words: Mapping[str, str]  #: what numbers of the rig among them are called
+    units: Mapping[str, str]  #: of every number that was estimated, empty without one
+    words: Mapping[str, str]  #: names of those that belong to the rig
     shown: tuple[Shown, ...]  #: the worst and the typical sweep
 
     @property
     def changed(self) -> bool:
-        """Whether anything was added, so that before and after differ."""
+        """Whether effects were added, so that before and after differ."""
         return bool(self.diagnosis.effects)
 
     def frames(self, channel: str) -> list[Region]:
@@ -93,7 +92,7 @@ class DiagnosisView:
 
 
 def view_of(diagnosis: Diagnosis) -> DiagnosisView:
-    """What the page shows beside the diagnosis itself: residuals in units of noise, conditions, ranked candidates."""
+    """The view of a diagnosis: residuals in units of noise, conditions, ranked candidates."""
     points, n = diagnosis.points, len(diagnosis.points)
     channels = []
     measured_channels = (("Fy", points.Fy, diagnosis.noise.Fy), ("Mz", points.Mz, diagnosis.noise.Mz))
@@ -115,27 +114,14 @@ def view_of(diagnosis: Diagnosis) -> DiagnosisView:
         kinds={key: effect.kind for key, effect in known.items()},
         names={key: effect.name for key, effect in known.items()},
         descriptions={name: BY_NAME[name].description for name in freed if name in BY_NAME},
-        units={name: _unit(name) for name in freed},
-        words={name: word for name in freed if (word := _word(name))},
+        units={name: words.unit_of(name) for name in freed},
+        words={name: words.of_rig(name) for name in freed if words.of_rig(name)},
         shown=_shown(diagnosis, channels),
     )
 
 
-def _unit(name: str) -> str:
-    """Unit of a coefficient or of a rig's fault, of all runs or of one."""
-    fault = name.partition(OF_RUN)[0]
-    unit = UNITS[fault] if fault in FAULT_NAMES else BY_NAME[name].unit if name in BY_NAME else ""
-    return "" if unit == "-" else unit
-
-
-def _word(name: str) -> str:
-    """What a number of the rig, of all runs or of one, is called; empty for a coefficient."""
-    fault, of, file = name.partition(OF_RUN)
-    return f"{FAULT_WORDS[fault]}, {file}" if of else FAULT_WORDS.get(fault, "")
-
-
 def _shown(diagnosis: Diagnosis, channels: Sequence[GapChannel]) -> tuple[Shown, ...]:
-    """The sweep that the given model misses most, in units of the noise, and the one in the middle."""
+    """The sweep with the largest and the one with the median misfit of the given model, in units of the noise."""
     found = curves(diagnosis.points)
     if not found or not channels:
         return ()

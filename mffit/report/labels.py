@@ -8,7 +8,7 @@ from mffit.quantities import CHANNELS, CONDITIONS, DIRECT
 from mffit.report import constants
 from mffit.report.curves import Curve
 from mffit.report.drawing import Axis
-from mffit.report.rounding import number
+from mffit.rounding import number
 
 ANGLES = {"alpha": CONDITIONS["alpha_deg"], "gamma": CONDITIONS["gamma_deg"]}
 """The angles that are varied, by the attribute of the points."""

@@ -10,8 +10,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 from urllib.parse import quote
 
+from mffit import rounding
 from mffit.measured import wording
-from mffit.report import making, numbers, rounding, typeset
+from mffit.report import making, numbers, typeset
 from mffit.report.drawing import Sheet, png, svg
 from mffit.report.drawing.layout import lay_out
 from mffit.templates import environment
@@ -61,6 +62,13 @@ def draw(folder: Path, figures: Mapping[str, Callable[[], Sheet]]) -> dict[str, 
 def _environment() -> Environment:
     found = environment("mffit.report")
     found.filters["note"] = wording.note
-    for rounded in (rounding.number, rounding.with_u, rounding.stated, rounding.times, rounding.per_cent):
+    for rounded in (
+        rounding.number,
+        rounding.with_u,
+        rounding.stated,
+        rounding.as_good_as,
+        rounding.times,
+        rounding.per_cent,
+    ):
         found.filters[rounded.__name__] = rounded
     return found

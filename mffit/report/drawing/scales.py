@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from mffit.report.drawing.records import Axis
-from mffit.report.rounding import MINUS
+from mffit.rounding import MINUS
 
 NICE_STEPS = (1.0, 2.0, 2.5, 5.0, 10.0)
 SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")

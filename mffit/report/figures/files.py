@@ -9,7 +9,7 @@ from mffit.report import constants, labels, style
 from mffit.report.build_view import BuildView
 from mffit.report.drawing import Axis, Look, Panel, Sheet, Trace
 from mffit.report.figures.bands import LIMITS, tested_edges
-from mffit.report.rounding import number
+from mffit.rounding import number
 
 LOOKS = {
     "turn-slip": Look(colour=style.ACCENT, line="-", width=1.2),

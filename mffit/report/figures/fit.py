@@ -14,7 +14,7 @@ from mffit.report.build_view import ChannelRow
 from mffit.report.curves import Curve
 from mffit.report.drawing import Axis, Guide, Look, Panel, Sheet, Trace, in_rows
 from mffit.report.lines import Line
-from mffit.report.rounding import number
+from mffit.rounding import number
 
 
 class Overlaid(Protocol):

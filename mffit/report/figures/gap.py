@@ -27,7 +27,7 @@ from mffit.report.drawing import (
     in_rows,
 )
 from mffit.report.figures.residuals import most_populated, residual_map
-from mffit.report.rounding import number
+from mffit.rounding import number
 
 KIND_COLOURS = {"tyre": style.ACCENT, "rig": style.CONTRAST, "environment": style.CALM}
 MEASURED = Look(colour=style.INK, marker="o", size=3.2)

@@ -71,6 +71,6 @@ def test_two_sweeps_of_one_name_are_refused(project, tmp_path):
     table = project.tables[project.config["sweep"][0]["file"]]
     project.add("b c.csv", table.assign(Fy_N=table["Fy_N"] + 1.0, Mz_Nm=table["Mz_Nm"] + 0.1))
     project.add("b_c.csv", table.assign(Fy_N=table["Fy_N"] - 1.0, Mz_Nm=table["Mz_Nm"] - 0.1))
-    with pytest.raises(InputError, match="two sweeps would both be written"):
+    with pytest.raises(InputError, match="two sweeps have the same file name"):
         write_tydex(project.write(), tmp_path / "tydex")
     assert not (tmp_path / "tydex").exists()

@@ -9,7 +9,7 @@ import pytest
 from report_toys import TRUE, made_config, made_points, programme, read_page
 
 import tir
-from mffit.brief import HEIGHT, WIDTH
+from mffit.constants import LINES_PER_RECORD, TERMINAL_WIDTH
 from mffit.diagnosis import diagnose
 from mffit.diagnosis.selection import TIE
 from mffit.diagnosis.ties import Run, Separation
@@ -56,8 +56,8 @@ def written(diagnosis, folder):
 
 def test_a_diagnosis_fits_a_screen_and_leads_with_its_headline(misaligned):
     lines = repr(misaligned).splitlines()
-    assert len(lines) <= HEIGHT
-    assert max(map(len, lines)) <= WIDTH
+    assert len(lines) <= LINES_PER_RECORD
+    assert max(map(len, lines)) <= TERMINAL_WIDTH
     assert misaligned.headline[:60] in lines[0]
 
 
@@ -129,17 +129,17 @@ def test_colour_scale_never_blows_up_noise_nor_hides_what_is_left(clean, misalig
     assert gap.colour_limit([loud]) == constants.LARGEST_GAP_SCALE
 
 
-def test_nothing_missing_is_said_plainly(clean, tmp_path):
+def test_a_complete_simulation_is_reported_as_such(clean, tmp_path):
     page = written(clean, tmp_path)
     assert clean.effects == ()
     assert "no effect of the library explains more than chance would" in page.text
     assert "→" not in page.text
 
 
-def test_unexplained_structure_stands_at_the_top_with_its_place(unknown, tmp_path):
+def test_unexplained_structure_is_at_the_top_with_its_place(unknown, tmp_path):
     page = written(unknown, tmp_path)
     assert unknown.unexplained
-    alert = page.text.index("Something remains that no effect of the library describes")
+    alert = page.text.index("There is structure that no effect of the library describes")
     assert alert < page.text.index("Fy gap, rms")
     assert view_of(unknown).frames("Fy")[0] == unknown.unexplained_where[0]
 
@@ -153,7 +153,10 @@ def test_without_moment_only_side_force_is_shown(tmp_path):
 def test_summary_for_the_terminal(misaligned, unknown, clean):
     summary = text.diagnosis_summary(misaligned)
     assert "(rig), confidence" in summary
-    assert "alpha_0_deg = 0.3" in summary
+    assert "sideslip axis misaligned = 0.3" in summary
+    assert " deg, was 0" in summary
+    assert "alpha_0_deg" not in summary
+    assert "sideslip-misalignment" not in summary
     assert "unexplained:" in text.diagnosis_summary(unknown)
     nowhere = dataclasses.replace(unknown, unexplained_where=())
     assert "unexplained:" not in text.diagnosis_summary(nowhere)

@@ -7,12 +7,13 @@ import html
 
 import pytest
 
-from mffit.brief import HEIGHT, WIDTH, summary
+from mffit.brief import summary
+from mffit.constants import LINES_PER_RECORD, TERMINAL_WIDTH
 
 
 def fits(text: str) -> bool:
     lines = text.splitlines()
-    return len(lines) <= HEIGHT and max(map(len, lines)) <= WIDTH
+    return len(lines) <= LINES_PER_RECORD and max(map(len, lines)) <= TERMINAL_WIDTH
 
 
 @pytest.mark.parametrize(
