@@ -51,7 +51,7 @@ class ChannelRow(NamedChannel):
         return float(np.median(known)) if len(known) else float("nan")
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, kw_only=True)
 class CoefficientRow:
     """One row of the coefficient table."""
 
@@ -80,9 +80,9 @@ class CoefficientRow:
         return self.status in ("base", "default", "given", "range")
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, kw_only=True)
 class BuildView:
-    """Everything the build report needs."""
+    """All content of the build report."""
 
     config: Config
     points: Points  #: angles as read

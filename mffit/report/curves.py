@@ -1,4 +1,4 @@
-"""Which points are on one curve and which curves in one panel; for the pictures only."""
+"""Points of one curve and curves of one panel, for the pictures only."""
 
 from __future__ import annotations
 
@@ -120,7 +120,7 @@ def _varied(alpha: np.ndarray, gamma: np.ndarray) -> str:
 
 
 def _set_points(angle: np.ndarray) -> int:
-    """How many set-points an angle (k,) [deg] has."""
+    """Number of set-points of an angle (k,) [deg]."""
     return len(np.unique(np.round(angle / constants.SET_POINT_WIDTH)))
 
 

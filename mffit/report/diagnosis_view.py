@@ -28,17 +28,16 @@ class GapChannel(NamedChannel):
     noise: float  #: of a typical point, in ``unit``
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Candidate:
     """One effect in one step."""
 
-    id: str
     name: str
     kind: str
     gain: float  #: of log evidence over the step before
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, kw_only=True)
 class RankedStep:
     """All candidates of one forward step, best first."""
 
@@ -51,19 +50,19 @@ class RankedStep:
         return bool(self.candidates) and self.candidates[0].gain > self.threshold
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Shown:
     """One sweep with the simulation before and after."""
 
-    word: str  #: why it is shown
+    word: str  #: "Worst" or "Typical"
     curve: Curve
     before: Line
     after: Line
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, kw_only=True)
 class DiagnosisView:
-    """Everything the diagnosis page needs."""
+    """All content of the diagnosis page."""
 
     title: str
     points: Points
@@ -71,9 +70,8 @@ class DiagnosisView:
     channels: tuple[GapChannel, ...]
     diagnosis: Diagnosis
     steps: tuple[RankedStep, ...]
-    kinds: Mapping[str, str]  #: effect id -> tyre, rig or environment
     names: Mapping[str, str]  #: effect id -> plain name
-    descriptions: Mapping[str, str]  #: coefficient -> what it is
+    descriptions: Mapping[str, str]  #: coefficient -> its meaning
     units: Mapping[str, str]  #: of every number that was estimated, empty without one
     words: Mapping[str, str]  #: names of those that belong to the rig
     shown: tuple[Shown, ...]  #: the worst and the typical sweep
@@ -111,7 +109,6 @@ def view_of(diagnosis: Diagnosis) -> DiagnosisView:
         channels=tuple(channels),
         diagnosis=diagnosis,
         steps=tuple(_ranked(step) for step in diagnosis.steps),
-        kinds={key: effect.kind for key, effect in known.items()},
         names={key: effect.name for key, effect in known.items()},
         descriptions={name: BY_NAME[name].description for name in freed if name in BY_NAME},
         units={name: words.unit_of(name) for name in freed},
@@ -134,16 +131,26 @@ def _shown(diagnosis: Diagnosis, channels: Sequence[GapChannel]) -> tuple[Shown,
         model_lines(simulation, diagnosis.points, list(chosen.values()))
         for simulation in (diagnosis.given, diagnosis.state)
     )
-    return tuple(Shown(word, curve, before[curve.key], after[curve.key]) for word, curve in chosen.items())
+    return tuple(
+        Shown(word=word, curve=curve, before=before[curve.key], after=after[curve.key])
+        for word, curve in chosen.items()
+    )
 
 
 def _ranked(step: Step) -> RankedStep:
     candidates = (
-        Candidate(e.id, e.name, e.kind, float(t.log_evidence - step.before.log_evidence))
-        for t, e in ((t, t.effects[-1]) for t in step.trials)
+        Candidate(
+            name=trial.effects[-1].name,
+            kind=trial.effects[-1].kind,
+            gain=float(trial.log_evidence - step.before.log_evidence),
+        )
+        for trial in step.trials
     )
-    ordered = sorted(candidates, key=lambda c: -c.gain)
-    return RankedStep(tuple(e.name for e in step.before.effects), tuple(ordered), float(step.threshold))
+    return RankedStep(
+        beside=tuple(effect.name for effect in step.before.effects),
+        candidates=tuple(sorted(candidates, key=lambda c: -c.gain)),
+        threshold=float(step.threshold),
+    )
 
 
 def shown_steps(view: DiagnosisView) -> Sequence[RankedStep]:

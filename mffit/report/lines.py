@@ -1,4 +1,4 @@
-"""The model as a smooth line through each curve's conditions, for drawing only."""
+"""The model as a smooth line at each curve's conditions, for the pictures only."""
 
 from __future__ import annotations
 
@@ -14,9 +14,9 @@ from mffit.report.curves import Curve
 from mffit.rig import Simulation
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Line:
-    """What the rig would read along a curve if the tyre were the model; arrays (m,)."""
+    """Readings that the rig would give along a curve if the tyre were the model; arrays (m,)."""
 
     x: np.ndarray  #: the angle that varies [deg]
     raw: Mapping[str, np.ndarray]  #: by channel, Fy [N] and Mz [Nm]
@@ -28,9 +28,9 @@ def model_lines(simulation: Simulation, points: Points, curves: Sequence[Curve])
 
     Parameters
     ----------
-    simulation : the model on the rig, so that the line is what it would read
+    simulation : the model on the rig, with the errors of the rig
     points : the measured points (n,), angles as read
-    curves : which of them belong together
+    curves : rows of the points that belong together
     """
     if not curves:
         return {}

@@ -1,4 +1,4 @@
-"""One HTML file that needs nothing else: templates filled, pictures embedded."""
+"""One self-contained HTML file: a filled template with its pictures."""
 
 from __future__ import annotations
 

@@ -76,9 +76,9 @@ class _Prepared:
     @classmethod
     def of(cls, panel: Panel, height: float) -> _Prepared:
         extents = [series.extent() for series in panel.series]
-        guided = {axis: [guide.at for guide in panel.guides if guide.axis == axis] for axis in "xy"}
-        x_ends = limits(panel.x, [x for x, _ in extents] + guided["x"])
-        low, high = limits(panel.y, [y for _, y in extents] + guided["y"])
+        guided = {axis: np.array([g.at for g in panel.guides if g.axis == axis]) for axis in "xy"}
+        x_ends = limits(panel.x, [guided["x"], *(x for x, _ in extents)])
+        low, high = limits(panel.y, [guided["y"], *(y for _, y in extents)])
         scale = Scale(low=low, high=high, begin=TOP + height, end=TOP, logarithmic=panel.y.logarithmic)
         most = min(panel.y.ticks, max(2, int(height / (1.6 * LINE))))
         return cls(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -60,7 +61,7 @@ def _placed(figure: LaidOut) -> Iterator[tuple[float, float, Drawing]]:
 def _key_lines(key: Sequence[Drawing]) -> list[list[Drawing]]:
     """The entries of the key in lines as wide as the picture."""
     lines: list[list[Drawing]] = []
-    used = constants.PICTURE_WIDTH
+    used = math.inf
     for entry in key:
         needed = entry.width + 1.5 * GAP
         if used + needed > constants.PICTURE_WIDTH:

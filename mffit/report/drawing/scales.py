@@ -33,9 +33,9 @@ class Scale:
         return self.begin + (x - low) / (high - low) * (self.end - self.begin)
 
 
-def limits(axis: Axis, values: Sequence[np.ndarray | float]) -> tuple[float, float]:
-    """Both ends of an axis: those given, else the ends of the data and some room."""
-    known = np.concatenate([np.ravel(np.asarray(x, dtype=float)) for x in values]) if values else np.zeros(0)
+def limits(axis: Axis, values: Sequence[np.ndarray]) -> tuple[float, float]:
+    """Both ends of an axis: the given ones, else the ends of the data and some room."""
+    known = np.concatenate(values)
     known = known[np.isfinite(known)]
     low, high = (float(known.min()), float(known.max())) if len(known) else (0.0, 1.0)
     room = axis.room * (high - low) or 0.05 * abs(low) or 0.5

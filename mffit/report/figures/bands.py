@@ -33,7 +33,7 @@ def bands(view: BuildView) -> Sheet:
         x = np.linspace(-written[end], written[end], constants.STEPS_OF_FILE_CURVE)
         found = {load: _with_halves(view, over, x, load) for load in loads}
         for k, name in enumerate(CHANNELS):
-            series = []
+            series: list[Band | Trace] = []
             for load, (lines, halves) in found.items():
                 line, half, colour = lines[k], halves[k], colours[load]
                 at, said = np.degrees(x), labels.LOAD.of(load)

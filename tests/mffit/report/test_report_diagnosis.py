@@ -112,7 +112,9 @@ def test_evidence_ranks_the_named_effect_first(misaligned):
 @pytest.mark.parametrize(("share", "tied"), [(0.99, True), (1.01, False)])
 def test_picture_and_verdict_call_the_same_distance_a_tie(misaligned, share, tied):
     gains = (50.0, 50.0 - share * TIE)
-    step = RankedStep((), tuple(Candidate(f"{g}", f"{g}", "rig", g) for g in gains), 5.0)
+    step = RankedStep(
+        beside=(), candidates=tuple(Candidate(name=f"{g}", kind="rig", gain=g) for g in gains), threshold=5.0
+    )
     panel = gap.evidence(dataclasses.replace(view_of(misaligned), steps=(step,))).panels[0]
     best, behind = panel.notes
     assert best.text == "best"
