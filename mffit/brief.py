@@ -59,7 +59,7 @@ def _fields(record: Any) -> list[tuple[str, str]]:
 
 
 def summary(x: Any) -> str:
-    """A value in a few words: a number as it is, of a collection its size and its first or extreme members."""
+    """A value in a few words: a number, or the size of a collection with its members or their range."""
     if isinstance(x, float | np.floating):
         return f"{x:.6g}"
     if isinstance(x, str | Path):

@@ -19,5 +19,9 @@ EXPLAINED_SHARE = Real(
 )
 LARGEST_PLAIN_NUMBER = Real(1e7, "-", "Larger numbers are written with a power of ten.")
 SMALLEST_PLAIN_U = Real(1e-6, "-", "A number with a smaller uncertainty is written with a power of ten.")
-TERMINAL_WIDTH = Count(100, "-", "Characters per line of what is printed to a terminal; two windows fit side by side.")
-LINES_PER_RECORD = Count(28, "-", "Lines of a record's repr at most, so that a terminal window shows it whole.")
+TERMINAL_WIDTH = Count(
+    100, "-", "Characters per line of what is printed to a terminal; two windows fit side by side."
+)
+LINES_PER_RECORD = Count(
+    28, "-", "Lines of a record's repr at most, so that a terminal window shows it whole."
+)

@@ -24,7 +24,7 @@ def named(given: Given | Mapping[str, Given] | Iterable[Given]) -> dict[str, Tyr
     Raises
     ------
     InputError
-        If no tyre is given, or if a value is no finite number.
+        If no tyre is given, or if a value is not finite.
     TirError
         If a file cannot be read.
     """

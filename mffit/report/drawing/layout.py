@@ -101,12 +101,19 @@ class _Prepared:
         panel, axis = self.panel, self.panel.x
         x = Scale(low=low, high=high, begin=left, end=width - RIGHT, logarithmic=axis.logarithmic)
         frame = _DataArea(x=x, y=self.y)
+        areas = [series for series in panel.series if isinstance(series, Bars | Band)]
         below = LINE + SPACE + TICK + (LINE + SPACE if axis.label else 0.0)
         shapes = [
             *frame.grid(panel, _fitting(axis, x), self.y_numbers),
             *(shape for span in panel.spans for shape in frame.span(span.first, span.last, span.look)),
+            *(shape for series in areas for shape in frame.series(series)),
             *(frame.guide(guide) for guide in panel.guides),
-            *(shape for series in panel.series for shape in frame.series(series)),
+            *(
+                shape
+                for series in panel.series
+                if not isinstance(series, Bars | Band)
+                for shape in frame.series(series)
+            ),
             *(frame.frame(region) for region in panel.frames),
             *(frame.note(note) for note in panel.notes),
             *frame.labels(panel, width),
@@ -114,7 +121,7 @@ class _Prepared:
         return Drawing(
             width=width,
             height=TOP + self.height + (below if axis.numbered else SPACE),
-            shapes=[shape for shape in shapes if shape is not None],
+            shapes=shapes,
         )
 
 

@@ -159,7 +159,7 @@ def _length(shape: Letters) -> float:
 
 
 def _before(shape: Letters) -> float:
-    """How much of the text stands before its anchor [pixels]."""
+    """Length of the text before its anchor [pixels]."""
     return {"start": 0.0, "middle": 0.5, "end": 1.0}[shape.anchor] * _length(shape)
 
 

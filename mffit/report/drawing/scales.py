@@ -1,4 +1,4 @@
-"""From numbers to places on an axis, and which numbers stand at it."""
+"""Places of numbers on an axis, and the round numbers written at it."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Scale:
-    """An axis on the page: ``low`` is drawn at ``begin``, ``high`` at ``end`` [pt]."""
+    """An axis in a drawing: ``low`` is at ``begin``, ``high`` at ``end`` [pt]."""
 
     low: float
     high: float
@@ -46,12 +46,13 @@ def limits(axis: Axis, values: Sequence[np.ndarray]) -> tuple[float, float]:
 
 
 def numbers_at(axis: Axis, low: float, high: float, intervals: int) -> dict[float, str]:
-    """Numbers of an axis and how they are written, or its words."""
+    """Numbers of an axis with their texts, or its words; a single number would show no scale, so there are two at least."""
     if axis.words is not None:
         return dict(axis.words)
     if axis.logarithmic:
         return _powers(low, high, intervals)
-    return _round_numbers(min(low, high), max(low, high), intervals)
+    found = _round_numbers(min(low, high), max(low, high), intervals)
+    return found if len(found) > 1 else numbers_at(axis, low, high, intervals + 1)
 
 
 def _round_numbers(low: float, high: float, intervals: int) -> dict[float, str]:

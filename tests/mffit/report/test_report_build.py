@@ -75,7 +75,7 @@ def test_every_picture_is_described_in_words(page):
     assert all(len(said) > 20 for said in page.drawings)
 
 
-def test_warnings_stand_before_everything_else(page):
+def test_warnings_come_before_the_results(page):
     assert page.text.index("short & noisy") < page.text.index("Camber reduction factor ε")
 
 
@@ -167,7 +167,7 @@ def test_folded_coefficients_show_when_opened_and_on_paper(browser):
     assert table.is_displayed()
 
 
-def test_at_night_page_and_pictures_are_dark(browser):
+def test_page_and_pictures_are_dark_in_dark_mode(browser):
     drawing = browser.find_element("css selector", ".panels")
     look(browser)
     light = brightness(drawing)

@@ -1,4 +1,4 @@
-"""The diagnosis page shows what was found, what was not, and what remains."""
+"""The diagnosis page shows the effects found, the effects tried, and the structure that remains."""
 
 from __future__ import annotations
 
@@ -83,7 +83,9 @@ def test_a_tie_is_stated_with_the_run_that_separates_it(misaligned, tmp_path):
         tied_with=("ply-steer",),
         separation=Separation(Run.TURNED_ON_RIM, 1400.0, 50.0),
     )
-    page = written(dataclasses.replace(misaligned, effects=(found,)), tmp_path)
+    tied = dataclasses.replace(misaligned, effects=(found,))
+    assert "these data cannot tell it from: ply-steer" in text.diagnosis_summary(tied)
+    page = written(tied, tmp_path)
     assert "these data cannot tell it from ply-steer" in page.text
     assert "a sideslip sweep at 1400 N with the tyre turned on its rim (expected χ² 50)" in page.text
 

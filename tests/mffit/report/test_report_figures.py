@@ -151,7 +151,7 @@ def test_too_many_conditions_leave_those_with_most_points(view, monkeypatch):
     assert [c.title for c in kept] == ["900 N, 250 kPa", "1500 N, 250 kPa"]
 
 
-def test_this_tyre_stands_beside_the_published_ones(view):
+def test_this_tyre_is_listed_after_the_published_ones(view):
     panel = spin.camber_reduction(view).panels[0]
     assert [*panel.y.words.values()] == [*(tyre.name for tyre in TYRES), "front-1"]
     assert panel.y.bold == "front-1"
@@ -206,6 +206,8 @@ def test_unknown_values_break_a_line():
         (Axis(), 0.0, 1.0, ["0.0", "0.2", "0.4", "0.6", "0.8", "1.0"]),
         (Axis(), -0.3, 0.95, ["−0.25", "0.00", "0.25", "0.50", "0.75"]),
         (Axis(), 1200.0, 3400.0, ["1500", "2000", "2500", "3000"]),
+        (Axis(), -9.0, 9.5, ["−5", "0", "5"]),
+        (Axis(), 0.9, 1.9, ["1.0", "1.2", "1.4", "1.6", "1.8"]),
         (Axis(), 3.0, -1.0, ["−1", "0", "1", "2", "3"]),
         (Axis(logarithmic=True), 1.0, 2e5, ["1", "10", "10²", "10³", "10⁴", "10⁵"]),
         (Axis(words={0.0: "now"}), 0.0, 1.0, ["now"]),
@@ -217,6 +219,11 @@ def test_numbers_at_an_axis_are_round(axis, low, high, texts):
     assert all(min(low, high) - 1e-9 <= place <= max(low, high) + 1e-9 for place in found)
 
 
+def test_an_axis_has_at_least_two_numbers():
+    assert len(numbers_at(Axis(), -9.0, 9.0, 1)) >= 2
+    assert len(numbers_at(Axis(), 82.0, 97.0, 2)) >= 2
+
+
 def test_a_cloud_of_points_is_one_element_of_the_page():
     rng = np.random.default_rng(2)
     drawing = markup(panel_of(*rng.standard_normal((2, 5000)), Look(marker=".")))
@@ -225,7 +232,7 @@ def test_a_cloud_of_points_is_one_element_of_the_page():
     assert len(drawing) < 200_000
 
 
-def test_every_panel_stands_by_itself():
+def test_every_panel_has_its_own_labels():
     """A page on a telephone shows one panel per row, so each carries its labels."""
     labelled = panel_of([0, 1], [0, 1], x=Axis(label="angle"), y=Axis(label="force"))
     drawing = markup(labelled, labelled, labelled)

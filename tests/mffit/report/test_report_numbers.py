@@ -24,7 +24,7 @@ def rows(sheet):
     return list(csv.DictReader(io.StringIO(table(sheet))))
 
 
-def test_every_reading_stands_in_the_table_of_the_fit(view):
+def test_every_reading_is_in_the_table_of_the_fit(view):
     found = rows(fit.model_against_points(view, view.channels[0]))
     read = [row for row in found if not row["series"].startswith("model")]
     key = next(name for name in found[0] if name.startswith("y"))
@@ -37,7 +37,7 @@ def test_parts_are_named_as_in_the_legend(view):
     assert {row["series"].split(":")[0] for row in found} == {"raw reading", "odd part", "even part"}
 
 
-def test_bars_and_error_bars_are_named_by_what_stands_at_the_axis(view):
+def test_bars_and_error_bars_are_named_by_the_words_at_the_axis(view):
     found = rows(spin.camber_reduction(view))
     budget = {row["y"]: float(row["x"]) for row in found if row["panel"].startswith("What")}
     assert budget == pytest.approx(
@@ -55,7 +55,7 @@ def test_a_map_gives_the_value_of_every_colour(view):
     assert coloured == pytest.approx(sorted(values), abs=1e-5)
 
 
-def test_of_a_long_series_the_page_holds_some_and_says_so(monkeypatch):
+def test_a_long_series_is_thinned_and_its_name_says_so(monkeypatch):
     monkeypatch.setattr(constants, "POINTS_PER_SERIES_IN_PAGE", 10)
     x, few = np.arange(95.0), np.arange(9.0)
     series = [
