@@ -22,6 +22,10 @@ SMALLEST_PLAIN_U = Real(1e-6, "-", "A number with a smaller uncertainty is writt
 TERMINAL_WIDTH = Count(
     100, "-", "Characters per line of what is printed to a terminal; two windows fit side by side."
 )
+NEARLY_CERTAIN = Real(0.99, "-", "Larger confidences are written as more than this, as no model is certain.")
+KINDS_LISTED_IN_RECORD = Count(
+    6, "-", "Different words of a column that a record lists; of more it gives the number."
+)
 LINES_PER_RECORD = Count(
     28, "-", "Lines of a record's repr at most, so that a terminal window shows it whole."
 )

@@ -82,9 +82,12 @@ def as_good_as(value: float | None, u: float | None) -> str:
 
 def per_cent(share: float) -> str:
     """A confidence in per cent; never a round 0 or 100, which would claim certainty."""
-    if share > 0.99:
-        return "more than 99 %"
-    return "less than 1 %" if share < 0.01 else f"{100.0 * share:.0f} %"
+    limit = constants.NEARLY_CERTAIN
+    if share > limit:
+        return f"more than {100.0 * limit:.0f} %"
+    if share < 1.0 - limit:
+        return f"less than {100.0 * (1.0 - limit):.0f} %"
+    return f"{100.0 * share:.0f} %"
 
 
 def times(value: float | None, reference: float | None) -> str:

@@ -47,6 +47,7 @@ STEPS_OF_FILE_CURVE = Count(
 DENSE_CURVE = Count(
     60, "-", "Curves with more points are drawn as dots instead of circles, which would cover each other."
 )
+WHOLE_DEGREES = Real(0.15, "deg", "Cambers this close to whole degrees are written without decimals.")
 MOST_PANELS_OF_FIT = Count(
     15, "-", "Panels of points and model at most; a page with more is not looked through."
 )
@@ -90,6 +91,9 @@ NEIGHBOUR_SHIFT = Real(
     0.026, "-", "Distance between points with equal angles in a map, as a share of the camber range."
 )
 CROWDED_MAP = Count(300, "-", "Maps with this many points or more have smaller squares.")
+LOAD_TOLERANCE_OF_FRAME = Real(
+    0.05, "-", "A region is framed at loads that differ from its own by this share at most."
+)
 MOST_FRAMES_PER_MAP = Count(3, "-", "Regions framed in a map at most; more frames would hide the map.")
 MOST_CANDIDATES_DRAWN = Count(12, "-", "Candidate effects drawn per step of a diagnosis.")
 MOST_STEPS_DRAWN = Count(3, "-", "Steps of a diagnosis drawn at most: one row of panels.")

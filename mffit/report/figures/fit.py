@@ -107,7 +107,7 @@ def _key(view: Overlaid, channel: ChannelRow, colours: Mapping[float, str]) -> d
     for rows, (name, mark) in zip(view.marked(channel.name), MARKS.items(), strict=True):
         if len(rows):
             key[name] = mark
-    places = 0 if all(abs(camber - round(camber)) < 0.15 for camber in colours) else 1
+    places = 0 if all(abs(camber - round(camber)) < constants.WHOLE_DEGREES for camber in colours) else 1
     symbol = labels.ANGLES["gamma"].symbol
     if len(colours) > 1:
         for camber, colour in colours.items():

@@ -194,10 +194,10 @@ def _distances(rows: Sequence[Candidate], gains: np.ndarray) -> list[Note]:
 
 def _frames(regions: Sequence[Region], load: float) -> list[Frame]:
     """A frame around every region at this load."""
-    found = []
+    found, near = [], constants.LOAD_TOLERANCE_OF_FRAME
     for region in (item.region for item in regions):
         low, high = region.get("Fz_N", (-np.inf, np.inf))
-        if {"alpha_deg", "gamma_deg"} & region.keys() and low * 0.95 <= load <= high * 1.05:
+        if {"alpha_deg", "gamma_deg"} & region.keys() and low * (1.0 - near) <= load <= high * (1.0 + near):
             x, y = (_bounds(region.get(key)) for key in ("alpha_deg", "gamma_deg"))
             found.append(Frame(x=x, y=y))
     return found
