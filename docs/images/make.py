@@ -9,8 +9,9 @@ from pathlib import Path
 import mffit
 from mffit.report import labels, style
 from mffit.report.build_view import BuildView, view_of
-from mffit.report.drawing import Axis, Guide, Look, Panel, Sheet, Trace, png
+from mffit.report.drawing import png
 from mffit.report.drawing.layout import lay_out
+from mffit.report.drawing.records import Axis, Guide, Look, Panel, Sheet, Trace
 from mffit.report.figures import fit, residuals, spin
 
 HERE = Path(__file__).parent

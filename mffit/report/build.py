@@ -13,7 +13,7 @@ from mffit.measured import LARGEST_DIFFERENCE, wording
 from mffit.quantities import CHANNELS, CONDITIONS, DIRECT
 from mffit.report import page, published
 from mffit.report.build_view import PER_LOAD, STATUS_ORDER, BuildView, ChannelRow, CoefficientRow, view_of
-from mffit.report.drawing import Sheet
+from mffit.report.drawing.records import Sheet
 from mffit.report.figures import bands, decomposition, files, fit, residuals, spin
 from mffit.results import BuildResult
 

@@ -15,7 +15,7 @@ from mffit.quantities import CHANNELS
 from mffit.report import constants, page
 from mffit.report.build_view import ChannelRow
 from mffit.report.curves import Curve, curves
-from mffit.report.drawing import Sheet
+from mffit.report.drawing.records import Sheet
 from mffit.report.figures import compared, fit
 from mffit.report.lines import Line, model_lines
 

@@ -11,7 +11,7 @@ from mffit.diagnosis.selection import TIE
 from mffit.quantities import CHANNELS
 from mffit.report import page
 from mffit.report.diagnosis_view import DiagnosisView, shown_steps, view_of
-from mffit.report.drawing import Sheet
+from mffit.report.drawing.records import Sheet
 from mffit.report.figures import gap
 
 

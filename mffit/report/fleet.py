@@ -10,7 +10,7 @@ from mffit.effects import FAULT_WORDS
 from mffit.fleet import ENOUGH, EPSILON, Fleet
 from mffit.quantities import CHANNELS, COMPARED, DIRECT
 from mffit.report import page
-from mffit.report.drawing import Sheet
+from mffit.report.drawing.records import Sheet
 from mffit.report.figures import fleet
 from mffit.rig import MEANINGS, UNITS
 

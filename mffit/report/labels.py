@@ -7,7 +7,7 @@ import re
 from mffit.quantities import CHANNELS, CONDITIONS, DIRECT
 from mffit.report import constants
 from mffit.report.curves import Curve
-from mffit.report.drawing import Axis
+from mffit.report.drawing.records import Axis
 from mffit.rounding import number
 
 ANGLES = {"alpha": CONDITIONS["alpha_deg"], "gamma": CONDITIONS["gamma_deg"]}

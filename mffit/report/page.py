@@ -13,8 +13,9 @@ from urllib.parse import quote
 from mffit import rounding
 from mffit.measured import wording
 from mffit.report import making, numbers, typeset
-from mffit.report.drawing import Sheet, png, svg
+from mffit.report.drawing import png, svg
 from mffit.report.drawing.layout import lay_out
+from mffit.report.drawing.records import Sheet
 from mffit.templates import environment
 
 if TYPE_CHECKING:

@@ -2,39 +2,3 @@
 
 ``records`` say what is shown, ``layout`` turns a panel into a few plain shapes, ``svg`` and ``png`` write the same shapes.
 """
-
-from mffit.report.drawing.records import (
-    Axis,
-    Band,
-    Bars,
-    ColourScale,
-    ErrorBars,
-    Frame,
-    Guide,
-    Look,
-    Map,
-    Note,
-    Panel,
-    Sheet,
-    Span,
-    Trace,
-    in_rows,
-)
-
-__all__ = [
-    "Axis",
-    "Band",
-    "Bars",
-    "ColourScale",
-    "ErrorBars",
-    "Frame",
-    "Guide",
-    "Look",
-    "Map",
-    "Note",
-    "Panel",
-    "Sheet",
-    "Span",
-    "Trace",
-    "in_rows",
-]

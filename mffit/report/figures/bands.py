@@ -8,7 +8,7 @@ from mffit.points import make_points
 from mffit.quantities import CHANNELS
 from mffit.report import constants, labels, style
 from mffit.report.build_view import BuildView
-from mffit.report.drawing import Axis, Band, Guide, Look, Panel, Sheet, Trace
+from mffit.report.drawing.records import Axis, Band, Guide, Look, Panel, Sheet, Trace
 from mffit.rig import Simulation
 
 LIMITS = {"gamma": "CAMMAX", "alpha": "ALPMAX"}

@@ -7,7 +7,7 @@ import numpy as np
 from mffit.comparison import Comparison, CurveGap, wording
 from mffit.quantities import CHANNELS
 from mffit.report import constants, labels, style
-from mffit.report.drawing import Axis, Band, Bars, Guide, Look, Panel, Sheet, Trace, in_rows
+from mffit.report.drawing.records import Axis, Band, Bars, Guide, Look, Panel, Sheet, Trace, in_rows
 
 FIRST, SECOND = (
     Look(colour=style.ACCENT, line="-", width=1.2),

@@ -9,7 +9,7 @@ import numpy as np
 from mffit.report import constants, labels, style
 from mffit.report.build_view import BuildView, ChannelRow
 from mffit.report.curves import Curve
-from mffit.report.drawing import Axis, ErrorBars, Guide, Look, Panel, Sheet, Trace, in_rows
+from mffit.report.drawing.records import Axis, ErrorBars, Guide, Look, Panel, Sheet, Trace, in_rows
 
 RAW = Look(colour=style.MUTED, line=":", marker="o", size=3.0)
 ODD = Look(colour=style.ACCENT, line="-")

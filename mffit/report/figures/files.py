@@ -7,7 +7,7 @@ import numpy as np
 from mffit.quantities import CHANNELS
 from mffit.report import constants, labels, style
 from mffit.report.build_view import BuildView
-from mffit.report.drawing import Axis, Look, Panel, Sheet, Trace
+from mffit.report.drawing.records import Axis, Look, Panel, Sheet, Trace
 from mffit.report.figures.bands import LIMITS, tested_edges
 from mffit.rounding import number
 

@@ -10,7 +10,7 @@ import numpy as np
 from mffit.fleet import EPSILON, Fleet
 from mffit.quantities import COMPARED
 from mffit.report import constants, labels, style
-from mffit.report.drawing import Axis, ErrorBars, Look, Panel, Sheet, in_rows
+from mffit.report.drawing.records import Axis, ErrorBars, Look, Panel, Sheet, in_rows
 
 if TYPE_CHECKING:
     from tir import Quantity

@@ -13,7 +13,7 @@ from mffit.diagnosis.selection import TIE
 from mffit.diagnosis.where import Region
 from mffit.report import constants, labels, style
 from mffit.report.diagnosis_view import Candidate, DiagnosisView, GapChannel, RankedStep, Shown, shown_steps
-from mffit.report.drawing import (
+from mffit.report.drawing.records import (
     Axis,
     Bars,
     ColourScale,

@@ -9,7 +9,7 @@ import numpy as np
 from mffit.planning import Plan, wording
 from mffit.quantities import DIRECT
 from mffit.report import style
-from mffit.report.drawing import Axis, Bars, Guide, Look, Note, Panel, Sheet
+from mffit.report.drawing.records import Axis, Bars, Guide, Look, Note, Panel, Sheet
 
 
 def u_against_runs(plan: Plan) -> Sheet:

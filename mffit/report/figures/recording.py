@@ -9,7 +9,7 @@ import numpy as np
 from mffit.points.steady import gaps
 from mffit.points.stretch import MOVE, StretchNote
 from mffit.report import constants, style
-from mffit.report.drawing import Axis, Look, Panel, Sheet, Span, Trace
+from mffit.report.drawing.records import Axis, Look, Panel, Sheet, Span, Trace
 from mffit.sweeps import Sweep
 
 KEPT = Look(colour=style.CALM, opacity=0.13)

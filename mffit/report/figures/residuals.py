@@ -9,7 +9,7 @@ import numpy as np
 from mffit.points import Points
 from mffit.report import constants, labels, style
 from mffit.report.curves import Condition
-from mffit.report.drawing import Axis, ColourScale, Frame, Look, Map, Panel, Sheet, Trace
+from mffit.report.drawing.records import Axis, ColourScale, Frame, Look, Map, Panel, Sheet, Trace
 
 BACKWARD = Look(colour=style.INK, marker=".", size=1.8)
 

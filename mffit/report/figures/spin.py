@@ -12,7 +12,18 @@ from mffit.quantities import CHANNELS
 from mffit.report import constants, labels, style
 from mffit.report.build_view import BuildView
 from mffit.report.curves import Curve
-from mffit.report.drawing import Axis, Bars, ErrorBars, Guide, Look, Note, Panel, Sheet, Trace, in_rows
+from mffit.report.drawing.records import (
+    Axis,
+    Bars,
+    ErrorBars,
+    Guide,
+    Look,
+    Note,
+    Panel,
+    Sheet,
+    Trace,
+    in_rows,
+)
 from mffit.report.published import TYRES
 
 PUBLISHED = Look(colour=style.MUTED, marker="o", size=4.0, width=1.2)

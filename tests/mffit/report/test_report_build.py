@@ -129,7 +129,8 @@ def test_importing_and_drawing_load_no_plot_library(tmp_path):
     code = (
         "import sys, pathlib, numpy as np, mffit.report, mffit.report.text\n"
         "assert not {'matplotlib', 'PIL', 'jinja2'} & set(sys.modules)\n"
-        "from mffit.report.drawing import Axis, Look, Panel, Sheet, Trace, png\n"
+        "from mffit.report.drawing import png\n"
+        "from mffit.report.drawing.records import Axis, Look, Panel, Sheet, Trace\n"
         "from mffit.report.drawing.layout import lay_out\n"
         "one = Trace(name='one', x=np.arange(2.0), y=np.arange(2.0), look=Look(line='-'))\n"
         "panel = Panel(x=Axis(), y=Axis(), series=[one])\n"

@@ -12,9 +12,10 @@ import pytest
 from mffit.quantities import CHANNELS
 from mffit.report import constants, labels, style
 from mffit.report.build_view import view_of
-from mffit.report.drawing import Axis, Guide, Look, Panel, Sheet, Trace, png, svg
+from mffit.report.drawing import png, svg
 from mffit.report.drawing.layout import lay_out
 from mffit.report.drawing.letters import width_of
+from mffit.report.drawing.records import Axis, Guide, Look, Panel, Sheet, Trace
 from mffit.report.drawing.scales import numbers_at
 from mffit.report.drawing.shapes import Area, Letters, Marks, Stroke
 from mffit.report.figures import decomposition, fit, residuals, spin
@@ -352,7 +353,7 @@ def test_no_panel_is_too_wide_for_a_telephone(columns):
 
 
 def test_a_logarithmic_bar_begins_at_the_left_end(view):
-    from mffit.report.drawing import Bars
+    from mffit.report.drawing.records import Bars
 
     bars = Bars(name="gain", lengths=np.array([100.0]), places=np.array([0.0]), colours=[style.ACCENT])
     axis = Axis(low=1.0, high=1e4, logarithmic=True)

@@ -10,7 +10,7 @@ import pytest
 
 from mffit.report import constants
 from mffit.report.build_view import view_of
-from mffit.report.drawing import Axis, Look, Map, Panel, Sheet, Trace
+from mffit.report.drawing.records import Axis, Look, Map, Panel, Sheet, Trace
 from mffit.report.figures import decomposition, fit, residuals, spin
 from mffit.report.numbers import table
 
