@@ -1,4 +1,4 @@
-"""Records on a screen: what a terminal and a notebook show of them, a line per field, however much they hold."""
+"""Records on a screen: a terminal and a notebook show a line per field, however much a record holds."""
 
 from __future__ import annotations
 
@@ -11,32 +11,30 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
+from mffit.constants import KINDS_LISTED_IN_RECORD, LINES_PER_RECORD, TERMINAL_WIDTH
+from mffit.rounding import ascii_only, stated
 from tir import Quantity, Tyre
-
-WIDTH = 100
-"""Characters of a line."""
-HEIGHT = 28
-"""Lines of a record."""
 
 
 class Brief:
-    """A record whose ``repr`` fits a screen; its attributes hold everything."""
+    """A record whose ``repr`` fits a screen; its attributes hold all values."""
 
     __slots__ = ()
 
     @property
     def headline(self) -> str:
-        """What to say first of it."""
+        """The most important fact, for the first line; empty for none."""
         return ""
 
     def __repr__(self) -> str:
         lines = [f"<{_title(self)}", *(f" {name}: {text}" for name, text in _fields(self))]
-        if len(lines) > HEIGHT:
-            lines = [*lines[: HEIGHT - 1], f" and {len(lines) - HEIGHT + 1} fields more"]
-        return "\n".join(_cut(line, WIDTH - 1) for line in lines) + ">"
+        if len(lines) > LINES_PER_RECORD:
+            shown = LINES_PER_RECORD - 1
+            lines = [*lines[:shown], f" and {len(lines) - shown} fields more"]
+        return "\n".join(_cut(line, TERMINAL_WIDTH - 1) for line in lines) + ">"
 
     def _repr_html_(self) -> str:
-        """For notebooks: the same as a table, with a picture of the tyre if there is one."""
+        """For notebooks: the same as a table, with a picture of the tyre if the record has one."""
         rows = "".join(
             f"<tr><th style='text-align:left'>{html.escape(name)}</th><td style='text-align:left'>{html.escape(text)}</td></tr>"
             for name, text in _fields(self)
@@ -61,13 +59,13 @@ def _fields(record: Any) -> list[tuple[str, str]]:
 
 
 def summary(x: Any) -> str:
-    """A value in a few words: numbers as they are, of what holds many how many and which."""
+    """A value in a few words: a number, or the size of a collection with its members or their range."""
     if isinstance(x, float | np.floating):
         return f"{x:.6g}"
     if isinstance(x, str | Path):
         return repr(str(x))
     if isinstance(x, Quantity):
-        return f"{x.value:.6g} +- {x.u:.2g} {x.unit}"
+        return ascii_only(stated(x, x.unit))
     if isinstance(x, np.ndarray):
         return _array(x)
     if isinstance(x, pd.DataFrame):
@@ -91,7 +89,7 @@ def _array(x: np.ndarray) -> str:
     size = " x ".join(map(str, x.shape))
     if x.dtype.kind not in "fiu" or not x.size:
         kinds = np.unique(x.astype(str)).tolist()
-        return f"{size}: {', '.join(kinds)}" if len(kinds) <= 6 else f"{size} values"
+        return f"{size}: {', '.join(kinds)}" if len(kinds) <= KINDS_LISTED_IN_RECORD else f"{size} values"
     known = x[np.isfinite(x)]
     if not known.size:
         return f"{size}, not known"

@@ -44,3 +44,15 @@ ZERO_SIDESLIP = Real(
 ZERO_CAMBER = Real(
     0.5, "deg", "Points within this camber as read count as upright: zeros and sideslip sweeps."
 )
+LARGEST_PLAIN_NUMBER = Real(1e7, "-", "Larger numbers are written with a power of ten.")
+SMALLEST_PLAIN_U = Real(1e-6, "-", "A number with a smaller uncertainty is written with a power of ten.")
+TERMINAL_WIDTH = Count(
+    100, "-", "Characters per line of what is printed to a terminal; two windows fit side by side."
+)
+NEARLY_CERTAIN = Real(0.99, "-", "Larger confidences are written as more than this, as no model is certain.")
+KINDS_LISTED_IN_RECORD = Count(
+    6, "-", "Different words of a column that a record lists; of more it gives the number."
+)
+LINES_PER_RECORD = Count(
+    28, "-", "Lines of a record's repr at most, so that a terminal window shows it whole."
+)

@@ -1,4 +1,4 @@
-"""How templates are filled, for pages and for exported files."""
+"""Templates of pages and of exported files."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ if TYPE_CHECKING:
 
 
 def environment(package: str, **options: Any) -> Environment:
-    """The templates of a package's folder ``templates``: what is from outside is escaped, what is not given is an error."""
+    """The templates in a package's folder ``templates``; content is escaped, and missing content is an error."""
     from jinja2 import Environment, PackageLoader, StrictUndefined
 
     given = {"autoescape": True, "trim_blocks": True, "lstrip_blocks": True, **options}

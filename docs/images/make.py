@@ -2,63 +2,72 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from functools import partial
 from pathlib import Path
-
-import numpy as np
-from matplotlib.lines import Line2D
 
 import mffit
 from mffit.report import labels, style
-from mffit.report.build_view import view_of
+from mffit.report.build_view import BuildView, view_of
+from mffit.report.drawing import png
+from mffit.report.drawing.layout import lay_out
+from mffit.report.drawing.records import Axis, Guide, Look, Panel, Sheet, Trace
 from mffit.report.figures import fit, residuals, spin
 
 HERE = Path(__file__).parent
 SAMPLE = HERE.parents[1] / "samples" / "front-120-70" / "tyre.toml"
+LOOKS = {
+    "measured on the disc": Look(colour=style.CONTRAST, marker="o", size=4.5),
+    "fitted model": Look(colour=style.INK, line="-", width=1.4),
+    "odd part: sideslip and camber": Look(colour=style.ACCENT, line="-", width=1.2),
+    "even part: turn slip": Look(colour=style.CALM, line="--", width=1.2),
+}
 
 
-def overview(view):
+def overview(view: BuildView) -> Sheet:
     """Side force over sideslip and over camber at nominal load: readings, odd and even part, fitted model."""
+    return Sheet(rows=[[_overview(view, over) for over in labels.ANGLES]], height=3.2, key=LOOKS)
+
+
+def _overview(view: BuildView, over: str) -> Panel:
     channel, load = view.channels[0], view.config.tyre.nominal_load
-    figure, (panels,) = style.panel_grid([2], 2, height=3.2, gap=(0.8, 0.6))
-    for ax, over in zip(panels, ("alpha", "gamma"), strict=True):
-        (curve,) = (
-            c
-            for c in view.curves
-            if c.over == over and c.load == load and c.held == 0.0 and c.pressure == 250.0 and c.forward
-            and len(c.index) > 8
-        )  # fmt: skip
-        x, line = np.degrees(getattr(view.points, over)[curve.index]), view.lines[curve.key]
-        ax.axhline(0.0, color=style.FAINT, lw=0.8)
-        ax.plot(line.x, line.raw[channel.name], color=style.INK, lw=1.4)
-        ax.plot(
-            x, channel.measured[curve.index], ls="none", marker="o", ms=4.5, color=style.CONTRAST, mec="none"
-        )
-        ax.plot(x, channel.odd[curve.index], "-", color=style.ACCENT, lw=1.2)
-        ax.plot(x, channel.even[curve.index], "--", color=style.CALM, lw=1.2)
-        ax.set_xlabel(labels.ANGLES[over].axis)
-        ax.set_title(labels.condition(load, curve.pressure))
-    style.label_left([panels], channel.label)
-    said = (
-        Line2D([], [], ls="none", marker="o", color=style.CONTRAST, mec="none", label="measured on the disc"),
-        Line2D([], [], color=style.INK, label="fitted model"),
-        Line2D([], [], color=style.ACCENT, label="odd part: sideslip and camber"),
-        Line2D([], [], ls="--", color=style.CALM, label="even part: turn slip"),
+    (curve,) = (
+        c
+        for c in view.curves
+        if (c.over, c.load, c.held, c.pressure) == (over, load, 0.0, 250.0) and c.forward and len(c.index) > 8
     )
-    style.legend_above(figure, list(said))
-    return figure
+    x, line = curve.angles(view.points), view.lines[curve.key]
+    rows = curve.index
+    data = (
+        (x, channel.measured[rows]),
+        (line.x, line.raw[channel.name]),
+        (x, channel.odd[rows]),
+        (x, channel.even[rows]),
+    )
+    return Panel(
+        title=curve.condition,
+        x=labels.angle_axis(over),
+        y=Axis(label=channel.label),
+        series=[
+            Trace(name=name, x=x, y=y, look=look)
+            for (name, look), (x, y) in zip(LOOKS.items(), data, strict=True)
+        ],
+        guides=[Guide(axis="y", at=0.0)],
+    )
 
 
 def main() -> None:
     view = view_of(mffit.build(SAMPLE))
-    with style.applied():
-        style.save(overview(view), HERE / "build.png")
-        style.save(spin.camber_reduction(view), HERE / "camber_reduction.png")
-        style.save(spin.alignment(view), HERE / "alignment.png")
-        style.save(fit.model_against_points(view, view.channels[0]), HERE / "fit.png")
-        scaled = [(c.symbol, (c.measured - c.model) / c.u) for c in view.channels]
-        style.save(
-            residuals.residual_maps(view.points, scaled, view.conditions, 4.0, "u"), HERE / "residuals.png"
-        )
+    scaled = [(c.symbol, (c.measured - c.model) / c.u) for c in view.channels]
+    sheets: dict[str, Callable[[], Sheet]] = {
+        "build": partial(overview, view),
+        "camber_reduction": partial(spin.camber_reduction, view),
+        "alignment": partial(spin.alignment, view),
+        "fit": partial(fit.model_against_points, view, view.channels[0]),
+        "residuals": partial(residuals.residual_maps, view.points, scaled, view.conditions, "u"),
+    }
+    for name, sheet in sheets.items():
+        png.save(lay_out(sheet()), HERE / f"{name}.png")
 
 
 if __name__ == "__main__":

@@ -8,17 +8,17 @@ from collections.abc import Iterator
 from mffit.comparison import constants
 from mffit.comparison.record import Comparison, Difference, Subject
 from mffit.measured import KEYS
-from mffit.quantities import CHANNELS, CHARACTERISTICS, CONDITIONS, DIRECT, Quantity
+from mffit.quantities import CHANNELS, CHARACTERISTICS, CONDITIONS, DIRECT, QuantityName
 from tir.parameters import BY_NAME
 
 OF_DIRECT = {key: DIRECT[name] for name, key in KEYS.items()}
 
 
-def quantity(row: Difference) -> Quantity:
+def quantity(row: Difference) -> QuantityName:
     """Word, symbol and unit of a number."""
     if row.load is None:
         known = BY_NAME[row.key]
-        return Quantity(known.description, row.key, known.unit)
+        return QuantityName(known.description, row.key, known.unit)
     return CHARACTERISTICS.get(row.key) or OF_DIRECT[row.key]
 
 

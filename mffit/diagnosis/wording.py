@@ -24,7 +24,7 @@ from mffit.diagnosis.ties import Run, Separation
 from mffit.diagnosis.validation import Gap, Validation
 from mffit.effects import NEEDS, Effect
 from mffit.quantities import CHANNELS, CONDITIONS
-from mffit.rounding import rounded
+from mffit.rounding import to_uncertainty
 from mffit.suspicion import Misread, Outlier, about
 from tir import Quantity
 
@@ -175,7 +175,7 @@ def _redone(found: DirectMethodRedone) -> str:
 
 
 def _with_u(x: Quantity) -> str:
-    return f"{rounded(x.value, x.u)} +- {rounded(x.u, x.u)}"
+    return f"{to_uncertainty(x.value, x.u)} +- {to_uncertainty(x.u, x.u)}"
 
 
 def source(noise: Noise) -> str:
@@ -233,7 +233,9 @@ def remedy(found: Found, signs: Mapping[str, float]) -> str:
     value, u = found.parameters[effect.free[0].name]
     value *= math.prod(signs[axis] for axis in effect.axes)
     plus = "+" if effect.axes else ""
-    return effect.remedy.format(value=rounded(value, u, plus), opposite=rounded(-value, u, plus))
+    return effect.remedy.format(
+        value=to_uncertainty(value, u, plus), opposite=to_uncertainty(-value, u, plus)
+    )
 
 
 def status(effect: Effect, before: float, stderr: float) -> str:

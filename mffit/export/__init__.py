@@ -1,6 +1,6 @@
 """A tyre for other programs: C source files, and functional mock-up units (FMI 2.0 and 3.0).
 
-The equations come from ``tir.export_c``; here is what surrounds them: names, units, files, a compiler.
+The equations come from ``tir.export_c``; this folder adds names, units, files and the call of a compiler.
 """
 
 from mffit.export.c import write_c

@@ -23,18 +23,18 @@ def write_c(
     ----------
     path : the property file
     out : folder to write to
-    name : of the files and in front of the functions; by default made of the file's
+    name : of the files, and prefix of the functions; by default made from the name of the property file
     turn_slip, limits : as in a call of the tyre
 
     Returns
     -------
     list of Path
-        What was written.
+        The written files.
 
     Raises
     ------
     InputError
-        The name is none in C, a value has no number in it, or the folder cannot be written to.
+        The name is not a name in C, a value is not finite, or the folder cannot be written to.
     TirError
         The file cannot be read.
     """

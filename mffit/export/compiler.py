@@ -1,4 +1,4 @@
-"""The C compiler of this machine."""
+"""The C compiler of the machine."""
 
 from __future__ import annotations
 
@@ -12,6 +12,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from mffit.errors import InputError
+from mffit.export import constants
 
 FLAGS = ("-std=c99", "-O2", "-ffp-contract=off", "-shared", "-fvisibility=hidden")
 SUFFIX = {"win32": ".dll", "darwin": ".dylib"}
@@ -23,13 +24,11 @@ OLD_NAMES = {
     "x86_64-darwin": "darwin64",
     "aarch64-darwin": "darwin64",
 }
-"""The folders of FMI 2.0; where it has none, that of 3.0 is usual."""
-SLOWEST = 300
-"""Seconds after which a compiler is given up."""
+"""Names of folders in FMI 2.0; for other machines the name of FMI 3.0 is usual."""
 
 
 def suffix() -> str:
-    """How a shared library's name ends here."""
+    """The suffix of a shared library on this machine."""
     return SUFFIX.get(sys.platform, ".so")
 
 
@@ -44,7 +43,7 @@ def host_folder(fmi: int) -> str:
     machine, system = MACHINES.get(platform.machine().lower()), SYSTEMS.get(sys.platform)
     if machine is None or system is None:
         raise InputError(
-            f"FMI has no name for binaries of this machine ({platform.machine()}, {sys.platform}): take --sources-only"
+            f"FMI defines no folder for binaries of this machine ({platform.machine()}, {sys.platform}): use --sources-only"
         )
     name = f"{machine}-{system}"
     return OLD_NAMES.get(name, name) if fmi == 2 else name
@@ -69,16 +68,18 @@ def compile_shared(sources: Sequence[Path], library: Path, definitions: Sequence
         "-lm",
     ]
     try:
-        done = subprocess.run(command, capture_output=True, text=True, check=False, timeout=SLOWEST)
+        done = subprocess.run(
+            command, capture_output=True, text=True, check=False, timeout=constants.COMPILER_TIMEOUT
+        )
     except (OSError, subprocess.TimeoutExpired) as error:
         why = getattr(error, "strerror", None) or error
         raise InputError(
-            f"the C compiler {command[0]} did not run ({why}); name another in CC, or take --sources-only"
+            f"the C compiler {command[0]} did not run ({why}); name another one in CC, or use --sources-only"
         ) from error
     if done.returncode:
-        said = next((line for line in done.stderr.splitlines() if "error" in line), done.stderr.strip())
+        line = next((line for line in done.stderr.splitlines() if "error" in line), done.stderr.strip())
         raise InputError(
-            f"the C compiler {command[0]} failed ({said}); name another in CC, or take --sources-only"
+            f"the C compiler {command[0]} failed ({line}); name another one in CC, or use --sources-only"
         )
 
 
@@ -90,6 +91,6 @@ def _compiler() -> list[str]:
         if shutil.which(name):
             return [name]
     raise InputError(
-        "there is no C compiler (cc, gcc, clang) to make the binary of this machine with: install one, name it in CC, or take "
-        "--sources-only, which leaves compiling to the program that imports the FMU"
+        "no C compiler (cc, gcc, clang) was found for the binary of this machine: install one, name it in CC, or use "
+        "--sources-only, so that the program that imports the FMU compiles it"
     )

@@ -23,10 +23,10 @@ if TYPE_CHECKING:
     from jinja2 import Environment
 
 DEFINITIONS: dict[int, tuple[str, ...]] = {2: (), 3: ("FMI3_OVERRIDE_FUNCTION_PREFIX",)}
-"""By version of FMI, what is defined when a shared library is compiled."""
+"""Preprocessor definitions for a shared library, by version of FMI."""
 READABLE = 0o644
 EARLIEST = (1980, 1, 1, 0, 0, 0)
-"""The date of every file in the archive, so that the same tyre gives the same bytes."""
+"""Date of every file in the archive: the same tyre gives the same bytes."""
 
 
 def write_fmu(
@@ -41,7 +41,7 @@ def write_fmu(
 ) -> Path:
     """Write a property file as an FMU for model exchange and co-simulation.
 
-    The model has no states: outputs follow the inputs at once. Inputs Fz, kappa, alpha, gamma, phi_t, Vx, p; outputs Fx, Fy,
+    The model has no states: outputs are functions of the inputs. Inputs Fz, kappa, alpha, gamma, phi_t, Vx, p; outputs Fx, Fy,
     Fz_out, Mx, My, Mz, K_ya, K_xk, sigma_x, sigma_y, Re, omega, trail. SI units, radians, ISO-W.
 
     Parameters
@@ -49,9 +49,9 @@ def write_fmu(
     path : the property file
     out : folder to write ``<name>.fmu`` to
     fmi : 2 or 3, for FMI 2.0 or 3.0
-    name : model identifier; by default made of the file's name
+    name : model identifier; by default made from the name of the property file
     turn_slip, limits : as in a call of the tyre
-    sources_only : no binary; the program that imports the FMU compiles the sources
+    sources_only : without a binary; the program that imports the FMU compiles the sources
 
     Returns
     -------
@@ -61,12 +61,12 @@ def write_fmu(
     Raises
     ------
     InputError
-        No compiler, another version of FMI, or what :func:`mffit.export.write_c` raises.
+        There is no compiler, the version of FMI is unknown, or as in :func:`mffit.export.write_c`.
     TirError
         The file cannot be read.
     """
     if fmi not in DEFINITIONS:
-        raise InputError(f"FMI {fmi} is not written, only {' and '.join(map(str, DEFINITIONS))}")
+        raise InputError(f"FMI {fmi} is not available, only {' and '.join(map(str, DEFINITIONS))}")
     path, out = Path(path), Path(out)
     tyre, name = tir.read(path), identifier(path, name)
     files = _texts(tyre, path, name, fmi, turn_slip, limits)
@@ -80,7 +80,7 @@ def write_fmu(
 def _texts(
     tyre: tir.Tyre, path: Path, name: str, fmi: int, turn_slip: bool, limits: bool
 ) -> dict[str, bytes]:
-    """The files of the archive, by their place in it."""
+    """The files of the archive by their path in it."""
     code = c_of(tyre, path, name, turn_slip=turn_slip, limits=limits)
     given, found = variables.inputs(tyre), variables.outputs()
     use = f"turn slip {'on' if turn_slip else 'off'}{', inputs held to the ranges' if limits else ''}"

@@ -1,4 +1,4 @@
-"""What a file's name becomes in C."""
+"""Names in C, made from the names of files."""
 
 from __future__ import annotations
 
@@ -11,9 +11,9 @@ from tir.codegen.c99 import taken
 
 
 def identifier(path: Path, given: str | None = None) -> str:
-    """The name in front of the functions: the one given, else the file's with underscores for what C does not allow.
+    """The prefix of the functions: the given name, or else the file's name with underscores for other characters.
 
-    Behind ``tyre_`` where it begins with no letter, or C has the name itself.
+    It gets ``tyre_`` in front if it does not begin with a letter or is a word of C.
     """
     if given is not None:
         return given
@@ -22,7 +22,7 @@ def identifier(path: Path, given: str | None = None) -> str:
 
 
 def c_of(tyre: tir.Tyre, path: Path, name: str, **switches: bool) -> tir.codegen.c99.Code:
-    """The tyre as C; raises InputError, with the file, for a name or a value that C cannot have."""
+    """The tyre as C code; raises InputError with the file if C does not allow a name or a value."""
     try:
         return tir.export_c(tyre, name=name, **switches)
     except tir.TirError as error:

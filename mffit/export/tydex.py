@@ -1,4 +1,4 @@
-"""Measured points as TYDEX files, release 1.3: one for each sweep, free columns, every digit."""
+"""Measured points as TYDEX files, release 1.3: one per sweep, with all digits of the numbers."""
 
 from __future__ import annotations
 
@@ -16,8 +16,8 @@ from mffit.sweeps import tydex_format
 from mffit.sweeps.tydex_format import MARK, MISSING, REMARK, fixed_row
 
 
-class Channel(NamedTuple):
-    """A channel of TYDEX: at most ten letters, and where its numbers come from."""
+class TydexChannel(NamedTuple):
+    """A channel of TYDEX: its name of at most ten letters, and its numbers."""
 
     name: str
     words: str
@@ -26,42 +26,42 @@ class Channel(NamedTuple):
 
 
 CHANNELS = (
-    Channel("SLIPANGL", "slip angle", "rad", lambda p: p.alpha),
-    Channel("INCLANGL", "inclination angle", "rad", lambda p: p.gamma),
-    Channel("FZW", "vertical force", "N", lambda p: p.Fz),
-    Channel("FYW", "lateral force", "N", lambda p: p.Fy),
-    Channel("MXW", "overturning moment", "Nm", lambda p: p.Mx),
-    Channel("MYW", "rolling resistance moment", "Nm", lambda p: p.My),
-    Channel("MZW", "self aligning moment", "Nm", lambda p: p.Mz),
-    Channel("INFLPRES", "inflation pressure", "Pa", lambda p: p.p),
-    Channel("TRAJVELW", "trajectory velocity", "m/s", lambda p: p.V),
-    Channel("TYRETEMP", "tyre temperature", "degC", lambda p: p.T),
+    TydexChannel("SLIPANGL", "slip angle", "rad", lambda p: p.alpha),
+    TydexChannel("INCLANGL", "inclination angle", "rad", lambda p: p.gamma),
+    TydexChannel("FZW", "vertical force", "N", lambda p: p.Fz),
+    TydexChannel("FYW", "lateral force", "N", lambda p: p.Fy),
+    TydexChannel("MXW", "overturning moment", "Nm", lambda p: p.Mx),
+    TydexChannel("MYW", "rolling resistance moment", "Nm", lambda p: p.My),
+    TydexChannel("MZW", "self aligning moment", "Nm", lambda p: p.Mz),
+    TydexChannel("INFLPRES", "inflation pressure", "Pa", lambda p: p.p),
+    TydexChannel("TRAJVELW", "trajectory velocity", "m/s", lambda p: p.V),
+    TydexChannel("TYRETEMP", "tyre temperature", "degC", lambda p: p.T),
 )
-"""In TYDEX W axes, which are those of ISO; a channel that was not measured is left out."""
+"""In TYDEX W axes, which are the ISO axes; channels that were not measured are left out."""
 
 
 def tydex_texts(points: Points, config: Config) -> dict[str, str]:
-    """The text of a file for each sweep, by a name that is no path.
+    """The text of a file for each sweep, by a name without folders.
 
-    Read again with ``axes = "iso"`` the files give the same points to rounding. Direction, mount and path curvature, for
-    which TYDEX has no channel, stand in the comments.
+    Reading the files with ``axes = "iso"`` gives the same points to rounding. Direction, mount and path curvature are in the
+    comments, as TYDEX has no channels for them.
 
     Raises
     ------
     InputError
-        Two sweeps would have the same name.
+        Two sweeps would get the same name.
     """
     texts: dict[str, str] = {}
     for k in np.unique(points.sweep):
         name = "".join(c if c.isalnum() or c in "-_." else "_" for c in points.sweep_names[k])
         if name in texts:
-            raise InputError(f'two sweeps would both be written as "{name}.tdx"; rename one of their files')
+            raise InputError(f'two sweeps have the same file name "{name}.tdx"; rename one of their files')
         texts[name] = "\n".join([*_lines(name, points.select(points.sweep == k), config), ""])
     return texts
 
 
 def _lines(name: str, points: Points, config: Config) -> Iterator[str]:
-    there = [channel for channel in CHANNELS if np.any(np.isfinite(channel.of(points)))]
+    measured = [channel for channel in CHANNELS if np.any(np.isfinite(channel.of(points)))]
     yield f"{MARK}{tydex_format.HEADER}"
     yield fixed_row("RELEASE", "Release of TYDEX-Format", "", tydex_format.RELEASE)
     yield fixed_row("MEASID", "Measurement ID", "", name)
@@ -73,11 +73,11 @@ def _lines(name: str, points: Points, config: Config) -> Iterator[str]:
     yield f"{MARK}{tydex_format.CONSTANTS}"
     yield fixed_row("OVALLDIA", "Overall diameter", "m", repr(2.0 * config.tyre.unloaded_radius))
     yield f"{MARK}{tydex_format.CHANNELS}"
-    for channel in there:
+    for channel in measured:
         yield fixed_row(channel.name, channel.words, channel.unit, "1", "0", "0")
     # Some programs write the number of rows after **MEASURDATA; not all readers accept it.
     yield f"{MARK}{tydex_format.DATA}"
-    for row in np.column_stack([channel.of(points) for channel in there]).tolist():
+    for row in np.column_stack([channel.of(points) for channel in measured]).tolist():
         yield " ".join(repr(x) if np.isfinite(x) else MISSING for x in row)
     yield f"{MARK}{tydex_format.END}"
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -12,19 +13,19 @@ from tir.codegen.program import INPUTS
 from tir.equations.forces import Forces
 
 ORDER = ("Fz", "kappa", "alpha", "gamma", "phi_t", "Vx", "pressure")
-"""Inputs in the order that other programs have them in, too."""
+"""Inputs in the order that is usual in other programs."""
 NAMES = {"pressure": "p", "out.Fz": "Fz_out"}
-"""Where a variable is called otherwise than in C: as in a call of the tyre, and since the load goes in and comes out."""
+"""Variables with another name than in C: pressure is ``p`` as in a call of the tyre, and the load is input and output."""
 
 
 @dataclass(frozen=True, slots=True)
 class Unit:
-    """A unit by powers of the SI's."""
+    """A unit as powers of SI units."""
 
     name: str
     powers: Mapping[str, int]
-    shown: str = ""  #: unit in which a program should show it
-    factor: float = 1.0  #: of the shown number
+    shown: str = ""  #: unit for display
+    factor: float = 1.0  #: number in the unit for display over the number in this unit
 
 
 UNITS = {
@@ -38,7 +39,7 @@ UNITS = {
         Unit("Nm", {"kg": 1, "m": 2, "s": -2}),
         Unit("N/rad", {"kg": 1, "m": 1, "s": -2, "rad": -1}),
         Unit("Pa", {"kg": 1, "m": -1, "s": -2}, "kPa", 1e-3),
-        Unit("rad", {"rad": 1}, "deg", 57.29577951308232),
+        Unit("rad", {"rad": 1}, "deg", math.degrees(1.0)),
         Unit("rad/s", {"rad": 1, "s": -1}),
     )
 }
@@ -49,32 +50,47 @@ class Variable:
     """An input or output."""
 
     name: str
-    field: str  #: what it is in C
+    field: str  #: its name in C
     reference: int  #: value reference; 0 is time
     description: str
-    unit: str  #: "" if it has none
-    start: str = ""  #: as C and XML write it; inputs only
+    unit: str  #: "" without one
+    start: str = ""  #: as text for C and XML; inputs only
 
 
 def inputs(tyre: tir.Tyre) -> tuple[Variable, ...]:
-    """The operating condition; starts as the file's nominal one, rolling straight on."""
+    """The operating condition; it starts as the nominal one of the file, rolling straight."""
     starts = {"Fz": tyre["FNOMIN"], "Vx": tyre["LONGVL"], "pressure": tyre["INFLPRES"]}
     out = []
     for reference, field in enumerate(ORDER, start=1):
         description, unit = _described(INPUT_TEXTS[field])
         start = repr(float(starts.get(field, 0.0)))
-        out.append(Variable(NAMES.get(field, field), field, reference, description, unit, start))
+        out.append(
+            Variable(
+                name=NAMES.get(field, field),
+                field=field,
+                reference=reference,
+                description=description,
+                unit=unit,
+                start=start,
+            )
+        )
     return tuple(out)
 
 
 def outputs() -> tuple[Variable, ...]:
-    """Forces and moments on the wheel in the contact frame, and what a simulation needs beside them."""
+    """Forces and moments on the wheel in the contact frame, and further results for simulations."""
     fields = [("forces", name) for name in Forces._fields] + [("state", name) for name in STATES]
     out = []
     for reference, (record, field) in enumerate(fields, start=1 + len(INPUTS)):
         description, unit = _described(OUTPUT_TEXTS[field])
         out.append(
-            Variable(NAMES.get(f"out.{field}", field), f"{record}.{field}", reference, description, unit)
+            Variable(
+                name=NAMES.get(f"out.{field}", field),
+                field=f"{record}.{field}",
+                reference=reference,
+                description=description,
+                unit=unit,
+            )
         )
     return tuple(out)
 
@@ -88,5 +104,5 @@ def arguments(variables: tuple[Variable, ...]) -> str:
 def _described(text: str) -> tuple[str, str]:
     """Words and unit of a text with a unit in brackets: 'sideslip angle [rad]'."""
     found = re.fullmatch(r"(.*?)\s*\[(.*?)\](.*)", text)
-    assert found, f"{text!r} states no unit"
+    assert found, f"{text!r} has no unit in brackets"
     return found[1] + found[3], "" if found[2] == "-" else found[2]

@@ -6,21 +6,16 @@ import math
 from collections.abc import Callable
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from mffit.measured import constants, wording
 from mffit.quantities import CHANNELS, CONDITIONS, DIRECT
 from mffit.report import page, published
-from mffit.report.build_view import PER_LOAD, STATUS_ORDER, BuildView, Channel, Row, view_of
+from mffit.report.build_view import PER_LOAD, STATUS_ORDER, BuildView, ChannelRow, CoefficientRow, view_of
+from mffit.report.drawing.records import Sheet
+from mffit.report.figures import bands, decomposition, files, fit, residuals, spin
 from mffit.results import BuildResult
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
-RESIDUAL_LIMIT = 4.0
-"""End of the residual maps' scale, in units of noise."""
 
 SECTION_TITLES = {
     "LATERAL_COEFFICIENTS": "Side force",
@@ -30,7 +25,7 @@ SECTION_TITLES = {
 }
 OTHER_SECTIONS = "Everything else"
 PLACES = {"straight_with_turn_slip": "turn slip on", "disc": "turn slip on, on the disc"}
-"""Where a file that serves both uses is judged beside the straight path without turn slip."""
+"""Uses for which a file that serves both is judged, beside the straight path without turn slip."""
 
 
 def write_build(result: BuildResult, folder: Path) -> None:
@@ -38,16 +33,15 @@ def write_build(result: BuildResult, folder: Path) -> None:
 
     Parameters
     ----------
-    result : what the build produced
+    result : the result of the build
     folder : existing folder to write to
     """
     view = view_of(result)
-    pictures = page.draw(folder, _figures(view))
-    page.render(
+    page.write(
         "build.html.j2",
         folder / "report.html",
+        _figures(view),
         view=view,
-        pictures=pictures,
         sections=_by_section(view),
         statuses=[s for s in STATUS_ORDER if any(row.status == s for row in view.rows)],
         residual_unit=residual_unit(view),
@@ -61,14 +55,13 @@ def write_build(result: BuildResult, folder: Path) -> None:
         per_load=PER_LOAD,
         aligned_below=constants.LARGEST_DIFFERENCE,
         degrees=math.degrees(1.0),
+        radians=math.radians(1.0),
     )
 
 
-def _figures(view: BuildView) -> dict[str, Callable[[], Figure]]:
-    """What is drawn, in the order of the page."""
-    from mffit.report.figures import bands, decomposition, files, fit, residuals, spin
-
-    out: dict[str, Callable[[], Figure]] = {}
+def _figures(view: BuildView) -> dict[str, Callable[[], Sheet]]:
+    """The figures in the order of the page."""
+    out: dict[str, Callable[[], Sheet]] = {}
     if view.several_files:
         out["files"] = partial(files.files_on_a_straight_path, view)
     if view.on_disc:
@@ -87,12 +80,12 @@ def _figures(view: BuildView) -> dict[str, Callable[[], Figure]]:
         out["bands"] = partial(bands.bands, view)
     scaled = [(c.symbol, (c.measured - c.model) / _scale(view, c)) for c in view.channels]
     out["residuals"] = partial(
-        residuals.residual_maps, view.points, scaled, view.conditions, RESIDUAL_LIMIT, residual_unit(view)
+        residuals.residual_maps, view.points, scaled, view.conditions, residual_unit(view)
     )
     return out
 
 
-def _scale(view: BuildView, channel: Channel) -> np.ndarray | float:
+def _scale(view: BuildView, channel: ChannelRow) -> np.ndarray | float:
     """The noise of each point, or the misfit of the channel where no noise is known."""
     if residual_unit(view) == "u":
         return np.where(np.isfinite(channel.u), channel.u, channel.noise)
@@ -100,13 +93,13 @@ def _scale(view: BuildView, channel: Channel) -> np.ndarray | float:
 
 
 def residual_unit(view: BuildView) -> str:
-    """What a residual of 1 means: the point's uncertainty if every channel has one, else the rms misfit."""
+    """The unit of the residuals: the point's uncertainty if every channel states one, else the rms misfit."""
     return "u" if all(np.isfinite(c.noise) for c in view.channels) else "rms misfit"
 
 
-def _by_section(view: BuildView) -> dict[str, list[Row]]:
-    """The rows of the coefficient table by section; what is no coefficient stands together, last."""
-    out: dict[str, list[Row]] = {title: [] for title in (*SECTION_TITLES.values(), OTHER_SECTIONS)}
+def _by_section(view: BuildView) -> dict[str, list[CoefficientRow]]:
+    """The rows of the coefficient table by section; values of other sections come last."""
+    out: dict[str, list[CoefficientRow]] = {title: [] for title in (*SECTION_TITLES.values(), OTHER_SECTIONS)}
     for row in view.rows:
         out[SECTION_TITLES.get(row.section, OTHER_SECTIONS)].append(row)
     return {title: rows for title, rows in out.items() if rows}

@@ -1,4 +1,4 @@
-"""What the build report shows, taken from the result in this one place."""
+"""Everything that the build report shows, taken from the result in one place."""
 
 from __future__ import annotations
 
@@ -14,24 +14,24 @@ from mffit.fit.files import Files
 from mffit.measured import Measured
 from mffit.points import Points
 from mffit.quantities import CHANNELS
+from mffit.report import words
+from mffit.report.channel import NamedChannel
 from mffit.report.curves import Condition, Curve, conditions, curves
 from mffit.report.lines import Line, model_lines
 from mffit.results import BuildResult
-from mffit.rig_errors import WORDS
 from mffit.suspicion import Doubt, Outlier
 from tir import Tyre
 from tir.parameters import BY_NAME
 
 PER_LOAD = ("epsilon_gamma", "F_phit", "C_phit", "C_gamma", "C_alpha")
-"""What the direct method gives at every load, in the order of the tables."""
+"""Results of the direct method at every load, in the order of the tables."""
 STATUS_ORDER = ("measured", "fitted", "regularised", "estimate", "range", "given", "fleet", "base", "default")
 
 
-@dataclass(frozen=True, slots=True)
-class Channel:
-    """One measured channel with what is drawn beside it; arrays (n,) in ``unit``, NaN where unknown."""
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ChannelRow(NamedChannel):
+    """One measured channel and what is drawn with it; arrays (n,) in ``unit``, NaN where unknown."""
 
-    name: str
     measured: np.ndarray
     u: np.ndarray
     model: np.ndarray
@@ -39,32 +39,21 @@ class Channel:
     even: np.ndarray
     u_odd: np.ndarray
 
-    @property
-    def title(self) -> str:
-        return CHANNELS[self.name].word
-
-    @property
-    def unit(self) -> str:
-        return CHANNELS[self.name].unit
-
-    @property
-    def symbol(self) -> str:
-        """As a picture shows it."""
-        return CHANNELS[self.name].mathtext
-
-    @property
-    def label(self) -> str:
-        return CHANNELS[self.name].short_axis
+    @classmethod
+    def of_readings(cls, name: str, measured: np.ndarray, u: np.ndarray) -> ChannelRow:
+        """A channel of which only the readings are known."""
+        none = np.full(len(measured), np.nan)
+        return cls(name=name, measured=measured, u=u, model=none, odd=none, even=none, u_odd=none)
 
     @property
     def noise(self) -> float:
-        """Typical standard uncertainty of a point, the median; NaN if none is known."""
+        """Median standard uncertainty of a point; NaN if none is known."""
         known = self.u[np.isfinite(self.u)]
         return float(np.median(known)) if len(known) else float("nan")
 
 
-@dataclass(frozen=True, slots=True)
-class Row:
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CoefficientRow:
     """One row of the coefficient table."""
 
     name: str
@@ -78,11 +67,11 @@ class Row:
     at_bound: bool
     stage: str
     status: str
-    correlation: str  #: the strongest one in words, empty if harmless
+    correlation: str  #: the strongest one in words; empty if it does no harm
 
     @property
     def place(self) -> float | None:
-        """Where between its bounds the value lies, 0 to 1; None where there are no bounds."""
+        """Place of the value between its bounds, 0 to 1; None without bounds."""
         if self.lower is None or self.upper is None or not self.upper > self.lower:
             return None
         return float(np.clip((self.value - self.lower) / (self.upper - self.lower), 0.0, 1.0))
@@ -92,34 +81,34 @@ class Row:
         return self.status in ("base", "default", "given", "range")
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, kw_only=True)
 class BuildView:
-    """Everything the build report needs."""
+    """All content of the build report."""
 
     config: Config
     points: Points  #: angles as read
-    channels: tuple[Channel, ...]
+    channels: tuple[ChannelRow, ...]
     curves: tuple[Curve, ...]
     lines: Mapping[tuple, Line]
     conditions: tuple[Condition, ...]
     measured: Measured
     agreement: Mapping[str, Agreement]  #: by channel, of the fitted model on the raw points
     odd_agreement: Mapping[str, Agreement]  #: by channel, of the file for turn slip off on the odd part
-    rows: tuple[Row, ...]
+    rows: tuple[CoefficientRow, ...]
     stages: tuple[StageRecord, ...]
     coverage: tuple[StageCoverage, ...]
     warnings: tuple[str, ...]
     explanations: tuple[str, ...]
     unpaired: tuple[str, ...]
-    paired: Mapping[str, int]  #: how many points have an exact mirror, an interpolated one, none
+    paired: Mapping[str, int]  #: number of points by kind of mirror: exact, interpolated, unpaired
     provenance: Mapping[str, str]
     seconds: float
     fit_seconds: float
     tir_name: str
     model: Tyre  #: the fitted model
-    posterior: Posterior  #: what the fit leaves uncertain
-    distrusted: tuple[str, ...]  #: why the file is not to be trusted, first of all
-    files: Files | None  #: None if nothing is known of them
+    posterior: Posterior  #: covariance of what was fitted
+    distrusted: tuple[str, ...]  #: reasons against trusting the file
+    files: Files | None  #: None if no file was written
     file_names: Mapping[str, str]  #: by use
     doubts: tuple[Doubt, ...]  #: sweeps that do not fit the others
     outliers: tuple[Outlier, ...]  #: single readings without weight
@@ -140,13 +129,21 @@ class BuildView:
 
 
 def view_of(result: BuildResult) -> BuildView:
-    """Take a build's result apart; the only function that knows its attributes."""
+    """The view of a build's result; the only function that knows the attributes of a result."""
     points, parts, fit = result.points, result.parts, result.fit
     found = tuple(curves(points))
-    channels = (
-        Channel("Fy", points.Fy, points.u_Fy, fit.Fy_model, parts.Fy_odd, parts.Fy_even, parts.u_Fy_odd),
-        Channel("Mz", points.Mz, points.u_Mz, fit.Mz_model, parts.Mz_odd, parts.Mz_even, parts.u_Mz_odd),
-    )
+    channels = [
+        ChannelRow(
+            name=name,
+            measured=getattr(points, name),
+            u=getattr(points, f"u_{name}"),
+            model=getattr(fit, f"{name}_model"),
+            odd=getattr(parts, f"{name}_odd"),
+            even=getattr(parts, f"{name}_even"),
+            u_odd=getattr(parts, f"u_{name}_odd"),
+        )
+        for name in CHANNELS
+    ]
     return BuildView(
         config=result.config,
         points=points,
@@ -178,13 +175,13 @@ def view_of(result: BuildResult) -> BuildView:
     )
 
 
-def coefficient_rows(coefficients: Mapping[str, Coefficient]) -> tuple[Row, ...]:
-    """The fit's coefficients with what the parameter table knows of them, in the table's order."""
+def coefficient_rows(coefficients: Mapping[str, Coefficient]) -> tuple[CoefficientRow, ...]:
+    """The fit's coefficients with section, unit and bounds from the parameter table."""
     rows = []
     for name, c in coefficients.items():
         known = BY_NAME[name]
         rows.append(
-            Row(
+            CoefficientRow(
                 name=name,
                 section=known.section,
                 description=known.description,
@@ -196,7 +193,7 @@ def coefficient_rows(coefficients: Mapping[str, Coefficient]) -> tuple[Row, ...]
                 at_bound=c.at_bound,
                 stage=c.stage,
                 status=c.status,
-                correlation=f"{WORDS.get(c.correlated_with, c.correlated_with)} {c.correlation:+.2f}"
+                correlation=f"{words.of_number(c.correlated_with)} {c.correlation:+.2f}"
                 if c.correlated_with
                 else "",
             )

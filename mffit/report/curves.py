@@ -1,4 +1,4 @@
-"""Which points belong on one curve and which curves on one panel; geometry of the pictures only."""
+"""Points of one curve and curves of one panel, for the pictures only."""
 
 from __future__ import annotations
 
@@ -8,10 +8,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from mffit.points import Points, levels
-from mffit.report import labels
+from mffit.quantities import CONDITIONS
+from mffit.report import constants
 
-FEWEST = 4
-"""Set-points that make a curve."""
+
+def condition(load: float, pressure: float) -> str:
+    """Load [N] and pressure [kPa] of a panel, in words."""
+    return f"{CONDITIONS['Fz_N'].of(load)}, {CONDITIONS['p_kPa'].of(pressure)}"
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,8 +32,16 @@ class Curve:
 
     @property
     def key(self) -> tuple[str, str, float, float, float, bool, int]:
-        """What tells this curve from the others."""
+        """Identifies this curve among all."""
         return self.sweep, self.over, self.load, self.pressure, self.held, self.forward, self.mount
+
+    @property
+    def condition(self) -> str:
+        return condition(self.load, self.pressure)
+
+    def angles(self, points: Points) -> np.ndarray:
+        """The varied angle (k,) [deg]."""
+        return np.degrees(getattr(points, self.over)[self.index])
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,17 +54,19 @@ class Condition:
 
     @property
     def title(self) -> str:
-        return labels.condition(self.load, self.pressure)
+        return condition(self.load, self.pressure)
 
 
 def load_levels(points: Points) -> np.ndarray:
-    """Load of each point's level [N], rounded to 10 N."""
-    return np.round(levels.level_values(points.Fz, levels.LOAD) / 10.0) * 10.0
+    """Load of each point's level [N], rounded."""
+    step = constants.LOAD_ROUNDING
+    return np.round(levels.level_values(points.Fz, levels.LOAD) / step) * step
 
 
 def pressure_levels(points: Points) -> np.ndarray:
-    """Pressure of each point's level [kPa], rounded to 1 kPa."""
-    return np.round(levels.level_values(points.p, levels.PRESSURE) / 1000.0)
+    """Pressure of each point's level [kPa], rounded."""
+    step = constants.PRESSURE_ROUNDING
+    return np.round(levels.level_values(points.p, levels.PRESSURE) / step) * step / 1000.0
 
 
 def conditions(points: Points) -> list[Condition]:
@@ -63,7 +76,7 @@ def conditions(points: Points) -> list[Condition]:
 
 
 def curves(points: Points) -> list[Curve]:
-    """Every run of at least four set-points over one angle, sorted by load, pressure and held angle."""
+    """Every series of at least four set-points over one angle, sorted by load, pressure and held angle."""
     alpha, gamma = np.degrees(points.alpha), np.degrees(points.gamma)
     held = {
         "alpha": np.degrees(levels.level_values(points.gamma, levels.CAMBER)),
@@ -79,7 +92,7 @@ def curves(points: Points) -> list[Curve]:
         )
         for key, members in _groups(keys):
             index = rows[members]
-            if _set_points(angle[over][index]) >= FEWEST:
+            if _set_points(angle[over][index]) >= constants.FEWEST_SET_POINTS_OF_CURVE:
                 index = index[np.argsort(angle[over][index], kind="stable")]
                 found.append(
                     Curve(
@@ -107,7 +120,8 @@ def _varied(alpha: np.ndarray, gamma: np.ndarray) -> str:
 
 
 def _set_points(angle: np.ndarray) -> int:
-    return len(np.unique(np.round(angle * 4.0)))
+    """Number of set-points of an angle (k,) [deg]."""
+    return len(np.unique(np.round(angle / constants.SET_POINT_WIDTH)))
 
 
 def _groups(keys: np.ndarray) -> list[tuple[np.ndarray, np.ndarray]]:

@@ -1,4 +1,4 @@
-"""What the diagnosis page shows, taken from the diagnosis in this one place."""
+"""Everything that the diagnosis page shows, taken from the diagnosis in one place."""
 
 from __future__ import annotations
 
@@ -10,47 +10,34 @@ import numpy as np
 from mffit.diagnosis import Diagnosis
 from mffit.diagnosis.selection import Step
 from mffit.diagnosis.where import Region
+from mffit.effects import CATALOG
 from mffit.points import Points
-from mffit.quantities import CHANNELS
+from mffit.report import constants, words
+from mffit.report.channel import NamedChannel
 from mffit.report.curves import Condition, Curve, conditions, curves
 from mffit.report.lines import Line, model_lines
-from mffit.rig_errors import BY_NAME as RIG_ERRORS
-from mffit.rig_errors import OF_RUN, WORDS
 from tir.parameters import BY_NAME
 
-MOST_FRAMES = 3
 
-
-@dataclass(frozen=True, slots=True)
-class GapChannel:
+@dataclass(frozen=True, slots=True, kw_only=True)
+class GapChannel(NamedChannel):
     """One channel before and after: measured minus simulated in units of the noise of each point, (n,)."""
 
-    name: str
     before: np.ndarray
     after: np.ndarray
-    noise: float  #: typical of a point, in ``unit``
-
-    @property
-    def unit(self) -> str:
-        return CHANNELS[self.name].unit
-
-    @property
-    def symbol(self) -> str:
-        """As a picture shows it."""
-        return CHANNELS[self.name].mathtext
+    noise: float  #: of a typical point, in ``unit``
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Candidate:
-    """One effect as it did in one step."""
+    """One effect in one step."""
 
-    id: str
     name: str
     kind: str
-    gain: float  #: in log evidence over the step before
+    gain: float  #: of log evidence over the step before
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, kw_only=True)
 class RankedStep:
     """All candidates of one forward step, best first."""
 
@@ -63,19 +50,19 @@ class RankedStep:
         return bool(self.candidates) and self.candidates[0].gain > self.threshold
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Shown:
     """One sweep with the simulation before and after."""
 
-    word: str  #: why it is shown
+    word: str  #: "Worst" or "Typical"
     curve: Curve
     before: Line
     after: Line
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, kw_only=True)
 class DiagnosisView:
-    """Everything the diagnosis page needs."""
+    """All content of the diagnosis page."""
 
     title: str
     points: Points
@@ -83,24 +70,27 @@ class DiagnosisView:
     channels: tuple[GapChannel, ...]
     diagnosis: Diagnosis
     steps: tuple[RankedStep, ...]
-    descriptions: Mapping[str, str]  #: coefficient -> what it is
-    units: Mapping[str, str]  #: of every number that was found, empty without one
-    words: Mapping[str, str]  #: what numbers of the rig among them are called
+    names: Mapping[str, str]  #: effect id -> plain name
+    descriptions: Mapping[str, str]  #: coefficient -> its meaning
+    units: Mapping[str, str]  #: of every number that was estimated, empty without one
+    words: Mapping[str, str]  #: names of those that belong to the rig
     shown: tuple[Shown, ...]  #: the worst and the typical sweep
 
     @property
     def changed(self) -> bool:
-        """Whether anything was added, so that before and after differ."""
+        """Whether effects were added, so that before and after differ."""
         return bool(self.diagnosis.effects)
 
     def frames(self, channel: str) -> list[Region]:
-        """Regions of a channel to be framed in the maps; more of them would hide the map."""
+        """Regions of a channel to be framed in the maps, unexplained ones first."""
         all_regions = (*self.diagnosis.unexplained_where, *self.diagnosis.where)
-        return [region for region in all_regions if region.channel == channel][:MOST_FRAMES]
+        return [region for region in all_regions if region.channel == channel][
+            : constants.MOST_FRAMES_PER_MAP
+        ]
 
 
 def view_of(diagnosis: Diagnosis) -> DiagnosisView:
-    """What the page shows beside the diagnosis itself: residuals in units of noise, conditions, ranked candidates."""
+    """The view of a diagnosis: residuals in units of noise, conditions, ranked candidates."""
     points, n = diagnosis.points, len(diagnosis.points)
     channels = []
     measured_channels = (("Fy", points.Fy, diagnosis.noise.Fy), ("Mz", points.Mz, diagnosis.noise.Mz))
@@ -109,7 +99,8 @@ def view_of(diagnosis: Diagnosis) -> DiagnosisView:
         u = np.where(np.isfinite(diagnosis.noise.u[rows]), diagnosis.noise.u[rows], np.nan)
         before, after = ((measured - model[rows]) / u for model in (diagnosis.before, diagnosis.after))
         if np.isfinite(before).any():
-            channels.append(GapChannel(name, before, after, noise))
+            channels.append(GapChannel(name=name, before=before, after=after, noise=noise))
+    known = {e.id: e for e in (*CATALOG, *(t.effects[-1] for s in diagnosis.steps for t in s.trials))}
     freed = {name for found in diagnosis.effects for name in found.parameters}
     return DiagnosisView(
         title=diagnosis.model_after.removesuffix(".tir"),
@@ -118,28 +109,16 @@ def view_of(diagnosis: Diagnosis) -> DiagnosisView:
         channels=tuple(channels),
         diagnosis=diagnosis,
         steps=tuple(_ranked(step) for step in diagnosis.steps),
+        names={key: effect.name for key, effect in known.items()},
         descriptions={name: BY_NAME[name].description for name in freed if name in BY_NAME},
-        units={name: _unit(name) for name in freed},
-        words={name: word for name in freed if (word := _word(name))},
+        units={name: words.unit_of(name) for name in freed},
+        words={name: words.of_rig(name) for name in freed if words.of_rig(name)},
         shown=_shown(diagnosis, channels),
     )
 
 
-def _unit(name: str) -> str:
-    """Unit of a coefficient or of a rig's fault, of all runs or of one."""
-    fault = name.partition(OF_RUN)[0]
-    unit = RIG_ERRORS[fault].unit if fault in RIG_ERRORS else BY_NAME[name].unit if name in BY_NAME else ""
-    return "" if unit == "-" else unit
-
-
-def _word(name: str) -> str:
-    """What a number of the rig, of all runs or of one, is called; empty for a coefficient."""
-    fault, of, file = name.partition(OF_RUN)
-    return f"{WORDS[fault]}, {file}" if of else WORDS.get(fault, "")
-
-
 def _shown(diagnosis: Diagnosis, channels: Sequence[GapChannel]) -> tuple[Shown, ...]:
-    """The sweep that the given model misses most, in units of the noise, and the one in the middle."""
+    """The sweep with the largest and the one with the median misfit of the given model, in units of the noise."""
     found = curves(diagnosis.points)
     if not found or not channels:
         return ()
@@ -152,18 +131,28 @@ def _shown(diagnosis: Diagnosis, channels: Sequence[GapChannel]) -> tuple[Shown,
         model_lines(simulation, diagnosis.points, list(chosen.values()))
         for simulation in (diagnosis.given, diagnosis.state)
     )
-    return tuple(Shown(word, curve, before[curve.key], after[curve.key]) for word, curve in chosen.items())
+    return tuple(
+        Shown(word=word, curve=curve, before=before[curve.key], after=after[curve.key])
+        for word, curve in chosen.items()
+    )
 
 
 def _ranked(step: Step) -> RankedStep:
     candidates = (
-        Candidate(e.id, e.name, e.kind, float(t.log_evidence - step.before.log_evidence))
-        for t, e in ((t, t.effects[-1]) for t in step.trials)
+        Candidate(
+            name=trial.effects[-1].name,
+            kind=trial.effects[-1].kind,
+            gain=float(trial.log_evidence - step.before.log_evidence),
+        )
+        for trial in step.trials
     )
-    ordered = sorted(candidates, key=lambda c: -c.gain)
-    return RankedStep(tuple(e.name for e in step.before.effects), tuple(ordered), float(step.threshold))
+    return RankedStep(
+        beside=tuple(effect.name for effect in step.before.effects),
+        candidates=tuple(sorted(candidates, key=lambda c: -c.gain)),
+        threshold=float(step.threshold),
+    )
 
 
 def shown_steps(view: DiagnosisView) -> Sequence[RankedStep]:
-    """The steps worth a picture: those with candidates, at most three."""
-    return [step for step in view.steps if step.candidates][:3]
+    """The first steps that have candidates."""
+    return [step for step in view.steps if step.candidates][: constants.MOST_STEPS_DRAWN]

@@ -5,19 +5,17 @@ from __future__ import annotations
 from collections.abc import Callable
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from mffit.fleet import EPSILON, Fleet
 from mffit.fleet.constants import FEWEST_TYRES_FOR_SCATTER
 from mffit.quantities import CHANNELS, COMPARED, DIRECT
 from mffit.report import page
+from mffit.report.drawing.records import Sheet
+from mffit.report.figures import fleet
 from mffit.rig_errors import MEANINGS, UNITS, WORDS
 
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
 SPIN = ("PECP1", "PECP2", "PKY6", "PKY7", "PDYP1", "PKYP1", "QDTP1", "QCRP1")
-"""Coefficients of spin and camber stiffness, shown of the population; fleet.json has all."""
+"""Coefficients of spin and camber stiffness that the page shows of a population; fleet.json holds all."""
 
 
 def write_fleet(found: Fleet, folder: Path, *, priors: bool) -> None:
@@ -27,18 +25,17 @@ def write_fleet(found: Fleet, folder: Path, *, priors: bool) -> None:
     ----------
     found : the record
     folder : existing folder to write to
-    priors : whether ``priors.json`` stands beside the page
+    priors : whether the folder holds ``priors.json``
     """
-    from mffit.report.figures import fleet
-
-    figures: dict[str, Callable[[], Figure]] = {}
     estimates = {key: words for key, words in EPSILON.items() if any(found.numbers(key))}
+    figures: dict[str, Callable[[], Sheet]] = {}
     if estimates:
         figures["epsilon_gamma"] = partial(fleet.epsilon_of_all, found)
     figures["numbers"] = partial(fleet.numbers_of_all, found)
-    page.render(
+    page.write(
         "fleet.html.j2",
         folder / "fleet.html",
+        figures,
         fleet=found,
         epsilon=DIRECT["epsilon_gamma"],
         estimates=estimates,
@@ -50,5 +47,4 @@ def write_fleet(found: Fleet, folder: Path, *, priors: bool) -> None:
         enough=FEWEST_TYRES_FOR_SCATTER,
         spin=SPIN,
         priors=priors,
-        pictures=page.draw(folder, figures),
     )

@@ -1,22 +1,38 @@
-"""What stands at the axes and above the panels of the pictures."""
+"""Texts at the axes and above the panels of the pictures."""
 
 from __future__ import annotations
 
 import re
 
 from mffit.quantities import CHANNELS, CONDITIONS, DIRECT
+from mffit.report import constants
+from mffit.report.curves import Curve
+from mffit.report.drawing.records import Axis
+from mffit.rounding import number
 
 ANGLES = {"alpha": CONDITIONS["alpha_deg"], "gamma": CONDITIONS["gamma_deg"]}
 """The angles that are varied, by the attribute of the points."""
-LOAD, PRESSURE = CONDITIONS["Fz_N"], CONDITIONS["p_kPa"]
+OTHER = {"alpha": "gamma", "gamma": "alpha"}
+"""The angle that is held while one is varied."""
+LOAD = CONDITIONS["Fz_N"]
 EPSILON = DIRECT["epsilon_gamma"]
 
 
-def condition(load: float, pressure: float) -> str:
-    """Load [N] and pressure [kPa] of a panel."""
-    return f"{LOAD.of(load)}, {PRESSURE.of(pressure)}"
+def angle_axis(over: str) -> Axis:
+    """The axis of a varied angle [deg]."""
+    return Axis(label=ANGLES[over].axis)
+
+
+def held(curve: Curve) -> str:
+    """The angle that a curve holds, and its value."""
+    return f"{ANGLES[OTHER[curve.over]].symbol} = {number(curve.held, 0)}°"
+
+
+def held_unless_zero(curve: Curve) -> str:
+    """The same behind a comma; empty for a curve that holds zero."""
+    return f", {held(curve)}" if abs(curve.held) >= constants.UPRIGHT_ENOUGH_TO_DRAW else ""
 
 
 def typeset(text: str) -> str:
-    """The channels in a text as a picture shows them."""
+    """A sentence's channels with the subscripts that a picture shows."""
     return re.sub(rf"\b({'|'.join(CHANNELS)})\b", lambda m: CHANNELS[m[0]].mathtext, text)

@@ -1,4 +1,4 @@
-"""The model as a smooth line through each curve's conditions, for drawing only."""
+"""The model as a smooth line at each curve's conditions, for the pictures only."""
 
 from __future__ import annotations
 
@@ -9,15 +9,14 @@ import numpy as np
 
 from mffit.points import Points
 from mffit.quantities import CHANNELS
+from mffit.report import constants
 from mffit.report.curves import Curve
 from mffit.rig import Simulation
 
-STEPS = 41
 
-
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Line:
-    """What the rig would read along a curve if the tyre were the model; arrays (m,)."""
+    """Readings that the rig would give along a curve if the tyre were the model; arrays (m,)."""
 
     x: np.ndarray  #: the angle that varies [deg]
     raw: Mapping[str, np.ndarray]  #: by channel, Fy [N] and Mz [Nm]
@@ -29,18 +28,19 @@ def model_lines(simulation: Simulation, points: Points, curves: Sequence[Curve])
 
     Parameters
     ----------
-    simulation : the model on the rig, so that the line is what it would read
+    simulation : the model on the rig, with the errors of the rig
     points : the measured points (n,), angles as read
-    curves : which of them belong together
+    curves : rows of the points that belong together
     """
     if not curves:
         return {}
     grid = _along(points, curves)
     mirrored = grid.replace(alpha=-grid.alpha, gamma=-grid.gamma)
     here, there = (simulation.readings(p) for p in (grid, mirrored))
+    steps = constants.STEPS_OF_MODEL_LINE
     lines = {}
     for i, curve in enumerate(curves):
-        rows = slice(i * STEPS, (i + 1) * STEPS)
+        rows = slice(i * steps, (i + 1) * steps)
         lines[curve.key] = Line(
             x=np.degrees(getattr(grid, curve.over)[rows]),
             raw={name: getattr(here, name)[rows] for name in CHANNELS},
@@ -50,15 +50,16 @@ def model_lines(simulation: Simulation, points: Points, curves: Sequence[Curve])
 
 
 def _along(points: Points, curves: Sequence[Curve]) -> Points:
-    """Points every 1/40 of each curve's range."""
+    """Points at equal distances along each curve's range."""
+    steps = constants.STEPS_OF_MODEL_LINE
     columns: dict[str, list[np.ndarray]] = {name: [] for name in ("alpha", "gamma", "Fz", "p", "V")}
     for curve in curves:
         for name, values in columns.items():
             here = getattr(points, name)[curve.index]
             values.append(
-                np.linspace(here.min(), here.max(), STEPS)
+                np.linspace(here.min(), here.max(), steps)
                 if name == curve.over
-                else np.full(STEPS, np.median(here))
+                else np.full(steps, np.median(here))
             )
-    rows = np.repeat([curve.index[0] for curve in curves], STEPS)
+    rows = np.repeat([curve.index[0] for curve in curves], steps)
     return points.select(rows).replace(**{name: np.concatenate(values) for name, values in columns.items()})

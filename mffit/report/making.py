@@ -1,4 +1,4 @@
-"""When and with what a page was made."""
+"""Date and versions of a page."""
 
 from __future__ import annotations
 
@@ -9,16 +9,16 @@ from importlib.metadata import version
 
 import mffit
 
-LIBRARIES = ("numpy", "scipy", "matplotlib")
+LIBRARIES = ("numpy", "scipy", "pillow")
 
 
 def made() -> dict[str, str]:
     """Date and versions for the foot of a page.
 
-    ``SOURCE_DATE_EPOCH`` [s since 1970] stands for the date where it is set, for pages that are to be the same to the byte.
+    If ``SOURCE_DATE_EPOCH`` [s since 1970] is set, it replaces the date, so that the same data give the same bytes.
     """
-    said = os.environ.get("SOURCE_DATE_EPOCH", "")
-    when = datetime.fromtimestamp(int(said), UTC) if said.isdigit() else datetime.now(UTC)
+    epoch = os.environ.get("SOURCE_DATE_EPOCH", "")
+    when = datetime.fromtimestamp(int(epoch), UTC) if epoch.isdigit() else datetime.now(UTC)
     libraries = ", ".join(f"{name} {version(name)}" for name in LIBRARIES)
     return {
         "date": when.strftime("%Y-%m-%d %H:%M UTC"),

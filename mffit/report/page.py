@@ -1,4 +1,4 @@
-"""One HTML file that needs nothing else: templates filled, pictures embedded."""
+"""One self-contained HTML file: a filled template with its pictures."""
 
 from __future__ import annotations
 
@@ -10,13 +10,16 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 from urllib.parse import quote
 
+from mffit import rounding
 from mffit.measured import wording
-from mffit.report import drawing, making, numbers, rounding, style, typeset
+from mffit.report import making, numbers, typeset
+from mffit.report.drawing import png, svg
+from mffit.report.drawing.layout import lay_out
+from mffit.report.drawing.records import Sheet
 from mffit.templates import environment
 
 if TYPE_CHECKING:
     from jinja2 import Environment
-    from matplotlib.figure import Figure
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,46 +32,44 @@ class Picture:
 
     @property
     def link(self) -> str:
-        """The table as an address that holds it, written in the shorter of both ways."""
+        """The table as a data address, in the shorter of both encodings."""
         plain = "," + quote(self.table, safe=",;:.+-=()[]/_")
         packed = ";base64," + base64.b64encode(self.table.encode()).decode("ascii")
         return "data:text/csv;charset=utf-8" + min(plain, packed, key=len)
 
 
-def draw(folder: Path, figures: Mapping[str, Callable[[], Figure]]) -> dict[str, Picture]:
-    """Draw every figure into ``folder/plots/<name>.png``, and as it stands in the page.
+def write(template: str, path: Path, figures: Mapping[str, Callable[[], Sheet]], **content: Any) -> None:
+    """Draw the figures, fill a template of ``templates/`` with them and the content, and write the page as UTF-8."""
+    pictures = draw(path.parent, figures)
+    filled = _environment().get_template(template)
+    html = filled.render(made=making.made(), pictures=pictures, **content)
+    path.write_text(typeset.page(html), encoding="utf-8")
 
-    A figure may be any of matplotlib's: its axes become panels that the page arranges to its width, so keep each readable for
-    itself and at most about 4 inches wide; its legends (:func:`style.legend_above`) and colour scales go on top. What is drawn
-    gets into the table of numbers under the artist's ``label``, or that of the legend's entry that looks the same.
 
-    Returns
-    -------
-    dict
-        The pictures by name, for :func:`render`.
-    """
+def draw(folder: Path, figures: Mapping[str, Callable[[], Sheet]]) -> dict[str, Picture]:
+    """Draw every figure into ``folder/plots/<name>.png``; returns the pictures for the page by name."""
     plots = folder / "plots"
     plots.mkdir(parents=True, exist_ok=True)
     pictures = {}
-    with style.applied():
-        for name, make in figures.items():
-            figure = make()
-            style.save(figure, plots / f"{name}.png")
-            table = numbers.table(figure)
-            pictures[name] = Picture(name, drawing.markup(figure, name), table)
+    for name, make in figures.items():
+        sheet = make()
+        figure = lay_out(sheet)
+        png.save(figure, plots / f"{name}.png")
+        pictures[name] = Picture(name=name, drawing=svg.markup(figure), table=numbers.table(sheet))
     return pictures
-
-
-def render(template: str, path: Path, **content: Any) -> None:
-    """Fill a template of ``templates/``, set its symbols and write it as UTF-8."""
-    html = _environment().get_template(template).render(made=making.made(), **content)
-    path.write_text(typeset.page(html), encoding="utf-8")
 
 
 @cache
 def _environment() -> Environment:
     found = environment("mffit.report")
     found.filters["note"] = wording.note
-    for rounded in (rounding.number, rounding.with_u, rounding.stated, rounding.times, rounding.per_cent):
+    for rounded in (
+        rounding.number,
+        rounding.with_u,
+        rounding.stated,
+        rounding.as_good_as,
+        rounding.times,
+        rounding.per_cent,
+    ):
         found.filters[rounded.__name__] = rounded
     return found

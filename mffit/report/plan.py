@@ -1,42 +1,24 @@
-"""The page of a plan: plots and plan.html."""
+"""The page of a plan: plots/plan.png and plan.html."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from mffit.planning import Plan, wording
 from mffit.quantities import DIRECT
-from mffit.report import page
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
-SHOWN = 15
-"""Candidates listed at most."""
+from mffit.report import constants, page
+from mffit.report.figures import planned
 
 
 def write_plan(plan: Plan, folder: Path) -> None:
-    """Write the pictures and ``plan.html`` of a plan.
-
-    Parameters
-    ----------
-    plan : the record
-    folder : existing folder to write to
-    """
-    from mffit.report.figures import planned
-
-    figures: dict[str, Callable[[], Figure]] = {}
-    if plan.steps:
-        figures["plan"] = partial(planned.u_against_runs, plan)
-    page.render(
+    """Write the picture and ``plan.html`` of a plan to an existing folder."""
+    page.write(
         "plan.html.j2",
         folder / "plan.html",
+        {"plan": partial(planned.u_against_runs, plan)} if plan.steps else {},
         plan=plan,
         say=wording,
         epsilon=DIRECT["epsilon_gamma"].html,
-        trials=plan.trials[:SHOWN],
-        pictures=page.draw(folder, figures),
+        trials=plan.trials[: constants.MOST_CANDIDATE_RUNS_IN_PAGE],
     )

@@ -1,4 +1,4 @@
-"""Camber reduction factors that have been published, to place a new tyre among them."""
+"""Published camber reduction factors, to compare a new tyre with."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Symbols in a page: what sentences write in ASCII, as terminal and JSON need it, becomes what a page shows."""
+"""Typography of a page: ASCII symbols of sentences, which terminal and JSON need, become HTML."""
 
 from __future__ import annotations
 
@@ -9,10 +9,10 @@ from mffit.quantities import CHANNELS, COMPARED, CONDITIONS, DIAGNOSED, DIRECT
 from tir.parameters import BY_NAME
 
 VERBATIM = frozenset({"code", "svg", "title"})
-"""Elements whose text stays as it is; so does that of class ``mono``."""
+"""Elements whose text is not changed, nor that of class ``mono``."""
 VOID = frozenset({"meta", "img", "br", "col", "input", "link", "hr"})
 TAG = re.compile(r"(<script\b.*?</script>|<style\b.*?</style>|<[^>]*>)", re.DOTALL)
-"""A tag, or the whole of an element in which ``<`` is no tag."""
+"""A tag, or a whole script or style element, in which ``<`` does not begin a tag."""
 NAME = re.compile(r"</?([a-zA-Z][\w-]*)")
 
 SYMBOLS = {
@@ -24,7 +24,7 @@ SYMBOLS = {
         if len(q.ascii) > 1
     },
 }
-"""The symbols of the quantities as sentences write them, and as a page shows them."""
+"""Symbols of quantities in HTML, by their ASCII form."""
 
 
 def _word(match: re.Match[str]) -> str:
@@ -42,14 +42,14 @@ RULES: tuple[tuple[re.Pattern[str], str | Callable[[re.Match[str]], str]], ...] 
     (re.compile(r"\bdegC\b"), "°C"),
     (re.compile(r"(?<![\w.-])[A-Za-z]\w+(?![\w(]|\.\w)"), _word),
 )
-"""In this order, on escaped text."""
+"""Applied in this order to escaped text."""
 
 
 def sentence(text: str) -> str:
     """Escaped text with its symbols, signs, file names and coefficients as HTML."""
     parts = [text]
     for pattern, shown in RULES:
-        # What an earlier rule made is a tag and its text: left alone.
+        # Code elements are results of an earlier rule and are not changed again.
         parts = [
             piece if k % 2 else pattern.sub(shown, piece)
             for k, piece in enumerate(re.split(r"(<code>.*?</code>)", "".join(parts)))
@@ -58,11 +58,11 @@ def sentence(text: str) -> str:
 
 
 def page(html: str) -> str:
-    """All text of a page, but for what is verbatim.
+    """The page with its text typeset, except for verbatim elements.
 
     Parameters
     ----------
-    html : well-formed, with every ``<`` and ``>`` outside of tags escaped
+    html : well-formed HTML, in which ``<`` and ``>`` outside of tags are escaped
     """
     out: list[str] = []
     open_tags: list[bool] = []  # whether each is verbatim

@@ -1,4 +1,4 @@
-"""Property files as a page that evaluates them: curves of several tyres over one another, with sliders."""
+"""Property files as a page that evaluates them: curves of several tyres in common panels, with sliders."""
 
 from mffit.viewer.page import Page, show
 

@@ -1,4 +1,4 @@
-"""The sliders: what they move, and from where to where for the tyres at hand."""
+"""The sliders: the inputs that they move, and their ranges for the tyres of the page."""
 
 from __future__ import annotations
 
@@ -8,26 +8,24 @@ from dataclasses import dataclass
 from typing import Any
 
 from mffit.quantities import MODEL
+from mffit.viewer import constants
 from mffit.viewer.units import in_si
 from tir import Tyre
 
-STEPS = 200
-"""Steps of a slider, at least."""
 
-
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Control:
     """An input of the model that the page moves; numbers in SI, or shares of the value of ``relative_to``."""
 
     name: str  #: as tir calls it
-    usual: tuple[float, float]  #: range where a file gives none
-    widest: tuple[float, float]  #: a file's range counts so far
+    usual: Sequence[float]  #: range if a file states none
+    widest: Sequence[float]  #: a file's range is cut to this
     limits: tuple[str, str] | None = None  #: the file's keys of its range
-    start: str = ""  #: the key with which the page opens; 0 without one
+    start: str = ""  #: the file's key of the value when the page opens; 0 without a key
     relative_to: str = ""
 
     def range_of(self, tyre: Tyre) -> tuple[float, float]:
-        """The range of a tyre [SI]: the file's own where it gives one that makes sense."""
+        """The range of a tyre [SI]: the one in its file if that is a range, else the usual one."""
         scale = float(tyre[self.relative_to]) if self.relative_to else 1.0
         usual, widest = ([x * scale for x in bounds] for bounds in (self.usual, self.widest))
         written = written_range(tyre, self)
@@ -42,18 +40,51 @@ def _either_way(x: float) -> tuple[float, float]:
 
 
 CONTROLS = (
-    Control("Fz", (0.1, 2.0), (0.05, 3.0), ("FZMIN", "FZMAX"), "FNOMIN", "FNOMIN"),
-    Control("gamma", _either_way(math.radians(10.0)), _either_way(math.radians(60.0)), ("CAMMIN", "CAMMAX")),
-    Control("pressure", (0.8, 1.2), (0.5, 1.5), ("PRESMIN", "PRESMAX"), "INFLPRES", "NOMPRES"),
-    Control("alpha", _either_way(math.radians(15.0)), _either_way(math.radians(20.0)), ("ALPMIN", "ALPMAX")),
-    Control("kappa", _either_way(0.3), _either_way(0.4), ("KPUMIN", "KPUMAX")),
-    Control("phi_t", _either_way(1.0), _either_way(1.0)),
-    Control("Vx", (-20.0, 60.0), (-20.0, 60.0), start="LONGVL"),
+    Control(
+        name="Fz",
+        usual=constants.USUAL_LOAD_RANGE,
+        widest=constants.WIDEST_LOAD_RANGE,
+        limits=("FZMIN", "FZMAX"),
+        start="FNOMIN",
+        relative_to="FNOMIN",
+    ),
+    Control(
+        name="gamma",
+        usual=_either_way(constants.USUAL_CAMBER_END.rad),
+        widest=_either_way(constants.WIDEST_CAMBER_END.rad),
+        limits=("CAMMIN", "CAMMAX"),
+    ),
+    Control(
+        name="pressure",
+        usual=constants.USUAL_PRESSURE_RANGE,
+        widest=constants.WIDEST_PRESSURE_RANGE,
+        limits=("PRESMIN", "PRESMAX"),
+        start="INFLPRES",
+        relative_to="NOMPRES",
+    ),
+    Control(
+        name="alpha",
+        usual=_either_way(constants.USUAL_SIDESLIP_END.rad),
+        widest=_either_way(constants.WIDEST_SIDESLIP_END.rad),
+        limits=("ALPMIN", "ALPMAX"),
+    ),
+    Control(
+        name="kappa",
+        usual=_either_way(constants.USUAL_SLIP_END),
+        widest=_either_way(constants.WIDEST_SLIP_END),
+        limits=("KPUMIN", "KPUMAX"),
+    ),
+    Control(
+        name="phi_t",
+        usual=_either_way(constants.PATH_CURVATURE_END),
+        widest=_either_way(constants.PATH_CURVATURE_END),
+    ),
+    Control(name="Vx", usual=constants.SPEED_RANGE, widest=constants.SPEED_RANGE, start="LONGVL"),
 )
 
 
 def written_range(tyre: Tyre, control: Control) -> tuple[float, float] | None:
-    """The range that the tyre's file states [SI]; None where it does not."""
+    """The range in the tyre's file [SI]; None if the file states none."""
     if control.limits is None or not set(control.limits) <= tyre.present:
         return None
     low, high = (float(tyre[key]) for key in control.limits)
@@ -61,7 +92,7 @@ def written_range(tyre: Tyre, control: Control) -> tuple[float, float] | None:
 
 
 def settings(tyres: Sequence[Tyre]) -> list[dict[str, Any]]:
-    """For each slider what the page needs, in the units that it shows: ends and steps are round numbers."""
+    """The settings of each slider in the units of the page; ends and steps are round numbers."""
     return [_setting(control, tyres) for control in CONTROLS]
 
 
@@ -72,7 +103,7 @@ def _setting(control: Control, tyres: Sequence[Tyre]) -> dict[str, Any]:
     low, high = min(r[0] for r in ranges) / si, max(r[1] for r in ranges) / si
     start = float(tyres[0][control.start]) / si if control.start else 0.0
     low, high = min(low, start), max(high, start)
-    step = _round_step((high - low) / STEPS)
+    step = _round_step((high - low) / constants.SLIDER_STEPS)
     digits = max(0, -math.floor(math.log10(step) + 1e-9))
     return {
         "name": control.name,
@@ -85,6 +116,6 @@ def _setting(control: Control, tyres: Sequence[Tyre]) -> dict[str, Any]:
 
 
 def _round_step(x: float) -> float:
-    """The largest of 1, 2, 5, 10, ... that is not above."""
+    """The largest of 1, 2, 5, 10, ... not above ``x``."""
     power = 10.0 ** math.floor(math.log10(x))
     return power * max(n for n in (1.0, 2.0, 5.0) if n * power <= x * (1.0 + 1e-9))

@@ -1,4 +1,4 @@
-"""The tyres of a page: read, with names that tell them apart, and with what is known of their ranges."""
+"""The tyres of a page: read from their files, with different names and with their ranges."""
 
 from __future__ import annotations
 
@@ -19,12 +19,12 @@ Given = str | Path | Tyre
 
 
 def named(given: Given | Mapping[str, Given] | Iterable[Given]) -> dict[str, Tyre]:
-    """Tyres by name: the given one, or the shortest end of each path that tells it from the others.
+    """Tyres by name: the given name, or the shortest end of the path that differs from all others.
 
     Raises
     ------
     InputError
-        If there is none, or if one has a value of which no curve can be drawn.
+        If no tyre is given, or if a value is not finite.
     TirError
         If a file cannot be read.
     """
@@ -37,14 +37,14 @@ def named(given: Given | Mapping[str, Given] | Iterable[Given]) -> dict[str, Tyr
         names = tell_apart([_path(one) for one in given])
         found = {name: _tyre(one) for name, one in zip(names, given, strict=True)}
     if not found:
-        raise InputError("there is no tyre to show: name at least one .tir file")
+        raise InputError("no tyre is given: name at least one .tir file")
     for name, tyre in found.items():
         _refuse_what_cannot_be_drawn(name, tyre)
     return found
 
 
 def tell_apart(paths: list[Path]) -> list[str]:
-    """The last part of each path without its suffix, with folders in front as far as equal names need them; and numbers."""
+    """The last part of each path without suffix; equal names get their folders, or else a number."""
     depth, names = 1, [path.stem for path in paths]
     while len(set(names)) < len(names) and depth < max(len(path.parts) for path in paths):
         depth += 1
@@ -55,7 +55,7 @@ def tell_apart(paths: list[Path]) -> list[str]:
 
 
 def described(name: str, tyre: Tyre, parameters: Iterable[str]) -> dict[str, Any]:
-    """What the page holds of a tyre: numbers of the parameters named, ranges in SI, whether its file is for turn slip."""
+    """The data of a tyre for the page: parameters, ranges in SI, and whether its file is for turn slip."""
     return {
         "name": name,
         "values": {key: float(tyre[key]) for key in parameters},
@@ -84,4 +84,6 @@ def _refuse_what_cannot_be_drawn(name: str, tyre: Tyre) -> None:
     refuse_zero_divisors(tyre.p)
     for key, value in tyre.values.items():
         if isinstance(value, float) and not math.isfinite(value):
-            raise InputError(f"{name}: {key} is {value}, and nothing can be drawn of it: give its value")
+            raise InputError(
+                f"{name}: {key} is {value}, so its curves cannot be drawn: write a number into the file"
+            )

@@ -1,4 +1,4 @@
-"""One HTML file that evaluates tyres itself: parameters as JSON, equations as JavaScript, no network."""
+"""One HTML file that evaluates tyres by itself: parameters as JSON, equations as JavaScript, no network."""
 
 from __future__ import annotations
 
@@ -28,10 +28,10 @@ SEAL = re.compile(r"<!-- written by mffit show, sha256 of the rest ([0-9a-f]{64}
 
 @dataclass(frozen=True, slots=True, repr=False)
 class Page:
-    """A page that shows tyres; in a notebook it shows itself."""
+    """A page with the curves of tyres; a notebook shows it as its result."""
 
     html: str
-    names: tuple[str, ...]  #: of the tyres, as the page's legend has them
+    names: tuple[str, ...]  #: of the tyres, as in the page's legend
 
     def write(self, path: str | Path) -> Path:
         """Write the page; returns its path.
@@ -39,32 +39,32 @@ class Page:
         Raises
         ------
         InputError
-            If a file is there that is no page of this kind, or was changed since; or if it cannot be written.
+            If the path is another file or a page that was changed since, or if it cannot be written.
         """
         path = Path(path)
         if os.path.lexists(path) and not _is_ours(path):
             raise InputError(
-                "is there already, and is no page as mffit show wrote it; name another", file=path
+                "exists already and is not a page that mffit show wrote; give another name", file=path
             )
         text = f"{self.html}<!-- written by mffit show, sha256 of the rest {_digest(self.html)} -->\n"
         try:
             path.parent.mkdir(parents=True, exist_ok=True)
             handle, temporary = tempfile.mkstemp(prefix=f".{path.name}-", dir=path.parent)
         except OSError as error:
-            raise InputError(f"cannot be written to ({error.strerror}); name another", file=path) from None
+            raise InputError(f"cannot be written ({error.strerror}); give another name", file=path) from None
         try:
             with os.fdopen(handle, "wb") as stream:
                 stream.write(text.encode())
             os.chmod(temporary, 0o644)
             os.replace(temporary, path)
         except OSError as error:
-            raise InputError(f"cannot be written to ({error.strerror}); name another", file=path) from None
+            raise InputError(f"cannot be written ({error.strerror}); give another name", file=path) from None
         finally:
             Path(temporary).unlink(missing_ok=True)
         return path
 
     def __repr__(self) -> str:
-        return f"<Page of {', '.join(self.names)}: {len(self.html)} characters; .write(path) keeps it>"
+        return f"<Page of {', '.join(self.names)}: {len(self.html)} characters; .write(path) saves it>"
 
     def _repr_html_(self) -> str:
         frame = 'style="width:100%;height:900px;border:0" sandbox="allow-scripts"'
@@ -72,24 +72,24 @@ class Page:
 
 
 def show(tyres: Given | Mapping[str, Given] | Iterable[Given], out: str | Path | None = None) -> Page:
-    """Show property files: a page with their curves over one another, sliders for the operating condition.
+    """A page with the curves of property files in common panels, and sliders for the operating condition.
 
-    The page evaluates the tyres itself, with code made from the equations; it needs no network and no server.
+    The page evaluates the tyres by itself, with code generated from the equations. It needs no network and no server.
 
     Parameters
     ----------
-    tyres : a path or :class:`tir.Tyre`, several, or a mapping from the names to show
-    out : where to write the page; nothing is written if None
+    tyres : a path or :class:`tir.Tyre`, several of them, or a mapping from names to them
+    out : file to write; nothing is written if None
 
     Returns
     -------
     Page
-        ``.html`` is the text, ``.write(path)`` keeps it; a notebook shows it.
+        ``.html`` is the text, ``.write(path)`` saves it; a notebook shows it.
 
     Raises
     ------
     InputError, TirError
-        On a file that cannot be read or drawn, or a file in the way of ``out``.
+        On a file that cannot be read or drawn, or if ``out`` is another file.
     """
     found = named(tyres)
     names = sorted({name for on in (False, True) for name in trace(Switches(on), OUTPUTS).parameters})
@@ -142,7 +142,7 @@ def _digest(text: str) -> str:
 
 
 def _is_ours(path: Path) -> bool:
-    """Whether the file is a page as :meth:`Page.write` left it."""
+    """Whether the file is a page of :meth:`Page.write` without changes."""
     try:
         text = path.read_bytes().decode()
     except (OSError, UnicodeDecodeError):

@@ -1,10 +1,12 @@
-"""What the page draws: one record per panel."""
+"""The panels of the page, one record each."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
-from mffit.quantities import MODEL, Quantity
+from mffit.quantities import MODEL, QuantityName
+from mffit.viewer import constants
 from tir.codegen.program import INPUTS
 
 
@@ -14,15 +16,15 @@ class Panel:
 
     x: str
     y: str
-    name: str = ""  #: of the heading, if it is not the output's own
-    sign: int = 1  #: -1 for what is negative in ISO-W and looked at by its size
+    name: str = ""  #: for the heading; empty for the name of the output
+    sign: int = 1  #: -1 for outputs that are negative in ISO-W and drawn by their size
     sweep: str = ""  #: the input that is swept where x is an output too
-    fan: tuple[float, ...] = ()  #: sideslip angles [deg] beside the slider's
-    turn_slip: bool = False  #: flat without turn slip
+    fan: Sequence[float] = ()  #: sideslip angles [deg] beside the slider's
+    turn_slip: bool = False  #: constant without turn slip
 
     @property
     def key(self) -> str:
-        """Its name in the page."""
+        """The panel's name in the page."""
         return f"{self.y}-{self.x}"
 
     @property
@@ -32,11 +34,11 @@ class Panel:
         return word[0].upper() + word[1:]
 
     @property
-    def output(self) -> Quantity:
+    def output(self) -> QuantityName:
         return MODEL[self.y]
 
     @property
-    def input(self) -> Quantity:
+    def input(self) -> QuantityName:
         return MODEL[self.x]
 
 
@@ -45,7 +47,7 @@ PANELS = (
     Panel("alpha", "Mz"),
     Panel("kappa", "Fx"),
     Panel("gamma", "Fy", "camber thrust"),
-    Panel("Fx", "Fy", "friction ellipse", sweep="kappa", fan=(-12.0, -8.0, -4.0, -2.0, 2.0, 4.0, 8.0, 12.0)),
+    Panel("Fx", "Fy", "friction ellipse", sweep="kappa", fan=constants.FRICTION_ELLIPSE_FAN),
     Panel("alpha", "trail"),
     Panel("Fz", "K_ya", sign=-1),
     Panel("Fz", "K_yg0", sign=-1),
@@ -56,4 +58,4 @@ PANELS = (
     Panel("Vx", "My"),
 )
 OUTPUTS = tuple(dict.fromkeys(name for panel in PANELS for name in (panel.x, panel.y) if name not in INPUTS))
-"""What the page computes."""
+"""The outputs that the page computes."""

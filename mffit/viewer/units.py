@@ -1,4 +1,4 @@
-"""Units of the page in SI."""
+"""The units of the page in SI."""
 
 from __future__ import annotations
 
@@ -6,5 +6,5 @@ from tir.units import KINDS
 
 
 def in_si(unit: str) -> float:
-    """What one of a unit is in SI: 1 for SI units and for what has none."""
+    """One of the unit in SI: 1 for SI units and for no unit."""
     return next((known[unit.lower()] for known in KINDS.values() if unit.lower() in known), 1.0)

@@ -7,10 +7,10 @@ import dataclasses
 import pytest
 
 from mffit.measured import KEYS, LoadResult
-from mffit.quantities import CHANNELS, CONDITIONS, DIRECT, Quantity
+from mffit.quantities import CHANNELS, CONDITIONS, DIRECT, QuantityName
 
-EPSILON = Quantity("camber reduction factor", "ε_γ", "-")
-FORCE = Quantity("turn-slip force", "F_φt", "N")
+EPSILON = QuantityName("camber reduction factor", "ε_γ", "-")
+FORCE = QuantityName("turn-slip force", "F_φt", "N")
 
 
 def test_a_symbol_is_written_as_terminal_picture_and_page_can():

@@ -2,51 +2,62 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
 from mffit.points import make_points
 from mffit.quantities import CHANNELS
-from mffit.report import labels, style
+from mffit.report import constants, labels, style
 from mffit.report.build_view import BuildView
+from mffit.report.drawing.records import Axis, Band, Guide, Look, Panel, Sheet, Trace
 from mffit.rig import Simulation
 
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
-STEPS = 81
+LIMITS = {"gamma": "CAMMAX", "alpha": "ALPMAX"}
+"""The file's key for the end of an angle's range."""
 
 
-def bands(view: BuildView) -> Figure:
-    """Fy and Mz with 95 % bands over sideslip and over camber, the other angle 0, at three loads, on a straight path."""
-    from matplotlib.lines import Line2D
+def tested_edges(tested: float) -> list[Guide]:
+    """Dotted lines at both ends of the tested range [rad]."""
+    dotted = Look(colour=style.FAINT, line=":", width=0.8)
+    return [Guide(axis="x", at=side * float(np.degrees(tested)), look=dotted) for side in (-1.0, 1.0)]
 
+
+def bands(view: BuildView) -> Sheet:
+    """Fy and Mz with 95 % bands over camber and over sideslip, the other angle zero, at three loads, on a straight path."""
     files = view.files
     assert files is not None
-    written, tested = files.written, files.tested
+    written = files.written
     loads = [written["FZMIN"], float(view.model["FNOMIN"]), written["FZMAX"]]
     colours = style.ramp(loads)
-    figure, rows = style.panel_grid([4], 4, height=2.3)
-    tyre = Simulation.of(view.model, turn_slip=view.on_disc)
-    for pair, over in ((rows[0][0::2], "gamma"), (rows[0][1::2], "alpha")):
-        end = "CAMMAX" if over == "gamma" else "ALPMAX"
-        x = np.linspace(-written[end], written[end], STEPS)
-        for load in loads:
-            alpha, gamma = (np.zeros(STEPS), x) if over == "gamma" else (x, np.zeros(STEPS))
-            where = make_points(alpha, gamma, load, p=float(view.model["NOMPRES"]), V=10.0, phi_t=0.0)
-            lines, halves = tyre.readings(where), view.posterior.band(tyre, where)
-            for ax, line, half in zip(pair, lines, halves, strict=True):
-                ax.fill_between(
-                    np.degrees(x), line - half, line + half, color=colours[load], alpha=0.25, lw=0
+    panels = []
+    for over, end in LIMITS.items():
+        x = np.linspace(-written[end], written[end], constants.STEPS_OF_FILE_CURVE)
+        found = {load: _with_halves(view, over, x, load) for load in loads}
+        for k, name in enumerate(CHANNELS):
+            series: list[Band | Trace] = []
+            for load, (lines, halves) in found.items():
+                line, half, colour = lines[k], halves[k], colours[load]
+                at, said = np.degrees(x), labels.LOAD.of(load)
+                series += [
+                    Band(name=said, x=at, low=line - half, high=line + half, look=Look(colour=colour, opacity=0.25)),
+                    Trace(name=said, x=at, y=line, look=Look(colour=colour, line="-", width=1.0)),
+                ]  # fmt: skip
+            panels.append(
+                Panel(
+                    title=CHANNELS[name].short_axis,
+                    x=labels.angle_axis(over),
+                    y=Axis(),
+                    series=series,
+                    guides=tested_edges(files.tested[end]),
                 )
-                ax.plot(np.degrees(x), line, color=colours[load], lw=1.0)
-        for ax, channel in zip(pair, CHANNELS, strict=True):
-            for edge in (-1.0, 1.0):
-                ax.axvline(np.degrees(edge * tested[end]), color=style.FAINT, lw=0.8, ls=":")
-            ax.set_title(CHANNELS[channel].short_axis)
-            ax.set_xlabel(labels.ANGLES[over].axis, labelpad=1.5)
-            style.few_ticks(ax, x=4)
-    handles = [Line2D([], [], color=colours[load], label=labels.LOAD.of(load)) for load in loads]
-    style.legend_above(figure, handles)
-    return figure
+            )
+    key = {labels.LOAD.of(load): Look(colour=colours[load], line="-") for load in loads}
+    return Sheet(rows=[panels], height=2.1, key=key)
+
+
+def _with_halves(view: BuildView, over: str, x: np.ndarray, load: float) -> tuple:
+    """By channel the model's curve, and half the width of its band."""
+    tyre = Simulation.of(view.model, turn_slip=view.on_disc)
+    none = np.zeros_like(x)
+    alpha, gamma = (none, x) if over == "gamma" else (x, none)
+    where = make_points(alpha, gamma, load, p=float(view.model["NOMPRES"]), V=10.0, phi_t=0.0)
+    return tyre.readings(where), view.posterior.band(tyre, where)

@@ -1,119 +1,124 @@
-"""Raw readings, their odd part and their even part; and the even part beside the model's."""
+"""Raw readings with their odd and even parts, and the even part beside the model's."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-from mffit.report import labels, style
-from mffit.report.build_view import BuildView, Channel
+from mffit.report import constants, labels, style
+from mffit.report.build_view import BuildView, ChannelRow
 from mffit.report.curves import Curve
-from mffit.report.figures.fit import held
+from mffit.report.drawing.records import Axis, ErrorBars, Guide, Look, Panel, Sheet, Trace, in_rows
 
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
+RAW = Look(colour=style.MUTED, line=":", marker="o", size=3.0)
+ODD = Look(colour=style.ACCENT, line="-")
+EVEN = Look(colour=style.CONTRAST, line="--")
+MEASURED = Look(colour=style.CONTRAST, marker="o", size=3.0, width=0.8)
+MODEL = Look(colour=style.INK, line="-")
+PARTS = {
+    "raw reading": RAW,
+    "odd part: response to sideslip and camber": ODD,
+    "even part: turn slip, offsets, misalignment": EVEN,
+}
 
-MOST_PANELS = 18
 
-
-def decomposition(view: BuildView, channel: Channel) -> Figure:
+def decomposition(view: BuildView, channel: ChannelRow) -> Sheet:
     """Raw, odd and even curve of every sweep; of opposite cambers only the positive one."""
-    from matplotlib.lines import Line2D
-
     chosen = worth_drawing(view.curves, channel)
-    groups = [n for n in (sum(c.over == over for c in chosen) for over in ("alpha", "gamma")) if n]
-    figure, rows = style.panel_grid(groups, 5 if max(groups) > 4 else 4, height=1.40)
-    for ax, curve in zip((ax for row in rows for ax in row), chosen, strict=True):
-        x = _angle(view, curve)
-        ax.axhline(0.0, color=style.FAINT, lw=0.8)
-        ax.plot(x, channel.measured[curve.index], ":", marker="o", ms=3, color=style.MUTED, mec="none")
-        ax.plot(x, channel.odd[curve.index], "-", color=style.ACCENT)
-        ax.plot(x, channel.even[curve.index], "--", color=style.CONTRAST)
-        ax.set_title(_title(curve))
-        ax.set_xlabel(labels.ANGLES[curve.over].axis, labelpad=1.5)
-        style.few_ticks(ax, x=4)
-    style.label_left(rows, channel.label)
-    handles = [
-        Line2D([], [], ls=":", marker="o", ms=3, color=style.MUTED, label="raw reading"),
-        Line2D([], [], color=style.ACCENT, label="odd part: response to sideslip and camber"),
-        Line2D([], [], ls="--", color=style.CONTRAST, label="even part: turn slip, offsets, misalignment"),
-    ]
-    style.legend_above(figure, handles)
-    return figure
+    groups = [[_parts(view, channel, c) for c in chosen if c.over == over] for over in labels.ANGLES]
+    columns = 5 if max(map(len, groups)) > 4 else 4
+    return Sheet(rows=in_rows(*groups, columns=columns), height=1.40, key=PARTS)
 
 
-def even_parts(view: BuildView) -> Figure:
-    """Even part of the pure sweeps at nominal pressure, measured and of the model, one column per load."""
-    from matplotlib.lines import Line2D
-
-    pure = pure_curves(view)
-    loads = sorted({c.load for c in pure})[:4]
-    kinds = [
-        (ch, over) for ch in view.channels for over in ("alpha", "gamma") if any(c.over == over for c in pure)
-    ]
-    figure, rows = style.panel_grid([len(loads)] * len(kinds), len(loads), height=1.25, share_y="row")
-    for row, (channel, over) in zip(rows, kinds, strict=True):
-        for ax, load in zip(row, loads, strict=True):
-            ax.axhline(0.0, color=style.FAINT, lw=0.8)
-            for curve in (c for c in pure if c.over == over and c.load == load):
-                _even_curve(ax, view, channel, curve)
-            ax.set_title(f"{channel.symbol}, {labels.LOAD.of(load)}")
-            ax.set_xlabel(labels.ANGLES[over].axis, labelpad=1.5)
-            style.few_ticks(ax, y=4)
-        style.label_left([row], f"even {channel.label}")
-    handles = [
-        Line2D([], [], ls="none", marker="o", ms=4, color=style.CONTRAST, label="measured, ± 1 u"),
-        Line2D([], [], color=style.INK, label="model"),
-    ]
-    style.legend_above(figure, handles)
-    return figure
-
-
-def _even_curve(ax: Axes, view: BuildView, channel: Channel, curve: Curve) -> None:
-    x, rows, line = _angle(view, curve), curve.index, view.lines[curve.key]
-    ax.errorbar(
-        x,
-        channel.even[rows],
-        channel.u_odd[rows],
-        fmt="o",
-        ms=3,
-        color=style.CONTRAST,
-        elinewidth=0.8,
-        mec="none",
+def _parts(view: BuildView, channel: ChannelRow, curve: Curve) -> Panel:
+    x = curve.angles(view.points)
+    values = (channel.measured, channel.odd, channel.even)
+    return Panel(
+        title=f"{curve.condition}{labels.held_unless_zero(curve)}",
+        x=labels.angle_axis(curve.over),
+        y=Axis(label=channel.label),
+        series=[
+            Trace(name=name, x=x, y=part[curve.index], look=look)
+            for (name, look), part in zip(PARTS.items(), values, strict=True)
+        ],
+        guides=[Guide(axis="y", at=0.0)],
     )
-    ax.plot(line.x, line.even[channel.name], color=style.INK)
+
+
+def even_parts(view: BuildView) -> Sheet:
+    """Even part of the pure sweeps at nominal pressure, measured and of the model, one column per load."""
+    pure = pure_curves(view)
+    loads = sorted({c.load for c in pure})[: constants.MOST_LOADS_SIDE_BY_SIDE]
+    varied = [over for over in labels.ANGLES if any(c.over == over for c in pure)]
+    rows = []
+    for channel in view.channels:
+        for over in varied:
+            members = [[c for c in pure if c.over == over and c.load == load] for load in loads]
+            low, high = _common_range(view, channel, [c for curves in members for c in curves])
+            rows.append(
+                [
+                    Panel(
+                        title=f"{channel.symbol}, {labels.LOAD.of(load)}",
+                        x=labels.angle_axis(over),
+                        y=Axis(label=f"even {channel.label}", low=low, high=high, ticks=4),
+                        series=[series for curve in curves for series in _even(view, channel, curve)],
+                        guides=[Guide(axis="y", at=0.0)],
+                    )
+                    for load, curves in zip(loads, members, strict=True)
+                ]
+            )
+    return Sheet(rows=rows, height=1.25, key={"measured, ± 1 u": MEASURED, "model": MODEL})
+
+
+def _even(view: BuildView, channel: ChannelRow, curve: Curve) -> list[Trace | ErrorBars]:
+    line, rows = view.lines[curve.key], curve.index
+    return [
+        ErrorBars(
+            name="measured, ± 1 u",
+            x=curve.angles(view.points),
+            y=channel.even[rows],
+            u=channel.u_odd[rows],
+            look=MEASURED,
+        ),
+        Trace(name="model", x=line.x, y=line.even[channel.name], look=MODEL),
+    ]
+
+
+def _common_range(view: BuildView, channel: ChannelRow, curves: Sequence[Curve]) -> tuple[float, float]:
+    """The range of a row of panels, so that their heights can be compared."""
+    shown = [series.extent()[1] for curve in curves for series in _even(view, channel, curve)]
+    values = np.concatenate([*shown, [0.0]])
+    low, high = float(np.nanmin(values)), float(np.nanmax(values))
+    room = constants.AXIS_ROOM * (high - low) or 1.0
+    return low - room, high + room
 
 
 def pure_curves(view: BuildView) -> list[Curve]:
-    """Forward sweeps over one angle, the other zero, at the pressure nearest the nominal one."""
+    """Forward sweeps over one angle with the other at zero, at the pressure nearest to the nominal one."""
     if not view.curves:
         return []
     nominal = view.config.tyre.nominal_pressure
     pressure = min((c.pressure for c in view.curves), key=lambda value: abs(value - nominal))
-    return [c for c in view.curves if c.forward and abs(c.held) < 0.5 and c.pressure == pressure]
-
-
-def worth_drawing(curves: Sequence[Curve], channel: Channel) -> list[Curve]:
-    """Forward curves that have mirrors, at most as many as a page can bear."""
-    chosen = [
-        c for c in curves if c.forward and c.held > -0.5 and np.isfinite(channel.odd[c.index]).sum() > 1
+    return [
+        c
+        for c in view.curves
+        if c.forward and abs(c.held) < constants.UPRIGHT_ENOUGH_TO_DRAW and c.pressure == pressure
     ]
-    long_ones = [c for c in chosen if len(c.index) > 6] or chosen
-    if len(long_ones) <= MOST_PANELS:
+
+
+def worth_drawing(curves: Sequence[Curve], channel: ChannelRow) -> list[Curve]:
+    """Forward curves that have mirrors, thinned out evenly where there are too many for a page."""
+    chosen = [
+        c
+        for c in curves
+        if c.forward
+        and c.held > -constants.UPRIGHT_ENOUGH_TO_DRAW
+        and np.isfinite(channel.odd[c.index]).sum() > 1
+    ]
+    long_ones = [c for c in chosen if len(c.index) >= constants.FEWEST_POINTS_OF_PARTS] or chosen
+    most = constants.MOST_PANELS_OF_PARTS
+    if len(long_ones) <= most:
         return long_ones
-    spread = np.linspace(0, len(long_ones) - 1, MOST_PANELS).round().astype(int)
+    spread = np.linspace(0, len(long_ones) - 1, most).round().astype(int)
     return [long_ones[i] for i in spread]
-
-
-def _title(curve: Curve) -> str:
-    condition = labels.condition(curve.load, curve.pressure)
-    if abs(curve.held) < 0.5:
-        return condition
-    return f"{condition}, {held(curve)}"
-
-
-def _angle(view: BuildView, curve: Curve) -> np.ndarray:
-    return np.degrees(getattr(view.points, curve.over)[curve.index])

@@ -1,70 +1,61 @@
-"""Many tyres side by side: eps_gamma three ways, and each stiffness and peak with its uncertainty."""
+"""Many tyres side by side: eps_gamma by three estimates, and each stiffness and peak with its uncertainty."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from mffit.fleet import EPSILON, Fleet
 from mffit.quantities import COMPARED
-from mffit.report import labels, style
+from mffit.report import constants, labels, style
+from mffit.report.drawing.records import Axis, ErrorBars, Look, Panel, Sheet, in_rows
 
 if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
-
     from tir import Quantity
 
-LOOKS = {"direct": (style.FAINT, "s"), "alone": (style.CALM, "D"), "together": (style.ACCENT, "o")}
+LOOKS = {
+    "direct": Look(colour=style.FAINT, marker="s", size=4.0, width=1.2),
+    "alone": Look(colour=style.CALM, marker="D", size=4.0, width=1.2),
+    "together": Look(colour=style.ACCENT, marker="o", size=4.0, width=1.2),
+}
 APART = 0.22
-"""Distance of the estimates of one tyre, in distances of two tyres."""
+"""Distance between the estimates of one tyre, as a share of the distance between two tyres."""
 
 
-def epsilon_of_all(found: Fleet) -> Figure:
-    """Camber reduction factor of every specimen, by each estimate; every bar is one standard uncertainty."""
-    figure, rows = style.panel_grid([1], 1, height=2.8)
-    ax = rows[0][0]
-    for k, (key, words) in enumerate(EPSILON.items()):
-        colour, marker = LOOKS[key]
-        _bars(ax, found.numbers(key), APART * (k - 1), colour, marker, words)
-    ax.set_ylabel(labels.EPSILON.axis)
-    _names(ax, found)
-    style.legend_above(figure, ax.get_legend_handles_labels()[0])
-    return figure
+def epsilon_of_all(found: Fleet) -> Sheet:
+    """Camber reduction factor of every specimen by each estimate; every bar is one standard uncertainty."""
+    series = [
+        _bars(found.numbers(key), APART * (k - 1), LOOKS[key], words)
+        for k, (key, words) in enumerate(EPSILON.items())
+    ]
+    panel = Panel(x=_names(found), y=Axis(label=labels.EPSILON.axis), series=series)
+    return Sheet(rows=[[panel]], height=2.8, key={words: LOOKS[key] for key, words in EPSILON.items()})
 
 
-def numbers_of_all(found: Fleet) -> Figure:
+def numbers_of_all(found: Fleet) -> Sheet:
     """Stiffnesses and peaks of every specimen."""
-    figure, rows = style.panel_grid([len(COMPARED)], 3, height=1.9, legend=False, gap=(0.62, 0.95))
-    panels = [ax for row in rows for ax in row]
-    for ax, (key, quantity) in zip(panels, COMPARED.items(), strict=True):
-        _bars(ax, found.numbers(key), 0.0, style.ACCENT, "o", "")
-        ax.set_title(quantity.column(f"{quantity.word} {quantity.mathtext}"))
-        _names(ax, found)
-    return figure
+    panels = [
+        Panel(
+            title=quantity.column(f"{quantity.word} {quantity.mathtext}"),
+            x=_names(found),
+            y=Axis(),
+            series=[_bars(found.numbers(key), 0.0, LOOKS["together"], quantity.word)],
+        )
+        for key, quantity in COMPARED.items()
+    ]
+    return Sheet(rows=in_rows(panels, columns=3), height=1.9)
 
 
-def _bars(
-    ax: Axes, numbers: list[Quantity | None], shift: float, colour: str, marker: str, words: str
-) -> None:
-    known = [(i, q) for i, q in enumerate(numbers) if q is not None]
-    ax.errorbar(
-        [i + shift for i, _ in known],
-        [q.value for _, q in known],
-        yerr=[q.u for _, q in known],
-        ls="none",
-        marker=marker,
-        color=colour,
-        ms=4.0,
-        lw=1.2,
-        label=words,
-    )
+def _bars(numbers: Sequence[Quantity | None], shift: float, look: Look, name: str) -> ErrorBars:
+    known = [(k + shift, q.value, q.u) for k, q in enumerate(numbers) if q is not None]
+    x, y, u = np.array(known, dtype=float).reshape(-1, 3).T
+    return ErrorBars(name=name, x=x, y=y, u=u, look=look)
 
 
-def _names(ax: Axes, found: Fleet) -> None:
-    """Numbers of the table's rows: names would not fit beside each other."""
+def _names(found: Fleet) -> Axis:
+    """The tyres' numbers in the table, as names would not fit side by side."""
     n = len(found.rows)
-    step = max(1, n // 16)
-    ax.set_xticks(np.arange(0, n, step), [str(i + 1) for i in range(0, n, step)])
-    ax.set_xlim(-0.6, n - 0.4)
+    step = max(1, n // constants.MOST_TYRE_NUMBERS_AT_AXIS)
+    return Axis(low=-0.6, high=n - 0.4, words={float(k): str(k + 1) for k in range(0, n, step)})

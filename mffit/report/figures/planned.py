@@ -1,39 +1,43 @@
-"""The uncertainty of a plan's goal against the number of added runs."""
+"""The uncertainty of a plan's goal now and after each added run."""
 
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
+
+import numpy as np
 
 from mffit.planning import Plan, wording
 from mffit.quantities import DIRECT
 from mffit.report import style
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
+from mffit.report.drawing.records import Axis, Bars, Guide, Look, Note, Panel, Sheet
 
 
-def u_against_runs(plan: Plan) -> Figure:
-    """u now and after every run of the list, from zero, each point with what was added."""
+def u_against_runs(plan: Plan) -> Sheet:
+    """A bar from zero for the uncertainty now and after every run of the list, with what was added."""
     values = [plan.now, *(step.after for step in plan.steps)]
     names = ["now", *(f"+ {step.run.name}" for step in plan.steps)]
-    height = 0.28 * len(values) + 0.1
-    figure, rows = style.panel_grid([1], 1, height=height, legend=False, margins=(2.4, 0.60))
-    ax = rows[0][0]
     known = [(k, u) for k, u in enumerate(values) if math.isfinite(u)]
-    bars = ax.barh([k for k, _ in known], [u for _, u in known], height=0.6, color=style.ACCENT)
-    if known and known[0][0] == 0:
-        bars[0].set_color(style.FAINT)
-    for k, u in known:
-        ax.annotate(wording.shown(plan, u), (u, k), (3, 0), textcoords="offset points", va="center")
-    if plan.told_below is not None:
-        ax.axvline(plan.told_below, color=style.CONTRAST, lw=1.0, ls="--")
-        ax.set_title("dashed: separated below", loc="right", color=style.CONTRAST)
-    ax.set_xlim(0.0, 1.08 * max(u for _, u in known))
-    ax.set_ylim(len(values) - 0.4, -0.6)
-    ax.set_yticks(range(len(values)), names)
-    ax.grid(axis="y", visible=False)
+    told = plan.told_below
     epsilon = DIRECT["epsilon_gamma"]
     unit = "" if plan.goal.unit in ("", "-") else f" [{plan.goal.unit}]"
-    ax.set_xlabel(f"{plan.goal.label}{unit}".replace(epsilon.ascii, epsilon.mathtext), labelpad=1.5)
-    return figure
+    edge = Look(colour=style.CONTRAST, line="--", width=1.0)
+    panel = Panel(
+        title="" if told is None else "dashed: told apart below",
+        x=Axis(
+            label=f"{plan.goal.label}{unit}".replace(epsilon.ascii, epsilon.mathtext),
+            low=0.0,
+            high=1.3 * max(u for _, u in known),
+        ),
+        y=Axis(low=len(values) - 0.4, high=-0.6, words={float(k): name for k, name in enumerate(names)}),
+        series=[
+            Bars(
+                name=plan.goal.label,
+                lengths=np.array([u for _, u in known]),
+                places=np.array([float(k) for k, _ in known]),
+                colours=[style.FAINT if k == 0 else style.ACCENT for k, _ in known],
+            )
+        ],
+        guides=[] if told is None else [Guide(axis="x", at=told, look=edge)],
+        notes=[Note(x=u, y=k, text=wording.shown(plan, u)) for k, u in known],
+    )
+    return Sheet(rows=[[panel]], height=0.28 * len(values) + 0.1)

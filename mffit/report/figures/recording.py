@@ -1,86 +1,83 @@
-"""A recording over time: settings and forces, with the stretches that give points and those that do not."""
+"""A recording over time: settings and forces, with the stretches that give points and those that give none."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Sequence
 
 import numpy as np
 
 from mffit.points.steady import gaps
 from mffit.points.stretch import MOVE, StretchNote
-from mffit.report import style
+from mffit.report import constants, style
+from mffit.report.drawing.records import Axis, Look, Panel, Sheet, Span, Trace
 from mffit.sweeps import Sweep
 
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
-MOST_SAMPLES = 6000
-"""Drawn of a recording; more would only thicken the lines."""
-GAP_DRAWN = 0.004
-"""Width of a gap in time, per width of the picture."""
+KEPT = Look(colour=style.CALM, opacity=0.13)
+DROPPED = Look(colour=style.CONTRAST, opacity=0.13)
+LINE = Look(colour=style.INK, line="-", width=0.6)
 
 
-def recording(sweep: Sweep, notes: list[StretchNote]) -> Figure:
-    """One panel per channel, gaps in time closed up and marked.
+def recording(sweep: Sweep, notes: Sequence[StretchNote]) -> Sheet:
+    """One panel per channel; gaps in time are closed and the lines broken there.
 
     Parameters
     ----------
     sweep : a series in ISO-W and SI
     notes : its stretches
     """
-    channels = (
-        ("sideslip [deg]", np.degrees(sweep.alpha)),
-        ("camber [deg]", np.degrees(sweep.gamma)),
-        ("load [N]", sweep.Fz),
-        ("pressure [kPa]", sweep.p / 1e3),
-        ("tread [degC]", sweep.T),
-        ("side force [N]", sweep.Fy),
-        ("moment [Nm]", sweep.Mz),
-    )
-    rows = tuple((name, x) for name, x in channels if np.any(np.isfinite(x)))
-    figure, grid = style.panel_grid([1] * len(rows), 1, height=0.85, legend=True)
-    panels = [row[0] for row in grid]
-    drawn = _clock(sweep.time)
-    some = np.linspace(0, len(sweep) - 1, min(len(sweep), MOST_SAMPLES)).astype(int)
-    breaks = gaps(sweep.time)
-    for ax, (name, values) in zip(panels, rows, strict=True):
-        for note in notes:
-            first, last = np.searchsorted(sweep.time, [note.begin_s, note.end_s])
-            if note.kind == MOVE and not note.dropped:
-                continue
-            colour = style.CALM if note.points else style.CONTRAST
-            ax.axvspan(drawn[first], drawn[min(last, len(drawn) - 1)], color=colour, alpha=0.13, lw=0)
-        shown = values[some].astype(float)
-        broken = np.searchsorted(some, breaks)
-        ax.plot(
-            np.insert(drawn[some], broken, drawn[some][broken.clip(max=len(some) - 1)]),
-            np.insert(shown, broken, np.nan),
-            color=style.INK,
-            lw=0.6,
+    channels = {
+        "sideslip [deg]": np.degrees(sweep.alpha),
+        "camber [deg]": np.degrees(sweep.gamma),
+        "load [N]": sweep.Fz,
+        "pressure [kPa]": sweep.p / 1e3,
+        "tread [degC]": sweep.T,
+        "side force [N]": sweep.Fy,
+        "moment [Nm]": sweep.Mz,
+    }
+    measured = {name: values for name, values in channels.items() if np.any(np.isfinite(values))}
+    clock = _clock(sweep.time)
+    spans = _spans(sweep.time, clock, notes)
+    some = np.linspace(0, len(sweep) - 1, min(len(sweep), constants.MOST_SAMPLES_DRAWN)).astype(int)
+    broken = np.searchsorted(some, gaps(sweep.time))
+    x = np.insert(clock[some], broken, clock[some][broken.clip(max=len(some) - 1)])
+    panels = [
+        Panel(
+            x=Axis(label="time, gaps closed [s]", numbered=name == [*measured][-1], room=0.005, ticks=10),
+            y=Axis(label=name),
+            series=[
+                Trace(name=name, x=x, y=np.insert(values[some].astype(float), broken, np.nan), look=LINE)
+            ],
+            spans=spans,
         )
-        ax.set_ylabel(name)
-        ax.margins(x=0.005)
-        if ax is not panels[-1]:
-            ax.set_xticklabels([])
-    panels[-1].set_xlabel("time, gaps closed up [s]")
-    style.legend_above(figure, _legend(notes))
-    return figure
+        for name, values in measured.items()
+    ]
+    return Sheet(
+        rows=[[panel] for panel in panels],
+        height=0.85,
+        key={
+            f"{sum(note.points > 0 for note in notes)} stretches give points": KEPT,
+            f"{sum(note.points == 0 for note in notes)} stretches give none": DROPPED,
+        },
+        panel_width=constants.PICTURE_WIDTH,
+    )
+
+
+def _spans(time: np.ndarray, clock: np.ndarray, notes: Sequence[StretchNote]) -> list[Span]:
+    """Every stretch that gives points or was dropped, over the clock without gaps."""
+    found = []
+    for note in notes:
+        if note.kind == MOVE and not note.dropped:
+            continue
+        first, last = np.searchsorted(time, [note.begin_s, note.end_s])
+        end = clock[min(last, len(clock) - 1)]
+        found.append(Span(first=float(clock[first]), last=float(end), look=KEPT if note.points else DROPPED))
+    return found
 
 
 def _clock(time: np.ndarray) -> np.ndarray:
-    """Time (n,) from zero with every gap shrunk to a sliver."""
+    """Time (n,) from zero with every gap closed to a sliver."""
     steps = np.diff(time)
     at = gaps(time) - 1
     held = float(np.sum(steps) - np.sum(steps[at]))
-    steps[at] = GAP_DRAWN * held
+    steps[at] = constants.GAP_IN_TIME_DRAWN * held
     return np.r_[0.0, np.cumsum(steps)]
-
-
-def _legend(notes: list[StretchNote]) -> list:
-    from matplotlib.patches import Patch
-
-    kept, dropped = sum(note.points > 0 for note in notes), sum(note.points == 0 for note in notes)
-    return [
-        Patch(color=style.CALM, alpha=0.3, label=f"{kept} stretches give points"),
-        Patch(color=style.CONTRAST, alpha=0.3, label=f"{dropped} stretches give none"),
-    ]

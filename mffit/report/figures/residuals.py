@@ -1,27 +1,22 @@
-"""Where the model misses: measured minus model over sideslip and camber, one panel per load and pressure."""
+"""Where the model misses: measured minus model over sideslip and camber, one map per load and pressure."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from mffit.points import Points
-from mffit.report import labels, style
+from mffit.report import constants, labels, style
 from mffit.report.curves import Condition
+from mffit.report.drawing.records import Axis, ColourScale, Frame, Look, Map, Panel, Sheet, Trace
 
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
-
-STEP = 0.026
-"""Distance at which points with equal angles are drawn beside each other, as a share of the camber range."""
+BACKWARD = Look(colour=style.INK, marker=".", size=1.8)
 
 
-def most_populated(conditions: Sequence[Condition], most: int) -> list[Condition]:
-    """At most ``most`` conditions: those with most points, in their order."""
-    kept = sorted(conditions, key=lambda c: -len(c.index))[:most]
+def most_populated(conditions: Sequence[Condition]) -> list[Condition]:
+    """The conditions with most points, as many as there is room for, in their order."""
+    kept = sorted(conditions, key=lambda c: -len(c.index))[: constants.MOST_MAPS_PER_CHANNEL]
     return [c for c in conditions if c in kept]
 
 
@@ -29,49 +24,47 @@ def residual_maps(
     points: Points,
     residuals: Sequence[tuple[str, np.ndarray]],
     conditions: Sequence[Condition],
-    limit: float,
     unit: str,
-) -> Figure:
+) -> Sheet:
     """A row of maps per residual (title, (n,) array), a column per condition; one colour scale for all."""
-    shown = most_populated(conditions, 6)
-    figure, rows = style.panel_grid(
-        [len(shown)] * len(residuals), 6, height=1.45, gap=(0.25, 0.38),
-        share_x=True, share_y=True,
-    )  # fmt: skip
-    set_limits(rows[0][0], points)
-    for row, (name, values) in zip(rows, residuals, strict=True):
-        for ax, condition in zip(row, shown, strict=True):
-            drawn = residual_map(ax, points, values, condition.index, limit)
-            ax.set_title(f"{name}: {condition.title}")
-    style.label_below(rows, labels.ANGLES["alpha"].axis)
-    style.label_left(rows, labels.ANGLES["gamma"].axis)
-    colour_bar(figure, drawn, f"measured − model [{unit}]")
-    return figure
+    limit = constants.RESIDUAL_SCALE
+    rows = [
+        [
+            residual_map(points, values, condition, limit, f"{name}: {condition.title}")
+            for condition in most_populated(conditions)
+        ]
+        for name, values in residuals
+    ]
+    return Sheet(rows=rows, height=1.45, scale=ColourScale(limit=limit, label=f"measured − model [{unit}]"))
 
 
-def residual_map(ax: Axes, points: Points, values: np.ndarray, rows: np.ndarray, limit: float) -> Any:
-    """One map; rings are points that were run backward."""
-    rows = rows[np.isfinite(values[rows])]
+def residual_map(
+    points: Points,
+    values: np.ndarray,
+    condition: Condition,
+    limit: float,
+    title: str,
+    frames: Sequence[Frame] = (),
+) -> Panel:
+    """One map with the axes of all points; a dot marks a point that was run backwards."""
+    rows = condition.index[np.isfinite(values[condition.index])]
     alpha, gamma = np.degrees(points.alpha[rows]), np.degrees(points.gamma[rows])
-    gamma = gamma + STEP * _camber_range(points) * beside(alpha, gamma)
-    size = 20 if len(rows) < 300 else 7
-    drawn = ax.scatter(
-        alpha,
-        gamma,
-        s=size,
-        c=np.clip(values[rows], -limit, limit),
-        cmap=style.DIVERGING,
-        vmin=-limit,
-        vmax=limit,
-        marker="s",
-        linewidths=0.4,
-        edgecolors=style.FAINT,
-    )
+    gamma = gamma + constants.NEIGHBOUR_SHIFT * _camber_range(points) * beside(alpha, gamma)
+    size = 4.5 if len(rows) < constants.CROWDED_MAP else 2.6
+    series: list[Map | Trace] = [
+        Map(name="measured − model", x=alpha, y=gamma, values=np.clip(values[rows], -limit, limit), limit=limit, size=size)
+    ]  # fmt: skip
     backward = points.direction[rows] < 0
     if backward.any():
-        ax.scatter(alpha[backward], gamma[backward], s=3, c=style.INK, linewidths=0)
-    style.few_ticks(ax, x=4, y=4)
-    return drawn
+        series.append(Trace(name="run backwards", x=alpha[backward], y=gamma[backward], look=BACKWARD))
+    (left, right), (low, high) = (_all_points(angle) for angle in (points.alpha, points.gamma))
+    return Panel(
+        title=title,
+        x=Axis(label=labels.ANGLES["alpha"].axis, low=left, high=right),
+        y=Axis(label=labels.ANGLES["gamma"].axis, low=low, high=high, ticks=4),
+        series=series,
+        frames=frames,
+    )
 
 
 def beside(alpha: np.ndarray, gamma: np.ndarray) -> np.ndarray:
@@ -85,24 +78,13 @@ def beside(alpha: np.ndarray, gamma: np.ndarray) -> np.ndarray:
     return np.where(rank % 2 == 1, 1.0, -1.0) * np.ceil(rank / 2.0)
 
 
-def set_limits(ax: Axes, points: Points) -> None:
-    """Axes that hold all points; the panels share them."""
-    for angle, limits in ((points.alpha, ax.set_xlim), (points.gamma, ax.set_ylim)):
-        low, high = np.degrees(angle.min()), np.degrees(angle.max())
-        room = 0.08 * max(high - low, 2.0)
-        limits(low - room, high + room)
+def _all_points(angle: np.ndarray) -> tuple[float, float]:
+    """Ends of an axis [deg] that holds all points, so that maps can be compared."""
+    low, high = np.degrees(angle.min()), np.degrees(angle.max())
+    room = 0.08 * max(high - low, 2.0)
+    return float(low - room), float(high + room)
 
 
 def _camber_range(points: Points) -> float:
-    """Extent of all points [deg]; at least 1, so that a sweep without camber has a height."""
+    """Extent of all points [deg]; at least 1, so that points without camber are drawn apart, too."""
     return max(float(np.degrees(np.ptp(points.gamma))), 1.0)
-
-
-def colour_bar(figure: Figure, drawn: Any, label: str) -> None:
-    """The scale of the maps, where other figures have their legend."""
-    width, height = figure.get_size_inches()
-    box = figure.add_axes((0.70 / width, 1.0 - 0.19 / height, 2.6 / width, 0.11 / height), label=style.SCALE)
-    bar = figure.colorbar(drawn, cax=box, orientation="horizontal")
-    bar.outline.set_linewidth(0.5)
-    box.tick_params(pad=1.5)
-    box.text(1.04, 0.5, label, transform=box.transAxes, va="center", fontsize=8.0)

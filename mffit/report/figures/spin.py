@@ -1,143 +1,171 @@
-"""The camber reduction factor: among published tyres, its budget, its course over load; alignment."""
+"""The camber reduction factor: among published tyres, its budget, its course over load; and the alignment."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from dataclasses import replace
 
 import numpy as np
 
 from mffit.measured import Measured
 from mffit.points import main_path
 from mffit.quantities import CHANNELS
-from mffit.report import labels, style
+from mffit.report import constants, labels, style
 from mffit.report.build_view import BuildView
 from mffit.report.curves import Curve
+from mffit.report.drawing.records import (
+    Axis,
+    Bars,
+    ErrorBars,
+    Guide,
+    Look,
+    Note,
+    Panel,
+    Sheet,
+    Trace,
+    in_rows,
+)
 from mffit.report.published import TYRES
 
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
+PUBLISHED = Look(colour=style.MUTED, marker="o", size=4.0, width=1.2)
+OWN = Look(colour=style.ACCENT, marker="o", size=6.0, width=2.2)
+COMBINED = Look(colour=style.CONTRAST, line="-", width=1.4)
+OF_THE_FILE = Look(colour=style.INK, line="-", width=1.2)
+FORWARDS = Look(colour=style.ACCENT, line="-", marker="o")
+BACKWARDS = Look(colour=style.CONTRAST, line="--", marker="v", size=4.2, hollow=True)
 
-MOST_SOURCES = 8
 
-
-def camber_reduction(view: BuildView) -> Figure:
-    """Three panels: eps_gamma among published tyres, budget of its uncertainty, eps_gamma over load."""
-    from matplotlib.figure import Figure
-
-    figure = Figure(figsize=(style.WIDTH, 3.1))
-    axes = [
-        figure.add_axes((left, 0.155, wide, 0.735))
-        for left, wide in ((0.115, 0.200), (0.490, 0.195), (0.755, 0.235))
+def camber_reduction(view: BuildView) -> Sheet:
+    """Three panels: eps_gamma among published tyres, the budget of its uncertainty, eps_gamma over load."""
+    panels = [
+        _among_published(view.config.tyre.name, view.measured),
+        _budget(view.measured),
+        _over_load(view),
     ]
-    _among_published(axes[0], view.config.tyre.name, view.measured)
-    _budget(axes[1], view.measured)
-    _over_load(axes[2], view)
-    return figure
+    key = {
+        "this tyre": replace(OWN, size=4.5),
+        "published tyres": PUBLISHED,
+        "combined uncertainty": COMBINED,
+        "PECP1, PECP2 of the file": OF_THE_FILE,
+    }
+    return Sheet(rows=[panels], height=2.3, key=key)
 
 
-def _among_published(ax: Axes, name: str, measured: Measured) -> None:
-    rows = [(t.name, t.epsilon_gamma, t.u, style.MUTED) for t in TYRES]
+def _among_published(name: str, measured: Measured) -> Panel:
+    rows = [(tyre.name, tyre.epsilon_gamma, tyre.u) for tyre in TYRES]
+    own = shortened(name)
     if measured.epsilon_gamma is not None:
-        rows.append((shortened(name), measured.epsilon_gamma.value, measured.epsilon_gamma.u, style.ACCENT))
-    ax.axvline(0.0, color=style.FAINT, lw=0.8)
-    for i, (_, value, u, colour) in enumerate(reversed(rows)):
-        own = colour == style.ACCENT
-        ax.errorbar(
-            value,
-            i,
-            xerr=u,
-            fmt="o",
-            ms=6 if own else 4,
-            color=colour,
-            elinewidth=2.2 if own else 1.2,
-            capsize=3,
-        )
-    ax.set_yticks(range(len(rows)), [r[0] for r in reversed(rows)])
-    ax.get_yticklabels()[0].set(color=style.ACCENT, fontweight="bold")
-    ax.set_ylim(-0.6, len(rows) - 0.4)
-    ax.grid(axis="y", visible=False)
-    ax.set_xlabel(f"{labels.EPSILON.axis}, ± 1 u")
-    ax.set_title("This tyre among published ones")
+        rows.append((own, measured.epsilon_gamma.value, measured.epsilon_gamma.u))
+    places = np.arange(len(rows))
+    values, u = (np.array([row[k] for row in rows]) for k in (1, 2))
+    sides = ((places < len(TYRES), "published", PUBLISHED), (places >= len(TYRES), "this tyre", OWN))
+    return Panel(
+        title="This tyre among published ones",
+        x=Axis(label=f"{labels.EPSILON.axis}, ± 1 u"),
+        y=Axis(
+            low=len(rows) - 0.4,
+            high=-0.6,
+            words={float(k): row[0] for k, row in enumerate(rows)},
+            bold=own,
+        ),
+        series=[
+            ErrorBars(name=said, x=values[which], y=places[which], u=u[which], look=look, along="x", cap=3.0)
+            for which, said, look in sides
+        ],
+        guides=[Guide(axis="x", at=0.0)],
+    )
 
 
-def shortened(name: str, longest: int = 18) -> str:
+def shortened(name: str) -> str:
     """A name that fits beside a panel."""
+    longest = constants.LONGEST_NAME_AT_AXIS
     return name if len(name) <= longest else f"{name[: longest - 1]}…"
 
 
-def _budget(ax: Axes, measured: Measured) -> None:
-    rows = sorted(measured.budget, key=lambda line: -abs(line.contribution))[:MOST_SOURCES]
-    width = [abs(line.contribution) for line in rows][::-1]
-    names = [line.source for line in rows][::-1]
-    ax.barh(range(len(rows)), width, height=0.62, color=style.ACCENT)
+def _budget(measured: Measured) -> Panel:
+    lines = sorted(measured.budget, key=lambda line: -abs(line.contribution))[: constants.MOST_BUDGET_BARS]
+    widths = np.array([abs(line.contribution) for line in lines])
     total = measured.epsilon_gamma.u if measured.epsilon_gamma is not None else 0.0
-    ax.axvline(total, color=style.CONTRAST, lw=1.4)
-    ax.annotate(
-        f" total {total:.3f}", (total, -0.35), color=style.CONTRAST, ha="right", va="center", rotation=90,
-        fontsize=7.5, xytext=(-2, 24), textcoords="offset points",
-    )  # fmt: skip
-    ax.set_yticks(range(len(rows)), names)
-    ax.set_xlim(0.0, 1.12 * max([total, *width]))
-    ax.grid(axis="y", visible=False)
-    ax.set_xlabel(f"contribution to u({labels.EPSILON.mathtext}) [–]")
-    ax.set_title("What its uncertainty consists of")
+    last = len(lines) - 1
+    return Panel(
+        title="What its uncertainty consists of",
+        x=Axis(
+            label=f"contribution to u({labels.EPSILON.mathtext}) [–]",
+            low=0.0,
+            high=1.12 * max([total, *widths]),
+        ),
+        y=Axis(low=last + 0.6, high=-0.6, words={float(k): line.source for k, line in enumerate(lines)}),
+        series=[
+            Bars(
+                name="contribution",
+                lengths=widths,
+                places=np.arange(len(lines)),
+                colours=[style.ACCENT] * len(lines),
+            )
+        ],
+        guides=[Guide(axis="x", at=total, look=COMBINED)],
+        notes=[Note(x=total, y=last + 0.4, text=f"total {total:.3f}", colour=style.CONTRAST, turned=True)],
+    )
 
 
-def _over_load(ax: Axes, view: BuildView) -> None:
-    measured = view.measured
+def _over_load(view: BuildView) -> Panel:
+    measured, nominal = view.measured, view.config.tyre.nominal_load
     found = [(row.load, row.epsilon_gamma) for row in measured.per_load if row.epsilon_gamma is not None]
     load, value, u = np.array([(load, epsilon.value, epsilon.u) for load, epsilon in found]).T
-    ax.axhline(0.0, color=style.FAINT, lw=0.8)
-    ax.errorbar(load, value, u, fmt="o", ms=4.5, color=style.ACCENT, capsize=3, label="measured")
-    nominal = view.config.tyre.nominal_load
-    over = np.linspace(min(load.min(), nominal), max(load.max(), nominal), 20)
-    if measured.pecp1 is not None:
-        line = measured.pecp1 * (1.0 + measured.pecp2 * (over - nominal) / nominal)
-        ax.plot(over, line, color=style.INK, lw=1.2, label="PECP1, PECP2 of the file")
-    ax.margins(x=0.08)
-    low, high = ax.get_ylim()
-    ax.set_ylim(low, high + 0.3 * (high - low))  # room for the legend
-    ax.legend(loc="upper left", borderaxespad=0.0, handlelength=1.4)
-    ax.set_xlabel(labels.LOAD.axis)
-    ax.set_ylabel(f"{labels.EPSILON.short_axis}, ± 1 u")
-    ax.set_title("Over the load")
-
-
-def alignment(view: BuildView) -> Figure:
-    """Side force rolling both ways around zero; where the lines cross, the slip force vanishes."""
-    from matplotlib.lines import Line2D
-
-    both = both_directions(view)
-    figure, rows = style.panel_grid([len(both)], len(both), height=1.7)
-    for ax, (load, members) in zip(rows[0], both, strict=True):
-        for curve in members:
-            colour = style.ACCENT if curve.forward else style.CONTRAST
-            x = np.degrees(view.points.alpha[curve.index])
-            near = np.abs(x) < 1.6
-            ax.plot(
-                x[near], view.points.Fy[curve.index][near], "-" if curve.forward else "--",
-                marker="o" if curve.forward else "v", mfc=colour if curve.forward else "white", color=colour,
-            )  # fmt: skip
-        ax.axvline(0.0, color=style.FAINT, lw=0.8)
-        ax.set_title(labels.LOAD.of(load))
-        ax.set_xlabel(labels.ANGLES["alpha"].axis, labelpad=1.5)
-        style.few_ticks(ax)
-    style.label_left(rows, CHANNELS["Fy"].short_axis)
-    handles = [
-        Line2D([], [], marker="o", color=style.ACCENT, label="rolling forwards"),
-        Line2D([], [], ls="--", marker="v", mfc="white", color=style.CONTRAST, label="rolling backwards"),
+    series: list[ErrorBars | Trace] = [
+        ErrorBars(name="this tyre", x=load, y=value, u=u, look=replace(OWN, size=4.5, width=1.4), cap=3.0)
     ]
-    style.legend_above(figure, handles)
-    return figure
+    if measured.pecp1 is not None:
+        over = np.linspace(min(load.min(), nominal), max(load.max(), nominal), 20)
+        line = measured.pecp1 * (1.0 + measured.pecp2 * (over - nominal) / nominal)
+        series.insert(0, Trace(name="PECP1, PECP2 of the file", x=over, y=line, look=OF_THE_FILE))
+    return Panel(
+        title="Over the load",
+        x=Axis(label=labels.LOAD.axis, room=0.08),
+        y=Axis(label=f"{labels.EPSILON.short_axis}, ± 1 u"),
+        series=series,
+        guides=[Guide(axis="y", at=0.0)],
+    )
+
+
+def alignment(view: BuildView) -> Sheet:
+    """Side force around zero sideslip in both directions of rolling; the slip force vanishes where the lines cross."""
+    panels = [
+        Panel(
+            title=labels.LOAD.of(load),
+            x=labels.angle_axis("alpha"),
+            y=Axis(label=CHANNELS["Fy"].short_axis),
+            series=[_near_zero(view, curve) for curve in members],
+            guides=[Guide(axis="x", at=0.0)],
+        )
+        for load, members in both_directions(view)
+    ]
+    key = {"rolling forwards": FORWARDS, "rolling backwards": BACKWARDS}
+    return Sheet(rows=in_rows(panels, columns=len(panels)), height=1.7, key=key)
+
+
+def _near_zero(view: BuildView, curve: Curve) -> Trace:
+    x = curve.angles(view.points)
+    near = np.abs(x) < constants.NEAR_ZERO_SIDESLIP
+    return Trace(
+        name=f"rolling {'forwards' if curve.forward else 'backwards'}",
+        x=x[near],
+        y=view.points.Fy[curve.index][near],
+        look=FORWARDS if curve.forward else BACKWARDS,
+    )
 
 
 def both_directions(view: BuildView) -> list[tuple[float, list[Curve]]]:
-    """By load the upright sideslip curves of the usual path that cross zero, where both directions were run."""
-    usual = [c for c in view.curves if view.points.phi_t[c.index[0]] == main_path(view.points)]
-    upright = [c for c in usual if c.over == "alpha" and abs(c.held) < 0.5 and c.mount > 0]
+    """By load the upright sideslip curves on the usual path that cross zero, where both directions were run."""
+    upright = [
+        c
+        for c in view.curves
+        if view.points.phi_t[c.index[0]] == main_path(view.points)
+        and c.over == "alpha"
+        and abs(c.held) < constants.UPRIGHT_ENOUGH_TO_DRAW
+        and c.mount > 0
+    ]
     backward = {(c.load, c.pressure) for c in upright if not c.forward}
-    loads = sorted({load for load, _ in backward})[:4]
+    loads = sorted({load for load, _ in backward})[: constants.MOST_LOADS_SIDE_BY_SIDE]
     return [
         (load, [c for c in upright if c.load == load and (load, c.pressure) in backward]) for load in loads
     ]

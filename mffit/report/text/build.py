@@ -1,28 +1,27 @@
-"""The end of a build, for the terminal."""
+"""The summary of a build, for the terminal."""
 
 from __future__ import annotations
 
 import math
 import statistics
-import textwrap
 from collections.abc import Mapping
 
 import numpy as np
 
 from mffit.fit import Coefficient
 from mffit.quantities import CHANNELS
-from mffit.report.rounding import number, times
 from mffit.report.text.direct import spin_numbers
-from mffit.report.text.layout import WIDTH, blocks, paragraphs, table
+from mffit.report.text.layout import blocks, paragraphs, table, wrapped
 from mffit.results import BuildResult
+from mffit.rounding import number, times
 from tir.parameters import BY_NAME
 
 
 def build_summary(result: BuildResult) -> str:
-    """What ``mffit build`` prints at its end."""
+    """The text that ``mffit build`` prints at its end."""
     fit = result.fit
-    parts = [textwrap.fill(f"NOT TO BE TRUSTED: {sentence}.", WIDTH) for sentence in fit.distrusted]
-    parts += [textwrap.fill(sentence, WIDTH) for sentence in fit.explanations[:1]]
+    parts = [wrapped(f"NOT TO BE TRUSTED: {sentence}.") for sentence in fit.distrusted]
+    parts += [wrapped(sentence) for sentence in fit.explanations[:1]]
     if result.measured.epsilon_gamma is not None:
         parts.append(spin_numbers(result.measured))
     noise = {"Fy": _typical(result.points.u_Fy), "Mz": _typical(result.points.u_Mz)}
@@ -60,6 +59,6 @@ def _statuses(coefficients: Mapping[str, Coefficient]) -> str:
 
 
 def _typical(u: np.ndarray) -> float:
-    """Median of the known uncertainties; a few doubtful points do not count as the noise."""
+    """Median of the known uncertainties, which a few doubtful points do not change."""
     known = [x for x in u if math.isfinite(x)]
     return statistics.median(known) if known else math.nan

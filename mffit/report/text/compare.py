@@ -2,25 +2,29 @@
 
 from __future__ import annotations
 
-import textwrap
-
 from mffit.comparison import Comparison, Difference, wording
 from mffit.quantities import CHANNELS
-from mffit.report.rounding import number, with_u
-from mffit.report.text.layout import WIDTH, blocks, paragraphs, table
-
-MOST = 12
+from mffit.report import constants
+from mffit.report.text.layout import blocks, paragraphs, table, wrapped
+from mffit.rounding import number, with_u
 
 
 def comparison_table(found: Comparison) -> str:
-    """What ``mffit compare`` prints: the sentence, the largest differences, the worst sweeps."""
-    parts = [textwrap.fill(wording.headline(found), WIDTH)]
+    """The text that ``mffit compare`` prints: the main sentence, the largest differences, the worst sweeps."""
+    parts = [wrapped(wording.headline(found))]
     if found.numbers:
         head = ("number", "load", found.first, found.second, "difference", "in u")
-        parts.append(table(head, [_number(row) for row in found.numbers[:MOST]], left=2))
+        parts.append(
+            table(head, [_number(row) for row in found.numbers[: constants.MOST_ROWS_IN_TERMINAL]], left=2)
+        )
     if found.coefficients:
         of_coefficients = ("coefficient", found.first, found.second, "difference", "in u")
-        parts.append(table(of_coefficients, [_coefficient(row) for row in found.coefficients[:MOST]]))
+        parts.append(
+            table(
+                of_coefficients,
+                [_coefficient(row) for row in found.coefficients[: constants.MOST_ROWS_IN_TERMINAL]],
+            )
+        )
     if found.sweeps:
         rows = [
             (
@@ -30,7 +34,7 @@ def comparison_table(found: Comparison) -> str:
                 f"{number(gap.bias, digits=3)} {CHANNELS[gap.channel].unit}",
                 number(gap.rms / gap.noise, digits=3) if gap.noise else "–",
             )
-            for gap in found.sweeps[:MOST]
+            for gap in found.sweeps[: constants.MOST_ROWS_IN_TERMINAL]
         ]
         mean = f"mean, {found.second} less {found.first}"
         parts.append(table(("sweep", "channel", "rms", mean, "rms over noise"), rows, left=2))

@@ -2,18 +2,19 @@
 
 from __future__ import annotations
 
-import textwrap
 from collections.abc import Mapping, Sequence
 
 from mffit.diagnosis import Diagnosis, Found, wording
 from mffit.diagnosis.where import Region
+from mffit.effects import NAMES
 from mffit.quantities import CHANNELS
-from mffit.report.rounding import number, per_cent, with_u
-from mffit.report.text.layout import WIDTH, blocks, paragraphs, table
+from mffit.report import words
+from mffit.report.text.layout import blocks, paragraphs, table, wrapped
+from mffit.rounding import as_good_as, number, per_cent, with_u
 
 
 def diagnosis_summary(diagnosis: Diagnosis) -> str:
-    """What ``mffit diagnose`` prints: the sentence, the gap, what was found, what remains."""
+    """The text that ``mffit diagnose`` prints: the main sentence, the gap, the effects, what is unexplained."""
     gaps = (
         ("before", diagnosis.gap_before),
         ("after", diagnosis.gap_after),
@@ -24,7 +25,7 @@ def diagnosis_summary(diagnosis: Diagnosis) -> str:
     rows.append(("noise", diagnosis.noise.Fy, diagnosis.noise.Mz, 1.0))
     head = ("gap, rms", *(channel.column(name) for name, channel in CHANNELS.items()), "chi2 per dof")
     parts = [
-        textwrap.fill(diagnosis.headline, WIDTH),
+        wrapped(diagnosis.headline),
         table(head, [(name, *(number(value, digits=3) for value in values)) for name, *values in rows]),
         *(_effect(found, diagnosis.signs) for found in diagnosis.effects),
         _regions(diagnosis.unexplained_where) if diagnosis.unexplained else "",
@@ -36,21 +37,21 @@ def diagnosis_summary(diagnosis: Diagnosis) -> str:
 def _effect(found: Found, signs: Mapping[str, float]) -> str:
     lines = [f"{found.effect.name} ({found.effect.kind}), confidence {per_cent(found.confidence)}"]
     lines += [
-        f"  {name} = {with_u(value, stderr)}, was {number(found.before[name], digits=4)}"
+        f"  {words.of_number(name)} = {with_u(value, stderr, words.unit_of(name))}, "
+        f"was {as_good_as(found.before[name], stderr)}"
         for name, (value, stderr) in found.parameters.items()
     ]
-    lines += textwrap.wrap(
-        f"to do: {wording.remedy(found, signs)}", WIDTH - 2, initial_indent="  ", subsequent_indent="  "
-    )
-    if found.tied:
-        lines.append(f"  not separable from: {', '.join(effect.name for effect in found.tied)}")
-        lines.append(f"  to separate: {wording.separation(found.separation)}")
+    lines.append(wrapped(f"to do: {wording.remedy(found, signs)}", "  ", "  "))
+    if found.tied_with:
+        rivals = ", ".join(NAMES.get(rival, rival) for rival in found.tied_with)
+        lines.append(wrapped(f"these data cannot tell it from: {rivals}", "  ", "  "))
+        lines.append(wrapped(f"to separate them: {wording.separation(found.separation)}", "  ", "  "))
     return "\n".join(lines)
 
 
 def _regions(regions: Sequence[Region]) -> str:
     if not regions:
-        return ""  # the headline says that something remains
+        return ""  # the headline states that structure remains
     lines = ["unexplained:"]
     for item in regions:
         off = f"{number(item.bias, digits=3)} {CHANNELS[item.channel].unit}"

@@ -3,21 +3,20 @@
 from __future__ import annotations
 
 import math
-import textwrap
 from collections.abc import Sequence
 
 from mffit.measured import Alignment, Contribution, LoadResult, Measured, alignment_wording, wording
 from mffit.quantities import CONDITIONS, DIRECT
 from mffit.report.build_view import PER_LOAD
-from mffit.report.rounding import number, stated, with_u
-from mffit.report.text.layout import WIDTH, blocks, paragraphs, table
+from mffit.report.text.layout import blocks, paragraphs, table, wrapped
+from mffit.rounding import as_good_as, number, stated, with_u
 
 NUMBERS = ("epsilon_gamma", "C_phit", "F_phit", "C_gamma", "C_alpha", "r_e", "R")
-"""What is said of the load nearest the nominal one, in this order."""
+"""Results at the load nearest to the nominal one, in this order."""
 
 
 def budget_table(budget: Sequence[Contribution], total: float) -> str:
-    """Where u(eps_gamma) comes from, largest contribution first."""
+    """The sources of u(eps_gamma), largest contribution first."""
     rows = [
         (
             line.source,
@@ -32,10 +31,10 @@ def budget_table(budget: Sequence[Contribution], total: float) -> str:
 
 
 def spin_summary(measured: Measured) -> str:
-    """What ``mffit spin`` prints: the direct method's numbers, its budget, every load."""
+    """The text that ``mffit spin`` prints: results of the direct method, its budget, every load."""
     if measured.epsilon_gamma is None:
-        reason = "the warnings say why." if measured.warnings else "it was not measured."
-        # What can be read off a load without turn slip.
+        reason = "see the warnings." if measured.warnings else "it was not measured."
+        # Stiffnesses can be measured without turn slip, too.
         known = [row for row in measured.per_load if row.C_gamma is not None or row.C_alpha is not None]
         sentences = _notes(measured) or [f"No camber reduction factor: {reason}"]
         return blocks([_per_load(known) if known else "", paragraphs(sentences)])
@@ -50,7 +49,7 @@ def spin_summary(measured: Measured) -> str:
 
 
 def alignment_table(alignment: Alignment) -> str:
-    """What ``mffit align`` prints: every step and the correction to apply now."""
+    """The text that ``mffit align`` prints: every step, and the correction to apply next."""
     rows = [
         (
             number(step.load, 0),
@@ -72,11 +71,7 @@ def alignment_table(alignment: Alignment) -> str:
         DIRECT["C_alpha"].column(DIRECT["C_alpha"].ascii),
         CONDITIONS["alpha_deg"].column("correction"),
     )
-    return blocks([table(head, rows, left=0), *map(_filled, alignment_wording.advice(alignment))])
-
-
-def _filled(sentence: str) -> str:
-    return textwrap.fill(sentence, WIDTH)
+    return blocks([table(head, rows, left=0), *map(wrapped, alignment_wording.advice(alignment))])
 
 
 def _notes(measured: Measured) -> list[str]:
@@ -84,30 +79,35 @@ def _notes(measured: Measured) -> list[str]:
 
 
 def spin_numbers(measured: Measured) -> str:
-    """The numbers of the load nearest the nominal one, a line each."""
+    """The results at the load nearest to the nominal one, one per line."""
     row = measured.nominal
     if row is None:
         return ""
     found = [(DIRECT[name], getattr(row, name)) for name in NUMBERS]
     lines = [f"{q.ascii:<10} {stated(value, q.unit_behind)}" for q, value in found if value is not None]
-    debiased, moment = measured.epsilon_gamma_debiased, row.epsilon_moment
-    others = {
-        "slope": row.epsilon_slope,
-        "secant": row.epsilon_secant,
-        "debiased": debiased and debiased.value,
-        "written file": measured.epsilon_gamma_model,
-        "Mz": moment and moment.value,
-    }
-    given = [f"{name} {number(value, 4)}" for name, value in others.items() if value is not None]
-    if given:
-        lines.append(f"{'from':<10} {', '.join(given)}")
+    others = _other_estimates(measured, row)
+    if others:
+        lines.append(f"{'from':<10} {', '.join(others)}")
     if measured.pecp1 is not None:
         lines.append(f"{'file':<10} PECP1 {number(measured.pecp1, 4)}, PECP2 {number(measured.pecp2, 4)}")
     return "\n".join(lines)
 
 
+def _other_estimates(measured: Measured, row: LoadResult) -> list[str]:
+    """eps_gamma by other methods; without an uncertainty of its own it has the digits of the measured one."""
+    u = row.epsilon_gamma.u if row.epsilon_gamma is not None else None
+    plain = {
+        "slope": row.epsilon_slope,
+        "secant": row.epsilon_secant,
+        "written file": measured.epsilon_gamma_model,
+    }
+    found = [f"{name} {as_good_as(value, u)}" for name, value in plain.items() if value is not None]
+    with_own_u = {"debiased": measured.epsilon_gamma_debiased, "Mz": row.epsilon_moment}
+    return found + [f"{name} {stated(value)}" for name, value in with_own_u.items() if value is not None]
+
+
 def _improve_first(budget: Sequence[Contribution], total: float) -> str:
-    """Which source to work on, and what halving it would bring."""
+    """The largest source of uncertainty, and what halving it would bring."""
     largest = max(budget, key=lambda line: abs(line.contribution), default=None)
     if largest is None or not total:
         return ""

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from mffit.fleet import EPSILON, Fleet
 from mffit.quantities import CHANNELS, COMPARED, DIRECT
-from mffit.report.rounding import number, stated, with_u
 from mffit.report.text.layout import blocks, paragraphs, table
 from mffit.rig_errors import UNITS, WORDS
+from mffit.rounding import as_good_as, number, stated, with_u
 
 
 def fleet_summary(found: Fleet) -> str:
-    """What ``mffit fleet`` prints: eps_gamma of every tyre, scatter, the rig."""
+    """The text that ``mffit fleet`` prints: eps_gamma of every tyre, scatter between tyres, errors of the rig."""
     known = [key for key in EPSILON if any(found.numbers(key))]
     misfits = [channel.column(name) for name, channel in CHANNELS.items()]
     head = ("tyre", *(EPSILON[key] for key in known), *misfits)
@@ -25,7 +25,7 @@ def fleet_summary(found: Fleet) -> str:
     words = {**{key: f"{DIRECT['epsilon_gamma'].ascii}, {EPSILON[key]}" for key in known}}
     words |= {key: quantity.column(quantity.ascii) for key, quantity in COMPARED.items()}
     scatters = [
-        (label, number(s.mean, digits=5), number(s.sd, digits=3), number(s.u, digits=3))
+        (label, as_good_as(s.mean, s.u), number(s.sd, digits=2), number(s.u, digits=2))
         for key, label in words.items()
         if (s := found.scatter(key)) is not None
     ]

@@ -5,13 +5,12 @@ from __future__ import annotations
 import textwrap
 from collections.abc import Sequence
 
-from mffit.report.rounding import ascii_only
-
-WIDTH = 100
+from mffit.constants import TERMINAL_WIDTH
+from mffit.rounding import ascii_only
 
 
 def table(head: Sequence[str], rows: Sequence[Sequence[str]], *, left: int = 1) -> str:
-    """Columns under their headings; the first ``left`` columns flush left, the others flush right."""
+    """Columns below their headings; the first ``left`` columns are flush left, the others flush right."""
     cells = [[ascii_only(cell) for cell in row] for row in (head, *rows)]
     widths = [max(len(row[i]) for row in cells) for i in range(len(head))]
     lines = [
@@ -25,10 +24,15 @@ def table(head: Sequence[str], rows: Sequence[Sequence[str]], *, left: int = 1) 
 
 
 def blocks(parts: Sequence[str]) -> str:
-    """Parts with a blank line between them, empty ones left out."""
+    """The parts that are not empty, with a blank line between them."""
     return ascii_only("\n\n".join(part for part in parts if part))
 
 
 def paragraphs(sentences: Sequence[str]) -> str:
-    """Sentences as a list, wrapped."""
-    return "\n".join(textwrap.fill(s, WIDTH, initial_indent="- ", subsequent_indent="  ") for s in sentences)
+    """Sentences as a list, each wrapped to the terminal's width."""
+    return "\n".join(wrapped(sentence, "- ", "  ") for sentence in sentences)
+
+
+def wrapped(sentence: str, first: str = "", others: str = "") -> str:
+    """A sentence in lines of the terminal's width; ``first`` and ``others`` are indents."""
+    return textwrap.fill(sentence, TERMINAL_WIDTH, initial_indent=first, subsequent_indent=others)

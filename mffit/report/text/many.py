@@ -1,28 +1,28 @@
-"""Many builds, for the terminal: a line when each is finished, a table of all at the end."""
+"""Many builds, for the terminal: a line per finished build, and a table of all builds at the end."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 
 from mffit.quantities import CHANNELS, DIRECT
-from mffit.report.rounding import ascii_only, number, stated
 from mffit.report.text.layout import blocks, table
 from mffit.results import Outcome
+from mffit.rounding import ascii_only, number, stated
 
 
 def many_line(outcome: Outcome, number_of: int, total: int) -> str:
-    """What is said when one is finished."""
-    said = {
+    """The line that reports one finished build."""
+    words = {
         "built": f"built in {outcome.seconds:.0f} s",
-        "unchanged": "unchanged since it was built, left as it is",
+        "unchanged": "unchanged since the last build, not built again",
         "refused": "refused",
         "failed": "failed",
     }[outcome.state]
-    return f"[{number_of}/{total}] {outcome.name}: {said}"
+    return f"[{number_of}/{total}] {outcome.name}: {words}"
 
 
 def many_summary(outcomes: Sequence[Outcome]) -> str:
-    """Tyre, eps_gamma, misfit, warnings, and the file; or the sentence that says why there is none."""
+    """Per tyre eps_gamma, misfit, warnings and file; for the others the reason why there is no file."""
     head = (
         "tyre",
         DIRECT["epsilon_gamma"].ascii,
@@ -48,6 +48,6 @@ def many_summary(outcomes: Sequence[Outcome]) -> str:
 
 
 def lacking(outcome: Outcome) -> str:
-    """Why a tyre has no output."""
+    """The sentence why a tyre has no output, with the tyre's name."""
     known = outcome.sentence.startswith(outcome.name)
     return outcome.sentence if known else f"{outcome.name}: {outcome.sentence}"

@@ -2,17 +2,13 @@
 
 from __future__ import annotations
 
-import textwrap
-
 from mffit.planning import Plan, wording
-from mffit.report.text.layout import WIDTH, blocks, paragraphs, table
-
-ALONE = 6
-"""Candidates shown at most."""
+from mffit.report import constants
+from mffit.report.text.layout import blocks, paragraphs, table, wrapped
 
 
 def plan_summary(plan: Plan) -> str:
-    """What ``mffit plan`` prints: what is identified, the list, what others would bring alone."""
+    """The text that ``mffit plan`` prints: identified numbers, the list of runs, the effect of each run alone."""
     head = ("run", "points", f"{wording.measure(plan)} now", f"{wording.measure(plan)} then")
     rows = [
         (
@@ -30,20 +26,20 @@ def plan_summary(plan: Plan) -> str:
             wording.shown(plan, plan.now),
             wording.shown(plan, trial.u),
         )
-        for trial in plan.trials[:ALONE]
+        for trial in plan.trials[: constants.MOST_CANDIDATE_RUNS_IN_TERMINAL]
         if trial.u < plan.now
     ]
     reasons = [f"{wording.title(step.run)}: {wording.reason(step.run)}" for step in plan.steps]
     parts = [
         "What these sweeps identify",
         paragraphs(wording.identified(plan.identified)),
-        textwrap.fill(wording.headline(plan), WIDTH),
+        wrapped(wording.headline(plan)),
         table(head, rows) if rows else "",
         paragraphs(reasons),
         "Each alone:" if alone else "",
         table(head, alone) if alone else "",
         wording.estimates(plan),
-        textwrap.fill(wording.promise(plan), WIDTH),
+        wrapped(wording.promise(plan)),
     ]
     return blocks(parts)
 

@@ -1,4 +1,4 @@
-"""What recordings hold, for a terminal."""
+"""The content of recordings, for the terminal."""
 
 from __future__ import annotations
 
@@ -7,16 +7,16 @@ import numpy as np
 from mffit.points.stretch import MOVE
 from mffit.recordings import Sniffed
 from mffit.recordings.sniffed import Level, Recording
+from mffit.report import constants
 from mffit.report.text.layout import blocks, paragraphs, table
 
-WORDS = {
+SETTINGS = {
     "load": ("N", 1.0, 0),
     "camber": ("deg", 180.0 / np.pi, 1),
     "pressure": ("kPa", 1e-3, 1),
     "speed": ("m/s", 1.0, 2),
 }
-"""Unit, factor and digits in which a setting is shown."""
-SHOWN = 12  # dropped stretches
+"""Unit, factor and decimals of a setting."""
 
 
 def sniff_summary(sniffed: Sniffed) -> str:
@@ -63,20 +63,20 @@ def _file(recording: Recording) -> str:
 
 def _axes(sniffed: Sniffed) -> str:
     if not sniffed.axes:
-        return f"axes: no known axes fit; in ISO signs {' and '.join(sniffed.wrong)}"
-    said = " or ".join(sniffed.axes)
-    more = (
-        ", which these recordings do not tell apart: they hold too little camber"
+        return f"axes: none of the known axes fit; in ISO signs {' and '.join(sniffed.wrong)}"
+    names = " or ".join(sniffed.axes)
+    doubt = (
+        ", which these recordings cannot tell apart, as they hold too little camber"
         if len(sniffed.axes) > 1
         else ""
     )
-    return f"axes: {said}{more} (by the slopes of side force and moment over sideslip, camber thrust and the sign of the load)"
+    return f"axes: {names}{doubt} (from camber thrust, the sign of the load, and the slopes of force and moment over sideslip)"
 
 
 def _conditions(sniffed: Sniffed) -> str:
     rows = []
     for name, levels in sniffed.conditions.items():
-        unit, factor, digits = WORDS[name]
+        unit, factor, digits = SETTINGS[name]
         rows.append(
             (name, unit, ", ".join(_level(level, factor, digits) for level in levels) or "not measured")
         )
@@ -96,12 +96,15 @@ def _stretches(sniffed: Sniffed) -> str:
     head = f"{len(kept)} stretches give {len(sniffed.points)} points; {len(lost)} stretches give none"
     rows = [
         (note.sweep, note.kind, f"{note.begin_s:.2f}", f"{note.end_s:.2f}", note.dropped)
-        for note in sorted(lost, key=lambda note: (note.kind == MOVE, note.begin_s))[:SHOWN]
+        for note in sorted(lost, key=lambda note: (note.kind == MOVE, note.begin_s))[
+            : constants.MOST_ROWS_IN_TERMINAL
+        ]
     ]
     shown = (
         table(("part of", "kind", "from [s]", "to [s]", "why it gives no point"), rows, left=2)
         if rows
         else ""
     )
-    more = f"... and {len(lost) - SHOWN} more in stretches.csv" if len(lost) > SHOWN else ""
+    hidden = len(lost) - len(rows)
+    more = f"... and {hidden} more in stretches.csv" if hidden else ""
     return "\n".join(part for part in (head, shown, more) if part)

@@ -5,7 +5,7 @@
   const controls = Object.fromEntries(data.controls.map(control => [control.name, control]));
   const tyres = data.tyres.map((tyre, i, all) => ({
     ...tyre, shown: true, colour: `var(--c${i % 8})`,
-    wide: 2 + 1.6 * (all.length - 1 - i) / Math.max(all.length - 1, 1),  // so that none hides another
+    wide: 2 + 1.6 * (all.length - 1 - i) / Math.max(all.length - 1, 1),  // wider below, so that all remain visible
     off: MODELS.off(tyre.values), on: MODELS.on(tyre.values),
   }));
   const now = {};  // the sliders, in SI
@@ -38,7 +38,7 @@
   }
   const slack = range => 1e-6 * Math.max(Math.abs(range[0]), Math.abs(range[1]));
 
-  // A curve: its points as shown, and how far each can be trusted.
+  // A curve: its points in the units of the page, and whether each is within the tested and the written range.
   function curve(panel, tyre, fixed) {
     const swept = controls[panel.sweep || panel.x];
     const points = [];
@@ -117,7 +117,7 @@
     }
     return bounds[panel.key] = {x, y};
   }
-  // From 0 over what lies within the ranges, and what lies outside them as far as it does not squeeze the rest.
+  // Limits that hold zero, all points within the ranges, and points outside unless they would squeeze the others.
   function reached(inside, every) {
     const whole = [Math.min(0, ...every), Math.max(0, ...every)];
     if (!inside.length) return whole;
@@ -179,7 +179,7 @@
     };
   }
 
-  // Stretches of a curve by how far it can be trusted; what joins two of them counts with the worse.
+  // Pieces of a curve by kind of range; a segment between two kinds has the one further outside.
   function* paths(points, X, Y) {
     let text = "", kind = null, last = "";
     for (const p of points) {
@@ -273,7 +273,7 @@
         .map(name => data.quantities[name].word).join(", ");
       const notes = [`turn slip ${isOn(tyre) ? "on" : "off"}`];
       if (beyond(OUTSIDE)) notes.push(`outside the file's range: ${beyond(OUTSIDE)}`);
-      if (beyond(UNTESTED)) notes.push(`beyond what was tested: ${beyond(UNTESTED)}`);
+      if (beyond(UNTESTED)) notes.push(`beyond the tested range: ${beyond(UNTESTED)}`);
       tyre.about.textContent = notes.join("; ");
       tyre.about.classList.toggle("beyond", notes.length > 1);
     }

@@ -12,7 +12,7 @@ from blind_set import draw_case, write_case
 
 from mffit import pipeline
 from mffit.diagnosis.confidence import tempered
-from mffit.rounding import rounded
+from mffit.rounding import to_uncertainty
 from mffit.suspicion import Misread
 
 
@@ -48,7 +48,7 @@ def test_a_rig_effect_has_values_before_and_after_and_a_remedy(campaign):
     assert row["was"] == 0.0
     assert row["value"] == pytest.approx(case.machine.gamma_0_deg, abs=4.0 * row["stderr"])
     # true camber = reading + gamma_0: at its zero the wheel leans by gamma_0 and has to be leaned back
-    assert f"lean the wheel by {rounded(-row['value'], row['stderr'], '+')} deg" in effect["to_do"]
+    assert f"lean the wheel by {to_uncertainty(-row['value'], row['stderr'], '+')} deg" in effect["to_do"]
     assert all(limit.ruled_out for limit in found.limits if limit.effect.id == "loadcell-gain")
 
 

@@ -47,7 +47,7 @@ def conditions(n: int) -> dict[str, np.ndarray]:
 
 
 def wanted(given: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
-    """What ``tir`` says to the same, by the FMU's names."""
+    """Results of ``tir`` for the same condition, by the FMU's names."""
     tyre = tir.read(FILE)
     forces = tyre(**given, turn_slip=True)
     state = tyre.state(**given, turn_slip=True)._asdict()
@@ -62,7 +62,7 @@ def assert_equal(found: np.ndarray, right: np.ndarray, name: str) -> None:
 
 @needs_compiler
 @pytest.mark.parametrize("fmi", [2, 3])
-def test_fmpy_finds_nothing_wrong(fmus, fmi):
+def test_fmpy_accepts_the_fmu(fmus, fmi):
     pytest.importorskip("fmpy")
     from fmpy.validation import validate_fmu
 
@@ -72,7 +72,7 @@ def test_fmpy_finds_nothing_wrong(fmus, fmi):
 @needs_compiler
 @pytest.mark.parametrize("fmi", [2, 3])
 @pytest.mark.parametrize("kind", ["CoSimulation", "ModelExchange"])
-def test_simulated_it_gives_the_forces_of_tir(fmus, fmi, kind):
+def test_a_simulation_gives_the_forces_of_tir(fmus, fmi, kind):
     fmpy = pytest.importorskip("fmpy")
     n = 40
     given = conditions(n)
@@ -209,7 +209,7 @@ def test_the_same_tyre_gives_the_same_bytes(tmp_path):
         assert {info.external_attr >> 16 & 0o444 for info in archive.infolist()} == {0o444}
 
 
-def test_without_a_compiler_the_sentence_names_the_choice(tmp_path, monkeypatch):
+def test_without_a_compiler_the_message_names_the_remedy(tmp_path, monkeypatch):
     monkeypatch.delenv("CC", raising=False)
     monkeypatch.setenv("PATH", str(tmp_path))
     with pytest.raises(InputError, match=r"no C compiler.*--sources-only"):
@@ -257,7 +257,7 @@ def test_bad_choices_end_in_one_sentence(tmp_path, capsys, arguments, said):
 
 @needs_compiler
 @pytest.mark.parametrize("stem", ["math", "int", "front"])
-def test_a_file_may_be_called_as_c_calls_something(tmp_path, stem):
+def test_a_file_name_may_be_a_word_of_c(tmp_path, stem):
     shutil.copyfile(FILE, tmp_path / f"{stem}.tir")
     header, source = write_c(tmp_path / f"{stem}.tir", tmp_path / "out")
     name = stem if stem == "front" else f"tyre_{stem}"

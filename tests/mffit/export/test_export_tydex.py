@@ -1,4 +1,4 @@
-"""Points written as TYDEX are read back as they were, and the files have the fixed columns of the format."""
+"""Points written as TYDEX are read back unchanged, and the files have the fixed columns of the format."""
 
 from __future__ import annotations
 
@@ -25,14 +25,14 @@ COLUMNS = {
 
 @pytest.fixture
 def project(tmp_path):
-    """A rig that reports in adapted SAE axes: the files are in ISO ones all the same."""
+    """A rig that reports in adapted SAE axes: the files are in ISO axes anyway."""
     found = disc_project(tmp_path / "rig")
     found.config["rig"]["axes"] = "adapted-sae"
     found.each(Fy_N=-1.0, Mz_Nm=-1.0)
     return found
 
 
-def test_what_is_written_is_read_back_to_rounding(project, tmp_path):
+def test_points_are_read_back_to_rounding(project, tmp_path):
     written = write_tydex(project.write(), tmp_path / "tydex")
     source, _ = points.load(configuration.load(project.folder / "tyre.toml"))
     project.config["rig"]["axes"] = "iso"
@@ -46,7 +46,7 @@ def test_what_is_written_is_read_back_to_rounding(project, tmp_path):
         np.testing.assert_allclose(getattr(again, name), getattr(source, name), rtol=1e-15, err_msg=name)
 
 
-def test_names_units_and_factors_stand_in_the_columns_of_the_format(project, tmp_path):
+def test_names_units_and_factors_are_in_the_columns_of_the_format(project, tmp_path):
     """Name in columns 1 to 10, description to 40, unit to 50, then factor and offsets: TYDEX-Format 1.3."""
     path = write_tydex(project.write(), tmp_path / "tydex")[0]
     raw = path.read_bytes()
@@ -71,6 +71,6 @@ def test_two_sweeps_of_one_name_are_refused(project, tmp_path):
     table = project.tables[project.config["sweep"][0]["file"]]
     project.add("b c.csv", table.assign(Fy_N=table["Fy_N"] + 1.0, Mz_Nm=table["Mz_Nm"] + 0.1))
     project.add("b_c.csv", table.assign(Fy_N=table["Fy_N"] - 1.0, Mz_Nm=table["Mz_Nm"] - 0.1))
-    with pytest.raises(InputError, match="two sweeps would both be written"):
+    with pytest.raises(InputError, match="two sweeps have the same file name"):
         write_tydex(project.write(), tmp_path / "tydex")
     assert not (tmp_path / "tydex").exists()

@@ -200,7 +200,7 @@ class PageReader(HTMLParser):
 
 
 def content(address: str) -> str:
-    """What an address holds that starts with ``data:``."""
+    """The content of an address that begins with ``data:``."""
     with urlopen(address) as answer:
         return answer.read().decode()
 

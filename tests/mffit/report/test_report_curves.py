@@ -39,7 +39,7 @@ def test_no_point_is_on_two_curves(points):
     assert len(rows) == len(np.unique(rows)) == len(points)
 
 
-def test_scatter_of_load_and_camber_does_not_tear_a_curve_apart():
+def test_scatter_of_load_and_camber_does_not_split_a_curve():
     rng = np.random.default_rng(3)
     n = len(SIDESLIP)
     loose = sweep(SIDESLIP, 3.0 + 0.1 * rng.standard_normal(n), 1500.0)
@@ -49,7 +49,7 @@ def test_scatter_of_load_and_camber_does_not_tear_a_curve_apart():
     assert curve.load == pytest.approx(1500.0, abs=20.0)
 
 
-def test_three_set_points_are_no_curve():
+def test_three_set_points_are_not_a_curve():
     assert curves(made_points({"short": sweep(np.array([-1.0, 0.0, 1.0]), 0.0, 1500.0)})) == []
 
 
@@ -59,8 +59,8 @@ def test_conditions_split_all_points_by_load_and_pressure(points):
     assert sorted(np.concatenate([c.index for c in found])) == list(range(len(points)))
 
 
-def test_a_few_samples_on_the_way_join_no_two_loads():
-    """Chained one to the next they used to make a single load of some 1200 N."""
+def test_samples_between_two_loads_do_not_join_them():
+    """Chains of neighbours once made a single load of some 1200 N out of both."""
     way = sweep(0.0, 0.0, 950.0)
     way = {name: np.full(8, column) for name, column in way.items()} | {"Fz": np.linspace(950.0, 1450.0, 8)}
     points = made_points({f"{Fz:.0f}": sweep(SIDESLIP, 0.0, Fz) for Fz in (900.0, 1500.0)} | {"way": way})

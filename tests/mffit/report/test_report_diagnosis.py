@@ -1,4 +1,4 @@
-"""The diagnosis page shows what was found, what was not, and what remains."""
+"""The diagnosis page shows the effects found, the effects tried, and the structure that remains."""
 
 from __future__ import annotations
 
@@ -9,12 +9,12 @@ import pytest
 from report_toys import TRUE, made_config, made_points, programme, read_page
 
 import tir
-from mffit.brief import HEIGHT, WIDTH
+from mffit.constants import LINES_PER_RECORD, TERMINAL_WIDTH
 from mffit.diagnosis import diagnose
 from mffit.diagnosis.constants import TIED_EVIDENCE
 from mffit.diagnosis.ties import Run, Separation
 from mffit.effects import CATALOG
-from mffit.report import style, text, write_diagnosis
+from mffit.report import constants, style, text, write_diagnosis
 from mffit.report.diagnosis_view import Candidate, RankedStep, view_of
 from mffit.report.figures import gap
 from tests.browser import PAPER, PHONE, complaints, console_errors, look, opened
@@ -57,8 +57,8 @@ def written(diagnosis, folder):
 
 def test_a_diagnosis_fits_a_screen_and_leads_with_its_headline(misaligned):
     lines = repr(misaligned).splitlines()
-    assert len(lines) <= HEIGHT
-    assert max(map(len, lines)) <= WIDTH
+    assert len(lines) <= LINES_PER_RECORD
+    assert max(map(len, lines)) <= TERMINAL_WIDTH
     assert misaligned.headline[:60] in lines[0]
 
 
@@ -84,7 +84,9 @@ def test_a_tie_is_stated_with_the_run_that_separates_it(misaligned, tmp_path):
         tied=tuple(effect for effect in CATALOG if effect.id == "ply-steer"),
         separation=Separation(Run.TURNED_ON_RIM, 1400.0, 50.0),
     )
-    page = written(dataclasses.replace(misaligned, effects=(found,)), tmp_path)
+    tied = dataclasses.replace(misaligned, effects=(found,))
+    assert "these data cannot tell it from: ply-steer" in text.diagnosis_summary(tied)
+    page = written(tied, tmp_path)
     assert "these data cannot tell it from ply-steer" in page.text
     assert "a sideslip sweep at 1400 N with the tyre turned on its rim (expected χ² 50)" in page.text
 
@@ -98,29 +100,28 @@ def test_residuals_after_are_noise_where_the_effect_was_found(misaligned):
 
 def test_maps_before_and_after_share_one_scale(misaligned):
     view = view_of(misaligned)
-    with style.applied():
-        figure = gap.residuals_before_after(view)
-    maps = figure.axes[:-1]
-    assert len(maps) == 2 * len(view.channels) * len(view.conditions)
-    assert len({ax.collections[0].get_clim() for ax in maps}) == 1
+    sheet = gap.residuals_before_after(view)
+    assert len(sheet.panels) == 2 * len(view.channels) * len(view.conditions)
+    assert {panel.series[0].limit for panel in sheet.panels} == {sheet.scale.limit}
 
 
 def test_evidence_ranks_the_named_effect_first(misaligned):
-    with style.applied():
-        ax = gap.evidence(view_of(misaligned)).axes[0]
-    assert ax.get_yticklabels()[0].get_text() == misaligned.effects[0].effect.name
-    widths = [bar.get_width() for bar in ax.patches]
-    assert widths == sorted(widths, reverse=True)
+    panel = gap.evidence(view_of(misaligned)).panels[0]
+    assert panel.y.words[0] == misaligned.effects[0].effect.name
+    lengths = list(panel.series[0].lengths)
+    assert lengths == sorted(lengths, reverse=True)
 
 
 @pytest.mark.parametrize(("share", "tied"), [(0.99, True), (1.01, False)])
 def test_picture_and_verdict_call_the_same_distance_a_tie(misaligned, share, tied):
     gains = (50.0, 50.0 - share * TIED_EVIDENCE)
-    step = RankedStep((), tuple(Candidate(f"{g}", f"{g}", "rig", g) for g in gains), 5.0)
-    with style.applied():
-        ax = gap.evidence(dataclasses.replace(view_of(misaligned), steps=(step,))).axes[0]
-    behind = next(t for t in ax.texts if "best" not in t.get_text())
-    assert behind.get_color() == (style.INK if tied else style.MUTED)
+    step = RankedStep(
+        beside=(), candidates=tuple(Candidate(name=f"{g}", kind="rig", gain=g) for g in gains), threshold=5.0
+    )
+    panel = gap.evidence(dataclasses.replace(view_of(misaligned), steps=(step,))).panels[0]
+    best, behind = panel.notes
+    assert best.text == "best"
+    assert behind.colour == (style.INK if tied else style.MUTED)
 
 
 def test_the_page_states_the_margin_of_the_verdict(misaligned, tmp_path):
@@ -128,22 +129,22 @@ def test_the_page_states_the_margin_of_the_verdict(misaligned, tmp_path):
 
 
 def test_colour_scale_never_blows_up_noise_nor_hides_what_is_left(clean, misaligned):
-    assert gap.colour_limit(view_of(clean).channels) == gap.SMALLEST_LIMIT
-    loud = gap.GapChannel("Fy", np.full(9, 500.0), np.zeros(9), 6.0)
-    assert gap.colour_limit([loud]) == gap.LARGEST_LIMIT
+    assert gap.colour_limit(view_of(clean).channels) == constants.SMALLEST_GAP_SCALE
+    loud = gap.GapChannel(name="Fy", before=np.full(9, 500.0), after=np.zeros(9), noise=6.0)
+    assert gap.colour_limit([loud]) == constants.LARGEST_GAP_SCALE
 
 
-def test_nothing_missing_is_said_plainly(clean, tmp_path):
+def test_a_complete_simulation_is_reported_as_such(clean, tmp_path):
     page = written(clean, tmp_path)
     assert clean.effects == ()
     assert "no effect of the library explains more than chance would" in page.text
     assert "→" not in page.text
 
 
-def test_unexplained_structure_stands_at_the_top_with_its_place(unknown, tmp_path):
+def test_unexplained_structure_is_at_the_top_with_its_place(unknown, tmp_path):
     page = written(unknown, tmp_path)
     assert unknown.unexplained
-    alert = page.text.index("Something remains that no effect of the library describes")
+    alert = page.text.index("There is structure that no effect of the library describes")
     assert alert < page.text.index("Fy gap, rms")
     assert view_of(unknown).frames("Fy")[0] == unknown.unexplained_where[0]
 
@@ -157,7 +158,10 @@ def test_without_moment_only_side_force_is_shown(tmp_path):
 def test_summary_for_the_terminal(misaligned, unknown, clean):
     summary = text.diagnosis_summary(misaligned)
     assert "(rig), confidence" in summary
-    assert "alpha_0_deg = 0.3" in summary
+    assert "sideslip axis misaligned = 0.3" in summary
+    assert " deg, was 0" in summary
+    assert "alpha_0_deg" not in summary
+    assert "sideslip-misalignment" not in summary
     assert "unexplained:" in text.diagnosis_summary(unknown)
     nowhere = dataclasses.replace(unknown, unexplained_where=())
     assert "unexplained:" not in text.diagnosis_summary(nowhere)

@@ -4,14 +4,20 @@ from __future__ import annotations
 
 import dataclasses
 import re
+from html.parser import HTMLParser
 
 import numpy as np
 import pytest
-from matplotlib.text import Text
 
 from mffit.quantities import CHANNELS
-from mffit.report import drawing, style
+from mffit.report import constants, labels, style
 from mffit.report.build_view import view_of
+from mffit.report.drawing import png, svg
+from mffit.report.drawing.layout import lay_out
+from mffit.report.drawing.letters import width_of
+from mffit.report.drawing.records import Axis, Guide, Look, Panel, Sheet, Trace
+from mffit.report.drawing.scales import numbers_at
+from mffit.report.drawing.shapes import Area, Letters, Marks, Stroke
 from mffit.report.figures import decomposition, fit, residuals, spin
 from mffit.report.published import TYRES
 
@@ -21,19 +27,42 @@ def view(result):
     return view_of(result)
 
 
-@pytest.fixture(autouse=True)
-def _settings():
-    with style.applied():
-        yield
+def titles(sheet):
+    return [panel.title for panel in sheet.panels]
 
 
-def titles(figure):
-    return [ax.get_title(loc="left") for ax in figure.axes]
+def all_sheets(view):
+    """Every figure of a build that needs no written files."""
+    yield spin.camber_reduction(view)
+    yield spin.alignment(view)
+    for channel in view.channels:
+        yield decomposition.decomposition(view, channel)
+        yield fit.model_against_points(view, channel)
+    yield decomposition.even_parts(view)
+    yield residuals.residual_maps(view.points, [("Fy", np.zeros(len(view.points)))], view.conditions, "u")
+
+
+FULL_LINE = Look(line="-")
+
+
+def panel_of(over, up, look=FULL_LINE, /, **content):
+    """A panel with one series."""
+    series = [Trace(name="series", x=np.asarray(over, float), y=np.asarray(up, float), look=look)]
+    return Panel(**{"x": Axis(), "y": Axis(), "series": series, **content})
+
+
+def drawn(*panels, **content):
+    """The drawings of a sheet with one row."""
+    return lay_out(Sheet(rows=[panels], height=1.5, **content))
+
+
+def markup(*panels):
+    return svg.markup(drawn(*panels))
 
 
 def test_decomposition_has_a_panel_for_every_forward_curve_and_one_of_each_camber_pair(view):
-    figure = decomposition.decomposition(view, view.channels[0])
-    assert titles(figure) == [
+    sheet = decomposition.decomposition(view, view.channels[0])
+    assert titles(sheet) == [
         "900 N, 200 kPa",
         "900 N, 250 kPa",
         "1500 N, 250 kPa",
@@ -44,30 +73,70 @@ def test_decomposition_has_a_panel_for_every_forward_curve_and_one_of_each_cambe
 
 
 def test_raw_curve_is_the_sum_of_its_parts(view):
-    for ax in decomposition.decomposition(view, view.channels[0]).axes:
-        _, raw, odd, even = (line.get_ydata() for line in ax.lines)
+    for panel in decomposition.decomposition(view, view.channels[0]).panels:
+        raw, odd, even = (series.y for series in panel.series)
         assert raw == pytest.approx(np.asarray(odd) + np.asarray(even))
 
 
 def test_even_parts_have_a_row_per_channel_and_angle_and_a_column_per_load(view):
-    figure = decomposition.even_parts(view)
-    assert titles(figure) == [
+    sheet = decomposition.even_parts(view)
+    assert titles(sheet) == [
         f"{CHANNELS[c].mathtext}, {load} N" for c in ("Fy", "Fy", "Mz", "Mz") for load in (900, 1500)
     ]
+    assert [len(row) for row in sheet.rows] == [2, 2, 2, 2]
+    for row in sheet.rows:
+        assert len({(panel.y.low, panel.y.high, panel.y.label) for panel in row}) == 1
 
 
 def test_fit_draws_every_point(view):
-    figure = fit.model_against_points(view, view.channels[1])
-    drawn = [line for ax in figure.axes for line in ax.lines if line.get_linestyle() == "None"]
-    assert sum(len(line.get_xdata()) for line in drawn) == len(view.points)
+    sheet = fit.model_against_points(view, view.channels[1])
+    read = [
+        series.y for panel in sheet.panels for series in panel.series if not series.name.startswith("model")
+    ]
+    assert sorted(np.concatenate(read)) == pytest.approx(sorted(view.points.Mz))
+
+
+def test_fit_marks_readings_without_weight_and_doubtful_sweeps(view):
+    class Marked:
+        points, curves, lines = view.points, view.curves, view.lines
+
+        def marked(self, channel):
+            return np.array([3]), np.array([7, 8])
+
+    sheet = fit.model_against_points(Marked(), view.channels[0])
+    found = {"no weight": [], "doubtful sweep": []}
+    for series in (series for panel in sheet.panels for series in panel.series):
+        if series.name in found:
+            found[series.name] += list(series.y)
+    assert found["no weight"] == pytest.approx(view.points.Fy[[3]])
+    assert found["doubtful sweep"] == pytest.approx(view.points.Fy[[7, 8]])
+    assert set(found) <= set(sheet.key)
 
 
 def test_residual_maps_share_one_scale_that_is_symmetric(view):
     values = np.linspace(-9.0, 9.0, len(view.points))
-    figure = residuals.residual_maps(view.points, [("Fy", values)], view.conditions, 4.0, "u")
-    for ax in figure.axes[:-1]:
-        assert ax.collections[0].get_clim() == (-4.0, 4.0)
-        assert np.abs(ax.collections[0].get_array()).max() <= 4.0
+    sheet = residuals.residual_maps(view.points, [("Fy", values)], view.conditions, "u")
+    assert sheet.scale.limit == constants.RESIDUAL_SCALE == 4.0
+    for panel in sheet.panels:
+        assert panel.series[0].limit == 4.0
+        assert np.abs(panel.series[0].values).max() <= 4.0
+    assert len({(p.x.low, p.x.high, p.y.low, p.y.high) for p in sheet.panels}) == 1
+
+
+def test_a_map_is_blue_below_white_at_and_red_above_the_model(view):
+    def colour(value):
+        values = np.full(len(view.points), value)
+        sheet = residuals.residual_maps(view.points, [("Fy", values)], view.conditions[:1], "u")
+        (marks,) = {
+            s.fill for s in lay_out(sheet).rows[0][0].shapes if isinstance(s, Marks) and s.marker == "s"
+        }
+        return style.rgb(marks)
+
+    red, _, blue = colour(-4.0)
+    assert blue > 2 * red
+    red, _, blue = colour(4.0)
+    assert red > 2 * blue
+    assert min(colour(0.0)) > 240
 
 
 def test_points_with_equal_angles_are_drawn_apart():
@@ -77,96 +146,241 @@ def test_points_with_equal_angles_are_drawn_apart():
     assert shift[1] == 0.0
 
 
-def test_too_many_conditions_leave_those_with_most_points(view):
-    kept = residuals.most_populated(view.conditions, 2)
+def test_too_many_conditions_leave_those_with_most_points(view, monkeypatch):
+    monkeypatch.setattr(constants, "MOST_MAPS_PER_CHANNEL", 2)
+    kept = residuals.most_populated(view.conditions)
     assert [c.title for c in kept] == ["900 N, 250 kPa", "1500 N, 250 kPa"]
 
 
-def test_this_tyre_stands_beside_the_published_ones(view):
-    figure = spin.camber_reduction(view)
-    labels = [label.get_text() for label in figure.axes[0].get_yticklabels()]
-    assert labels == ["front-1", *(tyre.name for tyre in reversed(TYRES))]
+def test_this_tyre_is_listed_after_the_published_ones(view):
+    panel = spin.camber_reduction(view).panels[0]
+    assert [*panel.y.words.values()] == [*(tyre.name for tyre in TYRES), "front-1"]
+    assert panel.y.bold == "front-1"
 
 
 def test_budget_bars_are_ordered_and_below_the_total(view):
-    bars = [bar.get_width() for bar in spin.camber_reduction(view).axes[1].patches]
-    assert bars == sorted(bars)
+    panel = spin.camber_reduction(view).panels[1]
+    bars = list(panel.series[0].lengths)
+    assert bars == sorted(bars, reverse=True)
     assert max(bars) <= view.measured.epsilon_gamma.u
+    assert panel.guides[0].at == view.measured.epsilon_gamma.u
 
 
 def test_line_over_load_is_the_one_the_file_carries(view):
-    ax = spin.camber_reduction(view).axes[2]
-    line = next(line for line in ax.lines if line.get_label().startswith("PECP1"))
-    assert line.get_ydata() == pytest.approx(view.measured.pecp1)
+    series = spin.camber_reduction(view).panels[2].series
+    line = next(one for one in series if one.name.startswith("PECP1"))
+    assert line.y == pytest.approx(view.measured.pecp1)
 
 
 def test_alignment_has_a_panel_per_load_run_both_ways(view):
-    assert titles(spin.alignment(view)) == ["900 N", "1500 N"]
+    sheet = spin.alignment(view)
+    assert titles(sheet) == ["900 N", "1500 N"]
+    for panel in sheet.panels:
+        assert {series.name for series in panel.series} == {"rolling forwards", "rolling backwards"}
 
 
-def test_settings_are_left_as_they_were():
-    import matplotlib
+def test_a_series_is_drawn_at_its_numbers():
+    """The corner of the data area belongs to the ends of both axes, the middle to their middle."""
+    panel = panel_of(
+        [0.0, 5.0, 10.0], [-1.0, 0.0, 1.0], x=Axis(low=0.0, high=10.0), y=Axis(low=-1.0, high=1.0)
+    )
+    shapes = drawn(panel).rows[0][0].shapes
+    grid, axes, *_, line = (shape for shape in shapes if isinstance(shape, Stroke))
+    corner = axes.lines[-1]  # from the top down the vertical axis and along the horizontal one
+    (left, top), (_, bottom), (right, _) = corner
+    assert line.lines[0] == pytest.approx(
+        np.array([[left, bottom], [0.5 * (left + right), 0.5 * (top + bottom)], [right, top]])
+    )
+    assert grid.width < line.width
 
-    before = dict(matplotlib.rcParams)
-    with style.applied():
-        matplotlib.rcParams["font.size"] = 3.0
-    assert dict(matplotlib.rcParams) == before
+
+def test_unknown_values_break_a_line():
+    panel = panel_of([0.0, 1.0, 2.0, 3.0, 4.0], [0.0, 1.0, np.nan, 1.0, 0.0])
+    line = [shape for shape in drawn(panel).rows[0][0].shapes if isinstance(shape, Stroke)][-1]
+    assert [len(piece) for piece in line.lines] == [2, 2]
 
 
-def test_a_cloud_of_points_is_one_image_in_the_page_and_a_few_points_are_not():
+@pytest.mark.parametrize(
+    ("axis", "low", "high", "texts"),
+    [
+        (Axis(), -8.8, 8.8, ["−5", "0", "5"]),
+        (Axis(), 0.0, 1.0, ["0.0", "0.2", "0.4", "0.6", "0.8", "1.0"]),
+        (Axis(), -0.3, 0.95, ["−0.25", "0.00", "0.25", "0.50", "0.75"]),
+        (Axis(), 1200.0, 3400.0, ["1500", "2000", "2500", "3000"]),
+        (Axis(), -9.0, 9.5, ["−5", "0", "5"]),
+        (Axis(), 0.9, 1.9, ["1.0", "1.2", "1.4", "1.6", "1.8"]),
+        (Axis(), 3.0, -1.0, ["−1", "0", "1", "2", "3"]),
+        (Axis(logarithmic=True), 1.0, 2e5, ["1", "10", "10²", "10³", "10⁴", "10⁵"]),
+        (Axis(words={0.0: "now"}), 0.0, 1.0, ["now"]),
+    ],
+)
+def test_numbers_at_an_axis_are_round(axis, low, high, texts):
+    found = numbers_at(axis, low, high, 5)
+    assert [*found.values()] == texts
+    assert all(min(low, high) - 1e-9 <= place <= max(low, high) + 1e-9 for place in found)
+
+
+def test_an_axis_has_at_least_two_numbers():
+    assert len(numbers_at(Axis(), -9.0, 9.0, 1)) >= 2
+    assert len(numbers_at(Axis(), 82.0, 97.0, 2)) >= 2
+
+
+def test_a_cloud_of_points_is_one_element_of_the_page():
     rng = np.random.default_rng(2)
-    for count, images in ((40, 0), (5000, 1)):
-        figure, ((ax,),) = style.panel_grid([1], 1)
-        ax.plot(*rng.standard_normal((2, count)), ls="none", marker=".")
-        drawn = drawing.markup(figure, "cloud")
-        assert drawn.count("<image") == images
-        assert len(drawn) < 200_000
+    drawing = markup(panel_of(*rng.standard_normal((2, 5000)), Look(marker=".")))
+    assert drawing.count("<path") < 6
+    assert "<image" not in drawing
+    assert len(drawing) < 200_000
 
 
-def test_panels_carry_the_labels_that_they_shared():
-    figure, rows = style.panel_grid([3], 3, share_x=True, share_y=True)
-    style.label_left(rows, "force")
-    style.label_below(rows, "angle")
-    drawn = drawing.markup(figure, "shared")
-    assert drawn.count(">force<") == drawn.count(">angle<") == drawn.count("<svg") == 3
+def test_every_panel_has_its_own_labels():
+    """A page on a telephone shows one panel per row, so each carries its labels."""
+    labelled = panel_of([0, 1], [0, 1], x=Axis(label="angle"), y=Axis(label="force"))
+    drawing = markup(labelled, labelled, labelled)
+    assert drawing.count(">force<") == drawing.count(">angle<") == drawing.count("<svg") == 3
 
 
 def test_names_of_sweeps_cannot_break_the_page():
-    figure, ((ax,),) = style.panel_grid([1], 1)
-    ax.set_title("<script>alert(1)</script> & more")
-    assert "&lt;script&gt;alert(1)&lt;/script&gt; &amp; more" in drawing.markup(figure, "x")
+    drawing = markup(panel_of([0, 1], [0, 1], title="<script>1</script> & more"))
+    assert "&lt;script&gt;1&lt;/script&gt; &amp; more" in drawing
+
+
+def test_subscripts_are_set_below_the_line():
+    class Text(HTMLParser):
+        text = ""
+
+        def handle_data(self, data):
+            self.text += data
+
+    drawing = markup(panel_of([0, 1], [0, 1], title=f"{CHANNELS['Fy'].mathtext} over time"))
+    reader = Text()
+    reader.feed(drawing)
+    assert "Fy over time" in reader.text
+    assert re.search(r'F<tspan dy="[\d.]+" font-size="[\d.]+">y</tspan><tspan dy="-', drawing)
+
+
+def test_every_kind_of_mark_and_line_is_in_page_and_picture(tmp_path):
+    from PIL import Image
+
+    looks = [Look(line=line) for line in ("-", "--", ":")]
+    looks += [Look(marker=mark, hollow=hollow) for mark in "o.vsDx" for hollow in (False, True)]
+    for look in looks:
+        with_it, without = ([panel_of([0, 1], [0, 1], one)] for one in (look, Look()))
+        assert len(markup(*with_it)) > len(markup(*without))
+        for name, panels in (("with", with_it), ("without", without)):
+            png.save(drawn(*panels), tmp_path / f"{name}.png")
+        inks = [
+            np.asarray(Image.open(tmp_path / f"{n}.png").convert("L"), float) for n in ("with", "without")
+        ]
+        assert inks[0].shape == inks[1].shape
+        assert inks[0].sum() < inks[1].sum() - 500.0, look
+
+
+def test_page_and_picture_are_made_of_the_same_drawings(tmp_path):
+    """A dark square in the upper right quarter of the data area is there in both."""
+    from PIL import Image
+
+    axis = Axis(low=0.0, high=4.0)
+    figure = drawn(panel_of([3.0], [3.0], Look(marker="s", size=12.0, colour="#000000"), x=axis, y=axis))
+    (square,) = (shape for shape in figure.rows[0][0].shapes if isinstance(shape, Marks))
+    png.save(figure, tmp_path / "square.png")
+    grey = np.asarray(Image.open(tmp_path / "square.png").convert("L"))
+    rows, columns = np.nonzero(grey < 5)
+    pixels = constants.PICTURE_DPI / 72.0
+    found = (np.array([columns.mean(), rows.mean()]) + 0.5) / pixels - png.MARGIN
+    assert found == pytest.approx(square.at[0], abs=0.6)
+    assert np.ptp(columns) + 1 == pytest.approx(12.0 * pixels, abs=1.5)
+    drawn_in_page = re.findall(r'<path d="M([\d.]+) ([\d.]+)L[^"]*z" fill="#000000"', svg.markup(figure))
+    assert [float(number) + 6.0 for number in drawn_in_page[0]] == pytest.approx(square.at[0], abs=0.01)
 
 
 @pytest.mark.parametrize("name", ["front-1", "a very long name of a tyre that somebody gave it"])
-def test_no_label_lies_over_another_in_the_picture(view, name):
+def test_no_text_lies_over_another_or_leaves_its_panel(view, name):
     tyre = view.config.tyre.model_copy(update={"name": name})
-    figure = spin.camber_reduction(
-        dataclasses.replace(view, config=view.config.model_copy(update={"tyre": tyre}))
-    )
-    assert crossing(figure) == []
+    renamed = dataclasses.replace(view, config=view.config.model_copy(update={"tyre": tyre}))
+    for sheet in all_sheets(renamed):
+        figure = lay_out(sheet)
+        for drawing in (*figure.key, *(one for row in figure.rows for one in row)):
+            assert crossing(drawing) == []
+            assert outside(drawing) == []
 
 
-def crossing(figure):
+def boxes(drawing):
+    """Left, top, right and bottom of every text."""
+    for text in (shape for shape in drawing.shapes if isinstance(shape, Letters)):
+        wide = width_of(text.text, text.size, text.bold)
+        before = {"start": 0.0, "middle": 0.5, "end": 1.0}[text.anchor] * wide
+        up, down = 0.75 * text.size, 0.25 * text.size
+        if text.turned:
+            yield text.text, (text.x - up, text.y + before - wide, text.x + down, text.y + before)
+        else:
+            yield text.text, (text.x - before, text.y - up, text.x - before + wide, text.y + down)
+
+
+def crossing(drawing):
     """Pairs of texts that lie over each other."""
-    figure.draw_without_rendering()
-    hidden = set()  # numbers of ticks beyond the ends of an axis
-    for axis in (axis for ax in figure.axes for axis in (ax.xaxis, ax.yaxis)):
-        low, high = sorted(axis.get_view_interval())
-        for tick in axis.get_major_ticks():
-            hidden |= set() if low <= tick.get_loc() <= high else {tick.label1, tick.label2}
-    texts = [t for t in figure.findobj(Text) if t.get_visible() and t.get_text().strip() and t not in hidden]
-    boxes = [(t.get_text(), t.get_window_extent()) for t in texts]
+    found = list(boxes(drawing))
     return [
         (said, other)
-        for i, (said, a) in enumerate(boxes)
-        for other, b in boxes[:i]
-        if min(a.x1, b.x1) - max(a.x0, b.x0) > 1.0 and min(a.y1, b.y1) - max(a.y0, b.y0) > 1.0
+        for i, (said, a) in enumerate(found)
+        for other, b in found[:i]
+        if min(a[2], b[2]) - max(a[0], b[0]) > 0.5 and min(a[3], b[3]) - max(a[1], b[1]) > 0.5
     ]
+
+
+def outside(drawing):
+    """Texts that are not wholly in the drawing."""
+    return [
+        said
+        for said, (left, top, right, bottom) in boxes(drawing)
+        if left < -0.5 or top < -0.5 or right > drawing.width + 0.5 or bottom > drawing.height + 0.5
+    ]
+
+
+def test_a_long_title_is_cut():
+    (title,) = (
+        shape.text
+        for shape in drawn(panel_of([0, 1], [0, 1], title="a very long title " * 30)).rows[0][0].shapes
+        if isinstance(shape, Letters) and shape.text.startswith("a very")
+    )
+    assert title.endswith("…")
 
 
 @pytest.mark.parametrize("columns", [1, 2])
 def test_no_panel_is_too_wide_for_a_telephone(columns):
-    figure, rows = style.panel_grid([columns], columns)
-    style.label_left(rows, "force")
-    drawn = drawing.markup(figure, "wide")
-    assert float(re.search(r"--widest:([\d.]+)", drawn)[1]) < 440.0
+    drawing = markup(*[panel_of([0, 1], [0, 1], y=Axis(label="force"))] * columns)
+    assert float(re.search(r"--widest:([\d.]+)", drawing)[1]) < 440.0
+
+
+def test_a_logarithmic_bar_begins_at_the_left_end(view):
+    from mffit.report.drawing.records import Bars
+
+    bars = Bars(name="gain", lengths=np.array([100.0]), places=np.array([0.0]), colours=[style.ACCENT])
+    axis = Axis(low=1.0, high=1e4, logarithmic=True)
+    shapes = drawn(panel_of([1], [0], Look(), x=axis, series=[bars])).rows[0][0].shapes
+    (bar,) = (shape for shape in shapes if isinstance(shape, Area))
+    corner = [shape for shape in shapes if isinstance(shape, Stroke)][1].lines[-1]
+    left, right = corner[0, 0], corner[-1, 0]
+    assert bar.corners[:, 0].min() == pytest.approx(left)
+    assert bar.corners[:, 0].max() == pytest.approx(0.5 * (left + right))
+
+
+def test_a_guide_is_within_the_axes():
+    guide = Guide(axis="y", at=50.0)
+    shapes = drawn(panel_of([0, 1], [0, 1], guides=[guide])).rows[0][0].shapes
+    line = next(
+        s for s in shapes if isinstance(s, Stroke) and s.width == guide.look.width and len(s.lines) == 1
+    )
+    corner = [shape for shape in shapes if isinstance(shape, Stroke)][1].lines[-1]
+    assert corner[0, 1] < line.lines[0][0, 1] < corner[1, 1]
+
+
+def test_levels_have_colours_from_dark_to_light():
+    ramp = style.ramp([10.0, -10.0, 0.0])
+    assert list(ramp) == [-10.0, 0.0, 10.0]
+    brightness = [sum(style.rgb(colour)) for colour in ramp.values()]
+    assert brightness == sorted(brightness)
+
+
+def test_a_sentence_gets_the_subscripts_of_channels():
+    assert labels.typeset("offset of Fy") == f"offset of {CHANNELS['Fy'].mathtext}"

@@ -1,4 +1,4 @@
-"""Data are data: names that come from files stand in pages as text and can do nothing there."""
+"""Names from files appear in pages as plain text and cannot act there."""
 
 from __future__ import annotations
 
@@ -59,7 +59,7 @@ def hostile(points):
 
 @pytest.fixture(scope="module")
 def settings():
-    """[tyre] size and the sweep's file are free texts; a name is not: it must do as a file's."""
+    """[tyre] size and the sweep's file are free texts; the name of a tyre is restricted to file names."""
     given = made_config()
     return given.model_copy(
         update={

@@ -1,4 +1,4 @@
-"""The model's line passes through what the model says at the points."""
+"""The model's line passes through the model's readings at the points."""
 
 from __future__ import annotations
 

@@ -8,8 +8,9 @@ import io
 import numpy as np
 import pytest
 
-from mffit.report import style
+from mffit.report import constants
 from mffit.report.build_view import view_of
+from mffit.report.drawing.records import Axis, Look, Map, Panel, Sheet, Trace
 from mffit.report.figures import decomposition, fit, residuals, spin
 from mffit.report.numbers import table
 
@@ -19,17 +20,11 @@ def view(result):
     return view_of(result)
 
 
-def rows(figure):
-    return list(csv.DictReader(io.StringIO(table(figure))))
+def rows(sheet):
+    return list(csv.DictReader(io.StringIO(table(sheet))))
 
 
-@pytest.fixture(autouse=True)
-def _settings():
-    with style.applied():
-        yield
-
-
-def test_every_reading_stands_in_the_table_of_the_fit(view):
+def test_every_reading_is_in_the_table_of_the_fit(view):
     found = rows(fit.model_against_points(view, view.channels[0]))
     read = [row for row in found if not row["series"].startswith("model")]
     key = next(name for name in found[0] if name.startswith("y"))
@@ -42,7 +37,7 @@ def test_parts_are_named_as_in_the_legend(view):
     assert {row["series"].split(":")[0] for row in found} == {"raw reading", "odd part", "even part"}
 
 
-def test_bars_and_error_bars_are_named_by_what_stands_at_the_axis(view):
+def test_bars_and_error_bars_are_named_by_the_words_at_the_axis(view):
     found = rows(spin.camber_reduction(view))
     budget = {row["y"]: float(row["x"]) for row in found if row["panel"].startswith("What")}
     assert budget == pytest.approx(
@@ -55,23 +50,20 @@ def test_bars_and_error_bars_are_named_by_what_stands_at_the_axis(view):
 
 def test_a_map_gives_the_value_of_every_colour(view):
     values = np.linspace(-3.0, 3.0, len(view.points))
-    found = rows(residuals.residual_maps(view.points, [("Fy", values)], view.conditions, 4.0, "u"))
+    found = rows(residuals.residual_maps(view.points, [("Fy", values)], view.conditions, "u"))
     coloured = sorted(float(row["value"]) for row in found if row["value"])
     assert coloured == pytest.approx(sorted(values), abs=1e-5)
 
 
-def test_of_a_long_series_the_page_holds_some_and_says_so(monkeypatch):
-    from matplotlib.figure import Figure
-
-    from mffit.report import numbers
-
-    monkeypatch.setattr(numbers, "LONGEST", 10)
-    figure = Figure()
-    ax = figure.subplots()
-    ax.plot(np.arange(95.0), np.arange(95.0) ** 2)
-    ax.scatter(np.arange(9.0), np.arange(9.0), c=np.arange(9.0))
-    found = rows(figure)
+def test_a_long_series_is_thinned_and_its_name_says_so(monkeypatch):
+    monkeypatch.setattr(constants, "POINTS_PER_SERIES_IN_PAGE", 10)
+    x, few = np.arange(95.0), np.arange(9.0)
+    series = [
+        Trace(name="line", x=x, y=x**2, look=Look(line="-")),
+        Map(name="", x=few, y=few, values=few, limit=9.0, size=4.0),
+    ]
+    found = rows(Sheet(rows=[[Panel(x=Axis(), y=Axis(), series=series)]], height=1.0))
     line = [row for row in found if row["series"]]
-    assert {row["series"].rpartition(", ")[2] for row in line} == {"every 10th"}
+    assert {row["series"] for row in line} == {"line, every 10th"}
     assert [float(row["x"]) for row in line] == list(np.arange(0.0, 95.0, 10.0))
     assert len(found) - len(line) == 9

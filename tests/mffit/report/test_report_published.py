@@ -1,4 +1,4 @@
-"""The published tyres stand in the page as they were printed."""
+"""The page lists the published tyres with their printed numbers."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a terminal and a notebook show of the records fits a screen, and says the main thing first."""
+"""The text of a record fits a screen of a terminal or a notebook, and begins with the most important fact."""
 
 from __future__ import annotations
 
@@ -7,12 +7,14 @@ import html
 
 import pytest
 
-from mffit.brief import HEIGHT, WIDTH, summary
+from mffit.brief import summary
+from mffit.constants import LINES_PER_RECORD, TERMINAL_WIDTH
+from tir import Quantity
 
 
 def fits(text: str) -> bool:
     lines = text.splitlines()
-    return len(lines) <= HEIGHT and max(map(len, lines)) <= WIDTH
+    return len(lines) <= LINES_PER_RECORD and max(map(len, lines)) <= TERMINAL_WIDTH
 
 
 @pytest.mark.parametrize(
@@ -27,7 +29,7 @@ def test_every_part_of_a_build_fits_a_screen(result, part):
     assert repr(record).startswith(f"<{type(record).__name__}")
 
 
-def test_a_build_says_what_was_measured_first(result):
+def test_a_build_begins_with_its_results(result):
     first = repr(result).splitlines()[0]
     found = result.measured.epsilon_gamma
     assert fits(repr(result))
@@ -48,3 +50,4 @@ def test_numbers_are_not_hidden_by_their_containers(result):
     assert summary(result.points.Mx) == "115, not known"
     assert summary({}) == summary(()) == "none"
     assert summary(result.measured.nominal.R).endswith(" m")
+    assert summary(Quantity(value=1.0412837, u=0.00077, unit="N")) == "1.04128 +- 0.00077 N"

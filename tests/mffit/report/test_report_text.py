@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from mffit.measured import Contribution, align
 from mffit.report import text
+from mffit.rounding import ascii_only, decimals_of, stated
 
 BUDGET = [
     Contribution("load-cell offset", 10.0, "N", 0.03),
@@ -47,3 +48,14 @@ def test_terminal_text_is_ascii_and_fits_a_line(result):
     for summary in (text.spin_summary(result.measured), text.build_summary(result)):
         assert summary.isascii()
         assert max(map(len, summary.splitlines())) <= 120
+
+
+def test_estimates_without_an_uncertainty_have_the_digits_of_the_measured_one(result):
+    measured = result.measured
+    _, estimates = next(
+        line.split(maxsplit=1) for line in text.spin_summary(measured).splitlines() if line.startswith("from")
+    )
+    digits = decimals_of(measured.epsilon_gamma.u)
+    assert f"slope {measured.nominal.epsilon_slope:.{digits}f}" in estimates.split(", ")
+    assert f"secant {measured.nominal.epsilon_secant:.{digits}f}" in estimates.split(", ")
+    assert f"Mz {ascii_only(stated(measured.nominal.epsilon_moment))}" in estimates.split(", ")

@@ -1,4 +1,4 @@
-"""Pictures show readings: what the rig displayed, beside what it would display if the tyre were the model."""
+"""Pictures show the readings of the rig, and the readings that it would give if the tyre were the model."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""`mffit show` up to the browser: what it reads, names, offers and refuses to replace."""
+"""`mffit show` without a browser: the files it reads, names of tyres, ranges of sliders, files it refuses to replace."""
 
 from __future__ import annotations
 
@@ -70,13 +70,13 @@ def test_a_place_that_cannot_be_written_to_is_named(tmp_path, capsys, out):
     assert str(tmp_path / out) in capsys.readouterr().err
 
 
-def test_a_file_that_is_none_ends_in_a_sentence(tmp_path, capsys):
+def test_a_missing_file_ends_in_a_sentence(tmp_path, capsys):
     assert status("show", tmp_path / "none.tir") == 2
     assert "none.tir" in capsys.readouterr().err
     assert not list(tmp_path.iterdir())
 
 
-def test_what_cannot_be_drawn_is_named():
+def test_a_value_that_cannot_be_drawn_is_named():
     with pytest.raises(InputError, match="PKY1 is nan"):
         mffit.show(tir.read(FRONT).replace(PKY1=math.nan))
     with pytest.raises(InputError, match="no tyre"):
@@ -90,21 +90,21 @@ def test_names_tell_files_apart():
     assert list(named({"before": FRONT, "after": tir.read(FRONT)})) == ["before", "after"]
 
 
-def test_no_name_gets_out_of_its_place():
+def test_names_are_escaped():
     page = mffit.show({"</script><script>alert(1)</script>": FRONT}).html
     assert "<script>alert" not in page
     assert page.count("</script>") == 3
 
 
-def test_the_page_asks_for_nothing():
+def test_the_page_makes_no_requests():
     page = mffit.show(FRONT).html
     assert "default-src 'none'" in page
-    page = page.replace("http://www.w3.org/2000/svg", "")  # the name of SVG's elements is no address
+    page = page.replace("http://www.w3.org/2000/svg", "")  # a namespace, not an address
     assert [word for word in ("http://", "https://", " src=", "@import", "fetch(") if word in page] == []
 
 
-def test_what_a_build_says_it_tested_is_read_back():
-    """The words of a built file's comment, and what the page makes of them."""
+def test_the_tested_range_of_a_build_is_read_back():
+    """Comments of a built file, and the ranges that the page reads from them."""
     assert end_tested(f"estimate, checked plausible, {words_on_tested(-0.139626, 'rad')}") == -0.139626
     assert end_tested("estimate, checked plausible") is None
     built = tir.read(FRONT).annotate(
@@ -128,7 +128,7 @@ def test_sliders_reach_as_far_as_the_files_and_no_further_than_tyres():
         assert 100 <= (row["max"] - row["min"]) / row["step"] <= 600
 
 
-def test_public_names_are_at_hand():
+def test_public_names_exist():
     assert set(mffit.__all__) <= set(dir(mffit))
     assert "Any" not in dir(mffit)
     assert all(callable(getattr(mffit, name)) for name in mffit.__all__)

@@ -1,4 +1,4 @@
-"""The page of `mffit show` in a real browser: its numbers are tir's, its sliders move its curves, nothing runs over."""
+"""The page of `mffit show` in a real browser: its numbers are those of tir, its sliders move its curves, nothing overflows."""
 
 from __future__ import annotations
 
@@ -73,7 +73,7 @@ def lines(browser, panel: str) -> list[str]:
     )
 
 
-def test_nothing_is_complained_of(browser):
+def test_the_browser_reports_no_errors(browser):
     assert console_errors(browser) == []
     assert browser.execute_script("return performance.getEntriesByType('resource').length") == 0
 
@@ -156,7 +156,7 @@ def test_turn_slip_can_be_switched(browser):
     drawn(browser)
 
 
-def test_curves_beyond_the_ranges_look_otherwise(browser):
+def test_curves_beyond_the_ranges_are_dotted(browser):
     """The car's file allows 6 degrees of camber: its curves are dotted at 20, and the table says why."""
     move(browser, gamma=20)
     car = browser.find_elements("css selector", "#legend .about")[2].text
@@ -173,7 +173,7 @@ def test_hostile_names_do_no_harm(browser):
 
 
 @pytest.mark.parametrize("width", [420, 1200])
-def test_nothing_runs_over_and_no_label_lies_on_another(browser, width):
+def test_nothing_overflows_and_no_labels_overlap(browser, width):
     size = {"width": width, "height": 900, "deviceScaleFactor": 1, "mobile": False}
     browser.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", size)
     browser.execute_script("window.dispatchEvent(new Event('resize'))")

@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from mffit.report.rounding import MINUS, ascii_only, number, times, with_u
+from mffit.rounding import MINUS, ascii_only, number, times, with_u
 
 
 @pytest.mark.parametrize(
@@ -19,6 +19,9 @@ from mffit.report.rounding import MINUS, ascii_only, number, times, with_u
         (-20033.4, 169.6, "N/rad", f"{MINUS}20030 ± 170 N/rad"),
         (0.00042666, 0.000035, "", "0.000427 ± 0.000035"),
         (1.0, 0.0996, "", "1.00 ± 0.10"),
+        (-3.671525e-06, 1.3e-07, "1/s", f"{MINUS}3.67e{MINUS}6 ± 0.13e{MINUS}6 1/s"),
+        (1.04128, 0.00077, "", "1.04128 ± 0.00077"),
+        (2e-9, 5e-7, "", f"0.0e{MINUS}7 ± 5.0e{MINUS}7"),
         (12345.6, 0.0, "N", "12346 N"),
         (0.3, None, "m", "0.3 m"),
         (None, 1.0, "m", "–"),
@@ -29,7 +32,7 @@ def test_value_with_uncertainty(value, u, unit, expected):
     assert with_u(value, u, unit) == expected
 
 
-@given(st.floats(-1e6, 1e6), st.floats(1e-5, 1e5))
+@given(st.floats(-1e6, 1e6), st.floats(1e-9, 1e5))
 def test_rounding_moves_a_value_by_less_than_a_tenth_of_its_uncertainty(value, u):
     shown, shown_u = (float(part) for part in ascii_only(with_u(value, u)).split("+-"))
     assert abs(shown - value) <= 0.0501 * u * (1.0 + 1e-9) + 1e-9 * abs(value)
