@@ -206,7 +206,7 @@ RULES: tuple[Rule, ...] = (
         id="pressure-in-psi",
         subject=Subject.FILE,
         looks_at="median pressure over the nominal one, as it is and read as psi",
-        limits=(constants.LOWEST_PRESSURE,),
+        limits=(constants.LOWEST_TESTED_PRESSURE,),
         sentence=(
             "is {pressure:.3g} kPa, far from the nominal {nominal:.3g} kPa, and looks like psi; write kPa, or "
             'p_kPa = {{ column = "p_kPa", unit = "psi" }} under [sweep.columns]'

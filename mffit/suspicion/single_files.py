@@ -90,7 +90,7 @@ def pressure_in_psi(part: Points, config: Config) -> Iterator[Finding]:
     """A pressure far below the nominal one that would be near it in psi."""
     nominal = 1e3 * config.tyre.nominal_pressure
     pressure = float(np.median(part.p))
-    lowest, highest = constants.LOWEST_PRESSURE * nominal, nominal / constants.LOWEST_PRESSURE
+    lowest, highest = constants.LOWEST_TESTED_PRESSURE * nominal, nominal / constants.LOWEST_TESTED_PRESSURE
     if pressure < lowest and lowest < factor("psi", "kPa") * pressure < highest:
         yield Finding({"pressure": pressure / 1e3, "nominal": nominal / 1e3}, column="p_kPa")
 

@@ -213,12 +213,15 @@ def test_the_fleet_compares_and_reduces_uncertainties(compared, folders):
     }
     assert found["scatter"]["epsilon_gamma_direct"]["tyres"] == 5
     assert found["scatter"]["epsilon_gamma_direct"]["beyond"] == 0.0  # five times the same tyre
-    table = pd.read_csv(out / "fleet.csv", float_precision="round_trip")
+    table = pd.read_csv(out / "fleet.csv")
     assert table.rig.tolist() == [1] * 5
     assert table.warnings.tolist() == [len(result["warnings"])] * 5
     assert table.rmse_Fy.to_numpy() == pytest.approx(result["fit"]["channels"]["Fy"]["rmse"])
     assert list(table.name) == [HOSTILE, "tyre 1", "tyre 2", "tyre 3", "tyre 4"]
-    assert table.epsilon_gamma_together[0] == found["tyres"][0]["epsilon_gamma"]["together"]["value"]
+    together = found["tyres"][0]["epsilon_gamma"]["together"]["value"]
+    assert table.epsilon_gamma_together[0] == pytest.approx(
+        together, rel=1e-14
+    )  # old pandas read CSV inexactly
     assert "error of the rig" in said
     assert "load-cell zero of Fy" in said
     assert "F0_N" not in said + (out / "fleet.html").read_text()
