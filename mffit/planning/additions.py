@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from typing import Literal, NamedTuple
 
 from mffit.errors import InputError
 from mffit.planning import constants
-from mffit.quantities import CHANNELS, CONDITIONS, DIRECT
+from mffit.quantities import CHANNELS, DIRECT
+from mffit.rig_errors import DECLARED
 from tir.constant import Series
 
 _EPSILON = DIRECT["epsilon_gamma"].ascii
@@ -50,6 +51,20 @@ _ZEROS = (
 _SMALL_CAMBERS = (Line("gamma", constants.PLAN_SMALL_CAMBERS),)
 _SIDESLIP = (Line("alpha", constants.PLAN_SWEEP_SHARES),)
 _CAMBER = (Line("gamma", constants.PLAN_SWEEP_SHARES),)
+
+_RIG_MEASUREMENTS = tuple(
+    Addition(
+        **asdict(declared.measurement),
+        loads="nominal",
+        disc_only=True,
+        declares=declared.key,
+        declares_unit=error.unit
+        if declared.unit == error.unit
+        else f"{declared.unit} of {CHANNELS['Fy'].word}",
+    )
+    for error in DECLARED
+    if (declared := error.declared) is not None and declared.measurement is not None
+)
 
 ADDITIONS = (
     Addition(
@@ -103,48 +118,7 @@ ADDITIONS = (
         lines=_SMALL_CAMBERS,
         disc_only=True,
     ),
-    Addition(
-        id="camber-zero",
-        title="better zero of the camber axis",
-        reason=(
-            f"A camber error makes a force like turn slip; it is often the largest line in the budget of {_EPSILON}."
-        ),
-        settles=("camber-misalignment", "camber-reduction"),
-        loads="nominal",
-        disc_only=True,
-        declares="u_camber_alignment_deg",
-        declares_unit=CONDITIONS["gamma_deg"].unit,
-    ),
-    Addition(
-        id="loadcell-zero",
-        title="better zero of the side-force cell",
-        reason="The offset of an unloaded side-force cell adds to the turn-slip force.",
-        settles=("loadcell-offset-fy",),
-        loads="nominal",
-        disc_only=True,
-        declares="u_loadcell_offset_N",
-        declares_unit=CHANNELS["Fy"].unit,
-    ),
-    Addition(
-        id="sideslip-zero",
-        title="better zero of the sideslip axis",
-        reason="A geometric zero of the steering separates misalignment from ply-steer; no run on a single rig can.",
-        settles=("sideslip-misalignment", "ply-steer"),
-        loads="nominal",
-        disc_only=True,
-        declares="u_slip_alignment_N",
-        declares_unit=f"{CHANNELS['Fy'].unit} of {CHANNELS['Fy'].word}",
-    ),
-    Addition(
-        id="path-radius",
-        title="better path radius",
-        reason="The curvature of the path is known as well as its radius.",
-        settles=("path-radius",),
-        loads="nominal",
-        disc_only=True,
-        declares="u_path_radius",
-        declares_unit=DIRECT["R"].unit,
-    ),
+    *_RIG_MEASUREMENTS,
     Addition(
         id="revolution",
         title="one revolution of the disc",

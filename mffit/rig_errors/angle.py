@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from mffit.rig_errors import constants
-from mffit.rig_errors.record import RADIANS, Appearance, Declared, Place, RigError
+from mffit.rig_errors.record import RADIANS, Appearance, Declared, Measurement, Place, RigError
 
 RELAXATION = RigError(
     name="relaxation_m",
@@ -71,6 +71,12 @@ SIDESLIP_ZERO = RigError(
         source="sideslip alignment",
         force_at_zero=lambda force, at: force,
         turns_with_direction=True,
+        measurement=Measurement(
+            id="sideslip-zero",
+            title="better zero of the sideslip axis",
+            reason="A geometric zero of the steering separates misalignment from ply-steer; no run on a single rig can.",
+            settles=("sideslip-misalignment", "ply-steer"),
+        ),
     ),
 )
 HYSTERESIS = RigError(
@@ -183,6 +189,12 @@ CAMBER_SKEW = RigError(
         default=constants.CAMBER_SKEW,
         source="camber skew",
         camber_stiffness=lambda skew, at: RADIANS * at.C_alpha * skew,
+        measurement=Measurement(
+            id="camber-squareness",
+            title="better squareness of the camber axis",
+            reason="Sideslip that leaning adds is taken for camber stiffness, and so for camber reduction.",
+            settles=("camber-skew",),
+        ),
     ),
 )
 

@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from mffit.rig_errors import constants
-from mffit.rig_errors.record import RADIANS, Appearance, Declared, Place, RigError
+from mffit.rig_errors.record import RADIANS, Appearance, Declared, Measurement, Place, RigError
 
 CAMBER_ZERO = RigError(
     name="gamma_0_deg",
@@ -38,6 +38,12 @@ CAMBER_ZERO = RigError(
         default=constants.CAMBER_ZERO,
         source="camber alignment",
         force_at_zero=lambda zero, at: RADIANS * at.C_gamma * zero,
+        measurement=Measurement(
+            id="camber-zero",
+            title="better zero of the camber axis",
+            reason="A camber error makes a force like turn slip; it is often the largest line in the budget of eps_gamma.",
+            settles=("camber-misalignment", "camber-reduction"),
+        ),
     ),
 )
 LOAD_CAMBER = RigError(
@@ -90,7 +96,19 @@ PATH_RADIUS = RigError(
             remedy="measure the four lengths of the path again; path_radius under [rig] should be {value} m",
         ),
     ),
-    declared=Declared(key="u_path_radius", unit="m", default=None, source="path radius", value="radius"),
+    declared=Declared(
+        key="u_path_radius",
+        unit="m",
+        default=None,
+        source="path radius",
+        value="radius",
+        measurement=Measurement(
+            id="path-radius",
+            title="better path radius",
+            reason="The curvature of the path is known as well as its radius.",
+            settles=("path-radius",),
+        ),
+    ),
 )
 
 CONDITION_ERRORS = (CAMBER_ZERO, LOAD_CAMBER, PATH_RADIUS)

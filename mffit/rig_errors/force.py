@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from mffit.rig_errors import constants
-from mffit.rig_errors.record import Appearance, Declared, Place, RigError
+from mffit.rig_errors.record import Appearance, Declared, Measurement, Place, RigError
 
 FORCE = "reported Fy = gain Fy + F0 + crosstalk Fz"
 
@@ -116,6 +116,12 @@ FORCE_ZERO = RigError(
         default=constants.LOADCELL_ZERO,
         source="load-cell offset",
         force_at_zero=lambda zero, at: zero,
+        measurement=Measurement(
+            id="loadcell-zero",
+            title="better zero of the side-force cell",
+            reason="The offset of an unloaded side-force cell adds to the turn-slip force.",
+            settles=("loadcell-offset-fy",),
+        ),
     ),
 )
 MOMENT_ZERO = RigError(
