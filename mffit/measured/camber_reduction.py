@@ -81,6 +81,11 @@ def true_camber_stiffness(C_gamma: Any, errors: Mapping[str, Any], at: AtZero) -
     return C_gamma
 
 
+def acts_at_zero(name: str) -> bool:
+    """Whether a rig error adds a force at zero sideslip and camber."""
+    return _declared(name).force_at_zero is not None
+
+
 def _declared(name: str) -> Declared:
     declared = BY_NAME[name].declared
     assert declared is not None

@@ -26,6 +26,7 @@ from mffit.measured.groups import LoadGroup, load_groups
 from mffit.measured.loads import load_dependence
 from mffit.measured.notes import (
     Aligned,
+    CamberSkew,
     Conicity,
     ContactWanders,
     Misaligned,
@@ -38,7 +39,13 @@ from mffit.measured.notes import (
     StraightPath,
     Trouble,
 )
-from mffit.measured.paths import PathForce, TurnSlipStiffness, turn_slip_stiffness, u_by_draws
+from mffit.measured.paths import (
+    PathForce,
+    TurnSlipStiffness,
+    least_uncertain_mean,
+    turn_slip_stiffness,
+    u_by_draws,
+)
 from mffit.measured.radii import effective_radius_at, measured_effective_radius, measured_path_radius
 from mffit.measured.result import LoadResult, Measured
 from mffit.measured.slopes import Secant, Slope, slope_at_zero
@@ -75,8 +82,9 @@ class _Slopes:
     """The stiffnesses of one load."""
 
     C_alpha: UFloat | None  #: [N/rad]
-    C_gamma: UFloat | None  #: as read off the sweep by the configured method [N/rad]
-    camber: Estimates
+    C_gamma: UFloat | None  #: as read off the forward sweep by the configured method [N/rad]
+    C_gamma_backward: UFloat | None  #: the same of a backward sweep
+    camber: Estimates  #: of the forward sweep
     exists: bool  #: whether anything could be estimated
 
 
@@ -133,11 +141,13 @@ def measure(config: Config, points: Points, parts: Parts, base: Tyre | None = No
     evidence = _evidence(config, points, parts, base)
     warnings: list[Trouble] = []
     rows = []
-    for group in load_groups(evidence.points):
-        found, troubles = _at_load(evidence, group)
+    found_slopes = [(group, *_slopes(evidence, group)) for group in load_groups(evidence.points)]
+    evidence, skew = _with_measured_skew(evidence, [slopes for _, slopes, _ in found_slopes])
+    for group, slopes, troubles in found_slopes:
+        found, more = _at_load(evidence, group, slopes)
         rows += [] if found is None else [found]
-        warnings += troubles
-    measured, troubles = _assembled(evidence, rows)
+        warnings += troubles + more
+    measured, troubles = _assembled(evidence, rows, skew)
     return replace(measured, warnings=(*parts.unpaired, *map(wording.warning, [*warnings, *troubles])))
 
 
@@ -171,31 +181,74 @@ def _evidence(config: Config, points: Points, parts: Parts, base: Tyre | None) -
     )
 
 
-def _at_load(evidence: _Evidence, group: LoadGroup) -> tuple[_AtLoad | None, list[Trouble]]:
+def _at_load(evidence: _Evidence, group: LoadGroup, slopes: _Slopes) -> tuple[_AtLoad | None, list[Trouble]]:
     """Everything that the direct method finds at one load; None if there is nothing."""
-    slopes, troubles = _slopes(evidence, group)
     if evidence.rig is None:
-        return (_straight(group, slopes) if slopes.exists else None), troubles
-    turning, more = _turning(evidence, group, slopes)
+        return (_straight(group, slopes) if slopes.exists else None), []
+    turning, troubles = _turning(evidence, group, slopes)
     r_e = effective_radius_at(group.load, evidence.radii, evidence.base)
-    return _result(evidence, group, slopes, turning, r_e), troubles + more
+    return _result(evidence, group, slopes, turning, r_e), troubles
 
 
 def _slopes(evidence: _Evidence, group: LoadGroup) -> tuple[_Slopes, list[Trouble]]:
     """Cornering and camber stiffness, from the odd curves on a disc and from the curves themselves on a straight path."""
-    config, points = evidence.config, evidence.points
+    config = evidence.config
     C_alpha = _cornering_stiffness(evidence, group)
+    (camber, largest), (backward, largest_backward) = (
+        _camber_estimates(evidence, group, C_alpha, direction) for direction in (1, -1)
+    )
+    C_gamma, trouble = chosen_camber_stiffness(config, camber, largest, group.load)
+    C_backward, _ = chosen_camber_stiffness(config, backward, largest_backward, group.load)
+    exists = not (C_alpha is None and camber.slope is None and camber.secant is None)
+    slopes = _Slopes(C_alpha, C_gamma, C_backward if evidence.rig else None, camber, exists)
+    return slopes, [trouble] if trouble else []
+
+
+def _camber_estimates(
+    evidence: _Evidence, group: LoadGroup, C_alpha: UFloat | None, direction: int
+) -> tuple[Estimates, float]:
+    """Slope and secant of the camber sweep in one direction, and the largest camber in it [rad]."""
+    config, points = evidence.config, evidence.points
     odd_Fy = evidence.parts.Fy_odd if evidence.rig else points.Fy
-    index = sweep(points, odd_Fy, group, "gamma", config)
+    index = sweep(points, odd_Fy, group, "gamma", config, direction)
     if C_alpha is not None:  # less the force of the sideslip that backlash leaves in a camber sweep
         in_sweep = np.isin(np.arange(len(points)), index)
-        odd_Fy = np.where(in_sweep, odd_Fy - C_alpha.nominal_value * evidence.odd_slip, odd_Fy)
+        slip_force = direction * C_alpha.nominal_value * evidence.odd_slip
+        odd_Fy = np.where(in_sweep, odd_Fy - slip_force, odd_Fy)
     local, angle = constants.CUBIC_CAMBER.rad, math.radians(config.camber_stiffness.angle_deg)
-    camber = estimates(points.gamma, odd_Fy, u_odd(evidence.parts), index, local, angle)
-    largest = points.gamma[index].max(initial=0.0)
-    C_gamma, trouble = chosen_camber_stiffness(config, camber, largest, group.load)
-    exists = not (C_alpha is None and camber.slope is None and camber.secant is None)
-    return _Slopes(C_alpha, C_gamma, camber, exists), [trouble] if trouble else []
+    found = estimates(points.gamma, odd_Fy, u_odd(evidence.parts), index, local, angle)
+    return found, float(points.gamma[index].max(initial=0.0))
+
+
+def _with_measured_skew(
+    evidence: _Evidence, slopes: Sequence[_Slopes]
+) -> tuple[_Evidence, CamberSkew | None]:
+    """The evidence with rig errors that forward and backward camber sweeps measure, and what was found of the skew.
+
+    Rolling backwards the camber force keeps its sign and the slip force changes it: half the difference of both slopes is
+    what the rig adds, half their sum is the camber stiffness.
+    """
+    both = [
+        (row.C_alpha, row.C_gamma, row.C_gamma_backward)
+        for row in slopes
+        if row.C_alpha is not None and row.C_gamma is not None and row.C_gamma_backward is not None
+    ]
+    if evidence.rig is None or not both:
+        return evidence, None
+    errors = dict(evidence.rig.errors)
+    note = None
+    for error in DECLARED:
+        declared = error.declared
+        if declared is None or declared.camber_stiffness is None:
+            continue
+        estimates_of_it = [
+            (forward - backward) / (2.0 * declared.camber_stiffness(1.0, AtZero(C_alpha, forward, 0.0)))
+            for C_alpha, forward, backward in both
+        ]
+        found = least_uncertain_mean([errors[error.name], *estimates_of_it])
+        errors[error.name] = found
+        note = CamberSkew(Quantity(found.nominal_value, found.std_dev, declared.unit))
+    return replace(evidence, rig=replace(evidence.rig, errors=errors)), note
 
 
 def _cornering_stiffness(evidence: _Evidence, group: LoadGroup) -> UFloat | None:
@@ -261,7 +314,7 @@ def _result(
         epsilon_secant=with_estimate(slopes.camber.secant),
         epsilon_moment=method.quantity(_from_moments(evidence, group, turning, r_e), "-"),
         budget=method.budget(epsilon),
-        u_monte_carlo=u_by_draws(turning.paths, turning.stiffness.weights, slopes.C_gamma, r_e, rig),
+        u_monte_carlo=u_by_draws(turning.paths, turning.stiffness.weights, C_gamma, r_e, rig),
     )
     return _AtLoad(row, epsilon, epsilon.derivatives.get(rig.errors["F0_N"], 0.0))
 
@@ -304,7 +357,9 @@ def _from_moments(evidence: _Evidence, group: LoadGroup, turning: _Turning, r_e:
     return 1.0 + r_e * C / (turning.sign * moment * rig.R)
 
 
-def _assembled(evidence: _Evidence, rows: Sequence[_AtLoad]) -> tuple[Measured, list[Trouble]]:
+def _assembled(
+    evidence: _Evidence, rows: Sequence[_AtLoad], skew: CamberSkew | None
+) -> tuple[Measured, list[Trouble]]:
     """The results of all loads together, with eps_gamma over load and the remarks."""
     nominal_load = evidence.config.tyre.nominal_load
     per_load = tuple(found.row for found in rows)
@@ -325,6 +380,7 @@ def _assembled(evidence: _Evidence, rows: Sequence[_AtLoad]) -> tuple[Measured, 
     misaligned = isinstance(axis, Misaligned)
     notes = (
         *(() if axis is None or isinstance(axis, Misaligned) else (axis,)),
+        *([skew] if skew else []),
         *([SeveralPaths(tuple(-1.0 / phi_t for phi_t in nominal.row.paths))] if len(nominal.row.paths) > 1 else []),
         law.note,
         StandardUncertainties(),

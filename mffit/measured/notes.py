@@ -50,6 +50,13 @@ class SeveralPaths:
 
 
 @dataclass(frozen=True, slots=True)
+class CamberSkew:
+    """Forward and backward camber sweeps measure the squareness of camber and steering axis."""
+
+    skew: Quantity  #: [deg]
+
+
+@dataclass(frozen=True, slots=True)
 class Aligned:
     """Forward and backward runs show a sideslip misalignment within what the alignment leaves."""
 
@@ -152,6 +159,7 @@ Note = (
     StraightPath
     | NotSeparable
     | SeveralPaths
+    | CamberSkew
     | Aligned
     | LoadSlope
     | OneLoad

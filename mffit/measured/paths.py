@@ -12,9 +12,9 @@ from uncertainties import UFloat
 from mffit.measured import constants
 from mffit.measured.camber_reduction import (
     RigDoubts,
+    acts_at_zero,
     monte_carlo,
     named,
-    true_camber_stiffness,
     turn_slip_force,
 )
 from mffit.measured.groups import LoadGroup
@@ -76,6 +76,13 @@ def turn_slip_stiffness(paths: Sequence[PathForce]) -> TurnSlipStiffness:
     return TurnSlipStiffness(together, weights, tuple(single), _chance(paths, single, errors))
 
 
+def least_uncertain_mean(numbers: Sequence[UFloat]) -> UFloat:
+    """The mean of several estimates of one number, weighted by their covariance for the least uncertainty."""
+    errors = covariance(numbers)
+    weights = _weights(errors + constants.SHARED_ERROR_RIDGE * np.diag(np.diag(errors)))
+    return sum(w * x for w, x in zip(weights.tolist(), numbers, strict=True))
+
+
 def _weights(errors: np.ndarray) -> np.ndarray:
     """Weights (k,) of the mean with the least uncertainty, from the covariance (k, k) of its terms."""
     weights = np.linalg.solve(errors, np.ones(len(errors)))
@@ -99,7 +106,7 @@ def u_by_draws(
     Parameters
     ----------
     paths, weights : (k,) as in :class:`TurnSlipStiffness`
-    C_gamma : camber stiffness as read off the sweep [N/rad]
+    C_gamma : camber stiffness, less what the rig adds to it [N/rad]
     r_e : effective radius [m]
     rig : the uncertain rig errors
     """
@@ -108,11 +115,11 @@ def u_by_draws(
     of_first = named(ratio.nominal_value, ratio.std_dev, "r_e/R", "-")
     relative = [rig.R.nominal_value / path.R.nominal_value for path in paths]
     readings = [reading for path in paths for reading in path.readings]
+    at_zero = {name: number for name, number in rig.errors.items() if acts_at_zero(name)}
 
     def formula(*drawn):
         forces, others = list(drawn[: len(readings)]), drawn[len(readings) :]
-        C, r, errors = others[0], others[1], dict(zip(rig.errors, others[2:], strict=True))
-        C = true_camber_stiffness(C, errors, paths[0].at)
+        C, r, errors = others[0], others[1], dict(zip(at_zero, others[2:], strict=True))
         total = 0.0
         for path, weight, R in zip(paths, weights, relative, strict=True):
             mean = sum(forces.pop(0) for _ in path.readings) / len(path.readings)
@@ -122,4 +129,4 @@ def u_by_draws(
             total = total + weight * path.sign * force / R
         return 1.0 + r * C / total
 
-    return monte_carlo(formula, [*readings, C_gamma, of_first, *rig.errors.values()])
+    return monte_carlo(formula, [*readings, C_gamma, of_first, *at_zero.values()])

@@ -61,10 +61,15 @@ def u_odd(parts: Parts) -> np.ndarray:
     return np.where(np.isfinite(parts.u_Fy_odd), parts.u_Fy_odd, USUAL_U_FORCE / math.sqrt(2.0))
 
 
-def sweep(points: Points, odd: np.ndarray, group: LoadGroup, angle: str, config: Config) -> np.ndarray:
-    """Indices of the group's forward points on the positive branch of a pure camber or sideslip sweep at the usual radius."""
+def sweep(
+    points: Points, odd: np.ndarray, group: LoadGroup, angle: str, config: Config, direction: int = 1
+) -> np.ndarray:
+    """Indices of the group's points on the positive branch of a pure camber or sideslip sweep at the usual radius.
+
+    ``direction`` is 1 for points rolled forwards, -1 backwards.
+    """
     i = group.index if config.rig.radius is None else on_radius(points, group.index, config.rig.radius)
-    i = i[(points.direction[i] > 0) & np.isfinite(odd[i])]
+    i = i[(points.direction[i] == direction) & np.isfinite(odd[i])]
     if angle == "gamma":
         return i[(np.abs(points.alpha[i]) < ZERO_SIDESLIP.rad) & (points.gamma[i] > ZERO_CAMBER.rad)]
     return i[

@@ -8,6 +8,7 @@ from typing import assert_never
 from mffit.measured.notes import (
     Aligned,
     AxisOff,
+    CamberSkew,
     Conicity,
     ContactWanders,
     EpsilonInNoise,
@@ -29,6 +30,7 @@ from mffit.measured.notes import (
     ZerosDisagree,
 )
 from mffit.measured.result import CONICITY, FINITE_SPIN, Measured
+from mffit.rounding import to_uncertainty
 
 
 def epsilon_values(measured: Measured) -> str:
@@ -89,6 +91,12 @@ def note(fact: Note) -> str:
             return (
                 f"The turn-slip stiffness combines the zeros of {len(radii)} paths (disc's centre {paths}) so that its "
                 "uncertainty is least: what pushes alike on all of them drops out."
+            )
+        case CamberSkew(skew):
+            return (
+                f"Forward and backward camber sweeps: leaning steers the wheel by {to_uncertainty(skew.value, skew.u)} "
+                f"+- {to_uncertainty(skew.u, skew.u)} {skew.unit} times "
+                "the sine of the camber angle (camber skew). It is taken off the camber stiffness."
             )
         case Aligned():
             return (

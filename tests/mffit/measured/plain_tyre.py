@@ -32,6 +32,7 @@ class Plain:
     side: int = -1  #: sign of phi_t
     alpha_0: float = 0.0  #: true sideslip minus reading [rad]
     play: float = 0.0  #: full play of the sideslip axis [rad]
+    skew: float = 0.0  #: sideslip that leaning adds, over sin(gamma) [rad]
 
     def turn_slip_force(self, Fz: Any) -> Any:
         """[N]: C_phit phi_t with C_phit from (17), eps = 1 + r_e C_gamma / C_phit."""
@@ -41,23 +42,32 @@ class Plain:
         """Fy [N] and Mz [Nm] at read angles; the moment, far from zero everywhere, takes up the play."""
         spin_moment = self.side / R * R_E * 0.03 * Fz / (1.0 - self.epsilon_moment)
         Mz = 0.02 * np.tanh(alpha / 0.05) * Fz - 0.03 * gamma * Fz + direction * spin_moment
-        true = alpha + self.alpha_0 - 0.5 * self.play * np.sign(Mz)
+        true = alpha + self.alpha_0 + self.skew * np.sin(gamma) - 0.5 * self.play * np.sign(Mz)
         slip = -np.tanh(self.cornering * true / 2.0) * 2.0 * Fz  # slope -cornering at zero
         return direction * slip - self.camber * gamma * Fz + self.turn_slip_force(Fz), Mz
 
-    def campaign(self, loads=(1500.0,), *, backward: bool = True, p: float = 250e3, **given: Any) -> Points:
-        """Sideslip, camber and zeros at every load."""
+    def campaign(
+        self,
+        loads=(1500.0,),
+        *,
+        backward: bool = True,
+        p: float = 250e3,
+        backward_camber: tuple[float, ...] = (),
+        **given: Any,
+    ) -> Points:
+        """Sideslip, camber and zeros at every load, and a backward camber sweep at some."""
         rows = []
         for Fz in loads:
             rows += [(a, 0.0, Fz, 1, 0) for a in SLIP] + [(0.0, g, Fz, 1, 1) for g in LEAN]
             rows += [(a, 0.0, Fz, 1, 2) for a in ZEROS]
             rows += [(a, 0.0, Fz, -1, 3) for a in ZEROS] if backward else []
+            rows += [(0.0, g, Fz, -1, 4) for g in LEAN] if Fz in backward_camber else []
         alpha, gamma, Fz, direction, sweep = np.array(rows).T
         direction = direction.astype(int)
         Fy, Mz = self.readings(alpha, gamma, Fz, direction)
         return make_points(
             alpha, gamma, Fz, p=p, V=6.0, phi_t=self.side / R, Fy=Fy, Mz=Mz, direction=direction,
-            sweep=sweep.astype(int), sweep_names=("sideslip", "camber", "forward", "backward"),
+            sweep=sweep.astype(int), sweep_names=("sideslip", "camber", "forward", "backward", "backward camber"),
             **{"u_Fy": NEWTON, "u_Mz": NEWTON_METRE} | given,
         )  # fmt: skip
 

@@ -10,7 +10,7 @@ from plain_tyre import DEGREE, LEAN, NEWTON, R_E, SLIP, U_R, U_R_E, Plain, R, se
 
 from mffit.errors import InputError
 from mffit.measured import measure
-from mffit.measured.notes import Conicity, StraightPath
+from mffit.measured.notes import CamberSkew, Conicity, StraightPath
 from mffit.measured.wording import note as say
 from mffit.parts import split
 from mffit.results import as_json
@@ -130,6 +130,36 @@ def test_camber_skew_counts_through_the_camber_stiffness():
     assert contributions(result)["camber skew"] == pytest.approx(expected, rel=0.02)
     assert result.nominal.u_monte_carlo == pytest.approx(result.epsilon_gamma.u, rel=0.03)
     assert result.C_gamma.u == pytest.approx(math.hypot(u_slope, result.nominal.C_gamma_slope.u), rel=0.02)
+
+
+@pytest.mark.parametrize("skew", [0.3 * DEGREE, -0.5 * DEGREE])
+def test_a_backward_camber_sweep_separates_skew_from_camber(skew):
+    """Backwards the camber force keeps its sign and the slip force of the skew turns: half the sum is camber alone."""
+    tyre, loads = Plain(skew=skew), (1000.0, 1500.0)
+    forward, both = (
+        measured(tyre, points=tyre.campaign(loads, backward_camber=cambers), u_camber_skew_deg=0.3)
+        for cambers in ((), (1500.0,))
+    )
+    true = -0.9 * 1500.0
+    assert abs(forward.C_gamma.value - true) > 12.0 * 1500.0 * abs(skew) * 0.9
+    assert both.C_gamma.value == pytest.approx(true, rel=0.01)
+    assert both.epsilon_gamma.value == pytest.approx(tyre.epsilon, abs=0.015)
+    assert both.epsilon_gamma.u < 0.4 * forward.epsilon_gamma.u
+    assert both.nominal.u_monte_carlo == pytest.approx(both.epsilon_gamma.u, rel=0.05)
+    (note,) = [note for note in both.notes if isinstance(note, CamberSkew)]
+    assert note.skew.value == pytest.approx(math.degrees(skew), abs=0.02)
+    other = both.per_load[0]  # no backward sweep there: the skew of the rig is the same
+    assert other.C_gamma.value == pytest.approx(-0.9 * 1000.0, rel=0.015)
+    assert not [note for note in forward.notes if isinstance(note, CamberSkew)]
+
+
+def test_a_well_declared_skew_outweighs_a_noisy_backward_sweep():
+    """The declared uncertainty and the sweeps are averaged by their weights."""
+    tyre = Plain(skew=0.3 * DEGREE)
+    points = tyre.campaign(backward_camber=(1500.0,))
+    sure = measured(tyre, points=points, u_camber_skew_deg=1e-4)
+    (note,) = [note for note in sure.notes if isinstance(note, CamberSkew)]
+    assert note.skew.value == pytest.approx(0.0, abs=0.001)
 
 
 def test_without_backward_runs_the_alignment_is_in_doubt():

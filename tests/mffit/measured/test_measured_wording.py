@@ -20,6 +20,10 @@ NOTES = [
         notes.SeveralPaths((1.3, -1.3)),
         "combines the zeros of 2 paths (disc's centre 1.3 m to the left, 1.3 m to the right)",
     ),
+    (
+        notes.CamberSkew(Quantity(-0.1382, 0.0551, "deg")),
+        "steers the wheel by -0.138 +- 0.055 deg times the sine",
+    ),
     (notes.Aligned(ANGLE, 12.0, 0.04), "alpha_M = 0.250 +- 0.020 deg (12 N); uncorrected it would move"),
     (notes.LoadSlope(1.25, 0.1), "PECP2 = 1.250 +- 0.100 (k = 1)."),
     (notes.OneLoad(), "one load was measured"),
