@@ -1,0 +1,169 @@
+"""Do the uncertainties of the direct method hold on rigs with errors of one kind?
+
+`python tests/studies/rig_error_study.py 200 --jobs 2`
+
+For every world (what is wrong with the rig, what is declared of it, which sweeps are run) it draws rigs and tyres, front and
+rear in turn, measures eps_gamma and the numbers beside it, and prints rms error, mean standard uncertainty and the share of
+95 % intervals (k = 1.96) that contain the truth.
+"""
+
+from __future__ import annotations
+
+import argparse
+import sys
+import tempfile
+import tomllib
+from collections.abc import Mapping
+from concurrent.futures import ProcessPoolExecutor
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import tomli_w
+
+sys.path.insert(0, str(Path(__file__).parents[1] / "mffit" / "fit"))
+
+from drawn_rigs import NO_FORCE_AT_REST, SAFE, SAMPLES, _scaled, plan_content
+
+import mffit
+import tir
+from mffit import virtual_rig
+from mffit.errors import InputError
+
+STEP = 1e-5  # rad, for the slopes of the true tyre
+
+
+@dataclass(frozen=True)
+class World:
+    """What is wrong with the rigs, what they declare, and what they run."""
+
+    faults: Mapping[str, float] = field(default_factory=dict)  #: beside the drawn ones
+    declared: Mapping[str, float] = field(default_factory=dict)  #: keys of [rig] in tyre.toml
+    drawn_from: Mapping[str, float] = field(default_factory=dict)  #: other keys of [rig] for the draw
+    backward_camber: bool = False
+
+
+DECLARED = {
+    "u_loadcell_offset_N": 10.0,
+    "u_camber_alignment_deg": 0.5,
+    "u_slip_alignment_N": 25.0,
+    "u_camber_skew_deg": 0.1,
+}
+WORLDS = {
+    "as declared": World(),
+    "as declared, backward camber": World(backward_camber=True),
+    "skew 0.3 deg, declared": World(declared={"u_camber_skew_deg": 0.3}),
+    "skew 0.3 deg, declared, backward camber": World(
+        declared={"u_camber_skew_deg": 0.3}, backward_camber=True
+    ),
+    "skew 0.5 deg, not declared": World(faults={"camber_skew_deg": 0.5}),
+    "skew 0.5 deg, not declared, backward camber": World(
+        faults={"camber_skew_deg": 0.5}, backward_camber=True
+    ),
+    "load falls by 6 % sin^2": World(faults={"load_camber": -0.06}),
+    "all errors 1.5 times the declared": World(drawn_from={name: 1.5 * u for name, u in DECLARED.items()}),
+}
+
+
+@dataclass(frozen=True)
+class Found:
+    """Value, standard uncertainty and truth by quantity; the refusal of a campaign that was not measured."""
+
+    numbers: Mapping[str, tuple[float, float, float]] = field(default_factory=dict)
+    refused: str = ""
+
+
+def one(job: tuple[int, str]) -> tuple[str, Found]:
+    """Draw, simulate and measure one rig."""
+    seed, name = job
+    world, rng = WORLDS[name], np.random.default_rng(5000 + seed)
+    sample = SAMPLES / ("front-120-70", "rear-190-55")[seed % 2]
+    true = _scaled(tir.read(sample / "true.tir").replace(**NO_FORCE_AT_REST), 0.1, rng)
+    content = plan_content(sample)
+    content["tyre"].pop("base", None)
+    content["faults"] |= world.faults
+    declared = {**content["rig"], **DECLARED, **world.declared}
+    content["rig"] = {**declared, **world.drawn_from}
+    if world.backward_camber:
+        content["sweep"] += _backward(content)
+    with tempfile.TemporaryDirectory() as made:
+        folder = Path(made)
+        true.write(folder / "drawn.tir")
+        content["truth"] = {"tyre": "drawn.tir"}
+        known = virtual_rig.simulate(virtual_rig.load_plan(content, folder=folder), folder / "rig", seed=seed)
+        path = folder / "rig" / "tyre.toml"
+        config = tomllib.loads(path.read_text(encoding="utf-8"))
+        config["rig"] = {**config["rig"], **declared}
+        path.write_text(tomli_w.dumps(config), encoding="utf-8")
+        try:
+            measured = mffit.spin(path)
+        except InputError as error:
+            return name, Found(refused=str(error))
+    return name, Found(numbers=_numbers(measured, known, true))
+
+
+def _backward(content: Mapping[str, Any]) -> list[dict[str, Any]]:
+    """Eleven cambers rolled backwards at the nominal load."""
+    angles = [-40, -30, -20, -10, -5, 0, 5, 10, 20, 30, 40]
+    load = content["tyre"]["nominal_load"]
+    return [{"file": "camber_backward.csv", "load_N": load, "gamma_deg": angles, "direction": "backward"}]
+
+
+def _numbers(measured: Any, known: Any, true: tir.Tyre) -> dict[str, tuple[float, float, float]]:
+    row, truth = measured.nominal, known.nominal
+    phi_t = -1.0 / truth.R_m
+
+    def slope(angle: str) -> float:
+        up, down = (true(truth.load_N, phi_t=phi_t, Vx=6.0, **{angle: s}).Fy for s in (STEP, -STEP))
+        return float(up - down) / (2.0 * STEP)
+
+    faults = known.faults
+    pairs = {
+        "eps_gamma": (row.epsilon_gamma, truth.epsilon_gamma),
+        "C_phit [Nm]": (row.C_phit, truth.C_phit_secant_Nm),
+        "C_gamma on the path [N/rad]": (row.C_gamma, slope("gamma")),
+        "C_alpha on the path [N/rad]": (row.C_alpha, slope("alpha")),
+        "r_e [m]": (row.r_e, truth.r_e_m),
+        "alpha_M + ply-steer [rad]": (row.alpha_M, np.radians(faults["alpha_0_deg"]) + float(true["PHY1"])),
+    }
+    return {key: (q.value, q.u, float(t)) for key, (q, t) in pairs.items() if q is not None}
+
+
+def table(name: str, rows: list[Found]) -> list[str]:
+    """Lines of one world."""
+    sound = [row.numbers for row in rows if not row.refused]
+    out = [f"\n## {name}: {len(rows)} rigs, {len(rows) - len(sound)} refused\n"]
+    out += [
+        "| quantity | rms error | mean u | inside 95 % | mean pull | sd of pull |",
+        "|---|---|---|---|---|---|",
+    ]
+    for key in dict.fromkeys(key for row in sound for key in row):
+        value, u, truth = np.array([row[key] for row in sound if key in row]).T
+        pull = (value - truth) / u
+        inside = np.mean(np.abs(pull) < SAFE)
+        error = np.sqrt(np.mean((value - truth) ** 2))
+        out.append(
+            f"| {key} | {error:.3g} | {np.mean(u):.3g} | {inside:.0%} | {np.mean(pull):+.2f} | {np.std(pull):.2f} |"
+        )
+    out += [f"* {row.refused}" for row in rows if row.refused]
+    return out
+
+
+def main() -> None:
+    ask = argparse.ArgumentParser()
+    ask.add_argument("rigs", type=int, nargs="?", default=200, help="per world")
+    ask.add_argument("--jobs", type=int, default=1)
+    ask.add_argument("--worlds", nargs="*", default=list(WORLDS))
+    given = ask.parse_args()
+    jobs = [(seed, name) for name in given.worlds for seed in range(given.rigs)]
+    found: dict[str, list[Found]] = {name: [] for name in given.worlds}
+    with ProcessPoolExecutor(given.jobs) as pool:
+        for name, row in pool.map(one, jobs, chunksize=4):
+            found[name].append(row)
+    for name, rows in found.items():
+        print("\n".join(table(name, rows)), flush=True)
+
+
+if __name__ == "__main__":
+    main()
