@@ -52,7 +52,7 @@ class Chain:
         self._coefficients = dict(coefficients)
         self._quantities: dict[str, Any] = {
             name: getattr(points, name) for name in ("alpha", "gamma", "Fz", "phi_t")
-        }
+        } | {"pressure": points.p}
 
     def readings(self) -> list[Any]:
         """Reading of every channel (n,): [N] or [Nm]."""
@@ -169,9 +169,8 @@ class Chain:
     def _tyre(self, wanted: tuple[str, ...], alpha: Any, rows: np.ndarray | None = None) -> list[Any]:
         """Some outputs of the tyre at its true sideslip angle ``alpha`` [rad]; of some rows only."""
         conditions = {
-            **{name: self._quantities[name] for name in ("Fz", "gamma", "phi_t")},
+            **{name: self._quantities[name] for name in ("Fz", "gamma", "phi_t", "pressure")},
             "Vx": self.points.Vx,
-            "pressure": self.points.p,
         }
         p = self._coefficients
         if rows is not None:

@@ -6,7 +6,6 @@ from pathlib import Path
 
 import numpy as np
 
-from mffit.errors import InputError
 from mffit.sweeps.extras import needed, undamaged
 from mffit.sweeps.raw_table import Cells, RawTable
 
@@ -24,10 +23,6 @@ def read_parquet(path: Path) -> RawTable:
     with undamaged(path, "Parquet file"), parquet.ParquetFile(path) as file:
         table = file.read()
     headings = tuple(str(name).strip() for name in table.column_names)
-    if len(set(headings)) < len(headings) or "" in headings:
-        raise InputError("has a heading that is empty or appears twice; rename that column", file=path)
-    if not table.num_rows or not headings:
-        raise InputError("has no rows; write one per point or sample", file=path)
     return RawTable(
         headings=headings,
         units=tuple(_unit(table.schema.field(k)) for k in range(len(headings))),

@@ -8,13 +8,22 @@ from pathlib import Path
 
 import numpy as np
 
+from mffit.errors import InputError
+from tir.errors import counted
+
 Cells = Sequence[str | float] | np.ndarray
 """One column (n,): an array of floats if all cells are numbers in the file, else the cells as written."""
 
 
 @dataclass(frozen=True, slots=True)
 class RawTable:
-    """What a reader finds in one file; ``lines`` and every column of ``cells`` have the same length (n,)."""
+    """What a reader finds in one file; ``lines`` and every column of ``cells`` have the same length (n,).
+
+    Raises
+    ------
+    InputError
+        There are no rows, a heading is empty or appears twice, or a column has another length.
+    """
 
     headings: tuple[str, ...]
     units: tuple[str, ...]  #: as the file states them, "" if it does not
@@ -23,6 +32,19 @@ class RawTable:
     path: Path
     heading_line: int | None  #: None in formats without lines
     about: Mapping[str, str] = field(default_factory=dict)  #: the file's own texts: tyre, test, source, title
+
+    def __post_init__(self) -> None:
+        if not self.headings or not len(self.lines):
+            raise InputError("has no rows; write one per point or sample", file=self.path)
+        if "" in self.headings or len(set(self.headings)) < len(self.headings):
+            sentence = "has a heading that is empty or appears twice; rename that column"
+            raise InputError(sentence, file=self.path, line=self.heading_line)
+        for heading, cells in zip(self.headings, self.cells, strict=True):
+            if len(cells) != len(self):
+                sentence = (
+                    f"has {counted(len(cells), 'value')} for {counted(len(self), 'row')}; write one per row"
+                )
+                raise InputError(sentence, file=self.path, column=heading)
 
     def __len__(self) -> int:
         return len(self.lines)

@@ -6,6 +6,7 @@ import json
 import shutil
 from pathlib import Path
 
+import click
 import pytest
 from disc_project import disc_project
 from small_plan import SMALL_PLAN
@@ -68,9 +69,19 @@ def test_init_names_what_it_wrote(tmp_path, capsys):
     assert all(Path(path).is_file() for path in written)
 
 
-@pytest.mark.parametrize("name", [*COMMANDS, "build", "diagnose", "fleet", "init"])
-def test_the_options_are_there(name):
-    assert {"json", "quiet"} <= {option.name for option in commands.commands[name].params}
+def every_command(group: click.Group) -> list[click.Command]:
+    """The commands of a group and of the groups below it."""
+    return [
+        each
+        for command in group.commands.values()
+        for each in (every_command(command) if isinstance(command, click.Group) else [command])
+    ]
+
+
+@pytest.mark.parametrize("command", every_command(commands), ids=lambda command: command.name)
+def test_the_options_are_there(command):
+    missing = {"json", "quiet"} - {option.name for option in command.params}
+    assert not missing, f"decorate `{command.name}` with @voiced"
 
 
 @pytest.mark.parametrize(

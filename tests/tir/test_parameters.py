@@ -54,7 +54,7 @@ def test_every_row_is_sound():
         name = row["name"]
         assert None not in row, f"{name} has a cell too many"
         for column, words in WORDS.items():
-            assert row[column] in words, f"{name}: {column} is {row[column]!r}"
+            assert row[column] in words, f"{name}: {column} is {row[column]!r}, not one of {sorted(words)}"
         assert row["description"], name
         _sound_tie(row)
         _sound_needs(row)
@@ -72,8 +72,9 @@ def _sound_needs(row: dict[str, str]) -> None:
     name, words = row["name"], []
     for need in row["needs"].split():
         word, colon, levels = need.partition(":")
-        assert (word in COUNTED) == bool(colon), f"{name}: {need}"
-        assert not colon or int(levels) in (2, 3), f"{name}: {need}"
+        assert word in NEEDS, f"{name}: needs {word!r}, not one of {NEEDS}"
+        assert (word in COUNTED) == bool(colon), f"{name}: {need}; write a number after {COUNTED} only"
+        assert not colon or int(levels) in (2, 3), f"{name}: {need}; the number is 2 or 3"
         words.append(word)
     assert words == sorted(set(words), key=NEEDS.index), f"{name}: each need once, in the order of NEEDS"
     assert row["channel"] or not words, f"{name} needs data, and no channel"

@@ -77,7 +77,8 @@ def test_a_factor_is_a_change_of_its_quantitys_coefficients(full, factor, turn_s
     )
     moved = 0.0
     for a, b, c in zip(scaled, changed, plain, strict=True):
-        np.testing.assert_allclose(a, b, rtol=1e-9, atol=1e-9 * np.max(np.abs(b)))
+        differs = f"{factor} does not act as a change of {SAME[factor]}; add a new coefficient that it scales to SAME"
+        np.testing.assert_allclose(a, b, rtol=1e-9, atol=1e-9 * np.max(np.abs(b)), err_msg=differs)
         moved = max(moved, float(np.max(np.abs(a - c)) / np.max(np.abs(c))))
     works = turn_slip or factor != "LMP"
     assert (moved > 1e-4) == works

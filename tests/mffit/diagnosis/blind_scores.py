@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from blind_set import CAUSES, STRUCTURES, Case, draw_case, write_case
+from blind_set import ADDED, CAUSES, STRUCTURES, Case, draw_case, write_case
 
 from mffit import pipeline
 from mffit.config import Config
@@ -101,7 +101,7 @@ def suite(seed: int, repeats: int = 1) -> Iterator[Plan]:
 
 def singles(seed: int, levels: Sequence[str] = ("large", "moderate", "faint")) -> Iterator[Plan]:
     """Every effect alone."""
-    for k, cause in enumerate(CAUSES):
+    for k, cause in enumerate((*CAUSES, *ADDED)):
         for j, level in enumerate(levels):
             yield _plan((cause,), level, 1000 * seed + 3 * k + j, exact=bool((seed + k + j) % 2))
 

@@ -88,8 +88,21 @@ def test_the_chain_agrees_with_the_independent_formula(tyre, settings, name):
     faults = {name: size(name), **BESIDE.get(name, {})}
     chain, rig = by_the_chain(tyre, settings, **faults), by_the_virtual_rig(tyre, settings, **faults)
     inside = np.r_[1:14, 16:29] if name == "hysteresis_deg" else slice(None)
-    np.testing.assert_allclose(chain.Fy[inside], rig.Fy[inside], rtol=1e-8, atol=1e-3)
-    np.testing.assert_allclose(chain.Mz[inside], rig.Mz[inside], rtol=1e-8, atol=1e-5)
+    differs = f"{name}: the formulae in mffit/rig_errors and in mffit/virtual_rig/machine.py differ"
+    np.testing.assert_allclose(chain.Fy[inside], rig.Fy[inside], rtol=1e-8, atol=1e-3, err_msg=differs)
+    np.testing.assert_allclose(chain.Mz[inside], rig.Mz[inside], rtol=1e-8, atol=1e-5, err_msg=differs)
+
+
+@pytest.mark.parametrize("place", list(Place), ids=lambda place: place.name)
+def test_errors_of_one_place_act_in_the_order_of_the_independent_formulae(tyre, settings, place):
+    """Together, without hysteresis, compliance and play: their formulae assume that only one of them acts."""
+    alone = ("hysteresis_deg", "compliance_deg_per_Nm", "backlash_deg")
+    names = [error.name for error in RIG_ERRORS if error.place is place and error.name not in alone]
+    faults = {name: size(name) for name in names if name in STEADY}
+    chain, rig = by_the_chain(tyre, settings, **faults), by_the_virtual_rig(tyre, settings, **faults)
+    differs = f"{', '.join(faults)}: together they act in another order in mffit/virtual_rig/machine.py"
+    np.testing.assert_allclose(chain.Fy, rig.Fy, rtol=1e-8, atol=1e-3, err_msg=differs)
+    np.testing.assert_allclose(chain.Mz, rig.Mz, rtol=1e-8, atol=1e-5, err_msg=differs)
 
 
 @pytest.mark.parametrize("name", STEADY)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import gzip
+from pathlib import Path
 
 import numpy as np
 import pandas as pd
@@ -15,6 +16,7 @@ from mffit import sweeps
 from mffit.errors import InputError
 from mffit.sweeps import formats
 
+RECORDINGS = Path(__file__).parents[3] / "docs" / "recordings.md"
 TABLE = recording(loads=(1500.0,), cambers=(0.0,), pressures=(83.0,), sweep_s=2.0, rest_s=0.2)
 
 
@@ -149,6 +151,15 @@ BROKEN = {
     "j.tdx": (b"**HEADER\n**MEASURCHANNELS\nFYW x N\n**MEASURDATA\none\n", "is not a number"),
     "k.dat": (b"", "empty"),
 }
+
+
+@pytest.mark.parametrize("kind", formats.FORMATS, ids=lambda kind: kind.name)
+def test_every_format_has_a_good_and_a_broken_file_and_a_place_in_the_documentation(kind):
+    for table, files in (("WRITERS", WRITERS), ("BROKEN", BROKEN)):
+        assert any(name.endswith(kind.endings) for name in files), f"{table} has no {kind.name} file"
+    plain = [ending for ending in kind.endings if not ending.endswith(".gz")]
+    missing = [ending for ending in plain if f"`{ending}`" not in RECORDINGS.read_text(encoding="utf-8")]
+    assert not missing, f"docs/recordings.md has no format with the ending {', '.join(missing)}"
 
 
 @pytest.mark.parametrize("name", BROKEN)
