@@ -9,8 +9,7 @@ from pathlib import Path
 import mffit
 from mffit.report import labels, style
 from mffit.report.build_view import BuildView, view_of
-from mffit.report.drawing import png
-from mffit.report.drawing.layout import lay_out
+from mffit.report.drawing import pictures
 from mffit.report.drawing.records import Axis, Guide, Look, Panel, Sheet, Trace
 from mffit.report.figures import fit, residuals, spin
 
@@ -67,7 +66,7 @@ def main() -> None:
         "residuals": partial(residuals.residual_maps, view.points, scaled, view.conditions, "u"),
     }
     for name, sheet in sheets.items():
-        png.save(lay_out(sheet()), HERE / f"{name}.png")
+        pictures.draw(sheet()).save(HERE / f"{name}.png")
 
 
 if __name__ == "__main__":

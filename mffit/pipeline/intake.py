@@ -118,11 +118,10 @@ def _written(folder: Path, sniffed: Sniffed, text: str) -> list[Path]:
 def _picture(sniffed: Sniffed, k: int, path: Path) -> None:
     """Write the picture of recording number ``k``."""
     from mffit import sweeps
-    from mffit.report.drawing import png
-    from mffit.report.drawing.layout import lay_out
+    from mffit.report.drawing import pictures
     from mffit.report.figures.recording import recording
 
     axes = sniffed.axes[0] if sniffed.axes else "iso"
     found = sweeps.load(configuration_of(sniffed.recordings[k : k + 1], axes)).sweeps
     notes = [n for n in sniffed.reading.stretches if n.file == found[0].file]
-    png.save(lay_out(recording(found[0], notes)), path)
+    pictures.draw(recording(found[0], notes)).save(path)

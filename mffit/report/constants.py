@@ -8,9 +8,6 @@ PICTURE_WIDTH = Real(792.0, "pt", "Width of a picture file: 11 inches, which fil
 PICTURE_DPI = Count(
     110, "1/inch", "Resolution of picture files: sharp on a screen, and small enough to mail."
 )
-PICTURE_OVERSAMPLING = Count(
-    3, "-", "Pixels drawn per pixel kept in each direction, which smooths the edges of lines."
-)
 WIDEST_PANEL = Real(
     396.0, "pt", "Wider panels could not be read on a telephone, which shows one panel per row."
 )

@@ -9,7 +9,7 @@ from importlib.metadata import version
 
 import mffit
 
-LIBRARIES = ("numpy", "scipy", "pillow")
+LIBRARIES = ("numpy", "scipy", "matplotlib")
 
 
 def made() -> dict[str, str]:

@@ -10,8 +10,8 @@ from collections.abc import Iterator
 from typing import Any
 
 from mffit.report import constants
-from mffit.report.drawing.letters import plain
 from mffit.report.drawing.records import Axis, DataSeries, Panel, Sheet
+from mffit.report.drawing.texts import plain
 
 COLUMNS = ("panel", "series", "x axis", "x", "y axis", "y", "lower", "upper", "value")
 """``lower`` and ``upper`` are ends of an error bar or band, ``value`` is what a colour shows."""

@@ -13,8 +13,6 @@ from urllib.parse import quote
 from mffit import rounding
 from mffit.measured import wording
 from mffit.report import making, numbers, typeset
-from mffit.report.drawing import png, svg
-from mffit.report.drawing.layout import lay_out
 from mffit.report.drawing.records import Sheet
 from mffit.templates import environment
 
@@ -48,15 +46,17 @@ def write(template: str, path: Path, figures: Mapping[str, Callable[[], Sheet]],
 
 def draw(folder: Path, figures: Mapping[str, Callable[[], Sheet]]) -> dict[str, Picture]:
     """Draw every figure into ``folder/plots/<name>.png``; returns the pictures for the page by name."""
+    from mffit.report.drawing import pictures
+
     plots = folder / "plots"
     plots.mkdir(parents=True, exist_ok=True)
-    pictures = {}
+    found = {}
     for name, make in figures.items():
         sheet = make()
-        figure = lay_out(sheet)
-        png.save(figure, plots / f"{name}.png")
-        pictures[name] = Picture(name=name, drawing=svg.markup(figure), table=numbers.table(sheet))
-    return pictures
+        picture = pictures.draw(sheet)
+        picture.save(plots / f"{name}.png")
+        found[name] = Picture(name=name, drawing=picture.markup(), table=numbers.table(sheet))
+    return found
 
 
 @cache

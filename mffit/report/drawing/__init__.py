@@ -1,4 +1,5 @@
-"""Pictures as records: figures describe panels, and one layout gives the SVG of the page and the PNG beside it.
+"""Pictures as records: figures describe panels, and matplotlib draws each once for the page and for the PNG beside it.
 
-``records`` say what is shown, ``layout`` turns a panel into a few plain shapes, ``svg`` and ``png`` write the same shapes.
+``records`` say what is shown, ``panels`` draws a record into axes, ``pictures`` makes SVG and PNG of the same figures.
+``panels`` and ``pictures`` load matplotlib, so other modules import them inside functions.
 """

@@ -125,17 +125,16 @@ def test_without_stated_noise_residuals_are_in_units_of_the_misfit(tmp_path):
     assert "not stated" in text
 
 
-def test_importing_and_drawing_load_no_plot_library(tmp_path):
+def test_importing_loads_no_plot_library_and_drawing_opens_no_window(tmp_path):
     code = (
         "import sys, pathlib, numpy as np, mffit.report, mffit.report.text\n"
         "assert not {'matplotlib', 'PIL', 'jinja2'} & set(sys.modules)\n"
-        "from mffit.report.drawing import png\n"
+        "from mffit.report.drawing import pictures\n"
         "from mffit.report.drawing.records import Axis, Look, Panel, Sheet, Trace\n"
-        "from mffit.report.drawing.layout import lay_out\n"
         "one = Trace(name='one', x=np.arange(2.0), y=np.arange(2.0), look=Look(line='-'))\n"
         "panel = Panel(x=Axis(), y=Axis(), series=[one])\n"
-        "png.save(lay_out(Sheet(rows=[[panel]], height=1.0)), pathlib.Path(sys.argv[1]))\n"
-        "assert 'matplotlib' not in sys.modules\n"
+        "pictures.draw(Sheet(rows=[[panel]], height=1.0)).save(pathlib.Path(sys.argv[1]))\n"
+        "assert not {'matplotlib.pyplot', 'tkinter'} & set(sys.modules)\n"
     )
     subprocess.run([sys.executable, "-W", "error", "-c", code, str(tmp_path / "a.png")], check=True)
 
