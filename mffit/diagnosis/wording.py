@@ -43,10 +43,7 @@ RUNS = {
     Run.WIDE: f"a sideslip sweep at {{load:.0f}} N on a path of {constants.TIE_RUN_WIDE:g} times the radius",
     Run.STRAIGHT_CAMBER: "a camber sweep at {load:.0f} N on a straight path",
 }
-ORIGINS = {
-    Origin.STATED: "stated uncertainties",
-    Origin.SCATTER: "scatter between neighbouring points",
-}
+ORIGINS = {Origin.STATED: "stated uncertainties", Origin.SCATTER: "scatter between neighbouring points"}
 TO_DO = {
     "tyre": "nothing at the rig; the corrected property file contains it",
     "environment": "keep it constant, or use the corrected points, from which it is removed; a property file cannot contain it",

@@ -54,10 +54,7 @@ class FitPlan:
 
     def numbers(self, problem: FitProblem) -> list[Number]:
         """All free coefficients and rig errors, from their current values."""
-        return [
-            *self.coefficients([*self.free, *self.extra], problem),
-            *problem.starting_here(self.rig),
-        ]
+        return [*self.coefficients([*self.free, *self.extra], problem), *problem.starting_here(self.rig)]
 
 
 def fit_plan(

@@ -30,7 +30,6 @@ class Addition:
     id: str  #: ``kind`` in plan.json, and the word for ``--without``
     title: str
     reason: str  #: what it measures and why that helps
-    settles: tuple[str, ...]  #: ids of effects whose uncertainty it lowers markedly
     loads: Literal["each", "nominal", "new"] = "each"  #: each or nominal: of the programme
     lines: tuple[Line, ...] = ()  #: none for a measurement of the rig
     disc_only: bool = False
@@ -43,10 +42,7 @@ class Addition:
     revolution: bool = False  #: adds a [rolling_radius] table
 
 
-_ZEROS = (
-    Line("alpha", constants.PLAN_ZERO_ANGLES),
-    Line("alpha", constants.PLAN_ZERO_ANGLES, direction=-1),
-)
+_ZEROS = (Line("alpha", constants.PLAN_ZERO_ANGLES), Line("alpha", constants.PLAN_ZERO_ANGLES, direction=-1))
 _SMALL_CAMBERS = (Line("gamma", constants.PLAN_SMALL_CAMBERS),)
 _SIDESLIP = (Line("alpha", constants.PLAN_SWEEP_SHARES),)
 _CAMBER = (Line("gamma", constants.PLAN_SWEEP_SHARES),)
@@ -56,7 +52,6 @@ ADDITIONS = (
         id="zeros",
         title="zeros both ways again",
         reason="More points at zero average the noise out of the turn-slip force.",
-        settles=("loadcell-offset-mz",),
         lines=_ZEROS,
         disc_only=True,
     ),
@@ -67,7 +62,6 @@ ADDITIONS = (
             "The path curves the other way and the turn-slip force changes sign; load-cell offset, zeros of the axes, ply-steer "
             "and conicity keep theirs. Half the difference is turn slip alone."
         ),
-        settles=("camber-reduction", "camber-misalignment"),
         lines=_ZEROS,
         disc_only=True,
         radius=-1.0,
@@ -79,7 +73,6 @@ ADDITIONS = (
             "The effects of camber and path curvature add on one side of the disc and oppose each other on the other side. The "
             "cambers include zero, so the run also measures the turn-slip force."
         ),
-        settles=("camber-reduction", "camber-misalignment"),
         lines=_SMALL_CAMBERS,
         disc_only=True,
         radius=-1.0,
@@ -90,7 +83,6 @@ ADDITIONS = (
         reason=(
             "Turn slip grows with the path's curvature; load-cell offset, zeros of the axes and conicity do not depend on it."
         ),
-        settles=("path-radius", "camber-reduction", "camber-misalignment"),
         lines=_ZEROS,
         disc_only=True,
         radius=constants.PLAN_SECOND_RADIUS_FACTOR,
@@ -99,7 +91,6 @@ ADDITIONS = (
         id="small-camber",
         title="small cambers, closely spaced",
         reason="The camber stiffness is the slope at zero; cambers up to 20 deg determine it.",
-        settles=("camber-stiffness",),
         lines=_SMALL_CAMBERS,
         disc_only=True,
     ),
@@ -109,7 +100,6 @@ ADDITIONS = (
         reason=(
             f"A camber error makes a force like turn slip; it is often the largest line in the budget of {_EPSILON}."
         ),
-        settles=("camber-misalignment", "camber-reduction"),
         loads="nominal",
         disc_only=True,
         declares="u_camber_alignment_deg",
@@ -119,7 +109,6 @@ ADDITIONS = (
         id="loadcell-zero",
         title="better zero of the side-force cell",
         reason="The offset of an unloaded side-force cell adds to the turn-slip force.",
-        settles=("loadcell-offset-fy",),
         loads="nominal",
         disc_only=True,
         declares="u_loadcell_offset_N",
@@ -129,7 +118,6 @@ ADDITIONS = (
         id="sideslip-zero",
         title="better zero of the sideslip axis",
         reason="A geometric zero of the steering separates misalignment from ply-steer; no run on a single rig can.",
-        settles=("sideslip-misalignment", "ply-steer"),
         loads="nominal",
         disc_only=True,
         declares="u_slip_alignment_N",
@@ -139,7 +127,6 @@ ADDITIONS = (
         id="path-radius",
         title="better path radius",
         reason="The curvature of the path is known as well as its radius.",
-        settles=("path-radius",),
         loads="nominal",
         disc_only=True,
         declares="u_path_radius",
@@ -149,7 +136,6 @@ ADDITIONS = (
         id="revolution",
         title="one revolution of the disc",
         reason=f"{_EPSILON} cannot be measured without an effective radius.",
-        settles=("camber-reduction",),
         loads="nominal",
         disc_only=True,
         revolution=True,
@@ -161,7 +147,6 @@ ADDITIONS = (
             "Rolled backwards, the force of camber keeps its sign and the force of sideslip changes it. The run separates camber "
             "from the sideslip of a camber axis that is not square to the steering axis."
         ),
-        settles=("loadcell-offset-mz", "spin-trail-loss"),
         loads="nominal",
         lines=(Line("gamma", constants.PLAN_SWEEP_SHARES, direction=-1),),
         disc_only=True,
@@ -170,7 +155,6 @@ ADDITIONS = (
         id="flipped",
         title="sideslip sweep with the tyre turned on its rim",
         reason="Conicity changes sign with the tyre turned on its rim; every rig error keeps its sign.",
-        settles=("conicity", "crosstalk-fz-fy", "residual-torque"),
         loads="nominal",
         lines=(Line("alpha", constants.PLAN_FLIPPED_SHARES),),
         mount=-1,
@@ -179,27 +163,18 @@ ADDITIONS = (
         id="sideslip",
         title="sideslip sweep",
         reason="More points over sideslip, for cornering stiffness, peak and trail.",
-        settles=("curvature-asymmetry",),
         lines=_SIDESLIP,
     ),
     Addition(
         id="camber",
         title="camber sweep",
         reason="More points over camber, for the camber stiffness and the shape of the camber force.",
-        settles=("camber-stiffness",),
         lines=_CAMBER,
     ),
     Addition(
         id="coupled",
         title="sideslip sweeps at camber of both signs",
         reason="How camber changes the curves over sideslip is visible only where both angles act together.",
-        settles=(
-            "camber-grip",
-            "camber-thrust-curvature",
-            "camber-cornering-stiffness",
-            "spin-trail-loss",
-            "spin-torque",
-        ),
         lines=tuple(Line("alpha", constants.PLAN_SWEEP_SHARES, camber_side=side) for side in (-1, 1)),
         cambers=constants.PLAN_COUPLED_CAMBERS,
     ),
@@ -210,7 +185,6 @@ ADDITIONS = (
             "Two pressures show the effect of pressure. With two loads as well, they show whether it changes the stiffness "
             "itself or the load at which the stiffness peaks."
         ),
-        settles=("pressure",),
         lines=(*_SIDESLIP, *_CAMBER),
         pressures=constants.PLAN_NEW_PRESSURE_FACTORS,
     ),
@@ -218,13 +192,6 @@ ADDITIONS = (
         id="load",
         title="sideslip and camber sweep at a new load",
         reason="The farther the loads are apart, the better the data determine what changes with load.",
-        settles=(
-            "load-grip",
-            "trail-load",
-            "camber-reduction-load",
-            "loadcell-offset-fy",
-            "steering-compliance",
-        ),
         loads="new",
         lines=(*_SIDESLIP, *_CAMBER),
     ),

@@ -172,9 +172,6 @@ def _revolution(config: Config, addition: Addition, load: float, r_e: float | No
         return
     turns, rest = divmod(config.rig.radius / r_e, 1.0)
     table = RollingRadiusTable(
-        load_N=round(load, 1),
-        revolutions=turns,
-        angle_start_deg=0.0,
-        angle_end_deg=round(360.0 * rest, 1),
+        load_N=round(load, 1), revolutions=turns, angle_start_deg=0.0, angle_end_deg=round(360.0 * rest, 1)
     )
     yield Run(addition, load, revolution=table)

@@ -33,10 +33,7 @@ class Settings(NamedTuple):
 
 
 def stretches(
-    settings: Settings,
-    point: np.ndarray | None = None,
-    cuts: Sequence[int] = (),
-    scale: Scale | None = None,
+    settings: Settings, point: np.ndarray | None = None, cuts: Sequence[int] = (), scale: Scale | None = None
 ) -> list[Stretch]:
     """The stretches of a series in time order, transients included.
 

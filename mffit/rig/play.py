@@ -42,21 +42,13 @@ def settled(moment_of: Callable[[np.ndarray], Moment], alpha: np.ndarray, half_p
     which = np.flatnonzero(floats & (lower < upper))
     if len(which):
         rest[which] = _without_moment(
-            moment_of(which),
-            alpha[which] - half_play,
-            alpha[which] + half_play,
-            lower[which],
-            upper[which],
+            moment_of(which), alpha[which] - half_play, alpha[which] + half_play, lower[which], upper[which]
         )
     return Settled(side, floats, rest)
 
 
 def _without_moment(
-    moment: Moment,
-    a: np.ndarray,
-    b: np.ndarray,
-    at_a: np.ndarray,
-    at_b: np.ndarray,
+    moment: Moment, a: np.ndarray, b: np.ndarray, at_a: np.ndarray, at_b: np.ndarray
 ) -> np.ndarray:
     """Root (m,) between ``a`` and ``b``, where the moment has opposite signs: a secant, then inverse quadratic steps.
 

@@ -1,13 +1,6 @@
 """Which readings are suspected, and what follows: ``rules`` lists all suspicions, ``applying`` runs them."""
 
-from mffit.suspicion.applying import (
-    about,
-    after_the_fit,
-    before_the_fit,
-    contradictions,
-    distrust,
-    misread,
-)
+from mffit.suspicion.applying import about, after_the_fit, before_the_fit, contradictions, distrust, misread
 from mffit.suspicion.declarations import under_axes
 from mffit.suspicion.misread import Misread
 from mffit.suspicion.others import Campaign, Doubt

@@ -48,11 +48,7 @@ def reversed_file(points: Points, config: Config, signs: tuple[Rule, ...]) -> It
     name, rule, column = broken[0]
     alike = [other for other, *rest in broken[1:] if rest == [rule, column]]
     where = f"in this file and in {', '.join(alike)}" if alike else "in this file alone"
-    yield Finding(
-        {"what": rule.sentence, "where": where, "column": column},
-        file=name,
-        column=column,
-    )
+    yield Finding({"what": rule.sentence, "where": where, "column": column}, file=name, column=column)
 
 
 def _with_common_scatter(each: list[Signatures]) -> list[Signatures]:

@@ -17,15 +17,7 @@ from mffit.scatter import rms, robust, usual_size
 from mffit.suspicion import constants
 from mffit.suspicion.explanation import explanation
 from mffit.suspicion.mistakes import MISTAKES, Mistake
-from mffit.suspicion.prediction import (
-    FittedModel,
-    Group,
-    Leverage,
-    Prediction,
-    groups,
-    leverage,
-    predictions,
-)
+from mffit.suspicion.prediction import FittedModel, Group, Leverage, Prediction, groups, leverage, predictions
 from mffit.suspicion.rule import Finding
 from mffit.suspicion.undoing import Away, explaining
 

@@ -329,11 +329,7 @@ RULES: tuple[Rule, ...] = (
         when=(When.AFTER,),
         subject=Subject.SWEEP,
         looks_at="error of the prediction from all other sweeps, beside the errors of the other sweeps",
-        limits=(
-            constants.FALSE_ALARM_OF_SWEEPS,
-            constants.DOUBTFUL_SHARE,
-            constants.EXPLAINED_BY_ONE_NUMBER,
-        ),
+        limits=(constants.FALSE_ALARM_OF_SWEEPS, constants.DOUBTFUL_SHARE, constants.EXPLAINED_BY_ONE_NUMBER),
         outcome=Outcome.WARNED,
         sentence=(
             "{sweep} does not fit the other sweeps: predicted from them, {channel} is out by {rms:.3g} {unit}, at least "
