@@ -25,7 +25,7 @@ from mffit.diagnosis.validation import Gap, Validation
 from mffit.effects import NEEDS, Effect
 from mffit.quantities import CHANNELS, CONDITIONS
 from mffit.rounding import to_uncertainty
-from mffit.suspicion import Misread, Outlier, about
+from mffit.suspicion import Misread, Outlier
 from tir import Quantity
 
 RUNS = {
@@ -124,7 +124,7 @@ def note(remark: Note) -> str:
         case OneSweep():
             return "One sweep cannot separate causes: add sweeps at another load, camber or direction."
         case Misread():
-            return about(remark)
+            return remark.sentence
         case NotVisible(needs, effects):
             lack = " and ".join(NEEDS[need] for need in needs)
             return f"Not visible in these data, which lack {lack}: {', '.join(e.name for e in effects)}."

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from mffit.fit.fitted import Fitted
-from mffit.suspicion import Doubt, Outlier, about
+from mffit.suspicion import Doubt, Outlier, outliers_sentence
 
 
 def warnings(
@@ -27,7 +27,7 @@ def warnings(
     if fitted.at_bound:
         names = ", ".join(sorted(fitted.at_bound))
         out.append(f"at the bound of plausible values: {names}; check the sweeps that determine them")
-    out += [about(doubt) for doubt in doubts]
+    out += [doubt.sentence for doubt in doubts]
     if outlying:
-        out.append(about(outlying))
+        out.append(outliers_sentence(outlying))
     return tuple(out)

@@ -12,6 +12,7 @@ from mffit.quantities import CHANNELS
 from mffit.rig import Readings
 from mffit.scatter import rms
 from mffit.suspicion import constants
+from mffit.suspicion.rule import Outcome, Subject, When, rule
 
 
 class Misfit(NamedTuple):
@@ -23,8 +24,17 @@ class Misfit(NamedTuple):
     r2: Mapping[str, float]  #: share of the variance that it explains, by channel
 
 
+@rule(
+    id="misfit-above-noise",
+    subject=Subject.MODEL,
+    when=(When.AFTER,),
+    limits=(constants.MISFIT_OVER_NOISE, constants.CARRIED_MISFIT),
+    outcome=Outcome.DISTRUSTED,
+    sentence="the file is not to be trusted: the model misses {channel} by {scale:.1f} times the stated uncertainty{carriers}; "
+    "look at these sweeps, or run mffit diagnose",
+)
 def above_noise(misfit: Misfit) -> Iterator[dict[str, Any]]:
-    """Channels with a stated uncertainty that the model misses by more than noise, and the sweeps with most of it."""
+    """Misfit of the model over the stated uncertainty, channel by channel."""
     points = misfit.points
     for name, scale in misfit.scale.items():
         u = getattr(points, f"u_{name}")
@@ -33,11 +43,25 @@ def above_noise(misfit: Misfit) -> Iterator[dict[str, Any]]:
             yield {"channel": name, "scale": scale, "carriers": _carriers(points, z)}
 
 
+@rule(
+    id="unexplained-variance",
+    subject=Subject.MODEL,
+    when=(When.AFTER,),
+    limits=(constants.EXPLAINED_VARIANCE,),
+    outcome=Outcome.DISTRUSTED,
+    sentence="the file is not to be trusted: the model explains {percent:.0f} % of the variance of {channel}; are these "
+    "readings of free rolling at steady state, and their units and axes right?",
+)
 def unexplained(misfit: Misfit) -> Iterator[dict[str, Any]]:
-    """Channels of whose variance the model explains little."""
+    """Share of a channel's variance that the model explains."""
     for name in CHANNELS:
         if misfit.r2[name] < constants.EXPLAINED_VARIANCE:
             yield {"channel": name, "percent": 100.0 * max(misfit.r2[name], 0.0)}
+
+
+def distrust(misfit: Misfit) -> tuple[str, ...]:
+    """Why the file of a fit is not to be trusted; empty for a sound fit."""
+    return tuple(one.said(facts) for one in (above_noise, unexplained) for facts in one.find(misfit))
 
 
 def _carriers(points: Points, z: np.ndarray) -> str:
