@@ -42,14 +42,7 @@ def answer(
 ) -> Diagnosis:
     """The record of an explanation.
 
-    Parameters
-    ----------
-    found : the explanation as far as left-out sweeps confirm it
-    given : readings, and the simulation before
-    tyre, config : the model that was given
-    validation : the gap on left-out sweeps
-    notes : remarks so far
-    candidates : effects that the data can show
+    ``found`` is what left-out sweeps confirm; ``given`` is the problem before it.
     """
     points, chosen, scatter = given.points, found.chosen, found.scatter
     before = after = given.start.predict(points)

@@ -13,10 +13,6 @@ def by_condition(points: Points) -> Points:
 
     A file may hold a whole programme. A quantity that changes from point to point was swept and does not cut.
 
-    Parameters
-    ----------
-    points : (n,) with ``sweep`` as declared
-
     Returns
     -------
     The same points in the same order; ``sweep`` numbers the conditions, named after their sweep, with a number if the sweep

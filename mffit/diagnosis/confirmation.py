@@ -15,12 +15,7 @@ def confirmed(
 ) -> tuple[Explanation, Validation, NoRepair | None]:
     """The whole explanation if left-out sweeps confirm it, else its first effect, else nothing; and what was refused.
 
-    Parameters
-    ----------
-    found : the explanation
-    given : readings and the model as given, with the scatter of the readings alone
-    inexact : prior of the model's coefficients
-    seen : whether the model was fitted to these points
+    ``given`` has the scatter of the readings alone. ``seen``: the model was fitted to these points.
     """
     if (
         seen and not found.chosen.effects

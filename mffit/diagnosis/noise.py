@@ -149,11 +149,7 @@ class Noise:
     def scattering(self, scatter: Mapping[str, Scatter], size: np.ndarray, weight: np.ndarray) -> Noise:
         """The noise with another scatter.
 
-        Parameters
-        ----------
-        scatter : by channel
-        size : (2n,) readings in proportion to which the noise may grow
-        weight : (2n,) of each reading
+        ``weight`` (2n,) is that of each reading; the noise may grow in proportion to ``size`` (2n,).
         """
         halves = zip(CHANNELS, np.split(self.stated, 2), np.split(np.nan_to_num(size), 2), strict=True)
         u = np.concatenate(

@@ -35,11 +35,7 @@ class Separation:
 def separation(points: Points, a: Hypothesis, b: Hypothesis, noise_Fy: float, noise_Mz: float) -> Separation:
     """The candidate run at which two refitted explanations differ most.
 
-    Parameters
-    ----------
-    points : the programme to which a run could be added
-    a, b : the explanations
-    noise_Fy, noise_Mz : standard uncertainty of a reading [N], [Nm]; NaN without a moment
+    The noise is the standard uncertainty of a reading [N], [Nm]; NaN without a moment.
     """
     found = []
     for run, added in candidate_runs(points):

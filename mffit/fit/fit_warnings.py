@@ -11,15 +11,7 @@ from mffit.suspicion import Doubt, Outlier, outliers_sentence
 def warnings(
     fitted: Fitted, distrusted: Sequence[str], doubts: Sequence[Doubt], outlying: Sequence[Outlier]
 ) -> tuple[str, ...]:
-    """All warnings of a fit, the most important first.
-
-    Parameters
-    ----------
-    fitted : the fit
-    distrusted : from :func:`mffit.suspicion.distrust`
-    doubts : sweeps that contradict the others
-    outlying : readings without weight
-    """
+    """All warnings of a fit, the most important first."""
     out = [*distrusted]
     if fitted.attempts:
         attempts = ", ".join(fitted.attempts)

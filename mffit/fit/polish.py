@@ -20,11 +20,7 @@ def polish(stated: FitProblem, plan: FitPlan) -> Fitted:
     """The joint fit with its errors.
 
     Weights are balanced between the channels and reduced for outliers; a bent valley of equally good fits is followed.
-
-    Parameters
-    ----------
-    stated : near the solution, weights as stated
-    plan : what is free
+    ``stated`` is near the solution, with weights as stated.
     """
     problem, scale = _approached(stated, plan).reweighted()
     problem, solution = _solved(problem, plan)

@@ -23,12 +23,7 @@ class Prior(NamedTuple):
 def scatter(name: str, expected: float, *, from_base: bool, curved: bool) -> float:
     """Standard deviation of this tyre's coefficient around the expected value.
 
-    Parameters
-    ----------
-    name : coefficient
-    expected : value of the base file, else the default
-    from_base : whether a base file states it; a base file's 0 counts as not stated
-    curved : whether the path is curved
+    A base file's 0 counts as not stated.
     """
     if curved and name in SMALL_ON_A_DISC:
         return SMALL_ON_A_DISC[name]

@@ -22,11 +22,7 @@ def radius_coefficients(
 ) -> dict[str, float]:
     """Q_RE0, and DREFF where several loads were measured, with which Re(Fz) passes through the measurements.
 
-    Parameters
-    ----------
-    values : every value of the file; its shape of Re over load and speed is kept
-    r_e : measured effective radius [m] by load [N]
-    speed : at which it was measured [m/s]
+    ``r_e`` [m] by load [N] was measured at ``speed`` [m/s]. The shape of Re over load and speed is kept.
 
     Notes
     -----

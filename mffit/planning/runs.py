@@ -57,11 +57,7 @@ class Run:
 def candidates(config: Config, points: Points, r_e: float | None = None) -> tuple[Run, ...]:
     """Every run that a rig could add to these points, load by load.
 
-    Parameters
-    ----------
-    config : what is declared of the rig
-    points : the programme so far
-    r_e : effective radius of the model at the nominal load [m], to predict a disc revolution
+    ``r_e`` is the effective radius of the model at the nominal load [m], to predict a disc revolution.
     """
     programme = _Programme(config, points)
     possible = [addition for addition in ADDITIONS if config.rig.on_disc or not addition.disc_only]

@@ -30,11 +30,8 @@ class Reduced(NamedTuple):
 def reduce(sweep: Sweep, phi_t: float, scale: Scale | None = None) -> Reduced:
     """Points of one sweep.
 
-    Parameters
-    ----------
-    sweep : finished points or a time series
-    phi_t : turn slip of the path [1/m]
-    scale : usual size of the settings in all time series of the campaign, to judge changes; None: of this series alone
+    ``phi_t`` is the turn slip of the path [1/m]; ``scale`` the usual size of the settings in all series of the campaign, to
+    judge changes (None: of this series alone).
 
     Returns
     -------

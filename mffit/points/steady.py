@@ -208,10 +208,7 @@ class Moves(NamedTuple):
 def moves(settings: Settings, scale: Scale | None = None) -> Moves:
     """Masks of the samples at which each setting changes.
 
-    Parameters
-    ----------
-    settings : of a series without gaps
-    scale : usual size of each setting in the whole recording; of this series if None
+    ``scale`` is the usual size of each setting in the whole recording; of this series if None.
     """
     n = len(settings.time)
     scale = scale or scale_of([settings])

@@ -10,14 +10,9 @@ from mffit.points import Points
 def lagged_angle(points: Points, sigma: float) -> tuple[np.ndarray, np.ndarray]:
     """Sideslip angle (n,) that the force answers to [rad], and its derivative by the relaxation length [rad/m].
 
-    ``sigma d(alpha')/ds + alpha' = alpha``. Exact for an angle that moves linearly over the rolled distance between
-    samples, however far these are apart. Where the wheel does not roll, the lag stays constant. Every sweep begins
-    settled; steady points have no lag.
-
-    Parameters
-    ----------
-    points : (n,) in any order, with ``continuous`` samples
-    sigma : relaxation length [m]
+    ``sigma d(alpha')/ds + alpha' = alpha``. Exact for an angle that moves linearly over the rolled distance between samples,
+    however far these are apart. Where the wheel does not roll, the lag stays constant. Every sweep begins settled; steady
+    points have no lag.
 
     Notes
     -----

@@ -19,10 +19,7 @@ from mffit.suspicion.rules import RULES
 def before_the_fit(points: Points, config: Config) -> tuple[str, ...]:
     """Warnings about points that are odd under their declaration.
 
-    Parameters
-    ----------
-    points : as read; on a disc the samples of moving sweeps are not judged
-    config : the declaration
+    On a disc the samples of moving sweeps are not judged.
 
     Raises
     ------
@@ -58,11 +55,7 @@ def _before(points: Points, config: Config) -> Iterator[tuple[Rule, str | None, 
 def after_the_fit(campaign: Campaign, fitted: FittedModel, when: When = When.AFTER) -> tuple[Doubt, ...]:
     """Sweeps that do not fit the others, judged by what all others predict.
 
-    Parameters
-    ----------
-    campaign : points, their uncertainty, and how to fit some of them
-    fitted : the fit to all points
-    when : ``When.FIRST`` if the fit itself may still be wrong
+    ``When.FIRST``: the fit itself may still be wrong.
 
     Raises
     ------

@@ -66,12 +66,7 @@ def explanation(
 ) -> str:
     """What explains most of the errors of a sweep, in words; empty if no known cause does.
 
-    Parameters
-    ----------
-    points : of the sweep (m,)
-    errors : prediction of each channel less what was measured
-    simulation : as fitted
-    signs : +1 or -1 per channel: from ISO-W to the rig's axes
+    ``signs`` lead from ISO-W to the rig's axes.
     """
     before = _chi2(errors, {n: e.error for n, e in errors.items()})
     best, said = constants.EXPLAINED_BY_ONE_NUMBER * before, ""

@@ -69,13 +69,7 @@ def misread_sweep(points: Points, simulation: Simulation, signs: Mapping[str, fl
     """Median error of the simulation over the usual size of the channel, with each known mistake undone.
 
     The sweep that is much further off than all others is found if a known mistake explains it. If several sweeps look like
-    that, the model or the rig is at fault.
-
-    Parameters
-    ----------
-    points : as declared (n,)
-    simulation : as given; it may miss all sweeps for another reason
-    signs : +1 or -1 per channel: from ISO-W to the rig's axes
+    that, the model or the rig is at fault. ``signs`` lead from ISO-W to the rig's axes.
     """
     numbers, counts = np.unique(points.sweep, return_counts=True)
     numbers = numbers[counts >= constants.FEWEST_POINTS_OF_A_MISREAD_SWEEP]

@@ -126,12 +126,8 @@ def explaining(
 ) -> Explained | None:
     """The mistake that leaves least when it is undone; None if no mistake explains the errors.
 
-    Parameters
-    ----------
-    candidates : mistakes, with the points of the sweep as they are without the mistake
-    gross : errors to be explained, by channel
-    away : how far points of the sweep are from what is expected, by channel
-    tolerated : largest share by which each channel may be away in the end, so that no new error is made elsewhere
+    ``candidates`` come with the points of the sweep as they are without the mistake. ``tolerated`` limits the share by which a
+    channel may be away in the end, so that no new error is made elsewhere.
     """
     best = None
     for mistake, points in candidates:

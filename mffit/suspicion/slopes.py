@@ -84,15 +84,7 @@ def signatures(points: Points) -> Signatures:
 
 
 def slope(points: Points, response: np.ndarray, angle: str, used: np.ndarray) -> Slope:
-    """Slope of ``response`` per load over an angle, with a linear term of the other angle.
-
-    Parameters
-    ----------
-    points : (n,)
-    response : (n,) force or moment
-    angle : "alpha" or "gamma"
-    used : mask (n,)
-    """
+    """Slope of ``response`` (n,) per load over "alpha" or "gamma" at some points, with a linear term of the other angle."""
     used = used & np.isfinite(response)
     other = points.gamma if angle == "alpha" else points.alpha
     x, y = getattr(points, angle)[used], (response / points.Fz)[used]
