@@ -3,13 +3,13 @@
 The modules in the order of the method (:mod:`engine` is the sequence):
 
 1. ``strangers``, ``misread``, ``conditions``: points and model belong together; sweeps are cut at their conditions.
-2. ``stated``, ``noise``: the covariance of the readings as stated. ``inexact``, ``declared``: priors of coefficients and rig.
+2. ``stated``, ``noise``: the covariance of the readings as stated. ``inexact``, ``priors``: priors of coefficients and rig.
 3. ``where``: regions in which measurement and simulation disagree.
-4. ``needs``, ``priors``, ``problem``, ``hypothesis``: candidates, and the fit and evidence of a set of effects.
+4. ``needs``, ``problem``, ``hypothesis``: candidates, and the fit and evidence of a set of effects.
 5. ``explain``: the rounds. ``learning``, ``scatter``, ``marginal``, ``tails`` find the real noise; ``selection`` the effects;
    ``bumps``, ``smooth``, ``rivals`` structure without a name; ``prediction`` judges effects by left-out sweeps.
 6. ``validation``, ``confirmation``: the part that left-out sweeps confirm.
-7. ``ties``, ``confidence``, ``limits``: rivals of each effect, the run that separates them, sizes that are ruled out.
+7. ``ties``, ``limits``: rivals of each effect, the run that separates them, sizes that are ruled out.
 8. ``answer``, ``result``, ``notes``, ``wording``, ``correction``: the record, its sentences, corrected points.
 """
 

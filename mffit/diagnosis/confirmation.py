@@ -17,9 +17,8 @@ def confirmed(
 
     ``given`` has the scatter of the readings alone. ``seen``: the model was fitted to these points.
     """
-    if (
-        seen and not found.chosen.effects
-    ):  # refitting coefficients to points that they were fitted to repairs nothing
+    # Refitting coefficients to points that they were fitted to repairs nothing.
+    if seen and not found.chosen.effects:
         found = found.withdrawn()
     validation = validate(given, found.refined, inexact if found.coefficients else EXACT, seen=seen)
     if not (found.chosen.effects or found.coefficients) or validation.helps:

@@ -11,12 +11,12 @@ from mffit.config import Config, axis_signs, declared_faults
 from mffit.diagnosis.answer import answer
 from mffit.diagnosis.conditions import by_condition
 from mffit.diagnosis.confirmation import confirmed
-from mffit.diagnosis.declared import declared_priors
 from mffit.diagnosis.explain import explain
 from mffit.diagnosis.inexact import Inexactness
 from mffit.diagnosis.inexact import declared as declared_inexactness
 from mffit.diagnosis.needs import possible
 from mffit.diagnosis.notes import Note, OneSweep
+from mffit.diagnosis.priors import declared_priors
 from mffit.diagnosis.problem import DiagnosisProblem
 from mffit.diagnosis.result import Diagnosis
 from mffit.diagnosis.stated import stated_noise, with_uncertainties

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
-from enum import Enum, auto
+from enum import Enum
 from functools import cached_property
 
 import numpy as np
@@ -15,10 +15,10 @@ from mffit.quantities import CHANNELS
 
 
 class Origin(Enum):
-    """Where the uncertainties of the readings come from."""
+    """Where the uncertainties of the readings come from, in words."""
 
-    STATED = auto()  #: with the data
-    SCATTER = auto()  #: of measured minus simulated between neighbouring points
+    STATED = "stated uncertainties"
+    SCATTER = "scatter between neighbouring points"
 
 
 @dataclass(frozen=True, slots=True)

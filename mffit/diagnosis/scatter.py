@@ -36,9 +36,7 @@ class Explained:
     """What could explain a residual, one prior standard deviation of each as a column (2n, k)."""
 
     named: np.ndarray  #: effects, coefficients, bumps
-    runs: (
-        np.ndarray
-    )  #: effects that are constant along a run, the rivals of errors that are correlated along it
+    runs: np.ndarray  #: effects that are constant along a run, rivals of errors correlated along it
     smooth: np.ndarray  #: low-order structure; its amplitude is found with the scatter
 
 

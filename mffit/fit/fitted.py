@@ -18,9 +18,7 @@ class Fitted:
 
     values: Mapping[str, float]  #: coefficients
     rig: Mapping[str, tuple[float, float]]  #: rig error -> (value, standard error)
-    correlation: Mapping[
-        str, tuple[str, float]
-    ]  #: the strongest of each number, with its partner, if it is strong
+    correlation: Mapping[str, tuple[str, float]]  #: strong ones only: number -> (partner, correlation)
     posterior: Posterior  #: of tyre and rig, held values included
     intervals: Mapping[str, tuple[float, float]]
     """95 % intervals of the numbers of a bent valley of equally good fits."""

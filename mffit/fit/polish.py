@@ -51,9 +51,7 @@ def _approached(problem: FitProblem, plan: FitPlan) -> FitProblem:
     """The problem near its solution, by passes over more and more of its points."""
     for stride in _strides(len(problem.points)):
         thinned = problem.reweighted()[0].thinned(stride)
-        last = (
-            stride <= constants.STRIDE_DIVISOR
-        )  # the final fit to all points is then cheap enough to do the rest
+        last = stride <= constants.STRIDE_DIVISOR  # the fit to all points can then do the rest
         tolerance = constants.STAGE_TOLERANCE if last else constants.POLISH_TOLERANCE
         problem = problem.with_values(_solution(thinned, plan, tolerance).values)
     return problem

@@ -7,8 +7,6 @@ from typing import NamedTuple
 
 import numpy as np
 
-from mffit.rig import constants
-
 Moment = Callable[[np.ndarray], np.ndarray]
 """Aligning moment [Nm] at sideslip angles (m,) [rad]."""
 
@@ -56,7 +54,7 @@ def _without_moment(
     times as much here.
     """
     x = a - at_a * (b - a) / (at_b - at_a)
-    for _ in range(constants.LONGEST_ZERO_SEARCH):
+    for _ in range(12):  # two are usual
         value = moment(x)
         proposed = _inverse_quadratic((a, b, x), (at_a, at_b, value))
         below = value < 0.0  # as at ``a``
@@ -65,7 +63,7 @@ def _without_moment(
         inside = (proposed > a) & (proposed < b)  # false for NaN, too
         following = np.where(value == 0.0, x, np.where(inside, proposed, 0.5 * (a + b)))
         moved, x = np.abs(following - x), following
-        if np.all(moved < constants.ZERO_SEARCH_STEP):
+        if np.all(moved < 1e-7):  # [rad]; the error left is its square
             break
     return x
 

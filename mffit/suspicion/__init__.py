@@ -9,14 +9,13 @@ from mffit.suspicion.prediction import FittedModel
 from mffit.suspicion.rule import When
 from mffit.suspicion.rules import RULES
 from mffit.suspicion.slopes import contradictions, signatures
-from mffit.suspicion.trust import Misfit, distrust
+from mffit.suspicion.trust import distrust
 
 __all__ = [
     "RULES",
     "Campaign",
     "Doubt",
     "FittedModel",
-    "Misfit",
     "Misread",
     "Outlier",
     "When",
