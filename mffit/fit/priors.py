@@ -49,10 +49,7 @@ def fleet_content(nominal: Mapping[str, float], tyres: int, priors: Mapping[str,
 def of_fleet(config: Any) -> dict[str, Prior]:
     """The prior of each coefficient from the fleet that ``[tyre] priors`` names; empty if none is named.
 
-    Raises
-    ------
-    InputError
-        The file was not written by a fleet, or the fleet has another nominal load or pressure.
+    An InputError says that no fleet wrote the file, or that the fleet has another nominal load or pressure.
     """
     path = config.priors_path
     if path is None:

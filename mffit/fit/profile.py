@@ -32,10 +32,7 @@ def follow(
 
     ``problem`` is at the solution. ``among`` names the numbers that the points determine; the prior's spread suffices as
     interval of the others.
-
-    Returns
-    -------
-    Valley, or None where the sum of squares is close to its quadratic form along all directions
+    None where the sum of squares is close to its quadratic form along all directions.
     """
     along = _most_bent(problem, numbers, solution, among)
     if not along:

@@ -201,13 +201,7 @@ BY_ID: Mapping[str, Addition] = {addition.id: addition for addition in ADDITIONS
 
 
 def addition_named(word: str) -> Addition:
-    """The addition with this id.
-
-    Raises
-    ------
-    InputError
-        No addition has it.
-    """
+    """The addition with this id; an InputError lists the ids if none has it."""
     if word not in BY_ID:
         raise InputError(f'"{word}" is not a kind of run; the kinds are {", ".join(BY_ID)}')
     return BY_ID[word]

@@ -19,12 +19,8 @@ from mffit.suspicion.rules import RULES
 def before_the_fit(points: Points, config: Config) -> tuple[str, ...]:
     """Warnings about points that are odd under their declaration.
 
-    On a disc the samples of moving sweeps are not judged.
-
-    Raises
-    ------
-    InputError
-        The points contradict every tyre or the declaration, or a disc cannot do without what is missing.
+    On a disc the samples of moving sweeps are not judged. An InputError says that the points contradict every tyre or the
+    declaration, or that a disc cannot do without what is missing.
     """
     judged = points.select(~points.continuous) if config.rig.on_disc else points
     warnings = []
@@ -55,12 +51,7 @@ def _before(points: Points, config: Config) -> Iterator[tuple[Rule, str | None, 
 def after_the_fit(campaign: Campaign, fitted: FittedModel, when: When = When.AFTER) -> tuple[Doubt, ...]:
     """Sweeps that do not fit the others, judged by what all others predict.
 
-    ``When.FIRST``: the fit itself may still be wrong.
-
-    Raises
-    ------
-    InputError
-        A sweep contradicts all others beyond plausibility.
+    ``When.FIRST``: the fit itself may still be wrong. A sweep that contradicts all others beyond plausibility is refused.
     """
     seen = evidence(campaign, fitted)
     doubts: list[Doubt] = []
