@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import partial
 from typing import Literal, NamedTuple
 
 from mffit.errors import InputError
@@ -46,6 +47,8 @@ _ZEROS = (Line("alpha", constants.PLAN_ZERO_ANGLES), Line("alpha", constants.PLA
 _SMALL_CAMBERS = (Line("gamma", constants.PLAN_SMALL_CAMBERS),)
 _SIDESLIP = (Line("alpha", constants.PLAN_SWEEP_SHARES),)
 _CAMBER = (Line("gamma", constants.PLAN_SWEEP_SHARES),)
+_of_rig = partial(Addition, loads="nominal", disc_only=True)
+"""A number of the rig to measure better."""
 
 ADDITIONS = (
     Addition(
@@ -94,50 +97,40 @@ ADDITIONS = (
         lines=_SMALL_CAMBERS,
         disc_only=True,
     ),
-    Addition(
+    _of_rig(
         id="camber-zero",
         title="better zero of the camber axis",
         reason=(
             f"A camber error makes a force like turn slip; it is often the largest line in the budget of {_EPSILON}."
         ),
-        loads="nominal",
-        disc_only=True,
         declares="u_camber_alignment_deg",
         declares_unit=CONDITIONS["gamma_deg"].unit,
     ),
-    Addition(
+    _of_rig(
         id="loadcell-zero",
         title="better zero of the side-force cell",
         reason="The offset of an unloaded side-force cell adds to the turn-slip force.",
-        loads="nominal",
-        disc_only=True,
         declares="u_loadcell_offset_N",
         declares_unit=CHANNELS["Fy"].unit,
     ),
-    Addition(
+    _of_rig(
         id="sideslip-zero",
         title="better zero of the sideslip axis",
         reason="A geometric zero of the steering separates misalignment from ply-steer; no run on a single rig can.",
-        loads="nominal",
-        disc_only=True,
         declares="u_slip_alignment_N",
         declares_unit=f"{CHANNELS['Fy'].unit} of {CHANNELS['Fy'].word}",
     ),
-    Addition(
+    _of_rig(
         id="path-radius",
         title="better path radius",
         reason="The curvature of the path is known as well as its radius.",
-        loads="nominal",
-        disc_only=True,
         declares="u_path_radius",
         declares_unit=DIRECT["R"].unit,
     ),
-    Addition(
+    _of_rig(
         id="revolution",
         title="one revolution of the disc",
         reason=f"{_EPSILON} cannot be measured without an effective radius.",
-        loads="nominal",
-        disc_only=True,
         revolution=True,
     ),
     Addition(

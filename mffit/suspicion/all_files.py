@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from functools import partial
 
 import numpy as np
 
@@ -13,10 +14,11 @@ from mffit.suspicion import constants
 from mffit.suspicion.rule import Finding, Outcome, Subject, rule
 from mffit.suspicion.slopes import SIGNS, Signatures, at_zero, pooled, signatures
 
+of_all_files = partial(rule, subject=Subject.ALL_FILES)
 
-@rule(
+
+@of_all_files(
     id="copied-sweep",
-    subject=Subject.ALL_FILES,
     limits=(constants.FEWEST_ROWS_OF_A_COPY,),
     sentence="holds exactly the readings of {first}; remove one of the two, or correct the one that was copied by mistake",
 )
@@ -38,9 +40,8 @@ def copied_sweep(points: Points, config: Config) -> Iterator[Finding]:
         seen[key] = int(k)
 
 
-@rule(
+@of_all_files(
     id="reversed-file",
-    subject=Subject.ALL_FILES,
     limits=(constants.CHANCE_OF_OTHER_SIGN,),
     sentence="{what} {where}, against all the others: its sign or its direction of rolling looks reversed; correct the file, "
     'write direction = "backward" in its [[sweep]], or map {column} with scale = -1 under [sweep.columns]',
@@ -74,9 +75,8 @@ def _with_common_scatter(each: list[Signatures]) -> list[Signatures]:
     ]
 
 
-@rule(
+@of_all_files(
     id="lone-lean",
-    subject=Subject.ALL_FILES,
     limits=(constants.LEANING, constants.FEWEST_LEANING_SWEEPS),
     outcome=Outcome.WARNED,
     sentence="{sweep} leans {degrees:.1f} deg to the other side than all {others} other sweeps with camber: if that was not "
@@ -99,9 +99,8 @@ def lone_lean(points: Points, config: Config) -> Iterator[Finding]:
         yield Finding({"sweep": points.sweep_names[odd[0]], "degrees": degrees, "others": len(sides) - 1})
 
 
-@rule(
+@of_all_files(
     id="weak-turn-slip-force",
-    subject=Subject.ALL_FILES,
     limits=(constants.WEAK_TURN_SLIP_FORCE,),
     outcome=Outcome.WARNED,
     sentence="the force at alpha = gamma = 0 is {percent:.1f} % of the load along the turn slip, too little to measure turn "
@@ -114,9 +113,8 @@ def weak_turn_slip(points: Points, config: Config) -> Iterator[Finding]:
         yield Finding({"percent": 100 * outward})
 
 
-@rule(
+@of_all_files(
     id="moments-about-another-point",
-    subject=Subject.ALL_FILES,
     limits=(
         constants.LEVER_OF_OTHER_MOMENT_POINT,
         constants.UPRIGHT_FOR_MOMENT_POINT,
@@ -147,9 +145,8 @@ def other_moment_point(points: Points, config: Config) -> Iterator[Finding]:
     )
 
 
-@rule(
+@of_all_files(
     id="one-sided-on-a-disc",
-    subject=Subject.ALL_FILES,
     limits=(ZERO_SIDESLIP, ZERO_CAMBER),
     sentence="runs only from {smallest:.3g} to {largest:.3g} deg in ISO signs, and on a disc both signs are needed to separate "
     "turn slip; add the mirrored points",
@@ -168,9 +165,8 @@ def one_sided_on_disc(points: Points, config: Config) -> Iterator[Finding]:
             yield Finding(facts, file=config.path, column=column)
 
 
-@rule(
+@of_all_files(
     id="no-zero-on-a-disc",
-    subject=Subject.ALL_FILES,
     limits=(ZERO_SIDESLIP, ZERO_CAMBER),
     sentence="no forward point has alpha_deg = 0 and gamma_deg = 0, where the turn-slip force is measured; add one per load",
 )

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from functools import partial
 
 import numpy as np
 
@@ -13,10 +14,11 @@ from mffit.suspicion.rule import Finding, Subject, rule
 from mffit.suspicion.slopes import slope
 from mffit.sweeps.units import factor
 
+of_file = partial(rule, subject=Subject.FILE)
 
-@rule(
+
+@of_file(
     id="angle-in-radians",
-    subject=Subject.FILE,
     limits=(constants.STEEPEST_OVER_SIDESLIP, constants.STEEPEST_OVER_CAMBER),
     sentence="reaches only {largest:.3g} deg, over which the side force changes by {steepness:.0f} times the load per radian; "
     'the angles look like radians: write degrees, or {column} = {{ column = "{column}", unit = "rad" }} under '
@@ -36,9 +38,8 @@ def angle_in_radians(part: Points, config: Config) -> Iterator[Finding]:
                 yield Finding(facts, column=f"{angle}_deg")
 
 
-@rule(
+@of_file(
     id="dead-channel",
-    subject=Subject.FILE,
     limits=(constants.FEWEST_ROWS_OF_A_DEAD_CHANNEL,),
     sentence="is {reading:g} in every row, so the channel was dead; {remedy}",
 )
@@ -54,9 +55,8 @@ def dead_channel(part: Points, config: Config) -> Iterator[Finding]:
             yield Finding({"reading": reading[0], "remedy": remedy}, column=column)
 
 
-@rule(
+@of_file(
     id="force-in-kilonewtons",
-    subject=Subject.FILE,
     limits=(
         constants.SIDESLIP_THAT_SHOWS_FORCE,
         constants.CAMBER_THAT_SHOWS_FORCE,
@@ -77,9 +77,8 @@ def force_too_small(part: Points, config: Config) -> Iterator[Finding]:
         yield Finding(facts, column="Fy_N")
 
 
-@rule(
+@of_file(
     id="lone-load",
-    subject=Subject.FILE,
     limits=(constants.LONE_LOAD, constants.FEWEST_ROWS_OF_A_LONE_LOAD),
     sentence="{load:.6g} N is far above all other loads of the file, which are at most {others:.6g} N; correct or remove the row",
 )
@@ -93,9 +92,8 @@ def lone_load(part: Points, config: Config) -> Iterator[Finding]:
         yield Finding(facts, line=_line(part, row), column="Fz_N")
 
 
-@rule(
+@of_file(
     id="wild-force",
-    subject=Subject.FILE,
     limits=(constants.LARGEST_FRICTION,),
     sentence="{force:.6g} N is {friction:.0f} times the load, which no tyre reaches; correct or remove the row",
 )
@@ -108,9 +106,8 @@ def wild_force(part: Points, config: Config) -> Iterator[Finding]:
         yield Finding(facts, line=_line(part, row), column="Fy_N")
 
 
-@rule(
+@of_file(
     id="load-in-another-unit",
-    subject=Subject.FILE,
     limits=(constants.LARGEST_FRICTION, constants.FEWEST_POINTS_OF_FRICTION),
     sentence="side forces reach {friction:.0f} times the load ({load:.0f} N), which no tyre does: the load looks like kgf, or "
     'the force like another unit; map it with its unit, Fz_N = {{ column = "Fz_N", unit = "kgf" }} in [sweep.columns]',
@@ -123,9 +120,8 @@ def load_in_another_unit(part: Points, config: Config) -> Iterator[Finding]:
         yield Finding({"friction": friction[row], "load": part.Fz[row]}, column="Fz_N")
 
 
-@rule(
+@of_file(
     id="moment-in-newton-millimetres",
-    subject=Subject.FILE,
     limits=(constants.LONGEST_ARM,),
     sentence="reaches {arm:.0f} m times the load, which looks like N mm; name its unit under [sweep.columns]",
 )
@@ -136,9 +132,8 @@ def arm_too_long(part: Points, config: Config) -> Iterator[Finding]:
         yield Finding({"arm": np.nanmax(arm)}, column="Mz_Nm")
 
 
-@rule(
+@of_file(
     id="pressure-in-psi",
-    subject=Subject.FILE,
     limits=(constants.LOWEST_TESTED_PRESSURE,),
     sentence="is {pressure:.3g} kPa, far from the nominal {nominal:.3g} kPa, and looks like psi; write kPa, or "
     'p_kPa = {{ column = "p_kPa", unit = "psi" }} under [sweep.columns]',
