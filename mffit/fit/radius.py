@@ -24,8 +24,6 @@ def radius_coefficients(
 
     ``r_e`` [m] by load [N] was measured at ``speed`` [m/s]. The shape of Re over load and speed is kept.
 
-    Notes
-    -----
     Re is linear in Q_RE0 and DREFF but for the small centrifugal growth, so two Gauss-Newton steps are exact to rounding.
     """
     names = ("Q_RE0", "DREFF") if len(r_e) > 1 else ("Q_RE0",)

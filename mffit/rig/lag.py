@@ -14,8 +14,6 @@ def lagged_angle(points: Points, sigma: float) -> tuple[np.ndarray, np.ndarray]:
     however far these are apart. Where the wheel does not roll, the lag stays constant. Every sweep begins settled; steady
     points have no lag.
 
-    Notes
-    -----
     Over a step of length d from (alpha_0, alpha_0') to alpha_1, with q = d/sigma and f = (1 - exp(-q))/q, the lag
     b = alpha - alpha' becomes b_1 = f (alpha_1 - alpha_0) + exp(-q) b_0.
     """

@@ -100,8 +100,6 @@ class Evidence(NamedTuple):
 def evidence(campaign: Campaign, fitted: FittedModel) -> Evidence | None:
     """Views of the sweeps that are off, the worst first; None with too few sweeps to compare.
 
-    Notes
-    -----
     The search ends at the first sweep that a known mistake explains.
     """
     points = campaign.points
