@@ -20,7 +20,7 @@ from mffit.fit.plan import FitPlan, fit_plan
 from mffit.fit.priors import of_fleet
 from mffit.fit.problem import FitProblem, fit_problem
 from mffit.fit.result import FitResult
-from mffit.fit.rolling_resistance import rolling_resistance
+from mffit.fit.rolling import rolling_resistance
 from mffit.fit.staged import fit_staged
 from mffit.fit.start import starting_values
 from mffit.fit.virtual_zero import epsilon_gamma_of_model

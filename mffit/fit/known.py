@@ -8,8 +8,8 @@ from typing import Any
 
 from mffit.fit.estimates import estimates
 from mffit.fit.priors import Prior
-from mffit.fit.radius import radius_coefficients
 from mffit.fit.ranges import covered_ranges
+from mffit.fit.rolling import radius_coefficients
 from mffit.fit.stages import ODD_TERMS
 from mffit.points import Points
 from mffit.rig import reference_speed

@@ -11,9 +11,9 @@ import numpy as np
 
 from mffit.fit import constants, weights
 from mffit.fit.constraints import Envelope, limits
-from mffit.fit.radius import effective_radius
 from mffit.fit.ranges import covered_ranges, envelope
 from mffit.fit.rig_numbers import known_faults
+from mffit.fit.rolling import effective_radius
 from mffit.least_squares import LeastSquaresProblem, Linear, Number
 from mffit.measured import RadiusReading, radius_readings
 from mffit.points import Points
