@@ -2,20 +2,19 @@
 
 The modules in the order of the method (:mod:`engine` is the sequence):
 
-1. ``strangers``, ``misread``, ``conditions``: points and model belong together; sweeps are cut at their conditions.
-2. ``stated``, ``noise``: the covariance of the readings as stated. ``inexact``, ``declared``: priors of coefficients and rig.
+1. ``strangers``, ``conditions``: points and model belong together; sweeps are cut at their conditions.
+2. ``stated``, ``noise``: the covariance of the readings as stated. ``inexact``, ``priors``: priors of coefficients and rig.
 3. ``where``: regions in which measurement and simulation disagree.
-4. ``needs``, ``priors``, ``problem``, ``hypothesis``: candidates, and the fit and evidence of a set of effects.
+4. ``needs``, ``problem``, ``hypothesis``: candidates, and the fit and evidence of a set of effects.
 5. ``explain``: the rounds. ``learning``, ``scatter``, ``marginal``, ``tails`` find the real noise; ``selection`` the effects;
    ``bumps``, ``smooth``, ``rivals`` structure without a name; ``prediction`` judges effects by left-out sweeps.
-6. ``validation``, ``confirmation``: the part that left-out sweeps confirm.
-7. ``ties``, ``confidence``, ``limits``: rivals of each effect, the run that separates them, sizes that are ruled out.
-8. ``answer``, ``result``, ``notes``, ``wording``, ``correction``: the record, its sentences, corrected points.
+6. ``validation``: the part that left-out sweeps confirm.
+7. ``ties``, ``limits``: rivals of each effect, the run that separates them, sizes that are ruled out.
+8. ``answer``, ``result``, ``notes``, ``wording``: the record, corrected points, sentences.
 """
 
-from mffit.diagnosis.correction import corrected_points
 from mffit.diagnosis.engine import diagnose
-from mffit.diagnosis.result import Diagnosis, Found
+from mffit.diagnosis.result import Diagnosis, Found, corrected_points
 from mffit.diagnosis.validation import Gap, gap, validate
 from mffit.diagnosis.where import where
 

@@ -11,7 +11,6 @@ import numpy as np
 from mffit.config import Config, axis_signs
 from mffit.diagnosis import constants, wording
 from mffit.diagnosis.bumps import Bump
-from mffit.diagnosis.confidence import tempered
 from mffit.diagnosis.explanation import Explanation
 from mffit.diagnosis.hypothesis import Hypothesis
 from mffit.diagnosis.limits import limits
@@ -42,14 +41,7 @@ def answer(
 ) -> Diagnosis:
     """The record of an explanation.
 
-    Parameters
-    ----------
-    found : the explanation as far as left-out sweeps confirm it
-    given : readings, and the simulation before
-    tyre, config : the model that was given
-    validation : the gap on left-out sweeps
-    notes : remarks so far
-    candidates : effects that the data can show
+    ``found`` is what left-out sweeps confirm; ``given`` is the problem before it.
     """
     points, chosen, scatter = given.points, found.chosen, found.scatter
     before = after = given.start.predict(points)
@@ -192,3 +184,11 @@ def _corrected(tyre: Tyre, found: Explanation) -> Tyre:
                 error = found.refined.stderr.get(name, 0.0)
                 status[name] = wording.status(effect, float(tyre[name]), error)
     return tyre.replace(**changes).annotate(status=status) if changes else tyre
+
+
+def tempered(weight: float) -> float:
+    """The weight of an explanation among all others, its log odds divided by ``LOG_ODDS_DIVISOR``."""
+    if not 0.0 < weight < 1.0:
+        return min(max(weight, 0.0), 1.0)
+    odds = (weight / (1.0 - weight)) ** (1.0 / constants.LOG_ODDS_DIVISOR)
+    return odds / (1.0 + odds)

@@ -56,10 +56,7 @@ class BumpScan:
     def best(self, hypothesis: Hypothesis, limit: float = math.inf) -> Bump:
         """The bump that explains most of a hypothesis' residual, its own freed numbers projected out.
 
-        Parameters
-        ----------
-        hypothesis : with the residuals that the bump has to explain
-        limit : standard deviations at which residuals are clipped, so that an outlier does not make a bump
+        Residuals are clipped at ``limit`` standard deviations, so that an outlier does not make a bump.
         """
         axes = hypothesis.axes
         residual = np.clip(hypothesis.residual, -limit, limit)

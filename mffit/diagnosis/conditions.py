@@ -12,15 +12,7 @@ def by_condition(points: Points) -> Points:
     """The points with sweeps cut where load, camber, pressure or speed steps.
 
     A file may hold a whole programme. A quantity that changes from point to point was swept and does not cut.
-
-    Parameters
-    ----------
-    points : (n,) with ``sweep`` as declared
-
-    Returns
-    -------
-    The same points in the same order; ``sweep`` numbers the conditions, named after their sweep, with a number if the sweep
-    held several.
+    In the result ``sweep`` numbers the conditions, named after their sweep, with a number if the sweep held several.
     """
     held = (
         (points.Fz, levels.LOAD),

@@ -6,9 +6,7 @@ from tir.constant import Count, Real, Series
 
 # Points and model that belong together
 FEWEST_POINTS_TO_DIAGNOSE = Count(12, "-", "With fewer points, chance alone decides between effects.")
-LOAD_RATIO_OF_ANOTHER_TYRE = Real(
-    10.0, "-", "Load over FNOMIN, or its inverse, that means another tyre or unit."
-)
+LOAD_RATIO_OF_ANOTHER_TYRE = Real(10.0, "-", "Load over FNOMIN, or its inverse, of another tyre or unit.")
 OPPOSED_CORRELATION = Real(-0.3, "-", "Measured against simulated readings: below it, signs or axes differ.")
 MISFIT_OF_ANOTHER_TYRE = Real(30.0, "-", "Misfit over noise beyond which naming an effect would be a guess.")
 FEWEST_POINTS_OF_A_CONDITION = Count(8, "-", "A setting with fewer points was swept, not held.")
@@ -31,9 +29,7 @@ VISIBLE_SENSE_SHARE = Real(0.1, "-", "Share of points that each sense of the swe
 # Stated noise
 LEAST_STATED_NOISE_SHARE = Real(0.05, "-", "Stated uncertainties are raised to this share of their median.")
 FEWEST_POINTS_FOR_NEIGHBOURS = Count(6, "-", "Points of a sweep from which third differences show its noise.")
-NOISE_SHARE_OF_SPAN = Real(
-    0.01, "-", "Noise over the span of the misfit, if sweeps are too short to show it."
-)
+NOISE_SHARE_OF_SPAN = Real(0.01, "-", "Noise over the misfit's span, if sweeps are too short to show it.")
 
 # Scatter as found
 STATED_NOISE_FACTOR = Real(2.0, "-", "Factor (1 sigma) by which true uncertainties differ from stated ones.")
@@ -41,12 +37,8 @@ SCATTER_PART_GAIN = Real(4.0, "-", "Log likelihood that growth, memory or heavy 
 LOG_SCALE_BOUNDS = Series((-7.0, 12.0), "-", "Bounds of the logarithm of the scale; its prior is narrower.")
 LARGEST_NOISE_GROWTH = Real(0.2, "-", "Bound of the noise that grows with the reading.")
 MEMORY_BOUNDS = Series((-0.2, 0.97), "-", "Bounds of the correlation between neighbouring errors of a sweep.")
-SCATTER_SMOOTH_BOUNDS = Series(
-    (1e-4, 0.3), "-", "Bounds of the amplitude of smooth structure in the search for the scatter."
-)
-SCATTER_START_SMOOTH = Real(
-    0.03, "-", "Amplitude of smooth structure at the start of the search for the scatter."
-)
+SCATTER_SMOOTH_BOUNDS = Series((1e-4, 0.3), "-", "Bounds of the smooth amplitude in the search for scatter.")
+SCATTER_START_SMOOTH = Real(0.03, "-", "Smooth amplitude at the start of the search for the scatter.")
 SCATTER_START_GROWTH = Real(0.004, "-", "Growth from which the search starts if none was found before.")
 SCATTER_SECOND_START = Series(
     (0.0, 0.005, 0.3, 0.1),
@@ -54,34 +46,22 @@ SCATTER_SECOND_START = Series(
     "Second start: log scale, growth, memory, smooth amplitude. A long memory and a large scale replace each other, so that "
     "one start may end in the wrong one of two maxima.",
 )
-SCATTER_STEPS = Series(
-    (1.0, 0.02, 1.0, 0.05), "-", "Typical changes of log scale, growth, memory and smooth amplitude."
-)
-MOST_SCATTER_STEPS = Count(
-    20, "-", "Steps of one search for the scatter; the likelihood is flat near its maximum."
-)
+SCATTER_STEPS = Series((1.0, 0.02, 1.0, 0.05), "-", "Typical changes of log scale, growth, memory, smooth.")
+MOST_SCATTER_STEPS = Count(20, "-", "Steps of one search for the scatter; its likelihood has a flat maximum.")
 TAIL_DEGREES_OF_FREEDOM = Series(
     (2.0, 2.5, 3.0, 4.0, 6.0, 10.0, 20.0), "-", "Degrees of freedom of Student's t that are tried."
 )
-MOST_READING_WEIGHT_ROUNDS = Count(
-    4, "-", "Rounds in which scatter and weights of readings are found in turn."
-)
-READING_WEIGHT_SETTLED = Real(
-    0.05, "-", "Largest change of the root of a weight at which rounds of weighting end."
-)
+MOST_READING_WEIGHT_ROUNDS = Count(4, "-", "Rounds in which scatter and weights are found in turn.")
+READING_WEIGHT_SETTLED = Real(0.05, "-", "Change of the root of a weight at which rounds of weighting end.")
 READINGS_FOR_SCATTER = Count(700, "-", "Readings of a channel that fix its scatter well enough.")
 FEWEST_SWEEPS_FOR_SCATTER = Count(8, "-", "Sweeps that are used at least, however many readings each has.")
 DIAGNOSED_OUTLIER_RATIO = Real(4.5, "-", "Misfit over noise from which on a reading is listed as an outlier.")
 MOST_EXPLANATION_ROUNDS = Count(3, "-", "Rounds of scatter, effects and coefficients in turn.")
-SCATTER_SETTLED = Real(
-    0.1, "-", "Median relative change of the noise at which the rounds of an explanation end."
-)
+SCATTER_SETTLED = Real(0.1, "-", "Median relative change of the noise at which explanation rounds end.")
 SCATTER_SETTLED_TAIL = Real(0.5, "-", "95 % quantile of the change of the noise at which these rounds end.")
 GENEROUS_EFFECT_SIZE = Real(3.0, "-", "Size of effects over the usual one while the scatter is learned.")
 ASSUMED_SMOOTH_AMPLITUDE = Real(0.03, "-", "Relative smooth structure before the scatter is known.")
-BUMP_RESIDUAL_CLIP = Real(
-    3.0, "-", "Standard deviations at which residuals are clipped when bumps are sought."
-)
+BUMP_RESIDUAL_CLIP = Real(3.0, "-", "Standard deviations at which residuals are clipped beside bumps.")
 MOST_BUMPS_SET_ASIDE = Count(2, "-", "Bumps that may explain misfit while the scatter is learned.")
 
 # Where the misfit is
@@ -90,9 +70,7 @@ FEWEST_READINGS_OF_A_REGION = Count(4, "-", "Readings from which the mean of a r
 MOST_REGIONS = Count(12, "-", "Regions that are listed at most.")
 MOST_UNEXPLAINED_REGIONS = Count(4, "-", "Regions that are listed of what stays unexplained.")
 MOST_REGION_BINS = Count(6, "-", "Bins of one variable.")
-REGION_OVERLAP = Real(
-    0.6, "-", "Share of its readings from which on a region repeats a more significant one."
-)
+REGION_OVERLAP = Real(0.6, "-", "Share of readings from which a region repeats a more significant one.")
 REGION_LEVEL_WIDTH = Real(0.1, "-", "Width of a level over the range of the variable.")
 
 # Fit of a hypothesis
@@ -108,22 +86,16 @@ EVIDENCE_MARGIN = Real(
     "checked with diagnosis_study.py --seed 3: nothing hidden, nothing named 20 of 20, docs/diagnosis.md",
 )  # fmt: skip
 TIED_EVIDENCE = Real(1.5, "-", "Difference of log evidence below which effects count as tied.")
-UNIDENTIFIED_LOG_ODDS = Real(
-    1.0, "-", "Log prior odds for a coefficient at zero, and against one that is in the model."
-)
+UNIDENTIFIED_LOG_ODDS = Real(1.0, "-", "Log prior odds for a coefficient at zero, and against another.")
 MOST_CANDIDATES_FITTED = Count(12, "-", "Candidates of a step that are fitted in full at most.")
 FEWEST_CANDIDATES_FITTED = Count(4, "-", "Candidates of a step that are fitted in full in any case.")
 PROMISING_GAIN = Real(2.0, "-", "Gain to first order from which on a candidate is fitted in full.")
-PROMISING_SHARE = Real(
-    0.1, "-", "Gain to first order, over the best one, from which on a candidate is fitted."
-)
+PROMISING_SHARE = Real(0.1, "-", "Gain to first order, over the best, from which a candidate is fitted.")
 MOST_EXCHANGE_CANDIDATES = Count(4, "-", "Best candidates of a step that may replace an accepted effect.")
 EXCHANGE_GAIN = Real(1.0, "-", "Log evidence by which a set of effects must exceed the set that it replaces.")
 
 # Rivals without a name
-STRUCTURE_EVIDENCE = Real(
-    8.0, "-", "Log evidence, the search paid for, of a bump or smooth structure that is found."
-)
+STRUCTURE_EVIDENCE = Real(8.0, "-", "Log evidence, search paid for, of a bump or smooth structure.")
 BUMP_WIDTHS_SIDESLIP = Series((0.7, 1.4, 3.0), "deg", "Widths of bumps over sideslip.")
 BUMP_WIDTHS_CAMBER = Series((3.0, 8.0), "deg", "Widths of bumps over camber.")
 BUMP_AMPLITUDE = Real(0.03, "-", "Usual size (1 sigma) of a bump over the largest reading of its channel.")
@@ -137,37 +109,23 @@ MOST_ANGLE_ORDER = Count(5, "-", "Largest order of smooth structure over sidesli
 MOST_CROSS_ORDER = Count(3, "-", "Largest order of a product of angles with another condition.")
 MOST_TIME_ORDER = Count(6, "-", "Largest order of smooth structure over time.")
 MOST_CONDITION_ORDER = Count(2, "-", "Largest order over load, pressure, temperature or speed.")
-SMOOTH_AMPLITUDES = Series(
-    (0.001, 0.3), "-", "Smallest and largest smooth amplitude, relative to the channel."
-)
-SMOOTH_AMPLITUDES_TRIED = Count(
-    12, "-", "Smooth amplitudes that are tried, evenly spaced in their logarithm."
-)
-LEAST_CERTAINTY = Real(
-    0.9, "-", "Certainty, less the unexplained share, of effects named beside smooth structure."
-)
+SMOOTH_AMPLITUDES = Series((0.001, 0.3), "-", "Smallest and largest smooth amplitude, per channel.")
+SMOOTH_AMPLITUDES_TRIED = Count(12, "-", "Smooth amplitudes that are tried, evenly in their logarithm.")
+LEAST_CERTAINTY = Real(0.9, "-", "Certainty, less unexplained share, of effects beside smooth structure.")
 LEAST_CERTAINTY_OF_SEEN = Real(0.5, "-", "Certainty of named effects for a model fitted to the same points.")
 SIGNIFICANT_EFFECT = Real(2.0, "-", "Standard errors by which a number of a named effect must change.")
 
 # Judged by prediction
 PREDICTION_FALSE_ALARM = Real(0.01, "-", "Probability that chance lets any effect pass (Bonferroni).")
-LEAST_PREDICTED_SHARE = Real(
-    0.02, "-", "Share of the misfit of left-out sweeps that a named effect must remove."
-)
-WORSE_PREDICTION = Real(
-    2.0, "-", "Standard errors over the sweeps by which one prediction is worse than another."
-)
+LEAST_PREDICTED_SHARE = Real(0.02, "-", "Misfit of left-out sweeps that a named effect must remove.")
+WORSE_PREDICTION = Real(2.0, "-", "Standard errors over the sweeps that make a prediction worse.")
 FEWEST_SWEEPS_TO_PREDICT = Count(8, "-", "With fewer sweeps, chance cannot be separated from a common gain.")
 
 # Ties and what would separate them
-HOPELESS_RIVAL = Real(
-    40.0, "-", "Log evidence behind the best candidate beyond which a rival is not refitted."
-)
+HOPELESS_RIVAL = Real(40.0, "-", "Log evidence behind the best beyond which a rival is not refitted.")
 HOPELESS_SHARE = Real(0.5, "-", "Share of the gain of its step that widens this limit beside other effects.")
 SEPARATING_CHI2 = Real(9.0, "-", "Expected chi2 between explanations at which a run is worthwhile: 3 sigma.")
-TIE_RUN_CAMBERS = Series(
-    (-40, -25, -15, -8, -4, 0, 4, 8, 15, 25, 40), "deg", "Angles of an added camber sweep."
-)
+TIE_RUN_CAMBERS = Series((-40, -25, -15, -8, -4, 0, 4, 8, 15, 25, 40), "deg", "Cambers of an added sweep.")
 TIE_RUN_SIDESLIP_POINTS = Count(13, "-", "Points of an added sideslip sweep.")
 TIE_RUN_LEANED = Real(20.0, "deg", "Camber of an added leaned sideslip sweep.")
 TIE_RUN_OTHER_LOADS = Series((0.5, 1.4), "-", "Added loads over the smallest and the largest load measured.")
@@ -194,8 +152,6 @@ UNCHANGED_SHARE_OF_U = Real(0.5, "-", "Change of eps_gamma over its uncertainty 
 
 # Validation
 MOST_VALIDATION_FOLDS = Count(8, "-", "Groups of sweeps that are left out in turn.")
-VALIDATION_FOLDS_OF_MANY_POINTS = Count(
-    4, "-", "Groups of sweeps that are left out in turn if there are many points."
-)
+VALIDATION_FOLDS_OF_MANY_POINTS = Count(4, "-", "Groups of sweeps left out in turn if points are many.")
 MANY_POINTS_TO_VALIDATE = Count(1000, "-", "Points from which on fewer groups suffice.")
 RAISED_GAP = Real(2.0, "-", "Standard deviations beyond chance at which a channel counts as worse.")

@@ -10,17 +10,18 @@ import numpy as np
 from mffit.config import Config, axis_signs, declared_faults
 from mffit.diagnosis.answer import answer
 from mffit.diagnosis.conditions import by_condition
-from mffit.diagnosis.confirmation import confirmed
-from mffit.diagnosis.declared import declared_priors
-from mffit.diagnosis.explain import explain
-from mffit.diagnosis.inexact import Inexactness
+from mffit.diagnosis.explain import explain, only_first
+from mffit.diagnosis.explanation import Explanation
+from mffit.diagnosis.inexact import EXACT, Inexactness
 from mffit.diagnosis.inexact import declared as declared_inexactness
 from mffit.diagnosis.needs import possible
-from mffit.diagnosis.notes import Note, OneSweep
+from mffit.diagnosis.notes import NoRepair, Note, OneSweep
+from mffit.diagnosis.priors import declared_priors
 from mffit.diagnosis.problem import DiagnosisProblem
 from mffit.diagnosis.result import Diagnosis
 from mffit.diagnosis.stated import stated_noise, with_uncertainties
 from mffit.diagnosis.strangers import named_of_this_tyre, refuse_strangers
+from mffit.diagnosis.validation import Validation, validate
 from mffit.effects import CATALOG, Effect
 from mffit.points import Points
 from mffit.progress import Progress, silent
@@ -76,7 +77,7 @@ def diagnose(
     found, stranger = named_of_this_tyre(found)
     progress("checking on left-out sweeps")
     given = DiagnosisProblem(points, start, found.plain.noise)
-    found, validation, refused = confirmed(found, given, inexact, seen=seen)
+    found, validation, refused = _confirmed(found, given, inexact, seen=seen)
     remarks = [note for note in (wrong, *notes, stranger, refused) if note is not None]
     return answer(found, given, tyre, config, validation, remarks, candidates)
 
@@ -112,3 +113,26 @@ def _candidates(
     if len(np.unique(points.sweep)) < 2:
         return [], [*hidden, OneSweep()]
     return [e for e in candidates if not set(e.parameters) <= set(known)], [*hidden]
+
+
+def _confirmed(
+    found: Explanation, given: DiagnosisProblem, inexact: Inexactness, *, seen: bool
+) -> tuple[Explanation, Validation, NoRepair | None]:
+    """The whole explanation if left-out sweeps confirm it, else its first effect, else nothing; and what was refused.
+
+    ``given`` has the scatter of the readings alone. ``seen``: the model was fitted to these points.
+    """
+    # Refitting coefficients to points that they were fitted to repairs nothing.
+    if seen and not found.chosen.effects:
+        found = found.withdrawn()
+    validation = validate(given, found.refined, inexact if found.coefficients else EXACT, seen=seen)
+    if not (found.chosen.effects or found.coefficients) or validation.helps:
+        return found, validation, None
+    refused = NoRepair(tuple(effect.name for effect in found.chosen.effects), validation)
+    if len(found.chosen.effects) > 1:
+        fewer = only_first(found, inexact)
+        validation = validate(given, fewer.refined, inexact, seen=seen)
+        if validation.helps:
+            return fewer, validation, refused
+    before = validation.gap_before
+    return found.withdrawn(), Validation(validation.folds, before, before), refused

@@ -31,16 +31,8 @@ def explain(
 ) -> Explanation:
     """Find what explains the readings.
 
-    Parameters
-    ----------
-    points : with uncertainties
-    start : the simulation as given
-    stated : the noise as stated
-    candidates : effects that the data can show
-    inexact : prior of the model's coefficients
-    declared : declared rig errors: name -> (value, standard uncertainty)
-    seen : whether the model was fitted to these points: what its formulae cannot follow then stays as smooth structure, which
-        is no evidence against an effect beside it
+    ``declared`` has the value and standard uncertainty of each declared rig error. ``seen``: the model was fitted to these
+    points; what its formulae cannot follow then stays as smooth structure, which is no evidence against an effect beside it.
     """
     basis = smooth_basis(points, start.predict(points))
     found: Explanation | None = None

@@ -76,10 +76,7 @@ class Explanation:
     def certainty(self, effect: Effect, *, counted: bool = True) -> float:
         """Probability of an effect against its absence with the best structure without a name in its place.
 
-        Parameters
-        ----------
-        effect : one of the chosen
-        counted : whether misfit that stays unexplained lowers the certainty
+        If ``counted``, misfit that stays unexplained lowers it.
         """
         if effect.id in self.predicted:
             return self.predicted[effect.id].confidence

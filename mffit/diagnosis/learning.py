@@ -31,11 +31,7 @@ def learned_noise(
 ) -> Noise:
     """The noise with the scatter that stays when every candidate, coefficient and structure may explain the misfit.
 
-    Parameters
-    ----------
-    stated, before : as stated, and as found in the last round, where the search starts
-    points, state : readings and the simulation that they are compared with
-    candidates, inexact, basis : what could explain the misfit
+    The search starts at the noise ``before``, as found in the last round.
     """
     problem = DiagnosisProblem(points, state, stated.alone())
     predicted = np.nan_to_num(state.predict(points))

@@ -35,12 +35,11 @@ def limits(
     others = [e for e in candidates if e.id not in known and not e.switches]
     for effect, groups in problem.columns(chosen.state, others).items():
         sizes = []
-        for (
-            columns
-        ) in groups:  # of an effect that is even in its number, the start at which it is most visible counts
+        for columns in groups:
             white = outside(axes, problem.noise.whiten(columns[:, np.any(columns != 0.0, axis=0)]))
             covariance = np.linalg.inv(white.T @ white + np.eye(white.shape[1]))
             found = np.abs(covariance @ (white.T @ chosen.residual))
             sizes.append(rms(found + constants.LIMIT_COVERAGE * np.sqrt(np.diag(covariance))))
+        # Of an effect that is even in its number, the start at which it is most visible counts.
         out.append(Limit(effect, min(sizes)))
     return tuple(sorted(out, key=lambda row: row.share))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
-from enum import Enum, auto
+from enum import Enum
 from functools import cached_property
 
 import numpy as np
@@ -15,10 +15,10 @@ from mffit.quantities import CHANNELS
 
 
 class Origin(Enum):
-    """Where the uncertainties of the readings come from."""
+    """Where the uncertainties of the readings come from, in words."""
 
-    STATED = auto()  #: with the data
-    SCATTER = auto()  #: of measured minus simulated between neighbouring points
+    STATED = "stated uncertainties"
+    SCATTER = "scatter between neighbouring points"
 
 
 @dataclass(frozen=True, slots=True)
@@ -149,11 +149,7 @@ class Noise:
     def scattering(self, scatter: Mapping[str, Scatter], size: np.ndarray, weight: np.ndarray) -> Noise:
         """The noise with another scatter.
 
-        Parameters
-        ----------
-        scatter : by channel
-        size : (2n,) readings in proportion to which the noise may grow
-        weight : (2n,) of each reading
+        ``weight`` (2n,) is that of each reading; the noise may grow in proportion to ``size`` (2n,).
         """
         halves = zip(CHANNELS, np.split(self.stated, 2), np.split(np.nan_to_num(size), 2), strict=True)
         u = np.concatenate(

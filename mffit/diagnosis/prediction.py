@@ -42,10 +42,7 @@ def _z(change: np.ndarray) -> float:
 class Prediction:
     """Left-out sweeps predicted to first order, every number estimated again without them.
 
-    Parameters
-    ----------
-    problem : points, model and the scatter of the readings alone
-    inexact : prior of the model's coefficients, which are estimated again as well
+    ``problem`` has the scatter of the readings alone.
     """
 
     def __init__(self, problem: DiagnosisProblem, inexact: Inexactness) -> None:

@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
+from mffit.config import Config, declared_rig
 from mffit.diagnosis import constants
 from mffit.effects import Effect, Free
 from mffit.least_squares import Number
@@ -73,3 +74,18 @@ def beyond_declaration(known: Number, value: float, declared: Mapping[str, tuple
     narrower = math.log(known.spread / u) if u < known.spread else 0.0
     worse = constants.RIGS_WORSE_THAN_DECLARED
     return min(math.log((1.0 - worse) * math.exp(min(near + narrower, 30.0)) + worse), 0.0)
+
+
+def declared_priors(config: Config, points: Points, start: Simulation) -> dict[str, tuple[float, float]]:
+    """Declared rig errors: name -> (value in the simulation, standard uncertainty)."""
+    declared = declared_rig(config.rig, _cornering_stiffness(points, start))
+    if not np.any(points.phi_t):
+        declared.pop("path_radius_m", None)
+    return {name: (start.number(name, points), u) for name, (_, u) in declared.items()}
+
+
+def _cornering_stiffness(points: Points, start: Simulation) -> float:
+    """Cornering stiffness of the model at the median load and zero angles [N/rad]."""
+    middle = points.select(np.array([np.argmin(np.abs(points.Fz - np.median(points.Fz)))]))
+    _, slope = start.sensitivities(middle.replace(alpha=0.0, gamma=0.0), ["alpha_0_deg"])
+    return float(np.degrees(slope.Fy[0, 0]))

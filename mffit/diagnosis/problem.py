@@ -21,11 +21,8 @@ from mffit.rig import Simulation
 class DiagnosisProblem:
     """Readings against a simulation.
 
-    Parameters
-    ----------
-    points, start, noise : what was measured, the model, and how uncertain both are
-    declared : declared rig errors: name -> (value, standard uncertainty)
-    offset : (2n,) added to the readings if ``start`` is not at the centre of the coefficients' prior
+    ``declared`` has the value and standard uncertainty of each declared rig error. ``offset`` (2n,) is added to the readings if
+    ``start`` is not at the centre of the coefficients' prior.
     """
 
     def __init__(

@@ -1,4 +1,4 @@
-"""The record of a diagnosis."""
+"""The record of a diagnosis, and readings without the rig's errors that it found."""
 
 from __future__ import annotations
 
@@ -83,3 +83,20 @@ class Diagnosis(Brief):
     def ranked_alternatives(self) -> list[tuple[str, float]]:
         """Id and confidence of effects that were not accepted, likeliest first."""
         return sorted(self.alternatives.items(), key=lambda item: -item[1])
+
+
+def corrected_points(points: Points, state: Simulation) -> Points:
+    """Points as a faultless rig at reference conditions would have reported them at the same readings of the angles.
+
+    The influence of the faults on a reading is that of the diagnosed model. Shifting the angles instead would break the
+    mirror symmetry of the set-points.
+
+    Parameters
+    ----------
+    points : raw points (n,), angles as read
+    state : the simulation after all corrections, backlash included
+    """
+    faulty, faultless = state.readings(points), state.faultless.readings(points)
+    return points.replace(
+        Fy=points.Fy - (faulty.Fy - faultless.Fy), Mz=points.Mz - (faulty.Mz - faultless.Mz)
+    )

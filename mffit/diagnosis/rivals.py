@@ -29,12 +29,8 @@ def competed(
 ) -> Explanation:
     """The effects that explain most, and structure without a name in their place or beside them if it explains more.
 
-    Parameters
-    ----------
-    problem : with the inexact coefficients in its covariance
-    columns : (2n, k) of these
-    candidates : effects that the data can show
-    basis : (2n, k) of smooth structure
+    The covariance of ``problem`` contains the ``columns`` (2n, k) of the inexact coefficients; ``basis`` (2n, k) holds the
+    smooth structure.
     """
     found = selected(problem, candidates, basis)
     chosen, null, scan = found.chosen, problem.null, smooth_scan(basis, problem.noise)
@@ -62,10 +58,7 @@ def competed(
 def certain(found: Explanation, *, counted: bool) -> Explanation:
     """The explanation without effects that smooth structure may as well explain, the least certain dropped first.
 
-    Parameters
-    ----------
-    found : with smooth structure
-    counted : whether misfit that stays unexplained lowers the certainty of an effect
+    If ``counted``, misfit that stays unexplained lowers the certainty of an effect.
     """
     needed = constants.LEAST_CERTAINTY if counted else constants.LEAST_CERTAINTY_OF_SEEN
     while found.chosen.effects:

@@ -36,21 +36,14 @@ class Explained:
     """What could explain a residual, one prior standard deviation of each as a column (2n, k)."""
 
     named: np.ndarray  #: effects, coefficients, bumps
-    runs: (
-        np.ndarray
-    )  #: effects that are constant along a run, the rivals of errors that are correlated along it
+    runs: np.ndarray  #: effects that are constant along a run, rivals of errors correlated along it
     smooth: np.ndarray  #: low-order structure; its amplitude is found with the scatter
 
 
 def learned(noise: Noise, residual: np.ndarray, explained: Explained, size: np.ndarray) -> Noise:
     """The noise with the scatter that the residual shows.
 
-    Parameters
-    ----------
-    noise : as stated, or as found before; the search starts there
-    residual : (2n,) measured minus simulated
-    explained : what other causes could bring
-    size : (2n,) readings in proportion to which the noise may grow
+    The search starts from ``noise``, which may grow in proportion to ``size`` (2n,).
     """
     weight, scatter = np.ones(len(residual)), dict(noise.scatter)
     for name, rows in zip(CHANNELS, np.split(np.arange(len(residual)), 2), strict=True):

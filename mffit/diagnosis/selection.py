@@ -37,15 +37,12 @@ class Step:
     def passes(self) -> bool:
         return self.gain > self.threshold
 
-    def prior(self, trial: Hypothesis) -> float:
-        """Log prior of the trial's newest effect."""
-        return log_prior(trial.effects[-1], self.start)
-
     def weights(self) -> dict[str, float]:
         """Posterior weight per effect id, "none" included; the prior of each effect is one over the number of effects."""
-        logs = {
-            t.effects[-1].id: t.log_evidence + self.prior(t) - math.log(len(self.trials)) for t in self.trials
-        }
+        logs = {}
+        for trial in self.trials:
+            newest, choice = trial.effects[-1], math.log(len(self.trials))
+            logs[newest.id] = trial.log_evidence + log_prior(newest, self.start) - choice
         logs["none"] = self.before.log_evidence
         top = max(logs.values())
         total = sum(math.exp(v - top) for v in logs.values())

@@ -18,11 +18,7 @@ def with_uncertainties(points: Points, state: Simulation) -> tuple[Points, Origi
     """The points with a standard uncertainty for every reading, and its origin.
 
     Missing uncertainties are estimated from the scatter of measured minus simulated between neighbouring points of each sweep.
-
-    Raises
-    ------
-    InputError
-        All stated uncertainties are zero.
+    If all stated uncertainties are zero, an InputError asks for real ones.
     """
     simulated = state.readings(points)
     Fy, origin = _channel(points, points.Fy, points.u_Fy, simulated.Fy, "u_Fy_N")

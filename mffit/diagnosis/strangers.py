@@ -16,13 +16,7 @@ from tir import Tyre
 
 
 def refuse_strangers(points: Points, tyre: Tyre, start: Simulation) -> None:
-    """Raise an error with the likely cause if model and data cannot belong together.
-
-    Raises
-    ------
-    InputError
-        Too few points, loads of another order of magnitude, or readings in other axes.
-    """
+    """Raise an InputError with the likely cause if model and data cannot belong together."""
     if len(points) < constants.FEWEST_POINTS_TO_DIAGNOSE:
         raise InputError(
             f"{len(points)} points are too few for a diagnosis; measure at least {constants.FEWEST_POINTS_TO_DIAGNOSE}"

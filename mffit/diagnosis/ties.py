@@ -11,11 +11,25 @@ from mffit.diagnosis import constants
 from mffit.diagnosis.hypothesis import Hypothesis
 from mffit.points import Points, main_pressure
 
-Run = Enum(
-    "Run",
-    "BACKWARD TURNED_ON_RIM OTHER_LOAD CAMBER BACKWARD_CAMBER LEANED LOW_PRESSURE FAST WARM LATE STRAIGHT WIDE STRAIGHT_CAMBER",
-)
-"""A run that could be added to the programme."""
+
+class Run(Enum):
+    """A run that could be added to the programme, in words."""
+
+    BACKWARD = "a backward sideslip sweep at {load:.0f} N"
+    TURNED_ON_RIM = "a sideslip sweep at {load:.0f} N with the tyre turned on its rim"
+    OTHER_LOAD = "a sideslip sweep at {load:.0f} N"
+    CAMBER = f"a camber sweep to {max(constants.TIE_RUN_CAMBERS):g} deg at {{load:.0f}} N"
+    BACKWARD_CAMBER = "a backward camber sweep at {load:.0f} N"
+    LEANED = f"a sideslip sweep at {constants.TIE_RUN_LEANED:g} deg camber and {{load:.0f}} N"
+    LOW_PRESSURE = (
+        f"a sideslip sweep at {constants.TIE_RUN_LOW_PRESSURE:g} of the pressure and {{load:.0f}} N"
+    )
+    FAST = f"a sideslip sweep at {constants.TIE_RUN_FAST:g} times the speed and {{load:.0f}} N"
+    WARM = f"a repeated sideslip sweep at {{load:.0f}} N with the tyre {constants.TIE_RUN_WARMER:g} K warmer"
+    LATE = "a repeated sideslip sweep at {load:.0f} N at the end of the test"
+    STRAIGHT = "a sideslip sweep at {load:.0f} N on a straight path"
+    WIDE = f"a sideslip sweep at {{load:.0f}} N on a path of {constants.TIE_RUN_WIDE:g} times the radius"
+    STRAIGHT_CAMBER = "a camber sweep at {load:.0f} N on a straight path"
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,11 +49,7 @@ class Separation:
 def separation(points: Points, a: Hypothesis, b: Hypothesis, noise_Fy: float, noise_Mz: float) -> Separation:
     """The candidate run at which two refitted explanations differ most.
 
-    Parameters
-    ----------
-    points : the programme to which a run could be added
-    a, b : the explanations
-    noise_Fy, noise_Mz : standard uncertainty of a reading [N], [Nm]; NaN without a moment
+    The noise is the standard uncertainty of a reading [N], [Nm]; NaN without a moment.
     """
     found = []
     for run, added in candidate_runs(points):

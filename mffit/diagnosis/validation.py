@@ -56,13 +56,9 @@ def validate(
 ) -> Validation:
     """Refit the hypothesis without each group of sweeps and predict that group.
 
-    Parameters
-    ----------
-    problem : with the scatter of the readings alone, or with whatever else the fits shall allow for
-    hypothesis : its effects, and where to start
-    inexact : prior of the model's coefficients, which are refitted as well
-    seen : whether the model was fitted to these points: it is then refitted without the group for the gap before too, which
-        it would otherwise predict from itself
+    ``problem`` has the scatter of the readings alone, or whatever else the fits shall allow for. If the model was fitted to
+    these points (``seen``), it is refitted without the group for the gap before too, which it would otherwise predict from
+    itself.
     """
     points = problem.points
     measured = np.concatenate([points.Fy, points.Mz])

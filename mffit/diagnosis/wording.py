@@ -8,7 +8,7 @@ from typing import assert_never
 
 from mffit.diagnosis import constants
 from mffit.diagnosis.bumps import Bump
-from mffit.diagnosis.noise import Noise, Origin
+from mffit.diagnosis.noise import Noise
 from mffit.diagnosis.notes import (
     DirectMethodRedone,
     HardlyThisTyre,
@@ -20,33 +20,14 @@ from mffit.diagnosis.notes import (
     OneSweep,
 )
 from mffit.diagnosis.result import Diagnosis, Found
-from mffit.diagnosis.ties import Run, Separation
+from mffit.diagnosis.ties import Separation
 from mffit.diagnosis.validation import Gap, Validation
 from mffit.effects import NEEDS, Effect
 from mffit.quantities import CHANNELS, CONDITIONS
 from mffit.rounding import to_uncertainty
-from mffit.suspicion import Misread, Outlier, about
+from mffit.suspicion import Misread, Outlier
 from tir import Quantity
 
-RUNS = {
-    Run.BACKWARD: "a backward sideslip sweep at {load:.0f} N",
-    Run.TURNED_ON_RIM: "a sideslip sweep at {load:.0f} N with the tyre turned on its rim",
-    Run.OTHER_LOAD: "a sideslip sweep at {load:.0f} N",
-    Run.CAMBER: f"a camber sweep to {max(constants.TIE_RUN_CAMBERS):g} deg at {{load:.0f}} N",
-    Run.BACKWARD_CAMBER: "a backward camber sweep at {load:.0f} N",
-    Run.LEANED: f"a sideslip sweep at {constants.TIE_RUN_LEANED:g} deg camber and {{load:.0f}} N",
-    Run.LOW_PRESSURE: f"a sideslip sweep at {constants.TIE_RUN_LOW_PRESSURE:g} of the pressure and {{load:.0f}} N",
-    Run.FAST: f"a sideslip sweep at {constants.TIE_RUN_FAST:g} times the speed and {{load:.0f}} N",
-    Run.WARM: f"a repeated sideslip sweep at {{load:.0f}} N with the tyre {constants.TIE_RUN_WARMER:g} K warmer",
-    Run.LATE: "a repeated sideslip sweep at {load:.0f} N at the end of the test",
-    Run.STRAIGHT: "a sideslip sweep at {load:.0f} N on a straight path",
-    Run.WIDE: f"a sideslip sweep at {{load:.0f}} N on a path of {constants.TIE_RUN_WIDE:g} times the radius",
-    Run.STRAIGHT_CAMBER: "a camber sweep at {load:.0f} N on a straight path",
-}
-ORIGINS = {
-    Origin.STATED: "stated uncertainties",
-    Origin.SCATTER: "scatter between neighbouring points",
-}
 TO_DO = {
     "tyre": "nothing at the rig; the corrected property file contains it",
     "environment": "keep it constant, or use the corrected points, from which it is removed; a property file cannot contain it",
@@ -127,7 +108,7 @@ def note(remark: Note) -> str:
         case OneSweep():
             return "One sweep cannot separate causes: add sweeps at another load, camber or direction."
         case Misread():
-            return about(remark)
+            return remark.sentence
         case NotVisible(needs, effects):
             lack = " and ".join(NEEDS[need] for need in needs)
             return f"Not visible in these data, which lack {lack}: {', '.join(e.name for e in effects)}."
@@ -180,7 +161,7 @@ def _with_u(x: Quantity) -> str:
 
 def source(noise: Noise) -> str:
     """Origin of the uncertainties of the readings; empty if Fy was not measured."""
-    return "" if noise.origin is None else ORIGINS[noise.origin]
+    return "" if noise.origin is None else noise.origin.value
 
 
 def scatter(noise: Noise) -> list[str]:
@@ -212,7 +193,7 @@ def separation(found: Separation | None) -> str:
     """The run that separates two explanations; empty without a tie."""
     if found is None:
         return ""
-    run = RUNS[found.run].format(load=found.load)
+    run = found.run.value.format(load=found.load)
     if found.worthwhile:
         return f"{run} (expected chi2 {found.chi2:.0f})"
     return f"none of the usual runs separates them at this size; the best would be {run} (expected chi2 {found.chi2:.1f})"

@@ -1,10 +1,42 @@
-"""All effects, in one list: tyre, rig and environment compete."""
+"""All effects, in one list: tyre, rig and environment compete. Those of the rig are made from its records of errors."""
 
 from __future__ import annotations
 
-from mffit.effects.effect import Effect
-from mffit.effects.of_rig import RIG_EFFECTS
+from mffit.effects.effect import Effect, Free
 from mffit.effects.tyre import TYRE_EFFECTS
+from mffit.rig_errors import BY_NAME, RIG_ERRORS, Appearance, RigError
 
-CATALOG: tuple[Effect, ...] = (*TYRE_EFFECTS, *RIG_EFFECTS)
+
+def _effect(error: RigError, seen: Appearance) -> Effect:
+    """The effect as which a diagnosis sees a rig error."""
+    return Effect(
+        id=seen.id,
+        name=seen.name,
+        kind=error.kind,
+        physics=seen.physics,
+        free=(_free(error, seen), *(_free(BY_NAME[name]) for name in seen.together_with)),
+        needs=seen.needs,
+        parity=seen.parity,
+        confusable_with=seen.confusable_with,
+        remedy=seen.remedy,
+        axes=seen.axes,
+    )
+
+
+def _free(error: RigError, seen: Appearance | None = None) -> Free:
+    return Free(
+        name=error.name,
+        spread=error.spread if seen is None or seen.spread is None else seen.spread,
+        scan=error.scan,
+        lower=error.lower,
+        upper=error.upper,
+        relative=error.relative,
+        per_run=seen is not None and seen.per_run,
+    )
+
+
+CATALOG: tuple[Effect, ...] = (
+    *TYRE_EFFECTS,
+    *(_effect(error, seen) for error in RIG_ERRORS for seen in error.seen_as),
+)
 NAMES = {effect.id: effect.name for effect in CATALOG}

@@ -4,8 +4,8 @@ from mffit.fit.agreement import Agreement
 from mffit.fit.coefficients import Coefficient
 from mffit.fit.ensemble import ensemble
 from mffit.fit.files import file_names
+from mffit.fit.fitted import with_free_epsilon
 from mffit.fit.fitting import fit
-from mffit.fit.freed import with_free_epsilon
 from mffit.fit.posterior import Posterior
 from mffit.fit.result import FitResult
 from mffit.fit.stages import StageRecord

@@ -35,11 +35,7 @@ def coefficient_records(
 ) -> dict[str, Coefficient]:
     """The record of every number of the fitted model.
 
-    Parameters
-    ----------
-    known : every value after the fit
-    fitted : the fit
-    fitted_after : coefficients that were fitted after the others
+    ``fitted_after`` are coefficients that were fitted after the others.
     """
     stderr = {name: fitted.posterior.stderr[name] for name in fitted.values} | {
         n: q.u for n, q in fitted_after.items()

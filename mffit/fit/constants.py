@@ -23,14 +23,10 @@ STRONG_CORRELATION = Real(0.95, "-", "Least absolute correlation of two coeffici
 # Prior knowledge of coefficients
 SIMILAR_TYRES_SPREAD = Real(0.3, "-", "Relative standard deviation of a coefficient among similar tyres.")
 LEAST_SPREAD_BASE_FILE = Real(
-    0.05, "-", "Least standard deviation around a base file's value, over the coefficient's plausible range."
+    0.05, "-", "Least prior spread around a base file's value, per plausible width."
 )
-LEAST_SPREAD_DEFAULT = Real(
-    0.1, "-", "Least standard deviation around the table's default, over the coefficient's plausible range."
-)
-SAME_NOMINAL_CONDITION = Real(
-    0.01, "-", "Relative difference of nominal load or pressure up to which coefficients are comparable."
-)
+LEAST_SPREAD_DEFAULT = Real(0.1, "-", "Least prior spread around the table's default, per plausible width.")
+SAME_NOMINAL_CONDITION = Real(0.01, "-", "Relative difference of nominal conditions that are comparable.")
 
 # Estimates of what a cornering test does not measure
 ESTIMATED_STATIC_DEFLECTION = Real(0.05, "-", "Static deflection at nominal load over unloaded radius.")
@@ -46,9 +42,7 @@ PKY2_STARTS = Series((0.5, 5.0), "-", "Range of PKY2, the load of greatest stiff
 PKY2_START_COUNT = Count(46, "-", "Values of PKY2 that are tried for the start: steps of 0.1.")
 
 # Physical limits
-LIMIT_MARGIN = Real(
-    0.02, "-", "Distance that the fit keeps from a physical limit, in units of its violation."
-)
+LIMIT_MARGIN = Real(0.02, "-", "Distance kept from a physical limit, in units of its violation.")
 LEAST_FRICTION = Real(0.1, "-", "Physical limit: least lateral friction.")
 LEAST_CORNERING_STIFFNESS = Real(0.5, "1/rad", "Physical limit: least cornering stiffness over load.")
 LEAST_TRAIL_SLOPE_FACTOR = Real(0.3, "-", "Physical limit: least slope factor B_t of the trail.")
@@ -64,9 +58,7 @@ LIMIT_WEIGHT_OF_DERIVED_FILE = Real(
 )
 
 # Stages and polish
-POINTS_OF_A_STAGE = Count(
-    600, "-", "Points of a stage or first pass; more cost time, and the polish uses all."
-)
+POINTS_OF_A_STAGE = Count(600, "-", "Points of a stage or first pass; the polish uses all points.")
 STRIDE_DIVISOR = Count(8, "-", "Factor by which the points increase from one pass of the polish to the next.")
 RESTART_MISFIT = Real(1.3, "-", "Misfit over stated noise above which alternative starting values are tried.")
 RESTART_GAIN = Real(0.97, "-", "A restart is kept if its sum of squares is below this share of the best one.")
@@ -94,9 +86,7 @@ DRAWN_LIMIT_MARGINS = Real(2.0, "-", "Violation of a limit that a drawn tyre may
 # Ranges of the written file
 SINGLE_PRESSURE_SPREAD = Real(0.05, "-", "Relative spread of pressures up to which they count as one.")
 SINGLE_PRESSURE_COVER = Real(0.1, "-", "Relative distance from a single pressure that the limits cover.")
-RANGE_SHARES = Series(
-    (1.0, 0.75, 0.5, 0.25), "-", "Shares of the way to a wished end that are tried in turn."
-)
+RANGE_SHARES = Series((1.0, 0.75, 0.5, 0.25), "-", "Shares of the way to a wished end, tried in turn.")
 WRITTEN_ALPMAX = Real(20.0, "deg", "Wished sideslip range of a file.")
 WRITTEN_CAMMAX = Real(45.0, "deg", "Camber up to which a file's range may exceed the tested one.")
 WRITTEN_CAMMAX_GROWTH = Real(1.5, "-", "Largest camber range of a file over the tested one.")
@@ -109,15 +99,11 @@ REMAINING_FORCE_GRID = Series((13, 3), "-", "Sideslip angles and loads at which 
 REMAINING_FORCE_CAMBERS = Series((-0.5, 0.0, 0.5), "-", "Camber of that test over the largest camber.")
 
 # Conditions at which files are derived and compared
-WEIGHT_OUTSIDE_TESTED = Real(
-    0.02, "-", "Weight of conditions not tested: plausible there, at little cost inside."
-)
+WEIGHT_OUTSIDE_TESTED = Real(0.02, "-", "Weight of conditions not tested: plausible, at little cost inside.")
 WEIGHT_IN_CORNER = Real(0.5, "-", "Weight of conditions with both large sideslip and large camber.")
 ROAD_ALPHA_SCALE = Real(4.0, "deg", "Sideslip that counts as large together with large camber.")
 ROAD_GAMMA_SCALE = Real(25.0, "deg", "Camber that counts as large together with large sideslip.")
-CAMBER_LINE_GRID = Series(
-    (3, 17), "-", "Lines, one per load, along which camber thrust is kept; their angles."
-)
+CAMBER_LINE_GRID = Series((3, 17), "-", "Lines, one per load, that keep camber thrust; their angles.")
 MODERATE_CAMBER = Real(30.5, "deg", "Camber up to which the misfit at moderate camber is stated.")
 ROAD_RADII = Series((100.0, 30.0, 10.0), "m", "Roads for which the missing turn-slip force is stated.")
 

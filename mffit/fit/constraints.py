@@ -34,11 +34,7 @@ def violations(p: Any, envelope: Envelope) -> np.ndarray:
 def limits(p: Any, envelope: Envelope, by: Sequence[Traced] = ()) -> tuple[np.ndarray, np.ndarray]:
     """Every limit at every condition of the envelope (k,), above 0 where broken, and its derivatives (k, m).
 
-    Parameters
-    ----------
-    p : the property file's values as attributes, plain or traced
-    envelope : ranges over which the limits must hold
-    by : the m traced values to differentiate by
+    ``p`` has the file's values as attributes, plain or traced; ``by`` are the m traced values to differentiate by.
     """
     rows, n = _rows(p, envelope), envelope.size
     value = np.concatenate([np.broadcast_to(plain(row), n) for row in rows])

@@ -48,13 +48,7 @@ def make_files(
 ) -> Files:
     """The files of a build: on a disc one for each use, on a flat track one.
 
-    Parameters
-    ----------
-    config : the validated ``tyre.toml``
-    known : the fitted model and the origin of every value
-    points : the points it was fitted to
-    base : property file with the values that were not fitted, if there is one
-    C_gamma : measured camber stiffness [N/rad] by load [N]; empty on a flat track
+    ``C_gamma`` is the measured camber stiffness [N/rad] by load [N]; empty on a flat track.
     """
     disc = config.rig.on_disc
     tested = tested_ranges(points)

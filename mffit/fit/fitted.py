@@ -1,15 +1,17 @@
-"""The record of a finished search: values, errors and weights at the solution."""
+"""The record of a finished search: values, errors and weights at the solution; and the same with PECP1 free."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
 
+from mffit.fit import constants
 from mffit.fit.posterior import Posterior
 from mffit.fit.problem import FitProblem
 from mffit.fit.stages import StageRecord
-from mffit.least_squares import Number
+from mffit.least_squares import Number, solve
 from mffit.rig import Simulation
+from tir.parameters import BY_NAME
 
 
 @dataclass(frozen=True, slots=True)
@@ -18,9 +20,7 @@ class Fitted:
 
     values: Mapping[str, float]  #: coefficients
     rig: Mapping[str, tuple[float, float]]  #: rig error -> (value, standard error)
-    correlation: Mapping[
-        str, tuple[str, float]
-    ]  #: the strongest of each number, with its partner, if it is strong
+    correlation: Mapping[str, tuple[str, float]]  #: strong ones only: number -> (partner, correlation)
     posterior: Posterior  #: of tyre and rig, held values included
     intervals: Mapping[str, tuple[float, float]]
     """95 % intervals of the numbers of a bent valley of equally good fits."""
@@ -38,3 +38,21 @@ class Fitted:
     def simulation(self) -> Simulation:
         """The fitted tyre on the rig as fitted."""
         return self.problem.simulation
+
+
+def with_free_epsilon(fitted: Fitted) -> Simulation:
+    """The simulation refitted from its solution with PECP1 free.
+
+    If PECP1 is held at a value that is a little off, the other spin coefficients compensate for it, which distorts the effect of
+    finite spin on the slopes of the model.
+    """
+    name, problem = "PECP1", fitted.problem
+    if any(number.name == name for number in fitted.numbers):
+        return fitted.simulation
+    row, held = BY_NAME[name], float(fitted.simulation.values[name])
+    free = Number(name, row.inside(held), *row.bounds, expected=held)
+    numbers = [*problem.starting_here(fitted.numbers), free]
+    solution = solve(
+        problem.free([n.name for n in numbers]), numbers, tolerance=constants.FREE_EPSILON_TOLERANCE
+    )
+    return problem.with_values(solution.values).simulation

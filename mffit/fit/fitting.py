@@ -14,22 +14,21 @@ from mffit.fit import agreement
 from mffit.fit.coefficients import coefficient_records, of_file
 from mffit.fit.comments import file_comments
 from mffit.fit.files import make_files
-from mffit.fit.fit_warnings import warnings
 from mffit.fit.fitted import Fitted
 from mffit.fit.known import known_after_fit, known_before_fit
 from mffit.fit.plan import FitPlan, fit_plan
 from mffit.fit.priors import of_fleet
 from mffit.fit.problem import FitProblem, fit_problem
 from mffit.fit.result import FitResult
-from mffit.fit.rolling_resistance import rolling_resistance
+from mffit.fit.rolling import rolling_resistance
 from mffit.fit.staged import fit_staged
 from mffit.fit.start import starting_values
 from mffit.fit.virtual_zero import epsilon_gamma_of_model
-from mffit.fit.wording import explanations
+from mffit.fit.wording import explanations, warnings
 from mffit.parts import Parts
 from mffit.points import Points
 from mffit.progress import Progress, silent
-from mffit.suspicion import Campaign, Doubt, FittedModel, Misfit, When, after_the_fit, distrust, outliers
+from mffit.suspicion import Campaign, Doubt, FittedModel, When, after_the_fit, distrust, outliers
 from tir import Tyre
 
 
@@ -78,7 +77,7 @@ def fit(
 
     channels = agreement.with_points(readings, points)
     r2 = {name: found.r2 for name, found in channels.items()}
-    distrusted = distrust(Misfit(points=points, model=readings, scale=fitted.scale, r2=r2))
+    distrusted = distrust(points, readings, fitted.scale, r2)
     return FitResult(
         tyre=files.by_use["turn-slip" if config.rig.on_disc else "normal"].tyre,
         written=files.by_use[use].tyre,

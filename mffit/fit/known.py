@@ -8,8 +8,8 @@ from typing import Any
 
 from mffit.fit.estimates import estimates
 from mffit.fit.priors import Prior
-from mffit.fit.radius import radius_coefficients
 from mffit.fit.ranges import covered_ranges
+from mffit.fit.rolling import radius_coefficients
 from mffit.fit.stages import ODD_TERMS
 from mffit.points import Points
 from mffit.rig import reference_speed
@@ -36,16 +36,7 @@ class Known:
 def known_before_fit(
     config: Any, points: Points, measured: Any, base: Tyre | None, fleet: Mapping[str, Prior]
 ) -> Known:
-    """Every value before the fit.
-
-    Parameters
-    ----------
-    config : the validated ``tyre.toml``
-    points : raw points
-    measured : the direct method's result
-    base : property file with the values that are not fitted, if there is one
-    fleet : priors that a fleet of similar tyres gives
-    """
+    """Every value before the fit."""
     template, stated = (base, base.present) if base is not None else (Tyre.from_values({}), frozenset())
     known = Known(
         values=dict(template.values),
@@ -72,12 +63,8 @@ def known_after_fit(
 ) -> Known:
     """The values with the fitted ones in their place, and the estimates that follow from these.
 
-    Parameters
-    ----------
-    known : before the fit
-    fitted : fitted coefficients; one that belongs to no stage keeps its origin
-    regularised : those of them that the priors decide as much as the points
-    base : property file with the values that are not fitted, if there is one
+    A fitted coefficient that belongs to no stage keeps its origin; ``regularised`` ones are decided by the priors as much as by
+    the points.
     """
     for name, value in fitted.items():
         origin = "regularised" if name in regularised else "fitted" if BY_NAME[name].stage else ""

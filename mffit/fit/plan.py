@@ -54,10 +54,7 @@ class FitPlan:
 
     def numbers(self, problem: FitProblem) -> list[Number]:
         """All free coefficients and rig errors, from their current values."""
-        return [
-            *self.coefficients([*self.free, *self.extra], problem),
-            *problem.starting_here(self.rig),
-        ]
+        return [*self.coefficients([*self.free, *self.extra], problem), *problem.starting_here(self.rig)]
 
 
 def fit_plan(
@@ -68,17 +65,7 @@ def fit_plan(
     start: Mapping[str, float],
     fleet: Mapping[str, Prior],
 ) -> FitPlan:
-    """The plan for these points.
-
-    Parameters
-    ----------
-    config : the validated ``tyre.toml``
-    points : raw points
-    measured : the direct method's result
-    known : every value before the fit
-    start : starting values of the coefficients
-    fleet : priors that a fleet of similar tyres gives
-    """
+    """The plan for these points."""
     cover = coverage(points, config.tyre.side or "left")
     rig = rig_numbers(config, measured)
     staged = {name: start[name] for stage in STAGES for name in stage.parameters}

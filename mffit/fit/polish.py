@@ -20,11 +20,7 @@ def polish(stated: FitProblem, plan: FitPlan) -> Fitted:
     """The joint fit with its errors.
 
     Weights are balanced between the channels and reduced for outliers; a bent valley of equally good fits is followed.
-
-    Parameters
-    ----------
-    stated : near the solution, weights as stated
-    plan : what is free
+    ``stated`` is near the solution, with weights as stated.
     """
     problem, scale = _approached(stated, plan).reweighted()
     problem, solution = _solved(problem, plan)
@@ -55,9 +51,7 @@ def _approached(problem: FitProblem, plan: FitPlan) -> FitProblem:
     """The problem near its solution, by passes over more and more of its points."""
     for stride in _strides(len(problem.points)):
         thinned = problem.reweighted()[0].thinned(stride)
-        last = (
-            stride <= constants.STRIDE_DIVISOR
-        )  # the final fit to all points is then cheap enough to do the rest
+        last = stride <= constants.STRIDE_DIVISOR  # the fit to all points can then do the rest
         tolerance = constants.STAGE_TOLERANCE if last else constants.POLISH_TOLERANCE
         problem = problem.with_values(_solution(thinned, plan, tolerance).values)
     return problem

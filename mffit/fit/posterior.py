@@ -32,13 +32,8 @@ class Posterior(Brief):
     def band(self, tyre: Simulation, points: Points) -> tuple[np.ndarray, np.ndarray]:
         """Half width of the 95 % band of Fy [N] and Mz [Nm] at any conditions (n,).
 
-        It is the band of the tyre's forces, not of the rig's readings: rig errors count only through the coefficients that
-        they made uncertain.
-
-        Parameters
-        ----------
-        tyre : the fitted tyre without rig errors
-        points : conditions; only the set-points are used
+        It is the band of the tyre's forces, not of the rig's readings: rig errors count only through the coefficients that they
+        made uncertain. Of ``points`` only the set-points are used; ``tyre`` has no rig errors.
         """
         rows = [i for i, name in enumerate(self.names) if name not in RIG_ERRORS]
         slopes = tyre.sensitivities(points, [self.names[i] for i in rows])[1]
@@ -50,13 +45,8 @@ class Posterior(Brief):
 def joint(problem: FitProblem, solution: Solution, held: Mapping[str, float]) -> Posterior:
     """The posterior of the fitted numbers and of those held at a value with a known spread.
 
-    An error of a held number shifts the fitted ones, to first order by ``-C J^T J_held`` times the error.
-
-    Parameters
-    ----------
-    problem : at the solution
-    solution : of the free numbers
-    held : standard uncertainty of numbers that the solution takes as exact
+    An error of a held number shifts the fitted ones, to first order by ``-C J^T J_held`` times the error. ``problem`` is at the
+    solution.
     """
     covariance, names = solution.covariance, list(held)
     if not names:

@@ -23,12 +23,7 @@ class Prior(NamedTuple):
 def scatter(name: str, expected: float, *, from_base: bool, curved: bool) -> float:
     """Standard deviation of this tyre's coefficient around the expected value.
 
-    Parameters
-    ----------
-    name : coefficient
-    expected : value of the base file, else the default
-    from_base : whether a base file states it; a base file's 0 counts as not stated
-    curved : whether the path is curved
+    A base file's 0 counts as not stated.
     """
     if curved and name in SMALL_ON_A_DISC:
         return SMALL_ON_A_DISC[name]
@@ -54,10 +49,7 @@ def fleet_content(nominal: Mapping[str, float], tyres: int, priors: Mapping[str,
 def of_fleet(config: Any) -> dict[str, Prior]:
     """The prior of each coefficient from the fleet that ``[tyre] priors`` names; empty if none is named.
 
-    Raises
-    ------
-    InputError
-        The file was not written by a fleet, or the fleet has another nominal load or pressure.
+    An InputError says that no fleet wrote the file, or that the fleet has another nominal load or pressure.
     """
     path = config.priors_path
     if path is None:

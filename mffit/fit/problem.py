@@ -11,9 +11,9 @@ import numpy as np
 
 from mffit.fit import constants, weights
 from mffit.fit.constraints import Envelope, limits
-from mffit.fit.radius import effective_radius
 from mffit.fit.ranges import covered_ranges, envelope
 from mffit.fit.rig_numbers import known_faults
+from mffit.fit.rolling import effective_radius
 from mffit.least_squares import LeastSquaresProblem, Linear, Number
 from mffit.measured import RadiusReading, radius_readings
 from mffit.points import Points
@@ -69,12 +69,7 @@ class FitProblem:
         return replace(self, sigma=sigma), {name: scale for name, (_, scale) in found.items()}
 
     def misfit(self, readings: Readings | None = None) -> dict[str, np.ndarray]:
-        """By channel, (model - measured) / sigma (n,); 0 where the channel is not used.
-
-        Parameters
-        ----------
-        readings : of the simulation, if they are known already
-        """
+        """By channel, (model - measured) / sigma (n,); 0 where the channel is not used."""
         readings = self.simulation.readings(self.points) if readings is None else readings
         out = {}
         for name, sigma in self.sigma.items():
@@ -149,15 +144,7 @@ class FitProblem:
 
 
 def fit_problem(config: Any, points: Points, measured: Any, values: Mapping[str, Any]) -> FitProblem:
-    """The problem before the fit: points as read, weights as stated, rig errors as far as they are known.
-
-    Parameters
-    ----------
-    config : the validated ``tyre.toml``
-    points : raw points, angles as read
-    measured : the direct method's result
-    values : every value of the property file before the fit
-    """
+    """The problem before the fit: points as read, weights as stated, rig errors as far as they are known."""
     disc = config.rig.on_disc
     return FitProblem(
         points=points,

@@ -30,16 +30,9 @@ def follow(
 ) -> Valley | None:
     """The most bent valley, followed to both sides until the sum of squares has risen by 3.84.
 
-    Parameters
-    ----------
-    problem : at the solution
-    numbers : that were free
-    solution : the best fit
-    among : names of the numbers that the points determine; the prior's spread suffices as interval of the others
-
-    Returns
-    -------
-    Valley, or None where the sum of squares is close to its quadratic form along all directions
+    ``problem`` is at the solution. ``among`` names the numbers that the points determine; the prior's spread suffices as
+    interval of the others.
+    None where the sum of squares is close to its quadratic form along all directions.
     """
     along = _most_bent(problem, numbers, solution, among)
     if not along:

@@ -64,15 +64,8 @@ def plausible_ranges(
     Simulations hold their inputs to the ranges of the file or fade forces out beyond them: with the tested ranges, forces would
     stop following the sideslip at 8 degrees, for example. Wished are a tenth of the smallest and one and a half of the largest
     load, 20 degrees of sideslip, and pressures a fifth beyond the tested ones. The camber range grows by half, up to 45
-    degrees; beyond, the quadratic term of the curvature would cost more inside the range than it gains outside. Each end
-    goes as far as the limits of :mod:`mffit.fit.constraints` hold and the side force neither reverses nor falls below half
-    its peak.
-
-    Parameters
-    ----------
-    values : every value of the file
-    tested : from :func:`tested_ranges`
-    turn_slip : whether the model is meant for turn slip on
+    degrees; beyond, the quadratic term of the curvature would cost more inside the range than it gains outside. Each end goes
+    as far as the limits of :mod:`mffit.fit.constraints` hold and the side force neither reverses nor falls below half its peak.
     """
     model = SimpleNamespace(**values)
     alpha = tested["ALPMAX"]

@@ -33,14 +33,7 @@ def fit_staged(
 ) -> Fitted:
     """The best fit from ``start`` and, if that one ends far above the noise, from alternative starting values.
 
-    Parameters
-    ----------
-    problem : points, weights (as stated) and fixed values
-    start : starting value of every coefficient
-    plan : what is free
-    progress : called with a sentence before each step
-    restarts : whether alternative starting values may be tried
-    before_restarts : called with the first fit before alternatives are tried; may refuse the data
+    ``before_restarts`` is called with the first fit before alternatives are tried; it may refuse the data.
     """
     _require_enough_points(problem.points, plan.free)
     best = _fit_from(start, problem, plan, progress)

@@ -52,8 +52,6 @@ STAGES = (
 
 ODD_TERMS = frozenset(row.name for row in TABLE if row.odd)
 """Coefficients that are zero for a tyre of perfect mirror symmetry."""
-SHIFT_TERMS = frozenset(row.name for row in TABLE if row.shift)
-"""Odd terms that a disc shows in the even part together with turn slip; backward runs or flipped mounts separate them."""
 SMALL_ON_A_DISC = {row.name: row.disc_spread for row in TABLE if row.disc_spread is not None}
 """Prior standard deviation, from road tyres, of coefficients that a disc shows only together with a larger effect: conicity with
 the turn-slip force, ply-steer with the zero of the sideslip axis."""

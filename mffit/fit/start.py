@@ -31,14 +31,7 @@ ALTERNATIVE_STARTS: Mapping[str, Mapping[str, float]] = {
 
 
 def starting_values(values: Mapping[str, Any], points: Points, measured: Measured) -> dict[str, float]:
-    """The values with those improved that can be read off the data directly.
-
-    Parameters
-    ----------
-    values : every value of the file
-    points : raw points
-    measured : stiffnesses by load, ISO signs; may be empty
-    """
+    """The values with those improved that can be read off the data directly."""
     start = {name: float(value) for name, value in values.items() if isinstance(value, (int, float))}
     for name, value in NONZERO_STARTS.items():
         if abs(start[name]) < 1e-9:
@@ -65,11 +58,7 @@ def camber_stiffness_terms(
 ) -> dict[str, float]:
     """PKY6 and PKY7 with K_yg0(Fz) = C_gamma(Fz): exact at the load nearest FNOMIN, best slope over the others.
 
-    Parameters
-    ----------
-    values : every value of the file
-    C_gamma : measured camber stiffness [N/rad] by load [N]; may be empty
-    main : pressure [Pa] at which it was measured; PPY5 takes it to the nominal one
+    ``C_gamma`` [N/rad] by load [N] was measured at the pressure ``main`` [Pa]; PPY5 takes it to the nominal one.
     """
     if not C_gamma:
         return {}

@@ -32,12 +32,7 @@ def zero_points(points: Points, load: float) -> Points:
 def epsilon_gamma_of_model(values: Mapping[str, Any], points: Points, load: float, r_e: float) -> float:
     """eps_gamma by (17), as the direct method would find it for the model on a rig without faults and noise.
 
-    Parameters
-    ----------
-    values : every value of the property file
-    points : the campaign, for pressure, speed, path and directions
-    load : at which the turn-slip force was measured [N]
-    r_e : measured effective radius [m]
+    ``load`` [N] is that at which the turn-slip force was measured, ``r_e`` [m] the measured effective radius.
     """
     tyre, zero = Simulation(values), zero_points(points, load)
     C_phit = float(tyre.readings(zero).Fy.mean()) / float(zero.phi_t[0])

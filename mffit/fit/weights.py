@@ -37,10 +37,8 @@ def huber(residual: np.ndarray, scale: float) -> np.ndarray:
 def enlarged(residual: np.ndarray, sweep: np.ndarray) -> tuple[np.ndarray, float]:
     """Factor (n,) on the uncertainty of each point, infinite for outliers; and the robust scale, at least 1.
 
-    Parameters
-    ----------
-    residual : (n,) in units of the stated uncertainty; 0 where a point is not used
-    sweep : (n,) index of each point's sweep
+    Residuals are in units of the stated uncertainty, 0 where a point is not used; ``sweep`` (n,) is the index of each point's
+    sweep.
     """
     scale = max(robust_scale(residual), 1.0)
     factor = scale * huber(residual, scale)
@@ -50,11 +48,7 @@ def enlarged(residual: np.ndarray, sweep: np.ndarray) -> tuple[np.ndarray, float
 def outlying(residual: np.ndarray, scale: float, sweep: np.ndarray) -> np.ndarray:
     """Mask (n,) of single readings that contradict both the model and their neighbours in the sweep.
 
-    Parameters
-    ----------
-    residual : (n,) in units of the uncertainty, rows in the order of measuring; 0 where a point is not used
-    scale : standard deviation of the residuals' core, at least 1
-    sweep : (n,) index of each point's sweep
+    Residuals are as in :func:`enlarged`, in the order of measuring; ``scale`` is the standard deviation of their core.
     """
     used = np.flatnonzero(residual != 0.0)
     out = np.zeros(len(residual), dtype=bool)

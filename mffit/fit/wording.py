@@ -1,15 +1,17 @@
-"""Explanations of a fit in sentences: which file is for which use, its misfit, what was tested, where PECP1 comes from."""
+"""Explanations of a fit in sentences (files, their uses and misfit, ranges, source of PECP1), and its warnings."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
 
 from mffit.fit.files import Files, file_names
+from mffit.fit.fitted import Fitted
 from mffit.fit.misfit import FileFigures
 from mffit.fit.ranges import single_pressure
+from mffit.suspicion import Doubt, Outlier, outliers_sentence
 
 
 def explanations(config: Any, files: Files, values: Mapping[str, Any], measured: Any) -> list[str]:
@@ -118,3 +120,20 @@ def pecp1_sentence(source: str, PECP1: float, epsilon_gamma: float) -> str:
         f"PECP1 = {PECP1:.4f} is the joint estimate of tyre and rig, in which every point counts with its noise and every "
         f"rig error with its declared uncertainty. The directly measured eps_gamma is {epsilon_gamma:.4f}."
     )
+
+
+def warnings(
+    fitted: Fitted, distrusted: Sequence[str], doubts: Sequence[Doubt], outlying: Sequence[Outlier]
+) -> tuple[str, ...]:
+    """All warnings of a fit, the most important first."""
+    out = [*distrusted]
+    if fitted.attempts:
+        attempts = ", ".join(fitted.attempts)
+        out.append(f"the fit was started again from {attempts}; the best of all fits is kept")
+    if fitted.at_bound:
+        names = ", ".join(sorted(fitted.at_bound))
+        out.append(f"at the bound of plausible values: {names}; check the sweeps that determine them")
+    out += [doubt.sentence for doubt in doubts]
+    if outlying:
+        out.append(outliers_sentence(outlying))
+    return tuple(out)

@@ -11,7 +11,5 @@ SAME_PRESSURE = Real(6.0, "kPa", "Pressures within this are one condition for th
 SAME_SPEED = Real(0.1, "-", "Speeds within this share are one condition for the search of mirrors.")
 OTHER_SWEEP_DISTANCE = Real(10.0, "deg", "Added to the distance of a mirror that is in another sweep.")
 FEWEST_ANGLES_TO_INTERPOLATE = Count(3, "-", "Different angles along which a missing mirror is interpolated.")
-REPEATED_ANGLE = Real(
-    1e-3, "deg", "Angles within this are repetitions of one angle when mirrors are interpolated."
-)
+REPEATED_ANGLE = Real(1e-3, "deg", "Angles within this are repetitions when mirrors are interpolated.")
 UNPAIRED_IN_SENTENCE = Count(4, "-", "Points without a mirror that the sentence about a sweep names.")

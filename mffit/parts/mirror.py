@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
@@ -10,17 +9,6 @@ from scipy.interpolate import PchipInterpolator
 
 from mffit.parts import constants
 from mffit.points import Points
-
-
-@dataclass(frozen=True, slots=True)
-class Tolerance:
-    """How far set-points may differ and still count as one."""
-
-    alpha_deg: float = constants.SAME_SIDESLIP
-    gamma_deg: float = constants.SAME_CAMBER
-    load: float = constants.SAME_LOAD  #: relative
-    pressure_kPa: float = constants.SAME_PRESSURE
-    speed: float = constants.SAME_SPEED  #: relative
 
 
 class Mirrors(NamedTuple):
@@ -34,33 +22,34 @@ class Mirrors(NamedTuple):
     paired: np.ndarray  #: "exact" | "interpolated" | "unpaired"
 
 
-def same_condition(points: Points, i: int, tolerance: Tolerance) -> np.ndarray:
+def same_condition(points: Points, i: int) -> np.ndarray:
     """Mask (n,) of the points run at the load, pressure, speed, direction, mount and path of point i."""
     return (
-        (np.abs(points.Fz - points.Fz[i]) < tolerance.load * points.Fz[i])
-        & (np.abs(points.p - points.p[i]) < tolerance.pressure_kPa * 1e3)
-        & (np.abs(points.V - points.V[i]) <= tolerance.speed * points.V[i])
+        (np.abs(points.Fz - points.Fz[i]) < constants.SAME_LOAD * points.Fz[i])
+        & (np.abs(points.p - points.p[i]) < constants.SAME_PRESSURE * 1e3)
+        & (np.abs(points.V - points.V[i]) <= constants.SAME_SPEED * points.V[i])
         & (points.direction == points.direction[i])
         & (points.mount == points.mount[i])
         & np.isclose(points.phi_t, points.phi_t[i])
     )
 
 
-def find_mirrors(points: Points, tolerance: Tolerance = Tolerance()) -> Mirrors:
+def find_mirrors(points: Points) -> Mirrors:
     """The mirror of every point: a measured one within tolerance, otherwise one interpolated along the mirrored sweep.
 
     A mirror in the same sweep is preferred. Readings are interpolated over alpha at the mirrored camber, or over gamma at
-    the mirrored sideslip, within one condition and without extrapolation.
+    the mirrored sideslip, within one condition and without extrapolation. On a straight path, which has no turn slip to
+    remove, all points stay unpaired.
     """
     n = len(points)
     partner = np.full(n, -1)
     paired = np.full(n, "unpaired", dtype="<U12")
     values = {name: np.full(n, np.nan) for name in ("Fy", "Mz", "u_Fy", "u_Mz")}
     alpha, gamma = np.degrees(points.alpha), np.degrees(points.gamma)
-    for i in range(n):
-        same = same_condition(points, i, tolerance)
+    for i in range(n) if np.any(points.phi_t) else ():
+        same = same_condition(points, i)
         d_alpha, d_gamma = np.abs(alpha + alpha[i]), np.abs(gamma + gamma[i])
-        close = same & (d_alpha < tolerance.alpha_deg) & (d_gamma < tolerance.gamma_deg)
+        close = same & (d_alpha < constants.SAME_SIDESLIP) & (d_gamma < constants.SAME_CAMBER)
         if np.any(close):
             distance = d_alpha + d_gamma + constants.OTHER_SWEEP_DISTANCE * (points.sweep != points.sweep[i])
             j = int(np.argmin(np.where(close, distance, np.inf)))
@@ -68,10 +57,10 @@ def find_mirrors(points: Points, tolerance: Tolerance = Tolerance()) -> Mirrors:
             for name, found in values.items():
                 found[i] = getattr(points, name)[j]
             continue
-        line = same & (d_gamma < tolerance.gamma_deg)
+        line = same & (d_gamma < constants.SAME_CAMBER)
         found_values = _interpolated(points, line, alpha, -alpha[i])
         if found_values is None:
-            line = same & (d_alpha < tolerance.alpha_deg)
+            line = same & (d_alpha < constants.SAME_SIDESLIP)
             found_values = _interpolated(points, line, gamma, -gamma[i])
         if found_values is not None:
             paired[i] = "interpolated"

@@ -8,7 +8,7 @@ import numpy as np
 
 from mffit.brief import Brief
 from mffit.parts import constants
-from mffit.parts.mirror import Tolerance, find_mirrors
+from mffit.parts.mirror import find_mirrors
 from mffit.points import Points
 
 
@@ -28,28 +28,14 @@ class Parts(Brief):
     alpha_odd: np.ndarray  #: sideslip of the odd part [rad]: the reading, corrected for known play
 
 
-def split(points: Points, tolerance: Tolerance = Tolerance()) -> Parts:  # noqa: B008 - frozen
+def split(points: Points) -> Parts:
     """Decompose Fy and Mz of every point by mirror symmetry.
 
-    On a straight path there is no turn slip to remove: all points stay unpaired, without a remark.
+    On a straight path all points stay unpaired, without a remark.
     """
-    n = len(points)
-    if not np.any(points.phi_t):
-        nan = np.full(n, np.nan)
-        return Parts(
-            Fy_odd=nan,
-            Fy_even=nan,
-            Mz_odd=nan,
-            Mz_even=nan,
-            u_Fy_odd=nan,
-            u_Mz_odd=nan,
-            paired=np.full(n, "unpaired"),
-            partner=np.full(n, -1),
-            unpaired=(),
-            alpha_odd=points.alpha,
-        )
-    mirrors = find_mirrors(points, tolerance)
+    mirrors = find_mirrors(points)
     Fy_odd, Mz_odd = (points.Fy - mirrors.Fy) / 2.0, (points.Mz - mirrors.Mz) / 2.0
+    unpaired = (mirrors.paired == "unpaired") & bool(np.any(points.phi_t))
     return Parts(
         Fy_odd=Fy_odd,
         Fy_even=points.Fy - Fy_odd,
@@ -59,7 +45,7 @@ def split(points: Points, tolerance: Tolerance = Tolerance()) -> Parts:  # noqa:
         u_Mz_odd=np.hypot(points.u_Mz, mirrors.u_Mz) / 2.0,
         paired=mirrors.paired,
         partner=mirrors.partner,
-        unpaired=_sentences(points, mirrors.paired == "unpaired"),
+        unpaired=_sentences(points, unpaired),
         alpha_odd=points.alpha,
     )
 

@@ -1,15 +1,14 @@
 """What the sweeps of a project identify, and which further runs would lower an uncertainty most."""
 
 from mffit.planning.additions import ADDITIONS, BY_ID, Addition, addition_named
-from mffit.planning.goals import GOALS, Goal, read_goal
-from mffit.planning.record import Identified, Plan, Step, Tie, Trial
+from mffit.planning.goals import Goal, read_goal
+from mffit.planning.record import Identified, Plan, Step, Tie
 from mffit.planning.runs import Run, candidates
 from mffit.planning.search import plan
 
 __all__ = [
     "ADDITIONS",
     "BY_ID",
-    "GOALS",
     "Addition",
     "Goal",
     "Identified",
@@ -17,7 +16,6 @@ __all__ = [
     "Run",
     "Step",
     "Tie",
-    "Trial",
     "addition_named",
     "candidates",
     "plan",

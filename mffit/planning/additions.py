@@ -31,7 +31,6 @@ class Addition:
     id: str  #: ``kind`` in plan.json, and the word for ``--without``
     title: str
     reason: str  #: what it measures and why that helps
-    settles: tuple[str, ...]  #: ids of effects whose uncertainty it lowers markedly
     loads: Literal["each", "nominal", "new"] = "each"  #: each or nominal: of the programme
     lines: tuple[Line, ...] = ()  #: none for a measurement of the rig
     disc_only: bool = False
@@ -44,10 +43,7 @@ class Addition:
     revolution: bool = False  #: adds a [rolling_radius] table
 
 
-_ZEROS = (
-    Line("alpha", constants.PLAN_ZERO_ANGLES),
-    Line("alpha", constants.PLAN_ZERO_ANGLES, direction=-1),
-)
+_ZEROS = (Line("alpha", constants.PLAN_ZERO_ANGLES), Line("alpha", constants.PLAN_ZERO_ANGLES, direction=-1))
 _SMALL_CAMBERS = (Line("gamma", constants.PLAN_SMALL_CAMBERS),)
 _SIDESLIP = (Line("alpha", constants.PLAN_SWEEP_SHARES),)
 _CAMBER = (Line("gamma", constants.PLAN_SWEEP_SHARES),)
@@ -71,7 +67,6 @@ ADDITIONS = (
         id="zeros",
         title="zeros both ways again",
         reason="More points at zero average the noise out of the turn-slip force.",
-        settles=("loadcell-offset-mz",),
         lines=_ZEROS,
         disc_only=True,
     ),
@@ -82,7 +77,6 @@ ADDITIONS = (
             "The path curves the other way and the turn-slip force changes sign; load-cell offset, zeros of the axes, ply-steer "
             "and conicity keep theirs. Half the difference is turn slip alone."
         ),
-        settles=("camber-reduction", "camber-misalignment"),
         lines=_ZEROS,
         disc_only=True,
         radius=-1.0,
@@ -94,7 +88,6 @@ ADDITIONS = (
             "The effects of camber and path curvature add on one side of the disc and oppose each other on the other side. The "
             "cambers include zero, so the run also measures the turn-slip force."
         ),
-        settles=("camber-reduction", "camber-misalignment"),
         lines=_SMALL_CAMBERS,
         disc_only=True,
         radius=-1.0,
@@ -105,7 +98,6 @@ ADDITIONS = (
         reason=(
             "Turn slip grows with the path's curvature; load-cell offset, zeros of the axes and conicity do not depend on it."
         ),
-        settles=("path-radius", "camber-reduction", "camber-misalignment"),
         lines=_ZEROS,
         disc_only=True,
         radius=constants.PLAN_SECOND_RADIUS_FACTOR,
@@ -114,7 +106,6 @@ ADDITIONS = (
         id="small-camber",
         title="small cambers, closely spaced",
         reason="The camber stiffness is the slope at zero; cambers up to 20 deg determine it.",
-        settles=("camber-stiffness",),
         lines=_SMALL_CAMBERS,
         disc_only=True,
     ),
@@ -123,9 +114,6 @@ ADDITIONS = (
         id="revolution",
         title="one revolution of the disc",
         reason=f"{_EPSILON} cannot be measured without an effective radius.",
-        settles=("camber-reduction",),
-        loads="nominal",
-        disc_only=True,
         revolution=True,
     ),
     Addition(
@@ -135,7 +123,6 @@ ADDITIONS = (
             "Rolled backwards, the force of camber keeps its sign and the force of sideslip changes it. The run separates camber "
             "from the sideslip of a camber axis that is not square to the steering axis."
         ),
-        settles=("loadcell-offset-mz", "spin-trail-loss"),
         loads="nominal",
         lines=(Line("gamma", constants.PLAN_SWEEP_SHARES, direction=-1),),
         disc_only=True,
@@ -144,7 +131,6 @@ ADDITIONS = (
         id="flipped",
         title="sideslip sweep with the tyre turned on its rim",
         reason="Conicity changes sign with the tyre turned on its rim; every rig error keeps its sign.",
-        settles=("conicity", "crosstalk-fz-fy", "residual-torque"),
         loads="nominal",
         lines=(Line("alpha", constants.PLAN_FLIPPED_SHARES),),
         mount=-1,
@@ -153,27 +139,18 @@ ADDITIONS = (
         id="sideslip",
         title="sideslip sweep",
         reason="More points over sideslip, for cornering stiffness, peak and trail.",
-        settles=("curvature-asymmetry",),
         lines=_SIDESLIP,
     ),
     Addition(
         id="camber",
         title="camber sweep",
         reason="More points over camber, for the camber stiffness and the shape of the camber force.",
-        settles=("camber-stiffness",),
         lines=_CAMBER,
     ),
     Addition(
         id="coupled",
         title="sideslip sweeps at camber of both signs",
         reason="How camber changes the curves over sideslip is visible only where both angles act together.",
-        settles=(
-            "camber-grip",
-            "camber-thrust-curvature",
-            "camber-cornering-stiffness",
-            "spin-trail-loss",
-            "spin-torque",
-        ),
         lines=tuple(Line("alpha", constants.PLAN_SWEEP_SHARES, camber_side=side) for side in (-1, 1)),
         cambers=constants.PLAN_COUPLED_CAMBERS,
     ),
@@ -184,7 +161,6 @@ ADDITIONS = (
             "Two pressures show the effect of pressure. With two loads as well, they show whether it changes the stiffness "
             "itself or the load at which the stiffness peaks."
         ),
-        settles=("pressure",),
         lines=(*_SIDESLIP, *_CAMBER),
         pressures=constants.PLAN_NEW_PRESSURE_FACTORS,
     ),
@@ -192,13 +168,6 @@ ADDITIONS = (
         id="load",
         title="sideslip and camber sweep at a new load",
         reason="The farther the loads are apart, the better the data determine what changes with load.",
-        settles=(
-            "load-grip",
-            "trail-load",
-            "camber-reduction-load",
-            "loadcell-offset-fy",
-            "steering-compliance",
-        ),
         loads="new",
         lines=(*_SIDESLIP, *_CAMBER),
     ),
@@ -208,13 +177,7 @@ BY_ID: Mapping[str, Addition] = {addition.id: addition for addition in ADDITIONS
 
 
 def addition_named(word: str) -> Addition:
-    """The addition with this id.
-
-    Raises
-    ------
-    InputError
-        No addition has it.
-    """
+    """The addition with this id; an InputError lists the ids if none has it."""
     if word not in BY_ID:
         raise InputError(f'"{word}" is not a kind of run; the kinds are {", ".join(BY_ID)}')
     return BY_ID[word]

@@ -25,41 +25,21 @@ PLAN_FLIPPED_SHARES = Series(
     "Angles of the sweep on the flipped mount over the largest angle that was run; conicity needs no peak.",
 )
 PLAN_COUPLED_CAMBERS = Series((10.0, 20.0, 35.0), "deg", "Cambers at which a sideslip sweep is proposed.")
-PLAN_NEW_LOAD_FACTORS = Series(
-    (0.7, 1.3), "-", "Proposed new loads over the smallest and over the largest load of the programme."
-)
+PLAN_NEW_LOAD_FACTORS = Series((0.7, 1.3), "-", "New loads over the smallest and the largest one run.")
 PLAN_NEW_PRESSURE_FACTORS = Series((0.8, 1.2), "-", "Proposed new pressures over the programme's pressure.")
-PLAN_SECOND_RADIUS_FACTOR = Real(
-    0.7, "-", "Second path radius over the usual one: still on the disc, and far enough from the usual path."
-)
-PLAN_RIG_IMPROVEMENT = Real(
-    1.0 / 3.0, "-", "Uncertainty of a rig number measured better, over the uncertainty declared now."
-)
-PLAN_SMALLEST_CAMBER_SWEPT = Real(
-    1.0, "deg", "Programmes whose largest camber does not exceed this have no camber sweep to repeat."
-)
-PLAN_COUPLED_LOAD_TOLERANCE = Real(
-    0.05, "-", "Relative distance within which a point counts as run at a given load."
-)
-PLAN_COUPLED_SIDESLIP = Real(
-    0.5, "deg", "Points with more sideslip than this at camber count as a coupled sweep."
-)
-PLAN_WORTHWHILE_FALL = Real(
-    0.05, "-", "A run is added only if it lowers the uncertainty of the goal by this share."
-)
+PLAN_SECOND_RADIUS_FACTOR = Real(0.7, "-", "Second path radius over the usual one, still on the disc.")
+PLAN_RIG_IMPROVEMENT = Real(1.0 / 3.0, "-", "Better uncertainty of a rig number over the declared one.")
+PLAN_SMALLEST_CAMBER_SWEPT = Real(1.0, "deg", "Largest camber up to which there is no camber sweep.")
+PLAN_COUPLED_LOAD_TOLERANCE = Real(0.05, "-", "Relative distance of points that are run at a load.")
+PLAN_COUPLED_SIDESLIP = Real(0.5, "deg", "Points with more sideslip at camber are a coupled sweep.")
+PLAN_WORTHWHILE_FALL = Real(0.05, "-", "Share by which an added run lowers the uncertainty.")
 PLAN_EQUALLY_GOOD = Real(
     0.02,
     "-",
     "Runs whose resulting uncertainties differ by less than this share count as equal; the one with fewer points is taken.",
 )
-PLAN_NOMINAL_LOAD_TOLERANCE = Real(
-    0.06, "-", "Relative distance from the nominal load within which points count for eps_gamma at that load."
-)
-PLAN_PRESSURE_TOLERANCE = Real(
-    5e3, "Pa", "Distance from the main pressure within which points count for eps_gamma."
-)
-PLAN_NOISE_DRAWS = Count(
-    8, "-", "Noise draws of the new points, over which the promised u of the direct method is the rms."
-)
+PLAN_NOMINAL_LOAD_TOLERANCE = Real(0.06, "-", "Relative distance of points that count at nominal load.")
+PLAN_PRESSURE_TOLERANCE = Real(5e3, "Pa", "Distance from the main pressure of points that count.")
+PLAN_NOISE_DRAWS = Count(8, "-", "Noise draws of the new points; the promised u is their rms.")
 PLAN_BAND_ANGLES = Count(21, "-", "Angles per curve at which a 95 % band is evaluated.")
 PLAN_BAND_SPEED = Real(10.0, "m/s", "Speed at which a 95 % band is evaluated; the bands hardly depend on it.")

@@ -48,10 +48,7 @@ class Goal:
 def read_goal(text: str, *, on_disc: bool) -> Goal:
     """A goal from its text: ``eps_gamma``, ``bands``, ``tie:ply-steer`` or a coefficient's name.
 
-    Raises
-    ------
-    InputError
-        The goal is not known, or needs a disc.
+    An InputError says that the goal is not known, or needs a disc.
     """
     kind, _, rest = text.partition(":")
     if kind == EPSILON and rest in ("", "direct", "joint"):

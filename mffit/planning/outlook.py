@@ -42,13 +42,7 @@ class Outlook:
     """Predicts what a build of a longer programme would state."""
 
     def __init__(
-        self,
-        config: Config,
-        points: Points,
-        measured: Measured,
-        found: FitResult,
-        goal: Goal,
-        direct: Direct,
+        self, config: Config, points: Points, measured: Measured, found: FitResult, goal: Goal, direct: Direct
     ) -> None:
         self.config, self.points, self.found, self.goal = config, points, found, goal
         self.effect: Effect | None = effect_named(goal.name) if goal.kind == TIE else None

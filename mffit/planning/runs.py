@@ -57,11 +57,7 @@ class Run:
 def candidates(config: Config, points: Points, r_e: float | None = None) -> tuple[Run, ...]:
     """Every run that a rig could add to these points, load by load.
 
-    Parameters
-    ----------
-    config : what is declared of the rig
-    points : the programme so far
-    r_e : effective radius of the model at the nominal load [m], to predict a disc revolution
+    ``r_e`` is the effective radius of the model at the nominal load [m], to predict a disc revolution.
     """
     programme = _Programme(config, points)
     possible = [addition for addition in ADDITIONS if config.rig.on_disc or not addition.disc_only]
@@ -172,9 +168,6 @@ def _revolution(config: Config, addition: Addition, load: float, r_e: float | No
         return
     turns, rest = divmod(config.rig.radius / r_e, 1.0)
     table = RollingRadiusTable(
-        load_N=round(load, 1),
-        revolutions=turns,
-        angle_start_deg=0.0,
-        angle_end_deg=round(360.0 * rest, 1),
+        load_N=round(load, 1), revolutions=turns, angle_start_deg=0.0, angle_end_deg=round(360.0 * rest, 1)
     )
     yield Run(addition, load, revolution=table)

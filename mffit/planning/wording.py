@@ -26,11 +26,6 @@ def title(run: Run) -> str:
     return f"{run.addition.title}, {LOAD.of(run.load)}{more}"
 
 
-def reason(run: Run) -> str:
-    """Why it helps."""
-    return run.addition.reason
-
-
 def headline(plan: Plan) -> str:
     """The plan in one sentence."""
     if not plan.steps:

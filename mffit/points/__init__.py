@@ -3,7 +3,6 @@
 from mffit.points import levels
 from mffit.points.levels import main_path, main_pressure
 from mffit.points.loading import load, load_table, read
-from mffit.points.mean import mean_and_error
 from mffit.points.points import Points, concatenate, make_points
 
 __all__ = [
@@ -15,6 +14,5 @@ __all__ = [
     "main_path",
     "main_pressure",
     "make_points",
-    "mean_and_error",
     "read",
 ]

@@ -108,11 +108,7 @@ def _no_points(sweep: Sweep, phi_t: float) -> Points:
 
 
 def _points(
-    sweep: Sweep,
-    phi_t: float,
-    means: dict[str, np.ndarray],
-    table: pd.DataFrame,
-    first: np.ndarray,
+    sweep: Sweep, phi_t: float, means: dict[str, np.ndarray], table: pd.DataFrame, first: np.ndarray
 ) -> Points:
     """Points from means by channel, and from the first samples for every other channel."""
     values: dict[str, Any] = {name: getattr(sweep, name)[first] for name in CHANNELS} | means

@@ -22,11 +22,7 @@ def settings_of(sweep: Sweep) -> Settings:
 def chosen(sweep: Sweep, wrong: list[Fault], scale: Scale | None) -> list[Stretch]:
     """All stretches of a recording in time order: without their transients, or with the reason why they are dropped.
 
-    Parameters
-    ----------
-    sweep : a time series
-    wrong : its faulty samples
-    scale : usual size of the settings in the whole campaign; of this series if None
+    ``scale`` is the usual size of the settings in the whole campaign; of this series if None.
     """
     return _judged(sweep, _stretches(sweep, wrong, scale))
 

@@ -146,28 +146,28 @@ def _long_runs(mask: np.ndarray, shortest: int) -> np.ndarray:
 FAULTS = (
     FaultRule(
         id="no-reading",
-        looks_at="samples without a number",
+        looks_at="Samples without a number",
         reason="no reading of {channel}",
         channels=("alpha", "gamma", "Fz", "Fy"),
         find=lambda sweep, channel: ~np.isfinite(getattr(sweep, channel)),
     ),
     FaultRule(
         id="no-load",
-        looks_at="load over the usual load of the recording",
+        looks_at="Load over the usual load of the recording",
         limits=(constants.UNLOADED,),
         reason="no load on the tyre",
         find=_unloaded,
     ),
     FaultRule(
         id="driven-or-braked",
-        looks_at="longitudinal slip",
+        looks_at="Longitudinal slip",
         limits=(constants.FREE_ROLLING_SLIP,),
         reason=DRIVEN,
         find=lambda sweep, _: driven(sweep),
     ),
     FaultRule(
         id="spike",
-        looks_at="distance of a reading from the median of its neighbours",
+        looks_at="Distance of a reading from the median of its neighbours",
         limits=(constants.SPIKE_OVER_NOISE, constants.SPIKE_OF_FORCE, constants.SPIKE_OF_MOMENT),
         reason="spikes of {channel}",
         channels=SENSORS,
@@ -176,7 +176,7 @@ FAULTS = (
     ),
     FaultRule(
         id="clipped-channel",
-        looks_at="readings in a row at the end of the channel's range",
+        looks_at="Readings in a row at the end of the channel's range",
         limits=(constants.CLIPPED_SAMPLES, constants.LIVELY_SHARE),
         reason="{channel} clipped",
         channels=SENSORS,
@@ -184,7 +184,7 @@ FAULTS = (
     ),
     FaultRule(
         id="stuck-channel",
-        looks_at="readings in a row of one value, of a channel that changes otherwise",
+        looks_at="Readings in a row of one value, of a channel that changes otherwise",
         limits=(constants.STUCK_TIME, constants.FEWEST_STUCK_SAMPLES, constants.LIVELY_SHARE),
         reason="{channel} stuck",
         channels=SENSORS,
@@ -192,7 +192,7 @@ FAULTS = (
     ),
     FaultRule(
         id="stuck-angle",
-        looks_at="sideslip readings in a row of one value while the side force moves",
+        looks_at="Sideslip readings in a row of one value while the side force moves",
         limits=(constants.STUCK_TIME, constants.FEWEST_STUCK_SAMPLES, constants.MOVED_FORCE),
         reason="{channel} stuck while Fy moves",
         channels=("alpha",),

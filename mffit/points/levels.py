@@ -37,10 +37,7 @@ NO_LEVEL = -1
 def labels(values: np.ndarray, kind: LevelKind) -> np.ndarray:
     """Number (n,) of the level of each value, rising with the value from 0; ``NO_LEVEL`` for values between levels.
 
-    Parameters
-    ----------
-    values : (n,); NaN belongs to no level
-    kind : what the values are
+    NaN belongs to no level.
     """
     scaled = _scaled(values, kind)
     centres = _centres(scaled)

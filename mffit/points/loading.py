@@ -110,10 +110,7 @@ def _nothing(reduced: Sequence[Reduced]) -> str:
 def settled_sweeps(points: Points, lag: tuple[float, float]) -> Points:
     """Continuous sweeps as points, at the angle that the force answers to.
 
-    Parameters
-    ----------
-    points : with ``continuous`` samples; every sweep has a name of its own
-    lag : rolled distance by which the force lags, and its standard uncertainty [m]; taken off where it is proven
+    ``lag`` is the rolled distance by which the force lags and its standard uncertainty [m]; it is taken off where it is proven.
     """
     value, u = lag
     alpha, taken = points.alpha.copy(), np.zeros(len(points))

@@ -43,12 +43,7 @@ def mean_and_error(x: np.ndarray) -> tuple[float, float]:
 
 
 def autoregression(centred: np.ndarray) -> tuple[np.ndarray, float]:
-    """Coefficients (k,) and innovation variance of x_t = sum a_k x_(t-k) + e, by Burg's recursion.
-
-    Parameters
-    ----------
-    centred : (n,) series of mean zero, not constant
-    """
+    """Coefficients (k,) and innovation variance of x_t = sum a_k x_(t-k) + e, by Burg's recursion; the mean of (n,) is zero."""
     n = len(centred)
     forward, backward = centred[1:], centred[:-1]
     coefficients = np.zeros(0)

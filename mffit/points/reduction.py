@@ -30,22 +30,11 @@ class Reduced(NamedTuple):
 def reduce(sweep: Sweep, phi_t: float, scale: Scale | None = None) -> Reduced:
     """Points of one sweep.
 
-    Parameters
-    ----------
-    sweep : finished points or a time series
-    phi_t : turn slip of the path [1/m]
-    scale : usual size of the settings in all time series of the campaign, to judge changes; None: of this series alone
+    ``phi_t`` is the turn slip of the path [1/m]; ``scale`` the usual size of the settings in all series of the campaign, to
+    judge changes (None: of this series alone).
 
-    Returns
-    -------
-    Reduced
-        Means over the plateaus; where an angle keeps moving, means over a tenth of a second, marked ``continuous``, with
-        every stretch as a sweep of its own.
-
-    Raises
-    ------
-    InputError
-        The time of a series does not rise.
+    They are means over the plateaus; where an angle keeps moving, means over a tenth of a second, marked ``continuous``, with
+    every stretch as a sweep of its own. An InputError says that the time of a series does not rise.
     """
     if not sweep.is_series:
         free = np.flatnonzero(~driven(sweep))

@@ -17,11 +17,7 @@ def settled(
 ) -> Stretch:
     """The stretch without its transient, or with the reason why it gives no point.
 
-    Parameters
-    ----------
-    stretch : samples at constant settings
-    settings : of the series
-    responses : for each measured force or moment the samples (n,), the harmless drift over a stretch, and its unit
+    ``responses`` has, for each measured force or moment, the samples (n,), the harmless drift over a stretch, and its unit.
     """
     time = settings.time
     speed = max(float(np.median(settings.V[stretch.begin : stretch.end])), constants.SLOWEST_ROLLING)

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -19,6 +19,8 @@ from mffit.points.stretch import MOVE, SWEEP, Stretch, runs
 from mffit.scatter import robust
 
 ANGLES, CONDITIONS = ("alpha", "gamma"), ("Fz", "p", "V")
+Scale = Mapping[str, float]
+"""Usual size of each setting in a recording."""
 
 
 class Settings(NamedTuple):
@@ -33,10 +35,7 @@ class Settings(NamedTuple):
 
 
 def stretches(
-    settings: Settings,
-    point: np.ndarray | None = None,
-    cuts: Sequence[int] = (),
-    scale: Scale | None = None,
+    settings: Settings, point: np.ndarray | None = None, cuts: Sequence[int] = (), scale: Scale | None = None
 ) -> list[Stretch]:
     """The stretches of a series in time order, transients included.
 
@@ -83,7 +82,7 @@ def _of_piece(settings: Settings, scale: Scale) -> list[Stretch]:
     if len(settings.time) < 2:
         return [Stretch(0, len(settings.time), "only one sample", MOVE)]
     masks = moves(settings, scale)
-    changing = masks.Fz | masks.p | masks.V
+    changing = masks["Fz"] | masks["p"] | masks["V"]
     found = []
     steady = _reaching(settings, scale, runs(~changing))
     changing = np.ones(len(settings.time), dtype=bool)
@@ -91,7 +90,7 @@ def _of_piece(settings: Settings, scale: Scale) -> list[Stretch]:
         changing[begin:end] = False
     for begin, end in steady:
         part = Settings(*(x[begin:end] for x in settings))
-        inside = _of_condition(part, masks.alpha[begin:end], masks.gamma[begin:end])
+        inside = _of_condition(part, masks["alpha"][begin:end], masks["gamma"][begin:end])
         found += [s._replace(begin=s.begin + begin, end=s.end + begin) for s in inside]
     found += [Stretch(begin, end, "load, pressure or speed changes", MOVE) for begin, end in runs(changing)]
     return sorted(found)
@@ -114,7 +113,7 @@ def _reaching(settings: Settings, scale: Scale, found: list[tuple[int, int]]) ->
                 (least, begin, begin, min(begin + lag, end)),
                 (end, most, max(end - lag, begin), end),
             ):
-                step = constants.STEP_OF_CONDITION * max(getattr(scale, name), abs(float(np.median(x[c:d]))))
+                step = constants.STEP_OF_CONDITION * max(scale[name], abs(float(np.median(x[c:d]))))
                 inside[a - least : b - least] &= np.abs(x[a:b] - np.median(x[c:d])) <= step
         before, behind = inside[: begin - least][::-1], inside[end - least :]
         begin -= len(before) if before.all() else int(np.argmin(before))
@@ -179,50 +178,29 @@ def _returns(x: np.ndarray) -> bool:
     return bool(far > constants.RETURNED_SHARE * np.ptp(x))
 
 
-class Scale(NamedTuple):
-    """Usual size of each setting in a recording."""
-
-    alpha: float
-    gamma: float
-    Fz: float
-    p: float
-    V: float
-
-
 def scale_of(series: Sequence[Settings]) -> Scale:
     """Median size of each setting; of long recordings from some of the samples."""
     some = max(sum(len(settings.time) for settings in series) // constants.MOST_SAMPLES_FOR_SCALE, 1)
-    sizes = (np.abs(np.concatenate([getattr(s, name)[::some] for s in series])) for name in Scale._fields)
-    return Scale(
-        *(float(np.median(size[np.isfinite(size)])) if np.isfinite(size).any() else 0.0 for size in sizes)
-    )
+    sizes = {}
+    for name in (*ANGLES, *CONDITIONS):
+        size = np.abs(np.concatenate([getattr(one, name)[::some] for one in series]))
+        known = size[np.isfinite(size)]
+        sizes[name] = float(np.median(known)) if len(known) else 0.0
+    return sizes
 
 
-class Moves(NamedTuple):
-    """Masks (n,) of the samples near a change of each setting."""
-
-    alpha: np.ndarray
-    gamma: np.ndarray
-    Fz: np.ndarray
-    p: np.ndarray
-    V: np.ndarray
-
-
-def moves(settings: Settings, scale: Scale | None = None) -> Moves:
+def moves(settings: Settings, scale: Scale | None = None) -> dict[str, np.ndarray]:
     """Masks of the samples at which each setting changes.
 
-    Parameters
-    ----------
-    settings : of a series without gaps
-    scale : usual size of each setting in the whole recording; of this series if None
+    ``scale`` is the usual size of each setting in the whole recording; of this series if None.
     """
     n = len(settings.time)
     scale = scale or scale_of([settings])
     lag = _samples(settings, constants.COMPARED_APART)
     masks = {}
-    for name in Moves._fields:
+    for name in (*ANGLES, *CONDITIONS):
         values = getattr(settings, name)
-        usual = max(getattr(scale, name), float(np.median(np.abs(values))))
+        usual = max(scale[name], float(np.median(np.abs(values))))
         step = constants.STEP_OF_ANGLE.rad if name in ANGLES else constants.STEP_OF_CONDITION * usual
         mask = np.zeros(n, dtype=bool)
         if np.ptp(values) > 0.0:
@@ -232,7 +210,7 @@ def moves(settings: Settings, scale: Scale | None = None) -> Moves:
             mask[lag:] |= change
             mask[:-lag] |= change
         masks[name] = mask
-    return Moves(**masks)
+    return masks
 
 
 def _noise(values: np.ndarray) -> float:

@@ -15,9 +15,7 @@ class Stretch(NamedTuple):
     begin: int
     end: int
     dropped: str = ""  #: why they give no point; empty if they do
-    kind: str = (
-        PLATEAU  #: ``PLATEAU``: all settings rest; ``SWEEP``: one angle moves; ``MOVE``: anything else
-    )
+    kind: str = PLATEAU  #: all settings rest; ``SWEEP``: one angle moves; ``MOVE``: anything else
 
 
 class StretchNote(NamedTuple):

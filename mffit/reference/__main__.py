@@ -1,6 +1,6 @@
 import sys
 from pathlib import Path
 
-from mffit.reference.write import write
+from mffit.reference import write
 
 write(Path(sys.argv[1] if len(sys.argv) > 1 else "docs"))

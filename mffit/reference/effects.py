@@ -22,10 +22,7 @@ KINDS = {"tyre": "The tyre", "rig": "The rig", "environment": "The environment"}
 def page(effect: Effect, catalog: Sequence[Effect] = CATALOG) -> str:
     """The page of one effect in Markdown.
 
-    Parameters
-    ----------
-    effect : the record
-    catalog : the library, for links to the effects that it can be confused with
+    Effects that it can be confused with are links if they are in ``catalog``.
     """
     names = {other.id: other.name for other in catalog}
     needs = [NEEDS[need] for need in effect.needs] or ["nothing special"]

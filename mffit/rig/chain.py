@@ -11,7 +11,6 @@ import numpy as np
 
 from mffit.points import Points
 from mffit.quantities import CHANNELS
-from mffit.rig import constants
 from mffit.rig.histories import distance_km, path_radii, reference_speed, sense
 from mffit.rig.lag import lagged_angle
 from mffit.rig.play import settled
@@ -125,11 +124,11 @@ class Chain:
         slope: Any = 0.0
         if k:
             settled_conditions = self._without_history()
-            for _ in range(constants.LONGEST_YIELDING):
+            for _ in range(12):  # Newton steps; three are usual
                 moment, slope = settled_conditions.moment_and_slope(held)
                 move = (start + k * moment - held) / (1.0 - k * slope)
                 held = held + move
-                if np.max(np.abs(move)) < constants.YIELDING_STEP:
+                if np.max(np.abs(move)) < 1e-7:  # [rad]
                     break
         if not self._traced:
             return held

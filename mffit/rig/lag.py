@@ -10,17 +10,10 @@ from mffit.points import Points
 def lagged_angle(points: Points, sigma: float) -> tuple[np.ndarray, np.ndarray]:
     """Sideslip angle (n,) that the force answers to [rad], and its derivative by the relaxation length [rad/m].
 
-    ``sigma d(alpha')/ds + alpha' = alpha``. Exact for an angle that moves linearly over the rolled distance between
-    samples, however far these are apart. Where the wheel does not roll, the lag stays constant. Every sweep begins
-    settled; steady points have no lag.
+    ``sigma d(alpha')/ds + alpha' = alpha``. Exact for an angle that moves linearly over the rolled distance between samples,
+    however far these are apart. Where the wheel does not roll, the lag stays constant. Every sweep begins settled; steady
+    points have no lag.
 
-    Parameters
-    ----------
-    points : (n,) in any order, with ``continuous`` samples
-    sigma : relaxation length [m]
-
-    Notes
-    -----
     Over a step of length d from (alpha_0, alpha_0') to alpha_1, with q = d/sigma and f = (1 - exp(-q))/q, the lag
     b = alpha - alpha' becomes b_1 = f (alpha_1 - alpha_0) + exp(-q) b_0.
     """

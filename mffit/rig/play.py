@@ -7,8 +7,6 @@ from typing import NamedTuple
 
 import numpy as np
 
-from mffit.rig import constants
-
 Moment = Callable[[np.ndarray], np.ndarray]
 """Aligning moment [Nm] at sideslip angles (m,) [rad]."""
 
@@ -42,21 +40,13 @@ def settled(moment_of: Callable[[np.ndarray], Moment], alpha: np.ndarray, half_p
     which = np.flatnonzero(floats & (lower < upper))
     if len(which):
         rest[which] = _without_moment(
-            moment_of(which),
-            alpha[which] - half_play,
-            alpha[which] + half_play,
-            lower[which],
-            upper[which],
+            moment_of(which), alpha[which] - half_play, alpha[which] + half_play, lower[which], upper[which]
         )
     return Settled(side, floats, rest)
 
 
 def _without_moment(
-    moment: Moment,
-    a: np.ndarray,
-    b: np.ndarray,
-    at_a: np.ndarray,
-    at_b: np.ndarray,
+    moment: Moment, a: np.ndarray, b: np.ndarray, at_a: np.ndarray, at_b: np.ndarray
 ) -> np.ndarray:
     """Root (m,) between ``a`` and ``b``, where the moment has opposite signs: a secant, then inverse quadratic steps.
 
@@ -64,7 +54,7 @@ def _without_moment(
     times as much here.
     """
     x = a - at_a * (b - a) / (at_b - at_a)
-    for _ in range(constants.LONGEST_ZERO_SEARCH):
+    for _ in range(12):  # two are usual
         value = moment(x)
         proposed = _inverse_quadratic((a, b, x), (at_a, at_b, value))
         below = value < 0.0  # as at ``a``
@@ -73,7 +63,7 @@ def _without_moment(
         inside = (proposed > a) & (proposed < b)  # false for NaN, too
         following = np.where(value == 0.0, x, np.where(inside, proposed, 0.5 * (a + b)))
         moved, x = np.abs(following - x), following
-        if np.all(moved < constants.ZERO_SEARCH_STEP):
+        if np.all(moved < 1e-7):  # [rad]; the error left is its square
             break
     return x
 

@@ -36,9 +36,8 @@ class Simulation(Brief):
     turn_slip: bool = True  #: whether the simulation knows path curvature and spin
     star: bool = False  #: tan(alpha), sin(gamma) as inputs
     radius_m: float = math.nan  #: declared radius of the rig's usual path [m]; NaN: that of most points
-    of_runs: Mapping[str, float] = field(
-        default_factory=dict
-    )  #: what single runs add to a rig error, as ``F0_N@zeros.csv``, in its unit
+    of_runs: Mapping[str, float] = field(default_factory=dict)
+    """What single runs add to a rig error, as ``F0_N@zeros.csv``, in its unit."""
 
     @classmethod
     def of(

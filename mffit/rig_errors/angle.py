@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+from functools import partial
+
 import numpy as np
 
 from mffit.rig_errors import constants
 from mffit.rig_errors.record import RADIANS, Appearance, Declared, Measurement, Place, RigError
+
+_of_angle = partial(RigError, kind="rig", place=Place.ANGLE, acts_on=("alpha",))
 
 RELAXATION = RigError(
     name="relaxation_m",
@@ -29,13 +33,10 @@ RELAXATION = RigError(
         ),
     ),
 )
-SIDESLIP_ZERO = RigError(
+SIDESLIP_ZERO = _of_angle(
     name="alpha_0_deg",
     unit="deg",
     meaning="true sideslip angle = reading + alpha_0",
-    kind="rig",
-    place=Place.ANGLE,
-    acts_on=("alpha",),
     formula=lambda zero, alpha, at: alpha + zero * RADIANS,
     spread=0.2,
     lower=-5.0,
@@ -75,17 +76,13 @@ SIDESLIP_ZERO = RigError(
             id="sideslip-zero",
             title="better zero of the sideslip axis",
             reason="A geometric zero of the steering separates misalignment from ply-steer; no run on a single rig can.",
-            settles=("sideslip-misalignment", "ply-steer"),
         ),
     ),
 )
-HYSTERESIS = RigError(
+HYSTERESIS = _of_angle(
     name="hysteresis_deg",
     unit="deg",
     meaning="true sideslip angle = reading - hysteresis sense, sense 1 or -1 as the sweep goes up or down",
-    kind="rig",
-    place=Place.ANGLE,
-    acts_on=("alpha",),
     formula=lambda width, alpha, at: alpha - width * (RADIANS * at.sense),
     spread=0.1,
     lower=-2.0,
@@ -103,13 +100,10 @@ HYSTERESIS = RigError(
         ),
     ),
 )
-COMPLIANCE = RigError(
+COMPLIANCE = _of_angle(
     name="compliance_deg_per_Nm",
     unit="deg/Nm",
     meaning="true sideslip angle = reading + compliance Mz",
-    kind="rig",
-    place=Place.ANGLE,
-    acts_on=("alpha",),
     formula=lambda give, alpha, at: at.turned_by_moment(alpha, give * RADIANS),
     spread=0.004,
     lower=-0.05,
@@ -127,13 +121,10 @@ COMPLIANCE = RigError(
         ),
     ),
 )
-BACKLASH = RigError(
+BACKLASH = _of_angle(
     name="backlash_deg",
     unit="deg",
     meaning="full play; true sideslip angle = reading - play/2 sign(Mz)",
-    kind="rig",
-    place=Place.ANGLE,
-    acts_on=("alpha",),
     formula=lambda play, alpha, at: at.held_in_play(alpha, 0.5 * RADIANS * play),
     spread=0.2,
     scan=(0.05, 0.15, 0.3),
@@ -159,13 +150,10 @@ BACKLASH = RigError(
         force_at_zero=lambda play, at: 0.5 * RADIANS * at.C_alpha * at.side_of_play * play,
     ),
 )
-CAMBER_SKEW = RigError(
+CAMBER_SKEW = _of_angle(
     name="camber_skew_deg",
     unit="deg",
     meaning="true sideslip angle = reading + camber_skew sin(true camber)",
-    kind="rig",
-    place=Place.ANGLE,
-    acts_on=("alpha",),
     formula=lambda skew, alpha, at: alpha + skew * RADIANS * np.sin(at.gamma),
     spread=0.2,
     lower=-5.0,
@@ -193,7 +181,6 @@ CAMBER_SKEW = RigError(
             id="camber-squareness",
             title="better squareness of the camber axis",
             reason="Sideslip that leaning adds is taken for camber stiffness, and so for camber reduction.",
-            settles=("camber-skew",),
         ),
     ),
 )

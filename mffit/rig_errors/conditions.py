@@ -42,7 +42,6 @@ CAMBER_ZERO = RigError(
             id="camber-zero",
             title="better zero of the camber axis",
             reason="A camber error makes a force like turn slip; it is often the largest line in the budget of eps_gamma.",
-            settles=("camber-misalignment", "camber-reduction"),
         ),
     ),
 )
@@ -106,7 +105,6 @@ PATH_RADIUS = RigError(
             id="path-radius",
             title="better path radius",
             reason="The curvature of the path is known as well as its radius.",
-            settles=("path-radius",),
         ),
     ),
 )

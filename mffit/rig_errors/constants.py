@@ -4,13 +4,9 @@ from __future__ import annotations
 
 from tir.constant import Real
 
-REFERENCE_TEMPERATURE = Real(
-    25.0, "degC", "Temperature at which a property file holds unless one is given or fitted."
-)
+REFERENCE_TEMPERATURE = Real(25.0, "degC", "Temperature of a property file unless given or fitted.")
 WARM_UP_DISTANCE = Real(1.0, "km", "Distance over which the effect of a cold start falls to 37 %.")
-CAMBER_SKEW = Real(
-    0.1, "deg", "Standard uncertainty of the squareness of camber and steering axis if [rig] gives none."
-)
+CAMBER_SKEW = Real(0.1, "deg", "Standard uncertainty of the squareness of both axes if [rig] gives none.")
 LOADCELL_ZERO = Real(
     10.0, "N", "Standard uncertainty of the zero of Fy if [rig] gives none.", "Mottola and Massaro 2022, (24)"
 )

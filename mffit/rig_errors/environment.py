@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+from functools import partial
+
 import numpy as np
 
 from mffit.rig_errors import constants
 from mffit.rig_errors.record import Appearance, Place, RigError
 
 WARMTH = "(T - T_ref), T_ref the mean temperature of the data unless it is fitted"
-FORCES = ("Fy", "Mz")
+
+_of_forces = partial(RigError, kind="environment", place=Place.ENVIRONMENT, acts_on=("Fy", "Mz"))
+_appearance = partial(Appearance, parity="as the forces")
 
 TEMPERATURE_GRIP = RigError(
     name="k_T_grip_per_K",
@@ -22,12 +26,11 @@ TEMPERATURE_GRIP = RigError(
     lower=-0.05,
     upper=0.05,
     seen_as=(
-        Appearance(
+        _appearance(
             id="temperature-grip",
             name="friction with tyre temperature",
             physics="The friction of rubber depends on its temperature: the peak of the curves moves, their slope at zero "
             "stays.",
-            parity="as the forces",
             needs=("temperatures",),
             confusable_with=("temperature",),
         ),
@@ -45,33 +48,28 @@ TEMPERATURE_STIFFNESS = RigError(
     lower=-0.05,
     upper=0.05,
     seen_as=(
-        Appearance(
+        _appearance(
             id="temperature-stiffness",
             name="cornering stiffness with tyre temperature",
             physics="Warm rubber is softer: the slope of the side force at zero changes, its peak stays.",
-            parity="as the forces",
             needs=("temperatures",),
             confusable_with=("temperature",),
         ),
     ),
 )
-TEMPERATURE = RigError(
+TEMPERATURE = _of_forces(
     name="k_T_per_K",
     unit="1/K",
     meaning=f"Fy and Mz times 1 + k_T {WARMTH}",
-    kind="environment",
-    place=Place.ENVIRONMENT,
-    acts_on=FORCES,
     formula=lambda k, force, at: force * (1.0 + k * at.warmth),
     spread=0.001,
     lower=-0.05,
     upper=0.05,
     seen_as=(
-        Appearance(
+        _appearance(
             id="temperature",
             name="tyre temperature",
             physics="Warm rubber grips and stiffens differently: forces scale with temperature.",
-            parity="as the forces",
             needs=("temperatures",),
             confusable_with=("drift", "temperature-grip", "temperature-stiffness"),
             together_with=("T_ref_degC",),
@@ -89,78 +87,63 @@ REFERENCE_TEMPERATURE = RigError(
     lower=-40.0,
     upper=200.0,
 )
-SPEED = RigError(
+SPEED = _of_forces(
     name="k_V_per_mps",
     unit="s/m",
     meaning="Fy and Mz times 1 + k_V (V - V_ref), V_ref the most frequent speed",
-    kind="environment",
-    place=Place.ENVIRONMENT,
-    acts_on=FORCES,
     formula=lambda k, force, at: force * (1.0 + k * at.speed_above_usual),
     spread=0.005,
     lower=-0.2,
     upper=0.2,
     seen_as=(
-        Appearance(
+        _appearance(
             id="speed",
             name="speed",
             physics="Friction and carcass depend on speed: forces scale with it.",
-            parity="as the forces",
             needs=("speeds",),
         ),
     ),
 )
-DRIFT = RigError(
+DRIFT = _of_forces(
     name="k_t_per_s",
     unit="1/s",
     meaning="Fy and Mz times 1 + k_t t, t the time at which the point was taken",
-    kind="environment",
-    place=Place.ENVIRONMENT,
-    acts_on=FORCES,
     formula=lambda k, force, at: force * (1.0 + k * at.time),
     spread=1e-6,
     lower=-1e-3,
     upper=1e-3,
     seen_as=(
-        Appearance(
+        _appearance(
             id="drift",
             name="drift over the test",
             physics="Wear and ageing change the forces with time.",
-            parity="as the forces",
             needs=("times",),
             confusable_with=("temperature",),
         ),
     ),
 )
-WEAR = RigError(
+WEAR = _of_forces(
     name="wear_per_km",
     unit="1/km",
     meaning="Fy and Mz times 1 + wear s, s the distance rolled",
-    kind="environment",
-    place=Place.ENVIRONMENT,
-    acts_on=FORCES,
     formula=lambda wear, force, at: force * (1.0 + wear * at.distance_km),
     spread=3e-4,
     lower=-0.1,
     upper=0.1,
     seen_as=(
-        Appearance(
+        _appearance(
             id="wear",
             name="wear over the distance rolled",
             physics="The tread wears with every kilometre, which changes the forces.",
-            parity="as the forces",
             needs=("distances",),
             confusable_with=("drift",),
         ),
     ),
 )
-WARM_UP = RigError(
+WARM_UP = _of_forces(
     name="warm_up",
     unit="-",
     meaning="Fy and Mz times 1 - warm_up exp(-s/1 km), s the distance rolled",
-    kind="environment",
-    place=Place.ENVIRONMENT,
-    acts_on=FORCES,
     formula=lambda share, force, at: (
         force * (1.0 - share * np.exp(-at.distance_km / constants.WARM_UP_DISTANCE))
     ),
@@ -168,11 +151,10 @@ WARM_UP = RigError(
     lower=-0.5,
     upper=0.5,
     seen_as=(
-        Appearance(
+        _appearance(
             id="warm-up",
             name="warm-up at the start",
             physics="A tyre that starts cold has other forces until it has rolled about a kilometre.",
-            parity="as the forces",
             needs=("times",),
             confusable_with=("temperature",),
         ),

@@ -2,17 +2,18 @@
 
 from __future__ import annotations
 
+from functools import partial
+
 from mffit.rig_errors import constants
 from mffit.rig_errors.record import Appearance, Declared, Measurement, Place, RigError
 
+_of_reading = partial(RigError, kind="rig", place=Place.FORCE)
 FORCE = "reported Fy = gain Fy + F0 + crosstalk Fz"
 
-GAIN = RigError(
+GAIN = _of_reading(
     name="gain",
     unit="-",
     meaning=FORCE,
-    kind="rig",
-    place=Place.FORCE,
     acts_on=("Fy",),
     formula=lambda gain, Fy, at: gain * Fy,
     undisturbed=1.0,
@@ -29,12 +30,10 @@ GAIN = RigError(
         ),
     ),
 )
-NONLINEARITY = RigError(
+NONLINEARITY = _of_reading(
     name="nonlinearity_per_kN",
     unit="1/kN",
     meaning="reported Fy times 1 + nonlinearity |Fy|",
-    kind="rig",
-    place=Place.FORCE,
     acts_on=("Fy",),
     formula=lambda growth, Fy, at: Fy * (1.0 + 1e-3 * growth * abs(Fy)),
     spread=0.01,
@@ -52,12 +51,10 @@ NONLINEARITY = RigError(
         ),
     ),
 )
-CROSSTALK = RigError(
+CROSSTALK = _of_reading(
     name="crosstalk",
     unit="-",
     meaning=FORCE,
-    kind="rig",
-    place=Place.FORCE,
     acts_on=("Fy",),
     formula=lambda share, Fy, at: Fy + share * at.Fz,
     spread=0.01,
@@ -76,12 +73,10 @@ CROSSTALK = RigError(
         ),
     ),
 )
-FORCE_ZERO = RigError(
+FORCE_ZERO = _of_reading(
     name="F0_N",
     unit="N",
     meaning=FORCE,
-    kind="rig",
-    place=Place.FORCE,
     acts_on=("Fy",),
     formula=lambda zero, Fy, at: Fy + zero,
     spread=10.0,
@@ -120,16 +115,13 @@ FORCE_ZERO = RigError(
             id="loadcell-zero",
             title="better zero of the side-force cell",
             reason="The offset of an unloaded side-force cell adds to the turn-slip force.",
-            settles=("loadcell-offset-fy",),
         ),
     ),
 )
-MOMENT_ZERO = RigError(
+MOMENT_ZERO = _of_reading(
     name="M0_Nm",
     unit="Nm",
     meaning="reported Mz = Mz + M0",
-    kind="rig",
-    place=Place.FORCE,
     acts_on=("Mz",),
     formula=lambda zero, Mz, at: Mz + zero,
     spread=1.0,

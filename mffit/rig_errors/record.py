@@ -48,7 +48,6 @@ class Measurement:
     id: str  #: of the addition to the plan
     title: str
     reason: str
-    settles: tuple[str, ...]  #: ids of effects whose uncertainty it lowers markedly
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -80,9 +79,7 @@ class Appearance:
     parity: str  #: under alpha, gamma, phi_t -> reversed
     needs: tuple[str, ...] = ()  #: what the data must vary; keys of effects.needs
     confusable_with: tuple[str, ...] = ()  #: ids of effects
-    remedy: str = (
-        ""  #: what to do at the rig; {value}, {opposite}: the number in the rig's axes, and its negative
-    )
+    remedy: str = ""  #: at the rig; {value}, {opposite}: the number in the rig's axes, and its negative
     axes: tuple[str, ...] = ()  #: channels whose signs in the rig's axes apply to the number
     per_run: bool = False
     spread: float | None = None  #: usual size where it differs from the record's
@@ -105,9 +102,7 @@ class RigError:
     formula: Formula | None = None
     undisturbed: float = 0.0  #: value without the error; NaN: as declared
     spread: float  #: usual size, 1 sigma
-    scan: tuple[float, ...] = (
-        0.0,
-    )  #: changes from which a fit starts; an even effect needs some other than 0
+    scan: tuple[float, ...] = (0.0,)  #: changes to start from; an even effect needs some other than 0
     lower: float = -math.inf
     upper: float = math.inf
     relative: bool = False  #: spread and scan are relative to the value

@@ -1,33 +1,24 @@
 """Which readings are suspected, and what follows: ``rules`` lists all suspicions, ``applying`` runs them."""
 
-from mffit.suspicion.applying import (
-    about,
-    after_the_fit,
-    before_the_fit,
-    contradictions,
-    distrust,
-    misread,
-)
+from mffit.suspicion.applying import after_the_fit, before_the_fit
 from mffit.suspicion.declarations import under_axes
-from mffit.suspicion.misread import Misread
+from mffit.suspicion.misread import Misread, misread
 from mffit.suspicion.others import Campaign, Doubt
-from mffit.suspicion.outliers import Outlier, marks, outliers
+from mffit.suspicion.outliers import Outlier, marks, outliers, outliers_sentence
 from mffit.suspicion.prediction import FittedModel
 from mffit.suspicion.rule import When
 from mffit.suspicion.rules import RULES
-from mffit.suspicion.slopes import signatures
-from mffit.suspicion.trust import Misfit
+from mffit.suspicion.slopes import contradictions, signatures
+from mffit.suspicion.trust import distrust
 
 __all__ = [
     "RULES",
     "Campaign",
     "Doubt",
     "FittedModel",
-    "Misfit",
     "Misread",
     "Outlier",
     "When",
-    "about",
     "after_the_fit",
     "before_the_fit",
     "contradictions",
@@ -35,6 +26,7 @@ __all__ = [
     "marks",
     "misread",
     "outliers",
+    "outliers_sentence",
     "signatures",
     "under_axes",
 ]

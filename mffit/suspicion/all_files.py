@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from functools import partial
 
 import numpy as np
 
@@ -10,12 +11,19 @@ from mffit.config import Config
 from mffit.constants import ZERO_CAMBER, ZERO_SIDESLIP
 from mffit.points import Points
 from mffit.suspicion import constants
-from mffit.suspicion.rule import Finding, Rule
-from mffit.suspicion.slopes import Signatures, at_zero, pooled, signatures
+from mffit.suspicion.rule import Finding, Outcome, Subject, rule
+from mffit.suspicion.slopes import SIGNS, Signatures, at_zero, pooled, signatures
+
+of_all_files = partial(rule, subject=Subject.ALL_FILES)
 
 
+@of_all_files(
+    id="copied-sweep",
+    limits=(constants.FEWEST_ROWS_OF_A_COPY,),
+    sentence="holds exactly the readings of {first}; remove one of the two, or correct the one that was copied by mistake",
+)
 def copied_sweep(points: Points, config: Config) -> Iterator[Finding]:
-    """A sweep whose readings are all in another one too: its points would count twice."""
+    """Readings of a sweep that are all in another sweep; its points would count twice."""
     readings = np.column_stack(
         [points.alpha, points.gamma, points.Fz, points.Fy, np.nan_to_num(points.Mz), points.direction]
     )
@@ -32,27 +40,29 @@ def copied_sweep(points: Points, config: Config) -> Iterator[Finding]:
         seen[key] = int(k)
 
 
-def reversed_file(points: Points, config: Config, signs: tuple[Rule, ...]) -> Iterator[Finding]:
-    """A file with a slope of another sign than all tyres have; ``signs`` are the rules about signs."""
+@of_all_files(
+    id="reversed-file",
+    limits=(constants.CHANCE_OF_OTHER_SIGN,),
+    sentence="{what} {where}, against all the others: its sign or its direction of rolling looks reversed; correct the file, "
+    'write direction = "backward" in its [[sweep]], or map {column} with scale = -1 under [sweep.columns]',
+)
+def reversed_file(points: Points, config: Config) -> Iterator[Finding]:
+    """Signs of the slopes, file by file, with the scatter of all files."""
     files = np.unique(points.file)
     if len(files) < 2:
         return
     each = [signatures(points.select(points.file == index)) for index in files]
     broken = []
     for index, own in zip(files, _with_common_scatter(each), strict=True):
-        found = next(((rule, finding.column) for rule in signs for finding in rule.find(own)), None)
+        found = next(((sign, finding.column) for sign in SIGNS for finding in sign.find(own)), None)
         if found is not None:
             broken.append((points.files[index], *found))
     if not broken:
         return
-    name, rule, column = broken[0]
-    alike = [other for other, *rest in broken[1:] if rest == [rule, column]]
+    name, sign, column = broken[0]
+    alike = [other for other, *rest in broken[1:] if rest == [sign, column]]
     where = f"in this file and in {', '.join(alike)}" if alike else "in this file alone"
-    yield Finding(
-        {"what": rule.sentence, "where": where, "column": column},
-        file=name,
-        column=column,
-    )
+    yield Finding({"what": sign.sentence, "where": where, "column": column}, file=name, column=column)
 
 
 def _with_common_scatter(each: list[Signatures]) -> list[Signatures]:
@@ -65,8 +75,15 @@ def _with_common_scatter(each: list[Signatures]) -> list[Signatures]:
     ]
 
 
+@of_all_files(
+    id="lone-lean",
+    limits=(constants.LEANING, constants.FEWEST_LEANING_SWEEPS),
+    outcome=Outcome.WARNED,
+    sentence="{sweep} leans {degrees:.1f} deg to the other side than all {others} other sweeps with camber: if that was not "
+    "intended, correct the sign of its gamma_deg",
+)
 def lone_lean(points: Points, config: Config) -> Iterator[Finding]:
-    """The one sweep that leans the other way, unless a sweep holds both signs, as sweeps on a disc do."""
+    """Sign of camber, sweep by sweep; no sweep on a disc, which has both signs, counts."""
     sides: dict[int, float] = {}
     for k in np.unique(points.sweep).tolist():
         gamma = points.gamma[points.sweep == k]
@@ -82,15 +99,33 @@ def lone_lean(points: Points, config: Config) -> Iterator[Finding]:
         yield Finding({"sweep": points.sweep_names[odd[0]], "degrees": degrees, "others": len(sides) - 1})
 
 
+@of_all_files(
+    id="weak-turn-slip-force",
+    limits=(constants.WEAK_TURN_SLIP_FORCE,),
+    outcome=Outcome.WARNED,
+    sentence="the force at alpha = gamma = 0 is {percent:.1f} % of the load along the turn slip, too little to measure turn "
+    "slip; check the alignment of the sideslip axis",
+)
 def weak_turn_slip(points: Points, config: Config) -> Iterator[Finding]:
-    """A turn-slip force that is too small to be measured."""
+    """Fy per load at alpha = gamma = 0, outwards, mean of both directions."""
     outward = signatures(points).outward
     if outward < constants.WEAK_TURN_SLIP_FORCE:
         yield Finding({"percent": 100 * outward})
 
 
+@of_all_files(
+    id="moments-about-another-point",
+    limits=(
+        constants.LEVER_OF_OTHER_MOMENT_POINT,
+        constants.UPRIGHT_FOR_MOMENT_POINT,
+        constants.FORCE_RANGE_OF_MOMENT_POINT,
+        constants.FEWEST_POINTS_OF_MOMENT_POINT,
+    ),
+    sentence='with moments = "{declared}", Mx_Nm changes by {lever:.2f} m times Fy_N, which is about the wheel\'s radius; about '
+    'the contact point it hardly changes; the data agree with moments = "{other}"',
+)
 def other_moment_point(points: Points, config: Config) -> Iterator[Finding]:
-    """Moments about another point than declared: about the contact point Mx hardly follows the side force."""
+    """Lever arm of Mx over Fy of the upright wheel, per unloaded radius."""
     upright = np.abs(points.gamma) < constants.UPRIGHT_FOR_MOMENT_POINT.rad
     used = np.isfinite(points.Mx) & np.isfinite(points.Fy) & upright
     if np.sum(used) < constants.FEWEST_POINTS_OF_MOMENT_POINT:
@@ -110,8 +145,14 @@ def other_moment_point(points: Points, config: Config) -> Iterator[Finding]:
     )
 
 
+@of_all_files(
+    id="one-sided-on-a-disc",
+    limits=(ZERO_SIDESLIP, ZERO_CAMBER),
+    sentence="runs only from {smallest:.3g} to {largest:.3g} deg in ISO signs, and on a disc both signs are needed to separate "
+    "turn slip; add the mirrored points",
+)
 def one_sided_on_disc(points: Points, config: Config) -> Iterator[Finding]:
-    """Angles of one sign on a disc, where turn slip is separated by mirror symmetry."""
+    """Signs of the angles on a disc, where turn slip is separated by mirror symmetry."""
     if not config.rig.on_disc:
         return
     for column, values, zero in (
@@ -124,7 +165,12 @@ def one_sided_on_disc(points: Points, config: Config) -> Iterator[Finding]:
             yield Finding(facts, file=config.path, column=column)
 
 
+@of_all_files(
+    id="no-zero-on-a-disc",
+    limits=(ZERO_SIDESLIP, ZERO_CAMBER),
+    sentence="no forward point has alpha_deg = 0 and gamma_deg = 0, where the turn-slip force is measured; add one per load",
+)
 def no_zero_on_disc(points: Points, config: Config) -> Iterator[Finding]:
-    """No forward point at zero sideslip and camber on a disc, where the turn-slip force is measured."""
+    """Forward points at alpha = gamma = 0 on a disc, where the turn-slip force is measured."""
     if config.rig.on_disc and not np.any(at_zero(points) & (points.direction > 0)):
         yield Finding({}, file=config.path, column="alpha_deg")

@@ -6,7 +6,7 @@ shifts the curves without reversing a slope.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator
 from functools import partial
 from typing import NamedTuple
 
@@ -15,8 +15,8 @@ import numpy as np
 from mffit.config import Config
 from mffit.points import Points
 from mffit.suspicion import constants
-from mffit.suspicion.rule import Finding, Rule
-from mffit.suspicion.slopes import Signatures, signatures
+from mffit.suspicion.rule import Finding, Subject, rule
+from mffit.suspicion.slopes import Signatures, contradictions, signatures
 from tir.conventions import FLIPPED
 
 
@@ -28,22 +28,23 @@ class Alternative(NamedTuple):
     points: Callable[[], Points]  #: as they would be then
 
 
-def broken(rules: Sequence[Rule], found: Signatures) -> list[str]:
-    """The broken rules, as beginnings of sentences; empty for plausible data."""
-    return [rule.said(finding.facts) for rule in rules for finding in rule.find(found)]
-
-
-def contradicted(points: Points, config: Config, slope_rules: Sequence[Rule]) -> Iterator[Finding]:
-    """A declaration under which the data break ``slope_rules``, with the declarations under which they do not."""
+@rule(
+    id="declaration-contradicted",
+    subject=Subject.ALL_FILES,
+    limits=(constants.WEAKEST_CAMBER_STIFFNESS,),
+    sentence="with {declared}, {wrong} in ISO signs, as no tyre does; {remedy}",
+)
+def contradicted(points: Points, config: Config) -> Iterator[Finding]:
+    """What no tyre does, under the declared and under all other axes, frames and path centres."""
     found = signatures(points)
-    wrong = broken(slope_rules, found)
+    wrong = contradictions(found)
     if not wrong:
         return
 
     def fits(other: Alternative) -> bool:
         """Whether the data agree with another declaration, and also show a camber response under it."""
         seen = signatures(other.points())
-        return not broken(slope_rules, seen) and not seen.camber.value > constants.WEAKEST_CAMBER_STIFFNESS
+        return not contradictions(seen) and not seen.camber.value > constants.WEAKEST_CAMBER_STIFFNESS
 
     fitting = [other for other in _alternatives(points, config) if fits(other)]
     fitting = fitting or [other for other in _pairs(points, config) if fits(other)]

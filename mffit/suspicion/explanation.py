@@ -54,18 +54,8 @@ SHIFTS = (
     Shift("a zero offset of {:+.3g} Nm in Mz_Nm", _constant("Mz"), sign="Mz"),
     Shift("a gain of {:.3g} in Fy_N", _gain("Fy"), start=1.0),
     Shift("a gain of {:.3g} in Mz_Nm", _gain("Mz"), start=1.0),
-    Shift(
-        "a sideslip axis that is {:+.2g} deg out",
-        _set_point("alpha"),
-        unit=DEGREES,
-        sign="alpha",
-    ),
-    Shift(
-        "a camber axis that is {:+.2g} deg out",
-        _set_point("gamma"),
-        unit=DEGREES,
-        sign="gamma",
-    ),
+    Shift("a sideslip axis that is {:+.2g} deg out", _set_point("alpha"), unit=DEGREES, sign="alpha"),
+    Shift("a camber axis that is {:+.2g} deg out", _set_point("gamma"), unit=DEGREES, sign="gamma"),
     Shift("a load that was {:+.2g} % off", _set_point("Fz", relative=True), unit=100.0),
     Shift("a pressure that was {:+.2g} % off", _set_point("p", relative=True), unit=100.0),
 )
@@ -76,12 +66,7 @@ def explanation(
 ) -> str:
     """What explains most of the errors of a sweep, in words; empty if no known cause does.
 
-    Parameters
-    ----------
-    points : of the sweep (m,)
-    errors : prediction of each channel less what was measured
-    simulation : as fitted
-    signs : +1 or -1 per channel: from ISO-W to the rig's axes
+    ``signs`` lead from ISO-W to the rig's axes.
     """
     before = _chi2(errors, {n: e.error for n, e in errors.items()})
     best, said = constants.EXPLAINED_BY_ONE_NUMBER * before, ""

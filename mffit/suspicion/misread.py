@@ -6,18 +6,19 @@ It is reversed, in another unit, or labelled with another load, camber or pressu
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from functools import partial
 
 import numpy as np
 
+from mffit.constants import EXPLAINED_SHARE
 from mffit.points import Points, levels
 from mffit.quantities import CHANNELS, CONDITIONS
 from mffit.rig import Simulation
 from mffit.scatter import robust, usual_size
 from mffit.suspicion import constants
-from mffit.suspicion.mistakes import MISTAKES, Mistake
-from mffit.suspicion.undoing import Away, explaining
+from mffit.suspicion.mistakes import MISTAKES, Away, Mistake, explaining
+from mffit.suspicion.rule import Outcome, Subject, When, rule
 
 LABELS = (("Fz", "Fz_N", levels.LOAD), ("gamma", "gamma_deg", levels.CAMBER), ("p", "p_kPa", levels.PRESSURE))
 TO_COLUMN = {"Fz": 1.0, "gamma": float(np.degrees(1.0)), "p": 1e-3}
@@ -36,17 +37,39 @@ class Misread:
     before: float  #: how far it is off, as a share of the usual size of the channel that is worst
     after: float  #: with the mistake undone
 
+    @property
+    def sentence(self) -> str:
+        """The remark about it."""
+        return misread_sweep.said(asdict(self) | {"percent": 100 * self.before, "left": 100 * self.after})
 
+
+def misread(points: Points, simulation: Simulation, signs: Mapping[str, float]) -> Misread | None:
+    """The one sweep that contradicts a simulation as a known mistake would."""
+    return next(iter(misread_sweep.find(points, simulation, signs)), None)
+
+
+@rule(
+    id="misread-sweep",
+    when=(When.DIAGNOSIS,),
+    subject=Subject.SIMULATION,
+    limits=(
+        constants.MISREAD_SHARE,
+        constants.MISREAD_OVER_USUAL,
+        constants.MISREAD_OVER_WORST,
+        EXPLAINED_SHARE,
+        constants.CORRECTED_OVER_USUAL,
+    ),
+    outcome=Outcome.LEFT_OUT,
+    sentence=(
+        "{file}: {sweep} misses the simulation by {percent:.0f} % of what sweeps usually read, as no other does; it looks "
+        "like {looks}, which leaves {left:.2g} %. It was left out. In column {column}: {remedy}."
+    ),
+)
 def misread_sweep(points: Points, simulation: Simulation, signs: Mapping[str, float]) -> Iterator[Misread]:
-    """The sweep that is much further off than all others, if a known mistake explains it.
+    """Median error of the simulation over the usual size of the channel, with each known mistake undone.
 
-    If several sweeps look like that, the model or the rig is at fault.
-
-    Parameters
-    ----------
-    points : as declared (n,)
-    simulation : as given; it may miss all sweeps for another reason
-    signs : +1 or -1 per channel: from ISO-W to the rig's axes
+    The sweep that is much further off than all others is found if a known mistake explains it. If several sweeps look like
+    that, the model or the rig is at fault. ``signs`` lead from ISO-W to the rig's axes.
     """
     numbers, counts = np.unique(points.sweep, return_counts=True)
     numbers = numbers[counts >= constants.FEWEST_POINTS_OF_A_MISREAD_SWEEP]

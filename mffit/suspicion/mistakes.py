@@ -1,11 +1,13 @@
-"""Known mistakes in recording a sweep, one record each."""
+"""Known mistakes in recording a sweep, one record each, and the one that explains the errors of a sweep."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from functools import partial
+from typing import NamedTuple
 
+from mffit.constants import EXPLAINED_SHARE
 from mffit.points import Points
 from mffit.sweeps.units import factor
 
@@ -99,3 +101,44 @@ MISTAKES: tuple[Mistake, ...] = (
     *(_in_unit(*angle, unit="rad", expected="deg") for angle in (SIDESLIP, CAMBER)),
     _in_unit(*PRESSURE, unit="psi", expected="kPa"),
 )
+
+
+class Away(NamedTuple):
+    """How far one channel of a sweep is from what is expected."""
+
+    error: float  #: in any unit that is the same before and after
+    share: float  #: of the channel's usual size
+    matched: bool = True  #: False if the error is not small beside what was measured and expected
+
+
+class Explained(NamedTuple):
+    """A mistake that explains a sweep."""
+
+    mistake: Mistake
+    left: float  #: largest share of the usual size by which a channel is still away
+
+
+def explaining(
+    candidates: Iterable[tuple[Mistake, Points]],
+    gross: Mapping[str, float],
+    away: Callable[[Points], Mapping[str, Away]],
+    tolerated: Mapping[str, float],
+) -> Explained | None:
+    """The mistake that leaves least when it is undone; None if no mistake explains the errors.
+
+    ``candidates`` come with the points of the sweep as they are without the mistake. ``tolerated`` limits the share by which a
+    channel may be away in the end, so that no new error is made elsewhere.
+    """
+    best = None
+    for mistake, points in candidates:
+        after = away(points)
+        little = all(
+            after[name].error <= EXPLAINED_SHARE * error and after[name].matched
+            for name, error in gross.items()
+        )
+        if not little or any(one.share > tolerated[name] for name, one in after.items()):
+            continue
+        left = max(one.share for one in after.values())
+        if best is None or left < best.left:
+            best = Explained(mistake=mistake, left=left)
+    return best

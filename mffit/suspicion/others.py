@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from typing import Any, NamedTuple
 
 import numpy as np
 from scipy.special import chdtrc, ndtri
 
+from mffit.constants import EXPLAINED_SHARE
 from mffit.errors import InputError
 from mffit.points import Points
 from mffit.quantities import CHANNELS
@@ -16,18 +17,9 @@ from mffit.rig import Simulation
 from mffit.scatter import rms, robust, usual_size
 from mffit.suspicion import constants
 from mffit.suspicion.explanation import explanation
-from mffit.suspicion.mistakes import MISTAKES, Mistake
-from mffit.suspicion.prediction import (
-    FittedModel,
-    Group,
-    Leverage,
-    Prediction,
-    groups,
-    leverage,
-    predictions,
-)
-from mffit.suspicion.rule import Finding
-from mffit.suspicion.undoing import Away, explaining
+from mffit.suspicion.mistakes import MISTAKES, Away, Mistake, explaining
+from mffit.suspicion.prediction import FittedModel, Group, Leverage, Prediction, groups, leverage, predictions
+from mffit.suspicion.rule import Finding, Outcome, Subject, When, rule
 
 
 class Campaign(NamedTuple):
@@ -84,6 +76,16 @@ class Doubt:
     share: float  #: of the channel's usual size at this load
     looks: str  #: what would explain it; empty if no known cause does
 
+    @property
+    def sentence(self) -> str:
+        """The warning about it."""
+        facts = {
+            "unit": CHANNELS[self.channel].unit,
+            "percent": 100 * self.share,
+            "explained": f"; it looks like {self.looks}" if self.looks else "",
+        }
+        return doubtful_sweep.said(asdict(self) | facts)
+
 
 class Evidence(NamedTuple):
     """All sweeps that are off, as seen by the fits without them."""
@@ -98,8 +100,6 @@ class Evidence(NamedTuple):
 def evidence(campaign: Campaign, fitted: FittedModel) -> Evidence | None:
     """Views of the sweeps that are off, the worst first; None with too few sweeps to compare.
 
-    Notes
-    -----
     The search ends at the first sweep that a known mistake explains.
     """
     points = campaign.points
@@ -124,8 +124,16 @@ def evidence(campaign: Campaign, fitted: FittedModel) -> Evidence | None:
     )
 
 
+@rule(
+    id="known-mistake",
+    subject=Subject.SWEEP,
+    when=(When.FIRST, When.AFTER),
+    limits=(constants.FALSE_ALARM_OF_SWEEPS, constants.GROSS_SHARE, EXPLAINED_SHARE, constants.MATCHED_SHARE),
+    sentence="contradicts all other sweeps: predicted from them, {channel} is out by {rms:.3g} {unit}, at least {percent:.0f} % "
+    "of its usual size{condition}; it looks like {looks}, which leaves {left:.2g} %: {remedy}",
+)
 def known_mistake(seen: Evidence) -> Iterator[Finding]:
-    """The worst sweep that a known mistake explains."""
+    """Error of the prediction from all other sweeps, as it is and with each known mistake undone; the worst sweep is found."""
     explained = [v for v in seen.views if v.mistake is not None]
     if explained:
         v = max(explained, key=lambda v: v.error.share)
@@ -134,8 +142,17 @@ def known_mistake(seen: Evidence) -> Iterator[Finding]:
         yield Finding(facts, file=v.group.file, column=v.mistake.column)
 
 
+@rule(
+    id="implausible-sweep",
+    subject=Subject.SWEEP,
+    when=(When.AFTER,),
+    limits=(constants.FALSE_ALARM_OF_SWEEPS, constants.IMPLAUSIBLE_SHARE, constants.GROSS_SHARE),
+    sentence="contradicts all other sweeps: predicted from them, {channel} is out by {rms:.3g} {unit}, at least {percent:.0f} % "
+    "of its usual size{condition}, and no reversed sign, exchanged column or unit explains it; check this "
+    "file{perhaps}, or leave it out",
+)
 def implausible_sweep(seen: Evidence) -> Iterator[Finding]:
-    """The worst sweep that contradicts the others, if they predict it with certainty."""
+    """Error of the prediction from all other sweeps, and uncertainty of the prediction; the worst sweep is found."""
     refused = [
         v
         for v in seen.views
@@ -148,8 +165,18 @@ def implausible_sweep(seen: Evidence) -> Iterator[Finding]:
         yield Finding({**v.facts, "perhaps": perhaps}, file=v.group.file)
 
 
+@rule(
+    id="doubtful-sweep",
+    subject=Subject.SWEEP,
+    when=(When.AFTER,),
+    limits=(constants.FALSE_ALARM_OF_SWEEPS, constants.DOUBTFUL_SHARE, constants.EXPLAINED_BY_ONE_NUMBER),
+    outcome=Outcome.WARNED,
+    sentence="{sweep} does not fit the other sweeps: predicted from them, {channel} is out by {rms:.3g} {unit}, at least "
+    "{percent:.0f} % of its usual size and {ratio:.1f} times what noise and model explain{explained}; check this sweep "
+    "or repeat it",
+)
 def doubtful_sweep(seen: Evidence) -> Iterator[Doubt]:
-    """Sweeps that are further off than the others, by their worst channel; a sweep's conditions only if itself is not."""
+    """Error of the prediction from all other sweeps, beside the errors of the other sweeps; conditions only of a sound sweep."""
     doubtful = [
         v for v in seen.views if v.error.ratio > seen.usual and v.error.vague < constants.DOUBTFUL_SHARE
     ]

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
 from mffit.points import Points
 from mffit.quantities import CHANNELS
 from mffit.suspicion import constants
+from mffit.suspicion.rule import Outcome, Rule, Subject, When
 
 
 @dataclass(frozen=True, slots=True)
@@ -73,12 +73,23 @@ def marks(found: Iterable[Outlier], n: int) -> np.ndarray:
     return out
 
 
-def in_words(found: Sequence[Outlier]) -> dict[str, Any]:
-    """Facts for the sentence about all outliers, the worst by name."""
+def outliers_sentence(found: Sequence[Outlier]) -> str:
+    """The warning about all outliers, the worst by name."""
     worst = sorted(found, key=lambda o: -o.ratio)[: constants.OUTLIERS_IN_SENTENCE]
     named = "; ".join(
         f"{o.place} {o.channel} = {o.measured:.4g} {CHANNELS[o.channel].unit} where {o.expected:.4g} is expected"
         for o in worst
     )
     more = f"; and {len(found) - len(worst)} more, all in result.json" if len(found) > len(worst) else ""
-    return {"number": len(found), "named": named + more}
+    return OUTLYING.said({"number": len(found), "named": named + more})
+
+
+OUTLYING = Rule(
+    id="outlying-reading",
+    when=(When.AFTER,),
+    subject=Subject.READINGS,
+    looks_at="Residual, and its distance from the neighbours' residuals in the sweep; the weights of the fit have the limits",
+    outcome=Outcome.LEFT_OUT,
+    sentence="readings that do not fit their sweep have no weight ({number}): {named}; correct or remove what is wrong",
+    find=outliers,
+)

@@ -115,10 +115,7 @@ def _conditions(points: Points) -> Iterator[Group]:
 def leverage(fit: FittedModel, noise: np.ndarray) -> Leverage:
     """Residuals and derivatives of a fit.
 
-    Parameters
-    ----------
-    fit : at its solution
-    noise : uncertainty of a sound point [N], [Nm], (2n,) of Fy and then Mz; inf where not measured
+    ``noise`` is that of a sound point [N], [Nm], (2n,) of Fy and then Mz; inf where not measured.
     """
     points = fit.points
     free = [n.name for n in fit.numbers]

@@ -55,6 +55,10 @@ class Finding(NamedTuple):
     key: str | None = None  #: of ``tyre.toml``
 
 
+Find = Callable[..., Iterable[Any]]
+"""What it takes and finds depends on the subject."""
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Rule:
     """One suspicion."""
@@ -66,7 +70,7 @@ class Rule:
     limits: tuple[float, ...] = ()  #: records of ``constants.py``
     outcome: Outcome = Outcome.REFUSED
     sentence: str  #: filled with the facts of a finding
-    find: Callable[..., Iterable[Any]]  #: what it takes and finds depends on the subject
+    find: Find
 
     def said(self, facts: Mapping[str, Any]) -> str:
         """The sentence about one finding."""
@@ -81,3 +85,30 @@ class Rule:
             column=finding.column,
             key=finding.key,
         )
+
+
+def rule(
+    *,
+    id: str,
+    subject: Subject,
+    sentence: str,
+    limits: tuple[float, ...] = (),
+    when: tuple[When, ...] = (When.BEFORE,),
+    outcome: Outcome = Outcome.REFUSED,
+) -> Callable[[Find], Rule]:
+    """Decorator that turns a finder into a rule; the first line of the finder's docstring names what is compared."""
+
+    def of(find: Find) -> Rule:
+        looks_at = (find.__doc__ or "").partition("\n")[0].rstrip(".")
+        return Rule(
+            id=id,
+            when=when,
+            subject=subject,
+            looks_at=looks_at,
+            limits=limits,
+            outcome=outcome,
+            sentence=sentence,
+            find=find,
+        )
+
+    return of

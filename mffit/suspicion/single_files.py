@@ -3,19 +3,29 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from functools import partial
 
 import numpy as np
 
 from mffit.config import Config
 from mffit.points import Points
 from mffit.suspicion import constants
-from mffit.suspicion.rule import Finding
+from mffit.suspicion.rule import Finding, Subject, rule
 from mffit.suspicion.slopes import slope
 from mffit.sweeps.units import factor
 
+of_file = partial(rule, subject=Subject.FILE)
 
+
+@of_file(
+    id="angle-in-radians",
+    limits=(constants.STEEPEST_OVER_SIDESLIP, constants.STEEPEST_OVER_CAMBER),
+    sentence="reaches only {largest:.3g} deg, over which the side force changes by {steepness:.0f} times the load per radian; "
+    'the angles look like radians: write degrees, or {column} = {{ column = "{column}", unit = "rad" }} under '
+    "[sweep.columns]",
+)
 def angle_in_radians(part: Points, config: Config) -> Iterator[Finding]:
-    """Angles over which the side force is far too steep; small angles alone are not suspected."""
+    """Slope of Fy per load over sideslip and over camber, forwards and backwards; small angles are not suspected."""
     for angle, steepest in (
         ("alpha", constants.STEEPEST_OVER_SIDESLIP),
         ("gamma", constants.STEEPEST_OVER_CAMBER),
@@ -28,8 +38,13 @@ def angle_in_radians(part: Points, config: Config) -> Iterator[Finding]:
                 yield Finding(facts, column=f"{angle}_deg")
 
 
+@of_file(
+    id="dead-channel",
+    limits=(constants.FEWEST_ROWS_OF_A_DEAD_CHANNEL,),
+    sentence="is {reading:g} in every row, so the channel was dead; {remedy}",
+)
 def dead_channel(part: Points, config: Config) -> Iterator[Finding]:
-    """A channel that reads one and the same number while the angles change."""
+    """Mz and Fy that are the same in every row although the angles change."""
     if len(part) < constants.FEWEST_ROWS_OF_A_DEAD_CHANNEL or np.ptp(part.alpha) + np.ptp(part.gamma) == 0.0:
         return
     for column, reading, remedy in (
@@ -40,8 +55,18 @@ def dead_channel(part: Points, config: Config) -> Iterator[Finding]:
             yield Finding({"reading": reading[0], "remedy": remedy}, column=column)
 
 
+@of_file(
+    id="force-in-kilonewtons",
+    limits=(
+        constants.SIDESLIP_THAT_SHOWS_FORCE,
+        constants.CAMBER_THAT_SHOWS_FORCE,
+        constants.SMALLEST_FRICTION,
+    ),
+    sentence="is at most {largest:.3g} N at loads of {load:.0f} N, which looks like kN; write newtons, or "
+    'Fy_N = {{ column = "Fy_N", unit = "kN" }} under [sweep.columns]',
+)
 def force_too_small(part: Points, config: Config) -> Iterator[Finding]:
-    """Side forces that are too small for the angles."""
+    """Largest Fy per load at angles that show a force."""
     shows = (np.abs(part.alpha) > constants.SIDESLIP_THAT_SHOWS_FORCE.rad) | (
         np.abs(part.gamma) > constants.CAMBER_THAT_SHOWS_FORCE.rad
     )
@@ -52,8 +77,13 @@ def force_too_small(part: Points, config: Config) -> Iterator[Finding]:
         yield Finding(facts, column="Fy_N")
 
 
+@of_file(
+    id="lone-load",
+    limits=(constants.LONE_LOAD, constants.FEWEST_ROWS_OF_A_LONE_LOAD),
+    sentence="{load:.6g} N is far above all other loads of the file, which are at most {others:.6g} N; correct or remove the row",
+)
 def lone_load(part: Points, config: Config) -> Iterator[Finding]:
-    """One load far above all others of its file: no programme has a single point there."""
+    """Largest load over all others of the file; no programme has a single point there."""
     if len(part) < constants.FEWEST_ROWS_OF_A_LONE_LOAD:
         return
     row, others = int(np.argmax(part.Fz)), np.sort(part.Fz)[:-1]
@@ -62,8 +92,13 @@ def lone_load(part: Points, config: Config) -> Iterator[Finding]:
         yield Finding(facts, line=_line(part, row), column="Fz_N")
 
 
+@of_file(
+    id="wild-force",
+    limits=(constants.LARGEST_FRICTION,),
+    sentence="{force:.6g} N is {friction:.0f} times the load, which no tyre reaches; correct or remove the row",
+)
 def wild_force(part: Points, config: Config) -> Iterator[Finding]:
-    """One or two side forces beyond all friction."""
+    """Fy per load of one or two rows."""
     friction = np.abs(part.Fy) / part.Fz
     if 0 < np.sum(friction > constants.LARGEST_FRICTION) < constants.FEWEST_POINTS_OF_FRICTION:
         row = int(np.argmax(friction))
@@ -71,23 +106,40 @@ def wild_force(part: Points, config: Config) -> Iterator[Finding]:
         yield Finding(facts, line=_line(part, row), column="Fy_N")
 
 
+@of_file(
+    id="load-in-another-unit",
+    limits=(constants.LARGEST_FRICTION, constants.FEWEST_POINTS_OF_FRICTION),
+    sentence="side forces reach {friction:.0f} times the load ({load:.0f} N), which no tyre does: the load looks like kgf, or "
+    'the force like another unit; map it with its unit, Fz_N = {{ column = "Fz_N", unit = "kgf" }} in [sweep.columns]',
+)
 def load_in_another_unit(part: Points, config: Config) -> Iterator[Finding]:
-    """Side forces beyond all friction at several points: the loads of the file are too small."""
+    """Fy per load of more rows; the loads of the file are too small."""
     friction = np.abs(part.Fy) / part.Fz
     if np.sum(friction > constants.LARGEST_FRICTION) >= constants.FEWEST_POINTS_OF_FRICTION:
         row = int(np.argmax(friction))
         yield Finding({"friction": friction[row], "load": part.Fz[row]}, column="Fz_N")
 
 
+@of_file(
+    id="moment-in-newton-millimetres",
+    limits=(constants.LONGEST_ARM,),
+    sentence="reaches {arm:.0f} m times the load, which looks like N mm; name its unit under [sweep.columns]",
+)
 def arm_too_long(part: Points, config: Config) -> Iterator[Finding]:
-    """Moments with an arm that no tyre has."""
+    """|Mz| over load."""
     arm = np.abs(part.Mz) / part.Fz
     if np.any(arm > constants.LONGEST_ARM):
         yield Finding({"arm": np.nanmax(arm)}, column="Mz_Nm")
 
 
+@of_file(
+    id="pressure-in-psi",
+    limits=(constants.LOWEST_TESTED_PRESSURE,),
+    sentence="is {pressure:.3g} kPa, far from the nominal {nominal:.3g} kPa, and looks like psi; write kPa, or "
+    'p_kPa = {{ column = "p_kPa", unit = "psi" }} under [sweep.columns]',
+)
 def pressure_in_psi(part: Points, config: Config) -> Iterator[Finding]:
-    """A pressure far below the nominal one that would be near it in psi."""
+    """Median pressure over the nominal one, as it is and read as psi."""
     nominal = 1e3 * config.tyre.nominal_pressure
     pressure = float(np.median(part.p))
     lowest, highest = constants.LOWEST_TESTED_PRESSURE * nominal, nominal / constants.LOWEST_TESTED_PRESSURE

@@ -8,7 +8,8 @@ backwards, side force rises with the sideslip reading.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Iterator, Sequence
+from functools import partial
 from typing import NamedTuple
 
 import numpy as np
@@ -17,6 +18,7 @@ from scipy.special import stdtrit
 from mffit.constants import ZERO_CAMBER, ZERO_SIDESLIP
 from mffit.points import Points
 from mffit.suspicion import constants
+from mffit.suspicion.rule import Finding, Outcome, Rule, Subject
 
 
 class Slope(NamedTuple):
@@ -82,15 +84,7 @@ def signatures(points: Points) -> Signatures:
 
 
 def slope(points: Points, response: np.ndarray, angle: str, used: np.ndarray) -> Slope:
-    """Slope of ``response`` per load over an angle, with a linear term of the other angle.
-
-    Parameters
-    ----------
-    points : (n,)
-    response : (n,) force or moment
-    angle : "alpha" or "gamma"
-    used : mask (n,)
-    """
+    """Slope of ``response`` (n,) per load over "alpha" or "gamma" at some points, with a linear term of the other angle."""
     used = used & np.isfinite(response)
     other = points.gamma if angle == "alpha" else points.alpha
     x, y = getattr(points, angle)[used], (response / points.Fz)[used]
@@ -134,3 +128,84 @@ def _thrust(points: Points) -> float:
         return float("nan")
     thrust = -Fy / Fz / np.tan(gamma)
     return float((thrust[gamma > 0].mean() + thrust[gamma < 0].mean()) / 2.0)
+
+
+def _where(holds: Callable[[Signatures], bool], column: str, **facts: Callable[[Signatures], float]):
+    """A function that finds one case if something holds for the signatures."""
+
+    def find(found: Signatures) -> Iterator[Finding]:
+        if holds(found):
+            yield Finding({name: fact(found) for name, fact in facts.items()}, column=column)
+
+    return find
+
+
+def contradictions(found: Signatures) -> list[str]:
+    """What the signatures show that no tyre does, as beginnings of sentences; empty for plausible ones."""
+    return [rule.said(finding.facts) for rule in NO_TYRE for finding in rule.find(found)]
+
+
+_sign = partial(
+    Rule, subject=Subject.SIGN, limits=(constants.CHANCE_OF_OTHER_SIGN,), outcome=Outcome.CONTRADICTION
+)
+_size = partial(Rule, subject=Subject.SIZE, outcome=Outcome.CONTRADICTION)
+NO_TYRE = (
+    _sign(
+        id="force-rises-with-sideslip",
+        looks_at="Slope of Fy over sideslip, rolling forwards",
+        sentence="Fy_N rises with alpha_deg",
+        find=_where(lambda found: found.cornering.sign > 0, "alpha_deg"),
+    ),
+    _sign(
+        id="force-rises-with-camber",
+        looks_at="Slope of Fy over camber, rolling forwards",
+        sentence="Fy_N rises with gamma_deg",
+        find=_where(lambda found: found.camber.sign > 0, "gamma_deg"),
+    ),
+    _size(
+        id="camber-force-too-steep",
+        looks_at="Slope of Fy per load over camber, plus two standard errors",
+        limits=(constants.STEEPEST_CAMBER_STIFFNESS,),
+        sentence="Fy_N falls by {slope:.1f} times the load per radian of gamma_deg",
+        find=_where(
+            lambda found: found.camber.value + 2.0 * found.camber.error < constants.STEEPEST_CAMBER_STIFFNESS,
+            "gamma_deg",
+            slope=lambda found: -found.camber.value,
+        ),
+    ),
+    _size(
+        id="camber-thrust",
+        looks_at="-Fy over Fz tan(gamma) at large camber of both signs",
+        limits=(constants.SMALLEST_CAMBER_THRUST, constants.LARGEST_CAMBER_THRUST),
+        sentence="Fy_N at large gamma_deg is {thrust:.2f} Fz tan(gamma)",
+        find=_where(
+            lambda found: (
+                found.thrust < constants.SMALLEST_CAMBER_THRUST
+                or found.thrust > constants.LARGEST_CAMBER_THRUST
+            ),
+            "gamma_deg",
+            thrust=lambda found: -found.thrust,
+        ),
+    ),
+    _sign(
+        id="moment-falls-with-sideslip",
+        looks_at="Slope of Mz over sideslip, rolling forwards",
+        sentence="Mz_Nm falls with alpha_deg",
+        find=_where(lambda found: found.aligning.sign < 0, "Mz_Nm"),
+    ),
+    _sign(
+        id="force-falls-with-sideslip-backwards",
+        looks_at="Slope of Fy over sideslip, rolling backwards",
+        sentence="Fy_N falls with alpha_deg in backward runs",
+        find=_where(lambda found: found.backward.sign < 0, "alpha_deg"),
+    ),
+    _size(
+        id="turn-slip-force-inwards",
+        looks_at="Fy per load at alpha = gamma = 0, outwards, mean of both directions",
+        limits=(constants.WEAK_TURN_SLIP_FORCE,),
+        sentence="Fy_N at alpha = gamma = 0 points towards the declared centre of the path",
+        find=_where(lambda found: found.outward < -constants.WEAK_TURN_SLIP_FORCE, "Fy_N"),
+    ),
+)
+"""What no tyre does."""
+SIGNS = tuple(rule for rule in NO_TYRE if rule.subject is Subject.SIGN)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
@@ -12,32 +12,58 @@ from mffit.quantities import CHANNELS
 from mffit.rig import Readings
 from mffit.scatter import rms
 from mffit.suspicion import constants
+from mffit.suspicion.rule import Outcome, Subject, When, rule
 
 
-class Misfit(NamedTuple):
-    """A fitted model beside the points."""
-
-    points: Points
-    model: Readings  #: what it reads at the points
-    scale: Mapping[str, float]  #: by channel, robust misfit over stated uncertainty
-    r2: Mapping[str, float]  #: share of the variance that it explains, by channel
-
-
-def above_noise(misfit: Misfit) -> Iterator[dict[str, Any]]:
-    """Channels with a stated uncertainty that the model misses by more than noise, and the sweeps with most of it."""
-    points = misfit.points
-    for name, scale in misfit.scale.items():
+@rule(
+    id="misfit-above-noise",
+    subject=Subject.MODEL,
+    when=(When.AFTER,),
+    limits=(constants.MISFIT_OVER_NOISE, constants.CARRIED_MISFIT),
+    outcome=Outcome.DISTRUSTED,
+    sentence="the file is not to be trusted: the model misses {channel} by {scale:.1f} times the stated uncertainty{carriers}; "
+    "look at these sweeps, or run mffit diagnose",
+)
+def above_noise(points: Points, model: Readings, scale: Mapping[str, float]) -> Iterator[dict[str, Any]]:
+    """Misfit of the model over the stated uncertainty, channel by channel."""
+    for name, ratio in scale.items():
         u = getattr(points, f"u_{name}")
-        if scale > constants.MISFIT_OVER_NOISE and np.any(np.isfinite(u)):
-            z = (getattr(misfit.model, name) - getattr(points, name)) / u
-            yield {"channel": name, "scale": scale, "carriers": _carriers(points, z)}
+        if ratio > constants.MISFIT_OVER_NOISE and np.any(np.isfinite(u)):
+            z = (getattr(model, name) - getattr(points, name)) / u
+            yield {"channel": name, "scale": ratio, "carriers": _carriers(points, z)}
 
 
-def unexplained(misfit: Misfit) -> Iterator[dict[str, Any]]:
-    """Channels of whose variance the model explains little."""
+@rule(
+    id="unexplained-variance",
+    subject=Subject.MODEL,
+    when=(When.AFTER,),
+    limits=(constants.EXPLAINED_VARIANCE,),
+    outcome=Outcome.DISTRUSTED,
+    sentence="the file is not to be trusted: the model explains {percent:.0f} % of the variance of {channel}; are these "
+    "readings of free rolling at steady state, and their units and axes right?",
+)
+def unexplained(r2: Mapping[str, float]) -> Iterator[dict[str, Any]]:
+    """Share of a channel's variance that the model explains."""
     for name in CHANNELS:
-        if misfit.r2[name] < constants.EXPLAINED_VARIANCE:
-            yield {"channel": name, "percent": 100.0 * max(misfit.r2[name], 0.0)}
+        if r2[name] < constants.EXPLAINED_VARIANCE:
+            yield {"channel": name, "percent": 100.0 * max(r2[name], 0.0)}
+
+
+def distrust(
+    points: Points, model: Readings, scale: Mapping[str, float], r2: Mapping[str, float]
+) -> tuple[str, ...]:
+    """Why the file of a fit is not to be trusted; empty for a sound fit.
+
+    Parameters
+    ----------
+    points, model : what was measured, and what the fitted model reads there
+    scale : by channel, robust misfit over stated uncertainty
+    r2 : by channel, share of the variance that the model explains
+    """
+    return (
+        *(above_noise.said(facts) for facts in above_noise.find(points, model, scale)),
+        *(unexplained.said(facts) for facts in unexplained.find(r2)),
+    )
 
 
 def _carriers(points: Points, z: np.ndarray) -> str:

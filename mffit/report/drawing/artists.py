@@ -17,7 +17,18 @@ from matplotlib.transforms import Affine2D, Transform
 
 from mffit.report import constants, style
 from mffit.report.drawing.records import (
-    Band, Bars, DataSeries, ErrorBars, Frame, Guide, Look, Map, Note, Panel, Span, Trace,
+    Band,
+    Bars,
+    DataSeries,
+    ErrorBars,
+    Frame,
+    Guide,
+    Look,
+    Map,
+    Note,
+    Panel,
+    Span,
+    Trace,
 )  # fmt: skip
 
 INCH = 72.0

@@ -29,7 +29,7 @@ def plan_summary(plan: Plan) -> str:
         for trial in plan.trials[: constants.MOST_CANDIDATE_RUNS_IN_TERMINAL]
         if trial.u < plan.now
     ]
-    reasons = [f"{wording.title(step.run)}: {wording.reason(step.run)}" for step in plan.steps]
+    reasons = [f"{wording.title(step.run)}: {step.run.addition.reason}" for step in plan.steps]
     parts = [
         "What these sweeps identify",
         paragraphs(wording.identified(plan.identified)),

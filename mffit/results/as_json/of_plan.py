@@ -78,7 +78,7 @@ def _run(run: Run) -> dict[str, Any]:
         "name": run.name,
         "kind": run.addition.id,
         "title": planned.title(run),
-        "reason": planned.reason(run),
+        "reason": run.addition.reason,
         "points": run.cost,
         "rig": dict(run.rig),
     }

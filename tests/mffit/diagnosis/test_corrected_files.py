@@ -11,7 +11,7 @@ from blind_rig import Machine, report
 from blind_set import draw_case, write_case
 
 from mffit import pipeline
-from mffit.diagnosis.confidence import tempered
+from mffit.diagnosis.answer import tempered
 from mffit.rounding import to_uncertainty
 from mffit.suspicion import Misread
 

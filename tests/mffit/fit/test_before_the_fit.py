@@ -12,8 +12,8 @@ from small_rigs import truth
 import tir
 from mffit.fit import ranges
 from mffit.fit.agreement import agreement
-from mffit.fit.radius import radius_coefficients
 from mffit.fit.ranges import plausible_ranges
+from mffit.fit.rolling import radius_coefficients
 from mffit.fit.start import camber_stiffness_terms, starting_values
 from mffit.fit.virtual_zero import epsilon_gamma_of_model, zero_points
 from mffit.points import make_points

@@ -24,6 +24,7 @@ from mffit.planning.knowledge import Knowledge
 from mffit.planning.runs import candidates
 from mffit.report.text import plan_summary
 from mffit.rig import Simulation
+from mffit.rig_errors import DECLARED
 from tests.browser import assert_readable
 
 EFFECTS = {effect.id: effect for effect in CATALOG}
@@ -85,10 +86,49 @@ def test_the_same_points_again_halve_the_variance_due_to_noise(result, knowledge
         assert after[name] / before[name] == pytest.approx(math.sqrt(0.5), rel=0.05)
 
 
+SETTLED = {
+    "zeros": ("loadcell-offset-mz",),
+    "other-side": ("camber-reduction", "camber-misalignment"),
+    "other-side-camber": ("camber-reduction", "camber-misalignment"),
+    "second-radius": ("path-radius", "camber-reduction", "camber-misalignment"),
+    "small-camber": ("camber-stiffness",),
+    "camber-zero": ("camber-misalignment", "camber-reduction"),
+    "sideslip-zero": ("sideslip-misalignment", "ply-steer"),
+    "revolution": ("camber-reduction",),
+    "backward-camber": ("loadcell-offset-mz", "spin-trail-loss"),
+    "flipped": ("conicity", "crosstalk-fz-fy", "residual-torque"),
+    "sideslip": ("curvature-asymmetry",),
+    "camber": ("camber-stiffness",),
+    "coupled": (
+        "camber-grip",
+        "camber-thrust-curvature",
+        "camber-cornering-stiffness",
+        "spin-trail-loss",
+        "spin-torque",
+    ),
+    "pressure": ("pressure",),
+    "load": (
+        "load-grip",
+        "trail-load",
+        "camber-reduction-load",
+        "loadcell-offset-fy",
+        "steering-compliance",
+    ),
+}
+"""Ids of the effects whose uncertainty an addition lowers markedly; a better measurement lowers that of its rig error."""
+
+
+def settled(addition):
+    if addition.id in SETTLED:
+        return SETTLED[addition.id]
+    (error,) = (error for error in DECLARED if error.declared.key == addition.declares)
+    return (error.seen_as[0].id,)
+
+
 @pytest.mark.parametrize("addition", ADDITIONS, ids=lambda addition: addition.id)
 def test_an_addition_settles_what_it_names(result, addition):
     """A run lowers u of an effect beside its rivals by a twelfth or more; a better declaration lowers that of its rig error."""
-    effects = [EFFECTS[name] for name in addition.settles if len(EFFECTS[name].free) == 1]
+    effects = [EFFECTS[name] for name in settled(addition) if len(EFFECTS[name].free) == 1]
     rivals = {
         e.id: [EFFECTS[name] for name in e.confusable_with if len(EFFECTS[name].free) == 1] for e in effects
     }

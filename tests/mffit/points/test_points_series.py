@@ -151,7 +151,7 @@ def test_steps_of_load_alone_make_new_stretches():
     settings = Settings(time, still, still, Fz, np.full(2 * n, 250e3), np.full(2 * n, V))
     found = [stretch for stretch in stretches(settings) if not stretch.dropped]
     assert len(found) == 2
-    assert np.logical_or.reduce(moves(settings))[n]
+    assert np.logical_or.reduce(list(moves(settings).values()))[n]
     assert found[0].end <= n <= found[1].begin
 
 

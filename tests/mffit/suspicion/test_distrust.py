@@ -8,7 +8,7 @@ import numpy as np
 
 from mffit.fit.agreement import agreement
 from mffit.points import make_points
-from mffit.suspicion import Misfit, distrust
+from mffit.suspicion import distrust
 
 RNG = np.random.default_rng(3)
 ALPHA = np.linspace(-0.1, 0.1, 40)
@@ -19,7 +19,7 @@ def reasons(Mz: np.ndarray, model: np.ndarray) -> tuple[str, ...]:
     points = make_points(ALPHA, 0.0, 1500.0, Fy=Fy, Mz=Mz, p=2e5, V=11.0, phi_t=0.0)
     readings = SimpleNamespace(Fy=Fy, Mz=model)
     r2 = {name: agreement(getattr(readings, name), getattr(points, name)).r2 for name in ("Fy", "Mz")}
-    return distrust(Misfit(points=points, model=readings, scale={"Fy": 1.0, "Mz": 1.0}, r2=r2))
+    return distrust(points, readings, {"Fy": 1.0, "Mz": 1.0}, r2)
 
 
 def test_a_moment_that_the_model_does_not_follow_is_reported_with_its_share():

@@ -1,13 +1,16 @@
-"""Radius coefficients with which the file's effective rolling radius is the measured one."""
+"""Coefficients of rolling: the effective radius as measured, and the resistance from the measured moment My."""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 
+from mffit.points import Points
+from tir import Quantity, Tyre
 from tir.derivatives import gradient, plain, traced
 from tir.outputs import outputs_of
 
@@ -22,14 +25,8 @@ def radius_coefficients(
 ) -> dict[str, float]:
     """Q_RE0, and DREFF where several loads were measured, with which Re(Fz) passes through the measurements.
 
-    Parameters
-    ----------
-    values : every value of the file; its shape of Re over load and speed is kept
-    r_e : measured effective radius [m] by load [N]
-    speed : at which it was measured [m/s]
+    ``r_e`` [m] by load [N] was measured at ``speed`` [m/s]. The shape of Re over load and speed is kept.
 
-    Notes
-    -----
     Re is linear in Q_RE0 and DREFF but for the small centrifugal growth, so two Gauss-Newton steps are exact to rounding.
     """
     names = ("Q_RE0", "DREFF") if len(r_e) > 1 else ("Q_RE0",)
@@ -42,3 +39,23 @@ def radius_coefficients(
         change = np.linalg.lstsq(slope, target - plain(Re), rcond=None)[0]
         found = {name: found[name] + float(d) for name, d in zip(names, change, strict=True)}
     return found
+
+
+def rolling_resistance(values: Mapping[str, Any], points: Points) -> dict[str, Quantity]:
+    """QSY1 with its standard uncertainty from measured My, all other values held; empty if My was not measured."""
+    used = np.isfinite(points.My) & (points.direction > 0)
+    if not np.any(used):
+        return {}
+    chosen = points.select(np.flatnonzero(used))
+
+    def moment(QSY1: float) -> np.ndarray:
+        trial = Tyre.from_values(values).replace(QSY1=QSY1)
+        return trial(
+            chosen.Fz, chosen.alpha, chosen.gamma, phi_t=chosen.phi_t, Vx=chosen.V, p=chosen.p, turn_slip=True
+        ).My
+
+    at_zero = moment(0.0)
+    slope = moment(1.0) - at_zero  # My is linear in QSY1
+    QSY1 = float(slope @ (chosen.My - at_zero) / (slope @ slope))
+    scatter = float(np.sum((chosen.My - at_zero - QSY1 * slope) ** 2)) / max(len(slope) - 1, 1)
+    return {"QSY1": Quantity(QSY1, math.sqrt(scatter / float(slope @ slope)), "-")}
