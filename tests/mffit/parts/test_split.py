@@ -147,3 +147,22 @@ def test_at_most_four_points_without_mirror_are_named(count, more):
 def test_the_parts_of_the_moment_have_its_uncertainty():
     parts = split(sweep(np.array([-2.0, 2.0]))[0])
     assert parts.u_Mz_odd == pytest.approx(0.6 / np.sqrt(2))
+
+
+@pytest.mark.parametrize(
+    ("name", "value", "tolerance"),
+    [
+        ("Fz", 1500.0, 0.04 * 1500.0),
+        ("p", 250e3, 6e3),
+        ("V", 6.0, 0.6),
+        ("alpha", np.radians(-2.0), np.radians(0.05)),
+        ("gamma", 0.0, np.radians(0.25)),
+    ],
+)
+@pytest.mark.parametrize(("share", "paired"), [(0.9995, "exact"), (1.0005, "unpaired")])
+def test_settings_count_as_the_same_up_to_the_tolerance(name, value, tolerance, share, paired):
+    """Of the first point, whose mirror is the second."""
+    condition = {**COMMON, "alpha": np.radians([2.0, -2.0]), "gamma": 0.0, "Fy": np.array([-5.0, 5.0])}
+    first = np.radians(2.0) if name == "alpha" else value
+    points = make_points(**condition | {name: np.array([first, value + share * tolerance])})
+    assert split(points).paired[0] == paired
