@@ -83,7 +83,10 @@ def test_mirrors_are_found_up_to_the_ends_of_the_sweep():
 
 @pytest.mark.parametrize("angles", [[-1.0, 2.0], [-1.0, 0.5, 2.0]])
 def test_two_angles_are_too_few_to_interpolate(angles):
-    parts = split(sweep(np.array([*angles, *angles]))[0])
+    repeated = np.array([*angles, *angles]) + np.repeat(
+        [0.0, 4e-4], len(angles)
+    )  # deg: the same angles again
+    parts = split(sweep(repeated)[0])
     assert np.any(parts.paired == "interpolated") == (len(angles) > 2)
 
 
