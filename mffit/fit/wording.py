@@ -69,7 +69,7 @@ def _lacking_sentence(files: Files, name: str) -> str:
     compared = "less" if files.stiffness_loss >= 0 else "more"
     forces = ", ".join(f"{force:.0f} N at {radius:g} m" for radius, force in files.lacking.items())
     return (
-        f"{name} has {files.stiffness_loss:.0%} {compared} camber stiffness at zero camber than the fitted model, and lacks "
+        f"{name} has {abs(files.stiffness_loss):.0%} {compared} camber stiffness at zero camber than the fitted model, and lacks "
         f"the turn-slip force of curved roads (upright wheel, nominal load, by radius): {forces}."
     )
 

@@ -33,12 +33,14 @@ from typing import Any
 
 ROOT = Path(__file__).parents[2]
 SUITE = "tests/mffit"
-FIT, DIAGNOSIS, POINTS = f"{SUITE}/fit", f"{SUITE}/diagnosis", f"{SUITE}/points"
+FIT, DIAGNOSIS, POINTS, SUSPICION = (
+    f"{SUITE}/{room}" for room in ("fit", "diagnosis", "points", "suspicion")
+)
 PIPELINE, COMMANDS, MANY = (f"{SUITE}/test_{name}.py" for name in ("pipeline", "command_line", "many"))
 BAD_INPUT, CORPUS = f"{SUITE}/test_bad_input.py", f"{SUITE}/test_broken_corpus.py"
 EQUATIONS = ("tests/tir/test_reference_vectors.py", "tests/tir/test_physics.py", "tests/tir", f"{SUITE}/rig")
 TESTS: dict[str, tuple[str, ...]] = {
-    "tir": ("tests/tir", f"{SUITE}/export", f"{SUITE}/viewer"),
+    "tir": ("tests/tir", "tests/test_constants.py", f"{SUITE}/export", f"{SUITE}/viewer"),
     "tir/equations": (*EQUATIONS, f"{FIT}/test_constraints.py", f"{FIT}/test_estimates.py"),
     "tir/evaluate.py": EQUATIONS,
     "mffit/cli": (COMMANDS, f"{SUITE}/test_init_project.py", f"{SUITE}/test_voice.py", f"{SUITE}/export", MANY),
@@ -53,19 +55,21 @@ TESTS: dict[str, tuple[str, ...]] = {
     "mffit/effects": (f"{SUITE}/effects", f"{DIAGNOSIS}/test_wording.py", DIAGNOSIS),
     "mffit/export": (f"{SUITE}/export",),
     "mffit/suspicion": (
-        *(f"tests/mffit/suspicion/test_{name}.py" for name in ("limits", "undoing", "prediction", "distrust", "broken_units")),
-        "tests/mffit/suspicion", f"{DIAGNOSIS}/test_corrected_files.py",
+        *(f"{SUSPICION}/test_{name}.py" for name in (
+            "rules", "distrust", "undoing", "limits", "prediction", "broken_units", "broken_sweeps", "declarations",
+        )),
+        SUSPICION, f"{FIT}/test_trust.py", BAD_INPUT, PIPELINE, f"{DIAGNOSIS}/test_corrected_files.py",
     ),
     "mffit/fit": (
         *(f"{FIT}/test_{name}.py" for name in (
-            "constraints", "coverage", "weights", "estimates", "rig_numbers", "before_the_fit", "problem", "shapes", "roads",
-            "faulty_rig",
+            "weights", "rig_numbers", "constraints", "coverage", "estimates", "shapes", "roads", "trust", "before_the_fit",
+            "problem", "faulty_rig",
         )),
         PIPELINE, FIT,
     ),
     "mffit/fleet": (f"{SUITE}/fleet", MANY),
     "mffit/measured": (
-        f"{SUITE}/measured", "tests/test_paper_tables.py", f"{FIT}/test_faulty_rig.py", f"{FIT}/test_recovery.py",
+        f"{SUITE}/measured", "tests/test_paper_tables.py", PIPELINE, f"{FIT}/test_faulty_rig.py", f"{FIT}/test_recovery.py",
     ),
     "mffit/pipeline": (
         f"{SUITE}/test_fleet_notes.py", MANY, PIPELINE, f"{SUITE}/comparison", f"{SUITE}/planning", COMMANDS,
@@ -73,13 +77,21 @@ TESTS: dict[str, tuple[str, ...]] = {
         f"{DIAGNOSIS}/test_corrected_files.py",
     ),
     "mffit/planning": (f"{SUITE}/planning",),
-    "mffit/points": (POINTS, BAD_INPUT, CORPUS, f"{SUITE}/recordings", f"{FIT}/test_trust.py"),
+    "mffit/parts": (f"{SUITE}/parts", f"{SUITE}/measured", FIT),
+    "mffit/points": (
+        POINTS, BAD_INPUT, f"{SUITE}/recordings", f"{FIT}/test_trust.py", f"{FIT}/test_before_the_fit.py", SUSPICION, PIPELINE,
+        CORPUS,
+    ),
     "mffit/recordings": (f"{SUITE}/recordings", f"{POINTS}/test_points_recordings.py", CORPUS, COMMANDS),
     "mffit/results": (
         f"{SUITE}/test_json.py", f"{SUITE}/planning/test_plan_wording.py", PIPELINE, MANY, f"{SUITE}/comparison",
         f"{DIAGNOSIS}/test_wording.py",
     ),
-    "mffit/rig": (f"{SUITE}/rig", f"{SUITE}/virtual_rig", f"{SUITE}/effects", DIAGNOSIS),
+    "mffit/rig": (f"{SUITE}/rig", f"{SUITE}/virtual_rig", f"{SUITE}/effects", f"{FIT}/test_rig_numbers.py"),
+    "mffit/rig_errors": (
+        f"{SUITE}/rig", f"{SUITE}/virtual_rig", f"{SUITE}/effects", f"{SUITE}/reference", f"{FIT}/test_rig_numbers.py",
+        f"{FIT}/test_before_the_fit.py", PIPELINE, f"{DIAGNOSIS}/test_correction.py", f"{DIAGNOSIS}/test_wording.py",
+    ),
     "mffit/sweeps": (f"{SUITE}/sweeps", POINTS, f"{SUITE}/recordings", BAD_INPUT, CORPUS, f"{SUITE}/test_readers_fuzz.py"),
     "mffit/virtual_rig": (f"{SUITE}/virtual_rig", "tests/test_samples.py", f"{SUITE}/rig/test_other_paths.py"),
 }  # fmt: skip
@@ -148,10 +160,11 @@ class Outcome:
 
 
 def modules(room: str) -> list[Path]:
-    """The modules of a room, without those of a room inside it."""
+    """The modules of a room, without those of a room inside it and without its numbers of judgement."""
     path = ROOT / room
     found = sorted(path.rglob("*.py")) if path.is_dir() else [path]
     inner = [ROOT / other for other in TESTS if other.startswith(f"{room}/")]
+    found = [module for module in found if module.name != "constants.py"]
     return [module for module in found if not any(module.is_relative_to(other) for other in inner)]
 
 

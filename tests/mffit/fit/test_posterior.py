@@ -100,6 +100,48 @@ def test_a_bent_valley_is_followed_to_the_ends_of_the_95_per_cent_interval():
     low, high = valley.intervals["y"]
     assert high == pytest.approx(1.96**2, rel=0.15)
     assert low == pytest.approx(-0.1, abs=0.02)
+    assert set(valley.intervals) == {"y"}  # x is known to 1, bent or not
+    assert valley.better == {}
+
+
+def test_an_interval_ends_at_the_bound_of_its_number():
+    """Where x ends, at 1, the valley is at y = 1, and the width across it would reach further."""
+    numbers = [Number("x", 0.1, -50.0, 1.0, spread=100.0), Number("y", 0.0, -0.05, 1.0, spread=100.0)]
+    best = solve(Banana().free(["x", "y"]), numbers, tolerance=1e-10)
+    valley = follow(Banana().with_values(best.values), numbers, best, {"x", "y"})
+    assert valley.intervals["y"] == pytest.approx((-0.05, 1.0))
+
+
+def test_numbers_that_the_points_do_not_determine_are_not_moved():
+    numbers = [Number("x", 0.1, -50.0, 50.0, spread=100.0), Number("y", 0.0, -50.0, 50.0, spread=100.0)]
+    best = solve(Banana().free(["x", "y"]), numbers, tolerance=1e-10)
+    assert follow(Banana().with_values(best.values), numbers, best, set()) is None
+
+
+class Hills(Banana):
+    """Along the parabola the sum of squares is sin(x)^2 + (2.2 - 0.07 x)^2: each dip is lower than the one before."""
+
+    def with_values(self, values):
+        return Hills(**{**self.held, **values})
+
+    def free(self, names) -> LeastSquaresProblem:
+        def linear(at) -> Linear:
+            now = {**self.held, **dict(zip(names, at, strict=True))}
+            x, y = now["x"], now["y"]
+            slopes = {"x": [np.cos(x), -0.07, -2.0 * x / 0.05], "y": [0.0, 0.0, 1.0 / 0.05]}
+            data = np.array([np.sin(x), 2.2 - 0.07 * x, (y - x * x) / 0.05])
+            return Linear(data, np.array([slopes[n] for n in names]).T, np.zeros(0), np.zeros((0, len(names))))
+
+        return LeastSquaresProblem(lambda at: (linear(at).data, np.zeros(0)), linear)
+
+
+def test_a_better_fit_behind_a_low_ridge_is_reported():
+    numbers = [Number("x", 0.0, -50.0, 50.0, spread=100.0), Number("y", 0.0, -50.0, 50.0, spread=100.0)]
+    best = solve(Hills().free(["x", "y"]), numbers, tolerance=1e-10)
+    valley = follow(Hills().with_values(best.values), numbers, best, {"x", "y"})
+    assert abs(best.values["x"]) < 0.5
+    assert valley.better["x"] > 2.0
+    assert valley.better["y"] == pytest.approx(valley.better["x"] ** 2, rel=0.05)
 
 
 def test_a_straight_valley_keeps_the_interval_of_the_covariance():

@@ -81,3 +81,11 @@ def test_unused_points_are_never_outliers():
     residual[::2] = np.random.default_rng(2).standard_normal(15)
     residual[10] = 50.0
     assert list(np.flatnonzero(outlying(residual, 1.0, np.zeros(30, int)))) == [10]
+
+
+def test_an_outlier_is_beyond_the_two_sided_limit_for_all_readings_together():
+    """One per cent for any of 400 readings, on either side: 0.01 / 800 beyond 4.215 standard deviations."""
+    for size, found in ((4.23, True), (4.20, False), (-4.23, True), (-4.20, False)):
+        residual = np.random.default_rng(5).normal(0.0, 1e-4, 400)
+        residual[200] = size
+        assert outlying(residual, 1.0, np.zeros(400, int))[200] == found

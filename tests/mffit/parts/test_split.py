@@ -69,3 +69,103 @@ def test_the_parts_come_back_at_any_levels(levels):
     np.testing.assert_allclose(parts.Fy_even, even, atol=1e-9)
     np.testing.assert_allclose(parts.Mz_odd, 40 * points.alpha, atol=1e-9)
     np.testing.assert_allclose(parts.Mz_even, -3.0, atol=1e-9)
+
+
+def test_mirrors_are_found_up_to_the_ends_of_the_sweep():
+    """Every point whose reflection lies within the measured angles, the outermost intervals included."""
+    alpha_deg = np.array([-6.0, -4.0, -1.0, 0.5, 3.0, 5.0])
+    points, odd, _ = sweep(alpha_deg)
+    parts = split(points)
+    assert list(parts.paired == "interpolated") == list((-alpha_deg >= -6.0) & (-alpha_deg <= 5.0))
+    # Between angles this far apart the curve is known to some 2 %; a neighbour's reading would be 15 % off.
+    np.testing.assert_allclose(parts.Fy_odd[1:], odd[1:], atol=30.0)
+
+
+@pytest.mark.parametrize("angles", [[-1.0, 2.0], [-1.0, 0.5, 2.0]])
+def test_two_angles_are_too_few_to_interpolate(angles):
+    repeated = np.array([*angles, *angles]) + np.repeat(
+        [0.0, 4e-4], len(angles)
+    )  # deg: the same angles again
+    parts = split(sweep(repeated)[0])
+    assert np.any(parts.paired == "interpolated") == (len(angles) > 2)
+
+
+def test_camber_sweeps_are_interpolated_over_camber():
+    gamma_deg = np.linspace(-30.5, 30.0, 12)
+    points, odd, _ = sweep(np.zeros(12), gamma_deg)
+    parts = split(points)
+    assert list(parts.paired == "interpolated") == [False, *[True] * 11]
+    np.testing.assert_allclose(parts.Fy_odd[1:], odd[1:], atol=2.0)
+
+
+def test_an_interpolated_mirror_is_the_mean_of_repeated_readings_with_the_error_of_the_nearest():
+    alpha_deg = np.array([-4.2, -2.0, -2.0, 0.0, 4.0, 4.1])
+    points, _, _ = sweep(alpha_deg)
+    Fy = np.array([400.0, 210.0, 190.0, 0.0, -400.0, -410.0])
+    u_Fy = np.array([1.0, 2.0, 2.0, 3.0, 4.0, 5.0])
+    parts = split(points.replace(Fy=Fy, u_Fy=u_Fy))
+    assert parts.paired[4] == "interpolated"
+    again = split(points.replace(Fy=np.array([400.0, 200.0, 200.0, 0.0, -400.0, -410.0]), u_Fy=u_Fy))
+    assert parts.Fy_odd[4] == pytest.approx(again.Fy_odd[4])
+    assert parts.u_Fy_odd[4] == pytest.approx(np.hypot(4.0, 1.0) / 2.0)
+
+
+def test_a_mirror_names_its_point_and_the_rest_name_none():
+    points, _, _ = sweep(np.array([-3.0, -1.0, 0.0, 0.7, 1.0, 5.0]))
+    parts = split(points)
+    assert list(parts.paired) == ["interpolated", "exact", "exact", "interpolated", "exact", "unpaired"]
+    assert list(parts.partner) == [-1, 4, 2, -1, 1, -1]
+
+
+def test_a_mirror_of_the_same_sweep_is_preferred():
+    """Set up anew between two sweeps, each is reflected in itself, even if the other meets the angle more closely."""
+    alpha_deg = np.array([-2.0, 2.04, -2.03, 2.0])
+    points, _, _ = sweep(alpha_deg, sweep=np.array([0, 0, 1, 1]), sweep_names=("a.csv", "b.csv"))
+    assert list(split(points).partner) == [1, 0, 3, 2]
+
+
+def test_the_closest_mirror_is_taken_camber_and_sideslip_together():
+    points, _, _ = sweep(np.array([2.0, -2.04, -2.0]), np.array([10.0, -10.0, -10.1]))
+    assert split(points).partner[0] == 1
+
+
+def test_on_a_straight_path_nothing_is_decomposed_and_nothing_remarked():
+    parts = split(sweep(np.array([-1.0, 0.0, 1.0]), phi_t=0.0)[0])
+    assert set(parts.paired) == {"unpaired"}
+    assert set(parts.partner) == {-1}
+    assert parts.unpaired == ()
+    assert np.all(np.isnan([parts.Fy_odd, parts.Fy_even, parts.Mz_odd, parts.Mz_even, parts.u_Fy_odd]))
+
+
+@pytest.mark.parametrize(("count", "more"), [(4, ""), (5, " and 1 more")])
+def test_at_most_four_points_without_mirror_are_named(count, more):
+    points, _, _ = sweep(1.0 + np.arange(count), 2.0, sweep_names=("camber.csv",))
+    (sentence,) = split(points).unpaired
+    assert sentence == (
+        f"camber.csv: {count} points have no mirror (-alpha, -gamma) and count only as raw points: "
+        f"(alpha, gamma) = (1, 2), (2, 2), (3, 2), (4, 2){more} deg"
+    )
+
+
+def test_the_parts_of_the_moment_have_its_uncertainty():
+    parts = split(sweep(np.array([-2.0, 2.0]))[0])
+    assert parts.u_Mz_odd == pytest.approx(0.6 / np.sqrt(2))
+
+
+@pytest.mark.parametrize(
+    ("name", "value", "tolerance"),
+    [
+        ("Fz", 1500.0, 0.04 * 1500.0),
+        ("p", 250e3, 6e3),
+        ("V", 6.0, 0.6),
+        ("alpha", np.radians(-2.0), np.radians(0.05)),
+        ("gamma", 0.0, np.radians(0.25)),
+    ],
+)
+@pytest.mark.parametrize(("share", "paired"), [(0.9995, "exact"), (1.0005, "unpaired")])
+def test_settings_count_as_the_same_up_to_the_tolerance(name, value, tolerance, share, paired):
+    """Of the first point, whose mirror is the second."""
+    condition = {**COMMON, "alpha": np.radians([2.0, -2.0]), "gamma": 0.0, "Fy": np.array([-5.0, 5.0])}
+    first = np.radians(2.0) if name == "alpha" else value
+    points = make_points(**condition | {name: np.array([first, value + share * tolerance])})
+    assert split(points).paired[0] == paired

@@ -82,3 +82,20 @@ def test_a_moment_that_turns_away_from_zero_leaves_the_wheel_at_a_stop():
 def test_without_any_moment_the_wheel_stays_where_it_is():
     rest = settled(lambda which: lambda at: 0.0 * at, np.array([0.01]), 0.002)
     assert rest.alpha == pytest.approx([0.01])
+
+
+def test_the_angle_without_moment_is_found_within_a_few_evaluations():
+    """The moment is nearly linear over the play, and a call of the tyre costs far more than the search."""
+    calls = []
+
+    def moment_of(which):
+        def moment(alpha):
+            calls.append(len(alpha))
+            return 30.0 * np.tanh(25.0 * (alpha - 0.0012)) + 4e4 * (alpha - 0.0012) ** 3
+
+        return moment
+
+    rest = settled(moment_of, np.array([0.0, 0.0005, 0.002]), 0.0026)
+    assert rest.floats.all()
+    assert rest.alpha == pytest.approx(0.0012, abs=1e-9)
+    assert len(calls) <= 4

@@ -178,3 +178,52 @@ def test_a_disc_needs_both_signs_and_a_zero_within_three_tenths_of_a_degree():
     assert found("no-zero-on-a-disc", SOUND.replace(direction=-1)) == 1
     assert found("no-zero-on-a-disc", tyre(gamma=np.radians(0.49))) == 0
     assert found("no-zero-on-a-disc", tyre(gamma=np.radians(0.51))) == 1
+
+
+def sentence(rule: str, points: Points) -> str:
+    """What a refusal says about the first case that a rule finds."""
+    (one,) = (each for each in RULES if each.id == rule)
+    return one.said(next(iter(one.find(points, CONFIG))).facts)
+
+
+@pytest.mark.parametrize(
+    ("rule", "points", "facts"),
+    [
+        ("pressure-in-psi", tyre(p=36.46e3), "is 36.5 kPa, far from the nominal 250 kPa"),
+        ("pressure-in-psi", tyre(p=36.34e3), "is 36.3 kPa, far from"),
+        ("dead-channel", tyre(Mz=3.7), "is 3.7 in every row"),
+        (
+            "angle-in-radians",
+            tyre(Fy=-1500.0 * 125.0 * ALPHA),
+            "reaches only 6 deg, over which the side force changes by 125 times",
+        ),
+        ("force-in-kilonewtons", tyre(Fy=28.0 * np.sign(ALPHA)), "is at most 28 N at loads of 1500 N"),
+        (
+            "lone-load",
+            tyre(Fz=changed(LOADS, [2], 7510.0), Fy=FORCE),
+            "7510 N is far above all other loads of the file, which are at most 1500 N",
+        ),
+        ("wild-force", tyre(Fy=changed(FORCE, [1, 2], -7500.0)), "-7500 N is 5 times the load"),
+        (
+            "load-in-another-unit",
+            tyre(Fy=changed(FORCE, [1, 2, 3], 7500.0)),
+            "reach 5 times the load (1500 N)",
+        ),
+        ("moment-in-newton-millimetres", tyre(Mz=changed(FORCE, [0], -3000.0)), "reaches 2 m times the load"),
+        ("one-sided-on-a-disc", tyre(alpha=ALPHA[3:]), "runs only from 0 to 6 deg"),
+        (
+            "lone-lean",
+            sweeps(*[tyre(gamma=5.0 * DEG)] * 3, tyre(gamma=-5.0 * DEG)),
+            "s3 leans 5.0 deg to the other side than all 3 other",
+        ),
+        ("weak-turn-slip-force", tyre(alpha=[0.0], Fy=-7.5, phi_t=-0.76), "is 0.5 % of the load"),
+        (
+            "moments-about-another-point",
+            tyre(alpha=np.r_[ALPHA, ALPHA[:3]], Mx=0.2 * tyre(np.r_[ALPHA, ALPHA[:3]]).Fy),
+            "changes by 0.20 m times Fy_N",
+        ),
+        ("copied-sweep", sweeps(SOUND, SOUND), "holds exactly the readings of s0"),
+    ],
+)
+def test_a_refusal_says_its_numbers(rule, points, facts):
+    assert facts in sentence(rule, points)

@@ -1,0 +1,131 @@
+"""Every sentence about the files of a fit says its numbers."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+
+import pytest
+
+from mffit.fit.files import Files, file_names
+from mffit.fit.misfit import FileFigures, Misfit
+from mffit.fit.wording import explanations, file_sentences, pecp1_sentence, ranges_sentence
+
+TESTED = {
+    "PRESMIN": 200e3, "PRESMAX": 300e3, "FZMIN": 900.0, "FZMAX": 2100.0, "ALPMAX": 0.1396, "CAMMAX": 0.5236,
+}  # fmt: skip
+WRITTEN = TESTED | {
+    "PRESMIN": 160e3,
+    "PRESMAX": 360e3,
+    "FZMIN": 90.0,
+    "FZMAX": 3150.0,
+    "ALPMAX": 0.3491,
+    "CAMMAX": 0.7854,
+}
+
+
+def misfit(scale: float) -> dict[str, Misfit]:
+    """Fy in newtons and Mz in tenths of them."""
+    return {
+        name: Misfit(rms=7.0 * k, weighted=3.0 * k, largest=31.0 * k, lean_30=0.0, beyond=0.0)
+        for name, k in (("Fy", scale), ("Mz", 0.1 * scale))
+    }
+
+
+def file(mode: int, stiffness: float, **places: float) -> FileFigures:
+    return FileFigures({"USE_MODE": mode}, {name: misfit(k) for name, k in places.items()}, stiffness)
+
+
+def files(normal: float = -1140.0, **more: FileFigures) -> Files:
+    """The files of a disc; the one for turn slip off with another camber stiffness than the model's -1200 N/rad."""
+    return Files(
+        by_use={
+            "turn-slip": file(125, -1200.0, straight=0.0),
+            "normal": file(124, normal, straight=1.0),
+            **more,
+        },
+        tested=TESTED,
+        written=WRITTEN,
+        changed={},
+        lacking={100.0: 2.2, 10.0: 22.4},
+    )
+
+
+BOTH = file(125, -1190.0, straight=10.0, straight_with_turn_slip=5.0, disc=2.0)
+
+
+def test_the_files_of_a_disc_are_explained_with_their_use_and_misfit():
+    use, exact, misfit, lacking, _ = file_sentences(files(), file_names("small", "turn-slip", True))
+    assert "Give small.tir to a simulator that computes turn slip" in use
+    assert "its USE_MODE ends in 5, here 125" in use
+    assert "Give small-normal.tir to every other simulator (its USE_MODE ends in 4, here 124)." in use
+    assert "If you do not know, use small-normal.tir." in use
+    assert exact == "small.tir is the fitted model itself."
+    assert "to 3 N and 0.3 Nm rms in the conditions" in misfit
+    assert "(7 N and 0.7 Nm rms over everything tested, 31 N at most)" in misfit
+    assert "small-normal.tir has 5% less camber stiffness at zero camber than the fitted model" in lacking
+    assert lacking.endswith("by radius): 2 N at 100 m, 22 N at 10 m.")
+
+
+@pytest.mark.parametrize(
+    ("stiffness", "words"), [(-1260.0, "has 5% more"), (-1140.0, "has 5% less"), (-1200.0, "has 0% less")]
+)
+def test_a_file_has_less_or_more_camber_stiffness(stiffness, words):
+    said = file_sentences(files(stiffness), file_names("small", "turn-slip", True))[3]
+    assert words in said
+
+
+def test_the_file_for_both_uses_comes_first_with_its_three_misfits():
+    both, use, *_ = file_sentences(files(both=BOTH), file_names("small", "both", True))
+    assert "Give small.tir to a simulator if you do not know" in both
+    assert "by 6 N on the disc and 15 N on a straight path with turn slip (USE_MODE 125)" in both
+    assert "and by 30 N on a straight path without turn slip" in both
+    assert "If you do not know" not in use
+    assert "Give small-turn-slip.tir" in use
+
+
+def test_a_flat_track_has_one_file():
+    flat = Files({"normal": file(124, -1200.0, straight=0.0)}, TESTED, WRITTEN, {}, {})
+    use, tested = file_sentences(flat, file_names("flat", "turn-slip", False))
+    assert use.startswith("Give flat.tir to the simulator with turn slip off (USE_MODE 124)")
+    assert tested == ranges_sentence(flat)
+
+
+def test_tested_and_written_ranges_are_stated():
+    assert ranges_sentence(files()) == (
+        "Tested: 900 to 2100 N, sideslip to 8.0 deg, camber to 30.0 deg, 200 to 300 kPa. The ranges in the file are wider "
+        "where the model stays plausible, because simulators limit their inputs to them: 90 to 3150 N, 20 deg of sideslip, "
+        "45 deg of camber, 160 to 360 kPa. Beyond the tested conditions nothing was measured."
+    )
+
+
+@pytest.mark.parametrize(("lowest", "words"), [(286e3, "286 kPa only"), (284e3, "284 to 300 kPa")])
+def test_pressures_within_five_per_cent_are_one(lowest, words):
+    assert words in ranges_sentence(Files({}, TESTED | {"PRESMIN": lowest}, WRITTEN, {}, {}))
+
+
+@pytest.mark.parametrize(
+    ("source", "words"),
+    [
+        ("debiased", "is the measured eps_gamma 0.1200 less the bias"),
+        ("direct", "is the measured eps_gamma itself"),
+        ("joint", "is the joint estimate of tyre and rig"),
+    ],
+)
+def test_the_origin_of_pecp1_is_stated(source, words):
+    said = pecp1_sentence(source, 0.1034, 0.12)
+    assert said.startswith("PECP1 = 0.1034 ")
+    assert words in said
+    assert ("0.1200" in said) == (source != "direct")
+
+
+@pytest.mark.parametrize("measured", [True, False])
+def test_pecp1_is_explained_where_it_was_measured(measured):
+    config = SimpleNamespace(
+        tyre=SimpleNamespace(name="small"),
+        spin=SimpleNamespace(exact="turn-slip", pecp1="joint"),
+        rig=SimpleNamespace(on_disc=True),
+    )
+    epsilon = SimpleNamespace(epsilon_gamma=SimpleNamespace(value=0.12) if measured else None)
+    said = explanations(config, files(), {"PECP1": 0.1}, epsilon)
+    assert said[-1].startswith("PECP1 = 0.1000") == measured
+    assert len(said) == 5 + measured

@@ -1,0 +1,237 @@
+"""The one sweep that a simulation misses because it was recorded wrongly, on a tyre of one line."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from mffit.points import Points, make_points
+from mffit.points.points import concatenate
+from mffit.suspicion import about, misread
+from mffit.suspicion.mistakes import MISTAKES
+
+ISO = dict.fromkeys(("alpha", "gamma", "Fz", "Fy", "Mz"), 1.0)
+ALPHA = np.radians([-6.0, -4.0, -2.0, -1.0, 1.0, 2.0, 4.0, 6.0])
+
+
+def readings(points: Points) -> SimpleNamespace:
+    """Side force that grows less than the load, and with pressure; the trail falls with sideslip."""
+    slip = 12.0 * points.direction * points.alpha + 1.1 * points.gamma
+    Fy = -points.Fz * points.p / 250e3 * (1.2 - 1e-4 * points.Fz) * np.tanh(slip)
+    return SimpleNamespace(Fy=Fy, Mz=-0.03 * Fy * np.exp(-((10.0 * points.alpha) ** 2)) + 2.0 * points.mount)
+
+
+TYRE = SimpleNamespace(readings=readings)
+CONDITIONS = [
+    {"Fz": 1000.0},
+    {"Fz": 1500.0},
+    {"Fz": 2200.0},
+    {"Fz": 1500.0, "gamma_deg": 20.0},
+    {"Fz": 1500.0, "p": 200e3},
+    {"Fz": 1500.0, "direction": -1},
+]
+
+
+def campaign(n: int = 6, points: int = 8) -> list[Points]:
+    """Sound sweeps of sideslip, one per condition and file."""
+    out = []
+    for condition in CONDITIONS[:n]:
+        settings = {"p": 250e3, "direction": 1, "gamma_deg": 0.0, **condition}
+        sweep = make_points(
+            ALPHA[-points:], np.radians(settings.pop("gamma_deg")), settings.pop("Fz"), V=6.0, phi_t=0.0, **settings
+        )  # fmt: skip
+        true = readings(sweep)
+        out.append(sweep.replace(Fy=true.Fy, Mz=true.Mz))
+    return out
+
+
+def numbered(sweeps: list[Points]) -> Points:
+    """The sweeps together, called a, b, c ..."""
+    number = np.repeat(np.arange(len(sweeps)), [len(sweep) for sweep in sweeps])
+    names = tuple("abcdefghijkl"[: len(sweeps)])
+    files = tuple(f"{name}.csv" for name in names)
+    return concatenate(sweeps).replace(sweep=number, file=number, sweep_names=names, files=files)
+
+
+def seen(sweeps: list[Points], signs=ISO):
+    return misread(numbered(sweeps), TYRE, signs)
+
+
+def with_one(change, k: int = 3, **sizes: int) -> list[Points]:
+    sweeps = campaign(**sizes)
+    sweeps[k] = change(sweeps[k])
+    return sweeps
+
+
+def times(**factors: float):
+    return lambda sweep: sweep.replace(**{n: f * getattr(sweep, n) for n, f in factors.items()})
+
+
+def exchanged(sweep: Points) -> Points:
+    return sweep.replace(alpha=sweep.gamma, gamma=sweep.alpha)
+
+
+MADE = {
+    "its sideslip reversed": times(alpha=-1.0),
+    "its camber reversed": times(gamma=-1.0),
+    "its side force reversed": times(Fy=-1.0),
+    "its moment reversed": times(Mz=-1.0),
+    "sideslip and camber exchanged": exchanged,
+    "the direction of rolling undeclared or wrong": times(direction=-1),
+    "side force and moment in other axes": times(Fy=-1.0, Mz=-1.0),
+    "sideslip, side force and moment in other axes": times(alpha=-1.0, Fy=-1.0, Mz=-1.0),
+    "the tyre turned on its rim": times(mount=-1),
+    "its load in kgf": times(Fz=1.0 / 9.80665),
+    "its load in lbf": times(Fz=1.0 / 4.4482216),
+    "its side force in kN": times(Fy=1e-3),
+    "its side force in kgf": times(Fy=1.0 / 9.80665),
+    "its side force in lbf": times(Fy=1.0 / 4.4482216),
+    "its moment in N mm": times(Mz=1e3),
+    "its moment in kN m": times(Mz=1e-3),
+    "its moment in lbf ft": times(Mz=1.0 / 1.3558179),
+    "its sideslip in rad": times(alpha=np.pi / 180.0),
+    "its camber in rad": times(gamma=np.pi / 180.0),
+    "its pressure in psi": times(p=1.0 / 6.894757),
+}
+"""What each mistake does to the readings of a sound sweep."""
+
+
+@pytest.mark.parametrize("mistake", MISTAKES, ids=lambda mistake: mistake.looks)
+def test_a_mistake_undone_gives_the_sound_sweep_back(mistake):
+    (sound,) = campaign(4)[3:]
+    broken = MADE[mistake.looks](sound)
+    undone = mistake.undone(broken, ISO)
+    for name in ("alpha", "gamma", "Fz", "p", "Fy", "Mz", "direction", "mount"):
+        assert getattr(undone, name) == pytest.approx(getattr(sound, name), rel=1e-7), name
+
+
+def test_every_mistake_is_made_here_once():
+    assert sorted(MADE) == sorted(mistake.looks for mistake in MISTAKES)
+
+
+def test_exchanged_headings_are_undone_in_the_axes_of_the_rig():
+    """A rig with its camber reversed reports -gamma under the heading of sideslip."""
+    signs = ISO | {"gamma": -1.0}
+    (sound,) = campaign(4)[3:]
+    broken = sound.replace(alpha=-sound.gamma, gamma=-sound.alpha)
+    (mistake,) = (m for m in MISTAKES if m.looks == "sideslip and camber exchanged")
+    assert mistake.undone(broken, signs).alpha == pytest.approx(sound.alpha)
+    assert mistake.undone(broken, signs).gamma == pytest.approx(sound.gamma)
+
+
+DISTINCT = [
+    "its sideslip reversed",
+    "its camber reversed",
+    "its moment reversed",
+    "its side force in kN",
+    "its load in kgf",
+    "its moment in N mm",
+    "its sideslip in rad",
+]
+
+
+@pytest.mark.parametrize("looks", DISTINCT)
+def test_the_misread_sweep_is_found_by_what_was_done_to_it(looks):
+    found = seen(with_one(MADE[looks]))
+    assert (found.sweep, found.file) == ("d", "d.csv")
+    assert found.looks == looks
+    assert found.before > 0.15
+    assert found.after == pytest.approx(0.0, abs=1e-9)
+    assert looks in about(found)
+
+
+def test_sound_sweeps_are_not_misread():
+    assert seen(campaign()) is None
+
+
+@pytest.mark.parametrize("signs", [ISO, ISO | {"gamma": -1.0, "Fz": -1.0}], ids=["iso", "reversed"])
+@pytest.mark.parametrize(
+    ("k", "label", "column", "said", "reversed_said"),
+    [
+        (0, {"Fz": 1500.0}, "Fz_N", "load of 1000 N", "load of 1000 N"),
+        (3, {"gamma": 0.0}, "gamma_deg", "camber of 20 deg", "camber of -20 deg"),
+        (4, {"p": 250e3}, "p_kPa", "pressure of 200 kPa", "pressure of 200 kPa"),
+    ],
+)
+def test_a_sweep_with_the_label_of_another_is_named_with_what_it_was_run_at(
+    k, label, column, said, reversed_said, signs
+):
+    """In the axes of the rig; a load is a positive number in all of them."""
+    sweeps = [*campaign(), *campaign()]
+    sweeps[k] = sweeps[k].replace(**label)
+    found = seen(sweeps, signs)
+    expected = reversed_said if signs["gamma"] < 0.0 else said
+    assert (found.sweep, found.column) == ("abcdefghijkl"[k], column)
+    assert found.looks == f"run at a {expected}"
+    assert found.remedy == f"write the {expected.replace(' of ', ' that was run, ')}"
+
+
+def test_two_misread_sweeps_are_the_models_fault():
+    sweeps = with_one(MADE["its sideslip reversed"])
+    sweeps[1] = MADE["its sideslip reversed"](sweeps[1])
+    assert seen(sweeps) is None
+
+
+def test_an_error_that_no_mistake_explains_is_not_misread():
+    assert seen(with_one(lambda sweep: sweep.replace(Fy=np.roll(sweep.Fy, 3)))) is None
+
+
+@pytest.mark.parametrize(
+    ("sweeps", "points", "found"), [(4, 8, True), (3, 8, False), (4, 3, True), (4, 2, False)]
+)
+def test_four_sweeps_of_three_points_are_needed(sweeps, points, found):
+    broken = with_one(MADE["its side force reversed"], k=1, n=sweeps, points=points)
+    assert (seen(broken) is not None) == found
+
+
+def found_with(label: float, others: float = 0.0, one: float = 0.0, left: float = 0.0) -> bool:
+    """Whether a sweep at 1500 N is found whose load says ``label`` times less.
+
+    Parameters
+    ----------
+    label : the load that was run over the one written
+    others, one : relative error of the force of four other sweeps, and of a fifth
+    left : relative error of the sweep itself, with its label corrected
+    """
+    alpha = np.radians([-3.0, 3.0] * 4)
+    loads = np.array([1500.0, 1500.0 / label, 1500.0, 1500.0 / label, 1500.0, 1500.0])
+    errors = [left, others, others, others, others, max(one, others)]
+    sweeps = []
+    for load, error in zip(loads, errors, strict=True):
+        sweeps.append(
+            make_points(
+                alpha, 0.0, load, p=250e3, V=6.0, phi_t=0.0, Fy=-load * np.sign(alpha) * (1.0 + error)
+            )
+        )
+    sweeps[0] = sweeps[0].replace(Fz=sweeps[0].Fz / label)
+    tyre = SimpleNamespace(readings=lambda at: SimpleNamespace(Fy=-at.Fz * np.sign(at.alpha), Mz=0.0 * at.Fz))
+    return misread(numbered(sweeps), tyre, ISO) is not None
+
+
+NORMAL = 1.4826
+"""Standard deviation over median of the absolute error, by which errors are stated."""
+
+
+def test_an_error_of_fifteen_per_cent_is_the_least_that_is_looked_at():
+    assert found_with(label=1.0 + 0.151 / NORMAL)
+    assert not found_with(label=1.0 + 0.149 / NORMAL)
+
+
+def test_it_is_three_times_the_usual_error():
+    assert found_with(label=1.5, others=0.5 / 3.1)
+    assert not found_with(label=1.5, others=0.5 / 2.9)
+
+
+def test_it_is_twice_the_error_of_any_other_sweep():
+    assert found_with(label=1.5, one=0.5 / 2.1)
+    assert not found_with(label=1.5, one=0.5 / 1.9)
+
+
+def test_a_corrected_sweep_is_as_good_as_others():
+    """Within 15 % if these are good, within one and a half times the usual error if not."""
+    assert found_with(label=1.8, left=0.149 / NORMAL)
+    assert not found_with(label=1.8, left=0.151 / NORMAL)
+    assert found_with(label=1.8, others=0.2, left=1.49 * 0.2)
+    assert not found_with(label=1.8, others=0.2, left=1.51 * 0.2)
