@@ -67,6 +67,12 @@ def test_a_load_in_kN_beside_forces_in_N_is_recognised_by_the_grip():
     assert (found["Fz_N"], found["Fy_N"], found["Fx_N"]) == ("kN", "N", "N")
 
 
+@pytest.mark.parametrize(("grip", "load_unit"), [(4.8, "N"), (5.2, "kN")])
+def test_no_tyre_has_a_grip_of_five(grip, load_unit):
+    found = units(FZ=np.full(N, 60.0), FY=grip * 60.0 * WAVE)
+    assert (found["Fz_N"], found["Fy_N"]) == (load_unit, "N")
+
+
 def test_a_column_gets_the_unit_that_another_of_its_kind_states():
     found = guessed(units={"FZ": "lbf", "SA": "rad"}).found
     assert (found["Fy_N"].unit, found["gamma_deg"].unit, found["Fz_N"].unit) == ("lbf", "rad", "")
@@ -134,6 +140,9 @@ def test_a_speed_of_rotation_is_kept_only_if_it_agrees_with_the_speed():
 def test_a_missing_moment_names_columns_in_a_unit_of_moments():
     found = guessed(MZ=None, Torque=60.0 * WAVE, units={"Torque": "in-lb", "FZ": "N"})
     assert any("Mz_Nm" in remark and "Torque" in remark for remark in found.remarks)
+    found = guessed(MZ=None, Torque=60.0 * WAVE, units={"Torque": "in-lb", "MX": "N-m"})
+    (remark,) = (remark for remark in found.remarks if "Mz_Nm" in remark)
+    assert "unused columns in a unit of moments: Torque;" in remark  # MX is used
 
 
 @pytest.mark.parametrize(
