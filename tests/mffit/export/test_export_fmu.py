@@ -255,6 +255,22 @@ def test_without_a_compiler_the_message_names_the_remedy(tmp_path, monkeypatch):
     assert write_fmu(FILE, tmp_path / "out", sources_only=True).is_file()
 
 
+@pytest.mark.skipif(sys.platform == "win32", reason="a script is no program there")
+@pytest.mark.parametrize(
+    ("printed", "reason"),
+    [("in file x.c\nx.c:1: error: boom\nmore", "x.c:1: error: boom"), ("no licence", "no licence")],
+)
+def test_a_compiler_that_fails_is_quoted(tmp_path, monkeypatch, printed, reason):
+    script = tmp_path / "cc"
+    script.write_text(f"#!/bin/sh\ncat >&2 <<END\n{printed}\nEND\nexit 1\n")
+    script.chmod(0o755)
+    monkeypatch.setenv("CC", str(script))
+    with pytest.raises(InputError) as caught:
+        write_fmu(FILE, tmp_path / "out")
+    assert f"the C compiler {script} failed ({reason}); name another one in CC" in str(caught.value)
+    assert not (tmp_path / "out").exists()
+
+
 def test_files_of_others_are_left_alone(tmp_path):
     (tmp_path / "moto_front.h").write_text("mine")
     with pytest.raises(InputError, match=r"moto_front\.h.*no run of mffit"):

@@ -268,3 +268,75 @@ def test_a_spike_in_a_recording_casts_no_doubt_on_its_unit():
     assert guessed(TSTC=spike).found["T_degC"].heading == "TSTC"
     spike[: N // 10] = 3000.0
     assert "T_degC" not in guessed(TSTC=spike).found
+
+
+WRITTEN = """\
+# From the recordings below, as `mffit sniff` reads them. The comments say where each value comes from.
+
+[tyre]
+name = "a-b"
+# unloaded_radius =   # m: fill this in
+# nominal_load =   # N, FNOMIN: fill this in
+nominal_pressure = 83  # kPa, NOMPRES: the most frequent pressure
+nominal_speed = 11.1  # m/s, LONGVL: the most frequent speed
+
+[rig]
+type = "flat-track"  # a straight path; for a disc, give path_centre and path_radius as well
+axes = "sae"  # from the signs of side force, aligning moment, camber thrust and load
+
+[columns]  # of all files
+# no time: each of 18 rows is treated as a finished point; if they are samples of a recording, name its time under \
+[columns], for example time_s = "..."
+alpha_deg = { column = "SA", unit = "deg" }  # the file states no unit: -8 to 8 look like deg; SA, IA share a unit
+gamma_deg = { column = "IA", unit = "deg" }  # the file states no unit: 2 to 2 look like deg; SA, IA share a unit
+Fz_N = { column = "FZ", unit = "N" }  # the file states no unit: -2e+03 to -1e+03 look like N; FZ, FY share a unit
+Fy_N = { column = "FY", unit = "N" }  # the file states no unit: -1.69e+03 to 1.7e+03 look like N; FZ, FY share a unit
+Mz_Nm = { column = "MZ", unit = "N m" }  # the file states no unit: -37.3 to 37.3 look like N m
+p_kPa = { column = "P", unit = "kPa" }  # the file states no unit: 83 to 83 look like kPa, less likely psi (572 kPa)
+V_mps = { column = "V", unit = "km/h" }  # the file states no unit: 40 to 40 look like km/h
+
+[[sweep]]
+file = "../a b.csv"
+
+[[sweep]]
+# N (3 to 3) is left out: at the speed in V, no wheel of this size turns at this rate
+# P is in psi, so columns without a stated unit may be in American units, too: FZ (N or lbf), FY (N or lbf), MZ (N m or \
+in-lb), V (km/h or mph); if they are, write the unit under [columns], for example Fz_N = { column = "FZ", unit = "lbf" }
+file = "../c.csv"
+[sweep.columns]
+alpha_deg = "alpha_deg"
+p_kPa = { column = "P", unit = "psi" }  # the file states no unit: 12 to 14 look like psi (83 kPa), less likely bar (1200 kPa)
+"""
+"""The project file of the two recordings below: shared columns once, what differs below the file that has it."""
+
+
+def two_recordings(folder: Path) -> list[Path]:
+    """One with a constant pressure in kPa; one with two pressures in psi, another heading and a column of no wheel."""
+    (folder / "a b.csv").write_text(table(P=83.0, V=40.0))
+    other = table(P=np.repeat([12.0, 12.0, 14.0], 6), V=np.repeat([60.0, 40.0, 60.0], 6), N=3.0)
+    (folder / "c.csv").write_text(other.replace("SA,", "alpha_deg,"))
+    return [folder / "a b.csv", folder / "c.csv"]
+
+
+def test_the_project_file_of_two_different_recordings(tmp_path):
+    found = sniff(two_recordings(tmp_path))
+    assert project_text(found, tmp_path / "project", unloaded_radius=None, nominal_load=None) == WRITTEN
+    given = {"unloaded_radius": 0.2, "nominal_load": 1500.0, "nominal_pressure": 90.0, "name": 'q"'}
+    lines = project_text(found, tmp_path / "project", **given).splitlines()
+    assert lines[3:7] == [
+        'name = "q\\""', "unloaded_radius = 0.2  # m", "nominal_load = 1500  # N, FNOMIN",
+        "nominal_pressure = 90  # kPa, NOMPRES",
+    ]  # fmt: skip
+
+
+def test_the_conditions_of_two_different_recordings_are_counted(tmp_path):
+    found = sniff(two_recordings(tmp_path)).conditions
+    rounded = {
+        name: [(round(level.value, 2), level.stretches) for level in levels] for name, levels in found.items()
+    }
+    assert rounded == {
+        "load": [(1000.0, 18), (2000.0, 18)],
+        "camber": [(0.03, 36)],  # 2 deg
+        "pressure": [(83_000.0, 30), (96_526.6, 6)],
+        "speed": [(11.11, 24), (16.67, 12)],
+    }
