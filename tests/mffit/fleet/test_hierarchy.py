@@ -91,6 +91,30 @@ def test_one_tyre_alone_has_the_posterior_of_its_points_and_priors():
     assert estimate([one]).population == {}
 
 
+@pytest.mark.parametrize(("expected", "spread"), [(0.0, 1.0), (0.4, 1.0), (-3.0, 3.0)])
+def test_a_number_without_bounds_or_prior_is_known_to_its_own_size(expected, spread):
+    """And to 1 at least: a centre of 0 says nothing about the size."""
+    one = fleet(2, 1)[0][0]
+    unbound = replace(
+        one, names=("PDY1", "PKY6", "Q_FCY2", *RIG), expected=np.r_[EXPECTED[:2], expected, EXPECTED[3:]]
+    )
+    known = np.array([0.3, 0.4, spread, *SPREAD[3:]])
+    covariance = np.linalg.inv(one.matrix + np.diag(known**-2.0))
+    mean = covariance @ (one.vector + unbound.expected * known**-2.0)
+    (tyre,) = estimate([unbound]).tyres
+    np.testing.assert_allclose(tyre.values, mean[:3], rtol=1e-6)
+    np.testing.assert_allclose(tyre.covariance, covariance[:3, :3], rtol=1e-5)
+
+
+@pytest.mark.parametrize(("share", "informed"), [(0.81, False), (0.79, True)])
+def test_points_inform_a_coefficient_if_they_take_a_fifth_off_its_prior_variance(share, informed):
+    found = [
+        replace(i, matrix=np.diag([100.0, (1.0 / share - 1.0) / SPREAD[1] ** 2, 100.0, 1.0, 1.0]))
+        for i in fleet(5, 2)[0]
+    ]
+    assert ("PKY6" in estimate(found).population) == informed
+
+
 def test_a_population_needs_two_tyres_that_inform_a_coefficient():
     """A number may be free although the points do not inform it, as turn slip on a straight path."""
     found, _, _ = fleet(5, 3)
@@ -124,6 +148,27 @@ def test_the_scatter_of_the_population_is_found():
         [[estimate(fleet(seed, 30, weak=False)[0]).population[n].scatter for n in OWN] for seed in range(5)]
     )
     np.testing.assert_allclose(found.mean(axis=0), [0.05, 0.05, 0.08], rtol=0.25)
+
+
+@pytest.mark.parametrize(("tyres", "u", "sd"), [(5, 0.1, 0.2), (8, 0.1, 0.15), (8, 0.02, 0.1)])
+def test_the_scatter_of_equally_well_measured_tyres_has_a_closed_form(tyres, u, sd):
+    """With V = tau^2 + u^2, the fixed point of (n - 1) tau^2 = sum E[(x_i - mu)^2] is (V - u^2) (V - sd^2) = V^2 / (n - 1)."""
+    measured = np.linspace(-1.0, 1.0, tyres)
+    measured *= sd / np.std(measured, ddof=1)
+    found = [
+        Information(
+            ("PECP1",),
+            np.array([y]),
+            np.array([[u**-2.0]]),
+            np.array([y * u**-2.0]),
+            np.zeros(1),
+            np.array([math.inf]),
+        )
+        for y in measured
+    ]
+    V = max(np.roots([1.0 - 1.0 / (tyres - 1), -(u**2 + sd**2), u**2 * sd**2]).real)
+    found_scatter = estimate(found).population["PECP1"].scatter
+    assert found_scatter == pytest.approx(min(math.sqrt(V - u**2), 0.3), rel=0.02)
 
 
 def test_many_tyres_determine_the_rig_better_and_the_declaration_counts_once():

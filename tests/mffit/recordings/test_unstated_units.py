@@ -10,8 +10,10 @@ import pytest
 
 from mffit import pipeline
 from mffit.errors import InputError
+from mffit.points.stretch import StretchNote
 from mffit.recordings import project_text, sniff
 from mffit.recordings.guess import guesses
+from mffit.recordings.stretch_table import stretch_table
 from mffit.report import text
 from mffit.sweeps.raw_table import RawTable
 
@@ -145,6 +147,23 @@ def test_a_missing_moment_names_columns_in_a_unit_of_moments():
     assert "unused columns in a unit of moments: Torque;" in remark  # MX is used
 
 
+def test_a_column_without_readings_or_of_another_dimension_is_no_channel():
+    assert "p_kPa" not in guessed(units={"P": "deg C"}).found
+    assert "p_kPa" not in guessed(P=np.full(N, np.nan)).found
+    assert guessed(units={"P": "deg C"}, Reifendruck=np.full(N, 83.0)).found["p_kPa"].heading == "Reifendruck"
+
+
+def test_the_table_of_stretches_has_as_many_digits_as_rigs_resolve():
+    note = StretchNote(
+        file="a", sweep="a:01", kind="sweep", begin_s=1.23456, end_s=2.34567, first_line=2, last_line=9,
+        alpha_from_deg=-8.12345, alpha_to_deg=8.23456, gamma_deg=2.34567, Fz_N=1500.678, p_kPa=83.456, T_degC=61.567,
+        points=7, lag_m=0.123456, u_lag_m=0.023456, hysteresis_N=12.345, dropped="",
+    )  # fmt: skip
+    assert stretch_table([note]).iloc[0].tolist() == [
+        "a", "a:01", "sweep", 1.235, 2.346, 2, 9, -8.12, 8.23, 2.35, 1501.0, 83.5, 61.6, 7, 0.1235, 0.0235, 12.3, "",
+    ]  # fmt: skip
+
+
 @pytest.mark.parametrize(
     ("heading", "channel"),
     [
@@ -194,14 +213,14 @@ def test_only_measured_pressures_count(tmp_path):
 
 
 def test_rows_without_time_are_reported_as_points(tmp_path):
-    (tmp_path / "a.csv").write_text(table(Timestamp="2024-04-03 10:00:00.000"))
+    (tmp_path / "a.csv").write_text(table(Timestamp=[f"2024-04-03 10:00:{k:02}.000" for k in range(18)]))
     found = sniff([tmp_path / "a.csv"])
     for said in (
         text.sniff_summary(found).replace("\n  ", " "),
         project_text(found, tmp_path, unloaded_radius=None, nominal_load=None),
     ):
         assert "no time: each of 18 rows is treated as a finished point" in said
-        assert 'column "Timestamp" holds clock times' in said
+        assert 'column "Timestamp" holds clock times ("2024-04-03 10:00:00.000")' in said
 
 
 @pytest.mark.parametrize(
