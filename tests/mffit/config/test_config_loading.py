@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 
 from mffit import config
+from mffit.config.globs import is_wild, matches
 from mffit.config.locate import lines_of_keys
 from mffit.config.problems import known_keys
 from mffit.errors import InputError
@@ -142,6 +143,39 @@ def test_the_rolling_radius_follows_from_one_revolution_of_the_disc():
     """(18): 4 turns and 175 degrees over a circle of 1.323 m: 1.323 / (4 + 175/360)."""
     row = config.RollingRadiusTable(revolutions=4.0, angle_start_deg=12.0, angle_end_deg=187.0)
     assert config.effective_radius(row, 1.323) == pytest.approx(1.323 / (4 + 175 / 360), rel=1e-12)
+
+
+def test_a_rolling_radius_without_a_load_holds_at_the_nominal_load(tmp_path):
+    row = "\n[[rolling_radius]]\neffective_radius = 0.2945\nu_effective_radius = 0.001\n"
+    found = config.load(write(tmp_path, f"{MINIMAL}{row}{row}load_N = 900\n"))
+    assert [row.load_N for row in found.rolling_radius] == [1500.0, 900.0]
+
+
+def test_a_column_given_by_its_heading_has_its_own_unit_and_no_factor(tmp_path):
+    column = config.load(write(tmp_path, COMPLETE)).sweep[0].columns["alpha_deg"]
+    assert (column.column, column.unit, column.scale) == ("SA", None, 1.0)
+
+
+def test_a_pattern_is_a_name_with_wild_cards_that_no_file_has(tmp_path):
+    for name in ("a[1].csv", "a1.csv", "b3.csv", "b2.csv"):
+        (tmp_path / name).touch()
+    assert not is_wild("a1.csv", tmp_path)
+    assert not is_wild("a[1].csv", tmp_path)
+    assert is_wild("b*.csv", tmp_path)
+    assert matches("b*.csv", tmp_path) == ["b2.csv", "b3.csv"]
+    assert matches(f"{tmp_path}/b*.csv", Path("elsewhere")) == [str(tmp_path / f"b{k}.csv") for k in (2, 3)]
+
+
+def test_lines_are_right_behind_a_pattern(tmp_path):
+    """Two files match the first [[sweep]], so that the second table is the third sweep."""
+    for name in ("a1.csv", "a2.csv"):
+        (tmp_path / name).touch()
+    text = MINIMAL.replace('"a.csv"', '"a*.csv"').replace('"b.csv"', '"b.csv"\ndirection = "back"')
+    error = refusal(tmp_path, text)
+    assert (error.key, error.line) == ("sweep[3].direction", 15)
+    error = refusal(tmp_path, MINIMAL.replace('"b.csv"', '"b*.csv"'))
+    assert (error.key, error.line) == ("sweep[2].file", 14)
+    assert str(error).endswith('matches "b*.csv"; correct the pattern')
 
 
 def test_phi_t_has_the_sign_of_the_path_centre():
