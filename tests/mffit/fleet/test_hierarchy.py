@@ -11,6 +11,8 @@ import pytest
 
 from mffit.fleet import Information, estimate, to_json
 from mffit.fleet.information import from_json
+from mffit.fleet.record import scatter_of
+from tir import Quantity
 
 OWN = ("PDY1", "PKY6", "PECP1")
 RIG = ("F0_N", "gamma_0_deg")
@@ -184,6 +186,52 @@ def test_only_a_tyre_of_another_rig_is_strained():
     strain = [abs(tyre.strain["F0_N"]) for tyre in estimate(found).tyres]
     assert strain[2] > 4.0
     assert max(s for i, s in enumerate(strain) if i != 2) < 4.0
+
+
+def test_the_strain_is_the_difference_over_its_uncertainty():
+    """By hand for a rig error that no number of the tyres resembles: known as 0 +- 10 N, to 5 N by one, to 2 N by the other."""
+    known, (u_one, u_other), (one, other) = 10.0, (5.0, 2.0), (14.0, -3.0)
+    found = [
+        Information(
+            names=("PDY1", "F0_N"),
+            values=np.array([1.2, F0]),
+            matrix=np.diag([100.0, u**-2.0]),
+            vector=np.array([120.0, F0 * u**-2.0]),
+            expected=np.array([1.1, 0.0]),
+            spread=np.array([0.3, known]),
+        )
+        for F0, u in ((one, u_one), (other, u_other))
+    ]
+    shrunk = [u**-2.0 / (u**-2.0 + known**-2.0) for u in (u_one, u_other)]
+    variance = (shrunk[0] - shrunk[1]) ** 2 * known**2 + (shrunk[0] * u_one) ** 2 + (shrunk[1] * u_other) ** 2
+    right = (shrunk[0] * one - shrunk[1] * other) / math.sqrt(variance)
+    tyres = estimate(found).tyres
+    assert tyres[0].strain["F0_N"] == pytest.approx(right, rel=1e-6)
+    assert tyres[1].strain["F0_N"] == pytest.approx(-right, rel=1e-6)
+
+
+@pytest.mark.parametrize(("u", "strained"), [(21.0, False), (19.0, True)])
+def test_a_tyre_whose_points_do_not_inform_an_error_of_the_rig_has_no_strain(u, strained):
+    """They must take a fifth off the declared variance: a quarter of its information, u below twice the declared 10 N."""
+    one = Information(
+        ("PDY1", "F0_N"),
+        np.ones(2),
+        np.diag([100.0, u**-2.0]),
+        np.zeros(2),
+        np.zeros(2),
+        np.array([0.3, 10.0]),
+    )
+    assert ("F0_N" in estimate([one, one]).tyres[0].strain) == strained
+
+
+def test_the_scatter_between_tyres_is_that_of_a_sample():
+    """Values 1, 2 and 6: mean 3, variance (4 + 1 + 9)/2; of which u^2 = (1 + 1 + 4)/3 is uncertainty."""
+    found = scatter_of([Quantity(value, u, "-") for value, u in ((1.0, 1.0), (2.0, 1.0), (6.0, 2.0))])
+    assert (found.mean, found.sd, found.u, found.tyres) == pytest.approx(
+        (3.0, math.sqrt(7.0), math.sqrt(2.0), 3)
+    )
+    assert found.beyond == pytest.approx(math.sqrt(5.0))
+    assert scatter_of([Quantity(value, 1.0, "-") for value in (1.0, 1.1)]).beyond == 0.0
 
 
 def only(one: Information, keep: list[int]) -> Information:
