@@ -59,7 +59,7 @@ class Sniffed:
     """What recordings hold."""
 
     recordings: tuple[Recording, ...]
-    axes: tuple[str, ...]  #: axes that agree with physics, the likeliest first; empty if none does
+    axes: tuple[str, ...]  #: axes that agree with physics, first those tried first; empty if none does
     wrong: tuple[str, ...]  #: contradictions with physics under the axes first tried
     reading: Reading  #: points and stretches under the likeliest axes
     conditions: dict[
@@ -195,7 +195,7 @@ def configuration_of(recordings: Sequence[Recording], axes: str) -> Config:
 
 
 def axes_of(points: Points, declared: str, *, load_falls: bool) -> tuple[tuple[str, ...], tuple[str, ...]]:
-    """The axes under which the points behave like a tyre, and the contradictions under the declared axes.
+    """The axes under which the points behave like a tyre, the declared ones first, and the contradictions under these.
 
     Parameters
     ----------
@@ -207,12 +207,9 @@ def axes_of(points: Points, declared: str, *, load_falls: bool) -> tuple[tuple[s
     for axes in (declared, *(axes for axes in FLIPPED if axes != declared)):
         if load_falls and "Fz" not in FLIPPED[axes]:
             continue
-        found = signatures(under_axes(points, declared, axes))
-        if not contradictions(found):
-            agreeing.append((found.camber.sign >= 0, axes))
-    return tuple(axes for _, axes in sorted(agreeing, key=lambda pair: pair[0])), tuple(
-        contradictions(signatures(points))
-    )
+        if not contradictions(signatures(under_axes(points, declared, axes))):
+            agreeing.append(axes)
+    return tuple(agreeing), tuple(contradictions(signatures(points)))
 
 
 def conditions_of(recordings: Sequence[Recording], reading: Reading) -> dict[str, tuple[Level, ...]]:

@@ -10,6 +10,7 @@ import shutil
 import signal
 from pathlib import Path
 
+import numpy as np
 import pandas as pd
 import pytest
 from small_rigs import LOADS, disc, simulated
@@ -232,6 +233,31 @@ def test_a_stiffness_carries_the_uncertainty_of_its_coefficients(compared, folde
     """About 40 points of 3 N determine the cornering stiffness to between one thousandth and two per cent."""
     row = json.loads((compared[0] / "fleet.json").read_text())["tyres"][0]["C_alpha_N_per_rad"]
     assert 1e-3 < abs(row["u"] / row["value"]) < 2e-2
+
+
+def test_the_information_of_a_build_peaks_at_its_solution(built):
+    """Together with the priors of the fit; eps_gamma has none but the result of the direct method, from the same points."""
+    information = fleet.read(built[0] / "small").information
+    names, spread = information.names, information.spread
+    k = names.index("PECP1")
+    assert np.isinf(spread[k])
+    assert information.expected[k] == information.values[k]  # the build held it there
+    others = [i for i, name in enumerate(names) if name not in ("PECP1", "PECP2")]
+    slope = information.vector - information.matrix @ information.values
+    slope = (slope - (information.values - information.expected) / spread**2)[others]
+    u = np.sqrt(np.diag(np.linalg.inv(information.matrix + np.diag(spread**-2.0))))[others]
+    assert np.max(np.abs(slope * u)) < 0.3  # in units of its uncertainty, no number would move far
+
+
+def test_a_fleet_on_a_disc_reads_the_file_with_turn_slip(folders, tmp_path):
+    """With exact = "normal" the build lists the other file first."""
+    shutil.copytree(folders[1], tmp_path / "normal")
+    result = json.loads((folders[1] / "result.json").read_text())
+    assert list(result["files"]) == ["turn-slip", "normal"]
+    result["files"] = dict(reversed(result["files"].items()))
+    (tmp_path / "normal" / "result.json").write_text(json.dumps(result))
+    assert fleet.read(tmp_path / "normal").tyre["PECP1"] == fleet.read(folders[1]).tyre["PECP1"]
+    assert fleet.read(tmp_path / "normal").tyre["USE_MODE"] % 10 == 5
 
 
 def test_the_page_shows_a_hostile_name_as_text(compared):

@@ -43,12 +43,18 @@ TESTS: dict[str, tuple[str, ...]] = {
     "tir": ("tests/tir", "tests/test_constants.py", f"{SUITE}/export", f"{SUITE}/viewer"),
     "tir/equations": (*EQUATIONS, f"{FIT}/test_constraints.py", f"{FIT}/test_estimates.py"),
     "tir/evaluate.py": EQUATIONS,
-    "mffit/cli": (COMMANDS, f"{SUITE}/test_init_project.py", f"{SUITE}/test_voice.py", f"{SUITE}/export", MANY),
-    "mffit/comparison": (f"{SUITE}/comparison",),
-    "mffit/config": (f"{SUITE}/config", BAD_INPUT, f"{SUITE}/virtual_rig/test_virtual_plan.py", COMMANDS),
+    "mffit/cli": (
+        f"{SUITE}/test_output.py", f"{SUITE}/test_init_project.py", f"{SUITE}/test_voice.py", f"{SUITE}/export",
+        f"{SUITE}/recordings/test_unstated_units.py", COMMANDS, MANY, f"{SUITE}/comparison",
+    ),
+    "mffit/comparison": (f"{SUITE}/comparison", MANY),
+    "mffit/config": (
+        f"{SUITE}/config", f"{SUITE}/virtual_rig/test_virtual_plan.py", BAD_INPUT,
+        f"{SUITE}/suspicion/test_declarations.py", f"{SUITE}/recordings/test_unstated_units.py", COMMANDS,
+    ),
     "mffit/diagnosis": (
         *(f"{DIAGNOSIS}/test_{name}.py" for name in (
-            "selection", "thresholds", "evidence", "places", "conditions", "wording", "steps",
+            "selection", "steps", "wording", "places", "thresholds", "conditions", "explain", "scatter", "evidence",
         )),
         DIAGNOSIS,
     ),
@@ -67,14 +73,14 @@ TESTS: dict[str, tuple[str, ...]] = {
         )),
         PIPELINE, FIT,
     ),
-    "mffit/fleet": (f"{SUITE}/fleet", MANY),
+    "mffit/fleet": (f"{SUITE}/fleet", f"{SUITE}/test_fleet_notes.py", MANY),
     "mffit/measured": (
         f"{SUITE}/measured", "tests/test_paper_tables.py", PIPELINE, f"{FIT}/test_faulty_rig.py", f"{FIT}/test_recovery.py",
     ),
     "mffit/pipeline": (
-        f"{SUITE}/test_fleet_notes.py", MANY, PIPELINE, f"{SUITE}/comparison", f"{SUITE}/planning", COMMANDS,
-        f"{SUITE}/rig/test_other_paths.py", f"{SUITE}/recordings/test_sniff.py", f"{FIT}/test_normal.py",
-        f"{DIAGNOSIS}/test_corrected_files.py",
+        f"{SUITE}/test_fleet_notes.py", f"{SUITE}/test_json.py", f"{SUITE}/export", f"{SUITE}/planning/test_plan_wording.py",
+        f"{SUITE}/comparison", f"{SUITE}/recordings/test_unstated_units.py", f"{SUITE}/planning", MANY, COMMANDS, PIPELINE,
+        f"{SUITE}/recordings/test_sniff.py", f"{FIT}/test_normal.py", f"{DIAGNOSIS}/test_corrected_files.py",
     ),
     "mffit/planning": (f"{SUITE}/planning",),
     "mffit/parts": (f"{SUITE}/parts", f"{SUITE}/measured", FIT),
@@ -82,7 +88,10 @@ TESTS: dict[str, tuple[str, ...]] = {
         POINTS, BAD_INPUT, f"{SUITE}/recordings", f"{FIT}/test_trust.py", f"{FIT}/test_before_the_fit.py", SUSPICION, PIPELINE,
         CORPUS,
     ),
-    "mffit/recordings": (f"{SUITE}/recordings", f"{POINTS}/test_points_recordings.py", CORPUS, COMMANDS),
+    "mffit/recordings": (
+        f"{SUITE}/recordings/test_unstated_units.py", f"{POINTS}/test_points_recordings.py", f"{SUITE}/recordings", CORPUS,
+        COMMANDS,
+    ),
     "mffit/results": (
         f"{SUITE}/test_json.py", f"{SUITE}/planning/test_plan_wording.py", PIPELINE, MANY, f"{SUITE}/comparison",
         f"{DIAGNOSIS}/test_wording.py",
@@ -92,8 +101,13 @@ TESTS: dict[str, tuple[str, ...]] = {
         f"{SUITE}/rig", f"{SUITE}/virtual_rig", f"{SUITE}/effects", f"{SUITE}/reference", f"{FIT}/test_rig_numbers.py",
         f"{FIT}/test_before_the_fit.py", PIPELINE, f"{DIAGNOSIS}/test_correction.py", f"{DIAGNOSIS}/test_wording.py",
     ),
-    "mffit/sweeps": (f"{SUITE}/sweeps", POINTS, f"{SUITE}/recordings", BAD_INPUT, CORPUS, f"{SUITE}/test_readers_fuzz.py"),
-    "mffit/virtual_rig": (f"{SUITE}/virtual_rig", "tests/test_samples.py", f"{SUITE}/rig/test_other_paths.py"),
+    "mffit/sweeps": (
+        *(f"{SUITE}/sweeps/test_sweeps_{name}.py" for name in ("channels", "files", "frames", "formats", "fuzz")),
+        BAD_INPUT, CORPUS, f"{SUITE}/test_readers_fuzz.py", f"{SUITE}/recordings", POINTS, COMMANDS,
+    ),
+    "mffit/virtual_rig": (
+        f"{SUITE}/virtual_rig", f"{SUITE}/rig", "tests/test_samples.py", COMMANDS,
+    ),
 }  # fmt: skip
 """Room, which is a folder or module -> the tests that should detect a change in it, fast ones first."""
 SWAPS = (

@@ -40,6 +40,15 @@ def test_numbers_are_those_of_the_equations():
     assert "C_phit_Nm" not in characteristics(tyre, 1400.0, turn_slip=False)
 
 
+def test_numbers_hold_at_the_pressure_asked_for():
+    tyre = truth().replace(PHY1=0.0, PHY2=0.0, PVY1=0.0, PVY2=0.0, PPY1=0.5, PPY2=0.9)
+    nominal = characteristics(tyre, 1400.0, turn_slip=False)
+    soft = characteristics(tyre, 1400.0, turn_slip=False, pressure=200e3)
+    assert soft["C_alpha_N_per_rad"] == pytest.approx(float(tyre.state(1400.0, p=200e3).K_ya), rel=2e-3)
+    assert abs(soft["C_alpha_N_per_rad"] / nominal["C_alpha_N_per_rad"] - 1.0) > 0.01
+    assert nominal == characteristics(tyre, 1400.0, turn_slip=False, pressure=tyre["INFLPRES"])
+
+
 def test_a_changed_coefficient_shows_where_it_acts(stiffer):
     found = between(Subject("a", truth(), True), Subject("b", stiffer, True))
     rows = by_key(found)
@@ -148,12 +157,14 @@ def test_a_file_is_compared_with_data(folder, stiffer, tmp_path):
     row = by_key(wrong)["C_alpha_N_per_rad"]
     assert abs(by_key(right)["C_alpha_N_per_rad"].z) < 3.0 < abs(row.z)
     assert row.change > 0.0  # the data are less stiff, and C_alpha is negative
-    # The same sign by sweep.
     readings = wrong.simulation.readings(wrong.points)
+    apart = {c: getattr(wrong.points, c) - getattr(readings, c) for c in ("Fy", "Mz")}
+    Fy, Mz = (f"{np.sqrt(np.nanmean(apart[c] ** 2)):.3g}" for c in ("Fy", "Mz"))
+    assert f" by {Fy} N rms in Fy and {Mz} Nm rms in Mz; numbers that differ" in wording.headline(wrong)
+    # The same sign by sweep.
     for gap in wrong.sweeps:
         rows = np.array([wrong.points.sweep_names[k] == gap.sweep for k in wrong.points.sweep])
-        apart = getattr(wrong.points, gap.channel)[rows] - getattr(readings, gap.channel)[rows]
-        assert gap.bias == pytest.approx(np.nanmean(apart))
+        assert gap.bias == pytest.approx(np.nanmean(apart[gap.channel][rows]))
 
 
 def test_two_sets_of_data_are_refused(folder):

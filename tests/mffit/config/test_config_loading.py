@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import tomllib
 from pathlib import Path
 
 import pytest
 
 from mffit import config
+from mffit.config.globs import is_wild, matches
 from mffit.config.locate import lines_of_keys
 from mffit.config.problems import known_keys
 from mffit.errors import InputError
@@ -143,6 +145,39 @@ def test_the_rolling_radius_follows_from_one_revolution_of_the_disc():
     assert config.effective_radius(row, 1.323) == pytest.approx(1.323 / (4 + 175 / 360), rel=1e-12)
 
 
+def test_a_rolling_radius_without_a_load_holds_at_the_nominal_load(tmp_path):
+    row = "\n[[rolling_radius]]\neffective_radius = 0.2945\nu_effective_radius = 0.001\n"
+    found = config.load(write(tmp_path, f"{MINIMAL}{row}{row}load_N = 900\n"))
+    assert [row.load_N for row in found.rolling_radius] == [1500.0, 900.0]
+
+
+def test_a_column_given_by_its_heading_has_its_own_unit_and_no_factor(tmp_path):
+    column = config.load(write(tmp_path, COMPLETE)).sweep[0].columns["alpha_deg"]
+    assert (column.column, column.unit, column.scale) == ("SA", None, 1.0)
+
+
+def test_a_pattern_is_a_name_with_wild_cards_that_no_file_has(tmp_path):
+    for name in ("a[1].csv", "a1.csv", "b3.csv", "b2.csv"):
+        (tmp_path / name).touch()
+    assert not is_wild("a1.csv", tmp_path)
+    assert not is_wild("a[1].csv", tmp_path)
+    assert is_wild("b*.csv", tmp_path)
+    assert matches("b*.csv", tmp_path) == ["b2.csv", "b3.csv"]
+    assert matches(f"{tmp_path}/b*.csv", Path("elsewhere")) == [str(tmp_path / f"b{k}.csv") for k in (2, 3)]
+
+
+def test_lines_are_right_behind_a_pattern(tmp_path):
+    """Two files match the first [[sweep]], so that the second table is the third sweep."""
+    for name in ("a1.csv", "a2.csv"):
+        (tmp_path / name).touch()
+    text = MINIMAL.replace('"a.csv"', '"a*.csv"').replace('"b.csv"', '"b.csv"\ndirection = "back"')
+    error = refusal(tmp_path, text)
+    assert (error.key, error.line) == ("sweep[3].direction", 15)
+    error = refusal(tmp_path, MINIMAL.replace('"b.csv"', '"b*.csv"'))
+    assert (error.key, error.line) == ("sweep[2].file", 14)
+    assert str(error).endswith('matches "b*.csv"; correct the pattern')
+
+
 def test_phi_t_has_the_sign_of_the_path_centre():
     """A centre to the left turns the rig to the left, psi_dot > 0: phi_t = -psi_dot/V = -1/R."""
     rig = config.RigTable(path_radius=1.25)
@@ -195,6 +230,32 @@ def test_a_loaded_configuration_is_returned_unchanged(tmp_path):
             'did you mean "column"',
         ),
         ("[rig]", "rim_radius = 0.4\n[rig]", "tyre.rim_radius", 7, "not smaller than the unloaded radius"),
+        ("nominal_load", "quux", "tyre.quux", 4, "is unknown; known here are name, size, unloaded_radius"),
+        ("nominal_load", "quux", "tyre.quux", 4, "(also wrong: tyre.nominal_load)"),
+        ('name = "front-1"', "", "tyre.name", 1, "is missing; add it to [tyre]"),
+        ('file = "b.csv"', "", "sweep[2].file", 13, "is missing; add it to [[sweep]]"),
+        ('name = "front-1"', 'name = ["a"]', "tyre.name", 2, "a list is not a text in quotes; write one"),
+        (
+            'name = "front-1"',
+            "name = { a = 1 }",
+            "tyre.name",
+            2,
+            "a table is not a text in quotes; write one",
+        ),
+        (
+            "nominal_load = 1500",
+            'nominal_load = "heavy"',
+            "tyre.nominal_load",
+            4,
+            '"heavy" is not a number; write one',
+        ),
+        (
+            "nominal_load = 1500",
+            "nominal_load = false",
+            "tyre.nominal_load",
+            4,
+            "false is not a number; write one",
+        ),
     ],
 )
 def test_a_mistake_is_reported_with_key_and_line(tmp_path, old, new, key, line, said):
@@ -204,6 +265,85 @@ def test_a_mistake_is_reported_with_key_and_line(tmp_path, old, new, key, line, 
     assert said in str(error)
     assert str(error).startswith(f"{tmp_path / 'tyre.toml'}:{line}: {key}: ")
     assert "\n" not in str(error)
+
+
+RANGES = [
+    ("tyre.unloaded_radius", 0.03, 1.5, " m"),
+    ("tyre.rim_radius", 0.03, 1.5, " m"),
+    ("tyre.width", 0.01, 1.0, " m"),
+    ("tyre.nominal_load", 20.0, 2e5, " N"),
+    ("tyre.nominal_pressure", 20.0, 2000.0, " kPa"),
+    ("tyre.nominal_speed", 0.01, 150.0, " m/s"),
+    ("rig.path_radius", 0.2, 100.0, " m"),
+    ("rig.path.L_B", 0.001, 100.0, " m"),
+    ("rig.backlash_deg", 0.0, 10.0, " deg"),
+    ("rig.u_loadcell_offset_N", 0.0, 1e4, " N"),
+    ("rig.u_camber_alignment_deg", 0.0, 20.0, " deg"),
+    ("rolling_radius.load_N", 20.0, 2e5, " N"),
+    ("rolling_radius.revolutions", 0.0, 1e4, " revolutions"),
+    ("rolling_radius.angle_start_deg", -360.0, 720.0, " deg"),
+    ("rolling_radius.angle_end_deg", -360.0, 720.0, " deg"),
+    ("rolling_radius.u_angle_deg", 0.0, 20.0, " deg"),
+    ("rolling_radius.u_arc_m", 0.0, 0.1, " m"),
+    ("camber_stiffness.angle_deg", 1.0, 60.0, " deg"),
+    ("model.u_coefficients", 0.0, 1.0, " of the value"),
+]
+
+
+def with_value(dotted: str, value: float) -> dict:
+    """The content of a complete ``tyre.toml`` with one other value."""
+    content = tomllib.loads(COMPLETE)
+    *tables, key = dotted.split(".")
+    table = content
+    for name in tables:
+        found = table[name]
+        table = found[0] if isinstance(found, list) else found
+    table[key] = value
+    return content
+
+
+def said_of(dotted: str, value: float) -> str:
+    """The refusal of a value; empty if it is accepted."""
+    try:
+        config.load(with_value(dotted, value))
+    except InputError as error:
+        return str(error).replace("[1]", "")
+    return ""
+
+
+@pytest.mark.parametrize(("key", "lower", "upper", "unit"), RANGES)
+def test_a_number_is_refused_outside_its_range_and_not_at_its_ends(key, lower, upper, unit):
+    margin = 1e-6 * (upper - lower)
+    for outside in (lower - margin, upper + margin):
+        assert f"{key}: {outside:g}{unit} is outside {lower:g} to {upper:g}{unit}; " in said_of(key, outside)
+    for inside in (lower, upper):  # may be refused for another reason, such as a rim larger than its tyre
+        assert f"{key}: {inside:g}{unit} is outside" not in said_of(key, inside)
+
+
+@pytest.mark.parametrize(
+    ("key", "value", "remedy"),
+    [
+        ("tyre.unloaded_radius", 11.8, "inches or centimetres, write metres"),
+        ("tyre.unloaded_radius", 8.1, "inches, write metres"),
+        ("tyre.unloaded_radius", 29.98, "centimetres, write metres"),
+        ("tyre.unloaded_radius", 299.8, "millimetres, write metres"),
+        ("tyre.unloaded_radius", 3000.0, "millimetres, write metres"),
+        ("tyre.nominal_pressure", 2.5, "bar, write kilopascals"),
+        ("tyre.nominal_pressure", 12.0, "psi, write kilopascals"),
+        ("tyre.nominal_pressure", 8.0, "psi or bar, write kilopascals"),
+        ("tyre.nominal_pressure", 0.3, "bar, write kilopascals"),
+        ("tyre.nominal_pressure", 25e4, "pascals, write kilopascals"),
+        ("tyre.nominal_load", 1.5, "kilonewtons, write newtons"),
+        ("camber_stiffness.angle_deg", 0.26, "radians, write degrees"),
+    ],
+)
+def test_the_remedy_names_the_unit_in_which_a_number_would_be_usual(key, value, remedy):
+    assert said_of(key, value).endswith(f"; it looks like {remedy}")
+
+
+@pytest.mark.parametrize("value", [0.0, -3.0])
+def test_a_number_that_no_unit_explains_is_to_be_corrected(value):
+    assert said_of("tyre.nominal_pressure", value).endswith("is outside 20 to 2000 kPa; correct it")
 
 
 @pytest.mark.parametrize(

@@ -9,6 +9,7 @@ from disc_project import disc_project
 from mffit import config as configuration
 from mffit import points
 from mffit.errors import InputError
+from mffit.export.tydex import tydex_texts
 from mffit.pipeline.exporting import write_tydex
 from mffit.sweeps.tydex import read_tydex
 
@@ -60,7 +61,41 @@ def test_names_units_and_factors_are_in_the_columns_of_the_format(project, tmp_p
     assert sections == ["**HEADER", "**COMMENTS", "**CONSTANTS", "**MEASURCHANNELS", "**MEASURDATA", "**END"]
     rows = lines[lines.index("**MEASURDATA") + 1 : lines.index("**END")]
     assert len(rows) == len(read_tydex(path).lines) == len(project.tables[f"{path.stem}.csv"])
-    assert any("turn slip" in line for line in lines)
+
+
+def said(project) -> dict[str, list[str]]:
+    """The remarks of each file."""
+    config = configuration.load(project.write())
+    texts = tydex_texts(points.load(config)[0], config)
+    return {
+        name: [line.removeprefix("! ") for line in text.splitlines() if line.startswith("!")]
+        for name, text in texts.items()
+    }
+
+
+@pytest.mark.parametrize(("centre", "turn_slip"), [("left", "-0.755858"), ("right", "+0.755858")])
+def test_what_tydex_has_no_channels_for_is_in_the_remarks(project, centre, turn_slip):
+    """1/1.323 m is 0.755858 1/m; a path that curves to the left has negative turn slip."""
+    project.config["rig"]["path_centre"] = centre
+    remarks = said(project)
+    path = f"on a path of 1.323 m radius, turn slip {turn_slip} 1/m"
+    assert remarks["forward_1000"][1:] == ["rolling forwards", path]
+    assert remarks["backward_1000"][1:] == ["rolling backwards", path]
+
+
+def test_a_turned_tyre_and_a_straight_path_are_in_the_remarks(project):
+    project.config["rig"] = {"type": "flat-track", "axes": "iso"}
+    project.config["sweep"][0]["mount"] = "flipped"
+    remarks = said(project)
+    assert remarks["sideslip_1000"][1:] == ["rolling forwards", "tyre turned on its rim"]
+    assert remarks["camber_1000"][1:] == ["rolling forwards"]
+
+
+def test_the_overall_diameter_is_twice_the_unloaded_radius(project):
+    config = configuration.load(project.write())
+    text = tydex_texts(points.load(config)[0], config)["sideslip_1000"]
+    row = next(line for line in text.splitlines() if line.startswith("OVALLDIA"))
+    assert (row[40:50].strip(), float(row[50:])) == ("m", 0.6)
 
 
 def test_a_channel_that_was_not_measured_is_left_out(project, tmp_path):

@@ -11,6 +11,8 @@ import pytest
 
 from mffit.fleet import Information, estimate, to_json
 from mffit.fleet.information import from_json
+from mffit.fleet.record import scatter_of
+from tir import Quantity
 
 OWN = ("PDY1", "PKY6", "PECP1")
 RIG = ("F0_N", "gamma_0_deg")
@@ -91,6 +93,30 @@ def test_one_tyre_alone_has_the_posterior_of_its_points_and_priors():
     assert estimate([one]).population == {}
 
 
+@pytest.mark.parametrize(("expected", "spread"), [(0.0, 1.0), (0.4, 1.0), (-3.0, 3.0)])
+def test_a_number_without_bounds_or_prior_is_known_to_its_own_size(expected, spread):
+    """And to 1 at least: a centre of 0 says nothing about the size."""
+    one = fleet(2, 1)[0][0]
+    unbound = replace(
+        one, names=("PDY1", "PKY6", "Q_FCY2", *RIG), expected=np.r_[EXPECTED[:2], expected, EXPECTED[3:]]
+    )
+    known = np.array([0.3, 0.4, spread, *SPREAD[3:]])
+    covariance = np.linalg.inv(one.matrix + np.diag(known**-2.0))
+    mean = covariance @ (one.vector + unbound.expected * known**-2.0)
+    (tyre,) = estimate([unbound]).tyres
+    np.testing.assert_allclose(tyre.values, mean[:3], rtol=1e-6)
+    np.testing.assert_allclose(tyre.covariance, covariance[:3, :3], rtol=1e-5)
+
+
+@pytest.mark.parametrize(("share", "informed"), [(0.81, False), (0.79, True)])
+def test_points_inform_a_coefficient_if_they_take_a_fifth_off_its_prior_variance(share, informed):
+    found = [
+        replace(i, matrix=np.diag([100.0, (1.0 / share - 1.0) / SPREAD[1] ** 2, 100.0, 1.0, 1.0]))
+        for i in fleet(5, 2)[0]
+    ]
+    assert ("PKY6" in estimate(found).population) == informed
+
+
 def test_a_population_needs_two_tyres_that_inform_a_coefficient():
     """A number may be free although the points do not inform it, as turn slip on a straight path."""
     found, _, _ = fleet(5, 3)
@@ -126,6 +152,27 @@ def test_the_scatter_of_the_population_is_found():
     np.testing.assert_allclose(found.mean(axis=0), [0.05, 0.05, 0.08], rtol=0.25)
 
 
+@pytest.mark.parametrize(("tyres", "u", "sd"), [(5, 0.1, 0.2), (8, 0.1, 0.15), (8, 0.02, 0.1)])
+def test_the_scatter_of_equally_well_measured_tyres_has_a_closed_form(tyres, u, sd):
+    """With V = tau^2 + u^2, the fixed point of (n - 1) tau^2 = sum E[(x_i - mu)^2] is (V - u^2) (V - sd^2) = V^2 / (n - 1)."""
+    measured = np.linspace(-1.0, 1.0, tyres)
+    measured *= sd / np.std(measured, ddof=1)
+    found = [
+        Information(
+            ("PECP1",),
+            np.array([y]),
+            np.array([[u**-2.0]]),
+            np.array([y * u**-2.0]),
+            np.zeros(1),
+            np.array([math.inf]),
+        )
+        for y in measured
+    ]
+    V = max(np.roots([1.0 - 1.0 / (tyres - 1), -(u**2 + sd**2), u**2 * sd**2]).real)
+    found_scatter = estimate(found).population["PECP1"].scatter
+    assert found_scatter == pytest.approx(min(math.sqrt(V - u**2), 0.3), rel=0.02)
+
+
 def test_many_tyres_determine_the_rig_better_and_the_declaration_counts_once():
     by_number = {n: estimate(fleet(3, n)[0]).rig["F0_N"][1] for n in (1, 4, 16)}
     assert by_number[16] < 0.6 * by_number[4] < 0.4 * by_number[1] < 0.4 * 10.0
@@ -139,6 +186,52 @@ def test_only_a_tyre_of_another_rig_is_strained():
     strain = [abs(tyre.strain["F0_N"]) for tyre in estimate(found).tyres]
     assert strain[2] > 4.0
     assert max(s for i, s in enumerate(strain) if i != 2) < 4.0
+
+
+def test_the_strain_is_the_difference_over_its_uncertainty():
+    """By hand for a rig error that no number of the tyres resembles: known as 0 +- 10 N, to 5 N by one, to 2 N by the other."""
+    known, (u_one, u_other), (one, other) = 10.0, (5.0, 2.0), (14.0, -3.0)
+    found = [
+        Information(
+            names=("PDY1", "F0_N"),
+            values=np.array([1.2, F0]),
+            matrix=np.diag([100.0, u**-2.0]),
+            vector=np.array([120.0, F0 * u**-2.0]),
+            expected=np.array([1.1, 0.0]),
+            spread=np.array([0.3, known]),
+        )
+        for F0, u in ((one, u_one), (other, u_other))
+    ]
+    shrunk = [u**-2.0 / (u**-2.0 + known**-2.0) for u in (u_one, u_other)]
+    variance = (shrunk[0] - shrunk[1]) ** 2 * known**2 + (shrunk[0] * u_one) ** 2 + (shrunk[1] * u_other) ** 2
+    right = (shrunk[0] * one - shrunk[1] * other) / math.sqrt(variance)
+    tyres = estimate(found).tyres
+    assert tyres[0].strain["F0_N"] == pytest.approx(right, rel=1e-6)
+    assert tyres[1].strain["F0_N"] == pytest.approx(-right, rel=1e-6)
+
+
+@pytest.mark.parametrize(("u", "strained"), [(21.0, False), (19.0, True)])
+def test_a_tyre_whose_points_do_not_inform_an_error_of_the_rig_has_no_strain(u, strained):
+    """They must take a fifth off the declared variance: a quarter of its information, u below twice the declared 10 N."""
+    one = Information(
+        ("PDY1", "F0_N"),
+        np.ones(2),
+        np.diag([100.0, u**-2.0]),
+        np.zeros(2),
+        np.zeros(2),
+        np.array([0.3, 10.0]),
+    )
+    assert ("F0_N" in estimate([one, one]).tyres[0].strain) == strained
+
+
+def test_the_scatter_between_tyres_is_that_of_a_sample():
+    """Values 1, 2 and 6: mean 3, variance (4 + 1 + 9)/2; of which u^2 = (1 + 1 + 4)/3 is uncertainty."""
+    found = scatter_of([Quantity(value, u, "-") for value, u in ((1.0, 1.0), (2.0, 1.0), (6.0, 2.0))])
+    assert (found.mean, found.sd, found.u, found.tyres) == pytest.approx(
+        (3.0, math.sqrt(7.0), math.sqrt(2.0), 3)
+    )
+    assert found.beyond == pytest.approx(math.sqrt(5.0))
+    assert scatter_of([Quantity(value, 1.0, "-") for value in (1.0, 1.1)]).beyond == 0.0
 
 
 def only(one: Information, keep: list[int]) -> Information:

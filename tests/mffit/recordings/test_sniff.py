@@ -38,9 +38,19 @@ def test_conditions_axes_and_columns_are_found(machine):
         "alpha_deg": "SA", "Fz_N": "FZ", "T_degC": "TSTC", "kappa": "SL",
     }  # fmt: skip
     assert found.recordings[0].rate == pytest.approx(100.0)
+    assert found.recordings[0].samples == 18 * 1500  # conditions, of 15 s each
+    assert found.recordings[0].seconds == pytest.approx(18 * 15.0 - 0.01)
+    assert found.recordings[0].gaps == 0
     said = text.sniff_summary(found)
     for word in ("SA", "alpha_deg", "kph", "axes: sae", "Tyre A", "100 samples per second"):
         assert word in said
+
+
+def test_gaps_in_time_are_counted(tmp_path):
+    table = recording(loads=(600.0, 1500.0), cambers=(0.0, 2.0), pressures=(83.0,), gaps=True)
+    (found,) = sniff([write_mat(table, tmp_path / "a.mat")]).recordings
+    assert (found.gaps, found.rate) == (3, pytest.approx(100.0))
+    assert found.seconds == pytest.approx(4 * 15.0 - 3.0 - 0.01)  # the first rest is cut off
 
 
 def iso(table: pd.DataFrame) -> pd.DataFrame:
@@ -64,7 +74,7 @@ def test_the_axes_follow_from_physics(tmp_path, turned, axes):
 def test_without_camber_the_axes_stay_open_with_a_remark(tmp_path):
     table = iso(recording(cambers=(0.0,), pressures=(83.0,)))
     found = sniff([write_mat(table, tmp_path / "a.mat")])
-    assert set(found.axes) == {"iso", "sae"}
+    assert found.axes == ("iso", "sae")  # first those that the sign of the load suggests
     assert "too little camber" in text.sniff_summary(found)
 
 

@@ -10,8 +10,10 @@ import pytest
 
 from mffit import pipeline
 from mffit.errors import InputError
+from mffit.points.stretch import StretchNote
 from mffit.recordings import project_text, sniff
 from mffit.recordings.guess import guesses
+from mffit.recordings.stretch_table import stretch_table
 from mffit.report import text
 from mffit.sweeps.raw_table import RawTable
 
@@ -65,6 +67,12 @@ def test_angles_forces_and_moments_share_their_units():
 def test_a_load_in_kN_beside_forces_in_N_is_recognised_by_the_grip():
     found = units(FZ=np.full(N, 2.5))
     assert (found["Fz_N"], found["Fy_N"], found["Fx_N"]) == ("kN", "N", "N")
+
+
+@pytest.mark.parametrize(("grip", "load_unit"), [(4.8, "N"), (5.2, "kN")])
+def test_no_tyre_has_a_grip_of_five(grip, load_unit):
+    found = units(FZ=np.full(N, 60.0), FY=grip * 60.0 * WAVE)
+    assert (found["Fz_N"], found["Fy_N"]) == (load_unit, "N")
 
 
 def test_a_column_gets_the_unit_that_another_of_its_kind_states():
@@ -134,6 +142,26 @@ def test_a_speed_of_rotation_is_kept_only_if_it_agrees_with_the_speed():
 def test_a_missing_moment_names_columns_in_a_unit_of_moments():
     found = guessed(MZ=None, Torque=60.0 * WAVE, units={"Torque": "in-lb", "FZ": "N"})
     assert any("Mz_Nm" in remark and "Torque" in remark for remark in found.remarks)
+    found = guessed(MZ=None, Torque=60.0 * WAVE, units={"Torque": "in-lb", "MX": "N-m"})
+    (remark,) = (remark for remark in found.remarks if "Mz_Nm" in remark)
+    assert "unused columns in a unit of moments: Torque;" in remark  # MX is used
+
+
+def test_a_column_without_readings_or_of_another_dimension_is_no_channel():
+    assert "p_kPa" not in guessed(units={"P": "deg C"}).found
+    assert "p_kPa" not in guessed(P=np.full(N, np.nan)).found
+    assert guessed(units={"P": "deg C"}, Reifendruck=np.full(N, 83.0)).found["p_kPa"].heading == "Reifendruck"
+
+
+def test_the_table_of_stretches_has_as_many_digits_as_rigs_resolve():
+    note = StretchNote(
+        file="a", sweep="a:01", kind="sweep", begin_s=1.23456, end_s=2.34567, first_line=2, last_line=9,
+        alpha_from_deg=-8.12345, alpha_to_deg=8.23456, gamma_deg=2.34567, Fz_N=1500.678, p_kPa=83.456, T_degC=61.567,
+        points=7, lag_m=0.123456, u_lag_m=0.023456, hysteresis_N=12.345, dropped="",
+    )  # fmt: skip
+    assert stretch_table([note]).iloc[0].tolist() == [
+        "a", "a:01", "sweep", 1.235, 2.346, 2, 9, -8.12, 8.23, 2.35, 1501.0, 83.5, 61.6, 7, 0.1235, 0.0235, 12.3, "",
+    ]  # fmt: skip
 
 
 @pytest.mark.parametrize(
@@ -185,14 +213,14 @@ def test_only_measured_pressures_count(tmp_path):
 
 
 def test_rows_without_time_are_reported_as_points(tmp_path):
-    (tmp_path / "a.csv").write_text(table(Timestamp="2024-04-03 10:00:00.000"))
+    (tmp_path / "a.csv").write_text(table(Timestamp=[f"2024-04-03 10:00:{k:02}.000" for k in range(18)]))
     found = sniff([tmp_path / "a.csv"])
     for said in (
         text.sniff_summary(found).replace("\n  ", " "),
         project_text(found, tmp_path, unloaded_radius=None, nominal_load=None),
     ):
         assert "no time: each of 18 rows is treated as a finished point" in said
-        assert 'column "Timestamp" holds clock times' in said
+        assert 'column "Timestamp" holds clock times ("2024-04-03 10:00:00.000")' in said
 
 
 @pytest.mark.parametrize(
@@ -259,3 +287,75 @@ def test_a_spike_in_a_recording_casts_no_doubt_on_its_unit():
     assert guessed(TSTC=spike).found["T_degC"].heading == "TSTC"
     spike[: N // 10] = 3000.0
     assert "T_degC" not in guessed(TSTC=spike).found
+
+
+WRITTEN = """\
+# From the recordings below, as `mffit sniff` reads them. The comments say where each value comes from.
+
+[tyre]
+name = "a-b"
+# unloaded_radius =   # m: fill this in
+# nominal_load =   # N, FNOMIN: fill this in
+nominal_pressure = 83  # kPa, NOMPRES: the most frequent pressure
+nominal_speed = 11.1  # m/s, LONGVL: the most frequent speed
+
+[rig]
+type = "flat-track"  # a straight path; for a disc, give path_centre and path_radius as well
+axes = "sae"  # from the signs of side force, aligning moment, camber thrust and load
+
+[columns]  # of all files
+# no time: each of 18 rows is treated as a finished point; if they are samples of a recording, name its time under \
+[columns], for example time_s = "..."
+alpha_deg = { column = "SA", unit = "deg" }  # the file states no unit: -8 to 8 look like deg; SA, IA share a unit
+gamma_deg = { column = "IA", unit = "deg" }  # the file states no unit: 2 to 2 look like deg; SA, IA share a unit
+Fz_N = { column = "FZ", unit = "N" }  # the file states no unit: -2e+03 to -1e+03 look like N; FZ, FY share a unit
+Fy_N = { column = "FY", unit = "N" }  # the file states no unit: -1.69e+03 to 1.7e+03 look like N; FZ, FY share a unit
+Mz_Nm = { column = "MZ", unit = "N m" }  # the file states no unit: -37.3 to 37.3 look like N m
+p_kPa = { column = "P", unit = "kPa" }  # the file states no unit: 83 to 83 look like kPa, less likely psi (572 kPa)
+V_mps = { column = "V", unit = "km/h" }  # the file states no unit: 40 to 40 look like km/h
+
+[[sweep]]
+file = "../a b.csv"
+
+[[sweep]]
+# N (3 to 3) is left out: at the speed in V, no wheel of this size turns at this rate
+# P is in psi, so columns without a stated unit may be in American units, too: FZ (N or lbf), FY (N or lbf), MZ (N m or \
+in-lb), V (km/h or mph); if they are, write the unit under [columns], for example Fz_N = { column = "FZ", unit = "lbf" }
+file = "../c.csv"
+[sweep.columns]
+alpha_deg = "alpha_deg"
+p_kPa = { column = "P", unit = "psi" }  # the file states no unit: 12 to 14 look like psi (83 kPa), less likely bar (1200 kPa)
+"""
+"""The project file of the two recordings below: shared columns once, what differs below the file that has it."""
+
+
+def two_recordings(folder: Path) -> list[Path]:
+    """One with a constant pressure in kPa; one with two pressures in psi, another heading and a column of no wheel."""
+    (folder / "a b.csv").write_text(table(P=83.0, V=40.0))
+    other = table(P=np.repeat([12.0, 12.0, 14.0], 6), V=np.repeat([60.0, 40.0, 60.0], 6), N=3.0)
+    (folder / "c.csv").write_text(other.replace("SA,", "alpha_deg,"))
+    return [folder / "a b.csv", folder / "c.csv"]
+
+
+def test_the_project_file_of_two_different_recordings(tmp_path):
+    found = sniff(two_recordings(tmp_path))
+    assert project_text(found, tmp_path / "project", unloaded_radius=None, nominal_load=None) == WRITTEN
+    given = {"unloaded_radius": 0.2, "nominal_load": 1500.0, "nominal_pressure": 90.0, "name": 'q"'}
+    lines = project_text(found, tmp_path / "project", **given).splitlines()
+    assert lines[3:7] == [
+        'name = "q\\""', "unloaded_radius = 0.2  # m", "nominal_load = 1500  # N, FNOMIN",
+        "nominal_pressure = 90  # kPa, NOMPRES",
+    ]  # fmt: skip
+
+
+def test_the_conditions_of_two_different_recordings_are_counted(tmp_path):
+    found = sniff(two_recordings(tmp_path)).conditions
+    rounded = {
+        name: [(round(level.value, 2), level.stretches) for level in levels] for name, levels in found.items()
+    }
+    assert rounded == {
+        "load": [(1000.0, 18), (2000.0, 18)],
+        "camber": [(0.03, 36)],  # 2 deg
+        "pressure": [(83_000.0, 30), (96_526.6, 6)],
+        "speed": [(11.11, 24), (16.67, 12)],
+    }

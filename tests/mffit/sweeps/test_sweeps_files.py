@@ -59,6 +59,7 @@ def test_units_and_signs_arrive_in_iso_si(project):
         lambda text: text.replace(",", "\t").encode(),
         lambda text: text.replace(",", "|").encode(),
         lambda text: re.sub(r",", "   ", text).encode(),
+        lambda text: ("# rig 7\n" + re.sub(r",", "   ", text) + "\n  # end\n\n").encode(),
         lambda text: text.encode("utf-16"),
         lambda text: ("Rig 7, summer\n" + text).encode(),
         lambda text: re.sub("(V_mps.*\n)", r"\1deg,deg,N,N,N-m,kPa,m/s\n", text).encode(),
@@ -67,16 +68,21 @@ def test_units_and_signs_arrive_in_iso_si(project):
     ],
     ids=[
         "CRLF", "BOM", "Latin-1 comment", "blanks", "quotes", "empty extra column", "semicolons and decimal commas",
-        "tabs", "bars", "blanks only", "UTF-16", "title", "units", "unit in a heading", "large",
+        "tabs", "bars", "blanks only", "blanks and comments", "UTF-16", "title", "units", "unit in a heading", "large",
     ],
 )  # fmt: skip
 def test_harmless_variants_read_the_same(project, rewrite):
     path = project.write()
     reference = sweep_named(load(path), NAME)
-    project.overwrite(NAME, rewrite(project.text(NAME)))
+    content = rewrite(project.text(NAME))
+    project.overwrite(NAME, content)
     found = sweep_named(load(path), NAME)
     np.testing.assert_array_equal(found.Fy, reference.Fy)
     np.testing.assert_array_equal(found.Fz, reference.Fz)
+    lines = content.decode("utf-16" if content[0] == 0xFF else "latin-1").replace(",", ".").splitlines()
+    assert all(
+        repr(float(force)) in lines[line - 1] for force, line in zip(found.Fy, found.line, strict=True)
+    )
 
 
 def test_compressed_files_read_the_same(project):

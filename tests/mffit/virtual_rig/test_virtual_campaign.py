@@ -9,8 +9,10 @@ import numpy as np
 import pytest
 
 from mffit import config, virtual_rig
+from mffit.errors import InputError
 from mffit.virtual_rig import load_plan
 from mffit.virtual_rig.campaign import faults_of
+from mffit.virtual_rig.settings import settings_of
 from mffit.virtual_rig.truth import direct_truth
 from mffit.virtual_rig.writing import configuration_text
 
@@ -40,6 +42,75 @@ def test_scatter_has_the_size_that_is_declared(run, content):
     assert (table["Mz_Nm"] - still["Mz_Nm"]).std() == pytest.approx(0.6, rel=0.05)
     assert (table["u_Fy_N"] == 6.0).all()
     assert (table["u_Mz_Nm"] == 0.6).all()
+
+
+@pytest.mark.parametrize(
+    ("noise", "stated"),
+    [
+        ({"Fy_N": 6.0, "Mz_Nm": 0.0}, (6.0, 0.0)),
+        ({"Fy_N": 0.0, "Mz_Nm": 0.6}, (0.0, 0.6)),
+        ({"Fy_N": 0.0, "Mz_Nm": 0.0}, None),
+        (NOISE | {"declared": False}, None),
+    ],
+)
+def test_the_rig_states_its_scatter_if_it_has_any_and_declares_it(run, noise, stated):
+    table = run(noise=noise).tables["sideslip.csv"]
+    found = (table["u_Fy_N"][0], table["u_Mz_Nm"][0]) if "u_Fy_N" in table else None
+    assert found == stated
+
+
+def decimals(values) -> int:
+    """The fewest decimals with which all values are written in full."""
+    return next(k for k in range(6) if np.allclose(np.round(values, k), values, rtol=0.0, atol=1e-9))
+
+
+def test_tables_have_as_many_decimals_as_a_rig_resolves(run, content):
+    odd = {
+        "load_N": 1400.1234,
+        "alpha_deg": [-1.23456, 2.34567],
+        "gamma_deg": [1.23456],
+        "V_mps": 6.2468,
+        "p_kPa": 250.4321,
+    }
+    sweep = odd | {"file": "a.csv", "T_degC": [20.1234, 30.1234]}
+    noise = NOISE | {"My_Nm": 0.1}
+    points = run(sweep=[sweep], noise=noise, conditions={"seconds_per_point": 7.654}).tables["a.csv"]
+    assert {name: decimals(points[name]) for name in points if not name.startswith("u_")} == {
+        "alpha_deg": 3, "gamma_deg": 3, "Fz_N": 1, "p_kPa": 1, "V_mps": 2, "T_degC": 1, "Fy_N": 2, "Mz_Nm": 3, "My_Nm": 3,
+        "t_s": 1,
+    }  # fmt: skip
+    recording = {"recording": {"rate_Hz": 64.0, "noise_Fz_N": 5.0, "noise_My_Nm": 0.3}}
+    series = run(sweep=[sweep | recording], noise=noise).tables["a.csv"]
+    assert {name: decimals(series[name]) for name in series} == {
+        "time_s": 3, "alpha_deg": 2, "gamma_deg": 2, "Fz_N": 0, "p_kPa": 1, "V_mps": 2, "T_degC": 1, "Fy_N": 0, "Mz_Nm": 1,
+        "My_Nm": 1,
+    }  # fmt: skip
+
+
+def test_the_wheel_rolls_in_the_direction_of_its_sweep(content, folder):
+    *forward, backward = settings_of(load_plan(content, folder=folder))
+    assert all(np.all(settings.Vx == settings.V) for settings in forward)
+    assert np.all(backward.Vx == -backward.V)
+    assert backward.V.min() > 0.0
+
+
+def test_the_project_file_names_only_what_differs_from_the_usual(run, content):
+    mounted = content["sweep"][1] | {"mount": "flipped"}
+    made = run(sweep=[content["sweep"][0], mounted, content["sweep"][3]]).configuration
+    assert made["sweep"] == [
+        {"file": "sideslip.csv"}, {"file": "camber.csv", "mount": "flipped"}, {"file": "backward.csv", "direction": "backward"},
+    ]  # fmt: skip
+    assert list(made)[:3] == ["tyre", "rig", "rolling_radius"]
+    assert list(made)[-1] == "sweep"
+
+
+@pytest.mark.parametrize("seed", [-1, 0])
+def test_a_seed_is_not_negative(run, seed):
+    if seed < 0:
+        with pytest.raises(InputError, match="the seed is -1; give a whole number, 0 or larger"):
+            run(seed)
+    else:
+        assert run(seed).truth.seed == 0
 
 
 def test_drawn_faults_scatter_as_declared(content, folder, tyre):
