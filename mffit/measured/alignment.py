@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import NamedTuple
 
 import numpy as np
@@ -12,9 +12,8 @@ import numpy as np
 from mffit.brief import Brief
 from mffit.constants import USUAL_CORNERING_STIFFNESS, USUAL_U_FORCE
 from mffit.errors import InputError
-from mffit.measured import constants, wording
+from mffit.measured import constants, notes
 from mffit.measured.groups import LoadGroup, load_groups, zeros
-from mffit.measured.notes import AxisOff
 from mffit.points import Points, main_path
 from tir import Quantity, conventions
 
@@ -119,17 +118,13 @@ def align(
             "forward and backward"
         )
     found = Alignment(tuple(steps), (), resolution_deg)
-    off = [
-        AxisOff(
-            step.load,
-            abs(step.F_forward - step.F_backward),
-            constants.LARGEST_DIFFERENCE,
-            abs(step.correction_deg),
-        )
+    limit = constants.LARGEST_DIFFERENCE
+    off = (
+        notes.axis_off(step.load, difference, limit, abs(step.correction_deg))
         for step in found.last
-        if abs(step.F_forward - step.F_backward) > constants.LARGEST_DIFFERENCE
-    ]
-    return Alignment(tuple(steps), tuple(map(wording.warning, off)), resolution_deg)
+        if (difference := abs(step.F_forward - step.F_backward)) > limit
+    )
+    return replace(found, warnings=tuple(off))
 
 
 class _Stiffness(NamedTuple):

@@ -12,9 +12,8 @@ from mffit.config import Config, path_curvature
 from mffit.constants import USUAL_CORNERING_STIFFNESS, USUAL_U_FORCE, USUAL_U_MOMENT, ZERO_CAMBER
 from mffit.errors import InputError
 from mffit.measured import camber_reduction as method
-from mffit.measured import constants
+from mffit.measured import constants, notes
 from mffit.measured.groups import LoadGroup, zeros
-from mffit.measured.notes import ZerosDisagree
 from mffit.measured.paths import PathForce, by_path
 from mffit.points import Points
 from mffit.rig_errors import AtZero
@@ -96,8 +95,8 @@ def _at_zero(
 
 def unlike_zeros(
     points: Points, phi_t: float, group: LoadGroup, C_alpha: UFloat | None, config: Config
-) -> list[ZerosDisagree]:
-    """Sweeps of one load, path and direction whose zeros differ by more than mounting the wheel again explains."""
+) -> list[str]:
+    """Warnings about sweeps of one load, path and direction whose zeros differ by more than mounting again explains."""
     slope = _slope(C_alpha, group)
     group = LoadGroup(group.load, group.index[np.isclose(points.phi_t[group.index], phi_t)])
     u_difference = math.sqrt(2.0) * math.hypot(config.rig.u("alpha_0_deg"), USUAL_U_FORCE)
@@ -112,7 +111,8 @@ def unlike_zeros(
         if found and found[-1][0] - found[0][0] > constants.UNLIKE_ZEROS * u_difference:
             (least, a), (most, b) = found[0], found[-1]
             names = (points.sweep_names[a], points.sweep_names[b])
-            out.append(ZerosDisagree(group.load, direction < 0, names, (least, most)))
+            way = "forward" if direction > 0 else "backward"
+            out.append(notes.zeros_disagree(group.load, way, names, (least, most)))
     return out
 
 

@@ -9,7 +9,6 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 from mffit.brief import Brief
-from mffit.measured.notes import Conicity, Note
 from mffit.quantities import CONDITIONS, DIRECT
 from tir import Quantity
 
@@ -71,8 +70,10 @@ class Measured(Brief):
     u_pecp2: float | None
     r_e_loads: Mapping[float, float]  #: loads at which r_e was really measured
     misaligned: bool  #: alpha_M is beyond what the rig's alignment leaves and is corrected in the points
-    notes: tuple[Note, ...]
-    warnings: tuple[str, ...]  #: sentences, as they join those of the steps before and after
+    notes: tuple[str, ...]  #: to know beside the numbers
+    warnings: tuple[str, ...]  #: to act on
+    load_note: str = ""  #: the value of PECP2, or why it is 0
+    conicity: Contribution | None = None  #: joins the budget in :meth:`debiased`
     epsilon_gamma_model: float | None = None
     epsilon_gamma_debiased: Quantity | None = None  #: less what the finite spin of the disc adds
 
@@ -143,9 +144,7 @@ class Measured(Brief):
         row, direct = self.nominal, self.epsilon_gamma
         assert row is not None
         assert direct is not None
-        conicity = [
-            Contribution(CONICITY, n.force, "N", n.shift) for n in self.notes if isinstance(n, Conicity)
-        ]
+        conicity = [] if self.conicity is None else [self.conicity]
         spin = Contribution(FINITE_SPIN, abs(bias), "-", abs(bias))
         u = math.hypot(direct.u, *(line.contribution for line in conicity))
         whole = Quantity(direct.value, math.hypot(u, bias), direct.unit)

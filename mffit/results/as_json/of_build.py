@@ -12,7 +12,6 @@ from mffit import fleet as combining
 from mffit.fit import Coefficient, FitResult
 from mffit.fit.files import Files
 from mffit.measured import KEYS, LoadResult, Measured
-from mffit.measured import wording as say
 from mffit.results.as_json.values import plain, stated
 from mffit.results.build import BuildResult
 from mffit.rig_errors import UNITS
@@ -47,7 +46,7 @@ def spin(measured: Measured) -> dict[str, Any]:
         "u_epsilon_gamma_monte_carlo": row.u_monte_carlo if row else None,
         "misaligned": measured.misaligned,
         "coverage_factor": 1,
-        "notes": [say.note(fact) for fact in measured.notes],
+        "notes": list(measured.notes),
         "per_load": [_load(other) for other in measured.per_load],
     }
 

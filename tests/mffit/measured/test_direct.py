@@ -9,9 +9,7 @@ import pytest
 from plain_tyre import DEGREE, LEAN, NEWTON, R_E, SLIP, U_R, U_R_E, Plain, R, settings, share
 
 from mffit.errors import InputError
-from mffit.measured import measure
-from mffit.measured.notes import Conicity, StraightPath
-from mffit.measured.wording import note as say
+from mffit.measured import measure, notes
 from mffit.parts import split
 from mffit.results import as_json
 
@@ -92,7 +90,7 @@ def test_what_the_alignment_leaves_is_no_misalignment():
     assert measured(tyre, u_slip_alignment_N=25.0).misaligned
     stays = measured(tyre, u_slip_alignment_N=40.0)
     shift = abs(1.0 - tyre.epsilon) * 31.4 / abs(tyre.turn_slip_force(1500.0))
-    assert any(f"would move eps_gamma by {shift:.2f}" in say(note) for note in stays.notes)
+    assert any(f"would move eps_gamma by {shift:.2f}" in note for note in stays.notes)
 
 
 @pytest.mark.parametrize(
@@ -140,7 +138,7 @@ def test_without_backward_runs_the_alignment_is_in_doubt():
     assert contributions(result)["sideslip alignment"] == pytest.approx(share(30.0, tyre), rel=0.02)
     assert result.nominal.u_monte_carlo == pytest.approx(result.epsilon_gamma.u, rel=0.03)
     angle = math.degrees(abs(tyre.turn_slip_force(1500.0)) / (12.0 * 1500.0))
-    assert any(f"would take {angle:.2f} deg of misalignment" in say(note) for note in result.notes)
+    assert any(f"would take {angle:.2f} deg of misalignment" in note for note in result.notes)
 
 
 def test_the_play_is_taken_off_and_its_doubt_counts_where_the_moment_holds_one_side():
@@ -272,7 +270,7 @@ def test_a_flat_track_gives_stiffnesses_only():
     assert result.C_gamma.value == pytest.approx(-0.9 * 1500.0, rel=0.004)
     assert result.F_phit is None
     assert result.epsilon_gamma is None
-    assert result.notes == (StraightPath(),)
+    assert result.notes == (notes.STRAIGHT_PATH,)
     assert result.warnings == ()
 
 
@@ -287,9 +285,15 @@ def test_a_parabola_through_many_zeros_is_read_at_zero():
 
 def test_conicity_is_stated_as_a_force_of_two_per_mille():
     tyre = Plain()
-    (note,) = (say(n) for n in measured(tyre).notes if isinstance(n, Conicity))
+    (note,) = (n for n in measured(tyre).notes if "Conicity" in n)
     assert "a plausible 3 N" in note
     assert f"by {share(3.0, tyre):.3f}." in note
+
+
+def test_the_note_on_load_is_one_of_the_notes():
+    result = measured(Plain())
+    assert result.load_note.startswith("PECP2")
+    assert result.load_note in result.notes
 
 
 def test_the_json_holds_value_and_uncertainty_of_every_quantity():
