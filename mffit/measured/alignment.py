@@ -183,9 +183,9 @@ def _u(points: Points, rows: np.ndarray) -> float:
 
 
 def _elsewhere(known: AxisAtLoad | None, F_forward: float, F_backward: float) -> tuple[float, float] | None:
-    """The report's zeros where they differ from these."""
+    """The report's zeros [N] where they differ visibly from these."""
     if known is None:
         return None
     there = (known.F_forward, known.F_backward)
     apart = [abs(a - b) for a, b in zip(there, (F_forward, F_backward), strict=True) if math.isfinite(a)]
-    return there if apart and max(apart) > constants.SAME_ZERO else None
+    return there if apart and max(apart) > 0.1 else None

@@ -7,7 +7,6 @@ from scipy.special import ndtr
 
 from mffit.config import Config
 from mffit.constants import USUAL_CORNERING_STIFFNESS, USUAL_U_MOMENT
-from mffit.measured import constants
 from mffit.parts import Parts
 from mffit.points import Points
 
@@ -30,7 +29,7 @@ def backlash_corrected(points: Points, config: Config) -> Points:
     play = np.radians(config.rig.backlash_deg)
     if play == 0.0:
         return points
-    assumed = constants.PLAY_DOUBT_MOMENT * np.sign(points.phi_t) * points.direction
+    assumed = 1e3 * np.sign(points.phi_t) * points.direction  # [Nm]; only its sign matters
     shift, u = backlash_shift(np.where(np.isfinite(points.Mz), points.Mz, assumed), points.u_Mz, play)
     return points.replace(
         alpha=points.alpha + shift, u_Fy=np.hypot(points.u_Fy, USUAL_CORNERING_STIFFNESS * points.Fz * u)

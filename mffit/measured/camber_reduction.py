@@ -51,7 +51,7 @@ def rig_doubts(u: Mapping[str, float], R: UFloat) -> RigDoubts:
 
 def named(value: float, u: float, source: str, unit: str) -> UFloat:
     """A number with uncertainty whose tag says what it is and in which unit."""
-    return ufloat(value, max(u, constants.EXACT_U), f"{source}|{unit}")
+    return ufloat(value, max(u, 1e-12), f"{source}|{unit}")  # the propagation does not accept u = 0
 
 
 def turn_slip_force(F_raw: Any, errors: Mapping[str, Any], at: AtZero, *, both_directions: bool) -> Any:

@@ -13,7 +13,6 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from mffit.rig_errors import Faults
-from mffit.virtual_rig import constants
 from mffit.virtual_rig.settings import Settings
 from tir import Tyre
 from tir.evaluate import evaluate, turned_on_rim
@@ -113,7 +112,7 @@ def true_alpha(machine: Machine, settings: Settings) -> np.ndarray:
 def yielded(moment: Callable[[np.ndarray], np.ndarray], alpha: np.ndarray, give: float) -> np.ndarray:
     """Angle (n,) [rad] at which a steering that turns by ``give`` [rad/Nm] carries the moment of the wheel."""
     held = alpha
-    for _ in range(constants.YIELDING_ROUNDS):
+    for _ in range(60):  # each round leaves a tenth of the error or less
         held = alpha + give * moment(held)
     return held
 
@@ -129,7 +128,7 @@ def taken_up(moment: Callable[[np.ndarray], np.ndarray], alpha: np.ndarray, half
     either = moment(alpha) > 0.0
     held_at_lower = at_lower & (~at_upper | either)
     floats = ~at_lower & ~at_upper
-    for _ in range(constants.PLAY_HALVINGS if floats.any() else 0):
+    for _ in range(20 if floats.any() else 0):  # bisections: a millionth of the play is left
         middle = 0.5 * (lower + upper)
         turns_back = moment(middle) > 0.0
         lower, upper = np.where(turns_back, lower, middle), np.where(turns_back, middle, upper)
