@@ -20,10 +20,9 @@ import pandas as pd
 
 from mffit.errors import InputError
 from mffit.sweeps import constants
-from mffit.sweeps.decimal_comma import has_decimal_comma, with_decimal_point
-from mffit.sweeps.file_bytes import first_bytes, is_packed, opened
+from mffit.sweeps.extras import first_bytes, is_packed, opened
 from mffit.sweeps.grid import Head, head_of, table_of
-from mffit.sweeps.raw_table import Cells, RawTable
+from mffit.sweeps.raw_table import Cells, RawTable, has_decimal_comma, with_decimal_point
 
 UTF16_MARKS = (b"\xff\xfe", b"\xfe\xff")
 SEPARATORS = ("\t", ";", "|", ",")

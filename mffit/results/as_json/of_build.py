@@ -13,7 +13,7 @@ from mffit.fit import Coefficient, FitResult
 from mffit.fit.files import Files
 from mffit.measured import KEYS, LoadResult, Measured
 from mffit.results.as_json.values import plain, stated
-from mffit.results.build import BuildResult
+from mffit.results.records import BuildResult
 from mffit.rig_errors import UNITS
 from mffit.suspicion import Doubt, Outlier
 
