@@ -19,10 +19,10 @@ from tir import Quantity, conventions
 
 
 class AxisAtLoad(NamedTuple):
-    """Results of the direct method at the same load."""
+    """Results of the direct method at one load."""
 
     C_alpha: Quantity | None  #: measured cornering stiffness, ISO, negative [N/rad]
-    F_forward: float  #: force at zero, the play taken off [N]; NaN where it is not measured
+    F_forward: float  #: force at zero, corrected for the play [N]; NaN if not measured
     F_backward: float  #: [N]
 
 
@@ -40,9 +40,7 @@ class AlignmentStep:
     correction_deg: float  #: next correction of the steering reading, in degrees of the rig's axis
     source: str  #: of C_alpha: "measured" from a sideslip sweep, "secant" of two iterations (9), or "guess"
     u_deg: float  #: standard uncertainty of the correction
-    reported: tuple[float, float] | None = (
-        None  #: the same zeros as the report has them, where these differ [N]
-    )
+    reported: tuple[float, float] | None = None  #: the same zeros in the report, where these differ [N]
 
     @property
     def secant(self) -> bool:
@@ -65,7 +63,7 @@ class Alignment(Brief):
 
     @property
     def correction_deg(self) -> float:
-        """The correction to apply now: mean over loads of the last iteration's, weighted with the stiffness."""
+        """The next correction: mean over loads of the last iteration, weighted by stiffness."""
         return float(self._weights() @ [step.correction_deg for step in self.last])
 
     @property
@@ -75,7 +73,7 @@ class Alignment(Brief):
 
     @property
     def aligned(self) -> bool:
-        """Whether nothing is left to turn: the correction is within its uncertainty, or finer than the axis can be turned."""
+        """Whether the correction is within its uncertainty, or below the resolution of the axis."""
         return abs(self.correction_deg) <= max(self.u_deg, self.resolution_deg)
 
     def _weights(self) -> np.ndarray:
@@ -98,7 +96,7 @@ def align(
     points : with rows at zero sideslip and camber rolled both ways; ``iteration`` numbers repeated steps
     axes : the rig's axes, in which the correction is returned
     C_alpha : cornering stiffness per load [1/rad], positive, where none is measured; default 10
-    measured : what the direct method finds, by load [N]; its stiffness counts where it is known best
+    measured : results of the direct method by load [N]; its stiffness is used where its uncertainty is smallest
     resolution_deg : smallest angle by which the axis can be turned [deg]
 
     Raises

@@ -46,13 +46,13 @@ from tir import Quantity, Tyre
 
 @dataclass(frozen=True, slots=True)
 class _Evidence:
-    """What the direct method works on, common to all loads."""
+    """Input of the direct method, common to all loads."""
 
     config: Config
-    points: Points  #: the play taken off the sideslip angles
+    points: Points  #: with sideslip angles corrected for the play
     parts: Parts
     odd_slip: np.ndarray  #: (n,) sideslip to which the odd part of every point belongs [rad]
-    rig: method.RigDoubts | None  #: None on a straight path
+    rig: method.UncertainRig | None  #: None on a straight path
     radii: Mapping[float, UFloat]  #: measured effective radius [m] by load [N]
     base: Tyre | None
 
@@ -90,7 +90,7 @@ class _Turning:
 
 @dataclass(frozen=True, slots=True)
 class _AtLoad:
-    """The result of one load, and what the next steps need of eps_gamma."""
+    """The result of one load, with eps_gamma and its derivative for the next steps."""
 
     row: LoadResult
     epsilon: UFloat | None
@@ -129,7 +129,7 @@ def measure(config: Config, points: Points, parts: Parts, base: Tyre | None = No
 
 
 def at_the_axis(config: Config, points: Points, parts: Parts) -> dict[float, AxisAtLoad]:
-    """Cornering stiffness and zeros by load [N] for the alignment, whatever the sign of the turn-slip force."""
+    """Cornering stiffness and zeros by load [N] for the alignment; an inward turn-slip force is not refused."""
     evidence = _evidence(config, points, parts, None)
     out = {}
     for group in load_groups(evidence.points):
@@ -152,14 +152,14 @@ def _evidence(config: Config, points: Points, parts: Parts, base: Tyre | None) -
         points=backlash_corrected(points, config),
         parts=parts,
         odd_slip=odd_alpha(points, parts, config),
-        rig=None if R is None else method.rig_doubts(u, R),
+        rig=None if R is None else method.uncertain_rig(u, R),
         radii=measured_effective_radius(config, R),
         base=base,
     )
 
 
 def _at_load(evidence: _Evidence, group: LoadGroup) -> tuple[_AtLoad | None, list[str]]:
-    """Everything that the direct method finds at one load; None if there is nothing."""
+    """Results and warnings at one load; None if nothing could be measured."""
     slopes, troubles = _slopes(evidence, group)
     if evidence.rig is None:
         return (_straight(group, slopes) if slopes.exists else None), troubles

@@ -11,7 +11,7 @@ from uncertainties import UFloat
 
 from mffit.measured import constants
 from mffit.measured.camber_reduction import (
-    RigDoubts,
+    UncertainRig,
     monte_carlo,
     named,
     true_camber_stiffness,
@@ -92,7 +92,7 @@ def _chance(paths: Sequence[PathForce], single: Sequence[UFloat], errors: np.nda
 
 
 def u_by_draws(
-    paths: Sequence[PathForce], weights: np.ndarray, C_gamma: UFloat, r_e: UFloat, rig: RigDoubts
+    paths: Sequence[PathForce], weights: np.ndarray, C_gamma: UFloat, r_e: UFloat, rig: UncertainRig
 ) -> float:
     """u(eps_gamma) by random draws of all independent sources.
 

@@ -10,7 +10,7 @@ from mffit.rig_errors.record import RADIANS, Appearance, Declared, Place, RigErr
 RELAXATION = RigError(
     name="relaxation_m",
     unit="m",
-    meaning="relaxation length sigma of moving sweeps: sigma d(alpha')/ds + alpha' = alpha, the force answers to alpha'",
+    meaning="relaxation length sigma of moving sweeps: sigma d(alpha')/ds + alpha' = alpha; the force follows alpha'",
     kind="tyre",
     place=Place.ANGLE,
     acts_on=("alpha",),

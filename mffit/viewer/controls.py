@@ -34,25 +34,23 @@ class Control:
         return (low, high) if low < high else (usual[0], usual[1])
 
 
-CAMBER, SIDESLIP = (10.0, 60.0), (15.0, 20.0)
-"""Largest angle [deg] if a file states none, and at most: cars and motorcycles; beyond the peak of every tyre."""
-SLIP, CURVATURE = (0.3, 0.4), 1.0
-"""The same for longitudinal slip; path curvature [1/m], of which rigs with a disc reach about 0.8."""
-
-
 def _either_way(x: float) -> tuple[float, float]:
     return -x, x
 
 
+def _angle(x_deg: float) -> tuple[float, float]:
+    return _either_way(math.radians(x_deg))
+
+
 CONTROLS = (
     Control("Fz", (0.1, 2.0), (0.05, 3.0), ("FZMIN", "FZMAX"), start="FNOMIN", relative_to="FNOMIN"),
-    Control("gamma", *(_either_way(math.radians(x)) for x in CAMBER), ("CAMMIN", "CAMMAX")),
+    Control("gamma", _angle(10.0), _angle(60.0), ("CAMMIN", "CAMMAX")),  # cars lean, motorcycles lean at most
     Control(
         "pressure", (0.8, 1.2), (0.5, 1.5), ("PRESMIN", "PRESMAX"), start="INFLPRES", relative_to="NOMPRES"
     ),
-    Control("alpha", *(_either_way(math.radians(x)) for x in SIDESLIP), ("ALPMIN", "ALPMAX")),
-    Control("kappa", *(_either_way(x) for x in SLIP), ("KPUMIN", "KPUMAX")),
-    Control("phi_t", _either_way(CURVATURE), _either_way(CURVATURE)),
+    Control("alpha", _angle(15.0), _angle(20.0), ("ALPMIN", "ALPMAX")),  # beyond the peak of every tyre
+    Control("kappa", _either_way(0.3), _either_way(0.4), ("KPUMIN", "KPUMAX")),
+    Control("phi_t", _either_way(1.0), _either_way(1.0)),  # rigs with a disc reach about 0.8 1/m
     Control("Vx", (-20.0, 60.0), (-20.0, 60.0), start="LONGVL"),
 )
 

@@ -1,6 +1,6 @@
-"""The virtual rig: a known tyre on a rig with known faults, tested like a real one.
+"""The virtual rig: a known tyre on a rig with known errors, tested like a real one.
 
-Its data are what ``mffit build`` is tested with, and a way to try a test plan before going to the rig.
+``mffit build`` is tested with its data, and a test plan can be tried on it before it is run on the rig.
 """
 
 from mffit.rig_errors import Faults

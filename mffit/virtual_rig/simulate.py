@@ -23,18 +23,18 @@ from mffit.virtual_rig.truth import Truth
 def simulate(
     plan: RigPlan | Mapping[str, Any] | str | Path, out: str | Path, seed: int | None = None
 ) -> Truth:
-    """Run a virtual test campaign and write what a rig would hand over.
+    """Run a virtual test campaign and write its files.
 
     Parameters
     ----------
     plan : path of a ``rig.toml``, its content, or a loaded plan
     out : folder for the sweeps, ``tyre.toml`` and ``truth.json``
-    seed : of the noise and the drawn faults; default the plan's
+    seed : of the noise and the drawn rig errors; default the plan's
 
     Returns
     -------
     Truth
-        What the data were made from, as written to ``truth.json``.
+        The true values behind the data, as in ``truth.json``.
 
     Raises
     ------
@@ -52,7 +52,7 @@ def simulate(
 
 
 TRUTH = "truth.json"
-"""What is true behind the data; also lists the files of the campaign, so that a later run knows them."""
+"""The true values behind the data; also lists the files of the campaign for later runs."""
 
 
 def write(campaign: Campaign, plan: RigPlan, folder: Path) -> None:
@@ -69,7 +69,7 @@ def write(campaign: Campaign, plan: RigPlan, folder: Path) -> None:
 
 def configuration_text(configuration: Mapping[str, Any]) -> str:
     """The text of tyre.toml; a list becomes one ``[[table]]`` per entry, as a person would write it."""
-    parts = ["# Made by `mffit simulate`; what is true behind these data stands in truth.json.\n"]
+    parts = ["# Written by `mffit simulate`; truth.json holds the true values behind these data.\n"]
     for name, content in configuration.items():
         if isinstance(content, list | tuple):
             parts += [f"[[{name}]]\n{tomli_w.dumps(entry)}" for entry in content]

@@ -16,7 +16,7 @@ DECIMALS = {
     "Fy_N": 2, "Mz_Nm": 3, "My_Nm": 3,
 }  # fmt: skip
 RECORDED_DECIMALS = {"alpha_deg": 2, "gamma_deg": 2, "Fz_N": 0, "Fy_N": 0, "Mz_Nm": 1, "My_Nm": 1}
-"""A logger's resolution: far below its noise, and a third of the file's size."""
+"""Resolution of a logger: far below its noise; the files are a third as large."""
 
 
 def point_table(plan: RigPlan, sweep: SweepPlan, settings: Settings, forces: Channels) -> pd.DataFrame:
@@ -58,7 +58,7 @@ def _channels(plan: RigPlan, settings: Settings, forces: Channels) -> pd.DataFra
             "Mz_Nm": turned("Mz", forces.Mz),
         }
     )
-    # Without My nobody can turn Mz from the wheel carrier back into the contact frame.
+    # Mz can be turned from the wheel carrier to the contact frame only with My.
     if plan.tables.noise.My_Nm is not None or rig.force_frame == "C":
         table["My_Nm"] = turned("My", forces.My)
     return table
