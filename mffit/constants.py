@@ -22,7 +22,7 @@ AT_BOUND_SHARE = Real(
     1e-4, "-", "Distance from a bound, over the width of the bounds, that counts as at the bound."
 )
 HELD_BY_LIMIT_SHARE = Real(
-    0.1, "-", "Share of a number's stiffness from physical limits above which they hold it."
+    0.1, "-", "Share of the information about a number that physical limits supply if they hold it."
 )
 ZERO_SIDESLIP = Real(
     0.3, "deg", "Sideslip as read within which points count as straight: zeros, camber sweeps."
@@ -32,6 +32,4 @@ LARGEST_PLAIN_NUMBER = Real(1e7, "-", "Larger numbers are written with a power o
 SMALLEST_PLAIN_U = Real(1e-6, "-", "A number with a smaller uncertainty is written with a power of ten.")
 TERMINAL_WIDTH = Count(100, "-", "Characters per line in a terminal; two windows fit side by side.")
 NEARLY_CERTAIN = Real(0.99, "-", "Confidences above this are written as more than this: no model is certain.")
-LINES_PER_RECORD = Count(
-    28, "-", "Lines of a record's repr at most, so that a terminal window shows it whole."
-)
+LINES_PER_RECORD = Count(28, "-", "Most lines of a record's repr, so that a terminal shows it whole.")

@@ -10,7 +10,9 @@ ROLLING_OVER_UNLOADED_RADIUS = Series(
 RADIUS_RATIO_OF_A_DIAMETER = Series(
     (1.8, 2.2), "-", "Effective over unloaded radius between these means that path_radius is a diameter."
 )
-LARGEST_U_OF_A_RADIUS = Real(0.1, "-", "Larger standard uncertainties over the radius are in another unit.")
+LARGEST_U_OF_A_RADIUS = Real(
+    0.1, "-", "Standard uncertainty over radius above which it was written in another unit."
+)
 U_GIVEN_PATH_RADIUS = Real(
     0.0018, "m", "Standard uncertainty of a path radius given without one.", "Mottola and Massaro 2022, (19)"
 )

@@ -46,19 +46,23 @@ LOG_SCALE_BOUNDS = Series((-7.0, 12.0), "-", "Bounds of the logarithm of the sca
 LARGEST_NOISE_GROWTH = Real(0.2, "-", "Upper bound of the noise that grows with the reading.")
 MEMORY_BOUNDS = Series((-0.2, 0.97), "-", "Bounds of the correlation between neighbouring errors of a sweep.")
 SCATTER_SMOOTH_BOUNDS = Series(
-    (1e-4, 0.3), "-", "Bounds of the amplitude of smooth structure in this search."
+    (1e-4, 0.3), "-", "Bounds of the amplitude of smooth structure in the search for the scatter."
 )
-SCATTER_START_SMOOTH = Real(0.03, "-", "Amplitude of smooth structure at the start of this search.")
-SCATTER_START_GROWTH = Real(0.004, "-", "Growth at the start of this search if none was found before.")
+SCATTER_START_SMOOTH = Real(
+    0.03, "-", "Amplitude of smooth structure at which the search for the scatter starts."
+)
+SCATTER_START_GROWTH = Real(0.004, "-", "Growth at which the search for the scatter starts if none is known.")
 SCATTER_SECOND_START = Series(
     (0.0, 0.005, 0.3, 0.1),
     "-",
-    "Second start: log scale, growth, memory, smooth amplitude; one start may end in the lower of two maxima.",
+    "Second start of this search: log scale, growth, memory, smooth amplitude; there may be two maxima.",
 )
 SCATTER_STEPS = Series(
     (1.0, 0.02, 1.0, 0.05), "-", "Typical changes of log scale, growth, memory and smooth amplitude."
 )
-MOST_SCATTER_STEPS = Count(20, "-", "Most steps of one search; the likelihood is flat near its maximum.")
+MOST_SCATTER_STEPS = Count(
+    20, "-", "Most steps of a search for the scatter; its likelihood is flat near the maximum."
+)
 TAIL_DEGREES_OF_FREEDOM = Series(
     (2.0, 2.5, 3.0, 4.0, 6.0, 10.0, 20.0), "-", "Degrees of freedom of Student's t that are tried."
 )
@@ -89,24 +93,30 @@ REGION_OVERLAP = Real(0.6, "-", "Share of common readings that makes a region re
 REGION_LEVEL_WIDTH = Real(0.1, "-", "Width of a level over the range of the variable.")
 
 # Fit of a hypothesis
-MOST_HYPOTHESIS_STEPS = Count(12, "-", "Steps of a fit; nearly linear problems need fewer.")
-HYPOTHESIS_CONVERGED = Real(1e-3, "-", "Relative decrease of chi2 at which a fit ends.")
+MOST_HYPOTHESIS_STEPS = Count(
+    12, "-", "Most steps of the fit of an explanation; nearly linear ones need fewer."
+)
+HYPOTHESIS_CONVERGED = Real(1e-3, "-", "Relative decrease of chi2 that ends this fit.")
 ZERO_COEFFICIENT_SCALE = Real(0.2, "-", "Scale of a coefficient at zero over the width of its range.")
 RIGS_WORSE_THAN_DECLARED = Real(0.05, "-", "Share of rigs whose errors exceed their declaration.")
 
 # Selection
-MOST_EFFECTS = Count(4, "-", "Effects of one explanation; more are structure without a name.")
+MOST_EFFECTS = Count(4, "-", "Most effects of one explanation; more are structure without a name.")
 EVIDENCE_MARGIN = Real(
     4.0, "-", "Log evidence that an effect must add beyond the price of choosing among all candidates.",
     "checked with diagnosis_study.py --seed 3: nothing hidden, nothing named 20 of 20, docs/diagnosis.md",
 )  # fmt: skip
 TIED_EVIDENCE = Real(1.5, "-", "Difference of log evidence below which effects count as tied.")
-UNIDENTIFIED_LOG_ODDS = Real(1.0, "-", "Log prior odds for a coefficient at zero; against any other one.")
+UNIDENTIFIED_LOG_ODDS = Real(
+    1.0, "-", "Added to the log prior odds of a coefficient at zero, else subtracted."
+)
 MOST_CANDIDATES_FITTED = Count(12, "-", "Most candidates of a step that are fitted in full.")
 FEWEST_CANDIDATES_FITTED = Count(4, "-", "Fewest candidates of a step that are fitted in full.")
 PROMISING_GAIN = Real(2.0, "-", "First-order gain above which a candidate is fitted in full.")
 PROMISING_SHARE = Real(0.1, "-", "First-order gain, over the best one, above which a candidate is fitted.")
-MOST_EXCHANGE_CANDIDATES = Count(4, "-", "Best candidates of a step that may replace an accepted effect.")
+MOST_EXCHANGE_CANDIDATES = Count(
+    4, "-", "Most candidates of a step that may replace an accepted effect, best first."
+)
 EXCHANGE_GAIN = Real(1.0, "-", "Log evidence by which a set of effects must exceed the set that it replaces.")
 
 # Rivals without a name
@@ -117,7 +127,7 @@ BUMP_WIDTHS_SIDESLIP = Series((0.7, 1.4, 3.0), "deg", "Widths of bumps over side
 BUMP_WIDTHS_CAMBER = Series((3.0, 8.0), "deg", "Widths of bumps over camber.")
 BUMP_AMPLITUDE = Real(0.03, "-", "Usual size (1 sigma) of a bump over the largest reading of its channel.")
 BUMP_CUT = Real(0.02, "-", "Height below which a bump is cut to zero.")
-MOST_BUMP_CENTRES = Count(41, "-", "Centres of bumps along one angle.")
+MOST_BUMP_CENTRES = Count(41, "-", "Most centres of bumps along one angle.")
 BUMP_UPRIGHT = Real(1.0, "deg", "Camber within which points count as upright in this search.")
 MOST_LOADS_WITH_BUMPS = Count(7, "-", "Most loads for which bumps are sought load by load.")
 BUMPS_WHITENED_TOGETHER = Count(256, "-", "Bumps that are whitened in one block, to limit memory.")
@@ -150,7 +160,9 @@ FEWEST_SWEEPS_TO_PREDICT = Count(8, "-", "With fewer sweeps a gain cannot be sep
 
 # Ties and what would separate them
 HOPELESS_RIVAL = Real(40.0, "-", "Log evidence behind the best candidate at which a rival is not refitted.")
-HOPELESS_SHARE = Real(0.5, "-", "Share of the step's gain that is added to this limit beside other effects.")
+HOPELESS_SHARE = Real(
+    0.5, "-", "Share of the gain of a step that is added to this limit beside other effects."
+)
 SEPARATING_CHI2 = Real(9.0, "-", "Expected chi2 between explanations at which a run is worthwhile: 3 sigma.")
 TIE_RUN_CAMBERS = Series(
     (-40, -25, -15, -8, -4, 0, 4, 8, 15, 25, 40), "deg", "Angles of an added camber sweep."
@@ -181,7 +193,7 @@ UNCHANGED_SHARE_OF_U = Real(
 )
 
 # Validation
-MOST_VALIDATION_FOLDS = Count(8, "-", "Groups of sweeps that are left out in turn.")
+MOST_VALIDATION_FOLDS = Count(8, "-", "Most groups of sweeps that are left out in turn.")
 VALIDATION_FOLDS_OF_MANY_POINTS = Count(4, "-", "Groups that are left out in turn if there are many points.")
 MANY_POINTS_TO_VALIDATE = Count(1000, "-", "Points from which these fewer groups suffice.")
 RAISED_GAP = Real(2.0, "-", "Standard deviations beyond chance above which a channel counts as worse.")

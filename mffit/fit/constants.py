@@ -118,7 +118,7 @@ WEIGHT_IN_CORNER = Real(0.5, "-", "Weight of conditions with large sideslip and 
 ROAD_ALPHA_SCALE = Real(4.0, "deg", "Sideslip that counts as large together with large camber.")
 ROAD_GAMMA_SCALE = Real(25.0, "deg", "Camber that counts as large together with large sideslip.")
 CAMBER_LINE_GRID = Series(
-    (3, 17), "-", "Lines, one per load, along which camber thrust is kept; angles of each."
+    (3, 17), "-", "Lines, one per load, along which camber thrust is kept, and angles per line."
 )
 MODERATE_CAMBER = Real(30.5, "deg", "Camber up to which the misfit at moderate camber is stated.")
 ROAD_RADII = Series((100.0, 30.0, 10.0), "m", "Roads for which the missing turn-slip force is stated.")

@@ -162,7 +162,8 @@ def _at_load(evidence: _Evidence, group: LoadGroup) -> tuple[_AtLoad | None, lis
     """Results and warnings at one load; None if nothing could be measured."""
     slopes, troubles = _slopes(evidence, group)
     if evidence.rig is None:
-        return (_straight(group, slopes) if slopes.exists else None), troubles
+        straight = _AtLoad(_row(group, slopes, None, slopes.C_gamma), None, 0.0)
+        return (straight if slopes.exists else None), troubles
     turning, more = _turning(evidence, group, slopes)
     r_e = effective_radius_at(group.load, evidence.radii, evidence.base)
     return _result(evidence, group, slopes, turning, r_e), troubles + more
@@ -211,10 +212,6 @@ def _turning(evidence: _Evidence, group: LoadGroup, slopes: _Slopes) -> tuple[_T
     if combined.C_phit.nominal_value <= 0.0:
         refuse_inward(force.nominal_value, group.load, turning.alpha_M, config)
     return turning, troubles
-
-
-def _straight(group: LoadGroup, slopes: _Slopes) -> _AtLoad:
-    return _AtLoad(_row(group, slopes, None, slopes.C_gamma), None, 0.0)
 
 
 def _result(

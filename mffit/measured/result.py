@@ -130,12 +130,6 @@ class Measured(Brief):
         found = {row.load: getattr(row, key) for row in self.per_load}
         return {load: quantity.value for load, quantity in found.items() if quantity is not None}
 
-    def with_model(self, *, epsilon_gamma_model: float | None, pecp1: float | None) -> Measured:
-        """The record with the results of the fit."""
-        return dataclasses.replace(
-            self, epsilon_gamma_model=epsilon_gamma_model, pecp1=self.pecp1 if pecp1 is None else pecp1
-        )
-
     def debiased(self, bias: float) -> Measured:
         """The record with eps_gamma corrected for finite spin beside the measured one.
 

@@ -10,7 +10,7 @@ from collections import deque
 from collections.abc import Callable, Generator, Iterable, Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, CancelledError, Executor, Future, ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -74,7 +74,7 @@ def on_cluster(wanted: Sequence[Job], address: str, build_one: BuildOne) -> Outc
     with client:
         executor = client.get_executor(pure=False)
         for outcome in _submitted(executor, deque(absolute), CLUSTER_BUILDS_IN_FLIGHT, build_one):
-            yield outcome.having(source=given[outcome.source])
+            yield replace(outcome, source=given[outcome.source])
 
 
 class _WorkerDied(Exception):

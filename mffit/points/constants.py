@@ -79,7 +79,7 @@ COLD_TREAD = Real(
 )
 FEWEST_WARM_SWEEPS = Count(3, "-", "Fewest sweeps that must remain when cold ones are dropped.")
 WANDERING_LOAD = Real(
-    0.5, "-", "Range of the load (5th to 95th percentile) over its median that is not a held load."
+    0.5, "-", "Range of the load (5th to 95th percentile) over its median above which it is not held."
 )
 MOST_REPEATED_SAMPLES = Real(0.01, "-", "Share of samples that a recorder may have written twice.")
 STRETCHES_IN_SENTENCE = Count(3, "-", "Most dropped stretches that a sentence names.")

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, Literal
+from typing import Literal
 
 from mffit.brief import Brief
 from mffit.config import Config
@@ -75,7 +75,3 @@ class Outcome:
     def whole(self) -> bool:
         """Whether its output is complete."""
         return self.state in ("built", "unchanged")
-
-    def having(self, **changes: Any) -> Outcome:
-        """A copy with some fields replaced."""
-        return replace(self, **changes)

@@ -27,5 +27,7 @@ CAMBER_THAT_TURNS_LOAD = Real(
     5.0, "deg", "Below this camber both definitions of the load agree within the rig's control."
 )
 STEADIER_LOAD_RATIO = Real(
-    0.5, "-", "Variation of the vertical load over that of the load turned from the wheel plane."
+    0.5,
+    "-",
+    "A load column is vertical if it varies less than this times the load turned from the wheel plane.",
 )

@@ -152,18 +152,6 @@ class SweepPlan(Table):
         return self
 
 
-TABLES = (
-    TruthTable,
-    FaultsTable,
-    OwnFaultsTable,
-    NoiseTable,
-    ConditionsTable,
-    RollingRadiusPlan,
-    RecordingTable,
-    SweepPlan,
-)
-
-
 def _entries(given: Any) -> Any:
     """A list of TOML as a tuple."""
     return tuple(given) if isinstance(given, list) else given
