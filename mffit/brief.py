@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from mffit.constants import KINDS_LISTED_IN_RECORD, LINES_PER_RECORD, TERMINAL_WIDTH
+from mffit.constants import LINES_PER_RECORD, TERMINAL_WIDTH
 from mffit.rounding import ascii_only, stated
 from tir import Quantity, Tyre
 
@@ -89,7 +89,7 @@ def _array(x: np.ndarray) -> str:
     size = " x ".join(map(str, x.shape))
     if x.dtype.kind not in "fiu" or not x.size:
         kinds = np.unique(x.astype(str)).tolist()
-        return f"{size}: {', '.join(kinds)}" if len(kinds) <= KINDS_LISTED_IN_RECORD else f"{size} values"
+        return f"{size}: {', '.join(kinds)}" if len(kinds) <= 6 else f"{size} values"
     known = x[np.isfinite(x)]
     if not known.size:
         return f"{size}, not known"

@@ -83,7 +83,7 @@ def solve(
     x = np.clip([n.start for n in numbers], objective.lower, objective.upper)
     here = problem.linear(x)
     cost = objective.cost(x, here.data, here.limits)
-    damping, taken = float(constants.LEAST_SQUARES_FIRST_DAMPING), 0
+    damping, taken = 1e-3, 0
     while taken < max_steps and len(x):
         step = _step(objective, x, cost, here, damping)
         if step is None:
@@ -169,7 +169,7 @@ def _step(objective: _Objective, x: np.ndarray, cost: float, here: Linear, dampi
         return None
     scale = np.maximum(np.diag(curvature), 1e-12 * np.max(np.diag(curvature), initial=1e-300))
     H, g, d = curvature[np.ix_(free, free)], gradient[free], scale[free]
-    while damping < constants.LEAST_SQUARES_LARGEST_DAMPING:
+    while damping < 1e12:
         move = np.zeros(len(x))
         try:
             factor = cho_factor(H + np.diag(damping * d), check_finite=False)

@@ -1,4 +1,4 @@
-"""Output folders that are written completely or not at all, and never over files of somebody else."""
+"""Output folders that are written completely or not at all, and never over files that mffit did not write."""
 
 from __future__ import annotations
 

@@ -26,7 +26,7 @@ def decimals_of(u: float, digits: int = 2) -> int:
 
 
 def number(value: float | None, decimals: int | None = None, *, digits: int = 4) -> str:
-    """A number with fixed decimals, or else ``digits`` significant ones; a dash where there is none."""
+    """A number with fixed decimals, or else ``digits`` significant ones; a dash for None or NaN."""
     if value is None or not math.isfinite(value):
         return UNKNOWN
     if decimals is None:

@@ -1,4 +1,4 @@
-"""Axis systems: ISO-W inside, SAE and adapted SAE at the door.
+"""Axis systems: ISO-W inside, SAE and adapted SAE in files and rigs.
 
 ISO-W (TYDEX W): x forward, y left, z up; ``alpha = atan(Vsy/Vx)``; ``gamma > 0`` leans the top of the wheel to -y; load
 ``Fz > 0``. From there each system reverses the channels listed; gamma and Mx are the same in all.

@@ -22,7 +22,7 @@ class Line:
 
     number: int  #: from 1
     text: str  #: without the line end
-    section: str = ""  #: section in force, upper case
+    section: str = ""  #: section that holds the line, upper case
     key: str = ""  #: upper case; "" if the line holds none
     value: str = ""  #: without comment and surrounding blanks, with quotes
     comment: str = ""

@@ -13,7 +13,7 @@ from tir.tyre import Tyre
 
 @dataclass(frozen=True, slots=True)
 class Rule:
-    """A condition under which the value of a key is wrong, whatever the other values are."""
+    """A condition under which the value of a key is wrong, independent of all other values."""
 
     keys: tuple[str, ...]
     broken: Callable[[float], bool]

@@ -65,7 +65,7 @@ def step(
     phi_t : turn slip [1/m], without lag; None for turn slip off
     p : inflation pressure [Pa], default INFLPRES
     damping : of the contact at standstill [Ns/m], which fades out towards VXLOW; without it a car that has stopped
-        rocks on its carcass for ever
+        oscillates on its carcass for ever
     limits : as in a call of the tyre
 
     Returns
@@ -76,7 +76,7 @@ def step(
     Notes
     -----
     Below VXLOW deflections do not grow beyond those at which the whole contact slides, ``3 mu Fz`` over the carcass stiffness:
-    a wheel pushed sideways at standstill slides, and springs back when it is let go. It does not stick to the road: under a
+    a wheel pushed sideways at standstill slides, and springs back when it is released. It does not stick to the road: under a
     constant push it creeps.
     """
     state = tyre.state(Fz, 0.0, gamma, 0.0, phi_t, Vx, p, limits=limits)
@@ -176,5 +176,5 @@ def _ratio(x: Any, sigma: Any) -> Any:
 
 
 def _plain(x: Any) -> Any:
-    """Numbers as floats, arrays as they are."""
+    """Scalars as floats, arrays unchanged."""
     return x if np.ndim(x) else float(x)

@@ -1,4 +1,4 @@
-"""The [UNITS] of a file, and what they make of a parameter's value."""
+"""The [UNITS] of a file, and their factors to the units of the table."""
 
 from __future__ import annotations
 

@@ -13,7 +13,7 @@ from mffit.cli.console import Voice, out_option, voiced
 @click.argument("rig_toml", type=click.Path(path_type=Path))
 @out_option("Folder to write to.", required=True)
 @click.option(
-    "--seed", type=int, default=None, help="Seed of noise and drawn faults [default: that of the file]."
+    "--seed", type=int, default=None, help="Seed of noise and drawn rig errors [default: that of the file]."
 )
 @voiced
 def simulate(rig_toml: Path, out: Path, seed: int | None, voice: Voice) -> None:

@@ -2,14 +2,13 @@
 
 from mffit.comparison.characteristics import characteristics, with_u
 from mffit.comparison.compare import against_points, between
-from mffit.comparison.record import Comparison, CurveGap, Difference, Subject, SweepGap
+from mffit.comparison.record import Comparison, CurveGap, Difference, Subject
 
 __all__ = [
     "Comparison",
     "CurveGap",
     "Difference",
     "Subject",
-    "SweepGap",
     "against_points",
     "between",
     "characteristics",

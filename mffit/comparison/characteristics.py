@@ -8,7 +8,6 @@ from typing import Any
 
 import numpy as np
 
-from mffit.comparison import constants
 from tir import Tyre
 from tir.parameters import BY_NAME
 
@@ -27,12 +26,12 @@ def characteristics(
     reach : sideslip up to which peaks are sought [rad]; default the file's ALPMAX
     """
     p: Any = {} if pressure is None else {"p": pressure}
-    slip = np.linspace(0.0, float(tyre["ALPMAX"]) if reach is None else reach, constants.COMPARED_PEAK_POINTS)
-    angles = np.array([-1.0, 1.0]) * constants.COMPARED_SLOPE_ANGLE
+    slip = np.linspace(0.0, float(tyre["ALPMAX"]) if reach is None else reach, 101)
+    angles = np.array([-1e-3, 1e-3])
     by_slip = tyre(load, alpha=angles, turn_slip=turn_slip, **p)
     by_camber = tyre(load, gamma=angles, turn_slip=turn_slip, **p)
     curve = tyre(load, alpha=slip, turn_slip=turn_slip, **p)
-    step = 2.0 * constants.COMPARED_SLOPE_ANGLE
+    step = 2e-3
     C_alpha = float(np.diff(by_slip.Fy)[0] / step)
     C_moment = float(np.diff(by_slip.Mz)[0] / step)
     dfz = load / (float(tyre["FNOMIN"]) * float(tyre["LFZO"])) - 1.0
@@ -47,8 +46,8 @@ def characteristics(
         "r_e_m": float(tyre.state(load, **p).Re),
     }
     if turn_slip:
-        curved = tyre(load, phi_t=np.array([-1.0, 1.0]) * constants.COMPARED_SLOPE_CURVATURE, **p)
-        out["C_phit_Nm"] = float(np.diff(curved.Fy)[0] / (2.0 * constants.COMPARED_SLOPE_CURVATURE))
+        curved = tyre(load, phi_t=np.array([-1e-3, 1e-3]), **p)
+        out["C_phit_Nm"] = float(np.diff(curved.Fy)[0] / 2e-3)
     return out
 
 
@@ -74,8 +73,7 @@ def with_u(
         return here, {}
     slopes = {key: np.zeros(len(names)) for key in here}
     for k, (name, u) in enumerate(zip(names, np.sqrt(np.maximum(np.diag(covariance), 0.0)), strict=True)):
-        widest = constants.COMPARED_LARGEST_STEP * BY_NAME[name].width
-        step = constants.COMPARED_COEFFICIENT_STEP * min(float(u), widest)
+        step = 0.05 * min(float(u), 0.1 * BY_NAME[name].width)
         if step > 0.0:
             there = of(tyre.replace(**{name: float(tyre[name]) + step}))
             for key, value in here.items():

@@ -77,7 +77,7 @@ def _curves(
 ) -> Iterator[CurveGap]:
     """The curves of every channel over sideslip and over camber."""
     for over, end in (("alpha", "ALPMAX"), ("gamma", "CAMMAX")):
-        x = np.linspace(-reach[end], reach[end], constants.COMPARED_POINTS)
+        x = np.linspace(-reach[end], reach[end], 61)
         angles = (x, 0.0 * x) if over == "alpha" else (0.0 * x, x)
         where = make_points(*angles, load, p=pressure, V=float(first.tyre["LONGVL"]), phi_t=0.0)
         (a, half_a), (b, half_b) = (_curve(side, where) for side in (first, second))

@@ -98,6 +98,6 @@ def _on_uncertainty(first: Subject, second: Subject) -> Iterator[str]:
 def note_on_data(file: str) -> str:
     """The remark on a comparison of a file with data."""
     return (
-        f"The numbers of {file} are those that the direct method finds in its simulated readings at the same points, so that the "
-        "method's own bias is the same on both sides."
+        f"The numbers of {file} are results of the direct method on its simulated readings at the same points, so that the bias "
+        "of the method is the same on both sides."
     )

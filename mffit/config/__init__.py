@@ -1,11 +1,16 @@
 """``tyre.toml`` as frozen records; errors name file, line and key."""
 
-from mffit.config.axes import axis_signs, path_curvature
 from mffit.config.loading import load
-from mffit.config.models import Config, RigTable, RollingRadiusTable, SweepTable, TyreTable
+from mffit.config.models import Config, RigTable, RollingRadiusTable, SweepTable
 from mffit.config.radii import effective_radius, path_radius, wheel_turn
 from mffit.config.resolved import resolved
-from mffit.config.rig_declaration import Declaration, declared_faults, declared_rig
+from mffit.config.rig_declaration import (
+    Declaration,
+    axis_signs,
+    declared_faults,
+    declared_rig,
+    path_curvature,
+)
 
 __all__ = [
     "Config",
@@ -13,7 +18,6 @@ __all__ = [
     "RigTable",
     "RollingRadiusTable",
     "SweepTable",
-    "TyreTable",
     "axis_signs",
     "declared_faults",
     "declared_rig",

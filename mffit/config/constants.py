@@ -5,17 +5,13 @@ from __future__ import annotations
 from tir.constant import Real, Series
 
 ROLLING_OVER_UNLOADED_RADIUS = Series(
-    (0.85, 1.05),
-    "-",
-    "Effective over unloaded radius of a free-rolling tyre lies between these; a diameter or a wrong path radius does not.",
+    (0.85, 1.05), "-", "Range of effective over unloaded radius; a wrong path radius leaves it."
 )
 RADIUS_RATIO_OF_A_DIAMETER = Series(
-    (1.8, 2.2),
-    "-",
-    "Effective over unloaded radius between these means that path_radius is a diameter: the ratio is twice the usual one.",
+    (1.8, 2.2), "-", "Effective over unloaded radius between these means that path_radius is a diameter."
 )
 LARGEST_U_OF_A_RADIUS = Real(
-    0.1, "-", "A standard uncertainty above this share of its radius was written in another unit."
+    0.1, "-", "Standard uncertainty over radius above which it was written in another unit."
 )
 U_GIVEN_PATH_RADIUS = Real(
     0.0018, "m", "Standard uncertainty of a path radius given without one.", "Mottola and Massaro 2022, (19)"

@@ -6,124 +6,155 @@ from tir.constant import Count, Real, Series
 
 # Points and model that belong together
 FEWEST_POINTS_TO_DIAGNOSE = Count(12, "-", "With fewer points, chance alone decides between effects.")
-LOAD_RATIO_OF_ANOTHER_TYRE = Real(10.0, "-", "Load over FNOMIN, or its inverse, of another tyre or unit.")
-OPPOSED_CORRELATION = Real(-0.3, "-", "Measured against simulated readings: below it, signs or axes differ.")
-MISFIT_OF_ANOTHER_TYRE = Real(30.0, "-", "Misfit over noise beyond which naming an effect would be a guess.")
+LOAD_RATIO_OF_ANOTHER_TYRE = Real(
+    10.0, "-", "Load over FNOMIN, or its inverse, above which tyre or unit is wrong."
+)
+OPPOSED_CORRELATION = Real(
+    -0.3, "-", "Correlation of measured and simulated readings below which signs differ."
+)
+MISFIT_OF_ANOTHER_TYRE = Real(30.0, "-", "Misfit over noise above which naming an effect would be a guess.")
 FEWEST_POINTS_OF_A_CONDITION = Count(8, "-", "A setting with fewer points was swept, not held.")
 
 # What the data must vary for an effect to be visible
-VISIBLE_SPIN_CAMBER = Real(0.2, "rad", "Range of camber from which on spin by camber alone is visible.")
-VISIBLE_CAMBER = Real(0.03, "rad", "Range of camber from which on effects of camber are visible.")
-VISIBLE_COUPLED_CAMBER = Real(0.02, "rad", "Camber of a point that has camber and sideslip together.")
-VISIBLE_COUPLED_SIDESLIP = Real(0.01, "rad", "Sideslip of a point that has camber and sideslip together.")
-VISIBLE_SIDESLIP = Real(0.05, "rad", "Range of sideslip that makes a sideslip sweep.")
-VISIBLE_LOAD_RANGE = Real(0.1, "-", "Range of the logarithm of the load that makes two loads.")
-VISIBLE_PRESSURE = Real(10e3, "Pa", "Range of pressure that makes two pressures.")
-VISIBLE_TEMPERATURE = Real(3.0, "K", "Range of temperature that the forces can show above their noise.")
-VISIBLE_SPEED = Real(0.5, "m/s", "Range of speed that makes two speeds.")
-VISIBLE_TIME = Real(60.0, "s", "Duration from which on a drift is visible.")
+VISIBLE_SPIN_CAMBER = Real(0.2, "rad", "Smallest range of camber that shows the spin by camber alone.")
+VISIBLE_CAMBER = Real(0.03, "rad", "Smallest range of camber that shows effects of camber.")
+VISIBLE_COUPLED_CAMBER = Real(0.02, "rad", "Smallest camber of a point with camber and sideslip together.")
+VISIBLE_COUPLED_SIDESLIP = Real(0.01, "rad", "Smallest sideslip of a point with both angles.")
+VISIBLE_SIDESLIP = Real(0.05, "rad", "Smallest range of sideslip that makes a sideslip sweep.")
+VISIBLE_LOAD_RANGE = Real(0.1, "-", "Smallest range of the logarithm of the load that makes two loads.")
+VISIBLE_PRESSURE = Real(10e3, "Pa", "Smallest range of pressure that makes two pressures.")
+VISIBLE_TEMPERATURE = Real(3.0, "K", "Smallest range of temperature whose effect exceeds the noise.")
+VISIBLE_SPEED = Real(0.5, "m/s", "Smallest range of speed that makes two speeds.")
+VISIBLE_TIME = Real(60.0, "s", "Shortest test that shows a drift.")
 DISTANCE_LIKE_TIME = Real(0.98, "-", "Correlation of distance and time above which wear looks like drift.")
-VISIBLE_RUNS = Count(3, "-", "Runs from which on a scatter of their zeros is visible.")
-VISIBLE_SENSE_SHARE = Real(0.1, "-", "Share of points that each sense of the sweep must have.")
+VISIBLE_RUNS = Count(3, "-", "Fewest runs that show a scatter of their zeros.")
+VISIBLE_SENSE_SHARE = Real(0.1, "-", "Smallest share of points that each sense of a sweep must have.")
 
 # Stated noise
 LEAST_STATED_NOISE_SHARE = Real(0.05, "-", "Stated uncertainties are raised to this share of their median.")
-FEWEST_POINTS_FOR_NEIGHBOURS = Count(6, "-", "Points of a sweep from which third differences show its noise.")
-NOISE_SHARE_OF_SPAN = Real(0.01, "-", "Noise over the misfit's span, if sweeps are too short to show it.")
+FEWEST_POINTS_FOR_NEIGHBOURS = Count(
+    6, "-", "Fewest points of a sweep whose third differences show its noise."
+)
+NOISE_SHARE_OF_SPAN = Real(
+    0.01, "-", "Noise over the span of the misfit where sweeps are too short to show it."
+)
 
 # Scatter as found
-STATED_NOISE_FACTOR = Real(2.0, "-", "Factor (1 sigma) by which true uncertainties differ from stated ones.")
-SCATTER_PART_GAIN = Real(4.0, "-", "Log likelihood that growth, memory or heavy tails must add.")
+STATED_NOISE_FACTOR = Real(2.0, "-", "Usual factor (1 sigma) between true and stated uncertainties.")
+SCATTER_PART_GAIN = Real(4.0, "-", "Gain in log likelihood that growth, memory or heavy tails must bring.")
 LOG_SCALE_BOUNDS = Series((-7.0, 12.0), "-", "Bounds of the logarithm of the scale; its prior is narrower.")
-LARGEST_NOISE_GROWTH = Real(0.2, "-", "Bound of the noise that grows with the reading.")
+LARGEST_NOISE_GROWTH = Real(0.2, "-", "Upper bound of the noise that grows with the reading.")
 MEMORY_BOUNDS = Series((-0.2, 0.97), "-", "Bounds of the correlation between neighbouring errors of a sweep.")
 SCATTER_SMOOTH_BOUNDS = Series((1e-4, 0.3), "-", "Bounds of the smooth amplitude in the search for scatter.")
-SCATTER_START_SMOOTH = Real(0.03, "-", "Smooth amplitude at the start of the search for the scatter.")
-SCATTER_START_GROWTH = Real(0.004, "-", "Growth from which the search starts if none was found before.")
+SCATTER_START_SMOOTH = Real(
+    0.03, "-", "Amplitude of smooth structure at which the search for the scatter starts."
+)
+SCATTER_START_GROWTH = Real(0.004, "-", "Growth at which the search for the scatter starts if none is known.")
 SCATTER_SECOND_START = Series(
     (0.0, 0.005, 0.3, 0.1),
     "-",
-    "Second start: log scale, growth, memory, smooth amplitude. A long memory and a large scale replace each other, so that "
-    "one start may end in the wrong one of two maxima.",
+    "Second start of this search: log scale, growth, memory, smooth amplitude; there may be two maxima.",
 )
 SCATTER_STEPS = Series((1.0, 0.02, 1.0, 0.05), "-", "Typical changes of log scale, growth, memory, smooth.")
-MOST_SCATTER_STEPS = Count(20, "-", "Steps of one search for the scatter; its likelihood has a flat maximum.")
+MOST_SCATTER_STEPS = Count(
+    20, "-", "Most steps of a search for the scatter; its likelihood is flat near the maximum."
+)
 TAIL_DEGREES_OF_FREEDOM = Series(
     (2.0, 2.5, 3.0, 4.0, 6.0, 10.0, 20.0), "-", "Degrees of freedom of Student's t that are tried."
 )
-MOST_READING_WEIGHT_ROUNDS = Count(4, "-", "Rounds in which scatter and weights are found in turn.")
-READING_WEIGHT_SETTLED = Real(0.05, "-", "Change of the root of a weight at which rounds of weighting end.")
-READINGS_FOR_SCATTER = Count(700, "-", "Readings of a channel that fix its scatter well enough.")
-FEWEST_SWEEPS_FOR_SCATTER = Count(8, "-", "Sweeps that are used at least, however many readings each has.")
-DIAGNOSED_OUTLIER_RATIO = Real(4.5, "-", "Misfit over noise from which on a reading is listed as an outlier.")
-MOST_EXPLANATION_ROUNDS = Count(3, "-", "Rounds of scatter, effects and coefficients in turn.")
-SCATTER_SETTLED = Real(0.1, "-", "Median relative change of the noise at which explanation rounds end.")
-SCATTER_SETTLED_TAIL = Real(0.5, "-", "95 % quantile of the change of the noise at which these rounds end.")
-GENEROUS_EFFECT_SIZE = Real(3.0, "-", "Size of effects over the usual one while the scatter is learned.")
-ASSUMED_SMOOTH_AMPLITUDE = Real(0.03, "-", "Relative smooth structure before the scatter is known.")
-BUMP_RESIDUAL_CLIP = Real(3.0, "-", "Standard deviations at which residuals are clipped beside bumps.")
-MOST_BUMPS_SET_ASIDE = Count(2, "-", "Bumps that may explain misfit while the scatter is learned.")
+MOST_READING_WEIGHT_ROUNDS = Count(4, "-", "Most rounds that estimate scatter and weights in turn.")
+READING_WEIGHT_SETTLED = Real(0.05, "-", "Largest change of the root of a weight that ends these rounds.")
+READINGS_FOR_SCATTER = Count(700, "-", "Readings of a channel that suffice to estimate its scatter.")
+FEWEST_SWEEPS_FOR_SCATTER = Count(
+    8, "-", "Fewest sweeps used for the scatter, however many readings each has."
+)
+DIAGNOSED_OUTLIER_RATIO = Real(4.5, "-", "Misfit over noise above which a reading is listed as an outlier.")
+MOST_EXPLANATION_ROUNDS = Count(3, "-", "Most rounds of scatter, effects and coefficients in turn.")
+SCATTER_SETTLED = Real(0.1, "-", "Median relative change of the noise that ends these rounds.")
+SCATTER_SETTLED_TAIL = Real(0.5, "-", "95 % quantile of the same change that ends these rounds.")
+GENEROUS_EFFECT_SIZE = Real(3.0, "-", "Size of effects over the usual one while the scatter is estimated.")
+ASSUMED_SMOOTH_AMPLITUDE = Real(0.03, "-", "Relative smooth structure until the scatter is known.")
+BUMP_RESIDUAL_CLIP = Real(
+    3.0, "-", "Standard deviations at which residuals are clipped in the search for bumps."
+)
+MOST_BUMPS_SET_ASIDE = Count(2, "-", "Most bumps that may explain misfit while the scatter is estimated.")
 
 # Where the misfit is
 REGION_FALSE_DISCOVERY = Real(0.01, "-", "Expected share of false regions among the listed ones.")
-FEWEST_READINGS_OF_A_REGION = Count(4, "-", "Readings from which the mean of a region is taken.")
-MOST_REGIONS = Count(12, "-", "Regions that are listed at most.")
-MOST_UNEXPLAINED_REGIONS = Count(4, "-", "Regions that are listed of what stays unexplained.")
-MOST_REGION_BINS = Count(6, "-", "Bins of one variable.")
-REGION_OVERLAP = Real(0.6, "-", "Share of readings from which a region repeats a more significant one.")
+FEWEST_READINGS_OF_A_REGION = Count(4, "-", "Fewest readings whose mean makes a region.")
+MOST_REGIONS = Count(12, "-", "Most regions that are listed.")
+MOST_UNEXPLAINED_REGIONS = Count(4, "-", "Most regions of unexplained misfit that are listed.")
+MOST_REGION_BINS = Count(6, "-", "Most bins of one variable.")
+REGION_OVERLAP = Real(0.6, "-", "Share of common readings that makes a region repeat a more significant one.")
 REGION_LEVEL_WIDTH = Real(0.1, "-", "Width of a level over the range of the variable.")
 
 # Fit of a hypothesis
-MOST_HYPOTHESIS_STEPS = Count(12, "-", "Steps of a fit; nearly linear problems need fewer.")
-HYPOTHESIS_CONVERGED = Real(1e-3, "-", "Relative decrease of chi2 at which a fit ends.")
+MOST_HYPOTHESIS_STEPS = Count(
+    12, "-", "Most steps of the fit of an explanation; nearly linear ones need fewer."
+)
+HYPOTHESIS_CONVERGED = Real(1e-3, "-", "Relative decrease of chi2 that ends this fit.")
 ZERO_COEFFICIENT_SCALE = Real(0.2, "-", "Scale of a coefficient at zero over the width of its range.")
 RIGS_WORSE_THAN_DECLARED = Real(0.05, "-", "Share of rigs whose errors exceed their declaration.")
 
 # Selection
-MOST_EFFECTS = Count(4, "-", "Effects of one explanation; more are structure without a name.")
+MOST_EFFECTS = Count(4, "-", "Most effects of one explanation; more are structure without a name.")
 EVIDENCE_MARGIN = Real(
     4.0, "-", "Log evidence that an effect must add beyond the price of choosing among all candidates.",
     "checked with diagnosis_study.py --seed 3: nothing hidden, nothing named 20 of 20, docs/diagnosis.md",
 )  # fmt: skip
 TIED_EVIDENCE = Real(1.5, "-", "Difference of log evidence below which effects count as tied.")
-UNIDENTIFIED_LOG_ODDS = Real(1.0, "-", "Log prior odds for a coefficient at zero, and against another.")
-MOST_CANDIDATES_FITTED = Count(12, "-", "Candidates of a step that are fitted in full at most.")
-FEWEST_CANDIDATES_FITTED = Count(4, "-", "Candidates of a step that are fitted in full in any case.")
-PROMISING_GAIN = Real(2.0, "-", "Gain to first order from which on a candidate is fitted in full.")
-PROMISING_SHARE = Real(0.1, "-", "Gain to first order, over the best, from which a candidate is fitted.")
-MOST_EXCHANGE_CANDIDATES = Count(4, "-", "Best candidates of a step that may replace an accepted effect.")
+UNIDENTIFIED_LOG_ODDS = Real(
+    1.0, "-", "Added to the log prior odds of a coefficient at zero, else subtracted."
+)
+MOST_CANDIDATES_FITTED = Count(12, "-", "Most candidates of a step that are fitted in full.")
+FEWEST_CANDIDATES_FITTED = Count(4, "-", "Fewest candidates of a step that are fitted in full.")
+PROMISING_GAIN = Real(2.0, "-", "First-order gain above which a candidate is fitted in full.")
+PROMISING_SHARE = Real(0.1, "-", "First-order gain, over the best one, above which a candidate is fitted.")
+MOST_EXCHANGE_CANDIDATES = Count(
+    4, "-", "Most candidates of a step that may replace an accepted effect, best first."
+)
 EXCHANGE_GAIN = Real(1.0, "-", "Log evidence by which a set of effects must exceed the set that it replaces.")
 
 # Rivals without a name
-STRUCTURE_EVIDENCE = Real(8.0, "-", "Log evidence, search paid for, of a bump or smooth structure.")
+STRUCTURE_EVIDENCE = Real(
+    8.0, "-", "Log evidence beyond the price of the search that a bump or structure needs."
+)
 BUMP_WIDTHS_SIDESLIP = Series((0.7, 1.4, 3.0), "deg", "Widths of bumps over sideslip.")
 BUMP_WIDTHS_CAMBER = Series((3.0, 8.0), "deg", "Widths of bumps over camber.")
 BUMP_AMPLITUDE = Real(0.03, "-", "Usual size (1 sigma) of a bump over the largest reading of its channel.")
 BUMP_CUT = Real(0.02, "-", "Height below which a bump is cut to zero.")
-MOST_BUMP_CENTRES = Count(41, "-", "Centres of bumps along one angle.")
-BUMP_UPRIGHT = Real(1.0, "deg", "Camber within which points count as upright when bumps are sought by side.")
-MOST_LOADS_WITH_BUMPS = Count(7, "-", "Loads up to which bumps are sought at each load by itself.")
+MOST_BUMP_CENTRES = Count(41, "-", "Most centres of bumps along one angle.")
+BUMP_UPRIGHT = Real(1.0, "deg", "Camber within which points count as upright in this search.")
+MOST_LOADS_WITH_BUMPS = Count(7, "-", "Most loads for which bumps are sought load by load.")
 BUMPS_WHITENED_TOGETHER = Count(256, "-", "Bumps that are whitened in one block, to limit memory.")
 SATURATION_SIDESLIP = Real(4.0, "deg", "Side force saturates here: smooth structure is finer below it.")
 MOST_ANGLE_ORDER = Count(5, "-", "Largest order of smooth structure over sideslip and camber together.")
 MOST_CROSS_ORDER = Count(3, "-", "Largest order of a product of angles with another condition.")
 MOST_TIME_ORDER = Count(6, "-", "Largest order of smooth structure over time.")
 MOST_CONDITION_ORDER = Count(2, "-", "Largest order over load, pressure, temperature or speed.")
-SMOOTH_AMPLITUDES = Series((0.001, 0.3), "-", "Smallest and largest smooth amplitude, per channel.")
+SMOOTH_AMPLITUDES = Series(
+    (0.001, 0.3), "-", "Smallest and largest smooth amplitude over the channel's size."
+)
 SMOOTH_AMPLITUDES_TRIED = Count(12, "-", "Smooth amplitudes that are tried, evenly in their logarithm.")
-LEAST_CERTAINTY = Real(0.9, "-", "Certainty, less unexplained share, of effects beside smooth structure.")
-LEAST_CERTAINTY_OF_SEEN = Real(0.5, "-", "Certainty of named effects for a model fitted to the same points.")
+LEAST_CERTAINTY = Real(
+    0.9, "-", "Certainty, less the unexplained share, that effects need beside smooth structure."
+)
+LEAST_CERTAINTY_OF_SEEN = Real(
+    0.5, "-", "Certainty that effects need if the model was fitted to these points."
+)
 SIGNIFICANT_EFFECT = Real(2.0, "-", "Standard errors by which a number of a named effect must change.")
 
 # Judged by prediction
 PREDICTION_FALSE_ALARM = Real(0.01, "-", "Probability that chance lets any effect pass (Bonferroni).")
 LEAST_PREDICTED_SHARE = Real(0.02, "-", "Misfit of left-out sweeps that a named effect must remove.")
-WORSE_PREDICTION = Real(2.0, "-", "Standard errors over the sweeps that make a prediction worse.")
-FEWEST_SWEEPS_TO_PREDICT = Count(8, "-", "With fewer sweeps, chance cannot be separated from a common gain.")
+WORSE_PREDICTION = Real(2.0, "-", "Standard errors over the sweeps by which a prediction counts as worse.")
+FEWEST_SWEEPS_TO_PREDICT = Count(8, "-", "With fewer sweeps a gain cannot be separated from chance.")
 
 # Ties and what would separate them
-HOPELESS_RIVAL = Real(40.0, "-", "Log evidence behind the best beyond which a rival is not refitted.")
-HOPELESS_SHARE = Real(0.5, "-", "Share of the gain of its step that widens this limit beside other effects.")
+HOPELESS_RIVAL = Real(40.0, "-", "Log evidence behind the best candidate at which a rival is not refitted.")
+HOPELESS_SHARE = Real(
+    0.5, "-", "Share of the gain of a step that is added to this limit beside other effects."
+)
 SEPARATING_CHI2 = Real(9.0, "-", "Expected chi2 between explanations at which a run is worthwhile: 3 sigma.")
 TIE_RUN_CAMBERS = Series((-40, -25, -15, -8, -4, 0, 4, 8, 15, 25, 40), "deg", "Cambers of an added sweep.")
 TIE_RUN_SIDESLIP_POINTS = Count(13, "-", "Points of an added sideslip sweep.")
@@ -133,25 +164,26 @@ TIE_RUN_LOW_PRESSURE = Real(0.8, "-", "Added pressure over the main one.")
 TIE_RUN_FAST = Real(2.0, "-", "Added speed over the main one.")
 TIE_RUN_WARMER = Real(20.0, "K", "Rise of temperature of an added run.")
 TIE_RUN_UNKNOWN_TEMPERATURE = Real(25.0, "degC", "Temperature of the test if none was measured.")
-TIE_RUN_LATER = Real(600.0, "s", "Time of an added late run beyond the end of the test.")
-TIE_RUN_LATER_SHARE = Real(1.2, "-", "Duration over that of the test to which this time is added.")
+TIE_RUN_LATER = Real(600.0, "s", "Added late runs begin this long after the lengthened test.")
+TIE_RUN_LATER_SHARE = Real(1.2, "-", "Factor that lengthens the test for added late runs.")
 TIE_RUN_WIDE = Real(2.0, "-", "Path radius of an added run over the usual one.")
 
 # Confidence and answer
 LOG_ODDS_DIVISOR = Real(
     1.35,
     "-",
-    "Linearised coefficients, a noise that is itself estimated and errors that follow no exact law make evidence look "
-    "stronger than it is.",
+    "Divides log odds: linearised coefficients, estimated noise and unknown distributions exaggerate evidence.",
     "diagnosis_study.py --doubtful --seed 21, by maximum likelihood; checked on other seeds, docs/diagnosis.md",
 )
-LIKELY_ANSWER = Real(0.5, "-", "Confidence below which the headline names an effect as a guess only.")
+LIKELY_ANSWER = Real(0.5, "-", "Confidence below which the headline calls the effect a guess.")
 LEAST_ALTERNATIVE = Real(1e-4, "-", "Weight below which an effect is not listed as an alternative.")
 LIMIT_COVERAGE = Real(2.0, "-", "Standard deviations within which the true size of an unnamed effect lies.")
-UNCHANGED_SHARE_OF_U = Real(0.5, "-", "Change of eps_gamma over its uncertainty below which it is unchanged.")
+UNCHANGED_SHARE_OF_U = Real(
+    0.5, "-", "Change of eps_gamma over its uncertainty below which it counts as equal."
+)
 
 # Validation
-MOST_VALIDATION_FOLDS = Count(8, "-", "Groups of sweeps that are left out in turn.")
-VALIDATION_FOLDS_OF_MANY_POINTS = Count(4, "-", "Groups of sweeps left out in turn if points are many.")
-MANY_POINTS_TO_VALIDATE = Count(1000, "-", "Points from which on fewer groups suffice.")
-RAISED_GAP = Real(2.0, "-", "Standard deviations beyond chance at which a channel counts as worse.")
+MOST_VALIDATION_FOLDS = Count(8, "-", "Most groups of sweeps that are left out in turn.")
+VALIDATION_FOLDS_OF_MANY_POINTS = Count(4, "-", "Groups that are left out in turn if there are many points.")
+MANY_POINTS_TO_VALIDATE = Count(1000, "-", "Points from which these fewer groups suffice.")
+RAISED_GAP = Real(2.0, "-", "Standard deviations beyond chance above which a channel counts as worse.")

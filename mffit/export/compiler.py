@@ -12,7 +12,6 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from mffit.errors import InputError
-from mffit.export import constants
 
 FLAGS = ("-std=c99", "-O2", "-ffp-contract=off", "-shared", "-fvisibility=hidden")
 SUFFIX = {"win32": ".dll", "darwin": ".dylib"}
@@ -68,9 +67,7 @@ def compile_shared(sources: Sequence[Path], library: Path, definitions: Sequence
         "-lm",
     ]
     try:
-        done = subprocess.run(
-            command, capture_output=True, text=True, check=False, timeout=constants.COMPILER_TIMEOUT
-        )
+        done = subprocess.run(command, capture_output=True, text=True, check=False, timeout=300.0)
     except (OSError, subprocess.TimeoutExpired) as error:
         why = getattr(error, "strerror", None) or error
         raise InputError(

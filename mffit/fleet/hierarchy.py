@@ -71,15 +71,14 @@ def estimate(found: Sequence[Information]) -> Hierarchy:
     model = _Model(found)
     tau = model.general.copy()
     learnt = model.count >= constants.FEWEST_TYRES_FOR_SCATTER
-    for _ in range(constants.MOST_SCATTER_ROUNDS if learnt.any() else 0):
+    for _ in range(200 if learnt.any() else 0):
         # Division by one tyre less keeps the scatter off zero, where it would be overconfident.
         mean_square = model.solved(tau).squares / np.maximum(model.count - 1, 1)
-        smallest = constants.SMALLEST_SCATTER_SHARE * model.general
-        new = np.clip(np.sqrt(mean_square), smallest, model.general)
+        new = np.clip(np.sqrt(mean_square), 1e-3 * model.general, model.general)
         new = np.where(learnt, new, model.general)
         moved = np.max(np.abs(np.log(new / tau)))
         tau = new
-        if moved < constants.SCATTER_CONVERGED:
+        if moved < 1e-3:
             break
     return model.described(tau)
 
@@ -109,7 +108,7 @@ class _Model:
             ]
         )
         if len(found) == 1:  # the prior of its build, which had no population
-            self.general, self.known = self.known, constants.PINNED_MEAN_SHARE * self.known
+            self.general, self.known = self.known, 1e-6 * self.known
 
     def prior(self) -> tuple[np.ndarray, np.ndarray]:
         """Prior of the common numbers, theta and mu: precision (m + K, m + K) and vector."""

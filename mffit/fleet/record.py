@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -78,8 +78,3 @@ def scatter_of(found: Sequence[Quantity]) -> Scatter:
     """Mean, scatter and typical uncertainty of at least two numbers."""
     values, u = np.array([q.value for q in found]), np.array([q.u for q in found])
     return Scatter(mean=float(values.mean()), sd=float(values.std(ddof=1)), u=rms(u), tyres=len(found))
-
-
-def with_estimate(row: Row, together: Quantity | None, strain: Mapping[str, float]) -> Row:
-    """The row with the joint estimate of all tyres of its rig."""
-    return replace(row, together=together, strain=strain)

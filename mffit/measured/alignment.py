@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import NamedTuple
 
 import numpy as np
@@ -12,18 +12,17 @@ import numpy as np
 from mffit.brief import Brief
 from mffit.constants import USUAL_CORNERING_STIFFNESS, USUAL_U_FORCE
 from mffit.errors import InputError
-from mffit.measured import constants, wording
+from mffit.measured import constants, notes
 from mffit.measured.groups import LoadGroup, load_groups, zeros
-from mffit.measured.notes import AxisOff
 from mffit.points import Points, main_path
 from tir import Quantity, conventions
 
 
 class AxisAtLoad(NamedTuple):
-    """Results of the direct method at the same load."""
+    """Results of the direct method at one load."""
 
     C_alpha: Quantity | None  #: measured cornering stiffness, ISO, negative [N/rad]
-    F_forward: float  #: force at zero, the play taken off [N]; NaN where it is not measured
+    F_forward: float  #: force at zero, corrected for the play [N]; NaN if not measured
     F_backward: float  #: [N]
 
 
@@ -41,9 +40,7 @@ class AlignmentStep:
     correction_deg: float  #: next correction of the steering reading, in degrees of the rig's axis
     source: str  #: of C_alpha: "measured" from a sideslip sweep, "secant" of two iterations (9), or "guess"
     u_deg: float  #: standard uncertainty of the correction
-    reported: tuple[float, float] | None = (
-        None  #: the same zeros as the report has them, where these differ [N]
-    )
+    reported: tuple[float, float] | None = None  #: the same zeros in the report, where these differ [N]
 
     @property
     def secant(self) -> bool:
@@ -66,7 +63,7 @@ class Alignment(Brief):
 
     @property
     def correction_deg(self) -> float:
-        """The correction to apply now: mean over loads of the last iteration's, weighted with the stiffness."""
+        """The next correction: mean over loads of the last iteration, weighted by stiffness."""
         return float(self._weights() @ [step.correction_deg for step in self.last])
 
     @property
@@ -76,7 +73,7 @@ class Alignment(Brief):
 
     @property
     def aligned(self) -> bool:
-        """Whether nothing is left to turn: the correction is within its uncertainty, or finer than the axis can be turned."""
+        """Whether the correction is within its uncertainty, or below the resolution of the axis."""
         return abs(self.correction_deg) <= max(self.u_deg, self.resolution_deg)
 
     def _weights(self) -> np.ndarray:
@@ -99,7 +96,7 @@ def align(
     points : with rows at zero sideslip and camber rolled both ways; ``iteration`` numbers repeated steps
     axes : the rig's axes, in which the correction is returned
     C_alpha : cornering stiffness per load [1/rad], positive, where none is measured; default 10
-    measured : what the direct method finds, by load [N]; its stiffness counts where it is known best
+    measured : results of the direct method by load [N]; its stiffness is used where its uncertainty is smallest
     resolution_deg : smallest angle by which the axis can be turned [deg]
 
     Raises
@@ -119,17 +116,13 @@ def align(
             "forward and backward"
         )
     found = Alignment(tuple(steps), (), resolution_deg)
-    off = [
-        AxisOff(
-            step.load,
-            abs(step.F_forward - step.F_backward),
-            constants.LARGEST_DIFFERENCE,
-            abs(step.correction_deg),
-        )
+    limit = constants.LARGEST_DIFFERENCE
+    off = (
+        notes.axis_off(step.load, difference, limit, abs(step.correction_deg))
         for step in found.last
-        if abs(step.F_forward - step.F_backward) > constants.LARGEST_DIFFERENCE
-    ]
-    return Alignment(tuple(steps), tuple(map(wording.warning, off)), resolution_deg)
+        if (difference := abs(step.F_forward - step.F_backward)) > limit
+    )
+    return replace(found, warnings=tuple(off))
 
 
 class _Stiffness(NamedTuple):
@@ -188,9 +181,9 @@ def _u(points: Points, rows: np.ndarray) -> float:
 
 
 def _elsewhere(known: AxisAtLoad | None, F_forward: float, F_backward: float) -> tuple[float, float] | None:
-    """The report's zeros where they differ from these."""
+    """The report's zeros [N] where they differ visibly from these."""
     if known is None:
         return None
     there = (known.F_forward, known.F_backward)
     apart = [abs(a - b) for a, b in zip(there, (F_forward, F_backward), strict=True) if math.isfinite(a)]
-    return there if apart and max(apart) > constants.SAME_ZERO else None
+    return there if apart and max(apart) > 0.1 else None

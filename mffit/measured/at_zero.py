@@ -12,9 +12,8 @@ from mffit.config import Config, path_curvature
 from mffit.constants import USUAL_CORNERING_STIFFNESS, USUAL_U_FORCE, USUAL_U_MOMENT, ZERO_CAMBER
 from mffit.errors import InputError
 from mffit.measured import camber_reduction as method
-from mffit.measured import constants
+from mffit.measured import constants, notes
 from mffit.measured.groups import LoadGroup, zeros
-from mffit.measured.notes import ZerosDisagree
 from mffit.measured.paths import PathForce, by_path
 from mffit.points import Points
 from mffit.rig_errors import AtZero
@@ -23,7 +22,7 @@ from mffit.rig_errors import AtZero
 class ZeroReadings(NamedTuple):
     """Forces and moment at zero sideslip and camber of one load and path."""
 
-    forward: float  #: [N], the sideslip of backlash removed
+    forward: float  #: [N], corrected for the sideslip of backlash
     backward: float  #: NaN without backward runs
     u_forward: float
     u_backward: float
@@ -36,14 +35,14 @@ class ZeroReadings(NamedTuple):
 def zeros_by_path(
     points: Points, group: LoadGroup, C_alpha: UFloat | None, config: Config
 ) -> list[tuple[float, ZeroReadings]]:
-    """Turn slip of every path with forward zeros at this load, the usual one first, and the readings there."""
+    """Turn slip and readings of every path with forward zeros at this load, the usual path first."""
     paths = by_path(points, group, path_curvature(config.rig))
     found = [(phi_t, _zeros(points, part, C_alpha, config)) for phi_t, part in paths]
     return [(phi_t, zero) for phi_t, zero in found if np.isfinite(zero.forward)]
 
 
 def _zeros(points: Points, group: LoadGroup, C_alpha: UFloat | None, config: Config) -> ZeroReadings:
-    """Forces and moments at zero sideslip in both directions, the play taken off."""
+    """Forces and moments at zero sideslip in both directions, corrected for the play."""
     slope = _slope(C_alpha, group)
     u_Fy = np.where(np.isfinite(points.u_Fy), points.u_Fy, USUAL_U_FORCE)
     u_Mz = np.where(np.isfinite(points.u_Mz), points.u_Mz, USUAL_U_MOMENT)
@@ -71,7 +70,7 @@ def _at_zero(
 ) -> tuple[float, float]:
     """Value at zero sideslip and its u: a local parabola through five angles or more, else the mean of the zeros.
 
-    ``slope`` moves the zeros that backlash has shifted back to zero. NaN if the direction was not run.
+    With ``slope``, zeros shifted by backlash are moved back. NaN if the direction was not run.
     """
     i = zeros(points, group, direction)
     i = i[np.isfinite(y[i])]
@@ -96,8 +95,8 @@ def _at_zero(
 
 def unlike_zeros(
     points: Points, phi_t: float, group: LoadGroup, C_alpha: UFloat | None, config: Config
-) -> list[ZerosDisagree]:
-    """Sweeps of one load, path and direction whose zeros differ by more than mounting the wheel again explains."""
+) -> list[str]:
+    """Warnings about sweeps of one load, path and direction whose zeros differ by more than mounting again explains."""
     slope = _slope(C_alpha, group)
     group = LoadGroup(group.load, group.index[np.isclose(points.phi_t[group.index], phi_t)])
     u_difference = math.sqrt(2.0) * math.hypot(config.rig.u("alpha_0_deg"), USUAL_U_FORCE)
@@ -112,7 +111,8 @@ def unlike_zeros(
         if found and found[-1][0] - found[0][0] > constants.UNLIKE_ZEROS * u_difference:
             (least, a), (most, b) = found[0], found[-1]
             names = (points.sweep_names[a], points.sweep_names[b])
-            out.append(ZerosDisagree(group.load, direction < 0, names, (least, most)))
+            way = "forward" if direction > 0 else "backward"
+            out.append(notes.zeros_disagree(group.load, way, names, (least, most)))
     return out
 
 
@@ -120,7 +120,7 @@ def turn_slip_of_path(
     zero: ZeroReadings,
     phi_t: float,
     stiffness: tuple[UFloat | None, UFloat | None],
-    rig: method.RigDoubts,
+    rig: method.UncertainRig,
     config: Config,
 ) -> PathForce:
     """The corrected turn-slip force of one path, and alpha_M if it is known.
@@ -130,7 +130,7 @@ def turn_slip_of_path(
     zero : the readings
     phi_t : turn slip of the path [1/m]
     stiffness : C_alpha and C_gamma [N/rad]
-    rig : the uncertain rig errors; the play itself was taken off the angles already
+    rig : the uncertain rig errors; the angles are already corrected for the play
     config : declares the usual path
     """
     C_alpha, C_gamma = stiffness
@@ -168,8 +168,8 @@ def refuse_inward(force: float, load: float, alpha_M: UFloat | None, config: Con
     else:
         cause = "path_centre or axes are wrong, as forward and backward runs agree on it"
     raise InputError(
-        f"the turn-slip force at {load:.0f} N is {force:.0f} N in ISO-W, towards the disc's centre, and a disc pushes "
-        f"outwards: {cause}",
+        f"the turn-slip force at {load:.0f} N is {force:.0f} N in ISO-W, towards the disc's centre, but turn slip "
+        f"pushes outwards: {cause}",
         file=config.path,
         key="rig.path_centre",
     )

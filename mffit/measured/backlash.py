@@ -7,7 +7,6 @@ from scipy.special import ndtr
 
 from mffit.config import Config
 from mffit.constants import USUAL_CORNERING_STIFFNESS, USUAL_U_MOMENT
-from mffit.measured import constants
 from mffit.parts import Parts
 from mffit.points import Points
 
@@ -15,7 +14,7 @@ from mffit.points import Points
 def backlash_shift(Mz: np.ndarray, u_Mz: np.ndarray, play: float) -> tuple[np.ndarray, np.ndarray]:
     """Sideslip that the play adds to the reading, ISO-W: -(play/2) sign(Mz), and its standard uncertainty [rad].
 
-    Where the moment is no larger than its noise its sign is in doubt: the shift is then the expectation over both signs.
+    If the moment is within its noise, its sign is uncertain: the shift is then the expectation over both signs.
     """
     noise = np.where(np.isfinite(u_Mz) & (u_Mz > 0), u_Mz, USUAL_U_MOMENT)
     positive = ndtr(Mz / noise)
@@ -23,14 +22,14 @@ def backlash_shift(Mz: np.ndarray, u_Mz: np.ndarray, play: float) -> tuple[np.nd
 
 
 def backlash_corrected(points: Points, config: Config) -> Points:
-    """The points with the sideslip angle that the wheel really had, and the uncertainty of its sign in u_Fy.
+    """The points with true sideslip angles; u_Fy includes the uncertainty of the side of the play.
 
     Points without Mz take the sign of the moment that the path curvature causes at zero slip.
     """
     play = np.radians(config.rig.backlash_deg)
     if play == 0.0:
         return points
-    assumed = constants.PLAY_DOUBT_MOMENT * np.sign(points.phi_t) * points.direction
+    assumed = 1e3 * np.sign(points.phi_t) * points.direction  # [Nm]; only its sign matters
     shift, u = backlash_shift(np.where(np.isfinite(points.Mz), points.Mz, assumed), points.u_Mz, play)
     return points.replace(
         alpha=points.alpha + shift, u_Fy=np.hypot(points.u_Fy, USUAL_CORNERING_STIFFNESS * points.Fz * u)

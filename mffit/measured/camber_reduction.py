@@ -21,8 +21,8 @@ from tir import Quantity
 
 
 @dataclass(frozen=True, slots=True)
-class RigDoubts:
-    """What is uncertain of the rig, common to all loads."""
+class UncertainRig:
+    """The uncertain rig errors and path radius, common to all loads."""
 
     errors: Mapping[
         str, UFloat
@@ -38,7 +38,7 @@ class TurnSlip(NamedTuple):
     epsilon_gamma: UFloat
 
 
-def rig_doubts(u: Mapping[str, float], R: UFloat) -> RigDoubts:
+def uncertain_rig(u: Mapping[str, float], R: UFloat) -> UncertainRig:
     """The declared rig errors with their standard uncertainties ``u``, by name and in the declared unit."""
     errors = {}
     for error in DECLARED:
@@ -46,12 +46,12 @@ def rig_doubts(u: Mapping[str, float], R: UFloat) -> RigDoubts:
         assert declared is not None
         if declared.force_at_zero or declared.camber_stiffness:
             errors[error.name] = named(0.0, u.get(error.name, 0.0), declared.source, declared.unit)
-    return RigDoubts(errors, R)
+    return UncertainRig(errors, R)
 
 
 def named(value: float, u: float, source: str, unit: str) -> UFloat:
-    """A number with uncertainty whose tag says what it is and in which unit."""
-    return ufloat(value, max(u, constants.EXACT_U), f"{source}|{unit}")
+    """A number with uncertainty whose tag holds its source and unit."""
+    return ufloat(value, max(u, 1e-12), f"{source}|{unit}")  # the propagation does not accept u = 0
 
 
 def turn_slip_force(F_raw: Any, errors: Mapping[str, Any], at: AtZero, *, both_directions: bool) -> Any:
@@ -62,7 +62,7 @@ def turn_slip_force(F_raw: Any, errors: Mapping[str, Any], at: AtZero, *, both_d
     F_raw : raw force [N], the mean of both directions if both were run
     errors : rig errors by name, in the declared unit
     at : stiffnesses of the tyre and side of the play
-    both_directions : what turns with the direction of rolling is not in the mean
+    both_directions : errors that change sign with the direction of rolling cancel in the mean
     """
     force = F_raw
     for name, number in errors.items():
@@ -162,7 +162,7 @@ class DirectInputs:
 def direct_method(given: DirectInputs) -> TurnSlip:
     """Turn-slip force, stiffness and eps_gamma from plain numbers."""
     R = named(given.R, given.u_R, "path radius", "m")
-    rig = rig_doubts(
+    rig = uncertain_rig(
         {
             "F0_N": given.u_offset,
             "gamma_0_deg": math.degrees(given.u_gamma_0),

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 from uncertainties import UFloat
@@ -12,7 +13,7 @@ from uncertainties import UFloat
 from mffit.config import Config
 from mffit.constants import USUAL_U_MOMENT
 from mffit.measured import camber_reduction as method
-from mffit.measured import constants, wording
+from mffit.measured import constants, notes
 from mffit.measured.alignment import AxisAtLoad
 from mffit.measured.at_zero import (
     ZeroReadings,
@@ -24,21 +25,6 @@ from mffit.measured.at_zero import (
 from mffit.measured.backlash import backlash_corrected, odd_alpha
 from mffit.measured.groups import LoadGroup, load_groups
 from mffit.measured.loads import load_dependence
-from mffit.measured.notes import (
-    Aligned,
-    CamberSkew,
-    Conicity,
-    ContactWanders,
-    Misaligned,
-    Note,
-    NothingMeasured,
-    NotSeparable,
-    PathsContradict,
-    SeveralPaths,
-    StandardUncertainties,
-    StraightPath,
-    Trouble,
-)
 from mffit.measured.paths import (
     PathForce,
     TurnSlipStiffness,
@@ -47,7 +33,7 @@ from mffit.measured.paths import (
     u_by_draws,
 )
 from mffit.measured.radii import effective_radius_at, measured_effective_radius, measured_path_radius
-from mffit.measured.result import LoadResult, Measured
+from mffit.measured.result import CONICITY, Contribution, LoadResult, Measured
 from mffit.measured.slopes import Secant, Slope, slope_at_zero
 from mffit.measured.stiffnesses import (
     Estimates,
@@ -66,13 +52,13 @@ from tir import Quantity, Tyre
 
 @dataclass(frozen=True, slots=True)
 class _Evidence:
-    """What the direct method works on, common to all loads."""
+    """Input of the direct method, common to all loads."""
 
     config: Config
-    points: Points  #: the play taken off the sideslip angles
+    points: Points  #: with sideslip angles corrected for the play
     parts: Parts
     odd_slip: np.ndarray  #: (n,) sideslip to which the odd part of every point belongs [rad]
-    rig: method.RigDoubts | None  #: None on a straight path
+    rig: method.UncertainRig | None  #: None on a straight path
     radii: Mapping[float, UFloat]  #: measured effective radius [m] by load [N]
     base: Tyre | None
 
@@ -111,7 +97,7 @@ class _Turning:
 
 @dataclass(frozen=True, slots=True)
 class _AtLoad:
-    """The result of one load, and what the next steps need of eps_gamma."""
+    """The result of one load, with eps_gamma and its derivative for the next steps."""
 
     row: LoadResult
     epsilon: UFloat | None
@@ -139,7 +125,7 @@ def measure(config: Config, points: Points, parts: Parts, base: Tyre | None = No
         If the turn-slip force points towards the centre of the disc.
     """
     evidence = _evidence(config, points, parts, base)
-    warnings: list[Trouble] = []
+    warnings: list[str] = []
     rows = []
     found_slopes = [(group, *_slopes(evidence, group)) for group in load_groups(evidence.points)]
     evidence, skew = _with_measured_skew(evidence, [slopes for _, slopes, _ in found_slopes])
@@ -148,11 +134,11 @@ def measure(config: Config, points: Points, parts: Parts, base: Tyre | None = No
         rows += [] if found is None else [found]
         warnings += troubles + more
     measured, troubles = _assembled(evidence, rows, skew)
-    return replace(measured, warnings=(*parts.unpaired, *map(wording.warning, [*warnings, *troubles])))
+    return replace(measured, warnings=(*parts.unpaired, *warnings, *troubles))
 
 
 def at_the_axis(config: Config, points: Points, parts: Parts) -> dict[float, AxisAtLoad]:
-    """Cornering stiffness and zeros by load [N] for the alignment, whatever the sign of the turn-slip force."""
+    """Cornering stiffness and zeros by load [N] for the alignment; an inward turn-slip force is not refused."""
     evidence = _evidence(config, points, parts, None)
     out = {}
     for group in load_groups(evidence.points):
@@ -175,22 +161,23 @@ def _evidence(config: Config, points: Points, parts: Parts, base: Tyre | None) -
         points=backlash_corrected(points, config),
         parts=parts,
         odd_slip=odd_alpha(points, parts, config),
-        rig=None if R is None else method.rig_doubts(u, R),
+        rig=None if R is None else method.uncertain_rig(u, R),
         radii=measured_effective_radius(config, R),
         base=base,
     )
 
 
-def _at_load(evidence: _Evidence, group: LoadGroup, slopes: _Slopes) -> tuple[_AtLoad | None, list[Trouble]]:
-    """Everything that the direct method finds at one load; None if there is nothing."""
+def _at_load(evidence: _Evidence, group: LoadGroup, slopes: _Slopes) -> tuple[_AtLoad | None, list[str]]:
+    """Results and warnings at one load; None if nothing could be measured."""
     if evidence.rig is None:
-        return (_straight(group, slopes) if slopes.exists else None), []
+        straight = _AtLoad(_row(group, slopes, None, slopes.C_gamma), None, 0.0)
+        return (straight if slopes.exists else None), []
     turning, troubles = _turning(evidence, group, slopes)
     r_e = effective_radius_at(group.load, evidence.radii, evidence.base)
     return _result(evidence, group, slopes, turning, r_e), troubles
 
 
-def _slopes(evidence: _Evidence, group: LoadGroup) -> tuple[_Slopes, list[Trouble]]:
+def _slopes(evidence: _Evidence, group: LoadGroup) -> tuple[_Slopes, list[str]]:
     """Cornering and camber stiffness, from the odd curves on a disc and from the curves themselves on a straight path."""
     config = evidence.config
     C_alpha = _cornering_stiffness(evidence, group)
@@ -220,9 +207,7 @@ def _camber_estimates(
     return found, float(points.gamma[index].max(initial=0.0))
 
 
-def _with_measured_skew(
-    evidence: _Evidence, slopes: Sequence[_Slopes]
-) -> tuple[_Evidence, CamberSkew | None]:
+def _with_measured_skew(evidence: _Evidence, slopes: Sequence[_Slopes]) -> tuple[_Evidence, Quantity | None]:
     """The evidence with rig errors that forward and backward camber sweeps measure, and what was found of the skew.
 
     Rolling backwards the camber force keeps its sign and the slip force changes it: half the difference of both slopes is
@@ -236,7 +221,7 @@ def _with_measured_skew(
     if evidence.rig is None or not both:
         return evidence, None
     errors = dict(evidence.rig.errors)
-    note = None
+    skew = None
     for error in DECLARED:
         declared = error.declared
         if declared is None or declared.camber_stiffness is None:
@@ -247,8 +232,8 @@ def _with_measured_skew(
         ]
         found = least_uncertain_mean([errors[error.name], *estimates_of_it])
         errors[error.name] = found
-        note = CamberSkew(Quantity(found.nominal_value, found.std_dev, declared.unit))
-    return replace(evidence, rig=replace(evidence.rig, errors=errors)), note
+        skew = Quantity(found.nominal_value, found.std_dev, declared.unit)
+    return replace(evidence, rig=replace(evidence.rig, errors=errors)), skew
 
 
 def _cornering_stiffness(evidence: _Evidence, group: LoadGroup) -> UFloat | None:
@@ -256,31 +241,27 @@ def _cornering_stiffness(evidence: _Evidence, group: LoadGroup) -> UFloat | None
     return number(found.slope or found.secant, "cornering stiffness")
 
 
-def _turning(evidence: _Evidence, group: LoadGroup, slopes: _Slopes) -> tuple[_Turning | None, list[Trouble]]:
+def _turning(evidence: _Evidence, group: LoadGroup, slopes: _Slopes) -> tuple[_Turning | None, list[str]]:
     """Turn-slip force and stiffness from the zeros of every path; None without zeros."""
     config, points, rig = evidence.config, evidence.points, evidence.rig
     assert rig is not None
     found = zeros_by_path(points, group, slopes.C_alpha, config)
     if not found:
         return None, []
-    troubles: list[Trouble] = []
+    troubles: list[str] = []
     for phi_t, _ in found:
         troubles += unlike_zeros(points, phi_t, group, slopes.C_alpha, config)
     both = (slopes.C_alpha, slopes.C_gamma)
     paths = tuple(turn_slip_of_path(zero, phi_t, both, rig, config) for phi_t, zero in found)
     combined = turn_slip_stiffness(paths)
     if combined.contradictory:
-        alone = tuple(Quantity(C.nominal_value, C.std_dev, "Nm") for C in combined.of_paths)
-        troubles.append(PathsContradict(group.load, tuple(-1.0 / phi_t for phi_t, _ in found), alone))
+        alone = [Quantity(C.nominal_value, C.std_dev, "Nm") for C in combined.of_paths]
+        troubles.append(notes.paths_contradict(group.load, [-1.0 / phi_t for phi_t, _ in found], alone))
     force = paths[0].force if len(paths) == 1 else paths[0].sign * combined.C_phit / rig.R
     turning = _Turning(found[0][1], tuple(phi_t for phi_t, _ in found), paths, combined, force)
     if combined.C_phit.nominal_value <= 0.0:
         refuse_inward(force.nominal_value, group.load, turning.alpha_M, config)
     return turning, troubles
-
-
-def _straight(group: LoadGroup, slopes: _Slopes) -> _AtLoad:
-    return _AtLoad(_row(group, slopes, None, slopes.C_gamma), None, 0.0)
 
 
 def _result(
@@ -358,59 +339,78 @@ def _from_moments(evidence: _Evidence, group: LoadGroup, turning: _Turning, r_e:
 
 
 def _assembled(
-    evidence: _Evidence, rows: Sequence[_AtLoad], skew: CamberSkew | None
-) -> tuple[Measured, list[Trouble]]:
+    evidence: _Evidence, rows: Sequence[_AtLoad], skew: Quantity | None
+) -> tuple[Measured, list[str]]:
     """The results of all loads together, with eps_gamma over load and the remarks."""
     nominal_load = evidence.config.tyre.nominal_load
     per_load = tuple(found.row for found in rows)
     r_e_loads = {load: float(r.nominal_value) for load, r in evidence.radii.items()}
-    known = [found for found in rows if found.epsilon is not None]
+    known = [(found, found.epsilon) for found in rows if found.epsilon is not None]
     if not known:
-        nearest = min(per_load, key=lambda row: abs(row.load - nominal_load), default=None)
-        notes: tuple[Note, ...] = () if evidence.rig else (StraightPath(),)
-        nothing: list[Trouble] = [NothingMeasured()] if evidence.rig else []
-        return Measured(per_load, nearest, None, 0.0, None, r_e_loads, False, notes, ()), nothing
-    loads = [found.row.load for found in known]
+        nothing = Measured(
+            per_load=per_load,
+            nominal=min(per_load, key=lambda row: abs(row.load - nominal_load), default=None),
+            pecp1=None,
+            pecp2=0.0,
+            u_pecp2=None,
+            r_e_loads=r_e_loads,
+            misaligned=False,
+            notes=() if evidence.rig else (notes.STRAIGHT_PATH,),
+            warnings=(),
+        )
+        return nothing, [notes.NOTHING_MEASURED] if evidence.rig else []
+    loads = [found.row.load for found, _ in known]
     at = min(range(len(known)), key=lambda k: abs(loads[k] - nominal_load))
-    law = load_dependence(
-        loads, [found.epsilon for found in known if found.epsilon is not None], at, nominal_load
-    )
-    nominal = known[at]
-    axis = alignment_verdict(evidence.config, nominal.row)
-    misaligned = isinstance(axis, Misaligned)
-    notes = (
-        *(() if axis is None or isinstance(axis, Misaligned) else (axis,)),
-        *([skew] if skew else []),
-        *([SeveralPaths(tuple(-1.0 / phi_t for phi_t in nominal.row.paths))] if len(nominal.row.paths) > 1 else []),
-        law.note,
-        StandardUncertainties(),
-        _conicity(nominal),
-        ContactWanders(),
-    )  # fmt: skip
+    law = load_dependence(loads, [epsilon for _, epsilon in known], at, nominal_load)
+    nominal = known[at][0]
+    row, axis = nominal.row, alignment_verdict(evidence.config, nominal.row)
+    share = constants.PLAUSIBLE_CONICITY
+    # Conicity has the same sign on every path.
+    conicity = Contribution(CONICITY, share * row.load, "N", abs(share * row.load * nominal.per_newton))
     measured = Measured(
-        per_load, nominal.row, law.pecp1, law.pecp2, law.u_pecp2, r_e_loads, misaligned, notes, ()
+        per_load=per_load,
+        nominal=row,
+        pecp1=law.pecp1,
+        pecp2=law.pecp2,
+        u_pecp2=law.u_pecp2,
+        r_e_loads=r_e_loads,
+        misaligned=axis.misaligned,
+        notes=(
+            *([axis.sentence] if axis.sentence and not axis.misaligned else []),
+            *([notes.camber_skew(skew)] if skew else []),
+            *([notes.several_paths([-1.0 / phi_t for phi_t in row.paths])] if len(row.paths) > 1 else []),
+            law.note,
+            notes.STANDARD_UNCERTAINTIES,
+            notes.conicity(share, conicity.u, conicity.contribution),
+            notes.CONTACT_WANDERS,
+        ),
+        warnings=(),
+        load_note=law.note,
+        conicity=conicity,
     )
-    return measured, [axis] if isinstance(axis, Misaligned) else []
+    return measured, [axis.sentence] if axis.misaligned else []
 
 
-def alignment_verdict(config: Config, row: LoadResult) -> NotSeparable | Aligned | Misaligned | None:
-    """Whether the sideslip axis is off by more than the rig's own alignment leaves; None where it does not matter."""
+class AlignmentVerdict(NamedTuple):
+    """Whether the sideslip axis is off by more than the rig's own alignment leaves."""
+
+    misaligned: bool
+    sentence: str  #: empty where both sides of the disc make the misalignment cancel
+
+
+def alignment_verdict(config: Config, row: LoadResult) -> AlignmentVerdict:
+    """The verdict at one load with a turn-slip force."""
     assert row.F_phit is not None
     force, left = row.F_phit.value, config.rig.u("alpha_0_deg")
     if row.alpha_M is None and min(row.paths) < 0.0 < max(row.paths):
-        return None
+        return AlignmentVerdict(False, "")
     if row.alpha_M is None:
         angle = math.degrees(abs(force / row.C_alpha.value)) if row.C_alpha is not None else None
-        return NotSeparable(force, angle, left)
+        return AlignmentVerdict(False, notes.not_separable(force, angle, left))
     slip = (row.F_forward - row.F_backward) / 2.0
-    verdict = Aligned if abs(slip) <= left else Misaligned
-    return verdict(row.alpha_M, slip, _shift(row, slip))
-
-
-def _conicity(found: _AtLoad) -> Conicity:
-    """The effect of a plausible conicity, which has the same sign on every path."""
-    force = constants.PLAUSIBLE_CONICITY * found.row.load
-    return Conicity(constants.PLAUSIBLE_CONICITY, force, abs(force * found.per_newton))
+    misaligned = abs(slip) > left
+    sentence = notes.misaligned if misaligned else notes.aligned
+    return AlignmentVerdict(misaligned, sentence(row.alpha_M, slip, _shift(row, slip)))
 
 
 def _shift(row: LoadResult, force: float) -> float:

@@ -8,8 +8,7 @@ from typing import NamedTuple
 import numpy as np
 from uncertainties import UFloat
 
-from mffit.measured import constants
-from mffit.measured.notes import EpsilonInNoise, LoadSlope, Note, OneLoad, SlopeInNoise, SlopeTooSteep
+from mffit.measured import constants, notes
 
 
 class LoadDependence(NamedTuple):
@@ -18,7 +17,7 @@ class LoadDependence(NamedTuple):
     pecp1: float
     pecp2: float
     u_pecp2: float | None
-    note: Note
+    note: str
 
 
 def load_dependence(
@@ -41,7 +40,7 @@ def load_dependence(
     pecp1 = float(at_nominal.nominal_value)
     others = [i for i in range(len(loads)) if i != nominal]
     if not others:
-        return LoadDependence(pecp1, 0.0, None, OneLoad())
+        return LoadDependence(pecp1, 0.0, None, notes.ONE_LOAD)
     x = np.array([(loads[i] - loads[nominal]) / Fz0 for i in others])
     differences = [epsilon[i] - at_nominal for i in others]
     weight = np.linalg.pinv(covariance(differences))
@@ -49,15 +48,14 @@ def load_dependence(
     slope, u = float(x @ weight @ y / (x @ weight @ x)), float(1.0 / np.sqrt(x @ weight @ x))
     u_pecp2 = u / max(abs(pecp1), 1e-12)
     span = [pecp1 + slope * (load - loads[nominal]) / Fz0 for load in loads]
-    why: Note
     if abs(slope) <= constants.SIGNIFICANT_SLOPE * u:
-        why = SlopeInNoise(slope, u)
+        why = notes.slope_in_noise(slope, u)
     elif abs(pecp1) <= constants.SIGNIFICANT_SLOPE * at_nominal.std_dev:
-        why = EpsilonInNoise()
+        why = notes.EPSILON_IN_NOISE
     elif max(span) >= constants.LARGEST_EPSILON:
-        why = SlopeTooSteep(max(span))
+        why = notes.slope_too_steep(max(span))
     else:
-        return LoadDependence(pecp1, slope / pecp1, u_pecp2, LoadSlope(slope / pecp1, u_pecp2))
+        return LoadDependence(pecp1, slope / pecp1, u_pecp2, notes.load_slope(slope / pecp1, u_pecp2))
     return LoadDependence(pecp1, 0.0, u_pecp2, why)
 
 

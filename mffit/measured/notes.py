@@ -1,183 +1,124 @@
-"""What the direct method has to remark beside its numbers: facts, put into sentences by :mod:`mffit.measured.wording`."""
+"""What the direct method remarks beside its numbers: notes to know, and warnings to act on, as sentences."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import math
+from collections.abc import Sequence
 
+from mffit.rounding import to_uncertainty
 from tir import Quantity
 
-
-@dataclass(frozen=True, slots=True)
-class SlopeNotPossible:
-    """The camber sweep is too short for its slope at zero; the secant stands in."""
-
-    load: float  #: [N]
-    angle_deg: float  #: of the secant
-
-
-@dataclass(frozen=True, slots=True)
-class SecantNotPossible:
-    """The camber sweep does not reach the secant's angle; the slope at zero stands in."""
-
-    load: float  #: [N]
-    angle_deg: float
-
-
-@dataclass(frozen=True, slots=True)
-class NothingMeasured:
-    """A disc, and no load has everything that eps_gamma needs."""
-
-
-@dataclass(frozen=True, slots=True)
-class StraightPath:
-    """A flat track."""
-
-
-@dataclass(frozen=True, slots=True)
-class NotSeparable:
-    """Without backward runs misalignment and ply-steer look like turn slip."""
-
-    force: float  #: at (0, 0) [N]
-    angle_deg: float | None  #: that would make this force; None without a cornering stiffness
-    u_alignment: float  #: assumed for the alignment [N]
-
-
-@dataclass(frozen=True, slots=True)
-class SeveralPaths:
-    """Zeros of more than one path were combined."""
-
-    radii: tuple[float, ...]  #: [m], positive with the disc's centre to the left
-
-
-@dataclass(frozen=True, slots=True)
-class CamberSkew:
-    """Forward and backward camber sweeps measure the squareness of camber and steering axis."""
-
-    skew: Quantity  #: [deg]
-
-
-@dataclass(frozen=True, slots=True)
-class Aligned:
-    """Forward and backward runs show a sideslip misalignment within what the alignment leaves."""
-
-    alpha_M: Quantity  #: [rad]
-    slip: float  #: the force of it [N]
-    shift: float  #: of eps_gamma, were it not corrected
-
-
-@dataclass(frozen=True, slots=True)
-class Misaligned:
-    """They show one beyond that."""
-
-    alpha_M: Quantity  #: [rad]
-    slip: float  #: [N]
-    shift: float
-
-
-@dataclass(frozen=True, slots=True)
-class LoadSlope:
-    """PECP2 is written."""
-
-    pecp2: float
-    u: float
-
-
-@dataclass(frozen=True, slots=True)
-class OneLoad:
-    """PECP2 is 0: there is nothing to take a slope over."""
-
-
-@dataclass(frozen=True, slots=True)
-class SlopeInNoise:
-    """PECP2 is 0: the slope does not stand out."""
-
-    slope: float  #: of eps_gamma per unit of dfz
-    u: float
-
-
-@dataclass(frozen=True, slots=True)
-class EpsilonInNoise:
-    """PECP2 is 0: it is relative to an eps_gamma that does not stand out from zero."""
-
-
-@dataclass(frozen=True, slots=True)
-class SlopeTooSteep:
-    """PECP2 is 0: with it eps_gamma would come too near 1."""
-
-    largest: float  #: eps_gamma within the loads
-
-
-@dataclass(frozen=True, slots=True)
-class StandardUncertainties:
-    """All uncertainties have k = 1."""
-
-
-@dataclass(frozen=True, slots=True)
-class Conicity:
-    """It cannot be removed."""
-
-    share: float  #: a plausible one, of the load
-    force: float  #: [N]
-    shift: float  #: of eps_gamma by it
-
-
-@dataclass(frozen=True, slots=True)
-class ContactWanders:
-    """With camber the path radius changes."""
-
-
-@dataclass(frozen=True, slots=True)
-class AxisOff:
-    """Forward and backward zeros of a load differ by more than an aligned axis allows."""
-
-    load: float  #: [N]
-    difference: float  #: [N]
-    limit: float  #: [N]
-    correction_deg: float
-
-
-@dataclass(frozen=True, slots=True)
-class PathsContradict:
-    """The zeros of the paths say different turn-slip stiffnesses, beyond all that is known to be uncertain."""
-
-    load: float  #: [N]
-    radii: tuple[float, ...]  #: [m], positive with the disc's centre to the left
-    C_phit: tuple[Quantity, ...]  #: [Nm]
-
-
-@dataclass(frozen=True, slots=True)
-class ZerosDisagree:
-    """Sweeps that are declared alike read zeros that are not."""
-
-    load: float  #: [N]
-    backward: bool
-    sweeps: tuple[str, str]
-    forces: tuple[float, float]  #: [N]
-
-
-Note = (
-    StraightPath
-    | NotSeparable
-    | SeveralPaths
-    | CamberSkew
-    | Aligned
-    | LoadSlope
-    | OneLoad
-    | SlopeInNoise
-    | EpsilonInNoise
-    | SlopeTooSteep
-    | StandardUncertainties
-    | Conicity
-    | ContactWanders
+STRAIGHT_PATH = "A flat track's path is straight: it has no turn slip to measure."
+STANDARD_UNCERTAINTIES = "All uncertainties are standard uncertainties (k = 1)."
+CONTACT_WANDERS = "With camber the contact point moves over the crown and changes the path radius; R holds for the upright wheel."
+NOTHING_MEASURED = (
+    "eps_gamma could not be measured: it needs a camber sweep, points at (0, 0) and a [rolling_radius]"
 )
-"""To be known beside the numbers."""
-Trouble = (
-    SlopeNotPossible
-    | SecantNotPossible
-    | NothingMeasured
-    | Misaligned
-    | AxisOff
-    | PathsContradict
-    | ZerosDisagree
-)
-"""To be acted on."""
+ONE_LOAD = "PECP2 is 0: one load was measured."
+EPSILON_IN_NOISE = "PECP2 is 0: eps_gamma itself is within 2 u of zero, so a relative slope has no meaning."
+
+
+def load_slope(pecp2: float, u: float) -> str:
+    return f"PECP2 = {pecp2:.3f} +- {u:.3f} (k = 1)."
+
+
+def slope_in_noise(slope: float, u: float) -> str:
+    return f"PECP2 is 0: the slope {slope:.3f} per nominal load is within 2 u = {2 * u:.3f}."
+
+
+def slope_too_steep(largest: float) -> str:
+    return f"PECP2 is 0: eps_gamma would reach {largest:.2f} within the loads."
+
+
+def not_separable(force: float, angle_deg: float | None, u: float) -> str:
+    """Without backward runs; ``angle_deg`` is None without a sideslip sweep, which gives the angle of a force [N]."""
+    angle = (
+        "an unknown angle (no sideslip sweep gives C_alpha)" if angle_deg is None else f"{angle_deg:.2f} deg"
+    )
+    return (
+        f"Sideslip misalignment, turn slip and ply-steer cannot be separated here. If the force {force:.0f} N at (0, 0) were "
+        f"not turn slip, it would take {angle} of misalignment or ply-steer. The alignment is assumed to leave {u:.0f} N (k = 1)."
+    )
+
+
+def several_paths(radii: Sequence[float]) -> str:
+    return (
+        f"The turn-slip stiffness combines the zeros of {len(radii)} paths (disc's centre {', '.join(map(_centre, radii))}) so "
+        "that its uncertainty is least: a force that is the same on all of them cancels."
+    )
+
+
+def camber_skew(skew: Quantity) -> str:
+    return (
+        f"Forward and backward camber sweeps: leaning steers the wheel by {to_uncertainty(skew.value, skew.u)} "
+        f"+- {to_uncertainty(skew.u, skew.u)} {skew.unit} times the sine of the camber angle (camber skew). It is subtracted "
+        "from the camber stiffness."
+    )
+
+
+def aligned(alpha_M: Quantity, slip: float, shift: float) -> str:
+    return (
+        f"Forward and backward runs: {_misalignment(alpha_M, slip, shift)}. It is within what the alignment leaves and stays "
+        "in the model as ply-steer."
+    )
+
+
+def conicity(share: float, force: float, shift: float) -> str:
+    return (
+        f"Conicity cannot be removed: a plausible {force:.0f} N ({100 * share:.1f} % of the load) would move eps_gamma by "
+        f"{shift:.3f}."
+    )
+
+
+def slope_not_possible(load: float, angle_deg: float) -> str:
+    return (
+        f"at {load:.0f} N the camber sweep is too short for the slope at zero; the secant at {angle_deg:g} deg is used, "
+        "which is a few per cent low: add cambers up to 20 deg"
+    )
+
+
+def secant_not_possible(load: float, angle_deg: float) -> str:
+    return f"at {load:.0f} N the camber sweep does not reach {angle_deg:g} deg; the slope at zero is used instead of the secant"
+
+
+def misaligned(alpha_M: Quantity, slip: float, shift: float) -> str:
+    return (
+        f"the sideslip axis is misaligned: {_misalignment(alpha_M, slip, shift)}; forward and backward forces differ by "
+        f"{abs(2 * slip):.0f} N. The angles are corrected for it; ply-steer cannot be separated from it"
+    )
+
+
+def axis_off(load: float, difference: float, limit: float, correction_deg: float) -> str:
+    return (
+        f"at {load:.0f} N forward and backward forces differ by {difference:.0f} N (the limit is {limit:.0f} N): the sideslip "
+        f"axis is off by about {correction_deg:.2f} deg"
+    )
+
+
+def zeros_disagree(load: float, way: str, sweeps: tuple[str, str], forces: tuple[float, float]) -> str:
+    return (
+        f"at {load:.0f} N the {way} zeros of {sweeps[0]} and {sweeps[1]} are {forces[0]:.0f} N and {forces[1]:.0f} N; these "
+        "zeros cannot come from one path: look for a sweep whose path_centre, path_radius or direction is not declared, or "
+        "for an axis that was moved between them"
+    )
+
+
+def paths_contradict(load: float, radii: Sequence[float], C_phit: Sequence[Quantity]) -> str:
+    found = ", ".join(
+        f"{C.value:.0f} +- {C.u:.0f} Nm (disc's centre {_centre(R)})"
+        for R, C in zip(radii, C_phit, strict=True)
+    )
+    return (
+        f"at {load:.0f} N the zeros of the paths contradict each other: they give turn-slip stiffnesses of {found}; look for a "
+        "path_centre or path_radius that is not the run's, or for an offset, a camber zero or an alignment worse than declared"
+    )
+
+
+def _centre(R: float) -> str:
+    """Place of the disc's centre, to the left for a positive radius [m]."""
+    return f"{abs(R):.3g} m to the {'left' if R > 0.0 else 'right'}"
+
+
+def _misalignment(alpha_M: Quantity, slip: float, shift: float) -> str:
+    angle, u = math.degrees(alpha_M.value), math.degrees(alpha_M.u)
+    return f"alpha_M = {angle:.3f} +- {u:.3f} deg ({slip:.0f} N); uncorrected it would move eps_gamma by {shift:.2f}"

@@ -11,7 +11,7 @@ from uncertainties import UFloat
 
 from mffit.measured import constants
 from mffit.measured.camber_reduction import (
-    RigDoubts,
+    UncertainRig,
     acts_at_zero,
     monte_carlo,
     named,
@@ -70,7 +70,6 @@ def turn_slip_stiffness(paths: Sequence[PathForce]) -> TurnSlipStiffness:
     if len(single) == 1:
         return TurnSlipStiffness(single[0], np.ones(1), tuple(single), 1.0)
     errors = covariance(single)
-    errors += constants.SHARED_ERROR_RIDGE * np.diag(np.diag(errors))
     weights = _weights(errors)
     together = sum(w * C for w, C in zip(weights.tolist(), single, strict=True))
     return TurnSlipStiffness(together, weights, tuple(single), _chance(paths, single, errors))
@@ -78,14 +77,14 @@ def turn_slip_stiffness(paths: Sequence[PathForce]) -> TurnSlipStiffness:
 
 def least_uncertain_mean(numbers: Sequence[UFloat]) -> UFloat:
     """The mean of several estimates of one number, weighted by their covariance for the least uncertainty."""
-    errors = covariance(numbers)
-    weights = _weights(errors + constants.SHARED_ERROR_RIDGE * np.diag(np.diag(errors)))
+    weights = _weights(covariance(numbers))
     return sum(w * x for w, x in zip(weights.tolist(), numbers, strict=True))
 
 
 def _weights(errors: np.ndarray) -> np.ndarray:
     """Weights (k,) of the mean with the least uncertainty, from the covariance (k, k) of its terms."""
-    weights = np.linalg.solve(errors, np.ones(len(errors)))
+    # The ridge keeps the weights defined if all errors are shared.
+    weights = np.linalg.solve(errors + 1e-9 * np.diag(np.diag(errors)), np.ones(len(errors)))
     return weights / weights.sum()
 
 
@@ -99,7 +98,7 @@ def _chance(paths: Sequence[PathForce], single: Sequence[UFloat], errors: np.nda
 
 
 def u_by_draws(
-    paths: Sequence[PathForce], weights: np.ndarray, C_gamma: UFloat, r_e: UFloat, rig: RigDoubts
+    paths: Sequence[PathForce], weights: np.ndarray, C_gamma: UFloat, r_e: UFloat, rig: UncertainRig
 ) -> float:
     """u(eps_gamma) by random draws of all independent sources.
 

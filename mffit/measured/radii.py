@@ -59,7 +59,7 @@ def radius_readings(config: Config) -> tuple[RadiusReading, ...]:
             RadiusReading(
                 load,
                 float(r_e.nominal_value),
-                max(float(np.hypot.reduce(own)), constants.LEAST_RADIUS_U),
+                max(float(np.hypot.reduce(own)), 1e-5),  # the fit divides by it
                 follows,
             )
         )

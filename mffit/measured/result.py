@@ -9,12 +9,11 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 from mffit.brief import Brief
-from mffit.measured.notes import Conicity, Note
 from mffit.quantities import CONDITIONS, DIRECT
 from tir import Quantity
 
 CONICITY, FINITE_SPIN = "conicity", "finite spin of the disc"
-"""Sources that join the budget once a model has been fitted; the random draws are made before."""
+"""Sources that are added to the budget after the fit; the random draws do not include them."""
 
 
 class Contribution(NamedTuple):
@@ -32,7 +31,7 @@ class LoadResult(Brief):
 
     load: float  #: [N]
     C_alpha: Quantity | None = None  #: [N/rad]
-    C_gamma: Quantity | None = None  #: the chosen estimate, less what the rig adds [N/rad]
+    C_gamma: Quantity | None = None  #: the chosen estimate, corrected for rig errors [N/rad]
     C_gamma_slope: Quantity | None = None
     C_gamma_secant: Quantity | None = None
     r_e: Quantity | None = None  #: [m]
@@ -62,19 +61,21 @@ class LoadResult(Brief):
 
 @dataclass(frozen=True, slots=True, repr=False)
 class Measured(Brief):
-    """What was read straight off the data, no model involved."""
+    """Results of the direct method, without a model."""
 
     per_load: tuple[LoadResult, ...]
     nominal: LoadResult | None  #: the load nearest FNOMIN; None if nothing could be measured
     pecp1: float | None
     pecp2: float
     u_pecp2: float | None
-    r_e_loads: Mapping[float, float]  #: loads at which r_e was really measured
+    r_e_loads: Mapping[float, float]  #: by load, where it was measured
     misaligned: bool  #: alpha_M is beyond what the rig's alignment leaves and is corrected in the points
-    notes: tuple[Note, ...]
-    warnings: tuple[str, ...]  #: sentences, as they join those of the steps before and after
+    notes: tuple[str, ...]  #: to know beside the numbers
+    warnings: tuple[str, ...]  #: to act on
+    load_note: str = ""  #: the value of PECP2, or why it is 0
+    conicity: Contribution | None = None  #: joins the budget in :meth:`debiased`
     epsilon_gamma_model: float | None = None
-    epsilon_gamma_debiased: Quantity | None = None  #: less what the finite spin of the disc adds
+    epsilon_gamma_debiased: Quantity | None = None  #: corrected for the finite spin of the disc
 
     @property
     def headline(self) -> str:
@@ -129,23 +130,15 @@ class Measured(Brief):
         found = {row.load: getattr(row, key) for row in self.per_load}
         return {load: quantity.value for load, quantity in found.items() if quantity is not None}
 
-    def with_model(self, *, epsilon_gamma_model: float | None, pecp1: float | None) -> Measured:
-        """The same with what only the finished file can tell."""
-        return dataclasses.replace(
-            self, epsilon_gamma_model=epsilon_gamma_model, pecp1=self.pecp1 if pecp1 is None else pecp1
-        )
-
     def debiased(self, bias: float) -> Measured:
-        """The same with eps_gamma less the bias that finite spin gives it, beside the measured one.
+        """The record with eps_gamma corrected for finite spin beside the measured one.
 
-        Both budgets gain what conicity may add, the measured one also the bias, which is known now and stays in it.
+        Conicity is added to both budgets, the bias to that of the measured value, which still contains it.
         """
         row, direct = self.nominal, self.epsilon_gamma
         assert row is not None
         assert direct is not None
-        conicity = [
-            Contribution(CONICITY, n.force, "N", n.shift) for n in self.notes if isinstance(n, Conicity)
-        ]
+        conicity = [] if self.conicity is None else [self.conicity]
         spin = Contribution(FINITE_SPIN, abs(bias), "-", abs(bias))
         u = math.hypot(direct.u, *(line.contribution for line in conicity))
         whole = Quantity(direct.value, math.hypot(u, bias), direct.unit)

@@ -11,9 +11,8 @@ from uncertainties import UFloat
 from mffit.config import Config
 from mffit.constants import USUAL_U_FORCE, ZERO_CAMBER, ZERO_SIDESLIP
 from mffit.measured import camber_reduction as method
-from mffit.measured import constants
+from mffit.measured import constants, notes
 from mffit.measured.groups import LoadGroup
-from mffit.measured.notes import SecantNotPossible, SlopeNotPossible, Trouble
 from mffit.measured.paths import on_radius
 from mffit.measured.slopes import Secant, Slope, secant_at, slope_at_zero
 from mffit.parts import Parts
@@ -37,7 +36,7 @@ def cornering(points: Points, parts: Parts, odd_slip, group: LoadGroup, config: 
 
 def chosen_camber_stiffness(
     config: Config, found: Estimates, largest: float, load: float
-) -> tuple[UFloat | None, Trouble | None]:
+) -> tuple[UFloat | None, str | None]:
     """C_gamma by the configured method; the other one, with a warning, if the sweep is too short for it.
 
     Parameters
@@ -50,9 +49,9 @@ def chosen_camber_stiffness(
     wanted, angle = config.camber_stiffness.method, config.camber_stiffness.angle_deg
     slope_possible = found.slope is not None and largest >= constants.SHORTEST_CAMBER_SWEEP.rad
     if wanted == "slope" and not slope_possible and found.secant is not None:
-        return number(found.secant, "camber stiffness"), SlopeNotPossible(load, angle)
+        return number(found.secant, "camber stiffness"), notes.slope_not_possible(load, angle)
     if wanted == "secant" and found.secant is None and found.slope is not None:
-        return number(found.slope, "camber stiffness"), SecantNotPossible(load, angle)
+        return number(found.slope, "camber stiffness"), notes.secant_not_possible(load, angle)
     return number(found.slope if wanted == "slope" else found.secant, "camber stiffness"), None
 
 

@@ -110,11 +110,8 @@ def _fitted(
             assert measured.epsilon_gamma_debiased is not None
             measured = replace(measured, pecp1=measured.epsilon_gamma_debiased.value)
             fitted = fit(measured)
-    measured = measured.with_model(
-        epsilon_gamma_model=fitted.epsilon_gamma_model,
-        pecp1=float(fitted.written["PECP1"]) if measured.epsilon_gamma is not None else None,
-    )
-    return measured, fitted
+    pecp1 = measured.pecp1 if measured.epsilon_gamma is None else float(fitted.written["PECP1"])
+    return replace(measured, epsilon_gamma_model=fitted.epsilon_gamma_model, pecp1=pecp1), fitted
 
 
 def _members(config: Config, fitted: FitResult, count: int, annotated: Annotate) -> Iterator[Tyre]:

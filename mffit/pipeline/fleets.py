@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
@@ -108,5 +109,5 @@ def _with_estimates(rows: Sequence[Row], rigs: Sequence[Hierarchy | None]) -> tu
             out.append(row)
             continue
         tyre = left[row.rig].pop(0)
-        out.append(combining.with_estimate(row, _epsilon(tyre), tyre.strain))
+        out.append(replace(row, together=_epsilon(tyre), strain=tyre.strain))
     return tuple(out)

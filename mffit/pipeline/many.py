@@ -3,17 +3,24 @@
 from __future__ import annotations
 
 import contextlib
+import json
 import threading
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from pathlib import Path
 
+import mffit
+import tir
 from mffit import config as configuration
+from mffit.config import Config
 from mffit.errors import InputError
 from mffit.fleet import read
+from mffit.output import written_by
+from mffit.pipeline.build_output import WRITTEN, resolved_text
 from mffit.pipeline.building import build
-from mffit.pipeline.current import is_current
+from mffit.pipeline.members import FOLDER
+from mffit.pipeline.provenance import PROGRAM, fitted_to
 from mffit.pipeline.workers import Job, Outcomes, in_processes, on_cluster
 from mffit.results import Outcome
 from tir.errors import TirError
@@ -141,3 +148,29 @@ def _check_folder(job: Job, others: Sequence[Job], *, given: bool) -> None:
                 f'both are named "{job.name}" in [tyre], change one' if given else "name a folder with --out"
             )
             raise InputError(f"would be built into {job.out}, like {other.source}: {remedy}", file=job.source)
+
+
+def is_current(config: Config, out: Path, *, ensemble: int = 0) -> bool:
+    """Whether ``out`` holds a complete, unedited build of this version, configuration and inputs.
+
+    Parameters
+    ----------
+    config : configuration of the build
+    out : folder of an earlier build; it need not exist
+    ensemble : number of drawn files required; 0 accepts any
+    """
+    kept = written_by(out, "build")
+    try:
+        result = json.loads((out / "result.json").read_text(encoding="utf-8"))
+        files = [*WRITTEN, "resolved.toml", *result["files"].values()]
+        tyre = tir.read(out / result["tir"])
+        drawn = sum(name.startswith(f"{FOLDER}/") and name.endswith(".tir") for name in kept)
+        return (
+            set(files) <= kept
+            and ensemble in (0, drawn)
+            and (out / "resolved.toml").read_bytes() == resolved_text(config, out)
+            and tyre.provenance.get(PROGRAM) == f"mffit {mffit.__version__}"
+            and fitted_to(tyre, config)
+        )
+    except (OSError, ValueError, LookupError, TypeError, AttributeError, TirError):
+        return False

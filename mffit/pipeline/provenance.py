@@ -16,7 +16,6 @@ from mffit.config import Config, declared_faults
 from mffit.diagnosis.inexact import Inexactness, correlated, refitted
 from mffit.fit import FitResult
 from mffit.measured import Measured
-from mffit.pipeline import constants
 from mffit.pipeline.inputs import input_hashes
 from mffit.rig_errors import BY_NAME as RIG_ERRORS
 from mffit.rig_errors import Faults
@@ -107,10 +106,7 @@ def posterior_of(tyre: Tyre, path: Path) -> Inexactness | None:
         expected = {name: float(row["value"]) for name, row in values.items()}
     except (OSError, ValueError, KeyError, TypeError, IndexError):
         return None
-    same = all(
-        np.isclose(float(tyre[n]), v, rtol=constants.UNEDITED_TOLERANCE, atol=1e-12)
-        for n, v in expected.items()
-    )
+    same = all(np.isclose(float(tyre[n]), v, rtol=1e-6, atol=1e-12) for n, v in expected.items())
     return correlated(names, np.array([expected[n] for n in names]), covariance) if names and same else None
 
 

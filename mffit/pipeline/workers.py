@@ -10,15 +10,16 @@ from collections import deque
 from collections.abc import Callable, Generator, Iterable, Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, CancelledError, Executor, Future, ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
 from typing import Any
 
 from mffit.errors import InputError
-from mffit.pipeline import constants
 from mffit.results import Outcome
 
+CLUSTER_BUILDS_IN_FLIGHT = 1000
+"""Builds submitted to a Dask cluster at a time; more than any cluster works on at once."""
 START_METHOD = "spawn"
 """A forked copy of a process with threads may hang, so worker processes start from scratch."""
 
@@ -62,7 +63,7 @@ def on_cluster(wanted: Sequence[Job], address: str, build_one: BuildOne) -> Outc
     except ImportError:
         raise InputError("--dask needs the package distributed: pip install 'mffit[dask]'") from None
     try:
-        client = Client(address, timeout=int(constants.SCHEDULER_TIMEOUT))
+        client = Client(address, timeout=10)
     except (OSError, ValueError, TypeError) as error:
         raise InputError(
             f"no Dask scheduler answers at {address} ({type(error).__name__}): start one with `dask scheduler`, "
@@ -72,8 +73,8 @@ def on_cluster(wanted: Sequence[Job], address: str, build_one: BuildOne) -> Outc
     given = {job.source.absolute(): job.source for job in wanted}
     with client:
         executor = client.get_executor(pure=False)
-        for outcome in _submitted(executor, deque(absolute), constants.CLUSTER_BUILDS_IN_FLIGHT, build_one):
-            yield outcome.having(source=given[outcome.source])
+        for outcome in _submitted(executor, deque(absolute), CLUSTER_BUILDS_IN_FLIGHT, build_one):
+            yield replace(outcome, source=given[outcome.source])
 
 
 class _WorkerDied(Exception):

@@ -65,8 +65,8 @@ def guesses(raw: RawTable, *, unloaded_radius: float | None = None) -> Guesses:
     chosen, left_out = choices(columns, unloaded_radius)
     remarks = [*left_out.values()]
     columns = {name: column for name, column in columns.items() if name not in left_out}
-    if doubt := customary(columns, chosen):
-        remarks.append(doubt)
+    if remark := customary(columns, chosen):
+        remarks.append(remark)
     found = {name: _guess(raw, column, chosen.get(name)) for name, column in columns.items()} | _labels(raw)
     if "Mz_Nm" not in found:
         remarks += _without_moment(raw, {guess.heading for guess in found.values()})

@@ -12,7 +12,6 @@ import tomli_w
 
 from mffit.config.models import TyreTable
 from mffit.points import main_pressure
-from mffit.recordings import constants
 from mffit.recordings.guess import Guess
 from mffit.recordings.sniffed import Recording, Sniffed, holding, points_from
 from mffit.sweeps.formats import stem
@@ -71,7 +70,7 @@ def project_text(
 
 def _size(recordings: Collection[Recording]) -> list[str]:
     """The tyre as a recording names it; else a recording's title as a comment."""
-    most = constants.LONGEST_TEXT_OF_RECORDING
+    most = 60  # characters
     tyre = next((tyre for r in recordings if (tyre := named_tyre(r.about))), "")
     title = next((r.about["title"] for r in recordings if r.about.get("title")), "")
     if tyre:

@@ -44,7 +44,7 @@ class Recording(NamedTuple):
     rate: float  #: samples per second; NaN for finished points
     seconds: float  #: from first to last sample
     gaps: int  #: number of gaps in time
-    remarks: tuple[str, ...]  #: doubts about its columns
+    remarks: tuple[str, ...]  #: on columns that are not certain
 
 
 class Level(NamedTuple):

@@ -195,9 +195,9 @@ def _motion(time: np.ndarray, alpha_deg: np.ndarray) -> tuple[float, float] | No
     """Usual step of time and rate of steering [deg], per unit of time; None if the angle does not move."""
     seen = np.isfinite(time) & np.isfinite(alpha_deg)
     time, alpha_deg = time[seen], alpha_deg[seen]
-    if len(time) < constants.FEWEST_SAMPLES_FOR_RATE or np.ptp(alpha_deg) < constants.STEERING_TRAVEL:
+    if len(time) < 5 or np.ptp(alpha_deg) < constants.STEERING_TRAVEL:
         return None
-    long_enough = len(time) > constants.RATES_PER_RECORDING * constants.SAMPLES_PER_RATE
+    long_enough = len(time) > 4 * constants.SAMPLES_PER_RATE
     width = constants.SAMPLES_PER_RATE if long_enough else 1
     step = float(np.median(np.diff(time)))
     elapsed = time[width:] - time[:-width]

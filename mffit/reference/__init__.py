@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from mffit.reference import constants, effects, rig_errors
+from mffit.reference import constants, effects, rig_errors, suspicion
 
 
 def pages() -> dict[str, str]:
@@ -13,6 +13,7 @@ def pages() -> dict[str, str]:
         **{f"effects/{name}": text for name, text in effects.pages().items()},
         "rig-errors.md": rig_errors.page(),
         "constants.md": constants.page(),
+        "suspicion.md": suspicion.page(),
     }
 
 

@@ -46,5 +46,5 @@ def page() -> str:
 
 def _row(name: str, x: Real | Count | Series) -> str:
     value = ", ".join(f"{v:g}" for v in x) if isinstance(x, Series) else f"{x:g}"
-    why = f"{x.why} *{x.study[:1].upper()}{x.study[1:].rstrip('.')}.*" if x.study else x.why
+    why = f"{x.why} *{x.study}.*" if x.study else x.why
     return f"| `{name}` | {value} | {x.unit} | {why} |".replace("|F_", "\\|F_")

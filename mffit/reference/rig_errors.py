@@ -9,13 +9,13 @@ from mffit.rig_errors import AFTER, BEFORE, RIG_ERRORS, RigError
 INTRODUCTION = """\
 # Rig errors
 
-All that can make the reading of a rig differ from the steady tyre, in the order of the chain from reading to reading: the
-angles and the load as read become those at the tyre, the tyre answers, and its forces become readings. Everything is in
-ISO-W. This page is written from the records in `mffit/rig_errors`; the fit, the uncertainty budget, the
-[diagnosis](diagnosis.md), the [virtual rig](simulate.md) and `mffit plan` use the same ones.
+Every effect by which the readings of a rig differ from the steady forces of the tyre. The order is that of the chain:
+the angles and the load as read become those at the tyre, the tyre responds with forces, and the forces become readings.
+Everything is in ISO-W. This page is written from the records in `mffit/rig_errors`. The fit, the uncertainty budget, the
+[diagnosis](diagnosis.md), the [virtual rig](simulate.md) and `mffit plan` use the same records.
 
-"Declared by" names the key of `[rig]` with the standard uncertainty: such an error is a number of the fit with that prior.
-The others are searched for by a diagnosis only. The limits hold for fits and for `[faults]` of the virtual rig.
+"Declared by" names the key of `[rig]` that gives the standard uncertainty; such an error is a number of the fit with this
+prior. Only a diagnosis searches for the others. The limits hold for fits and for `[faults]` of the virtual rig.
 """
 
 
@@ -26,7 +26,10 @@ def page() -> str:
     for place in dict.fromkeys(error.place for error in ordered):
         assert place is not None
         lines += [f"## {place.value}", *_table([error for error in ordered if error.place is place]), ""]
-    lines += ["## Beside these", *_table([error for error in RIG_ERRORS if error.place is None])]
+    lines += [
+        "## Reference of the temperature effects",
+        *_table([error for error in RIG_ERRORS if error.place is None]),
+    ]
     return "\n".join(lines) + "\n"
 
 
@@ -44,7 +47,7 @@ def _row(error: RigError) -> str:
     if error.declared is not None:
         default = error.declared.default
         declared = f"`{error.declared.key}` [{error.declared.unit}]" + (
-            f", {default:g} if silent" if default is not None else ""
+            f", default {default:g}" if default is not None else ""
         )
     effects = ", ".join(f"[{seen.name}](effects/{seen.id}.md)" for seen in error.seen_as) or "–"
     limits = f"{_bound(error.lower)} to {_bound(error.upper)}"

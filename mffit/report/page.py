@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING, Any
 from urllib.parse import quote
 
 from mffit import rounding
-from mffit.measured import wording
 from mffit.report import making, numbers, typeset
 from mffit.report.drawing.records import Sheet
 from mffit.templates import environment
@@ -62,7 +61,6 @@ def draw(folder: Path, figures: Mapping[str, Callable[[], Sheet]]) -> dict[str, 
 @cache
 def _environment() -> Environment:
     found = environment("mffit.report")
-    found.filters["note"] = wording.note
     for rounded in (
         rounding.number,
         rounding.with_u,

@@ -1,6 +1,5 @@
 """The results of the workflows, and their JSON."""
 
-from mffit.results.build import BuildResult
-from mffit.results.many import Outcome
+from mffit.results.records import BuildResult, Outcome
 
 __all__ = ["BuildResult", "Outcome"]

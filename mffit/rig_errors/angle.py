@@ -14,7 +14,7 @@ _of_angle = partial(RigError, kind="rig", place=Place.ANGLE, acts_on=("alpha",))
 RELAXATION = RigError(
     name="relaxation_m",
     unit="m",
-    meaning="relaxation length sigma of moving sweeps: sigma d(alpha')/ds + alpha' = alpha, the force answers to alpha'",
+    meaning="relaxation length sigma of moving sweeps: sigma d(alpha')/ds + alpha' = alpha; the force follows alpha'",
     kind="tyre",
     place=Place.ANGLE,
     acts_on=("alpha",),

@@ -6,7 +6,9 @@ from tir.constant import Real
 
 REFERENCE_TEMPERATURE = Real(25.0, "degC", "Temperature of a property file unless given or fitted.")
 WARM_UP_DISTANCE = Real(1.0, "km", "Distance over which the effect of a cold start falls to 37 %.")
-CAMBER_SKEW = Real(0.1, "deg", "Standard uncertainty of the squareness of both axes if [rig] gives none.")
+CAMBER_SKEW = Real(
+    0.1, "deg", "Standard uncertainty of the right angle of camber and steering axis if [rig] gives none."
+)
 LOADCELL_ZERO = Real(
     10.0, "N", "Standard uncertainty of the zero of Fy if [rig] gives none.", "Mottola and Massaro 2022, (24)"
 )
@@ -19,6 +21,6 @@ CAMBER_ZERO = Real(
 SIDESLIP_FORCE = Real(
     25.0,
     "N",
-    "Standard uncertainty of the side force left by the alignment if [rig] gives none.",
+    "Standard uncertainty of the force that the alignment leaves if [rig] gives none.",
     "Mottola and Massaro 2022, (24)",
 )

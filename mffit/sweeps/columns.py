@@ -14,8 +14,7 @@ from mffit.config.models import Column
 from mffit.errors import InputError, shortened
 from mffit.sweeps import constants
 from mffit.sweeps.channels import BY_NAME, CHANNELS, Channel, nearest_channel, nearest_heading
-from mffit.sweeps.decimal_comma import has_decimal_comma, with_decimal_point
-from mffit.sweeps.raw_table import Cells, RawTable
+from mffit.sweeps.raw_table import Cells, RawTable, has_decimal_comma, with_decimal_point
 from mffit.sweeps.units import UnknownUnitError, converted
 from tir.errors import counted
 

@@ -20,16 +20,16 @@ import pandas as pd
 
 from mffit.errors import InputError
 from mffit.sweeps import constants
-from mffit.sweeps.decimal_comma import has_decimal_comma, with_decimal_point
-from mffit.sweeps.file_bytes import first_bytes, is_packed, opened
+from mffit.sweeps.extras import first_bytes, is_packed, opened
 from mffit.sweeps.grid import Head, head_of, table_of
-from mffit.sweeps.raw_table import Cells, RawTable
+from mffit.sweeps.raw_table import Cells, RawTable, has_decimal_comma, with_decimal_point
 
 UTF16_MARKS = (b"\xff\xfe", b"\xfe\xff")
 SEPARATORS = ("\t", ";", "|", ",")
 """Sorted by priority: a comma is last, because it may also be a decimal comma."""
 BLANKS = " "
-HEAD = constants.BYTES_THAT_SHOW_DIALECT
+HEAD = 65_536
+"""Bytes at the start of a file that show separator, decimal comma and encoding."""
 NUMBER_WITH_POINT = re.compile(r"[-+]?\d*\.\d*(?:[eE][-+]?\d+)?")
 
 
@@ -74,7 +74,7 @@ def _dialect(path: Path) -> Dialect:
     if len(head) == HEAD:
         text = text[: text.rfind("\n")] if "\n" in text else text
     lines = [line for line in text.splitlines() if line.strip() and not line.lstrip().startswith("#")]
-    lines = lines[: constants.LINES_THAT_SHOW_DIALECT]
+    lines = lines[:200]
     separator = _separator(lines)
     cells = [cell.strip() for line in lines[1:] for cell in _split(line, separator)]
     has_comma = separator != "," and any(map(has_decimal_comma, cells))
@@ -113,7 +113,7 @@ def _encoding(head: bytes) -> str | None:
     """Encoding of a text; None for binary data."""
     if head.startswith(UTF16_MARKS):
         return "utf-16"
-    if b"\0" in head[: constants.BYTES_THAT_SHOW_BINARY]:
+    if b"\0" in head[:4096]:
         return None
     try:
         # The excerpt may end within a character.
@@ -225,5 +225,5 @@ def _text(path: Path, dialect: Dialect) -> str:
 
 
 def _size(path: Path) -> float:
-    """Size of the unpacked file in bytes; an estimate if it is packed."""
-    return path.stat().st_size * (constants.UNPACKED_OVER_PACKED if is_packed(path) else 1.0)
+    """Size of the unpacked file in bytes; of a packed one, estimated as four times its size."""
+    return path.stat().st_size * (4.0 if is_packed(path) else 1.0)

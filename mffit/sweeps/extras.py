@@ -1,12 +1,14 @@
-"""What the readers of binary formats share: libraries imported when needed, and errors about damaged files."""
+"""What several readers share: the bytes of a file, libraries imported when needed, and errors about damaged files."""
 
 from __future__ import annotations
 
+import gzip
 import importlib
+import zlib
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Any
+from typing import IO, Any
 
 from mffit.errors import InputError, readable, shortened
 
@@ -44,3 +46,29 @@ def undamaged(path: Path, kind: str) -> Iterator[None]:
         raise
     except Exception as error:
         raise damaged(path, kind, str(error) or type(error).__name__) from None
+
+
+def is_packed(path: Path) -> bool:
+    """Whether the file is compressed, by the ending of its name."""
+    return path.name.lower().endswith(".gz")
+
+
+def opened(path: Path) -> IO[bytes]:
+    """The file, open for reading its unpacked bytes."""
+    return gzip.open(path, "rb") if is_packed(path) else path.open("rb")  # type: ignore[return-value]
+
+
+def first_bytes(path: Path, most: int = -1) -> bytes:
+    """The file's first unpacked bytes; all by default.
+
+    Raises
+    ------
+    InputError
+        The file cannot be read, or is not a complete gzip file.
+    """
+    with readable(path):
+        try:
+            with opened(path) as file:
+                return file.read(most)
+        except (gzip.BadGzipFile, EOFError, zlib.error):
+            raise InputError("is not a complete gzip file; compress it again", file=path) from None

@@ -9,7 +9,6 @@ from dataclasses import replace
 from pathlib import Path
 from typing import NamedTuple
 
-from mffit.sweeps import constants
 from mffit.sweeps.csv_text import read_csv
 from mffit.sweeps.matlab import read_mat
 from mffit.sweeps.parquet import read_parquet
@@ -34,6 +33,8 @@ FORMATS = (
     Format("TYDEX", (".tdx", ".tdx.gz"), read_tydex),
 )
 _KEPT: ContextVar[dict[Path, RawTable] | None] = ContextVar("kept", default=None)
+LARGEST_TABLE_KEPT = 5_000_000
+"""Cells of a table that is kept in memory while a command reads the same file repeatedly."""
 ENDINGS = tuple(ending for kind in FORMATS for ending in kind.endings)
 
 
@@ -43,7 +44,7 @@ def read(path: Path) -> RawTable:
     if kept is not None and place in kept:
         return replace(kept[place], path=path)
     found = next((kind for kind in FORMATS if reads(kind, path)), FORMATS[0]).read(path)
-    if kept is not None and len(found) * len(found.headings) < constants.LARGEST_TABLE_KEPT:
+    if kept is not None and len(found) * len(found.headings) < LARGEST_TABLE_KEPT:
         kept[place] = found
     return found
 

@@ -10,8 +10,7 @@ from typing import NamedTuple
 
 from mffit.errors import InputError
 from mffit.sweeps import constants
-from mffit.sweeps.decimal_comma import with_decimal_point
-from mffit.sweeps.raw_table import RawTable
+from mffit.sweeps.raw_table import RawTable, with_decimal_point
 from mffit.sweeps.units import is_unit
 
 Row = Sequence[str | float]

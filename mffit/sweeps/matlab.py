@@ -18,7 +18,7 @@ from typing import Any
 import numpy as np
 
 from mffit.errors import InputError, readable
-from mffit.sweeps import constants, matlab_apart
+from mffit.sweeps import matlab_apart
 from mffit.sweeps.extras import damaged, needed, undamaged
 from mffit.sweeps.matlab_apart import LARGEST_TEXT, TEXTS, TROUBLE
 from mffit.sweeps.raw_table import RawTable
@@ -82,7 +82,7 @@ def _classic(path: Path) -> dict[str, Any]:
         folder = Path(name)
         command = [sys.executable, "-P", matlab_apart.__file__, str(path.absolute()), name]
         try:
-            subprocess.run(command, check=True, timeout=constants.MATLAB_TIMEOUT, capture_output=True)
+            subprocess.run(command, check=True, timeout=600.0, capture_output=True)
         except (subprocess.CalledProcessError, subprocess.TimeoutExpired):
             raise damaged(path, KIND, "reading it failed without a reason") from None
         trouble = folder / TROUBLE

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -56,3 +57,16 @@ class RawTable:
     def unit(self, heading: str) -> str:
         """The unit that the file states for a heading; "" if it states none."""
         return self.units[self.headings.index(heading)]
+
+
+NUMBER_WITH_COMMA = re.compile(r"[-+]?\d*,\d+(?:[eE][-+]?\d+)?")
+
+
+def has_decimal_comma(cell: str) -> bool:
+    """Whether a cell is a number with a decimal comma."""
+    return NUMBER_WITH_COMMA.fullmatch(cell) is not None
+
+
+def with_decimal_point(cell: str) -> str:
+    """The number with a decimal point; any other text unchanged."""
+    return cell.replace(",", ".") if has_decimal_comma(cell) else cell

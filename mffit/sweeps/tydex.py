@@ -10,7 +10,7 @@ import numpy as np
 
 from mffit.errors import InputError, shortened
 from mffit.sweeps import tydex_format
-from mffit.sweeps.file_bytes import first_bytes
+from mffit.sweeps.extras import first_bytes
 from mffit.sweeps.raw_table import RawTable
 from mffit.sweeps.tydex_format import CHANNELS, CONSTANTS, DATA, HEADER, MARK, MISSING, REMARK, FixedRow
 from mffit.sweeps.units import is_unit

@@ -13,8 +13,6 @@ from typing import Any
 
 import numpy as np
 
-from mffit.sweeps import constants
-
 MOMENT = re.compile(r"^((?:da|k|M|m)?N)[-.·* ]?(mm|cm|m)$")
 """Usual spellings of moments, N-m and N.m and Nm; pint needs a space between force and length."""
 
@@ -73,7 +71,7 @@ def is_unit(text: str) -> bool:
     known = spelt(text)
     if known == "":
         return True
-    if len(known) > constants.LONGEST_UNIT or not EXPRESSION.fullmatch(known):
+    if len(known) > 24 or not EXPRESSION.fullmatch(known):
         return False
     try:
         _registry().parse_units(known)

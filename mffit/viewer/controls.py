@@ -8,12 +8,11 @@ from dataclasses import dataclass
 from typing import Any
 
 from mffit.quantities import MODEL
-from mffit.viewer import constants
-from mffit.viewer.units import in_si
 from tir import Tyre
+from tir.units import KINDS
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, slots=True)
 class Control:
     """An input of the model that the page moves; numbers in SI, or shares of the value of ``relative_to``."""
 
@@ -39,47 +38,20 @@ def _either_way(x: float) -> tuple[float, float]:
     return -x, x
 
 
+def _angle(x_deg: float) -> tuple[float, float]:
+    return _either_way(math.radians(x_deg))
+
+
 CONTROLS = (
+    Control("Fz", (0.1, 2.0), (0.05, 3.0), ("FZMIN", "FZMAX"), start="FNOMIN", relative_to="FNOMIN"),
+    Control("gamma", _angle(10.0), _angle(60.0), ("CAMMIN", "CAMMAX")),  # cars lean, motorcycles lean at most
     Control(
-        name="Fz",
-        usual=constants.USUAL_LOAD_RANGE,
-        widest=constants.WIDEST_LOAD_RANGE,
-        limits=("FZMIN", "FZMAX"),
-        start="FNOMIN",
-        relative_to="FNOMIN",
+        "pressure", (0.8, 1.2), (0.5, 1.5), ("PRESMIN", "PRESMAX"), start="INFLPRES", relative_to="NOMPRES"
     ),
-    Control(
-        name="gamma",
-        usual=_either_way(constants.USUAL_CAMBER_END.rad),
-        widest=_either_way(constants.WIDEST_CAMBER_END.rad),
-        limits=("CAMMIN", "CAMMAX"),
-    ),
-    Control(
-        name="pressure",
-        usual=constants.USUAL_PRESSURE_RANGE,
-        widest=constants.WIDEST_PRESSURE_RANGE,
-        limits=("PRESMIN", "PRESMAX"),
-        start="INFLPRES",
-        relative_to="NOMPRES",
-    ),
-    Control(
-        name="alpha",
-        usual=_either_way(constants.USUAL_SIDESLIP_END.rad),
-        widest=_either_way(constants.WIDEST_SIDESLIP_END.rad),
-        limits=("ALPMIN", "ALPMAX"),
-    ),
-    Control(
-        name="kappa",
-        usual=_either_way(constants.USUAL_SLIP_END),
-        widest=_either_way(constants.WIDEST_SLIP_END),
-        limits=("KPUMIN", "KPUMAX"),
-    ),
-    Control(
-        name="phi_t",
-        usual=_either_way(constants.PATH_CURVATURE_END),
-        widest=_either_way(constants.PATH_CURVATURE_END),
-    ),
-    Control(name="Vx", usual=constants.SPEED_RANGE, widest=constants.SPEED_RANGE, start="LONGVL"),
+    Control("alpha", _angle(15.0), _angle(20.0), ("ALPMIN", "ALPMAX")),  # beyond the peak of every tyre
+    Control("kappa", _either_way(0.3), _either_way(0.4), ("KPUMIN", "KPUMAX")),
+    Control("phi_t", _either_way(1.0), _either_way(1.0)),  # rigs with a disc reach about 0.8 1/m
+    Control("Vx", (-20.0, 60.0), (-20.0, 60.0), start="LONGVL"),
 )
 
 
@@ -103,7 +75,7 @@ def _setting(control: Control, tyres: Sequence[Tyre]) -> dict[str, Any]:
     low, high = min(r[0] for r in ranges) / si, max(r[1] for r in ranges) / si
     start = float(tyres[0][control.start]) / si if control.start else 0.0
     low, high = min(low, start), max(high, start)
-    step = _round_step((high - low) / constants.SLIDER_STEPS)
+    step = _round_step((high - low) / 200.0)  # moves the curves by less than a line's width
     digits = max(0, -math.floor(math.log10(step) + 1e-9))
     return {
         "name": control.name,
@@ -119,3 +91,8 @@ def _round_step(x: float) -> float:
     """The largest of 1, 2, 5, 10, ... not above ``x``."""
     power = 10.0 ** math.floor(math.log10(x))
     return power * max(n for n in (1.0, 2.0, 5.0) if n * power <= x * (1.0 + 1e-9))
+
+
+def in_si(unit: str) -> float:
+    """One of the unit in SI: 1 for SI units and for no unit."""
+    return next((known[unit.lower()] for known in KINDS.values() if unit.lower() in known), 1.0)

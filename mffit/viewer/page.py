@@ -16,10 +16,9 @@ import mffit
 from mffit.errors import InputError
 from mffit.quantities import MODEL
 from mffit.templates import environment
-from mffit.viewer.controls import settings
+from mffit.viewer.controls import in_si, settings
 from mffit.viewer.named import Given, described, named
 from mffit.viewer.panels import OUTPUTS, PANELS
-from mffit.viewer.units import in_si
 from tir.codegen.javascript import javascript
 from tir.codegen.program import INPUTS, Switches, trace
 

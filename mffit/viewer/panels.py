@@ -6,7 +6,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from mffit.quantities import MODEL, QuantityName
-from mffit.viewer import constants
 from tir.codegen.program import INPUTS
 
 
@@ -47,7 +46,7 @@ PANELS = (
     Panel("alpha", "Mz"),
     Panel("kappa", "Fx"),
     Panel("gamma", "Fy", "camber thrust"),
-    Panel("Fx", "Fy", "friction ellipse", sweep="kappa", fan=constants.FRICTION_ELLIPSE_FAN),
+    Panel("Fx", "Fy", "friction ellipse", sweep="kappa", fan=(-12.0, -8.0, -4.0, -2.0, 2.0, 4.0, 8.0, 12.0)),
     Panel("alpha", "trail"),
     Panel("Fz", "K_ya", sign=-1),
     Panel("Fz", "K_yg0", sign=-1),

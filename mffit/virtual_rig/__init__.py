@@ -1,13 +1,12 @@
-"""The virtual rig: a known tyre on a rig with known faults, tested like a real one.
+"""The virtual rig: a known tyre on a rig with known errors, tested like a real one.
 
-Its data are what ``mffit build`` is tested with, and a way to try a test plan before going to the rig.
+``mffit build`` is tested with its data, and a test plan can be tried on it before it is run on the rig.
 """
 
-from mffit.rig_errors import Faults
 from mffit.virtual_rig.campaign import Campaign, run
 from mffit.virtual_rig.loading import load_plan
 from mffit.virtual_rig.plan import RigPlan
 from mffit.virtual_rig.simulate import simulate
-from mffit.virtual_rig.truth import DirectTruth, Truth
+from mffit.virtual_rig.truth import Truth
 
-__all__ = ["Campaign", "DirectTruth", "Faults", "RigPlan", "Truth", "load_plan", "run", "simulate"]
+__all__ = ["Campaign", "RigPlan", "Truth", "load_plan", "run", "simulate"]

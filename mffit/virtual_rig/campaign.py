@@ -21,12 +21,12 @@ from mffit.virtual_rig.truth import DirectTruth, Truth, coefficients_of, direct_
 from tir import Tyre
 
 LEADING = ("tyre", "rig", "rolling_radius")
-"""Tables of tyre.toml that a reader looks for first."""
+"""Tables that come first in tyre.toml."""
 
 
 @dataclass(frozen=True, slots=True)
 class Campaign:
-    """What the virtual rig hands over."""
+    """The output of the virtual rig."""
 
     tables: dict[str, pd.DataFrame]  #: one per sweep by file name, in the rig's axes and the contract's units
     configuration: dict[str, Any]  #: the content of tyre.toml
@@ -38,9 +38,9 @@ def run(plan: RigPlan, tyre: Tyre, seed: int | None = None) -> Campaign:
 
     Parameters
     ----------
-    plan : what to run and what is wrong with the rig
-    tyre : the tyre that is really on it
-    seed : of the noise and the drawn faults; default the plan's
+    plan : the sweeps and the rig errors
+    tyre : the true tyre
+    seed : of the noise and the drawn rig errors; default the plan's
 
     Returns
     -------
@@ -64,7 +64,7 @@ def run(plan: RigPlan, tyre: Tyre, seed: int | None = None) -> Campaign:
 
 
 def faults_of(plan: RigPlan, tyre: Tyre, generator: np.random.Generator) -> Faults:
-    """The rig errors of the plan; those it does not give are drawn if it asks for that."""
+    """The rig errors of the plan; with ``draw``, declared errors that it does not give are drawn."""
     table, rig = plan.tables.faults, plan.declared.rig
     values = table.values()
     if rig.radius is None and "path_radius_m" in values:
@@ -89,7 +89,7 @@ def sweep_table(
 
 
 def scattered(forces: Channels, noise: NoiseTable, generator: np.random.Generator) -> Channels:
-    """Finished points with their scatter."""
+    """Finished points with noise."""
     Fy, Mz, My = generator.standard_normal((3, len(forces.Fy)))
     return forces._replace(
         Fy=forces.Fy + noise.Fy_N * Fy,
@@ -99,7 +99,7 @@ def scattered(forces: Channels, noise: NoiseTable, generator: np.random.Generato
 
 
 def truth_of(plan: RigPlan, machine: Machine, seed: int) -> Truth:
-    """What the campaign would find without faults and noise, at its loads and the nominal one."""
+    """The true values at the loads of the campaign and at the nominal load."""
     nominal = plan.declared.tyre.nominal_load
     loads = sorted({sweep.load_N for sweep in plan.tables.sweep})
     rows = {load: _direct(plan, machine, load) for load in sorted({nominal, *loads})}
@@ -139,10 +139,10 @@ def configuration_of(plan: RigPlan, machine: Machine, generator: np.random.Gener
     ]
     content["rolling_radius"] = radii
     if plan.declared.base_path is not None:
-        content["tyre"]["base"] = plan.declared.base_path.name  # its copy stands beside tyre.toml
+        content["tyre"]["base"] = plan.declared.base_path.name  # its copy is beside tyre.toml
     if plan.declared.priors_path is not None:
         content["tyre"]["priors"] = str(plan.declared.priors_path.absolute())
-    # Plain keys before tables, as TOML wants it, the sweeps, which are many, at the end; no empty tables.
+    # TOML requires plain keys before tables. The many sweeps come last; empty tables are left out.
     first = [name for name, value in content.items() if not isinstance(value, dict | list | tuple)]
     order = dict.fromkeys([*first, *(name for name in LEADING if name in content), *content])
     order = dict.fromkeys([*(name for name in order if name != "sweep"), "sweep"])

@@ -1,4 +1,4 @@
-"""The errors of the virtual rig, given or drawn from the uncertainties that its user declares."""
+"""The errors of the virtual rig: given, or drawn from their declared uncertainties."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from mffit.rig_errors import BY_NAME, Faults
 
 
 def as_declared(rig: RigTable) -> Faults:
-    """The rig as its user describes it: play and path radius as declared, nothing else wrong."""
+    """The declared rig: its play and path radius; all other errors are absent."""
     radius = rig.radius
     return declared_faults(rig).replace(path_radius_m=math.inf if radius is None else radius)
 
@@ -31,7 +31,7 @@ def drawn(
     Parameters
     ----------
     rig : the declaration; every ``u_`` is one standard deviation of a normal distribution
-    values : errors that are fixed and hence not drawn
+    values : errors that are given and therefore not drawn
     C_alpha : cornering stiffness at the nominal load [N/rad], turns ``u_slip_alignment_N`` into an angle
     generator : source of random numbers
     """

@@ -1,7 +1,7 @@
-"""The tyre on the faulty rig: what it really does, and what the rig reports of it.
+"""A tyre on a rig with errors: true angles and forces of the tyre, and the readings of the rig.
 
-Every rig error has a formula of its own here, independent of the one in its record, so that a mistake there cannot hide in
-the data that are meant to reveal it. Everything is in ISO-W, contact frame.
+Every rig error has a formula here that is independent of the one in its record, so that these data reveal a mistake in the
+record. Everything is in ISO-W, contact frame.
 """
 
 from __future__ import annotations
@@ -13,7 +13,6 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from mffit.rig_errors import Faults
-from mffit.virtual_rig import constants
 from mffit.virtual_rig.settings import Settings
 from tir import Tyre
 from tir.evaluate import evaluate, turned_on_rim
@@ -30,22 +29,22 @@ class Channels(NamedTuple):
 
 
 class Machine(NamedTuple):
-    """A tyre on a rig; ``with_faults`` is the same rig during a sweep with errors of its own."""
+    """A tyre on a rig with its errors."""
 
-    tyre: Tyre  #: the one that is really on it
+    tyre: Tyre  #: the true one
     faults: Faults  #: with the true path radius
     phi_t_sign: int  #: of the usual path: -1 with the centre to the left, 0 on a flat track
     usual_speed: float  #: [m/s], where the speed has no influence
 
     def with_faults(self, added: Mapping[str, float]) -> Machine:
-        """The same with some errors larger by what is ``added``."""
+        """The machine with ``added`` rig errors, for a sweep that has errors of its own."""
         return self._replace(
             faults=self.faults.replace(**{name: self.faults[name] + x for name, x in added.items()})
         )
 
 
 Formula = Callable[[float, Settings, Machine], np.ndarray | float]
-"""(size of the error, settings (n,), machine) -> what it adds or by what it multiplies."""
+"""(size of the error, settings (n,), machine) -> the term that is added, or the factor."""
 
 
 def _leant(s: Settings, m: Machine) -> np.ndarray:
@@ -89,18 +88,18 @@ YIELDS = ("compliance_deg_per_Nm", "backlash_deg")
 CELL = ("gain", "nonlinearity_per_kN", "crosstalk", "F0_N", "M0_Nm")
 """Errors of the load cells; see :func:`reported`."""
 ELSEWHERE = ("path_radius_m", "T_ref_degC", "relaxation_m")
-"""The path in :func:`at_the_tyre`, the temperature in the factors, the lag in :mod:`mffit.virtual_rig.recording`."""
+"""Path radius: :func:`at_the_tyre`; reference temperature: the factors; lag: :mod:`mffit.virtual_rig.recording`."""
 FORMULAE = (*STEERS, *LEANS, *LOADS, *PRESSURES, *SCALES, *SURROUNDINGS, *YIELDS, *CELL, *ELSEWHERE)
 """Names of the rig errors that have a formula here."""
 
 
 def steady(machine: Machine, settings: Settings) -> Channels:
-    """What the rig reports once everything has settled, without noise."""
+    """The settled readings of the rig, without noise."""
     return reported(machine, settings, at_the_tyre(machine, settings, true_alpha(machine, settings)))
 
 
 def true_alpha(machine: Machine, settings: Settings) -> np.ndarray:
-    """Sideslip angle (n,) that the tyre really has [rad]: reading, misalignment, compliance and play."""
+    """True sideslip angle (n,) [rad]: reading, misalignment, compliance and play."""
     alpha = settings.alpha + _sum(STEERS, settings, machine)
 
     def moment(x: np.ndarray) -> np.ndarray:
@@ -115,13 +114,13 @@ def true_alpha(machine: Machine, settings: Settings) -> np.ndarray:
 def yielded(moment: Callable[[np.ndarray], np.ndarray], alpha: np.ndarray, give: float) -> np.ndarray:
     """Angle (n,) [rad] at which a steering that turns by ``give`` [rad/Nm] carries the moment of the wheel."""
     held = alpha
-    for _ in range(constants.YIELDING_ROUNDS):
+    for _ in range(60):  # each round leaves a tenth of the error or less
         held = alpha + give * moment(held)
     return held
 
 
 def taken_up(moment: Callable[[np.ndarray], np.ndarray], alpha: np.ndarray, half_play: float) -> np.ndarray:
-    """Where the moment holds a wheel that is free by ``half_play`` on either side of ``alpha``; (n,) [rad].
+    """Angle (n,) [rad] at which the moment holds a wheel with ``half_play`` on either side of ``alpha``.
 
     A positive moment holds it at ``alpha - half_play``, a negative one at ``alpha + half_play``. Where the
     moment changes sign within the play, the wheel floats at the angle without moment.
@@ -131,7 +130,7 @@ def taken_up(moment: Callable[[np.ndarray], np.ndarray], alpha: np.ndarray, half
     either = moment(alpha) > 0.0
     held_at_lower = at_lower & (~at_upper | either)
     floats = ~at_lower & ~at_upper
-    for _ in range(constants.PLAY_HALVINGS if floats.any() else 0):
+    for _ in range(20 if floats.any() else 0):  # bisections: a millionth of the play is left
         middle = 0.5 * (lower + upper)
         turns_back = moment(middle) > 0.0
         lower, upper = np.where(turns_back, lower, middle), np.where(turns_back, middle, upper)
@@ -141,7 +140,7 @@ def taken_up(moment: Callable[[np.ndarray], np.ndarray], alpha: np.ndarray, half
 
 def at_the_tyre(machine: Machine, settings: Settings, alpha: np.ndarray) -> Channels:
     """Forces and moments (n,) of the tyre at the true sideslip angle ``alpha`` (n,) [rad]."""
-    # The scale along which the wheel is moved between paths is right; an error of the radius shifts its zero.
+    # The wheel is moved between paths by known distances, so the error of the radius is common to all paths.
     phi_t = machine.phi_t_sign * settings.side / (machine.faults["path_radius_m"] + settings.outward)
     mounted = turned_on_rim(_scaled(machine, settings), settings.mount)
     out, _ = evaluate(
@@ -159,7 +158,7 @@ def at_the_tyre(machine: Machine, settings: Settings, alpha: np.ndarray) -> Chan
 
 
 def reported(machine: Machine, settings: Settings, true: Channels) -> Channels:
-    """Readings of the load cells under the true forces and moments; the load reads as it was set."""
+    """Readings of the load cells under the true forces and moments; the reading of the load is its setting."""
     faults, surroundings = machine.faults, _product(SURROUNDINGS, settings, machine)
     seen = faults["gain"] * surroundings * true.Fy
     bent = seen + faults["nonlinearity_per_kN"] * np.sign(seen) * seen**2 / 1000.0

@@ -1,6 +1,6 @@
-"""``rig.toml`` as frozen records: what is really true, and the sweeps to run.
+"""``rig.toml`` as frozen records: true tyre, rig errors, noise and sweeps.
 
-Angles, forces and directions are in ISO-W here, whatever axes the rig reports in.
+Angles, forces and directions are in ISO-W here, independent of the axes in which the rig reports.
 """
 
 from __future__ import annotations
@@ -38,10 +38,10 @@ def angles(given: Any) -> Any:
 
 def _range(given: dict[str, Any]) -> tuple[float, ...]:
     if set(given) != {"from", "to", "step"} or not all(isinstance(v, int | float) for v in given.values()):
-        raise q.wrong("needs from, to and step, all three numbers; or write a list of angles")
+        raise q.wrong("needs the numbers from, to and step; give them, or a list of angles")
     steps = (given["to"] - given["from"]) / given["step"] if given["step"] else -1.0
     if not 0 <= steps <= 10_000 or abs(steps - round(steps)) > 1e-6:
-        raise q.wrong("does not get from one end to the other in whole steps; correct step")
+        raise q.wrong("is not a whole number of steps from one end to the other; correct step")
     return tuple(float(x) for x in np.linspace(given["from"], given["to"], round(steps) + 1))
 
 
@@ -49,7 +49,7 @@ Angles = Annotated[tuple[float, ...], BeforeValidator(angles), Field(min_length=
 
 
 class TruthTable(Table):
-    """[truth]: the tyre that really is on the rig."""
+    """[truth]: the true tyre."""
 
     tyre: str  #: property file, relative to rig.toml
 
@@ -87,14 +87,14 @@ class NoiseTable(Table):
 
     Fy_N: NonNegativeFloat = 0.0
     Mz_Nm: NonNegativeFloat = 0.0
-    My_Nm: NonNegativeFloat | None = None  #: not given: the rig has no cell for My
+    My_Nm: NonNegativeFloat | None = None  #: None: the rig does not measure My
     declared: bool = True  #: write the scatter beside every point, as u_Fy_N and u_Mz_Nm
 
 
 class ConditionsTable(Table):
-    """[conditions]: what holds in every sweep that does not say otherwise."""
+    """[conditions]: the defaults of all sweeps."""
 
-    p_kPa: q.Pressure | None = None  #: the nominal pressure if not given
+    p_kPa: q.Pressure | None = None  #: None: the nominal pressure
     V_mps: q.Speed = 6.0
     T_degC: float = 25.0
     seconds_per_point: PositiveFloat | None = None  #: time from point to point; writes the column t_s
@@ -106,20 +106,22 @@ class RollingRadiusPlan(Table):
     load_N: q.Load
     u_angle_deg: q.UAngle = 1.0
     u_arc_m: q.ULength = 0.001
-    u_effective_radius: q.ULength | None = None  #: write the radius itself, as far as it is known, instead
+    u_effective_radius: q.ULength | None = (
+        None  #: if given, a radius with this uncertainty is written, no revolution
+    )
 
 
 class RecordingTable(Table):
     """[sweep.recording]: the sweep as a time series instead of finished points."""
 
     rate_Hz: PositiveFloat = 20.0
-    hold_s: NonNegativeFloat = 30.0  #: time at every set-point; 0 records a sweep that never stops
+    hold_s: NonNegativeFloat = 30.0  #: time at every set-point; 0 for a continuous sweep
     steering_deg_per_s: PositiveFloat = 2.0
     noise_Fy_N: NonNegativeFloat = 25.0
     noise_Mz_Nm: NonNegativeFloat = 2.5
     noise_My_Nm: NonNegativeFloat = 0.0
     noise_Fz_N: NonNegativeFloat = 0.0
-    correlation_s: NonNegativeFloat = 0.8  #: time in which the noise forgets itself
+    correlation_s: NonNegativeFloat = 0.8  #: correlation time of the noise
     ripple_Fy_N: NonNegativeFloat = 0.0  #: amplitude, once per revolution of the wheel
     ripple_Mz_Nm: NonNegativeFloat = 0.0
 
@@ -133,10 +135,10 @@ class SweepPlan(Table):
     gamma_deg: Angles = (0.0,)
     p_kPa: q.Pressure | None = None
     V_mps: q.Speed | None = None
-    T_degC: Angles | None = None  #: one temperature, or the first and the last point's
+    T_degC: Angles | None = None  #: one temperature, or those of the first and the last point
     direction: Literal["forward", "backward"] = "forward"
     mount: Literal["normal", "flipped"] = "normal"
-    path_centre: Literal["left", "right"] | None = None  #: the declared one if not given
+    path_centre: Literal["left", "right"] | None = None  #: None: the declared one
     path_radius: q.PathRadius | None = None  #: [m]; the declared one if not given
     faults: OwnFaultsTable = OwnFaultsTable()
     recording: RecordingTable | None = None
@@ -144,24 +146,14 @@ class SweepPlan(Table):
     @model_validator(mode="after")
     def _file_inside_the_folder(self) -> SweepPlan:
         if Path(self.file).name != self.file or not self.file.endswith((".csv", ".csv.gz")):
-            raise q.wrong(f'"{self.file}" is no plain file name ending in .csv or .csv.gz; write one', "file")
+            raise q.wrong(
+                f'"{self.file}" is not a plain file name that ends in .csv or .csv.gz; write one', "file"
+            )
         return self
 
 
-TABLES = (
-    TruthTable,
-    FaultsTable,
-    OwnFaultsTable,
-    NoiseTable,
-    ConditionsTable,
-    RollingRadiusPlan,
-    RecordingTable,
-    SweepPlan,
-)
-
-
 def _entries(given: Any) -> Any:
-    """TOML gives a list, records hold tuples."""
+    """A list of TOML as a tuple."""
     return tuple(given) if isinstance(given, list) else given
 
 
@@ -179,10 +171,10 @@ class RigTables(Table):
 
 @dataclass(frozen=True, slots=True)
 class RigPlan:
-    """A virtual test campaign: the rig as declared in ``tyre.toml`` and what is behind it."""
+    """A virtual test campaign: the rig as ``tyre.toml`` declares it, and the truth behind the data."""
 
-    declared: Config  #: what tyre.toml will say, but for the rolling radii
-    tables: RigTables  #: what only the virtual rig knows
+    declared: Config  #: the content of tyre.toml without the rolling radii
+    tables: RigTables  #: tables that only rig.toml has
     folder: Path  #: where relative file names start
 
     @property
@@ -209,5 +201,5 @@ class RigPlan:
         return sweep.V_mps or self.tables.conditions.V_mps
 
     def temperatures_degC(self, sweep: SweepPlan) -> tuple[float, ...]:
-        """Temperature of a sweep [degC]: one, or the first and the last point's."""
+        """Temperature of a sweep [degC]: one, or those of the first and the last point."""
         return sweep.T_degC or (self.tables.conditions.T_degC,)

@@ -1,4 +1,4 @@
-"""A sweep as the data logger sees it: steered from angle to angle, held there, and noisy."""
+"""A sweep as a data logger records it: the motion of the steering, noise and ripple."""
 
 from __future__ import annotations
 
@@ -24,14 +24,14 @@ class Recording(NamedTuple):
 def record(
     machine: Machine, settings: Settings, table: RecordingTable, generator: np.random.Generator
 ) -> Recording:
-    """Run through the set-points of one sweep with the logger on.
+    """The time series of one sweep.
 
     Parameters
     ----------
     machine : tyre and rig
     settings : set-points (n,) of one sweep, all at one load, speed and pressure
-    table : how it is recorded
-    generator : the source of the noise
+    table : settings of the recording
+    generator : source of random numbers
     """
     time, alpha, gamma = course(settings, table)
     seen = settings.at(alpha, gamma)
@@ -63,9 +63,9 @@ def course(settings: Settings, table: RecordingTable) -> tuple[np.ndarray, np.nd
 
 
 def lagged(alpha: np.ndarray, V: float, sigma: float, rate_Hz: float) -> np.ndarray:
-    """The angle behind the force (m,): ``sigma d(alpha')/dt + V alpha' = V alpha``, settled at the start.
+    """The lagged angle (m,), which determines the force: ``sigma d(alpha')/dt + V alpha' = V alpha``, settled at the start.
 
-    The wheel turns steadily from sample to sample, as the steering drives it.
+    The sideslip angle changes linearly between samples.
 
     Parameters
     ----------
@@ -75,17 +75,17 @@ def lagged(alpha: np.ndarray, V: float, sigma: float, rate_Hz: float) -> np.ndar
     rate_Hz : samples per second
     """
     seconds = sigma / V  # the time constant
-    forgets = math.exp(-1.0 / (seconds * rate_Hz))
-    # Within a sample the answer to a ramp of slope 1/T is (t - seconds (1 - exp(-t/seconds)))/T.
-    new = 1.0 - seconds * rate_Hz * (1.0 - forgets)
-    old = 1.0 - forgets - new
-    follows, _ = lfilter([new, old], [1.0, -forgets], alpha, zi=[(1.0 - new) * alpha[0]])
-    return follows
+    decay = math.exp(-1.0 / (seconds * rate_Hz))
+    # Within a sample the response to a ramp of slope 1/T is (t - seconds (1 - exp(-t/seconds)))/T.
+    new = 1.0 - seconds * rate_Hz * (1.0 - decay)
+    old = 1.0 - decay - new
+    lagged_alpha, _ = lfilter([new, old], [1.0, -decay], alpha, zi=[(1.0 - new) * alpha[0]])
+    return lagged_alpha
 
 
 def noise(time: np.ndarray, size: float, table: RecordingTable, generator: np.random.Generator) -> np.ndarray:
-    """Noise (m,) of standard deviation ``size`` that forgets itself within ``correlation_s``."""
+    """Noise (m,) of standard deviation ``size`` and correlation time ``correlation_s``."""
     fresh = generator.standard_normal(len(time))
-    remembers = math.exp(-1.0 / (table.correlation_s * table.rate_Hz)) if table.correlation_s else 0.0
-    fresh[1:] *= math.sqrt(1.0 - remembers**2)
-    return size * lfilter([1.0], [1.0, -remembers], fresh)
+    correlation = math.exp(-1.0 / (table.correlation_s * table.rate_Hz)) if table.correlation_s else 0.0
+    fresh[1:] *= math.sqrt(1.0 - correlation**2)
+    return size * lfilter([1.0], [1.0, -correlation], fresh)

@@ -1,4 +1,4 @@
-"""What a user writes down to get the effective rolling radius: one revolution of the disc, (18)."""
+"""Readings of one revolution of the disc, for the effective rolling radius (18)."""
 
 from __future__ import annotations
 
@@ -17,15 +17,15 @@ def written_down(
 
     Parameters
     ----------
-    row : what to measure and how well
+    row : load, and uncertainties of the readings
     r_e : true effective rolling radius [m]
     R : true radius of the path [m]; infinite on a flat track
     generator : errors of the readings, normally distributed with the declared uncertainties
 
     Notes
     -----
-    Angles are read to 0.1 deg. The disc stops where its notches meet as far as the eye can tell, once at the
-    start and once at the end: the wheel travels ``2 pi R`` and two small arcs.
+    Angles are read to 0.1 deg. The notches of the disc are aligned by eye at the start and at the end, so the wheel travels
+    ``2 pi R`` and two small arcs.
     """
     chance = generator.standard_normal(4)
     if row.u_effective_radius is not None:

@@ -27,14 +27,14 @@ class Settings:
     mount: np.ndarray  #: +1 normal, -1 tyre turned on its rim
     rolled_m: np.ndarray  #: distance rolled since the start of the campaign [m]
     side: float = 1.0  #: of the disc: 1 the usual one, -1 the other
-    outward: float = 0.0  #: by how much the path is set wider than the usual one [m]
+    outward: float = 0.0  #: radius of the path less that of the usual one [m]
 
     def __len__(self) -> int:
         return len(self.alpha)
 
     @property
     def sense(self) -> np.ndarray:
-        """Sense (n,) in which the wheel was steered to each point: 1 up, -1 down, 0 held; that of the next for the first."""
+        """Sense (n,) of the steering to each point: 1 up, -1 down, 0 held; the first point has that of the second."""
         steps = np.diff(self.alpha)
         steps = np.where(np.abs(steps) > constants.SENSE_STEP.rad, np.sign(steps), 0.0)
         return np.concatenate([steps[:1], steps]) if len(steps) else np.zeros(len(self.alpha))
@@ -53,7 +53,7 @@ class Settings:
 
 
 def settings_of(plan: RigPlan) -> list[Settings]:
-    """The settings of every sweep, in the order of the plan; time runs on from sweep to sweep."""
+    """The settings of every sweep, in the order of the plan; time continues from sweep to sweep."""
     pause = plan.tables.conditions.seconds_per_point or 0.0
     found: list[Settings] = []
     begins = 0
@@ -64,7 +64,7 @@ def settings_of(plan: RigPlan) -> list[Settings]:
 
 
 def _rolled(sweeps: list[Settings]) -> list[Settings]:
-    """The same with the distance rolled: the speed changes steadily from point to point."""
+    """The settings with the distance rolled; the speed changes linearly between points."""
     if not sweeps:
         return []
     t, V = (np.concatenate([getattr(sweep, name) for sweep in sweeps]) for name in ("t", "V"))

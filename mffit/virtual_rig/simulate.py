@@ -1,35 +1,40 @@
-"""``mffit simulate``: from rig.toml to a folder of sweeps."""
+"""``mffit simulate``: from rig.toml to a folder of sweeps that ``mffit build`` reads."""
 
 from __future__ import annotations
 
+import gzip
+import json
+import shutil
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
+import pandas as pd
+import tomli_w
+
 import tir
 from mffit.output import output_folder
-from mffit.virtual_rig.campaign import run
+from mffit.virtual_rig.campaign import Campaign, run
 from mffit.virtual_rig.loading import load_plan
 from mffit.virtual_rig.plan import RigPlan
 from mffit.virtual_rig.truth import Truth
-from mffit.virtual_rig.writing import TRUTH, write
 
 
 def simulate(
     plan: RigPlan | Mapping[str, Any] | str | Path, out: str | Path, seed: int | None = None
 ) -> Truth:
-    """Run a virtual test campaign and write what a rig would hand over.
+    """Run a virtual test campaign and write its files.
 
     Parameters
     ----------
     plan : path of a ``rig.toml``, its content, or a loaded plan
     out : folder for the sweeps, ``tyre.toml`` and ``truth.json``
-    seed : of the noise and the drawn faults; default the plan's
+    seed : of the noise and the drawn rig errors; default the plan's
 
     Returns
     -------
     Truth
-        What the data were made from, as written to ``truth.json``.
+        The true values behind the data, as in ``truth.json``.
 
     Raises
     ------
@@ -44,3 +49,36 @@ def simulate(
     with output_folder(Path(out), by="simulate", protected=read, record=TRUTH) as folder:
         write(campaign, plan, folder)
     return campaign.truth
+
+
+TRUTH = "truth.json"
+"""The true values behind the data; also lists the files of the campaign for later runs."""
+
+
+def write(campaign: Campaign, plan: RigPlan, folder: Path) -> None:
+    """Write sweeps, ``tyre.toml``, ``truth.json`` and a copy of the base file into an existing folder."""
+    for name, table in campaign.tables.items():
+        write_table(table, folder / name)
+    (folder / "tyre.toml").write_text(configuration_text(campaign.configuration), encoding="utf-8")
+    truth = json.dumps(campaign.truth.to_json(), indent=2, allow_nan=False)
+    (folder / TRUTH).write_text(truth + "\n", encoding="utf-8")
+    base = plan.declared.base_path
+    if base is not None:
+        shutil.copyfile(base, folder / base.name)
+
+
+def configuration_text(configuration: Mapping[str, Any]) -> str:
+    """The text of tyre.toml; a list becomes one ``[[table]]`` per entry, as a person would write it."""
+    parts = ["# Written by `mffit simulate`; truth.json holds the true values behind these data.\n"]
+    for name, content in configuration.items():
+        if isinstance(content, list | tuple):
+            parts += [f"[[{name}]]\n{tomli_w.dumps(entry)}" for entry in content]
+        else:
+            parts.append(tomli_w.dumps({name: content}))
+    return "\n".join(parts)
+
+
+def write_table(table: pd.DataFrame, path: Path) -> None:
+    """Write a table as CSV, compressed if the name ends in .gz; equal tables make equal files."""
+    text = table.to_csv(index=False, lineterminator="\n").encode()
+    path.write_bytes(gzip.compress(text, mtime=0) if path.suffix == ".gz" else text)

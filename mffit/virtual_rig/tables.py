@@ -1,11 +1,10 @@
-"""What the rig hands over: columns with the contract's names and units, in the rig's own axes."""
+"""Output of the rig: columns with the contract's names and units, in the rig's own axes and frame."""
 
 from __future__ import annotations
 
 import numpy as np
 import pandas as pd
 
-from mffit.virtual_rig.frames import in_wheel_carrier
 from mffit.virtual_rig.machine import Channels
 from mffit.virtual_rig.plan import RigPlan, SweepPlan
 from mffit.virtual_rig.recording import Recording
@@ -17,7 +16,7 @@ DECIMALS = {
     "Fy_N": 2, "Mz_Nm": 3, "My_Nm": 3,
 }  # fmt: skip
 RECORDED_DECIMALS = {"alpha_deg": 2, "gamma_deg": 2, "Fz_N": 0, "Fy_N": 0, "Mz_Nm": 1, "My_Nm": 1}
-"""A logger's resolution: far below its noise, and a third of the file's size."""
+"""Resolution of a logger: far below its noise; the files are a third as large."""
 
 
 def point_table(plan: RigPlan, sweep: SweepPlan, settings: Settings, forces: Channels) -> pd.DataFrame:
@@ -59,7 +58,21 @@ def _channels(plan: RigPlan, settings: Settings, forces: Channels) -> pd.DataFra
             "Mz_Nm": turned("Mz", forces.Mz),
         }
     )
-    # Without My nobody can turn Mz from the wheel carrier back into the contact frame.
+    # Mz can be turned from the wheel carrier to the contact frame only with My.
     if plan.tables.noise.My_Nm is not None or rig.force_frame == "C":
         table["My_Nm"] = turned("My", forces.My)
     return table
+
+
+def in_wheel_carrier(forces: Channels, gamma: np.ndarray) -> Channels:
+    """Contact frame W to wheel-carrier frame C: turned about x by the camber ``gamma`` (n,) [rad].
+
+    The moments stay those about the contact point: a lever to the wheel's centre would not change Mz.
+    """
+    c, s = np.cos(gamma), np.sin(gamma)
+    return forces._replace(
+        Fy=c * forces.Fy + s * forces.Fz,
+        Fz=c * forces.Fz - s * forces.Fy,
+        My=c * forces.My + s * forces.Mz,
+        Mz=c * forces.Mz - s * forces.My,
+    )

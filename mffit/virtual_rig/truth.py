@@ -1,4 +1,4 @@
-"""What a perfect campaign would find: the direct method's quantities, taken from the tyre itself."""
+"""The true values of the direct method's quantities, from the tyre itself."""
 
 from __future__ import annotations
 
@@ -8,7 +8,6 @@ from dataclasses import asdict, dataclass
 from typing import Any
 
 from mffit.rig_errors import Faults
-from mffit.virtual_rig import constants
 from tir import Tyre
 from tir.parameters import TABLE
 
@@ -19,17 +18,17 @@ SECTIONS = ("LATERAL_COEFFICIENTS", "ALIGNING_COEFFICIENTS", "TURNSLIP_COEFFICIE
 class DirectTruth:
     """True values at one load, nominal pressure, ISO-W; the path curvature is that of the rig.
 
-    Slopes are taken on a straight path, where the definition has them, with turn slip acting and without.
+    Slopes are those on a straight path, as they are defined, with turn slip on and off.
     """
 
     load_N: float
-    epsilon_gamma: float  #: of (17), from the slopes with turn slip acting
+    epsilon_gamma: float  #: of (17), from the slopes with turn slip on
     C_phit_Nm: float  #: slope of Fy over phi_t at zero [N m]
     C_phit_secant_Nm: float | None  #: F_phit / phi_t, which a disc measures [N m]
     C_gamma_N_per_rad: float  #: camber stiffness without turn slip
-    C_gamma_turn_slip_N_per_rad: float  #: camber stiffness with turn slip acting, R0/r_e larger
+    C_gamma_turn_slip_N_per_rad: float  #: camber stiffness with turn slip on, larger by R0/r_e
     C_alpha_N_per_rad: float  #: cornering stiffness without turn slip
-    C_alpha_disc_N_per_rad: float  #: slope over alpha on the path, where spin weakens it
+    C_alpha_disc_N_per_rad: float  #: slope over alpha on the path, reduced by spin
     r_e_m: float
     R_m: float | None  #: true radius of the path
     F_phit_N: float | None  #: part of Fy at zero angles that changes sign with the path's curvature
@@ -38,12 +37,12 @@ class DirectTruth:
 
 @dataclass(frozen=True, slots=True)
 class Truth:
-    """Everything that a campaign's data were made from."""
+    """The true values behind the data of a campaign."""
 
     nominal: DirectTruth
     per_load: tuple[DirectTruth, ...]
     faults: Faults
-    faults_of_sweeps: dict[str, dict[str, float]]  #: what single sweeps add to them, by file
+    faults_of_sweeps: dict[str, dict[str, float]]  #: errors that single sweeps have in addition, by file
     coefficients: dict[str, float]  #: of the tyre's side force, aligning moment and turn slip
     seed: int
 
@@ -104,9 +103,10 @@ def direct_truth(
 
 def slope(force: Callable[[float], float]) -> float:
     """Slope at zero by central differences."""
-    return (force(constants.TRUTH_STEP) - force(-constants.TRUTH_STEP)) / (2.0 * constants.TRUTH_STEP)
+    step = 1e-6  # rounding and curvature stay below 1e-6 of the slope
+    return (force(step) - force(-step)) / (2.0 * step)
 
 
 def coefficients_of(tyre: Tyre) -> dict[str, float]:
-    """The coefficients that disc data speak of, by name."""
+    """The coefficients that disc data can determine, by name."""
     return {row.name: float(tyre[row.name]) for row in TABLE if row.section in SECTIONS}

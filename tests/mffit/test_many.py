@@ -21,7 +21,7 @@ from mffit.errors import InputError
 from mffit.fit.priors import of_fleet
 from mffit.output import RECORD, digest
 from mffit.pipeline import many, workers
-from mffit.pipeline.current import is_current
+from mffit.pipeline.many import is_current
 from mffit.results import Outcome
 from tests.browser import assert_readable
 

@@ -5,10 +5,8 @@ from __future__ import annotations
 from tir.constant import Count
 
 VECTOR_LANES = Count(
-    8,
-    "-",
-    "Conditions computed together: the doubles of the widest common vector; narrower machines split them.",
+    8, "-", "Conditions computed together: doubles of the widest common vector; narrower machines split them."
 )
 LONGEST_INLINED_EXPRESSION = Count(
-    400, "-", "Characters of an expression that is written inside another one."
+    400, "-", "Longest expression in characters that is written inside another one."
 )

@@ -25,7 +25,7 @@ class Dialect:
     number: str = "{} = {}"  #: assignment of a number
     flag: str = "{} = {}"  #: assignment of a truth value
     beyond: tuple[str, str] = ("inf", "nan")  #: infinity and NaN
-    inline: bool = True  #: whether an expression that is used once is written inside the one that uses it
+    inline: bool = True  #: whether an expression used once is written inside the expression that uses it
 
     def literal(self, x: float | bool) -> str:
         """A number as text that reads back as the same number."""

@@ -6,5 +6,5 @@ numbers pass through (complex-step derivatives) and the functions can be compile
 
 Equation numbers: ``4.E..`` is Pacejka, Tire and Vehicle Dynamics, 3rd ed.; ``A..`` is the appendix of Besselink,
 Schmeitz and Pacejka, Vehicle System Dynamics 48 (2010), 337-352. Where public sources disagree the choice and its reason
-stand in docs/equations.md. Axes and signs: see :mod:`tir.conventions`.
+are in docs/equations.md. Axes and signs: see :mod:`tir.conventions`.
 """

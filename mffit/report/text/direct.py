@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
-from mffit.measured import Alignment, Contribution, LoadResult, Measured, alignment_wording, wording
+from mffit.measured import Alignment, Contribution, LoadResult, Measured, wording
 from mffit.quantities import CONDITIONS, DIRECT
 from mffit.report.build_view import PER_LOAD
 from mffit.report.text.layout import blocks, paragraphs, table, wrapped
@@ -36,14 +36,14 @@ def spin_summary(measured: Measured) -> str:
         reason = "see the warnings." if measured.warnings else "it was not measured."
         # Stiffnesses can be measured without turn slip, too.
         known = [row for row in measured.per_load if row.C_gamma is not None or row.C_alpha is not None]
-        sentences = _notes(measured) or [f"No camber reduction factor: {reason}"]
+        sentences = measured.notes or [f"No camber reduction factor: {reason}"]
         return blocks([_per_load(known) if known else "", paragraphs(sentences)])
     parts = [
         spin_numbers(measured),
         budget_table(measured.budget, measured.epsilon_gamma.u),
         _improve_first(measured.budget, measured.epsilon_gamma.u),
         _per_load(measured.per_load),
-        paragraphs(_notes(measured)),
+        paragraphs(measured.notes),
     ]
     return blocks(parts)
 
@@ -71,11 +71,7 @@ def alignment_table(alignment: Alignment) -> str:
         DIRECT["C_alpha"].column(DIRECT["C_alpha"].ascii),
         CONDITIONS["alpha_deg"].column("correction"),
     )
-    return blocks([table(head, rows, left=0), *map(wrapped, alignment_wording.advice(alignment))])
-
-
-def _notes(measured: Measured) -> list[str]:
-    return [wording.note(fact) for fact in measured.notes]
+    return blocks([table(head, rows, left=0), *map(wrapped, wording.advice(alignment))])
 
 
 def spin_numbers(measured: Measured) -> str:

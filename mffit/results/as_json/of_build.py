@@ -12,9 +12,8 @@ from mffit import fleet as combining
 from mffit.fit import Coefficient, FitResult
 from mffit.fit.files import Files
 from mffit.measured import KEYS, LoadResult, Measured
-from mffit.measured import wording as say
-from mffit.results.as_json.values import plain, stated
-from mffit.results.build import BuildResult
+from mffit.results.as_json.values import picked, plain, stated
+from mffit.results.records import BuildResult
 from mffit.rig_errors import UNITS
 from mffit.suspicion import Doubt, Outlier
 
@@ -47,7 +46,7 @@ def spin(measured: Measured) -> dict[str, Any]:
         "u_epsilon_gamma_monte_carlo": row.u_monte_carlo if row else None,
         "misaligned": measured.misaligned,
         "coverage_factor": 1,
-        "notes": [say.note(fact) for fact in measured.notes],
+        "notes": list(measured.notes),
         "per_load": [_load(other) for other in measured.per_load],
     }
 
@@ -61,28 +60,12 @@ def fit(found: FitResult) -> dict[str, Any]:
         "rig": {
             name: {"value": value, "stderr": u, "unit": UNITS[name]} for name, (value, u) in found.rig.items()
         },
-        "posterior": {
-            "names": list(found.posterior.names),
-            "covariance": found.posterior.covariance.tolist(),
-        },
+        "posterior": plain(picked(found.posterior, "names", "covariance")),
         "stages": [
-            {
-                "name": stage.name,
-                "parameters": list(stage.parameters),
-                "rmse_Fy_N": stage.rmse_Fy,
-                "rmse_Mz_Nm": stage.rmse_Mz,
-            }
+            picked(stage, "name", "parameters") | {"rmse_Fy_N": stage.rmse_Fy, "rmse_Mz_Nm": stage.rmse_Mz}
             for stage in found.stages
         ],
-        "coverage": [
-            {
-                "stage": row.stage,
-                "supported": row.supported,
-                "held": list(row.held),
-                "missing": list(row.missing),
-            }
-            for row in found.coverage
-        ],
+        "coverage": [picked(row, "stage", "supported", "held", "missing") for row in found.coverage],
         "files": _files(found.files) if found.files is not None else {},
         "explanations": list(found.explanations),
         "seconds": found.seconds,
@@ -98,27 +81,14 @@ def write_information(path: Path, result: BuildResult) -> None:
 
 
 def _doubt(row: Doubt) -> dict[str, Any]:
-    return {
-        "sweep": row.sweep,
-        "file": row.file,
-        "channel": row.channel,
-        "rms": row.rms,
-        "ratio": row.ratio,
-        "share": row.share,
-        "looks_like": row.looks or None,
+    return picked(row, "sweep", "file", "channel", "rms", "ratio", "share") | {
+        "looks_like": row.looks or None
     }
 
 
 def outlier(row: Outlier) -> dict[str, Any]:
-    return {
-        "file": row.file,
-        "line": row.line or None,
-        "sweep": row.sweep,
-        "channel": row.channel,
-        "measured": row.measured,
-        "expected": row.expected,
-        "ratio": row.ratio,
-    }
+    found = picked(row, "file", "line", "sweep", "channel", "measured", "expected", "ratio")
+    return found | {"line": row.line or None}
 
 
 def _load(row: LoadResult | None) -> dict[str, Any]:
@@ -137,11 +107,7 @@ def _load(row: LoadResult | None) -> dict[str, Any]:
 def _coefficient(found: Coefficient) -> dict[str, Any]:
     partner = found.correlated_with or None
     return {
-        "value": found.value,
-        "stderr": found.stderr,
-        "stage": found.stage,
-        "fixed": found.fixed,
-        "at_bound": found.at_bound,
+        **picked(found, "value", "stderr", "stage", "fixed", "at_bound"),
         "interval_95": list(found.interval) if found.interval else None,
         "status": found.status,
         "origin": found.origin or found.status,

@@ -6,24 +6,24 @@ from collections.abc import Mapping
 from dataclasses import asdict
 from typing import Any
 
-from mffit.diagnosis import Diagnosis, Found, Gap, wording
+from mffit.diagnosis import Diagnosis, Found, wording
 from mffit.diagnosis.noise import Noise
-from mffit.diagnosis.where import Region
 from mffit.results.as_json.of_build import outlier
+from mffit.results.as_json.values import picked
 
 
 def diagnosis(found: Diagnosis) -> dict[str, Any]:
     """The content of ``diagnosis.json``."""
     return {
         "headline": found.headline,
-        "gap_before": _gap(found.gap_before),
-        "gap_after": _gap(found.gap_after),
+        "gap_before": asdict(found.gap_before),
+        "gap_after": asdict(found.gap_after),
         "validation": {
             "method": wording.method(found.validation),
-            "gap_before": _gap(found.validation.gap_before),
-            "gap_after": _gap(found.validation.gap_after),
+            "gap_before": asdict(found.validation.gap_before),
+            "gap_after": asdict(found.validation.gap_after),
         },
-        "where": [_region(region) for region in found.where],
+        "where": [asdict(region) for region in found.where],
         "effects": [_effect(effect, found.signs) for effect in found.effects],
         "alternatives": [{"id": name, "confidence": weight} for name, weight in found.ranked_alternatives()],
         "limits": [
@@ -31,7 +31,7 @@ def diagnosis(found: Diagnosis) -> dict[str, Any]:
             for row in found.limits
         ],
         "unexplained": found.unexplained,
-        "unexplained_where": [_region(region) for region in found.unexplained_where],
+        "unexplained_where": [asdict(region) for region in found.unexplained_where],
         "noise_floor": _noise(found.noise),
         "outliers": [outlier(row) for row in found.outliers],
         "coefficients": {n: {"value": v, "stderr": s} for n, (v, s) in found.coefficients.items()},
@@ -52,27 +52,15 @@ def _noise(noise: Noise) -> dict[str, Any]:
     }
 
 
-def _gap(gap: Gap) -> dict[str, float]:
-    return {"Fy_rmse_N": gap.Fy_rmse_N, "Mz_rmse_Nm": gap.Mz_rmse_Nm, "chi2_per_dof": gap.chi2_per_dof}
-
-
-def _region(region: Region) -> dict[str, Any]:
-    limits = {name: list(limits) for name, limits in region.region.items()}
-    return {"channel": region.channel, "region": limits, "bias": region.bias, "z": region.z}
-
-
 def _effect(found: Found, signs: Mapping[str, float]) -> dict[str, Any]:
     return {
-        "id": found.effect.id,
-        "name": found.effect.name,
-        "kind": found.effect.kind,
-        "physics": found.effect.physics,
+        **picked(found.effect, "id", "name", "kind", "physics"),
         "confidence": found.confidence,
         "parameters": {
             n: {"was": found.before[n], "value": v, "stderr": s} for n, (v, s) in found.parameters.items()
         },
         "to_do": wording.remedy(found, signs),
-        "gap_after": _gap(found.gap_after),
+        "gap_after": asdict(found.gap_after),
         "tied_with": list(found.tied_with),
         "separate_by": wording.separation(found.separation),
         **({} if found.T_ref is None else {"T_ref_degC": found.T_ref}),

@@ -8,7 +8,7 @@ from typing import Any
 from mffit import fleet as combining
 from mffit.fleet import Fleet
 from mffit.results.as_json.values import value_of
-from mffit.results.many import Outcome
+from mffit.results.records import Outcome
 from mffit.rig_errors import UNITS
 
 

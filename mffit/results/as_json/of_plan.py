@@ -10,18 +10,14 @@ from mffit.comparison import Comparison, Difference
 from mffit.comparison import wording as compared
 from mffit.planning import Plan, Run
 from mffit.planning import wording as planned
+from mffit.results.as_json.values import picked
 
 
 def plan(found: Plan) -> dict[str, Any]:
     """The content of ``plan.json``; uncertainties in the goal's unit, k = 1 except for bands; null if not measured."""
     seen = found.identified
     return {
-        "goal": {
-            "kind": found.goal.kind,
-            "name": found.goal.name,
-            "label": found.goal.label,
-            "unit": found.goal.unit,
-        },
+        "goal": picked(found.goal, "kind", "name", "label", "unit"),
         "headline": planned.headline(found),
         "promise": planned.promise(found),
         "identified": planned.identified(seen),
@@ -54,9 +50,8 @@ def comparison(found: Comparison) -> dict[str, Any]:
         "numbers": [_difference(row) for row in found.numbers],
         "coefficients": [_difference(row) for row in found.coefficients],
         "curves": [
-            {
-                "channel": gap.channel,
-                "over": gap.over,
+            picked(gap, "channel", "over")
+            | {
                 "load_N": gap.load,
                 "rms": gap.rms,
                 "largest": gap.largest[0],

@@ -36,6 +36,11 @@ def plain(value: Any) -> Any:
     return value
 
 
+def picked(record: Any, *names: str) -> dict[str, Any]:
+    """Some attributes of a record by their names."""
+    return {name: getattr(record, name) for name in names}
+
+
 def stated(key: str, number: Quantity | None, scale: float = 1.0) -> dict[str, float | None]:
     """A number under ``key`` and its standard uncertainty under ``u_`` + key, both times ``scale``."""
     if number is None:

@@ -130,7 +130,9 @@ class Hills(Banana):
             x, y = now["x"], now["y"]
             slopes = {"x": [np.cos(x), -0.07, -2.0 * x / 0.05], "y": [0.0, 0.0, 1.0 / 0.05]}
             data = np.array([np.sin(x), 2.2 - 0.07 * x, (y - x * x) / 0.05])
-            return Linear(data, np.array([slopes[n] for n in names]).T, np.zeros(0), np.zeros((0, len(names))))
+            return Linear(
+                data, np.array([slopes[n] for n in names]).T, np.zeros(0), np.zeros((0, len(names)))
+            )
 
         return LeastSquaresProblem(lambda at: (linear(at).data, np.zeros(0)), linear)
 

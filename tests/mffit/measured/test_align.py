@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from mffit.errors import InputError
-from mffit.measured import align, alignment_wording
+from mffit.measured import align, wording
 from mffit.measured.alignment import AxisAtLoad
 from mffit.points import make_points
 from tir import Quantity
@@ -115,9 +115,7 @@ def test_the_axis_is_aligned_when_the_correction_is_within_its_uncertainty(off, 
     """u is 4/sqrt(2) N over 11 x 1500 N/rad: 0.0098 deg."""
     found = align(zeros(off).replace(u_Fy=4.0), measured=MEASURED, resolution_deg=0.001)
     assert found.aligned is aligned
-    assert alignment_wording.advice(found)[0].startswith(
-        "Aligned, stop" if aligned else "Turn the sideslip axis by"
-    )
+    assert wording.advice(found)[0].startswith("Aligned, stop" if aligned else "Turn the sideslip axis by")
     assert align(zeros(off), measured=MEASURED, resolution_deg=0.02).aligned
 
 
@@ -126,4 +124,4 @@ def test_zeros_that_the_report_has_otherwise_are_explained():
     found = align(zeros(0.0), measured={1500.0: AxisAtLoad(None, -275.0, -280.0)})
     assert same.reported is None
     assert found.steps[0].reported == (-275.0, -280.0)
-    assert "-275.0 N forwards where it is -300.0 N here" in alignment_wording.advice(found)[-1]
+    assert "-275.0 N forwards where it is -300.0 N here" in wording.advice(found)[-1]

@@ -7,7 +7,6 @@ import pytest
 from uncertainties import UFloat, covariance_matrix, ufloat
 
 from mffit.measured.loads import covariance, load_dependence
-from mffit.measured.wording import note as say
 
 LOADS = (1000.0, 1500.0, 2000.0)
 
@@ -23,7 +22,7 @@ def test_a_slope_beyond_twice_its_uncertainty_is_written():
     assert found.pecp2 == pytest.approx(0.9)
     # Both differences share the value at the nominal load: u(slope) = 0.01 sqrt(2) / (2/3).
     assert found.u_pecp2 == pytest.approx(0.01 * np.sqrt(2.0) * 1.5 / 0.2, rel=1e-6)
-    assert "PECP2 = 0.900 +- 0.106" in say(found.note)
+    assert "PECP2 = 0.900 +- 0.106" in found.note
 
 
 @pytest.mark.parametrize("slope", [0.9, -0.9])
@@ -32,7 +31,7 @@ def test_the_border_is_twice_the_uncertainty(slope, factor, written):
     u = 0.5 * abs(-0.2 * slope) / (1.5 * np.sqrt(2.0)) / factor
     found = law(np.array([-0.2, -0.2, -0.2]) * (1.0 + slope * np.array([-1.0, 0.0, 1.0]) / 3.0), (u, u, u))
     assert found.pecp2 == pytest.approx(slope if written else 0.0)
-    assert ("is within 2 u" in say(found.note)) is not written
+    assert ("is within 2 u" in found.note) is not written
     assert found.u_pecp2 == pytest.approx(0.5 * abs(slope) / factor, rel=1e-6)
 
 
@@ -48,14 +47,14 @@ def test_a_value_within_twice_its_uncertainty_of_zero_has_no_relative_slope():
     common = ufloat(0.0, 0.5)
     found = load_dependence(LOADS, [ufloat(v, 0.001) + common for v in (-0.7, -0.9, -1.1)], 1, 1500.0)
     assert found.pecp2 == 0.0
-    assert "eps_gamma itself is within 2 u of zero" in say(found.note)
+    assert "eps_gamma itself is within 2 u of zero" in found.note
     further = load_dependence(LOADS, [ufloat(v, 0.001) + common for v in (-0.9, -1.1, -1.3)], 1, 1500.0)
     assert further.pecp2 == pytest.approx(0.6 / 1.1)
 
 
 def test_a_factor_that_would_reach_nine_tenths_is_not_extrapolated():
     assert law((0.5, 0.7, 0.91)).pecp2 == 0.0
-    assert "would reach 0.9" in say(law((0.5, 0.7, 0.91)).note)
+    assert "would reach 0.9" in law((0.5, 0.7, 0.91)).note
     assert law((0.5, 0.7, 0.87)).pecp2 == pytest.approx(3.0 * 0.185 / 0.7)
 
 
@@ -69,7 +68,7 @@ def test_loads_count_from_the_measured_one_next_to_the_nominal():
 def test_one_load_has_no_slope():
     found = law((-0.1,), (0.01,), (1500.0,), nominal=0)
     assert found[:3] == (-0.1, 0.0, None)
-    assert "one load was measured" in say(found.note)
+    assert "one load was measured" in found.note
 
 
 def with_common_sources() -> list[UFloat]:

@@ -9,8 +9,7 @@ import numpy as np
 import pytest
 from plain_tyre import NEWTON, Plain, R, settings
 
-from mffit.measured import measure
-from mffit.measured.notes import NotSeparable, SeveralPaths
+from mffit.measured import measure, notes
 from mffit.parts import split
 from mffit.points.points import concatenate
 
@@ -77,14 +76,13 @@ def test_both_sides_count_half_each_and_noise_by_its_number():
 
 def test_conicity_and_misalignment_push_alike_on_both_sides():
     both = found(campaign(Plain(side=1), backward=False))
-    conicity = next(note for note in both.notes if hasattr(note, "share"))
-    assert conicity.shift == pytest.approx(0.0, abs=1e-3)
+    assert both.conicity.contribution == pytest.approx(0.0, abs=1e-3)
     assert of_budget(both, "sideslip alignment") == pytest.approx(0.0, abs=2e-3)
-    assert not any(isinstance(note, NotSeparable) for note in both.notes)
-    assert SeveralPaths((pytest.approx(R), pytest.approx(-R))) in both.notes
+    assert not any("cannot be separated" in note for note in both.notes)
+    assert notes.several_paths((R, -R)) in both.notes
 
 
-def test_the_usual_path_is_told_as_before():
+def test_the_usual_path_is_reported_as_before():
     """Forces and radius of the record stay those of the declared path."""
     alone, both = found(campaign()), found(campaign(Plain(side=1)))
     assert both.nominal.F_forward == alone.nominal.F_forward
@@ -118,12 +116,12 @@ def test_a_radius_that_is_not_the_runs_makes_the_paths_contradict():
 
 
 @pytest.mark.parametrize("direction", [1, -1])
-def test_zeros_of_the_other_side_that_are_declared_as_of_the_usual_path_are_told(direction):
+def test_zeros_of_the_other_side_declared_as_of_the_usual_path_are_reported(direction):
     """Without its path_centre the sweep pulls the mean of the zeros to nothing, and eps_gamma anywhere."""
     points = campaign(Plain(side=1), offset=0.0)
-    assert not [warning for warning in found(points).warnings if "no readings of one path" in warning]
+    assert not [warning for warning in found(points).warnings if "cannot come from one path" in warning]
     undeclared = (points.phi_t > 0.0) & (points.direction == direction)
     wrong = found(points.replace(phi_t=np.where(undeclared, -points.phi_t, points.phi_t)))
-    (warning,) = [warning for warning in wrong.warnings if "no readings of one path" in warning]
+    (warning,) = [warning for warning in wrong.warnings if "cannot come from one path" in warning]
     assert "other" in warning
     assert ("backward" if direction < 0 else "forward") in warning

@@ -44,9 +44,7 @@ def judged(
         sweep_names=names,
     )  # fmt: skip
     model = SimpleNamespace(Fy=np.zeros(n), Mz=np.zeros(n))
-    return distrust(
-        Misfit(points=points, model=model, scale={"Fy": scale, "Mz": 1.0}, r2={"Fy": r2, "Mz": 1.0})
-    )
+    return distrust(points, model, {"Fy": scale, "Mz": 1.0}, {"Fy": r2, "Mz": 1.0})
 
 
 def test_a_misfit_of_twice_the_stated_noise_is_the_limit():

@@ -7,8 +7,8 @@ from pathlib import Path
 
 import pytest
 
+from mffit.reference.suspicion import page
 from mffit.suspicion import RULES
-from mffit.suspicion.page import page
 from tir.constant import Count, Real
 
 DOCS = Path(__file__).parents[3] / "docs"
@@ -25,4 +25,4 @@ def test_the_limits_of_a_rule_are_records_with_unit_and_reason(rule):
 
 def test_the_page_is_current():
     written = (DOCS / "suspicion.md").read_text(encoding="utf-8")
-    assert written == page(), "run: python -m mffit.suspicion.page > docs/suspicion.md"
+    assert written == page(), "run: python -m mffit.reference docs"

@@ -13,8 +13,8 @@ from mffit.errors import InputError
 from mffit.virtual_rig import load_plan
 from mffit.virtual_rig.campaign import faults_of
 from mffit.virtual_rig.settings import settings_of
+from mffit.virtual_rig.simulate import configuration_text
 from mffit.virtual_rig.truth import direct_truth
-from mffit.virtual_rig.writing import configuration_text
 
 NOISE = {"Fy_N": 6.0, "Mz_Nm": 0.6}
 DRAW = {"draw": True}

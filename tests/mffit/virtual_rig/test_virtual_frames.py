@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from mffit.virtual_rig.frames import in_wheel_carrier
 from mffit.virtual_rig.machine import Channels
+from mffit.virtual_rig.tables import in_wheel_carrier
 
 
 def test_the_wheel_carrier_sees_load_as_side_force_at_camber():

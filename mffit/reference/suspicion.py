@@ -1,4 +1,4 @@
-"""The documentation of all suspicions, written from the rules: ``python -m mffit.suspicion.page > docs/suspicion.md``."""
+"""The page of all rules of suspicion."""
 
 from __future__ import annotations
 
@@ -12,9 +12,8 @@ from mffit.suspicion.rules import RULES
 
 HEAD = """# Suspicions
 
-Every rule by which readings are suspected, in the order in which the rules are applied. This page is made from
-`mffit/suspicion/rules.py` by `python -m mffit.suspicion.page > docs/suspicion.md`. [Broken data](broken-data.md)
-describes the method, and how well it works.
+The rules that find mistakes in readings, in the order in which they are applied. This page is written from the records in
+`mffit/suspicion/rules.py`. [Broken data](broken-data.md) describes the method and its success rate.
 """
 NAMES = {
     id(value): name
@@ -57,7 +56,3 @@ def _template(sentence: str) -> str:
     """The sentence with the name of every fact in italics, and with the braces of TOML as they are printed."""
     named = re.sub(r"(?<!\{)\{(\w+)(:[^}]*)?\}(?!\})", r"*\1*", sentence)
     return named.replace("{{", "{").replace("}}", "}")
-
-
-if __name__ == "__main__":
-    print(page(), end="")

@@ -1,9 +1,11 @@
-"""The record of a build."""
+"""The records of a build, and of one of many builds."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Literal
 
 from mffit.brief import Brief
 from mffit.config import Config
@@ -11,7 +13,7 @@ from mffit.fit import FitResult
 from mffit.measured import Measured
 from mffit.parts import Parts
 from mffit.points import Points
-from tir import Tyre
+from tir import Quantity, Tyre
 
 
 @dataclass(frozen=True, slots=True, repr=False)
@@ -49,3 +51,27 @@ class BuildResult(Brief):
     def tir_path(self) -> str:
         """The plain name, relative to the output folder."""
         return self.files[self.plain]
+
+
+State = Literal["built", "unchanged", "refused", "failed"]
+
+
+@dataclass(frozen=True, slots=True)
+class Outcome:
+    """How the build of one ``tyre.toml`` ended."""
+
+    source: Path  #: the tyre.toml
+    name: str  #: of the tyre; path of the file if it cannot be read
+    out: Path | None  #: output folder
+    state: State  #: refused: bad input; failed: a bug, or a worker that died
+    sentence: str = ""  #: the reason, without output
+    seconds: float = 0.0
+    epsilon_gamma: Quantity | None = None
+    misfit: Mapping[str, float] = field(default_factory=dict)  #: rms by channel, [N] and [Nm]
+    warnings: int = 0
+    file: str = ""  #: the property file with the plain name, in ``out``
+
+    @property
+    def whole(self) -> bool:
+        """Whether its output is complete."""
+        return self.state in ("built", "unchanged")
