@@ -25,7 +25,7 @@ GAP = 10.0
 """Between panels side by side [pt]."""
 TITLE, LABEL, NUMBER = 8.5, 8.0, 7.5
 """Sizes of letters [pt]."""
-TOP, RIGHT = 17.0, 7.0
+TOP, RIGHT = 17.0, 10.0
 """Margins of a data area [pt]."""
 SPACE, LINE = 4.0, 11.0
 """Between letters and what they belong to, and height of a line of text [pt]."""
