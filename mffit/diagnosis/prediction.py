@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.stats import norm
+from scipy.special import ndtri
 
 from mffit.diagnosis import constants
 from mffit.diagnosis.hypothesis import Hypothesis
@@ -86,7 +86,7 @@ def chosen_by_prediction(prediction: Prediction, candidates: Sequence[Effect]) -
     An effect that predicts a channel worse is never added. One that a later effect makes needless is dropped for good.
     """
     current, left = prediction.problem.null, list(candidates)
-    needed = float(norm.isf(constants.PREDICTION_FALSE_ALARM / max(len(candidates), 1)))
+    needed = float(-ndtri(constants.PREDICTION_FALSE_ALARM / max(len(candidates), 1)))
     if prediction.sweeps < constants.FEWEST_SWEEPS_TO_PREDICT:
         return current
     while len(current.effects) < constants.MOST_EFFECTS:

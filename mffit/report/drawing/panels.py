@@ -7,16 +7,16 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Any
 
-import matplotlib
+import matplotlib.style
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 from matplotlib.patches import Rectangle
 
 from mffit.report import constants, style
-from mffit.report.drawing import artists
-from mffit.report.drawing.artists import INCH, in_points
+from mffit.report.drawing.content import INCH, SPAN, brush, in_points, marks, pen, show
 from mffit.report.drawing.records import Axis, ColourScale, Look, Panel, Sheet
 from mffit.report.drawing.texts import shortened, width_of
 from mffit.report.drawing.ticks import limits, numbers_at
@@ -25,7 +25,7 @@ GAP = 10.0
 """Between panels side by side [pt]."""
 TITLE, LABEL, NUMBER = 8.5, 8.0, 7.5
 """Sizes of letters [pt]."""
-TOP, RIGHT = 17.0, 7.0
+TOP, RIGHT = 17.0, 10.0
 """Margins of a data area [pt]."""
 SPACE, LINE = 4.0, 11.0
 """Between letters and what they belong to, and height of a line of text [pt]."""
@@ -34,6 +34,7 @@ SETTINGS: dict[str, Any] = {
     "font.family": "DejaVu Sans",  # comes with matplotlib, so that pictures are the same on every machine
     "font.size": NUMBER,
     "text.parse_math": False,
+    "text.hinting": "no_hinting",
     "mathtext.default": "regular",
     "svg.fonttype": "none",
     "axes.axisbelow": True,
@@ -66,10 +67,8 @@ SETTINGS: dict[str, Any] = {
 @contextmanager
 def settings() -> Iterator[None]:
     """Drawing with these settings, whatever a user's matplotlibrc says; letters that the font lacks become boxes."""
-    with matplotlib.rc_context(), warnings.catch_warnings():
+    with matplotlib.style.context(SETTINGS, after_reset=True), warnings.catch_warnings():
         warnings.filterwarnings("ignore", "Glyph")
-        matplotlib.rcdefaults()
-        matplotlib.rcParams.update(SETTINGS)
         yield
 
 
@@ -88,12 +87,12 @@ def panels(sheet: Sheet) -> Iterator[Figure]:
     figure = Figure()
     FigureCanvasAgg(figure)
     axes = figure.add_axes((0.0, 0.0, 1.0, 1.0))
-    axes.spines[:].set_zorder(artists.SPAN)
+    axes.spines[:].set_zorder(SPAN)
     for panel, left in zip(sheet.panels, lefts, strict=True):
-        _arrange(axes, panel, width, height, max(numbered) if panel.y.words is None else left)
-        added = [axes.add_artist(artist) for artist in artists.of_panel(axes, panel)]
+        _arrange(figure, axes, panel, width, height, max(numbered) if panel.y.words is None else left)
+        show(axes, in_points(figure), panel)
         yield figure
-        for artist in added:
+        for artist in (*axes.lines, *axes.patches, *axes.texts):
             artist.remove()
 
 
@@ -124,13 +123,13 @@ def _beside(panel: Panel, height: float) -> float:
     return SPACE + widest + (LINE + SPACE if panel.y.label else 0.0) + 1.0
 
 
-def _arrange(axes: Axes, panel: Panel, width: float, height: float, left: float) -> None:
+def _arrange(figure: Figure, axes: Axes, panel: Panel, width: float, height: float, left: float) -> None:
     """Sizes, scales, numbers and labels of a panel whose data area of this height begins at ``left`` [pt]."""
     inside = width - left - RIGHT
     label = panel.x.label if panel.x.numbered else ""
     bottom = SPACE + (LINE if panel.x.numbered else 0.0) + (LINE if label else 0.0)
     total = bottom + height + TOP
-    axes.figure.set_size_inches(width / INCH, total / INCH)
+    figure.set_size_inches(width / INCH, total / INCH)
     axes.set_position((left / width, bottom / total, inside / width, height / total))
     x, y = panel.x, panel.y
     for axis, record, numbers in (
@@ -146,7 +145,8 @@ def _arrange(axes: Axes, panel: Panel, width: float, height: float, left: float)
     axes.yaxis.grid(y.words is None)
     for text in axes.get_yticklabels():
         stressed = y.bold != "" and text.get_text() == y.bold
-        text.set(color=style.ACCENT if stressed else style.MUTED, weight="bold" if stressed else "normal")
+        text.set_color(style.ACCENT if stressed else style.MUTED)
+        text.set_fontweight("bold" if stressed else "normal")
     title = shortened(panel.title, width - 1.0, TITLE)
     axes.set_title(
         title, x=(max(0.0, min(left, width - 1.0 - width_of(title, TITLE))) - left) / inside, y=1.0
@@ -155,8 +155,8 @@ def _arrange(axes: Axes, panel: Panel, width: float, height: float, left: float)
     middle = min(max(left + 0.5 * inside, half), width - half)
     axes.set_xlabel(label, va="baseline")
     axes.set_ylabel(y.label, va="baseline")
-    axes.xaxis.set_label_coords(middle, SPACE, in_points(axes.figure))
-    axes.yaxis.set_label_coords(LABEL, bottom + 0.5 * height, in_points(axes.figure))
+    axes.xaxis.set_label_coords(middle, SPACE, in_points(figure))
+    axes.yaxis.set_label_coords(LABEL, bottom + 0.5 * height, in_points(figure))
 
 
 def key(sheet: Sheet) -> Iterator[Figure]:
@@ -172,12 +172,12 @@ def _entry(label: str, look: Look) -> Figure:
     figure = _small_figure(sample + 6.0 + width_of(label, LABEL), LINE)
     points = in_points(figure)
     if look.opacity:
-        patch = Rectangle((0.0, 1.5), sample, LINE - 3.0, transform=points)
-        figure.add_artist(artists.area(patch, look.colour, min(1.0, 2.0 * look.opacity)))
+        shade = brush(look.colour, min(1.0, 2.0 * look.opacity))
+        figure.add_artist(Rectangle((0.0, 1.5), sample, LINE - 3.0, transform=points, **shade))
     if look.line:
-        figure.add_artist(artists.line([0.0, sample], [middle, middle], look, points))
+        figure.add_artist(Line2D([0.0, sample], [middle, middle], transform=points, **pen(look)))
     if look.marker:
-        figure.add_artist(artists.marks(figure, np.array([[0.5 * sample, middle]]), look))
+        figure.add_artist(marks(points, np.array([[0.5 * sample, middle]]), look))
     figure.text(sample + 5.0, middle - 0.36 * LABEL, label, size=LABEL, color=style.INK, transform=points)
     return figure
 
@@ -188,8 +188,9 @@ def _colour_scale(scale: ColourScale) -> Figure:
     figure = _small_figure(begin + width + 9.0 + width_of(scale.label, LABEL), high + 12.0)
     points = in_points(figure)
     for k in range(count):
-        patch = Rectangle((begin + width * k / count, 11.0), width / count + 0.3, high, transform=points)
-        figure.add_artist(artists.area(patch, style.between(style.DIVERGING, k / (count - 1))))
+        shade = brush(style.between(style.DIVERGING, k / (count - 1)))
+        corner = (begin + width * k / count, 11.0)
+        figure.add_artist(Rectangle(corner, width / count + 0.3, high, transform=points, **shade))
     for value, text in numbers_at(Axis(), -scale.limit, scale.limit, 8).items():
         at = begin + width * (0.5 + 0.5 * value / scale.limit)
         figure.text(at, 2.0, text, color=style.MUTED, ha="center", transform=points)

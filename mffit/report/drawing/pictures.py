@@ -10,6 +10,7 @@ from itertools import islice
 from pathlib import Path
 
 import numpy as np
+from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.image import imsave
 from matplotlib.text import Text
@@ -64,7 +65,7 @@ class Picture:
         margin = _pixels(MARGIN)
         around = ((margin, margin), (margin, margin), (0, 0))
         sheet = np.pad(np.vstack(stacked), around, constant_values=255)
-        imsave(path, sheet, dpi=int(constants.PICTURE_DPI), metadata={"Software": None})
+        imsave(path, sheet, dpi=int(constants.PICTURE_DPI))
 
 
 def draw(sheet: Sheet) -> Picture:
@@ -77,15 +78,17 @@ def draw(sheet: Sheet) -> Picture:
 
 def _drawing(figure: Figure) -> Drawing:
     """The figure as SVG, where subscripts are set by the browser, and as pixels, where matplotlib sets them."""
+    canvas = figure.canvas
+    assert isinstance(canvas, FigureCanvasAgg)
     indexed = [text for text in figure.findobj(Text) if SUBSCRIPT.search(text.get_text())]
     stream = io.StringIO()
     figure.savefig(stream, format="svg", transparent=True, metadata={"Date": None})
     for text in indexed:
         text.set_parse_math(True)
-    figure.canvas.draw()
+    canvas.draw()
     for text in indexed:
         text.set_parse_math(False)
-    pixels = np.asarray(figure.canvas.buffer_rgba())[..., :3].copy()
+    pixels = np.asarray(canvas.buffer_rgba())[..., :3].copy()
     width, height = figure.get_size_inches() * panels.INCH
     return Drawing(width=float(width), svg=_svg(stream.getvalue(), width, height), pixels=pixels)
 

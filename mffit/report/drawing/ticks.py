@@ -30,9 +30,10 @@ def numbers_at(axis: Axis, low: float, high: float, intervals: int) -> dict[floa
         return dict(axis.words)
     low, high = min(low, high), max(low, high)
     if axis.logarithmic:
-        places = LogLocator(numticks=intervals + 1).tick_values(low, high)
+        found = LogLocator(numticks=intervals + 1).tick_values(low, high)
     else:
-        places = MaxNLocator(intervals, steps=[1, 2, 2.5, 5, 10], min_n_ticks=2).tick_values(low, high)
+        found = MaxNLocator(intervals, steps=[1, 2, 2.5, 5, 10], min_n_ticks=2).tick_values(low, high)
+    places = np.asarray(found)
     slack = 1e-9 * (high - low)
     places = places[(places >= low - slack) & (places <= high + slack)]
     if axis.logarithmic:
@@ -42,5 +43,5 @@ def numbers_at(axis: Axis, low: float, high: float, intervals: int) -> dict[floa
         written = ScalarFormatter(useOffset=False)
         written.set_scientific(False)
         written.create_dummy_axis()
-        texts = written.format_ticks(places)
+        texts = written.format_ticks(places.tolist())
     return dict(zip(places.tolist(), texts, strict=True))
