@@ -47,7 +47,7 @@ def _too_short(time: np.ndarray, begin: int, end: int) -> str:
 
 def _transient(x: np.ndarray) -> int:
     """Number of leading samples that differ from the mean of the second half; at most half of all samples."""
-    blocks = constants.BLOCKS_OF_STRETCH
+    blocks = min(constants.BLOCKS_OF_STRETCH, len(x))
     half = blocks // 2
     edges = np.linspace(0, len(x), blocks + 1).astype(int)
     level, error = mean_and_error(x[edges[half] :])

@@ -125,3 +125,31 @@ def test_zeros_that_the_report_has_otherwise_are_explained():
     assert same.reported is None
     assert found.steps[0].reported == (-275.0, -280.0)
     assert "-275.0 N forwards where it is -300.0 N here" in wording.advice(found)[-1]
+
+
+def test_a_guessed_stiffness_is_said_to_be_one():
+    """Not after a second step, and not with a measured one."""
+    words = "C_alpha is guessed from the load"
+    assert any(words in said for said in wording.advice(align(zeros(0.5))))
+    for found in (align(zeros(0.5, -0.05)), align(zeros(0.5), measured=MEASURED)):
+        assert not any(words in said for said in wording.advice(found))
+
+
+def test_the_advice_says_the_correction_its_uncertainty_and_what_limits_it():
+    points = zeros(0.5).replace(u_Fy=4.0)
+    (turn, *_) = wording.advice(align(points, measured=MEASURED))
+    assert turn.startswith("Turn the sideslip axis by -0.500 +- 0.011 deg of the rig's own scale (k = 1)")
+    within = zeros(0.008).replace(u_Fy=4.0)
+    (stop, *_) = wording.advice(align(within, measured=MEASURED, resolution_deg=0.001))
+    assert stop.endswith("is within its uncertainty.")
+    sure = zeros(0.008).replace(u_Fy=0.1)
+    (stop, *_) = wording.advice(align(sure, measured=MEASURED, resolution_deg=0.02))
+    assert stop.endswith("is within what the axis can be turned by, 0.02 deg.")
+
+
+@pytest.mark.parametrize(("apart", "explained"), [(0.11, True), (0.09, False)])
+def test_zeros_within_a_tenth_of_a_newton_are_the_same(apart, explained):
+    (step,) = align(zeros(0.0), measured={1500.0: AxisAtLoad(None, -300.0, -300.0 - apart)}).steps
+    assert (step.reported is not None) == explained
+    (forwards_alone,) = align(zeros(0.0), measured={1500.0: AxisAtLoad(None, -300.0 - apart, np.nan)}).steps
+    assert (forwards_alone.reported is not None) == explained

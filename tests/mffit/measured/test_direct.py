@@ -356,3 +356,27 @@ def test_the_nominal_load_is_the_one_next_to_it():
 def test_the_sweeps_are_as_long_as_the_tests_say():
     assert len(SLIP) == 15
     assert len(LEAN) == 13
+
+
+def test_the_property_file_names_what_was_measured_and_nothing_else():
+    result = measured(Plain())
+    found = result.with_model(epsilon_gamma_model=-0.14, pecp1=None).debiased(0.02).quantities()
+    row = result.nominal
+    assert found["C_phit_Nm"] == row.C_phit
+    assert found["C_gamma_N_per_rad"] == row.C_gamma
+    assert found["C_alpha_N_per_rad"] == row.C_alpha
+    assert (found["r_e_m"], found["R_m"], found["F_phit_N"]) == (row.r_e, row.R, row.F_phit)
+    assert found["epsilon_gamma"].value == row.epsilon_gamma.value
+    assert found["epsilon_gamma_debiased"].value == pytest.approx(row.epsilon_gamma.value - 0.02)
+    assert (found["epsilon_gamma_model"].value, found["epsilon_gamma_model"].unit) == (-0.14, "-")
+    assert (found["load_N"].value, found["load_N"].unit) == (1500.0, "N")
+    assert len(found) == 10
+    without_radius = measured(Plain(), radius=False).quantities()
+    assert sorted(without_radius) == [
+        "C_alpha_N_per_rad",
+        "C_gamma_N_per_rad",
+        "C_phit_Nm",
+        "F_phit_N",
+        "R_m",
+        "load_N",
+    ]

@@ -8,10 +8,14 @@ import re
 import numpy as np
 import pytest
 from plain_tyre import NEWTON, Plain, R, settings
+from scipy.stats import chi2, norm
+from uncertainties import ufloat
 
 from mffit.measured import measure, notes
+from mffit.measured.paths import PathForce, turn_slip_stiffness
 from mffit.parts import split
 from mffit.points.points import concatenate
+from mffit.rig_errors import AtZero
 
 OFFSET = 40.0  # N, of the load cell; four times what is declared
 U_OFFSET = 10.0
@@ -125,3 +129,40 @@ def test_zeros_of_the_other_side_declared_as_of_the_usual_path_are_reported(dire
     (warning,) = [warning for warning in wrong.warnings if "cannot come from one path" in warning]
     assert "other" in warning
     assert ("backward" if direction < 0 else "forward") in warning
+
+
+def force_of_path(sign: float, C_phit: float, u: float, radius: float = R) -> PathForce:
+    """A turn-slip force that gives this stiffness and standard uncertainty [Nm], shared with no other path."""
+    exact = ufloat(radius, 1e-12)
+    force = ufloat(sign * C_phit / radius, u / radius)
+    return PathForce(
+        sign=sign, R=exact, at=AtZero(0.0, 0.0, 0.0), readings=(force,), force=force, alpha_M=None
+    )
+
+
+@pytest.mark.parametrize(("apart", "contradictory"), [(3.25, False), (3.33, True)])
+def test_two_paths_contradict_beyond_a_chance_of_one_in_a_thousand(apart, contradictory):
+    """A normal number is beyond 3.29 with that probability."""
+    u = 3.0
+    both = [force_of_path(-1.0, 300.0, u), force_of_path(1.0, 300.0 + apart * u * math.sqrt(2.0), u)]
+    found = turn_slip_stiffness(both)
+    assert found.contradictory == contradictory
+    assert found.chance == pytest.approx(2.0 * norm.sf(apart), rel=1e-6)
+    assert found.weights == pytest.approx([0.5, 0.5])
+    assert [C.nominal_value for C in found.of_paths] == pytest.approx(
+        [300.0, 300.0 + apart * u * math.sqrt(2.0)]
+    )
+
+
+def test_three_paths_have_two_degrees_of_freedom():
+    u = 2.0
+    said = [300.0, 306.0, 309.0]
+    found = turn_slip_stiffness([force_of_path(-1.0, C, u) for C in said])
+    assert found.chance == pytest.approx(chi2.sf(np.sum((np.array(said) - 305.0) ** 2) / u**2, 2), rel=1e-6)
+
+
+def test_the_surer_path_counts_more():
+    found = turn_slip_stiffness([force_of_path(-1.0, 300.0, 1.0), force_of_path(1.0, 310.0, 3.0)])
+    assert found.weights == pytest.approx([0.9, 0.1])
+    assert found.C_phit.nominal_value == pytest.approx(301.0)
+    assert found.C_phit.std_dev == pytest.approx(math.sqrt(0.9))

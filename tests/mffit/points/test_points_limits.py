@@ -1,0 +1,365 @@
+"""Samples, plateaus and sweeps are left out just beyond their limits and not just within them; sentences say where."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from mffit.points import constants
+from mffit.points.choice import ROLLING_IN, chosen
+from mffit.points.faulty import Fault, faults
+from mffit.points.lag import Lag, common, measure
+from mffit.points.remarks import driven, left_out, note
+from mffit.points.settling import settled
+from mffit.points.steady import Settings
+from mffit.points.stretch import SWEEP, Stretch
+
+RATE = 50.0
+N = 500
+
+
+class Series(SimpleNamespace):
+    """Samples of a time series."""
+
+    def __len__(self) -> int:
+        return len(self.alpha)
+
+
+def recording(n: int = N, **channels) -> Series:
+    """A sound recording at rest: 1500 N, 300 N of side force, noise on every channel of force."""
+    rng = np.random.default_rng(2)
+    one = np.ones(n)
+    sound = {
+        "file": "run.csv",
+        "time": np.arange(n) / RATE,
+        "line": np.arange(n) + 2,
+        "alpha": 0.03 * one,
+        "gamma": 0.1 * one,
+        "Fz": 1500.0 + 5.0 * rng.standard_normal(n),
+        "Fy": -300.0 + 3.0 * rng.standard_normal(n),
+        "Mz": 9.0 + 0.3 * rng.standard_normal(n),
+        "p": 250e3 * one,
+        "V": 5.0 * one,
+        "T": np.broadcast_to(25.0, n),
+        "direction": np.ones(n, int),
+        "point": None,
+        "table": pd.DataFrame(index=range(n)),
+    }
+    return Series(**sound | channels)
+
+
+def spoiled(name: str, rows, value: float, n: int = N) -> Series:
+    """The recording with some samples of a channel set to a value."""
+    series = recording(n)
+    changed = np.array(getattr(series, name))
+    changed[rows] = value
+    return recording(n, **{name: changed})
+
+
+def reasons(series: Series) -> list[str]:
+    return [fault.reason for fault in faults(series)]
+
+
+def test_sound_samples_have_no_fault():
+    assert reasons(recording()) == []
+
+
+@pytest.mark.parametrize("channel", ["alpha", "gamma", "Fz", "Fy"])
+def test_a_missing_reading_is_a_fault_of_its_sample(channel):
+    (fault,) = (f for f in faults(spoiled(channel, [7], np.nan)) if "no reading" in f.reason)
+    assert fault.reason == f"no reading of {channel}"
+    assert list(np.flatnonzero(fault.which)) == [7]
+    assert fault.ends_stretch
+
+
+def test_a_tenth_of_the_usual_load_is_no_load():
+    usual = float(np.median(recording().Fz))
+    rows = slice(100, 110)
+    assert "no load on the tyre" in reasons(spoiled("Fz", rows, 0.099 * usual))
+    assert "no load on the tyre" not in reasons(spoiled("Fz", rows, 0.101 * usual))
+
+
+@pytest.mark.parametrize(("kappa", "found"), [(0.021, True), (-0.021, True), (0.019, False), (-0.019, False)])
+def test_two_per_cent_of_slip_is_driven_or_braked(kappa, found):
+    table = pd.DataFrame({"kappa": np.where(np.arange(N) == 3, kappa, 0.0)})
+    assert bool(reasons(recording(table=table))) == found
+
+
+@pytest.mark.parametrize(
+    ("channel", "size"),
+    [("Fy", 0.15 * 1500.0), ("Mz", 0.03 * 1500.0), ("Fz", 0.15 * 1500.0)],
+)
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+def test_a_spike_is_a_share_of_the_load_away_from_its_neighbours(channel, size, sign):
+    level = float(np.median(getattr(recording(), channel)))
+    noise = 4.0 * float(np.std(getattr(recording(), channel)))
+    assert f"spikes of {channel}" in reasons(spoiled(channel, [40], level + sign * (size + noise)))
+    assert f"spikes of {channel}" not in reasons(spoiled(channel, [40], level + sign * (size - noise)))
+    (fault,) = faults(spoiled(channel, [40], level + sign * (size + noise)))
+    assert list(np.flatnonzero(fault.which)) == [40]
+    assert not fault.ends_stretch
+
+
+def test_a_spike_is_twelve_times_the_noise():
+    """With 60 N of noise a sixth of the load is still noise."""
+    rng = np.random.default_rng(3)
+    Fy = -300.0 + 60.0 * rng.standard_normal(N)
+    for size, found in ((6.0 * 60.0, False), (14.0 * 60.0, True)):
+        spiky = Fy.copy()
+        spiky[40] = -300.0 + size
+        assert bool(reasons(recording(Fy=spiky))) == found
+
+
+@pytest.mark.parametrize(("length", "found"), [(6, True), (5, False)])
+@pytest.mark.parametrize("side", [1.0, -1.0])
+def test_six_samples_at_the_end_of_the_range_are_clipped(length, found, side):
+    series = recording()
+    end = -300.0 + side * 20.0
+    series = spoiled("Fy", slice(200, 200 + length), end)
+    assert ("Fy clipped" in reasons(series)) == found
+    assert "Fy stuck" not in reasons(series)
+
+
+@pytest.mark.parametrize(("length", "found"), [(25, True), (24, False)])
+def test_half_a_second_of_one_value_is_stuck(length, found):
+    """25 samples at 50 Hz."""
+    series = spoiled("Mz", slice(200, 200 + length), 9.01)
+    assert ("Mz stuck" in reasons(series)) == found
+    if found:
+        (fault,) = faults(series)
+        assert np.sum(fault.which) >= length - 1
+        assert fault.ends_stretch
+
+
+@pytest.mark.parametrize(("length", "found"), [(20, True), (19, False)])
+def test_at_a_low_rate_twenty_samples_are_stuck(length, found):
+    series = spoiled("Mz", slice(200, 200 + length), 9.01)
+    series.time = np.arange(N) / 10.0
+    assert ("Mz stuck" in reasons(series)) == found
+
+
+@pytest.mark.parametrize(("share", "found"), [(0.85, True), (0.70, False)])
+def test_a_channel_of_coarse_resolution_is_not_stuck(share, found):
+    """A channel that mostly repeats its last sample says nothing by repeating it longer."""
+    rng = np.random.default_rng(8)
+    fresh = np.cumsum(np.where(rng.random(N) < share, rng.uniform(0.1, 0.2, N), 0.0))
+    Mz = 9.0 + 0.02 * (fresh % 7.0)
+    Mz[200:240] = Mz[200]
+    assert ("Mz stuck" in reasons(recording(Mz=Mz))) == found
+
+
+@pytest.mark.parametrize(("moved", "found"), [(40.0, True), (10.0, False)])
+def test_a_still_angle_is_stuck_only_while_the_force_moves(moved, found):
+    """3 N of noise: a range of 12 times that is 36 N."""
+    rng = np.random.default_rng(9)
+    alpha = 0.03 + 1e-4 * rng.standard_normal(N)
+    alpha[100:150] = 0.03
+    series = recording(alpha=alpha)
+    Fy = np.array(series.Fy)
+    Fy[100:150] = -300.0 + moved * np.linspace(0.0, 1.0, 50)
+    assert ("alpha stuck while Fy moves" in reasons(recording(alpha=alpha, Fy=Fy))) == found
+
+
+def test_left_out_samples_are_named_with_line_time_and_number():
+    which = np.isin(np.arange(N), [10, 11, 30])
+    (said,) = left_out(recording(), [Fault(which, "spikes of Fy", False)], [])
+    assert said == "run.csv:12: spikes of Fy at 0.20 s and in 2 more samples; left out"
+    (said,) = left_out(recording(), [Fault(np.arange(N) == 10, "spikes of Fy", False)], [])
+    assert said == "run.csv:12: spikes of Fy at 0.20 s; left out"
+
+
+@pytest.mark.parametrize(("number", "more"), [(3, ""), (4, " and 1 more")])
+def test_three_dropped_stretches_are_named(number, more):
+    plateaus = [Stretch(50 * k, 50 * k + 40, "only 1.0 s steady") for k in range(number)]
+    (said,) = left_out(recording(), [], [*plateaus, Stretch(300, 400)])
+    assert said.startswith(
+        f"run.csv: {number} of {number + 1} steady stretches give no point: at 0.0 s (1.72 deg sideslip, 5.73 deg camber) "
+        "only 1.0 s steady; at 1.0 s"
+    )
+    assert said.endswith(f"at 2.0 s (1.72 deg sideslip, 5.73 deg camber) only 1.0 s steady{more}")
+    lost = [Stretch(50 * k, 50 * k + 40, "the tread is cold", SWEEP) for k in range(number)]
+    (said,) = left_out(recording(), [], [*lost, Stretch(300, 400, "", SWEEP)])
+    assert said.startswith(
+        f"run.csv: {number} of {number + 1} sweeps are left out: at 0.0 s the tread is cold; at 1.0 s"
+    )
+    assert said.endswith(f"at 2.0 s the tread is cold{more}")
+
+
+@pytest.mark.parametrize(
+    ("lost", "said"),
+    [([], None), ([4], "run.csv:6: one point is driven"), ([4, 7], "run.csv:6: 2 of 9 points are driven")],
+)
+def test_driven_points_are_named_with_the_first_line(lost, said):
+    nine = recording(9)
+    found = driven(nine, np.setdiff1d(np.arange(9), lost))
+    assert len(found) == (said is not None)
+    assert all(text.startswith(str(said)) and text.endswith("; left out") for text in found)
+
+
+def test_the_row_of_a_stretch_is_in_a_users_units():
+    series = recording(
+        alpha=np.radians(np.linspace(-4.0, 5.0, N)),
+        gamma=np.full(N, np.radians(10.0)),
+        T=np.full(N, 41.0),
+        Fz=np.full(N, 1500.0),
+    )
+    row = note(series, Stretch(50, 300, "", SWEEP), "run:a", 12, Lag(0.3, 0.03, 0.04, 20.0))
+    assert (row.begin_s, row.end_s, row.first_line, row.last_line) == (1.0, pytest.approx(5.98), 52, 301)
+    low, high = np.degrees(series.alpha[[50, 299]])
+    assert (row.alpha_from_deg, row.alpha_to_deg) == (pytest.approx(low), pytest.approx(high))
+    assert row.gamma_deg == pytest.approx(10.0)
+    assert (row.Fz_N, row.p_kPa, row.T_degC, row.points) == (1500.0, 250.0, 41.0, 12)
+    assert (row.lag_m, row.u_lag_m, row.hysteresis_N) == (0.3, pytest.approx(0.05), 20.0)
+    assert (row.file, row.sweep, row.kind, row.dropped) == ("run.csv", "run:a", "sweep", "")
+
+
+def settings(n: int, rate: float = RATE, V: float = 5.0) -> Settings:
+    one = np.ones(n)
+    return Settings(np.arange(n) / rate, 0.0 * one, 0.0 * one, 1500.0 * one, 250e3 * one, V * one)
+
+
+@pytest.mark.parametrize(("seconds", "kept"), [(2.05, True), (1.95, False)])
+def test_a_plateau_lasts_two_seconds_after_two_metres_of_rolling(seconds, kept):
+    """At 5 m/s the transient takes 0.4 s; the first stretch of a recording has none."""
+    rng = np.random.default_rng(1)
+    for begin, transient in ((0, 0.0), (100, 0.4)):
+        end = begin + round((seconds + transient) * RATE)
+        x = rng.standard_normal(end)
+        found = settled(Stretch(begin, end), settings(end), [(x, 30.0, "N")])
+        assert (found.dropped == "") == kept
+        if kept:
+            assert found.begin == begin + round(transient * RATE)
+        else:
+            assert found.dropped in ("only 1.9 s steady", "only 2.0 s steady")
+
+
+def test_a_plateau_needs_eight_samples():
+    x = np.random.default_rng(1).standard_normal(8)
+    assert settled(Stretch(0, 8), settings(8, rate=2.0), [(x, 30.0, "N")]).dropped == ""
+    assert (
+        settled(Stretch(0, 7), settings(8, rate=2.0), [(x, 30.0, "N")]).dropped
+        == "only 7 samples after the transient"
+    )
+
+
+def test_a_transient_is_found_in_few_samples_too():
+    x = np.random.default_rng(1).standard_normal(9)
+    x[0] += 50.0
+    found = settled(Stretch(0, 9), settings(9, rate=2.0), [(x, 30.0, "N")])
+    assert (found.begin, found.dropped) == (1, "")
+
+
+@pytest.mark.parametrize(
+    ("change", "dropped"), [(31.0, "still drifting by 31 N"), (29.0, ""), (-31.0, "still drifting by -31 N")]
+)
+def test_a_drift_is_dropped_from_its_harmless_size_on(change, dropped):
+    """At most half of a record is cut off as a transient; the change over the rest counts."""
+    noise = 0.01 * np.random.default_rng(1).standard_normal(500)
+    x = noise + np.where(np.arange(500) < 250, 1000.0, change * (np.arange(500) - 250) / 249.0)
+    found = settled(Stretch(0, 500), settings(500), [(noise, 30.0, "N"), (x, 30.0, "N")])
+    assert found.dropped == dropped
+    if not dropped:
+        assert found.begin == 250
+
+
+def swept(n: int = 2000, T=None, Fz=None) -> Series:
+    """Five sweeps of sideslip at 50 Hz, eight seconds each; the load is set for each."""
+    time = np.arange(n) / RATE
+    alpha = np.radians(6.0 * np.sin(2.0 * np.pi * time / 8.0))
+    more = {} if T is None else {"T": T}
+    return recording(n, alpha=alpha, Fz=np.full(n, 1500.0) if Fz is None else Fz, Fy=-3e4 * alpha, **more)
+
+
+LOADS = np.repeat([1000.0, 1200.0, 1450.0, 1750.0, 2100.0], 400)
+
+
+@pytest.mark.parametrize(("cold", "dropped"), [(10.5, 1), (9.5, 0)])
+def test_a_first_sweep_ten_kelvins_colder_is_dropped(cold, dropped):
+    T = np.repeat([40.0 - cold, 40.0, 40.0, 40.0, 40.0], 400)
+    found = chosen(swept(T=T, Fz=LOADS), [], None)
+    said = [s.dropped for s in found if s.kind == SWEEP and s.dropped]
+    assert len(said) == dropped
+    assert all(text == f"the tread is cold: {40 - cold:.0f} degC, later 40" for text in said)
+
+
+def test_three_sweeps_remain_however_cold_they_are():
+    T = np.repeat([10.0, 12.0, 14.0, 60.0, 60.0], 400)
+    # The middle sweep has 14 degC: none is colder than that by ten.
+    found = chosen(swept(T=T, Fz=LOADS), [], None)
+    assert not [s for s in found if s.kind == SWEEP and s.dropped]
+    warm = np.repeat([10.0, 12.0, 40.0, 41.0, 42.0], 400)
+    found = chosen(swept(T=warm, Fz=LOADS), [], None)
+    assert len([s for s in found if s.kind == SWEEP and s.dropped]) == 2
+    three = chosen(swept(1200, T=warm[:1200], Fz=LOADS[:1200]), [], None)
+    assert not [s for s in three if s.kind == SWEEP and s.dropped]
+
+
+def test_the_first_metres_behind_a_change_are_a_stretch_of_their_own():
+    found = chosen(swept(Fz=LOADS), [], None)
+    rolling = [s for s in found if s.dropped == ROLLING_IN]
+    assert ROLLING_IN == "the first 2 m of rolling behind a gap or a change"
+    assert len(rolling) == 4
+    assert [s.end - s.begin for s in rolling] == [20] * 4  # 0.4 s at 5 m/s
+
+
+@pytest.mark.parametrize(("swing", "dropped"), [(0.27, True), (0.23, False)])
+def test_a_load_that_wanders_by_half_drops_its_sweep(swing, dropped):
+    """25 samples of a sine have their 5th and 95th percentiles at 0.951 of its amplitude."""
+    n = 2000
+    Fz = 1500.0 * (
+        1.0 + swing * np.sin(200.0 * np.pi * np.arange(n) / n)
+    )  # each half second: no change of the setting
+    (found,) = (s for s in chosen(swept(Fz=Fz), [], None) if s.kind == SWEEP)
+    assert bool(found.dropped) == dropped
+    if dropped:
+        assert found.dropped == "the load wanders from 1115 to 1885 N"
+
+
+def triangle(lag: float, n: int = 400, shape=lambda a: -2e4 * a) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Sideslip up and down over the rolled distance, and the force of the angle that lags by ``lag`` [m]."""
+    s = np.linspace(0.0, 40.0, n)
+
+    def angle(at):
+        return np.radians(6.0) * (1.0 - 2.0 * np.abs(at / 20.0 - 1.0))
+
+    return angle(s), shape(angle(s - lag)), s
+
+
+@pytest.mark.parametrize("lag", [0.5, 0.0, -0.4])
+def test_the_lag_of_a_triangle_is_the_distance_between_its_ways(lag):
+    found = measure(*triangle(lag))
+    assert found.lag == pytest.approx(lag, abs=1e-6)
+    assert found.u < 1e-6
+    assert found.hysteresis < 20.0
+
+
+def test_a_force_that_differs_between_the_ways_is_hysteresis_and_no_lag():
+    alpha, Fy, s = triangle(0.0)
+    up = np.gradient(alpha) > 0.0
+    found = measure(alpha, Fy * np.where(up, 1.05, 0.95), s)
+    assert found.lag == pytest.approx(0.0, abs=0.02)
+    rms = 0.05 * np.sqrt(np.mean(Fy**2))
+    assert found.hysteresis == pytest.approx(rms, rel=0.1)
+
+
+def test_too_few_samples_or_one_way_alone_show_no_lag():
+    alpha, Fy, s = triangle(0.5)
+    assert np.isnan(measure(alpha[:31], Fy[:31], s[:31]).lag)
+    assert np.isnan(measure(alpha[:200], Fy[:200], s[:200]).lag)
+    assert np.isnan(measure(alpha, np.abs(Fy), s).lag)
+
+
+def test_the_common_lag_is_the_median_of_three_sweeps_or_the_mean_of_two():
+    lags = [Lag(0.30, 0.03, 0.01, 5.0), Lag(0.34, 0.04, 0.01, 5.0), Lag(np.nan, np.nan, np.nan, np.nan)]
+    value, u = common(lags)
+    assert value == pytest.approx(0.32)
+    assert u == pytest.approx(np.hypot(0.025, 0.01))
+    value, u = common([*lags, Lag(0.50, 0.04, 0.01, 5.0)])
+    assert value == pytest.approx(0.34)
+    # 1.4826 times the median of (0.04, 0, 0.16), as the error of a median of three
+    assert u == pytest.approx(np.hypot(1.2533 * 1.4826 * 0.04 / np.sqrt(3.0), 0.01), rel=1e-4)
+    assert np.isnan(common(lags[2:])[0])
+    assert constants.FEWEST_SWEEPS_OF_LAG == 3
