@@ -140,6 +140,22 @@ def test_a_killed_worker_costs_only_its_own_tyre(tmp_path, monkeypatch):
     assert "its process ended early" in next(o.sentence for o in outcomes if o.name == "weak")
 
 
+def counted(job: workers.Job) -> Outcome:
+    """A worker that leaves a mark for every start."""
+    with (job.out / job.name).open("a") as file:
+        file.write("started\n")
+    return Outcome(job.source, job.name, job.out, "built")
+
+
+@pytest.mark.skipif(os.name == "nt", reason="processes are started and killed differently there")
+def test_every_tyre_is_built_once(tmp_path, monkeypatch):
+    monkeypatch.setattr(workers, "START_METHOD", "fork")
+    jobs = [workers.Job(Path(name), name, tmp_path) for name in "abcde"]
+    outcomes = list(workers.in_processes(jobs, 2, counted))
+    assert sorted(o.name for o in outcomes) == list("abcde")
+    assert [(tmp_path / name).read_text() for name in "abcde"] == ["started\n"] * 5
+
+
 def test_two_tyres_are_not_built_into_one_folder(project):
     other = project / "other.toml"
     other.write_text((project / "tyre.toml").read_text())
