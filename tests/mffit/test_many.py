@@ -17,6 +17,8 @@ from small_rigs import LOADS, disc, simulated
 
 from mffit import config, fleet, pipeline
 from mffit.cli import main
+from mffit.cli.building import _compare_built
+from mffit.cli.console import Voice
 from mffit.errors import InputError
 from mffit.fit.priors import of_fleet
 from mffit.output import RECORD, digest
@@ -122,6 +124,18 @@ def test_changed_input_or_output_is_built_again(built, project, tmp_path, change
     if change is not None:
         change(tmp_path / "sound", out)
     assert is_current(config.load(toml), out) == (change is None)
+
+
+def test_output_with_another_number_of_drawn_files_is_built_again_only_if_a_number_is_asked_for(
+    built, project, tmp_path
+):
+    shutil.copytree(project, tmp_path / "sound")
+    shutil.copytree(built[0] / "small", tmp_path / "out" / "small")
+    loaded, out = config.load(tmp_path / "sound" / "tyre.toml"), tmp_path / "out" / "small"
+    _rewritten(out, "resolved.toml", pipeline.build_output.resolved_text(loaded, out))
+    (out / "ensemble").mkdir()
+    _rewritten(out, "ensemble/small-1.tir", b"")
+    assert [is_current(loaded, out, ensemble=n) for n in (0, 1, 2)] == [True, True, False]
 
 
 def dies_at_weak(job: workers.Job) -> Outcome:
@@ -274,6 +288,14 @@ def test_a_fleet_on_a_disc_reads_the_file_with_turn_slip(folders, tmp_path):
     (tmp_path / "normal" / "result.json").write_text(json.dumps(result))
     assert fleet.read(tmp_path / "normal").tyre["PECP1"] == fleet.read(folders[1]).tyre["PECP1"]
     assert fleet.read(tmp_path / "normal").tyre["USE_MODE"] % 10 == 5
+
+
+@pytest.mark.parametrize(("tyres", "files"), [(1, []), (2, ["fleet.csv", "fleet.html", "fleet.json"])])
+def test_two_tyres_built_by_one_command_are_compared(folders, tmp_path, tyres, files):
+    outcomes = [Outcome(folder / "tyre.toml", folder.name, folder, "built") for folder in folders[:tyres]]
+    lost = Outcome(Path("lost.toml"), "lost", folders[2], "failed")
+    _compare_built([*outcomes, lost], tmp_path, Voice(json=False, quiet=True))
+    assert sorted(path.name for path in tmp_path.glob("fleet.*")) == files
 
 
 def test_the_page_shows_a_hostile_name_as_text(compared):

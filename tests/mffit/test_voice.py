@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import json
 import shutil
 import time
@@ -71,6 +72,18 @@ def test_progress_is_shown_on_a_terminal_beside_the_result(capsys, monkeypatch, 
     out, err = capsys.readouterr()
     assert out == ""
     assert ("reading sweeps" in err) == on_terminal
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="there is no device that is always full")
+def test_a_full_disk_is_bad_input_with_its_remedy(place, capsys):
+    with contextlib.suppress(OSError), open("/dev/full", "w") as full:  # closing it fails again
+        with contextlib.redirect_stdout(full), pytest.raises(SystemExit) as end:
+            main(["check", str(place / "true.tir")])
+        assert end.value.code == 2
+    assert (
+        capsys.readouterr().err
+        == "mffit: the disk is full (standard output); free some space and run again\n"
+    )
 
 
 def test_printed_and_written_json_are_the_same(place, capsys):
