@@ -17,7 +17,7 @@ from small_rigs import LOADS, disc, simulated
 
 from mffit import config, fleet, pipeline
 from mffit.cli import main
-from mffit.cli.building import _compare_built
+from mffit.cli.building import _compare_built, _end
 from mffit.cli.console import Voice
 from mffit.errors import InputError
 from mffit.fit.priors import of_fleet
@@ -288,6 +288,16 @@ def test_a_fleet_on_a_disc_reads_the_file_with_turn_slip(folders, tmp_path):
     (tmp_path / "normal" / "result.json").write_text(json.dumps(result))
     assert fleet.read(tmp_path / "normal").tyre["PECP1"] == fleet.read(folders[1]).tyre["PECP1"]
     assert fleet.read(tmp_path / "normal").tyre["USE_MODE"] % 10 == 5
+
+
+@pytest.mark.parametrize(
+    ("states", "code"), [(["built"], None), (["unchanged", "failed"], 1), (["failed", "refused", "built"], 2)]
+)
+def test_the_exit_code_is_that_of_the_worst_tyre(states, code):
+    outcomes = [Outcome(Path("a.toml"), "a", None, state) for state in states]
+    with contextlib.nullcontext() if code is None else pytest.raises(SystemExit) as end:
+        _end(outcomes, False, Voice(json=False, quiet=False))
+    assert code is None or end.value.code == code
 
 
 @pytest.mark.parametrize(("tyres", "files"), [(1, []), (2, ["fleet.csv", "fleet.html", "fleet.json"])])
