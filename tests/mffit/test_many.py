@@ -300,12 +300,13 @@ def test_the_exit_code_is_that_of_the_worst_tyre(states, code):
     assert code is None or end.value.code == code
 
 
-@pytest.mark.parametrize(("tyres", "files"), [(1, []), (2, ["fleet.csv", "fleet.html", "fleet.json"])])
-def test_two_tyres_built_by_one_command_are_compared(folders, tmp_path, tyres, files):
+@pytest.mark.parametrize(("tyres", "files"), [(1, []), (3, ["fleet.csv", "fleet.html", "fleet.json"])])
+def test_tyres_built_by_one_command_are_compared(folders, tmp_path, capsys, tyres, files):
     outcomes = [Outcome(folder / "tyre.toml", folder.name, folder, "built") for folder in folders[:tyres]]
-    lost = Outcome(Path("lost.toml"), "lost", folders[2], "failed")
+    lost = Outcome(Path("lost.toml"), "lost", folders[4], "failed")
     _compare_built([*outcomes, lost], tmp_path, Voice(json=False, quiet=True))
     assert sorted(path.name for path in tmp_path.glob("fleet.*")) == files
+    assert capsys.readouterr().err == ""
 
 
 def test_the_page_shows_a_hostile_name_as_text(compared):
