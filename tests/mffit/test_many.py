@@ -17,6 +17,8 @@ from small_rigs import LOADS, disc, simulated
 
 from mffit import config, fleet, pipeline
 from mffit.cli import main
+from mffit.cli.building import _compare_built, _end
+from mffit.cli.console import Voice
 from mffit.errors import InputError
 from mffit.fit.priors import of_fleet
 from mffit.output import RECORD, digest
@@ -124,6 +126,18 @@ def test_changed_input_or_output_is_built_again(built, project, tmp_path, change
     assert is_current(config.load(toml), out) == (change is None)
 
 
+def test_output_with_another_number_of_drawn_files_is_built_again_only_if_a_number_is_asked_for(
+    built, project, tmp_path
+):
+    shutil.copytree(project, tmp_path / "sound")
+    shutil.copytree(built[0] / "small", tmp_path / "out" / "small")
+    loaded, out = config.load(tmp_path / "sound" / "tyre.toml"), tmp_path / "out" / "small"
+    _rewritten(out, "resolved.toml", pipeline.build_output.resolved_text(loaded, out))
+    (out / "ensemble").mkdir()
+    _rewritten(out, "ensemble/small-1.tir", b"")
+    assert [is_current(loaded, out, ensemble=n) for n in (0, 1, 2)] == [True, True, False]
+
+
 def dies_at_weak(job: workers.Job) -> Outcome:
     """A worker that is killed at one of the tyres, as for lack of memory."""
     if job.name == "weak":
@@ -138,6 +152,22 @@ def test_a_killed_worker_costs_only_its_own_tyre(tmp_path, monkeypatch):
     outcomes = list(workers.in_processes(jobs, 2, dies_at_weak))
     assert {o.name: o.state for o in outcomes} == dict.fromkeys("abcd", "built") | {"weak": "failed"}
     assert "its process ended early" in next(o.sentence for o in outcomes if o.name == "weak")
+
+
+def counted(job: workers.Job) -> Outcome:
+    """A worker that leaves a mark for every start."""
+    with (job.out / job.name).open("a") as file:
+        file.write("started\n")
+    return Outcome(job.source, job.name, job.out, "built")
+
+
+@pytest.mark.skipif(os.name == "nt", reason="processes are started and killed differently there")
+def test_every_tyre_is_built_once(tmp_path, monkeypatch):
+    monkeypatch.setattr(workers, "START_METHOD", "fork")
+    jobs = [workers.Job(Path(name), name, tmp_path) for name in "abcde"]
+    outcomes = list(workers.in_processes(jobs, 2, counted))
+    assert sorted(o.name for o in outcomes) == list("abcde")
+    assert [(tmp_path / name).read_text() for name in "abcde"] == ["started\n"] * 5
 
 
 def test_two_tyres_are_not_built_into_one_folder(project):
@@ -258,6 +288,25 @@ def test_a_fleet_on_a_disc_reads_the_file_with_turn_slip(folders, tmp_path):
     (tmp_path / "normal" / "result.json").write_text(json.dumps(result))
     assert fleet.read(tmp_path / "normal").tyre["PECP1"] == fleet.read(folders[1]).tyre["PECP1"]
     assert fleet.read(tmp_path / "normal").tyre["USE_MODE"] % 10 == 5
+
+
+@pytest.mark.parametrize(
+    ("states", "code"), [(["built"], None), (["unchanged", "failed"], 1), (["failed", "refused", "built"], 2)]
+)
+def test_the_exit_code_is_that_of_the_worst_tyre(states, code):
+    outcomes = [Outcome(Path("a.toml"), "a", None, state) for state in states]
+    with contextlib.nullcontext() if code is None else pytest.raises(SystemExit) as end:
+        _end(outcomes, False, Voice(json=False, quiet=False))
+    assert code is None or end.value.code == code
+
+
+@pytest.mark.parametrize(("tyres", "files"), [(1, []), (3, ["fleet.csv", "fleet.html", "fleet.json"])])
+def test_tyres_built_by_one_command_are_compared(folders, tmp_path, capsys, tyres, files):
+    outcomes = [Outcome(folder / "tyre.toml", folder.name, folder, "built") for folder in folders[:tyres]]
+    lost = Outcome(Path("lost.toml"), "lost", folders[4], "failed")
+    _compare_built([*outcomes, lost], tmp_path, Voice(json=False, quiet=True))
+    assert sorted(path.name for path in tmp_path.glob("fleet.*")) == files
+    assert capsys.readouterr().err == ""
 
 
 def test_the_page_shows_a_hostile_name_as_text(compared):

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import contextlib
 import json
 import shutil
+import time
 from pathlib import Path
 
 import click
@@ -13,6 +15,7 @@ from small_plan import SMALL_PLAN
 
 import tir
 from mffit.cli import commands, main
+from mffit.cli.console import progress
 
 SAMPLE = Path(__file__).parents[2] / "samples" / "front-120-70"
 
@@ -55,6 +58,33 @@ def test_output_is_text_or_json_or_nothing(place, capsys, name):
     document, _ = said(capsys, *arguments, "--json")
     assert KEYS[name] <= set(json.loads(document))
     assert said(capsys, *arguments, "--quiet")[0] == ""
+
+
+@pytest.mark.parametrize("on_terminal", [True, False])
+def test_progress_is_shown_on_a_terminal_beside_the_result(capsys, monkeypatch, on_terminal):
+    """On stderr, so that it never mixes with a result that is piped on; nothing without a terminal."""
+    for name in ("FORCE_COLOR", "TTY_COMPATIBLE"):
+        monkeypatch.delenv(name, raising=False)
+    if on_terminal:
+        monkeypatch.setenv("FORCE_COLOR", "1")
+    with progress() as show:
+        show("reading sweeps")
+        time.sleep(0.2)  # the spinner turns every 80 ms
+    out, err = capsys.readouterr()
+    assert out == ""
+    assert ("reading sweeps" in err) == on_terminal
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="there is no device that is always full")
+def test_a_full_disk_is_bad_input_with_its_remedy(place, capsys):
+    with contextlib.suppress(OSError), open("/dev/full", "w") as full:  # closing it fails again
+        with contextlib.redirect_stdout(full), pytest.raises(SystemExit) as end:
+            main(["check", str(place / "true.tir")])
+        assert end.value.code == 2
+    assert (
+        capsys.readouterr().err
+        == "mffit: the disk is full (standard output); free some space and run again\n"
+    )
 
 
 def test_printed_and_written_json_are_the_same(place, capsys):

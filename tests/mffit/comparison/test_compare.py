@@ -141,7 +141,7 @@ def test_a_reader_sees_every_picture_of_the_page(folder, stiffer, tmp_path):
 def test_two_builds_of_one_name_are_called_by_their_folders(folder):
     later = shutil.copytree(folder / "out", folder / "later")
     found = mffit.compare(folder / "out", later)
-    assert found.first != found.second
+    assert (found.first, found.second) == ("out/small.tir", "later/small.tir")
     assert all(row.z == 0.0 for row in found.numbers if row.z is not None)
     assert "of one rig" in " ".join(found.notes)
 
@@ -168,8 +168,20 @@ def test_a_file_is_compared_with_data(folder, stiffer, tmp_path):
 
 
 def test_two_sets_of_data_are_refused(folder):
-    with pytest.raises(InputError, match="build each"):
-        mffit.compare(folder / "tyre.toml", folder / "tyre.toml")
+    with pytest.raises(InputError) as caught:
+        mffit.compare(folder / "tyre.toml", folder / "other.toml")
+    assert f"{folder / 'tyre.toml'} and {folder / 'other.toml'} are both measured data; build each" in str(
+        caught.value
+    )
+
+
+@pytest.mark.parametrize(("first", "second"), [(15, 14), (5, 4), (14, 25)])
+def test_a_file_without_provenance_is_for_turn_slip_if_its_use_mode_ends_in_5(tmp_path, first, second):
+    for name, mode in (("a.tir", first), ("b.tir", second)):
+        truth().replace(USE_MODE=mode).write(tmp_path / name)
+    on, off = ("a.tir", "b.tir") if first % 10 == 5 else ("b.tir", "a.tir")
+    notes = " ".join(mffit.compare(tmp_path / "a.tir", tmp_path / "b.tir").notes)
+    assert f"{on} is for simulations with turn slip on, {off} for turn slip off" in notes
 
 
 def test_a_folder_without_a_build_is_refused(tmp_path):

@@ -318,6 +318,19 @@ def test_the_command_refuses_bad_options_before_it_builds(options, said, tmp_pat
     assert not (tmp_path / "plan").exists()
 
 
+def test_the_command_names_what_it_wrote(plan, monkeypatch, capsys):
+    """Sheets only with new points; without any run there is nothing to fill in."""
+    rig = [step for step in plan.steps if step.run.points is None]
+    for found, more in (
+        (plan, ", runs (sheets to fill in)"),
+        (dataclasses.replace(plan, steps=()), ""),
+        (dataclasses.replace(plan, steps=tuple(rig)), ", runs (what changes in tyre.toml)" if rig else ""),
+    ):
+        monkeypatch.setattr("mffit.pipeline.plan", lambda *given, found=found, **keys: found)
+        main(["plan", str(SAMPLE / "tyre.toml"), "--out", "somewhere"])
+        assert capsys.readouterr().out.endswith(f"written to somewhere: plan.html, plan.json{more}\n")
+
+
 def test_the_page_is_readable(plan, tmp_path):
     write_plan(plan, tmp_path)
     assert_readable(tmp_path / "plan.html")
