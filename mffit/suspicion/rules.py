@@ -219,7 +219,7 @@ RULES: tuple[Rule, ...] = (
         subject=Subject.ALL_FILES,
         looks_at="the contradictions above, under the declared and under all other axes, frames and path centres",
         limits=(constants.WEAKEST_CAMBER_STIFFNESS,),
-        sentence="with {declared}, {wrong} in ISO signs, as no tyre does; {remedy}",
+        sentence="with {declared}, {wrong} in ISO signs, which no tyre does; {remedy}",
         find=partial(declarations.contradicted, slope_rules=NO_TYRE),
     ),
     Rule(
