@@ -198,7 +198,11 @@ def _refuse_truncated(values, document: Document) -> None:
     missing = [name for name in ESSENTIAL if name not in values]
     if missing:
         homes = " and ".join(f"{name} to [{BY_NAME[name].section}]" for name in missing)
-        remedy = f"add {homes}" if coefficients else "the file is truncated, or belongs to another tyre model"
+        remedy = (
+            f"add {homes}"
+            if coefficients
+            else "the file is truncated, is for another tyre model, or is not a property file"
+        )
         raise TirError(
             f"lacks {' and '.join(missing)}, which every force needs: {remedy}",
             path=document.path,

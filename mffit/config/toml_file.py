@@ -11,6 +11,10 @@ from typing import Any, NamedTuple
 from mffit.config.locate import lines_of_keys
 from mffit.errors import InputError, readable
 
+PROPERTY_FILE = re.compile(r"^\s*\[(MDI_HEADER|\w+_COEFFICIENTS)\]", re.MULTILINE)
+"""A section that only property files have."""
+DECIMAL_COMMA = re.compile(r"=\s*([-+]?\d+),(\d+)\s*(#|$)")
+
 
 class TomlKind(NamedTuple):
     """A TOML file that a command asks for, and what a message says where it got something else."""
@@ -39,6 +43,8 @@ def read_toml(path: Path, kind: TomlKind) -> tuple[dict[str, Any], dict[str, int
             raise _other_file(path, kind) from None
         raise InputError("is not UTF-8 text; save it as UTF-8", file=path) from None
     except tomllib.TOMLDecodeError as error:
+        if PROPERTY_FILE.search(text):
+            raise _property_file(path, kind) from None
         if not is_toml:
             raise _other_file(path, kind) from None
         raise _syntax_error(error, path, text) from None
@@ -55,10 +61,12 @@ def _bytes(path: Path, kind: TomlKind) -> bytes:
 
 def _other_file(path: Path, kind: TomlKind) -> InputError:
     if path.name.lower().endswith(".tir"):
-        sentence = f"is a property file, not a {kind.name}: {kind.base}"
-    else:
-        sentence = f"is not a {kind.name}; {kind.otherwise(path)}"
-    return InputError(sentence, file=path)
+        return _property_file(path, kind)
+    return InputError(f"is not a {kind.name}; {kind.otherwise(path)}", file=path)
+
+
+def _property_file(path: Path, kind: TomlKind) -> InputError:
+    return InputError(f"is a property file, not a {kind.name}: {kind.base}", file=path)
 
 
 def _syntax_error(error: tomllib.TOMLDecodeError, path: Path, text: str) -> InputError:
@@ -66,6 +74,7 @@ def _syntax_error(error: tomllib.TOMLDecodeError, path: Path, text: str) -> Inpu
     place = re.search(r"\(at line (\d+), column (\d+)\)", message)
     line = int(place[1]) if place else max(len(text.splitlines()), 1)
     reason = message.partition(" (at ")[0]
-    return InputError(
-        f"is not valid TOML ({reason[:1].lower()}{reason[1:]}); correct this line", file=path, line=line
-    )
+    lines = text.splitlines()
+    comma = DECIMAL_COMMA.search(lines[line - 1]) if line <= len(lines) else None
+    remedy = f"write the number with a decimal point, {comma[1]}.{comma[2]}" if comma else "correct this line"
+    return InputError(f"is not valid TOML ({reason[:1].lower()}{reason[1:]}); {remedy}", file=path, line=line)

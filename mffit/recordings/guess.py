@@ -70,7 +70,7 @@ def guesses(raw: RawTable, *, unloaded_radius: float | None = None) -> Guesses:
     found = {name: _guess(raw, column, chosen.get(name)) for name, column in columns.items()} | _labels(raw)
     if "Mz_Nm" not in found:
         remarks += _without_moment(raw, {guess.heading for guess in found.values()})
-    if "time_s" not in found:
+    if not found.keys() & {"time_s", "t_s"}:
         remarks.append(_without_time(raw))
     ordered = {channel.name: found[channel.name] for channel in CHANNELS if channel.name in found}
     return Guesses(ordered, tuple(remarks))

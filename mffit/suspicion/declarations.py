@@ -32,7 +32,7 @@ class Alternative(NamedTuple):
     id="declaration-contradicted",
     subject=Subject.ALL_FILES,
     limits=(constants.WEAKEST_CAMBER_STIFFNESS,),
-    sentence="with {declared}, {wrong} in ISO signs, as no tyre does; {remedy}",
+    sentence="with {declared}, {wrong} in ISO signs, which no tyre does; {remedy}",
 )
 def contradicted(points: Points, config: Config) -> Iterator[Finding]:
     """What no tyre does, under the declared and under all other axes, frames and path centres."""

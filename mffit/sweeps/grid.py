@@ -56,7 +56,10 @@ def table_of(rows: Sequence[Row], lines: Sequence[int], path: Path) -> RawTable:
         )
     for row, line in data:
         if len(row) != width and (len(row) < width or any(cell != "" for cell in row[width:])):
-            sentence = f"has {len(row)} cells under {width} headings; complete or remove this row"
+            remedy = "complete or remove this row"
+            if len(row) > width:
+                remedy = "remove the cells too many, or the decimal comma that splits a number, or the row"
+            sentence = f"has {len(row)} cells under {width} headings; {remedy}"
             raise InputError(sentence, file=path, line=line)
     return RawTable(
         headings=head.headings,

@@ -140,6 +140,15 @@ def in_memory(write: Callable[[io.BytesIO], Any]) -> bytes:
     return buffer.getvalue()
 
 
+def as_tyre_toml(content: str) -> Change:
+    def change(project: Project) -> Path:
+        path = project.write()
+        path.write_text(content)
+        return path
+
+    return change
+
+
 SOUND = rows(SIDESLIP, 0.0, 1500.0)
 NO_TABLE = in_memory(lambda file: pd.DataFrame().to_excel(file, index=False))
 NO_FORCE = in_memory(lambda file: SOUND.drop(columns="Fy_N").to_excel(file, index=False))
@@ -152,10 +161,18 @@ CORPUS: dict[str, tuple[Change, str]] = {
         toml("unloaded_radius = 0.3", "unloaded_radius ="),
         "tyre.toml:7: is not valid TOML",
     ),
+    "a property file as tyre.toml": (
+        as_tyre_toml(WHOLE_TIR),
+        "tyre.toml: is a property file, not a tyre.toml",
+    ),
     "a quote that is not closed": (toml('name = "toy"', 'name = "toy'), "tyre.toml:6: is not valid TOML"),
     "a decimal comma": (
         toml("path_radius = 1.323", "path_radius = 1,323"),
         "tyre.toml:15: is not valid TOML",
+    ),
+    "a decimal comma below zero": (
+        toml("path_radius = 1.323", "path_radius = -1,323  # m"),
+        "write the number with a decimal point, -1.323",
     ),
     "a key twice": (under("tyre", "nominal_load = 1400.0"), "cannot overwrite a value"),
     "in UTF-16": (whole_toml("[tyre]\n".encode("utf-16")), "tyre.toml: is not UTF-8 text"),
@@ -214,7 +231,10 @@ CORPUS: dict[str, tuple[Change, str]] = {
     "a page for a base file": (base("<html><body>404</body></html>"), "holds no 'KEY = value' line"),
     # tables as text
     "a row cut off": (csv(HEAD + "0,0,1500,1,1\n1,0,15"), ":3: has 3 cells under 5 headings"),
-    "two rows in one line": (words("\n-6.0", ",-6.0"), ":2: has 14 cells under 7 headings"),
+    "two rows in one line": (
+        words("\n-6.0", ",-6.0"),
+        ":2: has 14 cells under 7 headings; remove the cells too many",
+    ),
     "a quote in a row": (csv(HEAD + '0,0,"1500,1,1\n1,0,1500,1,1\n'), ":2: has 3 cells under 5 headings"),
     "the headings again": (words("\n-6.0", f"\n{','.join(SOUND)}\n-6.0"), ":3: column alpha_deg"),
     "prose": (csv("the quick brown fox\njumps over\n"), ":2: has 2 cells under 4 headings"),

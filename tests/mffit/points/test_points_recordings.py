@@ -234,7 +234,7 @@ def test_a_wrong_declaration_is_caught(read, axes):
 def test_a_reversed_channel_is_caught(read, column):
     table = recording()
     table[column] *= -1.0
-    with pytest.raises(InputError, match="as no tyre does"):
+    with pytest.raises(InputError, match="which no tyre does"):
         read(table)
 
 
