@@ -26,13 +26,13 @@ def with_globs_expanded(
     sweeps = content.get("sweep")
     if isinstance(sweeps, Mapping):
         sweeps = [sweeps]
-    if not isinstance(sweeps, list) or not any(_is_wild(entry, folder) for entry in sweeps):
+    if not isinstance(sweeps, list) or not any(_is_pattern(entry, folder) for entry in sweeps):
         return content, lines
     expanded: list[Any] = []
     found_lines = {key: line for key, line in lines.items() if not key.startswith("sweep.")}
     for index, entry in enumerate(sweeps):
         own = {key: line for key, line in lines.items() if f"{key}.".startswith(f"sweep.{index}.")}
-        names = matches(entry["file"], folder) if _is_wild(entry, folder) else [None]
+        names = matches(entry["file"], folder) if _is_pattern(entry, folder) else [None]
         if not names:
             raise InputError(
                 f'no file in {folder.absolute()} matches "{entry["file"]}"; correct the pattern',
@@ -47,13 +47,13 @@ def with_globs_expanded(
     return {**content, "sweep": expanded}, found_lines
 
 
-def _is_wild(entry: Any, folder: Path) -> bool:
+def _is_pattern(entry: Any, folder: Path) -> bool:
     file = entry.get("file") if isinstance(entry, Mapping) else None
-    return isinstance(file, str) and is_wild(file, folder)
+    return isinstance(file, str) and is_pattern(file, folder)
 
 
-def is_wild(file: str, folder: Path) -> bool:
-    """Whether the text is a pattern; the name of an existing file is none."""
+def is_pattern(file: str, folder: Path) -> bool:
+    """Whether the text is a pattern and not the name of an existing file."""
     return bool(WILD & set(file)) and not (folder / file).exists()
 
 

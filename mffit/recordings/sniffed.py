@@ -11,7 +11,7 @@ import numpy as np
 
 from mffit import config as configuration
 from mffit.config import Config
-from mffit.config.globs import is_wild, matches
+from mffit.config.globs import is_pattern, matches
 from mffit.errors import InputError
 from mffit.points import levels
 from mffit.points.loading import Reading, read
@@ -104,7 +104,7 @@ def sniff(paths: Sequence[str | Path], *, unloaded_radius: float | None = None) 
 
 def files_of(path: str | Path) -> list[Path]:
     """The files that a name or a pattern means, sorted by name."""
-    if is_wild(str(path), Path()):
+    if is_pattern(str(path), Path()):
         found = matches(str(path), Path())
         if not found:
             raise InputError("no file matches this pattern; correct it", file=path)
