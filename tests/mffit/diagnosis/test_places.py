@@ -10,7 +10,8 @@ from small_programme import TYRE, U_FY, U_MZ, problem, programme, read
 
 from mffit import config
 from mffit.diagnosis import diagnose, where
-from mffit.diagnosis.bumps import bump_scan
+from mffit.diagnosis.bumps import _bells, bump_scan
+from mffit.diagnosis.declared import declared_priors
 from mffit.diagnosis.inexact import declared
 from mffit.diagnosis.needs import MET, missing, possible
 from mffit.diagnosis.noise import Noise, Origin, Scatter
@@ -118,6 +119,29 @@ def test_a_bump_is_found_with_its_place_and_size(channel, column, centre, only):
     # Evidence of a linear number with a prior: half the chi2 it takes away, less its price.
     assert found.gain < 0.5 * bumpy.null.chi2
     assert found.gain > 0.4 * bumpy.null.chi2 - 20.0
+
+
+def test_a_bump_is_a_bell_of_its_width():
+    """exp(-1/2) of its height one width beside its centre, on both sides."""
+    points = make_points(np.radians(np.arange(-8.0, 8.01, 0.25)), 0.0, 1500.0, p=250e3, V=6.0, phi_t=0.0)
+    shapes = [shape for shape in _bells(points) if shape[0] == "alpha_deg" and abs(shape[1]) < 3.0]
+    assert shapes
+    for _, centre, width, height in shapes:
+        away = np.abs(np.degrees(points.alpha) - centre) / width
+        np.testing.assert_allclose(height[away <= 1.0], np.exp(-0.5 * away[away <= 1.0] ** 2), rtol=1e-9)
+        assert np.all(height[away > 1.0] < np.exp(-0.5))
+
+
+def test_a_declared_side_force_is_an_angle_by_the_cornering_stiffness_at_zero():
+    """25 N at the median load, 1000 N, to 5 %: turn slip and shifts move the slope a little."""
+    content = {
+        "tyre": {"name": "a", "unloaded_radius": 0.2992, "nominal_load": 1400, "nominal_pressure": 250},
+        "rig": {"path_radius": 1.323, "u_slip_alignment_N": 25.0},
+        "sweep": [{"file": "a.csv"}],
+    }
+    value, u = declared_priors(config.load(content), programme(), Simulation.of(TYRE))["alpha_0_deg"]
+    assert value == 0.0
+    assert u == pytest.approx(math.degrees(25.0 / abs(float(TYRE.state(1000.0, Vx=6.0).K_ya))), rel=0.05)
 
 
 def test_noise_has_no_bump():
