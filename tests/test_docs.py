@@ -132,12 +132,6 @@ def test_the_description_on_a_package_index_needs_no_other_file(file):
     assert not relative, f"{readme.relative_to(ROOT)} links to {', '.join(relative)}"
 
 
-def test_every_package_of_tir_is_in_its_distribution():
-    packages = tomllib.loads(text_of(DISTRIBUTIONS[1]))["tool"]["setuptools"]["packages"]
-    folders = [path.parent for path in (ROOT / "tir").rglob("__init__.py") if "build" not in path.parts]
-    assert sorted(packages) == sorted(".".join(folder.relative_to(ROOT).parts) for folder in folders)
-
-
 def test_every_dependency_has_a_reason():
     project = tomllib.loads(text_of(ROOT / "pyproject.toml"))["project"]
     extras = [line for lines in project["optional-dependencies"].values() for line in lines]

@@ -114,6 +114,8 @@ ADDITIONS = (
         id="revolution",
         title="one revolution of the disc",
         reason=f"{_EPSILON} cannot be measured without an effective radius.",
+        loads="nominal",
+        disc_only=True,
         revolution=True,
     ),
     Addition(

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from mffit import config
-from mffit.config.globs import is_wild, matches
+from mffit.config.globs import is_pattern, matches
 from mffit.config.locate import lines_of_keys
 from mffit.config.problems import known_keys
 from mffit.errors import InputError
@@ -159,9 +159,9 @@ def test_a_column_given_by_its_heading_has_its_own_unit_and_no_factor(tmp_path):
 def test_a_pattern_is_a_name_with_wild_cards_that_no_file_has(tmp_path):
     for name in ("a[1].csv", "a1.csv", "b3.csv", "b2.csv"):
         (tmp_path / name).touch()
-    assert not is_wild("a1.csv", tmp_path)
-    assert not is_wild("a[1].csv", tmp_path)
-    assert is_wild("b*.csv", tmp_path)
+    assert not is_pattern("a1.csv", tmp_path)
+    assert not is_pattern("a[1].csv", tmp_path)
+    assert is_pattern("b*.csv", tmp_path)
     assert matches("b*.csv", tmp_path) == ["b2.csv", "b3.csv"]
     assert matches(f"{tmp_path}/b*.csv", Path("elsewhere")) == [str(tmp_path / f"b{k}.csv") for k in (2, 3)]
 

@@ -144,7 +144,7 @@ def test_the_advice_says_the_correction_its_uncertainty_and_what_limits_it():
     assert stop.endswith("is within its uncertainty.")
     sure = zeros(0.008).replace(u_Fy=0.1)
     (stop, *_) = wording.advice(align(sure, measured=MEASURED, resolution_deg=0.02))
-    assert stop.endswith("is within what the axis can be turned by, 0.02 deg.")
+    assert stop.endswith("is within the smallest step of the axis, 0.02 deg.")
 
 
 @pytest.mark.parametrize(("apart", "explained"), [(0.11, True), (0.09, False)])

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import re
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -360,7 +361,7 @@ def test_the_sweeps_are_as_long_as_the_tests_say():
 
 def test_the_property_file_names_what_was_measured_and_nothing_else():
     result = measured(Plain())
-    found = result.with_model(epsilon_gamma_model=-0.14, pecp1=None).debiased(0.02).quantities()
+    found = replace(result, epsilon_gamma_model=-0.14).debiased(0.02).quantities()
     row = result.nominal
     assert found["C_phit_Nm"] == row.C_phit
     assert found["C_gamma_N_per_rad"] == row.C_gamma

@@ -9,7 +9,7 @@ import pytest
 
 from mffit.points import Points, make_points
 from mffit.points.points import concatenate
-from mffit.suspicion import about, misread
+from mffit.suspicion import misread
 from mffit.suspicion.mistakes import MISTAKES
 
 ISO = dict.fromkeys(("alpha", "gamma", "Fz", "Fy", "Mz"), 1.0)
@@ -139,7 +139,7 @@ def test_the_misread_sweep_is_found_by_what_was_done_to_it(looks):
     assert found.looks == looks
     assert found.before > 0.15
     assert found.after == pytest.approx(0.0, abs=1e-9)
-    assert looks in about(found)
+    assert looks in found.sentence
 
 
 def test_sound_sweeps_are_not_misread():
