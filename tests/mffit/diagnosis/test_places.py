@@ -11,11 +11,11 @@ from small_programme import TYRE, U_FY, U_MZ, problem, programme, read
 from mffit import config
 from mffit.diagnosis import diagnose, where
 from mffit.diagnosis.bumps import _bells, bump_scan
-from mffit.diagnosis.declared import declared_priors
 from mffit.diagnosis.inexact import declared
 from mffit.diagnosis.needs import MET, missing, possible
 from mffit.diagnosis.noise import Noise, Origin, Scatter
 from mffit.diagnosis.notes import HardlyThisTyre, NotVisible
+from mffit.diagnosis.priors import declared_priors
 from mffit.diagnosis.stated import stated_noise, with_uncertainties
 from mffit.diagnosis.strangers import refuse_strangers
 from mffit.effects import CATALOG
