@@ -31,7 +31,7 @@ DISK_FULL = frozenset({errno.ENOSPC, errno.EROFS, errno.EDQUOT, errno.EFBIG})
 ELSEWHERE = "name another folder with --out"
 
 
-class Entry(NamedTuple):
+class OutputEntry(NamedTuple):
     """A written file in the record; ``by:sha256`` in JSON."""
 
     by: str  #: the command that wrote it
@@ -117,7 +117,7 @@ def _publish(temporary: Path, target: _Target) -> None:
     written = _digests(temporary)
     recorded = _recorded(target.out, target.record)
     # The record does not list itself, but its presence shows who wrote it.
-    itself = {target.record: Entry(target.by, digest(target.out / target.record))} if recorded else {}
+    itself = {target.record: OutputEntry(target.by, digest(target.out / target.record))} if recorded else {}
     _refuse(target.out, written, recorded | itself, target.protected)
     try:
         _move(temporary, target, written, recorded)
@@ -162,14 +162,14 @@ def _digests(folder: Path) -> dict[str, str]:
     return {path.relative_to(folder).as_posix(): digest(path) for path in files}
 
 
-def _is_unchanged(out: Path, name: str, entry: Entry) -> bool:
+def _is_unchanged(out: Path, name: str, entry: OutputEntry) -> bool:
     return (out / name).is_file() and digest(out / name) == entry.sha256
 
 
 def _refuse(
     out: Path,
     written: Mapping[str, str],
-    recorded: Mapping[str, Entry],
+    recorded: Mapping[str, OutputEntry],
     protected: Iterable[Path],
 ) -> None:
     """Raise if a file of ``written`` would replace one that must stay."""
@@ -194,7 +194,7 @@ def _refuse(
             raise InputError(reason, file=target)
 
 
-def _reason_to_keep(target: Path, new: str, entry: Entry | None, inputs: Iterable[Path]) -> str:
+def _reason_to_keep(target: Path, new: str, entry: OutputEntry | None, inputs: Iterable[Path]) -> str:
     """Why a file must not be replaced by one of the SHA-256 ``new``; "" if it may."""
     old = digest(target)
     if old == new:
@@ -211,13 +211,13 @@ def _reason_to_keep(target: Path, new: str, entry: Entry | None, inputs: Iterabl
 
 
 def _move(
-    temporary: Path, target: _Target, written: Mapping[str, str], recorded: Mapping[str, Entry]
+    temporary: Path, target: _Target, written: Mapping[str, str], recorded: Mapping[str, OutputEntry]
 ) -> None:
     """Move the files to their places, remove outdated ones, and write the record."""
     out, record = target.out, target.record
     stale = _stale(target, written, recorded)
     kept = {name: entry for name, entry in recorded.items() if name not in stale and (out / name).is_file()}
-    entries = kept | {name: Entry(target.by, new) for name, new in written.items() if name != record}
+    entries = kept | {name: OutputEntry(target.by, new) for name, new in written.items() if name != record}
     file = temporary / record
     content = json.loads(file.read_text(encoding="utf-8")) if record in written else {"about": ABOUT}
     content["files"] = {name: ":".join(entry) for name, entry in sorted(entries.items())}
@@ -250,7 +250,7 @@ def _complete(dead: Path, out: Path) -> None:
     _carry(dead, out, moving, stale, record)
 
 
-def _stale(target: _Target, written: Mapping[str, str], recorded: Mapping[str, Entry]) -> list[str]:
+def _stale(target: _Target, written: Mapping[str, str], recorded: Mapping[str, OutputEntry]) -> list[str]:
     """Unchanged files of an earlier run of this command that this run did not write again.
 
     All in the folders that this run wrote to; outside them only those called ``outdated``.
@@ -266,12 +266,12 @@ def _stale(target: _Target, written: Mapping[str, str], recorded: Mapping[str, E
     ]
 
 
-def _recorded(out: Path, record: str) -> dict[str, Entry]:
+def _recorded(out: Path, record: str) -> dict[str, OutputEntry]:
     """Files that earlier runs wrote, by name relative to ``out``; a file called RECORD that is not a record is refused."""
     path = out / record
     try:
         files = json.loads(path.read_text(encoding="utf-8"))["files"]
-        return {name: Entry(*text.split(":")) for name, text in files.items()}
+        return {name: OutputEntry(*text.split(":")) for name, text in files.items()}
     except FileNotFoundError:
         return {}
     except (OSError, ValueError, LookupError, TypeError, AttributeError):

@@ -12,7 +12,7 @@ from tir.tyre import Tyre
 
 
 @dataclass(frozen=True, slots=True)
-class Rule:
+class PlausibleRule:
     """A condition under which the value of a key is wrong, independent of all other values."""
 
     keys: tuple[str, ...]
@@ -23,38 +23,38 @@ class Rule:
 
 
 SINGLE = (
-    Rule(
+    PlausibleRule(
         ("NOMPRES", "INFLPRES"),
         lambda x: 0.0 < x < constants.LOWEST_PRESSURE,
         "it looks like kPa or bar; write Pa",
     ),
-    Rule(
+    PlausibleRule(
         ("NOMPRES", "INFLPRES"),
         lambda x: x > constants.HIGHEST_PRESSURE,
         "no tyre holds that pressure; write Pa",
     ),
-    Rule(
+    PlausibleRule(
         ("ALPMIN", "ALPMAX"),
         lambda x: abs(x) > constants.LARGEST_SIDESLIP_LIMIT,
         "it looks like degrees; write radians",
     ),
-    Rule(
+    PlausibleRule(
         ("CAMMIN", "CAMMAX"),
         lambda x: abs(x) > constants.LARGEST_CAMBER_LIMIT,
         "it looks like degrees; write radians",
     ),
-    Rule(
+    PlausibleRule(
         ("WIDTH", "RIM_WIDTH"),
         lambda x: x > constants.WIDEST_TYRE,
         "it looks like millimetres or inches; write metres",
     ),
-    Rule(
+    PlausibleRule(
         tuple(row.name for row in TABLE if row.unit in ("kg", "kg m2")),
         lambda x: x < 0.0,
         "it must not be negative",
         "error",
     ),
-    Rule(
+    PlausibleRule(
         ("LONGITUDINAL_STIFFNESS", "LATERAL_STIFFNESS"),
         lambda x: x <= 0.0,
         "the relaxation length is divided by it; give its value",
@@ -62,7 +62,7 @@ SINGLE = (
 )
 """Dimensions, limits and masses."""
 SHAPES = tuple(
-    Rule((name,), lambda x: x <= 0.0, f"the {what} must be positive", "error", amplitude)
+    PlausibleRule((name,), lambda x: x <= 0.0, f"the {what} must be positive", "error", amplitude)
     for name, what, amplitude in (
         ("PCX1", "shape factor", "PDX1"),
         ("PCY1", "shape factor", ""),
@@ -75,7 +75,7 @@ SHAPES = tuple(
 """Coefficients of the shape of the curves."""
 
 
-def broken(tyre: Tyre, rules: Iterable[Rule]) -> Iterator[Problem]:
+def broken(tyre: Tyre, rules: Iterable[PlausibleRule]) -> Iterator[Problem]:
     """A problem for every key that breaks a rule."""
     for rule in rules:
         if rule.amplitude and tyre[rule.amplitude] == 0.0:

@@ -2,13 +2,13 @@
 
 from mffit.comparison.characteristics import characteristics, with_u
 from mffit.comparison.compare import against_points, between
-from mffit.comparison.record import Comparison, CurveGap, Difference, Subject
+from mffit.comparison.record import ComparedSubject, Comparison, CurveGap, Difference
 
 __all__ = [
+    "ComparedSubject",
     "Comparison",
     "CurveGap",
     "Difference",
-    "Subject",
     "against_points",
     "between",
     "characteristics",

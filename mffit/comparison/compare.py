@@ -9,7 +9,7 @@ import numpy as np
 
 from mffit.comparison import constants, wording
 from mffit.comparison.characteristics import characteristics, with_u
-from mffit.comparison.record import Comparison, CurveGap, Difference, Subject, SweepGap, ranked
+from mffit.comparison.record import ComparedSubject, Comparison, CurveGap, Difference, SweepGap, ranked
 from mffit.fit import Posterior
 from mffit.measured import KEYS, LoadResult
 from mffit.points import Points, make_points
@@ -21,7 +21,7 @@ from tir.parameters import TABLE
 DIRECT_ROWS = ("epsilon_gamma", "C_phit", "C_gamma", "C_alpha", "F_phit")
 
 
-def between(first: Subject, second: Subject) -> Comparison:
+def between(first: ComparedSubject, second: ComparedSubject) -> Comparison:
     """Compare two files.
 
     Parameters
@@ -53,7 +53,7 @@ def between(first: Subject, second: Subject) -> Comparison:
 
 
 def _numbers(
-    first: Subject, second: Subject, load: float, pressure: float, reach: float
+    first: ComparedSubject, second: ComparedSubject, load: float, pressure: float, reach: float
 ) -> Iterator[Difference]:
     """The numbers that both files have at a load [N] and a pressure [Pa], peaks sought up to ``reach`` [rad]."""
     (a, u_a), (b, u_b) = (
@@ -73,7 +73,7 @@ def _numbers(
 
 
 def _curves(
-    first: Subject, second: Subject, load: float, pressure: float, reach: Mapping[str, float]
+    first: ComparedSubject, second: ComparedSubject, load: float, pressure: float, reach: Mapping[str, float]
 ) -> Iterator[CurveGap]:
     """The curves of every channel over sideslip and over camber."""
     for over, end in (("alpha", "ALPMAX"), ("gamma", "CAMMAX")):
@@ -94,7 +94,9 @@ def _curves(
             )
 
 
-def _curve(side: Subject, where: Points) -> tuple[Sequence[np.ndarray], tuple[np.ndarray, np.ndarray] | None]:
+def _curve(
+    side: ComparedSubject, where: Points
+) -> tuple[Sequence[np.ndarray], tuple[np.ndarray, np.ndarray] | None]:
     """Readings of a file on a perfect rig, and the half widths of their bands."""
     simulation = Simulation.of(side.tyre, turn_slip=side.turn_slip)
     band = None
@@ -103,7 +105,7 @@ def _curve(side: Subject, where: Points) -> tuple[Sequence[np.ndarray], tuple[np
     return simulation.readings(where), band
 
 
-def _coefficients(first: Subject, second: Subject) -> tuple[Difference, ...]:
+def _coefficients(first: ComparedSubject, second: ComparedSubject) -> tuple[Difference, ...]:
     """Coefficients that differ."""
     u_first, u_second = (
         {}
@@ -131,7 +133,7 @@ def _coefficients(first: Subject, second: Subject) -> tuple[Difference, ...]:
 
 
 def against_points(
-    subject: Subject,
+    subject: ComparedSubject,
     simulation: Simulation,
     points: Points,
     measured: Sequence[LoadResult],

@@ -20,7 +20,7 @@ OF_ORDER_ONE = frozenset({"epsilon_gamma"})
 
 
 @dataclass(frozen=True, slots=True)
-class Subject:
+class ComparedSubject:
     """One side of a comparison."""
 
     name: str

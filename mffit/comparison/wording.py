@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterator
 
 from mffit.comparison import constants
-from mffit.comparison.record import Comparison, Difference, Subject
+from mffit.comparison.record import ComparedSubject, Comparison, Difference
 from mffit.measured import KEYS
 from mffit.quantities import CHANNELS, CHARACTERISTICS, CONDITIONS, DIRECT, QuantityName
 from tir.parameters import BY_NAME
@@ -60,12 +60,12 @@ def place(row: Difference) -> str:
     return "" if row.load is None else CONDITIONS["Fz_N"].of(row.load)
 
 
-def notes_between(first: Subject, second: Subject) -> tuple[str, ...]:
+def notes_between(first: ComparedSubject, second: ComparedSubject) -> tuple[str, ...]:
     """Remarks on a comparison of two files: their use, and what is known of their uncertainty."""
     return (*_on_use(first, second), *_on_uncertainty(first, second))
 
 
-def _on_use(first: Subject, second: Subject) -> Iterator[str]:
+def _on_use(first: ComparedSubject, second: ComparedSubject) -> Iterator[str]:
     if first.turn_slip != second.turn_slip:
         on, off = (first, second) if first.turn_slip else (second, first)
         yield (
@@ -73,7 +73,7 @@ def _on_use(first: Subject, second: Subject) -> Iterator[str]:
         )
 
 
-def _on_uncertainty(first: Subject, second: Subject) -> Iterator[str]:
+def _on_uncertainty(first: ComparedSubject, second: ComparedSubject) -> Iterator[str]:
     unknown = [side for side in (first, second) if side.covariance is None]
     bare = [side.name for side in unknown if not side.covariance_of]
     if bare:

@@ -14,7 +14,7 @@ from mffit.diagnosis import constants
 from mffit.diagnosis.noise import links
 
 
-class Parts(NamedTuple):
+class MarginalParts(NamedTuple):
     """The numbers of a scatter that its likelihood depends on."""
 
     log_scale: float
@@ -24,7 +24,7 @@ class Parts(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Channel:
+class MarginalChannel:
     """The used readings (m,) of one channel."""
 
     stated: np.ndarray  #: standard uncertainty
@@ -35,11 +35,11 @@ class Channel:
     smooth: np.ndarray  #: (m, k) the same of smooth structure, at amplitude 1
     weight: np.ndarray  #: weight of each reading
 
-    def beside(self, columns: np.ndarray) -> Channel:
+    def beside(self, columns: np.ndarray) -> MarginalChannel:
         """The same with further changes (m, k) that could explain the residual."""
         return replace(self, named=np.hstack([self.named, columns]))
 
-    def likelihood(self, parts: Parts) -> float:
+    def likelihood(self, parts: MarginalParts) -> float:
         """Logarithm of the marginal likelihood, with the prior of the scale; of some whole sweeps if there are many."""
         r, A, log = self._white(parts, *self._sample)
         root = _factor(A)
@@ -48,7 +48,7 @@ class Channel:
         prior = parts.log_scale / math.log(constants.STATED_NOISE_FACTOR)
         return -0.5 * float(r @ r - b @ b) - log - 0.5 * prior**2
 
-    def standardised(self, parts: Parts) -> np.ndarray:
+    def standardised(self, parts: MarginalParts) -> np.ndarray:
         """Every reading (m,) against its prediction from all others, in units of their joint uncertainty at weight 1."""
         r, A, _ = self._white(parts, np.arange(len(self.stated)), links(self.chain))
         root = _factor(A)
@@ -68,7 +68,7 @@ class Channel:
         return rows, links(self.chain[rows])
 
     def _white(
-        self, parts: Parts, rows: np.ndarray, linked: tuple[np.ndarray, np.ndarray]
+        self, parts: MarginalParts, rows: np.ndarray, linked: tuple[np.ndarray, np.ndarray]
     ) -> tuple[np.ndarray, np.ndarray, float]:
         """Residual and columns of some readings in units of their scatter, and the log determinant of that division."""
         u = np.hypot(math.exp(parts.log_scale) * self.stated, parts.growth * self.size) / np.sqrt(self.weight)

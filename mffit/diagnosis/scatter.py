@@ -13,7 +13,7 @@ import numpy as np
 from scipy.optimize import minimize
 
 from mffit.diagnosis import constants
-from mffit.diagnosis.marginal import Channel, Parts
+from mffit.diagnosis.marginal import MarginalChannel, MarginalParts
 from mffit.diagnosis.noise import Noise, Scatter
 from mffit.diagnosis.tails import heavy_tails, weights
 from mffit.quantities import CHANNELS
@@ -50,7 +50,7 @@ def learned(noise: Noise, residual: np.ndarray, explained: Explained, size: np.n
         rows = rows[np.isfinite(noise.stated[rows])]
         if not len(rows):
             continue
-        channel = Channel(
+        channel = MarginalChannel(
             stated=noise.stated[rows],
             residual=np.nan_to_num(residual[rows]),
             size=np.abs(np.nan_to_num(size[rows])),
@@ -70,9 +70,9 @@ def _occurring(columns: np.ndarray) -> np.ndarray:
     return columns[:, np.any(columns != 0.0, axis=0)]
 
 
-def _of_channel(channel: Channel, runs: np.ndarray, start: Scatter) -> tuple[Scatter, np.ndarray]:
+def _of_channel(channel: MarginalChannel, runs: np.ndarray, start: Scatter) -> tuple[Scatter, np.ndarray]:
     """The scatter, and the weight of every reading (m,)."""
-    first = Parts(math.log(start.scale), start.growth, start.memory, constants.SCATTER_START_SMOOTH)
+    first = MarginalParts(math.log(start.scale), start.growth, start.memory, constants.SCATTER_START_SMOOTH)
     channel, parts, tails = _weighted(channel, first)
     if parts.memory and runs.shape[1]:
         # Offsets of whole runs look like memory: they replace it if they explain the residual better.
@@ -83,7 +83,7 @@ def _of_channel(channel: Channel, runs: np.ndarray, start: Scatter) -> tuple[Sca
     return Scatter(math.exp(parts.log_scale), parts.growth, parts.memory, tails), channel.weight
 
 
-def _weighted(channel: Channel, parts: Parts) -> tuple[Channel, Parts, float]:
+def _weighted(channel: MarginalChannel, parts: MarginalParts) -> tuple[MarginalChannel, MarginalParts, float]:
     """The channel with its weights, and the parts and degrees of freedom that were found in turn with them."""
     tails = math.inf
     for _ in range(constants.MOST_READING_WEIGHT_ROUNDS):
@@ -98,27 +98,29 @@ def _weighted(channel: Channel, parts: Parts) -> tuple[Channel, Parts, float]:
     return channel, parts, tails
 
 
-def _accepted(channel: Channel, start: Parts) -> Parts:
+def _accepted(channel: MarginalChannel, start: MarginalParts) -> MarginalParts:
     """The likeliest parts, without growth or memory if the data do not ask for them."""
-    second = Parts(*constants.SCATTER_SECOND_START)
+    second = MarginalParts(*constants.SCATTER_SECOND_START)
     best, whole = max((_climb(channel, x, ALL) for x in (start, second)), key=lambda climb: climb[1])
     for part in (GROWTH, MEMORY):
         reduced = [0.0 if k == part else value for k, value in enumerate(best)]
         free = tuple(k for k in ALL if k != part and (k not in (GROWTH, MEMORY) or best[k]))
-        other, less = _climb(channel, Parts(*reduced), free)
+        other, less = _climb(channel, MarginalParts(*reduced), free)
         if whole - less < constants.SCATTER_PART_GAIN:
             best, whole = other, less
     return best
 
 
-def _climb(channel: Channel, start: Parts, free: tuple[int, ...]) -> tuple[Parts, float]:
+def _climb(
+    channel: MarginalChannel, start: MarginalParts, free: tuple[int, ...]
+) -> tuple[MarginalParts, float]:
     """The maximum of the likelihood over the free parts, and its value."""
     chosen, unit = list(free), np.array(constants.SCATTER_STEPS)
 
-    def full(y: np.ndarray) -> Parts:
+    def full(y: np.ndarray) -> MarginalParts:
         x = np.array(start)
         x[chosen] = y * unit[chosen]
-        return Parts(*x.tolist())
+        return MarginalParts(*x.tolist())
 
     first = np.array(start)
     if GROWTH in free and not start.growth:

@@ -32,7 +32,7 @@ class Row:
 
 
 @dataclass(frozen=True, slots=True)
-class Scatter:
+class FleetScatter:
     """Scatter of one number from tyre to tyre, and its uncertainty."""
 
     mean: float
@@ -60,7 +60,7 @@ class Fleet:
             return [getattr(row, key) for row in self.rows]
         return [row.numbers.get(key) for row in self.rows]
 
-    def scatter(self, key: str) -> Scatter | None:
+    def scatter(self, key: str) -> FleetScatter | None:
         """Scatter of one number over all specimens that have it; None for fewer than two."""
         found = [q for q in self.numbers(key) if q is not None]
         return scatter_of(found) if len(found) > 1 else None
@@ -74,7 +74,7 @@ EPSILON = {
 """The three estimates of eps_gamma in words."""
 
 
-def scatter_of(found: Sequence[Quantity]) -> Scatter:
+def scatter_of(found: Sequence[Quantity]) -> FleetScatter:
     """Mean, scatter and typical uncertainty of at least two numbers."""
     values, u = np.array([q.value for q in found]), np.array([q.u for q in found])
-    return Scatter(mean=float(values.mean()), sd=float(values.std(ddof=1)), u=rms(u), tyres=len(found))
+    return FleetScatter(mean=float(values.mean()), sd=float(values.std(ddof=1)), u=rms(u), tyres=len(found))

@@ -11,7 +11,7 @@ from typing import Any
 
 import tir
 from mffit import config as configuration
-from mffit.comparison import Comparison, Subject, against_points, between
+from mffit.comparison import ComparedSubject, Comparison, against_points, between
 from mffit.config import Config, declared_faults
 from mffit.errors import InputError
 from mffit.fleet.specimen import RESOLVED
@@ -91,13 +91,13 @@ def write_comparison(found: Comparison, out: Path, read: Sequence[Path]) -> None
         report.write_comparison(found, folder)
 
 
-def _subject(path: Path) -> Subject:
+def _subject(path: Path) -> ComparedSubject:
     """A property file, or that of a build's folder, with its covariance if its build is beside it."""
     if path.is_dir():
         path = path / _file_of_build(path)
     tyre = tir.read(path)
     built = _build_beside(path)
-    subject = Subject(path.name, tyre, _turn_slip(tyre), rig=built.get("rig"))
+    subject = ComparedSubject(path.name, tyre, _turn_slip(tyre), rig=built.get("rig"))
     posterior = posterior_of(tyre, path)
     if posterior is not None:
         return replace(subject, names=posterior.names, covariance=posterior.root @ posterior.root.T)
@@ -131,7 +131,7 @@ def _turn_slip(tyre: Tyre) -> bool:
     return use == "turn-slip" if use is not None else int(tyre["USE_MODE"]) % 10 == 5
 
 
-def _with_names_apart(sides: list[Subject], paths: Sequence[Path]) -> list[Subject]:
+def _with_names_apart(sides: list[ComparedSubject], paths: Sequence[Path]) -> list[ComparedSubject]:
     """The subjects; those with one name get as much of their paths as makes the names differ."""
     if sides[0].name != sides[1].name:
         return sides
@@ -149,7 +149,7 @@ def _shortest_names(first: Path, second: Path) -> tuple[str, str]:
     return str(first), str(second)
 
 
-def _with_data(subject: Subject, config: Config) -> Comparison:
+def _with_data(subject: ComparedSubject, config: Config) -> Comparison:
     """The file against the sweeps, simulated with the declared rig and the settings of [model]."""
     points = read_points(config).points
     base = read_base(config)

@@ -7,16 +7,16 @@ import numpy as np
 from mffit.points import constants
 from mffit.points.faulty import Fault
 from mffit.points.settling import settled
-from mffit.points.steady import Scale, Settings, stretches
+from mffit.points.steady import Scale, SteadySettings, stretches
 from mffit.points.stretch import MOVE, PLATEAU, SWEEP, Stretch
 from mffit.sweeps import Sweep
 
 ROLLING_IN = f"the first {constants.TRANSIENT_ROLL:g} m of rolling behind a gap or a change"
 
 
-def settings_of(sweep: Sweep) -> Settings:
+def settings_of(sweep: Sweep) -> SteadySettings:
     """The settings of a time series."""
-    return Settings(sweep.time, sweep.alpha, sweep.gamma, sweep.Fz, sweep.p, sweep.V)
+    return SteadySettings(sweep.time, sweep.alpha, sweep.gamma, sweep.Fz, sweep.p, sweep.V)
 
 
 def chosen(sweep: Sweep, wrong: list[Fault], scale: Scale | None) -> list[Stretch]:
@@ -41,7 +41,7 @@ def _stretches(sweep: Sweep, wrong: list[Fault], scale: Scale | None) -> list[St
     cuts = np.r_[np.flatnonzero(np.diff(reason)) + 1, np.flatnonzero(np.diff(sweep.direction)) + 1]
     settings = settings_of(sweep)
     if np.any(reason >= 0):
-        settings = Settings(*(np.where(np.isfinite(x), x, 0.0) for x in settings))
+        settings = SteadySettings(*(np.where(np.isfinite(x), x, 0.0) for x in settings))
     found = []
     for stretch in stretches(settings, sweep.point, cuts.tolist(), scale):
         k = int(reason[stretch.begin]) if sweep.point is None else -1

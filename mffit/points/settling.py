@@ -8,12 +8,12 @@ import numpy as np
 
 from mffit.points import constants
 from mffit.points.mean import mean_and_error
-from mffit.points.steady import Settings
+from mffit.points.steady import SteadySettings
 from mffit.points.stretch import Stretch
 
 
 def settled(
-    stretch: Stretch, settings: Settings, responses: Sequence[tuple[np.ndarray, float, str]]
+    stretch: Stretch, settings: SteadySettings, responses: Sequence[tuple[np.ndarray, float, str]]
 ) -> Stretch:
     """The stretch without its transient, or with the reason why it gives no point.
 

@@ -23,7 +23,7 @@ Scale = Mapping[str, float]
 """Usual size of each setting in a recording."""
 
 
-class Settings(NamedTuple):
+class SteadySettings(NamedTuple):
     """Set-points as the rig reports them, sample by sample (n,)."""
 
     time: np.ndarray  #: [s], rising
@@ -35,7 +35,10 @@ class Settings(NamedTuple):
 
 
 def stretches(
-    settings: Settings, point: np.ndarray | None = None, cuts: Sequence[int] = (), scale: Scale | None = None
+    settings: SteadySettings,
+    point: np.ndarray | None = None,
+    cuts: Sequence[int] = (),
+    scale: Scale | None = None,
 ) -> list[Stretch]:
     """The stretches of a series in time order, transients included.
 
@@ -61,7 +64,7 @@ def stretches(
     edges = np.unique(np.r_[0, gaps(settings.time), np.asarray(cuts, dtype=int), n])
     found: list[Stretch] = []
     for begin, end in itertools.pairwise(edges.tolist()):
-        piece = Settings(*(x[begin:end] for x in settings))
+        piece = SteadySettings(*(x[begin:end] for x in settings))
         found += [
             s._replace(begin=s.begin + int(begin), end=s.end + int(begin)) for s in _of_piece(piece, scale)
         ]
@@ -77,7 +80,7 @@ def gaps(time: np.ndarray) -> np.ndarray:
     return np.flatnonzero(steps > shortest) + 1
 
 
-def _of_piece(settings: Settings, scale: Scale) -> list[Stretch]:
+def _of_piece(settings: SteadySettings, scale: Scale) -> list[Stretch]:
     """The stretches of a piece without gaps."""
     if len(settings.time) < 2:
         return [Stretch(0, len(settings.time), "only one sample", MOVE)]
@@ -89,14 +92,14 @@ def _of_piece(settings: Settings, scale: Scale) -> list[Stretch]:
     for begin, end in steady:
         changing[begin:end] = False
     for begin, end in steady:
-        part = Settings(*(x[begin:end] for x in settings))
+        part = SteadySettings(*(x[begin:end] for x in settings))
         inside = _of_condition(part, masks["alpha"][begin:end], masks["gamma"][begin:end])
         found += [s._replace(begin=s.begin + begin, end=s.end + begin) for s in inside]
     found += [Stretch(begin, end, "load, pressure or speed changes", MOVE) for begin, end in runs(changing)]
     return sorted(found)
 
 
-def _reaching(settings: Settings, scale: Scale, found: list[tuple[int, int]]) -> list[tuple[int, int]]:
+def _reaching(settings: SteadySettings, scale: Scale, found: list[tuple[int, int]]) -> list[tuple[int, int]]:
     """Runs of one condition, extended to where it begins and ends: a change also masks the samples near it."""
     n = len(settings.time)
     lag = _samples(settings, constants.COMPARED_APART)
@@ -122,13 +125,15 @@ def _reaching(settings: Settings, scale: Scale, found: list[tuple[int, int]]) ->
     return out
 
 
-def _samples(settings: Settings, seconds: float) -> int:
+def _samples(settings: SteadySettings, seconds: float) -> int:
     """Number of samples in a time, at least one."""
     n = len(settings.time)
     return int(np.clip(round(seconds / max(np.median(np.diff(settings.time)), 1e-9)), 1, max(n - 1, 1)))
 
 
-def _of_condition(settings: Settings, alpha_moves: np.ndarray, gamma_moves: np.ndarray) -> list[Stretch]:
+def _of_condition(
+    settings: SteadySettings, alpha_moves: np.ndarray, gamma_moves: np.ndarray
+) -> list[Stretch]:
     """The stretches of a piece of constant load, pressure and speed."""
     resting = ~alpha_moves & ~gamma_moves
     rests = [Stretch(begin, end) for begin, end in runs(resting)]
@@ -148,7 +153,7 @@ def _of_condition(settings: Settings, alpha_moves: np.ndarray, gamma_moves: np.n
 
 
 def _swept(
-    settings: Settings, gamma_moves: np.ndarray, begin: int, end: int, staircase: bool
+    settings: SteadySettings, gamma_moves: np.ndarray, begin: int, end: int, staircase: bool
 ) -> list[Stretch]:
     """Sweeps of one angle in a moving piece; the rest of it moves between plateaus."""
 
@@ -178,7 +183,7 @@ def _returns(x: np.ndarray) -> bool:
     return bool(far > constants.RETURNED_SHARE * np.ptp(x))
 
 
-def scale_of(series: Sequence[Settings]) -> Scale:
+def scale_of(series: Sequence[SteadySettings]) -> Scale:
     """Median size of each setting; of long recordings from some of the samples."""
     some = max(sum(len(settings.time) for settings in series) // constants.MOST_SAMPLES_FOR_SCALE, 1)
     sizes = {}
@@ -189,7 +194,7 @@ def scale_of(series: Sequence[Settings]) -> Scale:
     return sizes
 
 
-def moves(settings: Settings, scale: Scale | None = None) -> dict[str, np.ndarray]:
+def moves(settings: SteadySettings, scale: Scale | None = None) -> dict[str, np.ndarray]:
     """Masks of the samples at which each setting changes.
 
     ``scale`` is the usual size of each setting in the whole recording; of this series if None.
@@ -218,7 +223,7 @@ def _noise(values: np.ndarray) -> float:
     return robust(np.diff(values)) / math.sqrt(2.0) if len(values) > 1 else 0.0
 
 
-def _creeps(settings: Settings, stretch: Stretch) -> bool:
+def _creeps(settings: SteadySettings, stretch: Stretch) -> bool:
     """Whether an angle moves so slowly through the stretch that no single step shows."""
     quarter = max((stretch.end - stretch.begin) // 4, 1)
     for values in (settings.alpha, settings.gamma):

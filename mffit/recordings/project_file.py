@@ -13,7 +13,7 @@ import tomli_w
 from mffit.config.models import TyreTable
 from mffit.points import main_pressure
 from mffit.recordings.guess import Guess
-from mffit.recordings.sniffed import Recording, Sniffed, holding, points_from
+from mffit.recordings.sniffed import Sniffed, SniffedRecording, holding, points_from
 from mffit.sweeps.formats import stem
 
 TYRE_IN_TITLE = re.compile(r"\b(?:tyre|tire|reifen)\s*[:=]\s*(.*\S)", re.IGNORECASE)
@@ -68,7 +68,7 @@ def project_text(
     return "\n\n".join("\n".join(lines) for lines in tables) + "\n"
 
 
-def _size(recordings: Collection[Recording]) -> list[str]:
+def _size(recordings: Collection[SniffedRecording]) -> list[str]:
     """The tyre as a recording names it; else a recording's title as a comment."""
     most = 60  # characters
     tyre = next((tyre for r in recordings if (tyre := named_tyre(r.about))), "")
@@ -98,7 +98,7 @@ def _speed(sniffed: Sniffed) -> list[str]:
 
 
 def _sweep(
-    recording: Recording, folder: Path, shared: Mapping[str, Guess], remarks_of_all: Collection[str]
+    recording: SniffedRecording, folder: Path, shared: Mapping[str, Guess], remarks_of_all: Collection[str]
 ) -> list[str]:
     own = {name: guess for name, guess in recording.guesses.items() if _differs(shared[name], guess)}
     return [

@@ -31,7 +31,7 @@ STAND_IN = {"unloaded_radius": 0.3, "nominal_load": 1500.0, "nominal_pressure": 
 """Placeholder for a tyre that is not known yet; no result of reading depends on it."""
 
 
-class Recording(NamedTuple):
+class SniffedRecording(NamedTuple):
     """One file."""
 
     path: Path
@@ -58,7 +58,7 @@ class Level(NamedTuple):
 class Sniffed:
     """What recordings hold."""
 
-    recordings: tuple[Recording, ...]
+    recordings: tuple[SniffedRecording, ...]
     axes: tuple[str, ...]  #: axes that agree with physics, first those tried first; empty if none does
     wrong: tuple[str, ...]  #: contradictions with physics under the axes first tried
     reading: Reading  #: points and stretches under the likeliest axes
@@ -123,7 +123,7 @@ def files_of(path: str | Path) -> list[Path]:
     return [file]
 
 
-def _recording(path: Path, unloaded_radius: float | None) -> Recording:
+def _recording(path: Path, unloaded_radius: float | None) -> SniffedRecording:
     raw = formats.read(path)
     found, remarks = guesses(raw, unloaded_radius=unloaded_radius)
     missing = [channel for channel in CHANNELS if channel.required and channel.name not in found]
@@ -136,7 +136,7 @@ def _recording(path: Path, unloaded_radius: float | None) -> Recording:
         )
     kind = next(kind.name for kind in formats.FORMATS if formats.reads(kind, path))
     clock = _clock(raw, found.get("time_s"))
-    return Recording(
+    return SniffedRecording(
         path=path,
         kind=kind,
         headings=raw.headings,
@@ -169,13 +169,13 @@ def _clock(raw: RawTable, guess: Guess | None) -> _Clock:
     return _Clock(rate=1.0 / step, seconds=float(time[-1] - time[0]), gaps=len(gaps(time)))
 
 
-def _first_axes(recordings: Sequence[Recording]) -> str:
+def _first_axes(recordings: Sequence[SniffedRecording]) -> str:
     """Axes with the sign of the load in the recordings."""
     negative = [r.guesses["Fz_N"].lower + r.guesses["Fz_N"].upper < 0.0 for r in recordings]
     return "sae" if any(negative) else "iso"
 
 
-def configuration_of(recordings: Sequence[Recording], axes: str) -> Config:
+def configuration_of(recordings: Sequence[SniffedRecording], axes: str) -> Config:
     """A configuration that reads these files, with a placeholder for the tyre."""
     sweeps = [
         {
@@ -212,7 +212,7 @@ def axes_of(points: Points, declared: str, *, load_falls: bool) -> tuple[tuple[s
     return tuple(agreeing), tuple(contradictions(signatures(points)))
 
 
-def conditions_of(recordings: Sequence[Recording], reading: Reading) -> dict[str, tuple[Level, ...]]:
+def conditions_of(recordings: Sequence[SniffedRecording], reading: Reading) -> dict[str, tuple[Level, ...]]:
     """The levels of every setting, of the stretches that give points or of finished points.
 
     Pressure and speed count only if measured; a setting that no recording holds has no level.
@@ -231,7 +231,7 @@ def conditions_of(recordings: Sequence[Recording], reading: Reading) -> dict[str
     return {quantity.name: _levels(found, quantity) for quantity, found in values.items()}
 
 
-def holding(recordings: Sequence[Recording], channel: str) -> frozenset[str]:
+def holding(recordings: Sequence[SniffedRecording], channel: str) -> frozenset[str]:
     """The files that hold a channel, by the names that points and stretches have."""
     return frozenset(str(r.path.absolute()) for r in recordings if channel in r.guesses)
 

@@ -16,8 +16,8 @@ from mffit.points import Points
 from mffit.quantities import CHANNELS
 from mffit.report import words
 from mffit.report.channel import NamedChannel
-from mffit.report.curves import Condition, Curve, conditions, curves
-from mffit.report.lines import Line, model_lines
+from mffit.report.curves import Curve, CurveCondition, conditions, curves
+from mffit.report.lines import CurveLine, model_lines
 from mffit.results import BuildResult
 from mffit.suspicion import Doubt, Outlier
 from tir import Tyre
@@ -89,8 +89,8 @@ class BuildView:
     points: Points  #: angles as read
     channels: tuple[ChannelRow, ...]
     curves: tuple[Curve, ...]
-    lines: Mapping[tuple, Line]
-    conditions: tuple[Condition, ...]
+    lines: Mapping[tuple, CurveLine]
+    conditions: tuple[CurveCondition, ...]
     measured: Measured
     agreement: Mapping[str, Agreement]  #: by channel, of the fitted model on the raw points
     odd_agreement: Mapping[str, Agreement]  #: by channel, of the file for turn slip off on the odd part

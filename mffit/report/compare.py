@@ -17,7 +17,7 @@ from mffit.report.build_view import ChannelRow
 from mffit.report.curves import Curve, curves
 from mffit.report.drawing.records import Sheet
 from mffit.report.figures import compared, fit
-from mffit.report.lines import Line, model_lines
+from mffit.report.lines import CurveLine, model_lines
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -26,7 +26,7 @@ class Overlay:
 
     points: Points
     curves: Sequence[Curve]
-    lines: dict[tuple, Line]
+    lines: dict[tuple, CurveLine]
 
     def marked(self, channel: str) -> tuple[np.ndarray, np.ndarray]:
         """No rows: a comparison weights all readings alike."""

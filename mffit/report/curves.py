@@ -45,7 +45,7 @@ class Curve:
 
 
 @dataclass(frozen=True, slots=True)
-class Condition:
+class CurveCondition:
     """Points at one load and pressure."""
 
     load: float  #: [N]
@@ -69,10 +69,10 @@ def pressure_levels(points: Points) -> np.ndarray:
     return np.round(levels.level_values(points.p, levels.PRESSURE) / step) * step / 1000.0
 
 
-def conditions(points: Points) -> list[Condition]:
+def conditions(points: Points) -> list[CurveCondition]:
     """The points by load and pressure, in that order."""
     keys = np.column_stack([load_levels(points), pressure_levels(points)])
-    return [Condition(float(k[0]), float(k[1]), index) for k, index in _groups(keys)]
+    return [CurveCondition(float(k[0]), float(k[1]), index) for k, index in _groups(keys)]
 
 
 def curves(points: Points) -> list[Curve]:

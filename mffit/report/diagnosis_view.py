@@ -14,8 +14,8 @@ from mffit.effects import CATALOG
 from mffit.points import Points
 from mffit.report import constants, words
 from mffit.report.channel import NamedChannel
-from mffit.report.curves import Condition, Curve, conditions, curves
-from mffit.report.lines import Line, model_lines
+from mffit.report.curves import Curve, CurveCondition, conditions, curves
+from mffit.report.lines import CurveLine, model_lines
 from tir.parameters import BY_NAME
 
 
@@ -56,8 +56,8 @@ class Shown:
 
     word: str  #: "Worst" or "Typical"
     curve: Curve
-    before: Line
-    after: Line
+    before: CurveLine
+    after: CurveLine
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -66,7 +66,7 @@ class DiagnosisView:
 
     title: str
     points: Points
-    conditions: tuple[Condition, ...]
+    conditions: tuple[CurveCondition, ...]
     channels: tuple[GapChannel, ...]
     diagnosis: Diagnosis
     steps: tuple[RankedStep, ...]

@@ -15,7 +15,7 @@ from mffit.rig import Simulation
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Line:
+class CurveLine:
     """Readings that the rig would give along a curve if the tyre were the model; arrays (m,)."""
 
     x: np.ndarray  #: the angle that varies [deg]
@@ -23,7 +23,7 @@ class Line:
     even: Mapping[str, np.ndarray]  #: its even part
 
 
-def model_lines(simulation: Simulation, points: Points, curves: Sequence[Curve]) -> dict[tuple, Line]:
+def model_lines(simulation: Simulation, points: Points, curves: Sequence[Curve]) -> dict[tuple, CurveLine]:
     """A line per curve, by ``curve.key``, at the curve's median load, pressure, speed and held angle.
 
     Parameters
@@ -41,7 +41,7 @@ def model_lines(simulation: Simulation, points: Points, curves: Sequence[Curve])
     lines = {}
     for i, curve in enumerate(curves):
         rows = slice(i * steps, (i + 1) * steps)
-        lines[curve.key] = Line(
+        lines[curve.key] = CurveLine(
             x=np.degrees(getattr(grid, curve.over)[rows]),
             raw={name: getattr(here, name)[rows] for name in CHANNELS},
             even={name: 0.5 * (getattr(here, name) + getattr(there, name))[rows] for name in CHANNELS},

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, slots=True)
-class Picture:
+class PagePicture:
     """A picture on disk and in the page."""
 
     name: str  #: file stem
@@ -43,7 +43,7 @@ def write(template: str, path: Path, figures: Mapping[str, Callable[[], Sheet]],
     path.write_text(typeset.page(html), encoding="utf-8")
 
 
-def draw(folder: Path, figures: Mapping[str, Callable[[], Sheet]]) -> dict[str, Picture]:
+def draw(folder: Path, figures: Mapping[str, Callable[[], Sheet]]) -> dict[str, PagePicture]:
     """Draw every figure into ``folder/plots/<name>.png``; returns the pictures for the page by name."""
     from mffit.report.drawing import pictures
 
@@ -54,7 +54,7 @@ def draw(folder: Path, figures: Mapping[str, Callable[[], Sheet]]) -> dict[str, 
         sheet = make()
         picture = pictures.draw(sheet)
         picture.save(plots / f"{name}.png")
-        found[name] = Picture(name=name, drawing=picture.markup(), table=numbers.table(sheet))
+        found[name] = PagePicture(name=name, drawing=picture.markup(), table=numbers.table(sheet))
     return found
 
 

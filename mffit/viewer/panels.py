@@ -10,7 +10,7 @@ from tir.codegen.program import INPUTS
 
 
 @dataclass(frozen=True, slots=True)
-class Panel:
+class ViewerPanel:
     """An output of the model over one of its inputs, the other inputs as the sliders have them."""
 
     x: str
@@ -42,19 +42,21 @@ class Panel:
 
 
 PANELS = (
-    Panel("alpha", "Fy"),
-    Panel("alpha", "Mz"),
-    Panel("kappa", "Fx"),
-    Panel("gamma", "Fy", "camber thrust"),
-    Panel("Fx", "Fy", "friction ellipse", sweep="kappa", fan=(-12.0, -8.0, -4.0, -2.0, 2.0, 4.0, 8.0, 12.0)),
-    Panel("alpha", "trail"),
-    Panel("Fz", "K_ya", sign=-1),
-    Panel("Fz", "K_yg0", sign=-1),
-    Panel("phi_t", "Fy", "turn-slip force", turn_slip=True),
-    Panel("phi_t", "Mz", "turn-slip moment", turn_slip=True),
-    Panel("gamma", "Mx"),
-    Panel("Fz", "sigma_y"),
-    Panel("Vx", "My"),
+    ViewerPanel("alpha", "Fy"),
+    ViewerPanel("alpha", "Mz"),
+    ViewerPanel("kappa", "Fx"),
+    ViewerPanel("gamma", "Fy", "camber thrust"),
+    ViewerPanel(
+        "Fx", "Fy", "friction ellipse", sweep="kappa", fan=(-12.0, -8.0, -4.0, -2.0, 2.0, 4.0, 8.0, 12.0)
+    ),
+    ViewerPanel("alpha", "trail"),
+    ViewerPanel("Fz", "K_ya", sign=-1),
+    ViewerPanel("Fz", "K_yg0", sign=-1),
+    ViewerPanel("phi_t", "Fy", "turn-slip force", turn_slip=True),
+    ViewerPanel("phi_t", "Mz", "turn-slip moment", turn_slip=True),
+    ViewerPanel("gamma", "Mx"),
+    ViewerPanel("Fz", "sigma_y"),
+    ViewerPanel("Vx", "My"),
 )
 OUTPUTS = tuple(dict.fromkeys(name for panel in PANELS for name in (panel.x, panel.y) if name not in INPUTS))
 """The outputs that the page computes."""

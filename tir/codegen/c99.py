@@ -6,7 +6,7 @@ import re
 from typing import TYPE_CHECKING, NamedTuple
 
 from tir.codegen.program import INPUTS, NUMBERS, Program, Switches, trace
-from tir.codegen.source import COMMON, Dialect, assignments
+from tir.codegen.source import COMMON, SourceDialect, assignments
 from tir.equations.forces import Forces
 from tir.errors import TirError
 from tir.evaluate import refuse_zero_divisors
@@ -44,7 +44,7 @@ HEADERS = {
     "stdlib", "stdnoreturn", "string", "tgmath", "threads", "time", "uchar", "wchar", "wctype",
 }  # fmt: skip
 """Headers of the standard library: a file of the same name beside the source would be included instead."""
-C = Dialect(
+C = SourceDialect(
     {
         **COMMON,
         "where": "({} ? {} : {})",

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from tir.codegen.program import INPUTS, Switches, trace
-from tir.codegen.source import COMMON, FUNCTIONS, Dialect, assignments
+from tir.codegen.source import COMMON, FUNCTIONS, SourceDialect, assignments
 from tir.equations.forces import Forces
 
 MATH = {"absolute": "abs", "arctan": "atan", "arccos": "acos", "power": "pow"}
 """Functions that have another name in JavaScript."""
-JAVASCRIPT = Dialect(
+JAVASCRIPT = SourceDialect(
     {
         **COMMON,
         **{name: f"Math.{MATH.get(name, name)}({{}})" for name in (*FUNCTIONS, "absolute")},

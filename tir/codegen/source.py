@@ -17,7 +17,7 @@ COMPARISONS = ("less", "less_equal", "greater", "greater_equal", "both")
 
 
 @dataclass(frozen=True, slots=True)
-class Dialect:
+class SourceDialect:
     """Syntax of a language: for each operation a template with braces for the arguments."""
 
     templates: Mapping[str, str]
@@ -51,7 +51,7 @@ COMMON = {
     "power": "power({}, {})",
 }
 """Templates that all languages share."""
-PYTHON = Dialect({**COMMON, "where": "({1} if {0} else {2})", "both": "({} and {})"})
+PYTHON = SourceDialect({**COMMON, "where": "({1} if {0} else {2})", "both": "({} and {})"})
 
 
 def name_of(node: Node) -> str:
@@ -60,7 +60,7 @@ def name_of(node: Node) -> str:
 
 
 def assignments(
-    nodes: Iterable[Node], results: Iterable[Any], dialect: Dialect
+    nodes: Iterable[Node], results: Iterable[Any], dialect: SourceDialect
 ) -> tuple[list[str], list[str]]:
     """Lines that compute the nodes, and the expressions of the results.
 

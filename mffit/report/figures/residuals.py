@@ -8,13 +8,13 @@ import numpy as np
 
 from mffit.points import Points
 from mffit.report import constants, labels, style
-from mffit.report.curves import Condition
+from mffit.report.curves import CurveCondition
 from mffit.report.drawing.records import Axis, ColourScale, Frame, Look, Map, Panel, Sheet, Trace
 
 BACKWARD = Look(colour=style.INK, marker=".", size=1.8)
 
 
-def most_populated(conditions: Sequence[Condition]) -> list[Condition]:
+def most_populated(conditions: Sequence[CurveCondition]) -> list[CurveCondition]:
     """The conditions with most points, as many as there is room for, in their order."""
     kept = sorted(conditions, key=lambda c: -len(c.index))[: constants.MOST_MAPS_PER_CHANNEL]
     return [c for c in conditions if c in kept]
@@ -23,7 +23,7 @@ def most_populated(conditions: Sequence[Condition]) -> list[Condition]:
 def residual_maps(
     points: Points,
     residuals: Sequence[tuple[str, np.ndarray]],
-    conditions: Sequence[Condition],
+    conditions: Sequence[CurveCondition],
     unit: str,
 ) -> Sheet:
     """A row of maps per residual (title, (n,) array), a column per condition; one colour scale for all."""
@@ -41,7 +41,7 @@ def residual_maps(
 def residual_map(
     points: Points,
     values: np.ndarray,
-    condition: Condition,
+    condition: CurveCondition,
     limit: float,
     title: str,
     frames: Sequence[Frame] = (),

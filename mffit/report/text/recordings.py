@@ -6,7 +6,7 @@ import numpy as np
 
 from mffit.points.stretch import MOVE
 from mffit.recordings import Sniffed
-from mffit.recordings.sniffed import Level, Recording
+from mffit.recordings.sniffed import Level, SniffedRecording
 from mffit.report import constants
 from mffit.report.text.layout import blocks, paragraphs, table
 
@@ -35,7 +35,7 @@ def sniff_summary(sniffed: Sniffed) -> str:
     )
 
 
-def _file(recording: Recording) -> str:
+def _file(recording: SniffedRecording) -> str:
     taken = {guess.heading: guess for guess in recording.guesses.values()}
     rows = []
     for heading, unit in zip(recording.headings, recording.units, strict=True):

@@ -11,7 +11,7 @@ from small_rigs import SAMPLE, built, disc, truth
 
 import mffit
 from mffit.cli import main
-from mffit.comparison import Difference, Subject, between, characteristics, wording
+from mffit.comparison import ComparedSubject, Difference, between, characteristics, wording
 from mffit.comparison.record import ranked
 from mffit.errors import InputError
 from mffit.pipeline.build_output import write_build
@@ -50,7 +50,7 @@ def test_numbers_hold_at_the_pressure_asked_for():
 
 
 def test_a_changed_coefficient_shows_where_it_acts(stiffer):
-    found = between(Subject("a", truth(), True), Subject("b", stiffer, True))
+    found = between(ComparedSubject("a", truth(), True), ComparedSubject("b", stiffer, True))
     rows = by_key(found)
     assert rows["C_alpha_N_per_rad"].second == pytest.approx(1.1 * rows["C_alpha_N_per_rad"].first, rel=0.01)
     assert rows["mu_y"].change < 0.0
@@ -64,8 +64,8 @@ def test_a_changed_coefficient_shows_where_it_acts(stiffer):
 
 
 def test_the_covariance_of_another_file_is_not_used():
-    plain = Subject("a-normal.tir", truth(), False, covariance_of="a.tir")
-    (note,) = between(Subject("a.tir", truth(), False, ("PKY1",), np.eye(1)), plain).notes
+    plain = ComparedSubject("a-normal.tir", truth(), False, covariance_of="a.tir")
+    (note,) = between(ComparedSubject("a.tir", truth(), False, ("PKY1",), np.eye(1)), plain).notes
     assert "a-normal.tir" in note
     assert "belongs to a.tir" in note
     assert "would" not in note
@@ -73,14 +73,14 @@ def test_the_covariance_of_another_file_is_not_used():
 
 @pytest.mark.parametrize(("rig", "shared"), [({"radius": 1.0}, True), ({"radius": 2.0}, False)])
 def test_only_builds_of_one_rig_share_its_errors(rig, shared):
-    a = Subject("a", truth(), True, ("PKY1",), np.eye(1), rig={"radius": 1.0})
-    (note,) = between(a, Subject("b", truth(), True, ("PKY1",), np.eye(1), rig=rig)).notes
+    a = ComparedSubject("a", truth(), True, ("PKY1",), np.eye(1), rig={"radius": 1.0})
+    (note,) = between(a, ComparedSubject("b", truth(), True, ("PKY1",), np.eye(1), rig=rig)).notes
     assert "independent" in note
     assert ("of one rig" in note) == shared
 
 
 def test_equal_files_do_not_differ():
-    found = between(Subject("a", truth(), True), Subject("b", truth(), True))
+    found = between(ComparedSubject("a", truth(), True), ComparedSubject("b", truth(), True))
     assert not found.coefficients
     assert all(row.change == 0.0 for row in found.numbers)
     assert "do not differ; all numbers are equal" in wording.headline(found)
@@ -89,8 +89,8 @@ def test_equal_files_do_not_differ():
 def test_uncertainties_propagate_to_the_numbers():
     """One uncertain number, PKY1: the cornering stiffness is proportional to it."""
     u = 0.02 * abs(truth()["PKY1"])
-    known = Subject("a", truth(), True, ("PKY1",), np.array([[u**2]]))
-    row = by_key(between(known, Subject("b", truth(), True)))["C_alpha_N_per_rad"]
+    known = ComparedSubject("a", truth(), True, ("PKY1",), np.array([[u**2]]))
+    row = by_key(between(known, ComparedSubject("b", truth(), True)))["C_alpha_N_per_rad"]
     assert row.u_first == pytest.approx(0.02 * abs(row.first), rel=0.02)
     assert row.u_second is None
     assert row.u == row.u_first

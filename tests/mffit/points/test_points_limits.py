@@ -14,7 +14,7 @@ from mffit.points.faulty import Fault, faults
 from mffit.points.lag import Lag, common, measure
 from mffit.points.remarks import driven, left_out, note
 from mffit.points.settling import settled
-from mffit.points.steady import Settings
+from mffit.points.steady import SteadySettings
 from mffit.points.stretch import SWEEP, Stretch
 
 RATE = 50.0
@@ -216,9 +216,9 @@ def test_the_row_of_a_stretch_is_in_a_users_units():
     assert (row.file, row.sweep, row.kind, row.dropped) == ("run.csv", "run:a", "sweep", "")
 
 
-def settings(n: int, rate: float = RATE, V: float = 5.0) -> Settings:
+def settings(n: int, rate: float = RATE, V: float = 5.0) -> SteadySettings:
     one = np.ones(n)
-    return Settings(np.arange(n) / rate, 0.0 * one, 0.0 * one, 1500.0 * one, 250e3 * one, V * one)
+    return SteadySettings(np.arange(n) / rate, 0.0 * one, 0.0 * one, 1500.0 * one, 250e3 * one, V * one)
 
 
 @pytest.mark.parametrize(("seconds", "kept"), [(2.05, True), (1.95, False)])
