@@ -9,7 +9,7 @@ from pathlib import Path
 
 from mffit.errors import InputError
 from mffit.output import new_files
-from mffit.sweeps.channels import CHANNELS
+from mffit.sweeps.channels import SWEEP_CHANNELS
 
 OFFERED = ("alpha_deg", "gamma_deg", "Fz_N", "Fy_N", "Mz_Nm", "p_kPa", "V_mps", "T_degC")
 """Headings of the templates: the channels that a rig usually reports for a finished point."""
@@ -77,5 +77,5 @@ def _samples() -> Traversable:
 
 def headings() -> str:
     """The line of headings of an empty sweep file."""
-    offered = [channel.name for channel in CHANNELS if channel.required or channel.name in OFFERED]
+    offered = [channel.name for channel in SWEEP_CHANNELS if channel.required or channel.name in OFFERED]
     return ",".join(offered) + "\n"

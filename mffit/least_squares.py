@@ -14,7 +14,7 @@ from mffit import constants
 
 
 @dataclass(frozen=True, slots=True)
-class Number:
+class FreeNumber:
     """One free number: starting value, bounds and prior."""
 
     name: str
@@ -68,7 +68,11 @@ class Solution:
 
 
 def solve(
-    problem: LeastSquaresProblem, numbers: Sequence[Number], *, max_steps: int = 60, tolerance: float = 1e-6
+    problem: LeastSquaresProblem,
+    numbers: Sequence[FreeNumber],
+    *,
+    max_steps: int = 60,
+    tolerance: float = 1e-6,
 ) -> Solution:
     """The minimum of the sum of squares of data, priors and limits within the bounds, by Levenberg-Marquardt.
 
@@ -136,7 +140,7 @@ class _Objective(NamedTuple):
     precision: np.ndarray
 
     @classmethod
-    def of(cls, problem: LeastSquaresProblem, numbers: Sequence[Number]) -> _Objective:
+    def of(cls, problem: LeastSquaresProblem, numbers: Sequence[FreeNumber]) -> _Objective:
         return cls(
             problem=problem,
             lower=np.array([n.lower for n in numbers]),

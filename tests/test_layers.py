@@ -6,6 +6,7 @@ import ast
 import re
 import subprocess
 import sys
+from collections import Counter
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -162,3 +163,15 @@ def test_only_the_report_draws():
         if name.split(".")[0] == "matplotlib" and "report" not in path.parts
     ]
     assert not wrong, "\n".join(wrong)
+
+
+def test_a_class_name_means_one_thing():
+    found = Counter(
+        node.name
+        for package in ("tir", "mffit")
+        for path in modules(package)
+        for node in ast.parse(path.read_text(encoding="utf-8")).body
+        if isinstance(node, ast.ClassDef)
+    )
+    twice = sorted(name for name, times in found.items() if times > 1)
+    assert not twice, f"{', '.join(twice)}: several classes of one name; say in the name which is which"

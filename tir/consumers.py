@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 from tir.codegen.program import Switches, trace
 from tir.constants import LONGEST_READABLE_LINE
-from tir.document import Document, Line
+from tir.document import Document, FileLine
 from tir.equations.forces import Forces
 from tir.errors import Problem, some
 from tir.parameters import BY_NAME, REGULAR, TABLE
@@ -126,7 +126,7 @@ def _out_of_place(tyre: Tyre, document: Document, target: Target) -> Iterator[Pr
                 )
 
 
-def _keys_of_its_own(keys: dict[str, Line], target: Target) -> Iterator[Problem]:
+def _keys_of_its_own(keys: dict[str, FileLine], target: Target) -> Iterator[Problem]:
     for name in target.more:
         if name not in keys:
             yield Problem("error", f'[MODEL] lacks {name}: write the file with target="{target.name}"', name)

@@ -17,7 +17,7 @@ LINE_END = re.compile(r"(\r\n|\r|\n)")
 
 
 @dataclass(frozen=True, slots=True)
-class Line:
+class FileLine:
     """One line of the file; a key, a section head, or neither."""
 
     number: int  #: from 1
@@ -34,7 +34,7 @@ class Line:
         """Whether the line opens a section."""
         return not self.key and SECTION.match(self.text) is not None
 
-    def with_value(self, value: str) -> Line:
+    def with_value(self, value: str) -> FileLine:
         """The line with another value and all other characters unchanged."""
         if value == self.value:
             return self
@@ -44,7 +44,7 @@ class Line:
         text = self.text[: self.start] + value + rest
         return replace(self, text=text, value=value)
 
-    def with_comment(self, comment: str) -> Line:
+    def with_comment(self, comment: str) -> FileLine:
         """The line with another comment behind the value."""
         before = self.text[: self.start + len(self.value)]
         return replace(self, text=f"{before:<49} ${comment}", comment=comment)
@@ -54,7 +54,7 @@ class Line:
 class Document:
     """A whole file: its lines as read, its encoding and its path."""
 
-    lines: tuple[Line, ...]
+    lines: tuple[FileLine, ...]
     encoding: str
     path: str
 
@@ -62,7 +62,7 @@ class Document:
         return f"<Document {self.path!r}: {len(self.lines)} lines, {self.encoding}>"
 
     @property
-    def entries(self) -> tuple[Line, ...]:
+    def entries(self) -> tuple[FileLine, ...]:
         """Lines that hold a key."""
         return tuple(line for line in self.lines if line.key)
 
@@ -82,7 +82,7 @@ class Document:
         known = Counter(line.end for line in self.lines if line.end)
         return known.most_common(1)[0][0] if known else "\r\n"
 
-    def changed(self, lines: dict[int, Line]) -> Document:
+    def changed(self, lines: dict[int, FileLine]) -> Document:
         """The document with some lines replaced, by line number."""
         return replace(self, lines=tuple(lines.get(line.number, line) for line in self.lines))
 
@@ -133,18 +133,18 @@ def parse_document(text: str, *, encoding: str = "ascii", path: str = "") -> Doc
         head = SECTION.match(stripped)
         if head:
             section, table = head.group(1).strip().upper(), False
-            lines.append(Line(number, content, section, end=end))
+            lines.append(FileLine(number, content, section, end=end))
             continue
         if stripped.startswith("{"):
             table = True
         entry = None if table or not stripped or stripped[0] in "$!({" else ENTRY.match(content)
         if entry is None:
-            lines.append(Line(number, content, section, end=end))
+            lines.append(FileLine(number, content, section, end=end))
             continue
         value, comment = split_comment(entry.group(4))
         start = entry.start(4) + (len(entry.group(4)) - len(entry.group(4).lstrip()) if value else 0)
         lines.append(
-            Line(number, content, section, entry.group(2).strip().upper(), value, comment, end, start)
+            FileLine(number, content, section, entry.group(2).strip().upper(), value, comment, end, start)
         )
     return Document(tuple(lines), encoding, path)
 

@@ -10,7 +10,7 @@ import math
 from collections import defaultdict
 from typing import Any
 
-from tir.document import Document, Line
+from tir.document import Document, FileLine
 from tir.parameters import SECTIONS, TABLE, Parameter
 from tir.properties import MEASURED, PROVENANCE, interpret, parameter_of, units_of, unquoted
 from tir.rendering import comment_text, entry, remark, structured_comments, value_text
@@ -27,7 +27,7 @@ def merged(tyre: Tyre, document: Document) -> Document:
         If a changed value is not finite.
     """
     before, words = interpret(document), units_of(document, [])
-    lines: dict[str, Line] = {}
+    lines: dict[str, FileLine] = {}
     for line in document.entries:
         if parameter_of(line) is not None:
             lines.setdefault(line.key, line)
@@ -51,7 +51,7 @@ def merged(tyre: Tyre, document: Document) -> Document:
     return document
 
 
-def _text(row: Parameter, value: Any, words: dict[str, str], line: Line | None = None) -> str:
+def _text(row: Parameter, value: Any, words: dict[str, str], line: FileLine | None = None) -> str:
     """The value as text, in the file's units and with the quotes of the line."""
     if row.kind == "text":
         text = value_text(row, value)
@@ -65,7 +65,7 @@ def _text(row: Parameter, value: Any, words: dict[str, str], line: Line | None =
 
 
 def _places(
-    document: Document, rows: list[Parameter], lines: dict[str, Line], tyre: Tyre, words: dict[str, str]
+    document: Document, rows: list[Parameter], lines: dict[str, FileLine], tyre: Tyre, words: dict[str, str]
 ) -> dict[int, list[str]]:
     """New lines, by the number of the line that each follows: that of the preceding key of the table."""
     heads = {line.section: line.number for line in reversed(document.lines) if line.head}

@@ -9,7 +9,7 @@ from pathlib import Path
 from types import MappingProxyType
 
 from tir.codegen.program import Switches, trace
-from tir.document import Document, Line, read_document
+from tir.document import Document, FileLine, read_document
 from tir.equations.forces import Forces, State
 from tir.errors import Problem, TirError, counted, some
 from tir.parameters import BY_NAME, TABLE, TURN_SLIP, Parameter
@@ -103,7 +103,7 @@ def interpret(document: Document) -> Tyre:
     )
 
 
-def parameter_of(line: Line) -> Parameter | None:
+def parameter_of(line: FileLine) -> Parameter | None:
     """The parameter of a line with a key; None in the header and for keys that are not in MF 6.2."""
     return None if line.section in HEADER else BY_NAME.get(line.key)
 
@@ -134,7 +134,7 @@ def units_of(document: Document, problems: list[Problem]) -> dict[str, str]:
 
 
 def _value(
-    row: Parameter, line: Line, words: dict[str, str], document: Document, problems: list[Problem]
+    row: Parameter, line: FileLine, words: dict[str, str], document: Document, problems: list[Problem]
 ) -> float | str | None:
     """The value in the unit of the table; None, with a problem added, if it is missing and the file can still be used."""
     if row.kind == "text" and line.value:
@@ -303,5 +303,5 @@ def unquoted(text: str) -> str:
     )
 
 
-def _warning(sentence: str, line: Line) -> Problem:
+def _warning(sentence: str, line: FileLine) -> Problem:
     return Problem("warning", f"line {line.number}: {sentence}", line.key, line.number)

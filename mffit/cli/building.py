@@ -10,7 +10,7 @@ import click
 from mffit.cli.console import Voice, out_option, voiced
 
 if TYPE_CHECKING:
-    from mffit.results import Outcome
+    from mffit.results import BuildOutcome
 
 FEWEST_TYRES_TO_COMPARE = 2
 
@@ -75,11 +75,11 @@ def _build_many(
     from mffit.report import text
     from mffit.results import as_json
 
-    finished: list[Outcome] = []
+    finished: list[BuildOutcome] = []
     interrupted = False
     with voice.progress() as show:
 
-        def done(outcome: Outcome) -> None:
+        def done(outcome: BuildOutcome) -> None:
             finished.append(outcome)
             voice.tell(text.many_line(outcome, len(finished), len(tyre_tomls)))
             show(f"{len(finished)} of {len(tyre_tomls)} finished")
@@ -98,7 +98,7 @@ def _build_many(
     _end(finished, interrupted, voice)
 
 
-def _compare_built(finished: list[Outcome], out: Path, voice: Voice) -> None:
+def _compare_built(finished: list[BuildOutcome], out: Path, voice: Voice) -> None:
     """Compare the tyres that were built completely."""
     from mffit import pipeline
     from mffit.errors import InputError
@@ -113,7 +113,7 @@ def _compare_built(finished: list[Outcome], out: Path, voice: Voice) -> None:
         voice.warn([f"the tyres are not compared: {error}"])
 
 
-def _end(finished: list[Outcome], interrupted: bool, voice: Voice) -> None:
+def _end(finished: list[BuildOutcome], interrupted: bool, voice: Voice) -> None:
     """Name the tyres that were not built, and exit with the code of the worst."""
     from mffit.report import text
 

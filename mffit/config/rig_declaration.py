@@ -9,12 +9,12 @@ from mffit.config.models import Config, RigTable, SweepTable
 from mffit.rig_errors import DECLARED, Faults
 from tir.conventions import sign
 
-CHANNELS = ("alpha", "gamma", "Fz", "Fx", "Fy", "Mx", "My", "Mz")
+CHANNELS_WITH_SIGN = ("alpha", "gamma", "Fz", "Fx", "Fy", "Mx", "My", "Mz")
 
 
 def axis_signs(config: Config) -> dict[str, float]:
     """Sign of each channel, +1 or -1, that converts ISO-W to the rig's axes and back."""
-    return {channel: sign(config.rig.axes, channel) for channel in CHANNELS}
+    return {channel: sign(config.rig.axes, channel) for channel in CHANNELS_WITH_SIGN}
 
 
 def path_curvature(rig: RigTable, sweep: SweepTable | None = None) -> float:

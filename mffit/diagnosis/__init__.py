@@ -14,8 +14,8 @@ The modules in the order of the method (:mod:`engine` is the sequence):
 """
 
 from mffit.diagnosis.engine import diagnose
-from mffit.diagnosis.result import Diagnosis, Found, corrected_points
+from mffit.diagnosis.result import AcceptedEffect, Diagnosis, corrected_points
 from mffit.diagnosis.validation import Gap, gap, validate
 from mffit.diagnosis.where import where
 
-__all__ = ["Diagnosis", "Found", "Gap", "corrected_points", "diagnose", "gap", "validate", "where"]
+__all__ = ["AcceptedEffect", "Diagnosis", "Gap", "corrected_points", "diagnose", "gap", "validate", "where"]

@@ -17,8 +17,8 @@ from mffit.diagnosis.limits import limits
 from mffit.diagnosis.noise import Noise
 from mffit.diagnosis.notes import HardlyThisTyre, Note
 from mffit.diagnosis.problem import DiagnosisProblem
-from mffit.diagnosis.result import Diagnosis, Found
-from mffit.diagnosis.selection import Step
+from mffit.diagnosis.result import AcceptedEffect, Diagnosis
+from mffit.diagnosis.selection import ForwardStep
 from mffit.diagnosis.tails import outlying
 from mffit.diagnosis.ties import separation
 from mffit.diagnosis.validation import Validation, gap
@@ -108,7 +108,7 @@ def _outliers(points: Points, after: np.ndarray, noise: Noise) -> tuple[Outlier,
     return outliers(points, *((a, b) for a, b in zip(Fy, Mz, strict=True)))
 
 
-def _found(found: Explanation, effect: Effect, given: DiagnosisProblem) -> Found:
+def _found(found: Explanation, effect: Effect, given: DiagnosisProblem) -> AcceptedEffect:
     """The record of one accepted effect, judged beside all the others that were accepted."""
     problem, chosen, steps = found.problem, found.chosen, found.steps
     alone = len(chosen.effects) == 1
@@ -120,7 +120,7 @@ def _found(found: Explanation, effect: Effect, given: DiagnosisProblem) -> Found
     separations = [separation(problem.points, chosen, t, problem.noise.Fy, problem.noise.Mz) for t in tied]
     with_it = (found.refined if alone else step.best).state
     numbers, stderr = found.refined.numbers, found.refined.stderr
-    return Found(
+    return AcceptedEffect(
         effect=effect,
         confidence=confidence,
         parameters={n: (numbers[n], stderr.get(n, 0.0)) for n in effect.parameters},
@@ -132,7 +132,7 @@ def _found(found: Explanation, effect: Effect, given: DiagnosisProblem) -> Found
     )
 
 
-def _judged(found: Explanation, effect: Effect, step: Step) -> tuple[Sequence[Hypothesis], float]:
+def _judged(found: Explanation, effect: Effect, step: ForwardStep) -> tuple[Sequence[Hypothesis], float]:
     """Explanations with another effect in the place of one that are as good, and the confidence in this one."""
     if effect.id in found.predicted:  # beside structure that may be anything, evidence decides little
         tied = found.predicted[effect.id].tied
@@ -144,7 +144,9 @@ def _judged(found: Explanation, effect: Effect, step: Step) -> tuple[Sequence[Hy
     return tied, tempered(found.certainty(effect) * (1.0 / (1.0 + sum(weights))))
 
 
-def _rivals(problem: DiagnosisProblem, chosen: Hypothesis, effect: Effect, step: Step) -> list[Hypothesis]:
+def _rivals(
+    problem: DiagnosisProblem, chosen: Hypothesis, effect: Effect, step: ForwardStep
+) -> list[Hypothesis]:
     """Explanations with another effect in the place of one, refitted beside the others; hopeless ones are left out."""
     others = chosen.others(effect)
     kept = chosen.numbers_of(others)
@@ -156,7 +158,7 @@ def _rivals(problem: DiagnosisProblem, chosen: Hypothesis, effect: Effect, step:
     ]
 
 
-def _alternatives(steps: Sequence[Step], chosen: Hypothesis) -> dict[str, float]:
+def _alternatives(steps: Sequence[ForwardStep], chosen: Hypothesis) -> dict[str, float]:
     """Weights of the effects that were not accepted: in the first step if one was accepted, else in the last.
 
     Empty if left-out sweeps decided against the weight of evidence.

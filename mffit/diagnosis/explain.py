@@ -10,7 +10,7 @@ from mffit.diagnosis.explanation import Explanation
 from mffit.diagnosis.inexact import Inexactness
 from mffit.diagnosis.learning import learned_noise, settled
 from mffit.diagnosis.noise import Noise
-from mffit.diagnosis.prediction import Prediction, chosen_by_prediction, judged
+from mffit.diagnosis.prediction import LeftOutPrediction, chosen_by_prediction, judged
 from mffit.diagnosis.problem import DiagnosisProblem
 from mffit.diagnosis.rivals import certain, competed, selected
 from mffit.diagnosis.smooth import smooth_basis
@@ -70,7 +70,7 @@ def _predicting(found: Explanation, candidates: Sequence[Effect], inexact: Inexa
 
     For a model that leaves smooth structure in any case: beside it evidence decides little.
     """
-    prediction = Prediction(found.plain, inexact)
+    prediction = LeftOutPrediction(found.plain, inexact)
     chosen = chosen_by_prediction(prediction, candidates)
     support = {effect.id: judged(prediction, chosen, effect, candidates) for effect in chosen.effects}
     found = replace(found.choosing(chosen), predicted=support)

@@ -14,7 +14,7 @@ from mffit.diagnosis.inexact import Inexactness
 from mffit.diagnosis.noise import Noise
 from mffit.diagnosis.prediction import Judged
 from mffit.diagnosis.problem import DiagnosisProblem, refitted
-from mffit.diagnosis.selection import Step
+from mffit.diagnosis.selection import ForwardStep
 from mffit.diagnosis.smooth import Smooth, smooth_scan
 from mffit.effects import Effect
 
@@ -25,7 +25,7 @@ class Explanation:
 
     problem: DiagnosisProblem  #: as it was judged: readings, model, and covariance with everything inexact
     chosen: Hypothesis
-    steps: list[Step]
+    steps: list[ForwardStep]
     bump: Bump  #: best local structure in the residual
     smooth: Smooth  #: smooth structure in the residual; part of the covariance if found
     bumps: BumpScan

@@ -12,7 +12,7 @@ from mffit.diagnosis.bumps import bump_scan
 from mffit.diagnosis.inexact import Inexactness
 from mffit.diagnosis.noise import Noise
 from mffit.diagnosis.problem import DiagnosisProblem
-from mffit.diagnosis.scatter import Explained, learned
+from mffit.diagnosis.scatter import ExplainingColumns, learned
 from mffit.effects import Effect
 from mffit.points import Points
 from mffit.quantities import CHANNELS
@@ -44,7 +44,7 @@ def learned_noise(
     generous = constants.GENEROUS_EFFECT_SIZE
     named = np.column_stack([nothing, *(generous * g for g in others), inexact.columns(points, state)])
     named = _with_bumps(problem, residual, named, basis)
-    explained = Explained(named=named, runs=generous * runs, smooth=basis)
+    explained = ExplainingColumns(named=named, runs=generous * runs, smooth=basis)
     return learned(replace(stated, scatter=before.scatter), residual, explained, predicted).alone()
 
 

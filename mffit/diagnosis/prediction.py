@@ -39,7 +39,7 @@ def _z(change: np.ndarray) -> float:
     return float(np.mean(change)) / error if error > 0.0 else 0.0
 
 
-class Prediction:
+class LeftOutPrediction:
     """Left-out sweeps predicted to first order, every number estimated again without them.
 
     ``problem`` has the scatter of the readings alone.
@@ -80,7 +80,7 @@ class Prediction:
         return refitted(self.joint, chosen, others) if others else self.problem.null
 
 
-def chosen_by_prediction(prediction: Prediction, candidates: Sequence[Effect]) -> Hypothesis:
+def chosen_by_prediction(prediction: LeftOutPrediction, candidates: Sequence[Effect]) -> Hypothesis:
     """Forward steps: add the effect that predicts left-out sweeps best, while they improve beyond chance.
 
     An effect that predicts a channel worse is never added. One that a later effect makes needless is dropped for good.
@@ -103,7 +103,7 @@ def chosen_by_prediction(prediction: Prediction, candidates: Sequence[Effect]) -
 
 
 def _best_addition(
-    prediction: Prediction, current: Hypothesis, candidates: Sequence[Effect], needed: float
+    prediction: LeftOutPrediction, current: Hypothesis, candidates: Sequence[Effect], needed: float
 ) -> Effect | None:
     """The candidate that lowers the misfit of left-out sweeps most, if by enough and beyond chance."""
     before = prediction.of(current)
@@ -125,7 +125,9 @@ class Judged:
     tied: tuple[Hypothesis, ...]  #: with another effect in its place, no worse beyond chance
 
 
-def judged(prediction: Prediction, chosen: Hypothesis, effect: Effect, rivals: Sequence[Effect]) -> Judged:
+def judged(
+    prediction: LeftOutPrediction, chosen: Hypothesis, effect: Effect, rivals: Sequence[Effect]
+) -> Judged:
     """Compare a chosen effect with its absence and with others in its place."""
     without, present = prediction.without(chosen, effect), prediction.of(chosen)
     taken = max(prediction.of(without).total - present.total, 0.0)

@@ -10,7 +10,7 @@ import numpy as np
 from mffit.config import Config, declared_rig
 from mffit.diagnosis import constants
 from mffit.effects import Effect, Free
-from mffit.least_squares import Number
+from mffit.least_squares import FreeNumber
 from mffit.points import Points
 from mffit.rig import Simulation
 
@@ -36,10 +36,10 @@ def anchor(free: Free, start: Simulation, points: Points) -> tuple[float, float]
     return current, abs(current) if current else constants.ZERO_COEFFICIENT_SCALE * (free.upper - free.lower)
 
 
-def number(free: Free, at: Mapping[str, float], start: Simulation, points: Points) -> Number:
+def number(free: Free, at: Mapping[str, float], start: Simulation, points: Points) -> FreeNumber:
     """A number with its prior around the current value, starting from ``at`` if that holds it."""
     current, unit = anchor(free, start, points)
-    return Number(
+    return FreeNumber(
         name=free.name,
         start=at.get(free.name, current),
         lower=free.lower,
@@ -65,7 +65,7 @@ def starts(
     return trials
 
 
-def beyond_declaration(known: Number, value: float, declared: Mapping[str, tuple[float, float]]) -> float:
+def beyond_declaration(known: FreeNumber, value: float, declared: Mapping[str, tuple[float, float]]) -> float:
     """Log prior of a rig error against its declaration; never positive, as the spread is paid for already."""
     if known.name not in declared:
         return 0.0

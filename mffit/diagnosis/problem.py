@@ -13,7 +13,7 @@ from mffit.diagnosis.inexact import EXACT, Inexactness
 from mffit.diagnosis.noise import Noise
 from mffit.diagnosis.priors import anchor, beyond_declaration, moving, number, starts, switched
 from mffit.effects import Effect, Free
-from mffit.least_squares import LeastSquaresProblem, Linear, Number, Solution, solve
+from mffit.least_squares import FreeNumber, LeastSquaresProblem, Linear, Solution, solve
 from mffit.points import Points
 from mffit.rig import Simulation
 
@@ -86,7 +86,7 @@ class DiagnosisProblem:
             return chosen, {}
         fixed = switched(chosen.effects)
         numbers = [number(free, chosen.numbers, self.start, self.points) for free in frees]
-        numbers += [Number(name, float(self.start.values[name])) for name in prior.names]
+        numbers += [FreeNumber(name, float(self.start.values[name])) for name in prior.names]
         plain = DiagnosisProblem(self.points, self.start, self.noise, self.declared)
         found = solve(
             prior.added_to(plain.within([n.name for n in numbers], fixed), first=len(frees)),

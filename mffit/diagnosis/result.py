@@ -12,7 +12,7 @@ from mffit.diagnosis.bumps import Bump
 from mffit.diagnosis.limits import Limit
 from mffit.diagnosis.noise import Noise
 from mffit.diagnosis.notes import Note
-from mffit.diagnosis.selection import Step
+from mffit.diagnosis.selection import ForwardStep
 from mffit.diagnosis.smooth import Smooth
 from mffit.diagnosis.ties import Separation
 from mffit.diagnosis.validation import Gap, Validation
@@ -26,7 +26,7 @@ from tir import Tyre
 
 
 @dataclass(frozen=True, slots=True)
-class Found:
+class AcceptedEffect:
     """One accepted effect."""
 
     effect: Effect
@@ -57,9 +57,9 @@ class Diagnosis(Brief):
     gap_after: Gap
     validation: Validation
     where: tuple[Region, ...]
-    effects: tuple[Found, ...]
+    effects: tuple[AcceptedEffect, ...]
     alternatives: Mapping[str, float]  #: id -> confidence of effects that were not accepted
-    steps: tuple[Step, ...]
+    steps: tuple[ForwardStep, ...]
     unexplained: bool
     unexplained_where: tuple[Region, ...]
     bump: Bump | None

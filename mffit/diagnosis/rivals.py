@@ -12,7 +12,7 @@ from mffit.diagnosis.bumps import Bump, BumpScan, bump_scan
 from mffit.diagnosis.explanation import Explanation
 from mffit.diagnosis.hypothesis import Hypothesis
 from mffit.diagnosis.problem import DiagnosisProblem
-from mffit.diagnosis.selection import Step, select
+from mffit.diagnosis.selection import ForwardStep, select
 from mffit.diagnosis.smooth import NO_SMOOTH, Smooth, amplified, smooth_scan
 from mffit.effects import Effect
 
@@ -73,7 +73,7 @@ def certain(found: Explanation, *, counted: bool) -> Explanation:
 def _explanation(
     problem: DiagnosisProblem,
     chosen: Hypothesis,
-    steps: list[Step],
+    steps: list[ForwardStep],
     bumps: BumpScan,
     basis: np.ndarray,
     bump: Bump | None = None,

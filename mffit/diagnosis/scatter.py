@@ -32,7 +32,7 @@ GROWTH, MEMORY = 1, 2
 
 
 @dataclass(frozen=True, slots=True)
-class Explained:
+class ExplainingColumns:
     """What could explain a residual, one prior standard deviation of each as a column (2n, k)."""
 
     named: np.ndarray  #: effects, coefficients, bumps
@@ -40,7 +40,7 @@ class Explained:
     smooth: np.ndarray  #: low-order structure; its amplitude is found with the scatter
 
 
-def learned(noise: Noise, residual: np.ndarray, explained: Explained, size: np.ndarray) -> Noise:
+def learned(noise: Noise, residual: np.ndarray, explained: ExplainingColumns, size: np.ndarray) -> Noise:
     """The noise with the scatter that the residual shows.
 
     The search starts from ``noise``, which may grow in proportion to ``size`` (2n,).

@@ -17,7 +17,7 @@ Ids = frozenset[str]
 
 
 @dataclass(frozen=True, slots=True)
-class Step:
+class ForwardStep:
     """One forward step: every candidate beside the effects accepted before."""
 
     before: Hypothesis
@@ -66,7 +66,7 @@ def price(candidates: int) -> float:
     return math.log(max(candidates, 1)) + constants.EVIDENCE_MARGIN
 
 
-def select(problem: DiagnosisProblem, candidates: Sequence[Effect]) -> tuple[Hypothesis, list[Step]]:
+def select(problem: DiagnosisProblem, candidates: Sequence[Effect]) -> tuple[Hypothesis, list[ForwardStep]]:
     """Forward steps until nothing passes; after each, exchange effects and drop one that became needless.
 
     A fit may end in a local optimum, so that a set can look better or worse when it is met again. A set that was replaced is
@@ -86,7 +86,7 @@ def select(problem: DiagnosisProblem, candidates: Sequence[Effect]) -> tuple[Hyp
     return current, steps
 
 
-def forward_step(problem: DiagnosisProblem, before: Hypothesis, candidates: Sequence[Effect]) -> Step:
+def forward_step(problem: DiagnosisProblem, before: Hypothesis, candidates: Sequence[Effect]) -> ForwardStep:
     """Every candidate beside the accepted effects; those with any prospect are fitted in full."""
     trials = []
     ranked = problem.promising(before, [e for e in candidates if e.id not in before.ids])
@@ -100,7 +100,9 @@ def forward_step(problem: DiagnosisProblem, before: Hypothesis, candidates: Sequ
         else:  # to first order
             trials.append(replace(before, effects=effects, log_evidence=before.log_evidence + gain))
     trials.sort(key=lambda t: -(t.log_evidence + log_prior(t.effects[-1], problem.start)))
-    return Step(before=before, trials=tuple(trials), threshold=price(len(candidates)), start=problem.start)
+    return ForwardStep(
+        before=before, trials=tuple(trials), threshold=price(len(candidates)), start=problem.start
+    )
 
 
 def _exchanged(

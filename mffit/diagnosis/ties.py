@@ -12,7 +12,7 @@ from mffit.diagnosis.hypothesis import Hypothesis
 from mffit.points import Points, main_pressure
 
 
-class Run(Enum):
+class SeparatingRun(Enum):
     """A run that could be added to the programme, in words."""
 
     BACKWARD = "a backward sideslip sweep at {load:.0f} N"
@@ -36,7 +36,7 @@ class Run(Enum):
 class Separation:
     """The run that separates two explanations best."""
 
-    run: Run
+    run: SeparatingRun
     load: float  #: of the run [N]
     chi2: float  #: expected between the explanations as fitted
 
@@ -61,7 +61,7 @@ def separation(points: Points, a: Hypothesis, b: Hypothesis, noise_Fy: float, no
     return max(found, key=lambda s: s.chi2)
 
 
-def candidate_runs(points: Points) -> tuple[tuple[Run, Points], ...]:
+def candidate_runs(points: Points) -> tuple[tuple[SeparatingRun, Points], ...]:
     """Runs that a rig could add: the other direction or mount, other loads, radii, cambers, pressures and speeds."""
     main = points.select(main_pressure(points) & (points.direction > 0) & (points.mount > 0))
     load = float(np.median(main.Fz))
@@ -74,23 +74,23 @@ def candidate_runs(points: Points) -> tuple[tuple[Run, Points], ...]:
     end = float(np.max(np.nan_to_num(points.t)))
     later = constants.TIE_RUN_LATER_SHARE * end + constants.TIE_RUN_LATER
     runs = [
-        (Run.BACKWARD, slip.replace(direction=-1)),
-        (Run.TURNED_ON_RIM, slip.replace(mount=-1)),
-        (Run.OTHER_LOAD, slip.replace(Fz=higher)),
-        (Run.OTHER_LOAD, slip.replace(Fz=lower)),
-        (Run.CAMBER, camber),
-        (Run.BACKWARD_CAMBER, camber.replace(direction=-1)),
-        (Run.LEANED, slip.replace(gamma=constants.TIE_RUN_LEANED.rad)),
-        (Run.LOW_PRESSURE, slip.replace(p=constants.TIE_RUN_LOW_PRESSURE * slip.p)),
-        (Run.FAST, slip.replace(V=constants.TIE_RUN_FAST * slip.V)),
-        (Run.WARM, slip.replace(T=warmer)),
-        (Run.LATE, slip.replace(t=later)),
+        (SeparatingRun.BACKWARD, slip.replace(direction=-1)),
+        (SeparatingRun.TURNED_ON_RIM, slip.replace(mount=-1)),
+        (SeparatingRun.OTHER_LOAD, slip.replace(Fz=higher)),
+        (SeparatingRun.OTHER_LOAD, slip.replace(Fz=lower)),
+        (SeparatingRun.CAMBER, camber),
+        (SeparatingRun.BACKWARD_CAMBER, camber.replace(direction=-1)),
+        (SeparatingRun.LEANED, slip.replace(gamma=constants.TIE_RUN_LEANED.rad)),
+        (SeparatingRun.LOW_PRESSURE, slip.replace(p=constants.TIE_RUN_LOW_PRESSURE * slip.p)),
+        (SeparatingRun.FAST, slip.replace(V=constants.TIE_RUN_FAST * slip.V)),
+        (SeparatingRun.WARM, slip.replace(T=warmer)),
+        (SeparatingRun.LATE, slip.replace(t=later)),
     ]
     if np.any(points.phi_t):
         runs += [
-            (Run.STRAIGHT, slip.replace(phi_t=0.0)),
-            (Run.WIDE, slip.replace(phi_t=slip.phi_t / constants.TIE_RUN_WIDE)),
-            (Run.STRAIGHT_CAMBER, camber.replace(phi_t=0.0)),
+            (SeparatingRun.STRAIGHT, slip.replace(phi_t=0.0)),
+            (SeparatingRun.WIDE, slip.replace(phi_t=slip.phi_t / constants.TIE_RUN_WIDE)),
+            (SeparatingRun.STRAIGHT_CAMBER, camber.replace(phi_t=0.0)),
         ]
     return tuple(runs)
 

@@ -19,7 +19,7 @@ from mffit.diagnosis.notes import (
     NotVisible,
     OneSweep,
 )
-from mffit.diagnosis.result import Diagnosis, Found
+from mffit.diagnosis.result import AcceptedEffect, Diagnosis
 from mffit.diagnosis.ties import Separation
 from mffit.diagnosis.validation import Gap, Validation
 from mffit.effects import NEEDS, Effect
@@ -86,13 +86,13 @@ def _measured(noise: Noise) -> Iterator[tuple[str, str, float]]:
             yield name, CHANNELS[name].unit, typical
 
 
-def _with_ties(found: Found) -> str:
+def _with_ties(found: AcceptedEffect) -> str:
     if not found.tied:
         return found.effect.name
     return f"{found.effect.name} (or {' or '.join(e.name for e in found.tied)}, not separable here)"
 
 
-def _confidence_of_tie(found: Found, alternatives: Mapping[str, float]) -> float:
+def _confidence_of_tie(found: AcceptedEffect, alternatives: Mapping[str, float]) -> float:
     """Confidence that it is this effect or one of those it is tied with."""
     return found.confidence + sum(alternatives.get(other, 0.0) for other in found.tied_with)
 
@@ -204,7 +204,7 @@ def method(validation: Validation) -> str:
     return f"{validation.folds} groups of whole sweeps left out in turn"
 
 
-def remedy(found: Found, signs: Mapping[str, float]) -> str:
+def remedy(found: AcceptedEffect, signs: Mapping[str, float]) -> str:
     """What to do about an effect; numbers in the rig's own axes."""
     effect = found.effect
     if effect.switches:

@@ -25,7 +25,7 @@ class TydexChannel(NamedTuple):
     of: Callable[[Points], np.ndarray]
 
 
-CHANNELS = (
+TYDEX_CHANNELS = (
     TydexChannel("SLIPANGL", "slip angle", "rad", lambda p: p.alpha),
     TydexChannel("INCLANGL", "inclination angle", "rad", lambda p: p.gamma),
     TydexChannel("FZW", "vertical force", "N", lambda p: p.Fz),
@@ -61,7 +61,7 @@ def tydex_texts(points: Points, config: Config) -> dict[str, str]:
 
 
 def _lines(name: str, points: Points, config: Config) -> Iterator[str]:
-    measured = [channel for channel in CHANNELS if np.any(np.isfinite(channel.of(points)))]
+    measured = [channel for channel in TYDEX_CHANNELS if np.any(np.isfinite(channel.of(points)))]
     yield f"{MARK}{tydex_format.HEADER}"
     yield fixed_row("RELEASE", "Release of TYDEX-Format", "", tydex_format.RELEASE)
     yield fixed_row("MEASID", "Measurement ID", "", name)
@@ -72,7 +72,7 @@ def _lines(name: str, points: Points, config: Config) -> Iterator[str]:
         yield f"{REMARK} {remark}"
     yield f"{MARK}{tydex_format.CONSTANTS}"
     yield fixed_row("OVALLDIA", "Overall diameter", "m", repr(2.0 * config.tyre.unloaded_radius))
-    yield f"{MARK}{tydex_format.CHANNELS}"
+    yield f"{MARK}{tydex_format.CHANNEL_SECTION}"
     for channel in measured:
         yield fixed_row(channel.name, channel.words, channel.unit, "1", "0", "0")
     # Some programs write the number of rows after **MEASURDATA; not all readers accept it.

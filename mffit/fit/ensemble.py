@@ -10,7 +10,7 @@ import numpy as np
 from mffit.fit import constants
 from mffit.fit.constraints import violations
 from mffit.fit.fitted import Fitted
-from mffit.least_squares import LeastSquaresProblem, Linear, Number, solve
+from mffit.least_squares import FreeNumber, LeastSquaresProblem, Linear, solve
 from mffit.rig_errors import BY_NAME as RIG_ERRORS
 from tir.parameters import BY_NAME
 
@@ -71,7 +71,7 @@ def _drawn(fitted: Fitted, random: np.random.Generator) -> dict[str, float]:
     return held | {name: v for name, v in solution.values.items() if name not in RIG_ERRORS}
 
 
-def _with_drawn_prior(number: Number, random: np.random.Generator) -> Number:
+def _with_drawn_prior(number: FreeNumber, random: np.random.Generator) -> FreeNumber:
     """The number with the centre of its prior moved by the prior's spread."""
     shift = random.standard_normal()
     if not np.isfinite(number.spread):

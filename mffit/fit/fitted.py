@@ -9,7 +9,7 @@ from mffit.fit import constants
 from mffit.fit.posterior import Posterior
 from mffit.fit.problem import FitProblem
 from mffit.fit.stages import StageRecord
-from mffit.least_squares import Number, solve
+from mffit.least_squares import FreeNumber, solve
 from mffit.rig import Simulation
 from tir.parameters import BY_NAME
 
@@ -25,7 +25,7 @@ class Fitted:
     intervals: Mapping[str, tuple[float, float]]
     """95 % intervals of the numbers of a bent valley of equally good fits."""
     problem: FitProblem  #: at the solution, with the final weights
-    numbers: tuple[Number, ...]  #: that were free in the end
+    numbers: tuple[FreeNumber, ...]  #: that were free in the end
     held: Mapping[str, float]  #: standard uncertainty of coefficients that the fit took as exact
     at_bound: frozenset[str]  #: numbers at their own bound or at a physical limit
     regularised: frozenset[str]  #: coefficients that the priors decide as much as the points
@@ -50,7 +50,7 @@ def with_free_epsilon(fitted: Fitted) -> Simulation:
     if any(number.name == name for number in fitted.numbers):
         return fitted.simulation
     row, held = BY_NAME[name], float(fitted.simulation.values[name])
-    free = Number(name, row.inside(held), *row.bounds, expected=held)
+    free = FreeNumber(name, row.inside(held), *row.bounds, expected=held)
     numbers = [*problem.starting_here(fitted.numbers), free]
     solution = solve(
         problem.free([n.name for n in numbers]), numbers, tolerance=constants.FREE_EPSILON_TOLERANCE

@@ -28,7 +28,7 @@ from mffit.fit.wording import explanations, warnings
 from mffit.parts import Parts
 from mffit.points import Points
 from mffit.progress import Progress, silent
-from mffit.suspicion import Campaign, Doubt, FittedModel, When, after_the_fit, distrust, outliers
+from mffit.suspicion import Doubt, FittedModel, JudgedSweeps, When, after_the_fit, distrust, outliers
 from tir import Tyre
 
 
@@ -108,7 +108,7 @@ def _fitted_and_judged(
 ) -> tuple[Fitted, tuple[Doubt, ...]]:
     """The fit to all points, and the sweeps that contradict the others; one beyond plausibility ends the build."""
 
-    campaign = Campaign(
+    campaign = JudgedSweeps(
         points=problem.points,
         stated=_sigma(problem),
         signs=axis_signs(config),

@@ -11,7 +11,7 @@ import numpy as np
 from mffit.fit import constants
 from mffit.fit.constraints import Envelope, limits
 from mffit.fit.road import Road
-from mffit.least_squares import LeastSquaresProblem, Linear, Number, Solution, solve
+from mffit.least_squares import FreeNumber, LeastSquaresProblem, Linear, Solution, solve
 from mffit.quantities import CHANNELS
 from mffit.rig import Readings
 from tir.derivatives import gradient, plain, traced
@@ -21,7 +21,7 @@ MISFIT_UNIT = {"Fy": constants.MISFIT_UNIT_FY, "Mz": constants.MISFIT_UNIT_MZ}
 """By channel, unit of the residual over nominal load [N/N, m]."""
 
 
-class Goal(NamedTuple):
+class ForcesToReproduce(NamedTuple):
     """Forces that the file is to reproduce in one use."""
 
     road: Road
@@ -58,9 +58,9 @@ def _outputs(
 
 def goal(
     model: Mapping[str, Any], road: Road, weight: np.ndarray, *, turn_slip: bool, phi_t: float = 0.0
-) -> Goal:
+) -> ForcesToReproduce:
     """The forces of the fitted model, which is meant for turn slip on, as the goal of a file for ``turn_slip``."""
-    return Goal(road, turn_slip, phi_t, forces(model, road, turn_slip=True, phi_t=phi_t), weight)
+    return ForcesToReproduce(road, turn_slip, phi_t, forces(model, road, turn_slip=True, phi_t=phi_t), weight)
 
 
 class Imitation(NamedTuple):
@@ -68,11 +68,11 @@ class Imitation(NamedTuple):
 
     channel: str  #: "Fy" or "Mz"
     fixed: Mapping[str, Any]  #: every value of the file
-    goals: tuple[Goal, ...]
+    goals: tuple[ForcesToReproduce, ...]
     envelope: Envelope  #: over which the physical limits hold
     lines: Lines | None = None
 
-    def solve(self, numbers: Sequence[Number], *, steps: int, tolerance: float) -> Solution:
+    def solve(self, numbers: Sequence[FreeNumber], *, steps: int, tolerance: float) -> Solution:
         """The coefficients that come nearest to the goals."""
         names = [n.name for n in numbers]
 

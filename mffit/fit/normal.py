@@ -8,11 +8,11 @@ from typing import Any
 import numpy as np
 
 from mffit.fit import constants
-from mffit.fit.imitation import Goal, Imitation, Lines, force, goal
+from mffit.fit.imitation import ForcesToReproduce, Imitation, Lines, force, goal
 from mffit.fit.ranges import envelope
 from mffit.fit.road import Road, camber_lines, road_grid, weights
 from mffit.fit.stages import ODD_TERMS, STAGES
-from mffit.least_squares import Number
+from mffit.least_squares import FreeNumber
 from tir.parameters import BY_NAME
 
 CAMBER_STIFFNESS = ("PKY6", "PKY7")
@@ -80,7 +80,7 @@ def derive(
 
 def _goals(
     values: Mapping[str, Any], road: Road, tested: Mapping[str, float], both_on: float | None
-) -> tuple[Goal, ...]:
+) -> tuple[ForcesToReproduce, ...]:
     weight = weights(road, tested)
     without = goal(values, road, weight, turn_slip=False)
     if both_on is None:
@@ -108,7 +108,7 @@ def _lines(values: Mapping[str, Any], written: Mapping[str, float]) -> Lines:
     return Lines(road, n, np.diff(force("Fy", values, road, turn_slip=True).reshape(-1, n)) < 0.0)
 
 
-def _numbers(start: Mapping[str, float], measured: Mapping[str, float]) -> list[Number]:
+def _numbers(start: Mapping[str, float], measured: Mapping[str, float]) -> list[FreeNumber]:
     """The numbers with the table's bounds; camber stiffness has a weak prior at the measured one."""
     size = max(abs(measured.get("PKY6", 1.0)), constants.LEAST_CAMBER_STIFFNESS)
     spread = constants.CAMBER_STIFFNESS_TIE * size / constants.CAMBER_STIFFNESS_TIE_WEIGHT
@@ -117,5 +117,5 @@ def _numbers(start: Mapping[str, float], measured: Mapping[str, float]) -> list[
         tied = name in CAMBER_STIFFNESS and name in measured
         prior = {"expected": measured[name], "spread": spread} if tied else {}
         row = BY_NAME[name]
-        out.append(Number(name, row.inside(value), *row.bounds, **prior))
+        out.append(FreeNumber(name, row.inside(value), *row.bounds, **prior))
     return out

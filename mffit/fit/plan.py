@@ -15,7 +15,7 @@ from mffit.fit.priors import Prior, scatters
 from mffit.fit.problem import FitProblem
 from mffit.fit.rig_numbers import rig_numbers
 from mffit.fit.stages import ODD_TERMS, STAGES
-from mffit.least_squares import Number
+from mffit.least_squares import FreeNumber
 from mffit.points import Points
 from tir.parameters import BY_NAME
 
@@ -27,7 +27,7 @@ class FitPlan:
     cover: tuple[StageCoverage, ...]
     expected: Mapping[str, float]  #: centre of every coefficient's prior
     scatter: Mapping[str, float]  #: its standard deviation
-    rig: tuple[Number, ...] = ()  #: rig errors, free in the polish
+    rig: tuple[FreeNumber, ...] = ()  #: rig errors, free in the polish
     extra: tuple[str, ...] = ()  #: coefficients that are free in the polish only
     held: Mapping[str, float] = field(default_factory=dict)
     """Standard uncertainty of coefficients that the fit takes as exact."""
@@ -38,10 +38,10 @@ class FitPlan:
         """Coefficients that the stages free."""
         return [name for row in self.cover for name in row.free]
 
-    def coefficients(self, names: Iterable[str], problem: FitProblem) -> list[Number]:
+    def coefficients(self, names: Iterable[str], problem: FitProblem) -> list[FreeNumber]:
         """The named coefficients from their current values, with the table's bounds and their priors."""
         return [
-            Number(
+            FreeNumber(
                 name=name,
                 start=BY_NAME[name].inside(float(problem.simulation.values[name])),
                 lower=BY_NAME[name].bounds[0],
@@ -52,7 +52,7 @@ class FitPlan:
             for name in names
         ]
 
-    def numbers(self, problem: FitProblem) -> list[Number]:
+    def numbers(self, problem: FitProblem) -> list[FreeNumber]:
         """All free coefficients and rig errors, from their current values."""
         return [*self.coefficients([*self.free, *self.extra], problem), *problem.starting_here(self.rig)]
 

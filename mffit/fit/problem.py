@@ -14,7 +14,7 @@ from mffit.fit.constraints import Envelope, limits
 from mffit.fit.ranges import covered_ranges, envelope
 from mffit.fit.rig_numbers import known_faults
 from mffit.fit.rolling import effective_radius
-from mffit.least_squares import LeastSquaresProblem, Linear, Number
+from mffit.least_squares import FreeNumber, LeastSquaresProblem, Linear
 from mffit.measured import RadiusReading, radius_readings
 from mffit.points import Points
 from mffit.quantities import CHANNELS
@@ -55,7 +55,7 @@ class FitProblem:
         """Current value of a coefficient or rig error."""
         return self.simulation.number(name, self.points)
 
-    def starting_here(self, numbers: Sequence[Number]) -> list[Number]:
+    def starting_here(self, numbers: Sequence[FreeNumber]) -> list[FreeNumber]:
         """The numbers with their current values as starting values."""
         return [replace(n, start=self.value(n.name)) for n in numbers]
 

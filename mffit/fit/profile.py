@@ -10,7 +10,7 @@ import numpy as np
 from mffit.constants import COVERAGE_FACTOR_95
 from mffit.fit import constants
 from mffit.fit.problem import FitProblem
-from mffit.least_squares import Number, Solution, solve
+from mffit.least_squares import FreeNumber, Solution, solve
 
 ALLOWED_RISE = COVERAGE_FACTOR_95**2
 """Rise of the sum of squares up to which a fit belongs to the 95 % interval of one number."""
@@ -26,7 +26,7 @@ class Valley:
 
 
 def follow(
-    problem: FitProblem, numbers: Sequence[Number], solution: Solution, among: Collection[str]
+    problem: FitProblem, numbers: Sequence[FreeNumber], solution: Solution, among: Collection[str]
 ) -> Valley | None:
     """The most bent valley, followed to both sides until the sum of squares has risen by 3.84.
 
@@ -56,7 +56,7 @@ def follow(
 
 
 def _wider(
-    numbers: Sequence[Number], best: np.ndarray, errors: np.ndarray, low: np.ndarray, high: np.ndarray
+    numbers: Sequence[FreeNumber], best: np.ndarray, errors: np.ndarray, low: np.ndarray, high: np.ndarray
 ) -> dict[str, tuple[float, float]]:
     """The intervals, within the bounds, that exceed those from the curvature."""
     usual = constants.WIDER_INTERVAL * COVERAGE_FACTOR_95 * errors
@@ -69,7 +69,7 @@ def _wider(
 
 
 def _most_bent(
-    problem: FitProblem, numbers: Sequence[Number], solution: Solution, among: Collection[str]
+    problem: FitProblem, numbers: Sequence[FreeNumber], solution: Solution, among: Collection[str]
 ) -> str:
     """The number that moves most along the direction in which the sum of squares differs most from its quadratic form.
 
@@ -111,7 +111,7 @@ def _least_determined(covariance: np.ndarray, rows: list[int], spread: list[floa
 
 
 def _walk(
-    problem: FitProblem, numbers: Sequence[Number], solution: Solution, along: str, side: float
+    problem: FitProblem, numbers: Sequence[FreeNumber], solution: Solution, along: str, side: float
 ) -> Iterator[tuple[np.ndarray, float]]:
     """Fits with one number moved further and further, all others refitted, and the rise of the sum of squares."""
     i = solution.names.index(along)
@@ -132,7 +132,7 @@ def _walk(
 
 
 def _refitted(
-    problem: FitProblem, numbers: Sequence[Number], start: np.ndarray, i: int, value: float
+    problem: FitProblem, numbers: Sequence[FreeNumber], start: np.ndarray, i: int, value: float
 ) -> tuple[np.ndarray, float]:
     """The best fit with one number held at a value, and its sum of squares."""
     moving = [replace(n, start=x) for n, x in zip(numbers, start.tolist(), strict=True)]

@@ -8,7 +8,7 @@ from typing import Any
 from mffit.config import Declaration, declared_faults, declared_rig
 from mffit.constants import USUAL_CORNERING_STIFFNESS
 from mffit.fit import constants
-from mffit.least_squares import Number
+from mffit.least_squares import FreeNumber
 from mffit.rig_errors import BY_NAME, Faults
 
 
@@ -20,7 +20,7 @@ def known_faults(config: Any, measured: Any) -> Faults:
     return faults.replace(alpha_0_deg=math.degrees(measured.alpha_M.value))
 
 
-def rig_numbers(config: Any, measured: Any) -> tuple[Number, ...]:
+def rig_numbers(config: Any, measured: Any) -> tuple[FreeNumber, ...]:
     """The declared rig errors with their priors; none on a flat track.
 
     On a straight path ply-steer and conicity are free and absorb zeros that are off.
@@ -37,10 +37,10 @@ def rig_numbers(config: Any, measured: Any) -> tuple[Number, ...]:
     return tuple(_number(name, prior) for name, prior in declared.items())
 
 
-def _number(name: str, prior: Declaration) -> Number:
+def _number(name: str, prior: Declaration) -> FreeNumber:
     reach = constants.RIG_ERROR_REACH * prior.u
     error = BY_NAME[name]
-    return Number(
+    return FreeNumber(
         name,
         prior.value,
         max(prior.value - reach, error.lower),

@@ -34,7 +34,7 @@ from mffit.measured.paths import (
 )
 from mffit.measured.radii import effective_radius_at, measured_effective_radius, measured_path_radius
 from mffit.measured.result import CONICITY, Contribution, LoadResult, Measured
-from mffit.measured.slopes import Secant, Slope, slope_at_zero
+from mffit.measured.slopes import Secant, SlopeAtZero, slope_at_zero
 from mffit.measured.stiffnesses import (
     Estimates,
     chosen_camber_stiffness,
@@ -282,7 +282,7 @@ def _result(
         return _AtLoad(row, None, 0.0)
     epsilon = method.camber_reduction(turning.force, C_gamma, r_e, rig.R, turning.sign).epsilon_gamma
 
-    def with_estimate(estimate: Slope | Secant | None) -> float | None:
+    def with_estimate(estimate: SlopeAtZero | Secant | None) -> float | None:
         if estimate is None:
             return None
         other = method.camber_reduction(turning.force, estimate.value, r_e, rig.R, turning.sign)
@@ -317,7 +317,7 @@ def _row(group: LoadGroup, slopes: _Slopes, turning: _Turning | None, C_gamma: U
     )
 
 
-def _estimated(estimate: Slope | Secant | None) -> Quantity | None:
+def _estimated(estimate: SlopeAtZero | Secant | None) -> Quantity | None:
     return None if estimate is None else Quantity(estimate.value, estimate.u, "N/rad")
 
 

@@ -10,7 +10,7 @@ from mffit.measured import constants
 
 
 @dataclass(frozen=True, slots=True)
-class Slope:
+class SlopeAtZero:
     """Slope of an odd curve at zero, in the unit of y per radian."""
 
     value: float
@@ -29,7 +29,7 @@ class Secant:
     angle: float  #: of the point used [rad]
 
 
-def slope_at_zero(x: np.ndarray, y: np.ndarray, u: np.ndarray, *, local: float) -> Slope | None:
+def slope_at_zero(x: np.ndarray, y: np.ndarray, u: np.ndarray, *, local: float) -> SlopeAtZero | None:
     """Slope at zero of an odd curve.
 
     Parameters
@@ -51,7 +51,7 @@ def slope_at_zero(x: np.ndarray, y: np.ndarray, u: np.ndarray, *, local: float) 
     if len(np.unique(np.round(x[near], 4))) >= 3:
         cubic, _ = _cubic(x[near], y[near], u[near])
     difference = abs(shape - cubic) if np.isfinite(cubic) else constants.SLOPE_WITHOUT_CUBIC * abs(shape)
-    return Slope(shape, float(np.hypot(u_shape, difference / 2.0)), u_shape, float(cubic), len(x))
+    return SlopeAtZero(shape, float(np.hypot(u_shape, difference / 2.0)), u_shape, float(cubic), len(x))
 
 
 def secant_at(x: np.ndarray, y: np.ndarray, u: np.ndarray, angle: float) -> Secant | None:

@@ -14,7 +14,7 @@ from mffit.measured import camber_reduction as method
 from mffit.measured import constants, notes
 from mffit.measured.groups import LoadGroup
 from mffit.measured.paths import on_radius
-from mffit.measured.slopes import Secant, Slope, secant_at, slope_at_zero
+from mffit.measured.slopes import Secant, SlopeAtZero, secant_at, slope_at_zero
 from mffit.parts import Parts
 from mffit.points import Points
 
@@ -23,7 +23,7 @@ from mffit.points import Points
 class Estimates:
     """The two estimates of a stiffness at one load."""
 
-    slope: Slope | None
+    slope: SlopeAtZero | None
     secant: Secant | None
 
 
@@ -92,6 +92,6 @@ def estimates(
     return Estimates(slope_at_zero(x, y, u, local=local), secant_at(x, y, u, angle))
 
 
-def number(estimate: Slope | Secant | None, source: str) -> UFloat | None:
+def number(estimate: SlopeAtZero | Secant | None, source: str) -> UFloat | None:
     """An estimate as a number with uncertainty [N/rad]."""
     return None if estimate is None else method.named(estimate.value, estimate.u, source, "N/rad")

@@ -22,10 +22,10 @@ from mffit.pipeline.building import build
 from mffit.pipeline.members import FOLDER
 from mffit.pipeline.provenance import PROGRAM, fitted_to
 from mffit.pipeline.workers import Job, Outcomes, in_processes, on_cluster
-from mffit.results import Outcome
+from mffit.results import BuildOutcome
 from tir.errors import TirError
 
-Done = Callable[[Outcome], None]
+Done = Callable[[BuildOutcome], None]
 """Called with every finished tyre, in the order in which they finish."""
 ONE_AT_A_TIME = threading.Lock()
 """Drawing changes settings of the whole process, so the threads of a cluster's worker take turns."""
@@ -39,7 +39,7 @@ def build_many(
     dask: str | None = None,
     ensemble: int = 0,
     done: Done = lambda outcome: None,
-) -> tuple[Outcome, ...]:
+) -> tuple[BuildOutcome, ...]:
     """Build many tyres; a failure does not stop the others, and output that is complete and current is left unchanged.
 
     Parameters
@@ -85,28 +85,28 @@ def _in_turn(wanted: Sequence[Job]) -> Outcomes:
     yield from map(build_one, wanted)
 
 
-def build_one(job: Job) -> Outcome:
+def build_one(job: Job) -> BuildOutcome:
     """Build one tyre unless its output is current; errors become part of the outcome."""
     began = time.perf_counter()
     with ONE_AT_A_TIME:
         try:
             outcome = _built(job)
         except (InputError, TirError) as error:
-            outcome = Outcome(job.source, job.name, job.out, "refused", _one_line(str(error)))
+            outcome = BuildOutcome(job.source, job.name, job.out, "refused", _one_line(str(error)))
         except Exception as error:  # a bug must not cost the other tyres
             said = _one_line(f"{type(error).__name__}: {error}")
-            outcome = Outcome(job.source, job.name, job.out, "failed", said)
+            outcome = BuildOutcome(job.source, job.name, job.out, "failed", said)
     return replace(outcome, seconds=time.perf_counter() - began)
 
 
-def _built(job: Job) -> Outcome:
+def _built(job: Job) -> BuildOutcome:
     """The outcome of a build, with the numbers that its folder holds."""
     config = configuration.load(job.source)
     current = is_current(config, job.out, ensemble=job.ensemble)
     if not current:
         build(config, job.out, ensemble=job.ensemble)
     specimen = read(job.out)
-    return Outcome(
+    return BuildOutcome(
         source=job.source,
         name=job.name,
         out=job.out,
@@ -122,17 +122,19 @@ def _one_line(text: str) -> str:
     return " ".join(text.split())
 
 
-def _jobs(paths: Sequence[Path], out: Path | None, ensemble: int) -> tuple[list[Job], dict[Path, Outcome]]:
+def _jobs(
+    paths: Sequence[Path], out: Path | None, ensemble: int
+) -> tuple[list[Job], dict[Path, BuildOutcome]]:
     """The tyres to build, and the outcomes of those whose ``tyre.toml`` cannot be read."""
     wanted: list[Job] = []
-    refused: dict[Path, Outcome] = {}
+    refused: dict[Path, BuildOutcome] = {}
     for path in paths:
         if path in refused or path in [job.source for job in wanted]:
             raise InputError("is named twice; remove one", file=path)
         try:
             name = configuration.load(path).tyre.name
         except InputError as error:
-            refused[path] = Outcome(path, str(path), None, "refused", str(error))
+            refused[path] = BuildOutcome(path, str(path), None, "refused", str(error))
             continue
         job = Job(path, name, (path.parent / "out" if out is None else out / name).absolute(), ensemble)
         _check_folder(job, wanted, given=out is not None)

@@ -19,7 +19,7 @@ from mffit.pipeline.building import build
 from mffit.pipeline.inputs import inputs_of, read_base
 from mffit.pipeline.measuring import measure
 from mffit.pipeline.refining import finite_spin_bias, undistorted
-from mffit.planning import Addition, Goal, Plan, Run, addition_named, read_goal, wording
+from mffit.planning import Addition, Goal, Plan, PlannedRun, addition_named, read_goal, wording
 from mffit.planning.goals import BANDS, EPSILON, JOINT
 from mffit.planning.outlook import Direct, DirectU
 from mffit.points import Points
@@ -160,7 +160,7 @@ def sheet(config: Config, points: Points) -> pd.DataFrame:
     return table.assign(Fy_N="", Mz_Nm="")
 
 
-def additions(config: Config, runs: Sequence[Run]) -> str:
+def additions(config: Config, runs: Sequence[PlannedRun]) -> str:
     """TOML to append to tyre.toml for these runs; changes to tables that it already has are comments."""
     usual = configuration.path_curvature(config.rig)
     lines = [

@@ -16,7 +16,7 @@ from pathlib import Path
 from typing import Any
 
 from mffit.errors import InputError
-from mffit.results import Outcome
+from mffit.results import BuildOutcome
 
 CLUSTER_BUILDS_IN_FLIGHT = 1000
 """Builds submitted to a Dask cluster at a time; more than any cluster works on at once."""
@@ -34,9 +34,9 @@ class Job:
     ensemble: int = 0
 
 
-BuildOne = Callable[[Job], Outcome]
+BuildOne = Callable[[Job], BuildOutcome]
 """Builds one tyre; raises nothing but KeyboardInterrupt."""
-Outcomes = Generator[Outcome, None, None]
+Outcomes = Generator[BuildOutcome, None, None]
 
 
 def in_processes(wanted: Sequence[Job], jobs: int, build_one: BuildOne) -> Outcomes:
@@ -84,7 +84,7 @@ class _WorkerDied(Exception):
         self.jobs = jobs
 
 
-def _pooled(left: deque[Job], jobs: int, build_one: BuildOne) -> Generator[Outcome, None, list[Job]]:
+def _pooled(left: deque[Job], jobs: int, build_one: BuildOne) -> Generator[BuildOutcome, None, list[Job]]:
     """Build until nothing is left or a process dies; returns the jobs in progress at that moment."""
     pool = ProcessPoolExecutor(
         jobs, mp_context=multiprocessing.get_context(START_METHOD), initializer=_ignore_interrupts
@@ -102,9 +102,11 @@ def _pooled(left: deque[Job], jobs: int, build_one: BuildOne) -> Generator[Outco
         pool.shutdown(cancel_futures=True)
 
 
-def _submitted(executor: Executor, left: deque[Job], at_once: int, build_one: BuildOne) -> Iterator[Outcome]:
+def _submitted(
+    executor: Executor, left: deque[Job], at_once: int, build_one: BuildOne
+) -> Iterator[BuildOutcome]:
     """Outcomes as they arrive; at most ``at_once`` jobs are submitted, so that an interruption leaves none queued."""
-    in_flight: dict[Future[Outcome], Job] = {}
+    in_flight: dict[Future[BuildOutcome], Job] = {}
     while left or in_flight:
         try:
             while left and len(in_flight) < at_once:
@@ -130,11 +132,11 @@ def _submitted(executor: Executor, left: deque[Job], at_once: int, build_one: Bu
             raise _WorkerDied(list(in_flight.values()))
 
 
-def _lost(job: Job, error: BaseException | None = None) -> Outcome:
+def _lost(job: Job, error: BaseException | None = None) -> BuildOutcome:
     """The outcome of a job whose process ended."""
     why = f" ({type(error).__name__})" if error is not None and not isinstance(error, CancelledError) else ""
     sentence = f"its process ended early{why}, perhaps for lack of memory; build it again alone"
-    return Outcome(job.source, job.name, job.out, "failed", sentence)
+    return BuildOutcome(job.source, job.name, job.out, "failed", sentence)
 
 
 def _ignore_interrupts() -> None:
@@ -142,7 +144,7 @@ def _ignore_interrupts() -> None:
     signal.signal(signal.SIGINT, signal.SIG_IGN)
 
 
-def _interruptible(build_one: BuildOne, job: Job) -> Outcome:
+def _interruptible(build_one: BuildOne, job: Job) -> BuildOutcome:
     """Build with Ctrl-C enabled, so that an interrupted build removes its temporary files."""
     signal.signal(signal.SIGINT, signal.default_int_handler)
     try:

@@ -2,8 +2,8 @@
 
 from mffit.planning.additions import ADDITIONS, BY_ID, Addition, addition_named
 from mffit.planning.goals import Goal, read_goal
-from mffit.planning.record import Identified, Plan, Step, Tie
-from mffit.planning.runs import Run, candidates
+from mffit.planning.record import Identified, Plan, PlanStep, Tie
+from mffit.planning.runs import PlannedRun, candidates
 from mffit.planning.search import plan
 
 __all__ = [
@@ -13,8 +13,8 @@ __all__ = [
     "Goal",
     "Identified",
     "Plan",
-    "Run",
-    "Step",
+    "PlanStep",
+    "PlannedRun",
     "Tie",
     "addition_named",
     "candidates",

@@ -15,7 +15,7 @@ from tir.constant import Series
 _EPSILON = DIRECT["epsilon_gamma"].ascii
 
 
-class Line(NamedTuple):
+class LineOfPoints(NamedTuple):
     """Set-points along one angle; everything not given here is as in most of the programme."""
 
     over: Literal["alpha", "gamma"]
@@ -32,7 +32,7 @@ class Addition:
     title: str
     reason: str  #: what it measures and why that helps
     loads: Literal["each", "nominal", "new"] = "each"  #: each or nominal: of the programme
-    lines: tuple[Line, ...] = ()  #: none for a measurement of the rig
+    lines: tuple[LineOfPoints, ...] = ()  #: none for a measurement of the rig
     disc_only: bool = False
     mount: Literal[1, -1] = 1
     radius: float = 1.0  #: path radius over the programme's; negative: centre on the other side
@@ -43,10 +43,13 @@ class Addition:
     revolution: bool = False  #: adds a [rolling_radius] table
 
 
-_ZEROS = (Line("alpha", constants.PLAN_ZERO_ANGLES), Line("alpha", constants.PLAN_ZERO_ANGLES, direction=-1))
-_SMALL_CAMBERS = (Line("gamma", constants.PLAN_SMALL_CAMBERS),)
-_SIDESLIP = (Line("alpha", constants.PLAN_SWEEP_SHARES),)
-_CAMBER = (Line("gamma", constants.PLAN_SWEEP_SHARES),)
+_ZEROS = (
+    LineOfPoints("alpha", constants.PLAN_ZERO_ANGLES),
+    LineOfPoints("alpha", constants.PLAN_ZERO_ANGLES, direction=-1),
+)
+_SMALL_CAMBERS = (LineOfPoints("gamma", constants.PLAN_SMALL_CAMBERS),)
+_SIDESLIP = (LineOfPoints("alpha", constants.PLAN_SWEEP_SHARES),)
+_CAMBER = (LineOfPoints("gamma", constants.PLAN_SWEEP_SHARES),)
 
 _RIG_MEASUREMENTS = tuple(
     Addition(
@@ -126,7 +129,7 @@ ADDITIONS = (
             "from the sideslip of a camber axis that is not square to the steering axis."
         ),
         loads="nominal",
-        lines=(Line("gamma", constants.PLAN_SWEEP_SHARES, direction=-1),),
+        lines=(LineOfPoints("gamma", constants.PLAN_SWEEP_SHARES, direction=-1),),
         disc_only=True,
     ),
     Addition(
@@ -134,7 +137,7 @@ ADDITIONS = (
         title="sideslip sweep with the tyre turned on its rim",
         reason="Conicity changes sign with the tyre turned on its rim; every rig error keeps its sign.",
         loads="nominal",
-        lines=(Line("alpha", constants.PLAN_FLIPPED_SHARES),),
+        lines=(LineOfPoints("alpha", constants.PLAN_FLIPPED_SHARES),),
         mount=-1,
     ),
     Addition(
@@ -153,7 +156,7 @@ ADDITIONS = (
         id="coupled",
         title="sideslip sweeps at camber of both signs",
         reason="How camber changes the curves over sideslip is visible only where both angles act together.",
-        lines=tuple(Line("alpha", constants.PLAN_SWEEP_SHARES, camber_side=side) for side in (-1, 1)),
+        lines=tuple(LineOfPoints("alpha", constants.PLAN_SWEEP_SHARES, camber_side=side) for side in (-1, 1)),
         cambers=constants.PLAN_COUPLED_CAMBERS,
     ),
     Addition(

@@ -18,7 +18,7 @@ from mffit.least_squares import inverse
 from mffit.measured import Measured
 from mffit.measured.direct import alignment_verdict
 from mffit.measured.radii import measured_path_radius
-from mffit.planning.runs import Run
+from mffit.planning.runs import PlannedRun
 from mffit.points import Points
 from mffit.points.points import concatenate
 from mffit.rig_errors import BY_NAME as RIG_ERRORS
@@ -58,7 +58,7 @@ class Knowledge:
         self._base = self._information(self.problem.free(self.names).linear(self._at).slope)
         self._of_run: dict[str, np.ndarray] = {}
 
-    def posterior(self, runs: Sequence[Run], u_epsilon: float | None) -> Posterior:
+    def posterior(self, runs: Sequence[PlannedRun], u_epsilon: float | None) -> Posterior:
         """The posterior of a build with these runs; ``u_epsilon`` is u of a measured PECP1, None if PECP1 is fitted."""
         free, spread = self._free(runs), self._spread(runs)
         if u_epsilon is None:
@@ -68,7 +68,7 @@ class Knowledge:
         held = [n for n in spread if n not in free and math.isfinite(spread[n])]
         return self._solved(self._information_of(runs), free, spread, held)
 
-    def u_of_effect(self, runs: Sequence[Run], effect: Effect, rivals: Iterable[Effect]) -> float:
+    def u_of_effect(self, runs: Sequence[PlannedRun], effect: Effect, rivals: Iterable[Effect]) -> float:
         """u of an effect's number from the data alone, with the fitted numbers and its rival effects free."""
         name = effect.free[0].name
         partners = {e.free[0].name for e in rivals}
@@ -84,7 +84,7 @@ class Knowledge:
         """Usual size of an effect's number, 1 sigma."""
         return self.usual[effect.free[0].name]
 
-    def with_readings(self, run: Run, draw: np.random.Generator | None = None) -> Points:
+    def with_readings(self, run: PlannedRun, draw: np.random.Generator | None = None) -> Points:
         """The set-points of a run with the readings that the fitted rig would give; with noise if ``draw`` is given."""
         assert run.points is not None
         read = self.simulation.readings(run.points)
@@ -101,12 +101,12 @@ class Knowledge:
         size = abs(self.simulation.number(number.name, self.points)) if number.relative else 1.0
         return number.spread * size
 
-    def _free(self, runs: Sequence[Run]) -> list[str]:
+    def _free(self, runs: Sequence[PlannedRun]) -> list[str]:
         new = [run.points for run in runs if run.points is not None]
         cover = coverage(concatenate([self.points, *new]) if new else self.points, self.config.tyre.side)
         return list(dict.fromkeys([*(name for row in cover for name in row.free), *self.extra, *self.rig]))
 
-    def _spread(self, runs: Sequence[Run]) -> dict[str, float]:
+    def _spread(self, runs: Sequence[PlannedRun]) -> dict[str, float]:
         """Prior spread of each number once the rig has been measured as the runs demand."""
         better = [run for run in runs if run.rig]
         row = self.measured.nominal
@@ -123,10 +123,10 @@ class Knowledge:
         numbers = rig_numbers(config, replace(self.measured, nominal=row, misaligned=misaligned))
         return self.spread | {n.name: n.spread for n in numbers}
 
-    def _information_of(self, runs: Sequence[Run]) -> np.ndarray:
+    def _information_of(self, runs: Sequence[PlannedRun]) -> np.ndarray:
         return self._base + sum((self._added(run) for run in runs), np.zeros_like(self._base))
 
-    def _added(self, run: Run) -> np.ndarray:
+    def _added(self, run: PlannedRun) -> np.ndarray:
         if run.points is None:
             return np.zeros_like(self._base)
         if run.name not in self._of_run:

@@ -19,7 +19,7 @@ from mffit.planning import constants
 from mffit.planning.goals import BANDS, EPSILON, JOINT, TIE, Goal, effect_named
 from mffit.planning.identified import tied_pairs
 from mffit.planning.knowledge import PECP1, Knowledge
-from mffit.planning.runs import Run
+from mffit.planning.runs import PlannedRun
 from mffit.points import Points, main_pressure, make_points
 from mffit.points.points import concatenate
 from mffit.rig import Simulation
@@ -59,7 +59,7 @@ class Outlook:
         self._direct, self._cache = direct, dict[tuple[str, ...], DirectU | None]()
         self._curves = self._band_slopes() if goal.kind == BANDS else None
 
-    def u(self, runs: Sequence[Run]) -> float:
+    def u(self, runs: Sequence[PlannedRun]) -> float:
         """Uncertainty of the goal in its unit; infinite if the goal is not measured at all."""
         kind = self.goal.kind
         if kind == EPSILON:
@@ -87,17 +87,17 @@ class Outlook:
             else self.knowledge.usual_size(self.effect) / math.sqrt(SEPARATING_CHI2)
         )
 
-    def epsilons(self, runs: Sequence[Run]) -> tuple[float | None, float | None]:
+    def epsilons(self, runs: Sequence[PlannedRun]) -> tuple[float | None, float | None]:
         """u(eps_gamma) of the direct method and of the joint fit."""
         return (self.direct(runs), self.joint(runs)) if self.config.rig.on_disc else (None, None)
 
-    def joint(self, runs: Sequence[Run]) -> float | None:
+    def joint(self, runs: Sequence[PlannedRun]) -> float | None:
         """u(PECP1) as a free coefficient of the joint fit of tyre and rig; None without a measured turn-slip force."""
         if not self.knowledge.rig:
             return None
         return self.knowledge.posterior(runs, None).stderr[PECP1]
 
-    def direct(self, runs: Sequence[Run]) -> float | None:
+    def direct(self, runs: Sequence[PlannedRun]) -> float | None:
         """u(eps_gamma) that a build would state for the direct method."""
         found = self._directly(runs)
         return None if found is None else found.stated
@@ -107,7 +107,7 @@ class Outlook:
         self.draws = constants.PLAN_NOISE_DRAWS
         self._cache.clear()
 
-    def _directly(self, runs: Sequence[Run]) -> DirectU | None:
+    def _directly(self, runs: Sequence[PlannedRun]) -> DirectU | None:
         """The direct method on the present points and the predicted readings of the new ones; cached."""
         if not self.config.rig.on_disc:
             return None
@@ -130,7 +130,7 @@ class Outlook:
             )
         return self._cache[key]
 
-    def _u_pecp1(self, runs: Sequence[Run]) -> float | None:
+    def _u_pecp1(self, runs: Sequence[PlannedRun]) -> float | None:
         """Uncertainty of a PECP1 that the file takes from the direct method; None if the joint fit determines it."""
         if not self.config.rig.on_disc:
             return 0.0

@@ -10,7 +10,7 @@ from mffit.diagnosis.constants import SEPARATING_CHI2
 from mffit.fit.coverage import StageCoverage
 from mffit.measured import Contribution
 from mffit.planning.goals import Goal
-from mffit.planning.runs import Run
+from mffit.planning.runs import PlannedRun
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,15 +42,15 @@ class Identified:
 class Trial:
     """A run made alone, and the uncertainty that it would leave."""
 
-    run: Run
+    run: PlannedRun
     u: float  #: of the goal, in its unit
 
 
 @dataclass(frozen=True, slots=True)
-class Step:
+class PlanStep:
     """One run of the list."""
 
-    run: Run
+    run: PlannedRun
     before: float  #: uncertainty of the goal without it
     after: float  #: with it
     direct: float | None  #: u(eps_gamma) of the direct method after it; None without a disc
@@ -67,7 +67,7 @@ class Plan(Brief):
     now: float  #: present uncertainty of the goal; infinite if it is not measured
     direct_now: float | None
     joint_now: float | None
-    steps: tuple[Step, ...]  #: the list, in the order in which the runs are made
+    steps: tuple[PlanStep, ...]  #: the list, in the order in which the runs are made
     trials: tuple[Trial, ...]  #: every candidate made alone, best first
     told_below: float | None = None  #: of a tie: uncertainty below which the effects are separated
 

@@ -14,14 +14,14 @@ from mffit.config import Config
 from mffit.config.models import RollingRadiusTable
 from mffit.measured.radii import measured_path_radius
 from mffit.planning import constants
-from mffit.planning.additions import ADDITIONS, Addition, Line
+from mffit.planning.additions import ADDITIONS, Addition, LineOfPoints
 from mffit.points import Points, levels, main_path, main_pressure
 from mffit.points.points import concatenate
 from mffit.rig import reference_speed
 
 
 @dataclass(frozen=True, slots=True)
-class Run:
+class PlannedRun:
     """One entry of a plan: points to run, or a number of the rig to measure better."""
 
     addition: Addition
@@ -54,14 +54,14 @@ class Run:
         return config.model_copy(update=changes) if changes else config
 
 
-def candidates(config: Config, points: Points, r_e: float | None = None) -> tuple[Run, ...]:
+def candidates(config: Config, points: Points, r_e: float | None = None) -> tuple[PlannedRun, ...]:
     """Every run that a rig could add to these points, load by load.
 
     ``r_e`` is the effective radius of the model at the nominal load [m], to predict a disc revolution.
     """
     programme = _Programme(config, points)
     possible = [addition for addition in ADDITIONS if config.rig.on_disc or not addition.disc_only]
-    found: list[Run] = []
+    found: list[PlannedRun] = []
     for loads, group in groupby(possible, key=lambda addition: addition.loads):
         additions = list(group)
         for load in programme.loads_of(loads):
@@ -98,7 +98,7 @@ class _Programme:
         new = [low * self.loads[0], high * self.loads[-1]]
         return {"each": self.loads, "nominal": [self.load], "new": new}[which]
 
-    def angles(self, line: Line) -> np.ndarray:
+    def angles(self, line: LineOfPoints) -> np.ndarray:
         """Angles (n,) of a line [deg]."""
         if line.angles.unit == "deg":
             return np.array(line.angles)
@@ -116,7 +116,9 @@ class _Programme:
         most = max(self.largest["gamma"], constants.PLAN_SMALL_CAMBERS[-1])
         return [camber for camber in addition.cambers if camber not in run_already and camber <= most]
 
-    def line(self, line: Line, addition: Addition, *, load: float, camber_deg: float, p: float) -> Points:
+    def line(
+        self, line: LineOfPoints, addition: Addition, *, load: float, camber_deg: float, p: float
+    ) -> Points:
         """Set-points (n,) of one line of an addition."""
         angles = np.radians(self.angles(line))
         usual = np.flatnonzero(self.main.phi_t == self.phi_t)[0]
@@ -137,7 +139,7 @@ def _median(values: np.ndarray) -> float:
     return float(np.median(known)) if len(known) else math.nan
 
 
-def _with_points(programme: _Programme, addition: Addition, load: float) -> Iterator[Run]:
+def _with_points(programme: _Programme, addition: Addition, load: float) -> Iterator[PlannedRun]:
     """The runs of an addition at one load: one per camber and pressure."""
     for camber in programme.cambers(addition, load):
         for factor in addition.pressures or (1.0,):
@@ -145,7 +147,7 @@ def _with_points(programme: _Programme, addition: Addition, load: float) -> Iter
             lines = [
                 programme.line(line, addition, load=load, camber_deg=camber, p=p) for line in addition.lines
             ]
-            yield Run(
+            yield PlannedRun(
                 addition,
                 load,
                 concatenate(lines),
@@ -154,15 +156,15 @@ def _with_points(programme: _Programme, addition: Addition, load: float) -> Iter
             )
 
 
-def _better_declared(config: Config, addition: Addition, load: float) -> Iterator[Run]:
+def _better_declared(config: Config, addition: Addition, load: float) -> Iterator[PlannedRun]:
     """A better measurement of a number of the rig whose uncertainty is declared."""
     R = measured_path_radius(config) if addition.declares == "u_path_radius" else None
     u = getattr(config.rig, addition.declares) if R is None else float(R.std_dev)
     if u:
-        yield Run(addition, load, rig={addition.declares: constants.PLAN_RIG_IMPROVEMENT * u})
+        yield PlannedRun(addition, load, rig={addition.declares: constants.PLAN_RIG_IMPROVEMENT * u})
 
 
-def _revolution(config: Config, addition: Addition, load: float, r_e: float | None) -> Iterator[Run]:
+def _revolution(config: Config, addition: Addition, load: float, r_e: float | None) -> Iterator[PlannedRun]:
     """The disc revolution that would measure r_e, where none was made."""
     if config.rolling_radius or r_e is None or config.rig.radius is None:
         return
@@ -170,4 +172,4 @@ def _revolution(config: Config, addition: Addition, load: float, r_e: float | No
     table = RollingRadiusTable(
         load_N=round(load, 1), revolutions=turns, angle_start_deg=0.0, angle_end_deg=round(360.0 * rest, 1)
     )
-    yield Run(addition, load, revolution=table)
+    yield PlannedRun(addition, load, revolution=table)

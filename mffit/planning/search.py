@@ -13,8 +13,8 @@ from mffit.planning.additions import Addition
 from mffit.planning.goals import Goal
 from mffit.planning.identified import identified
 from mffit.planning.outlook import Direct, Outlook
-from mffit.planning.record import Plan, Step, Trial
-from mffit.planning.runs import Run, candidates
+from mffit.planning.record import Plan, PlanStep, Trial
+from mffit.planning.runs import PlannedRun, candidates
 from mffit.points import Points
 from mffit.progress import Progress, silent
 
@@ -52,7 +52,7 @@ def plan(
     chosen = _without_superfluous(outlook, _chosen(outlook, possible, most, progress))
     outlook.add_noise()
     steps = [
-        Step(run, outlook.u(chosen[:k]), outlook.u(chosen[: k + 1]), *outlook.epsilons(chosen[: k + 1]))
+        PlanStep(run, outlook.u(chosen[:k]), outlook.u(chosen[: k + 1]), *outlook.epsilons(chosen[: k + 1]))
         for k, run in enumerate(chosen)
     ]
     direct_now, joint_now = outlook.epsilons([])
@@ -69,9 +69,11 @@ def plan(
     )
 
 
-def _chosen(outlook: Outlook, possible: Sequence[Run], most: int, progress: Progress) -> list[Run]:
+def _chosen(
+    outlook: Outlook, possible: Sequence[PlannedRun], most: int, progress: Progress
+) -> list[PlannedRun]:
     """Up to ``most`` runs, in the order in which they were found."""
-    chosen: list[Run] = []
+    chosen: list[PlannedRun] = []
     while len(chosen) < most:
         progress(f"looking for run {len(chosen) + 1}")
         left = [run for run in possible if run not in chosen]
@@ -84,7 +86,9 @@ def _chosen(outlook: Outlook, possible: Sequence[Run], most: int, progress: Prog
     return chosen
 
 
-def _best(outlook: Outlook, chosen: Sequence[Run], possible: Sequence[Sequence[Run]]) -> Sequence[Run]:
+def _best(
+    outlook: Outlook, chosen: Sequence[PlannedRun], possible: Sequence[Sequence[PlannedRun]]
+) -> Sequence[PlannedRun]:
     """The best choice of one or several runs to add; empty if none lowers the uncertainty enough."""
     if not possible:
         return ()
@@ -100,12 +104,12 @@ def _best(outlook: Outlook, chosen: Sequence[Run], possible: Sequence[Sequence[R
     return possible[min(equally_good)[2]]
 
 
-def _pairs(possible: Sequence[Run]) -> list[tuple[Run, Run]]:
+def _pairs(possible: Sequence[PlannedRun]) -> list[tuple[PlannedRun, PlannedRun]]:
     """Pairs of runs of one kind at different loads."""
     return [(a, b) for a, b in combinations(possible, 2) if a.addition is b.addition and a.load != b.load]
 
 
-def _without_superfluous(outlook: Outlook, chosen: Sequence[Run]) -> list[Run]:
+def _without_superfluous(outlook: Outlook, chosen: Sequence[PlannedRun]) -> list[PlannedRun]:
     """The list without runs whose information later runs supply as well."""
     kept = list(chosen)
     for run in chosen:

@@ -9,14 +9,14 @@ from mffit.effects import NAMES
 from mffit.planning import constants
 from mffit.planning.goals import BANDS, EPSILON, JOINT, TIE
 from mffit.planning.record import Identified, Plan, Tie
-from mffit.planning.runs import Run
+from mffit.planning.runs import PlannedRun
 from mffit.quantities import CONDITIONS, DIRECT
 
 EPS = DIRECT["epsilon_gamma"].ascii
 LOAD = CONDITIONS["Fz_N"]
 
 
-def title(run: Run) -> str:
+def title(run: PlannedRun) -> str:
     """The run in a few words."""
     if run.rig:
         (value,) = run.rig.values()
@@ -167,7 +167,7 @@ def _largest_contribution(found: Identified) -> list[str]:
     ]
 
 
-def instructions(run: Run) -> list[str]:
+def instructions(run: PlannedRun) -> list[str]:
     """Lines for tyre.toml, without the readings."""
     if run.rig:
         share = f"{constants.PLAN_RIG_IMPROVEMENT:.2g} of the uncertainty declared now"

@@ -13,7 +13,22 @@ from mffit.points.points import Points, make_points
 from mffit.points.stretch import Stretch
 from mffit.sweeps import Sweep
 
-CHANNELS = ("alpha", "gamma", "Fz", "p", "V", "Fy", "Mz", "Mx", "My", "T", "t", "u_Fy", "u_Mz", "iteration")
+AVERAGED_CHANNELS = (
+    "alpha",
+    "gamma",
+    "Fz",
+    "p",
+    "V",
+    "Fy",
+    "Mz",
+    "Mx",
+    "My",
+    "T",
+    "t",
+    "u_Fy",
+    "u_Mz",
+    "iteration",
+)
 
 
 def rows_as_points(sweep: Sweep, phi_t: float, rows: np.ndarray) -> Points:
@@ -26,7 +41,9 @@ def over_plateaus(sweep: Sweep, phi_t: float, kept: list[Stretch]) -> Points:
     if not kept:
         return _no_points(sweep, phi_t)
     parts = [slice(stretch.begin, stretch.end) for stretch in kept]
-    means = {name: np.array([np.mean(getattr(sweep, name)[part]) for part in parts]) for name in CHANNELS}
+    means = {
+        name: np.array([np.mean(getattr(sweep, name)[part]) for part in parts]) for name in AVERAGED_CHANNELS
+    }
     for channel, u in (("Fy", "u_Fy"), ("Mz", "u_Mz")):
         errors = np.array([mean_and_error(getattr(sweep, channel)[part])[1] for part in parts])
         # A record without scatter does not show how exact it is.
@@ -74,7 +91,7 @@ def along_sweeps(
             return np.broadcast_to(values[:1], (int(enough.sum()),))
         return (np.add.reduceat(values[rows], first) / counts)[enough]
 
-    means = {name: mean(getattr(sweep, name)) for name in CHANNELS}
+    means = {name: mean(getattr(sweep, name)) for name in AVERAGED_CHANNELS}
     table = pd.DataFrame(
         {
             name: mean(column.to_numpy(dtype=float))
@@ -111,7 +128,7 @@ def _points(
     sweep: Sweep, phi_t: float, means: dict[str, np.ndarray], table: pd.DataFrame, first: np.ndarray
 ) -> Points:
     """Points from means by channel, and from the first samples for every other channel."""
-    values: dict[str, Any] = {name: getattr(sweep, name)[first] for name in CHANNELS} | means
+    values: dict[str, Any] = {name: getattr(sweep, name)[first] for name in AVERAGED_CHANNELS} | means
     return make_points(
         **values,
         phi_t=phi_t,

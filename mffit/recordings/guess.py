@@ -13,8 +13,8 @@ from typing import NamedTuple
 import numpy as np
 
 from mffit.config.models import Column
-from mffit.recordings.unstated import Choice, Found, choices, customary
-from mffit.sweeps.channels import BY_NAME, CHANNELS, Channel
+from mffit.recordings.unstated import Choice, FoundChannel, choices, customary
+from mffit.sweeps.channels import BY_NAME, SWEEP_CHANNELS, Channel
 from mffit.sweeps.columns import numbers
 from mffit.sweeps.raw_table import RawTable
 from mffit.sweeps.units import UnknownUnitError, converted
@@ -72,7 +72,7 @@ def guesses(raw: RawTable, *, unloaded_radius: float | None = None) -> Guesses:
         remarks += _without_moment(raw, {guess.heading for guess in found.values()})
     if not found.keys() & {"time_s", "t_s"}:
         remarks.append(_without_time(raw))
-    ordered = {channel.name: found[channel.name] for channel in CHANNELS if channel.name in found}
+    ordered = {channel.name: found[channel.name] for channel in SWEEP_CHANNELS if channel.name in found}
     return Guesses(ordered, tuple(remarks))
 
 
@@ -86,11 +86,11 @@ def simplified(heading: str) -> str:
     return heading.lower().replace(" ", "_").replace("-", "_")
 
 
-def _number_columns(raw: RawTable) -> dict[str, Found]:
+def _number_columns(raw: RawTable) -> dict[str, FoundChannel]:
     """Columns of numbers that are channels; the first known name with suitable readings counts."""
     headings = _headings(raw)
-    found: dict[str, Found] = {}
-    for channel in CHANNELS:
+    found: dict[str, FoundChannel] = {}
+    for channel in SWEEP_CHANNELS:
         if channel.kind != "number":
             continue
         candidates = [headings.get(simplified(name)) for name in (channel.name, *channel.aliases)]
@@ -101,12 +101,12 @@ def _number_columns(raw: RawTable) -> dict[str, Found]:
     return found
 
 
-def _column(raw: RawTable, channel: Channel, heading: str) -> Found | None:
+def _column(raw: RawTable, channel: Channel, heading: str) -> FoundChannel | None:
     """The column of a heading as this channel; None without readings or with a unit of another dimension."""
     stated, values = raw.unit(heading), numbers(raw.column(heading))
     if not np.any(np.isfinite(values)) or (stated and not _is_of_kind(stated, channel)):
         return None
-    return Found(channel, heading, stated or (channel.unit if heading == channel.name else ""), values)
+    return FoundChannel(channel, heading, stated or (channel.unit if heading == channel.name else ""), values)
 
 
 def _is_of_kind(unit: str, channel: Channel) -> bool:
@@ -121,7 +121,7 @@ def _labels(raw: RawTable) -> dict[str, Guess]:
     """Columns that are labels or directions, by their own names; under another spelling only if the labels differ."""
     headings = _headings(raw)
     found = {}
-    for channel in CHANNELS:
+    for channel in SWEEP_CHANNELS:
         heading = headings.get(simplified(channel.name))
         if channel.kind == "number" or heading is None:
             continue
@@ -130,7 +130,7 @@ def _labels(raw: RawTable) -> dict[str, Guess]:
     return found
 
 
-def _guess(raw: RawTable, column: Found, choice: Choice | None) -> Guess:
+def _guess(raw: RawTable, column: FoundChannel, choice: Choice | None) -> Guess:
     return Guess(
         channel=column.channel,
         heading=column.heading,

@@ -21,7 +21,7 @@ from mffit.points.stretch import MOVE
 from mffit.recordings.guess import Guess, guesses
 from mffit.suspicion import contradictions, signatures, under_axes
 from mffit.sweeps import formats
-from mffit.sweeps.channels import CHANNELS
+from mffit.sweeps.channels import SWEEP_CHANNELS
 from mffit.sweeps.columns import numbers
 from mffit.sweeps.raw_table import RawTable
 from mffit.sweeps.units import converted
@@ -126,7 +126,7 @@ def files_of(path: str | Path) -> list[Path]:
 def _recording(path: Path, unloaded_radius: float | None) -> SniffedRecording:
     raw = formats.read(path)
     found, remarks = guesses(raw, unloaded_radius=unloaded_radius)
-    missing = [channel for channel in CHANNELS if channel.required and channel.name not in found]
+    missing = [channel for channel in SWEEP_CHANNELS if channel.required and channel.name not in found]
     if missing:
         raise InputError(
             f"no heading is known to be {' or '.join(channel.name for channel in missing)} (the headings are "

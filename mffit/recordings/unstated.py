@@ -13,7 +13,7 @@ from mffit.sweeps.columns import implausible
 from mffit.sweeps.units import converted, factor, spelt
 
 
-class Found(NamedTuple):
+class FoundChannel(NamedTuple):
     """A column of numbers that is a channel."""
 
     channel: Channel
@@ -58,7 +58,7 @@ CUSTOMARY = {"N": "lbf", "N m": "in-lb", "kPa": "psi", "m/s": "mph", "degC": "de
 """American units by the contract's."""
 
 
-def choices(found: Mapping[str, Found], radius: float | None) -> Choices:
+def choices(found: Mapping[str, FoundChannel], radius: float | None) -> Choices:
     """Units of the columns for which nothing states one, and optional columns that are implausible in any unit.
 
     Parameters
@@ -83,7 +83,7 @@ def choices(found: Mapping[str, Found], radius: float | None) -> Choices:
     return Choices({name: chosen[name] for name in chosen if name not in left_out}, left_out)
 
 
-def _groups(kind: str, found: Mapping[str, Found]) -> list[dict[str, Found]]:
+def _groups(kind: str, found: Mapping[str, FoundChannel]) -> list[dict[str, FoundChannel]]:
     """Columns of one kind that share a unit: all, unless forces exceed the load more than the grip of any tyre allows."""
     group = {name: column for name, column in found.items() if column.channel.unit == kind}
     load = {name: column for name, column in group.items() if name == "Fz_N"}
@@ -94,14 +94,14 @@ def _groups(kind: str, found: Mapping[str, Found]) -> list[dict[str, Found]]:
     return [group] if group else []
 
 
-def _shared_unit(kind: str, group: Mapping[str, Found], load: float) -> dict[str, Choice]:
+def _shared_unit(kind: str, group: Mapping[str, FoundChannel], load: float) -> dict[str, Choice]:
     """One unit for all columns of a group that state none: that of another column, else the one that fits."""
     stated = next((column for column in group.values() if column.unit), None)
     unit = stated.unit if stated else _fitting_unit(kind, group, load)
     headings = ", ".join(column.heading for column in group.values())
     shared = f"; {headings} share a unit" if len(group) > 1 else ""
 
-    def reason(column: Found) -> str:
+    def reason(column: FoundChannel) -> str:
         if stated:
             return f"{column.range} assumed to be in {unit}, like {stated.heading}"
         return _look_like(column, unit) + shared
@@ -109,7 +109,7 @@ def _shared_unit(kind: str, group: Mapping[str, Found], load: float) -> dict[str
     return {name: Choice(unit, reason(column)) for name, column in group.items() if not column.unit}
 
 
-def _fitting_unit(kind: str, group: Mapping[str, Found], load: float) -> str:
+def _fitting_unit(kind: str, group: Mapping[str, FoundChannel], load: float) -> str:
     size = max(column.size for column in group.values())
     if kind == "deg":
         return "rad" if size < constants.LARGEST_ANGLE_IN_RADIANS else "deg"
@@ -118,7 +118,7 @@ def _fitting_unit(kind: str, group: Mapping[str, Found], load: float) -> str:
     return "kN m" if 0.0 < size < constants.SHORTEST_LEVER_ARM_IN_RECORDING * load else "N m"
 
 
-def _own_unit(name: str, found: Mapping[str, Found], chosen: Mapping[str, Choice]) -> Choice:
+def _own_unit(name: str, found: Mapping[str, FoundChannel], chosen: Mapping[str, Choice]) -> Choice:
     """The unit of a column that shares it with no other."""
     column = found[name]
     unit = column.channel.unit
@@ -131,28 +131,28 @@ def _own_unit(name: str, found: Mapping[str, Found], chosen: Mapping[str, Choice
     return Choice(unit, _look_like(column, unit))
 
 
-def _unit_of(name: str, found: Mapping[str, Found], chosen: Mapping[str, Choice]) -> str:
+def _unit_of(name: str, found: Mapping[str, FoundChannel], chosen: Mapping[str, Choice]) -> str:
     """Unit of a column, stated or chosen; "" while it is open."""
     return found[name].unit or (chosen[name].unit if name in chosen else "")
 
 
-def _load(found: Mapping[str, Found], chosen: Mapping[str, Choice]) -> float:
+def _load(found: Mapping[str, FoundChannel], chosen: Mapping[str, Choice]) -> float:
     """The largest load [N]; 0 while its unit is open."""
     unit = _unit_of("Fz_N", found, chosen) if "Fz_N" in found else ""
     return factor(unit, "N") * found["Fz_N"].size if unit else 0.0
 
 
-def _sideslip_deg(found: Mapping[str, Found], chosen: Mapping[str, Choice]) -> np.ndarray | None:
+def _sideslip_deg(found: Mapping[str, FoundChannel], chosen: Mapping[str, Choice]) -> np.ndarray | None:
     if "alpha_deg" not in found:
         return None
     return converted(found["alpha_deg"].values, _unit_of("alpha_deg", found, chosen), "deg")
 
 
-def _look_like(column: Found, unit: str) -> str:
+def _look_like(column: FoundChannel, unit: str) -> str:
     return f"{column.range} look like {unit}"
 
 
-def _pressure(column: Found, load: float) -> Choice:
+def _pressure(column: FoundChannel, load: float) -> Choice:
     """The unit that gives the pressure of a tyre, with the other units that are possible."""
     middle = float(np.nanmedian(np.abs(column.values)))
     in_kPa = {unit: factor(unit, "kPa") * middle for unit in PRESSURE_UNITS}
@@ -172,7 +172,7 @@ def _within(value: float, limits: tuple[float, ...]) -> bool:
     return least <= value <= most
 
 
-def _time(column: Found, alpha_deg: np.ndarray | None) -> Choice:
+def _time(column: FoundChannel, alpha_deg: np.ndarray | None) -> Choice:
     """The unit in which the sideslip angle moves as fast as rigs steer."""
     motion = None if alpha_deg is None else _motion(column.values, alpha_deg)
     if motion is None:
@@ -209,7 +209,7 @@ def _motion(time: np.ndarray, alpha_deg: np.ndarray) -> tuple[float, float] | No
 
 
 def _rotation(
-    found: Mapping[str, Found], chosen: Mapping[str, Choice], radius: float | None
+    found: Mapping[str, FoundChannel], chosen: Mapping[str, Choice], radius: float | None
 ) -> Choice | str | None:
     """The unit in which a speed of rotation is that of the wheel, or why it is left out; None if there is nothing to choose."""
     column, speed = found.get("omega_radps"), found.get("V_mps")
@@ -239,7 +239,7 @@ def _rotation(
     return None if column.unit else Choice(unit, f"in {unit} they agree with {speed.heading}")
 
 
-def _implausible(name: str, found: Mapping[str, Found], chosen: Mapping[str, Choice]) -> str:
+def _implausible(name: str, found: Mapping[str, FoundChannel], chosen: Mapping[str, Choice]) -> str:
     """Why an optional column is left out: its readings are outside the plausible range; "" if they are not."""
     column, channel = found[name], found[name].channel
     if channel.required or name == "time_s":
@@ -255,7 +255,7 @@ def _implausible(name: str, found: Mapping[str, Found], chosen: Mapping[str, Cho
     )
 
 
-def customary(found: Mapping[str, Found], chosen: Mapping[str, Choice]) -> str:
+def customary(found: Mapping[str, FoundChannel], chosen: Mapping[str, Choice]) -> str:
     """A remark if one column is in an American unit and others state none; "" otherwise."""
     units = {name: _unit_of(name, found, chosen) for name in found}
     american = {spelt(unit) for unit in CUSTOMARY.values()}

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from mffit.diagnosis import Diagnosis
-from mffit.diagnosis.selection import Step
+from mffit.diagnosis.selection import ForwardStep
 from mffit.diagnosis.where import Region
 from mffit.effects import CATALOG
 from mffit.points import Points
@@ -137,7 +137,7 @@ def _shown(diagnosis: Diagnosis, channels: Sequence[GapChannel]) -> tuple[Shown,
     )
 
 
-def _ranked(step: Step) -> RankedStep:
+def _ranked(step: ForwardStep) -> RankedStep:
     candidates = (
         Candidate(
             name=trial.effects[-1].name,

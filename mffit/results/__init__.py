@@ -1,5 +1,5 @@
 """The results of the workflows, and their JSON."""
 
-from mffit.results.records import BuildResult, Outcome
+from mffit.results.records import BuildOutcome, BuildResult
 
-__all__ = ["BuildResult", "Outcome"]
+__all__ = ["BuildOutcome", "BuildResult"]

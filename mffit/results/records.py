@@ -57,7 +57,7 @@ State = Literal["built", "unchanged", "refused", "failed"]
 
 
 @dataclass(frozen=True, slots=True)
-class Outcome:
+class BuildOutcome:
     """How the build of one ``tyre.toml`` ended."""
 
     source: Path  #: the tyre.toml

@@ -3,7 +3,7 @@
 from mffit.suspicion.applying import after_the_fit, before_the_fit
 from mffit.suspicion.declarations import under_axes
 from mffit.suspicion.misread import Misread, misread
-from mffit.suspicion.others import Campaign, Doubt
+from mffit.suspicion.others import Doubt, JudgedSweeps
 from mffit.suspicion.outliers import Outlier, marks, outliers, outliers_sentence
 from mffit.suspicion.prediction import FittedModel
 from mffit.suspicion.rule import When
@@ -13,9 +13,9 @@ from mffit.suspicion.trust import distrust
 
 __all__ = [
     "RULES",
-    "Campaign",
     "Doubt",
     "FittedModel",
+    "JudgedSweeps",
     "Misread",
     "Outlier",
     "When",

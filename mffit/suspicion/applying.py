@@ -10,7 +10,7 @@ import numpy as np
 from mffit.config import Config
 from mffit.config.declared import as_declared
 from mffit.points import Points
-from mffit.suspicion.others import Campaign, Doubt, evidence
+from mffit.suspicion.others import Doubt, JudgedSweeps, evidence
 from mffit.suspicion.prediction import FittedModel
 from mffit.suspicion.rule import Finding, Outcome, Rule, Subject, When
 from mffit.suspicion.rules import RULES
@@ -48,7 +48,7 @@ def _before(points: Points, config: Config) -> Iterator[tuple[Rule, str | None, 
                     yield rule, file, finding
 
 
-def after_the_fit(campaign: Campaign, fitted: FittedModel, when: When = When.AFTER) -> tuple[Doubt, ...]:
+def after_the_fit(campaign: JudgedSweeps, fitted: FittedModel, when: When = When.AFTER) -> tuple[Doubt, ...]:
     """Sweeps that do not fit the others, judged by what all others predict.
 
     ``When.FIRST``: the fit itself may still be wrong. A sweep that contradicts all others beyond plausibility is refused.

@@ -11,7 +11,7 @@ from mffit.points import Points
 from mffit.rig import Simulation
 from mffit.suspicion import constants
 from mffit.suspicion.mistakes import MISTAKES
-from mffit.suspicion.prediction import Prediction
+from mffit.suspicion.prediction import PredictedChannel
 
 DEGREES = float(np.degrees(1.0))
 STEP = 1e-4
@@ -62,7 +62,7 @@ SHIFTS = (
 
 
 def explanation(
-    points: Points, errors: Mapping[str, Prediction], simulation: Simulation, signs: Mapping[str, float]
+    points: Points, errors: Mapping[str, PredictedChannel], simulation: Simulation, signs: Mapping[str, float]
 ) -> str:
     """What explains most of the errors of a sweep, in words; empty if no known cause does.
 
@@ -83,7 +83,7 @@ def explanation(
 
 
 def _undone(
-    points: Points, errors: Mapping[str, Prediction], simulation: Simulation, changed: Points
+    points: Points, errors: Mapping[str, PredictedChannel], simulation: Simulation, changed: Points
 ) -> dict[str, np.ndarray]:
     """The errors with a mistake undone, to first order."""
     here, there = simulation.readings(points), simulation.readings(changed)
@@ -96,7 +96,7 @@ def _undone(
 
 
 def _fitted(
-    points: Points, errors: Mapping[str, Prediction], shapes: Mapping[str, np.ndarray]
+    points: Points, errors: Mapping[str, PredictedChannel], shapes: Mapping[str, np.ndarray]
 ) -> tuple[float, float]:
     """Chi-square that a multiple of the shapes removes, and the multiple."""
     curvature = gradient = 0.0
@@ -109,5 +109,5 @@ def _fitted(
     return (gradient**2 / curvature, gradient / curvature) if curvature > 0.0 else (0.0, 0.0)
 
 
-def _chi2(errors: Mapping[str, Prediction], moved: Mapping[str, np.ndarray]) -> float:
+def _chi2(errors: Mapping[str, PredictedChannel], moved: Mapping[str, np.ndarray]) -> float:
     return sum(float(moved[n] @ np.linalg.solve(e.covariance, moved[n])) for n, e in errors.items())

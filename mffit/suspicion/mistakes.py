@@ -111,7 +111,7 @@ class Away(NamedTuple):
     matched: bool = True  #: False if the error is not small beside what was measured and expected
 
 
-class Explained(NamedTuple):
+class ExplainingMistake(NamedTuple):
     """A mistake that explains a sweep."""
 
     mistake: Mistake
@@ -123,7 +123,7 @@ def explaining(
     gross: Mapping[str, float],
     away: Callable[[Points], Mapping[str, Away]],
     tolerated: Mapping[str, float],
-) -> Explained | None:
+) -> ExplainingMistake | None:
     """The mistake that leaves least when it is undone; None if no mistake explains the errors.
 
     ``candidates`` come with the points of the sweep as they are without the mistake. ``tolerated`` limits the share by which a
@@ -140,5 +140,5 @@ def explaining(
             continue
         left = max(one.share for one in after.values())
         if best is None or left < best.left:
-            best = Explained(mistake=mistake, left=left)
+            best = ExplainingMistake(mistake=mistake, left=left)
     return best

@@ -18,11 +18,19 @@ from mffit.scatter import rms, robust, usual_size
 from mffit.suspicion import constants
 from mffit.suspicion.explanation import explanation
 from mffit.suspicion.mistakes import MISTAKES, Away, Mistake, explaining
-from mffit.suspicion.prediction import FittedModel, Group, Leverage, Prediction, groups, leverage, predictions
+from mffit.suspicion.prediction import (
+    FittedModel,
+    Group,
+    Leverage,
+    PredictedChannel,
+    groups,
+    leverage,
+    predictions,
+)
 from mffit.suspicion.rule import Finding, Outcome, Subject, When, rule
 
 
-class Campaign(NamedTuple):
+class JudgedSweeps(NamedTuple):
     """What the judgement of all sweeps needs."""
 
     points: Points  #: raw points (n,)
@@ -90,14 +98,14 @@ class Doubt:
 class Evidence(NamedTuple):
     """All sweeps that are off, as seen by the fits without them."""
 
-    campaign: Campaign
+    campaign: JudgedSweeps
     simulation: Simulation  #: fitted to all sweeps
     leverage: Leverage
     usual: float  #: largest ratio that the scatter among the sweeps explains
     views: tuple[View, ...]
 
 
-def evidence(campaign: Campaign, fitted: FittedModel) -> Evidence | None:
+def evidence(campaign: JudgedSweeps, fitted: FittedModel) -> Evidence | None:
     """Views of the sweeps that are off, the worst first; None with too few sweeps to compare.
 
     The search ends at the first sweep that a known mistake explains.
@@ -210,13 +218,15 @@ def _suspects(errors: list[tuple[Error, Group]], level: float, usual: float) -> 
     return list({id(g): g for g in worst_first}.values())[: constants.MOST_SUSPECTS]
 
 
-def _errors(channels: Mapping[str, Prediction], Fz: np.ndarray, size: Mapping[str, float]) -> list[Error]:
+def _errors(
+    channels: Mapping[str, PredictedChannel], Fz: np.ndarray, size: Mapping[str, float]
+) -> list[Error]:
     """Errors of a prediction, channel by channel, at loads (m,)."""
     load = float(np.mean(Fz))
     return [_error(name, one, size[name] * load) for name, one in channels.items()]
 
 
-def _error(name: str, prediction: Prediction, size: float) -> Error:
+def _error(name: str, prediction: PredictedChannel, size: float) -> Error:
     """Size and significance of a prediction's error, without the worst points."""
     error, covariance = prediction.error, prediction.covariance
     own = np.sqrt(np.diag(covariance))
@@ -244,7 +254,7 @@ def _usual_ratio(errors: list[Error]) -> float:
     )
 
 
-def _view(campaign: Campaign, group: Group, size: Mapping[str, float], level: float) -> View | None:
+def _view(campaign: JudgedSweeps, group: Group, size: Mapping[str, float], level: float) -> View | None:
     """The group against a fit without it; None if it is not off, or if the other points are too few for a fit."""
     rest = np.setdiff1d(np.arange(len(campaign.points)), group.index)
     try:
@@ -290,7 +300,7 @@ def _predicted(
             continue
         measured, predicted = getattr(part, name)[known], getattr(out, name)[known]
         J = getattr(slope, name)[known]
-        prediction = Prediction(
+        prediction = PredictedChannel(
             error=predicted - measured,
             covariance=J @ fitted.covariance @ J.T + np.diag((scale * u[known]) ** 2),
         )

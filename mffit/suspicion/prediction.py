@@ -12,7 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from mffit.least_squares import Number, inverse, root
+from mffit.least_squares import FreeNumber, inverse, root
 from mffit.points import Points, levels
 from mffit.quantities import CHANNELS
 from mffit.rig import Simulation
@@ -34,7 +34,7 @@ class FittedModel:
     points: Points  #: (n,)
     simulation: Simulation
     weights: Mapping[str, np.ndarray]  #: by channel, uncertainty that the fit used (n,) [N], [Nm]
-    numbers: Sequence[Number]  #: that were free, (k,), with their priors
+    numbers: Sequence[FreeNumber]  #: that were free, (k,), with their priors
     names: tuple[str, ...]  #: of all uncertain numbers, (j,)
     covariance: np.ndarray  #: (j, j)
     scale: Mapping[str, float]  #: by channel, robust misfit over stated uncertainty
@@ -67,7 +67,7 @@ class Leverage:
 
 
 @dataclass(frozen=True, slots=True)
-class Prediction:
+class PredictedChannel:
     """One channel of a group as the other sweeps predict it."""
 
     error: np.ndarray  #: (m,) prediction less measured [N] or [Nm]
@@ -139,7 +139,7 @@ def leverage(fit: FittedModel, noise: np.ndarray) -> Leverage:
     )
 
 
-def predictions(fit: Leverage, group: Group) -> dict[str, Prediction]:
+def predictions(fit: Leverage, group: Group) -> dict[str, PredictedChannel]:
     """The measured channels of a group at the rows that it shows (m,), as all other points predict them."""
     n = len(fit.residual) // 2
     rows = _measured(fit, group.index, n)
@@ -157,7 +157,7 @@ def predictions(fit: Leverage, group: Group) -> dict[str, Prediction]:
     for k, name in enumerate(CHANNELS):
         own = rows >= n if k else rows < n
         if np.any(own):
-            out[name] = Prediction(error=error[own], covariance=spread[np.ix_(own, own)])
+            out[name] = PredictedChannel(error=error[own], covariance=spread[np.ix_(own, own)])
     return out
 
 

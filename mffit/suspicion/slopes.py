@@ -21,7 +21,7 @@ from mffit.suspicion import constants
 from mffit.suspicion.rule import Finding, Outcome, Rule, Subject
 
 
-class Slope(NamedTuple):
+class SlopeWithError(NamedTuple):
     """A slope with its standard error; NaN where the points do not determine it."""
 
     value: float
@@ -36,10 +36,10 @@ class Slope(NamedTuple):
         return int(np.sign(self.value)) if abs(self.value) > clear else 0
 
 
-UNKNOWN = Slope(value=np.nan, error=np.nan, freedom=0, scatter=np.nan)
+UNKNOWN = SlopeWithError(value=np.nan, error=np.nan, freedom=0, scatter=np.nan)
 
 
-def pooled(slopes: Sequence[Slope]) -> list[Slope]:
+def pooled(slopes: Sequence[SlopeWithError]) -> list[SlopeWithError]:
     """The slopes of several files with the scatter of all: five points alone hardly determine theirs."""
     known = [s for s in slopes if s.freedom]
     freedom = sum(s.freedom for s in known)
@@ -47,7 +47,7 @@ def pooled(slopes: Sequence[Slope]) -> list[Slope]:
         return list(slopes)
     scatter = math.sqrt(sum(s.freedom * s.scatter**2 for s in known) / freedom)
     return [
-        Slope(value=s.value, error=s.error * scatter / s.scatter, freedom=freedom, scatter=scatter)
+        SlopeWithError(value=s.value, error=s.error * scatter / s.scatter, freedom=freedom, scatter=scatter)
         if s.freedom and s.scatter > 0.0
         else s
         for s in slopes
@@ -57,10 +57,10 @@ def pooled(slopes: Sequence[Slope]) -> list[Slope]:
 class Signatures(NamedTuple):
     """Slopes and forces per unit of load, under some declaration."""
 
-    cornering: Slope  #: dFy/dalpha forwards [1/rad]; negative
-    camber: Slope  #: dFy/dgamma [1/rad]; negative
-    aligning: Slope  #: dMz/dalpha forwards [m/rad]; positive
-    backward: Slope  #: dFy/dalpha backwards [1/rad]; positive
+    cornering: SlopeWithError  #: dFy/dalpha forwards [1/rad]; negative
+    camber: SlopeWithError  #: dFy/dgamma [1/rad]; negative
+    aligning: SlopeWithError  #: dMz/dalpha forwards [m/rad]; positive
+    backward: SlopeWithError  #: dFy/dalpha backwards [1/rad]; positive
     outward: float  #: turn-slip force along phi_t, share of the load; positive; NaN if unknown
     thrust: float  #: -Fy/Fz over tan(gamma) at large camber; 0.3 to 1.2
 
@@ -83,7 +83,7 @@ def signatures(points: Points) -> Signatures:
     )
 
 
-def slope(points: Points, response: np.ndarray, angle: str, used: np.ndarray) -> Slope:
+def slope(points: Points, response: np.ndarray, angle: str, used: np.ndarray) -> SlopeWithError:
     """Slope of ``response`` (n,) per load over "alpha" or "gamma" at some points, with a linear term of the other angle."""
     used = used & np.isfinite(response)
     other = points.gamma if angle == "alpha" else points.alpha
@@ -100,7 +100,7 @@ def slope(points: Points, response: np.ndarray, angle: str, used: np.ndarray) ->
         return UNKNOWN
     scatter = float(np.sqrt(np.sum((y - design @ solution) ** 2) / freedom))
     error = scatter * float(np.sqrt(np.linalg.inv(design.T @ design)[1, 1]))
-    return Slope(value=float(solution[1]), error=error, freedom=int(freedom), scatter=scatter)
+    return SlopeWithError(value=float(solution[1]), error=error, freedom=int(freedom), scatter=scatter)
 
 
 def at_zero(points: Points) -> np.ndarray:

@@ -46,8 +46,8 @@ def _read() -> tuple[Channel, ...]:
     )
 
 
-CHANNELS = _read()
-BY_NAME = {channel.name: channel for channel in CHANNELS}
+SWEEP_CHANNELS = _read()
+BY_NAME = {channel.name: channel for channel in SWEEP_CHANNELS}
 
 
 def nearest_heading(channel: Channel, headings: Iterable[str]) -> str:

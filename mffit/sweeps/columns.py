@@ -13,7 +13,7 @@ import pandas as pd
 from mffit.config.models import Column
 from mffit.errors import InputError, shortened
 from mffit.sweeps import constants
-from mffit.sweeps.channels import BY_NAME, CHANNELS, Channel, nearest_channel, nearest_heading
+from mffit.sweeps.channels import BY_NAME, SWEEP_CHANNELS, Channel, nearest_channel, nearest_heading
 from mffit.sweeps.raw_table import Cells, RawTable, has_decimal_comma, with_decimal_point
 from mffit.sweeps.units import UnknownUnitError, converted
 from tir.errors import counted
@@ -93,7 +93,7 @@ def read_columns(raw: RawTable, mapping: Mapping[str, Column], shared: Collectio
     headings = _headings(raw, mapping, shared)
     found: dict[str, np.ndarray] = {}
     warnings: list[str] = []
-    for channel in CHANNELS:
+    for channel in SWEEP_CHANNELS:
         if channel.name not in headings:
             continue
         read = _read(_source(raw, channel, headings, mapping))
@@ -117,13 +117,13 @@ def _headings(raw: RawTable, mapping: Mapping[str, Column], shared: Collection[s
     for name in set(shared) & set(headings):
         if headings[name] not in raw.headings and (name in raw.headings or not BY_NAME[name].required):
             del headings[name]
-    for channel in CHANNELS:
+    for channel in SWEEP_CHANNELS:
         if channel.name not in headings and channel.name in raw.headings:
             headings[channel.name] = channel.name
     for name, heading in headings.items():
         if heading not in raw.headings:
             raise _not_in_file(raw, name, heading)
-    for channel in CHANNELS:
+    for channel in SWEEP_CHANNELS:
         if channel.required and channel.name not in headings:
             raise _missing(raw, channel)
     return headings

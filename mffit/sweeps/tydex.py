@@ -12,7 +12,16 @@ from mffit.errors import InputError, shortened
 from mffit.sweeps import tydex_format
 from mffit.sweeps.extras import first_bytes
 from mffit.sweeps.raw_table import RawTable
-from mffit.sweeps.tydex_format import CHANNELS, CONSTANTS, DATA, HEADER, MARK, MISSING, REMARK, FixedRow
+from mffit.sweeps.tydex_format import (
+    CHANNEL_SECTION,
+    CONSTANTS,
+    DATA,
+    HEADER,
+    MARK,
+    MISSING,
+    REMARK,
+    FixedRow,
+)
 from mffit.sweeps.units import is_unit
 
 Numbered = list[tuple[int, str]]
@@ -37,7 +46,7 @@ def read_tydex(path: Path) -> RawTable:
         row of data does not have one number for each channel.
     """
     sections = _sections(path)
-    channels = _channels(sections.get(CHANNELS, []), path)
+    channels = _channels(sections.get(CHANNEL_SECTION, []), path)
     lines, values = _data(sections.get(DATA, []), len(channels), path)
     columns = {channel.name: _physical(channel, values[:, k]) for k, channel in enumerate(channels)}
     units = {channel.name: channel.unit for channel in channels}
@@ -90,11 +99,13 @@ def _text(path: Path) -> str:
 def _channels(lines: Numbered, path: Path) -> list[Entry]:
     channels = [_entry(line) for _, line in lines]
     if not channels:
-        raise InputError(f"has no channels; add {MARK}{CHANNELS} with a row for each", file=path)
+        raise InputError(f"has no channels; add {MARK}{CHANNEL_SECTION} with a row for each", file=path)
     names = [channel.name for channel in channels]
     twice = [name for k, name in enumerate(names) if name in names[:k]]
     if twice:
-        raise InputError(f"is listed twice in {MARK}{CHANNELS}; rename one", file=path, column=twice[0])
+        raise InputError(
+            f"is listed twice in {MARK}{CHANNEL_SECTION}; rename one", file=path, column=twice[0]
+        )
     return channels
 
 

@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 
 RELEASE = "1.3"
 HEADER, COMMENTS, CONSTANTS, END = "HEADER", "COMMENTS", "CONSTANTS", "END"
-CHANNELS, DATA = "MEASURCHANNELS", "MEASURDATA"
+CHANNEL_SECTION, DATA = "MEASURCHANNELS", "MEASURDATA"
 MARK = "**"
 """Before the name of a section."""
 REMARK = "!"

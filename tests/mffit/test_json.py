@@ -10,7 +10,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from mffit.results import Outcome, as_json
+from mffit.results import BuildOutcome, as_json
 from mffit.results.as_json.of_build import outlier
 from mffit.results.as_json.values import plain, stated, text, value_of
 from tir import Quantity
@@ -33,7 +33,7 @@ def test_a_quantity_has_its_uncertainty_beside_it():
 
 
 def test_an_outcome_of_many_builds():
-    good = Outcome(
+    good = BuildOutcome(
         source=Path("a/tyre.toml"), name="a", out=Path("out/a"), state="built", seconds=2.5, warnings=3, file="a.tir",
         epsilon_gamma=Quantity(-0.1, 0.02, "-"), misfit={"Fy": 6.0},
     )  # fmt: skip
@@ -41,7 +41,7 @@ def test_an_outcome_of_many_builds():
         "tyre_toml": str(Path("a/tyre.toml")), "name": "a", "out": str(Path("out/a")), "state": "built", "sentence": None,
         "seconds": 2.5, "epsilon_gamma": {"value": -0.1, "u": 0.02}, "rmse": {"Fy": 6.0}, "warnings": 3, "tir": "a.tir",
     }  # fmt: skip
-    bad = as_json.outcome(Outcome(Path("b.toml"), "b.toml", None, "refused", "the reason"))
+    bad = as_json.outcome(BuildOutcome(Path("b.toml"), "b.toml", None, "refused", "the reason"))
     assert bad == {
         "tyre_toml": "b.toml", "name": "b.toml", "out": None, "state": "refused", "sentence": "the reason", "seconds": 0.0,
         "epsilon_gamma": None, "rmse": {}, "warnings": 0, "tir": None,

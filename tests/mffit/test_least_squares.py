@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.optimize import least_squares
 
-from mffit.least_squares import LeastSquaresProblem, Linear, Number, solve
+from mffit.least_squares import FreeNumber, LeastSquaresProblem, Linear, solve
 
 RNG = np.random.default_rng(5)
 A = RNG.normal(size=(30, 3))
@@ -27,8 +27,8 @@ def linear_problem(limit: float = np.inf) -> LeastSquaresProblem:
     return LeastSquaresProblem(lambda x: (A @ x - DATA, limits(x)), linear)
 
 
-def numbers(**changes) -> list[Number]:
-    return [Number(name, 0.0, **changes.get(name, {})) for name in ("a", "b", "c")]
+def numbers(**changes) -> list[FreeNumber]:
+    return [FreeNumber(name, 0.0, **changes.get(name, {})) for name in ("a", "b", "c")]
 
 
 def test_a_linear_problem_gives_the_normal_equations():
@@ -81,6 +81,6 @@ def test_a_curved_problem_ends_where_scipy_ends():
         )
         return Linear(residual(v), slope, np.zeros(0), np.zeros((0, 3)))
 
-    start = [Number("D", 1.0), Number("C", 1.0), Number("B", 1.0)]
+    start = [FreeNumber("D", 1.0), FreeNumber("C", 1.0), FreeNumber("B", 1.0)]
     found = solve(LeastSquaresProblem(lambda v: (residual(v), np.zeros(0)), linear), start, tolerance=1e-12)
     assert list(found.values.values()) == pytest.approx(least_squares(residual, np.ones(3)).x, abs=1e-4)

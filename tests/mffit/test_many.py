@@ -24,7 +24,7 @@ from mffit.fit.priors import of_fleet
 from mffit.output import RECORD, digest
 from mffit.pipeline import many, workers
 from mffit.pipeline.many import is_current
-from mffit.results import Outcome
+from mffit.results import BuildOutcome
 from tests.browser import assert_readable
 
 HOSTILE = "a<img src=x onerror=alert(1)>b"
@@ -138,11 +138,11 @@ def test_output_with_another_number_of_drawn_files_is_built_again_only_if_a_numb
     assert [is_current(loaded, out, ensemble=n) for n in (0, 1, 2)] == [True, True, False]
 
 
-def dies_at_weak(job: workers.Job) -> Outcome:
+def dies_at_weak(job: workers.Job) -> BuildOutcome:
     """A worker that is killed at one of the tyres, as for lack of memory."""
     if job.name == "weak":
         os.kill(os.getpid(), signal.SIGKILL)
-    return Outcome(job.source, job.name, job.out, "built")
+    return BuildOutcome(job.source, job.name, job.out, "built")
 
 
 @pytest.mark.skipif(os.name == "nt", reason="processes are started and killed differently there")
@@ -154,11 +154,11 @@ def test_a_killed_worker_costs_only_its_own_tyre(tmp_path, monkeypatch):
     assert "its process ended early" in next(o.sentence for o in outcomes if o.name == "weak")
 
 
-def counted(job: workers.Job) -> Outcome:
+def counted(job: workers.Job) -> BuildOutcome:
     """A worker that leaves a mark for every start."""
     with (job.out / job.name).open("a") as file:
         file.write("started\n")
-    return Outcome(job.source, job.name, job.out, "built")
+    return BuildOutcome(job.source, job.name, job.out, "built")
 
 
 @pytest.mark.skipif(os.name == "nt", reason="processes are started and killed differently there")
@@ -294,7 +294,7 @@ def test_a_fleet_on_a_disc_reads_the_file_with_turn_slip(folders, tmp_path):
     ("states", "code"), [(["built"], None), (["unchanged", "failed"], 1), (["failed", "refused", "built"], 2)]
 )
 def test_the_exit_code_is_that_of_the_worst_tyre(states, code):
-    outcomes = [Outcome(Path("a.toml"), "a", None, state) for state in states]
+    outcomes = [BuildOutcome(Path("a.toml"), "a", None, state) for state in states]
     with contextlib.nullcontext() if code is None else pytest.raises(SystemExit) as end:
         _end(outcomes, False, Voice(json=False, quiet=False))
     assert code is None or end.value.code == code
@@ -302,8 +302,10 @@ def test_the_exit_code_is_that_of_the_worst_tyre(states, code):
 
 @pytest.mark.parametrize(("tyres", "files"), [(1, []), (3, ["fleet.csv", "fleet.html", "fleet.json"])])
 def test_tyres_built_by_one_command_are_compared(folders, tmp_path, capsys, tyres, files):
-    outcomes = [Outcome(folder / "tyre.toml", folder.name, folder, "built") for folder in folders[:tyres]]
-    lost = Outcome(Path("lost.toml"), "lost", folders[4], "failed")
+    outcomes = [
+        BuildOutcome(folder / "tyre.toml", folder.name, folder, "built") for folder in folders[:tyres]
+    ]
+    lost = BuildOutcome(Path("lost.toml"), "lost", folders[4], "failed")
     _compare_built([*outcomes, lost], tmp_path, Voice(json=False, quiet=True))
     assert sorted(path.name for path in tmp_path.glob("fleet.*")) == files
     assert capsys.readouterr().err == ""
@@ -398,7 +400,7 @@ def test_a_cluster_continues_when_a_worker_is_killed(project, tmp_path):
         with distributed.Client(cluster.scheduler_address) as client:
             process_of = client.run(os.getpid)
 
-        def kill_one(outcome: Outcome) -> None:
+        def kill_one(outcome: BuildOutcome) -> None:
             if not killed:
                 with distributed.Client(cluster.scheduler_address) as client:
                     at_work = [address for address, tasks in client.processing().items() if tasks]

@@ -24,7 +24,7 @@ sys.path.insert(0, str(Path(__file__).parents[2]))
 import tir
 from mffit import virtual_rig
 from mffit.pipeline.planning import plan_of
-from mffit.planning import Goal, Plan, Run, addition_named, constants, read_goal
+from mffit.planning import Goal, Plan, PlannedRun, addition_named, constants, read_goal
 from mffit.results import BuildResult
 from mffit.virtual_rig.faults import as_declared
 from tests.mffit.small_rigs import SAMPLE, built, disc, truth
@@ -105,7 +105,7 @@ def extended(content: dict[str, Any], plan: Plan) -> dict[str, Any]:
     return content
 
 
-def sweeps(run: Run, plan: Plan) -> Iterator[dict[str, Any]]:
+def sweeps(run: PlannedRun, plan: Plan) -> Iterator[dict[str, Any]]:
     """Set-points of a run as sweeps of the virtual rig, one sweep per camber."""
     if run.points is None:
         return

@@ -137,7 +137,7 @@ def in_lanes():
     from llvmlite import binding
 
     from tir.codegen import vector_math
-    from tir.codegen.instructions import DOUBLE, Number, repeated
+    from tir.codegen.instructions import DOUBLE, VectorValue, repeated
 
     vector = ir.VectorType(DOUBLE, kernel.LANES)
 
@@ -146,8 +146,8 @@ def in_lanes():
         pointer = vector.as_pointer()
         function = ir.Function(text, ir.FunctionType(ir.VoidType(), [pointer, pointer]), "f")
         builder = ir.IRBuilder(function.append_basic_block())
-        x = Number(builder, builder.load(function.args[0], align=8))
-        others = (Number(builder, repeated(vector, y)) for y in more)
+        x = VectorValue(builder, builder.load(function.args[0], align=8))
+        others = (VectorValue(builder, repeated(vector, y)) for y in more)
         found = getattr(vector_math, name)(x, *others)
         builder.store(found.value, function.args[1], align=8)
         builder.ret_void()

@@ -15,7 +15,16 @@ from llvmlite import ir
 from tir.codegen import vector_math
 from tir.codegen.constants import VECTOR_LANES
 from tir.codegen.graph import Node
-from tir.codegen.instructions import DOUBLE, INTEGER, SHORT, Number, in_every_lane, repeated, select, sqrt
+from tir.codegen.instructions import (
+    DOUBLE,
+    INTEGER,
+    SHORT,
+    VectorValue,
+    in_every_lane,
+    repeated,
+    select,
+    sqrt,
+)
 from tir.codegen.program import INPUTS, Program
 from tir.codegen.source import FUNCTIONS
 
@@ -231,11 +240,11 @@ def _computed(
 
     for i, node in enumerate(program.constants):
         x = builder.load(builder.gep(constants, [ir.Constant(INTEGER, i)]))
-        known[node.number] = Number(builder, in_every_lane(builder, type_, x))
+        known[node.number] = VectorValue(builder, in_every_lane(builder, type_, x))
     for node in program.per_point:
         if node.operation == "symbol":
-            known[node.number] = Number(builder, inputs[node.name])
+            known[node.number] = VectorValue(builder, inputs[node.name])
         else:
             known[node.number] = OPERATIONS[node.operation](*map(value, node.arguments))
     results = map(value, program.outputs.values())
-    return [x.value if isinstance(x, Number) else repeated(type_, x) for x in results]
+    return [x.value if isinstance(x, VectorValue) else repeated(type_, x) for x in results]

@@ -11,7 +11,7 @@ MAY_BE_ONE = ("contract",)
 """A product and a sum may become one instruction, with one rounding."""
 
 
-class Number:
+class VectorValue:
     """The result of an instruction: a vector of float64, of 64-bit integers or of truth values."""
 
     __slots__ = ("builder", "value")
@@ -21,78 +21,78 @@ class Number:
 
     def like(self, x: Any) -> ir.Value:
         """The other operand of an operation: the value of a Number, or a constant in every lane."""
-        return x.value if isinstance(x, Number) else repeated(self.value.type, x)
+        return x.value if isinstance(x, VectorValue) else repeated(self.value.type, x)
 
-    def _given(self, instruction: Any, *operands: Any, **options: Any) -> Number:
-        return Number(self.builder, instruction(*operands, **options))
+    def _given(self, instruction: Any, *operands: Any, **options: Any) -> VectorValue:
+        return VectorValue(self.builder, instruction(*operands, **options))
 
-    def __add__(self, other: Any) -> Number:
+    def __add__(self, other: Any) -> VectorValue:
         if self.value.type.element == INTEGER:
             return self._given(self.builder.add, self.value, self.like(other))
         return self._given(self.builder.fadd, self.value, self.like(other), flags=MAY_BE_ONE)
 
     __radd__ = __add__
 
-    def __sub__(self, other: Any) -> Number:
+    def __sub__(self, other: Any) -> VectorValue:
         return self._given(self.builder.fsub, self.value, self.like(other), flags=MAY_BE_ONE)
 
-    def __rsub__(self, other: Any) -> Number:
+    def __rsub__(self, other: Any) -> VectorValue:
         return self._given(self.builder.fsub, self.like(other), self.value, flags=MAY_BE_ONE)
 
-    def __mul__(self, other: Any) -> Number:
+    def __mul__(self, other: Any) -> VectorValue:
         return self._given(self.builder.fmul, self.value, self.like(other), flags=MAY_BE_ONE)
 
     __rmul__ = __mul__
 
-    def __truediv__(self, other: Any) -> Number:
+    def __truediv__(self, other: Any) -> VectorValue:
         return self._given(self.builder.fdiv, self.value, self.like(other))
 
-    def __rtruediv__(self, other: Any) -> Number:
+    def __rtruediv__(self, other: Any) -> VectorValue:
         return self._given(self.builder.fdiv, self.like(other), self.value)
 
-    def __neg__(self) -> Number:
+    def __neg__(self) -> VectorValue:
         return self._given(self.builder.fneg, self.value)
 
-    def __abs__(self) -> Number:
+    def __abs__(self) -> VectorValue:
         return self._intrinsic("llvm.fabs")
 
-    def sqrt(self) -> Number:
+    def sqrt(self) -> VectorValue:
         """Its square root."""
         return self._intrinsic("llvm.sqrt")
 
-    def __lt__(self, other: Any) -> Number:
+    def __lt__(self, other: Any) -> VectorValue:
         return self._compared("<", other)
 
-    def __le__(self, other: Any) -> Number:
+    def __le__(self, other: Any) -> VectorValue:
         return self._compared("<=", other)
 
-    def __gt__(self, other: Any) -> Number:
+    def __gt__(self, other: Any) -> VectorValue:
         return self._compared(">", other)
 
-    def __ge__(self, other: Any) -> Number:
+    def __ge__(self, other: Any) -> VectorValue:
         return self._compared(">=", other)
 
-    def __eq__(self, other: object) -> Number:  # type: ignore[override]
+    def __eq__(self, other: object) -> VectorValue:  # type: ignore[override]
         return self._compared("==", other)
 
     __hash__ = None  # type: ignore[assignment]
 
-    def __and__(self, other: Any) -> Number:
+    def __and__(self, other: Any) -> VectorValue:
         return self._given(self.builder.and_, self.value, self.like(other))
 
-    def __xor__(self, other: Any) -> Number:
+    def __xor__(self, other: Any) -> VectorValue:
         return self._given(self.builder.xor, self.value, self.like(other))
 
-    def __lshift__(self, other: int) -> Number:
+    def __lshift__(self, other: int) -> VectorValue:
         return self._given(self.builder.shl, self.value, self.like(other))
 
-    def __rshift__(self, other: int) -> Number:
+    def __rshift__(self, other: int) -> VectorValue:
         return self._given(self.builder.lshr, self.value, self.like(other))
 
-    def _compared(self, how: str, other: Any) -> Number:
+    def _compared(self, how: str, other: Any) -> VectorValue:
         return self._given(self.builder.fcmp_ordered, how, self.value, self.like(other))
 
-    def _intrinsic(self, name: str) -> Number:
+    def _intrinsic(self, name: str) -> VectorValue:
         type_, module = self.value.type, self.builder.module
         name += f".v{type_.count}f64"
         function = module.globals.get(name) or ir.Function(module, ir.FunctionType(type_, [type_]), name)
@@ -109,27 +109,27 @@ def select(chosen: Any, a: Any, b: Any) -> Any:
     if isinstance(chosen, bool):
         return a if chosen else b
     type_ = ir.VectorType(DOUBLE, chosen.value.type.count)
-    operands = [x.value if isinstance(x, Number) else repeated(type_, float(x)) for x in (a, b)]
-    return Number(chosen.builder, chosen.builder.select(chosen.value, *operands))
+    operands = [x.value if isinstance(x, VectorValue) else repeated(type_, float(x)) for x in (a, b)]
+    return VectorValue(chosen.builder, chosen.builder.select(chosen.value, *operands))
 
 
-def sqrt(x: Number) -> Number:
+def sqrt(x: VectorValue) -> VectorValue:
     """The square root, one instruction."""
     return x.sqrt()
 
 
-def bits(x: Number) -> Number:
+def bits(x: VectorValue) -> VectorValue:
     """The bits of a float64."""
     return _read_as(INTEGER, x)
 
 
-def number(x: Number) -> Number:
+def number(x: VectorValue) -> VectorValue:
     """The float64 of these bits."""
     return _read_as(DOUBLE, x)
 
 
-def _read_as(lane: ir.Type, x: Number) -> Number:
-    return Number(x.builder, x.builder.bitcast(x.value, ir.VectorType(lane, x.value.type.count)))
+def _read_as(lane: ir.Type, x: VectorValue) -> VectorValue:
+    return VectorValue(x.builder, x.builder.bitcast(x.value, ir.VectorType(lane, x.value.type.count)))
 
 
 def in_every_lane(builder: ir.IRBuilder, type_: ir.VectorType, x: ir.Value) -> ir.Value:

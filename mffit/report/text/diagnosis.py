@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
-from mffit.diagnosis import Diagnosis, Found, wording
+from mffit.diagnosis import AcceptedEffect, Diagnosis, wording
 from mffit.diagnosis.where import Region
 from mffit.effects import NAMES
 from mffit.quantities import CHANNELS
@@ -34,7 +34,7 @@ def diagnosis_summary(diagnosis: Diagnosis) -> str:
     return blocks(parts)
 
 
-def _effect(found: Found, signs: Mapping[str, float]) -> str:
+def _effect(found: AcceptedEffect, signs: Mapping[str, float]) -> str:
     lines = [f"{found.effect.name} ({found.effect.kind}), confidence {per_cent(found.confidence)}"]
     lines += [
         f"  {words.of_number(name)} = {with_u(value, stderr, words.unit_of(name))}, "

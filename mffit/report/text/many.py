@@ -6,11 +6,11 @@ from collections.abc import Sequence
 
 from mffit.quantities import CHANNELS, DIRECT
 from mffit.report.text.layout import blocks, table
-from mffit.results import Outcome
+from mffit.results import BuildOutcome
 from mffit.rounding import ascii_only, number, stated
 
 
-def many_line(outcome: Outcome, number_of: int, total: int) -> str:
+def many_line(outcome: BuildOutcome, number_of: int, total: int) -> str:
     """The line that reports one finished build."""
     words = {
         "built": f"built in {outcome.seconds:.0f} s",
@@ -21,7 +21,7 @@ def many_line(outcome: Outcome, number_of: int, total: int) -> str:
     return f"[{number_of}/{total}] {outcome.name}: {words}"
 
 
-def many_summary(outcomes: Sequence[Outcome]) -> str:
+def many_summary(outcomes: Sequence[BuildOutcome]) -> str:
     """Per tyre eps_gamma, misfit, warnings and file; for the others the reason why there is no file."""
     head = (
         "tyre",
@@ -47,7 +47,7 @@ def many_summary(outcomes: Sequence[Outcome]) -> str:
     return blocks(["\n".join(lines) if whole else "", ascii_only("\n".join(rest))])
 
 
-def lacking(outcome: Outcome) -> str:
+def lacking(outcome: BuildOutcome) -> str:
     """The sentence why a tyre has no output, with the tyre's name."""
     known = outcome.sentence.startswith(outcome.name)
     return outcome.sentence if known else f"{outcome.name}: {outcome.sentence}"

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import asdict
 from typing import Any
 
-from mffit.diagnosis import Diagnosis, Found, wording
+from mffit.diagnosis import AcceptedEffect, Diagnosis, wording
 from mffit.diagnosis.noise import Noise
 from mffit.results.as_json.of_build import outlier
 from mffit.results.as_json.values import picked
@@ -52,7 +52,7 @@ def _noise(noise: Noise) -> dict[str, Any]:
     }
 
 
-def _effect(found: Found, signs: Mapping[str, float]) -> dict[str, Any]:
+def _effect(found: AcceptedEffect, signs: Mapping[str, float]) -> dict[str, Any]:
     return {
         **picked(found.effect, "id", "name", "kind", "physics"),
         "confidence": found.confidence,

@@ -8,11 +8,11 @@ from typing import Any
 from mffit import fleet as combining
 from mffit.fleet import Fleet
 from mffit.results.as_json.values import value_of
-from mffit.results.records import Outcome
+from mffit.results.records import BuildOutcome
 from mffit.rig_errors import UNITS
 
 
-def outcome(found: Outcome) -> dict[str, Any]:
+def outcome(found: BuildOutcome) -> dict[str, Any]:
     """One of many builds, as ``mffit build --json`` prints it."""
     return {
         "tyre_toml": str(found.source),

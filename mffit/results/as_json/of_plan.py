@@ -8,7 +8,7 @@ from typing import Any
 
 from mffit.comparison import Comparison, Difference
 from mffit.comparison import wording as compared
-from mffit.planning import Plan, Run
+from mffit.planning import Plan, PlannedRun
 from mffit.planning import wording as planned
 from mffit.results.as_json.values import picked
 
@@ -68,7 +68,7 @@ def _difference(row: Difference) -> dict[str, Any]:
     return {**asdict(row), "change": row.change, "u_change": row.u, "in_u": row.z}
 
 
-def _run(run: Run) -> dict[str, Any]:
+def _run(run: PlannedRun) -> dict[str, Any]:
     return {
         "name": run.name,
         "kind": run.addition.id,

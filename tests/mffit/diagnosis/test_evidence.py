@@ -11,9 +11,9 @@ from small_programme import TYRE, U_FY, U_MZ, problem, programme, read
 
 from mffit.diagnosis.hypothesis import Hypothesis
 from mffit.diagnosis.problem import DiagnosisProblem
-from mffit.diagnosis.selection import Step, log_prior
+from mffit.diagnosis.selection import ForwardStep, log_prior
 from mffit.diagnosis.stated import stated_noise
-from mffit.diagnosis.ties import Run, candidate_runs, separation
+from mffit.diagnosis.ties import SeparatingRun, candidate_runs, separation
 from mffit.diagnosis.validation import gap, validate
 from mffit.effects import CATALOG, Effect, Free
 from mffit.rig import Simulation
@@ -110,7 +110,7 @@ def test_a_channel_that_was_not_measured_is_ignored():
     assert found.numbers["F0_N"] == pytest.approx(problem(points).fit((OFFSET,)).numbers["F0_N"], rel=1e-6)
 
 
-def step(**evidence: float) -> Step:
+def step(**evidence: float) -> ForwardStep:
     """A first step of rig effects whose prior grows with the length of their name; no effect has evidence 0."""
     nothing = np.empty(0)
 
@@ -121,7 +121,7 @@ def step(**evidence: float) -> Step:
         hypothesis((Effect(name, name, "rig", "", (Free("F0_N", 1.0),), prior=0.5 * (len(name) - 1)),), value)
         for name, value in evidence.items()
     ]
-    return Step(hypothesis((), 0.0), tuple(trials), 4.0, Simulation.of(TYRE))
+    return ForwardStep(hypothesis((), 0.0), tuple(trials), 4.0, Simulation.of(TYRE))
 
 
 def test_weights_are_evidence_times_prior_and_add_up():
@@ -165,34 +165,34 @@ def test_the_usual_runs_have_the_conditions_of_their_names():
     for run, added in candidate_runs(points):
         loads.setdefault(run, []).append((added, float(added.Fz[0])))
         assert np.ptp(added.Fz) == 0.0
-    assert set(loads) == set(Run)
+    assert set(loads) == set(SeparatingRun)
     one = {run: rows[0][0] for run, rows in loads.items()}
-    assert sorted(load for _, load in loads[Run.OTHER_LOAD]) == [500.0, pytest.approx(2520.0)]
+    assert sorted(load for _, load in loads[SeparatingRun.OTHER_LOAD]) == [500.0, pytest.approx(2520.0)]
     usual = 1000.0, 1800.0
     assert all(
         min(usual) <= load <= max(usual)
         for run, rows in loads.items()
-        if run is not Run.OTHER_LOAD
+        if run is not SeparatingRun.OTHER_LOAD
         for _, load in rows
     )
-    assert np.all(one[Run.BACKWARD].direction == -1)
-    assert np.all(one[Run.BACKWARD_CAMBER].direction == -1)
-    assert np.ptp(one[Run.BACKWARD_CAMBER].gamma) > 1.0
-    assert np.all(one[Run.TURNED_ON_RIM].mount == -1)
-    assert np.degrees(one[Run.LEANED].gamma) == pytest.approx(20.0)
-    assert one[Run.LOW_PRESSURE].p == pytest.approx(200e3)
-    fast, warm = one[Run.FAST], one[Run.WARM]
+    assert np.all(one[SeparatingRun.BACKWARD].direction == -1)
+    assert np.all(one[SeparatingRun.BACKWARD_CAMBER].direction == -1)
+    assert np.ptp(one[SeparatingRun.BACKWARD_CAMBER].gamma) > 1.0
+    assert np.all(one[SeparatingRun.TURNED_ON_RIM].mount == -1)
+    assert np.degrees(one[SeparatingRun.LEANED].gamma) == pytest.approx(20.0)
+    assert one[SeparatingRun.LOW_PRESSURE].p == pytest.approx(200e3)
+    fast, warm = one[SeparatingRun.FAST], one[SeparatingRun.WARM]
     np.testing.assert_allclose(fast.V, 12.0)
     np.testing.assert_allclose(warm.T, 50.0)
-    assert np.all(one[Run.LATE].t > points.t.max() + 600.0)
-    assert np.all(one[Run.STRAIGHT].phi_t == 0.0)
-    assert np.all(one[Run.STRAIGHT_CAMBER].phi_t == 0.0)
-    assert one[Run.WIDE].phi_t == pytest.approx(-0.5 / 1.323)
-    for run in (Run.BACKWARD, Run.STRAIGHT, Run.FAST):
+    assert np.all(one[SeparatingRun.LATE].t > points.t.max() + 600.0)
+    assert np.all(one[SeparatingRun.STRAIGHT].phi_t == 0.0)
+    assert np.all(one[SeparatingRun.STRAIGHT_CAMBER].phi_t == 0.0)
+    assert one[SeparatingRun.WIDE].phi_t == pytest.approx(-0.5 / 1.323)
+    for run in (SeparatingRun.BACKWARD, SeparatingRun.STRAIGHT, SeparatingRun.FAST):
         assert np.degrees(np.max(np.abs(one[run].alpha))) == pytest.approx(8.0)
-    assert np.degrees(np.max(np.abs(one[Run.CAMBER].gamma))) == pytest.approx(40.0)
+    assert np.degrees(np.max(np.abs(one[SeparatingRun.CAMBER].gamma))) == pytest.approx(40.0)
     straight = points.replace(phi_t=0.0)
-    assert {Run.STRAIGHT, Run.WIDE, Run.STRAIGHT_CAMBER}.isdisjoint(
+    assert {SeparatingRun.STRAIGHT, SeparatingRun.WIDE, SeparatingRun.STRAIGHT_CAMBER}.isdisjoint(
         run for run, _ in candidate_runs(straight)
     )
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from mffit.diagnosis.noise import Noise, Scatter
-from mffit.diagnosis.scatter import Explained, learned
+from mffit.diagnosis.scatter import ExplainingColumns, learned
 from mffit.diagnosis.tails import outlying
 
 N, SWEEPS = 400, 20
@@ -24,7 +24,7 @@ def found(Fy, named=NOTHING):
     rng = np.random.default_rng(99)
     residual = np.concatenate([Fy, rng.normal(0.0, 0.6, N)])
     size = np.concatenate([FORCE, 0.02 * FORCE])
-    return learned(stated(), residual, Explained(named, NOTHING, NOTHING), size)
+    return learned(stated(), residual, ExplainingColumns(named, NOTHING, NOTHING), size)
 
 
 @pytest.fixture

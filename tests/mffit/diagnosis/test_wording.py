@@ -20,7 +20,7 @@ from mffit.diagnosis.notes import (
     NotVisible,
     OneSweep,
 )
-from mffit.diagnosis.ties import Run, Separation
+from mffit.diagnosis.ties import SeparatingRun, Separation
 from mffit.diagnosis.validation import Gap, Validation
 from mffit.effects import CATALOG, NEEDS
 from mffit.results import as_json
@@ -94,7 +94,7 @@ def test_a_region_in_words(region, words):
     assert wording.place(region) == words
 
 
-@pytest.mark.parametrize("run", Run)
+@pytest.mark.parametrize("run", SeparatingRun)
 def test_every_run_has_words_and_only_a_separating_one_is_recommended(run):
     assert wording.separation(Separation(run, 1500.0, 40.0)).endswith("(expected chi2 40)")
     assert wording.separation(Separation(run, 1500.0, 2.0)).startswith("none of the usual runs")

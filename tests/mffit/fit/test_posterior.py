@@ -8,7 +8,7 @@ import pytest
 import mffit
 from mffit.fit import ensemble
 from mffit.fit.profile import follow
-from mffit.least_squares import LeastSquaresProblem, Linear, Number, solve
+from mffit.least_squares import FreeNumber, LeastSquaresProblem, Linear, solve
 from mffit.points import make_points
 from mffit.rig import Simulation
 from mffit.rig_errors import BY_NAME as RIG_ERRORS
@@ -91,7 +91,10 @@ class Banana:
 
 
 def test_a_bent_valley_is_followed_to_the_ends_of_the_95_per_cent_interval():
-    numbers = [Number("x", 0.1, -50.0, 50.0, spread=100.0), Number("y", 0.0, -50.0, 50.0, spread=100.0)]
+    numbers = [
+        FreeNumber("x", 0.1, -50.0, 50.0, spread=100.0),
+        FreeNumber("y", 0.0, -50.0, 50.0, spread=100.0),
+    ]
     problem = Banana()
     best = solve(problem.free(["x", "y"]), numbers, tolerance=1e-10)
     valley = follow(problem.with_values(best.values), numbers, best, {"x", "y"})
@@ -106,14 +109,17 @@ def test_a_bent_valley_is_followed_to_the_ends_of_the_95_per_cent_interval():
 
 def test_an_interval_ends_at_the_bound_of_its_number():
     """Where x ends, at 1, the valley is at y = 1, and the width across it would reach further."""
-    numbers = [Number("x", 0.1, -50.0, 1.0, spread=100.0), Number("y", 0.0, -0.05, 1.0, spread=100.0)]
+    numbers = [FreeNumber("x", 0.1, -50.0, 1.0, spread=100.0), FreeNumber("y", 0.0, -0.05, 1.0, spread=100.0)]
     best = solve(Banana().free(["x", "y"]), numbers, tolerance=1e-10)
     valley = follow(Banana().with_values(best.values), numbers, best, {"x", "y"})
     assert valley.intervals["y"] == pytest.approx((-0.05, 1.0))
 
 
 def test_numbers_that_the_points_do_not_determine_are_not_moved():
-    numbers = [Number("x", 0.1, -50.0, 50.0, spread=100.0), Number("y", 0.0, -50.0, 50.0, spread=100.0)]
+    numbers = [
+        FreeNumber("x", 0.1, -50.0, 50.0, spread=100.0),
+        FreeNumber("y", 0.0, -50.0, 50.0, spread=100.0),
+    ]
     best = solve(Banana().free(["x", "y"]), numbers, tolerance=1e-10)
     assert follow(Banana().with_values(best.values), numbers, best, set()) is None
 
@@ -138,7 +144,10 @@ class Hills(Banana):
 
 
 def test_a_better_fit_behind_a_low_ridge_is_reported():
-    numbers = [Number("x", 0.0, -50.0, 50.0, spread=100.0), Number("y", 0.0, -50.0, 50.0, spread=100.0)]
+    numbers = [
+        FreeNumber("x", 0.0, -50.0, 50.0, spread=100.0),
+        FreeNumber("y", 0.0, -50.0, 50.0, spread=100.0),
+    ]
     best = solve(Hills().free(["x", "y"]), numbers, tolerance=1e-10)
     valley = follow(Hills().with_values(best.values), numbers, best, {"x", "y"})
     assert abs(best.values["x"]) < 0.5
@@ -155,6 +164,9 @@ def test_a_straight_valley_keeps_the_interval_of_the_covariance():
 
             return LeastSquaresProblem(lambda at: (linear(at).data, np.zeros(0)), linear)
 
-    numbers = [Number("x", 0.1, -50.0, 50.0, spread=100.0), Number("y", 0.0, -50.0, 50.0, spread=100.0)]
+    numbers = [
+        FreeNumber("x", 0.1, -50.0, 50.0, spread=100.0),
+        FreeNumber("y", 0.0, -50.0, 50.0, spread=100.0),
+    ]
     best = solve(Line().free(["x", "y"]), numbers)
     assert follow(Line(), numbers, best, {"x", "y"}) is None

@@ -12,7 +12,7 @@ from mffit.config.models import RollingRadiusTable
 from mffit.effects import NAMES
 from mffit.fit.coverage import StageCoverage
 from mffit.measured import Contribution
-from mffit.planning import BY_ID, Identified, Plan, Run, Step, Tie, read_goal, wording
+from mffit.planning import BY_ID, Identified, Plan, PlannedRun, PlanStep, Tie, read_goal, wording
 from mffit.results import as_json
 
 IDENTIFIED = Identified(
@@ -27,8 +27,8 @@ IDENTIFIED = Identified(
     ties=(Tie("ply-steer", "sideslip-misalignment", 0.24), Tie("conicity", "crosstalk-fz-fy", 30.0)),
     budget=(Contribution("camber alignment", 0.5, "deg", -0.051), Contribution("conicity", 3.0, "N", 0.02)),
 )
-RUN = Run(BY_ID["coupled"], 1400.0, points=[None] * 30, camber_deg=10.0)
-CAMBER_ZERO = Run(BY_ID["camber-zero"], 1400.0, rig={"u_camber_alignment_deg": 0.5 / 3.0})
+RUN = PlannedRun(BY_ID["coupled"], 1400.0, points=[None] * 30, camber_deg=10.0)
+CAMBER_ZERO = PlannedRun(BY_ID["camber-zero"], 1400.0, rig={"u_camber_alignment_deg": 0.5 / 3.0})
 
 
 def plan(goal="eps_gamma", pecp1="direct", **changes):
@@ -40,8 +40,8 @@ def plan(goal="eps_gamma", pecp1="direct", **changes):
         direct_now=0.0561,
         joint_now=0.0263,
         steps=(
-            Step(CAMBER_ZERO, before=0.0561, after=0.031, direct=0.031, joint=0.02),
-            Step(RUN, before=0.031, after=0.0123, direct=None, joint=0.0063),
+            PlanStep(CAMBER_ZERO, before=0.0561, after=0.031, direct=0.031, joint=0.02),
+            PlanStep(RUN, before=0.031, after=0.0123, direct=None, joint=0.0063),
         ),
         trials=(),
     )
@@ -63,11 +63,11 @@ def test_what_the_sweeps_identify():
 
 def test_titles_name_load_camber_pressure_and_declared_uncertainty():
     assert wording.title(RUN) == "sideslip sweeps at camber of both signs, 1400 N, 10 deg"
-    pressed = Run(BY_ID["pressure"], 900.0, pressure_kPa=300.0)
+    pressed = PlannedRun(BY_ID["pressure"], 900.0, pressure_kPa=300.0)
     assert wording.title(pressed) == "sideslip and camber sweep at another pressure, 900 N, 300 kPa"
     assert wording.title(CAMBER_ZERO) == "better zero of the camber axis, known to 0.17 deg"
     assert (
-        wording.title(Run(BY_ID["second-radius"], 900.0))
+        wording.title(PlannedRun(BY_ID["second-radius"], 900.0))
         == "zeros both ways at 0.7 of the path radius, 900 N"
     )
 
@@ -147,7 +147,7 @@ def test_instructions_are_lines_for_tyre_toml():
         "# change in [rig]: u_camber_alignment_deg = 0.167 (0.33 of the uncertainty declared now)"
     ]
     table = RollingRadiusTable(load_N=1400.0, revolutions=4.0, angle_start_deg=0.0, angle_end_deg=147.6)
-    assert wording.instructions(Run(BY_ID["revolution"], 1400.0, revolution=table))[:2] == [
+    assert wording.instructions(PlannedRun(BY_ID["revolution"], 1400.0, revolution=table))[:2] == [
         "[[rolling_radius]]",
         "load_N = 1400",
     ]

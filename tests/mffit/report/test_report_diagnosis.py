@@ -12,7 +12,7 @@ import tir
 from mffit.constants import LINES_PER_RECORD, TERMINAL_WIDTH
 from mffit.diagnosis import diagnose
 from mffit.diagnosis.constants import TIED_EVIDENCE
-from mffit.diagnosis.ties import Run, Separation
+from mffit.diagnosis.ties import SeparatingRun, Separation
 from mffit.effects import CATALOG
 from mffit.report import constants, style, text, write_diagnosis
 from mffit.report.diagnosis_view import Candidate, RankedStep, view_of
@@ -82,7 +82,7 @@ def test_a_tie_is_stated_with_the_run_that_separates_it(misaligned, tmp_path):
     found = dataclasses.replace(
         misaligned.effects[0],
         tied=tuple(effect for effect in CATALOG if effect.id == "ply-steer"),
-        separation=Separation(Run.TURNED_ON_RIM, 1400.0, 50.0),
+        separation=Separation(SeparatingRun.TURNED_ON_RIM, 1400.0, 50.0),
     )
     tied = dataclasses.replace(misaligned, effects=(found,))
     assert "these data cannot tell it from: ply-steer" in text.diagnosis_summary(tied)

@@ -9,7 +9,7 @@ import tir
 from mffit.points import make_points
 from mffit.rig import Simulation
 from mffit.suspicion.explanation import explanation
-from mffit.suspicion.prediction import Prediction
+from mffit.suspicion.prediction import PredictedChannel
 
 ISO = dict.fromkeys(("alpha", "gamma", "Fz", "Fy", "Mz"), 1.0)
 SAE = ISO | {"alpha": -1.0, "Fy": -1.0, "gamma": -1.0, "Mz": -1.0}
@@ -34,8 +34,8 @@ def said(simulation, points, Fy, Mz, signs=ISO) -> str:
     out = simulation.readings(points)
     n = len(points)
     errors = {
-        "Fy": Prediction(error=out.Fy - Fy, covariance=36.0 * np.eye(n)),
-        "Mz": Prediction(error=out.Mz - Mz, covariance=0.36 * np.eye(n)),
+        "Fy": PredictedChannel(error=out.Fy - Fy, covariance=36.0 * np.eye(n)),
+        "Mz": PredictedChannel(error=out.Mz - Mz, covariance=0.36 * np.eye(n)),
     }
     return explanation(points.replace(Fy=Fy, Mz=Mz), errors, simulation, signs)
 
@@ -102,11 +102,11 @@ def test_four_fifths_of_the_error_must_be_explained(simulation, sweep):
 
 def test_a_channel_that_was_not_measured_is_left_out(simulation, sweep):
     out = simulation.readings(sweep)
-    errors = {"Fy": Prediction(error=np.full(16, -40.0), covariance=36.0 * np.eye(16))}
+    errors = {"Fy": PredictedChannel(error=np.full(16, -40.0), covariance=36.0 * np.eye(16))}
     points = sweep.replace(Fy=out.Fy + 40.0)
     assert explanation(points, errors, simulation, ISO) == "a zero offset of +40 N in Fy_N"
     some = points.replace(Fy=np.where(np.arange(16) == 3, np.nan, points.Fy))
-    errors = {"Fy": Prediction(error=np.full(15, -40.0), covariance=36.0 * np.eye(15))}
+    errors = {"Fy": PredictedChannel(error=np.full(15, -40.0), covariance=36.0 * np.eye(15))}
     assert explanation(some, errors, simulation, ISO) == "a zero offset of +40 N in Fy_N"
 
 
@@ -115,5 +115,5 @@ def test_the_scatter_of_every_point_counts(simulation, sweep):
     out = simulation.readings(sweep)
     error = np.where(np.arange(16) == 5, 500.0, -40.0)
     covariance = np.diag(np.where(np.arange(16) == 5, 1e8, 36.0))
-    errors = {"Fy": Prediction(error=error, covariance=covariance)}
+    errors = {"Fy": PredictedChannel(error=error, covariance=covariance)}
     assert explanation(sweep.replace(Fy=out.Fy), errors, simulation, ISO) == "a zero offset of +40 N in Fy_N"

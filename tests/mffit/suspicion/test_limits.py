@@ -9,7 +9,7 @@ import pytest
 
 from mffit.points import Points, make_points
 from mffit.suspicion import RULES, signatures
-from mffit.suspicion.slopes import Slope, slope
+from mffit.suspicion.slopes import SlopeWithError, slope
 
 CONFIG = SimpleNamespace(
     tyre=SimpleNamespace(nominal_pressure=250.0, unloaded_radius=0.3),
@@ -79,9 +79,9 @@ def test_a_sound_file_is_not_suspected(rule):
 
 
 def test_a_slope_is_significant_from_four_standard_errors_on():
-    assert Slope(value=4.02, error=1.0, freedom=10**6, scatter=1.0).sign == 1
-    assert Slope(value=-4.02, error=1.0, freedom=10**6, scatter=1.0).sign == -1
-    assert Slope(value=4.0, error=1.0, freedom=10**6, scatter=1.0).sign == 0
+    assert SlopeWithError(value=4.02, error=1.0, freedom=10**6, scatter=1.0).sign == 1
+    assert SlopeWithError(value=-4.02, error=1.0, freedom=10**6, scatter=1.0).sign == -1
+    assert SlopeWithError(value=4.0, error=1.0, freedom=10**6, scatter=1.0).sign == 0
 
 
 def test_a_slope_needs_four_points_and_a_range_of_angles():

@@ -9,9 +9,9 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from mffit.export.tydex import CHANNELS as TYDEX_CHANNELS
+from mffit.export.tydex import TYDEX_CHANNELS
 from mffit.recordings.guess import simplified
-from mffit.sweeps.channels import BY_NAME, CHANNELS, nearest_channel, nearest_heading
+from mffit.sweeps.channels import BY_NAME, SWEEP_CHANNELS, nearest_channel, nearest_heading
 from mffit.sweeps.units import UnknownUnitError, converted, is_unit, spellings
 
 CONTRACT = [
@@ -23,13 +23,13 @@ CONTRACT = [
 
 def test_the_columns_are_those_of_the_contract():
     assert sorted(BY_NAME) == sorted(CONTRACT)
-    assert [c.name for c in CHANNELS if c.required] == ["alpha_deg", "gamma_deg", "Fz_N", "Fy_N"]
+    assert [c.name for c in SWEEP_CHANNELS if c.required] == ["alpha_deg", "gamma_deg", "Fz_N", "Fy_N"]
 
 
 def test_every_row_is_complete():
-    names = [n for channel in CHANNELS for n in set(map(simplified, (channel.name, *channel.aliases)))]
+    names = [n for channel in SWEEP_CHANNELS for n in set(map(simplified, (channel.name, *channel.aliases)))]
     assert len(set(names)) == len(names)
-    for channel in CHANNELS:
+    for channel in SWEEP_CHANNELS:
         assert channel.kind in ("number", "label", "direction")
         assert channel.lower < channel.upper
         assert channel.description
@@ -123,6 +123,6 @@ def test_a_name_that_tydex_export_writes_is_known_to_its_reader(written):
     """The alias belongs to the channel from which the numbers come, and the unit can be converted."""
     fields = ("alpha", "gamma", "Fz", "Fy", "Mx", "My", "Mz", "p", "V", "T")
     source = written.of(SimpleNamespace(**{field: field for field in fields}))
-    (channel,) = [channel for channel in CHANNELS if written.name in channel.aliases]
+    (channel,) = [channel for channel in SWEEP_CHANNELS if written.name in channel.aliases]
     assert channel.name.rpartition("_")[0] == source
     assert np.isfinite(converted(np.ones(1), written.unit, channel.unit)).all()
