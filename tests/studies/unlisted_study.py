@@ -1,0 +1,270 @@
+"""What does a build say of rigs whose errors `tyre.toml` does not declare? `python tests/studies/unlisted_study.py 40 --jobs 2`.
+
+For every world it draws rigs and tyres, front and rear in turn, builds them, and prints the error of eps_gamma beside its
+uncertainty, the misfit, how far the fitted model is from the truth, how many builds are marked as not to be trusted, how many
+carry a warning or a suspected cause, and the coefficients and rig numbers that the world puts to the test.
+"""
+
+from __future__ import annotations
+
+import argparse
+import sys
+import tempfile
+import tomllib
+from collections import Counter
+from collections.abc import Callable, Mapping
+from concurrent.futures import ProcessPoolExecutor
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pandas as pd
+import tomli_w
+
+sys.path.insert(0, str(Path(__file__).parents[1] / "mffit" / "fit"))
+
+from drawn_rigs import NO_FORCE_AT_REST, SAFE, SAMPLES, _scaled, model_error, plan_content
+
+import mffit
+import tir
+from mffit import virtual_rig
+from mffit.errors import InputError
+from mffit.results import as_json
+from tir.parameters import TABLE
+
+DECLARED = {
+    "u_loadcell_offset_N": 10.0,
+    "u_camber_alignment_deg": 0.5,
+    "u_slip_alignment_N": 25.0,
+    "u_camber_skew_deg": 0.1,
+}
+Edit = Callable[[dict[str, Any], np.random.Generator], None]
+
+
+def backward_camber(content: dict[str, Any], rng: np.random.Generator) -> None:
+    """Add eleven cambers rolled backwards at the nominal load."""
+    angles = [-40, -30, -20, -10, -5, 0, 5, 10, 20, 30, 40]
+    load = content["tyre"]["nominal_load"]
+    content["sweep"].append(
+        {"file": "camber_backward.csv", "load_N": load, "gamma_deg": angles, "direction": "backward"}
+    )
+
+
+def both_sides(content: dict[str, Any], rng: np.random.Generator) -> None:
+    """Repeat the uncoupled sweeps on the other side of the disc, the rig set up anew."""
+    zeros = {
+        "F0_N": DECLARED["u_loadcell_offset_N"] * rng.normal(),
+        "gamma_0_deg": DECLARED["u_camber_alignment_deg"] * rng.normal(),
+        "alpha_0_deg": 0.08 * rng.normal(),
+    }
+    again = [s for s in content["sweep"] if not ("alpha_deg" in s and "gamma_deg" in s)]
+    content["sweep"] += [
+        {
+            **s,
+            "file": f"right_{s['file']}",
+            "path_centre": "right",
+            "faults": {**s.get("faults", {}), **zeros},
+        }
+        for s in again
+    ]
+
+
+def warming(content: dict[str, Any], rng: np.random.Generator) -> None:
+    """The tyre warms by 23 K over the campaign."""
+    edges = np.linspace(25.0, 48.0, len(content["sweep"]) + 1)
+    for sweep, low, high in zip(content["sweep"], edges[:-1], edges[1:], strict=True):
+        sweep["T_degC"] = [float(low), float(high)]
+
+
+def upright(content: dict[str, Any], rng: np.random.Generator) -> None:
+    """No camber in any sweep."""
+    content["sweep"] = [s for s in content["sweep"] if "gamma_deg" not in s]
+
+
+def warps_one_load(folder: Path, rng: np.random.Generator) -> None:
+    """The load of one sweep of sideslip is read 10 % low."""
+    path = sorted(folder.glob("sideslip*.csv"))[1]
+    table = pd.read_csv(path)
+    table["Fz_N"] *= 0.9
+    table.to_csv(path, index=False)
+
+
+def diameter_as_radius(config: dict[str, Any]) -> None:
+    """The path's diameter where its radius belongs, beside effective radii from elsewhere."""
+    config["rig"].pop("path", None)
+    config["rig"] |= {"path_radius": 2.0 * 1.323, "u_path_radius": 0.002}
+    config["rolling_radius"] = [
+        {
+            "load_N": row["load_N"],
+            "effective_radius": 0.985 * config["tyre"]["unloaded_radius"],
+            "u_effective_radius": 0.0005,
+        }
+        for row in config["rolling_radius"]
+    ]
+
+
+@dataclass(frozen=True)
+class World:
+    """What is wrong with the rigs, and what their owner writes."""
+
+    faults: Mapping[str, float] = field(default_factory=dict)
+    drawn: Mapping[str, float] = field(default_factory=dict)  #: rig errors with their standard deviation
+    declared: Mapping[str, float] = field(default_factory=dict)
+    tyre: Mapping[str, float] = field(default_factory=dict)  #: coefficients of the true tyre
+    base: Mapping[str, float] = field(default_factory=dict)  #: coefficients of the base file
+    written: Callable[[dict[str, Any]], None] | None = None  #: changes what the owner writes into tyre.toml
+    edits: tuple[Edit, ...] = ()
+    spoil: Callable[[Path, np.random.Generator], None] | None = None
+    watched: tuple[str, ...] = ()  #: coefficients or rig numbers
+
+
+WORLDS = {
+    "as declared": World(),
+    "skew 0.3 deg, declared, one backward camber sweep": World(
+        drawn={"camber_skew_deg": 0.3}, declared={"u_camber_skew_deg": 0.3}, edits=(backward_camber,)
+    ),
+    "skew 0.5 deg, not declared": World(faults={"camber_skew_deg": 0.5}, watched=("PKY6",)),
+    "skew 0.5 deg, not declared, one backward camber sweep": World(
+        faults={"camber_skew_deg": 0.5}, edits=(backward_camber,), watched=("camber_skew_deg",)
+    ),
+    "both sides, set up anew": World(edits=(both_sides,)),
+    "load falls by 6 % sin^2": World(faults={"load_camber": -0.06}, watched=("load_camber",)),
+    "warming by 23 K at -0.4 %/K": World(
+        faults={"k_T_per_K": -0.004},
+        edits=(warming,),
+        watched=("PPY4", "PDY2", "k_T_grip_per_K", "k_T_stiffness_per_K"),
+    ),
+    "conicity of 1 % of the load": World(tyre={"PVY1": 0.01}),
+    "no camber, base with PECP1 0.5": World(base={"PECP1": 0.5}, edits=(upright,)),
+    "radius entered as diameter": World(written=diameter_as_radius),
+    "load of one sweep 10 % low": World(spoil=warps_one_load),
+    "errors 1.5 times the declared": World(
+        drawn={"F0_N": 15.0, "gamma_0_deg": 0.75, "alpha_0_deg": 0.12, "camber_skew_deg": 0.15}
+    ),
+}
+PARAMETERS = {row.name for row in TABLE}
+TRUE_NUMBERS = {"k_T_grip_per_K": -0.004, "k_T_stiffness_per_K": -0.004}
+
+
+def one(job: tuple[int, str]) -> tuple[str, dict[str, Any]]:
+    """Draw, simulate and build one rig."""
+    seed, name = job
+    world, rng = WORLDS[name], np.random.default_rng(9000 + seed)
+    sample = SAMPLES / ("front-120-70", "rear-190-55")[seed % 2]
+    true = _scaled(tir.read(sample / "true.tir").replace(**NO_FORCE_AT_REST), 0.1, rng).replace(**world.tyre)
+    content = plan_content(sample)
+    content["faults"] |= world.faults
+    content["faults"] |= {key: u * rng.normal() for key, u in world.drawn.items()}
+    declared = {**DECLARED, **world.declared}
+    content["rig"] |= declared
+    for edit in world.edits:
+        edit(content, rng)
+    content["tyre"].pop("base", None)
+    with tempfile.TemporaryDirectory() as made:
+        folder = Path(made)
+        true.write(folder / "drawn.tir")
+        content["truth"] = {"tyre": "drawn.tir"}
+        known = virtual_rig.simulate(virtual_rig.load_plan(content, folder=folder), folder / "rig", seed=seed)
+        path = folder / "rig" / "tyre.toml"
+        config = tomllib.loads(path.read_text(encoding="utf-8"))
+        if world.written is not None:
+            world.written(config)
+        _scaled(true, 0.3, rng).replace(**world.base).write(folder / "rig" / "other.tir")
+        config["tyre"]["base"] = "other.tir"
+        path.write_text(tomli_w.dumps(config), encoding="utf-8")
+        if world.spoil is not None:
+            world.spoil(folder / "rig", rng)
+        try:
+            result = mffit.build(path)
+        except InputError as error:
+            return name, {"refused": str(error)}
+    return name, _found(result, true, known, world)
+
+
+def _found(result: Any, true: tir.Tyre, known: Any, world: World) -> dict[str, Any]:
+    written = as_json.build(result)
+    spin, fit = written["spin"] or {}, written["fit"]
+    out: dict[str, Any] = {
+        "trusted": written.get("trusted", True),
+        "reasons": written.get("reasons", []),
+        "warnings": written["warnings"],
+        "suspected": written.get("suspected"),
+        "misfit": {c: row.get("over_noise") or row["rmse"] for c, row in fit["channels"].items()},
+        "disc": model_error(
+            result.fit.tyre, true, -1.0 / known.nominal.R_m, np.unique(np.round(result.points.Fz, -2))
+        )[0],
+    }
+    if spin.get("epsilon_gamma") is not None:
+        out["eps"] = (spin["epsilon_gamma"], spin["u_epsilon_gamma"], known.nominal.epsilon_gamma)
+    rig = {
+        **TRUE_NUMBERS,
+        **known.faults,
+        **{n: float(true[n]) for n in world.watched if n in PARAMETERS},
+    }
+    rows = {**fit["coefficients"], **fit.get("rig", {})}
+    out["watched"] = {
+        n: (rows[n]["value"], rows[n].get("stderr") or np.nan, rig.get(n, 0.0))
+        for n in world.watched
+        if n in rows
+    }
+    return out
+
+
+def lines(name: str, rows: list[dict[str, Any]]) -> list[str]:
+    """The page of one world."""
+    ended = [row["refused"] for row in rows if "refused" in row]
+    sound = [row for row in rows if "refused" not in row]
+    out = [f"\n## {name}: {len(rows)} rigs, {len(ended)} refused"]
+    out += [f"* {times}x {text}" for text, times in Counter(text[:160] for text in ended).most_common(3)]
+    if not sound:
+        return out
+    eps = np.array([row["eps"] for row in sound if "eps" in row])
+    if len(eps):
+        error = eps[:, 0] - eps[:, 2]
+        inside = np.mean(np.abs(error) < SAFE * eps[:, 1])
+        out.append(
+            f"eps_gamma: rms {np.sqrt(np.mean(error**2)):.3f}, mean {np.mean(error):+.3f}, u {np.mean(eps[:, 1]):.3f}, "
+            f"inside 95 % {inside:.0%}"
+        )
+    Fy = np.array([row["misfit"]["Fy"] for row in sound], dtype=float)
+    disc = np.array([row["disc"] for row in sound])
+    out.append(
+        f"misfit of Fy over noise: median {np.median(Fy):.2f}, largest {np.max(Fy):.2f}; "
+        f"on the disc {np.sqrt(np.mean(disc**2)):.1f} N"
+    )
+    out.append(
+        f"not trusted {np.mean([not r['trusted'] for r in sound]):.0%}, "
+        f"with a warning {np.mean([bool(r['warnings']) for r in sound]):.0%}"
+    )
+    for key in ("reasons", "warnings"):
+        said = Counter(text[:110] for row in sound for text in row[key])
+        out += [f"  {key}: {times}x {text}" for text, times in said.most_common(4)]
+    out += [
+        f"  suspected: {times}x {what}"
+        for what, times in Counter(str(r["suspected"])[:90] for r in sound).most_common(5)
+    ]
+    for number in dict.fromkeys(n for row in sound for n in row["watched"]):
+        value, u, truth = np.array([row["watched"][number] for row in sound if number in row["watched"]]).T
+        pull = np.abs(value - truth) / u
+        out.append(
+            f"{number}: {len(value)} builds, rms error {np.sqrt(np.mean((value - truth) ** 2)):.3g}, mean u {np.nanmean(u):.3g}, "
+            f"within 3 u {np.mean(pull < 3.0):.0%}, mean {np.mean(value):.4g}"
+        )
+    return out
+
+
+def main() -> None:
+    ask = argparse.ArgumentParser()
+    ask.add_argument("rigs", type=int, nargs="?", default=40, help="per world")
+    ask.add_argument("--jobs", type=int, default=1)
+    ask.add_argument("--worlds", nargs="*", default=list(WORLDS))
+    given = ask.parse_args()
+    for name in given.worlds:
+        with ProcessPoolExecutor(given.jobs) as pool:
+            rows = [row for _, row in pool.map(one, [(seed, name) for seed in range(given.rigs)])]
+        print("\n".join(lines(name, rows)), flush=True)
+
+
+if __name__ == "__main__":
+    main()
