@@ -29,7 +29,7 @@ class Bin:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Comparison:
+class ResidualComparison:
     """The residuals of one channel over one condition."""
 
     channel: str
@@ -47,10 +47,10 @@ class Comparison:
 class Structure:
     """All comparisons, the least likely first."""
 
-    comparisons: tuple[Comparison, ...]
+    comparisons: tuple[ResidualComparison, ...]
 
     @property
-    def found(self) -> tuple[Comparison, ...]:
+    def found(self) -> tuple[ResidualComparison, ...]:
         """Those that chance does not explain, their number accounted for."""
         limit = math.log(constants.STRUCTURE_FALSE_ALARM / max(len(self.comparisons), 1))
         return tuple(c for c in self.comparisons if c.log_chance < limit)
@@ -140,7 +140,7 @@ def _binned(
     values: np.ndarray,
     label: np.ndarray,
     side: np.ndarray,
-) -> Comparison | None:
+) -> ResidualComparison | None:
     """Chi-square of the mean residuals of all bins; None with fewer than two bins that are filled."""
     cells, index, counts = np.unique(
         np.column_stack([label, side]), axis=0, return_inverse=True, return_counts=True
@@ -166,10 +166,10 @@ def _binned(
         )
         for j, cell in enumerate(filled)
     )
-    return Comparison(channel, over, float(stats.chi2.logsf(chi2, max(int(clear.sum()), 1))), bins)
+    return ResidualComparison(channel, over, float(stats.chi2.logsf(chi2, max(int(clear.sum()), 1))), bins)
 
 
-def _along(left: Remainder, channel: str, rows: np.ndarray) -> Comparison | None:
+def _along(left: Remainder, channel: str, rows: np.ndarray) -> ResidualComparison | None:
     """Products of residuals that are neighbours in a sweep against their mean and variance in a sound fit."""
     sweep = left.sweep[rows]
     order = np.argsort(sweep, kind="stable")
@@ -193,4 +193,4 @@ def _along(left: Remainder, channel: str, rows: np.ndarray) -> Comparison | None
         len(first) - 4.0 * float(np.sum(neighbours**2)) + 2.0 * float(np.sum(inside**2))
     )  # 2 tr(S M S M), M = 1 - A A'
     z = (float(r[first] @ r[second]) - mean) / math.sqrt(max(variance, 1e-12))
-    return Comparison(channel, ALONG_SWEEPS, float(stats.norm.logsf(z)))
+    return ResidualComparison(channel, ALONG_SWEEPS, float(stats.norm.logsf(z)))

@@ -94,6 +94,9 @@ MISFIT_IN_DOUBT = Real(1.2, "-", "Misfit over stated noise above which a file is
 CERTAIN_SIGMA = Real(
     5.0, "-", "Standard deviations beyond which chance explains neither a misfit nor a bound that is hit."
 )
+DOUBTFUL_SIGMA = Real(
+    3.5, "-", "Standard deviations beyond which chance does not explain a misfit that is in doubt."
+)
 FEWEST_SWEEPS_OF_A_FORMULA = Count(5, "-", "Fewest sweeps whose prediction says what limits a model.")
 PREDICTED_AS_WELL_AS_FITTED = Real(
     1.1,

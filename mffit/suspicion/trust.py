@@ -71,10 +71,18 @@ class FinishedFit:
         z = (getattr(self.model, channel) - getattr(self.points, channel))[known] / u[known]
         return rms(z), int(known.sum())
 
-    def far(self, channel: str, limit: float, rows: np.ndarray | None = None) -> bool:
-        """Whether the misfit over the noise exceeds a limit, and 5 standard deviations of a sound fit's misfit."""
+    def far(self, channel: str, limit: float, sigma: float, rows: np.ndarray | None = None) -> bool:
+        """Whether the misfit over the noise exceeds a limit, by more than chance explains."""
         ratio, n = self.misfit(channel, rows)
-        return bool(n) and ratio > limit and chdtrc(n, n * ratio**2) < FIVE_SIGMA
+        return bool(n) and ratio > limit and bool(chdtrc(n, n * ratio**2) < ndtr(-sigma))
+
+    def doubtful(self, channel: str) -> bool:
+        """Whether a channel misses the noise."""
+        return self.far(channel, constants.MISFIT_IN_DOUBT, constants.DOUBTFUL_SIGMA)
+
+    def wrong(self, channel: str, rows: np.ndarray | None = None) -> bool:
+        """Whether a channel misses the noise so far that the fit is not trusted."""
+        return self.far(channel, constants.DISTRUSTED_MISFIT, constants.CERTAIN_SIGMA, rows)
 
     def of_the_formula(self, channel: str) -> bool:
         """Whether the misfit is the formula's: structure that all sweeps share, and that is predicted as well as fitted."""
@@ -107,8 +115,6 @@ class Trust:
 
 SOUND = Trust()
 """Nothing was judged, and nothing is against it."""
-FIVE_SIGMA = float(ndtr(-constants.CERTAIN_SIGMA))
-"""Probability beyond which a misfit is not chance."""
 of_model = partial(rule, subject=Subject.MODEL, when=(When.AFTER,))
 
 
@@ -122,7 +128,7 @@ of_model = partial(rule, subject=Subject.MODEL, when=(When.AFTER,))
 def above_noise(fit: FinishedFit) -> Iterator[dict[str, Any]]:
     """Misfit of the model over the stated uncertainty, channel by channel, unless it is the formula's."""
     for name in CHANNELS:
-        if fit.far(name, constants.DISTRUSTED_MISFIT) and not fit.of_the_formula(name):
+        if fit.wrong(name) and not fit.of_the_formula(name):
             facts = {"channel": name, "ratio": fit.misfit(name)[0], "carriers": _carriers(fit, name)}
             yield {**facts, "cause": _cause(fit)}
 
@@ -151,7 +157,7 @@ def sweep_above_noise(fit: FinishedFit) -> Iterator[dict[str, Any]]:
 
 @of_model(
     id="doubtful-misfit",
-    limits=(constants.MISFIT_IN_DOUBT, constants.DISTRUSTED_MISFIT, constants.CERTAIN_SIGMA),
+    limits=(constants.MISFIT_IN_DOUBT, constants.DISTRUSTED_MISFIT, constants.DOUBTFUL_SIGMA),
     outcome=Outcome.WARNED,
     sentence="the misfit of {channel} is {ratio:.2f} times its stated uncertainty, largest in {sweep} ({own:.1f} times); "
     "{cause}; check this sweep and the stated uncertainty",
@@ -160,7 +166,7 @@ def doubtful_misfit(fit: FinishedFit) -> Iterator[dict[str, Any]]:
     """Misfit of the model over the stated uncertainty, below the limit of trust."""
     for name in CHANNELS:
         ratio, _ = fit.misfit(name)
-        if fit.far(name, constants.MISFIT_IN_DOUBT) and ratio <= constants.DISTRUSTED_MISFIT:
+        if fit.doubtful(name) and ratio <= constants.DISTRUSTED_MISFIT:
             rows = _by_sweep(fit, name)
             worst = max(rows, key=lambda k: rows[k])
             sweep = fit.points.sweep_names[worst]
@@ -308,15 +314,13 @@ def _remarks(fit: FinishedFit) -> Iterator[str]:
 
 
 def _reaches_the_noise(fit: FinishedFit, channel: str) -> bool:
-    return bool(fit.misfit(channel)[1]) and not fit.far(channel, constants.MISFIT_IN_DOUBT)
+    return bool(fit.misfit(channel)[1]) and not fit.doubtful(channel)
 
 
 def _noise_is_stated(fit: FinishedFit) -> bool:
     """Whether residuals are judged by a noise: a channel states one, and no misfit is the formula's."""
     stated = [name for name in CHANNELS if fit.misfit(name)[1]]
-    return bool(stated) and not any(
-        fit.of_the_formula(n) and fit.far(n, constants.MISFIT_IN_DOUBT) for n in stated
-    )
+    return bool(stated) and not any(fit.of_the_formula(n) and fit.doubtful(n) for n in stated)
 
 
 def _cause(fit: FinishedFit) -> str:
@@ -331,7 +335,7 @@ def _by_sweep(fit: FinishedFit, channel: str) -> dict[int, float]:
 
 
 def _sweep_is_far(fit: FinishedFit, channel: str, k: int) -> bool:
-    return fit.far(channel, constants.DISTRUSTED_MISFIT, fit.points.sweep == k)
+    return fit.wrong(channel, fit.points.sweep == k)
 
 
 def _carriers(fit: FinishedFit, channel: str) -> str:

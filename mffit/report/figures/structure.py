@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from mffit.diagnosis.structure import DIRECTION, Bin, Comparison, Structure
+from mffit.diagnosis.structure import DIRECTION, Bin, ResidualComparison, Structure
 from mffit.quantities import CHANNELS, CONDITIONS
 from mffit.report import constants, style
 from mffit.report.drawing.records import Axis, ErrorBars, Guide, Look, Panel, Sheet, in_rows
@@ -36,10 +36,10 @@ def residual_means(found: Structure) -> Sheet:
     )
 
 
-def _panel(comparison: Comparison, significant: bool) -> Panel:
+def _panel(comparison: ResidualComparison, significant: bool) -> Panel:
     over = CONDITIONS.get(comparison.over)
     ways = {-1.0: "backward", 1.0: "forward"} if comparison.over == DIRECTION else None
-    title = f"{CHANNELS[comparison.channel].symbol} over {comparison.word}"
+    title = f"{comparison.channel} over {comparison.word}"
     return Panel(
         title=title + (": not random" if significant else ""),
         x=Axis(label=over.short_axis if over else "", words=ways),
@@ -49,7 +49,7 @@ def _panel(comparison: Comparison, significant: bool) -> Panel:
     )
 
 
-def _sides(comparison: Comparison) -> list[int]:
+def _sides(comparison: ResidualComparison) -> list[int]:
     return sorted({b.side for b in comparison.bins})
 
 
