@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from mffit.cli.console import Voice, out_option, voiced
+from mffit.cli.console import NOT_TRUSTED, Voice, out_option, voiced
 
 if TYPE_CHECKING:
     from mffit.results import BuildOutcome
@@ -59,8 +59,9 @@ def _build(tyre_toml: Path, out: Path | None, ensemble: int, voice: Voice) -> No
     drawn = f", ensemble ({len(result.members)} files)" if result.members else ""
     voice.say(f"written to {out}: {', '.join(files)}, report.html, result.json, points.csv, plots{drawn}")
     voice.give(lambda: as_json.build(result))
-    if result.fit.distrusted:
+    if not result.trusted:
         click.echo(f"{result.tir_path} is not to be trusted: see above", err=True)
+        raise SystemExit(NOT_TRUSTED)
 
 
 def _build_many(
@@ -132,6 +133,10 @@ def _end(finished: list[BuildOutcome], interrupted: bool, voice: Voice) -> None:
         raise SystemExit(2)
     if "failed" in states:
         raise SystemExit(1)
+    doubtful = [outcome.name for outcome in finished if not outcome.trusted]
+    if doubtful:
+        click.echo(f"not to be trusted: {', '.join(doubtful)}", err=True)
+        raise SystemExit(NOT_TRUSTED)
 
 
 @click.command()

@@ -13,6 +13,8 @@ import click
 
 from mffit.progress import Progress, silent
 
+NOT_TRUSTED = 3
+"""Exit code of a command that is done, but whose result says that it is not to be trusted."""
 tyre_toml_argument = click.argument("tyre_toml", type=click.Path(path_type=Path))
 
 

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import click
 
-from mffit.cli.console import Voice, out_option, tyre_toml_argument, voiced
+from mffit.cli.console import NOT_TRUSTED, Voice, out_option, tyre_toml_argument, voiced
 
 
 @click.command()
@@ -36,3 +36,6 @@ def diagnose(tyre_toml: Path, model: Path | None, out: Path | None, voice: Voice
     )
     voice.say(f"written to {out}: diagnosis.html, diagnosis.json, {model_after}, corrected.toml")
     voice.give(lambda: as_json.diagnosis(diagnosis))
+    if not diagnosis.trusted:
+        click.echo(f"{diagnosis.model_after} is not to be trusted: see above", err=True)
+        raise SystemExit(NOT_TRUSTED)

@@ -187,3 +187,35 @@ MOST_VALIDATION_FOLDS = Count(8, "-", "Most groups of sweeps that are left out i
 VALIDATION_FOLDS_OF_MANY_POINTS = Count(4, "-", "Groups that are left out in turn if there are many points.")
 MANY_POINTS_TO_VALIDATE = Count(1000, "-", "Points from which these fewer groups suffice.")
 RAISED_GAP = Real(2.0, "-", "Standard deviations beyond chance above which a channel counts as worse.")
+
+# What a fit leaves
+MISFIT_AT_NOISE = Real(1.2, "-", "Misfit over stated noise up to which the residuals count as noise.")
+INFORMATION_LEFT = Real(1e-9, "-", "Share of the information that keeps a matrix invertible.")
+ONE_STEP_FALSE_ALARM = Real(
+    0.005, "-", "Chance that any effect looks significant in the residuals of a sound fit (Bonferroni)."
+)
+STRUCTURE_FALSE_ALARM = Real(
+    0.005, "-", "Chance that any comparison finds structure in the residuals of a sound fit (Bonferroni)."
+)
+IMITATED_SHARE = Real(
+    1e-3, "-", "Share of an effect below which fitted numbers imitate it and residuals say nothing."
+)
+DISTINCT_DIRECTION = Real(1e-6, "-", "Smallest relative eigenvalue of a direction that residuals determine.")
+AS_GOOD_AS_BEST = Real(
+    3.0, "-", "Difference of log probabilities below which another effect explains residuals as well."
+)
+AS_GOOD_SHARE = Real(
+    0.9,
+    "-",
+    "Share of what the best effect explains from which another explains as much, far above the noise.",
+)
+MOST_RIVALS_NAMED = Count(2, "-", "Most effects that are named beside the best one.")
+BINS_OF_RESIDUALS = Count(8, "-", "Most bins of a condition over which residuals are averaged.")
+FEWEST_IN_A_BIN = Count(4, "-", "Fewest readings of a bin.")
+NEIGHBOURS_OF_RESIDUALS = Count(3, "-", "Lags along a sweep at which residuals are compared.")
+STRUCTURE_UPRIGHT = Real(0.5, "deg", "Angle up to which a reading lies at neither side of zero.")
+MOST_NUMBERS_IN_SENTENCE = Count(3, "-", "Most numbers of an effect that a sentence lists.")
+MOST_CONDITIONS_IN_SENTENCE = Count(
+    3, "-", "Most conditions over which a sentence calls residuals not random."
+)
+SMALLEST_CHANCE_NAMED = Real(1e-12, "-", "Smaller chances are not told apart in a sentence.")

@@ -21,7 +21,7 @@ from mffit.effects import Effect
 from mffit.points import Points
 from mffit.rig import Simulation
 from mffit.rig_errors import Faults
-from mffit.suspicion import Outlier
+from mffit.suspicion import SOUND, Outlier, Trust
 from tir import Tyre
 
 
@@ -74,6 +74,17 @@ class Diagnosis(Brief):
     tyre: Tyre  #: the corrected property file
     notes: tuple[Note, ...]
     model_after: str  #: file name of the corrected model in the output folder
+    trust: Trust = SOUND  #: the judgement of the corrected model
+
+    @property
+    def trusted(self) -> bool:
+        """Whether nothing speaks against the corrected model."""
+        return self.trust.trusted
+
+    @property
+    def reasons(self) -> tuple[str, ...]:
+        """Why it is not to be trusted, as sentences; empty for a sound one."""
+        return self.trust.reasons
 
     @property
     def faults(self) -> Faults:

@@ -19,7 +19,9 @@ from mffit.diagnosis.notes import (
     NotVisible,
     OneSweep,
 )
+from mffit.diagnosis.one_step import BestEffect
 from mffit.diagnosis.result import AcceptedEffect, Diagnosis
+from mffit.diagnosis.structure import Structure
 from mffit.diagnosis.ties import Separation
 from mffit.diagnosis.validation import Gap, Validation
 from mffit.effects import NEEDS, Effect
@@ -250,3 +252,32 @@ def _short(value: float) -> str:
 
 def _around(bump: Bump) -> str:
     return " and ".join(place(bump.region))
+
+
+def best_effect(found: BestEffect) -> str:
+    """The effect that explains residuals best, with its numbers and its significance."""
+    step = found.best
+    numbers = [
+        f"{name} = {to_uncertainty(value, u)} +- {to_uncertainty(u, u)}"
+        for name, (value, u) in step.numbers.items()
+    ]
+    listed = f" ({', '.join(numbers)})" if len(numbers) <= constants.MOST_NUMBERS_IN_SENTENCE else ""
+    rivals = f", as does {' or '.join(o.effect.name for o in found.rivals)}" if found.rivals else ""
+    return (
+        f"{step.effect.name}{listed} would explain {100 * step.share:.0f} % of the misfit, {found.sigma:.1f} standard deviations "
+        f"with {found.tried} effects tried{rivals}"
+    )
+
+
+def structure(found: Structure) -> str:
+    """Over which conditions the residuals of which channel are not random; empty for random ones."""
+    by_channel: dict[str, list[str]] = {}
+    for comparison in found.found:
+        by_channel.setdefault(comparison.channel, []).append(comparison.word)
+    said = [
+        f"those of {channel} follow {', '.join(words[: constants.MOST_CONDITIONS_IN_SENTENCE])}"
+        for channel, words in by_channel.items()
+    ]
+    smallest = float(constants.SMALLEST_CHANCE_NAMED)
+    chance = f"{found.chance:.1g}" if found.chance > smallest else f"below {smallest:g}"
+    return f"{'; '.join(said)} (chance {chance} with {len(found.comparisons)} comparisons)" if said else ""

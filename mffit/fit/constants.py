@@ -103,6 +103,16 @@ WRITTEN_CAMMAX_GROWTH = Real(1.5, "-", "Largest camber range of a file over the 
 WRITTEN_FZMIN_SHARE = Real(0.1, "-", "Intended smallest load of a file over the smallest tested one.")
 WRITTEN_FZMAX_SHARE = Real(1.5, "-", "Intended largest load of a file over the largest tested one.")
 WRITTEN_PRESSURE_SHARE = Real(0.2, "-", "Intended relative distance of pressures beyond the tested ones.")
+UNVARIED_ANGLE = Real(0.5, "deg", "Largest angle of sweeps that do not vary it.")
+UNTESTED_CAMBER = Real(
+    2.0, "deg", "Camber range of a file whose sweeps are upright and whose base states none."
+)
+UNTESTED_SIDESLIP = Real(
+    2.0, "deg", "Sideslip range of a file whose sweeps have none and whose base states none."
+)
+UNTESTED_SHARE = Real(
+    0.1, "-", "Relative range of a single load or pressure that the model leaves no room for."
+)
 LEAST_REMAINING_FORCE = Real(0.5, "-", "Share of its peak that the side force keeps over the sideslip range.")
 REMAINING_FORCE_ALPHA = Real(0.07, "rad", "Sideslip from which this is tested, if it was run.")
 REMAINING_FORCE_GRID = Series((13, 3), "-", "Sideslip angles and loads of this test.")

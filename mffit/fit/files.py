@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 from mffit.fit import constants
 from mffit.fit.known import Known
 from mffit.fit.misfit import FileFigures, Reference
 from mffit.fit.normal import derive
-from mffit.fit.ranges import plausible_ranges, tested_ranges
+from mffit.fit.ranges import NAMES as RANGES
+from mffit.fit.ranges import plausible_ranges, tested_ranges, with_room
 from mffit.fit.road import road_grid
 from mffit.fit.start import camber_stiffness_terms
 from mffit.points import Points, main_path, main_pressure
@@ -28,6 +29,8 @@ class Files:
     changed: Mapping[str, tuple[str, ...]]  #: by use, coefficients that differ from the fitted model
     lacking: Mapping[float, float]
     """Turn-slip force [N] at nominal load, by radius of the road [m], that the file for turn slip off lacks."""
+    untested: Mapping[str, str] = field(default_factory=dict)
+    """Where the written range of a quantity comes from that the sweeps do not vary, in words."""
 
     @property
     def stiffness_loss(self) -> float:
@@ -52,7 +55,10 @@ def make_files(
     """
     disc = config.rig.on_disc
     tested = tested_ranges(points)
-    written = plausible_ranges(known.values, tested, turn_slip=disc)
+    stated = {} if base is None else {name: float(base[name]) for name in RANGES if name in base.present}
+    written, untested = with_room(
+        known.values, plausible_ranges(known.values, tested, turn_slip=disc), stated
+    )
     side = "RIGHT" if str(known.values["TYRESIDE"]).upper().startswith("R") else "LEFT"
     model = {**known.values, **written, "TYRESIDE": side, "FITTYP": 62}
     changed = _changed(config, model, points, tested, written, C_gamma)
@@ -73,6 +79,7 @@ def make_files(
         written=written,
         changed={use: tuple(values) for use, values in changed.items() if values},
         lacking=_turn_slip_forces(model) if disc else {},
+        untested=untested,
     )
 
 

@@ -28,7 +28,7 @@ from mffit.fit.wording import explanations, warnings
 from mffit.parts import Parts
 from mffit.points import Points
 from mffit.progress import Progress, silent
-from mffit.suspicion import Doubt, FittedModel, JudgedSweeps, When, after_the_fit, distrust, outliers
+from mffit.suspicion import Doubt, FittedModel, JudgedSweeps, When, after_the_fit, outliers
 from tir import Tyre
 
 
@@ -75,14 +75,11 @@ def fit(
     files = files.annotated(file_comments(files, known.origin, coefficients))
     use = config.spin.exact if config.rig.on_disc else "normal"
 
-    channels = agreement.with_points(readings, points)
-    r2 = {name: found.r2 for name, found in channels.items()}
-    distrusted = distrust(points, readings, fitted.scale, r2)
     return FitResult(
         tyre=files.by_use["turn-slip" if config.rig.on_disc else "normal"].tyre,
         written=files.by_use[use].tyre,
         coefficients=of_file(files, use, coefficients),
-        channels=channels,
+        channels=agreement.with_points(readings, points),
         odd=agreement.with_odd_part(files.by_use["normal"].tyre.values, points, parts),
         simulation=fitted.simulation,
         rig=fitted.rig,
@@ -92,12 +89,11 @@ def fit(
         stages=fitted.stages,
         coverage=plan.cover,
         explanations=tuple(explanations(config, files, known.values, measured)),
-        warnings=warnings(fitted, distrusted, doubts, outlying),
+        warnings=warnings(fitted, doubts, outlying, files.untested),
         seconds=time.perf_counter() - began,
         epsilon_gamma_model=_epsilon_gamma(known.values, points, measured),
         doubts=doubts,
         outliers=outlying,
-        distrusted=distrusted,
         search=fitted,
         files=files,
     )

@@ -80,6 +80,36 @@ def plausible_ranges(
     return ranges
 
 
+def with_room(
+    values: Mapping[str, Any], written: Mapping[str, float], stated: Mapping[str, float]
+) -> tuple[dict[str, float], dict[str, str]]:
+    """The ranges to write, none of them empty; and where those that the sweeps do not vary come from, by quantity.
+
+    ``stated`` are the ranges that the base states. A simulation holds its inputs to the range of the file, so that an empty one
+    would fix them. What was not varied gets the range of the base if the model stays plausible in it, else a small one.
+    """
+    ranges, origin = dict(written), {}
+    for word, low, high, small in (
+        ("camber", "CAMMIN", "CAMMAX", constants.UNTESTED_CAMBER.rad),
+        ("sideslip", "ALPMIN", "ALPMAX", constants.UNTESTED_SIDESLIP.rad),
+    ):
+        if ranges[high] - ranges[low] > 2.0 * constants.UNVARIED_ANGLE.rad:
+            continue
+        ranges |= {low: -small, high: small}
+        origin[word] = f"{np.degrees(small):.0f} deg to either side"
+        end = max(-stated.get(low, 0.0), stated.get(high, 0.0))
+        theirs = {**ranges, low: -end, high: end}
+        if end > small and _worst_violation(SimpleNamespace(**values), theirs) <= constants.LIMIT_MARGIN:
+            ranges = theirs
+            origin[word] = f"the base's {np.degrees(end):.0f} deg to either side"
+    for word, low, high in (("load", "FZMIN", "FZMAX"), ("pressure", "PRESMIN", "PRESMAX")):
+        if not ranges[low] < ranges[high]:
+            share = constants.UNTESTED_SHARE
+            ranges |= {low: (1.0 - share) * ranges[low], high: (1.0 + share) * ranges[high]}
+            origin[word] = f"{share:.0%} to either side"
+    return ranges, origin
+
+
 def _wished_ends(tested: Mapping[str, float]) -> dict[str, float]:
     alpha, gamma = tested["ALPMAX"], tested["CAMMAX"]
     wider_gamma = min(constants.WRITTEN_CAMMAX_GROWTH * gamma, constants.WRITTEN_CAMMAX.rad)

@@ -43,7 +43,6 @@ class FitResult(Brief):
     epsilon_gamma_model: float | None = None  #: of the fitted model; None on a flat track
     doubts: tuple[Doubt, ...] = ()  #: sweeps that contradict the others
     outliers: tuple[Outlier, ...] = ()  #: single readings without weight
-    distrusted: tuple[str, ...] = ()  #: why the file is not to be trusted; the first of the warnings too
     search: Fitted | None = None  #: the end of the search, from which tyres are drawn
     files: Files | None = None  #: every written file and its misfit
 

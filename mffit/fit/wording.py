@@ -123,10 +123,13 @@ def pecp1_sentence(source: str, PECP1: float, epsilon_gamma: float) -> str:
 
 
 def warnings(
-    fitted: Fitted, distrusted: Sequence[str], doubts: Sequence[Doubt], outlying: Sequence[Outlier]
+    fitted: Fitted, doubts: Sequence[Doubt], outlying: Sequence[Outlier], untested: Mapping[str, str]
 ) -> tuple[str, ...]:
-    """All warnings of a fit, the most important first."""
-    out = [*distrusted]
+    """All warnings of a fit, the most important first; ``untested`` is that of the files."""
+    out = [
+        f"the sweeps do not vary the {word}: the file's range of it is {origin}, and was not tested"
+        for word, origin in untested.items()
+    ]
     if fitted.attempts:
         attempts = ", ".join(fitted.attempts)
         out.append(f"the fit was started again from {attempts}; the best of all fits is kept")

@@ -31,6 +31,7 @@ class Specimen:
     epsilon_gamma: Quantity | None  #: of the direct method
     misfit: Mapping[str, float]  #: rms by channel, [N] and [Nm]
     warnings: tuple[str, ...]
+    reasons: tuple[str, ...]  #: why the build is not to be trusted; empty for a sound one
 
 
 def read(folder: str | Path) -> Specimen:
@@ -69,6 +70,7 @@ def read(folder: str | Path) -> Specimen:
             else Quantity(float(epsilon), float(spin["u_epsilon_gamma"]), "-"),
             misfit={name: row["rmse"] for name, row in result["fit"]["channels"].items() if row["n"]},
             warnings=tuple(result["warnings"]),
+            reasons=tuple(result.get("reasons", ())),
         )
     except (OSError, LookupError, TypeError, ValueError, AttributeError, StopIteration):
         raise InputError(

@@ -19,6 +19,7 @@ from mffit.output import refuse_early
 from mffit.parts import Parts
 from mffit.pipeline.build_output import WRITTEN, write_build
 from mffit.pipeline.inputs import inputs_of, read_base, read_points
+from mffit.pipeline.judging import judged
 from mffit.pipeline.measuring import measure
 from mffit.pipeline.provenance import Annotate, annotator
 from mffit.pipeline.refining import finite_spin_bias, undistorted, without_outliers
@@ -26,6 +27,9 @@ from mffit.points import Points
 from mffit.progress import Progress, silent
 from mffit.results import BuildResult
 from tir import Tyre
+
+NOT_TRUSTED = "the result is not to be trusted: {}"
+"""The warning about a reason."""
 
 
 def build(
@@ -66,12 +70,16 @@ def build(
         refuse_early(Path(out), (*names.values(), *WRITTEN), inputs_of(config))
     with threadpool_limits(1):  # the matrices are small: threads cost more than they save
         measured, fitted = _fitted(config, reading.points, parts, measured, base, progress)
+        progress("judging what the fit leaves")
+        assert fitted.files is not None
+        files = fitted.files.by_use
+        trust, left = judged(
+            config, reading.points, measured, fitted, {use: files[use].tyre for use in names}
+        )
         if ensemble:
             progress(f"drawing {ensemble} tyres from the posterior")
-        annotated = annotator(config, measured, fitted)
+        annotated = annotator(config, measured, fitted, trust)
         members = tuple(_members(config, fitted, ensemble, annotated)) if ensemble else ()
-    assert fitted.files is not None
-    files = fitted.files.by_use
     result = BuildResult(
         config=config,
         points=reading.points,
@@ -82,8 +90,16 @@ def build(
         tyres={use: annotated(files[use].tyre, use) for use in names},
         members=members,
         plain=config.spin.exact if config.rig.on_disc else "normal",
-        warnings=(*reading.warnings, *measured.warnings, *fitted.warnings),
+        warnings=(
+            *(NOT_TRUSTED.format(reason) for reason in trust.reasons),
+            *trust.doubts,
+            *reading.warnings,
+            *measured.warnings,
+            *fitted.warnings,
+        ),
         seconds=time.perf_counter() - began,
+        trust=trust,
+        remains=left,
     )
     if out is not None:
         progress("writing the report")

@@ -20,8 +20,9 @@ from mffit.output import output_folder, refuse_early
 from mffit.pipeline.building import build
 from mffit.pipeline.correcting import CORRECTED_POINTS, CORRECTED_TOML, write_corrected
 from mffit.pipeline.inputs import inputs_of, read_base, read_points
+from mffit.pipeline.judging import judged_diagnosis
 from mffit.pipeline.measuring import epsilon_gamma, without_play
-from mffit.pipeline.provenance import fitted_to, known_of_model, rig_of_build, use_of
+from mffit.pipeline.provenance import fitted_to, known_of_model, marked, rig_of_build, use_of
 from mffit.points import Points
 from mffit.progress import Progress, silent
 from mffit.results import as_json
@@ -84,7 +85,8 @@ def diagnose(
             progress=progress,
         )
     notes = (*choice, *diagnosis.notes, *_redone(config, points, diagnosis, base))
-    diagnosis = replace(diagnosis, notes=notes)
+    diagnosis = replace(diagnosis, notes=notes, trust=judged_diagnosis(diagnosis))
+    diagnosis = replace(diagnosis, tyre=marked(diagnosis.tyre, diagnosis.trust))
     if out is not None:
         write_diagnosis(diagnosis, Path(out), protected=inputs, config=config)
     return diagnosis

@@ -115,6 +115,7 @@ def _built(job: Job) -> BuildOutcome:
         misfit=specimen.misfit,
         warnings=len(specimen.warnings),
         file=specimen.file,
+        reasons=specimen.reasons,
     )
 
 

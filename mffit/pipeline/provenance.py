@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import re
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from urllib.parse import quote
 
@@ -19,10 +20,13 @@ from mffit.measured import Measured
 from mffit.pipeline.inputs import input_hashes
 from mffit.rig_errors import BY_NAME as RIG_ERRORS
 from mffit.rig_errors import Faults
+from mffit.suspicion import Trust
 from tir import Tyre
 
 PROGRAM = "program"
 """Key of the version that wrote a file."""
+DISTRUSTED = "NOT TO BE TRUSTED"
+"""Key of the reasons in a file that is not to be trusted."""
 RIG = "rig."
 """Prefix of rig errors among the measured quantities of a file."""
 TURN_SLIP = {"turn-slip": "on", "normal": "off", "both": "on or off"}
@@ -35,7 +39,7 @@ Annotate = Callable[[Tyre, str], Tyre]
 """Adds measured quantities and provenance as structured comments to the tyre for a use."""
 
 
-def annotator(config: Config, measured: Measured, fitted: FitResult) -> Annotate:
+def annotator(config: Config, measured: Measured, fitted: FitResult, trust: Trust) -> Annotate:
     """The annotation of all files of a build; the inputs are hashed once."""
     inputs = _inputs(config)
     rig = {
@@ -49,9 +53,16 @@ def annotator(config: Config, measured: Measured, fitted: FitResult) -> Annotate
             "configuration": _settings(config),
             **inputs,
         }
-        return tyre.annotate(measured={**measured.quantities(), **rig}, provenance=provenance)
+        return marked(tyre.annotate(measured={**measured.quantities(), **rig}, provenance=provenance), trust)
 
     return annotated
+
+
+def marked(tyre: Tyre, trust: Trust) -> Tyre:
+    """The tyre with the reasons against trusting it in its comments, and without those of an earlier judgement."""
+    kept = {key: text for key, text in tyre.provenance.items() if key != DISTRUSTED}
+    reasons = {} if trust.trusted else {DISTRUSTED: "; ".join(trust.reasons)}
+    return replace(tyre, provenance={**reasons, **kept})
 
 
 def use_of(tyre: Tyre) -> str | None:

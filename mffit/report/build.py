@@ -9,12 +9,13 @@ from pathlib import Path
 
 import numpy as np
 
+from mffit.diagnosis import wording as of_residuals
 from mffit.measured import constants, wording
 from mffit.quantities import CHANNELS, CONDITIONS, DIRECT
 from mffit.report import page, published
 from mffit.report.build_view import PER_LOAD, STATUS_ORDER, BuildView, ChannelRow, CoefficientRow, view_of
 from mffit.report.drawing.records import Sheet
-from mffit.report.figures import bands, decomposition, files, fit, residuals, spin
+from mffit.report.figures import bands, decomposition, files, fit, residuals, spin, structure
 from mffit.results import BuildResult
 
 SECTION_TITLES = {
@@ -50,6 +51,7 @@ def write_build(result: BuildResult, folder: Path) -> None:
         places=PLACES,
         epsilon_values=wording.epsilon_values(result.measured),
         of_spin=wording,
+        of_residuals=of_residuals,
         conditions=CONDITIONS,
         direct=DIRECT,
         per_load=PER_LOAD,
@@ -82,6 +84,8 @@ def _figures(view: BuildView) -> dict[str, Callable[[], Sheet]]:
     out["residuals"] = partial(
         residuals.residual_maps, view.points, scaled, view.conditions, residual_unit(view)
     )
+    if any(c.bins for c in view.remains.structure.comparisons):
+        out["structure"] = partial(structure.residual_means, view.remains.structure)
     return out
 
 

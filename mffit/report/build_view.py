@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from mffit.config import Config
+from mffit.diagnosis.remains import Remains
 from mffit.fit import Agreement, Coefficient, Posterior, StageRecord
 from mffit.fit.coverage import StageCoverage
 from mffit.fit.files import Files
@@ -19,7 +20,7 @@ from mffit.report.channel import NamedChannel
 from mffit.report.curves import Curve, CurveCondition, conditions, curves
 from mffit.report.lines import CurveLine, model_lines
 from mffit.results import BuildResult
-from mffit.suspicion import Doubt, Outlier
+from mffit.suspicion import Doubt, Outlier, Trust
 from tir import Tyre
 from tir.parameters import BY_NAME
 
@@ -107,7 +108,8 @@ class BuildView:
     tir_name: str
     model: Tyre  #: the fitted model
     posterior: Posterior  #: covariance of what was fitted
-    distrusted: tuple[str, ...]  #: reasons against trusting the file
+    trust: Trust  #: the judgement of the result
+    remains: Remains  #: what the fit leaves of the readings
     files: Files | None  #: None if no file was written
     file_names: Mapping[str, str]  #: by use
     doubts: tuple[Doubt, ...]  #: sweeps that do not fit the others
@@ -167,7 +169,8 @@ def view_of(result: BuildResult) -> BuildView:
         tir_name=result.tir_path,
         model=fit.tyre,
         posterior=fit.posterior,
-        distrusted=fit.distrusted,
+        trust=result.trust,
+        remains=result.remains,
         files=fit.files,
         file_names=dict(result.files),
         doubts=fit.doubts,

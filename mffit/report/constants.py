@@ -78,3 +78,5 @@ MOST_ROWS_COMPARED = Count(30, "-", "Most rows of a table in the page of a compa
 MOST_CANDIDATE_RUNS_IN_PAGE = Count(15, "-", "Candidate runs listed in the page of a plan.")
 MOST_CANDIDATE_RUNS_IN_TERMINAL = Count(6, "-", "Candidate runs listed in a terminal, which scrolls.")
 MOST_ROWS_IN_TERMINAL = Count(12, "-", "Most rows of a table in a terminal if a file or page has all.")
+
+PANELS_PER_ROW_OF_MEANS = Count(3, "-", "Panels beside each other in the picture of mean residuals.")

@@ -9,10 +9,12 @@ from typing import Literal
 
 from mffit.brief import Brief
 from mffit.config import Config
+from mffit.diagnosis.remains import NOTHING_REMAINS, Remains
 from mffit.fit import FitResult
 from mffit.measured import Measured
 from mffit.parts import Parts
 from mffit.points import Points
+from mffit.suspicion import SOUND, Trust
 from tir import Quantity, Tyre
 
 
@@ -31,11 +33,23 @@ class BuildResult(Brief):
     warnings: tuple[str, ...]
     seconds: float
     members: tuple[Tyre, ...] = ()  #: drawn from the posterior, if requested
+    trust: Trust = SOUND  #: the judgement by all rules
+    remains: Remains = NOTHING_REMAINS  #: what the fit leaves of the readings
 
     @property
     def headline(self) -> str:
         """Name of the tyre, its eps_gamma if measured, and the misfit of the model."""
         return ", ".join(filter(None, (self.config.tyre.name, self.measured.headline, self.fit.headline)))
+
+    @property
+    def trusted(self) -> bool:
+        """Whether nothing speaks against the result."""
+        return self.trust.trusted
+
+    @property
+    def reasons(self) -> tuple[str, ...]:
+        """Why the result is not to be trusted, as sentences; empty for a sound one."""
+        return self.trust.reasons
 
     @property
     def on_disc(self) -> bool:
@@ -70,8 +84,14 @@ class BuildOutcome:
     misfit: Mapping[str, float] = field(default_factory=dict)  #: rms by channel, [N] and [Nm]
     warnings: int = 0
     file: str = ""  #: the property file with the plain name, in ``out``
+    reasons: tuple[str, ...] = ()  #: why the result is not to be trusted; empty for a sound one
 
     @property
     def whole(self) -> bool:
         """Whether its output is complete."""
         return self.state in ("built", "unchanged")
+
+    @property
+    def trusted(self) -> bool:
+        """Whether it was built, and nothing speaks against the result."""
+        return self.whole and not self.reasons

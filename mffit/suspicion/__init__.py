@@ -9,20 +9,27 @@ from mffit.suspicion.prediction import FittedModel
 from mffit.suspicion.rule import When
 from mffit.suspicion.rules import RULES
 from mffit.suspicion.slopes import contradictions, signatures
-from mffit.suspicion.trust import distrust
+from mffit.suspicion.trust import SOUND, FinishedFit, HeldNumber, LeftOut, Trust, judge
+from mffit.suspicion.unpublished import CamberReduction
 
 __all__ = [
     "RULES",
+    "SOUND",
+    "CamberReduction",
     "Doubt",
+    "FinishedFit",
     "FittedModel",
+    "HeldNumber",
     "JudgedSweeps",
+    "LeftOut",
     "Misread",
     "Outlier",
+    "Trust",
     "When",
     "after_the_fit",
     "before_the_fit",
     "contradictions",
-    "distrust",
+    "judge",
     "marks",
     "misread",
     "outliers",

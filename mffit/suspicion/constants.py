@@ -89,7 +89,36 @@ EXPLAINED_BY_ONE_NUMBER = Real(
 )
 
 # The fitted model
-MISFIT_OVER_NOISE = Real(2.0, "-", "Misfit over stated noise above which a file is not trusted.")
+DISTRUSTED_MISFIT = Real(1.5, "-", "Misfit over stated noise above which a file is not trusted.")
+MISFIT_IN_DOUBT = Real(1.2, "-", "Misfit over stated noise above which a file is in doubt.")
+CERTAIN_SIGMA = Real(
+    5.0, "-", "Standard deviations beyond which chance explains neither a misfit nor a bound that is hit."
+)
+DOUBTFUL_SIGMA = Real(
+    3.5, "-", "Standard deviations beyond which chance does not explain a misfit that is in doubt."
+)
+FEWEST_SWEEPS_OF_A_FORMULA = Count(5, "-", "Fewest sweeps whose prediction says what limits a model.")
+PREDICTED_AS_WELL_AS_FITTED = Real(
+    1.1,
+    "-",
+    "Error of left-out sweeps over that of fitted ones up to which a misfit is the formula's; mistakes in some sweeps exceed it.",
+)
+UNEVEN_SWEEPS = Real(
+    2.0, "-", "Misfit of the worst sweep over the median sweep's up to which all sweeps share the misfit."
+)
+SHARE_OF_A_GOOD_FORMULA = Real(
+    0.95, "-", "Share of the variance that a formula explains whose misfit is its own and not a mistake's."
+)
+SHARE_OF_A_BOUND = Real(0.05, "-", "Share of the misfit from which a bound matters that holds a coefficient.")
+LEAST_PUBLISHED_EPSILON = Real(
+    -0.4, "-", "Camber reduction factors below are outside everything published.", "docs/method.md"
+)
+MOST_PUBLISHED_EPSILON = Real(
+    0.3, "-", "Camber reduction factors above are outside everything published.", "docs/method.md"
+)
+USUAL_PUBLISHED_EPSILON = Real(
+    -0.06, "-", "Mean camber reduction factor of six published tyres.", "Mottola and Massaro 2022, Table 2"
+)
 EXPLAINED_VARIANCE = Real(0.5, "-", "Share of a channel's variance that a trusted model explains.")
 CARRIED_MISFIT = Real(1.5, "-", "Misfit over that of all points above which a sweep is named.")
 SWEEPS_NAMED_WITH_MISFIT = Count(3, "-", "Most sweeps that are named with a misfit.")

@@ -49,7 +49,7 @@ RULES: tuple[Rule, ...] = (
     others.implausible_sweep,
     others.doubtful_sweep,
     outliers.OUTLYING,
-    trust.above_noise,
-    trust.unexplained,
+    *trust.REASONS,
+    *trust.DOUBTS,
     misread.misread_sweep,
 )

@@ -1,11 +1,20 @@
-"""Why a fitted model is not to be trusted: its misfit is far above the noise, or it explains little of a channel."""
+"""Whether a fitted model is to be trusted: the one place that decides it, for terminal, page, JSON and file alike.
+
+Where a noise is stated, the misfit is compared with it. Real tyres do not follow the formula to within the scatter of a sensor:
+if no noise is stated, or many sweeps miss it alike and predict each other as well as they are fitted, then the prediction of
+left-out sweeps and the share of the variance that is explained decide.
+"""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from functools import partial
 from typing import Any
 
 import numpy as np
+from scipy.special import chdtrc, ndtr
 
 from mffit.points import Points
 from mffit.quantities import CHANNELS
@@ -13,64 +22,325 @@ from mffit.rig import Readings
 from mffit.scatter import rms
 from mffit.suspicion import constants
 from mffit.suspicion.rule import Outcome, Subject, When, rule
+from mffit.suspicion.unpublished import CamberReduction, causes
 
 
-@rule(
+@dataclass(frozen=True, slots=True)
+class LeftOut:
+    """How well sweeps are predicted from all others, one channel [N] or [Nm]."""
+
+    sweeps: int
+    fitted: float  #: rms of the residuals of the fit
+    predicted: float  #: rms of the predictions of left-out sweeps
+    typical: float  #: median over the sweeps of the rms of their predictions
+    uneven: float  #: rms of the worst sweep's residuals over that of the median sweep
+
+
+@dataclass(frozen=True, slots=True)
+class HeldNumber:
+    """A number that a bound or a physical limit holds."""
+
+    name: str
+    sigma: float  #: standard deviations by which the readings contradict the bound
+    share: float  #: of the sum of squares of the residuals that is due to it
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class FinishedFit:
+    """What the rules of trust look at."""
+
+    points: Points
+    model: Readings  #: what the fitted model reads
+    used: Mapping[str, np.ndarray]  #: by channel, mask (n,) of the readings that have a weight
+    r2: Mapping[str, float]  #: by channel, share of the variance that the model explains
+    left_out: Mapping[str, LeftOut] = field(default_factory=dict)
+    structured: frozenset[str] = frozenset()  #: channels whose residuals are not random
+    structure: str = ""  #: where, in words
+    cause: str = ""  #: the effect that would explain most of the residuals, in words
+    cause_is_certain: bool = False  #: whether chance does not explain it
+    held: tuple[HeldNumber, ...] = ()
+    broken: tuple[str, ...] = ()  #: what the check of the written files refuses, as sentences
+    camber_reduction: CamberReduction | None = None
+
+    def misfit(self, channel: str, rows: np.ndarray | None = None) -> tuple[float, int]:
+        """Misfit over the stated noise (rms) at the used readings that state one, some rows (mask (n,)) only; their number."""
+        u = getattr(self.points, f"u_{channel}")
+        known = self.used[channel] & np.isfinite(u) & (u > 0.0)
+        if rows is not None:
+            known = known & rows
+        z = (getattr(self.model, channel) - getattr(self.points, channel))[known] / u[known]
+        return rms(z), int(known.sum())
+
+    def far(self, channel: str, limit: float, sigma: float, rows: np.ndarray | None = None) -> bool:
+        """Whether the misfit over the noise exceeds a limit, by more than chance explains."""
+        ratio, n = self.misfit(channel, rows)
+        return bool(n) and ratio > limit and bool(chdtrc(n, n * ratio**2) < ndtr(-sigma))
+
+    def doubtful(self, channel: str) -> bool:
+        """Whether a channel misses the noise."""
+        return self.far(channel, constants.MISFIT_IN_DOUBT, constants.DOUBTFUL_SIGMA)
+
+    def wrong(self, channel: str, rows: np.ndarray | None = None) -> bool:
+        """Whether a channel misses the noise so far that the fit is not trusted."""
+        return self.far(channel, constants.DISTRUSTED_MISFIT, constants.CERTAIN_SIGMA, rows)
+
+    def of_the_formula(self, channel: str) -> bool:
+        """Whether the misfit is the formula's: structure that all sweeps share, and that is predicted as well as fitted."""
+        seen = self.left_out.get(channel)
+        return (
+            seen is not None
+            and channel in self.structured
+            and seen.sweeps >= constants.FEWEST_SWEEPS_OF_A_FORMULA
+            and seen.predicted <= constants.PREDICTED_AS_WELL_AS_FITTED * seen.fitted
+            and seen.uneven <= constants.UNEVEN_SWEEPS
+            and self.r2[channel] >= constants.SHARE_OF_A_GOOD_FORMULA
+        )
+
+
+@dataclass(frozen=True, slots=True)
+class Trust:
+    """The judgement of a result."""
+
+    reasons: tuple[str, ...] = ()  #: against trusting it; empty for a sound one
+    doubts: tuple[str, ...] = ()  #: what the engineer should look at
+    remarks: tuple[str, ...] = ()  #: what limits a result that is sound
+    over_noise: Mapping[str, float] = field(default_factory=dict)
+    """By channel, misfit over stated noise; NaN where none is stated."""
+
+    @property
+    def trusted(self) -> bool:
+        """Whether nothing speaks against the result."""
+        return not self.reasons
+
+
+SOUND = Trust()
+"""Nothing was judged, and nothing is against it."""
+of_model = partial(rule, subject=Subject.MODEL, when=(When.AFTER,))
+
+
+@of_model(
     id="misfit-above-noise",
-    subject=Subject.MODEL,
-    when=(When.AFTER,),
-    limits=(constants.MISFIT_OVER_NOISE, constants.CARRIED_MISFIT),
+    limits=(constants.DISTRUSTED_MISFIT, constants.CERTAIN_SIGMA, constants.CARRIED_MISFIT),
     outcome=Outcome.DISTRUSTED,
-    sentence="the file is not to be trusted: the model misses {channel} by {scale:.1f} times the stated uncertainty{carriers}; "
-    "look at these sweeps, or run mffit diagnose",
+    sentence="the model misses {channel} by {ratio:.1f} times its stated uncertainty{carriers}; {cause}; look at these sweeps, "
+    "or run mffit diagnose",
 )
-def above_noise(points: Points, model: Readings, scale: Mapping[str, float]) -> Iterator[dict[str, Any]]:
-    """Misfit of the model over the stated uncertainty, channel by channel."""
-    for name, ratio in scale.items():
-        u = getattr(points, f"u_{name}")
-        if ratio > constants.MISFIT_OVER_NOISE and np.any(np.isfinite(u)):
-            z = (getattr(model, name) - getattr(points, name)) / u
-            yield {"channel": name, "scale": ratio, "carriers": _carriers(points, z)}
+def above_noise(fit: FinishedFit) -> Iterator[dict[str, Any]]:
+    """Misfit of the model over the stated uncertainty, channel by channel, unless it is the formula's."""
+    for name in CHANNELS:
+        if fit.wrong(name) and not fit.of_the_formula(name):
+            facts = {"channel": name, "ratio": fit.misfit(name)[0], "carriers": _carriers(fit, name)}
+            yield {**facts, "cause": _cause(fit)}
 
 
-@rule(
+@of_model(
+    id="sweep-above-noise",
+    limits=(constants.DISTRUSTED_MISFIT, constants.CERTAIN_SIGMA),
+    outcome=Outcome.DISTRUSTED,
+    sentence="the model misses {channel} of {sweep} by {ratio:.1f} times its stated uncertainty, which chance does not explain"
+    "{others}{cause}; check this sweep or repeat it",
+)
+def sweep_above_noise(fit: FinishedFit) -> Iterator[dict[str, Any]]:
+    """Chi-square of the misfit of a sweep against its number of readings, channel by channel, unless it is the formula's."""
+    for name in CHANNELS:
+        if fit.of_the_formula(name):
+            continue
+        off = {k: row for k, row in _by_sweep(fit, name).items() if _sweep_is_far(fit, name, k)}
+        if off:
+            worst = max(off, key=lambda k: off[k])
+            others = [fit.points.sweep_names[k] for k in sorted(off, key=lambda k: -off[k]) if k != worst]
+            said = f" (also {', '.join(others[: constants.SWEEPS_NAMED_WITH_MISFIT])})" if others else ""
+            sweep = fit.points.sweep_names[worst]
+            cause = "" if any(above_noise.find(fit)) else f"; {_cause(fit)}"
+            yield {"channel": name, "sweep": sweep, "ratio": off[worst], "others": said, "cause": cause}
+
+
+@of_model(
+    id="doubtful-misfit",
+    limits=(constants.MISFIT_IN_DOUBT, constants.DISTRUSTED_MISFIT, constants.DOUBTFUL_SIGMA),
+    outcome=Outcome.WARNED,
+    sentence="the misfit of {channel} is {ratio:.2f} times its stated uncertainty, largest in {sweep} ({own:.1f} times); "
+    "{cause}; check this sweep and the stated uncertainty",
+)
+def doubtful_misfit(fit: FinishedFit) -> Iterator[dict[str, Any]]:
+    """Misfit of the model over the stated uncertainty, below the limit of trust."""
+    for name in CHANNELS:
+        ratio, _ = fit.misfit(name)
+        if fit.doubtful(name) and ratio <= constants.DISTRUSTED_MISFIT:
+            rows = _by_sweep(fit, name)
+            worst = max(rows, key=lambda k: rows[k])
+            sweep = fit.points.sweep_names[worst]
+            facts = {"channel": name, "ratio": ratio, "sweep": sweep, "own": rows[worst]}
+            yield {**facts, "cause": _cause(fit)}
+
+
+@of_model(
     id="unexplained-variance",
-    subject=Subject.MODEL,
-    when=(When.AFTER,),
     limits=(constants.EXPLAINED_VARIANCE,),
     outcome=Outcome.DISTRUSTED,
-    sentence="the file is not to be trusted: the model explains {percent:.0f} % of the variance of {channel}; are these "
-    "readings of free rolling at steady state, and their units and axes right?",
+    sentence="the model explains {percent:.0f} % of the variance of {channel}; are these readings of free rolling at steady "
+    "state, and their units and axes right?",
 )
-def unexplained(r2: Mapping[str, float]) -> Iterator[dict[str, Any]]:
+def unexplained(fit: FinishedFit) -> Iterator[dict[str, Any]]:
     """Share of a channel's variance that the model explains."""
     for name in CHANNELS:
-        if r2[name] < constants.EXPLAINED_VARIANCE:
-            yield {"channel": name, "percent": 100.0 * max(r2[name], 0.0)}
+        if fit.r2[name] < constants.EXPLAINED_VARIANCE:
+            yield {"channel": name, "percent": 100.0 * max(fit.r2[name], 0.0)}
 
 
-def distrust(
-    points: Points, model: Readings, scale: Mapping[str, float], r2: Mapping[str, float]
-) -> tuple[str, ...]:
-    """Why the file of a fit is not to be trusted; empty for a sound fit.
+@of_model(
+    id="unpredicted-sweeps",
+    limits=(constants.EXPLAINED_VARIANCE, constants.FEWEST_SWEEPS_OF_A_FORMULA),
+    outcome=Outcome.DISTRUSTED,
+    sentence="a sweep that is left out is predicted from the others to {typical:.3g} {unit} (median) where the fit misses "
+    "{fitted:.3g} {unit}: the model explains less than half of {channel} where it was not fitted; check that all sweeps are of "
+    "one tyre and one rig",
+)
+def unpredicted(fit: FinishedFit) -> Iterator[dict[str, Any]]:
+    """Share of a channel's variance that is predicted in left-out sweeps, where no noise is stated."""
+    for name, seen in fit.left_out.items():
+        spread = float(np.nanstd(getattr(fit.points, name)))
+        poor = seen.typical**2 > (1.0 - constants.EXPLAINED_VARIANCE) * spread**2
+        if poor and seen.sweeps >= constants.FEWEST_SWEEPS_OF_A_FORMULA and not fit.misfit(name)[1]:
+            unit = CHANNELS[name].unit
+            yield {"channel": name, "typical": seen.typical, "fitted": seen.fitted, "unit": unit}
 
-    Parameters
-    ----------
-    points, model : what was measured, and what the fitted model reads there
-    scale : by channel, robust misfit over stated uncertainty
-    r2 : by channel, share of the variance that the model explains
-    """
-    return (
-        *(above_noise.said(facts) for facts in above_noise.find(points, model, scale)),
-        *(unexplained.said(facts) for facts in unexplained.find(r2)),
+
+@of_model(
+    id="bound-against-the-data",
+    limits=(constants.CERTAIN_SIGMA, constants.SHARE_OF_A_BOUND),
+    outcome=Outcome.DISTRUSTED,
+    sentence="a limit holds {name} against the readings ({sigma:.0f} standard deviations, {percent:.0f} % of the misfit): no "
+    "plausible tyre fits these sweeps; check what determines {name}",
+)
+def bound_against_data(fit: FinishedFit) -> Iterator[dict[str, Any]]:
+    """Misfit that is due to a bound or a physical limit of a coefficient."""
+    for held in fit.held:
+        if held.sigma > constants.CERTAIN_SIGMA and held.share > constants.SHARE_OF_A_BOUND:
+            yield {"name": held.name, "sigma": held.sigma, "percent": 100.0 * held.share}
+
+
+@of_model(
+    id="physical-limit-broken",
+    outcome=Outcome.DISTRUSTED,
+    sentence="the file breaks a physical limit: {problem}",
+)
+def limit_broken(fit: FinishedFit) -> Iterator[dict[str, Any]]:
+    """Errors that `mffit check` finds in the written files."""
+    yield from ({"problem": problem} for problem in fit.broken)
+
+
+@of_model(
+    id="unpublished-camber-reduction",
+    limits=(constants.LEAST_PUBLISHED_EPSILON, constants.MOST_PUBLISHED_EPSILON),
+    outcome=Outcome.DISTRUSTED,
+    sentence="eps_gamma = {value:.3f} +- {u:.3f} is outside everything published (six tyres lie between -0.19 and 0.02); "
+    "likeliest causes: {causes}",
+)
+def unpublished(fit: FinishedFit) -> Iterator[dict[str, Any]]:
+    """Measured camber reduction factor beside those of published tyres."""
+    found = fit.camber_reduction
+    if found is not None and not (
+        constants.LEAST_PUBLISHED_EPSILON <= found.value <= constants.MOST_PUBLISHED_EPSILON
+    ):
+        yield {"value": found.value, "u": found.u, "causes": causes(found)}
+
+
+@of_model(
+    id="effect-in-the-residuals",
+    limits=(constants.MISFIT_IN_DOUBT,),
+    outcome=Outcome.WARNED,
+    sentence="the residuals show an effect that the model lacks: {cause}; run mffit diagnose",
+)
+def effect_left(fit: FinishedFit) -> Iterator[dict[str, Any]]:
+    """Score test of every effect beside the fitted numbers, where the noise is stated; their number is accounted for."""
+    said = any(any(r.find(fit)) for r in (above_noise, sweep_above_noise, doubtful_misfit))
+    if fit.cause_is_certain and _noise_is_stated(fit) and not said:
+        yield {"cause": fit.cause}
+
+
+@of_model(
+    id="structure-in-the-residuals",
+    outcome=Outcome.WARNED,
+    sentence="the residuals are not random: {structure}; see plots/structure.png",
+)
+def structure_left(fit: FinishedFit) -> Iterator[dict[str, Any]]:
+    """Means of residuals over each condition and their neighbours along sweeps, where the noise is stated."""
+    if fit.structure and _noise_is_stated(fit):
+        yield {"structure": fit.structure}
+
+
+REMARKED = (
+    "what limits {channel} is the formula, not the noise: it misses {fitted:.3g} {unit} rms in all sweeps alike, explains "
+    "{percent:.2f} % of the variance, and predicts left-out sweeps to {predicted:.3g} {unit}"
+)
+
+
+def judge(fit: FinishedFit) -> Trust:
+    """The judgement of a fit by all rules of trust."""
+    return Trust(
+        reasons=tuple(r.said(facts) for r in REASONS for facts in r.find(fit)),
+        doubts=tuple(r.said(facts) for r in DOUBTS for facts in r.find(fit)),
+        remarks=tuple(_remarks(fit)),
+        over_noise={name: fit.misfit(name)[0] for name in CHANNELS},
     )
 
 
-def _carriers(points: Points, z: np.ndarray) -> str:
-    """The sweeps with most of a misfit (n,), in words."""
-    known = np.isfinite(z)
-    total = rms(z)
-    own = {k: rms(z[points.sweep == k]) for k in np.unique(points.sweep[known])}
+REASONS = (
+    above_noise,
+    sweep_above_noise,
+    unexplained,
+    unpredicted,
+    bound_against_data,
+    limit_broken,
+    unpublished,
+)
+"""Rules whose findings make a file not to be trusted, the gravest first."""
+DOUBTS = (doubtful_misfit, effect_left, structure_left)
+"""Rules whose findings are warnings."""
+
+
+def _remarks(fit: FinishedFit) -> Iterator[str]:
+    """What limits a sound result, where that is not the noise."""
+    limited = [
+        name for name in fit.left_out if fit.of_the_formula(name) and not _reaches_the_noise(fit, name)
+    ]
+    for name in limited:
+        seen, unit = fit.left_out[name], CHANNELS[name].unit
+        facts = {"fitted": seen.fitted, "predicted": seen.predicted, "percent": 100.0 * fit.r2[name]}
+        yield REMARKED.format(channel=name, unit=unit, **facts)
+    if limited:
+        yield f"of what the formula misses, {_cause(fit)}"
+
+
+def _reaches_the_noise(fit: FinishedFit, channel: str) -> bool:
+    return bool(fit.misfit(channel)[1]) and not fit.doubtful(channel)
+
+
+def _noise_is_stated(fit: FinishedFit) -> bool:
+    """Whether residuals are judged by a noise: a channel states one, and no misfit is the formula's."""
+    stated = [name for name in CHANNELS if fit.misfit(name)[1]]
+    return bool(stated) and not any(fit.of_the_formula(n) and fit.doubtful(n) for n in stated)
+
+
+def _cause(fit: FinishedFit) -> str:
+    """What would explain a misfit, in words."""
+    return fit.cause if fit.cause_is_certain else "no known effect explains it"
+
+
+def _by_sweep(fit: FinishedFit, channel: str) -> dict[int, float]:
+    """Misfit over the stated noise of every sweep that states one."""
+    rows = {k: fit.misfit(channel, fit.points.sweep == k)[0] for k in np.unique(fit.points.sweep).tolist()}
+    return {k: ratio for k, ratio in rows.items() if math.isfinite(ratio)}
+
+
+def _sweep_is_far(fit: FinishedFit, channel: str, k: int) -> bool:
+    return fit.wrong(channel, fit.points.sweep == k)
+
+
+def _carriers(fit: FinishedFit, channel: str) -> str:
+    """The sweeps with most of a misfit, in words."""
+    total, own = fit.misfit(channel)[0], _by_sweep(fit, channel)
     large = [k for k in sorted(own, key=lambda k: -own[k]) if own[k] > constants.CARRIED_MISFIT * total]
-    names = ", ".join(points.sweep_names[k] for k in large[: constants.SWEEPS_NAMED_WITH_MISFIT])
+    names = ", ".join(fit.points.sweep_names[k] for k in large[: constants.SWEEPS_NAMED_WITH_MISFIT])
     return f", most of it in {names}" if names else ""

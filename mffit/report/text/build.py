@@ -8,6 +8,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
+from mffit.diagnosis import wording
 from mffit.fit import Coefficient
 from mffit.quantities import CHANNELS
 from mffit.report.text.direct import spin_numbers
@@ -20,7 +21,7 @@ from tir.parameters import BY_NAME
 def build_summary(result: BuildResult) -> str:
     """The text that ``mffit build`` prints at its end."""
     fit = result.fit
-    parts = [wrapped(f"NOT TO BE TRUSTED: {sentence}.") for sentence in fit.distrusted]
+    parts = [wrapped(f"NOT TO BE TRUSTED: {sentence}.") for sentence in result.reasons]
     parts += [wrapped(sentence) for sentence in fit.explanations[:1]]
     if result.measured.epsilon_gamma is not None:
         parts.append(spin_numbers(result.measured))
@@ -38,6 +39,8 @@ def build_summary(result: BuildResult) -> str:
         if (a := fit.channels.get(name)) is not None and a.n
     ]
     parts.append(table(("fit", "points", "rms", "of noise", "largest", "R2"), rows))
+    parts += [wrapped(f"Limit: {sentence}.") for sentence in result.trust.remarks]
+    parts.append(_residuals(result))
     parts.append(_statuses(fit.coefficients))
     if fit.outliers or fit.doubts:
         parts.append(
@@ -45,6 +48,22 @@ def build_summary(result: BuildResult) -> str:
         )
     parts.append(paragraphs(fit.explanations[1:]))
     return blocks(parts)
+
+
+def _residuals(result: BuildResult) -> str:
+    """What explains the residuals best, if that is significant or the result is in doubt; and whether they are random."""
+    effect, lines = result.remains.effect, []
+    in_doubt = bool(result.reasons or result.trust.doubts)
+    if result.trust.remarks:  # they name it already
+        pass
+    elif effect is not None and effect.significant:
+        lines.append(wrapped(f"best known effect in the residuals: {wording.best_effect(effect)}"))
+    elif in_doubt:
+        lines.append("best known effect in the residuals: none known")
+    found = wording.structure(result.remains.structure)
+    if found:
+        lines.append(wrapped(f"residuals are not random: {found}; plots/structure.png"))
+    return "\n".join(lines)
 
 
 def _statuses(coefficients: Mapping[str, Coefficient]) -> str:

@@ -25,6 +25,7 @@ def diagnosis_summary(diagnosis: Diagnosis) -> str:
     rows.append(("noise", diagnosis.noise.Fy, diagnosis.noise.Mz, 1.0))
     head = ("gap, rms", *(channel.column(name) for name, channel in CHANNELS.items()), "chi2 per dof")
     parts = [
+        *(wrapped(f"NOT TO BE TRUSTED: {sentence}.") for sentence in diagnosis.reasons),
         wrapped(diagnosis.headline),
         table(head, [(name, *(number(value, digits=3) for value in values)) for name, *values in rows]),
         *(_effect(found, diagnosis.signs) for found in diagnosis.effects),

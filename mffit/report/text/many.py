@@ -28,6 +28,7 @@ def many_summary(outcomes: Sequence[BuildOutcome]) -> str:
         DIRECT["epsilon_gamma"].ascii,
         *(c.column(f"{n} rms") for n, c in CHANNELS.items()),
         "warnings",
+        "trusted",
     )
     whole = [o for o in outcomes if o.whole]
     rows = [
@@ -36,6 +37,7 @@ def many_summary(outcomes: Sequence[BuildOutcome]) -> str:
             stated(o.epsilon_gamma),
             *(number(o.misfit.get(name), digits=3) for name in CHANNELS),
             str(o.warnings),
+            "yes" if o.trusted else "NO",
         )
         for o in whole
     ]

@@ -4,11 +4,14 @@ from __future__ import annotations
 
 import json
 import math
+from collections.abc import Mapping
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
 from mffit import fleet as combining
+from mffit.diagnosis.one_step import BestEffect
+from mffit.diagnosis.remains import Remains
 from mffit.fit import Coefficient, FitResult
 from mffit.fit.files import Files
 from mffit.measured import KEYS, LoadResult, Measured
@@ -17,13 +20,19 @@ from mffit.results.records import BuildResult
 from mffit.rig_errors import UNITS
 from mffit.suspicion import Doubt, Outlier
 
+NOT_JUDGED: Mapping[str, float] = {}
+
 
 def build(result: BuildResult) -> dict[str, Any]:
     """The content of ``result.json``."""
     return {
+        "trusted": result.trusted,
+        "reasons": list(result.reasons),
         "tyre": result.config.tyre.model_dump(exclude_none=True),
         "spin": spin(result.measured),
-        "fit": fit(result.fit),
+        "fit": fit(result.fit, result.trust.over_noise),
+        "residuals": residuals(result.remains),
+        "remarks": list(result.trust.remarks),
         "tir": result.tir_path,
         "files": dict(result.files),
         "warnings": list(result.warnings),
@@ -51,10 +60,12 @@ def spin(measured: Measured) -> dict[str, Any]:
     }
 
 
-def fit(found: FitResult) -> dict[str, Any]:
-    """The ``fit`` part of ``result.json``."""
+def fit(found: FitResult, over_noise: Mapping[str, float] = NOT_JUDGED) -> dict[str, Any]:
+    """The ``fit`` part of ``result.json``; ``over_noise`` is the misfit of each channel over its stated noise."""
     return {
-        "channels": {name: asdict(row) for name, row in found.channels.items()},
+        "channels": {
+            name: {**asdict(row), "over_noise": over_noise.get(name)} for name, row in found.channels.items()
+        },
         "odd": {name: asdict(row) for name, row in found.odd.items()},
         "coefficients": {name: _coefficient(row) for name, row in found.coefficients.items()},
         "rig": {
@@ -69,6 +80,37 @@ def fit(found: FitResult) -> dict[str, Any]:
         "files": _files(found.files) if found.files is not None else {},
         "explanations": list(found.explanations),
         "seconds": found.seconds,
+    }
+
+
+def residuals(found: Remains) -> dict[str, Any]:
+    """What the fit leaves: the effect that would explain it best (null if none can be seen), structure, prediction."""
+    return {
+        "effect": None if found.effect is None else _best_effect(found.effect),
+        "structure": {
+            "chance": found.structure.chance,
+            "comparisons": len(found.structure.comparisons),
+            "found": [
+                {"channel": c.channel, "over": c.over, "log_chance": c.log_chance}
+                for c in found.structure.found
+            ],
+        },
+        "held": [picked(row, "name", "sigma", "share") for row in found.held],
+        "left_out": {name: asdict(row) for name, row in found.left_out.items()},
+    }
+
+
+def _best_effect(found: BestEffect) -> dict[str, Any]:
+    step = found.best
+    return {
+        **picked(step.effect, "id", "name", "kind"),
+        "parameters": {name: {"value": value, "stderr": u} for name, (value, u) in step.numbers.items()},
+        "share": step.share,
+        "sigma": found.sigma,
+        "chance": found.chance,
+        "significant": found.significant,
+        "as_good": [other.effect.id for other in found.rivals],
+        "tried": found.tried,
     }
 
 

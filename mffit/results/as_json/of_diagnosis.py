@@ -15,6 +15,8 @@ from mffit.results.as_json.values import picked
 def diagnosis(found: Diagnosis) -> dict[str, Any]:
     """The content of ``diagnosis.json``."""
     return {
+        "trusted": found.trusted,
+        "reasons": list(found.reasons),
         "headline": found.headline,
         "gap_before": asdict(found.gap_before),
         "gap_after": asdict(found.gap_after),

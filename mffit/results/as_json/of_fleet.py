@@ -24,6 +24,8 @@ def outcome(found: BuildOutcome) -> dict[str, Any]:
         "epsilon_gamma": value_of(found.epsilon_gamma),
         "rmse": dict(found.misfit),
         "warnings": found.warnings,
+        "trusted": found.trusted if found.whole else None,
+        "reasons": list(found.reasons),
         "tir": found.file or None,
     }
 

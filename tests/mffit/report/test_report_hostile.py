@@ -12,7 +12,7 @@ from report_toys import TRUE, made_config, made_points, made_result, programme
 import tir
 from mffit.diagnosis import diagnose
 from mffit.report import write_build, write_diagnosis
-from mffit.suspicion import Doubt, Outlier
+from mffit.suspicion import Doubt, Outlier, Trust
 
 HOSTILE = "<img src=x onerror=alert(1)>\"'$^&amp;</style></title><script>alert(2)</script>"
 """Breaks out of an element, an attribute, a style sheet, a title and the type setting of a picture."""
@@ -76,7 +76,6 @@ def test_the_build_report_shows_hostile_names_as_text(settings, tmp_path):
         doubts=(Doubt(HOSTILE, HOSTILE, np.arange(3), "Fy", 9.0, 3.0, 0.1, HOSTILE),),
         outliers=(Outlier(HOSTILE, 3, HOSTILE, 2, "Fy", 1.0, 2.0, 9.0),),
         explanations=(HOSTILE, HOSTILE),
-        distrusted=(HOSTILE,),
     )
     write_build(
         dataclasses.replace(
@@ -84,6 +83,7 @@ def test_the_build_report_shows_hostile_names_as_text(settings, tmp_path):
             config=settings,
             points=hostile(result.points),
             fit=fit,
+            trust=Trust(reasons=(HOSTILE,), remarks=(HOSTILE,)),
             warnings=(HOSTILE,),
             files={"turn-slip": f"{HOSTILE}.tir"},
             tyres={"turn-slip": result.tyre.annotate(provenance={f"input {HOSTILE}": "0123456789abcdef"})},

@@ -1,0 +1,109 @@
+"""Whether the result of a build or of a diagnosis is to be trusted: what the rules of trust need, and their judgement."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Mapping
+
+import numpy as np
+
+import tir
+from mffit.config import Config
+from mffit.diagnosis import Diagnosis, wording
+from mffit.diagnosis.noise import Origin
+from mffit.diagnosis.remains import Remains, remains
+from mffit.fit import FitResult
+from mffit.fit.agreement import with_points
+from mffit.measured import Measured, radius_readings
+from mffit.points import Points
+from mffit.quantities import CHANNELS
+from mffit.rig import Readings
+from mffit.scatter import rms
+from mffit.suspicion import CamberReduction, FinishedFit, LeftOut, Outlier, Trust, judge
+from tir import Tyre
+
+
+def judged(
+    config: Config, points: Points, measured: Measured, fitted: FitResult, files: Mapping[str, Tyre]
+) -> tuple[Trust, Remains]:
+    """The judgement of a build with its written ``files`` by use, and what its fit leaves of the readings."""
+    assert fitted.search is not None
+    left = remains(fitted.search)
+    channels = [c.channel for c in left.structure.found]
+    trust = judge(
+        FinishedFit(
+            points=points,
+            model=Readings(fitted.Fy_model, fitted.Mz_model),
+            used=_used(points, fitted.outliers),
+            r2={name: found.r2 for name, found in fitted.channels.items()},
+            left_out=left.left_out,
+            structured=frozenset(channels),
+            structure=wording.structure(left.structure),
+            cause=wording.best_effect(left.effect) if left.effect else "",
+            cause_is_certain=left.effect is not None and left.effect.significant,
+            held=left.held,
+            broken=tuple(_refused(files)),
+            camber_reduction=_camber_reduction(config, measured),
+        )
+    )
+    return trust, left
+
+
+def judged_diagnosis(diagnosis: Diagnosis) -> Trust:
+    """The judgement of the corrected model of a diagnosis."""
+    points = diagnosis.points
+    if diagnosis.noise.origin is not Origin.STATED:
+        points = points.replace(u_Fy=np.nan, u_Mz=np.nan)
+    after = Readings(*np.split(diagnosis.after, 2))
+    left_out = {}
+    for name in CHANNELS:
+        difference = getattr(after, name) - getattr(points, name)
+        own = [rms(difference[points.sweep == k]) for k in np.unique(points.sweep[np.isfinite(difference)])]
+        if own:
+            predicted = diagnosis.validation.gap_after.rms(name)
+            fitted = diagnosis.gap_after.rms(name)
+            uneven = max(own) / max(float(np.median(own)), 1e-12)
+            left_out[name] = LeftOut(len(own), fitted, predicted, predicted, uneven)
+    return judge(
+        FinishedFit(
+            points=points,
+            model=after,
+            used=_used(points, diagnosis.outliers),
+            r2={name: found.r2 for name, found in with_points(after, points).items()},
+            left_out=left_out,
+            structured=frozenset(left_out) if diagnosis.unexplained else frozenset(),
+        )
+    )
+
+
+def _used(points: Points, outliers: Iterable[Outlier]) -> dict[str, np.ndarray]:
+    """By channel, mask (n,) of the readings that were measured and have a weight."""
+    out = {name: np.isfinite(getattr(points, name)) for name in CHANNELS}
+    for outlier in outliers:
+        out[outlier.channel][outlier.row] = False
+    return out
+
+
+def _refused(files: Mapping[str, Tyre]) -> Iterable[str]:
+    """What ``mffit check`` would refuse in the files."""
+    found = [p.sentence for tyre in files.values() for p in tir.check(tyre) if p.level == "error"]
+    return dict.fromkeys(found)
+
+
+def _camber_reduction(config: Config, measured: Measured) -> CamberReduction | None:
+    row = measured.nominal
+    if row is None or row.epsilon_gamma is None:
+        return None
+
+    def value(name: str) -> float:
+        found = getattr(row, name)
+        return math.nan if found is None else float(found.value)
+
+    return CamberReduction(
+        value=row.epsilon_gamma.value,
+        u=row.epsilon_gamma.u,
+        R=abs(value("R")),
+        radius_counts=not any(radius.follows_path for radius in radius_readings(config)),
+        C_gamma=value("C_gamma"),
+        C_alpha=value("C_alpha"),
+    )
