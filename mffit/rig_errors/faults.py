@@ -6,9 +6,20 @@ import math
 from collections.abc import Iterator, Mapping
 
 from mffit.rig_errors.catalog import BY_NAME, RIG_ERRORS
+from mffit.rig_errors.record import RigError
 
 OF_RUN = "@"
-"""Separates the name of an error from the file of the one run in which that much is added to it: ``F0_N@zeros.csv``."""
+"""Separates the name of an error from the run or set-up to which the number belongs: ``F0_N@zeros.csv``, ``F0_N@A``."""
+
+
+def number_of(name: str, part: str) -> str:
+    """Name of the number of an error in one run or set-up; the plain name if ``part`` is empty."""
+    return f"{name}{OF_RUN}{part}" if part else name
+
+
+def error_of(name: str) -> RigError | None:
+    """The rig error that a number belongs to, of the whole test or of a part of it; None for other numbers."""
+    return BY_NAME.get(name.partition(OF_RUN)[0])
 
 
 class Faults(Mapping[str, float]):
