@@ -258,6 +258,9 @@ def _setup_name(name: str) -> str:
     return name
 
 
+SetupName = Annotated[str, AfterValidator(_setup_name)]
+
+
 class SweepTable(Table):
     """[[sweep]]: one file."""
 
@@ -268,7 +271,7 @@ class SweepTable(Table):
     mount: Literal["normal", "flipped"] = "normal"
     path_centre: Literal["left", "right"] | None = None  #: None: that of [rig]
     path_radius: q.PathRadius | None = None  #: [m]; None: that of [rig]
-    setup: Annotated[str, AfterValidator(_setup_name)] | None = None
+    setup: SetupName | None = None
     """Sweeps between which the rig was not set up anew; None: one per path."""
     columns: Columns = Field(default_factory=dict)
 

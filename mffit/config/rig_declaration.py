@@ -34,17 +34,17 @@ def path_curvature(rig: RigTable, sweep: SweepTable | None = None) -> float:
     return (-1.0 if centre == "left" else 1.0) / radius
 
 
-def setup_names(config: Config) -> tuple[str, ...]:
+def setup_names(rig: RigTable, sweeps: Sequence[SweepTable]) -> tuple[str, ...]:
     """Name of the set-up of every sweep, in their order; a sweep that names none belongs to the set-up of its path.
 
     Empty names if none is declared and all sweeps ran on one path: one set-up.
     """
-    paths = [path_curvature(config.rig, sweep) for sweep in config.sweep]
-    if len(set(paths)) < 2 and all(sweep.setup is None for sweep in config.sweep):
+    paths = [path_curvature(rig, sweep) for sweep in sweeps]
+    if len(set(paths)) < 2 and all(sweep.setup is None for sweep in sweeps):
         return ("",) * len(paths)
     return tuple(
         sweep.setup if sweep.setup is not None else _of_path(path, paths)
-        for sweep, path in zip(config.sweep, paths, strict=True)
+        for sweep, path in zip(sweeps, paths, strict=True)
     )
 
 

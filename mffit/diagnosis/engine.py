@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
@@ -26,7 +26,6 @@ from mffit.effects import CATALOG, Effect
 from mffit.points import Points
 from mffit.progress import Progress, silent
 from mffit.rig import Simulation
-from mffit.rig_errors import Faults
 from mffit.suspicion import Misread, misread
 from tir import Tyre
 
@@ -36,7 +35,7 @@ def diagnose(
     tyre: Tyre,
     config: Config,
     *,
-    rig: Faults | None = None,
+    rig: Mapping[str, float] | None = None,
     effects: Sequence[Effect] = CATALOG,
     coefficients: Inexactness | None = None,
     seen: bool = False,
@@ -49,7 +48,7 @@ def diagnose(
     points : raw points (n,), ISO-W, angles as read
     tyre : the model of the simulation
     config : its tables ``model``, ``rig.backlash_deg`` and ``tyre.name`` are used
-    rig : known rig errors; default the declared play alone
+    rig : known rig errors, of the rig or of a set-up; default the declared play alone
     effects : the library to choose from; add your own records to the catalogue's
     coefficients : prior of the model's coefficients; default from ``model.u_coefficients``
     seen : whether the model was fitted to these points
@@ -82,9 +81,11 @@ def diagnose(
     return answer(found, given, tyre, config, validation, remarks, candidates)
 
 
-def _simulation(points: Points, tyre: Tyre, config: Config, rig: Faults | None) -> Simulation:
+def _simulation(
+    points: Points, tyre: Tyre, config: Config, rig: Mapping[str, float] | None
+) -> Simulation:
     """The model as the rig ran it, at the mean temperature of the points."""
-    given = rig or declared_faults(config.rig)
+    given = declared_faults(config.rig)
     if np.any(np.isfinite(points.T)):
         given = given.replace(T_ref_degC=float(np.nanmean(points.T)))
     return Simulation(
@@ -93,7 +94,7 @@ def _simulation(points: Points, tyre: Tyre, config: Config, rig: Faults | None) 
         turn_slip=config.model.turn_slip and bool(np.any(points.phi_t)),
         star=config.model.star,
         radius_m=config.rig.radius or math.nan,
-    )
+    ).with_numbers(rig or {})
 
 
 def _without_misread(points: Points, start: Simulation, config: Config) -> tuple[Points, Misread | None]:

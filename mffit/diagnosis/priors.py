@@ -13,6 +13,7 @@ from mffit.effects import Effect, Free
 from mffit.least_squares import FreeNumber
 from mffit.points import Points
 from mffit.rig import Simulation
+from mffit.rig_errors import BY_NAME, number_of
 
 SWITCH = "turn_slip"
 
@@ -81,7 +82,13 @@ def declared_priors(config: Config, points: Points, start: Simulation) -> dict[s
     declared = declared_rig(config.rig, _cornering_stiffness(points, start))
     if not np.any(points.phi_t):
         declared.pop("path_radius_m", None)
-    return {name: (start.number(name, points), u) for name, (_, u) in declared.items()}
+    setups = points.used_setups
+    out = {}
+    for name, (_, u) in declared.items():
+        for part in setups if len(setups) > 1 and BY_NAME[name].of_setup else ("",):
+            number = number_of(name, part)
+            out[number] = (start.number(number, points), u)
+    return out
 
 
 def _cornering_stiffness(points: Points, start: Simulation) -> float:

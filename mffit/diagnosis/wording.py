@@ -24,6 +24,7 @@ from mffit.diagnosis.ties import Separation
 from mffit.diagnosis.validation import Gap, Validation
 from mffit.effects import NEEDS, Effect
 from mffit.quantities import CHANNELS, CONDITIONS
+from mffit.rig_errors import OF_RUN
 from mffit.rounding import to_uncertainty
 from mffit.suspicion import Misread, Outlier
 from tir import Quantity
@@ -211,7 +212,18 @@ def remedy(found: AcceptedEffect, signs: Mapping[str, float]) -> str:
         return "switch the simulation's turn slip on"
     if not effect.remedy:
         return TO_DO.get(effect.kind, "")
-    value, u = found.parameters[effect.free[0].name]
+    several = [free.name for free in effect.free if OF_RUN in free.name and not effect.runs_written_out]
+    if not several:
+        return _remedy_with(found, effect.free[0].name, signs)
+    return "; ".join(
+        f"set-up {name.partition(OF_RUN)[2]}: {_remedy_with(found, name, signs)}" for name in several
+    )
+
+
+def _remedy_with(found: AcceptedEffect, name: str, signs: Mapping[str, float]) -> str:
+    """The remedy with one number of the effect."""
+    effect = found.effect
+    value, u = found.parameters[name]
     value *= math.prod(signs[axis] for axis in effect.axes)
     plus = "+" if effect.axes else ""
     return effect.remedy.format(

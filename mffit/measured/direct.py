@@ -404,7 +404,7 @@ def _assembled(
         notes=(
             *([axis.sentence] if axis.sentence and not axis.misaligned else []),
             *([notes.camber_skew(skew)] if skew else []),
-            *([notes.several_paths([-1.0 / phi_t for phi_t in row.paths])] if len(row.paths) > 1 else []),
+            *([_of_paths(row)] if len(row.paths) > 1 else []),
             law.note,
             notes.STANDARD_UNCERTAINTIES,
             notes.conicity(share, conicity.u, conicity.contribution),
@@ -415,6 +415,12 @@ def _assembled(
         conicity=conicity,
     )
     return measured, [axis.sentence] if axis.misaligned else []
+
+
+def _of_paths(row: LoadResult) -> str:
+    """The remark on several paths."""
+    one_setup = len({setup.name for setup in row.setups}) < 2
+    return notes.several_paths([-1.0 / phi_t for phi_t in row.paths], one_setup=one_setup)
 
 
 class AlignmentVerdict(NamedTuple):

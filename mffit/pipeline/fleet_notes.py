@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from mffit import fleet as combining
 from mffit.fleet import Hierarchy, Row
 from mffit.pipeline.fleet_output import nominal_conditions
-from mffit.rig_errors import WORDS
+from mffit.rig_errors import words_of
 
 
 def fleet_notes(rows: Sequence[Row], rigs: Sequence[Hierarchy | None]) -> list[str]:
@@ -17,7 +17,7 @@ def fleet_notes(rows: Sequence[Row], rigs: Sequence[Hierarchy | None]) -> list[s
         *_several_rigs(rigs),
         *(note for row in rows for note in _outlying(row, far)),
         *(
-            f"All tyres together put an error of the rig, {WORDS[name]}, {ratio:.0f} standard deviations from the "
+            f"All tyres together put an error of the rig, {words_of(name)}, {ratio:.0f} standard deviations from the "
             "value in [rig]: the declaration is too tight, or the tyres share an effect that the model lacks; in the second "
             "case rely on the direct method."
             for name, ratio in far.items()
@@ -53,7 +53,7 @@ def _outlying(row: Row, far: Mapping[str, float]) -> list[str]:
     if not worst or abs(row.strain[worst]) <= combining.constants.STRAINED_RIG:
         return []
     return [
-        f"{row.specimen.name}: its own error of the rig, {WORDS[worst]}, lies {abs(row.strain[worst]):.0f} standard "
+        f"{row.specimen.name}: its own error of the rig, {words_of(worst)}, lies {abs(row.strain[worst]):.0f} standard "
         "deviations from that of the other tyres; if the rig was adjusted in between, it is another rig: leave this tyre out."
     ]
 

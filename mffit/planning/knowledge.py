@@ -21,7 +21,7 @@ from mffit.measured.radii import measured_path_radius
 from mffit.planning.runs import PlannedRun
 from mffit.points import Points
 from mffit.points.points import concatenate
-from mffit.rig_errors import BY_NAME as RIG_ERRORS
+from mffit.rig_errors import error_of
 from tir import Quantity
 
 PECP1 = "PECP1"
@@ -47,7 +47,7 @@ class Knowledge:
         self.problem = search.problem
         self.simulation = search.problem.simulation
         self.spread = {n.name: n.spread for n in search.numbers} | dict(search.held)
-        self.rig = tuple(n.name for n in search.numbers if n.name in RIG_ERRORS)
+        self.rig = tuple(n.name for n in search.numbers if error_of(n.name))
         staged = {name for row in found.coverage for name in (*row.free, *row.held)}
         self.extra = tuple(n.name for n in search.numbers if n.name not in staged and n.name not in self.rig)
         self.usual = {e.free[0].name: self._usual(e) for e in effects}  # 1 sigma
@@ -120,7 +120,9 @@ class Knowledge:
             row = replace(row, R=Quantity(R.nominal_value, R.std_dev, "m"))
         # With a smaller declared uncertainty the measured zero may exceed it, because ply-steer looks like misalignment.
         misaligned = alignment_verdict(config, row).misaligned
-        numbers = rig_numbers(config, replace(self.measured, nominal=row, misaligned=misaligned))
+        numbers = rig_numbers(
+            config, replace(self.measured, nominal=row, misaligned=misaligned), self.points.used_setups
+        )
         return self.spread | {n.name: n.spread for n in numbers}
 
     def _information_of(self, runs: Sequence[PlannedRun]) -> np.ndarray:

@@ -33,7 +33,8 @@ def load(config: Config) -> Sweeps:
     """
     found: list[Sweep] = []
     warnings: list[str] = []
-    for index, (entry, setup) in enumerate(zip(config.sweep, setup_names(config), strict=True)):
+    setups = setup_names(config.rig, config.sweep)
+    for index, (entry, setup) in enumerate(zip(config.sweep, setups, strict=True)):
         columns = _columns(config, index, entry)
         warnings.extend(columns.warnings)
         direction = -1 if entry.direction == "backward" else 1

@@ -42,6 +42,8 @@ class World:
     declared: Mapping[str, float] = field(default_factory=dict)  #: keys of [rig] in tyre.toml
     drawn_from: Mapping[str, float] = field(default_factory=dict)  #: other keys of [rig] for the draw
     backward_camber: bool = False
+    other_side: bool = False  #: every load on the other side of the disc too, the rig set up anew in between
+    setups: int = 1  #: how often the rig is set up on the usual path, with zeros at the nominal load every time
 
 
 DECLARED = {
@@ -62,6 +64,17 @@ WORLDS = {
         faults={"camber_skew_deg": 0.5}, backward_camber=True
     ),
     "load falls by 6 % sin^2": World(faults={"load_camber": -0.06}),
+    "both sides, set up anew": World(other_side=True),
+    "both sides, set up anew, 1.5 times the declared": World(
+        other_side=True, drawn_from={name: 1.5 * u for name, u in DECLARED.items()}
+    ),
+    "three set-ups on one path": World(setups=3),
+    "three set-ups on one path, twice the declared": World(
+        setups=3, drawn_from={name: 2.0 * u for name, u in DECLARED.items()}
+    ),
+    "five set-ups on one path, twice the declared": World(
+        setups=5, drawn_from={name: 2.0 * u for name, u in DECLARED.items()}
+    ),
     "all errors 1.5 times the declared": World(drawn_from={name: 1.5 * u for name, u in DECLARED.items()}),
 }
 
@@ -87,6 +100,9 @@ def one(job: tuple[int, str]) -> tuple[str, Found]:
     content["rig"] = {**declared, **world.drawn_from}
     if world.backward_camber:
         content["sweep"] += _backward(content)
+    if world.other_side:
+        content["sweep"] += _other_side(content)
+    content["sweep"] += _again(content, world.setups)
     with tempfile.TemporaryDirectory() as made:
         folder = Path(made)
         true.write(folder / "drawn.tir")
@@ -108,6 +124,28 @@ def _backward(content: Mapping[str, Any]) -> list[dict[str, Any]]:
     angles = [-40, -30, -20, -10, -5, 0, 5, 10, 20, 30, 40]
     load = content["tyre"]["nominal_load"]
     return [{"file": "camber_backward.csv", "load_N": load, "gamma_deg": angles, "direction": "backward"}]
+
+
+def _other_side(content: Mapping[str, Any]) -> list[dict[str, Any]]:
+    """The upright and the camber sweeps at the usual pressure with the centre of the disc on the other side."""
+    usual = content["rig"].get("path_centre", "left")
+    other = {"path_centre": "right" if usual == "left" else "left"}
+    plain = [s for s in content["sweep"] if "p_kPa" not in s and not ("alpha_deg" in s and "gamma_deg" in s)]
+    return [{**sweep, "file": f"other_{sweep['file']}", **other} for sweep in plain]
+
+
+def _again(content: Mapping[str, Any], setups: int) -> list[dict[str, Any]]:
+    """Zeros both ways in further set-ups at the nominal load; all other sweeps belong to the first one."""
+    if setups < 2:
+        return []
+    for sweep in content["sweep"]:
+        sweep["setup"] = "1"
+    load = content["tyre"]["nominal_load"]
+    return [
+        {"file": f"{way}_{k}.csv", "load_N": load, "alpha_deg": [-0.5, 0, 0.5], "direction": way, "setup": str(k)}
+        for k in range(2, setups + 1)
+        for way in ("forward", "backward")
+    ]
 
 
 def _numbers(measured: Any, known: Any, true: tir.Tyre) -> dict[str, tuple[float, float, float]]:

@@ -9,7 +9,7 @@ from mffit import fleet as combining
 from mffit.fleet import Fleet
 from mffit.results.as_json.values import value_of
 from mffit.results.records import BuildOutcome
-from mffit.rig_errors import UNITS
+from mffit.rig_errors import unit_of
 
 
 def outcome(found: BuildOutcome) -> dict[str, Any]:
@@ -58,7 +58,7 @@ def fleet(found: Fleet) -> dict[str, Any]:
             if rig is None
             else {
                 "errors": {
-                    n: {"value": value, "stderr": u, "unit": UNITS[n]} for n, (value, u) in rig.rig.items()
+                    n: {"value": value, "stderr": u, "unit": unit_of(n)} for n, (value, u) in rig.rig.items()
                 },
                 "population": {
                     name: {**asdict(p), "assumed": p.assumed} for name, p in rig.population.items()
