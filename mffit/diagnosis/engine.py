@@ -81,9 +81,7 @@ def diagnose(
     return answer(found, given, tyre, config, validation, remarks, candidates)
 
 
-def _simulation(
-    points: Points, tyre: Tyre, config: Config, rig: Mapping[str, float] | None
-) -> Simulation:
+def _simulation(points: Points, tyre: Tyre, config: Config, rig: Mapping[str, float] | None) -> Simulation:
     """The model as the rig ran it, at the mean temperature of the points."""
     given = declared_faults(config.rig)
     if np.any(np.isfinite(points.T)):

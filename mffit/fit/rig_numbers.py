@@ -12,7 +12,6 @@ from mffit.fit import constants
 from mffit.least_squares import FreeNumber
 from mffit.rig_errors import BY_NAME, ZEROS, Faults, number_of
 
-
 SIDESLIP_ZERO = "alpha_0_deg"
 
 
@@ -69,7 +68,9 @@ def _of_setups(
     zeros = {error.name for error in ZEROS}
     # No key of [rig] declares the zero of Mz. One that is the same in all set-ups goes into the residual torque; one that
     # differs has no such place.
-    undeclared = {error.name: Declaration(error.undisturbed, error.spread) for error in ZEROS if not error.declared}
+    undeclared = {
+        error.name: Declaration(error.undisturbed, error.spread) for error in ZEROS if not error.declared
+    }
     found = [_number(name, prior) for name, prior in declared.items() if name not in zeros]
     scatter = measured.setup_scatter
     for name, (value, u) in {**declared, **undeclared}.items():

@@ -277,7 +277,9 @@ def _turning(evidence: _Evidence, group: LoadGroup, slopes: _Slopes) -> tuple[_T
     for path in found:
         troubles += unlike_zeros(points, path.group, slopes.C_alpha, config)
     both = (slopes.C_alpha, slopes.C_gamma)
-    paths = tuple(turn_slip_of_path(path, both, rig, config, evidence.excess.get(path.setup)) for path in found)
+    paths = tuple(
+        turn_slip_of_path(path, both, rig, config, evidence.excess.get(path.setup)) for path in found
+    )
     combined = turn_slip_stiffness(paths)
     if combined.contradictory:
         alone = [Quantity(C.nominal_value, C.std_dev, "Nm") for C in combined.of_paths]
@@ -323,7 +325,9 @@ def _result(
         budget=method.budget(epsilon),
         u_monte_carlo=u_by_draws(turning.paths, turning.stiffness.weights, C_gamma, r_e, rig),
     )
-    return _AtLoad(row, epsilon, sum(epsilon.derivatives.get(errors["F0_N"], 0.0) for errors in rig.everywhere))
+    return _AtLoad(
+        row, epsilon, sum(epsilon.derivatives.get(errors["F0_N"], 0.0) for errors in rig.everywhere)
+    )
 
 
 def _row(group: LoadGroup, slopes: _Slopes, turning: _Turning | None, C_gamma: UFloat | None) -> LoadResult:

@@ -33,7 +33,9 @@ class PathForce(NamedTuple):
     force: UFloat  #: corrected (23) [N]
     alpha_M: UFloat | None  #: sideslip misalignment [rad]; None without backward runs
     setup: str = ""  #: name of the set-up of the rig in which it was measured
-    scatter: UFloat | None = None  #: force of the set-up that repeated set-ups show beyond what is declared [N]
+    scatter: UFloat | None = (
+        None  #: force of the set-up that repeated set-ups show beyond what is declared [N]
+    )
 
 
 class TurnSlipStiffness(NamedTuple):
@@ -63,9 +65,7 @@ def by_path(points: Points, group: LoadGroup, usual: float) -> list[PathPoints]:
     phi_t, setup = points.phi_t[group.index], points.setup[group.index]
     found = sorted({*zip(phi_t.tolist(), setup.tolist(), strict=True)}, key=lambda x: (abs(x[0] - usual), x))
     return [
-        PathPoints(
-            path, points.setups[k], LoadGroup(group.load, group.index[(phi_t == path) & (setup == k)])
-        )
+        PathPoints(path, points.setups[k], LoadGroup(group.load, group.index[(phi_t == path) & (setup == k)]))
         for path, k in found
     ]
 

@@ -77,7 +77,9 @@ class LoadResult(Brief):
     budget: tuple[Contribution, ...] = ()
     u_monte_carlo: float | None = None  #: u(eps_gamma) from random draws
     paths: tuple[float, ...] = ()  #: turn slip of every path with zeros, the usual one first [1/m]
-    setups: tuple[SetupResult, ...] = ()  #: the zeros of every path and set-up by themselves, if there are several
+    setups: tuple[
+        SetupResult, ...
+    ] = ()  #: the zeros of every path and set-up by themselves, if there are several
 
     @property
     def headline(self) -> str:

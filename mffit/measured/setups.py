@@ -13,7 +13,7 @@ from uncertainties import UFloat
 from mffit.config import Config
 from mffit.constants import USUAL_CORNERING_STIFFNESS, USUAL_U_FORCE
 from mffit.measured import camber_reduction as method
-from mffit.measured import constants, notes
+from mffit.measured import constants, setup_notes
 from mffit.measured.at_zero import PathZeros, zeros_by_path
 from mffit.measured.groups import LoadGroup, zeros
 from mffit.measured.paths import PathForce
@@ -222,18 +222,20 @@ def of_setups(
         return SetupRemarks((), ())
     known, act = [], []
     if len(used) > 1:
-        known.append(notes.several_setups(used))
-    known += [notes.one_setup_on_paths(name, len(found)) for name, found in paths.items() if len(found) > 1]
+        known.append(setup_notes.several_setups(used))
+    known += [
+        setup_notes.one_setup_on_paths(name, len(found)) for name, found in paths.items() if len(found) > 1
+    ]
     without = [name for name in used if not _has_zeros(points, name)]
-    act += [notes.setup_without_zeros(name) for name in without] if len(used) > 1 else []
+    act += [setup_notes.setup_without_zeros(name) for name in without] if len(used) > 1 else []
     act += _undeclared(config)
     row = measured.nominal
     for found in row.setups if row else ():
         first = row is not None and found is row.setups[0]
         if found.misaligned and not first and found.alpha_M is not None:
-            act.append(notes.setup_misaligned(found.name, found.alpha_M))
+            act.append(setup_notes.setup_misaligned(found.name, found.alpha_M))
     if scatter is not None:
-        sentence = notes.setup_scatter(scatter)
+        sentence = setup_notes.setup_scatter(scatter)
         (act if scatter.chance < constants.SETUP_SCATTER_CHANCE else known).append(sentence)
     return SetupRemarks(tuple(known), tuple(act))
 
@@ -247,8 +249,12 @@ def _has_zeros(points: Points, setup: str) -> bool:
 def _undeclared(config: Config) -> list[str]:
     """A sentence about sweeps that name no set-up although others on their path do."""
     named = {_path(config, k) for k, sweep in enumerate(config.sweep) if sweep.setup is not None}
-    bare = [sweep.file for k, sweep in enumerate(config.sweep) if sweep.setup is None and _path(config, k) in named]
-    return [notes.sweeps_without_setup(bare)] if bare else []
+    bare = [
+        sweep.file
+        for k, sweep in enumerate(config.sweep)
+        if sweep.setup is None and _path(config, k) in named
+    ]
+    return [setup_notes.sweeps_without_setup(bare)] if bare else []
 
 
 def _path(config: Config, k: int) -> tuple[str | None, float | None]:

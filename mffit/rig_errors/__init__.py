@@ -1,6 +1,16 @@
 """What a rig, its environment and its motion do to a reading: one record per error."""
 
-from mffit.rig_errors.catalog import AFTER, BEFORE, BY_NAME, DECLARED, MEANINGS, RIG_ERRORS, UNITS, WORDS, ZEROS
+from mffit.rig_errors.catalog import (
+    AFTER,
+    BEFORE,
+    BY_NAME,
+    DECLARED,
+    MEANINGS,
+    RIG_ERRORS,
+    UNITS,
+    WORDS,
+    ZEROS,
+)
 from mffit.rig_errors.faults import NO_FAULTS, OF_RUN, Faults, error_of, number_of, unit_of, words_of
 from mffit.rig_errors.record import Appearance, AtZero, Declared, Place, RigError
 

@@ -82,7 +82,8 @@ def faults_in_setups(plan: RigPlan, tyre: Tyre, generator: np.random.Generator) 
         if name not in setups:
             known = ", ".join(filter(None, setups)) or "none"
             raise InputError(
-                f"no sweep belongs to this set-up (set-ups of the sweeps: {known}); give its sweeps setup", key=f"setup.{name}"
+                f"no sweep belongs to this set-up (set-ups of the sweeps: {known}); give its sweeps setup",
+                key=f"setup.{name}",
             )
     values = table.values()
     if rig.radius is None and "path_radius_m" in values:

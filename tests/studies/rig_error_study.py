@@ -43,7 +43,9 @@ class World:
     drawn_from: Mapping[str, float] = field(default_factory=dict)  #: other keys of [rig] for the draw
     backward_camber: bool = False
     other_side: bool = False  #: every load on the other side of the disc too, the rig set up anew in between
-    setups: int = 1  #: how often the rig is set up on the usual path, with zeros at the nominal load every time
+    setups: int = (
+        1  #: how often the rig is set up on the usual path, with zeros at the nominal load every time
+    )
 
 
 DECLARED = {
@@ -142,7 +144,13 @@ def _again(content: Mapping[str, Any], setups: int) -> list[dict[str, Any]]:
         sweep["setup"] = "1"
     load = content["tyre"]["nominal_load"]
     return [
-        {"file": f"{way}_{k}.csv", "load_N": load, "alpha_deg": [-0.5, 0, 0.5], "direction": way, "setup": str(k)}
+        {
+            "file": f"{way}_{k}.csv",
+            "load_N": load,
+            "alpha_deg": [-0.5, 0, 0.5],
+            "direction": way,
+            "setup": str(k),
+        }
         for k in range(2, setups + 1)
         for way in ("forward", "backward")
     ]

@@ -60,7 +60,8 @@ def fit(found: FitResult) -> dict[str, Any]:
         "odd": {name: asdict(row) for name, row in found.odd.items()},
         "coefficients": {name: _coefficient(row) for name, row in found.coefficients.items()},
         "rig": {
-            name: {"value": value, "stderr": u, "unit": unit_of(name)} for name, (value, u) in found.rig.items()
+            name: {"value": value, "stderr": u, "unit": unit_of(name)}
+            for name, (value, u) in found.rig.items()
         },
         "posterior": plain(picked(found.posterior, "names", "covariance")),
         "stages": [
