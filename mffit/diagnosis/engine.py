@@ -12,11 +12,11 @@ from mffit.diagnosis.answer import answer
 from mffit.diagnosis.conditions import by_condition
 from mffit.diagnosis.explain import explain, only_first
 from mffit.diagnosis.explanation import Explanation
-from mffit.diagnosis.inexact import EXACT, Inexactness
+from mffit.diagnosis.inexact import EXACT, Inexactness, with_zeros
 from mffit.diagnosis.inexact import declared as declared_inexactness
 from mffit.diagnosis.needs import possible
 from mffit.diagnosis.notes import NoRepair, Note, OneSweep
-from mffit.diagnosis.priors import declared_priors
+from mffit.diagnosis.priors import declared_priors, zeros_of_setups
 from mffit.diagnosis.problem import DiagnosisProblem
 from mffit.diagnosis.result import Diagnosis
 from mffit.diagnosis.stated import stated_noise, with_uncertainties
@@ -72,6 +72,8 @@ def diagnose(
     candidates, notes = _candidates(effects, points, start, known=inexact.names if seen else ())
     progress("trying every effect")
     declared = declared_priors(config, points, start)
+    zeros = [name for name in zeros_of_setups(points) if name in declared]
+    inexact = with_zeros(inexact, declared, zeros) if zeros else inexact
     found = explain(points, start, stated_noise(points, origin), candidates, inexact, declared, seen=seen)
     found, stranger = named_of_this_tyre(found)
     progress("checking on left-out sweeps")

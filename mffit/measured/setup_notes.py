@@ -50,12 +50,11 @@ def setup_scatter(found: SetupScatter) -> str:
     n = found.degrees_of_freedom
     said = (
         f"Repeated set-ups ({', '.join(found.setups)}): from one to the next the force at zero scatters by {found.between:.1f} N "
-        f"(standard deviation, {n} degree{'s' * (n > 1)} of freedom); [rig] declares {found.declared:.1f} N. The larger one counts"
-        + (
-            ", as the line scatter of repeated set-ups in the budget and in the priors of the fit."
-            if larger
-            else "."
-        )
+        f"(standard deviation, {n} degree{'s' * (n > 1)} of freedom), declared in [rig] are {found.declared:.1f} N. "
+        "The larger one counts"
+    )
+    said += (
+        f": the budget has a line of {found.excess:.1f} N beside the declared zeros." if found.excess else "."
     )
     if found.between_alpha is not None and found.declared_alpha is not None:
         said += (
