@@ -96,6 +96,9 @@ def _u_field(declared: Declared) -> tuple[Any, float | None]:
 class MachineTable(Table):
     """[rig] without the keys ``u_...`` of the rig errors: the machine and its axes."""
 
+    name: str | None = (
+        None  #: builds of one rig and set-up are recognised by this name and those of the set-ups
+    )
     type: Literal["rotating-disk", "flat-track"] = "rotating-disk"
     axes: Annotated[
         Literal["iso", "sae", "adapted-sae"], BeforeValidator(lambda name: ALSO_CALLED.get(name, name))

@@ -72,7 +72,7 @@ def corrected_table(points: Points, diagnosis: Diagnosis) -> pd.DataFrame:
 def _conditions(points: Points, config: Config) -> dict[str, Any]:
     """What [[sweep]] states of the points of one file: mount, path and set-up."""
     phi_t, setup = float(points.phi_t[0]), points.setups[points.setup[0]]
-    out = {"mount": "normal" if points.mount[0] > 0 else "flipped"}
+    out: dict[str, Any] = {"mount": "normal" if points.mount[0] > 0 else "flipped"}
     if phi_t != path_curvature(config.rig):
         out |= {"path_centre": "left" if phi_t < 0.0 else "right", "path_radius": abs(1.0 / phi_t)}
     return out | ({"setup": setup} if setup else {})

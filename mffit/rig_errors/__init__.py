@@ -11,7 +11,16 @@ from mffit.rig_errors.catalog import (
     WORDS,
     ZEROS,
 )
-from mffit.rig_errors.faults import NO_FAULTS, OF_RUN, Faults, error_of, number_of, unit_of, words_of
+from mffit.rig_errors.faults import (
+    NO_FAULTS,
+    OF_RUN,
+    Faults,
+    error_of,
+    meaning_of,
+    number_of,
+    unit_of,
+    words_of,
+)
 from mffit.rig_errors.record import Appearance, AtZero, Declared, Place, RigError
 
 __all__ = [
@@ -33,6 +42,7 @@ __all__ = [
     "Place",
     "RigError",
     "error_of",
+    "meaning_of",
     "number_of",
     "unit_of",
     "words_of",

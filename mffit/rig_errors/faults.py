@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Mapping
 
-from mffit.rig_errors.catalog import BY_NAME, RIG_ERRORS, UNITS, WORDS
+from mffit.rig_errors.catalog import BY_NAME, MEANINGS, RIG_ERRORS, UNITS, WORDS
 from mffit.rig_errors.record import RigError
 
 OF_RUN = "@"
@@ -20,6 +20,11 @@ def number_of(name: str, part: str) -> str:
 def unit_of(name: str) -> str:
     """Unit of a number of the rig, of the whole test or of a part of it."""
     return UNITS[name.partition(OF_RUN)[0]]
+
+
+def meaning_of(name: str) -> str:
+    """Formula, in words, of a number of the rig, of the whole test or of a part of it."""
+    return MEANINGS[name.partition(OF_RUN)[0]]
 
 
 def words_of(name: str) -> str:
