@@ -30,6 +30,7 @@ class ComparedSubject:
     covariance: np.ndarray | None = None  #: (k, k) of these; None if it is unknown
     covariance_of: str = ""  #: another file, if the result.json beside this one holds the covariance of that
     rig: Mapping[str, Any] | None = None  #: the table [rig] of its build
+    setups: tuple[str, ...] = ()  #: names of the set-ups that the sweeps of its build declare
 
 
 @dataclass(frozen=True, slots=True)

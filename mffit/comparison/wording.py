@@ -86,10 +86,16 @@ def _on_uncertainty(first: ComparedSubject, second: ComparedSubject) -> Iterator
             )
     if unknown or first.name == second.name:
         return
-    if first.rig is not None and first.rig == second.rig:
+    rig = (first.rig or {}).get("name")
+    if rig and rig == (second.rig or {}).get("name"):
+        shared = sorted(set(first.setups) & set(second.setups))
+        what = (
+            "its errors are counted twice" if shared else "its path radius and its geometry are counted twice"
+        )
+        setup = f", and share its set-up {', '.join(shared)}" if shared else ", in set-ups of their own"
         yield (
-            "Both sides are treated as independent. As both builds are of one rig, its errors are counted twice: differences are "
-            "more significant than stated."
+            f"Both sides are treated as independent. As both builds are of one rig, {rig}{setup}, {what}: differences are more "
+            "significant than stated."
         )
     else:
         yield "Both sides are treated as independent."

@@ -10,6 +10,7 @@ from mffit.config.rig_declaration import (
     declared_faults,
     declared_rig,
     path_curvature,
+    setup_names,
 )
 
 __all__ = [
@@ -26,5 +27,6 @@ __all__ = [
     "path_curvature",
     "path_radius",
     "resolved",
+    "setup_names",
     "wheel_turn",
 ]

@@ -5,6 +5,7 @@ Every ``u_`` is one standard deviation (k = 1). Units are those of the file, as 
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
@@ -27,6 +28,7 @@ from mffit.config.locate import line_of
 from mffit.config.radii import effective_radius, path_radius
 from mffit.rig_errors import BY_NAME, DECLARED, Declared
 
+SETUP_NAME = re.compile(r"[A-Za-z0-9_.+-]+( +[A-Za-z0-9_.+-]+)*")
 FORBIDDEN_IN_NAMES = set('/\\:*?"<>|') | {chr(code) for code in range(32)}
 
 
@@ -94,6 +96,9 @@ def _u_field(declared: Declared) -> tuple[Any, float | None]:
 class MachineTable(Table):
     """[rig] without the keys ``u_...`` of the rig errors: the machine and its axes."""
 
+    name: str | None = (
+        None  #: builds of one rig and set-up are recognised by this name and those of the set-ups
+    )
     type: Literal["rotating-disk", "flat-track"] = "rotating-disk"
     axes: Annotated[
         Literal["iso", "sae", "adapted-sae"], BeforeValidator(lambda name: ALSO_CALLED.get(name, name))
@@ -250,6 +255,15 @@ def _as_column(given: Any) -> Any:
 Columns = dict[str, Annotated[Column, BeforeValidator(_as_column)]]
 
 
+def _setup_name(name: str) -> str:
+    if not SETUP_NAME.fullmatch(name):
+        raise q.wrong(f'"{name}" cannot name a set-up; use letters, digits, spaces and - _ . +')
+    return name
+
+
+SetupName = Annotated[str, AfterValidator(_setup_name)]
+
+
 class SweepTable(Table):
     """[[sweep]]: one file."""
 
@@ -260,6 +274,8 @@ class SweepTable(Table):
     mount: Literal["normal", "flipped"] = "normal"
     path_centre: Literal["left", "right"] | None = None  #: None: that of [rig]
     path_radius: q.PathRadius | None = None  #: [m]; None: that of [rig]
+    setup: SetupName | None = None
+    """Sweeps between which the rig was not set up anew; None: one per path."""
     columns: Columns = Field(default_factory=dict)
 
 
@@ -333,6 +349,11 @@ class Config(Brief, Table):
             if sweep.file in seen:
                 raise q.wrong(f'"{sweep.file}" is listed twice; remove one', f"sweep.{index}.file")
             seen.add(sweep.file)
+            if sweep.setup is not None and sweep.setup in {other.file for other in self.sweep}:
+                raise q.wrong(
+                    f'"{sweep.setup}" is also the name of a file; give the set-up another name',
+                    f"sweep.{index}.setup",
+                )
             for key in ("path_centre", "path_radius"):
                 if not self.rig.on_disc and getattr(sweep, key) is not None:
                     raise q.wrong(

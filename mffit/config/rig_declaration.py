@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from typing import NamedTuple
 
 from mffit.config.models import Config, RigTable, SweepTable
@@ -31,6 +32,29 @@ def path_curvature(rig: RigTable, sweep: SweepTable | None = None) -> float:
     if sweep is not None:
         radius, centre = sweep.path_radius or radius, sweep.path_centre or centre
     return (-1.0 if centre == "left" else 1.0) / radius
+
+
+def setup_names(rig: RigTable, sweeps: Sequence[SweepTable]) -> tuple[str, ...]:
+    """Name of the set-up of every sweep, in their order; a sweep that names none belongs to the set-up of its path.
+
+    Empty names if none is declared and all sweeps ran on one path: one set-up.
+    """
+    paths = [path_curvature(rig, sweep) for sweep in sweeps]
+    if len(set(paths)) < 2 and all(sweep.setup is None for sweep in sweeps):
+        return ("",) * len(paths)
+    return tuple(
+        sweep.setup if sweep.setup is not None else _of_path(path, paths)
+        for sweep, path in zip(sweeps, paths, strict=True)
+    )
+
+
+def _of_path(path: float, paths: Sequence[float]) -> str:
+    """Name of the set-up of a path with curvature [1/m]: the side of its centre, with the radius where sides have several."""
+    if not path:
+        return "straight"
+    side = "left" if path < 0.0 else "right"
+    several = len({other for other in paths if (other < 0.0) == (path < 0.0)}) > 1
+    return f"{side}-{abs(1.0 / path):.4g}m" if several else side
 
 
 class Declaration(NamedTuple):

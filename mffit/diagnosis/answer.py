@@ -177,8 +177,9 @@ def _alternatives(steps: Sequence[ForwardStep], chosen: Hypothesis) -> dict[str,
 
 def _corrected(tyre: Tyre, found: Explanation) -> Tyre:
     """The property file with the estimated coefficients, and the reason of each in its comment."""
-    changes = {name: value for name, (value, _) in found.coefficients.items()}
-    status = {name: wording.adjusted(float(tyre[name]), u) for name, (_, u) in found.coefficients.items()}
+    of_tyre = {name: number for name, number in found.coefficients.items() if name in BY_NAME}
+    changes = {name: value for name, (value, _) in of_tyre.items()}
+    status = {name: wording.adjusted(float(tyre[name]), u) for name, (_, u) in of_tyre.items()}
     for effect in found.chosen.effects:
         for name in effect.parameters:
             if name in BY_NAME:

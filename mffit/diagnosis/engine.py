@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
@@ -12,11 +12,11 @@ from mffit.diagnosis.answer import answer
 from mffit.diagnosis.conditions import by_condition
 from mffit.diagnosis.explain import explain, only_first
 from mffit.diagnosis.explanation import Explanation
-from mffit.diagnosis.inexact import EXACT, Inexactness
+from mffit.diagnosis.inexact import EXACT, Inexactness, with_zeros
 from mffit.diagnosis.inexact import declared as declared_inexactness
 from mffit.diagnosis.needs import possible
 from mffit.diagnosis.notes import NoRepair, Note, OneSweep
-from mffit.diagnosis.priors import declared_priors
+from mffit.diagnosis.priors import declared_priors, zeros_of_setups
 from mffit.diagnosis.problem import DiagnosisProblem
 from mffit.diagnosis.result import Diagnosis
 from mffit.diagnosis.stated import stated_noise, with_uncertainties
@@ -26,7 +26,6 @@ from mffit.effects import CATALOG, Effect
 from mffit.points import Points
 from mffit.progress import Progress, silent
 from mffit.rig import Simulation
-from mffit.rig_errors import Faults
 from mffit.suspicion import Misread, misread
 from tir import Tyre
 
@@ -36,7 +35,7 @@ def diagnose(
     tyre: Tyre,
     config: Config,
     *,
-    rig: Faults | None = None,
+    rig: Mapping[str, float] | None = None,
     effects: Sequence[Effect] = CATALOG,
     coefficients: Inexactness | None = None,
     seen: bool = False,
@@ -49,7 +48,7 @@ def diagnose(
     points : raw points (n,), ISO-W, angles as read
     tyre : the model of the simulation
     config : its tables ``model``, ``rig.backlash_deg`` and ``tyre.name`` are used
-    rig : known rig errors; default the declared play alone
+    rig : known rig errors, of the rig or of a set-up; default the declared play alone
     effects : the library to choose from; add your own records to the catalogue's
     coefficients : prior of the model's coefficients; default from ``model.u_coefficients``
     seen : whether the model was fitted to these points
@@ -73,6 +72,8 @@ def diagnose(
     candidates, notes = _candidates(effects, points, start, known=inexact.names if seen else ())
     progress("trying every effect")
     declared = declared_priors(config, points, start)
+    zeros = [name for name in zeros_of_setups(points) if name in declared]
+    inexact = with_zeros(inexact, declared, zeros) if zeros else inexact
     found = explain(points, start, stated_noise(points, origin), candidates, inexact, declared, seen=seen)
     found, stranger = named_of_this_tyre(found)
     progress("checking on left-out sweeps")
@@ -82,9 +83,9 @@ def diagnose(
     return answer(found, given, tyre, config, validation, remarks, candidates)
 
 
-def _simulation(points: Points, tyre: Tyre, config: Config, rig: Faults | None) -> Simulation:
+def _simulation(points: Points, tyre: Tyre, config: Config, rig: Mapping[str, float] | None) -> Simulation:
     """The model as the rig ran it, at the mean temperature of the points."""
-    given = rig or declared_faults(config.rig)
+    given = declared_faults(config.rig)
     if np.any(np.isfinite(points.T)):
         given = given.replace(T_ref_degC=float(np.nanmean(points.T)))
     return Simulation(
@@ -93,7 +94,7 @@ def _simulation(points: Points, tyre: Tyre, config: Config, rig: Faults | None) 
         turn_slip=config.model.turn_slip and bool(np.any(points.phi_t)),
         star=config.model.star,
         radius_m=config.rig.radius or math.nan,
-    )
+    ).with_numbers(rig or {})
 
 
 def _without_misread(points: Points, start: Simulation, config: Config) -> tuple[Points, Misread | None]:

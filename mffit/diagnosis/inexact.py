@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -35,7 +35,7 @@ class Inexactness:
 
         ``state`` is the simulation at which :meth:`columns` are taken.
         """
-        away = np.array([float(at.values[name]) for name in self.names]) - self.expected
+        away = np.array([at.number(name, points) for name in self.names]) - self.expected
         return self._slopes(points, state) @ away
 
     def _slopes(self, points: Points, state: Simulation) -> np.ndarray:
@@ -83,6 +83,19 @@ def declared(tyre: Tyre, u_coefficients: float) -> Inexactness:
     names = [row.name for row in TABLE if row.normal_mode and float(tyre[row.name])]
     values = np.array([float(tyre[name]) for name in names])
     return Inexactness(tuple(names), values, np.diag(u_coefficients * np.abs(values)))
+
+
+def with_zeros(
+    known: Inexactness, priors: Mapping[str, tuple[float, float]], names: Sequence[str]
+) -> Inexactness:
+    """The prior with the named numbers of the rig added; ``priors`` has the value and standard uncertainty of each."""
+    added = [priors[name] for name in names]
+    k, m = len(known.names), len(names)
+    whole = np.zeros((k + m, known.root.shape[1] + m))
+    whole[:k, : known.root.shape[1]] = known.root
+    whole[k:, known.root.shape[1] :] = np.diag([u for _, u in added])
+    expected = np.concatenate([known.expected, [value for value, _ in added]])
+    return Inexactness((*known.names, *names), expected, whole)
 
 
 def refitted(tyre: Tyre, *, curved: bool) -> Inexactness:

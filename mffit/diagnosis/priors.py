@@ -13,6 +13,7 @@ from mffit.effects import Effect, Free
 from mffit.least_squares import FreeNumber
 from mffit.points import Points
 from mffit.rig import Simulation
+from mffit.rig_errors import BY_NAME, ZEROS, number_of
 
 SWITCH = "turn_slip"
 
@@ -81,7 +82,22 @@ def declared_priors(config: Config, points: Points, start: Simulation) -> dict[s
     declared = declared_rig(config.rig, _cornering_stiffness(points, start))
     if not np.any(points.phi_t):
         declared.pop("path_radius_m", None)
-    return {name: (start.number(name, points), u) for name, (_, u) in declared.items()}
+    setups = points.used_setups
+    several = len(setups) > 1
+    spreads = {error.name: error.spread for error in ZEROS if several and error.declared is None}
+    spreads |= {name: u for name, (_, u) in declared.items()}
+    out = {}
+    for name, u in spreads.items():
+        for part in setups if several and BY_NAME[name].of_setup else ("",):
+            number = number_of(name, part)
+            out[number] = (start.number(number, points), u)
+    return out
+
+
+def zeros_of_setups(points: Points) -> list[str]:
+    """Numbers of the zeros of every set-up, if there are several: they differ in any case, as far as is declared."""
+    setups = points.used_setups
+    return [number_of(error.name, setup) for error in ZEROS for setup in setups] if len(setups) > 1 else []
 
 
 def _cornering_stiffness(points: Points, start: Simulation) -> float:

@@ -86,7 +86,7 @@ class DiagnosisProblem:
             return chosen, {}
         fixed = switched(chosen.effects)
         numbers = [number(free, chosen.numbers, self.start, self.points) for free in frees]
-        numbers += [FreeNumber(name, float(self.start.values[name])) for name in prior.names]
+        numbers += [FreeNumber(name, self.start.number(name, self.points)) for name in prior.names]
         plain = DiagnosisProblem(self.points, self.start, self.noise, self.declared)
         found = solve(
             prior.added_to(plain.within([n.name for n in numbers], fixed), first=len(frees)),

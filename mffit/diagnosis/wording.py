@@ -26,6 +26,7 @@ from mffit.diagnosis.ties import Separation
 from mffit.diagnosis.validation import Gap, Validation
 from mffit.effects import NEEDS, Effect
 from mffit.quantities import CHANNELS, CONDITIONS
+from mffit.rig_errors import OF_RUN, error_of, unit_of, words_of
 from mffit.rounding import to_uncertainty
 from mffit.suspicion import Misread, Outlier
 from tir import Quantity
@@ -50,6 +51,11 @@ def _nothing_named(diagnosis: Diagnosis) -> str:
         f"{_short(before.rms(name))} {unit} in {CHANNELS[name].word} (noise {_short(noise)} {unit})"
         for name, unit, noise in _measured(diagnosis.noise)
     )
+    if zeros_of_setups(diagnosis):
+        after = " and ".join(
+            f"{_short(diagnosis.gap_after.rms(name))} {unit}" for name, unit, _ in _measured(diagnosis.noise)
+        )
+        misfit += f"; with the zeros of every set-up, estimated within what [rig] declares, it is {after}"
     if not diagnosis.unexplained:
         return f"No effect is missing as far as these data can show: {misfit}."
     if diagnosis.smooth is not None:
@@ -60,6 +66,20 @@ def _nothing_named(diagnosis: Diagnosis) -> str:
         f"A local misfit remains that no effect of the library describes: {bump.channel} is off by {_short(bump.amplitude)} "
         f"{CHANNELS[bump.channel].unit} around {_around(bump)}."
     )
+
+
+def zeros_of_setups(diagnosis: Diagnosis) -> dict[str, tuple[float, float]]:
+    """Zeros of single set-ups that were estimated beside the effects: value and standard error by number."""
+    return {name: found for name, found in diagnosis.coefficients.items() if error_of(name)}
+
+
+def _zeros(diagnosis: Diagnosis) -> list[str]:
+    """A sentence with the zeros of every set-up; none if there is one set-up."""
+    found = [
+        f"{words_of(name)} {to_uncertainty(value, u)} +- {to_uncertainty(u, u)} {unit_of(name)}"
+        for name, (value, u) in zeros_of_setups(diagnosis).items()
+    ]
+    return [f"Zeros of the set-ups as estimated here: {'; '.join(found)}."] if found else []
 
 
 def _named(diagnosis: Diagnosis) -> str:
@@ -100,8 +120,8 @@ def _confidence_of_tie(found: AcceptedEffect, alternatives: Mapping[str, float])
 
 
 def notes(diagnosis: Diagnosis) -> list[str]:
-    """All notes as sentences."""
-    return [note(remark) for remark in diagnosis.notes]
+    """The zeros of set-ups, if there are several, and all notes, as sentences."""
+    return [*_zeros(diagnosis), *(note(remark) for remark in diagnosis.notes)]
 
 
 def note(remark: Note) -> str:
@@ -213,7 +233,18 @@ def remedy(found: AcceptedEffect, signs: Mapping[str, float]) -> str:
         return "switch the simulation's turn slip on"
     if not effect.remedy:
         return TO_DO.get(effect.kind, "")
-    value, u = found.parameters[effect.free[0].name]
+    several = [free.name for free in effect.free if OF_RUN in free.name and not effect.runs_written_out]
+    if not several:
+        return _remedy_with(found, effect.free[0].name, signs)
+    return "; ".join(
+        f"set-up {name.partition(OF_RUN)[2]}: {_remedy_with(found, name, signs)}" for name in several
+    )
+
+
+def _remedy_with(found: AcceptedEffect, name: str, signs: Mapping[str, float]) -> str:
+    """The remedy with one number of the effect."""
+    effect = found.effect
+    value, u = found.parameters[name]
     value *= math.prod(signs[axis] for axis in effect.axes)
     plus = "+" if effect.axes else ""
     return effect.remedy.format(

@@ -32,6 +32,7 @@ def _free(error: RigError, seen: Appearance | None = None) -> Free:
         upper=error.upper,
         relative=error.relative,
         per_run=seen is not None and seen.per_run,
+        per_setup=error.of_setup and not (seen is not None and seen.per_run),
     )
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
-from mffit.rig_errors import OF_RUN
+from mffit.rig_errors import number_of
 
 
 @dataclass(frozen=True, slots=True)
@@ -25,9 +25,15 @@ class Free:
     relative: bool = False  #: spread and scan are relative to the current value
     per_run: bool = False  #: one such number for every run, added to the fault of this name
 
+    per_setup: bool = False  #: one such number for every set-up of the rig, if there are several
+
     def of_run(self, file: str) -> Free:
         """The number of the run that a file holds."""
-        return replace(self, name=f"{self.name}{OF_RUN}{file}", per_run=False)
+        return replace(self, name=number_of(self.name, file), per_run=False)
+
+    def of_setup(self, setup: str) -> Free:
+        """The number of one set-up."""
+        return replace(self, name=number_of(self.name, setup), per_setup=False)
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,6 +51,7 @@ class Effect:
     remedy: str = ""  #: what to do at the rig; {value}, {opposite}: the first number in the rig's own axes, with its sign
     axes: tuple[str, ...] = ()  #: channels in whose axes that number counts
     prior: float = 0.0  #: log prior weight, decides ties only: rig causes before tyre causes
+    runs_written_out: bool = False  #: its numbers are those of single runs
 
     @property
     def parameters(self) -> tuple[str, ...]:
@@ -58,7 +65,18 @@ class Effect:
     @property
     def differs_by_run(self) -> bool:
         """Whether it frees numbers of single runs."""
-        return any(free.per_run or OF_RUN in free.name for free in self.free)
+        return any(free.per_run for free in self.free) or self.runs_written_out
+
+    def of_setups(self, setups: Sequence[str]) -> Effect:
+        """The same with the zeros of every set-up written out, if there are several set-ups."""
+        if len(setups) < 2 or not any(free.per_setup for free in self.free):
+            return self
+        free = [
+            f.of_setup(name) if f.per_setup else f
+            for f in self.free
+            for name in (setups if f.per_setup else ("",))
+        ]
+        return replace(self, free=tuple(free))
 
     def of_runs(self, files: Sequence[str]) -> Effect:
         """The same with what differs from run to run written out for these files."""
@@ -67,4 +85,4 @@ class Effect:
         free = [
             f.of_run(file) if f.per_run else f for f in self.free for file in (files if f.per_run else ("",))
         ]
-        return replace(self, free=tuple(free))
+        return replace(self, free=tuple(free), runs_written_out=True)

@@ -11,7 +11,7 @@ from mffit.fit import constants
 from mffit.fit.constraints import violations
 from mffit.fit.fitted import Fitted
 from mffit.least_squares import FreeNumber, LeastSquaresProblem, Linear, solve
-from mffit.rig_errors import BY_NAME as RIG_ERRORS
+from mffit.rig_errors import error_of
 from tir.parameters import BY_NAME
 
 
@@ -68,7 +68,7 @@ def _drawn(fitted: Fitted, random: np.random.Generator) -> dict[str, float]:
         max_steps=constants.REFIT_STEPS,
         tolerance=constants.REFIT_TOLERANCE,
     )
-    return held | {name: v for name, v in solution.values.items() if name not in RIG_ERRORS}
+    return held | {name: v for name, v in solution.values.items() if error_of(name) is None}
 
 
 def _with_drawn_prior(number: FreeNumber, random: np.random.Generator) -> FreeNumber:

@@ -67,7 +67,7 @@ def fit_plan(
 ) -> FitPlan:
     """The plan for these points."""
     cover = coverage(points, config.tyre.side or "left")
-    rig = rig_numbers(config, measured)
+    rig = rig_numbers(config, measured, points.used_setups)
     staged = {name: start[name] for stage in STAGES for name in stage.parameters}
     scatter = scatters(staged, known.origin, curved=bool(np.any(points.phi_t)))
     scatter |= {name: prior.spread for name, prior in fleet.items()}

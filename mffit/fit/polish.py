@@ -13,7 +13,7 @@ from mffit.fit.posterior import joint, strongest_correlations
 from mffit.fit.problem import FitProblem
 from mffit.fit.profile import follow
 from mffit.least_squares import Solution, solve
-from mffit.rig_errors import BY_NAME as RIG_ERRORS
+from mffit.rig_errors import error_of
 
 
 def polish(stated: FitProblem, plan: FitPlan) -> Fitted:
@@ -32,8 +32,8 @@ def polish(stated: FitProblem, plan: FitPlan) -> Fitted:
     posterior = joint(problem, solution, plan.held)
     stderr = posterior.stderr
     return Fitted(
-        values={name: v for name, v in solution.values.items() if name not in RIG_ERRORS},
-        rig={name: (v, stderr[name]) for name, v in solution.values.items() if name in RIG_ERRORS},
+        values={name: v for name, v in solution.values.items() if error_of(name) is None},
+        rig={name: (v, stderr[name]) for name, v in solution.values.items() if error_of(name)},
         correlation=strongest_correlations(posterior, solution.names),
         posterior=posterior,
         intervals=valley.intervals if valley is not None else {},

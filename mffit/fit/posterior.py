@@ -14,7 +14,7 @@ from mffit.fit.problem import FitProblem
 from mffit.least_squares import Solution
 from mffit.points import Points
 from mffit.rig import Simulation
-from mffit.rig_errors import BY_NAME as RIG_ERRORS
+from mffit.rig_errors import error_of
 
 
 @dataclass(frozen=True, slots=True, repr=False)
@@ -35,7 +35,7 @@ class Posterior(Brief):
         It is the band of the tyre's forces, not of the rig's readings: rig errors count only through the coefficients that they
         made uncertain. Of ``points`` only the set-points are used; ``tyre`` has no rig errors.
         """
-        rows = [i for i, name in enumerate(self.names) if name not in RIG_ERRORS]
+        rows = [i for i, name in enumerate(self.names) if error_of(name) is None]
         slopes = tyre.sensitivities(points, [self.names[i] for i in rows])[1]
         covariance = self.covariance[np.ix_(rows, rows)]
         Fy, Mz = (COVERAGE_FACTOR_95 * spread_through(slope, covariance) for slope in slopes)

@@ -12,7 +12,7 @@ import numpy as np
 from mffit.fit import constants, weights
 from mffit.fit.constraints import Envelope, limits
 from mffit.fit.ranges import covered_ranges, envelope
-from mffit.fit.rig_numbers import known_faults
+from mffit.fit.rig_numbers import known_faults, known_zeros
 from mffit.fit.rolling import effective_radius
 from mffit.least_squares import FreeNumber, LeastSquaresProblem, Linear
 from mffit.measured import RadiusReading, radius_readings
@@ -150,7 +150,8 @@ def fit_problem(config: Any, points: Points, measured: Any, values: Mapping[str,
         points=points,
         simulation=Simulation(
             values=values,
-            faults=known_faults(config, measured),
+            faults=known_faults(config, measured, points.used_setups),
+            of_parts=known_zeros(measured, points.used_setups),
             turn_slip=disc,
             radius_m=config.rig.radius or float("nan"),
         ),

@@ -3,32 +3,56 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 from mffit.config import Declaration, declared_faults, declared_rig
 from mffit.constants import USUAL_CORNERING_STIFFNESS
 from mffit.fit import constants
 from mffit.least_squares import FreeNumber
-from mffit.rig_errors import BY_NAME, Faults
+from mffit.rig_errors import BY_NAME, ZEROS, Faults, number_of
+
+SIDESLIP_ZERO = "alpha_0_deg"
 
 
-def known_faults(config: Any, measured: Any) -> Faults:
-    """The rig before the fit: declared play, and a misalignment that exceeds what the rig's alignment leaves."""
+def known_faults(config: Any, measured: Any, setups: Sequence[str] = ()) -> Faults:
+    """The rig before the fit: declared play, and a misalignment that exceeds what the rig's alignment leaves.
+
+    With several set-ups the misalignment is that of a set-up; see :func:`known_zeros`.
+    """
     faults = declared_faults(config.rig)
-    if not measured.misaligned or measured.alpha_M is None:
+    if not measured.misaligned or measured.alpha_M is None or len(setups) > 1:
         return faults
     return faults.replace(alpha_0_deg=math.degrees(measured.alpha_M.value))
 
 
-def rig_numbers(config: Any, measured: Any) -> tuple[FreeNumber, ...]:
+def known_zeros(measured: Any, setups: Sequence[str]) -> dict[str, float]:
+    """Misalignments of single set-ups that exceed what the rig's alignment leaves, by number; empty for one set-up."""
+    if len(setups) < 2:
+        return {}
+    found = {name: _misaligned(measured, name) for name in setups}
+    return {number_of(SIDESLIP_ZERO, name): angle for name, angle in found.items() if angle}
+
+
+def _misaligned(measured: Any, setup: str) -> float:
+    """Sideslip misalignment of a set-up [deg], mean over its paths; 0 if it is within what the alignment leaves."""
+    rows = measured.nominal.setups if measured.nominal else ()
+    found = [row.alpha_M.value for row in rows if row.name == setup and row.misaligned and row.alpha_M]
+    return math.degrees(sum(found) / len(found)) if found else 0.0
+
+
+def rig_numbers(config: Any, measured: Any, setups: Sequence[str] = ()) -> tuple[FreeNumber, ...]:
     """The declared rig errors with their priors; none on a flat track.
 
-    On a straight path ply-steer and conicity are free and absorb zeros that are off.
+    On a straight path ply-steer and conicity are free and absorb zeros that are off. With several ``setups``, every one has
+    zeros of its own, and where repeated set-ups scatter more than declared, that scatter is the prior.
     """
     if not config.rig.on_disc or measured.epsilon_gamma is None:
         return ()
     usual = USUAL_CORNERING_STIFFNESS * measured.F_phit_load
     declared = declared_rig(config.rig, measured.C_alpha.value if measured.C_alpha else usual)
+    if len(setups) > 1:
+        return _of_setups(declared, measured, setups)
     if measured.misaligned and measured.alpha_M is not None:
         # A zero beyond the declared uncertainty shows that the declaration was too tight.
         value, u = declared.get("alpha_0_deg", Declaration(0.0, 0.0))
@@ -37,11 +61,36 @@ def rig_numbers(config: Any, measured: Any) -> tuple[FreeNumber, ...]:
     return tuple(_number(name, prior) for name, prior in declared.items())
 
 
-def _number(name: str, prior: Declaration) -> FreeNumber:
+def _of_setups(
+    declared: Mapping[str, Declaration], measured: Any, setups: Sequence[str]
+) -> tuple[FreeNumber, ...]:
+    """The numbers of a rig that was set up several times."""
+    zeros = {error.name for error in ZEROS}
+    # No key of [rig] declares the zero of Mz. One that is the same in all set-ups goes into the residual torque; one that
+    # differs has no such place.
+    undeclared = {
+        error.name: Declaration(error.undisturbed, error.spread) for error in ZEROS if not error.declared
+    }
+    found = [_number(name, prior) for name, prior in declared.items() if name not in zeros]
+    scatter = measured.setup_scatter
+    for name, (value, u) in {**declared, **undeclared}.items():
+        if name not in zeros:
+            continue
+        if scatter is not None and name == "F0_N":
+            u = math.hypot(u, scatter.excess)
+        if scatter is not None and name == SIDESLIP_ZERO and scatter.between_alpha is not None:
+            u = max(u, math.degrees(scatter.between_alpha))
+        for setup in setups:
+            off = abs(_misaligned(measured, setup)) if name == SIDESLIP_ZERO else 0.0
+            found.append(_number(name, Declaration(value, max(u, off)), setup))
+    return tuple(found)
+
+
+def _number(name: str, prior: Declaration, setup: str = "") -> FreeNumber:
     reach = constants.RIG_ERROR_REACH * prior.u
     error = BY_NAME[name]
     return FreeNumber(
-        name,
+        number_of(name, setup),
         prior.value,
         max(prior.value - reach, error.lower),
         min(prior.value + reach, error.upper),

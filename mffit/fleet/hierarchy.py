@@ -56,7 +56,7 @@ class Hierarchy:
     """The estimate of one rig and its tyres."""
 
     tyres: tuple[TyreEstimate, ...]  #: in the order given
-    rig: Mapping[str, tuple[float, float]]  #: rig error -> (value, standard uncertainty)
+    rig: Mapping[str, tuple[float, float]]  #: rig error that tyres share -> (value, standard uncertainty)
     declared: Mapping[str, tuple[float, float]]  #: the same as declared
     population: Mapping[str, Population]  #: of coefficients that at least two tyres inform
 
@@ -155,7 +155,9 @@ class _Model:
         """The solution by name."""
         found, m = self.solved(tau), len(self.shared)
         u = np.sqrt(np.diag(found.covariance))
-        rig = {n: (float(found.common[k]), float(u[k])) for k, n in enumerate(self.shared)}
+        rig = {
+            n: (float(found.common[k]), float(u[k])) for k, n in enumerate(self.shared) if self.is_common(n)
+        }
         population = {
             name: Population(
                 mean=float(found.common[m + k]),
@@ -171,7 +173,12 @@ class _Model:
             for one, part, (x, C) in zip(self.found, found.parts, found.tyres, strict=True)
         )
         known = zip(self.rig_centre.tolist(), self.rig_spread.tolist(), strict=True)
-        return Hierarchy(tyres, rig, dict(zip(self.shared, known, strict=True)), population)
+        declared = {n: prior for n, prior in zip(self.shared, known, strict=True) if n in rig}
+        return Hierarchy(tyres, rig, declared, population)
+
+    def is_common(self, name: str) -> bool:
+        """Whether an error of the rig is common to two or more tyres, or there is only one tyre."""
+        return len(self.found) == 1 or sum(name in one.names for one in self.found) > 1
 
     def _strain(self, part: _Part, found: _Solved) -> dict[str, float]:
         """Rig errors of one tyre alone minus those of all others, over the uncertainty of the difference.
@@ -190,7 +197,11 @@ class _Model:
         covariance += C_one @ part.precision @ C_one + C_rest @ rest @ C_rest
         u = np.sqrt(np.maximum(np.diag(covariance), 1e-300))
         informed = np.diag(C_one) * np.diag(precision) < constants.INFORMED_VARIANCE_SHARE
-        return {name: float(difference[k] / u[k]) for k, name in enumerate(self.shared) if informed[k]}
+        return {
+            name: float(difference[k] / u[k])
+            for k, name in enumerate(self.shared)
+            if informed[k] and self.is_common(name)
+        }
 
 
 @dataclass(frozen=True, slots=True)

@@ -11,7 +11,7 @@ import numpy as np
 
 from mffit.fit.fitted import Fitted
 from mffit.fit.priors import scatter
-from mffit.rig_errors import BY_NAME as RIG_ERRORS
+from mffit.rig_errors import error_of
 
 SPIN = ("PECP1", "PECP2")
 """Coefficients that the points inform even if the build holds them at the result of the direct method."""
@@ -35,7 +35,7 @@ class Information:
 
     def rows(self, *, rig: bool) -> list[int]:
         """Positions of the rig errors, or of the tyre's own numbers."""
-        return [i for i, name in enumerate(self.names) if (name in RIG_ERRORS) == rig]
+        return [i for i, name in enumerate(self.names) if (error_of(name) is not None) == rig]
 
 
 def information(fitted: Fitted) -> Information | None:

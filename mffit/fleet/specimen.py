@@ -4,14 +4,17 @@ from __future__ import annotations
 
 import json
 import tomllib
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
+
+import numpy as np
 
 import tir
 from mffit.errors import InputError
 from mffit.fleet.information import Information, from_json
+from mffit.rig_errors import OF_RUN, error_of, number_of
 from tir import Quantity, Tyre
 
 RESULT, RESOLVED, INFORMATION = "result.json", "resolved.toml", "information.json"
@@ -32,6 +35,31 @@ class Specimen:
     misfit: Mapping[str, float]  #: rms by channel, [N] and [Nm]
     warnings: tuple[str, ...]
     reasons: tuple[str, ...]  #: why the build is not to be trusted; empty for a sound one
+    setups: tuple[str, ...] = ()  #: names of the set-ups that its sweeps declare
+    epsilon_of_setups: tuple[
+        Quantity, ...
+    ] = ()  #: eps_gamma by the zeros of every set-up alone, if there are several
+
+    @property
+    def information_of_setups(self) -> Information | None:
+        """The information with every zero called by its set-up, as far as other builds may share it.
+
+        A set-up is shared by the builds that name it, on a rig that they name alike; every other one is of this build alone.
+        """
+        known = self.information
+        if known is None:
+            return None
+        return replace(known, names=tuple(self._shared_name(name) for name in known.names))
+
+    def _shared_name(self, number: str) -> str:
+        name, _, setup = number.partition(OF_RUN)
+        error = error_of(number)
+        if error is None or not error.of_setup:
+            return number
+        if not setup and len(self.setups) == 1:
+            setup = self.setups[0]
+        declared = self.rig.get("name") and setup in self.setups
+        return number_of(name, setup if declared else " of ".join(filter(None, (setup, str(self.folder)))))
 
 
 def read(folder: str | Path) -> Specimen:
@@ -71,11 +99,25 @@ def read(folder: str | Path) -> Specimen:
             misfit={name: row["rmse"] for name, row in result["fit"]["channels"].items() if row["n"]},
             warnings=tuple(result["warnings"]),
             reasons=tuple(result.get("reasons", ())),
+            setups=tuple(dict.fromkeys(s["setup"] for s in resolved["sweep"] if "setup" in s)),
+            epsilon_of_setups=_of_setups(spin.get("setups", [])),
         )
     except (OSError, LookupError, TypeError, ValueError, AttributeError, StopIteration):
         raise InputError(
             "is incomplete, or not written by `mffit build`; build this tyre again", file=folder
         ) from None
+
+
+def _of_setups(rows: Sequence[Mapping[str, Any]]) -> tuple[Quantity, ...]:
+    """eps_gamma of every set-up, the mean over its paths; empty for one set-up."""
+    values: dict[str, list[tuple[float, float]]] = {}
+    for row in rows:
+        number = (float(row["epsilon_gamma"]), float(row["u_epsilon_gamma"]))
+        values.setdefault(str(row["setup"]), []).append(number)
+    if len(values) < 2:
+        return ()
+    means = (np.mean(found, axis=0).tolist() for found in values.values())
+    return tuple(Quantity(value, u, "-") for value, u in means)
 
 
 def _information(path: Path) -> Information | None:

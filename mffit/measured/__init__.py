@@ -5,7 +5,7 @@ from mffit.measured.backlash import odd_alpha
 from mffit.measured.camber_reduction import DirectInputs, direct_method
 from mffit.measured.direct import at_the_axis, measure
 from mffit.measured.radii import RadiusReading, radius_readings
-from mffit.measured.result import KEYS, Contribution, LoadResult, Measured
+from mffit.measured.result import KEYS, Contribution, LoadResult, Measured, SetupResult, SetupScatter
 
 __all__ = [
     "KEYS",
@@ -15,6 +15,8 @@ __all__ = [
     "LoadResult",
     "Measured",
     "RadiusReading",
+    "SetupResult",
+    "SetupScatter",
     "align",
     "at_the_axis",
     "direct_method",

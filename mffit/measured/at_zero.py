@@ -20,7 +20,7 @@ from mffit.rig_errors import AtZero
 
 
 class ZeroReadings(NamedTuple):
-    """Forces and moment at zero sideslip and camber of one load and path."""
+    """Forces and moment at zero sideslip and camber of one load, path and set-up."""
 
     forward: float  #: [N], corrected for the sideslip of backlash
     backward: float  #: NaN without backward runs
@@ -32,13 +32,24 @@ class ZeroReadings(NamedTuple):
     )
 
 
+class PathZeros(NamedTuple):
+    """The readings at zero of one path in one set-up, and the points that they are from."""
+
+    phi_t: float  #: turn slip of the path [1/m]
+    setup: str  #: name of the set-up
+    readings: ZeroReadings
+    group: LoadGroup
+
+
 def zeros_by_path(
     points: Points, group: LoadGroup, C_alpha: UFloat | None, config: Config
-) -> list[tuple[float, ZeroReadings]]:
-    """Turn slip and readings of every path with forward zeros at this load, the usual path first."""
-    paths = by_path(points, group, path_curvature(config.rig))
-    found = [(phi_t, _zeros(points, part, C_alpha, config)) for phi_t, part in paths]
-    return [(phi_t, zero) for phi_t, zero in found if np.isfinite(zero.forward)]
+) -> list[PathZeros]:
+    """The zeros of every path and set-up with forward zeros at this load, the usual path first."""
+    found = (
+        PathZeros(path.phi_t, path.setup, _zeros(points, path.group, C_alpha, config), path.group)
+        for path in by_path(points, group, path_curvature(config.rig))
+    )
+    return [path for path in found if np.isfinite(path.readings.forward)]
 
 
 def _zeros(points: Points, group: LoadGroup, C_alpha: UFloat | None, config: Config) -> ZeroReadings:
@@ -93,12 +104,9 @@ def _at_zero(
     return float(np.mean(values)), float(np.sqrt(np.sum(u[i] ** 2)) / len(i))
 
 
-def unlike_zeros(
-    points: Points, phi_t: float, group: LoadGroup, C_alpha: UFloat | None, config: Config
-) -> list[str]:
-    """Warnings about sweeps of one load, path and direction whose zeros differ by more than mounting again explains."""
+def unlike_zeros(points: Points, group: LoadGroup, C_alpha: UFloat | None, config: Config) -> list[str]:
+    """Warnings about sweeps of one load, path, set-up and direction whose zeros differ by more than noise explains."""
     slope = _slope(C_alpha, group)
-    group = LoadGroup(group.load, group.index[np.isclose(points.phi_t[group.index], phi_t)])
     u_difference = math.sqrt(2.0) * math.hypot(config.rig.u("alpha_0_deg"), USUAL_U_FORCE)
     out = []
     for direction in (1, -1):
@@ -117,22 +125,23 @@ def unlike_zeros(
 
 
 def turn_slip_of_path(
-    zero: ZeroReadings,
-    phi_t: float,
+    found: PathZeros,
     stiffness: tuple[UFloat | None, UFloat | None],
     rig: method.UncertainRig,
     config: Config,
+    scatter: UFloat | None = None,
 ) -> PathForce:
-    """The corrected turn-slip force of one path, and alpha_M if it is known.
+    """The corrected turn-slip force of one path in one set-up, and alpha_M if it is known.
 
     Parameters
     ----------
-    zero : the readings
-    phi_t : turn slip of the path [1/m]
+    found : the readings
     stiffness : C_alpha and C_gamma [N/rad]
     rig : the uncertain rig errors; the angles are already corrected for the play
     config : declares the usual path
+    scatter : force of this set-up that repeated set-ups show beyond what is declared [N]
     """
+    zero, phi_t, errors = found.readings, found.phi_t, rig.at(found.setup)
     C_alpha, C_gamma = stiffness
     at = AtZero(0.0 if C_alpha is None else C_alpha, 0.0 if C_gamma is None else C_gamma, zero.side_of_play)
     # The wheel is moved from path to path by known distances, so one error of R is common to all.
@@ -140,13 +149,16 @@ def turn_slip_of_path(
     assert usual is not None
     path: dict[str, Any] = {
         "sign": float(np.sign(phi_t)), "R": rig.R + (1.0 / abs(phi_t) - usual), "at": _plain(at),
+        "setup": found.setup, "scatter": scatter,
     }  # fmt: skip
     forward = method.named(zero.forward, zero.u_forward, "noise of the forward zeros", "N")
     if not math.isfinite(zero.backward):
-        force = method.turn_slip_force(forward, rig.errors, at, both_directions=False)
+        force = method.turn_slip_force(forward, errors, at, both_directions=False)
+        force = force if scatter is None else force - scatter
         return PathForce(force=force, readings=(forward,), alpha_M=None, **path)
     backward = method.named(zero.backward, zero.u_backward, "noise of the backward zeros", "N")
-    force = method.turn_slip_force((forward + backward) / 2.0, rig.errors, at, both_directions=True)
+    force = method.turn_slip_force((forward + backward) / 2.0, errors, at, both_directions=True)
+    force = force if scatter is None else force - scatter
     alpha_M = None if C_alpha is None else (forward - backward) / 2.0 / C_alpha
     return PathForce(force=force, readings=(forward, backward), alpha_M=alpha_M, **path)
 

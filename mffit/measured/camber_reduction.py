@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -16,18 +16,30 @@ from uncertainties import UFloat, ufloat
 
 from mffit.measured import constants
 from mffit.measured.result import Contribution
-from mffit.rig_errors import BY_NAME, DECLARED, AtZero, Declared
+from mffit.rig_errors import BY_NAME, DECLARED, AtZero, Declared, RigError
 from tir import Quantity
 
 
 @dataclass(frozen=True, slots=True)
 class UncertainRig:
-    """The uncertain rig errors and path radius, common to all loads."""
+    """The uncertain rig errors and path radius, common to all loads; the zeros are independent from set-up to set-up."""
 
     errors: Mapping[
         str, UFloat
     ]  #: deviation of each declared rig error from its declared value, in the declared unit
     R: UFloat  #: path radius [m]
+    of_setups: Mapping[str, Mapping[str, UFloat]] = field(default_factory=dict)
+    """Errors that each set-up has anew, by its name; empty if there is one set-up only."""
+
+    def at(self, setup: str) -> Mapping[str, UFloat]:
+        """All rig errors in a set-up."""
+        own = self.of_setups.get(setup)
+        return self.errors if own is None else {**self.errors, **own}
+
+    @property
+    def everywhere(self) -> tuple[Mapping[str, UFloat], ...]:
+        """The rig errors of every set-up."""
+        return tuple(self.at(setup) for setup in self.of_setups) or (self.errors,)
 
 
 class TurnSlip(NamedTuple):
@@ -38,15 +50,32 @@ class TurnSlip(NamedTuple):
     epsilon_gamma: UFloat
 
 
-def uncertain_rig(u: Mapping[str, float], R: UFloat) -> UncertainRig:
-    """The declared rig errors with their standard uncertainties ``u``, by name and in the declared unit."""
-    errors = {}
-    for error in DECLARED:
-        declared = error.declared
-        assert declared is not None
-        if declared.force_at_zero or declared.camber_stiffness:
-            errors[error.name] = named(0.0, u.get(error.name, 0.0), declared.source, declared.unit)
-    return UncertainRig(errors, R)
+def uncertain_rig(u: Mapping[str, float], R: UFloat, setups: Sequence[str] = ()) -> UncertainRig:
+    """The declared rig errors with their standard uncertainties ``u``, by name and in the declared unit.
+
+    With two or more ``setups``, each has zeros of its own.
+    """
+    several = setups if len(setups) > 1 else ()
+    return UncertainRig(
+        {error.name: _uncertain(error, u) for error in DECLARED if _acts(error)},
+        R,
+        {
+            setup: {error.name: _uncertain(error, u) for error in DECLARED if error.of_setup and _acts(error)}
+            for setup in several
+        },
+    )
+
+
+def _acts(error: RigError) -> bool:
+    """Whether a declared error changes what the direct method reads."""
+    declared = error.declared
+    return declared is not None and bool(declared.force_at_zero or declared.camber_stiffness)
+
+
+def _uncertain(error: RigError, u: Mapping[str, float]) -> UFloat:
+    declared = error.declared
+    assert declared is not None
+    return named(0.0, u.get(error.name, 0.0), declared.source, declared.unit)
 
 
 def named(value: float, u: float, source: str, unit: str) -> UFloat:

@@ -58,6 +58,9 @@ FINITE_SPIN_SHARE = Real(
 CONTRADICTION_CHANCE = Real(
     1e-3, "-", "Probability below which the stiffnesses of the paths contradict each other."
 )
+SETUP_SCATTER_CHANCE = Real(
+    0.01, "-", "Probability below which the scatter of repeated set-ups contradicts the declared zeros."
+)
 MONTE_CARLO_DRAWS = Count(
     20_000, "-", "Random draws for u(eps_gamma), which is then known to better than 1 %."
 )

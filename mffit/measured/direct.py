@@ -16,6 +16,7 @@ from mffit.measured import camber_reduction as method
 from mffit.measured import constants, notes
 from mffit.measured.alignment import AxisAtLoad
 from mffit.measured.at_zero import (
+    PathZeros,
     ZeroReadings,
     refuse_inward,
     turn_slip_of_path,
@@ -33,7 +34,8 @@ from mffit.measured.paths import (
     u_by_draws,
 )
 from mffit.measured.radii import effective_radius_at, measured_effective_radius, measured_path_radius
-from mffit.measured.result import CONICITY, Contribution, LoadResult, Measured
+from mffit.measured.result import CONICITY, Contribution, LoadResult, Measured, SetupScatter
+from mffit.measured.setups import excess_forces, of_setups, results_of_setups, setup_scatter
 from mffit.measured.slopes import Secant, SlopeAtZero, slope_at_zero
 from mffit.measured.stiffnesses import (
     Estimates,
@@ -59,6 +61,8 @@ class _Evidence:
     parts: Parts
     odd_slip: np.ndarray  #: (n,) sideslip to which the odd part of every point belongs [rad]
     rig: method.UncertainRig | None  #: None on a straight path
+    scatter: SetupScatter | None  #: of repeated set-ups
+    excess: Mapping[str, UFloat]  #: force by which each set-up scatters beyond what is declared [N]
     radii: Mapping[float, UFloat]  #: measured effective radius [m] by load [N]
     base: Tyre | None
 
@@ -78,11 +82,20 @@ class _Slopes:
 class _Turning:
     """Turn-slip force and stiffness of one load."""
 
-    zeros: ZeroReadings  #: of the usual path
-    phi_t: tuple[float, ...]  #: of every path [1/m]
+    found: tuple[PathZeros, ...]  #: of every path and set-up, the usual path first
     paths: tuple[PathForce, ...]
     stiffness: TurnSlipStiffness
     force: UFloat  #: on the usual path [N]
+
+    @property
+    def zeros(self) -> ZeroReadings:
+        """The readings on the usual path."""
+        return self.found[0].readings
+
+    @property
+    def phi_t(self) -> tuple[float, ...]:
+        """Turn slip of every path [1/m]."""
+        return tuple(dict.fromkeys(path.phi_t for path in self.found))
 
     @property
     def sign(self) -> float:
@@ -129,12 +142,22 @@ def measure(config: Config, points: Points, parts: Parts, base: Tyre | None = No
     rows = []
     found_slopes = [(group, *_slopes(evidence, group)) for group in load_groups(evidence.points)]
     evidence, skew = _with_measured_skew(evidence, [slopes for _, slopes, _ in found_slopes])
+    stiffnesses = [(group, slopes.C_alpha, slopes.C_gamma) for group, slopes, _ in found_slopes]
+    if evidence.rig is not None:
+        scatter = setup_scatter(evidence.points, stiffnesses, evidence.rig, config)
+        evidence = replace(evidence, scatter=scatter, excess=excess_forces(scatter, evidence.rig))
     for group, slopes, troubles in found_slopes:
         found, more = _at_load(evidence, group, slopes)
         rows += [] if found is None else [found]
         warnings += troubles + more
     measured, troubles = _assembled(evidence, rows, skew)
-    return replace(measured, warnings=(*parts.unpaired, *warnings, *troubles))
+    remarks = of_setups(points, measured, evidence.scatter, config)
+    return replace(
+        measured,
+        notes=(*measured.notes, *remarks.notes),
+        warnings=(*parts.unpaired, *warnings, *troubles, *remarks.warnings),
+        setup_scatter=evidence.scatter,
+    )
 
 
 def at_the_axis(config: Config, points: Points, parts: Parts) -> dict[float, AxisAtLoad]:
@@ -144,7 +167,7 @@ def at_the_axis(config: Config, points: Points, parts: Parts) -> dict[float, Axi
     for group in load_groups(evidence.points):
         C_alpha = _cornering_stiffness(evidence, group)
         paths = zeros_by_path(evidence.points, group, C_alpha, config) if evidence.rig else []
-        zero = paths[0][1] if paths else None
+        zero = paths[0].readings if paths else None
         out[group.load] = AxisAtLoad(
             method.quantity(C_alpha, "N/rad"),
             zero.forward if zero else math.nan,
@@ -161,7 +184,9 @@ def _evidence(config: Config, points: Points, parts: Parts, base: Tyre | None) -
         points=backlash_corrected(points, config),
         parts=parts,
         odd_slip=odd_alpha(points, parts, config),
-        rig=None if R is None else method.uncertain_rig(u, R),
+        rig=None if R is None else method.uncertain_rig(u, R, points.used_setups),
+        scatter=None,
+        excess={},
         radii=measured_effective_radius(config, R),
         base=base,
     )
@@ -249,16 +274,18 @@ def _turning(evidence: _Evidence, group: LoadGroup, slopes: _Slopes) -> tuple[_T
     if not found:
         return None, []
     troubles: list[str] = []
-    for phi_t, _ in found:
-        troubles += unlike_zeros(points, phi_t, group, slopes.C_alpha, config)
+    for path in found:
+        troubles += unlike_zeros(points, path.group, slopes.C_alpha, config)
     both = (slopes.C_alpha, slopes.C_gamma)
-    paths = tuple(turn_slip_of_path(zero, phi_t, both, rig, config) for phi_t, zero in found)
+    paths = tuple(
+        turn_slip_of_path(path, both, rig, config, evidence.excess.get(path.setup)) for path in found
+    )
     combined = turn_slip_stiffness(paths)
     if combined.contradictory:
         alone = [Quantity(C.nominal_value, C.std_dev, "Nm") for C in combined.of_paths]
-        troubles.append(notes.paths_contradict(group.load, [-1.0 / phi_t for phi_t, _ in found], alone))
+        troubles.append(notes.paths_contradict(group.load, [-1.0 / path.phi_t for path in found], alone))
     force = paths[0].force if len(paths) == 1 else paths[0].sign * combined.C_phit / rig.R
-    turning = _Turning(found[0][1], tuple(phi_t for phi_t, _ in found), paths, combined, force)
+    turning = _Turning(tuple(found), paths, combined, force)
     if combined.C_phit.nominal_value <= 0.0:
         refuse_inward(force.nominal_value, group.load, turning.alpha_M, config)
     return turning, troubles
@@ -294,10 +321,13 @@ def _result(
         epsilon_slope=with_estimate(slopes.camber.slope),
         epsilon_secant=with_estimate(slopes.camber.secant),
         epsilon_moment=method.quantity(_from_moments(evidence, group, turning, r_e), "-"),
+        setups=results_of_setups(turning.found, turning.paths, C_gamma, r_e, evidence.config),
         budget=method.budget(epsilon),
         u_monte_carlo=u_by_draws(turning.paths, turning.stiffness.weights, C_gamma, r_e, rig),
     )
-    return _AtLoad(row, epsilon, epsilon.derivatives.get(rig.errors["F0_N"], 0.0))
+    return _AtLoad(
+        row, epsilon, sum(epsilon.derivatives.get(errors["F0_N"], 0.0) for errors in rig.everywhere)
+    )
 
 
 def _row(group: LoadGroup, slopes: _Slopes, turning: _Turning | None, C_gamma: UFloat | None) -> LoadResult:
@@ -378,7 +408,7 @@ def _assembled(
         notes=(
             *([axis.sentence] if axis.sentence and not axis.misaligned else []),
             *([notes.camber_skew(skew)] if skew else []),
-            *([notes.several_paths([-1.0 / phi_t for phi_t in row.paths])] if len(row.paths) > 1 else []),
+            *([_of_paths(row)] if len(row.paths) > 1 else []),
             law.note,
             notes.STANDARD_UNCERTAINTIES,
             notes.conicity(share, conicity.u, conicity.contribution),
@@ -389,6 +419,12 @@ def _assembled(
         conicity=conicity,
     )
     return measured, [axis.sentence] if axis.misaligned else []
+
+
+def _of_paths(row: LoadResult) -> str:
+    """The remark on several paths."""
+    one_setup = len({setup.name for setup in row.setups}) < 2
+    return notes.several_paths([-1.0 / phi_t for phi_t in row.paths], one_setup=one_setup)
 
 
 class AlignmentVerdict(NamedTuple):

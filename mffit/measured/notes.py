@@ -41,10 +41,15 @@ def not_separable(force: float, angle_deg: float | None, u: float) -> str:
     )
 
 
-def several_paths(radii: Sequence[float]) -> str:
+def several_paths(radii: Sequence[float], *, one_setup: bool = True) -> str:
+    cancels = (
+        "a force that is the same on all of them cancels."
+        if one_setup
+        else "a force that is the same on all of them, such as conicity, cancels; the zeros of different set-ups do not."
+    )
     return (
         f"The turn-slip stiffness combines the zeros of {len(radii)} paths (disc's centre {', '.join(map(_centre, radii))}) so "
-        "that its uncertainty is least: a force that is the same on all of them cancels."
+        f"that its uncertainty is least: {cancels}"
     )
 
 

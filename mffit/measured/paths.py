@@ -24,7 +24,7 @@ from mffit.rig_errors import AtZero
 
 
 class PathForce(NamedTuple):
-    """The turn-slip force of one path."""
+    """The turn-slip force of one path in one set-up."""
 
     sign: float  #: of phi_t
     R: UFloat  #: path radius [m]
@@ -32,6 +32,10 @@ class PathForce(NamedTuple):
     readings: tuple[UFloat, ...]  #: raw force forwards [N], and backwards if that was run
     force: UFloat  #: corrected (23) [N]
     alpha_M: UFloat | None  #: sideslip misalignment [rad]; None without backward runs
+    setup: str = ""  #: name of the set-up of the rig in which it was measured
+    scatter: UFloat | None = (
+        None  #: force of the set-up that repeated set-ups show beyond what is declared [N]
+    )
 
 
 class TurnSlipStiffness(NamedTuple):
@@ -48,11 +52,22 @@ class TurnSlipStiffness(NamedTuple):
         return self.chance < constants.CONTRADICTION_CHANCE
 
 
-def by_path(points: Points, group: LoadGroup, usual: float) -> list[tuple[float, LoadGroup]]:
-    """The points of a load by turn slip phi_t [1/m] of their path, those of the ``usual`` path first."""
-    phi_t = points.phi_t[group.index]
-    found = sorted(np.unique(phi_t), key=lambda path: abs(path - usual))
-    return [(float(path), LoadGroup(group.load, group.index[phi_t == path])) for path in found]
+class PathPoints(NamedTuple):
+    """The points of one load on one path in one set-up."""
+
+    phi_t: float  #: turn slip of the path [1/m]
+    setup: str  #: name of the set-up
+    group: LoadGroup
+
+
+def by_path(points: Points, group: LoadGroup, usual: float) -> list[PathPoints]:
+    """The points of a load by path and set-up, those on the path with the ``usual`` turn slip [1/m] first."""
+    phi_t, setup = points.phi_t[group.index], points.setup[group.index]
+    found = sorted({*zip(phi_t.tolist(), setup.tolist(), strict=True)}, key=lambda x: (abs(x[0] - usual), x))
+    return [
+        PathPoints(path, points.setups[k], LoadGroup(group.load, group.index[(phi_t == path) & (setup == k)]))
+        for path, k in found
+    ]
 
 
 def on_radius(points: Points, index: np.ndarray, radius: float) -> np.ndarray:
@@ -64,7 +79,8 @@ def on_radius(points: Points, index: np.ndarray, radius: float) -> np.ndarray:
 def turn_slip_stiffness(paths: Sequence[PathForce]) -> TurnSlipStiffness:
     """C_phit = F/phi_t (21), the paths weighted for the least uncertainty.
 
-    The rig errors are common to all paths: a force of the same sign on both sides of the disc, or on two radii, cancels.
+    The zeros are common to the paths of one set-up: a force of the same sign on both sides of the disc, or on two radii,
+    cancels there. Between set-ups they are independent.
     """
     single = [path.sign * path.force * path.R for path in paths]
     if len(single) == 1:
@@ -114,18 +130,25 @@ def u_by_draws(
     of_first = named(ratio.nominal_value, ratio.std_dev, "r_e/R", "-")
     relative = [rig.R.nominal_value / path.R.nominal_value for path in paths]
     readings = [reading for path in paths for reading in path.readings]
-    at_zero = {name: number for name, number in rig.errors.items() if acts_at_zero(name)}
+    at_zero = [{n: x for n, x in rig.at(path.setup).items() if acts_at_zero(n)} for path in paths]
+    scatters = [{} if path.scatter is None else {"": path.scatter} for path in paths]
+    # An error that several paths share is drawn once.
+    sources = {id(x): x for errors in (*at_zero, *scatters) for x in errors.values()}
 
     def formula(*drawn):
         forces, others = list(drawn[: len(readings)]), drawn[len(readings) :]
-        C, r, errors = others[0], others[1], dict(zip(at_zero, others[2:], strict=True))
+        C, r, known = others[0], others[1], dict(zip(sources, others[2:], strict=True))
         total = 0.0
-        for path, weight, R in zip(paths, weights, relative, strict=True):
+        for path, weight, R, named_errors, scatter in zip(
+            paths, weights, relative, at_zero, scatters, strict=True
+        ):
             mean = sum(forces.pop(0) for _ in path.readings) / len(path.readings)
+            errors = {name: known[id(x)] for name, x in named_errors.items()}
             force = turn_slip_force(
                 mean, errors, path.at._replace(C_gamma=C), both_directions=len(path.readings) > 1
             )
+            force = force - sum(known[id(x)] for x in scatter.values())
             total = total + weight * path.sign * force / R
         return 1.0 + r * C / total
 
-    return monte_carlo(formula, [*readings, C_gamma, of_first, *at_zero.values()])
+    return monte_carlo(formula, [*readings, C_gamma, of_first, *sources.values()])

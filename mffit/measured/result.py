@@ -25,6 +25,35 @@ class Contribution(NamedTuple):
     contribution: float  #: to u(eps_gamma)
 
 
+class SetupResult(NamedTuple):
+    """The zeros of one set-up of the rig on one path and at one load, by themselves."""
+
+    name: str  #: of the set-up
+    phi_t: float  #: turn slip of the path [1/m]
+    F_phit: Quantity  #: turn-slip force, corrected (23) [N]
+    C_phit: Quantity  #: [Nm]
+    epsilon_gamma: Quantity
+    alpha_M: Quantity | None  #: sideslip misalignment [rad]; None without backward runs
+    misaligned: bool  #: alpha_M is beyond what the rig's alignment leaves
+
+
+class SetupScatter(NamedTuple):
+    """Scatter of the zeros of repeated set-ups on one path, beside what is declared; one-way analysis of variance."""
+
+    load: float  #: at which it was measured [N]
+    setups: tuple[str, ...]  #: the repeated ones
+    between: float  #: standard deviation of the force at zero from set-up to set-up [N]
+    degrees_of_freedom: int
+    declared: float  #: the same as the uncertainties in [rig] give it [N]
+    chance: float  #: probability of so much scatter if the declaration holds
+    within: float | None  #: standard deviation of the force at zero from sweep to sweep within a set-up [N]
+    degrees_of_freedom_within: int
+    stated: float | None  #: the same as the stated uncertainties of the points give it [N]
+    between_alpha: float | None  #: standard deviation of the sideslip zero from set-up to set-up [rad]
+    declared_alpha: float | None  #: [rad]
+    excess: float  #: force by which a set-up scatters beyond what is declared and stated [N]
+
+
 @dataclass(frozen=True, slots=True, repr=False)
 class LoadResult(Brief):
     """Everything measured at one load; quantities in SI and ISO signs, u with k = 1."""
@@ -48,6 +77,9 @@ class LoadResult(Brief):
     budget: tuple[Contribution, ...] = ()
     u_monte_carlo: float | None = None  #: u(eps_gamma) from random draws
     paths: tuple[float, ...] = ()  #: turn slip of every path with zeros, the usual one first [1/m]
+    setups: tuple[
+        SetupResult, ...
+    ] = ()  #: the zeros of every path and set-up by themselves, if there are several
 
     @property
     def headline(self) -> str:
@@ -74,6 +106,7 @@ class Measured(Brief):
     warnings: tuple[str, ...]  #: to act on
     load_note: str = ""  #: the value of PECP2, or why it is 0
     conicity: Contribution | None = None  #: joins the budget in :meth:`debiased`
+    setup_scatter: SetupScatter | None = None  #: None without repeated set-ups
     epsilon_gamma_model: float | None = None
     epsilon_gamma_debiased: Quantity | None = None  #: corrected for the finite spin of the disc
 

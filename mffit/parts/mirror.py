@@ -23,7 +23,7 @@ class Mirrors(NamedTuple):
 
 
 def same_condition(points: Points, i: int) -> np.ndarray:
-    """Mask (n,) of the points run at the load, pressure, speed, direction, mount and path of point i."""
+    """Mask (n,) of the points run at the load, pressure, speed, direction, mount, path and set-up of point i."""
     return (
         (np.abs(points.Fz - points.Fz[i]) < constants.SAME_LOAD * points.Fz[i])
         & (np.abs(points.p - points.p[i]) < constants.SAME_PRESSURE * 1e3)
@@ -31,6 +31,7 @@ def same_condition(points: Points, i: int) -> np.ndarray:
         & (points.direction == points.direction[i])
         & (points.mount == points.mount[i])
         & np.isclose(points.phi_t, points.phi_t[i])
+        & (points.setup == points.setup[i])
     )
 
 

@@ -97,7 +97,9 @@ def _subject(path: Path) -> ComparedSubject:
         path = path / _file_of_build(path)
     tyre = tir.read(path)
     built = _build_beside(path)
-    subject = ComparedSubject(path.name, tyre, _turn_slip(tyre), rig=built.get("rig"))
+    subject = ComparedSubject(
+        path.name, tyre, _turn_slip(tyre), rig=built.get("rig"), setups=built.get("setups", ())
+    )
     posterior = posterior_of(tyre, path)
     if posterior is not None:
         return replace(subject, names=posterior.names, covariance=posterior.root @ posterior.root.T)
@@ -106,11 +108,12 @@ def _subject(path: Path) -> ComparedSubject:
 
 
 def _build_beside(path: Path) -> dict[str, Any]:
-    """Of the build in the same folder: the file that its covariance describes, ``tir``, and its ``rig``; else empty."""
+    """Of the build in the same folder: ``tir``, the file of its covariance, its ``rig`` and ``setups``; else empty."""
     try:
         result = json.loads((path.parent / RESULT).read_text(encoding="utf-8"))
         resolved = tomllib.loads((path.parent / RESOLVED).read_text(encoding="utf-8"))
-        return {"tir": result["tir"], "rig": resolved["rig"]}
+        setups = tuple(dict.fromkeys(sweep["setup"] for sweep in resolved["sweep"] if "setup" in sweep))
+        return {"tir": result["tir"], "rig": resolved["rig"], "setups": setups}
     except (OSError, ValueError, KeyError, TypeError):
         return {}
 

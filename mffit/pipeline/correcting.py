@@ -10,7 +10,7 @@ import numpy as np
 import pandas as pd
 import tomli_w
 
-from mffit.config import Config, resolved
+from mffit.config import Config, path_curvature, resolved
 from mffit.diagnosis import Diagnosis, corrected_points
 from mffit.points import Points
 from mffit.points.loading import settled_sweeps
@@ -39,7 +39,7 @@ def write_corrected(diagnosis: Diagnosis, config: Config, out: Path, folder: Pat
     sweeps: list[dict[str, Any]] = []
     for name, part in _files(points):
         corrected_table(part, diagnosis).to_csv(folder / name, index=False, lineterminator="\n")
-        sweeps.append({"file": name, "mount": "normal" if part.mount[0] > 0 else "flipped"})
+        sweeps.append({"file": name, **_conditions(part, config)})
     content = resolved(config, out)
     content["sweep"] = sweeps
     content["rig"] |= {"backlash_deg": 0.0, "force_frame": "W", "moments": "contact"}
@@ -69,10 +69,21 @@ def corrected_table(points: Points, diagnosis: Diagnosis) -> pd.DataFrame:
     return pd.DataFrame(known).replace([np.inf, -np.inf], np.nan)
 
 
+def _conditions(points: Points, config: Config) -> dict[str, Any]:
+    """What [[sweep]] states of the points of one file: mount, path and set-up."""
+    phi_t, setup = float(points.phi_t[0]), points.setups[points.setup[0]]
+    out: dict[str, Any] = {"mount": "normal" if points.mount[0] > 0 else "flipped"}
+    if phi_t != path_curvature(config.rig):
+        out |= {"path_centre": "left" if phi_t < 0.0 else "right", "path_radius": abs(1.0 / phi_t)}
+    return out | ({"setup": setup} if setup else {})
+
+
 def _files(points: Points) -> Iterator[tuple[str, Points]]:
-    """Name and points of each file: one mount, and the same channels in every row."""
+    """Name and points of each file: one mount, path and set-up, and the same channels in every row."""
     for mount, name in ((1, CORRECTED_POINTS), (-1, FLIPPED_POINTS)):
-        channels = np.column_stack([np.isfinite(getattr(points, channel)) for channel in NOT_ALWAYS])
+        channels = np.column_stack(
+            [*(np.isfinite(getattr(points, name)) for name in NOT_ALWAYS), -points.setup, points.phi_t]
+        )
         kinds = np.unique(channels[points.mount == mount], axis=0)[::-1]
         for k, kind in enumerate(kinds, 1):
             rows = (points.mount == mount) & np.all(channels == kind, axis=1)

@@ -78,7 +78,7 @@ def diagnose(
             points,
             tyre,
             config,
-            rig=rig_of_build(tyre, config) if same else None,
+            rig=rig_of_build(tyre) if same else None,
             effects=effects,
             coefficients=known,
             seen=seen,

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 from mffit import fleet as combining
-from mffit.fleet import Hierarchy, Row
+from mffit.fleet import Hierarchy, Row, Specimen, WithinTyre
 from mffit.pipeline.fleet_output import nominal_conditions
-from mffit.rig_errors import WORDS
+from mffit.rig_errors import words_of
 
 
 def fleet_notes(rows: Sequence[Row], rigs: Sequence[Hierarchy | None]) -> list[str]:
@@ -17,12 +17,54 @@ def fleet_notes(rows: Sequence[Row], rigs: Sequence[Hierarchy | None]) -> list[s
         *_several_rigs(rigs),
         *(note for row in rows for note in _outlying(row, far)),
         *(
-            f"All tyres together put an error of the rig, {WORDS[name]}, {ratio:.0f} standard deviations from the "
+            f"All tyres together put an error of the rig, {words_of(name)}, {ratio:.0f} standard deviations from the "
             "value in [rig]: the declaration is too tight, or the tyres share an effect that the model lacks; in the second "
             "case rely on the direct method."
             for name, ratio in far.items()
         ),
         *_mixed_conditions(rows, rigs),
+    ]
+
+
+def notes_on_setups(
+    specimens: Sequence[Specimen], rig_of: Sequence[int], within: WithinTyre | None
+) -> list[str]:
+    """Whether builds share set-ups, and the scatter of one tyre from set-up to set-up."""
+    return [*_on_sharing(specimens, rig_of), *_on_scatter(within)]
+
+
+def _on_sharing(specimens: Sequence[Specimen], rig_of: Sequence[int]) -> list[str]:
+    """A sentence if tyres of one rig are not declared to share a set-up."""
+    on_disc = [(rig, s) for rig, s in zip(rig_of, specimens, strict=True) if s.on_disc]
+    apart = [
+        s.name
+        for rig, s in on_disc
+        if not _shared_setups(s, [o for r, o in on_disc if r == rig and o is not s])
+    ]
+    if not apart or len(on_disc) < 2:
+        return []
+    names = ", ".join(apart[:3]) + (" and others" if len(apart) > 3 else "")
+    return [
+        f"{names}: no set-up of the rig is declared to be that of another tyre, so the zeros of the axes and of the load cell "
+        "are estimated for each build by itself. If the rig was not set up anew between the tyres, give [rig] the same name "
+        "and their sweeps the same setup in every tyre.toml."
+    ]
+
+
+def _shared_setups(one: Specimen, others: Sequence[Specimen]) -> set[str]:
+    """Names of the set-ups of a build that others of the same named rig have too."""
+    return {name for other in others for name in other.setups if one.rig.get("name") and name in one.setups}
+
+
+def _on_scatter(within: WithinTyre | None) -> list[str]:
+    if within is None:
+        return []
+    n = within.degrees_of_freedom
+    counts = "the scatter" if within.inflation > 1.0 else "the stated uncertainty"
+    return [
+        f"From set-up to set-up of one tyre the directly measured eps_gamma scatters by {within.sd:.3f} (standard deviation, "
+        f"{n} degree{'s' * (n > 1)} of freedom, {within.tyres} tyre{'s' * (within.tyres > 1)}); the stated uncertainties give "
+        f"{within.u:.3f}. The larger one, {counts}, counts for the scatter between tyres."
     ]
 
 
@@ -53,7 +95,7 @@ def _outlying(row: Row, far: Mapping[str, float]) -> list[str]:
     if not worst or abs(row.strain[worst]) <= combining.constants.STRAINED_RIG:
         return []
     return [
-        f"{row.specimen.name}: its own error of the rig, {WORDS[worst]}, lies {abs(row.strain[worst]):.0f} standard "
+        f"{row.specimen.name}: its own error of the rig, {words_of(worst)}, lies {abs(row.strain[worst]):.0f} standard "
         "deviations from that of the other tyres; if the rig was adjusted in between, it is another rig: leave this tyre out."
     ]
 

@@ -13,13 +13,14 @@ from threadpoolctl import threadpool_limits
 from mffit import fleet as combining
 from mffit.comparison import with_u
 from mffit.errors import InputError
-from mffit.fleet import Fleet, Hierarchy, Row, Specimen, TyreEstimate
+from mffit.fleet import Fleet, Hierarchy, Information, Row, Specimen, TyreEstimate
 from mffit.output import refuse_early
-from mffit.pipeline.fleet_notes import fleet_notes
+from mffit.pipeline.fleet_notes import fleet_notes, notes_on_setups
 from mffit.pipeline.fleet_output import WRITTEN, write_fleet
 from mffit.pipeline.members import numbers
 from mffit.progress import Progress, silent
 from mffit.quantities import COMPARED
+from mffit.rig_errors import OF_RUN
 from tir import Quantity, Tyre
 
 
@@ -58,7 +59,9 @@ def fleet(
             progress(f"comparing {specimen.name}")
             rows.append(_row(specimen, rig))
     shown = _with_estimates(rows, rigs)
-    found = Fleet(shown, rigs, tuple(fleet_notes(shown, rigs)))
+    within = combining.within_tyres(specimens)
+    notes = (*fleet_notes(shown, rigs), *notes_on_setups(specimens, rig_of, within))
+    found = Fleet(shown, rigs, notes, within)
     if out is not None:
         progress("writing the page")
         write_fleet(found, Path(out))
@@ -66,7 +69,7 @@ def fleet(
 
 
 def _rig_indices(specimens: Sequence[Specimen]) -> list[int]:
-    """The rig of each build, counted from 0; builds with the same [rig] table share a rig."""
+    """The rig of each build, counted from 0; builds with the same [rig] table share a rig, but not its set-ups."""
     seen: list[Mapping] = []
     out = []
     for specimen in specimens:
@@ -77,9 +80,18 @@ def _rig_indices(specimens: Sequence[Specimen]) -> list[int]:
 
 
 def _estimated(specimens: Sequence[Specimen]) -> Hierarchy | None:
-    """The joint estimate of specimens; None if none has its information."""
-    known = [s.information for s in specimens if s.information is not None]
-    return combining.estimate(known) if known else None
+    """The joint estimate of specimens, zeros shared as far as set-ups are; None if none has its information."""
+    known = [found for s in specimens if (found := s.information_of_setups) is not None]
+    return combining.estimate(_plainly_named(known)) if known else None
+
+
+def _plainly_named(found: Sequence[Information]) -> list[Information]:
+    """The same with plain names for zeros of which there is one for all tyres: one set-up, declared as such."""
+    zeros = {name for one in found for name in one.names if OF_RUN in name}
+    setups = {name.partition(OF_RUN)[2] for name in zeros}
+    if len(setups) != 1:
+        return list(found)
+    return [replace(one, names=tuple(name.partition(OF_RUN)[0] for name in one.names)) for one in found]
 
 
 def _row(specimen: Specimen, rig: int) -> Row:

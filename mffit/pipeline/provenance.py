@@ -7,19 +7,18 @@ import re
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
-from urllib.parse import quote
+from urllib.parse import quote, unquote
 
 import numpy as np
 
 import mffit
 import tir
-from mffit.config import Config, declared_faults
+from mffit.config import Config
 from mffit.diagnosis.inexact import Inexactness, correlated, refitted
 from mffit.fit import FitResult
 from mffit.measured import Measured
 from mffit.pipeline.inputs import input_hashes
-from mffit.rig_errors import BY_NAME as RIG_ERRORS
-from mffit.rig_errors import Faults
+from mffit.rig_errors import error_of, unit_of
 from mffit.suspicion import Trust
 from tir import Tyre
 
@@ -43,7 +42,8 @@ def annotator(config: Config, measured: Measured, fitted: FitResult, trust: Trus
     """The annotation of all files of a build; the inputs are hashed once."""
     inputs = _inputs(config)
     rig = {
-        RIG + name: tir.Quantity(value, u, RIG_ERRORS[name].unit) for name, (value, u) in fitted.rig.items()
+        RIG + quote(name, safe=PLAIN): tir.Quantity(value, u, unit_of(name))
+        for name, (value, u) in fitted.rig.items()
     }
 
     def annotated(tyre: Tyre, use: str) -> Tyre:
@@ -72,10 +72,10 @@ def use_of(tyre: Tyre) -> str | None:
     return found[1] if found else None
 
 
-def rig_of_build(tyre: Tyre, config: Config) -> Faults | None:
-    """The rig errors that the build found, from the comments of its file; None without them."""
-    found = {name: tyre.measured[RIG + name].value for name in RIG_ERRORS if RIG + name in tyre.measured}
-    return declared_faults(config.rig).replace(**found) if found else None
+def rig_of_build(tyre: Tyre) -> dict[str, float] | None:
+    """The rig errors that the build found, of the rig or of a set-up, from the comments of its file; None without them."""
+    found = {unquote(n.removeprefix(RIG)): q.value for n, q in tyre.measured.items() if n.startswith(RIG)}
+    return {name: value for name, value in found.items() if error_of(name)} or None
 
 
 def fitted_to(tyre: Tyre, config: Config) -> bool:

@@ -44,7 +44,7 @@ def finite_spin_bias(
     """
     if simulation is None:
         return None
-    Fy, Mz = replace(simulation, faults=NO_FAULTS).readings(points)
+    Fy, Mz = replace(simulation, faults=NO_FAULTS, of_parts={}).readings(points)
     found = epsilon_gamma(without_play(config), points.replace(Fy=Fy, Mz=Mz), base)
     return None if found is None else found.value - float(simulation.values["PECP1"])
 

@@ -43,6 +43,10 @@ class Addition:
     revolution: bool = False  #: adds a [rolling_radius] table
 
 
+_NEW_SETUP = (
+    "It is a new set-up of the rig, and counted so: the load cell and the axes have other zeros there, as uncertain as before. "
+    "If nothing is set up anew in between, give these sweeps the setup of the others; their zeros cancel then."
+)
 _ZEROS = (
     LineOfPoints("alpha", constants.PLAN_ZERO_ANGLES),
     LineOfPoints("alpha", constants.PLAN_ZERO_ANGLES, direction=-1),
@@ -77,8 +81,8 @@ ADDITIONS = (
         id="other-side",
         title="zeros both ways on the other side of the disc",
         reason=(
-            "The path curves the other way and the turn-slip force changes sign; load-cell offset, zeros of the axes, ply-steer "
-            "and conicity keep theirs. Half the difference is turn slip alone."
+            "The path curves the other way and the turn-slip force changes sign; ply-steer and conicity keep theirs and cancel "
+            f"in half the difference. {_NEW_SETUP}"
         ),
         lines=_ZEROS,
         disc_only=True,
@@ -89,7 +93,7 @@ ADDITIONS = (
         title="small cambers on the other side of the disc",
         reason=(
             "The effects of camber and path curvature add on one side of the disc and oppose each other on the other side. The "
-            "cambers include zero, so the run also measures the turn-slip force."
+            f"cambers include zero, so the run also measures the turn-slip force. {_NEW_SETUP}"
         ),
         lines=_SMALL_CAMBERS,
         disc_only=True,
@@ -98,9 +102,7 @@ ADDITIONS = (
     Addition(
         id="second-radius",
         title=f"zeros both ways at {constants.PLAN_SECOND_RADIUS_FACTOR:g} of the path radius",
-        reason=(
-            "Turn slip grows with the path's curvature; load-cell offset, zeros of the axes and conicity do not depend on it."
-        ),
+        reason=(f"Turn slip grows with the path's curvature; conicity does not depend on it. {_NEW_SETUP}"),
         lines=_ZEROS,
         disc_only=True,
         radius=constants.PLAN_SECOND_RADIUS_FACTOR,

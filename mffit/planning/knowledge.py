@@ -18,10 +18,10 @@ from mffit.least_squares import inverse
 from mffit.measured import Measured
 from mffit.measured.direct import alignment_verdict
 from mffit.measured.radii import measured_path_radius
-from mffit.planning.runs import PlannedRun
+from mffit.planning.runs import PlannedRun, new_setups
 from mffit.points import Points
 from mffit.points.points import concatenate
-from mffit.rig_errors import BY_NAME as RIG_ERRORS
+from mffit.rig_errors import OF_RUN, ZEROS, error_of
 from tir import Quantity
 
 PECP1 = "PECP1"
@@ -47,11 +47,12 @@ class Knowledge:
         self.problem = search.problem
         self.simulation = search.problem.simulation
         self.spread = {n.name: n.spread for n in search.numbers} | dict(search.held)
-        self.rig = tuple(n.name for n in search.numbers if n.name in RIG_ERRORS)
+        self.rig = tuple(n.name for n in search.numbers if error_of(n.name))
         staged = {name for row in found.coverage for name in (*row.free, *row.held)}
         self.extra = tuple(n.name for n in search.numbers if n.name not in staged and n.name not in self.rig)
+        self.new_zeros = self._zeros_of_new_setups()
         self.usual = {e.free[0].name: self._usual(e) for e in effects}  # 1 sigma
-        self.names = tuple(dict.fromkeys([*self.spread, PECP1, *self.usual]))
+        self.names = tuple(dict.fromkeys([*self.spread, PECP1, *self.usual, *self.new_zeros]))
         self._row = {name: k for k, name in enumerate(self.names)}
         self._at = np.array([self.simulation.number(n, points) for n in self.names])
         self._sigma = {channel: _median_or_infinite(s) for channel, s in search.problem.sigma.items()}
@@ -96,6 +97,19 @@ class Knowledge:
         )
         return run.points.replace(Fy=Fy, Mz=Mz)
 
+    def _zeros_of_new_setups(self) -> dict[str, float]:
+        """Prior spread of the zeros of set-ups that runs may add, by number."""
+        present, new = self.points.used_setups, new_setups(self.config, self.points)
+        if not self.rig or not new:
+            return {}
+        numbers = rig_numbers(self.config, self.measured, (*present, *new))
+        return {n.name: n.spread for n in numbers if n.name.partition(OF_RUN)[2] in new}
+
+    def _new_of(self, runs: Sequence[PlannedRun]) -> list[str]:
+        """Numbers of the zeros of the new set-ups that some runs are in."""
+        used = {name for run in runs if run.points is not None for name in run.points.used_setups}
+        return [name for name in self.new_zeros if name.partition(OF_RUN)[2] in used]
+
     def _usual(self, effect: Effect) -> float:
         number = effect.free[0]
         size = abs(self.simulation.number(number.name, self.points)) if number.relative else 1.0
@@ -104,14 +118,16 @@ class Knowledge:
     def _free(self, runs: Sequence[PlannedRun]) -> list[str]:
         new = [run.points for run in runs if run.points is not None]
         cover = coverage(concatenate([self.points, *new]) if new else self.points, self.config.tyre.side)
-        return list(dict.fromkeys([*(name for row in cover for name in row.free), *self.extra, *self.rig]))
+        named = [*(name for row in cover for name in row.free), *self.extra, *self.rig, *self._new_of(runs)]
+        return list(dict.fromkeys(named))
 
     def _spread(self, runs: Sequence[PlannedRun]) -> dict[str, float]:
         """Prior spread of each number once the rig has been measured as the runs demand."""
         better = [run for run in runs if run.rig]
         row = self.measured.nominal
+        new = {name: self.new_zeros[name] for name in self._new_of(runs)}
         if not better or row is None:
-            return self.spread
+            return {**self.spread, **new}
         config = self.config
         for run in better:
             config = run.declared(config)
@@ -120,8 +136,17 @@ class Knowledge:
             row = replace(row, R=Quantity(R.nominal_value, R.std_dev, "m"))
         # With a smaller declared uncertainty the measured zero may exceed it, because ply-steer looks like misalignment.
         misaligned = alignment_verdict(config, row).misaligned
-        numbers = rig_numbers(config, replace(self.measured, nominal=row, misaligned=misaligned))
-        return self.spread | {n.name: n.spread for n in numbers}
+        numbers = rig_numbers(
+            config,
+            replace(self.measured, nominal=row, misaligned=misaligned),
+            tuple(dict.fromkeys([*self.points.used_setups, *(n.partition(OF_RUN)[2] for n in new)])),
+        )
+        found = {n.name: n.spread for n in numbers}
+        return {
+            **self.spread,
+            **new,
+            **{name: u for name, u in found.items() if name in (*self.spread, *new)},
+        }
 
     def _information_of(self, runs: Sequence[PlannedRun]) -> np.ndarray:
         return self._base + sum((self._added(run) for run in runs), np.zeros_like(self._base))
@@ -133,7 +158,11 @@ class Knowledge:
             n = len(run.points)
             sigma = {channel: np.full(n, s) for channel, s in self._sigma.items()}
             seen = replace(self.problem, points=self.with_readings(run), sigma=sigma, envelope=None, radii=())
-            self._of_run[run.name] = self._information(seen.free(self.names).linear(self._at).slope)
+            slope = seen.free(self.names).linear(self._at).slope
+            if self._new_of([run]):  # zeros of its own instead of those without a set-up
+                own = [self._row[e.name] for e in ZEROS if e.name in self.rig]
+                slope[:, own] = 0.0
+            self._of_run[run.name] = self._information(slope)
         return self._of_run[run.name]
 
     @staticmethod

@@ -23,7 +23,7 @@ from mffit.planning.runs import PlannedRun
 from mffit.points import Points, main_pressure, make_points
 from mffit.points.points import concatenate
 from mffit.rig import Simulation
-from mffit.rig_errors import BY_NAME as RIG_ERRORS
+from mffit.rig_errors import error_of
 from mffit.scatter import rms
 
 
@@ -161,7 +161,7 @@ class Outlook:
             V=constants.PLAN_BAND_SPEED,
             phi_t=0.0,
         )
-        names = [n for n in self.knowledge.names if n not in RIG_ERRORS]
+        names = [n for n in self.knowledge.names if error_of(n) is None]
         tyre = Simulation.of(self.found.tyre, turn_slip=self.config.rig.on_disc)
         return names, getattr(tyre.sensitivities(where, names)[1], self.goal.name)
 

@@ -10,8 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from mffit.config import Config
-from mffit.config.models import RollingRadiusTable
+from mffit.config import Config, RollingRadiusTable, SweepTable, setup_names
 from mffit.measured.radii import measured_path_radius
 from mffit.planning import constants
 from mffit.planning.additions import ADDITIONS, Addition, LineOfPoints
@@ -80,6 +79,7 @@ class _Programme:
 
     def __init__(self, config: Config, points: Points) -> None:
         main = main_pressure(points) & (points.direction > 0) & (points.mount > 0) & ~points.continuous
+        self.config = config
         self.points, self.main = points, points.select(main if np.any(main) else np.ones(len(points), bool))
         level = levels.labels(self.main.Fz, levels.LOAD)
         self.loads = sorted(
@@ -123,14 +123,36 @@ class _Programme:
         angles = np.radians(self.angles(line))
         usual = np.flatnonzero(self.main.phi_t == self.phi_t)[0]
         like = self.main.select(np.full(len(angles), usual))
+        phi_t = self.phi_t / addition.radius
         given = {
             "alpha": 0.0, "gamma": np.radians(line.camber_side * camber_deg), "Fz": load, "p": p,
-            "V": reference_speed(self.main), "phi_t": self.phi_t / addition.radius, "direction": line.direction,
+            "V": reference_speed(self.main), "phi_t": phi_t, "direction": line.direction,
             "mount": addition.mount, "line": 0, "sweep": 0, "file": 0, "sweep_names": ("planned",), "files": ("",),
+            "setup": 0, "setups": (setup_on(self.config, self.points, phi_t),),
         }  # fmt: skip
         unknown = dict.fromkeys(("Fy", "Mz", "Mx", "My", "t", "time", "iteration"), np.nan)
         typical = {name: _median(getattr(self.points, name)) for name in ("u_Fy", "u_Mz", "T")}
         return like.replace(**(given | {line.over: angles} | unknown | typical))
+
+
+def setup_on(config: Config, points: Points, phi_t: float) -> str:
+    """Name of the set-up in which a run on a path would be: that of the points there, else a new one, as a build calls it."""
+    there = np.flatnonzero(np.isclose(points.phi_t, phi_t))
+    if len(there):
+        return points.setups[points.setup[there[-1]]]
+    centre: Any = "left" if phi_t < 0.0 else "right"
+    usual, other = (
+        SweepTable(file="a"),
+        SweepTable(file="b", path_centre=centre, path_radius=1.0 / abs(phi_t)),
+    )
+    return setup_names(config.rig, (usual, other))[1]
+
+
+def new_setups(config: Config, points: Points) -> tuple[str, ...]:
+    """Names of the set-ups that a plan may add: one for every path that was not run."""
+    paths = {main_path(points) / addition.radius for addition in ADDITIONS}
+    names = {setup_on(config, points, phi_t) for phi_t in paths if phi_t}
+    return tuple(sorted(names - set(points.used_setups)))
 
 
 def _median(values: np.ndarray) -> float:

@@ -137,5 +137,6 @@ def _points(
         line=sweep.line[first],
         sweep_names=(sweep.name,),
         files=(sweep.file,),
+        setups=(sweep.setup,),
         table=table.iloc[first] if len(table) != len(first) else table,
     )

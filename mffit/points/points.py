@@ -11,15 +11,17 @@ import pandas as pd
 
 from mffit.brief import Brief
 
-INTEGER = frozenset({"direction", "mount", "sweep", "file", "line"})
-SHARED = frozenset({"sweep_names", "files", "table"})
+INTEGER = frozenset({"direction", "mount", "sweep", "file", "line", "setup"})
+SHARED = frozenset({"sweep_names", "files", "setups", "table"})
+COUNTED = {"sweep": "sweep_names", "file": "files", "setup": "setups"}
+"""Fields of indices, and the field with the names that they count."""
 OPTIONAL: Mapping[str, Any] = {
     **dict.fromkeys(("Fy", "Mz", "Mx", "My", "T", "t", "u_Fy", "u_Mz", "iteration", "time"), np.nan),
     **dict.fromkeys(("direction", "mount"), 1),
-    **dict.fromkeys(("sweep", "file", "line"), 0),
+    **dict.fromkeys(("sweep", "file", "line", "setup"), 0),
     "continuous": False,
 }
-"""Defaults of :func:`make_points`: not measured, forwards, normal mount, one sweep of one file."""
+"""Defaults of :func:`make_points`: not measured, forwards, normal mount, one sweep of one file, one set-up."""
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
@@ -52,8 +54,10 @@ class Points(Brief):
     sweep: np.ndarray  #: index into ``sweep_names``
     file: np.ndarray  #: index into ``files``
     line: np.ndarray  #: line in that file, counted from 1
+    setup: np.ndarray  #: set-up of the rig, index into ``setups``
     sweep_names: tuple[str, ...]
     files: tuple[str, ...]
+    setups: tuple[str, ...]  #: names of the set-ups of the rig; one empty name if none is declared
     table: pd.DataFrame  #: input columns as in docs/files.md, rig's axes; a row per point
 
     def __len__(self) -> int:
@@ -63,6 +67,11 @@ class Points(Brief):
     def headline(self) -> str:
         """Number of points and sweeps, in words."""
         return f"{len(self)} in {len(self.sweep_names)} sweeps"
+
+    @property
+    def used_setups(self) -> tuple[str, ...]:
+        """Names of the set-ups that have points, in the order of ``setups``."""
+        return tuple(self.setups[k] for k in np.unique(self.setup))
 
     @property
     def Vx(self) -> np.ndarray:
@@ -79,6 +88,7 @@ class Points(Brief):
             taken,
             sweep_names=self.sweep_names,
             files=self.files,
+            setups=self.setups,
             table=self.table.iloc[which].reset_index(drop=True),
         )
 
@@ -101,6 +111,7 @@ def make_points(
     *,
     sweep_names: Sequence[str] = ("sweep",),
     files: Sequence[str] = ("",),
+    setups: Sequence[str] = ("",),
     table: pd.DataFrame | None = None,
     **fields: Any,
 ) -> Points:
@@ -110,7 +121,7 @@ def make_points(
     ----------
     alpha, gamma : scalar or (n,) [rad]
     Fz : scalar or (n,) load, positive [N]
-    sweep_names, files : names that the fields ``sweep`` and ``file`` count
+    sweep_names, files, setups : names that the fields ``sweep``, ``file`` and ``setup`` count
     table : input columns as reported, (n,) rows; empty if not given
     fields : other fields of :class:`Points`, scalar or (n,); ``p``, ``V`` and ``phi_t`` are required, the others are
         optional (``OPTIONAL`` has their defaults)
@@ -139,20 +150,21 @@ def make_points(
     table = pd.DataFrame(index=pd.RangeIndex(n)) if table is None else table.reset_index(drop=True)
     if len(table) != n:
         raise ValueError(f"the table has {len(table)} rows for {n} points")
-    return _sealed(arrays, sweep_names=tuple(sweep_names), files=tuple(files), table=table)
+    names = {"sweep_names": tuple(sweep_names), "files": tuple(files), "setups": tuple(setups)}
+    return _sealed(arrays, **names, table=table)
 
 
 def concatenate(parts: Sequence[Points]) -> Points:
-    """Join points one after the other; sweeps and files are renumbered, tables joined by column name."""
+    """Join points one after the other; sweeps, files and set-ups are renumbered, tables joined by column name."""
     arrays = {name: np.concatenate([getattr(part, name) for part in parts]) for name in ARRAYS}
-    files = tuple(dict.fromkeys(name for part in parts for name in part.files))
-    sweep_names = tuple(dict.fromkeys(name for part in parts for name in part.sweep_names))
-    arrays["file"] = np.concatenate([_renumbered(part.file, part.files, files) for part in parts])
-    arrays["sweep"] = np.concatenate(
-        [_renumbered(part.sweep, part.sweep_names, sweep_names) for part in parts]
-    )
+    names: dict[str, tuple[str, ...]] = {}
+    for field, of_field in COUNTED.items():
+        names[of_field] = tuple(dict.fromkeys(name for part in parts for name in getattr(part, of_field)))
+        arrays[field] = np.concatenate(
+            [_renumbered(getattr(part, field), getattr(part, of_field), names[of_field]) for part in parts]
+        )
     table = pd.concat([part.table for part in parts], ignore_index=True)
-    return _sealed(arrays, sweep_names=sweep_names, files=files, table=table)
+    return _sealed(arrays, **names, table=table)
 
 
 def _refuse_unknown(given: Mapping[str, Any]) -> None:

@@ -12,7 +12,7 @@ from mffit.quantities import CHANNELS, COMPARED, DIRECT
 from mffit.report import page
 from mffit.report.drawing.records import Sheet
 from mffit.report.figures import fleet
-from mffit.rig_errors import MEANINGS, UNITS, WORDS
+from mffit.rig_errors import meaning_of, unit_of, words_of
 
 SPIN = ("PECP1", "PECP2", "PKY6", "PKY7", "PDYP1", "PKYP1", "QDTP1", "QCRP1")
 """Coefficients of spin and camber stiffness that the page shows of a population; fleet.json holds all."""
@@ -41,9 +41,9 @@ def write_fleet(found: Fleet, folder: Path, *, priors: bool) -> None:
         estimates=estimates,
         compared=COMPARED,
         channels=CHANNELS,
-        units=UNITS,
-        meanings=MEANINGS,
-        words=WORDS,
+        units=unit_of,
+        meanings=meaning_of,
+        words=words_of,
         enough=FEWEST_TYRES_FOR_SCATTER,
         spin=SPIN,
         priors=priors,

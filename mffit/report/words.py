@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-from mffit.rig_errors import BY_NAME as RIG_ERRORS
-from mffit.rig_errors import OF_RUN, UNITS, WORDS
+from mffit.rig_errors import error_of, words_of
+from mffit.rig_errors import unit_of as rig_unit_of
 from tir.parameters import BY_NAME
 
 
 def of_rig(name: str) -> str:
-    """Words for a number of the rig, of all runs or of one; empty for a coefficient of the tyre."""
-    fault, of_run, run = name.partition(OF_RUN)
-    words = WORDS.get(fault, "")
-    return f"{words}, {run}" if of_run and words else words
+    """Words for a number of the rig, of the whole test, or of one run or set-up; empty for a coefficient of the tyre."""
+    return words_of(name)
 
 
 def of_number(name: str) -> str:
@@ -21,6 +19,5 @@ def of_number(name: str) -> str:
 
 def unit_of(name: str) -> str:
     """Unit of a coefficient or of a number of the rig; empty without one."""
-    fault = name.partition(OF_RUN)[0]
-    unit = UNITS[fault] if fault in RIG_ERRORS else BY_NAME[name].unit if name in BY_NAME else ""
+    unit = rig_unit_of(name) if error_of(name) else BY_NAME[name].unit if name in BY_NAME else ""
     return "" if unit == "-" else unit

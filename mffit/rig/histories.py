@@ -47,6 +47,7 @@ def distance_km(points: Points) -> np.ndarray:
     return out
 
 
-def of_run(points: Points, file: str) -> np.ndarray:
-    """1 at the points (n,) of the run in that file, else 0."""
-    return np.array([float(name == file) for name in points.files])[points.file]
+def of_part(points: Points, name: str) -> np.ndarray:
+    """1 at the points (n,) of the set-up of that name, or of the run in the file of that name, else 0."""
+    names, index = (points.setups, points.setup) if name in points.setups else (points.files, points.file)
+    return np.array([float(other == name) for other in names])[index]

@@ -12,7 +12,7 @@ import numpy as np
 from mffit.brief import Brief
 from mffit.points import Points
 from mffit.rig.chain import Chain
-from mffit.rig.histories import of_run, usual_radius
+from mffit.rig.histories import of_part, usual_radius
 from mffit.rig_errors import BY_NAME, NO_FAULTS, OF_RUN, RIG_ERRORS, Faults
 from tir import Tyre
 from tir.derivatives import Traced, gradient, plain, traced
@@ -36,8 +36,8 @@ class Simulation(Brief):
     turn_slip: bool = True  #: whether the simulation knows path curvature and spin
     star: bool = False  #: tan(alpha), sin(gamma) as inputs
     radius_m: float = math.nan  #: declared radius of the rig's usual path [m]; NaN: that of most points
-    of_runs: Mapping[str, float] = field(default_factory=dict)
-    """What single runs add to a rig error, as ``F0_N@zeros.csv``, in its unit."""
+    of_parts: Mapping[str, float] = field(default_factory=dict)
+    """What single runs or set-ups add to a rig error, as ``F0_N@zeros.csv`` or ``F0_N@A``, in its unit."""
 
     @classmethod
     def of(
@@ -51,7 +51,7 @@ class Simulation(Brief):
         if name == SWITCH:
             return float(self.turn_slip)
         if OF_RUN in name:
-            return self.of_runs.get(name, 0.0)
+            return self.of_parts.get(name, 0.0)
         if name == "path_radius_m" and math.isnan(self.faults[name]):
             return self.declared(points)
         return float(self.faults[name] if name in BY_NAME else self.values[name])
@@ -63,21 +63,21 @@ class Simulation(Brief):
     def with_numbers(self, numbers: Mapping[str, float]) -> Simulation:
         """The same with some coefficients, rig errors or switches replaced."""
         faults = {name: value for name, value in numbers.items() if name in BY_NAME}
-        of_runs = {name: value for name, value in numbers.items() if OF_RUN in name}
-        values = {n: v for n, v in numbers.items() if n not in {*faults, *of_runs, SWITCH}}
+        of_parts = {name: value for name, value in numbers.items() if OF_RUN in name}
+        values = {n: v for n, v in numbers.items() if n not in {*faults, *of_parts, SWITCH}}
         return replace(
             self,
             values={**self.values, **values} if values else self.values,
             faults=self.faults.replace(**faults) if faults else self.faults,
             turn_slip=bool(numbers.get(SWITCH, self.turn_slip)),
-            of_runs={**self.of_runs, **of_runs} if of_runs else self.of_runs,
+            of_parts={**self.of_parts, **of_parts} if of_parts else self.of_parts,
         )
 
     @property
     def faultless(self) -> Simulation:
         """The same tyre, its relaxation included, on a perfect rig at reference conditions."""
         own = {error.name: self.faults[error.name] for error in RIG_ERRORS if error.kind == "tyre"}
-        return replace(self, faults=Faults(**own), of_runs={})
+        return replace(self, faults=Faults(**own), of_parts={})
 
     def readings(self, points: Points) -> Readings:
         """What the rig would report at every point.
@@ -112,10 +112,10 @@ class Simulation(Brief):
     def _chain(self, points: Points, numbers: Mapping[str, Traced]) -> Chain:
         """The passage of the points with some numbers traced."""
         faults: dict[str, Any] = {**self.faults, **{n: x for n, x in numbers.items() if n in BY_NAME}}
-        of_runs = {**self.of_runs, **{n: x for n, x in numbers.items() if OF_RUN in n}}
-        for key, added in of_runs.items():
-            name, _, file = key.partition(OF_RUN)
-            faults[name] = faults[name] + added * of_run(points, file)
+        of_parts = {**self.of_parts, **{n: x for n, x in numbers.items() if OF_RUN in n}}
+        for key, added in of_parts.items():
+            name, _, part = key.partition(OF_RUN)
+            faults[name] = faults[name] + added * of_part(points, part)
         return Chain(
             points,
             {**self.values, **{n: x for n, x in numbers.items() if n in self.values}},

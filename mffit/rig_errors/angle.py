@@ -41,6 +41,7 @@ SIDESLIP_ZERO = _of_angle(
     spread=0.2,
     lower=-5.0,
     upper=5.0,
+    of_setup=True,
     seen_as=(
         Appearance(
             id="sideslip-misalignment",

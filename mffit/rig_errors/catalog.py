@@ -22,6 +22,8 @@ AFTER = tuple(error for error in RIG_ERRORS if error.place not in (*BEFORE_THE_T
 """Those between the forces of the tyre and their readings."""
 DECLARED = tuple(error for error in RIG_ERRORS if error.declared is not None)
 """Those whose uncertainty ``[rig]`` states."""
+ZEROS = tuple(error for error in RIG_ERRORS if error.of_setup)
+"""Those that every set-up of the rig has anew."""
 UNITS = {error.name: error.unit for error in RIG_ERRORS}
 MEANINGS = {error.name: error.meaning for error in RIG_ERRORS}
 WORDS = {error.name: error.seen_as[0].name for error in RIG_ERRORS if error.seen_as}

@@ -20,6 +20,7 @@ CAMBER_ZERO = RigError(
     spread=0.4,
     lower=-5.0,
     upper=5.0,
+    of_setup=True,
     seen_as=(
         Appearance(
             id="camber-misalignment",

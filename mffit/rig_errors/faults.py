@@ -5,10 +5,38 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Mapping
 
-from mffit.rig_errors.catalog import BY_NAME, RIG_ERRORS
+from mffit.rig_errors.catalog import BY_NAME, MEANINGS, RIG_ERRORS, UNITS, WORDS
+from mffit.rig_errors.record import RigError
 
 OF_RUN = "@"
-"""Separates the name of an error from the file of the one run in which that much is added to it: ``F0_N@zeros.csv``."""
+"""Separates the name of an error from the run or set-up to which the number belongs: ``F0_N@zeros.csv``, ``F0_N@A``."""
+
+
+def number_of(name: str, part: str) -> str:
+    """Name of the number of an error in one run or set-up; the plain name if ``part`` is empty."""
+    return f"{name}{OF_RUN}{part}" if part else name
+
+
+def unit_of(name: str) -> str:
+    """Unit of a number of the rig, of the whole test or of a part of it."""
+    return UNITS[name.partition(OF_RUN)[0]]
+
+
+def meaning_of(name: str) -> str:
+    """Formula, in words, of a number of the rig, of the whole test or of a part of it."""
+    return MEANINGS[name.partition(OF_RUN)[0]]
+
+
+def words_of(name: str) -> str:
+    """Words for a number of the rig, followed by its run or set-up; empty if there are none."""
+    error, _, part = name.partition(OF_RUN)
+    words = WORDS.get(error, "")
+    return f"{words}, {part}" if words and part else words
+
+
+def error_of(name: str) -> RigError | None:
+    """The rig error that a number belongs to, of the whole test or of a part of it; None for other numbers."""
+    return BY_NAME.get(name.partition(OF_RUN)[0])
 
 
 class Faults(Mapping[str, float]):

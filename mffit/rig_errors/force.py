@@ -82,6 +82,7 @@ FORCE_ZERO = _of_reading(
     spread=10.0,
     lower=-1e3,
     upper=1e3,
+    of_setup=True,
     seen_as=(
         Appearance(
             id="loadcell-offset-fy",
@@ -127,6 +128,7 @@ MOMENT_ZERO = _of_reading(
     spread=1.0,
     lower=-1e2,
     upper=1e2,
+    of_setup=True,
     seen_as=(
         Appearance(
             id="loadcell-offset-mz",

@@ -106,6 +106,7 @@ class RigError:
     lower: float = -math.inf
     upper: float = math.inf
     relative: bool = False  #: spread and scan are relative to the value
+    of_setup: bool = False  #: differs from one set-up of the rig to the next, as a zero does
     seen_as: tuple[Appearance, ...] = ()
     declared: Declared | None = None
 

@@ -16,7 +16,7 @@ from mffit.least_squares import FreeNumber, inverse, root
 from mffit.points import Points, levels
 from mffit.quantities import CHANNELS
 from mffit.rig import Simulation
-from mffit.rig_errors import RIG_ERRORS
+from mffit.rig_errors import RIG_ERRORS, ZEROS, number_of
 from mffit.suspicion import constants
 
 COMMON = tuple(
@@ -119,7 +119,7 @@ def leverage(fit: FittedModel, noise: np.ndarray) -> Leverage:
     """
     points = fit.points
     free = [n.name for n in fit.numbers]
-    common = [name for name in COMMON if name not in free]
+    common = [name for name in _common(points) if name not in free]
     out, slope = fit.simulation.sensitivities(points, [*free, *common])
     slopes = np.concatenate(slope)
     measured = np.concatenate([points.Fy, points.Mz])
@@ -137,6 +137,16 @@ def leverage(fit: FittedModel, noise: np.ndarray) -> Leverage:
         noise=np.where(used, noise, np.inf),
         root=root(covariance),
     )
+
+
+def _common(points: Points) -> list[str]:
+    """Names of the rig errors that many sweeps share: those of the rig, and the zeros of every set-up."""
+    setups = points.used_setups
+    if len(setups) < 2:
+        return list(COMMON)
+    zeros = [error.name for error in ZEROS]
+    rig = [name for name in COMMON if name not in zeros]
+    return [*rig, *(number_of(name, setup) for name in zeros for setup in setups)]
 
 
 def predictions(fit: Leverage, group: Group) -> dict[str, PredictedChannel]:

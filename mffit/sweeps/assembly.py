@@ -23,6 +23,7 @@ class Circumstances(NamedTuple):
     file: str  #: name as in ``tyre.toml``
     direction: int = 1  #: +1 or -1, if the file has no such column
     mount: int = 1  #: +1 normal, -1 tyre turned on its rim
+    setup: str = ""  #: name of the set-up of the rig
     pressure: float = math.nan  #: [Pa], if not measured
     speed: float = math.nan  #: [m/s], if not measured
 
@@ -67,6 +68,7 @@ def _sweep(columns: Columns, given: Circumstances) -> Sweep:
         iteration=column("iteration"),
         direction=np.broadcast_to(given.direction, (n,)) if columns.direction is None else columns.direction,
         mount=given.mount,
+        setup=given.setup,
         time=column("time_s"),
         point=table["point"].astype(str).to_numpy() if "point" in table else None,
         line=np.asarray(columns.raw.lines),

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
-from mffit.config import Config
+from mffit.config import Config, setup_names
 from mffit.config.models import SweepTable
 from mffit.errors import InputError
 from mffit.sweeps import constants
@@ -33,7 +33,8 @@ def load(config: Config) -> Sweeps:
     """
     found: list[Sweep] = []
     warnings: list[str] = []
-    for index, entry in enumerate(config.sweep):
+    setups = setup_names(config.rig, config.sweep)
+    for index, (entry, setup) in enumerate(zip(config.sweep, setups, strict=True)):
         columns = _columns(config, index, entry)
         warnings.extend(columns.warnings)
         direction = -1 if entry.direction == "backward" else 1
@@ -44,6 +45,7 @@ def load(config: Config) -> Sweeps:
             file=entry.file,
             direction=direction,
             mount=1 if entry.mount == "normal" else -1,
+            setup=setup,
             pressure=1e3 * config.tyre.nominal_pressure,
             speed=config.tyre.nominal_speed,
         )

@@ -35,6 +35,7 @@ class Sweep(Brief):
     iteration: np.ndarray  #: step of the steering alignment
     direction: np.ndarray  #: +1 forward, -1 backward
     mount: int  #: +1 normal, -1 tyre turned on its rim
+    setup: str  #: name of the set-up of the rig; empty if none is declared
     time: np.ndarray  #: time of a sample [s]; NaN for finished points
     point: (
         np.ndarray | None

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -9,7 +10,7 @@ import numpy as np
 import pandas as pd
 
 from mffit.errors import InputError
-from mffit.rig_errors import Faults
+from mffit.rig_errors import ZEROS, Faults
 from mffit.virtual_rig.faults import drawn, given
 from mffit.virtual_rig.machine import Channels, Machine, steady
 from mffit.virtual_rig.plan import NoiseTable, RigPlan, SweepPlan
@@ -52,28 +53,51 @@ def run(plan: RigPlan, tyre: Tyre, seed: int | None = None) -> Campaign:
         raise InputError(f"the seed is {seed}; give a whole number, 0 or larger")
     # Every sweep has random numbers of its own, so that one more sweep does not change the others.
     for_faults, for_radii, *for_sweeps = np.random.SeedSequence(seed).spawn(2 + len(plan.tables.sweep))
-    faults = faults_of(plan, tyre, np.random.default_rng(for_faults))
+    faults = faults_in_setups(plan, tyre, np.random.default_rng(for_faults))
     sweeps = settings_of(plan)
-    machine = Machine(tyre, faults, plan.phi_t_sign, usual_speed(sweeps))
-    tables = {
-        sweep.file: sweep_table(plan, machine, sweep, settings, np.random.default_rng(stream))
-        for sweep, settings, stream in zip(plan.tables.sweep, sweeps, for_sweeps, strict=True)
+    machines = {
+        setup: Machine(tyre, own, plan.phi_t_sign, usual_speed(sweeps)) for setup, own in faults.items()
     }
-    truth = truth_of(plan, machine, seed)
+    tables = {
+        sweep.file: sweep_table(plan, machines[setup], sweep, settings, np.random.default_rng(stream))
+        for sweep, setup, settings, stream in zip(
+            plan.tables.sweep, plan.setups, sweeps, for_sweeps, strict=True
+        )
+    }
+    machine = machines[plan.setups[0]]
+    truth = truth_of(plan, machine, faults, seed)
     return Campaign(tables, configuration_of(plan, machine, np.random.default_rng(for_radii)), truth)
 
 
 def faults_of(plan: RigPlan, tyre: Tyre, generator: np.random.Generator) -> Faults:
-    """The rig errors of the plan; with ``draw``, declared errors that it does not give are drawn."""
+    """The rig errors of the first set-up."""
+    return faults_in_setups(plan, tyre, generator)[plan.setups[0]]
+
+
+def faults_in_setups(plan: RigPlan, tyre: Tyre, generator: np.random.Generator) -> dict[str, Faults]:
+    """The rig errors of every set-up; with ``draw``, declared errors that the plan does not give are drawn."""
     table, rig = plan.tables.faults, plan.declared.rig
+    setups = tuple(dict.fromkeys(plan.setups))
+    for name in plan.tables.setup:
+        if name not in setups:
+            known = ", ".join(filter(None, setups)) or "none"
+            raise InputError(
+                f"no sweep belongs to this set-up (set-ups of the sweeps: {known}); give its sweeps setup",
+                key=f"setup.{name}",
+            )
     values = table.values()
     if rig.radius is None and "path_radius_m" in values:
         raise InputError("a flat track has no path radius; remove it", key="faults.path_radius_m")
-    if not table.draw:
-        return given(rig, values)
-    nominal = plan.declared.tyre.nominal_load
-    C_alpha = float(tyre.state(nominal, Vx=plan.tables.conditions.V_mps).K_ya)
-    return drawn(rig, values, C_alpha, generator)
+    if table.draw:
+        nominal = plan.declared.tyre.nominal_load
+        C_alpha = float(tyre.state(nominal, Vx=plan.tables.conditions.V_mps).K_ya)
+        faults = drawn(rig, values, C_alpha, generator, setups)
+    else:
+        faults = dict.fromkeys(setups, given(rig, values))
+    for name, own in plan.tables.setup.items():
+        added = {error: faults[name][error] + x for error, x in own.values().items()}
+        faults[name] = faults[name].replace(**added)
+    return faults
 
 
 def sweep_table(
@@ -98,8 +122,8 @@ def scattered(forces: Channels, noise: NoiseTable, generator: np.random.Generato
     )
 
 
-def truth_of(plan: RigPlan, machine: Machine, seed: int) -> Truth:
-    """The true values at the loads of the campaign and at the nominal load."""
+def truth_of(plan: RigPlan, machine: Machine, faults: Mapping[str, Faults], seed: int) -> Truth:
+    """The true values at the loads of the campaign and at the nominal load; ``machine`` is that of the first set-up."""
     nominal = plan.declared.tyre.nominal_load
     loads = sorted({sweep.load_N for sweep in plan.tables.sweep})
     rows = {load: _direct(plan, machine, load) for load in sorted({nominal, *loads})}
@@ -108,9 +132,20 @@ def truth_of(plan: RigPlan, machine: Machine, seed: int) -> Truth:
         per_load=tuple(rows[load] for load in loads),
         faults=machine.faults,
         faults_of_sweeps={s.file: s.faults.values() for s in plan.tables.sweep if s.faults.values()},
+        faults_of_setups={
+            setup: {name: own[name] for name in _differing(plan, setup)}
+            for setup, own in faults.items()
+            if len(faults) > 1
+        },
         coefficients=coefficients_of(machine.tyre),
         seed=seed,
     )
+
+
+def _differing(plan: RigPlan, setup: str) -> list[str]:
+    """Names of the rig errors that a set-up may have of its own."""
+    table = plan.tables.setup.get(setup)
+    return list(dict.fromkeys([*(error.name for error in ZEROS), *(table.values() if table else ())]))
 
 
 def _direct(plan: RigPlan, machine: Machine, load: float) -> DirectTruth:
@@ -150,6 +185,6 @@ def configuration_of(plan: RigPlan, machine: Machine, generator: np.random.Gener
 
 
 def _sweep_entry(sweep: SweepPlan) -> dict[str, Any]:
-    names = ("file", "direction", "mount", "path_centre", "path_radius")
+    names = ("file", "direction", "mount", "path_centre", "path_radius", "setup")
     entry = {name: getattr(sweep, name) for name in names}
     return {key: value for key, value in entry.items() if value not in ("forward", "normal", None)}

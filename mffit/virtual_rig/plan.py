@@ -20,9 +20,9 @@ from pydantic import (
     model_validator,
 )
 
-from mffit.config import Config, path_curvature
+from mffit.config import Config, path_curvature, setup_names
 from mffit.config import quantities as q
-from mffit.config.models import SweepTable, Table
+from mffit.config.models import SetupName, SweepTable, Table
 from mffit.rig_errors import BY_NAME as RIG_ERROR_NAMES
 from mffit.rig_errors import RIG_ERRORS, RigError
 
@@ -74,6 +74,10 @@ class OwnFaultsTable(RigErrorValues):
     def values(self) -> dict[str, float]:
         """The rig errors given in the file."""
         return self.model_dump(include=set(RIG_ERROR_NAMES), exclude_none=True)
+
+
+class SetupFaultsTable(OwnFaultsTable):
+    """[setup.NAME]: rig errors that one set-up has in addition to those of the rig."""
 
 
 class FaultsTable(OwnFaultsTable):
@@ -140,6 +144,7 @@ class SweepPlan(Table):
     mount: Literal["normal", "flipped"] = "normal"
     path_centre: Literal["left", "right"] | None = None  #: None: the declared one
     path_radius: q.PathRadius | None = None  #: [m]; the declared one if not given
+    setup: SetupName | None = None  #: as in tyre.toml; None: one per path
     faults: OwnFaultsTable = OwnFaultsTable()
     recording: RecordingTable | None = None
 
@@ -163,6 +168,7 @@ class RigTables(Table):
     seed: int = 0
     truth: TruthTable
     faults: FaultsTable = FaultsTable()
+    setup: dict[str, SetupFaultsTable] = Field(default_factory=dict)
     noise: NoiseTable = NoiseTable()
     conditions: ConditionsTable = ConditionsTable()
     rolling_radius: Annotated[tuple[RollingRadiusPlan, ...], BeforeValidator(_entries)] = ()
@@ -189,8 +195,12 @@ class RigPlan:
 
     def path(self, sweep: SweepPlan) -> float:
         """Turn slip of a sweep's path as declared [1/m]; 0 on a flat track."""
-        entry = SweepTable(file=sweep.file, path_centre=sweep.path_centre, path_radius=sweep.path_radius)
-        return path_curvature(self.declared.rig, entry)
+        return path_curvature(self.declared.rig, _entry(sweep))
+
+    @property
+    def setups(self) -> tuple[str, ...]:
+        """Name of the set-up of every sweep, empty if there is only one."""
+        return setup_names(self.declared.rig, [_entry(sweep) for sweep in self.tables.sweep])
 
     def pressure_kPa(self, sweep: SweepPlan) -> float:
         """Inflation pressure of a sweep [kPa]."""
@@ -203,3 +213,10 @@ class RigPlan:
     def temperatures_degC(self, sweep: SweepPlan) -> tuple[float, ...]:
         """Temperature of a sweep [degC]: one, or those of the first and the last point."""
         return sweep.T_degC or (self.tables.conditions.T_degC,)
+
+
+def _entry(sweep: SweepPlan) -> SweepTable:
+    """The sweep as tyre.toml declares it."""
+    return SweepTable(
+        file=sweep.file, path_centre=sweep.path_centre, path_radius=sweep.path_radius, setup=sweep.setup
+    )

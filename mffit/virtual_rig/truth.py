@@ -41,8 +41,9 @@ class Truth:
 
     nominal: DirectTruth
     per_load: tuple[DirectTruth, ...]
-    faults: Faults
+    faults: Faults  #: in the first set-up
     faults_of_sweeps: dict[str, dict[str, float]]  #: errors that single sweeps have in addition, by file
+    faults_of_setups: dict[str, dict[str, float]]  #: zeros of every set-up, if there are several
     coefficients: dict[str, float]  #: of the tyre's side force, aligning moment and turn slip
     seed: int
 
@@ -57,6 +58,7 @@ class Truth:
             "pecp2": self.coefficients["PECP2"],
             "faults": faults,
             "faults_of_sweeps": self.faults_of_sweeps,
+            "faults_of_setups": self.faults_of_setups,
             "per_load": [asdict(row) for row in self.per_load],
             "coefficients": self.coefficients,
             "seed": self.seed,

@@ -43,9 +43,12 @@ def mffit(*arguments: object) -> tuple[int, str, str]:
 
 @pytest.fixture(scope="module")
 def project(tmp_path_factory):
-    """A small campaign of a simulated tyre at two loads."""
+    """A small campaign of a simulated tyre at two loads, on a rig and in a set-up that other tyres share."""
     folder = tmp_path_factory.mktemp("many") / "sound"
-    simulated(disc(LOADS[:2], rolling_radius=[{"load_N": 1400}]), folder)
+    content = disc(LOADS[:2], rolling_radius=[{"load_N": 1400}])
+    content["rig"] |= {"name": "disc"}
+    content["sweep"] = [sweep | {"setup": "may"} for sweep in content["sweep"]]
+    simulated(content, folder)
     return folder
 
 

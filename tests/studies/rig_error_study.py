@@ -42,6 +42,10 @@ class World:
     declared: Mapping[str, float] = field(default_factory=dict)  #: keys of [rig] in tyre.toml
     drawn_from: Mapping[str, float] = field(default_factory=dict)  #: other keys of [rig] for the draw
     backward_camber: bool = False
+    other_side: bool = False  #: every load on the other side of the disc too, the rig set up anew in between
+    setups: int = (
+        1  #: how often the rig is set up on the usual path, with zeros at the nominal load every time
+    )
 
 
 DECLARED = {
@@ -50,6 +54,13 @@ DECLARED = {
     "u_slip_alignment_N": 25.0,
     "u_camber_skew_deg": 0.1,
 }
+
+
+def _zeros(factor: float) -> dict[str, float]:
+    """The declared uncertainties of the zeros of a set-up times a factor."""
+    return {name: factor * u for name, u in DECLARED.items() if name != "u_camber_skew_deg"}
+
+
 WORLDS = {
     "as declared": World(),
     "as declared, backward camber": World(backward_camber=True),
@@ -62,6 +73,13 @@ WORLDS = {
         faults={"camber_skew_deg": 0.5}, backward_camber=True
     ),
     "load falls by 6 % sin^2": World(faults={"load_camber": -0.06}),
+    "both sides, set up anew": World(other_side=True),
+    "both sides, set up anew, 1.5 times the declared": World(
+        other_side=True, drawn_from={name: 1.5 * u for name, u in DECLARED.items()}
+    ),
+    "three set-ups on one path": World(setups=3),
+    "three set-ups on one path, twice the declared": World(setups=3, drawn_from=_zeros(2.0)),
+    "five set-ups on one path, twice the declared": World(setups=5, drawn_from=_zeros(2.0)),
     "all errors 1.5 times the declared": World(drawn_from={name: 1.5 * u for name, u in DECLARED.items()}),
 }
 
@@ -74,9 +92,9 @@ class Found:
     refused: str = ""
 
 
-def one(job: tuple[int, str]) -> tuple[str, Found]:
+def one(job: tuple[int, str, bool]) -> tuple[str, Found]:
     """Draw, simulate and measure one rig."""
-    seed, name = job
+    seed, name, build = job
     world, rng = WORLDS[name], np.random.default_rng(5000 + seed)
     sample = SAMPLES / ("front-120-70", "rear-190-55")[seed % 2]
     true = _scaled(tir.read(sample / "true.tir").replace(**NO_FORCE_AT_REST), 0.1, rng)
@@ -87,6 +105,9 @@ def one(job: tuple[int, str]) -> tuple[str, Found]:
     content["rig"] = {**declared, **world.drawn_from}
     if world.backward_camber:
         content["sweep"] += _backward(content)
+    if world.other_side:
+        content["sweep"] += _other_side(content)
+    content["sweep"] += _again(content, world.setups)
     with tempfile.TemporaryDirectory() as made:
         folder = Path(made)
         true.write(folder / "drawn.tir")
@@ -97,7 +118,7 @@ def one(job: tuple[int, str]) -> tuple[str, Found]:
         config["rig"] = {**config["rig"], **declared}
         path.write_text(tomli_w.dumps(config), encoding="utf-8")
         try:
-            measured = mffit.spin(path)
+            measured = mffit.build(path).measured if build else mffit.spin(path)
         except InputError as error:
             return name, Found(refused=str(error))
     return name, Found(numbers=_numbers(measured, known, true))
@@ -108,6 +129,34 @@ def _backward(content: Mapping[str, Any]) -> list[dict[str, Any]]:
     angles = [-40, -30, -20, -10, -5, 0, 5, 10, 20, 30, 40]
     load = content["tyre"]["nominal_load"]
     return [{"file": "camber_backward.csv", "load_N": load, "gamma_deg": angles, "direction": "backward"}]
+
+
+def _other_side(content: Mapping[str, Any]) -> list[dict[str, Any]]:
+    """The upright and the camber sweeps at the usual pressure with the centre of the disc on the other side."""
+    usual = content["rig"].get("path_centre", "left")
+    other = {"path_centre": "right" if usual == "left" else "left"}
+    plain = [s for s in content["sweep"] if "p_kPa" not in s and not ("alpha_deg" in s and "gamma_deg" in s)]
+    return [{**sweep, "file": f"other_{sweep['file']}", **other} for sweep in plain]
+
+
+def _again(content: Mapping[str, Any], setups: int) -> list[dict[str, Any]]:
+    """Zeros both ways in further set-ups at the nominal load; all other sweeps belong to the first one."""
+    if setups < 2:
+        return []
+    for sweep in content["sweep"]:
+        sweep["setup"] = "1"
+    load = content["tyre"]["nominal_load"]
+    return [
+        {
+            "file": f"{way}_{k}.csv",
+            "load_N": load,
+            "alpha_deg": [-0.5, 0, 0.5],
+            "direction": way,
+            "setup": str(k),
+        }
+        for k in range(2, setups + 1)
+        for way in ("forward", "backward")
+    ]
 
 
 def _numbers(measured: Any, known: Any, true: tir.Tyre) -> dict[str, tuple[float, float, float]]:
@@ -121,6 +170,7 @@ def _numbers(measured: Any, known: Any, true: tir.Tyre) -> dict[str, tuple[float
     faults = known.faults
     pairs = {
         "eps_gamma": (row.epsilon_gamma, truth.epsilon_gamma),
+        "eps_gamma debiased": (measured.epsilon_gamma_debiased, truth.epsilon_gamma),
         "C_phit [Nm]": (row.C_phit, truth.C_phit_secant_Nm),
         "C_gamma on the path [N/rad]": (row.C_gamma, slope("gamma")),
         "C_alpha on the path [N/rad]": (row.C_alpha, slope("alpha")),
@@ -155,8 +205,11 @@ def main() -> None:
     ask.add_argument("rigs", type=int, nargs="?", default=200, help="per world")
     ask.add_argument("--jobs", type=int, default=1)
     ask.add_argument("--worlds", nargs="*", default=list(WORLDS))
+    ask.add_argument(
+        "--build", action="store_true", help="build whole files, which know the bias of finite spin"
+    )
     given = ask.parse_args()
-    jobs = [(seed, name) for name in given.worlds for seed in range(given.rigs)]
+    jobs = [(seed, name, given.build) for name in given.worlds for seed in range(given.rigs)]
     found: dict[str, list[Found]] = {name: [] for name in given.worlds}
     with ProcessPoolExecutor(given.jobs) as pool:
         for name, row in pool.map(one, jobs, chunksize=4):

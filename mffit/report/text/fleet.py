@@ -5,7 +5,7 @@ from __future__ import annotations
 from mffit.fleet import EPSILON, Fleet
 from mffit.quantities import CHANNELS, COMPARED, DIRECT
 from mffit.report.text.layout import blocks, paragraphs, table
-from mffit.rig_errors import UNITS, WORDS
+from mffit.rig_errors import unit_of, words_of
 from mffit.rounding import as_good_as, number, stated, with_u
 
 
@@ -31,8 +31,8 @@ def fleet_summary(found: Fleet) -> str:
     ]
     rigs = [
         (
-            f"{i} {WORDS[name]}" if len(found.rigs) > 1 else WORDS[name],
-            with_u(value, u, UNITS[name]),
+            f"{i} {words_of(name)}" if len(found.rigs) > 1 else words_of(name),
+            with_u(value, u, unit_of(name)),
         )
         for i, rig in enumerate(found.rigs, 1)
         if rig is not None

@@ -14,10 +14,10 @@ from mffit.diagnosis.one_step import BestEffect
 from mffit.diagnosis.remains import Remains
 from mffit.fit import Coefficient, FitResult
 from mffit.fit.files import Files
-from mffit.measured import KEYS, LoadResult, Measured
+from mffit.measured import KEYS, LoadResult, Measured, SetupResult, SetupScatter
 from mffit.results.as_json.values import picked, plain, stated
 from mffit.results.records import BuildResult
-from mffit.rig_errors import UNITS
+from mffit.rig_errors import unit_of
 from mffit.suspicion import Doubt, Outlier
 
 NOT_JUDGED: Mapping[str, float] = {}
@@ -55,6 +55,8 @@ def spin(measured: Measured) -> dict[str, Any]:
         "u_epsilon_gamma_monte_carlo": row.u_monte_carlo if row else None,
         "misaligned": measured.misaligned,
         "coverage_factor": 1,
+        "setups": [_setup(other) for other in row.setups] if row else [],
+        "setup_scatter": _scatter(measured.setup_scatter),
         "notes": list(measured.notes),
         "per_load": [_load(other) for other in measured.per_load],
     }
@@ -69,7 +71,8 @@ def fit(found: FitResult, over_noise: Mapping[str, float] = NOT_JUDGED) -> dict[
         "odd": {name: asdict(row) for name, row in found.odd.items()},
         "coefficients": {name: _coefficient(row) for name, row in found.coefficients.items()},
         "rig": {
-            name: {"value": value, "stderr": u, "unit": UNITS[name]} for name, (value, u) in found.rig.items()
+            name: {"value": value, "stderr": u, "unit": unit_of(name)}
+            for name, (value, u) in found.rig.items()
         },
         "posterior": plain(picked(found.posterior, "names", "covariance")),
         "stages": [
@@ -144,6 +147,43 @@ def _load(row: LoadResult | None) -> dict[str, Any]:
     out |= stated("epsilon_gamma_moment", row.epsilon_moment)
     out |= stated("alpha_M_deg", row.alpha_M, scale=math.degrees(1.0))
     return out | {"F_forward_N": row.F_forward, "F_backward_N": row.F_backward}
+
+
+def _setup(row: SetupResult) -> dict[str, Any]:
+    """The zeros of one set-up on one path, by themselves."""
+    return {
+        "setup": row.name,
+        "path_centre": "left" if row.phi_t < 0.0 else "right",
+        "path_radius_m": abs(1.0 / row.phi_t),
+        **stated("F_phit_N", row.F_phit),
+        **stated("C_phit_Nm", row.C_phit),
+        **stated("epsilon_gamma", row.epsilon_gamma),
+        **stated("alpha_M_deg", row.alpha_M, scale=math.degrees(1.0)),
+        "misaligned": row.misaligned,
+    }
+
+
+def _scatter(found: SetupScatter | None) -> dict[str, Any] | None:
+    """Scatter of repeated set-ups beside what is declared."""
+    if found is None:
+        return None
+    alpha, u_alpha = (
+        None if x is None else math.degrees(x) for x in (found.between_alpha, found.declared_alpha)
+    )
+    return {
+        "load_N": found.load,
+        "setups": list(found.setups),
+        "between_N": found.between,
+        "degrees_of_freedom": found.degrees_of_freedom,
+        "declared_N": found.declared,
+        "chance": found.chance,
+        "within_N": found.within,
+        "degrees_of_freedom_within": found.degrees_of_freedom_within,
+        "stated_N": found.stated,
+        "between_alpha_deg": alpha,
+        "declared_alpha_deg": u_alpha,
+        "excess_N": found.excess,
+    }
 
 
 def _coefficient(found: Coefficient) -> dict[str, Any]:

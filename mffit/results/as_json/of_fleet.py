@@ -9,7 +9,7 @@ from mffit import fleet as combining
 from mffit.fleet import Fleet
 from mffit.results.as_json.values import value_of
 from mffit.results.records import BuildOutcome
-from mffit.rig_errors import UNITS
+from mffit.rig_errors import unit_of
 
 
 def outcome(found: BuildOutcome) -> dict[str, Any]:
@@ -55,12 +55,15 @@ def fleet(found: Fleet) -> dict[str, Any]:
             }.items()
             if (s := found.scatter(key)) is not None
         },
+        "within_tyre": None
+        if found.within is None
+        else {**asdict(found.within), "counts": found.within.inflation > 1.0},
         "rigs": [
             None
             if rig is None
             else {
                 "errors": {
-                    n: {"value": value, "stderr": u, "unit": UNITS[n]} for n, (value, u) in rig.rig.items()
+                    n: {"value": value, "stderr": u, "unit": unit_of(n)} for n, (value, u) in rig.rig.items()
                 },
                 "population": {
                     name: {**asdict(p), "assumed": p.assumed} for name, p in rig.population.items()

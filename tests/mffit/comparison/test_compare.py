@@ -71,12 +71,33 @@ def test_the_covariance_of_another_file_is_not_used():
     assert "would" not in note
 
 
-@pytest.mark.parametrize(("rig", "shared"), [({"radius": 1.0}, True), ({"radius": 2.0}, False)])
-def test_only_builds_of_one_rig_share_its_errors(rig, shared):
-    a = ComparedSubject("a", truth(), True, ("PKY1",), np.eye(1), rig={"radius": 1.0})
-    (note,) = between(a, ComparedSubject("b", truth(), True, ("PKY1",), np.eye(1), rig=rig)).notes
+@pytest.mark.parametrize(
+    ("rigs", "shared"),
+    [
+        (({"name": "disc", "radius": 1.0}, {"name": "disc", "radius": 1.1}), True),
+        (({"name": "disc"}, {"name": "drum"}), False),
+        (({"radius": 1.0}, {"radius": 1.0}), False),  # equal tables are no declaration
+    ],
+)
+def test_only_builds_that_declare_one_rig_share_its_errors(rigs, shared):
+    a, b = (
+        ComparedSubject(n, truth(), True, ("PKY1",), np.eye(1), rig=rig)
+        for n, rig in zip("ab", rigs, strict=True)
+    )
+    (note,) = between(a, b).notes
     assert "independent" in note
     assert ("of one rig" in note) == shared
+
+
+@pytest.mark.parametrize(
+    ("setups", "words"), [(("may", "june"), "share its set-up june"), (("may",), "set-ups of their own")]
+)
+def test_builds_of_one_rig_share_the_set_ups_that_both_name(setups, words):
+    rig = {"name": "disc"}
+    a = ComparedSubject("a", truth(), True, ("PKY1",), np.eye(1), rig=rig, setups=("june",))
+    b = ComparedSubject("b", truth(), True, ("PKY1",), np.eye(1), rig=rig, setups=setups)
+    (note,) = between(a, b).notes
+    assert words in note
 
 
 def test_equal_files_do_not_differ():
@@ -143,7 +164,7 @@ def test_two_builds_of_one_name_are_called_by_their_folders(folder):
     found = mffit.compare(folder / "out", later)
     assert (found.first, found.second) == ("out/small.tir", "later/small.tir")
     assert all(row.z == 0.0 for row in found.numbers if row.z is not None)
-    assert "of one rig" in " ".join(found.notes)
+    assert "of one rig" not in " ".join(found.notes)  # nothing declares it
 
 
 def test_a_file_is_compared_with_data(folder, stiffer, tmp_path):
