@@ -13,12 +13,15 @@ from threadpoolctl import threadpool_limits
 from mffit import config as configuration
 from mffit import fit as fitting
 from mffit.config import Config
+from mffit.config.laboratory import lab_warnings
 from mffit.fit import FitResult
+from mffit.made import made
 from mffit.measured import Measured
 from mffit.output import refuse_early
 from mffit.parts import Parts
 from mffit.pipeline.build_output import WRITTEN, write_build
-from mffit.pipeline.inputs import inputs_of, read_base, read_points
+from mffit.pipeline.inputs import input_hashes, inputs_of, read_base, read_points
+from mffit.pipeline.left_out import left_out_by_fit
 from mffit.pipeline.measuring import measure
 from mffit.pipeline.provenance import Annotate, annotator
 from mffit.pipeline.refining import finite_spin_bias, undistorted, without_outliers
@@ -68,7 +71,8 @@ def build(
         measured, fitted = _fitted(config, reading.points, parts, measured, base, progress)
         if ensemble:
             progress(f"drawing {ensemble} tyres from the posterior")
-        annotated = annotator(config, measured, fitted)
+        made_of = made(input_hashes(config))
+        annotated = annotator(config, made_of, measured, fitted)
         members = tuple(_members(config, fitted, ensemble, annotated)) if ensemble else ()
     assert fitted.files is not None
     files = fitted.files.by_use
@@ -82,8 +86,16 @@ def build(
         tyres={use: annotated(files[use].tyre, use) for use in names},
         members=members,
         plain=config.spin.exact if config.rig.on_disc else "normal",
-        warnings=(*reading.warnings, *measured.warnings, *fitted.warnings),
+        warnings=(
+            *reading.warnings,
+            *measured.warnings,
+            *fitted.warnings,
+            *lab_warnings(config.lab, made_of.date.date()),
+        ),
         seconds=time.perf_counter() - began,
+        made=made_of,
+        left_out=(*reading.left_out, *left_out_by_fit(reading.points, fitted)),
+        excluded=reading.excluded,
     )
     if out is not None:
         progress("writing the report")

@@ -4,17 +4,17 @@ from __future__ import annotations
 
 import json
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from urllib.parse import quote
 
 import numpy as np
 
-import mffit
 import tir
 from mffit.config import Config, declared_faults
 from mffit.diagnosis.inexact import Inexactness, correlated, refitted
 from mffit.fit import FitResult
+from mffit.made import Made
 from mffit.measured import Measured
 from mffit.pipeline.inputs import input_hashes
 from mffit.rig_errors import BY_NAME as RIG_ERRORS
@@ -23,6 +23,10 @@ from tir import Tyre
 
 PROGRAM = "program"
 """Key of the version that wrote a file."""
+METHOD = "method"
+"""Key of the number of the method."""
+DIGITS = 16
+"""Digits of a hash in a property file, whose lines are to be short; result.json has all 64."""
 RIG = "rig."
 """Prefix of rig errors among the measured quantities of a file."""
 TURN_SLIP = {"turn-slip": "on", "normal": "off", "both": "on or off"}
@@ -35,16 +39,17 @@ Annotate = Callable[[Tyre, str], Tyre]
 """Adds measured quantities and provenance as structured comments to the tyre for a use."""
 
 
-def annotator(config: Config, measured: Measured, fitted: FitResult) -> Annotate:
-    """The annotation of all files of a build; the inputs are hashed once."""
-    inputs = _inputs(config)
+def annotator(config: Config, made: Made, measured: Measured, fitted: FitResult) -> Annotate:
+    """The annotation of all files of a build."""
+    inputs = _of_inputs(made.inputs)
     rig = {
         RIG + name: tir.Quantity(value, u, RIG_ERRORS[name].unit) for name, (value, u) in fitted.rig.items()
     }
 
     def annotated(tyre: Tyre, use: str) -> Tyre:
         provenance = {
-            PROGRAM: f"mffit {mffit.__version__}",
+            PROGRAM: f"{made.program} {made.version}",
+            METHOD: str(made.method),
             "use": f"{use}, for simulations with turn slip {TURN_SLIP[use]}",
             "configuration": _settings(config),
             **inputs,
@@ -112,7 +117,11 @@ def posterior_of(tyre: Tyre, path: Path) -> Inexactness | None:
 
 def _inputs(config: Config) -> dict[str, str]:
     """Hashes of the inputs as entries of the provenance, whose names are ASCII without colons."""
-    return {f"input {quote(name, safe=PLAIN)}": known for name, known in input_hashes(config).items()}
+    return _of_inputs(input_hashes(config))
+
+
+def _of_inputs(hashes: Mapping[str, str]) -> dict[str, str]:
+    return {f"input {quote(name, safe=PLAIN)}": known[:DIGITS] for name, known in hashes.items()}
 
 
 def _settings(config: Config) -> str:

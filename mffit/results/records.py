@@ -10,9 +10,12 @@ from typing import Literal
 from mffit.brief import Brief
 from mffit.config import Config
 from mffit.fit import FitResult
+from mffit.made import Made
+from mffit.made import made as made_now
 from mffit.measured import Measured
 from mffit.parts import Parts
 from mffit.points import Points
+from mffit.points.left_out import LeftOut
 from tir import Quantity, Tyre
 
 
@@ -31,6 +34,9 @@ class BuildResult(Brief):
     warnings: tuple[str, ...]
     seconds: float
     members: tuple[Tyre, ...] = ()  #: drawn from the posterior, if requested
+    made: Made = field(default_factory=made_now)
+    left_out: tuple[LeftOut, ...] = ()  #: readings that are left out, have less weight or are doubted
+    excluded: Points | None = None  #: finished points that were left out by hand; None without any
 
     @property
     def headline(self) -> str:

@@ -14,6 +14,7 @@ from mffit.report.text.direct import spin_numbers
 from mffit.report.text.layout import blocks, paragraphs, table, wrapped
 from mffit.results import BuildResult
 from mffit.rounding import number, times
+from tir.errors import counted
 from tir.parameters import BY_NAME
 
 
@@ -39,12 +40,22 @@ def build_summary(result: BuildResult) -> str:
     ]
     parts.append(table(("fit", "points", "rms", "of noise", "largest", "R2"), rows))
     parts.append(_statuses(fit.coefficients))
+    parts += [wrapped(sentence) for sentence in _by_hand(result)]
     if fit.outliers or fit.doubts:
         parts.append(
             f"readings without weight: {len(fit.outliers)}; doubtful sweeps: {len(fit.doubts)}; see the warnings"
         )
     parts.append(paragraphs(fit.explanations[1:]))
     return blocks(parts)
+
+
+def _by_hand(result: BuildResult) -> list[str]:
+    """A sentence about the readings that [fit] exclude leaves out."""
+    rows = [row for row in result.left_out if row.by == "hand"]
+    if not rows:
+        return []
+    named = "; ".join(f"{row.file}:{row.lines} ({row.why})" for row in rows)
+    return [f"left out by hand: {counted(sum(row.count for row in rows), 'reading')}: {named}"]
 
 
 def _statuses(coefficients: Mapping[str, Coefficient]) -> str:
