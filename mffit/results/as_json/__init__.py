@@ -5,6 +5,7 @@ from mffit.results.as_json.of_diagnosis import diagnosis
 from mffit.results.as_json.of_fleet import fleet, outcome
 from mffit.results.as_json.of_input import alignment, problems, sniffed
 from mffit.results.as_json.of_plan import comparison, plan
+from mffit.results.as_json.of_verification import verification
 from mffit.results.as_json.values import text, write
 
 __all__ = [
@@ -21,6 +22,7 @@ __all__ = [
     "sniffed",
     "spin",
     "text",
+    "verification",
     "write",
     "write_information",
 ]
