@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 import tempfile
 from collections.abc import Iterator, Mapping
 from pathlib import Path
@@ -104,7 +105,7 @@ def _check_inputs(config: Config, hashes: Mapping[str, str]) -> None:
             f"names {len(names)} inputs, but {RESULT} states {len(hashes)}; build again", file=config.path
         )
     for name, known in zip(names, hashes.values(), strict=True):
-        path = config.folder / name
+        path = Path(os.path.normpath(config.folder / name))  # as people write it: without out/..
         if not path.is_file():
             raise InputError("is gone, but the build read it; put it back", file=path)
         found = digest(path)
