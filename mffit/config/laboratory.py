@@ -55,15 +55,14 @@ def _uncovered(lab: LabTable, today: date) -> Iterator[str]:
         yield f"[lab] measured = {lab.measured} is later than today, {today}; correct the date"
     day = lab.measured or today
     what = f"the measurement on {day}" if lab.measured else f"today, {day}"
-    remedy = "" if lab.measured else ", or state the date of the measurement as measured under [lab]"
-    for instrument in lab.instruments:
-        if instrument.due is not None and instrument.due < day:
-            yield (
-                f'instrument "{instrument.name}": its calibration was due on {instrument.due}, before {what}; '
-                f"have it calibrated{remedy}"
-            )
-        if instrument.calibrated is not None and instrument.calibrated > day:
-            yield (
-                f'instrument "{instrument.name}": it was calibrated on {instrument.calibrated}, after {what}; '
-                "name the certificate that was valid then"
-            )
+    valid = "name the certificate that was valid then"
+    due = (
+        valid
+        if lab.measured
+        else "have it calibrated, or state the date of the measurement as [lab] measured"
+    )
+    for one in lab.instruments:
+        if one.due is not None and one.due < day:
+            yield f'instrument "{one.name}": its calibration was due on {one.due}, before {what}; {due}'
+        if one.calibrated is not None and one.calibrated > day:
+            yield f'instrument "{one.name}": it was calibrated on {one.calibrated}, after {what}; {valid}'

@@ -124,7 +124,7 @@ def _file_read(config: Config, model: Tyre | str | Path | None, choice: Sequence
     if any(isinstance(note, ModelFittedFirst) for note in choice):
         return None
     file = _file_of_model(config, model)
-    siblings = [note.name for note in choice if isinstance(note, ModelOfLastBuild)]
+    siblings = [note.file for note in choice if isinstance(note, ModelOfLastBuild)]
     return file.with_name(siblings[0]) if file is not None and siblings else file
 
 

@@ -15,7 +15,9 @@ from small_rigs import disc, simulated
 
 import mffit
 import tir
+from mffit import config
 from mffit.cli import main
+from mffit.effects import CATALOG
 from mffit.errors import InputError
 from mffit.made import METHOD
 from mffit.report import text
@@ -210,6 +212,13 @@ def test_spin_and_diagnosis_state_how_they_were_made(built, tmp_path):
     made = json.loads((tmp_path / "spin" / "spin.json").read_text())["made"]
     assert made["method"] == METHOD
     assert len(made["inputs"]["base.tir"]) == 64
+    mffit.diagnose(built / "tyre.toml", effects=CATALOG[:1], out=tmp_path / "diagnosis")
+    made = json.loads((tmp_path / "diagnosis" / "diagnosis.json").read_text())["made"]
+    model = built / "out" / "small.tir"
+    assert made["inputs"][str(model)] == hashlib.sha256(model.read_bytes()).hexdigest()
+    corrected = config.load(tmp_path / "diagnosis" / "corrected.toml")
+    assert corrected.fit.exclude == ()
+    assert corrected.lab.order == LAB["order"]
 
 
 @pytest.mark.parametrize(

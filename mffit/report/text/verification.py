@@ -20,6 +20,6 @@ def verification_summary(found: Verification) -> str:
 
 
 def _written(value: Number | str) -> str:
-    if value is None or isinstance(value, bool | str):
-        return {None: "null", True: "true", False: "false"}.get(value, str(value))
-    return f"{value:.10g}"
+    if value is None:
+        return "null"
+    return f"{value:.10g}" if isinstance(value, float) else str(value).lower()
