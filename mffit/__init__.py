@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from mffit.export import write_c, write_fmu
-    from mffit.pipeline import align, build, compare, diagnose, plan, spin, write_tydex
+    from mffit.pipeline import align, build, compare, diagnose, plan, spin, verify, write_tydex
     from mffit.viewer import show
 
     __version__: str
@@ -24,6 +24,7 @@ __all__ = [
     "plan",
     "show",
     "spin",
+    "verify",
     "write_c",
     "write_fmu",
     "write_tydex",

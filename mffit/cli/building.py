@@ -16,9 +16,7 @@ FEWEST_TYRES_TO_COMPARE = 2
 
 
 @click.command()
-@click.argument(
-    "tyre_tomls", nargs=-1, required=True, type=click.Path(path_type=Path), metavar="TYRE_TOML..."
-)
+@click.argument("tyre_tomls", nargs=-1, type=click.Path(path_type=Path), metavar="TYRE_TOML...")
 @out_option(
     "Folder to write to [default: out/ beside each TYRE_TOML]. With several tyres, each gets a folder of its name, and a page "
     "compares them."
@@ -31,14 +29,36 @@ FEWEST_TYRES_TO_COMPARE = 2
 )
 @click.option("--jobs", type=click.IntRange(1), default=1, help="Number of tyres to build at the same time.")
 @click.option("--dask", metavar="ADDRESS", help="Build on the workers of this Dask scheduler.")
+@click.option(
+    "--verify",
+    "stored",
+    type=click.Path(path_type=Path),
+    metavar="DIR",
+    help="Instead of building, repeat the build of this folder and compare every number; nothing is written.",
+)
 @voiced
 def build(
-    tyre_tomls: tuple[Path, ...], out: Path | None, ensemble: int, jobs: int, dask: str | None, voice: Voice
+    tyre_tomls: tuple[Path, ...],
+    out: Path | None,
+    ensemble: int,
+    jobs: int,
+    dask: str | None,
+    stored: Path | None,
+    voice: Voice,
 ) -> None:
     """Make the property file from the sweeps.
 
     Runs the whole pipeline and writes .tir, result.json, report.html, points.csv and plots.
     """
+    if stored is not None:
+        if tyre_tomls or out is not None or ensemble or dask:
+            raise click.UsageError(
+                "--verify reads everything from its folder: give no TYRE_TOML and no other option"
+            )
+        _verify(stored, voice)
+        return
+    if not tyre_tomls:
+        raise click.UsageError("Missing argument 'TYRE_TOML...'.")
     if len(tyre_tomls) > 1 or dask:
         _build_many(tyre_tomls, out, ensemble, jobs, dask, voice)
     else:
@@ -62,6 +82,21 @@ def _build(tyre_toml: Path, out: Path | None, ensemble: int, voice: Voice) -> No
     if not result.trusted:
         click.echo(f"{result.tir_path} is not to be trusted: see above", err=True)
         raise SystemExit(NOT_TRUSTED)
+
+
+def _verify(stored: Path, voice: Voice) -> None:
+    """Repeat an earlier build; exit code 3 if a number does not come out again."""
+    from mffit import pipeline
+    from mffit.report import text
+    from mffit.results import as_json
+
+    with voice.progress() as show:
+        found = pipeline.verify(stored, progress=show)
+    voice.say(text.verification_summary(found))
+    voice.give(lambda: as_json.verification(found))
+    if not found.same:
+        click.echo(f"mffit: {stored}: {found.headline}", err=True)
+        raise SystemExit(3)
 
 
 def _build_many(

@@ -11,9 +11,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from pydantic import (
     AfterValidator,
-    BaseModel,
     BeforeValidator,
-    ConfigDict,
     Field,
     PrivateAttr,
     create_model,
@@ -24,18 +22,15 @@ from uncertainties import ufloat
 from mffit.brief import Brief
 from mffit.config import constants
 from mffit.config import quantities as q
+from mffit.config.exclusion import ExcludeTable, check_exclusions
+from mffit.config.laboratory import LabTable
 from mffit.config.locate import line_of
 from mffit.config.radii import effective_radius, path_radius
+from mffit.config.table import Table, list_of_tables
 from mffit.rig_errors import BY_NAME, DECLARED, Declared
 
 SETUP_NAME = re.compile(r"[A-Za-z0-9_.+-]+( +[A-Za-z0-9_.+-]+)*")
 FORBIDDEN_IN_NAMES = set('/\\:*?"<>|') | {chr(code) for code in range(32)}
-
-
-class Table(BaseModel):
-    """One table of the file, frozen: unknown keys, values of another type and NaN are refused."""
-
-    model_config = ConfigDict(frozen=True, extra="forbid", strict=True, allow_inf_nan=False)
 
 
 def _file_stem(name: str) -> str:
@@ -239,6 +234,12 @@ class ModelTable(Table):
     u_coefficients: q.Fraction = 0.0
 
 
+class FitTable(Table):
+    """[fit]: settings of the fit, and the readings that it leaves out."""
+
+    exclude: Annotated[tuple[ExcludeTable, ...], BeforeValidator(list_of_tables)] = ()
+
+
 class Column(Table):
     """Heading, unit and scale of a sweep column in a file with other headings or units."""
 
@@ -279,22 +280,19 @@ class SweepTable(Table):
     columns: Columns = Field(default_factory=dict)
 
 
-def _list_of_tables(given: Any) -> Any:
-    """One table or a list of tables, as TOML gives them, as a tuple."""
-    return (given,) if isinstance(given, dict) else tuple(given) if isinstance(given, list) else given
-
-
 class Config(Brief, Table):
     """The whole of ``tyre.toml``."""
 
     tyre: TyreTable
     rig: RigTable
-    rolling_radius: Annotated[tuple[RollingRadiusTable, ...], BeforeValidator(_list_of_tables)] = ()
+    rolling_radius: Annotated[tuple[RollingRadiusTable, ...], BeforeValidator(list_of_tables)] = ()
     camber_stiffness: CamberStiffnessTable = CamberStiffnessTable()
     spin: SpinTable = SpinTable()
     model: ModelTable = ModelTable()
+    fit: FitTable = FitTable()
+    lab: LabTable = LabTable()
     columns: Columns = Field(default_factory=dict)  #: of all files; those of a sweep take precedence
-    sweep: Annotated[tuple[SweepTable, ...], BeforeValidator(_list_of_tables)]
+    sweep: Annotated[tuple[SweepTable, ...], BeforeValidator(list_of_tables)]
 
     _path: Path | None = PrivateAttr(default=None)
     _folder: Path = PrivateAttr(default_factory=Path)
@@ -335,7 +333,7 @@ class Config(Brief, Table):
         """A rolling radius without a load holds at the nominal load."""
         if not isinstance(given, dict) or not isinstance(given.get("tyre"), dict):
             return given
-        rows, load = _list_of_tables(given.get("rolling_radius", ())), given["tyre"].get("nominal_load")
+        rows, load = list_of_tables(given.get("rolling_radius", ())), given["tyre"].get("nominal_load")
         if not isinstance(rows, tuple) or not all(isinstance(row, dict) for row in rows):
             return given
         return {**given, "rolling_radius": tuple({"load_N": load, **row} for row in rows)}
@@ -360,6 +358,7 @@ class Config(Brief, Table):
                         "is given, but the path of a flat track is straight; remove it",
                         f"sweep.{index}.{key}",
                     )
+        check_exclusions(self.fit.exclude, seen)
         return self
 
     @model_validator(mode="after")

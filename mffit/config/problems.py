@@ -31,9 +31,11 @@ KINDS = {
     "model_type": "a table",
     "dict_type": "a table",
     "tuple_type": "a table or an array of tables",
+    "date_type": "a date such as 2026-03-01",
 }
 """By pydantic's type of error, what the value should be."""
 
+DATE_IN_QUOTES = re.compile(r"\s*\d{4}-\d\d-\d\d\s*")
 NUMBER_IN_QUOTES = re.compile(r"\s*[-+]?[\d.]+\s*")
 
 
@@ -125,6 +127,8 @@ def _sentence(detail: Any, key: str, lines: dict[str, int]) -> str:
         return "is empty; give at least one"
     if kind == "float_type" and isinstance(given, str) and NUMBER_IN_QUOTES.fullmatch(given):
         return f'"{given}" is a text, not a number; remove the quotes'
+    if kind == "date_type" and isinstance(given, str) and DATE_IN_QUOTES.fullmatch(given):
+        return f'"{given}" is a text, not a date; remove the quotes'
     if kind in KINDS:
         return f"{_quoted(given)} is not {KINDS[kind]}; write one"
     message = detail["msg"]
@@ -136,6 +140,8 @@ def _missing(key: str, lines: dict[str, int]) -> str:
     if not table:
         return f"is missing; add the table [{key}]"
     name = re.sub(r"\.\d+$", "", table)
+    if name != table and "." in name:  # an inline table of a list
+        return "is missing; add it to this entry"
     is_entry = name != table and name not in lines
     return f"is missing; add it to {f'[[{name}]]' if is_entry else f'[{name}]'}"
 

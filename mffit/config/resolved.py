@@ -31,11 +31,20 @@ def resolved(config: Config, folder: str | Path) -> dict[str, Any]:
     for key in ("base", "priors"):
         if key in content["tyre"]:
             content["tyre"][key] = _moved(content["tyre"][key], config.folder, Path(folder))
+    for entry in content["fit"]["exclude"]:
+        entry["file"] = _moved(entry["file"], config.folder, Path(folder))
+    content["fit"], content["lab"] = _filled(content["fit"]), _filled(content["lab"])
     return {name: value for name, value in content.items() if value not in ([], {})}
 
 
 def _plain(sweep: dict[str, Any]) -> dict[str, Any]:
     return {name: value for name, value in sweep.items() if name != "columns" or value}
+
+
+def _filled(table: dict[str, Any]) -> dict[str, Any]:
+    """The keys of a table that are not empty, with its lists of tables as lists."""
+    plain = {name: list(value) if isinstance(value, tuple) else value for name, value in table.items()}
+    return {name: value for name, value in plain.items() if value not in ("", [])}
 
 
 def _moved(file: str, start: Path, folder: Path) -> str:

@@ -15,7 +15,7 @@ from mffit.points import Points
 from mffit.quantities import CHANNELS
 from mffit.rig import Simulation
 from mffit.scatter import rms
-from mffit.suspicion import LeftOut
+from mffit.suspicion import LeftOutSweeps
 
 
 @dataclass(frozen=True, eq=False)
@@ -121,7 +121,7 @@ def _weighted(fitted: Fitted) -> tuple[FitProblem, dict[str, float]]:
     return replace(problem, sigma=sigma), noise
 
 
-def left_out_sweeps(left: Remainder) -> dict[str, LeftOut]:
+def left_out_sweeps(left: Remainder) -> dict[str, LeftOutSweeps]:
     """By channel, how well sweeps are predicted from all others."""
     n = len(left.points)
     predicted = np.zeros_like(left.residual)
@@ -137,7 +137,7 @@ def left_out_sweeps(left: Remainder) -> dict[str, LeftOut]:
         if not len(sweeps):
             continue
         own = [rms((fits / u)[left.points.sweep == j]) for j in sweeps]
-        out[name] = LeftOut(
+        out[name] = LeftOutSweeps(
             sweeps=len(sweeps),
             fitted=rms(fits),
             predicted=rms(predictions),

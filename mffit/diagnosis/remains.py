@@ -9,7 +9,7 @@ from mffit.diagnosis.one_step import BestEffect, best_effect, held_numbers
 from mffit.diagnosis.remainder import left_out_sweeps, remainder
 from mffit.diagnosis.structure import Structure, structure
 from mffit.fit.fitted import Fitted
-from mffit.suspicion import HeldNumber, LeftOut
+from mffit.suspicion import HeldNumber, LeftOutSweeps
 
 
 @dataclass(frozen=True, slots=True)
@@ -19,7 +19,7 @@ class Remains:
     structure: Structure
     effect: BestEffect | None = None  #: the best of all effects, significant or not; None if none can be seen
     held: tuple[HeldNumber, ...] = ()  #: numbers at a bound or a physical limit
-    left_out: Mapping[str, LeftOut] = field(
+    left_out: Mapping[str, LeftOutSweeps] = field(
         default_factory=dict
     )  #: by channel, prediction of left-out sweeps
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from datetime import datetime
 from typing import NamedTuple
 
 import numpy as np
@@ -11,6 +10,7 @@ import numpy as np
 from mffit import __version__
 from mffit.config import Config
 from mffit.errors import InputError
+from mffit.made import now
 from mffit.points import Points
 from mffit.sweeps import tydex_format
 from mffit.sweeps.tydex_format import MARK, MISSING, REMARK, fixed_row
@@ -66,7 +66,7 @@ def _lines(name: str, points: Points, config: Config) -> Iterator[str]:
     yield fixed_row("RELEASE", "Release of TYDEX-Format", "", tydex_format.RELEASE)
     yield fixed_row("MEASID", "Measurement ID", "", name)
     yield fixed_row("SUPPLIER", "Data supplier", "", f"mffit {__version__}")
-    yield fixed_row("DATE", "Date", "", f"{datetime.now():%d-%b-%y}")
+    yield fixed_row("DATE", "Date", "", f"{now():%d-%b-%y}")
     yield f"{MARK}{tydex_format.COMMENTS}"
     for remark in _remarks(points, config):
         yield f"{REMARK} {remark}"

@@ -6,6 +6,9 @@ from tir.constant import Count, Real, Series
 
 # Weights
 HUBER_THRESHOLD = Real(4.0, "-", "Residuals beyond this many robust standard deviations lose weight (Huber).")
+FULL_WEIGHT = Real(
+    0.99, "-", "Weights below this, over that of most readings, are listed as reduced; rounding is above it."
+)
 OUTLIER_FALSE_ALARM = Real(0.01, "-", "Probability that noise makes any reading of a channel an outlier.")
 OUTLIER_NEIGHBOURS = Series((-2, -1, 1, 2), "-", "Offsets of the rows with which a reading is compared.")
 NOMINAL_NOISE_SHARE = Real(0.01, "-", "Standard uncertainty over the range of a channel that states none.")

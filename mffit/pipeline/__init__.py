@@ -9,6 +9,7 @@ from mffit.pipeline.intake import init_from, write_sniffed
 from mffit.pipeline.many import build_many
 from mffit.pipeline.measuring import align, spin
 from mffit.pipeline.planning import plan
+from mffit.pipeline.verifying import verify
 
 __all__ = [
     "align",
@@ -20,6 +21,7 @@ __all__ = [
     "init_from",
     "plan",
     "spin",
+    "verify",
     "write_sniffed",
     "write_tydex",
 ]

@@ -63,7 +63,22 @@ def points_table(result: BuildResult) -> pd.DataFrame:
     for name, values in origin(result.points).items():
         if name not in table:  # a column of the input with this heading takes precedence
             table[name] = values
-    return table
+    table["excluded"] = False
+    return table if result.excluded is None else _with_excluded(table, result.points, result.excluded)
+
+
+def _with_excluded(table: pd.DataFrame, points: Points, excluded: Points) -> pd.DataFrame:
+    """The table with the points that were left out by hand at their places in the files; what is computed is blank there."""
+    rows = excluded.table.copy()
+    for name, values in origin(excluded).items():
+        if name not in rows:
+            rows[name] = values
+    rows = rows.assign(paired="", outlier="", doubtful=False, excluded=True)
+    order = list(dict.fromkeys((*points.files, *excluded.files)))
+    files = [order.index(own.files[k]) for own in (points, excluded) for k in own.file.tolist()]
+    first = np.lexsort((np.r_[points.line, excluded.line], files))
+    found = pd.concat([table, rows.astype({"doubtful": bool, "excluded": bool})], ignore_index=True)
+    return found.iloc[first]
 
 
 def origin(points: Points) -> dict[str, np.ndarray]:

@@ -13,13 +13,16 @@ from threadpoolctl import threadpool_limits
 from mffit import config as configuration
 from mffit import fit as fitting
 from mffit.config import Config
+from mffit.config.laboratory import lab_warnings
 from mffit.fit import FitResult
+from mffit.made import made
 from mffit.measured import Measured
 from mffit.output import refuse_early
 from mffit.parts import Parts
 from mffit.pipeline.build_output import WRITTEN, write_build
-from mffit.pipeline.inputs import inputs_of, read_base, read_points
+from mffit.pipeline.inputs import input_hashes, inputs_of, read_base, read_points
 from mffit.pipeline.judging import judged
+from mffit.pipeline.left_out import left_out_by_fit
 from mffit.pipeline.measuring import measure
 from mffit.pipeline.provenance import Annotate, annotator
 from mffit.pipeline.refining import finite_spin_bias, undistorted, without_outliers
@@ -78,7 +81,8 @@ def build(
         )
         if ensemble:
             progress(f"drawing {ensemble} tyres from the posterior")
-        annotated = annotator(config, measured, fitted, trust)
+        made_of = made(input_hashes(config))
+        annotated = annotator(config, made_of, measured, fitted, trust)
         members = tuple(_members(config, fitted, ensemble, annotated)) if ensemble else ()
     result = BuildResult(
         config=config,
@@ -96,10 +100,14 @@ def build(
             *reading.warnings,
             *measured.warnings,
             *fitted.warnings,
+            *lab_warnings(config.lab, made_of.date.date()),
         ),
         seconds=time.perf_counter() - began,
         trust=trust,
         remains=left,
+        made=made_of,
+        left_out=(*reading.left_out, *left_out_by_fit(reading.points, fitted)),
+        excluded=reading.excluded,
     )
     if out is not None:
         progress("writing the report")

@@ -42,6 +42,7 @@ def write_corrected(diagnosis: Diagnosis, config: Config, out: Path, folder: Pat
         sweeps.append({"file": name, **_conditions(part, config)})
     content = resolved(config, out)
     content["sweep"] = sweeps
+    content.get("fit", {}).pop("exclude", None)  # these points are not in the corrected files
     content["rig"] |= {"backlash_deg": 0.0, "force_frame": "W", "moments": "contact"}
     text = ABOUT.format(name=CORRECTED_TOML) + tomli_w.dumps(content)
     (folder / CORRECTED_TOML).write_text(text, encoding="utf-8", newline="\n")

@@ -16,10 +16,11 @@ from mffit.diagnosis import Diagnosis, corrected_points
 from mffit.diagnosis import diagnose as find_effects
 from mffit.diagnosis.notes import DirectMethodRedone, ModelFittedFirst, ModelOfLastBuild, Note
 from mffit.effects import CATALOG, Effect
-from mffit.output import output_folder, refuse_early
+from mffit.made import made
+from mffit.output import digest, output_folder, refuse_early
 from mffit.pipeline.building import build
 from mffit.pipeline.correcting import CORRECTED_POINTS, CORRECTED_TOML, write_corrected
-from mffit.pipeline.inputs import inputs_of, read_base, read_points
+from mffit.pipeline.inputs import input_hashes, inputs_of, read_base, read_points
 from mffit.pipeline.judging import judged_diagnosis
 from mffit.pipeline.measuring import epsilon_gamma, without_play
 from mffit.pipeline.provenance import fitted_to, known_of_model, marked, rig_of_build, use_of
@@ -84,11 +85,15 @@ def diagnose(
             seen=seen,
             progress=progress,
         )
+    hashes = input_hashes(config)
+    file = _file_read(config, model, choice)
+    if file is not None:
+        hashes[str(file)] = digest(file)
     notes = (*choice, *diagnosis.notes, *_redone(config, points, diagnosis, base))
     diagnosis = replace(diagnosis, notes=notes, trust=judged_diagnosis(diagnosis))
     diagnosis = replace(diagnosis, tyre=marked(diagnosis.tyre, diagnosis.trust))
     if out is not None:
-        write_diagnosis(diagnosis, Path(out), protected=inputs, config=config)
+        write_diagnosis(diagnosis, Path(out), protected=inputs, config=config, hashes=hashes)
     return diagnosis
 
 
@@ -116,6 +121,15 @@ def _file_of_model(config: Config, model: Tyre | str | Path | None) -> Path | No
     return last_build(config) if model is None else Path(model)
 
 
+def _file_read(config: Config, model: Tyre | str | Path | None, choice: Sequence[Note]) -> Path | None:
+    """The file that the model was read from; None if it was given as a record or fitted now."""
+    if any(isinstance(note, ModelFittedFirst) for note in choice):
+        return None
+    file = _file_of_model(config, model)
+    siblings = [note.file for note in choice if isinstance(note, ModelOfLastBuild)]
+    return file.with_name(siblings[0]) if file is not None and siblings else file
+
+
 def last_build(config: Config) -> Path:
     """Default path of the property file of a build."""
     return config.folder / "out" / f"{config.tyre.name}.tir"
@@ -134,17 +148,25 @@ def _redone(
 
 
 def write_diagnosis(
-    diagnosis: Diagnosis, out: Path, protected: Iterable[Path] = (), config: Config | None = None
+    diagnosis: Diagnosis,
+    out: Path,
+    protected: Iterable[Path] = (),
+    config: Config | None = None,
+    hashes: Mapping[str, str] | None = None,
 ) -> None:
     """Write every output of a diagnosis, or nothing; the ``protected`` files, which were read, are not replaced.
 
-    With ``config``, the corrected points and a configuration to build from them are written as well.
+    With ``config``, the corrected points and a configuration to build from them are written as well. ``hashes`` has the
+    SHA-256 of every file read.
     """
     from mffit import report
 
     with output_folder(out, by="diagnose", protected=protected) as folder:
         diagnosis.tyre.write(folder / diagnosis.model_after)
-        as_json.write(folder / "diagnosis.json", as_json.diagnosis(diagnosis))
+        made_of = made(hashes or {})
+        as_json.write(
+            folder / "diagnosis.json", as_json.diagnosis(diagnosis) | {"made": as_json.made(made_of)}
+        )
         if config is not None:
             write_corrected(diagnosis, config, out, folder)
         report.write_diagnosis(diagnosis, folder)

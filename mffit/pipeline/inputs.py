@@ -42,15 +42,16 @@ def read_base(config: Config) -> Tyre | None:
 
 def inputs_of(config: Config) -> list[Path]:
     """Every file that a command reads for this configuration."""
-    files = [config.folder / name for name in _names(config)]
+    files = [config.folder / name for name in input_names(config)]
     return files if config.path is None else [config.path, *files]
 
 
 def input_hashes(config: Config) -> dict[str, str]:
-    """First 16 hex digits of the SHA-256 of every input file, by the name that the configuration gives."""
-    return {name: digest(config.folder / name)[:16] for name in _names(config)}
+    """SHA-256 of every input file in hex, by the name that the configuration gives, in the order of :func:`input_names`."""
+    return {name: digest(config.folder / name) for name in input_names(config)}
 
 
-def _names(config: Config) -> list[str]:
+def input_names(config: Config) -> list[str]:
+    """The files that a configuration names: sweeps in their order, base file, priors."""
     named = (*(sweep.file for sweep in config.sweep), config.tyre.base, config.tyre.priors)
     return list(dict.fromkeys(name for name in named if name))

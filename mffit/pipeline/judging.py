@@ -19,7 +19,7 @@ from mffit.points import Points
 from mffit.quantities import CHANNELS
 from mffit.rig import Readings
 from mffit.scatter import rms
-from mffit.suspicion import CamberReduction, FinishedFit, LeftOut, Outlier, Trust, judge
+from mffit.suspicion import CamberReduction, FinishedFit, LeftOutSweeps, Outlier, Trust, judge
 from tir import Tyre
 
 
@@ -63,7 +63,7 @@ def judged_diagnosis(diagnosis: Diagnosis) -> Trust:
             predicted = diagnosis.validation.gap_after.rms(name)
             fitted = diagnosis.gap_after.rms(name)
             uneven = max(own) / max(float(np.median(own)), 1e-12)
-            left_out[name] = LeftOut(len(own), fitted, predicted, predicted, uneven)
+            left_out[name] = LeftOutSweeps(len(own), fitted, predicted, predicted, uneven)
     return judge(
         FinishedFit(
             points=points,

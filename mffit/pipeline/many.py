@@ -13,6 +13,7 @@ from pathlib import Path
 import mffit
 import tir
 from mffit import config as configuration
+from mffit import made
 from mffit.config import Config
 from mffit.errors import InputError
 from mffit.fleet import read
@@ -20,7 +21,7 @@ from mffit.output import written_by
 from mffit.pipeline.build_output import WRITTEN, resolved_text
 from mffit.pipeline.building import build
 from mffit.pipeline.members import FOLDER
-from mffit.pipeline.provenance import PROGRAM, fitted_to
+from mffit.pipeline.provenance import METHOD, PROGRAM, fitted_to
 from mffit.pipeline.workers import Job, Outcomes, in_processes, on_cluster
 from mffit.results import BuildOutcome
 from tir.errors import TirError
@@ -173,6 +174,7 @@ def is_current(config: Config, out: Path, *, ensemble: int = 0) -> bool:
             and ensemble in (0, drawn)
             and (out / "resolved.toml").read_bytes() == resolved_text(config, out)
             and tyre.provenance.get(PROGRAM) == f"mffit {mffit.__version__}"
+            and tyre.provenance.get(METHOD) == str(made.METHOD)
             and fitted_to(tyre, config)
         )
     except (OSError, ValueError, LookupError, TypeError, AttributeError, TirError):

@@ -14,10 +14,11 @@ from mffit import parts as decomposition
 from mffit import points as ingestion
 from mffit.config import Config
 from mffit.errors import InputError
+from mffit.made import made
 from mffit.measured import Alignment, Measured
 from mffit.output import output_folder
 from mffit.parts import Parts
-from mffit.pipeline.inputs import inputs_of, read_base, read_points
+from mffit.pipeline.inputs import input_hashes, inputs_of, read_base, read_points
 from mffit.points import Points
 from mffit.results import as_json
 from tir import Tyre
@@ -26,12 +27,13 @@ from tir import Tyre
 def spin(config: Config | Mapping[str, Any] | str | Path, out: str | Path | None = None) -> Measured:
     """The alignment check and the direct method only; writes ``spin.json`` if ``out`` is given."""
     config = configuration.load(config)
-    points, warnings, _ = read_points(config)
-    _, measured = measure(config, points, read_base(config))
-    measured = replace(measured, warnings=(*warnings, *measured.warnings))
+    reading = read_points(config)
+    _, measured = measure(config, reading.points, read_base(config))
+    measured = replace(measured, warnings=(*reading.warnings, *measured.warnings))
     if out is not None:
         with output_folder(Path(out), by="spin", protected=inputs_of(config)) as folder:
-            as_json.write(folder / "spin.json", as_json.spin(measured))
+            content = as_json.spin(measured) | {"made": as_json.made(made(input_hashes(config)))}
+            as_json.write(folder / "spin.json", content)
     return measured
 
 

@@ -4,18 +4,18 @@ from __future__ import annotations
 
 import json
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 from pathlib import Path
 from urllib.parse import quote, unquote
 
 import numpy as np
 
-import mffit
 import tir
 from mffit.config import Config
 from mffit.diagnosis.inexact import Inexactness, correlated, refitted
 from mffit.fit import FitResult
+from mffit.made import Made
 from mffit.measured import Measured
 from mffit.pipeline.inputs import input_hashes
 from mffit.rig_errors import error_of, unit_of
@@ -26,6 +26,10 @@ PROGRAM = "program"
 """Key of the version that wrote a file."""
 DISTRUSTED = "NOT TO BE TRUSTED"
 """Key of the reasons in a file that is not to be trusted."""
+METHOD = "method"
+"""Key of the number of the method."""
+DIGITS = 16
+"""Digits of a hash in a property file, whose lines are to be short; result.json has all 64."""
 RIG = "rig."
 """Prefix of rig errors among the measured quantities of a file."""
 TURN_SLIP = {"turn-slip": "on", "normal": "off", "both": "on or off"}
@@ -38,9 +42,9 @@ Annotate = Callable[[Tyre, str], Tyre]
 """Adds measured quantities and provenance as structured comments to the tyre for a use."""
 
 
-def annotator(config: Config, measured: Measured, fitted: FitResult, trust: Trust) -> Annotate:
-    """The annotation of all files of a build; the inputs are hashed once."""
-    inputs = _inputs(config)
+def annotator(config: Config, made: Made, measured: Measured, fitted: FitResult, trust: Trust) -> Annotate:
+    """The annotation of all files of a build."""
+    inputs = _of_inputs(made.inputs)
     rig = {
         RIG + quote(name, safe=PLAIN): tir.Quantity(value, u, unit_of(name))
         for name, (value, u) in fitted.rig.items()
@@ -48,7 +52,8 @@ def annotator(config: Config, measured: Measured, fitted: FitResult, trust: Trus
 
     def annotated(tyre: Tyre, use: str) -> Tyre:
         provenance = {
-            PROGRAM: f"mffit {mffit.__version__}",
+            PROGRAM: f"{made.program} {made.version}",
+            METHOD: str(made.method),
             "use": f"{use}, for simulations with turn slip {TURN_SLIP[use]}",
             "configuration": _settings(config),
             **inputs,
@@ -123,7 +128,11 @@ def posterior_of(tyre: Tyre, path: Path) -> Inexactness | None:
 
 def _inputs(config: Config) -> dict[str, str]:
     """Hashes of the inputs as entries of the provenance, whose names are ASCII without colons."""
-    return {f"input {quote(name, safe=PLAIN)}": known for name, known in input_hashes(config).items()}
+    return _of_inputs(input_hashes(config))
+
+
+def _of_inputs(hashes: Mapping[str, str]) -> dict[str, str]:
+    return {f"input {quote(name, safe=PLAIN)}": known[:DIGITS] for name, known in hashes.items()}
 
 
 def _settings(config: Config) -> str:

@@ -36,11 +36,11 @@ def rows_as_points(sweep: Sweep, phi_t: float, rows: np.ndarray) -> Points:
     return _points(sweep, phi_t, {}, sweep.table, rows)
 
 
-def over_plateaus(sweep: Sweep, phi_t: float, kept: list[Stretch]) -> Points:
-    """Means over the stretches, with their standard errors if the file states none."""
+def over_plateaus(sweep: Sweep, phi_t: float, kept: list[Stretch], faulty: np.ndarray) -> Points:
+    """Means over the stretches without faulty samples, with their standard errors if the file states none."""
     if not kept:
         return _no_points(sweep, phi_t)
-    parts = [slice(stretch.begin, stretch.end) for stretch in kept]
+    parts = [sound_rows(stretch, faulty) for stretch in kept]
     means = {
         name: np.array([np.mean(getattr(sweep, name)[part]) for part in parts]) for name in AVERAGED_CHANNELS
     }
@@ -50,15 +50,20 @@ def over_plateaus(sweep: Sweep, phi_t: float, kept: list[Stretch]) -> Points:
         means[u] = np.where(np.isfinite(means[u]), means[u], np.where(errors > 0.0, errors, np.nan))
     table = _averaged_table(sweep.table, parts)
     table["u_Fy_N"], table["u_Mz_Nm"] = means["u_Fy"], means["u_Mz"]
-    first = np.array([stretch.begin for stretch in kept])
+    first = np.array([part[0] for part in parts])
     return _points(sweep, phi_t, means, table.dropna(axis="columns", how="all"), first)
 
 
-def _averaged_table(table: pd.DataFrame, parts: list[slice]) -> pd.DataFrame:
+def sound_rows(stretch: Stretch, faulty: np.ndarray) -> np.ndarray:
+    """The samples (m,) of a stretch that are not ``faulty`` (n,)."""
+    return np.flatnonzero(~faulty[stretch.begin : stretch.end]) + stretch.begin
+
+
+def _averaged_table(table: pd.DataFrame, parts: list[np.ndarray]) -> pd.DataFrame:
     """Mean of every number and first of every text; without time, so that the rows are read as finished points."""
     averaged = {
         name: [
-            column.iloc[part].mean() if pd.api.types.is_numeric_dtype(column) else column.iloc[part.start]
+            column.iloc[part].mean() if pd.api.types.is_numeric_dtype(column) else column.iloc[part[0]]
             for part in parts
         ]
         for name, column in table.items()
@@ -69,13 +74,13 @@ def _averaged_table(table: pd.DataFrame, parts: list[slice]) -> pd.DataFrame:
 
 def along_sweeps(
     sweep: Sweep, phi_t: float, stretches: list[Stretch], labels: list[str], faulty: np.ndarray
-) -> Points:
-    """Means over short blocks of sweeps, without faulty samples."""
+) -> tuple[Points, np.ndarray]:
+    """Means over short blocks of sweeps, without faulty samples; and the samples (m,) that they average."""
     if not stretches:
-        return _no_points(sweep, phi_t)
+        return _no_points(sweep, phi_t), np.zeros(0, dtype=int)
     whole, begins, numbers, count = [], [], [], 0
     for k, stretch in enumerate(stretches):
-        rows = np.flatnonzero(~faulty[stretch.begin : stretch.end]) + stretch.begin
+        rows = sound_rows(stretch, faulty)
         first, size = _blocks(sweep, rows)
         enough = np.diff(np.r_[first, len(rows)]) >= constants.FILLED_BLOCK * size
         whole.append(rows)
@@ -102,9 +107,10 @@ def along_sweeps(
         }
     )
     found = _points(sweep, phi_t, means, table, rows[first[enough]])
-    return found.replace(
+    found = found.replace(
         continuous=True, time=mean(sweep.time), sweep=number[enough], sweep_names=tuple(labels)
     )
+    return found, rows[np.repeat(enough, counts.astype(int))]
 
 
 def _blocks(sweep: Sweep, rows: np.ndarray) -> tuple[np.ndarray, int]:

@@ -15,6 +15,7 @@ from mffit.points.stretch import runs
 from mffit.scatter import robust
 from mffit.sweeps import Sweep
 
+DRIVEN_RULE = "driven-or-braked"
 DRIVEN = "driven or braked, and only free rolling is fitted"
 SENSORS = ("Fy", "Mz", "Fz")
 
@@ -25,6 +26,7 @@ class Fault(NamedTuple):
     which: np.ndarray  #: mask (n,)
     reason: str
     ends_stretch: bool  #: it ends the stretch around it; otherwise only the samples are left out
+    rule: str = ""  #: name of the rule
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -55,7 +57,7 @@ def faults(sweep: Sweep) -> list[Fault]:
         for channel in channels:
             for rule in same:
                 reason = rule.reason.format(channel=channel)
-                found.append(Fault(rule.find(sweep, channel), reason, rule.ends_stretch))
+                found.append(Fault(rule.find(sweep, channel), reason, rule.ends_stretch, rule.id))
     return [fault for fault in found if np.any(fault.which)]
 
 
@@ -159,7 +161,7 @@ FAULTS = (
         find=_unloaded,
     ),
     FaultRule(
-        id="driven-or-braked",
+        id=DRIVEN_RULE,
         looks_at="Longitudinal slip",
         limits=(constants.FREE_ROLLING_SLIP,),
         reason=DRIVEN,

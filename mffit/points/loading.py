@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import NamedTuple
@@ -14,14 +14,17 @@ from mffit.config import Config, path_curvature
 from mffit.config.declared import as_declared
 from mffit.errors import InputError
 from mffit.points import constants, levels
+from mffit.points.averaging import rows_as_points
 from mffit.points.choice import settings_of
 from mffit.points.faulty import DRIVEN
 from mffit.points.lag import common, rolled_distance
+from mffit.points.left_out import LeftOut, by_hand
 from mffit.points.points import Points, concatenate
 from mffit.points.reduction import Reduced, reduce
 from mffit.points.steady import scale_of
 from mffit.points.stretch import StretchNote
 from mffit.scatter import rms
+from mffit.sweeps.sweep import ExcludedRows
 from tir.conventions import FLIPPED
 
 SIDES = ("left", "right")
@@ -34,6 +37,8 @@ class Reading(NamedTuple):
     points: Points
     warnings: tuple[str, ...]
     stretches: tuple[StretchNote, ...]  #: of all recordings
+    left_out: tuple[LeftOut, ...] = ()  #: by hand and by rules
+    excluded: Points | None = None  #: finished points that were left out by hand; None without any
 
 
 def load(config: Config, *, continuous: bool = False) -> tuple[Points, tuple[str, ...]]:
@@ -82,15 +87,29 @@ def read(config: Config, *, continuous: bool = False, may_be_empty: bool = False
         warnings += _of_motion(reduced, lag)
     steady = points if continuous and straight else points.select(~points.continuous)
     notes = tuple(note for part in reduced for note in part.stretches)
+    left_out = (*by_hand(found.excluded), *(one for part in reduced for one in part.left_out))
     if not len(steady):
         if may_be_empty:
-            return Reading(steady, (*warnings, _nothing(reduced)), notes)
+            return Reading(steady, (*warnings, _nothing(reduced)), notes, left_out)
         raise InputError(_nothing(reduced), file=config.path)
     if not continuous:
         warnings += _moving(points)
     warnings += _thin(steady, config)
     kept = points if continuous else steady
-    return Reading(kept, tuple(warnings), notes)
+    if not continuous:
+        left_out += _moving_left_out(points)
+    return Reading(kept, tuple(warnings), notes, left_out, _excluded(found.excluded, phi_t))
+
+
+def _excluded(excluded: Sequence[ExcludedRows], phi_t: Mapping[str, float]) -> Points | None:
+    """Finished points that were left out by hand; None without any."""
+    parts = [
+        rows_as_points(sweep, phi_t[sweep.file], np.arange(len(sweep)))
+        for rows in excluded
+        for sweep in rows.sweeps
+        if not sweep.is_series
+    ]
+    return concatenate(parts) if parts else None
 
 
 def _nothing(reduced: Sequence[Reduced]) -> str:
@@ -191,6 +210,21 @@ def _moving(points: Points) -> list[str]:
     """Sentences about files that keep moving."""
     names = [points.files[index] for index in np.unique(points.file[points.continuous])]
     return [f"{name}: keeps moving and gives no steady point; only mffit diagnose uses it" for name in names]
+
+
+def _moving_left_out(points: Points) -> tuple[LeftOut, ...]:
+    """Entries about means along moving sweeps of a disc; ``count`` is the number of means."""
+    return tuple(
+        LeftOut(
+            file=points.files[index],
+            lines="",
+            count=int(np.sum(points.continuous & (points.file == index))),
+            by="rule",
+            rule="steady-state",
+            why="means along a moving sweep; only mffit diagnose uses them",
+        )
+        for index in np.unique(points.file[points.continuous]).tolist()
+    )
 
 
 def _thin(points: Points, config: Config) -> list[str]:

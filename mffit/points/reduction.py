@@ -9,8 +9,9 @@ import numpy as np
 from mffit.errors import InputError
 from mffit.points import averaging, constants, remarks
 from mffit.points.choice import chosen
-from mffit.points.faulty import driven, faults
+from mffit.points.faulty import DRIVEN, DRIVEN_RULE, Fault, driven, faults
 from mffit.points.lag import UNKNOWN, Lag, measure, rolled_distance
+from mffit.points.left_out import LeftOut, by_rule, of_recording
 from mffit.points.points import Points, concatenate
 from mffit.points.steady import Scale
 from mffit.points.stretch import PLATEAU, SWEEP, Stretch, StretchNote
@@ -25,6 +26,7 @@ class Reduced(NamedTuple):
     warnings: tuple[str, ...]
     stretches: tuple[StretchNote, ...] = ()  #: of a recording, in time order
     lags: tuple[Lag, ...] = ()  #: of the moving sweeps that give points
+    left_out: tuple[LeftOut, ...] = ()  #: by rules
 
 
 def reduce(sweep: Sweep, phi_t: float, scale: Scale | None = None) -> Reduced:
@@ -39,20 +41,27 @@ def reduce(sweep: Sweep, phi_t: float, scale: Scale | None = None) -> Reduced:
     if not sweep.is_series:
         free = np.flatnonzero(~driven(sweep))
         return Reduced(
-            points=averaging.rows_as_points(sweep, phi_t, free), warnings=remarks.driven(sweep, free)
+            points=averaging.rows_as_points(sweep, phi_t, free),
+            warnings=remarks.driven(sweep, free),
+            left_out=by_rule(sweep, driven(sweep), DRIVEN_RULE, DRIVEN),
         )
-    sweep, repeated = _without_repeats(sweep)
+    sweep, repeated, repeats = _without_repeats(sweep)
     _check_time(sweep)
     wrong = faults(sweep)
-    tried = chosen(sweep, wrong, scale)
+    faulty = np.any([fault.which for fault in wrong], axis=0) if wrong else np.zeros(len(sweep), dtype=bool)
+    tried = _without_faulty_plateaus(chosen(sweep, wrong, scale), wrong, faulty)
     labels = _labels(sweep, tried)
     plateaus = [stretch for stretch in tried if stretch.kind == PLATEAU and not stretch.dropped]
     swept = [stretch for stretch in tried if stretch.kind == SWEEP and not stretch.dropped]
-    faulty = np.any([fault.which for fault in wrong], axis=0) if wrong else np.zeros(len(sweep), dtype=bool)
-    steady = averaging.over_plateaus(sweep, phi_t, plateaus)
-    moving = averaging.along_sweeps(sweep, phi_t, swept, [labels[stretch] for stretch in swept], faulty)
+    steady = averaging.over_plateaus(sweep, phi_t, plateaus, faulty)
+    moving, averaged = averaging.along_sweeps(
+        sweep, phi_t, swept, [labels[stretch] for stretch in swept], faulty
+    )
     lags = {stretch: _lag(sweep, stretch, faulty) for stretch in swept}
     counts = np.bincount(moving.sweep, minlength=len(swept)).tolist()
+    used = np.isin(np.arange(len(sweep)), averaged)
+    for plateau in plateaus:
+        used[averaging.sound_rows(plateau, faulty)] = True
     number = dict.fromkeys(plateaus, 1) | dict(zip(swept, counts, strict=True))
     return Reduced(
         points=concatenate([part for part in (steady, moving) if len(part)] or [steady]),
@@ -61,7 +70,18 @@ def reduce(sweep: Sweep, phi_t: float, scale: Scale | None = None) -> Reduced:
             remarks.note(sweep, s, labels[s], number.get(s, 0), lags.get(s, UNKNOWN)) for s in tried
         ),
         lags=tuple(lags.values()),
+        left_out=(*repeats, *of_recording(sweep, wrong, tried, used)),
     )
+
+
+def _without_faulty_plateaus(tried: list[Stretch], wrong: list[Fault], faulty: np.ndarray) -> list[Stretch]:
+    """The stretches; a plateau that has only faulty samples (n,) is dropped for the reason of its first."""
+    return [
+        stretch._replace(dropped=next(fault.reason for fault in wrong if fault.which[stretch.begin]))
+        if stretch.kind == PLATEAU and not stretch.dropped and np.all(faulty[stretch.begin : stretch.end])
+        else stretch
+        for stretch in tried
+    ]
 
 
 def _labels(sweep: Sweep, tried: list[Stretch]) -> dict[Stretch, str]:
@@ -75,7 +95,7 @@ def _labels(sweep: Sweep, tried: list[Stretch]) -> dict[Stretch, str]:
 
 def _lag(sweep: Sweep, stretch: Stretch, faulty: np.ndarray) -> Lag:
     """The lag of a sweep of the sideslip angle."""
-    rows = np.flatnonzero(~faulty[stretch.begin : stretch.end]) + stretch.begin
+    rows = averaging.sound_rows(stretch, faulty)
     if len(rows) < 2 or np.ptp(sweep.alpha[rows]) < np.ptp(sweep.gamma[rows]):
         return UNKNOWN
     time = sweep.time[rows]
@@ -87,14 +107,16 @@ def _lag(sweep: Sweep, stretch: Stretch, faulty: np.ndarray) -> Lag:
     )
 
 
-def _without_repeats(sweep: Sweep) -> tuple[Sweep, tuple[str, ...]]:
-    """The series without the few samples that a recorder wrote twice, and a sentence about them."""
+def _without_repeats(sweep: Sweep) -> tuple[Sweep, tuple[str, ...], tuple[LeftOut, ...]]:
+    """The series without the few samples that a recorder wrote twice, and a sentence and an entry about them."""
     repeated = np.flatnonzero(np.diff(sweep.time) == 0.0) + 1
     if not len(repeated) or len(repeated) > constants.MOST_REPEATED_SAMPLES * len(sweep):
-        return sweep, ()
+        return sweep, (), ()
     kept = np.delete(np.arange(len(sweep)), repeated)
     sentence = f"{sweep.file}:{int(sweep.line[repeated[0]])}: {len(repeated)} samples have the time of the one before; left out"
-    return rows_of(sweep, kept, sweep.name), (sentence,)
+    which = np.isin(np.arange(len(sweep)), repeated)
+    left_out = by_rule(sweep, which, "repeated-time", "the time of the sample before")
+    return rows_of(sweep, kept, sweep.name), (sentence,), left_out
 
 
 def _check_time(sweep: Sweep) -> None:

@@ -8,12 +8,15 @@ from dataclasses import dataclass
 import numpy as np
 
 from mffit.config import Config
+from mffit.config.laboratory import LabTable
 from mffit.diagnosis.remains import Remains
 from mffit.fit import Agreement, Coefficient, Posterior, StageRecord
 from mffit.fit.coverage import StageCoverage
 from mffit.fit.files import Files
+from mffit.made import Made
 from mffit.measured import Measured
 from mffit.points import Points
+from mffit.points.left_out import LeftOut
 from mffit.quantities import CHANNELS
 from mffit.report import words
 from mffit.report.channel import NamedChannel
@@ -103,6 +106,9 @@ class BuildView:
     unpaired: tuple[str, ...]
     paired: Mapping[str, int]  #: number of points by kind of mirror: exact, interpolated, unpaired
     provenance: Mapping[str, str]
+    made: Made
+    lab: LabTable
+    left_out: tuple[LeftOut, ...]  #: readings that are left out, have less weight or are doubted
     seconds: float
     fit_seconds: float
     tir_name: str
@@ -164,6 +170,9 @@ def view_of(result: BuildResult) -> BuildView:
         unpaired=parts.unpaired,
         paired={kind: int(np.sum(parts.paired == kind)) for kind in ("exact", "interpolated", "unpaired")},
         provenance=dict(result.tyre.provenance),
+        made=result.made,
+        lab=result.config.lab,
+        left_out=result.left_out,
         seconds=result.seconds,
         fit_seconds=fit.seconds,
         tir_name=result.tir_path,

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 from urllib.parse import quote
 
 from mffit import rounding
+from mffit.errors import shortened
 from mffit.report import making, numbers, typeset
 from mffit.report.drawing.records import Sheet
 from mffit.templates import environment
@@ -61,6 +62,7 @@ def draw(folder: Path, figures: Mapping[str, Callable[[], Sheet]]) -> dict[str, 
 @cache
 def _environment() -> Environment:
     found = environment("mffit.report")
+    found.filters["shortened"] = shortened
     for rounded in (
         rounding.number,
         rounding.with_u,

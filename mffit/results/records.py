@@ -11,9 +11,12 @@ from mffit.brief import Brief
 from mffit.config import Config
 from mffit.diagnosis.remains import NOTHING_REMAINS, Remains
 from mffit.fit import FitResult
+from mffit.made import Made
+from mffit.made import made as made_now
 from mffit.measured import Measured
 from mffit.parts import Parts
 from mffit.points import Points
+from mffit.points.left_out import LeftOut
 from mffit.suspicion import SOUND, Trust
 from tir import Quantity, Tyre
 
@@ -35,6 +38,9 @@ class BuildResult(Brief):
     members: tuple[Tyre, ...] = ()  #: drawn from the posterior, if requested
     trust: Trust = SOUND  #: the judgement by all rules
     remains: Remains = NOTHING_REMAINS  #: what the fit leaves of the readings
+    made: Made = field(default_factory=made_now)
+    left_out: tuple[LeftOut, ...] = ()  #: readings that are left out, have less weight or are doubted
+    excluded: Points | None = None  #: finished points that were left out by hand; None without any
 
     @property
     def headline(self) -> str:

@@ -9,7 +9,7 @@ from mffit.suspicion.prediction import FittedModel
 from mffit.suspicion.rule import When
 from mffit.suspicion.rules import RULES
 from mffit.suspicion.slopes import contradictions, signatures
-from mffit.suspicion.trust import SOUND, FinishedFit, HeldNumber, LeftOut, Trust, judge
+from mffit.suspicion.trust import SOUND, FinishedFit, HeldNumber, LeftOutSweeps, Trust, judge
 from mffit.suspicion.unpublished import CamberReduction
 
 __all__ = [
@@ -21,7 +21,7 @@ __all__ = [
     "FittedModel",
     "HeldNumber",
     "JudgedSweeps",
-    "LeftOut",
+    "LeftOutSweeps",
     "Misread",
     "Outlier",
     "Trust",

@@ -26,7 +26,7 @@ from mffit.suspicion.unpublished import CamberReduction, causes
 
 
 @dataclass(frozen=True, slots=True)
-class LeftOut:
+class LeftOutSweeps:
     """How well sweeps are predicted from all others, one channel [N] or [Nm]."""
 
     sweeps: int
@@ -53,7 +53,7 @@ class FinishedFit:
     model: Readings  #: what the fitted model reads
     used: Mapping[str, np.ndarray]  #: by channel, mask (n,) of the readings that have a weight
     r2: Mapping[str, float]  #: by channel, share of the variance that the model explains
-    left_out: Mapping[str, LeftOut] = field(default_factory=dict)
+    left_out: Mapping[str, LeftOutSweeps] = field(default_factory=dict)
     structured: frozenset[str] = frozenset()  #: channels whose residuals are not random
     structure: str = ""  #: where, in words
     cause: str = ""  #: the effect that would explain most of the residuals, in words

@@ -2,20 +2,24 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 
 from mffit.config import Config, setup_names
+from mffit.config.exclusion import ExcludeTable
 from mffit.config.models import SweepTable
 from mffit.errors import InputError
 from mffit.sweeps import constants
 from mffit.sweeps.assembly import Circumstances, sweeps_of
 from mffit.sweeps.channels import BY_NAME, nearest_channel
 from mffit.sweeps.columns import Columns, read_columns
+from mffit.sweeps.excluded import ExclusionError, take_apart
 from mffit.sweeps.formats import ENDINGS, FORMATS, read
 from mffit.sweeps.frames import load_is_vertical, to_contact_frame, to_contact_point
-from mffit.sweeps.sweep import Sweep, Sweeps
+from mffit.sweeps.raw_table import RawTable
+from mffit.sweeps.sweep import ExcludedRows, Sweep, Sweeps
 
 
 def load(config: Config) -> Sweeps:
@@ -29,17 +33,15 @@ def load(config: Config) -> Sweeps:
     Raises
     ------
     InputError
-        A file cannot be read, or a value in it is impossible; names file, line and column.
+        A file cannot be read, or a value in it is impossible; names file, line and column. Or no reading is left.
     """
     found: list[Sweep] = []
+    excluded: list[ExcludedRows] = []
     warnings: list[str] = []
     setups = setup_names(config.rig, config.sweep)
     for index, (entry, setup) in enumerate(zip(config.sweep, setups, strict=True)):
-        columns = _columns(config, index, entry)
-        warnings.extend(columns.warnings)
+        raw, apart = _apart(config, entry, _raw(config, index, entry))
         direction = -1 if entry.direction == "backward" else 1
-        if entry.direction is not None and columns.direction is not None:
-            warnings.extend(_contradicting(columns, entry, direction))
         given = Circumstances(
             axes=config.rig.axes,
             file=entry.file,
@@ -49,13 +51,39 @@ def load(config: Config) -> Sweeps:
             pressure=1e3 * config.tyre.nominal_pressure,
             speed=config.tyre.nominal_speed,
         )
+        for exclusion, rows in apart:
+            sweeps = _as_far_as_readable(config, index, entry, rows, given)
+            excluded.append(ExcludedRows(entry.file, np.asarray(rows.lines), exclusion.why, sweeps))
+        if raw is None:
+            continue
+        columns = _columns(config, index, entry, raw)
+        warnings.extend(columns.warnings)
+        if entry.direction is not None and columns.direction is not None:
+            warnings.extend(_contradicting(columns, entry, direction))
         found.extend(sweeps_of(columns, given))
+    if not found:
+        raise InputError(
+            "leaves out every reading; remove some entries",
+            file=config.path,
+            line=config.line_of("fit.exclude"),
+            key="fit.exclude",
+        )
+    vertical = config.rig.force_frame == "C" and load_is_vertical(found)
     if config.rig.force_frame == "C":
-        found, said = _in_contact_frame(found)
-        warnings.extend(said)
-    if config.rig.moments == "wheel-centre":
-        found = [to_contact_point(sweep, unloaded_radius=config.tyre.unloaded_radius) for sweep in found]
-    return Sweeps(tuple(found), tuple(warnings))
+        warnings.extend(_about_frame(found, vertical=vertical))
+
+    def in_iso_w(sweep: Sweep) -> Sweep:
+        if config.rig.force_frame == "C":
+            sweep = to_contact_frame(sweep, load_is_vertical=vertical)
+        if config.rig.moments == "wheel-centre":
+            sweep = to_contact_point(sweep, unloaded_radius=config.tyre.unloaded_radius)
+        return sweep
+
+    return Sweeps(
+        tuple(in_iso_w(sweep) for sweep in found),
+        tuple(warnings),
+        tuple(replace(rows, sweeps=tuple(in_iso_w(sweep) for sweep in rows.sweeps)) for rows in excluded),
+    )
 
 
 def load_file(path: str | Path, *, axes: str) -> Sweeps:
@@ -71,10 +99,17 @@ def load_file(path: str | Path, *, axes: str) -> Sweeps:
     return Sweeps(tuple(sweeps_of(columns, given)), columns.warnings)
 
 
-def _columns(config: Config, index: int, entry: SweepTable) -> Columns:
+def _refusal(config: Config, index: int, sentence: str, key: str) -> InputError:
+    """The error about a key of a [[sweep]]."""
+    line = config.line_of(f"sweep.{index}.{key}")
+    return InputError(sentence, file=config.path, line=line, key=f"sweep[{index + 1}].{key}")
+
+
+def _raw(config: Config, index: int, entry: SweepTable) -> RawTable:
+    """The cells of a file."""
+
     def refuse(sentence: str, key: str) -> InputError:
-        line = config.line_of(f"sweep.{index}.{key}")
-        return InputError(sentence, file=config.path, line=line, key=f"sweep[{index + 1}].{key}")
+        return _refusal(config, index, sentence, key)
 
     for name in entry.columns:
         if name not in BY_NAME:
@@ -94,7 +129,37 @@ def _columns(config: Config, index: int, entry: SweepTable) -> Columns:
         raise refuse(
             f'there is no file "{entry.file}" in {config.folder.absolute()}; correct its name', "file"
         )
-    raw = read(path)
+    return read(path)
+
+
+def _apart(
+    config: Config, entry: SweepTable, raw: RawTable
+) -> tuple[RawTable | None, list[tuple[ExcludeTable, RawTable]]]:
+    """The rows of a file that are kept, None without any, and the excluded ones with their entries."""
+    entries = [one for one in config.fit.exclude if one.file == entry.file]
+    try:
+        kept, excluded = take_apart(raw, entries)
+    except ExclusionError as error:
+        index = config.fit.exclude.index(error.entry)
+        key = f"fit.exclude.{index}.lines"
+        raise InputError(
+            str(error), file=config.path, line=config.line_of(key), key=f"fit.exclude[{index + 1}].lines"
+        ) from None
+    return kept, list(zip(entries, excluded, strict=True))
+
+
+def _as_far_as_readable(
+    config: Config, index: int, entry: SweepTable, raw: RawTable, given: Circumstances
+) -> tuple[Sweep, ...]:
+    """The sweeps of excluded rows; none if a row is damaged, which may be why it is excluded."""
+    try:
+        return tuple(sweeps_of(_columns(config, index, entry, raw), given))
+    except InputError:
+        return ()
+
+
+def _columns(config: Config, index: int, entry: SweepTable, raw: RawTable) -> Columns:
+    """The columns of a file's rows."""
     try:
         return read_columns(
             raw, {**config.columns, **entry.columns}, set(config.columns) - set(entry.columns)
@@ -102,7 +167,7 @@ def _columns(config: Config, index: int, entry: SweepTable) -> Columns:
     except InputError as error:
         if error.file is None and error.key is not None:
             if error.key.split(".")[1] in entry.columns:
-                raise refuse(error.sentence, error.key) from None
+                raise _refusal(config, index, error.sentence, error.key) from None
             line = config.line_of(error.key)
             raise InputError(error.sentence, file=config.path, line=line, key=error.key) from None
         raise
@@ -125,8 +190,8 @@ def _contradicting(columns: Columns, entry: SweepTable, direction: int) -> list[
     ]
 
 
-def _in_contact_frame(sweeps: list[Sweep]) -> tuple[list[Sweep], list[str]]:
-    vertical = load_is_vertical(sweeps)
+def _about_frame(sweeps: list[Sweep], *, vertical: bool) -> list[str]:
+    """Sentences about the conversion from frame C; ``vertical``: the load column is the vertical load."""
     warnings = []
     if vertical:
         warnings.append(
@@ -136,4 +201,4 @@ def _in_contact_frame(sweeps: list[Sweep]) -> tuple[list[Sweep], list[str]]:
         warnings.append(
             "My_Nm is missing, so rolling resistance is neglected when Mz is turned from frame C to W"
         )
-    return [to_contact_frame(sweep, load_is_vertical=vertical) for sweep in sweeps], warnings
+    return warnings

@@ -52,9 +52,20 @@ class Sweep(Brief):
         return bool(np.all(np.isfinite(self.time)))
 
 
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class ExcludedRows(Brief):
+    """Rows of one file that one entry of ``[fit] exclude`` leaves out."""
+
+    file: str  #: name as in ``tyre.toml``
+    line: np.ndarray  #: (n,) in the file, counted from 1
+    why: str
+    sweeps: tuple[Sweep, ...]  #: the same rows as they would have been read; empty if they cannot be
+
+
 @dataclass(frozen=True, slots=True, repr=False)
 class Sweeps(Brief):
     """All sweeps of a configuration, in its order, with warnings."""
 
-    sweeps: tuple[Sweep, ...]
+    sweeps: tuple[Sweep, ...]  #: without the excluded rows
     warnings: tuple[str, ...]
+    excluded: tuple[ExcludedRows, ...] = ()

@@ -8,6 +8,7 @@ from mffit.report.text.fleet import fleet_summary
 from mffit.report.text.many import lacking, many_line, many_summary
 from mffit.report.text.plan import plan_summary
 from mffit.report.text.recordings import sniff_summary
+from mffit.report.text.verification import verification_summary
 
 __all__ = [
     "alignment_table",
@@ -22,4 +23,5 @@ __all__ = [
     "plan_summary",
     "sniff_summary",
     "spin_summary",
+    "verification_summary",
 ]

@@ -15,6 +15,7 @@ from mffit.report.text.direct import spin_numbers
 from mffit.report.text.layout import blocks, paragraphs, table, wrapped
 from mffit.results import BuildResult
 from mffit.rounding import number, times
+from tir.errors import counted
 from tir.parameters import BY_NAME
 
 
@@ -42,6 +43,7 @@ def build_summary(result: BuildResult) -> str:
     parts += [wrapped(f"Limit: {sentence}.") for sentence in result.trust.remarks]
     parts.append(_residuals(result))
     parts.append(_statuses(fit.coefficients))
+    parts += [wrapped(sentence) for sentence in _by_hand(result)]
     if fit.outliers or fit.doubts:
         parts.append(
             f"readings without weight: {len(fit.outliers)}; doubtful sweeps: {len(fit.doubts)}; see the warnings"
@@ -64,6 +66,15 @@ def _residuals(result: BuildResult) -> str:
     if found:
         lines.append(wrapped(f"residuals are not random: {found}; plots/structure.png"))
     return "\n".join(lines)
+
+
+def _by_hand(result: BuildResult) -> list[str]:
+    """A sentence about the readings that [fit] exclude leaves out."""
+    rows = [row for row in result.left_out if row.by == "hand"]
+    if not rows:
+        return []
+    named = "; ".join(f"{row.file}:{row.lines} ({row.why})" for row in rows)
+    return [f"left out by hand: {counted(sum(row.count for row in rows), 'reading')}: {named}"]
 
 
 def _statuses(coefficients: Mapping[str, Coefficient]) -> str:

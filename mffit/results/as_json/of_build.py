@@ -14,7 +14,9 @@ from mffit.diagnosis.one_step import BestEffect
 from mffit.diagnosis.remains import Remains
 from mffit.fit import Coefficient, FitResult
 from mffit.fit.files import Files
+from mffit.made import Made
 from mffit.measured import KEYS, LoadResult, Measured, SetupResult, SetupScatter
+from mffit.points.left_out import LeftOut
 from mffit.results.as_json.values import picked, plain, stated
 from mffit.results.records import BuildResult
 from mffit.rig_errors import unit_of
@@ -35,10 +37,23 @@ def build(result: BuildResult) -> dict[str, Any]:
         "remarks": list(result.trust.remarks),
         "tir": result.tir_path,
         "files": dict(result.files),
+        "made": made(result.made),
+        "lab": result.config.lab.model_dump(mode="json", exclude_none=True),
+        "left_out": [left_out(row) for row in result.left_out],
         "warnings": list(result.warnings),
         "doubts": [_doubt(row) for row in result.fit.doubts],
         "outliers": [outlier(row) for row in result.fit.outliers],
     }
+
+
+def made(found: Made) -> dict[str, Any]:
+    """How and from what a result was made."""
+    return asdict(found) | {"date": found.date.isoformat()}
+
+
+def left_out(row: LeftOut) -> dict[str, Any]:
+    """One entry of the list of readings that are left out, have less weight or are doubted."""
+    return asdict(row) | {"rule": row.rule or None, "channel": row.channel or None}
 
 
 def spin(measured: Measured) -> dict[str, Any]:

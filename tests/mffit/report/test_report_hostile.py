@@ -10,7 +10,10 @@ import pytest
 from report_toys import TRUE, made_config, made_points, made_result, programme
 
 import tir
+from mffit.config.laboratory import InstrumentTable, LabTable
 from mffit.diagnosis import diagnose
+from mffit.made import made
+from mffit.points.left_out import LeftOut
 from mffit.report import write_build, write_diagnosis
 from mffit.suspicion import Doubt, Outlier, Trust
 
@@ -65,6 +68,11 @@ def settings():
         update={
             "tyre": given.tyre.model_copy(update={"size": HOSTILE}),
             "sweep": (given.sweep[0].model_copy(update={"file": HOSTILE}),),
+            "lab": LabTable(
+                order=HOSTILE,
+                operator=HOSTILE,
+                instruments=(InstrumentTable(name=HOSTILE, serial=HOSTILE, certificate=HOSTILE),),
+            ),
         }
     )
 
@@ -86,13 +94,19 @@ def test_the_build_report_shows_hostile_names_as_text(settings, tmp_path):
             trust=Trust(reasons=(HOSTILE,), remarks=(HOSTILE,)),
             warnings=(HOSTILE,),
             files={"turn-slip": f"{HOSTILE}.tir"},
-            tyres={"turn-slip": result.tyre.annotate(provenance={f"input {HOSTILE}": "0123456789abcdef"})},
+            made=made({HOSTILE: 64 * "0"}),
+            left_out=tuple(
+                LeftOut(
+                    file=HOSTILE, lines=HOSTILE, count=1, by=by, rule=HOSTILE, channel=HOSTILE, why=HOSTILE
+                )
+                for by in ("hand", "rule")
+            ),
         ),
         tmp_path,
     )
     page = read(tmp_path / "report.html")
     assert page.found == []
-    assert page.text.count(HOSTILE) >= 4
+    assert page.text.count(HOSTILE) >= 14
 
 
 def test_the_diagnosis_shows_hostile_names_as_text(settings, tmp_path):

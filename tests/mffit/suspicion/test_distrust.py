@@ -7,13 +7,13 @@ import pytest
 
 from mffit.points import make_points
 from mffit.rig import Readings
-from mffit.suspicion import CamberReduction, FinishedFit, HeldNumber, LeftOut, Trust, judge
+from mffit.suspicion import CamberReduction, FinishedFit, HeldNumber, LeftOutSweeps, Trust, judge
 
 RNG = np.random.default_rng(3)
 SWEEPS, EACH, U = 10, 20, 6.0
 NAMES = tuple(f"sweep_{k}" for k in range(SWEEPS))
 SWEEP = np.repeat(np.arange(SWEEPS), EACH)
-ALIKE = LeftOut(sweeps=SWEEPS, fitted=30.0, predicted=31.0, typical=31.0, uneven=1.3)
+ALIKE = LeftOutSweeps(sweeps=SWEEPS, fitted=30.0, predicted=31.0, typical=31.0, uneven=1.3)
 
 
 def judged(off: np.ndarray, *, u: float = U, r2: float = 0.999, **more) -> Trust:
@@ -111,9 +111,9 @@ def test_the_formula_s_own_misfit_is_a_limit_and_no_reason():
     [
         {"structured": frozenset()},  # scatter, so the stated noise is wrong
         {"left_out": {}},
-        {"left_out": {"Fy": LeftOut(4, 30.0, 31.0, 31.0, 1.3)}},
-        {"left_out": {"Fy": LeftOut(10, 30.0, 34.0, 31.0, 1.3)}},
-        {"left_out": {"Fy": LeftOut(10, 30.0, 31.0, 31.0, 2.1)}},
+        {"left_out": {"Fy": LeftOutSweeps(4, 30.0, 31.0, 31.0, 1.3)}},
+        {"left_out": {"Fy": LeftOutSweeps(10, 30.0, 34.0, 31.0, 1.3)}},
+        {"left_out": {"Fy": LeftOutSweeps(10, 30.0, 31.0, 31.0, 2.1)}},
         {"r2": 0.94},
     ],
 )
@@ -138,7 +138,7 @@ def test_without_a_stated_noise_left_out_sweeps_decide():
             0.0, 0.0, 1500.0, Fy=Fy, u_Fy=u, p=2e5, V=11.0, phi_t=0.0, sweep=SWEEP, sweep_names=NAMES
         )
         used = {"Fy": np.ones(n, bool), "Mz": np.zeros(n, bool)}
-        left_out = {"Fy": LeftOut(SWEEPS, 10.0, 200.0, typical, 1.0)}
+        left_out = {"Fy": LeftOutSweeps(SWEEPS, 10.0, 200.0, typical, 1.0)}
         return judge(
             FinishedFit(
                 points=points,

@@ -1,0 +1,78 @@
+"""Lists of lines of a file, as in ``lines = "39-44, 60"``."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Sequence
+
+import numpy as np
+
+LineRange = tuple[int, int]
+"""First and last line, both included, counted from 1."""
+
+ITEM = re.compile(r"\s*(\d+)\s*(?:-\s*(\d+)\s*)?", re.ASCII)
+LARGEST = 10**12
+"""No file has so many lines; larger numbers do not fit into an array."""
+
+
+class LineListError(ValueError):
+    """Why a text is not a list of lines, and what to write."""
+
+
+def line_ranges(text: str) -> tuple[LineRange, ...]:
+    """Ranges of a list such as "39-44, 60", sorted; ranges that touch or overlap are joined.
+
+    Raises
+    ------
+    LineListError
+        The text is not such a list.
+    """
+    found = []
+    for item in text.split(","):
+        match = ITEM.fullmatch(item)
+        if match is None:
+            raise LineListError(
+                f'"{item.strip()}" is not a line or a range of lines; write "39", "39-44" or "39-44, 60"'
+            )
+        first, last = int(match[1]), int(match[2] or match[1])
+        if first < 1:
+            raise LineListError(f'"{item.strip()}" begins with line 0, but lines are counted from 1')
+        if last > LARGEST:
+            raise LineListError(f'"{item.strip()}" is beyond the end of any file; correct it')
+        if last < first:
+            raise LineListError(f'"{item.strip()}" ends before it begins; write "{last}-{first}"')
+        found.append((first, last))
+    return _joined(sorted(found))
+
+
+def line_text(lines: Sequence[int] | np.ndarray) -> str:
+    """A list such as "39-44, 60" of line numbers in any order."""
+    known = np.unique(np.asarray(lines, dtype=int))
+    if not len(known):
+        return ""
+    begins = np.r_[0, np.flatnonzero(np.diff(known) > 1) + 1]
+    ends = np.r_[begins[1:] - 1, len(known) - 1]
+    return ranges_text(zip(known[begins].tolist(), known[ends].tolist(), strict=True))
+
+
+def ranges_text(ranges: Iterable[LineRange]) -> str:
+    """The list that :func:`line_ranges` reads back."""
+    return ", ".join(str(first) if first == last else f"{first}-{last}" for first, last in ranges)
+
+
+def inside(lines: np.ndarray, ranges: Iterable[LineRange]) -> np.ndarray:
+    """Mask (n,) of the lines that the ranges contain."""
+    out = np.zeros(len(lines), dtype=bool)
+    for first, last in ranges:
+        out |= (lines >= first) & (lines <= last)
+    return out
+
+
+def _joined(ranges: Sequence[LineRange]) -> tuple[LineRange, ...]:
+    out: list[LineRange] = []
+    for first, last in ranges:
+        if out and first <= out[-1][1] + 1:
+            out[-1] = (out[-1][0], max(last, out[-1][1]))
+        else:
+            out.append((first, last))
+    return tuple(out)

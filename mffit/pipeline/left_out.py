@@ -1,0 +1,80 @@
+"""Readings that the fit gives no weight or less weight, and sweeps that it doubts, as entries of one list."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from mffit.config.lines import line_text
+from mffit.fit import FitResult
+from mffit.fit.constants import FULL_WEIGHT
+from mffit.fit.weights import stated_or_nominal
+from mffit.points import Points
+from mffit.points.left_out import LeftOut
+from mffit.quantities import CHANNELS
+from mffit.suspicion.others import doubtful_sweep
+from mffit.suspicion.outliers import OUTLYING
+
+HUBER = "huber-weight"
+"""Name of the rule that gives readings far from the model less weight."""
+
+
+def left_out_by_fit(points: Points, fitted: FitResult) -> tuple[LeftOut, ...]:
+    """Outliers, readings with less weight, and doubtful sweeps; lines are those of the points."""
+    return (*_outliers(fitted), *_discounted(points, fitted), *_doubts(points, fitted))
+
+
+def _outliers(fitted: FitResult) -> Iterator[LeftOut]:
+    for o in fitted.outliers:
+        unit = CHANNELS[o.channel].unit
+        yield LeftOut(
+            file=o.file,
+            lines=str(o.line) if o.line else "",
+            count=1,
+            by="rule",
+            rule=OUTLYING.id,
+            channel=o.channel,
+            why=f"{o.measured:.4g} {unit} where {o.expected:.4g} {unit} is expected, {o.ratio:.3g} times its uncertainty off",
+        )
+
+
+def _discounted(points: Points, fitted: FitResult) -> Iterator[LeftOut]:
+    """Readings whose uncertainty the fit enlarged more than that of the others of their channel."""
+    if fitted.search is None:
+        return
+    for channel, sigma in fitted.search.problem.sigma.items():
+        stated = stated_or_nominal(getattr(points, f"u_{channel}"), getattr(points, channel))
+        used = np.isfinite(stated) & np.isfinite(sigma)
+        if not np.any(used):
+            continue
+        factor = np.where(used, sigma, 1.0) / np.where(used, stated, 1.0)
+        weight = np.where(used, (np.min(factor[used]) / factor) ** 2, 1.0)
+        for file in np.unique(points.file[weight < FULL_WEIGHT]).tolist():
+            rows = np.flatnonzero((weight < FULL_WEIGHT) & (points.file == file))
+            yield LeftOut(
+                file=points.files[file],
+                lines=line_text(points.line[rows]),
+                count=len(rows),
+                by="rule",
+                rule=HUBER,
+                channel=channel,
+                weight=float(np.min(weight[rows])),
+                why="the model misses these readings by more than most others, so they have less weight",
+            )
+
+
+def _doubts(points: Points, fitted: FitResult) -> Iterator[LeftOut]:
+    for doubt in fitted.doubts:
+        unit = CHANNELS[doubt.channel].unit
+        looks = f"; it looks like {doubt.looks}" if doubt.looks else ""
+        yield LeftOut(
+            file=doubt.file,
+            lines=line_text(points.line[doubt.index]),
+            count=len(doubt.index),
+            by="rule",
+            rule=doubtful_sweep.id,
+            channel=doubt.channel,
+            weight=1.0,
+            why=f"doubted, with full weight: {doubt.rms:.3g} {unit} from what all other sweeps predict{looks}",
+        )

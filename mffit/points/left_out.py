@@ -1,0 +1,91 @@
+"""The record of readings that were left out or have less weight, and those found while files become points."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+
+from mffit.config.lines import line_text
+from mffit.points.faulty import Fault
+from mffit.points.stretch import Stretch
+from mffit.sweeps import Sweep
+from mffit.sweeps.sweep import ExcludedRows
+
+UNUSED = "not steady: transients and incomplete means between the points"
+"""Reason for samples that nothing is wrong with, but that no point averages."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class LeftOut:
+    """Readings of one file that are left out, have less weight or are doubted, for one reason."""
+
+    file: str  #: name as in ``tyre.toml``
+    lines: str  #: such as "39-44, 60", counted from 1; "" if unknown
+    count: int  #: readings, or samples of a recording
+    by: Literal["hand", "rule"]
+    rule: str = ""  #: name of the rule; "" by hand
+    channel: str = ""  #: "" if the whole reading is meant
+    weight: float = 0.0  #: smallest weight in the fit relative to an undoubted reading
+    why: str
+
+
+def by_hand(excluded: Sequence[ExcludedRows]) -> tuple[LeftOut, ...]:
+    """The entries of ``[fit] exclude``."""
+    return tuple(
+        LeftOut(file=rows.file, lines=line_text(rows.line), count=len(rows.line), by="hand", why=rows.why)
+        for rows in excluded
+    )
+
+
+def by_rule(sweep: Sweep, which: np.ndarray, rule: str, why: str) -> tuple[LeftOut, ...]:
+    """The readings of a mask (n,) as one entry; none if it is empty."""
+    if not np.any(which):
+        return ()
+    return (
+        LeftOut(
+            file=sweep.file,
+            lines=line_text(sweep.line[which]),
+            count=int(np.sum(which)),
+            by="rule",
+            rule=rule,
+            why=why,
+        ),
+    )
+
+
+def of_recording(
+    sweep: Sweep, wrong: Sequence[Fault], tried: Sequence[Stretch], used: np.ndarray
+) -> tuple[LeftOut, ...]:
+    """Samples of a recording that no point averages, each under its first reason.
+
+    Parameters
+    ----------
+    sweep : the samples (n,)
+    wrong : faults, in the order of their rules
+    tried : all stretches
+    used : mask (n,) of the samples that points average
+    """
+    rest = ~used
+    out: list[LeftOut] = []
+    for which, rule, why in (*_faults(wrong), *_dropped(len(sweep), tried)):
+        out += by_rule(sweep, which & rest, rule, why)
+        rest = rest & ~which
+    return (*out, *by_rule(sweep, rest, "steady-state", UNUSED))
+
+
+def _faults(wrong: Sequence[Fault]) -> Iterator[tuple[np.ndarray, str, str]]:
+    for fault in wrong:
+        yield fault.which, fault.rule, fault.reason
+
+
+def _dropped(n: int, tried: Sequence[Stretch]) -> Iterator[tuple[np.ndarray, str, str]]:
+    """Samples (n,) of dropped stretches by reason."""
+    for reason in dict.fromkeys(stretch.dropped for stretch in tried if stretch.dropped):
+        which = np.zeros(n, dtype=bool)
+        for stretch in tried:
+            if stretch.dropped == reason:
+                which[stretch.begin : stretch.end] = True
+        yield which, "steady-state", reason

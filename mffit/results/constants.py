@@ -1,0 +1,17 @@
+"""Numbers of judgement about results."""
+
+from __future__ import annotations
+
+from tir.constant import Count, Real
+
+SAME_NUMBER = Real(
+    1e-6,
+    "-",
+    "Relative change below which a number comes out again: processors and libraries round the last digits differently.",
+)
+SAME_IN_U = Real(
+    1e-3,
+    "-",
+    "Change in standard uncertainties below which a number comes out again: no stated digit of it changes.",
+)
+CHANGES_IN_TEXT = Count(10, "-", "Numbers with the largest changes that a terminal lists.")

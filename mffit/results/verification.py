@@ -1,0 +1,154 @@
+"""Numbers of a stored result against those of a new run: which come out again, and which changed."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from mffit.brief import Brief
+from mffit.results import constants
+from tir.errors import counted
+
+Number = float | int | bool | None
+MISSING = "missing"
+"""In place of a number that one of the two results lacks."""
+PASSING = ("made", "lab", "warnings", "fit.seconds")
+"""Keys of ``result.json`` that no figure of the tyre is in: they differ from run to run, or are copied from the configuration."""
+
+
+@dataclass(frozen=True, slots=True)
+class NumberChange:
+    """A number that did not come out again."""
+
+    file: str  #: "result.json" or a property file
+    key: str  #: dotted, or the name of a coefficient
+    old: Number | str
+    new: Number | str
+    size: float  #: in units of the tolerance; infinite for a number that is missing or of another kind
+
+
+@dataclass(frozen=True, slots=True, repr=False)
+class Verification(Brief):
+    """What a new run from the stored inputs says about a stored result."""
+
+    folder: str
+    numbers: int  #: that were compared
+    exact: int  #: of them the same to the last digit
+    changes: tuple[NumberChange, ...]  #: largest first
+    method: tuple[int, int]  #: stored, and of this program
+    version: tuple[str, str]  #: stored, and of this program
+
+    @property
+    def same(self) -> bool:
+        """Whether every number comes out again."""
+        return not self.changes
+
+    @property
+    def headline(self) -> str:
+        """The result in one sentence."""
+        if self.same:
+            rest = "" if self.exact == self.numbers else f", {self.exact} of them to the last digit"
+            return f"every number comes out again ({self.numbers}{rest})"
+        return f"{len(self.changes)} of {counted(self.numbers, 'number')} do not come out again"
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """Sentences about another method or version."""
+        (was, now), (old, new) = self.method, self.version
+        if was != now:
+            return (
+                f"the result was made by method {was} (mffit {old}), and this is method {now} (mffit {new}): numbers may differ "
+                "for this reason alone",
+            )
+        if old != new:
+            return (f"the result was made by mffit {old}, and this is {new}; both use method {now}",)
+        return ()
+
+
+@dataclass(frozen=True, slots=True)
+class ComparedNumbers:
+    """Numbers of one file compared with those of the new run."""
+
+    numbers: int
+    exact: int
+    changes: tuple[NumberChange, ...]
+
+
+def compared(file: str, old: Mapping[str, Any], new: Mapping[str, Any]) -> ComparedNumbers:
+    """The numbers of a JSON document, true, false and null included, against those of a new one.
+
+    Keys that only the new one has, and texts, are not compared.
+    """
+    pairs = [pair for pair in _pairs(old, new, "") if not _passing(pair[0])]
+    changes = [
+        NumberChange(file, key, a, b, size) for key, a, b, u in pairs if (size := _size(a, b, u)) > 1.0
+    ]
+    return ComparedNumbers(len(pairs), sum(a == b for _, a, b, _ in pairs), tuple(changes))
+
+
+def largest_first(changes: Iterator[NumberChange]) -> tuple[NumberChange, ...]:
+    """The changes by size, in their order where equal."""
+    return tuple(sorted(changes, key=lambda change: -change.size))
+
+
+def _passing(key: str) -> bool:
+    return any(key == one or key.startswith(f"{one}.") for one in PASSING)
+
+
+Pair = tuple[str, Any, Any, float]
+"""Key, old and new number, and the scale in which the change is judged as an uncertainty; NaN if none is stated."""
+
+
+def _pairs(old: Any, new: Any, key: str, u: float = math.nan) -> Iterator[Pair]:
+    """Every number of a document with its partner."""
+    if isinstance(old, Mapping):
+        for name, value in old.items():
+            other = new.get(name, MISSING) if isinstance(new, Mapping) else MISSING
+            yield from _pairs(value, other, f"{key}.{name}".lstrip("."), _uncertainty(old, name))
+    elif isinstance(old, list):
+        others = new if isinstance(new, list) else []
+        if len(others) != len(old):
+            yield f"{key}, length", len(old), len(others) if isinstance(new, list) else MISSING, math.nan
+            return
+        scale = _scale_of_matrix(old)
+        for k, (value, other) in enumerate(zip(old, others, strict=True)):
+            if scale is None:
+                yield from _pairs(value, other, f"{key}[{k}]")
+            else:
+                for j, (a, b) in enumerate(zip(value, other, strict=False)):
+                    yield f"{key}[{k}][{j}]", a, b, scale[k] * scale[j]
+    elif not isinstance(old, str):
+        yield key, old, new, u
+
+
+def _uncertainty(table: Mapping[str, Any], name: str) -> float:
+    """Standard uncertainty that a table states for one of its numbers; NaN without one."""
+    keys = (f"u_{name}", *(("stderr", "u") if name == "value" else ()))
+    found = next((table[key] for key in keys if isinstance(table.get(key), float)), math.nan)
+    return abs(found)
+
+
+def _scale_of_matrix(rows: list[Any]) -> np.ndarray | None:
+    """Square roots of the diagonal of a covariance matrix, by which its elements are judged; None for other lists."""
+    n = len(rows)
+    square = all(isinstance(row, list) and len(row) == n for row in rows)
+    if not square or not all(isinstance(x, int | float) for row in rows for x in row):
+        return None
+    return np.sqrt(np.abs(np.diag(np.array(rows, dtype=float))))
+
+
+def _size(old: Any, new: Any, u: float) -> float:
+    """Change of a number in units of the tolerance; infinite if one is missing or of another kind."""
+    if old == new and isinstance(old, bool) == isinstance(new, bool):
+        return 0.0
+    kinds = [isinstance(x, int | float) and not isinstance(x, bool) for x in (old, new)]
+    if not all(kinds):
+        return math.inf
+    tolerance = float(constants.SAME_NUMBER) * max(abs(old), abs(new))
+    if u > 0.0:
+        tolerance = max(tolerance, float(constants.SAME_IN_U) * u)
+    return abs(new - old) / tolerance

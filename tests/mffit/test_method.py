@@ -1,0 +1,27 @@
+"""The number of the method changes whenever a figure of a fixed project changes."""
+
+from __future__ import annotations
+
+import pytest
+from method_figures import PROJECTS, figures, stored
+
+from mffit.made import METHOD
+from mffit.results.verification import compared
+
+STORE = "store the new figures with `python tests/mffit/method_figures.py`"
+
+
+@pytest.mark.parametrize("project", PROJECTS)
+def test_figures_are_those_of_the_method(project):
+    """A change below a thousandth of the standard uncertainty is rounding; see ``mffit/results/constants.py``."""
+    before = stored()
+    assert before["method"] == METHOD, (
+        f"METHOD is {METHOD}, the stored figures are of {before['method']}: {STORE}"
+    )
+    found = compared(project, before["figures"][project], figures(project))
+    worst = "; ".join(f"{row.key} {row.old} -> {row.new}" for row in found.changes[:5])
+    assert not found.changes, (
+        f"{len(found.changes)} of {found.numbers} figures of {project} differ from those of method {METHOD}: {worst}. If the "
+        f"change is meant, raise METHOD in mffit/made.py (once per release) and {STORE}"
+    )
+    assert found.numbers > 200
