@@ -76,8 +76,7 @@ class LeftOutPrediction:
 
     def without(self, chosen: Hypothesis, effect: Effect) -> Hypothesis:
         """The hypothesis less one of its effects, fitted again."""
-        others = chosen.others(effect)
-        return refitted(self.joint, chosen, others) if others else self.problem.null
+        return refitted(self.joint, chosen, chosen.others(effect))
 
 
 def chosen_by_prediction(prediction: LeftOutPrediction, candidates: Sequence[Effect]) -> Hypothesis:
