@@ -16,8 +16,10 @@ from uncertainties import UFloat, ufloat
 
 from mffit.measured import constants
 from mffit.measured.result import Contribution
-from mffit.rig_errors import BY_NAME, DECLARED, AtZero, Declared
+from mffit.rig_errors import DECLARED, AtZero
 from tir import Quantity
+
+_DECLARATIONS = {error.name: declared for error, declared in DECLARED}
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,9 +43,7 @@ class TurnSlip(NamedTuple):
 def uncertain_rig(u: Mapping[str, float], R: UFloat) -> UncertainRig:
     """The declared rig errors with their standard uncertainties ``u``, by name and in the declared unit."""
     errors = {}
-    for error in DECLARED:
-        declared = error.declared
-        assert declared is not None
+    for error, declared in DECLARED:
         if declared.force_at_zero or declared.camber_stiffness:
             errors[error.name] = named(0.0, u.get(error.name, 0.0), declared.source, declared.unit)
     return UncertainRig(errors, R)
@@ -66,7 +66,7 @@ def turn_slip_force(F_raw: Any, errors: Mapping[str, Any], at: AtZero, *, both_d
     """
     force = F_raw
     for name, number in errors.items():
-        declared = _declared(name)
+        declared = _DECLARATIONS[name]
         if declared.force_at_zero and not (both_directions and declared.turns_with_direction):
             force = force - declared.force_at_zero(number, at)
     return force
@@ -75,7 +75,7 @@ def turn_slip_force(F_raw: Any, errors: Mapping[str, Any], at: AtZero, *, both_d
 def true_camber_stiffness(C_gamma: Any, errors: Mapping[str, Any], at: AtZero) -> Any:
     """Camber stiffness [N/rad]: the slope over the camber reading, rolling forwards, less what the rig errors add to it."""
     for name, number in errors.items():
-        declared = _declared(name)
+        declared = _DECLARATIONS[name]
         if declared.camber_stiffness:
             C_gamma = C_gamma - declared.camber_stiffness(number, at)
     return C_gamma
@@ -83,13 +83,7 @@ def true_camber_stiffness(C_gamma: Any, errors: Mapping[str, Any], at: AtZero) -
 
 def acts_at_zero(name: str) -> bool:
     """Whether a rig error adds a force at zero sideslip and camber."""
-    return _declared(name).force_at_zero is not None
-
-
-def _declared(name: str) -> Declared:
-    declared = BY_NAME[name].declared
-    assert declared is not None
-    return declared
+    return _DECLARATIONS[name].force_at_zero is not None
 
 
 def camber_reduction(F_phit: Any, C_gamma: Any, r_e: Any, R: Any, phi_sign: float) -> TurnSlip:

@@ -20,8 +20,8 @@ BEFORE = tuple(error for error in RIG_ERRORS if error.place in BEFORE_THE_TYRE)
 """Those between the readings of the set-points and the conditions of the tyre."""
 AFTER = tuple(error for error in RIG_ERRORS if error.place not in (*BEFORE_THE_TYRE, None))
 """Those between the forces of the tyre and their readings."""
-DECLARED = tuple(error for error in RIG_ERRORS if error.declared is not None)
-"""Those whose uncertainty ``[rig]`` states."""
+DECLARED = tuple((error, error.declared) for error in RIG_ERRORS if error.declared is not None)
+"""Those whose uncertainty ``[rig]`` states, each with its declaration."""
 UNITS = {error.name: error.unit for error in RIG_ERRORS}
 MEANINGS = {error.name: error.meaning for error in RIG_ERRORS}
 WORDS = {error.name: error.seen_as[0].name for error in RIG_ERRORS if error.seen_as}
