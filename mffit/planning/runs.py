@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from itertools import groupby
@@ -18,6 +17,7 @@ from mffit.planning.additions import ADDITIONS, Addition, LineOfPoints
 from mffit.points import Points, levels, main_path, main_pressure
 from mffit.points.points import concatenate
 from mffit.rig import reference_speed
+from mffit.scatter import finite_median
 
 
 @dataclass(frozen=True, slots=True)
@@ -129,14 +129,8 @@ class _Programme:
             "mount": addition.mount, "line": 0, "sweep": 0, "file": 0, "sweep_names": ("planned",), "files": ("",),
         }  # fmt: skip
         unknown = dict.fromkeys(("Fy", "Mz", "Mx", "My", "t", "time", "iteration"), np.nan)
-        typical = {name: _median(getattr(self.points, name)) for name in ("u_Fy", "u_Mz", "T")}
+        typical = {name: finite_median(getattr(self.points, name)) for name in ("u_Fy", "u_Mz", "T")}
         return like.replace(**(given | {line.over: angles} | unknown | typical))
-
-
-def _median(values: np.ndarray) -> float:
-    """The median of the finite values, NaN if there are none."""
-    known = values[np.isfinite(values)]
-    return float(np.median(known)) if len(known) else math.nan
 
 
 def _with_points(programme: _Programme, addition: Addition, load: float) -> Iterator[PlannedRun]:
