@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from mffit.least_squares import FreeNumber, LeastSquaresProblem, Linear, solve
 from mffit.measured import constants
 
 
@@ -75,29 +76,39 @@ def secant_at(x: np.ndarray, y: np.ndarray, u: np.ndarray, angle: float) -> Seca
     return Secant(float(np.interp(angle, x, y) / angle), float(np.interp(angle, x, u) / angle), angle)
 
 
-def _saturating(x, y, u) -> tuple[float, float]:
-    """Fit D sin(C atan(x s / (C D))): an odd curve of slope s at zero that saturates at D."""
-    import lmfit  # loads matplotlib, so only when a slope is wanted
-
+def _saturating(x: np.ndarray, y: np.ndarray, u: np.ndarray) -> tuple[float, float]:
+    """Slope at zero and its standard uncertainty by a fit of D sin(C atan(x s / (C D))), which saturates at D."""
     first = np.argsort(x)[:3]
     start = float(np.sum(x[first] * y[first]) / np.sum(x[first] ** 2))
     top = max(float(np.max(np.abs(y))), 1e-9) * np.sign(start or 1.0)
+    none = np.zeros(0)
 
-    shape = lmfit.Parameters()
-    shape.add("slope", 1.05, min=0.2, max=5.0)  # over its first estimate
-    shape.add("ceiling", 1.2, min=0.7, max=20.0)  # over the largest value
-    shape.add("C", 1.2, min=0.3, max=1.9)
+    def residual(numbers: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        return (_shape(x, numbers * (start, top, 1.0))[0] - y) / u, none
 
-    def residual(shape):
-        s, D, C = shape["slope"] * start, shape["ceiling"] * top, shape["C"].value
-        curve = D * np.sin(C * np.arctan(s * x / (C * D)))
-        return np.append((curve - y) / u, (C - 1.2) / 0.5)
+    def linear(numbers: np.ndarray) -> Linear:
+        curve, derivatives = _shape(x, numbers * (start, top, 1.0))
+        return Linear((curve - y) / u, derivatives * (start, top, 1.0) / u[:, None], none, np.zeros((0, 3)))
 
-    out = lmfit.minimize(residual, shape, method="least_squares", scale_covar=False, x_scale=[0.1, 0.3, 0.2])
-    found = out.params["slope"]
-    inflation = max(1.0, float(np.sqrt(out.chisqr / max(len(x) - 3, 1))))
-    error = found.stderr if found.stderr is not None else abs(found.value)
-    return float(found.value * start), float(error * abs(start) * inflation)
+    numbers = (
+        FreeNumber("slope", 1.05, 0.2, 5.0),  # over its first estimate
+        FreeNumber("ceiling", 1.2, 0.7, 20.0),  # over the largest value
+        FreeNumber("C", 1.2, 0.3, 1.9, expected=1.2, spread=0.5),
+    )
+    found = solve(LeastSquaresProblem(residual, linear), numbers, max_steps=200, tolerance=1e-12)
+    inflation = max(1.0, float(np.sqrt(found.cost / max(len(x) - 3, 1))))
+    error = float(np.sqrt(found.covariance[0, 0]))
+    return found.values["slope"] * start, error * abs(start) * inflation
+
+
+def _shape(x: np.ndarray, numbers: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """The curve (n,) at s, D and C, and its derivatives by them (n, 3)."""
+    s, D, C = numbers
+    t = s * x / (C * D)
+    angle, bend = C * np.arctan(t), 1.0 / (1.0 + t**2)
+    sine, cosine = np.sin(angle), np.cos(angle)
+    by_C = D * cosine * (np.arctan(t) - t * bend)
+    return D * sine, np.column_stack([x * bend * cosine, sine - C * t * bend * cosine, by_C])
 
 
 def _cubic(x, y, u) -> tuple[float, float]:
