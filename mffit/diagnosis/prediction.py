@@ -49,8 +49,8 @@ class LeftOutPrediction:
         self.problem, self.inexact = problem, inexact
         used, n = problem.noise.used, len(problem.points)
         self.channel = (used >= n).astype(int)
-        _, self.sweep = np.unique(problem.points.sweep[used % n], return_inverse=True)
-        self.sweeps = int(self.sweep.max(initial=-1)) + 1
+        numbers, self.sweep = np.unique(problem.points.sweep[used % n], return_inverse=True)
+        self.sweeps = len(numbers)
         columns = inexact.columns(problem.points, problem.start)
         self.joint = problem.seen_through(problem.noise.sharing(columns))
 
