@@ -1,4 +1,4 @@
-"""Scatter of numbers: root mean square, and a standard deviation that is robust against outliers."""
+"""Size and scatter of the finite ones of some numbers, with and without regard to outliers."""
 
 from __future__ import annotations
 
@@ -16,6 +16,12 @@ def rms(x: np.ndarray) -> float:
     return float(np.sqrt(np.mean(x**2))) if len(x) else float("nan")
 
 
+def finite_median(x: np.ndarray) -> float:
+    """Median of the finite values; NaN if there are none."""
+    x = x[np.isfinite(x)]
+    return float(np.median(x)) if len(x) else float("nan")
+
+
 def robust(x: np.ndarray, centre: float = 0.0) -> float:
     """Standard deviation of the core of finite values around a centre; NaN if there are none."""
     x = x[np.isfinite(x)]
@@ -24,5 +30,4 @@ def robust(x: np.ndarray, centre: float = 0.0) -> float:
 
 def usual_size(groups: Iterable[np.ndarray]) -> float:
     """Median of the groups' root mean squares; NaN if no group has a finite value."""
-    sizes = np.array([rms(group) for group in groups])
-    return float(np.median(sizes[np.isfinite(sizes)])) if np.isfinite(sizes).any() else float("nan")
+    return finite_median(np.array([rms(group) for group in groups]))

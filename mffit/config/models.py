@@ -174,7 +174,7 @@ else:
         "RigTable",
         __base__=MachineTable,
         __doc__="[rig]: the machine, its axes, and a key ``u_...`` for every declared rig error.",
-        **{error.declared.key: _u_field(error.declared) for error in DECLARED},
+        **{declared.key: _u_field(declared) for _, declared in DECLARED},
     )
 
 

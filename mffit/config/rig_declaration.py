@@ -73,9 +73,7 @@ def declared_rig(rig: RigTable, C_alpha: float) -> dict[str, Declaration]:
     C_alpha : cornering stiffness [N/rad], which turns a side force into the angle that causes it
     """
     found = {}
-    for error in DECLARED:
-        declared = error.declared
-        assert declared is not None
+    for error, declared in DECLARED:
         value = getattr(rig, declared.value) if declared.value else error.undisturbed
         u = rig.u(error.name)
         if declared.unit == "N" and error.unit == "deg":

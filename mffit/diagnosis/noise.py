@@ -12,6 +12,7 @@ from scipy.sparse import csc_matrix
 from scipy.sparse.linalg import SuperLU, splu
 
 from mffit.quantities import CHANNELS
+from mffit.scatter import finite_median
 
 
 class Origin(Enum):
@@ -170,6 +171,4 @@ def links(chain: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 def _typical(u: np.ndarray, channel: str) -> float:
     """Median uncertainty of a channel of readings (2n,); NaN if it was not measured."""
-    half = dict(zip(CHANNELS, np.split(u, 2), strict=True))[channel]
-    known = half[np.isfinite(half)]
-    return float(np.median(known)) if len(known) else float("nan")
+    return finite_median(dict(zip(CHANNELS, np.split(u, 2), strict=True))[channel])

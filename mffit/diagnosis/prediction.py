@@ -49,8 +49,8 @@ class LeftOutPrediction:
         self.problem, self.inexact = problem, inexact
         used, n = problem.noise.used, len(problem.points)
         self.channel = (used >= n).astype(int)
-        _, self.sweep = np.unique(problem.points.sweep[used % n], return_inverse=True)
-        self.sweeps = int(self.sweep.max(initial=-1)) + 1
+        numbers, self.sweep = np.unique(problem.points.sweep[used % n], return_inverse=True)
+        self.sweeps = len(numbers)
         columns = inexact.columns(problem.points, problem.start)
         self.joint = problem.seen_through(problem.noise.sharing(columns))
 
@@ -76,8 +76,7 @@ class LeftOutPrediction:
 
     def without(self, chosen: Hypothesis, effect: Effect) -> Hypothesis:
         """The hypothesis less one of its effects, fitted again."""
-        others = chosen.others(effect)
-        return refitted(self.joint, chosen, others) if others else self.problem.null
+        return refitted(self.joint, chosen, chosen.others(effect))
 
 
 def chosen_by_prediction(prediction: LeftOutPrediction, candidates: Sequence[Effect]) -> Hypothesis:

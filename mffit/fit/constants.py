@@ -17,7 +17,7 @@ NOMINAL_NOISE_SHARE = Real(0.01, "-", "Standard uncertainty over the range of a 
 ZERO_CAMBER_LIMIT = Real(1.0, "deg", "Points with less camber count as points without camber.")
 COUPLED_ALPHA = Real(0.5, "deg", "Smallest sideslip of a point with sideslip and camber.")
 FITTED_SHARE_OF_PRIOR = Real(
-    0.5, "-", "Standard error over that of the prior below which a coefficient is fitted, not regularised."
+    0.5, "-", "Largest standard error over the prior's at which a coefficient is fitted, not regularised."
 )
 STRONG_CORRELATION = Real(0.95, "-", "Smallest absolute correlation of two coefficients that is stated.")
 

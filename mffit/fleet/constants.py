@@ -12,7 +12,9 @@ INFORMED_VARIANCE_SHARE = Real(
     0.8, "-", "A tyre's points inform a number if the variance falls below this share of the prior's."
 )
 STRAINED_RIG = Real(
-    4.0, "-", "Standard deviations above which one tyre's rig differs from that of the others."
+    4.0,
+    "-",
+    "Smallest difference of one tyre's rig error from that of the others, in standard uncertainties, that is noted.",
 )
 RIG_FAR_FROM_DECLARED = Real(
     3.0, "-", "Standard deviations above which the common rig contradicts its declaration."

@@ -16,8 +16,10 @@ from uncertainties import UFloat, ufloat
 
 from mffit.measured import constants
 from mffit.measured.result import Contribution
-from mffit.rig_errors import BY_NAME, DECLARED, AtZero, Declared, RigError
+from mffit.rig_errors import DECLARED, AtZero, Declared
 from tir import Quantity
+
+_DECLARATIONS = {error.name: declared for error, declared in DECLARED}
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,25 +59,26 @@ def uncertain_rig(u: Mapping[str, float], R: UFloat, setups: Sequence[str] = ())
     """
     several = setups if len(setups) > 1 else ()
     return UncertainRig(
-        {error.name: _uncertain(error, u) for error in DECLARED if _acts(error)},
+        {error.name: _uncertain(error.name, declared, u) for error, declared in DECLARED if _acts(declared)},
         R,
         {
-            setup: {error.name: _uncertain(error, u) for error in DECLARED if error.of_setup and _acts(error)}
+            setup: {
+                error.name: _uncertain(error.name, declared, u)
+                for error, declared in DECLARED
+                if error.of_setup and _acts(declared)
+            }
             for setup in several
         },
     )
 
 
-def _acts(error: RigError) -> bool:
+def _acts(declared: Declared) -> bool:
     """Whether a declared error changes what the direct method reads."""
-    declared = error.declared
-    return declared is not None and bool(declared.force_at_zero or declared.camber_stiffness)
+    return bool(declared.force_at_zero or declared.camber_stiffness)
 
 
-def _uncertain(error: RigError, u: Mapping[str, float]) -> UFloat:
-    declared = error.declared
-    assert declared is not None
-    return named(0.0, u.get(error.name, 0.0), declared.source, declared.unit)
+def _uncertain(name: str, declared: Declared, u: Mapping[str, float]) -> UFloat:
+    return named(0.0, u.get(name, 0.0), declared.source, declared.unit)
 
 
 def named(value: float, u: float, source: str, unit: str) -> UFloat:
@@ -95,7 +98,7 @@ def turn_slip_force(F_raw: Any, errors: Mapping[str, Any], at: AtZero, *, both_d
     """
     force = F_raw
     for name, number in errors.items():
-        declared = _declared(name)
+        declared = _DECLARATIONS[name]
         if declared.force_at_zero and not (both_directions and declared.turns_with_direction):
             force = force - declared.force_at_zero(number, at)
     return force
@@ -104,7 +107,7 @@ def turn_slip_force(F_raw: Any, errors: Mapping[str, Any], at: AtZero, *, both_d
 def true_camber_stiffness(C_gamma: Any, errors: Mapping[str, Any], at: AtZero) -> Any:
     """Camber stiffness [N/rad]: the slope over the camber reading, rolling forwards, less what the rig errors add to it."""
     for name, number in errors.items():
-        declared = _declared(name)
+        declared = _DECLARATIONS[name]
         if declared.camber_stiffness:
             C_gamma = C_gamma - declared.camber_stiffness(number, at)
     return C_gamma
@@ -112,13 +115,7 @@ def true_camber_stiffness(C_gamma: Any, errors: Mapping[str, Any], at: AtZero) -
 
 def acts_at_zero(name: str) -> bool:
     """Whether a rig error adds a force at zero sideslip and camber."""
-    return _declared(name).force_at_zero is not None
-
-
-def _declared(name: str) -> Declared:
-    declared = BY_NAME[name].declared
-    assert declared is not None
-    return declared
+    return _DECLARATIONS[name].force_at_zero is not None
 
 
 def camber_reduction(F_phit: Any, C_gamma: Any, r_e: Any, R: Any, phi_sign: float) -> TurnSlip:

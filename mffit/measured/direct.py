@@ -178,7 +178,7 @@ def at_the_axis(config: Config, points: Points, parts: Parts) -> dict[float, Axi
 
 def _evidence(config: Config, points: Points, parts: Parts, base: Tyre | None) -> _Evidence:
     R = measured_path_radius(config)
-    u = {error.name: config.rig.u(error.name) for error in DECLARED}
+    u = {error.name: config.rig.u(error.name) for error, _ in DECLARED}
     return _Evidence(
         config=config,
         points=backlash_corrected(points, config),
@@ -247,9 +247,8 @@ def _with_measured_skew(evidence: _Evidence, slopes: Sequence[_Slopes]) -> tuple
         return evidence, None
     errors = dict(evidence.rig.errors)
     skew = None
-    for error in DECLARED:
-        declared = error.declared
-        if declared is None or declared.camber_stiffness is None:
+    for error, declared in DECLARED:
+        if declared.camber_stiffness is None:
             continue
         estimates_of_it = [
             (forward - backward) / (2.0 * declared.camber_stiffness(1.0, AtZero(C_alpha, forward, 0.0)))

@@ -193,9 +193,7 @@ def _of_sweeps(points: Points, path: PathZeros, slope: float) -> list[tuple[np.n
 def _declared_force(rig: method.UncertainRig, at: AtZero, *, both: bool) -> float:
     """Standard uncertainty of the force at zero [N] that the declared zeros of a set-up cause."""
     square = 0.0
-    for error in DECLARED:
-        declared = error.declared
-        assert declared is not None
+    for error, declared in DECLARED:
         if error.of_setup and declared.force_at_zero and not (both and declared.turns_with_direction):
             square += float(declared.force_at_zero(rig.errors[error.name].std_dev, at)) ** 2
     return math.sqrt(square)

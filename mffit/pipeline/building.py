@@ -125,7 +125,7 @@ def _fitted(
 
     fitted = fit(measured)
     sound = without_outliers(config, points, measured, fitted, base)
-    if sound is not measured:
+    if sound is not None:
         measured, fitted = sound, fit(sound)
     bias = finite_spin_bias(config, points, undistorted(config, fitted), base)
     if bias is not None:

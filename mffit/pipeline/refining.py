@@ -20,10 +20,10 @@ from tir import Tyre
 
 def without_outliers(
     config: Config, points: Points, measured: Measured, fitted: FitResult, base: Tyre | None
-) -> Measured:
-    """The direct method without the readings that the fit rejected; ``measured`` itself if they make no difference."""
+) -> Measured | None:
+    """The direct method without the readings that the fit rejected; None if they make no difference."""
     if not fitted.outliers:
-        return measured
+        return None
     readings = {}
     for channel in CHANNELS:
         rejected = [outlier.row for outlier in fitted.outliers if outlier.channel == channel]
@@ -32,7 +32,7 @@ def without_outliers(
         )
     sound = points.replace(**readings).select(np.isfinite(readings["Fy"]))
     again = measure(config, sound, base)[1]
-    return measured if again == measured else again
+    return None if again == measured else again
 
 
 def finite_spin_bias(

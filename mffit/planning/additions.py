@@ -65,8 +65,8 @@ _RIG_MEASUREMENTS = tuple(
         if declared.unit == error.unit
         else f"{declared.unit} of {CHANNELS['Fy'].word}",
     )
-    for error in DECLARED
-    if (declared := error.declared) is not None and declared.measurement is not None
+    for error, declared in DECLARED
+    if declared.measurement is not None
 )
 
 ADDITIONS = (

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from itertools import groupby
@@ -17,6 +16,7 @@ from mffit.planning.additions import ADDITIONS, Addition, LineOfPoints
 from mffit.points import Points, levels, main_path, main_pressure
 from mffit.points.points import concatenate
 from mffit.rig import reference_speed
+from mffit.scatter import finite_median
 
 
 @dataclass(frozen=True, slots=True)
@@ -131,7 +131,7 @@ class _Programme:
             "setup": 0, "setups": (setup_on(self.config, self.points, phi_t),),
         }  # fmt: skip
         unknown = dict.fromkeys(("Fy", "Mz", "Mx", "My", "t", "time", "iteration"), np.nan)
-        typical = {name: _median(getattr(self.points, name)) for name in ("u_Fy", "u_Mz", "T")}
+        typical = {name: finite_median(getattr(self.points, name)) for name in ("u_Fy", "u_Mz", "T")}
         return like.replace(**(given | {line.over: angles} | unknown | typical))
 
 
@@ -153,12 +153,6 @@ def new_setups(config: Config, points: Points) -> tuple[str, ...]:
     paths = {main_path(points) / addition.radius for addition in ADDITIONS}
     names = {setup_on(config, points, phi_t) for phi_t in paths if phi_t}
     return tuple(sorted(names - set(points.used_setups)))
-
-
-def _median(values: np.ndarray) -> float:
-    """The median of the finite values, NaN if there are none."""
-    known = values[np.isfinite(values)]
-    return float(np.median(known)) if len(known) else math.nan
 
 
 def _with_points(programme: _Programme, addition: Addition, load: float) -> Iterator[PlannedRun]:

@@ -8,6 +8,7 @@ from mffit.points import constants
 from mffit.points.faulty import DRIVEN, Fault
 from mffit.points.lag import Lag
 from mffit.points.stretch import PLATEAU, SWEEP, Stretch, StretchNote
+from mffit.scatter import finite_median
 from mffit.sweeps import Sweep
 
 
@@ -29,12 +30,6 @@ def note(sweep: Sweep, stretch: Stretch, label: str, points: int, lag: Lag) -> S
     """The row about a stretch."""
     part = slice(stretch.begin, stretch.end)
     last = stretch.end - 1
-
-    def middle(values: np.ndarray) -> float:
-        some = values[part]
-        some = some[np.isfinite(some)]
-        return float(np.median(some)) if len(some) else float("nan")
-
     low, high = (float(np.degrees(f(sweep.alpha[part]))) for f in (np.nanmin, np.nanmax))
     return StretchNote(
         file=sweep.file,
@@ -46,10 +41,10 @@ def note(sweep: Sweep, stretch: Stretch, label: str, points: int, lag: Lag) -> S
         last_line=int(sweep.line[last]),
         alpha_from_deg=low,
         alpha_to_deg=high,
-        gamma_deg=float(np.degrees(middle(sweep.gamma))),
-        Fz_N=middle(sweep.Fz),
-        p_kPa=1e-3 * middle(sweep.p),
-        T_degC=middle(sweep.T),
+        gamma_deg=float(np.degrees(finite_median(sweep.gamma[part]))),
+        Fz_N=finite_median(sweep.Fz[part]),
+        p_kPa=1e-3 * finite_median(sweep.p[part]),
+        T_degC=finite_median(sweep.T[part]),
         points=points,
         lag_m=lag.lag,
         u_lag_m=float(np.hypot(lag.u, lag.u_shape)),

@@ -23,6 +23,7 @@ from mffit.report.channel import NamedChannel
 from mffit.report.curves import Curve, CurveCondition, conditions, curves
 from mffit.report.lines import CurveLine, model_lines
 from mffit.results import BuildResult
+from mffit.scatter import finite_median
 from mffit.suspicion import Doubt, Outlier, Trust
 from tir import Tyre
 from tir.parameters import BY_NAME
@@ -52,8 +53,7 @@ class ChannelRow(NamedChannel):
     @property
     def noise(self) -> float:
         """Median standard uncertainty of a point; NaN if none is known."""
-        known = self.u[np.isfinite(self.u)]
-        return float(np.median(known)) if len(known) else float("nan")
+        return finite_median(self.u)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -20,8 +20,8 @@ BEFORE = tuple(error for error in RIG_ERRORS if error.place in BEFORE_THE_TYRE)
 """Those between the readings of the set-points and the conditions of the tyre."""
 AFTER = tuple(error for error in RIG_ERRORS if error.place not in (*BEFORE_THE_TYRE, None))
 """Those between the forces of the tyre and their readings."""
-DECLARED = tuple(error for error in RIG_ERRORS if error.declared is not None)
-"""Those whose uncertainty ``[rig]`` states."""
+DECLARED = tuple((error, error.declared) for error in RIG_ERRORS if error.declared is not None)
+"""Those whose uncertainty ``[rig]`` states, each with its declaration."""
 ZEROS = tuple(error for error in RIG_ERRORS if error.of_setup)
 """Those that every set-up of the rig has anew."""
 UNITS = {error.name: error.unit for error in RIG_ERRORS}

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from functools import partial
+from typing import Any
 
 import numpy as np
 
@@ -11,20 +12,22 @@ from mffit.rig_errors.record import Appearance, Place, RigError
 
 WARMTH = "(T - T_ref), T_ref the mean temperature of the data unless it is fitted"
 
+
+def _warmed(k: Any, value: Any, at: Any) -> Any:
+    """A force or a scaling factor times 1 + k (T - T_ref)."""
+    return value * (1.0 + k * at.warmth)
+
+
 _of_forces = partial(RigError, kind="environment", place=Place.ENVIRONMENT, acts_on=("Fy", "Mz"))
+_of_temperature = partial(RigError, unit="1/K", kind="environment", formula=_warmed, lower=-0.05, upper=0.05)
 _appearance = partial(Appearance, parity="as the forces")
 
-TEMPERATURE_GRIP = RigError(
+TEMPERATURE_GRIP = _of_temperature(
     name="k_T_grip_per_K",
-    unit="1/K",
     meaning=f"friction times 1 + k {WARMTH}",
-    kind="environment",
     place=Place.COEFFICIENTS,
     acts_on=("LMUY",),
-    formula=lambda k, scale, at: scale * (1.0 + k * at.warmth),
     spread=0.002,
-    lower=-0.05,
-    upper=0.05,
     seen_as=(
         _appearance(
             id="temperature-grip",
@@ -36,17 +39,12 @@ TEMPERATURE_GRIP = RigError(
         ),
     ),
 )
-TEMPERATURE_STIFFNESS = RigError(
+TEMPERATURE_STIFFNESS = _of_temperature(
     name="k_T_stiffness_per_K",
-    unit="1/K",
     meaning=f"cornering stiffness times 1 + k {WARMTH}",
-    kind="environment",
     place=Place.COEFFICIENTS,
     acts_on=("LKY",),
-    formula=lambda k, scale, at: scale * (1.0 + k * at.warmth),
     spread=0.002,
-    lower=-0.05,
-    upper=0.05,
     seen_as=(
         _appearance(
             id="temperature-stiffness",
@@ -57,14 +55,12 @@ TEMPERATURE_STIFFNESS = RigError(
         ),
     ),
 )
-TEMPERATURE = _of_forces(
+TEMPERATURE = _of_temperature(
     name="k_T_per_K",
-    unit="1/K",
     meaning=f"Fy and Mz times 1 + k_T {WARMTH}",
-    formula=lambda k, force, at: force * (1.0 + k * at.warmth),
+    place=Place.ENVIRONMENT,
+    acts_on=("Fy", "Mz"),
     spread=0.001,
-    lower=-0.05,
-    upper=0.05,
     seen_as=(
         _appearance(
             id="temperature",

@@ -21,7 +21,6 @@ class Place(Enum):
 
     CAMBER = "Camber angle"
     LOAD = "Load"
-    PRESSURE = "Pressure"
     PATH = "Path"
     COEFFICIENTS = "Coefficients of the tyre"
     ANGLE = "Sideslip angle"
@@ -29,7 +28,7 @@ class Place(Enum):
     FORCE = "Reading of the force"
 
 
-BEFORE_THE_TYRE = (Place.CAMBER, Place.LOAD, Place.PRESSURE, Place.PATH, Place.COEFFICIENTS, Place.ANGLE)
+BEFORE_THE_TYRE = (Place.CAMBER, Place.LOAD, Place.PATH, Place.COEFFICIENTS, Place.ANGLE)
 """Sideslip comes last: compliance and play need the moment of the tyre under all other conditions."""
 
 
@@ -98,7 +97,7 @@ class RigError:
     meaning: str  #: the formula in words
     kind: str  #: "rig" | "environment" | "tyre"
     place: Place | None  #: None: it only takes part in the formulae of others
-    acts_on: tuple[str, ...] = ()  #: alpha, gamma, Fz, pressure, phi_t, Fy, Mz or coefficients
+    acts_on: tuple[str, ...] = ()  #: alpha, gamma, Fz, phi_t, Fy, Mz or coefficients
     formula: Formula | None = None
     undisturbed: float = 0.0  #: value without the error; NaN: as declared
     spread: float  #: usual size, 1 sigma

@@ -61,6 +61,7 @@ def dead_channel(part: Points, config: Config) -> Iterator[Finding]:
         constants.SIDESLIP_THAT_SHOWS_FORCE,
         constants.CAMBER_THAT_SHOWS_FORCE,
         constants.SMALLEST_FRICTION,
+        constants.FEWEST_POINTS_OF_FRICTION,
     ),
     sentence="is at most {largest:.3g} N at loads of {load:.0f} N, which looks like kN; write newtons, or "
     'Fy_N = {{ column = "Fy_N", unit = "kN" }} under [sweep.columns]',
@@ -94,7 +95,7 @@ def lone_load(part: Points, config: Config) -> Iterator[Finding]:
 
 @of_file(
     id="wild-force",
-    limits=(constants.LARGEST_FRICTION,),
+    limits=(constants.LARGEST_FRICTION, constants.FEWEST_POINTS_OF_FRICTION),
     sentence="{force:.6g} N is {friction:.0f} times the load, which no tyre reaches; correct or remove the row",
 )
 def wild_force(part: Points, config: Config) -> Iterator[Finding]:

@@ -107,9 +107,7 @@ def sweep_table(
     machine = machine.with_faults(sweep.faults.values())
     if sweep.recording is not None:
         return recorded_table(plan, record(machine, settings, sweep.recording, generator))
-    return point_table(
-        plan, sweep, settings, scattered(steady(machine, settings), plan.tables.noise, generator)
-    )
+    return point_table(plan, settings, scattered(steady(machine, settings), plan.tables.noise, generator))
 
 
 def scattered(forces: Channels, noise: NoiseTable, generator: np.random.Generator) -> Channels:

@@ -68,8 +68,6 @@ LOADS: dict[str, Formula] = {
     "load_camber": lambda x, s, m: 1.0 + x * (1.0 - np.cos(2.0 * _leant(s, m))) / 2.0
 }
 """Factors on the load."""
-PRESSURES: dict[str, Formula] = {}
-"""Added to the pressure as read [Pa]."""
 SCALES: dict[str, tuple[str, Formula]] = {
     "k_T_grip_per_K": ("LMUY", lambda x, s, m: 1.0 + x * _kelvin(s, m)),
     "k_T_stiffness_per_K": ("LKY", lambda x, s, m: 1.0 + x * _kelvin(s, m)),
@@ -89,7 +87,7 @@ CELL = ("gain", "nonlinearity_per_kN", "crosstalk", "F0_N", "M0_Nm")
 """Errors of the load cells; see :func:`reported`."""
 ELSEWHERE = ("path_radius_m", "T_ref_degC", "relaxation_m")
 """Path radius: :func:`at_the_tyre`; reference temperature: the factors; lag: :mod:`mffit.virtual_rig.recording`."""
-FORMULAE = (*STEERS, *LEANS, *LOADS, *PRESSURES, *SCALES, *SURROUNDINGS, *YIELDS, *CELL, *ELSEWHERE)
+FORMULAE = (*STEERS, *LEANS, *LOADS, *SCALES, *SURROUNDINGS, *YIELDS, *CELL, *ELSEWHERE)
 """Names of the rig errors that have a formula here."""
 
 
@@ -151,7 +149,7 @@ def at_the_tyre(machine: Machine, settings: Settings, alpha: np.ndarray) -> Chan
         0.0,
         phi_t,
         settings.Vx,
-        settings.p + _sum(PRESSURES, settings, machine),
+        settings.p,
         turn_slip=machine.phi_t_sign != 0,
     )
     return Channels(out.Fy, out.Fz, out.Mx, out.My, out.Mz)

@@ -6,7 +6,7 @@ import numpy as np
 import pandas as pd
 
 from mffit.virtual_rig.machine import Channels
-from mffit.virtual_rig.plan import RigPlan, SweepPlan
+from mffit.virtual_rig.plan import RigPlan
 from mffit.virtual_rig.recording import Recording
 from mffit.virtual_rig.settings import Settings
 from tir.conventions import from_iso
@@ -19,7 +19,7 @@ RECORDED_DECIMALS = {"alpha_deg": 2, "gamma_deg": 2, "Fz_N": 0, "Fy_N": 0, "Mz_N
 """Resolution of a logger: far below its noise; the files are a third as large."""
 
 
-def point_table(plan: RigPlan, sweep: SweepPlan, settings: Settings, forces: Channels) -> pd.DataFrame:
+def point_table(plan: RigPlan, settings: Settings, forces: Channels) -> pd.DataFrame:
     """One row per finished point (n,); ``forces`` is in ISO-W with the noise in it."""
     table = _channels(plan, settings, forces)
     noise = plan.tables.noise

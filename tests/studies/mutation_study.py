@@ -132,7 +132,7 @@ OPERATORS = (
 
 PRELOADED = (
     "numpy", "scipy.optimize", "scipy.stats", "scipy.special", "scipy.linalg", "scipy.interpolate", "scipy.integrate", "pandas",
-    "lmfit", "pydantic", "uncertainties", "pint", "matplotlib.figure", "matplotlib.backends.backend_agg", "jinja2", "click",
+    "pydantic", "uncertainties", "pint", "matplotlib.figure", "matplotlib.backends.backend_agg", "jinja2", "click",
     "rich.console", "tomli_w", "pytest",
 )  # fmt: skip
 LONGEST_BASELINE = 3600.0  # s

@@ -153,15 +153,13 @@ def _replay(results: Sequence[Any]) -> Replay:
     constants = list(dict.fromkeys(_key(x) for x in used if not isinstance(x, Node)))
     place = {key: i for i, key in enumerate([*map(_key, symbols), *constants])}
     room = _allocated(others, frozenset(map(_key, results)), place)
+    places = [(place[_key(node)], *(place[_key(a)] for a in node.arguments)) for node in others]
+    of_inputs = in_numpy()
 
     def operations(of_tyre: Mapping[str, Any]) -> tuple[tuple[Any, ...], ...]:
         return tuple(
-            (
-                (in_numpy() if node.level == INPUT else of_tyre)[node.operation],
-                place[_key(node)],
-                *(place[_key(a)] for a in node.arguments),
-            )
-            for node in others
+            ((of_inputs if node.level == INPUT else of_tyre)[node.operation], *where)
+            for node, where in zip(others, places, strict=True)
         )
 
     return Replay(
@@ -169,7 +167,7 @@ def _replay(results: Sequence[Any]) -> Replay:
         tuple(value for _, value in constants),
         room,
         operations(IN_FLOATS),
-        operations(in_numpy()),
+        operations(of_inputs),
         tuple(place[_key(x)] for x in results),
     )
 

@@ -65,7 +65,8 @@ class Picture:
         margin = _pixels(MARGIN)
         around = ((margin, margin), (margin, margin), (0, 0))
         sheet = np.pad(np.vstack(stacked), around, constant_values=255)
-        imsave(path, sheet, dpi=int(constants.PICTURE_DPI))
+        level = int(constants.PICTURE_COMPRESSION)
+        imsave(path, sheet, dpi=int(constants.PICTURE_DPI), pil_kwargs={"compress_level": level})
 
 
 def draw(sheet: Sheet) -> Picture:

@@ -198,10 +198,5 @@ def _frames(regions: Sequence[Region], load: float) -> list[Frame]:
     for region in (item.region for item in regions):
         low, high = region.get("Fz_N", (-np.inf, np.inf))
         if {"alpha_deg", "gamma_deg"} & region.keys() and low * (1.0 - near) <= load <= high * (1.0 + near):
-            x, y = (_bounds(region.get(key)) for key in ("alpha_deg", "gamma_deg"))
-            found.append(Frame(x=x, y=y))
+            found.append(Frame(x=region.get("alpha_deg"), y=region.get("gamma_deg")))
     return found
-
-
-def _bounds(bounds: Sequence[float] | None) -> tuple[float, float] | None:
-    return None if bounds is None else (bounds[0], bounds[1])

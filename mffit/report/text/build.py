@@ -2,11 +2,7 @@
 
 from __future__ import annotations
 
-import math
-import statistics
 from collections.abc import Mapping
-
-import numpy as np
 
 from mffit.diagnosis import wording
 from mffit.fit import Coefficient
@@ -15,6 +11,7 @@ from mffit.report.text.direct import spin_numbers
 from mffit.report.text.layout import blocks, paragraphs, table, wrapped
 from mffit.results import BuildResult
 from mffit.rounding import number, times
+from mffit.scatter import finite_median
 from tir.errors import counted
 from tir.parameters import BY_NAME
 
@@ -26,7 +23,7 @@ def build_summary(result: BuildResult) -> str:
     parts += [wrapped(sentence) for sentence in fit.explanations[:1]]
     if result.measured.epsilon_gamma is not None:
         parts.append(spin_numbers(result.measured))
-    noise = {"Fy": _typical(result.points.u_Fy), "Mz": _typical(result.points.u_Mz)}
+    noise = {name: finite_median(getattr(result.points, f"u_{name}")) for name in CHANNELS}
     rows = [
         (
             name,
@@ -86,9 +83,3 @@ def _statuses(coefficients: Mapping[str, Coefficient]) -> str:
     text = "coefficients: " + ", ".join(f"{n} {status}" for status, n in counts.items())
     bound = [name for name, c in coefficients.items() if c.at_bound]
     return text + (f"; at a bound: {' '.join(bound)}" if bound else "")
-
-
-def _typical(u: np.ndarray) -> float:
-    """Median of the known uncertainties, which a few doubtful points do not change."""
-    known = [x for x in u if math.isfinite(x)]
-    return statistics.median(known) if known else math.nan

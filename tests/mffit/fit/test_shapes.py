@@ -1,4 +1,4 @@
-"""The alternative starting values have the shapes that their names state."""
+"""Starting values have the shapes that their names state, and derivatives to start with."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from small_rigs import truth
 
-from mffit.fit.start import ALTERNATIVE_STARTS
+from mffit.fit.start import ALTERNATIVE_STARTS, NONZERO_STARTS
 from tir.parameters import BY_NAME
 
 SLIP = np.radians(np.linspace(0.1, 30.0, 300))
@@ -49,8 +49,15 @@ def test_the_trail_vanishes_and_hardly_changes_sign(tyre, shape):
     assert trail.min() > -0.4 * trail[0]
 
 
-@pytest.mark.parametrize("shape", ALTERNATIVE_STARTS)
+@pytest.mark.parametrize("shape", [*ALTERNATIVE_STARTS, "spin"])
 def test_a_start_lies_within_the_bounds(shape):
-    for name, value in ALTERNATIVE_STARTS[shape].items():
+    for name, value in ALTERNATIVE_STARTS.get(shape, NONZERO_STARTS).items():
         lower, upper = BY_NAME[name].bounds
         assert lower < value < upper
+
+
+def test_the_path_of_a_disc_costs_a_little_grip_at_the_start(tyre):
+    """Without any, no step would change PDYP1; with much, the fit would begin far from every tyre."""
+    start = tyre.replace(**NONZERO_STARTS | {"PDYP2": 0.0, "PDYP3": 0.0, "PDYP4": 0.0})
+    grip = start.state(1400.0, phi_t=np.array([0.0, -1.0 / 1.3])).zeta2
+    assert 0.995 < grip[1] / grip[0] < 0.999

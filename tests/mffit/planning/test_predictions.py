@@ -121,7 +121,7 @@ SETTLED = {
 def settled(addition):
     if addition.id in SETTLED:
         return SETTLED[addition.id]
-    (error,) = (error for error in DECLARED if error.declared.key == addition.declares)
+    (error,) = (error for error, declared in DECLARED if declared.key == addition.declares)
     return (error.seen_as[0].id,)
 
 
