@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 from mffit.brief import Brief
+from mffit.made import Made
 from mffit.quantities import CONDITIONS, DIRECT
 from tir import Quantity
 
@@ -76,6 +77,7 @@ class Measured(Brief):
     conicity: Contribution | None = None  #: joins the budget in :meth:`debiased`
     epsilon_gamma_model: float | None = None
     epsilon_gamma_debiased: Quantity | None = None  #: corrected for the finite spin of the disc
+    made: Made | None = None  #: set by ``mffit spin``
 
     @property
     def headline(self) -> str:

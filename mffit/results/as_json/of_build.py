@@ -63,6 +63,7 @@ def spin(measured: Measured) -> dict[str, Any]:
         "coverage_factor": 1,
         "notes": list(measured.notes),
         "per_load": [_load(other) for other in measured.per_load],
+        **({} if measured.made is None else {"made": made(measured.made)}),
     }
 
 
