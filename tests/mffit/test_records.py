@@ -161,6 +161,7 @@ def test_numbers_that_do_not_come_out_again_are_listed_largest_first(copy, capsy
     path = copy / "out" / "result.json"
     stored = json.loads(path.read_text())
     stored["made"]["method"] = METHOD - 1
+    stored["made"]["libraries"]["numpy"] = "1.0"
     stored["spin"]["epsilon_gamma"] += 0.01
     path.write_text(json.dumps(stored))
     file = copy / "out" / "small.tir"
@@ -170,6 +171,7 @@ def test_numbers_that_do_not_come_out_again_are_listed_largest_first(copy, capsy
     said = capsys.readouterr()
     lines = said.out.splitlines()
     assert "made by method 0" in lines[0]
+    assert "numpy 1.0 (here" in said.out
     assert "2 of" in said.err
     assert said.out.index("PKY1.value") < said.out.index("spin.epsilon_gamma")
 
