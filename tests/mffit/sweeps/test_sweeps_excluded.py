@@ -33,10 +33,10 @@ def test_excluded_readings_act_as_if_they_were_not_in_the_file(project):
     table = project.tables["sideslip_1500.csv"]
     table.loc[[2, 3], "Fy_N"] += 900.0
     settings = excluding(project, ("sideslip_1500.csv", "4-5"))
-    found = as_json.spin(mffit.spin(settings))
+    found = spin(settings)
     left = read_points(settings)
     deleted = without(project, "sideslip_1500.csv", [2, 3])
-    assert found == as_json.spin(mffit.spin(deleted))
+    assert found == spin(deleted)
     shorter = read_points(deleted).points
     assert np.array_equal(left.points.Fy, shorter.Fy)
     assert left.excluded is not None
@@ -67,6 +67,13 @@ def test_a_damaged_row_can_be_excluded(project):
         points.read(config.load(project.write()))
     found = points.read(excluding(project, ("camber_1500.csv", "6")))
     assert [row.lines for row in found.left_out] == ["6"]
+
+
+def spin(settings):
+    """The numbers of the direct method, without the hashes of the files."""
+    content = as_json.spin(mffit.spin(settings))
+    del content["made"]
+    return content
 
 
 def series(seed=5):
