@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping
+import platform
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from datetime import UTC, datetime
+from importlib.metadata import version
 
 import mffit
 
@@ -16,6 +18,10 @@ METHOD = 1
 """
 
 
+COMPUTING = ("numpy", "scipy")
+"""Libraries on which the last digits of a figure depend."""
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Made:
     """How and from what a result was made."""
@@ -24,6 +30,9 @@ class Made:
     program: str = "mffit"
     version: str
     method: int = METHOD
+    libraries: Mapping[str, str] = field(
+        default_factory=dict
+    )  #: version of Python and of what computes figures
     inputs: Mapping[str, str] = field(default_factory=dict)
     """SHA-256 of every file read, in 64 hexadecimal digits, by the name that the configuration gives."""
 
@@ -45,4 +54,11 @@ def now() -> datetime:
 
 def made(inputs: Mapping[str, str] | None = None) -> Made:
     """The record of a result that is made now from inputs with the given hashes."""
-    return Made(date=now(), version=mffit.__version__, inputs=dict(inputs or {}))
+    return Made(
+        date=now(), version=mffit.__version__, libraries=libraries(COMPUTING), inputs=dict(inputs or {})
+    )
+
+
+def libraries(names: Iterable[str]) -> dict[str, str]:
+    """Version of Python and of some libraries by name."""
+    return {"Python": platform.python_version(), **{name: version(name) for name in names}}

@@ -18,6 +18,7 @@ from mffit.diagnosis.ties import Separation
 from mffit.diagnosis.validation import Gap, Validation
 from mffit.diagnosis.where import Region
 from mffit.effects import Effect
+from mffit.made import Made
 from mffit.points import Points
 from mffit.rig import Simulation
 from mffit.rig_errors import Faults
@@ -74,6 +75,7 @@ class Diagnosis(Brief):
     tyre: Tyre  #: the corrected property file
     notes: tuple[Note, ...]
     model_after: str  #: file name of the corrected model in the output folder
+    made: Made | None = None  #: set by the command
     trust: Trust = SOUND  #: the judgement of the corrected model
 
     @property

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 from mffit.brief import Brief
+from mffit.made import Made
 from mffit.quantities import CONDITIONS, DIRECT
 from tir import Quantity
 
@@ -109,6 +110,7 @@ class Measured(Brief):
     setup_scatter: SetupScatter | None = None  #: None without repeated set-ups
     epsilon_gamma_model: float | None = None
     epsilon_gamma_debiased: Quantity | None = None  #: corrected for the finite spin of the disc
+    made: Made | None = None  #: set by ``mffit spin``
 
     @property
     def headline(self) -> str:

@@ -66,6 +66,7 @@ def build(
     progress("reading sweeps")
     reading = read_points(config)
     base = read_base(config)
+    made_of = made(input_hashes(config))
     progress("measuring the camber reduction factor")
     parts, measured = measure(config, reading.points, base)
     names = fitting.file_names(config.tyre.name, config.spin.exact, config.rig.on_disc)
@@ -81,7 +82,6 @@ def build(
         )
         if ensemble:
             progress(f"drawing {ensemble} tyres from the posterior")
-        made_of = made(input_hashes(config))
         annotated = annotator(config, made_of, measured, fitted, trust)
         members = tuple(_members(config, fitted, ensemble, annotated)) if ensemble else ()
     result = BuildResult(

@@ -90,10 +90,10 @@ def diagnose(
     if file is not None:
         hashes[str(file)] = digest(file)
     notes = (*choice, *diagnosis.notes, *_redone(config, points, diagnosis, base))
-    diagnosis = replace(diagnosis, notes=notes, trust=judged_diagnosis(diagnosis))
+    diagnosis = replace(diagnosis, notes=notes, made=made(hashes), trust=judged_diagnosis(diagnosis))
     diagnosis = replace(diagnosis, tyre=marked(diagnosis.tyre, diagnosis.trust))
     if out is not None:
-        write_diagnosis(diagnosis, Path(out), protected=inputs, config=config, hashes=hashes)
+        write_diagnosis(diagnosis, Path(out), protected=inputs, config=config)
     return diagnosis
 
 
@@ -148,25 +148,17 @@ def _redone(
 
 
 def write_diagnosis(
-    diagnosis: Diagnosis,
-    out: Path,
-    protected: Iterable[Path] = (),
-    config: Config | None = None,
-    hashes: Mapping[str, str] | None = None,
+    diagnosis: Diagnosis, out: Path, protected: Iterable[Path] = (), config: Config | None = None
 ) -> None:
     """Write every output of a diagnosis, or nothing; the ``protected`` files, which were read, are not replaced.
 
-    With ``config``, the corrected points and a configuration to build from them are written as well. ``hashes`` has the
-    SHA-256 of every file read.
+    With ``config``, the corrected points and a configuration to build from them are written as well.
     """
     from mffit import report
 
     with output_folder(out, by="diagnose", protected=protected) as folder:
         diagnosis.tyre.write(folder / diagnosis.model_after)
-        made_of = made(hashes or {})
-        as_json.write(
-            folder / "diagnosis.json", as_json.diagnosis(diagnosis) | {"made": as_json.made(made_of)}
-        )
+        as_json.write(folder / "diagnosis.json", as_json.diagnosis(diagnosis))
         if config is not None:
             write_corrected(diagnosis, config, out, folder)
         report.write_diagnosis(diagnosis, folder)

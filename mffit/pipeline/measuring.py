@@ -29,11 +29,12 @@ def spin(config: Config | Mapping[str, Any] | str | Path, out: str | Path | None
     config = configuration.load(config)
     reading = read_points(config)
     _, measured = measure(config, reading.points, read_base(config))
-    measured = replace(measured, warnings=(*reading.warnings, *measured.warnings))
+    measured = replace(
+        measured, warnings=(*reading.warnings, *measured.warnings), made=made(input_hashes(config))
+    )
     if out is not None:
         with output_folder(Path(out), by="spin", protected=inputs_of(config)) as folder:
-            content = as_json.spin(measured) | {"made": as_json.made(made(input_hashes(config)))}
-            as_json.write(folder / "spin.json", content)
+            as_json.write(folder / "spin.json", as_json.spin(measured))
     return measured
 
 

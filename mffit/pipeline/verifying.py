@@ -9,12 +9,10 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
-import mffit
 import tir
 from mffit import config as configuration
 from mffit.config import Config
 from mffit.errors import InputError, readable
-from mffit.made import METHOD
 from mffit.output import digest, written_by
 from mffit.pipeline.building import build
 from mffit.pipeline.inputs import input_names
@@ -60,8 +58,9 @@ def verify(out: str | Path, *, progress: Progress = silent) -> Verification:
         numbers=sum(part.numbers for part in parts),
         exact=sum(part.exact for part in parts),
         changes=largest_first(change for part in parts for change in part.changes),
-        method=(made["method"], METHOD),
-        version=(made["version"], mffit.__version__),
+        method=(made["method"], result.made.method),
+        version=(made["version"], result.made.version),
+        libraries=(dict(made.get("libraries", {})), result.made.libraries),
     )
 
 

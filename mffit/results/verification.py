@@ -41,6 +41,7 @@ class Verification(Brief):
     changes: tuple[NumberChange, ...]  #: largest first
     method: tuple[int, int]  #: stored, and of this program
     version: tuple[str, str]  #: stored, and of this program
+    libraries: tuple[Mapping[str, str], Mapping[str, str]]  #: versions by name, stored and of this program
 
     @property
     def same(self) -> bool:
@@ -58,15 +59,25 @@ class Verification(Brief):
     @property
     def notes(self) -> tuple[str, ...]:
         """Sentences about another method or version."""
+        return tuple(self._notes())
+
+    def _notes(self) -> Iterator[str]:
         (was, now), (old, new) = self.method, self.version
         if was != now:
-            return (
+            yield (
                 f"the result was made by method {was} (mffit {old}), and this is method {now} (mffit {new}): numbers may differ "
-                "for this reason alone",
+                "for this reason alone"
             )
-        if old != new:
-            return (f"the result was made by mffit {old}, and this is {new}; both use method {now}",)
-        return ()
+        elif old != new:
+            yield f"the result was made by mffit {old}, and this is {new}; both use method {now}"
+        before, here = self.libraries
+        others = [
+            f"{name} {before[name]} (here {here.get(name)})"
+            for name in before
+            if before[name] != here.get(name)
+        ]
+        if others:
+            yield f"the result was made with {', '.join(others)}: last digits may differ"
 
 
 @dataclass(frozen=True, slots=True)

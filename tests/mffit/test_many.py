@@ -113,9 +113,15 @@ def _rewritten(out: Path, name: str, content: bytes) -> None:
     (out / RECORD).write_text(json.dumps(record))
 
 
+def another_method(project: Path, out: Path) -> None:
+    text = (out / "small.tir").read_bytes()
+    assert b"! provenance: method: " in text
+    _rewritten(out, "small.tir", text.replace(b"! provenance: method: ", b"! provenance: method: 9"))
+
+
 @pytest.mark.parametrize(
     "change",
-    [None, edited_sweep, edited_configuration, edited_output, missing_output],
+    [None, edited_sweep, edited_configuration, edited_output, missing_output, another_method],
 )
 def test_changed_input_or_output_is_built_again(built, project, tmp_path, change):
     # resolved.toml depends on the relative position of both folders, which the copies keep.

@@ -161,6 +161,7 @@ def test_numbers_that_do_not_come_out_again_are_listed_largest_first(copy, capsy
     path = copy / "out" / "result.json"
     stored = json.loads(path.read_text())
     stored["made"]["method"] = METHOD - 1
+    stored["made"]["libraries"]["numpy"] = "1.0"
     stored["spin"]["epsilon_gamma"] += 0.01
     path.write_text(json.dumps(stored))
     file = copy / "out" / "small.tir"
@@ -170,6 +171,7 @@ def test_numbers_that_do_not_come_out_again_are_listed_largest_first(copy, capsy
     said = capsys.readouterr()
     lines = said.out.splitlines()
     assert "made by method 0" in lines[0]
+    assert "numpy 1.0 (here" in said.out
     assert "2 of" in said.err
     assert said.out.index("PKY1.value") < said.out.index("spin.epsilon_gamma")
 
@@ -227,6 +229,7 @@ def test_spin_and_diagnosis_state_how_they_were_made(built, tmp_path):
         ({"a": 1.0}, {"a": 1.0 + 1e-9, "b": 2.0}, None),
         ({"a": 1.0}, {"a": 1.0 + 1e-5}, "a"),
         ({"a": 1.0, "u_a": 0.1}, {"a": 1.0 + 1e-5, "u_a": 0.1}, None),
+        ({"a": {"value": 1.0, "stderr": 0.1}}, {"a": {"value": 1.00001, "stderr": 0.1}}, None),
         ({"a": {"value": 1.0, "stderr": 0.1}}, {"a": {"value": 1.001, "stderr": 0.1}}, "a.value"),
         ({"a": {"value": 1.0, "stderr": None}}, {"a": {"value": 1.0, "stderr": 0.1}}, "a.stderr"),
         ({"a": [1.0, 2.0]}, {"a": [1.0]}, "a, length"),

@@ -1,6 +1,6 @@
 """The JSON of all records, made only here, with the keys that users' scripts rely on."""
 
-from mffit.results.as_json.of_build import build, fit, made, spin, write_information
+from mffit.results.as_json.of_build import build, fit, spin, write_information
 from mffit.results.as_json.of_diagnosis import diagnosis
 from mffit.results.as_json.of_fleet import fleet, outcome
 from mffit.results.as_json.of_input import alignment, problems, sniffed
@@ -15,7 +15,6 @@ __all__ = [
     "diagnosis",
     "fit",
     "fleet",
-    "made",
     "outcome",
     "plan",
     "problems",

@@ -74,6 +74,7 @@ def spin(measured: Measured) -> dict[str, Any]:
         "setup_scatter": _scatter(measured.setup_scatter),
         "notes": list(measured.notes),
         "per_load": [_load(other) for other in measured.per_load],
+        **({} if measured.made is None else {"made": made(measured.made)}),
     }
 
 

@@ -8,7 +8,7 @@ from typing import Any
 
 from mffit.diagnosis import AcceptedEffect, Diagnosis, wording
 from mffit.diagnosis.noise import Noise
-from mffit.results.as_json.of_build import outlier
+from mffit.results.as_json.of_build import made, outlier
 from mffit.results.as_json.values import picked
 
 
@@ -39,6 +39,7 @@ def diagnosis(found: Diagnosis) -> dict[str, Any]:
         "coefficients": {n: {"value": v, "stderr": s} for n, (v, s) in found.coefficients.items()},
         "model_after": found.model_after,
         "notes": wording.notes(found),
+        **({} if found.made is None else {"made": made(found.made)}),
     }
 
 

@@ -16,6 +16,7 @@ def verification(found: Verification) -> dict[str, Any]:
         **picked(found, "folder", "same", "headline", "numbers", "exact"),
         "method": dict(zip(("stored", "now"), found.method, strict=True)),
         "version": dict(zip(("stored", "now"), found.version, strict=True)),
+        "libraries": dict(zip(("stored", "now"), map(dict, found.libraries), strict=True)),
         "changes": [_change(row) for row in found.changes],
         "notes": list(found.notes),
     }

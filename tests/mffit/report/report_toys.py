@@ -17,6 +17,7 @@ from mffit.fit.coverage import coverage
 from mffit.fit.posterior import Posterior
 from mffit.fit.result import FitResult
 from mffit.fit.stages import StageRecord
+from mffit.made import made
 from mffit.points import Points, make_points
 from mffit.results import BuildResult
 from mffit.rig import Simulation
@@ -147,7 +148,8 @@ def made_result(**changes: Any) -> BuildResult:
         measured=measured.measure(settings, points, halves, None),
         fit=fitted,
         files={"turn-slip": "front-1.tir"},
-        tyres={"turn-slip": tyre.annotate(provenance={"input sideslip.csv": "0123456789abcdef"})},
+        tyres={"turn-slip": tyre},
+        made=made({"sideslip.csv": 4 * "0123456789abcdef"}),
         plain="turn-slip",
         warnings=("the camber sweep at 900 N is short & noisy",),
         seconds=3.25,

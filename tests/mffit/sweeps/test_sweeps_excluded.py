@@ -33,10 +33,10 @@ def test_excluded_readings_act_as_if_they_were_not_in_the_file(project):
     table = project.tables["sideslip_1500.csv"]
     table.loc[[2, 3], "Fy_N"] += 900.0
     settings = excluding(project, ("sideslip_1500.csv", "4-5"))
-    found = as_json.spin(mffit.spin(settings))
+    found = spin(settings)
     left = read_points(settings)
     deleted = without(project, "sideslip_1500.csv", [2, 3])
-    assert found == as_json.spin(mffit.spin(deleted))
+    assert found == spin(deleted)
     shorter = read_points(deleted).points
     assert np.array_equal(left.points.Fy, shorter.Fy)
     assert left.excluded is not None
@@ -67,6 +67,13 @@ def test_a_damaged_row_can_be_excluded(project):
         points.read(config.load(project.write()))
     found = points.read(excluding(project, ("camber_1500.csv", "6")))
     assert [row.lines for row in found.left_out] == ["6"]
+
+
+def spin(settings):
+    """The numbers of the direct method, without the hashes of the files."""
+    content = as_json.spin(mffit.spin(settings))
+    del content["made"]
+    return content
 
 
 def series(seed=5):
@@ -115,6 +122,57 @@ def test_every_sample_of_a_recording_is_averaged_or_listed_once(project):
     assert len(listed) < len(table) / 2
 
 
+def test_a_labelled_point_whose_samples_are_all_driven_gives_no_point(project):
+    table = series().assign(point=np.repeat(np.arange(5), 400), kappa=0.0)
+    table.loc[400:799, "kappa"] = 0.1
+    table.loc[800:809, "kappa"] = 0.1
+    project.add("series.csv", table)
+    found = points.read(config.load(project.write()))
+    rows = found.points.file == found.points.files.index("series.csv")
+    assert np.degrees(found.points.alpha[rows]) == pytest.approx([-4.0, 0.0, 2.0, 4.0])
+    driven = [row for row in found.left_out if row.rule == "driven-or-braked"]
+    assert [(row.lines, row.count) for row in driven] == [("402-811", 410)]
+
+
+def test_means_along_a_moving_sweep_on_a_disc_are_listed(project):
+    n = 1500
+    time, rng = np.arange(n) / 50.0, np.random.default_rng(3)
+    table = series().iloc[:n].assign(time_s=time, alpha_deg=6.0 * np.sin(2.0 * np.pi * time / 30.0))
+    table["Fy_N"] = -300.0 * table["alpha_deg"] - 330.0 + rng.normal(0.0, 3.0, n)
+    project.add("sweep.csv", table)
+    settings = config.load(project.write())
+    (entry,) = points.read(settings).left_out
+    assert (entry.file, entry.rule, entry.count) == ("sweep.csv", "steady-state", 300)
+    assert "only mffit diagnose uses them" in entry.why
+    assert points.read(settings, continuous=True).left_out == ()
+
+
+def test_a_block_of_a_moving_sweep_with_few_sound_samples_is_listed(project):
+    """Means are over 0.1 s, here five samples; three spikes leave too few of their block."""
+    project.config["rig"] = {"type": "flat-track", "axes": "iso"}
+    project.config["rolling_radius"] = []
+    n = 1500
+    time, rng = np.arange(n) / 50.0, np.random.default_rng(3)
+    alpha = 6.0 * np.sin(2.0 * np.pi * time / 30.0)
+    table = pd.DataFrame(
+        {
+            "time_s": time, "alpha_deg": alpha, "gamma_deg": 0.0, "Fz_N": 1500.0 + rng.normal(0.0, 2.0, n),
+            "Fy_N": -300.0 * alpha + rng.normal(0.0, 3.0, n), "Mz_Nm": rng.normal(0.0, 0.3, n), "p_kPa": 250.0, "V_mps": 6.0,
+        }
+    )  # fmt: skip
+    project.tables, project.config["sweep"] = {}, []
+    project.add("sweep.csv", table)
+    sound = points.read(config.load(project.write()))
+    assert sound.left_out == ()
+    for row, channel in ((500, "Mz_Nm"), (502, "Fy_N"), (504, "Fz_N")):
+        table.loc[row, channel] += 900.0
+    project.write()
+    found = points.read(config.load(project.folder / "tyre.toml"))
+    assert len(found.points) == len(sound.points) - 1
+    listed = sorted((row.rule, row.lines) for row in found.left_out)
+    assert listed == [("spike", "502"), ("spike", "504"), ("spike", "506"), ("steady-state", "503, 505")]
+
+
 def test_a_spike_is_not_in_the_mean_of_its_plateau(project):
     project.add("series.csv", series())
     settings = config.load(project.write())
@@ -159,3 +217,18 @@ def test_a_whole_file_may_be_excluded_but_not_all(project):
     with pytest.raises(InputError, match="leaves out every reading") as error:
         points.read(excluding(project, *all_lines))
     assert error.value.key == "fit.exclude"
+
+
+@pytest.mark.parametrize("rig", [{}, {"force_frame": "C"}, {"moments": "wheel-centre"}, {"axes": "sae"}])
+def test_excluded_points_are_converted_as_all_others(project, rig):
+    project.config["rig"] |= rig
+    if "axes" in rig:
+        project.each(alpha_deg=-1.0, Fy_N=-1.0, Mz_Nm=-1.0)
+    for table in project.tables.values():
+        table["Mx_Nm"], table["My_Nm"] = 10.0, -5.0
+    whole = points.read(config.load(project.write())).points
+    rows = (whole.file == whole.files.index("camber_1500.csv")) & np.isin(whole.line, [3, 4])
+    found = points.read(excluding(project, ("camber_1500.csv", "3-4"))).excluded
+    assert found is not None
+    for channel in ("alpha", "gamma", "Fz", "Fy", "Mz", "Mx", "phi_t"):
+        assert getattr(found, channel) == pytest.approx(getattr(whole, channel)[rows]), channel
