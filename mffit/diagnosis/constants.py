@@ -192,7 +192,7 @@ RAISED_GAP = Real(2.0, "-", "Standard deviations beyond chance above which a cha
 MISFIT_AT_NOISE = Real(1.2, "-", "Misfit over stated noise up to which the residuals count as noise.")
 INFORMATION_LEFT = Real(1e-9, "-", "Share of the information that keeps a matrix invertible.")
 ONE_STEP_FALSE_ALARM = Real(
-    0.005, "-", "Chance that any effect looks significant in the residuals of a sound fit (Bonferroni)."
+    0.01, "-", "Chance that any effect looks significant in the residuals of a sound fit (Bonferroni)."
 )
 STRUCTURE_FALSE_ALARM = Real(
     0.005, "-", "Chance that any comparison finds structure in the residuals of a sound fit (Bonferroni)."

@@ -32,6 +32,7 @@ class Remainder:
     axes: np.ndarray = field(repr=False)  #: (m, k) the matrix A
     sigma: np.ndarray = field(repr=False)  #: (2n,) uncertainty [N], [Nm]; inf: not used
     free: frozenset[str]  #: names of the coefficients that the fit freed
+    expected: Mapping[str, tuple[float, float]]  #: prior of every other uncertain number: value and spread
     noise: Mapping[str, float]  #: by channel, misfit over stated noise; NaN where none is stated
 
     @property
@@ -84,13 +85,16 @@ def remainder(fitted: Fitted) -> Remainder:
     linear = problem.free(names).linear(at)
     before = -linear.data + linear.slope @ np.where(np.isfinite(spread), at - expected, 0.0)
     axes = _axes(linear.slope, np.maximum(spread, 1e-300) ** -2.0)
+    free = frozenset(n.name for n in fitted.numbers if n.name in problem.simulation.values)
+    priors = zip(names, zip(expected.tolist(), spread.tolist(), strict=True), strict=True)
     return Remainder(
         points=problem.points,
         simulation=problem.simulation,
         residual=before - axes @ (axes.T @ before),
         axes=axes,
         sigma=np.concatenate(list(problem.sigma.values())),
-        free=frozenset(n.name for n in fitted.numbers if n.name in problem.simulation.values),
+        free=free,
+        expected={name: prior for name, prior in priors if name not in free},
         noise=noise,
     )
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 
 import numpy as np
 
@@ -11,6 +11,7 @@ import tir
 from mffit.config import Config
 from mffit.diagnosis import Diagnosis, wording
 from mffit.diagnosis.noise import Origin
+from mffit.diagnosis.one_step import BestEffect
 from mffit.diagnosis.remains import Remains, remains
 from mffit.fit import FitResult
 from mffit.fit.agreement import with_points
@@ -19,7 +20,7 @@ from mffit.points import Points
 from mffit.quantities import CHANNELS
 from mffit.rig import Readings
 from mffit.scatter import rms
-from mffit.suspicion import CamberReduction, FinishedFit, LeftOut, Outlier, Trust, judge
+from mffit.suspicion import CamberReduction, Doubt, FinishedFit, LeftOut, Outlier, Trust, judge
 from tir import Tyre
 
 
@@ -39,8 +40,8 @@ def judged(
             left_out=left.left_out,
             structured=frozenset(channels),
             structure=wording.structure(left.structure),
-            cause=wording.best_effect(left.effect) if left.effect else "",
-            cause_is_certain=left.effect is not None and left.effect.significant,
+            cause=_cause(fitted.doubts, left.effect),
+            cause_is_certain=bool(fitted.doubts) or (left.effect is not None and left.effect.significant),
             held=left.held,
             broken=tuple(_refused(files)),
             camber_reduction=_camber_reduction(config, measured),
@@ -74,6 +75,15 @@ def judged_diagnosis(diagnosis: Diagnosis) -> Trust:
             structured=frozenset(left_out) if diagnosis.unexplained else frozenset(),
         )
     )
+
+
+def _cause(doubts: Sequence[Doubt], effect: BestEffect | None) -> str:
+    """What would explain a misfit: the sweep that contradicts the others most, else the best effect; empty if none."""
+    if doubts:
+        worst = max(doubts, key=lambda doubt: doubt.ratio)
+        looks = f" and looks like {worst.looks}" if worst.looks else ""
+        return f"{worst.sweep} contradicts the other sweeps{looks}"
+    return wording.best_effect(effect) if effect else ""
 
 
 def _used(points: Points, outliers: Iterable[Outlier]) -> dict[str, np.ndarray]:

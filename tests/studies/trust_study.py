@@ -27,6 +27,7 @@ from drawn_rigs import NO_FORCE_AT_REST, SAMPLES, _scaled, plan_content
 import mffit
 import tir
 from mffit import virtual_rig
+from mffit.config.radii import path_radius
 from mffit.errors import InputError
 
 Plan = dict[str, Any]
@@ -62,7 +63,8 @@ def _load_low(config: Plan, folder: Path) -> None:
 
 def _diameter(config: Plan, folder: Path) -> None:
     """The path's diameter is entered as its radius, and the rolling radius is given."""
-    config["rig"]["path_radius"] = 2.0 * config["rig"]["path_radius"]
+    tape = config["rig"].pop("path", None)
+    config["rig"]["path_radius"] = 2.0 * (path_radius(**tape) if tape else config["rig"]["path_radius"])
     radius = 0.983 * config["tyre"]["unloaded_radius"]
     config["rolling_radius"] = [{"effective_radius": radius, "u_effective_radius": 0.0005}]
 
@@ -88,7 +90,7 @@ WORLDS = {
     ),
     "load falls by 6 % sin^2": World(faults={"load_camber": -0.06}, word="load that changes"),
     "warming by 23 K": World(planned=(_warmed,), word="temperature"),
-    "one load 10 % low": World(edited=(_load_low,), word="coupled"),
+    "one load 10 % low": World(edited=(_load_low,), word="looks like a load"),
     "diameter as radius": World(edited=(_diameter,), word="diameter"),
 }
 

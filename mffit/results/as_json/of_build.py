@@ -106,6 +106,7 @@ def _best_effect(found: BestEffect) -> dict[str, Any]:
         **picked(step.effect, "id", "name", "kind"),
         "parameters": {name: {"value": value, "stderr": u} for name, (value, u) in step.numbers.items()},
         "share": step.share,
+        "was_expected": step.known,
         "sigma": found.sigma,
         "chance": found.chance,
         "significant": found.significant,
