@@ -219,3 +219,8 @@ MOST_CONDITIONS_IN_SENTENCE = Count(
     3, "-", "Most conditions over which a sentence calls residuals not random."
 )
 SMALLEST_CHANCE_NAMED = Real(1e-12, "-", "Smaller chances are not told apart in a sentence.")
+ODD_SWEEP_OVER_NEXT = Real(
+    2.0,
+    "-",
+    "Chi-square of a sweep against all others, over that of the next one, from which it alone is at fault.",
+)

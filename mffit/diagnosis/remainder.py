@@ -16,6 +16,7 @@ from mffit.quantities import CHANNELS
 from mffit.rig import Simulation
 from mffit.scatter import rms
 from mffit.suspicion import LeftOut
+from mffit.suspicion.prediction import PredictedChannel
 
 
 @dataclass(frozen=True, eq=False)
@@ -97,6 +98,24 @@ def remainder(fitted: Fitted) -> Remainder:
         expected={name: prior for name, prior in priors if name not in free},
         noise=noise,
     )
+
+
+def predicted_sweep(left: Remainder, k: int) -> tuple[float, dict[str, PredictedChannel]]:
+    """Chi-square by which sweep ``k`` contradicts its prediction from all others, and the prediction by channel."""
+    rows = np.flatnonzero(left.sweep == k)
+    rows = rows[left.used[rows]]
+    A = left.axes[rows]
+    shrunk = (1.0 + constants.INFORMATION_LEFT) * np.eye(A.shape[1]) - A.T @ A
+    covariance = np.eye(len(rows)) + A @ np.linalg.solve(shrunk, A.T)  # of the prediction's error
+    error = covariance @ left.residual[rows]
+    n, u = len(left.points), left.sigma[rows]
+    out = {}
+    for j, name in enumerate(CHANNELS):
+        own = rows // n == j
+        if own.any():
+            scaled = covariance[np.ix_(own, own)] * u[own] * u[own][:, None]
+            out[name] = PredictedChannel(error=-error[own] * u[own], covariance=scaled)
+    return float(left.residual[rows] @ error), out
 
 
 def _axes(J: np.ndarray, precision: np.ndarray) -> np.ndarray:

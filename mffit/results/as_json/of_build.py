@@ -95,6 +95,7 @@ def residuals(found: Remains) -> dict[str, Any]:
                 for c in found.structure.found
             ],
         },
+        "sweep": None if found.sweep is None else {"name": found.sweep.name, "looks_like": found.sweep.looks},
         "held": [picked(row, "name", "sigma", "share") for row in found.held],
         "left_out": {name: asdict(row) for name, row in found.left_out.items()},
     }
