@@ -54,7 +54,7 @@ def remains(fitted: Fitted, signs: Mapping[str, float]) -> Remains:
 
 
 def odd_sweep(left: Remainder, signs: Mapping[str, float]) -> OddSweep | None:
-    """The sweep that contradicts the prediction from all others most; None if it does not stand out, or if no known mistake explains it."""
+    """The sweep that contradicts all others; None if it does not stand out, or if no known mistake explains it."""
     points = left.points
     found = {k: predicted_sweep(left, k) for k in np.unique(points.sweep).tolist()}
     worst, *others = sorted(found, key=lambda k: -found[k][0])

@@ -168,6 +168,7 @@ def main() -> None:
     ask.add_argument("rigs", type=int, nargs="?", default=40, help="per world")
     ask.add_argument("--jobs", type=int, default=1)
     ask.add_argument("--worlds", nargs="*", default=list(WORLDS))
+    ask.add_argument("--each", action="store_true", help="print every build")
     given = ask.parse_args()
     jobs = [(seed, name) for name in given.worlds for seed in range(given.rigs)]
     found: dict[str, list[Said]] = {name: [] for name in given.worlds}
@@ -178,6 +179,8 @@ def main() -> None:
     with ProcessPoolExecutor(given.jobs) as pool:
         for name, row in pool.map(one, jobs):
             found[name].append(row)
+            if given.each:
+                print(f"{name} {len(found[name])}: {row}", flush=True)
             if len(found[name]) == given.rigs:
                 print("\n".join(table(name, found[name])), flush=True)
 
