@@ -215,8 +215,8 @@ def unpredicted(fit: FinishedFit) -> Iterator[dict[str, Any]]:
     "plausible tyre fits these sweeps; check what determines {name}",
 )
 def bound_against_data(fit: FinishedFit) -> Iterator[dict[str, Any]]:
-    """Misfit that is due to a bound or a physical limit of a coefficient."""
-    for held in fit.held:
+    """Misfit that is due to a bound or a physical limit of a coefficient, where the noise is stated."""
+    for held in fit.held if _noise_is_stated(fit) else ():
         if held.sigma > constants.CERTAIN_SIGMA and held.share > constants.SHARE_OF_A_BOUND:
             yield {"name": held.name, "sigma": held.sigma, "percent": 100.0 * held.share}
 
