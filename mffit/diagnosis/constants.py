@@ -192,7 +192,7 @@ RAISED_GAP = Real(2.0, "-", "Standard deviations beyond chance above which a cha
 MISFIT_AT_NOISE = Real(1.2, "-", "Misfit over stated noise up to which the residuals count as noise.")
 INFORMATION_LEFT = Real(1e-9, "-", "Share of the information that keeps a matrix invertible.")
 ONE_STEP_FALSE_ALARM = Real(
-    0.005, "-", "Chance that any effect looks significant in the residuals of a sound fit (Bonferroni)."
+    0.01, "-", "Chance that any effect looks significant in the residuals of a sound fit (Bonferroni)."
 )
 STRUCTURE_FALSE_ALARM = Real(
     0.005, "-", "Chance that any comparison finds structure in the residuals of a sound fit (Bonferroni)."
@@ -212,10 +212,15 @@ AS_GOOD_SHARE = Real(
 MOST_RIVALS_NAMED = Count(2, "-", "Most effects that are named beside the best one.")
 BINS_OF_RESIDUALS = Count(8, "-", "Most bins of a condition over which residuals are averaged.")
 FEWEST_IN_A_BIN = Count(4, "-", "Fewest readings of a bin.")
-NEIGHBOURS_OF_RESIDUALS = Count(3, "-", "Lags along a sweep at which residuals are compared.")
+NEIGHBOURS_OF_RESIDUALS = Count(2, "-", "Lags along a sweep at which residuals are compared.")
 STRUCTURE_UPRIGHT = Real(0.5, "deg", "Angle up to which a reading lies at neither side of zero.")
 MOST_NUMBERS_IN_SENTENCE = Count(3, "-", "Most numbers of an effect that a sentence lists.")
 MOST_CONDITIONS_IN_SENTENCE = Count(
     3, "-", "Most conditions over which a sentence calls residuals not random."
 )
 SMALLEST_CHANCE_NAMED = Real(1e-12, "-", "Smaller chances are not told apart in a sentence.")
+ODD_SWEEP_OVER_NEXT = Real(
+    2.0,
+    "-",
+    "Chi-square of a sweep against all others, over that of the next one, from which it alone is at fault.",
+)

@@ -33,6 +33,7 @@ class OneStep:
         str, tuple[float, float]
     ]  #: value and standard error by name, as the readings alone have them
     share: float  #: of the sum of squares of the residuals that the effect removes
+    known: bool = False  #: whether the fit had its numbers with a prior, which they then contradict
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,10 +71,10 @@ def best_effect(left: Remainder, effects: Sequence[Effect] = CATALOG) -> BestEff
     found = list(_steps(left, effects))
     if not found:
         return None
-    tried = len(found)
     best_of: dict[str, OneStep] = {}
     for step in sorted(found, key=lambda step: step.log_chance):
         best_of.setdefault(step.effect.id, step)
+    tried = len(best_of)  # the starts of one effect are nearly the same direction
     if not left.at_noise:
         beyond_chance = math.log(constants.ONE_STEP_FALSE_ALARM / tried)
         best_of = {
@@ -116,33 +117,44 @@ def _step(left: Remainder, effect: Effect, frees: Sequence[Free], change: np.nda
     if not visible.any() or (not left.at_noise and effect.differs_by_run):
         return None
     frees = [free for free, seen in zip(frees, visible, strict=True) if seen] if frees else []
-    own = left.outside(change[:, visible])
-    information = change[:, visible].T @ own
+    change = change[:, visible]
+    own = left.outside(change)
+    information = change.T @ own
     size = np.sqrt(np.diag(information))
     power, axes = np.linalg.eigh(information / np.outer(size, size))
     clear = power > constants.DISTINCT_DIRECTION
     inverse = (axes[:, clear] / power[clear]) @ axes[:, clear].T / np.outer(size, size)
-    score = own.T @ left.residual
+    score = change.T @ left.residual
     amount, explained = inverse @ score, float(score @ inverse @ score)
     chance = float(stats.chi2.logsf(explained, int(clear.sum())))
     if not left.at_noise:
-        chance = max(chance, _between_sweeps(left, own, amount, inverse, int(clear.sum())))
-    errors = np.sqrt(np.diag(inverse))
-    numbers = {}
-    for free, by, u in zip(frees, amount.tolist(), errors.tolist(), strict=True):
-        unit = free.spread * anchor(free, left.simulation, left.points)[1]
-        numbers[free.name] = (left.simulation.number(free.name, left.points) + by * unit, u * unit)
+        chance = max(chance, _between_sweeps(left, change, own @ amount, amount, inverse))
+    numbers = {
+        free.name: _estimate(left, free, by, u)
+        for free, by, u in zip(frees, amount.tolist(), np.sqrt(np.diag(inverse)).tolist(), strict=True)
+    }
     total = max(float(left.residual @ left.residual), 1e-12)
-    return OneStep(effect, chance, numbers, min(explained / total, 1.0))
+    known = bool(numbers) and all(name in left.expected for name in numbers)
+    return OneStep(effect, chance, numbers, min(explained / total, 1.0), known)
+
+
+def _estimate(left: Remainder, free: Free, by: float, u: float) -> tuple[float, float]:
+    """Value and standard error of a number by the readings alone, from its step and that step's error in usual sizes."""
+    unit = free.spread * anchor(free, left.simulation, left.points)[1]
+    if free.name in left.expected:  # its prior is part of the step's error
+        value, spread = left.expected[free.name]
+        return value + by * unit, math.sqrt(max((u * unit) ** 2 - spread**2, 0.0))
+    return left.simulation.number(free.name, left.points) + by * unit, u * unit
 
 
 def _between_sweeps(
-    left: Remainder, own: np.ndarray, amount: np.ndarray, inverse: np.ndarray, k: int
+    left: Remainder, change: np.ndarray, explained: np.ndarray, amount: np.ndarray, inverse: np.ndarray
 ) -> float:
     """Logarithm of the probability by the scatter between sweeps (Hotelling): each sweep counts as one observation."""
-    parts = own * (left.residual - own @ amount)[:, None]
+    k = np.linalg.matrix_rank(inverse)
+    parts = change * (left.residual - explained)[:, None]
     names, index = np.unique(left.sweep, return_inverse=True)
-    by_sweep = np.zeros((len(names), own.shape[1]))
+    by_sweep = np.zeros((len(names), change.shape[1]))
     np.add.at(by_sweep, index, parts)
     n = len(names)
     if n <= k + 1:
@@ -175,13 +187,17 @@ def held_numbers(left: Remainder, fitted: Fitted) -> tuple[HeldNumber, ...]:
         power = float(change @ own[:, 0])
         if power <= constants.IMITATED_SHARE * float(change @ change):
             continue
-        step = float(own[:, 0] @ left.residual) / power
+        step = float(change @ left.residual) / power
         value, (lower, upper) = left.simulation.number(name, left.points), bounds[name]
         if touches(value, lower, upper) and (step > 0.0) == (value - lower < upper - value):
             continue  # the readings pull it back inside
         explained = step**2 * power
         chance = float(stats.chi2.logsf(explained, 1))
         if not left.at_noise:
-            chance = max(chance, _between_sweeps(left, own, np.array([step]), np.array([[1.0 / power]]), 1))
+            at = np.array([step])
+            chance = max(
+                chance,
+                _between_sweeps(left, change[:, None], step * own[:, 0], at, np.array([[1.0 / power]])),
+            )
         out.append(HeldNumber(name, _sigma(chance), min(explained / total, 1.0)))
     return tuple(out)

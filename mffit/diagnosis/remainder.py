@@ -16,6 +16,7 @@ from mffit.quantities import CHANNELS
 from mffit.rig import Simulation
 from mffit.scatter import rms
 from mffit.suspicion import LeftOutSweeps
+from mffit.suspicion.prediction import PredictedChannel
 
 
 @dataclass(frozen=True, eq=False)
@@ -32,6 +33,7 @@ class Remainder:
     axes: np.ndarray = field(repr=False)  #: (m, k) the matrix A
     sigma: np.ndarray = field(repr=False)  #: (2n,) uncertainty [N], [Nm]; inf: not used
     free: frozenset[str]  #: names of the coefficients that the fit freed
+    expected: Mapping[str, tuple[float, float]]  #: prior of every other uncertain number: value and spread
     noise: Mapping[str, float]  #: by channel, misfit over stated noise; NaN where none is stated
 
     @property
@@ -84,15 +86,36 @@ def remainder(fitted: Fitted) -> Remainder:
     linear = problem.free(names).linear(at)
     before = -linear.data + linear.slope @ np.where(np.isfinite(spread), at - expected, 0.0)
     axes = _axes(linear.slope, np.maximum(spread, 1e-300) ** -2.0)
+    free = frozenset(n.name for n in fitted.numbers if n.name in problem.simulation.values)
+    priors = zip(names, zip(expected.tolist(), spread.tolist(), strict=True), strict=True)
     return Remainder(
         points=problem.points,
         simulation=problem.simulation,
         residual=before - axes @ (axes.T @ before),
         axes=axes,
         sigma=np.concatenate(list(problem.sigma.values())),
-        free=frozenset(n.name for n in fitted.numbers if n.name in problem.simulation.values),
+        free=free,
+        expected={name: prior for name, prior in priors if name not in free},
         noise=noise,
     )
+
+
+def predicted_sweep(left: Remainder, k: int) -> tuple[float, dict[str, PredictedChannel]]:
+    """Chi-square by which sweep ``k`` contradicts its prediction from all others, and the prediction by channel."""
+    rows = np.flatnonzero(left.sweep == k)
+    rows = rows[left.used[rows]]
+    A = left.axes[rows]
+    shrunk = (1.0 + constants.INFORMATION_LEFT) * np.eye(A.shape[1]) - A.T @ A
+    covariance = np.eye(len(rows)) + A @ np.linalg.solve(shrunk, A.T)  # of the prediction's error
+    error = covariance @ left.residual[rows]
+    n, u = len(left.points), left.sigma[rows]
+    out = {}
+    for j, name in enumerate(CHANNELS):
+        own = rows // n == j
+        if own.any():
+            scaled = covariance[np.ix_(own, own)] * u[own] * u[own][:, None]
+            out[name] = PredictedChannel(error=-error[own] * u[own], covariance=scaled)
+    return float(left.residual[rows] @ error), out
 
 
 def _axes(J: np.ndarray, precision: np.ndarray) -> np.ndarray:

@@ -294,10 +294,12 @@ def best_effect(found: BestEffect) -> str:
     ]
     listed = f" ({', '.join(numbers)})" if len(numbers) <= constants.MOST_NUMBERS_IN_SENTENCE else ""
     rivals = f", as does {' or '.join(o.effect.name for o in found.rivals)}" if found.rivals else ""
-    return (
-        f"{step.effect.name}{listed} would explain {100 * step.share:.0f} % of the misfit, {found.sigma:.1f} standard deviations "
-        f"with {found.tried} effects tried{rivals}"
+    says = (
+        "contradicts what was declared or expected"
+        if step.known
+        else f"would explain {100 * step.share:.0f} % of the misfit"
     )
+    return f"{step.effect.name}{listed} {says}, {found.sigma:.1f} standard deviations with {found.tried} effects tried{rivals}"
 
 
 def structure(found: Structure) -> str:

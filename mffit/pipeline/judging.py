@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 
 import numpy as np
 
 import tir
-from mffit.config import Config
+from mffit.config import Config, axis_signs
 from mffit.diagnosis import Diagnosis, wording
 from mffit.diagnosis.noise import Origin
 from mffit.diagnosis.remains import Remains, remains
@@ -19,7 +19,7 @@ from mffit.points import Points
 from mffit.quantities import CHANNELS
 from mffit.rig import Readings
 from mffit.scatter import rms
-from mffit.suspicion import CamberReduction, FinishedFit, LeftOutSweeps, Outlier, Trust, judge
+from mffit.suspicion import CamberReduction, Doubt, FinishedFit, LeftOutSweeps, Outlier, Trust, judge
 from tir import Tyre
 
 
@@ -28,7 +28,7 @@ def judged(
 ) -> tuple[Trust, Remains]:
     """The judgement of a build with its written ``files`` by use, and what its fit leaves of the readings."""
     assert fitted.search is not None
-    left = remains(fitted.search)
+    left = remains(fitted.search, axis_signs(config))
     channels = [c.channel for c in left.structure.found]
     trust = judge(
         FinishedFit(
@@ -39,8 +39,9 @@ def judged(
             left_out=left.left_out,
             structured=frozenset(channels),
             structure=wording.structure(left.structure),
-            cause=wording.best_effect(left.effect) if left.effect else "",
-            cause_is_certain=left.effect is not None and left.effect.significant,
+            cause=_cause(fitted.doubts, left),
+            cause_is_certain=bool(fitted.doubts or left.sweep)
+            or (left.effect is not None and left.effect.significant),
             held=left.held,
             broken=tuple(_refused(files)),
             camber_reduction=_camber_reduction(config, measured),
@@ -74,6 +75,17 @@ def judged_diagnosis(diagnosis: Diagnosis) -> Trust:
             structured=frozenset(left_out) if diagnosis.unexplained else frozenset(),
         )
     )
+
+
+def _cause(doubts: Sequence[Doubt], left: Remains) -> str:
+    """What would explain a misfit: a sweep that contradicts the others, else the best effect; empty if none can be seen."""
+    if doubts:
+        worst = max(doubts, key=lambda doubt: doubt.ratio)
+        looks = f" and looks like {worst.looks}" if worst.looks else ""
+        return f"{worst.sweep} contradicts the other sweeps{looks}"
+    if left.sweep is not None:
+        return f"{left.sweep.name} contradicts the other sweeps and looks like {left.sweep.looks}"
+    return wording.best_effect(left.effect) if left.effect else ""
 
 
 def _used(points: Points, outliers: Iterable[Outlier]) -> dict[str, np.ndarray]:

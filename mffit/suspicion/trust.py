@@ -115,6 +115,7 @@ class Trust:
 
 SOUND = Trust()
 """Nothing was judged, and nothing is against it."""
+NONE_KNOWN = "no known effect explains it"
 of_model = partial(rule, subject=Subject.MODEL, when=(When.AFTER,))
 
 
@@ -214,8 +215,8 @@ def unpredicted(fit: FinishedFit) -> Iterator[dict[str, Any]]:
     "plausible tyre fits these sweeps; check what determines {name}",
 )
 def bound_against_data(fit: FinishedFit) -> Iterator[dict[str, Any]]:
-    """Misfit that is due to a bound or a physical limit of a coefficient."""
-    for held in fit.held:
+    """Misfit that is due to a bound or a physical limit of a coefficient, where the noise is stated."""
+    for held in fit.held if _noise_is_stated(fit) else ():
         if held.sigma > constants.CERTAIN_SIGMA and held.share > constants.SHARE_OF_A_BOUND:
             yield {"name": held.name, "sigma": held.sigma, "percent": 100.0 * held.share}
 
@@ -250,7 +251,7 @@ def unpublished(fit: FinishedFit) -> Iterator[dict[str, Any]]:
     id="effect-in-the-residuals",
     limits=(constants.MISFIT_IN_DOUBT,),
     outcome=Outcome.WARNED,
-    sentence="the residuals show an effect that the model lacks: {cause}; run mffit diagnose",
+    sentence="the readings show more than was declared and fitted: {cause}; run mffit diagnose",
 )
 def effect_left(fit: FinishedFit) -> Iterator[dict[str, Any]]:
     """Score test of every effect beside the fitted numbers, where the noise is stated; their number is accounted for."""
@@ -325,7 +326,7 @@ def _noise_is_stated(fit: FinishedFit) -> bool:
 
 def _cause(fit: FinishedFit) -> str:
     """What would explain a misfit, in words."""
-    return fit.cause if fit.cause_is_certain else "no known effect explains it"
+    return fit.cause if fit.cause_is_certain else NONE_KNOWN
 
 
 def _by_sweep(fit: FinishedFit, channel: str) -> dict[int, float]:

@@ -309,6 +309,17 @@ def test_the_exit_code_is_that_of_the_worst_tyre(states, code):
     assert code is None or end.value.code == code
 
 
+@pytest.mark.parametrize(("other", "code"), [("built", 3), ("failed", 1)])
+def test_a_tyre_that_is_not_to_be_trusted_gives_3_unless_a_build_failed(other, code, capsys):
+    doubtful = BuildOutcome(Path("a.toml"), "a", None, "built", reasons=("the model misses Fy",))
+    with pytest.raises(SystemExit) as end:
+        _end(
+            [doubtful, BuildOutcome(Path("b.toml"), "b", None, other)], False, Voice(json=False, quiet=False)
+        )
+    assert end.value.code == code
+    assert ("not to be trusted: a\n" in capsys.readouterr().err) == (code == 3)
+
+
 @pytest.mark.parametrize(("tyres", "files"), [(1, []), (3, ["fleet.csv", "fleet.html", "fleet.json"])])
 def test_tyres_built_by_one_command_are_compared(folders, tmp_path, capsys, tyres, files):
     outcomes = [

@@ -27,6 +27,7 @@ from drawn_rigs import NO_FORCE_AT_REST, SAMPLES, _scaled, plan_content
 import mffit
 import tir
 from mffit import virtual_rig
+from mffit.config.radii import path_radius
 from mffit.errors import InputError
 
 Plan = dict[str, Any]
@@ -62,7 +63,8 @@ def _load_low(config: Plan, folder: Path) -> None:
 
 def _diameter(config: Plan, folder: Path) -> None:
     """The path's diameter is entered as its radius, and the rolling radius is given."""
-    config["rig"]["path_radius"] = 2.0 * config["rig"]["path_radius"]
+    tape = config["rig"].pop("path", None)
+    config["rig"]["path_radius"] = 2.0 * (path_radius(**tape) if tape else config["rig"]["path_radius"])
     radius = 0.983 * config["tyre"]["unloaded_radius"]
     config["rolling_radius"] = [{"effective_radius": radius, "u_effective_radius": 0.0005}]
 
@@ -88,7 +90,7 @@ WORLDS = {
     ),
     "load falls by 6 % sin^2": World(faults={"load_camber": -0.06}, word="load that changes"),
     "warming by 23 K": World(planned=(_warmed,), word="temperature"),
-    "one load 10 % low": World(edited=(_load_low,), word="coupled"),
+    "one load 10 % low": World(edited=(_load_low,), word="looks like a load"),
     "diameter as radius": World(edited=(_diameter,), word="diameter"),
 }
 
@@ -166,6 +168,7 @@ def main() -> None:
     ask.add_argument("rigs", type=int, nargs="?", default=40, help="per world")
     ask.add_argument("--jobs", type=int, default=1)
     ask.add_argument("--worlds", nargs="*", default=list(WORLDS))
+    ask.add_argument("--each", action="store_true", help="print every build")
     given = ask.parse_args()
     jobs = [(seed, name) for name in given.worlds for seed in range(given.rigs)]
     found: dict[str, list[Said]] = {name: [] for name in given.worlds}
@@ -176,6 +179,8 @@ def main() -> None:
     with ProcessPoolExecutor(given.jobs) as pool:
         for name, row in pool.map(one, jobs):
             found[name].append(row)
+            if given.each:
+                print(f"{name} {len(found[name])}: {row}", flush=True)
             if len(found[name]) == given.rigs:
                 print("\n".join(table(name, found[name])), flush=True)
 

@@ -114,6 +114,7 @@ def residuals(found: Remains) -> dict[str, Any]:
                 for c in found.structure.found
             ],
         },
+        "sweep": None if found.sweep is None else {"name": found.sweep.name, "looks_like": found.sweep.looks},
         "held": [picked(row, "name", "sigma", "share") for row in found.held],
         "left_out": {name: asdict(row) for name, row in found.left_out.items()},
     }
@@ -125,6 +126,7 @@ def _best_effect(found: BestEffect) -> dict[str, Any]:
         **picked(step.effect, "id", "name", "kind"),
         "parameters": {name: {"value": value, "stderr": u} for name, (value, u) in step.numbers.items()},
         "share": step.share,
+        "was_expected": step.known,
         "sigma": found.sigma,
         "chance": found.chance,
         "significant": found.significant,

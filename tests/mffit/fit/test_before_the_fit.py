@@ -230,3 +230,25 @@ def test_agreement_in_numbers():
     nothing = agreement(np.array([1.0]), np.array([np.nan]))
     assert nothing.n == 0
     assert math.isnan(nothing.rmse)
+
+
+def test_no_written_range_is_empty(tyre):
+    """Upright sweeps of one load at one pressure, without a base: 2 deg, and a tenth to either side."""
+    tested = TESTED | {"CAMMIN": -0.0, "CAMMAX": 0.0, "FZMIN": 900.0, "FZMAX": 900.0}
+    found, origin = ranges.with_room(tyre.values, tested, {})
+    assert (found["CAMMIN"], found["CAMMAX"]) == (-math.radians(2.0), math.radians(2.0))
+    assert (found["FZMIN"], found["FZMAX"]) == (pytest.approx(810.0), pytest.approx(990.0))
+    assert (found["PRESMIN"], found["ALPMAX"]) == (tested["PRESMIN"], tested["ALPMAX"])
+    assert set(origin) == {"camber", "load"}
+    assert not [p for p in tir.check(tyre.replace(**found)) if p.level == "error"]
+
+
+def test_what_was_not_varied_gets_the_range_of_the_base_if_the_model_allows_it(tyre):
+    sound = tyre.replace(PDY2=0.0, PEY2=0.0, PEY4=0.0, PEY5=0.0, PDY3=0.0)
+    tested, base = TESTED | {"CAMMIN": 0.0, "CAMMAX": 0.0}, {"CAMMIN": -0.9, "CAMMAX": 0.9}
+    found, origin = ranges.with_room(sound.values, tested, base)
+    assert (found["CAMMIN"], found["CAMMAX"]) == (-0.9, 0.9)
+    assert "base" in origin["camber"]
+    slippery = sound.replace(PDY3=10.0)  # no grip left beyond 18 deg of camber
+    assert ranges.with_room(slippery.values, tested, base)[0]["CAMMAX"] == math.radians(2.0)
+    assert ranges.with_room(sound.values, TESTED, base) == (TESTED, {})

@@ -1,15 +1,28 @@
-"""A fit that ends far above the noise tries alternative starting values and warns that it is not to be trusted."""
+"""A build that ends far above the noise tries alternative starting values and says everywhere that it is not to be trusted."""
 
 from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any, NamedTuple
 
 import numpy as np
 import pandas as pd
 import pytest
 from small_rigs import FY, LOADS, MZ, SAMPLE, flat
 
-import mffit
+import tir
 from mffit import virtual_rig
+from mffit.cli import main
 from mffit.fit.start import ALTERNATIVE_STARTS
+
+
+class Ended(NamedTuple):
+    """What a build left."""
+
+    code: int | str | None
+    out: Path
+    result: dict[str, Any]
 
 
 @pytest.fixture(scope="module")
@@ -25,18 +38,44 @@ def rough(tmp_path_factory):
         if path.name.startswith("camber"):
             table["Fy_N"] += 20.0 * FY * np.random.default_rng(1).standard_normal(len(table))
         table.to_csv(path, index=False)
-    return mffit.build(folder / "tyre.toml")
+    with pytest.raises(SystemExit) as end:
+        main(["build", str(folder / "tyre.toml")])
+    out = folder / "out"
+    return Ended(end.value.code, out, json.loads((out / "result.json").read_text(encoding="utf-8")))
 
 
 def test_the_first_warning_is_distrust_and_names_the_sweep(rough):
     """Half of the 47 points have 1.6 times the stated noise, the rest more, so that the misfit is far above 1.5."""
-    assert not rough.trusted
-    assert "Fy" in rough.warnings[0]
-    assert "not to be trusted" in rough.warnings[0]
-    assert "most of it in camber_1400;" in rough.warnings[0]
-    assert not any("Mz by" in warning for warning in rough.warnings)
+    first, *others = rough.result["warnings"]
+    assert "Fy" in first
+    assert "not to be trusted" in first
+    assert "most of it in camber_1400;" in first
+    assert not any("Mz by" in warning for warning in others)
+
+
+def test_the_result_says_so_everywhere(rough):
+    """Exit code 3; first keys of the JSON, first box of the page, first comment of the file."""
+    assert rough.code == 3
+    assert list(rough.result)[:2] == ["trusted", "reasons"]
+    assert rough.result["trusted"] is False
+    (reason, *_) = rough.result["reasons"]
+    assert "misses Fy by" in reason
+    page = (rough.out / "report.html").read_text(encoding="utf-8")
+    assert page.index("Not to be trusted") < page.index("What this file is for")
+    tyre = tir.read(rough.out / rough.result["tir"])
+    assert "misses Fy by" in tyre.provenance["NOT TO BE TRUSTED"]
+
+
+def test_the_misfit_over_the_stated_noise_is_that_of_the_points(rough):
+    """Fy and Mz of every reading with a weight against its own uncertainty."""
+    points = pd.read_csv(rough.out / "points.csv")
+    for channel, unit in (("Fy", "N"), ("Mz", "Nm")):
+        kept = ~points["outlier"].fillna("").str.contains(channel)
+        z = (points[f"{channel}_model_{unit}"] - points[f"{channel}_{unit}"]) / points[f"u_{channel}_{unit}"]
+        stated = rough.result["fit"]["channels"][channel]["over_noise"]
+        assert stated == pytest.approx(np.sqrt(np.mean(z[kept] ** 2)), rel=1e-3)
 
 
 def test_all_alternative_starts_are_tried(rough):
-    (said,) = (w for w in rough.fit.warnings if "started again" in w)
+    (said,) = (w for w in rough.result["warnings"] if "started again" in w)
     assert all(shape in said for shape in ALTERNATIVE_STARTS)

@@ -158,7 +158,9 @@ def test_without_a_stated_noise_left_out_sweeps_decide():
     ("sigma", "share", "trusted"), [(4.9, 0.2, True), (5.1, 0.2, False), (9.0, 0.04, True)]
 )
 def test_a_bound_counts_if_the_readings_contradict_it_and_it_matters(sigma, share, trusted):
-    assert judged(noise(), held=(HeldNumber("PCY1", sigma, share),)).trusted == trusted
+    held = (HeldNumber("PCY1", sigma, share),)
+    assert judged(noise(), held=held).trusted == trusted
+    assert judged(noise(), u=np.nan, held=held).trusted  # a real tyre is not the formula
 
 
 def test_what_check_refuses_is_a_reason():
