@@ -9,8 +9,9 @@ from collections.abc import Mapping
 import numpy as np
 
 from mffit.fit import Coefficient
+from mffit.measured import setup_notes
 from mffit.quantities import CHANNELS
-from mffit.report.text.direct import spin_numbers
+from mffit.report.text.direct import setups_table, spin_numbers
 from mffit.report.text.layout import blocks, paragraphs, table, wrapped
 from mffit.results import BuildResult
 from mffit.rounding import number, times
@@ -24,6 +25,9 @@ def build_summary(result: BuildResult) -> str:
     parts += [wrapped(sentence) for sentence in fit.explanations[:1]]
     if result.measured.epsilon_gamma is not None:
         parts.append(spin_numbers(result.measured))
+        parts.append(setups_table(result.measured))
+        scatter = result.measured.setup_scatter
+        parts.append(wrapped(setup_notes.setup_scatter(scatter)) if scatter else "")
     noise = {"Fy": _typical(result.points.u_Fy), "Mz": _typical(result.points.u_Mz)}
     rows = [
         (
