@@ -12,7 +12,7 @@ from plain_tyre import NEWTON, Plain, settings, share
 from mffit import config as configuration
 from mffit.config import setup_names
 from mffit.errors import InputError
-from mffit.measured import measure
+from mffit.measured import align, at_the_axis, measure
 from mffit.measured.setups import SCATTER
 from mffit.parts import split
 from mffit.points.points import concatenate
@@ -197,3 +197,20 @@ def test_a_wrong_name_is_refused_with_its_key(setup, words):
         configuration.load(content({"setup": setup}))
     assert "sweep" in refused.value.key
     assert refused.value.key.endswith("setup")
+
+
+def test_of_several_set_ups_the_last_one_is_aligned():
+    points = concatenate(
+        [
+            in_setup(Plain().campaign(), "1"),
+            in_setup(zeros(Plain(alpha_0=math.radians(0.4)).campaign()), "2"),
+        ]
+    )
+    found = align(points)
+    assert found.correction_deg == pytest.approx(-0.4, rel=0.2)  # with the usual stiffness of 10 per load
+    (said,) = [sentence for sentence in found.warnings if "set-ups" in sentence]
+    assert said.endswith("the last one, 2")
+    at_axis = at_the_axis(settings(), points, split(points))
+    assert at_axis[1500.0].F_forward - at_axis[1500.0].F_backward == pytest.approx(
+        -2.0 * 12.0 * 1500.0 * math.radians(0.4), rel=0.03
+    )
