@@ -14,6 +14,8 @@ from small_rigs import FY, MZ, SAMPLE, disc, simulated, truth
 import mffit
 import tir
 from mffit import config
+from mffit.diagnosis import wording
+from mffit.effects import CATALOG
 from mffit.fit.rig_numbers import rig_numbers
 from mffit.pipeline.inputs import read_points
 from mffit.pipeline.provenance import rig_of_build
@@ -123,6 +125,33 @@ def test_corrected_points_keep_their_path_and_set_up(project):
     assert set(points.used_setups) == set(FAULTS)
     for setup, side in (("left", -1.0), ("right", 1.0)):
         assert np.all(np.sign(points.phi_t[points.setup == points.setups.index(setup)]) == side)
+
+
+def test_a_zero_far_beyond_its_declaration_is_named_in_its_set_up(tmp_path):
+    """0.6 deg of sideslip in one of two set-ups, declared to about 0.08 deg."""
+    content = disc((1400,), setup={"right": {"alpha_0_deg": 0.6}})
+    other = [
+        {**sweep, "file": f"right_{sweep['file']}", "path_centre": "right"} for sweep in content["sweep"]
+    ]
+    content["sweep"] = content["sweep"] + other
+    simulated(content, tmp_path)
+    known = {
+        "sideslip-misalignment",
+        "camber-misalignment",
+        "run-offsets-alpha",
+        "ply-steer",
+        "camber-stiffness",
+    }
+    found = mffit.diagnose(
+        tmp_path / "tyre.toml", SAMPLE / "true.tir", effects=[e for e in CATALOG if e.id in known]
+    )
+    (effect,) = found.effects
+    assert effect.effect.id == "sideslip-misalignment"
+    assert effect.parameters["alpha_0_deg@right"][0] == pytest.approx(0.6, abs=0.01)
+    assert effect.parameters["alpha_0_deg@left"][0] == pytest.approx(0.0, abs=0.01)
+    said = wording.remedy(effect, found.signs)
+    assert said.startswith("set-up right: turn the steering axis by -0.")
+    assert "set-up left" not in said
 
 
 def test_a_sweep_of_either_set_up_is_predicted_with_the_zeros_of_its_own_free(result):
