@@ -17,8 +17,12 @@ from mffit import config
 from mffit.diagnosis import wording
 from mffit.effects import CATALOG
 from mffit.fit.rig_numbers import rig_numbers
+from mffit.pipeline.build_output import points_table
 from mffit.pipeline.inputs import read_points
 from mffit.pipeline.provenance import rig_of_build
+from mffit.pipeline.refining import finite_spin_bias
+from mffit.report.text import build_summary, spin_summary
+from mffit.rig import Simulation
 from mffit.rig_errors import ZEROS, number_of
 from mffit.suspicion.prediction import _common
 
@@ -171,3 +175,21 @@ def test_the_scatter_of_repeated_set_ups_is_the_prior(result):
     assert wider["F0_N@left"] == pytest.approx(26.0)
     assert wider["alpha_0_deg@right"] == pytest.approx(0.3)
     assert wider["gamma_0_deg@left"] == declared["gamma_0_deg@left"]
+
+
+def test_the_bias_of_finite_spin_does_not_contain_the_zeros(result):
+    """It is that of the true tyre on a rig without errors."""
+    measured = result.measured
+    found = measured.epsilon_gamma.value - measured.epsilon_gamma_debiased.value
+    true = finite_spin_bias(result.config, result.points, Simulation.of(truth()), None)
+    assert found == pytest.approx(true, abs=0.006)
+
+
+def test_the_terminal_shows_what_every_set_up_gives_by_itself(result):
+    for text in (build_summary(result), spin_summary(result.measured)):
+        lines = [line for line in text.splitlines() if " m to the " in line and line[0] not in "- "]
+        rows = {line.split()[0]: line for line in lines}
+        assert set(rows) == set(FAULTS)
+        assert "1.323 m to the right" in rows["right"]
+    assert result.points.used_setups == ("left", "right")
+    assert set(points_table(result).setup) == set(FAULTS)
