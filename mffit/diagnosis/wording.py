@@ -236,9 +236,17 @@ def remedy(found: AcceptedEffect, signs: Mapping[str, float]) -> str:
     several = [free.name for free in effect.free if OF_RUN in free.name and not effect.runs_written_out]
     if not several:
         return _remedy_with(found, effect.free[0].name, signs)
+    significant = [name for name in several if _is_significant(found, name)]
     return "; ".join(
-        f"set-up {name.partition(OF_RUN)[2]}: {_remedy_with(found, name, signs)}" for name in several
+        f"set-up {name.partition(OF_RUN)[2]}: {_remedy_with(found, name, signs)}"
+        for name in significant or several
     )
+
+
+def _is_significant(found: AcceptedEffect, name: str) -> bool:
+    """Whether a number of an effect differs from its value before."""
+    value, u = found.parameters[name]
+    return abs(value - found.before[name]) > constants.SIGNIFICANT_EFFECT * u
 
 
 def _remedy_with(found: AcceptedEffect, name: str, signs: Mapping[str, float]) -> str:

@@ -73,7 +73,7 @@ def fit_plan(
     scatter |= {name: prior.spread for name, prior in fleet.items()}
     absent = ODD_TERMS if config.tyre.side == "symmetric" else frozenset()
     held = {name: scatter[name] for row in cover for name in row.held if name not in absent}
-    extra = ["Q_RE0"] if rig and config.rolling_radius else []
+    extra = ["Q_RE0"] if rig and config.rolling_radius and measured.epsilon_gamma is not None else []
     if measured.epsilon_gamma is not None and config.spin.pecp1 == "model":
         extra.append("PECP1")
     elif measured.epsilon_gamma is not None:

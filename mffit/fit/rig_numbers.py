@@ -42,16 +42,19 @@ def _misaligned(measured: Any, setup: str) -> float:
 
 
 def rig_numbers(config: Any, measured: Any, setups: Sequence[str] = ()) -> tuple[FreeNumber, ...]:
-    """The declared rig errors with their priors; none on a flat track.
+    """The declared rig errors with their priors; none on a flat track with one set-up.
 
     On a straight path ply-steer and conicity are free and absorb zeros that are off. With several ``setups``, every one has
     zeros of its own, and where repeated set-ups scatter more than declared, that scatter is the prior.
     """
-    if not config.rig.on_disc or measured.epsilon_gamma is None:
+    several, spin = len(setups) > 1, config.rig.on_disc and measured.epsilon_gamma is not None
+    if not several and not spin:
         return ()
-    usual = USUAL_CORNERING_STIFFNESS * measured.F_phit_load
+    usual = USUAL_CORNERING_STIFFNESS * (measured.F_phit_load if spin else config.tyre.nominal_load)
     declared = declared_rig(config.rig, measured.C_alpha.value if measured.C_alpha else usual)
-    if len(setups) > 1:
+    if not spin:
+        declared = {name: prior for name, prior in declared.items() if BY_NAME[name].of_setup}
+    if several:
         return _of_setups(declared, measured, setups)
     if measured.misaligned and measured.alpha_M is not None:
         # A zero beyond the declared uncertainty shows that the declaration was too tight.

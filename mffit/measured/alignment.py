@@ -12,8 +12,8 @@ import numpy as np
 from mffit.brief import Brief
 from mffit.constants import USUAL_CORNERING_STIFFNESS, USUAL_U_FORCE
 from mffit.errors import InputError
-from mffit.measured import constants, notes
-from mffit.measured.groups import LoadGroup, load_groups, zeros
+from mffit.measured import constants, notes, setup_notes
+from mffit.measured.groups import LoadGroup, last_setup, load_groups, zeros
 from mffit.points import Points, main_path
 from tir import Quantity, conventions
 
@@ -93,7 +93,8 @@ def align(
 
     Parameters
     ----------
-    points : with rows at zero sideslip and camber rolled both ways; ``iteration`` numbers repeated steps
+    points : with rows at zero sideslip and camber rolled both ways; ``iteration`` numbers repeated steps. Of several set-ups
+        on the usual path the last one is aligned
     axes : the rig's axes, in which the correction is returned
     C_alpha : cornering stiffness per load [1/rad], positive, where none is measured; default 10
     measured : results of the direct method by load [N]; its stiffness is used where its uncertainty is smallest
@@ -106,7 +107,9 @@ def align(
     """
     steps: list[AlignmentStep] = []
     for group in load_groups(points):
-        usual = LoadGroup(group.load, group.index[points.phi_t[group.index] == main_path(points)])
+        usual = last_setup(
+            points, LoadGroup(group.load, group.index[points.phi_t[group.index] == main_path(points)])
+        )
         steps += _steps(
             points, usual, axes, C_alpha or USUAL_CORNERING_STIFFNESS, (measured or {}).get(group.load)
         )
@@ -122,7 +125,13 @@ def align(
         for step in found.last
         if (difference := abs(step.F_forward - step.F_backward)) > limit
     )
-    return replace(found, warnings=tuple(off))
+    return replace(found, warnings=(*off, *_of_setup(points)))
+
+
+def _of_setup(points: Points) -> list[str]:
+    """A sentence on the set-up that is aligned, if the usual path was run in several."""
+    usual = np.unique(points.setup[points.phi_t == main_path(points)])
+    return [setup_notes.last_is_aligned(points.setups[usual[-1]])] if len(usual) > 1 else []
 
 
 class _Stiffness(NamedTuple):

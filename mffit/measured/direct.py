@@ -167,7 +167,8 @@ def at_the_axis(config: Config, points: Points, parts: Parts) -> dict[float, Axi
     for group in load_groups(evidence.points):
         C_alpha = _cornering_stiffness(evidence, group)
         paths = zeros_by_path(evidence.points, group, C_alpha, config) if evidence.rig else []
-        zero = paths[0].readings if paths else None
+        # Of several set-ups on the usual path the last one is aligned.
+        zero = [path for path in paths if path.phi_t == paths[0].phi_t][-1].readings if paths else None
         out[group.load] = AxisAtLoad(
             method.quantity(C_alpha, "N/rad"),
             zero.forward if zero else math.nan,

@@ -27,6 +27,12 @@ def load_groups(points: Points) -> tuple[LoadGroup, ...]:
     return tuple(LoadGroup(float(np.mean(points.Fz[part])), part) for part in parts)
 
 
+def last_setup(points: Points, group: LoadGroup) -> LoadGroup:
+    """The group's points of the last set-up among them."""
+    setup = points.setup[group.index]
+    return LoadGroup(group.load, group.index[setup == setup.max(initial=0)]) if len(setup) else group
+
+
 def zeros(points: Points, group: LoadGroup, direction: int) -> np.ndarray:
     """Indices of the group's points at zero sideslip and camber, rolling in ``direction`` (+1, -1)."""
     i = group.index

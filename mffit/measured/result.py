@@ -37,6 +37,11 @@ class SetupResult(NamedTuple):
     alpha_M: Quantity | None  #: sideslip misalignment [rad]; None without backward runs
     misaligned: bool  #: alpha_M is beyond what the rig's alignment leaves
 
+    @property
+    def path(self) -> str:
+        """The path in words."""
+        return f"{abs(1.0 / self.phi_t):.4g} m to the {'left' if self.phi_t < 0.0 else 'right'}"
+
 
 class SetupScatter(NamedTuple):
     """Scatter of the zeros of repeated set-ups on one path, beside what is declared; one-way analysis of variance."""

@@ -38,6 +38,10 @@ def sweeps_without_setup(files: Sequence[str]) -> str:
     )
 
 
+def last_is_aligned(name: str) -> str:
+    return f"the usual path was run in several set-ups; the correction is that of the last one, {name}"
+
+
 def setup_misaligned(name: str, alpha_M: Quantity) -> str:
     angle, u = math.degrees(alpha_M.value), math.degrees(alpha_M.u)
     return (

@@ -95,4 +95,6 @@ def origin(points: Points) -> dict[str, np.ndarray]:
     if np.any(curvature):
         columns["path_centre"] = np.where(points.phi_t < 0.0, "left", "right")
         columns["path_radius_m"] = radius.round(6)
+    if len(points.used_setups) > 1:
+        columns["setup"] = np.array(points.setups, dtype=object)[points.setup]
     return columns

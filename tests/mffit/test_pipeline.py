@@ -45,7 +45,7 @@ def test_a_built_file_contains_the_rig_errors_of_its_sweeps(small):
     settings = config.load(folder / "tyre.toml")
     file = tir.read(last_build(settings))
     assert fitted_to(file, settings)
-    found = rig_of_build(file, settings)
+    found = rig_of_build(file)
     for name, (value, _) in result.fit.rig.items():
         assert found[name] == pytest.approx(value, rel=1e-6), name
     assert abs(found["F0_N"] - 15.0) < 6.0
@@ -61,7 +61,7 @@ def test_a_file_fitted_to_other_sweeps_has_no_rig_errors_for_these(small, tmp_pa
     settings = config.load(tmp_path / "tyre.toml")
     assert not fitted_to(tir.read(folder / "out" / "small.tir"), settings)
     assert not fitted_to(truth(), settings)
-    assert rig_of_build(truth(), settings) is None
+    assert rig_of_build(truth()) is None
 
 
 def test_the_build_explains_its_own_points(small):

@@ -203,13 +203,18 @@ def table(name: str, rows: list[Found]) -> list[str]:
 def main() -> None:
     ask = argparse.ArgumentParser()
     ask.add_argument("rigs", type=int, nargs="?", default=200, help="per world")
+    ask.add_argument("--first", type=int, default=0, help="seed of the first rig")
     ask.add_argument("--jobs", type=int, default=1)
     ask.add_argument("--worlds", nargs="*", default=list(WORLDS))
     ask.add_argument(
         "--build", action="store_true", help="build whole files, which know the bias of finite spin"
     )
     given = ask.parse_args()
-    jobs = [(seed, name, given.build) for name in given.worlds for seed in range(given.rigs)]
+    jobs = [
+        (seed, name, given.build)
+        for name in given.worlds
+        for seed in range(given.first, given.first + given.rigs)
+    ]
     found: dict[str, list[Found]] = {name: [] for name in given.worlds}
     with ProcessPoolExecutor(given.jobs) as pool:
         for name, row in pool.map(one, jobs, chunksize=4):

@@ -6,8 +6,9 @@ from collections.abc import Mapping
 
 from mffit.diagnosis import wording
 from mffit.fit import Coefficient
+from mffit.measured import setup_notes
 from mffit.quantities import CHANNELS
-from mffit.report.text.direct import spin_numbers
+from mffit.report.text.direct import setups_table, spin_numbers
 from mffit.report.text.layout import blocks, paragraphs, table, wrapped
 from mffit.results import BuildResult
 from mffit.rounding import number, times
@@ -23,6 +24,9 @@ def build_summary(result: BuildResult) -> str:
     parts += [wrapped(sentence) for sentence in fit.explanations[:1]]
     if result.measured.epsilon_gamma is not None:
         parts.append(spin_numbers(result.measured))
+        parts.append(setups_table(result.measured))
+        scatter = result.measured.setup_scatter
+        parts.append(wrapped(setup_notes.setup_scatter(scatter)) if scatter else "")
     noise = {name: finite_median(getattr(result.points, f"u_{name}")) for name in CHANNELS}
     rows = [
         (

@@ -43,6 +43,7 @@ def spin_summary(measured: Measured) -> str:
         budget_table(measured.budget, measured.epsilon_gamma.u),
         _improve_first(measured.budget, measured.epsilon_gamma.u),
         _per_load(measured.per_load),
+        setups_table(measured),
         paragraphs(measured.notes),
     ]
     return blocks(parts)
@@ -100,6 +101,31 @@ def _other_estimates(measured: Measured, row: LoadResult) -> list[str]:
     found = [f"{name} {as_good_as(value, u)}" for name, value in plain.items() if value is not None]
     with_own_u = {"debiased": measured.epsilon_gamma_debiased, "Mz": row.epsilon_moment}
     return found + [f"{name} {stated(value)}" for name, value in with_own_u.items() if value is not None]
+
+
+def setups_table(measured: Measured) -> str:
+    """What the zeros of every set-up give by themselves at the nominal load; empty if there is one on one path."""
+    rows = measured.nominal.setups if measured.nominal else ()
+    if not rows:
+        return ""
+    head = (
+        "set-up",
+        "path centre",
+        DIRECT["epsilon_gamma"].ascii,
+        DIRECT["F_phit"].column(DIRECT["F_phit"].ascii),
+        CONDITIONS["alpha_deg"].column(DIRECT["alpha_M"].ascii),
+    )
+    cells = [
+        (
+            row.name or "-",
+            row.path,
+            stated(row.epsilon_gamma),
+            stated(row.F_phit),
+            stated(row.alpha_M, scale=math.degrees(1.0)),
+        )
+        for row in rows
+    ]
+    return table(head, cells, left=2)
 
 
 def _improve_first(budget: Sequence[Contribution], total: float) -> str:

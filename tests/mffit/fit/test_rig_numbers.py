@@ -8,7 +8,7 @@ from types import SimpleNamespace
 import pytest
 
 from mffit import config
-from mffit.fit.rig_numbers import known_faults, rig_numbers
+from mffit.fit.rig_numbers import known_faults, known_zeros, rig_numbers
 from tir import Quantity
 
 DOUBTS = {
@@ -89,6 +89,42 @@ def test_without_a_sideslip_sweep_ten_per_load_turns_the_force_into_an_angle():
 )  # fmt: skip
 def test_what_is_exact_is_no_number_of_the_fit(key, name):
     assert name not in by_name(rig(**{key: 0.0}), direct())
+
+
+def test_every_set_up_has_zeros_of_its_own_as_declared():
+    """The zero of Mz, which no key declares, has its usual size; what is no zero is of the rig."""
+    measured = direct(setup_scatter=None, nominal=None)
+    alone = by_name(rig(), measured)
+    found = {n.name: n for n in rig_numbers(rig(), measured, ("A", "B"))}
+    zeros = ("F0_N", "gamma_0_deg", "alpha_0_deg")
+    for setup in "AB":
+        for name in zeros:
+            one, several = alone[name], found[f"{name}@{setup}"]
+            assert (several.expected, several.spread) == (one.expected, one.spread)
+        assert found[f"M0_Nm@{setup}"].spread == 1.0
+    assert set(found) - {f"{n}@{s}" for n in (*zeros, "M0_Nm") for s in "AB"} == set(alone) - set(zeros)
+
+
+def test_a_straight_path_with_several_set_ups_has_their_zeros_only():
+    """Ply-steer and conicity can absorb the zeros of one set-up, not those of two."""
+    flat = rig(type="flat-track", path_radius=None, u_path_radius=None)
+    measured = direct(epsilon_gamma=None, setup_scatter=None, nominal=None)
+    names = {number.name.partition("@")[0] for number in rig_numbers(flat, measured, ("A", "B"))}
+    assert names == {"F0_N", "gamma_0_deg", "alpha_0_deg", "M0_Nm"}
+
+
+def test_the_misalignment_of_a_set_up_is_its_own():
+    rows = (
+        SimpleNamespace(name="A", alpha_M=Quantity(math.radians(0.02), 1e-4, "rad"), misaligned=False),
+        SimpleNamespace(name="B", alpha_M=ALPHA_M, misaligned=True),
+    )
+    measured = direct(setup_scatter=None, nominal=SimpleNamespace(setups=rows), misaligned=False)
+    assert known_zeros(measured, ("A", "B")) == {"alpha_0_deg@B": pytest.approx(0.7)}
+    assert known_zeros(measured, ("A",)) == {}
+    assert known_faults(rig(), direct(misaligned=True), ("A", "B"))["alpha_0_deg"] == 0.0
+    found = {n.name: n.spread for n in rig_numbers(rig(), measured, ("A", "B"))}
+    assert found["alpha_0_deg@B"] == pytest.approx(0.7)
+    assert found["alpha_0_deg@A"] == pytest.approx(math.degrees(20.0 / 18000.0))
 
 
 def test_a_straight_path_and_a_rig_without_measured_spin_have_none():

@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from mffit.parts import split
-from mffit.points import make_points
+from mffit.points import concatenate, make_points
 
 COMMON = dict(Fz=1500.0, p=250e3, V=6.0, phi_t=-1 / 1.323, u_Fy=6.0, u_Mz=0.6)
 
@@ -169,3 +169,17 @@ def test_settings_count_as_the_same_up_to_the_tolerance(name, value, tolerance, 
     first = np.radians(2.0) if name == "alpha" else value
     points = make_points(**condition | {name: np.array([first, value + share * tolerance])})
     assert split(points).paired[0] == paired
+
+
+def test_points_of_different_set_ups_are_no_mirrors():
+    """The zeros of a load cell that was set up anew in between would be taken for side force."""
+    points, odd, _ = sweep(np.array([-6.0, -3, -1, 0, 1, 3, 6]))
+    anew = points.replace(
+        setup=1 * (points.alpha > 0.0), setups=("A", "B"), Fy=points.Fy + 20.0 * (points.alpha > 0.0)
+    )
+    parts = split(anew)
+    assert set(parts.paired[points.alpha != 0.0]) == {"unpaired"}
+    both = concatenate(
+        [anew.replace(setup=0, Fy=points.Fy), points.replace(setups=("B",), Fy=points.Fy + 20.0)]
+    )
+    np.testing.assert_allclose(split(both).Fy_odd, np.tile(odd, 2), atol=1e-9)

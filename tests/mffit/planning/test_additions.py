@@ -11,6 +11,7 @@ from small_rigs import LOADS, disc, flat, simulated
 from mffit import config as configuration
 from mffit import points as ingestion
 from mffit.planning import ADDITIONS, candidates
+from mffit.points import concatenate
 
 DOCS = Path(__file__).parents[3] / "docs" / "plan.md"
 R, R_E, SLIP, CAMBER, PRESSURE = 1.323, 0.3, 8.0, 45.0, 250e3
@@ -150,3 +151,19 @@ def test_the_documentation_lists_every_kind():
     text = DOCS.read_text(encoding="utf-8")
     missing = [addition.id for addition in ADDITIONS if f"`{addition.id}`" not in text]
     assert not missing, f"docs/plan.md lacks {', '.join(missing)}"
+
+
+def test_a_run_on_another_path_is_a_new_set_up_and_says_so(runs):
+    for kind in ("other-side", "other-side-camber", "second-radius"):
+        assert "new set-up" in runs[kind][0].addition.reason
+    assert {run.points.setups for run in runs["other-side"]} == {("right",)}
+    assert {run.points.setups for run in runs["second-radius"]} == {("left-0.9261m",)}
+    for kind in ("zeros", "flipped", "backward-camber"):
+        assert runs[kind][0].points.setups == ("",)
+
+
+def test_a_run_on_a_path_that_was_run_is_in_its_set_up(programme):
+    config, points = programme
+    other = points.select(points.sweep == 0).replace(phi_t=-points.phi_t[0], setups=("may",))
+    found = candidates(config, concatenate([points, other]), R_E)
+    assert {run.points.setups for run in found if run.addition.id == "other-side"} == {("may",)}
