@@ -24,7 +24,8 @@ from mffit.fit.rolling import rolling_resistance
 from mffit.fit.staged import fit_staged
 from mffit.fit.start import starting_values
 from mffit.fit.virtual_zero import epsilon_gamma_of_model
-from mffit.fit.wording import explanations, warnings
+from mffit.fit.wording import explanations, warnings, zeros_sentence
+from mffit.fit.zeros import turning_zeros
 from mffit.parts import Parts
 from mffit.points import Points
 from mffit.progress import Progress, silent
@@ -59,8 +60,9 @@ def fit(
     began = time.perf_counter()
     fleet = of_fleet(config)
     known = known_before_fit(config, points, measured, base, fleet)
-    start = starting_values(known.values, points, measured)
-    plan = fit_plan(config, points, measured, known, start, fleet)
+    turning = turning_zeros(known.values, points, measured)
+    start = starting_values(known.values, points, measured) | (turning.start if turning else {})
+    plan = fit_plan(config, points, measured, known, start, fleet, turning)
     problem = fit_problem(config, points, measured, known.values)
     fitted, doubts = _fitted_and_judged(config, problem, start, plan, progress)
     readings = fitted.simulation.readings(points)
@@ -78,6 +80,8 @@ def fit(
     channels = agreement.with_points(readings, points)
     r2 = {name: found.r2 for name, found in channels.items()}
     distrusted = distrust(points, readings, fitted.scale, r2)
+    zeros = zeros_sentence(turning, fitted, from_base=base is not None) if turning else ""
+    contradicted = turning is not None and turning.contradicted and base is not None
     return FitResult(
         tyre=files.by_use["turn-slip" if config.rig.on_disc else "normal"].tyre,
         written=files.by_use[use].tyre,
@@ -91,8 +95,10 @@ def fit(
         posterior=fitted.posterior,
         stages=fitted.stages,
         coverage=plan.cover,
-        explanations=tuple(explanations(config, files, known.values, measured)),
-        warnings=warnings(fitted, distrusted, doubts, outlying),
+        explanations=tuple(
+            explanations(config, files, known.values, measured, "" if contradicted else zeros)
+        ),
+        warnings=warnings(fitted, distrusted, doubts, outlying, zeros if contradicted else ""),
         seconds=time.perf_counter() - began,
         epsilon_gamma_model=_epsilon_gamma(known.values, points, measured),
         doubts=doubts,

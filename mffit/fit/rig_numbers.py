@@ -21,11 +21,11 @@ def known_faults(config: Any, measured: Any) -> Faults:
 
 
 def rig_numbers(config: Any, measured: Any) -> tuple[FreeNumber, ...]:
-    """The declared rig errors with their priors; none on a flat track.
+    """The declared rig errors with their priors; none on a flat track, or on a disc without zeros.
 
     On a straight path ply-steer and conicity are free and absorb zeros that are off.
     """
-    if not config.rig.on_disc or measured.epsilon_gamma is None:
+    if not config.rig.on_disc or all(row.F_phit is None for row in measured.per_load):
         return ()
     usual = USUAL_CORNERING_STIFFNESS * measured.F_phit_load
     declared = declared_rig(config.rig, measured.C_alpha.value if measured.C_alpha else usual)

@@ -11,15 +11,21 @@ from mffit.fit.files import Files, file_names
 from mffit.fit.fitted import Fitted
 from mffit.fit.misfit import FileFigures
 from mffit.fit.ranges import single_pressure
+from mffit.fit.zeros import TurningZeros
+from mffit.rounding import to_uncertainty
 from mffit.suspicion import Doubt, Outlier, outliers_sentence
 
 
-def explanations(config: Any, files: Files, values: Mapping[str, Any], measured: Any) -> list[str]:
-    """Everything that the report explains about the files, the most important first."""
+def explanations(
+    config: Any, files: Files, values: Mapping[str, Any], measured: Any, zeros: str = ""
+) -> list[str]:
+    """Everything that the report explains about the files, the most important first; ``zeros`` is :func:`zeros_sentence`."""
     names = file_names(config.tyre.name, config.spin.exact, config.rig.on_disc)
     out = file_sentences(files, names)
     if measured.epsilon_gamma is not None:
         out.append(pecp1_sentence(config.spin.pecp1, float(values["PECP1"]), measured.epsilon_gamma.value))
+    if zeros:
+        out.append(zeros[0].upper() + zeros[1:] + ".")
     return out
 
 
@@ -122,11 +128,41 @@ def pecp1_sentence(source: str, PECP1: float, epsilon_gamma: float) -> str:
     )
 
 
+def zeros_sentence(zeros: TurningZeros, fitted: Fitted, *, from_base: bool) -> str:
+    """What zeros without a measured eps_gamma changed: the force before, the measured one, and which number was moved."""
+    source = "the base file gives" if from_base else "the usual values give"
+    begins = f"the base file contradicts the zeros: at {zeros.load:.0f} N it gives"
+    if not (from_base and zeros.contradicted):
+        begins = f"at {zeros.load:.0f} N {source}"
+    moved = [
+        f"{name} from {to_uncertainty(before, u)} to {to_uncertainty(fitted.values[name], u)} +- {to_uncertainty(u, u)}"
+        for name, before in zeros.before.items()
+        for u in [fitted.stderr[name]]
+    ]
+    force = zeros.force
+    rest = (
+        ""
+        if zeros.camber
+        else (
+            ". Without camber sweeps the zeros determine only the ratio of camber stiffness to 1 - PECP1, and the camber stiffness is "
+            "the one assumed before: a camber sweep separates the two"
+        )
+    )
+    return (
+        f"{begins} a turn-slip force of {zeros.expected:.0f} N on this path, and {to_uncertainty(force.value, force.u)} +- "
+        f"{to_uncertainty(force.u, force.u)} N was measured; the fit moved {' and '.join(moved)}{rest}"
+    )
+
+
 def warnings(
-    fitted: Fitted, distrusted: Sequence[str], doubts: Sequence[Doubt], outlying: Sequence[Outlier]
+    fitted: Fitted,
+    distrusted: Sequence[str],
+    doubts: Sequence[Doubt],
+    outlying: Sequence[Outlier],
+    zeros: str = "",
 ) -> tuple[str, ...]:
-    """All warnings of a fit, the most important first."""
-    out = [*distrusted]
+    """All warnings of a fit, the most important first; ``zeros`` is :func:`zeros_sentence` of a contradiction."""
+    out = [*distrusted, *([zeros] if zeros else [])]
     if fitted.attempts:
         attempts = ", ".join(fitted.attempts)
         out.append(f"the fit was started again from {attempts}; the best of all fits is kept")

@@ -99,7 +99,7 @@ def test_a_bent_valley_is_followed_to_the_ends_of_the_95_per_cent_interval():
     best = solve(problem.free(["x", "y"]), numbers, tolerance=1e-10)
     valley = follow(problem.with_values(best.values), numbers, best, {"x", "y"})
     assert valley is not None
-    assert valley.along == "x"
+    assert valley.along == ("x",)
     low, high = valley.intervals["y"]
     assert high == pytest.approx(1.96**2, rel=0.15)
     assert low == pytest.approx(-0.1, abs=0.02)
