@@ -144,7 +144,7 @@ def zeros_sentence(zeros: TurningZeros, fitted: Fitted, *, from_base: bool) -> s
         ""
         if zeros.camber
         else (
-            ". Without camber sweeps the zeros determine only the ratio of camber stiffness to 1 - PECP1, and the camber stiffness is "
+            ". Without camber sweeps the zeros determine only the ratio of camber stiffness to 1 - PECP1, and the stiffness is "
             "the one assumed before: a camber sweep separates the two"
         )
     )

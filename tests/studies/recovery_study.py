@@ -27,6 +27,7 @@ CAMPAIGNS = {
     "no base": Kind(base="none", tyre_off=0.1),
     "thin campaign": Kind(thin=True, tyre_off=0.1),
     "pressures at one load": Kind(one_load=True, tyre_off=0.1),
+    "upright": Kind(upright=True, tyre_off=0.1),
 }
 KINDS = {
     f"{sample.split('-')[0]}, {words}": replace(kind, sample=sample)
@@ -61,11 +62,11 @@ def tables(draws: dict[str, list[Draw]]) -> Iterable[str]:
             f"| {above[0]} | {above[1]} | {np.median([d.seconds for d in rows]):.2f} |"
         )
     yield "\n## Against the noise-free truth\n"
-    names = list(everything[0].error)
+    names = list(dict.fromkeys(name for d in everything for name in d.error))
     yield "| campaign | " + " | ".join(f"{n} rms (largest)" for n in names) + " |"
     yield "|---" * (len(names) + 1) + "|"
     for kind, rows in draws.items():
-        cells = [np.array([d.error[n] for d in rows]) for n in names]
+        cells = [np.array([d.error.get(n, np.nan) for d in rows]) for n in names]
         texts = [f"{np.sqrt(np.mean(c**2)):.3g} ({np.max(np.abs(c)):.3g})" for c in cells]
         yield f"| {kind} | " + " | ".join(texts) + " |"
     yield "\n## Share of the truth inside 95 % intervals\n"
