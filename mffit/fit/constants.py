@@ -98,6 +98,14 @@ BETTER_ON_PROFILE = Real(
     0.999, "-", "A fit met on a profile is better if its sum of squares is below this share."
 )
 
+# Bands
+WIDER_BANDS = Real(
+    1.5, "-", "Ratio of bands between pressures to those at the usual one above which the report explains it."
+)
+BAND_GRID = Series(
+    (3, 3, 9), "-", "Loads, camber angles and sideslip angles over which these widths are averaged."
+)
+
 # Ensemble
 DRAWS_PER_MEMBER = Count(3, "-", "Most draws per member of an ensemble; some break a physical limit.")
 DRAWN_LIMIT_MARGINS = Real(2.0, "-", "Violation of a limit, over the margin, that a drawn tyre may have.")

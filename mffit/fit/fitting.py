@@ -11,8 +11,10 @@ import numpy as np
 from mffit.config import axis_signs
 from mffit.config.declared import as_declared
 from mffit.fit import agreement
+from mffit.fit.bands import bands_by_pressure
 from mffit.fit.coefficients import coefficient_records, of_file
 from mffit.fit.comments import file_comments
+from mffit.fit.coverage import why_held
 from mffit.fit.files import make_files
 from mffit.fit.fitted import Fitted
 from mffit.fit.known import known_after_fit, known_before_fit
@@ -24,11 +26,12 @@ from mffit.fit.rolling import rolling_resistance
 from mffit.fit.staged import fit_staged
 from mffit.fit.start import starting_values
 from mffit.fit.virtual_zero import epsilon_gamma_of_model
-from mffit.fit.wording import explanations, warnings, zeros_sentence
+from mffit.fit.wording import bands_sentence, explanations, warnings, zeros_sentence
 from mffit.fit.zeros import turning_zeros
 from mffit.parts import Parts
 from mffit.points import Points
 from mffit.progress import Progress, silent
+from mffit.rig import Simulation
 from mffit.suspicion import Doubt, FittedModel, JudgedSweeps, When, after_the_fit, distrust, outliers
 from tir import Tyre
 
@@ -82,6 +85,11 @@ def fit(
     distrusted = distrust(points, readings, fitted.scale, r2)
     zeros = zeros_sentence(turning, fitted, from_base=base is not None) if turning else ""
     contradicted = turning is not None and turning.contradicted and base is not None
+    tyre = Simulation(known.values, turn_slip=config.rig.on_disc)
+    bands = bands_by_pressure(fitted.posterior, fitted.held, tyre, points)
+    widened = bands_sentence(
+        bands, fitted.held, known.values, why_held(bands.unseen, points, config.tyre.side or "left")
+    )
     return FitResult(
         tyre=files.by_use["turn-slip" if config.rig.on_disc else "normal"].tyre,
         written=files.by_use[use].tyre,
@@ -93,10 +101,12 @@ def fit(
         Fy_model=readings.Fy,
         Mz_model=readings.Mz,
         posterior=fitted.posterior,
+        bands=bands,
+        bands_note=widened,
         stages=fitted.stages,
         coverage=plan.cover,
         explanations=tuple(
-            explanations(config, files, known.values, measured, "" if contradicted else zeros)
+            explanations(config, files, known.values, measured, "" if contradicted else zeros, widened)
         ),
         warnings=warnings(fitted, distrusted, doubts, outlying, zeros if contradicted else ""),
         seconds=time.perf_counter() - began,

@@ -9,6 +9,7 @@ import numpy as np
 
 from mffit.brief import Brief
 from mffit.fit.agreement import Agreement
+from mffit.fit.bands import BandsByPressure
 from mffit.fit.coefficients import Coefficient
 from mffit.fit.coverage import StageCoverage
 from mffit.fit.files import Files
@@ -45,6 +46,8 @@ class FitResult(Brief):
     outliers: tuple[Outlier, ...] = ()  #: single readings without weight
     distrusted: tuple[str, ...] = ()  #: why the file is not to be trusted; the first of the warnings too
     search: Fitted | None = None  #: the end of the search, from which tyres are drawn
+    bands: BandsByPressure | None = None  #: where the bands of Fy are narrow
+    bands_note: str = ""  #: why they are wider at other pressures; empty if they are not
     files: Files | None = None  #: every written file and its misfit
 
     @property

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from mffit.fit.bands import BandsByPressure
 from mffit.fit.files import Files, file_names
 from mffit.fit.fitted import Fitted
 from mffit.fit.misfit import FileFigures
@@ -17,16 +18,14 @@ from mffit.suspicion import Doubt, Outlier, outliers_sentence
 
 
 def explanations(
-    config: Any, files: Files, values: Mapping[str, Any], measured: Any, zeros: str = ""
+    config: Any, files: Files, values: Mapping[str, Any], measured: Any, *more: str
 ) -> list[str]:
-    """Everything that the report explains about the files, the most important first; ``zeros`` is :func:`zeros_sentence`."""
+    """Everything that the report explains about the files, the most important first; ``more`` sentences come last."""
     names = file_names(config.tyre.name, config.spin.exact, config.rig.on_disc)
     out = file_sentences(files, names)
     if measured.epsilon_gamma is not None:
         out.append(pecp1_sentence(config.spin.pecp1, float(values["PECP1"]), measured.epsilon_gamma.value))
-    if zeros:
-        out.append(zeros[0].upper() + zeros[1:] + ".")
-    return out
+    return [*out, *(sentence[0].upper() + sentence[1:] + "." for sentence in more if sentence)]
 
 
 def file_sentences(files: Files, names: Mapping[str, str]) -> list[str]:
@@ -125,6 +124,31 @@ def pecp1_sentence(source: str, PECP1: float, epsilon_gamma: float) -> str:
     return (
         f"PECP1 = {PECP1:.4f} is the joint estimate of tyre and rig, in which every point counts with its noise and every "
         f"rig error with its declared uncertainty. The directly measured eps_gamma is {epsilon_gamma:.4f}."
+    )
+
+
+def bands_sentence(
+    bands: BandsByPressure, held: Mapping[str, float], values: Mapping[str, Any], why: str
+) -> str:
+    """Where the bands hold; ``held`` are standard uncertainties, ``why`` is what the sweeps lack for the widening coefficient.
+
+    Empty where they are about as narrow at all pressures.
+    """
+    if not bands.wider:
+        return ""
+    nominal = float(values["NOMPRES"])
+    others = ", ".join(f"{p / 1e3:.0f}" for p in bands.others)
+    at_nominal = ""
+    if nominal in bands.others:
+        at_nominal = (
+            f". Coefficients are values at the nominal {nominal / 1e3:.0f} kPa: PKY1 and PKY2 share this uncertainty, which "
+            "cancels at the pressure of the sweeps"
+        )
+    return (
+        f"the 95 % bands of the side force are +-{bands.half:.0f} N (rms over the tested angles and loads) at the "
+        f"{bands.main / 1e3:.0f} kPa of most sweeps, and +-{bands.half_of_others:.0f} N at {others} kPa: {bands.share:.0%} of "
+        f"that variance is {bands.unseen}, which keeps its expected value {float(values[bands.unseen]):.2g} with a standard "
+        f"uncertainty of {held[bands.unseen]:.2g} ({why}){at_nominal}"
     )
 
 
