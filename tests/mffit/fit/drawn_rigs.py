@@ -20,6 +20,7 @@ import mffit
 import tir
 from mffit import virtual_rig
 from mffit.errors import InputError
+from mffit.fit.priors import scatter
 from mffit.points import make_points
 from mffit.rig import Simulation
 from mffit.scatter import rms
@@ -41,9 +42,9 @@ class Kind:
     sample: str = "front-120-70"
     base: str = "another's"  #: "another's": up to 30 % off in every coefficient; "sample's"; "none"
     thin: bool = False  #: half of the angles, one pressure
-    one_load: bool = (
-        False  #: pressures at the lowest load only, and a base file without pressure and shift terms
-    )
+    one_load: bool = False
+    """Pressures at the lowest load only, a base file without pressure and shift terms, and a tyre whose pressure terms are drawn
+    from the priors that the fit has for them."""
     upright: bool = False  #: sideslip sweeps and zeros only
     rig_off: float = 1.0  #: how many times the declared uncertainties the rig's errors are drawn from
     tyre_off: float = 0.0  #: how far the tyre's coefficients may be from the sample's, relative
@@ -74,7 +75,8 @@ class Draw:
     refused: str = ""  #: the sentence with which it ended; everything else is empty then
 
 
-PRESSURE_AND_SHIFTS = ("PPY1", "PPY2", "PPY3", "PPY4", "PPY5", "PPZ1", "PPZ2", "PHY1", "PHY2", "PVY1", "PVY2")
+PRESSURE = ("PPY1", "PPY2", "PPY3", "PPY4", "PPY5", "PPZ1", "PPZ2")
+SHIFTS = ("PHY1", "PHY2", "PVY1", "PVY2")
 DECLARED = {"u_loadcell_offset_N": 10.0, "u_camber_alignment_deg": 0.5, "u_slip_alignment_N": 25.0}
 """Those declared uncertainties of the sample rigs that ``rig_off`` multiplies, beside that of the camber skew."""
 
@@ -100,6 +102,8 @@ def one_rig(seed: int, kind: Kind = Kind(base="sample's")) -> Draw:
     rng = np.random.default_rng(1000 + seed)
     sample = SAMPLES / kind.sample
     true = _scaled(tir.read(sample / "true.tir").replace(**NO_FORCE_AT_REST), kind.tyre_off, rng)
+    if kind.one_load:
+        true = true.replace(**_drawn_from_priors(PRESSURE, rng))
     content = plan_content(sample, pecp1=kind.pecp1, thin=kind.thin)
     declared = {**content["rig"], **DECLARED, "u_camber_skew_deg": 0.1}
     content["rig"] = {
@@ -124,7 +128,7 @@ def one_rig(seed: int, kind: Kind = Kind(base="sample's")) -> Draw:
         if kind.base == "another's":
             other = _scaled(true, 0.3, rng)
             if kind.one_load:
-                other = other.replace(**dict.fromkeys(PRESSURE_AND_SHIFTS, 0.0))
+                other = other.replace(**dict.fromkeys((*PRESSURE, *SHIFTS), 0.0))
             if kind.upright:
                 other = other.replace(PECP1=0.5)
             other.write(folder / "rig" / "other.tir")
@@ -135,6 +139,11 @@ def one_rig(seed: int, kind: Kind = Kind(base="sample's")) -> Draw:
         except InputError as error:
             return Draw(refused=str(error))
     return _compared(result, true, known.to_json(), rng)
+
+
+def _drawn_from_priors(names: tuple[str, ...], rng: np.random.Generator) -> dict[str, float]:
+    """Coefficients that a base file does not state."""
+    return {n: scatter(n, 0.0, from_base=True, curved=True) * rng.standard_normal() for n in names}
 
 
 def _at_the_lowest_load(content: dict[str, Any]) -> None:
