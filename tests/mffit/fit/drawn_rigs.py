@@ -43,8 +43,8 @@ class Kind:
     base: str = "another's"  #: "another's": up to 30 % off in every coefficient; "sample's"; "none"
     thin: bool = False  #: half of the angles, one pressure
     one_load: bool = False
-    """Pressures at the lowest load only, a base file without pressure and shift terms, and a tyre whose pressure terms are drawn
-    from the priors that the fit has for them."""
+    """Most sweeps 40 kPa below the nominal pressure, other pressures at the lowest load only, a base file without pressure and
+    shift terms, and a tyre whose pressure terms are drawn from the priors that the fit has for them."""
     upright: bool = False  #: sideslip sweeps and zeros only
     rig_off: float = 1.0  #: how many times the declared uncertainties the rig's errors are drawn from
     tyre_off: float = 0.0  #: how far the tyre's coefficients may be from the sample's, relative
@@ -147,11 +147,12 @@ def _drawn_from_priors(names: tuple[str, ...], rng: np.random.Generator) -> dict
 
 
 def _at_the_lowest_load(content: dict[str, Any]) -> None:
-    """Moves every sweep at another pressure to the lowest load."""
-    load = min(row["load_N"] for row in content["sweep"])
+    """Moves every sweep at another pressure to the lowest load, and all pressures off the nominal one."""
+    load, nominal = min(row["load_N"] for row in content["sweep"]), content["tyre"]["nominal_pressure"]
     for row in content["sweep"]:
         if "p_kPa" in row:
             row["load_N"] = load
+        row["p_kPa"] = row.get("p_kPa", nominal) - 40.0
 
 
 def _scaled(tyre: tir.Tyre, off: float, rng: np.random.Generator) -> tir.Tyre:
@@ -188,11 +189,11 @@ def _compared(result: Any, true: tir.Tyre, known: Mapping[str, Any], rng: np.ran
     for place, phi_t in (("disc", -1.0 / 1.323), ("straight", 0.0)):
         Fy, Mz = model_error(fit.tyre, true, phi_t, np.unique(np.round(points.Fz, -2)))
         draw.error[f"Fy on {place} [N]"], draw.error[f"Mz on {place} [Nm]"] = Fy, Mz
-        main = {"PRESMIN": true["NOMPRES"], "PRESMAX": true["NOMPRES"]}
+        main = dict.fromkeys(("PRESMIN", "PRESMAX"), float(np.median(points.p)))
         tested, written = fit.files.tested, fit.files.written
         for name, ranges in (
             ("tested", tested),
-            ("tested, nominal pressure", {**tested, **main}),
+            ("tested, usual pressure", {**tested, **main}),
             ("written", written),
         ):
             for channel, band in _in_bands(fit, true, ranges, phi_t, rng).items():
