@@ -12,6 +12,7 @@ from typing import Any
 
 from mffit.constants import COVERAGE_FACTOR_95
 from mffit.fit import constants
+from mffit.fit.start import camber_stiffness_terms
 from mffit.fit.virtual_zero import zero_points
 from mffit.measured import Measured
 from mffit.points import Points
@@ -20,7 +21,6 @@ from tir import Quantity
 from tir.parameters import BY_NAME
 
 CAMBER_REDUCTION = "PECP1"
-CAMBER_STIFFNESS = "PKY6"
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,15 +48,23 @@ def turning_zeros(values: Mapping[str, Any], points: Points, measured: Measured)
     if measured.epsilon_gamma is not None or not rows:
         return None
     row = min(rows, key=lambda row: abs(row.load - float(values["FNOMIN"])))
-    assert row.F_phit is not None
-    loads = len({row.load for row in rows})
-    expected = float(Simulation(values).readings(zero_points(points, row.load)).Fy.mean())
-    start = _start(values, row.F_phit.value / expected if expected else 0.0)
-    if loads > 1:  # and with the loads, that of the camber stiffness
+    force = row.F_phit
+    assert force is not None
+    zero = zero_points(points, row.load)
+    expected = float(Simulation(values).readings(zero).Fy.mean())
+    start = _start(values, force.value / expected if expected else 0.0)
+    if not start:
+        # The camber stiffness that gives the measured C_phit = R0 |K_yg0| / (1 - PECP1) with the PECP1 of before.
+        PECP1 = min(float(values[CAMBER_REDUCTION]), float(constants.LARGEST_CAMBER_REDUCTION))
+        C_phit = force.value / float(zero.phi_t[0])
+        C_gamma = -(1.0 - PECP1) * C_phit / float(values["UNLOADED_RADIUS"])
+        terms = camber_stiffness_terms(values, {row.load: C_gamma}, float(zero.p[0]))
+        start = {CAMBER_REDUCTION: PECP1, "PKY6": terms["PKY6"]}
+    if len(rows) > 1:  # the loads show how the camber stiffness changes with load
         start["PKY7"] = float(values["PKY7"])
     return TurningZeros(
         load=row.load,
-        force=row.F_phit,
+        force=force,
         expected=expected,
         before={name: float(values[name]) for name in start},
         start=start,
@@ -65,13 +73,10 @@ def turning_zeros(values: Mapping[str, Any], points: Points, measured: Measured)
 
 
 def _start(values: Mapping[str, Any], ratio: float) -> dict[str, float]:
-    """Values that multiply the turn-slip force by ``ratio``, to first order.
+    """PECP1 that multiplies the turn-slip force by ``ratio``, to first order; empty if no plausible one does.
 
-    It is proportional to PKY6 / (1 - PECP1). If no plausible PECP1 gives it, the camber stiffness is wrong too.
+    The force is proportional to the camber stiffness over 1 - PECP1.
     """
-    before = {name: float(values[name]) for name in (CAMBER_REDUCTION, CAMBER_STIFFNESS)}
     lowest, highest = BY_NAME[CAMBER_REDUCTION].lower, constants.LARGEST_CAMBER_REDUCTION
-    PECP1 = 1.0 - (1.0 - before[CAMBER_REDUCTION]) / ratio if ratio else float(highest)
-    if lowest < PECP1 < highest:
-        return {CAMBER_REDUCTION: PECP1}
-    return before
+    PECP1 = 1.0 - (1.0 - float(values[CAMBER_REDUCTION])) / ratio if ratio else float(highest)
+    return {CAMBER_REDUCTION: PECP1} if lowest < PECP1 < highest else {}

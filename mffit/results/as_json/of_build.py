@@ -10,6 +10,7 @@ from typing import Any
 
 from mffit import fleet as combining
 from mffit.fit import Coefficient, FitResult
+from mffit.fit.bands import BandsByPressure
 from mffit.fit.files import Files
 from mffit.measured import KEYS, LoadResult, Measured
 from mffit.results.as_json.values import picked, plain, stated
@@ -60,6 +61,7 @@ def fit(found: FitResult) -> dict[str, Any]:
         "rig": {
             name: {"value": value, "stderr": u, "unit": UNITS[name]} for name, (value, u) in found.rig.items()
         },
+        "bands": _bands(found.bands) if found.bands is not None else None,
         "posterior": plain(picked(found.posterior, "names", "covariance")),
         "stages": [
             picked(stage, "name", "parameters") | {"rmse_Fy_N": stage.rmse_Fy, "rmse_Mz_Nm": stage.rmse_Mz}
@@ -102,6 +104,18 @@ def _load(row: LoadResult | None) -> dict[str, Any]:
     out |= stated("epsilon_gamma_moment", row.epsilon_moment)
     out |= stated("alpha_M_deg", row.alpha_M, scale=math.degrees(1.0))
     return out | {"F_forward_N": row.F_forward, "F_backward_N": row.F_backward}
+
+
+def _bands(found: BandsByPressure) -> dict[str, Any]:
+    """Rms half widths of the 95 % bands of Fy at the usual pressure and at the others, and what widens the latter."""
+    return {
+        "pressure_kPa": found.main / 1e3,
+        "Fy_N": found.half,
+        "other_pressures_kPa": [p / 1e3 for p in found.others],
+        "other_Fy_N": found.half_of_others if found.others else None,
+        "unseen": found.unseen or None,
+        "share": found.share,
+    }
 
 
 def _coefficient(found: Coefficient) -> dict[str, Any]:
