@@ -13,8 +13,8 @@ from mffit.fit.posterior import Posterior, spread_through
 from mffit.fit.ranges import tested_ranges
 from mffit.points import Points, levels, main_pressure, make_points
 from mffit.rig import Simulation
-from mffit.rig_errors import BY_NAME as RIG_ERRORS
 from mffit.scatter import rms
+from tir.parameters import BY_NAME
 
 
 @dataclass(frozen=True, slots=True)
@@ -74,7 +74,7 @@ def _half(slopes: np.ndarray, posterior: Posterior) -> np.ndarray:
 
 
 def _coefficients(posterior: Posterior) -> list[int]:
-    return [i for i, name in enumerate(posterior.names) if name not in RIG_ERRORS]
+    return [i for i, name in enumerate(posterior.names) if name in BY_NAME]
 
 
 def _over_tested(

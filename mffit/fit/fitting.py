@@ -11,27 +11,25 @@ import numpy as np
 from mffit.config import axis_signs
 from mffit.config.declared import as_declared
 from mffit.fit import agreement
-from mffit.fit.bands import bands_by_pressure
 from mffit.fit.coefficients import coefficient_records, of_file
 from mffit.fit.comments import file_comments
-from mffit.fit.coverage import why_held
 from mffit.fit.files import make_files
 from mffit.fit.fitted import Fitted
 from mffit.fit.known import known_after_fit, known_before_fit
 from mffit.fit.plan import FitPlan, fit_plan
 from mffit.fit.priors import of_fleet
 from mffit.fit.problem import FitProblem, fit_problem
+from mffit.fit.remarks import with_remarks
 from mffit.fit.result import FitResult
 from mffit.fit.rolling import rolling_resistance
 from mffit.fit.staged import fit_staged
 from mffit.fit.start import starting_values
 from mffit.fit.virtual_zero import epsilon_gamma_of_model
-from mffit.fit.wording import bands_sentence, explanations, warnings, zeros_sentence
+from mffit.fit.wording import explanations, warnings
 from mffit.fit.zeros import turning_zeros
 from mffit.parts import Parts
 from mffit.points import Points
 from mffit.progress import Progress, silent
-from mffit.rig import Simulation
 from mffit.suspicion import Doubt, FittedModel, JudgedSweeps, When, after_the_fit, distrust, outliers
 from tir import Tyre
 
@@ -83,14 +81,7 @@ def fit(
     channels = agreement.with_points(readings, points)
     r2 = {name: found.r2 for name, found in channels.items()}
     distrusted = distrust(points, readings, fitted.scale, r2)
-    zeros = zeros_sentence(turning, fitted, from_base=base is not None) if turning else ""
-    contradicted = turning is not None and turning.contradicted and base is not None
-    tyre = Simulation(known.values, turn_slip=config.rig.on_disc)
-    bands = bands_by_pressure(fitted.posterior, fitted.held, tyre, points)
-    widened = bands_sentence(
-        bands, fitted.held, known.values, why_held(bands.unseen, points, config.tyre.side or "left")
-    )
-    return FitResult(
+    found = FitResult(
         tyre=files.by_use["turn-slip" if config.rig.on_disc else "normal"].tyre,
         written=files.by_use[use].tyre,
         coefficients=of_file(files, use, coefficients),
@@ -101,14 +92,10 @@ def fit(
         Fy_model=readings.Fy,
         Mz_model=readings.Mz,
         posterior=fitted.posterior,
-        bands=bands,
-        bands_note=widened,
         stages=fitted.stages,
         coverage=plan.cover,
-        explanations=tuple(
-            explanations(config, files, known.values, measured, "" if contradicted else zeros, widened)
-        ),
-        warnings=warnings(fitted, distrusted, doubts, outlying, zeros if contradicted else ""),
+        explanations=tuple(explanations(config, files, known.values, measured)),
+        warnings=warnings(fitted, distrusted, doubts, outlying),
         seconds=time.perf_counter() - began,
         epsilon_gamma_model=_epsilon_gamma(known.values, points, measured),
         doubts=doubts,
@@ -117,6 +104,7 @@ def fit(
         search=fitted,
         files=files,
     )
+    return with_remarks(found, config, points, turning, from_base=base is not None)
 
 
 def _fitted_and_judged(

@@ -17,15 +17,13 @@ from mffit.rounding import to_uncertainty
 from mffit.suspicion import Doubt, Outlier, outliers_sentence
 
 
-def explanations(
-    config: Any, files: Files, values: Mapping[str, Any], measured: Any, *more: str
-) -> list[str]:
-    """Everything that the report explains about the files, the most important first; ``more`` sentences come last."""
+def explanations(config: Any, files: Files, values: Mapping[str, Any], measured: Any) -> list[str]:
+    """Everything that the report explains about the files, the most important first."""
     names = file_names(config.tyre.name, config.spin.exact, config.rig.on_disc)
     out = file_sentences(files, names)
     if measured.epsilon_gamma is not None:
         out.append(pecp1_sentence(config.spin.pecp1, float(values["PECP1"]), measured.epsilon_gamma.value))
-    return [*out, *(sentence[0].upper() + sentence[1:] + "." for sentence in more if sentence)]
+    return out
 
 
 def file_sentences(files: Files, names: Mapping[str, str]) -> list[str]:
@@ -179,14 +177,10 @@ def zeros_sentence(zeros: TurningZeros, fitted: Fitted, *, from_base: bool) -> s
 
 
 def warnings(
-    fitted: Fitted,
-    distrusted: Sequence[str],
-    doubts: Sequence[Doubt],
-    outlying: Sequence[Outlier],
-    zeros: str = "",
+    fitted: Fitted, distrusted: Sequence[str], doubts: Sequence[Doubt], outlying: Sequence[Outlier]
 ) -> tuple[str, ...]:
-    """All warnings of a fit, the most important first; ``zeros`` is :func:`zeros_sentence` of a contradiction."""
-    out = [*distrusted, *([zeros] if zeros else [])]
+    """All warnings of a fit, the most important first."""
+    out = [*distrusted]
     if fitted.attempts:
         attempts = ", ".join(fitted.attempts)
         out.append(f"the fit was started again from {attempts}; the best of all fits is kept")
