@@ -62,7 +62,7 @@ def fit(
     fleet = of_fleet(config)
     known = known_before_fit(config, points, measured, base, fleet)
     turning = turning_zeros(known.values, points, measured)
-    start = starting_values(known.values, points, measured) | (turning.start if turning else {})
+    start = starting_values(known.values, points, measured) | dict(turning.start if turning else {})
     plan = fit_plan(config, points, measured, known, start, fleet, turning)
     problem = fit_problem(config, points, measured, known.values)
     fitted, doubts = _fitted_and_judged(config, problem, start, plan, progress)

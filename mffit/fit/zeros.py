@@ -77,6 +77,6 @@ def _start(values: Mapping[str, Any], ratio: float) -> dict[str, float]:
 
     The force is proportional to the camber stiffness over 1 - PECP1.
     """
-    lowest, highest = BY_NAME[CAMBER_REDUCTION].lower, constants.LARGEST_CAMBER_REDUCTION
+    lowest, highest = BY_NAME[CAMBER_REDUCTION].bounds[0], constants.LARGEST_CAMBER_REDUCTION
     PECP1 = 1.0 - (1.0 - float(values[CAMBER_REDUCTION])) / ratio if ratio else float(highest)
     return {CAMBER_REDUCTION: PECP1} if lowest < PECP1 < highest else {}

@@ -180,8 +180,7 @@ def _compared(result: Any, true: tir.Tyre, known: Mapping[str, Any], rng: np.ran
         draw.error["eps_gamma debiased"] = measured.epsilon_gamma_debiased.value - known["epsilon_gamma"]
     for name, row in fit.coefficients.items():
         if row.stderr and row.interval and (name in STAGED or name == "PECP1") and not row.at_bound:
-            decided = row.status == "fitted" or name == "PECP1"
-            label = name if decided else f"{name} ({row.status})"
+            label = name if row.status == "fitted" else f"{name} ({row.status})"
             note(label, row.value, row.stderr, true[name], row.interval)
     for name, (value, u) in fit.rig.items():
         note(f"rig.{name}", value, u, known["faults"][name])
