@@ -37,9 +37,7 @@ def coefficient_records(
 
     ``fitted_after`` are coefficients that were fitted after the others.
     """
-    stderr = {name: fitted.posterior.stderr[name] for name in fitted.values} | {
-        n: q.u for n, q in fitted_after.items()
-    }
+    stderr = {name: fitted.stderr[name] for name in fitted.values} | {n: q.u for n, q in fitted_after.items()}
     out = {}
     for row in TABLE:
         if row.kind != "number":

@@ -29,6 +29,14 @@ LEAST_SPREAD_BASE_FILE = Real(
 LEAST_SPREAD_DEFAULT = Real(
     0.1, "-", "Smallest standard deviation around the table's default, over the plausible range."
 )
+CAMBER_REDUCTION_SPREAD = Real(
+    0.3, "-", "Standard deviation of PECP1 among tyres: near 0 for motorcycles, 0.5 to 0.7 for cars."
+)
+LARGEST_CAMBER_REDUCTION = Real(
+    0.9,
+    "-",
+    "Largest PECP1 that zeros without camber sweeps may suggest; beyond it the camber stiffness is wrong.",
+)
 SAME_NOMINAL_CONDITION = Real(
     0.01, "-", "Relative difference of nominal load or pressure up to which coefficients compare."
 )
@@ -77,6 +85,11 @@ REFIT_TOLERANCE = Real(1e-4, "-", "Relative gain that ends such a refit.")
 # Profiles of the sum of squares
 PROBE_DISTANCE = Real(2.0, "-", "Standard errors from the best fit at which the quadratic form is tested.")
 BENT_VALLEY_RATIO = Real(3.0, "-", "Ratio to the quadratic form above which the valley counts as bent.")
+SOFT_VALLEY_RATIO = Real(
+    2.0,
+    "-",
+    "Growth of a standard error, one standard error from the best fit, above which the valley counts as bent.",
+)
 PROBE_POINTS = Count(300, "-", "Points that suffice to show whether the valley is bent.")
 PROBED_DIRECTIONS = Count(8, "-", "Directions that are probed, the least determined ones.")
 PROFILE_STEPS = Count(7, "-", "Most steps along a bent valley to either side.")
@@ -86,6 +99,14 @@ WIDER_INTERVAL = Real(
 )
 BETTER_ON_PROFILE = Real(
     0.999, "-", "A fit met on a profile is better if its sum of squares is below this share."
+)
+
+# Bands
+WIDER_BANDS = Real(
+    1.5, "-", "Ratio of bands between pressures to those at the usual one above which the report explains it."
+)
+BAND_GRID = Series(
+    (3, 3, 9), "-", "Loads, camber angles and sideslip angles over which these widths are averaged."
 )
 
 # Ensemble

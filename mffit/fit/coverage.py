@@ -83,6 +83,11 @@ def coverage(points: Points, side: str) -> tuple[StageCoverage, ...]:
     return tuple(rows)
 
 
+def why_held(name: str, points: Points, side: str) -> str:
+    """What the data lack for a coefficient; empty if they determine it, and without a name."""
+    return _missing(BY_NAME[name], design(points, side)) if name else ""
+
+
 def _missing(row: Parameter, seen: Design) -> str:
     """Why these data do not determine the coefficient; empty if they do."""
     if row.channel == "Mz" and not seen.moment:

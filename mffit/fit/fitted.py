@@ -22,6 +22,8 @@ class Fitted:
     rig: Mapping[str, tuple[float, float]]  #: rig error -> (value, standard error)
     correlation: Mapping[str, tuple[str, float]]  #: strong ones only: number -> (partner, correlation)
     posterior: Posterior  #: of tyre and rig, held values included
+    stderr: Mapping[str, float]
+    """Standard uncertainty of every number: of the posterior, or from its 95 % interval where a bent valley makes this wider."""
     intervals: Mapping[str, tuple[float, float]]
     """95 % intervals of the numbers of a bent valley of equally good fits."""
     problem: FitProblem  #: at the solution, with the final weights

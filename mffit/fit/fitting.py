@@ -19,12 +19,14 @@ from mffit.fit.known import known_after_fit, known_before_fit
 from mffit.fit.plan import FitPlan, fit_plan
 from mffit.fit.priors import of_fleet
 from mffit.fit.problem import FitProblem, fit_problem
+from mffit.fit.remarks import with_remarks
 from mffit.fit.result import FitResult
 from mffit.fit.rolling import rolling_resistance
 from mffit.fit.staged import fit_staged
 from mffit.fit.start import starting_values
 from mffit.fit.virtual_zero import epsilon_gamma_of_model
 from mffit.fit.wording import explanations, warnings
+from mffit.fit.zeros import turning_zeros
 from mffit.parts import Parts
 from mffit.points import Points
 from mffit.progress import Progress, silent
@@ -59,8 +61,9 @@ def fit(
     began = time.perf_counter()
     fleet = of_fleet(config)
     known = known_before_fit(config, points, measured, base, fleet)
-    start = starting_values(known.values, points, measured)
-    plan = fit_plan(config, points, measured, known, start, fleet)
+    turning = turning_zeros(known.values, points, measured)
+    start = starting_values(known.values, points, measured) | dict(turning.start if turning else {})
+    plan = fit_plan(config, points, measured, known, start, fleet, turning)
     problem = fit_problem(config, points, measured, known.values)
     fitted, doubts = _fitted_and_judged(config, problem, start, plan, progress)
     readings = fitted.simulation.readings(points)
@@ -75,7 +78,7 @@ def fit(
     files = files.annotated(file_comments(files, known.origin, coefficients))
     use = config.spin.exact if config.rig.on_disc else "normal"
 
-    return FitResult(
+    found = FitResult(
         tyre=files.by_use["turn-slip" if config.rig.on_disc else "normal"].tyre,
         written=files.by_use[use].tyre,
         coefficients=of_file(files, use, coefficients),
@@ -97,6 +100,7 @@ def fit(
         search=fitted,
         files=files,
     )
+    return with_remarks(found, config, points, turning, from_base=base is not None)
 
 
 def _fitted_and_judged(

@@ -9,12 +9,14 @@ from typing import Any
 
 import numpy as np
 
+from mffit.fit import constants
 from mffit.fit.coverage import StageCoverage, coverage
 from mffit.fit.known import Known
 from mffit.fit.priors import Prior, scatters
 from mffit.fit.problem import FitProblem
 from mffit.fit.rig_numbers import rig_numbers
 from mffit.fit.stages import ODD_TERMS, STAGES
+from mffit.fit.zeros import TurningZeros
 from mffit.least_squares import FreeNumber
 from mffit.points import Points
 from tir.parameters import BY_NAME
@@ -64,8 +66,9 @@ def fit_plan(
     known: Known,
     start: Mapping[str, float],
     fleet: Mapping[str, Prior],
+    turning: TurningZeros | None = None,
 ) -> FitPlan:
-    """The plan for these points."""
+    """The plan for these points; ``turning`` are zeros that determine PECP1 where eps_gamma was not measured."""
     cover = coverage(points, config.tyre.side or "left")
     rig = rig_numbers(config, measured, points.used_setups)
     staged = {name: start[name] for stage in STAGES for name in stage.parameters}
@@ -73,15 +76,22 @@ def fit_plan(
     scatter |= {name: prior.spread for name, prior in fleet.items()}
     absent = ODD_TERMS if config.tyre.side == "symmetric" else frozenset()
     held = {name: scatter[name] for row in cover for name in row.held if name not in absent}
-    extra = ["Q_RE0"] if rig and config.rolling_radius and measured.epsilon_gamma is not None else []
+    extra = ["Q_RE0"] if rig and config.rig.on_disc and config.rolling_radius else []
+    expected = {**start, **{name: prior.expected for name, prior in fleet.items()}}
     if measured.epsilon_gamma is not None and config.spin.pecp1 == "model":
         extra.append("PECP1")
     elif measured.epsilon_gamma is not None:
         debiased = measured.epsilon_gamma_debiased if config.spin.pecp1 == "debiased" else None
         held["PECP1"] = (debiased or measured.epsilon_gamma).u
+    elif turning is not None:
+        scatter.setdefault("PECP1", constants.CAMBER_REDUCTION_SPREAD)
+        for name in turning.start:
+            held.pop(name, None)
+            expected[name] = turning.before[name]
+        extra += [name for name in turning.start if not any(name in row.free for row in cover)]
     return FitPlan(
         cover=cover,
-        expected={**start, **{name: prior.expected for name, prior in fleet.items()}},
+        expected=expected,
         scatter=scatter,
         rig=rig,
         extra=tuple(extra),

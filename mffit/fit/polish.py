@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 
 import numpy as np
 
+from mffit.constants import COVERAGE_FACTOR_95
 from mffit.fit import constants
 from mffit.fit.fitted import Fitted
 from mffit.fit.plan import FitPlan
@@ -24,27 +25,34 @@ def polish(stated: FitProblem, plan: FitPlan) -> Fitted:
     """
     problem, scale = _approached(stated, plan).reweighted()
     problem, solution = _solved(problem, plan)
-    decided = _decided_by_points(solution, plan)
+    decided = _within_their_priors(_errors(solution), plan)
     valley = follow(problem, plan.numbers(problem), solution, decided)
     if valley is not None and valley.better:
         problem, solution = _solved(problem.with_values(valley.better), plan)
-        decided = _decided_by_points(solution, plan)
     posterior = joint(problem, solution, plan.held)
-    stderr = posterior.stderr
+    intervals = valley.intervals if valley is not None else {}
+    stderr = {name: max(u, _half_width(intervals.get(name))) for name, u in posterior.stderr.items()}
     return Fitted(
         values={name: v for name, v in solution.values.items() if error_of(name) is None},
         rig={name: (v, stderr[name]) for name, v in solution.values.items() if error_of(name)},
         correlation=strongest_correlations(posterior, solution.names),
         posterior=posterior,
-        intervals=valley.intervals if valley is not None else {},
+        stderr=stderr,
+        intervals=intervals,
         problem=problem,
         numbers=tuple(plan.numbers(problem)),
         held=plan.held,
         at_bound=solution.at_bound | solution.at_limit,
-        regularised=frozenset(plan.free) - decided,
+        regularised=frozenset(name for name in solution.names if name in plan.scatter)
+        - _within_their_priors(stderr, plan),
         scale=scale,
         cost=solution.cost,
     )
+
+
+def _half_width(interval: tuple[float, float] | None) -> float:
+    """The standard uncertainty of which this is the 95 % interval; 0 without one."""
+    return 0.0 if interval is None else (interval[1] - interval[0]) / (2.0 * COVERAGE_FACTOR_95)
 
 
 def _approached(problem: FitProblem, plan: FitPlan) -> FitProblem:
@@ -76,12 +84,12 @@ def _solution(problem: FitProblem, plan: FitPlan, tolerance: float) -> Solution:
     return solve(problem.free([n.name for n in numbers]), numbers, tolerance=tolerance)
 
 
-def _decided_by_points(solution: Solution, plan: FitPlan) -> frozenset[str]:
+def _errors(solution: Solution) -> dict[str, float]:
+    """Standard error of every free number; held ones count as exact."""
+    return dict(zip(solution.names, np.sqrt(np.diag(solution.covariance)).tolist(), strict=True))
+
+
+def _within_their_priors(errors: Mapping[str, float], plan: FitPlan) -> frozenset[str]:
     """Coefficients that the points determine better than their priors do."""
-    errors = np.sqrt(np.diag(solution.covariance)).tolist()
     share, prior = constants.FITTED_SHARE_OF_PRIOR, plan.scatter
-    return frozenset(
-        name
-        for name, u in zip(solution.names, errors, strict=True)
-        if name in prior and u < share * prior[name]
-    )
+    return frozenset(name for name, u in errors.items() if name in prior and u < share * prior[name])

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
@@ -10,7 +11,8 @@ import numpy as np
 from mffit.constants import COVERAGE_FACTOR_95
 from mffit.fit import constants
 from mffit.fit.problem import FitProblem
-from mffit.least_squares import FreeNumber, Solution, solve
+from mffit.fit.start import SHAPES
+from mffit.least_squares import FreeNumber, Solution, inverse, solve
 
 ALLOWED_RISE = COVERAGE_FACTOR_95**2
 """Rise of the sum of squares up to which a fit belongs to the 95 % interval of one number."""
@@ -18,9 +20,9 @@ ALLOWED_RISE = COVERAGE_FACTOR_95**2
 
 @dataclass(frozen=True, slots=True)
 class Valley:
-    """Equally good fits along one number, up to the ends of its 95 % interval."""
+    """Equally good fits along one or two numbers, up to the ends of their 95 % intervals."""
 
-    along: str  #: the number that was moved
+    along: tuple[str, ...]  #: the numbers that were moved, one after the other
     intervals: Mapping[str, tuple[float, float]]  #: 95 % intervals of all numbers that move with it
     better: Mapping[str, float]  #: a fit on the way that is better than the best one; empty if there is none
 
@@ -28,19 +30,20 @@ class Valley:
 def follow(
     problem: FitProblem, numbers: Sequence[FreeNumber], solution: Solution, among: Collection[str]
 ) -> Valley | None:
-    """The most bent valley, followed to both sides until the sum of squares has risen by 3.84.
+    """The most bent and the softest valley, followed to both sides until the sum of squares has risen by 3.84.
 
     ``problem`` is at the solution. ``among`` names the numbers that the points determine; the prior's spread suffices as
     interval of the others.
     None where the sum of squares is close to its quadratic form along all directions.
     """
-    along = _most_bent(problem, numbers, solution, among)
-    if not along:
+    bent, soft = (find(problem, numbers, solution, among) for find in (_most_bent, _softest))
+    moved = tuple(dict.fromkeys(name for name in (bent, soft) if name))
+    if not moved:
         return None
     best, errors = np.array(list(solution.values.values())), np.sqrt(np.diag(solution.covariance))
     low, high = best - COVERAGE_FACTOR_95 * errors, best + COVERAGE_FACTOR_95 * errors
     better, least = {}, solution.cost
-    for side in (-1.0, 1.0):
+    for along, side in itertools.product(moved, (-1.0, 1.0)):
         for place, rise in _walk(problem, numbers, solution, along, side):
             if solution.cost + rise < least:
                 better, least = dict(zip(solution.names, place.tolist(), strict=True)), solution.cost + rise
@@ -49,7 +52,7 @@ def follow(
             across[solution.names.index(along)] = 0.0
             low, high = np.minimum(low, place - across), np.maximum(high, place + across)
     return Valley(
-        along=along,
+        along=moved,
         intervals=_wider(numbers, best, errors, low, high),
         better=better if least < constants.BETTER_ON_PROFILE * solution.cost else {},
     )
@@ -68,6 +71,12 @@ def _wider(
     }
 
 
+def _movable(numbers: Sequence[FreeNumber], solution: Solution, among: Collection[str]) -> list[int]:
+    """Positions of the named numbers that no bound and no limit holds."""
+    held = solution.at_bound | solution.at_limit
+    return [i for i, n in enumerate(numbers) if n.name in among and n.name not in held]
+
+
 def _most_bent(
     problem: FitProblem, numbers: Sequence[FreeNumber], solution: Solution, among: Collection[str]
 ) -> str:
@@ -76,8 +85,7 @@ def _most_bent(
     The least determined directions are probed; empty if the quadratic form is good along all of them.
     """
     best = np.array(list(solution.values.values()))
-    held = solution.at_bound | solution.at_limit
-    rows = [i for i, n in enumerate(numbers) if n.name in among and n.name not in held]
+    rows = _movable(numbers, solution, among)
     if not rows:
         return ""
     stride = max(len(problem.points) // constants.PROBE_POINTS, 1)
@@ -97,6 +105,30 @@ def _most_bent(
             if ratio > worst:
                 own = np.abs(direction) / np.sqrt(np.diag(solution.covariance))
                 worst, name = ratio, numbers[max(rows, key=lambda i: own[i])].name
+    return name
+
+
+def _softest(
+    problem: FitProblem, numbers: Sequence[FreeNumber], solution: Solution, among: Collection[str]
+) -> str:
+    """The shape whose standard error grows most within one standard error of the best fit; empty if none doubles."""
+    best, covariance = np.array(list(solution.values.values())), solution.covariance
+    rows = [i for i in _movable(numbers, solution, among) if numbers[i].name in SHAPES]
+    if not rows:
+        return ""
+    part = problem.thinned(max(len(problem.points) // constants.PROBE_POINTS, 1)).free(solution.names)
+
+    def errors(place: np.ndarray) -> np.ndarray:
+        slope = part.linear(place).slope
+        return np.sqrt(np.diag(inverse(slope.T @ slope + np.diag(solution.prior))))
+
+    usual = errors(best)
+    worst, name = float(constants.SOFT_VALLEY_RATIO), ""
+    for i in rows:
+        step = covariance[:, i] / np.sqrt(covariance[i, i])
+        ratio = max(errors(best + side * step)[i] / usual[i] for side in (-1.0, 1.0))
+        if ratio > worst:
+            worst, name = ratio, solution.names[i]
     return name
 
 

@@ -9,6 +9,7 @@ import numpy as np
 
 from mffit.brief import Brief
 from mffit.fit.agreement import Agreement
+from mffit.fit.bands import BandsByPressure
 from mffit.fit.coefficients import Coefficient
 from mffit.fit.coverage import StageCoverage
 from mffit.fit.files import Files
@@ -44,6 +45,8 @@ class FitResult(Brief):
     doubts: tuple[Doubt, ...] = ()  #: sweeps that contradict the others
     outliers: tuple[Outlier, ...] = ()  #: single readings without weight
     search: Fitted | None = None  #: the end of the search, from which tyres are drawn
+    bands: BandsByPressure | None = None  #: where the bands of Fy are narrow
+    bands_note: str = ""  #: why they are wider at other pressures; empty if they are not
     files: Files | None = None  #: every written file and its misfit
 
     @property

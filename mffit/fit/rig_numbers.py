@@ -42,12 +42,13 @@ def _misaligned(measured: Any, setup: str) -> float:
 
 
 def rig_numbers(config: Any, measured: Any, setups: Sequence[str] = ()) -> tuple[FreeNumber, ...]:
-    """The declared rig errors with their priors; none on a flat track with one set-up.
+    """The declared rig errors with their priors; none with one set-up on a flat track, or on a disc without zeros.
 
     On a straight path ply-steer and conicity are free and absorb zeros that are off. With several ``setups``, every one has
     zeros of its own, and where repeated set-ups scatter more than declared, that scatter is the prior.
     """
-    several, spin = len(setups) > 1, config.rig.on_disc and measured.epsilon_gamma is not None
+    several = len(setups) > 1
+    spin = config.rig.on_disc and any(row.F_phit is not None for row in measured.per_load)
     if not several and not spin:
         return ()
     usual = USUAL_CORNERING_STIFFNESS * (measured.F_phit_load if spin else config.tyre.nominal_load)

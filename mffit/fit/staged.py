@@ -14,7 +14,7 @@ from mffit.fit.plan import FitPlan
 from mffit.fit.polish import polish
 from mffit.fit.problem import FitProblem
 from mffit.fit.stages import STAGES, WITH_CAMBER, Stage, StageRecord
-from mffit.fit.start import ALTERNATIVE_STARTS
+from mffit.fit.start import ALTERNATIVE_STARTS, SHAPES
 from mffit.least_squares import solve
 from mffit.points import Points, main_pressure
 from mffit.progress import Progress, silent
@@ -50,9 +50,8 @@ def fit_staged(
 
 def _restart_worthwhile(fitted: Fitted, plan: FitPlan) -> bool:
     """Whether the fit ends far above the stated noise, or with the shape of a curve at its bound."""
-    shapes = {name for values in ALTERNATIVE_STARTS.values() for name in values}
     far = plan.noise_stated and max(fitted.scale.values()) > constants.RESTART_MISFIT
-    return far or bool(fitted.at_bound & shapes)
+    return far or bool(fitted.at_bound & SHAPES)
 
 
 def _fit_from(start: Mapping[str, float], problem: FitProblem, plan: FitPlan, progress: Progress) -> Fitted:

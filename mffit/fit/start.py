@@ -28,6 +28,8 @@ ALTERNATIVE_STARTS: Mapping[str, Mapping[str, float]] = {
     "a long trail": {"QBZ1": 5.0, "QCZ1": 1.1, "QEZ1": -3.0, "QEZ2": 0.0},
 }
 """Alternative starting values, tried if the first fit ends far above the noise."""
+SHAPES = frozenset(name for values in ALTERNATIVE_STARTS.values() for name in values)
+"""Coefficients of the shape of a curve, which can compensate for each other."""
 
 
 def starting_values(values: Mapping[str, Any], points: Points, measured: Measured) -> dict[str, float]:

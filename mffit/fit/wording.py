@@ -7,10 +7,13 @@ from typing import Any
 
 import numpy as np
 
+from mffit.fit.bands import BandsByPressure
 from mffit.fit.files import Files, file_names
 from mffit.fit.fitted import Fitted
 from mffit.fit.misfit import FileFigures
 from mffit.fit.ranges import single_pressure
+from mffit.fit.zeros import TurningZeros
+from mffit.rounding import to_uncertainty
 from mffit.suspicion import Doubt, Outlier, outliers_sentence
 
 
@@ -119,6 +122,57 @@ def pecp1_sentence(source: str, PECP1: float, epsilon_gamma: float) -> str:
     return (
         f"PECP1 = {PECP1:.4f} is the joint estimate of tyre and rig, in which every point counts with its noise and every "
         f"rig error with its declared uncertainty. The directly measured eps_gamma is {epsilon_gamma:.4f}."
+    )
+
+
+def bands_sentence(
+    bands: BandsByPressure, held: Mapping[str, float], values: Mapping[str, Any], why: str
+) -> str:
+    """Where the bands hold; ``held`` are standard uncertainties, ``why`` is what the sweeps lack for the widening coefficient.
+
+    Empty where they are about as narrow at all pressures.
+    """
+    if not bands.wider:
+        return ""
+    nominal = float(values["NOMPRES"])
+    others = ", ".join(f"{p / 1e3:.0f}" for p in bands.others)
+    at_nominal = ""
+    if nominal in bands.others:
+        at_nominal = (
+            f". Coefficients are values at the nominal {nominal / 1e3:.0f} kPa: PKY1 and PKY2 share this uncertainty, which "
+            "cancels at the pressure of the sweeps"
+        )
+    return (
+        f"the 95 % bands of the side force are +-{bands.half:.0f} N (rms over the tested angles and loads) at the "
+        f"{bands.main / 1e3:.0f} kPa of most sweeps, and +-{bands.half_of_others:.0f} N at {others} kPa: {bands.share:.0%} of "
+        f"that variance is {bands.unseen}, which keeps its expected value {float(values[bands.unseen]):.2g} with a standard "
+        f"uncertainty of {held[bands.unseen]:.2g} ({why}){at_nominal}"
+    )
+
+
+def zeros_sentence(zeros: TurningZeros, fitted: Fitted, *, from_base: bool) -> str:
+    """What zeros without a measured eps_gamma changed: the force before, the measured one, and which number was moved."""
+    source = "the base file gives" if from_base else "the usual values give"
+    begins = f"the base file contradicts the zeros: at {zeros.load:.0f} N it gives"
+    if not (from_base and zeros.contradicted):
+        begins = f"at {zeros.load:.0f} N {source}"
+    moved = [
+        f"{name} from {to_uncertainty(before, u)} to {to_uncertainty(fitted.values[name], u)} +- {to_uncertainty(u, u)}"
+        for name, before in zeros.before.items()
+        for u in [fitted.stderr[name]]
+    ]
+    force = zeros.force
+    rest = (
+        ""
+        if zeros.camber
+        else (
+            ". Without camber sweeps the zeros determine only the ratio of camber stiffness to 1 - PECP1, and the stiffness is "
+            "the one assumed before: a camber sweep separates the two"
+        )
+    )
+    return (
+        f"{begins} a turn-slip force of {zeros.expected:.0f} N on this path, and {to_uncertainty(force.value, force.u)} +- "
+        f"{to_uncertainty(force.u, force.u)} N was measured; the fit moved {' and '.join(moved)}{rest}"
     )
 
 

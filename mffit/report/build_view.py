@@ -120,6 +120,9 @@ class BuildView:
     file_names: Mapping[str, str]  #: by use
     doubts: tuple[Doubt, ...]  #: sweeps that do not fit the others
     outliers: tuple[Outlier, ...]  #: single readings without weight
+    bands_note: str = (
+        ""  #: why the bands are wider between the pressures of the sweeps; empty if they are not
+    )
 
     def marked(self, channel: str) -> tuple[np.ndarray, np.ndarray]:
         """Rows of the channel's readings without weight, and of the points of doubtful sweeps."""
@@ -184,6 +187,7 @@ def view_of(result: BuildResult) -> BuildView:
         file_names=dict(result.files),
         doubts=fit.doubts,
         outliers=fit.outliers,
+        bands_note=fit.bands_note,
     )
 
 

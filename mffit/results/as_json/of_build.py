@@ -13,6 +13,7 @@ from mffit import fleet as combining
 from mffit.diagnosis.one_step import BestEffect
 from mffit.diagnosis.remains import Remains
 from mffit.fit import Coefficient, FitResult
+from mffit.fit.bands import BandsByPressure
 from mffit.fit.files import Files
 from mffit.made import Made
 from mffit.measured import KEYS, LoadResult, Measured, SetupResult, SetupScatter
@@ -90,6 +91,7 @@ def fit(found: FitResult, over_noise: Mapping[str, float] = NOT_JUDGED) -> dict[
             name: {"value": value, "stderr": u, "unit": unit_of(name)}
             for name, (value, u) in found.rig.items()
         },
+        "bands": _bands(found.bands) if found.bands is not None else None,
         "posterior": plain(picked(found.posterior, "names", "covariance")),
         "stages": [
             picked(stage, "name", "parameters") | {"rmse_Fy_N": stage.rmse_Fy, "rmse_Mz_Nm": stage.rmse_Mz}
@@ -201,6 +203,18 @@ def _scatter(found: SetupScatter | None) -> dict[str, Any] | None:
         "between_alpha_deg": alpha,
         "declared_alpha_deg": u_alpha,
         "excess_N": found.excess,
+    }
+
+
+def _bands(found: BandsByPressure) -> dict[str, Any]:
+    """Rms half widths of the 95 % bands of Fy at the usual pressure and at the others, and what widens the latter."""
+    return {
+        "pressure_kPa": found.main / 1e3,
+        "Fy_N": found.half,
+        "other_pressures_kPa": [p / 1e3 for p in found.others],
+        "other_Fy_N": found.half_of_others if found.others else None,
+        "unseen": found.unseen or None,
+        "share": found.share,
     }
 
 

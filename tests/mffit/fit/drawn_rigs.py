@@ -20,8 +20,10 @@ import mffit
 import tir
 from mffit import virtual_rig
 from mffit.errors import InputError
+from mffit.fit.priors import scatter
 from mffit.points import make_points
 from mffit.rig import Simulation
+from mffit.scatter import rms
 from tir.parameters import TABLE
 
 SAMPLES = Path(__file__).parents[3] / "samples"
@@ -40,8 +42,22 @@ class Kind:
     sample: str = "front-120-70"
     base: str = "another's"  #: "another's": up to 30 % off in every coefficient; "sample's"; "none"
     thin: bool = False  #: half of the angles, one pressure
+    one_load: bool = False
+    """Most sweeps 40 kPa below the nominal pressure, other pressures at the lowest load only, a base file without pressure and
+    shift terms, and a tyre whose pressure terms are drawn from the priors that the fit has for them."""
+    upright: bool = False  #: sideslip sweeps and zeros only
+    rig_off: float = 1.0  #: how many times the declared uncertainties the rig's errors are drawn from
     tyre_off: float = 0.0  #: how far the tyre's coefficients may be from the sample's, relative
     pecp1: str = "model"
+
+
+@dataclass(frozen=True)
+class Band:
+    """A 95 % band at drawn conditions, beside the truth."""
+
+    inside: float  #: share of conditions whose truth it holds
+    half: float  #: rms half width [N] or [Nm]
+    error: float  #: rms difference of the model from the truth
 
 
 @dataclass
@@ -50,14 +66,19 @@ class Draw:
 
     misfit: dict[str, float] = field(default_factory=dict)  #: rms over stated noise, by channel
     pulls: dict[str, float] = field(default_factory=dict)  #: (found - true) / standard error
+    stderr: dict[str, float] = field(default_factory=dict)  #: the standard error itself
     inside: dict[str, bool] = field(default_factory=dict)  #: whether the 95 % interval holds the truth
     error: dict[str, float] = field(default_factory=dict)  #: against the noise-free truth, in units
-    bands: dict[str, float] = field(
-        default_factory=dict
-    )  #: share of conditions whose truth the 95 % band holds
+    bands: dict[str, Band] = field(default_factory=dict)
     seconds: float = 0.0
     doubted: int = 0  #: sweeps that the build doubts, although all are sound
     refused: str = ""  #: the sentence with which it ended; everything else is empty then
+
+
+PRESSURE = ("PPY1", "PPY2", "PPY3", "PPY4", "PPY5", "PPZ1", "PPZ2")
+SHIFTS = ("PHY1", "PHY2", "PVY1", "PVY2")
+DECLARED = {"u_loadcell_offset_N": 10.0, "u_camber_alignment_deg": 0.5, "u_slip_alignment_N": 25.0}
+"""Those declared uncertainties of the sample rigs that ``rig_off`` multiplies, beside that of the camber skew."""
 
 
 def plan_content(sample: Path = SAMPLE, *, pecp1: str = "model", thin: bool = False) -> dict[str, Any]:
@@ -81,7 +102,18 @@ def one_rig(seed: int, kind: Kind = Kind(base="sample's")) -> Draw:
     rng = np.random.default_rng(1000 + seed)
     sample = SAMPLES / kind.sample
     true = _scaled(tir.read(sample / "true.tir").replace(**NO_FORCE_AT_REST), kind.tyre_off, rng)
+    if kind.one_load:
+        true = true.replace(**_drawn_from_priors(PRESSURE, rng))
     content = plan_content(sample, pecp1=kind.pecp1, thin=kind.thin)
+    declared = {**content["rig"], **DECLARED, "u_camber_skew_deg": 0.1}
+    content["rig"] = {
+        **declared,
+        **{name: kind.rig_off * declared[name] for name in (*DECLARED, "u_camber_skew_deg")},
+    }
+    if kind.one_load:
+        _at_the_lowest_load(content)
+    if kind.upright:
+        content["sweep"] = [row for row in content["sweep"] if "gamma_deg" not in row]
     with tempfile.TemporaryDirectory() as made:
         folder = Path(made)
         true.write(folder / "drawn.tir")
@@ -92,15 +124,35 @@ def one_rig(seed: int, kind: Kind = Kind(base="sample's")) -> Draw:
             content["tyre"].pop("base", None)
         known = virtual_rig.simulate(virtual_rig.load_plan(content, folder=folder), folder / "rig", seed=seed)
         config = tomllib.loads((folder / "rig" / "tyre.toml").read_text(encoding="utf-8"))
+        config["rig"] |= {name: declared[name] for name in (*DECLARED, "u_camber_skew_deg")}
         if kind.base == "another's":
-            _scaled(true, 0.3, rng).write(folder / "rig" / "other.tir")
+            other = _scaled(true, 0.3, rng)
+            if kind.one_load:
+                other = other.replace(**dict.fromkeys((*PRESSURE, *SHIFTS), 0.0))
+            if kind.upright:
+                other = other.replace(PECP1=0.5)
+            other.write(folder / "rig" / "other.tir")
             config["tyre"]["base"] = "other.tir"
-            (folder / "rig" / "tyre.toml").write_text(tomli_w.dumps(config), encoding="utf-8")
+        (folder / "rig" / "tyre.toml").write_text(tomli_w.dumps(config), encoding="utf-8")
         try:
             result = mffit.build(folder / "rig" / "tyre.toml")
         except InputError as error:
             return Draw(refused=str(error))
     return _compared(result, true, known.to_json(), rng)
+
+
+def _drawn_from_priors(names: tuple[str, ...], rng: np.random.Generator) -> dict[str, float]:
+    """Coefficients that a base file does not state."""
+    return {n: scatter(n, 0.0, from_base=True, curved=True) * rng.standard_normal() for n in names}
+
+
+def _at_the_lowest_load(content: dict[str, Any]) -> None:
+    """Moves every sweep at another pressure to the lowest load, and all pressures off the nominal one."""
+    load, nominal = min(row["load_N"] for row in content["sweep"]), content["tyre"]["nominal_pressure"]
+    for row in content["sweep"]:
+        if "p_kPa" in row:
+            row["load_N"] = load
+        row["p_kPa"] = row.get("p_kPa", nominal) - 40.0
 
 
 def _scaled(tyre: tir.Tyre, off: float, rng: np.random.Generator) -> tir.Tyre:
@@ -112,32 +164,44 @@ def _compared(result: Any, true: tir.Tyre, known: Mapping[str, Any], rng: np.ran
     draw = Draw(seconds=fit.seconds, doubted=len(fit.doubts))
     for channel, u in (("Fy", points.u_Fy), ("Mz", points.u_Mz)):
         draw.misfit[channel] = fit.channels[channel].rmse / float(np.sqrt(np.nanmean(u**2)))
-    for name, quantity, truth in (
-        ("eps_gamma", measured.epsilon_gamma, known["epsilon_gamma"]),
-        ("C_phit", measured.C_phit, known["C_phit_secant_Nm"]),
-    ):
-        draw.pulls[name] = (quantity.value - truth) / quantity.u
-        draw.inside[name] = abs(draw.pulls[name]) < SAFE
+
+    def note(name: str, value: float, stderr: float, truth: float, interval: Any = None) -> None:
+        low, high = interval or (value - SAFE * stderr, value + SAFE * stderr)
+        draw.pulls[name], draw.stderr[name] = (value - truth) / stderr, stderr
+        draw.inside[name] = low <= truth <= high
+
+    if measured.epsilon_gamma is not None:
+        for name, quantity, truth in (
+            ("eps_gamma", measured.epsilon_gamma, known["epsilon_gamma"]),
+            ("C_phit", measured.C_phit, known["C_phit_secant_Nm"]),
+        ):
+            note(name, quantity.value, quantity.u, truth)
+        draw.error["eps_gamma"] = measured.epsilon_gamma.value - known["epsilon_gamma"]
+        draw.error["eps_gamma debiased"] = measured.epsilon_gamma_debiased.value - known["epsilon_gamma"]
     for name, row in fit.coefficients.items():
-        decided = row.status == "fitted" and name in STAGED and not row.at_bound
-        if row.stderr and row.interval and (decided or name == "PECP1"):
-            draw.pulls[name] = (row.value - true[name]) / row.stderr
-            draw.inside[name] = row.interval[0] <= true[name] <= row.interval[1]
-    draw.error["eps_gamma"] = measured.epsilon_gamma.value - known["epsilon_gamma"]
-    draw.error["eps_gamma debiased"] = measured.epsilon_gamma_debiased.value - known["epsilon_gamma"]
+        if row.stderr and row.interval and (name in STAGED or name == "PECP1") and not row.at_bound:
+            label = name if row.status == "fitted" else f"{name} ({row.status})"
+            note(label, row.value, row.stderr, true[name], row.interval)
+    for name, (value, u) in fit.rig.items():
+        note(f"rig.{name}", value, u, known["faults"][name])
     draw.error["PECP1"] = fit.tyre["PECP1"] - true["PECP1"]
     for place, phi_t in (("disc", -1.0 / 1.323), ("straight", 0.0)):
         Fy, Mz = model_error(fit.tyre, true, phi_t, np.unique(np.round(points.Fz, -2)))
         draw.error[f"Fy on {place} [N]"], draw.error[f"Mz on {place} [Nm]"] = Fy, Mz
-        for range_name, ranges in (("tested", fit.files.tested), ("written", fit.files.written)):
-            inside = _in_bands(fit, true, ranges, phi_t, rng)
-            for channel, share in inside.items():
-                draw.bands[f"{channel} on {place}, {range_name}"] = share
+        main = dict.fromkeys(("PRESMIN", "PRESMAX"), float(np.median(points.p)))
+        tested, written = fit.files.tested, fit.files.written
+        for name, ranges in (
+            ("tested", tested),
+            ("tested, usual pressure", {**tested, **main}),
+            ("written", written),
+        ):
+            for channel, band in _in_bands(fit, true, ranges, phi_t, rng).items():
+                draw.bands[f"{channel} on {place}, {name}"] = band
     return draw
 
 
-def _in_bands(fit, true, ranges, phi_t, rng, n: int = 400) -> dict[str, float]:
-    """Share of drawn conditions within the ranges at which the 95 % band of the fitted tyre contains the true one."""
+def _in_bands(fit, true, ranges, phi_t, rng, n: int = 400) -> dict[str, Band]:
+    """The 95 % band of the fitted tyre at drawn conditions within the ranges, and whether it contains the true one."""
 
     def drawn(low: str, high: str) -> np.ndarray:
         return rng.uniform(ranges[low], ranges[high], n)
@@ -154,7 +218,7 @@ def _in_bands(fit, true, ranges, phi_t, rng, n: int = 400) -> dict[str, float]:
     found, truth = tyre.readings(where), Simulation.of(true).readings(where)
     half = fit.posterior.band(tyre, where)
     return {
-        name: float(np.mean(np.abs(a - b) <= h))
+        name: Band(float(np.mean(np.abs(a - b) <= h)), rms(h), rms(a - b))
         for name, a, b, h in zip(("Fy", "Mz"), found, truth, half, strict=True)
     }
 

@@ -99,7 +99,7 @@ def test_a_bent_valley_is_followed_to_the_ends_of_the_95_per_cent_interval():
     best = solve(problem.free(["x", "y"]), numbers, tolerance=1e-10)
     valley = follow(problem.with_values(best.values), numbers, best, {"x", "y"})
     assert valley is not None
-    assert valley.along == "x"
+    assert valley.along == ("x",)
     low, high = valley.intervals["y"]
     assert high == pytest.approx(1.96**2, rel=0.15)
     assert low == pytest.approx(-0.1, abs=0.02)
@@ -170,3 +170,38 @@ def test_a_straight_valley_keeps_the_interval_of_the_covariance():
     ]
     best = solve(Line().free(["x", "y"]), numbers)
     assert follow(Line(), numbers, best, {"x", "y"}) is None
+
+
+def test_a_valley_that_only_widens_is_followed_too():
+    """Below its best value a shape has residuals 14 x; above it they end at 1.3, which no data contradict."""
+    end, slope = 1.3, 14.0
+
+    class Soft(Banana):
+        def free(self, names) -> LeastSquaresProblem:
+            def linear(at) -> Linear:
+                x = {**self.held, **dict(zip(names, at, strict=True))}["QEZ1"]
+                fading = np.exp(-slope * max(x, 0.0) / end)
+                data = np.array([end * (1.0 - fading) if x > 0.0 else slope * x])
+                return Linear(
+                    data,
+                    np.array([[slope * fading]])[:, : len(names)],
+                    np.zeros(0),
+                    np.zeros((0, len(names))),
+                )
+
+            return LeastSquaresProblem(lambda at: (linear(at).data, np.zeros(0)), linear)
+
+        def with_values(self, values):
+            return Soft(**{**self.held, **values})
+
+        def thinned(self, stride):
+            return self
+
+    number = FreeNumber("QEZ1", 0.0, -15.0, 1.0e3, spread=10.0)
+    best = solve(Soft().free(["QEZ1"]), [number])
+    valley = follow(Soft(), [number], best, {"QEZ1"})
+    assert valley is not None
+    assert valley.along == ("QEZ1",)
+    low, high = valley.intervals["QEZ1"]
+    assert low == pytest.approx(-1.96 / slope, rel=0.02)
+    assert high > 10.0 / slope

@@ -33,6 +33,7 @@ def direct(**changes):
     found = dict(
         misaligned=False, alpha_M=ALPHA_M, C_alpha=Quantity(-18000.0, 100.0, "N/rad"), R=Quantity(1.3, 0.002, "m"),
         epsilon_gamma=Quantity(-0.1, 0.05, "-"), F_phit_load=1500.0,
+        per_load=(SimpleNamespace(F_phit=Quantity(-400.0, 20.0, "N")),),
     )  # fmt: skip
     return SimpleNamespace(**found | changes)
 
@@ -127,7 +128,11 @@ def test_the_misalignment_of_a_set_up_is_its_own():
     assert found["alpha_0_deg@A"] == pytest.approx(math.degrees(20.0 / 18000.0))
 
 
-def test_a_straight_path_and_a_rig_without_measured_spin_have_none():
+def test_a_straight_path_and_a_disc_without_zeros_have_none():
     flat = rig(type="flat-track", path_radius=None, u_path_radius=None)
     assert rig_numbers(flat, direct()) == ()
-    assert rig_numbers(rig(), direct(epsilon_gamma=None)) == ()
+    assert rig_numbers(rig(), direct(per_load=(SimpleNamespace(F_phit=None),))) == ()
+
+
+def test_zeros_show_the_rigs_errors_without_camber_sweeps_too():
+    assert by_name(rig(), direct(epsilon_gamma=None)).keys() == by_name(rig(), direct()).keys()

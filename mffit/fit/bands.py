@@ -1,0 +1,95 @@
+"""Where the 95 % bands of the side force are narrow: at the pressure of most sweeps, and how much wider at the others."""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+from dataclasses import dataclass
+
+import numpy as np
+
+from mffit.constants import COVERAGE_FACTOR_95
+from mffit.fit import constants
+from mffit.fit.posterior import Posterior, spread_through
+from mffit.fit.ranges import tested_ranges
+from mffit.points import Points, levels, main_pressure, make_points
+from mffit.rig import Simulation
+from mffit.scatter import rms
+from tir.parameters import BY_NAME
+
+
+@dataclass(frozen=True, slots=True)
+class BandsByPressure:
+    """Rms half width of the 95 % bands of Fy over the tested angles and loads, and what widens them."""
+
+    main: float  #: pressure of most sweeps [Pa]
+    half: float  #: at it [N]
+    others: tuple[float, ...]  #: the other pressures that were run, and the nominal one [Pa]
+    half_of_others: float  #: at these [N]; 0 without others
+    unseen: str = (
+        ""  #: the coefficient without effect in these sweeps that widens them most; empty without one
+    )
+    share: float = 0.0  #: its share of the variance there
+
+    @property
+    def wider(self) -> bool:
+        """Whether a coefficient that the sweeps do not show widens the bands at the other pressures."""
+        return bool(self.unseen) and self.half_of_others > constants.WIDER_BANDS * self.half
+
+
+def bands_by_pressure(
+    posterior: Posterior, held: Collection[str], tyre: Simulation, points: Points
+) -> BandsByPressure:
+    """The bands of a fitted tyre on a straight path; ``held`` names the coefficients that the fit took as exact."""
+    main = float(np.median(points.p[main_pressure(points)]))
+    nominal = float(tyre.values["NOMPRES"])
+    pressures = np.array([*levels.level_values(points.p, levels.PRESSURE), nominal])
+    others = tuple(
+        sorted({float(p) for p in pressures if abs(p - main) > constants.SINGLE_PRESSURE_SPREAD * main})
+    )
+    at_main = _over_tested(posterior, tyre, points, (main,))
+    half = rms(_half(at_main, posterior))
+    if not others:
+        return BandsByPressure(main, half, (), 0.0)
+    slopes, found = _over_tested(posterior, tyre, points, others), posterior
+    variance = float(np.mean(_half(slopes, found) ** 2))
+    by_held = {
+        name: float(np.mean(_half(slopes, _only(found, name)) ** 2)) for name in held if name in found.names
+    }
+    unseen = max(by_held, key=lambda name: by_held[name], default="")
+    share = by_held[unseen] / variance if unseen and variance else 0.0
+    return BandsByPressure(main, half, others, float(np.sqrt(variance)), unseen if share > 0.5 else "", share)
+
+
+def _only(posterior: Posterior, name: str) -> Posterior:
+    """The part of the covariance that the error of one held coefficient makes."""
+    column = posterior.covariance[:, posterior.names.index(name)]
+    variance = column[posterior.names.index(name)]
+    return Posterior(posterior.names, np.outer(column, column) / variance)
+
+
+def _half(slopes: np.ndarray, posterior: Posterior) -> np.ndarray:
+    """Half widths (n,) of the 95 % band [N] for derivatives (n, k) by the coefficients."""
+    rows = _coefficients(posterior)
+    return COVERAGE_FACTOR_95 * spread_through(slopes, posterior.covariance[np.ix_(rows, rows)])
+
+
+def _coefficients(posterior: Posterior) -> list[int]:
+    return [i for i, name in enumerate(posterior.names) if name in BY_NAME]
+
+
+def _over_tested(
+    posterior: Posterior, tyre: Simulation, points: Points, pressures: tuple[float, ...]
+) -> np.ndarray:
+    """Derivatives (n, k) of Fy on a grid over the tested angles and loads."""
+    tested = tested_ranges(points)
+    loads, cambers, angles = (int(n) for n in constants.BAND_GRID)
+    axes = (
+        np.linspace(tested["FZMIN"], tested["FZMAX"], loads),
+        np.linspace(0.0, tested["CAMMAX"], cambers if tested["CAMMAX"] > 0.0 else 1),
+        np.linspace(tested["ALPMIN"], tested["ALPMAX"], angles),
+        np.array(pressures),
+    )
+    Fz, gamma, alpha, p = (axis.ravel() for axis in np.meshgrid(*axes))
+    where = make_points(alpha, gamma, Fz, p=p, V=float(np.median(points.V)), phi_t=0.0)
+    names = [posterior.names[i] for i in _coefficients(posterior)]
+    return np.asarray(tyre.sensitivities(where, names)[1].Fy)

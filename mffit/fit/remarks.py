@@ -1,0 +1,36 @@
+"""What the result of a fit says beside its files: where its bands hold, and what zeros alone have moved."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+from mffit.fit.bands import bands_by_pressure
+from mffit.fit.coverage import why_held
+from mffit.fit.result import FitResult
+from mffit.fit.wording import bands_sentence, zeros_sentence
+from mffit.fit.zeros import TurningZeros
+from mffit.points import Points
+from mffit.rig import Simulation
+
+
+def with_remarks(
+    found: FitResult, config: Any, points: Points, zeros: TurningZeros | None, *, from_base: bool
+) -> FitResult:
+    """The result with what its bands and zeros without a measured eps_gamma have to say."""
+    fitted, values = found.search, found.tyre.values
+    assert fitted is not None
+    tyre = Simulation(values, turn_slip=config.rig.on_disc)
+    bands = bands_by_pressure(fitted.posterior, fitted.held, tyre, points)
+    why = why_held(bands.unseen, points, config.tyre.side or "left")
+    note = bands_sentence(bands, fitted.held, values, why)
+    moved = zeros_sentence(zeros, fitted, from_base=from_base) if zeros else ""
+    warned = zeros is not None and zeros.contradicted and from_base
+    remarks = [note, "" if warned else moved]
+    return replace(
+        found,
+        bands=bands,
+        bands_note=note,
+        explanations=(*found.explanations, *(f"{text[0].upper()}{text[1:]}." for text in remarks if text)),
+        warnings=(*([moved] if warned else []), *found.warnings),
+    )

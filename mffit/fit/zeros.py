@@ -1,0 +1,82 @@
+"""PECP1 from the zeros of a disc alone, where eps_gamma could not be measured.
+
+The turn-slip force fixes the ratio of camber stiffness to 1 - PECP1. Without camber sweeps the camber stiffness is the base
+file's, and its uncertainty is a part of that of PECP1.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from mffit.constants import COVERAGE_FACTOR_95
+from mffit.fit import constants
+from mffit.fit.start import camber_stiffness_terms
+from mffit.fit.virtual_zero import zero_points
+from mffit.measured import Measured
+from mffit.points import Points
+from mffit.rig import Simulation
+from tir import Quantity
+from tir.parameters import BY_NAME
+
+CAMBER_REDUCTION = "PECP1"
+
+
+@dataclass(frozen=True, slots=True)
+class TurningZeros:
+    """Zeros with a turn-slip force, and that of the values before the fit."""
+
+    load: float  #: [N]
+    force: Quantity  #: measured, corrected for the rig's errors [N]
+    expected: float  #: by the values before the fit [N]
+    before: Mapping[str, float]  #: coefficients that the zeros determine, with their values before the fit
+    start: Mapping[str, float]  #: the same with those from which the search starts
+
+    camber: bool  #: whether camber sweeps determine the camber stiffness
+
+    @property
+    def contradicted(self) -> bool:
+        """Whether measured and expected force differ by more than noise and similar tyres do."""
+        share = constants.SIMILAR_TYRES_SPREAD * abs(self.expected)
+        return abs(self.force.value - self.expected) > max(COVERAGE_FACTOR_95 * self.force.u, share)
+
+
+def turning_zeros(values: Mapping[str, Any], points: Points, measured: Measured) -> TurningZeros | None:
+    """The zeros nearest the nominal load; None where eps_gamma was measured or no zeros show a turn-slip force."""
+    rows = [row for row in measured.per_load if row.F_phit is not None]
+    if measured.epsilon_gamma is not None or not rows:
+        return None
+    row = min(rows, key=lambda row: abs(row.load - float(values["FNOMIN"])))
+    force = row.F_phit
+    assert force is not None
+    zero = zero_points(points, row.load)
+    expected = float(Simulation(values).readings(zero).Fy.mean())
+    start = _start(values, force.value / expected if expected else 0.0)
+    if not start:
+        # The camber stiffness that gives the measured C_phit = R0 |K_yg0| / (1 - PECP1) with the PECP1 of before.
+        PECP1 = min(float(values[CAMBER_REDUCTION]), float(constants.LARGEST_CAMBER_REDUCTION))
+        C_phit = force.value / float(zero.phi_t[0])
+        C_gamma = -(1.0 - PECP1) * C_phit / float(values["UNLOADED_RADIUS"])
+        terms = camber_stiffness_terms(values, {row.load: C_gamma}, float(zero.p[0]))
+        start = {CAMBER_REDUCTION: PECP1, "PKY6": terms["PKY6"]}
+    if len(rows) > 1:  # the loads show how the camber stiffness changes with load
+        start["PKY7"] = float(values["PKY7"])
+    return TurningZeros(
+        load=row.load,
+        force=force,
+        expected=expected,
+        before={name: float(values[name]) for name in start},
+        start=start,
+        camber=any(row.C_gamma is not None for row in measured.per_load),
+    )
+
+
+def _start(values: Mapping[str, Any], ratio: float) -> dict[str, float]:
+    """PECP1 that multiplies the turn-slip force by ``ratio``, to first order; empty if no plausible one does.
+
+    The force is proportional to the camber stiffness over 1 - PECP1.
+    """
+    lowest, highest = BY_NAME[CAMBER_REDUCTION].bounds[0], constants.LARGEST_CAMBER_REDUCTION
+    PECP1 = 1.0 - (1.0 - float(values[CAMBER_REDUCTION])) / ratio if ratio else float(highest)
+    return {CAMBER_REDUCTION: PECP1} if lowest < PECP1 < highest else {}
