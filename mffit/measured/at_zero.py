@@ -15,6 +15,7 @@ from mffit.measured import camber_reduction as method
 from mffit.measured import constants, notes
 from mffit.measured.groups import LoadGroup, zeros
 from mffit.measured.paths import PathForce, by_path
+from mffit.measured.sources import named
 from mffit.points import Points
 from mffit.rig_errors import AtZero
 
@@ -50,7 +51,7 @@ def _zeros(points: Points, group: LoadGroup, C_alpha: UFloat | None, config: Con
     backward = _at_zero(points, group, -1, points.Fy, u_Fy, -slope)
     moments = [_at_zero(points, group, direction, points.Mz, u_Mz, None) for direction in (1, -1)]
     known = [
-        method.named(value, u, "noise of the zero moment", "Nm")
+        named(value, u, "noise of the zero moment", "Nm", kind="A")
         for value, u in moments
         if math.isfinite(value)
     ]
@@ -141,11 +142,11 @@ def turn_slip_of_path(
     path: dict[str, Any] = {
         "sign": float(np.sign(phi_t)), "R": rig.R + (1.0 / abs(phi_t) - usual), "at": _plain(at),
     }  # fmt: skip
-    forward = method.named(zero.forward, zero.u_forward, "noise of the forward zeros", "N")
+    forward = named(zero.forward, zero.u_forward, "noise of the forward zeros", "N", kind="A")
     if not math.isfinite(zero.backward):
         force = method.turn_slip_force(forward, rig.errors, at, both_directions=False)
         return PathForce(force=force, readings=(forward,), alpha_M=None, **path)
-    backward = method.named(zero.backward, zero.u_backward, "noise of the backward zeros", "N")
+    backward = named(zero.backward, zero.u_backward, "noise of the backward zeros", "N", kind="A")
     force = method.turn_slip_force((forward + backward) / 2.0, rig.errors, at, both_directions=True)
     alpha_M = None if C_alpha is None else (forward - backward) / 2.0 / C_alpha
     return PathForce(force=force, readings=(forward, backward), alpha_M=alpha_M, **path)

@@ -27,6 +27,13 @@ def load_groups(points: Points) -> tuple[LoadGroup, ...]:
     return tuple(LoadGroup(float(np.mean(points.Fz[part])), part) for part in parts)
 
 
+def flipped(points: Points, group: LoadGroup) -> LoadGroup:
+    """The points at the group's load and the main pressure with the tyre turned on its rim."""
+    used = np.flatnonzero(main_pressure(points) & (points.mount < 0) & ~points.continuous)
+    near = np.abs(points.Fz[used] - group.load) < levels.LOAD.tolerance * group.load
+    return LoadGroup(group.load, used[near])
+
+
 def zeros(points: Points, group: LoadGroup, direction: int) -> np.ndarray:
     """Indices of the group's points at zero sideslip and camber, rolling in ``direction`` (+1, -1)."""
     i = group.index

@@ -4,7 +4,8 @@
 
 For every world (what is wrong with the rig, what is declared of it, which sweeps are run) it draws rigs and tyres, front and
 rear in turn, measures eps_gamma and the numbers beside it, and prints rms error, mean standard uncertainty and the share of
-95 % intervals (k = 1.96) that contain the truth.
+95 % intervals (k = 1.96) that contain the truth. Conicity and ply-steer of the tyres are drawn from their usual sizes. With
+`--build` it fits every rig, which takes seconds, and adds the numbers that need a model.
 """
 
 from __future__ import annotations
@@ -42,6 +43,9 @@ class World:
     declared: Mapping[str, float] = field(default_factory=dict)  #: keys of [rig] in tyre.toml
     drawn_from: Mapping[str, float] = field(default_factory=dict)  #: other keys of [rig] for the draw
     backward_camber: bool = False
+    flipped: bool = False  #: zeros with the tyre turned on its rim, too
+    conicity: float = 0.002  #: standard deviation of the drawn conicity, over load
+    warm_camber: float = 0.0  #: temperature of camber sweeps above that of the others [K]
 
 
 DECLARED = {
@@ -50,6 +54,7 @@ DECLARED = {
     "u_slip_alignment_N": 25.0,
     "u_camber_skew_deg": 0.1,
 }
+PLY_STEER = 0.002  # rad, standard deviation
 WORLDS = {
     "as declared": World(),
     "as declared, backward camber": World(backward_camber=True),
@@ -60,6 +65,12 @@ WORLDS = {
     "skew 0.5 deg, not declared": World(faults={"camber_skew_deg": 0.5}),
     "skew 0.5 deg, not declared, backward camber": World(
         faults={"camber_skew_deg": 0.5}, backward_camber=True
+    ),
+    "conicity 1 %, declared": World(conicity=0.01, declared={"u_conicity": 0.01}),
+    "conicity 1 %, not declared": World(conicity=0.01),
+    "conicity 1 %, not declared, flipped zeros": World(conicity=0.01, flipped=True),
+    "camber sweeps 15 K warmer, stiffness -0.2 % per K": World(
+        faults={"k_T_stiffness_per_K": -0.002}, warm_camber=15.0
     ),
     "load falls by 6 % sin^2": World(faults={"load_camber": -0.06}),
     "all errors 1.5 times the declared": World(drawn_from={name: 1.5 * u for name, u in DECLARED.items()}),
@@ -74,12 +85,14 @@ class Found:
     refused: str = ""
 
 
-def one(job: tuple[int, str]) -> tuple[str, Found]:
+def one(job: tuple[int, str, bool]) -> tuple[str, Found]:
     """Draw, simulate and measure one rig."""
-    seed, name = job
+    seed, name, build = job
     world, rng = WORLDS[name], np.random.default_rng(5000 + seed)
     sample = SAMPLES / ("front-120-70", "rear-190-55")[seed % 2]
     true = _scaled(tir.read(sample / "true.tir").replace(**NO_FORCE_AT_REST), 0.1, rng)
+    conicity, ply_steer = rng.normal(0.0, (world.conicity, PLY_STEER))
+    true = true.replace(PVY1=conicity, PHY1=ply_steer, PVY2=0.0, PHY2=0.0)
     content = plan_content(sample)
     content["tyre"].pop("base", None)
     content["faults"] |= world.faults
@@ -87,6 +100,11 @@ def one(job: tuple[int, str]) -> tuple[str, Found]:
     content["rig"] = {**declared, **world.drawn_from}
     if world.backward_camber:
         content["sweep"] += _backward(content)
+    if world.flipped:
+        content["sweep"] += _flipped(content)
+    for sweep in content["sweep"]:
+        if world.warm_camber and "gamma_deg" in sweep and "alpha_deg" not in sweep:
+            sweep["T_degC"] = 28.0 + world.warm_camber
     with tempfile.TemporaryDirectory() as made:
         folder = Path(made)
         true.write(folder / "drawn.tir")
@@ -97,7 +115,7 @@ def one(job: tuple[int, str]) -> tuple[str, Found]:
         config["rig"] = {**config["rig"], **declared}
         path.write_text(tomli_w.dumps(config), encoding="utf-8")
         try:
-            measured = mffit.spin(path)
+            measured = mffit.build(path).measured if build else mffit.spin(path)
         except InputError as error:
             return name, Found(refused=str(error))
     return name, Found(numbers=_numbers(measured, known, true))
@@ -110,24 +128,52 @@ def _backward(content: Mapping[str, Any]) -> list[dict[str, Any]]:
     return [{"file": "camber_backward.csv", "load_N": load, "gamma_deg": angles, "direction": "backward"}]
 
 
+def _flipped(content: Mapping[str, Any]) -> list[dict[str, Any]]:
+    """Zeros of the nominal load with the tyre turned on its rim, in both directions."""
+    load, angles = content["tyre"]["nominal_load"], [-1, -0.5, 0, 0.5, 1]
+    zeros = {"load_N": load, "alpha_deg": angles, "mount": "flipped"}
+    return [
+        {**zeros, "file": f"flipped_{way}.csv", "direction": way} for way in ("forward", "backward")
+    ]
+
+
 def _numbers(measured: Any, known: Any, true: tir.Tyre) -> dict[str, tuple[float, float, float]]:
-    row, truth = measured.nominal, known.nominal
+    row, truth, faults = measured.nominal, known.nominal, known.faults
     phi_t = -1.0 / truth.R_m
 
-    def slope(angle: str) -> float:
-        up, down = (true(truth.load_N, phi_t=phi_t, Vx=6.0, **{angle: s}).Fy for s in (STEP, -STEP))
+    def slope(angle: str, phi_t: float = phi_t) -> float:
+        forces = (
+            true(truth.load_N, phi_t=phi_t, Vx=6.0, turn_slip=True, **{angle: s}).Fy for s in (STEP, -STEP)
+        )
+        up, down = forces
         return float(up - down) / (2.0 * STEP)
 
-    faults = known.faults
+    axis, ply_steer = np.radians(faults["alpha_0_deg"]), float(true["PHY1"])
     pairs = {
         "eps_gamma": (row.epsilon_gamma, truth.epsilon_gamma),
+        "eps_gamma debiased": (measured.epsilon_gamma_debiased, truth.epsilon_gamma),
         "C_phit [Nm]": (row.C_phit, truth.C_phit_secant_Nm),
+        "F_phit [N]": (row.F_phit, truth.F_phit_N),
         "C_gamma on the path [N/rad]": (row.C_gamma, slope("gamma")),
         "C_alpha on the path [N/rad]": (row.C_alpha, slope("alpha")),
+        "C_alpha without spin [N/rad]": (row.C_alpha_straight, slope("alpha", 0.0)),
         "r_e [m]": (row.r_e, truth.r_e_m),
-        "alpha_M + ply-steer [rad]": (row.alpha_M, np.radians(faults["alpha_0_deg"]) + float(true["PHY1"])),
+        "R [m]": (row.R, truth.R_m),
+        "alpha_M, the sum [rad]": (row.alpha_M, axis + ply_steer),
+        "misalignment [rad]": (row.misalignment, axis),
+        "ply-steer [rad]": (row.ply_steer, ply_steer),
+        "camber skew [deg]": (measured.camber_skew, faults["camber_skew_deg"]),
+        "conicity [N]": (row.conicity, float(true["PVY1"]) * truth.load_N),
     }
-    return {key: (q.value, q.u, float(t)) for key, (q, t) in pairs.items() if q is not None}
+    return {key: (q.value, q.u, float(t)) for key, (q, t) in pairs.items() if q is not None} | {
+        "eps_gamma, draws": _of_draws(row, truth.epsilon_gamma)
+    }
+
+
+def _of_draws(row: Any, truth: float) -> tuple[float, float, float]:
+    """The interval of the random draws, as a value with a standard uncertainty that has the same 95 % interval."""
+    low, high = row.interval
+    return (low + high) / 2.0, (high - low) / (2.0 * SAFE), truth
 
 
 def table(name: str, rows: list[Found]) -> list[str]:
@@ -154,15 +200,16 @@ def main() -> None:
     ask = argparse.ArgumentParser()
     ask.add_argument("rigs", type=int, nargs="?", default=200, help="per world")
     ask.add_argument("--jobs", type=int, default=1)
+    ask.add_argument("--build", action="store_true")
     ask.add_argument("--worlds", nargs="*", default=list(WORLDS))
     given = ask.parse_args()
-    jobs = [(seed, name) for name in given.worlds for seed in range(given.rigs)]
+    jobs = [(seed, name, given.build) for name in given.worlds for seed in range(given.rigs)]
     found: dict[str, list[Found]] = {name: [] for name in given.worlds}
     with ProcessPoolExecutor(given.jobs) as pool:
         for name, row in pool.map(one, jobs, chunksize=4):
             found[name].append(row)
-    for name, rows in found.items():
-        print("\n".join(table(name, rows)), flush=True)
+            if len(found[name]) == given.rigs:
+                print("\n".join(table(name, found[name])), flush=True)
 
 
 if __name__ == "__main__":

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from mffit.measured.constants import SLOPE_SHAPE
 from mffit.measured.slopes import secant_at, slope_at_zero
 
 X = np.radians([0.5, 1.0, 1.5, 2.0, 3.0, 4.0, 6.0, 8.0])
@@ -27,7 +28,9 @@ def test_the_slope_of_a_saturating_curve(curve, within, sign):
     assert found.value == pytest.approx(sign * 20000.0, rel=within)
     assert found.cubic == pytest.approx(sign * 20000.0, rel=0.03)
     assert found.points == 8
-    assert found.u == pytest.approx(np.hypot(found.u_noise, (found.value - found.cubic) / 2.0))
+    both_shapes = (found.value - found.cubic) / 2.0
+    assert found.u_shape == pytest.approx(np.hypot(both_shapes, SLOPE_SHAPE * 20000.0), rel=0.02)
+    assert found.u == pytest.approx(np.hypot(found.u_noise, found.u_shape))
 
 
 def test_its_noise_is_the_scatter_over_many_draws():
@@ -54,7 +57,7 @@ def test_a_misfit_beyond_the_noise_enlarges_the_uncertainty():
 def test_without_a_cubic_a_twentieth_is_in_doubt():
     found = slope_at_zero(X, 20000.0 * X, 1e-3 * ONE, local=np.radians(1.0))
     assert np.isnan(found.cubic)
-    assert found.u == pytest.approx(0.025 * 20000.0, rel=0.01)
+    assert found.u_shape == pytest.approx(np.hypot(0.025, SLOPE_SHAPE) * 20000.0, rel=0.01)
 
 
 def test_the_cubic_ends_at_its_reach():
