@@ -88,11 +88,11 @@ SPIN_BIAS_OF_MODEL = Real(
     "tests/studies/budget_study.py",
 )
 SLOPE_SHAPE = Real(
-    0.005,
+    0.007,
     "-",
     "Relative standard uncertainty of a slope at zero beyond the difference of shapes, as terms in |gamma| bend the odd curve "
     "at zero.",
-    "noise-free sample tyres are 0.1 to 0.7 % off",
+    "noise-free sample tyres are 0.1 to 1.3 % off",
 )
 CURVATURE_SPREAD = Real(
     1.0, "-", "Prior standard deviation of the curvature E of a sideslip curve, whose prior mean is 0."

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -15,14 +16,15 @@ class SlopeAtZero:
 
     value: float
     u_noise: float  #: standard uncertainty from the scatter of the points
-    u_shape: float  #: from the shape of the curve: half the difference of two shapes, and what both miss
+    u_shape: float  #: half the difference of two shapes, beyond noise; common to curves of one tyre
+    u_own: float  #: error of both shapes, which differs from curve to curve
     cubic: float  #: the cross-check; NaN if too few points
     points: int
 
     @property
     def u(self) -> float:
         """Combined standard uncertainty."""
-        return float(np.hypot(self.u_noise, self.u_shape))
+        return math.hypot(self.u_noise, self.u_shape, self.u_own)
 
     @property
     def dof(self) -> float:
@@ -62,14 +64,15 @@ def slope_at_zero(
     if not curvature:
         # A misfit of the shape at large angles is no scatter.
         scatter = min(scatter, _saturating(x, y, u, float(constants.CURVATURE_SPREAD))[2])
-    u_noise *= max(1.0, scatter)
+    scatter = max(1.0, scatter)
+    u_noise *= scatter
     near = x <= local * 1.01
-    cubic = np.nan
+    cubic, difference = np.nan, constants.SLOPE_WITHOUT_CUBIC * abs(shape)
     if len(np.unique(np.round(x[near], 4))) >= 3:
-        cubic, _ = _cubic(x[near], y[near], u[near])
-    difference = abs(shape - cubic) if np.isfinite(cubic) else constants.SLOPE_WITHOUT_CUBIC * abs(shape)
-    u_shape = float(np.hypot(difference / 2.0, constants.SLOPE_SHAPE * shape))
-    return SlopeAtZero(shape, u_noise, u_shape, float(cubic), len(x))
+        cubic, u_cubic = _cubic(x[near], y[near], u[near])
+        difference = math.sqrt(max((shape - cubic) ** 2 - u_cubic**2, 0.0))
+    u_own = float(constants.SLOPE_SHAPE * abs(shape))
+    return SlopeAtZero(shape, u_noise, float(difference / 2.0), u_own, float(cubic), len(x))
 
 
 def secant_at(x: np.ndarray, y: np.ndarray, u: np.ndarray, angle: float) -> Secant | None:

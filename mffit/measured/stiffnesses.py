@@ -118,10 +118,11 @@ def number(
     noise = named(estimate.value, estimate.u_noise, source, "N/rad", kind="A", dof=estimate.dof)
     if shape is None:
         shape = shape_error([estimate], source)
-    return noise + abs(estimate.value) * shape
+    own = named(0.0, estimate.u_own, f"{source}, shape of the curve", "N/rad")
+    return noise + own + abs(estimate.value) * shape
 
 
 def shape_error(estimates: Sequence[SlopeAtZero], source: str) -> UFloat:
     """Relative error of slopes at zero due to the shape of the curve, common to curves of one shape."""
     u = max((found.u_shape / abs(found.value) for found in estimates if found.value), default=0.0)
-    return named(0.0, u, f"{source}, shape of the curve", "-")
+    return named(0.0, u, f"{source}, difference of shapes", "-")
