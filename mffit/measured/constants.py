@@ -79,13 +79,13 @@ SPIN_LOSS = Real(
 SPIN_LOSS_U = Real(
     0.015,
     "m^2",
-    "Its standard uncertainty: a brush that does not slide has no loss, a tyre that saturates at half the spin has twice as much.",
+    "Its standard uncertainty, half the value: a brush that does not slide has no loss, and other tyres may have twice as much.",
 )
 SPIN_BIAS_OF_MODEL = Real(
     0.3,
     "-",
     "Relative standard uncertainty of the bias of finite spin that a fitted model predicts.",
-    "tests/studies/budget_study.py",
+    "tests/studies/rig_error_study.py --build",
 )
 SLOPE_SHAPE = Real(
     0.007,
@@ -104,10 +104,14 @@ REST_OF_PLAY = Real(
     "noise-free sample tyres with 0.17 deg of play",
 )
 CONTRADICTED = Real(
-    2.0, "-", "Standard uncertainties above which a measurement contradicts a declared uncertainty and replaces it."
+    2.0,
+    "-",
+    "Standard uncertainties above which a measurement contradicts a declared uncertainty and replaces it.",
 )
 CLEAR_MISALIGNMENT = Real(
-    2.0, "-", "Standard uncertainties that the misalignment split from ply-steer must exceed to be called one."
+    2.0,
+    "-",
+    "Standard uncertainties that the misalignment split from ply-steer must exceed to be called one.",
 )
 TEMPERATURE_APART = Real(
     2.0, "K", "Mean temperatures of zeros and camber sweeps that differ by less need no sentence."

@@ -145,12 +145,12 @@ def _with_left_out(evidence: DirectEvidence, row: LoadResult) -> LoadResult:
         return row
     u = evidence.config.rig.u_conicity
     shift = row.shift_by(u * row.load)
-    return replace(row, left_out=(Contribution(CONICITY, u, "-", shift, sensitivity=shift / u if u else 0.0),))
+    return replace(
+        row, left_out=(Contribution(CONICITY, u, "-", shift, sensitivity=shift / u if u else 0.0),)
+    )
 
 
-def _row(
-    evidence: DirectEvidence, group: LoadGroup, slopes: LoadSlopes, found: Turning | None
-) -> LoadResult:
+def _row(evidence: DirectEvidence, group: LoadGroup, slopes: LoadSlopes, found: Turning | None) -> LoadResult:
     """The record of one load without eps_gamma."""
     C_gamma, slope, secant = (
         method.quantity(corrected(evidence, C, slopes.C_alpha), "N/rad")

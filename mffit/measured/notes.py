@@ -11,8 +11,8 @@ from tir import Quantity
 STRAIGHT_PATH = "A flat track's path is straight: it has no turn slip to measure."
 STANDARD_UNCERTAINTIES = "All uncertainties are standard uncertainties (k = 1)."
 ON_THE_PATH = (
-    "Cornering and camber stiffness are slopes at zero on the path of the measurement, and C_phit is the turn-slip force over the "
-    "curvature of that path."
+    "Cornering and camber stiffness are slopes at zero on the path of the measurement, and C_phit is the turn-slip force over "
+    "the curvature of that path."
 )
 CONTACT_WANDERS = "With camber the contact point moves over the crown and changes the path radius; R holds for the upright wheel."
 NOTHING_MEASURED = (
@@ -61,9 +61,7 @@ def camber_skew(skew: Quantity) -> str:
 
 
 def aligned(alpha_M: Quantity, axis: Quantity, tyre: Quantity, slip: float, shift: float) -> str:
-    return (
-        f"Forward and backward runs: {_sum(alpha_M, axis, tyre, slip, shift)}. The sum is within what the alignment leaves."
-    )
+    return f"Forward and backward runs: {_sum(alpha_M, axis, tyre, slip, shift)}. The sum is within what the alignment leaves."
 
 
 def slip_beyond(alpha_M: Quantity, axis: Quantity, tyre: Quantity, slip: float, shift: float) -> str:

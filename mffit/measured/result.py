@@ -86,7 +86,9 @@ class Measured(Brief):
     pecp2: float
     u_pecp2: float | None
     r_e_loads: Mapping[float, float]  #: by load, where it was measured
-    misaligned: bool  #: the slip force is beyond what the alignment leaves; the fit corrects the points for alpha_M
+    misaligned: (
+        bool  #: the slip force is beyond what the alignment leaves; the fit corrects the points for alpha_M
+    )
     notes: tuple[str, ...]  #: to know beside the numbers
     warnings: tuple[str, ...]  #: to act on
     load_note: str = ""  #: the value of PECP2, or why it is 0

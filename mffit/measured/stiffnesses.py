@@ -100,9 +100,7 @@ def estimates(
     return Estimates(slope_at_zero(x, y, u, local=local, curvature=curvature), secant_at(x, y, u, angle))
 
 
-def number(
-    estimate: SlopeAtZero | Secant | None, source: str, shape: UFloat | None = None
-) -> UFloat | None:
+def number(estimate: SlopeAtZero | Secant | None, source: str, shape: UFloat | None = None) -> UFloat | None:
     """An estimate as a number with uncertainty [N/rad].
 
     Parameters

@@ -6,6 +6,7 @@ import math
 
 from mffit.measured import constants
 from mffit.measured.alignment import Alignment
+from mffit.measured.ply_steer import usual_ply_steer
 from mffit.measured.result import Measured
 from mffit.rounding import as_good_as
 
@@ -41,9 +42,7 @@ def expanded(measured: Measured) -> str:
     if found is None:
         return ""
     dof = "infinite" if found.dof > constants.MANY_DEGREES_OF_FREEDOM else f"{found.dof:.0f}"
-    return (
-        f"U = {found.U:.3f} with k = {found.k:.2f} for {100 * found.probability:.0f} % (effective degrees of freedom: {dof})"
-    )
+    return f"U = {found.U:.3f} with k = {found.k:.2f} for {100 * found.probability:.0f} % (effective degrees of freedom: {dof})"
 
 
 def advice(found: Alignment) -> list[str]:
@@ -59,6 +58,10 @@ def advice(found: Alignment) -> list[str]:
         out = [f"Aligned, stop: the correction {step} is within {finer}."]
     else:
         out = [f"Turn the sideslip axis by {step}, then measure both directions again."]
+    out.append(
+        "The correction is for the sum of misalignment and ply-steer, which look alike on one rig. With a usual ply-steer of "
+        f"{math.degrees(usual_ply_steer()):.2f} deg the axis itself is known to +- {found.u_axis_deg:.2f} deg (k = 1)."
+    )
     if any(row.source == "guess" for row in found.last):
         out.append(
             "C_alpha is guessed from the load, so the correction is uncertain; a sideslip sweep in tyre.toml or a second "

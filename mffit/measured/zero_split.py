@@ -9,9 +9,9 @@ from uncertainties import UFloat
 
 from mffit.config import Config
 from mffit.measured import constants, notes
+from mffit.measured.ply_steer import usual_ply_steer
 from mffit.measured.result import LoadResult
 from mffit.measured.sources import named
-from tir.parameters import BY_NAME
 
 
 class ZeroSplit(NamedTuple):
@@ -45,13 +45,6 @@ def split_of_zero(alpha_M: UFloat | None, C_alpha: UFloat | None, u_force: float
     share = (axis / both) ** 2
     exchanged = named(0.0, axis * tyre / both, "split of misalignment and ply-steer", "rad")
     return ZeroSplit(share * alpha_M + exchanged, (1.0 - share) * alpha_M - exchanged)
-
-
-def usual_ply_steer() -> float:
-    """Prior standard deviation of ply-steer [rad]."""
-    spread = BY_NAME["PHY1"].disc_spread
-    assert spread is not None
-    return float(spread)
 
 
 class AlignmentVerdict(NamedTuple):

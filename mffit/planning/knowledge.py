@@ -16,8 +16,8 @@ from mffit.fit.posterior import beside_held
 from mffit.fit.rig_numbers import rig_numbers
 from mffit.least_squares import inverse
 from mffit.measured import Measured
-from mffit.measured.zero_split import alignment_verdict
 from mffit.measured.radii import measured_path_radius
+from mffit.measured.zero_split import alignment_verdict
 from mffit.planning.runs import PlannedRun
 from mffit.points import Points
 from mffit.points.points import concatenate

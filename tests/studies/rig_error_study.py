@@ -132,9 +132,7 @@ def _flipped(content: Mapping[str, Any]) -> list[dict[str, Any]]:
     """Zeros of the nominal load with the tyre turned on its rim, in both directions."""
     load, angles = content["tyre"]["nominal_load"], [-1, -0.5, 0, 0.5, 1]
     zeros = {"load_N": load, "alpha_deg": angles, "mount": "flipped"}
-    return [
-        {**zeros, "file": f"flipped_{way}.csv", "direction": way} for way in ("forward", "backward")
-    ]
+    return [{**zeros, "file": f"flipped_{way}.csv", "direction": way} for way in ("forward", "backward")]
 
 
 def _numbers(measured: Any, known: Any, true: tir.Tyre) -> dict[str, tuple[float, float, float]]:

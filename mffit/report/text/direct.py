@@ -91,7 +91,11 @@ def spin_numbers(measured: Measured) -> str:
     if row is None:
         return ""
     found = [(name, DIRECT[name], getattr(row, name)) for name in NUMBERS]
-    lines = [f"{q.ascii:<10} {stated(value, q.unit_behind)}{EXPLAINED.get(name, '')}" for name, q, value in found if value is not None]
+    lines = [
+        f"{q.ascii:<10} {stated(value, q.unit_behind)}{EXPLAINED.get(name, '')}"
+        for name, q, value in found
+        if value is not None
+    ]
     others = _other_estimates(measured, row)
     if others:
         lines.append(f"{'from':<10} {', '.join(others)}")

@@ -32,7 +32,7 @@ def direct(**changes):
     """What the direct method found: 18 kN/rad of cornering stiffness."""
     found = dict(
         misaligned=False, alpha_M=ALPHA_M, C_alpha=Quantity(-18000.0, 100.0, "N/rad"), R=Quantity(1.3, 0.002, "m"),
-        epsilon_gamma=Quantity(-0.1, 0.05, "-"), F_phit_load=1500.0,
+        epsilon_gamma=Quantity(-0.1, 0.05, "-"), F_phit_load=1500.0, camber_skew=None,
     )  # fmt: skip
     return SimpleNamespace(**found | changes)
 
@@ -63,6 +63,12 @@ def test_a_misalignment_is_known_as_it_was_measured():
     number = by_name(rig(), direct(misaligned=True))["alpha_0_deg"]
     assert (number.expected, number.spread) == (0.0, pytest.approx(0.7))
     assert known_faults(rig(), direct(misaligned=True))["alpha_0_deg"] == pytest.approx(0.7)
+
+
+@pytest.mark.parametrize(("found", "spread"), [(0.25, 0.15), (-0.6, 0.6)])
+def test_a_camber_skew_that_contradicts_its_declaration_widens_the_prior(found, spread):
+    number = by_name(rig(), direct(camber_skew=Quantity(found, 0.05, "deg")))["camber_skew_deg"]
+    assert (number.expected, number.spread) == (0.0, pytest.approx(spread))
 
 
 def test_what_the_alignment_leaves_is_not_taken_off_beforehand():
