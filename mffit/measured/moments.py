@@ -31,7 +31,11 @@ def epsilon_from_moments(
     u = np.where(np.isfinite(parts.u_Mz_odd), parts.u_Mz_odd, USUAL_U_MOMENT / math.sqrt(2.0))
     index = sweep(evidence.points, parts.Mz_odd, group, "gamma", evidence.config)
     slope = slope_at_zero(
-        evidence.points.gamma[index], parts.Mz_odd[index], u[index], local=constants.CUBIC_CAMBER.rad
+        evidence.points.gamma[index],
+        parts.Mz_odd[index],
+        u[index],
+        local=constants.CUBIC_CAMBER.rad,
+        curvature=float(constants.CURVATURE_SPREAD),
     )
     if slope is None:
         return None

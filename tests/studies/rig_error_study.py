@@ -102,6 +102,8 @@ def one(job: tuple[int, str, bool]) -> tuple[str, Found]:
         content["sweep"] += _backward(content)
     if world.flipped:
         content["sweep"] += _flipped(content)
+    if not build:  # eps_gamma at the nominal load needs no other sweeps
+        content["sweep"] = [sweep for sweep in content["sweep"] if _needed(sweep, content)]
     for sweep in content["sweep"]:
         if world.warm_camber and "gamma_deg" in sweep and "alpha_deg" not in sweep:
             sweep["T_degC"] = 28.0 + world.warm_camber
@@ -126,6 +128,12 @@ def _backward(content: Mapping[str, Any]) -> list[dict[str, Any]]:
     angles = [-40, -30, -20, -10, -5, 0, 5, 10, 20, 30, 40]
     load = content["tyre"]["nominal_load"]
     return [{"file": "camber_backward.csv", "load_N": load, "gamma_deg": angles, "direction": "backward"}]
+
+
+def _needed(sweep: Mapping[str, Any], content: Mapping[str, Any]) -> bool:
+    """Whether a sweep is one of the nominal load and pressure, over one angle."""
+    at_nominal = sweep["load_N"] == content["tyre"]["nominal_load"] and "p_kPa" not in sweep
+    return at_nominal and not {"alpha_deg", "gamma_deg"} <= sweep.keys()
 
 
 def _flipped(content: Mapping[str, Any]) -> list[dict[str, Any]]:

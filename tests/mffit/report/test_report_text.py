@@ -7,18 +7,18 @@ from mffit.report import text
 from mffit.rounding import ascii_only, decimals_of, stated
 
 BUDGET = [
-    Contribution("load-cell offset", 10.0, "N", 0.03),
-    Contribution("camber alignment", 0.5, "deg", -0.04),
+    Contribution("load-cell offset", 10.0, "N", 0.03, sensitivity=0.003),
+    Contribution("camber stiffness", 20.0, "N/rad", 0.04, type="A", sensitivity=-0.002, dof=9.0),
 ]
 
 
 def test_budget_is_ordered_and_adds_up():
     assert text.budget_table(BUDGET, 0.05) == (
-        "source                  u  in eps_gamma  of variance\n"
-        "----------------  -------  ------------  -----------\n"
-        "camber alignment  0.5 deg        0.0400         64 %\n"
-        "load-cell offset     10 N        0.0300         36 %\n"
-        "combined (k = 1)                 0.0500"
+        "source                 type         u  sensitivity  dof  in eps_gamma  of variance\n"
+        "----------------  ---------  --------  -----------  ---  ------------  -----------\n"
+        "camber stiffness  A, normal  20 N/rad       -0.002    9        0.0400         64 %\n"
+        "load-cell offset  B, normal      10 N        0.003  inf        0.0300         36 %\n"
+        "combined (k = 1)                                               0.0500"
     )
 
 
@@ -58,4 +58,5 @@ def test_estimates_without_an_uncertainty_have_the_digits_of_the_measured_one(re
     digits = decimals_of(measured.epsilon_gamma.u)
     assert f"slope {measured.nominal.epsilon_slope:.{digits}f}" in estimates.split(", ")
     assert f"secant {measured.nominal.epsilon_secant:.{digits}f}" in estimates.split(", ")
-    assert f"Mz {ascii_only(stated(measured.nominal.epsilon_moment))}" in estimates.split(", ")
+    assert f"Mz (informational) {measured.nominal.epsilon_moment:.{digits}f}" in estimates.split(", ")
+    assert f"debiased {ascii_only(stated(measured.epsilon_gamma_debiased))}" in estimates.split(", ")
