@@ -86,7 +86,7 @@ def by_draws(r_e_C_gamma: UFloat, C_phit: UFloat, epsilon: UFloat, seed: int = 1
     values = 1.0 + sample(r_e_C_gamma) / sample(C_phit) + sample(beside)
     tail = (1.0 - constants.COVERAGE_PROBABILITY) / 2.0
     low, under, above, high = np.quantile(values, [tail, 0.158655, 0.841345, 1.0 - tail])
-    return Draws(u=float(above - under) / 2.0, interval=(float(low), float(high)), count=len(values))
+    return Draws(u=float(above - under) / 2.0, interval=(float(low), float(high)), number=len(values))
 
 
 def _drawn(source: Source, u: float, rng: np.random.Generator) -> np.ndarray:

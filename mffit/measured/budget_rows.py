@@ -39,7 +39,7 @@ class Draws(NamedTuple):
 
     u: float
     interval: tuple[float, float]  #: 2.5 % and 97.5 % quantiles
-    count: int
+    number: int  #: of draws
 
 
 def welch_satterthwaite(parts: Sequence[tuple[float, float]]) -> float:

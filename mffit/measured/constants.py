@@ -98,7 +98,7 @@ CURVATURE_SPREAD = Real(
     1.0, "-", "Prior standard deviation of the curvature E of a sideslip curve, whose prior mean is 0."
 )
 REST_OF_PLAY = Real(
-    0.1,
+    0.06,
     "-",
     "Standard uncertainty, over half the play, of sideslip zeros: where the moment changes sign, the wheel floats in the play.",
     "noise-free sample tyres with 0.17 deg of play",

@@ -175,9 +175,7 @@ class Measured(Brief):
             budget=tuple(sorted((*lines, spin), key=lambda line: -line.contribution)),
             left_out=(),
             u_monte_carlo=None if row.u_monte_carlo is None else grown * row.u_monte_carlo,
-            interval=None
-            if row.interval is None
-            else tuple(direct.value + grown * (end - direct.value) for end in row.interval),
+            interval=row.interval and _about(direct.value, grown, row.interval),
         )
         return self.with_nominal(named)
 
@@ -200,6 +198,12 @@ class Measured(Brief):
             if value is not None:
                 out[key] = Quantity(float(value), 0.0, "N" if key == "load_N" else "-")
         return out
+
+
+def _about(value: float, grown: float, interval: tuple[float, float]) -> tuple[float, float]:
+    """An interval whose distances from the value have grown."""
+    low, high = interval
+    return value + grown * (low - value), value + grown * (high - value)
 
 
 KEYS = {

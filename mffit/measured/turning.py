@@ -63,13 +63,15 @@ def turning(
     raw = {phi_t: turn_slip_of_path(zero, phi_t, both, rig, config) for phi_t, zero in found}
     measured, expected = _conicity(evidence, group, slopes, raw)
     # Conicity has the same sign on every path.
-    paths = tuple(path._replace(force=path.force - expected) for path in raw.values())
+    play = rest_of_play(config)
+    floating = 0.0 if slopes.C_alpha is None else abs(slopes.C_alpha.nominal_value) * play
+    paths = tuple(path._replace(force=path.force - expected + floating) for path in raw.values())
     combined = turn_slip_stiffness(paths)
     if combined.contradictory:
         alone = [Quantity(C.nominal_value, C.std_dev, "Nm") for C in combined.of_paths]
         troubles.append(notes.paths_contradict(group.load, [-1.0 / phi_t for phi_t, _ in found], alone))
     force = paths[0].force if len(paths) == 1 else paths[0].sign * combined.C_phit / rig.R
-    made = Turning(found[0][1], tuple(raw), paths, combined, force, measured, rest_of_play(config))
+    made = Turning(found[0][1], tuple(raw), paths, combined, force, measured, play)
     if combined.C_phit.nominal_value <= 0.0:
         refuse_inward(force.nominal_value, group.load, made.alpha_M, config)
     return made, troubles
