@@ -26,7 +26,7 @@ from mffit.measured.radii import effective_radius_at
 from mffit.measured.remarks import remarks
 from mffit.measured.result import CONICITY, LoadResult, Measured
 from mffit.measured.turning import Turning, turning
-from mffit.measured.zero_split import alignment_verdict, split_of_zero
+from mffit.measured.zero_split import alignment_verdict, at_true_zero, split_of_zero
 from mffit.parts import Parts
 from mffit.points import Points
 from tir import Quantity, Tyre
@@ -156,16 +156,17 @@ def _row(evidence: DirectEvidence, group: LoadGroup, slopes: LoadSlopes, found: 
         method.quantity(corrected(evidence, C, slopes.C_alpha), "N/rad")
         for C in (slopes.C_gamma, slopes.slope, slopes.secant)
     )
+    u_axis = evidence.config.rig.u("alpha_0_deg") if evidence.rig else 0.0
+    split = split_of_zero(found.alpha_M if found else None, slopes.C_alpha, u_axis)
     row = LoadResult(
         load=group.load,
-        C_alpha=method.quantity(slopes.C_alpha, "N/rad"),
+        C_alpha=method.quantity(at_true_zero(slopes.C_alpha, slopes.bend, split, u_axis), "N/rad"),
         C_gamma=C_gamma,
         C_gamma_slope=slope,
         C_gamma_secant=secant,
     )
     if found is None:
         return row
-    split = split_of_zero(found.alpha_M, slopes.C_alpha, evidence.config.rig.u("alpha_0_deg"))
     return replace(
         row,
         F_phit=method.quantity(found.force, "N"),

@@ -8,21 +8,25 @@ from dataclasses import dataclass
 import numpy as np
 from uncertainties import UFloat
 
+from mffit.constants import USUAL_U_FORCE, ZERO_CAMBER
 from mffit.measured import constants
 from mffit.measured.backlash import rest_of_play
 from mffit.measured.evidence import DirectEvidence
 from mffit.measured.groups import LoadGroup
 from mffit.measured.slopes import SlopeAtZero
+from mffit.measured.sources import named
 from mffit.measured.stiffnesses import (
     Estimates,
     chosen_camber_stiffness,
     cornering,
     estimates,
     number,
+    on_usual_radius,
     shape_error,
     sweep,
     u_odd,
 )
+from mffit.points import main_path
 
 CAMBER, BACKWARD_CAMBER = "camber stiffness", "camber stiffness backwards"
 
@@ -31,7 +35,8 @@ CAMBER, BACKWARD_CAMBER = "camber stiffness", "camber stiffness backwards"
 class LoadSlopes:
     """The stiffnesses of one load; the rig errors are still in them."""
 
-    C_alpha: UFloat | None  #: [N/rad]
+    C_alpha: UFloat | None  #: at the reading of zero [N/rad]
+    bend: UFloat | None  #: change of the slope with sideslip there [N/rad^2]
     C_gamma: UFloat | None  #: of the forward sweep by the configured method [N/rad]
     C_gamma_backward: UFloat | None  #: the same of a backward sweep
     slope: UFloat | None  #: of the forward sweep at zero [N/rad]
@@ -55,6 +60,7 @@ def load_slopes(evidence: DirectEvidence, group: LoadGroup) -> tuple[LoadSlopes,
     slope, secant = number(camber.slope, CAMBER, shape), number(camber.secant, CAMBER)
     found = LoadSlopes(
         C_alpha=C_alpha,
+        bend=_bend(evidence, group),
         C_gamma=slope if chosen is camber.slope else secant,
         C_gamma_backward=number(chosen_backward, BACKWARD_CAMBER, shape),
         slope=slope,
@@ -72,6 +78,34 @@ def cornering_stiffness(evidence: DirectEvidence, group: LoadGroup) -> UFloat | 
     if C_alpha is None or not evidence.config.rig.backlash_deg:
         return C_alpha
     return C_alpha * (1.0 + play / constants.CUBIC_SIDESLIP.rad)
+
+
+def _bend(evidence: DirectEvidence, group: LoadGroup) -> UFloat | None:
+    """Second derivative of the side force over sideslip at zero, upright and forwards; None with too few angles."""
+    points, reach = evidence.points, constants.CUBIC_SIDESLIP.rad
+    i = on_usual_radius(points, group, evidence.config)
+    i = i[
+        (points.direction[i] == 1)
+        & (np.abs(points.gamma[i]) < ZERO_CAMBER.rad)
+        & (np.abs(points.alpha[i]) <= 1.1 * reach)
+        & np.isfinite(points.Fy[i])
+        & (points.phi_t[i] == main_path(points))
+    ]
+    x = points.alpha[i]
+    if len(np.unique(np.round(x, 3))) < constants.POINTS_FOR_PARABOLA or not x.min() < 0.0 < x.max():
+        return None
+    u = np.where(np.isfinite(points.u_Fy[i]), points.u_Fy[i], USUAL_U_FORCE)
+    A = np.vander(x / reach, 4) / u[:, None]
+    covariance = np.linalg.inv(A.T @ A)
+    quadratic = (covariance @ A.T @ (points.Fy[i] / u))[1]
+    scale = 2.0 / reach**2
+    return named(
+        scale * quadratic,
+        scale * math.sqrt(covariance[1, 1]),
+        "bend of the sideslip curve",
+        "N/rad^2",
+        kind="A",
+    )
 
 
 def _camber_estimates(

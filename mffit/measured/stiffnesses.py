@@ -61,6 +61,11 @@ def u_odd(parts: Parts) -> np.ndarray:
     return np.where(np.isfinite(parts.u_Fy_odd), parts.u_Fy_odd, USUAL_U_FORCE / math.sqrt(2.0))
 
 
+def on_usual_radius(points: Points, group: LoadGroup, config: Config) -> np.ndarray:
+    """Indices of the group's points at the usual radius, on either side of the disc."""
+    return group.index if config.rig.radius is None else on_radius(points, group.index, config.rig.radius)
+
+
 def sweep(
     points: Points, odd: np.ndarray, group: LoadGroup, angle: str, config: Config, direction: int = 1
 ) -> np.ndarray:
@@ -68,7 +73,7 @@ def sweep(
 
     ``direction`` is 1 for points rolled forwards, -1 backwards.
     """
-    i = group.index if config.rig.radius is None else on_radius(points, group.index, config.rig.radius)
+    i = on_usual_radius(points, group, config)
     i = i[(points.direction[i] == direction) & np.isfinite(odd[i])]
     if angle == "gamma":
         return i[(np.abs(points.alpha[i]) < ZERO_SIDESLIP.rad) & (points.gamma[i] > ZERO_CAMBER.rad)]

@@ -47,6 +47,31 @@ def split_of_zero(alpha_M: UFloat | None, C_alpha: UFloat | None, u_force: float
     return ZeroSplit(share * alpha_M + exchanged, (1.0 - share) * alpha_M - exchanged)
 
 
+def at_true_zero(
+    C_alpha: UFloat | None, bend: UFloat | None, split: ZeroSplit | None, u_force: float
+) -> UFloat | None:
+    """Cornering stiffness at zero sideslip [N/rad] from that at the reading of zero.
+
+    Parameters
+    ----------
+    C_alpha : slope at the reading of zero [N/rad]
+    bend : change of the slope with sideslip [N/rad^2]
+    split : the misalignment, if both directions were run
+    u_force : else the declared standard uncertainty of the alignment, as the side force that it causes [N]
+
+    Notes
+    -----
+    On a disc the curve is shifted by about a degree, so its slope changes even at zero.
+    """
+    if C_alpha is None or bend is None:
+        return C_alpha
+    if split is None:
+        off = named(0.0, u_force / abs(C_alpha.nominal_value), "sideslip alignment of the slope", "rad")
+    else:
+        off = split.misalignment
+    return C_alpha - bend * off
+
+
 class AlignmentVerdict(NamedTuple):
     """Whether the slip force at zero exceeds what the rig's own alignment leaves."""
 
