@@ -6,6 +6,7 @@ import math
 from collections.abc import Sequence
 
 from mffit.measured import Alignment, Contribution, LoadResult, Measured, wording
+from mffit.measured.result import FINITE_SPIN
 from mffit.quantities import CONDITIONS, DIRECT
 from mffit.report.build_view import PER_LOAD
 from mffit.report.text.layout import blocks, paragraphs, table, wrapped
@@ -120,7 +121,9 @@ def _other_estimates(measured: Measured, row: LoadResult) -> list[str]:
 
 def _improve_first(budget: Sequence[Contribution], total: float) -> str:
     """The largest source of uncertainty, and what halving it would bring."""
-    largest = max(budget, key=lambda line: abs(line.contribution), default=None)
+    # The spin of a disc is as it is.
+    lines = [line for line in budget if line.source != FINITE_SPIN]
+    largest = max(lines, key=lambda line: abs(line.contribution), default=None)
     if largest is None or not total:
         return ""
     rest = total**2 - 0.75 * largest.contribution**2

@@ -173,7 +173,7 @@ def test_the_other_side_of_the_disc_is_chosen_for_eps_gamma(result, plan):
     """It removes the load-cell offset and the camber zero, the largest lines of the budget."""
     (step,) = plan.steps
     assert step.run.addition.id == "other-side"
-    assert plan.now == pytest.approx(result.measured.epsilon_gamma_debiased.u)
+    assert plan.now == pytest.approx(result.measured.epsilon_gamma_debiased.u, rel=1e-3)
     rest = [
         r
         for r in result.measured.budget

@@ -2,9 +2,14 @@
 
 from __future__ import annotations
 
+import math
+from dataclasses import replace
+
 from mffit.measured import Contribution, align
+from mffit.measured.result import FINITE_SPIN
 from mffit.report import text
 from mffit.rounding import ascii_only, decimals_of, stated
+from tir import Quantity
 
 BUDGET = [
     Contribution("load-cell offset", 10.0, "N", 0.03, sensitivity=0.003),
@@ -28,6 +33,16 @@ def test_spin_summary_names_what_to_improve_first(result):
     assert f"Improve first: {first.source};" in summary
     for load in ("900", "1500"):
         assert f"\n     {load.rjust(3)}"[-4:] in summary
+
+
+def test_the_spin_of_the_disc_is_nothing_to_improve(result):
+    lines = (Contribution(FINITE_SPIN, 0.03, "m^2", 0.06), Contribution("load-cell offset", 10.0, "N", 0.03))
+    row = replace(
+        result.measured.nominal, budget=lines, epsilon_gamma=Quantity(-0.1, math.hypot(0.06, 0.03), "-")
+    )
+    summary = text.spin_summary(replace(result.measured, nominal=row))
+    assert "Improve first: load-cell offset;" in summary
+    assert "effective degrees of freedom: infinite" in summary
 
 
 def test_alignment_table_has_a_line_per_load_and_ends_with_the_correction(result):
