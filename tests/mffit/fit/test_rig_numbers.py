@@ -5,11 +5,15 @@ from __future__ import annotations
 import math
 from types import SimpleNamespace
 
+import numpy as np
 import pytest
 
 from mffit import config
+from mffit.fit.plan import fit_plan
 from mffit.fit.rig_numbers import known_faults, rig_numbers
+from mffit.points import make_points
 from tir import Quantity
+from tir.parameters import TABLE
 
 DOUBTS = {
     "u_loadcell_offset_N": 8.0, "u_camber_alignment_deg": 0.3, "u_slip_alignment_N": 20.0, "backlash_deg": 0.2,
@@ -101,3 +105,12 @@ def test_a_straight_path_and_a_rig_without_measured_spin_have_none():
     flat = rig(type="flat-track", path_radius=None, u_path_radius=None)
     assert rig_numbers(flat, direct()) == ()
     assert rig_numbers(rig(), direct(epsilon_gamma=None)) == ()
+
+
+@pytest.mark.parametrize(("declared", "spread"), [({}, 0.003), ({"u_conicity": 0.01}, 0.01)])
+def test_a_declared_conicity_is_the_prior_of_its_coefficient(declared, spread):
+    start = {row.name: row.default or 0.0 for row in TABLE if row.stage}
+    known = SimpleNamespace(origin=dict.fromkeys(start, "default"))
+    points = make_points(np.radians([-2.0, 0.0, 2.0]), 0.0, 1500.0, p=250e3, V=6.0, phi_t=-0.77, Fy=0.0)
+    found = fit_plan(rig(**declared), points, direct(), known, start, {})
+    assert found.scatter["PVY1"] == spread
