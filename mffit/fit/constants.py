@@ -144,3 +144,9 @@ RIG_ERROR_REACH = Real(
 LEAST_CONICITY = Real(
     1e-5, "-", "Smallest prior standard deviation of PVY1, where [rig] declares none: the fit divides by it."
 )
+
+SPIN_CORRECTION_OF_MODEL = Real(
+    0.15,
+    "-",
+    "Standard uncertainty, over the correction itself, of the formula that corrects the cornering stiffness for spin.",
+)

@@ -8,6 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from mffit.fit import constants
 from mffit.fit.posterior import spread_through
 from mffit.fit.result import FitResult
 from mffit.measured import LoadResult
@@ -29,8 +30,8 @@ def straight_cornering_stiffness(fitted: FitResult, points: Points, row: LoadRes
 
     Notes
     -----
-    The model gives the ratio of the slopes without and with spin, with an uncertainty from its posterior; the stiffness itself
-    is the measured one.
+    The model gives the ratio of the slopes without and with spin, with an uncertainty from its posterior and for the formula
+    itself; the stiffness is the measured one.
     """
     phi_t = main_path(points)
     if row.C_alpha is None or phi_t == 0.0:
@@ -42,6 +43,7 @@ def straight_cornering_stiffness(fitted: FitResult, points: Points, row: LoadRes
     ratio = straight.slope / curved.slope
     change = straight.by_coefficient / straight.slope - curved.by_coefficient / curved.slope
     u = float(spread_through(change[None], posterior.covariance[np.ix_(rows, rows)])[0])
+    u = math.hypot(u, constants.SPIN_CORRECTION_OF_MODEL * (ratio - 1.0))
     C = row.C_alpha
     return Quantity(ratio * C.value, abs(ratio * C.value) * math.hypot(C.u / C.value, u), C.unit)
 
