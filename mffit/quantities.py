@@ -86,10 +86,13 @@ DIRECT = {
     "C_phit": QuantityName("turn-slip stiffness", "C_φt", "Nm"),
     "C_gamma": QuantityName("camber stiffness", "C_γ", "N/rad"),
     "C_alpha": QuantityName("cornering stiffness", "C_α", "N/rad"),
+    "C_alpha_straight": QuantityName("cornering stiffness without spin", "C_α0", "N/rad"),
     "r_e": QuantityName("effective radius", "r_e", "m"),
     "R": QuantityName("path radius", "R", "m"),
     "F_phit": QuantityName("turn-slip force", "F_φt", "N"),
-    "alpha_M": QuantityName("sideslip misalignment", "α_M", "rad"),
+    "alpha_M": QuantityName("misalignment plus ply-steer", "α_M", "rad"),
+    "misalignment": QuantityName("sideslip misalignment", "α_0", "rad"),
+    "ply_steer": QuantityName("ply-steer", "α_ply", "rad"),
 }
 """Results of the direct method, by the attribute of its records."""
 CHARACTERISTICS = {

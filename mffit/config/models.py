@@ -105,6 +105,7 @@ class MachineTable(Table):
     path: PathTable | None = None
     u_length: q.ULength = 0.001  #: each tape measure [m]
     backlash_deg: q.Play = 0.0  #: full play of the sideslip axis
+    u_conicity: q.Fraction = float(constants.PLAUSIBLE_CONICITY)  #: of the tyre, force over load
 
     @property
     def on_disc(self) -> bool:

@@ -9,6 +9,7 @@ from mffit.fit.fitting import fit
 from mffit.fit.posterior import Posterior
 from mffit.fit.result import FitResult
 from mffit.fit.stages import StageRecord
+from mffit.fit.straight import straight_cornering_stiffness
 
 __all__ = [
     "Agreement",
@@ -19,5 +20,6 @@ __all__ = [
     "ensemble",
     "file_names",
     "fit",
+    "straight_cornering_stiffness",
     "with_free_epsilon",
 ]

@@ -174,3 +174,13 @@ COMMENT_LENGTH = Count(66, "-", "Characters of a comment that fit on a line of t
 RIG_ERROR_REACH = Real(
     8.0, "-", "Standard uncertainties that a rig error may move; beyond them the declaration is wrong."
 )
+
+LEAST_CONICITY = Real(
+    1e-5, "-", "Smallest prior standard deviation of PVY1, where [rig] declares none: the fit divides by it."
+)
+
+SPIN_CORRECTION_OF_MODEL = Real(
+    0.15,
+    "-",
+    "Standard uncertainty, over the correction itself, of the formula that corrects the cornering stiffness for spin.",
+)

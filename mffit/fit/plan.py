@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from mffit.config.constants import PLAUSIBLE_CONICITY
 from mffit.fit import constants
 from mffit.fit.coverage import StageCoverage, coverage
 from mffit.fit.known import Known
@@ -73,6 +74,8 @@ def fit_plan(
     rig = rig_numbers(config, measured, points.used_setups)
     staged = {name: start[name] for stage in STAGES for name in stage.parameters}
     scatter = scatters(staged, known.origin, curved=bool(np.any(points.phi_t)))
+    if config.rig.on_disc and "PVY1" in scatter and config.rig.u_conicity != PLAUSIBLE_CONICITY:
+        scatter["PVY1"] = max(config.rig.u_conicity, float(constants.LEAST_CONICITY))
     scatter |= {name: prior.spread for name, prior in fleet.items()}
     absent = ODD_TERMS if config.tyre.side == "symmetric" else frozenset()
     held = {name: scatter[name] for row in cover for name in row.held if name not in absent}

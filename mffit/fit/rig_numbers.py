@@ -10,6 +10,7 @@ from mffit.config import Declaration, declared_faults, declared_rig
 from mffit.constants import USUAL_CORNERING_STIFFNESS
 from mffit.fit import constants
 from mffit.least_squares import FreeNumber
+from mffit.measured.constants import CONTRADICTED
 from mffit.rig_errors import BY_NAME, ZEROS, Faults, number_of
 
 SIDESLIP_ZERO = "alpha_0_deg"
@@ -62,6 +63,9 @@ def rig_numbers(config: Any, measured: Any, setups: Sequence[str] = ()) -> tuple
         value, u = declared.get("alpha_0_deg", Declaration(0.0, 0.0))
         found = math.degrees(abs(measured.alpha_M.value))
         declared["alpha_0_deg"] = Declaration(value, max(u, found))
+    skew, own = measured.camber_skew, declared.get("camber_skew_deg")
+    if skew is not None and own is not None and abs(skew.value) > CONTRADICTED * own.u:
+        declared["camber_skew_deg"] = Declaration(own.value, abs(skew.value))
     return tuple(_number(name, prior) for name, prior in declared.items())
 
 

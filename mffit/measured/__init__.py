@@ -2,10 +2,11 @@
 
 from mffit.measured.alignment import Alignment, align
 from mffit.measured.backlash import odd_alpha
+from mffit.measured.budget_rows import Contribution
 from mffit.measured.camber_reduction import DirectInputs, direct_method
 from mffit.measured.direct import at_the_axis, measure
 from mffit.measured.radii import RadiusReading, radius_readings
-from mffit.measured.result import KEYS, Contribution, LoadResult, Measured, SetupResult, SetupScatter
+from mffit.measured.result import KEYS, LoadResult, Measured, SetupResult, SetupScatter
 
 __all__ = [
     "KEYS",

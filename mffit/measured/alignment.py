@@ -14,6 +14,7 @@ from mffit.constants import USUAL_CORNERING_STIFFNESS, USUAL_U_FORCE
 from mffit.errors import InputError
 from mffit.measured import constants, notes, setup_notes
 from mffit.measured.groups import LoadGroup, last_setup, load_groups, zeros
+from mffit.measured.ply_steer import usual_ply_steer
 from mffit.points import Points, main_path
 from tir import Quantity, conventions
 
@@ -70,6 +71,11 @@ class Alignment(Brief):
     def u_deg(self) -> float:
         """Its standard uncertainty."""
         return float(np.linalg.norm(self._weights() * [step.u_deg for step in self.last]))
+
+    @property
+    def u_axis_deg(self) -> float:
+        """Standard uncertainty of the axis's own misalignment, of which ply-steer takes an unknown part."""
+        return math.hypot(self.u_deg, math.degrees(usual_ply_steer()))
 
     @property
     def aligned(self) -> bool:

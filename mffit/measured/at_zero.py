@@ -15,6 +15,7 @@ from mffit.measured import camber_reduction as method
 from mffit.measured import constants, notes
 from mffit.measured.groups import LoadGroup, zeros
 from mffit.measured.paths import PathForce, by_path
+from mffit.measured.sources import named
 from mffit.points import Points
 from mffit.rig_errors import AtZero
 
@@ -32,6 +33,13 @@ class ZeroReadings(NamedTuple):
     )
 
 
+class Place(NamedTuple):
+    """A path in one set-up."""
+
+    phi_t: float  #: turn slip of the path [1/m]
+    setup: str  #: name of the set-up
+
+
 class PathZeros(NamedTuple):
     """The readings at zero of one path in one set-up, and the points that they are from."""
 
@@ -39,6 +47,11 @@ class PathZeros(NamedTuple):
     setup: str  #: name of the set-up
     readings: ZeroReadings
     group: LoadGroup
+
+    @property
+    def place(self) -> Place:
+        """Its path and set-up."""
+        return Place(self.phi_t, self.setup)
 
 
 def zeros_by_path(
@@ -61,7 +74,7 @@ def _zeros(points: Points, group: LoadGroup, C_alpha: UFloat | None, config: Con
     backward = _at_zero(points, group, -1, points.Fy, u_Fy, -slope)
     moments = [_at_zero(points, group, direction, points.Mz, u_Mz, None) for direction in (1, -1)]
     known = [
-        method.named(value, u, "noise of the zero moment", "Nm")
+        named(value, u, "noise of the zero moment", "Nm", kind="A")
         for value, u in moments
         if math.isfinite(value)
     ]
@@ -151,12 +164,12 @@ def turn_slip_of_path(
         "sign": float(np.sign(phi_t)), "R": rig.R + (1.0 / abs(phi_t) - usual), "at": _plain(at),
         "setup": found.setup, "scatter": scatter,
     }  # fmt: skip
-    forward = method.named(zero.forward, zero.u_forward, "noise of the forward zeros", "N")
+    forward = named(zero.forward, zero.u_forward, "noise of the forward zeros", "N", kind="A")
     if not math.isfinite(zero.backward):
         force = method.turn_slip_force(forward, errors, at, both_directions=False)
         force = force if scatter is None else force - scatter
         return PathForce(force=force, readings=(forward,), alpha_M=None, **path)
-    backward = method.named(zero.backward, zero.u_backward, "noise of the backward zeros", "N")
+    backward = named(zero.backward, zero.u_backward, "noise of the backward zeros", "N", kind="A")
     force = method.turn_slip_force((forward + backward) / 2.0, errors, at, both_directions=True)
     force = force if scatter is None else force - scatter
     alpha_M = None if C_alpha is None else (forward - backward) / 2.0 / C_alpha

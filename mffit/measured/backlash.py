@@ -2,11 +2,16 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 from scipy.special import ndtr
+from uncertainties import UFloat
 
 from mffit.config import Config
 from mffit.constants import USUAL_CORNERING_STIFFNESS, USUAL_U_MOMENT
+from mffit.measured import constants
+from mffit.measured.sources import named
 from mffit.parts import Parts
 from mffit.points import Points
 
@@ -34,6 +39,12 @@ def backlash_corrected(points: Points, config: Config) -> Points:
     return points.replace(
         alpha=points.alpha + shift, u_Fy=np.hypot(points.u_Fy, USUAL_CORNERING_STIFFNESS * points.Fz * u)
     )
+
+
+def rest_of_play(config: Config) -> UFloat:
+    """What the correction leaves of sideslip zeros, as the wheel floats where the moment changes sign [rad]."""
+    half = 0.5 * math.radians(config.rig.backlash_deg)
+    return named(0.0, constants.REST_OF_PLAY * half, "play near zero moment", "rad")
 
 
 def odd_alpha(points: Points, parts: Parts, config: Config) -> np.ndarray:

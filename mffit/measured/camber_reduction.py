@@ -11,11 +11,9 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
-import numpy as np
-from uncertainties import UFloat, ufloat
+from uncertainties import UFloat
 
-from mffit.measured import constants
-from mffit.measured.result import Contribution
+from mffit.measured.sources import named
 from mffit.rig_errors import DECLARED, AtZero, Declared
 from tir import Quantity
 
@@ -81,11 +79,6 @@ def _uncertain(name: str, declared: Declared, u: Mapping[str, float]) -> UFloat:
     return named(0.0, u.get(name, 0.0), declared.source, declared.unit)
 
 
-def named(value: float, u: float, source: str, unit: str) -> UFloat:
-    """A number with uncertainty whose tag holds its source and unit."""
-    return ufloat(value, max(u, 1e-12), f"{source}|{unit}")  # the propagation does not accept u = 0
-
-
 def turn_slip_force(F_raw: Any, errors: Mapping[str, Any], at: AtZero, *, both_directions: bool) -> Any:
     """Turn-slip force [N]: the raw force at (0, 0) less what the rig errors add to it; (23) in ISO signs.
 
@@ -113,11 +106,6 @@ def true_camber_stiffness(C_gamma: Any, errors: Mapping[str, Any], at: AtZero) -
     return C_gamma
 
 
-def acts_at_zero(name: str) -> bool:
-    """Whether a rig error adds a force at zero sideslip and camber."""
-    return _DECLARATIONS[name].force_at_zero is not None
-
-
 def camber_reduction(F_phit: Any, C_gamma: Any, r_e: Any, R: Any, phi_sign: float) -> TurnSlip:
     """C_phit = F/phi_t (21) and eps_gamma = 1 + r_e C_gamma / C_phit, (17) in ISO signs.
 
@@ -135,34 +123,6 @@ def camber_reduction(F_phit: Any, C_gamma: Any, r_e: Any, R: Any, phi_sign: floa
 def quantity(x: UFloat | None, unit: str) -> Quantity | None:
     """A number with uncertainty as the record that leaves this folder."""
     return None if x is None else Quantity(float(x.nominal_value), float(x.std_dev), unit)
-
-
-def budget(epsilon: UFloat) -> tuple[Contribution, ...]:
-    """What each source contributes to u(eps_gamma), largest first."""
-    rows: dict[str, list[float]] = {}
-    for variable, contribution in epsilon.error_components().items():
-        rows.setdefault(variable.tag or "other|", []).extend([variable.std_dev, contribution])
-    out = []
-    for tag, values in rows.items():
-        source, _, unit = tag.partition("|")
-        u, unit = (math.degrees(values[0]), "deg") if unit == "rad" else (values[0], unit)
-        out.append(Contribution(source, u, unit, float(np.linalg.norm(values[1::2]))))
-    return tuple(sorted((row for row in out if row.contribution > 1e-9), key=lambda row: -row.contribution))
-
-
-def monte_carlo(function: Any, inputs: Sequence[UFloat], seed: int = 1) -> float:
-    """Robust standard deviation of ``function(*inputs)`` over random draws of the independent inputs.
-
-    Half the distance between the 15.87 % and 84.13 % quantiles, because a ratio has heavy tails.
-    """
-    rng = np.random.default_rng(seed)
-    drawn = [
-        rng.normal(x.nominal_value, x.std_dev, constants.MONTE_CARLO_DRAWS) if x.std_dev else x.nominal_value
-        for x in inputs
-    ]
-    values = function(*drawn)
-    low, high = np.quantile(values, [0.158655, 0.841345])
-    return float(high - low) / 2.0
 
 
 @dataclass(frozen=True, slots=True)

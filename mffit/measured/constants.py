@@ -49,6 +49,13 @@ CLEAR_MOMENT = Real(
     2.0, "-", "Standard uncertainties that the turn-slip moment must exceed for its own eps_gamma."
 )
 
+COVERAGE_PROBABILITY = Real(0.95, "-", "Coverage probability of expanded uncertainties.", "JCGM 100, 6.2.2")
+MANY_DEGREES_OF_FREEDOM = Real(
+    1e6, "-", "Degrees of freedom beyond which the t distribution is the normal one."
+)
+LEAST_DOF_DRAWN = Real(
+    3.0, "-", "Fewest degrees of freedom that are drawn, as the t distribution has no variance below."
+)
 FINITE_SPIN_SHARE = Real(
     0.05,
     "m^2",
@@ -64,4 +71,51 @@ SETUP_SCATTER_CHANCE = Real(
 MONTE_CARLO_DRAWS = Count(
     20_000, "-", "Random draws for u(eps_gamma), which is then known to better than 1 %."
 )
-PLAUSIBLE_CONICITY = Real(0.002, "-", "Plausible conicity force over the load.")
+
+SPIN_LOSS = Real(
+    0.03,
+    "m^2",
+    "Bias of (17) on a disc over (1 - eps_gamma) phi_t^2: where a force saturates with spin, its slope falls three times as much "
+    "as its secant.",
+    "sample tyres with coefficients up to 10 % off: 0.018 to 0.036",
+)
+SPIN_LOSS_U = Real(
+    0.015,
+    "m^2",
+    "Its standard uncertainty, half the value: a brush that does not slide has no loss, and other tyres may have twice as much.",
+)
+SPIN_BIAS_OF_MODEL = Real(
+    0.3,
+    "-",
+    "Relative standard uncertainty of the bias of finite spin that a fitted model predicts.",
+    "tests/studies/rig_error_study.py --build",
+)
+SLOPE_SHAPE = Real(
+    0.007,
+    "-",
+    "Relative standard uncertainty of a slope at zero beyond the difference of shapes, as terms in |gamma| bend the odd curve "
+    "at zero.",
+    "noise-free sample tyres are 0.1 to 1.3 % off",
+)
+CURVATURE_SPREAD = Real(
+    1.0, "-", "Prior standard deviation of the curvature E of a sideslip curve, whose prior mean is 0."
+)
+REST_OF_PLAY = Real(
+    0.06,
+    "-",
+    "Standard uncertainty, over half the play, of sideslip zeros: where the moment changes sign, the wheel floats in the play.",
+    "noise-free sample tyres with 0.17 deg of play",
+)
+CONTRADICTED = Real(
+    2.0,
+    "-",
+    "Standard uncertainties above which a measurement contradicts a declared uncertainty and replaces it.",
+)
+CLEAR_MISALIGNMENT = Real(
+    2.0,
+    "-",
+    "Standard uncertainties that the misalignment split from ply-steer must exceed to be called one.",
+)
+TEMPERATURE_APART = Real(
+    2.0, "K", "Mean temperatures of zeros and camber sweeps that differ by less need no sentence."
+)

@@ -33,6 +33,13 @@ def last_setup(points: Points, group: LoadGroup) -> LoadGroup:
     return LoadGroup(group.load, group.index[setup == setup.max(initial=0)]) if len(setup) else group
 
 
+def flipped(points: Points, group: LoadGroup) -> LoadGroup:
+    """The points at the group's load and the main pressure with the tyre turned on its rim."""
+    used = np.flatnonzero(main_pressure(points) & (points.mount < 0) & ~points.continuous)
+    near = np.abs(points.Fz[used] - group.load) < levels.LOAD.tolerance * group.load
+    return LoadGroup(group.load, used[near])
+
+
 def zeros(points: Points, group: LoadGroup, direction: int) -> np.ndarray:
     """Indices of the group's points at zero sideslip and camber, rolling in ``direction`` (+1, -1)."""
     i = group.index

@@ -10,6 +10,10 @@ from tir import Quantity
 
 STRAIGHT_PATH = "A flat track's path is straight: it has no turn slip to measure."
 STANDARD_UNCERTAINTIES = "All uncertainties are standard uncertainties (k = 1)."
+ON_THE_PATH = (
+    "Cornering and camber stiffness are slopes at zero on the path of the measurement, and C_phit is the turn-slip force over "
+    "the curvature of that path."
+)
 CONTACT_WANDERS = "With camber the contact point moves over the crown and changes the path radius; R holds for the upright wheel."
 NOTHING_MEASURED = (
     "eps_gamma could not be measured: it needs a camber sweep, points at (0, 0) and a [rolling_radius]"
@@ -61,18 +65,46 @@ def camber_skew(skew: Quantity) -> str:
     )
 
 
-def aligned(alpha_M: Quantity, slip: float, shift: float) -> str:
+def aligned(alpha_M: Quantity, axis: Quantity, tyre: Quantity, slip: float, shift: float) -> str:
+    return f"Forward and backward runs: {_sum(alpha_M, axis, tyre, slip, shift)}. The sum is within what the alignment leaves."
+
+
+def slip_beyond(alpha_M: Quantity, axis: Quantity, tyre: Quantity, slip: float, shift: float) -> str:
     return (
-        f"Forward and backward runs: {_misalignment(alpha_M, slip, shift)}. It is within what the alignment leaves and stays "
-        "in the model as ply-steer."
+        f"Forward and backward runs: {_sum(alpha_M, axis, tyre, slip, shift)}. The sum exceeds what the alignment is declared "
+        "to leave, but usual ply-steer can explain it."
     )
 
 
 def conicity(share: float, force: float, shift: float) -> str:
     return (
-        f"Conicity cannot be removed: a plausible {force:.0f} N ({100 * share:.1f} % of the load) would move eps_gamma by "
-        f"{shift:.3f}."
+        f"Conicity is not measured: a plausible {force:.0f} N ({100 * share:.1f} % of the load, u_conicity) would move eps_gamma "
+        f"by {shift:.3f}. Zeros on a flipped mount or on the other side of the disc settle it."
     )
+
+
+def conicity_measured(found: Quantity) -> str:
+    return (
+        f"Zeros on both mounts: the conicity force is {to_uncertainty(found.value, found.u)} +- "
+        f"{to_uncertainty(found.u, found.u)} N. It is subtracted from the turn-slip force."
+    )
+
+
+def temperature(warmer: float, spread: float, shift: float) -> str:
+    way = "warmer" if warmer > 0.0 else "colder"
+    return (
+        f"The tyre was {abs(warmer):.1f} K {way} in the camber sweep than at its zeros; with a usual change of stiffness of "
+        f"{100 * spread:.1f} % per K this counts with {shift:.3f} in u(eps_gamma). Run the zeros at the temperature of the sweep."
+    )
+
+
+def secant_bias(bias: float, used: bool) -> str:
+    end = (
+        "; the budget is that of the published procedure and does not contain it, nor finite spin and conicity"
+        if used
+        else ""
+    )
+    return f"eps_gamma by the secant is {bias:+.3f} from that by the slope at zero, as the camber curve bends{end}."
 
 
 def slope_not_possible(load: float, angle_deg: float) -> str:
@@ -86,10 +118,10 @@ def secant_not_possible(load: float, angle_deg: float) -> str:
     return f"at {load:.0f} N the camber sweep does not reach {angle_deg:g} deg; the slope at zero is used instead of the secant"
 
 
-def misaligned(alpha_M: Quantity, slip: float, shift: float) -> str:
+def misaligned(alpha_M: Quantity, axis: Quantity, tyre: Quantity, slip: float, shift: float) -> str:
     return (
-        f"the sideslip axis is misaligned: {_misalignment(alpha_M, slip, shift)}; forward and backward forces differ by "
-        f"{abs(2 * slip):.0f} N. The angles are corrected for it; ply-steer cannot be separated from it"
+        f"the sideslip axis is misaligned: {_sum(alpha_M, axis, tyre, slip, shift)}; forward and backward forces differ by "
+        f"{abs(2 * slip):.0f} N. The angles are corrected for the sum"
     )
 
 
@@ -124,6 +156,14 @@ def _centre(R: float) -> str:
     return f"{abs(R):.3g} m to the {'left' if R > 0.0 else 'right'}"
 
 
-def _misalignment(alpha_M: Quantity, slip: float, shift: float) -> str:
-    angle, u = math.degrees(alpha_M.value), math.degrees(alpha_M.u)
-    return f"alpha_M = {angle:.3f} +- {u:.3f} deg ({slip:.0f} N); uncorrected it would move eps_gamma by {shift:.2f}"
+def _sum(alpha_M: Quantity, axis: Quantity, tyre: Quantity, slip: float, shift: float) -> str:
+    whole, of_axis, of_tyre = (_angle(x) for x in (alpha_M, axis, tyre))
+    return (
+        f"misalignment plus ply-steer alpha_M = {whole} deg ({slip:.0f} N); uncorrected it would move eps_gamma by {shift:.2f}. "
+        f"By usual sizes of both, misalignment is {of_axis} deg and ply-steer {of_tyre} deg"
+    )
+
+
+def _angle(x: Quantity) -> str:
+    value, u = math.degrees(x.value), math.degrees(x.u)
+    return f"{value:.3f} +- {u:.3f}"

@@ -10,13 +10,6 @@ from scipy.special import chdtrc
 from uncertainties import UFloat
 
 from mffit.measured import constants
-from mffit.measured.camber_reduction import (
-    UncertainRig,
-    acts_at_zero,
-    monte_carlo,
-    named,
-    turn_slip_force,
-)
 from mffit.measured.groups import LoadGroup
 from mffit.measured.loads import covariance
 from mffit.points import Points
@@ -111,44 +104,3 @@ def _chance(paths: Sequence[PathForce], single: Sequence[UFloat], errors: np.nda
     errors = errors + np.outer(of_spin, of_spin)
     off = said - _weights(errors) @ said
     return float(chdtrc(len(single) - 1, off @ np.linalg.solve(errors, off)))
-
-
-def u_by_draws(
-    paths: Sequence[PathForce], weights: np.ndarray, C_gamma: UFloat, r_e: UFloat, rig: UncertainRig
-) -> float:
-    """u(eps_gamma) by random draws of all independent sources.
-
-    Parameters
-    ----------
-    paths, weights : (k,) as in :class:`TurnSlipStiffness`
-    C_gamma : camber stiffness, less what the rig adds to it [N/rad]
-    r_e : effective radius [m]
-    rig : the uncertain rig errors
-    """
-    # R cancels where r_e comes from a revolution on the same path.
-    ratio = r_e / rig.R
-    of_first = named(ratio.nominal_value, ratio.std_dev, "r_e/R", "-")
-    relative = [rig.R.nominal_value / path.R.nominal_value for path in paths]
-    readings = [reading for path in paths for reading in path.readings]
-    at_zero = [{n: x for n, x in rig.at(path.setup).items() if acts_at_zero(n)} for path in paths]
-    scatters = [{} if path.scatter is None else {"": path.scatter} for path in paths]
-    # An error that several paths share is drawn once.
-    sources = {id(x): x for errors in (*at_zero, *scatters) for x in errors.values()}
-
-    def formula(*drawn):
-        forces, others = list(drawn[: len(readings)]), drawn[len(readings) :]
-        C, r, known = others[0], others[1], dict(zip(sources, others[2:], strict=True))
-        total = 0.0
-        for path, weight, R, named_errors, scatter in zip(
-            paths, weights, relative, at_zero, scatters, strict=True
-        ):
-            mean = sum(forces.pop(0) for _ in path.readings) / len(path.readings)
-            errors = {name: known[id(x)] for name, x in named_errors.items()}
-            force = turn_slip_force(
-                mean, errors, path.at._replace(C_gamma=C), both_directions=len(path.readings) > 1
-            )
-            force = force - sum(known[id(x)] for x in scatter.values())
-            total = total + weight * path.sign * force / R
-        return 1.0 + r * C / total
-
-    return monte_carlo(formula, [*readings, C_gamma, of_first, *sources.values()])

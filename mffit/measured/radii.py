@@ -10,7 +10,7 @@ from uncertainties import UFloat
 
 from mffit.config import Config, wheel_turn
 from mffit.measured import constants
-from mffit.measured.camber_reduction import named
+from mffit.measured.sources import named
 from tir import Tyre
 
 

@@ -10,20 +10,13 @@ from typing import NamedTuple
 
 from mffit.brief import Brief
 from mffit.made import Made
+from mffit.measured import constants
+from mffit.measured.budget_rows import Contribution, Expanded, expanded
 from mffit.quantities import CONDITIONS, DIRECT
 from tir import Quantity
 
 CONICITY, FINITE_SPIN = "conicity", "finite spin of the disc"
-"""Sources that are added to the budget after the fit; the random draws do not include them."""
-
-
-class Contribution(NamedTuple):
-    """One line of the budget."""
-
-    source: str
-    u: float  #: in the source's own unit
-    unit: str
-    contribution: float  #: to u(eps_gamma)
+"""Names of sources in the budget."""
 
 
 class SetupResult(NamedTuple):
@@ -65,27 +58,52 @@ class LoadResult(Brief):
     """Everything measured at one load; quantities in SI and ISO signs, u with k = 1."""
 
     load: float  #: [N]
-    C_alpha: Quantity | None = None  #: [N/rad]
-    C_gamma: Quantity | None = None  #: the chosen estimate, corrected for rig errors [N/rad]
-    C_gamma_slope: Quantity | None = None
+    C_alpha: Quantity | None = None  #: slope at zero on the path [N/rad]
+    C_alpha_straight: Quantity | None = None  #: the same without spin, by the model of a build [N/rad]
+    C_gamma: Quantity | None = None  #: the chosen estimate on the path, corrected for rig errors [N/rad]
+    C_gamma_slope: Quantity | None = None  #: corrected like it
     C_gamma_secant: Quantity | None = None
     r_e: Quantity | None = None  #: [m]
     R: Quantity | None = None  #: [m]
     F_phit: Quantity | None = None  #: turn-slip force, corrected (23) [N]
     C_phit: Quantity | None = None  #: [Nm]
     epsilon_gamma: Quantity | None = None
+    epsilon_debiased: Quantity | None = None  #: corrected for the finite spin of the disc
     epsilon_slope: float | None = None
     epsilon_secant: float | None = None
-    epsilon_moment: Quantity | None = None
-    alpha_M: Quantity | None = None  #: sideslip misalignment from backward runs [rad]
+    epsilon_moment: float | None = None  #: from moments; informational, so without uncertainty
+    alpha_M: Quantity | None = None  #: sum of misalignment and ply-steer, from backward runs [rad]
+    misalignment: Quantity | None = None  #: its part of the axis, by the priors of both [rad]
+    ply_steer: Quantity | None = None  #: its part of the tyre [rad]
+    conicity: Quantity | None = None  #: from zeros on both mounts [N]
     F_forward: float = math.nan  #: mean raw force of the forward zeros, backlash removed [N]
     F_backward: float = math.nan  #: [N]; NaN without backward runs
     budget: tuple[Contribution, ...] = ()
     u_monte_carlo: float | None = None  #: u(eps_gamma) from random draws
+    interval: tuple[float, float] | None = None  #: 95 % interval of eps_gamma from random draws
+    left_out: tuple[Contribution, ...] = ()  #: lines that the published procedure leaves out of its budget
     paths: tuple[float, ...] = ()  #: turn slip of every path with zeros, the usual one first [1/m]
     setups: tuple[
         SetupResult, ...
     ] = ()  #: the zeros of every path and set-up by themselves, if there are several
+
+    def shift_by(self, force: float) -> float:
+        """Change of eps_gamma by a force [N] that is taken for turn slip."""
+        assert self.epsilon_gamma is not None
+        assert self.F_phit is not None
+        return abs((1.0 - self.epsilon_gamma.value) * force / self.F_phit.value)
+
+    @property
+    def secant_bias(self) -> float | None:
+        """How much larger eps_gamma by the secant is than by the slope at zero."""
+        if self.epsilon_secant is None or self.epsilon_slope is None:
+            return None
+        return self.epsilon_secant - self.epsilon_slope
+
+    @property
+    def expanded(self) -> Expanded | None:
+        """The expanded uncertainty of eps_gamma; None without a budget."""
+        return expanded(self.budget) if self.budget else None
 
     @property
     def headline(self) -> str:
@@ -107,12 +125,15 @@ class Measured(Brief):
     pecp2: float
     u_pecp2: float | None
     r_e_loads: Mapping[float, float]  #: by load, where it was measured
-    misaligned: bool  #: alpha_M is beyond what the rig's alignment leaves and is corrected in the points
+    misaligned: (
+        bool  #: the slip force is beyond what the alignment leaves; the fit corrects the points for alpha_M
+    )
     notes: tuple[str, ...]  #: to know beside the numbers
     warnings: tuple[str, ...]  #: to act on
     load_note: str = ""  #: the value of PECP2, or why it is 0
-    conicity: Contribution | None = None  #: joins the budget in :meth:`debiased`
     setup_scatter: SetupScatter | None = None  #: None without repeated set-ups
+    axis_off: bool = False  #: the split of alpha_M supports that the sideslip axis is misaligned
+    camber_skew: Quantity | None = None  #: from camber sweeps in both directions [deg]
     epsilon_gamma_model: float | None = None
     epsilon_gamma_debiased: Quantity | None = None  #: corrected for the finite spin of the disc
     made: Made | None = None  #: set by ``mffit spin``
@@ -171,23 +192,39 @@ class Measured(Brief):
         return {load: quantity.value for load, quantity in found.items() if quantity is not None}
 
     def debiased(self, bias: float) -> Measured:
-        """The record with eps_gamma corrected for finite spin beside the measured one.
+        """The record with the bias of finite spin as a fitted model predicts it, in place of the usual bias.
 
-        Conicity is added to both budgets, the bias to that of the measured value, which still contains it.
+        The measured value still contains the bias, so its uncertainty does too.
         """
         row, direct = self.nominal, self.epsilon_gamma
         assert row is not None
         assert direct is not None
-        conicity = [] if self.conicity is None else [self.conicity]
-        spin = Contribution(FINITE_SPIN, abs(bias), "-", abs(bias))
-        u = math.hypot(direct.u, *(line.contribution for line in conicity))
-        whole = Quantity(direct.value, math.hypot(u, bias), direct.unit)
-        named = dataclasses.replace(row, epsilon_gamma=whole, budget=(*row.budget, *conicity, spin))
+        u_bias = constants.SPIN_BIAS_OF_MODEL * abs(bias)
+        before = math.hypot(*(line.contribution for line in row.budget if line.source == FINITE_SPIN))
+        rest = math.hypot(
+            math.sqrt(max(direct.u**2 - before**2, 0.0)), *(line.contribution for line in row.left_out)
+        )
+        both = math.hypot(bias, u_bias)
+        spin = Contribution(FINITE_SPIN, both, "-", both, value=0.0, sensitivity=1.0)
+        lines = [line for line in (*row.budget, *row.left_out) if line.source != FINITE_SPIN]
+        whole, corrected = math.hypot(rest, both), direct.value - bias
+        grown = whole / direct.u if direct.u else 1.0
+        named = dataclasses.replace(
+            row,
+            epsilon_gamma=Quantity(direct.value, whole, direct.unit),
+            epsilon_debiased=Quantity(corrected, math.hypot(rest, u_bias), direct.unit),
+            budget=tuple(sorted((*lines, spin), key=lambda line: -line.contribution)),
+            left_out=(),
+            u_monte_carlo=None if row.u_monte_carlo is None else grown * row.u_monte_carlo,
+            interval=row.interval and _about(direct.value, grown, row.interval),
+        )
+        return self.with_nominal(named)
+
+    def with_nominal(self, row: LoadResult) -> Measured:
+        """The record with another row at the nominal load."""
+        rows = tuple(row if other is self.nominal else other for other in self.per_load)
         return dataclasses.replace(
-            self,
-            nominal=named,
-            per_load=tuple(named if other is row else other for other in self.per_load),
-            epsilon_gamma_debiased=Quantity(direct.value - bias, u, direct.unit),
+            self, nominal=row, per_load=rows, epsilon_gamma_debiased=row.epsilon_debiased
         )
 
     def quantities(self) -> dict[str, Quantity]:
@@ -204,11 +241,18 @@ class Measured(Brief):
         return out
 
 
+def _about(value: float, grown: float, interval: tuple[float, float]) -> tuple[float, float]:
+    """An interval whose distances from the value have grown."""
+    low, high = interval
+    return value + grown * (low - value), value + grown * (high - value)
+
+
 KEYS = {
     "epsilon_gamma": "epsilon_gamma",
     "C_phit": "C_phit_Nm",
     "C_gamma": "C_gamma_N_per_rad",
     "C_alpha": "C_alpha_N_per_rad",
+    "C_alpha_straight": "C_alpha_straight_N_per_rad",
     "r_e": "r_e_m",
     "R": "R_m",
     "F_phit": "F_phit_N",

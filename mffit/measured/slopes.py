@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -14,10 +15,21 @@ class SlopeAtZero:
     """Slope of an odd curve at zero, in the unit of y per radian."""
 
     value: float
-    u: float  #: standard uncertainty: noise, and the difference of the two shapes
-    u_noise: float
+    u_noise: float  #: standard uncertainty from the scatter of the points
+    u_shape: float  #: half the difference of two shapes, beyond noise; common to curves of one tyre
+    u_own: float  #: error of both shapes, which differs from curve to curve
     cubic: float  #: the cross-check; NaN if too few points
     points: int
+
+    @property
+    def u(self) -> float:
+        """Combined standard uncertainty."""
+        return math.hypot(self.u_noise, self.u_shape, self.u_own)
+
+    @property
+    def dof(self) -> float:
+        """Degrees of freedom of ``u_noise``."""
+        return max(1.0, self.points - 3.0)
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,7 +41,9 @@ class Secant:
     angle: float  #: of the point used [rad]
 
 
-def slope_at_zero(x: np.ndarray, y: np.ndarray, u: np.ndarray, *, local: float) -> SlopeAtZero | None:
+def slope_at_zero(
+    x: np.ndarray, y: np.ndarray, u: np.ndarray, *, local: float, curvature: float = 0.0
+) -> SlopeAtZero | None:
     """Slope at zero of an odd curve.
 
     Parameters
@@ -38,6 +52,7 @@ def slope_at_zero(x: np.ndarray, y: np.ndarray, u: np.ndarray, *, local: float) 
     y : (n,) odd part there
     u : (n,) standard uncertainties of y
     local : up to where a cubic may describe the curve [rad]
+    curvature : prior standard deviation of the curvature E of the shape; 0 holds it at 0
 
     Returns
     -------
@@ -45,13 +60,19 @@ def slope_at_zero(x: np.ndarray, y: np.ndarray, u: np.ndarray, *, local: float) 
     """
     if len(np.unique(np.round(x, 4))) < 3:
         return None
-    shape, u_shape = _saturating(x, y, u)
+    shape, u_noise, scatter = _saturating(x, y, u, curvature)
+    if not curvature:
+        # A misfit of the shape at large angles is no scatter.
+        scatter = min(scatter, _saturating(x, y, u, float(constants.CURVATURE_SPREAD))[2])
+    scatter = max(1.0, scatter)
+    u_noise *= scatter
     near = x <= local * 1.01
-    cubic = np.nan
+    cubic, difference = np.nan, constants.SLOPE_WITHOUT_CUBIC * abs(shape)
     if len(np.unique(np.round(x[near], 4))) >= 3:
-        cubic, _ = _cubic(x[near], y[near], u[near])
-    difference = abs(shape - cubic) if np.isfinite(cubic) else constants.SLOPE_WITHOUT_CUBIC * abs(shape)
-    return SlopeAtZero(shape, float(np.hypot(u_shape, difference / 2.0)), u_shape, float(cubic), len(x))
+        cubic, u_cubic = _cubic(x[near], y[near], u[near])
+        difference = math.sqrt(max((shape - cubic) ** 2 - u_cubic**2, 0.0))
+    u_own = float(constants.SLOPE_SHAPE * abs(shape))
+    return SlopeAtZero(shape, u_noise, float(difference / 2.0), u_own, float(cubic), len(x))
 
 
 def secant_at(x: np.ndarray, y: np.ndarray, u: np.ndarray, angle: float) -> Secant | None:
@@ -75,8 +96,11 @@ def secant_at(x: np.ndarray, y: np.ndarray, u: np.ndarray, angle: float) -> Seca
     return Secant(float(np.interp(angle, x, y) / angle), float(np.interp(angle, x, u) / angle), angle)
 
 
-def _saturating(x, y, u) -> tuple[float, float]:
-    """Fit D sin(C atan(x s / (C D))): an odd curve of slope s at zero that saturates at D."""
+def _saturating(x, y, u, curvature: float) -> tuple[float, float, float]:
+    """Fit D sin(C atan(b - E (b - atan b))), b = x s / (C D): an odd curve of slope s at zero that saturates at D.
+
+    Slope, its standard error from ``u``, and the scatter of the points over ``u``.
+    """
     import lmfit  # loads matplotlib, so only when a slope is wanted
 
     first = np.argsort(x)[:3]
@@ -87,17 +111,22 @@ def _saturating(x, y, u) -> tuple[float, float]:
     shape.add("slope", 1.05, min=0.2, max=5.0)  # over its first estimate
     shape.add("ceiling", 1.2, min=0.7, max=20.0)  # over the largest value
     shape.add("C", 1.2, min=0.3, max=1.9)
+    if curvature:
+        shape.add("E", 0.0, min=-6.0, max=1.0)
 
     def residual(shape):
         s, D, C = shape["slope"] * start, shape["ceiling"] * top, shape["C"].value
-        curve = D * np.sin(C * np.arctan(s * x / (C * D)))
-        return np.append((curve - y) / u, (C - 1.2) / 0.5)
+        b = s * x / (C * D)
+        bent = shape["E"].value * (b - np.arctan(b)) if curvature else 0.0
+        priors = [(C - 1.2) / 0.5, *([shape["E"].value / curvature] if curvature else [])]
+        return np.append((D * np.sin(C * np.arctan(b - bent)) - y) / u, priors)
 
-    out = lmfit.minimize(residual, shape, method="least_squares", scale_covar=False, x_scale=[0.1, 0.3, 0.2])
+    scales = [0.1, 0.3, 0.2, *([0.5] if curvature else [])]
+    out = lmfit.minimize(residual, shape, method="least_squares", scale_covar=False, x_scale=scales)
     found = out.params["slope"]
-    inflation = max(1.0, float(np.sqrt(out.chisqr / max(len(x) - 3, 1))))
+    scatter = float(np.sqrt(out.chisqr / max(len(x) - 3, 1)))
     error = found.stderr if found.stderr is not None else abs(found.value)
-    return float(found.value * start), float(error * abs(start) * inflation)
+    return float(found.value * start), float(error * abs(start)), scatter
 
 
 def _cubic(x, y, u) -> tuple[float, float]:

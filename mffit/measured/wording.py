@@ -4,8 +4,11 @@ from __future__ import annotations
 
 import math
 
+from mffit.measured import constants
 from mffit.measured.alignment import Alignment
-from mffit.measured.result import CONICITY, FINITE_SPIN, Measured
+from mffit.measured.ply_steer import usual_ply_steer
+from mffit.measured.result import Measured
+from mffit.rounding import as_good_as
 
 
 def epsilon_values(measured: Measured) -> str:
@@ -25,17 +28,21 @@ def epsilon_values(measured: Measured) -> str:
 
 
 def by_draws(measured: Measured) -> str:
-    """u(eps_gamma) by random draws, and the part of the budget that it checks; empty without draws."""
+    """u(eps_gamma) and its 95 % interval by random draws; empty without draws."""
     row = measured.nominal
-    if row is None or row.u_monte_carlo is None or row.epsilon_gamma is None:
+    if row is None or row.u_monte_carlo is None or row.interval is None:
         return ""
-    found = f"{row.u_monte_carlo:.4f} by random draws"
-    later = [line for line in row.budget if line.source in (CONICITY, FINITE_SPIN)]
-    if not later:
-        return found
-    rest = math.sqrt(max(row.epsilon_gamma.u**2 - sum(line.contribution**2 for line in later), 0.0))
-    sources = " and ".join(line.source for line in later)
-    return f"{found}, which do not include {sources}; without them the budget gives {rest:.4f}"
+    low, high = (as_good_as(end, row.u_monte_carlo) for end in row.interval)
+    return f"{row.u_monte_carlo:.4f} by random draws, 95 % interval {low} to {high}"
+
+
+def expanded(measured: Measured) -> str:
+    """The expanded uncertainty with its coverage factor; empty without a budget."""
+    found = measured.nominal.expanded if measured.nominal else None
+    if found is None:
+        return ""
+    dof = "infinite" if found.dof > constants.MANY_DEGREES_OF_FREEDOM else f"{found.dof:.0f}"
+    return f"U = {found.U:.3f} with k = {found.k:.2f} for {100 * found.probability:.0f} % (effective degrees of freedom: {dof})"
 
 
 def advice(found: Alignment) -> list[str]:
@@ -51,6 +58,10 @@ def advice(found: Alignment) -> list[str]:
         out = [f"Aligned, stop: the correction {step} is within {finer}."]
     else:
         out = [f"Turn the sideslip axis by {step}, then measure both directions again."]
+    out.append(
+        "The correction is for the sum of misalignment and ply-steer, which look alike on one rig. With a usual ply-steer of "
+        f"{math.degrees(usual_ply_steer()):.2f} deg the axis itself is known to +- {found.u_axis_deg:.2f} deg (k = 1)."
+    )
     if any(row.source == "guess" for row in found.last):
         out.append(
             "C_alpha is guessed from the load, so the correction is uncertain; a sideslip sweep in tyre.toml or a second "

@@ -134,6 +134,9 @@ def _fitted(
             assert measured.epsilon_gamma_debiased is not None
             measured = replace(measured, pecp1=measured.epsilon_gamma_debiased.value)
             fitted = fit(measured)
+    if measured.nominal is not None:
+        straight = fitting.straight_cornering_stiffness(fitted, points, measured.nominal)
+        measured = measured.with_nominal(replace(measured.nominal, C_alpha_straight=straight))
     pecp1 = measured.pecp1 if measured.epsilon_gamma is None else float(fitted.written["PECP1"])
     return replace(measured, epsilon_gamma_model=fitted.epsilon_gamma_model, pecp1=pecp1), fitted
 

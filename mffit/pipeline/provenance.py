@@ -38,6 +38,12 @@ PLAIN = " /\\!#$&'()+,;=@[]{}~"
 """Characters of file names that are written in comments without %XX, beside letters and digits."""
 
 
+STIFFNESSES = (
+    "C_alpha_N_per_rad and C_gamma_N_per_rad are slopes at zero on the path of the measurement, C_alpha_straight_N_per_rad that "
+    "of the tyre without spin"
+)
+"""What the stiffnesses among the measured quantities are."""
+
 Annotate = Callable[[Tyre, str], Tyre]
 """Adds measured quantities and provenance as structured comments to the tyre for a use."""
 
@@ -55,6 +61,7 @@ def annotator(config: Config, made: Made, measured: Measured, fitted: FitResult,
             PROGRAM: f"{made.program} {made.version}",
             METHOD: str(made.method),
             "use": f"{use}, for simulations with turn slip {TURN_SLIP[use]}",
+            "stiffnesses": STIFFNESSES,
             "configuration": _settings(config),
             **inputs,
         }

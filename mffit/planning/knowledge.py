@@ -16,8 +16,8 @@ from mffit.fit.posterior import beside_held
 from mffit.fit.rig_numbers import rig_numbers
 from mffit.least_squares import inverse
 from mffit.measured import Measured
-from mffit.measured.direct import alignment_verdict
 from mffit.measured.radii import measured_path_radius
+from mffit.measured.zero_split import alignment_verdict
 from mffit.planning.runs import PlannedRun, new_setups
 from mffit.points import Points
 from mffit.points.points import concatenate
@@ -135,7 +135,7 @@ class Knowledge:
         if R is not None:
             row = replace(row, R=Quantity(R.nominal_value, R.std_dev, "m"))
         # With a smaller declared uncertainty the measured zero may exceed it, because ply-steer looks like misalignment.
-        misaligned = alignment_verdict(config, row).misaligned
+        misaligned = alignment_verdict(config, row).beyond
         numbers = rig_numbers(
             config,
             replace(self.measured, nominal=row, misaligned=misaligned),

@@ -267,14 +267,19 @@ def test_spin_writes_the_spin_part_of_the_build(built, result, tmp_path, capsys)
     content = json.loads((tmp_path / "spin" / "spin.json").read_text(encoding="utf-8"))
     # what only the finished file can tell
     fitted = {"epsilon_gamma_model", "pecp1", "epsilon_gamma_debiased", "u_epsilon_gamma_debiased"}
-    fitted |= {"u_epsilon_gamma", "budget", "per_load"}
+    fitted |= {"u_epsilon_gamma", "budget", "per_load", "expanded", "u_epsilon_gamma_monte_carlo"}
+    fitted |= {"interval_95_monte_carlo", "C_alpha_straight_N_per_rad", "u_C_alpha_straight_N_per_rad"}
     assert {k: v for k, v in content.items() if k not in fitted} == {
         k: v for k, v in result["spin"].items() if k not in fitted
     }
-    # The model adds two lines to the budget: what finite spin and conicity may have done.
+    # The bias of finite spin is that of the model in place of the usual one.
+    spin = "finite spin of the disc"
     before, after = content["budget"], result["spin"]["budget"]
-    assert after[: len(before)] == before
-    assert [line["source"] for line in after[len(before) :]] == ["conicity", "finite spin of the disc"]
+    for lines in (before, after):
+        assert [line["source"] for line in lines].count(spin) == 1
+    assert [x for x in before if x["source"] != spin] == [x for x in after if x["source"] != spin]
+    assert content["C_alpha_straight_N_per_rad"] is None
+    assert result["spin"]["C_alpha_straight_N_per_rad"] != content["C_alpha_N_per_rad"]
     for part, lines in ((content, before), (result["spin"], after)):
         assert part["u_epsilon_gamma"] == pytest.approx(
             np.sqrt(sum(x["contribution"] ** 2 for x in lines)), rel=1e-6

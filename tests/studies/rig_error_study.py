@@ -4,7 +4,8 @@
 
 For every world (what is wrong with the rig, what is declared of it, which sweeps are run) it draws rigs and tyres, front and
 rear in turn, measures eps_gamma and the numbers beside it, and prints rms error, mean standard uncertainty and the share of
-95 % intervals (k = 1.96) that contain the truth.
+95 % intervals (k = 1.96) that contain the truth. Conicity and ply-steer of the tyres are drawn from their usual sizes. With
+`--build` it fits every rig, which takes seconds, and adds the numbers that need a model.
 """
 
 from __future__ import annotations
@@ -46,6 +47,9 @@ class World:
     setups: int = (
         1  #: how often the rig is set up on the usual path, with zeros at the nominal load every time
     )
+    flipped: bool = False  #: zeros with the tyre turned on its rim, too
+    conicity: float = 0.002  #: standard deviation of the drawn conicity, over load
+    warm_camber: float = 0.0  #: temperature of camber sweeps above that of the others [K]
 
 
 DECLARED = {
@@ -54,6 +58,7 @@ DECLARED = {
     "u_slip_alignment_N": 25.0,
     "u_camber_skew_deg": 0.1,
 }
+PLY_STEER = 0.002  # rad, standard deviation
 
 
 def _zeros(factor: float) -> dict[str, float]:
@@ -71,6 +76,12 @@ WORLDS = {
     "skew 0.5 deg, not declared": World(faults={"camber_skew_deg": 0.5}),
     "skew 0.5 deg, not declared, backward camber": World(
         faults={"camber_skew_deg": 0.5}, backward_camber=True
+    ),
+    "conicity 1 %, declared": World(conicity=0.01, declared={"u_conicity": 0.01}),
+    "conicity 1 %, not declared": World(conicity=0.01),
+    "conicity 1 %, not declared, flipped zeros": World(conicity=0.01, flipped=True),
+    "camber sweeps 15 K warmer, stiffness -0.2 % per K": World(
+        faults={"k_T_stiffness_per_K": -0.002}, warm_camber=15.0
     ),
     "load falls by 6 % sin^2": World(faults={"load_camber": -0.06}),
     "both sides, set up anew": World(other_side=True),
@@ -98,6 +109,8 @@ def one(job: tuple[int, str, bool]) -> tuple[str, Found]:
     world, rng = WORLDS[name], np.random.default_rng(5000 + seed)
     sample = SAMPLES / ("front-120-70", "rear-190-55")[seed % 2]
     true = _scaled(tir.read(sample / "true.tir").replace(**NO_FORCE_AT_REST), 0.1, rng)
+    conicity, ply_steer = rng.normal(0.0, (world.conicity, PLY_STEER))
+    true = true.replace(PVY1=conicity, PHY1=ply_steer, PVY2=0.0, PHY2=0.0)
     content = plan_content(sample)
     content["tyre"].pop("base", None)
     content["faults"] |= world.faults
@@ -108,6 +121,13 @@ def one(job: tuple[int, str, bool]) -> tuple[str, Found]:
     if world.other_side:
         content["sweep"] += _other_side(content)
     content["sweep"] += _again(content, world.setups)
+    if world.flipped:
+        content["sweep"] += _flipped(content)
+    if not build:  # eps_gamma at the nominal load needs no other sweeps
+        content["sweep"] = [sweep for sweep in content["sweep"] if _needed(sweep, content)]
+    for sweep in content["sweep"]:
+        if world.warm_camber and "gamma_deg" in sweep and "alpha_deg" not in sweep:
+            sweep["T_degC"] = 28.0 + world.warm_camber
     with tempfile.TemporaryDirectory() as made:
         folder = Path(made)
         true.write(folder / "drawn.tir")
@@ -159,25 +179,56 @@ def _again(content: Mapping[str, Any], setups: int) -> list[dict[str, Any]]:
     ]
 
 
+def _needed(sweep: Mapping[str, Any], content: Mapping[str, Any]) -> bool:
+    """Whether a sweep is one of the nominal load and pressure, over one angle."""
+    at_nominal = sweep["load_N"] == content["tyre"]["nominal_load"] and "p_kPa" not in sweep
+    return at_nominal and not {"alpha_deg", "gamma_deg"} <= sweep.keys()
+
+
+def _flipped(content: Mapping[str, Any]) -> list[dict[str, Any]]:
+    """Zeros of the nominal load with the tyre turned on its rim, in both directions."""
+    load, angles = content["tyre"]["nominal_load"], [-1, -0.5, 0, 0.5, 1]
+    zeros = {"load_N": load, "alpha_deg": angles, "mount": "flipped"}
+    return [{**zeros, "file": f"flipped_{way}.csv", "direction": way} for way in ("forward", "backward")]
+
+
 def _numbers(measured: Any, known: Any, true: tir.Tyre) -> dict[str, tuple[float, float, float]]:
-    row, truth = measured.nominal, known.nominal
+    row, truth, faults = measured.nominal, known.nominal, known.faults
     phi_t = -1.0 / truth.R_m
 
-    def slope(angle: str) -> float:
-        up, down = (true(truth.load_N, phi_t=phi_t, Vx=6.0, **{angle: s}).Fy for s in (STEP, -STEP))
+    def slope(angle: str, phi_t: float = phi_t) -> float:
+        forces = (
+            true(truth.load_N, phi_t=phi_t, Vx=6.0, turn_slip=True, **{angle: s}).Fy for s in (STEP, -STEP)
+        )
+        up, down = forces
         return float(up - down) / (2.0 * STEP)
 
-    faults = known.faults
+    axis, ply_steer = np.radians(faults["alpha_0_deg"]), float(true["PHY1"])
     pairs = {
         "eps_gamma": (row.epsilon_gamma, truth.epsilon_gamma),
         "eps_gamma debiased": (measured.epsilon_gamma_debiased, truth.epsilon_gamma),
         "C_phit [Nm]": (row.C_phit, truth.C_phit_secant_Nm),
+        "F_phit [N]": (row.F_phit, truth.F_phit_N),
         "C_gamma on the path [N/rad]": (row.C_gamma, slope("gamma")),
         "C_alpha on the path [N/rad]": (row.C_alpha, slope("alpha")),
+        "C_alpha without spin [N/rad]": (row.C_alpha_straight, slope("alpha", 0.0)),
         "r_e [m]": (row.r_e, truth.r_e_m),
-        "alpha_M + ply-steer [rad]": (row.alpha_M, np.radians(faults["alpha_0_deg"]) + float(true["PHY1"])),
+        "R [m]": (row.R, truth.R_m),
+        "alpha_M, the sum [rad]": (row.alpha_M, axis + ply_steer),
+        "misalignment [rad]": (row.misalignment, axis),
+        "ply-steer [rad]": (row.ply_steer, ply_steer),
+        "camber skew [deg]": (measured.camber_skew, faults["camber_skew_deg"]),
+        "conicity [N]": (row.conicity, float(true["PVY1"]) * truth.load_N),
     }
-    return {key: (q.value, q.u, float(t)) for key, (q, t) in pairs.items() if q is not None}
+    return {key: (q.value, q.u, float(t)) for key, (q, t) in pairs.items() if q is not None} | {
+        "eps_gamma, draws": _of_draws(row, truth.epsilon_gamma)
+    }
+
+
+def _of_draws(row: Any, truth: float) -> tuple[float, float, float]:
+    """The interval of the random draws, as a value with a standard uncertainty that has the same 95 % interval."""
+    low, high = row.interval
+    return (low + high) / 2.0, (high - low) / (2.0 * SAFE), truth
 
 
 def table(name: str, rows: list[Found]) -> list[str]:
@@ -219,8 +270,8 @@ def main() -> None:
     with ProcessPoolExecutor(given.jobs) as pool:
         for name, row in pool.map(one, jobs, chunksize=4):
             found[name].append(row)
-    for name, rows in found.items():
-        print("\n".join(table(name, rows)), flush=True)
+            if len(found[name]) == given.rigs:
+                print("\n".join(table(name, found[name])), flush=True)
 
 
 if __name__ == "__main__":

@@ -6,28 +6,39 @@ import math
 from collections.abc import Sequence
 
 from mffit.measured import Alignment, Contribution, LoadResult, Measured, wording
+from mffit.measured.result import FINITE_SPIN
 from mffit.quantities import CONDITIONS, DIRECT
 from mffit.report.build_view import PER_LOAD
 from mffit.report.text.layout import blocks, paragraphs, table, wrapped
 from mffit.rounding import as_good_as, number, stated, with_u
 
-NUMBERS = ("epsilon_gamma", "C_phit", "F_phit", "C_gamma", "C_alpha", "r_e", "R")
+NUMBERS = ("epsilon_gamma", "C_phit", "F_phit", "C_gamma", "C_alpha", "C_alpha_straight", "r_e", "R")
 """Results at the load nearest to the nominal one, in this order."""
+EXPLAINED = {
+    "C_gamma": " (slope on the path)",
+    "C_alpha": " (slope on the path)",
+    "C_alpha_straight": " (without spin, by the model)",
+}
+"""What a stiffness is, where several are shown."""
 
 
 def budget_table(budget: Sequence[Contribution], total: float) -> str:
-    """The sources of u(eps_gamma), largest contribution first."""
+    """The sources of u(eps_gamma) in the terms of JCGM 100, largest contribution first."""
     rows = [
         (
             line.source,
+            f"{line.type}, {line.distribution}",
             f"{number(line.u, digits=3)} {line.unit}".removesuffix(" -"),
+            number(line.sensitivity, digits=3),
+            "inf" if math.isinf(line.dof) else number(line.dof, 0),
             number(abs(line.contribution), 4),
             f"{100.0 * (line.contribution / total) ** 2:.0f} %" if total else "–",
         )
         for line in sorted(budget, key=lambda line: -abs(line.contribution))
     ]
-    rows.append(("combined (k = 1)", "", number(total, 4), ""))
-    return table(("source", "u", f"in {DIRECT['epsilon_gamma'].ascii}", "of variance"), rows)
+    rows.append(("combined (k = 1)", "", "", "", "", number(total, 4), ""))
+    head = ("source", "type", "u", "sensitivity", "dof", f"in {DIRECT['epsilon_gamma'].ascii}", "of variance")
+    return table(head, rows)
 
 
 def spin_summary(measured: Measured) -> str:
@@ -41,6 +52,7 @@ def spin_summary(measured: Measured) -> str:
     parts = [
         spin_numbers(measured),
         budget_table(measured.budget, measured.epsilon_gamma.u),
+        "\n".join(text for text in (wording.expanded(measured), wording.by_draws(measured)) if text),
         _improve_first(measured.budget, measured.epsilon_gamma.u),
         _per_load(measured.per_load),
         setups_table(measured),
@@ -80,8 +92,12 @@ def spin_numbers(measured: Measured) -> str:
     row = measured.nominal
     if row is None:
         return ""
-    found = [(DIRECT[name], getattr(row, name)) for name in NUMBERS]
-    lines = [f"{q.ascii:<10} {stated(value, q.unit_behind)}" for q, value in found if value is not None]
+    found = [(name, DIRECT[name], getattr(row, name)) for name in NUMBERS]
+    lines = [
+        f"{q.ascii:<10} {stated(value, q.unit_behind)}{EXPLAINED.get(name, '')}"
+        for name, q, value in found
+        if value is not None
+    ]
     others = _other_estimates(measured, row)
     if others:
         lines.append(f"{'from':<10} {', '.join(others)}")
@@ -97,10 +113,11 @@ def _other_estimates(measured: Measured, row: LoadResult) -> list[str]:
         "slope": row.epsilon_slope,
         "secant": row.epsilon_secant,
         "written file": measured.epsilon_gamma_model,
+        "Mz (informational)": row.epsilon_moment,
     }
     found = [f"{name} {as_good_as(value, u)}" for name, value in plain.items() if value is not None]
-    with_own_u = {"debiased": measured.epsilon_gamma_debiased, "Mz": row.epsilon_moment}
-    return found + [f"{name} {stated(value)}" for name, value in with_own_u.items() if value is not None]
+    debiased = measured.epsilon_gamma_debiased
+    return found + ([f"debiased {stated(debiased)}"] if debiased is not None else [])
 
 
 def setups_table(measured: Measured) -> str:
@@ -130,7 +147,9 @@ def setups_table(measured: Measured) -> str:
 
 def _improve_first(budget: Sequence[Contribution], total: float) -> str:
     """The largest source of uncertainty, and what halving it would bring."""
-    largest = max(budget, key=lambda line: abs(line.contribution), default=None)
+    # The spin of a disc is as it is.
+    lines = [line for line in budget if line.source != FINITE_SPIN]
+    largest = max(lines, key=lambda line: abs(line.contribution), default=None)
     if largest is None or not total:
         return ""
     rest = total**2 - 0.75 * largest.contribution**2

@@ -68,14 +68,30 @@ def spin(measured: Measured) -> dict[str, Any]:
         "pecp2": measured.pecp2,
         "u_pecp2": measured.u_pecp2,
         "budget": [line._asdict() for line in measured.budget],
+        "expanded": _expanded(row),
         "u_epsilon_gamma_monte_carlo": row.u_monte_carlo if row else None,
-        "misaligned": measured.misaligned,
+        "interval_95_monte_carlo": list(row.interval) if row and row.interval else None,
+        **stated("camber_skew_deg", measured.camber_skew),
+        "misaligned": measured.axis_off,
         "coverage_factor": 1,
         "setups": [_setup(other) for other in row.setups] if row else [],
         "setup_scatter": _scatter(measured.setup_scatter),
         "notes": list(measured.notes),
         "per_load": [_load(other) for other in measured.per_load],
         **({} if measured.made is None else {"made": made(measured.made)}),
+    }
+
+
+def _expanded(row: LoadResult | None) -> dict[str, Any] | None:
+    """The expanded uncertainty of eps_gamma; infinite degrees of freedom are null."""
+    found = row.expanded if row else None
+    if found is None:
+        return None
+    return {
+        "U_epsilon_gamma": found.U,
+        "coverage_factor": found.k,
+        "coverage_probability": found.probability,
+        "effective_dof": found.dof,
     }
 
 
@@ -163,9 +179,21 @@ def _load(row: LoadResult | None) -> dict[str, Any]:
         out |= stated(key, getattr(row, name, None))
     if row is None:
         return out
-    out |= {"epsilon_gamma_secant": row.epsilon_secant, "epsilon_gamma_slope": row.epsilon_slope}
-    out |= stated("epsilon_gamma_moment", row.epsilon_moment)
-    out |= stated("alpha_M_deg", row.alpha_M, scale=math.degrees(1.0))
+    out |= {
+        "epsilon_gamma_secant": row.epsilon_secant,
+        "epsilon_gamma_secant_bias": row.secant_bias,
+        "epsilon_gamma_slope": row.epsilon_slope,
+        "epsilon_gamma_moment": row.epsilon_moment,
+        "u_epsilon_gamma_moment": None,
+    }
+    out |= stated("epsilon_gamma_debiased", row.epsilon_debiased)
+    for key, part in (
+        ("alpha_M_deg", row.alpha_M),
+        ("alpha_0_deg", row.misalignment),
+        ("ply_steer_deg", row.ply_steer),
+    ):
+        out |= stated(key, part, scale=math.degrees(1.0))
+    out |= stated("conicity_N", row.conicity)
     return out | {"F_forward_N": row.F_forward, "F_backward_N": row.F_backward}
 
 

@@ -18,6 +18,7 @@ def alignment(found: Alignment) -> dict[str, Any]:
     return {
         "correction_deg": found.correction_deg,
         "u_correction_deg": found.u_deg,
+        "u_axis_deg": found.u_axis_deg,
         "aligned": found.aligned,
         "steps": [asdict(step) for step in found.steps],
         "warnings": list(found.warnings),

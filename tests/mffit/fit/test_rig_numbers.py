@@ -5,11 +5,15 @@ from __future__ import annotations
 import math
 from types import SimpleNamespace
 
+import numpy as np
 import pytest
 
 from mffit import config
+from mffit.fit.plan import fit_plan
 from mffit.fit.rig_numbers import known_faults, known_zeros, rig_numbers
+from mffit.points import make_points
 from tir import Quantity
+from tir.parameters import TABLE
 
 DOUBTS = {
     "u_loadcell_offset_N": 8.0, "u_camber_alignment_deg": 0.3, "u_slip_alignment_N": 20.0, "backlash_deg": 0.2,
@@ -34,6 +38,7 @@ def direct(**changes):
         misaligned=False, alpha_M=ALPHA_M, C_alpha=Quantity(-18000.0, 100.0, "N/rad"), R=Quantity(1.3, 0.002, "m"),
         epsilon_gamma=Quantity(-0.1, 0.05, "-"), F_phit_load=1500.0,
         per_load=(SimpleNamespace(F_phit=Quantity(-400.0, 20.0, "N")),),
+        camber_skew=None,
     )  # fmt: skip
     return SimpleNamespace(**found | changes)
 
@@ -64,6 +69,12 @@ def test_a_misalignment_is_known_as_it_was_measured():
     number = by_name(rig(), direct(misaligned=True))["alpha_0_deg"]
     assert (number.expected, number.spread) == (0.0, pytest.approx(0.7))
     assert known_faults(rig(), direct(misaligned=True))["alpha_0_deg"] == pytest.approx(0.7)
+
+
+@pytest.mark.parametrize(("found", "spread"), [(0.25, 0.15), (-0.6, 0.6)])
+def test_a_camber_skew_that_contradicts_its_declaration_widens_the_prior(found, spread):
+    number = by_name(rig(), direct(camber_skew=Quantity(found, 0.05, "deg")))["camber_skew_deg"]
+    assert (number.expected, number.spread) == (0.0, pytest.approx(spread))
 
 
 def test_what_the_alignment_leaves_is_not_taken_off_beforehand():
@@ -136,3 +147,12 @@ def test_a_straight_path_and_a_disc_without_zeros_have_none():
 
 def test_zeros_show_the_rigs_errors_without_camber_sweeps_too():
     assert by_name(rig(), direct(epsilon_gamma=None)).keys() == by_name(rig(), direct()).keys()
+
+
+@pytest.mark.parametrize(("declared", "spread"), [({}, 0.003), ({"u_conicity": 0.01}, 0.01)])
+def test_a_declared_conicity_is_the_prior_of_its_coefficient(declared, spread):
+    start = {row.name: row.default or 0.0 for row in TABLE if row.stage}
+    known = SimpleNamespace(origin=dict.fromkeys(start, "default"))
+    points = make_points(np.radians([-2.0, 0.0, 2.0]), 0.0, 1500.0, p=250e3, V=6.0, phi_t=-0.77, Fy=0.0)
+    found = fit_plan(rig(**declared), points, direct(), known, start, {})
+    assert found.scatter["PVY1"] == spread

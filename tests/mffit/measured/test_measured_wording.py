@@ -8,9 +8,13 @@ from dataclasses import MISSING, fields
 import pytest
 
 from mffit.measured import Contribution, LoadResult, Measured, notes, wording
+from mffit.measured.result import FINITE_SPIN
+from mffit.rounding import MINUS
 from tir import Quantity
 
-ANGLE = Quantity(math.radians(0.25), math.radians(0.02), "rad")
+ANGLE, AXIS, TYRE = (
+    Quantity(math.radians(x), math.radians(u), "rad") for x, u in ((0.25, 0.02), (0.07, 0.06), (0.18, 0.06))
+)
 
 NOTES = [
     (notes.STRAIGHT_PATH, "it has no turn slip to measure"),
@@ -27,14 +31,24 @@ NOTES = [
         notes.camber_skew(Quantity(-0.1382, 0.0551, "deg")),
         "steers the wheel by -0.138 +- 0.055 deg times the sine",
     ),
-    (notes.aligned(ANGLE, 12.0, 0.04), "alpha_M = 0.250 +- 0.020 deg (12 N); uncorrected it would move"),
+    (
+        notes.aligned(ANGLE, AXIS, TYRE, 12.0, 0.04),
+        "misalignment plus ply-steer alpha_M = 0.250 +- 0.020 deg (12 N); uncorrected it would move eps_gamma by 0.04. By usual "
+        "sizes of both, misalignment is 0.070 +- 0.060 deg and ply-steer 0.180 +- 0.060 deg",
+    ),
+    (notes.slip_beyond(ANGLE, AXIS, TYRE, 12.0, 0.04), "exceeds what the alignment is declared to leave"),
+    (notes.conicity_measured(Quantity(12.31, 2.04, "N")), "the conicity force is 12.3 +- 2.0 N"),
+    (notes.temperature(-15.04, 0.002, 0.033), "15.0 K colder in the camber sweep than at its zeros"),
+    (notes.secant_bias(0.0654, False), "by the secant is +0.065 from that by the slope at zero"),
+    (notes.secant_bias(0.0654, True), "the budget is that of the published procedure"),
+    (notes.ON_THE_PATH, "slopes at zero on the path of the measurement"),
     (notes.load_slope(1.25, 0.1), "PECP2 = 1.250 +- 0.100 (k = 1)."),
     (notes.ONE_LOAD, "one load was measured"),
     (notes.slope_in_noise(0.05, 0.07), "the slope 0.050 per nominal load is within 2 u = 0.140"),
     (notes.EPSILON_IN_NOISE, "within 2 u of zero"),
     (notes.slope_too_steep(0.93), "would reach 0.93"),
     (notes.STANDARD_UNCERTAINTIES, "k = 1"),
-    (notes.conicity(0.002, 3.0, 0.0096), "3 N (0.2 % of the load) would move eps_gamma by 0.010"),
+    (notes.conicity(0.002, 3.0, 0.0096), "3 N (0.2 % of the load, u_conicity) would move eps_gamma by 0.010"),
     (notes.CONTACT_WANDERS, "R holds for the upright wheel"),
 ]
 WARNINGS = [
@@ -53,7 +67,7 @@ WARNINGS = [
         notes.zeros_disagree(900.0, "backward", ("a", "b"), (-120.0, 310.0)),
         "at 900 N the backward zeros of a and b are -120 N and 310 N; these zeros cannot come from one path",
     ),
-    (notes.misaligned(ANGLE, -60.0, 0.2), "differ by 120 N"),
+    (notes.misaligned(ANGLE, AXIS, TYRE, -60.0, 0.2), "differ by 120 N"),
 ]
 
 
@@ -74,23 +88,42 @@ def test_every_remark_is_tested():
     functions = [x for x in public if getattr(x, "__module__", "") == notes.__name__]
     assert set(sentences) <= {text for text, _ in (*NOTES, *WARNINGS)}
     assert (
-        len({text for text, _ in (*NOTES, *WARNINGS)}) == len(sentences) + len(functions) + 1
-    )  # one in two forms
+        len({text for text, _ in (*NOTES, *WARNINGS)}) == len(sentences) + len(functions) + 2
+    )  # two in two forms
 
 
-def at_one_load(**more):
+def at_one_load(budget=(), **more):
     """eps_gamma with u 0.05 at one load, all of it known before the fit."""
     empty = dict.fromkeys((f.name for f in fields(LoadResult) if f.default is MISSING), None)
-    row = LoadResult(
-        **empty | {"load": 1400.0, "epsilon_gamma": Quantity(-0.1, 0.05, "-")}, u_monte_carlo=0.0501
+    draws = {"u_monte_carlo": 0.0501, "interval": (-0.21, -0.01)}
+    known = {"load": 1400.0, "epsilon_gamma": Quantity(-0.1, 0.05, "-"), "budget": budget}
+    row = LoadResult(**empty | known, **draws, **more)
+    return Measured((row,), row, -0.1, 0.0, 0.4, {}, False, (), ())
+
+
+def test_the_bias_of_the_model_takes_the_place_of_the_usual_one():
+    usual = Contribution(FINITE_SPIN, 0.03, "m^2", 0.03), Contribution("load-cell offset", 10.0, "N", 0.04)
+    before = at_one_load(usual)
+    assert wording.by_draws(before) == f"0.0501 by random draws, 95 % interval {MINUS}0.210 to {MINUS}0.010"
+    after = before.debiased(0.02)
+    assert after.epsilon_gamma.u == pytest.approx(math.hypot(0.04, 0.02, 0.006))
+    assert after.epsilon_gamma_debiased.value == pytest.approx(-0.12)
+    assert after.epsilon_gamma_debiased.u == pytest.approx(math.hypot(0.04, 0.006))
+    assert math.hypot(*(line.contribution for line in after.budget)) == pytest.approx(after.epsilon_gamma.u)
+    assert after.nominal.u_monte_carlo / before.nominal.u_monte_carlo == pytest.approx(
+        after.epsilon_gamma.u / 0.05
     )
-    return Measured((row,), row, -0.1, 0.0, 0.4, {}, False, (), (), **more)
 
 
-def test_random_draws_are_compared_with_what_they_draw():
-    before = at_one_load(conicity=Contribution("conicity", 7.0, "N", 0.03))
-    assert wording.by_draws(before) == "0.0501 by random draws"
+def test_what_the_published_procedure_leaves_out_joins_the_budget_of_a_build():
+    before = at_one_load(left_out=(Contribution("conicity", 0.002, "-", 0.03),))
     after = before.debiased(0.04)
-    assert after.epsilon_gamma.u == pytest.approx(math.hypot(0.05, 0.03, 0.04))
-    assert "do not include conicity and finite spin of the disc" in wording.by_draws(after)
-    assert wording.by_draws(after).endswith("the budget gives 0.0500")
+    assert after.epsilon_gamma.u == pytest.approx(math.hypot(0.05, 0.03, 0.04, 0.012))
+
+
+def test_the_expanded_uncertainty_is_told_with_its_factor():
+    budget = (Contribution("noise", 1.0, "N", 0.05, "A", dof=10.0),)
+    assert wording.expanded(at_one_load(budget)) == (
+        "U = 0.111 with k = 2.23 for 95 % (effective degrees of freedom: 10)"
+    )
+    assert wording.expanded(at_one_load()) == ""

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 import pytest
 
+from mffit.measured.constants import SLOPE_SHAPE
 from mffit.measured.slopes import secant_at, slope_at_zero
 
 X = np.radians([0.5, 1.0, 1.5, 2.0, 3.0, 4.0, 6.0, 8.0])
@@ -27,7 +30,10 @@ def test_the_slope_of_a_saturating_curve(curve, within, sign):
     assert found.value == pytest.approx(sign * 20000.0, rel=within)
     assert found.cubic == pytest.approx(sign * 20000.0, rel=0.03)
     assert found.points == 8
-    assert found.u == pytest.approx(np.hypot(found.u_noise, (found.value - found.cubic) / 2.0))
+    assert found.u_own == pytest.approx(SLOPE_SHAPE * 20000.0, rel=0.02)
+    # Noise of 5 N explains a part of the difference.
+    assert found.u_shape <= abs(found.value - found.cubic) / 2.0
+    assert found.u == pytest.approx(math.hypot(found.u_noise, found.u_shape, found.u_own))
 
 
 def test_its_noise_is_the_scatter_over_many_draws():
@@ -54,7 +60,7 @@ def test_a_misfit_beyond_the_noise_enlarges_the_uncertainty():
 def test_without_a_cubic_a_twentieth_is_in_doubt():
     found = slope_at_zero(X, 20000.0 * X, 1e-3 * ONE, local=np.radians(1.0))
     assert np.isnan(found.cubic)
-    assert found.u == pytest.approx(0.025 * 20000.0, rel=0.01)
+    assert found.u_shape == pytest.approx(0.025 * 20000.0, rel=0.01)
 
 
 def test_the_cubic_ends_at_its_reach():
@@ -89,3 +95,11 @@ def test_a_secant_beyond_the_sweep_is_none(angle):
     x = np.radians([5.0, 10.0, 20.0])
     assert secant_at(x, x, x, np.radians(angle)) is None
     assert secant_at(x[:0], x[:0], x[:0], 0.1) is None
+
+
+def test_shapes_that_differ_beyond_their_noise_count():
+    """A curve that the saturating shape cannot follow: its slope and the cubic's differ by far more than 0.1 N explains."""
+    bent = 20000.0 * X - 4e6 * X**2 + 3e7 * X**3
+    found = slope_at_zero(X, bent, 0.1 * ONE, local=np.radians(2.0))
+    assert found.u_shape == pytest.approx(abs(found.value - found.cubic) / 2.0, rel=0.3)
+    assert abs(found.value - 20000.0) < 3.0 * found.u

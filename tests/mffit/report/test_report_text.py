@@ -2,23 +2,28 @@
 
 from __future__ import annotations
 
+import math
+from dataclasses import replace
+
 from mffit.measured import Contribution, align
+from mffit.measured.result import FINITE_SPIN
 from mffit.report import text
 from mffit.rounding import ascii_only, decimals_of, stated
+from tir import Quantity
 
 BUDGET = [
-    Contribution("load-cell offset", 10.0, "N", 0.03),
-    Contribution("camber alignment", 0.5, "deg", -0.04),
+    Contribution("load-cell offset", 10.0, "N", 0.03, sensitivity=0.003),
+    Contribution("camber stiffness", 20.0, "N/rad", 0.04, type="A", sensitivity=-0.002, dof=9.0),
 ]
 
 
 def test_budget_is_ordered_and_adds_up():
     assert text.budget_table(BUDGET, 0.05) == (
-        "source                  u  in eps_gamma  of variance\n"
-        "----------------  -------  ------------  -----------\n"
-        "camber alignment  0.5 deg        0.0400         64 %\n"
-        "load-cell offset     10 N        0.0300         36 %\n"
-        "combined (k = 1)                 0.0500"
+        "source                 type         u  sensitivity  dof  in eps_gamma  of variance\n"
+        "----------------  ---------  --------  -----------  ---  ------------  -----------\n"
+        "camber stiffness  A, normal  20 N/rad       -0.002    9        0.0400         64 %\n"
+        "load-cell offset  B, normal      10 N        0.003  inf        0.0300         36 %\n"
+        "combined (k = 1)                                               0.0500"
     )
 
 
@@ -28,6 +33,16 @@ def test_spin_summary_names_what_to_improve_first(result):
     assert f"Improve first: {first.source};" in summary
     for load in ("900", "1500"):
         assert f"\n     {load.rjust(3)}"[-4:] in summary
+
+
+def test_the_spin_of_the_disc_is_nothing_to_improve(result):
+    lines = (Contribution(FINITE_SPIN, 0.03, "m^2", 0.06), Contribution("load-cell offset", 10.0, "N", 0.03))
+    row = replace(
+        result.measured.nominal, budget=lines, epsilon_gamma=Quantity(-0.1, math.hypot(0.06, 0.03), "-")
+    )
+    summary = text.spin_summary(replace(result.measured, nominal=row))
+    assert "Improve first: load-cell offset;" in summary
+    assert "effective degrees of freedom: infinite" in summary
 
 
 def test_alignment_table_has_a_line_per_load_and_ends_with_the_correction(result):
@@ -58,4 +73,5 @@ def test_estimates_without_an_uncertainty_have_the_digits_of_the_measured_one(re
     digits = decimals_of(measured.epsilon_gamma.u)
     assert f"slope {measured.nominal.epsilon_slope:.{digits}f}" in estimates.split(", ")
     assert f"secant {measured.nominal.epsilon_secant:.{digits}f}" in estimates.split(", ")
-    assert f"Mz {ascii_only(stated(measured.nominal.epsilon_moment))}" in estimates.split(", ")
+    assert f"Mz (informational) {measured.nominal.epsilon_moment:.{digits}f}" in estimates.split(", ")
+    assert f"debiased {ascii_only(stated(measured.epsilon_gamma_debiased))}" in estimates.split(", ")
