@@ -226,6 +226,16 @@ class SpinTable(Table):
     pecp1: Literal["direct", "debiased", "model"] = "direct"
 
 
+class FitTable(Table):
+    """[fit]: numbers of the tyre's state and of the rig that the fit may free. "auto": if left-out sweeps ask for it."""
+
+    temperature: Literal["auto", True, False] = "auto"
+    T_ref_degC: q.Temperature | None = None  #: of the file at temperature; None: the mean of the data
+    sense: Literal["auto", "hysteresis", False] = "auto"
+    warm_up: Literal["auto", True, False] = False
+    wear: Literal["auto", True, False] = False
+
+
 class ModelTable(Table):
     """[model]: settings of the simulation that measurements are compared with."""
 
@@ -276,6 +286,7 @@ class Config(Brief, Table):
     rolling_radius: Annotated[tuple[RollingRadiusTable, ...], BeforeValidator(_list_of_tables)] = ()
     camber_stiffness: CamberStiffnessTable = CamberStiffnessTable()
     spin: SpinTable = SpinTable()
+    fit: FitTable = FitTable()
     model: ModelTable = ModelTable()
     columns: Columns = Field(default_factory=dict)  #: of all files; those of a sweep take precedence
     sweep: Annotated[tuple[SweepTable, ...], BeforeValidator(_list_of_tables)]

@@ -140,3 +140,15 @@ COMMENT_LENGTH = Count(66, "-", "Characters of a comment that fit on a line of t
 RIG_ERROR_REACH = Real(
     8.0, "-", "Standard uncertainties that a rig error may move; beyond them the declaration is wrong."
 )
+
+# Numbers of the tyre's state and of the rig
+LEAST_TEMPERATURE_RANGE = Real(3.0, "K", "Temperatures that move by less say nothing beyond their noise.")
+NUISANCE_SPREAD = Real(
+    10.0, "-", "Prior of such a number over its usual size: keeps it finite and does not pull."
+)
+OVERLAPPING_SWEEPS = Count(
+    2, "-", "Fewest sweeps through the same angles both up and down that show a sense."
+)
+OVERLAP_OF_SENSES = Real(0.5, "-", "Share of a sweep's range of sideslip that both senses cover.")
+MOVED_COEFFICIENT = Real(3.0, "-", "Standard errors by which a coefficient moves that is named.")
+NAMED_COEFFICIENTS = Count(4, "-", "Most coefficients named that moved.")

@@ -13,8 +13,10 @@ from mffit.fit.coefficients import Coefficient
 from mffit.fit.coverage import StageCoverage
 from mffit.fit.files import Files
 from mffit.fit.fitted import Fitted
+from mffit.fit.nuisance_choice import NuisanceChoice
 from mffit.fit.posterior import Posterior
 from mffit.fit.stages import StageRecord
+from mffit.fit.temperature import AtTemperature
 from mffit.quantities import CHANNELS
 from mffit.rig import Simulation
 from mffit.suspicion import Doubt, Outlier
@@ -31,7 +33,7 @@ class FitResult(Brief):
     channels: Mapping[str, Agreement]  #: of ``tyre`` with the raw points, turn slip on
     odd: Mapping[str, Agreement]  #: of the file for turn slip off with the odd part, turn slip off
     simulation: Simulation  #: ``tyre`` on the rig as fitted
-    rig: Mapping[str, tuple[float, float]]  #: rig error -> (value, standard error)
+    rig: Mapping[str, tuple[float, float]]  #: rig error -> (value, standard error) of the plain file's fit
     Fy_model: np.ndarray  #: (n,) [N]
     Mz_model: np.ndarray  #: (n,) [Nm]
     posterior: Posterior  #: joint uncertainty of tyre and rig
@@ -46,6 +48,10 @@ class FitResult(Brief):
     distrusted: tuple[str, ...] = ()  #: why the file is not to be trusted; the first of the warnings too
     search: Fitted | None = None  #: the end of the search, from which tyres are drawn
     files: Files | None = None  #: every written file and its misfit
+    temperature: AtTemperature | None = None  #: the model with temperature terms, if there is one
+    choice: NuisanceChoice | None = (
+        None  #: what was modelled beside coefficients and declared rig errors, and why
+    )
 
     @property
     def headline(self) -> str:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from pathlib import Path
 from urllib.parse import quote
 
@@ -20,11 +20,12 @@ from mffit.pipeline.inputs import input_hashes
 from mffit.rig_errors import BY_NAME as RIG_ERRORS
 from mffit.rig_errors import Faults
 from tir import Tyre
+from tir.temperature import HIGHEST, LOWEST, RIG
 
 PROGRAM = "program"
 """Key of the version that wrote a file."""
-RIG = "rig."
-"""Prefix of rig errors among the measured quantities of a file."""
+TEMPERATURE = "temperature"
+"""Key of the file that holds at one temperature, among the uses of the others."""
 TURN_SLIP = {"turn-slip": "on", "normal": "off", "both": "on or off"}
 """Setting of the simulation's turn slip for each use of a file."""
 PLAIN = " /\\!#$&'()+,;=@[]{}~"
@@ -38,20 +39,32 @@ Annotate = Callable[[Tyre, str], Tyre]
 def annotator(config: Config, measured: Measured, fitted: FitResult) -> Annotate:
     """The annotation of all files of a build; the inputs are hashed once."""
     inputs = _inputs(config)
-    rig = {
-        RIG + name: tir.Quantity(value, u, RIG_ERRORS[name].unit) for name, (value, u) in fitted.rig.items()
-    }
+    plain = config.spin.exact if config.rig.on_disc else "normal"
 
     def annotated(tyre: Tyre, use: str) -> Tyre:
+        special = fitted.temperature if use == TEMPERATURE else None
+        use = plain if special else use
         provenance = {
             PROGRAM: f"mffit {mffit.__version__}",
             "use": f"{use}, for simulations with turn slip {TURN_SLIP[use]}",
             "configuration": _settings(config),
             **inputs,
         }
-        return tyre.annotate(measured={**measured.quantities(), **rig}, provenance=provenance)
+        quantities = {**measured.quantities(), **_of_rig(fitted.rig if special is None else special.rig)}
+        if special is not None:
+            low, high = special.T_range
+            quantities |= {LOWEST: tir.Quantity(low, 0.0, "degC"), HIGHEST: tir.Quantity(high, 0.0, "degC")}
+            provenance["temperature"] = (
+                f"holds at {special.T_ref:g} degC; elsewhere LMUY, LKY, LKYC times 1 + k (T - {special.T_ref:g}) with "
+                "rig.k_T_grip_per_K, _stiffness_, _camber_"
+            )
+        return tyre.annotate(measured=quantities, provenance=provenance)
 
     return annotated
+
+
+def _of_rig(rig: Mapping[str, tuple[float, float]]) -> dict[str, tir.Quantity]:
+    return {RIG + name: tir.Quantity(value, u, RIG_ERRORS[name].unit) for name, (value, u) in rig.items()}
 
 
 def use_of(tyre: Tyre) -> str | None:

@@ -169,7 +169,7 @@ def view_of(result: BuildResult) -> BuildView:
         posterior=fit.posterior,
         distrusted=fit.distrusted,
         files=fit.files,
-        file_names=dict(result.files),
+        file_names={use: name for use, name in result.files.items() if use in result.uses},
         doubts=fit.doubts,
         outliers=fit.outliers,
     )

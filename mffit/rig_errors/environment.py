@@ -8,6 +8,7 @@ import numpy as np
 
 from mffit.rig_errors import constants
 from mffit.rig_errors.record import Appearance, Place, RigError
+from tir.temperature import SCALED_BY
 
 WARMTH = "(T - T_ref), T_ref the mean temperature of the data unless it is fitted"
 
@@ -20,7 +21,7 @@ TEMPERATURE_GRIP = RigError(
     meaning=f"friction times 1 + k {WARMTH}",
     kind="environment",
     place=Place.COEFFICIENTS,
-    acts_on=("LMUY",),
+    acts_on=(SCALED_BY["k_T_grip_per_K"],),
     formula=lambda k, scale, at: scale * (1.0 + k * at.warmth),
     spread=0.002,
     lower=-0.05,
@@ -42,7 +43,7 @@ TEMPERATURE_STIFFNESS = RigError(
     meaning=f"cornering stiffness times 1 + k {WARMTH}",
     kind="environment",
     place=Place.COEFFICIENTS,
-    acts_on=("LKY",),
+    acts_on=(SCALED_BY["k_T_stiffness_per_K"],),
     formula=lambda k, scale, at: scale * (1.0 + k * at.warmth),
     spread=0.002,
     lower=-0.05,
@@ -56,6 +57,18 @@ TEMPERATURE_STIFFNESS = RigError(
             confusable_with=("temperature",),
         ),
     ),
+)
+TEMPERATURE_CAMBER = RigError(
+    name="k_T_camber_per_K",
+    unit="1/K",
+    meaning=f"camber stiffness times 1 + k {WARMTH}",
+    kind="environment",
+    place=Place.COEFFICIENTS,
+    acts_on=(SCALED_BY["k_T_camber_per_K"],),
+    formula=lambda k, scale, at: scale * (1.0 + k * at.warmth),
+    spread=0.002,
+    lower=-0.05,
+    upper=0.05,
 )
 TEMPERATURE = _of_forces(
     name="k_T_per_K",
@@ -161,5 +174,5 @@ WARM_UP = _of_forces(
     ),
 )
 
-COEFFICIENT_ERRORS = (REFERENCE_TEMPERATURE, TEMPERATURE_GRIP, TEMPERATURE_STIFFNESS)
+COEFFICIENT_ERRORS = (REFERENCE_TEMPERATURE, TEMPERATURE_GRIP, TEMPERATURE_STIFFNESS, TEMPERATURE_CAMBER)
 ENVIRONMENT_ERRORS = (TEMPERATURE, DRIFT, WEAR, WARM_UP, SPEED)
