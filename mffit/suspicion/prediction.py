@@ -90,7 +90,7 @@ def _sweeps(points: Points) -> Iterator[Group]:
 
 
 def parts_of_sweeps(points: Points) -> np.ndarray:
-    """Number (n,) of the part of each point, from 0: a sweep, or each load, pressure, direction and camber of one with several."""
+    """Number (n,) of each point's part, from 0: a sweep, or each load, pressure, direction and camber of one with several."""
     out = np.empty(len(points), dtype=int)
     for k, (_, rows, _) in enumerate(_parts(points)):
         out[rows] = k
