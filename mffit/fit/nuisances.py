@@ -14,7 +14,6 @@ from mffit.points import Points
 from mffit.rig.histories import distance_km, sense
 from mffit.rig_errors import BY_NAME, OF_RUN, RigError
 
-
 TEMPERATURE = "temperature"
 """Key of [fit] with the influences of the tyre's temperature, which a second file states."""
 
