@@ -54,7 +54,7 @@ class _Prediction(NamedTuple):
     gaps: Gaps
 
 
-class _Model(NamedTuple):
+class _NearSolution(NamedTuple):
     """A fit with some influences, near its solution."""
 
     problem: FitProblem  #: with the weights of the first fit
@@ -113,7 +113,7 @@ def _judged(
     """The verdicts on demanded influences and candidates."""
     numbers = [number for number in first.numbers if number.name not in first.at_bound]
     group = parts_of_sweeps(first.problem.points)
-    model = _Model(at_reference(config, first.problem), numbers, ())
+    model = _NearSolution(at_reference(config, first.problem), numbers, ())
     base = _predicted(model, (), group)
     if demanded:
         model = _refitted(model, demanded)
@@ -156,7 +156,7 @@ def _steps(left: Sequence[Nuisance], chosen: Sequence[Nuisance]) -> Iterator[tup
 
 
 def _verdicts(
-    model: _Model,
+    model: _NearSolution,
     candidates: Sequence[Nuisance],
     demanded: Sequence[Nuisance],
     base: _Prediction,
@@ -189,7 +189,7 @@ def _named(key: str) -> str:
     return next(nuisance.name for nuisance in NUISANCES if nuisance.id == key)
 
 
-def _predicted(model: _Model, more: Iterable[Nuisance], group: np.ndarray) -> _Prediction:
+def _predicted(model: _NearSolution, more: Iterable[Nuisance], group: np.ndarray) -> _Prediction:
     """Left-out parts of sweeps as the model predicts them, to first order with further influences."""
     problem = model.problem
     numbers = [*problem.starting_here(model.numbers), *(n for nuisance in more for n in nuisance.free())]
@@ -216,21 +216,21 @@ def _predicted(model: _Model, more: Iterable[Nuisance], group: np.ndarray) -> _P
     return _Prediction(by_sweep, gaps)
 
 
-def _refitted(model: _Model, added: Sequence[Nuisance]) -> _Model:
+def _refitted(model: _NearSolution, added: Sequence[Nuisance]) -> _NearSolution:
     """The model with more influences, fitted again from where it is."""
     numbers = [*model.numbers, *(number for nuisance in added for number in nuisance.free())]
     return _solved(model._replace(numbers=numbers, chosen=(*model.chosen, *added)))
 
 
-def _without(model: _Model, dropped: Nuisance) -> _Model:
+def _without(model: _NearSolution, dropped: Nuisance) -> _NearSolution:
     """The model without an influence and those that need it, fitted again."""
     kept = tuple(n for n in model.chosen if n is not dropped and n.after != dropped.id)
     gone = {number.name: number.start for n in model.chosen if n not in kept for number in n.free()}
     numbers = [number for number in model.numbers if number.name not in gone]
-    return _solved(_Model(model.problem.with_values(gone), numbers, kept))
+    return _solved(_NearSolution(model.problem.with_values(gone), numbers, kept))
 
 
-def _solved(model: _Model) -> _Model:
+def _solved(model: _NearSolution) -> _NearSolution:
     numbers = model.problem.starting_here(model.numbers)
     found = solve(
         model.problem.free([number.name for number in numbers]),

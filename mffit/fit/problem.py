@@ -68,6 +68,11 @@ class FitProblem:
         sigma = {name: self.sigma[name] * factor for name, (factor, _) in found.items()}
         return replace(self, sigma=sigma), {name: scale for name, (_, scale) in found.items()}
 
+    def with_noise_of_misfit(self) -> FitProblem:
+        """The problem with uncertainties no larger than the scatter of its misfit, for points that state none."""
+        smaller = {name: min(weights.robust_scale(z), 1.0) for name, z in self.misfit().items()}
+        return replace(self, sigma={name: smaller[name] * u for name, u in self.sigma.items()})
+
     def misfit(self, readings: Readings | None = None) -> dict[str, np.ndarray]:
         """By channel, (model - measured) / sigma (n,); 0 where the channel is not used."""
         readings = self.simulation.readings(self.points) if readings is None else readings

@@ -87,9 +87,11 @@ def _polished(
         return fitted
     numbers = tuple(number for nuisance in added for number in nuisance.free())
     here = at_reference(config, replace(problem, simulation=fitted.simulation))
-    return replace(
-        polish(here, replace(plan, rig=(*plan.rig, *numbers))), stages=fitted.stages, attempts=fitted.attempts
-    )
+    plan = replace(plan, rig=(*plan.rig, *numbers))
+    found = polish(here, plan)
+    if not plan.noise_stated:
+        found = polish(replace(here, simulation=found.simulation).with_noise_of_misfit(), plan)
+    return replace(found, stages=fitted.stages, attempts=fitted.attempts)
 
 
 def _doubted(plain: Fitted, full: Fitted) -> Fitted:

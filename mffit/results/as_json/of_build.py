@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+from collections.abc import Mapping
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any
@@ -11,6 +12,8 @@ from typing import Any
 from mffit import fleet as combining
 from mffit.fit import Coefficient, FitResult
 from mffit.fit.files import Files
+from mffit.fit.nuisance_choice import Verdict
+from mffit.fit.temperature import AtTemperature
 from mffit.measured import KEYS, LoadResult, Measured
 from mffit.results.as_json.values import picked, plain, stated
 from mffit.results.records import BuildResult
@@ -57,9 +60,9 @@ def fit(found: FitResult) -> dict[str, Any]:
         "channels": {name: asdict(row) for name, row in found.channels.items()},
         "odd": {name: asdict(row) for name, row in found.odd.items()},
         "coefficients": {name: _coefficient(row) for name, row in found.coefficients.items()},
-        "rig": {
-            name: {"value": value, "stderr": u, "unit": UNITS[name]} for name, (value, u) in found.rig.items()
-        },
+        "rig": _rig(found.rig if found.temperature is None else found.temperature.rig),
+        "temperature": None if found.temperature is None else _temperature(found.temperature),
+        "modelled": [] if found.choice is None else [_verdict(row) for row in found.choice.verdicts],
         "posterior": plain(picked(found.posterior, "names", "covariance")),
         "stages": [
             picked(stage, "name", "parameters") | {"rmse_Fy_N": stage.rmse_Fy, "rmse_Mz_Nm": stage.rmse_Mz}
@@ -69,6 +72,41 @@ def fit(found: FitResult) -> dict[str, Any]:
         "files": _files(found.files) if found.files is not None else {},
         "explanations": list(found.explanations),
         "seconds": found.seconds,
+    }
+
+
+def _rig(rig: Mapping[str, tuple[float, float]]) -> dict[str, Any]:
+    return {name: {"value": value, "stderr": u, "unit": UNITS[name]} for name, (value, u) in rig.items()}
+
+
+def _temperature(found: AtTemperature) -> dict[str, Any]:
+    """The model with temperature terms, which the file at one temperature states."""
+    low, high = found.T_range
+    return {
+        "T_ref_degC": found.T_ref,
+        "T_min_degC": low,
+        "T_max_degC": high,
+        "terms": _rig(found.terms),
+        "channels": {name: asdict(row) for name, row in found.channels.items()},
+        "without_terms": {name: asdict(row) for name, row in found.alone.items()},
+        "left_out_rmse": {"temperature": dict(found.left_out), "plain": dict(found.left_out_plain)},
+        "coefficients": {name: _coefficient(row) for name, row in found.coefficients.items()},
+        "moved": {
+            name: {"plain": there, "value": here, "stderr": u}
+            for name, (there, here, u) in found.moved.items()
+        },
+    }
+
+
+def _verdict(row: Verdict) -> dict[str, Any]:
+    """Whether an influence is modelled beside the coefficients, and why."""
+    return {
+        "id": row.nuisance.id,
+        "name": row.nuisance.name,
+        "modelled": row.modelled,
+        "reason": row.reason,
+        "numbers": list(row.nuisance.numbers),
+        "left_out_rmse": {"with": dict(row.beside), "without": dict(row.without)} if row.beside else None,
     }
 
 
