@@ -70,7 +70,7 @@ def needed_fall(candidates: int) -> float:
 def improves(before: Predicted, after: Predicted, *, least: float, needed: float) -> bool:
     """Whether ``after`` predicts left-out groups better: by more than ``least``, beyond chance, and no channel worse."""
     gain = float(np.sum(before.chi2 - after.chi2))
-    return gain > least and before.falls(after) > needed and not before.raised(after)
+    return bool(gain > least and before.falls(after) > needed and not before.raised(after))
 
 
 def _z(change: np.ndarray) -> float:

@@ -73,9 +73,8 @@ def choose(config: Any, first: Fitted) -> NuisanceChoice:
     demanded, open_ = [], []
     for nuisance in NUISANCES:
         setting, lacking = nuisance.setting(config), nuisance.lacking(points)
-        said = f"[fit] {nuisance.key} = {_toml(getattr(config.fit, nuisance.key))}"
         if setting is False:
-            verdicts[nuisance.id] = Verdict(nuisance, False, said)
+            verdicts[nuisance.id] = Verdict(nuisance, False, _said(config, nuisance))
         elif lacking and setting:
             raise InputError(
                 f"asks for the {nuisance.name}, but {lacking}; measure it, or remove the key",
@@ -141,7 +140,7 @@ def _judged(
             before = _predicted(fewer, (), group)
             if better(last, before) and not better(before, here):
                 model, here, tried[old.id] = fewer, before, here
-    return _verdicts(model, candidates, demanded, base, here, tried, enough=enough)
+    return _verdicts(config, model, candidates, demanded, base, here, tried, enough=enough)
 
 
 def _steps(left: Sequence[Nuisance], chosen: Sequence[Nuisance]) -> Iterator[tuple[Nuisance, ...]]:
@@ -156,6 +155,7 @@ def _steps(left: Sequence[Nuisance], chosen: Sequence[Nuisance]) -> Iterator[tup
 
 
 def _verdicts(
+    config: Any,
     model: _NearSolution,
     candidates: Sequence[Nuisance],
     demanded: Sequence[Nuisance],
@@ -169,7 +169,7 @@ def _verdicts(
     for nuisance in (*demanded, *candidates):
         modelled, other = nuisance in model.chosen, tried.get(nuisance.id)
         if nuisance in demanded:
-            reason, gaps = f"[fit] {nuisance.key} asks for it", (base.gaps, here.gaps)
+            reason, gaps = _said(config, nuisance), (base.gaps, here.gaps)
         elif modelled:
             reason, gaps = "left-out sweeps are predicted better with it", (base.gaps, here.gaps)
         elif other is not None:
@@ -241,5 +241,7 @@ def _solved(model: _NearSolution) -> _NearSolution:
     return model._replace(problem=model.problem.with_values(found.values))
 
 
-def _toml(value: object) -> str:
-    return str(value).lower() if isinstance(value, bool) else f'"{value}"'
+def _said(config: Any, nuisance: Nuisance) -> str:
+    """The setting of [fit] as it is in the file."""
+    given = getattr(config.fit, nuisance.key)
+    return f"[fit] {nuisance.key} = {str(given).lower() if isinstance(given, bool) else repr(given)}"

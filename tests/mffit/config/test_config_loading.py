@@ -442,7 +442,8 @@ x = { z = 1 }
 def test_known_keys_cover_every_table():
     known = known_keys(config.Config)
     assert set(known) == {
-        "", "tyre", "rig", "rig.path", "rolling_radius", "camber_stiffness", "spin", "model", "columns.*", "sweep",
+        "", "tyre", "rig", "rig.path", "rolling_radius", "camber_stiffness", "spin", "fit", "model", "columns.*",
+        "sweep",
         "sweep.columns.*",
     }  # fmt: skip
 
