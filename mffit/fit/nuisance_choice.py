@@ -17,6 +17,7 @@ from mffit.fit.problem import FitProblem
 from mffit.least_squares import FreeNumber, solve
 from mffit.left_out import Predicted, improves, left_out_errors, needed_fall, predicted
 from mffit.points import Points
+from mffit.rig import Simulation
 from mffit.scatter import rms
 from mffit.suspicion import parts_of_sweeps
 
@@ -42,6 +43,7 @@ class NuisanceChoice:
     """What a fit models beside coefficients and declared rig errors."""
 
     verdicts: tuple[Verdict, ...]
+    near: Simulation  #: with what is modelled, near the best fit
 
     @property
     def modelled(self) -> tuple[Nuisance, ...]:
@@ -88,9 +90,11 @@ def choose(config: Any, first: Fitted) -> NuisanceChoice:
             demanded.append(nuisance)
         else:
             open_.append(nuisance)
+    near = first.simulation
     if demanded or open_:
-        verdicts |= _judged(config, first, demanded, open_)
-    return NuisanceChoice(tuple(verdicts[nuisance.id] for nuisance in NUISANCES))
+        judged, near = _judged(config, first, demanded, open_)
+        verdicts |= judged
+    return NuisanceChoice(tuple(verdicts[nuisance.id] for nuisance in NUISANCES), near)
 
 
 def reference_temperature(config: Any, points: Points) -> float:
@@ -108,8 +112,8 @@ def at_reference(config: Any, problem: FitProblem) -> FitProblem:
 
 def _judged(
     config: Any, first: Fitted, demanded: Sequence[Nuisance], candidates: Sequence[Nuisance]
-) -> dict[str, Verdict]:
-    """The verdicts on demanded influences and candidates."""
+) -> tuple[dict[str, Verdict], Simulation]:
+    """The verdicts on demanded influences and candidates, and the model with what is modelled."""
     numbers = [number for number in first.numbers if number.name not in first.at_bound]
     group = parts_of_sweeps(first.problem.points)
     model = _NearSolution(at_reference(config, first.problem), numbers, ())
@@ -140,7 +144,8 @@ def _judged(
             before = _predicted(fewer, (), group)
             if better(last, before) and not better(before, here):
                 model, here, tried[old.id] = fewer, before, here
-    return _verdicts(config, model, candidates, demanded, base, here, tried, enough=enough)
+    verdicts = _verdicts(config, model, candidates, demanded, base, here, tried, enough=enough)
+    return verdicts, model.problem.simulation
 
 
 def _steps(left: Sequence[Nuisance], chosen: Sequence[Nuisance]) -> Iterator[tuple[Nuisance, ...]]:

@@ -16,6 +16,7 @@ from mffit.fit.polish import polish
 from mffit.fit.problem import FitProblem
 from mffit.fit.staged import fit_staged, restart_worthwhile
 from mffit.progress import Progress, silent
+from mffit.rig import Simulation
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,7 +59,7 @@ def fit_with_nuisances(
 
         if choice.modelled:
             progress(f"fitting again with {', '.join(nuisance.name for nuisance in choice.modelled)}")
-        full = _polished(config, problem, plan, choice.modelled, fitted)
+        full = _polished(config, problem, plan, choice.modelled, fitted, choice.near)
         others = [nuisance for nuisance in choice.modelled if nuisance.key != TEMPERATURE]
         if len(others) == len(choice.modelled):
             return NuisanceFit(full, full, choice, refit)
@@ -80,17 +81,23 @@ def fit_with_nuisances(
 
 
 def _polished(
-    config: Any, problem: FitProblem, plan: FitPlan, added: Sequence[Nuisance], fitted: Fitted
+    config: Any,
+    problem: FitProblem,
+    plan: FitPlan,
+    added: Sequence[Nuisance],
+    fitted: Fitted,
+    near: Simulation | None = None,
 ) -> Fitted:
-    """The polish with further numbers, from the end of a fit; that fit itself if there are none."""
+    """The polish with further numbers, from the end of a fit; that fit itself if there are none.
+
+    ``near`` is a better place to start from, with these numbers.
+    """
     if not added:
         return fitted
     numbers = tuple(number for nuisance in added for number in nuisance.free())
-    here = at_reference(config, replace(problem, simulation=fitted.simulation))
+    here = at_reference(config, replace(problem, simulation=near or fitted.simulation))
     plan = replace(plan, rig=(*plan.rig, *numbers))
-    found = polish(here, plan)
-    if not plan.noise_stated:
-        found = polish(replace(here, simulation=found.simulation).with_noise_of_misfit(), plan)
+    found = polish(here if plan.noise_stated else here.with_noise_of_misfit(), plan)
     return replace(found, stages=fitted.stages, attempts=fitted.attempts)
 
 

@@ -16,6 +16,7 @@ from mffit.report.build_view import PER_LOAD, STATUS_ORDER, BuildView, ChannelRo
 from mffit.report.drawing.records import Sheet
 from mffit.report.figures import bands, decomposition, files, fit, residuals, spin
 from mffit.results import BuildResult
+from mffit.rig_errors import MEANINGS
 
 SECTION_TITLES = {
     "LATERAL_COEFFICIENTS": "Side force",
@@ -56,6 +57,7 @@ def write_build(result: BuildResult, folder: Path) -> None:
         aligned_below=constants.LARGEST_DIFFERENCE,
         degrees=math.degrees(1.0),
         radians=math.radians(1.0),
+        meanings=MEANINGS,
     )
 
 

@@ -11,6 +11,7 @@ from mffit.config import Config
 from mffit.fit import Agreement, Coefficient, Posterior, StageRecord
 from mffit.fit.coverage import StageCoverage
 from mffit.fit.files import Files
+from mffit.fit.temperature import AtTemperature
 from mffit.measured import Measured
 from mffit.points import Points
 from mffit.quantities import CHANNELS
@@ -112,6 +113,7 @@ class BuildView:
     file_names: Mapping[str, str]  #: by use
     doubts: tuple[Doubt, ...]  #: sweeps that do not fit the others
     outliers: tuple[Outlier, ...]  #: single readings without weight
+    temperature: AtTemperature | None  #: the fit with temperature terms, if there is one
 
     def marked(self, channel: str) -> tuple[np.ndarray, np.ndarray]:
         """Rows of the channel's readings without weight, and of the points of doubtful sweeps."""
@@ -172,6 +174,7 @@ def view_of(result: BuildResult) -> BuildView:
         file_names={use: name for use, name in result.files.items() if use in result.uses},
         doubts=fit.doubts,
         outliers=fit.outliers,
+        temperature=fit.temperature,
     )
 
 

@@ -38,7 +38,7 @@ BEFORE = RNG.chisquare(10, size=(20, 2))
     ("after", "better"),
     [
         (BEFORE - [4.0, 1.0] - 0.5 * RNG.random((20, 2)), True),
-        (BEFORE + [4.0, 1.0], False),
+        (BEFORE + np.array([4.0, 1.0]), False),
         (BEFORE - [8.0, -4.0] - 0.5 * RNG.random((20, 2)), False),  # one channel is worse
         (BEFORE - np.where(np.arange(20)[:, None] == 3, 80.0, 0.0), False),  # one sweep only
         (BEFORE - 0.001 - 0.0005 * RNG.random((20, 2)), False),  # sure, and too little to matter

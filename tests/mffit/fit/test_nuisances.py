@@ -66,7 +66,7 @@ def test_a_tyre_that_warms_up_gets_its_temperature_terms(warmed):
 
 
 def test_the_file_at_temperature_is_the_tyre_at_any_temperature(warmed):
-    result, folder = warmed
+    _, folder = warmed
     file = tir.read(folder / "small-at-temperature.tir")
     true = small_rigs.truth()
     alpha = np.radians(np.linspace(-7.0, 7.0, 29))
