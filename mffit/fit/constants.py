@@ -152,3 +152,11 @@ OVERLAPPING_SWEEPS = Count(
 OVERLAP_OF_SENSES = Real(0.5, "-", "Share of a sweep's range of sideslip that both senses cover.")
 MOVED_COEFFICIENT = Real(3.0, "-", "Standard errors by which a coefficient moves that is named.")
 NAMED_COEFFICIENTS = Count(4, "-", "Most coefficients named that moved.")
+RUNS_ALONG = Real(
+    0.5,
+    "-",
+    "Correlation of temperature and a setting of the plan above which both run along with each other.",
+)
+GROWN_UNCERTAINTY = Real(
+    1.5, "-", "Growth of a coefficient's uncertainty by temperature terms from which the order is criticised."
+)

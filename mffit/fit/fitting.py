@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Mapping
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -13,9 +14,11 @@ from mffit.config.declared import as_declared
 from mffit.fit import agreement
 from mffit.fit.coefficients import Coefficient, coefficient_records, of_file
 from mffit.fit.comments import file_comments
+from mffit.fit.confounding import confounding_sentence, confoundings
 from mffit.fit.files import Files, make_files
 from mffit.fit.fitted import Fitted
 from mffit.fit.known import Known, known_after_fit, known_before_fit
+from mffit.fit.nuisance_choice import at_reference
 from mffit.fit.nuisance_wording import nuisance_sentences
 from mffit.fit.plan import FitPlan, fit_plan
 from mffit.fit.priors import of_fleet
@@ -87,6 +90,7 @@ def fit(
         _, own, special = files_of(full, only=use)
         temperature = at_temperature(found, points, special.by_use[use], of_file(special, use, own))
 
+    confounded = confoundings(replace(full, problem=at_reference(config, full.problem)))
     channels = agreement.with_points(readings, points)
     r2 = {name: found.r2 for name, found in agreement.with_points(best, points).items()}
     distrusted = distrust(points, best, full.scale, r2)
@@ -107,7 +111,10 @@ def fit(
             *nuisance_sentences(config.tyre.name, found, temperature, channels),
             *explanations(config, files, known_after.values, measured),
         ),
-        warnings=warnings(full, distrusted, doubts, outlying),
+        warnings=(
+            *warnings(full, distrusted, doubts, outlying),
+            *(confounding_sentence(row, modelled=found.at_temperature) for row in confounded),
+        ),
         seconds=time.perf_counter() - began,
         epsilon_gamma_model=_epsilon_gamma(known_after.values, points, measured),
         doubts=doubts,
@@ -117,6 +124,7 @@ def fit(
         files=files,
         temperature=temperature,
         choice=found.choice,
+        confounded=confounded,
     )
 
 

@@ -10,6 +10,7 @@ import numpy as np
 from mffit.brief import Brief
 from mffit.fit.agreement import Agreement
 from mffit.fit.coefficients import Coefficient
+from mffit.fit.confounding import Confounding
 from mffit.fit.coverage import StageCoverage
 from mffit.fit.files import Files
 from mffit.fit.fitted import Fitted
@@ -49,6 +50,7 @@ class FitResult(Brief):
     search: Fitted | None = None  #: the end of the search, from which tyres are drawn
     files: Files | None = None  #: every written file and its misfit
     temperature: AtTemperature | None = None  #: the model with temperature terms, if there is one
+    confounded: tuple[Confounding, ...] = ()  #: settings with which the temperature runs along
     choice: NuisanceChoice | None = (
         None  #: what was modelled beside coefficients and declared rig errors, and why
     )

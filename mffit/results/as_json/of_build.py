@@ -63,6 +63,9 @@ def fit(found: FitResult) -> dict[str, Any]:
         "rig": _rig(found.rig if found.temperature is None else found.temperature.rig),
         "temperature": None if found.temperature is None else _temperature(found.temperature),
         "modelled": [] if found.choice is None else [_verdict(row) for row in found.choice.verdicts],
+        "confounded": [
+            picked(row, "setting", "correlation", "coefficient", "growth") for row in found.confounded
+        ],
         "posterior": plain(picked(found.posterior, "names", "covariance")),
         "stages": [
             picked(stage, "name", "parameters") | {"rmse_Fy_N": stage.rmse_Fy, "rmse_Mz_Nm": stage.rmse_Mz}

@@ -13,6 +13,7 @@ import mffit
 import tir
 from mffit import config as configuration
 from mffit.errors import InputError
+from mffit.fit.confounding import confoundings
 from mffit.fit.nuisance_choice import choose
 from mffit.fit.nuisances import NUISANCES
 
@@ -145,6 +146,34 @@ def test_temperature_is_not_modelled_and_the_reason_is_given(warmed, T, keys, re
     found = verdict(choose(with_setting(result, **keys), search), "temperature")
     assert not found.modelled
     assert found.reason.startswith(reason)
+
+
+def test_a_plan_in_which_temperature_runs_along_with_pressure_is_criticised(warmed):
+    """The pressures were run one after the other while the tyre warmed up."""
+    result, folder = warmed
+    (row,) = result.fit.confounded
+    assert (row.setting, row.coefficient[:3]) == ("pressure", "PPY")
+    assert 0.85 < row.correlation < 1.0
+    assert row.growth > 1.5
+    assert any("runs along with the pressure" in sentence for sentence in result.warnings)
+    assert json.loads((folder / "result.json").read_text())["fit"]["confounded"][0]["growth"] == row.growth
+
+
+def test_the_growth_is_that_over_known_terms(warmed):
+    """By the conditional variance of the joint posterior."""
+    row, posterior = warmed[0].fit.confounded[0], warmed[0].fit.temperature.posterior
+    C = posterior.covariance
+    i = posterior.names.index(row.coefficient)
+    k = [posterior.names.index(name) for name in ("k_T_grip_per_K", "k_T_stiffness_per_K")]
+    known = C[i, i] - C[i, k] @ np.linalg.solve(C[np.ix_(k, k)], C[k, i])
+    assert row.growth == pytest.approx(np.sqrt(C[i, i] / known), rel=0.03)
+
+
+def test_a_mixed_order_of_the_runs_is_not_criticised(warmed):
+    search = warmed[0].fit.search
+    points = search.problem.points
+    mixed = points.replace(T=np.random.default_rng(2).permutation(points.T))
+    assert confoundings(replace(search, problem=replace(search.problem, points=mixed))) == ()
 
 
 def test_temperature_that_is_demanded_but_not_measured_is_refused(warmed):
