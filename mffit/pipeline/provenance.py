@@ -20,7 +20,7 @@ from mffit.pipeline.inputs import input_hashes
 from mffit.rig_errors import BY_NAME as RIG_ERRORS
 from mffit.rig_errors import Faults
 from tir import Tyre
-from tir.temperature import HIGHEST, LOWEST, RIG
+from tir.temperature import HIGHEST, LOWEST, REFERENCE, RIG, terms_of
 
 PROGRAM = "program"
 """Key of the version that wrote a file."""
@@ -78,6 +78,13 @@ def rig_of_build(tyre: Tyre, config: Config) -> Faults | None:
     """The rig errors that the build found, from the comments of its file; None without them."""
     found = {name: tyre.measured[RIG + name].value for name in RIG_ERRORS if RIG + name in tyre.measured}
     return declared_faults(config.rig).replace(**found) if found else None
+
+
+def temperature_of(tyre: Tyre) -> dict[str, float]:
+    """The temperature terms of a file and the temperature at which it holds, by rig number; empty without terms."""
+    terms = terms_of(tyre)
+    found = {name: term.value for name, term in terms.items()}
+    return found | {"T_ref_degC": tyre.measured[REFERENCE].value} if found else {}
 
 
 def fitted_to(tyre: Tyre, config: Config) -> bool:

@@ -81,6 +81,14 @@ def test_the_file_at_temperature_is_the_tyre_at_any_temperature(warmed):
         assert np.max(np.abs(tir.read(folder / "small.tir")(1400.0, alpha, p=230e3).Fy - aim)) > 40.0
 
 
+def test_a_comparison_with_data_takes_the_file_to_their_temperatures(warmed):
+    result, folder = warmed
+    found = mffit.compare(folder / "small-at-temperature.tir", folder.parent / "tyre.toml")
+    gaps = [row.rms for row in found.sweeps if row.channel == "Fy"]
+    assert np.sqrt(np.mean(np.square(gaps))) < 1.3 * np.sqrt(np.nanmean(result.points.u_Fy**2))
+    assert any("holds at" in note for note in found.notes)
+
+
 def test_both_files_and_the_terms_are_where_a_program_looks(warmed):
     result, folder = warmed
     content = json.loads((folder / "result.json").read_text())
