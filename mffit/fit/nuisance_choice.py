@@ -136,13 +136,17 @@ def _judged(
         if not helpful:
             break
         best = min(helpful, key=lambda step: found[step].by_sweep.total)
-        left = [nuisance for nuisance in left if nuisance not in best]
+        rivals = {nuisance.rival for nuisance in best}
+        left = [nuisance for nuisance in left if nuisance not in best and nuisance.id not in rivals]
         last, model = here, _refitted(model, best)
         here = _predicted(model, (), group)
         for old in [n for n in model.chosen if n in candidates and n is not best[0]]:
             fewer = _without(model, old)
             before = _predicted(fewer, (), group)
-            if better(last, before) and not better(before, here):
+            # What came in one step is one influence: its parts must matter, but not each be beyond chance.
+            share = 1.0 - here.by_sweep.total / before.by_sweep.total
+            helps = share > LEAST_PREDICTED_SHARE if old in best else better(before, here)
+            if better(last, before) and not helps:
                 model, here, tried[old.id] = fewer, before, here
     verdicts = _verdicts(config, model, candidates, demanded, base, here, tried, enough=enough)
     return verdicts, model.problem.simulation
@@ -170,13 +174,15 @@ def _verdicts(
     *,
     enough: bool,
 ) -> dict[str, Verdict]:
-    out = {}
+    out, there = {}, {nuisance.id for nuisance in model.chosen}
     for nuisance in (*demanded, *candidates):
         modelled, other = nuisance in model.chosen, tried.get(nuisance.id)
         if nuisance in demanded:
             reason, gaps = _said(config, nuisance), (base.gaps, here.gaps)
         elif modelled:
             reason, gaps = "left-out sweeps are predicted better with it", (base.gaps, here.gaps)
+        elif nuisance.rival in there:
+            reason, gaps = f"the {_named(nuisance.rival)} predicts left-out sweeps better", ({}, {})
         elif other is not None:
             reason, gaps = "left-out sweeps are not predicted better with it", (here.gaps, other.gaps)
         elif not enough:

@@ -28,6 +28,7 @@ class Nuisance:
     numbers: tuple[str, ...]
     lacking: Callable[[Points], str]  #: why these points cannot show it, in words; empty if they can
     after: str = ""  #: id of the influence that must be modelled first
+    rival: str = ""  #: id of an influence with nearly the same effect: one of the two is modelled
 
     def free(self) -> tuple[FreeNumber, ...]:
         """The numbers with their limits and a prior that does not pull."""
@@ -85,6 +86,11 @@ def _senses(points: Points) -> str:
     return "" if runs >= constants.OVERLAPPING_SWEEPS else "no sweeps go through the same angles up and down"
 
 
+def _times(points: Points) -> str:
+    known = np.isfinite(points.time)
+    return "" if np.any(known) else "the times within the sweeps (time_s) are not known"
+
+
 def _distances(points: Points) -> str:
     if not np.all(np.isfinite(points.t)):
         return "the time of every point (t_s) is not known"
@@ -113,6 +119,15 @@ NUISANCES = (
         key="sense",
         numbers=("hysteresis_deg",),
         lacking=_senses,
+        rival="lag",
+    ),
+    Nuisance(
+        id="lag",
+        name="lag of sideslip sweeps over the rolled distance",
+        key="sense",
+        numbers=("relaxation_m",),
+        lacking=lambda points: _senses(points) or _times(points),
+        rival="hysteresis",
     ),
     Nuisance(
         id="warm-up",

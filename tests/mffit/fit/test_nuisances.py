@@ -8,14 +8,17 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import small_rigs
+from flat_belt import RATE, SPEED, recording, write_mat
 
 import mffit
 import tir
 from mffit import config as configuration
+from mffit import fit as fitting
 from mffit.errors import InputError
 from mffit.fit.confounding import confoundings
 from mffit.fit.nuisance_choice import choose
 from mffit.fit.nuisances import NUISANCES
+from mffit.pipeline.measuring import measure
 
 TERMS = {"k_T_grip_per_K": -0.006, "k_T_stiffness_per_K": -0.003, "k_T_camber_per_K": -0.005}
 COLD, WARM = 25.0, 50.0
@@ -101,7 +104,7 @@ def test_both_files_and_the_terms_are_where_a_program_looks(warmed):
     assert content["fit"]["temperature"]["T_max_degC"] == WARM
     modelled = {row["id"]: row["modelled"] for row in content["fit"]["modelled"]}
     assert modelled == {
-        "temperature": True, "temperature-camber": True, "hysteresis": False, "warm-up": False, "wear": False,
+        "temperature": True, "temperature-camber": True, "hysteresis": False, "lag": False, "warm-up": False, "wear": False,
     }  # fmt: skip
     with pytest.raises(tir.TirError, match="no temperature terms"):
         tir.read(folder / "small.tir").at_temperature(30.0)
@@ -222,6 +225,31 @@ def test_a_hysteresis_of_moving_sweeps_is_found_and_left_out_of_the_file(tmp_pat
     alpha = np.radians(np.linspace(-6.0, 6.0, 25))
     apart = result.tyre(1400.0, alpha).Fy - small_rigs.truth()(1400.0, alpha).Fy
     assert np.max(np.abs(apart)) < 12.0
+
+
+def test_a_lag_of_recorded_sweeps_is_told_from_a_hysteresis(tmp_path):
+    """The recording's lag is that of a filter of its own along the rolled distance, and its rate of sideslip changes sign."""
+    write_mat(recording(sigma=0.5, seed=4, cambers=(0.0, 3.0)), tmp_path / "run.mat")
+    columns = {"alpha_deg": "SA", "gamma_deg": "IA", "Fz_N": "FZ", "Fy_N": "FY", "Mz_Nm": "MZ", "p_kPa": "P"}
+    config = configuration.load(
+        {
+            "tyre": {"name": "belt", "unloaded_radius": 0.2057, "nominal_load": 1500, "nominal_pressure": 90},
+            "rig": {"type": "flat-track", "axes": "calspan"},
+            "columns": columns | {"V_mps": "V", "time_s": "ET"},
+            "sweep": [{"file": "run.mat"}],
+        },
+        folder=tmp_path,
+    )
+    points = mffit.points.load(config)[0]
+    as_read = points.replace(alpha=points.alpha + np.radians(points.table["alpha_lag_deg"].to_numpy()))
+    found = fitting.fit(config, as_read, *measure(config, as_read, None))
+    assert verdict(found.choice, "lag").modelled
+    assert not verdict(found.choice, "hysteresis").modelled
+    value, u = found.rig["relaxation_m"]
+    delayed = SPEED / RATE / np.expm1(SPEED / RATE / 0.5)  # the mean delay of that filter, which is sampled
+    assert value == pytest.approx(delayed, abs=max(3.0 * u, 0.03))
+    again = fitting.fit(config, points, *measure(config, points, None))  # taken off before the fit
+    assert not verdict(again.choice, "lag").modelled
 
 
 def test_every_influence_has_words_and_numbers_of_its_own():
