@@ -150,6 +150,7 @@ OVERLAPPING_SWEEPS = Count(
     2, "-", "Fewest sweeps through the same angles both up and down that show a sense."
 )
 OVERLAP_OF_SENSES = Real(0.5, "-", "Share of a sweep's range of sideslip that both senses cover.")
+LEAST_SHARE_OF_A_SENSE = Real(0.25, "-", "Share of a sweep's points with the angle moving in either sense.")
 MOVED_COEFFICIENT = Real(3.0, "-", "Standard errors by which a coefficient moves that is named.")
 NAMED_COEFFICIENTS = Count(4, "-", "Most coefficients named that moved.")
 RUNS_ALONG = Real(

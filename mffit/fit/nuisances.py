@@ -79,7 +79,8 @@ def _senses(points: Points) -> str:
         rows = points.sweep == k
         alpha = points.alpha[rows]
         ways = [alpha[moving[rows] == way] for way in (1.0, -1.0)]
-        if min(map(len, ways)) > 1:
+        # A sweep that is repeated at another camber jumps back once: that is no sweep down.
+        if min(map(len, ways)) > constants.LEAST_SHARE_OF_A_SENSE * len(alpha):
             common = min(way.max() for way in ways) - max(way.min() for way in ways)
             both += bool(common > constants.OVERLAP_OF_SENSES * np.ptp(alpha))
     runs = both if len(np.unique(points.sweep)) > 1 else both * constants.OVERLAPPING_SWEEPS

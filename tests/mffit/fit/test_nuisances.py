@@ -19,6 +19,7 @@ from mffit.fit.confounding import confoundings
 from mffit.fit.nuisance_choice import choose
 from mffit.fit.nuisances import NUISANCES
 from mffit.pipeline.measuring import measure
+from mffit.points import make_points
 
 TERMS = {"k_T_grip_per_K": -0.006, "k_T_stiffness_per_K": -0.003, "k_T_camber_per_K": -0.005}
 COLD, WARM = 25.0, 50.0
@@ -225,6 +226,20 @@ def test_a_hysteresis_of_moving_sweeps_is_found_and_left_out_of_the_file(tmp_pat
     alpha = np.radians(np.linspace(-6.0, 6.0, 25))
     apart = result.tyre(1400.0, alpha).Fy - small_rigs.truth()(1400.0, alpha).Fy
     assert np.max(np.abs(apart)) < 12.0
+
+
+def test_a_sweep_repeated_at_another_camber_shows_no_sense():
+    nuisance = next(n for n in NUISANCES if n.id == "hysteresis")
+    up = np.radians(np.linspace(-8.0, 8.0, 17))
+
+    def said(alpha):
+        points = make_points(
+            np.tile(alpha, 2), 0.0, 1400.0, p=250e3, V=6.0, phi_t=0.0, sweep=np.repeat([0, 1], len(alpha))
+        )
+        return nuisance.lacking(points)
+
+    assert "up and down" in said(np.tile(up, 3))
+    assert said(np.concatenate([up, up[::-1]])) == ""
 
 
 def test_a_lag_of_recorded_sweeps_is_told_from_a_hysteresis(tmp_path):
