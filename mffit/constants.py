@@ -33,3 +33,9 @@ SMALLEST_PLAIN_U = Real(1e-6, "-", "A number with a smaller uncertainty is writt
 TERMINAL_WIDTH = Count(100, "-", "Characters per line in a terminal; two windows fit side by side.")
 NEARLY_CERTAIN = Real(0.99, "-", "Confidences above this are written as more than this: no model is certain.")
 LINES_PER_RECORD = Count(28, "-", "Most lines of a record's repr, so that a terminal shows it whole.")
+
+# Judged by prediction
+PREDICTION_FALSE_ALARM = Real(0.01, "-", "Probability that chance lets any candidate pass (Bonferroni).")
+LEAST_PREDICTED_SHARE = Real(0.02, "-", "Misfit of left-out sweeps that a candidate must remove.")
+WORSE_PREDICTION = Real(2.0, "-", "Standard errors over the sweeps by which a prediction counts as worse.")
+FEWEST_SWEEPS_TO_PREDICT = Count(8, "-", "With fewer sweeps a gain cannot be separated from chance.")

@@ -159,6 +159,28 @@ class Tyre:
             provenance=MappingProxyType({**self.provenance, **provenance}),
         )
 
+    def at_temperature(self, T_degC: float) -> Tyre:
+        """A copy that holds at another temperature of the tread, by the temperature terms of its file.
+
+        Parameters
+        ----------
+        T_degC : temperature [degC]; outside the range of the terms, ``problems`` gets a warning
+
+        Returns
+        -------
+        Tyre
+            With other scaling factors: LMUY for friction, LKY for cornering stiffness, LKYC for camber stiffness. Its terms
+            count from ``T_degC``, so that it can be taken to another temperature again.
+
+        Raises
+        ------
+        TirError
+            If the file has no such terms, or they leave no friction or stiffness.
+        """
+        from tir.temperature import at_temperature
+
+        return at_temperature(self, T_degC)
+
     def __call__(
         self,
         Fz: Any,

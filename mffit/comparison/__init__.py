@@ -3,6 +3,7 @@
 from mffit.comparison.characteristics import characteristics, with_u
 from mffit.comparison.compare import against_points, between
 from mffit.comparison.record import ComparedSubject, Comparison, CurveGap, Difference
+from mffit.comparison.wording import note_on_temperature
 
 __all__ = [
     "ComparedSubject",
@@ -12,5 +13,6 @@ __all__ = [
     "against_points",
     "between",
     "characteristics",
+    "note_on_temperature",
     "with_u",
 ]

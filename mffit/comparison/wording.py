@@ -101,6 +101,14 @@ def _on_uncertainty(first: ComparedSubject, second: ComparedSubject) -> Iterator
         yield "Both sides are treated as independent."
 
 
+def note_on_temperature(name: str, T_ref: float) -> str:
+    """That the readings of a file were simulated at the temperatures of the points."""
+    return (
+        f"{name} holds at {T_ref:g} degC; its temperature terms take it to the temperature of every point (T_degC), where that "
+        "is known."
+    )
+
+
 def note_on_data(file: str) -> str:
     """The remark on a comparison of a file with data."""
     return (

@@ -227,18 +227,26 @@ class SpinTable(Table):
     pecp1: Literal["direct", "debiased", "model"] = "direct"
 
 
+class FitTable(Table):
+    """[fit]: numbers of the tyre's state and of the rig that the fit may free, and readings that it leaves out.
+
+    "auto" frees a number if left-out sweeps are then predicted better.
+    """
+
+    temperature: Literal["auto", True, False] = "auto"
+    T_ref_degC: q.Temperature | None = None  #: of the file at temperature; None: the mean of the data
+    sense: Literal["auto", "hysteresis", "lag", False] = "auto"
+    warm_up: Literal["auto", True, False] = False
+    wear: Literal["auto", True, False] = False
+    exclude: Annotated[tuple[ExcludeTable, ...], BeforeValidator(list_of_tables)] = ()
+
+
 class ModelTable(Table):
     """[model]: settings of the simulation that measurements are compared with."""
 
     turn_slip: bool = True
     star: bool = False
     u_coefficients: q.Fraction = 0.0
-
-
-class FitTable(Table):
-    """[fit]: settings of the fit, and the readings that it leaves out."""
-
-    exclude: Annotated[tuple[ExcludeTable, ...], BeforeValidator(list_of_tables)] = ()
 
 
 class Column(Table):
@@ -289,8 +297,8 @@ class Config(Brief, Table):
     rolling_radius: Annotated[tuple[RollingRadiusTable, ...], BeforeValidator(list_of_tables)] = ()
     camber_stiffness: CamberStiffnessTable = CamberStiffnessTable()
     spin: SpinTable = SpinTable()
-    model: ModelTable = ModelTable()
     fit: FitTable = FitTable()
+    model: ModelTable = ModelTable()
     lab: LabTable = LabTable()
     columns: Columns = Field(default_factory=dict)  #: of all files; those of a sweep take precedence
     sweep: Annotated[tuple[SweepTable, ...], BeforeValidator(list_of_tables)]

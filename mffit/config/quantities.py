@@ -76,6 +76,7 @@ Length = Annotated[float, AfterValidator(Range(1e-3, 100.0, "m", above=MILLIMETR
 Load = Annotated[
     float, AfterValidator(Range(20.0, 2e5, "N", below="it looks like kilonewtons, write newtons"))
 ]
+Temperature = Annotated[float, AfterValidator(Range(-40.0, 200.0, "degC"))]
 Pressure = Annotated[
     float,
     AfterValidator(

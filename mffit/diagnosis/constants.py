@@ -144,12 +144,6 @@ LEAST_CERTAINTY_OF_SEEN = Real(
 )
 SIGNIFICANT_EFFECT = Real(2.0, "-", "Standard errors by which a number of a named effect must change.")
 
-# Judged by prediction
-PREDICTION_FALSE_ALARM = Real(0.01, "-", "Probability that chance lets any effect pass (Bonferroni).")
-LEAST_PREDICTED_SHARE = Real(0.02, "-", "Misfit of left-out sweeps that a named effect must remove.")
-WORSE_PREDICTION = Real(2.0, "-", "Standard errors over the sweeps by which a prediction counts as worse.")
-FEWEST_SWEEPS_TO_PREDICT = Count(8, "-", "With fewer sweeps a gain cannot be separated from chance.")
-
 # Ties and what would separate them
 HOPELESS_RIVAL = Real(40.0, "-", "Log evidence behind the best candidate at which a rival is not refitted.")
 HOPELESS_SHARE = Real(

@@ -6,37 +6,14 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.special import ndtri
 
-from mffit.diagnosis import constants
+from mffit import constants
+from mffit.diagnosis.constants import MOST_EFFECTS
 from mffit.diagnosis.hypothesis import Hypothesis
 from mffit.diagnosis.inexact import Inexactness
 from mffit.diagnosis.problem import DiagnosisProblem, refitted
 from mffit.effects import Effect
-
-
-@dataclass(frozen=True, slots=True)
-class Predicted:
-    """Misfit of every sweep when it is predicted from all others."""
-
-    chi2: np.ndarray  #: (s, 2) by sweep and channel, Fy and Mz
-
-    @property
-    def total(self) -> float:
-        return float(np.sum(self.chi2))
-
-    def falls(self, other: Predicted) -> float:
-        """By how many standard errors over the sweeps ``other`` predicts better."""
-        return _z(np.sum(self.chi2 - other.chi2, axis=1))
-
-    def raised(self, other: Predicted) -> bool:
-        """Whether ``other`` predicts one of the channels worse, beyond chance."""
-        return any(_z(column) < -constants.WORSE_PREDICTION for column in (self.chi2 - other.chi2).T)
-
-
-def _z(change: np.ndarray) -> float:
-    error = float(np.std(change, ddof=1)) / np.sqrt(len(change))
-    return float(np.mean(change)) / error if error > 0.0 else 0.0
+from mffit.left_out import Predicted, improves, left_out_errors, needed_fall, predicted
 
 
 class LeftOutPrediction:
@@ -61,14 +38,8 @@ class LeftOutPrediction:
         columns += [groups[0] for groups in problem.columns(state, hypothesis.effects).values()]
         C = problem.noise.whiten(np.column_stack(columns))
         r = problem.whitened(state)
-        A, b = C.T @ C + np.eye(C.shape[1]), C.T @ r
-        chi2 = np.zeros((self.sweeps, 2))
-        for k in range(self.sweeps):
-            rows = np.flatnonzero(self.sweep == k)
-            out = C[rows]
-            error = r[rows] - out @ np.linalg.solve(A - out.T @ out, b - out.T @ r[rows])
-            chi2[k] = np.bincount(self.channel[rows], error**2, minlength=2)
-        return Predicted(chi2)
+        error = left_out_errors(C, -r, C.T @ C + np.eye(C.shape[1]), -C.T @ r, self.sweep)
+        return predicted(error, self.sweep, self.channel)
 
     def beyond_noise(self, predicted: Predicted) -> float:
         """Misfit that the noise does not explain."""
@@ -85,10 +56,10 @@ def chosen_by_prediction(prediction: LeftOutPrediction, candidates: Sequence[Eff
     An effect that predicts a channel worse is never added. One that a later effect makes needless is dropped for good.
     """
     current, left = prediction.problem.null, list(candidates)
-    needed = float(-ndtri(constants.PREDICTION_FALSE_ALARM / max(len(candidates), 1)))
+    needed = needed_fall(len(candidates))
     if prediction.sweeps < constants.FEWEST_SWEEPS_TO_PREDICT:
         return current
-    while len(current.effects) < constants.MOST_EFFECTS:
+    while len(current.effects) < MOST_EFFECTS:
         added = _best_addition(prediction, current, left, needed)
         if added is None:
             break
@@ -110,9 +81,8 @@ def _best_addition(
     for effect, groups in prediction.problem.columns(current.state, candidates).items():
         for columns in groups:
             after = prediction.of(current, columns)
-            gain = float(np.sum(before.chi2 - after.chi2))
-            if gain > most and before.falls(after) > needed and not before.raised(after):
-                most, best = gain, effect
+            if improves(before, after, least=most, needed=needed):
+                most, best = before.total - after.total, effect
     return best
 
 

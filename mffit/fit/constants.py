@@ -184,3 +184,24 @@ SPIN_CORRECTION_OF_MODEL = Real(
     "-",
     "Standard uncertainty, over the correction itself, of the formula that corrects the cornering stiffness for spin.",
 )
+
+# Numbers of the tyre's state and of the rig
+LEAST_TEMPERATURE_RANGE = Real(3.0, "K", "Temperatures that move by less say nothing beyond their noise.")
+NUISANCE_SPREAD = Real(
+    10.0, "-", "Prior of such a number over its usual size: keeps it finite and does not pull."
+)
+OVERLAPPING_SWEEPS = Count(
+    2, "-", "Fewest sweeps through the same angles both up and down that show a sense."
+)
+OVERLAP_OF_SENSES = Real(0.5, "-", "Share of a sweep's range of sideslip that both senses cover.")
+LEAST_SHARE_OF_A_SENSE = Real(0.25, "-", "Share of a sweep's points with the angle moving in either sense.")
+MOVED_COEFFICIENT = Real(3.0, "-", "Standard errors by which a coefficient moves that is named.")
+NAMED_COEFFICIENTS = Count(4, "-", "Most coefficients named that moved.")
+RUNS_ALONG = Real(
+    0.5,
+    "-",
+    "Correlation of temperature and a setting of the plan above which both run along with each other.",
+)
+GROWN_UNCERTAINTY = Real(
+    1.5, "-", "Growth of a coefficient's uncertainty by temperature terms from which the order is criticised."
+)

@@ -47,11 +47,17 @@ class Files:
 
 
 def make_files(
-    config: Any, known: Known, points: Points, base: Tyre | None, C_gamma: Mapping[float, float]
+    config: Any,
+    known: Known,
+    points: Points,
+    base: Tyre | None,
+    C_gamma: Mapping[float, float],
+    *,
+    only: str | None = None,
 ) -> Files:
     """The files of a build: on a disc one for each use, on a flat track one.
 
-    ``C_gamma`` is the measured camber stiffness [N/rad] by load [N]; empty on a flat track.
+    ``C_gamma`` is the measured camber stiffness [N/rad] by load [N]; empty on a flat track. ``only``: the file for one use.
     """
     disc = config.rig.on_disc
     tested = tested_ranges(points)
@@ -61,7 +67,7 @@ def make_files(
     )
     side = "RIGHT" if str(known.values["TYRESIDE"]).upper().startswith("R") else "LEFT"
     model = {**known.values, **written, "TYRESIDE": side, "FITTYP": 62}
-    changed = _changed(config, model, points, tested, written, C_gamma)
+    changed = _changed(config, model, points, tested, written, C_gamma, only)
     reference = Reference(
         model=model,
         road=road_grid(tested, written, float(model["FNOMIN"])),
@@ -90,10 +96,13 @@ def _changed(
     tested: Mapping[str, float],
     written: Mapping[str, float],
     C_gamma: Mapping[float, float],
+    only: str | None,
 ) -> dict[str, dict[str, float]]:
     """By use of each file, the coefficients in which it differs from the fitted model."""
     if not config.rig.on_disc:
         return {"normal": {}}
+    if only == "turn-slip":
+        return {"turn-slip": {}}
     symmetric = config.tyre.side == "symmetric"
     terms = camber_stiffness_terms(model, C_gamma, float(points.p[main_pressure(points)].mean()))
     changed = {"turn-slip": {}, "normal": derive(model, tested, written, terms, symmetric=symmetric)}
@@ -101,7 +110,7 @@ def _changed(
         changed["both"] = derive(
             model, tested, written, terms, both_on=main_path(points), symmetric=symmetric
         )
-    return changed
+    return changed if only is None else {only: changed[only]}
 
 
 def _turn_slip_forces(model: Mapping[str, Any]) -> dict[float, float]:
@@ -120,6 +129,11 @@ def use_mode(values: Mapping[str, Any], use: str) -> int:
     """
     contact = 200 if float(values["MC_CONTOUR_A"]) > 0.0 else 100
     return contact + 20 + (4 if use == "normal" else 5)
+
+
+def name_at_temperature(name: str) -> str:
+    """Name of the file that holds at one temperature."""
+    return f"{name}-at-temperature.tir"
 
 
 def file_names(name: str, exact: str, on_disc: bool) -> dict[str, str]:

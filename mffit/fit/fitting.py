@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Mapping
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -11,20 +12,24 @@ import numpy as np
 from mffit.config import axis_signs
 from mffit.config.declared import as_declared
 from mffit.fit import agreement
-from mffit.fit.coefficients import coefficient_records, of_file
+from mffit.fit.coefficients import Coefficient, coefficient_records, of_file
 from mffit.fit.comments import file_comments
-from mffit.fit.files import make_files
+from mffit.fit.confounding import confounding_sentence, confoundings
+from mffit.fit.files import Files, make_files
 from mffit.fit.fitted import Fitted
-from mffit.fit.known import known_after_fit, known_before_fit
+from mffit.fit.known import Known, known_after_fit, known_before_fit
+from mffit.fit.nuisance_choice import at_reference
+from mffit.fit.nuisance_wording import nuisance_sentences
 from mffit.fit.plan import FitPlan, fit_plan
 from mffit.fit.priors import of_fleet
 from mffit.fit.problem import FitProblem, fit_problem
 from mffit.fit.remarks import with_remarks
 from mffit.fit.result import FitResult
 from mffit.fit.rolling import rolling_resistance
-from mffit.fit.staged import fit_staged
 from mffit.fit.start import starting_values
+from mffit.fit.temperature import at_temperature
 from mffit.fit.virtual_zero import epsilon_gamma_of_model
+from mffit.fit.with_nuisances import NuisanceFit, fit_with_nuisances
 from mffit.fit.wording import explanations, warnings
 from mffit.fit.zeros import turning_zeros
 from mffit.parts import Parts
@@ -65,24 +70,36 @@ def fit(
     start = starting_values(known.values, points, measured) | dict(turning.start if turning else {})
     plan = fit_plan(config, points, measured, known, start, fleet, turning)
     problem = fit_problem(config, points, measured, known.values)
-    fitted, doubts = _fitted_and_judged(config, problem, start, plan, progress)
-    readings = fitted.simulation.readings(points)
-    outlying = outliers(points, _sigma(problem), _sigma(fitted.problem), readings)
+    found, doubts = _fitted_and_judged(config, problem, start, plan, progress)
+    fitted, full = found.plain, found.full
+    readings, best = (fit.simulation.readings(points) for fit in (fitted, full))
+    outlying = outliers(points, _sigma(problem), _sigma(full.problem), best)
 
     progress("deriving the property files")
-    known = known_after_fit(known, fitted.values, fitted.regularised, base)
-    rolling = rolling_resistance(known.values, points)
-    known = known.having({name: QSY1.value for name, QSY1 in rolling.items()}, "fitted")
-    coefficients = coefficient_records(known, fitted, rolling)
-    files = make_files(config, known, points, base, dict(measured.by_load("C_gamma")))
-    files = files.annotated(file_comments(files, known.origin, coefficients))
     use = config.spin.exact if config.rig.on_disc else "normal"
+    C_gamma = dict(measured.by_load("C_gamma"))
 
-    found = FitResult(
+    def files_of(fitted: Fitted, only: str | None = None) -> tuple[Known, dict[str, Coefficient], Files]:
+        after = known_after_fit(known, fitted.values, fitted.regularised, base)
+        rolling = rolling_resistance(after.values, points)
+        after = after.having({name: QSY1.value for name, QSY1 in rolling.items()}, "fitted")
+        coefficients = coefficient_records(after, fitted, rolling)
+        files = make_files(config, after, points, base, C_gamma, only=only)
+        return after, coefficients, files.annotated(file_comments(files, after.origin, coefficients))
+
+    known_after, coefficients, files = files_of(fitted)
+    temperature = None
+    if found.at_temperature:
+        _, own, special = files_of(full, only=use)
+        temperature = at_temperature(found, points, special.by_use[use], of_file(special, use, own))
+
+    confounded = confoundings(replace(full, problem=at_reference(config, full.problem)))
+    channels = agreement.with_points(readings, points)
+    result = FitResult(
         tyre=files.by_use["turn-slip" if config.rig.on_disc else "normal"].tyre,
         written=files.by_use[use].tyre,
         coefficients=of_file(files, use, coefficients),
-        channels=agreement.with_points(readings, points),
+        channels=channels,
         odd=agreement.with_odd_part(files.by_use["normal"].tyre.values, points, parts),
         simulation=fitted.simulation,
         rig=fitted.rig,
@@ -91,39 +108,48 @@ def fit(
         posterior=fitted.posterior,
         stages=fitted.stages,
         coverage=plan.cover,
-        explanations=tuple(explanations(config, files, known.values, measured)),
-        warnings=warnings(fitted, doubts, outlying, files.untested),
+        explanations=(
+            *nuisance_sentences(config.tyre.name, found, temperature, channels),
+            *explanations(config, files, known_after.values, measured),
+        ),
+        warnings=(
+            *warnings(full, doubts, outlying, files.untested),
+            *(confounding_sentence(row, modelled=found.at_temperature) for row in confounded),
+        ),
         seconds=time.perf_counter() - began,
-        epsilon_gamma_model=_epsilon_gamma(known.values, points, measured),
+        epsilon_gamma_model=_epsilon_gamma(known_after.values, points, measured),
         doubts=doubts,
         outliers=outlying,
         search=fitted,
+        full=full,
         files=files,
+        temperature=temperature,
+        choice=found.choice,
+        confounded=confounded,
     )
-    return with_remarks(found, config, points, turning, from_base=base is not None)
+    return with_remarks(result, config, points, turning, from_base=base is not None)
 
 
 def _fitted_and_judged(
     config: Any, problem: FitProblem, start: Mapping[str, float], plan: FitPlan, progress: Progress
-) -> tuple[Fitted, tuple[Doubt, ...]]:
-    """The fit to all points, and the sweeps that contradict the others; one beyond plausibility ends the build."""
+) -> tuple[NuisanceFit, tuple[Doubt, ...]]:
+    """The fits to all points, and the sweeps that contradict the others; one beyond plausibility ends the build."""
 
-    campaign = JudgedSweeps(
-        points=problem.points,
-        stated=_sigma(problem),
-        signs=axis_signs(config),
-        refit=lambda rows: _as_model(fit_staged(problem.select(rows), start, plan, silent, restarts=False)),
-    )
-
-    def judged(fitted: Fitted, when: When) -> tuple[Doubt, ...]:
+    def judged(found: NuisanceFit, when: When) -> tuple[Doubt, ...]:
         progress("predicting each sweep from the others")
+        campaign = JudgedSweeps(
+            points=problem.points,
+            stated=_sigma(problem),
+            signs=axis_signs(config),
+            refit=lambda rows: _as_model(found.refit(rows)),
+        )
         with as_declared(config):
-            return after_the_fit(campaign, _as_model(fitted), when)
+            return after_the_fit(campaign, _as_model(found.full), when)
 
-    fitted = fit_staged(
-        problem, start, plan, progress, before_restarts=lambda first: judged(first, When.FIRST)
+    found = fit_with_nuisances(
+        config, problem, start, plan, progress, before_restarts=lambda first: judged(first, When.FIRST)
     )
-    return fitted, judged(fitted, When.AFTER)
+    return found, judged(found, When.AFTER)
 
 
 def _as_model(fitted: Fitted) -> FittedModel:

@@ -29,6 +29,10 @@ class Posterior(Brief):
         """Standard uncertainty by name."""
         return dict(zip(self.names, np.sqrt(np.diag(self.covariance)).tolist(), strict=True))
 
+    def shifted(self, shift: np.ndarray) -> Posterior:
+        """The posterior with one more error, which moves the numbers by ``shift`` (k,) if it has its standard size."""
+        return Posterior(self.names, self.covariance + np.outer(shift, shift))
+
     def band(self, tyre: Simulation, points: Points) -> tuple[np.ndarray, np.ndarray]:
         """Half width of the 95 % band of Fy [N] and Mz [Nm] at any conditions (n,).
 

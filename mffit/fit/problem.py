@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from types import SimpleNamespace
 from typing import Any
 
@@ -33,6 +33,8 @@ class FitProblem:
     envelope: Envelope | None = None  #: over which the physical limits hold
     radii: tuple[RadiusReading, ...] = ()  #: measured effective radii, which count as data
     speed: float = 1.0  #: at which they were measured [m/s]
+    nominal: Mapping[str, float] = field(default_factory=dict)
+    """By channel, nominal uncertainty over ``sigma`` where this is that of the misfit: an outlier is far in units of both."""
 
     def select(self, index: np.ndarray) -> FitProblem:
         """The problem of some points (m,)."""
@@ -64,9 +66,21 @@ class FitProblem:
 
         A channel that the model misses by more than the noise must not dominate the other one.
         """
-        found = {name: weights.enlarged(z, self.points.sweep) for name, z in self.misfit().items()}
+        found = {
+            name: weights.enlarged(z, self.points.sweep, self.nominal.get(name, 1.0))
+            for name, z in self.misfit().items()
+        }
         sigma = {name: self.sigma[name] * factor for name, (factor, _) in found.items()}
         return replace(self, sigma=sigma), {name: scale for name, (_, scale) in found.items()}
+
+    def with_noise_of_misfit(self) -> FitProblem:
+        """The problem with uncertainties no larger than the scatter of its misfit, for points that state none."""
+        smaller = {name: min(weights.robust_scale(z), 1.0) for name, z in self.misfit().items()}
+        return replace(
+            self,
+            sigma={name: smaller[name] * u for name, u in self.sigma.items()},
+            nominal={name: 1.0 / share for name, share in smaller.items()},
+        )
 
     def misfit(self, readings: Readings | None = None) -> dict[str, np.ndarray]:
         """By channel, (model - measured) / sigma (n,); 0 where the channel is not used."""

@@ -11,11 +11,14 @@ from mffit.brief import Brief
 from mffit.fit.agreement import Agreement
 from mffit.fit.bands import BandsByPressure
 from mffit.fit.coefficients import Coefficient
+from mffit.fit.confounding import Confounding
 from mffit.fit.coverage import StageCoverage
 from mffit.fit.files import Files
 from mffit.fit.fitted import Fitted
+from mffit.fit.nuisance_choice import NuisanceChoice
 from mffit.fit.posterior import Posterior
 from mffit.fit.stages import StageRecord
+from mffit.fit.temperature import AtTemperature
 from mffit.quantities import CHANNELS
 from mffit.rig import Simulation
 from mffit.suspicion import Doubt, Outlier
@@ -32,7 +35,7 @@ class FitResult(Brief):
     channels: Mapping[str, Agreement]  #: of ``tyre`` with the raw points, turn slip on
     odd: Mapping[str, Agreement]  #: of the file for turn slip off with the odd part, turn slip off
     simulation: Simulation  #: ``tyre`` on the rig as fitted
-    rig: Mapping[str, tuple[float, float]]  #: rig error -> (value, standard error)
+    rig: Mapping[str, tuple[float, float]]  #: rig error -> (value, standard error) of the plain file's fit
     Fy_model: np.ndarray  #: (n,) [N]
     Mz_model: np.ndarray  #: (n,) [Nm]
     posterior: Posterior  #: joint uncertainty of tyre and rig
@@ -45,9 +48,15 @@ class FitResult(Brief):
     doubts: tuple[Doubt, ...] = ()  #: sweeps that contradict the others
     outliers: tuple[Outlier, ...] = ()  #: single readings without weight
     search: Fitted | None = None  #: the end of the search, from which tyres are drawn
+    full: Fitted | None = None  #: the same with every influence that is modelled beside the coefficients
     bands: BandsByPressure | None = None  #: where the bands of Fy are narrow
     bands_note: str = ""  #: why they are wider at other pressures; empty if they are not
     files: Files | None = None  #: every written file and its misfit
+    temperature: AtTemperature | None = None  #: the model with temperature terms, if there is one
+    confounded: tuple[Confounding, ...] = ()  #: settings with which the temperature runs along
+    choice: NuisanceChoice | None = (
+        None  #: what was modelled beside coefficients and declared rig errors, and why
+    )
 
     @property
     def headline(self) -> str:

@@ -29,17 +29,17 @@ def fit_staged(
     progress: Progress,
     *,
     restarts: bool = True,
-    before_restarts: Callable[[Fitted], object] = lambda fitted: None,
+    explained: Callable[[Fitted], bool] = lambda fitted: False,
 ) -> Fitted:
     """The best fit from ``start`` and, if that one ends far above the noise, from alternative starting values.
 
-    ``before_restarts`` is called with the first fit before alternatives are tried; it may refuse the data.
+    ``explained`` is called with the first fit before alternatives are tried: they are not if it returns True, and it may refuse
+    the data.
     """
     _require_enough_points(problem.points, plan.free)
     best = _fit_from(start, problem, plan, progress)
-    if not restarts or not _restart_worthwhile(best, plan):
+    if not restarts or not restart_worthwhile(best, plan) or explained(best):
         return best
-    before_restarts(best)
     for shape, values in ALTERNATIVE_STARTS.items():
         progress(f"starting again from {shape}")
         other = _fit_from({**start, **values}, problem, plan, silent)
@@ -48,7 +48,7 @@ def fit_staged(
     return replace(best, attempts=tuple(ALTERNATIVE_STARTS))
 
 
-def _restart_worthwhile(fitted: Fitted, plan: FitPlan) -> bool:
+def restart_worthwhile(fitted: Fitted, plan: FitPlan) -> bool:
     """Whether the fit ends far above the stated noise, or with the shape of a curve at its bound."""
     far = plan.noise_stated and max(fitted.scale.values()) > constants.RESTART_MISFIT
     return far or bool(fitted.at_bound & SHAPES)

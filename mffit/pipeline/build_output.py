@@ -11,6 +11,7 @@ import tomli_w
 
 from mffit import config as configuration
 from mffit.config import Config
+from mffit.fit import name_at_temperature
 from mffit.output import output_folder
 from mffit.pipeline.inputs import inputs_of
 from mffit.pipeline.members import write_members
@@ -30,7 +31,8 @@ def write_build(result: BuildResult, out: Path, stretches: Sequence[StretchNote]
     """Write every output of a build, or nothing; ``stretches`` of recordings go to ``stretches.csv``."""
     from mffit import report
 
-    siblings = [f"{result.config.tyre.name}-{use}.tir" for use in USES]
+    name = result.config.tyre.name
+    siblings = [*(f"{name}-{use}.tir" for use in USES), name_at_temperature(name)]
     with output_folder(out, by="build", protected=inputs_of(result.config), outdated=siblings) as folder:
         for use, name in result.files.items():
             result.tyres[use].write(folder / name)

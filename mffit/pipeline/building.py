@@ -24,7 +24,7 @@ from mffit.pipeline.inputs import input_hashes, inputs_of, read_base, read_point
 from mffit.pipeline.judging import judged
 from mffit.pipeline.left_out import left_out_by_fit
 from mffit.pipeline.measuring import measure
-from mffit.pipeline.provenance import Annotate, annotator
+from mffit.pipeline.provenance import TEMPERATURE, Annotate, annotator
 from mffit.pipeline.refining import finite_spin_bias, undistorted, without_outliers
 from mffit.points import Points
 from mffit.progress import Progress, silent
@@ -70,8 +70,9 @@ def build(
     progress("measuring the camber reduction factor")
     parts, measured = measure(config, reading.points, base)
     names = fitting.file_names(config.tyre.name, config.spin.exact, config.rig.on_disc)
+    special = fitting.name_at_temperature(config.tyre.name)
     if out is not None:
-        refuse_early(Path(out), (*names.values(), *WRITTEN), inputs_of(config))
+        refuse_early(Path(out), (*names.values(), special, *WRITTEN), inputs_of(config))
     with threadpool_limits(1):  # the matrices are small: threads cost more than they save
         measured, fitted = _fitted(config, reading.points, parts, measured, base, progress)
         progress("judging what the fit leaves")
@@ -84,6 +85,10 @@ def build(
             progress(f"drawing {ensemble} tyres from the posterior")
         annotated = annotator(config, made_of, measured, fitted, trust)
         members = tuple(_members(config, fitted, ensemble, annotated)) if ensemble else ()
+    tyres = {use: annotated(files[use].tyre, use) for use in names}
+    if fitted.temperature is not None:
+        tyres[TEMPERATURE] = annotated(fitted.temperature.file.tyre, TEMPERATURE)
+        names = {**names, TEMPERATURE: special}
     result = BuildResult(
         config=config,
         points=reading.points,
@@ -91,7 +96,7 @@ def build(
         measured=measured,
         fit=fitted,
         files=names,
-        tyres={use: annotated(files[use].tyre, use) for use in names},
+        tyres=tyres,
         members=members,
         plain=config.spin.exact if config.rig.on_disc else "normal",
         warnings=(

@@ -11,7 +11,7 @@ from typing import Any
 
 import tir
 from mffit import config as configuration
-from mffit.comparison import ComparedSubject, Comparison, against_points, between
+from mffit.comparison import ComparedSubject, Comparison, against_points, between, note_on_temperature
 from mffit.config import Config, declared_faults
 from mffit.errors import InputError
 from mffit.fleet.specimen import RESOLVED
@@ -19,7 +19,7 @@ from mffit.measured import LoadResult
 from mffit.output import output_folder
 from mffit.pipeline.inputs import inputs_of, read_base, read_points
 from mffit.pipeline.measuring import measure, without_play
-from mffit.pipeline.provenance import posterior_of, use_of
+from mffit.pipeline.provenance import posterior_of, temperature_of, use_of
 from mffit.points import Points
 from mffit.progress import Progress, silent
 from mffit.results import as_json
@@ -157,11 +157,13 @@ def _with_data(subject: ComparedSubject, config: Config) -> Comparison:
     points = read_points(config).points
     base = read_base(config)
     turn_slip = config.model.turn_slip and config.rig.on_disc
-    faults = declared_faults(config.rig)
+    warm = temperature_of(subject.tyre)
+    faults = declared_faults(config.rig).replace(**warm)
     simulation = Simulation.of(subject.tyre, faults, turn_slip=turn_slip, star=config.model.star)
     if config.rig.radius is not None:
         simulation = replace(simulation, radius_m=config.rig.radius)
-    faultless = replace(simulation, faults=NO_FAULTS).readings(points)
+    perfect = NO_FAULTS.replace(**warm)
+    faultless = replace(simulation, faults=perfect).readings(points)
 
     def direct(declared: Config, rows: Points) -> tuple[LoadResult, ...]:
         try:
@@ -172,4 +174,7 @@ def _with_data(subject: ComparedSubject, config: Config) -> Comparison:
     measured = direct(config, points)
     of_file = direct(without_play(config), points.replace(Fy=faultless.Fy, Mz=faultless.Mz))
     name = config.path.name if config.path is not None else config.tyre.name
-    return against_points(subject, simulation, points, measured, of_file, name)
+    found = against_points(subject, simulation, points, measured, of_file, name)
+    if not warm:
+        return found
+    return replace(found, notes=(*found.notes, note_on_temperature(subject.name, warm["T_ref_degC"])))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -26,28 +27,32 @@ from tir import Tyre
 def judged(
     config: Config, points: Points, measured: Measured, fitted: FitResult, files: Mapping[str, Tyre]
 ) -> tuple[Trust, Remains]:
-    """The judgement of a build with its written ``files`` by use, and what its fit leaves of the readings."""
-    assert fitted.search is not None
-    left = remains(fitted.search, axis_signs(config))
+    """The judgement of a build with its written ``files`` by use, and what its fit leaves of the readings.
+
+    Where the temperature is modelled, the fit with it is judged: the plain file cannot reach the noise, and its misfit is
+    stated. ``over_noise`` is that of the plain one in any case.
+    """
+    assert fitted.full is not None
+    left = remains(fitted.full, axis_signs(config))
     channels = [c.channel for c in left.structure.found]
-    trust = judge(
-        FinishedFit(
-            points=points,
-            model=Readings(fitted.Fy_model, fitted.Mz_model),
-            used=_used(points, fitted.outliers),
-            r2={name: found.r2 for name, found in fitted.channels.items()},
-            left_out=left.left_out,
-            structured=frozenset(channels),
-            structure=wording.structure(left.structure),
-            cause=_cause(fitted.doubts, left),
-            cause_is_certain=bool(fitted.doubts or left.sweep)
-            or (left.effect is not None and left.effect.significant),
-            held=left.held,
-            broken=tuple(_refused(files)),
-            camber_reduction=_camber_reduction(config, measured),
-        )
+    model = fitted.full.simulation.readings(points)
+    finished = FinishedFit(
+        points=points,
+        model=model,
+        used=_used(points, fitted.outliers),
+        r2={name: found.r2 for name, found in with_points(model, points).items()},
+        left_out=left.left_out,
+        structured=frozenset(channels),
+        structure=wording.structure(left.structure),
+        cause=_cause(fitted.doubts, left),
+        cause_is_certain=bool(fitted.doubts or left.sweep)
+        or (left.effect is not None and left.effect.significant),
+        held=left.held,
+        broken=tuple(_refused(files)),
+        camber_reduction=_camber_reduction(config, measured),
     )
-    return trust, left
+    plain = replace(finished, model=Readings(fitted.Fy_model, fitted.Mz_model))
+    return replace(judge(finished), over_noise=plain.over_noise), left
 
 
 def judged_diagnosis(diagnosis: Diagnosis) -> Trust:

@@ -21,6 +21,7 @@ from mffit.pipeline.inputs import input_hashes
 from mffit.rig_errors import error_of, unit_of
 from mffit.suspicion import Trust
 from tir import Tyre
+from tir.temperature import HIGHEST, LOWEST, REFERENCE, RIG, terms_of
 
 PROGRAM = "program"
 """Key of the version that wrote a file."""
@@ -30,8 +31,8 @@ METHOD = "method"
 """Key of the number of the method."""
 DIGITS = 16
 """Digits of a hash in a property file, whose lines are to be short; result.json has all 64."""
-RIG = "rig."
-"""Prefix of rig errors among the measured quantities of a file."""
+TEMPERATURE = "temperature"
+"""Key of the file that holds at one temperature, among the uses of the others."""
 TURN_SLIP = {"turn-slip": "on", "normal": "off", "both": "on or off"}
 """Setting of the simulation's turn slip for each use of a file."""
 PLAIN = " /\\!#$&'()+,;=@[]{}~"
@@ -51,12 +52,11 @@ Annotate = Callable[[Tyre, str], Tyre]
 def annotator(config: Config, made: Made, measured: Measured, fitted: FitResult, trust: Trust) -> Annotate:
     """The annotation of all files of a build."""
     inputs = _of_inputs(made.inputs)
-    rig = {
-        RIG + quote(name, safe=PLAIN): tir.Quantity(value, u, unit_of(name))
-        for name, (value, u) in fitted.rig.items()
-    }
+    plain = config.spin.exact if config.rig.on_disc else "normal"
 
     def annotated(tyre: Tyre, use: str) -> Tyre:
+        special = fitted.temperature if use == TEMPERATURE else None
+        use = plain if special else use
         provenance = {
             PROGRAM: f"{made.program} {made.version}",
             METHOD: str(made.method),
@@ -65,7 +65,15 @@ def annotator(config: Config, made: Made, measured: Measured, fitted: FitResult,
             "configuration": _settings(config),
             **inputs,
         }
-        return marked(tyre.annotate(measured={**measured.quantities(), **rig}, provenance=provenance), trust)
+        quantities = {**measured.quantities(), **_of_rig(fitted.rig if special is None else special.rig)}
+        if special is not None:
+            low, high = special.T_range
+            quantities |= {LOWEST: tir.Quantity(low, 0.0, "degC"), HIGHEST: tir.Quantity(high, 0.0, "degC")}
+            provenance["temperature"] = (
+                f"holds at {special.T_ref:g} degC; elsewhere LMUY, LKY, LKYC times 1 + k (T - {special.T_ref:g}) with "
+                "rig.k_T_grip_per_K, _stiffness_, _camber_"
+            )
+        return marked(tyre.annotate(measured=quantities, provenance=provenance), trust)
 
     return annotated
 
@@ -75,6 +83,14 @@ def marked(tyre: Tyre, trust: Trust) -> Tyre:
     kept = {key: text for key, text in tyre.provenance.items() if key != DISTRUSTED}
     reasons = {} if trust.trusted else {DISTRUSTED: "; ".join(trust.reasons)}
     return replace(tyre, provenance={**reasons, **kept})
+
+
+def _of_rig(rig: Mapping[str, tuple[float, float]]) -> dict[str, tir.Quantity]:
+    """Rig numbers as quantities of a file, by the name that they have there."""
+    return {
+        RIG + quote(name, safe=PLAIN): tir.Quantity(value, u, unit_of(name))
+        for name, (value, u) in rig.items()
+    }
 
 
 def use_of(tyre: Tyre) -> str | None:
@@ -88,6 +104,13 @@ def rig_of_build(tyre: Tyre) -> dict[str, float] | None:
     """The rig errors that the build found, of the rig or of a set-up, from the comments of its file; None without them."""
     found = {unquote(n.removeprefix(RIG)): q.value for n, q in tyre.measured.items() if n.startswith(RIG)}
     return {name: value for name, value in found.items() if error_of(name)} or None
+
+
+def temperature_of(tyre: Tyre) -> dict[str, float]:
+    """The temperature terms of a file and the temperature at which it holds, by rig number; empty without terms."""
+    terms = terms_of(tyre)
+    found = {name: term.value for name, term in terms.items()}
+    return found | {"T_ref_degC": tyre.measured[REFERENCE].value} if found else {}
 
 
 def fitted_to(tyre: Tyre, config: Config) -> bool:

@@ -49,3 +49,6 @@ PLAN_PRESSURE_TOLERANCE = Real(5e3, "Pa", "Distance from the main pressure of po
 PLAN_NOISE_DRAWS = Count(8, "-", "Noise draws over which the promised u of the direct method is the rms.")
 PLAN_BAND_ANGLES = Count(21, "-", "Angles per curve of a 95 % band.")
 PLAN_BAND_SPEED = Real(10.0, "m/s", "Speed of a 95 % band, which hardly depends on it.")
+
+# Order of the runs
+SWAPS_OF_RUNS = Count(1000, "-", "Swaps of two sweeps tried in the search for an order.")

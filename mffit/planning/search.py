@@ -12,6 +12,7 @@ from mffit.planning import constants
 from mffit.planning.additions import Addition
 from mffit.planning.goals import Goal
 from mffit.planning.identified import identified
+from mffit.planning.order import mixed_order
 from mffit.planning.outlook import Direct, Outlook
 from mffit.planning.record import Plan, PlanStep, Trial
 from mffit.planning.runs import PlannedRun, candidates
@@ -66,6 +67,7 @@ def plan(
         steps=tuple(steps),
         trials=tuple(trials),
         told_below=outlook.told_below,
+        order=mixed_order(points) if found.confounded else None,
     )
 
 

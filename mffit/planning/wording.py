@@ -180,3 +180,17 @@ def instructions(run: PlannedRun) -> list[str]:
             "# revolutions, angle_start_deg, angle_end_deg",
         ]
     return []
+
+
+def order(plan: Plan) -> str:
+    """The order in which the sweeps should be run, and what it changes; empty if the present one is good."""
+    if plan.order is None:
+        return ""
+    changes = ", ".join(
+        f"{setting} {plan.order.now[setting]:.2f} to {plan.order.then[setting]:.2f}"
+        for setting in plan.order.now
+    )
+    return (
+        "The tyre's temperature runs along with the settings of the sweeps. Run again in this order, they separate "
+        f"(correlation with the temperature: {changes}): {', '.join(plan.order.sweeps)}."
+    )

@@ -127,7 +127,7 @@ def _nothing(reduced: Sequence[Reduced]) -> str:
 
 
 def settled_sweeps(points: Points, lag: tuple[float, float]) -> Points:
-    """Continuous sweeps as points, at the angle that the force answers to.
+    """Continuous sweeps as points, at the angle that the force answers to; they keep the times within their sweep.
 
     ``lag`` is the rolled distance by which the force lags and its standard uncertainty [m]; it is taken off where it is proven.
     """
@@ -141,7 +141,7 @@ def settled_sweeps(points: Points, lag: tuple[float, float]) -> Points:
             rolled = rolled_distance(points.time[rows], points.V[rows])
             taken[rows] = value * np.gradient(points.alpha[rows], rolled)
     table = points.table.assign(alpha_lag_deg=np.degrees(taken)) if np.any(taken) else points.table
-    return points.replace(alpha=alpha - taken, continuous=False, time=np.nan, table=table)
+    return points.replace(alpha=alpha - taken, continuous=False, table=table)
 
 
 def _of_motion(reduced: Sequence[Reduced], lag: tuple[float, float]) -> list[str]:

@@ -50,7 +50,7 @@ class Points(Brief):
     direction: np.ndarray  #: +1 forward, -1 backward
     mount: np.ndarray  #: +1 normal, -1 tyre turned on its rim
     continuous: np.ndarray  #: bool: a sample of a moving sweep, not a steady point
-    time: np.ndarray  #: time within the continuous sweep [s]; NaN for steady points
+    time: np.ndarray  #: time within the sweep [s] of a point of a moving sweep; NaN for steady points
     sweep: np.ndarray  #: index into ``sweep_names``
     file: np.ndarray  #: index into ``files``
     line: np.ndarray  #: line in that file, counted from 1

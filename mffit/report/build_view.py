@@ -13,6 +13,7 @@ from mffit.diagnosis.remains import Remains
 from mffit.fit import Agreement, Coefficient, Posterior, StageRecord
 from mffit.fit.coverage import StageCoverage
 from mffit.fit.files import Files
+from mffit.fit.temperature import AtTemperature
 from mffit.made import Made
 from mffit.measured import Measured
 from mffit.points import Points
@@ -123,6 +124,7 @@ class BuildView:
     bands_note: str = (
         ""  #: why the bands are wider between the pressures of the sweeps; empty if they are not
     )
+    temperature: AtTemperature | None  #: the fit with temperature terms, if there is one
 
     def marked(self, channel: str) -> tuple[np.ndarray, np.ndarray]:
         """Rows of the channel's readings without weight, and of the points of doubtful sweeps."""
@@ -184,10 +186,11 @@ def view_of(result: BuildResult) -> BuildView:
         trust=result.trust,
         remains=result.remains,
         files=fit.files,
-        file_names=dict(result.files),
+        file_names={use: name for use, name in result.files.items() if use in result.uses},
         doubts=fit.doubts,
         outliers=fit.outliers,
         bands_note=fit.bands_note,
+        temperature=fit.temperature,
     )
 
 

@@ -30,7 +30,9 @@ class BuildResult(Brief):
     parts: Parts
     measured: Measured
     fit: FitResult
-    files: Mapping[str, str]  #: name of each file by use, "turn-slip" or "normal"
+    files: Mapping[
+        str, str
+    ]  #: name of each file by use, "turn-slip" or "normal"; "temperature": that at one temperature
     tyres: Mapping[str, Tyre]  #: the tyre of each file, by use
     plain: str  #: the use whose file has the plain name
     warnings: tuple[str, ...]
@@ -61,6 +63,11 @@ class BuildResult(Brief):
     def on_disc(self) -> bool:
         """Whether the path was curved."""
         return self.config.rig.on_disc
+
+    @property
+    def uses(self) -> tuple[str, ...]:
+        """Uses of the files without the temperature as an input."""
+        return () if self.fit.files is None else tuple(self.fit.files.by_use)
 
     @property
     def tyre(self) -> Tyre:

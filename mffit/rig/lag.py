@@ -18,8 +18,9 @@ def lagged_angle(points: Points, sigma: float) -> tuple[np.ndarray, np.ndarray]:
     b = alpha - alpha' becomes b_1 = f (alpha_1 - alpha_0) + exp(-q) b_0.
     """
     alpha, slope = points.alpha.copy(), np.zeros(len(points))
-    for k in np.unique(points.sweep[points.continuous]):
-        rows = np.flatnonzero(points.continuous & (points.sweep == k))
+    moving = np.isfinite(points.time)
+    for k in np.unique(points.sweep[moving]):
+        rows = np.flatnonzero(moving & (points.sweep == k))
         rows = rows[np.argsort(points.time[rows], kind="stable")]
         V = points.V[rows]
         steps = np.diff(points.time[rows]) * 0.5 * (V[:-1] + V[1:])

@@ -9,6 +9,7 @@ import numpy as np
 
 from mffit.rig_errors import constants
 from mffit.rig_errors.record import Appearance, Place, RigError
+from tir.temperature import SCALED_BY
 
 WARMTH = "(T - T_ref), T_ref the mean temperature of the data unless it is fitted"
 
@@ -26,7 +27,7 @@ TEMPERATURE_GRIP = _of_temperature(
     name="k_T_grip_per_K",
     meaning=f"friction times 1 + k {WARMTH}",
     place=Place.COEFFICIENTS,
-    acts_on=("LMUY",),
+    acts_on=(SCALED_BY["k_T_grip_per_K"],),
     spread=0.002,
     seen_as=(
         _appearance(
@@ -43,7 +44,7 @@ TEMPERATURE_STIFFNESS = _of_temperature(
     name="k_T_stiffness_per_K",
     meaning=f"cornering stiffness times 1 + k {WARMTH}",
     place=Place.COEFFICIENTS,
-    acts_on=("LKY",),
+    acts_on=(SCALED_BY["k_T_stiffness_per_K"],),
     spread=0.002,
     seen_as=(
         _appearance(
@@ -54,6 +55,13 @@ TEMPERATURE_STIFFNESS = _of_temperature(
             confusable_with=("temperature",),
         ),
     ),
+)
+TEMPERATURE_CAMBER = _of_temperature(
+    name="k_T_camber_per_K",
+    meaning=f"camber stiffness times 1 + k {WARMTH}",
+    place=Place.COEFFICIENTS,
+    acts_on=(SCALED_BY["k_T_camber_per_K"],),
+    spread=0.002,
 )
 TEMPERATURE = _of_temperature(
     name="k_T_per_K",
@@ -157,5 +165,5 @@ WARM_UP = _of_forces(
     ),
 )
 
-COEFFICIENT_ERRORS = (REFERENCE_TEMPERATURE, TEMPERATURE_GRIP, TEMPERATURE_STIFFNESS)
+COEFFICIENT_ERRORS = (REFERENCE_TEMPERATURE, TEMPERATURE_GRIP, TEMPERATURE_STIFFNESS, TEMPERATURE_CAMBER)
 ENVIRONMENT_ERRORS = (TEMPERATURE, DRIFT, WEAR, WARM_UP, SPEED)

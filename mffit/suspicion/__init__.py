@@ -5,7 +5,7 @@ from mffit.suspicion.declarations import under_axes
 from mffit.suspicion.misread import Misread, misread
 from mffit.suspicion.others import Doubt, JudgedSweeps
 from mffit.suspicion.outliers import Outlier, marks, outliers, outliers_sentence
-from mffit.suspicion.prediction import FittedModel
+from mffit.suspicion.prediction import FittedModel, parts_of_sweeps
 from mffit.suspicion.rule import When
 from mffit.suspicion.rules import RULES
 from mffit.suspicion.slopes import contradictions, signatures
@@ -34,6 +34,7 @@ __all__ = [
     "misread",
     "outliers",
     "outliers_sentence",
+    "parts_of_sweeps",
     "signatures",
     "under_axes",
 ]

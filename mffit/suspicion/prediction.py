@@ -89,7 +89,26 @@ def _sweeps(points: Points) -> Iterator[Group]:
         yield Group(name=points.sweep_names[k], file=file, index=index, whole=True)
 
 
+def parts_of_sweeps(points: Points) -> np.ndarray:
+    """Number (n,) of each point's part, from 0: a sweep, or each load, pressure, direction and camber of one with several."""
+    out = np.empty(len(points), dtype=int)
+    for k, (_, rows, _) in enumerate(_parts(points)):
+        out[rows] = k
+    return out
+
+
 def _conditions(points: Points) -> Iterator[Group]:
+    for sweep, rows, by_camber in _parts(points):
+        if len(rows) < len(sweep.index):
+            part = points.select(rows)
+            said = f"{np.mean(part.Fz):.0f} N, {np.mean(part.p) / 1e3:.0f} kPa"
+            if by_camber:
+                said += f", camber {np.degrees(np.mean(part.gamma)):z.0f} deg"
+            yield Group(name=f"{sweep.name} at {said}", file=sweep.file, index=rows, whole=False)
+
+
+def _parts(points: Points) -> Iterator[tuple[Group, np.ndarray, bool]]:
+    """Each sweep with the rows (m,) of one of its conditions, and whether camber is one of the conditions."""
     load = levels.nearest_labels(points.Fz, levels.LOAD)
     pressure = levels.nearest_labels(points.p, levels.PRESSURE)
     camber = levels.nearest_labels(points.gamma, levels.CAMBER)
@@ -103,13 +122,7 @@ def _conditions(points: Points) -> Iterator[Group]:
         if by_camber:
             keys = np.column_stack([keys, camber[i]])
         for key in np.unique(keys, axis=0):
-            rows = i[np.all(keys == key, axis=1)]
-            if len(rows) < len(i):
-                part = points.select(rows)
-                said = f"{np.mean(part.Fz):.0f} N, {np.mean(part.p) / 1e3:.0f} kPa"
-                if by_camber:
-                    said += f", camber {np.degrees(np.mean(part.gamma)):z.0f} deg"
-                yield Group(name=f"{sweep.name} at {said}", file=sweep.file, index=rows, whole=False)
+            yield sweep, i[np.all(keys == key, axis=1)], by_camber
 
 
 def leverage(fit: FittedModel, noise: np.ndarray) -> Leverage:

@@ -71,6 +71,11 @@ class FinishedFit:
         z = (getattr(self.model, channel) - getattr(self.points, channel))[known] / u[known]
         return rms(z), int(known.sum())
 
+    @property
+    def over_noise(self) -> dict[str, float]:
+        """By channel, misfit over stated noise; NaN where none is stated."""
+        return {name: self.misfit(name)[0] for name in CHANNELS}
+
     def far(self, channel: str, limit: float, sigma: float, rows: np.ndarray | None = None) -> bool:
         """Whether the misfit over the noise exceeds a limit, by more than chance explains."""
         ratio, n = self.misfit(channel, rows)
@@ -283,7 +288,7 @@ def judge(fit: FinishedFit) -> Trust:
         reasons=tuple(r.said(facts) for r in REASONS for facts in r.find(fit)),
         doubts=tuple(r.said(facts) for r in DOUBTS for facts in r.find(fit)),
         remarks=tuple(_remarks(fit)),
-        over_noise={name: fit.misfit(name)[0] for name in CHANNELS},
+        over_noise=fit.over_noise,
     )
 
 

@@ -15,6 +15,8 @@ from mffit.diagnosis.remains import Remains
 from mffit.fit import Coefficient, FitResult
 from mffit.fit.bands import BandsByPressure
 from mffit.fit.files import Files
+from mffit.fit.nuisance_choice import Verdict
+from mffit.fit.temperature import AtTemperature
 from mffit.made import Made
 from mffit.measured import KEYS, LoadResult, Measured, SetupResult, SetupScatter
 from mffit.points.left_out import LeftOut
@@ -103,10 +105,12 @@ def fit(found: FitResult, over_noise: Mapping[str, float] = NOT_JUDGED) -> dict[
         },
         "odd": {name: asdict(row) for name, row in found.odd.items()},
         "coefficients": {name: _coefficient(row) for name, row in found.coefficients.items()},
-        "rig": {
-            name: {"value": value, "stderr": u, "unit": unit_of(name)}
-            for name, (value, u) in found.rig.items()
-        },
+        "rig": _rig(found.rig if found.temperature is None else found.temperature.rig),
+        "temperature": None if found.temperature is None else _temperature(found.temperature),
+        "modelled": [] if found.choice is None else [_verdict(row) for row in found.choice.verdicts],
+        "confounded": [
+            picked(row, "setting", "correlation", "coefficient", "growth") for row in found.confounded
+        ],
         "bands": _bands(found.bands) if found.bands is not None else None,
         "posterior": plain(picked(found.posterior, "names", "covariance")),
         "stages": [
@@ -150,6 +154,41 @@ def _best_effect(found: BestEffect) -> dict[str, Any]:
         "significant": found.significant,
         "as_good": [other.effect.id for other in found.rivals],
         "tried": found.tried,
+    }
+
+
+def _rig(rig: Mapping[str, tuple[float, float]]) -> dict[str, Any]:
+    return {name: {"value": value, "stderr": u, "unit": unit_of(name)} for name, (value, u) in rig.items()}
+
+
+def _temperature(found: AtTemperature) -> dict[str, Any]:
+    """The model with temperature terms, which the file at one temperature states."""
+    low, high = found.T_range
+    return {
+        "T_ref_degC": found.T_ref,
+        "T_min_degC": low,
+        "T_max_degC": high,
+        "terms": _rig(found.terms),
+        "channels": {name: asdict(row) for name, row in found.channels.items()},
+        "without_terms": {name: asdict(row) for name, row in found.alone.items()},
+        "left_out_rmse": {"temperature": dict(found.left_out), "plain": dict(found.left_out_plain)},
+        "coefficients": {name: _coefficient(row) for name, row in found.coefficients.items()},
+        "moved": {
+            name: {"plain": there, "value": here, "stderr": u}
+            for name, (there, here, u) in found.moved.items()
+        },
+    }
+
+
+def _verdict(row: Verdict) -> dict[str, Any]:
+    """Whether an influence is modelled beside the coefficients, and why."""
+    return {
+        "id": row.nuisance.id,
+        "name": row.nuisance.name,
+        "modelled": row.modelled,
+        "reason": row.reason,
+        "numbers": list(row.nuisance.numbers),
+        "left_out_rmse": {"with": dict(row.beside), "without": dict(row.without)} if row.beside else None,
     }
 
 

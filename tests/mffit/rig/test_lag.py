@@ -60,7 +60,8 @@ def test_a_stop_is_a_filter_over_the_distance_rolled():
 
 def test_every_sweep_begins_settled_and_steady_points_have_no_lag():
     both = make_points(
-        np.tile(ALPHA, 3), 0.0, 1400.0, p=240e3, V=6.0, phi_t=0.0, time=np.tile(TIME, 3), sweep=np.repeat([0, 1, 2], 40),
+        np.tile(ALPHA, 3), 0.0, 1400.0, p=240e3, V=6.0, phi_t=0.0,
+        time=np.concatenate([TIME, TIME, np.full(40, np.nan)]), sweep=np.repeat([0, 1, 2], 40),
         sweep_names=("a", "b", "c"), continuous=np.repeat([True, True, False], 40),
     )  # fmt: skip
     follows, slope = lagged_angle(both, 0.4)

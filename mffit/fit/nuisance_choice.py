@@ -1,0 +1,258 @@
+"""The influences of :mod:`mffit.fit.nuisances` that a fit models, chosen by how well left-out sweeps are predicted."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from mffit.constants import FEWEST_SWEEPS_TO_PREDICT, LEAST_PREDICTED_SHARE
+from mffit.errors import InputError
+from mffit.fit import constants
+from mffit.fit.fitted import Fitted
+from mffit.fit.nuisances import NUISANCES, Nuisance
+from mffit.fit.problem import FitProblem
+from mffit.least_squares import FreeNumber, solve
+from mffit.left_out import Predicted, improves, left_out_errors, needed_fall, predicted
+from mffit.points import Points
+from mffit.rig import Simulation
+from mffit.scatter import rms
+from mffit.suspicion import parts_of_sweeps
+
+Gaps = Mapping[str, float]
+"""By channel, rms error of left-out sweeps [N] or [Nm]."""
+
+
+@dataclass(frozen=True, slots=True)
+class Verdict:
+    """Whether an influence is modelled, and why."""
+
+    nuisance: Nuisance
+    modelled: bool
+    reason: str  #: in words
+    without: Gaps = field(default_factory=dict)
+    """Errors of left-out sweeps without it, where they were computed."""
+    beside: Gaps = field(default_factory=dict)
+    """The same with it."""
+
+
+@dataclass(frozen=True, slots=True)
+class NuisanceChoice:
+    """What a fit models beside coefficients and declared rig errors."""
+
+    verdicts: tuple[Verdict, ...]
+    near: Simulation  #: with what is modelled, near the best fit
+
+    @property
+    def modelled(self) -> tuple[Nuisance, ...]:
+        """The influences that are modelled."""
+        return tuple(verdict.nuisance for verdict in self.verdicts if verdict.modelled)
+
+
+class _Prediction(NamedTuple):
+    by_sweep: Predicted
+    gaps: Gaps
+
+
+class _NearSolution(NamedTuple):
+    """A fit with some influences, near its solution."""
+
+    problem: FitProblem  #: with the weights of the first fit
+    numbers: Sequence[FreeNumber]
+    chosen: tuple[Nuisance, ...]
+
+
+def choose(config: Any, first: Fitted) -> NuisanceChoice:
+    """The influences that [fit] demands, and those that predict left-out sweeps better.
+
+    ``first`` is the fit without any. Forward steps as in the diagnosis of fitted models: the influence that predicts best is
+    added while the prediction improves beyond chance, and one that a later step makes needless is dropped.
+    """
+    points = first.problem.points
+    verdicts: dict[str, Verdict] = {}
+    demanded, open_ = [], []
+    for nuisance in NUISANCES:
+        setting, lacking = nuisance.setting(config), nuisance.lacking(points)
+        if setting is False:
+            verdicts[nuisance.id] = Verdict(nuisance, False, _said(config, nuisance))
+        elif lacking and setting:
+            raise InputError(
+                f"asks for the {nuisance.name}, but {lacking}; measure it, or remove the key",
+                file=config.path,
+                line=config.line_of(f"fit.{nuisance.key}"),
+                key=f"fit.{nuisance.key}",
+            )
+        elif lacking:
+            verdicts[nuisance.id] = Verdict(nuisance, False, lacking)
+        elif setting:
+            demanded.append(nuisance)
+        else:
+            open_.append(nuisance)
+    near = first.simulation
+    if demanded or open_:
+        judged, near = _judged(config, first, demanded, open_)
+        verdicts |= judged
+    return NuisanceChoice(tuple(verdicts[nuisance.id] for nuisance in NUISANCES), near)
+
+
+def reference_temperature(config: Any, points: Points) -> float:
+    """Temperature at which the file holds [degC]: given, else the mean of the data to 0.1 K."""
+    given = config.fit.T_ref_degC
+    return round(float(np.nanmean(points.T)), 1) if given is None else given
+
+
+def at_reference(config: Any, problem: FitProblem) -> FitProblem:
+    """The problem with the reference temperature of its points, where they have temperatures."""
+    if not np.any(np.isfinite(problem.points.T)):
+        return problem
+    return problem.with_values({"T_ref_degC": reference_temperature(config, problem.points)})
+
+
+def _judged(
+    config: Any, first: Fitted, demanded: Sequence[Nuisance], candidates: Sequence[Nuisance]
+) -> tuple[dict[str, Verdict], Simulation]:
+    """The verdicts on demanded influences and candidates, and the model with what is modelled."""
+    numbers = [number for number in first.numbers if number.name not in first.at_bound]
+    group = parts_of_sweeps(first.problem.points)
+    model = _NearSolution(at_reference(config, first.problem), numbers, ())
+    base = _predicted(model, (), group)
+    if demanded:
+        model = _refitted(model, demanded)
+    enough = len(np.unique(group)) >= FEWEST_SWEEPS_TO_PREDICT
+    here = _predicted(model, (), group)
+    needed, left = needed_fall(len(candidates)), list(candidates)
+    tried: dict[str, _Prediction] = {}
+
+    def better(before: _Prediction, after: _Prediction) -> bool:
+        least = LEAST_PREDICTED_SHARE * before.by_sweep.total
+        return improves(before.by_sweep, after.by_sweep, least=least, needed=needed)
+
+    while enough and left:
+        found = {step: _predicted(model, step, group) for step in _steps(left, model.chosen)}
+        tried |= {step[-1].id: prediction for step, prediction in found.items()}
+        helpful = [step for step, prediction in found.items() if better(here, prediction)]
+        if not helpful:
+            break
+        best = min(helpful, key=lambda step: found[step].by_sweep.total)
+        rivals = {nuisance.rival for nuisance in best}
+        left = [nuisance for nuisance in left if nuisance not in best and nuisance.id not in rivals]
+        last, model = here, _refitted(model, best)
+        here = _predicted(model, (), group)
+        for old in [n for n in model.chosen if n in candidates and n is not best[0]]:
+            fewer = _without(model, old)
+            before = _predicted(fewer, (), group)
+            # What came in one step is one influence: its parts must matter, but not each be beyond chance.
+            share = 1.0 - here.by_sweep.total / before.by_sweep.total
+            helps = share > LEAST_PREDICTED_SHARE if old in best else better(before, here)
+            if better(last, before) and not helps:
+                model, here, tried[old.id] = fewer, before, here
+    verdicts = _verdicts(config, model, candidates, demanded, base, here, tried, enough=enough)
+    return verdicts, model.problem.simulation
+
+
+def _steps(left: Sequence[Nuisance], chosen: Sequence[Nuisance]) -> Iterator[tuple[Nuisance, ...]]:
+    """What may be added next: an influence, together with the one that it needs if that is not modelled yet."""
+    there = {nuisance.id for nuisance in chosen}
+    by_id = {nuisance.id: nuisance for nuisance in left}
+    for nuisance in left:
+        if not nuisance.after or nuisance.after in there:
+            yield (nuisance,)
+        elif nuisance.after in by_id:
+            yield (by_id[nuisance.after], nuisance)
+
+
+def _verdicts(
+    config: Any,
+    model: _NearSolution,
+    candidates: Sequence[Nuisance],
+    demanded: Sequence[Nuisance],
+    base: _Prediction,
+    here: _Prediction,
+    tried: Mapping[str, _Prediction],
+    *,
+    enough: bool,
+) -> dict[str, Verdict]:
+    out, there = {}, {nuisance.id for nuisance in model.chosen}
+    for nuisance in (*demanded, *candidates):
+        modelled, other = nuisance in model.chosen, tried.get(nuisance.id)
+        if nuisance in demanded:
+            reason, gaps = _said(config, nuisance), (base.gaps, here.gaps)
+        elif modelled:
+            reason, gaps = "left-out sweeps are predicted better with it", (base.gaps, here.gaps)
+        elif nuisance.rival in there:
+            reason, gaps = f"the {_named(nuisance.rival)} predicts left-out sweeps better", ({}, {})
+        elif other is not None:
+            reason, gaps = "left-out sweeps are not predicted better with it", (here.gaps, other.gaps)
+        elif not enough:
+            reason = (
+                f"fewer than {FEWEST_SWEEPS_TO_PREDICT} sweeps do not show whether it predicts them better"
+            )
+            gaps = ({}, {})
+        else:
+            reason, gaps = f"it needs the {_named(nuisance.after)}, which is not modelled", ({}, {})
+        out[nuisance.id] = Verdict(nuisance, modelled, reason, *gaps)
+    return out
+
+
+def _named(key: str) -> str:
+    return next(nuisance.name for nuisance in NUISANCES if nuisance.id == key)
+
+
+def _predicted(model: _NearSolution, more: Iterable[Nuisance], group: np.ndarray) -> _Prediction:
+    """Left-out parts of sweeps as the model predicts them, to first order with further influences."""
+    problem = model.problem
+    numbers = [*problem.starting_here(model.numbers), *(n for nuisance in more for n in nuisance.free())]
+    x = np.array([number.start for number in numbers])
+    here = problem.free([number.name for number in numbers]).linear(x)
+    precision = np.array([0.0 if np.isinf(number.spread) else number.spread**-2.0 for number in numbers])
+    away = precision * (x - [number.expected for number in numbers])
+    count, channels = len(group), len(problem.sigma)
+    rows = slice(count * channels)  # the others are measured radii, which belong to no sweep
+    groups = np.tile(group, channels)
+    error = left_out_errors(
+        here.slope[rows],
+        here.data[rows],
+        here.slope.T @ here.slope + np.diag(precision),
+        here.slope.T @ here.data + away,
+        groups,
+    )
+    by_sweep = predicted(error, groups, np.repeat(np.arange(channels), count), channels=channels)
+    gaps = {}
+    for (name, sigma), errors in zip(problem.sigma.items(), error.reshape(channels, count), strict=True):
+        used = np.isfinite(sigma) & np.isfinite(getattr(problem.points, name))
+        if np.any(used):
+            gaps[name] = rms(errors[used] * sigma[used])
+    return _Prediction(by_sweep, gaps)
+
+
+def _refitted(model: _NearSolution, added: Sequence[Nuisance]) -> _NearSolution:
+    """The model with more influences, fitted again from where it is."""
+    numbers = [*model.numbers, *(number for nuisance in added for number in nuisance.free())]
+    return _solved(model._replace(numbers=numbers, chosen=(*model.chosen, *added)))
+
+
+def _without(model: _NearSolution, dropped: Nuisance) -> _NearSolution:
+    """The model without an influence and those that need it, fitted again."""
+    kept = tuple(n for n in model.chosen if n is not dropped and n.after != dropped.id)
+    gone = {number.name: number.start for n in model.chosen if n not in kept for number in n.free()}
+    numbers = [number for number in model.numbers if number.name not in gone]
+    return _solved(_NearSolution(model.problem.with_values(gone), numbers, kept))
+
+
+def _solved(model: _NearSolution) -> _NearSolution:
+    numbers = model.problem.starting_here(model.numbers)
+    found = solve(
+        model.problem.free([number.name for number in numbers]),
+        numbers,
+        max_steps=constants.REFIT_STEPS,
+        tolerance=constants.REFIT_TOLERANCE,
+    )
+    return model._replace(problem=model.problem.with_values(found.values))
+
+
+def _said(config: Any, nuisance: Nuisance) -> str:
+    """The setting of [fit] as it is in the file."""
+    given = getattr(config.fit, nuisance.key)
+    return f"[fit] {nuisance.key} = {str(given).lower() if isinstance(given, bool) else repr(given)}"

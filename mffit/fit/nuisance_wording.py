@@ -1,0 +1,114 @@
+"""Sentences about the influences that a fit models or not, and about the file at one temperature."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+
+import numpy as np
+
+from mffit.fit import constants
+from mffit.fit.agreement import Agreement
+from mffit.fit.files import name_at_temperature
+from mffit.fit.nuisance_choice import Gaps, Verdict
+from mffit.fit.nuisances import TEMPERATURE, error_of
+from mffit.fit.temperature import AtTemperature
+from mffit.fit.with_nuisances import NuisanceFit
+from mffit.quantities import CHANNELS
+from mffit.rounding import ascii_only, number, rounded
+
+SCALED = {
+    "k_T_grip_per_K": "friction",
+    "k_T_stiffness_per_K": "cornering stiffness",
+    "k_T_camber_per_K": "camber stiffness",
+}
+"""What a temperature term scales, in words."""
+
+
+def nuisance_sentences(
+    name: str, found: NuisanceFit, temperature: AtTemperature | None, plain: Mapping[str, Agreement]
+) -> list[str]:
+    """Which file is for whom, what was modelled and why, and what it did to the coefficients, the most important first.
+
+    ``name`` is that of the tyre; ``plain`` the agreement of the plain file with the points, by channel.
+    """
+    out = []
+    if temperature is not None:
+        out += [_files_sentence(name, temperature, plain), _moved_sentence(name, temperature)]
+    for verdict in found.choice.verdicts:
+        if verdict.modelled and verdict.nuisance.key != TEMPERATURE:
+            out.append(_modelled_sentence(verdict, found.full.rig))
+        elif not verdict.modelled and _worth_telling(verdict, found):
+            said = f"The {verdict.nuisance.name} is not modelled: {verdict.reason}"
+            out.append(said + (f" ({_compared(verdict)})." if verdict.beside else "."))
+    return out
+
+
+def _files_sentence(name: str, found: AtTemperature, plain: Mapping[str, Agreement]) -> str:
+    special, (low, high) = name_at_temperature(name), found.T_range
+    terms = " and ".join(f"{SCALED[term]} {_percent(*value)} per K" for term, value in found.terms.items())
+    warm = f"{found.T_ref:g}"
+    return (
+        f"{name}.tir is for simulations that do not know the temperature of the tyre: it leaves {_gaps(_rms(plain))} rms"
+        f"{_of_left_out(found.left_out_plain)}. {special} is for simulations that do: it holds at {warm} degC and leaves "
+        f"{_gaps(_rms(found.channels))}{_of_left_out(found.left_out)} with its temperature terms, which were measured from "
+        f"{low:.0f} to {high:.0f} degC: {terms}. Without them it leaves {_gaps(_rms(found.alone))}, so take it to the "
+        f"temperature of the simulation first, in Python by tyre.at_temperature({high:.0f})."
+    )
+
+
+def _moved_sentence(name: str, found: AtTemperature) -> str:
+    if not found.moved:
+        return f"The coefficients of {name}.tir do not depend on the warming beyond their uncertainty."
+    named = list(found.moved.items())[: constants.NAMED_COEFFICIENTS]
+    changes = ", ".join(
+        f"{name} {rounded(there, u)[0]} instead of {rounded(here, u)[0]} +- {rounded(here, u)[1]}"
+        for name, (there, here, u) in named
+    )
+    more = f" and {len(found.moved) - len(named)} more" if len(found.moved) > len(named) else ""
+    return ascii_only(
+        f"The coefficients of {name}.tir contain the warming along these sweeps: {changes} at {found.T_ref:g} degC{more}. "
+        "Their standard uncertainties include this difference."
+    )
+
+
+def _modelled_sentence(verdict: Verdict, rig: Mapping[str, tuple[float, float]]) -> str:
+    numbers = ", ".join(
+        f"{name} = {' +- '.join(rounded(*rig[name]))} {error_of(name).unit}".removesuffix(" -")
+        for name in verdict.nuisance.numbers
+    )
+    return ascii_only(
+        f"The {verdict.nuisance.name} is modelled, {numbers}: {verdict.reason} ({_compared(verdict)}). The files are without it."
+    )
+
+
+def _worth_telling(verdict: Verdict, found: NuisanceFit) -> bool:
+    """Whether it was tried, or the temperature was measured but could not be used."""
+    T = found.full.problem.points.T
+    moves = bool(np.any(np.isfinite(T))) and float(np.nanmax(T) - np.nanmin(T)) > 0.0
+    return bool(verdict.beside) or (verdict.nuisance.id == TEMPERATURE and moves)
+
+
+def _compared(verdict: Verdict) -> str:
+    return f"{_gaps(verdict.beside)} with it, {_gaps(verdict.without)} without"
+
+
+def _percent(value: float, u: float) -> str:
+    text, spread = rounded(100.0 * value, 100.0 * u)
+    return ascii_only(f"{text} +- {spread} %")
+
+
+def _of_left_out(gaps: Gaps) -> str:
+    return f" ({_gaps(gaps)} of left-out sweeps)" if gaps else ""
+
+
+def _rms(channels: Mapping[str, Agreement]) -> dict[str, float]:
+    return {name: found.rmse for name, found in channels.items() if found.n}
+
+
+def _gaps(gaps: Gaps) -> str:
+    return " and ".join(_each(gaps))
+
+
+def _each(gaps: Gaps) -> Iterator[str]:
+    for name, gap in gaps.items():
+        yield f"{ascii_only(number(gap, digits=3))} {CHANNELS[name].unit}"

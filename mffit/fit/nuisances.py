@@ -1,0 +1,148 @@
+"""Numbers of the tyre's state and of the rig that a fit may free beside the coefficients, in one list."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from mffit.fit import constants
+from mffit.least_squares import FreeNumber
+from mffit.points import Points
+from mffit.rig.histories import distance_km, sense
+from mffit.rig_errors import BY_NAME, OF_RUN, RigError
+
+TEMPERATURE = "temperature"
+"""Key of [fit] with the influences of the tyre's temperature, which a second file states."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Nuisance:
+    """One such influence: the numbers of :mod:`mffit.rig_errors` that it frees, and the data that show it."""
+
+    id: str
+    name: str  #: in words
+    key: str  #: of [fit]: "auto", true, false, or the id
+    numbers: tuple[str, ...]
+    lacking: Callable[[Points], str]  #: why these points cannot show it, in words; empty if they can
+    after: str = ""  #: id of the influence that must be modelled first
+    rival: str = ""  #: id of an influence with nearly the same effect: one of the two is modelled
+
+    def free(self) -> tuple[FreeNumber, ...]:
+        """The numbers with their limits and a prior that does not pull."""
+        return tuple(_number(name) for name in self.numbers)
+
+    def setting(self, config: Any) -> bool | None:
+        """What [fit] demands: True or False; None: whatever predicts better."""
+        given = getattr(config.fit, self.key)
+        if given is False:
+            return False
+        if given == "auto" or self.after:
+            return None
+        return given is True or given == self.id
+
+
+def _number(name: str) -> FreeNumber:
+    error = error_of(name)
+    spread = constants.NUISANCE_SPREAD * error.spread
+    return FreeNumber(
+        name, error.undisturbed, error.lower, error.upper, expected=error.undisturbed, spread=spread
+    )
+
+
+def error_of(name: str) -> RigError:
+    """The record of a number, also of one that holds for a part of the sweeps only."""
+    return BY_NAME[name.partition(OF_RUN)[0]]
+
+
+def _temperatures(points: Points) -> str:
+    known = np.isfinite(points.T)
+    if not np.any(known):
+        return "T_degC was not measured"
+    if not np.all(known):
+        return f"T_degC is missing at {int(np.sum(~known))} of {len(points)} points"
+    moved = float(np.ptp(points.T))
+    least = constants.LEAST_TEMPERATURE_RANGE
+    return "" if moved > least else f"T_degC moves by {moved:.1f} K only, and {least:g} K are needed"
+
+
+def _cambers(points: Points) -> str:
+    tilted = float(np.max(np.abs(points.gamma)))
+    return "" if tilted > constants.ZERO_CAMBER_LIMIT.rad else "there are no sweeps at camber"
+
+
+def _senses(points: Points) -> str:
+    moving, both = sense(points), 0
+    for k in np.unique(points.sweep):
+        rows = points.sweep == k
+        alpha = points.alpha[rows]
+        ways = [alpha[moving[rows] == way] for way in (1.0, -1.0)]
+        # A sweep that is repeated at another camber jumps back once: that is no sweep down.
+        if min(map(len, ways)) > constants.LEAST_SHARE_OF_A_SENSE * len(alpha):
+            common = min(way.max() for way in ways) - max(way.min() for way in ways)
+            both += bool(common > constants.OVERLAP_OF_SENSES * np.ptp(alpha))
+    runs = both if len(np.unique(points.sweep)) > 1 else both * constants.OVERLAPPING_SWEEPS
+    return "" if runs >= constants.OVERLAPPING_SWEEPS else "no sweeps go through the same angles up and down"
+
+
+def _times(points: Points) -> str:
+    known = np.isfinite(points.time)
+    return "" if np.any(known) else "the times within the sweeps (time_s) are not known"
+
+
+def _distances(points: Points) -> str:
+    if not np.all(np.isfinite(points.t)):
+        return "the time of every point (t_s) is not known"
+    return "" if np.ptp(distance_km(points)) > 0.0 else "the wheel does not roll between the points"
+
+
+NUISANCES = (
+    Nuisance(
+        id=TEMPERATURE,
+        name="tyre temperature",
+        key=TEMPERATURE,
+        numbers=("k_T_grip_per_K", "k_T_stiffness_per_K"),
+        lacking=_temperatures,
+    ),
+    Nuisance(
+        id="temperature-camber",
+        name="camber stiffness over tyre temperature",
+        key=TEMPERATURE,
+        numbers=("k_T_camber_per_K",),
+        lacking=lambda points: _temperatures(points) or _cambers(points),
+        after=TEMPERATURE,
+    ),
+    Nuisance(
+        id="hysteresis",
+        name="hysteresis of sideslip sweeps",
+        key="sense",
+        numbers=("hysteresis_deg",),
+        lacking=_senses,
+        rival="lag",
+    ),
+    Nuisance(
+        id="lag",
+        name="lag of sideslip sweeps over the rolled distance",
+        key="sense",
+        numbers=("relaxation_m",),
+        lacking=lambda points: _senses(points) or _times(points),
+        rival="hysteresis",
+    ),
+    Nuisance(
+        id="warm-up",
+        name="warm-up at the start",
+        key="warm_up",
+        numbers=("warm_up",),
+        lacking=_distances,
+    ),
+    Nuisance(
+        id="wear",
+        name="wear over the distance rolled",
+        key="wear",
+        numbers=("wear_per_km",),
+        lacking=_distances,
+    ),
+)
+"""In the order in which a sentence names them."""

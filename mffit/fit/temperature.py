@@ -1,0 +1,84 @@
+"""The file at one temperature, and how it compares with the plain file."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from mffit.fit import agreement, constants
+from mffit.fit.agreement import Agreement
+from mffit.fit.coefficients import Coefficient
+from mffit.fit.files import FileFigures
+from mffit.fit.nuisance_choice import Gaps
+from mffit.fit.posterior import Posterior
+from mffit.fit.with_nuisances import NuisanceFit
+from mffit.points import Points
+from mffit.rig import Simulation
+from tir.temperature import SCALED_BY
+
+
+@dataclass(frozen=True, slots=True)
+class AtTemperature:
+    """The model with temperature terms, and its file."""
+
+    file: FileFigures
+    T_ref: float  #: at which the file holds [degC]
+    T_range: tuple[float, float]  #: of the points [degC]
+    terms: Mapping[str, tuple[float, float]]  #: temperature term -> (value, standard error) [1/K]
+    rig: Mapping[
+        str, tuple[float, float]
+    ]  #: rig number -> (value, standard error), temperature terms included
+    coefficients: Mapping[str, Coefficient]
+    posterior: Posterior
+    simulation: Simulation  #: the tyre on the rig as fitted, at its temperatures
+    channels: Mapping[str, Agreement]  #: with its terms
+    alone: Mapping[str, Agreement]  #: the same without its terms
+    left_out: Gaps  #: by channel, rms error of left-out sweeps with the terms
+    left_out_plain: Gaps  #: the same of the plain file
+    moved: Mapping[str, tuple[float, float, float]]
+    """Coefficient -> (in the plain file, here, standard error here), most moved first; only those that moved beyond noise."""
+
+
+def at_temperature(
+    found: NuisanceFit, points: Points, file: FileFigures, coefficients: Mapping[str, Coefficient]
+) -> AtTemperature:
+    """The record of a fit that models the temperature."""
+    full = found.full
+    terms = {name: value for name, value in full.rig.items() if name in SCALED_BY}
+    alone = full.simulation.with_numbers(dict.fromkeys(terms, 0.0))
+    verdict = next(v for v in found.choice.verdicts if v.modelled and set(v.nuisance.numbers) & set(terms))
+    T_ref = full.simulation.faults["T_ref_degC"]
+    return AtTemperature(
+        file=file,
+        T_ref=T_ref,
+        T_range=(float(np.nanmin(points.T)), float(np.nanmax(points.T))),
+        terms=terms,
+        rig={**full.rig, "T_ref_degC": (T_ref, 0.0)},
+        coefficients=coefficients,
+        posterior=full.posterior,
+        simulation=full.simulation,
+        channels=agreement.with_points(full.simulation.readings(points), points),
+        alone=agreement.with_points(alone.readings(points), points),
+        left_out=verdict.beside,
+        left_out_plain=verdict.without,
+        moved=_moved(found),
+    )
+
+
+def _moved(found: NuisanceFit) -> dict[str, tuple[float, float, float]]:
+    """Coefficients that the temperature terms moved beyond their standard errors."""
+    plain, full = found.plain, found.full
+    errors = full.posterior.stderr
+    moved = {
+        name: (plain.values[name], value, errors[name])
+        for name, value in full.values.items()
+        if name in plain.values and name not in full.regularised
+    }
+    sizes: dict[str, float] = {
+        name: abs(here - there) / u if u else 0.0 for name, (there, here, u) in moved.items()
+    }
+    named: Any = sorted(sizes, key=lambda name: -sizes[name])
+    return {name: moved[name] for name in named if sizes[name] > constants.MOVED_COEFFICIENT}

@@ -1,0 +1,113 @@
+"""The fit of the plain file, and the fit with the influences of :mod:`mffit.fit.nuisances` that are modelled."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from mffit.fit.fitted import Fitted
+from mffit.fit.nuisance_choice import NuisanceChoice, at_reference, choose
+from mffit.fit.nuisances import TEMPERATURE, Nuisance
+from mffit.fit.plan import FitPlan
+from mffit.fit.polish import polish
+from mffit.fit.problem import FitProblem
+from mffit.fit.staged import fit_staged, restart_worthwhile
+from mffit.progress import Progress, silent
+from mffit.rig import Simulation
+
+
+@dataclass(frozen=True, slots=True)
+class NuisanceFit:
+    """Two fits of the same points; they are one if no temperature is modelled."""
+
+    plain: Fitted  #: without temperature as an input: its coefficients take up the warming
+    full: Fitted  #: with every influence that is modelled
+    choice: NuisanceChoice
+    refit: Callable[[np.ndarray], Fitted]  #: the full fit to some of the points (rows)
+
+    @property
+    def at_temperature(self) -> bool:
+        """Whether the full fit knows the temperature."""
+        return self.full is not self.plain
+
+
+def fit_with_nuisances(
+    config: Any,
+    problem: FitProblem,
+    start: Mapping[str, float],
+    plan: FitPlan,
+    progress: Progress,
+    before_restarts: Callable[[NuisanceFit], object],
+) -> NuisanceFit:
+    """The staged fit, then the influences that it should model, then the joint polish with these.
+
+    Alternative starting values are tried only if these influences do not explain why the first fit ends far above the noise.
+    ``before_restarts`` is called before they are tried; it may refuse the data.
+    """
+
+    def extended(fitted: Fitted) -> NuisanceFit:
+        choice = choose(config, fitted)
+
+        def refit(rows: np.ndarray) -> Fitted:
+            part = problem.select(rows)
+            return _polished(
+                config, part, plan, choice.modelled, fit_staged(part, start, plan, silent, restarts=False)
+            )
+
+        if choice.modelled:
+            progress(f"fitting again with {', '.join(nuisance.name for nuisance in choice.modelled)}")
+        full = _polished(config, problem, plan, choice.modelled, fitted, choice.near)
+        others = [nuisance for nuisance in choice.modelled if nuisance.key != TEMPERATURE]
+        if len(others) == len(choice.modelled):
+            return NuisanceFit(full, full, choice, refit)
+        plain = _polished(config, problem, plan, others, fitted)
+        return NuisanceFit(_doubted(plain, full), full, choice, refit)
+
+    first: list[NuisanceFit] = []
+
+    def explained(fitted: Fitted) -> bool:
+        found = extended(fitted)
+        if found.choice.modelled and not restart_worthwhile(found.full, plan):
+            first.append(found)
+            return True
+        before_restarts(found)
+        return False
+
+    fitted = fit_staged(problem, start, plan, progress, explained=explained)
+    return first[0] if first else extended(fitted)
+
+
+def _polished(
+    config: Any,
+    problem: FitProblem,
+    plan: FitPlan,
+    added: Sequence[Nuisance],
+    fitted: Fitted,
+    near: Simulation | None = None,
+) -> Fitted:
+    """The polish with further numbers, from the end of a fit; that fit itself if there are none.
+
+    ``near`` is a better place to start from, with these numbers.
+    """
+    if not added:
+        return fitted
+    numbers = tuple(number for nuisance in added for number in nuisance.free())
+    here = at_reference(config, replace(problem, simulation=near or fitted.simulation))
+    plan = replace(plan, rig=(*plan.rig, *numbers))
+    found = polish(here if plan.noise_stated else here.with_noise_of_misfit(), plan)
+    return replace(found, stages=fitted.stages, attempts=fitted.attempts)
+
+
+def _doubted(plain: Fitted, full: Fitted) -> Fitted:
+    """The plain fit, its uncertainty with the shift of its coefficients from those at one temperature.
+
+    The shift of all coefficients together is one more error of known size.
+    """
+    posterior = plain.posterior
+    shift = np.array(
+        [plain.values[name] - full.values[name] if name in full.values else 0.0 for name in posterior.names]
+    )
+    return replace(plain, posterior=posterior.shifted(shift))

@@ -1,0 +1,78 @@
+"""Prediction of left-out groups of points to first order, from one linearised fit; and the rule that compares predictions."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.special import ndtri
+
+from mffit import constants
+
+
+@dataclass(frozen=True, slots=True)
+class Predicted:
+    """Misfit of every group of points when it is predicted from all others."""
+
+    chi2: np.ndarray  #: (s, c) by group and channel
+
+    @property
+    def total(self) -> float:
+        """Sum over groups and channels."""
+        return float(np.sum(self.chi2))
+
+    def falls(self, other: Predicted) -> float:
+        """By how many standard errors over the groups ``other`` predicts better."""
+        return _z(np.sum(self.chi2 - other.chi2, axis=1))
+
+    def raised(self, other: Predicted) -> bool:
+        """Whether ``other`` predicts one of the channels worse, beyond chance."""
+        return any(_z(column) < -constants.WORSE_PREDICTION for column in (self.chi2 - other.chi2).T)
+
+
+def left_out_errors(
+    slopes: np.ndarray,
+    residual: np.ndarray,
+    information: np.ndarray,
+    gradient: np.ndarray,
+    group: np.ndarray,
+) -> np.ndarray:
+    """Errors (m,) of the points when each group is predicted from all others, all numbers estimated again.
+
+    Parameters
+    ----------
+    slopes : (m, k) derivatives of the residuals by the numbers
+    residual : (m,) model less measured in units of the noise
+    information : (k, k) of data and priors
+    gradient : (k,) half the derivative of the sum of squares of data and priors; zero at its minimum
+    group : (m,) number of the group of each row, from 0
+    """
+    error = np.empty_like(residual)
+    for k in range(int(group.max(initial=-1)) + 1):
+        rows = np.flatnonzero(group == k)
+        out, r = slopes[rows], residual[rows]
+        error[rows] = r - out @ np.linalg.solve(information - out.T @ out, gradient - out.T @ r)
+    return error
+
+
+def predicted(error: np.ndarray, group: np.ndarray, channel: np.ndarray, *, channels: int = 2) -> Predicted:
+    """The misfit of groups from the errors (m,) of their points; ``channel`` (m,) counts the channels from 0."""
+    count = int(group.max(initial=-1)) + 1
+    place = channels * group + channel
+    return Predicted(np.bincount(place, error**2, minlength=channels * count).reshape(count, channels))
+
+
+def needed_fall(candidates: int) -> float:
+    """Standard errors by which a prediction must fall if the best of several candidates is taken."""
+    return float(-ndtri(constants.PREDICTION_FALSE_ALARM / max(candidates, 1)))
+
+
+def improves(before: Predicted, after: Predicted, *, least: float, needed: float) -> bool:
+    """Whether ``after`` predicts left-out groups better: by more than ``least``, beyond chance, and no channel worse."""
+    gain = float(np.sum(before.chi2 - after.chi2))
+    return bool(gain > least and before.falls(after) > needed and not before.raised(after))
+
+
+def _z(change: np.ndarray) -> float:
+    error = float(np.std(change, ddof=1)) / np.sqrt(len(change))
+    return float(np.mean(change)) / error if error > 0.0 else 0.0

@@ -1,0 +1,274 @@
+"""Temperature and sense as numbers of the fit: found where they are, left out with a reason where they are not."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import small_rigs
+from flat_belt import RATE, SPEED, recording, write_mat
+
+import mffit
+import tir
+from mffit import config as configuration
+from mffit import fit as fitting
+from mffit.errors import InputError
+from mffit.fit.confounding import confoundings
+from mffit.fit.nuisance_choice import choose
+from mffit.fit.nuisances import NUISANCES
+from mffit.pipeline.measuring import measure
+from mffit.points import make_points
+
+TERMS = {"k_T_grip_per_K": -0.006, "k_T_stiffness_per_K": -0.003, "k_T_camber_per_K": -0.005}
+COLD, WARM = 25.0, 50.0
+
+
+def with_setting(result, **keys):
+    """The configuration of a build with other keys of [fit]."""
+    config = configuration.load(result.config)
+    changed = config.model_copy(update={"fit": config.fit.model_copy(update=keys)})
+    changed._path, changed._lines = config.path, config._lines
+    return changed
+
+
+def verdict(choice, key):
+    return next(row for row in choice.verdicts if row.nuisance.id == key)
+
+
+@pytest.fixture(scope="module")
+def warmed(tmp_path_factory):
+    """A campaign on a flat track whose tyre warms from 25 to 50 degC; its virtual rig has formulae of its own."""
+    folder = tmp_path_factory.mktemp("warmed")
+    content = small_rigs.flat(faults=TERMS)
+    content["sweep"] = [
+        {**sweep, "file": f"{pressure}_{sweep['file']}", "p_kPa": pressure}
+        for pressure in (250, 200, 300)
+        for sweep in content["sweep"]
+        if "forward" not in sweep["file"] and ("camber" not in sweep["file"] or pressure == 250)
+    ]
+    ends = np.linspace(COLD, WARM, len(content["sweep"]) + 1).tolist()
+    for sweep, first, last in zip(content["sweep"], ends[:-1], ends[1:], strict=True):
+        sweep["T_degC"] = [first, last]
+    small_rigs.simulated(content, folder)
+    return mffit.build(folder / "tyre.toml", folder / "out"), folder / "out"
+
+
+def test_a_tyre_that_warms_up_gets_its_temperature_terms(warmed):
+    result, _ = warmed
+    found = result.fit.temperature
+    assert found is not None
+    assert found.T_ref == pytest.approx(0.5 * (COLD + WARM), abs=1.5)
+    for name, at_cold in TERMS.items():
+        truth = at_cold / (1.0 + at_cold * (found.T_ref - 25.0))  # the virtual rig's reference is 25 degC
+        value, u = found.terms[name]
+        assert abs(value - truth) < 3.5 * u
+        assert abs(value / truth - 1.0) < 0.25
+    noise = np.sqrt(np.nanmean(result.points.u_Fy**2))
+    assert found.channels["Fy"].rmse < 1.1 * noise < 1.5 * noise < result.fit.channels["Fy"].rmse
+    assert not result.fit.distrusted  # the cause is modelled
+
+
+def test_the_file_at_temperature_is_the_tyre_at_any_temperature(warmed):
+    _, folder = warmed
+    file = tir.read(folder / "small-at-temperature.tir")
+    true = small_rigs.truth()
+    alpha = np.radians(np.linspace(-7.0, 7.0, 29))
+    for T in (COLD, WARM):
+        scaled = true.replace(
+            LMUY=1.0 + TERMS["k_T_grip_per_K"] * (T - 25.0),
+            LKY=1.0 + TERMS["k_T_stiffness_per_K"] * (T - 25.0),
+        )
+        aim = scaled(1400.0, alpha, p=230e3).Fy
+        assert np.max(np.abs(file.at_temperature(T)(1400.0, alpha, p=230e3).Fy - aim)) < 12.0
+        assert np.max(np.abs(tir.read(folder / "small.tir")(1400.0, alpha, p=230e3).Fy - aim)) > 40.0
+
+
+def test_a_comparison_with_data_takes_the_file_to_their_temperatures(warmed):
+    result, folder = warmed
+    found = mffit.compare(folder / "small-at-temperature.tir", folder.parent / "tyre.toml")
+    gaps = [row.rms for row in found.sweeps if row.channel == "Fy"]
+    assert np.sqrt(np.mean(np.square(gaps))) < 1.3 * np.sqrt(np.nanmean(result.points.u_Fy**2))
+    assert any("holds at" in note for note in found.notes)
+
+
+def test_both_files_and_the_terms_are_where_a_program_looks(warmed):
+    result, folder = warmed
+    content = json.loads((folder / "result.json").read_text())
+    assert content["files"]["temperature"] == "small-at-temperature.tir"
+    assert content["tir"] == "small.tir"
+    for name, (value, u) in result.fit.temperature.terms.items():
+        assert content["fit"]["rig"][name] == {"value": value, "stderr": u, "unit": "1/K"}
+    assert content["fit"]["rig"]["T_ref_degC"]["value"] == result.fit.temperature.T_ref
+    assert content["fit"]["temperature"]["T_min_degC"] == COLD
+    assert content["fit"]["temperature"]["T_max_degC"] == WARM
+    modelled = {row["id"]: row["modelled"] for row in content["fit"]["modelled"]}
+    assert modelled == {
+        "temperature": True, "temperature-camber": True, "hysteresis": False, "lag": False, "warm-up": False, "wear": False,
+    }  # fmt: skip
+    with pytest.raises(tir.TirError, match="no temperature terms"):
+        tir.read(folder / "small.tir").at_temperature(30.0)
+
+
+def test_the_first_sentence_says_which_file_is_for_whom_and_what_each_leaves(warmed):
+    result, folder = warmed
+    first = result.fit.explanations[0]
+    assert first.startswith("small.tir is for simulations that do not know the temperature of the tyre")
+    assert "small-at-temperature.tir" in first
+    assert f"{result.fit.channels['Fy'].rmse:.3g} N" in first
+    assert f"{result.fit.temperature.channels['Fy'].rmse:.3g} N" in first
+    assert "small-at-temperature.tir" in (folder / "report.html").read_text(encoding="utf-8")
+
+
+def test_the_plain_coefficients_are_uncertain_by_the_warming_that_they_contain(warmed):
+    """Pressure was changed while the tyre was warm: PPY3 and PPY4 of the plain file contain some of it."""
+    fit = warmed[0].fit
+    true = small_rigs.truth()
+    assert fit.temperature.moved
+    for name, (there, here, u) in fit.temperature.moved.items():
+        assert fit.coefficients[name].value == there
+        assert fit.coefficients[name].stderr > 0.99 * abs(there - here) > u
+    for name in ("PPY4", "PDY2"):
+        for row in (fit.temperature.coefficients[name], fit.coefficients[name]):
+            assert abs(row.value - true[name]) < 3.5 * row.stderr
+
+
+@pytest.mark.parametrize(
+    ("T", "keys", "reason"),
+    [
+        (None, {"temperature": False}, "[fit] temperature = false"),
+        (lambda T: 40.0 + 0.1 * (T - 40.0), {}, "T_degC moves by 2.5 K only, and 3 K are needed"),
+        (lambda T: np.full_like(T, np.nan), {}, "T_degC was not measured"),
+        (lambda T: np.where(np.arange(len(T)) < 7, np.nan, T), {}, "T_degC is missing at 7 of"),
+        (
+            lambda T: np.random.default_rng(1).permutation(T),
+            {},
+            "left-out sweeps are not predicted better with it",
+        ),
+    ],
+    ids=["off", "constant", "unknown", "partly", "shuffled"],
+)
+def test_temperature_is_not_modelled_and_the_reason_is_given(warmed, T, keys, reason):
+    result, _ = warmed
+    search, points = result.fit.search, result.points
+    if T is not None:
+        points = points.replace(T=T(points.T))
+    search = replace(search, problem=replace(search.problem, points=points))
+    found = verdict(choose(with_setting(result, **keys), search), "temperature")
+    assert not found.modelled
+    assert found.reason.startswith(reason)
+
+
+def test_a_plan_in_which_temperature_runs_along_with_pressure_is_criticised(warmed):
+    """The pressures were run one after the other while the tyre warmed up."""
+    result, folder = warmed
+    (row,) = result.fit.confounded
+    assert (row.setting, row.coefficient[:3]) == ("pressure", "PPY")
+    assert 0.85 < row.correlation < 1.0
+    assert row.growth > 1.5
+    assert any("runs along with the pressure" in sentence for sentence in result.warnings)
+    assert json.loads((folder / "result.json").read_text())["fit"]["confounded"][0]["growth"] == row.growth
+
+
+def test_the_growth_is_that_over_known_terms(warmed):
+    """By the conditional variance of the joint posterior."""
+    row, posterior = warmed[0].fit.confounded[0], warmed[0].fit.temperature.posterior
+    C = posterior.covariance
+    i = posterior.names.index(row.coefficient)
+    k = [posterior.names.index(name) for name in ("k_T_grip_per_K", "k_T_stiffness_per_K")]
+    known = C[i, i] - C[i, k] @ np.linalg.solve(C[np.ix_(k, k)], C[k, i])
+    assert row.growth == pytest.approx(np.sqrt(C[i, i] / known), rel=0.03)
+
+
+def test_a_mixed_order_of_the_runs_is_not_criticised(warmed):
+    search = warmed[0].fit.search
+    points = search.problem.points
+    mixed = points.replace(T=np.random.default_rng(2).permutation(points.T))
+    assert confoundings(replace(search, problem=replace(search.problem, points=mixed))) == ()
+
+
+def test_temperature_that_is_demanded_but_not_measured_is_refused(warmed):
+    result, _ = warmed
+    search = result.fit.search
+    search = replace(search, problem=replace(search.problem, points=search.problem.points.replace(T=np.nan)))
+    with pytest.raises(
+        InputError, match="asks for the tyre temperature, but T_degC was not measured"
+    ) as refused:
+        choose(with_setting(result, temperature=True), search)
+    assert refused.value.key == "fit.temperature"
+
+
+def test_temperature_that_is_demanded_is_modelled(warmed):
+    result, _ = warmed
+    found = verdict(choose(with_setting(result, temperature=True), result.fit.search), "temperature")
+    assert found.modelled
+    assert found.reason == "[fit] temperature = true"
+
+
+def test_a_hysteresis_of_moving_sweeps_is_found_and_left_out_of_the_file(tmp_path):
+    content = small_rigs.flat(faults={"hysteresis_deg": 0.25})
+    there_and_back = [*small_rigs.SLIP, *(x - 0.01 for x in small_rigs.SLIP[::-1])]
+    content["sweep"] = [
+        {**sweep, "alpha_deg": there_and_back} if "sideslip" in sweep["file"] else sweep
+        for sweep in content["sweep"]
+        if "forward" not in sweep["file"]
+    ] + [
+        {"file": f"tilted_{gamma}.csv", "load_N": 1400, "alpha_deg": there_and_back, "gamma_deg": [gamma]}
+        for gamma in (-20, -10, 10, 20)
+    ]
+    result = small_rigs.built(content, tmp_path)
+    value, u = result.fit.rig["hysteresis_deg"]
+    assert value == pytest.approx(0.25, abs=max(4.0 * u, 0.02))
+    assert verdict(result.fit.choice, "hysteresis").modelled
+    assert any("hysteresis of sideslip sweeps is modelled" in line for line in result.fit.explanations)
+    assert result.fit.temperature is None
+    alpha = np.radians(np.linspace(-6.0, 6.0, 25))
+    apart = result.tyre(1400.0, alpha).Fy - small_rigs.truth()(1400.0, alpha).Fy
+    assert np.max(np.abs(apart)) < 12.0
+
+
+def test_a_sweep_repeated_at_another_camber_shows_no_sense():
+    nuisance = next(n for n in NUISANCES if n.id == "hysteresis")
+    up = np.radians(np.linspace(-8.0, 8.0, 17))
+
+    def said(alpha):
+        points = make_points(
+            np.tile(alpha, 2), 0.0, 1400.0, p=250e3, V=6.0, phi_t=0.0, sweep=np.repeat([0, 1], len(alpha))
+        )
+        return nuisance.lacking(points)
+
+    assert "up and down" in said(np.tile(up, 3))
+    assert said(np.concatenate([up, up[::-1]])) == ""
+
+
+def test_a_lag_of_recorded_sweeps_is_told_from_a_hysteresis(tmp_path):
+    """The recording's lag is that of a filter of its own along the rolled distance, and its rate of sideslip changes sign."""
+    write_mat(recording(sigma=0.5, seed=4, cambers=(0.0, 3.0)), tmp_path / "run.mat")
+    columns = {"alpha_deg": "SA", "gamma_deg": "IA", "Fz_N": "FZ", "Fy_N": "FY", "Mz_Nm": "MZ", "p_kPa": "P"}
+    config = configuration.load(
+        {
+            "tyre": {"name": "belt", "unloaded_radius": 0.2057, "nominal_load": 1500, "nominal_pressure": 90},
+            "rig": {"type": "flat-track", "axes": "calspan"},
+            "columns": columns | {"V_mps": "V", "time_s": "ET"},
+            "sweep": [{"file": "run.mat"}],
+        },
+        folder=tmp_path,
+    )
+    points = mffit.points.load(config)[0]
+    as_read = points.replace(alpha=points.alpha + np.radians(points.table["alpha_lag_deg"].to_numpy()))
+    found = fitting.fit(config, as_read, *measure(config, as_read, None))
+    assert verdict(found.choice, "lag").modelled
+    assert not verdict(found.choice, "hysteresis").modelled
+    value, u = found.rig["relaxation_m"]
+    delayed = SPEED / RATE / np.expm1(SPEED / RATE / 0.5)  # the mean delay of that filter, which is sampled
+    assert value == pytest.approx(delayed, abs=max(3.0 * u, 0.03))
+    again = fitting.fit(config, points, *measure(config, points, None))  # taken off before the fit
+    assert not verdict(again.choice, "lag").modelled
+
+
+def test_every_influence_has_words_and_numbers_of_its_own():
+    assert len({nuisance.id for nuisance in NUISANCES}) == len(NUISANCES)
+    freed = [name for nuisance in NUISANCES for name in nuisance.numbers]
+    assert len(set(freed)) == len(freed)
+    assert {nuisance.after for nuisance in NUISANCES} - {""} <= {nuisance.id for nuisance in NUISANCES}

@@ -1,0 +1,87 @@
+"""The tyre at another temperature: which factors move, that a second change counts from the first, and what is refused."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import tir
+
+FRONT = Path(__file__).parent / "vectors" / "moto_front.tir"
+TERMS = {
+    "rig.k_T_grip_per_K": tir.Quantity(-0.005, 0.0002, "1/K"),
+    "rig.k_T_stiffness_per_K": tir.Quantity(-0.002, 0.0003, "1/K"),
+    "rig.T_ref_degC": tir.Quantity(60.0, 0.0, "degC"),
+    "T_min_degC": tir.Quantity(45.0, 0.0, "degC"),
+    "T_max_degC": tir.Quantity(75.0, 0.0, "degC"),
+}
+
+
+@pytest.fixture
+def tyre(tmp_path) -> tir.Tyre:
+    """A file with terms, as it is read back."""
+    tir.read(FRONT).annotate(measured=TERMS).write(tmp_path / "front-at-temperature.tir")
+    return tir.read(tmp_path / "front-at-temperature.tir")
+
+
+def test_friction_and_cornering_stiffness_change_by_their_terms(tyre):
+    warm = tyre.at_temperature(70.0)
+    assert warm["LMUY"] == pytest.approx(0.95 * tyre["LMUY"])
+    assert warm["LKY"] == pytest.approx(0.98 * tyre["LKY"])
+    assert warm["LKYC"] == tyre["LKYC"]  # without a term
+    assert warm.state(1500.0).K_ya == pytest.approx(0.98 * tyre.state(1500.0).K_ya)
+
+
+def test_the_reference_temperature_changes_nothing(tyre):
+    assert tyre.at_temperature(60.0) == tyre
+
+
+def test_a_second_change_of_temperature_counts_from_the_first(tyre):
+    twice, once = tyre.at_temperature(72.0).at_temperature(50.0), tyre.at_temperature(50.0)
+    for name in ("LMUY", "LKY"):
+        assert twice[name] == pytest.approx(once[name], rel=1e-12)
+    term = twice.measured["rig.k_T_grip_per_K"]
+    assert term.value == pytest.approx(once.measured["rig.k_T_grip_per_K"].value, rel=1e-12)
+
+
+def test_the_term_of_a_warmer_file_is_uncertain_by_what_the_term_moves_it(tyre):
+    """By differences: k' = k / (1 + k dT)."""
+    k, u, _ = TERMS["rig.k_T_grip_per_K"]
+    ends = [(k + s) / (1.0 + (k + s) * 12.0) for s in (1e-7, -1e-7)]
+    assert tyre.at_temperature(72.0).measured["rig.k_T_grip_per_K"].u == pytest.approx(
+        u * (ends[0] - ends[1]) / 2e-7, rel=1e-5
+    )
+
+
+def test_a_warm_tyre_is_written_and_read(tyre, tmp_path):
+    warm = tyre.at_temperature(70.0)
+    warm.write(tmp_path / "warm.tir")
+    again = tir.read(tmp_path / "warm.tir")
+    assert again == warm
+    assert again.at_temperature(60.0)["LMUY"] == pytest.approx(tyre["LMUY"])
+    np.testing.assert_allclose(again(1500.0, alpha=0.1).Fy, warm(1500.0, alpha=0.1).Fy)
+
+
+@pytest.mark.parametrize(("T_degC", "warned"), [(45.0, False), (75.0, False), (44.0, True), (90.0, True)])
+def test_a_temperature_outside_the_measured_range_is_said(tyre, T_degC, warned):
+    new = [problem for problem in tyre.at_temperature(T_degC).problems if problem not in tyre.problems]
+    assert [("outside 45 to 75 degC" in problem.sentence) for problem in new] == [True] * warned
+
+
+def test_a_file_without_terms_is_refused_with_its_name():
+    with pytest.raises(tir.TirError, match=r"moto_front\.tir: the file has no temperature terms"):
+        tir.read(FRONT).at_temperature(70.0)
+
+
+def test_terms_without_their_reference_are_none():
+    """A diagnosis may state a term beside a model that holds at another temperature."""
+    stated = {name: q for name, q in TERMS.items() if name != "rig.T_ref_degC"}
+    with pytest.raises(tir.TirError, match="no temperature terms"):
+        tir.read(FRONT).annotate(measured=stated).at_temperature(70.0)
+
+
+def test_a_temperature_that_leaves_no_friction_is_refused(tyre):
+    with pytest.raises(tir.TirError, match="at 300 degC"):
+        tyre.at_temperature(300.0)
