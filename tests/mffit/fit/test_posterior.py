@@ -183,7 +183,10 @@ def test_a_valley_that_only_widens_is_followed_too():
                 fading = np.exp(-slope * max(x, 0.0) / end)
                 data = np.array([end * (1.0 - fading) if x > 0.0 else slope * x])
                 return Linear(
-                    data, np.array([[slope * fading]])[:, : len(names)], np.zeros(0), np.zeros((0, len(names)))
+                    data,
+                    np.array([[slope * fading]])[:, : len(names)],
+                    np.zeros(0),
+                    np.zeros((0, len(names))),
                 )
 
             return LeastSquaresProblem(lambda at: (linear(at).data, np.zeros(0)), linear)
