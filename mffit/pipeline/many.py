@@ -174,6 +174,7 @@ def is_current(config: Config, out: Path, *, ensemble: int = 0) -> bool:
             and (out / "resolved.toml").read_bytes() == resolved_text(config, out)
             and tyre.provenance.get(PROGRAM) == f"mffit {mffit.__version__}"
             and fitted_to(tyre, config)
+            and "trusted" in result
         )
     except (OSError, ValueError, LookupError, TypeError, AttributeError, TirError):
         return False
