@@ -176,6 +176,7 @@ def is_current(config: Config, out: Path, *, ensemble: int = 0) -> bool:
             and tyre.provenance.get(PROGRAM) == f"mffit {mffit.__version__}"
             and tyre.provenance.get(METHOD) == str(made.METHOD)
             and fitted_to(tyre, config)
+            and "trusted" in result
         )
     except (OSError, ValueError, LookupError, TypeError, AttributeError, TirError):
         return False

@@ -23,14 +23,14 @@ ZERO = Guide(axis="y", at=0.0, look=Look(colour=style.FAINT, line="-", width=0.8
 
 
 def residual_means(found: Structure) -> Sheet:
-    """A panel per channel and condition, the channels in groups of rows."""
-    groups = [
-        [_panel(c, c in found.found) for c in found.comparisons if c.channel == name and c.bins]
-        for name in CHANNELS
-    ]
-    sides = sorted({b.side for c in found.comparisons for b in c.bins})
+    """A panel per channel and condition, the least likely first; of random residuals only one row per channel."""
+    columns = int(constants.PANELS_PER_ROW_OF_MEANS)
+    most = None if found.found else columns
+    groups = [[c for c in found.comparisons if c.channel == name and c.bins][:most] for name in CHANNELS]
+    sides = sorted({b.side for group in groups for c in group for b in c.bins})
+    panels = [[_panel(c, c in found.found) for c in group] for group in groups if group]
     return Sheet(
-        rows=in_rows(*[g for g in groups if g], columns=constants.PANELS_PER_ROW_OF_MEANS),
+        rows=in_rows(*panels, columns=columns),
         height=1.2,
         key={WORDS[side]: SIDES[side] for side in sides},
     )

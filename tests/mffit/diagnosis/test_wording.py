@@ -135,6 +135,7 @@ def test_every_note_becomes_a_sentence(note, words):
 def test_the_file_keeps_its_keys(camber):
     content = as_json.diagnosis(replace(camber, notes=(OneSweep(),)))
     assert list(content) == [
+        "trusted", "reasons",
         "headline", "gap_before", "gap_after", "validation", "where", "effects", "alternatives", "limits", "unexplained",
         "unexplained_where", "noise_floor", "outliers", "coefficients", "model_after", "notes",
     ]  # fmt: skip
