@@ -90,6 +90,7 @@ def _remedy(effect: Effect) -> list[str]:
 def _row(free: Free) -> str:
     unit, meaning = _described(free.name)
     meaning += ", one of them for every run" if free.per_run else ""
+    meaning += ", one of them for every set-up of the rig, if there are several" if free.per_setup else ""
     if free.name == "turn_slip":
         return f"| `turn_slip` | {unit} | {meaning} | off to on | – | – |"
     scale = " × its value" if free.relative else ""

@@ -19,6 +19,9 @@ prior. Only a diagnosis searches for the others. The limits hold for fits and fo
 """
 
 
+OF_SETUP = "; every [set-up](configuration.md#set-ups-of-the-rig) has its own"
+
+
 def page() -> str:
     """The page in Markdown: a table per place in the chain."""
     lines = [INTRODUCTION]
@@ -51,7 +54,7 @@ def _row(error: RigError) -> str:
         )
     effects = ", ".join(f"[{seen.name}](effects/{seen.id}.md)" for seen in error.seen_as) or "–"
     limits = f"{_bound(error.lower)} to {_bound(error.upper)}"
-    meaning = error.meaning.replace("|Fy|", r"\|Fy\|")
+    meaning = error.meaning.replace("|Fy|", r"\|Fy\|") + (OF_SETUP if error.of_setup else "")
     return f"| `{error.name}` | {error.unit} | {meaning} | {error.spread:g}{scale} | {limits} | {declared} | {effects} |"
 
 
