@@ -241,6 +241,18 @@ def test_the_axis_is_called_misaligned_only_where_ply_steer_cannot_explain_the_s
         assert row.misalignment.u == pytest.approx(axis * tyre_part / math.hypot(axis, tyre_part), rel=0.02)
 
 
+@pytest.mark.parametrize("alpha_0", [0.5, -0.5])
+def test_the_cornering_stiffness_is_that_at_true_zero(alpha_0):
+    """Turn slip shifts the curve, so its slope changes at zero: 0.5 deg of misalignment would make 3500 N/rad here."""
+    tyre = Plain(alpha_0=alpha_0 * DEGREE)
+    points = tyre.campaign()
+    true = np.where(points.gamma == 0.0, points.alpha + tyre.alpha_0, 0.0)
+    bent = points.replace(Fy=points.Fy + points.direction * 2e5 * true**2)
+    found = measured(tyre, points=bent, u_slip_alignment_N=25.0).C_alpha
+    assert found.value == pytest.approx(-12.0 * 1500.0, abs=700.0)
+    assert abs(found.value + 12.0 * 1500.0) < 2.0 * found.u
+
+
 def test_the_budget_is_one_of_jcgm_100():
     """Each row is |sensitivity| u; their root sum of squares is u, and U = k u with Student's t for 95 %."""
     row = measured(Plain(), u_loadcell_offset_N=10.0, u_camber_alignment_deg=0.5).nominal
