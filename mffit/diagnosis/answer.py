@@ -17,11 +17,12 @@ from mffit.diagnosis.limits import limits
 from mffit.diagnosis.noise import Noise
 from mffit.diagnosis.notes import HardlyThisTyre, Note
 from mffit.diagnosis.problem import DiagnosisProblem
+from mffit.diagnosis.repair import Repair
 from mffit.diagnosis.result import AcceptedEffect, Diagnosis
 from mffit.diagnosis.selection import ForwardStep
 from mffit.diagnosis.tails import outlying
 from mffit.diagnosis.ties import separation
-from mffit.diagnosis.validation import Validation, gap
+from mffit.diagnosis.validation import gap
 from mffit.diagnosis.where import Region, where
 from mffit.effects import Effect
 from mffit.points import Points
@@ -30,27 +31,34 @@ from tir import Tyre
 from tir.parameters import BY_NAME
 
 
+def named_effects(found: Explanation, given: DiagnosisProblem) -> tuple[AcceptedEffect, ...]:
+    """The records of all accepted effects, each judged beside the others."""
+    return tuple(_found(found, effect, given) for effect in found.chosen.effects)
+
+
 def answer(
     found: Explanation,
+    named: Sequence[AcceptedEffect],
+    repair: Repair,
     given: DiagnosisProblem,
     tyre: Tyre,
     config: Config,
-    validation: Validation,
     notes: Sequence[Note],
     candidates: Sequence[Effect],
 ) -> Diagnosis:
     """The record of an explanation.
 
-    ``found`` is what left-out sweeps confirm; ``given`` is the problem before it.
+    ``found`` is what left-out sweeps confirm, with the ``named`` effects; ``given`` is the problem before it.
     """
     points, chosen, scatter = given.points, found.chosen, found.scatter
-    before = after = given.start.predict(points)
-    if chosen.effects or found.coefficients:
-        after = found.refined.state.predict(points)
+    before = given.start.predict(points)
+    explained = found.refined.state.predict(points) if chosen.effects or found.coefficients else before
+    done = repair.explanation
+    after = done.refined.state.predict(points) if done.chosen.effects or done.coefficients else before
     hardly = any(isinstance(note, HardlyThisTyre) for note in notes)
     unexplained = found.bump.found or found.smooth.found or hardly
-    named = tuple(_found(found, effect, given) for effect in chosen.effects)
     known = {i for one in named for i in (one.effect.id, *one.tied_with)}
+    corrected = _corrected(tyre, done)
     diagnosis = Diagnosis(
         headline="",
         points=points,
@@ -59,26 +67,35 @@ def answer(
         after=after,
         gap_before=gap(given.measured - before, scatter),
         gap_after=gap(given.measured - after, scatter),
-        validation=validation,
+        validation=repair.validation,
         where=where(points, given.measured - before, scatter),
-        effects=named,
+        effects=tuple(_with_repair(one, done) for one in named),
         alternatives=_alternatives(found.steps, chosen),
         steps=tuple(found.steps),
         unexplained=unexplained,
-        unexplained_where=_remaining(found, given.measured - after) if unexplained else (),
+        unexplained_where=_remaining(found, given.measured - explained) if unexplained else (),
         bump=found.bump if found.bump.found else None,
         smooth=found.smooth if found.smooth.found else None,
-        outliers=_outliers(points, after, scatter),
-        coefficients=dict(found.coefficients),
+        outliers=_outliers(points, explained, scatter),
+        coefficients=dict(done.coefficients),
         limits=limits(found.problem, chosen, candidates, known),
         given=given.start,
-        state=found.refined.state,
+        state=done.refined.state,
         signs=axis_signs(config),
-        tyre=_corrected(tyre, found),
+        tyre=tyre if repair.keeps_file else corrected,
+        with_terms=corrected if repair.keeps_file else None,
         notes=tuple(notes),
         model_after=f"{config.tyre.name}.tir",
     )
     return replace(diagnosis, headline=wording.headline(diagnosis))
+
+
+def _with_repair(named: AcceptedEffect, done: Explanation) -> AcceptedEffect:
+    """The record, with the numbers of the repair if the effect is repaired."""
+    if named.effect not in done.chosen.effects:
+        return replace(named, repaired=False)
+    numbers, stderr = done.refined.numbers, done.refined.stderr
+    return replace(named, parameters={n: (numbers[n], stderr.get(n, 0.0)) for n in named.parameters})
 
 
 def _remaining(found: Explanation, residual: np.ndarray) -> tuple[Region, ...]:

@@ -40,6 +40,14 @@ class NoRepair:
 
 
 @dataclass(frozen=True, slots=True)
+class FileKept:
+    """The corrected property file without its rig and environment terms is worse than the given one, which is kept."""
+
+    terms: tuple[str, ...]  #: names of the effects that no file contains
+    validation: Validation
+
+
+@dataclass(frozen=True, slots=True)
 class ModelOfLastBuild:
     """The model is a file of the last build, other than the one with the plain name."""
 
@@ -68,6 +76,7 @@ Note = (
     | NotVisible
     | HardlyThisTyre
     | NoRepair
+    | FileKept
     | ModelOfLastBuild
     | ModelFittedFirst
     | DirectMethodRedone

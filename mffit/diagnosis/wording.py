@@ -11,6 +11,7 @@ from mffit.diagnosis.bumps import Bump
 from mffit.diagnosis.noise import Noise
 from mffit.diagnosis.notes import (
     DirectMethodRedone,
+    FileKept,
     HardlyThisTyre,
     ModelFittedFirst,
     ModelOfLastBuild,
@@ -24,7 +25,7 @@ from mffit.diagnosis.ties import Separation
 from mffit.diagnosis.validation import Gap, Validation
 from mffit.effects import NEEDS, Effect
 from mffit.quantities import CHANNELS, CONDITIONS
-from mffit.rounding import to_uncertainty
+from mffit.rounding import per_cent, to_uncertainty
 from mffit.suspicion import Misread, Outlier
 from tir import Quantity
 
@@ -33,6 +34,12 @@ TO_DO = {
     "environment": "keep it constant, or use the corrected points, from which it is removed; a property file cannot contain it",
 }
 """What to do about effects that are not the rig's."""
+
+NOT_REPAIRED = {
+    "tyre": "nothing at the rig; the property file is as given, and --repair-all would correct it",
+    "environment": "keep it constant; the readings are as measured, and --repair-all would correct them",
+}
+"""The same for effects that are suspected only."""
 
 
 def headline(diagnosis: Diagnosis) -> str:
@@ -61,22 +68,38 @@ def _nothing_named(diagnosis: Diagnosis) -> str:
 
 
 def _named(diagnosis: Diagnosis) -> str:
-    effects, bump = diagnosis.effects, diagnosis.bump
-    before, after = diagnosis.gap_before, diagnosis.gap_after
+    effects, bump = diagnosis.repaired or diagnosis.effects, diagnosis.bump
+    after = diagnosis.gap_after if diagnosis.repaired else effects[-1].gap_after
     names, one = " and ".join(map(_with_ties, effects)), len(effects) == 1
     verdict = f"The missing {'effect is' if one else 'effects are'} {names}"
     if min(_confidence_of_tie(found, diagnosis.alternatives) for found in effects) < constants.LIKELY_ANSWER:
         verdict = f"The best explanation, though uncertain, is {names}"
     misfit = " and ".join(
-        f"{_short(after.rms(name))} {unit} instead of {_short(before.rms(name))} {unit} in {CHANNELS[name].word} "
-        f"(noise {_short(noise)} {unit})"
+        f"{_short(after.rms(name))} {unit} instead of {_short(diagnosis.gap_before.rms(name))} {unit} in "
+        f"{CHANNELS[name].word} (noise {_short(noise)} {unit})"
         for name, unit, noise in _measured(diagnosis.noise)
     )
     rest = ""
     if diagnosis.unexplained:
         what = f"{bump.channel} around {_around(bump)}" if bump else "the rest"
         rest = f"; {what} stays unexplained"
-    return f"{verdict}: with {'it' if one else 'them'} the rms misfit is {misfit}{rest}."
+    them, is_ = "it" if one else "them", "is" if diagnosis.repaired else "would be"
+    return f"{verdict}: with {them} the rms misfit {is_} {misfit}{rest}.{_suspicions(diagnosis)}"
+
+
+def _suspicions(diagnosis: Diagnosis) -> str:
+    """What is named but not repaired, and why; empty if everything is repaired."""
+    found = diagnosis.suspected
+    if not found or any(isinstance(remark, NoRepair) for remark in diagnosis.notes):
+        return ""
+    limit, names = per_cent(constants.LIKELY_ANSWER), " and ".join(_suspicion(one) for one in found)
+    if diagnosis.repaired:
+        return f" Suspected but not repaired, at a confidence below {limit}: {names}."
+    return f" It is not repaired, because no confidence reaches {limit}: {names}."
+
+
+def _suspicion(found: AcceptedEffect) -> str:
+    return f"{found.effect.name} ({per_cent(found.confidence)})"
 
 
 def _measured(noise: Noise) -> Iterator[tuple[str, str, float]]:
@@ -123,6 +146,12 @@ def note(remark: Note) -> str:
             return (
                 f"No repair is written: {tried} would fit these points better, but on left-out sweeps "
                 f"{_held_out(before, after)}."
+            )
+        case FileKept(terms, validation):
+            return (
+                f"The property file is the given one: without {' and '.join(terms)}, which no property file contains, the "
+                f"corrected one is worse on left-out sweeps ({_held_out(validation.gap_before, validation.gap_file)}). "
+                "The corrected one, which is right only with these terms, is written beside it."
             )
         case ModelOfLastBuild(file):
             return f"The model is {file} of the last build."
@@ -210,7 +239,7 @@ def remedy(found: AcceptedEffect, signs: Mapping[str, float]) -> str:
     if effect.switches:
         return "switch the simulation's turn slip on"
     if not effect.remedy:
-        return TO_DO.get(effect.kind, "")
+        return (TO_DO if found.repaired else NOT_REPAIRED).get(effect.kind, "")
     value, u = found.parameters[effect.free[0].name]
     value *= math.prod(signs[axis] for axis in effect.axes)
     plus = "+" if effect.axes else ""

@@ -15,6 +15,7 @@ from mffit.config import Config
 from mffit.diagnosis import Diagnosis, corrected_points
 from mffit.diagnosis import diagnose as find_effects
 from mffit.diagnosis.notes import DirectMethodRedone, ModelFittedFirst, ModelOfLastBuild, Note
+from mffit.diagnosis.result import WITH_TERMS
 from mffit.effects import CATALOG, Effect
 from mffit.output import output_folder, refuse_early
 from mffit.pipeline.building import build
@@ -37,6 +38,7 @@ def diagnose(
     *,
     out: str | Path | None = None,
     effects: Sequence[Effect] = CATALOG,
+    repair_all: bool = False,
     progress: Progress = silent,
 ) -> Diagnosis:
     """Find where a simulation's model and the measurement disagree, and which effects explain it.
@@ -47,6 +49,7 @@ def diagnose(
     model : the model that the simulation uses; default the file of the last build, otherwise one fitted now
     out : folder to write to; nothing is written if None
     effects : the effects to test; add records of your own to the default
+    repair_all : correct model and readings for every named effect, also for those below a confidence of 0.5
     progress : called with a sentence before each step
 
     Returns
@@ -62,7 +65,8 @@ def diagnose(
     if isinstance(model, str | Path):
         inputs.append(Path(model))
     if out is not None:
-        refuse_early(Path(out), (f"{config.tyre.name}.tir", *WRITTEN), inputs)
+        names = (f"{config.tyre.name}.tir", f"{config.tyre.name}{WITH_TERMS}", *WRITTEN)
+        refuse_early(Path(out), names, inputs)
     tyre, choice = chosen_model(config, model, progress)
     with threadpool_limits(1):
         same = fitted_to(tyre, config)
@@ -81,6 +85,7 @@ def diagnose(
             effects=effects,
             coefficients=known,
             seen=seen,
+            repair_all=repair_all,
             progress=progress,
         )
     notes = (*choice, *diagnosis.notes, *_redone(config, points, diagnosis, base))
@@ -123,7 +128,7 @@ def _redone(
     config: Config, points: Points, diagnosis: Diagnosis, base: Tyre | None
 ) -> tuple[DirectMethodRedone, ...]:
     """The direct method on points corrected for the rig effects, if any were found."""
-    causes = tuple(found.effect.name for found in diagnosis.effects if found.effect.kind == "rig")
+    causes = tuple(found.effect.name for found in diagnosis.repaired if found.effect.kind == "rig")
     if not config.rig.on_disc or not causes:
         return ()
     corrected = corrected_points(points, diagnosis.state)
@@ -142,6 +147,8 @@ def write_diagnosis(
 
     with output_folder(out, by="diagnose", protected=protected) as folder:
         diagnosis.tyre.write(folder / diagnosis.model_after)
+        if diagnosis.with_terms is not None:
+            diagnosis.with_terms.write(folder / str(diagnosis.model_with_terms))
         as_json.write(folder / "diagnosis.json", as_json.diagnosis(diagnosis))
         if config is not None:
             write_corrected(diagnosis, config, out, folder)
