@@ -13,6 +13,12 @@ OPPOSED_CORRELATION = Real(
     -0.3, "-", "Correlation of measured and simulated readings below which signs differ."
 )
 MISFIT_OF_ANOTHER_TYRE = Real(30.0, "-", "Misfit over noise above which naming an effect would be a guess.")
+SAME_TYRE_DIMENSION = Real(
+    0.02, "-", "Relative difference of a dimension that wear and a tape measure explain; beyond it, another tyre."
+)
+SAME_TYRE_REFERENCE = Real(
+    0.05, "-", "Relative difference of nominal load or pressure beyond which a model may be of another tyre."
+)
 FEWEST_POINTS_OF_A_CONDITION = Count(8, "-", "A setting with fewer points was swept, not held.")
 
 # What the data must vary for an effect to be visible
@@ -37,6 +43,12 @@ FEWEST_POINTS_FOR_NEIGHBOURS = Count(
 )
 NOISE_SHARE_OF_SPAN = Real(
     0.01, "-", "Noise over the span of the misfit where sweeps are too short to show it."
+)
+NO_NOISE_SHARE = Real(
+    2e-4, "-", "Scatter over the rms reading below which readings come from a simulation; rigs reach 0.001 at best."
+)
+ASSUMED_NOISE_SHARE = Real(
+    1e-3, "-", "Noise over the rms reading that is assumed for readings without noise: that of the best rigs."
 )
 
 # Scatter as found

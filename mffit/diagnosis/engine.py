@@ -21,7 +21,7 @@ from mffit.diagnosis.problem import DiagnosisProblem
 from mffit.diagnosis.repair import repair
 from mffit.diagnosis.result import Diagnosis
 from mffit.diagnosis.stated import stated_noise, with_uncertainties
-from mffit.diagnosis.strangers import named_of_this_tyre, refuse_strangers
+from mffit.diagnosis.strangers import named_of_this_tyre, refuse_strangers, without_noise
 from mffit.diagnosis.validation import Validation, validate
 from mffit.effects import CATALOG, Effect
 from mffit.points import Points
@@ -81,10 +81,12 @@ def diagnose(
     progress("checking on left-out sweeps")
     given = DiagnosisProblem(points, start, found.plain.noise)
     found, validation, refused = _confirmed(found, given, inexact, seen=seen)
+    exact = without_noise(found.scatter)
     named = named_effects(found, given)
     done = repair(found, named, given, inexact, validation, seen=seen, every=repair_all)
-    remarks = [note for note in (wrong, *notes, stranger, refused, done.refused) if note is not None]
-    return answer(found, named, done, given, tyre, config, remarks, candidates)
+    remarks = (wrong, exact, *notes, stranger, refused, done.refused)
+    notes = [note for note in remarks if note is not None]
+    return answer(found, named, done, given, tyre, config, notes, candidates)
 
 
 def _simulation(points: Points, tyre: Tyre, config: Config, rig: Faults | None) -> Simulation:

@@ -34,6 +34,7 @@ class MarginalChannel:
     named: np.ndarray  #: (m, k) changes that effects could bring, one prior standard deviation each
     smooth: np.ndarray  #: (m, k) the same of smooth structure, at amplitude 1
     weight: np.ndarray  #: weight of each reading
+    least: float = 0.0  #: standard uncertainty that is always added, for readings without noise
 
     def beside(self, columns: np.ndarray) -> MarginalChannel:
         """The same with further changes (m, k) that could explain the residual."""
@@ -71,8 +72,8 @@ class MarginalChannel:
         self, parts: MarginalParts, rows: np.ndarray, linked: tuple[np.ndarray, np.ndarray]
     ) -> tuple[np.ndarray, np.ndarray, float]:
         """Residual and columns of some readings in units of their scatter, and the log determinant of that division."""
-        u = np.hypot(math.exp(parts.log_scale) * self.stated, parts.growth * self.size) / np.sqrt(self.weight)
-        u = u[rows]
+        u = np.hypot(math.exp(parts.log_scale) * self.stated, parts.growth * self.size)
+        u = np.hypot(u, self.least)[rows] / np.sqrt(self.weight[rows])
         A = np.column_stack([self.residual[rows], self.named[rows], parts.smooth * self.smooth[rows]])
         A /= u[:, None]
         log = float(np.sum(np.log(u)))

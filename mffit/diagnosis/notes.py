@@ -16,6 +16,20 @@ class OneSweep:
 
 
 @dataclass(frozen=True, slots=True)
+class AnotherTyre:
+    """The model states other dimensions or nominal conditions than the configuration."""
+
+    differences: tuple[tuple[str, float, float], ...]  #: key of the property file, its value in the model, its value in tyre.toml
+
+
+@dataclass(frozen=True, slots=True)
+class WithoutNoise:
+    """The readings of some channels hardly scatter, as those of a simulation."""
+
+    assumed: tuple[tuple[str, float], ...]  #: channel, and the noise that is assumed [N], [Nm]
+
+
+@dataclass(frozen=True, slots=True)
 class NotVisible:
     """Effects that the data cannot show."""
 
@@ -73,6 +87,8 @@ class DirectMethodRedone:
 Note = (
     OneSweep
     | Misread
+    | AnotherTyre
+    | WithoutNoise
     | NotVisible
     | HardlyThisTyre
     | NoRepair

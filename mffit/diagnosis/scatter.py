@@ -17,6 +17,7 @@ from mffit.diagnosis.marginal import MarginalChannel, MarginalParts
 from mffit.diagnosis.noise import Noise, Scatter
 from mffit.diagnosis.tails import heavy_tails, weights
 from mffit.quantities import CHANNELS
+from mffit.scatter import rms
 
 BOUNDS = np.array(
     [
@@ -58,11 +59,25 @@ def learned(noise: Noise, residual: np.ndarray, explained: ExplainingColumns, si
             named=_occurring(explained.named[rows]),
             smooth=_occurring(explained.smooth[rows]),
             weight=np.ones(len(rows)),
+            least=0.5 * constants.NO_NOISE_SHARE * rms(size[rows]),
         )
         scatter[name], weight[rows] = _of_channel(
             channel, _occurring(explained.runs[rows]), noise.scatter[name]
         )
-    return noise.scattering(scatter, size, weight)
+    return _at_least_of_a_rig(noise.scattering(scatter, size, weight), size)
+
+
+def _at_least_of_a_rig(noise: Noise, size: np.ndarray) -> Noise:
+    """The noise, with that of the best rigs in channels that hardly scatter, such as those of a simulation.
+
+    Between two points of a sweep, errors with a memory change by their part without memory.
+    """
+    assumed = {}
+    for name, readings in zip(CHANNELS, np.split(size, 2), strict=True):
+        change = noise.typical(name) * math.sqrt(1.0 - noise.scatter[name].memory ** 2)
+        if change < constants.NO_NOISE_SHARE * rms(readings):
+            assumed[name] = constants.ASSUMED_NOISE_SHARE * rms(readings)
+    return noise.assumed(assumed) if assumed else noise
 
 
 def _occurring(columns: np.ndarray) -> np.ndarray:

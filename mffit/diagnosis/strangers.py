@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
+from mffit.config import Config
 from mffit.diagnosis import constants
 from mffit.diagnosis.explanation import Explanation
-from mffit.diagnosis.notes import HardlyThisTyre
+from mffit.diagnosis.noise import Noise
+from mffit.diagnosis.notes import AnotherTyre, HardlyThisTyre, WithoutNoise
 from mffit.errors import InputError
 from mffit.points import Points
 from mffit.quantities import CHANNELS
@@ -40,6 +42,32 @@ def refuse_strangers(points: Points, tyre: Tyre, start: Simulation) -> None:
                 f"simulated and measured {channel} have opposite signs (correlation {agreement:.2f}): data or model use other "
                 "axes; check [rig] axes and the signs of PKY1 and PKY6"
             )
+
+
+def another_tyre(tyre: Tyre, config: Config) -> AnotherTyre | None:
+    """What the model states otherwise than ``tyre.toml`` about the tyre; None if they agree or the model is silent."""
+    given, dimension, reference = config.tyre, constants.SAME_TYRE_DIMENSION, constants.SAME_TYRE_REFERENCE
+    stated = (
+        ("UNLOADED_RADIUS", given.unloaded_radius, dimension),
+        ("WIDTH", given.width, dimension),
+        ("RIM_RADIUS", given.rim_radius, dimension),
+        ("FNOMIN", given.nominal_load, reference),
+        ("NOMPRES", 1e3 * given.nominal_pressure, reference),
+    )
+    differences = tuple(
+        (name, float(tyre[name]), value)
+        for name, value, tolerance in stated
+        if value is not None
+        and name in tyre.present
+        and abs(float(tyre[name]) - value) > tolerance * abs(value)
+    )
+    return AnotherTyre(differences) if differences else None
+
+
+def without_noise(noise: Noise) -> WithoutNoise | None:
+    """The channels whose noise is assumed, because their readings hardly scatter; None without any."""
+    assumed = tuple((name, noise.typical(name)) for name in CHANNELS if noise.scatter[name].without_noise)
+    return WithoutNoise(assumed) if assumed else None
 
 
 def named_of_this_tyre(found: Explanation) -> tuple[Explanation, HardlyThisTyre | None]:

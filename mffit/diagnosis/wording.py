@@ -10,6 +10,7 @@ from mffit.diagnosis import constants
 from mffit.diagnosis.bumps import Bump
 from mffit.diagnosis.noise import Noise
 from mffit.diagnosis.notes import (
+    AnotherTyre,
     DirectMethodRedone,
     FileKept,
     HardlyThisTyre,
@@ -19,6 +20,7 @@ from mffit.diagnosis.notes import (
     Note,
     NotVisible,
     OneSweep,
+    WithoutNoise,
 )
 from mffit.diagnosis.result import AcceptedEffect, Diagnosis
 from mffit.diagnosis.ties import Separation
@@ -28,6 +30,7 @@ from mffit.quantities import CHANNELS, CONDITIONS
 from mffit.rounding import per_cent, to_uncertainty
 from mffit.suspicion import Misread, Outlier
 from tir import Quantity
+from tir.parameters import BY_NAME
 
 TO_DO = {
     "tyre": "nothing at the rig; the corrected property file contains it",
@@ -43,10 +46,12 @@ NOT_REPAIRED = {
 
 
 def headline(diagnosis: Diagnosis) -> str:
-    """The answer in one sentence, after one about a sweep that was written down wrongly, if any."""
+    """The answer in one sentence, after one about a model of another tyre or a sweep that was written down wrongly."""
+    other = next((remark for remark in diagnosis.notes if isinstance(remark, AnotherTyre)), None)
+    warned = "" if other is None else f"Warning: {_another_tyre(other)} "
     wrong = next((remark for remark in diagnosis.notes if isinstance(remark, Misread)), None)
     left_out = "" if wrong is None else f"{wrong.file} looks like {wrong.looks} and was left out. "
-    return left_out + (_named(diagnosis) if diagnosis.effects else _nothing_named(diagnosis))
+    return warned + left_out + (_named(diagnosis) if diagnosis.effects else _nothing_named(diagnosis))
 
 
 def _nothing_named(diagnosis: Diagnosis) -> str:
@@ -132,6 +137,16 @@ def note(remark: Note) -> str:
             return "One sweep cannot separate causes: add sweeps at another load, camber or direction."
         case Misread():
             return remark.sentence
+        case AnotherTyre():
+            return _another_tyre(remark)
+        case WithoutNoise(assumed):
+            sizes = " and ".join(f"{_short(u)} {CHANNELS[name].unit} in {name}" for name, u in assumed)
+            share = f"{100.0 * constants.ASSUMED_NOISE_SHARE:g} %"
+            return (
+                f"The readings scatter far less than those of a rig, as if they came from a simulation: {sizes} are assumed as "
+                f"their noise ({share} of the rms reading), so that uncertainties and confidences hold for a rig, not for "
+                "numerical noise."
+            )
         case NotVisible(needs, effects):
             lack = " and ".join(NEEDS[need] for need in needs)
             return f"Not visible in these data, which lack {lack}: {', '.join(e.name for e in effects)}."
@@ -164,6 +179,18 @@ def note(remark: Note) -> str:
             return _redone(remark)
         case _:
             assert_never(remark)
+
+
+def _another_tyre(found: AnotherTyre) -> str:
+    """What differs between the model and tyre.toml."""
+    said = []
+    for name, model, stated in found.differences:
+        row = BY_NAME[name]
+        scale, unit = (1e-3, "kPa") if row.unit == "Pa" else (1.0, row.unit)
+        said.append(f"{row.description} {scale * model:.4g} instead of {scale * stated:.4g} {unit} ({name})")
+    return (
+        f"The model seems to be of another tyre than tyre.toml: {'; '.join(said)}. Give the model of this tyre, or correct [tyre]."
+    )
 
 
 def _held_out(before: Gap, after: Gap) -> str:

@@ -12,10 +12,11 @@ from threadpoolctl import threadpool_limits
 import tir
 from mffit import config as configuration
 from mffit.config import Config
-from mffit.diagnosis import Diagnosis, corrected_points
+from mffit.diagnosis import Diagnosis, corrected_points, wording
 from mffit.diagnosis import diagnose as find_effects
 from mffit.diagnosis.notes import DirectMethodRedone, ModelFittedFirst, ModelOfLastBuild, Note
 from mffit.diagnosis.result import WITH_TERMS
+from mffit.diagnosis.strangers import another_tyre
 from mffit.effects import CATALOG, Effect
 from mffit.output import output_folder, refuse_early
 from mffit.pipeline.building import build
@@ -68,6 +69,10 @@ def diagnose(
         names = (f"{config.tyre.name}.tir", f"{config.tyre.name}{WITH_TERMS}", *WRITTEN)
         refuse_early(Path(out), names, inputs)
     tyre, choice = chosen_model(config, model, progress)
+    other = another_tyre(tyre, config)
+    if other is not None:
+        progress(wording.note(other))
+        choice = (other, *choice)
     with threadpool_limits(1):
         same = fitted_to(tyre, config)
         known, seen = known_of_model(
@@ -90,6 +95,7 @@ def diagnose(
         )
     notes = (*choice, *diagnosis.notes, *_redone(config, points, diagnosis, base))
     diagnosis = replace(diagnosis, notes=notes)
+    diagnosis = replace(diagnosis, headline=wording.headline(diagnosis))
     if out is not None:
         write_diagnosis(diagnosis, Path(out), protected=inputs, config=config)
     return diagnosis
