@@ -67,7 +67,10 @@ SCATTER_SECOND_START = Series(
     "-",
     "Second start of this search: log scale, growth, memory, smooth amplitude; there may be two maxima.",
 )
-SCATTER_STEPS = Series((1.0, 0.02, 1.0, 0.05), "-", "Typical changes of log scale, growth, memory, smooth.")
+SCATTER_STEPS = Series(
+    (1.0, 0.02, 1.0, 0.05, 1.0), "-", "Typical changes of log scale, growth, memory, smooth amplitude, offsets of runs."
+)
+RUN_OFFSET_BOUNDS = Series((0.0, 50.0), "-", "Bounds of the size of offsets of runs over the usual one.")
 MOST_SCATTER_STEPS = Count(
     20, "-", "Most steps of a search for the scatter; its likelihood is flat near the maximum."
 )

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from enum import Enum
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 from scipy.sparse import csc_matrix
@@ -32,6 +33,13 @@ class Scatter:
     without_noise: bool = False  #: whether the readings hardly scatter, as those of a simulation; the noise is assumed
 
 
+class RunOffsets(NamedTuple):
+    """Offsets of whole runs, as the likelihood of the scatter sees them beside errors with a memory."""
+
+    gain: float  #: of log likelihood over the memory alone
+    size: float  #: over the usual one
+
+
 @dataclass(frozen=True)
 class Noise:
     """Covariance of the readings, and the whitening that goes with it.
@@ -47,6 +55,8 @@ class Noise:
     scatter: Mapping[str, Scatter] = field(default_factory=lambda: dict.fromkeys(CHANNELS, Scatter()))
     weight: np.ndarray | None = None  #: (2n,) of each reading, below 1 for outliers; None: all 1
     shared: np.ndarray | None = None  #: (2n, k) changes that readings share, one standard deviation each
+    offsets: Mapping[str, RunOffsets] = field(default_factory=dict)
+    """By id of the effect: offsets of runs that errors with a memory look like; empty without a memory."""
 
     @property
     def Fy(self) -> float:

@@ -120,10 +120,13 @@ def _folds(sweep: np.ndarray) -> list[np.ndarray]:
 
 
 def _raised(before: np.ndarray, after: np.ndarray, noise: Noise, numbers: int) -> tuple[str, ...]:
-    """Channels whose chi2 rises beyond chance: ``numbers`` fitted to noise raise that of left-out sweeps by as much."""
-    u = np.where(np.isfinite(noise.u), noise.u, np.inf)
-    change = np.nan_to_num(after / u) ** 2 - np.nan_to_num(before / u) ** 2
+    """Channels whose chi2 rises beyond chance: ``numbers`` fitted to noise raise that of left-out sweeps by as much.
+
+    Correlated errors raise a plain sum of squares by more than that, so the residuals are whitened.
+    """
+    change = noise.whiten(np.nan_to_num(after)) ** 2 - noise.whiten(np.nan_to_num(before)) ** 2
+    of_Fy = noise.used < len(before) // 2
     chance = numbers + constants.RAISED_GAP * np.sqrt(2.0 * numbers)
     return tuple(
-        name for name, rows in zip(CHANNELS, np.split(change, 2), strict=True) if rows.sum() > chance
+        name for name, rows in zip(CHANNELS, (of_Fy, ~of_Fy), strict=True) if change[rows].sum() > chance
     )

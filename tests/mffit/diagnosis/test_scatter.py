@@ -24,7 +24,7 @@ def found(Fy, named=NOTHING):
     rng = np.random.default_rng(99)
     residual = np.concatenate([Fy, rng.normal(0.0, 0.6, N)])
     size = np.concatenate([FORCE, 0.02 * FORCE])
-    return learned(stated(), residual, ExplainingColumns(named, NOTHING, NOTHING), size)
+    return learned(stated(), residual, ExplainingColumns(named, {}, NOTHING), size)
 
 
 @pytest.fixture
