@@ -70,6 +70,11 @@ SCATTER_SECOND_START = Series(
 SCATTER_STEPS = Series(
     (1.0, 0.02, 1.0, 0.05, 1.0), "-", "Typical changes of log scale, growth, memory, smooth amplitude, offsets of runs."
 )
+RUN_OFFSET_GAIN = Real(
+    8.0,
+    "-",
+    "Log likelihood over a memory of the errors alone that offsets of runs need: the price of any effect, rounded up.",
+)
 RUN_OFFSET_BOUNDS = Series((0.0, 50.0), "-", "Bounds of the size of offsets of runs over the usual one.")
 MOST_SCATTER_STEPS = Count(
     20, "-", "Most steps of a search for the scatter; its likelihood is flat near the maximum."

@@ -21,7 +21,7 @@ from mffit.diagnosis.problem import DiagnosisProblem
 from mffit.diagnosis.repair import repair
 from mffit.diagnosis.result import Diagnosis
 from mffit.diagnosis.stated import stated_noise, with_uncertainties
-from mffit.diagnosis.strangers import named_of_this_tyre, refuse_strangers, without_noise
+from mffit.diagnosis.strangers import named_of_this_tyre, offsets_or_memory, refuse_strangers, without_noise
 from mffit.diagnosis.validation import Validation, validate
 from mffit.effects import CATALOG, Effect
 from mffit.points import Points
@@ -84,7 +84,8 @@ def diagnose(
     exact = without_noise(found.scatter)
     named = named_effects(found, given)
     done = repair(found, named, given, inexact, validation, seen=seen, every=repair_all)
-    remarks = (wrong, exact, *notes, stranger, refused, done.refused)
+    memories = offsets_or_memory(found.scatter, candidates, found.chosen.ids)
+    remarks = (wrong, exact, *memories, *notes, stranger, refused, done.refused)
     notes = [note for note in remarks if note is not None]
     return answer(found, named, done, given, tyre, config, notes, candidates)
 

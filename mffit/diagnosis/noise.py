@@ -38,6 +38,7 @@ class RunOffsets(NamedTuple):
 
     gain: float  #: of log likelihood over the memory alone
     size: float  #: over the usual one
+    channels: frozenset[str]  #: with a memory, in which the offsets appear
 
 
 @dataclass(frozen=True)

@@ -30,6 +30,16 @@ class WithoutNoise:
 
 
 @dataclass(frozen=True, slots=True)
+class OffsetsOrMemory:
+    """Errors of a channel that are correlated along sweeps may be offsets of runs; these data cannot separate them."""
+
+    channel: str
+    memory: float  #: correlation from one point to the next
+    noise: float  #: typical, [N] or [Nm]
+    effects: tuple[Effect, ...]  #: offsets of runs that are as likely
+
+
+@dataclass(frozen=True, slots=True)
 class NotVisible:
     """Effects that the data cannot show."""
 
@@ -89,6 +99,7 @@ Note = (
     | Misread
     | AnotherTyre
     | WithoutNoise
+    | OffsetsOrMemory
     | NotVisible
     | HardlyThisTyre
     | NoRepair

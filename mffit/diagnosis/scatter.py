@@ -66,9 +66,11 @@ def learned(noise: Noise, residual: np.ndarray, explained: ExplainingColumns, si
         )
         runs = {effect: _occurring(columns[rows]) for effect, columns in explained.runs.items()}
         scatter[name], weight[rows], here = _of_channel(channel, runs, noise.scatter[name])
-        for effect, (gain, larger) in here.items():
-            other = offsets.get(effect, RunOffsets(0.0, 0.0))
-            offsets[effect] = RunOffsets(other.gain + gain, max(other.size, larger))
+        for effect, (gain, larger, _) in here.items():
+            other = offsets.get(effect, RunOffsets(0.0, 0.0, frozenset()))
+            offsets[effect] = RunOffsets(
+                other.gain + max(gain, 0.0), max(other.size, larger), other.channels | {name}
+            )
     found = replace(noise.scattering(scatter, size, weight), offsets=offsets)
     return _at_least_of_a_rig(found, size)
 
@@ -103,12 +105,12 @@ def _of_channel(
     offsets: dict[str, RunOffsets] = {}
     if parts.memory:
         # Offsets of whole runs and a memory give runs the same means: each is fitted beside the other.
-        alone, most, best = channel.likelihood(parts), constants.SCATTER_PART_GAIN, None
+        alone, most, best = channel.likelihood(parts), constants.RUN_OFFSET_GAIN, None
         for effect, columns in runs.items():
             if columns.shape[1]:
                 beside = channel.beside(columns)
                 found, likelihood = _with_offsets(beside, parts)
-                offsets[effect] = RunOffsets(likelihood - alone, found.offsets)
+                offsets[effect] = RunOffsets(likelihood - alone, found.offsets, frozenset())
                 if likelihood - alone > most:
                     most, best = likelihood - alone, (beside, found)
         if best is not None:

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection, Sequence
+
 import numpy as np
 
 from mffit.config import Config
 from mffit.diagnosis import constants
 from mffit.diagnosis.explanation import Explanation
 from mffit.diagnosis.noise import Noise
-from mffit.diagnosis.notes import AnotherTyre, HardlyThisTyre, WithoutNoise
+from mffit.diagnosis.notes import AnotherTyre, HardlyThisTyre, OffsetsOrMemory, WithoutNoise
+from mffit.effects import Effect
 from mffit.errors import InputError
 from mffit.points import Points
 from mffit.quantities import CHANNELS
@@ -68,6 +71,26 @@ def without_noise(noise: Noise) -> WithoutNoise | None:
     """The channels whose noise is assumed, because their readings hardly scatter; None without any."""
     assumed = tuple((name, noise.typical(name)) for name in CHANNELS if noise.scatter[name].without_noise)
     return WithoutNoise(assumed) if assumed else None
+
+
+def offsets_or_memory(noise: Noise, candidates: Sequence[Effect], named: Collection[str]) -> list[OffsetsOrMemory]:
+    """The channels whose correlated errors may as well be offsets of runs, none of which is ``named`` (ids)."""
+    found = []
+    for channel in CHANNELS:
+        scatter = noise.scatter[channel]
+        near = tuple(
+            effect
+            for effect in candidates
+            if effect.id in noise.offsets
+            and channel in noise.offsets[effect.id].channels
+            and (
+                noise.offsets[effect.id].gain > constants.SCATTER_PART_GAIN
+                or scatter.scale > constants.STATED_NOISE_FACTOR
+            )
+        )
+        if scatter.memory and near and not any(effect.id in named for effect in near):
+            found.append(OffsetsOrMemory(channel, scatter.memory, noise.typical(channel), near))
+    return found
 
 
 def named_of_this_tyre(found: Explanation) -> tuple[Explanation, HardlyThisTyre | None]:

@@ -19,6 +19,7 @@ from mffit.diagnosis.notes import (
     NoRepair,
     Note,
     NotVisible,
+    OffsetsOrMemory,
     OneSweep,
     WithoutNoise,
 )
@@ -146,6 +147,12 @@ def note(remark: Note) -> str:
                 f"The readings scatter far less than those of a rig, as if they came from a simulation: {sizes} are assumed as "
                 f"their noise ({share} of the rms reading), so that uncertainties and confidences hold for a rig, not for "
                 "numerical noise."
+            )
+        case OffsetsOrMemory(channel, memory, noise, effects):
+            return (
+                f"The errors of {channel} ({_short(noise)} {CHANNELS[channel].unit}) are correlated along sweeps ({memory:.2f} "
+                f"between neighbours) and may as well be a {' or a '.join(e.name for e in effects)}: measure one condition "
+                "again in several runs to separate them."
             )
         case NotVisible(needs, effects):
             lack = " and ".join(NEEDS[need] for need in needs)
