@@ -21,9 +21,7 @@ from mffit.cli.console import Voice, out_option, tyre_toml_argument, voiced
     "--repair-all", is_flag=True, help="Correct the model for uncertain effects too (confidence below 50 %)."
 )
 @voiced
-def diagnose(
-    tyre_toml: Path, model: Path | None, out: Path | None, repair_all: bool, voice: Voice
-) -> None:
+def diagnose(tyre_toml: Path, model: Path | None, out: Path | None, repair_all: bool, voice: Voice) -> None:
     """Find effects that a simulation lacks.
 
     Shows where simulation and measurement disagree, names the effects that explain it, and corrects the model.

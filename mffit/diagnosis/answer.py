@@ -15,7 +15,7 @@ from mffit.diagnosis.explanation import Explanation
 from mffit.diagnosis.hypothesis import Hypothesis
 from mffit.diagnosis.limits import limits
 from mffit.diagnosis.noise import Noise
-from mffit.diagnosis.notes import HardlyThisTyre, Note
+from mffit.diagnosis.notes import HardlyThisTyre, NoiseBeyondStated, Note
 from mffit.diagnosis.problem import DiagnosisProblem
 from mffit.diagnosis.repair import Repair
 from mffit.diagnosis.result import AcceptedEffect, Diagnosis
@@ -55,7 +55,7 @@ def answer(
     explained = found.refined.state.predict(points) if chosen.effects or found.coefficients else before
     done = repair.explanation
     after = done.refined.state.predict(points) if done.chosen.effects or done.coefficients else before
-    hardly = any(isinstance(note, HardlyThisTyre) for note in notes)
+    hardly = any(isinstance(note, HardlyThisTyre | NoiseBeyondStated) for note in notes)
     unexplained = found.bump.found or found.smooth.found or hardly
     known = {i for one in named for i in (one.effect.id, *one.tied_with)}
     corrected = _corrected(tyre, done)
@@ -154,10 +154,10 @@ def _judged(found: Explanation, effect: Effect, step: ForwardStep) -> tuple[Sequ
     if effect.id in found.predicted:  # beside structure that may be anything, evidence decides little
         tied = found.predicted[effect.id].tied
         return tied, found.certainty(effect) / (1.0 + len(tied))
-    evidence = found.chosen.log_evidence
     rivals = _rivals(found.problem, found.chosen, effect, step)
-    weights = [math.exp(min(rival.log_evidence - evidence, 50.0)) for rival in rivals]
-    tied = tuple(r for r in rivals if evidence - r.log_evidence < constants.TIED_EVIDENCE)
+    leads = [found.chosen.lead(rival) for rival in rivals]
+    weights = [math.exp(min(-lead, 50.0)) for lead in leads]
+    tied = tuple(r for r, lead in zip(rivals, leads, strict=True) if lead < constants.TIED_EVIDENCE)
     return tied, tempered(found.certainty(effect) * (1.0 / (1.0 + sum(weights))))
 
 

@@ -14,7 +14,9 @@ OPPOSED_CORRELATION = Real(
 )
 MISFIT_OF_ANOTHER_TYRE = Real(30.0, "-", "Misfit over noise above which naming an effect would be a guess.")
 SAME_TYRE_DIMENSION = Real(
-    0.02, "-", "Relative difference of a dimension that wear and a tape measure explain; beyond it, another tyre."
+    0.02,
+    "-",
+    "Relative difference of a dimension that wear and a tape measure explain; beyond it, another tyre.",
 )
 SAME_TYRE_REFERENCE = Real(
     0.05, "-", "Relative difference of nominal load or pressure beyond which a model may be of another tyre."
@@ -45,7 +47,9 @@ NOISE_SHARE_OF_SPAN = Real(
     0.01, "-", "Noise over the span of the misfit where sweeps are too short to show it."
 )
 NO_NOISE_SHARE = Real(
-    2e-4, "-", "Scatter over the rms reading below which readings come from a simulation; rigs reach 0.001 at best."
+    2e-4,
+    "-",
+    "Scatter over the rms reading below which readings come from a simulation; rigs reach 0.001 at best.",
 )
 ASSUMED_NOISE_SHARE = Real(
     1e-3, "-", "Noise over the rms reading that is assumed for readings without noise: that of the best rigs."
@@ -53,6 +57,14 @@ ASSUMED_NOISE_SHARE = Real(
 
 # Scatter as found
 STATED_NOISE_FACTOR = Real(2.0, "-", "Usual factor (1 sigma) between true and stated uncertainties.")
+NOISE_BEYOND_STATED = Real(
+    4.0,
+    "-",
+    "Noise over the stated one above which it is unexplained misfit: two standard deviations of that factor.",
+)
+ODD_SWEEP_RATIO = Real(
+    5.0, "-", "Rms misfit of a sweep over the median of all sweeps above which it is said to be the odd one."
+)
 SCATTER_PART_GAIN = Real(4.0, "-", "Gain in log likelihood that growth, memory or heavy tails must bring.")
 LOG_SCALE_BOUNDS = Series((-7.0, 12.0), "-", "Bounds of the logarithm of the scale; its prior is narrower.")
 LARGEST_NOISE_GROWTH = Real(0.2, "-", "Upper bound of the noise that grows with the reading.")
@@ -68,7 +80,9 @@ SCATTER_SECOND_START = Series(
     "Second start of this search: log scale, growth, memory, smooth amplitude; there may be two maxima.",
 )
 SCATTER_STEPS = Series(
-    (1.0, 0.02, 1.0, 0.05, 1.0), "-", "Typical changes of log scale, growth, memory, smooth amplitude, offsets of runs."
+    (1.0, 0.02, 1.0, 0.05, 1.0),
+    "-",
+    "Typical changes of log scale, growth, memory, smooth amplitude, offsets of runs.",
 )
 RUN_OFFSET_GAIN = Real(
     8.0,

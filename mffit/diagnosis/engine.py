@@ -21,7 +21,13 @@ from mffit.diagnosis.problem import DiagnosisProblem
 from mffit.diagnosis.repair import repair
 from mffit.diagnosis.result import Diagnosis
 from mffit.diagnosis.stated import stated_noise, with_uncertainties
-from mffit.diagnosis.strangers import named_of_this_tyre, offsets_or_memory, refuse_strangers, without_noise
+from mffit.diagnosis.strangers import (
+    named_of_this_tyre,
+    noise_beyond_stated,
+    offsets_or_memory,
+    refuse_strangers,
+    without_noise,
+)
 from mffit.diagnosis.validation import Validation, validate
 from mffit.effects import CATALOG, Effect
 from mffit.points import Points
@@ -85,7 +91,7 @@ def diagnose(
     named = named_effects(found, given)
     done = repair(found, named, given, inexact, validation, seen=seen, every=repair_all)
     memories = offsets_or_memory(found.scatter, candidates, found.chosen.ids)
-    remarks = (wrong, exact, *memories, *notes, stranger, refused, done.refused)
+    remarks = (wrong, exact, *noise_beyond_stated(found), *memories, *notes, stranger, refused, done.refused)
     notes = [note for note in remarks if note is not None]
     return answer(found, named, done, given, tyre, config, notes, candidates)
 

@@ -62,7 +62,11 @@ def explain(
         if last is not None and found.chosen.ids == last.chosen.ids:
             break
     assert found is not None
-    return _predicting(found, beyond_memory(noise, candidates), inexact) if seen and found.smooth.found else found
+    return (
+        _predicting(found, beyond_memory(noise, candidates), inexact)
+        if seen and found.smooth.found
+        else found
+    )
 
 
 def _predicting(found: Explanation, candidates: Sequence[Effect], inexact: Inexactness) -> Explanation:

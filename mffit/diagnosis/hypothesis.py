@@ -23,6 +23,9 @@ class Hypothesis:
     state: Simulation
     residual: np.ndarray  #: whitened, (m,)
     jacobian: np.ndarray  #: whitened, per freed number (m, k)
+    freedom: float = (
+        0.0  #: log evidence paid for the freed numbers; it depends on how large effects usually are
+    )
 
     @property
     def ids(self) -> frozenset[str]:
@@ -33,6 +36,16 @@ class Hypothesis:
     def axes(self) -> np.ndarray:
         """Orthonormal directions (m, k) of the whitened readings that the fitted numbers can follow."""
         return np.linalg.qr(self.jacobian)[0] if self.jacobian.shape[1] else self.jacobian
+
+    def lead(self, rival: Hypothesis) -> float:
+        """Log evidence over a rival; of as many numbers, at most the one without the price of their freedom.
+
+        Usual sizes are known roughly, so they must not decide between two effects that explain small changes alike.
+        """
+        lead = self.log_evidence - rival.log_evidence
+        if len(self.numbers) != len(rival.numbers):
+            return lead
+        return min(lead, lead + self.freedom - rival.freedom)
 
     def others(self, effect: Effect) -> tuple[Effect, ...]:
         """All effects but one."""

@@ -35,7 +35,9 @@ class MarginalChannel:
     named: np.ndarray  #: (m, k) changes that effects could bring, one prior standard deviation each
     smooth: np.ndarray  #: (m, k) the same of smooth structure, at amplitude 1
     weight: np.ndarray  #: weight of each reading
-    runs: np.ndarray | None = None  #: (m, k) the same of offsets of runs at their usual size; None: they are not considered
+    runs: np.ndarray | None = (
+        None  #: (m, k) the same of offsets of runs at their usual size; None: they are not considered
+    )
     least: float = 0.0  #: standard uncertainty that is always added, for readings without noise
 
     def beside(self, columns: np.ndarray) -> MarginalChannel:

@@ -30,7 +30,9 @@ class Scatter:
     growth: float = 0.0  #: standard uncertainty over the reading, added in quadrature
     memory: float = 0.0  #: correlation from one point to the next along a sweep
     tails: float = np.inf  #: degrees of freedom of Student's t, infinite where the scatter is normal
-    without_noise: bool = False  #: whether the readings hardly scatter, as those of a simulation; the noise is assumed
+    without_noise: bool = (
+        False  #: whether the readings hardly scatter, as those of a simulation; the noise is assumed
+    )
 
 
 class RunOffsets(NamedTuple):

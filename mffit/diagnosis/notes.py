@@ -19,7 +19,9 @@ class OneSweep:
 class AnotherTyre:
     """The model states other dimensions or nominal conditions than the configuration."""
 
-    differences: tuple[tuple[str, float, float], ...]  #: key of the property file, its value in the model, its value in tyre.toml
+    differences: tuple[
+        tuple[str, float, float], ...
+    ]  #: key of the property file, its value in the model, its value in tyre.toml
 
 
 @dataclass(frozen=True, slots=True)
@@ -27,6 +29,16 @@ class WithoutNoise:
     """The readings of some channels hardly scatter, as those of a simulation."""
 
     assumed: tuple[tuple[str, float], ...]  #: channel, and the noise that is assumed [N], [Nm]
+
+
+@dataclass(frozen=True, slots=True)
+class NoiseBeyondStated:
+    """The readings of a channel scatter far more than stated, which hides misfit that nothing explains."""
+
+    channel: str
+    noise: float  #: typical, [N] or [Nm]
+    stated: float  #: the same as stated
+    sweep: str = ""  #: the sweep that is off much further than all others, if any
 
 
 @dataclass(frozen=True, slots=True)
@@ -100,6 +112,7 @@ Note = (
     | AnotherTyre
     | WithoutNoise
     | OffsetsOrMemory
+    | NoiseBeyondStated
     | NotVisible
     | HardlyThisTyre
     | NoRepair

@@ -24,7 +24,6 @@ from mffit.rig_errors import Faults
 from mffit.suspicion import Outlier
 from tir import Tyre
 
-
 WITH_TERMS = "-with-terms.tir"
 """Ending of the property file that is right only with terms beside it."""
 
@@ -80,7 +79,7 @@ class Diagnosis(Brief):
     notes: tuple[Note, ...]
     model_after: str  #: file name of the corrected model in the output folder
     with_terms: Tyre | None = None
-    """The corrected property file if it is right only with the terms of rig and environment, so that ``tyre`` is the given one."""
+    """The corrected property file if it is right only with the terms of rig and environment; ``tyre`` is the given one then."""
 
     @property
     def repaired(self) -> tuple[AcceptedEffect, ...]:

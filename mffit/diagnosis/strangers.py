@@ -9,14 +9,20 @@ import numpy as np
 from mffit.config import Config
 from mffit.diagnosis import constants
 from mffit.diagnosis.explanation import Explanation
-from mffit.diagnosis.noise import Noise
-from mffit.diagnosis.notes import AnotherTyre, HardlyThisTyre, OffsetsOrMemory, WithoutNoise
+from mffit.diagnosis.noise import Noise, Origin
+from mffit.diagnosis.notes import (
+    AnotherTyre,
+    HardlyThisTyre,
+    NoiseBeyondStated,
+    OffsetsOrMemory,
+    WithoutNoise,
+)
 from mffit.effects import Effect
 from mffit.errors import InputError
 from mffit.points import Points
 from mffit.quantities import CHANNELS
 from mffit.rig import Simulation
-from mffit.scatter import robust
+from mffit.scatter import rms, robust
 from tir import Tyre
 
 
@@ -73,7 +79,27 @@ def without_noise(noise: Noise) -> WithoutNoise | None:
     return WithoutNoise(assumed) if assumed else None
 
 
-def offsets_or_memory(noise: Noise, candidates: Sequence[Effect], named: Collection[str]) -> list[OffsetsOrMemory]:
+def noise_beyond_stated(found: Explanation) -> list[NoiseBeyondStated]:
+    """The channels that scatter far more than stated beside the explanation, and the sweep that does most of it."""
+    noise, points = found.scatter, found.problem.points
+    if noise.origin is not Origin.STATED:
+        return []
+    left = np.split(found.problem.measured - found.refined.state.predict(points), 2)
+    out = []
+    for channel, residual in zip(CHANNELS, left, strict=True):
+        if noise.scatter[channel].scale > constants.NOISE_BEYOND_STATED:
+            off = {name: rms(residual[points.sweep == k]) for k, name in enumerate(points.sweep_names)}
+            off = {name: size for name, size in off.items() if np.isfinite(size)}
+            worst = max(off, key=off.__getitem__)
+            odd = off[worst] > constants.ODD_SWEEP_RATIO * float(np.median(list(off.values())))
+            typical, stated = noise.typical(channel), noise.typically_stated(channel)
+            out.append(NoiseBeyondStated(channel, typical, stated, worst if odd else ""))
+    return out
+
+
+def offsets_or_memory(
+    noise: Noise, candidates: Sequence[Effect], named: Collection[str]
+) -> list[OffsetsOrMemory]:
     """The channels whose correlated errors may as well be offsets of runs, none of which is ``named`` (ids)."""
     found = []
     for channel in CHANNELS:

@@ -16,6 +16,7 @@ from mffit.diagnosis.notes import (
     HardlyThisTyre,
     ModelFittedFirst,
     ModelOfLastBuild,
+    NoiseBeyondStated,
     NoRepair,
     Note,
     NotVisible,
@@ -148,6 +149,13 @@ def note(remark: Note) -> str:
                 f"their noise ({share} of the rms reading), so that uncertainties and confidences hold for a rig, not for "
                 "numerical noise."
             )
+        case NoiseBeyondStated(channel, noise, stated, sweep):
+            unit = CHANNELS[channel].unit
+            most = f" Most of it is in {sweep}: check that sweep first." if sweep else ""
+            return (
+                f"Nothing explains why {channel} scatters by {_short(noise)} {unit} where {_short(stated)} {unit} are stated: "
+                f"what single sweeps do on their own looks like noise.{most}"
+            )
         case OffsetsOrMemory(channel, memory, noise, effects):
             return (
                 f"The errors of {channel} ({_short(noise)} {CHANNELS[channel].unit}) are correlated along sweeps ({memory:.2f} "
@@ -196,7 +204,8 @@ def _another_tyre(found: AnotherTyre) -> str:
         scale, unit = (1e-3, "kPa") if row.unit == "Pa" else (1.0, row.unit)
         said.append(f"{row.description} {scale * model:.4g} instead of {scale * stated:.4g} {unit} ({name})")
     return (
-        f"The model seems to be of another tyre than tyre.toml: {'; '.join(said)}. Give the model of this tyre, or correct [tyre]."
+        f"The model seems to be of another tyre than tyre.toml: {'; '.join(said)}. Give the model of this tyre, or correct "
+        "[tyre]."
     )
 
 
