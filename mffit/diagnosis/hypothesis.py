@@ -38,14 +38,14 @@ class Hypothesis:
         return np.linalg.qr(self.jacobian)[0] if self.jacobian.shape[1] else self.jacobian
 
     def lead(self, rival: Hypothesis) -> float:
-        """Log evidence over a rival; of as many numbers, at most the one without the price of their freedom.
+        """Log evidence over a rival; less what a rival of as many numbers pays more for their freedom.
 
         Usual sizes are known roughly, so they must not decide between two effects that explain small changes alike.
         """
-        lead = self.log_evidence - rival.log_evidence
-        if len(self.numbers) != len(rival.numbers):
+        lead, paid = self.log_evidence - rival.log_evidence, rival.freedom - self.freedom
+        if len(self.numbers) != len(rival.numbers) or lead < 0.0 or paid < 0.0:
             return lead
-        return min(lead, lead + self.freedom - rival.freedom)
+        return max(lead - paid, 0.0)
 
     def others(self, effect: Effect) -> tuple[Effect, ...]:
         """All effects but one."""

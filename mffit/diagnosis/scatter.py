@@ -105,11 +105,11 @@ def _of_channel(
     offsets: dict[str, RunOffsets] = {}
     if parts.memory:
         # Offsets of whole runs and a memory give runs the same means: each is fitted beside the other.
-        alone, most, best = channel.likelihood(parts), constants.RUN_OFFSET_GAIN, None
+        alone, most, best = channel.likelihood(parts), float(constants.RUN_OFFSET_GAIN), None
         for effect, columns in runs.items():
             if columns.shape[1]:
                 beside = channel.beside(columns)
-                found, likelihood = _with_offsets(beside, parts)
+                found, likelihood = _with_offsets(beside, columns, parts)
                 offsets[effect] = RunOffsets(likelihood - alone, found.offsets, frozenset())
                 if likelihood - alone > most:
                     most, best = likelihood - alone, (beside, found)
@@ -118,11 +118,13 @@ def _of_channel(
     return Scatter(math.exp(parts.log_scale), parts.growth, parts.memory, tails), channel.weight, offsets
 
 
-def _with_offsets(channel: MarginalChannel, parts: MarginalParts) -> tuple[MarginalParts, float]:
+def _with_offsets(
+    channel: MarginalChannel, runs: np.ndarray, parts: MarginalParts
+) -> tuple[MarginalParts, float]:
     """The likeliest parts with offsets of runs, which replace the memory or shorten it; and their likelihood."""
-    size = rms(channel.residual @ channel.runs / np.maximum(np.sum(channel.runs**2, axis=0), 1e-30))
+    size = rms(channel.residual @ runs / np.maximum(np.sum(runs**2, axis=0), 1e-30))
     shorter = parts._replace(memory=0.5 * parts.memory, offsets=0.5 * size)
-    replaced = MarginalParts(*constants.SCATTER_SECOND_START, offsets=size)
+    replaced = MarginalParts(*constants.SCATTER_SECOND_START)._replace(offsets=size)
     return max((_climb(channel, x, (*ALL, OFFSETS)) for x in (shorter, replaced)), key=lambda climb: climb[1])
 
 
@@ -143,7 +145,7 @@ def _weighted(channel: MarginalChannel, parts: MarginalParts) -> tuple[MarginalC
 
 def _accepted(channel: MarginalChannel, start: MarginalParts) -> MarginalParts:
     """The likeliest parts, without growth or memory if the data do not ask for them."""
-    second = MarginalParts(*constants.SCATTER_SECOND_START, offsets=start.offsets)
+    second = MarginalParts(*constants.SCATTER_SECOND_START)._replace(offsets=start.offsets)
     every = (*ALL, OFFSETS) if channel.runs is not None else ALL
     best, whole = max((_climb(channel, x, every) for x in (start, second)), key=lambda climb: climb[1])
     for part in (GROWTH, MEMORY):
