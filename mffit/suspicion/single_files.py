@@ -58,7 +58,7 @@ def dead_channel(part: Points, config: Config) -> Iterator[Finding]:
 @of_file(
     id="force-and-moment-exchanged",
     limits=(constants.LARGEST_MOMENT_ARM, constants.LARGEST_FRICTION),
-    sentence="reaches {moment:.3g} Nm at loads of {load:.0f} N while Fy_N stays below {force:.3g} N, so the headings Fy_N and "
+    sentence="reaches {moment:.0f} Nm at loads of {load:.0f} N while Fy_N stays below {force:.3g} N, so the headings Fy_N and "
     "Mz_Nm look exchanged; correct them",
 )
 def force_and_moment_exchanged(part: Points, config: Config) -> Iterator[Finding]:

@@ -6,7 +6,6 @@ from collections.abc import Mapping, Sequence
 
 from mffit.diagnosis import AcceptedEffect, Diagnosis, Gap, wording
 from mffit.diagnosis.where import Region
-from mffit.effects import NAMES
 from mffit.quantities import CHANNELS
 from mffit.report import words
 from mffit.report.text.layout import blocks, paragraphs, table, wrapped
@@ -55,7 +54,7 @@ def _effect(found: AcceptedEffect, signs: Mapping[str, float]) -> str:
     ]
     lines.append(wrapped(f"to do: {wording.remedy(found, signs)}", "  ", "  "))
     if found.tied_with:
-        rivals = ", ".join(NAMES.get(rival, rival) for rival in found.tied_with)
+        rivals = ", ".join(effect.name for effect in found.tied)
         lines.append(wrapped(f"these data cannot tell it from: {rivals}", "  ", "  "))
         lines.append(wrapped(f"to separate them: {wording.separation(found.separation)}", "  ", "  "))
     return "\n".join(lines)

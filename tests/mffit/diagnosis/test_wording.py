@@ -12,14 +12,18 @@ from mffit.diagnosis.bumps import Bump
 from mffit.diagnosis.needs import MET
 from mffit.diagnosis.noise import Noise, Scatter
 from mffit.diagnosis.notes import (
+    AnotherTyre,
     DirectMethodRedone,
     FileKept,
     HardlyThisTyre,
     ModelFittedFirst,
     ModelOfLastBuild,
+    NoiseBeyondStated,
     NoRepair,
     NotVisible,
+    OffsetsOrMemory,
     OneSweep,
+    WithoutNoise,
 )
 from mffit.diagnosis.ties import SeparatingRun, Separation
 from mffit.diagnosis.validation import Gap, Validation
@@ -120,6 +124,20 @@ def test_every_run_has_words_and_only_a_separating_one_is_recommended(run):
             FileKept(("tyre temperature",), CHECK),
             "The property file is the given one: without tyre temperature, which no property file contains, the corrected one "
             "is worse on left-out sweeps (the side force misses by 41 N instead of 36.7 N",
+        ),
+        (
+            AnotherTyre((("UNLOADED_RADIUS", 0.31, 0.2998), ("NOMPRES", 200e3, 250e3))),
+            "another tyre than tyre.toml: free radius 0.31 instead of 0.2998 m (UNLOADED_RADIUS); nominal pressure",
+        ),
+        (
+            WithoutNoise((("Fy", 1.23), ("Mz", 0.027))),
+            "1.23 N in Fy and 0.027 Nm in Mz are assumed as their noise (0.1 %",
+        ),
+        (NoiseBeyondStated("Fy", 118.0, 6.0, "coupled"), "118 N where 6 N are stated"),
+        (NoiseBeyondStated("Fy", 118.0, 6.0, "coupled"), "Most of it is in coupled: check that sweep first."),
+        (
+            OffsetsOrMemory("Fy", 0.96, 28.7, (BY_ID["run-offsets-fy"],)),
+            "(0.96 between neighbours) and may as well be a load-cell zero of Fy that differs from run to run",
         ),
         (ModelOfLastBuild("front-normal.tir"), "The model is front-normal.tir of the last build."),
         (ModelFittedFirst(turn_slip=False), "simulations with turn slip off."),
