@@ -26,6 +26,7 @@ from mffit.diagnosis.validation import gap
 from mffit.diagnosis.where import Region, where
 from mffit.effects import Effect
 from mffit.points import Points
+from mffit.rig import Simulation
 from mffit.suspicion import Outlier, outliers
 from tir import Tyre
 from tir.parameters import BY_NAME
@@ -67,6 +68,7 @@ def answer(
         after=after,
         gap_before=gap(given.measured - before, scatter),
         gap_after=gap(given.measured - after, scatter),
+        gap_named=gap(given.measured - explained, scatter),
         validation=repair.validation,
         where=where(points, given.measured - before, scatter),
         effects=tuple(_with_repair(one, done) for one in named),
@@ -135,7 +137,7 @@ def _found(found: Explanation, effect: Effect, given: DiagnosisProblem) -> Accep
     )
     tied, confidence = _judged(found, effect, step)
     separations = [separation(problem.points, chosen, t, problem.noise.Fy, problem.noise.Mz) for t in tied]
-    with_it = (found.refined if alone else step.best).state
+    with_it = found.refined.state if alone else _without_later(found, effect, step)
     numbers, stderr = found.refined.numbers, found.refined.stderr
     return AcceptedEffect(
         effect=effect,
@@ -147,6 +149,16 @@ def _found(found: Explanation, effect: Effect, given: DiagnosisProblem) -> Accep
         separation=min(separations, key=lambda s: s.chi2, default=None),
         T_ref=chosen.state.faults["T_ref_degC"] if "temperatures" in effect.needs else None,
     )
+
+
+def _without_later(found: Explanation, effect: Effect, step: ForwardStep) -> Simulation:
+    """The simulation with an effect and those accepted before it."""
+    if not found.coefficients:
+        return step.best.state
+    start, points = found.problem.start, found.problem.points
+    later = found.chosen.effects[found.chosen.effects.index(effect) + 1 :]
+    given = {name: start.number(name, points) for one in later for name in one.parameters}
+    return found.refined.state.with_numbers(given)
 
 
 def _judged(found: Explanation, effect: Effect, step: ForwardStep) -> tuple[Sequence[Hypothesis], float]:

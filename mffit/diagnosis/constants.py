@@ -209,7 +209,11 @@ LOG_ODDS_DIVISOR = Real(
     "Divides log odds: linearised coefficients, estimated noise and unknown distributions exaggerate evidence.",
     "diagnosis_study.py --doubtful --seed 21, by maximum likelihood; checked on other seeds, docs/diagnosis.md",
 )
-LIKELY_ANSWER = Real(0.5, "-", "Confidence below which the headline calls the effect a guess.")
+LIKELY_ANSWER = Real(
+    0.5,
+    "-",
+    "Confidence below which an effect is likelier wrong than right: a suspicion, which is not repaired.",
+)
 LEAST_ALTERNATIVE = Real(1e-4, "-", "Weight below which an effect is not listed as an alternative.")
 LIMIT_COVERAGE = Real(2.0, "-", "Standard deviations within which the true size of an unnamed effect lies.")
 UNCHANGED_SHARE_OF_U = Real(

@@ -58,7 +58,8 @@ class Diagnosis(Brief):
     before: np.ndarray  #: readings of the given model (2n,), Fy [N] then Mz [Nm]
     after: np.ndarray  #: readings of the corrected model (2n,), with the effects that are repaired
     gap_before: Gap
-    gap_after: Gap
+    gap_after: Gap  #: of the corrected model
+    gap_named: Gap  #: with all effects that are named, repaired or not
     validation: Validation
     where: tuple[Region, ...]
     effects: tuple[AcceptedEffect, ...]

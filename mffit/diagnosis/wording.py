@@ -76,7 +76,7 @@ def _nothing_named(diagnosis: Diagnosis) -> str:
 
 def _named(diagnosis: Diagnosis) -> str:
     effects, bump = diagnosis.repaired or diagnosis.effects, diagnosis.bump
-    after = diagnosis.gap_after if diagnosis.repaired else effects[-1].gap_after
+    after = diagnosis.gap_after if diagnosis.repaired else diagnosis.gap_named
     names, one = " and ".join(map(_with_ties, effects)), len(effects) == 1
     verdict = f"The missing {'effect is' if one else 'effects are'} {names}"
     if min(_confidence_of_tie(found, diagnosis.alternatives) for found in effects) < constants.LIKELY_ANSWER:
