@@ -167,10 +167,17 @@ def _judged(found: Explanation, effect: Effect, step: ForwardStep) -> tuple[Sequ
         tied = found.predicted[effect.id].tied
         return tied, found.certainty(effect) / (1.0 + len(tied))
     rivals = _rivals(found.problem, found.chosen, effect, step)
-    leads = [found.chosen.lead(rival) for rival in rivals]
-    weights = [math.exp(min(-lead, 50.0)) for lead in leads]
-    tied = tuple(r for r, lead in zip(rivals, leads, strict=True) if lead < constants.TIED_EVIDENCE)
+    weights = [math.exp(min(rival.log_evidence - found.chosen.log_evidence, 50.0)) for rival in rivals]
+    tied = tuple(rival for rival in rivals if _tied(found.chosen, rival))
     return tied, tempered(found.certainty(effect) * (1.0 / (1.0 + sum(weights))))
+
+
+def _tied(chosen: Hypothesis, rival: Hypothesis) -> bool:
+    """Whether a rival is as good, or nearly so and so alike that these readings are not expected to separate the two."""
+    lead = chosen.log_evidence - rival.log_evidence
+    if chosen.apart(rival) < constants.SEPARATING_CHI2:
+        return lead < constants.TIED_EVIDENCE_OF_ALIKE
+    return lead < constants.TIED_EVIDENCE
 
 
 def _rivals(

@@ -137,6 +137,9 @@ EVIDENCE_MARGIN = Real(
     "checked with diagnosis_study.py --seed 3: nothing hidden, nothing named 20 of 20, docs/diagnosis.md",
 )  # fmt: skip
 TIED_EVIDENCE = Real(1.5, "-", "Difference of log evidence below which effects count as tied.")
+TIED_EVIDENCE_OF_ALIKE = Real(
+    3.0, "-", "The same for effects that these data are not expected to separate: odds of 20, the usual 5 %."
+)
 UNIDENTIFIED_LOG_ODDS = Real(
     1.0, "-", "Added to the log prior odds of a coefficient at zero, else subtracted."
 )

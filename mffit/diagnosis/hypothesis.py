@@ -37,15 +37,9 @@ class Hypothesis:
         """Orthonormal directions (m, k) of the whitened readings that the fitted numbers can follow."""
         return np.linalg.qr(self.jacobian)[0] if self.jacobian.shape[1] else self.jacobian
 
-    def lead(self, rival: Hypothesis) -> float:
-        """Log evidence over a rival; less what a rival of as many numbers pays more for their freedom.
-
-        Usual sizes are known roughly, so they must not decide between two effects that explain small changes alike.
-        """
-        lead, paid = self.log_evidence - rival.log_evidence, rival.freedom - self.freedom
-        if len(self.numbers) != len(rival.numbers) or lead < 0.0 or paid < 0.0:
-            return lead
-        return max(lead - paid, 0.0)
+    def apart(self, rival: Hypothesis) -> float:
+        """Expected chi2 by which these readings separate two fitted hypotheses, if one of them is true."""
+        return float(np.sum((self.residual - rival.residual) ** 2))
 
     def others(self, effect: Effect) -> tuple[Effect, ...]:
         """All effects but one."""

@@ -178,7 +178,6 @@ class DiagnosisProblem:
             state=self.start.with_numbers(values),
             residual=-found.data,
             jacobian=-found.jacobian,
-            freedom=occam,
         )
 
     def within(self, names: Sequence[str], fixed: Mapping[str, float]) -> LeastSquaresProblem:
