@@ -17,8 +17,11 @@ from mffit.cli.console import NOT_TRUSTED, Voice, out_option, tyre_toml_argument
     help="The simulation's .tir [default: that of the last build].",
 )
 @out_option("Folder to write to [default: out/diagnosis/ beside TYRE_TOML].")
+@click.option(
+    "--repair-all", is_flag=True, help="Correct the model for uncertain effects too (confidence below 50 %)."
+)
 @voiced
-def diagnose(tyre_toml: Path, model: Path | None, out: Path | None, voice: Voice) -> None:
+def diagnose(tyre_toml: Path, model: Path | None, out: Path | None, repair_all: bool, voice: Voice) -> None:
     """Find effects that a simulation lacks.
 
     Shows where simulation and measurement disagree, names the effects that explain it, and corrects the model.
@@ -29,12 +32,10 @@ def diagnose(tyre_toml: Path, model: Path | None, out: Path | None, voice: Voice
 
     out = out or tyre_toml.parent / "out" / "diagnosis"
     with voice.progress() as show:
-        diagnosis = pipeline.diagnose(tyre_toml, model, out=out, progress=show)
+        diagnosis = pipeline.diagnose(tyre_toml, model, out=out, repair_all=repair_all, progress=show)
     voice.say(text.diagnosis_summary(diagnosis))
-    model_after = (
-        diagnosis.model_after if diagnosis.effects else f"{diagnosis.model_after} (the model as given)"
-    )
-    voice.say(f"written to {out}: diagnosis.html, diagnosis.json, {model_after}, corrected.toml")
+    models = text.models_written(diagnosis)
+    voice.say(f"written to {out}: diagnosis.html, diagnosis.json, {models}, corrected.toml")
     voice.give(lambda: as_json.diagnosis(diagnosis))
     if not diagnosis.trusted:
         click.echo(f"{diagnosis.model_after} is not to be trusted: see above", err=True)

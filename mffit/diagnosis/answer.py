@@ -15,42 +15,51 @@ from mffit.diagnosis.explanation import Explanation
 from mffit.diagnosis.hypothesis import Hypothesis
 from mffit.diagnosis.limits import limits
 from mffit.diagnosis.noise import Noise
-from mffit.diagnosis.notes import HardlyThisTyre, Note
+from mffit.diagnosis.notes import HardlyThisTyre, NoiseBeyondStated, Note
 from mffit.diagnosis.problem import DiagnosisProblem
+from mffit.diagnosis.repair import Repair
 from mffit.diagnosis.result import AcceptedEffect, Diagnosis
 from mffit.diagnosis.selection import ForwardStep
 from mffit.diagnosis.tails import outlying
 from mffit.diagnosis.ties import separation
-from mffit.diagnosis.validation import Validation, gap
+from mffit.diagnosis.validation import gap
 from mffit.diagnosis.where import Region, where
 from mffit.effects import Effect
 from mffit.points import Points
+from mffit.rig import Simulation
 from mffit.suspicion import Outlier, outliers
 from tir import Tyre
 from tir.parameters import BY_NAME
 
 
+def named_effects(found: Explanation, given: DiagnosisProblem) -> tuple[AcceptedEffect, ...]:
+    """The records of all accepted effects, each judged beside the others."""
+    return tuple(_found(found, effect, given) for effect in found.chosen.effects)
+
+
 def answer(
     found: Explanation,
+    named: Sequence[AcceptedEffect],
+    repair: Repair,
     given: DiagnosisProblem,
     tyre: Tyre,
     config: Config,
-    validation: Validation,
     notes: Sequence[Note],
     candidates: Sequence[Effect],
 ) -> Diagnosis:
     """The record of an explanation.
 
-    ``found`` is what left-out sweeps confirm; ``given`` is the problem before it.
+    ``found`` is what left-out sweeps confirm, with the ``named`` effects; ``given`` is the problem before it.
     """
     points, chosen, scatter = given.points, found.chosen, found.scatter
-    before = after = given.start.predict(points)
-    if chosen.effects or found.coefficients:
-        after = found.refined.state.predict(points)
-    hardly = any(isinstance(note, HardlyThisTyre) for note in notes)
+    before = given.start.predict(points)
+    explained = found.refined.state.predict(points) if chosen.effects or found.coefficients else before
+    done = repair.explanation
+    after = done.refined.state.predict(points) if done.chosen.effects or done.coefficients else before
+    hardly = any(isinstance(note, HardlyThisTyre | NoiseBeyondStated) for note in notes)
     unexplained = found.bump.found or found.smooth.found or hardly
-    named = tuple(_found(found, effect, given) for effect in chosen.effects)
     known = {i for one in named for i in (one.effect.id, *one.tied_with)}
+    corrected = _corrected(tyre, done)
     diagnosis = Diagnosis(
         headline="",
         points=points,
@@ -59,26 +68,36 @@ def answer(
         after=after,
         gap_before=gap(given.measured - before, scatter),
         gap_after=gap(given.measured - after, scatter),
-        validation=validation,
+        gap_named=gap(given.measured - explained, scatter),
+        validation=repair.validation,
         where=where(points, given.measured - before, scatter),
-        effects=named,
+        effects=tuple(_with_repair(one, done) for one in named),
         alternatives=_alternatives(found.steps, chosen),
         steps=tuple(found.steps),
         unexplained=unexplained,
-        unexplained_where=_remaining(found, given.measured - after) if unexplained else (),
+        unexplained_where=_remaining(found, given.measured - explained) if unexplained else (),
         bump=found.bump if found.bump.found else None,
         smooth=found.smooth if found.smooth.found else None,
-        outliers=_outliers(points, after, scatter),
-        coefficients=dict(found.coefficients),
+        outliers=_outliers(points, explained, scatter),
+        coefficients=dict(done.coefficients),
         limits=limits(found.problem, chosen, candidates, known),
         given=given.start,
-        state=found.refined.state,
+        state=done.refined.state,
         signs=axis_signs(config),
-        tyre=_corrected(tyre, found),
+        tyre=tyre if repair.keeps_file else corrected,
+        with_terms=corrected if repair.keeps_file else None,
         notes=tuple(notes),
         model_after=f"{config.tyre.name}.tir",
     )
     return replace(diagnosis, headline=wording.headline(diagnosis))
+
+
+def _with_repair(named: AcceptedEffect, done: Explanation) -> AcceptedEffect:
+    """The record, with the numbers of the repair if the effect is repaired."""
+    if named.effect not in done.chosen.effects:
+        return replace(named, repaired=False)
+    numbers, stderr = done.refined.numbers, done.refined.stderr
+    return replace(named, parameters={n: (numbers[n], stderr.get(n, 0.0)) for n in named.parameters})
 
 
 def _remaining(found: Explanation, residual: np.ndarray) -> tuple[Region, ...]:
@@ -118,7 +137,7 @@ def _found(found: Explanation, effect: Effect, given: DiagnosisProblem) -> Accep
     )
     tied, confidence = _judged(found, effect, step)
     separations = [separation(problem.points, chosen, t, problem.noise.Fy, problem.noise.Mz) for t in tied]
-    with_it = (found.refined if alone else step.best).state
+    with_it = found.refined.state if alone else _without_later(found, effect, step)
     numbers, stderr = found.refined.numbers, found.refined.stderr
     return AcceptedEffect(
         effect=effect,
@@ -132,16 +151,33 @@ def _found(found: Explanation, effect: Effect, given: DiagnosisProblem) -> Accep
     )
 
 
+def _without_later(found: Explanation, effect: Effect, step: ForwardStep) -> Simulation:
+    """The simulation with an effect and those accepted before it."""
+    if not found.coefficients:
+        return step.best.state
+    start, points = found.problem.start, found.problem.points
+    later = found.chosen.effects[found.chosen.effects.index(effect) + 1 :]
+    given = {name: start.number(name, points) for one in later for name in one.parameters}
+    return found.refined.state.with_numbers(given)
+
+
 def _judged(found: Explanation, effect: Effect, step: ForwardStep) -> tuple[Sequence[Hypothesis], float]:
     """Explanations with another effect in the place of one that are as good, and the confidence in this one."""
     if effect.id in found.predicted:  # beside structure that may be anything, evidence decides little
         tied = found.predicted[effect.id].tied
         return tied, found.certainty(effect) / (1.0 + len(tied))
-    evidence = found.chosen.log_evidence
     rivals = _rivals(found.problem, found.chosen, effect, step)
-    weights = [math.exp(min(rival.log_evidence - evidence, 50.0)) for rival in rivals]
-    tied = tuple(r for r in rivals if evidence - r.log_evidence < constants.TIED_EVIDENCE)
+    weights = [math.exp(min(rival.log_evidence - found.chosen.log_evidence, 50.0)) for rival in rivals]
+    tied = tuple(rival for rival in rivals if _tied(found.chosen, rival))
     return tied, tempered(found.certainty(effect) * (1.0 / (1.0 + sum(weights))))
+
+
+def _tied(chosen: Hypothesis, rival: Hypothesis) -> bool:
+    """Whether a rival is as good, or nearly so and so alike that these readings are not expected to separate the two."""
+    lead = chosen.log_evidence - rival.log_evidence
+    if chosen.apart(rival) < constants.SEPARATING_CHI2:
+        return lead < constants.TIED_EVIDENCE_OF_ALIKE
+    return lead < constants.TIED_EVIDENCE
 
 
 def _rivals(

@@ -13,6 +13,14 @@ OPPOSED_CORRELATION = Real(
     -0.3, "-", "Correlation of measured and simulated readings below which signs differ."
 )
 MISFIT_OF_ANOTHER_TYRE = Real(30.0, "-", "Misfit over noise above which naming an effect would be a guess.")
+SAME_TYRE_DIMENSION = Real(
+    0.02,
+    "-",
+    "Relative difference of a dimension that wear and a tape measure explain; beyond it, another tyre.",
+)
+SAME_TYRE_REFERENCE = Real(
+    0.05, "-", "Relative difference of nominal load or pressure beyond which a model may be of another tyre."
+)
 FEWEST_POINTS_OF_A_CONDITION = Count(8, "-", "A setting with fewer points was swept, not held.")
 
 # What the data must vary for an effect to be visible
@@ -38,9 +46,25 @@ FEWEST_POINTS_FOR_NEIGHBOURS = Count(
 NOISE_SHARE_OF_SPAN = Real(
     0.01, "-", "Noise over the span of the misfit where sweeps are too short to show it."
 )
+NO_NOISE_SHARE = Real(
+    2e-4,
+    "-",
+    "Scatter over the rms reading below which readings come from a simulation; rigs reach 0.001 at best.",
+)
+ASSUMED_NOISE_SHARE = Real(
+    1e-3, "-", "Noise over the rms reading that is assumed for readings without noise: that of the best rigs."
+)
 
 # Scatter as found
 STATED_NOISE_FACTOR = Real(2.0, "-", "Usual factor (1 sigma) between true and stated uncertainties.")
+NOISE_BEYOND_STATED = Real(
+    4.0,
+    "-",
+    "Noise over the stated one above which it is unexplained misfit: two standard deviations of that factor.",
+)
+ODD_SWEEP_RATIO = Real(
+    5.0, "-", "Rms misfit of a sweep over the median of all sweeps above which it is said to be the odd one."
+)
 SCATTER_PART_GAIN = Real(4.0, "-", "Gain in log likelihood that growth, memory or heavy tails must bring.")
 LOG_SCALE_BOUNDS = Series((-7.0, 12.0), "-", "Bounds of the logarithm of the scale; its prior is narrower.")
 LARGEST_NOISE_GROWTH = Real(0.2, "-", "Upper bound of the noise that grows with the reading.")
@@ -55,7 +79,17 @@ SCATTER_SECOND_START = Series(
     "-",
     "Second start of this search: log scale, growth, memory, smooth amplitude; there may be two maxima.",
 )
-SCATTER_STEPS = Series((1.0, 0.02, 1.0, 0.05), "-", "Typical changes of log scale, growth, memory, smooth.")
+SCATTER_STEPS = Series(
+    (1.0, 0.02, 1.0, 0.05, 1.0),
+    "-",
+    "Typical changes of log scale, growth, memory, smooth amplitude, offsets of runs.",
+)
+RUN_OFFSET_GAIN = Real(
+    8.0,
+    "-",
+    "Log likelihood over a memory of the errors alone that offsets of runs need: the price of any effect, rounded up.",
+)
+RUN_OFFSET_BOUNDS = Series((0.0, 50.0), "-", "Bounds of the size of offsets of runs over the usual one.")
 MOST_SCATTER_STEPS = Count(
     20, "-", "Most steps of a search for the scatter; its likelihood is flat near the maximum."
 )
@@ -103,6 +137,9 @@ EVIDENCE_MARGIN = Real(
     "checked with diagnosis_study.py --seed 3: nothing hidden, nothing named 20 of 20, docs/diagnosis.md",
 )  # fmt: skip
 TIED_EVIDENCE = Real(1.5, "-", "Difference of log evidence below which effects count as tied.")
+TIED_EVIDENCE_OF_ALIKE = Real(
+    3.0, "-", "The same for effects that these data are not expected to separate: odds of 20, the usual 5 %."
+)
 UNIDENTIFIED_LOG_ODDS = Real(
     1.0, "-", "Added to the log prior odds of a coefficient at zero, else subtracted."
 )
@@ -169,7 +206,11 @@ LOG_ODDS_DIVISOR = Real(
     "Divides log odds: linearised coefficients, estimated noise and unknown distributions exaggerate evidence.",
     "diagnosis_study.py --doubtful --seed 21, by maximum likelihood; checked on other seeds, docs/diagnosis.md",
 )
-LIKELY_ANSWER = Real(0.5, "-", "Confidence below which the headline calls the effect a guess.")
+LIKELY_ANSWER = Real(
+    0.5,
+    "-",
+    "Confidence below which an effect is likelier wrong than right: a suspicion, which is not repaired.",
+)
 LEAST_ALTERNATIVE = Real(1e-4, "-", "Weight below which an effect is not listed as an alternative.")
 LIMIT_COVERAGE = Real(2.0, "-", "Standard deviations within which the true size of an unnamed effect lies.")
 UNCHANGED_SHARE_OF_U = Real(

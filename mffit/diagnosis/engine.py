@@ -8,7 +8,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from mffit.config import Config, axis_signs, declared_faults
-from mffit.diagnosis.answer import answer
+from mffit.diagnosis.answer import answer, named_effects
 from mffit.diagnosis.conditions import by_condition
 from mffit.diagnosis.explain import explain, only_first
 from mffit.diagnosis.explanation import Explanation
@@ -18,9 +18,16 @@ from mffit.diagnosis.needs import possible
 from mffit.diagnosis.notes import NoRepair, Note, OneSweep
 from mffit.diagnosis.priors import declared_priors, zeros_of_setups
 from mffit.diagnosis.problem import DiagnosisProblem
+from mffit.diagnosis.repair import repair
 from mffit.diagnosis.result import Diagnosis
 from mffit.diagnosis.stated import stated_noise, with_uncertainties
-from mffit.diagnosis.strangers import named_of_this_tyre, refuse_strangers
+from mffit.diagnosis.strangers import (
+    named_of_this_tyre,
+    noise_beyond_stated,
+    offsets_or_memory,
+    refuse_strangers,
+    without_noise,
+)
 from mffit.diagnosis.validation import Validation, validate
 from mffit.effects import CATALOG, Effect
 from mffit.points import Points
@@ -39,6 +46,7 @@ def diagnose(
     effects: Sequence[Effect] = CATALOG,
     coefficients: Inexactness | None = None,
     seen: bool = False,
+    repair_all: bool = False,
     progress: Progress = silent,
 ) -> Diagnosis:
     """Find where a model disagrees with points, and the effects that explain it.
@@ -52,6 +60,7 @@ def diagnose(
     effects : the library to choose from; add your own records to the catalogue's
     coefficients : prior of the model's coefficients; default from ``model.u_coefficients``
     seen : whether the model was fitted to these points
+    repair_all : correct model and readings for uncertain effects too, see :mod:`mffit.diagnosis.repair`
     progress : called with a sentence before each step
 
     Returns
@@ -79,8 +88,13 @@ def diagnose(
     progress("checking on left-out sweeps")
     given = DiagnosisProblem(points, start, found.plain.noise)
     found, validation, refused = _confirmed(found, given, inexact, seen=seen)
-    remarks = [note for note in (wrong, *notes, stranger, refused) if note is not None]
-    return answer(found, given, tyre, config, validation, remarks, candidates)
+    exact = without_noise(found.scatter)
+    named = named_effects(found, given)
+    done = repair(found, named, given, inexact, validation, seen=seen, every=repair_all)
+    memories = offsets_or_memory(found.scatter, candidates, found.chosen.ids)
+    remarks = (wrong, exact, *noise_beyond_stated(found), *memories, *notes, stranger, refused, done.refused)
+    notes = [note for note in remarks if note is not None]
+    return answer(found, named, done, given, tyre, config, notes, candidates)
 
 
 def _simulation(points: Points, tyre: Tyre, config: Config, rig: Mapping[str, float] | None) -> Simulation:
@@ -135,5 +149,4 @@ def _confirmed(
         validation = validate(given, fewer.refined, inexact, seen=seen)
         if validation.helps:
             return fewer, validation, refused
-    before = validation.gap_before
-    return found.withdrawn(), Validation(validation.folds, before, before), refused
+    return found.withdrawn(), validation.without_repair(), refused

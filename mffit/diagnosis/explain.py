@@ -8,7 +8,7 @@ from dataclasses import replace
 from mffit.diagnosis import constants
 from mffit.diagnosis.explanation import Explanation
 from mffit.diagnosis.inexact import Inexactness
-from mffit.diagnosis.learning import learned_noise, settled
+from mffit.diagnosis.learning import beyond_memory, learned_noise, settled
 from mffit.diagnosis.noise import Noise
 from mffit.diagnosis.prediction import LeftOutPrediction, chosen_by_prediction, judged
 from mffit.diagnosis.problem import DiagnosisProblem
@@ -53,16 +53,20 @@ def explain(
         last = found
         # Coefficients linearised at the start look like structure without a name: it competes from the second round on.
         if found is None and inexact:
-            found = selected(problem, candidates, basis)
+            found = selected(problem, beyond_memory(noise, candidates), basis)
         else:
-            found = competed(problem, columns, candidates, basis)
+            found = competed(problem, columns, beyond_memory(noise, candidates), basis)
         if found.smooth.found:
             found = certain(found, counted=not seen)
         found = found.with_coefficients(inexact)
         if last is not None and found.chosen.ids == last.chosen.ids:
             break
     assert found is not None
-    return _predicting(found, candidates, inexact) if seen and found.smooth.found else found
+    return (
+        _predicting(found, beyond_memory(noise, candidates), inexact)
+        if seen and found.smooth.found
+        else found
+    )
 
 
 def _predicting(found: Explanation, candidates: Sequence[Effect], inexact: Inexactness) -> Explanation:

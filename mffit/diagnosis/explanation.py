@@ -8,6 +8,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
+from mffit.diagnosis import constants
 from mffit.diagnosis.bumps import Bump, BumpScan
 from mffit.diagnosis.hypothesis import Hypothesis
 from mffit.diagnosis.inexact import Inexactness
@@ -85,6 +86,9 @@ class Explanation:
         gain, left = chosen.log_evidence - without.log_evidence, self.left(chosen)
         against = gain + left - self.left(without) - math.log(max(len(self.steps[0].trials), 1))
         open_ = left + (self.smooth.gain if self.smooth.found else 0.0) if counted else 0.0
+        if effect.id in self.problem.noise.offsets:  # a memory of the errors is another rival
+            offsets = self.problem.noise.offsets[effect.id]
+            against = min(against, offsets.gain - constants.RUN_OFFSET_GAIN)
         explains = max(gain, self.unaided.get(effect.id, 0.0), 0.0)
         share = explains / (explains + open_) if open_ else 1.0
         return float(share / (1.0 + math.exp(-float(np.clip(against, -500.0, 500.0)))))

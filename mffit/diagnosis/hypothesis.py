@@ -23,6 +23,9 @@ class Hypothesis:
     state: Simulation
     residual: np.ndarray  #: whitened, (m,)
     jacobian: np.ndarray  #: whitened, per freed number (m, k)
+    freedom: float = (
+        0.0  #: log evidence paid for the freed numbers; it depends on how large effects usually are
+    )
 
     @property
     def ids(self) -> frozenset[str]:
@@ -33,6 +36,10 @@ class Hypothesis:
     def axes(self) -> np.ndarray:
         """Orthonormal directions (m, k) of the whitened readings that the fitted numbers can follow."""
         return np.linalg.qr(self.jacobian)[0] if self.jacobian.shape[1] else self.jacobian
+
+    def apart(self, rival: Hypothesis) -> float:
+        """Expected chi2 by which these readings separate two fitted hypotheses, if one of them is true."""
+        return float(np.sum((self.residual - rival.residual) ** 2))
 
     def others(self, effect: Effect) -> tuple[Effect, ...]:
         """All effects but one."""

@@ -39,12 +39,12 @@ def learned_noise(
     nothing = np.zeros((2 * len(points), 0))
     # The slope of each effect, and the first finite step of a number without slope at zero.
     columns = {e: groups[:2] for e, groups in problem.columns(state, candidates).items()}
-    runs = np.column_stack([nothing, *(g[0] for e, g in columns.items() if e.differs_by_run)])
+    runs = {e.id: g[0] for e, g in columns.items() if e.differs_by_run}
     others = [g for e, groups in columns.items() if not e.differs_by_run for g in groups]
     generous = constants.GENEROUS_EFFECT_SIZE
     named = np.column_stack([nothing, *(generous * g for g in others), inexact.columns(points, state)])
     named = _with_bumps(problem, residual, named, basis)
-    explained = ExplainingColumns(named=named, runs=generous * runs, smooth=basis)
+    explained = ExplainingColumns(named=named, runs=runs, smooth=basis)
     return learned(replace(stated, scatter=before.scatter), residual, explained, predicted).alone()
 
 
@@ -65,6 +65,22 @@ def _with_bumps(
             break
         named = np.column_stack([named, constants.GENEROUS_EFFECT_SIZE * scan.plausible(bump)])
     return named
+
+
+def beyond_memory(noise: Noise, candidates: Sequence[Effect]) -> list[Effect]:
+    """The candidates without offsets of runs that errors with a memory explain as well.
+
+    Offsets that exceed the memory get the spread that was found with the memory beside them.
+    """
+    kept = []
+    for effect in candidates:
+        offsets = noise.offsets.get(effect.id)
+        if offsets is None:
+            kept.append(effect)
+        elif offsets.gain > constants.RUN_OFFSET_GAIN:
+            wider = max(offsets.size, 1.0)
+            kept.append(replace(effect, free=tuple(replace(f, spread=wider * f.spread) for f in effect.free)))
+    return kept
 
 
 def settled(before: Noise, after: Noise) -> bool:

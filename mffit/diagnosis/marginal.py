@@ -21,6 +21,7 @@ class MarginalParts(NamedTuple):
     growth: float
     memory: float
     smooth: float  #: amplitude of smooth structure, relative to the channel
+    offsets: float = 0.0  #: size of offsets of runs over the usual one
 
 
 @dataclass(frozen=True)
@@ -34,10 +35,14 @@ class MarginalChannel:
     named: np.ndarray  #: (m, k) changes that effects could bring, one prior standard deviation each
     smooth: np.ndarray  #: (m, k) the same of smooth structure, at amplitude 1
     weight: np.ndarray  #: weight of each reading
+    runs: np.ndarray | None = (
+        None  #: (m, k) the same of offsets of runs at their usual size; None: they are not considered
+    )
+    least: float = 0.0  #: standard uncertainty that is always added, for readings without noise
 
     def beside(self, columns: np.ndarray) -> MarginalChannel:
-        """The same with further changes (m, k) that could explain the residual."""
-        return replace(self, named=np.hstack([self.named, columns]))
+        """The same with offsets of runs, whose changes (m, k) have the usual size."""
+        return replace(self, runs=columns)
 
     def likelihood(self, parts: MarginalParts) -> float:
         """Logarithm of the marginal likelihood, with the prior of the scale; of some whole sweeps if there are many."""
@@ -71,9 +76,12 @@ class MarginalChannel:
         self, parts: MarginalParts, rows: np.ndarray, linked: tuple[np.ndarray, np.ndarray]
     ) -> tuple[np.ndarray, np.ndarray, float]:
         """Residual and columns of some readings in units of their scatter, and the log determinant of that division."""
-        u = np.hypot(math.exp(parts.log_scale) * self.stated, parts.growth * self.size) / np.sqrt(self.weight)
-        u = u[rows]
-        A = np.column_stack([self.residual[rows], self.named[rows], parts.smooth * self.smooth[rows]])
+        u = np.hypot(math.exp(parts.log_scale) * self.stated, parts.growth * self.size)
+        u = np.hypot(u, self.least)[rows] / np.sqrt(self.weight[rows])
+        columns = [self.residual[rows], self.named[rows], parts.smooth * self.smooth[rows]]
+        if self.runs is not None and parts.offsets:
+            columns.append(parts.offsets * self.runs[rows])
+        A = np.column_stack(columns)
         A /= u[:, None]
         log = float(np.sum(np.log(u)))
         if parts.memory:

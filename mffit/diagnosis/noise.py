@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from enum import Enum
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 from scipy.sparse import csc_matrix
@@ -30,6 +31,17 @@ class Scatter:
     growth: float = 0.0  #: standard uncertainty over the reading, added in quadrature
     memory: float = 0.0  #: correlation from one point to the next along a sweep
     tails: float = np.inf  #: degrees of freedom of Student's t, infinite where the scatter is normal
+    without_noise: bool = (
+        False  #: whether the readings hardly scatter, as those of a simulation; the noise is assumed
+    )
+
+
+class RunOffsets(NamedTuple):
+    """Offsets of whole runs, as the likelihood of the scatter sees them beside errors with a memory."""
+
+    gain: float  #: of log likelihood over the memory alone
+    size: float  #: over the usual one
+    channels: frozenset[str]  #: with a memory, in which the offsets appear
 
 
 @dataclass(frozen=True)
@@ -47,6 +59,8 @@ class Noise:
     scatter: Mapping[str, Scatter] = field(default_factory=lambda: dict.fromkeys(CHANNELS, Scatter()))
     weight: np.ndarray | None = None  #: (2n,) of each reading, below 1 for outliers; None: all 1
     shared: np.ndarray | None = None  #: (2n, k) changes that readings share, one standard deviation each
+    offsets: Mapping[str, RunOffsets] = field(default_factory=dict)
+    """By id of the effect: offsets of runs that errors with a memory look like; empty without a memory."""
 
     @property
     def Fy(self) -> float:
@@ -57,6 +71,10 @@ class Noise:
     def Mz(self) -> float:
         """Typical noise of Mz [Nm]; NaN if Mz was not measured."""
         return _typical(self.u, "Mz")
+
+    def typical(self, channel: str) -> float:
+        """Typical noise of a channel; NaN if it was not measured."""
+        return _typical(self.u, channel)
 
     def typically_stated(self, channel: str) -> float:
         """Typical uncertainty of a channel as stated."""
@@ -125,6 +143,18 @@ class Noise:
         y = self._transposed.solve(chosen)
         axes, variance = self._axes
         return float(np.sqrt(y @ y + variance @ (axes.T @ y) ** 2))
+
+    def assumed(self, channels: Mapping[str, float]) -> Noise:
+        """The noise with independent errors of the given size [N], [Nm] in some channels."""
+        u, weight = self.u.copy(), np.ones(len(self.u)) if self.weight is None else self.weight.copy()
+        scatter = dict(self.scatter)
+        for name, rows in zip(CHANNELS, np.split(np.arange(len(u)), 2), strict=True):
+            if name in channels:
+                weight[rows] = 1.0
+                u[rows] = np.where(np.isfinite(self.stated[rows]), channels[name], np.inf)
+                scale = channels[name] / self.typically_stated(name)
+                scatter[name] = Scatter(scale=scale, without_noise=True)
+        return replace(self, u=u, weight=weight, scatter=scatter)
 
     def subset(self, keep: np.ndarray) -> Noise:
         """The noise of some points (mask (n,)), with the covariance among them."""

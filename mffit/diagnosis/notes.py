@@ -16,6 +16,42 @@ class OneSweep:
 
 
 @dataclass(frozen=True, slots=True)
+class AnotherTyre:
+    """The model states other dimensions or nominal conditions than the configuration."""
+
+    differences: tuple[
+        tuple[str, float, float], ...
+    ]  #: key of the property file, its value in the model, its value in tyre.toml
+
+
+@dataclass(frozen=True, slots=True)
+class WithoutNoise:
+    """The readings of some channels hardly scatter, as those of a simulation."""
+
+    assumed: tuple[tuple[str, float], ...]  #: channel, and the noise that is assumed [N], [Nm]
+
+
+@dataclass(frozen=True, slots=True)
+class NoiseBeyondStated:
+    """The readings of a channel scatter far more than stated, which hides misfit that nothing explains."""
+
+    channel: str
+    noise: float  #: typical, [N] or [Nm]
+    stated: float  #: the same as stated
+    sweep: str = ""  #: the sweep that is off much further than all others, if any
+
+
+@dataclass(frozen=True, slots=True)
+class OffsetsOrMemory:
+    """Errors of a channel that are correlated along sweeps may be offsets of runs; these data cannot separate them."""
+
+    channel: str
+    memory: float  #: correlation from one point to the next
+    noise: float  #: typical, [N] or [Nm]
+    effects: tuple[Effect, ...]  #: offsets of runs that are as likely
+
+
+@dataclass(frozen=True, slots=True)
 class NotVisible:
     """Effects that the data cannot show."""
 
@@ -36,6 +72,14 @@ class NoRepair:
     """The best explanation raises the gap on left-out sweeps and is not written."""
 
     effects: tuple[str, ...]  #: their names
+    validation: Validation
+
+
+@dataclass(frozen=True, slots=True)
+class FileKept:
+    """The corrected property file without its rig and environment terms is worse than the given one, which is kept."""
+
+    terms: tuple[str, ...]  #: names of the effects that no file contains
     validation: Validation
 
 
@@ -65,9 +109,14 @@ class DirectMethodRedone:
 Note = (
     OneSweep
     | Misread
+    | AnotherTyre
+    | WithoutNoise
+    | OffsetsOrMemory
+    | NoiseBeyondStated
     | NotVisible
     | HardlyThisTyre
     | NoRepair
+    | FileKept
     | ModelOfLastBuild
     | ModelFittedFirst
     | DirectMethodRedone

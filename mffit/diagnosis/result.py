@@ -25,6 +25,9 @@ from mffit.rig_errors import Faults
 from mffit.suspicion import SOUND, Outlier, Trust
 from tir import Tyre
 
+WITH_TERMS = "-with-terms.tir"
+"""Ending of the property file that is right only with terms beside it."""
+
 
 @dataclass(frozen=True, slots=True)
 class AcceptedEffect:
@@ -38,6 +41,7 @@ class AcceptedEffect:
     tied: tuple[Effect, ...]  #: effects that explain the data as well in its place
     separation: Separation | None  #: the run that separates them, if any is tied
     T_ref: float | None = None  #: reference temperature of an effect of temperature [degC]
+    repaired: bool = True  #: whether model and readings are corrected for it; otherwise it is a suspicion
 
     @property
     def tied_with(self) -> tuple[str, ...]:
@@ -53,9 +57,10 @@ class Diagnosis(Brief):
     points: Points
     noise: Noise
     before: np.ndarray  #: readings of the given model (2n,), Fy [N] then Mz [Nm]
-    after: np.ndarray  #: readings of the corrected model (2n,)
+    after: np.ndarray  #: readings of the corrected model (2n,), with the effects that are repaired
     gap_before: Gap
-    gap_after: Gap
+    gap_after: Gap  #: of the corrected model
+    gap_named: Gap  #: with all effects that are named, repaired or not
     validation: Validation
     where: tuple[Region, ...]
     effects: tuple[AcceptedEffect, ...]
@@ -72,9 +77,11 @@ class Diagnosis(Brief):
     given: Simulation  #: the simulation as given
     state: Simulation  #: the simulation after all corrections
     signs: Mapping[str, float]  #: +1 or -1 per channel: the rig's axes over ISO-W
-    tyre: Tyre  #: the corrected property file
+    tyre: Tyre  #: the corrected property file, or the given one if that is better alone
     notes: tuple[Note, ...]
     model_after: str  #: file name of the corrected model in the output folder
+    with_terms: Tyre | None = None
+    """The corrected property file if it is right only with the terms of rig and environment; ``tyre`` is the given one then."""
     made: Made | None = None  #: set by the command
     trust: Trust = SOUND  #: the judgement of the corrected model
 
@@ -87,6 +94,26 @@ class Diagnosis(Brief):
     def reasons(self) -> tuple[str, ...]:
         """Why it is not to be trusted, as sentences; empty for a sound one."""
         return self.trust.reasons
+
+    @property
+    def repaired(self) -> tuple[AcceptedEffect, ...]:
+        """The effects for which model and readings are corrected."""
+        return tuple(found for found in self.effects if found.repaired)
+
+    @property
+    def suspected(self) -> tuple[AcceptedEffect, ...]:
+        """The effects that are named but not repaired."""
+        return tuple(found for found in self.effects if not found.repaired)
+
+    @property
+    def terms(self) -> tuple[AcceptedEffect, ...]:
+        """The repaired effects of rig and environment, which no property file contains."""
+        return tuple(found for found in self.repaired if found.effect.kind != "tyre")
+
+    @property
+    def model_with_terms(self) -> str | None:
+        """File name of the property file that is right only with the terms of rig and environment; None without one."""
+        return None if self.with_terms is None else self.model_after.removesuffix(".tir") + WITH_TERMS
 
     @property
     def faults(self) -> Faults:

@@ -7,6 +7,7 @@ their priors, so that the scatter is what none of them explains.
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -14,9 +15,10 @@ from scipy.optimize import minimize
 
 from mffit.diagnosis import constants
 from mffit.diagnosis.marginal import MarginalChannel, MarginalParts
-from mffit.diagnosis.noise import Noise, Scatter
+from mffit.diagnosis.noise import Noise, RunOffsets, Scatter
 from mffit.diagnosis.tails import heavy_tails, weights
 from mffit.quantities import CHANNELS
+from mffit.scatter import rms
 
 BOUNDS = np.array(
     [
@@ -24,11 +26,12 @@ BOUNDS = np.array(
         (0.0, constants.LARGEST_NOISE_GROWTH),
         constants.MEMORY_BOUNDS,
         constants.SCATTER_SMOOTH_BOUNDS,
+        constants.RUN_OFFSET_BOUNDS,
     ]
 )
 ALL = (0, 1, 2, 3)
-GROWTH, MEMORY = 1, 2
-"""Positions in :class:`Parts`."""
+GROWTH, MEMORY, OFFSETS = 1, 2, 4
+"""Positions in :class:`MarginalParts`."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,7 +39,7 @@ class ExplainingColumns:
     """What could explain a residual, one prior standard deviation of each as a column (2n, k)."""
 
     named: np.ndarray  #: effects, coefficients, bumps
-    runs: np.ndarray  #: effects that are constant along a run, rivals of errors correlated along it
+    runs: Mapping[str, np.ndarray]  #: by id, effects that differ by run: rivals of errors correlated along it
     smooth: np.ndarray  #: low-order structure; its amplitude is found with the scatter
 
 
@@ -46,6 +49,7 @@ def learned(noise: Noise, residual: np.ndarray, explained: ExplainingColumns, si
     The search starts from ``noise``, which may grow in proportion to ``size`` (2n,).
     """
     weight, scatter = np.ones(len(residual)), dict(noise.scatter)
+    offsets: dict[str, RunOffsets] = {}
     for name, rows in zip(CHANNELS, np.split(np.arange(len(residual)), 2), strict=True):
         rows = rows[np.isfinite(noise.stated[rows])]
         if not len(rows):
@@ -58,11 +62,30 @@ def learned(noise: Noise, residual: np.ndarray, explained: ExplainingColumns, si
             named=_occurring(explained.named[rows]),
             smooth=_occurring(explained.smooth[rows]),
             weight=np.ones(len(rows)),
+            least=0.5 * constants.NO_NOISE_SHARE * rms(size[rows]),
         )
-        scatter[name], weight[rows] = _of_channel(
-            channel, _occurring(explained.runs[rows]), noise.scatter[name]
-        )
-    return noise.scattering(scatter, size, weight)
+        runs = {effect: _occurring(columns[rows]) for effect, columns in explained.runs.items()}
+        scatter[name], weight[rows], here = _of_channel(channel, runs, noise.scatter[name])
+        for effect, (gain, larger, _) in here.items():
+            other = offsets.get(effect, RunOffsets(0.0, 0.0, frozenset()))
+            offsets[effect] = RunOffsets(
+                other.gain + max(gain, 0.0), max(other.size, larger), other.channels | {name}
+            )
+    found = replace(noise.scattering(scatter, size, weight), offsets=offsets)
+    return _at_least_of_a_rig(found, size)
+
+
+def _at_least_of_a_rig(noise: Noise, size: np.ndarray) -> Noise:
+    """The noise, with that of the best rigs in channels that hardly scatter, such as those of a simulation.
+
+    Between two points of a sweep, errors with a memory change by their part without memory.
+    """
+    assumed = {}
+    for name, readings in zip(CHANNELS, np.split(size, 2), strict=True):
+        change = noise.typical(name) * math.sqrt(1.0 - noise.scatter[name].memory ** 2)
+        if change < constants.NO_NOISE_SHARE * rms(readings):
+            assumed[name] = constants.ASSUMED_NOISE_SHARE * rms(readings)
+    return noise.assumed(assumed) if assumed else noise
 
 
 def _occurring(columns: np.ndarray) -> np.ndarray:
@@ -70,17 +93,39 @@ def _occurring(columns: np.ndarray) -> np.ndarray:
     return columns[:, np.any(columns != 0.0, axis=0)]
 
 
-def _of_channel(channel: MarginalChannel, runs: np.ndarray, start: Scatter) -> tuple[Scatter, np.ndarray]:
-    """The scatter, and the weight of every reading (m,)."""
+def _of_channel(
+    channel: MarginalChannel, runs: Mapping[str, np.ndarray], start: Scatter
+) -> tuple[Scatter, np.ndarray, dict[str, RunOffsets]]:
+    """The scatter, the weight of every reading (m,), and the offsets of runs by effect.
+
+    There are no offsets if the readings show no memory: nothing else looks like them.
+    """
     first = MarginalParts(math.log(start.scale), start.growth, start.memory, constants.SCATTER_START_SMOOTH)
     channel, parts, tails = _weighted(channel, first)
-    if parts.memory and runs.shape[1]:
-        # Offsets of whole runs look like memory: they replace it if they explain the residual better.
-        beside = channel.beside(runs)
-        better = beside.likelihood(_accepted(beside, parts)) - channel.likelihood(parts)
-        if better > constants.SCATTER_PART_GAIN:
-            channel, parts, tails = _weighted(beside, parts)
-    return Scatter(math.exp(parts.log_scale), parts.growth, parts.memory, tails), channel.weight
+    offsets: dict[str, RunOffsets] = {}
+    if parts.memory:
+        # Offsets of whole runs and a memory give runs the same means: each is fitted beside the other.
+        alone, most, best = channel.likelihood(parts), float(constants.RUN_OFFSET_GAIN), None
+        for effect, columns in runs.items():
+            if columns.shape[1]:
+                beside = channel.beside(columns)
+                found, likelihood = _with_offsets(beside, columns, parts)
+                offsets[effect] = RunOffsets(likelihood - alone, found.offsets, frozenset())
+                if likelihood - alone > most:
+                    most, best = likelihood - alone, (beside, found)
+        if best is not None:
+            channel, parts, tails = _weighted(*best)
+    return Scatter(math.exp(parts.log_scale), parts.growth, parts.memory, tails), channel.weight, offsets
+
+
+def _with_offsets(
+    channel: MarginalChannel, runs: np.ndarray, parts: MarginalParts
+) -> tuple[MarginalParts, float]:
+    """The likeliest parts with offsets of runs, which replace the memory or shorten it; and their likelihood."""
+    size = rms(channel.residual @ runs / np.maximum(np.sum(runs**2, axis=0), 1e-30))
+    shorter = parts._replace(memory=0.5 * parts.memory, offsets=0.5 * size)
+    replaced = MarginalParts(*constants.SCATTER_SECOND_START)._replace(offsets=size)
+    return max((_climb(channel, x, (*ALL, OFFSETS)) for x in (shorter, replaced)), key=lambda climb: climb[1])
 
 
 def _weighted(channel: MarginalChannel, parts: MarginalParts) -> tuple[MarginalChannel, MarginalParts, float]:
@@ -100,11 +145,12 @@ def _weighted(channel: MarginalChannel, parts: MarginalParts) -> tuple[MarginalC
 
 def _accepted(channel: MarginalChannel, start: MarginalParts) -> MarginalParts:
     """The likeliest parts, without growth or memory if the data do not ask for them."""
-    second = MarginalParts(*constants.SCATTER_SECOND_START)
-    best, whole = max((_climb(channel, x, ALL) for x in (start, second)), key=lambda climb: climb[1])
+    second = MarginalParts(*constants.SCATTER_SECOND_START)._replace(offsets=start.offsets)
+    every = (*ALL, OFFSETS) if channel.runs is not None else ALL
+    best, whole = max((_climb(channel, x, every) for x in (start, second)), key=lambda climb: climb[1])
     for part in (GROWTH, MEMORY):
         reduced = [0.0 if k == part else value for k, value in enumerate(best)]
-        free = tuple(k for k in ALL if k != part and (k not in (GROWTH, MEMORY) or best[k]))
+        free = tuple(k for k in every if k != part and (k not in (GROWTH, MEMORY) or best[k]))
         other, less = _climb(channel, MarginalParts(*reduced), free)
         if whole - less < constants.SCATTER_PART_GAIN:
             best, whole = other, less

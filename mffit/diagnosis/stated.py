@@ -9,7 +9,7 @@ from mffit.diagnosis.noise import Noise, Origin
 from mffit.errors import InputError
 from mffit.points import Points
 from mffit.rig import Simulation
-from mffit.scatter import robust
+from mffit.scatter import rms, robust
 
 TINY = 1e-9
 
@@ -36,10 +36,14 @@ def stated_noise(points: Points, origin: Origin | None = None) -> Noise:
 def _channel(
     points: Points, values: np.ndarray, stated: np.ndarray, simulated: np.ndarray, column: str
 ) -> tuple[np.ndarray, Origin | None]:
-    """Uncertainty (n,) of one channel; inf where it was not measured."""
+    """Uncertainty (n,) of one channel; inf where it was not measured.
+
+    It is at least so large that readings without noise can be recognised.
+    """
     measured = np.isfinite(values)
     if not np.any(measured):
         return np.full(len(points), np.inf), None
+    least = max(constants.NO_NOISE_SHARE * rms(values[measured]), TINY)
     known = measured & np.isfinite(stated)
     if np.any(known) and np.all(stated[known] <= 0.0):
         raise InputError(
@@ -47,9 +51,9 @@ def _channel(
         )
     if np.all(known[measured]):
         floor = constants.LEAST_STATED_NOISE_SHARE * np.median(stated[known][stated[known] > 0])
-        return np.where(measured, np.maximum(stated, floor), np.inf), Origin.STATED
+        return np.where(measured, np.maximum(stated, max(floor, least)), np.inf), Origin.STATED
     u = np.where(known, stated, neighbour_noise(points, values - simulated))
-    return np.where(measured, u, np.inf), Origin.SCATTER
+    return np.where(measured, np.maximum(u, least), np.inf), Origin.SCATTER
 
 
 def neighbour_noise(points: Points, values: np.ndarray) -> float:

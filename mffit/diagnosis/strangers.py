@@ -2,16 +2,27 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection, Sequence
+
 import numpy as np
 
+from mffit.config import Config
 from mffit.diagnosis import constants
 from mffit.diagnosis.explanation import Explanation
-from mffit.diagnosis.notes import HardlyThisTyre
+from mffit.diagnosis.noise import Noise, Origin
+from mffit.diagnosis.notes import (
+    AnotherTyre,
+    HardlyThisTyre,
+    NoiseBeyondStated,
+    OffsetsOrMemory,
+    WithoutNoise,
+)
+from mffit.effects import Effect
 from mffit.errors import InputError
 from mffit.points import Points
 from mffit.quantities import CHANNELS
 from mffit.rig import Simulation
-from mffit.scatter import robust
+from mffit.scatter import rms, robust
 from tir import Tyre
 
 
@@ -40,6 +51,72 @@ def refuse_strangers(points: Points, tyre: Tyre, start: Simulation) -> None:
                 f"simulated and measured {channel} have opposite signs (correlation {agreement:.2f}): data or model use other "
                 "axes; check [rig] axes and the signs of PKY1 and PKY6"
             )
+
+
+def another_tyre(tyre: Tyre, config: Config) -> AnotherTyre | None:
+    """What the model states otherwise than ``tyre.toml`` about the tyre; None if they agree or the model is silent."""
+    given, dimension, reference = config.tyre, constants.SAME_TYRE_DIMENSION, constants.SAME_TYRE_REFERENCE
+    stated = (
+        ("UNLOADED_RADIUS", given.unloaded_radius, dimension),
+        ("WIDTH", given.width, dimension),
+        ("RIM_RADIUS", given.rim_radius, dimension),
+        ("FNOMIN", given.nominal_load, reference),
+        ("NOMPRES", 1e3 * given.nominal_pressure, reference),
+    )
+    differences = tuple(
+        (name, float(tyre[name]), value)
+        for name, value, tolerance in stated
+        if value is not None
+        and name in tyre.present
+        and abs(float(tyre[name]) - value) > tolerance * abs(value)
+    )
+    return AnotherTyre(differences) if differences else None
+
+
+def without_noise(noise: Noise) -> WithoutNoise | None:
+    """The channels whose noise is assumed, because their readings hardly scatter; None without any."""
+    assumed = tuple((name, noise.typical(name)) for name in CHANNELS if noise.scatter[name].without_noise)
+    return WithoutNoise(assumed) if assumed else None
+
+
+def noise_beyond_stated(found: Explanation) -> list[NoiseBeyondStated]:
+    """The channels that scatter far more than stated beside the explanation, and the sweep that does most of it."""
+    noise, points = found.scatter, found.problem.points
+    if noise.origin is not Origin.STATED:
+        return []
+    left = np.split(found.problem.measured - found.refined.state.predict(points), 2)
+    out = []
+    for channel, residual in zip(CHANNELS, left, strict=True):
+        if noise.scatter[channel].scale > constants.NOISE_BEYOND_STATED:
+            off = {name: rms(residual[points.sweep == k]) for k, name in enumerate(points.sweep_names)}
+            off = {name: size for name, size in off.items() if np.isfinite(size)}
+            worst = max(off, key=off.__getitem__)
+            odd = off[worst] > constants.ODD_SWEEP_RATIO * float(np.median(list(off.values())))
+            typical, stated = noise.typical(channel), noise.typically_stated(channel)
+            out.append(NoiseBeyondStated(channel, typical, stated, worst if odd else ""))
+    return out
+
+
+def offsets_or_memory(
+    noise: Noise, candidates: Sequence[Effect], named: Collection[str]
+) -> list[OffsetsOrMemory]:
+    """The channels whose correlated errors may as well be offsets of runs, none of which is ``named`` (ids)."""
+    found = []
+    for channel in CHANNELS:
+        scatter = noise.scatter[channel]
+        near = tuple(
+            effect
+            for effect in candidates
+            if effect.id in noise.offsets
+            and channel in noise.offsets[effect.id].channels
+            and (
+                noise.offsets[effect.id].gain > constants.SCATTER_PART_GAIN
+                or scatter.scale > constants.STATED_NOISE_FACTOR
+            )
+        )
+        if scatter.memory and near and not any(effect.id in named for effect in near):
+            found.append(OffsetsOrMemory(channel, scatter.memory, noise.typical(channel), near))
+    return found
 
 
 def named_of_this_tyre(found: Explanation) -> tuple[Explanation, HardlyThisTyre | None]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -12,6 +12,8 @@ from mffit.diagnosis.inexact import EXACT, Inexactness
 from mffit.diagnosis.noise import Noise
 from mffit.diagnosis.problem import DiagnosisProblem
 from mffit.quantities import CHANNELS
+from mffit.rig import Simulation
+from mffit.rig_errors import RIG_ERRORS
 from mffit.scatter import rms
 
 
@@ -35,13 +37,26 @@ class Validation:
     folds: int  #: groups of whole sweeps, left out in turn
     gap_before: Gap
     gap_after: Gap
+    gap_file: Gap
+    """After, with the rig and environment as in the given simulation: what the corrected property file does alone."""
     raised: tuple[str, ...] = ()
     """Channels whose gap grows by more than numbers fitted to mere noise would raise it by chance."""
+    raised_by_file: tuple[str, ...] = ()
+    """The same channels for the property file alone."""
 
     @property
     def helps(self) -> bool:
         """Whether the gap shrinks, and grows in no channel."""
         return self.gap_after.chi2_per_dof < self.gap_before.chi2_per_dof and not self.raised
+
+    @property
+    def file_helps(self) -> bool:
+        """The same for the corrected property file alone."""
+        return self.gap_file.chi2_per_dof < self.gap_before.chi2_per_dof and not self.raised_by_file
+
+    def without_repair(self) -> Validation:
+        """The check of the model as given."""
+        return Validation(self.folds, self.gap_before, self.gap_before, self.gap_before)
 
 
 def gap(residual: np.ndarray, noise: Noise) -> Gap:
@@ -63,7 +78,7 @@ def validate(
     points = problem.points
     measured = np.concatenate([points.Fy, points.Mz])
     before = measured - problem.start.predict(points)
-    after = before.copy()
+    after, alone = before.copy(), before.copy()
     folds = _folds(points.sweep)
     for fold in folds:
         out = np.isin(points.sweep, fold)
@@ -73,7 +88,9 @@ def validate(
         fitted = rest.evaluate(hypothesis.effects, hypothesis.numbers)
         if hypothesis.effects and not inexact:
             fitted = rest.fit(hypothesis.effects, hypothesis.numbers)
-        after[both] = measured[both] - rest.refine(fitted, inexact)[0].state.predict(chosen)
+        state = rest.refine(fitted, inexact)[0].state
+        after[both] = measured[both] - state.predict(chosen)
+        alone[both] = measured[both] - file_alone(state, problem.start).predict(chosen)
         if seen:
             before[both] = measured[both] - rest.refine(rest.null, inexact)[0].state.predict(chosen)
     noise, numbers = problem.noise, sum(len(e.free) for e in hypothesis.effects) + len(inexact.names)
@@ -81,8 +98,16 @@ def validate(
         folds=len(folds),
         gap_before=gap(before, noise),
         gap_after=gap(after, noise),
+        gap_file=gap(alone, noise),
         raised=_raised(before, after, noise, numbers),
+        raised_by_file=_raised(before, alone, noise, numbers),
     )
+
+
+def file_alone(state: Simulation, given: Simulation) -> Simulation:
+    """The simulation with the corrected property file, its rig and environment as ``given``."""
+    tyre = {error.name: state.faults[error.name] for error in RIG_ERRORS if error.kind == "tyre"}
+    return replace(state, faults=given.faults.replace(**tyre), of_runs=given.of_runs)
 
 
 def _folds(sweep: np.ndarray) -> list[np.ndarray]:
@@ -95,10 +120,13 @@ def _folds(sweep: np.ndarray) -> list[np.ndarray]:
 
 
 def _raised(before: np.ndarray, after: np.ndarray, noise: Noise, numbers: int) -> tuple[str, ...]:
-    """Channels whose chi2 rises beyond chance: ``numbers`` fitted to noise raise that of left-out sweeps by as much."""
-    u = np.where(np.isfinite(noise.u), noise.u, np.inf)
-    change = np.nan_to_num(after / u) ** 2 - np.nan_to_num(before / u) ** 2
+    """Channels whose chi2 rises beyond chance: ``numbers`` fitted to noise raise that of left-out sweeps by as much.
+
+    Correlated errors raise a plain sum of squares by more than that, so the residuals are whitened.
+    """
+    change = noise.whiten(np.nan_to_num(after)) ** 2 - noise.whiten(np.nan_to_num(before)) ** 2
+    of_Fy = noise.used < len(before) // 2
     chance = numbers + constants.RAISED_GAP * np.sqrt(2.0 * numbers)
     return tuple(
-        name for name, rows in zip(CHANNELS, np.split(change, 2), strict=True) if rows.sum() > chance
+        name for name, rows in zip(CHANNELS, (of_Fy, ~of_Fy), strict=True) if change[rows].sum() > chance
     )

@@ -10,14 +10,19 @@ from mffit.diagnosis import constants
 from mffit.diagnosis.bumps import Bump
 from mffit.diagnosis.noise import Noise
 from mffit.diagnosis.notes import (
+    AnotherTyre,
     DirectMethodRedone,
+    FileKept,
     HardlyThisTyre,
     ModelFittedFirst,
     ModelOfLastBuild,
+    NoiseBeyondStated,
     NoRepair,
     Note,
     NotVisible,
+    OffsetsOrMemory,
     OneSweep,
+    WithoutNoise,
 )
 from mffit.diagnosis.one_step import BestEffect
 from mffit.diagnosis.result import AcceptedEffect, Diagnosis
@@ -27,9 +32,10 @@ from mffit.diagnosis.validation import Gap, Validation
 from mffit.effects import NEEDS, Effect
 from mffit.quantities import CHANNELS, CONDITIONS
 from mffit.rig_errors import OF_RUN, error_of, unit_of, words_of
-from mffit.rounding import to_uncertainty
+from mffit.rounding import per_cent, to_uncertainty
 from mffit.suspicion import Misread, Outlier
 from tir import Quantity
+from tir.parameters import BY_NAME
 
 TO_DO = {
     "tyre": "nothing at the rig; the corrected property file contains it",
@@ -37,12 +43,20 @@ TO_DO = {
 }
 """What to do about effects that are not the rig's."""
 
+NOT_REPAIRED = {
+    "tyre": "nothing at the rig; the property file is as given, and --repair-all would correct it",
+    "environment": "keep it constant; the readings are as measured, and --repair-all would correct them",
+}
+"""The same for effects that are suspected only."""
+
 
 def headline(diagnosis: Diagnosis) -> str:
-    """The answer in one sentence, after one about a sweep that was written down wrongly, if any."""
+    """The answer in one sentence, after one about a model of another tyre or a sweep that was written down wrongly."""
+    other = next((remark for remark in diagnosis.notes if isinstance(remark, AnotherTyre)), None)
+    warned = "" if other is None else f"Warning: {_another_tyre(other)} "
     wrong = next((remark for remark in diagnosis.notes if isinstance(remark, Misread)), None)
     left_out = "" if wrong is None else f"{wrong.file} looks like {wrong.looks} and was left out. "
-    return left_out + (_named(diagnosis) if diagnosis.effects else _nothing_named(diagnosis))
+    return warned + left_out + (_named(diagnosis) if diagnosis.effects else _nothing_named(diagnosis))
 
 
 def _nothing_named(diagnosis: Diagnosis) -> str:
@@ -83,22 +97,38 @@ def _zeros(diagnosis: Diagnosis) -> list[str]:
 
 
 def _named(diagnosis: Diagnosis) -> str:
-    effects, bump = diagnosis.effects, diagnosis.bump
-    before, after = diagnosis.gap_before, diagnosis.gap_after
+    effects, bump = diagnosis.repaired or diagnosis.effects, diagnosis.bump
+    after = diagnosis.gap_after if diagnosis.repaired else diagnosis.gap_named
     names, one = " and ".join(map(_with_ties, effects)), len(effects) == 1
     verdict = f"The missing {'effect is' if one else 'effects are'} {names}"
     if min(_confidence_of_tie(found, diagnosis.alternatives) for found in effects) < constants.LIKELY_ANSWER:
         verdict = f"The best explanation, though uncertain, is {names}"
     misfit = " and ".join(
-        f"{_short(after.rms(name))} {unit} instead of {_short(before.rms(name))} {unit} in {CHANNELS[name].word} "
-        f"(noise {_short(noise)} {unit})"
+        f"{_short(after.rms(name))} {unit} instead of {_short(diagnosis.gap_before.rms(name))} {unit} in "
+        f"{CHANNELS[name].word} (noise {_short(noise)} {unit})"
         for name, unit, noise in _measured(diagnosis.noise)
     )
     rest = ""
     if diagnosis.unexplained:
         what = f"{bump.channel} around {_around(bump)}" if bump else "the rest"
         rest = f"; {what} stays unexplained"
-    return f"{verdict}: with {'it' if one else 'them'} the rms misfit is {misfit}{rest}."
+    them, is_ = "it" if one else "them", "is" if diagnosis.repaired else "would be"
+    return f"{verdict}: with {them} the rms misfit {is_} {misfit}{rest}.{_suspicions(diagnosis)}"
+
+
+def _suspicions(diagnosis: Diagnosis) -> str:
+    """What is named but not repaired, and why; empty if everything is repaired."""
+    found = diagnosis.suspected
+    if not found or any(isinstance(remark, NoRepair) for remark in diagnosis.notes):
+        return ""
+    limit, names = per_cent(constants.LIKELY_ANSWER), " and ".join(_suspicion(one) for one in found)
+    if diagnosis.repaired:
+        return f" Suspected but not repaired, at a confidence below {limit}: {names}."
+    return f" It is not repaired, because no confidence reaches {limit}: {names}."
+
+
+def _suspicion(found: AcceptedEffect) -> str:
+    return f"{found.effect.name} ({per_cent(found.confidence)})"
 
 
 def _measured(noise: Noise) -> Iterator[tuple[str, str, float]]:
@@ -131,6 +161,29 @@ def note(remark: Note) -> str:
             return "One sweep cannot separate causes: add sweeps at another load, camber or direction."
         case Misread():
             return remark.sentence
+        case AnotherTyre():
+            return _another_tyre(remark)
+        case WithoutNoise(assumed):
+            sizes = " and ".join(f"{_short(u)} {CHANNELS[name].unit} in {name}" for name, u in assumed)
+            share = f"{100.0 * constants.ASSUMED_NOISE_SHARE:g} %"
+            return (
+                f"The readings scatter far less than those of a rig, as if they came from a simulation: {sizes} are assumed as "
+                f"their noise ({share} of the rms reading), so that uncertainties and confidences hold for a rig, not for "
+                "numerical noise."
+            )
+        case NoiseBeyondStated(channel, noise, stated, sweep):
+            unit = CHANNELS[channel].unit
+            most = f" Most of it is in {sweep}: check that sweep first." if sweep else ""
+            return (
+                f"Nothing explains why {channel} scatters by {_short(noise)} {unit} where {_short(stated)} {unit} are stated: "
+                f"what single sweeps do on their own looks like noise.{most}"
+            )
+        case OffsetsOrMemory(channel, memory, noise, effects):
+            return (
+                f"The errors of {channel} ({_short(noise)} {CHANNELS[channel].unit}) are correlated along sweeps ({memory:.2f} "
+                f"between neighbours) and may as well be a {' or a '.join(e.name for e in effects)}: measure one condition "
+                "again in several runs to separate them."
+            )
         case NotVisible(needs, effects):
             lack = " and ".join(NEEDS[need] for need in needs)
             return f"Not visible in these data, which lack {lack}: {', '.join(e.name for e in effects)}."
@@ -146,6 +199,12 @@ def note(remark: Note) -> str:
                 f"No repair is written: {tried} would fit these points better, but on left-out sweeps "
                 f"{_held_out(before, after)}."
             )
+        case FileKept(terms, validation):
+            return (
+                f"The property file is the given one: without {' and '.join(terms)}, which no property file contains, the "
+                f"corrected one is worse on left-out sweeps ({_held_out(validation.gap_before, validation.gap_file)}). "
+                "The corrected one, which is right only with these terms, is written beside it."
+            )
         case ModelOfLastBuild(file):
             return f"The model is {file} of the last build."
         case ModelFittedFirst(turn_slip):
@@ -157,6 +216,19 @@ def note(remark: Note) -> str:
             return _redone(remark)
         case _:
             assert_never(remark)
+
+
+def _another_tyre(found: AnotherTyre) -> str:
+    """What differs between the model and tyre.toml."""
+    said = []
+    for name, model, stated in found.differences:
+        row = BY_NAME[name]
+        scale, unit = (1e-3, "kPa") if row.unit == "Pa" else (1.0, row.unit)
+        said.append(f"{row.description} {scale * model:.4g} instead of {scale * stated:.4g} {unit} ({name})")
+    return (
+        f"The model seems to be of another tyre than tyre.toml: {'; '.join(said)}. Give the model of this tyre, or correct "
+        "[tyre]."
+    )
 
 
 def _held_out(before: Gap, after: Gap) -> str:
@@ -232,7 +304,7 @@ def remedy(found: AcceptedEffect, signs: Mapping[str, float]) -> str:
     if effect.switches:
         return "switch the simulation's turn slip on"
     if not effect.remedy:
-        return TO_DO.get(effect.kind, "")
+        return (TO_DO if found.repaired else NOT_REPAIRED).get(effect.kind, "")
     several = [free.name for free in effect.free if OF_RUN in free.name and not effect.runs_written_out]
     if not several:
         return _remedy_with(found, effect.free[0].name, signs)

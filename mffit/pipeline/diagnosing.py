@@ -12,9 +12,11 @@ from threadpoolctl import threadpool_limits
 import tir
 from mffit import config as configuration
 from mffit.config import Config
-from mffit.diagnosis import Diagnosis, corrected_points
+from mffit.diagnosis import Diagnosis, corrected_points, wording
 from mffit.diagnosis import diagnose as find_effects
 from mffit.diagnosis.notes import DirectMethodRedone, ModelFittedFirst, ModelOfLastBuild, Note
+from mffit.diagnosis.result import WITH_TERMS
+from mffit.diagnosis.strangers import another_tyre
 from mffit.effects import CATALOG, Effect
 from mffit.made import made
 from mffit.output import digest, output_folder, refuse_early
@@ -39,6 +41,7 @@ def diagnose(
     *,
     out: str | Path | None = None,
     effects: Sequence[Effect] = CATALOG,
+    repair_all: bool = False,
     progress: Progress = silent,
 ) -> Diagnosis:
     """Find where a simulation's model and the measurement disagree, and which effects explain it.
@@ -49,6 +52,7 @@ def diagnose(
     model : the model that the simulation uses; default the file of the last build, otherwise one fitted now
     out : folder to write to; nothing is written if None
     effects : the effects to test; add records of your own to the default
+    repair_all : correct model and readings for every named effect, also for those below a confidence of 0.5
     progress : called with a sentence before each step
 
     Returns
@@ -64,8 +68,13 @@ def diagnose(
     if isinstance(model, str | Path):
         inputs.append(Path(model))
     if out is not None:
-        refuse_early(Path(out), (f"{config.tyre.name}.tir", *WRITTEN), inputs)
+        names = (f"{config.tyre.name}.tir", f"{config.tyre.name}{WITH_TERMS}", *WRITTEN)
+        refuse_early(Path(out), names, inputs)
     tyre, choice = chosen_model(config, model, progress)
+    other = another_tyre(tyre, config)
+    if other is not None:
+        progress(wording.note(other))
+        choice = (other, *choice)
     with threadpool_limits(1):
         same = fitted_to(tyre, config)
         known, seen = known_of_model(
@@ -83,6 +92,7 @@ def diagnose(
             effects=effects,
             coefficients=known,
             seen=seen,
+            repair_all=repair_all,
             progress=progress,
         )
     hashes = input_hashes(config)
@@ -91,7 +101,12 @@ def diagnose(
         hashes[str(file)] = digest(file)
     notes = (*choice, *diagnosis.notes, *_redone(config, points, diagnosis, base))
     diagnosis = replace(diagnosis, notes=notes, made=made(hashes), trust=judged_diagnosis(diagnosis))
-    diagnosis = replace(diagnosis, tyre=marked(diagnosis.tyre, diagnosis.trust))
+    diagnosis = replace(
+        diagnosis,
+        headline=wording.headline(diagnosis),
+        tyre=marked(diagnosis.tyre, diagnosis.trust),
+        with_terms=diagnosis.with_terms and marked(diagnosis.with_terms, diagnosis.trust),
+    )
     if out is not None:
         write_diagnosis(diagnosis, Path(out), protected=inputs, config=config)
     return diagnosis
@@ -139,7 +154,7 @@ def _redone(
     config: Config, points: Points, diagnosis: Diagnosis, base: Tyre | None
 ) -> tuple[DirectMethodRedone, ...]:
     """The direct method on points corrected for the rig effects, if any were found."""
-    causes = tuple(found.effect.name for found in diagnosis.effects if found.effect.kind == "rig")
+    causes = tuple(found.effect.name for found in diagnosis.repaired if found.effect.kind == "rig")
     if not config.rig.on_disc or not causes:
         return ()
     corrected = corrected_points(points, diagnosis.state)
@@ -158,6 +173,8 @@ def write_diagnosis(
 
     with output_folder(out, by="diagnose", protected=protected) as folder:
         diagnosis.tyre.write(folder / diagnosis.model_after)
+        if diagnosis.with_terms is not None:
+            diagnosis.with_terms.write(folder / str(diagnosis.model_with_terms))
         as_json.write(folder / "diagnosis.json", as_json.diagnosis(diagnosis))
         if config is not None:
             write_corrected(diagnosis, config, out, folder)

@@ -78,8 +78,8 @@ class DiagnosisView:
 
     @property
     def changed(self) -> bool:
-        """Whether effects were added, so that before and after differ."""
-        return bool(self.diagnosis.effects)
+        """Whether effects are repaired, so that before and after differ."""
+        return bool(self.diagnosis.repaired)
 
     def frames(self, channel: str) -> list[Region]:
         """Regions of a channel to be framed in the maps, unexplained ones first."""

@@ -51,6 +51,11 @@ FEWEST_POINTS_OF_FRICTION = Count(
 )
 SMALLEST_FRICTION = Real(0.02, "-", "Side force per load that every tyre exceeds at those angles.")
 LARGEST_FRICTION = Real(4.0, "-", "Side force per load that no tyre reaches.")
+LARGEST_MOMENT_ARM = Real(
+    0.15,
+    "m",
+    "|Mz| over load that no tyre exceeds: trail times friction. Side forces over load exceed it at usual angles.",
+)
 LONGEST_ARM = Real(1.0, "m", "|Mz| over load that no tyre reaches.")
 LOWEST_TESTED_PRESSURE = Real(0.35, "-", "No tyre is tested below this share of its nominal pressure.")
 FEWEST_ROWS_OF_A_DEAD_CHANNEL = Count(4, "-", "Equal readings that mean a dead channel.")

@@ -33,6 +33,11 @@ def _swapped(points: Points, signs: Mapping[str, float]) -> Points:
     return points.replace(alpha=sign * points.gamma, gamma=sign * points.alpha)
 
 
+def _exchanged(points: Points, signs: Mapping[str, float]) -> Points:
+    sign = signs["Fy"] * signs["Mz"]
+    return points.replace(Fy=sign * points.Mz, Mz=sign * points.Fy)
+
+
 def _converted(points: Points, _: Mapping[str, float], *, field: str, unit: str, expected: str) -> Points:
     return points.replace(**{field: factor(unit, expected) * getattr(points, field)})
 
@@ -69,6 +74,12 @@ MISTAKES: tuple[Mistake, ...] = (
         column="alpha_deg",
         remedy="correct the headings alpha_deg and gamma_deg",
         undone=_swapped,
+    ),
+    Mistake(
+        looks="side force and moment exchanged",
+        column="Fy_N",
+        remedy="correct the headings Fy_N and Mz_Nm",
+        undone=_exchanged,
     ),
     Mistake(
         looks="the direction of rolling undeclared or wrong",

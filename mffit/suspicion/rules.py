@@ -31,6 +31,7 @@ RULES: tuple[Rule, ...] = (
     all_files.copied_sweep,
     single_files.angle_in_radians,
     single_files.dead_channel,
+    single_files.force_and_moment_exchanged,
     single_files.force_too_small,
     single_files.lone_load,
     single_files.wild_force,

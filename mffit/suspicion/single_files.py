@@ -56,6 +56,27 @@ def dead_channel(part: Points, config: Config) -> Iterator[Finding]:
 
 
 @of_file(
+    id="force-and-moment-exchanged",
+    limits=(constants.LARGEST_MOMENT_ARM, constants.LARGEST_FRICTION),
+    sentence="reaches {moment:.0f} Nm at loads of {load:.0f} N while Fy_N stays below {force:.3g} N, so the headings Fy_N and "
+    "Mz_Nm look exchanged; correct them",
+)
+def force_and_moment_exchanged(part: Points, config: Config) -> Iterator[Finding]:
+    """|Mz| and |Fy| over load: the moment is as large as a side force, and the force as small as a moment."""
+    force, moment = np.abs(part.Fy) / part.Fz, np.abs(part.Mz) / part.Fz
+    if not np.all(np.isfinite(moment)):
+        return
+    least, most = constants.LARGEST_MOMENT_ARM, constants.LARGEST_FRICTION
+    if np.max(force) < least < np.max(moment) < most:
+        facts = {
+            "moment": np.max(np.abs(part.Mz)),
+            "force": np.max(np.abs(part.Fy)),
+            "load": np.median(part.Fz),
+        }
+        yield Finding(facts, column="Mz_Nm")
+
+
+@of_file(
     id="force-in-kilonewtons",
     limits=(
         constants.SIDESLIP_THAT_SHOWS_FORCE,

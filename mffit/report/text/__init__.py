@@ -2,7 +2,7 @@
 
 from mffit.report.text.build import build_summary
 from mffit.report.text.compare import comparison_table
-from mffit.report.text.diagnosis import diagnosis_summary
+from mffit.report.text.diagnosis import diagnosis_summary, models_written
 from mffit.report.text.direct import alignment_table, budget_table, spin_summary
 from mffit.report.text.fleet import fleet_summary
 from mffit.report.text.many import lacking, many_line, many_summary
@@ -20,6 +20,7 @@ __all__ = [
     "lacking",
     "many_line",
     "many_summary",
+    "models_written",
     "plan_summary",
     "sniff_summary",
     "spin_summary",

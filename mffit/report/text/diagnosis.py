@@ -4,9 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
-from mffit.diagnosis import AcceptedEffect, Diagnosis, wording
+from mffit.diagnosis import AcceptedEffect, Diagnosis, Gap, wording
 from mffit.diagnosis.where import Region
-from mffit.effects import NAMES
 from mffit.quantities import CHANNELS
 from mffit.report import words
 from mffit.report.text.layout import blocks, paragraphs, table, wrapped
@@ -15,12 +14,14 @@ from mffit.rounding import as_good_as, number, per_cent, with_u
 
 def diagnosis_summary(diagnosis: Diagnosis) -> str:
     """The text that ``mffit diagnose`` prints: the main sentence, the gap, the effects, what is unexplained."""
-    gaps = (
+    gaps: tuple[tuple[str, Gap], ...] = (
         ("before", diagnosis.gap_before),
         ("after", diagnosis.gap_after),
         ("held out, before", diagnosis.validation.gap_before),
         ("held out, after", diagnosis.validation.gap_after),
     )
+    if diagnosis.terms:
+        gaps = (*gaps, ("held out, corrected file alone", diagnosis.validation.gap_file))
     rows = [(name, g.Fy_rmse_N, g.Mz_rmse_Nm, g.chi2_per_dof) for name, g in gaps]
     rows.append(("noise", diagnosis.noise.Fy, diagnosis.noise.Mz, 1.0))
     head = ("gap, rms", *(channel.column(name) for name, channel in CHANNELS.items()), "chi2 per dof")
@@ -35,8 +36,18 @@ def diagnosis_summary(diagnosis: Diagnosis) -> str:
     return blocks(parts)
 
 
+def models_written(diagnosis: Diagnosis) -> str:
+    """Names of the property files of a diagnosis, with what they are."""
+    if diagnosis.with_terms is not None:
+        return f"{diagnosis.model_after} (the model as given), {diagnosis.model_with_terms}"
+    if not (diagnosis.repaired or diagnosis.coefficients):
+        return f"{diagnosis.model_after} (the model as given)"
+    return diagnosis.model_after
+
+
 def _effect(found: AcceptedEffect, signs: Mapping[str, float]) -> str:
-    lines = [f"{found.effect.name} ({found.effect.kind}), confidence {per_cent(found.confidence)}"]
+    suspected = "" if found.repaired else ", suspected and not repaired"
+    lines = [f"{found.effect.name} ({found.effect.kind}), confidence {per_cent(found.confidence)}{suspected}"]
     lines += [
         f"  {words.of_number(name)} = {with_u(value, stderr, words.unit_of(name))}, "
         f"was {as_good_as(found.before[name], stderr)}"
@@ -44,7 +55,7 @@ def _effect(found: AcceptedEffect, signs: Mapping[str, float]) -> str:
     ]
     lines.append(wrapped(f"to do: {wording.remedy(found, signs)}", "  ", "  "))
     if found.tied_with:
-        rivals = ", ".join(NAMES.get(rival, rival) for rival in found.tied_with)
+        rivals = ", ".join(effect.name for effect in found.tied)
         lines.append(wrapped(f"these data cannot tell it from: {rivals}", "  ", "  "))
         lines.append(wrapped(f"to separate them: {wording.separation(found.separation)}", "  ", "  "))
     return "\n".join(lines)

@@ -24,6 +24,7 @@ def diagnosis(found: Diagnosis) -> dict[str, Any]:
             "method": wording.method(found.validation),
             "gap_before": asdict(found.validation.gap_before),
             "gap_after": asdict(found.validation.gap_after),
+            "gap_file": asdict(found.validation.gap_file),
         },
         "where": [asdict(region) for region in found.where],
         "effects": [_effect(effect, found.signs) for effect in found.effects],
@@ -38,6 +39,7 @@ def diagnosis(found: Diagnosis) -> dict[str, Any]:
         "outliers": [outlier(row) for row in found.outliers],
         "coefficients": {n: {"value": v, "stderr": s} for n, (v, s) in found.coefficients.items()},
         "model_after": found.model_after,
+        "model_with_terms": found.model_with_terms,
         "notes": wording.notes(found),
         **({} if found.made is None else {"made": made(found.made)}),
     }
@@ -59,6 +61,7 @@ def _effect(found: AcceptedEffect, signs: Mapping[str, float]) -> dict[str, Any]
     return {
         **picked(found.effect, "id", "name", "kind", "physics"),
         "confidence": found.confidence,
+        "repaired": found.repaired,
         "parameters": {
             n: {"was": found.before[n], "value": v, "stderr": s} for n, (v, s) in found.parameters.items()
         },

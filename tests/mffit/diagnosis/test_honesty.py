@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from mffit.diagnosis import diagnose
-from mffit.diagnosis.notes import NotVisible, OneSweep
+from mffit.diagnosis.notes import NoiseBeyondStated, NotVisible, OneSweep, WithoutNoise
+from mffit.diagnosis.strangers import another_tyre
 from mffit.errors import InputError
 from mffit.results import as_json
 
@@ -66,6 +67,45 @@ def test_scatter_replaces_missing_uncertainties(stiffer_camber):
     # 6 N and 0.6 Nm were put in; the curvature of the sweeps may add to it
     assert 4.0 < found.noise.Fy < 18.0
     assert 0.4 < found.noise.Mz < 1.5
+
+
+@pytest.mark.parametrize("stated", [True, False])
+def test_readings_of_another_simulation_are_recognised(stiffer_camber, stated):
+    """Without noise, numerical differences once made numbers certain to seven digits, or ended in a traceback."""
+    case, config, points = stiffer_camber
+    Fy, Mz = case.noise_free(case.run)
+    exact = points.replace(Fy=np.round(Fy, 2), Mz=np.round(Mz, 3))
+    if not stated:
+        exact = exact.replace(u_Fy=np.nan, u_Mz=np.nan)
+    found = diagnose(exact, case.given, config)
+    assert [f.effect.id for f in found.effects] == ["camber-stiffness"]
+    value, error = found.effects[0].parameters["PKY6"]
+    assert value == pytest.approx(float(case.true["PKY6"]), abs=error)
+    assert error > 1e-5 * abs(value)
+    (note,) = [note for note in found.notes if isinstance(note, WithoutNoise)]
+    assert dict(note.assumed)["Fy"] == pytest.approx(1e-3 * np.sqrt(np.mean(Fy**2)), rel=0.1)
+
+
+def test_a_sweep_that_is_off_for_no_known_reason_is_unexplained(right_model):
+    """Its misfit once passed as noise of twenty times the stated one."""
+    case, config, points = right_model
+    off = points.sweep == next(
+        k for k, name in enumerate(points.sweep_names) if name.startswith("coupled_1") and "20" in name
+    )
+    found = diagnose(points.replace(gamma=np.where(off, 0.0, points.gamma)), case.given, config)
+    assert found.unexplained
+    (note,) = [note for note in found.notes if isinstance(note, NoiseBeyondStated) and note.channel == "Fy"]
+    assert points.sweep_names[points.sweep[off][0]] == note.sweep
+
+
+def test_a_model_of_another_tyre_is_said(right_model):
+    case, config, _ = right_model
+    assert another_tyre(case.given, config) is None
+    larger = case.given.replace(UNLOADED_RADIUS=1.05 * float(case.given["UNLOADED_RADIUS"]), NOMPRES=290e3)
+    other = another_tyre(larger, config)
+    assert [name for name, *_ in other.differences] == ["UNLOADED_RADIUS", "NOMPRES"]
+    worn = case.given.replace(UNLOADED_RADIUS=0.99 * float(case.given["UNLOADED_RADIUS"]))
+    assert another_tyre(worn, config) is None
 
 
 def test_the_same_input_gives_the_same_answer(stiffer_camber):

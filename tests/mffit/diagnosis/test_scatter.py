@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from mffit.diagnosis import constants
 from mffit.diagnosis.noise import Noise, Scatter
 from mffit.diagnosis.scatter import ExplainingColumns, learned
 from mffit.diagnosis.tails import outlying
@@ -20,11 +21,26 @@ def stated(u=6.0):
     return Noise(u=u, stated=u, chain=chain, origin=None)
 
 
-def found(Fy, named=NOTHING):
+RUNS = np.repeat(np.arange(SWEEPS), N // SWEEPS)
+
+
+def found(Fy, named=NOTHING, offsets=0.0):
+    """The noise that is learned, offsets of runs of a usual size [N] among the candidates if one is given."""
     rng = np.random.default_rng(99)
     residual = np.concatenate([Fy, rng.normal(0.0, 0.6, N)])
     size = np.concatenate([FORCE, 0.02 * FORCE])
-    return learned(stated(), residual, ExplainingColumns(named, NOTHING, NOTHING), size)
+    of_runs = np.vstack([RUNS[:, None] == np.arange(SWEEPS), np.zeros((N, SWEEPS))])
+    runs = {"run-offsets-fy": offsets * of_runs} if offsets else {}
+    return learned(stated(), residual, ExplainingColumns(named, runs, NOTHING), size)
+
+
+def correlated(rng, memory):
+    """Errors of 6 N with a memory along each sweep."""
+    noise = rng.normal(0.0, 6.0, N)
+    for i in range(1, N):
+        if RUNS[i] == RUNS[i - 1]:
+            noise[i] = memory * noise[i - 1] + np.sqrt(1.0 - memory**2) * noise[i]
+    return noise
 
 
 @pytest.fixture
@@ -49,13 +65,35 @@ def test_noise_that_grows_with_the_force(rng):
 
 
 def test_errors_that_are_correlated_along_a_sweep(rng):
-    noise = rng.normal(0.0, 6.0, N)
-    for i in range(1, N):
-        if i % (N // SWEEPS):
-            noise[i] = 0.9 * noise[i - 1] + np.sqrt(1.0 - 0.81) * noise[i]
-    scatter = found(noise).scatter["Fy"]
+    scatter = found(correlated(rng, 0.9)).scatter["Fy"]
     assert scatter.memory == pytest.approx(0.9, abs=0.08)
     assert scatter.scale == pytest.approx(1.0, abs=0.35)
+
+
+@pytest.mark.parametrize("seed", [1, 2, 3])
+def test_a_memory_is_not_taken_for_offsets_of_runs(seed):
+    noise = found(correlated(np.random.default_rng(seed), 0.9), offsets=5.0)
+    assert noise.offsets["run-offsets-fy"].gain < constants.RUN_OFFSET_GAIN
+    assert noise.scatter["Fy"].memory == pytest.approx(0.9, abs=0.08)
+
+
+@pytest.mark.parametrize("memory", [0.0, 0.5, 0.9])
+def test_offsets_of_runs_are_not_taken_for_a_memory(memory):
+    """Offsets of 33 N once passed as noise of 29 N with a memory of 0.96, beside which nothing was left to name."""
+    rng = np.random.default_rng(8)
+    drawn = rng.normal(0.0, 33.0, SWEEPS)
+    noise = found(correlated(rng, memory) + drawn[RUNS], offsets=5.0)
+    assert noise.offsets["run-offsets-fy"].gain > 2.0 * constants.RUN_OFFSET_GAIN
+    assert 5.0 * noise.offsets["run-offsets-fy"].size == pytest.approx(np.std(drawn), rel=0.25)
+    assert noise.scatter["Fy"].scale == pytest.approx(1.0, abs=0.35)
+    assert noise.scatter["Fy"].memory == pytest.approx(memory, abs=0.15)
+
+
+def test_readings_without_noise_get_that_of_the_best_rigs(rng):
+    noise = found(rng.normal(0.0, 1e-4, N))
+    assert noise.scatter["Fy"].without_noise
+    assert not noise.scatter["Mz"].without_noise
+    assert pytest.approx(1e-3 * np.sqrt(np.mean(FORCE**2))) == noise.Fy
 
 
 def test_outliers_are_listed_and_lose_their_weight(rng):

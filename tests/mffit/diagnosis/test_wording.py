@@ -12,13 +12,18 @@ from mffit.diagnosis.bumps import Bump
 from mffit.diagnosis.needs import MET
 from mffit.diagnosis.noise import Noise, Scatter
 from mffit.diagnosis.notes import (
+    AnotherTyre,
     DirectMethodRedone,
+    FileKept,
     HardlyThisTyre,
     ModelFittedFirst,
     ModelOfLastBuild,
+    NoiseBeyondStated,
     NoRepair,
     NotVisible,
+    OffsetsOrMemory,
     OneSweep,
+    WithoutNoise,
 )
 from mffit.diagnosis.ties import SeparatingRun, Separation
 from mffit.diagnosis.validation import Gap, Validation
@@ -29,6 +34,7 @@ from tir import Quantity
 
 BY_ID = {effect.id: effect for effect in CATALOG}
 RIGHT, WRONG = Quantity(-0.06, 0.05, "-"), Quantity(0.2, 0.07, "-")
+CHECK = Validation(8, Gap(36.7, 2.0, 4.0), Gap(37.5, 2.1, 4.2), Gap(41.0, 2.2, 5.1))
 BUMP = Bump("Mz", {"alpha_deg": (-4.0, -2.5), "Fz_N": (1400.0, 1600.0)}, -6.2, 30.0)
 
 
@@ -110,9 +116,28 @@ def test_every_run_has_words_and_only_a_separating_one_is_recommended(run):
         ),
         (HardlyThisTyre(41.7, "Mz"), "misses the self-aligning moment by 42 times its noise"),
         (
-            NoRepair(("camber stiffness",), Validation(8, Gap(36.7, 2.0, 4.0), Gap(37.5, 2.1, 4.2))),
+            NoRepair(("camber stiffness",), CHECK),
             "No repair is written: camber stiffness would fit these points better, but on left-out sweeps the side force misses "
             "by 37.5 N instead of 36.7 N and the self-aligning moment misses by 2.1 Nm instead of 2 Nm.",
+        ),
+        (
+            FileKept(("tyre temperature",), CHECK),
+            "The property file is the given one: without tyre temperature, which no property file contains, the corrected one "
+            "is worse on left-out sweeps (the side force misses by 41 N instead of 36.7 N",
+        ),
+        (
+            AnotherTyre((("UNLOADED_RADIUS", 0.31, 0.2998), ("NOMPRES", 200e3, 250e3))),
+            "another tyre than tyre.toml: free radius 0.31 instead of 0.2998 m (UNLOADED_RADIUS); nominal pressure",
+        ),
+        (
+            WithoutNoise((("Fy", 1.23), ("Mz", 0.027))),
+            "1.23 N in Fy and 0.027 Nm in Mz are assumed as their noise (0.1 %",
+        ),
+        (NoiseBeyondStated("Fy", 118.0, 6.0, "coupled"), "118 N where 6 N are stated"),
+        (NoiseBeyondStated("Fy", 118.0, 6.0, "coupled"), "Most of it is in coupled: check that sweep first."),
+        (
+            OffsetsOrMemory("Fy", 0.96, 28.7, (BY_ID["run-offsets-fy"],)),
+            "(0.96 between neighbours) and may as well be a load-cell zero of Fy that differs from run to run",
         ),
         (ModelOfLastBuild("front-normal.tir"), "The model is front-normal.tir of the last build."),
         (ModelFittedFirst(turn_slip=False), "simulations with turn slip off."),
@@ -137,15 +162,15 @@ def test_the_file_keeps_its_keys(camber):
     assert list(content) == [
         "trusted", "reasons",
         "headline", "gap_before", "gap_after", "validation", "where", "effects", "alternatives", "limits", "unexplained",
-        "unexplained_where", "noise_floor", "outliers", "coefficients", "model_after", "notes",
+        "unexplained_where", "noise_floor", "outliers", "coefficients", "model_after", "model_with_terms", "notes",
     ]  # fmt: skip
     assert list(content["effects"][0]) == [
-        "id", "name", "kind", "physics", "confidence", "parameters", "to_do", "gap_after", "tied_with", "separate_by",
+        "id", "name", "kind", "physics", "confidence", "repaired", "parameters", "to_do", "gap_after", "tied_with", "separate_by",
     ]  # fmt: skip
     assert list(content["where"][0]) == ["channel", "region", "bias", "z"]
     assert content["effects"][0]["separate_by"] == ""
     assert content["effects"][0]["parameters"]["PKY6"].keys() == {"was", "value", "stderr"}
-    assert content["validation"].keys() == {"method", "gap_before", "gap_after"}
+    assert content["validation"].keys() == {"method", "gap_before", "gap_after", "gap_file"}
     assert content["notes"] == [wording.note(OneSweep())]
 
 

@@ -52,6 +52,8 @@ SINGLE_FILES = [
     ("dead-channel", tyre(Mz=3.7), tyre(Mz=changed(np.full(7, 3.7), [2], 3.8))),
     ("dead-channel", tyre(Fy=-80.0), tyre(alpha=0.02, Fy=-80.0, Mz=2.0)),
     ("dead-channel", tyre(alpha=ALPHA[:4], Mz=3.7), tyre(alpha=ALPHA[:3], Mz=3.7)),
+    ("force-and-moment-exchanged", tyre(Fy=0.03 * FORCE, Mz=FORCE), tyre(Fy=FORCE, Mz=0.03 * FORCE)),
+    ("force-and-moment-exchanged", tyre(Fy=0.0, Mz=228.0 * np.sign(ALPHA)), tyre(Fy=0.0, Mz=222.0 * np.sign(ALPHA))),
     ("force-in-kilonewtons", tyre(Fy=28.0 * np.sign(ALPHA)), tyre(Fy=32.0 * np.sign(ALPHA))),
     ("force-in-kilonewtons", tyre(alpha=ALPHA[:3], Fy=28.0).select([0, 1, 0]), tyre(alpha=ALPHA[:3], Fy=28.0)),
     ("force-in-kilonewtons", tyre(alpha=[DEG * 2.1] * 3, Fy=28.0), tyre(alpha=[DEG * 1.9] * 3, Fy=28.0)),
@@ -196,6 +198,11 @@ def sentence(rule: str, points: Points) -> str:
             "angle-in-radians",
             tyre(Fy=-1500.0 * 125.0 * ALPHA),
             "reaches only 6 deg, over which the side force changes by 125 times",
+        ),
+        (
+            "force-and-moment-exchanged",
+            tyre(Fy=30.0 * np.sign(ALPHA), Mz=1200.0 * np.sign(ALPHA)),
+            "reaches 1200 Nm at loads of 1500 N while Fy_N stays below 30 N, so the headings Fy_N and Mz_Nm look exchanged",
         ),
         ("force-in-kilonewtons", tyre(Fy=28.0 * np.sign(ALPHA)), "is at most 28 N at loads of 1500 N"),
         (

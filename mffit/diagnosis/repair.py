@@ -1,0 +1,56 @@
+"""The part of an explanation that is repaired in the model: effects that are likely, if left-out sweeps confirm them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from mffit.diagnosis import constants
+from mffit.diagnosis.explanation import Explanation
+from mffit.diagnosis.inexact import EXACT, Inexactness
+from mffit.diagnosis.notes import FileKept, NoRepair
+from mffit.diagnosis.problem import DiagnosisProblem
+from mffit.diagnosis.result import AcceptedEffect
+from mffit.diagnosis.validation import Validation, validate
+
+
+@dataclass(frozen=True, slots=True)
+class Repair:
+    """The effects and coefficients with which the model and the readings are corrected."""
+
+    explanation: Explanation
+    validation: Validation  #: of the repair, not of everything that is named
+    refused: NoRepair | FileKept | None
+    keeps_file: bool
+    """Whether the given property file is kept, because the corrected one without its rig and environment terms is worse."""
+
+
+def repair(
+    found: Explanation,
+    named: Sequence[AcceptedEffect],
+    given: DiagnosisProblem,
+    inexact: Inexactness,
+    validation: Validation,
+    *,
+    seen: bool,
+    every: bool,
+) -> Repair:
+    """The repair of the ``named`` effects that are at least as likely as not, or of ``every`` one.
+
+    ``validation`` is that of all of them. ``seen``: the model was fitted to these points.
+    """
+    likely = tuple(one.effect for one in named if every or one.confidence >= constants.LIKELY_ANSWER)
+    refused = None
+    if len(likely) < len(named):
+        found = found.only(likely).with_coefficients(inexact)
+        if seen and not likely:
+            found = found.withdrawn()
+        validation = validate(given, found.refined, inexact if found.coefficients else EXACT, seen=seen)
+        if (likely or found.coefficients) and not validation.helps:
+            refused = NoRepair(tuple(effect.name for effect in likely), validation)
+            found, validation = found.withdrawn(), validation.without_repair()
+    terms = tuple(effect.name for effect in found.chosen.effects if effect.kind != "tyre")
+    changed = found.coefficients or any(effect.kind == "tyre" for effect in found.chosen.effects)
+    if not terms or not changed or validation.file_helps:
+        return Repair(found, validation, refused, keeps_file=False)
+    return Repair(found, validation, FileKept(terms, validation), keeps_file=True)
