@@ -75,5 +75,5 @@ def possible(
         if lack:
             lacking.setdefault(lack, []).append(effect)
         else:
-            out.append(effect.of_runs(files).of_setups(points.used_setups))
+            out.append(effect.of_parts(files).of_setups(points.used_setups))
     return out, [NotVisible(needs=lack, effects=tuple(hidden)) for lack, hidden in lacking.items()]

@@ -107,7 +107,7 @@ def validate(
 def file_alone(state: Simulation, given: Simulation) -> Simulation:
     """The simulation with the corrected property file, its rig and environment as ``given``."""
     tyre = {error.name: state.faults[error.name] for error in RIG_ERRORS if error.kind == "tyre"}
-    return replace(state, faults=given.faults.replace(**tyre), of_runs=given.of_runs)
+    return replace(state, faults=given.faults.replace(**tyre), of_parts=given.of_parts)
 
 
 def _folds(sweep: np.ndarray) -> list[np.ndarray]:

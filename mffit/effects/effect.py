@@ -78,7 +78,7 @@ class Effect:
         ]
         return replace(self, free=tuple(free))
 
-    def of_runs(self, files: Sequence[str]) -> Effect:
+    def of_parts(self, files: Sequence[str]) -> Effect:
         """The same with what differs from run to run written out for these files."""
         if not self.differs_by_run:
             return self

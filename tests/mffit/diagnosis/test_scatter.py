@@ -29,8 +29,8 @@ def found(Fy, named=NOTHING, offsets=0.0):
     rng = np.random.default_rng(99)
     residual = np.concatenate([Fy, rng.normal(0.0, 0.6, N)])
     size = np.concatenate([FORCE, 0.02 * FORCE])
-    of_runs = np.vstack([RUNS[:, None] == np.arange(SWEEPS), np.zeros((N, SWEEPS))])
-    runs = {"run-offsets-fy": offsets * of_runs} if offsets else {}
+    of_parts = np.vstack([RUNS[:, None] == np.arange(SWEEPS), np.zeros((N, SWEEPS))])
+    runs = {"run-offsets-fy": offsets * of_parts} if offsets else {}
     return learned(stated(), residual, ExplainingColumns(named, runs, NOTHING), size)
 
 
