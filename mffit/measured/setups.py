@@ -18,6 +18,7 @@ from mffit.measured.at_zero import PathZeros, zeros_by_path
 from mffit.measured.groups import LoadGroup, zeros
 from mffit.measured.paths import PathForce
 from mffit.measured.result import Measured, SetupResult, SetupScatter
+from mffit.measured.sources import named
 from mffit.points import Points
 from mffit.rig_errors import DECLARED, AtZero
 from tir import Quantity
@@ -156,7 +157,8 @@ def excess_forces(scatter: SetupScatter | None, rig: method.UncertainRig) -> dic
     """The force [N] of each set-up that scatters beyond what is declared; empty if it does not."""
     if scatter is None or not scatter.excess:
         return {}
-    return {name: method.named(0.0, scatter.excess, SCATTER, "N") for name in rig.of_setups}
+    shown = {"kind": "A", "dof": float(scatter.degrees_of_freedom)}
+    return {name: named(0.0, scatter.excess, SCATTER, "N", **shown) for name in rig.of_setups}
 
 
 def _mean(path: PathZeros, *, both: bool) -> float:
