@@ -11,6 +11,9 @@ The modules in the order of the method (:mod:`engine` is the sequence):
 6. ``validation``: the part that left-out sweeps confirm.
 7. ``ties``, ``limits``: rivals of each effect, the run that separates them, sizes that are ruled out.
 8. ``answer``, ``result``, ``notes``, ``wording``: the record, corrected points, sentences.
+
+Every build uses ``remains`` on its own fit: ``remainder`` projects out what was fitted, ``one_step`` tests every effect,
+``structure`` whether the residuals are random.
 """
 
 from mffit.diagnosis.engine import diagnose

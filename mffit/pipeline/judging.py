@@ -84,8 +84,8 @@ def judged_diagnosis(diagnosis: Diagnosis) -> Trust:
 
 def _cause(doubts: Sequence[Doubt], left: Remains) -> str:
     """What would explain a misfit: a sweep that contradicts the others, else the best effect; empty if none can be seen."""
-    if doubts:
-        worst = max(doubts, key=lambda doubt: doubt.ratio)
+    worst = max(doubts, key=lambda doubt: doubt.ratio, default=None)
+    if worst is not None and (worst.looks or left.sweep is None):
         looks = f" and looks like {worst.looks}" if worst.looks else ""
         return f"{worst.sweep} contradicts the other sweeps{looks}"
     if left.sweep is not None:

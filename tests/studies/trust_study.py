@@ -55,7 +55,7 @@ def _backward_camber(content: Plan, folder: Path) -> None:
 
 def _load_low(config: Plan, folder: Path) -> None:
     """The load of one sweep was 10 % lower than it reads."""
-    path = next(folder.glob("coupled_*_20deg.csv"))
+    path = sorted(folder.glob("coupled_*_20deg.csv"))[0]
     table = pd.read_csv(path)
     table["Fz_N"] *= 1.1
     table.to_csv(path, index=False)
