@@ -180,9 +180,9 @@ LEAST_CONICITY = Real(
 )
 
 SPIN_CORRECTION_OF_MODEL = Real(
-    0.15,
+    0.05,
     "-",
-    "Standard uncertainty, over the correction itself, of the formula that corrects the cornering stiffness for spin.",
+    "Standard uncertainty of the formula, over the difference of the cornering stiffnesses without and with spin.",
 )
 
 # Numbers of the tyre's state and of the rig

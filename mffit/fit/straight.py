@@ -1,4 +1,4 @@
-"""Cornering stiffness without spin: the one measured on the path, corrected by the fitted model."""
+"""Cornering stiffness without spin, by the fitted model beside the measured one."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from mffit.fit import constants
 from mffit.fit.posterior import spread_through
 from mffit.fit.result import FitResult
 from mffit.measured import LoadResult
-from mffit.points import Points, main_path, make_points
+from mffit.points import Points, main_path, main_pressure, make_points
 from mffit.rig import Simulation
 from tir import Quantity
 
@@ -30,8 +30,9 @@ def straight_cornering_stiffness(fitted: FitResult, points: Points, row: LoadRes
 
     Notes
     -----
-    The model gives the ratio of the slopes without and with spin, with an uncertainty from its posterior and for the formula
-    itself; the stiffness is the measured one.
+    It is the slope of the model, which all points determine, at no turn slip. Its uncertainty is that of the posterior, with a
+    share of the correction for the formula of the model, and whatever the model's slope on the path differs from the measured
+    one beyond the uncertainty of both.
     """
     phi_t = main_path(points)
     if row.C_alpha is None or phi_t == 0.0:
@@ -39,13 +40,12 @@ def straight_cornering_stiffness(fitted: FitResult, points: Points, row: LoadRes
     tyre, posterior = fitted.simulation.faultless, fitted.posterior
     rows = [i for i, name in enumerate(posterior.names) if name in tyre.values]
     names = [posterior.names[i] for i in rows]
+    covariance = posterior.covariance[np.ix_(rows, rows)]
     straight, curved = (_slope(tyre, points, row.load, path, names) for path in (0.0, phi_t))
-    ratio = straight.slope / curved.slope
-    change = straight.by_coefficient / straight.slope - curved.by_coefficient / curved.slope
-    u = float(spread_through(change[None], posterior.covariance[np.ix_(rows, rows)])[0])
-    u = math.hypot(u, constants.SPIN_CORRECTION_OF_MODEL * (ratio - 1.0))
-    C = row.C_alpha
-    return Quantity(ratio * C.value, abs(ratio * C.value) * math.hypot(C.u / C.value, u), C.unit)
+    u, u_curved = (float(spread_through(x.by_coefficient[None], covariance)[0]) for x in (straight, curved))
+    gap = (curved.slope - row.C_alpha.value) ** 2 - u_curved**2 - row.C_alpha.u**2
+    formula = constants.SPIN_CORRECTION_OF_MODEL * (straight.slope - curved.slope)
+    return Quantity(straight.slope, math.hypot(u, formula, math.sqrt(max(gap, 0.0))), row.C_alpha.unit)
 
 
 class _Slope(NamedTuple):
@@ -57,7 +57,8 @@ class _Slope(NamedTuple):
 
 def _slope(tyre: Simulation, points: Points, load: float, phi_t: float, names: Sequence[str]) -> _Slope:
     """The model's slope on a path of turn slip ``phi_t`` [1/m], at the usual pressure and speed of ``points``."""
-    p, V = float(np.median(points.p)), float(np.median(points.V))
+    usual = main_pressure(points)
+    p, V = float(np.median(points.p[usual])), float(np.median(points.V[usual]))
     around = make_points(np.array([STEP, -STEP]), 0.0, load, p=p, V=V, phi_t=phi_t)
     forces, by_coefficient = tyre.sensitivities(around, names)
     up, down = forces.Fy
