@@ -228,18 +228,43 @@ def test_a_hysteresis_of_moving_sweeps_is_found_and_left_out_of_the_file(tmp_pat
     assert np.max(np.abs(apart)) < 12.0
 
 
-def test_a_sweep_repeated_at_another_camber_shows_no_sense():
+def test_there_and_back_at_another_camber_shows_no_sense():
     nuisance = next(n for n in NUISANCES if n.id == "hysteresis")
     up = np.radians(np.linspace(-8.0, 8.0, 17))
+    there_and_back = np.concatenate([up, up[::-1]])
 
-    def said(alpha):
+    def said(alpha, gamma_deg):
         points = make_points(
-            np.tile(alpha, 2), 0.0, 1400.0, p=250e3, V=6.0, phi_t=0.0, sweep=np.repeat([0, 1], len(alpha))
-        )
+            np.tile(alpha, 2), np.tile(np.radians(gamma_deg), 2), 1400.0, p=250e3, V=6.0, phi_t=0.0,
+            sweep=np.repeat([0, 1], len(alpha)), sweep_names=("a", "b"),
+        )  # fmt: skip
         return nuisance.lacking(points)
 
-    assert "up and down" in said(np.tile(up, 3))
-    assert said(np.concatenate([up, up[::-1]])) == ""
+    assert said(there_and_back, np.full(34, 10.0)) == ""
+    assert "up and down" in said(there_and_back, np.repeat([10.0, -10.0], 17))
+    assert "up and down" in said(np.tile(up, 3), np.zeros(51))  # jumps back
+
+
+@pytest.mark.parametrize("key", ["wear", "warm_up"])
+def test_a_change_over_the_distance_is_found_if_it_is_asked_for(warmed, key):
+    """The readings of the fitted tyre, changed by formulae of this test over the distance rolled."""
+    search = warmed[0].fit.search
+    problem, count = search.problem, len(search.problem.points)
+    points = problem.points.replace(t=3.0 * np.arange(count))
+    sound = search.simulation.readings(points)
+    km = points.t * points.V / 1000.0
+    factor = 1.0 - 0.02 * km if key == "wear" else 1.0 - 0.08 * np.exp(-km)
+    rng = np.random.default_rng(3)
+    Fy = sound.Fy * factor + 3.0 * rng.standard_normal(len(km))
+    Mz = sound.Mz * factor + 0.3 * rng.standard_normal(len(km))
+    changed = replace(search, problem=replace(problem, points=points.replace(Fy=Fy, Mz=Mz)))
+    asked = choose(with_setting(warmed[0], temperature=False, wear="auto", warm_up="auto"), changed)
+    name = key.replace("_", "-")
+    assert [row.nuisance.id for row in asked.verdicts if row.modelled] == [name]
+    number = "wear_per_km" if key == "wear" else "warm_up"
+    assert asked.near.faults[number] == pytest.approx(-0.02 if key == "wear" else 0.08, rel=0.25)
+    silent = choose(with_setting(warmed[0], temperature=False), changed)
+    assert verdict(silent, name).reason == f"[fit] {key} = false"
 
 
 def test_a_lag_of_recorded_sweeps_is_told_from_a_hysteresis(tmp_path):
