@@ -20,6 +20,7 @@ from mffit.fit.nuisance_choice import choose
 from mffit.fit.nuisances import NUISANCES
 from mffit.pipeline.measuring import measure
 from mffit.points import make_points
+from mffit.rig import Simulation
 
 TERMS = {"k_T_grip_per_K": -0.006, "k_T_stiffness_per_K": -0.003, "k_T_camber_per_K": -0.005}
 COLD, WARM = 25.0, 50.0
@@ -68,6 +69,8 @@ def test_a_tyre_that_warms_up_gets_its_temperature_terms(warmed):
     noise = np.sqrt(np.nanmean(result.points.u_Fy**2))
     assert found.channels["Fy"].rmse < 1.1 * noise < 1.5 * noise < result.fit.channels["Fy"].rmse
     assert not result.fit.distrusted  # the cause is modelled
+    still = Simulation.of(found.file.tyre, turn_slip=False).readings(result.points).Fy - result.points.Fy
+    assert found.alone["Fy"].rmse == pytest.approx(np.sqrt(np.mean(still**2)), rel=0.02)
 
 
 def test_the_file_at_temperature_is_the_tyre_at_any_temperature(warmed):
