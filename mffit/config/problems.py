@@ -118,7 +118,10 @@ def _sentence(detail: Any, key: str, lines: dict[str, int]) -> str:
     if kind == "missing":
         return _missing(key, lines)
     if kind == "literal_error":
-        return f"{_quoted(given)} is not allowed; write {context['expected']}"
+        expected = re.sub(
+            r"\b(True|False)\b", lambda word: word[0].lower(), context["expected"]
+        )  # as TOML has them
+        return f"{_quoted(given)} is not allowed; write {expected}"
     if kind == "greater_than":
         return f"{given:g} is not above {context['gt']:g}; correct it"
     if kind == "greater_than_equal":

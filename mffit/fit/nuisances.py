@@ -13,6 +13,7 @@ from mffit.least_squares import FreeNumber
 from mffit.points import Points
 from mffit.rig.histories import distance_km, sense
 from mffit.rig_errors import BY_NAME, OF_RUN, RigError
+from mffit.suspicion import parts_of_sweeps
 
 TEMPERATURE = "temperature"
 """Key of [fit] with the influences of the tyre's temperature, which a second file states."""
@@ -74,17 +75,17 @@ def _cambers(points: Points) -> str:
 
 
 def _senses(points: Points) -> str:
-    moving, both = sense(points), 0
-    for k in np.unique(points.sweep):
-        rows = points.sweep == k
+    moving, part, both = sense(points), parts_of_sweeps(points), 0
+    for k in np.unique(part):
+        rows = part == k
         alpha = points.alpha[rows]
         ways = [alpha[moving[rows] == way] for way in (1.0, -1.0)]
-        # A sweep that is repeated at another camber jumps back once: that is no sweep down.
+        # A sweep that is repeated at another load or camber jumps back once: that is no sweep down.
         if min(map(len, ways)) > constants.LEAST_SHARE_OF_A_SENSE * len(alpha):
             common = min(way.max() for way in ways) - max(way.min() for way in ways)
             both += bool(common > constants.OVERLAP_OF_SENSES * np.ptp(alpha))
-    runs = both if len(np.unique(points.sweep)) > 1 else both * constants.OVERLAPPING_SWEEPS
-    return "" if runs >= constants.OVERLAPPING_SWEEPS else "no sweeps go through the same angles up and down"
+    enough = both >= constants.OVERLAPPING_SWEEPS
+    return "" if enough else "no sweeps go through the same angles up and down at one condition"
 
 
 def _times(points: Points) -> str:

@@ -459,3 +459,19 @@ def test_a_table_named_by_a_number_is_refused_with_its_line(tmp_path):
     with pytest.raises(InputError, match="is unknown; known here are tyre, rig") as caught:
         config.load(tmp_path / "tyre.toml")
     assert (caught.value.key, caught.value.line) == ("9", 16)
+
+
+@pytest.mark.parametrize(
+    ("line", "sentence"),
+    [
+        ('temperature = "yes"', "fit.temperature: \"yes\" is not allowed; write 'auto', true or false"),
+        ("sense = true", "fit.sense: true is not allowed; write 'auto', 'hysteresis', 'lag' or false"),
+        ("T_ref_degC = 333", "fit.T_ref_degC: 333 degC is outside -40 to 200 degC"),
+    ],
+)
+def test_wrong_settings_of_the_fit_are_named_with_what_is_allowed(tmp_path, line, sentence):
+    path = tmp_path / "tyre.toml"
+    path.write_text(MINIMAL + f"\n[fit]\n{line}\n")
+    with pytest.raises(InputError) as refused:
+        config.load(path)
+    assert sentence in str(refused.value)

@@ -20,6 +20,7 @@ from mffit.fit.nuisance_choice import choose
 from mffit.fit.nuisances import NUISANCES
 from mffit.pipeline.measuring import measure
 from mffit.points import make_points
+from mffit.rig import Simulation
 
 TERMS = {"k_T_grip_per_K": -0.006, "k_T_stiffness_per_K": -0.003, "k_T_camber_per_K": -0.005}
 COLD, WARM = 25.0, 50.0
@@ -68,6 +69,8 @@ def test_a_tyre_that_warms_up_gets_its_temperature_terms(warmed):
     noise = np.sqrt(np.nanmean(result.points.u_Fy**2))
     assert found.channels["Fy"].rmse < 1.1 * noise < 1.5 * noise < result.fit.channels["Fy"].rmse
     assert not result.fit.distrusted  # the cause is modelled
+    still = Simulation.of(found.file.tyre, turn_slip=False).readings(result.points).Fy - result.points.Fy
+    assert found.alone["Fy"].rmse == pytest.approx(np.sqrt(np.mean(still**2)), rel=0.02)
 
 
 def test_the_file_at_temperature_is_the_tyre_at_any_temperature(warmed):
@@ -228,18 +231,43 @@ def test_a_hysteresis_of_moving_sweeps_is_found_and_left_out_of_the_file(tmp_pat
     assert np.max(np.abs(apart)) < 12.0
 
 
-def test_a_sweep_repeated_at_another_camber_shows_no_sense():
+def test_there_and_back_at_another_camber_shows_no_sense():
     nuisance = next(n for n in NUISANCES if n.id == "hysteresis")
     up = np.radians(np.linspace(-8.0, 8.0, 17))
+    there_and_back = np.concatenate([up, up[::-1]])
 
-    def said(alpha):
+    def said(alpha, gamma_deg):
         points = make_points(
-            np.tile(alpha, 2), 0.0, 1400.0, p=250e3, V=6.0, phi_t=0.0, sweep=np.repeat([0, 1], len(alpha))
-        )
+            np.tile(alpha, 2), np.tile(np.radians(gamma_deg), 2), 1400.0, p=250e3, V=6.0, phi_t=0.0,
+            sweep=np.repeat([0, 1], len(alpha)), sweep_names=("a", "b"),
+        )  # fmt: skip
         return nuisance.lacking(points)
 
-    assert "up and down" in said(np.tile(up, 3))
-    assert said(np.concatenate([up, up[::-1]])) == ""
+    assert said(there_and_back, np.full(34, 10.0)) == ""
+    assert "up and down" in said(there_and_back, np.repeat([10.0, -10.0], 17))
+    assert "up and down" in said(np.tile(up, 3), np.zeros(51))  # jumps back
+
+
+@pytest.mark.parametrize("key", ["wear", "warm_up"])
+def test_a_change_over_the_distance_is_found_if_it_is_asked_for(warmed, key):
+    """The readings of the fitted tyre, changed by formulae of this test over the distance rolled."""
+    search = warmed[0].fit.search
+    problem, count = search.problem, len(search.problem.points)
+    points = problem.points.replace(t=3.0 * np.arange(count))
+    sound = search.simulation.readings(points)
+    km = points.t * points.V / 1000.0
+    factor = 1.0 - 0.02 * km if key == "wear" else 1.0 - 0.08 * np.exp(-km)
+    rng = np.random.default_rng(3)
+    Fy = sound.Fy * factor + 3.0 * rng.standard_normal(len(km))
+    Mz = sound.Mz * factor + 0.3 * rng.standard_normal(len(km))
+    changed = replace(search, problem=replace(problem, points=points.replace(Fy=Fy, Mz=Mz)))
+    asked = choose(with_setting(warmed[0], temperature=False, wear="auto", warm_up="auto"), changed)
+    name = key.replace("_", "-")
+    assert [row.nuisance.id for row in asked.verdicts if row.modelled] == [name]
+    number = "wear_per_km" if key == "wear" else "warm_up"
+    assert asked.near.faults[number] == pytest.approx(-0.02 if key == "wear" else 0.08, rel=0.25)
+    silent = choose(with_setting(warmed[0], temperature=False), changed)
+    assert verdict(silent, name).reason == f"[fit] {key} = false"
 
 
 def test_a_lag_of_recorded_sweeps_is_told_from_a_hysteresis(tmp_path):
