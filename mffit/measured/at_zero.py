@@ -33,7 +33,7 @@ class ZeroReadings(NamedTuple):
     )
 
 
-class Place(NamedTuple):
+class PathInSetup(NamedTuple):
     """A path in one set-up."""
 
     phi_t: float  #: turn slip of the path [1/m]
@@ -49,9 +49,9 @@ class PathZeros(NamedTuple):
     group: LoadGroup
 
     @property
-    def place(self) -> Place:
+    def place(self) -> PathInSetup:
         """Its path and set-up."""
-        return Place(self.phi_t, self.setup)
+        return PathInSetup(self.phi_t, self.setup)
 
 
 def zeros_by_path(

@@ -10,8 +10,8 @@ from uncertainties import UFloat
 from mffit.measured import notes
 from mffit.measured.agreed import agreed
 from mffit.measured.at_zero import (
+    PathInSetup,
     PathZeros,
-    Place,
     ZeroReadings,
     refuse_inward,
     turn_slip_of_path,
@@ -93,7 +93,7 @@ def turning(
 
 
 def _conicity(
-    evidence: DirectEvidence, group: LoadGroup, slopes: LoadSlopes, normal: Mapping[Place, PathForce]
+    evidence: DirectEvidence, group: LoadGroup, slopes: LoadSlopes, normal: Mapping[PathInSetup, PathForce]
 ) -> tuple[UFloat | None, UFloat]:
     """The conicity force [N] from both mounts, None with one mount only; and the one to correct with.
 

@@ -144,7 +144,7 @@ def explaining(
     for mistake, points in candidates:
         after = away(points)
         little = all(
-            after[name].error <= EXPLAINED_SHARE * error and after[name].matched
+            name in after and after[name].error <= EXPLAINED_SHARE * error and after[name].matched
             for name, error in gross.items()
         )
         if not little or any(one.share > tolerated[name] for name, one in after.items()):

@@ -112,7 +112,7 @@ def _compared(result: Any, true: tir.Tyre, terms: Mapping[str, float]) -> Warmed
             pulls[name] = (value - k) / u
             if k:
                 ratios[name] = value / k
-    return Warmed(found is not None, pulls, ratios, over, not fit.distrusted, fit.seconds)
+    return Warmed(found is not None, pulls, ratios, over, result.trusted, fit.seconds)
 
 
 def table(world: str, rows: list[Warmed]) -> list[str]:

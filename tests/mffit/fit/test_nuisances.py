@@ -68,7 +68,7 @@ def test_a_tyre_that_warms_up_gets_its_temperature_terms(warmed):
         assert abs(value / truth - 1.0) < 0.25
     noise = np.sqrt(np.nanmean(result.points.u_Fy**2))
     assert found.channels["Fy"].rmse < 1.1 * noise < 1.5 * noise < result.fit.channels["Fy"].rmse
-    assert not result.fit.distrusted  # the cause is modelled
+    assert not result.reasons  # the cause is modelled
     still = Simulation.of(found.file.tyre, turn_slip=False).readings(result.points).Fy - result.points.Fy
     assert found.alone["Fy"].rmse == pytest.approx(np.sqrt(np.mean(still**2)), rel=0.02)
 

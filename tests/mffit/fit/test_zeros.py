@@ -34,7 +34,7 @@ def wrong_base(tmp_path_factory):
 
 def test_an_upright_campaign_fits_at_the_noise_whatever_pecp1_the_base_file_has(wrong_base):
     assert wrong_base.fit.channels["Fy"].rmse < 1.15 * small_rigs.FY
-    assert not wrong_base.fit.distrusted
+    assert not wrong_base.reasons
 
 
 def test_pecp1_carries_the_uncertainty_of_the_camber_stiffness(wrong_base):

@@ -79,6 +79,7 @@ MADE = {
     "its side force reversed": times(Fy=-1.0),
     "its moment reversed": times(Mz=-1.0),
     "sideslip and camber exchanged": exchanged,
+    "side force and moment exchanged": lambda sweep: sweep.replace(Fy=sweep.Mz, Mz=sweep.Fy),
     "the direction of rolling undeclared or wrong": times(direction=-1),
     "side force and moment in other axes": times(Fy=-1.0, Mz=-1.0),
     "sideslip, side force and moment in other axes": times(alpha=-1.0, Fy=-1.0, Mz=-1.0),
