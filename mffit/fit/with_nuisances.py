@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 
+from mffit.constants import COVERAGE_FACTOR_95
 from mffit.fit.fitted import Fitted
 from mffit.fit.nuisance_choice import NuisanceChoice, at_reference, choose
 from mffit.fit.nuisances import TEMPERATURE, Nuisance
@@ -106,8 +108,18 @@ def _doubted(plain: Fitted, full: Fitted) -> Fitted:
 
     The shift of all coefficients together is one more error of known size.
     """
-    posterior = plain.posterior
-    shift = np.array(
-        [plain.values[name] - full.values[name] if name in full.values else 0.0 for name in posterior.names]
+    names = plain.posterior.names
+    shift = {name: plain.values[name] - full.values[name] for name in names if name in full.values}
+    reach = {name: COVERAGE_FACTOR_95 * size for name, size in shift.items()}
+    intervals = {
+        name: (value - math.hypot(value - low, reach[name]), value + math.hypot(high - value, reach[name]))
+        for name, (low, high) in plain.intervals.items()
+        if name in reach
+        for value in [plain.values[name]]
+    }
+    return replace(
+        plain,
+        posterior=plain.posterior.shifted(np.array([shift.get(name, 0.0) for name in names])),
+        stderr={name: math.hypot(u, shift.get(name, 0.0)) for name, u in plain.stderr.items()},
+        intervals={**plain.intervals, **intervals},
     )
-    return replace(plain, posterior=posterior.shifted(shift))
