@@ -34,7 +34,7 @@ class Specimen:
     epsilon_gamma: Quantity | None  #: of the direct method
     misfit: Mapping[str, float]  #: rms by channel, [N] and [Nm]
     warnings: tuple[str, ...]
-    reasons: tuple[str, ...]  #: why the build is not to be trusted; empty for a sound one
+    reasons: tuple[str, ...] = ()  #: why the build is not to be trusted; empty for a sound one
     setups: tuple[str, ...] = ()  #: names of the set-ups that its sweeps declare
     epsilon_of_setups: tuple[
         Quantity, ...

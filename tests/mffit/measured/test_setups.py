@@ -112,7 +112,9 @@ def test_repeated_set_ups_that_scatter_more_count_by_their_scatter():
     assert math.hypot(scatter.excess, U_OFFSET) == pytest.approx(scatter.between)
     whole = math.hypot(of_budget(result, SCATTER), of_budget(result, "load-cell offset"))
     assert whole == pytest.approx(share(scatter.between / math.sqrt(3.0), tyre), rel=0.02)
-    assert result.nominal.u_monte_carlo == pytest.approx(result.epsilon_gamma.u, rel=0.05)
+    # Student's distribution with the two degrees of freedom of three set-ups is wider than the normal one.
+    assert 1.1 < result.nominal.u_monte_carlo / result.epsilon_gamma.u < 1.6
+    assert result.nominal.expanded.dof < 10.0
     assert (
         math.exp(-900.0 / 100.0) < scatter.chance < math.exp(-900.0 / (100.0 + NEWTON**2))
     )  # chi2 of 2 is 2 s^2 / u^2
