@@ -104,7 +104,9 @@ def read_entry(given: tuple[str, Any]) -> CoefficientByHand:
             raise q.wrong(mistake, key)
         if key != "u":
             _require_plausible(row, number, key)
-    entry = CoefficientByHand(**{key: float(number) for key, number in content.items()})
+    numbers = {key: float(number) for key, number in content.items()}
+    value, u, start, least, most = (numbers.get(key) for key in KEYS)
+    entry = CoefficientByHand(value=value, u=u, start=start, min=least, max=most)
     _check_freed(row, entry)
     return entry
 

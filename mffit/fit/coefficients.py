@@ -9,6 +9,7 @@ from mffit.constants import COVERAGE_FACTOR_95
 from mffit.fit.files import Files
 from mffit.fit.fitted import Fitted
 from mffit.fit.known import Known
+from mffit.fit.priors import Prior
 from mffit.least_squares import touches
 from tir import Quantity
 from tir.parameters import BY_NAME, TABLE
@@ -28,6 +29,10 @@ class Coefficient:
     correlation: float = 0.0
     interval: tuple[float, float] | None = None  #: of 95 %; None if held
     origin: str = ""  #: as the file's comment states it
+    by_hand: str = ""  #: what [coefficients] sets of it, in words; empty if nothing
+    held: bool = False  #: held by hand at ``value``
+    bounds: tuple[float, float] | None = None  #: set by hand
+    prior: Prior | None = None  #: set by hand
 
 
 def coefficient_records(
@@ -40,7 +45,7 @@ def coefficient_records(
     stderr = {name: fitted.posterior.stderr[name] for name in fitted.values} | {
         n: q.u for n, q in fitted_after.items()
     }
-    out = {}
+    out, hand = {}, known.hand
     for row in TABLE:
         if row.kind != "number":
             continue
@@ -56,6 +61,10 @@ def coefficient_records(
             correlated_with=partner,
             correlation=correlation,
             interval=None if u is None else fitted.intervals.get(name, _interval(value, u)),
+            by_hand=hand.mark(name),
+            held=name in hand.held,
+            bounds=hand.bounded.get(name),
+            prior=hand.priors.get(name),
         )
     return out
 
@@ -79,8 +88,10 @@ def of_file(files: Files, use: str, coefficients: Mapping[str, Coefficient]) -> 
                 stderr=None,
                 stage=record.stage,
                 fixed=False,
-                at_bound=touches(value, *BY_NAME[name].bounds),
+                at_bound=touches(value, *(record.bounds or BY_NAME[name].bounds)),
                 status="fitted",
                 origin=origin,
+                by_hand="bounds by hand" if record.bounds else "",
+                bounds=record.bounds,
             )
     return out

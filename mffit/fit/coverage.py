@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from dataclasses import dataclass
 
 import numpy as np
 
 from mffit.fit import constants
+from mffit.fit.by_hand import HELD_BY_HAND
 from mffit.fit.stages import STAGES
 from mffit.points import Points, levels
 from tir.parameters import BY_NAME, Need, Parameter
@@ -61,12 +63,18 @@ def design(points: Points, side: str) -> Design:
     )
 
 
-def coverage(points: Points, side: str) -> tuple[StageCoverage, ...]:
-    """The coverage matrix: per stage the coefficients that are freed and what is missing for the rest."""
+def coverage(points: Points, side: str, by_hand: Collection[str] = ()) -> tuple[StageCoverage, ...]:
+    """The coverage matrix: per stage the coefficients that are freed and what is missing for the rest.
+
+    Those named in ``by_hand`` are held, whatever the data determine.
+    """
     seen = design(points, side)
     rows = []
     for stage in STAGES:
-        reasons = {name: _missing(BY_NAME[name], seen) for name in stage.parameters}
+        reasons = {
+            name: HELD_BY_HAND if name in by_hand else _missing(BY_NAME[name], seen)
+            for name in stage.parameters
+        }
         free = tuple(name for name, reason in reasons.items() if not reason)
         held = tuple(name for name, reason in reasons.items() if reason)
         missing = tuple(dict.fromkeys(reason for reason in reasons.values() if reason))

@@ -11,6 +11,7 @@ import numpy as np
 from mffit.config import axis_signs
 from mffit.config.declared import as_declared
 from mffit.fit import agreement
+from mffit.fit.by_hand import hand_of
 from mffit.fit.coefficients import coefficient_records, of_file
 from mffit.fit.comments import file_comments
 from mffit.fit.files import make_files
@@ -58,9 +59,11 @@ def fit(
     """
     began = time.perf_counter()
     fleet = of_fleet(config)
-    known = known_before_fit(config, points, measured, base, fleet)
-    start = starting_values(known.values, points, measured)
+    hand = hand_of(config, base)
+    known = known_before_fit(config, points, measured, base, fleet, hand)
+    start = starting_values(known.values, points, measured, hand.held)
     plan = fit_plan(config, points, measured, known, start, fleet)
+    start = hand.starting(start)
     problem = fit_problem(config, points, measured, known.values)
     fitted, doubts = _fitted_and_judged(config, problem, start, plan, progress)
     readings = fitted.simulation.readings(points)
@@ -68,7 +71,7 @@ def fit(
 
     progress("deriving the property files")
     known = known_after_fit(known, fitted.values, fitted.regularised, base)
-    rolling = rolling_resistance(known.values, points)
+    rolling = {} if "QSY1" in hand.held else rolling_resistance(known.values, points)
     known = known.having({name: QSY1.value for name, QSY1 in rolling.items()}, "fitted")
     coefficients = coefficient_records(known, fitted, rolling)
     files = make_files(config, known, points, base, dict(measured.by_load("C_gamma")))
@@ -88,8 +91,8 @@ def fit(
         posterior=fitted.posterior,
         stages=fitted.stages,
         coverage=plan.cover,
-        explanations=tuple(explanations(config, files, known.values, measured)),
-        warnings=warnings(fitted, doubts, outlying, files.untested),
+        explanations=tuple(explanations(config, files, known.values, measured, hand)),
+        warnings=warnings(fitted, doubts, outlying, files.untested, plan.cover),
         seconds=time.perf_counter() - began,
         epsilon_gamma_model=_epsilon_gamma(known.values, points, measured),
         doubts=doubts,

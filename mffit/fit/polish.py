@@ -44,6 +44,7 @@ def polish(stated: FitProblem, plan: FitPlan) -> Fitted:
         regularised=frozenset(plan.free) - decided,
         scale=scale,
         cost=solution.cost,
+        hand=plan.hand,
     )
 
 

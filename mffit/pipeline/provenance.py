@@ -26,6 +26,8 @@ PROGRAM = "program"
 """Key of the version that wrote a file."""
 DISTRUSTED = "NOT TO BE TRUSTED"
 """Key of the reasons in a file that is not to be trusted."""
+BY_HAND = "set by hand"
+"""Key of what the engineer set in [coefficients]."""
 METHOD = "method"
 """Key of the number of the method."""
 DIGITS = 16
@@ -56,6 +58,7 @@ def annotator(config: Config, made: Made, measured: Measured, fitted: FitResult,
             METHOD: str(made.method),
             "use": f"{use}, for simulations with turn slip {TURN_SLIP[use]}",
             "configuration": _settings(config),
+            **_by_hand(fitted),
             **inputs,
         }
         return marked(tyre.annotate(measured={**measured.quantities(), **rig}, provenance=provenance), trust)
@@ -133,6 +136,13 @@ def _inputs(config: Config) -> dict[str, str]:
 
 def _of_inputs(hashes: Mapping[str, str]) -> dict[str, str]:
     return {f"input {quote(name, safe=PLAIN)}": known[:DIGITS] for name, known in hashes.items()}
+
+
+def _by_hand(fitted: FitResult) -> dict[str, str]:
+    """What [coefficients] sets, as an entry of the provenance; empty if it sets nothing."""
+    assert fitted.search is not None
+    hand = fitted.search.hand
+    return {BY_HAND: "; ".join(hand.said(name) for name in hand.names)} if hand.names else {}
 
 
 def _settings(config: Config) -> str:
