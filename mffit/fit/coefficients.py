@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 from mffit.constants import COVERAGE_FACTOR_95
+from mffit.fit.by_hand import Hand
 from mffit.fit.files import Files
 from mffit.fit.fitted import Fitted
 from mffit.fit.known import Known
@@ -60,7 +61,9 @@ def coefficient_records(
             status=known.origin[name],
             correlated_with=partner,
             correlation=correlation,
-            interval=None if u is None else fitted.intervals.get(name, _interval(value, u)),
+            interval=None
+            if u is None
+            else _within(fitted.intervals.get(name) or _interval(value, u), hand, name),
             by_hand=hand.mark(name),
             held=name in hand.held,
             bounds=hand.bounded.get(name),
@@ -72,6 +75,12 @@ def coefficient_records(
 def _interval(value: float, u: float) -> tuple[float, float]:
     """The 95 % interval from the curvature of the sum of squares."""
     return value - COVERAGE_FACTOR_95 * u, value + COVERAGE_FACTOR_95 * u
+
+
+def _within(interval: tuple[float, float], hand: Hand, name: str) -> tuple[float, float]:
+    """The interval within the bounds that are set by hand."""
+    lower, upper = hand.bounded.get(name, interval)
+    return max(interval[0], lower), min(interval[1], upper)
 
 
 def of_file(files: Files, use: str, coefficients: Mapping[str, Coefficient]) -> dict[str, Coefficient]:

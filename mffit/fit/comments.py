@@ -36,6 +36,11 @@ def file_comments(
     """By use of each file, the comment of every value: origin, standard uncertainty, meaning if it is not a coefficient."""
     comments = {row.name: _comment(row, origin[row.name], files.tested) for row in TABLE}
     comments |= {name: _data_comment(c) for name, c in coefficients.items() if c.status in FROM_DATA}
+    comments |= {
+        name: f"{comments[name]}, {c.by_hand}"
+        for name, c in coefficients.items()
+        if c.by_hand and c.status not in FROM_DATA
+    }
     comments |= {name: _held_comment(c) for name, c in coefficients.items() if c.held}
     derived = {
         use: {name: _derived_comment(use, coefficients.get(name)) for name in files.changed.get(use, ())}

@@ -13,6 +13,7 @@ from mffit.fit.coverage import StageCoverage
 from mffit.fit.files import Files, file_names
 from mffit.fit.fitted import Fitted
 from mffit.fit.misfit import FileFigures
+from mffit.fit.normal import CAMBER_FORCE, CAMBER_MOMENT
 from mffit.fit.priors import Prior
 from mffit.fit.ranges import single_pressure
 from mffit.suspicion import Doubt, Outlier, outliers_sentence
@@ -26,7 +27,7 @@ def explanations(
     names = file_names(config.tyre.name, config.spin.exact, config.rig.on_disc)
     out = file_sentences(files, names)
     if hand.names:
-        out.append(by_hand_sentence(hand))
+        out.append(by_hand_sentence(hand, names["normal"] if files.lacking else ""))
     if measured.epsilon_gamma is not None and "PECP1" in hand.held:
         out.append(
             f"PECP1 = {hand.held['PECP1']:.4f} is held by hand. The directly measured eps_gamma is "
@@ -37,14 +38,17 @@ def explanations(
     return out
 
 
-def by_hand_sentence(hand: Hand) -> str:
-    """What the engineer set, and what it means for the files and the uncertainties."""
-    held = (
-        " Held values are the same in every file, and the uncertainties of the others take them as exact."
-        if hand.held
-        else ""
-    )
-    return f"Set by hand in [coefficients]: {'; '.join(hand.said(name) for name in hand.names)}.{held}"
+def by_hand_sentence(hand: Hand, derived: str) -> str:
+    """What the engineer set, and what it means for the uncertainties and for the file ``derived`` from the model, if any."""
+    sentence = f"Set by hand in [coefficients]: {'; '.join(hand.said(name) for name in hand.names)}."
+    if hand.held:
+        sentence += " The uncertainties of the others take held values as exact, and every file has them."
+    own = [name for name in hand.held if name in (*CAMBER_FORCE, *CAMBER_MOMENT)]
+    if derived and own:
+        sentence += (
+            f" {derived} would imitate the fitted model better with values of its own for {', '.join(own)}."
+        )
+    return sentence
 
 
 def file_sentences(files: Files, names: Mapping[str, str]) -> list[str]:

@@ -110,7 +110,8 @@ def known_of_model(
     """
     posterior = None if path is None else posterior_of(tyre, path)
     if same and (fresh or posterior is not None):
-        return refitted(tyre, curved=config.rig.on_disc), True
+        known = {name: entry.u for name, entry in config.coefficients.items() if entry.u is not None}
+        return refitted(tyre, curved=config.rig.on_disc, stated=known), True
     return (None if config.model.u_coefficients else posterior), False
 
 

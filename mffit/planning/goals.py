@@ -51,7 +51,8 @@ def read_goal(text: str, *, on_disc: bool, held: Collection[str] = ()) -> Goal:
 
     An InputError says that the goal is not known, needs a disc, or is a coefficient that is ``held`` by hand.
     """
-    if text in held:
+    if text in held or (text == JOINT and "PECP1" in held):
+        text = "PECP1" if text == JOINT else text
         raise InputError(
             f"[coefficients] holds {text}, so that no run makes it more certain; choose another goal, or free it"
         )

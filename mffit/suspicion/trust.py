@@ -224,15 +224,15 @@ def bound_against_data(fit: FinishedFit) -> Iterator[dict[str, Any]]:
 
 @of_model(
     id="hand-against-the-data",
-    limits=(constants.CERTAIN_SIGMA,),
+    limits=(constants.DOUBTFUL_SIGMA,),
     outcome=Outcome.WARNED,
-    sentence="the readings contradict what [coefficients] sets for {name} ({sigma:.0f} standard deviations, {percent:.1f} % of "
+    sentence="the readings contradict what [coefficients] sets for {name} ({sigma:.1f} standard deviations, {percent:.0f} % of "
     "the misfit): the other coefficients take up the difference; check {name}, or free it",
 )
 def hand_against_data(fit: FinishedFit) -> Iterator[dict[str, Any]]:
     """Misfit that is due to a value or a bound that the engineer set."""
     for held in fit.held:
-        if held.by_hand and held.sigma > constants.CERTAIN_SIGMA:
+        if held.by_hand and held.sigma > constants.DOUBTFUL_SIGMA:
             yield {"name": held.name, "sigma": held.sigma, "percent": 100.0 * held.share}
 
 
