@@ -74,7 +74,7 @@ class Hand:
     def said(self, name: str) -> str:
         """What was set, with its numbers."""
         if name in self.held:
-            return f"{name} = {self.held[name]:g} held{' (from base)' if name in self.from_base else ''}"
+            return f"{name} held at {self.held[name]:.6g}{' (base file)' if name in self.from_base else ''}"
         parts = []
         if name in self.bounded:
             lower, upper = self.bounded[name]

@@ -49,10 +49,10 @@ def fit_staged(
 
 
 def _restart_worthwhile(fitted: Fitted, plan: FitPlan) -> bool:
-    """Whether the fit ends far above the stated noise, or with the shape of a curve at its bound."""
+    """Whether the fit ends far above the stated noise, or with the shape of a curve at a bound of the table."""
     shapes = {name for values in ALTERNATIVE_STARTS.values() for name in values}
     far = plan.noise_stated and max(fitted.scale.values()) > constants.RESTART_MISFIT
-    return far or bool(fitted.at_bound & shapes)
+    return far or bool((fitted.at_bound - fitted.hand.bounded.keys()) & shapes)
 
 
 def _fit_from(start: Mapping[str, float], problem: FitProblem, plan: FitPlan, progress: Progress) -> Fitted:

@@ -143,7 +143,7 @@ def _by_hand(fitted: FitResult) -> dict[str, str]:
     """What [coefficients] sets, as an entry of the provenance; empty if it sets nothing."""
     assert fitted.search is not None
     hand = fitted.search.hand
-    return {BY_HAND: "; ".join(hand.said(name) for name in hand.names)} if hand.names else {}
+    return {BY_HAND: ", ".join(hand.said(name) for name in hand.names)} if hand.names else {}
 
 
 def _settings(config: Config) -> str:

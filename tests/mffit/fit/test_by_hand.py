@@ -115,7 +115,7 @@ def test_every_file_has_what_is_held(disc, result):
         assert (file["PDX1"], file["QSY1"], file["Q_RE0"], file["PKY3"]) == (1.5, 0.02, 0.99, base["PKY3"])
         assert file.status["PDX1"] == file.status["QSY1"] == "held by hand"
         assert file.status["PKY3"] == "from base, held by hand"
-        assert "PDX1 = 1.5 held" in file.provenance["set by hand"]
+        assert "PDX1 held at 1.5" in file.provenance["set by hand"]
 
 
 def test_a_bound_is_kept_to_the_last_digit(result):
