@@ -84,7 +84,8 @@ def _as_set(known: Known) -> Known:
         name: prior.expected for name, prior in hand.priors.items()
     }
     changed = {name: x for name, x in hand.within(found).items() if x != known.values[name]}
-    return known.having(changed, "given")
+    measured = {name: x for name, x in changed.items() if known.origin[name] == "measured"}
+    return known.having(changed, "given").having(measured, "measured")
 
 
 def known_after_fit(
