@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import tomllib
 from pathlib import Path
 
 import numpy as np
@@ -186,3 +187,14 @@ def test_a_base_file_without_the_coefficient_is_refused(belt, tmp_path):
     with pytest.raises(InputError, match="does not state PDX1; write its value") as caught:
         mffit.build(tmp_path / "tyre.toml")
     assert caught.value.line == len(text.splitlines()) + 3
+
+
+def test_no_estimate_replaces_a_held_value(belt):
+    """Without a base file, sections that a cornering test does not measure are estimated from what is known."""
+    content = tomllib.loads((belt / "tyre.toml").read_text(encoding="utf-8"))
+    del content["tyre"]["base"]
+    content["coefficients"] = {"PDX1": 1.5, "RBX1": 9.0}
+    found = mffit.build(config.load(content, folder=belt))
+    assert (found.tyre["PDX1"], found.tyre["RBX1"]) == (1.5, 9.0)
+    assert found.tyre.status["PDX1"] == "held by hand"
+    assert found.tyre.status["PDX2"].startswith("estimate")
