@@ -24,6 +24,7 @@ class StageCoverage:
     free: tuple[str, ...]
     held: tuple[str, ...]
     missing: tuple[str, ...]  #: what the data lack for the held ones, as sentences
+    by_hand: tuple[str, ...] = ()  #: those of the held ones that the engineer holds
 
 
 @dataclass(frozen=True, slots=True)
@@ -86,6 +87,7 @@ def coverage(points: Points, side: str, by_hand: Collection[str] = ()) -> tuple[
                 free=free,
                 held=held,
                 missing=missing,
+                by_hand=tuple(name for name in stage.parameters if name in by_hand),
             )
         )
     return tuple(rows)

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from mffit.fit.by_hand import NO_HAND, Hand
+from mffit.fit.by_hand import HELD_BY_HAND, NO_HAND, Hand
 from mffit.fit.contradiction import contradicted_priors
 from mffit.fit.coverage import StageCoverage
 from mffit.fit.files import Files, file_names
@@ -186,7 +186,9 @@ def by_hand_warnings(fitted: Fitted, coverage: Sequence[StageCoverage]) -> list[
     for name in hand.names:
         if name in free or name in hand.held:
             continue
-        reasons = [reason for row in coverage if name in row.held for reason in row.missing]
+        reasons = [
+            reason for row in coverage if name in row.held for reason in row.missing if reason != HELD_BY_HAND
+        ]
         why = f" ({'; '.join(reasons)})" if reasons else ""
         given = (
             "its prior counts as its value and uncertainty" if name in hand.priors else "nothing was searched"

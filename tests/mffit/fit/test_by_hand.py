@@ -16,6 +16,7 @@ from mffit import config, pipeline
 from mffit.cli import main
 from mffit.errors import InputError
 from mffit.fit.priors import scatter
+from mffit.report.text import plan_summary
 
 TRUTH = small_rigs.truth()
 
@@ -175,6 +176,7 @@ def test_a_plan_predicts_the_uncertainty_of_the_build(disc, result):
     assert found.now == pytest.approx(result["fit"]["coefficients"]["PDY1"]["stderr"], rel=0.02)
     free = {name for row in found.identified.cover for name in row.free}
     assert "PKY3" not in free
+    assert "; held by hand: PKY3." in plan_summary(found).replace("\n", " ")
 
 
 def test_a_base_file_without_the_coefficient_is_refused(belt, tmp_path):
