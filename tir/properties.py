@@ -37,7 +37,7 @@ NUMBER = re.compile(
 )
 """Numbers as files have them, with Fortran's exponents. Python's ``float`` alone would accept 1_5 as 15."""
 STATUS = re.compile(
-    r"^(fitted|measured|tied|default|from base|estimate|covered|regularised|given|diagnosed)\b"
+    r"^(fitted|measured|tied|default|from base|estimate|covered|regularised|given|held|diagnosed)\b"
 )
 
 

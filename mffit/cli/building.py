@@ -27,6 +27,14 @@ FEWEST_TYRES_TO_COMPARE = 2
     default=0,
     help="Number of files to draw from the posterior of the fit.",
 )
+@click.option(
+    "--set",
+    "coefficients",
+    multiple=True,
+    metavar="NAME=VALUE",
+    help="Set a coefficient as [coefficients] does, instead of the entry there: PCY1=1.3 holds it, RBX1=base too; "
+    "'PEY1={min=-3, max=0.5}' bounds it. May be repeated.",
+)
 @click.option("--jobs", type=click.IntRange(1), default=1, help="Number of tyres to build at the same time.")
 @click.option("--dask", metavar="ADDRESS", help="Build on the workers of this Dask scheduler.")
 @click.option(
@@ -42,6 +50,7 @@ def build(
     tyre_tomls: tuple[Path, ...],
     out: Path | None,
     ensemble: int,
+    coefficients: tuple[str, ...],
     jobs: int,
     dask: str | None,
     stored: Path | None,
@@ -52,7 +61,7 @@ def build(
     Runs the whole pipeline and writes .tir, result.json, report.html, points.csv and plots.
     """
     if stored is not None:
-        if tyre_tomls or out is not None or ensemble or dask:
+        if tyre_tomls or out is not None or ensemble or dask or coefficients:
             raise click.UsageError(
                 "--verify reads everything from its folder: give no TYRE_TOML and no other option"
             )
@@ -61,19 +70,26 @@ def build(
     if not tyre_tomls:
         raise click.UsageError("Missing argument 'TYRE_TOML...'.")
     if len(tyre_tomls) > 1 or dask:
+        if coefficients:
+            raise click.UsageError(
+                "--set is a try with one TYRE_TOML: build the tyres one by one, or write [coefficients]"
+            )
         _build_many(tyre_tomls, out, ensemble, jobs, dask, voice)
     else:
-        _build(tyre_tomls[0], out, ensemble, voice)
+        _build(tyre_tomls[0], out, ensemble, coefficients, voice)
 
 
-def _build(tyre_toml: Path, out: Path | None, ensemble: int, voice: Voice) -> None:
-    from mffit import pipeline
+def _build(
+    tyre_toml: Path, out: Path | None, ensemble: int, coefficients: tuple[str, ...], voice: Voice
+) -> None:
+    from mffit import config, pipeline
     from mffit.report import text
     from mffit.results import as_json
 
     out = out or tyre_toml.parent / "out"
     with voice.progress() as show:
-        result = pipeline.build(tyre_toml, out, ensemble=ensemble, progress=show)
+        settings = config.load(tyre_toml, coefficients=coefficients)
+        result = pipeline.build(settings, out, ensemble=ensemble, progress=show)
     voice.warn(result.warnings)
     voice.say(text.build_summary(result))
     files = dict.fromkeys((result.tir_path, *result.files.values()))

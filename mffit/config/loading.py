@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
+from mffit.config.by_hand import of_command_line
 from mffit.config.globs import with_globs_expanded
 from mffit.config.models import Config
 from mffit.config.problems import Keys, known_keys, validated
@@ -26,13 +27,19 @@ TYRE_TOML = TomlKind(
 )
 
 
-def load(source: str | Path | Mapping[str, Any] | Config, *, folder: str | Path | None = None) -> Config:
+def load(
+    source: str | Path | Mapping[str, Any] | Config,
+    *,
+    folder: str | Path | None = None,
+    coefficients: Iterable[str] = (),
+) -> Config:
     """Read and check a configuration.
 
     Parameters
     ----------
     source : path of a ``tyre.toml``, its content as a mapping, or a Config, which is returned unchanged
     folder : where relative file names start; default the file's own, the current one for a mapping
+    coefficients : ``NAME=VALUE``, each instead of the entry of [coefficients] of this name; not for a Config
 
     Returns
     -------
@@ -46,9 +53,17 @@ def load(source: str | Path | Mapping[str, Any] | Config, *, folder: str | Path 
     """
     if isinstance(source, Config):
         return source
+    if given := of_command_line(coefficients):
+        return _with(source, given, folder)
     if isinstance(source, Mapping):
         return checked(source, path=None, folder=Path(folder or "."), lines={})
     path = Path(source)
+    content, lines = _tables(path)
+    return checked(content, path=path, folder=Path(folder or path.parent), lines=lines)
+
+
+def _tables(path: Path) -> tuple[dict[str, Any], dict[str, int]]:
+    """Content of a ``tyre.toml`` and the line of every key."""
     content, lines = read_toml(path, TYRE_TOML)
     if plan := content.keys() & RIG_TOML_TABLES:
         raise InputError(
@@ -56,7 +71,26 @@ def load(source: str | Path | Mapping[str, Any] | Config, *, folder: str | Path 
             "tyre.toml that it writes",
             file=path,
         )
-    return checked(content, path=path, folder=Path(folder or path.parent), lines=lines)
+    return content, lines
+
+
+def _with(
+    source: str | Path | Mapping[str, Any], given: Mapping[str, Any], folder: str | Path | None
+) -> Config:
+    """The configuration with some entries of [coefficients] replaced; a mistake in one of these has no line."""
+    path = None if isinstance(source, Mapping) else Path(source)
+    content, lines = (dict(source), {}) if isinstance(source, Mapping) else _tables(Path(source))
+    own = content.get("coefficients", {})
+    if isinstance(own, Mapping):
+        content["coefficients"] = {**own, **given}
+    start = Path(folder or (path.parent if path else "."))
+    try:
+        return checked(content, path=path, folder=start, lines=lines)
+    except InputError as error:
+        name = (error.key or "").removeprefix("coefficients.")
+        if name in given:
+            raise InputError(error.sentence, key=f"--set {name}") from None
+        raise
 
 
 def checked(

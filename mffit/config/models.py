@@ -22,6 +22,7 @@ from uncertainties import ufloat
 from mffit.brief import Brief
 from mffit.config import constants
 from mffit.config import quantities as q
+from mffit.config.by_hand import Entries, check_coefficients, named
 from mffit.config.exclusion import ExcludeTable, check_exclusions
 from mffit.config.laboratory import LabTable
 from mffit.config.locate import line_of
@@ -297,6 +298,7 @@ class Config(Brief, Table):
     rolling_radius: Annotated[tuple[RollingRadiusTable, ...], BeforeValidator(list_of_tables)] = ()
     camber_stiffness: CamberStiffnessTable = CamberStiffnessTable()
     spin: SpinTable = SpinTable()
+    coefficients: Annotated[Entries, BeforeValidator(named)] = Field(default_factory=dict)
     fit: FitTable = FitTable()
     model: ModelTable = ModelTable()
     lab: LabTable = LabTable()
@@ -368,6 +370,16 @@ class Config(Brief, Table):
                         f"sweep.{index}.{key}",
                     )
         check_exclusions(self.fit.exclude, seen)
+        return self
+
+    @model_validator(mode="after")
+    def _coefficients_agree_with_other_keys(self) -> Config:
+        check_coefficients(
+            self.coefficients,
+            symmetric=self.tyre.side == "symmetric",
+            has_base=self.tyre.base is not None,
+            direct=self.rig.on_disc and self.spin.pecp1 != "model",
+        )
         return self
 
     @model_validator(mode="after")

@@ -98,13 +98,14 @@ def with_zeros(
     return Inexactness((*known.names, *names), expected, whole)
 
 
-def refitted(tyre: Tyre, *, curved: bool) -> Inexactness:
-    """The coefficients that a build fitted, with the scatter of similar tyres as prior.
+def refitted(tyre: Tyre, *, curved: bool, stated: Mapping[str, float] | None = None) -> Inexactness:
+    """The coefficients that a build fitted, with the scatter of similar tyres as prior, or the ``stated`` one.
 
     For points that the build used already: they hold everything else that is known of these coefficients.
     """
     fitted = [row.name for row in TABLE if row.kind == "number" and "+-" in tyre.status.get(row.name, "")]
     spread = {n: scatter(n, float(tyre[n]), from_base=True, curved=curved) for n in fitted}
+    spread |= {n: u for n, u in (stated or {}).items() if n in spread}
     known = {n: u for n, u in spread.items() if np.isfinite(u) and u > 0.0}
     values = np.array([float(tyre[name]) for name in known])
     return Inexactness(tuple(known), values, np.diag(list(known.values())))

@@ -19,6 +19,7 @@ from mffit.effects import CATALOG, Effect, Free
 from mffit.fit.fitted import Fitted
 from mffit.least_squares import touches
 from mffit.suspicion import HeldNumber
+from tir.parameters import BY_NAME
 
 
 @dataclass(frozen=True, slots=True)
@@ -174,8 +175,9 @@ def _sigma(log_chance: float) -> float:
 
 
 def held_numbers(left: Remainder, fitted: Fitted) -> tuple[HeldNumber, ...]:
-    """The numbers that a bound or a physical limit holds, and how far the readings contradict it."""
-    names = sorted(fitted.at_bound)
+    """The numbers that a bound, a physical limit or the engineer holds, and how far the readings contradict it."""
+    hand = fitted.hand
+    names = sorted({*fitted.at_bound, *(name for name in hand.held if BY_NAME[name].stage)})
     if not names:
         return ()
     bounds = {n.name: (n.lower, n.upper) for n in fitted.numbers}
@@ -188,7 +190,8 @@ def held_numbers(left: Remainder, fitted: Fitted) -> tuple[HeldNumber, ...]:
         if power <= constants.IMITATED_SHARE * float(change @ change):
             continue
         step = float(change @ left.residual) / power
-        value, (lower, upper) = left.simulation.number(name, left.points), bounds[name]
+        value = left.simulation.number(name, left.points)
+        lower, upper = bounds.get(name, (-math.inf, math.inf))
         if touches(value, lower, upper) and (step > 0.0) == (value - lower < upper - value):
             continue  # the readings pull it back inside
         explained = step**2 * power
@@ -199,5 +202,6 @@ def held_numbers(left: Remainder, fitted: Fitted) -> tuple[HeldNumber, ...]:
                 chance,
                 _between_sweeps(left, change[:, None], step * own[:, 0], at, np.array([[1.0 / power]])),
             )
-        out.append(HeldNumber(name, _sigma(chance), min(explained / total, 1.0)))
+        by_hand = name in hand.held or name in hand.bounded
+        out.append(HeldNumber(name, _sigma(chance), min(explained / total, 1.0), by_hand))
     return tuple(out)

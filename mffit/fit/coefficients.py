@@ -6,9 +6,11 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 from mffit.constants import COVERAGE_FACTOR_95
+from mffit.fit.by_hand import Hand
 from mffit.fit.files import Files
 from mffit.fit.fitted import Fitted
 from mffit.fit.known import Known
+from mffit.fit.priors import Prior
 from mffit.least_squares import touches
 from tir import Quantity
 from tir.parameters import BY_NAME, TABLE
@@ -28,6 +30,10 @@ class Coefficient:
     correlation: float = 0.0
     interval: tuple[float, float] | None = None  #: of 95 %; None if held
     origin: str = ""  #: as the file's comment states it
+    by_hand: str = ""  #: what [coefficients] sets of it, in words; empty if nothing
+    held: bool = False  #: held by hand at ``value``
+    bounds: tuple[float, float] | None = None  #: set by hand
+    prior: Prior | None = None  #: set by hand
 
 
 def coefficient_records(
@@ -38,7 +44,7 @@ def coefficient_records(
     ``fitted_after`` are coefficients that were fitted after the others.
     """
     stderr = {name: fitted.stderr[name] for name in fitted.values} | {n: q.u for n, q in fitted_after.items()}
-    out = {}
+    out, hand = {}, known.hand
     for row in TABLE:
         if row.kind != "number":
             continue
@@ -53,7 +59,13 @@ def coefficient_records(
             status=known.origin[name],
             correlated_with=partner,
             correlation=correlation,
-            interval=None if u is None else fitted.intervals.get(name, _interval(value, u)),
+            interval=None
+            if u is None
+            else _within(fitted.intervals.get(name) or _interval(value, u), hand, name),
+            by_hand=hand.mark(name),
+            held=name in hand.held,
+            bounds=hand.bounded.get(name),
+            prior=hand.priors.get(name),
         )
     return out
 
@@ -61,6 +73,12 @@ def coefficient_records(
 def _interval(value: float, u: float) -> tuple[float, float]:
     """The 95 % interval from the curvature of the sum of squares."""
     return value - COVERAGE_FACTOR_95 * u, value + COVERAGE_FACTOR_95 * u
+
+
+def _within(interval: tuple[float, float], hand: Hand, name: str) -> tuple[float, float]:
+    """The interval within the bounds that are set by hand."""
+    lower, upper = hand.bounded.get(name, interval)
+    return max(interval[0], lower), min(interval[1], upper)
 
 
 def of_file(files: Files, use: str, coefficients: Mapping[str, Coefficient]) -> dict[str, Coefficient]:
@@ -77,8 +95,10 @@ def of_file(files: Files, use: str, coefficients: Mapping[str, Coefficient]) -> 
                 stderr=None,
                 stage=record.stage,
                 fixed=False,
-                at_bound=touches(value, *BY_NAME[name].bounds),
+                at_bound=touches(value, *(record.bounds or BY_NAME[name].bounds)),
                 status="fitted",
                 origin=origin,
+                by_hand="bounds by hand" if record.bounds else "",
+                bounds=record.bounds,
             )
     return out

@@ -16,6 +16,7 @@ DERIVED = {
     "both": "fitted to the model with and without turn slip",
 }
 TIED = "tied to its expected value"
+HELD = "held by hand"
 FROM_DATA = ("measured", "fitted", "regularised")
 """Origins of values that these data decided."""
 WORDS = {
@@ -35,10 +36,28 @@ def file_comments(
     """By use of each file, the comment of every value: origin, standard uncertainty, meaning if it is not a coefficient."""
     comments = {row.name: _comment(row, origin[row.name], files.tested) for row in TABLE}
     comments |= {name: _data_comment(c) for name, c in coefficients.items() if c.status in FROM_DATA}
-    return {
-        use: {**comments, **dict.fromkeys(files.changed.get(use, ()), DERIVED.get(use, ""))}
+    comments |= {
+        name: f"{comments[name]}, {c.by_hand}"
+        for name, c in coefficients.items()
+        if c.by_hand and c.status not in FROM_DATA
+    }
+    comments |= {name: _held_comment(c) for name, c in coefficients.items() if c.held}
+    derived = {
+        use: {name: _derived_comment(use, coefficients.get(name)) for name in files.changed.get(use, ())}
         for use in files.by_use
     }
+    return {use: {**comments, **derived[use]} for use in files.by_use}
+
+
+def _held_comment(coefficient: Coefficient) -> str:
+    """The comment of a value that the engineer holds."""
+    return "from base, held by hand" if coefficient.status == "base" else HELD
+
+
+def _derived_comment(use: str, coefficient: Coefficient | None) -> str:
+    """The comment of a value that only the file for this use has."""
+    bounded = coefficient is not None and coefficient.bounds is not None
+    return DERIVED.get(use, "") + (", bounds by hand" if bounded else "")
 
 
 def _comment(row: Parameter, origin: str, tested: Mapping[str, float]) -> str:
@@ -55,6 +74,7 @@ def _data_comment(coefficient: Coefficient) -> str:
     text = TIED if coefficient.status == "regularised" else coefficient.status
     if coefficient.stderr is not None and not coefficient.fixed:
         text += f" +- {coefficient.stderr:.2g}"
+    text += f", {coefficient.by_hand}" if coefficient.by_hand else ""
     return text + (", at bound" if coefficient.at_bound else "")
 
 

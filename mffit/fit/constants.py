@@ -40,6 +40,16 @@ LARGEST_CAMBER_REDUCTION = Real(
 SAME_NOMINAL_CONDITION = Real(
     0.01, "-", "Relative difference of nominal load or pressure up to which coefficients compare."
 )
+CONTRADICTED_PRIOR = Real(
+    3.29,
+    "-",
+    "Standard deviations between a prior set by hand and the points that are reported: chance 0.001.",
+)
+LEAST_INFORMATION_OF_POINTS = Real(
+    0.01,
+    "-",
+    "Smallest information of the points over that of a prior set by hand at which the two are compared.",
+)
 
 # Estimates of what a cornering test does not measure
 ESTIMATED_STATIC_DEFLECTION = Real(0.05, "-", "Static deflection at nominal load over unloaded radius.")

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from dataclasses import dataclass
 
 import numpy as np
 
 from mffit.fit import constants
+from mffit.fit.by_hand import HELD_BY_HAND
 from mffit.fit.stages import STAGES
 from mffit.points import Points, levels
 from tir.parameters import BY_NAME, Need, Parameter
@@ -22,6 +24,7 @@ class StageCoverage:
     free: tuple[str, ...]
     held: tuple[str, ...]
     missing: tuple[str, ...]  #: what the data lack for the held ones, as sentences
+    by_hand: tuple[str, ...] = ()  #: those of the held ones that the engineer holds
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,12 +64,18 @@ def design(points: Points, side: str) -> Design:
     )
 
 
-def coverage(points: Points, side: str) -> tuple[StageCoverage, ...]:
-    """The coverage matrix: per stage the coefficients that are freed and what is missing for the rest."""
+def coverage(points: Points, side: str, by_hand: Collection[str] = ()) -> tuple[StageCoverage, ...]:
+    """The coverage matrix: per stage the coefficients that are freed and what is missing for the rest.
+
+    Those named in ``by_hand`` are held, whatever the data determine.
+    """
     seen = design(points, side)
     rows = []
     for stage in STAGES:
-        reasons = {name: _missing(BY_NAME[name], seen) for name in stage.parameters}
+        reasons = {
+            name: HELD_BY_HAND if name in by_hand else _missing(BY_NAME[name], seen)
+            for name in stage.parameters
+        }
         free = tuple(name for name, reason in reasons.items() if not reason)
         held = tuple(name for name, reason in reasons.items() if reason)
         missing = tuple(dict.fromkeys(reason for reason in reasons.values() if reason))
@@ -78,6 +87,7 @@ def coverage(points: Points, side: str) -> tuple[StageCoverage, ...]:
                 free=free,
                 held=held,
                 missing=missing,
+                by_hand=tuple(name for name in stage.parameters if name in by_hand),
             )
         )
     return tuple(rows)

@@ -12,7 +12,6 @@ from mffit.fit.constraints import violations
 from mffit.fit.fitted import Fitted
 from mffit.least_squares import FreeNumber, LeastSquaresProblem, Linear, solve
 from mffit.rig_errors import error_of
-from tir.parameters import BY_NAME
 
 
 def ensemble(fitted: Fitted, count: int, *, seed: int = 0) -> list[dict[str, float]]:
@@ -45,7 +44,7 @@ def _drawn(fitted: Fitted, random: np.random.Generator) -> dict[str, float]:
     """Coefficients of one tyre."""
     values = fitted.simulation.values
     held = {
-        name: float(np.clip(values[name] + u * random.standard_normal(), *BY_NAME[name].bounds))
+        name: float(np.clip(values[name] + u * random.standard_normal(), *fitted.hand.bounds(name)))
         for name, u in fitted.held.items()
     }
     starts = fitted.problem.starting_here(fitted.numbers)

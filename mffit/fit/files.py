@@ -7,6 +7,7 @@ from dataclasses import dataclass, field, replace
 from typing import Any
 
 from mffit.fit import constants
+from mffit.fit.by_hand import Hand
 from mffit.fit.known import Known
 from mffit.fit.misfit import FileFigures, Reference
 from mffit.fit.normal import derive
@@ -67,7 +68,7 @@ def make_files(
     )
     side = "RIGHT" if str(known.values["TYRESIDE"]).upper().startswith("R") else "LEFT"
     model = {**known.values, **written, "TYRESIDE": side, "FITTYP": 62}
-    changed = _changed(config, model, points, tested, written, C_gamma, only)
+    changed = _changed(config, model, points, tested, written, C_gamma, known.hand, only)
     reference = Reference(
         model=model,
         road=road_grid(tested, written, float(model["FNOMIN"])),
@@ -96,6 +97,7 @@ def _changed(
     tested: Mapping[str, float],
     written: Mapping[str, float],
     C_gamma: Mapping[float, float],
+    hand: Hand,
     only: str | None,
 ) -> dict[str, dict[str, float]]:
     """By use of each file, the coefficients in which it differs from the fitted model."""
@@ -104,11 +106,15 @@ def _changed(
     if only == "turn-slip":
         return {"turn-slip": {}}
     symmetric = config.tyre.side == "symmetric"
-    terms = camber_stiffness_terms(model, C_gamma, float(points.p[main_pressure(points)].mean()))
-    changed = {"turn-slip": {}, "normal": derive(model, tested, written, terms, symmetric=symmetric)}
+    main = float(points.p[main_pressure(points)].mean())
+    terms = camber_stiffness_terms(model, C_gamma, main, hand.held)
+    changed = {
+        "turn-slip": {},
+        "normal": derive(model, tested, written, terms, symmetric=symmetric, hand=hand),
+    }
     if config.spin.exact == "both":
         changed["both"] = derive(
-            model, tested, written, terms, both_on=main_path(points), symmetric=symmetric
+            model, tested, written, terms, both_on=main_path(points), symmetric=symmetric, hand=hand
         )
     return changed if only is None else {only: changed[only]}
 

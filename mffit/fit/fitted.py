@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from mffit.fit import constants
+from mffit.fit.by_hand import NO_HAND, Hand
 from mffit.fit.posterior import Posterior
 from mffit.fit.problem import FitProblem
 from mffit.fit.stages import StageRecord
@@ -35,6 +36,7 @@ class Fitted:
     cost: float  #: sum of squares of data, priors and broken limits
     stages: tuple[StageRecord, ...] = ()
     attempts: tuple[str, ...] = ()  #: alternative starting values that were tried
+    hand: Hand = NO_HAND  #: coefficients that [coefficients] sets
 
     @property
     def simulation(self) -> Simulation:

@@ -12,6 +12,7 @@ import numpy as np
 from mffit.config import axis_signs
 from mffit.config.declared import as_declared
 from mffit.fit import agreement
+from mffit.fit.by_hand import hand_of
 from mffit.fit.coefficients import Coefficient, coefficient_records, of_file
 from mffit.fit.comments import file_comments
 from mffit.fit.confounding import confounding_sentence, confoundings
@@ -65,10 +66,14 @@ def fit(
     """
     began = time.perf_counter()
     fleet = of_fleet(config)
-    known = known_before_fit(config, points, measured, base, fleet)
-    turning = turning_zeros(known.values, points, measured)
-    start = starting_values(known.values, points, measured) | dict(turning.start if turning else {})
+    hand = hand_of(config, base)
+    known = known_before_fit(config, points, measured, base, fleet, hand)
+    turning = None if "PECP1" in hand.held else turning_zeros(known.values, points, measured)
+    start = starting_values(known.values, points, measured, hand.held) | dict(
+        turning.start if turning else {}
+    )
     plan = fit_plan(config, points, measured, known, start, fleet, turning)
+    start = hand.starting(start)
     problem = fit_problem(config, points, measured, known.values)
     found, doubts = _fitted_and_judged(config, problem, start, plan, progress)
     fitted, full = found.plain, found.full
@@ -81,7 +86,7 @@ def fit(
 
     def files_of(fitted: Fitted, only: str | None = None) -> tuple[Known, dict[str, Coefficient], Files]:
         after = known_after_fit(known, fitted.values, fitted.regularised, base)
-        rolling = rolling_resistance(after.values, points)
+        rolling = {} if "QSY1" in hand.held else rolling_resistance(after.values, points)
         after = after.having({name: QSY1.value for name, QSY1 in rolling.items()}, "fitted")
         coefficients = coefficient_records(after, fitted, rolling)
         files = make_files(config, after, points, base, C_gamma, only=only)
@@ -110,10 +115,10 @@ def fit(
         coverage=plan.cover,
         explanations=(
             *nuisance_sentences(config.tyre.name, found, temperature, channels),
-            *explanations(config, files, known_after.values, measured),
+            *explanations(config, files, known_after.values, measured, hand),
         ),
         warnings=(
-            *warnings(full, doubts, outlying, files.untested),
+            *warnings(full, doubts, outlying, files.untested, plan.cover),
             *(confounding_sentence(row, modelled=found.at_temperature) for row in confounded),
         ),
         seconds=time.perf_counter() - began,

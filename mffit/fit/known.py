@@ -6,10 +6,11 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
+from mffit.fit.by_hand import NO_HAND, Hand
 from mffit.fit.estimates import estimates
 from mffit.fit.priors import Prior
 from mffit.fit.ranges import covered_ranges
-from mffit.fit.rolling import radius_coefficients
+from mffit.fit.rolling import RADIUS_COEFFICIENTS, radius_coefficients
 from mffit.fit.stages import ODD_TERMS
 from mffit.points import Points
 from mffit.rig import reference_speed
@@ -26,21 +27,36 @@ class Known:
 
     values: Mapping[str, Any]
     origin: Mapping[str, str]
+    hand: Hand = NO_HAND
 
     def having(self, found: Mapping[str, Any], origin: str = "") -> Known:
-        """The same with some values replaced; without ``origin`` they keep theirs."""
-        words = dict.fromkeys(found, origin) if origin else {}
-        return Known({**self.values, **found}, {**self.origin, **words})
+        """The same with some values replaced, except those held by hand; without ``origin`` they keep theirs."""
+        replaced = {name: value for name, value in found.items() if name not in self.hand.held}
+        words = dict.fromkeys(replaced, origin) if origin else {}
+        return Known({**self.values, **replaced}, {**self.origin, **words}, self.hand)
 
 
 def known_before_fit(
-    config: Any, points: Points, measured: Any, base: Tyre | None, fleet: Mapping[str, Prior]
+    config: Any,
+    points: Points,
+    measured: Any,
+    base: Tyre | None,
+    fleet: Mapping[str, Prior],
+    hand: Hand = NO_HAND,
 ) -> Known:
-    """Every value before the fit."""
+    """Every value before the fit; those held by hand stay as they are from here on."""
     template, stated = (base, base.present) if base is not None else (Tyre.from_values({}), frozenset())
     known = Known(
-        values=dict(template.values),
-        origin={row.name: "base" if row.name in stated else "default" for row in TABLE},
+        values={**template.values, **hand.held},
+        origin={
+            row.name: "given"
+            if row.name in hand.held and row.name not in hand.from_base
+            else "base"
+            if row.name in stated
+            else "default"
+            for row in TABLE
+        },
+        hand=hand,
     )
     known = known.having({name: known.values[name] for name in DECIDED}, "given")
     known = known.having(given_values(config.tyre), "given")
@@ -50,12 +66,26 @@ def known_before_fit(
     known = known.having(covered_ranges(points), "range")
     r_e = dict(measured.by_load("r_e_measured"))
     if r_e:
-        known = known.having(radius_coefficients(known.values, r_e, reference_speed(points)), "measured")
+        free = hand.without_held(RADIUS_COEFFICIENTS)
+        known = known.having(
+            radius_coefficients(known.values, r_e, reference_speed(points), free), "measured"
+        )
     if measured.epsilon_gamma is not None:
         known = known.having({"PECP1": measured.pecp1, "PECP2": measured.pecp2}, "measured")
     if config.tyre.side == "symmetric":
         known = known.having(dict.fromkeys(ODD_TERMS, 0.0), "given")
-    return known
+    return _as_set(known)
+
+
+def _as_set(known: Known) -> Known:
+    """The values with the centres of priors set by hand, within the bounds set by hand."""
+    hand = known.hand
+    found = {name: float(known.values[name]) for name in hand.bounded} | {
+        name: prior.expected for name, prior in hand.priors.items()
+    }
+    changed = {name: x for name, x in hand.within(found).items() if x != known.values[name]}
+    measured = {name: x for name, x in changed.items() if known.origin[name] == "measured"}
+    return known.having(changed, "given").having(measured, "measured")
 
 
 def known_after_fit(

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from mffit.fit import constants
+from mffit.fit.by_hand import NO_HAND, Hand
 from mffit.fit.imitation import ForcesToReproduce, Imitation, Lines, force, goal
 from mffit.fit.ranges import envelope
 from mffit.fit.road import Road, camber_lines, road_grid, weights
@@ -36,6 +37,7 @@ def derive(
     *,
     both_on: float | None = None,
     symmetric: bool = False,
+    hand: Hand = NO_HAND,
 ) -> dict[str, float]:
     """Coefficients of a derived file, where they differ from the fitted model.
 
@@ -52,17 +54,19 @@ def derive(
     measured : PKY6 and PKY7 of the measured camber stiffness, from :func:`mffit.fit.start.camber_stiffness_terms`; may be empty
     both_on : for the file for both uses, curvature of the disc's path [1/m]; None for the file for turn slip off
     symmetric : hold the terms that a symmetric tyre does not have
+    hand : coefficients that are held in every file, and bounds that every file keeps
     """
     roads = [road_grid(tested, written, float(values["FNOMIN"]), dense=dense) for dense in (False, True)]
     coarse, fine = (_goals(values, road, tested, both_on) for road in roads)
     free = _free(both=both_on is not None, symmetric=symmetric)
+    free = {channel: hand.without_held(names) for channel, names in free.items()}
     found = dict(values)
     for channel, names in free.items():
         limits = (envelope(written), _lines(values, written) if channel == "Fy" else None)
         begin = {name: measured.get(name, float(values[name])) for name in names}
         ends = [
             Imitation(channel, found, coarse, *limits).solve(
-                _numbers({**begin, **start}, measured),
+                _numbers({**begin, **{n: x for n, x in start.items() if n in begin}}, measured, hand),
                 steps=constants.COARSE_GRID_STEPS,
                 tolerance=constants.COARSE_GRID_TOLERANCE,
             )
@@ -70,7 +74,7 @@ def derive(
         ]
         best = min(ends, key=lambda end: end.cost)
         refined = Imitation(channel, found, fine, *limits).solve(
-            _numbers(best.values, measured),
+            _numbers(best.values, measured, hand),
             steps=constants.FINE_GRID_STEPS,
             tolerance=constants.REFIT_TOLERANCE,
         )
@@ -108,14 +112,13 @@ def _lines(values: Mapping[str, Any], written: Mapping[str, float]) -> Lines:
     return Lines(road, n, np.diff(force("Fy", values, road, turn_slip=True).reshape(-1, n)) < 0.0)
 
 
-def _numbers(start: Mapping[str, float], measured: Mapping[str, float]) -> list[FreeNumber]:
-    """The numbers with the table's bounds; camber stiffness has a weak prior at the measured one."""
+def _numbers(start: Mapping[str, float], measured: Mapping[str, float], hand: Hand) -> list[FreeNumber]:
+    """The numbers with their bounds; camber stiffness has a weak prior at the measured one."""
     size = max(abs(measured.get("PKY6", 1.0)), constants.LEAST_CAMBER_STIFFNESS)
     spread = constants.CAMBER_STIFFNESS_TIE * size / constants.CAMBER_STIFFNESS_TIE_WEIGHT
     out = []
     for name, value in start.items():
         tied = name in CAMBER_STIFFNESS and name in measured
         prior = {"expected": measured[name], "spread": spread} if tied else {}
-        row = BY_NAME[name]
-        out.append(FreeNumber(name, row.inside(value), *row.bounds, **prior))
+        out.append(FreeNumber(name, hand.inside(name, value), *hand.bounds(name), **prior))
     return out

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
 
 from mffit.config.constants import PLAUSIBLE_CONICITY
 from mffit.fit import constants
+from mffit.fit.by_hand import NO_HAND, Hand
 from mffit.fit.coverage import StageCoverage, coverage
 from mffit.fit.known import Known
 from mffit.fit.priors import Prior, scatters
@@ -20,7 +21,6 @@ from mffit.fit.stages import ODD_TERMS, STAGES
 from mffit.fit.zeros import TurningZeros
 from mffit.least_squares import FreeNumber
 from mffit.points import Points
-from tir.parameters import BY_NAME
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,6 +35,7 @@ class FitPlan:
     held: Mapping[str, float] = field(default_factory=dict)
     """Standard uncertainty of coefficients that the fit takes as exact."""
     noise_stated: bool = True  #: whether the points state their uncertainty
+    hand: Hand = NO_HAND  #: bounds that replace those of the table, and what is held as exact
 
     @property
     def free(self) -> list[str]:
@@ -42,13 +43,13 @@ class FitPlan:
         return [name for row in self.cover for name in row.free]
 
     def coefficients(self, names: Iterable[str], problem: FitProblem) -> list[FreeNumber]:
-        """The named coefficients from their current values, with the table's bounds and their priors."""
+        """The named coefficients from their current values, with their bounds and priors."""
         return [
             FreeNumber(
                 name=name,
-                start=BY_NAME[name].inside(float(problem.simulation.values[name])),
-                lower=BY_NAME[name].bounds[0],
-                upper=BY_NAME[name].bounds[1],
+                start=self.hand.inside(name, float(problem.simulation.values[name])),
+                lower=self.hand.bounds(name)[0],
+                upper=self.hand.bounds(name)[1],
                 expected=self.expected[name],
                 spread=self.scatter.get(name, math.inf),
             )
@@ -70,7 +71,7 @@ def fit_plan(
     turning: TurningZeros | None = None,
 ) -> FitPlan:
     """The plan for these points; ``turning`` are zeros that determine PECP1 where eps_gamma was not measured."""
-    cover = coverage(points, config.tyre.side or "left")
+    cover = coverage(points, config.tyre.side or "left", known.hand.held)
     rig = rig_numbers(config, measured, points.used_setups)
     staged = {name: start[name] for stage in STAGES for name in stage.parameters}
     scatter = scatters(staged, known.origin, curved=bool(np.any(points.phi_t)))
@@ -92,7 +93,7 @@ def fit_plan(
             held.pop(name, None)
             expected[name] = turning.before[name]
         extra += [name for name in turning.start if not any(name in row.free for row in cover)]
-    return FitPlan(
+    plan = FitPlan(
         cover=cover,
         expected=expected,
         scatter=scatter,
@@ -100,4 +101,22 @@ def fit_plan(
         extra=tuple(extra),
         held=held,
         noise_stated=bool(np.any(np.isfinite(points.u_Fy))),
+    )
+    return _by_hand(plan, known.hand)
+
+
+def _by_hand(plan: FitPlan, hand: Hand) -> FitPlan:
+    """The plan with what [coefficients] sets: the last word on what is free, on bounds and on priors."""
+    priors = hand.priors
+    return replace(
+        plan,
+        expected={**hand.within(plan.expected), **{name: prior.expected for name, prior in priors.items()}},
+        scatter={**plan.scatter, **{name: prior.spread for name, prior in priors.items()}},
+        extra=tuple(hand.without_held(plan.extra)),
+        held={
+            name: priors[name].spread if name in priors else u
+            for name, u in plan.held.items()
+            if name not in hand.held
+        },
+        hand=hand,
     )

@@ -47,6 +47,7 @@ def polish(stated: FitProblem, plan: FitPlan) -> Fitted:
         - _within_their_priors(stderr, plan),
         scale=scale,
         cost=solution.cost,
+        hand=plan.hand,
     )
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from types import SimpleNamespace
 from typing import Any
 
@@ -20,18 +20,28 @@ def effective_radius(values: Mapping[str, Any], loads: np.ndarray, speed: float)
     return outputs_of(("Re",), SimpleNamespace(**values), {"Fz": loads, "Vx": speed})[0]
 
 
+RADIUS_COEFFICIENTS = ("Q_RE0", "DREFF")
+"""Coefficients that measured effective radii determine; the second one needs several loads."""
+
+
 def radius_coefficients(
-    values: Mapping[str, Any], r_e: Mapping[float, float], speed: float
+    values: Mapping[str, Any],
+    r_e: Mapping[float, float],
+    speed: float,
+    free: Sequence[str] = RADIUS_COEFFICIENTS,
 ) -> dict[str, float]:
     """Q_RE0, and DREFF where several loads were measured, with which Re(Fz) passes through the measurements.
 
-    ``r_e`` [m] by load [N] was measured at ``speed`` [m/s]. The shape of Re over load and speed is kept.
+    ``r_e`` [m] by load [N] was measured at ``speed`` [m/s]. The shape of Re over load and speed is kept, and of the two only
+    the ``free`` ones change.
 
     Re is linear in Q_RE0 and DREFF but for the small centrifugal growth, so two Gauss-Newton steps are exact to rounding.
     """
-    names = ("Q_RE0", "DREFF") if len(r_e) > 1 else ("Q_RE0",)
+    names = tuple(free)[: len(r_e)]
     loads, target = np.array(list(r_e)), np.array(list(r_e.values()))
     found = {name: float(values[name]) for name in names}
+    if not names:
+        return {}
     for _ in range(3):
         numbers = traced(found)
         Re = effective_radius({**values, **numbers}, loads, speed)

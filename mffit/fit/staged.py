@@ -49,9 +49,9 @@ def fit_staged(
 
 
 def restart_worthwhile(fitted: Fitted, plan: FitPlan) -> bool:
-    """Whether the fit ends far above the stated noise, or with the shape of a curve at its bound."""
+    """Whether the fit ends far above the stated noise, or with the shape of a curve at a bound of the table."""
     far = plan.noise_stated and max(fitted.scale.values()) > constants.RESTART_MISFIT
-    return far or bool(fitted.at_bound & SHAPES)
+    return far or bool((fitted.at_bound - fitted.hand.bounded.keys()) & SHAPES)
 
 
 def _fit_from(start: Mapping[str, float], problem: FitProblem, plan: FitPlan, progress: Progress) -> Fitted:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from typing import Any
 
 import numpy as np
@@ -32,35 +32,38 @@ SHAPES = frozenset(name for values in ALTERNATIVE_STARTS.values() for name in va
 """Coefficients of the shape of a curve, which can compensate for each other."""
 
 
-def starting_values(values: Mapping[str, Any], points: Points, measured: Measured) -> dict[str, float]:
-    """The values with those improved that can be read off the data directly."""
+def starting_values(
+    values: Mapping[str, Any], points: Points, measured: Measured, held: Collection[str] = ()
+) -> dict[str, float]:
+    """The values with those improved that can be read off the data directly, and with those ``held`` by hand as they are."""
     start = {name: float(value) for name, value in values.items() if isinstance(value, (int, float))}
     for name, value in NONZERO_STARTS.items():
-        if abs(start[name]) < 1e-9:
+        if abs(start[name]) < 1e-9 and name not in held:
             start[name] = value
     upright = np.abs(points.gamma) < constants.ZERO_CAMBER_LIMIT.rad
-    if np.any(upright):
+    if np.any(upright) and "PDY1" not in held:
         friction = np.max(np.abs(points.Fy[upright]) / points.Fz[upright])
         start["PDY1"] = max(float(friction), constants.LEAST_STARTING_FRICTION)
     C_alpha, C_gamma = measured.by_load("C_alpha"), measured.by_load("C_gamma")
     if C_alpha:
-        start |= _cornering_stiffness_terms(start, C_alpha)
+        start |= _cornering_stiffness_terms(start, C_alpha, held)
     if C_gamma:
         # With turn slip on, camber acts through the rolling spin: the force is that of K_yg0 times R0 / r_e.
         rolling = 1.0
         if measured.r_e is not None and np.any(points.phi_t):
             rolling = measured.r_e.value / start["UNLOADED_RADIUS"]
         C_gamma = {load: rolling * value for load, value in C_gamma.items()}
-        start |= camber_stiffness_terms(start, C_gamma, float(points.p[main_pressure(points)].mean()))
+        start |= camber_stiffness_terms(start, C_gamma, float(points.p[main_pressure(points)].mean()), held)
     return start
 
 
 def camber_stiffness_terms(
-    values: Mapping[str, Any], C_gamma: Mapping[float, float], main: float
+    values: Mapping[str, Any], C_gamma: Mapping[float, float], main: float, held: Collection[str] = ()
 ) -> dict[str, float]:
     """PKY6 and PKY7 with K_yg0(Fz) = C_gamma(Fz): exact at the load nearest FNOMIN, best slope over the others.
 
-    ``C_gamma`` [N/rad] by load [N] was measured at the pressure ``main`` [Pa]; PPY5 takes it to the nominal one.
+    ``C_gamma`` [N/rad] by load [N] was measured at the pressure ``main`` [Pa]; PPY5 takes it to the nominal one. Of the two only
+    those not ``held`` by hand are returned.
     """
     if not C_gamma:
         return {}
@@ -72,24 +75,35 @@ def camber_stiffness_terms(
     nearest = int(np.argmin(np.abs(dfz)))
     offset = dfz - dfz[nearest]
     slope = float(values["PKY7"])
-    if len(load) > 1:
+    if "PKY6" in held and "PKY7" not in held and np.any(dfz):
+        slope = float(dfz @ (specific - float(values["PKY6"])) / (dfz @ dfz))
+    elif len(load) > 1 and "PKY7" not in held:
         slope = float(offset @ (specific - specific[nearest]) / (offset @ offset))
-    return {"PKY6": float(specific[nearest] - slope * dfz[nearest]), "PKY7": slope}
+    found = {"PKY6": float(specific[nearest] - slope * dfz[nearest]), "PKY7": slope}
+    return {name: value for name, value in found.items() if name not in held}
 
 
 def _cornering_stiffness_terms(
-    values: Mapping[str, float], C_alpha: Mapping[float, float]
+    values: Mapping[str, float], C_alpha: Mapping[float, float], held: Collection[str]
 ) -> dict[str, float]:
-    """PKY1 and PKY2 of the curve PKY1 Fz0 sin(PKY4 atan(Fz / (PKY2 Fz0))) nearest to the measured stiffnesses."""
+    """PKY1 and PKY2 of the curve PKY1 Fz0 sin(PKY4 atan(Fz / (PKY2 Fz0))) nearest to the measured stiffnesses.
+
+    Only those not ``held`` by hand change.
+    """
     Fz0 = values["FNOMIN"]
     load = np.array(list(C_alpha)) / Fz0
     stiffness = np.array(list(C_alpha.values())) / Fz0
-    if len(load) == 1:
-        shape = np.sin(values["PKY4"] * np.arctan(load[0] / values["PKY2"]))
-        return {"PKY1": float(stiffness[0] / shape)}
+    if len(load) == 1 or "PKY2" in held:
+        if "PKY1" in held:
+            return {}
+        shape = np.sin(values["PKY4"] * np.arctan(load / values["PKY2"]))
+        return {"PKY1": float(shape @ stiffness / (shape @ shape))}
     lowest, highest = constants.PKY2_STARTS
     PKY2 = np.linspace(lowest, highest, constants.PKY2_START_COUNT)
     shapes = np.sin(values["PKY4"] * np.arctan(load / PKY2[:, None]))
     PKY1 = (shapes @ stiffness) / np.sum(shapes**2, axis=1)
+    if "PKY1" in held:
+        PKY1 = np.full(len(PKY2), values["PKY1"])
     best = int(np.sum((shapes * PKY1[:, None] - stiffness) ** 2, axis=1).argmin())
-    return {"PKY1": float(PKY1[best]), "PKY2": float(PKY2[best])}
+    found = {"PKY1": float(PKY1[best]), "PKY2": float(PKY2[best])}
+    return {name: value for name, value in found.items() if name not in held}

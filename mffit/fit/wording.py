@@ -8,22 +8,50 @@ from typing import Any
 import numpy as np
 
 from mffit.fit.bands import BandsByPressure
+from mffit.fit.by_hand import HELD_BY_HAND, NO_HAND, Hand
+from mffit.fit.contradiction import contradicted_priors
+from mffit.fit.coverage import StageCoverage
 from mffit.fit.files import Files, file_names
 from mffit.fit.fitted import Fitted
 from mffit.fit.misfit import FileFigures
+from mffit.fit.normal import CAMBER_FORCE, CAMBER_MOMENT
+from mffit.fit.priors import Prior
 from mffit.fit.ranges import single_pressure
 from mffit.fit.zeros import TurningZeros
 from mffit.rounding import to_uncertainty
 from mffit.suspicion import Doubt, Outlier, outliers_sentence
+from tir import Quantity
 
 
-def explanations(config: Any, files: Files, values: Mapping[str, Any], measured: Any) -> list[str]:
+def explanations(
+    config: Any, files: Files, values: Mapping[str, Any], measured: Any, hand: Hand = NO_HAND
+) -> list[str]:
     """Everything that the report explains about the files, the most important first."""
     names = file_names(config.tyre.name, config.spin.exact, config.rig.on_disc)
     out = file_sentences(files, names)
-    if measured.epsilon_gamma is not None:
+    if hand.names:
+        out.append(by_hand_sentence(hand, names["normal"] if files.lacking else ""))
+    if measured.epsilon_gamma is not None and "PECP1" in hand.held:
+        out.append(
+            f"PECP1 = {hand.held['PECP1']:.4f} is held by hand. The directly measured eps_gamma is "
+            f"{measured.epsilon_gamma.value:.4f}."
+        )
+    elif measured.epsilon_gamma is not None:
         out.append(pecp1_sentence(config.spin.pecp1, float(values["PECP1"]), measured.epsilon_gamma.value))
     return out
+
+
+def by_hand_sentence(hand: Hand, derived: str) -> str:
+    """What the engineer set, and what it means for the uncertainties and for the file ``derived`` from the model, if any."""
+    sentence = f"Set by hand in [coefficients]: {'; '.join(hand.said(name) for name in hand.names)}."
+    if hand.held:
+        sentence += " The uncertainties of the others take held values as exact, and every file has them."
+    own = [name for name in hand.held if name in (*CAMBER_FORCE, *CAMBER_MOMENT)]
+    if derived and own:
+        sentence += (
+            f" {derived} would imitate the fitted model better with values of its own for {', '.join(own)}."
+        )
+    return sentence
 
 
 def file_sentences(files: Files, names: Mapping[str, str]) -> list[str]:
@@ -159,6 +187,7 @@ def zeros_sentence(zeros: TurningZeros, fitted: Fitted, *, from_base: bool) -> s
     moved = [
         f"{name} from {to_uncertainty(before, u)} to {to_uncertainty(fitted.values[name], u)} +- {to_uncertainty(u, u)}"
         for name, before in zeros.before.items()
+        if name in fitted.values
         for u in [fitted.stderr[name]]
     ]
     force = zeros.force
@@ -177,7 +206,11 @@ def zeros_sentence(zeros: TurningZeros, fitted: Fitted, *, from_base: bool) -> s
 
 
 def warnings(
-    fitted: Fitted, doubts: Sequence[Doubt], outlying: Sequence[Outlier], untested: Mapping[str, str]
+    fitted: Fitted,
+    doubts: Sequence[Doubt],
+    outlying: Sequence[Outlier],
+    untested: Mapping[str, str],
+    coverage: Sequence[StageCoverage] = (),
 ) -> tuple[str, ...]:
     """All warnings of a fit, the most important first; ``untested`` is that of the files."""
     out = [
@@ -187,10 +220,40 @@ def warnings(
     if fitted.attempts:
         attempts = ", ".join(fitted.attempts)
         out.append(f"the fit was started again from {attempts}; the best of all fits is kept")
-    if fitted.at_bound:
-        names = ", ".join(sorted(fitted.at_bound))
+    plausible = sorted(fitted.at_bound - fitted.hand.bounded.keys())
+    if plausible:
+        names = ", ".join(plausible)
         out.append(f"at the bound of plausible values: {names}; check the sweeps that determine them")
+    out += by_hand_warnings(fitted, coverage)
     out += [doubt.sentence for doubt in doubts]
     if outlying:
         out.append(outliers_sentence(outlying))
     return tuple(out)
+
+
+def by_hand_warnings(fitted: Fitted, coverage: Sequence[StageCoverage]) -> list[str]:
+    """Bounds set by hand that the fit ends at, bounds and priors without effect, and priors that the points contradict."""
+    hand, free = fitted.hand, {number.name for number in fitted.numbers}
+    out = []
+    for name in sorted(fitted.at_bound & hand.bounded.keys()):
+        lower, upper = hand.bounded[name]
+        out.append(f"{name} is at a limit: [coefficients] allows {lower:g} to {upper:g}")
+    for name in hand.names:
+        if name in free or name in hand.held:
+            continue
+        reasons = [
+            reason for row in coverage if name in row.held for reason in row.missing if reason != HELD_BY_HAND
+        ]
+        why = f" ({'; '.join(reasons)})" if reasons else ""
+        given = (
+            "its prior counts as its value and uncertainty" if name in hand.priors else "nothing was searched"
+        )
+        out.append(f"{name} is set in [coefficients], but the points do not free it{why}: {given}")
+    return out + [_contradiction(*row) for row in contradicted_priors(fitted)]
+
+
+def _contradiction(name: str, points: Quantity, prior: Prior, apart: float) -> str:
+    return (
+        f"the points alone give {name} = {points.value:.4g} +- {points.u:.2g}, {apart:.1f} standard deviations from the "
+        f"{prior.expected:g} +- {prior.spread:g} of [coefficients]; check both"
+    )

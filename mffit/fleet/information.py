@@ -47,7 +47,8 @@ def information(fitted: Fitted) -> Information | None:
     values = fitted.simulation.values
     for name in (*fitted.held, *(SPIN if "PECP1" in {*prior, *fitted.held} else ())):
         value = float(values[name])
-        prior.setdefault(name, (value, fitted.held.get(name, math.inf)))
+        if name not in fitted.hand.held:
+            prior.setdefault(name, (value, fitted.held.get(name, math.inf)))
     if "PECP2" in prior and "PECP2" not in {n.name for n in fitted.numbers}:
         prior["PECP2"] = (0.0, scatter("PECP2", 0.0, from_base=False, curved=False))
     for name in MEASURED:

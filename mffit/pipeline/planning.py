@@ -127,8 +127,10 @@ def _direct_method(result: BuildResult) -> Direct:
 def _aim(config: Config, goal: str | None) -> Goal:
     """The given goal, else the eps_gamma that determines PECP1, else the bands."""
     disc = config.rig.on_disc
-    usual = (JOINT if config.spin.pecp1 == "model" else EPSILON) if disc else BANDS
-    return read_goal(goal or usual, on_disc=disc)
+    held = {name for name, entry in config.coefficients.items() if entry.is_held}
+    joint = config.spin.pecp1 == "model" and "PECP1" not in held
+    usual = (JOINT if joint else EPSILON) if disc else BANDS
+    return read_goal(goal or usual, on_disc=disc, held=held)
 
 
 def write_plan(found: Plan, out: Path) -> None:

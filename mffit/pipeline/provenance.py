@@ -27,6 +27,8 @@ PROGRAM = "program"
 """Key of the version that wrote a file."""
 DISTRUSTED = "NOT TO BE TRUSTED"
 """Key of the reasons in a file that is not to be trusted."""
+BY_HAND = "set by hand"
+"""Key of what the engineer set in [coefficients]."""
 METHOD = "method"
 """Key of the number of the method."""
 DIGITS = 16
@@ -63,6 +65,7 @@ def annotator(config: Config, made: Made, measured: Measured, fitted: FitResult,
             "use": f"{use}, for simulations with turn slip {TURN_SLIP[use]}",
             "stiffnesses": STIFFNESSES,
             "configuration": _settings(config),
+            **_by_hand(fitted),
             **inputs,
         }
         quantities = {**measured.quantities(), **_of_rig(fitted.rig if special is None else special.rig)}
@@ -137,7 +140,8 @@ def known_of_model(
     """
     posterior = None if path is None else posterior_of(tyre, path)
     if same and (fresh or posterior is not None):
-        return refitted(tyre, curved=config.rig.on_disc), True
+        known = {name: entry.u for name, entry in config.coefficients.items() if entry.u is not None}
+        return refitted(tyre, curved=config.rig.on_disc, stated=known), True
     return (None if config.model.u_coefficients else posterior), False
 
 
@@ -163,6 +167,13 @@ def _inputs(config: Config) -> dict[str, str]:
 
 def _of_inputs(hashes: Mapping[str, str]) -> dict[str, str]:
     return {f"input {quote(name, safe=PLAIN)}": known[:DIGITS] for name, known in hashes.items()}
+
+
+def _by_hand(fitted: FitResult) -> dict[str, str]:
+    """What [coefficients] sets, as an entry of the provenance; empty if it sets nothing."""
+    assert fitted.search is not None
+    hand = fitted.search.hand
+    return {BY_HAND: ", ".join(hand.said(name) for name in hand.names)} if hand.names else {}
 
 
 def _settings(config: Config) -> str:

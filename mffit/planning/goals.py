@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import difflib
+from collections.abc import Collection
 from dataclasses import dataclass
 
 from mffit.effects import CATALOG, Effect
@@ -45,11 +46,16 @@ class Goal:
         return f"{effect.name} ({number})" if number in BY_NAME else effect.name
 
 
-def read_goal(text: str, *, on_disc: bool) -> Goal:
+def read_goal(text: str, *, on_disc: bool, held: Collection[str] = ()) -> Goal:
     """A goal from its text: ``eps_gamma``, ``bands``, ``tie:ply-steer`` or a coefficient's name.
 
-    An InputError says that the goal is not known, or needs a disc.
+    An InputError says that the goal is not known, needs a disc, or is a coefficient that is ``held`` by hand.
     """
+    if text in held or (text == JOINT and "PECP1" in held):
+        text = "PECP1" if text == JOINT else text
+        raise InputError(
+            f"[coefficients] holds {text}, so that no run makes it more certain; choose another goal, or free it"
+        )
     kind, _, rest = text.partition(":")
     if kind == EPSILON and rest in ("", "direct", "joint"):
         if not on_disc:

@@ -44,7 +44,7 @@ class Knowledge:
         assert found.search is not None
         search = found.search
         self.config, self.points, self.measured = config, points, measured
-        self.problem = search.problem
+        self.problem, self.hand = search.problem, search.hand
         self.simulation = search.problem.simulation
         self.spread = {n.name: n.spread for n in search.numbers} | dict(search.held)
         self.rig = tuple(n.name for n in search.numbers if error_of(n.name))
@@ -62,8 +62,12 @@ class Knowledge:
     def posterior(self, runs: Sequence[PlannedRun], u_epsilon: float | None) -> Posterior:
         """The posterior of a build with these runs; ``u_epsilon`` is u of a measured PECP1, None if PECP1 is fitted."""
         free, spread = self._free(runs), self._spread(runs)
-        if u_epsilon is None:
-            free, spread = list(dict.fromkeys([*free, PECP1])), {**spread, PECP1: math.inf}
+        if PECP1 in self.hand.held:
+            free, spread = [n for n in free if n != PECP1], {**spread, PECP1: 0.0}
+        elif u_epsilon is None:
+            prior = self.hand.priors.get(PECP1)
+            free = list(dict.fromkeys([*free, PECP1]))
+            spread = {**spread, PECP1: math.inf if prior is None else prior.spread}
         else:
             free, spread = [n for n in free if n != PECP1], {**spread, PECP1: u_epsilon}
         held = [n for n in spread if n not in free and math.isfinite(spread[n])]
@@ -117,7 +121,8 @@ class Knowledge:
 
     def _free(self, runs: Sequence[PlannedRun]) -> list[str]:
         new = [run.points for run in runs if run.points is not None]
-        cover = coverage(concatenate([self.points, *new]) if new else self.points, self.config.tyre.side)
+        points = concatenate([self.points, *new]) if new else self.points
+        cover = coverage(points, self.config.tyre.side, self.hand.held)
         named = [*(name for row in cover for name in row.free), *self.extra, *self.rig, *self._new_of(runs)]
         return list(dict.fromkeys(named))
 

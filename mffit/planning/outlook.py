@@ -92,8 +92,8 @@ class Outlook:
         return (self.direct(runs), self.joint(runs)) if self.config.rig.on_disc else (None, None)
 
     def joint(self, runs: Sequence[PlannedRun]) -> float | None:
-        """u(PECP1) as a free coefficient of the joint fit of tyre and rig; None without a measured turn-slip force."""
-        if not self.knowledge.rig:
+        """u(PECP1) as a free coefficient of the joint fit of tyre and rig; None if held by hand, or without a measured force."""
+        if not self.knowledge.rig or PECP1 in self.knowledge.hand.held:
             return None
         return self.knowledge.posterior(runs, None).stderr[PECP1]
 

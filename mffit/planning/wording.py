@@ -6,6 +6,7 @@ import math
 
 from mffit.diagnosis.constants import SEPARATING_CHI2
 from mffit.effects import NAMES
+from mffit.fit.by_hand import HELD_BY_HAND
 from mffit.planning import constants
 from mffit.planning.goals import BANDS, EPSILON, JOINT, TIE
 from mffit.planning.record import Identified, Plan, Tie
@@ -137,8 +138,12 @@ def _coverage(found: Identified) -> list[str]:
             parts.append(f"determined by the data: {' '.join(by_data)}")
         if by_prior:
             parts.append(f"determined mostly by prior knowledge: {' '.join(by_prior)}")
-        if row.held:
-            parts.append(f"not visible: {' '.join(row.held)} ({'; '.join(row.missing)})")
+        if row.by_hand:
+            parts.append(f"held by hand: {' '.join(row.by_hand)}")
+        invisible = [name for name in row.held if name not in row.by_hand]
+        if invisible:
+            missing = "; ".join(reason for reason in row.missing if reason != HELD_BY_HAND)
+            parts.append(f"not visible: {' '.join(invisible)} ({missing})")
         if parts:
             out.append(f"{row.title}: {'; '.join(parts)}.")
     return out

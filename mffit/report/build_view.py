@@ -73,6 +73,7 @@ class CoefficientRow:
     stage: str
     status: str
     correlation: str  #: the strongest one in words; empty if it does no harm
+    by_hand: str = ""  #: what [coefficients] sets of it, in words; empty if nothing
 
     @property
     def place(self) -> float | None:
@@ -83,7 +84,7 @@ class CoefficientRow:
 
     @property
     def held(self) -> bool:
-        return self.status in ("base", "default", "given", "range")
+        return self.status in ("base", "default", "given", "range") and not self.by_hand
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -207,14 +208,15 @@ def coefficient_rows(coefficients: Mapping[str, Coefficient]) -> tuple[Coefficie
                 unit="" if known.unit == "-" else known.unit,
                 value=c.value,
                 stderr=c.stderr,
-                lower=known.lower,
-                upper=known.upper,
+                lower=c.bounds[0] if c.bounds else known.lower,
+                upper=c.bounds[1] if c.bounds else known.upper,
                 at_bound=c.at_bound,
                 stage=c.stage,
                 status=c.status,
                 correlation=f"{words.of_number(c.correlated_with)} {c.correlation:+.2f}"
                 if c.correlated_with
                 else "",
+                by_hand=c.by_hand,
             )
         )
     return tuple(rows)

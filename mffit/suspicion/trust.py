@@ -43,6 +43,7 @@ class HeldNumber:
     name: str
     sigma: float  #: standard deviations by which the readings contradict the bound
     share: float  #: of the sum of squares of the residuals that is due to it
+    by_hand: bool = False  #: whether [coefficients] holds or bounds it
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -222,7 +223,22 @@ def unpredicted(fit: FinishedFit) -> Iterator[dict[str, Any]]:
 def bound_against_data(fit: FinishedFit) -> Iterator[dict[str, Any]]:
     """Misfit that is due to a bound or a physical limit of a coefficient, where the noise is stated."""
     for held in fit.held if _noise_is_stated(fit) else ():
-        if held.sigma > constants.CERTAIN_SIGMA and held.share > constants.SHARE_OF_A_BOUND:
+        certain = held.sigma > constants.CERTAIN_SIGMA and held.share > constants.SHARE_OF_A_BOUND
+        if certain and not held.by_hand:
+            yield {"name": held.name, "sigma": held.sigma, "percent": 100.0 * held.share}
+
+
+@of_model(
+    id="hand-against-the-data",
+    limits=(constants.DOUBTFUL_SIGMA,),
+    outcome=Outcome.WARNED,
+    sentence="the readings contradict what [coefficients] sets for {name} ({sigma:.1f} standard deviations, {percent:.0f} % of "
+    "the misfit): the other coefficients take up the difference; check {name}, or free it",
+)
+def hand_against_data(fit: FinishedFit) -> Iterator[dict[str, Any]]:
+    """Misfit that is due to a value or a bound that the engineer set."""
+    for held in fit.held:
+        if held.by_hand and held.sigma > constants.DOUBTFUL_SIGMA:
             yield {"name": held.name, "sigma": held.sigma, "percent": 100.0 * held.share}
 
 
@@ -302,7 +318,7 @@ REASONS = (
     unpublished,
 )
 """Rules whose findings make a file not to be trusted, the gravest first."""
-DOUBTS = (doubtful_misfit, effect_left, structure_left)
+DOUBTS = (hand_against_data, doubtful_misfit, effect_left, structure_left)
 """Rules whose findings are warnings."""
 
 

@@ -292,6 +292,10 @@ def _coefficient(found: Coefficient) -> dict[str, Any]:
         "interval_95": list(found.interval) if found.interval else None,
         "status": found.status,
         "origin": found.origin or found.status,
+        "by": "hand" if found.by_hand else None,
+        "held": found.held,
+        "bounds": list(found.bounds) if found.bounds else None,
+        "prior": {"value": found.prior.expected, "u": found.prior.spread} if found.prior else None,
         "correlated_with": partner,
         "correlation": found.correlation if partner else None,
     }
