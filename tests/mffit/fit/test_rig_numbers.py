@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from mffit import config
+from mffit.fit.by_hand import NO_HAND
 from mffit.fit.plan import fit_plan
 from mffit.fit.rig_numbers import known_faults, known_zeros, rig_numbers
 from mffit.points import make_points
@@ -152,7 +153,7 @@ def test_zeros_show_the_rigs_errors_without_camber_sweeps_too():
 @pytest.mark.parametrize(("declared", "spread"), [({}, 0.003), ({"u_conicity": 0.01}, 0.01)])
 def test_a_declared_conicity_is_the_prior_of_its_coefficient(declared, spread):
     start = {row.name: row.default or 0.0 for row in TABLE if row.stage}
-    known = SimpleNamespace(origin=dict.fromkeys(start, "default"))
+    known = SimpleNamespace(origin=dict.fromkeys(start, "default"), hand=NO_HAND)
     points = make_points(np.radians([-2.0, 0.0, 2.0]), 0.0, 1500.0, p=250e3, V=6.0, phi_t=-0.77, Fy=0.0)
     found = fit_plan(rig(**declared), points, direct(), known, start, {})
     assert found.scatter["PVY1"] == spread
