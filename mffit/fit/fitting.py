@@ -5,7 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Mapping
 from dataclasses import replace
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -82,21 +82,12 @@ def fit(
 
     progress("deriving the property files")
     use = config.spin.exact if config.rig.on_disc else "normal"
-    C_gamma = dict(measured.by_load("C_gamma"))
-
-    def files_of(fitted: Fitted, only: str | None = None) -> tuple[Known, dict[str, Coefficient], Files]:
-        after = known_after_fit(known, fitted.values, fitted.regularised, base)
-        rolling = {} if "QSY1" in hand.held else rolling_resistance(after.values, points)
-        after = after.having({name: QSY1.value for name, QSY1 in rolling.items()}, "fitted")
-        coefficients = coefficient_records(after, fitted, rolling)
-        files = make_files(config, after, points, base, C_gamma, only=only)
-        return after, coefficients, files.annotated(file_comments(files, after.origin, coefficients))
-
-    known_after, coefficients, files = files_of(fitted)
+    after, coefficients, files = _delivered(config, known, points, measured, base, fitted)
     temperature = None
     if found.at_temperature:
-        _, own, special = files_of(full, only=use)
-        temperature = at_temperature(found, points, special.by_use[use], of_file(special, use, own))
+        special = _delivered(config, known, points, measured, base, full, only=use)
+        own = of_file(special.files, use, special.coefficients)
+        temperature = at_temperature(found, points, special.files.by_use[use], own)
 
     confounded = confoundings(replace(full, problem=at_reference(config, full.problem)))
     channels = agreement.with_points(readings, points)
@@ -115,14 +106,14 @@ def fit(
         coverage=plan.cover,
         explanations=(
             *nuisance_sentences(config.tyre.name, found, temperature, channels),
-            *explanations(config, files, known_after.values, measured, hand),
+            *explanations(config, files, after.values, measured, hand),
         ),
         warnings=(
             *warnings(full, doubts, outlying, files.untested, plan.cover),
             *(confounding_sentence(row, modelled=found.at_temperature) for row in confounded),
         ),
         seconds=time.perf_counter() - began,
-        epsilon_gamma_model=_epsilon_gamma(known_after.values, points, measured),
+        epsilon_gamma_model=_epsilon_gamma(after.values, points, measured),
         doubts=doubts,
         outliers=outlying,
         search=fitted,
@@ -133,6 +124,32 @@ def fit(
         confounded=confounded,
     )
     return with_remarks(result, config, points, turning, from_base=base is not None)
+
+
+class _Delivered(NamedTuple):
+    """What a fit writes."""
+
+    known: Known  #: every value of the property file, with its origin
+    coefficients: dict[str, Coefficient]
+    files: Files
+
+
+def _delivered(
+    config: Any,
+    known: Known,
+    points: Points,
+    measured: Any,
+    base: Tyre | None,
+    fitted: Fitted,
+    only: str | None = None,
+) -> _Delivered:
+    """The files of a fit, for one use ``only`` or for all, and the records of their coefficients."""
+    known = known_after_fit(known, fitted.values, fitted.regularised, base)
+    rolling = {} if "QSY1" in known.hand.held else rolling_resistance(known.values, points)
+    known = known.having({name: QSY1.value for name, QSY1 in rolling.items()}, "fitted")
+    coefficients = coefficient_records(known, fitted, rolling)
+    files = make_files(config, known, points, base, dict(measured.by_load("C_gamma")), only=only)
+    return _Delivered(known, coefficients, files.annotated(file_comments(files, known.origin, coefficients)))
 
 
 def _fitted_and_judged(

@@ -10,10 +10,11 @@ from mffit.fit import constants
 from mffit.fit.agreement import Agreement
 from mffit.fit.files import name_at_temperature
 from mffit.fit.nuisance_choice import Gaps, Verdict
-from mffit.fit.nuisances import TEMPERATURE, error_of
+from mffit.fit.nuisances import TEMPERATURE
 from mffit.fit.temperature import AtTemperature
 from mffit.fit.with_nuisances import NuisanceFit
 from mffit.quantities import CHANNELS
+from mffit.rig_errors import unit_of
 from mffit.rounding import ascii_only, number, rounded
 
 SCALED = {
@@ -73,7 +74,7 @@ def _moved_sentence(name: str, found: AtTemperature) -> str:
 
 def _modelled_sentence(verdict: Verdict, rig: Mapping[str, tuple[float, float]]) -> str:
     numbers = ", ".join(
-        f"{name} = {' +- '.join(rounded(*rig[name]))} {error_of(name).unit}".removesuffix(" -")
+        f"{name} = {' +- '.join(rounded(*rig[name]))} {unit_of(name)}".removesuffix(" -")
         for name in verdict.nuisance.numbers
     )
     return ascii_only(

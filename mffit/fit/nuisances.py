@@ -12,7 +12,7 @@ from mffit.fit import constants
 from mffit.least_squares import FreeNumber
 from mffit.points import Points
 from mffit.rig.histories import distance_km, sense
-from mffit.rig_errors import BY_NAME, OF_RUN, RigError
+from mffit.rig_errors import BY_NAME
 from mffit.suspicion import parts_of_sweeps
 
 TEMPERATURE = "temperature"
@@ -46,16 +46,11 @@ class Nuisance:
 
 
 def _number(name: str) -> FreeNumber:
-    error = error_of(name)
+    error = BY_NAME[name]
     spread = constants.NUISANCE_SPREAD * error.spread
     return FreeNumber(
         name, error.undisturbed, error.lower, error.upper, expected=error.undisturbed, spread=spread
     )
-
-
-def error_of(name: str) -> RigError:
-    """The record of a number, also of one that holds for a part of the sweeps only."""
-    return BY_NAME[name.partition(OF_RUN)[0]]
 
 
 def _temperatures(points: Points) -> str:

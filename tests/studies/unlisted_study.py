@@ -186,11 +186,11 @@ def _found(result: Any, true: tir.Tyre, known: Any, world: World) -> dict[str, A
     written = as_json.build(result)
     spin, fit = written["spin"] or {}, written["fit"]
     out: dict[str, Any] = {
-        "trusted": written.get("trusted", True),
-        "reasons": written.get("reasons", []),
+        "trusted": written["trusted"],
+        "reasons": written["reasons"],
         "warnings": written["warnings"],
-        "suspected": written.get("suspected"),
-        "misfit": {c: row.get("over_noise") or row["rmse"] for c, row in fit["channels"].items()},
+        "suspected": _suspected(written),
+        "misfit": {c: row["over_noise"] for c, row in fit["channels"].items()},
         "disc": model_error(
             result.fit.tyre, true, -1.0 / known.nominal.R_m, np.unique(np.round(result.points.Fz, -2))
         )[0],
@@ -209,6 +209,16 @@ def _found(result: Any, true: tir.Tyre, known: Any, world: World) -> dict[str, A
         if n in rows
     }
     return out
+
+
+def _suspected(written: dict[str, Any]) -> str:
+    """What the build names in words: an effect in its residuals, temperature as modelled, or a sweep."""
+    residuals, named = written["residuals"], []
+    if residuals["effect"] and residuals["effect"]["significant"]:
+        named.append(residuals["effect"]["id"])
+    if residuals["sweep"]:
+        named.append("one sweep")
+    return ", ".join([*named, *(row["id"] for row in written["fit"]["modelled"] if row["modelled"])])
 
 
 def lines(name: str, rows: list[dict[str, Any]]) -> list[str]:
