@@ -184,7 +184,7 @@ def _verdicts(
         elif nuisance.rival in there:
             reason, gaps = f"the {_named(nuisance.rival)} predicts left-out sweeps better", ({}, {})
         elif other is not None:
-            reason, gaps = "left-out sweeps are not predicted better with it", (here.gaps, other.gaps)
+            reason, gaps = "left-out sweeps are not predicted clearly better with it", (here.gaps, other.gaps)
         elif not enough:
             reason = (
                 f"fewer than {FEWEST_SWEEPS_TO_PREDICT} sweeps do not show whether it predicts them better"

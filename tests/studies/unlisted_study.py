@@ -144,7 +144,8 @@ WORLDS = {
     ),
 }
 PARAMETERS = {row.name for row in TABLE}
-TRUE_NUMBERS = {"k_T_grip_per_K": -0.004, "k_T_stiffness_per_K": -0.004}
+WARMED, PER_KELVIN, COLD = ("k_T_grip_per_K", "k_T_stiffness_per_K"), -0.004, 25.0
+"""Terms by which a warming tyre is modelled; the true one, which holds at the temperature [degC] of the cold tyre."""
 
 
 def one(job: tuple[int, str]) -> tuple[str, dict[str, Any]]:
@@ -197,18 +198,21 @@ def _found(result: Any, true: tir.Tyre, known: Any, world: World) -> dict[str, A
     }
     if spin.get("epsilon_gamma") is not None:
         out["eps"] = (spin["epsilon_gamma"], spin["u_epsilon_gamma"], known.nominal.epsilon_gamma)
-    rig = {
-        **TRUE_NUMBERS,
-        **known.faults,
-        **{n: float(true[n]) for n in world.watched if n in PARAMETERS},
-    }
-    rows = {**fit["coefficients"], **fit.get("rig", {})}
+    faults = {**known.faults, **{name: _at_reference(fit["temperature"]) for name in WARMED}}
+    rig = {**faults, **{n: float(true[n]) for n in world.watched if n in PARAMETERS}}
+    rows = {**(fit["temperature"] or fit)["coefficients"], **fit["rig"]}
     out["watched"] = {
         n: (rows[n]["value"], rows[n].get("stderr") or np.nan, rig.get(n, 0.0))
         for n in world.watched
         if n in rows
     }
     return out
+
+
+def _at_reference(temperature: dict[str, Any] | None) -> float:
+    """The true temperature term relative to the force at the reference temperature of the build."""
+    T_ref = COLD if temperature is None else temperature["T_ref_degC"]
+    return PER_KELVIN / (1.0 + PER_KELVIN * (T_ref - COLD))
 
 
 def _suspected(written: dict[str, Any]) -> str:

@@ -147,7 +147,7 @@ def test_the_plain_coefficients_are_uncertain_by_the_warming_that_they_contain(w
         (
             lambda T: np.random.default_rng(1).permutation(T),
             {},
-            "left-out sweeps are not predicted better with it",
+            "left-out sweeps are not predicted clearly better with it",
         ),
     ],
     ids=["off", "constant", "unknown", "partly", "shuffled"],
