@@ -72,7 +72,7 @@ def answer(
         validation=repair.validation,
         where=where(points, given.measured - before, scatter),
         effects=tuple(_with_repair(one, done) for one in named),
-        alternatives=_alternatives(found.steps, chosen),
+        alternatives=alternatives(found.steps, chosen),
         steps=tuple(found.steps),
         unexplained=unexplained,
         unexplained_where=_remaining(found, given.measured - explained) if unexplained else (),
@@ -194,7 +194,7 @@ def _rivals(
     ]
 
 
-def _alternatives(steps: Sequence[ForwardStep], chosen: Hypothesis) -> dict[str, float]:
+def alternatives(steps: Sequence[ForwardStep], chosen: Hypothesis) -> dict[str, float]:
     """Weights of the effects that were not accepted: in the first step if one was accepted, else in the last.
 
     Empty if left-out sweeps decided against the weight of evidence.

@@ -8,7 +8,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from mffit.config import Config, axis_signs, declared_faults
-from mffit.diagnosis.answer import answer, named_effects
+from mffit.diagnosis.answer import alternatives, answer, named_effects
 from mffit.diagnosis.conditions import by_condition
 from mffit.diagnosis.explain import explain, only_first
 from mffit.diagnosis.explanation import Explanation
@@ -90,7 +90,8 @@ def diagnose(
     found, validation, refused = _confirmed(found, given, inexact, seen=seen)
     exact = without_noise(found.scatter)
     named = named_effects(found, given)
-    done = repair(found, named, given, inexact, validation, seen=seen, every=repair_all)
+    others = alternatives(found.steps, found.chosen)
+    done = repair(found, named, given, inexact, validation, others, seen=seen, every=repair_all)
     memories = offsets_or_memory(found.scatter, candidates, found.chosen.ids)
     remarks = (wrong, exact, *noise_beyond_stated(found), *memories, *notes, stranger, refused, done.refused)
     notes = [note for note in remarks if note is not None]

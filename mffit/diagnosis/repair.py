@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from mffit.diagnosis import constants
@@ -31,15 +31,19 @@ def repair(
     given: DiagnosisProblem,
     inexact: Inexactness,
     validation: Validation,
+    alternatives: Mapping[str, float],
     *,
     seen: bool,
     every: bool,
 ) -> Repair:
     """The repair of the ``named`` effects that are at least as likely as not, or of ``every`` one.
 
-    ``validation`` is that of all of them. ``seen``: the model was fitted to these points.
+    Effects that cannot be separated are one answer: it is likely if all of them together are. ``validation`` is that of all
+    named effects, ``alternatives`` are the confidences of the others by id. ``seen``: the model was fitted to these points.
     """
-    likely = tuple(one.effect for one in named if every or one.confidence >= constants.LIKELY_ANSWER)
+    likely = tuple(
+        one.effect for one in named if every or one.confidence_of_tie(alternatives) >= constants.LIKELY_ANSWER
+    )
     refused = None
     if len(likely) < len(named):
         found = found.only(likely).with_coefficients(inexact)

@@ -48,6 +48,10 @@ class AcceptedEffect:
         """Ids of the tied effects."""
         return tuple(effect.id for effect in self.tied)
 
+    def confidence_of_tie(self, alternatives: Mapping[str, float]) -> float:
+        """Confidence that it is this effect or one of those it is tied with; ``alternatives`` are confidences by id."""
+        return self.confidence + sum(alternatives.get(other, 0.0) for other in self.tied_with)
+
 
 @dataclass(frozen=True, slots=True, repr=False)
 class Diagnosis(Brief):

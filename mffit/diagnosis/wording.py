@@ -101,7 +101,7 @@ def _named(diagnosis: Diagnosis) -> str:
     after = diagnosis.gap_after if diagnosis.repaired else diagnosis.gap_named
     names, one = " and ".join(map(_with_ties, effects)), len(effects) == 1
     verdict = f"The missing {'effect is' if one else 'effects are'} {names}"
-    if min(_confidence_of_tie(found, diagnosis.alternatives) for found in effects) < constants.LIKELY_ANSWER:
+    if min(found.confidence_of_tie(diagnosis.alternatives) for found in effects) < constants.LIKELY_ANSWER:
         verdict = f"The best explanation, though uncertain, is {names}"
     misfit = " and ".join(
         f"{_short(after.rms(name))} {unit} instead of {_short(diagnosis.gap_before.rms(name))} {unit} in "
@@ -142,11 +142,6 @@ def _with_ties(found: AcceptedEffect) -> str:
     if not found.tied:
         return found.effect.name
     return f"{found.effect.name} (or {' or '.join(e.name for e in found.tied)}, not separable here)"
-
-
-def _confidence_of_tie(found: AcceptedEffect, alternatives: Mapping[str, float]) -> float:
-    """Confidence that it is this effect or one of those it is tied with."""
-    return found.confidence + sum(alternatives.get(other, 0.0) for other in found.tied_with)
 
 
 def notes(diagnosis: Diagnosis) -> list[str]:

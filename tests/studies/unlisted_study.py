@@ -115,12 +115,14 @@ class World:
     base: Mapping[str, float] = field(default_factory=dict)  #: coefficients of the base file
     written: Callable[[dict[str, Any]], None] | None = None  #: changes what the owner writes into tyre.toml
     edits: tuple[Edit, ...] = ()
+    thin: bool = False  #: half of the angles, one pressure
     spoil: Callable[[Path, np.random.Generator], None] | None = None
     watched: tuple[str, ...] = ()  #: coefficients or rig numbers
 
 
 WORLDS = {
     "as declared": World(),
+    "as declared, half of the angles, one pressure": World(thin=True),
     "skew 0.3 deg, declared, one backward camber sweep": World(
         drawn={"camber_skew_deg": 0.3}, declared={"u_camber_skew_deg": 0.3}, edits=(backward_camber,)
     ),
@@ -154,7 +156,7 @@ def one(job: tuple[int, str]) -> tuple[str, dict[str, Any]]:
     world, rng = WORLDS[name], np.random.default_rng(9000 + seed)
     sample = SAMPLES / ("front-120-70", "rear-190-55")[seed % 2]
     true = _scaled(tir.read(sample / "true.tir").replace(**NO_FORCE_AT_REST), 0.1, rng).replace(**world.tyre)
-    content = plan_content(sample)
+    content = plan_content(sample, pecp1="direct", thin=world.thin)
     content["faults"] |= world.faults
     content["faults"] |= {key: u * rng.normal() for key, u in world.drawn.items()}
     declared = {**DECLARED, **world.declared}
