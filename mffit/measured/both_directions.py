@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import replace
 
+from mffit.measured import constants, notes
 from mffit.measured.agreed import agreed
 from mffit.measured.evidence import DirectEvidence
 from mffit.measured.load_slopes import LoadSlopes
@@ -41,6 +43,15 @@ def with_measured_skew(
     errors[error.name] = found
     measured = replace(evidence, rig=replace(evidence.rig, errors=errors))
     return measured, Quantity(found.nominal_value, found.std_dev, declared.unit)
+
+
+def skew_warning(evidence: DirectEvidence, skew: Quantity | None) -> list[str]:
+    """A sentence if the measured skew is far beyond its declaration."""
+    if skew is None:
+        return []
+    declared = max(evidence.config.rig.u(error.name) for error, _ in adding_to_camber())
+    beyond = abs(skew.value) > constants.SKEW_BEYOND_DECLARATION * math.hypot(declared, skew.u)
+    return [notes.camber_skew_beyond(skew, declared)] if beyond else []
 
 
 def adding_to_camber() -> tuple[tuple[RigError, Declared], ...]:

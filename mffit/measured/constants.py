@@ -111,6 +111,9 @@ CONTRADICTED = Real(
     "-",
     "Standard uncertainties above which a measurement contradicts a declared uncertainty and replaces it.",
 )
+SKEW_BEYOND_DECLARATION = Real(
+    3.0, "-", "Standard uncertainties from which a measured camber skew is a warning: one sound rig in 370."
+)
 CLEAR_MISALIGNMENT = Real(
     2.0,
     "-",

@@ -13,7 +13,7 @@ from mffit.measured import camber_reduction as method
 from mffit.measured import notes
 from mffit.measured.alignment import AxisAtLoad
 from mffit.measured.at_zero import zeros_by_path
-from mffit.measured.both_directions import with_measured_skew
+from mffit.measured.both_directions import skew_warning, with_measured_skew
 from mffit.measured.budget import budget
 from mffit.measured.budget_rows import Contribution
 from mffit.measured.evidence import DirectEvidence, evidence_of
@@ -232,4 +232,4 @@ def _assembled(
         notes=remarks(evidence, nominal.row, skew, nominal.warmer, axis, law.note),
         load_note=law.note,
     )
-    return measured, [axis.sentence] if axis.misaligned else []
+    return measured, [*([axis.sentence] if axis.misaligned else []), *skew_warning(evidence, skew)]

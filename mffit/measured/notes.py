@@ -65,6 +65,14 @@ def camber_skew(skew: Quantity) -> str:
     )
 
 
+def camber_skew_beyond(skew: Quantity, declared: float) -> str:
+    return (
+        f"the camber axis is not square to the steering axis: forward and backward camber sweeps show a camber skew of "
+        f"{to_uncertainty(skew.value, skew.u)} +- {to_uncertainty(skew.u, skew.u)} {skew.unit}, and {declared:g} {skew.unit} are "
+        "declared (u_camber_skew_deg); it is corrected here; square the axis, or declare what it can be"
+    )
+
+
 def aligned(alpha_M: Quantity, axis: Quantity, tyre: Quantity, slip: float, shift: float) -> str:
     return f"Forward and backward runs: {_sum(alpha_M, axis, tyre, slip, shift)}. The sum is within what the alignment leaves."
 

@@ -176,6 +176,14 @@ def test_a_declaration_that_the_sweeps_contradict_is_not_averaged_in():
     found = measured(tyre, points=tyre.campaign(backward_camber=(1500.0,)), u_camber_skew_deg=0.05)
     assert found.camber_skew.value == pytest.approx(0.5, abs=0.02)
     assert found.epsilon_gamma.value == pytest.approx(tyre.epsilon, abs=0.015)
+    (warning,) = (text for text in found.warnings if "camber axis" in text)
+    assert "0.05 deg are declared" in warning
+
+
+def test_a_skew_as_declared_is_no_warning():
+    tyre = Plain(skew=0.5 * DEGREE)
+    found = measured(tyre, points=tyre.campaign(backward_camber=(1500.0,)), u_camber_skew_deg=0.3)
+    assert not any("camber axis" in text for text in found.warnings)
 
 
 def test_every_estimate_of_the_factor_is_less_the_measured_skew():
