@@ -52,6 +52,10 @@ NOTES = [
     (notes.CONTACT_WANDERS, "R holds for the upright wheel"),
 ]
 WARNINGS = [
+    (
+        notes.camber_skew_beyond(Quantity(0.4907, 0.0212, "deg"), 0.1),
+        "a camber skew of 0.491 +- 0.021 deg, and 0.1 deg are declared (u_camber_skew_deg)",
+    ),
     (notes.slope_not_possible(1500.0, 15.0), "at 1500 N the camber sweep is too short"),
     (notes.secant_not_possible(1500.0, 15.0), "does not reach 15 deg"),
     (notes.NOTHING_MEASURED, "eps_gamma could not be measured"),
