@@ -170,7 +170,8 @@ def _row(evidence: DirectEvidence, group: LoadGroup, slopes: LoadSlopes, found: 
         for C in (slopes.C_gamma, slopes.slope, slopes.secant)
     )
     u_axis = evidence.config.rig.u("alpha_0_deg") if evidence.rig else 0.0
-    split = split_of_zero(found.alpha_M if found else None, slopes.C_alpha, u_axis)
+    C_alpha = None if slopes.C_alpha is None else float(slopes.C_alpha.nominal_value)
+    split = split_of_zero(found.alpha_M if found else None, C_alpha, u_axis)
     row = LoadResult(
         load=group.load,
         C_alpha=method.quantity(at_true_zero(slopes.C_alpha, slopes.bend, split, u_axis), "N/rad"),

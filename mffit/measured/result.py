@@ -29,6 +29,7 @@ class SetupResult(NamedTuple):
     epsilon_gamma: Quantity
     alpha_M: Quantity | None  #: sideslip misalignment [rad]; None without backward runs
     misaligned: bool  #: alpha_M is beyond what the rig's alignment leaves
+    axis_off: bool = False  #: its split supports that the axis, and not the tyre, causes it
 
     @property
     def path(self) -> str:

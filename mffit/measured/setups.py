@@ -19,6 +19,7 @@ from mffit.measured.groups import LoadGroup, zeros
 from mffit.measured.paths import PathForce
 from mffit.measured.result import Measured, SetupResult, SetupScatter
 from mffit.measured.sources import named
+from mffit.measured.zero_split import split_of_zero
 from mffit.points import Points
 from mffit.rig_errors import DECLARED, AtZero
 from tir import Quantity
@@ -47,6 +48,9 @@ def results_of_setups(
     for zero, path in zip(found, paths, strict=True):
         alone = method.camber_reduction(path.force, C_gamma, r_e, path.R, path.sign)
         slip = (zero.readings.forward - zero.readings.backward) / 2.0
+        left = config.rig.u("alpha_0_deg")
+        beyond = bool(abs(slip) > left)  # NaN without backward runs
+        split = split_of_zero(path.alpha_M, path.at.C_alpha, left)
         out.append(
             SetupResult(
                 path.setup,
@@ -55,7 +59,8 @@ def results_of_setups(
                 _known(alone.C_phit, "Nm"),
                 _known(alone.epsilon_gamma, "-"),
                 method.quantity(path.alpha_M, "rad"),
-                bool(abs(slip) > config.rig.u("alpha_0_deg")),  # NaN without backward runs
+                beyond,
+                beyond and split is not None and split.axis_is_clear,
             )
         )
     return tuple(out)
@@ -232,7 +237,7 @@ def of_setups(
     row = measured.nominal
     for found in row.setups if row else ():
         first = row is not None and found is row.setups[0]
-        if found.misaligned and not first and found.alpha_M is not None:
+        if found.axis_off and not first and found.alpha_M is not None:
             act.append(setup_notes.setup_misaligned(found.name, found.alpha_M))
     if scatter is not None:
         sentence = setup_notes.setup_scatter(scatter)

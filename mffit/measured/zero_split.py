@@ -20,8 +20,13 @@ class ZeroSplit(NamedTuple):
     misalignment: UFloat
     ply_steer: UFloat
 
+    @property
+    def axis_is_clear(self) -> bool:
+        """Whether the misalignment differs clearly from zero."""
+        return _is_clear(self.misalignment.nominal_value, self.misalignment.std_dev)
 
-def split_of_zero(alpha_M: UFloat | None, C_alpha: UFloat | None, u_force: float) -> ZeroSplit | None:
+
+def split_of_zero(alpha_M: UFloat | None, C_alpha: float | None, u_force: float) -> ZeroSplit | None:
     """The parts by their priors; None without both directions.
 
     Parameters
@@ -37,7 +42,7 @@ def split_of_zero(alpha_M: UFloat | None, C_alpha: UFloat | None, u_force: float
     """
     if alpha_M is None or C_alpha is None:
         return None
-    axis, tyre = u_force / abs(C_alpha.nominal_value), usual_ply_steer()
+    axis, tyre = u_force / abs(C_alpha), usual_ply_steer()
     size = abs(alpha_M.nominal_value)
     if size > constants.CONTRADICTED * math.hypot(axis, tyre):
         axis = math.sqrt(size**2 - tyre**2)
@@ -94,6 +99,10 @@ def alignment_verdict(config: Config, row: LoadResult) -> AlignmentVerdict:
     axis, tyre = row.misalignment, row.ply_steer
     assert axis is not None
     assert tyre is not None
-    clear = beyond and abs(axis.value) > constants.CLEAR_MISALIGNMENT * axis.u
+    clear = beyond and _is_clear(axis.value, axis.u)
     sentence = notes.misaligned if clear else notes.slip_beyond if beyond else notes.aligned
     return AlignmentVerdict(beyond, clear, sentence(row.alpha_M, axis, tyre, slip, row.shift_by(slip)))
+
+
+def _is_clear(misalignment: float, u: float) -> bool:
+    return bool(abs(misalignment) > constants.CLEAR_MISALIGNMENT * u)
