@@ -8,6 +8,7 @@ carry a warning or a suspected cause, and the coefficients and rig numbers that 
 from __future__ import annotations
 
 import argparse
+import re
 import sys
 import tempfile
 import tomllib
@@ -227,6 +228,11 @@ def _suspected(written: dict[str, Any]) -> str:
     return ", ".join([*named, *(row["id"] for row in written["fit"]["modelled"] if row["modelled"])])
 
 
+def _without_numbers(text: str) -> str:
+    """A sentence that is the same for builds with other numbers."""
+    return re.sub(r"[-+]*\d[\d.e-]*", "#", text)
+
+
 def lines(name: str, rows: list[dict[str, Any]]) -> list[str]:
     """The page of one world."""
     ended = [row["refused"] for row in rows if "refused" in row]
@@ -254,7 +260,9 @@ def lines(name: str, rows: list[dict[str, Any]]) -> list[str]:
         f"with a warning {np.mean([bool(r['warnings']) for r in sound]):.0%}"
     )
     for key in ("reasons", "warnings"):
-        said = Counter(text[:110] for row in sound for text in row[key])
+        said = Counter(
+            alike for row in sound for alike in {_without_numbers(text)[:110] for text in row[key]}
+        )
         out += [f"  {key}: {times}x {text}" for text, times in said.most_common(4)]
     out += [
         f"  suspected: {times}x {what}"
