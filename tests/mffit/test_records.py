@@ -25,7 +25,7 @@ from mffit.results.verification import MISSING, compared
 
 LAB = {
     "order": "T-1234",
-    "operator": "A. Smith",
+    "operator": "Operator 7",
     "instruments": [
         {"name": "Fy load cell", "serial": "F 17", "certificate": "K-3", "calibrated": date(2020, 3, 1), "due": date(2021, 3, 1)},
         {"name": "pressure gauge"},
@@ -134,7 +134,7 @@ def test_excluded_readings_stay_in_the_table_of_points(built, result):
 def test_the_page_has_a_section_of_records(built, result):
     page = (built / "out" / "report.html").read_text(encoding="utf-8")
     section = page[page.index('id="records"') :]
-    for words in ("T-1234", "A. Smith", "load cell", "K-3", "2021-03-01", LINES, WHY, f"method {METHOD}"):
+    for words in ("T-1234", "Operator 7", "load cell", "K-3", "2021-03-01", LINES, WHY, f"method {METHOD}"):
         assert words in section
     assert all(known in section for known in result["made"]["inputs"].values())
     assert re.search(r"rule outlying-reading", section)

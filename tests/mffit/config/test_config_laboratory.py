@@ -14,7 +14,7 @@ EXCLUDE = '\n[fit]\nexclude = [ {{ file = "{file}", {lines}{why} }} ]\n'
 LAB = """
 [lab]
 order = "T-1234"
-operator = "A. Smith"
+operator = "Operator 7"
 instruments = [
     { name = "Fy load cell", serial = "F 17", certificate = "K-2026-3", calibrated = 2026-03-01, due = 2027-03-01 },
     { name = "pressure gauge" },
