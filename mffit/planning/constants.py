@@ -52,3 +52,7 @@ PLAN_BAND_SPEED = Real(10.0, "m/s", "Speed of a 95 % band, which hardly depends 
 
 # Order of the runs
 SWAPS_OF_RUNS = Count(1000, "-", "Swaps of two sweeps tried in the search for an order.")
+
+UNSEEN_SKEW = Real(
+    0.5, "deg", "Camber skew whose consequence a plan states: large, and no other run shows it."
+)

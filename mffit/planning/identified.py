@@ -8,6 +8,7 @@ from mffit.diagnosis.needs import missing
 from mffit.effects import CATALOG, Effect
 from mffit.fit import FitResult
 from mffit.measured import Measured
+from mffit.measured.both_directions import adding_to_camber
 from mffit.planning.knowledge import Knowledge
 from mffit.planning.record import Identified, Tie
 from mffit.points import Points
@@ -51,4 +52,14 @@ def identified(knowledge: Knowledge, found: FitResult, measured: Measured) -> Id
         correlated=tuple(pairs.values()),
         ties=tuple(ties),
         budget=measured.budget,
+        unseen_skew=_unseen_skew(measured),
     )
+
+
+def _unseen_skew(measured: Measured) -> float | None:
+    """Change of eps_gamma by 1 deg of camber skew; None if sweeps in both directions measure it."""
+    sources = {declared.source for _, declared in adding_to_camber()}
+    line = next((line for line in measured.budget if line.source in sources and line.u), None)
+    if line is None or measured.camber_skew is not None:
+        return None
+    return abs(line.contribution / line.u)

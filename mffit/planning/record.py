@@ -37,6 +37,8 @@ class Identified:
     correlated: tuple[tuple[str, str, float], ...]  #: pairs of coefficients and their correlation
     ties: tuple[Tie, ...]
     budget: tuple[Contribution, ...]  #: of eps_gamma by the direct method; empty on a flat track
+    unseen_skew: float | None = None
+    """Change of eps_gamma by a camber skew of 1 deg, where no backward camber sweep shows the skew; else None."""
 
 
 @dataclass(frozen=True, slots=True)

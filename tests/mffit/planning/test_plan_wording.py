@@ -171,3 +171,11 @@ def test_the_json_of_a_plan():
     assert [(tie["effect"], tie["chi2"], tie["told"]) for tie in found["ties"]] == [
         ("ply-steer", 0.24, False), ("conicity", 30.0, True),
     ]  # fmt: skip
+
+
+def test_a_backward_camber_sweep_is_asked_for_first_where_nothing_shows_the_skew():
+    """0.16 of eps_gamma per degree: half a degree is 0.08."""
+    first = wording.identified(replace(IDENTIFIED, unseen_skew=0.16))[0]
+    assert first.startswith("Run first a backward camber sweep")
+    assert "0.5 deg would change eps_gamma by 0.08" in first
+    assert not any("backward camber" in text for text in wording.identified(IDENTIFIED))
