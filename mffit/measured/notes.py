@@ -57,6 +57,13 @@ def several_paths(radii: Sequence[float], *, one_setup: bool = True) -> str:
     )
 
 
+def off_nominal_pressure(used: float, nominal: float) -> str:
+    return (
+        f"Everything here holds at {used / 1e3:.0f} kPa, that of most sweeps; the nominal pressure is {nominal / 1e3:.0f} "
+        "kPa."
+    )
+
+
 def camber_skew(skew: Quantity) -> str:
     return (
         f"Forward and backward camber sweeps: leaning steers the wheel by {to_uncertainty(skew.value, skew.u)} "

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import numpy as np
+
 from mffit.measured import constants, notes
 from mffit.measured.evidence import DirectEvidence
 from mffit.measured.result import LoadResult
 from mffit.measured.zero_split import AlignmentVerdict
+from mffit.points import levels, main_pressure
 from tir import Quantity
 
 
@@ -43,9 +46,18 @@ def remarks(
         *([] if row.secant_bias is None else [notes.secant_bias(row.secant_bias, evidence.published)]),
         load_note,
         notes.ON_THE_PATH,
+        *_pressure(evidence),
         notes.STANDARD_UNCERTAINTIES,
         notes.CONTACT_WANDERS,
     )
+
+
+def _pressure(evidence: DirectEvidence) -> list[str]:
+    """At which pressure everything holds, if that is not the nominal one."""
+    used = float(np.mean(evidence.points.p[main_pressure(evidence.points)]))
+    nominal = 1e3 * evidence.config.tyre.nominal_pressure
+    near = abs(used - nominal) < levels.PRESSURE.tolerance
+    return [] if near else [notes.off_nominal_pressure(used, nominal)]
 
 
 def _conicity(evidence: DirectEvidence, row: LoadResult) -> list[str]:

@@ -28,6 +28,10 @@ NOTES = [
         "combines the zeros of 2 paths (disc's centre 1.3 m to the left, 1.3 m to the right)",
     ),
     (
+        notes.off_nominal_pressure(250.2e3, 290e3),
+        "holds at 250 kPa, that of most sweeps; the nominal pressure is 290 kPa",
+    ),
+    (
         notes.camber_skew(Quantity(-0.1382, 0.0551, "deg")),
         "steers the wheel by -0.138 +- 0.055 deg times the sine",
     ),
