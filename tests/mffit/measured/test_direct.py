@@ -502,3 +502,9 @@ def test_the_property_file_names_what_was_measured_and_nothing_else():
         "R_m",
         "load_N",
     ]
+
+
+def test_the_comment_of_a_file_gives_no_uncertainty_to_what_has_none():
+    found = replace(measured(Plain()), epsilon_gamma_model=-0.1).quantities()
+    assert (found["load_N"].value, found["load_N"].u) == (pytest.approx(1500.0, rel=0.01), 0.0)
+    assert (found["epsilon_gamma_model"].value, found["epsilon_gamma_model"].u) == (-0.1, 0.0)

@@ -71,3 +71,11 @@ def test_misalignments_of_section_5(alpha_M_deg, printed):
 
 
 R_SECTION_5 = 1.323
+
+
+def test_what_is_given_without_uncertainty_is_exact():
+    exact = {"u_offset": 0.0, "u_gamma_0": 0.0, "u_slip_force": 0.0}
+    given = DirectInputs(F_raw=-400.0, C_gamma=-2000.0, r_e=0.29, R=1.3, C_alpha=-18000.0, **exact)
+    found = direct_method(given)
+    assert found.epsilon_gamma.nominal_value == pytest.approx(1.0 - 0.29 * 2000.0 / (400.0 * 1.3))
+    assert found.epsilon_gamma.std_dev < 1e-9
