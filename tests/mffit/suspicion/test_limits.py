@@ -207,7 +207,7 @@ def sentence(rule: str, points: Points) -> str:
         ("force-in-kilonewtons", tyre(Fy=28.0 * np.sign(ALPHA)), "is at most 28 N at loads of 1500 N"),
         (
             "lone-load",
-            tyre(Fz=changed(LOADS, [2], 7510.0), Fy=FORCE),
+            tyre(Fz=changed(changed(LOADS, [0, 1], 900.0), [2], 7510.0), Fy=FORCE),
             "7510 N is far above all other loads of the file, which are at most 1500 N",
         ),
         ("wild-force", tyre(Fy=changed(FORCE, [1, 2], -7500.0)), "-7500 N is 5 times the load"),
