@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -46,10 +46,12 @@ def answer(
     config: Config,
     notes: Sequence[Note],
     candidates: Sequence[Effect],
+    alternatives: Mapping[str, float],
 ) -> Diagnosis:
     """The record of an explanation.
 
-    ``found`` is what left-out sweeps confirm, with the ``named`` effects; ``given`` is the problem before it.
+    ``found`` is what left-out sweeps confirm, with the ``named`` effects and the confidence of the ``alternatives`` by id;
+    ``given`` is the problem before it.
     """
     points, chosen, scatter = given.points, found.chosen, found.scatter
     before = given.start.predict(points)
@@ -72,7 +74,7 @@ def answer(
         validation=repair.validation,
         where=where(points, given.measured - before, scatter),
         effects=tuple(_with_repair(one, done) for one in named),
-        alternatives=alternatives(found.steps, chosen),
+        alternatives=alternatives,
         steps=tuple(found.steps),
         unexplained=unexplained,
         unexplained_where=_remaining(found, given.measured - explained) if unexplained else (),
@@ -194,7 +196,7 @@ def _rivals(
     ]
 
 
-def alternatives(steps: Sequence[ForwardStep], chosen: Hypothesis) -> dict[str, float]:
+def not_accepted(steps: Sequence[ForwardStep], chosen: Hypothesis) -> dict[str, float]:
     """Weights of the effects that were not accepted: in the first step if one was accepted, else in the last.
 
     Empty if left-out sweeps decided against the weight of evidence.

@@ -52,7 +52,7 @@ NO_NOISE_SHARE = Real(
     "Scatter over the rms reading below which readings come from a simulation; rigs reach 0.001 at best.",
 )
 ASSUMED_NOISE_SHARE = Real(
-    1e-3, "-", "Noise over the rms reading that is assumed for readings without noise: that of the best rigs."
+    1e-3, "-", "Assumed ratio of noise to rms reading where readings have no noise. The best rigs reach it."
 )
 
 # Scatter as found
@@ -257,5 +257,5 @@ SMALLEST_CHANCE_NAMED = Real(1e-12, "-", "Smaller chances are not told apart in 
 ODD_SWEEP_OVER_NEXT = Real(
     2.0,
     "-",
-    "Chi-square of a sweep against all others, over that of the next one, from which it alone is at fault.",
+    "Smallest ratio of the largest chi-square of a sweep to the second largest at which one sweep is at fault.",
 )

@@ -8,7 +8,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from mffit.config import Config, axis_signs, declared_faults
-from mffit.diagnosis.answer import alternatives, answer, named_effects
+from mffit.diagnosis.answer import answer, named_effects, not_accepted
 from mffit.diagnosis.conditions import by_condition
 from mffit.diagnosis.explain import explain, only_first
 from mffit.diagnosis.explanation import Explanation
@@ -90,12 +90,12 @@ def diagnose(
     found, validation, refused = _confirmed(found, given, inexact, seen=seen)
     exact = without_noise(found.scatter)
     named = named_effects(found, given)
-    others = alternatives(found.steps, found.chosen)
+    others = not_accepted(found.steps, found.chosen)
     done = repair(found, named, given, inexact, validation, others, seen=seen, every=repair_all)
     memories = offsets_or_memory(found.scatter, candidates, found.chosen.ids)
     remarks = (wrong, exact, *noise_beyond_stated(found), *memories, *notes, stranger, refused, done.refused)
     notes = [note for note in remarks if note is not None]
-    return answer(found, named, done, given, tyre, config, notes, candidates)
+    return answer(found, named, done, given, tyre, config, notes, candidates, others)
 
 
 def _simulation(points: Points, tyre: Tyre, config: Config, rig: Mapping[str, float] | None) -> Simulation:

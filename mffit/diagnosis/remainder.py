@@ -11,6 +11,7 @@ from scipy.linalg import solve_triangular
 from mffit.diagnosis import constants
 from mffit.fit.fitted import Fitted
 from mffit.fit.problem import FitProblem
+from mffit.left_out import left_out_errors
 from mffit.points import Points
 from mffit.quantities import CHANNELS
 from mffit.rig import Simulation
@@ -64,10 +65,11 @@ class Remainder:
         return rows
 
     def left_out(self, rows: np.ndarray) -> np.ndarray:
-        """Residuals of some rows (mask (m,)) as all others predict them, to first order (see ``suspicion.prediction``)."""
-        A, r = self.axes[rows], self.residual[rows]
-        left = (1.0 + constants.INFORMATION_LEFT) * np.eye(A.shape[1]) - A.T @ A
-        return r + A @ np.linalg.solve(left, A.T @ r)
+        """Residuals of some rows (mask (m,)) as all others predict them, to first order."""
+        k = self.axes.shape[1]
+        information = (1.0 + constants.INFORMATION_LEFT) * np.eye(k)
+        group = np.where(rows, 0, -1)
+        return left_out_errors(self.axes, self.residual, information, np.zeros(k), group)[rows]
 
 
 def remainder(fitted: Fitted) -> Remainder:

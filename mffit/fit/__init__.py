@@ -3,7 +3,7 @@
 from mffit.fit.agreement import Agreement
 from mffit.fit.coefficients import Coefficient
 from mffit.fit.ensemble import ensemble
-from mffit.fit.files import file_names, name_at_temperature
+from mffit.fit.files import file_names, name_at_temperature, plain_use
 from mffit.fit.fitted import with_free_epsilon
 from mffit.fit.fitting import fit
 from mffit.fit.posterior import Posterior
@@ -21,6 +21,7 @@ __all__ = [
     "file_names",
     "fit",
     "name_at_temperature",
+    "plain_use",
     "straight_cornering_stiffness",
     "with_free_epsilon",
 ]

@@ -50,14 +50,23 @@ def bands_by_pressure(
     half = rms(_half(at_main, posterior))
     if not others:
         return BandsByPressure(main, half, (), 0.0)
-    slopes, found = _over_tested(posterior, tyre, points, others), posterior
-    variance = float(np.mean(_half(slopes, found) ** 2))
+    slopes = _over_tested(posterior, tyre, points, others)
+    variance = float(np.mean(_half(slopes, posterior) ** 2))
     by_held = {
-        name: float(np.mean(_half(slopes, _only(found, name)) ** 2)) for name in held if name in found.names
+        name: float(np.mean(_half(slopes, _only(posterior, name)) ** 2))
+        for name in held
+        if name in posterior.names
     }
     unseen = max(by_held, key=lambda name: by_held[name], default="")
     share = by_held[unseen] / variance if unseen and variance else 0.0
-    return BandsByPressure(main, half, others, float(np.sqrt(variance)), unseen if share > 0.5 else "", share)
+    return BandsByPressure(
+        main,
+        half,
+        others,
+        float(np.sqrt(variance)),
+        unseen if share > constants.WIDENING_SHARE else "",
+        share,
+    )
 
 
 def _only(posterior: Posterior, name: str) -> Posterior:

@@ -112,6 +112,9 @@ BETTER_ON_PROFILE = Real(
 )
 
 # Bands
+WIDENING_SHARE = Real(
+    0.5, "-", "Share of the variance above which one coefficient is named as what widens the bands."
+)
 WIDER_BANDS = Real(
     1.5, "-", "Ratio of bands between pressures to those at the usual one above which the report explains it."
 )

@@ -142,6 +142,11 @@ def name_at_temperature(name: str) -> str:
     return f"{name}-at-temperature.tir"
 
 
+def plain_use(config: Any) -> str:
+    """The use whose file has the plain name."""
+    return config.spin.exact if config.rig.on_disc else "normal"
+
+
 def file_names(name: str, exact: str, on_disc: bool) -> dict[str, str]:
     """Names of the written files by use; the file for the use ``exact`` has the plain name."""
     if not on_disc:

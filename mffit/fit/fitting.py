@@ -16,7 +16,7 @@ from mffit.fit.by_hand import hand_of
 from mffit.fit.coefficients import Coefficient, coefficient_records, of_file
 from mffit.fit.comments import file_comments
 from mffit.fit.confounding import confounding_sentence, confoundings
-from mffit.fit.files import Files, make_files
+from mffit.fit.files import Files, make_files, plain_use
 from mffit.fit.fitted import Fitted
 from mffit.fit.known import Known, known_after_fit, known_before_fit
 from mffit.fit.nuisance_choice import at_reference
@@ -81,7 +81,7 @@ def fit(
     outlying = outliers(points, _sigma(problem), _sigma(full.problem), best)
 
     progress("deriving the property files")
-    use = config.spin.exact if config.rig.on_disc else "normal"
+    use = plain_use(config)
     after, coefficients, files = _delivered(config, known, points, measured, base, fitted)
     temperature = None
     if found.at_temperature:

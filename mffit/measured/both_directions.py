@@ -8,6 +8,7 @@ from dataclasses import replace
 
 from mffit.measured import constants, notes
 from mffit.measured.agreed import agreed
+from mffit.measured.camber_reduction import known_quantity
 from mffit.measured.evidence import DirectEvidence
 from mffit.measured.load_slopes import LoadSlopes
 from mffit.rig_errors import DECLARED, AtZero, Declared, RigError
@@ -42,7 +43,7 @@ def with_measured_skew(
     )
     errors[error.name] = found
     measured = replace(evidence, rig=replace(evidence.rig, errors=errors))
-    return measured, Quantity(found.nominal_value, found.std_dev, declared.unit)
+    return measured, known_quantity(found, declared.unit)
 
 
 def skew_warning(evidence: DirectEvidence, skew: Quantity | None) -> list[str]:

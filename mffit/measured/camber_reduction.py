@@ -120,9 +120,14 @@ def camber_reduction(F_phit: Any, C_gamma: Any, r_e: Any, R: Any, phi_sign: floa
     return TurnSlip(F_phit, C_phit, 1.0 + r_e * C_gamma / C_phit)
 
 
-def quantity(x: UFloat | None, unit: str) -> Quantity | None:
+def known_quantity(x: UFloat, unit: str) -> Quantity:
     """A number with uncertainty as the record that leaves this folder."""
-    return None if x is None else Quantity(float(x.nominal_value), float(x.std_dev), unit)
+    return Quantity(float(x.nominal_value), float(x.std_dev), unit)
+
+
+def quantity(x: UFloat | None, unit: str) -> Quantity | None:
+    """The same of a number that may be missing."""
+    return None if x is None else known_quantity(x, unit)
 
 
 @dataclass(frozen=True, slots=True)

@@ -22,7 +22,6 @@ from mffit.measured.sources import named
 from mffit.measured.zero_split import split_of_zero
 from mffit.points import Points
 from mffit.rig_errors import DECLARED, AtZero
-from tir import Quantity
 
 Stiffness = tuple[LoadGroup, UFloat | None, UFloat | None]
 """The points of a load, and their cornering and camber stiffness [N/rad]."""
@@ -55,19 +54,15 @@ def results_of_setups(
             SetupResult(
                 path.setup,
                 zero.phi_t,
-                _known(path.force, "N"),
-                _known(alone.C_phit, "Nm"),
-                _known(alone.epsilon_gamma, "-"),
+                method.known_quantity(path.force, "N"),
+                method.known_quantity(alone.C_phit, "Nm"),
+                method.known_quantity(alone.epsilon_gamma, "-"),
                 method.quantity(path.alpha_M, "rad"),
                 beyond,
                 beyond and split is not None and split.axis_is_clear,
             )
         )
     return tuple(out)
-
-
-def _known(x: UFloat, unit: str) -> Quantity:
-    return Quantity(float(x.nominal_value), float(x.std_dev), unit)
 
 
 class _Mean(NamedTuple):

@@ -19,11 +19,11 @@ from mffit.measured.at_zero import (
     zeros_by_path,
 )
 from mffit.measured.backlash import rest_of_play
+from mffit.measured.camber_reduction import known_quantity
 from mffit.measured.evidence import DirectEvidence
 from mffit.measured.groups import LoadGroup, flipped
 from mffit.measured.load_slopes import LoadSlopes
 from mffit.measured.paths import PathForce, TurnSlipStiffness, least_uncertain_mean, turn_slip_stiffness
-from tir import Quantity
 
 
 @dataclass(frozen=True, slots=True)
@@ -83,7 +83,7 @@ def turning(
     paths = tuple(path._replace(force=path.force - expected + floating) for path in raw.values())
     combined = turn_slip_stiffness(paths)
     if combined.contradictory:
-        alone = [Quantity(C.nominal_value, C.std_dev, "Nm") for C in combined.of_paths]
+        alone = [known_quantity(C, "Nm") for C in combined.of_paths]
         troubles.append(notes.paths_contradict(group.load, [-1.0 / path.phi_t for path in found], alone))
     force = paths[0].force if len(paths) == 1 else paths[0].sign * combined.C_phit / rig.R
     made = Turning(tuple(found), paths, combined, force, measured, play)

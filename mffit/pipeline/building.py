@@ -98,7 +98,7 @@ def build(
         files=names,
         tyres=tyres,
         members=members,
-        plain=config.spin.exact if config.rig.on_disc else "normal",
+        plain=fitting.plain_use(config),
         warnings=(
             *(NOT_TRUSTED.format(reason) for reason in trust.reasons),
             *trust.doubts,

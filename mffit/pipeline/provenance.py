@@ -14,7 +14,7 @@ import numpy as np
 import tir
 from mffit.config import Config
 from mffit.diagnosis.inexact import Inexactness, correlated, refitted
-from mffit.fit import FitResult
+from mffit.fit import FitResult, plain_use
 from mffit.made import Made
 from mffit.measured import Measured
 from mffit.pipeline.inputs import input_hashes
@@ -54,7 +54,7 @@ Annotate = Callable[[Tyre, str], Tyre]
 def annotator(config: Config, made: Made, measured: Measured, fitted: FitResult, trust: Trust) -> Annotate:
     """The annotation of all files of a build."""
     inputs = _of_inputs(made.inputs)
-    plain = config.spin.exact if config.rig.on_disc else "normal"
+    plain = plain_use(config)
 
     def annotated(tyre: Tyre, use: str) -> Tyre:
         special = fitted.temperature if use == TEMPERATURE else None

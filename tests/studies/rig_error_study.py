@@ -25,7 +25,7 @@ import tomli_w
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "mffit" / "fit"))
 
-from drawn_rigs import NO_FORCE_AT_REST, SAFE, SAMPLES, _scaled, plan_content
+from drawn_rigs import DECLARED, NO_FORCE_AT_REST, SAFE, SAMPLES, _scaled, backward_camber, plan_content
 
 import mffit
 import tir
@@ -52,12 +52,6 @@ class World:
     warm_camber: float = 0.0  #: temperature of camber sweeps above that of the others [K]
 
 
-DECLARED = {
-    "u_loadcell_offset_N": 10.0,
-    "u_camber_alignment_deg": 0.5,
-    "u_slip_alignment_N": 25.0,
-    "u_camber_skew_deg": 0.1,
-}
 PLY_STEER = 0.002  # rad, standard deviation
 
 
@@ -117,7 +111,7 @@ def one(job: tuple[int, str, bool]) -> tuple[str, Found]:
     declared = {**content["rig"], **DECLARED, **world.declared}
     content["rig"] = {**declared, **world.drawn_from}
     if world.backward_camber:
-        content["sweep"] += _backward(content)
+        content["sweep"].append(backward_camber(content))
     if world.other_side:
         content["sweep"] += _other_side(content)
     content["sweep"] += _again(content, world.setups)
@@ -142,13 +136,6 @@ def one(job: tuple[int, str, bool]) -> tuple[str, Found]:
         except InputError as error:
             return name, Found(refused=str(error))
     return name, Found(numbers=_numbers(measured, known, true))
-
-
-def _backward(content: Mapping[str, Any]) -> list[dict[str, Any]]:
-    """Eleven cambers rolled backwards at the nominal load."""
-    angles = [-40, -30, -20, -10, -5, 0, 5, 10, 20, 30, 40]
-    load = content["tyre"]["nominal_load"]
-    return [{"file": "camber_backward.csv", "load_N": load, "gamma_deg": angles, "direction": "backward"}]
 
 
 def _other_side(content: Mapping[str, Any]) -> list[dict[str, Any]]:

@@ -25,7 +25,16 @@ import tomli_w
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "mffit" / "fit"))
 
-from drawn_rigs import NO_FORCE_AT_REST, SAFE, SAMPLES, _scaled, model_error, plan_content
+from drawn_rigs import (
+    DECLARED,
+    NO_FORCE_AT_REST,
+    SAFE,
+    SAMPLES,
+    _scaled,
+    backward_camber,
+    model_error,
+    plan_content,
+)
 
 import mffit
 import tir
@@ -34,22 +43,12 @@ from mffit.errors import InputError
 from mffit.results import as_json
 from tir.parameters import TABLE
 
-DECLARED = {
-    "u_loadcell_offset_N": 10.0,
-    "u_camber_alignment_deg": 0.5,
-    "u_slip_alignment_N": 25.0,
-    "u_camber_skew_deg": 0.1,
-}
 Edit = Callable[[dict[str, Any], np.random.Generator], None]
 
 
-def backward_camber(content: dict[str, Any], rng: np.random.Generator) -> None:
-    """Add eleven cambers rolled backwards at the nominal load."""
-    angles = [-40, -30, -20, -10, -5, 0, 5, 10, 20, 30, 40]
-    load = content["tyre"]["nominal_load"]
-    content["sweep"].append(
-        {"file": "camber_backward.csv", "load_N": load, "gamma_deg": angles, "direction": "backward"}
-    )
+def with_backward_camber(content: dict[str, Any], rng: np.random.Generator) -> None:
+    """Add cambers rolled backwards."""
+    content["sweep"].append(backward_camber(content))
 
 
 def both_sides(content: dict[str, Any], rng: np.random.Generator) -> None:
@@ -125,11 +124,11 @@ WORLDS = {
     "as declared": World(),
     "as declared, half of the angles, one pressure": World(thin=True),
     "skew 0.3 deg, declared, one backward camber sweep": World(
-        drawn={"camber_skew_deg": 0.3}, declared={"u_camber_skew_deg": 0.3}, edits=(backward_camber,)
+        drawn={"camber_skew_deg": 0.3}, declared={"u_camber_skew_deg": 0.3}, edits=(with_backward_camber,)
     ),
     "skew 0.5 deg, not declared": World(faults={"camber_skew_deg": 0.5}, watched=("PKY6",)),
     "skew 0.5 deg, not declared, one backward camber sweep": World(
-        faults={"camber_skew_deg": 0.5}, edits=(backward_camber,), watched=("camber_skew_deg",)
+        faults={"camber_skew_deg": 0.5}, edits=(with_backward_camber,), watched=("camber_skew_deg",)
     ),
     "both sides, set up anew": World(edits=(both_sides,)),
     "load falls by 6 % sin^2": World(faults={"load_camber": -0.06}, watched=("load_camber",)),

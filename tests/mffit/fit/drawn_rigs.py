@@ -32,8 +32,22 @@ SAMPLE = SAMPLES / "front-120-70"
 STAGED = tuple(row.name for row in TABLE if row.stage)
 NO_FORCE_AT_REST = dict.fromkeys(("PHX1", "PHX2", "PVX1", "PVX2"), 0.0)
 """No longitudinal force without longitudinal slip: its moment grows with camber, and the fit would assign it to QDZ6 and QDZ8."""
+DECLARED = {
+    "u_loadcell_offset_N": 10.0,
+    "u_camber_alignment_deg": 0.5,
+    "u_slip_alignment_N": 25.0,
+    "u_camber_skew_deg": 0.1,
+}
+"""Keys of [rig] that the studies of rig errors declare, unless they say otherwise."""
 SAFE = 1.959964
 """Coverage factor of 95 % intervals."""
+
+
+def backward_camber(content: Mapping[str, Any]) -> dict[str, Any]:
+    """A sweep of eleven cambers rolled backwards at the nominal load."""
+    angles = [-40, -30, -20, -10, -5, 0, 5, 10, 20, 30, 40]
+    load = content["tyre"]["nominal_load"]
+    return {"file": "camber_backward.csv", "load_N": load, "gamma_deg": angles, "direction": "backward"}
 
 
 @dataclass(frozen=True)
