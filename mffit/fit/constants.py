@@ -66,12 +66,32 @@ PKY2_STARTS = Series(
 )
 PKY2_START_COUNT = Count(46, "-", "Values of PKY2 in this range: steps of 0.1.")
 
+SLIP_OF_THE_SLOPE = Real(0.025, "-", "Longitudinal slip up to which Fx is a straight line for the start.")
+FEWEST_POINTS_OF_A_SLOPE = Count(3, "-", "Fewest points of a sweep from which such a slope is read.")
+PEAK_INSIDE = Real(0.9, "-", "Slip of the largest Fx over the largest slip below which it is a peak.")
+STARTING_CURVATURES = Series((-5.0, 0.8), "-", "Range of PEX1 at the start.")
+SAME_LOAD = Real(0.05, "-", "Range of loads over the nominal one that shows no dependence on load.")
+READABLE_WEIGHTS = Series((0.1, 0.95), "-", "Weights of combined slip from which a slope factor is read.")
+STARTING_SLOPES_OF_WEIGHT = Series((4.0, 30.0), "-", "Range of RBX1 and RBY1 at the start.")
+
 # Physical limits
 LIMIT_MARGIN = Real(0.02, "-", "Distance kept from a physical limit, in units of its violation.")
 LEAST_FRICTION = Real(0.1, "-", "Physical limit: smallest lateral friction.")
 LEAST_CORNERING_STIFFNESS = Real(0.5, "1/rad", "Physical limit: smallest cornering stiffness over load.")
 LEAST_TRAIL_SLOPE_FACTOR = Real(0.3, "-", "Physical limit: smallest slope factor B_t of the trail.")
 LEAST_TRAIL = Real(0.0005, "m", "Physical limit: smallest pneumatic trail at zero slip.")
+LEAST_SLIP_STIFFNESS = Real(1.0, "-", "Physical limit: smallest longitudinal slip stiffness over load.")
+LEAST_DRIVING_FORCE = Real(
+    0.1, "-", "Physical limit: smallest longitudinal force over load at the largest slip, in the sense of the slip."
+)
+LEAST_WEIGHT = Real(0.0, "-", "Physical limit: smallest weight of combined slip, G_xa or G_yk.")
+LARGEST_WEIGHT = Real(
+    1.1, "-", "Physical limit: largest weight of combined slip; a shift of its peak puts it slightly above 1."
+)
+LEAST_SLOPE_OF_WEIGHT = Real(0.5, "-", "Physical limit: smallest slope factor of these weights.")
+LIMIT_REACH_OF_SLIP = Real(
+    1.5, "-", "Slip at which the limits of longitudinal force and combined slip are tested, over the tested one."
+)
 LIMIT_GRID = Series((3, 5, 2), "-", "Loads, camber angles and pressures at which the limits are tested.")
 LIMIT_WEIGHT_OF_FIT = Real(
     3000.0, "-", "Residual per unit of violation (noise is 1): holds the limit, keeps the problem smooth."

@@ -9,7 +9,7 @@ import numpy as np
 
 from mffit.fit import constants
 from tir.derivatives import Traced, gradient, plain
-from tir.equations import aligning, lateral, normalise, stiffness
+from tir.equations import aligning, lateral, longitudinal, normalise, stiffness, turn_slip
 
 
 class Envelope(NamedTuple):
@@ -19,6 +19,7 @@ class Envelope(NamedTuple):
     gamma: float  #: largest |camber| [rad]
     alpha: float  #: largest |sideslip| [rad]
     pressure: tuple[float, float]  #: [Pa]
+    kappa: float = 0.0  #: largest |longitudinal slip|; 0 where none was run, and the limits of forces under slip do not apply
 
     @property
     def size(self) -> int:
@@ -32,13 +33,16 @@ def violations(p: Any, envelope: Envelope) -> np.ndarray:
 
 
 def limits(p: Any, envelope: Envelope, by: Sequence[Traced] = ()) -> tuple[np.ndarray, np.ndarray]:
-    """Every limit at every condition of the envelope (k,), above 0 where broken, and its derivatives (k, m).
+    """Every limit at every condition of the envelope (k,), under slip at several slips each, above 0 where broken, and its derivatives (k, m).
 
     ``p`` has the file's values as attributes, plain or traced; ``by`` are the m traced values to differentiate by.
     """
     rows, n = _rows(p, envelope), envelope.size
-    value = np.concatenate([np.broadcast_to(plain(row), n) for row in rows])
-    slope = np.concatenate([np.broadcast_to(gradient(row, by), (n, len(by))) for row in rows])
+    sizes = [max(n, np.size(plain(row))) for row in rows]
+    value = np.concatenate([np.broadcast_to(plain(row), m) for row, m in zip(rows, sizes, strict=True)])
+    slope = np.concatenate(
+        [np.broadcast_to(gradient(row, by), (m, len(by))) for row, m in zip(rows, sizes, strict=True)]
+    )
     return value, slope
 
 
@@ -46,7 +50,8 @@ def _rows(p: Any, envelope: Envelope) -> list[Any]:
     """Each limit at the conditions of the envelope (n,), dimensionless: above 0 where it is broken.
 
     Limits: mu_y > 0, cornering stiffness < 0, E_y <= 1 on both sides of the curve, B_t > 0, E_t <= 1 on both sides,
-    trail at zero slip not negative.
+    trail at zero slip not negative; where longitudinal slip was run, those of :func:`_longitudinal` and
+    :func:`_under_slip` too.
     """
     Fz, gamma, pressure = (axis.ravel() for axis in _grid(envelope))
     q = normalise.inputs(p, Fz, Fz, 0.0, 0.0, gamma, 0.0, pressure, False, False)
@@ -60,7 +65,51 @@ def _rows(p: Any, envelope: Envelope) -> list[Any]:
         rows.append(aligning.curvature(p, q, B_t, side * envelope.alpha) - 1.0)
     rows.append((constants.LEAST_TRAIL_SLOPE_FACTOR - B_t) / 10.0)
     rows.append((constants.LEAST_TRAIL - aligning.trail_at_zero(p, q)) / 0.1)
+    if envelope.kappa > 0.0:
+        rows += _longitudinal(p, q)
+        rows += _under_slip(p, envelope, Fz, gamma, pressure)
     return [row + constants.LIMIT_MARGIN for row in rows]
+
+
+def _longitudinal(p: Any, q: normalise.Inputs) -> list[Any]:
+    """Limits of the pure longitudinal force: mu_x > 0, slip stiffness > 0, E_x <= 1 driven and braked."""
+    rows = [
+        constants.LEAST_FRICTION - stiffness.longitudinal_friction(p, q),
+        (constants.LEAST_SLIP_STIFFNESS - stiffness.longitudinal_slip_stiffness(p, q) / q.Fz) / 5.0,
+    ]
+    return rows + [longitudinal.curvature(p, q, side) - 1.0 for side in (-1.0, 1.0)]
+
+
+def _under_slip(p: Any, envelope: Envelope, *conditions: np.ndarray) -> list[Any]:
+    """Limits at the ends of the slips, driven and braked, to either side.
+
+    A driven wheel pushes and a braked one pulls; the weights G_xa and G_yk lie between 0 and a little above 1, their slope
+    factors are positive, and their curvature factors at most 1.
+    """
+    k, a = constants.LIMIT_REACH_OF_SLIP * envelope.kappa, max(constants.WRITTEN_ALPMAX.rad, envelope.alpha)
+    q = _with_slips(p, conditions, [(k, 0.0), (-k, 0.0)])
+    K_xk, mu_x = stiffness.longitudinal_slip_stiffness(p, q), stiffness.longitudinal_friction(p, q)
+    force = np.sign(q.kappa) * longitudinal.pure(p, q, turn_slip.NO_SPIN, K_xk, mu_x)
+    rows = [constants.LEAST_DRIVING_FORCE - force / q.Fz]
+    corners = [(side * k, other * a) for side in (-1.0, 1.0) for other in (-1.0, 1.0)]
+    for weight, factors, ends in (
+        (longitudinal.combined_weight, longitudinal.weight_factors, [(0.0, -a), (0.0, a)]),
+        (lateral.combined_weight, lateral.weight_factors, [(-k, 0.0), (k, 0.0)]),
+    ):
+        G = weight(p, _with_slips(p, conditions, [*corners, *ends]))
+        of = factors(p, _with_slips(p, conditions, [(0.0, 0.0)]))
+        rows += [constants.LEAST_WEIGHT - G, G - constants.LARGEST_WEIGHT]
+        rows += [(constants.LEAST_SLOPE_OF_WEIGHT - of.B) / 10.0, of.E - 1.0]
+    return rows
+
+
+def _with_slips(
+    p: Any, conditions: Sequence[np.ndarray], slips: Sequence[tuple[float, float]]
+) -> normalise.Inputs:
+    """Every condition (load, camber and pressure, (n,) each) at every longitudinal slip and sideslip [rad]."""
+    Fz, gamma, pressure = (np.tile(x, len(slips)) for x in conditions)
+    kappa, alpha = (np.repeat(x, len(conditions[0])) for x in zip(*slips, strict=True))
+    return normalise.inputs(p, Fz, Fz, kappa, alpha, gamma, 0.0, pressure, False, False)
 
 
 def _grid(envelope: Envelope) -> list[np.ndarray]:

@@ -9,7 +9,7 @@ import numpy as np
 
 from mffit.fit import constants
 from mffit.fit.by_hand import HELD_BY_HAND
-from mffit.fit.stages import STAGES
+from mffit.fit.stages import STAGES, Stage
 from mffit.points import Points, levels
 from tir.parameters import BY_NAME, Need, Parameter
 
@@ -36,7 +36,10 @@ class Design:
     pressure_loads: int  #: loads at which more than one pressure was run
     cambers: int
     coupled: bool  #: sideslip and camber together
-    moment: bool  #: Mz measured
+    speeds: int
+    slip: bool  #: longitudinal slip was run
+    combined: bool  #: longitudinal slip and sideslip together
+    measured: frozenset[str]  #: channels that were measured
     curved: bool  #: path curvature present
     shifts: bool  #: odd shift terms are separable: flat track, or disc with backward runs, flipped mounts or both sides
     symmetric: bool
@@ -51,13 +54,17 @@ def design(points: Points, side: str) -> Design:
     both_ways = bool(np.any(points.direction < 0) or np.any(points.mount < 0) or both_sides)
     cambered = np.abs(points.gamma) > constants.ZERO_CAMBER_LIMIT.rad
     slipping = np.abs(points.alpha) > constants.COUPLED_ALPHA.rad
+    driven = ~points.free_rolling
     return Design(
         loads=levels.count(points.Fz, levels.LOAD),
         pressures=levels.count(points.p, levels.PRESSURE),
         pressure_loads=sum(n > 1 for n in pressures_at),
         cambers=levels.count(np.abs(points.gamma), levels.CAMBER),
         coupled=bool(np.any(cambered & slipping)),
-        moment=bool(np.any(np.isfinite(points.Mz))),
+        speeds=levels.count(points.V, levels.SPEED),
+        slip=bool(np.any(driven)),
+        combined=bool(np.any(driven & slipping)),
+        measured=frozenset(points.measured),
         curved=curved,
         shifts=both_ways or not curved,
         symmetric=side == "symmetric",
@@ -67,11 +74,14 @@ def design(points: Points, side: str) -> Design:
 def coverage(points: Points, side: str, by_hand: Collection[str] = ()) -> tuple[StageCoverage, ...]:
     """The coverage matrix: per stage the coefficients that are freed and what is missing for the rest.
 
-    Those named in ``by_hand`` are held, whatever the data determine.
+    Those named in ``by_hand`` are held, whatever the data determine. Stages of longitudinal slip and of channels beside Fy and
+    Mz are listed where there are such data.
     """
     seen = design(points, side)
     rows = []
     for stage in STAGES:
+        if not _listed(stage, seen):
+            continue
         reasons = {
             name: HELD_BY_HAND if name in by_hand else _missing(BY_NAME[name], seen)
             for name in stage.parameters
@@ -93,6 +103,11 @@ def coverage(points: Points, side: str, by_hand: Collection[str] = ()) -> tuple[
     return tuple(rows)
 
 
+def _listed(stage: Stage, seen: Design) -> bool:
+    there = seen.measured.issuperset(stage.channels) or not stage.where_measured
+    return there and (seen.slip or not stage.where_run)
+
+
 def why_held(name: str, points: Points, side: str) -> str:
     """What the data lack for a coefficient; empty if they determine it, and without a name."""
     return _missing(BY_NAME[name], design(points, side)) if name else ""
@@ -100,8 +115,8 @@ def why_held(name: str, points: Points, side: str) -> str:
 
 def _missing(row: Parameter, seen: Design) -> str:
     """Why these data do not determine the coefficient; empty if they do."""
-    if row.channel == "Mz" and not seen.moment:
-        return "Mz was not measured"
+    if row.channel != "Fy" and row.channel not in seen.measured:
+        return f"{row.channel} was not measured"
     if row.shift and not seen.shifts:
         return (
             "backward runs, flipped mounts or runs on the other side of the disc are missing, "
@@ -117,6 +132,9 @@ def _unmet(need: Need, seen: Design) -> str:
     run, sentence = {
         "camber": (seen.cambers - 1, "no camber was run"),
         "coupled": (seen.coupled, "no sweep combines sideslip and camber"),
+        "kappa": (seen.slip, "no sweep varies longitudinal slip"),
+        "combined": (seen.combined, "no sweep combines longitudinal slip and sideslip"),
+        "speeds": (seen.speeds, f"{need.levels} speeds are needed, {seen.speeds} run"),
         "curvature": (seen.curved, "the path is straight, so spin is not excited"),
         "loads": (seen.loads, f"{need.levels} loads are needed, {seen.loads} run"),
         "pressures": (seen.pressures, f"{need.levels} pressures are needed, {seen.pressures} run"),

@@ -101,9 +101,8 @@ def known_after_fit(
         known = known.having({name: value}, origin)
     if base is None:  # again, because friction and stiffness among them follow the fitted ones
         found = estimates(known.values)
-        known = known.having(
-            {name: v for name, v in found.items() if known.origin[name] != "measured"}, "estimate"
-        )
+        estimated = {name: v for name, v in found.items() if known.origin[name] in ("estimate", "default")}
+        known = known.having(estimated, "estimate")
     return known
 
 

@@ -17,7 +17,7 @@ from mffit.fit.known import Known
 from mffit.fit.priors import Prior, scatters
 from mffit.fit.problem import FitProblem
 from mffit.fit.rig_numbers import rig_numbers
-from mffit.fit.stages import ODD_TERMS, STAGES
+from mffit.fit.stages import ODD_TERMS
 from mffit.fit.zeros import TurningZeros
 from mffit.least_squares import FreeNumber
 from mffit.points import Points
@@ -73,7 +73,7 @@ def fit_plan(
     """The plan for these points; ``turning`` are zeros that determine PECP1 where eps_gamma was not measured."""
     cover = coverage(points, config.tyre.side or "left", known.hand.held)
     rig = rig_numbers(config, measured, points.used_setups)
-    staged = {name: start[name] for stage in STAGES for name in stage.parameters}
+    staged = {name: start[name] for row in cover for name in (*row.free, *row.held)}
     scatter = scatters(staged, known.origin, curved=bool(np.any(points.phi_t)))
     if config.rig.on_disc and "PVY1" in scatter and config.rig.u_conicity != PLAUSIBLE_CONICITY:
         scatter["PVY1"] = max(config.rig.u_conicity, float(constants.LEAST_CONICITY))

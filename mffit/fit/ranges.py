@@ -17,7 +17,9 @@ NAMES = ("PRESMIN", "PRESMAX", "FZMIN", "FZMAX", "ALPMIN", "ALPMAX", "CAMMIN", "
 
 
 def tested_ranges(points: Points) -> dict[str, float]:
-    """FZ, ALP, CAM and PRES limits [N, rad, Pa] of the set-points."""
+    """FZ, ALP, CAM and PRES limits [N, rad, Pa] of the set-points, and KPU where longitudinal slip was run."""
+    driven = not np.all(points.free_rolling)
+    slip = {"KPUMIN": float(np.min(points.kappa)), "KPUMAX": float(np.max(points.kappa))} if driven else {}
     alpha, gamma = float(np.max(np.abs(points.alpha))), float(np.max(np.abs(points.gamma)))
     return {
         "PRESMIN": float(np.min(points.p)),
@@ -28,6 +30,7 @@ def tested_ranges(points: Points) -> dict[str, float]:
         "ALPMAX": alpha,
         "CAMMIN": -gamma,
         "CAMMAX": gamma,
+        **{name: min(x, 0.0) if name == "KPUMIN" else max(x, 0.0) for name, x in slip.items()},
     }
 
 
@@ -53,6 +56,7 @@ def envelope(ranges: Mapping[str, float]) -> Envelope:
         gamma=ranges["CAMMAX"],
         alpha=ranges["ALPMAX"],
         pressure=(ranges["PRESMIN"], ranges["PRESMAX"]),
+        kappa=max(-ranges.get("KPUMIN", 0.0), ranges.get("KPUMAX", 0.0)),
     )
 
 

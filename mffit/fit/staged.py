@@ -58,9 +58,11 @@ def _fit_from(start: Mapping[str, float], problem: FitProblem, plan: FitPlan, pr
     """Stage after stage, then the joint polish."""
     problem = problem.with_values({name: start[name] for name in (*plan.free, *plan.extra)})
     records = []
-    for stage, row in zip(STAGES, plan.cover, strict=True):
+    by_name = {stage.name: stage for stage in STAGES}
+    for row in plan.cover:
         if not row.free:
             continue
+        stage = by_name[row.stage]
         progress(f"fitting {stage.title.lower()}")
         reopened = [name for other in plan.cover if other.stage in stage.reopened for name in other.free]
         problem = problem.with_values(_fit_stage(stage, [*reopened, *row.free], problem, plan))
@@ -98,6 +100,10 @@ def _points_of(stage: Stage, points: Points) -> np.ndarray:
         used &= main_pressure(points)
     if stage.zero_camber:
         used &= np.abs(points.gamma) < constants.ZERO_CAMBER_LIMIT.rad
+    if "alpha" not in stage.slips:
+        used &= np.abs(points.alpha) < constants.COUPLED_ALPHA.rad
+    if "kappa" not in stage.slips:
+        used &= points.free_rolling
     index = np.flatnonzero(used)
     return index[:: max(1, len(index) // constants.POINTS_OF_A_STAGE)]
 

@@ -21,6 +21,10 @@ class Stage:
     reopened: tuple[str, ...] = ()  #: earlier stages whose coefficients are free again
     zero_camber: bool = False  #: uses only points without camber
     main_pressure: bool = False  #: uses only points at the most frequent pressure
+    slips: tuple[str, ...] = ("alpha",)
+    """Slips that its points may have: sideslip ``alpha`` and longitudinal slip ``kappa``; points with another are left out."""
+    where_measured: bool = False  #: listed only where its channels were measured
+    where_run: bool = False  #: listed only where longitudinal slip was run
 
     @property
     def parameters(self) -> tuple[str, ...]:
@@ -40,14 +44,67 @@ class StageRecord:
     note: str = ""
 
 
+LONGITUDINAL = (
+    Stage(
+        "Fx",
+        "Longitudinal force at zero camber",
+        ("Fx",),
+        zero_camber=True,
+        main_pressure=True,
+        slips=("kappa",),
+        where_measured=True,
+    ),
+    Stage(
+        "Fx-camber",
+        "Longitudinal force with camber",
+        ("Fx",),
+        reopened=("Fx",),
+        main_pressure=True,
+        slips=("kappa",),
+        where_measured=True,
+    ),
+    Stage(
+        "Fx-pressure",
+        "Longitudinal force over pressure",
+        ("Fx",),
+        reopened=("Fx",),
+        slips=("kappa",),
+        where_measured=True,
+    ),
+)
+"""Stages of longitudinal slip alone."""
 STAGES = (
+    *LONGITUDINAL,
     Stage("Fy", "Side force at zero camber", ("Fy",), zero_camber=True, main_pressure=True),
     Stage("camber", "Camber", ("Fy",), reopened=("Fy",), main_pressure=True),
     Stage("pressure", "Pressure", ("Fy",), reopened=("Fy",)),
+    Stage(
+        "combined-Fx",
+        "Longitudinal force with sideslip",
+        ("Fx",),
+        slips=("alpha", "kappa"),
+        where_measured=True,
+    ),
+    Stage(
+        "combined-Fy",
+        "Side force with longitudinal slip",
+        ("Fy",),
+        reopened=("Fy",),
+        slips=("alpha", "kappa"),
+        where_run=True,
+    ),
     Stage("trail", "Pneumatic trail", ("Mz",), zero_camber=True),
     Stage("residual", "Residual torque", ("Mz",), reopened=("trail",)),
+    Stage(
+        "combined-Mz",
+        "Self-aligning moment with longitudinal slip",
+        ("Mz",),
+        slips=("alpha", "kappa"),
+        where_run=True,
+    ),
     Stage("spin", "Turn slip", ("Fy", "Mz")),
     Stage("shift", "Ply-steer and conicity", ("Fy", "Mz"), reopened=("spin",)),
+    Stage("Mx", "Overturning moment", ("Mx",), slips=("alpha", "kappa"), where_measured=True),
 )
 
 ODD_TERMS = frozenset(row.name for row in TABLE if row.odd)

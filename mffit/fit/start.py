@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from mffit.fit import constants
+from mffit.fit.driven_start import driven_starts
 from mffit.measured import Measured
 from mffit.points import Points, main_pressure
 
@@ -19,6 +20,13 @@ NONZERO_STARTS = {
     "QDTP1": 3.0,
     "QCRP1": 0.1,
     "QBRP1": 0.2,
+    "RBX2": 8.0,
+    "RBY2": 8.0,
+    "RVY1": 0.01,
+    "RVY3": 0.05,
+    "RVY4": 10.0,
+    "RVY5": 1.5,
+    "RVY6": 10.0,
 }
 """Starting values instead of zero, where all derivatives vanish at zero and no step would leave it."""
 ALTERNATIVE_STARTS: Mapping[str, Mapping[str, float]] = {
@@ -44,6 +52,7 @@ def starting_values(
     if np.any(upright) and "PDY1" not in held:
         friction = np.max(np.abs(points.Fy[upright]) / points.Fz[upright])
         start["PDY1"] = max(float(friction), constants.LEAST_STARTING_FRICTION)
+    start |= driven_starts(start, points, held)
     C_alpha, C_gamma = measured.by_load("C_alpha"), measured.by_load("C_gamma")
     if C_alpha:
         start |= _cornering_stiffness_terms(start, C_alpha, held)

@@ -14,7 +14,7 @@ from tir.equations.elementary import (
     sign,
     sin,
 )
-from tir.equations.normalise import Inputs
+from tir.equations.normalise import Inputs, WeightFactors
 from tir.equations.turn_slip import Spin
 
 
@@ -61,12 +61,20 @@ def curvature(p, q: Inputs, gamma, side):
     return (p.PEY1 + p.PEY2 * q.dfz) * asymmetry * p.LEY  # 4.E24
 
 
+def weight_factors(p, q: Inputs) -> WeightFactors:
+    """Factors of G_yk, the weight of longitudinal slip."""
+    return WeightFactors(
+        B=(p.RBY1 + p.RBY4 * q.gamma**2) * cos_arctan(p.RBY2 * (q.alpha - p.RBY3)) * p.LYKA,  # 4.E62
+        C=p.RCY1,  # 4.E63
+        E=p.REY1 + p.REY2 * q.dfz,  # 4.E64
+        S_H=p.RHY1 + p.RHY2 * q.dfz,  # 4.E65
+    )
+
+
 def combined_weight(p, q: Inputs):
     """G_yk [-]: how longitudinal slip reduces Fy; 4.E59."""
-    B = (p.RBY1 + p.RBY4 * q.gamma**2) * cos_arctan(p.RBY2 * (q.alpha - p.RBY3)) * p.LYKA  # 4.E62
-    C = p.RCY1  # 4.E63
-    E = at_most_one(p.REY1 + p.REY2 * q.dfz, q.limits)  # 4.E64
-    S_H = p.RHY1 + p.RHY2 * q.dfz  # 4.E65
+    B, C, E, S_H = weight_factors(p, q)
+    E = at_most_one(E, q.limits)
     at_zero = cos(magic_angle(B, C, E, S_H))  # 4.E60
     return cos(magic_angle(B, C, E, q.kappa + S_H)) / at_zero  # 4.E59, 4.E61
 

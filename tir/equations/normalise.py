@@ -26,6 +26,15 @@ class Inputs(NamedTuple):
     limits: bool  #: curvature factors held at <= 1
 
 
+class WeightFactors(NamedTuple):
+    """Factors of a weight of combined slip, cos(C arctan(B x - E (B x - arctan(B x)))) with the slip x shifted by S_H."""
+
+    B: Any
+    C: Any
+    E: Any  #: before limits
+    S_H: Any
+
+
 def nominal_load(p):
     """Fz0' [N]; 4.E1."""
     return p.LFZO * p.FNOMIN  # 4.E1
