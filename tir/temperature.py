@@ -12,7 +12,13 @@ if TYPE_CHECKING:
     from tir.tyre import Quantity, Tyre
 
 SCALED_BY = MappingProxyType(
-    {"k_T_grip_per_K": "LMUY", "k_T_stiffness_per_K": "LKY", "k_T_camber_per_K": "LKYC"}
+    {
+        "k_T_grip_per_K": "LMUY",
+        "k_T_stiffness_per_K": "LKY",
+        "k_T_camber_per_K": "LKYC",
+        "k_T_drive_grip_per_K": "LMUX",
+        "k_T_slip_stiffness_per_K": "LKX",
+    }
 )
 """By term, the scaling factor that it multiplies with 1 + k (T - T_ref)."""
 RIG = "rig."

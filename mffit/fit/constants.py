@@ -82,7 +82,9 @@ LEAST_TRAIL_SLOPE_FACTOR = Real(0.3, "-", "Physical limit: smallest slope factor
 LEAST_TRAIL = Real(0.0005, "m", "Physical limit: smallest pneumatic trail at zero slip.")
 LEAST_SLIP_STIFFNESS = Real(1.0, "-", "Physical limit: smallest longitudinal slip stiffness over load.")
 LEAST_DRIVING_FORCE = Real(
-    0.1, "-", "Physical limit: smallest longitudinal force over load at the largest slip, in the sense of the slip."
+    0.1,
+    "-",
+    "Physical limit: smallest longitudinal force over load at the largest slip, in the sense of the slip.",
 )
 LEAST_WEIGHT = Real(0.0, "-", "Physical limit: smallest weight of combined slip, G_xa or G_yk.")
 LARGEST_WEIGHT = Real(
@@ -90,7 +92,9 @@ LARGEST_WEIGHT = Real(
 )
 LEAST_SLOPE_OF_WEIGHT = Real(0.5, "-", "Physical limit: smallest slope factor of these weights.")
 LIMIT_REACH_OF_SLIP = Real(
-    1.5, "-", "Slip at which the limits of longitudinal force and combined slip are tested, over the tested one."
+    1.5,
+    "-",
+    "Slip at which the limits of longitudinal force and combined slip are tested, over the tested one.",
 )
 LIMIT_GRID = Series((3, 5, 2), "-", "Loads, camber angles and pressures at which the limits are tested.")
 LIMIT_WEIGHT_OF_FIT = Real(

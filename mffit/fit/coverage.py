@@ -14,6 +14,9 @@ from mffit.points import Points, levels
 from tir.parameters import BY_NAME, Need, Parameter
 
 
+NEEDLESS = "left-out sweeps are not predicted clearly better with these terms"
+
+
 @dataclass(frozen=True, slots=True)
 class StageCoverage:
     """One row of the coverage matrix."""
@@ -71,10 +74,13 @@ def design(points: Points, side: str) -> Design:
     )
 
 
-def coverage(points: Points, side: str, by_hand: Collection[str] = ()) -> tuple[StageCoverage, ...]:
+def coverage(
+    points: Points, side: str, by_hand: Collection[str] = (), predicting: Collection[str] = ()
+) -> tuple[StageCoverage, ...]:
     """The coverage matrix: per stage the coefficients that are freed and what is missing for the rest.
 
-    Those named in ``by_hand`` are held, whatever the data determine. Stages of longitudinal slip and of channels beside Fy and
+    Those named in ``by_hand`` are held, whatever the data determine. ``predicting`` are the stages with terms that are free only
+    if they predict left-out sweeps better, and do. Stages of longitudinal slip and of channels beside Fy and
     Mz are listed where there are such data.
     """
     seen = design(points, side)
@@ -82,8 +88,9 @@ def coverage(points: Points, side: str, by_hand: Collection[str] = ()) -> tuple[
     for stage in STAGES:
         if not _listed(stage, seen):
             continue
+        needless = NEEDLESS if stage.if_predicted and stage.name not in predicting else ""
         reasons = {
-            name: HELD_BY_HAND if name in by_hand else _missing(BY_NAME[name], seen)
+            name: HELD_BY_HAND if name in by_hand else _missing(BY_NAME[name], seen) or needless
             for name in stage.parameters
         }
         free = tuple(name for name, reason in reasons.items() if not reason)

@@ -70,7 +70,12 @@ def _pure(values: dict[str, float], sweeps: list[Points]) -> dict[str, float]:
     friction = np.array([float(np.max(np.abs(sweep.Fx) / sweep.Fz)) for sweep in sweeps])
     PKX1, PKX2 = _line(dfz, slope / np.exp(values["PKX3"] * dfz), values["PKX2"])
     PDX1, PDX2 = _line(dfz, friction, values["PDX2"])
-    found = {"PKX1": PKX1, "PKX2": PKX2, "PDX1": max(PDX1, float(constants.LEAST_STARTING_FRICTION)), "PDX2": PDX2}
+    found = {
+        "PKX1": PKX1,
+        "PKX2": PKX2,
+        "PDX1": max(PDX1, float(constants.LEAST_STARTING_FRICTION)),
+        "PDX2": PDX2,
+    }
     curved = []
     for sweep, K, mu in zip(sweeps, slope, friction, strict=True):
         peak = float(np.abs(sweep.kappa[np.argmax(np.abs(sweep.Fx))]))

@@ -21,6 +21,7 @@ from mffit.fit.fitted import Fitted
 from mffit.fit.known import Known, known_after_fit, known_before_fit
 from mffit.fit.nuisance_choice import at_reference
 from mffit.fit.nuisance_wording import nuisance_sentences
+from mffit.fit.overturning import overturning_terms
 from mffit.fit.plan import FitPlan, fit_plan
 from mffit.fit.priors import of_fleet
 from mffit.fit.problem import FitProblem, fit_problem
@@ -69,10 +70,13 @@ def fit(
     hand = hand_of(config, base)
     known = known_before_fit(config, points, measured, base, fleet, hand)
     turning = None if "PECP1" in hand.held else turning_zeros(known.values, points, measured)
-    start = starting_values(known.values, points, measured, hand.held) | dict(
-        turning.start if turning else {}
-    )
-    plan = fit_plan(config, points, measured, known, start, fleet, turning)
+    overturning = overturning_terms(points, known.values, config.tyre.side or "left", hand)
+    start = {
+        **starting_values(known.values, points, measured, hand.held),
+        **overturning.start,
+        **(turning.start if turning else {}),
+    }
+    plan = fit_plan(config, points, measured, known, start, fleet, turning, overturning.predicting)
     start = hand.starting(start)
     problem = fit_problem(config, points, measured, known.values)
     found, doubts = _fitted_and_judged(config, problem, start, plan, progress)

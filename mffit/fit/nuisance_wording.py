@@ -21,6 +21,8 @@ SCALED = {
     "k_T_grip_per_K": "friction",
     "k_T_stiffness_per_K": "cornering stiffness",
     "k_T_camber_per_K": "camber stiffness",
+    "k_T_drive_grip_per_K": "longitudinal friction",
+    "k_T_slip_stiffness_per_K": "slip stiffness",
 }
 """What a temperature term scales, in words."""
 

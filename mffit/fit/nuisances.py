@@ -69,6 +69,11 @@ def _cambers(points: Points) -> str:
     return "" if tilted > constants.ZERO_CAMBER_LIMIT.rad else "there are no sweeps at camber"
 
 
+def _slips(points: Points) -> str:
+    driven = ~points.free_rolling & np.isfinite(points.Fx)
+    return "" if np.any(driven) else "no sweep varies longitudinal slip"
+
+
 def _senses(points: Points) -> str:
     moving, part, both = sense(points), parts_of_sweeps(points), 0
     for k in np.unique(part):
@@ -108,6 +113,14 @@ NUISANCES = (
         key=TEMPERATURE,
         numbers=("k_T_camber_per_K",),
         lacking=lambda points: _temperatures(points) or _cambers(points),
+        after=TEMPERATURE,
+    ),
+    Nuisance(
+        id="temperature-slip",
+        name="longitudinal friction and slip stiffness over tyre temperature",
+        key=TEMPERATURE,
+        numbers=("k_T_drive_grip_per_K", "k_T_slip_stiffness_per_K"),
+        lacking=lambda points: _temperatures(points) or _slips(points),
         after=TEMPERATURE,
     ),
     Nuisance(

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any
 
@@ -17,7 +17,7 @@ from mffit.fit.known import Known
 from mffit.fit.priors import Prior, scatters
 from mffit.fit.problem import FitProblem
 from mffit.fit.rig_numbers import rig_numbers
-from mffit.fit.stages import ODD_TERMS
+from mffit.fit.stages import ODD_TERMS, STAGES
 from mffit.fit.zeros import TurningZeros
 from mffit.least_squares import FreeNumber
 from mffit.points import Points
@@ -69,9 +69,13 @@ def fit_plan(
     start: Mapping[str, float],
     fleet: Mapping[str, Prior],
     turning: TurningZeros | None = None,
+    predicting: Collection[str] = (),
 ) -> FitPlan:
-    """The plan for these points; ``turning`` are zeros that determine PECP1 where eps_gamma was not measured."""
-    cover = coverage(points, config.tyre.side or "left", known.hand.held)
+    """The plan for these points.
+
+    ``turning`` are zeros that determine PECP1 where eps_gamma was not measured; ``predicting`` as in :func:`coverage`.
+    """
+    cover = coverage(points, config.tyre.side or "left", known.hand.held, predicting)
     rig = rig_numbers(config, measured, points.used_setups)
     staged = {name: start[name] for row in cover for name in (*row.free, *row.held)}
     scatter = scatters(staged, known.origin, curved=bool(np.any(points.phi_t)))
@@ -79,6 +83,7 @@ def fit_plan(
         scatter["PVY1"] = max(config.rig.u_conicity, float(constants.LEAST_CONICITY))
     scatter |= {name: prior.spread for name, prior in fleet.items()}
     absent = ODD_TERMS if config.tyre.side == "symmetric" else frozenset()
+    absent |= {name for stage in STAGES if stage.if_predicted for name in stage.parameters}
     held = {name: scatter[name] for row in cover for name in row.held if name not in absent}
     extra = ["Q_RE0"] if rig and config.rig.on_disc and config.rolling_radius else []
     expected = {**start, **{name: prior.expected for name, prior in fleet.items()}}

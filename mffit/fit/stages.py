@@ -25,6 +25,7 @@ class Stage:
     """Slips that its points may have: sideslip ``alpha`` and longitudinal slip ``kappa``; points with another are left out."""
     where_measured: bool = False  #: listed only where its channels were measured
     where_run: bool = False  #: listed only where longitudinal slip was run
+    if_predicted: bool = False  #: free only if left-out sweeps are predicted better with its coefficients
 
     @property
     def parameters(self) -> tuple[str, ...]:
@@ -105,6 +106,24 @@ STAGES = (
     Stage("spin", "Turn slip", ("Fy", "Mz")),
     Stage("shift", "Ply-steer and conicity", ("Fy", "Mz"), reopened=("spin",)),
     Stage("Mx", "Overturning moment", ("Mx",), slips=("alpha", "kappa"), where_measured=True),
+    Stage(
+        "Mx-arm",
+        "Overturning moment: arm of the side force",
+        ("Mx",),
+        reopened=("Mx",),
+        slips=("alpha", "kappa"),
+        where_measured=True,
+        if_predicted=True,
+    ),
+    Stage(
+        "Mx-load",
+        "Overturning moment: camber and load",
+        ("Mx",),
+        reopened=("Mx",),
+        slips=("alpha", "kappa"),
+        where_measured=True,
+        if_predicted=True,
+    ),
 )
 
 ODD_TERMS = frozenset(row.name for row in TABLE if row.odd)

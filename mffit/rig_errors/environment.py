@@ -63,6 +63,20 @@ TEMPERATURE_CAMBER = _of_temperature(
     acts_on=(SCALED_BY["k_T_camber_per_K"],),
     spread=0.002,
 )
+TEMPERATURE_DRIVE_GRIP = _of_temperature(
+    name="k_T_drive_grip_per_K",
+    meaning=f"longitudinal friction times 1 + k {WARMTH}",
+    place=Place.COEFFICIENTS,
+    acts_on=(SCALED_BY["k_T_drive_grip_per_K"],),
+    spread=0.002,
+)
+TEMPERATURE_SLIP_STIFFNESS = _of_temperature(
+    name="k_T_slip_stiffness_per_K",
+    meaning=f"longitudinal slip stiffness times 1 + k {WARMTH}",
+    place=Place.COEFFICIENTS,
+    acts_on=(SCALED_BY["k_T_slip_stiffness_per_K"],),
+    spread=0.005,
+)
 TEMPERATURE = _of_temperature(
     name="k_T_per_K",
     meaning=f"Fy and Mz times 1 + k_T {WARMTH}",
@@ -165,5 +179,12 @@ WARM_UP = _of_forces(
     ),
 )
 
-COEFFICIENT_ERRORS = (REFERENCE_TEMPERATURE, TEMPERATURE_GRIP, TEMPERATURE_STIFFNESS, TEMPERATURE_CAMBER)
+COEFFICIENT_ERRORS = (
+    REFERENCE_TEMPERATURE,
+    TEMPERATURE_GRIP,
+    TEMPERATURE_STIFFNESS,
+    TEMPERATURE_CAMBER,
+    TEMPERATURE_DRIVE_GRIP,
+    TEMPERATURE_SLIP_STIFFNESS,
+)
 ENVIRONMENT_ERRORS = (TEMPERATURE, DRIFT, WEAR, WARM_UP, SPEED)

@@ -72,6 +72,8 @@ SCALES: dict[str, tuple[str, Formula]] = {
     "k_T_grip_per_K": ("LMUY", lambda x, s, m: 1.0 + x * _kelvin(s, m)),
     "k_T_stiffness_per_K": ("LKY", lambda x, s, m: 1.0 + x * _kelvin(s, m)),
     "k_T_camber_per_K": ("LKYC", lambda x, s, m: 1.0 + x * _kelvin(s, m)),
+    "k_T_drive_grip_per_K": ("LMUX", lambda x, s, m: 1.0 + x * _kelvin(s, m)),
+    "k_T_slip_stiffness_per_K": ("LKX", lambda x, s, m: 1.0 + x * _kelvin(s, m)),
 }
 """Factors on scaling factors of the tyre."""
 SURROUNDINGS: dict[str, Formula] = {
