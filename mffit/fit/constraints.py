@@ -10,6 +10,7 @@ import numpy as np
 from mffit.fit import constants
 from tir.derivatives import Traced, gradient, plain
 from tir.equations import aligning, lateral, longitudinal, normalise, stiffness, turn_slip
+from tir.equations.elementary import cos, magic_angle
 
 
 class Envelope(NamedTuple):
@@ -33,7 +34,7 @@ def violations(p: Any, envelope: Envelope) -> np.ndarray:
 
 
 def limits(p: Any, envelope: Envelope, by: Sequence[Traced] = ()) -> tuple[np.ndarray, np.ndarray]:
-    """Every limit at every condition of the envelope (k,), under slip at several slips each, above 0 where broken, and its derivatives (k, m).
+    """Every limit at every condition and slip of the envelope (k,), above 0 where broken, and its derivatives (k, m).
 
     ``p`` has the file's values as attributes, plain or traced; ``by`` are the m traced values to differentiate by.
     """
@@ -98,7 +99,8 @@ def _under_slip(p: Any, envelope: Envelope, *conditions: np.ndarray) -> list[Any
     ):
         G = weight(p, _with_slips(p, conditions, [*corners, *ends]))
         of = factors(p, _with_slips(p, conditions, [(0.0, 0.0)]))
-        rows += [constants.LEAST_WEIGHT - G, G - constants.LARGEST_WEIGHT]
+        over_peak = cos(magic_angle(of.B, of.C, of.E, of.S_H))  # the weight is 1 at zero slip
+        rows += [constants.LEAST_WEIGHT - G, 1.0 / constants.LARGEST_WEIGHT - over_peak]
         rows += [(constants.LEAST_SLOPE_OF_WEIGHT - of.B) / 10.0, of.E - 1.0]
     return rows
 

@@ -13,7 +13,6 @@ from mffit.fit.stages import STAGES, Stage
 from mffit.points import Points, levels
 from tir.parameters import BY_NAME, Need, Parameter
 
-
 NEEDLESS = "left-out sweeps are not predicted clearly better with these terms"
 
 

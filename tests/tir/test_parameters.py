@@ -30,7 +30,10 @@ COUNTED = {"speeds", "loads", "pressures", "pressure_loads"}
 WORDS = {
     "kind": {"number", "text"},
     "divisor": {"", "yes"},
-    "stage": {"", "held", "Fy", "camber", "pressure", "trail", "residual", "spin", "shift"},
+    "stage": {
+        *("", "held", "Fx", "Fx-camber", "Fx-pressure", "Fy", "camber", "pressure", "combined-Fx", "combined-Fy"),
+        *("trail", "residual", "combined-Mz", "spin", "shift", "Mx", "Mx-arm", "Mx-load"),
+    },
     "channel": {"", "Fx", "Fy", "Mx", "My", "Mz"},
     "symmetry": {"", "odd", "odd shift", "odd shift conicity"},
     "files": {"", "62", "motorcycle", "some", "rare", "adams"},
