@@ -11,24 +11,21 @@ from mffit.points import constants
 from mffit.points.mean import mean_and_error
 from mffit.points.points import Points, make_points
 from mffit.points.stretch import Stretch
+from mffit.quantities import CHANNELS, u_column
 from mffit.sweeps import Sweep
 
 AVERAGED_CHANNELS = (
-    "alpha",
-    "gamma",
-    "Fz",
-    "p",
-    "V",
-    "Fy",
-    "Mz",
-    "Mx",
-    "My",
-    "T",
-    "t",
-    "u_Fy",
-    "u_Mz",
-    "iteration",
+    *("alpha", "gamma", "kappa", "Fz", "p", "V", "T", "t", "iteration"),
+    *CHANNELS,
+    *(f"u_{name}" for name in CHANNELS),
 )
+
+AVERAGED_RANGE = {
+    "alpha": constants.AVERAGED_ANGLE.rad,
+    "gamma": constants.AVERAGED_ANGLE.rad,
+    "kappa": float(constants.AVERAGED_SLIP),
+}
+"""Largest change of each swept setting over which a sweep is averaged."""
 
 
 def rows_as_points(sweep: Sweep, phi_t: float, rows: np.ndarray) -> Points:
@@ -44,12 +41,14 @@ def over_plateaus(sweep: Sweep, phi_t: float, kept: list[Stretch], faulty: np.nd
     means = {
         name: np.array([np.mean(getattr(sweep, name)[part]) for part in parts]) for name in AVERAGED_CHANNELS
     }
-    for channel, u in (("Fy", "u_Fy"), ("Mz", "u_Mz")):
-        errors = np.array([mean_and_error(getattr(sweep, channel)[part])[1] for part in parts])
-        # A record without scatter does not show how exact it is.
-        means[u] = np.where(np.isfinite(means[u]), means[u], np.where(errors > 0.0, errors, np.nan))
     table = _averaged_table(sweep.table, parts)
-    table["u_Fy_N"], table["u_Mz_Nm"] = means["u_Fy"], means["u_Mz"]
+    for channel in CHANNELS:
+        values, u = getattr(sweep, channel), f"u_{channel}"
+        if np.any(np.isfinite(values)):
+            errors = np.array([mean_and_error(values[part])[1] for part in parts])
+            # A record without scatter does not show how exact it is.
+            means[u] = np.where(np.isfinite(means[u]), means[u], np.where(errors > 0.0, errors, np.nan))
+        table[u_column(channel)] = means[u]
     first = np.array([part[0] for part in parts])
     return _points(sweep, phi_t, means, table.dropna(axis="columns", how="all"), first)
 
@@ -117,10 +116,11 @@ def _blocks(sweep: Sweep, rows: np.ndarray) -> tuple[np.ndarray, int]:
     """First row of every block that is averaged, and the usual number of samples in a block."""
     time = sweep.time[rows]
     interval = float(np.median(np.diff(time))) if len(rows) > 1 else constants.AVERAGED_TIME
-    moved = max(float(np.median(np.abs(np.diff(x[rows])))) for x in (sweep.alpha, sweep.gamma)) / interval
     step = float(constants.AVERAGED_TIME)
-    if moved > 0.0:
-        step = min(step, constants.AVERAGED_ANGLE.rad / moved)
+    for name, most in AVERAGED_RANGE.items():
+        moved = float(np.median(np.abs(np.diff(getattr(sweep, name)[rows])))) / interval
+        if moved > 0.0:
+            step = min(step, most / moved)
     size = max(1, round(step / interval))
     block = np.floor((time - time[0]) / (size * interval) + 1e-6)
     return np.r_[0, np.flatnonzero(np.diff(block)) + 1], size

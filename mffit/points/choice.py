@@ -16,7 +16,7 @@ ROLLING_IN = f"the first {constants.TRANSIENT_ROLL:g} m of rolling behind a gap 
 
 def settings_of(sweep: Sweep) -> SteadySettings:
     """The settings of a time series."""
-    return SteadySettings(sweep.time, sweep.alpha, sweep.gamma, sweep.Fz, sweep.p, sweep.V)
+    return SteadySettings(**{name: getattr(sweep, name) for name in SteadySettings._fields})
 
 
 def chosen(sweep: Sweep, wrong: list[Fault], scale: Scale | None) -> list[Stretch]:

@@ -43,10 +43,8 @@ class FaultRule:
 
 
 def driven(sweep: Sweep) -> np.ndarray:
-    """Samples or points (n,) at which the wheel does not roll freely."""
-    if "kappa" not in sweep.table:
-        return np.zeros(len(sweep), dtype=bool)
-    return np.abs(sweep.table["kappa"].to_numpy(dtype=float)) > constants.FREE_ROLLING_SLIP
+    """Samples or points (n,) at which the wheel does not roll freely and no longitudinal force was measured."""
+    return (np.abs(sweep.kappa) > constants.FREE_ROLLING_SLIP) & ~np.isfinite(sweep.Fx)
 
 
 def faults(sweep: Sweep) -> list[Fault]:
@@ -162,7 +160,7 @@ FAULTS = (
     ),
     FaultRule(
         id=DRIVEN_RULE,
-        looks_at="Longitudinal slip",
+        looks_at="Longitudinal slip, where Fx was not measured",
         limits=(constants.FREE_ROLLING_SLIP,),
         reason=DRIVEN,
         find=lambda sweep, _: driven(sweep),

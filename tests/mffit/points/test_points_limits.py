@@ -38,6 +38,8 @@ def recording(n: int = N, **channels) -> Series:
         "line": np.arange(n) + 2,
         "alpha": 0.03 * one,
         "gamma": 0.1 * one,
+        "kappa": 0.0 * one,
+        "Fx": np.broadcast_to(np.nan, n),
         "Fz": 1500.0 + 5.0 * rng.standard_normal(n),
         "Fy": -300.0 + 3.0 * rng.standard_normal(n),
         "Mz": 9.0 + 0.3 * rng.standard_normal(n),
@@ -84,8 +86,9 @@ def test_a_tenth_of_the_usual_load_is_no_load():
 
 @pytest.mark.parametrize(("kappa", "found"), [(0.021, True), (-0.021, True), (0.019, False), (-0.019, False)])
 def test_two_per_cent_of_slip_is_driven_or_braked(kappa, found):
-    table = pd.DataFrame({"kappa": np.where(np.arange(N) == 3, kappa, 0.0)})
-    assert bool(reasons(recording(table=table))) == found
+    slip = np.where(np.arange(N) == 3, kappa, 0.0)
+    assert bool(reasons(recording(kappa=slip))) == found
+    assert not reasons(recording(kappa=slip, Fx=np.ones(N)))
 
 
 @pytest.mark.parametrize(
@@ -218,7 +221,9 @@ def test_the_row_of_a_stretch_is_in_a_users_units():
 
 def settings(n: int, rate: float = RATE, V: float = 5.0) -> SteadySettings:
     one = np.ones(n)
-    return SteadySettings(np.arange(n) / rate, 0.0 * one, 0.0 * one, 1500.0 * one, 250e3 * one, V * one)
+    return SteadySettings(
+        np.arange(n) / rate, 0.0 * one, 0.0 * one, 1500.0 * one, 250e3 * one, V * one, 0.0 * one
+    )
 
 
 @pytest.mark.parametrize(("seconds", "kept"), [(2.05, True), (1.95, False)])
