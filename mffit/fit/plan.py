@@ -17,7 +17,7 @@ from mffit.fit.known import Known
 from mffit.fit.priors import Prior, scatters
 from mffit.fit.problem import FitProblem
 from mffit.fit.rig_numbers import rig_numbers
-from mffit.fit.stages import ODD_TERMS, STAGES
+from mffit.fit.stages import BY_STAGE, ODD_TERMS, STAGES
 from mffit.fit.zeros import TurningZeros
 from mffit.least_squares import FreeNumber
 from mffit.points import Points
@@ -50,9 +50,9 @@ class FitPlan:
         """
         fitted = {
             channel
-            for stage, row in zip(STAGES, self.cover, strict=True)
+            for row in self.cover
             if row.free
-            for channel in stage.channels
+            for channel in BY_STAGE[row.stage].channels
         }
         return tuple(
             name for name in CHANNELS if name in SIDEWAYS or (name in fitted and name in points.measured)

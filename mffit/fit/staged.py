@@ -13,7 +13,7 @@ from mffit.fit.fitted import Fitted
 from mffit.fit.plan import FitPlan
 from mffit.fit.polish import polish
 from mffit.fit.problem import FitProblem
-from mffit.fit.stages import STAGES, WITH_CAMBER, Stage, StageRecord
+from mffit.fit.stages import BY_STAGE, WITH_CAMBER, Stage, StageRecord
 from mffit.fit.start import ALTERNATIVE_STARTS, SHAPES
 from mffit.least_squares import solve
 from mffit.points import Points, main_pressure
@@ -58,11 +58,10 @@ def _fit_from(start: Mapping[str, float], problem: FitProblem, plan: FitPlan, pr
     """Stage after stage, then the joint polish."""
     problem = problem.with_values({name: start[name] for name in (*plan.free, *plan.extra)})
     records = []
-    by_name = {stage.name: stage for stage in STAGES}
     for row in plan.cover:
         if not row.free:
             continue
-        stage = by_name[row.stage]
+        stage = BY_STAGE[row.stage]
         progress(f"fitting {stage.title.lower()}")
         reopened = [name for other in plan.cover if other.stage in stage.reopened for name in other.free]
         problem = problem.with_values(_fit_stage(stage, [*reopened, *row.free], problem, plan))

@@ -126,6 +126,8 @@ STAGES = (
     ),
 )
 
+BY_STAGE = {stage.name: stage for stage in STAGES}
+"""Every stage by its word in the table."""
 ODD_TERMS = frozenset(row.name for row in TABLE if row.odd)
 """Coefficients that are zero for a tyre of perfect mirror symmetry."""
 SMALL_ON_A_DISC = {row.name: row.disc_spread for row in TABLE if row.disc_spread is not None}
