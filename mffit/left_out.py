@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from dataclasses import dataclass
 
 import numpy as np
@@ -25,9 +26,11 @@ class Predicted:
         """By how many standard errors over the groups ``other`` predicts better."""
         return _z(np.sum(self.chi2 - other.chi2, axis=1))
 
-    def raised(self, other: Predicted) -> bool:
-        """Whether ``other`` predicts one of the channels worse, beyond chance."""
-        return any(_z(column) < -constants.WORSE_PREDICTION for column in (self.chi2 - other.chi2).T)
+    def raised(self, other: Predicted, channels: Collection[int] | None = None) -> bool:
+        """Whether ``other`` predicts one of the channels, or of these by number, worse beyond chance."""
+        change = (self.chi2 - other.chi2).T
+        looked_at = range(len(change)) if channels is None else channels
+        return any(_z(change[k]) < -constants.WORSE_PREDICTION for k in looked_at)
 
 
 def left_out_errors(
@@ -67,10 +70,20 @@ def needed_fall(candidates: int) -> float:
     return float(-ndtri(constants.PREDICTION_FALSE_ALARM / max(candidates, 1)))
 
 
-def improves(before: Predicted, after: Predicted, *, least: float, needed: float) -> bool:
-    """Whether ``after`` predicts left-out groups better: by more than ``least``, beyond chance, and no channel worse."""
+def improves(
+    before: Predicted,
+    after: Predicted,
+    *,
+    least: float,
+    needed: float,
+    channels: Collection[int] | None = None,
+) -> bool:
+    """Whether ``after`` predicts left-out groups better: by more than ``least``, beyond chance, and no channel worse.
+
+    With ``channels`` only these, by number, must not be worse; the others count in the sum.
+    """
     gain = float(np.sum(before.chi2 - after.chi2))
-    return bool(gain > least and before.falls(after) > needed and not before.raised(after))
+    return bool(gain > least and before.falls(after) > needed and not before.raised(after, channels))
 
 
 def _z(change: np.ndarray) -> float:

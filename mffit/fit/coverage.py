@@ -41,6 +41,7 @@ class Design:
     speeds: int
     slip: bool  #: longitudinal slip was run
     combined: bool  #: longitudinal slip and sideslip together
+    both_sides: bool  #: sideslip to both sides
     measured: frozenset[str]  #: channels that were measured
     curved: bool  #: path curvature present
     shifts: bool  #: odd shift terms are separable: flat track, or disc with backward runs, flipped mounts or both sides
@@ -66,6 +67,7 @@ def design(points: Points, side: str) -> Design:
         speeds=levels.count(points.V, levels.SPEED),
         slip=bool(np.any(driven)),
         combined=bool(np.any(driven & slipping)),
+        both_sides=len(np.unique(np.sign(points.alpha[slipping]))) > 1,
         measured=frozenset(points.measured),
         curved=curved,
         shifts=both_ways or not curved,
@@ -140,6 +142,7 @@ def _unmet(need: Need, seen: Design) -> str:
         "coupled": (seen.coupled, "no sweep combines sideslip and camber"),
         "kappa": (seen.slip, "no sweep varies longitudinal slip"),
         "combined": (seen.combined, "no sweep combines longitudinal slip and sideslip"),
+        "both_sides": (seen.both_sides, "sideslip was run to one side only"),
         "speeds": (seen.speeds, f"{need.levels} speeds are needed, {seen.speeds} run"),
         "curvature": (seen.curved, "the path is straight, so spin is not excited"),
         "loads": (seen.loads, f"{need.levels} loads are needed, {seen.loads} run"),

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
@@ -125,14 +125,19 @@ def _judged(
     needed, left = needed_fall(len(candidates)), list(candidates)
     tried: dict[str, _Prediction] = {}
 
-    def better(before: _Prediction, after: _Prediction) -> bool:
+    channels = list(first.problem.sigma)
+
+    def better(before: _Prediction, after: _Prediction, about: Collection[str] = ()) -> bool:
         least = LEAST_PREDICTED_SHARE * before.by_sweep.total
-        return improves(before.by_sweep, after.by_sweep, least=least, needed=needed)
+        own = [channels.index(name) for name in about if name in channels] or None
+        return improves(before.by_sweep, after.by_sweep, least=least, needed=needed, channels=own)
 
     while enough and left:
         found = {step: _predicted(model, step, group) for step in _steps(left, model.chosen)}
         tried |= {step[-1].id: prediction for step, prediction in found.items()}
-        helpful = [step for step, prediction in found.items() if better(here, prediction)]
+        helpful = [
+            step for step, prediction in found.items() if better(here, prediction, step[-1].about)
+        ]
         if not helpful:
             break
         best = min(helpful, key=lambda step: found[step].by_sweep.total)
@@ -145,7 +150,7 @@ def _judged(
             before = _predicted(fewer, (), group)
             # What came in one step is one influence: its parts must matter, but not each be beyond chance.
             share = 1.0 - here.by_sweep.total / before.by_sweep.total
-            helps = share > LEAST_PREDICTED_SHARE if old in best else better(before, here)
+            helps = share > LEAST_PREDICTED_SHARE if old in best else better(before, here, old.about)
             if better(last, before) and not helps:
                 model, here, tried[old.id] = fewer, before, here
     verdicts = _verdicts(config, model, candidates, demanded, base, here, tried, enough=enough)

@@ -30,6 +30,8 @@ class Nuisance:
     lacking: Callable[[Points], str]  #: why these points cannot show it, in words; empty if they can
     after: str = ""  #: id of the influence that must be modelled first
     rival: str = ""  #: id of an influence with nearly the same effect: one of the two is modelled
+    about: tuple[str, ...] = ()
+    """Channels that it is about, where the others see it only at second hand: Mz uses the slip stiffness to weigh slips."""
 
     def free(self) -> tuple[FreeNumber, ...]:
         """The numbers with their limits and a prior that does not pull."""
@@ -122,6 +124,7 @@ NUISANCES = (
         numbers=("k_T_drive_grip_per_K", "k_T_slip_stiffness_per_K"),
         lacking=lambda points: _temperatures(points) or _slips(points),
         after=TEMPERATURE,
+        about=("Fx", "Fy"),
     ),
     Nuisance(
         id="hysteresis",

@@ -19,6 +19,7 @@ NEEDS = (
     "camber",
     "coupled",
     "combined",
+    "both_sides",
     "curvature",
     "kappa",
     "speeds",
