@@ -12,6 +12,7 @@ from mffit.points.mean import mean_and_error
 from mffit.points.points import Points, make_points
 from mffit.points.stretch import Stretch
 from mffit.sweeps import Sweep
+from mffit.sweeps.slip import slip
 
 AVERAGED_CHANNELS = (
     "alpha",
@@ -117,10 +118,18 @@ def _blocks(sweep: Sweep, rows: np.ndarray) -> tuple[np.ndarray, int]:
     """First row of every block that is averaged, and the usual number of samples in a block."""
     time = sweep.time[rows]
     interval = float(np.median(np.diff(time))) if len(rows) > 1 else constants.AVERAGED_TIME
-    moved = max(float(np.median(np.abs(np.diff(x[rows])))) for x in (sweep.alpha, sweep.gamma)) / interval
     step = float(constants.AVERAGED_TIME)
-    if moved > 0.0:
-        step = min(step, constants.AVERAGED_ANGLE.rad / moved)
+    apart = max(1, round(step / interval))  # samples; slip is noisy from one to the next
+    for x, samples, most in (
+        (sweep.alpha, 1, constants.AVERAGED_ANGLE.rad),
+        (sweep.gamma, 1, constants.AVERAGED_ANGLE.rad),
+        (np.nan_to_num(slip(sweep)), apart, constants.AVERAGED_SLIP),
+    ):
+        values = x[rows]
+        change = np.abs(values[samples:] - values[:-samples]) / samples
+        moved = float(np.median(change)) / interval if len(change) else 0.0
+        if moved > 0.0:
+            step = min(step, most / moved)
     size = max(1, round(step / interval))
     block = np.floor((time - time[0]) / (size * interval) + 1e-6)
     return np.r_[0, np.flatnonzero(np.diff(block)) + 1], size

@@ -55,6 +55,14 @@ STAIRCASE_SHARE = Real(
     0.5, "-", "Share of rest above which angles move from plateau to plateau instead of sweeping."
 )
 SMALLEST_SWEEP = Real(3.0, "deg", "Smallest range of a sweeping angle.")
+STEP_OF_SLIP = Real(0.02, "-", "Smallest change of slip to another set-point; free rolling wanders less.")
+SMALLEST_SLIP_SWEEP = Real(0.05, "-", "Smallest range of a sweeping slip.")
+STEP_OF_CONDITION_WHILE_DRIVEN = Real(
+    0.25,
+    "-",
+    "Relative change of load, pressure or speed to another set-point while slip moves: drive and brake forces "
+    "disturb the control of the load by a tenth, and the points keep the load as read.",
+)
 RETURNED_SHARE = Real(
     0.3, "-", "Share of its range that a sweep beside plateaus returns; a move does not return."
 )
@@ -86,6 +94,11 @@ LARGEST_ORDER_OF_NOISE = Count(
 )
 AVERAGED_TIME = Real(0.1, "s", "Averaging time of a moving sweep.")
 AVERAGED_ANGLE = Real(0.5, "deg", "Largest angle over which a moving sweep is averaged.")
+AVERAGED_SLIP = Real(
+    0.01,
+    "-",
+    "Largest slip over which a moving sweep is averaged: the curve bends by 0.3 % of its peak over it.",
+)
 FILLED_BLOCK = Real(0.5, "-", "Share of its samples that such an averaged block needs.")
 
 # Lag of moving sweeps

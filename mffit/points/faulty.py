@@ -14,9 +14,10 @@ from mffit.points import constants
 from mffit.points.stretch import runs
 from mffit.scatter import robust
 from mffit.sweeps import Sweep
+from mffit.sweeps.slip import longitudinal_force, slip
 
 DRIVEN_RULE = "driven-or-braked"
-DRIVEN = "driven or braked, and only free rolling is fitted"
+DRIVEN = "driven or braked, and Fx was not measured"
 SENSORS = ("Fy", "Mz", "Fz")
 
 
@@ -43,10 +44,8 @@ class FaultRule:
 
 
 def driven(sweep: Sweep) -> np.ndarray:
-    """Samples or points (n,) at which the wheel does not roll freely."""
-    if "kappa" not in sweep.table:
-        return np.zeros(len(sweep), dtype=bool)
-    return np.abs(sweep.table["kappa"].to_numpy(dtype=float)) > constants.FREE_ROLLING_SLIP
+    """Samples or points (n,) at which the wheel is driven or braked without a reading of the longitudinal force."""
+    return (np.abs(slip(sweep)) > constants.FREE_ROLLING_SLIP) & ~np.isfinite(longitudinal_force(sweep))
 
 
 def faults(sweep: Sweep) -> list[Fault]:
@@ -162,7 +161,7 @@ FAULTS = (
     ),
     FaultRule(
         id=DRIVEN_RULE,
-        looks_at="Longitudinal slip",
+        looks_at="Longitudinal slip, if the longitudinal force was not measured",
         limits=(constants.FREE_ROLLING_SLIP,),
         reason=DRIVEN,
         find=lambda sweep, _: driven(sweep),

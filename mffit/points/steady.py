@@ -1,6 +1,6 @@
-"""Time series to stretches: where the rig stood still, and where it swept one angle.
+"""Time series to stretches: where the rig stood still, and where it swept one angle or the slip.
 
-Only the settings (angles, load, pressure, speed) decide this. The forces decide later how much of a stretch is
+Only the settings (angles, slip, load, pressure, speed) decide this. The forces decide later how much of a stretch is
 transient, and whether it ever came to rest (``settling``).
 """
 
@@ -18,7 +18,12 @@ from mffit.points import constants
 from mffit.points.stretch import MOVE, SWEEP, Stretch, runs
 from mffit.scatter import robust
 
-ANGLES, CONDITIONS = ("alpha", "gamma"), ("Fz", "p", "V")
+CONDITIONS = ("Fz", "p", "V")
+SWEPT = {
+    **dict.fromkeys(("alpha", "gamma"), (constants.STEP_OF_ANGLE.rad, constants.SMALLEST_SWEEP.rad)),
+    "kappa": (float(constants.STEP_OF_SLIP), float(constants.SMALLEST_SLIP_SWEEP)),
+}
+"""Settings that rigs sweep, each with the smallest change to another set-point and the smallest range of a sweep."""
 Scale = Mapping[str, float]
 """Usual size of each setting in a recording."""
 
@@ -32,6 +37,7 @@ class SteadySettings(NamedTuple):
     Fz: np.ndarray  #: [N]
     p: np.ndarray  #: [Pa]
     V: np.ndarray  #: [m/s]
+    kappa: np.ndarray  #: longitudinal slip [-]; 0 if it was not measured
 
 
 def stretches(
@@ -52,8 +58,8 @@ def stretches(
     Returns
     -------
     list of Stretch
-        Plateaus, where all settings rest; sweeps, where one angle moves through its range and all else rests; and moves,
-        with the reason why they are neither, such as the way of an angle between two plateaus.
+        Plateaus, where all settings rest; sweeps, where an angle or the slip moves through its range and all else rests; and
+        moves, with the reason why they are neither, such as the way of an angle between two plateaus.
     """
     n = len(settings.time)
     if point is not None:
@@ -93,7 +99,7 @@ def _of_piece(settings: SteadySettings, scale: Scale) -> list[Stretch]:
         changing[begin:end] = False
     for begin, end in steady:
         part = SteadySettings(*(x[begin:end] for x in settings))
-        inside = _of_condition(part, masks["alpha"][begin:end], masks["gamma"][begin:end])
+        inside = _of_condition(part, {name: masks[name][begin:end] for name in SWEPT})
         found += [s._replace(begin=s.begin + begin, end=s.end + begin) for s in inside]
     found += [Stretch(begin, end, "load, pressure or speed changes", MOVE) for begin, end in runs(changing)]
     return sorted(found)
@@ -131,11 +137,9 @@ def _samples(settings: SteadySettings, seconds: float) -> int:
     return int(np.clip(round(seconds / max(np.median(np.diff(settings.time)), 1e-9)), 1, max(n - 1, 1)))
 
 
-def _of_condition(
-    settings: SteadySettings, alpha_moves: np.ndarray, gamma_moves: np.ndarray
-) -> list[Stretch]:
-    """The stretches of a piece of constant load, pressure and speed."""
-    resting = ~alpha_moves & ~gamma_moves
+def _of_condition(settings: SteadySettings, moving: Mapping[str, np.ndarray]) -> list[Stretch]:
+    """The stretches of a piece of constant load, pressure and speed; ``moving`` has a mask (n,) per swept setting."""
+    resting = ~np.any(list(moving.values()), axis=0)
     rests = [Stretch(begin, end) for begin, end in runs(resting)]
     still = [rest for rest in rests if not _creeps(settings, rest)]
     held = [settings.time[s.end - 1] - settings.time[s.begin] for s in still]
@@ -148,28 +152,37 @@ def _of_condition(
     for rest in found:
         covered[rest.begin : rest.end] = True
     for begin, end in runs(~covered):
-        found += _swept(settings, gamma_moves, begin, end, staircase)
+        found += _swept(settings, moving, begin, end, staircase)
     return found
 
 
 def _swept(
-    settings: SteadySettings, gamma_moves: np.ndarray, begin: int, end: int, staircase: bool
+    settings: SteadySettings, moving: Mapping[str, np.ndarray], begin: int, end: int, staircase: bool
 ) -> list[Stretch]:
-    """Sweeps of one angle in a moving piece; the rest of it moves between plateaus."""
+    """Sweeps of one setting in a moving piece; the rest of it moves between plateaus."""
 
-    def sweeps(values: np.ndarray, pieces: list[tuple[int, int]]) -> list[Stretch]:
+    def sweeps(name: str, pieces: list[tuple[int, int]]) -> list[Stretch]:
+        values, (_, smallest) = getattr(settings, name), SWEPT[name]
         return [
             Stretch(b, e, "", SWEEP)
             for b, e in pieces
             if settings.time[e - 1] - settings.time[b] >= constants.SHORTEST_STRETCH
-            and np.ptp(values[b:e]) >= constants.SMALLEST_SWEEP.rad
+            and np.ptp(values[b:e]) >= smallest
             and (not staircase or _returns(values[b:e]))
         ]
 
-    at_one_camber = [(begin + b, begin + e) for b, e in runs(~gamma_moves[begin:end])]
-    found = sweeps(settings.alpha, at_one_camber)
+    def resting(*names: str) -> list[tuple[int, int]]:
+        at_rest = ~np.any([moving[name][begin:end] for name in names], axis=0)
+        for s in found:
+            at_rest[s.begin - begin : s.end - begin] = False
+        return [(begin + b, begin + e) for b, e in runs(at_rest)]
+
+    found: list[Stretch] = []
+    found += sweeps("alpha", resting("gamma", "kappa"))
+    if np.any(moving["kappa"][begin:end]):
+        found += sweeps("kappa", resting("alpha", "gamma"))
     if not found and np.ptp(settings.alpha[begin:end]) < constants.SMALLEST_SWEEP.rad:
-        found = sweeps(settings.gamma, [(begin, end)])
+        found = sweeps("gamma", resting("kappa"))
     taken = np.zeros(end - begin, dtype=bool)
     for s in found:
         taken[s.begin - begin : s.end - begin] = True
@@ -178,7 +191,7 @@ def _swept(
 
 
 def _returns(x: np.ndarray) -> bool:
-    """Whether an angle goes back over a good part of its range."""
+    """Whether a setting goes back over a good part of its range."""
     far = max(x.max() - max(x[0], x[-1]), min(x[0], x[-1]) - x.min())
     return bool(far > constants.RETURNED_SHARE * np.ptp(x))
 
@@ -187,7 +200,7 @@ def scale_of(series: Sequence[SteadySettings]) -> Scale:
     """Median size of each setting; of long recordings from some of the samples."""
     some = max(sum(len(settings.time) for settings in series) // constants.MOST_SAMPLES_FOR_SCALE, 1)
     sizes = {}
-    for name in (*ANGLES, *CONDITIONS):
+    for name in (*SWEPT, *CONDITIONS):
         size = np.abs(np.concatenate([getattr(one, name)[::some] for one in series]))
         known = size[np.isfinite(size)]
         sizes[name] = float(np.median(known)) if len(known) else 0.0
@@ -203,19 +216,31 @@ def moves(settings: SteadySettings, scale: Scale | None = None) -> dict[str, np.
     scale = scale or scale_of([settings])
     lag = _samples(settings, constants.COMPARED_APART)
     masks = {}
-    for name in (*ANGLES, *CONDITIONS):
+    for name in (*SWEPT, *CONDITIONS):
         values = getattr(settings, name)
-        usual = max(scale[name], float(np.median(np.abs(values))))
-        step = constants.STEP_OF_ANGLE.rad if name in ANGLES else constants.STEP_OF_CONDITION * usual
         mask = np.zeros(n, dtype=bool)
         if np.ptp(values) > 0.0:
+            if name in SWEPT:
+                step: float | np.ndarray = SWEPT[name][0]
+            else:
+                usual = max(scale[name], float(np.median(np.abs(values))))
+                step = usual * _step_of_condition(masks["kappa"][lag:])
             smooth = uniform_filter1d(values, lag, mode="nearest")
             noise = _noise(values) / np.sqrt(lag)
-            change = np.abs(smooth[lag:] - smooth[:-lag]) > max(step, constants.STEP_OVER_NOISE * noise)
+            change = np.abs(smooth[lag:] - smooth[:-lag]) > np.maximum(
+                step, constants.STEP_OVER_NOISE * noise
+            )
             mask[lag:] |= change
             mask[:-lag] |= change
         masks[name] = mask
     return masks
+
+
+def _step_of_condition(driving: np.ndarray) -> float | np.ndarray:
+    """Relative change of a condition to another set-point, where the slip rests and where it moves (n,)."""
+    if not np.any(driving):
+        return float(constants.STEP_OF_CONDITION)
+    return np.where(driving, constants.STEP_OF_CONDITION_WHILE_DRIVEN, constants.STEP_OF_CONDITION)
 
 
 def _noise(values: np.ndarray) -> float:
@@ -224,10 +249,10 @@ def _noise(values: np.ndarray) -> float:
 
 
 def _creeps(settings: SteadySettings, stretch: Stretch) -> bool:
-    """Whether an angle moves so slowly through the stretch that no single step shows."""
+    """Whether an angle or the slip moves so slowly through the stretch that no single step shows."""
     quarter = max((stretch.end - stretch.begin) // 4, 1)
-    for values in (settings.alpha, settings.gamma):
-        part = values[stretch.begin : stretch.end]
-        if abs(float(np.mean(part[-quarter:]) - np.mean(part[:quarter]))) > constants.STEP_OF_ANGLE.rad:
+    for name, (step, _) in SWEPT.items():
+        part = getattr(settings, name)[stretch.begin : stretch.end]
+        if abs(float(np.mean(part[-quarter:]) - np.mean(part[:quarter]))) > step:
             return True
     return False

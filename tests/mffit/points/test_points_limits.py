@@ -218,7 +218,9 @@ def test_the_row_of_a_stretch_is_in_a_users_units():
 
 def settings(n: int, rate: float = RATE, V: float = 5.0) -> SteadySettings:
     one = np.ones(n)
-    return SteadySettings(np.arange(n) / rate, 0.0 * one, 0.0 * one, 1500.0 * one, 250e3 * one, V * one)
+    return SteadySettings(
+        np.arange(n) / rate, 0.0 * one, 0.0 * one, 1500.0 * one, 250e3 * one, V * one, 0.0 * one
+    )
 
 
 @pytest.mark.parametrize(("seconds", "kept"), [(2.05, True), (1.95, False)])

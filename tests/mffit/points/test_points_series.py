@@ -148,7 +148,7 @@ def test_steps_of_load_alone_make_new_stretches():
     time = np.arange(2 * n) / RATE
     Fz = np.r_[np.full(n, 900.0), np.full(n, 1500.0)]
     still = np.zeros(2 * n)
-    settings = SteadySettings(time, still, still, Fz, np.full(2 * n, 250e3), np.full(2 * n, V))
+    settings = SteadySettings(time, still, still, Fz, np.full(2 * n, 250e3), np.full(2 * n, V), still)
     found = [stretch for stretch in stretches(settings) if not stretch.dropped]
     assert len(found) == 2
     assert np.logical_or.reduce(list(moves(settings).values()))[n]
