@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from tir.constant import Count, Real
+from tir.constant import Count, Real, Series
 
 # Levels of the set-points: values further apart than a tolerance may be two levels; the scatter of a rig is a third of it
 LOAD_LEVEL_TOLERANCE = Real(0.08, "-", "Loads of one level differ by less, relatively.")
@@ -113,6 +113,26 @@ WORST_CONDITION_AT_ZERO = Real(1e8, "-", "Condition number above which one side 
 FEWEST_SWEEPS_OF_LAG = Count(3, "-", "Fewest sweeps whose scatter gives the uncertainty of the median lag.")
 BINS_OF_HYSTERESIS = Count(25, "-", "Bins of the angle in which both ways of a sweep are compared.")
 PROVEN_LAG = Real(2.0, "-", "Standard uncertainties that a lag must exceed to be corrected.")
+
+# Definition of slip
+FORCE_NEAR_FREE_ROLLING = Real(
+    0.3, "-", "Fx over the load up to which slip and force are nearly proportional, apart from a cubic term."
+)
+LOADS_OF_ZERO = Series((10.0, 50.0, 90.0), "%", "Percentiles of the load at which the zero of slip is said.")
+SLIP_OF_ZERO_FORCE = Real(
+    0.004,
+    "-",
+    "Slip of zero Fx up to which slip is against free rolling: rolling resistance moves it by 0.001, a calibration of speed "
+    "by 0.002; slip against the loaded radius is 0.01 to 0.04 off at full load.",
+)
+OUTLIER_OF_ZERO = Real(
+    4.0, "-", "Standard deviations beyond which a reading does not count for the zero of slip."
+)
+WEAKEST_DIRECTION_OF_ZERO = Real(
+    1e-3,
+    "-",
+    "Singular value over the largest below which the zero does not follow a combination of conditions.",
+)
 
 # Bare tables
 STAND_IN_PRESSURE = Real(

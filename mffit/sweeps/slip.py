@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from mffit.sweeps.sweep import Sweep
@@ -15,6 +17,11 @@ def slip(sweep: Sweep) -> np.ndarray:
 def longitudinal_force(sweep: Sweep) -> np.ndarray:
     """Longitudinal force (n,) [N]; NaN where it was not measured."""
     return _channel(sweep, "Fx_N")
+
+
+def with_slip(sweep: Sweep, values: np.ndarray) -> Sweep:
+    """The sweep with another slip (n,)."""
+    return replace(sweep, table=sweep.table.assign(kappa=values))
 
 
 def _channel(sweep: Sweep, name: str) -> np.ndarray:
