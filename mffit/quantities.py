@@ -13,6 +13,7 @@ GREEK = str.maketrans(
         "φ": "phi",
         "κ": "kappa",
         "σ": "sigma",
+        "ω": "omega",
         "μ": "mu",
         "χ": "chi",
         "²": "2",
@@ -66,6 +67,17 @@ class QuantityName(NamedTuple):
         return f"{value:.0f} {self.unit}"
 
 
+def column(channel: str, of: str = "") -> str:
+    """Heading of a channel in tables and keys, with its unit: ``Fy_N``; ``Fy_model_N`` of the model, ``Fy_odd_N``."""
+    unit = CHANNELS[channel].unit.replace("/", "p")
+    return "_".join(part for part in (channel, of, unit) if part)
+
+
+def u_column(channel: str) -> str:
+    """Heading of the standard uncertainty of a channel: ``u_Fy_N``."""
+    return f"u_{column(channel)}"
+
+
 CONDITIONS = {
     "alpha_deg": QuantityName("sideslip", "α", "deg"),
     "gamma_deg": QuantityName("camber", "γ", "deg"),
@@ -77,10 +89,17 @@ CONDITIONS = {
 }
 """Conditions of a point, by their column."""
 CHANNELS = {
+    "Fx": QuantityName("longitudinal force", "F_x", "N"),
     "Fy": QuantityName("side force", "F_y", "N"),
+    "Mx": QuantityName("overturning moment", "M_x", "Nm"),
+    "My": QuantityName("rolling resistance moment", "M_y", "Nm"),
     "Mz": QuantityName("self-aligning moment", "M_z", "Nm"),
+    "RL": QuantityName("loaded radius", "R_L", "m"),
+    "omega": QuantityName("wheel speed", "ω", "rad/s"),
 }
-"""Measured channels that are simulated, by their name in sentences and files."""
+"""Everything that a rig may read of a tyre, by its name in sentences, files, points and the model, in this order everywhere."""
+SIDEWAYS = {name: CHANNELS[name] for name in ("Fy", "Mz")}
+"""Channels of every test: Fy is required, and Mz is simulated with it whether or not it was measured."""
 DIRECT = {
     "epsilon_gamma": QuantityName("camber reduction factor", "ε_γ", "-"),
     "C_phit": QuantityName("turn-slip stiffness", "C_φt", "Nm"),
@@ -115,10 +134,7 @@ MODEL = {
     "phi_t": QuantityName("path curvature", "φ_t", "1/m"),
     "Vx": CONDITIONS["V_mps"],
     "pressure": CONDITIONS["p_kPa"],
-    "Fx": QuantityName("longitudinal force", "F_x", "N"),
-    **CHANNELS,
-    "Mx": QuantityName("overturning moment", "M_x", "Nm"),
-    "My": QuantityName("rolling resistance moment", "M_y", "Nm"),
+    **{name: CHANNELS[name] for name in ("Fx", "Fy", "Mz", "Mx", "My")},
     "K_ya": DIRECT["C_alpha"]._replace(symbol="K_yα"),
     "K_yg0": DIRECT["C_gamma"]._replace(symbol="K_yγ0"),
     "trail": QuantityName("pneumatic trail", "t", "mm"),

@@ -13,8 +13,8 @@ from mffit.comparison.record import ComparedSubject, Comparison, CurveGap, Diffe
 from mffit.fit import Posterior
 from mffit.measured import KEYS, LoadResult
 from mffit.points import Points, make_points
-from mffit.quantities import CHANNELS
-from mffit.rig import Simulation
+from mffit.quantities import SIDEWAYS
+from mffit.rig import Readings, Simulation
 from mffit.scatter import rms
 from tir.parameters import TABLE
 
@@ -81,22 +81,20 @@ def _curves(
         angles = (x, 0.0 * x) if over == "alpha" else (0.0 * x, x)
         where = make_points(*angles, load, p=pressure, V=float(first.tyre["LONGVL"]), phi_t=0.0)
         (a, half_a), (b, half_b) = (_curve(side, where) for side in (first, second))
-        for k, channel in enumerate(CHANNELS):
+        for channel in SIDEWAYS:
             yield CurveGap(
                 channel=channel,
                 over=over,
                 load=load,
                 x=x,
-                first=a[k],
-                second=b[k],
-                half_first=None if half_a is None else half_a[k],
-                half_second=None if half_b is None else half_b[k],
+                first=a[channel],
+                second=b[channel],
+                half_first=None if half_a is None else half_a[channel],
+                half_second=None if half_b is None else half_b[channel],
             )
 
 
-def _curve(
-    side: ComparedSubject, where: Points
-) -> tuple[Sequence[np.ndarray], tuple[np.ndarray, np.ndarray] | None]:
+def _curve(side: ComparedSubject, where: Points) -> tuple[Readings, Readings | None]:
     """Readings of a file on a perfect rig, and the half widths of their bands."""
     simulation = Simulation.of(side.tyre, turn_slip=side.turn_slip)
     band = None
@@ -180,8 +178,8 @@ def _sweeps(points: Points, simulation: Simulation) -> tuple[SweepGap, ...]:
     """The gap of every sweep and channel; the largest first, in units of the noise or else of the channel's size."""
     readings = simulation.readings(points)
     found: list[tuple[float, SweepGap]] = []
-    for channel in CHANNELS:
-        apart, u = getattr(points, channel) - getattr(readings, channel), getattr(points, f"u_{channel}")
+    for channel in SIDEWAYS:
+        apart, u = points.channel(channel) - readings[channel], points.u(channel)
         size = max(rms(getattr(points, channel)), 1e-9)
         for k in np.unique(points.sweep):
             rows = (points.sweep == k) & np.isfinite(apart)

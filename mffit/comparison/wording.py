@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from mffit.comparison import constants
 from mffit.comparison.record import ComparedSubject, Comparison, Difference
 from mffit.measured import KEYS
-from mffit.quantities import CHANNELS, CHARACTERISTICS, CONDITIONS, DIRECT, QuantityName
+from mffit.quantities import CHARACTERISTICS, CONDITIONS, DIRECT, SIDEWAYS, QuantityName
 from tir.parameters import BY_NAME
 
 OF_DIRECT = {key: DIRECT[name] for name, key in KEYS.items()}
@@ -26,17 +26,17 @@ def headline(found: Comparison) -> str:
     """The largest differences in a sentence."""
     if found.sweeps:
         parts = []
-        for channel, known in CHANNELS.items():
+        for channel, known in SIDEWAYS.items():
             rows = [gap for gap in found.sweeps if gap.channel == channel]
             if rows:
                 n = sum(gap.n for gap in rows)
                 total = math.sqrt(sum(gap.n * gap.rms**2 for gap in rows) / n)
                 parts.append(f"{total:.3g} {known.unit} rms in {channel}")
         return f"{found.first} misses {found.second} by {' and '.join(parts)}; {_significant(found)}."
-    gap = {c: max((g.rms for g in found.curves if g.channel == c), default=0.0) for c in CHANNELS}
+    gap = {c: max((g.rms for g in found.curves if g.channel == c), default=0.0) for c in SIDEWAYS}
     if not any(gap.values()):
         return f"The curves of {found.first} and {found.second} do not differ; {_significant(found)}."
-    said = " and ".join(f"{c} by up to {gap[c]:.3g} {q.unit} rms" for c, q in CHANNELS.items())
+    said = " and ".join(f"{c} by up to {gap[c]:.3g} {q.unit} rms" for c, q in SIDEWAYS.items())
     return f"The curves of {found.first} and {found.second} differ in {said}; {_significant(found)}."
 
 

@@ -26,7 +26,8 @@ from mffit.diagnosis.validation import gap
 from mffit.diagnosis.where import Region, where
 from mffit.effects import Effect
 from mffit.points import Points
-from mffit.rig import Simulation
+from mffit.quantities import SIDEWAYS
+from mffit.rig import Readings, Simulation
 from mffit.suspicion import Outlier, outliers
 from tir import Tyre
 from tir.parameters import BY_NAME
@@ -125,8 +126,7 @@ def _outliers(points: Points, after: np.ndarray, noise: Noise) -> tuple[Outlier,
     off = np.abs(np.concatenate([points.Fy, points.Mz]) - after)
     used = usual.copy()
     used[[i for i in outlying(noise) if off[i] > constants.DIAGNOSED_OUTLIER_RATIO * usual[i]]] = np.inf
-    Fy, Mz = zip(np.split(usual, 2), np.split(used, 2), np.split(after, 2), strict=True)
-    return outliers(points, *((a, b) for a, b in zip(Fy, Mz, strict=True)))
+    return outliers(points, *(Readings.split(rows, SIDEWAYS) for rows in (usual, used, after)))
 
 
 def _found(found: Explanation, effect: Effect, given: DiagnosisProblem) -> AcceptedEffect:

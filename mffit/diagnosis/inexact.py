@@ -42,7 +42,7 @@ class Inexactness:
         """Derivatives of the readings (2n, k) by the coefficients."""
         if not self.names:
             return np.zeros((2 * len(points), 0))
-        return np.nan_to_num(np.concatenate(state.sensitivities(points, self.names)[1]))
+        return np.nan_to_num(state.sensitivities(points, self.names)[1].stacked)
 
     def added_to(self, problem: LeastSquaresProblem, first: int) -> LeastSquaresProblem:
         """The problem with this prior as additional residuals of its numbers from ``first`` on."""

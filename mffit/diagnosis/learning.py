@@ -15,7 +15,7 @@ from mffit.diagnosis.problem import DiagnosisProblem
 from mffit.diagnosis.scatter import ExplainingColumns, learned
 from mffit.effects import Effect
 from mffit.points import Points
-from mffit.quantities import CHANNELS
+from mffit.quantities import SIDEWAYS
 from mffit.rig import Simulation
 from mffit.scatter import robust
 
@@ -87,7 +87,7 @@ def settled(before: Noise, after: Noise) -> bool:
     """Whether the scatter changed so little that the effects need not be judged again."""
     used = after.used
     change = np.abs(np.log(after.u[used] / before.u[used]))
-    memory = [abs(after.scatter[c].memory - before.scatter[c].memory) for c in CHANNELS]
+    memory = [abs(after.scatter[c].memory - before.scatter[c].memory) for c in SIDEWAYS]
     return not (
         np.median(change) > constants.SCATTER_SETTLED
         or np.quantile(change, 0.95) > constants.SCATTER_SETTLED_TAIL

@@ -12,7 +12,7 @@ import numpy as np
 from scipy.sparse import csc_matrix
 from scipy.sparse.linalg import SuperLU, splu
 
-from mffit.quantities import CHANNELS
+from mffit.quantities import SIDEWAYS
 from mffit.scatter import finite_median
 
 
@@ -56,7 +56,7 @@ class Noise:
     stated: np.ndarray  #: (2n,) the same as stated
     chain: np.ndarray  #: (2n,) number of the sweep and channel along which errors may be correlated
     origin: Origin | None  #: of the uncertainties of Fy; None if it was not measured
-    scatter: Mapping[str, Scatter] = field(default_factory=lambda: dict.fromkeys(CHANNELS, Scatter()))
+    scatter: Mapping[str, Scatter] = field(default_factory=lambda: dict.fromkeys(SIDEWAYS, Scatter()))
     weight: np.ndarray | None = None  #: (2n,) of each reading, below 1 for outliers; None: all 1
     shared: np.ndarray | None = None  #: (2n, k) changes that readings share, one standard deviation each
     offsets: Mapping[str, RunOffsets] = field(default_factory=dict)
@@ -148,7 +148,7 @@ class Noise:
         """The noise with independent errors of the given size [N], [Nm] in some channels."""
         u, weight = self.u.copy(), np.ones(len(self.u)) if self.weight is None else self.weight.copy()
         scatter = dict(self.scatter)
-        for name, rows in zip(CHANNELS, np.split(np.arange(len(u)), 2), strict=True):
+        for name, rows in zip(SIDEWAYS, np.split(np.arange(len(u)), 2), strict=True):
             if name in channels:
                 weight[rows] = 1.0
                 u[rows] = np.where(np.isfinite(self.stated[rows]), channels[name], np.inf)
@@ -182,7 +182,7 @@ class Noise:
 
         ``weight`` (2n,) is that of each reading; the noise may grow in proportion to ``size`` (2n,).
         """
-        halves = zip(CHANNELS, np.split(self.stated, 2), np.split(np.nan_to_num(size), 2), strict=True)
+        halves = zip(SIDEWAYS, np.split(self.stated, 2), np.split(np.nan_to_num(size), 2), strict=True)
         u = np.concatenate(
             [
                 np.hypot(scatter[c].scale * stated, scatter[c].growth * reading)
@@ -201,4 +201,4 @@ def links(chain: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 def _typical(u: np.ndarray, channel: str) -> float:
     """Median uncertainty of a channel of readings (2n,); NaN if it was not measured."""
-    return finite_median(dict(zip(CHANNELS, np.split(u, 2), strict=True))[channel])
+    return finite_median(dict(zip(SIDEWAYS, np.split(u, 2), strict=True))[channel])

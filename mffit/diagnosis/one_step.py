@@ -181,7 +181,7 @@ def held_numbers(left: Remainder, fitted: Fitted) -> tuple[HeldNumber, ...]:
     if not names:
         return ()
     bounds = {n.name: (n.lower, n.upper) for n in fitted.numbers}
-    slopes = left.whitened(np.concatenate(left.simulation.sensitivities(left.points, names)[1]))
+    slopes = left.whitened(left.simulation.sensitivities(left.points, names)[1].stacked)
     total = max(float(left.residual @ left.residual), 1e-12)
     out = []
     for name, change in zip(names, slopes.T, strict=True):

@@ -124,7 +124,7 @@ class DiagnosisProblem:
         names = [free.name for free in moving(effects)]
         slopes = np.empty((len(self.measured), 0))
         if names:
-            slopes = np.nan_to_num(np.concatenate(state.sensitivities(self.points, names)[1]))
+            slopes = np.nan_to_num(state.sensitivities(self.points, names)[1].stacked)
         here, first, out = np.nan_to_num(state.predict(self.points)), 0, {}
         for effect in effects:
             frees = moving((effect,))
@@ -192,8 +192,8 @@ class DiagnosisProblem:
 
         def linear(x: np.ndarray) -> Linear:
             out, slope = at(x).sensitivities(self.points, names)
-            data = self.noise.whiten(np.nan_to_num(np.concatenate(out) - self.measured))
-            rows = np.where(np.isfinite(self.measured)[:, None], np.concatenate(slope), 0.0)
+            data = self.noise.whiten(np.nan_to_num(out.stacked - self.measured))
+            rows = np.where(np.isfinite(self.measured)[:, None], slope.stacked, 0.0)
             return Linear(data, self.noise.whiten(rows), nothing, np.zeros((0, len(names))))
 
         return LeastSquaresProblem(residual, linear)

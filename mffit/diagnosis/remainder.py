@@ -13,7 +13,7 @@ from mffit.fit.fitted import Fitted
 from mffit.fit.problem import FitProblem
 from mffit.left_out import left_out_errors
 from mffit.points import Points
-from mffit.quantities import CHANNELS
+from mffit.quantities import SIDEWAYS
 from mffit.rig import Simulation
 from mffit.scatter import rms
 from mffit.suspicion import LeftOutSweeps
@@ -112,7 +112,7 @@ def predicted_sweep(left: Remainder, k: int) -> tuple[float, dict[str, Predicted
     error = covariance @ left.residual[rows]
     n, u = len(left.points), left.sigma[rows]
     out = {}
-    for j, name in enumerate(CHANNELS):
+    for j, name in enumerate(SIDEWAYS):
         own = rows // n == j
         if own.any():
             scaled = covariance[np.ix_(own, own)] * u[own] * u[own][:, None]
@@ -134,7 +134,7 @@ def _weighted(fitted: Fitted) -> tuple[FitProblem, dict[str, float]]:
     problem, points = fitted.problem, fitted.problem.points
     readings = problem.simulation.readings(points)
     sigma, noise = {}, {}
-    for name in CHANNELS:
+    for name in SIDEWAYS:
         stated = getattr(points, f"u_{name}")
         measured = getattr(points, name)
         used = np.isfinite(problem.sigma[name]) & np.isfinite(measured)
@@ -154,7 +154,7 @@ def left_out_sweeps(left: Remainder) -> dict[str, LeftOutSweeps]:
         rows = left.sweep == k
         predicted[rows] = left.left_out(rows)
     out = {}
-    for k, name in enumerate(CHANNELS):
+    for k, name in enumerate(SIDEWAYS):
         part = slice(k * n, (k + 1) * n)
         u = np.where(left.used[part], left.sigma[part], np.nan)
         fits, predictions = left.residual[part] * u, predicted[part] * u  # NaN where not used

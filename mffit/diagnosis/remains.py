@@ -12,7 +12,7 @@ from mffit.diagnosis.one_step import BestEffect, best_effect, held_numbers
 from mffit.diagnosis.remainder import Remainder, left_out_sweeps, predicted_sweep, remainder
 from mffit.diagnosis.structure import Structure, structure
 from mffit.fit.fitted import Fitted
-from mffit.quantities import CHANNELS
+from mffit.quantities import SIDEWAYS
 from mffit.suspicion import HeldNumber, LeftOutSweeps
 from mffit.suspicion.explanation import explanation
 
@@ -62,7 +62,7 @@ def odd_sweep(left: Remainder, signs: Mapping[str, float]) -> OddSweep | None:
         return None
     readings = {
         name: np.where(used, getattr(points, name), np.nan)
-        for name, used in zip(CHANNELS, np.split(left.used, 2), strict=True)
+        for name, used in zip(SIDEWAYS, np.split(left.used, 2), strict=True)
     }
     part = points.replace(**readings).select(points.sweep == worst)
     looks = explanation(part, found[worst][1], left.simulation, signs)

@@ -17,7 +17,7 @@ from mffit.diagnosis import constants
 from mffit.diagnosis.marginal import MarginalChannel, MarginalParts
 from mffit.diagnosis.noise import Noise, RunOffsets, Scatter
 from mffit.diagnosis.tails import heavy_tails, weights
-from mffit.quantities import CHANNELS
+from mffit.quantities import SIDEWAYS
 from mffit.scatter import rms
 
 BOUNDS = np.array(
@@ -50,7 +50,7 @@ def learned(noise: Noise, residual: np.ndarray, explained: ExplainingColumns, si
     """
     weight, scatter = np.ones(len(residual)), dict(noise.scatter)
     offsets: dict[str, RunOffsets] = {}
-    for name, rows in zip(CHANNELS, np.split(np.arange(len(residual)), 2), strict=True):
+    for name, rows in zip(SIDEWAYS, np.split(np.arange(len(residual)), 2), strict=True):
         rows = rows[np.isfinite(noise.stated[rows])]
         if not len(rows):
             continue
@@ -81,7 +81,7 @@ def _at_least_of_a_rig(noise: Noise, size: np.ndarray) -> Noise:
     Between two points of a sweep, errors with a memory change by their part without memory.
     """
     assumed = {}
-    for name, readings in zip(CHANNELS, np.split(size, 2), strict=True):
+    for name, readings in zip(SIDEWAYS, np.split(size, 2), strict=True):
         change = noise.typical(name) * math.sqrt(1.0 - noise.scatter[name].memory ** 2)
         if change < constants.NO_NOISE_SHARE * rms(readings):
             assumed[name] = constants.ASSUMED_NOISE_SHARE * rms(readings)

@@ -14,7 +14,7 @@ from mffit.diagnosis import constants
 from mffit.diagnosis.hypothesis import Hypothesis, outside
 from mffit.diagnosis.noise import Noise
 from mffit.points import Points
-from mffit.quantities import CHANNELS
+from mffit.quantities import SIDEWAYS
 from mffit.scatter import rms
 
 SMALLEST, LARGEST = constants.SMOOTH_AMPLITUDES
@@ -33,7 +33,7 @@ class Smooth:
         return self.gain > constants.STRUCTURE_EVIDENCE
 
 
-NO_SMOOTH = Smooth(dict.fromkeys(CHANNELS, 0.0), 0.0)
+NO_SMOOTH = Smooth(dict.fromkeys(SIDEWAYS, 0.0), 0.0)
 
 
 def smooth_basis(points: Points, simulated: np.ndarray) -> np.ndarray:
@@ -122,7 +122,7 @@ class SmoothScan:
                 value = _gain(power, score, np.repeat(trial, (self.half, len(score) - self.half)))
                 if value > gain:
                     size, gain = trial, value
-        return Smooth(dict(zip(CHANNELS, size, strict=True)), gain)
+        return Smooth(dict(zip(SIDEWAYS, size, strict=True)), gain)
 
 
 def smooth_scan(basis: np.ndarray, noise: Noise) -> SmoothScan:
@@ -133,7 +133,7 @@ def smooth_scan(basis: np.ndarray, noise: Noise) -> SmoothScan:
 def amplified(basis: np.ndarray, smooth: Smooth) -> np.ndarray:
     """The basis (2n, k) at the amplitudes that were found."""
     half = basis.shape[1] // 2
-    return basis * np.repeat([smooth.amplitude[name] for name in CHANNELS], half)
+    return basis * np.repeat([smooth.amplitude[name] for name in SIDEWAYS], half)
 
 
 def _gain(power: np.ndarray, score: np.ndarray, amplitude: np.ndarray) -> float:
@@ -144,5 +144,5 @@ def _gain(power: np.ndarray, score: np.ndarray, amplitude: np.ndarray) -> float:
         np.eye(int(some.sum())) + scaled[:, None] * power[np.ix_(some, some)] * scaled, lower=True
     )
     found = solve_triangular(root, scaled * score[some], lower=True)
-    paid = len(CHANNELS) * math.log(len(AMPLITUDES))
+    paid = len(SIDEWAYS) * math.log(len(AMPLITUDES))
     return 0.5 * float(found @ found) - float(np.sum(np.log(np.diag(root)))) - paid

@@ -20,7 +20,7 @@ from mffit.diagnosis.notes import (
 from mffit.effects import Effect
 from mffit.errors import InputError
 from mffit.points import Points
-from mffit.quantities import CHANNELS
+from mffit.quantities import SIDEWAYS
 from mffit.rig import Simulation
 from mffit.scatter import rms, robust
 from tir import Tyre
@@ -40,7 +40,7 @@ def refuse_strangers(points: Points, tyre: Tyre, start: Simulation) -> None:
             "model and the unit of the loads"
         )
     simulated = start.readings(points)
-    for channel in CHANNELS:
+    for channel in SIDEWAYS:
         model, measured = getattr(simulated, channel), getattr(points, channel)
         known = np.isfinite(measured)
         if not np.any(known) or np.std(model[known]) == 0.0 or np.std(measured[known]) == 0.0:
@@ -75,7 +75,7 @@ def another_tyre(tyre: Tyre, config: Config) -> AnotherTyre | None:
 
 def without_noise(noise: Noise) -> WithoutNoise | None:
     """The channels whose noise is assumed, because their readings hardly scatter; None without any."""
-    assumed = tuple((name, noise.typical(name)) for name in CHANNELS if noise.scatter[name].without_noise)
+    assumed = tuple((name, noise.typical(name)) for name in SIDEWAYS if noise.scatter[name].without_noise)
     return WithoutNoise(assumed) if assumed else None
 
 
@@ -86,7 +86,7 @@ def noise_beyond_stated(found: Explanation) -> list[NoiseBeyondStated]:
         return []
     left = np.split(found.problem.measured - found.refined.state.predict(points), 2)
     out = []
-    for channel, residual in zip(CHANNELS, left, strict=True):
+    for channel, residual in zip(SIDEWAYS, left, strict=True):
         if noise.scatter[channel].scale > constants.NOISE_BEYOND_STATED:
             off = {name: rms(residual[points.sweep == k]) for k, name in enumerate(points.sweep_names)}
             off = {name: size for name, size in off.items() if np.isfinite(size)}
@@ -102,7 +102,7 @@ def offsets_or_memory(
 ) -> list[OffsetsOrMemory]:
     """The channels whose correlated errors may as well be offsets of runs, none of which is ``named`` (ids)."""
     found = []
-    for channel in CHANNELS:
+    for channel in SIDEWAYS:
         scatter = noise.scatter[channel]
         near = tuple(
             effect
@@ -135,6 +135,6 @@ def _misfit(found: Explanation) -> tuple[float, str]:
     points, noise = found.problem.points, found.scatter
     residual = np.concatenate([points.Fy, points.Mz]) - found.refined.state.predict(points)
     z = np.where(np.isfinite(noise.stated), residual / noise.stated, np.nan)
-    misfit = {name: robust(rows) for name, rows in zip(CHANNELS, np.split(z, 2), strict=True)}
+    misfit = {name: robust(rows) for name, rows in zip(SIDEWAYS, np.split(z, 2), strict=True)}
     better = min(misfit, key=lambda name: np.nan_to_num(misfit[name], nan=np.inf))
     return misfit[better], better

@@ -11,7 +11,7 @@ from scipy import stats
 
 from mffit.diagnosis import constants
 from mffit.diagnosis.remainder import Remainder
-from mffit.quantities import CHANNELS, CONDITIONS
+from mffit.quantities import CONDITIONS, SIDEWAYS
 
 ALONG_SWEEPS = "the course of the sweeps"
 DIRECTION = "direction of rolling"
@@ -74,7 +74,7 @@ def structure(left: Remainder) -> Structure:
     """
     found = []
     n = len(left.points)
-    for k, channel in enumerate(CHANNELS):
+    for k, channel in enumerate(SIDEWAYS):
         rows = np.flatnonzero(left.used[k * n : (k + 1) * n])
         if not len(rows):
             continue

@@ -8,7 +8,7 @@ import numpy as np
 
 from mffit.diagnosis import constants
 from mffit.diagnosis.noise import Noise
-from mffit.quantities import CHANNELS
+from mffit.quantities import SIDEWAYS
 from mffit.scatter import rms, robust
 
 
@@ -40,7 +40,7 @@ def outlying(noise: Noise) -> np.ndarray:
     if noise.weight is None:
         return np.empty(0, dtype=int)
     half = len(noise.weight) // 2
-    tails = np.repeat([noise.scatter[name].tails for name in CHANNELS], half)
+    tails = np.repeat([noise.scatter[name].tails for name in SIDEWAYS], half)
     heavy = np.isfinite(tails) & np.isfinite(noise.stated)
     known = np.where(heavy, tails, 1.0)
     lost = noise.weight < (known + 1.0) / (known + constants.DIAGNOSED_OUTLIER_RATIO**2)

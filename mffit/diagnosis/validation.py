@@ -11,7 +11,7 @@ from mffit.diagnosis.hypothesis import Hypothesis
 from mffit.diagnosis.inexact import EXACT, Inexactness
 from mffit.diagnosis.noise import Noise
 from mffit.diagnosis.problem import DiagnosisProblem
-from mffit.quantities import CHANNELS
+from mffit.quantities import SIDEWAYS
 from mffit.rig import Simulation
 from mffit.rig_errors import RIG_ERRORS
 from mffit.scatter import rms
@@ -128,5 +128,5 @@ def _raised(before: np.ndarray, after: np.ndarray, noise: Noise, numbers: int) -
     of_Fy = noise.used < len(before) // 2
     chance = numbers + constants.RAISED_GAP * np.sqrt(2.0 * numbers)
     return tuple(
-        name for name, rows in zip(CHANNELS, (of_Fy, ~of_Fy), strict=True) if change[rows].sum() > chance
+        name for name, rows in zip(SIDEWAYS, (of_Fy, ~of_Fy), strict=True) if change[rows].sum() > chance
     )

@@ -30,7 +30,7 @@ from mffit.diagnosis.structure import Structure
 from mffit.diagnosis.ties import Separation
 from mffit.diagnosis.validation import Gap, Validation
 from mffit.effects import NEEDS, Effect
-from mffit.quantities import CHANNELS, CONDITIONS
+from mffit.quantities import CHANNELS, CONDITIONS, SIDEWAYS
 from mffit.rig_errors import OF_RUN, error_of, unit_of, words_of
 from mffit.rounding import per_cent, to_uncertainty
 from mffit.suspicion import Misread, Outlier
@@ -229,7 +229,7 @@ def _another_tyre(found: AnotherTyre) -> str:
 def _held_out(before: Gap, after: Gap) -> str:
     return " and ".join(
         f"the {q.word} misses by {_short(after.rms(name))} {q.unit} instead of {_short(before.rms(name))} {q.unit}"
-        for name, q in CHANNELS.items()
+        for name, q in SIDEWAYS.items()
         if math.isfinite(after.rms(name))
     )
 

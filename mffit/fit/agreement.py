@@ -12,7 +12,7 @@ import numpy as np
 from mffit.fit.stages import ODD_TERMS
 from mffit.parts import Parts
 from mffit.points import Points
-from mffit.quantities import CHANNELS
+from mffit.quantities import SIDEWAYS
 from mffit.rig import Readings, Simulation
 from mffit.scatter import rms
 
@@ -48,7 +48,7 @@ def agreement(model: np.ndarray, measured: np.ndarray) -> Agreement:
 
 def with_points(readings: Readings, points: Points) -> dict[str, Agreement]:
     """By channel, the agreement of the fitted model's readings with the raw points."""
-    return {name: agreement(getattr(readings, name), getattr(points, name)) for name in CHANNELS}
+    return {name: agreement(model, points.channel(name)) for name, model in readings.items()}
 
 
 def with_odd_part(values: Mapping[str, Any], points: Points, parts: Parts) -> dict[str, Agreement]:
@@ -59,5 +59,5 @@ def with_odd_part(values: Mapping[str, Any], points: Points, parts: Parts) -> di
     model = Simulation({**values, **dict.fromkeys(ODD_TERMS, 0.0)}, turn_slip=False).readings(straight)
     used = (parts.paired != "unpaired") & (points.direction > 0)
     return {
-        name: agreement(getattr(model, name)[used], getattr(parts, f"{name}_odd")[used]) for name in CHANNELS
+        name: agreement(getattr(model, name)[used], getattr(parts, f"{name}_odd")[used]) for name in SIDEWAYS
     }

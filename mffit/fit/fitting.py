@@ -7,8 +7,6 @@ from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any, NamedTuple
 
-import numpy as np
-
 from mffit.config import axis_signs
 from mffit.config.declared import as_declared
 from mffit.fit import agreement
@@ -74,11 +72,11 @@ def fit(
     )
     plan = fit_plan(config, points, measured, known, start, fleet, turning)
     start = hand.starting(start)
-    problem = fit_problem(config, points, measured, known.values)
+    problem = fit_problem(config, points, measured, known.values, plan.channels(points))
     found, doubts = _fitted_and_judged(config, problem, start, plan, progress)
     fitted, full = found.plain, found.full
-    readings, best = (fit.simulation.readings(points) for fit in (fitted, full))
-    outlying = outliers(points, _sigma(problem), _sigma(full.problem), best)
+    readings, best = (fit.simulation.readings(points, problem.channels) for fit in (fitted, full))
+    outlying = outliers(points, problem.sigma, full.problem.sigma, best)
 
     progress("deriving the property files")
     use = plain_use(config)
@@ -99,8 +97,7 @@ def fit(
         odd=agreement.with_odd_part(files.by_use["normal"].tyre.values, points, parts),
         simulation=fitted.simulation,
         rig=fitted.rig,
-        Fy_model=readings.Fy,
-        Mz_model=readings.Mz,
+        model=readings,
         posterior=fitted.posterior,
         stages=fitted.stages,
         coverage=plan.cover,
@@ -161,7 +158,7 @@ def _fitted_and_judged(
         progress("predicting each sweep from the others")
         campaign = JudgedSweeps(
             points=problem.points,
-            stated=_sigma(problem),
+            stated=problem.sigma,
             signs=axis_signs(config),
             refit=lambda rows: _as_model(found.refit(rows)),
         )
@@ -185,11 +182,6 @@ def _as_model(fitted: Fitted) -> FittedModel:
         covariance=fitted.posterior.covariance,
         scale=fitted.scale,
     )
-
-
-def _sigma(problem: FitProblem) -> tuple[np.ndarray, np.ndarray]:
-    """Uncertainty of Fy and Mz (n,) that the problem uses as weight."""
-    return problem.sigma["Fy"], problem.sigma["Mz"]
 
 
 def _epsilon_gamma(values: Mapping[str, Any], points: Points, measured: Any) -> float | None:

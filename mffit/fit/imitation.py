@@ -12,7 +12,7 @@ from mffit.fit import constants
 from mffit.fit.constraints import Envelope, limits
 from mffit.fit.road import Road
 from mffit.least_squares import FreeNumber, LeastSquaresProblem, Linear, Solution, solve
-from mffit.quantities import CHANNELS
+from mffit.quantities import SIDEWAYS
 from mffit.rig import Readings
 from tir.derivatives import gradient, plain, traced
 from tir.outputs import outputs_of
@@ -41,7 +41,8 @@ class Lines(NamedTuple):
 
 def forces(values: Mapping[str, Any], road: Road, *, turn_slip: bool, phi_t: float = 0.0) -> Readings:
     """Fy [N] and Mz [Nm] of a file on the road."""
-    return Readings(*_outputs(tuple(CHANNELS), values, road, turn_slip, phi_t))
+    found = _outputs(tuple(SIDEWAYS), values, road, turn_slip, phi_t)
+    return Readings(**dict(zip(SIDEWAYS, found, strict=True)))
 
 
 def force(channel: str, values: Mapping[str, Any], road: Road, *, turn_slip: bool, phi_t: float = 0.0) -> Any:

@@ -62,8 +62,8 @@ class Reference(NamedTuple):
         return FileFigures(tyre, misfit, camber_stiffness(tyre, load, turn_slip=turn_slip))
 
     def _misfits(self, tyre: Tyre, *, turn_slip: bool, phi_t: float) -> dict[str, Misfit]:
-        own = forces(tyre.values, self.road, turn_slip=turn_slip, phi_t=phi_t)._asdict()
-        aim = forces(self.model, self.road, turn_slip=bool(self.phi_t), phi_t=phi_t)._asdict()
+        own = forces(tyre.values, self.road, turn_slip=turn_slip, phi_t=phi_t)
+        aim = forces(self.model, self.road, turn_slip=bool(self.phi_t), phi_t=phi_t)
         return {channel: self._misfit(own[channel] - aim[channel]) for channel in own}
 
     def _misfit(self, difference: np.ndarray) -> Misfit:

@@ -21,6 +21,7 @@ from mffit.fit.stages import ODD_TERMS, STAGES
 from mffit.fit.zeros import TurningZeros
 from mffit.least_squares import FreeNumber
 from mffit.points import Points
+from mffit.quantities import CHANNELS, SIDEWAYS
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,6 +42,21 @@ class FitPlan:
     def free(self) -> list[str]:
         """Coefficients that the stages free."""
         return [name for row in self.cover for name in row.free]
+
+    def channels(self, points: Points) -> tuple[str, ...]:
+        """Channels that the fit uses: those of every test, and measured ones for which a stage frees a coefficient.
+
+        What tir does not compute, or nothing is free for, is left alone: it would take time and change no number.
+        """
+        fitted = {
+            channel
+            for stage, row in zip(STAGES, self.cover, strict=True)
+            if row.free
+            for channel in stage.channels
+        }
+        return tuple(
+            name for name in CHANNELS if name in SIDEWAYS or (name in fitted and name in points.measured)
+        )
 
     def coefficients(self, names: Iterable[str], problem: FitProblem) -> list[FreeNumber]:
         """The named coefficients from their current values, with their bounds and priors."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -13,7 +13,8 @@ from mffit.fit import constants
 from mffit.fit.problem import FitProblem
 from mffit.least_squares import Solution
 from mffit.points import Points
-from mffit.rig import Simulation
+from mffit.quantities import SIDEWAYS
+from mffit.rig import Readings, Simulation
 from mffit.rig_errors import error_of
 
 
@@ -33,17 +34,19 @@ class Posterior(Brief):
         """The posterior with one more error, which moves the numbers by ``shift`` (k,) if it has its standard size."""
         return Posterior(self.names, self.covariance + np.outer(shift, shift))
 
-    def band(self, tyre: Simulation, points: Points) -> tuple[np.ndarray, np.ndarray]:
-        """Half width of the 95 % band of Fy [N] and Mz [Nm] at any conditions (n,).
+    def band(self, tyre: Simulation, points: Points, channels: Iterable[str] = SIDEWAYS) -> Readings:
+        """Half width (n,) of the 95 % band of some channels at any conditions (n,).
 
         It is the band of the tyre's forces, not of the rig's readings: rig errors count only through the coefficients that they
         made uncertain. Of ``points`` only the set-points are used; ``tyre`` has no rig errors.
         """
         rows = [i for i, name in enumerate(self.names) if error_of(name) is None]
-        slopes = tyre.sensitivities(points, [self.names[i] for i in rows])[1]
+        slopes = tyre.sensitivities(points, [self.names[i] for i in rows], channels)[1]
         covariance = self.covariance[np.ix_(rows, rows)]
-        Fy, Mz = (COVERAGE_FACTOR_95 * spread_through(slope, covariance) for slope in slopes)
-        return Fy, Mz
+        half = {
+            name: COVERAGE_FACTOR_95 * spread_through(slope, covariance) for name, slope in slopes.items()
+        }
+        return Readings(**half)
 
 
 def joint(problem: FitProblem, solution: Solution, held: Mapping[str, float]) -> Posterior:

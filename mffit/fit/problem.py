@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from types import SimpleNamespace
 from typing import Any
@@ -17,7 +17,7 @@ from mffit.fit.rolling import effective_radius
 from mffit.least_squares import FreeNumber, LeastSquaresProblem, Linear
 from mffit.measured import RadiusReading, radius_readings
 from mffit.points import Points
-from mffit.quantities import CHANNELS
+from mffit.quantities import SIDEWAYS
 from mffit.rig import Readings, Simulation, reference_speed
 from tir.derivatives import gradient, plain, traced
 
@@ -82,13 +82,22 @@ class FitProblem:
             nominal={name: 1.0 / share for name, share in smaller.items()},
         )
 
+    @property
+    def channels(self) -> tuple[str, ...]:
+        """Channels that the fit uses, in the order of ``CHANNELS``."""
+        return tuple(self.sigma)
+
+    def readings(self) -> Readings:
+        """What the simulation reads at the points, in the channels of the fit."""
+        return self.simulation.readings(self.points, self.sigma)
+
     def misfit(self, readings: Readings | None = None) -> dict[str, np.ndarray]:
         """By channel, (model - measured) / sigma (n,); 0 where the channel is not used."""
-        readings = self.simulation.readings(self.points) if readings is None else readings
+        readings = self.readings() if readings is None else readings
         out = {}
         for name, sigma in self.sigma.items():
-            measured = np.nan_to_num(getattr(self.points, name))
-            out[name] = np.where(self._used(name), (getattr(readings, name) - measured) / sigma, 0.0)
+            measured = np.nan_to_num(self.points.channel(name))
+            out[name] = np.where(self._used(name), (readings[name] - measured) / sigma, 0.0)
         return out
 
     def free(self, names: Sequence[str]) -> LeastSquaresProblem:
@@ -104,9 +113,9 @@ class FitProblem:
 
         def linear(x: np.ndarray) -> Linear:
             here = at(x)
-            readings, by_channel = here.simulation.sensitivities(here.points, names)
+            readings, by_channel = here.simulation.sensitivities(here.points, names, here.sigma)
             slopes = [
-                getattr(by_channel, name) / sigma[:, None] * here._used(name)[:, None]
+                by_channel[name] / sigma[:, None] * here._used(name)[:, None]
                 for name, sigma in here.sigma.items()
             ]
             radii, radii_slope = here._radii(names)
@@ -121,7 +130,7 @@ class FitProblem:
         return LeastSquaresProblem(residual, linear)
 
     def _used(self, channel: str) -> np.ndarray:
-        return np.isfinite(self.sigma[channel]) & np.isfinite(getattr(self.points, channel))
+        return np.isfinite(self.sigma[channel]) & np.isfinite(self.points.channel(channel))
 
     def _radii(self, names: Sequence[str]) -> tuple[np.ndarray, np.ndarray]:
         """Residuals of the measured effective radii and their derivatives.
@@ -157,9 +166,19 @@ class FitProblem:
         return weight * np.where(broken, value, 0.0), weight * slope * broken[:, None]
 
 
-def fit_problem(config: Any, points: Points, measured: Any, values: Mapping[str, Any]) -> FitProblem:
-    """The problem before the fit: points as read, weights as stated, rig errors as far as they are known."""
+def fit_problem(
+    config: Any,
+    points: Points,
+    measured: Any,
+    values: Mapping[str, Any],
+    channels: Iterable[str] = SIDEWAYS,
+) -> FitProblem:
+    """The problem before the fit: points as read, weights as stated, rig errors as far as they are known.
+
+    Without Fx among the ``channels`` nothing of longitudinal slip is free, so driven and braked points have no weight.
+    """
     disc = config.rig.on_disc
+    used = np.ones(len(points), dtype=bool) if "Fx" in channels else points.free_rolling
     return FitProblem(
         points=points,
         simulation=Simulation(
@@ -170,8 +189,12 @@ def fit_problem(config: Any, points: Points, measured: Any, values: Mapping[str,
             radius_m=config.rig.radius or float("nan"),
         ),
         sigma={
-            name: weights.stated_or_nominal(getattr(points, f"u_{name}"), getattr(points, name))
-            for name in CHANNELS
+            name: np.where(
+                used,
+                weights.stated_or_nominal(points.u(name), np.where(used, points.channel(name), np.nan)),
+                np.inf,
+            )
+            for name in channels
         },
         envelope=envelope(covered_ranges(points)),
         radii=radius_readings(config) if disc else (),

@@ -5,8 +5,6 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-import numpy as np
-
 from mffit.brief import Brief
 from mffit.fit.agreement import Agreement
 from mffit.fit.bands import BandsByPressure
@@ -20,7 +18,7 @@ from mffit.fit.posterior import Posterior
 from mffit.fit.stages import StageRecord
 from mffit.fit.temperature import AtTemperature
 from mffit.quantities import CHANNELS
-from mffit.rig import Simulation
+from mffit.rig import Readings, Simulation
 from mffit.suspicion import Doubt, Outlier
 from tir import Tyre
 
@@ -36,8 +34,7 @@ class FitResult(Brief):
     odd: Mapping[str, Agreement]  #: of the file for turn slip off with the odd part, turn slip off
     simulation: Simulation  #: ``tyre`` on the rig as fitted
     rig: Mapping[str, tuple[float, float]]  #: rig error -> (value, standard error) of the plain file's fit
-    Fy_model: np.ndarray  #: (n,) [N]
-    Mz_model: np.ndarray  #: (n,) [Nm]
+    model: Readings  #: of ``simulation`` at the points, in the channels of the fit
     posterior: Posterior  #: joint uncertainty of tyre and rig
     stages: tuple[StageRecord, ...]
     coverage: tuple[StageCoverage, ...]

@@ -103,13 +103,12 @@ def _points_of(stage: Stage, points: Points) -> np.ndarray:
 
 
 def _record(name: str, title: str, parameters: Sequence[str], problem: FitProblem) -> StageRecord:
-    out, points = problem.simulation.readings(problem.points), problem.points
+    out = problem.readings()
     return StageRecord(
         name=name,
         title=title,
         parameters=tuple(parameters),
-        rmse_Fy=rms(out.Fy - points.Fy),
-        rmse_Mz=rms(out.Mz - points.Mz),
+        rmse={channel: rms(out[channel] - problem.points.channel(channel)) for channel in out},
     )
 
 

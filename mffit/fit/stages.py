@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 from tir.parameters import TABLE
@@ -35,8 +36,7 @@ class StageRecord:
     name: str
     title: str
     parameters: tuple[str, ...]
-    rmse_Fy: float
-    rmse_Mz: float
+    rmse: Mapping[str, float]  #: by channel of the fit
     note: str = ""
 
 

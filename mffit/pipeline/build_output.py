@@ -17,6 +17,7 @@ from mffit.pipeline.inputs import inputs_of
 from mffit.pipeline.members import write_members
 from mffit.points import Points
 from mffit.points.stretch import StretchNote
+from mffit.quantities import column
 from mffit.recordings.stretch_table import stretch_table
 from mffit.results import BuildResult, as_json
 from mffit.suspicion import marks
@@ -58,7 +59,8 @@ def points_table(result: BuildResult) -> pd.DataFrame:
     signs = configuration.axis_signs(result.config)
     table["Fy_odd_N"], table["Fy_even_N"] = parts.Fy_odd * signs["Fy"], parts.Fy_even * signs["Fy"]
     table["Mz_odd_Nm"], table["Mz_even_Nm"] = parts.Mz_odd * signs["Mz"], parts.Mz_even * signs["Mz"]
-    table["Fy_model_N"], table["Mz_model_Nm"] = fit.Fy_model * signs["Fy"], fit.Mz_model * signs["Mz"]
+    for channel, model in fit.model.items():
+        table[column(channel, "model")] = model * signs.get(channel, 1.0)
     table["paired"] = parts.paired
     table["outlier"] = marks(fit.outliers, len(table))
     table["doubtful"] = np.isin(np.arange(len(table)), [row for doubt in fit.doubts for row in doubt.index])

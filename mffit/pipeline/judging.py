@@ -17,7 +17,7 @@ from mffit.fit import FitResult
 from mffit.fit.agreement import with_points
 from mffit.measured import Measured, radius_readings
 from mffit.points import Points
-from mffit.quantities import CHANNELS
+from mffit.quantities import SIDEWAYS
 from mffit.rig import Readings
 from mffit.scatter import rms
 from mffit.suspicion import CamberReduction, Doubt, FinishedFit, LeftOutSweeps, Outlier, Trust, judge
@@ -51,7 +51,7 @@ def judged(
         broken=tuple(_refused(files)),
         camber_reduction=_camber_reduction(config, measured),
     )
-    plain = replace(finished, model=Readings(fitted.Fy_model, fitted.Mz_model))
+    plain = replace(finished, model=fitted.model)
     return replace(judge(finished), over_noise=plain.over_noise), left
 
 
@@ -60,9 +60,9 @@ def judged_diagnosis(diagnosis: Diagnosis) -> Trust:
     points = diagnosis.points
     if diagnosis.noise.origin is not Origin.STATED:
         points = points.replace(u_Fy=np.nan, u_Mz=np.nan)
-    after = Readings(*np.split(diagnosis.after, 2))
+    after = Readings.split(diagnosis.after, SIDEWAYS)
     left_out = {}
-    for name in CHANNELS:
+    for name in SIDEWAYS:
         difference = getattr(after, name) - getattr(points, name)
         own = [rms(difference[points.sweep == k]) for k in np.unique(points.sweep[np.isfinite(difference)])]
         if own:
@@ -95,7 +95,7 @@ def _cause(doubts: Sequence[Doubt], left: Remains) -> str:
 
 def _used(points: Points, outliers: Iterable[Outlier]) -> dict[str, np.ndarray]:
     """By channel, mask (n,) of the readings that were measured and have a weight."""
-    out = {name: np.isfinite(getattr(points, name)) for name in CHANNELS}
+    out = {name: np.isfinite(getattr(points, name)) for name in SIDEWAYS}
     for outlier in outliers:
         out[outlier.channel][outlier.row] = False
     return out

@@ -12,7 +12,7 @@ from mffit.fit import FitResult
 from mffit.measured import Measured
 from mffit.pipeline.measuring import epsilon_gamma, measure, without_play
 from mffit.points import Points
-from mffit.quantities import CHANNELS
+from mffit.quantities import SIDEWAYS
 from mffit.rig import Simulation
 from mffit.rig_errors import NO_FAULTS
 from tir import Tyre
@@ -25,7 +25,7 @@ def without_outliers(
     if not fitted.outliers:
         return None
     readings = {}
-    for channel in CHANNELS:
+    for channel in SIDEWAYS:
         rejected = [outlier.row for outlier in fitted.outliers if outlier.channel == channel]
         readings[channel] = np.where(
             np.isin(np.arange(len(points)), rejected), np.nan, getattr(points, channel)
@@ -44,8 +44,8 @@ def finite_spin_bias(
     """
     if simulation is None:
         return None
-    Fy, Mz = replace(simulation, faults=NO_FAULTS, of_parts={}).readings(points)
-    found = epsilon_gamma(without_play(config), points.replace(Fy=Fy, Mz=Mz), base)
+    readings = replace(simulation, faults=NO_FAULTS, of_parts={}).readings(points)
+    found = epsilon_gamma(without_play(config), points.replace(**readings), base)
     return None if found is None else found.value - float(simulation.values["PECP1"])
 
 

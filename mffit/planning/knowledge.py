@@ -92,14 +92,14 @@ class Knowledge:
     def with_readings(self, run: PlannedRun, draw: np.random.Generator | None = None) -> Points:
         """The set-points of a run with the readings that the fitted rig would give; with noise if ``draw`` is given."""
         assert run.points is not None
-        read = self.simulation.readings(run.points)
+        read = self.simulation.readings(run.points, self._sigma)
         if draw is None:
-            return run.points.replace(Fy=read.Fy, Mz=read.Mz)
-        Fy, Mz = (
-            values + (sigma if math.isfinite(sigma) else 0.0) * draw.standard_normal(len(values))
-            for values, sigma in zip(read, self._sigma.values(), strict=True)
+            return run.points.replace(**read)
+        noise = {name: sigma if math.isfinite(sigma) else 0.0 for name, sigma in self._sigma.items()}
+        n = len(run.points)
+        return run.points.replace(
+            **{name: values + noise[name] * draw.standard_normal(n) for name, values in read.items()}
         )
-        return run.points.replace(Fy=Fy, Mz=Mz)
 
     def _zeros_of_new_setups(self) -> dict[str, float]:
         """Prior spread of the zeros of set-ups that runs may add, by number."""

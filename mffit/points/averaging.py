@@ -11,25 +11,21 @@ from mffit.points import constants
 from mffit.points.mean import mean_and_error
 from mffit.points.points import Points, make_points
 from mffit.points.stretch import Stretch
+from mffit.quantities import CHANNELS, u_column
 from mffit.sweeps import Sweep
-from mffit.sweeps.slip import slip
 
 AVERAGED_CHANNELS = (
-    "alpha",
-    "gamma",
-    "Fz",
-    "p",
-    "V",
-    "Fy",
-    "Mz",
-    "Mx",
-    "My",
-    "T",
-    "t",
-    "u_Fy",
-    "u_Mz",
-    "iteration",
+    *("alpha", "gamma", "kappa", "Fz", "p", "V", "T", "t", "iteration"),
+    *CHANNELS,
+    *(f"u_{name}" for name in CHANNELS),
 )
+
+AVERAGED_RANGE = {
+    "alpha": constants.AVERAGED_ANGLE.rad,
+    "gamma": constants.AVERAGED_ANGLE.rad,
+    "kappa": float(constants.AVERAGED_SLIP),
+}
+"""Largest change of each swept setting over which a sweep is averaged."""
 
 
 def rows_as_points(sweep: Sweep, phi_t: float, rows: np.ndarray) -> Points:
@@ -45,12 +41,14 @@ def over_plateaus(sweep: Sweep, phi_t: float, kept: list[Stretch], faulty: np.nd
     means = {
         name: np.array([np.mean(getattr(sweep, name)[part]) for part in parts]) for name in AVERAGED_CHANNELS
     }
-    for channel, u in (("Fy", "u_Fy"), ("Mz", "u_Mz")):
-        errors = np.array([mean_and_error(getattr(sweep, channel)[part])[1] for part in parts])
-        # A record without scatter does not show how exact it is.
-        means[u] = np.where(np.isfinite(means[u]), means[u], np.where(errors > 0.0, errors, np.nan))
     table = _averaged_table(sweep.table, parts)
-    table["u_Fy_N"], table["u_Mz_Nm"] = means["u_Fy"], means["u_Mz"]
+    for channel in CHANNELS:
+        values, u = getattr(sweep, channel), f"u_{channel}"
+        if np.any(np.isfinite(values)):
+            errors = np.array([mean_and_error(values[part])[1] for part in parts])
+            # A record without scatter does not show how exact it is.
+            means[u] = np.where(np.isfinite(means[u]), means[u], np.where(errors > 0.0, errors, np.nan))
+        table[u_column(channel)] = means[u]
     first = np.array([part[0] for part in parts])
     return _points(sweep, phi_t, means, table.dropna(axis="columns", how="all"), first)
 
@@ -120,12 +118,8 @@ def _blocks(sweep: Sweep, rows: np.ndarray) -> tuple[np.ndarray, int]:
     interval = float(np.median(np.diff(time))) if len(rows) > 1 else constants.AVERAGED_TIME
     step = float(constants.AVERAGED_TIME)
     apart = max(1, round(step / interval))  # samples; slip is noisy from one to the next
-    for x, samples, most in (
-        (sweep.alpha, 1, constants.AVERAGED_ANGLE.rad),
-        (sweep.gamma, 1, constants.AVERAGED_ANGLE.rad),
-        (np.nan_to_num(slip(sweep)), apart, constants.AVERAGED_SLIP),
-    ):
-        values = x[rows]
+    for name, most in AVERAGED_RANGE.items():
+        values, samples = getattr(sweep, name)[rows], apart if name == "kappa" else 1
         change = np.abs(values[samples:] - values[:-samples]) / samples
         moved = float(np.median(change)) / interval if len(change) else 0.0
         if moved > 0.0:

@@ -10,16 +10,13 @@ from mffit.points.settling import settled
 from mffit.points.steady import Scale, SteadySettings, stretches
 from mffit.points.stretch import MOVE, PLATEAU, SWEEP, Stretch
 from mffit.sweeps import Sweep
-from mffit.sweeps.slip import slip
 
 ROLLING_IN = f"the first {constants.TRANSIENT_ROLL:g} m of rolling behind a gap or a change"
 
 
 def settings_of(sweep: Sweep) -> SteadySettings:
     """The settings of a time series."""
-    return SteadySettings(
-        sweep.time, sweep.alpha, sweep.gamma, sweep.Fz, sweep.p, sweep.V, np.nan_to_num(slip(sweep))
-    )
+    return SteadySettings(**{name: getattr(sweep, name) for name in SteadySettings._fields})
 
 
 def chosen(sweep: Sweep, wrong: list[Fault], scale: Scale | None) -> list[Stretch]:

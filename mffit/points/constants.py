@@ -10,6 +10,7 @@ CAMBER_LEVEL_TOLERANCE = Real(0.8, "deg", "Camber angles of one level differ by 
 PRESSURE_LEVEL_TOLERANCE = Real(10e3, "Pa", "Pressures of one level differ by less.")
 SPEED_LEVEL_TOLERANCE = Real(0.1, "-", "Speeds of one level differ by less, relatively.")
 SIDESLIP_LEVEL_TOLERANCE = Real(0.4, "deg", "Sideslip angles of one level differ by less.")
+SLIP_LEVEL_TOLERANCE = Real(0.02, "-", "Longitudinal slips of one level differ by less.")
 SMALLEST_LEVEL = Real(0.02, "-", "Fewest values of a level over those of the largest level.")
 LEVEL_FLANK = Real(
     0.3, "-", "Density over that half a tolerance away below which values are a flank of that level."
@@ -43,6 +44,11 @@ MOST_SAMPLES_FOR_NOISE = Count(100_000, "-", "Most samples from which the noise 
 STEP_OF_ANGLE = Real(
     0.15, "deg", "Smallest change that makes another set-point; the noise of a logger is below it."
 )
+STEP_OF_SLIP = Real(
+    0.015,
+    "-",
+    "Smallest change of longitudinal slip that makes another set-point; that of free rolling wanders less.",
+)
 STEP_OF_CONDITION = Real(0.08, "-", "Relative change of load, pressure or speed to another set-point.")
 STEP_OVER_NOISE = Real(6.0, "-", "Change over the noise of its mean that makes another set-point.")
 COMPARED_APART = Real(0.5, "s", "Time between settings that are compared to find a change.")
@@ -55,14 +61,13 @@ STAIRCASE_SHARE = Real(
     0.5, "-", "Share of rest above which angles move from plateau to plateau instead of sweeping."
 )
 SMALLEST_SWEEP = Real(3.0, "deg", "Smallest range of a sweeping angle.")
-STEP_OF_SLIP = Real(0.02, "-", "Smallest change of slip to another set-point; free rolling wanders less.")
-SMALLEST_SLIP_SWEEP = Real(0.05, "-", "Smallest range of a sweeping slip.")
 STEP_OF_CONDITION_WHILE_DRIVEN = Real(
     0.25,
     "-",
     "Relative change of load, pressure or speed to another set-point while slip moves: drive and brake forces "
     "disturb the control of the load by a tenth, and the points keep the load as read.",
 )
+SMALLEST_SWEEP_OF_SLIP = Real(0.05, "-", "Smallest range of a sweep of longitudinal slip.")
 RETURNED_SHARE = Real(
     0.3, "-", "Share of its range that a sweep beside plateaus returns; a move does not return."
 )

@@ -14,7 +14,6 @@ from mffit.points import constants
 from mffit.points.stretch import runs
 from mffit.scatter import robust
 from mffit.sweeps import Sweep
-from mffit.sweeps.slip import longitudinal_force, slip
 
 DRIVEN_RULE = "driven-or-braked"
 DRIVEN = "driven or braked, and Fx was not measured"
@@ -44,8 +43,8 @@ class FaultRule:
 
 
 def driven(sweep: Sweep) -> np.ndarray:
-    """Samples or points (n,) at which the wheel is driven or braked without a reading of the longitudinal force."""
-    return (np.abs(slip(sweep)) > constants.FREE_ROLLING_SLIP) & ~np.isfinite(longitudinal_force(sweep))
+    """Samples or points (n,) at which the wheel does not roll freely and no longitudinal force was measured."""
+    return (np.abs(sweep.kappa) > constants.FREE_ROLLING_SLIP) & ~np.isfinite(sweep.Fx)
 
 
 def faults(sweep: Sweep) -> list[Fault]:
@@ -161,7 +160,7 @@ FAULTS = (
     ),
     FaultRule(
         id=DRIVEN_RULE,
-        looks_at="Longitudinal slip, if the longitudinal force was not measured",
+        looks_at="Longitudinal slip, where Fx was not measured",
         limits=(constants.FREE_ROLLING_SLIP,),
         reason=DRIVEN,
         find=lambda sweep, _: driven(sweep),

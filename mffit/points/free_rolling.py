@@ -4,25 +4,16 @@ from __future__ import annotations
 
 import numpy as np
 
-from mffit.points import constants
 from mffit.points.faulty import DRIVEN_RULE
 from mffit.points.left_out import LeftOut
 from mffit.points.loading import Reading
-from mffit.points.points import Points
 
 ONLY_FREE = "driven or braked, and only free rolling is fitted"
 
 
-def rolls_freely(points: Points) -> np.ndarray:
-    """Mask (n,) of the points without longitudinal slip, or without a reading of it."""
-    if "kappa" not in points.table:
-        return np.ones(len(points), dtype=bool)
-    return ~(np.abs(points.table["kappa"].to_numpy(dtype=float)) > constants.FREE_ROLLING_SLIP)
-
-
 def free_rolling(found: Reading) -> Reading:
     """The reading without driven and braked points, which it names."""
-    free = rolls_freely(found.points)
+    free = found.points.free_rolling
     if np.all(free):
         return found
     left_out, warnings = [], []

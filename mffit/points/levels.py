@@ -29,6 +29,7 @@ CAMBER = LevelKind("camber", constants.CAMBER_LEVEL_TOLERANCE.rad)  # [rad]
 PRESSURE = LevelKind("pressure", constants.PRESSURE_LEVEL_TOLERANCE)  # [Pa]
 SPEED = LevelKind("speed", constants.SPEED_LEVEL_TOLERANCE, relative=True)  # [m/s]
 SIDESLIP = LevelKind("sideslip", constants.SIDESLIP_LEVEL_TOLERANCE.rad)  # [rad]
+SLIP = LevelKind("longitudinal slip", constants.SLIP_LEVEL_TOLERANCE)  # [-]
 
 NO_LEVEL = -1
 """Label of a value that belongs to no level."""

@@ -10,18 +10,21 @@ import numpy as np
 import pandas as pd
 
 from mffit.brief import Brief
+from mffit.points import constants
+from mffit.quantities import CHANNELS
 
 INTEGER = frozenset({"direction", "mount", "sweep", "file", "line", "setup"})
 SHARED = frozenset({"sweep_names", "files", "setups", "table"})
 COUNTED = {"sweep": "sweep_names", "file": "files", "setup": "setups"}
 """Fields of indices, and the field with the names that they count."""
 OPTIONAL: Mapping[str, Any] = {
-    **dict.fromkeys(("Fy", "Mz", "Mx", "My", "T", "t", "u_Fy", "u_Mz", "iteration", "time"), np.nan),
+    **dict.fromkeys((*CHANNELS, *(f"u_{name}" for name in CHANNELS), "T", "t", "iteration", "time"), np.nan),
+    "kappa": 0.0,
     **dict.fromkeys(("direction", "mount"), 1),
     **dict.fromkeys(("sweep", "file", "line", "setup"), 0),
     "continuous": False,
 }
-"""Defaults of :func:`make_points`: not measured, forwards, normal mount, one sweep of one file, one set-up."""
+"""Defaults of :func:`make_points`: not measured, rolling freely, forwards, normal mount, one sweep of one file, one set-up."""
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
@@ -29,23 +32,33 @@ class Points(Brief):
     """Steady points in ISO-W, contact frame W, SI; arrays are (n,) and read-only.
 
     Angles are the rig's readings in ISO axes; nothing is corrected. A channel that was not measured is all NaN, except
-    pressure and speed, which are nominal then. Built by :func:`make_points`.
+    pressure and speed, which are nominal then, and slip, which is 0. Built by :func:`make_points`. Code that works for any
+    channel asks :attr:`measured`, :meth:`channel` and :meth:`u`; the fields serve what is about one channel by nature.
     """
 
     alpha: np.ndarray  #: sideslip angle as read [rad]
     gamma: np.ndarray  #: camber (inclination angle) as read [rad]
+    kappa: np.ndarray  #: longitudinal slip [-], positive if driven; 0 if it was not measured: rolling freely
     Fz: np.ndarray  #: load, positive [N]
     p: np.ndarray  #: inflation pressure [Pa]
     V: np.ndarray  #: speed, positive in both directions [m/s]
     phi_t: np.ndarray  #: turn slip of the path, declared radius [1/m]
+    Fx: np.ndarray  #: [N]
     Fy: np.ndarray  #: [N]
-    Mz: np.ndarray  #: [Nm]
     Mx: np.ndarray  #: [Nm]
     My: np.ndarray  #: [Nm]
+    Mz: np.ndarray  #: [Nm]
+    RL: np.ndarray  #: loaded radius [m]
+    omega: np.ndarray  #: wheel speed [rad/s], negative when the wheel rolls backwards
     T: np.ndarray  #: tyre temperature [degC]
     t: np.ndarray  #: when the point was taken [s]
-    u_Fy: np.ndarray  #: standard uncertainty of Fy [N]
-    u_Mz: np.ndarray  #: standard uncertainty of Mz [Nm]
+    u_Fx: np.ndarray  #: standard uncertainty of Fx [N]; so for every channel
+    u_Fy: np.ndarray
+    u_Mx: np.ndarray
+    u_My: np.ndarray
+    u_Mz: np.ndarray
+    u_RL: np.ndarray
+    u_omega: np.ndarray
     iteration: np.ndarray  #: step of the steering alignment; NaN when not given
     direction: np.ndarray  #: +1 forward, -1 backward
     mount: np.ndarray  #: +1 normal, -1 tyre turned on its rim
@@ -67,6 +80,26 @@ class Points(Brief):
     def headline(self) -> str:
         """Number of points and sweeps, in words."""
         return f"{len(self)} in {len(self.sweep_names)} sweeps"
+
+    def channel(self, name: str) -> np.ndarray:
+        """Readings (n,) of a channel of :data:`mffit.quantities.CHANNELS`, in its unit; NaN where it was not measured."""
+        readings: np.ndarray = getattr(self, name)
+        return readings
+
+    def u(self, name: str) -> np.ndarray:
+        """Standard uncertainty (n,) of a channel; NaN where none is stated."""
+        u: np.ndarray = getattr(self, f"u_{name}")
+        return u
+
+    @property
+    def measured(self) -> tuple[str, ...]:
+        """Names of the channels that have a reading at any point, in the order of ``CHANNELS``."""
+        return tuple(name for name in CHANNELS if np.any(np.isfinite(self.channel(name))))
+
+    @property
+    def free_rolling(self) -> np.ndarray:
+        """Mask (n,) of the points at which the wheel was neither driven nor braked."""
+        return np.abs(self.kappa) <= constants.FREE_ROLLING_SLIP
 
     @property
     def used_setups(self) -> tuple[str, ...]:

@@ -8,11 +8,10 @@ from mffit.points import constants
 from mffit.points.choice import settings_of
 from mffit.points.faulty import DRIVEN, Fault
 from mffit.points.lag import Lag
-from mffit.points.steady import SWEPT
+from mffit.points.steady import RANGE
 from mffit.points.stretch import PLATEAU, SWEEP, Stretch, StretchNote
 from mffit.scatter import finite_median
 from mffit.sweeps import Sweep
-from mffit.sweeps.slip import slip
 
 COLUMN_OF = {"alpha": "alpha_deg", "gamma": "gamma_deg", "kappa": "kappa"}
 """Column of a setting."""
@@ -37,9 +36,7 @@ def note(sweep: Sweep, stretch: Stretch, label: str, points: int, lag: Lag) -> S
     part = slice(stretch.begin, stretch.end)
     last = stretch.end - 1
     low, high = (float(np.degrees(f(sweep.alpha[part]))) for f in (np.nanmin, np.nanmax))
-    measured = slip(sweep)[part]
-    measured = measured[np.isfinite(measured)]
-    slips = (float(measured.min()), float(measured.max())) if len(measured) else (np.nan, np.nan)
+    has_slip = "kappa" in sweep.table
     return StretchNote(
         file=sweep.file,
         sweep=label,
@@ -51,8 +48,8 @@ def note(sweep: Sweep, stretch: Stretch, label: str, points: int, lag: Lag) -> S
         last_line=int(sweep.line[last]),
         alpha_from_deg=low,
         alpha_to_deg=high,
-        kappa_from=slips[0],
-        kappa_to=slips[1],
+        kappa_from=float(np.min(sweep.kappa[part])) if has_slip else np.nan,
+        kappa_to=float(np.max(sweep.kappa[part])) if has_slip else np.nan,
         gamma_deg=float(np.degrees(finite_median(sweep.gamma[part]))),
         Fz_N=finite_median(sweep.Fz[part]),
         p_kPa=1e-3 * finite_median(sweep.p[part]),
@@ -68,9 +65,7 @@ def note(sweep: Sweep, stretch: Stretch, label: str, points: int, lag: Lag) -> S
 def swept(sweep: Sweep, stretch: Stretch) -> str:
     """Column of the setting that moves most along a sweep, measured in smallest sweeps."""
     part, settings = slice(stretch.begin, stretch.end), settings_of(sweep)
-    ranges = {
-        name: float(np.ptp(getattr(settings, name)[part])) / least for name, (_, least) in SWEPT.items()
-    }
+    ranges = {name: float(np.ptp(getattr(settings, name)[part])) / least for name, least in RANGE.items()}
     return COLUMN_OF[max(ranges, key=lambda name: ranges[name])]
 
 

@@ -17,7 +17,6 @@ from mffit.config import Config
 from mffit.points import constants
 from mffit.scatter import robust
 from mffit.sweeps import Sweep
-from mffit.sweeps.slip import longitudinal_force, slip, with_slip
 
 FREE, LOADED = "free-rolling", "loaded-radius"
 """What the slip of a column may be against."""
@@ -142,7 +141,7 @@ def against_free_rolling(
         if against == LOADED or (against is None and not zero.is_free_rolling):
             for k in rows:
                 shift = zero.at(readings_of(out[k]))
-                out[k] = with_slip(out[k], (1.0 + slip(out[k])) / (1.0 + shift) - 1.0)
+                out[k] = replace(out[k], kappa=(1.0 + out[k].kappa) / (1.0 + shift) - 1.0)
     return tuple(out), tuple(sentences)
 
 
@@ -151,12 +150,12 @@ def sentence(heading: str, against: str | None, zero: SlipZero) -> str:
     found = f"Fx = 0 lies at slip {zero.said}"
     if zero.is_free_rolling:
         if against == LOADED:
-            return f"{heading} is declared against the loaded radius, but {found}, as against free rolling; taken off all the same"
+            return f"{heading} is declared against the loaded radius, but {found}, as against free rolling; taken off"
         return f"{heading} is against free rolling: {zero.within}"
     if against == FREE:
         return (
-            f'{heading} is declared against free rolling, but {found}; if it is against the loaded radius, write against = "{LOADED}" '
-            "for kappa under [columns]"
+            f"{heading} is declared against free rolling, but {found}; if it is against the loaded radius, write "
+            f'against = "{LOADED}" for kappa under [columns]'
         )
     if zero.falls:
         return f"{heading} is against the loaded radius: {found}; taken off, so that slip is against free rolling"
@@ -165,7 +164,7 @@ def sentence(heading: str, against: str | None, zero: SlipZero) -> str:
 
 def readings_of(sweep: Sweep) -> Driven:
     """The readings of a sweep."""
-    return Driven(slip(sweep), longitudinal_force(sweep), sweep.Fz, sweep.alpha, sweep.gamma, sweep.p)
+    return Driven(sweep.kappa, sweep.Fx, sweep.Fz, sweep.alpha, sweep.gamma, sweep.p)
 
 
 def _joined_readings(sweeps: Iterable[Sweep]) -> Driven:

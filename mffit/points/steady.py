@@ -1,4 +1,4 @@
-"""Time series to stretches: where the rig stood still, and where it swept one angle or the slip.
+"""Time series to stretches: where the rig stood still, and where it swept one angle or the longitudinal slip.
 
 Only the settings (angles, slip, load, pressure, speed) decide this. The forces decide later how much of a stretch is
 transient, and whether it ever came to rest (``settling``).
@@ -19,11 +19,18 @@ from mffit.points.stretch import MOVE, SWEEP, Stretch, runs
 from mffit.scatter import robust
 
 CONDITIONS = ("Fz", "p", "V")
-SWEPT = {
-    **dict.fromkeys(("alpha", "gamma"), (constants.STEP_OF_ANGLE.rad, constants.SMALLEST_SWEEP.rad)),
-    "kappa": (float(constants.STEP_OF_SLIP), float(constants.SMALLEST_SLIP_SWEEP)),
+STEP = {
+    "alpha": constants.STEP_OF_ANGLE.rad,
+    "gamma": constants.STEP_OF_ANGLE.rad,
+    "kappa": float(constants.STEP_OF_SLIP),
 }
-"""Settings that rigs sweep, each with the smallest change to another set-point and the smallest range of a sweep."""
+"""Settings that a rig sweeps, in the order in which they are looked for, and the smallest change to another set-point."""
+RANGE = {
+    "alpha": constants.SMALLEST_SWEEP.rad,
+    "gamma": constants.SMALLEST_SWEEP.rad,
+    "kappa": float(constants.SMALLEST_SWEEP_OF_SLIP),
+}
+"""Smallest range of a sweep of each."""
 Scale = Mapping[str, float]
 """Usual size of each setting in a recording."""
 
@@ -37,7 +44,7 @@ class SteadySettings(NamedTuple):
     Fz: np.ndarray  #: [N]
     p: np.ndarray  #: [Pa]
     V: np.ndarray  #: [m/s]
-    kappa: np.ndarray  #: longitudinal slip [-]; 0 if it was not measured
+    kappa: np.ndarray  #: [-]; 0 where the wheel rolls freely
 
 
 def stretches(
@@ -99,7 +106,7 @@ def _of_piece(settings: SteadySettings, scale: Scale) -> list[Stretch]:
         changing[begin:end] = False
     for begin, end in steady:
         part = SteadySettings(*(x[begin:end] for x in settings))
-        inside = _of_condition(part, {name: masks[name][begin:end] for name in SWEPT})
+        inside = _of_condition(part, {name: masks[name][begin:end] for name in STEP})
         found += [s._replace(begin=s.begin + begin, end=s.end + begin) for s in inside]
     found += [Stretch(begin, end, "load, pressure or speed changes", MOVE) for begin, end in runs(changing)]
     return sorted(found)
@@ -138,7 +145,7 @@ def _samples(settings: SteadySettings, seconds: float) -> int:
 
 
 def _of_condition(settings: SteadySettings, moving: Mapping[str, np.ndarray]) -> list[Stretch]:
-    """The stretches of a piece of constant load, pressure and speed; ``moving`` has a mask (n,) per swept setting."""
+    """The stretches of a piece of constant load, pressure and speed; ``moving`` has a mask (n,) for every swept setting."""
     resting = ~np.any(list(moving.values()), axis=0)
     rests = [Stretch(begin, end) for begin, end in runs(resting)]
     still = [rest for rest in rests if not _creeps(settings, rest)]
@@ -162,12 +169,12 @@ def _swept(
     """Sweeps of one setting in a moving piece; the rest of it moves between plateaus."""
 
     def sweeps(name: str, pieces: list[tuple[int, int]]) -> list[Stretch]:
-        values, (_, smallest) = getattr(settings, name), SWEPT[name]
+        values = getattr(settings, name)
         return [
             Stretch(b, e, "", SWEEP)
             for b, e in pieces
             if settings.time[e - 1] - settings.time[b] >= constants.SHORTEST_STRETCH
-            and np.ptp(values[b:e]) >= smallest
+            and np.ptp(values[b:e]) >= RANGE[name]
             and (not staircase or _returns(values[b:e]))
         ]
 
@@ -179,10 +186,10 @@ def _swept(
 
     found: list[Stretch] = []
     found += sweeps("alpha", resting("gamma", "kappa"))
+    if not found and np.ptp(settings.alpha[begin:end]) < RANGE["alpha"]:
+        found += sweeps("gamma", resting("kappa"))
     if np.any(moving["kappa"][begin:end]):
         found += sweeps("kappa", resting("alpha", "gamma"))
-    if not found and np.ptp(settings.alpha[begin:end]) < constants.SMALLEST_SWEEP.rad:
-        found = sweeps("gamma", resting("kappa"))
     taken = np.zeros(end - begin, dtype=bool)
     for s in found:
         taken[s.begin - begin : s.end - begin] = True
@@ -200,7 +207,7 @@ def scale_of(series: Sequence[SteadySettings]) -> Scale:
     """Median size of each setting; of long recordings from some of the samples."""
     some = max(sum(len(settings.time) for settings in series) // constants.MOST_SAMPLES_FOR_SCALE, 1)
     sizes = {}
-    for name in (*SWEPT, *CONDITIONS):
+    for name in (*STEP, *CONDITIONS):
         size = np.abs(np.concatenate([getattr(one, name)[::some] for one in series]))
         known = size[np.isfinite(size)]
         sizes[name] = float(np.median(known)) if len(known) else 0.0
@@ -216,12 +223,12 @@ def moves(settings: SteadySettings, scale: Scale | None = None) -> dict[str, np.
     scale = scale or scale_of([settings])
     lag = _samples(settings, constants.COMPARED_APART)
     masks = {}
-    for name in (*SWEPT, *CONDITIONS):
+    for name in (*STEP, *CONDITIONS):
         values = getattr(settings, name)
         mask = np.zeros(n, dtype=bool)
         if np.ptp(values) > 0.0:
-            if name in SWEPT:
-                step: float | np.ndarray = SWEPT[name][0]
+            if name in STEP:
+                step: float | np.ndarray = STEP[name]
             else:
                 usual = max(scale[name], float(np.median(np.abs(values))))
                 step = usual * _step_of_condition(masks["kappa"][lag:])
@@ -251,7 +258,7 @@ def _noise(values: np.ndarray) -> float:
 def _creeps(settings: SteadySettings, stretch: Stretch) -> bool:
     """Whether an angle or the slip moves so slowly through the stretch that no single step shows."""
     quarter = max((stretch.end - stretch.begin) // 4, 1)
-    for name, (step, _) in SWEPT.items():
+    for name, step in STEP.items():
         part = getattr(settings, name)[stretch.begin : stretch.end]
         if abs(float(np.mean(part[-quarter:]) - np.mean(part[:quarter]))) > step:
             return True

@@ -18,7 +18,7 @@ from mffit.made import Made
 from mffit.measured import Measured
 from mffit.points import Points
 from mffit.points.left_out import LeftOut
-from mffit.quantities import CHANNELS
+from mffit.quantities import SIDEWAYS
 from mffit.report import words
 from mffit.report.channel import NamedChannel
 from mffit.report.curves import Curve, CurveCondition, conditions, curves
@@ -151,12 +151,12 @@ def view_of(result: BuildResult) -> BuildView:
             name=name,
             measured=getattr(points, name),
             u=getattr(points, f"u_{name}"),
-            model=getattr(fit, f"{name}_model"),
+            model=fit.model[name],
             odd=getattr(parts, f"{name}_odd"),
             even=getattr(parts, f"{name}_even"),
             u_odd=getattr(parts, f"u_{name}_odd"),
         )
-        for name in CHANNELS
+        for name in SIDEWAYS
     ]
     return BuildView(
         config=result.config,

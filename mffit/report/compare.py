@@ -11,7 +11,7 @@ import numpy as np
 
 from mffit.comparison import Comparison, wording
 from mffit.points import Points
-from mffit.quantities import CHANNELS
+from mffit.quantities import SIDEWAYS
 from mffit.report import constants, page
 from mffit.report.build_view import ChannelRow
 from mffit.report.curves import Curve, curves
@@ -41,7 +41,7 @@ def write_comparison(found: Comparison, folder: Path) -> None:
         _figures(found),
         found=found,
         say=wording,
-        channels=CHANNELS,
+        channels=SIDEWAYS,
         most=constants.MOST_ROWS_COMPARED,
     )
 
@@ -54,7 +54,7 @@ def _figures(found: Comparison) -> dict[str, Callable[[], Sheet]]:
         members = curves(found.points)
         lines = model_lines(found.simulation, found.points, members)
         view = Overlay(points=found.points, curves=members, lines=lines)
-        for name in CHANNELS:
+        for name in SIDEWAYS:
             measured = getattr(found.points, name)
             if members and np.isfinite(measured).any():
                 channel = ChannelRow.of_readings(name, measured, getattr(found.points, f"u_{name}"))

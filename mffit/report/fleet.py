@@ -8,7 +8,7 @@ from pathlib import Path
 
 from mffit.fleet import EPSILON, Fleet
 from mffit.fleet.constants import FEWEST_TYRES_FOR_SCATTER
-from mffit.quantities import CHANNELS, COMPARED, DIRECT
+from mffit.quantities import COMPARED, DIRECT, SIDEWAYS
 from mffit.report import page
 from mffit.report.drawing.records import Sheet
 from mffit.report.figures import fleet
@@ -40,7 +40,7 @@ def write_fleet(found: Fleet, folder: Path, *, priors: bool) -> None:
         epsilon=DIRECT["epsilon_gamma"],
         estimates=estimates,
         compared=COMPARED,
-        channels=CHANNELS,
+        channels=SIDEWAYS,
         units=unit_of,
         meanings=meaning_of,
         words=words_of,

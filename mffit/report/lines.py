@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from mffit.points import Points
-from mffit.quantities import CHANNELS
+from mffit.quantities import SIDEWAYS
 from mffit.report import constants
 from mffit.report.curves import Curve
 from mffit.rig import Simulation
@@ -43,8 +43,8 @@ def model_lines(simulation: Simulation, points: Points, curves: Sequence[Curve])
         rows = slice(i * steps, (i + 1) * steps)
         lines[curve.key] = CurveLine(
             x=np.degrees(getattr(grid, curve.over)[rows]),
-            raw={name: getattr(here, name)[rows] for name in CHANNELS},
-            even={name: 0.5 * (getattr(here, name) + getattr(there, name))[rows] for name in CHANNELS},
+            raw={name: getattr(here, name)[rows] for name in SIDEWAYS},
+            even={name: 0.5 * (getattr(here, name) + getattr(there, name))[rows] for name in SIDEWAYS},
         )
     return lines
 

@@ -1,6 +1,7 @@
 """The forward model: the readings that a rig reports of a tyre, its own errors and the environment's influence included."""
 
 from mffit.rig.histories import distance_km, reference_speed, sense
-from mffit.rig.simulation import Readings, Simulation
+from mffit.rig.readings import Readings
+from mffit.rig.simulation import Simulation
 
 __all__ = ["Readings", "Simulation", "distance_km", "reference_speed", "sense"]

@@ -52,14 +52,17 @@ class Chain:
         self._quantities: dict[str, Any] = {
             name: getattr(points, name) for name in ("alpha", "gamma", "Fz", "phi_t")
         } | {"pressure": points.p}
+        if np.any(points.kappa):  # free rolling needs fewer equations
+            self._quantities["kappa"] = points.kappa
+        self._conditions = tuple(name for name in self._quantities if name != "alpha")
 
-    def readings(self) -> list[Any]:
-        """Reading of every channel (n,): [N] or [Nm]."""
+    def readings(self, channels: tuple[str, ...]) -> list[Any]:
+        """Readings (n,) of some channels, in their units."""
         self._pass(BEFORE)
-        forces = self._tyre(tuple(CHANNELS), self._quantities["alpha"])
-        self._quantities.update(zip(CHANNELS, forces, strict=True))
+        forces = self._tyre(channels, self._quantities["alpha"])
+        self._quantities.update(zip(channels, forces, strict=True))
         self._pass(AFTER)
-        return [self._quantities[channel] for channel in CHANNELS]
+        return [self._quantities[channel] for channel in channels]
 
     def _pass(self, errors: Iterable[RigError]) -> None:
         """Let rig errors act on what they change."""
@@ -68,6 +71,8 @@ class Chain:
             if error.formula is None or not (isinstance(number, Traced) or error.acts(number)):
                 continue
             for name in error.acts_on:
+                if name in CHANNELS and name not in self._quantities:  # not asked for
+                    continue
                 owner = self._quantities if name in self._quantities else self._coefficients
                 owner[name] = error.formula(number, owner[name], self)
 
@@ -168,7 +173,7 @@ class Chain:
     def _tyre(self, wanted: tuple[str, ...], alpha: Any, rows: np.ndarray | None = None) -> list[Any]:
         """Some outputs of the tyre at its true sideslip angle ``alpha`` [rad]; of some rows only."""
         conditions = {
-            **{name: self._quantities[name] for name in ("Fz", "gamma", "phi_t", "pressure")},
+            **{name: self._quantities[name] for name in self._conditions},
             "Vx": self.points.Vx,
         }
         p = self._coefficients

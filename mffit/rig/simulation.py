@@ -3,28 +3,23 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
 from mffit.brief import Brief
 from mffit.points import Points
+from mffit.quantities import CHANNELS, SIDEWAYS
 from mffit.rig.chain import Chain
 from mffit.rig.histories import of_part, usual_radius
+from mffit.rig.readings import Readings
 from mffit.rig_errors import BY_NAME, NO_FAULTS, OF_RUN, RIG_ERRORS, Faults
 from tir import Tyre
 from tir.derivatives import Traced, gradient, plain, traced
 
 SWITCH = "turn_slip"
-
-
-class Readings(NamedTuple):
-    """What the rig reports; arrays (n,)."""
-
-    Fy: np.ndarray  #: [N]
-    Mz: np.ndarray  #: [Nm]
 
 
 @dataclass(frozen=True, slots=True, repr=False)
@@ -79,35 +74,42 @@ class Simulation(Brief):
         own = {error.name: self.faults[error.name] for error in RIG_ERRORS if error.kind == "tyre"}
         return replace(self, faults=Faults(**own), of_parts={})
 
-    def readings(self, points: Points) -> Readings:
+    def readings(self, points: Points, channels: Iterable[str] = SIDEWAYS) -> Readings:
         """What the rig would report at every point.
 
         Parameters
         ----------
-        points : set-points (n,): angles as read, load, pressure, speed, direction, mount and path curvature
+        points : set-points (n,): angles as read, slip, load, pressure, speed, direction, mount and path curvature
+        channels : those to compute; the others take no time
 
         Returns
         -------
         Readings
-            Fy [N] and Mz [Nm] in ISO-W, contact frame, rig-fixed also when rolling backwards.
+            In ISO-W, contact frame, rig-fixed also when rolling backwards.
         """
-        return Readings(*self._chain(points, {}).readings())
+        channels = _in_order(channels)
+        return Readings(**dict(zip(channels, self._chain(points, {}).readings(channels), strict=True)))
 
-    def predict(self, points: Points) -> np.ndarray:
-        """The readings in one row (2n,): Fy [N], then Mz [Nm]."""
-        return np.concatenate(self.readings(points))
+    def predict(self, points: Points, channels: Iterable[str] = SIDEWAYS) -> np.ndarray:
+        """The readings (c n,), channel after channel."""
+        return self.readings(points, channels).stacked
 
-    def sensitivities(self, points: Points, names: Sequence[str]) -> tuple[Readings, Readings]:
+    def sensitivities(
+        self, points: Points, names: Sequence[str], channels: Iterable[str] = SIDEWAYS
+    ) -> tuple[Readings, Readings]:
         """The readings, and their exact derivatives by the named numbers: each channel (n, k).
 
         The stop at which the moment holds a wheel with play stays the same; a floating wheel keeps its moment at zero.
         """
         numbers = traced({name: self.number(name, points) for name in names})
-        out = self._chain(points, numbers).readings()
-        columns = list(numbers.values())
-        n = len(points)
-        slopes = (np.broadcast_to(gradient(channel, columns), (n, len(columns))) for channel in out)
-        return Readings(*(np.broadcast_to(plain(channel), n) for channel in out)), Readings(*slopes)
+        channels = _in_order(channels)
+        out = dict(zip(channels, self._chain(points, numbers).readings(channels), strict=True))
+        columns, n = list(numbers.values()), len(points)
+        shape = (n, len(columns))
+        return (
+            Readings(**{name: np.broadcast_to(plain(x), n) for name, x in out.items()}),
+            Readings(**{name: np.broadcast_to(gradient(x, columns), shape) for name, x in out.items()}),
+        )
 
     def _chain(self, points: Points, numbers: Mapping[str, Traced]) -> Chain:
         """The passage of the points with some numbers traced."""
@@ -124,3 +126,8 @@ class Simulation(Brief):
             turn_slip=self.turn_slip,
             star=self.star,
         )
+
+
+def _in_order(channels: Iterable[str]) -> tuple[str, ...]:
+    wanted = frozenset(channels)
+    return tuple(name for name in CHANNELS if name in wanted)

@@ -36,7 +36,7 @@ def _constant(channel: str) -> Shape:
 
 
 def _gain(channel: str) -> Shape:
-    return lambda points, simulation: {channel: -getattr(simulation.readings(points), channel)}
+    return lambda points, simulation: {channel: -simulation.readings(points, (channel,))[channel]}
 
 
 def _set_point(name: str, relative: bool = False) -> Shape:
@@ -44,7 +44,7 @@ def _set_point(name: str, relative: bool = False) -> Shape:
         value = getattr(points, name)
         moved = points.replace(**{name: value * (1.0 + STEP) if relative else value + STEP})
         here, there = simulation.readings(points), simulation.readings(moved)
-        return {"Fy": (here.Fy - there.Fy) / STEP, "Mz": (here.Mz - there.Mz) / STEP}
+        return {channel: (here[channel] - there[channel]) / STEP for channel in here}
 
     return shape
 

@@ -13,7 +13,7 @@ import numpy as np
 
 from mffit.constants import EXPLAINED_SHARE
 from mffit.points import Points, levels
-from mffit.quantities import CHANNELS, CONDITIONS
+from mffit.quantities import CONDITIONS, SIDEWAYS
 from mffit.rig import Simulation
 from mffit.scatter import robust, usual_size
 from mffit.suspicion import constants
@@ -76,13 +76,13 @@ def misread_sweep(points: Points, simulation: Simulation, signs: Mapping[str, fl
     if len(numbers) < constants.FEWEST_SWEEPS_FOR_MISREAD:
         return
     parts = [points.select(points.sweep == k) for k in numbers]
-    size = {name: usual_size(getattr(p, name) / p.Fz for p in parts) for name in CHANNELS}
+    size = {name: usual_size(getattr(p, name) / p.Fz for p in parts) for name in SIDEWAYS}
 
     def away(of: Points) -> dict[str, Away]:
         return {n: Away(error=e, share=e) for n, e in _off(of, simulation, size).items()}
 
     off = [_off(part, simulation, size) for part in parts]
-    usual = {name: float(np.median([o[name] for o in off if name in o] or [np.nan])) for name in CHANNELS}
+    usual = {name: float(np.median([o[name] for o in off if name in o] or [np.nan])) for name in SIDEWAYS}
     found = []
     for part, before in zip(parts, off, strict=True):
         gross = _gross(before, [o for o in off if o is not before], usual)
@@ -172,6 +172,6 @@ def _off(part: Points, simulation: Simulation, size: Mapping[str, float]) -> dic
     load = float(np.mean(part.Fz))
     return {
         name: robust((getattr(part, name) - getattr(out, name)) / (size[name] * load))
-        for name in CHANNELS
+        for name in SIDEWAYS
         if np.isfinite(size[name]) and np.isfinite(getattr(part, name)).any()
     }

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import asdict, dataclass
 from typing import Any, NamedTuple
 
@@ -34,8 +34,8 @@ class JudgedSweeps(NamedTuple):
     """What the judgement of all sweeps needs."""
 
     points: Points  #: raw points (n,)
-    stated: tuple[np.ndarray, np.ndarray]
-    """Uncertainty of Fy [N] and of Mz [Nm] before any weighting, (n,); inf where not measured."""
+    stated: Mapping[str, np.ndarray]
+    """By channel of the fit, uncertainty (n,) before any weighting; inf where not measured."""
     signs: Mapping[str, float]  #: +1 or -1 per channel: from ISO-W to the rig's axes
     refit: Callable[[np.ndarray], FittedModel]  #: the fit to some rows (m,) only
 
@@ -114,8 +114,8 @@ def evidence(campaign: JudgedSweeps, fitted: FittedModel) -> Evidence | None:
     found = groups(points)
     if len(found) < constants.FEWEST_SWEEPS_TO_COMPARE:
         return None
-    size = {c: usual_size((getattr(points, c) / points.Fz)[g.index] for g in found) for c in CHANNELS}
-    noise = np.concatenate([u * k for u, k in zip(campaign.stated, fitted.scale.values(), strict=True)])
+    size = {c: usual_size((getattr(points, c) / points.Fz)[g.index] for g in found) for c in campaign.stated}
+    noise = np.concatenate([u * fitted.scale[name] for name, u in campaign.stated.items()])
     fit = leverage(fitted, noise)
     errors = [(e, g) for g in found for e in _errors(predictions(fit, g), points.Fz[g.index], size)]
     level = constants.FALSE_ALARM_OF_SWEEPS / len(errors)
@@ -262,7 +262,7 @@ def _view(campaign: JudgedSweeps, group: Group, size: Mapping[str, float], level
     except InputError:
         return None
     part = campaign.points.select(group.shown)
-    stated = [u[group.shown] for u in campaign.stated]
+    stated = {name: u[group.shown] for name, u in campaign.stated.items()}
 
     def away(of: Points) -> dict[str, Away]:
         return {
@@ -279,7 +279,7 @@ def _view(campaign: JudgedSweeps, group: Group, size: Mapping[str, float], level
         return None
     gross = {e.channel: e.rms for e in off if e.share > constants.GROSS_SHARE}
     undone = ((m, m.undone(part, campaign.signs)) for m in MISTAKES if m.beyond_doubt and gross)
-    best = explaining(undone, gross, away, dict.fromkeys(CHANNELS, constants.GROSS_SHARE))
+    best = explaining(undone, gross, away, dict.fromkeys(stated, constants.GROSS_SHARE))
     return View(
         group=group,
         error=max(off, key=lambda e: e.share),
@@ -289,17 +289,17 @@ def _view(campaign: JudgedSweeps, group: Group, size: Mapping[str, float], level
 
 
 def _predicted(
-    part: Points, fitted: FittedModel, stated: Sequence[np.ndarray], size: Mapping[str, float]
+    part: Points, fitted: FittedModel, stated: Mapping[str, np.ndarray], size: Mapping[str, float]
 ) -> Iterator[tuple[Error, bool]]:
     """Errors of a fit at points (m,) that were not in it, by channel, and whether they are small beside the readings."""
-    out, slope = fitted.simulation.sensitivities(part, list(fitted.names))
+    out, slope = fitted.simulation.sensitivities(part, list(fitted.names), stated)
     load = float(np.mean(part.Fz))
-    for name, u, scale in zip(CHANNELS, stated, fitted.scale.values(), strict=True):
-        known = np.isfinite(u) & np.isfinite(getattr(part, name))
+    for name, u in stated.items():
+        scale = fitted.scale[name]
+        known = np.isfinite(u) & np.isfinite(part.channel(name))
         if not np.any(known):
             continue
-        measured, predicted = getattr(part, name)[known], getattr(out, name)[known]
-        J = getattr(slope, name)[known]
+        measured, predicted, J = part.channel(name)[known], out[name][known], slope[name][known]
         prediction = PredictedChannel(
             error=predicted - measured,
             covariance=J @ fitted.covariance @ J.T + np.diag((scale * u[known]) ** 2),

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -33,22 +33,22 @@ class Outlier:
 
 def outliers(
     points: Points,
-    stated: tuple[np.ndarray, np.ndarray],
-    weights: tuple[np.ndarray, np.ndarray],
-    model: tuple[np.ndarray, np.ndarray],
+    stated: Mapping[str, np.ndarray],
+    weights: Mapping[str, np.ndarray],
+    model: Mapping[str, np.ndarray],
 ) -> tuple[Outlier, ...]:
     """The readings to which the fit gave no weight, in the order of the points.
 
     Parameters
     ----------
     points : (n,)
-    stated : uncertainty of Fy [N] and Mz [Nm], (n,); inf where not measured
-    weights : the uncertainty that the fit used in the end, (n,)
-    model : readings of the fitted model, (n,)
+    stated : by channel, uncertainty (n,); inf where not measured
+    weights : by channel, the uncertainty that the fit used in the end (n,)
+    model : by channel, readings of the fitted model (n,)
     """
     out = []
-    for name, u, used, expected in zip(CHANNELS, stated, weights, model, strict=True):
-        measured = getattr(points, name)
+    for name, u in stated.items():
+        measured, used, expected = points.channel(name), weights[name], model[name]
         for row in np.flatnonzero(np.isfinite(u) & ~np.isfinite(used)):
             out.append(
                 Outlier(
@@ -66,7 +66,7 @@ def outliers(
 
 
 def marks(found: Iterable[Outlier], n: int) -> np.ndarray:
-    """Outlying channels of every point (n,): "", "Fy", "Mz" or "Fy Mz"."""
+    """Outlying channels of every point (n,): such as "", "Fy" or "Fy Mz"."""
     out = np.full(n, "", dtype=object)
     for o in found:
         out[o.row] = f"{out[o.row]} {o.channel}".strip()

@@ -14,7 +14,6 @@ import numpy as np
 
 from mffit.least_squares import FreeNumber, inverse, root
 from mffit.points import Points, levels
-from mffit.quantities import CHANNELS
 from mffit.rig import Simulation
 from mffit.rig_errors import RIG_ERRORS, ZEROS, number_of
 from mffit.suspicion import constants
@@ -57,12 +56,13 @@ class Group:
 
 @dataclass(frozen=True, slots=True)
 class Leverage:
-    """A fit at its solution, for every point; arrays of Fy and then Mz, 0 or inf where a channel is not used."""
+    """A fit at its solution, for every point; arrays of c channels one after the other, 0 or inf where one is not used."""
 
-    residual: np.ndarray  #: (2n,) model less measured [N], [Nm]
-    slope: np.ndarray  #: (2n, k) derivative by the free numbers
-    weight: np.ndarray  #: (2n,) uncertainty that the fit used [N], [Nm]; inf: not used
-    noise: np.ndarray  #: (2n,) uncertainty of a sound point, model misfit included; inf: not measured
+    channels: tuple[str, ...]  #: (c,)
+    residual: np.ndarray  #: (c n,) model less measured [N], [Nm]
+    slope: np.ndarray  #: (c n, k) derivative by the free numbers
+    weight: np.ndarray  #: (c n,) uncertainty that the fit used [N], [Nm]; inf: not used
+    noise: np.ndarray  #: (c n,) uncertainty of a sound point, model misfit included; inf: not measured
     root: np.ndarray  #: (k, k) of the covariance, which is root @ root.T
 
 
@@ -128,22 +128,24 @@ def _parts(points: Points) -> Iterator[tuple[Group, np.ndarray, bool]]:
 def leverage(fit: FittedModel, noise: np.ndarray) -> Leverage:
     """Residuals and derivatives of a fit.
 
-    ``noise`` is that of a sound point [N], [Nm], (2n,) of Fy and then Mz; inf where not measured.
+    ``noise`` is that of a sound point [N], [Nm], (c n,), channel after channel; inf where not measured.
     """
     points = fit.points
     free = [n.name for n in fit.numbers]
     common = [name for name in _common(points) if name not in free]
-    out, slope = fit.simulation.sensitivities(points, [*free, *common])
-    slopes = np.concatenate(slope)
-    measured = np.concatenate([points.Fy, points.Mz])
+    channels = tuple(fit.weights)
+    out, slope = fit.simulation.sensitivities(points, [*free, *common], channels)
+    slopes = slope.stacked
+    measured = np.concatenate([points.channel(name) for name in channels])
     used = np.isfinite(measured) & np.isfinite(noise)
     weight = np.where(used, np.concatenate(list(fit.weights.values())), np.inf)
-    residual = np.where(used, np.concatenate(out) - np.nan_to_num(measured), 0.0)
+    residual = np.where(used, out.stacked - np.nan_to_num(measured), 0.0)
     J = slopes / weight[:, None]
     covariance = inverse(J.T @ J + np.diag([n.spread**-2.0 for n in fit.numbers] + [0.0] * len(common)))
     gradient = J.T @ (residual / weight)
     gradient[: len(free)] = 0.0  # the fit has converged in its own numbers
     return Leverage(
+        channels=channels,
         residual=np.where(used, residual - slopes @ (covariance @ gradient), 0.0),
         slope=slopes,
         weight=weight,
@@ -164,7 +166,7 @@ def _common(points: Points) -> list[str]:
 
 def predictions(fit: Leverage, group: Group) -> dict[str, PredictedChannel]:
     """The measured channels of a group at the rows that it shows (m,), as all other points predict them."""
-    n = len(fit.residual) // 2
+    n = len(fit.residual) // len(fit.channels)
     rows = _measured(fit, group.index, n)
     J = fit.slope[rows] / fit.weight[rows][:, None]
     # Eigenvalues: the share of the information about each direction that comes from the group.
@@ -177,14 +179,14 @@ def predictions(fit: Leverage, group: Group) -> dict[str, PredictedChannel]:
     error = fit.residual[rows] + slope @ moved
     spread = slope @ others @ slope.T + np.diag(fit.noise[rows] ** 2)
     out = {}
-    for k, name in enumerate(CHANNELS):
-        own = rows >= n if k else rows < n
+    for k, name in enumerate(fit.channels):
+        own = rows // n == k
         if np.any(own):
             out[name] = PredictedChannel(error=error[own], covariance=spread[np.ix_(own, own)])
     return out
 
 
 def _measured(fit: Leverage, index: np.ndarray, n: int) -> np.ndarray:
-    """Rows of the fit's arrays for both channels of some points, where they were measured."""
-    rows = np.concatenate([index, n + index])
+    """Rows of the fit's arrays for all channels of some points, where they were measured."""
+    rows = np.concatenate([k * n + index for k in range(len(fit.channels))])
     return rows[np.isfinite(fit.noise[rows])]

@@ -17,7 +17,6 @@ from scipy.special import stdtrit
 
 from mffit.constants import ZERO_CAMBER, ZERO_SIDESLIP
 from mffit.points import Points
-from mffit.points.free_rolling import rolls_freely
 from mffit.suspicion import constants
 from mffit.suspicion.rule import Finding, Outcome, Rule, Subject
 
@@ -68,7 +67,7 @@ class Signatures(NamedTuple):
 
 def signatures(points: Points) -> Signatures:
     """The signatures of steady points in normal mount at which the wheel rolls freely."""
-    points = points.select(rolls_freely(points))
+    points = points.select(points.free_rolling)
     points = points.select(points.mount > 0) if np.any(points.mount > 0) else points
     forward = points.direction > 0
     sideslip, camber = np.abs(points.alpha), np.abs(points.gamma)

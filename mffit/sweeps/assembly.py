@@ -9,6 +9,8 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from mffit.errors import InputError
+from mffit.quantities import CHANNELS, u_column
+from mffit.quantities import column as column_of
 from mffit.sweeps import constants
 from mffit.sweeps.columns import Columns
 from mffit.sweeps.formats import stem
@@ -49,24 +51,26 @@ def _sweep(columns: Columns, given: Circumstances) -> Sweep:
     def iso(channel: str, name: str) -> np.ndarray:
         return to_iso(given.axes, channel, column(name)) + 0.0  # turns -0.0 into 0.0
 
+    direction = np.broadcast_to(given.direction, (n,)) if columns.direction is None else columns.direction
+    channels = {name: iso(name, column_of(name)) for name in CHANNELS if column_of(name) in table}
+    if "omega" in channels:  # rigs count revolutions without a sign, or with one of their own
+        channels["omega"] = direction * np.abs(channels["omega"])
+    absent = np.broadcast_to(np.nan, (n,))
     return Sweep(
         name=stem(given.file),
         file=given.file,
         alpha=np.radians(iso("alpha", "alpha_deg")),
         gamma=np.radians(iso("gamma", "gamma_deg")),
+        kappa=np.nan_to_num(iso("kappa", "kappa")) if "kappa" in table else column("kappa", 0.0),
         Fz=usual_sign(column("Fz_N")) * column("Fz_N"),
-        Fy=iso("Fy", "Fy_N"),
-        Mz=iso("Mz", "Mz_Nm"),
-        Mx=iso("Mx", "Mx_Nm"),
-        My=iso("My", "My_Nm"),
+        **{name: channels.get(name, absent) for name in CHANNELS},
         p=1e3 * column("p_kPa", given.pressure / 1e3),
         V=column("V_mps", given.speed),
         T=column("T_degC"),
         t=column("t_s"),
-        u_Fy=column("u_Fy_N"),
-        u_Mz=column("u_Mz_Nm"),
+        **{f"u_{name}": column(u_column(name)) for name in CHANNELS},
         iteration=column("iteration"),
-        direction=np.broadcast_to(given.direction, (n,)) if columns.direction is None else columns.direction,
+        direction=direction,
         mount=given.mount,
         setup=given.setup,
         time=column("time_s"),

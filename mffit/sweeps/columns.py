@@ -12,6 +12,7 @@ import pandas as pd
 
 from mffit.config.models import Column
 from mffit.errors import InputError, shortened
+from mffit.quantities import CHANNELS, u_column
 from mffit.sweeps import constants
 from mffit.sweeps.channels import BY_NAME, SWEEP_CHANNELS, Channel, nearest_channel, nearest_heading
 from mffit.sweeps.raw_table import Cells, RawTable, has_decimal_comma, with_decimal_point
@@ -19,7 +20,7 @@ from mffit.sweeps.units import UnknownUnitError, converted
 from tir.errors import counted
 
 DIRECTIONS = {"forward": 1, "backward": -1, "1": 1, "+1": 1, "-1": -1}
-UNCERTAINTIES = ("u_Fy_N", "u_Mz_Nm")
+UNCERTAINTIES = tuple(u_column(name) for name in CHANNELS)
 MAY_BE_BLANK = frozenset({"iteration", "point", *UNCERTAINTIES})
 NUMBER_WITH_UNIT = re.compile(r"[-+]?[\d.]+(?:[eE][-+]?\d+)?\s*([^\d\s.,+-].*)")
 NO_READING = ("", "nan", "inf", "infinity", "na", "n/a", "null", "notavail")

@@ -52,9 +52,8 @@ def to_contact_point(sweep: Sweep, *, unloaded_radius: float) -> Sweep:
     by ``RL (Fy cos gamma + Fz sin gamma)``, My increases by ``RL Fx cos gamma`` and Mz by ``RL Fx sin gamma``. If Fx was not
     measured, the wheel is assumed to roll freely.
     """
-    table, zero = sweep.table, np.zeros(len(sweep))
-    lever = table["RL_m"].to_numpy(float) if "RL_m" in table else zero + unloaded_radius
-    Fx = np.nan_to_num(table["Fx_N"].to_numpy(float)) if "Fx_N" in table else zero
+    lever = np.where(np.isfinite(sweep.RL), sweep.RL, unloaded_radius)
+    Fx = np.nan_to_num(sweep.Fx)
     c, s = np.cos(sweep.gamma), np.sin(sweep.gamma)
     return replace(
         sweep,

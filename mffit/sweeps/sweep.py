@@ -21,17 +21,26 @@ class Sweep(Brief):
     file: str  #: name as in ``tyre.toml``
     alpha: np.ndarray  #: sideslip angle as read [rad]
     gamma: np.ndarray  #: camber as read [rad]
+    kappa: np.ndarray  #: longitudinal slip [-], positive if driven; 0 where it was not measured
     Fz: np.ndarray  #: load, positive [N]
+    Fx: np.ndarray  #: [N]
     Fy: np.ndarray  #: [N]
-    Mz: np.ndarray  #: [Nm]
     Mx: np.ndarray  #: [Nm]
     My: np.ndarray  #: [Nm]
+    Mz: np.ndarray  #: [Nm]
+    RL: np.ndarray  #: loaded radius [m]
+    omega: np.ndarray  #: wheel speed [rad/s], negative when the wheel rolls backwards
     p: np.ndarray  #: pressure, nominal if not measured [Pa]
     V: np.ndarray  #: speed, positive, nominal if not measured [m/s]
     T: np.ndarray  #: tyre temperature [degC]
     t: np.ndarray  #: time at which a finished point was taken [s]
-    u_Fy: np.ndarray  #: standard uncertainty [N]
-    u_Mz: np.ndarray  #: standard uncertainty [Nm]
+    u_Fx: np.ndarray  #: standard uncertainty of Fx [N]; so for every channel
+    u_Fy: np.ndarray
+    u_Mx: np.ndarray
+    u_My: np.ndarray
+    u_Mz: np.ndarray
+    u_RL: np.ndarray
+    u_omega: np.ndarray
     iteration: np.ndarray  #: step of the steering alignment
     direction: np.ndarray  #: +1 forward, -1 backward
     mount: int  #: +1 normal, -1 tyre turned on its rim

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from mffit.points import make_points
-from mffit.quantities import CHANNELS
+from mffit.quantities import CHANNELS, SIDEWAYS
 from mffit.report import constants, labels, style
 from mffit.report.build_view import BuildView
 from mffit.report.drawing.records import Axis, Band, Guide, Look, Panel, Sheet, Trace
@@ -32,10 +32,10 @@ def bands(view: BuildView) -> Sheet:
     for over, end in LIMITS.items():
         x = np.linspace(-written[end], written[end], constants.STEPS_OF_FILE_CURVE)
         found = {load: _with_halves(view, over, x, load) for load in loads}
-        for k, name in enumerate(CHANNELS):
+        for name in SIDEWAYS:
             series: list[Band | Trace] = []
             for load, (lines, halves) in found.items():
-                line, half, colour = lines[k], halves[k], colours[load]
+                line, half, colour = lines[name], halves[name], colours[load]
                 at, said = np.degrees(x), labels.LOAD.of(load)
                 series += [
                     Band(name=said, x=at, low=line - half, high=line + half, look=Look(colour=colour, opacity=0.25)),

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from mffit.quantities import CHANNELS
+from mffit.quantities import CHANNELS, SIDEWAYS
 from mffit.report import constants, labels, style
 from mffit.report.build_view import BuildView
 from mffit.report.drawing.records import Axis, Look, Panel, Sheet, Trace
@@ -24,7 +24,7 @@ HELD = {"gamma": constants.HELD_SIDESLIP_SHARES, "alpha": constants.HELD_CAMBER_
 def files_on_a_straight_path(view: BuildView) -> Sheet:
     """Fy and Mz of the files over camber and over sideslip at nominal load, the model as dots, with the ends of the tests."""
     assert view.files is not None
-    panels = [_panel(view, channel, over) for channel in CHANNELS for over in LIMITS]
+    panels = [_panel(view, channel, over) for channel in SIDEWAYS for over in LIMITS]
     key = {"fitted model": MODEL, **{view.file_names[use]: LOOKS[use] for use in view.files.by_use}}
     return Sheet(rows=[panels], height=2.1, key=key)
 

@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 
 from mffit.diagnosis import AcceptedEffect, Diagnosis, Gap, wording
 from mffit.diagnosis.where import Region
-from mffit.quantities import CHANNELS
+from mffit.quantities import CHANNELS, SIDEWAYS
 from mffit.report import words
 from mffit.report.text.layout import blocks, paragraphs, table, wrapped
 from mffit.rounding import as_good_as, number, per_cent, with_u
@@ -24,7 +24,7 @@ def diagnosis_summary(diagnosis: Diagnosis) -> str:
         gaps = (*gaps, ("held out, corrected file alone", diagnosis.validation.gap_file))
     rows = [(name, g.Fy_rmse_N, g.Mz_rmse_Nm, g.chi2_per_dof) for name, g in gaps]
     rows.append(("noise", diagnosis.noise.Fy, diagnosis.noise.Mz, 1.0))
-    head = ("gap, rms", *(channel.column(name) for name, channel in CHANNELS.items()), "chi2 per dof")
+    head = ("gap, rms", *(channel.column(name) for name, channel in SIDEWAYS.items()), "chi2 per dof")
     parts = [
         *(wrapped(f"NOT TO BE TRUSTED: {sentence}.") for sentence in diagnosis.reasons),
         wrapped(diagnosis.headline),

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from mffit.fleet import EPSILON, Fleet
-from mffit.quantities import CHANNELS, COMPARED, DIRECT
+from mffit.quantities import COMPARED, DIRECT, SIDEWAYS
 from mffit.report.text.layout import blocks, paragraphs, table
 from mffit.rig_errors import unit_of, words_of
 from mffit.rounding import as_good_as, number, stated, with_u
@@ -12,13 +12,13 @@ from mffit.rounding import as_good_as, number, stated, with_u
 def fleet_summary(found: Fleet) -> str:
     """The text that ``mffit fleet`` prints: eps_gamma of every tyre, scatter between tyres, errors of the rig."""
     known = [key for key in EPSILON if any(found.numbers(key))]
-    misfits = [channel.column(name) for name, channel in CHANNELS.items()]
+    misfits = [channel.column(name) for name, channel in SIDEWAYS.items()]
     head = ("tyre", *(EPSILON[key] for key in known), *misfits)
     rows = [
         (
             row.specimen.name,
             *(stated(getattr(row, key)) for key in known),
-            *(number(row.specimen.misfit.get(name), digits=3) for name in CHANNELS),
+            *(number(row.specimen.misfit.get(name), digits=3) for name in SIDEWAYS),
         )
         for row in found.rows
     ]

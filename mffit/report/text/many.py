@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from mffit.quantities import CHANNELS, DIRECT
+from mffit.quantities import DIRECT, SIDEWAYS
 from mffit.report.text.layout import blocks, table
 from mffit.results import BuildOutcome
 from mffit.rounding import ascii_only, number, stated
@@ -26,7 +26,7 @@ def many_summary(outcomes: Sequence[BuildOutcome]) -> str:
     head = (
         "tyre",
         DIRECT["epsilon_gamma"].ascii,
-        *(c.column(f"{n} rms") for n, c in CHANNELS.items()),
+        *(c.column(f"{n} rms") for n, c in SIDEWAYS.items()),
         "warnings",
         "trusted",
     )
@@ -35,7 +35,7 @@ def many_summary(outcomes: Sequence[BuildOutcome]) -> str:
         (
             o.name,
             stated(o.epsilon_gamma),
-            *(number(o.misfit.get(name), digits=3) for name in CHANNELS),
+            *(number(o.misfit.get(name), digits=3) for name in SIDEWAYS),
             str(o.warnings),
             "yes" if o.trusted else "NO",
         )

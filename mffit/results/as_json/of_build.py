@@ -20,6 +20,7 @@ from mffit.fit.temperature import AtTemperature
 from mffit.made import Made
 from mffit.measured import KEYS, LoadResult, Measured, SetupResult, SetupScatter
 from mffit.points.left_out import LeftOut
+from mffit.quantities import column
 from mffit.results.as_json.values import picked, plain, stated
 from mffit.results.records import BuildResult
 from mffit.rig_errors import unit_of
@@ -114,7 +115,8 @@ def fit(found: FitResult, over_noise: Mapping[str, float] = NOT_JUDGED) -> dict[
         "bands": _bands(found.bands) if found.bands is not None else None,
         "posterior": plain(picked(found.posterior, "names", "covariance")),
         "stages": [
-            picked(stage, "name", "parameters") | {"rmse_Fy_N": stage.rmse_Fy, "rmse_Mz_Nm": stage.rmse_Mz}
+            picked(stage, "name", "parameters")
+            | {f"rmse_{column(channel)}": rmse for channel, rmse in stage.rmse.items()}
             for stage in found.stages
         ],
         "coverage": [picked(row, "stage", "supported", "held", "missing") for row in found.coverage],

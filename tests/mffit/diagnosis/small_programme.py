@@ -39,7 +39,7 @@ def read(
     points: Points, tyre: tir.Tyre = TYRE, faults: Faults = NO_FAULTS, noise: int | None = None
 ) -> Points:
     """The points with the readings of a tyre on a rig; ``noise`` is the seed of their noise."""
-    Fy, Mz = Simulation.of(tyre, faults).readings(points)
+    Fy, Mz = Simulation.of(tyre, faults).readings(points).values()
     if noise is not None:
         drawn = np.random.default_rng(noise).standard_normal((2, len(points)))
         Fy, Mz = Fy + U_FY * drawn[0], Mz + U_MZ * drawn[1]

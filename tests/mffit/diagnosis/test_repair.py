@@ -56,7 +56,7 @@ def of_a_leaning_cell(**settings):
     rng = np.random.default_rng(5)
     points = campaign(rng)
     points = with_noise(
-        points, *Simulation.of(TYRE, NO_FAULTS.replace(crosstalk=0.005)).readings(points), rng
+        points, *Simulation.of(TYRE, NO_FAULTS.replace(crosstalk=0.005)).readings(points).values(), rng
     )
     return diagnose(points, TYRE, CONFIG, effects=(CROSSTALK, CONICITY), **settings)
 
@@ -103,7 +103,7 @@ def test_a_file_that_is_worse_alone_does_not_replace_the_given_one():
     rng = np.random.default_rng(3)
     points = campaign(rng, temperature=lambda alpha: 30.0 + 4.0 * np.abs(alpha))
     warmth = 1.0 + PER_KELVIN * (points.T - points.T.min())
-    Fy, Mz = Simulation.of(TYRE).readings(points)
+    Fy, Mz = Simulation.of(TYRE).readings(points).values()
     points = with_noise(points, warmth * Fy, warmth * Mz, rng)
     given = TYRE.replace(LMUY=0.75)
     found = diagnose(points, given, CONFIG, effects=(GRIP, TEMPERATURE), repair_all=True)

@@ -239,8 +239,10 @@ def _in_bands(fit, true, ranges, phi_t, rng, n: int = 400) -> dict[str, Band]:
     found, truth = tyre.readings(where), Simulation.of(true).readings(where)
     half = fit.posterior.band(tyre, where)
     return {
-        name: Band(float(np.mean(np.abs(a - b) <= h)), rms(h), rms(a - b))
-        for name, a, b, h in zip(("Fy", "Mz"), found, truth, half, strict=True)
+        name: Band(
+            float(np.mean(np.abs(found[name] - truth[name]) <= h)), rms(h), rms(found[name] - truth[name])
+        )
+        for name, h in half.items()
     }
 
 

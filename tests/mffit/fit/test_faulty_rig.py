@@ -104,7 +104,7 @@ def test_coefficients_that_few_points_do_not_determine_stay_near_the_base_file(m
 def test_every_stage_brings_its_channel_nearer_to_the_noise(misaligned):
     stages = {stage.name: stage for stage in misaligned.fit.stages}
     assert list(stages) == ["Fy", "camber", "trail", "residual", "spin", "shift", "polish"]
-    Fy, Mz = ([getattr(s, channel) for s in stages.values()] for channel in ("rmse_Fy", "rmse_Mz"))
+    Fy, Mz = ([s.rmse[channel] for s in stages.values()] for channel in ("Fy", "Mz"))
     assert Fy[0] > 1.3 * Fy[1] > 2.0 * Fy[-1]
     assert Mz[1] > 1.3 * Mz[2] > 2.0 * Mz[3]
     assert 0.7 * FY < Fy[-1] < 1.1 * FY

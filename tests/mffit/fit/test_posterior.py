@@ -47,7 +47,7 @@ def test_the_band_is_the_propagated_covariance(fitted):
         [(forces(**{n: tyre[n] + h}) - forces(**{n: tyre[n] - h})) / (2 * h) for n, h in step.items()]
     )
     variance = np.einsum("icn,ij,jcn->cn", slopes, posterior.covariance[np.ix_(rows, rows)], slopes)
-    assert np.array(half) == pytest.approx(1.96 * np.sqrt(variance), rel=1e-3)
+    assert np.array(list(half.values())) == pytest.approx(1.96 * np.sqrt(variance), rel=1e-3)
 
 
 def test_draws_scatter_by_the_standard_errors(fitted):

@@ -27,7 +27,7 @@ def problem() -> FitProblem:
     points = make_points(
         rng.uniform(-0.1, 0.1, N), rng.uniform(-0.4, 0.4, N), rng.uniform(900.0, 2000.0, N), p=250e3, V=6.0, phi_t=-1 / 1.323
     )  # fmt: skip
-    Fy, Mz = Simulation.of(tyre).readings(points)
+    Fy, Mz = Simulation.of(tyre).readings(points).values()
     Mz = Mz.copy()
     Mz[3] = np.nan
     points = points.replace(Fy=Fy, Mz=Mz)

@@ -38,6 +38,8 @@ def recording(n: int = N, **channels) -> Series:
         "line": np.arange(n) + 2,
         "alpha": 0.03 * one,
         "gamma": 0.1 * one,
+        "kappa": 0.0 * one,
+        "Fx": np.broadcast_to(np.nan, n),
         "Fz": 1500.0 + 5.0 * rng.standard_normal(n),
         "Fy": -300.0 + 3.0 * rng.standard_normal(n),
         "Mz": 9.0 + 0.3 * rng.standard_normal(n),
@@ -84,8 +86,9 @@ def test_a_tenth_of_the_usual_load_is_no_load():
 
 @pytest.mark.parametrize(("kappa", "found"), [(0.021, True), (-0.021, True), (0.019, False), (-0.019, False)])
 def test_two_per_cent_of_slip_is_driven_or_braked(kappa, found):
-    table = pd.DataFrame({"kappa": np.where(np.arange(N) == 3, kappa, 0.0)})
-    assert bool(reasons(recording(table=table))) == found
+    slip = np.where(np.arange(N) == 3, kappa, 0.0)
+    assert bool(reasons(recording(kappa=slip))) == found
+    assert not reasons(recording(kappa=slip, Fx=np.ones(N)))
 
 
 @pytest.mark.parametrize(

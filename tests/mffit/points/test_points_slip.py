@@ -53,7 +53,7 @@ def test_every_condition_of_a_drive_recording_is_a_sweep_of_slip(configured, gap
 
 def test_the_points_of_a_slip_sweep_have_slip_and_force_of_the_same_moment(configured):
     found = points.read(configured(drive_recording())).points
-    kappa, Fx = (found.table[name].to_numpy() for name in ("kappa", "Fx_N"))
+    kappa, Fx = found.kappa, found.Fx
     truth = longitudinal_force(kappa, found.alpha, found.Fz)
     assert (
         np.sqrt(np.mean((Fx - truth) ** 2)) < 10.0
@@ -82,19 +82,19 @@ def test_sideslip_may_be_swept_at_a_slip_that_is_held(configured):
     table["SL"] = -0.05
     found = points.read(configured(table))
     assert {note.swept for note in sweeps(found)} == {"alpha_deg"}
-    assert np.allclose(found.points.table["kappa"], -0.05)
+    assert np.allclose(found.points.kappa, -0.05)
 
 
 def test_without_a_longitudinal_force_only_free_rolling_is_kept(configured):
     columns = {name: heading for name, heading in COLUMNS.items() if name != "Fx_N"}
     found = points.read(configured(drive_recording(gaps=False), columns))
-    assert np.all(np.abs(found.points.table["kappa"]) < 0.02)
+    assert np.all(np.abs(found.points.kappa) < 0.02)
     assert any("Fx was not measured" in warning for warning in found.warnings)
 
 
 def test_a_fit_of_side_force_takes_the_points_that_roll_freely(configured):
     found = read_points(configured(drive_recording()))
-    assert np.all(np.abs(found.points.table["kappa"]) < 0.02)
+    assert np.all(np.abs(found.points.kappa) < 0.02)
     (warning,) = [warning for warning in found.warnings if "only free rolling" in warning]
     (entry,) = [row for row in found.left_out if row.rule == "driven-or-braked"]
     assert f"{entry.count} of {entry.count + len(found.points)} points" in warning

@@ -70,7 +70,7 @@ def made_points(sweeps, *, phi_t=-1 / R, seed=1, u_Fy=NOISE_FY, u_Mz=NOISE_MZ, m
         files=tuple(f"{name}.csv" for name in sweeps),
     )
     rng = np.random.default_rng(seed)
-    Fy, Mz = Simulation.of(tir.read(TRUE), turn_slip=phi_t != 0.0).readings(points)
+    Fy, Mz = Simulation.of(tir.read(TRUE), turn_slip=phi_t != 0.0).readings(points).values()
     n = len(points)
     return points.replace(
         Fy=Fy + NOISE_FY * rng.standard_normal(n),
@@ -123,7 +123,8 @@ def made_result(**changes: Any) -> BuildResult:
     halves = parts.split(points)
     tyre = tir.read(TRUE)
     simulation = Simulation.of(tyre, turn_slip=bool(points.phi_t.any()))
-    Fy, Mz = simulation.readings(points)
+    readings = simulation.readings(points)
+    Fy, Mz = readings.values()
     fitted = FitResult(
         tyre=tyre,
         written=tyre,
@@ -132,9 +133,8 @@ def made_result(**changes: Any) -> BuildResult:
         odd={"Fy": agreement(Fy, points.Fy), "Mz": agreement(Mz, points.Mz)},
         simulation=simulation,
         rig={"F0_N": (1.5, 3.0)},
-        Fy_model=Fy,
-        Mz_model=Mz,
-        stages=(StageRecord("Fy", "Side force at zero camber", ("PKY1",), 41.5, 3.2),),
+        model=readings,
+        stages=(StageRecord("Fy", "Side force at zero camber", ("PKY1",), {"Fy": 41.5, "Mz": 3.2}),),
         coverage=coverage(points, "left"),
         explanations=("The file is for simulations with turn slip on.",),
         warnings=(),

@@ -61,7 +61,7 @@ def test_a_sensitivity_is_the_slope_of_the_readings(points, simulation, name):
     up, down = (simulation.with_numbers({name: value + s}).predict(points) for s in (step, -step))
     _, slope = simulation.sensitivities(points, [name])
     expected = (up - down) / (2.0 * step)
-    assert np.concatenate(slope)[:, 0] == pytest.approx(expected, abs=1e-5 * (1.0 + np.max(np.abs(expected))))
+    assert slope.stacked[:, 0] == pytest.approx(expected, abs=1e-5 * (1.0 + np.max(np.abs(expected))))
 
 
 @pytest.mark.parametrize("name", ["compliance_deg_per_Nm", "alpha_0_deg", "k_T_grip_per_K", "PKY1", "QDZ1"])
@@ -71,7 +71,7 @@ def test_a_yielding_steering_passes_every_slope_on(points, simulation, name):
     value = yielding.number(name, points)
     up, down = (yielding.with_numbers({name: value + s}).predict(points) for s in (1e-5, -1e-5))
     expected = (up - down) / 2e-5
-    slope = np.concatenate(yielding.sensitivities(points, [name])[1])[:, 0]
+    slope = yielding.sensitivities(points, [name])[1].stacked[:, 0]
     assert slope == pytest.approx(expected, abs=1e-5 * (1.0 + np.max(np.abs(expected))))
 
 
@@ -87,7 +87,7 @@ def test_a_wheel_on_a_yielding_steering_stands_where_moment_and_steering_agree(p
 def test_sensitivities_come_with_the_readings(points, simulation):
     out, slope = simulation.sensitivities(points, ["PKY1", "F0_N"])
     # The angle that play and compliance leave is found step by step: that far and no further.
-    assert np.concatenate(out) == pytest.approx(simulation.predict(points), rel=1e-6)
+    assert out.stacked == pytest.approx(simulation.predict(points), rel=1e-6)
     assert slope.Fy.shape == slope.Mz.shape == (50, 2)
     assert np.all(slope.Fy[:, 1] == 1.0)
     assert np.all(slope.Mz[:, 1] == 0.0)
@@ -102,7 +102,7 @@ def test_the_lag_of_a_continuous_sweep_has_a_slope_too(simulation):
     up, down = (lagging.with_numbers({"relaxation_m": 0.3 + s}).predict(sweep) for s in (1e-4, -1e-4))
     _, slope = lagging.sensitivities(sweep, ["relaxation_m"])
     expected = (up - down) / 2e-4
-    assert np.concatenate(slope)[:, 0] == pytest.approx(expected, abs=2e-3 * np.max(np.abs(expected)))
+    assert slope.stacked[:, 0] == pytest.approx(expected, abs=2e-3 * np.max(np.abs(expected)))
 
 
 def test_a_perfect_rig_reads_the_tyre(points):

@@ -18,6 +18,7 @@ CONTRACT = [
     "alpha_deg", "gamma_deg", "Fz_N", "Fy_N", "Mz_Nm", "Mx_Nm", "My_Nm", "p_kPa", "V_mps", "T_degC",
     "direction", "u_Fy_N", "u_Mz_Nm", "point", "time_s", "t_s", "run", "iteration",
     "kappa", "Fx_N", "RL_m", "omega_radps",
+    "u_Fx_N", "u_Mx_Nm", "u_My_Nm", "u_RL_m", "u_omega_radps",
 ]  # fmt: skip
 
 
