@@ -130,6 +130,16 @@ SLIP_OF_ZERO_FORCE = Real(
     "Slip of zero Fx up to which slip is against free rolling: rolling resistance moves it by 0.001, a calibration of speed "
     "by 0.002; slip against the loaded radius is 0.01 to 0.04 off at full load.",
 )
+SOFTEST_SLIP_STIFFNESS = Real(
+    2.0,
+    "-",
+    "Slope of Fx per load over slip below which the slip is in per cent: tyres have 5 to 50 per unit of slip.",
+)
+LARGEST_SHIFT_OF_SLIP = Real(
+    0.12,
+    "-",
+    "Slip of zero Fx beyond which the slip is against no radius of the tyre: they differ by less than a tenth.",
+)
 OUTLIER_OF_ZERO = Real(
     4.0, "-", "Standard deviations beyond which a reading does not count for the zero of slip."
 )

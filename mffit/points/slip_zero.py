@@ -14,6 +14,7 @@ from typing import NamedTuple
 import numpy as np
 
 from mffit.config import Config
+from mffit.errors import InputError
 from mffit.points import constants
 from mffit.scatter import robust
 from mffit.sweeps import Sweep
@@ -137,6 +138,9 @@ def against_free_rolling(
         zero = slip_zero(_joined_readings(sweeps[k] for k in rows))
         if zero is None:
             continue
+        wrong = _contradiction(heading, zero)
+        if wrong:
+            raise InputError(wrong, file=config.path or config.sweep[0].file, key="columns.kappa")
         sentences.append(sentence(heading, against, zero))
         if against == LOADED or (against is None and not zero.is_free_rolling):
             for k in rows:
@@ -160,6 +164,20 @@ def sentence(heading: str, against: str | None, zero: SlipZero) -> str:
     if zero.falls:
         return f"{heading} is against the loaded radius: {found}; taken off, so that slip is against free rolling"
     return f"the zero of {heading} is not free rolling: {found}; taken off"
+
+
+def _contradiction(heading: str, zero: SlipZero) -> str:
+    """Why a column cannot be slip as a ratio that is positive when driven; "" if it can."""
+    if abs(zero.slope) < constants.SOFTEST_SLIP_STIFFNESS:
+        return (
+            f"Fx rises by {zero.slope:.2g} times the load per unit of {heading}, tyres by "
+            f'{constants.SOFTEST_SLIP_STIFFNESS:g} or more: it looks like per cent; write unit = "%" for kappa under [columns]'
+        )
+    if zero.slope < 0.0:
+        return f"Fx falls with {heading}, so braking is positive there; write scale = -1 for kappa under [columns]"
+    if zero.largest > constants.LARGEST_SHIFT_OF_SLIP:
+        return f"Fx = 0 lies at {heading} {zero.said}, which no radius explains; check this column"
+    return ""
 
 
 def readings_of(sweep: Sweep) -> Driven:

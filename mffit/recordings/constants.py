@@ -36,11 +36,6 @@ LARGEST_SLIP_AS_RATIO = Real(
     "-",
     "Size of a column of slip above which it is in per cent: no rig drives a wheel at three times the speed.",
 )
-SOFTEST_SLIP_STIFFNESS = Real(
-    2.0,
-    "-",
-    "Slope of Fx per load over slip below which the slip is in per cent: tyres have 5 to 50 per unit of slip.",
-)
 ROLLING_RADIUS_RANGE = Series(
     (0.75, 1.25), "-", "Speed over rotation, in unloaded radii, if the rotation is the wheel's."
 )

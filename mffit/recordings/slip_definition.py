@@ -7,6 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from mffit.points.constants import SOFTEST_SLIP_STIFFNESS
 from mffit.points.slip_zero import FREE, LOADED, Driven, SlipZero, sentence, slip_zero
 from mffit.recordings import constants
 from mffit.recordings.unstated import FoundChannel
@@ -81,7 +82,7 @@ def _judged(
     if not column.unit:
         if column.size > constants.LARGEST_SLIP_AS_RATIO:
             unit, why = "%", f"{column.range} look like %"
-        elif zero is not None and abs(zero.slope) < constants.SOFTEST_SLIP_STIFFNESS:
+        elif zero is not None and abs(zero.slope) < SOFTEST_SLIP_STIFFNESS:
             unit, why = (
                 "%",
                 f"Fx rises by {abs(zero.slope):.2g} times the load per unit of {column.heading}, so {column.range} are in %",

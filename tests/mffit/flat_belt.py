@@ -23,8 +23,10 @@ LOADS = (600.0, 1500.0, 2400.0)
 CAMBERS = (0.0, 2.0, 4.0)
 UNITS = {
     "ET": "sec", "V": "kph", "SA": "deg", "IA": "deg", "P": "kPa", "FX": "N", "FY": "N", "FZ": "N", "MX": "N-m", "MZ": "N-m",
-    "TSTC": "deg C", "SL": "none", "SR": "none", "N": "rpm", "RL": "cm",
+    "TSTC": "deg C", "SL": "none",
 }  # fmt: skip
+DRIVE_UNITS = {**UNITS, "SR": "none", "N": "rpm", "RL": "cm"}
+"""Also of the channels that only a driven wheel has."""
 
 
 def recording(
@@ -172,7 +174,7 @@ def drive_recording(
 def write_mat(table: pd.DataFrame, path: Path, **texts: str) -> Path:
     """The table as a MATLAB file in the layout of the tyre test consortium."""
     names = np.array(list(table), dtype=object)
-    units = np.array([UNITS.get(name, "") for name in table], dtype=object)
+    units = np.array([DRIVE_UNITS.get(name, "") for name in table], dtype=object)
     content = {name: table[name].to_numpy()[:, None] for name in table}
     channel = {"name": names, "units": units}
     scipy.io.savemat(path, {**content, "channel": channel, "tireid": "Tyre A, 7 inch", **texts})

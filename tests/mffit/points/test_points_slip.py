@@ -4,7 +4,15 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from flat_belt import LOADS, drive_recording, longitudinal_force, recording, write_mat
+from flat_belt import (
+    LOADS,
+    drive_recording,
+    loaded_radius,
+    longitudinal_force,
+    recording,
+    rolling_radius,
+    write_mat,
+)
 
 from mffit import config as configuration
 from mffit import points
@@ -98,7 +106,43 @@ def test_a_fit_of_side_force_takes_the_points_that_roll_freely(configured):
     (warning,) = [warning for warning in found.warnings if "only free rolling" in warning]
     (entry,) = [row for row in found.left_out if row.rule == "driven-or-braked"]
     assert f"{entry.count} of {entry.count + len(found.points)} points" in warning
+
+
+@pytest.mark.parametrize(
+    ("change", "said"),
+    [
+        (lambda slip: slip + 0.3, "no radius explains"),
+        (lambda slip: -slip, "scale = -1"),
+        (lambda slip: 20.0 * slip, "per cent"),
+    ],
+)
+def test_slip_of_another_sign_unit_or_zero_is_refused_with_the_remedy(configured, change, said):
+    table = drive_recording(cambers=(0.0,), sideslips=(0.0,))
+    table["SL"] = change(table["SL"])
+    with pytest.raises(InputError, match=said):
+        points.read(configured(table))
+
+
+def test_slip_against_the_loaded_radius_is_shifted_by_load(configured):
+    """As the speed of the wheel and the radius of free rolling give it: no formula of the reader."""
     table = drive_recording()
-    table["SL"] += 1.0
-    with pytest.raises(InputError, match="rolls freely"):
-        read_points(configured(table))
+    truth = points.read(configured(table)).points.kappa
+    stated = {"column": "SR", "against": "loaded-radius"}
+    for given in ("SR", stated):
+        found = points.read(configured(table, {**COLUMNS, "kappa": given}))
+        assert np.max(np.abs(found.points.kappa - truth)) < 0.0025
+        (sentence,) = [warning for warning in found.warnings if "loaded radius" in warning]
+        said = [float(word.strip(",")) for word in sentence.split() if word[0] in "+-"]
+        assert np.allclose(
+            said, [loaded_radius(load) / rolling_radius(load) - 1.0 for load in LOADS], atol=1e-3
+        )
+    kept = points.read(configured(table, {**COLUMNS, "kappa": {**stated, "against": "free-rolling"}}))
+    assert np.min(kept.points.kappa) < np.min(truth) - 0.015
+    assert any("declared against free rolling" in warning for warning in kept.warnings)
+
+
+def test_slip_against_free_rolling_is_said_and_left_alone(configured):
+    found = points.read(configured(drive_recording()))
+    (sentence,) = [warning for warning in found.warnings if "SL is against free rolling" in warning]
+    assert float(sentence.split("within ")[1].split()[0]) < 0.0006
+    assert np.allclose(found.points.kappa, found.points.table["kappa"])
