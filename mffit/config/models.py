@@ -256,6 +256,7 @@ class Column(Table):
     column: str | None = None  #: heading in the file; None: the column's own name
     unit: str | None = None  #: None: as the file says, else the column's own unit
     scale: float = 1.0
+    against: Literal["free-rolling", "loaded-radius"] | None = None  #: of kappa only; None: found from Fx = 0
 
 
 def _as_column(given: Any) -> Any:

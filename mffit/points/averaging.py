@@ -117,8 +117,11 @@ def _blocks(sweep: Sweep, rows: np.ndarray) -> tuple[np.ndarray, int]:
     time = sweep.time[rows]
     interval = float(np.median(np.diff(time))) if len(rows) > 1 else constants.AVERAGED_TIME
     step = float(constants.AVERAGED_TIME)
+    apart = max(1, round(step / interval))  # samples; slip is noisy from one to the next
     for name, most in AVERAGED_RANGE.items():
-        moved = float(np.median(np.abs(np.diff(getattr(sweep, name)[rows])))) / interval
+        values, samples = getattr(sweep, name)[rows], apart if name == "kappa" else 1
+        change = np.abs(values[samples:] - values[:-samples]) / samples
+        moved = float(np.median(change)) / interval if len(change) else 0.0
         if moved > 0.0:
             step = min(step, most / moved)
     size = max(1, round(step / interval))

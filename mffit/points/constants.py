@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from tir.constant import Count, Real
+from tir.constant import Count, Real, Series
 
 # Levels of the set-points: values further apart than a tolerance may be two levels; the scatter of a rig is a third of it
 LOAD_LEVEL_TOLERANCE = Real(0.08, "-", "Loads of one level differ by less, relatively.")
@@ -61,6 +61,12 @@ STAIRCASE_SHARE = Real(
     0.5, "-", "Share of rest above which angles move from plateau to plateau instead of sweeping."
 )
 SMALLEST_SWEEP = Real(3.0, "deg", "Smallest range of a sweeping angle.")
+STEP_OF_CONDITION_WHILE_DRIVEN = Real(
+    0.25,
+    "-",
+    "Relative change of load, pressure or speed to another set-point while slip moves: drive and brake forces "
+    "disturb the control of the load by a tenth, and the points keep the load as read.",
+)
 SMALLEST_SWEEP_OF_SLIP = Real(0.05, "-", "Smallest range of a sweep of longitudinal slip.")
 RETURNED_SHARE = Real(
     0.3, "-", "Share of its range that a sweep beside plateaus returns; a move does not return."
@@ -93,7 +99,11 @@ LARGEST_ORDER_OF_NOISE = Count(
 )
 AVERAGED_TIME = Real(0.1, "s", "Averaging time of a moving sweep.")
 AVERAGED_ANGLE = Real(0.5, "deg", "Largest angle over which a moving sweep is averaged.")
-AVERAGED_SLIP = Real(0.02, "-", "Largest change of longitudinal slip over which a moving sweep is averaged.")
+AVERAGED_SLIP = Real(
+    0.01,
+    "-",
+    "Largest slip over which a moving sweep is averaged: the curve bends by 0.3 % of its peak over it.",
+)
 FILLED_BLOCK = Real(0.5, "-", "Share of its samples that such an averaged block needs.")
 
 # Lag of moving sweeps
@@ -108,6 +118,36 @@ WORST_CONDITION_AT_ZERO = Real(1e8, "-", "Condition number above which one side 
 FEWEST_SWEEPS_OF_LAG = Count(3, "-", "Fewest sweeps whose scatter gives the uncertainty of the median lag.")
 BINS_OF_HYSTERESIS = Count(25, "-", "Bins of the angle in which both ways of a sweep are compared.")
 PROVEN_LAG = Real(2.0, "-", "Standard uncertainties that a lag must exceed to be corrected.")
+
+# Definition of slip
+FORCE_NEAR_FREE_ROLLING = Real(
+    0.3, "-", "Fx over the load up to which slip and force are nearly proportional, apart from a cubic term."
+)
+LOADS_OF_ZERO = Series((10.0, 50.0, 90.0), "%", "Percentiles of the load at which the zero of slip is said.")
+SLIP_OF_ZERO_FORCE = Real(
+    0.004,
+    "-",
+    "Slip of zero Fx up to which slip is against free rolling: rolling resistance moves it by 0.001, a calibration of speed "
+    "by 0.002; slip against the loaded radius is 0.01 to 0.04 off at full load.",
+)
+SOFTEST_SLIP_STIFFNESS = Real(
+    2.0,
+    "-",
+    "Slope of Fx per load over slip below which the slip is in per cent: tyres have 5 to 50 per unit of slip.",
+)
+LARGEST_SHIFT_OF_SLIP = Real(
+    0.12,
+    "-",
+    "Slip of zero Fx beyond which the slip is against no radius of the tyre: they differ by less than a tenth.",
+)
+OUTLIER_OF_ZERO = Real(
+    4.0, "-", "Standard deviations beyond which a reading does not count for the zero of slip."
+)
+WEAKEST_DIRECTION_OF_ZERO = Real(
+    1e-3,
+    "-",
+    "Singular value over the largest below which the zero does not follow a combination of conditions.",
+)
 
 # Bare tables
 STAND_IN_PRESSURE = Real(

@@ -16,7 +16,7 @@ from mffit.scatter import robust
 from mffit.sweeps import Sweep
 
 DRIVEN_RULE = "driven-or-braked"
-DRIVEN = "driven or braked, and only free rolling is fitted"
+DRIVEN = "driven or braked, and Fx was not measured"
 SENSORS = ("Fy", "Mz", "Fz")
 
 

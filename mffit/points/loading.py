@@ -21,6 +21,7 @@ from mffit.points.lag import common, rolled_distance
 from mffit.points.left_out import LeftOut, by_hand
 from mffit.points.points import Points, concatenate
 from mffit.points.reduction import Reduced, reduce
+from mffit.points.slip_zero import against_free_rolling
 from mffit.points.steady import scale_of
 from mffit.points.stretch import StretchNote
 from mffit.scatter import rms
@@ -75,11 +76,12 @@ def read(config: Config, *, continuous: bool = False, may_be_empty: bool = False
     with as_declared(config):
         found = files.load(config)
     phi_t = {entry.file: path_curvature(config.rig, entry) for entry in config.sweep}
-    series = [settings_of(sweep) for sweep in found.sweeps if sweep.is_series]
+    sweeps, definitions = against_free_rolling(found.sweeps, config)
+    series = [settings_of(sweep) for sweep in sweeps if sweep.is_series]
     scale = scale_of(series) if series else None
-    reduced = [reduce(sweep, phi_t[sweep.file], scale) for sweep in found.sweeps]
+    reduced = [reduce(sweep, phi_t[sweep.file], scale) for sweep in sweeps]
     points = concatenate([part.points for part in reduced if len(part.points)] or [reduced[0].points])
-    warnings = [*found.warnings, *(sentence for part in reduced for sentence in part.warnings)]
+    warnings = [*found.warnings, *definitions, *(sentence for part in reduced for sentence in part.warnings)]
     straight = config.rig.type == "flat-track"
     if straight and not continuous and np.any(points.continuous):
         lag = common([one for part in reduced for one in part.lags])
@@ -147,6 +149,8 @@ def settled_sweeps(points: Points, lag: tuple[float, float]) -> Points:
 def _of_motion(reduced: Sequence[Reduced], lag: tuple[float, float]) -> list[str]:
     """A sentence about the lag and hysteresis of the moving sweeps."""
     known = [one for part in reduced for one in part.lags if np.isfinite(one.lag)]
+    if not known and not any(note.swept == "alpha_deg" for part in reduced for note in part.stretches):
+        return []
     if not known:
         return [
             "no sweep goes through zero side force both ways, so the lag of the force behind the sideslip angle is "

@@ -96,7 +96,9 @@ def _labels(sweep: Sweep, tried: list[Stretch]) -> dict[Stretch, str]:
 def _lag(sweep: Sweep, stretch: Stretch, faulty: np.ndarray) -> Lag:
     """The lag of a sweep of the sideslip angle."""
     rows = averaging.sound_rows(stretch, faulty)
-    if len(rows) < 2 or np.ptp(sweep.alpha[rows]) < np.ptp(sweep.gamma[rows]):
+    if len(rows) < 2 or np.ptp(sweep.alpha[rows]) < max(
+        np.ptp(sweep.gamma[rows]), constants.SMALLEST_SWEEP.rad
+    ):
         return UNKNOWN
     time = sweep.time[rows]
     rolled = rolled_distance(time, sweep.V[rows])

@@ -5,11 +5,16 @@ from __future__ import annotations
 import numpy as np
 
 from mffit.points import constants
+from mffit.points.choice import settings_of
 from mffit.points.faulty import DRIVEN, Fault
 from mffit.points.lag import Lag
+from mffit.points.steady import RANGE
 from mffit.points.stretch import PLATEAU, SWEEP, Stretch, StretchNote
 from mffit.scatter import finite_median
 from mffit.sweeps import Sweep
+
+COLUMN_OF = {"alpha": "alpha_deg", "gamma": "gamma_deg", "kappa": "kappa"}
+"""Column of a setting."""
 
 
 def left_out(sweep: Sweep, wrong: list[Fault], tried: list[Stretch]) -> tuple[str, ...]:
@@ -31,16 +36,20 @@ def note(sweep: Sweep, stretch: Stretch, label: str, points: int, lag: Lag) -> S
     part = slice(stretch.begin, stretch.end)
     last = stretch.end - 1
     low, high = (float(np.degrees(f(sweep.alpha[part]))) for f in (np.nanmin, np.nanmax))
+    has_slip = "kappa" in sweep.table
     return StretchNote(
         file=sweep.file,
         sweep=label,
         kind=stretch.kind,
+        swept=swept(sweep, stretch) if stretch.kind == SWEEP else "",
         begin_s=float(sweep.time[stretch.begin]),
         end_s=float(sweep.time[last]),
         first_line=int(sweep.line[stretch.begin]),
         last_line=int(sweep.line[last]),
         alpha_from_deg=low,
         alpha_to_deg=high,
+        kappa_from=float(np.min(sweep.kappa[part])) if has_slip else np.nan,
+        kappa_to=float(np.max(sweep.kappa[part])) if has_slip else np.nan,
         gamma_deg=float(np.degrees(finite_median(sweep.gamma[part]))),
         Fz_N=finite_median(sweep.Fz[part]),
         p_kPa=1e-3 * finite_median(sweep.p[part]),
@@ -51,6 +60,13 @@ def note(sweep: Sweep, stretch: Stretch, label: str, points: int, lag: Lag) -> S
         hysteresis_N=lag.hysteresis,
         dropped=stretch.dropped,
     )
+
+
+def swept(sweep: Sweep, stretch: Stretch) -> str:
+    """Column of the setting that moves most along a sweep, measured in smallest sweeps."""
+    part, settings = slice(stretch.begin, stretch.end), settings_of(sweep)
+    ranges = {name: float(np.ptp(getattr(settings, name)[part])) / least for name, least in RANGE.items()}
+    return COLUMN_OF[max(ranges, key=lambda name: ranges[name])]
 
 
 def _of_samples_and_sweeps(sweep: Sweep, wrong: list[Fault], tried: list[Stretch]) -> tuple[str, ...]:

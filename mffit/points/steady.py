@@ -65,8 +65,8 @@ def stretches(
     Returns
     -------
     list of Stretch
-        Plateaus, where all settings rest; sweeps, where one angle or the slip moves through its range and all else rests; moves,
-        with the reason why they are neither, such as the way of an angle between two plateaus.
+        Plateaus, where all settings rest; sweeps, where an angle or the slip moves through its range and all else rests; and
+        moves, with the reason why they are neither, such as the way of an angle between two plateaus.
     """
     n = len(settings.time)
     if point is not None:
@@ -178,17 +178,18 @@ def _swept(
             and (not staircase or _returns(values[b:e]))
         ]
 
-    def pieces(still: np.ndarray) -> list[tuple[int, int]]:
-        return [(begin + b, begin + e) for b, e in runs(still)]
+    def resting(*names: str) -> list[tuple[int, int]]:
+        at_rest = ~np.any([moving[name][begin:end] for name in names], axis=0)
+        for s in found:
+            at_rest[s.begin - begin : s.end - begin] = False
+        return [(begin + b, begin + e) for b, e in runs(at_rest)]
 
-    moves = {name: mask[begin:end] for name, mask in moving.items()}
-    found = sweeps("alpha", pieces(~moves["gamma"] & ~moves["kappa"]))
+    found: list[Stretch] = []
+    found += sweeps("alpha", resting("gamma", "kappa"))
     if not found and np.ptp(settings.alpha[begin:end]) < RANGE["alpha"]:
-        found = sweeps("gamma", pieces(~moves["kappa"]))
-    taken = np.zeros(end - begin, dtype=bool)
-    for s in found:
-        taken[s.begin - begin : s.end - begin] = True
-    found += sweeps("kappa", pieces(~moves["alpha"] & ~moves["gamma"] & ~taken))
+        found += sweeps("gamma", resting("kappa"))
+    if np.any(moving["kappa"][begin:end]):
+        found += sweeps("kappa", resting("alpha", "gamma"))
     taken = np.zeros(end - begin, dtype=bool)
     for s in found:
         taken[s.begin - begin : s.end - begin] = True
@@ -197,7 +198,7 @@ def _swept(
 
 
 def _returns(x: np.ndarray) -> bool:
-    """Whether an angle goes back over a good part of its range."""
+    """Whether a setting goes back over a good part of its range."""
     far = max(x.max() - max(x[0], x[-1]), min(x[0], x[-1]) - x.min())
     return bool(far > constants.RETURNED_SHARE * np.ptp(x))
 
@@ -224,17 +225,29 @@ def moves(settings: SteadySettings, scale: Scale | None = None) -> dict[str, np.
     masks = {}
     for name in (*STEP, *CONDITIONS):
         values = getattr(settings, name)
-        usual = max(scale[name], float(np.median(np.abs(values))))
-        step = STEP[name] if name in STEP else constants.STEP_OF_CONDITION * usual
         mask = np.zeros(n, dtype=bool)
         if np.ptp(values) > 0.0:
+            if name in STEP:
+                step: float | np.ndarray = STEP[name]
+            else:
+                usual = max(scale[name], float(np.median(np.abs(values))))
+                step = usual * _step_of_condition(masks["kappa"][lag:])
             smooth = uniform_filter1d(values, lag, mode="nearest")
             noise = _noise(values) / np.sqrt(lag)
-            change = np.abs(smooth[lag:] - smooth[:-lag]) > max(step, constants.STEP_OVER_NOISE * noise)
+            change = np.abs(smooth[lag:] - smooth[:-lag]) > np.maximum(
+                step, constants.STEP_OVER_NOISE * noise
+            )
             mask[lag:] |= change
             mask[:-lag] |= change
         masks[name] = mask
     return masks
+
+
+def _step_of_condition(driving: np.ndarray) -> float | np.ndarray:
+    """Relative change of a condition to another set-point, where the slip rests and where it moves (n,)."""
+    if not np.any(driving):
+        return float(constants.STEP_OF_CONDITION)
+    return np.where(driving, constants.STEP_OF_CONDITION_WHILE_DRIVEN, constants.STEP_OF_CONDITION)
 
 
 def _noise(values: np.ndarray) -> float:

@@ -24,12 +24,15 @@ class StretchNote(NamedTuple):
     file: str
     sweep: str  #: label of the sweep it belongs to
     kind: str
+    swept: str  #: name of the setting that a sweep moves, as in the columns of a file; empty for other kinds
     begin_s: float
     end_s: float
     first_line: int
     last_line: int
     alpha_from_deg: float
     alpha_to_deg: float
+    kappa_from: float  #: longitudinal slip; NaN if it was not measured
+    kappa_to: float
     gamma_deg: float
     Fz_N: float
     p_kPa: float

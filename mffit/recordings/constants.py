@@ -31,6 +31,11 @@ STEERING_RATES = Series((0.02, 100.0), "deg/s", "Rates at which rigs steer.")
 STEERING_PERCENTILE = Real(95.0, "%", "Percentile of the rates that is the rate of steering; ignores pauses.")
 STEERING_TRAVEL = Real(1.0, "deg", "Smaller motions of an angle show no rate.")
 SAMPLES_PER_RATE = Count(20, "samples", "Distance over which a rate is taken, to average noise of the angle.")
+LARGEST_SLIP_AS_RATIO = Real(
+    2.0,
+    "-",
+    "Size of a column of slip above which it is in per cent: no rig drives a wheel at three times the speed.",
+)
 ROLLING_RADIUS_RANGE = Series(
     (0.75, 1.25), "-", "Speed over rotation, in unloaded radii, if the rotation is the wheel's."
 )

@@ -13,6 +13,7 @@ from typing import NamedTuple
 import numpy as np
 
 from mffit.config.models import Column
+from mffit.recordings.slip_definition import SLIP, slip_definition, wheel_not_recorded
 from mffit.recordings.unstated import Choice, FoundChannel, choices, customary
 from mffit.sweeps.channels import BY_NAME, SWEEP_CHANNELS, Channel
 from mffit.sweeps.columns import numbers
@@ -34,6 +35,10 @@ class Guess(NamedTuple):
     lower: float = np.nan  #: range of the readings, in the file's unit
     upper: float = np.nan
     why: str = ""  #: reason for a unit that nothing states
+    scale: float = 1.0  #: -1 if the file has the other sign
+    against: str | None = (
+        None  #: what longitudinal slip is against; None for other channels, or if nothing shows it
+    )
 
     @property
     def unit_of_readings(self) -> str:
@@ -43,7 +48,13 @@ class Guess(NamedTuple):
     @property
     def column(self) -> Column:
         """The guess as an entry of ``[columns]``."""
-        return Column(column=self.heading, unit=self.unit or None)
+        given = {
+            "column": self.heading,
+            "unit": self.unit or None,
+            "scale": self.scale,
+            "against": self.against,
+        }
+        return Column.model_validate(given)
 
 
 class Guesses(NamedTuple):
@@ -62,12 +73,21 @@ def guesses(raw: RawTable, *, unloaded_radius: float | None = None) -> Guesses:
     unloaded_radius : [m], to check the speed of rotation; None if it is not known
     """
     columns = _number_columns(raw)
+    slips = _candidates(raw, BY_NAME[SLIP])
+    columns.pop(SLIP, None)
     chosen, left_out = choices(columns, unloaded_radius)
     remarks = [*left_out.values()]
     columns = {name: column for name, column in columns.items() if name not in left_out}
     if remark := customary(columns, chosen):
         remarks.append(remark)
     found = {name: _guess(raw, column, chosen.get(name)) for name, column in columns.items()} | _labels(raw)
+    defined = slip_definition(slips, columns, lambda name: found[name].unit_of_readings)
+    if defined is not None:
+        remarks += defined.remarks
+        if not wheel_not_recorded(defined.column):
+            found[SLIP] = _guess(
+                raw, defined.column, Choice(defined.unit, defined.why) if defined.unit else None
+            )._replace(scale=defined.scale, against=defined.against, why=defined.why)
     if "Mz_Nm" not in found:
         remarks += _without_moment(raw, {guess.heading for guess in found.values()})
     if not found.keys() & {"time_s", "t_s"}:
@@ -88,17 +108,16 @@ def simplified(heading: str) -> str:
 
 def _number_columns(raw: RawTable) -> dict[str, FoundChannel]:
     """Columns of numbers that are channels; the first known name with suitable readings counts."""
+    candidates = {c.name: _candidates(raw, c) for c in SWEEP_CHANNELS if c.kind == "number"}
+    return {name: columns[0] for name, columns in candidates.items() if columns}
+
+
+def _candidates(raw: RawTable, channel: Channel) -> list[FoundChannel]:
+    """Columns with a known name of a channel and suitable readings, in the order of the names."""
     headings = _headings(raw)
-    found: dict[str, FoundChannel] = {}
-    for channel in SWEEP_CHANNELS:
-        if channel.kind != "number":
-            continue
-        candidates = [headings.get(simplified(name)) for name in (channel.name, *channel.aliases)]
-        columns = (_column(raw, channel, heading) for heading in candidates if heading is not None)
-        column = next((column for column in columns if column is not None), None)
-        if column is not None:
-            found[channel.name] = column
-    return found
+    named = dict.fromkeys(headings.get(simplified(name)) for name in (channel.name, *channel.aliases))
+    columns = [_column(raw, channel, heading) for heading in named if heading is not None]
+    return [column for column in columns if column is not None]
 
 
 def _column(raw: RawTable, channel: Channel, heading: str) -> FoundChannel | None:

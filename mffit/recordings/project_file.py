@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 import tomli_w
 
-from mffit.config.models import TyreTable
+from mffit.config.models import Column, TyreTable
 from mffit.points import main_pressure
 from mffit.recordings.guess import Guess
 from mffit.recordings.sniffed import Sniffed, SniffedRecording, holding, points_from
@@ -142,19 +142,23 @@ def _shared_columns(sniffed: Sniffed) -> dict[str, Guess]:
 
 
 def _differs(shared: Guess, guess: Guess) -> bool:
-    return (shared.heading, shared.unit) != (guess.heading, guess.unit)
+    return shared.column != guess.column
 
 
 def _columns(guesses: Mapping[str, Guess]) -> list[str]:
     """The columns that have another heading or unit than the contract."""
-    return [_column(guess) for guess in guesses.values() if guess.heading != guess.channel.name or guess.unit]
+    return [_column(guess) for guess in guesses.values() if guess.column != Column(column=guess.channel.name)]
 
 
 def _column(guess: Guess) -> str:
     name, heading = guess.channel.name, quoted(guess.heading)
-    if guess.unit:
-        text = f"{name} = {{ column = {heading}, unit = {quoted(guess.unit)} }}"
-        note = f"the file states no unit: {guess.why}"
+    if guess.unit or guess.scale != 1.0 or guess.against:
+        given = {"unit": guess.unit, "against": guess.against}
+        keys = [f"column = {heading}", *(f"{key} = {quoted(value)}" for key, value in given.items() if value)]
+        if guess.scale != 1.0:
+            keys.append(f"scale = {guess.scale:g}")
+        text = f"{name} = {{ {', '.join(keys)} }}"
+        note = f"the file states no unit: {guess.why}" if guess.unit else guess.why
     else:
         text = f"{name} = {heading}"
         note = f"in {guess.stated}, as the file says" if guess.stated else ""

@@ -64,7 +64,7 @@ class Sniffed:
     reading: Reading  #: points and stretches under the likeliest axes
     conditions: dict[
         str, tuple[Level, ...]
-    ]  #: levels of load [N], camber [rad], pressure [Pa] and speed [m/s]
+    ]  #: levels of load [N], camber [rad], pressure [Pa], speed [m/s] and, of slip sweeps, sideslip [rad]
 
     @property
     def points(self) -> Points:
@@ -213,7 +213,7 @@ def axes_of(points: Points, declared: str, *, load_falls: bool) -> tuple[tuple[s
 
 
 def conditions_of(recordings: Sequence[SniffedRecording], reading: Reading) -> dict[str, tuple[Level, ...]]:
-    """The levels of every setting, of the stretches that give points or of finished points.
+    """The levels of every setting, of the stretches that give points or of finished points; sideslip of slip sweeps only.
 
     Pressure and speed count only if measured; a setting that no recording holds has no level.
     """
@@ -228,7 +228,12 @@ def conditions_of(recordings: Sequence[SniffedRecording], reading: Reading) -> d
         else points_from(points, pressed).p,
         levels.SPEED: points_from(points, holding(recordings, "V_mps")).V,
     }
-    return {quantity.name: _levels(found, quantity) for quantity, found in values.items()}
+    found = {quantity.name: _levels(value, quantity) for quantity, value in values.items()}
+    driven = [note for note in kept if note.swept == "kappa"]
+    if driven:
+        sideslip = np.radians([0.5 * (note.alpha_from_deg + note.alpha_to_deg) for note in driven])
+        found[levels.SIDESLIP.name] = _levels(sideslip, levels.SIDESLIP)
+    return found
 
 
 def holding(recordings: Sequence[SniffedRecording], channel: str) -> frozenset[str]:

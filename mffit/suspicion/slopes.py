@@ -66,7 +66,8 @@ class Signatures(NamedTuple):
 
 
 def signatures(points: Points) -> Signatures:
-    """The signatures of steady points in normal mount."""
+    """The signatures of steady points in normal mount at which the wheel rolls freely."""
+    points = points.select(points.free_rolling)
     points = points.select(points.mount > 0) if np.any(points.mount > 0) else points
     forward = points.direction > 0
     sideslip, camber = np.abs(points.alpha), np.abs(points.gamma)

@@ -15,6 +15,7 @@ SETTINGS = {
     "camber": ("deg", 180.0 / np.pi, 1),
     "pressure": ("kPa", 1e-3, 1),
     "speed": ("m/s", 1.0, 2),
+    "sideslip": ("deg", 180.0 / np.pi, 1),
 }
 """Unit, factor and decimals of a setting."""
 

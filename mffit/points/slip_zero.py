@@ -1,0 +1,250 @@
+"""Where the longitudinal force is zero over load, and slip against free rolling from slip against another radius.
+
+A wheel without longitudinal force rolls freely. Slip against the loaded radius ``l`` is ``omega l / V - 1``; slip of the
+Magic Formula is ``omega Re / V - 1`` with the radius ``Re`` of free rolling. With the slip ``s0 = l / Re - 1`` at which the
+force is zero, ``kappa = (1 + s) / (1 + s0) - 1``.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, replace
+from typing import NamedTuple
+
+import numpy as np
+
+from mffit.config import Config
+from mffit.errors import InputError
+from mffit.points import constants
+from mffit.scatter import robust
+from mffit.sweeps import Sweep
+
+FREE, LOADED = "free-rolling", "loaded-radius"
+"""What the slip of a column may be against."""
+
+
+class Driven(NamedTuple):
+    """Readings (n,) in any axes; only the magnitudes of load and angles count."""
+
+    slip: np.ndarray
+    Fx: np.ndarray  #: [N]
+    Fz: np.ndarray  #: [N]
+    alpha: np.ndarray  #: [rad]
+    gamma: np.ndarray  #: [rad]
+    p: np.ndarray  #: [Pa]
+
+
+class ZeroAtLoad(NamedTuple):
+    """Slip at which the longitudinal force is zero at one load, upright and without sideslip as nearly as was run."""
+
+    load: float  #: [N]
+    slip: float
+
+
+@dataclass(frozen=True, slots=True)
+class SlipZero:
+    """The slip at which the longitudinal force is zero, over load, pressure, camber and sideslip."""
+
+    slope: float  #: of force per load over slip, at zero force
+    levels: tuple[ZeroAtLoad, ...]
+    middle: tuple[float, ...]  #: of each setting
+    coefficients: np.ndarray  #: of :func:`_conditions`
+
+    def at(self, of: Driven) -> np.ndarray:
+        """The slip (n,) of zero force under the conditions of some readings."""
+        return np.asarray(_conditions(of, self.middle) @ self.coefficients)
+
+    @property
+    def reversed(self) -> SlipZero:
+        """The same for slip of the other sign."""
+        turned = tuple(ZeroAtLoad(level.load, -level.slip) for level in self.levels)
+        return replace(self, slope=-self.slope, levels=turned, coefficients=-self.coefficients)
+
+    @property
+    def largest(self) -> float:
+        """Largest magnitude over the loads."""
+        return max(abs(level.slip) for level in self.levels)
+
+    @property
+    def is_free_rolling(self) -> bool:
+        """Whether the slip is against free rolling: the force is zero where the slip is."""
+        return self.largest <= constants.SLIP_OF_ZERO_FORCE
+
+    @property
+    def falls(self) -> bool:
+        """Whether the zero changes with load, as that of slip against the loaded radius does."""
+        slips = [level.slip for level in self.levels]
+        return max(slips) - min(slips) > constants.SLIP_OF_ZERO_FORCE
+
+    @property
+    def within(self) -> str:
+        """That the zeros are small, for a sentence."""
+        return f"Fx = 0 lies at slip 0 within {max(self.largest, 1e-4):.4f} at {self._loads}"
+
+    @property
+    def _loads(self) -> str:
+        return f"{_joined([f'{level.load:.0f}' for level in self.levels])} N"
+
+    @property
+    def said(self) -> str:
+        """The zeros with their loads, for a sentence."""
+        slips = _joined([f"{level.slip:+.4f}" for level in self.levels])
+        return f"{slips} at {self._loads}"
+
+
+def slip_zero(of: Driven) -> SlipZero | None:
+    """Where the longitudinal force is zero; None if the readings hold no drive and brake force about zero."""
+    load = np.abs(of.Fz)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        force = of.Fx / load
+    near = np.all(np.isfinite([*of, force]), axis=0) & (
+        load > constants.UNLOADED * np.nanmedian(load) if len(load) else False
+    )
+    near &= np.abs(force) < constants.FORCE_NEAR_FREE_ROLLING
+    some = 0.3 * constants.FORCE_NEAR_FREE_ROLLING
+    if min(np.sum(force[near] > some), np.sum(force[near] < -some)) < constants.FEWEST_POINTS_AT_ZERO:
+        return None
+    used = Driven(*(np.asarray(x, dtype=float)[near] for x in of))
+    x = force[near]
+    middle = tuple(float(np.median(np.abs(values))) for values in used)
+    conditions, compliance = _conditions(used, middle), _compliance(used, middle)
+    design = np.column_stack([conditions, x[:, None] * compliance, x**3])
+    solution = _robust_lines(design, used.slip)
+    k = conditions.shape[1]
+    found = solution[:k]
+    inverse = float(compliance.mean(axis=0) @ solution[k:-1])
+    return SlipZero(
+        slope=1.0 / inverse if inverse else np.nan,
+        levels=_at_loads(used, middle, found),
+        middle=middle,
+        coefficients=found,
+    )
+
+
+def against_free_rolling(
+    sweeps: Sequence[Sweep], config: Config
+) -> tuple[tuple[Sweep, ...], tuple[str, ...]]:
+    """The sweeps with slip against free rolling, and sentences about the definition of slip and the shift.
+
+    Files whose slip has the same heading share the definition and the zero.
+    """
+    stated = {}
+    for entry in config.sweep:
+        column = entry.columns.get("kappa") or config.columns.get("kappa")
+        stated[entry.file] = ("kappa", None) if column is None else (column.column or "kappa", column.against)
+    out, sentences = list(sweeps), []
+    for heading, against in dict.fromkeys(stated.values()):
+        rows = [k for k, sweep in enumerate(sweeps) if stated[sweep.file] == (heading, against)]
+        zero = slip_zero(_joined_readings(sweeps[k] for k in rows))
+        if zero is None:
+            continue
+        wrong = _contradiction(heading, zero)
+        if wrong:
+            raise InputError(wrong, file=config.path or config.sweep[0].file, key="columns.kappa")
+        sentences.append(sentence(heading, against, zero))
+        if against == LOADED or (against is None and not zero.is_free_rolling):
+            for k in rows:
+                shift = zero.at(readings_of(out[k]))
+                out[k] = replace(out[k], kappa=(1.0 + out[k].kappa) / (1.0 + shift) - 1.0)
+    return tuple(out), tuple(sentences)
+
+
+def sentence(heading: str, against: str | None, zero: SlipZero) -> str:
+    """What the slip of a column is against, and the shift that is taken off."""
+    found = f"Fx = 0 lies at slip {zero.said}"
+    if zero.is_free_rolling:
+        if against == LOADED:
+            return f"{heading} is declared against the loaded radius, but {found}, as against free rolling; taken off"
+        return f"{heading} is against free rolling: {zero.within}"
+    if against == FREE:
+        return (
+            f"{heading} is declared against free rolling, but {found}; if it is against the loaded radius, write "
+            f'against = "{LOADED}" for kappa under [columns]'
+        )
+    if zero.falls:
+        return f"{heading} is against the loaded radius: {found}; taken off, so that slip is against free rolling"
+    return f"the zero of {heading} is not free rolling: {found}; taken off"
+
+
+def _contradiction(heading: str, zero: SlipZero) -> str:
+    """Why a column cannot be slip as a ratio that is positive when driven; "" if it can."""
+    if abs(zero.slope) < constants.SOFTEST_SLIP_STIFFNESS:
+        return (
+            f"Fx rises by {zero.slope:.2g} times the load per unit of {heading}, tyres by "
+            f'{constants.SOFTEST_SLIP_STIFFNESS:g} or more: it looks like per cent; write unit = "%" for kappa under [columns]'
+        )
+    if zero.slope < 0.0:
+        return f"Fx falls with {heading}, so braking is positive there; write scale = -1 for kappa under [columns]"
+    if zero.largest > constants.LARGEST_SHIFT_OF_SLIP:
+        return f"Fx = 0 lies at {heading} {zero.said}, which no radius explains; check this column"
+    return ""
+
+
+def readings_of(sweep: Sweep) -> Driven:
+    """The readings of a sweep."""
+    return Driven(sweep.kappa, sweep.Fx, sweep.Fz, sweep.alpha, sweep.gamma, sweep.p)
+
+
+def _joined_readings(sweeps: Iterable[Sweep]) -> Driven:
+    parts = [readings_of(sweep) for sweep in sweeps]
+    return Driven(*(np.concatenate(values) for values in zip(*parts, strict=True)))
+
+
+def _conditions(of: Driven, middle: Sequence[float]) -> np.ndarray:
+    """Columns (n, k) of the zero: a parabola in load, pressure, magnitudes of camber with and without load and of sideslip."""
+    about = Driven(*middle)
+    load = np.abs(of.Fz) / about.Fz - 1.0
+    camber = np.abs(of.gamma)
+    pressure = np.zeros(len(load)) if not about.p else of.p / about.p - 1.0
+    columns = (
+        np.ones(len(load)),
+        load,
+        load**2,
+        pressure,
+        camber,
+        camber**2,
+        camber * load,
+        np.abs(of.alpha),
+    )
+    return np.column_stack(columns)
+
+
+def _compliance(of: Driven, middle: Sequence[float]) -> np.ndarray:
+    """Columns (n, k) of slip per force over load: constant, load, squared sideslip."""
+    load = np.abs(of.Fz) / Driven(*middle).Fz - 1.0
+    return np.column_stack([np.ones(len(load)), load, of.alpha**2])
+
+
+def _robust_lines(design: np.ndarray, y: np.ndarray) -> np.ndarray:
+    """Least squares without the residuals beyond some standard deviations; a column without variation gets zero."""
+    size = np.linalg.norm(design, axis=0)
+    scaled = design / np.where(size > 0.0, size, 1.0)
+    solution, *_ = np.linalg.lstsq(scaled, y, rcond=constants.WEAKEST_DIRECTION_OF_ZERO)
+    residual = y - scaled @ solution
+    kept = np.abs(residual) <= constants.OUTLIER_OF_ZERO * robust(residual)
+    if np.sum(kept) > design.shape[1]:
+        solution, *_ = np.linalg.lstsq(scaled[kept], y[kept], rcond=constants.WEAKEST_DIRECTION_OF_ZERO)
+    return np.asarray(solution / np.where(size > 0.0, size, 1.0))
+
+
+def _at_loads(of: Driven, middle: Sequence[float], coefficients: np.ndarray) -> tuple[ZeroAtLoad, ...]:
+    """The zero at a low, the middle and a high load, upright and without sideslip as nearly as was run."""
+    loads = np.unique(np.percentile(np.abs(of.Fz), constants.LOADS_OF_ZERO).round())
+    zeros = _conditions(
+        Driven(
+            slip=np.zeros(len(loads)),
+            Fx=np.zeros(len(loads)),
+            Fz=loads,
+            alpha=np.full(len(loads), np.min(np.abs(of.alpha))),
+            gamma=np.full(len(loads), np.min(np.abs(of.gamma))),
+            p=np.full(len(loads), np.median(of.p)),
+        ),
+        middle,
+    )
+    return tuple(
+        ZeroAtLoad(float(load), float(zero)) for load, zero in zip(loads, zeros @ coefficients, strict=True)
+    )
+
+
+def _joined(words: Sequence[str]) -> str:
+    return words[0] if len(words) == 1 else f"{', '.join(words[:-1])} and {words[-1]}"

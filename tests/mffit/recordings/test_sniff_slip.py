@@ -1,0 +1,68 @@
+"""Slip of drive and brake recordings: which column, in which unit and sign, against which radius."""
+
+from __future__ import annotations
+
+import tomllib
+
+import numpy as np
+import pytest
+from flat_belt import drive_recording, write_mat
+
+from mffit import config as configuration
+from mffit import pipeline, points
+from mffit.recordings import sniff
+from mffit.report import text
+
+GIVEN = {"unloaded_radius": 0.228, "nominal_load": 1500.0}
+
+
+@pytest.fixture(scope="module")
+def table():
+    return drive_recording()
+
+
+def started(recording, folder):
+    """The project of a recording: points, the entry for slip, and the text."""
+    _, written = pipeline.init_from([recording], folder / "p", **GIVEN)
+    content = written[0].read_text()
+    return points.read(configuration.load(written[0])), tomllib.loads(content)["columns"]["kappa"], content
+
+
+@pytest.fixture(scope="module")
+def project(table, tmp_path_factory):
+    folder = tmp_path_factory.mktemp("drive")
+    return started(write_mat(table, folder / "drive.mat"), folder)
+
+
+def test_a_drive_recording_becomes_a_project_of_slip_sweeps(project):
+    found, entry, content = project
+    assert entry == {"column": "SL", "against": "free-rolling"}
+    assert "SL is taken, not SR" in content
+    assert "Fx = 0 lies at slip 0 within" in content
+    assert {note.swept for note in found.stretches if note.points} == {"kappa"}
+
+
+@pytest.mark.parametrize(
+    ("change", "entry"),
+    [
+        (lambda table: table.assign(SL=100.0 * table["SL"]), {"unit": "%"}),
+        (lambda table: table.assign(SL=table["SL"] * -1.0), {"scale": -1.0}),
+        (lambda table: table.drop(columns="SL"), {"column": "SR", "against": "loaded-radius"}),
+    ],
+    ids=["per cent", "braking", "loaded radius"],
+)
+def test_the_same_slip_comes_from_another_unit_sign_or_radius(table, project, tmp_path, change, entry):
+    """A CSV file, which states no unit."""
+    other = change(table if "column" in entry else table.drop(columns="SR"))
+    other.to_csv(tmp_path / "drive.csv", index=False)
+    found, written, _ = started(tmp_path / "drive.csv", tmp_path)
+    assert entry.items() <= written.items()
+    assert np.max(np.abs(found.points.kappa - project[0].points.kappa)) < 0.0025
+
+
+def test_a_wheel_whose_speed_was_not_recorded_has_no_slip(table, tmp_path):
+    silent = table.assign(SL=-1.0).drop(columns="SR")
+    found = sniff([write_mat(silent, tmp_path / "a.mat")])
+    (recording,) = found.recordings
+    assert "kappa" not in recording.guesses
+    assert "speed of the wheel was not recorded" in text.sniff_summary(found)
