@@ -39,7 +39,7 @@ def _content(tyre: Tyre, target: Target) -> Iterator[Problem]:
     if target.complete and tyre.document is not None:
         missing = {r.name for r in TABLE if r.files in REGULAR} - {*tyre.present, *target.without}
         yield from _missing(missing, target.turn_slip)
-    if not target.turn_slip and int(tyre["USE_MODE"]) % 10 == 5:
+    if not target.turn_slip and tyre.turn_slip:
         yield Problem(
             "warning",
             "it computes no turn slip, so camber and spin would be wrong: use the file for turn slip off",

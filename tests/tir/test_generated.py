@@ -66,6 +66,7 @@ def conditions(tyre) -> dict[str, np.ndarray]:
         for name in INPUTS
         for value in (0.0, -0.0, 1e-9, -1e-9, 1.0, -1.0, 50.0, math.nan)
     ]
+    edges.append({**usual, "gamma": 0.0, "phi_t": 0.0})  # no spin at all
     return {name: np.append(ordinary[name], [edge[name] for edge in edges]) for name in INPUTS}
 
 
@@ -409,7 +410,7 @@ def test_every_module_that_computes_is_in_the_key_of_the_cache():
         for f in ([package / name] if "." in name else (package / name).glob("*.py"))
     ]
     # words, the table that is covered, types
-    harmless = {"tir.errors", "tir.parameters", "tir.tyre", "tir.constant"}
+    harmless = {"tir.errors", "tir.parameters", "tir.tyre", "tir.constant", "tir.mode"}
     for path in covered:
         if path.suffix != ".py":
             continue

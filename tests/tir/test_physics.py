@@ -15,6 +15,8 @@ from tir.parameters import BY_NAME, TABLE
 VECTORS = Path(__file__).parent / "vectors"
 TYRES = ["MagicFormula61", "MagicFormula62", "moto_front"]
 ODD = {row.name: 0.0 for row in TABLE if row.odd}
+pytestmark = pytest.mark.filterwarnings("ignore:turn slip is on")
+"""The public files have the common defaults of turn slip."""
 
 
 @pytest.fixture(params=TYRES)
