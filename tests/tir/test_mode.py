@@ -67,13 +67,12 @@ def test_a_guessed_or_empty_block_is_told_once(change):
     tyre = tir.read(VECTORS / "MagicFormula62.tir").replace(USE_MODE=125, **change)
     with pytest.warns(tir.TirWarning, match="no side force" if change else "common defaults") as caught:
         tyre(4000.0, 0.02)
-        tyre(4000.0, 0.03)
-    assert len(caught) == 1
     assert Path(caught[0].filename).name == Path(__file__).name
     with pytest.warns(tir.TirWarning):
         tir.export_c(tyre)
     with warnings.catch_warnings():
         warnings.simplefilter("error")
+        tyre(4000.0, 0.03)
         tyre(4000.0, 0.02, turn_slip=True)
         tir.export_c(tyre, turn_slip=False)
         MEASURED.replace(USE_MODE=225)(1400.0, 0.02)

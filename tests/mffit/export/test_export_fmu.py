@@ -215,6 +215,10 @@ def test_instances_are_independent_and_states_come_back(fmus, tmp_path):
     output = (c_uint * 1)(Fy)
     assert hand.library.fmi2SetReal(a, output, 1, (c_double * 1)(1.0)) == 3, "an output cannot be set"
     assert hand.library.fmi2GetReal(a, (c_uint * 1)(99), 1, (c_double * 1)()) == 3
+    step = hand.library.fmi2DoStep
+    step.argtypes = [c_void_p, c_double, c_double, c_int]
+    assert [step(a, 1.0, dt, 0) for dt in (0.1, 0.0, -0.1, float("nan"))] == [0, 0, 3, 3]
+    assert hand.get(a, 0) == [1.0], "a refused step leaves the time"
     for m in (a, b):
         hand.library.fmi2FreeInstance(m)
 
