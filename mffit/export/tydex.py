@@ -56,7 +56,9 @@ def tydex_texts(points: Points, config: Config) -> dict[str, str]:
         plain = "".join(c if c.isalnum() or c in "-_." else "_" for c in points.sweep_names[k])
         for name, part in _by_direction(plain, points.select(points.sweep == k)):
             if name in texts:
-                raise InputError(f'two sweeps have the same file name "{name}.tdx"; rename one of their files')
+                raise InputError(
+                    f'two sweeps have the same file name "{name}.tdx"; rename one of their files'
+                )
             texts[name] = "\n".join([*_lines(name, part, config), ""])
     return texts
 
