@@ -235,22 +235,11 @@ class Tyre:
             Vx = self.values["LONGVL"]
         if p is None:
             p = self.values["INFLPRES"]
-        # fast path for scalar calls: no array, no type checks beyond floats
-        if (
-            float
-            is type(Fz)
-            is type(alpha)
-            is type(gamma)
-            is type(kappa)
-            is type(phi_t)
-            is type(Vx)
-            is type(p)
-        ):
-            try:
-                run = self.prepared[turn_slip, star, limits]
-                return tuple.__new__(Forces, run(Fz, alpha, gamma, kappa, phi_t, Vx, p))
-            except (KeyError, ArithmeticError, ValueError):
-                pass
+        try:  # fast path for scalar calls: the function raises TypeError for anything but plain numbers
+            run = self.prepared[turn_slip, star, limits]
+            return tuple.__new__(Forces, run(Fz, alpha, gamma, kappa, phi_t, Vx, p))
+        except (KeyError, TypeError, ArithmeticError, ValueError):
+            pass
         switches = Switches(bool(turn_slip), bool(star), bool(limits))
         return calls.forces(self, (Fz, alpha, gamma, kappa, phi_t, Vx, p), switches)
 
