@@ -30,7 +30,8 @@ def requirements(name: str) -> Iterator[str]:
 
 def oldest(requirement: str) -> str:
     """The requirement with its lower bound as the only version."""
-    found = re.fullmatch(r"([\w.-]+)>=([\d.]+)", requirement)
+    named, _, _ = requirement.partition(";")
+    found = re.fullmatch(r"([\w.-]+)>=([\d.]+)", named.strip())
     if not found:
         raise SystemExit(f"pyproject.toml requires {requirement!r}; write it as name>=version")
     return f"{found[1]}=={found[2]}"

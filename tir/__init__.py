@@ -12,7 +12,7 @@ from tir.checking import check
 from tir.codegen.c99 import export_c
 from tir.codegen.casadi import casadi_function
 from tir.equations.forces import Forces, State
-from tir.errors import Problem, TirError
+from tir.errors import Problem, TirError, TirWarning
 from tir.properties import read
 from tir.tyre import Quantity, Tyre
 
@@ -22,6 +22,7 @@ __all__ = [
     "Quantity",
     "State",
     "TirError",
+    "TirWarning",
     "Tyre",
     "casadi_function",
     "check",

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from tir import constants
+from tir import constants, kernels
 from tir.codegen import kernel, single
 from tir.codegen.kernel import LANES
 from tir.codegen.program import INPUTS, NUMBERS, Switches
@@ -27,6 +27,7 @@ if TYPE_CHECKING:
 
 BLOCK = int(constants.CONDITIONS_PER_BLOCK)
 COMPILE_FROM = int(constants.COMPILE_FROM_CONDITIONS)
+PER_CALL = int(constants.CONDITIONS_PER_CALL)
 THREADS_FROM = int(constants.THREADS_FROM_CONDITIONS)
 FORCES, STATE = Forces._fields, State._fields
 DOUBLE = np.dtype(float)
@@ -42,8 +43,8 @@ def compile_kernels(
 ) -> None:
     """Compile the model to machine code, or load it from the cache, for all later calls in this process.
 
-    Without this, only calls with 100 000 conditions or more compile the model by themselves; smaller calls use numpy,
-    scalar calls Python's floats.
+    Without this, that happens by itself after some thousand scalar calls or some hundred thousand conditions, from the cache
+    at once and else in the background; before, arrays use numpy and scalar calls Python's floats.
 
     Parameters
     ----------
@@ -64,11 +65,7 @@ def compile_kernels(
         )
     for on in (False, True) if turn_slip is None else (turn_slip,):
         for kind in kinds:
-            LOADED[kind, Switches(on, star, limits)] = kernel.load(kind, Switches(on, star, limits))
-
-
-LOADED: dict[tuple[str, Switches], kernel.Kernel] = {}
-"""The kernels loaded in this process."""
+            kernels.load(kind, Switches(on, star, limits))
 
 
 def forces(tyre: Tyre, inputs: Sequence[Any], switches: Switches) -> Forces:
@@ -137,23 +134,54 @@ def function_of(tyre: Tyre, switches: Switches, outputs: tuple[str, ...] = FORCE
     """The tyre as a function of floats, cached in the tyre; None if a parameter is not a real number."""
     key = switches if outputs is FORCES else (outputs, switches)
     if key not in tyre.prepared:
-        run = _kernel_of(tyre, "one", switches) if outputs is FORCES else None
         values = _values(tyre)
         if values is None:
             return None
-        tyre.prepared[key] = run or single.run_of(values, switches, outputs)
+        loaded = kernels.meter("one", switches).kernel() if outputs is FORCES else None
+        if loaded is not None:
+            tyre.prepared[key] = loaded.run_of(values)
+        else:
+            run = single.run_of(values, switches, outputs)
+            tyre.prepared[key] = _counted(tyre.prepared, run, values, switches) if outputs is FORCES else run
     return tyre.prepared[key]
 
 
-def _kernel_of(tyre: Tyre, kind: str, switches: Switches) -> Callable | None:
-    """A kernel bound to the tyre, cached in the tyre; None if it is not loaded or a parameter is not a real number."""
-    loaded = LOADED.get((kind, switches))
+def _counted(
+    prepared: dict[Any, Any], run: Callable, values: dict[str, float], switches: Switches
+) -> Callable:
+    """The function for plain numbers, until the kernel is loaded; then it puts the kernel in its place among ``prepared``.
+
+    As the kernel, it raises TypeError for arguments that are no :data:`~tir.codegen.kernel.SCALARS`.
+    """
+    meter = kernels.meter("one", switches)
+
+    def counting(*given: Any) -> tuple[float, ...]:
+        if not kernel.SCALARS.issuperset(map(type, given)):
+            raise TypeError("only plain numbers are computed here")
+        meter.left -= 1
+        if meter.left <= 0:
+            loaded = meter.kernel()
+            if loaded is not None:
+                prepared[switches] = faster = loaded.run_of(values)
+                return faster(*given)
+        return run(*map(float, given))
+
+    return counting
+
+
+def _kernel_for(tyre: Tyre, n: int, switches: Switches) -> Callable | None:
+    """The kernel for arrays bound to the tyre, cached in the tyre; None if it is not loaded or a parameter is no real number."""
+    meter = kernels.meter("batch", switches)
+    loaded = meter.kernel(now=n >= COMPILE_FROM)
+    if loaded is None:
+        meter.left -= n + PER_CALL
+        loaded = meter.kernel()
     if loaded is None:
         return None
-    if (kind, switches) not in tyre.prepared:
+    if ("batch", switches) not in tyre.prepared:
         values = _values(tyre)
-        tyre.prepared[kind, switches] = None if values is None else loaded.run_of(values)
-    return tyre.prepared[kind, switches]
+        tyre.prepared["batch", switches] = None if values is None else loaded.run_of(values)
+    return tyre.prepared["batch", switches]
 
 
 def _values(tyre: Tyre) -> dict[str, float] | None:
@@ -167,9 +195,7 @@ def _values(tyre: Tyre) -> dict[str, float] | None:
 
 def _many(tyre: Tyre, inputs: Sequence[np.ndarray], n: int, switches: Switches) -> np.ndarray | None:
     """Forces (6, n) of inputs that are scalars or (n,); None if a parameter is not a real number."""
-    if n >= COMPILE_FROM and ("batch", switches) not in LOADED and kernel.available():
-        compile_kernels(**switches._asdict(), kinds=("batch",))
-    run = _kernel_of(tyre, "batch", switches)
+    run = _kernel_for(tyre, n, switches)
     if run is not None:
         return _in_vectors(run, inputs, n)
     run = _arrays_of(tyre, switches)

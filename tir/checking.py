@@ -137,10 +137,10 @@ def _clamps(tyre: Tyre) -> Iterator[Problem]:
     Fz = float(tyre["FNOMIN"])
     first, last = constants.SIDESLIP_FOR_THE_PEAK
     alpha = np.radians(np.linspace(first, last, constants.STEPS_FOR_THE_PEAK))
-    force = np.abs(tyre(Fz, alpha).Fy)
+    force = np.abs(tyre(Fz, alpha, turn_slip=False).Fy)
     peak = float(alpha[np.argmax(force)])
     if force.max() > 0.0 and tyre["ALPMAX"] < min(peak, constants.NARROW_SIDESLIP_RANGE.rad):
-        share = abs(tyre(Fz, float(tyre["ALPMAX"])).Fy) / float(force.max())
+        share = abs(tyre(Fz, float(tyre["ALPMAX"]), turn_slip=False).Fy) / float(force.max())
         yield _warning(
             "ALPMAX",
             f"simulations limit sideslip to ALPMAX, {np.degrees(tyre['ALPMAX']):.1f} deg, where the side force at nominal load "
@@ -174,7 +174,7 @@ def _shape(tyre: Tyre) -> Iterator[Problem]:
 def _mode(tyre: Tyre) -> Iterator[Problem]:
     """Contradictions between USE_MODE or FITTYP and the rest of the file."""
     mode, given = int(tyre["USE_MODE"]), "USE_MODE" in tyre.present
-    turn_slip, road = mode % 10 == 5, mode // 100 % 10
+    turn_slip, road = tyre.turn_slip, mode // 100 % 10
     block = [row.name for row in TABLE if row.section == TURN_SLIP and row.files == ""]
     if tyre["USE_MODE"] != mode:
         yield _warning(
@@ -263,7 +263,7 @@ def _moments(tyre: Tyre) -> Iterator[Problem]:
             "QSX4-11 and QSX12-14 are both used, although they describe the same effect: set one group to 0",
         )
     step = np.array([-1e-3, 1e-3])
-    if float(np.diff(tyre(float(p.FNOMIN), step).Mz)[0]) <= 0:
+    if float(np.diff(tyre(float(p.FNOMIN), step, turn_slip=False).Mz)[0]) <= 0:
         yield _warning(
             "QDZ1",
             "the aligning moment does not align at nominal load (dMz/dalpha should be positive in ISO-W)",

@@ -14,10 +14,22 @@ SMALLEST_LOAD = Real(
 CONDITIONS_PER_BLOCK = Count(
     8192, "-", "Conditions that numpy computes together; intermediate results stay in the cache."
 )
-COMPILE_FROM_CONDITIONS = Count(
-    100_000,
+SCALAR_CALLS_WORTH_LOADING = Count(
+    4000, "-", "Scalar calls before a kernel is loaded: half the time that loading takes.", "docs/speed.md"
+)
+CONDITIONS_WORTH_LOADING = Count(
+    250_000,
     "-",
-    "A call with this many conditions is worth loading or compiling the kernel.",
+    "Conditions computed in numpy before a kernel is loaded: about the time that loading takes.",
+    "docs/speed.md",
+)
+CONDITIONS_PER_CALL = Count(
+    1000, "-", "Conditions that take as long as what every call in numpy takes beside them.", "docs/speed.md"
+)
+COMPILE_FROM_CONDITIONS = Count(
+    1_000_000,
+    "-",
+    "A call with this many conditions waits for the compiler, if the kernel is not in the cache.",
     "docs/speed.md",
 )
 THREADS_FROM_CONDITIONS = Count(32_768, "-", "A call with this many conditions is worth starting threads.")

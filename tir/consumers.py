@@ -38,13 +38,16 @@ def _content(tyre: Tyre, target: Target) -> Iterator[Problem]:
         )
     if target.complete and tyre.document is not None:
         missing = {r.name for r in TABLE if r.files in REGULAR} - {*tyre.present, *target.without}
-        yield from _missing(missing, target.turn_slip)
-    if not target.turn_slip and int(tyre["USE_MODE"]) % 10 == 5:
+        yield from _missing(missing, target.turn_slip and tyre.turn_slip)
+    if not target.turn_slip and tyre.turn_slip:
         yield Problem(
             "warning",
             "it computes no turn slip, so camber and spin would be wrong: use the file for turn slip off",
             "USE_MODE",
         )
+    for rule in target.rules:
+        if rule.concerns(tyre.values):
+            yield Problem(rule.level, rule.sentence, rule.name)
 
 
 def _missing(names: set[str], turn_slip: bool) -> Iterator[Problem]:

@@ -37,7 +37,7 @@ def plot(
     tyre: Tyre,
     *,
     loads: Iterable[float] | None = None,
-    turn_slip: bool = False,
+    turn_slip: bool | None = None,
     panels: Sequence[tuple[str, str]] = PANELS,
 ) -> Figure:
     """See :meth:`tir.Tyre.plot`; ``panels`` are pairs of an input and an output."""

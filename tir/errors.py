@@ -32,6 +32,10 @@ class TirError(Exception):
         super().__init__(place + sentence)
 
 
+class TirWarning(UserWarning):
+    """Something about a tyre that is in use and gives forces, but probably not those that were meant."""
+
+
 @dataclass(frozen=True, slots=True)
 class Problem:
     """Something to look at in a file that can still be read."""

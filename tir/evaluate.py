@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from tir.constants import SMALLEST_LOAD
+from tir.constants import LOWEST_PRESSURE, SMALLEST_LOAD
 from tir.equations import forces, normalise
 from tir.equations.elementary import select
 from tir.equations.forces import Forces, Loads, State
@@ -17,7 +17,7 @@ from tir.parameters import TABLE
 
 CONICITY = tuple(row.name for row in TABLE if row.conicity)
 DIVISORS = tuple(row.name for row in TABLE if row.divisor)
-NEARLY_UNLOADED = float(SMALLEST_LOAD)
+NEARLY_UNLOADED, NEARLY_FLAT = float(SMALLEST_LOAD), float(LOWEST_PRESSURE)
 
 
 def evaluate(
@@ -45,7 +45,7 @@ def evaluate(
     kappa : longitudinal slip -Vsx/Vx [-], -1 for a locked wheel in either direction
     phi_t : turn slip -psi_dot/Vc of the path rolled forwards [1/m]; -1/R with the centre to the left
     Vx : speed of the contact [m/s]; default LONGVL; < 0 rolls backwards, forces stay fixed to the rig
-    pressure : inflation pressure [Pa]; default INFLPRES
+    pressure : inflation pressure [Pa]; default INFLPRES; in My not below LOWEST_PRESSURE, where QSY8 < 0 leads to infinity
     turn_slip : let spin act (zeta factors); otherwise phi_t is ignored
     star : tan(alpha) and sin(gamma) as inputs instead of the angles
     limits : hold the inputs to the file's ranges and the curvature factors to <= 1
@@ -87,6 +87,7 @@ def forwards(
         pressure = _clip(pressure, p.PRESMIN, p.PRESMAX)
         Fz_moment, loads = _loads_below_range(p, Fz, Fz_given)
     q = normalise.inputs(p, Fz, Fz_moment, kappa, alpha, gamma, phi_t, pressure, star, limits)
+    q = q._replace(pressure=select(np.real(pressure) < NEARLY_FLAT, NEARLY_FLAT, pressure))
     Re = normalise.effective_radius(p, Fz_given, kappa_given, Vx, q.dpi)
     out, state = forces.evaluate(p, q, loads, kappa_given, Vx, Re, turn_slip)
     return Forces(*(select(unloaded, 0.0, f) for f in out)), state

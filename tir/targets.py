@@ -2,15 +2,26 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
 from tir.errors import TirError
+from tir.mode import asks_for_turn_slip
 from tir.parameters import TABLE
 
 ADAMS = tuple(row.name for row in TABLE if row.files == "adams")
 ONLY_62 = tuple(row.name for row in TABLE if row.files == "62")
+
+
+@dataclass(frozen=True, slots=True)
+class TargetRule:
+    """Something that a program does with values that others take differently; found in its public source or manual."""
+
+    name: str  #: the key at fault
+    concerns: Callable[[Mapping[str, Any]], bool]  #: from the values of a tyre
+    sentence: str
+    level: str = "warning"
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,8 +40,40 @@ class Target:
     positions: bool = False  #: whether it reads values by line number instead of by key
     dollar_only: bool = False  #: whether only a dollar sign starts a comment
     refusal: str = ""  #: reason if no file can be written for it
+    rules: tuple[TargetRule, ...] = ()
 
 
+OF_SIMSCAPE = (
+    TargetRule(
+        "USE_MODE",
+        asks_for_turn_slip,
+        "USE_MODE asks for turn slip, which is an option of the block: switch it on there, or use the file for turn slip off",
+    ),
+    TargetRule(
+        "MC_CONTOUR_A",
+        lambda p: p["MC_CONTOUR_A"] > 0.0,
+        "by MC_CONTOUR_A this is a motorcycle tyre, but the block is meant for tyres with a square cross-section",
+    ),
+)
+OF_MBSIM = (
+    TargetRule(
+        "MC_CONTOUR_B",
+        lambda p: p["MC_CONTOUR_B"] == 0.0,
+        "MC_CONTOUR_B is 0, by which its motorcycle kinematics divides, so every force is NaN there: write the contour, or leave "
+        "motorcycleKinematics off",
+    ),
+    TargetRule(
+        "LFZO",
+        lambda p: p["LFZO"] != 1.0,
+        "it multiplies the nominal load by LFZO again at every evaluation, so the forces drift: write 1",
+        "error",
+    ),
+    TargetRule(
+        "QDRP2",
+        lambda p: p["QDRP2"] != 0.0 and asks_for_turn_slip(p),
+        "it has no QDRP2, so the turn-slip moment differs; set it to 0 before the fit, or expect another Mz on curves",
+    ),
+)
 TARGETS: dict[str, Target] = {
     target.name: target
     for target in (
@@ -57,9 +100,9 @@ TARGETS: dict[str, Target] = {
             "simscape",
             "the Magic Formula blocks of MathWorks",
             (62,),
-            turn_slip=False,
             complete=True,
             si=True,
+            rules=OF_SIMSCAPE,
         ),
         Target("recurdyn", "RecurDyn with MF-Tyre", (62, 61, 60), ADAMS, more={"VENDER_TIRE_TYPE": ""}),
         Target(
@@ -70,6 +113,7 @@ TARGETS: dict[str, Target] = {
             complete=True,
             si=True,
             positions=True,
+            rules=OF_MBSIM,
         ),
         Target("mfeval", "MFeval and its relatives", (62, 61, 60), ADAMS, si=True, dollar_only=True),
         *(

@@ -19,6 +19,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from tir.equations.forces import Forces, State
+from tir.errors import TirError
 
 if TYPE_CHECKING:
     from tir.tyre import Tyre
@@ -48,6 +49,7 @@ def step(
     p: Any = None,
     *,
     damping: float = 0.0,
+    turn_slip: bool | None = None,
     limits: bool = False,
 ) -> tuple[Contact, Forces]:
     """The contact after ``dt``, and the forces there.
@@ -62,16 +64,21 @@ def step(
     Vsx : longitudinal slip speed Vx - Re omega [m/s]; kappa = -Vsx/Vx in steady state
     Vsy : lateral slip speed [m/s]; alpha = atan(Vsy/Vx) in steady state
     gamma : camber [rad]
-    phi_t : turn slip [1/m], without lag; None for turn slip off
+    phi_t : turn slip [1/m], without lag
     p : inflation pressure [Pa], default INFLPRES
     damping : of the contact at standstill [Ns/m], which fades out towards VXLOW; without it a car that has stopped
         oscillates on its carcass for ever
-    limits : as in a call of the tyre
+    turn_slip, limits : as in a call of the tyre
 
     Returns
     -------
     Contact, Forces
         ISO-W, SI. In steady state the forces are those of ``tyre(Fz, alpha, gamma, kappa, ...)``.
+
+    Raises
+    ------
+    TirError
+        If ``dt`` is negative or NaN.
 
     Notes
     -----
@@ -79,7 +86,9 @@ def step(
     a wheel pushed sideways at standstill slides, and springs back when it is released. It does not stick to the road: under a
     constant push it creeps.
     """
-    state = tyre.state(Fz, 0.0, gamma, 0.0, phi_t, Vx, p, limits=limits)
+    if not dt >= 0.0:
+        raise TirError(f"the step dt is {dt:g} s, but time only runs forwards: give 0 or more")
+    state = tyre.state(Fz, 0.0, gamma, 0.0, phi_t, Vx, p, turn_slip=turn_slip, limits=limits)
     lifted = np.asarray(Fz) <= 0.0
     slow = np.abs(Vx) < tyre["VXLOW"]
     with np.errstate(divide="ignore", invalid="ignore"):
@@ -89,7 +98,7 @@ def step(
         v = np.where(slow, _no_growth(v, contact.v, _sliding(state.sigma_y, state.mu_y, Fz, state.K_ya)), v)
     after = Contact(_plain(np.where(lifted, 0.0, u)), _plain(np.where(lifted, 0.0, v)))
     slip = _slip(tyre, state, after, Vx, Vsx, Vsy, damping)
-    return after, _at(tyre, slip, Fz, Vx, gamma, phi_t, p, limits)
+    return after, _at(tyre, slip, Fz, Vx, gamma, phi_t, p, turn_slip, limits)
 
 
 def forces(
@@ -104,11 +113,13 @@ def forces(
     p: Any = None,
     *,
     damping: float = 0.0,
+    turn_slip: bool | None = None,
     limits: bool = False,
 ) -> Forces:
     """The forces of a deflected contact; arguments as in :func:`step`."""
-    state = tyre.state(Fz, 0.0, gamma, 0.0, phi_t, Vx, p, limits=limits)
-    return _at(tyre, _slip(tyre, state, contact, Vx, Vsx, Vsy, damping), Fz, Vx, gamma, phi_t, p, limits)
+    state = tyre.state(Fz, 0.0, gamma, 0.0, phi_t, Vx, p, turn_slip=turn_slip, limits=limits)
+    slip = _slip(tyre, state, contact, Vx, Vsx, Vsy, damping)
+    return _at(tyre, slip, Fz, Vx, gamma, phi_t, p, turn_slip, limits)
 
 
 def _slip(
@@ -124,10 +135,18 @@ def _slip(
 
 
 def _at(
-    tyre: Tyre, slip: tuple[Any, Any], Fz: Any, Vx: Any, gamma: Any, phi_t: Any, p: Any, limits: bool
+    tyre: Tyre,
+    slip: tuple[Any, Any],
+    Fz: Any,
+    Vx: Any,
+    gamma: Any,
+    phi_t: Any,
+    p: Any,
+    turn_slip: bool | None,
+    limits: bool,
 ) -> Forces:
     kappa, alpha = slip
-    return tyre(Fz, _plain(alpha), gamma, _plain(kappa), phi_t, Vx, p, limits=limits)
+    return tyre(Fz, _plain(alpha), gamma, _plain(kappa), phi_t, Vx, p, turn_slip=turn_slip, limits=limits)
 
 
 def slips(state: State, contact: Contact, Vx: Any) -> tuple[Any, Any]:

@@ -18,6 +18,7 @@ from tir.codegen.program import Switches
 from tir.document import Document
 from tir.equations.forces import Forces, State
 from tir.errors import Problem, TirError, counted
+from tir.mode import asks_for_turn_slip, warn_of_doubt
 from tir.parameters import BY_NAME, TABLE
 from tir.targets import FITTYPS
 
@@ -129,6 +130,17 @@ class Tyre:
         return SimpleNamespace(**self.values)
 
     @cached_property
+    def turn_slip(self) -> bool:
+        """Whether the file asks for turn slip: the units digit of USE_MODE is 5."""
+        return asks_for_turn_slip(self.values)
+
+    @cached_property
+    def _on(self) -> bool:
+        """True, after one warning if the tyre's coefficients of turn slip are doubtful."""
+        warn_of_doubt(self.values, self.present, stacklevel=4)
+        return True
+
+    @cached_property
     def prepared(self) -> dict[Any, Any]:
         """Cached functions for calls with floats and arrays; see :mod:`tir.calls`."""
         return {}
@@ -205,7 +217,7 @@ class Tyre:
         phi_t : turn slip -psi_dot/Vc [1/m]; -1/R on a left-hand path
         Vx : speed [m/s], default LONGVL; < 0 rolls backwards
         p : inflation pressure [Pa], default INFLPRES
-        turn_slip : let spin act; default: when ``phi_t`` is given
+        turn_slip : let spin act; default: if the units digit of USE_MODE is 5, or ``phi_t`` is given
         star : tan(alpha) and sin(gamma) as inputs of the formulae
         limits : hold the inputs to the file's ranges
 
@@ -216,29 +228,18 @@ class Tyre:
             else arrays of the common shape.
         """
         if turn_slip is None:
-            turn_slip = phi_t is not None
+            turn_slip = (phi_t is not None or self.turn_slip) and self._on
         if phi_t is None:
             phi_t = 0.0
         if Vx is None:
             Vx = self.values["LONGVL"]
         if p is None:
             p = self.values["INFLPRES"]
-        # fast path for scalar calls: no array, no type checks beyond floats
-        if (
-            float
-            is type(Fz)
-            is type(alpha)
-            is type(gamma)
-            is type(kappa)
-            is type(phi_t)
-            is type(Vx)
-            is type(p)
-        ):
-            try:
-                run = self.prepared[turn_slip, star, limits]
-                return tuple.__new__(Forces, run(Fz, alpha, gamma, kappa, phi_t, Vx, p))
-            except (KeyError, ArithmeticError, ValueError):
-                pass
+        try:  # fast path for scalar calls: the function raises TypeError for anything but plain numbers
+            run = self.prepared[turn_slip, star, limits]
+            return tuple.__new__(Forces, run(Fz, alpha, gamma, kappa, phi_t, Vx, p))
+        except (KeyError, TypeError, ArithmeticError, ValueError):
+            pass
         switches = Switches(bool(turn_slip), bool(star), bool(limits))
         return calls.forces(self, (Fz, alpha, gamma, kappa, phi_t, Vx, p), switches)
 
@@ -266,10 +267,10 @@ class Tyre:
             self.values["LONGVL"] if Vx is None else Vx,
             self.values["INFLPRES"] if p is None else p,
         )
-        on = phi_t is not None if turn_slip is None else bool(turn_slip)
+        on = phi_t is not None or self.turn_slip if turn_slip is None else bool(turn_slip)
         return calls.state(self, inputs, Switches(on, bool(star), bool(limits)))
 
-    def plot(self, *, loads: Iterable[float] | None = None, turn_slip: bool = False) -> Figure:
+    def plot(self, *, loads: Iterable[float] | None = None, turn_slip: bool | None = None) -> Figure:
         """Draw the forces: Fy and Mz over sideslip, Fx over longitudinal slip, Fy over camber.
 
         Parameters

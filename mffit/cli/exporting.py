@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import warnings
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -20,7 +23,9 @@ def _code_options(command: Any) -> Any:
                 "--name", default=None, help="Name in the code [default: made from the file's name]."
             ),
             click.option(
-                "--turn-slip/--no-turn-slip", default=True, show_default=True, help="Whether turn slip is on."
+                "--turn-slip/--no-turn-slip",
+                default=None,
+                help="Turn slip on or off [default: as the file's USE_MODE says].",
             ),
             click.option("--limits", is_flag=True, help="Limit the inputs to the ranges of the file."),
         )
@@ -29,10 +34,27 @@ def _code_options(command: Any) -> Any:
     return command
 
 
-def _report(voice: Voice, written: list[Path]) -> None:
+@contextmanager
+def _told(voice: Voice) -> Iterator[None]:
+    """Warnings about the tyre, said as those of every command."""
+    from tir import TirWarning
+
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always", TirWarning)
+        yield
+    voice.warn(str(one.message) for one in caught)
+
+
+def _report(voice: Voice, written: list[Path], file: Path, turn_slip: bool | None) -> None:
+    import tir
+    from tir.mode import words
+
     names = [str(path) for path in written]
-    voice.say(f"written: {', '.join(names)}")
-    voice.give(lambda: {"written": names})
+    tyre = tir.read(file)
+    on = tyre.turn_slip if turn_slip is None else turn_slip
+    why = f"the file's USE_MODE is {tyre['USE_MODE']:g}" if turn_slip is None else "as asked for"
+    voice.say(f"written with {words(on)} ({why}): {', '.join(names)}")
+    voice.give(lambda: {"written": names, "turn_slip": on})
 
 
 @click.group()
@@ -43,15 +65,16 @@ def export() -> None:
 @export.command()
 @_code_options
 @voiced
-def c(file: Path, out: Path, name: str | None, turn_slip: bool, limits: bool, voice: Voice) -> None:
+def c(file: Path, out: Path, name: str | None, turn_slip: bool | None, limits: bool, voice: Voice) -> None:
     """Export a property file as C99 code.
 
     Writes one header and one source in double precision, without memory allocation or state.
     """
     from mffit.export import write_c
 
-    written = write_c(file, out, name=name, turn_slip=turn_slip, limits=limits)
-    _report(voice, written)
+    with _told(voice):
+        written = write_c(file, out, name=name, turn_slip=turn_slip, limits=limits)
+    _report(voice, written, file, turn_slip)
 
 
 @export.command()
@@ -71,7 +94,7 @@ def fmu(
     file: Path,
     out: Path,
     name: str | None,
-    turn_slip: bool,
+    turn_slip: bool | None,
     limits: bool,
     fmi: str,
     sources_only: bool,
@@ -83,10 +106,11 @@ def fmu(
     """
     from mffit.export import write_fmu
 
-    written = write_fmu(
-        file, out, fmi=int(fmi), name=name, turn_slip=turn_slip, limits=limits, sources_only=sources_only
-    )
-    _report(voice, [written])
+    with _told(voice):
+        written = write_fmu(
+            file, out, fmi=int(fmi), name=name, turn_slip=turn_slip, limits=limits, sources_only=sources_only
+        )
+    _report(voice, [written], file, turn_slip)
 
 
 @export.command()
@@ -98,4 +122,6 @@ def tydex(tyre_toml: Path, out: Path | None, voice: Voice) -> None:
     from mffit import pipeline
 
     written = pipeline.write_tydex(tyre_toml, out or tyre_toml.parent / "out" / "tydex")
-    _report(voice, written)
+    names = [str(path) for path in written]
+    voice.say(f"written: {', '.join(names)}")
+    voice.give(lambda: {"written": names})

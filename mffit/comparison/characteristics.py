@@ -46,7 +46,7 @@ def characteristics(
         "r_e_m": float(tyre.state(load, **p).Re),
     }
     if turn_slip:
-        curved = tyre(load, phi_t=np.array([-1e-3, 1e-3]), **p)
+        curved = tyre(load, phi_t=np.array([-1e-3, 1e-3]), turn_slip=True, **p)
         out["C_phit_Nm"] = float(np.diff(curved.Fy)[0] / 2e-3)
     return out
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import tir
-from mffit.export.names import c_of, identifier
+from mffit.export.names import c_of, identifier, other_mode
 from mffit.output import output_folder
 
 
@@ -14,7 +14,7 @@ def write_c(
     out: str | Path,
     *,
     name: str | None = None,
-    turn_slip: bool = True,
+    turn_slip: bool | None = None,
     limits: bool = False,
 ) -> list[Path]:
     """Write a property file as one C99 header and one source, see :func:`tir.export_c`.
@@ -23,8 +23,10 @@ def write_c(
     ----------
     path : the property file
     out : folder to write to
-    name : of the files, and prefix of the functions; by default made from the name of the property file
-    turn_slip, limits : as in a call of the tyre
+    name : of the files, and prefix of the functions; by default made from the name of the property file, with ``_turn_slip``
+        or ``_normal`` behind it if turn slip is not as its USE_MODE says
+    turn_slip : whether spin acts; default: if the units digit of the file's USE_MODE is 5
+    limits : as in a call of the tyre
 
     Returns
     -------
@@ -39,8 +41,10 @@ def write_c(
         The file cannot be read.
     """
     path, out = Path(path), Path(out)
-    name = identifier(path, name)
-    code = c_of(tir.read(path), path, name, turn_slip=turn_slip, limits=limits)
+    tyre = tir.read(path)
+    on = tyre.turn_slip if turn_slip is None else turn_slip
+    name = identifier(path, name, other_mode(tyre, on))
+    code = c_of(tyre, path, name, turn_slip=on, limits=limits)
     with output_folder(out, by="export", protected=[path]) as folder:
         (folder / f"{name}.h").write_text(code.header, encoding="ascii", newline="\n")
         (folder / f"{name}.c").write_text(code.source, encoding="ascii", newline="\n")

@@ -15,9 +15,10 @@ import mffit
 import tir
 from mffit.errors import InputError
 from mffit.export import compiler, variables
-from mffit.export.names import c_of, identifier
+from mffit.export.names import c_of, identifier, other_mode
 from mffit.output import output_folder
 from mffit.templates import environment
+from tir.mode import words
 
 if TYPE_CHECKING:
     from jinja2 import Environment
@@ -35,7 +36,7 @@ def write_fmu(
     *,
     fmi: int = 2,
     name: str | None = None,
-    turn_slip: bool = True,
+    turn_slip: bool | None = None,
     limits: bool = False,
     sources_only: bool = False,
 ) -> Path:
@@ -49,8 +50,10 @@ def write_fmu(
     path : the property file
     out : folder to write ``<name>.fmu`` to
     fmi : 2 or 3, for FMI 2.0 or 3.0
-    name : model identifier; by default made from the name of the property file
-    turn_slip, limits : as in a call of the tyre
+    name : model identifier; by default made from the name of the property file, with ``_turn_slip`` or ``_normal`` behind it
+        if turn slip is not as its USE_MODE says
+    turn_slip : whether spin acts; default: if the units digit of the file's USE_MODE is 5
+    limits : as in a call of the tyre
     sources_only : without a binary; the program that imports the FMU compiles the sources
 
     Returns
@@ -68,8 +71,10 @@ def write_fmu(
     if fmi not in DEFINITIONS:
         raise InputError(f"FMI {fmi} is not available, only {' and '.join(map(str, DEFINITIONS))}")
     path, out = Path(path), Path(out)
-    tyre, name = tir.read(path), identifier(path, name)
-    files = _texts(tyre, path, name, fmi, turn_slip, limits)
+    tyre = tir.read(path)
+    on = tyre.turn_slip if turn_slip is None else turn_slip
+    name = identifier(path, name, other_mode(tyre, on))
+    files = _texts(tyre, path, name, fmi, on, limits)
     if not sources_only:
         files[f"binaries/{compiler.host_folder(fmi)}/{name}{compiler.suffix()}"] = _binary(files, name, fmi)
     with output_folder(out, by="export", protected=[path]) as folder:
@@ -83,10 +88,10 @@ def _texts(
     """The files of the archive by their path in it."""
     code = c_of(tyre, path, name, turn_slip=turn_slip, limits=limits)
     given, found = variables.inputs(tyre), variables.outputs()
-    use = f"turn slip {'on' if turn_slip else 'off'}{', inputs held to the ranges' if limits else ''}"
+    use = f"{words(turn_slip)}{', inputs held to the ranges' if limits else ''}"
     content = {
         "name": name,
-        "title": path.stem,
+        "title": f"{path.stem}, {words(turn_slip)}",
         "version": mffit.__version__,
         "token": "{" + str(uuid.UUID(hashlib.sha256(f"{fmi} {code.source}".encode()).hexdigest()[:32])) + "}",
         "description": f"Tyre {path.name}: MF 6.2 in steady state, {use}; axes ISO-W",

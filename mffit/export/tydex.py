@@ -41,10 +41,10 @@ TYDEX_CHANNELS = (
 
 
 def tydex_texts(points: Points, config: Config) -> dict[str, str]:
-    """The text of a file for each sweep, by a name without folders.
+    """The text of a file for each sweep and direction of rolling, by a name without folders.
 
-    Reading the files with ``axes = "iso"`` gives the same points to rounding. Direction, mount and path curvature are in the
-    comments, as TYDEX has no channels for them.
+    A sweep with both directions gives ``<name>-forward`` and ``<name>-backward``. Reading the files with ``axes = "iso"`` gives
+    the same points to rounding. Direction, mount and path curvature are in the comments, as TYDEX has no channels for them.
 
     Raises
     ------
@@ -53,11 +53,24 @@ def tydex_texts(points: Points, config: Config) -> dict[str, str]:
     """
     texts: dict[str, str] = {}
     for k in np.unique(points.sweep):
-        name = "".join(c if c.isalnum() or c in "-_." else "_" for c in points.sweep_names[k])
-        if name in texts:
-            raise InputError(f'two sweeps have the same file name "{name}.tdx"; rename one of their files')
-        texts[name] = "\n".join([*_lines(name, points.select(points.sweep == k), config), ""])
+        plain = "".join(c if c.isalnum() or c in "-_." else "_" for c in points.sweep_names[k])
+        for name, part in _by_direction(plain, points.select(points.sweep == k)):
+            if name in texts:
+                raise InputError(
+                    f'two sweeps have the same file name "{name}.tdx"; rename one of their files'
+                )
+            texts[name] = "\n".join([*_lines(name, part, config), ""])
     return texts
+
+
+def _by_direction(name: str, points: Points) -> Iterator[tuple[str, Points]]:
+    """The points of each direction of rolling, with a name of their own if there are both."""
+    forward = points.direction > 0
+    if np.all(forward) or not np.any(forward):
+        yield name, points
+        return
+    yield f"{name}-forward", points.select(forward)
+    yield f"{name}-backward", points.select(~forward)
 
 
 def _lines(name: str, points: Points, config: Config) -> Iterator[str]:

@@ -124,7 +124,9 @@ def _turn_slip_forces(model: Mapping[str, Any]) -> dict[float, float]:
     tyre = Tyre.from_values(dict(model))
     load = float(model["FNOMIN"])
     straight = float(tyre(load, turn_slip=True).Fy)
-    return {R: abs(float(tyre(load, phi_t=-1.0 / R).Fy) - straight) for R in constants.ROAD_RADII}
+    return {
+        R: abs(float(tyre(load, phi_t=-1.0 / R, turn_slip=True).Fy) - straight) for R in constants.ROAD_RADII
+    }
 
 
 def use_mode(values: Mapping[str, Any], use: str) -> int:

@@ -131,7 +131,7 @@ def _file_of_build(folder: Path) -> str:
 def _turn_slip(tyre: Tyre) -> bool:
     """Whether the file is meant for turn slip: from its provenance, otherwise from USE_MODE."""
     use = use_of(tyre)
-    return use == "turn-slip" if use is not None else int(tyre["USE_MODE"]) % 10 == 5
+    return use == "turn-slip" if use is not None else tyre.turn_slip
 
 
 def _with_names_apart(sides: list[ComparedSubject], paths: Sequence[Path]) -> list[ComparedSubject]:

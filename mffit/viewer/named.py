@@ -60,7 +60,7 @@ def described(name: str, tyre: Tyre, parameters: Iterable[str]) -> dict[str, Any
         "name": name,
         "values": {key: float(tyre[key]) for key in parameters},
         "ranges": {control.name: _ranges(tyre, control) for control in CONTROLS if control.limits},
-        "turn_slip": int(tyre["USE_MODE"]) % 10 == 5,
+        "turn_slip": tyre.turn_slip,
     }
 
 

@@ -24,7 +24,7 @@ from pathlib import Path
 import numpy as np
 
 import tir
-from tir import calls
+from tir import calls, kernels
 from tir.codegen import kernel
 from tir.codegen.program import INPUTS, Switches
 from tir.evaluate import evaluate
@@ -103,12 +103,15 @@ def main() -> None:
     tyre = tir.read(ROOT / "tests" / "tir" / "vectors" / "MagicFormula62.tir")
     compiled = kernel.available()
     calls.COMPILE_FROM = 10 * max(SIZES)
+    found = dict(kernels.WORTH_LOADING)
+    kernels.WORTH_LOADING.update(dict.fromkeys(found, 10**12))  # only when asked
     for turn_slip in (False, True):
         print(f"\nturn slip {'on' if turn_slip else 'off'}; us per condition, calls of" .ljust(45)
               + "".join(f"{n:>12}" for n in SIZES))  # fmt: skip
         switches = Switches(turn_slip)._asdict()
         inputs = [conditions(tyre, n) for n in SIZES]
-        calls.LOADED.clear()
+        kernels.LOADED.clear()
+        kernels.METERS.clear()
         plain = [
             seconds(partial(evaluate, tyre.p, *(x if len(x[0]) > 1 else [v[0] for v in x]), **switches))
             / len(x[0])
@@ -137,7 +140,51 @@ def main() -> None:
             )
         if compiled:
             threads(tyre, turn_slip)
+    kernels.WORTH_LOADING.update(found)
+    found_by_itself(tyre)
     started()
+
+
+def found_by_itself(tyre: tir.Tyre) -> None:
+    """A loop of scalar calls and loops of short arrays by a user who asks for nothing; the cache is filled."""
+    if not kernel.available():
+        return
+    tir.compile_kernels(turn_slip=False)
+    x = [float(v[0]) for v in conditions(tyre, 1)]
+    kinds = {
+        "floats": x,
+        "numpy's floats": [np.float64(v) for v in x],
+        "integers among them": [int(x[0]), *x[1:5], 10, np.float64(x[6])],
+    }
+    print(
+        "\na loop of 30 000 scalar calls, us per call of its halves, and ratio of the second to that with floats"
+    )
+    base = math.nan
+    for name, given in kinds.items():
+        kernels.wait()
+        kernels.LOADED.clear()
+        kernels.METERS.clear()
+        fresh, halves = tyre.replace(), []
+        for _ in range(2):
+            start = time.process_time()
+            for _ in range(15_000):
+                fresh(*given)
+            halves.append((time.process_time() - start) / 15_000)
+        base = halves[1] if name == "floats" else base
+        print(f"{name:<44}" + "".join(f"{t * 1e6:12.2f}" for t in halves) + f"{halves[1] / base:12.2f}")
+    print("arrays after 300 calls, us per call, and ratio to numpy")
+    for n in (100, 1000):
+        kernels.LOADED.clear()
+        kernels.METERS.clear()
+        fresh, arrays = tyre.replace(), conditions(tyre, n)
+        kernels.meter("batch", Switches()).left = math.inf
+        numpy_path = seconds(lambda fresh=fresh, arrays=arrays: fresh(*arrays, turn_slip=False))
+        kernels.METERS.clear()
+        for _ in range(300):
+            fresh(*arrays, turn_slip=False)
+        kernels.wait()
+        taken = seconds(lambda fresh=fresh, arrays=arrays: fresh(*arrays, turn_slip=False))
+        print(f"{n:<44}{taken * 1e6:12.1f}{taken / numpy_path:12.3f}")
 
 
 def threads(tyre: tir.Tyre, turn_slip: bool) -> None:

@@ -12,6 +12,8 @@ from tir.codegen.program import INPUTS
 from tir.evaluate import evaluate
 
 VECTORS = Path(__file__).parent / "vectors"
+pytestmark = pytest.mark.filterwarnings("ignore:turn slip is on")
+"""The public files have the common defaults of turn slip."""
 
 
 @pytest.fixture(params=["MagicFormula62", "moto_front"])
@@ -51,7 +53,7 @@ def test_the_function_equals_the_equations(tyre, turn_slip):
 
 def test_the_derivatives_are_those_of_the_complex_step(tyre):
     casadi = pytest.importorskip("casadi")
-    function = tir.casadi_function(tyre, outputs=("Fy", "Mz", "K_ya"))
+    function = tir.casadi_function(tyre, outputs=("Fy", "Mz", "K_ya"), turn_slip=True)
     symbols = [casadi.SX.sym(name) for name in INPUTS]
     for i, output in enumerate(function(*symbols)):
         jacobian = casadi.Function("J", symbols, [casadi.jacobian(output, casadi.vertcat(*symbols))])
@@ -63,3 +65,48 @@ def test_the_derivatives_are_those_of_the_complex_step(tyre):
                 forces, state = evaluate(tyre.p, **dict(zip(INPUTS, step, strict=True)), turn_slip=True)
                 wanted = float(np.imag((forces.Fy, forces.Mz, state.K_ya)[i])) / 1e-30
                 assert found[k] == pytest.approx(wanted, rel=1e-9, abs=1e-6)
+
+
+MEASURED = {"PDYP4": 0.3, "PECP1": -0.1, "QDRP2": -0.2}
+"""What a fit writes into the block of turn slip."""
+
+
+@pytest.mark.parametrize("at", ["zero spin", "turn slip alone", "standing wheel"])
+def test_the_jacobian_is_a_number_where_a_search_begins(at):
+    casadi = pytest.importorskip("casadi")
+    tyre = tir.read(VECTORS / "moto_front.tir").replace(**MEASURED)
+    function = tir.casadi_function(tyre, turn_slip=True)
+    symbols = [casadi.SX.sym(name) for name in INPUTS]
+    every = casadi.vertcat(*function(*symbols))
+    slopes = casadi.Function("J", symbols, [casadi.jacobian(every, casadi.vertcat(*symbols))])
+    phi_t, Vx = (-0.2 if at == "turn slip alone" else 0.0), (0.0 if at == "standing wheel" else 10.0)
+    row = [1400.0, 0.0, 0.0, 0.0, phi_t, Vx, 2.5e5]
+    found = np.array(slopes(*row))
+    assert np.all(np.isfinite(found))
+    steps = np.array([1.0, 1e-6, 1e-6, 1e-6, 1e-6])
+    for k in (0, 1):  # load and sideslip: no kink there
+        ahead, behind = ([x + sign * steps[k] * (j == k) for j, x in enumerate(row)] for sign in (1, -1))
+        wanted = (np.array(function(*ahead)) - np.array(function(*behind))).ravel() / (2.0 * steps[k])
+        np.testing.assert_allclose(found[:, k], wanted, rtol=1e-4, atol=0.05)
+
+
+def test_the_tightest_corner_is_found_from_zero():
+    """A wheel that leans into a flat corner at 15 m/s: the largest lateral force inwards, from zeros as starting values."""
+    casadi = pytest.importorskip("casadi")
+    tyre = tir.read(VECTORS / "moto_front.tir").replace(**MEASURED)
+    function = tir.casadi_function(tyre, outputs=("Fy",), turn_slip=True)
+    mass, speed, load = 140.0, 15.0, 140.0 * 9.81
+    alpha, gamma, curvature = (casadi.SX.sym(name) for name in ("alpha", "gamma", "curvature"))
+    force = function(load, alpha, gamma, 0.0, -curvature, speed, 2.5e5)
+    x = casadi.vertcat(alpha, gamma, curvature)
+    problem = {"x": x, "f": -curvature, "g": force / (mass * speed**2) - curvature}
+    quiet = {"print_time": False, "ipopt.print_level": 0, "ipopt.sb": "yes", "ipopt.max_iter": 300}
+    solver = casadi.nlpsol("s", "ipopt", problem, quiet)
+    found = solver(x0=0.0, lbg=0.0, ubg=0.0, lbx=[-0.3, -0.8, -0.5], ubx=[0.3, 0.8, 0.5])
+    assert solver.stats()["success"], solver.stats()["return_status"]
+    a, g, c = np.array(found["x"]).ravel()
+    mu = tyre.state(load).mu_y
+    assert 0.5 * mu < c * speed**2 / 9.81 < 1.5 * mu
+    assert tyre(load, a, g, 0.0, -c, speed, 2.5e5, turn_slip=True).Fy == pytest.approx(
+        mass * speed**2 * c, rel=1e-6
+    )

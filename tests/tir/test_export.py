@@ -20,6 +20,8 @@ from tir.evaluate import evaluate
 VECTORS = Path(__file__).parent / "vectors"
 COMPILER = next((name for name in ("cc", "gcc", "clang") if shutil.which(name)), None)
 needs_compiler = pytest.mark.skipif(COMPILER is None, reason="there is no C compiler")
+pytestmark = pytest.mark.filterwarnings("ignore:turn slip is on")
+"""The public files have the common defaults of turn slip."""
 STRICT = [
     "-std=c99",
     "-pedantic",
@@ -56,6 +58,7 @@ def conditions(request) -> list[list[float]]:
             rng.uniform(-0.8, 0.8, n), rng.uniform(-30.0, 30.0, n), rng.uniform(1e5, 4e5, n),
         ]
     ).T.tolist()  # fmt: skip
+    rows.append([2000.0, 0.03, 0.0, 0.01, 0.0, 10.0, 2.2e5])  # no spin at all
     usual = [2000.0, 0.03, 0.1, 0.01, -0.2, 10.0, 2.2e5]
     for i in range(len(INPUTS)):
         rows += [[*usual[:i], value, *usual[i + 1 :]] for value in (0.0, float("nan"))]

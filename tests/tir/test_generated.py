@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 import tir
-from tir import calls
+from tir import calls, kernels
 from tir.codegen import kernel, single
 from tir.codegen.graph import INPUT, PARAMETER, Graph
 from tir.codegen.program import INPUTS, Switches, trace
@@ -66,6 +66,7 @@ def conditions(tyre) -> dict[str, np.ndarray]:
         for name in INPUTS
         for value in (0.0, -0.0, 1e-9, -1e-9, 1.0, -1.0, 50.0, math.nan)
     ]
+    edges.append({**usual, "gamma": 0.0, "phi_t": 0.0})  # no spin at all
     return {name: np.append(ordinary[name], [edge[name] for edge in edges]) for name in INPUTS}
 
 
@@ -116,14 +117,21 @@ def test_the_compiled_single_call_equals_the_equations(tyre, conditions, compile
     assert_equal(zip(*found, strict=True), wanted, Forces._fields)
 
 
+def as_at_start(monkeypatch) -> None:
+    """No kernel is loaded, and nothing is counted yet."""
+    kernels.wait()
+    monkeypatch.setattr(kernels, "LOADED", {})
+    monkeypatch.setattr(kernels, "METERS", {})
+
+
 @pytest.fixture
 def compiled(monkeypatch):
     """Compiles for this test only."""
-    monkeypatch.setattr(calls, "LOADED", {})
+    as_at_start(monkeypatch)
 
     def load(switches: Switches, kind: str) -> None:
         tir.compile_kernels(**switches._asdict(), kinds=(kind,))
-        assert (kind, switches) in calls.LOADED
+        assert (kind, switches) in kernels.LOADED
 
     return load
 
@@ -316,6 +324,78 @@ def test_damaged_machine_code_in_the_cache_is_made_again(tyre, tmp_path, monkeyp
         assert kept.read_bytes() == whole
 
 
+@needs_llvm
+@pytest.mark.parametrize("cached", [True, False])
+@pytest.mark.parametrize("kind", ["one", "batch"])
+def test_machine_code_is_found_without_being_asked_for(monkeypatch, tmp_path, kind, cached):
+    """From the cache at once, else when the thread has compiled it; a tyre that was called before changes over."""
+    as_at_start(monkeypatch)
+    monkeypatch.setattr(kernels, "WORTH_LOADING", {"one": 5, "batch": 5 * calls.PER_CALL})
+    monkeypatch.setattr(kernel, "cache_folder", lambda: tmp_path)
+    monkeypatch.setattr(kernel, "load", kernel.load.__wrapped__)
+    if cached:
+        kernel.load(kind, Switches())
+    called = tir.read(VECTORS / "moto_front.tir")
+    alpha = 0.05 if kind == "one" else np.full(9, 0.05)
+    before = called(2e3, alpha, turn_slip=False)
+    assert not kernels.LOADED
+    for _ in range(5):
+        called(2e3, alpha, turn_slip=False)
+    if cached:
+        assert list(kernels.LOADED) == [(kind, Switches())]
+    kernels.wait()
+    after = called(2e3, alpha, turn_slip=False)
+    assert list(kernels.LOADED) == [(kind, Switches())]
+    fast = called.prepared[False, False, False] if kind == "one" else called.prepared["batch", Switches()]
+    assert type(fast) is type(len), "a built-in function"
+    np.testing.assert_allclose(after, before, rtol=1e-12)
+
+
+def test_where_nothing_can_be_compiled_the_calls_go_on(tyre, monkeypatch):
+    as_at_start(monkeypatch)
+    monkeypatch.setattr(kernels, "WORTH_LOADING", {"one": 2, "batch": 2})
+    monkeypatch.setattr(kernel, "available", lambda: False)
+    found = [tyre.replace()(2e3, a).Fy for a in (0.05, np.array([0.05])) for _ in range(4)]
+    assert found == pytest.approx([found[0]] * 8)
+    assert not kernels.LOADED
+
+
+def test_without_a_global_lock_nothing_is_compiled(monkeypatch):
+    import sysconfig
+
+    monkeypatch.setattr(sysconfig, "get_config_var", lambda name: int(name == "Py_GIL_DISABLED"))
+    assert not kernel.available.__wrapped__()
+
+
+NUMBERS = [
+    1800.0,
+    1800,
+    True,
+    np.float64(1800.0),
+    np.float32(1800.0),
+    np.int64(1800),
+    np.int32(1800),
+    np.array(1800.0),
+]
+
+
+@pytest.mark.parametrize("machine", [False, pytest.param(True, marks=needs_llvm)])
+def test_numbers_of_every_type_are_the_same_number(tyre, compiled, monkeypatch, machine):
+    if machine:
+        compiled(Switches(), "one")
+    fresh = tyre.replace()
+    for x in NUMBERS:
+        for _ in range(2):
+            found = fresh(x, 0.05, x / 36000.0, p=250000, turn_slip=False)
+            assert all(type(f) is float for f in found)
+            wanted = evaluate(tyre.p, float(x), 0.05, float(x / 36000.0), pressure=2.5e5)[0]
+            assert found == pytest.approx([float(f) for f in wanted], rel=1e-12)
+    assert fresh(1800.0, np.array([0.05])).Fy.shape == (1,), "an array of one is an array"
+    assert np.iscomplexobj(fresh(1800.0, 0.05 + 1e-20j).Fy)
+    with pytest.raises((TypeError, ValueError)):
+        fresh("1800", 0.05)
+
+
 def test_without_llvm_the_message_names_the_package(monkeypatch):
     monkeypatch.setattr(kernel, "available", lambda: False)
     kernel.load.cache_clear()
@@ -326,7 +406,7 @@ def test_without_llvm_the_message_names_the_package(monkeypatch):
 def test_large_calls_without_llvm_go_through_numpy(monkeypatch, tyre):
     monkeypatch.setattr(kernel, "available", lambda: False)
     monkeypatch.setattr(calls, "COMPILE_FROM", 1)
-    monkeypatch.setattr(calls, "LOADED", {})
+    as_at_start(monkeypatch)
     alpha = np.linspace(-0.1, 0.1, 7)
     assert tyre(2000.0, alpha).Fy == pytest.approx(evaluate(tyre.p, 2000.0, alpha)[0].Fy, rel=1e-12)
 
@@ -334,7 +414,7 @@ def test_large_calls_without_llvm_go_through_numpy(monkeypatch, tyre):
 @pytest.mark.parametrize("switches", ALL_SWITCHES, ids=str)
 def test_arrays_without_llvm_equal_the_equations(tyre, conditions, switches, monkeypatch):
     """Each input as an array, and as a single number beside arrays."""
-    monkeypatch.setattr(calls, "LOADED", {})
+    as_at_start(monkeypatch)
     with np.errstate(all="ignore"):
         wanted = evaluate(tyre.p, **conditions, **switches._asdict())[0]
         assert_equal(calls.forces(tyre, list(conditions.values()), switches), wanted, Forces._fields)
@@ -409,7 +489,7 @@ def test_every_module_that_computes_is_in_the_key_of_the_cache():
         for f in ([package / name] if "." in name else (package / name).glob("*.py"))
     ]
     # words, the table that is covered, types
-    harmless = {"tir.errors", "tir.parameters", "tir.tyre", "tir.constant"}
+    harmless = {"tir.errors", "tir.parameters", "tir.tyre", "tir.constant", "tir.mode"}
     for path in covered:
         if path.suffix != ".py":
             continue

@@ -15,6 +15,8 @@ from tir.parameters import BY_NAME, TABLE
 VECTORS = Path(__file__).parent / "vectors"
 TYRES = ["MagicFormula61", "MagicFormula62", "moto_front"]
 ODD = {row.name: 0.0 for row in TABLE if row.odd}
+pytestmark = pytest.mark.filterwarnings("ignore:turn slip is on")
+"""The public files have the common defaults of turn slip."""
 
 
 @pytest.fixture(params=TYRES)
@@ -132,8 +134,7 @@ def test_no_damage_ends_in_pythons_arithmetic(values, condition, switches):
 
 def test_a_flat_tyre_is_the_same_for_scalars_and_arrays(tyre):
     soft = tyre.replace(QSY8=-0.4)
-    with np.errstate(divide="ignore"):
-        assert soft(1800.0, p=0.0).My == soft(1800.0, p=np.zeros(1)).My[0]
+    assert soft(1800.0, p=0.0).My == pytest.approx(soft(1800.0, p=np.zeros(1)).My[0], rel=1e-12)
 
 
 def test_forces_vanish_continuously_with_load(tyre):

@@ -192,7 +192,7 @@ class TestCheckOfText:
                 TEXT.replace("USE_MODE                 = 124", "USE_MODE = 225"),
                 "simscape",
                 "USE_MODE",
-                "no turn slip",
+                "an option of the block",
             ),
         ],
     )
@@ -204,7 +204,7 @@ class TestCheckOfText:
 
 
 def test_only_keys_of_the_forces_are_called_indispensable(tyre):
-    """A program that computes no turn slip does without the coefficients of turn slip."""
+    """A file that asks for no turn slip does without its coefficients."""
     text = tyre.expand().text("mftyre")
     for key, level in (("PKY4", "error"), ("MC_CONTOUR_A", "warning"), ("PKYP1", "warning")):
         lacking = interpret(parse_document(re.sub(rf"(?m)^{key} .*\n", "", text)))
@@ -215,3 +215,25 @@ def test_only_keys_of_the_forces_are_called_indispensable(tyre):
 def test_the_order_of_sections_is_the_manuals(tyre):
     heads = [line.section for line in parse_document(tyre.text("mftyre")).lines if line.head]
     assert heads == ["MDI_HEADER", "UNITS", *SECTIONS]
+
+
+@pytest.mark.parametrize(
+    ("program", "changes", "name", "said"),
+    [
+        ("mbsim", {"MC_CONTOUR_B": 0.0}, "MC_CONTOUR_B", "NaN"),
+        ("mbsim", {"LFZO": 1.1}, "LFZO", "at every evaluation"),
+        ("mbsim", {"QDRP2": -0.3, "USE_MODE": 225.0}, "QDRP2", "no QDRP2"),
+        ("simscape", {"USE_MODE": 225.0}, "USE_MODE", "an option of the block"),
+        ("simscape", {}, "MC_CONTOUR_A", "square cross-section"),
+    ],
+)
+def test_what_a_program_does_with_a_value_is_told(tyre, program, changes, name, said):
+    """The rest of this motorcycle tyre, written for the program, has no such problem."""
+    found = {
+        p.name: p.sentence
+        for p in check(tyre.replace(**changes), [program])
+        if f"for {program}" in p.sentence
+    }
+    assert said in found[name]
+    plain = tyre.replace(MC_CONTOUR_A=0.0, MC_CONTOUR_B=0.5)
+    assert name not in {p.name for p in check(plain, [program]) if f"for {program}" in p.sentence}

@@ -16,6 +16,8 @@ SHIFTS = ("PHX1", "PHX2", "PVX1", "PVX2")
 """By which the slope of Fx at no slip is not K_xk."""
 SYMMETRIC = TYRE.replace(**{row.name: 0.0 for row in TABLE if "odd" in row.symmetry or row.name in SHIFTS})
 Fz = 5000.0
+pytestmark = pytest.mark.filterwarnings("ignore:turn slip is on")
+"""The public files have the common defaults of turn slip."""
 
 
 def sigma(Vx: float) -> tuple[float, float]:

@@ -6,10 +6,11 @@ import operator
 from typing import TYPE_CHECKING, Any
 
 from tir.codegen.graph import Node
-from tir.codegen.program import INPUTS, NUMBERS, Switches, trace
+from tir.codegen.program import INPUTS, NUMBERS, trace
 from tir.equations.forces import Forces
 from tir.errors import TirError
 from tir.evaluate import refuse_zero_divisors
+from tir.mode import exported
 
 if TYPE_CHECKING:
     from tir.tyre import Tyre
@@ -21,14 +22,16 @@ OPERATORS = {
 }  # fmt: skip
 NAMES = {"absolute": "fabs", "where": "if_else", "both": "logic_and"}
 """Functions that have another name in CasADi."""
+GUARDED = {"sqrt": (0.0, 0.0), "arccos": (1.0, 0.0)}
+"""Functions with an infinite slope at the end of their range: that end, and the value there. At it the slope is taken as 0."""
 
 
 def casadi_function(
     tyre: Tyre,
     *,
-    name: str = "tyre",
+    name: str | None = None,
     outputs: tuple[str, ...] = Forces._fields,
-    turn_slip: bool = True,
+    turn_slip: bool | None = None,
     star: bool = False,
     limits: bool = False,
 ) -> Any:
@@ -37,9 +40,10 @@ def casadi_function(
     Parameters
     ----------
     tyre : its values become constants
-    name : name of the function
+    name : name of the function; default ``tyre_turn_slip`` with turn slip, else ``tyre``
     outputs : fields of Forces and State, one output each, in this order
-    turn_slip, star, limits : as in a call of the tyre
+    turn_slip : whether spin acts; default: if the units digit of the file's USE_MODE is 5
+    star, limits : as in a call of the tyre
 
     Raises
     ------
@@ -51,7 +55,9 @@ def casadi_function(
     except ImportError:
         raise TirError("casadi_function needs casadi, which is not installed: pip install casadi") from None
     refuse_zero_divisors(tyre.p)
-    program = trace(Switches(turn_slip, star, limits), outputs, {key: float(tyre[key]) for key in NUMBERS})
+    switches = exported(tyre, turn_slip, star, limits)
+    name = name or ("tyre_turn_slip" if switches.turn_slip else "tyre")
+    program = trace(switches, outputs, {key: float(tyre[key]) for key in NUMBERS})
     inputs = {key: casadi.SX.sym(key) for key in INPUTS}
     known: dict[int, Any] = {}
 
@@ -62,9 +68,19 @@ def casadi_function(
         if node.operation == "symbol":
             known[node.number] = inputs[node.name]
             continue
+        if node.operation in GUARDED:
+            end, there = GUARDED[node.operation]
+            known[node.number] = _guarded(casadi, node.operation, of(node.arguments[0]), end, there)
+            continue
         word = NAMES.get(node.operation, node.operation)
         operation: Any = OPERATORS[word] if word in OPERATORS else getattr(casadi, word)
         known[node.number] = operation(*map(of, node.arguments))
     results = [casadi.SX(of(x)) for x in program.outputs.values()]
     options = {"allow_duplicate_io_names": True}  # Fz is an input, and an output within the limits
     return casadi.Function(name, [*inputs.values()], results, [*inputs], [*outputs], options)
+
+
+def _guarded(casadi: Any, word: str, x: Any, end: float, there: float) -> Any:
+    """The function with slope 0 at the end of its range: an infinite slope times the 0 behind it would be NaN."""
+    at_end = x == end
+    return casadi.if_else(at_end, there, getattr(casadi, word)(casadi.if_else(at_end, 0.5, x)))

@@ -1,11 +1,13 @@
 """The model as machine code that Python calls like its own built-in functions. Imports llvmlite, so import it late.
 
-A function is bound to the constants of a tyre, which are its ``self``: the doubles of a ``bytes`` object. Arguments
+A function is bound to the constants of a tyre, which are its ``self``: the doubles of a ``bytes`` object, and behind them the
+addresses of the types that a scalar call takes. Arguments
 follow CPython's C interface METH_FASTCALL, without a converting layer between the call and the arithmetic.
 """
 
 from __future__ import annotations
 
+import functools
 import operator
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
@@ -25,6 +27,7 @@ from tir.codegen.instructions import (
     select,
     sqrt,
 )
+from tir.codegen.kernel import SCALARS
 from tir.codegen.program import INPUTS, Program
 from tir.codegen.source import FUNCTIONS
 
@@ -41,6 +44,7 @@ API = {
     "PyTuple_New": (POINTER, [INTEGER]),
     "PyTuple_SetItem": (SHORT, [POINTER, INTEGER, POINTER]),
     "PyBytes_AsString": (POINTER, [POINTER]),
+    "PyObject_Type": (POINTER, [POINTER]),
     "PyErr_Occurred": (POINTER, []),
     "PyErr_BadArgument": (SHORT, []),
     "PyObject_GetBuffer": (SHORT, [POINTER, POINTER, SHORT]),
@@ -71,9 +75,9 @@ OPERATIONS: dict[str, Callable[..., Any]] = {
 def module(kind: str, program: Program) -> str:
     """The function "one" or "batch" as LLVM assembly.
 
-    ``one(*INPUTS)`` takes floats and returns the six forces as floats. ``batch(*INPUTS, forces, first, last)`` takes buffers of
-    doubles, each of a single number or of one per condition, and writes conditions ``first`` to ``last`` of the buffer
-    ``forces`` (6, n); n is VECTOR_LANES or more. It lets other threads run.
+    ``one(*INPUTS)`` takes numbers of the types SCALARS, raises TypeError for others, and returns the six forces as floats.
+    ``batch(*INPUTS, forces, first, last)`` takes buffers of doubles, each of a single number or of one per condition, and writes
+    conditions ``first`` to ``last`` of the buffer ``forces`` (6, n); n is VECTOR_LANES or more. It lets other threads run.
     """
     text = ir.Module(name=kind)
     signature = ir.FunctionType(POINTER, [POINTER, POINTER.as_pointer(), INTEGER])
@@ -112,6 +116,22 @@ class _Caller:
         wrong = self.builder.icmp_signed("!=", self.count, ir.Constant(INTEGER, count))
         self.leave_if(wrong, before=lambda: self.call("PyErr_BadArgument"))
 
+    def expect_scalars(self, behind: int) -> None:
+        """Set an error and return unless every argument is of a known type; the types are behind that many constants."""
+        types = self.builder.bitcast(self.call("PyBytes_AsString", self.bound), INTEGER.as_pointer())
+        known = [
+            self.builder.load(self.builder.gep(types, [ir.Constant(INTEGER, behind + k)]))
+            for k in range(len(SCALARS))
+        ]
+        every = ir.Constant(ir.IntType(1), 1)
+        for i in range(len(INPUTS)):
+            type_ = self.call("PyObject_Type", self.argument(i))
+            address = self.builder.ptrtoint(type_, INTEGER)
+            self.call("Py_DecRef", type_)
+            same = [self.builder.icmp_unsigned("==", address, one) for one in known]
+            every = self.builder.and_(every, functools.reduce(self.builder.or_, same))
+        self.leave_if(self.builder.not_(every), before=lambda: self.call("PyErr_BadArgument"))
+
     def failed(self) -> ir.Value:
         """Whether an error is set."""
         return self.builder.icmp_unsigned("!=", self.call("PyErr_Occurred"), ir.Constant(POINTER, None))
@@ -124,6 +144,7 @@ class _Caller:
 def _one(python: _Caller, program: Program) -> None:
     builder = python.builder
     python.expect(len(INPUTS))
+    python.expect_scalars(len(program.constants))
     given = [python.call("PyFloat_AsDouble", python.argument(i)) for i in range(len(INPUTS))]
     python.leave_if(python.failed())
     inputs = {name: in_every_lane(builder, PAIR, x) for name, x in zip(INPUTS, given, strict=True)}

@@ -17,12 +17,16 @@ from importlib.resources import files as resources
 from pathlib import Path
 from typing import Any, NamedTuple
 
+import numpy as np
+
 from tir.codegen.constants import VECTOR_LANES
 from tir.codegen.program import Switches, trace
 from tir.codegen.single import constants, preparation_of
 from tir.equations.forces import Forces
 from tir.errors import TirError
 
+SCALARS = frozenset({float, int, bool, np.float64, np.float32, np.int64, np.int32})
+"""Types of the arguments that a scalar call takes as they are."""
 SOURCES = ("equations", "codegen", "constants.py", "evaluate.py", "derivatives.py", "parameters.csv")
 """Files that the machine code depends on."""
 LANES = int(VECTOR_LANES)
@@ -43,6 +47,7 @@ class Kernel(NamedTuple):
         bind = ctypes.pythonapi.PyCFunction_NewEx
         bind.argtypes, bind.restype = (ctypes.c_void_p, ctypes.py_object, ctypes.py_object), ctypes.py_object
         numbers = array("d", constants(self.prepare, values)).tobytes()
+        numbers += array("Q", sorted(map(id, SCALARS))).tobytes()
         keeps_alive = self
         return bind(ctypes.addressof(self.definition), numbers, keeps_alive)
 
@@ -60,10 +65,16 @@ class _Definition(ctypes.Structure):
 
 @cache
 def available() -> bool:
-    """Whether machine code can be compiled and called here: needs llvmlite, CPython and 64 bits."""
+    """Whether machine code can be compiled and called here: needs llvmlite, and CPython of 64 bits with its global lock.
+
+    The entry in C was never tried without the lock.
+    """
+    from sysconfig import get_config_var  # imported late, so that import tir is quick
+
     return (
         sys.implementation.name == "cpython"
         and sys.maxsize > 2**32
+        and not get_config_var("Py_GIL_DISABLED")
         and importlib.util.find_spec("llvmlite") is not None
     )
 
@@ -92,7 +103,7 @@ def load(kind: str, switches: Switches) -> Kernel:
     from llvmlite import binding
 
     machine = _machine()
-    path = cache_folder() / f"{'_'.join([kind, *(word for word, on in switches._asdict().items() if on)])}.o"
+    path = _place(kind, switches)
     code = _read(path)
     if code is None:
         from tir.codegen import entry
@@ -104,6 +115,15 @@ def load(kind: str, switches: Switches) -> Kernel:
     engine.finalize_object()
     definition = _Definition(kind.encode(), engine.get_function_address(kind), FASTCALL, None)
     return Kernel(definition, engine, preparation_of(switches, Forces._fields))
+
+
+def is_cached(kind: str, switches: Switches) -> bool:
+    """Whether the kernel need not be compiled; llvmlite must be there."""
+    return _place(kind, switches).is_file()
+
+
+def _place(kind: str, switches: Switches) -> Path:
+    return cache_folder() / f"{'_'.join([kind, *(word for word, on in switches._asdict().items() if on)])}.o"
 
 
 def _machine() -> Any:

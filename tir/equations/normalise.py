@@ -19,7 +19,7 @@ class Inputs(NamedTuple):
     cos_alpha: Any  #: Vx / Vc [-]
     tan_alpha: Any  #: [-]
     phi_t: Any  #: turn slip -psi_dot / Vc [1/m]
-    pressure: Any  #: [Pa]
+    pressure: Any  #: for the rolling resistance [Pa]
     dfz: Any  #: (Fz - Fz0') / Fz0', 4.E2a [-]
     dpi: Any  #: (p - p0) / p0, 4.E2b [-]
     Fz0: Any  #: Fz0' = LFZO FNOMIN, 4.E1 [N]

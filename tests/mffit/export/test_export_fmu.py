@@ -35,7 +35,8 @@ def fmus(tmp_path_factory) -> dict[int, Path]:
     folder = tmp_path_factory.mktemp("fmu")
     file = folder / '1 front & "rear" <x>.tir'
     file.write_bytes(FILE.read_bytes())
-    return {fmi: write_fmu(file, folder / str(fmi), fmi=fmi) for fmi in (2, 3)}
+    name = "tyre_1_front____rear___x_"
+    return {fmi: write_fmu(file, folder / str(fmi), fmi=fmi, name=name, turn_slip=True) for fmi in (2, 3)}
 
 
 def conditions(n: int) -> dict[str, np.ndarray]:
@@ -98,7 +99,7 @@ def test_units_and_starts_are_declared(fmus, fmi):
     """Base units by hand: a moment is kg m2/s2; the start is the nominal condition of the file."""
     with zipfile.ZipFile(fmus[fmi]) as archive:
         root = ElementTree.fromstring(archive.read("modelDescription.xml"))
-    assert root.attrib["modelName"] == '1 front & "rear" <x>'
+    assert root.attrib["modelName"] == '1 front & "rear" <x>, turn slip on'
     units = {unit.attrib["name"]: dict(unit.find("BaseUnit").attrib) for unit in root.iter("Unit")}
     assert units["Nm"] == {"kg": "1", "m": "2", "s": "-2"}
     tyre = tir.read(FILE)
@@ -214,6 +215,10 @@ def test_instances_are_independent_and_states_come_back(fmus, tmp_path):
     output = (c_uint * 1)(Fy)
     assert hand.library.fmi2SetReal(a, output, 1, (c_double * 1)(1.0)) == 3, "an output cannot be set"
     assert hand.library.fmi2GetReal(a, (c_uint * 1)(99), 1, (c_double * 1)()) == 3
+    step = hand.library.fmi2DoStep
+    step.argtypes = [c_void_p, c_double, c_double, c_int]
+    assert [step(a, 1.0, dt, 0) for dt in (0.1, 0.0, -0.1, float("nan"))] == [0, 0, 3, 3]
+    assert hand.get(a, 0) == [1.0], "a refused step leaves the time"
     for m in (a, b):
         hand.library.fmi2FreeInstance(m)
 
@@ -283,15 +288,50 @@ def test_the_commands_write_where_they_are_told(tmp_path, capsys):
     main(["export", "c", str(FILE), "--out", str(tmp_path), "--name", "front", "--no-turn-slip"])
     main(["export", "fmu", str(FILE), "--out", str(tmp_path), "--sources-only", "--fmi", "3"])
     assert {"front.c", "front.h", "moto_front.fmu"} <= {path.name for path in tmp_path.iterdir()}
-    assert "turn_slip" not in (tmp_path / "front.h").read_text()
+    assert "turn slip off" in (tmp_path / "front.h").read_text()
     assert "moto_front.fmu" in capsys.readouterr().out
 
 
 def test_the_switches_reach_the_code(tmp_path):
     held = write_fmu(FILE, tmp_path, turn_slip=False, limits=True, sources_only=True)
     with zipfile.ZipFile(held) as archive:
-        assert "Computed with: limits." in archive.read("sources/moto_front.h").decode()
+        assert "Inputs are held to the file's ranges." in archive.read("sources/moto_front.h").decode()
         assert "turn slip off, inputs held" in archive.read("modelDescription.xml").decode()
+
+
+@pytest.mark.parametrize(
+    ("mode", "option", "name", "on"),
+    [
+        (124, [], "front", False),
+        (225, [], "front", True),
+        (124, ["--turn-slip"], "front_turn_slip", True),
+        (225, ["--no-turn-slip"], "front_normal", False),
+    ],
+)
+@pytest.mark.parametrize("kind", ["c", "fmu"])
+def test_the_mode_is_the_files_unless_asked_for_and_is_told(tmp_path, capsys, kind, mode, option, name, on):
+    tir.read(FILE).replace(USE_MODE=mode).write(tmp_path / "front.tir")
+    sources = ["--sources-only"] if kind == "fmu" else []
+    main(["export", kind, str(tmp_path / "front.tir"), "--out", str(tmp_path / "out"), *option, *sources])
+    words = f"turn slip {'on' if on else 'off'}"
+    assert words in capsys.readouterr().out
+    if kind == "c":
+        assert f"{words}, axes" in (tmp_path / "out" / f"{name}.h").read_text()
+        return
+    with zipfile.ZipFile(tmp_path / "out" / f"{name}.fmu") as archive:
+        root = ElementTree.fromstring(archive.read("modelDescription.xml"))
+    assert root.attrib["modelName"] == f"front, {words}"
+    assert words in root.attrib["description"]
+
+
+def test_turn_slip_without_measured_coefficients_is_warned_of(tmp_path, capsys):
+    tyre = tir.read(FILE.parent / "MagicFormula62.tir")
+    tyre.replace(USE_MODE=125).write(tmp_path / "guessed.tir")
+    tyre.replace(USE_MODE=125, PHYP2=0.0).write(tmp_path / "zero.tir")
+    for file, said in (("guessed", "common defaults"), ("zero", "no side force")):
+        for option in ([], ["--no-turn-slip"]):
+            main(["export", "c", str(tmp_path / f"{file}.tir"), "--out", str(tmp_path / "out"), *option])
+            assert (said in capsys.readouterr().err) is (not option)
 
 
 @pytest.mark.parametrize(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+import pandas as pd
 import pytest
 from disc_project import disc_project
 
@@ -89,6 +90,20 @@ def test_a_turned_tyre_and_a_straight_path_are_in_the_remarks(project):
     remarks = said(project)
     assert remarks["sideslip_1000"][1:] == ["rolling forwards", "tyre turned on its rim"]
     assert remarks["camber_1000"][1:] == ["rolling forwards"]
+
+
+def test_a_sweep_of_both_directions_becomes_two_files(project):
+    """Nothing in a row says its direction, so rows of both in one file would be lost for every reader."""
+    forward, backward = (project.tables[f"{way}_1000.csv"] for way in ("forward", "backward"))
+    both = pd.concat([forward.assign(direction="forward"), backward.assign(direction="backward")])
+    project.add("both.csv", both.sample(frac=1.0, random_state=1).assign(Fy_N=lambda t: t["Fy_N"] + 0.5))
+    config = configuration.load(project.write())
+    texts = tydex_texts(points.load(config)[0], config)
+    assert "both" not in texts
+    for way, rows in (("forward", len(forward)), ("backward", len(backward))):
+        lines = texts[f"both-{way}"].splitlines()
+        assert f"! rolling {way}s" in lines
+        assert lines.index("**END") - lines.index("**MEASURDATA") - 1 == rows
 
 
 def test_the_overall_diameter_is_twice_the_unloaded_radius(project):

@@ -1,0 +1,60 @@
+"""Whether turn slip acts: one rule for calls and exports, and what speaks against a file's coefficients for it."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Collection, Mapping
+from typing import TYPE_CHECKING, Any
+
+from tir.codegen.program import Switches
+from tir.errors import TirWarning
+from tir.parameters import TABLE, TURN_SLIP
+
+if TYPE_CHECKING:
+    from tir.tyre import Tyre
+
+BLOCK = tuple(row for row in TABLE if row.section == TURN_SLIP and row.files == "")
+"""The coefficients of turn slip."""
+
+
+def asks_for_turn_slip(values: Mapping[str, Any]) -> bool:
+    """Whether the units digit of USE_MODE is 5; then spin acts unless a call or an export says otherwise."""
+    return bool(abs(values["USE_MODE"]) % 10.0 // 1.0 == 5.0)
+
+
+def exported(tyre: Tyre, turn_slip: bool | None, star: bool, limits: bool) -> Switches:
+    """The switches of exported code; warns if turn slip is on and the tyre's coefficients of it are doubtful."""
+    on = tyre.turn_slip if turn_slip is None else bool(turn_slip)
+    if on:
+        warn_of_doubt(tyre.values, tyre.present, stacklevel=3)
+    return Switches(on, bool(star), bool(limits))
+
+
+def words(turn_slip: bool) -> str:
+    """The mode as it is written into exported files."""
+    return f"turn slip {'on' if turn_slip else 'off'}"
+
+
+def doubt(values: Mapping[str, Any], present: Collection[str]) -> str:
+    """A sentence if the coefficients of turn slip are the common defaults or give no force from spin; else empty."""
+    n = len(BLOCK)
+    if all(values[row.name] == row.default for row in BLOCK):
+        absent = not any(row.name in present for row in BLOCK)
+        lead = "the file has no coefficients for it, and the" if absent else f"its {n} coefficients are the"
+        return (
+            f"turn slip is on, but {lead} common defaults, not measurements: camber and path curvature act by a guess. Use "
+            "turn_slip=False (--no-turn-slip), or a file with a measured block"
+        )
+    if values["PHYP1"] == 0.0 or (values["PHYP2"] == 0.0 and values["PHYP3"] == 0.0):
+        return (
+            "turn slip is on, but PHYP1 or PHYP2 is 0, so camber and path curvature give no side force. Use turn_slip=False "
+            "(--no-turn-slip), or a file with a measured block"
+        )
+    return ""
+
+
+def warn_of_doubt(values: Mapping[str, Any], present: Collection[str], *, stacklevel: int) -> None:
+    """Warn with the sentence of :func:`doubt`, at the caller ``stacklevel`` frames up."""
+    sentence = doubt(values, present)
+    if sentence:
+        warnings.warn(sentence, TirWarning, stacklevel=stacklevel + 1)
