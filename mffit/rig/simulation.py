@@ -11,6 +11,7 @@ import numpy as np
 
 from mffit.brief import Brief
 from mffit.points import Points
+from mffit.quantities import CHANNELS
 from mffit.rig.chain import Chain
 from mffit.rig.histories import of_part, usual_radius
 from mffit.rig_errors import BY_NAME, NO_FAULTS, OF_RUN, RIG_ERRORS, Faults
@@ -92,6 +93,23 @@ class Simulation(Brief):
             Fy [N] and Mz [Nm] in ISO-W, contact frame, rig-fixed also when rolling backwards.
         """
         return Readings(*self._chain(points, {}).readings())
+
+    def felt(self, points: Points) -> Points:
+        """The points as the tyre felt them: its own conditions, and readings without the influence of rig and environment.
+
+        The influence is that of this simulation, so the tyre misses the returned readings by as much as the simulation misses
+        those of ``points``.
+        """
+        chain = self._chain(points, {})
+        readings = Readings(*chain.readings())
+        felt = points.replace(**chain.at_the_tyre)
+        tyre = replace(self, faults=NO_FAULTS, of_parts={}).readings(felt)
+        return felt.replace(
+            **{
+                name: getattr(points, name) - (getattr(readings, name) - getattr(tyre, name))
+                for name in CHANNELS
+            }
+        )
 
     def predict(self, points: Points) -> np.ndarray:
         """The readings in one row (2n,): Fy [N], then Mz [Nm]."""
