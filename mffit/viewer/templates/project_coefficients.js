@@ -76,7 +76,7 @@ function showRow(row) {
   cell.field.value = Number(value.toPrecision(6));
   cell.slider.value = value;
   cell.box.classList.toggle("moved", moved);
-  cell.reset.disabled = !moved;
+  cell.reset.hidden = !moved;
   const held = typeof entry === "number" || entry === "base";
   cell.tag.textContent = entryText(entry) || (row.at_bound ? "at its bound" : row.status === "fitted" ? "" : row.status);
   cell.tag.hidden = !cell.tag.textContent;

@@ -87,17 +87,15 @@ function showChosen() {
   byId("chosen-title").textContent = chosen.length === 1 ? placeOf(chosen[0]) : `${chosen.length} points`;
   const body = byId("chosen-table").tBodies[0], shown = chosen.slice(0, 12);
   body.replaceChildren();
-  const head = body.insertRow();
   const named = Object.keys(project.quantities).filter(name => columns[name] && shown.some(i => Number.isFinite(columns[name][i]) && columns[name][i] !== 0));
-  const heads = ["point", ...named.map(label), ...channels.map(name => label(RESIDUAL + name)), "left out"];
-  for (const text of heads) head.appendChild(element("th", "n", text));
-  for (const i of shown) {
-    const line = body.insertRow();
-    line.appendChild(element("td", "", placeOf(i)));
-    for (const name of named) line.appendChild(element("td", "n", trimmed(written(shownIn(name, (columns.read[name] || columns[name])[i])))));
-    for (const name of channels) line.appendChild(element("td", "n", written(columns[name][i] - own[name][i])));
-    line.appendChild(element("td", "", left[i] ? whyLeftOut(i) || "yes" : ""));
-  }
+  const line = (title, text) => {
+    const made = body.insertRow();
+    made.append(element("th", "", title), ...shown.map(i => element("td", "n", text(i))));
+  };
+  if (chosen.length > 1) line("", placeOf);
+  for (const name of named) line(`${label(name)}, as read`, i => trimmed(written(shownIn(name, (columns.read[name] || columns[name])[i]))));
+  for (const name of channels) line(label(RESIDUAL + name), i => written(columns[name][i] - own[name][i]));
+  if (shown.some(i => left[i])) line("left out", i => left[i] ? whyLeftOut(i) || "yes" : "");
   byId("chosen-actions").replaceChildren(...chosenActions());
 }
 function step(panel, by) {
@@ -236,7 +234,9 @@ function recalled() {
 }
 
 function showProject(data) {
+  const places = project && columns.count ? chosen.map(placeOf) : [];
   take(data);
+  chosen = places.map(place => project.points.line.findIndex((_, i) => placeOf(i) === place)).filter(i => i >= 0);
   byId("content").hidden = false;
   const names = project.points.facets.filter(one => one.labels.length > 1);
   byId("colour").replaceChildren(...names.map(one => new Option(one.word, one.name, false, one.name === state.colour)));
@@ -247,7 +247,6 @@ function showProject(data) {
   showFacets();
   if (!state.panels.length) for (const panel of (wanted.length ? wanted : defaultPanels())) addPanel(panel);
   listCoefficients();
-  chosen = chosen.filter(i => i < columns.count);
   showChosen();
   const fit = channels.map(name => `${name} ${written(project.channels.find(one => one.name === name).rmse)} ${quantity(name).unit}`).join(", ");
   byId("about").textContent = `${project.points.fitted} points, rms misfit ${fit}${project.trusted ? "" : "; the result is not to be trusted"}`;
