@@ -11,8 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from mffit.export import write_c, write_fmu
-    from mffit.pipeline import align, build, compare, diagnose, plan, spin, verify, write_tydex
-    from mffit.viewer import show
+    from mffit.pipeline import align, build, compare, diagnose, plan, show, spin, verify, write_tydex
 
     __version__: str
 
@@ -29,7 +28,7 @@ __all__ = [
     "write_fmu",
     "write_tydex",
 ]
-ELSEWHERE = {"show": "mffit.viewer", "write_c": "mffit.export", "write_fmu": "mffit.export"}
+ELSEWHERE = {"write_c": "mffit.export", "write_fmu": "mffit.export"}
 """Public names that are not the pipeline's."""
 
 

@@ -8,7 +8,18 @@ from contextlib import redirect_stderr, redirect_stdout
 
 import click
 
-from mffit.cli import building, comparing, diagnosing, exporting, files, measuring, planning, projects, rigs
+from mffit.cli import (
+    building,
+    comparing,
+    diagnosing,
+    exporting,
+    files,
+    measuring,
+    opening,
+    planning,
+    projects,
+    rigs,
+)
 from mffit.cli.console import PipeTolerant
 
 CONTEXT = {"help_option_names": ["-h", "--help"], "max_content_width": 100}
@@ -22,6 +33,7 @@ COMMANDS = (
     planning.plan,
     files.check,
     files.show,
+    opening.open_window,
     exporting.export,
     rigs.simulate,
     projects.sniff,

@@ -42,20 +42,24 @@ def check(file: Path, targets: str, voice: Voice) -> None:
 
 @click.command()
 @click.argument(
-    "files", type=click.Path(path_type=Path), nargs=-1, required=True, metavar="FILE.tir [MORE.tir]..."
+    "files", type=click.Path(path_type=Path), nargs=-1, required=True, metavar="FILE.tir... | tyre.toml"
 )
 @out_option("Page to write [default: FILE.html in the current folder].")
 @click.option("--open", "open_it", is_flag=True, help="Open the page in a browser.")
 @voiced
 def show(files: tuple[Path, ...], out: Path | None, open_it: bool, voice: Voice) -> None:
-    """Draw the curves of property files.
+    """Draw the curves of property files, or a project with its points.
 
-    Writes a page with sliders for the conditions; several files are drawn in the same panels.
+    Writes a page with sliders for the conditions; several files are drawn in the same panels. The page of a tyre.toml has the
+    measured points, and sliders for the coefficients.
     """
     import mffit
 
-    out = out or Path(f"{files[0].stem}.html")
-    page = mffit.show(files, out)
+    with voice.progress() as say:
+        page = mffit.show(files, out, progress=say)
+    if out is None:
+        stem = page.names[0] if files[0].suffix == ".toml" else files[0].stem
+        out = page.write(Path(f"{stem}.html"))
     voice.say(f"written to {out}: {', '.join(page.names)}")
     voice.give(lambda: {"written": [str(out)]})
     if open_it:

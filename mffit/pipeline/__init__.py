@@ -9,6 +9,7 @@ from mffit.pipeline.intake import init_from, write_sniffed
 from mffit.pipeline.many import build_many
 from mffit.pipeline.measuring import align, spin
 from mffit.pipeline.planning import plan
+from mffit.pipeline.showing import show
 from mffit.pipeline.verifying import verify
 
 __all__ = [
@@ -20,6 +21,7 @@ __all__ = [
     "fleet",
     "init_from",
     "plan",
+    "show",
     "spin",
     "verify",
     "write_sniffed",

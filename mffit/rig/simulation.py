@@ -90,6 +90,24 @@ class Simulation(Brief):
         channels = _in_order(channels)
         return Readings(**dict(zip(channels, self._chain(points, {}).readings(channels), strict=True)))
 
+    def felt(self, points: Points) -> Points:
+        """The points as the tyre felt them: its own conditions, and readings without the influence of rig and environment.
+
+        The influence is that of this simulation, so the tyre misses the returned readings by as much as the simulation misses
+        those of ``points``.
+        """
+        channels = _in_order((*SIDEWAYS, *points.measured))
+        chain = self._chain(points, {})
+        readings = Readings(**dict(zip(channels, chain.readings(channels), strict=True)))
+        felt = points.replace(**chain.at_the_tyre)
+        tyre = replace(self, faults=NO_FAULTS, of_parts={}).readings(felt, channels)
+        return felt.replace(
+            **{
+                name: points.channel(name) - (getattr(readings, name) - getattr(tyre, name))
+                for name in channels
+            }
+        )
+
     def predict(self, points: Points, channels: Iterable[str] = SIDEWAYS) -> np.ndarray:
         """The readings (c n,), channel after channel."""
         return self.readings(points, channels).stacked

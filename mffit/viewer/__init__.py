@@ -1,5 +1,6 @@
-"""Property files as a page that evaluates them: curves of several tyres in common panels, with sliders."""
+"""Pages that evaluate tyres by themselves: curves of property files, or a project with its points and coefficients."""
 
 from mffit.viewer.page import Page, show
+from mffit.viewer.project import project_data, project_html, project_page
 
-__all__ = ["Page", "show"]
+__all__ = ["Page", "project_data", "project_html", "project_page", "show"]

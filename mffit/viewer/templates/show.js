@@ -1,5 +1,6 @@
 "use strict";
 (() => {
+  const {written, trimmed, ticks, roomy} = shared;
   const data = JSON.parse(document.getElementById("data").textContent);
   const byId = id => document.getElementById(id);
   const controls = Object.fromEntries(data.controls.map(control => [control.name, control]));
@@ -11,7 +12,6 @@
   const now = {};  // the sliders, in SI
   const bounds = {};  // of the panels; they only grow while a slider moves
   const LOADS = [0.5, 1.5];
-  const DIGITS = 4;
   const SQUEEZE = 0.3;
   const STEPS = 160;
   const HEIGHT = 230, TOP = 8, BOTTOM = 24, RIGHT = 12;
@@ -69,22 +69,8 @@
 
   // ---- text
 
-  function written(x, most = 6) {
-    if (!Number.isFinite(x)) return "–";
-    if (x === 0) return "0";
-    const places = Math.max(0, DIGITS - 1 - Math.floor(Math.log10(Math.abs(x))));
-    return x.toFixed(Math.min(places, most)).replace("-", "−");
-  }
-  const trimmed = text => text.includes(".") ? text.replace(/0+$/, "").replace(/\.$/, "") : text;
+  const symbol = name => shared.symbol(data.quantities[name]);
   const withUnit = (name, x) => `${trimmed(written(x))} ${data.quantities[name].unit}`.trim();
-  function symbol(name) {
-    const [letter, low] = data.quantities[name].symbol.split("_");
-    const span = document.createElement("span");
-    span.className = "symbol";
-    span.textContent = letter;
-    if (low) span.appendChild(document.createElement("sub")).textContent = low;
-    return span;
-  }
 
   // ---- pictures
 
@@ -94,14 +80,6 @@
     for (const name in attributes) node.setAttribute(name, attributes[name]);
     if (text !== undefined) node.textContent = text;
     return node;
-  }
-  function ticks(low, high, most) {
-    const raw = (high - low) / most, power = 10 ** Math.floor(Math.log10(raw));
-    const step = power * [1, 2, 2.5, 5, 10].find(n => n * power >= raw * (1 - 1e-9));
-    const found = [];
-    for (let i = Math.ceil(low / step - 1e-9); i * step <= high + 1e-9 * step; i++) found.push(i * step);
-    const digits = Math.max(0, Math.min(8, -Math.floor(Math.log10(step) + 1e-9) + (Math.abs(step / power - 2.5) < 1e-9 ? 1 : 0)));
-    return found.map(x => ({x, text: (Math.abs(x) < step / 2 ? 0 : x).toFixed(digits).replace("-", "−")}));
   }
   function widened(panel, lines) {
     const all = lines.flatMap(line => line.points).filter(p => Number.isFinite(p.x) && Number.isFinite(p.y));
@@ -123,11 +101,6 @@
     if (!inside.length) return whole;
     const low = Math.min(0, ...inside), high = Math.max(0, ...inside), room = SQUEEZE * (high - low);
     return [Math.max(whole[0], low - room), Math.min(whole[1], high + room)];
-  }
-  function roomy([low, high]) {
-    if (high - low < 1e-12) return [-1, 1];
-    const room = 0.04 * (high - low);
-    return [low < 0 ? low - room : low, high > 0 ? high + room : high];
   }
 
   function render(panel) {

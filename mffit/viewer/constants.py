@@ -1,0 +1,21 @@
+"""Numbers of judgement of the pages with curves and points."""
+
+from __future__ import annotations
+
+from tir.constant import Count, Real
+
+SLIDER_REACH = Real(
+    6.0,
+    "-",
+    "Reach of a coefficient's slider to either side, in standard uncertainties: beyond what the data allow.",
+)
+SLIDER_LEAST = Real(
+    0.2, "-", "Least reach of a coefficient's slider, over the size of its value: a change that the eye sees."
+)
+SLIDER_OF_ZERO = Real(0.1, "-", "Least reach of the slider of a coefficient that is about 0.")
+STEPS_OF_SLIDER = Count(400, "-", "Steps of a coefficient's slider: finer than a pixel of the screen.")
+MOVERS_SHOWN = Count(2, "-", "Sweeps that are named for a coefficient as those that determine it most.")
+LEAST_MOVER = Real(0.1, "-", "Share of the information on a coefficient below which a sweep is not named.")
+LINES_OF_A_SAMPLE = Count(
+    3, "-", "Median distance in lines from which points of a file are means of several lines each."
+)

@@ -1,0 +1,113 @@
+"""A project as a page: measured points, curves, and coefficients that move them at once."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import mffit
+from mffit.config.by_hand import as_in_the_file
+from mffit.quantities import CHANNELS, QuantityName
+from mffit.results import BuildResult
+from mffit.templates import environment
+from mffit.viewer.controls import in_si
+from mffit.viewer.page import Page
+from mffit.viewer.project_coefficients import coefficient_rows
+from mffit.viewer.project_points import (
+    axis_quantities,
+    columns,
+    stated_noise,
+)
+from tir.codegen.javascript import javascript
+from tir.codegen.program import INPUTS, Switches, trace
+from tir.evaluate import CONICITY
+
+MODELLED = tuple(CHANNELS)
+"""The outputs that the page computes."""
+
+
+def project_data(result: BuildResult) -> dict[str, Any]:
+    """All that the page shows of a build, as plain JSON; numbers in SI."""
+    fitted, points = result.fit, result.points
+    simulation = fitted.simulation
+    parameters = trace(Switches(simulation.turn_slip, simulation.star), MODELLED).parameters
+    rows = coefficient_rows(result, parameters)
+    values = {name: float(simulation.values[name]) for name in parameters}
+    return {
+        "name": result.config.tyre.name,
+        "order": list(INPUTS),
+        "turn_slip": simulation.turn_slip,
+        "star": simulation.star,
+        "quantities": {name: _quantity(quantity) for name, quantity in axis_quantities().items()},
+        "channels": [
+            {
+                "name": name,
+                "rmse": fitted.channels[name].rmse,
+                "over_noise": result.trust.over_noise.get(name),
+                "stated": stated,
+            }
+            for name, stated in stated_noise(points).items()
+            if fitted.channels[name].n
+        ],
+        "values": values | {row["name"]: row["value"] for row in rows},
+        "conicity": [name for name in CONICITY if name in parameters],
+        "coefficients": rows,
+        "points": columns(points, result.excluded, fitted),
+        "hand": {name: as_in_the_file(entry) for name, entry in result.config.coefficients.items()},
+        "exclude": [entry.model_dump() for entry in result.config.fit.exclude],
+        "trusted": result.trusted,
+        "warnings": list(result.warnings),
+        "rig": [{"name": name, "value": value, "stderr": u} for name, (value, u) in fitted.rig.items()],
+        "seconds": result.seconds,
+    }
+
+
+def model_code(turn_slip: bool, star: bool) -> str:
+    """The model of the page as a JavaScript expression; see :func:`tir.codegen.javascript.javascript`."""
+    return javascript(MODELLED, turn_slip=turn_slip, star=star)
+
+
+def project_html(
+    name: str,
+    data: dict[str, Any] | None,
+    *,
+    turn_slip: bool,
+    star: bool,
+    window: dict[str, Any] | None = None,
+) -> str:
+    """The page of a project.
+
+    Parameters
+    ----------
+    name : of the tyre
+    data : of :func:`project_data`; None before the first fit
+    turn_slip, star : which model the page evaluates
+    window : state of the local window, see :mod:`mffit.window`; None for a page without a server
+    """
+    return (
+        environment("mffit.viewer")
+        .get_template("project.html.j2")
+        .render(
+            content={"project": data, "window": window},
+            name=name,
+            model=model_code(turn_slip, star),
+            turn_slip=turn_slip,
+            window=window,
+            version=mffit.__version__,
+        )
+    )
+
+
+def project_page(result: BuildResult) -> Page:
+    """The page of a build without a server: one file with the points in it."""
+    data = project_data(result)
+    html = project_html(data["name"], data, turn_slip=data["turn_slip"], star=data["star"])
+    return Page(html, (data["name"],))
+
+
+def _quantity(quantity: QuantityName) -> dict[str, Any]:
+    return {
+        "word": quantity.word,
+        "symbol": quantity.symbol,
+        "unit": quantity.unit_behind,
+        "si": in_si(quantity.unit),
+    }

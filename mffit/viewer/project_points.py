@@ -1,0 +1,141 @@
+"""The measured points of a project as columns for a page."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from mffit.fit import FitResult
+from mffit.points import Points, concatenate, levels
+from mffit.quantities import CHANNELS, CONDITIONS, MODEL, QuantityName
+from mffit.viewer import constants
+from mffit.viewer.controls import in_si
+from tir.codegen.program import INPUTS
+
+MEASURED_ONLY = {"T": CONDITIONS["T_degC"], "t": CONDITIONS["t_s"]}
+"""Conditions of points that are no input of the model."""
+FACETS = {
+    "Fz": levels.LOAD,
+    "gamma": levels.CAMBER,
+    "pressure": levels.PRESSURE,
+    "alpha": levels.SIDESLIP,
+    "Vx": levels.SPEED,
+}
+"""Inputs of the model whose set-points have levels."""
+DIGITS = 12
+"""Significant digits of a number in the page: more than any reading has, and half of what a float needs."""
+
+
+def axis_quantities() -> dict[str, QuantityName]:
+    """Everything that an axis of the page can show, beside residuals."""
+    return {name: MODEL[name] for name in INPUTS} | MEASURED_ONLY | dict(CHANNELS)
+
+
+def columns(points: Points, excluded: Points | None, fitted: FitResult) -> dict[str, Any]:
+    """The points as the tyre felt them, by column, with what the rig read; then those that are left out by hand.
+
+    Conditions and readings are in SI; missing readings are null. ``fitted`` is the number of points that the fit has.
+    """
+    parts = [points] if excluded is None else [points, excluded]
+    felt = concatenate([fitted.simulation.felt(part) for part in parts])
+    read = concatenate(parts)
+    sigma = fitted.search.problem.sigma if fitted.search is not None else {}
+    return {
+        **_conditions(felt),
+        **{name: listed(getattr(felt, name)) for name in CHANNELS},
+        "read": {**_conditions(read), **{name: listed(getattr(read, name)) for name in CHANNELS}},
+        "u": {name: listed(_noise(points, name, sigma)) for name in CHANNELS},
+        "unused": {name: [o.row for o in fitted.outliers if o.channel == name] for name in CHANNELS},
+        "fitted": len(points),
+        "mount": read.mount.tolist(),
+        "file": read.file.tolist(),
+        "line": read.line.tolist(),
+        "last": last_lines(read).tolist(),
+        "files": list(read.files),
+        "facets": facets(read),
+    }
+
+
+def stated_noise(points: Points) -> dict[str, bool]:
+    """By channel, whether the points state their uncertainty."""
+    return {name: bool(np.any(getattr(points, f"u_{name}") > 0.0)) for name in CHANNELS}
+
+
+def facets(points: Points) -> list[dict[str, Any]]:
+    """Groups of points by their set-points: name, words of the groups, and the group (n,) of each point; -1 for none."""
+    inputs = _arrays(points)
+    found = []
+    for name, kind in FACETS.items():
+        of = levels.nearest_labels(np.abs(inputs[name]) if name == "Vx" else inputs[name], kind)
+        medians = [float(np.median(inputs[name][of == k])) for k in range(of.max(initial=-1) + 1)]
+        found.append(_facet(name, MODEL[name].word, of, [_said(MODEL[name], x) for x in medians]))
+    for name, word, of, words in (
+        ("path", "path", _ranks(points.phi_t), [_path(x) for x in np.unique(points.phi_t)]),
+        ("direction", "rolling", (points.direction > 0).astype(int), ["backward", "forward"]),
+        ("mount", "mount", (points.mount > 0).astype(int), ["flipped", "normal"]),
+        ("sweep", "run", points.sweep, points.sweep_names),
+    ):
+        found.append(_facet(name, word, of, words))
+    return found
+
+
+def last_lines(points: Points) -> np.ndarray:
+    """Last line (n,) that each point is made of: its own, or in a recording the line before that of the next point."""
+    out = points.line.copy()
+    for file in np.unique(points.file):
+        rows = np.flatnonzero(points.file == file)
+        rows = rows[np.argsort(points.line[rows], kind="stable")]
+        apart = np.diff(points.line[rows])
+        usual = int(np.median(apart)) if len(apart) else 1
+        if usual < constants.LINES_OF_A_SAMPLE:
+            continue
+        length = np.minimum(np.append(apart, usual), usual)
+        out[rows] = points.line[rows] + np.maximum(length, 1) - 1
+    return out
+
+
+def listed(values: np.ndarray) -> list[float | None]:
+    """A column for JSON: numbers with 12 digits, null for what is not finite."""
+    return [float(f"{x:.{DIGITS}g}") if np.isfinite(x) else None for x in values.tolist()]
+
+
+def _conditions(points: Points) -> dict[str, Any]:
+    return {name: listed(values) for name, values in _arrays(points).items()}
+
+
+def _arrays(points: Points) -> dict[str, np.ndarray]:
+    """The inputs of the model and the other conditions of points (n,), SI."""
+    kappa = points.kappa if hasattr(points, "kappa") else np.zeros(len(points))
+    known = {"pressure": points.p, "Vx": points.Vx, "kappa": np.nan_to_num(kappa)}
+    inputs = {name: known[name] if name in known else getattr(points, name) for name in INPUTS}
+    return inputs | {name: getattr(points, name) for name in MEASURED_ONLY}
+
+
+def _noise(points: Points, channel: str, sigma: Any) -> np.ndarray:
+    """Uncertainty (n,) in whose units the misfit is stated: the stated one, else the one that the fit weighs with."""
+    stated = getattr(points, f"u_{channel}")
+    if np.any(stated > 0.0):
+        return stated
+    return np.asarray(sigma.get(channel, stated))
+
+
+def _facet(name: str, word: str, of: np.ndarray, words: Sequence[str]) -> dict[str, Any]:
+    return {"name": name, "word": word, "of": of.tolist(), "labels": list(words)}
+
+
+def _ranks(values: np.ndarray) -> np.ndarray:
+    return np.unique(values, return_inverse=True)[1]
+
+
+def _said(quantity: QuantityName, x: float) -> str:
+    shown = x / in_si(quantity.unit)
+    digits = 3 if abs(shown) < 1000 else 4
+    return f"{float(f'{shown:.{digits}g}') + 0.0:g} {quantity.unit_behind}".strip()
+
+
+def _path(phi_t: float) -> str:
+    if not phi_t:
+        return "straight"
+    return f"R {abs(1.0 / phi_t):.3g} m {'left' if phi_t < 0.0 else 'right'}"

@@ -1,0 +1,143 @@
+// A local window: every click is saved in tyre.toml, and Refit runs the real fit.
+let live = content.window, shownFit = content.project ? live.fits : -1, fetching = false, ended = false, waiting = Promise.resolve();
+
+const say = (sentence, bad = false) => {
+  byId("status").textContent = sentence;
+  byId("status").classList.toggle("bad", bad);
+};
+async function post(address, body = {}) {
+  let answer;
+  try {
+    answer = await fetch(address, {method: "POST", headers: {"Content-Type": "application/json"}, body: JSON.stringify(body)});
+  } catch {
+    return lost();
+  }
+  if (answer.status === 403) return lost();
+  const found = await answer.json();
+  if (found.state) setLive(found.state);
+  if (found.error) say(found.error, true);
+  return !found.error;
+}
+function lost() {
+  ended = true;
+  showStatus();
+  return false;
+}
+// One change after the other: each is meant for the file as the one before left it.
+function edit(name, given) {
+  waiting = waiting.then(async () => {
+    const done = await post("edit", {do: name, seen: live.digest, with: given});
+    if (done) moves.push({edit: true});
+    if (project) frame();
+    return done;
+  });
+  return waiting;
+}
+canUndo = () => live.can_undo;
+undoEdit = () => { waiting = waiting.then(() => live.can_undo ? post("undo") : false); };
+entryOf = name => live.hand[name] ?? null;
+
+extendRow = (row, keys) => {
+  const held = entry => typeof entry === "number" || entry === "base";
+  const now = () => row.name in trial ? trial[row.name] : row.value;
+  const hold = key("hold", "write this value into tyre.toml: the fit takes it as exact", () => edit("hold", {name: row.name, value: Number(now().toPrecision(9))}));
+  const start = key("start", "write this value into tyre.toml as the one from which the fit starts", () => edit("start", {name: row.name, value: Number(now().toPrecision(9))}));
+  const free = key("free", "remove the entry of this coefficient from tyre.toml", () => edit("free", {name: row.name}));
+  keys.prepend(hold, start, free);
+  keys.refresh = () => {
+    const entry = entryOf(row.name);
+    free.hidden = entry === null;
+    start.hidden = !["fitted", "regularised"].includes(row.status) || held(entry);
+  };
+  keys.refresh();
+};
+leaveOut = () => {
+  const members = chosen.filter(i => !left[i]), dialog = byId("ask");
+  if (!members.length) return;
+  byId("ask-about").textContent = members.length === 1 ? `${placeOf(members[0])} gets no weight in the fit.` : `${members.length} points get no weight in the fit.`;
+  dialog.returnValue = "";
+  dialog.onclose = () => {
+    const why = byId("ask-why").value.trim();
+    if (dialog.returnValue === "yes" && why) edit("leave_out", {readings: readings(members), why});
+  };
+  dialog.showModal();
+  byId("ask-why").select();
+};
+const readings = members => members.map(i => {
+  const points = project.points;
+  return {file: points.files[points.file[i]], first: points.line[i], last: points.last[i]};
+});
+chosenActions = () => {
+  const actions = [];
+  if (chosen.some(i => !left[i])) actions.push(key("Leave out", "asks why, and writes it into tyre.toml (Delete)", leaveOut));
+  if (chosen.some(i => left[i])) actions.push(key("Take back", "removes it from [fit] exclude of tyre.toml", () => edit("take_back", {readings: readings(chosen.filter(i => left[i]))})));
+  return actions;
+};
+
+function setLive(state) {
+  live = state;
+  ended = false;
+  if (live.fits !== shownFit && live.fits > 0) return bring();
+  if (project) {
+    project.hand = live.hand;
+    project.exclude = live.exclude;
+    markLeftOut(live.exclude);
+    rows.forEach(showRow);
+    for (const name in cells) cells[name].keys.refresh();
+    showChosen();
+    update();
+  }
+  showStatus();
+}
+async function bring() {
+  if (fetching) return;
+  fetching = true;
+  const answer = await fetch("project").catch(() => null), wantedFit = live.fits;
+  fetching = false;
+  if (!answer || !answer.ok) return lost();
+  const data = await answer.json();
+  if (project && (data.turn_slip !== project.turn_slip || data.star !== project.star)) return location.reload();
+  if (shownFit >= 0) {  // a new fit: what the sliders tried is over
+    trial = {};
+    moves = moves.filter(one => !one.trial);
+    remember();
+  }
+  shownFit = wantedFit;
+  showProject(data);
+  setLive(live);
+}
+const WORDS = {fit: "Refit", build: "Build", diagnose: "Diagnosis", plan: "Plan", compare: "Comparison"};
+function showStatus() {
+  byId("refit").disabled = ended || !!live.run;
+  byId("refit").classList.toggle("main", !live.is_fitted && !live.run);
+  byId("stop").hidden = !live.run;
+  byId("undo").disabled = !moves.length && !live.can_undo;
+  showLinks();
+  if (ended) return say("The server of this window has ended. Everything that you clicked is in tyre.toml; run `mffit open` again.", true);
+  if (live.problem) return say(live.problem, true);
+  if (live.run) return say(`${live.fits || live.run.kind !== "fit" ? WORDS[live.run.kind] : "First fit"}: ${live.run.sentence}`);
+  if (live.last && live.last.sentence) return say(`${live.last.state}: ${live.last.sentence}`, true);
+  if (live.last && live.last.state === "stopped") return say("Stopped; nothing was written.");
+  say(live.is_fitted ? "The curves are those of mffit build for this tyre.toml." : "tyre.toml differs from the fit that is shown: Refit.");
+}
+function showLinks() {
+  const parts = [];
+  for (const page of live.pages) {
+    if (page.href) {
+      const link = Object.assign(document.createElement("a"), {href: page.href, target: "_blank", textContent: page.title});
+      if (page.old) link.append(" (older than tyre.toml)");
+      parts.push(link);
+    }
+    const make = key(page.href ? "again" : `Make: ${page.title.toLowerCase()}`, `as mffit ${page.run} on the command line, into out/`, () => post(`run/${page.run}`));
+    make.disabled = ended || !!live.run;
+    parts.push(make, " ");
+  }
+  byId("links").replaceChildren(...parts);
+}
+
+byId("refit").addEventListener("click", () => post("run/fit"));
+byId("stop").addEventListener("click", () => post("stop"));
+const events = new EventSource("events");
+events.onmessage = message => setLive(JSON.parse(message.data));
+events.onerror = () => { ended = true; showStatus(); };
+showStatus();

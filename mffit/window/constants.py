@@ -1,0 +1,13 @@
+"""Numbers of judgement of the local window."""
+
+from __future__ import annotations
+
+from tir.constant import Count, Real
+
+TOKEN_BYTES = Count(24, "-", "Random bytes in the address: nobody guesses 192 bits.")
+LOOK_AGAIN = Real(0.2, "s", "Time between looks at tyre.toml and at the progress: faster than one notices.")
+TIME_TO_STOP = Real(
+    3.0, "s", "Time in which a stopped run may remove its temporary files before it is killed."
+)
+MOST_UNDONE = Count(200, "-", "Most saved changes that can be undone: a long session.")
+LARGEST_REQUEST = Count(1_000_000, "-", "Largest request in bytes: a thousand points left out at once.")

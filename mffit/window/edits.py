@@ -1,0 +1,161 @@
+"""Changes to the text of ``tyre.toml`` that keep its comments and its formatting; no file is touched here."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from typing import Any
+
+import tomlkit
+from tomlkit.items import AoT
+
+from mffit.config.lines import LineRange, line_ranges, ranges_text
+from mffit.errors import InputError
+
+LONE_NEWLINE = re.compile(r"(?<!\r)\n")
+
+
+def hold(text: str, *, name: str, value: float) -> str:
+    """The text with the coefficient held at a value."""
+    return _edited(text, lambda document: _table(document, "coefficients").update({name: value}))
+
+
+def start(text: str, *, name: str, value: float) -> str:
+    """The text with the search of the coefficient starting at a value; its bounds and its prior stay."""
+
+    def change(document: Any) -> None:
+        table = _table(document, "coefficients")
+        own = table.get(name)
+        if isinstance(own, Mapping):
+            own["start"] = value  # type: ignore[index]
+        else:
+            entry = tomlkit.inline_table()
+            entry["start"] = value
+            table[name] = entry
+
+    return _edited(text, change)
+
+
+def free(text: str, *, name: str) -> str:
+    """The text without the entry of the coefficient; unchanged if there is none."""
+
+    def change(document: Any) -> None:
+        if name in document.get("coefficients", {}):
+            del document["coefficients"][name]
+
+    return _edited(text, change)
+
+
+def leave_out(text: str, *, readings: Sequence[Mapping[str, Any]], why: str) -> str:
+    """The text with readings added to ``[fit] exclude``.
+
+    Parameters
+    ----------
+    text : of the file
+    readings : each with ``file`` as in [[sweep]], ``first`` and ``last`` line
+    why : the reason; an entry of the same file and reason is extended
+    """
+
+    def change(document: Any) -> None:
+        entries = _exclude(document)
+        for file, ranges in _by_file(readings).items():
+            kept = _without(ranges, _all_ranges(entries, file))
+            if not kept:
+                continue
+            own = next((e for e in entries if e["file"] == file and e.get("why") == why), None)
+            if own is not None:
+                own["lines"] = _lines([*_ranges(own), *kept])
+                continue
+            entry = tomlkit.table() if isinstance(entries, AoT) else tomlkit.inline_table()
+            entry.update({"file": file, "lines": _lines(kept), "why": why})
+            entries.append(entry)
+
+    return _edited(text, change)
+
+
+def take_back(text: str, *, readings: Sequence[Mapping[str, Any]]) -> str:
+    """The text with readings removed from ``[fit] exclude``; an entry without lines goes."""
+
+    def change(document: Any) -> None:
+        entries = _exclude(document)
+        for file, ranges in _by_file(readings).items():
+            for k in reversed(range(len(entries))):
+                if entries[k]["file"] != file:
+                    continue
+                kept = _without(_ranges(entries[k]), ranges)
+                if not kept:
+                    del entries[k]
+                elif kept != list(_ranges(entries[k])):
+                    entries[k]["lines"] = _lines(kept)
+
+    return _edited(text, change)
+
+
+EDITS: Mapping[str, Callable[..., str]] = {
+    edit.__name__: edit for edit in (hold, start, free, leave_out, take_back)
+}
+"""The changes by name."""
+
+
+def _edited(text: str, change: Callable[[Any], object]) -> str:
+    """The text after a change to its document; line ends stay those of the file."""
+    if text and not text.endswith("\n"):
+        text += "\r\n" if "\r\n" in text else "\n"
+    document = tomlkit.parse(text)
+    change(document)
+    found = tomlkit.dumps(document)
+    return LONE_NEWLINE.sub("\r\n", found) if "\r\n" in text and not LONE_NEWLINE.search(text) else found
+
+
+def _table(document: Any, name: str) -> Any:
+    """The table of a document, added at its end if it has none."""
+    if name not in document:
+        document.add(tomlkit.nl())
+        document.add(name, tomlkit.table())
+    return document[name]
+
+
+def _exclude(document: Any) -> Any:
+    """The list ``[fit] exclude``, added if there is none; one entry on each line."""
+    table = _table(document, "fit")
+    if "exclude" not in table:
+        table.add("exclude", tomlkit.array().multiline(True))
+    return table["exclude"]
+
+
+def _by_file(readings: Iterable[Mapping[str, Any]]) -> dict[str, list[LineRange]]:
+    found: dict[str, list[LineRange]] = {}
+    for reading in readings:
+        try:
+            file, first, last = str(reading["file"]), int(reading["first"]), int(reading["last"])
+        except (KeyError, TypeError, ValueError):
+            raise InputError("a reading needs file, first and last line") from None
+        found.setdefault(file, []).append((first, last))
+    return {file: list(line_ranges(_lines(ranges))) for file, ranges in found.items()}
+
+
+def _ranges(entry: Mapping[str, Any]) -> tuple[LineRange, ...]:
+    return line_ranges(str(entry["lines"]))
+
+
+def _all_ranges(entries: Iterable[Mapping[str, Any]], file: str) -> list[LineRange]:
+    return [part for entry in entries if entry["file"] == file for part in _ranges(entry)]
+
+
+def _lines(ranges: Sequence[LineRange]) -> str:
+    """The list of lines as text; ranges that touch are joined."""
+    return ranges_text(line_ranges(ranges_text(ranges)))
+
+
+def _without(ranges: Iterable[LineRange], taken: Iterable[LineRange]) -> list[LineRange]:
+    """The ranges without the lines of others."""
+    kept = list(ranges)
+    for first, last in taken:
+        kept = [
+            part
+            for a, b in kept
+            for part in ((a, min(b, first - 1)), (max(a, last + 1), b))
+            if part[0] <= part[1]
+        ]
+        kept = list(dict.fromkeys(kept))
+    return kept

@@ -1,0 +1,147 @@
+"""The runs that a window starts, each in a process of its own, so that it can be stopped."""
+
+from __future__ import annotations
+
+import contextlib
+import multiprocessing
+import os
+import signal
+import threading
+from collections.abc import Callable, Mapping
+from multiprocessing.connection import Connection
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from mffit.errors import InputError
+from mffit.progress import Progress
+from mffit.window import constants
+from tir.errors import TirError
+
+
+class Outcome(NamedTuple):
+    """How a run ended."""
+
+    state: str  #: done, refused, failed or stopped
+    sentence: str = ""
+    data: dict[str, Any] | None = None  #: of the page, if the run was a fit
+
+
+def out_of(path: Path) -> Path:
+    """The folder of the results, as on the command line."""
+    return path.parent / "out"
+
+
+def fit(path: Path, progress: Progress) -> dict[str, Any]:
+    """What the page shows of a build that writes nothing."""
+    from mffit import pipeline, viewer
+
+    return viewer.project_data(pipeline.build(path, progress=progress))
+
+
+def build(path: Path, progress: Progress) -> dict[str, Any]:
+    """As ``mffit build``, and what the page shows of it."""
+    from mffit import pipeline, viewer
+
+    return viewer.project_data(pipeline.build(path, out_of(path), progress=progress))
+
+
+def diagnose(path: Path, progress: Progress) -> None:
+    """As ``mffit diagnose``."""
+    from mffit import pipeline
+
+    pipeline.diagnose(path, out=out_of(path) / "diagnosis", progress=progress)
+
+
+def plan(path: Path, progress: Progress) -> None:
+    """As ``mffit plan``."""
+    from mffit import pipeline
+
+    pipeline.plan(path, out=out_of(path) / "plan", progress=progress)
+
+
+def compare(path: Path, progress: Progress) -> None:
+    """As ``mffit compare`` of the base file and the last build."""
+    from mffit import config, pipeline
+
+    base = config.load(path).tyre.base
+    if base is None:
+        raise InputError("names no base file to compare with; add base under [tyre]", file=path)
+    pipeline.compare(path.parent / base, out_of(path), out=out_of(path) / "comparison", progress=progress)
+
+
+RUNS: Mapping[str, Callable[[Path, Progress], dict[str, Any] | None]] = {
+    run.__name__: run for run in (fit, build, diagnose, plan, compare)
+}
+"""What can be run, by name."""
+PAGES = {
+    "build": ("Report", "report.html"),
+    "diagnose": ("Diagnosis", "diagnosis/diagnosis.html"),
+    "plan": ("Plan", "plan/plan.html"),
+    "compare": ("Comparison with the base file", "comparison/compare.html"),
+}
+"""By run, the title of the page that it writes and its place in the folder of the results."""
+
+
+class Run:
+    """A run in its process; ``outcome`` is None until it ends."""
+
+    def __init__(self, kind: str, path: Path, digest: str) -> None:
+        self.kind, self.digest = kind, digest
+        self.sentence = "starting"
+        self.outcome: Outcome | None = None
+        self._stopped = False
+        context = multiprocessing.get_context("spawn")  # a forked copy of a process with threads may hang
+        receiver, sender = context.Pipe(duplex=False)
+        self._process = context.Process(target=_work, args=(kind, path, sender), daemon=True)
+        self._process.start()
+        sender.close()
+        threading.Thread(target=self._listen, args=(receiver,), daemon=True).start()
+
+    def stop(self) -> None:
+        """End the run; its temporary files go."""
+        self._stopped = True
+        if os.name == "nt" or self._process.pid is None:
+            self._process.terminate()
+        else:
+            with contextlib.suppress(ProcessLookupError):
+                os.kill(self._process.pid, signal.SIGINT)
+        self._process.join(constants.TIME_TO_STOP)
+        if self._process.is_alive():
+            self._process.kill()
+
+    def _listen(self, receiver: Connection) -> None:
+        """Take what the process sends until it ends."""
+        outcome = None
+        with contextlib.suppress(EOFError, OSError):
+            while outcome is None:
+                kind, content = receiver.recv()
+                if kind == "progress":
+                    self.sentence = content
+                else:
+                    outcome = content
+        receiver.close()
+        self._process.join()
+        if outcome is None:
+            outcome = Outcome(
+                "failed", "the process of this run ended early, perhaps for lack of memory; run it again"
+            )
+        self.outcome = Outcome("stopped") if self._stopped and outcome.state != "done" else outcome
+
+
+def _work(kind: str, path: Path, sender: Connection) -> None:
+    """In the process: run, and send progress and outcome."""
+    try:
+        try:
+            data = RUNS[kind](path, lambda sentence: sender.send(("progress", sentence)))
+            outcome = Outcome("done", data=data)
+        except (InputError, TirError) as error:
+            outcome = Outcome("refused", str(error))
+        except KeyboardInterrupt:
+            outcome = Outcome("stopped")
+        except Exception as error:  # the window must say it, whatever it is
+            outcome = Outcome("failed", f"{type(error).__name__}: {error}; this is a bug in mffit")
+            sender.send(("outcome", outcome))
+            raise
+        sender.send(("outcome", outcome))
+    except (KeyboardInterrupt, BrokenPipeError):
+        return  # the window has ended
