@@ -86,6 +86,7 @@ def answer(
         given=given.start,
         state=done.refined.state,
         signs=axis_signs(config),
+        lab=config.lab,
         tyre=tyre if repair.keeps_file else corrected,
         with_terms=corrected if repair.keeps_file else None,
         notes=tuple(notes),
