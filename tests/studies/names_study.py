@@ -1,7 +1,7 @@
 """What is named, how surely, and is the model better afterwards? ``python tests/studies/names_study.py outside --count 5``.
 
 ``outside``: causes that the library lacks; ``library``: single causes that it has, three to ten times their detection limit;
-``faint``: the same at one to three times. A line per set, then a table. All readings come from ``own_rig``.
+``faint``: the same at one to three times; ``mixed``: one cause of either kind. A line per set, then a table. All readings come from ``own_rig``.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 
 import numpy as np
-from own_rig import LIBRARY, OUTSIDE, U_FY, U_MZ, Run, Set, library_set, outside_set, write
+from own_rig import LIBRARY, OUTSIDE, U_FY, U_MZ, Run, Set, library_set, mixed_set, outside_set, write
 
 from mffit import pipeline
 from mffit.diagnosis import Diagnosis
@@ -154,6 +154,11 @@ def sets(kind: str, count: int, seed: int) -> Iterator[Set]:
             for cause in LIBRARY:
                 if cause != "camber-misalignment":
                     yield library_set(cause, seed + k)
+    elif kind == "mixed":
+        single = [cause for cause, number in LIBRARY.items() if not number.endswith("@")]
+        for k in range(count):
+            for j, cause in enumerate(single):
+                yield mixed_set(cause, list(OUTSIDE)[(j + 3 * k) % len(OUTSIDE)], seed + k)
     else:
         for k in range(count):
             for cause in LIBRARY:
@@ -181,7 +186,7 @@ def _row(word: str, own: list[Score]) -> str:
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("kind", choices=("outside", "library", "faint"))
+    parser.add_argument("kind", choices=("outside", "library", "faint", "mixed"))
     parser.add_argument("--count", type=int, default=5, help="sets of every cause")
     parser.add_argument("--seed", type=int, default=100)
     parser.add_argument("--only", default="", help="only sets whose name contains this")

@@ -350,6 +350,25 @@ def outside_set(cause: str, seed: int) -> Set:
     )  # fmt: skip
 
 
+def mixed_set(cause: str, other: str, seed: int) -> Set:
+    """A set with an effect of the library and a cause outside it, chi2 of each gap between 150 and 15000."""
+    rng = np.random.default_rng((seed, *cause.encode(), *other.encode()))
+    unknown = outside_set(other, int(rng.integers(1 << 31)))
+    run, tyre = unknown.run, unknown.given
+    number = {LIBRARY[cause]: float(rng.choice((-1.0, 1.0))) * UNIT.get(LIBRARY[cause], 0.01)}
+    u, clean = np.repeat((U_FY, U_MZ), len(run)), np.concatenate(readings(tyre, run, {}))
+    goal, size = float(np.sqrt(np.exp(rng.uniform(np.log(150.0), np.log(15000.0))))), 1.0
+    for _ in range(8):
+        gap = np.concatenate(readings(tyre, run, {n: size * v for n, v in number.items()})) - clean
+        size *= goal / float(np.sqrt(np.sum((gap / u) ** 2)))
+    numbers = {n: size * v for n, v in number.items()}
+    Fy, Mz = readings(tyre, run, numbers, unknown.outside)
+    return replace(
+        unknown, name=f"{cause} + {other}-{seed}", cause=cause, numbers=numbers, part=(cause, *unknown.part),
+        times_limit=goal**2 / unknown.times_limit, Fy=Fy + rng.normal(0, U_FY, len(run)), Mz=Mz + rng.normal(0, U_MZ, len(run)),
+    )  # fmt: skip
+
+
 HEAD = ("alpha_deg", "gamma_deg", "Fz_N", "p_kPa", "V_mps", "direction", "t_s", "T_degC", "Fy_N", "Mz_Nm", "u_Fy_N", "u_Mz_Nm")
 
 
