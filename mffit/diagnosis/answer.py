@@ -87,6 +87,7 @@ def answer(
         given=given.start,
         state=done.refined.state,
         signs=axis_signs(config),
+        lab=config.lab,
         tyre=tyre if repair.keeps_file else corrected,
         with_terms=corrected if repair.keeps_file else None,
         notes=tuple(notes),
@@ -167,11 +168,11 @@ def _judged(found: Explanation, effect: Effect, step: ForwardStep) -> tuple[Sequ
     """Explanations with another effect in the place of one that are as good, and the confidence in this one."""
     if effect.id in found.predicted:  # beside structure that may be anything, evidence decides little
         tied = found.predicted[effect.id].tied
-        return tied, found.certainty(effect) / (1.0 + len(tied))
+        return tied, found.confidence(effect) / (1.0 + len(tied))
     rivals = _rivals(found.problem, found.chosen, effect, step)
     weights = [math.exp(min(rival.log_evidence - found.chosen.log_evidence, 50.0)) for rival in rivals]
     tied = tuple(rival for rival in rivals if _tied(found.chosen, rival))
-    return tied, tempered(found.certainty(effect) * (1.0 / (1.0 + sum(weights))))
+    return tied, tempered(found.confidence(effect) * (1.0 / (1.0 + sum(weights))))
 
 
 def _tied(chosen: Hypothesis, rival: Hypothesis) -> bool:

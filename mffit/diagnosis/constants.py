@@ -221,6 +221,9 @@ UNCHANGED_SHARE_OF_U = Real(
 MOST_VALIDATION_FOLDS = Count(8, "-", "Most groups of sweeps that are left out in turn.")
 VALIDATION_FOLDS_OF_MANY_POINTS = Count(4, "-", "Groups that are left out in turn if there are many points.")
 MANY_POINTS_TO_VALIDATE = Count(1000, "-", "Points from which these fewer groups suffice.")
+PARTS_OF_A_RUN = Count(
+    4, "-", "Parts of every run that are left out in turn, where numbers of single runs are checked."
+)
 RAISED_GAP = Real(2.0, "-", "Standard deviations beyond chance above which a channel counts as worse.")
 
 # What a fit leaves

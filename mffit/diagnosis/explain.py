@@ -7,6 +7,7 @@ from dataclasses import replace
 
 from mffit.diagnosis import constants
 from mffit.diagnosis.explanation import Explanation
+from mffit.diagnosis.imitation import imitations
 from mffit.diagnosis.inexact import Inexactness
 from mffit.diagnosis.learning import beyond_memory, learned_noise, settled
 from mffit.diagnosis.noise import Noise
@@ -62,6 +63,8 @@ def explain(
         if last is not None and found.chosen.ids == last.chosen.ids:
             break
     assert found is not None
+    if found.chosen.effects and (found.bump.found or found.smooth.found):
+        found = replace(found, imitated=imitations(found.problem, candidates))
     return (
         _predicting(found, beyond_memory(noise, candidates), inexact)
         if seen and found.smooth.found

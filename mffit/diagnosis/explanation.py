@@ -11,6 +11,7 @@ import numpy as np
 from mffit.diagnosis import constants
 from mffit.diagnosis.bumps import Bump, BumpScan
 from mffit.diagnosis.hypothesis import Hypothesis
+from mffit.diagnosis.imitation import as_likely_imitated
 from mffit.diagnosis.inexact import Inexactness
 from mffit.diagnosis.noise import Noise
 from mffit.diagnosis.prediction import Judged
@@ -38,6 +39,8 @@ class Explanation:
     """Gain of each effect alone, without smooth structure beside it."""
     predicted: Mapping[str, Judged] = field(default_factory=dict)
     """Support of each effect by left-out sweeps, if the effects were chosen by prediction."""
+    imitated: np.ndarray = field(default_factory=lambda: np.zeros(0))
+    """Share of a cause outside the library that an effect of it explains: of each effect, with itself taken out."""
 
     @property
     def scatter(self) -> Noise:
@@ -81,17 +84,35 @@ class Explanation:
         """
         if effect.id in self.predicted:
             return self.predicted[effect.id].confidence
+        against, share = self._weighed(effect)
+        return (share if counted else 1.0) / (1.0 + math.exp(-against))
+
+    def confidence(self, effect: Effect) -> float:
+        """The certainty, less the probability that the effect imitates a cause outside the library.
+
+        There is such a cause if structure without a name was found. An effect that leaves much of the misfit to it is as
+        likely an imitation as the library's own effects are imitated by others, if they are taken out.
+        """
+        if effect.id in self.predicted:
+            return self.predicted[effect.id].confidence
+        against, share = self._weighed(effect)
+        outside = self.bump.found or self.smooth.found
+        imitates = as_likely_imitated(share, self.imitated) if outside else 1.0 - share
+        return (1.0 - imitates) / (1.0 + math.exp(-against))
+
+    def _weighed(self, effect: Effect) -> tuple[float, float]:
+        """Log odds of an effect against structure in its place, and the share of the misfit that is not left unexplained."""
         chosen = self.chosen
         without = refitted(self.problem, chosen, chosen.others(effect))
         gain, left = chosen.log_evidence - without.log_evidence, self.left(chosen)
         against = gain + left - self.left(without) - math.log(max(len(self.steps[0].trials), 1))
-        open_ = left + (self.smooth.gain if self.smooth.found else 0.0) if counted else 0.0
         if effect.id in self.problem.noise.offsets:  # a memory of the errors is another rival
             offsets = self.problem.noise.offsets[effect.id]
             against = min(against, offsets.gain - constants.RUN_OFFSET_GAIN)
+        open_ = left + (self.smooth.gain if self.smooth.found else 0.0)
         explains = max(gain, self.unaided.get(effect.id, 0.0), 0.0)
         share = explains / (explains + open_) if open_ else 1.0
-        return float(share / (1.0 + math.exp(-float(np.clip(against, -500.0, 500.0)))))
+        return float(np.clip(against, -500.0, 500.0)), share
 
     def left(self, hypothesis: Hypothesis) -> float:
         """Log evidence of the best structure without a name beside a hypothesis; 0 without any."""

@@ -19,8 +19,13 @@ SWITCH = "turn_slip"
 
 
 def moving(effects: Sequence[Effect]) -> list[Free]:
-    """The numbers that effects free; a switch is none."""
-    return [free for effect in effects for free in effect.free if free.name != SWITCH]
+    """The numbers that effects free, each once with the prior of the first effect that frees it; a switch is none."""
+    found: dict[str, Free] = {}
+    for effect in effects:
+        for free in effect.free:
+            if free.name != SWITCH:
+                found.setdefault(free.name, free)
+    return list(found.values())
 
 
 def switched(effects: Sequence[Effect]) -> dict[str, float]:

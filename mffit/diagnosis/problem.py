@@ -125,11 +125,10 @@ class DiagnosisProblem:
         slopes = np.empty((len(self.measured), 0))
         if names:
             slopes = np.nan_to_num(state.sensitivities(self.points, names)[1].stacked)
-        here, first, out = np.nan_to_num(state.predict(self.points)), 0, {}
+        here, out = np.nan_to_num(state.predict(self.points)), {}
         for effect in effects:
             frees = moving((effect,))
-            own = slopes[:, first : first + len(frees)]
-            first += len(frees)
+            own = slopes[:, [names.index(free.name) for free in frees]]
             if effect.switches:
                 out[effect] = [self._moved(state, switched((effect,)), here)[:, None]]
                 continue

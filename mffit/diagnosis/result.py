@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from mffit.brief import Brief
+from mffit.config.laboratory import LabTable
 from mffit.diagnosis.bumps import Bump
 from mffit.diagnosis.limits import Limit
 from mffit.diagnosis.noise import Noise
@@ -20,6 +21,7 @@ from mffit.diagnosis.where import Region
 from mffit.effects import Effect
 from mffit.made import Made
 from mffit.points import Points
+from mffit.points.left_out import LeftOut
 from mffit.rig import Simulation
 from mffit.rig_errors import Faults
 from mffit.suspicion import SOUND, Outlier, Trust
@@ -87,6 +89,8 @@ class Diagnosis(Brief):
     with_terms: Tyre | None = None
     """The corrected property file if it is right only with the terms of rig and environment; ``tyre`` is the given one then."""
     made: Made | None = None  #: set by the command
+    lab: LabTable = field(default_factory=LabTable)
+    left_out: tuple[LeftOut, ...] = ()  #: by hand and by rules; set by the command
     trust: Trust = SOUND  #: the judgement of the corrected model
 
     @property

@@ -43,6 +43,8 @@ class Validation:
     """Channels whose gap grows by more than numbers fitted to mere noise would raise it by chance."""
     raised_by_file: tuple[str, ...] = ()
     """The same channels for the property file alone."""
+    within_runs: bool = False
+    """Whether parts of every run were left out instead of whole sweeps, because numbers of single runs were to be checked."""
 
     @property
     def helps(self) -> bool:
@@ -56,7 +58,9 @@ class Validation:
 
     def without_repair(self) -> Validation:
         """The check of the model as given."""
-        return Validation(self.folds, self.gap_before, self.gap_before, self.gap_before)
+        return Validation(
+            self.folds, self.gap_before, self.gap_before, self.gap_before, within_runs=self.within_runs
+        )
 
 
 def gap(residual: np.ndarray, noise: Noise) -> Gap:
@@ -71,6 +75,7 @@ def validate(
 ) -> Validation:
     """Refit the hypothesis without each group of sweeps and predict that group.
 
+    Numbers of single runs say nothing about other runs: with such an effect, successive parts of every run are left out in turn.
     ``problem`` has the scatter of the readings alone, or whatever else the fits shall allow for. If the model was fitted to
     these points (``seen``), it is refitted without the group for the gap before too, which it would otherwise predict from
     itself.
@@ -79,9 +84,10 @@ def validate(
     measured = np.concatenate([points.Fy, points.Mz])
     before = measured - problem.start.predict(points)
     after, alone = before.copy(), before.copy()
-    folds = _folds(points.sweep)
-    for fold in folds:
-        out = np.isin(points.sweep, fold)
+    within_runs = any(effect.differs_by_run for effect in hypothesis.effects)
+    group = _part_of_run(points.file) if within_runs else _group_of_sweeps(points.sweep)
+    for fold in range(int(group.max()) + 1):
+        out = group == fold
         if not (hypothesis.effects or inexact) or out.all():
             continue
         rest, chosen, both = problem.part(~out), points.select(out), np.concatenate([out, out])
@@ -95,12 +101,13 @@ def validate(
             before[both] = measured[both] - rest.refine(rest.null, inexact)[0].state.predict(chosen)
     noise, numbers = problem.noise, sum(len(e.free) for e in hypothesis.effects) + len(inexact.names)
     return Validation(
-        folds=len(folds),
+        folds=int(group.max()) + 1,
         gap_before=gap(before, noise),
         gap_after=gap(after, noise),
         gap_file=gap(alone, noise),
         raised=_raised(before, after, noise, numbers),
         raised_by_file=_raised(before, alone, noise, numbers),
+        within_runs=within_runs,
     )
 
 
@@ -110,13 +117,21 @@ def file_alone(state: Simulation, given: Simulation) -> Simulation:
     return replace(state, faults=given.faults.replace(**tyre), of_parts=given.of_parts)
 
 
-def _folds(sweep: np.ndarray) -> list[np.ndarray]:
-    """Groups of the sweeps of points (n,)."""
-    sweeps, many = np.unique(sweep), len(sweep) >= constants.MANY_POINTS_TO_VALIDATE
-    count = min(
-        constants.VALIDATION_FOLDS_OF_MANY_POINTS if many else constants.MOST_VALIDATION_FOLDS, len(sweeps)
-    )
-    return [sweeps[k::count] for k in range(count)]
+def _group_of_sweeps(sweep: np.ndarray) -> np.ndarray:
+    """Number (n,) of the group of whole sweeps that each point belongs to."""
+    sweeps, index = np.unique(sweep, return_inverse=True)
+    many = len(sweep) >= constants.MANY_POINTS_TO_VALIDATE
+    most = constants.VALIDATION_FOLDS_OF_MANY_POINTS if many else constants.MOST_VALIDATION_FOLDS
+    return index % min(most, len(sweeps))
+
+
+def _part_of_run(file: np.ndarray) -> np.ndarray:
+    """Number (n,) of the part of its run that each point belongs to; successive points are in one part."""
+    out = np.zeros(len(file), dtype=int)
+    for k in np.unique(file):
+        rows = np.flatnonzero(file == k)
+        out[rows] = np.arange(len(rows)) * constants.PARTS_OF_A_RUN // len(rows)
+    return out
 
 
 def _raised(before: np.ndarray, after: np.ndarray, noise: Noise, numbers: int) -> tuple[str, ...]:

@@ -290,6 +290,8 @@ def separation(found: Separation | None) -> str:
 
 def method(validation: Validation) -> str:
     """The way in which sweeps were left out."""
+    if validation.within_runs:
+        return f"{validation.folds} parts of every run left out in turn"
     return f"{validation.folds} groups of whole sweeps left out in turn"
 
 

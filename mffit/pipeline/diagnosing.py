@@ -24,6 +24,7 @@ from mffit.pipeline.building import build
 from mffit.pipeline.correcting import CORRECTED_POINTS, CORRECTED_TOML, write_corrected
 from mffit.pipeline.inputs import input_hashes, inputs_of, read_base, read_points
 from mffit.pipeline.judging import judged_diagnosis
+from mffit.pipeline.left_out import left_out_by_diagnosis
 from mffit.pipeline.measuring import epsilon_gamma, without_play
 from mffit.pipeline.provenance import fitted_to, known_of_model, marked, rig_of_build, use_of
 from mffit.points import Points
@@ -62,7 +63,8 @@ def diagnose(
     """
     config = configuration.load(config)
     progress("reading sweeps")
-    points = read_points(config, continuous=True).points
+    reading = read_points(config, continuous=True)
+    points = reading.points
     base = read_base(config)
     inputs = [*inputs_of(config), last_build(config)]
     if isinstance(model, str | Path):
@@ -100,7 +102,13 @@ def diagnose(
     if file is not None:
         hashes[str(file)] = digest(file)
     notes = (*choice, *diagnosis.notes, *_redone(config, points, diagnosis, base))
-    diagnosis = replace(diagnosis, notes=notes, made=made(hashes), trust=judged_diagnosis(diagnosis))
+    diagnosis = replace(
+        diagnosis,
+        notes=notes,
+        made=made(hashes),
+        left_out=(*reading.left_out, *left_out_by_diagnosis(points, diagnosis)),
+        trust=judged_diagnosis(diagnosis),
+    )
     diagnosis = replace(
         diagnosis,
         headline=wording.headline(diagnosis),

@@ -2,17 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 
 import numpy as np
 
 from mffit.config.lines import line_text
+from mffit.diagnosis import Diagnosis
 from mffit.fit import FitResult
 from mffit.fit.constants import FULL_WEIGHT
 from mffit.fit.weights import stated_or_nominal
 from mffit.points import Points
 from mffit.points.left_out import LeftOut
 from mffit.quantities import CHANNELS
+from mffit.suspicion import Misread, Outlier
+from mffit.suspicion.misread import misread_sweep
 from mffit.suspicion.others import doubtful_sweep
 from mffit.suspicion.outliers import OUTLYING
 
@@ -22,11 +25,29 @@ HUBER = "huber-weight"
 
 def left_out_by_fit(points: Points, fitted: FitResult) -> tuple[LeftOut, ...]:
     """Outliers, readings with less weight, and doubtful sweeps; lines are those of the points."""
-    return (*_outliers(fitted), *_discounted(points, fitted), *_doubts(points, fitted))
+    return (*_outliers(fitted.outliers), *_discounted(points, fitted), *_doubts(points, fitted))
 
 
-def _outliers(fitted: FitResult) -> Iterator[LeftOut]:
-    for o in fitted.outliers:
+def left_out_by_diagnosis(points: Points, found: Diagnosis) -> tuple[LeftOut, ...]:
+    """The sweep that was written down wrongly, and outliers; lines are those of the points."""
+    return (*_misread(points, found), *_outliers(found.outliers))
+
+
+def _misread(points: Points, found: Diagnosis) -> Iterator[LeftOut]:
+    for wrong in (note for note in found.notes if isinstance(note, Misread)):
+        rows = np.flatnonzero(points.sweep == points.sweep_names.index(wrong.sweep))
+        yield LeftOut(
+            file=wrong.file,
+            lines=line_text(points.line[rows]),
+            count=len(rows),
+            by="rule",
+            rule=misread_sweep.id,
+            why=f"looks like {wrong.looks}",
+        )
+
+
+def _outliers(found: Iterable[Outlier]) -> Iterator[LeftOut]:
+    for o in found:
         unit = CHANNELS[o.channel].unit
         yield LeftOut(
             file=o.file,

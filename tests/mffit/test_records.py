@@ -215,12 +215,20 @@ def test_spin_and_diagnosis_state_how_they_were_made(built, tmp_path):
     assert made["method"] == METHOD
     assert len(made["inputs"]["base.tir"]) == 64
     mffit.diagnose(built / "tyre.toml", effects=CATALOG[:1], out=tmp_path / "diagnosis")
-    made = json.loads((tmp_path / "diagnosis" / "diagnosis.json").read_text())["made"]
+    content = json.loads((tmp_path / "diagnosis" / "diagnosis.json").read_text())
+    made = content["made"]
     model = built / "out" / "small.tir"
     assert made["inputs"][str(model)] == hashlib.sha256(model.read_bytes()).hexdigest()
     corrected = config.load(tmp_path / "diagnosis" / "corrected.toml")
     assert corrected.fit.exclude == ()
     assert corrected.lab.order == LAB["order"]
+    assert content["lab"]["operator"] == LAB["operator"]
+    assert {row["why"] for row in content["left_out"] if row["by"] == "hand"} == {WHY}
+    page = (tmp_path / "diagnosis" / "diagnosis.html").read_text(encoding="utf-8")
+    section = page[page.index('id="records"') :]
+    for words in ("T-1234", "Operator 7", "load cell", "K-3", "2021-03-01", LINES, WHY, f"method {METHOD}"):
+        assert words in section
+    assert all(known in section for known in made["inputs"].values())
 
 
 @pytest.mark.parametrize(

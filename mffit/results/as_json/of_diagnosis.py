@@ -8,7 +8,7 @@ from typing import Any
 
 from mffit.diagnosis import AcceptedEffect, Diagnosis, wording
 from mffit.diagnosis.noise import Noise
-from mffit.results.as_json.of_build import made, outlier
+from mffit.results.as_json.of_build import left_out, made, outlier
 from mffit.results.as_json.values import picked
 
 
@@ -41,6 +41,8 @@ def diagnosis(found: Diagnosis) -> dict[str, Any]:
         "model_after": found.model_after,
         "model_with_terms": found.model_with_terms,
         "notes": wording.notes(found),
+        "lab": found.lab.model_dump(mode="json", exclude_none=True),
+        "left_out": [left_out(row) for row in found.left_out],
         **({} if found.made is None else {"made": made(found.made)}),
     }
 

@@ -163,6 +163,7 @@ def test_the_file_keeps_its_keys(camber):
         "trusted", "reasons",
         "headline", "gap_before", "gap_after", "validation", "where", "effects", "alternatives", "limits", "unexplained",
         "unexplained_where", "noise_floor", "outliers", "coefficients", "model_after", "model_with_terms", "notes",
+        "lab", "left_out",
     ]  # fmt: skip
     assert list(content["effects"][0]) == [
         "id", "name", "kind", "physics", "confidence", "repaired", "parameters", "to_do", "gap_after", "tied_with", "separate_by",
