@@ -38,7 +38,7 @@ def explain(
     found: Explanation | None = None
     at, noise = start, stated
     for _ in range(constants.MOST_EXPLANATION_ROUNDS):
-        before, state = noise, start if found is None else found.chosen.state
+        before, state = noise, start if found is None else found.without_run_offsets
         noise = learned_noise(stated, before, points, state, candidates, inexact, basis)
         around_start = bool(inexact) and at is start
         if found is not None and settled(before, noise) and not around_start:

@@ -11,7 +11,7 @@ import numpy as np
 from scipy.linalg import cho_solve, cholesky, solve_triangular
 
 from mffit.diagnosis import constants
-from mffit.diagnosis.noise import links
+from mffit.diagnosis.chains import Chains, Correlation
 
 
 class MarginalParts(NamedTuple):
@@ -22,6 +22,7 @@ class MarginalParts(NamedTuple):
     memory: float
     smooth: float  #: amplitude of smooth structure, relative to the channel
     offsets: float = 0.0  #: size of offsets of runs over the usual one
+    independent: float = 0.0  #: share of the variance without memory
 
 
 @dataclass(frozen=True)
@@ -55,7 +56,7 @@ class MarginalChannel:
 
     def standardised(self, parts: MarginalParts) -> np.ndarray:
         """Every reading (m,) against its prediction from all others, in units of their joint uncertainty at weight 1."""
-        r, A, _ = self._white(parts, np.arange(len(self.stated)), links(self.chain))
+        r, A, _ = self._white(parts, np.arange(len(self.stated)), Chains.of(self.chain))
         root = _factor(A)
         left = r - A @ cho_solve((root, True), A.T @ r, check_finite=False)
         B = solve_triangular(root, A.T, lower=True, check_finite=False)
@@ -67,13 +68,13 @@ class MarginalChannel:
         return left / variance * own / np.sqrt(1.0 + predicted)
 
     @cached_property
-    def _sample(self) -> tuple[np.ndarray, tuple[np.ndarray, np.ndarray]]:
-        """Indices of the readings that the likelihood uses, and their links along sweeps."""
+    def _sample(self) -> tuple[np.ndarray, Chains]:
+        """Indices of the readings that the likelihood uses, and their order along sweeps."""
         rows = _some_sweeps(self.chain)
-        return rows, links(self.chain[rows])
+        return rows, Chains.of(self.chain[rows])
 
     def _white(
-        self, parts: MarginalParts, rows: np.ndarray, linked: tuple[np.ndarray, np.ndarray]
+        self, parts: MarginalParts, rows: np.ndarray, chains: Chains
     ) -> tuple[np.ndarray, np.ndarray, float]:
         """Residual and columns of some readings in units of their scatter, and the log determinant of that division."""
         u = np.hypot(math.exp(parts.log_scale) * self.stated, parts.growth * self.size)
@@ -85,10 +86,10 @@ class MarginalChannel:
         A /= u[:, None]
         log = float(np.sum(np.log(u)))
         if parts.memory:
-            own = math.sqrt(1.0 - parts.memory**2)
-            later, earlier = linked
-            A[later] = (A[later] - parts.memory * A[earlier]) / own
-            log += len(later) * math.log(own)
+            everywhere = np.ones(len(rows), dtype=bool)
+            correlation = Correlation.along(chains, [(everywhere, parts.memory, parts.independent)])
+            A = correlation.whiten(A)
+            log += correlation.log
         return A[:, 0], A[:, 1:], log
 
 

@@ -110,7 +110,7 @@ def offsets_or_memory(
             if effect.id in noise.offsets
             and channel in noise.offsets[effect.id].channels
             and (
-                noise.offsets[effect.id].gain > constants.SCATTER_PART_GAIN
+                noise.offsets[effect.id].log_odds > 0.0
                 or scatter.scale > constants.STATED_NOISE_FACTOR
             )
         )

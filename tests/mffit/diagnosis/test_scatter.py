@@ -73,7 +73,7 @@ def test_errors_that_are_correlated_along_a_sweep(rng):
 @pytest.mark.parametrize("seed", [1, 2, 3])
 def test_a_memory_is_not_taken_for_offsets_of_runs(seed):
     noise = found(correlated(np.random.default_rng(seed), 0.9), offsets=5.0)
-    assert noise.offsets["run-offsets-fy"].gain < constants.RUN_OFFSET_GAIN
+    assert noise.offsets["run-offsets-fy"].log_odds < constants.RUN_OFFSET_LOG_ODDS
     assert noise.scatter["Fy"].memory == pytest.approx(0.9, abs=0.08)
 
 
@@ -83,7 +83,7 @@ def test_offsets_of_runs_are_not_taken_for_a_memory(memory):
     rng = np.random.default_rng(8)
     drawn = rng.normal(0.0, 33.0, SWEEPS)
     noise = found(correlated(rng, memory) + drawn[RUNS], offsets=5.0)
-    assert noise.offsets["run-offsets-fy"].gain > 2.0 * constants.RUN_OFFSET_GAIN
+    assert noise.offsets["run-offsets-fy"].log_odds > constants.RUN_OFFSET_LOG_ODDS
     assert 5.0 * noise.offsets["run-offsets-fy"].size == pytest.approx(np.std(drawn), rel=0.25)
     assert noise.scatter["Fy"].scale == pytest.approx(1.0, abs=0.35)
     assert noise.scatter["Fy"].memory == pytest.approx(memory, abs=0.15)
