@@ -71,7 +71,9 @@ LARGEST_NOISE_GROWTH = Real(0.2, "-", "Upper bound of the noise that grows with 
 MEMORY_BOUNDS = Series(
     (-0.2, 0.999), "-", "Bounds of the correlation between neighbouring errors; at 0.999 a run has one error."
 )
-INDEPENDENT_BOUNDS = Series((0.0, 0.95), "-", "Bounds of the share of errors without memory beside those with.")
+INDEPENDENT_BOUNDS = Series(
+    (0.0, 0.95), "-", "Bounds of the share of errors without memory beside those with."
+)
 SCATTER_START_INDEPENDENT = Real(0.3, "-", "Independent share at which its search starts.")
 LONG_MEMORY = Real(0.97, "-", "Memory at which a second search starts, for errors that drift within a run.")
 SCATTER_SMOOTH_BOUNDS = Series((1e-4, 0.3), "-", "Bounds of the smooth amplitude in the search for scatter.")
@@ -99,7 +101,9 @@ MEMORY_MODEL_PROBABILITIES = Series(
     "-",
     "Prior of errors without memory, with one, and with both: the two simple descriptions are alike, both together rarer.",
 )
-SMALLEST_RUN_OFFSETS = Real(0.1, "-", "Offsets of runs over the usual ones at which their search starts at least.")
+SMALLEST_RUN_OFFSETS = Real(
+    0.1, "-", "Offsets of runs over the usual ones at which their search starts at least."
+)
 EVIDENCE_STEP = Real(
     0.2, "-", "Step of a logarithm for the second differences that give the width of its distribution."
 )

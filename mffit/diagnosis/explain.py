@@ -38,6 +38,8 @@ def explain(
     found: Explanation | None = None
     at, noise = start, stated
     for _ in range(constants.MOST_EXPLANATION_ROUNDS):
+        if found is not None and not inexact and all(e.differs_by_run for e in found.chosen.effects):
+            break  # the scatter was learned from these very residuals
         before, state = noise, start if found is None else found.without_run_offsets
         noise = learned_noise(stated, before, points, state, candidates, inexact, basis)
         around_start = bool(inexact) and at is start

@@ -54,7 +54,9 @@ class Explanation:
         """
         noise = self.scatter
         if self.smooth.found:
-            noise = replace(noise, scatter={c: replace(s, memory=0.0, independent=0.0) for c, s in noise.scatter.items()})
+            noise = replace(
+                noise, scatter={c: replace(s, memory=0.0, independent=0.0) for c, s in noise.scatter.items()}
+            )
         return DiagnosisProblem(self.problem.points, self.problem.start, noise, self.problem.declared)
 
     @property

@@ -49,7 +49,8 @@ class Noise:
     """Covariance of the readings, and the whitening that goes with it.
 
     The covariance is D M D + S S': independent uncertainties D; M with ``memory`` to the power of the distance along each
-    sweep, less the ``independent`` share off the diagonal; and columns S of changes that several readings share, one standard deviation each.
+    sweep, times 1 less the ``independent`` share; and columns S of changes that several readings share, one standard
+    deviation each.
     """
 
     u: np.ndarray  #: (2n,) standard uncertainty of every reading; inf where missing

@@ -1,4 +1,4 @@
-"""Whether whole runs are offset, or errors with a memory gave them their means: the odds that the readings give."""
+"""Whether whole runs are offset, or errors with a memory gave them their means: how probable each makes the readings."""
 
 from __future__ import annotations
 
@@ -33,19 +33,12 @@ MODELS = tuple(
 )
 
 
-def log_odds(
-    alone: MarginalChannel, beside: MarginalChannel, without: MarginalParts, parts: MarginalParts
-) -> float:
-    """Logarithm of the odds of offsets of runs against none, at even odds before.
+def log_evidence(channel: MarginalChannel, parts: MarginalParts) -> float:
+    """Logarithm of the probability of the readings, with offsets of runs if the channel considers them, else without.
 
-    Scale, memory, independent share and the size of the offsets are integrated over their priors on both sides. Both searches
-    begin at what was found: ``without`` offsets for the channel ``alone``, and ``parts`` for the channel ``beside`` them.
+    The descriptions of the errors, and in each of them scale, memory, independent share and size of the offsets, are integrated
+    over their priors. The search begins at ``parts``.
     """
-    return _log_evidence(beside, parts) - _log_evidence(alone, without)
-
-
-def _log_evidence(channel: MarginalChannel, parts: MarginalParts) -> float:
-    """Logarithm of the probability of the readings, over all descriptions of their errors."""
     logs = [math.log(model.probability) + _of_model(channel, parts, model) for model in MODELS]
     return float(np.logaddexp.reduce(logs))
 
@@ -53,7 +46,9 @@ def _log_evidence(channel: MarginalChannel, parts: MarginalParts) -> float:
 def _of_model(channel: MarginalChannel, parts: MarginalParts, model: MemoryModel) -> float:
     """Logarithm of the probability of the readings under one description (Laplace approximation)."""
     offsets = channel.runs is not None
-    starts = [parts.memory, constants.LONG_MEMORY] if model.memory else [0.0]
+    starts = [parts.memory] if model.memory else [0.0]
+    if model.independent and not parts.independent:  # errors that drift within a run
+        starts.append(float(constants.LONG_MEMORY))
     share = parts.independent or constants.SCATTER_START_INDEPENDENT
 
     def density(x: np.ndarray) -> float:
@@ -66,7 +61,7 @@ def _of_model(channel: MarginalChannel, parts: MarginalParts, model: MemoryModel
         x += [_logit(share)] if model.independent else []
         x += [math.log(max(parts.offsets, constants.SMALLEST_RUN_OFFSETS))] if offsets else []
         bounds = [constants.LOG_SCALE_BOUNDS, *[(-LARGEST, LARGEST)] * (len(x) - 1)]
-        options = {"maxiter": int(constants.MOST_SCATTER_STEPS), "ftol": 1e-7}
+        options = {"maxiter": int(constants.MOST_SCATTER_STEPS), "ftol": 1e-5}
         best = minimize(density, np.array(x), bounds=bounds, method="L-BFGS-B", options=options)
         found.append((float(best.fun), best.x))
     value, x = min(found, key=lambda row: row[0])
@@ -86,12 +81,16 @@ def _at(x: np.ndarray, parts: MarginalParts, model: MemoryModel, *, offsets: boo
 def _log_prior(x: np.ndarray, model: MemoryModel, offsets: bool) -> float:
     """Log prior density of the coordinates, apart from that of the scale, which the likelihood contains.
 
-    Memory and independent share are uniform between 0 and 1; the size of offsets is half-Cauchy about the usual one.
+    The memory has Jeffreys' prior, the arcsine law between 0 and 1, so that long memories are no surprise. The independent
+    share is uniform. The size of offsets is half-Cauchy about the usual one.
     """
     log = 0.0
     for value in x[1 : 1 + model.memory + model.independent]:
         share = _share(float(value))
         log += math.log(share) + math.log1p(-share)
+    if model.memory:
+        memory = _share(float(x[1]))
+        log += math.log(2.0 / math.pi) - 0.5 * math.log1p(-(memory**2))
     if offsets:
         size = math.exp(float(x[-1]))
         log += math.log(2.0 / math.pi) + math.log(size / (1.0 + size**2))

@@ -16,7 +16,7 @@ from scipy.optimize import minimize
 from mffit.diagnosis import constants
 from mffit.diagnosis.marginal import MarginalChannel, MarginalParts
 from mffit.diagnosis.noise import Noise, RunOffsets, Scatter
-from mffit.diagnosis.run_means import log_odds
+from mffit.diagnosis.run_means import log_evidence
 from mffit.diagnosis.tails import heavy_tails, weights
 from mffit.quantities import CHANNELS
 from mffit.scatter import rms
@@ -108,11 +108,12 @@ def _of_channel(
     if parts.memory:
         # Offsets of whole runs and a memory give runs the same means: each is fitted beside the other.
         most, best = float(constants.RUN_OFFSET_LOG_ODDS), None
+        alone = log_evidence(channel, parts)
         for effect, columns in runs.items():
             if columns.shape[1]:
                 beside = channel.beside(columns)
                 found = _with_offsets(beside, columns, parts)
-                odds = log_odds(channel, beside, parts, found)
+                odds = log_evidence(beside, found) - alone
                 offsets[effect] = RunOffsets(odds, found.offsets, frozenset())
                 if odds > most:
                     most, best = odds, (beside, found)
