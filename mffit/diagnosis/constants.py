@@ -68,7 +68,14 @@ ODD_SWEEP_RATIO = Real(
 SCATTER_PART_GAIN = Real(4.0, "-", "Gain in log likelihood that growth, memory or heavy tails must bring.")
 LOG_SCALE_BOUNDS = Series((-7.0, 12.0), "-", "Bounds of the logarithm of the scale; its prior is narrower.")
 LARGEST_NOISE_GROWTH = Real(0.2, "-", "Upper bound of the noise that grows with the reading.")
-MEMORY_BOUNDS = Series((-0.2, 0.97), "-", "Bounds of the correlation between neighbouring errors of a sweep.")
+MEMORY_BOUNDS = Series(
+    (-0.2, 0.999), "-", "Bounds of the correlation between neighbouring errors; at 0.999 a run has one error."
+)
+INDEPENDENT_BOUNDS = Series(
+    (0.0, 0.95), "-", "Bounds of the share of errors without memory beside those with."
+)
+SCATTER_START_INDEPENDENT = Real(0.3, "-", "Independent share at which its search starts.")
+LONG_MEMORY = Real(0.97, "-", "Memory at which a second search starts, for errors that drift within a run.")
 SCATTER_SMOOTH_BOUNDS = Series((1e-4, 0.3), "-", "Bounds of the smooth amplitude in the search for scatter.")
 SCATTER_START_SMOOTH = Real(
     0.03, "-", "Amplitude of smooth structure at which the search for the scatter starts."
@@ -80,15 +87,27 @@ SCATTER_SECOND_START = Series(
     "Second start of this search: log scale, growth, memory, smooth amplitude; there may be two maxima.",
 )
 SCATTER_STEPS = Series(
-    (1.0, 0.02, 1.0, 0.05, 1.0),
+    (1.0, 0.02, 1.0, 0.05, 1.0, 1.0),
     "-",
-    "Typical changes of log scale, growth, memory, smooth amplitude, offsets of runs.",
+    "Typical changes of log scale, growth, artanh of the memory, smooth amplitude, offsets of runs, independent share.",
 )
-RUN_OFFSET_GAIN = Real(
-    8.0,
+RUN_OFFSET_LOG_ODDS = Real(
+    3.5,
     "-",
-    "Log likelihood over a memory of the errors alone that offsets of runs need: the price of any effect, rounded up.",
+    "Log odds against a memory of the errors that offsets of runs need: they are one of some 35 effects.",
 )
+MEMORY_MODEL_PROBABILITIES = Series(
+    (0.4, 0.4, 0.2),
+    "-",
+    "Prior of errors without memory, with one, and with both: the two simple descriptions are alike, both together rarer.",
+)
+SMALLEST_RUN_OFFSETS = Real(
+    0.1, "-", "Offsets of runs over the usual ones at which their search starts at least."
+)
+EVIDENCE_STEP = Real(
+    0.2, "-", "Step of a logarithm for the second differences that give the width of its distribution."
+)
+LEAST_CURVATURE = Real(0.05, "-", "Smallest curvature that counts: a prior alone has more than 0.2.")
 RUN_OFFSET_BOUNDS = Series((0.0, 50.0), "-", "Bounds of the size of offsets of runs over the usual one.")
 MOST_SCATTER_STEPS = Count(
     20, "-", "Most steps of a search for the scatter; its likelihood is flat near the maximum."

@@ -39,7 +39,9 @@ def explain(
     found: Explanation | None = None
     at, noise = start, stated
     for _ in range(constants.MOST_EXPLANATION_ROUNDS):
-        before, state = noise, start if found is None else found.chosen.state
+        if found is not None and not inexact and all(e.differs_by_run for e in found.chosen.effects):
+            break  # the scatter was learned from these very residuals
+        before, state = noise, start if found is None else found.without_run_offsets
         noise = learned_noise(stated, before, points, state, candidates, inexact, basis)
         around_start = bool(inexact) and at is start
         if found is not None and settled(before, noise) and not around_start:

@@ -19,6 +19,7 @@ from mffit.diagnosis.problem import DiagnosisProblem, refitted
 from mffit.diagnosis.selection import ForwardStep
 from mffit.diagnosis.smooth import Smooth, smooth_scan
 from mffit.effects import Effect
+from mffit.rig import Simulation
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,8 +57,18 @@ class Explanation:
         """
         noise = self.scatter
         if self.smooth.found:
-            noise = replace(noise, scatter={c: replace(s, memory=0.0) for c, s in noise.scatter.items()})
+            noise = replace(
+                noise, scatter={c: replace(s, memory=0.0, independent=0.0) for c, s in noise.scatter.items()}
+            )
         return DiagnosisProblem(self.problem.points, self.problem.start, noise, self.problem.declared)
+
+    @property
+    def without_run_offsets(self) -> Simulation:
+        """The simulation with its effects apart from offsets of runs, which compete anew with a memory of the errors."""
+        problem = self.problem
+        names = [n for effect in self.chosen.effects if effect.differs_by_run for n in effect.parameters]
+        given = {name: problem.start.number(name, problem.points) for name in names}
+        return self.chosen.state.with_numbers(given)
 
     def choosing(self, chosen: Hypothesis) -> Explanation:
         """The same with other effects, not yet refined."""
@@ -108,7 +119,7 @@ class Explanation:
         against = gain + left - self.left(without) - math.log(max(len(self.steps[0].trials), 1))
         if effect.id in self.problem.noise.offsets:  # a memory of the errors is another rival
             offsets = self.problem.noise.offsets[effect.id]
-            against = min(against, offsets.gain - constants.RUN_OFFSET_GAIN)
+            against = min(against, offsets.log_odds - constants.RUN_OFFSET_LOG_ODDS)
         open_ = left + (self.smooth.gain if self.smooth.found else 0.0)
         explains = max(gain, self.unaided.get(effect.id, 0.0), 0.0)
         share = explains / (explains + open_) if open_ else 1.0

@@ -77,7 +77,7 @@ def beyond_memory(noise: Noise, candidates: Sequence[Effect]) -> list[Effect]:
         offsets = noise.offsets.get(effect.id)
         if offsets is None:
             kept.append(effect)
-        elif offsets.gain > constants.RUN_OFFSET_GAIN:
+        elif offsets.log_odds > constants.RUN_OFFSET_LOG_ODDS:
             wider = max(offsets.size, 1.0)
             kept.append(replace(effect, free=tuple(replace(f, spread=wider * f.spread) for f in effect.free)))
     return kept

@@ -11,7 +11,7 @@ import numpy as np
 from scipy.linalg import cho_solve, cholesky, solve_triangular
 
 from mffit.diagnosis import constants
-from mffit.diagnosis.noise import links
+from mffit.diagnosis.chains import Chains, Correlation
 
 
 class MarginalParts(NamedTuple):
@@ -22,6 +22,7 @@ class MarginalParts(NamedTuple):
     memory: float
     smooth: float  #: amplitude of smooth structure, relative to the channel
     offsets: float = 0.0  #: size of offsets of runs over the usual one
+    independent: float = 0.0  #: share of the variance without memory
 
 
 @dataclass(frozen=True)
@@ -55,40 +56,50 @@ class MarginalChannel:
 
     def standardised(self, parts: MarginalParts) -> np.ndarray:
         """Every reading (m,) against its prediction from all others, in units of their joint uncertainty at weight 1."""
-        r, A, _ = self._white(parts, np.arange(len(self.stated)), links(self.chain))
+        rows = np.argsort(self.chain, kind="stable")
+        r, A, _ = self._white(parts, rows, *self._columns_of(rows))
         root = _factor(A)
         left = r - A @ cho_solve((root, True), A.T @ r, check_finite=False)
         B = solve_triangular(root, A.T, lower=True, check_finite=False)
         variance = np.maximum(1.0 - np.sum(B * B, axis=0), 1e-3)
+        out = np.empty(len(rows))
         if parts.memory:
-            return left / np.sqrt(variance)
-        own = 1.0 / np.sqrt(self.weight)  # uncertainty of the reading, in units of that at weight 1
+            out[rows] = left / np.sqrt(variance)
+            return out
+        own = 1.0 / np.sqrt(self.weight[rows])  # uncertainty of the reading, in units of that at weight 1
         predicted = (1.0 / variance - 1.0) * own**2  # variance of its prediction by all others
-        return left / variance * own / np.sqrt(1.0 + predicted)
+        out[rows] = left / variance * own / np.sqrt(1.0 + predicted)
+        return out
 
     @cached_property
-    def _sample(self) -> tuple[np.ndarray, tuple[np.ndarray, np.ndarray]]:
-        """Indices of the readings that the likelihood uses, and their links along sweeps."""
+    def _sample(self) -> tuple[np.ndarray, Chains, np.ndarray]:
+        """Indices of the readings that the likelihood uses, sweep after sweep, with their sweeps and columns."""
         rows = _some_sweeps(self.chain)
-        return rows, links(self.chain[rows])
+        rows = rows[np.argsort(self.chain[rows], kind="stable")]
+        return rows, *self._columns_of(rows)
+
+    def _columns_of(self, rows: np.ndarray) -> tuple[Chains, np.ndarray]:
+        """Sweeps of some readings, and their residual and columns (m, 1 + k) at full size."""
+        some = [self.residual[rows, None], self.named[rows], self.smooth[rows]]
+        some += [self.runs[rows]] if self.runs is not None else []
+        return Chains.of(self.chain[rows]), np.asfortranarray(np.column_stack(some))
 
     def _white(
-        self, parts: MarginalParts, rows: np.ndarray, linked: tuple[np.ndarray, np.ndarray]
+        self, parts: MarginalParts, rows: np.ndarray, chains: Chains, columns: np.ndarray
     ) -> tuple[np.ndarray, np.ndarray, float]:
-        """Residual and columns of some readings in units of their scatter, and the log determinant of that division."""
+        """Residual and columns of readings in the order of their sweeps, in units of their scatter, and the log determinant."""
         u = np.hypot(math.exp(parts.log_scale) * self.stated, parts.growth * self.size)
         u = np.hypot(u, self.least)[rows] / np.sqrt(self.weight[rows])
-        columns = [self.residual[rows], self.named[rows], parts.smooth * self.smooth[rows]]
-        if self.runs is not None and parts.offsets:
-            columns.append(parts.offsets * self.runs[rows])
-        A = np.column_stack(columns)
-        A /= u[:, None]
+        sizes, first = np.ones(columns.shape[1]), 1 + self.named.shape[1]
+        sizes[first : first + self.smooth.shape[1]] = parts.smooth
+        sizes[first + self.smooth.shape[1] :] = parts.offsets
+        A = (columns / u[:, None]) * sizes
         log = float(np.sum(np.log(u)))
         if parts.memory:
-            own = math.sqrt(1.0 - parts.memory**2)
-            later, earlier = linked
-            A[later] = (A[later] - parts.memory * A[earlier]) / own
-            log += len(later) * math.log(own)
+            everywhere = np.ones(len(rows), dtype=bool)
+            correlation = Correlation.along(chains, [(everywhere, parts.memory, parts.independent)])
+            A = correlation.in_order(A)
+            log += correlation.log
         return A[:, 0], A[:, 1:], log
 
 

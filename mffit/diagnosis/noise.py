@@ -9,9 +9,8 @@ from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
-from scipy.sparse import csc_matrix
-from scipy.sparse.linalg import SuperLU, splu
 
+from mffit.diagnosis.chains import Chains, Correlation
 from mffit.quantities import SIDEWAYS
 from mffit.scatter import finite_median
 
@@ -29,7 +28,8 @@ class Scatter:
 
     scale: float = 1.0  #: uncertainty over the stated one
     growth: float = 0.0  #: standard uncertainty over the reading, added in quadrature
-    memory: float = 0.0  #: correlation from one point to the next along a sweep
+    memory: float = 0.0  #: correlation from one point to the next along a sweep, of the part that has one
+    independent: float = 0.0  #: share of the variance without memory, beside a part with one
     tails: float = np.inf  #: degrees of freedom of Student's t, infinite where the scatter is normal
     without_noise: bool = (
         False  #: whether the readings hardly scatter, as those of a simulation; the noise is assumed
@@ -39,7 +39,7 @@ class Scatter:
 class RunOffsets(NamedTuple):
     """Offsets of whole runs, as the likelihood of the scatter sees them beside errors with a memory."""
 
-    gain: float  #: of log likelihood over the memory alone
+    log_odds: float  #: logarithm of the odds against the memory alone that the readings give
     size: float  #: over the usual one
     channels: frozenset[str]  #: with a memory, in which the offsets appear
 
@@ -49,7 +49,8 @@ class Noise:
     """Covariance of the readings, and the whitening that goes with it.
 
     The covariance is D M D + S S': independent uncertainties D; M with ``memory`` to the power of the distance along each
-    sweep; and columns S of changes that several readings share, one standard deviation each.
+    sweep, times 1 less the ``independent`` share; and columns S of changes that several readings share, one standard
+    deviation each.
     """
 
     u: np.ndarray  #: (2n,) standard uncertainty of every reading; inf where missing
@@ -86,14 +87,12 @@ class Noise:
         return np.flatnonzero(np.isfinite(self.u))
 
     @cached_property
-    def _links(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Positions of used readings that follow another with memory, of that other, and the memory between them."""
-        later, earlier = links(self.chain[self.used])
-        memory = np.where(
-            self.used[later] < len(self.u) // 2, self.scatter["Fy"].memory, self.scatter["Mz"].memory
-        )
-        some = memory != 0.0
-        return later[some], earlier[some], memory[some]
+    def _correlation(self) -> Correlation:
+        """The correlation of the used readings along their chains."""
+        first = self.used < len(self.u) // 2
+        of = [self.scatter[name] for name in CHANNELS]
+        parts = [(mask, s.memory, s.independent) for mask, s in zip((first, ~first), of, strict=True)]
+        return Correlation.along(Chains.of(self.chain[self.used]), parts)
 
     @cached_property
     def _axes(self) -> tuple[np.ndarray, np.ndarray]:
@@ -105,27 +104,9 @@ class Noise:
         some = variance > 1e-9 * max(float(variance[-1]), 1e-9)
         return white @ (turn[:, some] / np.sqrt(variance[some])), variance[some]
 
-    @cached_property
-    def _transposed(self) -> SuperLU:
-        """The factors of the transposed whitening without shared changes."""
-        m = len(self.used)
-        later, earlier, memory = self._links
-        own = np.ones(m)
-        own[later] = 1.0 / np.sqrt(1.0 - memory**2)
-        rows = np.concatenate([np.arange(m), earlier])
-        columns = np.concatenate([np.arange(m), later])
-        values = np.concatenate([own, -memory * own[later]]) / self.u[self.used][rows]
-        return splu(csc_matrix((values, (rows, columns)), shape=(m, m)))
-
     def _independent(self, x: np.ndarray) -> np.ndarray:
         """Differences of used readings (m,) or (m, k), whitened without shared changes."""
-        z = (x.T / self.u[self.used]).T
-        later, earlier, memory = self._links
-        if not len(later):
-            return z
-        out = z.copy()
-        out[later] = ((z[later].T - memory * z[earlier].T) / np.sqrt(1.0 - memory**2)).T
-        return out
+        return self._correlation.whiten((x.T / self.u[self.used]).T)
 
     def whiten(self, x: np.ndarray) -> np.ndarray:
         """Differences of readings (2n,) or (2n, k) in units of their joint uncertainty: (m,) or (m, k)."""
@@ -140,7 +121,7 @@ class Noise:
         """Standard error of the sum of some used readings, by their position among the used ones."""
         chosen = np.zeros(len(self.used))
         chosen[rows] = 1.0
-        y = self._transposed.solve(chosen)
+        y = self._correlation.sum_of(self.u[self.used] * chosen)
         axes, variance = self._axes
         return float(np.sqrt(y @ y + variance @ (axes.T @ y) ** 2))
 
@@ -190,13 +171,6 @@ class Noise:
             ]
         )
         return replace(self, u=u / np.sqrt(weight), scatter=dict(scatter), weight=weight)
-
-
-def links(chain: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Positions of the readings (m,) that follow another of their chain, and of those that they follow."""
-    order = np.argsort(chain, kind="stable")
-    follows = chain[order][1:] == chain[order][:-1]
-    return order[1:][follows], order[:-1][follows]
 
 
 def _typical(u: np.ndarray, channel: str) -> float:

@@ -16,6 +16,7 @@ from scipy.optimize import minimize
 from mffit.diagnosis import constants
 from mffit.diagnosis.marginal import MarginalChannel, MarginalParts
 from mffit.diagnosis.noise import Noise, RunOffsets, Scatter
+from mffit.diagnosis.run_means import log_evidence
 from mffit.diagnosis.tails import heavy_tails, weights
 from mffit.quantities import SIDEWAYS
 from mffit.scatter import rms
@@ -27,10 +28,11 @@ BOUNDS = np.array(
         constants.MEMORY_BOUNDS,
         constants.SCATTER_SMOOTH_BOUNDS,
         constants.RUN_OFFSET_BOUNDS,
+        constants.INDEPENDENT_BOUNDS,
     ]
 )
 ALL = (0, 1, 2, 3)
-GROWTH, MEMORY, OFFSETS = 1, 2, 4
+GROWTH, MEMORY, OFFSETS, INDEPENDENT = 1, 2, 4, 5
 """Positions in :class:`MarginalParts`."""
 
 
@@ -66,10 +68,10 @@ def learned(noise: Noise, residual: np.ndarray, explained: ExplainingColumns, si
         )
         runs = {effect: _occurring(columns[rows]) for effect, columns in explained.runs.items()}
         scatter[name], weight[rows], here = _of_channel(channel, runs, noise.scatter[name])
-        for effect, (gain, larger, _) in here.items():
+        for effect, (odds, larger, _) in here.items():
             other = offsets.get(effect, RunOffsets(0.0, 0.0, frozenset()))
             offsets[effect] = RunOffsets(
-                other.gain + max(gain, 0.0), max(other.size, larger), other.channels | {name}
+                other.log_odds + odds, max(other.size, larger), other.channels | {name}
             )
     found = replace(noise.scattering(scatter, size, weight), offsets=offsets)
     return _at_least_of_a_rig(found, size)
@@ -105,27 +107,31 @@ def _of_channel(
     offsets: dict[str, RunOffsets] = {}
     if parts.memory:
         # Offsets of whole runs and a memory give runs the same means: each is fitted beside the other.
-        alone, most, best = channel.likelihood(parts), float(constants.RUN_OFFSET_GAIN), None
+        most, best = float(constants.RUN_OFFSET_LOG_ODDS), None
+        alone = log_evidence(channel, parts)
         for effect, columns in runs.items():
             if columns.shape[1]:
                 beside = channel.beside(columns)
-                found, likelihood = _with_offsets(beside, columns, parts)
-                offsets[effect] = RunOffsets(likelihood - alone, found.offsets, frozenset())
-                if likelihood - alone > most:
-                    most, best = likelihood - alone, (beside, found)
+                found = _with_offsets(beside, columns, parts)
+                odds = log_evidence(beside, found) - alone
+                offsets[effect] = RunOffsets(odds, found.offsets, frozenset())
+                if odds > most:
+                    most, best = odds, (beside, found)
         if best is not None:
             channel, parts, tails = _weighted(*best)
-    return Scatter(math.exp(parts.log_scale), parts.growth, parts.memory, tails), channel.weight, offsets
+    scatter = Scatter(
+        math.exp(parts.log_scale), parts.growth, parts.memory, independent=parts.independent, tails=tails
+    )
+    return scatter, channel.weight, offsets
 
 
-def _with_offsets(
-    channel: MarginalChannel, runs: np.ndarray, parts: MarginalParts
-) -> tuple[MarginalParts, float]:
-    """The likeliest parts with offsets of runs, which replace the memory or shorten it; and their likelihood."""
+def _with_offsets(channel: MarginalChannel, runs: np.ndarray, parts: MarginalParts) -> MarginalParts:
+    """The likeliest parts with offsets of runs, which replace the memory or shorten it."""
     size = rms(channel.residual @ runs / np.maximum(np.sum(runs**2, axis=0), 1e-30))
     shorter = parts._replace(memory=0.5 * parts.memory, offsets=0.5 * size)
     replaced = MarginalParts(*constants.SCATTER_SECOND_START)._replace(offsets=size)
-    return max((_climb(channel, x, (*ALL, OFFSETS)) for x in (shorter, replaced)), key=lambda climb: climb[1])
+    climbs = (_climb(channel, x, (*ALL, OFFSETS)) for x in (shorter, replaced))
+    return max(climbs, key=lambda climb: climb[1])[0]
 
 
 def _weighted(channel: MarginalChannel, parts: MarginalParts) -> tuple[MarginalChannel, MarginalParts, float]:
@@ -154,6 +160,13 @@ def _accepted(channel: MarginalChannel, start: MarginalParts) -> MarginalParts:
         other, less = _climb(channel, MarginalParts(*reduced), free)
         if whole - less < constants.SCATTER_PART_GAIN:
             best, whole = other, less
+    if best.memory:
+        longer = float(constants.LONG_MEMORY)
+        two = best._replace(memory=longer, independent=float(constants.SCATTER_START_INDEPENDENT))
+        free = tuple(k for k in (*every, INDEPENDENT) if k != GROWTH or best.growth)
+        other, more = _climb(channel, two, free)
+        if more - whole > constants.SCATTER_PART_GAIN:
+            best = other
     return best
 
 
@@ -166,15 +179,18 @@ def _climb(
     def full(y: np.ndarray) -> MarginalParts:
         x = np.array(start)
         x[chosen] = y * unit[chosen]
+        if MEMORY in free:
+            x[MEMORY] = math.tanh(x[MEMORY])
         return MarginalParts(*x.tolist())
 
-    first = np.array(start)
+    first, bounds = np.array(start), BOUNDS.copy()
     if GROWTH in free and not start.growth:
         first[GROWTH] = constants.SCATTER_START_GROWTH
+    first[MEMORY], bounds[MEMORY] = np.arctanh(first[MEMORY]), np.arctanh(bounds[MEMORY])
     found = minimize(
         lambda y: -channel.likelihood(full(y)),
         first[chosen] / unit[chosen],
-        bounds=BOUNDS[chosen] / unit[chosen][:, None],
+        bounds=bounds[chosen] / unit[chosen][:, None],
         method="L-BFGS-B",
         options={"maxiter": int(constants.MOST_SCATTER_STEPS), "ftol": 1e-6},
     )

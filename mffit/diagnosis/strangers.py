@@ -109,10 +109,7 @@ def offsets_or_memory(
             for effect in candidates
             if effect.id in noise.offsets
             and channel in noise.offsets[effect.id].channels
-            and (
-                noise.offsets[effect.id].gain > constants.SCATTER_PART_GAIN
-                or scatter.scale > constants.STATED_NOISE_FACTOR
-            )
+            and (noise.offsets[effect.id].log_odds > 0.0 or scatter.scale > constants.STATED_NOISE_FACTOR)
         )
         if scatter.memory and near and not any(effect.id in named for effect in near):
             found.append(OffsetsOrMemory(channel, scatter.memory, noise.typical(channel), near))

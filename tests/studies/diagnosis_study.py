@@ -14,7 +14,7 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).parents[1] / "mffit" / "diagnosis"))
 
 import numpy as np
-from blind_hard import SCATTERS, doubtful, hard, smooth, triples
+from blind_hard import MEMORIES, SCATTERS, correlated, doubtful, hard, smooth, triples
 from blind_scores import Plan, Verdict, judge, rates, suite
 
 
@@ -31,6 +31,9 @@ def main() -> None:
         action="store_true",
         help="cases that remain ambiguous under these conditions, to calibrate the confidence",
     )
+    parser.add_argument(
+        "--correlated", action="store_true", help="errors with a memory along each sweep, of several lengths"
+    )
     parser.add_argument("--keep", type=Path, help="file to which every verdict is appended as a line of JSON")
     parser.add_argument(
         "--reliability", type=Path, nargs="+", help="print only the table of these kept verdicts"
@@ -39,7 +42,7 @@ def main() -> None:
     if options.reliability:
         print_calibration(kept(options.reliability))
         return
-    if options.hard or options.doubtful:
+    if options.hard or options.doubtful or options.correlated:
         print_hard(options)
         return
     verdicts: list[Verdict] = []
@@ -62,6 +65,8 @@ def print_hard(options: argparse.Namespace) -> None:
     every: list[Verdict] = []
     if options.doubtful:
         every += judged("doubtful", list(doubtful(options.seed)), options)
+    for memory in MEMORIES if options.correlated else ():
+        every += judged(f"memory {memory:g}", list(correlated(options.seed, memory)), options)
     for row in SCATTERS if options.hard else ():
         every += judged(row, list(hard(row, options.seed)), options)
     if options.hard:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 from blind_rig import Programme
@@ -42,6 +43,14 @@ def _correlated(rng, run, force, u, memory=0.9):
     return noise
 
 
+def _continued(rng, run, force, u, memory=0.9):
+    """The same memory, but not begun anew with each sweep."""
+    noise = _gauss(rng, run, force, u)
+    for i in range(1, len(force)):
+        noise[i] = memory * noise[i - 1] + np.sqrt(1.0 - memory**2) * noise[i]
+    return noise
+
+
 SCATTERS: dict[str, Scatter] = {
     "plain": _gauss,
     "outliers": _outliers,
@@ -62,6 +71,22 @@ ASKED = {
 """Causes that have a row of their own."""
 USUAL = [name for name in CAUSES if not any(name in causes for causes in ASKED.values())]
 
+MEMORIES = (0.0, 0.6, 0.9, 0.96)
+"""Correlations from one point to the next in the study of correlated errors."""
+BESIDE_A_MEMORY = (
+    ((), "large"),
+    ((), "large"),
+    (("run-offsets-fy",), "large"),
+    (("run-offsets-fy",), "gross"),
+    (("run-offsets-mz",), "large"),
+    (("run-offsets-alpha",), "large"),
+    (("backlash",), "large"),
+    (("sideslip-misalignment",), "moderate"),
+    (("camber-misalignment",), "moderate"),
+)
+"""Causes and their sizes in that study; one more is drawn for each memory."""
+GROSS_OFFSETS = 33.0  # N
+
 SMOOTH: dict[str, Callable[[Programme, np.ndarray], np.ndarray]] = {
     "slip wave": lambda run, Fy: 45.0 * np.sin(np.radians(20.0) * run.alpha_deg) * (run.Fz / 1500.0),
     "leaned sink": lambda run, Fy: 40.0 * (run.gamma_deg / 30.0) ** 2 * (run.alpha_deg / 5.0),
@@ -80,6 +105,24 @@ def hard(row: str, seed: int, singles: int = 12, empty: int = 6) -> Iterator[Pla
     for k in range(singles + empty):
         hidden = (str(causes[k]),) if k < singles else ()
         yield _plan(row, hidden, ("large", "moderate")[k % 2], int(rng.integers(1 << 31)))
+
+
+def correlated(seed: int, memory: float) -> Iterator[Plan]:
+    """Cases whose errors are correlated along each sweep; in the second one without a cause the memory never restarts."""
+    rng = np.random.default_rng((seed, round(100 * memory)))
+    drawn = ((str(rng.choice(USUAL)),), "moderate")
+    for k, (causes, level) in enumerate((*BESIDE_A_MEMORY, drawn)):
+        number = int(rng.integers(1 << 31))
+        name = f"memory {memory:g}-{'+'.join(causes) or 'none'}-{level}-{number}"
+        scatter = _continued if k == 1 else _correlated
+        yield Plan(name, partial(_remembering, name, causes, level, number, partial(scatter, memory=memory)))
+
+
+def _remembering(name: str, causes: tuple[str, ...], level: str, seed: int, scatter: Scatter) -> Case:
+    case = draw_case(name, causes, "large" if level == "gross" else level, seed)
+    if level == "gross":
+        case = replace(case, level=level, machine=replace(case.machine, run_Fy=GROSS_OFFSETS))
+    return rescattered(case, scatter, np.random.default_rng(seed + 1))
 
 
 def smooth(seed: int, repeats: int = 3) -> Iterator[Plan]:

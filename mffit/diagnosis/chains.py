@@ -1,0 +1,117 @@
+"""Errors correlated along chains of readings: a part with a memory, and an independent part beside it."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.linalg.lapack import dtbtrs
+
+
+@dataclass(frozen=True, slots=True)
+class Chains:
+    """The order of readings (m,) along their chains."""
+
+    order: np.ndarray  #: (m,) positions of the readings, chain after chain
+    place: np.ndarray  #: (m,) place of each of these within its chain, from 0
+
+    @classmethod
+    def of(cls, chain: np.ndarray) -> Chains:
+        """The chains of readings, from the number (m,) of the chain of each; within a chain they keep their order."""
+        order = np.argsort(chain, kind="stable")
+        at = np.arange(len(order))
+        begins = np.ones(len(order), dtype=bool)
+        begins[1:] = chain[order][1:] != chain[order][:-1]
+        return cls(order, at - np.maximum.accumulate(np.where(begins, at, 0)))
+
+    @property
+    def longest(self) -> int:
+        """Readings of the longest chain."""
+        return int(self.place.max(initial=-1)) + 1
+
+
+@dataclass(frozen=True, slots=True)
+class Correlation:
+    """The correlation of the readings of chains, factorised. Arrays are in the order of the chains.
+
+    The differences d of each reading to ``memory`` times the one before have a tridiagonal covariance, whose lower factor has
+    the diagonal ``own`` and ``below`` it the link to the reading before.
+    """
+
+    chains: Chains
+    memory: (
+        np.ndarray
+    )  #: (m,) correlation of the part with a memory, to the reading before; 0 at the start of a chain
+    own: np.ndarray  #: (m,)
+    below: np.ndarray  #: (m,)
+
+    @classmethod
+    def along(cls, chains: Chains, parts: Sequence[tuple[np.ndarray, float, float]]) -> Correlation:
+        """``parts`` are masks (m,) of readings of whole chains, with their memory and independent share."""
+        after, m = chains.place > 0, len(chains.order)
+        rho, own, below = np.zeros(m), np.ones(m), np.zeros(m)
+        for mask, memory, share in parts:
+            some = mask[chains.order] & after
+            if memory and some.any():
+                roots, links = _factors(memory, share, chains.longest)
+                rho[some], place = memory, chains.place[some]
+                own[some], below[some] = roots[place], links[place]
+        return cls(chains, rho, own, below)
+
+    @property
+    def log(self) -> float:
+        """Logarithm of the square root of the determinant."""
+        return float(np.sum(np.log(self.own)))
+
+    @property
+    def trivial(self) -> bool:
+        """Whether all readings are independent."""
+        return not self.memory.any()
+
+    def whiten(self, z: np.ndarray) -> np.ndarray:
+        """Readings (m,) or (m, k) of unit variance, made independent of each other."""
+        if self.trivial:
+            return z
+        order, out = self.chains.order, np.empty_like(z)
+        out[order] = self.in_order(z[order])
+        return out
+
+    def in_order(self, z: np.ndarray) -> np.ndarray:
+        """The same for readings in the order of the chains; fast for columns of Fortran order."""
+        d = z.copy(order="F")
+        d[1:] -= (self.memory[1:] * z[:-1].T).T
+        if not self.below.any():
+            return (d.T / self.own).T
+        bands = np.vstack([self.own, np.append(self.below[1:], 0.0)])
+        return dtbtrs(bands, d, uplo="L", overwrite_b=1)[0].reshape(d.shape)
+
+    def sum_of(self, weight: np.ndarray) -> np.ndarray:
+        """Weights (m,) of independent unit errors in the sum of readings with these weights."""
+        if self.trivial:
+            return weight
+        order, out = self.chains.order, np.empty(len(weight))
+        # The transposed inverse of the differences, then the transposed factor.
+        bands = np.vstack([np.ones(len(order)), np.append(-self.memory[1:], 0.0)])
+        y = dtbtrs(bands, weight[order], uplo="L", trans="T")[0].ravel()
+        out[order] = self.own * y + np.append(self.below[1:] * y[1:], 0.0)
+        return out
+
+
+def _factors(memory: float, share: float, length: int) -> tuple[np.ndarray, np.ndarray]:
+    """Diagonal and link of the factor, by place in a chain (length,); they soon become constant."""
+    size, link = 1.0 - memory**2 + 2.0 * share * memory**2, -share * memory
+    own, below = np.ones(length), np.zeros(length)
+    if not share:
+        own[1:] = math.sqrt(size)
+        return own, below
+    last = 1.0
+    for k in range(1, length):
+        below[k] = link / last
+        own[k] = math.sqrt(size - below[k] ** 2)
+        if abs(own[k] - last) < 1e-13:
+            own[k:], below[k:] = own[k], below[k]
+            break
+        last = float(own[k])
+    return own, below
