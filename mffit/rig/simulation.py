@@ -37,7 +37,7 @@ class Simulation(Brief):
     star: bool = False  #: tan(alpha), sin(gamma) as inputs
     radius_m: float = math.nan  #: declared radius of the rig's usual path [m]; NaN: that of most points
     of_parts: Mapping[str, float] = field(default_factory=dict)
-    """What single runs or set-ups add to a rig error, as ``F0_N@zeros.csv`` or ``F0_N@A``, in its unit."""
+    """What single files, set-ups or sweeps add to a rig error, as ``F0_N@zeros.csv`` or ``F0_N@A``, in its unit."""
 
     @classmethod
     def of(
@@ -102,18 +102,24 @@ class Simulation(Brief):
 
         The stop at which the moment holds a wheel with play stays the same; a floating wheel keeps its moment at zero.
         """
-        numbers = traced({name: self.number(name, points) for name in names})
+        whole = [name.partition(OF_RUN)[0] for name in names]
+        numbers = traced({name: self.number(name, points) for name in whole})
         out = self._chain(points, numbers).readings()
-        columns = list(numbers.values())
-        n = len(points)
-        slopes = (np.broadcast_to(gradient(channel, columns), (n, len(columns))) for channel in out)
+        columns, n = list(numbers.values()), len(points)
+        place = [list(numbers).index(name) for name in whole]
+        slopes = [np.broadcast_to(gradient(channel, columns), (n, len(columns)))[:, place] for channel in out]
+        # A number of a part is added to that of the whole test, so its slope is the same at the points of the part.
+        for k, name in enumerate(names):
+            if OF_RUN in name:
+                own = of_part(points, name.partition(OF_RUN)[2])
+                for slope in slopes:
+                    slope[:, k] *= own
         return Readings(*(np.broadcast_to(plain(channel), n) for channel in out)), Readings(*slopes)
 
     def _chain(self, points: Points, numbers: Mapping[str, Traced]) -> Chain:
         """The passage of the points with some numbers traced."""
         faults: dict[str, Any] = {**self.faults, **{n: x for n, x in numbers.items() if n in BY_NAME}}
-        of_parts = {**self.of_parts, **{n: x for n, x in numbers.items() if OF_RUN in n}}
-        for key, added in of_parts.items():
+        for key, added in self.of_parts.items():
             name, _, part = key.partition(OF_RUN)
             faults[name] = faults[name] + added * of_part(points, part)
         return Chain(

@@ -21,6 +21,16 @@ def _warmed(k: Any, value: Any, at: Any) -> Any:
 
 _of_forces = partial(RigError, kind="environment", place=Place.ENVIRONMENT, acts_on=("Fy", "Mz"))
 _of_temperature = partial(RigError, unit="1/K", kind="environment", formula=_warmed, lower=-0.05, upper=0.05)
+_of_run = partial(
+    RigError,
+    unit="-",
+    kind="environment",
+    place=Place.COEFFICIENTS,
+    formula=lambda share, value, at: value * (1.0 + share),
+    spread=0.02,
+    lower=-0.5,
+    upper=0.5,
+)
 _appearance = partial(Appearance, parity="as the forces")
 
 TEMPERATURE_GRIP = _of_temperature(
@@ -79,6 +89,16 @@ TEMPERATURE = _of_temperature(
             together_with=("T_ref_degC",),
         ),
     ),
+)
+RUN_GRIP = _of_run(
+    name="run_grip",
+    meaning="friction times 1 + run_grip, a number of every run",
+    acts_on=(SCALED_BY["k_T_grip_per_K"],),
+)
+RUN_STIFFNESS = _of_run(
+    name="run_stiffness",
+    meaning="cornering stiffness times 1 + run_stiffness, a number of every run",
+    acts_on=(SCALED_BY["k_T_stiffness_per_K"],),
 )
 REFERENCE_TEMPERATURE = RigError(
     name="T_ref_degC",
@@ -165,5 +185,12 @@ WARM_UP = _of_forces(
     ),
 )
 
-COEFFICIENT_ERRORS = (REFERENCE_TEMPERATURE, TEMPERATURE_GRIP, TEMPERATURE_STIFFNESS, TEMPERATURE_CAMBER)
+COEFFICIENT_ERRORS = (
+    REFERENCE_TEMPERATURE,
+    TEMPERATURE_GRIP,
+    TEMPERATURE_STIFFNESS,
+    TEMPERATURE_CAMBER,
+    RUN_GRIP,
+    RUN_STIFFNESS,
+)
 ENVIRONMENT_ERRORS = (TEMPERATURE, DRIFT, WEAR, WARM_UP, SPEED)

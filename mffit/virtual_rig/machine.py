@@ -72,6 +72,8 @@ SCALES: dict[str, tuple[str, Formula]] = {
     "k_T_grip_per_K": ("LMUY", lambda x, s, m: 1.0 + x * _kelvin(s, m)),
     "k_T_stiffness_per_K": ("LKY", lambda x, s, m: 1.0 + x * _kelvin(s, m)),
     "k_T_camber_per_K": ("LKYC", lambda x, s, m: 1.0 + x * _kelvin(s, m)),
+    "run_grip": ("LMUY", lambda x, s, m: (100.0 + 100.0 * x) / 100.0),
+    "run_stiffness": ("LKY", lambda x, s, m: (100.0 + 100.0 * x) / 100.0),
 }
 """Factors on scaling factors of the tyre."""
 SURROUNDINGS: dict[str, Formula] = {
