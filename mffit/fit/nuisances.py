@@ -12,7 +12,7 @@ from mffit.fit import constants
 from mffit.least_squares import FreeNumber
 from mffit.points import Points
 from mffit.rig.histories import distance_km, sense
-from mffit.rig_errors import BY_NAME, number_of
+from mffit.rig_errors import BY_NAME, OF_RUN, number_of
 from mffit.suspicion import parts_of_sweeps
 
 TEMPERATURE = "temperature"
@@ -120,6 +120,14 @@ NUISANCES = (
         lacking=_temperatures,
     ),
     Nuisance(
+        id="temperature-curvature",
+        name="curvature of friction over tyre temperature",
+        key=TEMPERATURE,
+        numbers=("k_T_grip_per_K2",),
+        lacking=_temperatures,
+        after=TEMPERATURE,
+    ),
+    Nuisance(
         id="temperature-camber",
         name="camber stiffness over tyre temperature",
         key=TEMPERATURE,
@@ -167,3 +175,9 @@ NUISANCES = (
     ),
 )
 """In the order in which a sentence names them; those of every run come last."""
+
+
+def of_run(name: str) -> bool:
+    """Whether a number of the rig is the friction or the stiffness of one run."""
+    whole, _, run = name.partition(OF_RUN)
+    return bool(run) and any(nuisance.per_run and whole in nuisance.numbers for nuisance in NUISANCES)

@@ -50,6 +50,20 @@ TEMPERATURE_GRIP = _of_temperature(
         ),
     ),
 )
+TEMPERATURE_GRIP_CURVATURE = RigError(
+    name="k_T_grip_per_K2",
+    unit="1/K^2",
+    kind="environment",
+    meaning=f"adds k2 (T - T_ref)^2 to the factor 1 + k {WARMTH} of the friction",
+    place=Place.COEFFICIENTS,
+    acts_on=(SCALED_BY["k_T_grip_per_K2"],),
+    formula=lambda k2, value, at: (
+        value * (1.0 + k2 * at.warmth**2 / (1.0 + at.numbers["k_T_grip_per_K"] * at.warmth))
+    ),
+    spread=1e-4,
+    lower=-5e-3,
+    upper=5e-3,
+)
 TEMPERATURE_STIFFNESS = _of_temperature(
     name="k_T_stiffness_per_K",
     meaning=f"cornering stiffness times 1 + k {WARMTH}",
@@ -188,6 +202,7 @@ WARM_UP = _of_forces(
 COEFFICIENT_ERRORS = (
     REFERENCE_TEMPERATURE,
     TEMPERATURE_GRIP,
+    TEMPERATURE_GRIP_CURVATURE,
     TEMPERATURE_STIFFNESS,
     TEMPERATURE_CAMBER,
     RUN_GRIP,
