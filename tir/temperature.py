@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 from types import MappingProxyType
 from typing import TYPE_CHECKING
@@ -18,9 +19,12 @@ SCALED_BY = MappingProxyType(
         "k_T_camber_per_K": "LKYC",
         "k_T_drive_grip_per_K": "LMUX",
         "k_T_slip_stiffness_per_K": "LKX",
+        "k_T_grip_per_K2": "LMUY",
     }
 )
-"""By term, the scaling factor that it multiplies with 1 + k (T - T_ref)."""
+"""By term, the scaling factor that it multiplies with 1 + k (T - T_ref), or with 1 + k (T - T_ref) + k2 (T - T_ref)^2."""
+CURVED_BY = MappingProxyType({"k_T_grip_per_K": "k_T_grip_per_K2"})
+"""By linear term k, the quadratic term k2 of the same scaling factor."""
 RIG = "rig."
 """Prefix of the terms and of their reference temperature among the measured quantities of a file."""
 REFERENCE = f"{RIG}T_ref_degC"
@@ -46,18 +50,29 @@ def at_temperature(tyre: Tyre, T_degC: float) -> Tyre:
         )
     T_degC = float(T_degC)
     warmer = T_degC - tyre.measured[REFERENCE].value
-    factors = {name: 1.0 + term.value * warmer for name, term in terms.items()}
-    if not all(factor > 0.0 for factor in factors.values()):
-        raise TirError(
-            f"at {T_degC:g} degC the temperature terms leave no friction or stiffness; use them near their range"
+    factors, stated = {}, {}
+    for name in SCALED_BY.keys() - CURVED_BY.values():
+        linear, curved = terms.get(name), terms.get(CURVED_BY.get(name, ""))
+        if linear is None and curved is None:
+            continue
+        (k, u_k), (k2, u_k2) = (
+            (0.0, 0.0) if term is None else (term.value, term.u) for term in (linear, curved)
         )
-    # The terms of the new file are relative to its own factors, so that a second change of temperature counts from there.
-    stated = {
-        RIG + name: term._replace(value=term.value / factors[name], u=term.u / factors[name] ** 2)
-        for name, term in terms.items()
-    }
+        factor = factors[SCALED_BY[name]] = 1.0 + k * warmer + k2 * warmer**2
+        if not factor > 0.0:
+            raise TirError(
+                f"at {T_degC:g} degC the temperature terms leave no friction or stiffness; use them near their range"
+            )
+        # The terms of the new file are relative to its own factors, so that a second change of temperature counts from there.
+        slope, bend = (k + 2.0 * k2 * warmer) / factor, k2 / factor
+        if linear is not None:
+            u = math.hypot(u_k * (1.0 - slope * warmer), u_k2 * warmer * (2.0 - slope * warmer)) / factor
+            stated[RIG + name] = linear._replace(value=slope, u=u)
+        if curved is not None:
+            u = math.hypot(u_k2 * (1.0 - bend * warmer**2), u_k * bend * warmer) / factor
+            stated[RIG + CURVED_BY[name]] = curved._replace(value=bend, u=u)
     stated[REFERENCE] = tyre.measured[REFERENCE]._replace(value=T_degC)
-    scaled = {SCALED_BY[name]: float(tyre[SCALED_BY[name]]) * factor for name, factor in factors.items()}
+    scaled = {name: float(tyre[name]) * factor for name, factor in factors.items()}
     moved = tyre.replace(**scaled).annotate(
         measured=stated, status=dict.fromkeys(scaled, f"at {T_degC:g} degC, by the temperature terms")
     )

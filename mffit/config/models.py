@@ -239,6 +239,7 @@ class FitTable(Table):
     sense: Literal["auto", "hysteresis", "lag", False] = "auto"
     warm_up: Literal["auto", True, False] = False
     wear: Literal["auto", True, False] = False
+    run_scale: Literal["auto", True, False] = "auto"  #: friction and cornering stiffness of every sweep
     exclude: Annotated[tuple[ExcludeTable, ...], BeforeValidator(list_of_tables)] = ()
 
 

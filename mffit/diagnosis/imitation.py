@@ -24,7 +24,10 @@ def imitations(problem: DiagnosisProblem, candidates: Sequence[Effect]) -> np.nd
             found.append((white / np.sqrt(size), left[:, values > 1e-9 * values[0]]))
     return np.array(
         [
-            max((float(np.sum((axes.T @ white) ** 2)) for j, (_, axes) in enumerate(found) if j != k), default=0.0)
+            max(
+                (float(np.sum((axes.T @ white) ** 2)) for j, (_, axes) in enumerate(found) if j != k),
+                default=0.0,
+            )
             for k, (white, _) in enumerate(found)
         ]
     )

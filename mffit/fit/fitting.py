@@ -10,6 +10,7 @@ from typing import Any, NamedTuple
 from mffit.config import axis_signs
 from mffit.config.declared import as_declared
 from mffit.fit import agreement
+from mffit.fit.between_runs import between_runs
 from mffit.fit.by_hand import hand_of
 from mffit.fit.coefficients import Coefficient, coefficient_records, of_file
 from mffit.fit.comments import file_comments
@@ -91,6 +92,7 @@ def fit(
         own = of_file(special.files, use, special.coefficients)
         temperature = at_temperature(found, points, special.files.by_use[use], own)
 
+    runs = between_runs(found, points)
     confounded = confoundings(replace(full, problem=at_reference(config, full.problem)))
     channels = agreement.with_points(readings, points)
     result = FitResult(
@@ -106,7 +108,7 @@ def fit(
         stages=fitted.stages,
         coverage=plan.cover,
         explanations=(
-            *nuisance_sentences(config.tyre.name, found, temperature, channels),
+            *nuisance_sentences(config.tyre.name, found, temperature, runs, channels),
             *explanations(config, files, after.values, measured, hand),
         ),
         warnings=(
@@ -122,6 +124,7 @@ def fit(
         files=files,
         temperature=temperature,
         choice=found.choice,
+        runs=runs,
         confounded=confounded,
     )
     return with_remarks(result, config, points, turning, from_base=base is not None)

@@ -14,10 +14,12 @@ from mffit.fit import constants
 from mffit.fit.fitted import Fitted
 from mffit.fit.nuisances import NUISANCES, Nuisance
 from mffit.fit.problem import FitProblem
+from mffit.fit.run_scatter import Runs, halves_of_runs
 from mffit.least_squares import FreeNumber, solve
 from mffit.left_out import Predicted, improves, left_out_errors, needed_fall, predicted
 from mffit.points import Points
 from mffit.rig import Simulation
+from mffit.rig_errors import BY_NAME
 from mffit.scatter import rms
 from mffit.suspicion import parts_of_sweeps
 
@@ -44,11 +46,16 @@ class NuisanceChoice:
 
     verdicts: tuple[Verdict, ...]
     near: Simulation  #: with what is modelled, near the best fit
+    scatter: Mapping[str, float] = field(default_factory=dict)
+    """Standard deviation among the runs of every number that each of them has."""
 
     @property
     def modelled(self) -> tuple[Nuisance, ...]:
         """The influences that are modelled."""
         return tuple(verdict.nuisance for verdict in self.verdicts if verdict.modelled)
+
+
+_TOO_FEW = f"fewer than {FEWEST_SWEEPS_TO_PREDICT} sweeps do not show whether it predicts them better"
 
 
 class _Prediction(NamedTuple):
@@ -90,11 +97,17 @@ def choose(config: Any, first: Fitted) -> NuisanceChoice:
             demanded.append(nuisance)
         else:
             open_.append(nuisance)
-    near = first.simulation
-    if demanded or open_:
-        judged, near = _judged(config, first, demanded, open_)
+    of_runs = [nuisance for nuisance in (*demanded, *open_) if nuisance.per_run]
+    common = [[n for n in some if not n.per_run] for some in (demanded, open_)]
+    near, scatter = first.simulation, {}
+    if any(common) or of_runs:
+        judged, model = _judged(config, first, *common)
+        for nuisance in of_runs:
+            verdict, scatter = _of_runs(config, model, nuisance, demanded=nuisance in demanded)
+            judged[nuisance.id] = verdict
         verdicts |= judged
-    return NuisanceChoice(tuple(verdicts[nuisance.id] for nuisance in NUISANCES), near)
+        near = model.problem.simulation
+    return NuisanceChoice(tuple(verdicts[nuisance.id] for nuisance in NUISANCES), near, scatter)
 
 
 def reference_temperature(config: Any, points: Points) -> float:
@@ -112,8 +125,8 @@ def at_reference(config: Any, problem: FitProblem) -> FitProblem:
 
 def _judged(
     config: Any, first: Fitted, demanded: Sequence[Nuisance], candidates: Sequence[Nuisance]
-) -> tuple[dict[str, Verdict], Simulation]:
-    """The verdicts on demanded influences and candidates, and the model with what is modelled."""
+) -> tuple[dict[str, Verdict], _NearSolution]:
+    """The verdicts on demanded influences and candidates, and the fit with what is modelled."""
     numbers = [number for number in first.numbers if number.name not in first.at_bound]
     group = parts_of_sweeps(first.problem.points)
     model = _NearSolution(at_reference(config, first.problem), numbers, ())
@@ -135,9 +148,7 @@ def _judged(
     while enough and left:
         found = {step: _predicted(model, step, group) for step in _steps(left, model.chosen)}
         tried |= {step[-1].id: prediction for step, prediction in found.items()}
-        helpful = [
-            step for step, prediction in found.items() if better(here, prediction, step[-1].about)
-        ]
+        helpful = [step for step, prediction in found.items() if better(here, prediction, step[-1].about)]
         if not helpful:
             break
         best = min(helpful, key=lambda step: found[step].by_sweep.total)
@@ -153,8 +164,64 @@ def _judged(
             helps = share > LEAST_PREDICTED_SHARE if old in best else better(before, here, old.about)
             if better(last, before) and not helps:
                 model, here, tried[old.id] = fewer, before, here
-    verdicts = _verdicts(config, model, candidates, demanded, base, here, tried, enough=enough)
-    return verdicts, model.problem.simulation
+    return _verdicts(config, model, candidates, demanded, base, here, tried, enough=enough), model
+
+
+def _of_runs(
+    config: Any, model: _NearSolution, nuisance: Nuisance, *, demanded: bool
+) -> tuple[Verdict, dict[str, float]]:
+    """The verdict on numbers of every run, and their scatter if they are modelled.
+
+    What a run that is left out shows of its own numbers is unknown, so halves of runs are left out: the other half shows them.
+    Whole runs must not be predicted worse: they are where a mistake of the formula is taken for a difference of runs.
+    """
+    problem, points = model.problem, model.problem.points
+    sweeps = np.unique(points.sweep, return_inverse=True)[1]
+    runs = _linear_runs(model, nuisance, sweeps)
+    spread = runs.spread()
+
+    def predictions(group: np.ndarray) -> list[_Prediction]:
+        """Without and with numbers of every run; errors are summed over sweeps."""
+        groups = np.tile(group, len(problem.sigma))
+        errors = (runs.left_out(groups, s) for s in (np.zeros_like(spread), spread))
+        return [_judged_errors(problem, error, sweeps) for error in errors]
+
+    without, beside = predictions(halves_of_runs(points))
+    gaps, scatter = (without.gaps, beside.gaps), dict(zip(nuisance.numbers, spread.tolist(), strict=True))
+    if demanded:
+        return Verdict(nuisance, True, _said(config, nuisance), *gaps), scatter
+    if len(np.unique(sweeps)) < FEWEST_SWEEPS_TO_PREDICT:
+        return Verdict(nuisance, False, _TOO_FEW), {}
+    least = LEAST_PREDICTED_SHARE * without.by_sweep.total
+    if not improves(without.by_sweep, beside.by_sweep, least=least, needed=needed_fall(1)):
+        return Verdict(
+            nuisance, False, "left-out halves of sweeps are not predicted clearly better with it", *gaps
+        ), {}
+    whole = predictions(sweeps)
+    if whole[0].by_sweep.raised(whole[1].by_sweep):
+        reason = "whole left-out sweeps are predicted worse with it, so the formula is what misses the sweeps"
+        return Verdict(nuisance, False, reason, whole[0].gaps, whole[1].gaps), {}
+    return Verdict(nuisance, True, "left-out halves of sweeps are predicted better with it", *gaps), scatter
+
+
+def _linear_runs(model: _NearSolution, nuisance: Nuisance, sweeps: np.ndarray) -> Runs:
+    """The fit, linearised, with numbers of every run."""
+    problem, channels = model.problem, len(model.problem.sigma)
+    numbers = problem.starting_here(model.numbers)
+    x = np.array([number.start for number in numbers])
+    own = [problem.value(name) for name in nuisance.numbers]
+    here = problem.free([*(n.name for n in numbers), *nuisance.numbers]).linear(np.array([*x, *own]))
+    rows = slice(len(sweeps) * channels)  # the others are measured radii, which belong to no run
+    precision, away = _priors(numbers, x)
+    radii, slope = here.slope[rows.stop :, : len(x)], here.slope[rows]
+    return Runs(
+        slope=slope[:, : len(x)],
+        own=slope[:, len(x) :],
+        residual=here.data[rows],
+        run=np.tile(sweeps, channels),
+        information=np.diag(precision) + radii.T @ radii,
+        pull=away + radii.T @ here.data[rows.stop :],
+    )
 
 
 def _steps(left: Sequence[Nuisance], chosen: Sequence[Nuisance]) -> Iterator[tuple[Nuisance, ...]]:
@@ -191,10 +258,7 @@ def _verdicts(
         elif other is not None:
             reason, gaps = "left-out sweeps are not predicted clearly better with it", (here.gaps, other.gaps)
         elif not enough:
-            reason = (
-                f"fewer than {FEWEST_SWEEPS_TO_PREDICT} sweeps do not show whether it predicts them better"
-            )
-            gaps = ({}, {})
+            reason, gaps = _TOO_FEW, ({}, {})
         else:
             reason, gaps = f"it needs the {_named(nuisance.after)}, which is not modelled", ({}, {})
         out[nuisance.id] = Verdict(nuisance, modelled, reason, *gaps)
@@ -208,21 +272,32 @@ def _named(key: str) -> str:
 def _predicted(model: _NearSolution, more: Iterable[Nuisance], group: np.ndarray) -> _Prediction:
     """Left-out parts of sweeps as the model predicts them, to first order with further influences."""
     problem = model.problem
-    numbers = [*problem.starting_here(model.numbers), *(n for nuisance in more for n in nuisance.free())]
+    added = (number for nuisance in more for number in nuisance.free(problem.points, {}))
+    numbers = [*problem.starting_here(model.numbers), *added]
     x = np.array([number.start for number in numbers])
     here = problem.free([number.name for number in numbers]).linear(x)
-    precision = np.array([0.0 if np.isinf(number.spread) else number.spread**-2.0 for number in numbers])
-    away = precision * (x - [number.expected for number in numbers])
-    count, channels = len(group), len(problem.sigma)
-    rows = slice(count * channels)  # the others are measured radii, which belong to no sweep
-    groups = np.tile(group, channels)
+    precision, away = _priors(numbers, x)
+    rows = slice(len(group) * len(problem.sigma))  # the others are measured radii, which belong to no sweep
     error = left_out_errors(
         here.slope[rows],
         here.data[rows],
         here.slope.T @ here.slope + np.diag(precision),
         here.slope.T @ here.data + away,
-        groups,
+        np.tile(group, len(problem.sigma)),
     )
+    return _judged_errors(problem, error, group)
+
+
+def _priors(numbers: Sequence[FreeNumber], x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Precision (k,) of the priors, and precision times the distance of the numbers from them."""
+    precision = np.array([0.0 if np.isinf(number.spread) else number.spread**-2.0 for number in numbers])
+    return precision, precision * (x - [number.expected for number in numbers])
+
+
+def _judged_errors(problem: FitProblem, error: np.ndarray, group: np.ndarray) -> _Prediction:
+    """The prediction whose errors (m,) are in units of the weights, by group (n,) of the points."""
+    count, channels = len(group), len(problem.sigma)
+    groups = np.tile(group, channels)
     by_sweep = predicted(error, groups, np.repeat(np.arange(channels), count), channels=channels)
     gaps = {}
     for (name, sigma), errors in zip(problem.sigma.items(), error.reshape(channels, count), strict=True):
@@ -234,14 +309,15 @@ def _predicted(model: _NearSolution, more: Iterable[Nuisance], group: np.ndarray
 
 def _refitted(model: _NearSolution, added: Sequence[Nuisance]) -> _NearSolution:
     """The model with more influences, fitted again from where it is."""
-    numbers = [*model.numbers, *(number for nuisance in added for number in nuisance.free())]
+    points = model.problem.points
+    numbers = [*model.numbers, *(number for nuisance in added for number in nuisance.free(points, {}))]
     return _solved(model._replace(numbers=numbers, chosen=(*model.chosen, *added)))
 
 
 def _without(model: _NearSolution, dropped: Nuisance) -> _NearSolution:
     """The model without an influence and those that need it, fitted again."""
     kept = tuple(n for n in model.chosen if n is not dropped and n.after != dropped.id)
-    gone = {number.name: number.start for n in model.chosen if n not in kept for number in n.free()}
+    gone = {name: BY_NAME[name].undisturbed for n in model.chosen if n not in kept for name in n.numbers}
     numbers = [number for number in model.numbers if number.name not in gone]
     return _solved(_NearSolution(model.problem.with_values(gone), numbers, kept))
 

@@ -8,6 +8,7 @@ import numpy as np
 
 from mffit.fit import constants
 from mffit.fit.agreement import Agreement
+from mffit.fit.between_runs import BetweenRuns
 from mffit.fit.files import name_at_temperature
 from mffit.fit.nuisance_choice import Gaps, Verdict
 from mffit.fit.nuisances import TEMPERATURE
@@ -19,16 +20,23 @@ from mffit.rounding import ascii_only, number, rounded
 
 SCALED = {
     "k_T_grip_per_K": "friction",
+    "k_T_grip_per_K2": "its curvature",
     "k_T_stiffness_per_K": "cornering stiffness",
     "k_T_camber_per_K": "camber stiffness",
     "k_T_drive_grip_per_K": "longitudinal friction",
     "k_T_slip_stiffness_per_K": "slip stiffness",
+    "run_grip": "friction",
+    "run_stiffness": "cornering stiffness",
 }
-"""What a temperature term scales, in words."""
+"""What a temperature term or a number of a run scales, in words."""
 
 
 def nuisance_sentences(
-    name: str, found: NuisanceFit, temperature: AtTemperature | None, plain: Mapping[str, Agreement]
+    name: str,
+    found: NuisanceFit,
+    temperature: AtTemperature | None,
+    runs: BetweenRuns | None,
+    plain: Mapping[str, Agreement],
 ) -> list[str]:
     """Which file is for whom, what was modelled and why, and what it did to the coefficients, the most important first.
 
@@ -39,7 +47,10 @@ def nuisance_sentences(
         out += [_files_sentence(name, temperature, plain), _moved_sentence(name, temperature)]
     for verdict in found.choice.verdicts:
         if verdict.modelled and verdict.nuisance.key != TEMPERATURE:
-            out.append(_modelled_sentence(verdict, found.full.rig))
+            own = runs is not None and verdict.nuisance.per_run
+            out.append(
+                _runs_sentence(name, verdict, runs) if own else _modelled_sentence(verdict, found.full.rig)
+            )
         elif not verdict.modelled and _worth_telling(verdict, found):
             said = f"The {verdict.nuisance.name} is not modelled: {verdict.reason}"
             out.append(said + (f" ({_compared(verdict)})." if verdict.beside else "."))
@@ -48,7 +59,9 @@ def nuisance_sentences(
 
 def _files_sentence(name: str, found: AtTemperature, plain: Mapping[str, Agreement]) -> str:
     special, (low, high) = name_at_temperature(name), found.T_range
-    terms = " and ".join(f"{SCALED[term]} {_percent(*value)} per K" for term, value in found.terms.items())
+    terms = " and ".join(
+        f"{SCALED[term]} {_percent(*value)} per {unit_of(term)[2:]}" for term, value in found.terms.items()
+    )
     warm = f"{found.T_ref:g}"
     return (
         f"{name}.tir is for simulations that do not know the temperature of the tyre: it leaves {_gaps(_rms(plain))} rms"
@@ -81,6 +94,15 @@ def _modelled_sentence(verdict: Verdict, rig: Mapping[str, tuple[float, float]])
     )
     return ascii_only(
         f"The {verdict.nuisance.name} is modelled, {numbers}: {verdict.reason} ({_compared(verdict)}). The files are without it."
+    )
+
+
+def _runs_sentence(name: str, verdict: Verdict, found: BetweenRuns) -> str:
+    sizes = " and ".join(f"{SCALED[number]} by {_percent(*value)}" for number, value in found.scatter.items())
+    return (
+        f"The {verdict.nuisance.name} is modelled: between {len(found.runs)} sweeps {sizes} (standard deviation); "
+        f"{verdict.reason} ({_compared(verdict)}). {name}.tir holds for the mean of the runs and leaves "
+        f"{_gaps(_rms(found.alone))} rms without their own numbers; standard uncertainties contain this scatter."
     )
 
 

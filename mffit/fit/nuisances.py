@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -12,7 +12,7 @@ from mffit.fit import constants
 from mffit.least_squares import FreeNumber
 from mffit.points import Points
 from mffit.rig.histories import distance_km, sense
-from mffit.rig_errors import BY_NAME
+from mffit.rig_errors import BY_NAME, OF_RUN, number_of
 from mffit.suspicion import parts_of_sweeps
 
 TEMPERATURE = "temperature"
@@ -32,10 +32,21 @@ class Nuisance:
     rival: str = ""  #: id of an influence with nearly the same effect: one of the two is modelled
     about: tuple[str, ...] = ()
     """Channels that it is about, where the others see it only at second hand: Mz uses the slip stiffness to weigh slips."""
+    per_run: bool = (
+        False  #: whether every run (sweep) has numbers of its own, which scatter about those of a perfect rig
+    )
 
-    def free(self) -> tuple[FreeNumber, ...]:
-        """The numbers with their limits and a prior that does not pull."""
-        return tuple(_number(name) for name in self.numbers)
+    def free(self, points: Points, scatter: Mapping[str, float]) -> tuple[FreeNumber, ...]:
+        """The numbers with their limits and priors.
+
+        The prior does not pull; that of a number of every run is its ``scatter`` among the runs, by name.
+        """
+        if not self.per_run:
+            return tuple(
+                _number(name, constants.NUISANCE_SPREAD * BY_NAME[name].spread) for name in self.numbers
+            )
+        runs = [points.sweep_names[k] for k in np.unique(points.sweep)]
+        return tuple(_number(name, scatter[name], run) for name in self.numbers for run in runs)
 
     def setting(self, config: Any) -> bool | None:
         """What [fit] demands: True or False; None: whatever predicts better."""
@@ -47,12 +58,9 @@ class Nuisance:
         return given is True or given == self.id
 
 
-def _number(name: str) -> FreeNumber:
-    error = BY_NAME[name]
-    spread = constants.NUISANCE_SPREAD * error.spread
-    return FreeNumber(
-        name, error.undisturbed, error.lower, error.upper, expected=error.undisturbed, spread=spread
-    )
+def _number(name: str, spread: float, run: str = "") -> FreeNumber:
+    error, value = BY_NAME[name], BY_NAME[name].undisturbed
+    return FreeNumber(number_of(name, run), value, error.lower, error.upper, expected=value, spread=spread)
 
 
 def _temperatures(points: Points) -> str:
@@ -101,6 +109,15 @@ def _distances(points: Points) -> str:
     return "" if np.ptp(distance_km(points)) > 0.0 else "the wheel does not roll between the points"
 
 
+def _runs(points: Points) -> str:
+    count = len(np.unique(points.sweep))
+    return (
+        ""
+        if count >= constants.FEWEST_RUNS
+        else f"{count} runs cannot differ from one another in a known way"
+    )
+
+
 NUISANCES = (
     Nuisance(
         id=TEMPERATURE,
@@ -108,6 +125,14 @@ NUISANCES = (
         key=TEMPERATURE,
         numbers=("k_T_grip_per_K", "k_T_stiffness_per_K"),
         lacking=_temperatures,
+    ),
+    Nuisance(
+        id="temperature-curvature",
+        name="curvature of friction over tyre temperature",
+        key=TEMPERATURE,
+        numbers=("k_T_grip_per_K2",),
+        lacking=_temperatures,
+        after=TEMPERATURE,
     ),
     Nuisance(
         id="temperature-camber",
@@ -156,5 +181,19 @@ NUISANCES = (
         numbers=("wear_per_km",),
         lacking=_distances,
     ),
+    Nuisance(
+        id="run-scale",
+        name="scatter of grip and stiffness from run to run",
+        key="run_scale",
+        numbers=("run_grip", "run_stiffness"),
+        lacking=_runs,
+        per_run=True,
+    ),
 )
-"""In the order in which a sentence names them."""
+"""In the order in which a sentence names them; those of every run come last."""
+
+
+def of_run(name: str) -> bool:
+    """Whether a number of the rig is the friction or the stiffness of one run."""
+    whole, _, run = name.partition(OF_RUN)
+    return bool(run) and any(nuisance.per_run and whole in nuisance.numbers for nuisance in NUISANCES)

@@ -48,12 +48,7 @@ class FitPlan:
 
         What tir does not compute, or nothing is free for, is left alone: it would take time and change no number.
         """
-        fitted = {
-            channel
-            for row in self.cover
-            if row.free
-            for channel in BY_STAGE[row.stage].channels
-        }
+        fitted = {channel for row in self.cover if row.free for channel in BY_STAGE[row.stage].channels}
         return tuple(
             name for name in CHANNELS if name in SIDEWAYS or (name in fitted and name in points.measured)
         )

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from mffit.brief import Brief
 from mffit.fit.agreement import Agreement
 from mffit.fit.bands import BandsByPressure
+from mffit.fit.between_runs import BetweenRuns
 from mffit.fit.coefficients import Coefficient
 from mffit.fit.confounding import Confounding
 from mffit.fit.coverage import StageCoverage
@@ -51,6 +52,7 @@ class FitResult(Brief):
     files: Files | None = None  #: every written file and its misfit
     temperature: AtTemperature | None = None  #: the model with temperature terms, if there is one
     confounded: tuple[Confounding, ...] = ()  #: settings with which the temperature runs along
+    runs: BetweenRuns | None = None  #: what every run has of its own, if that is modelled
     choice: NuisanceChoice | None = (
         None  #: what was modelled beside coefficients and declared rig errors, and why
     )

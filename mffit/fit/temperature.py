@@ -10,6 +10,7 @@ import numpy as np
 
 from mffit.fit import agreement, constants
 from mffit.fit.agreement import Agreement
+from mffit.fit.between_runs import without_runs
 from mffit.fit.coefficients import Coefficient
 from mffit.fit.files import FileFigures
 from mffit.fit.nuisance_choice import Gaps
@@ -48,7 +49,8 @@ def at_temperature(
     """The record of a fit that models the temperature."""
     full = found.full
     terms = {name: value for name, value in full.rig.items() if name in SCALED_BY}
-    alone = full.simulation.with_numbers(dict.fromkeys(terms, 0.0))
+    simulation = without_runs(full.simulation)
+    alone = simulation.with_numbers(dict.fromkeys(terms, 0.0))
     verdict = next(v for v in found.choice.verdicts if v.modelled and set(v.nuisance.numbers) & set(terms))
     T_ref = full.simulation.faults["T_ref_degC"]
     return AtTemperature(
@@ -60,7 +62,7 @@ def at_temperature(
         coefficients=coefficients,
         posterior=full.posterior,
         simulation=full.simulation,
-        channels=agreement.with_points(full.simulation.readings(points), points),
+        channels=agreement.with_points(simulation.readings(points), points),
         alone=agreement.with_points(alone.readings(points), points),
         left_out=verdict.beside,
         left_out_plain=verdict.without,

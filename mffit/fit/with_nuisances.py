@@ -55,17 +55,17 @@ def fit_with_nuisances(
 
         def refit(rows: np.ndarray) -> Fitted:
             part = problem.select(rows)
-            return _polished(
-                config, part, plan, choice.modelled, fit_staged(part, start, plan, silent, restarts=False)
-            )
+            found = fit_staged(part, start, plan, silent, restarts=False)
+            return _polished(config, part, plan, choice, choice.modelled, found)
 
         if choice.modelled:
             progress(f"fitting again with {', '.join(nuisance.name for nuisance in choice.modelled)}")
-        full = _polished(config, problem, plan, choice.modelled, fitted, choice.near)
-        others = [nuisance for nuisance in choice.modelled if nuisance.key != TEMPERATURE]
-        if len(others) == len(choice.modelled):
+        full = _polished(config, problem, plan, choice, choice.modelled, fitted, choice.near)
+        if not any(nuisance.key == TEMPERATURE for nuisance in choice.modelled):
             return NuisanceFit(full, full, choice, refit)
-        plain = _polished(config, problem, plan, others, fitted)
+        # Numbers of every run would take up what the coefficients of the plain file are to contain: the usual warming.
+        others = [n for n in choice.modelled if n.key != TEMPERATURE and not n.per_run]
+        plain = _polished(config, problem, plan, choice, others, fitted)
         return NuisanceFit(_doubted(plain, full), full, choice, refit)
 
     first: list[NuisanceFit] = []
@@ -86,6 +86,7 @@ def _polished(
     config: Any,
     problem: FitProblem,
     plan: FitPlan,
+    choice: NuisanceChoice,
     added: Sequence[Nuisance],
     fitted: Fitted,
     near: Simulation | None = None,
@@ -96,7 +97,7 @@ def _polished(
     """
     if not added:
         return fitted
-    numbers = tuple(number for nuisance in added for number in nuisance.free())
+    numbers = tuple(n for nuisance in added for n in nuisance.free(problem.points, choice.scatter))
     here = at_reference(config, replace(problem, simulation=near or fitted.simulation))
     plan = replace(plan, rig=(*plan.rig, *numbers))
     found = polish(here if plan.noise_stated else here.with_noise_of_misfit(), plan)

@@ -54,8 +54,10 @@ class Specimen:
     def _shared_name(self, number: str) -> str:
         name, _, setup = number.partition(OF_RUN)
         error = error_of(number)
-        if error is None or not error.of_setup:
+        if error is None:
             return number
+        if not error.of_setup:  # numbers of runs are of this build alone
+            return number_of(name, " of ".join((setup, str(self.folder)))) if setup else number
         if not setup and len(self.setups) == 1:
             setup = self.setups[0]
         declared = self.rig.get("name") and setup in self.setups

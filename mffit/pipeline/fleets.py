@@ -13,6 +13,7 @@ from threadpoolctl import threadpool_limits
 from mffit import fleet as combining
 from mffit.comparison import with_u
 from mffit.errors import InputError
+from mffit.fit.nuisances import of_run
 from mffit.fleet import Fleet, Hierarchy, Information, Row, Specimen, TyreEstimate
 from mffit.output import refuse_early
 from mffit.pipeline.fleet_notes import fleet_notes, notes_on_setups
@@ -87,11 +88,14 @@ def _estimated(specimens: Sequence[Specimen]) -> Hierarchy | None:
 
 def _plainly_named(found: Sequence[Information]) -> list[Information]:
     """The same with plain names for zeros of which there is one for all tyres: one set-up, declared as such."""
-    zeros = {name for one in found for name in one.names if OF_RUN in name}
+    zeros = {name for one in found for name in one.names if OF_RUN in name and not of_run(name)}
     setups = {name.partition(OF_RUN)[2] for name in zeros}
     if len(setups) != 1:
         return list(found)
-    return [replace(one, names=tuple(name.partition(OF_RUN)[0] for name in one.names)) for one in found]
+    return [
+        replace(one, names=tuple(name if of_run(name) else name.partition(OF_RUN)[0] for name in one.names))
+        for one in found
+    ]
 
 
 def _row(specimen: Specimen, rig: int) -> Row:

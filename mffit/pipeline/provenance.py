@@ -15,13 +15,14 @@ import tir
 from mffit.config import Config
 from mffit.diagnosis.inexact import Inexactness, correlated, refitted
 from mffit.fit import FitResult, plain_use
+from mffit.fit.nuisances import of_run
 from mffit.made import Made
 from mffit.measured import Measured
 from mffit.pipeline.inputs import input_hashes
 from mffit.rig_errors import error_of, unit_of
 from mffit.suspicion import Trust
 from tir import Tyre
-from tir.temperature import HIGHEST, LOWEST, REFERENCE, RIG, terms_of
+from tir.temperature import CURVED_BY, HIGHEST, LOWEST, REFERENCE, RIG, terms_of
 
 PROGRAM = "program"
 """Key of the version that wrote a file."""
@@ -75,6 +76,11 @@ def annotator(config: Config, made: Made, measured: Measured, fitted: FitResult,
             provenance["temperature"] = (
                 f"holds at {special.T_ref:g} degC; elsewhere LMUY, LKY, LKYC times 1 + k (T - {special.T_ref:g}) with "
                 "rig.k_T_grip_per_K, _stiffness_, _camber_"
+                + (
+                    "; LMUY also + rig.k_T_grip_per_K2 times the square"
+                    if set(CURVED_BY.values()) & special.terms.keys()
+                    else ""
+                )
             )
         return marked(tyre.annotate(measured=quantities, provenance=provenance), trust)
 
@@ -93,6 +99,7 @@ def _of_rig(rig: Mapping[str, tuple[float, float]]) -> dict[str, tir.Quantity]:
     return {
         RIG + quote(name, safe=PLAIN): tir.Quantity(value, u, unit_of(name))
         for name, (value, u) in rig.items()
+        if not of_run(name)
     }
 
 

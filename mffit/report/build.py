@@ -17,7 +17,7 @@ from mffit.report.build_view import PER_LOAD, STATUS_ORDER, BuildView, ChannelRo
 from mffit.report.drawing.records import Sheet
 from mffit.report.figures import bands, decomposition, files, fit, residuals, spin, structure
 from mffit.results import BuildResult
-from mffit.rig_errors import MEANINGS
+from mffit.rig_errors import MEANINGS, UNITS
 
 SECTION_TITLES = {
     "LATERAL_COEFFICIENTS": "Side force",
@@ -61,6 +61,7 @@ def write_build(result: BuildResult, folder: Path) -> None:
         of_setups=setup_notes.setup_scatter,
         radians=math.radians(1.0),
         meanings=MEANINGS,
+        units=UNITS,
     )
 
 

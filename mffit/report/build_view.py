@@ -11,6 +11,7 @@ from mffit.config import Config
 from mffit.config.laboratory import LabTable
 from mffit.diagnosis.remains import Remains
 from mffit.fit import Agreement, Coefficient, Posterior, StageRecord
+from mffit.fit.between_runs import BetweenRuns
 from mffit.fit.coverage import StageCoverage
 from mffit.fit.files import Files
 from mffit.fit.temperature import AtTemperature
@@ -126,6 +127,7 @@ class BuildView:
         ""  #: why the bands are wider between the pressures of the sweeps; empty if they are not
     )
     temperature: AtTemperature | None  #: the fit with temperature terms, if there is one
+    runs: BetweenRuns | None  #: what every run has of its own, if that is modelled
 
     def marked(self, channel: str) -> tuple[np.ndarray, np.ndarray]:
         """Rows of the channel's readings without weight, and of the points of doubtful sweeps."""
@@ -192,6 +194,7 @@ def view_of(result: BuildResult) -> BuildView:
         outliers=fit.outliers,
         bands_note=fit.bands_note,
         temperature=fit.temperature,
+        runs=fit.runs,
     )
 
 

@@ -48,6 +48,7 @@ def distance_km(points: Points) -> np.ndarray:
 
 
 def of_part(points: Points, name: str) -> np.ndarray:
-    """1 at the points (n,) of the set-up of that name, or of the run in the file of that name, else 0."""
-    names, index = (points.setups, points.setup) if name in points.setups else (points.files, points.file)
+    """1 at the points (n,) of the set-up, the file or the sweep of that name, the first of the three that has it; else 0."""
+    counted = ((points.setups, points.setup), (points.files, points.file), (points.sweep_names, points.sweep))
+    names, index = next((pair for pair in counted if name in pair[0]), counted[0])
     return np.array([float(other == name) for other in names])[index]

@@ -34,7 +34,7 @@ def _lag(moved: np.ndarray, steps: np.ndarray, sigma: float) -> tuple[np.ndarray
     """Lag (m + 1,) [rad] after steps (m,) of angle [rad] and distance [m], and its derivative by sigma [rad/m]."""
     rolls = steps > 0.0
     distance = np.where(rolls, steps, 1.0)
-    if sigma:
+    if sigma > 0.0:
         kept = np.where(rolls, np.exp(-distance / sigma), 1.0)
         share = np.where(rolls, (1.0 - kept) * sigma / distance, 1.0)
         share_slope = np.where(rolls, (share - kept) / sigma, 0.0)

@@ -32,7 +32,7 @@ class Simulation(Brief):
     star: bool = False  #: tan(alpha), sin(gamma) as inputs
     radius_m: float = math.nan  #: declared radius of the rig's usual path [m]; NaN: that of most points
     of_parts: Mapping[str, float] = field(default_factory=dict)
-    """What single runs or set-ups add to a rig error, as ``F0_N@zeros.csv`` or ``F0_N@A``, in its unit."""
+    """What single files, set-ups or sweeps add to a rig error, as ``F0_N@zeros.csv`` or ``F0_N@A``, in its unit."""
 
     @classmethod
     def of(
@@ -119,21 +119,28 @@ class Simulation(Brief):
 
         The stop at which the moment holds a wheel with play stays the same; a floating wheel keeps its moment at zero.
         """
-        numbers = traced({name: self.number(name, points) for name in names})
+        whole = [name.partition(OF_RUN)[0] for name in names]
+        numbers = traced({name: self.number(name, points) for name in whole})
         channels = _in_order(channels)
         out = dict(zip(channels, self._chain(points, numbers).readings(channels), strict=True))
         columns, n = list(numbers.values()), len(points)
-        shape = (n, len(columns))
-        return (
-            Readings(**{name: np.broadcast_to(plain(x), n) for name, x in out.items()}),
-            Readings(**{name: np.broadcast_to(gradient(x, columns), shape) for name, x in out.items()}),
-        )
+        place = [list(numbers).index(name) for name in whole]
+        slopes = {
+            name: np.broadcast_to(gradient(x, columns), (n, len(columns)))[:, place]
+            for name, x in out.items()
+        }
+        # A number of a part is added to that of the whole test, so its slope is the same at the points of the part.
+        for k, name in enumerate(names):
+            if OF_RUN in name:
+                own = of_part(points, name.partition(OF_RUN)[2])
+                for slope in slopes.values():
+                    slope[:, k] *= own
+        return Readings(**{name: np.broadcast_to(plain(x), n) for name, x in out.items()}), Readings(**slopes)
 
     def _chain(self, points: Points, numbers: Mapping[str, Traced]) -> Chain:
         """The passage of the points with some numbers traced."""
         faults: dict[str, Any] = {**self.faults, **{n: x for n, x in numbers.items() if n in BY_NAME}}
-        of_parts = {**self.of_parts, **{n: x for n, x in numbers.items() if OF_RUN in n}}
-        for key, added in of_parts.items():
+        for key, added in self.of_parts.items():
             name, _, part = key.partition(OF_RUN)
             faults[name] = faults[name] + added * of_part(points, part)
         return Chain(

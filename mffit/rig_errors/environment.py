@@ -21,6 +21,16 @@ def _warmed(k: Any, value: Any, at: Any) -> Any:
 
 _of_forces = partial(RigError, kind="environment", place=Place.ENVIRONMENT, acts_on=("Fy", "Mz"))
 _of_temperature = partial(RigError, unit="1/K", kind="environment", formula=_warmed, lower=-0.05, upper=0.05)
+_of_run = partial(
+    RigError,
+    unit="-",
+    kind="environment",
+    place=Place.COEFFICIENTS,
+    formula=lambda share, value, at: value * (1.0 + share),
+    spread=0.02,
+    lower=-0.5,
+    upper=0.5,
+)
 _appearance = partial(Appearance, parity="as the forces")
 
 TEMPERATURE_GRIP = _of_temperature(
@@ -39,6 +49,20 @@ TEMPERATURE_GRIP = _of_temperature(
             confusable_with=("temperature",),
         ),
     ),
+)
+TEMPERATURE_GRIP_CURVATURE = RigError(
+    name="k_T_grip_per_K2",
+    unit="1/K^2",
+    kind="environment",
+    meaning=f"adds k2 (T - T_ref)^2 to the factor 1 + k {WARMTH} of the friction",
+    place=Place.COEFFICIENTS,
+    acts_on=(SCALED_BY["k_T_grip_per_K2"],),
+    formula=lambda k2, value, at: (
+        value * (1.0 + k2 * at.warmth**2 / (1.0 + at.numbers["k_T_grip_per_K"] * at.warmth))
+    ),
+    spread=1e-4,
+    lower=-5e-3,
+    upper=5e-3,
 )
 TEMPERATURE_STIFFNESS = _of_temperature(
     name="k_T_stiffness_per_K",
@@ -93,6 +117,16 @@ TEMPERATURE = _of_temperature(
             together_with=("T_ref_degC",),
         ),
     ),
+)
+RUN_GRIP = _of_run(
+    name="run_grip",
+    meaning="friction times 1 + run_grip, a number of every run",
+    acts_on=(SCALED_BY["k_T_grip_per_K"],),
+)
+RUN_STIFFNESS = _of_run(
+    name="run_stiffness",
+    meaning="cornering stiffness times 1 + run_stiffness, a number of every run",
+    acts_on=(SCALED_BY["k_T_stiffness_per_K"],),
 )
 REFERENCE_TEMPERATURE = RigError(
     name="T_ref_degC",
@@ -186,5 +220,8 @@ COEFFICIENT_ERRORS = (
     TEMPERATURE_CAMBER,
     TEMPERATURE_DRIVE_GRIP,
     TEMPERATURE_SLIP_STIFFNESS,
+    TEMPERATURE_GRIP_CURVATURE,
+    RUN_GRIP,
+    RUN_STIFFNESS,
 )
 ENVIRONMENT_ERRORS = (TEMPERATURE, DRIFT, WEAR, WARM_UP, SPEED)

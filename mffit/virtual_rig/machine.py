@@ -56,6 +56,11 @@ def _kelvin(s: Settings, m: Machine) -> np.ndarray:
     return s.T - m.faults["T_ref_degC"]
 
 
+def _grip(s: Settings, m: Machine) -> np.ndarray:
+    """Friction (n,) at the temperature of the settings, as far as it is linear, over that at the reference."""
+    return 1.0 + m.faults["k_T_grip_per_K"] * _kelvin(s, m)
+
+
 STEERS: dict[str, Formula] = {
     "alpha_0_deg": lambda x, s, m: np.deg2rad(x),
     "camber_skew_deg": lambda x, s, m: np.deg2rad(x * np.sin(_leant(s, m))),
@@ -70,10 +75,16 @@ LOADS: dict[str, Formula] = {
 """Factors on the load."""
 SCALES: dict[str, tuple[str, Formula]] = {
     "k_T_grip_per_K": ("LMUY", lambda x, s, m: 1.0 + x * _kelvin(s, m)),
+    "k_T_grip_per_K2": (
+        "LMUY",
+        lambda x, s, m: (_grip(s, m) + x * _kelvin(s, m) * _kelvin(s, m)) / _grip(s, m),
+    ),
     "k_T_stiffness_per_K": ("LKY", lambda x, s, m: 1.0 + x * _kelvin(s, m)),
     "k_T_camber_per_K": ("LKYC", lambda x, s, m: 1.0 + x * _kelvin(s, m)),
     "k_T_drive_grip_per_K": ("LMUX", lambda x, s, m: 1.0 + x * _kelvin(s, m)),
     "k_T_slip_stiffness_per_K": ("LKX", lambda x, s, m: 1.0 + x * _kelvin(s, m)),
+    "run_grip": ("LMUY", lambda x, s, m: 1.0 + x),
+    "run_stiffness": ("LKY", lambda x, s, m: 1.0 + x),
 }
 """Factors on scaling factors of the tyre."""
 SURROUNDINGS: dict[str, Formula] = {

@@ -85,3 +85,35 @@ def test_terms_without_their_reference_are_none():
 def test_a_temperature_that_leaves_no_friction_is_refused(tyre):
     with pytest.raises(tir.TirError, match="at 300 degC"):
         tyre.at_temperature(300.0)
+
+
+CURVED = TERMS | {"rig.k_T_grip_per_K2": tir.Quantity(-2e-4, 1e-5, "1/K^2")}
+
+
+def test_a_quadratic_term_of_friction_adds_to_the_linear_one():
+    warm = tir.read(FRONT).annotate(measured=CURVED).at_temperature(70.0)
+    assert warm["LMUY"] == pytest.approx((1.0 - 0.05 - 0.02) * tir.read(FRONT)["LMUY"])
+    assert warm["LKY"] == pytest.approx(0.98 * tir.read(FRONT)["LKY"])
+
+
+def test_a_second_change_of_temperature_follows_the_same_parabola():
+    file = tir.read(FRONT).annotate(measured=CURVED)
+    twice, once = file.at_temperature(72.0).at_temperature(50.0), file.at_temperature(50.0)
+    assert twice["LMUY"] == pytest.approx(once["LMUY"], rel=1e-12)
+    for name in ("rig.k_T_grip_per_K", "rig.k_T_grip_per_K2"):
+        assert twice.measured[name].value == pytest.approx(once.measured[name].value, rel=1e-9)
+
+
+def test_the_uncertainty_of_moved_terms_is_that_of_drawn_ones():
+    rng, names = np.random.default_rng(5), ("rig.k_T_grip_per_K", "rig.k_T_grip_per_K2")
+    file = tir.read(FRONT).annotate(measured=CURVED)
+    drawn = [[CURVED[n].value + CURVED[n].u * rng.standard_normal() for n in names] for _ in range(400)]
+    moved = [
+        file.annotate(measured={n: CURVED[n]._replace(value=x) for n, x in zip(names, row, strict=True)})
+        .at_temperature(80.0)
+        .measured
+        for row in drawn
+    ]
+    stated = file.at_temperature(80.0).measured
+    for name in names:
+        assert np.std([terms[name].value for terms in moved]) == pytest.approx(stated[name].u, rel=0.12)

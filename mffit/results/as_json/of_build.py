@@ -14,6 +14,7 @@ from mffit.diagnosis.one_step import BestEffect
 from mffit.diagnosis.remains import Remains
 from mffit.fit import Coefficient, FitResult
 from mffit.fit.bands import BandsByPressure
+from mffit.fit.between_runs import BetweenRuns
 from mffit.fit.files import Files
 from mffit.fit.nuisance_choice import Verdict
 from mffit.fit.temperature import AtTemperature
@@ -109,6 +110,7 @@ def fit(found: FitResult, over_noise: Mapping[str, float] = NOT_JUDGED) -> dict[
         "rig": _rig(found.rig if found.temperature is None else found.temperature.rig),
         "temperature": None if found.temperature is None else _temperature(found.temperature),
         "modelled": [] if found.choice is None else [_verdict(row) for row in found.choice.verdicts],
+        "runs": None if found.runs is None else _runs(found.runs),
         "confounded": [
             picked(row, "setting", "correlation", "coefficient", "growth") for row in found.confounded
         ],
@@ -179,6 +181,15 @@ def _temperature(found: AtTemperature) -> dict[str, Any]:
             name: {"plain": there, "value": here, "stderr": u}
             for name, (there, here, u) in found.moved.items()
         },
+    }
+
+
+def _runs(found: BetweenRuns) -> dict[str, Any]:
+    """The scatter of what every run has of its own; the values of the runs are in ``rig``."""
+    return {
+        "names": list(found.runs),
+        "scatter": _rig(found.scatter),
+        "channels_without": {name: asdict(row) for name, row in found.alone.items()},
     }
 
 

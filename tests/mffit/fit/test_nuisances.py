@@ -108,7 +108,8 @@ def test_both_files_and_the_terms_are_where_a_program_looks(warmed):
     assert content["fit"]["temperature"]["T_max_degC"] == WARM
     modelled = {row["id"]: row["modelled"] for row in content["fit"]["modelled"]}
     assert modelled == {
-        "temperature": True, "temperature-camber": True, "hysteresis": False, "lag": False, "warm-up": False, "wear": False,
+        "temperature": True, "temperature-curvature": False, "temperature-camber": True, "hysteresis": False, "lag": False,
+        "warm-up": False, "wear": False, "run-scale": False,
     }  # fmt: skip
     with pytest.raises(tir.TirError, match="no temperature terms"):
         tir.read(folder / "small.tir").at_temperature(30.0)
@@ -200,6 +201,34 @@ def test_temperature_that_is_demanded_but_not_measured_is_refused(warmed):
     ) as refused:
         choose(with_setting(result, temperature=True), search)
     assert refused.value.key == "fit.temperature"
+
+
+def test_friction_that_is_greatest_at_one_temperature_gets_a_curvature(tmp_path):
+    """The virtual rig's friction is 1 - 0.002 (T - 40) - 0.0003 (T - 40)^2 times that of the file; sweeps start cold or warm."""
+    linear, curvature, T_ref = -0.002, -3e-4, 40.0
+    content = small_rigs.flat(
+        faults={"k_T_grip_per_K": linear, "k_T_grip_per_K2": curvature, "T_ref_degC": T_ref}
+    )
+    slip = [sweep for sweep in content["sweep"] if "sideslip" in sweep["file"]]
+    starts = iter(np.random.default_rng(3).permutation(np.linspace(22.0, 50.0, 18)).tolist())
+    content["sweep"] = [
+        {**sweep, "file": f"{pressure}_{again}_{sweep['file']}", "p_kPa": pressure, "T_degC": [T, T + 8.0]}
+        for pressure in (250, 200, 300)
+        for again in "ab"
+        for sweep, T in zip(slip, starts)  # noqa: B905 - the iterator goes on
+    ]
+    small_rigs.simulated(content, tmp_path)
+    result = mffit.build(tmp_path / "tyre.toml", tmp_path / "out")
+    assert verdict(result.fit.choice, "temperature-curvature").modelled
+    file = tir.read(tmp_path / "out" / "small-at-temperature.tir")
+    for T in (25.0, 40.0, 55.0):
+        friction = 1.0 + linear * (T - T_ref) + curvature * (T - T_ref) ** 2
+        aim = small_rigs.truth().replace(LMUY=friction)(1400.0, np.radians(-8.0)).Fy
+        assert file.at_temperature(T)(1400.0, np.radians(-8.0)).Fy == pytest.approx(aim, rel=0.006)
+    assert "its curvature" in result.fit.explanations[0]
+    assert " per K^2" in result.fit.explanations[0]
+    rig = json.loads((tmp_path / "out" / "result.json").read_text())["fit"]["rig"]
+    assert rig["k_T_grip_per_K2"]["unit"] == "1/K^2"
 
 
 def test_temperature_that_is_demanded_is_modelled(warmed):

@@ -35,7 +35,7 @@ FAULTS = Faults(
 )
 YIELDING = FAULTS.replace(backlash_deg=0.0, compliance_deg_per_Nm=0.006)
 """A steering that gives way to the moment; without play, whose side is held while derivatives are taken."""
-STEPS = {"k_t_per_s": 1e-9, "k_T_per_K": 1e-6, "crosstalk": 1e-5}
+STEPS = {"k_t_per_s": 1e-9, "k_T_per_K": 1e-6, "k_T_grip_per_K2": 1e-7, "crosstalk": 1e-5}
 
 
 @pytest.fixture(scope="module")

@@ -1,0 +1,134 @@
+"""Scatter of grip and stiffness from run to run: its size, and what it does to the prediction of left-out readings.
+
+A run is a sweep. Its own numbers act on its own readings only, so they are eliminated run by run, and the equations that
+remain are those of the shared numbers.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from mffit.fit import constants
+from mffit.points import Points
+
+
+@dataclass(frozen=True, slots=True)
+class Part:
+    """Normal equations of some readings, shared numbers (k,) beside the own numbers (j,) of one run; additive."""
+
+    shared: np.ndarray  #: (k, k)
+    mixed: np.ndarray  #: (k, j)
+    own: np.ndarray  #: (j, j)
+    shared_pull: np.ndarray  #: (k,) derivatives times residuals
+    own_pull: np.ndarray  #: (j,)
+
+    @classmethod
+    def of(cls, slope: np.ndarray, own: np.ndarray, residual: np.ndarray) -> Part:
+        """The equations of rows with derivatives by shared (m, k) and own (m, j) numbers, and residuals (m,)."""
+        return cls(slope.T @ slope, slope.T @ own, own.T @ own, slope.T @ residual, own.T @ residual)
+
+    def inverse(self, spread: np.ndarray) -> np.ndarray:
+        """Covariance (j, j) of the own numbers for known shared ones; ``spread`` (j,) of their priors may be 0."""
+        inside = np.eye(len(spread)) + spread[:, None] * self.own * spread
+        return spread[:, None] * np.linalg.solve(inside, np.diag(spread))
+
+    def eliminated(self, spread: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Equations of the shared numbers alone: matrix (k, k) and pull (k,)."""
+        through = self.mixed @ self.inverse(spread)
+        return self.shared - through @ self.mixed.T, self.shared_pull - through @ self.own_pull
+
+    def solved(self, shared: np.ndarray, spread: np.ndarray) -> np.ndarray:
+        """Change of the own numbers (j,) for a change of the shared ones (k,)."""
+        return -self.inverse(spread) @ (self.own_pull + self.mixed.T @ shared)
+
+
+@dataclass(frozen=True, slots=True)
+class Runs:
+    """A linearised fit whose runs may have numbers of their own."""
+
+    slope: np.ndarray  #: (m, k) derivatives by the shared numbers, in units of the noise
+    own: np.ndarray  #: (m, j) derivatives by a number of all runs, for every kind of own number
+    residual: np.ndarray  #: (m,) model less measured
+    run: np.ndarray  #: (m,) index of the run
+    information: (
+        np.ndarray
+    )  #: (k, k) about the shared numbers from priors and from readings that belong to no run
+    pull: np.ndarray  #: (k,) half the derivative of the sum of squares of these
+
+    def part(self, rows: np.ndarray) -> Part:
+        """The equations of some rows."""
+        return Part.of(self.slope[rows], self.own[rows], self.residual[rows])
+
+    def parts(self) -> list[Part]:
+        """The equations of every run."""
+        return [self.part(self.run == k) for k in np.unique(self.run)]
+
+    def common(self, parts: list[Part], spread: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Equations of the shared numbers from all runs and priors."""
+        matrix, pull = self.information.copy(), self.pull.copy()
+        for part in parts:
+            more = part.eliminated(spread)
+            matrix += more[0]
+            pull += more[1]
+        return matrix, pull
+
+    def own_numbers(self, spread: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Own numbers (runs, j) and their variances (runs, j)."""
+        parts = self.parts()
+        matrix, pull = self.common(parts, spread)
+        covariance = np.linalg.inv(matrix)
+        shared = -covariance @ pull
+        values = np.array([part.solved(shared, spread) for part in parts])
+        through = [part.mixed @ part.inverse(spread) for part in parts]
+        variances = [
+            np.diag(part.inverse(spread)) + np.einsum("kj,kl,lj->j", by, covariance, by)
+            for part, by in zip(parts, through, strict=True)
+        ]
+        return values, np.array(variances)
+
+    def spread(self) -> np.ndarray:
+        """Standard deviation (j,) of the own numbers among the runs, of maximum likelihood.
+
+        Iterated: the mean square of the numbers, each with its variance. Runs that do not show a number keep its variance.
+        """
+        found = np.full(self.own.shape[1], float(constants.USUAL_RUN_SCATTER))
+        for _ in range(constants.SCATTER_STEPS):
+            values, variances = self.own_numbers(found)
+            last, found = found, np.sqrt(np.mean(values**2 + variances, axis=0))
+            if np.all(np.abs(found - last) < constants.SCATTER_TOLERANCE * last):
+                break
+        return np.maximum(found, float(constants.LEAST_RUN_SCATTER))
+
+    def left_out(self, group: np.ndarray, spread: np.ndarray) -> np.ndarray:
+        """Errors (m,) of the rows when each group (m,), a run or a piece of one, is predicted from all other rows.
+
+        What remains of the run shows its own numbers; those of a whole run that is left out have their expected value.
+        """
+        parts = self.parts()
+        matrix, pull = self.common(parts, spread)
+        error = np.empty_like(self.residual)
+        for k, part in zip(np.unique(self.run), parts, strict=True):
+            rows = np.flatnonzero(self.run == k)
+            whole = part.eliminated(spread)
+            for piece in np.unique(group[rows]):
+                out, rest = rows[group[rows] == piece], self.part(rows[group[rows] != piece])
+                left = rest.eliminated(spread)
+                shared = -np.linalg.solve(matrix - whole[0] + left[0], pull - whole[1] + left[1])
+                own = rest.solved(shared, spread)
+                error[out] = self.residual[out] + self.slope[out] @ shared + self.own[out] @ own
+        return error
+
+
+def halves_of_runs(points: Points) -> np.ndarray:
+    """Number (n,) of the half of its run that each point is in, from 0: either side of the middle of sideslip, or of camber.
+
+    The two sides share the tyre's state but not their angles, so that what one of them shows is no detail of its own curve.
+    """
+    out = np.empty(len(points), dtype=int)
+    for k, run in enumerate(np.unique(points.sweep)):
+        rows = points.sweep == run
+        angle = max((points.alpha[rows], points.gamma[rows]), key=np.ptp)
+        out[rows] = 2 * k + (angle > 0.5 * (angle.min() + angle.max()))
+    return out
