@@ -115,6 +115,10 @@ POLISH_TOLERANCE = Real(1e-6, "-", "Relative gain that ends the joint polish.")
 FREE_EPSILON_TOLERANCE = Real(1e-5, "-", "Relative gain that ends the refit with PECP1 free.")
 REFIT_STEPS = Count(12, "-", "Most least-squares steps of a refit that starts near its solution.")
 REFIT_TOLERANCE = Real(1e-4, "-", "Relative gain that ends such a refit.")
+REFIT_STEPS_UNDER_SLIP = Count(
+    60, "-", "The same steps where Fx is fitted: the weights of combined slip form a bent valley with its shape."
+)
+REFIT_TOLERANCE_UNDER_SLIP = Real(1e-6, "-", "Relative gain that ends a refit there.")
 
 # Profiles of the sum of squares
 PROBE_DISTANCE = Real(2.0, "-", "Standard errors from the best fit at which the quadratic form is tested.")
