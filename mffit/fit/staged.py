@@ -18,6 +18,7 @@ from mffit.fit.start import ALTERNATIVE_STARTS, SHAPES
 from mffit.least_squares import solve
 from mffit.points import Points, main_pressure
 from mffit.progress import Progress, silent
+from mffit.quantities import CHANNELS, column
 from mffit.scatter import rms
 from tir.parameters import BY_NAME
 
@@ -118,14 +119,11 @@ def _record(name: str, title: str, parameters: Sequence[str], problem: FitProble
 
 
 def _require_enough_points(points: Points, free: Sequence[str]) -> None:
-    moment = [name for name in free if BY_NAME[name].channel == "Mz"]
-    for channel, needed, values in (
-        ("Fy_N", len(free) - len(moment), points.Fy),
-        ("Mz_Nm", len(moment), points.Mz),
-    ):
-        available = int(np.sum(np.isfinite(values)))
+    for channel in CHANNELS:
+        needed = sum(BY_NAME[name].channel == channel for name in free)
+        available = int(np.sum(np.isfinite(points.channel(channel))))
         if needed and available <= needed:
             raise InputError(
-                f"{available} points of {channel} cannot determine the {needed} coefficients that these sweeps "
+                f"{available} points of {column(channel)} cannot determine the {needed} coefficients that these sweeps "
                 "free: add points (more angles per sweep), or sweeps at fewer loads, cambers and pressures"
             )
