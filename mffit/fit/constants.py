@@ -74,6 +74,12 @@ SAME_LOAD = Real(0.05, "-", "Range of loads over the nominal one that shows no d
 READABLE_WEIGHTS = Series((0.1, 0.95), "-", "Weights of combined slip from which a slope factor is read.")
 STARTING_SLOPES_OF_WEIGHT = Series((4.0, 30.0), "-", "Range of RBX1 and RBY1 at the start.")
 
+LEAST_GAIN_OF_MORE_TERMS = Real(
+    0.1,
+    "-",
+    "Share of the misfit of left-out sweeps that terms of Mx beyond QSX1-3 must remove: programs differ in their form.",
+)
+
 # Physical limits
 LIMIT_MARGIN = Real(0.02, "-", "Distance kept from a physical limit, in units of its violation.")
 LEAST_FRICTION = Real(0.1, "-", "Physical limit: smallest lateral friction.")
@@ -116,7 +122,9 @@ FREE_EPSILON_TOLERANCE = Real(1e-5, "-", "Relative gain that ends the refit with
 REFIT_STEPS = Count(12, "-", "Most least-squares steps of a refit that starts near its solution.")
 REFIT_TOLERANCE = Real(1e-4, "-", "Relative gain that ends such a refit.")
 REFIT_STEPS_UNDER_SLIP = Count(
-    60, "-", "The same steps where Fx is fitted: the weights of combined slip form a bent valley with its shape."
+    60,
+    "-",
+    "The same steps where Fx is fitted: the weights of combined slip form a bent valley with its shape.",
 )
 REFIT_TOLERANCE_UNDER_SLIP = Real(1e-6, "-", "Relative gain that ends a refit there.")
 

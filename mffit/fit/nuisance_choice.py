@@ -135,9 +135,7 @@ def _judged(
     while enough and left:
         found = {step: _predicted(model, step, group) for step in _steps(left, model.chosen)}
         tried |= {step[-1].id: prediction for step, prediction in found.items()}
-        helpful = [
-            step for step, prediction in found.items() if better(here, prediction, step[-1].about)
-        ]
+        helpful = [step for step, prediction in found.items() if better(here, prediction, step[-1].about)]
         if not helpful:
             break
         best = min(helpful, key=lambda step: found[step].by_sweep.total)
