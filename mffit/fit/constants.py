@@ -67,7 +67,6 @@ PKY2_STARTS = Series(
 PKY2_START_COUNT = Count(46, "-", "Values of PKY2 in this range: steps of 0.1.")
 
 SLIP_OF_THE_SLOPE = Real(0.025, "-", "Longitudinal slip up to which Fx is a straight line for the start.")
-FEWEST_POINTS_OF_A_SLOPE = Count(3, "-", "Fewest points of a sweep from which such a slope is read.")
 PEAK_INSIDE = Real(0.9, "-", "Slip of the largest Fx over the largest slip below which it is a peak.")
 STARTING_CURVATURES = Series((-5.0, 0.8), "-", "Range of PEX1 at the start.")
 SAME_LOAD = Real(0.05, "-", "Range of loads over the nominal one that shows no dependence on load.")
