@@ -67,12 +67,17 @@ PKY2_STARTS = Series(
 PKY2_START_COUNT = Count(46, "-", "Values of PKY2 in this range: steps of 0.1.")
 
 SLIP_OF_THE_SLOPE = Real(0.025, "-", "Longitudinal slip up to which Fx is a straight line for the start.")
-FEWEST_POINTS_OF_A_SLOPE = Count(3, "-", "Fewest points of a sweep from which such a slope is read.")
 PEAK_INSIDE = Real(0.9, "-", "Slip of the largest Fx over the largest slip below which it is a peak.")
 STARTING_CURVATURES = Series((-5.0, 0.8), "-", "Range of PEX1 at the start.")
 SAME_LOAD = Real(0.05, "-", "Range of loads over the nominal one that shows no dependence on load.")
 READABLE_WEIGHTS = Series((0.1, 0.95), "-", "Weights of combined slip from which a slope factor is read.")
 STARTING_SLOPES_OF_WEIGHT = Series((4.0, 30.0), "-", "Range of RBX1 and RBY1 at the start.")
+
+LEAST_GAIN_OF_MORE_TERMS = Real(
+    0.1,
+    "-",
+    "Share of the misfit of left-out sweeps that terms of Mx beyond QSX1-3 must remove: programs differ in their form.",
+)
 
 # Physical limits
 LIMIT_MARGIN = Real(0.02, "-", "Distance kept from a physical limit, in units of its violation.")
@@ -115,6 +120,12 @@ POLISH_TOLERANCE = Real(1e-6, "-", "Relative gain that ends the joint polish.")
 FREE_EPSILON_TOLERANCE = Real(1e-5, "-", "Relative gain that ends the refit with PECP1 free.")
 REFIT_STEPS = Count(12, "-", "Most least-squares steps of a refit that starts near its solution.")
 REFIT_TOLERANCE = Real(1e-4, "-", "Relative gain that ends such a refit.")
+REFIT_STEPS_UNDER_SLIP = Count(
+    60,
+    "-",
+    "The same steps where Fx is fitted: the weights of combined slip form a bent valley with its shape.",
+)
+REFIT_TOLERANCE_UNDER_SLIP = Real(1e-6, "-", "Relative gain that ends a refit there.")
 
 # Profiles of the sum of squares
 PROBE_DISTANCE = Real(2.0, "-", "Standard errors from the best fit at which the quadratic form is tested.")

@@ -45,15 +45,26 @@ def _sweeps(points: Points, *, sideslip: bool) -> list[Points]:
     for k in np.unique(points.sweep[used]):
         rows = np.flatnonzero(used & (points.sweep == k))
         kappa = points.kappa[rows]
-        near = np.abs(kappa) < constants.SLIP_OF_THE_SLOPE
-        if np.sum(near) >= constants.FEWEST_POINTS_OF_A_SLOPE and np.ptp(kappa) > constants.SLIP_OF_THE_SLOPE:
+        if (
+            np.ptp(kappa) > constants.SLIP_OF_THE_SLOPE
+            and np.min(np.abs(kappa)) < constants.SLIP_OF_THE_SLOPE
+        ):
             out.append(points.select(rows))
     return out
 
 
+def _near_zero(sweep: Points) -> np.ndarray:
+    """Mask (n,) of the points around zero slip; of a coarse sweep, those of the two slips next to it."""
+    size, reach = np.abs(sweep.kappa), float(constants.SLIP_OF_THE_SLOPE)
+    if np.ptp(sweep.kappa[size < reach]) < reach:
+        reach = 1.01 * float(np.min(size[size >= reach]))
+    near: np.ndarray = size < reach
+    return near
+
+
 def _slope(sweep: Points) -> float:
     """Slip stiffness over load [-] of a sweep."""
-    near = np.abs(sweep.kappa) < constants.SLIP_OF_THE_SLOPE
+    near = _near_zero(sweep)
     slope = np.polyfit(sweep.kappa[near], sweep.Fx[near], 1)[0]
     return float(slope / np.mean(sweep.Fz[near]))
 

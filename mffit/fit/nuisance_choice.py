@@ -324,11 +324,12 @@ def _without(model: _NearSolution, dropped: Nuisance) -> _NearSolution:
 
 def _solved(model: _NearSolution) -> _NearSolution:
     numbers = model.problem.starting_here(model.numbers)
+    slips = "Fx" in model.problem.sigma
     found = solve(
         model.problem.free([number.name for number in numbers]),
         numbers,
-        max_steps=constants.REFIT_STEPS,
-        tolerance=constants.REFIT_TOLERANCE,
+        max_steps=constants.REFIT_STEPS_UNDER_SLIP if slips else constants.REFIT_STEPS,
+        tolerance=constants.REFIT_TOLERANCE_UNDER_SLIP if slips else constants.REFIT_TOLERANCE,
     )
     return model._replace(problem=model.problem.with_values(found.values))
 

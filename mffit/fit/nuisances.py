@@ -143,15 +143,6 @@ NUISANCES = (
         after=TEMPERATURE,
     ),
     Nuisance(
-        id="temperature-slip",
-        name="longitudinal friction and slip stiffness over tyre temperature",
-        key=TEMPERATURE,
-        numbers=("k_T_drive_grip_per_K", "k_T_slip_stiffness_per_K"),
-        lacking=lambda points: _temperatures(points) or _slips(points),
-        after=TEMPERATURE,
-        about=("Fx", "Fy"),
-    ),
-    Nuisance(
         id="hysteresis",
         name="hysteresis of sideslip sweeps",
         key="sense",
@@ -180,6 +171,15 @@ NUISANCES = (
         key="wear",
         numbers=("wear_per_km",),
         lacking=_distances,
+    ),
+    Nuisance(
+        id="temperature-slip",
+        name="longitudinal friction and slip stiffness over tyre temperature",
+        key=TEMPERATURE,
+        numbers=("k_T_drive_grip_per_K", "k_T_slip_stiffness_per_K"),
+        lacking=lambda points: _temperatures(points) or _slips(points),
+        after=TEMPERATURE,
+        about=("Fx", "Fy"),
     ),
     Nuisance(
         id="run-scale",

@@ -8,7 +8,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from mffit.constants import FEWEST_SWEEPS_TO_PREDICT, LEAST_PREDICTED_SHARE
+from mffit.constants import FEWEST_SWEEPS_TO_PREDICT
+from mffit.fit import constants
 from mffit.fit.by_hand import Hand
 from mffit.fit.coverage import coverage
 from mffit.fit.stages import STAGES
@@ -62,7 +63,7 @@ def overturning_terms(points: Points, values: Mapping[str, Any], side: str, hand
             continue
         found = fit.solved([*cover[FIRST], *cover[stage]])
         there = _left_out(found, group)
-        least = LEAST_PREDICTED_SHARE * here.total
+        least = constants.LEAST_GAIN_OF_MORE_TERMS * here.total
         if there.total < best.total and improves(here, there, least=least, needed=needed_fall(len(MORE))):
             best, taken = there, stage
             start = {name: x for name, x in found.values.items() if name != OFFSET}

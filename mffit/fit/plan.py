@@ -32,6 +32,7 @@ class FitPlan:
     expected: Mapping[str, float]  #: centre of every coefficient's prior
     scatter: Mapping[str, float]  #: its standard deviation
     rig: tuple[FreeNumber, ...] = ()  #: rig errors, free in the polish
+    channels: tuple[str, ...] = tuple(SIDEWAYS)  #: that the fit uses
     extra: tuple[str, ...] = ()  #: coefficients that are free in the polish only
     held: Mapping[str, float] = field(default_factory=dict)
     """Standard uncertainty of coefficients that the fit takes as exact."""
@@ -42,16 +43,6 @@ class FitPlan:
     def free(self) -> list[str]:
         """Coefficients that the stages free."""
         return [name for row in self.cover for name in row.free]
-
-    def channels(self, points: Points) -> tuple[str, ...]:
-        """Channels that the fit uses: those of every test, and measured ones for which a stage frees a coefficient.
-
-        What tir does not compute, or nothing is free for, is left alone: it would take time and change no number.
-        """
-        fitted = {channel for row in self.cover if row.free for channel in BY_STAGE[row.stage].channels}
-        return tuple(
-            name for name in CHANNELS if name in SIDEWAYS or (name in fitted and name in points.measured)
-        )
 
     def coefficients(self, names: Iterable[str], problem: FitProblem) -> list[FreeNumber]:
         """The named coefficients from their current values, with their bounds and priors."""
@@ -72,6 +63,16 @@ class FitPlan:
         return [*self.coefficients([*self.free, *self.extra], problem), *problem.starting_here(self.rig)]
 
 
+def fitted_channels(cover: Iterable[StageCoverage], points: Points) -> tuple[str, ...]:
+    """Channels that a fit uses: those of every test, and measured ones for which a stage frees a coefficient.
+
+    A channel for which nothing is free would take time and change no number.
+    """
+    fitted = {channel for row in cover if row.free for channel in BY_STAGE[row.stage].channels}
+    wanted = {*SIDEWAYS, *(fitted.intersection(points.measured))}
+    return tuple(name for name in CHANNELS if name in wanted)
+
+
 def fit_plan(
     config: Any,
     points: Points,
@@ -87,7 +88,8 @@ def fit_plan(
     ``turning`` are zeros that determine PECP1 where eps_gamma was not measured; ``predicting`` as in :func:`coverage`.
     """
     cover = coverage(points, config.tyre.side or "left", known.hand.held, predicting)
-    rig = rig_numbers(config, measured, points.used_setups)
+    channels = fitted_channels(cover, points)
+    rig = rig_numbers(config, measured, points.used_setups, channels)
     staged = {name: start[name] for row in cover for name in (*row.free, *row.held)}
     scatter = scatters(staged, known.origin, curved=bool(np.any(points.phi_t)))
     if config.rig.on_disc and "PVY1" in scatter and config.rig.u_conicity != PLAUSIBLE_CONICITY:
@@ -114,6 +116,7 @@ def fit_plan(
         expected=expected,
         scatter=scatter,
         rig=rig,
+        channels=channels,
         extra=tuple(extra),
         held=held,
         noise_stated=bool(np.any(np.isfinite(points.u_Fy))),

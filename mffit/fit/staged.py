@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -14,10 +14,11 @@ from mffit.fit.plan import FitPlan
 from mffit.fit.polish import polish
 from mffit.fit.problem import FitProblem
 from mffit.fit.stages import BY_STAGE, WITH_CAMBER, Stage, StageRecord
-from mffit.fit.start import ALTERNATIVE_STARTS, SHAPES
+from mffit.fit.start import ALTERNATIVE_STARTS, SHAPES, STARTS_OF_A_STAGE
 from mffit.least_squares import solve
 from mffit.points import Points, main_pressure
 from mffit.progress import Progress, silent
+from mffit.quantities import CHANNELS, column
 from mffit.scatter import rms
 from tir.parameters import BY_NAME
 
@@ -84,12 +85,24 @@ def _fit_stage(stage: Stage, names: Sequence[str], problem: FitProblem, plan: Fi
     part = problem.select(index).with_values({"backlash_deg": 0.0})  # play is left to the polish
     sigma = {name: u if name in stage.channels else unused for name, u in part.sigma.items()}
     part, _ = replace(part, sigma=sigma, radii=()).reweighted()
-    return solve(
-        part.free(names),
-        plan.coefficients(names, part),
-        max_steps=constants.STAGE_STEPS,
-        tolerance=constants.STAGE_TOLERANCE,
-    ).values
+    ends = [
+        solve(
+            here.free(names),
+            plan.coefficients(names, here),
+            max_steps=constants.STAGE_STEPS,
+            tolerance=constants.STAGE_TOLERANCE,
+        )
+        for here in (part, *_from_elsewhere(stage, names, part, plan))
+    ]
+    return min(ends, key=lambda end: end.cost).values
+
+
+def _from_elsewhere(
+    stage: Stage, names: Sequence[str], part: FitProblem, plan: FitPlan
+) -> Iterator[FitProblem]:
+    """The problem with further starting values of the stage; those that somebody bounded stay inside."""
+    for values in STARTS_OF_A_STAGE.get(stage.name, ()):
+        yield part.with_values({n: plan.hand.inside(n, x) for n, x in values.items() if n in names})
 
 
 def _points_of(stage: Stage, points: Points) -> np.ndarray:
@@ -118,14 +131,11 @@ def _record(name: str, title: str, parameters: Sequence[str], problem: FitProble
 
 
 def _require_enough_points(points: Points, free: Sequence[str]) -> None:
-    moment = [name for name in free if BY_NAME[name].channel == "Mz"]
-    for channel, needed, values in (
-        ("Fy_N", len(free) - len(moment), points.Fy),
-        ("Mz_Nm", len(moment), points.Mz),
-    ):
-        available = int(np.sum(np.isfinite(values)))
+    for channel in CHANNELS:
+        needed = sum(BY_NAME[name].channel == channel for name in free)
+        available = int(np.sum(np.isfinite(points.channel(channel))))
         if needed and available <= needed:
             raise InputError(
-                f"{available} points of {channel} cannot determine the {needed} coefficients that these sweeps "
+                f"{available} points of {column(channel)} cannot determine the {needed} coefficients that these sweeps "
                 "free: add points (more angles per sweep), or sweeps at fewer loads, cambers and pressures"
             )

@@ -60,10 +60,9 @@ def test_the_limit_applies_to_the_scaled_curvature(sound):
 
 
 DRIVEN = ENVELOPE._replace(kappa=0.15)
-CALM = {
-    name: 0.0
-    for name in ("PEX2", "PEX3", "PEX4", "PHX1", "PHX2", "PVX1", "PVX2", "RBX3", "RBY4", "REX2", "REY2")
-}
+CALM = dict.fromkeys(
+    ("PEX2", "PEX3", "PEX4", "PHX1", "PHX2", "PVX1", "PVX2", "RBX3", "RBY4", "REX2", "REY2"), 0.0
+)
 CALM |= {"PCX1": 1.5, "PDX1": 1.2, "PDX2": 0.0, "PEX1": 0.5, "PKX1": 25.0, "PKX2": 0.0, "PKX3": 0.0}
 CALM |= {
     "RBX1": 10.0,

@@ -1,0 +1,139 @@
+"""Longitudinal force, combined slip and overturning moment: recovery of a known tyre, starts, and what the data show."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from mffit.fit.by_hand import NO_HAND
+from mffit.fit.coverage import coverage
+from mffit.fit.driven_start import driven_starts, peak_curvature
+from mffit.fit.known import known_before_fit
+from mffit.fit.overturning import overturning_terms
+from mffit.fit.plan import fit_plan
+from mffit.fit.problem import fit_problem
+from mffit.fit.start import starting_values
+from mffit.pipeline.measuring import measure
+from tests.mffit.fit import combined_programme as belt
+
+
+@pytest.fixture(scope="module")
+def points():
+    return belt.programme()
+
+
+@pytest.fixture(scope="module")
+def found(points):
+    return belt.fitted(points)
+
+
+def test_every_channel_is_fitted_to_its_noise(found):
+    for name, noise in belt.NOISE.items():
+        assert found.channels[name].rmse == pytest.approx(noise, rel=0.05)
+    assert found.rig["Mx0_Nm"][0] == pytest.approx(30.0, abs=4.0 * found.rig["Mx0_Nm"][1])
+
+
+def test_the_forces_of_the_tyre_are_recovered_over_the_tested_range(found):
+    """Within twice the noise of a point at conditions that were not run, combined slip and camber included."""
+    true = belt.truth()
+    rng = np.random.default_rng(2)
+    n = 400
+    Fz, gamma = rng.uniform(900.0, 2100.0, n), np.radians(rng.uniform(0.0, 6.0, n))
+    alpha, kappa = np.radians(rng.uniform(-5.0, 5.0, n)), rng.uniform(-0.2, 0.2, n)
+    expected, read = (
+        tyre(Fz, alpha, gamma, kappa, p=250e3, turn_slip=False) for tyre in (true, found.written)
+    )
+    for name, noise in belt.NOISE.items():
+        error = getattr(read, name) - getattr(expected, name)
+        assert np.sqrt(np.mean(error**2)) < noise, name
+        assert np.quantile(np.abs(error), 0.95) < 2.0 * noise, name
+
+
+def test_standard_errors_cover_the_truth(found):
+    """Of some 30 coefficients within 2.6 standard errors by chance in 99 %: two beyond are allowed."""
+    true = belt.truth()
+    z = {
+        name: abs(found.coefficients[name].value - true[name]) / found.coefficients[name].stderr
+        for name in belt.DRIVEN
+    }
+    assert sum(size > 2.6 for size in z.values()) <= 2, z
+    assert not found.full.at_bound
+    assert {found.coefficients[name].status for name in ("PDX1", "RBX1", "RBY1", "SSZ1", "QSX2")} == {
+        "fitted"
+    }
+
+
+def test_the_file_says_which_slips_were_run(found):
+    assert (found.written["KPUMIN"], found.written["KPUMAX"]) == pytest.approx((-0.2, 0.2))
+    assert found.written.status["KPUMAX"]
+
+
+def test_no_start_is_dead(points):
+    """Every free coefficient changes some reading at the start: a product of factors that are all 0 would never move."""
+    project = belt.config()
+    _, measured = measure(project, points, None)
+    known = known_before_fit(project, points, measured, None, {}, NO_HAND)
+    # As a base file without any of it: all zero.
+    zero = dict.fromkeys(
+        ("RBX2", "RBY2", "RVY1", "RVY3", "RVY4", "RVY5", "RVY6", "QSX1", "QSX2", "QSX3"), 0.0
+    )
+    values = {**known.values, **zero}
+    moment = overturning_terms(points, values, "left", NO_HAND)
+    start = {**starting_values(values, points, measured), **moment.start}
+    plan = fit_plan(
+        project, points, measured, replace(known, values=values), start, {}, predicting=moment.predicting
+    )
+    problem = fit_problem(project, points, measured, values, plan.channels).with_values(
+        {name: start[name] for name in plan.free}
+    )
+    names = plan.free
+    slope = problem.free(names).linear(np.array([start[name] for name in names])).slope
+    dead = [name for name, size in zip(names, np.abs(slope).max(axis=0), strict=True) if not size > 1e-9]
+    assert set(dead) <= {
+        "QBZ9",
+        "QBZ10",
+        "PPZ2",
+    }  # factors of QDZ6 and QDZ8, which are not dead and move first
+    assert {"RVY4", "RVY5", "RVY6", "RBX2", "PPMX1"} <= set(names)
+
+
+def test_starts_are_read_off_the_curves():
+    """Even of a coarse sweep they are near the truth, whatever the values before."""
+    points, true = belt.programme(seed=4), belt.truth()
+    poor = {name: value for name, value in true.values.items() if isinstance(value, float)}
+    poor |= {"PDX1": 0.6, "PKX1": 60.0, "RBX1": 3.0, "RBY1": 40.0}
+    start = driven_starts(poor, points, held=("PDX2",))
+    assert start["PDX1"] == pytest.approx(true["PDX1"], rel=0.05)
+    assert start["PKX1"] == pytest.approx(true["PKX1"], rel=0.25)
+    assert start["RBX1"] == pytest.approx(true["RBX1"], rel=0.3)
+    assert start["RBY1"] == pytest.approx(true["RBY1"], rel=0.4)
+    assert "PDX2" not in start
+    assert not driven_starts(poor, belt.programme(driven=False), ())
+
+
+@pytest.mark.parametrize(("C", "E"), [(1.65, 0.3), (1.4, -1.5), (1.9, 0.7)])
+def test_the_curvature_follows_from_the_place_of_the_peak(C, E):
+    B = 11.0
+    x = np.linspace(0.0, 0.6, 60001)
+    force = np.sin(C * np.arctan(B * x - E * (B * x - np.arctan(B * x))))
+    assert peak_curvature(C, B, float(x[force.argmax()])) == pytest.approx(E, abs=2e-3)
+    assert math.isfinite(E)
+
+
+def test_what_is_missing_for_longitudinal_slip_is_said():
+    everything = {row.stage: row for row in coverage(belt.programme(), "left")}
+    assert everything["combined-Fx"].supported
+    straight = {row.stage: row for row in coverage(belt.programme(sideslips=(0.0,)), "left")}
+    assert straight["Fx"].supported
+    assert straight["combined-Fx"].missing == ("no sweep combines longitudinal slip and sideslip",)
+    right = {row.stage: row for row in coverage(belt.programme(sideslips=(0.0, 2.0, 5.0)), "left")}
+    assert "RHX1" in right["combined-Fx"].free  # the sweeps of sideslip go to both sides
+    rolling = belt.programme(driven=False)
+    assert {row.stage for row in coverage(rolling, "left")} == {
+        *("Fy", "camber", "pressure", "trail", "residual", "spin", "shift")
+    }
+    held = {row.stage: row for row in coverage(rolling.replace(Fx=0.0), "left")}
+    assert held["Fx"].missing == ("no sweep varies longitudinal slip",)
