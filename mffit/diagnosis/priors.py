@@ -12,6 +12,7 @@ from mffit.diagnosis import constants
 from mffit.effects import Effect, Free
 from mffit.least_squares import FreeNumber
 from mffit.points import Points
+from mffit.quantities import SIDEWAYS
 from mffit.rig import Simulation
 from mffit.rig_errors import BY_NAME, ZEROS, number_of
 
@@ -86,6 +87,7 @@ def declared_priors(config: Config, points: Points, start: Simulation) -> dict[s
     several = len(setups) > 1
     spreads = {error.name: error.spread for error in ZEROS if several and error.declared is None}
     spreads |= {name: u for name, (_, u) in declared.items()}
+    spreads = {name: u for name, u in spreads.items() if BY_NAME[name].shows_in(SIDEWAYS)}
     out = {}
     for name, u in spreads.items():
         for part in setups if several and BY_NAME[name].of_setup else ("",):
@@ -97,7 +99,8 @@ def declared_priors(config: Config, points: Points, start: Simulation) -> dict[s
 def zeros_of_setups(points: Points) -> list[str]:
     """Numbers of the zeros of every set-up, if there are several: they differ in any case, as far as is declared."""
     setups = points.used_setups
-    return [number_of(error.name, setup) for error in ZEROS for setup in setups] if len(setups) > 1 else []
+    zeros = [error.name for error in ZEROS if error.shows_in(SIDEWAYS)]
+    return [number_of(name, setup) for name in zeros for setup in setups] if len(setups) > 1 else []
 
 
 def _cornering_stiffness(points: Points, start: Simulation) -> float:

@@ -72,7 +72,7 @@ def fit(
     )
     plan = fit_plan(config, points, measured, known, start, fleet, turning)
     start = hand.starting(start)
-    problem = fit_problem(config, points, measured, known.values, plan.channels(points))
+    problem = fit_problem(config, points, measured, known.values, plan.channels)
     found, doubts = _fitted_and_judged(config, problem, start, plan, progress)
     fitted, full = found.plain, found.full
     readings, best = (fit.simulation.readings(points, problem.channels) for fit in (fitted, full))

@@ -32,6 +32,7 @@ class FitPlan:
     expected: Mapping[str, float]  #: centre of every coefficient's prior
     scatter: Mapping[str, float]  #: its standard deviation
     rig: tuple[FreeNumber, ...] = ()  #: rig errors, free in the polish
+    channels: tuple[str, ...] = tuple(SIDEWAYS)  #: that the fit uses
     extra: tuple[str, ...] = ()  #: coefficients that are free in the polish only
     held: Mapping[str, float] = field(default_factory=dict)
     """Standard uncertainty of coefficients that the fit takes as exact."""
@@ -42,21 +43,6 @@ class FitPlan:
     def free(self) -> list[str]:
         """Coefficients that the stages free."""
         return [name for row in self.cover for name in row.free]
-
-    def channels(self, points: Points) -> tuple[str, ...]:
-        """Channels that the fit uses: those of every test, and measured ones for which a stage frees a coefficient.
-
-        What tir does not compute, or nothing is free for, is left alone: it would take time and change no number.
-        """
-        fitted = {
-            channel
-            for stage, row in zip(STAGES, self.cover, strict=True)
-            if row.free
-            for channel in stage.channels
-        }
-        return tuple(
-            name for name in CHANNELS if name in SIDEWAYS or (name in fitted and name in points.measured)
-        )
 
     def coefficients(self, names: Iterable[str], problem: FitProblem) -> list[FreeNumber]:
         """The named coefficients from their current values, with their bounds and priors."""
@@ -77,6 +63,18 @@ class FitPlan:
         return [*self.coefficients([*self.free, *self.extra], problem), *problem.starting_here(self.rig)]
 
 
+def fitted_channels(cover: Iterable[StageCoverage], points: Points) -> tuple[str, ...]:
+    """Channels that a fit uses: those of every test, and measured ones for which a stage frees a coefficient.
+
+    A channel for which nothing is free would take time and change no number.
+    """
+    fitted = {
+        channel for stage, row in zip(STAGES, cover, strict=True) if row.free for channel in stage.channels
+    }
+    wanted = {*SIDEWAYS, *(fitted.intersection(points.measured))}
+    return tuple(name for name in CHANNELS if name in wanted)
+
+
 def fit_plan(
     config: Any,
     points: Points,
@@ -88,7 +86,8 @@ def fit_plan(
 ) -> FitPlan:
     """The plan for these points; ``turning`` are zeros that determine PECP1 where eps_gamma was not measured."""
     cover = coverage(points, config.tyre.side or "left", known.hand.held)
-    rig = rig_numbers(config, measured, points.used_setups)
+    channels = fitted_channels(cover, points)
+    rig = rig_numbers(config, measured, points.used_setups, channels)
     staged = {name: start[name] for stage in STAGES for name in stage.parameters}
     scatter = scatters(staged, known.origin, curved=bool(np.any(points.phi_t)))
     if config.rig.on_disc and "PVY1" in scatter and config.rig.u_conicity != PLAUSIBLE_CONICITY:
@@ -114,6 +113,7 @@ def fit_plan(
         expected=expected,
         scatter=scatter,
         rig=rig,
+        channels=channels,
         extra=tuple(extra),
         held=held,
         noise_stated=bool(np.any(np.isfinite(points.u_Fy))),

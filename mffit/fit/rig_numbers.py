@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from typing import Any
 
 from mffit.config import Declaration, declared_faults, declared_rig
@@ -11,6 +11,7 @@ from mffit.constants import USUAL_CORNERING_STIFFNESS
 from mffit.fit import constants
 from mffit.least_squares import FreeNumber
 from mffit.measured.constants import CONTRADICTED
+from mffit.quantities import SIDEWAYS
 from mffit.rig_errors import BY_NAME, ZEROS, Faults, number_of
 
 SIDESLIP_ZERO = "alpha_0_deg"
@@ -42,18 +43,43 @@ def _misaligned(measured: Any, setup: str) -> float:
     return math.degrees(sum(found) / len(found)) if found else 0.0
 
 
-def rig_numbers(config: Any, measured: Any, setups: Sequence[str] = ()) -> tuple[FreeNumber, ...]:
-    """The declared rig errors with their priors; none with one set-up on a flat track, or on a disc without zeros.
+def rig_numbers(
+    config: Any, measured: Any, setups: Sequence[str] = (), channels: Collection[str] = SIDEWAYS
+) -> tuple[FreeNumber, ...]:
+    """The declared rig errors with their priors, as far as they show in the ``channels`` of the fit.
 
-    On a straight path ply-steer and conicity are free and absorb zeros that are off. With several ``setups``, every one has
-    zeros of its own, and where repeated set-ups scatter more than declared, that scatter is the prior.
+    With one set-up on a flat track, or on a disc without zeros, those of Fy and Mz and of the angles are left out: ply-steer and
+    conicity are free there and absorb zeros that are off. With several ``setups``, every one has zeros of its own, and where
+    repeated set-ups scatter more than declared, that scatter is the prior.
     """
+    others = [
+        _number(name, prior, setup)
+        for name, prior in declared_rig(config.rig, USUAL_CORNERING_STIFFNESS).items()
+        if _of_other_channels(name) and BY_NAME[name].shows_in(channels)
+        for setup in (setups if len(setups) > 1 else ("",))
+    ]
+    return (*_sideways(config, measured, setups), *others)
+
+
+def _of_other_channels(name: str) -> bool:
+    """Whether a rig error acts on channels other than Fy and Mz alone."""
+    return not BY_NAME[name].shows_in(SIDEWAYS)
+
+
+def _sideways(config: Any, measured: Any, setups: Sequence[str]) -> tuple[FreeNumber, ...]:
+    """The numbers of the errors that show in Fy and Mz."""
     several = len(setups) > 1
     spin = config.rig.on_disc and any(row.F_phit is not None for row in measured.per_load)
     if not several and not spin:
         return ()
     usual = USUAL_CORNERING_STIFFNESS * (measured.F_phit_load if spin else config.tyre.nominal_load)
-    declared = declared_rig(config.rig, measured.C_alpha.value if measured.C_alpha else usual)
+    declared = {
+        name: prior
+        for name, prior in declared_rig(
+            config.rig, measured.C_alpha.value if measured.C_alpha else usual
+        ).items()
+        if not _of_other_channels(name)
+    }
     if not spin:
         declared = {name: prior for name, prior in declared.items() if BY_NAME[name].of_setup}
     if several:

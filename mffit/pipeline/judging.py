@@ -39,7 +39,7 @@ def judged(
     finished = FinishedFit(
         points=points,
         model=model,
-        used=_used(points, fitted.outliers),
+        used=_used(points, model, fitted.outliers),
         r2={name: found.r2 for name, found in with_points(model, points).items()},
         left_out=left.left_out,
         structured=frozenset(channels),
@@ -62,8 +62,8 @@ def judged_diagnosis(diagnosis: Diagnosis) -> Trust:
         points = points.replace(u_Fy=np.nan, u_Mz=np.nan)
     after = Readings.split(diagnosis.after, SIDEWAYS)
     left_out = {}
-    for name in SIDEWAYS:
-        difference = getattr(after, name) - getattr(points, name)
+    for name in after:
+        difference = after[name] - points.channel(name)
         own = [rms(difference[points.sweep == k]) for k in np.unique(points.sweep[np.isfinite(difference)])]
         if own:
             predicted = diagnosis.validation.gap_after.rms(name)
@@ -74,7 +74,7 @@ def judged_diagnosis(diagnosis: Diagnosis) -> Trust:
         FinishedFit(
             points=points,
             model=after,
-            used=_used(points, diagnosis.outliers),
+            used=_used(points, after, diagnosis.outliers),
             r2={name: found.r2 for name, found in with_points(after, points).items()},
             left_out=left_out,
             structured=frozenset(left_out) if diagnosis.unexplained else frozenset(),
@@ -93,9 +93,9 @@ def _cause(doubts: Sequence[Doubt], left: Remains) -> str:
     return wording.best_effect(left.effect) if left.effect else ""
 
 
-def _used(points: Points, outliers: Iterable[Outlier]) -> dict[str, np.ndarray]:
+def _used(points: Points, channels: Iterable[str], outliers: Iterable[Outlier]) -> dict[str, np.ndarray]:
     """By channel, mask (n,) of the readings that were measured and have a weight."""
-    out = {name: np.isfinite(getattr(points, name)) for name in SIDEWAYS}
+    out = {name: np.isfinite(points.channel(name)) for name in channels}
     for outlier in outliers:
         out[outlier.channel][outlier.row] = False
     return out

@@ -106,7 +106,7 @@ class Knowledge:
         present, new = self.points.used_setups, new_setups(self.config, self.points)
         if not self.rig or not new:
             return {}
-        numbers = rig_numbers(self.config, self.measured, (*present, *new))
+        numbers = rig_numbers(self.config, self.measured, (*present, *new), self.problem.channels)
         return {n.name: n.spread for n in numbers if n.name.partition(OF_RUN)[2] in new}
 
     def _new_of(self, runs: Sequence[PlannedRun]) -> list[str]:
@@ -145,6 +145,7 @@ class Knowledge:
             config,
             replace(self.measured, nominal=row, misaligned=misaligned),
             tuple(dict.fromkeys([*self.points.used_setups, *(n.partition(OF_RUN)[2] for n in new)])),
+            self.problem.channels,
         )
         found = {n.name: n.spread for n in numbers}
         return {

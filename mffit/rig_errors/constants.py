@@ -24,3 +24,16 @@ SIDESLIP_FORCE = Real(
     "Standard uncertainty of the force that the alignment leaves if [rig] gives none.",
     "Mottola and Massaro 2022, (24)",
 )
+LONGITUDINAL_ZERO = Real(
+    20.0,
+    "N",
+    "Standard uncertainty of the zero of Fx if [rig] gives none: drag of bearings and brake, and the load cell.",
+)
+OVERTURNING_ZERO = Real(
+    50.0,
+    "Nm",
+    "Standard uncertainty of the zero of Mx if [rig] gives none: 30 mm of lateral offset of a load of 1650 N, as rigs show.",
+)
+ROLLING_ZERO = Real(
+    5.0, "Nm", "Standard uncertainty of the zero of My if [rig] gives none: drag of bearings."
+)

@@ -154,5 +154,54 @@ MOMENT_ZERO = _of_reading(
         ),
     ),
 )
+LONGITUDINAL_ZERO = _of_reading(
+    name="Fx0_N",
+    unit="N",
+    meaning="reported Fx = Fx + Fx0",
+    acts_on=("Fx",),
+    formula=lambda zero, Fx, at: Fx + zero,
+    spread=20.0,
+    lower=-1e3,
+    upper=1e3,
+    of_setup=True,
+    declared=Declared(
+        key="u_Fx_offset_N", unit="N", default=constants.LONGITUDINAL_ZERO, source="zero of Fx"
+    ),
+)
+OVERTURNING_ZERO = _of_reading(
+    name="Mx0_Nm",
+    unit="Nm",
+    meaning="reported Mx = Mx + Mx0",
+    acts_on=("Mx",),
+    formula=lambda zero, Mx, at: Mx + zero,
+    spread=30.0,
+    lower=-500.0,
+    upper=500.0,
+    of_setup=True,
+    declared=Declared(
+        key="u_Mx_offset_Nm", unit="Nm", default=constants.OVERTURNING_ZERO, source="zero of Mx"
+    ),
+)
+ROLLING_ZERO = _of_reading(
+    name="My0_Nm",
+    unit="Nm",
+    meaning="reported My = My + My0",
+    acts_on=("My",),
+    formula=lambda zero, My, at: My + zero,
+    spread=5.0,
+    lower=-100.0,
+    upper=100.0,
+    of_setup=True,
+    declared=Declared(key="u_My_offset_Nm", unit="Nm", default=constants.ROLLING_ZERO, source="zero of My"),
+)
 
-FORCE_ERRORS = (GAIN, NONLINEARITY, CROSSTALK, FORCE_ZERO, MOMENT_ZERO)
+FORCE_ERRORS = (
+    GAIN,
+    NONLINEARITY,
+    CROSSTALK,
+    FORCE_ZERO,
+    MOMENT_ZERO,
+    LONGITUDINAL_ZERO,
+    OVERTURNING_ZERO,
+    ROLLING_ZERO,
+)

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from enum import Enum
 from typing import Any, NamedTuple
 
 import numpy as np
+
+from mffit.quantities import CHANNELS
 
 RADIANS = math.pi / 180.0
 
@@ -97,7 +99,7 @@ class RigError:
     meaning: str  #: the formula in words
     kind: str  #: "rig" | "environment" | "tyre"
     place: Place | None  #: None: it only takes part in the formulae of others
-    acts_on: tuple[str, ...] = ()  #: alpha, gamma, Fz, phi_t, Fy, Mz or coefficients
+    acts_on: tuple[str, ...] = ()  #: alpha, gamma, Fz, phi_t, channels or coefficients
     formula: Formula | None = None
     undisturbed: float = 0.0  #: value without the error; NaN: as declared
     spread: float  #: usual size, 1 sigma
@@ -108,6 +110,10 @@ class RigError:
     of_setup: bool = False  #: differs from one set-up of the rig to the next, as a zero does
     seen_as: tuple[Appearance, ...] = ()
     declared: Declared | None = None
+
+    def shows_in(self, channels: Iterable[str]) -> bool:
+        """Whether it may change any of these channels; only what acts on other channels alone cannot."""
+        return not set(self.acts_on) <= CHANNELS.keys() or not set(self.acts_on).isdisjoint(channels)
 
     def acts(self, number: Any) -> bool:
         """Whether a plain number, or any of an array, differs from the undisturbed value."""

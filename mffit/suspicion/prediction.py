@@ -7,7 +7,7 @@ group is taken out (Belsley, Kuh and Welsch, Regression Diagnostics, 1980, secti
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -15,7 +15,7 @@ import numpy as np
 from mffit.least_squares import FreeNumber, inverse, root
 from mffit.points import Points, levels
 from mffit.rig import Simulation
-from mffit.rig_errors import RIG_ERRORS, ZEROS, number_of
+from mffit.rig_errors import BY_NAME, RIG_ERRORS, ZEROS, number_of
 from mffit.suspicion import constants
 
 COMMON = tuple(
@@ -132,8 +132,8 @@ def leverage(fit: FittedModel, noise: np.ndarray) -> Leverage:
     """
     points = fit.points
     free = [n.name for n in fit.numbers]
-    common = [name for name in _common(points) if name not in free]
     channels = tuple(fit.weights)
+    common = [name for name in _common(points, channels) if name not in free]
     out, slope = fit.simulation.sensitivities(points, [*free, *common], channels)
     slopes = slope.stacked
     measured = np.concatenate([points.channel(name) for name in channels])
@@ -154,13 +154,14 @@ def leverage(fit: FittedModel, noise: np.ndarray) -> Leverage:
     )
 
 
-def _common(points: Points) -> list[str]:
+def _common(points: Points, channels: Iterable[str]) -> list[str]:
     """Names of the rig errors that many sweeps share: those of the rig, and the zeros of every set-up."""
     setups = points.used_setups
+    common = [name for name in COMMON if BY_NAME[name].shows_in(channels)]
     if len(setups) < 2:
-        return list(COMMON)
-    zeros = [error.name for error in ZEROS]
-    rig = [name for name in COMMON if name not in zeros]
+        return common
+    zeros = [error.name for error in ZEROS if error.shows_in(channels)]
+    rig = [name for name in common if name not in zeros]
     return [*rig, *(number_of(name, setup) for name in zeros for setup in setups)]
 
 

@@ -17,7 +17,7 @@ import numpy as np
 from scipy.special import chdtrc, ndtr
 
 from mffit.points import Points
-from mffit.quantities import CHANNELS, SIDEWAYS
+from mffit.quantities import CHANNELS
 from mffit.rig import Readings
 from mffit.scatter import rms
 from mffit.suspicion import constants
@@ -65,17 +65,17 @@ class FinishedFit:
 
     def misfit(self, channel: str, rows: np.ndarray | None = None) -> tuple[float, int]:
         """Misfit over the stated noise (rms) at the used readings that state one, some rows (mask (n,)) only; their number."""
-        u = getattr(self.points, f"u_{channel}")
+        u = self.points.u(channel)
         known = self.used[channel] & np.isfinite(u) & (u > 0.0)
         if rows is not None:
             known = known & rows
-        z = (getattr(self.model, channel) - getattr(self.points, channel))[known] / u[known]
+        z = (self.model[channel] - self.points.channel(channel))[known] / u[known]
         return rms(z), int(known.sum())
 
     @property
     def over_noise(self) -> dict[str, float]:
         """By channel, misfit over stated noise; NaN where none is stated."""
-        return {name: self.misfit(name)[0] for name in SIDEWAYS}
+        return {name: self.misfit(name)[0] for name in self.used}
 
     def far(self, channel: str, limit: float, sigma: float, rows: np.ndarray | None = None) -> bool:
         """Whether the misfit over the noise exceeds a limit, by more than chance explains."""
@@ -134,7 +134,7 @@ of_model = partial(rule, subject=Subject.MODEL, when=(When.AFTER,))
 )
 def above_noise(fit: FinishedFit) -> Iterator[dict[str, Any]]:
     """Misfit of the model over the stated uncertainty, channel by channel, unless it is the formula's."""
-    for name in SIDEWAYS:
+    for name in fit.used:
         if fit.wrong(name) and not fit.of_the_formula(name):
             facts = {"channel": name, "ratio": fit.misfit(name)[0], "carriers": _carriers(fit, name)}
             yield {**facts, "cause": _cause(fit)}
@@ -149,7 +149,7 @@ def above_noise(fit: FinishedFit) -> Iterator[dict[str, Any]]:
 )
 def sweep_above_noise(fit: FinishedFit) -> Iterator[dict[str, Any]]:
     """Chi-square of the misfit of a sweep against its number of readings, channel by channel, unless it is the formula's."""
-    for name in SIDEWAYS:
+    for name in fit.used:
         if fit.of_the_formula(name):
             continue
         off = {k: row for k, row in _by_sweep(fit, name).items() if _sweep_is_far(fit, name, k)}
@@ -171,7 +171,7 @@ def sweep_above_noise(fit: FinishedFit) -> Iterator[dict[str, Any]]:
 )
 def doubtful_misfit(fit: FinishedFit) -> Iterator[dict[str, Any]]:
     """Misfit of the model over the stated uncertainty, below the limit of trust."""
-    for name in SIDEWAYS:
+    for name in fit.used:
         ratio, _ = fit.misfit(name)
         if fit.doubtful(name) and ratio <= constants.DISTRUSTED_MISFIT:
             rows = _by_sweep(fit, name)
@@ -190,7 +190,7 @@ def doubtful_misfit(fit: FinishedFit) -> Iterator[dict[str, Any]]:
 )
 def unexplained(fit: FinishedFit) -> Iterator[dict[str, Any]]:
     """Share of a channel's variance that the model explains."""
-    for name in SIDEWAYS:
+    for name in fit.used:
         if fit.r2[name] < constants.EXPLAINED_VARIANCE:
             yield {"channel": name, "percent": 100.0 * max(fit.r2[name], 0.0)}
 
@@ -341,7 +341,7 @@ def _reaches_the_noise(fit: FinishedFit, channel: str) -> bool:
 
 def _noise_is_stated(fit: FinishedFit) -> bool:
     """Whether residuals are judged by a noise: a channel states one, and no misfit is the formula's."""
-    stated = [name for name in SIDEWAYS if fit.misfit(name)[1]]
+    stated = [name for name in fit.used if fit.misfit(name)[1]]
     return bool(stated) and not any(fit.of_the_formula(n) and fit.doubtful(n) for n in stated)
 
 

@@ -26,6 +26,7 @@ class Channels(NamedTuple):
     Mx: np.ndarray
     My: np.ndarray
     Mz: np.ndarray
+    Fx: np.ndarray | float = 0.0
 
 
 class Machine(NamedTuple):
@@ -84,7 +85,7 @@ SURROUNDINGS: dict[str, Formula] = {
 """Factors on Fy and Mz."""
 YIELDS = ("compliance_deg_per_Nm", "backlash_deg")
 """Errors of the angle for which moment and angle must agree; see :func:`true_alpha`."""
-CELL = ("gain", "nonlinearity_per_kN", "crosstalk", "F0_N", "M0_Nm")
+CELL = ("gain", "nonlinearity_per_kN", "crosstalk", "F0_N", "M0_Nm", "Fx0_N", "Mx0_Nm", "My0_Nm")
 """Errors of the load cells; see :func:`reported`."""
 ELSEWHERE = ("path_radius_m", "T_ref_degC", "relaxation_m")
 """Path radius: :func:`at_the_tyre`; reference temperature: the factors; lag: :mod:`mffit.virtual_rig.recording`."""
@@ -153,7 +154,7 @@ def at_the_tyre(machine: Machine, settings: Settings, alpha: np.ndarray) -> Chan
         settings.p,
         turn_slip=machine.phi_t_sign != 0,
     )
-    return Channels(out.Fy, out.Fz, out.Mx, out.My, out.Mz)
+    return Channels(out.Fy, out.Fz, out.Mx, out.My, out.Mz, out.Fx)
 
 
 def reported(machine: Machine, settings: Settings, true: Channels) -> Channels:
@@ -164,6 +165,9 @@ def reported(machine: Machine, settings: Settings, true: Channels) -> Channels:
     return true._replace(
         Fy=bent + faults["F0_N"] + faults["crosstalk"] * true.Fz,
         Mz=surroundings * true.Mz + faults["M0_Nm"],
+        Mx=faults["Mx0_Nm"] + true.Mx,
+        My=faults["My0_Nm"] + true.My,
+        Fx=faults["Fx0_N"] + true.Fx,
         Fz=settings.Fz,
     )
 

@@ -25,7 +25,7 @@ def judged(off: np.ndarray, *, u: float = U, r2: float = 0.999, **more) -> Trust
     )  # fmt: skip
     used = {"Fy": np.ones(n, bool), "Mz": np.zeros(n, bool)}
     fit = FinishedFit(
-        points=points, model=Readings(off, np.zeros(n)), used=used, r2={"Fy": r2, "Mz": np.nan}, **more
+        points=points, model=Readings(Fy=off, Mz=np.zeros(n)), used=used, r2={"Fy": r2, "Mz": np.nan}, **more
     )
     return judge(fit)
 
@@ -142,7 +142,7 @@ def test_without_a_stated_noise_left_out_sweeps_decide():
         return judge(
             FinishedFit(
                 points=points,
-                model=Readings(Fy, Fy),
+                model=Readings(Fy=Fy, Mz=Fy),
                 used=used,
                 r2={"Fy": 1.0, "Mz": np.nan},
                 left_out=left_out,

@@ -21,7 +21,11 @@ def linear_fit(n: int = 60, k: int = 5, seed: int = 4) -> tuple[Leverage, np.nda
     J = design / weight[:, None]
     covariance = np.linalg.inv(J.T @ J)
     residual = design @ (covariance @ J.T @ (measured / weight)) - measured
-    return Leverage(residual, design, weight, noise, np.linalg.cholesky(covariance)), design, measured
+    return (
+        Leverage(("Fy", "Mz"), residual, design, weight, noise, np.linalg.cholesky(covariance)),
+        design,
+        measured,
+    )
 
 
 def test_a_large_group_is_shown_at_evenly_spaced_points_and_left_out_whole():
