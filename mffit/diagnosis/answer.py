@@ -26,7 +26,6 @@ from mffit.diagnosis.validation import gap
 from mffit.diagnosis.where import Region, where
 from mffit.effects import Effect
 from mffit.points import Points
-from mffit.quantities import SIDEWAYS
 from mffit.rig import Readings, Simulation
 from mffit.suspicion import Outlier, outliers
 from tir import Tyre
@@ -55,10 +54,10 @@ def answer(
     ``given`` is the problem before it.
     """
     points, chosen, scatter = given.points, found.chosen, found.scatter
-    before = given.start.predict(points)
-    explained = found.refined.state.predict(points) if chosen.effects or found.coefficients else before
+    before = given.predict(given.start)
+    explained = given.predict(found.refined.state) if chosen.effects or found.coefficients else before
     done = repair.explanation
-    after = done.refined.state.predict(points) if done.chosen.effects or done.coefficients else before
+    after = given.predict(done.refined.state) if done.chosen.effects or done.coefficients else before
     hardly = any(isinstance(note, HardlyThisTyre | NoiseBeyondStated) for note in notes)
     unexplained = found.bump.found or found.smooth.found or hardly
     known = {i for one in named for i in (one.effect.id, *one.tied_with)}
@@ -123,10 +122,10 @@ def _outliers(points: Points, after: np.ndarray, noise: Noise) -> tuple[Outlier,
     if noise.weight is None:
         return ()
     usual = noise.u * np.sqrt(noise.weight)
-    off = np.abs(np.concatenate([points.Fy, points.Mz]) - after)
+    off = np.abs(np.concatenate([points.channel(name) for name in noise.channels]) - after)
     used = usual.copy()
     used[[i for i in outlying(noise) if off[i] > constants.DIAGNOSED_OUTLIER_RATIO * usual[i]]] = np.inf
-    return outliers(points, *(Readings.split(rows, SIDEWAYS) for rows in (usual, used, after)))
+    return outliers(points, *(Readings.split(rows, noise.channels) for rows in (usual, used, after)))
 
 
 def _found(found: Explanation, effect: Effect, given: DiagnosisProblem) -> AcceptedEffect:
@@ -138,7 +137,8 @@ def _found(found: Explanation, effect: Effect, given: DiagnosisProblem) -> Accep
         steps[min(len(steps), len(chosen.effects)) - 1],
     )
     tied, confidence = _judged(found, effect, step)
-    separations = [separation(problem.points, chosen, t, problem.noise.Fy, problem.noise.Mz) for t in tied]
+    noise = {name: problem.noise.typical(name) for name in problem.channels}
+    separations = [separation(problem.points, chosen, t, noise) for t in tied]
     with_it = found.refined.state if alone else _without_later(found, effect, step)
     numbers, stderr = found.refined.numbers, found.refined.stderr
     return AcceptedEffect(
@@ -146,7 +146,7 @@ def _found(found: Explanation, effect: Effect, given: DiagnosisProblem) -> Accep
         confidence=confidence,
         parameters={n: (numbers[n], stderr.get(n, 0.0)) for n in effect.parameters},
         before={n: given.start.number(n, given.points) for n in effect.parameters},
-        gap_after=gap(problem.measured - with_it.predict(problem.points), found.scatter),
+        gap_after=gap(problem.measured - problem.predict(with_it), found.scatter),
         tied=tuple(rival.effects[-1] for rival in tied),
         separation=min(separations, key=lambda s: s.chi2, default=None),
         T_ref=chosen.state.faults["T_ref_degC"] if "temperatures" in effect.needs else None,

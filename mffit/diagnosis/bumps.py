@@ -22,7 +22,7 @@ Ranges = dict[str, tuple[float, float]]
 class Bump:
     """The best-fitting local structure."""
 
-    channel: str  #: "Fy" | "Mz"
+    channel: str
     region: Ranges
     amplitude: float  #: [N] or [Nm]
     gain: float  #: log evidence, the search paid for
@@ -76,13 +76,13 @@ class BumpScan:
         return best
 
     def column(self, channel: str, which: slice) -> np.ndarray:
-        """Some unit bumps of a channel as changes of the readings (2n, k)."""
+        """Some unit bumps of a channel as changes of the readings (c n, k)."""
         shapes = self.bumps[:, which].astype(float)
         nothing = np.zeros_like(shapes)
-        return np.vstack([shapes, nothing] if channel == "Fy" else [nothing, shapes])
+        return np.vstack([shapes if name == channel else nothing for name in self.noise.channels])
 
     def plausible(self, bump: Bump) -> np.ndarray:
-        """A bump as a change of the readings (2n, 1) at its usual amplitude."""
+        """A bump as a change of the readings (c n, 1) at its usual amplitude."""
         return self.spread[bump.channel] * self.column(bump.channel, slice(bump.number, bump.number + 1))
 
 
@@ -97,9 +97,9 @@ def bump_scan(points: Points, noise: Noise) -> BumpScan:
                 shapes.append(shape.astype(np.float32))
                 regions.append(_narrowed(region, column, centre - width, centre + width))
     spread = {
-        name: constants.BUMP_AMPLITUDE * float(np.nanmax(np.abs(values)))
-        for name, values in (("Fy", points.Fy), ("Mz", points.Mz))
-        if np.any(np.isfinite(values))
+        name: constants.BUMP_AMPLITUDE * float(np.nanmax(np.abs(points.channel(name))))
+        for name in noise.channels
+        if np.any(np.isfinite(points.channel(name)))
     }
     bumps = np.column_stack(shapes) if shapes else np.empty((len(points), 0), np.float32)
     return BumpScan(noise, bumps, tuple(regions), spread)

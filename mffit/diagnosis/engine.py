@@ -30,6 +30,8 @@ from mffit.diagnosis.strangers import (
 )
 from mffit.diagnosis.validation import Validation, validate
 from mffit.effects import CATALOG, Effect
+from mffit.fit.coverage import coverage
+from mffit.fit.plan import fitted_channels
 from mffit.points import Points
 from mffit.progress import Progress, silent
 from mffit.rig import Simulation
@@ -74,16 +76,18 @@ def diagnose(
     """
     progress("comparing simulation and measurement")
     start = _simulation(points, tyre, config, rig)
-    refuse_strangers(points, tyre, start)
+    channels = fitted_channels(coverage(points, config.tyre.side or "left"), points)
+    refuse_strangers(points, tyre, start, channels)
     points, wrong = _without_misread(points, start, config)
-    points, origin = with_uncertainties(by_condition(points), start)
+    points, origin = with_uncertainties(by_condition(points), start, channels)
     inexact = coefficients or declared_inexactness(tyre, config.model.u_coefficients)
     candidates, notes = _candidates(effects, points, start, known=inexact.names if seen else ())
     progress("trying every effect")
-    declared = declared_priors(config, points, start)
-    zeros = [name for name in zeros_of_setups(points) if name in declared]
+    declared = declared_priors(config, points, start, channels)
+    zeros = [name for name in zeros_of_setups(points, channels) if name in declared]
     inexact = with_zeros(inexact, declared, zeros) if zeros else inexact
-    found = explain(points, start, stated_noise(points, origin), candidates, inexact, declared, seen=seen)
+    noise = stated_noise(points, origin, channels)
+    found = explain(points, start, noise, candidates, inexact, declared, seen=seen)
     found, stranger = named_of_this_tyre(found)
     progress("checking on left-out sweeps")
     given = DiagnosisProblem(points, start, found.plain.noise)

@@ -34,7 +34,8 @@ def explain(
     ``declared`` has the value and standard uncertainty of each declared rig error. ``seen``: the model was fitted to these
     points; what its formulae cannot follow then stays as smooth structure, which is no evidence against an effect beside it.
     """
-    basis = smooth_basis(points, start.predict(points))
+    channels = stated.channels
+    basis = smooth_basis(points, start.readings(points, channels))
     found: Explanation | None = None
     at, noise = start, stated
     for _ in range(constants.MOST_EXPLANATION_ROUNDS):
@@ -47,8 +48,8 @@ def explain(
         if found is not None and inexact:
             # The influence of an inexact coefficient depends on the rest of the model: search again around the last estimate.
             at = start.with_numbers({name: value for name, (value, _) in found.coefficients.items()})
-            offset = inexact.moved(points, found.refined.state, at)
-        columns = inexact.columns(points, start if found is None else found.refined.state)
+            offset = inexact.moved(points, found.refined.state, at, channels)
+        columns = inexact.columns(points, start if found is None else found.refined.state, channels)
         problem = DiagnosisProblem(points, at, noise.sharing(columns), declared, offset)
         last = found
         # Coefficients linearised at the start look like structure without a name: it competes from the second round on.

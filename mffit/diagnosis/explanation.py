@@ -30,7 +30,7 @@ class Explanation:
     bump: Bump  #: best local structure in the residual
     smooth: Smooth  #: smooth structure in the residual; part of the covariance if found
     bumps: BumpScan
-    basis: np.ndarray  #: (2n, k) of the smooth structure
+    basis: np.ndarray  #: (c n, k) of the smooth structure
     refined: Hypothesis  #: the chosen effects, the coefficients of the model estimated beside them
     coefficients: Mapping[str, tuple[float, float]] = field(default_factory=dict)
     """Inexact coefficients as estimated: name -> (value, standard error)."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -10,6 +10,7 @@ import numpy as np
 from mffit.fit.priors import scatter
 from mffit.least_squares import LeastSquaresProblem, Linear, root
 from mffit.points import Points
+from mffit.quantities import SIDEWAYS
 from mffit.rig import Simulation
 from tir import Tyre
 from tir.parameters import TABLE
@@ -26,23 +27,25 @@ class Inexactness:
     def __bool__(self) -> bool:
         return bool(self.names)
 
-    def columns(self, points: Points, state: Simulation) -> np.ndarray:
-        """Changes of the readings (2n, k), one prior standard deviation each."""
-        return self._slopes(points, state) @ self.root
+    def columns(self, points: Points, state: Simulation, channels: Iterable[str] = SIDEWAYS) -> np.ndarray:
+        """Changes of the readings (c n, k), one prior standard deviation each."""
+        return self._slopes(points, state, channels) @ self.root
 
-    def moved(self, points: Points, state: Simulation, at: Simulation) -> np.ndarray:
-        """Change of the readings (2n,) that moves the centre of the prior to the coefficients of ``at``.
+    def moved(
+        self, points: Points, state: Simulation, at: Simulation, channels: Iterable[str] = SIDEWAYS
+    ) -> np.ndarray:
+        """Change of the readings (c n,) that moves the centre of the prior to the coefficients of ``at``.
 
         ``state`` is the simulation at which :meth:`columns` are taken.
         """
         away = np.array([at.number(name, points) for name in self.names]) - self.expected
-        return self._slopes(points, state) @ away
+        return self._slopes(points, state, channels) @ away
 
-    def _slopes(self, points: Points, state: Simulation) -> np.ndarray:
-        """Derivatives of the readings (2n, k) by the coefficients."""
+    def _slopes(self, points: Points, state: Simulation, channels: Iterable[str]) -> np.ndarray:
+        """Derivatives of the readings (c n, k) by the coefficients."""
         if not self.names:
-            return np.zeros((2 * len(points), 0))
-        return np.nan_to_num(state.sensitivities(points, self.names)[1].stacked)
+            return np.zeros((len(tuple(channels)) * len(points), 0))
+        return np.nan_to_num(state.sensitivities(points, self.names, channels)[1].stacked)
 
     def added_to(self, problem: LeastSquaresProblem, first: int) -> LeastSquaresProblem:
         """The problem with this prior as additional residuals of its numbers from ``first`` on."""

@@ -15,7 +15,6 @@ from mffit.diagnosis.problem import DiagnosisProblem
 from mffit.diagnosis.scatter import ExplainingColumns, learned
 from mffit.effects import Effect
 from mffit.points import Points
-from mffit.quantities import SIDEWAYS
 from mffit.rig import Simulation
 from mffit.scatter import robust
 
@@ -34,15 +33,17 @@ def learned_noise(
     The search starts at the noise ``before``, as found in the last round.
     """
     problem = DiagnosisProblem(points, state, stated.alone())
-    predicted = np.nan_to_num(state.predict(points))
+    predicted = np.nan_to_num(problem.predict(state))
     residual = problem.measured - predicted
-    nothing = np.zeros((2 * len(points), 0))
+    nothing = np.zeros((len(predicted), 0))
     # The slope of each effect, and the first finite step of a number without slope at zero.
     columns = {e: groups[:2] for e, groups in problem.columns(state, candidates).items()}
     runs = {e.id: g[0] for e, g in columns.items() if e.differs_by_run}
     others = [g for e, groups in columns.items() if not e.differs_by_run for g in groups]
     generous = constants.GENEROUS_EFFECT_SIZE
-    named = np.column_stack([nothing, *(generous * g for g in others), inexact.columns(points, state)])
+    named = np.column_stack(
+        [nothing, *(generous * g for g in others), inexact.columns(points, state, problem.channels)]
+    )
     named = _with_bumps(problem, residual, named, basis)
     explained = ExplainingColumns(named=named, runs=runs, smooth=basis)
     return learned(replace(stated, scatter=before.scatter), residual, explained, predicted).alone()
@@ -51,13 +52,14 @@ def learned_noise(
 def _with_bumps(
     problem: DiagnosisProblem, residual: np.ndarray, named: np.ndarray, basis: np.ndarray
 ) -> np.ndarray:
-    """What could explain the misfit (2n, k), with the bumps that are found beside it."""
+    """What could explain the misfit (c n, k), with the bumps that are found beside it."""
     points = problem.points
     for _ in range(constants.MOST_BUMPS_SET_ASIDE):
         allowed = problem.noise.sharing(named, constants.ASSUMED_SMOOTH_AMPLITUDE * basis)
         white = allowed.whiten(np.nan_to_num(residual))
-        first = allowed.used < len(points)
-        for rows in (first, ~first):
+        channel = allowed.used // len(points)
+        for k in range(len(problem.channels)):
+            rows = channel == k
             white[rows] /= max(robust(white[rows]), 1e-9) if rows.any() else 1.0
         scan = bump_scan(points, allowed)
         bump = scan.best(replace(problem.null, residual=white), constants.BUMP_RESIDUAL_CLIP)
@@ -87,7 +89,7 @@ def settled(before: Noise, after: Noise) -> bool:
     """Whether the scatter changed so little that the effects need not be judged again."""
     used = after.used
     change = np.abs(np.log(after.u[used] / before.u[used]))
-    memory = [abs(after.scatter[c].memory - before.scatter[c].memory) for c in SIDEWAYS]
+    memory = [abs(after.scatter[c].memory - before.scatter[c].memory) for c in after.channels]
     return not (
         np.median(change) > constants.SCATTER_SETTLED
         or np.quantile(change, 0.95) > constants.SCATTER_SETTLED_TAIL

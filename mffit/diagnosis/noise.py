@@ -48,37 +48,43 @@ class RunOffsets(NamedTuple):
 class Noise:
     """Covariance of the readings, and the whitening that goes with it.
 
-    The covariance is D M D + S S': independent uncertainties D; M with ``memory`` to the power of the distance along each
-    sweep; and columns S of changes that several readings share, one standard deviation each.
+    The readings (c n,) are those of n points in c channels, one channel after the other. Their covariance is D M D + S S':
+    independent uncertainties D; M with ``memory`` to the power of the distance along each sweep; and columns S of changes that
+    several readings share, one standard deviation each.
     """
 
-    u: np.ndarray  #: (2n,) standard uncertainty of every reading; inf where missing
-    stated: np.ndarray  #: (2n,) the same as stated
-    chain: np.ndarray  #: (2n,) number of the sweep and channel along which errors may be correlated
+    u: np.ndarray  #: (c n,) standard uncertainty of every reading; inf where missing
+    stated: np.ndarray  #: (c n,) the same as stated
+    chain: np.ndarray  #: (c n,) number of the sweep and channel along which errors may be correlated
     origin: Origin | None  #: of the uncertainties of Fy; None if it was not measured
     scatter: Mapping[str, Scatter] = field(default_factory=lambda: dict.fromkeys(SIDEWAYS, Scatter()))
-    weight: np.ndarray | None = None  #: (2n,) of each reading, below 1 for outliers; None: all 1
-    shared: np.ndarray | None = None  #: (2n, k) changes that readings share, one standard deviation each
+    """By channel, in the order of the readings."""
+    weight: np.ndarray | None = None  #: (c n,) of each reading, below 1 for outliers; None: all 1
+    shared: np.ndarray | None = None  #: (c n, k) changes that readings share, one standard deviation each
     offsets: Mapping[str, RunOffsets] = field(default_factory=dict)
     """By id of the effect: offsets of runs that errors with a memory look like; empty without a memory."""
 
     @property
-    def Fy(self) -> float:
-        """Typical noise of Fy [N]."""
-        return _typical(self.u, "Fy")
+    def channels(self) -> tuple[str, ...]:
+        """Names (c,) of the channels."""
+        return tuple(self.scatter)
 
-    @property
-    def Mz(self) -> float:
-        """Typical noise of Mz [Nm]; NaN if Mz was not measured."""
-        return _typical(self.u, "Mz")
+    def of_channel(self, readings: np.ndarray, channel: str) -> np.ndarray:
+        """The part (n,) of readings (c n,) that belongs to a channel."""
+        part: np.ndarray = np.split(readings, len(self.channels))[self.channels.index(channel)]
+        return part
+
+    def by_channel(self, readings: np.ndarray) -> dict[str, np.ndarray]:
+        """Readings (c n,) by channel, (n,) each."""
+        return dict(zip(self.channels, np.split(readings, len(self.channels)), strict=True))
 
     def typical(self, channel: str) -> float:
         """Typical noise of a channel; NaN if it was not measured."""
-        return _typical(self.u, channel)
+        return finite_median(self.of_channel(self.u, channel))
 
     def typically_stated(self, channel: str) -> float:
         """Typical uncertainty of a channel as stated."""
-        return _typical(self.stated, channel)
+        return finite_median(self.of_channel(self.stated, channel))
 
     @cached_property
     def used(self) -> np.ndarray:
@@ -89,9 +95,8 @@ class Noise:
     def _links(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Positions of used readings that follow another with memory, of that other, and the memory between them."""
         later, earlier = links(self.chain[self.used])
-        memory = np.where(
-            self.used[later] < len(self.u) // 2, self.scatter["Fy"].memory, self.scatter["Mz"].memory
-        )
+        memories = np.array([found.memory for found in self.scatter.values()])
+        memory = memories[self.used[later] // (len(self.u) // len(memories))]
         some = memory != 0.0
         return later[some], earlier[some], memory[some]
 
@@ -128,7 +133,7 @@ class Noise:
         return out
 
     def whiten(self, x: np.ndarray) -> np.ndarray:
-        """Differences of readings (2n,) or (2n, k) in units of their joint uncertainty: (m,) or (m, k)."""
+        """Differences of readings (c n,) or (c n, k) in units of their joint uncertainty: (m,) or (m, k)."""
         z = self._independent(x[self.used])
         axes, variance = self._axes
         if not len(variance):
@@ -148,7 +153,7 @@ class Noise:
         """The noise with independent errors of the given size [N], [Nm] in some channels."""
         u, weight = self.u.copy(), np.ones(len(self.u)) if self.weight is None else self.weight.copy()
         scatter = dict(self.scatter)
-        for name, rows in zip(SIDEWAYS, np.split(np.arange(len(u)), 2), strict=True):
+        for name, rows in self.by_channel(np.arange(len(u))).items():
             if name in channels:
                 weight[rows] = 1.0
                 u[rows] = np.where(np.isfinite(self.stated[rows]), channels[name], np.inf)
@@ -158,14 +163,14 @@ class Noise:
 
     def subset(self, keep: np.ndarray) -> Noise:
         """The noise of some points (mask (n,)), with the covariance among them."""
-        both = np.concatenate([keep, keep])
+        rows = np.tile(keep, len(self.channels))
         return replace(
             self,
-            u=self.u[both],
-            stated=self.stated[both],
-            chain=self.chain[both],
-            weight=None if self.weight is None else self.weight[both],
-            shared=None if self.shared is None else self.shared[both],
+            u=self.u[rows],
+            stated=self.stated[rows],
+            chain=self.chain[rows],
+            weight=None if self.weight is None else self.weight[rows],
+            shared=None if self.shared is None else self.shared[rows],
         )
 
     def alone(self) -> Noise:
@@ -173,20 +178,20 @@ class Noise:
         return replace(self, shared=None)
 
     def sharing(self, *columns: np.ndarray) -> Noise:
-        """The same scatter with these shared changes (2n, k), and no others."""
+        """The same scatter with these shared changes (c n, k), and no others."""
         given = [c for c in columns if c.size]
         return replace(self, shared=np.column_stack(given) if given else None)
 
     def scattering(self, scatter: Mapping[str, Scatter], size: np.ndarray, weight: np.ndarray) -> Noise:
         """The noise with another scatter.
 
-        ``weight`` (2n,) is that of each reading; the noise may grow in proportion to ``size`` (2n,).
+        ``weight`` (c n,) is that of each reading; the noise may grow in proportion to ``size`` (c n,).
         """
-        halves = zip(SIDEWAYS, np.split(self.stated, 2), np.split(np.nan_to_num(size), 2), strict=True)
+        readings = self.by_channel(np.nan_to_num(size))
         u = np.concatenate(
             [
-                np.hypot(scatter[c].scale * stated, scatter[c].growth * reading)
-                for c, stated, reading in halves
+                np.hypot(scatter[c].scale * stated, scatter[c].growth * readings[c])
+                for c, stated in self.by_channel(self.stated).items()
             ]
         )
         return replace(self, u=u / np.sqrt(weight), scatter=dict(scatter), weight=weight)
@@ -197,8 +202,3 @@ def links(chain: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     order = np.argsort(chain, kind="stable")
     follows = chain[order][1:] == chain[order][:-1]
     return order[1:][follows], order[:-1][follows]
-
-
-def _typical(u: np.ndarray, channel: str) -> float:
-    """Median uncertainty of a channel of readings (2n,); NaN if it was not measured."""
-    return finite_median(dict(zip(SIDEWAYS, np.split(u, 2), strict=True))[channel])

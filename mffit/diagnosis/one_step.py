@@ -11,7 +11,7 @@ from scipy import stats
 
 from mffit.diagnosis import constants
 from mffit.diagnosis.needs import possible
-from mffit.diagnosis.noise import Noise
+from mffit.diagnosis.noise import Noise, Scatter
 from mffit.diagnosis.priors import anchor, moving
 from mffit.diagnosis.problem import DiagnosisProblem
 from mffit.diagnosis.remainder import Remainder
@@ -95,8 +95,10 @@ def _as_good(other: OneStep, best: OneStep, left: Remainder) -> bool:
 
 
 def _steps(left: Remainder, effects: Sequence[Effect]) -> Iterator[OneStep]:
-    chain = np.concatenate([left.points.sweep, left.points.sweep + len(left.points.sweep_names)])
-    noise = Noise(u=left.sigma, stated=left.sigma, chain=chain, origin=None)
+    sweeps = len(left.points.sweep_names)
+    chain = np.concatenate([left.points.sweep + k * sweeps for k in range(len(left.channels))])
+    scatter = dict.fromkeys(left.channels, Scatter())
+    noise = Noise(u=left.sigma, stated=left.sigma, chain=chain, origin=None, scatter=scatter)
     problem = DiagnosisProblem(left.points, left.simulation, noise)
     visible, _ = possible(effects, left.points, left.simulation)
     candidates = [e for e in visible if e.switches or any(f.name not in left.free for f in moving((e,)))]
@@ -181,7 +183,7 @@ def held_numbers(left: Remainder, fitted: Fitted) -> tuple[HeldNumber, ...]:
     if not names:
         return ()
     bounds = {n.name: (n.lower, n.upper) for n in fitted.numbers}
-    slopes = left.whitened(left.simulation.sensitivities(left.points, names)[1].stacked)
+    slopes = left.whitened(left.simulation.sensitivities(left.points, names, left.channels)[1].stacked)
     total = max(float(left.residual @ left.residual), 1e-12)
     out = []
     for name, change in zip(names, slopes.T, strict=True):

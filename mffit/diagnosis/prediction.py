@@ -25,16 +25,16 @@ class LeftOutPrediction:
     def __init__(self, problem: DiagnosisProblem, inexact: Inexactness) -> None:
         self.problem, self.inexact = problem, inexact
         used, n = problem.noise.used, len(problem.points)
-        self.channel = (used >= n).astype(int)
+        self.channel = used // n
         numbers, self.sweep = np.unique(problem.points.sweep[used % n], return_inverse=True)
         self.sweeps = len(numbers)
-        columns = inexact.columns(problem.points, problem.start)
+        columns = inexact.columns(problem.points, problem.start, problem.channels)
         self.joint = problem.seen_through(problem.noise.sharing(columns))
 
     def of(self, hypothesis: Hypothesis, *more: np.ndarray) -> Predicted:
-        """The prediction with the numbers of a hypothesis free, and more changes of the readings (2n, k)."""
+        """The prediction with the numbers of a hypothesis free, and more changes of the readings (c n, k)."""
         problem, state = self.problem, hypothesis.state
-        columns = [self.inexact.columns(problem.points, state), *more]
+        columns = [self.inexact.columns(problem.points, state, problem.channels), *more]
         columns += [groups[0] for groups in problem.columns(state, hypothesis.effects).values()]
         C = problem.noise.whiten(np.column_stack(columns))
         r = problem.whitened(state)

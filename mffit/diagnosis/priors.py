@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 
 import numpy as np
 
@@ -78,8 +78,10 @@ def beyond_declaration(known: FreeNumber, value: float, declared: Mapping[str, t
     return min(math.log((1.0 - worse) * math.exp(min(near + narrower, 30.0)) + worse), 0.0)
 
 
-def declared_priors(config: Config, points: Points, start: Simulation) -> dict[str, tuple[float, float]]:
-    """Declared rig errors: name -> (value in the simulation, standard uncertainty)."""
+def declared_priors(
+    config: Config, points: Points, start: Simulation, channels: Collection[str] = SIDEWAYS
+) -> dict[str, tuple[float, float]]:
+    """Declared rig errors that show in some channels: name -> (value in the simulation, standard uncertainty)."""
     declared = declared_rig(config.rig, _cornering_stiffness(points, start))
     if not np.any(points.phi_t):
         declared.pop("path_radius_m", None)
@@ -87,7 +89,7 @@ def declared_priors(config: Config, points: Points, start: Simulation) -> dict[s
     several = len(setups) > 1
     spreads = {error.name: error.spread for error in ZEROS if several and error.declared is None}
     spreads |= {name: u for name, (_, u) in declared.items()}
-    spreads = {name: u for name, u in spreads.items() if BY_NAME[name].shows_in(SIDEWAYS)}
+    spreads = {name: u for name, u in spreads.items() if BY_NAME[name].shows_in(channels)}
     out = {}
     for name, u in spreads.items():
         for part in setups if several and BY_NAME[name].of_setup else ("",):
@@ -96,10 +98,10 @@ def declared_priors(config: Config, points: Points, start: Simulation) -> dict[s
     return out
 
 
-def zeros_of_setups(points: Points) -> list[str]:
+def zeros_of_setups(points: Points, channels: Collection[str] = SIDEWAYS) -> list[str]:
     """Numbers of the zeros of every set-up, if there are several: they differ in any case, as far as is declared."""
     setups = points.used_setups
-    zeros = [error.name for error in ZEROS if error.shows_in(SIDEWAYS)]
+    zeros = [error.name for error in ZEROS if error.shows_in(channels)]
     return [number_of(name, setup) for name in zeros for setup in setups] if len(setups) > 1 else []
 
 

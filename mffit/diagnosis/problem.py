@@ -21,7 +21,7 @@ from mffit.rig import Simulation
 class DiagnosisProblem:
     """Readings against a simulation.
 
-    ``declared`` has the value and standard uncertainty of each declared rig error. ``offset`` (2n,) is added to the readings if
+    ``declared`` has the value and standard uncertainty of each declared rig error. ``offset`` (c n,) is added to the readings if
     ``start`` is not at the centre of the coefficients' prior.
     """
 
@@ -35,14 +35,23 @@ class DiagnosisProblem:
     ) -> None:
         self.points, self.start, self.noise = points, start, noise
         self.declared, self.offset = declared or {}, offset
-        self.measured = np.concatenate([points.Fy, points.Mz])
+        self.measured = np.concatenate([points.channel(name) for name in noise.channels])
         if offset is not None:
             self.measured = self.measured + offset
         self.null = self.evaluate((), {})
 
+    @property
+    def channels(self) -> tuple[str, ...]:
+        """Names (c,) of the channels whose readings are compared."""
+        return self.noise.channels
+
+    def predict(self, state: Simulation) -> np.ndarray:
+        """Readings (c n,) of a simulation at the points."""
+        return state.predict(self.points, self.channels)
+
     def part(self, keep: np.ndarray) -> DiagnosisProblem:
         """The same with some of the points (mask (n,))."""
-        offset = None if self.offset is None else self.offset[np.concatenate([keep, keep])]
+        offset = None if self.offset is None else self.offset[np.tile(keep, len(self.channels))]
         return DiagnosisProblem(
             self.points.select(keep), self.start, self.noise.subset(keep), self.declared, offset
         )
@@ -53,7 +62,7 @@ class DiagnosisProblem:
 
     def whitened(self, state: Simulation) -> np.ndarray:
         """Measured minus simulated in units of the joint uncertainty (m,)."""
-        return self.noise.whiten(np.nan_to_num(self.measured - state.predict(self.points)))
+        return self.noise.whiten(np.nan_to_num(self.measured - self.predict(state)))
 
     def evaluate(self, effects: Sequence[Effect], numbers: Mapping[str, float]) -> Hypothesis:
         """A hypothesis at given numbers, not fitted."""
@@ -120,12 +129,12 @@ class DiagnosisProblem:
         return sorted(out, key=lambda row: -row[1])
 
     def columns(self, state: Simulation, effects: Sequence[Effect]) -> dict[Effect, list[np.ndarray]]:
-        """Changes of the readings (2n, k) by each effect at its usual size: to first order, and from each start."""
+        """Changes of the readings (c n, k) by each effect at its usual size: to first order, and from each start."""
         names = [free.name for free in moving(effects)]
         slopes = np.empty((len(self.measured), 0))
         if names:
-            slopes = np.nan_to_num(state.sensitivities(self.points, names)[1].stacked)
-        here, first, out = np.nan_to_num(state.predict(self.points)), 0, {}
+            slopes = np.nan_to_num(state.sensitivities(self.points, names, self.channels)[1].stacked)
+        here, first, out = np.nan_to_num(self.predict(state)), 0, {}
         for effect in effects:
             frees = moving((effect,))
             own = slopes[:, first : first + len(frees)]
@@ -140,7 +149,7 @@ class DiagnosisProblem:
         return out
 
     def _scanned(self, state: Simulation, free: Free, spread: float, here: np.ndarray) -> list[np.ndarray]:
-        """Changes of the readings (2n, 1) by finite steps to every start of a number, scaled to its usual size."""
+        """Changes of the readings (c n, 1) by finite steps to every start of a number, scaled to its usual size."""
         value, unit = state.number(free.name, self.points), anchor(free, self.start, self.points)[1]
         places = [float(np.clip(value + step * unit, free.lower, free.upper)) for step in free.scan if step]
         return [
@@ -150,8 +159,8 @@ class DiagnosisProblem:
         ]
 
     def _moved(self, state: Simulation, numbers: Mapping[str, float], here: np.ndarray) -> np.ndarray:
-        """Change of the readings (2n,) when some numbers change."""
-        return np.nan_to_num(state.with_numbers(numbers).predict(self.points)) - here
+        """Change of the readings (c n,) when some numbers change."""
+        return np.nan_to_num(self.predict(state.with_numbers(numbers))) - here
 
     def _fitted(self, effects: Sequence[Effect], start: Mapping[str, float]) -> Hypothesis:
         """The fit from one start, with its evidence (Laplace approximation)."""
@@ -191,7 +200,7 @@ class DiagnosisProblem:
             return -self.whitened(at(x)), nothing
 
         def linear(x: np.ndarray) -> Linear:
-            out, slope = at(x).sensitivities(self.points, names)
+            out, slope = at(x).sensitivities(self.points, names, self.channels)
             data = self.noise.whiten(np.nan_to_num(out.stacked - self.measured))
             rows = np.where(np.isfinite(self.measured)[:, None], slope.stacked, 0.0)
             return Linear(data, self.noise.whiten(rows), nothing, np.zeros((0, len(names))))

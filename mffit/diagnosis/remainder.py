@@ -13,7 +13,6 @@ from mffit.fit.fitted import Fitted
 from mffit.fit.problem import FitProblem
 from mffit.left_out import left_out_errors
 from mffit.points import Points
-from mffit.quantities import SIDEWAYS
 from mffit.rig import Simulation
 from mffit.scatter import rms
 from mffit.suspicion import LeftOutSweeps
@@ -24,29 +23,30 @@ from mffit.suspicion.prediction import PredictedChannel
 class Remainder:
     """Residuals (m,) of a fit in units of their uncertainty, and the directions along which the fit explains everything.
 
-    The m rows are Fy of all n points, Mz of all n points, and measured radii; rows that do not count are zero. For sound data
+    The m rows are all n points in each of c channels, and measured radii; rows that do not count are zero. For sound data
     the residuals have the covariance 1 - A A', in which the priors of all uncertain numbers count as readings.
     """
 
     points: Points
     simulation: Simulation
+    channels: tuple[str, ...]  #: (c,)
     residual: np.ndarray = field(repr=False)  #: (m,) measured minus model
     axes: np.ndarray = field(repr=False)  #: (m, k) the matrix A
-    sigma: np.ndarray = field(repr=False)  #: (2n,) uncertainty [N], [Nm]; inf: not used
+    sigma: np.ndarray = field(repr=False)  #: (c n,) uncertainty [N], [Nm]; inf: not used
     free: frozenset[str]  #: names of the coefficients that the fit freed
     expected: Mapping[str, tuple[float, float]]  #: prior of every other uncertain number: value and spread
     noise: Mapping[str, float]  #: by channel, misfit over stated noise; NaN where none is stated
 
     @property
     def used(self) -> np.ndarray:
-        """Mask (2n,) of the readings that count."""
+        """Mask (c n,) of the readings that count."""
         return np.isfinite(self.sigma)
 
     @property
     def sweep(self) -> np.ndarray:
         """Number (m,) of the sweep of every row; -1 for the radii."""
         radii = np.full(len(self.residual) - len(self.sigma), -1)
-        return np.concatenate([self.points.sweep, self.points.sweep, radii])
+        return np.concatenate([*(self.points.sweep for _ in self.channels), radii])
 
     @property
     def at_noise(self) -> bool:
@@ -59,7 +59,7 @@ class Remainder:
         return x - self.axes @ (self.axes.T @ x)
 
     def whitened(self, change: np.ndarray) -> np.ndarray:
-        """Changes of the readings (2n, j) as rows (m, j) in units of the uncertainty."""
+        """Changes of the readings (c n, j) as rows (m, j) in units of the uncertainty."""
         rows = np.zeros((len(self.residual), change.shape[1]))
         rows[: len(self.sigma)] = np.nan_to_num(change) / self.sigma[:, None]
         return rows
@@ -93,6 +93,7 @@ def remainder(fitted: Fitted) -> Remainder:
     return Remainder(
         points=problem.points,
         simulation=problem.simulation,
+        channels=problem.channels,
         residual=before - axes @ (axes.T @ before),
         axes=axes,
         sigma=np.concatenate(list(problem.sigma.values())),
@@ -112,7 +113,7 @@ def predicted_sweep(left: Remainder, k: int) -> tuple[float, dict[str, Predicted
     error = covariance @ left.residual[rows]
     n, u = len(left.points), left.sigma[rows]
     out = {}
-    for j, name in enumerate(SIDEWAYS):
+    for j, name in enumerate(left.channels):
         own = rows // n == j
         if own.any():
             scaled = covariance[np.ix_(own, own)] * u[own] * u[own][:, None]
@@ -132,14 +133,12 @@ def _axes(J: np.ndarray, precision: np.ndarray) -> np.ndarray:
 def _weighted(fitted: Fitted) -> tuple[FitProblem, dict[str, float]]:
     """The problem with the uncertainties that the residuals are judged by, and the misfit over the stated noise."""
     problem, points = fitted.problem, fitted.problem.points
-    readings = problem.simulation.readings(points)
     sigma, noise = {}, {}
-    for name in SIDEWAYS:
-        stated = getattr(points, f"u_{name}")
-        measured = getattr(points, name)
+    for name, read in problem.readings().items():
+        stated, measured = points.u(name), points.channel(name)
         used = np.isfinite(problem.sigma[name]) & np.isfinite(measured)
         known = used & np.isfinite(stated) & (stated > 0.0)
-        difference = np.where(used, getattr(readings, name) - np.nan_to_num(measured), np.nan)
+        difference = np.where(used, read - np.nan_to_num(measured), np.nan)
         noise[name] = rms(difference[known] / stated[known])
         u = np.where(known, stated, rms(difference)) * max(1.0, np.nan_to_num(noise[name], nan=1.0))
         sigma[name] = np.where(used, u, np.inf)
@@ -154,7 +153,7 @@ def left_out_sweeps(left: Remainder) -> dict[str, LeftOutSweeps]:
         rows = left.sweep == k
         predicted[rows] = left.left_out(rows)
     out = {}
-    for k, name in enumerate(SIDEWAYS):
+    for k, name in enumerate(left.channels):
         part = slice(k * n, (k + 1) * n)
         u = np.where(left.used[part], left.sigma[part], np.nan)
         fits, predictions = left.residual[part] * u, predicted[part] * u  # NaN where not used

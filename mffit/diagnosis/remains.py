@@ -12,7 +12,6 @@ from mffit.diagnosis.one_step import BestEffect, best_effect, held_numbers
 from mffit.diagnosis.remainder import Remainder, left_out_sweeps, predicted_sweep, remainder
 from mffit.diagnosis.structure import Structure, structure
 from mffit.fit.fitted import Fitted
-from mffit.quantities import SIDEWAYS
 from mffit.suspicion import HeldNumber, LeftOutSweeps
 from mffit.suspicion.explanation import explanation
 
@@ -61,8 +60,8 @@ def odd_sweep(left: Remainder, signs: Mapping[str, float]) -> OddSweep | None:
     if any(found[worst][0] < constants.ODD_SWEEP_OVER_NEXT * found[k][0] for k in others):
         return None
     readings = {
-        name: np.where(used, getattr(points, name), np.nan)
-        for name, used in zip(SIDEWAYS, np.split(left.used, 2), strict=True)
+        name: np.where(used, points.channel(name), np.nan)
+        for name, used in zip(left.channels, np.split(left.used, len(left.channels)), strict=True)
     }
     part = points.replace(**readings).select(points.sweep == worst)
     looks = explanation(part, found[worst][1], left.simulation, signs)

@@ -60,8 +60,8 @@ class Diagnosis(Brief):
     headline: str = field()  #: the answer in one sentence; replaces the property of Brief
     points: Points
     noise: Noise
-    before: np.ndarray  #: readings of the given model (2n,), Fy [N] then Mz [Nm]
-    after: np.ndarray  #: readings of the corrected model (2n,), with the effects that are repaired
+    before: np.ndarray  #: readings of the given model (c n,), in the channels of ``noise``
+    after: np.ndarray  #: readings of the corrected model (c n,), with the effects that are repaired
     gap_before: Gap
     gap_after: Gap  #: of the corrected model
     gap_named: Gap  #: with all effects that are named, repaired or not
@@ -142,5 +142,5 @@ def corrected_points(points: Points, state: Simulation) -> Points:
     """
     faulty, faultless = state.readings(points), state.faultless.readings(points)
     return points.replace(
-        Fy=points.Fy - (faulty.Fy - faultless.Fy), Mz=points.Mz - (faulty.Mz - faultless.Mz)
+        **{name: points.channel(name) - (faulty[name] - faultless[name]) for name in faulty}
     )

@@ -29,7 +29,7 @@ def competed(
 ) -> Explanation:
     """The effects that explain most, and structure without a name in their place or beside them if it explains more.
 
-    The covariance of ``problem`` contains the ``columns`` (2n, k) of the inexact coefficients; ``basis`` (2n, k) holds the
+    The covariance of ``problem`` contains the ``columns`` (c n, k) of the inexact coefficients; ``basis`` (c n, k) holds the
     smooth structure.
     """
     found = selected(problem, candidates, basis)
@@ -44,7 +44,7 @@ def competed(
     if not smooth.found or (found.bump.found and found.bump.gain > smooth.gain):
         return found
     # Effects are judged again with the smooth structure in the covariance: they must explain what it cannot.
-    problem = problem.seen_through(problem.noise.sharing(columns, amplified(basis, smooth)))
+    problem = problem.seen_through(problem.noise.sharing(columns, amplified(basis, smooth, problem.channels)))
     unaided = {
         trial.effects[-1].id: float(trial.log_evidence - step.before.log_evidence)
         for step in found.steps[:1]

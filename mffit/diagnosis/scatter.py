@@ -17,7 +17,6 @@ from mffit.diagnosis import constants
 from mffit.diagnosis.marginal import MarginalChannel, MarginalParts
 from mffit.diagnosis.noise import Noise, RunOffsets, Scatter
 from mffit.diagnosis.tails import heavy_tails, weights
-from mffit.quantities import SIDEWAYS
 from mffit.scatter import rms
 
 BOUNDS = np.array(
@@ -36,7 +35,7 @@ GROWTH, MEMORY, OFFSETS = 1, 2, 4
 
 @dataclass(frozen=True, slots=True)
 class ExplainingColumns:
-    """What could explain a residual, one prior standard deviation of each as a column (2n, k)."""
+    """What could explain a residual, one prior standard deviation of each as a column (c n, k)."""
 
     named: np.ndarray  #: effects, coefficients, bumps
     runs: Mapping[str, np.ndarray]  #: by id, effects that differ by run: rivals of errors correlated along it
@@ -46,11 +45,11 @@ class ExplainingColumns:
 def learned(noise: Noise, residual: np.ndarray, explained: ExplainingColumns, size: np.ndarray) -> Noise:
     """The noise with the scatter that the residual shows.
 
-    The search starts from ``noise``, which may grow in proportion to ``size`` (2n,).
+    The search starts from ``noise``, which may grow in proportion to ``size`` (c n,).
     """
     weight, scatter = np.ones(len(residual)), dict(noise.scatter)
     offsets: dict[str, RunOffsets] = {}
-    for name, rows in zip(SIDEWAYS, np.split(np.arange(len(residual)), 2), strict=True):
+    for name, rows in noise.by_channel(np.arange(len(residual))).items():
         rows = rows[np.isfinite(noise.stated[rows])]
         if not len(rows):
             continue
@@ -81,7 +80,7 @@ def _at_least_of_a_rig(noise: Noise, size: np.ndarray) -> Noise:
     Between two points of a sweep, errors with a memory change by their part without memory.
     """
     assumed = {}
-    for name, readings in zip(SIDEWAYS, np.split(size, 2), strict=True):
+    for name, readings in noise.by_channel(size).items():
         change = noise.typical(name) * math.sqrt(1.0 - noise.scatter[name].memory ** 2)
         if change < constants.NO_NOISE_SHARE * rms(readings):
             assumed[name] = constants.ASSUMED_NOISE_SHARE * rms(readings)

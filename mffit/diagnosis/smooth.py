@@ -4,17 +4,18 @@ from __future__ import annotations
 
 import itertools
 import math
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.polynomial.legendre import legvander
-from scipy.linalg import cholesky, solve_triangular
+from scipy.linalg import block_diag, cholesky, solve_triangular
 
 from mffit.diagnosis import constants
 from mffit.diagnosis.hypothesis import Hypothesis, outside
 from mffit.diagnosis.noise import Noise
 from mffit.points import Points
-from mffit.quantities import SIDEWAYS
+from mffit.rig import Readings
 from mffit.scatter import rms
 
 SMALLEST, LARGEST = constants.SMOOTH_AMPLITUDES
@@ -25,7 +26,9 @@ AMPLITUDES = np.geomspace(SMALLEST, LARGEST, constants.SMOOTH_AMPLITUDES_TRIED)
 class Smooth:
     """The smooth structure that fits a residual best."""
 
-    amplitude: dict[str, float]  #: by channel, rms relative to that of the readings; 0 where there is none
+    amplitude: dict[
+        str, float
+    ]  #: by channel, rms relative to that of the readings; 0 or no entry where there is none
     gain: float  #: log evidence
 
     @property
@@ -33,23 +36,22 @@ class Smooth:
         return self.gain > constants.STRUCTURE_EVIDENCE
 
 
-NO_SMOOTH = Smooth(dict.fromkeys(SIDEWAYS, 0.0), 0.0)
+NO_SMOOTH = Smooth({}, 0.0)
 
 
-def smooth_basis(points: Points, simulated: np.ndarray) -> np.ndarray:
-    """Smooth changes (2n, k) of the readings, separate for Fy and Mz, smaller the higher their order.
+def smooth_basis(points: Points, simulated: Readings) -> np.ndarray:
+    """Smooth changes (c n, k) of the readings, separate for every channel, smaller the higher their order.
 
     At amplitude 1 they vary together as much as the readings of their channel do. Changes of gain are proportional to the
-    ``simulated`` readings (2n,), because the measured ones contain the errors to be explained.
+    ``simulated`` readings, because the measured ones contain the errors to be explained.
     """
     shapes, gains = _shapes(points), _gains(points)
     rows = []
-    for values, model in zip((points.Fy, points.Mz), np.split(simulated, 2), strict=True):
-        size = float(np.nan_to_num(rms(values)))
+    for name, model in simulated.items():
+        size = float(np.nan_to_num(rms(points.channel(name))))
         columns = np.hstack([size * shapes, np.nan_to_num(model)[:, None] * gains])
         rows.append(columns * (size / max(float(np.sqrt(np.mean(np.sum(columns**2, axis=1)))), 1e-12)))
-    nothing = np.zeros_like(rows[0])
-    return np.vstack([np.hstack([rows[0], nothing]), np.hstack([nothing, rows[1]])])
+    return block_diag(*rows)
 
 
 def _conditions(points: Points) -> list[np.ndarray]:
@@ -108,41 +110,45 @@ class SmoothScan:
     """All smooth structure that the programme could show."""
 
     shapes: np.ndarray  #: (m, k) whitened
-    half: int  #: columns of Fy; the others are of Mz
+    channels: tuple[str, ...]  #: each with as many columns
 
     def best(self, hypothesis: Hypothesis) -> Smooth:
         """The amplitudes that explain most of a hypothesis' residual, its own freed numbers projected out."""
         axes = hypothesis.axes
         shapes, residual = outside(axes, self.shapes), outside(axes, hypothesis.residual)
         power, score = shapes.T @ shapes, shapes.T @ residual
-        size, gain = [0.0, 0.0], 0.0
-        for channel in (0, 1, 0):  # inexact coefficients correlate the channels
+        size, gain = dict.fromkeys(self.channels, 0.0), 0.0
+        paid = len(self.channels) * math.log(len(AMPLITUDES))
+        for channel in (*self.channels, *self.channels[:-1]):  # inexact coefficients correlate the channels
             for amplitude in AMPLITUDES:
-                trial = [amplitude if k == channel else size[k] for k in (0, 1)]
-                value = _gain(power, score, np.repeat(trial, (self.half, len(score) - self.half)))
+                trial = {**size, channel: amplitude}
+                value = _gain(power, score, _of_columns(trial, self.channels, len(score))) - paid
                 if value > gain:
                     size, gain = trial, value
-        return Smooth(dict(zip(SIDEWAYS, size, strict=True)), gain)
+        return Smooth(size, gain)
 
 
 def smooth_scan(basis: np.ndarray, noise: Noise) -> SmoothScan:
     """The basis, whitened."""
-    return SmoothScan(noise.whiten(basis), basis.shape[1] // 2)
+    return SmoothScan(noise.whiten(basis), noise.channels)
 
 
-def amplified(basis: np.ndarray, smooth: Smooth) -> np.ndarray:
-    """The basis (2n, k) at the amplitudes that were found."""
-    half = basis.shape[1] // 2
-    return basis * np.repeat([smooth.amplitude[name] for name in SIDEWAYS], half)
+def amplified(basis: np.ndarray, smooth: Smooth, channels: Sequence[str]) -> np.ndarray:
+    """The basis (c n, k) of some channels at the amplitudes that were found."""
+    return basis * _of_columns(smooth.amplitude, channels, basis.shape[1])
+
+
+def _of_columns(amplitude: Mapping[str, float], channels: Sequence[str], k: int) -> np.ndarray:
+    """The amplitude (k,) of every column of a basis."""
+    return np.repeat([float(amplitude.get(name, 0.0)) for name in channels], k // len(channels))
 
 
 def _gain(power: np.ndarray, score: np.ndarray, amplitude: np.ndarray) -> float:
-    """Log evidence of smooth structure of given amplitudes (k,), less the price of their choice."""
+    """Log evidence of smooth structure of given amplitudes (k,)."""
     some = amplitude > 0.0
     scaled = amplitude[some]
     root = cholesky(
         np.eye(int(some.sum())) + scaled[:, None] * power[np.ix_(some, some)] * scaled, lower=True
     )
     found = solve_triangular(root, scaled * score[some], lower=True)
-    paid = len(SIDEWAYS) * math.log(len(AMPLITUDES))
-    return 0.5 * float(found @ found) - float(np.sum(np.log(np.diag(root)))) - paid
+    return 0.5 * float(found @ found) - float(np.sum(np.log(np.diag(root))))

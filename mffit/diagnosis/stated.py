@@ -2,38 +2,46 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
 import numpy as np
 
 from mffit.diagnosis import constants
-from mffit.diagnosis.noise import Noise, Origin
+from mffit.diagnosis.noise import Noise, Origin, Scatter
 from mffit.errors import InputError
 from mffit.points import Points
+from mffit.quantities import CHANNELS, SIDEWAYS, u_column
 from mffit.rig import Simulation
 from mffit.scatter import rms, robust
 
 TINY = 1e-9
 
 
-def with_uncertainties(points: Points, state: Simulation) -> tuple[Points, Origin | None]:
-    """The points with a standard uncertainty for every reading, and its origin.
+def with_uncertainties(
+    points: Points, state: Simulation, channels: Iterable[str] = SIDEWAYS
+) -> tuple[Points, Origin | None]:
+    """The points with a standard uncertainty for every reading of some channels, and its origin for Fy.
 
     Missing uncertainties are estimated from the scatter of measured minus simulated between neighbouring points of each sweep.
     If all stated uncertainties are zero, an InputError asks for real ones.
     """
-    simulated = state.readings(points)
-    Fy, origin = _channel(points, points.Fy, points.u_Fy, simulated.Fy, "u_Fy_N")
-    Mz, _ = _channel(points, points.Mz, points.u_Mz, simulated.Mz, "u_Mz_Nm")
-    return points.replace(u_Fy=Fy, u_Mz=Mz), origin
+    found = {
+        name: _of_channel(points, points.channel(name), points.u(name), simulated, u_column(name))
+        for name, simulated in state.readings(points, channels).items()
+    }
+    return points.replace(**{f"u_{name}": u for name, (u, _) in found.items()}), found["Fy"][1]
 
 
-def stated_noise(points: Points, origin: Origin | None = None) -> Noise:
-    """Independent noise as the points state it, with the sweeps along which errors may be correlated."""
-    u = np.concatenate([points.u_Fy, points.u_Mz])
-    chain = np.concatenate([points.sweep, points.sweep + 1 + points.sweep.max(initial=0)])
-    return Noise(u=u, stated=u, chain=chain, origin=origin)
+def stated_noise(points: Points, origin: Origin | None = None, channels: Iterable[str] = SIDEWAYS) -> Noise:
+    """Independent noise of some channels as the points state it, with the sweeps along which errors may be correlated."""
+    scatter = {name: Scatter() for name in CHANNELS if name in set(channels)}
+    u = np.concatenate([points.u(name) for name in scatter])
+    sweeps = 1 + int(points.sweep.max(initial=0))
+    chain = np.concatenate([points.sweep + k * sweeps for k in range(len(scatter))])
+    return Noise(u=u, stated=u, chain=chain, origin=origin, scatter=scatter)
 
 
-def _channel(
+def _of_channel(
     points: Points, values: np.ndarray, stated: np.ndarray, simulated: np.ndarray, column: str
 ) -> tuple[np.ndarray, Origin | None]:
     """Uncertainty (n,) of one channel; inf where it was not measured.

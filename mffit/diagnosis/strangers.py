@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Iterable, Sequence
 
 import numpy as np
 
@@ -26,7 +26,9 @@ from mffit.scatter import rms, robust
 from tir import Tyre
 
 
-def refuse_strangers(points: Points, tyre: Tyre, start: Simulation) -> None:
+def refuse_strangers(
+    points: Points, tyre: Tyre, start: Simulation, channels: Iterable[str] = SIDEWAYS
+) -> None:
     """Raise an InputError with the likely cause if model and data cannot belong together."""
     if len(points) < constants.FEWEST_POINTS_TO_DIAGNOSE:
         raise InputError(
@@ -39,9 +41,8 @@ def refuse_strangers(points: Points, tyre: Tyre, start: Simulation) -> None:
             "differ by an order of magnitude: the model belongs to another tyre, or one of them is not in newtons; check the "
             "model and the unit of the loads"
         )
-    simulated = start.readings(points)
-    for channel in SIDEWAYS:
-        model, measured = getattr(simulated, channel), getattr(points, channel)
+    for channel, model in start.readings(points, channels).items():
+        measured = points.channel(channel)
         known = np.isfinite(measured)
         if not np.any(known) or np.std(model[known]) == 0.0 or np.std(measured[known]) == 0.0:
             continue
@@ -75,7 +76,9 @@ def another_tyre(tyre: Tyre, config: Config) -> AnotherTyre | None:
 
 def without_noise(noise: Noise) -> WithoutNoise | None:
     """The channels whose noise is assumed, because their readings hardly scatter; None without any."""
-    assumed = tuple((name, noise.typical(name)) for name in SIDEWAYS if noise.scatter[name].without_noise)
+    assumed = tuple(
+        (name, noise.typical(name)) for name in noise.channels if noise.scatter[name].without_noise
+    )
     return WithoutNoise(assumed) if assumed else None
 
 
@@ -84,9 +87,9 @@ def noise_beyond_stated(found: Explanation) -> list[NoiseBeyondStated]:
     noise, points = found.scatter, found.problem.points
     if noise.origin is not Origin.STATED:
         return []
-    left = np.split(found.problem.measured - found.refined.state.predict(points), 2)
+    left = noise.by_channel(found.problem.measured - found.problem.predict(found.refined.state))
     out = []
-    for channel, residual in zip(SIDEWAYS, left, strict=True):
+    for channel, residual in left.items():
         if noise.scatter[channel].scale > constants.NOISE_BEYOND_STATED:
             off = {name: rms(residual[points.sweep == k]) for k, name in enumerate(points.sweep_names)}
             off = {name: size for name, size in off.items() if np.isfinite(size)}
@@ -102,7 +105,7 @@ def offsets_or_memory(
 ) -> list[OffsetsOrMemory]:
     """The channels whose correlated errors may as well be offsets of runs, none of which is ``named`` (ids)."""
     found = []
-    for channel in SIDEWAYS:
+    for channel in noise.channels:
         scatter = noise.scatter[channel]
         near = tuple(
             effect
@@ -133,8 +136,9 @@ def _misfit(found: Explanation) -> tuple[float, str]:
     If one channel is mostly noise, the misfit of the other channel decides.
     """
     points, noise = found.problem.points, found.scatter
-    residual = np.concatenate([points.Fy, points.Mz]) - found.refined.state.predict(points)
+    measured = np.concatenate([points.channel(name) for name in noise.channels])
+    residual = measured - found.problem.predict(found.refined.state)
     z = np.where(np.isfinite(noise.stated), residual / noise.stated, np.nan)
-    misfit = {name: robust(rows) for name, rows in zip(SIDEWAYS, np.split(z, 2), strict=True)}
+    misfit = {name: robust(rows) for name, rows in noise.by_channel(z).items()}
     better = min(misfit, key=lambda name: np.nan_to_num(misfit[name], nan=np.inf))
     return misfit[better], better

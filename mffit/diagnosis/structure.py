@@ -11,7 +11,7 @@ from scipy import stats
 
 from mffit.diagnosis import constants
 from mffit.diagnosis.remainder import Remainder
-from mffit.quantities import CONDITIONS, SIDEWAYS
+from mffit.quantities import CONDITIONS
 
 ALONG_SWEEPS = "the course of the sweeps"
 DIRECTION = "direction of rolling"
@@ -74,7 +74,7 @@ def structure(left: Remainder) -> Structure:
     """
     found = []
     n = len(left.points)
-    for k, channel in enumerate(SIDEWAYS):
+    for k, channel in enumerate(left.channels):
         rows = np.flatnonzero(left.used[k * n : (k + 1) * n])
         if not len(rows):
             continue
@@ -93,7 +93,7 @@ def _conditions(
 ) -> Iterator[tuple[str, np.ndarray, np.ndarray, np.ndarray]]:
     """Condition, its value, number of the bin and side of every used reading (m,); only conditions that vary."""
     points = left.points.select(rows)
-    force = np.sign(getattr(left.simulation.readings(points), channel))
+    force = np.sign(left.simulation.readings(points, (channel,))[channel])
     alpha, gamma = (_side(np.degrees(x)) for x in (points.alpha, points.gamma))
     yield from _varying("gamma_deg", np.degrees(points.gamma), alpha)
     yield from _varying("alpha_deg", np.degrees(points.alpha), gamma)

@@ -8,7 +8,6 @@ import numpy as np
 
 from mffit.diagnosis import constants
 from mffit.diagnosis.noise import Noise
-from mffit.quantities import SIDEWAYS
 from mffit.scatter import rms, robust
 
 
@@ -39,8 +38,8 @@ def outlying(noise: Noise) -> np.ndarray:
     """Indices of readings that lost nearly all their weight."""
     if noise.weight is None:
         return np.empty(0, dtype=int)
-    half = len(noise.weight) // 2
-    tails = np.repeat([noise.scatter[name].tails for name in SIDEWAYS], half)
+    n = len(noise.weight) // len(noise.channels)
+    tails = np.repeat([found.tails for found in noise.scatter.values()], n)
     heavy = np.isfinite(tails) & np.isfinite(noise.stated)
     known = np.where(heavy, tails, 1.0)
     lost = noise.weight < (known + 1.0) / (known + constants.DIAGNOSED_OUTLIER_RATIO**2)

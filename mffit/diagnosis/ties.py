@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from enum import Enum
 
@@ -46,17 +47,17 @@ class Separation:
         return self.chi2 >= constants.SEPARATING_CHI2
 
 
-def separation(points: Points, a: Hypothesis, b: Hypothesis, noise_Fy: float, noise_Mz: float) -> Separation:
+def separation(points: Points, a: Hypothesis, b: Hypothesis, noise: Mapping[str, float]) -> Separation:
     """The candidate run at which two refitted explanations differ most.
 
-    The noise is the standard uncertainty of a reading [N], [Nm]; NaN without a moment.
+    ``noise`` is the standard uncertainty of a reading by channel; NaN where it was not measured.
     """
     found = []
     for run, added in candidate_runs(points):
-        n, difference = len(added), a.state.predict(added) - b.state.predict(added)
-        chi2 = float(np.sum((difference[:n] / noise_Fy) ** 2))
-        if np.isfinite(noise_Mz):
-            chi2 += float(np.sum((difference[n:] / noise_Mz) ** 2))
+        of_a, of_b = (one.state.readings(added, noise) for one in (a, b))
+        chi2 = sum(
+            float(np.sum(((of_a[name] - of_b[name]) / u) ** 2)) for name, u in noise.items() if np.isfinite(u)
+        )
         found.append(Separation(run=run, load=float(added.Fz[0]), chi2=chi2))
     return max(found, key=lambda s: s.chi2)
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -11,7 +12,6 @@ from mffit.diagnosis.hypothesis import Hypothesis
 from mffit.diagnosis.inexact import EXACT, Inexactness
 from mffit.diagnosis.noise import Noise
 from mffit.diagnosis.problem import DiagnosisProblem
-from mffit.quantities import SIDEWAYS
 from mffit.rig import Simulation
 from mffit.rig_errors import RIG_ERRORS
 from mffit.scatter import rms
@@ -21,13 +21,12 @@ from mffit.scatter import rms
 class Gap:
     """Measured minus simulated, in one number per channel."""
 
-    Fy_rmse_N: float
-    Mz_rmse_Nm: float
+    rmse: Mapping[str, float]  #: by channel, in its unit; NaN where it was not measured
     chi2_per_dof: float
 
     def rms(self, channel: str) -> float:
-        """Of "Fy" [N] or "Mz" [Nm]."""
-        return {"Fy": self.Fy_rmse_N, "Mz": self.Mz_rmse_Nm}[channel]
+        """Of one channel, in its unit."""
+        return self.rmse[channel]
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,10 +59,10 @@ class Validation:
 
 
 def gap(residual: np.ndarray, noise: Noise) -> Gap:
-    """Gap of residuals (2n,), Fy then Mz; chi2 without correlations, as the gap in newtons is."""
+    """Gap of residuals (c n,), channel after channel; chi2 without correlations, as the gap in newtons is."""
     z = residual[noise.used] / noise.u[noise.used]
-    Fy, Mz = np.split(residual, 2)
-    return Gap(Fy_rmse_N=rms(Fy), Mz_rmse_Nm=rms(Mz), chi2_per_dof=float(z @ z) / max(len(z), 1))
+    rmse = {name: rms(rows) for name, rows in noise.by_channel(residual).items()}
+    return Gap(rmse, chi2_per_dof=float(z @ z) / max(len(z), 1))
 
 
 def validate(
@@ -75,24 +74,25 @@ def validate(
     these points (``seen``), it is refitted without the group for the gap before too, which it would otherwise predict from
     itself.
     """
-    points = problem.points
-    measured = np.concatenate([points.Fy, points.Mz])
-    before = measured - problem.start.predict(points)
+    points, channels = problem.points, problem.channels
+    measured = np.concatenate([points.channel(name) for name in channels])
+    before = measured - problem.predict(problem.start)
     after, alone = before.copy(), before.copy()
     folds = _folds(points.sweep)
     for fold in folds:
         out = np.isin(points.sweep, fold)
         if not (hypothesis.effects or inexact) or out.all():
             continue
-        rest, chosen, both = problem.part(~out), points.select(out), np.concatenate([out, out])
+        rest, chosen, rows = problem.part(~out), points.select(out), np.tile(out, len(channels))
         fitted = rest.evaluate(hypothesis.effects, hypothesis.numbers)
         if hypothesis.effects and not inexact:
             fitted = rest.fit(hypothesis.effects, hypothesis.numbers)
         state = rest.refine(fitted, inexact)[0].state
-        after[both] = measured[both] - state.predict(chosen)
-        alone[both] = measured[both] - file_alone(state, problem.start).predict(chosen)
+        after[rows] = measured[rows] - state.predict(chosen, channels)
+        alone[rows] = measured[rows] - file_alone(state, problem.start).predict(chosen, channels)
         if seen:
-            before[both] = measured[both] - rest.refine(rest.null, inexact)[0].state.predict(chosen)
+            unchanged = rest.refine(rest.null, inexact)[0].state
+            before[rows] = measured[rows] - unchanged.predict(chosen, channels)
     noise, numbers = problem.noise, sum(len(e.free) for e in hypothesis.effects) + len(inexact.names)
     return Validation(
         folds=len(folds),
@@ -125,8 +125,6 @@ def _raised(before: np.ndarray, after: np.ndarray, noise: Noise, numbers: int) -
     Correlated errors raise a plain sum of squares by more than that, so the residuals are whitened.
     """
     change = noise.whiten(np.nan_to_num(after)) ** 2 - noise.whiten(np.nan_to_num(before)) ** 2
-    of_Fy = noise.used < len(before) // 2
+    channel = noise.used // (len(before) // len(noise.channels))
     chance = numbers + constants.RAISED_GAP * np.sqrt(2.0 * numbers)
-    return tuple(
-        name for name, rows in zip(SIDEWAYS, (of_Fy, ~of_Fy), strict=True) if change[rows].sum() > chance
-    )
+    return tuple(name for k, name in enumerate(noise.channels) if change[channel == k].sum() > chance)

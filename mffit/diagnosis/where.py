@@ -27,7 +27,7 @@ Range = tuple[float, float]
 class Region:
     """A part of the programme in which one channel is off on average."""
 
-    channel: str  #: "Fy" | "Mz"
+    channel: str
     region: dict[str, Range]
     bias: float  #: mean of measured minus simulated [N] or [Nm]
     z: float  #: in standard errors, correlations included
@@ -39,7 +39,7 @@ def where(points: Points, residual: np.ndarray, noise: Noise) -> tuple[Region, .
     Parameters
     ----------
     points : (n,) conditions
-    residual : (2n,) measured minus simulated, Fy then Mz
+    residual : (c n,) measured minus simulated, in the channels of ``noise``
     noise : covariance of the readings
 
     Returns
@@ -64,8 +64,8 @@ def _tested(points: Points, residual: np.ndarray, noise: Noise) -> Iterator[tupl
     position = np.full(len(residual), -1)
     position[noise.used] = np.arange(len(noise.used))
     for region, mask in _cells(points):
-        for channel, first in (("Fy", 0), ("Mz", len(points))):
-            rows = position[np.flatnonzero(mask) + first]
+        for k, channel in enumerate(noise.channels):
+            rows = position[np.flatnonzero(mask) + k * len(points)]
             rows = rows[rows >= 0]
             if len(rows) < constants.FEWEST_READINGS_OF_A_REGION:
                 continue

@@ -30,7 +30,7 @@ from mffit.diagnosis.structure import Structure
 from mffit.diagnosis.ties import Separation
 from mffit.diagnosis.validation import Gap, Validation
 from mffit.effects import NEEDS, Effect
-from mffit.quantities import CHANNELS, CONDITIONS, SIDEWAYS
+from mffit.quantities import CHANNELS, CONDITIONS
 from mffit.rig_errors import OF_RUN, error_of, unit_of, words_of
 from mffit.rounding import per_cent, to_uncertainty
 from mffit.suspicion import Misread, Outlier
@@ -133,7 +133,8 @@ def _suspicion(found: AcceptedEffect) -> str:
 
 def _measured(noise: Noise) -> Iterator[tuple[str, str, float]]:
     """Name, unit and typical noise of every measured channel."""
-    for name, typical in (("Fy", noise.Fy), ("Mz", noise.Mz)):
+    for name in noise.channels:
+        typical = noise.typical(name)
         if math.isfinite(typical):
             yield name, CHANNELS[name].unit, typical
 
@@ -228,9 +229,10 @@ def _another_tyre(found: AnotherTyre) -> str:
 
 def _held_out(before: Gap, after: Gap) -> str:
     return " and ".join(
-        f"the {q.word} misses by {_short(after.rms(name))} {q.unit} instead of {_short(before.rms(name))} {q.unit}"
-        for name, q in SIDEWAYS.items()
-        if math.isfinite(after.rms(name))
+        f"the {CHANNELS[name].word} misses by {_short(rmse)} {CHANNELS[name].unit} instead of {_short(before.rms(name))} "
+        f"{CHANNELS[name].unit}"
+        for name, rmse in after.rmse.items()
+        if math.isfinite(rmse)
     )
 
 

@@ -17,7 +17,6 @@ from mffit.fit import FitResult
 from mffit.fit.agreement import with_points
 from mffit.measured import Measured, radius_readings
 from mffit.points import Points
-from mffit.quantities import SIDEWAYS
 from mffit.rig import Readings
 from mffit.scatter import rms
 from mffit.suspicion import CamberReduction, Doubt, FinishedFit, LeftOutSweeps, Outlier, Trust, judge
@@ -59,8 +58,8 @@ def judged_diagnosis(diagnosis: Diagnosis) -> Trust:
     """The judgement of the corrected model of a diagnosis."""
     points = diagnosis.points
     if diagnosis.noise.origin is not Origin.STATED:
-        points = points.replace(u_Fy=np.nan, u_Mz=np.nan)
-    after = Readings.split(diagnosis.after, SIDEWAYS)
+        points = points.replace(**{f"u_{name}": np.nan for name in diagnosis.noise.channels})
+    after = Readings(**diagnosis.noise.by_channel(diagnosis.after))
     left_out = {}
     for name in after:
         difference = after[name] - points.channel(name)

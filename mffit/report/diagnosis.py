@@ -8,7 +8,7 @@ from pathlib import Path
 
 from mffit.diagnosis import Diagnosis, wording
 from mffit.diagnosis.constants import TIED_EVIDENCE
-from mffit.quantities import SIDEWAYS
+from mffit.quantities import CHANNELS
 from mffit.report import page
 from mffit.report.diagnosis_view import DiagnosisView, shown_steps, view_of
 from mffit.report.drawing.records import Sheet
@@ -26,7 +26,7 @@ def write_diagnosis(diagnosis: Diagnosis, folder: Path) -> None:
         d=diagnosis,
         say=wording,
         tie=TIED_EVIDENCE,
-        channels=SIDEWAYS,
+        channels=CHANNELS,
     )
 
 

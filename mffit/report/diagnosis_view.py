@@ -91,15 +91,16 @@ class DiagnosisView:
 
 def view_of(diagnosis: Diagnosis) -> DiagnosisView:
     """The view of a diagnosis: residuals in units of noise, conditions, ranked candidates."""
-    points, n = diagnosis.points, len(diagnosis.points)
+    points, noise = diagnosis.points, diagnosis.noise
     channels = []
-    measured_channels = (("Fy", points.Fy, diagnosis.noise.Fy), ("Mz", points.Mz, diagnosis.noise.Mz))
-    for i, (name, measured, noise) in enumerate(measured_channels):
-        rows = slice(i * n, (i + 1) * n)
-        u = np.where(np.isfinite(diagnosis.noise.u[rows]), diagnosis.noise.u[rows], np.nan)
-        before, after = ((measured - model[rows]) / u for model in (diagnosis.before, diagnosis.after))
+    for name, u in noise.by_channel(noise.u).items():
+        u = np.where(np.isfinite(u), u, np.nan)
+        before, after = (
+            (points.channel(name) - noise.of_channel(model, name)) / u
+            for model in (diagnosis.before, diagnosis.after)
+        )
         if np.isfinite(before).any():
-            channels.append(GapChannel(name=name, before=before, after=after, noise=noise))
+            channels.append(GapChannel(name=name, before=before, after=after, noise=noise.typical(name)))
     known = {e.id: e for e in (*CATALOG, *(t.effects[-1] for s in diagnosis.steps for t in s.trials))}
     freed = {name for found in diagnosis.effects for name in found.parameters}
     return DiagnosisView(

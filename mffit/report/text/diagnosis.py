@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 
 from mffit.diagnosis import AcceptedEffect, Diagnosis, Gap, wording
 from mffit.diagnosis.where import Region
-from mffit.quantities import CHANNELS, SIDEWAYS
+from mffit.quantities import CHANNELS
 from mffit.report import words
 from mffit.report.text.layout import blocks, paragraphs, table, wrapped
 from mffit.rounding import as_good_as, number, per_cent, with_u
@@ -22,13 +22,14 @@ def diagnosis_summary(diagnosis: Diagnosis) -> str:
     )
     if diagnosis.terms:
         gaps = (*gaps, ("held out, corrected file alone", diagnosis.validation.gap_file))
-    rows = [(name, g.Fy_rmse_N, g.Mz_rmse_Nm, g.chi2_per_dof) for name, g in gaps]
-    rows.append(("noise", diagnosis.noise.Fy, diagnosis.noise.Mz, 1.0))
-    head = ("gap, rms", *(channel.column(name) for name, channel in SIDEWAYS.items()), "chi2 per dof")
+    noise = diagnosis.noise
+    rows = [(name, [*g.rmse.values(), g.chi2_per_dof]) for name, g in gaps]
+    rows.append(("noise", [*(noise.typical(name) for name in noise.channels), 1.0]))
+    head = ("gap, rms", *(CHANNELS[name].column(name) for name in noise.channels), "chi2 per dof")
     parts = [
         *(wrapped(f"NOT TO BE TRUSTED: {sentence}.") for sentence in diagnosis.reasons),
         wrapped(diagnosis.headline),
-        table(head, [(name, *(number(value, digits=3) for value in values)) for name, *values in rows]),
+        table(head, [(name, *(number(value, digits=3) for value in values)) for name, values in rows]),
         *(_effect(found, diagnosis.signs) for found in diagnosis.effects),
         _regions(diagnosis.unexplained_where) if diagnosis.unexplained else "",
         paragraphs(wording.notes(diagnosis)),

@@ -8,6 +8,8 @@ from typing import Any
 
 from mffit.diagnosis import AcceptedEffect, Diagnosis, wording
 from mffit.diagnosis.noise import Noise
+from mffit.diagnosis.validation import Gap
+from mffit.quantities import column
 from mffit.results.as_json.of_build import made, outlier
 from mffit.results.as_json.values import picked
 
@@ -18,13 +20,13 @@ def diagnosis(found: Diagnosis) -> dict[str, Any]:
         "trusted": found.trusted,
         "reasons": list(found.reasons),
         "headline": found.headline,
-        "gap_before": asdict(found.gap_before),
-        "gap_after": asdict(found.gap_after),
+        "gap_before": _gap(found.gap_before),
+        "gap_after": _gap(found.gap_after),
         "validation": {
             "method": wording.method(found.validation),
-            "gap_before": asdict(found.validation.gap_before),
-            "gap_after": asdict(found.validation.gap_after),
-            "gap_file": asdict(found.validation.gap_file),
+            "gap_before": _gap(found.validation.gap_before),
+            "gap_after": _gap(found.validation.gap_after),
+            "gap_file": _gap(found.validation.gap_file),
         },
         "where": [asdict(region) for region in found.where],
         "effects": [_effect(effect, found.signs) for effect in found.effects],
@@ -45,14 +47,19 @@ def diagnosis(found: Diagnosis) -> dict[str, Any]:
     }
 
 
+def _gap(gap: Gap) -> dict[str, float]:
+    """Misfit of every channel and chi-squared."""
+    return {column(name, "rmse"): rmse for name, rmse in gap.rmse.items()} | {
+        "chi2_per_dof": gap.chi2_per_dof
+    }
+
+
 def _noise(noise: Noise) -> dict[str, Any]:
     """The estimated and the stated noise."""
     return {
-        "Fy_N": noise.Fy,
-        "Mz_Nm": noise.Mz,
+        **{column(name): noise.typical(name) for name in noise.channels},
         "source": wording.source(noise),
-        "stated_Fy_N": noise.typically_stated("Fy"),
-        "stated_Mz_Nm": noise.typically_stated("Mz"),
+        **{f"stated_{column(name)}": noise.typically_stated(name) for name in noise.channels},
         "scatter": {name: asdict(row) for name, row in noise.scatter.items()},
     }
 
@@ -66,7 +73,7 @@ def _effect(found: AcceptedEffect, signs: Mapping[str, float]) -> dict[str, Any]
             n: {"was": found.before[n], "value": v, "stderr": s} for n, (v, s) in found.parameters.items()
         },
         "to_do": wording.remedy(found, signs),
-        "gap_after": asdict(found.gap_after),
+        "gap_after": _gap(found.gap_after),
         "tied_with": list(found.tied_with),
         "separate_by": wording.separation(found.separation),
         **({} if found.T_ref is None else {"T_ref_degC": found.T_ref}),

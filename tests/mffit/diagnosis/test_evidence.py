@@ -154,9 +154,11 @@ def test_expected_chi2_between_two_offsets_is_their_square_at_every_point():
     points = read(programme())
     null = problem(points).null
     other = replace(null, state=Simulation.of(TYRE, Faults(F0_N=9.0, M0_Nm=0.3)))
-    best = separation(points, null, other, U_FY, U_MZ)
+    best = separation(points, null, other, {"Fy": U_FY, "Mz": U_MZ})
     assert best.chi2 == pytest.approx(13 * (1.5**2 + 0.5**2))
-    assert separation(points, null, other, U_FY, float("nan")).chi2 == pytest.approx(13 * 1.5**2)
+    assert separation(points, null, other, {"Fy": U_FY, "Mz": float("nan")}).chi2 == pytest.approx(
+        13 * 1.5**2
+    )
 
 
 def test_the_usual_runs_have_the_conditions_of_their_names():
@@ -209,10 +211,9 @@ def test_the_gap_in_numbers():
     points = read(programme(), faults=Faults(F0_N=9.0, M0_Nm=-1.2))
     chosen = problem(points)
     found = gap(chosen.measured - chosen.start.predict(points), chosen.noise)
-    assert found.Fy_rmse_N == pytest.approx(9.0)
-    assert found.Mz_rmse_Nm == pytest.approx(1.2)
+    assert found.rms("Fy") == pytest.approx(9.0)
+    assert found.rms("Mz") == pytest.approx(1.2)
     assert found.chi2_per_dof == pytest.approx(0.5 * (1.5**2 + 2.0**2))
-    assert (found.rms("Fy"), found.rms("Mz")) == (found.Fy_rmse_N, found.Mz_rmse_Nm)
 
 
 def test_a_sweep_left_out_is_predicted_from_the_others():
@@ -224,14 +225,14 @@ def test_a_sweep_left_out_is_predicted_from_the_others():
     checked = validate(chosen, chosen.fit((OFFSET,)))
     assert checked.folds == 5
     n, m = len(points), int(odd_one.sum())
-    assert checked.gap_before.Fy_rmse_N == pytest.approx(12.0 * math.sqrt((n - m) / n))
+    assert checked.gap_before.rms("Fy") == pytest.approx(12.0 * math.sqrt((n - m) / n))
     squares = 0.0
     for k in range(5):
         out = points.sweep == k
         rest = np.where(odd_one, 0.0, 12.0)[~out]
         predicted = rest.sum() / U_FY**2 / (len(rest) / U_FY**2 + 1.0 / 10.0**2)
         squares += float(np.sum((np.where(odd_one, 0.0, 12.0)[out] - predicted) ** 2))
-    assert checked.gap_after.Fy_rmse_N == pytest.approx(math.sqrt(squares / n), rel=1e-3)
+    assert checked.gap_after.rms("Fy") == pytest.approx(math.sqrt(squares / n), rel=1e-3)
 
 
 def test_many_sweeps_are_left_out_in_eight_groups():

@@ -68,7 +68,7 @@ def test_a_suspicion_is_listed_and_not_repaired(tmp_path):
     assert effect.confidence < 0.5
     assert not effect.repaired
     assert found.gap_after == found.gap_before
-    assert found.gap_named.Fy_rmse_N < 0.9 * found.gap_before.Fy_rmse_N
+    assert found.gap_named.rms("Fy") < 0.9 * found.gap_before.rms("Fy")
     pipeline.diagnosing.write_diagnosis(found, tmp_path)
     TYRE.write(tmp_path / "given.tir")
     assert (tmp_path / "warm.tir").read_text() == (tmp_path / "given.tir").read_text()
@@ -81,7 +81,7 @@ def test_a_suspicion_is_listed_and_not_repaired(tmp_path):
 def test_all_suspicions_are_repaired_on_request():
     found = of_a_leaning_cell(repair_all=True)
     assert [one.repaired for one in found.effects] == [True]
-    assert found.gap_after.Fy_rmse_N < 0.9 * found.gap_before.Fy_rmse_N
+    assert found.gap_after.rms("Fy") < 0.9 * found.gap_before.rms("Fy")
 
 
 def test_the_option_of_the_command_asks_for_all(monkeypatch, tmp_path):
@@ -109,8 +109,8 @@ def test_a_file_that_is_worse_alone_does_not_replace_the_given_one():
     found = diagnose(points, given, CONFIG, effects=(GRIP, TEMPERATURE), repair_all=True)
     assert {one.effect.id for one in found.effects} == {"grip", "temperature"}
     check = found.validation
-    assert check.gap_after.Fy_rmse_N < 0.3 * check.gap_before.Fy_rmse_N
-    assert check.gap_file.Fy_rmse_N > 1.1 * check.gap_before.Fy_rmse_N
+    assert check.gap_after.rms("Fy") < 0.3 * check.gap_before.rms("Fy")
+    assert check.gap_file.rms("Fy") > 1.1 * check.gap_before.rms("Fy")
     assert found.tyre.values == given.values
     assert found.with_terms is not None
     assert found.with_terms["LMUY"] == pytest.approx(found.state.values["LMUY"])

@@ -29,7 +29,7 @@ def test_a_right_model_leaves_one_chi2_per_reading(right_model):
     found = gap(chosen.measured - chosen.start.predict(points), chosen.noise)
     # 780 readings: the standard deviation of chi2 per reading is sqrt(2/780) = 0.05
     assert found.chi2_per_dof == pytest.approx(1.0, abs=0.2)
-    assert found.Fy_rmse_N == pytest.approx(6.0, rel=0.15)
+    assert found.rms("Fy") == pytest.approx(6.0, rel=0.15)
 
 
 def test_noise_has_hardly_a_significant_region(right_model):
@@ -92,6 +92,6 @@ def test_the_flipped_mount_separates_conicity_from_a_load_cell(right_model):
     n = len(points)
     tilted = problem(case, points.replace(Fy=predicted[:n], Mz=predicted[n:]))
     a, b = (tilted.fit((BY_ID[i],)) for i in ("conicity", "crosstalk-fz-fy"))
-    best = separation(points, a, b, 6.0, 0.6)
+    best = separation(points, a, b, {"Fy": 6.0, "Mz": 0.6})
     assert best.chi2 > 9.0
     assert best.run is SeparatingRun.TURNED_ON_RIM

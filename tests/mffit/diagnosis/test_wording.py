@@ -34,7 +34,12 @@ from tir import Quantity
 
 BY_ID = {effect.id: effect for effect in CATALOG}
 RIGHT, WRONG = Quantity(-0.06, 0.05, "-"), Quantity(0.2, 0.07, "-")
-CHECK = Validation(8, Gap(36.7, 2.0, 4.0), Gap(37.5, 2.1, 4.2), Gap(41.0, 2.2, 5.1))
+CHECK = Validation(
+    8,
+    Gap({"Fy": 36.7, "Mz": 2.0}, 4.0),
+    Gap({"Fy": 37.5, "Mz": 2.1}, 4.2),
+    Gap({"Fy": 41.0, "Mz": 2.2}, 5.1),
+)
 BUMP = Bump("Mz", {"alpha_deg": (-4.0, -2.5), "Fz_N": (1400.0, 1600.0)}, -6.2, 30.0)
 
 

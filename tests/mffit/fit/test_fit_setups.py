@@ -110,8 +110,8 @@ def test_a_right_file_is_not_blamed_for_the_zeros(project):
     found = mffit.diagnose(project / "tyre.toml", SAMPLE / "true.tir", out=project / "diagnosis")
     assert not found.effects
     assert not found.unexplained
-    assert found.gap_before.Fy_rmse_N > 5.0 * FY
-    assert found.gap_after.Fy_rmse_N < 1.1 * FY
+    assert found.gap_before.rms("Fy") > 5.0 * FY
+    assert found.gap_after.rms("Fy") < 1.1 * FY
     assert "with the zeros of every set-up" in found.headline
     assert found.tyre["PKY6"] == truth()["PKY6"]
     zeros = {n: v for n, (v, _) in found.coefficients.items()}
