@@ -79,7 +79,7 @@ ALSO_CALLED = {"calspan": "sae"}
 """Other names of axes: data of Calspan's flat belt, published by the tyre test consortium, are in SAE axes."""
 
 
-U_RANGES = {"N": q.UForce, "Nm": q.UMoment, "deg": q.UAngle, "m": q.ULength}
+U_RANGES = {"-": q.Fraction, "N": q.UForce, "Nm": q.UMoment, "deg": q.UAngle, "m": q.ULength}
 """Accepted range of a standard uncertainty by its unit."""
 
 

@@ -9,7 +9,6 @@ from mffit import points
 from mffit.config import Config
 from mffit.errors import InputError
 from mffit.output import digest
-from mffit.points.free_rolling import free_rolling
 from mffit.points.loading import Reading
 from mffit.suspicion import before_the_fit
 from tir import Tyre
@@ -23,11 +22,7 @@ def read_points(config: Config, *, continuous: bool = False) -> Reading:
     config : the checked ``tyre.toml``
     continuous : see :func:`mffit.points.read`
     """
-    found = free_rolling(points.read(config, continuous=continuous))
-    if not len(found.points):
-        raise InputError(
-            "there is no point at which the wheel rolls freely; add a sideslip sweep", file=config.path
-        )
+    found = points.read(config, continuous=continuous)
     return found._replace(warnings=(*found.warnings, *before_the_fit(found.points, config)))
 
 

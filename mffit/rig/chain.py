@@ -45,6 +45,7 @@ class Chain:
         star: bool,
     ) -> None:
         self.points, self.numbers = points, numbers
+        self.true: dict[str, Any] = {}  #: channels (n,) of the tyre before their readings
         self._usual_radius, self._modes = usual_radius, {"turn_slip": turn_slip, "star": star}
         if np.any(points.mount < 0):
             coefficients = vars(turned_on_rim(SimpleNamespace(**coefficients), points.mount))
@@ -52,15 +53,19 @@ class Chain:
         self._quantities: dict[str, Any] = {
             name: getattr(points, name) for name in ("alpha", "gamma", "Fz", "phi_t")
         } | {"pressure": points.p}
-        if np.any(points.kappa):  # free rolling needs fewer equations
+        driven = any(self._acts(error) for error in BEFORE if "kappa" in error.acts_on)
+        if driven or np.any(points.kappa):  # free rolling needs fewer equations
             self._quantities["kappa"] = points.kappa
         self._conditions = tuple(name for name in self._quantities if name != "alpha")
 
     def readings(self, channels: tuple[str, ...]) -> list[Any]:
         """Readings (n,) of some channels, in their units."""
         self._pass(BEFORE)
-        forces = self._tyre(channels, self._quantities["alpha"])
-        self._quantities.update(zip(channels, forces, strict=True))
+        read = (name for error in AFTER if self._acts(error) for name in error.reads)
+        wanted = tuple(dict.fromkeys((*channels, *read)))
+        forces = self._tyre(wanted, self._quantities["alpha"])
+        self.true = dict(zip(wanted, forces, strict=True))
+        self._quantities.update({name: self.true[name] for name in channels})
         self._pass(AFTER)
         return [self._quantities[channel] for channel in channels]
 
@@ -74,14 +79,19 @@ class Chain:
     def _pass(self, errors: Iterable[RigError]) -> None:
         """Let rig errors act on what they change."""
         for error in errors:
-            number = self.numbers[error.name]
-            if error.formula is None or not (isinstance(number, Traced) or error.acts(number)):
+            if error.formula is None or not self._acts(error):
                 continue
+            number = self.numbers[error.name]
             for name in error.acts_on:
                 if name in CHANNELS and name not in self._quantities:  # not asked for
                     continue
                 owner = self._quantities if name in self._quantities else self._coefficients
                 owner[name] = error.formula(number, owner[name], self)
+
+    def _acts(self, error: RigError) -> bool:
+        """Whether an error may change anything: it has another number than without the error, or is traced."""
+        number = self.numbers[error.name]
+        return isinstance(number, Traced) or error.acts(number)
 
     @property
     def gamma(self) -> Any:

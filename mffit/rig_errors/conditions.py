@@ -109,5 +109,18 @@ PATH_RADIUS = RigError(
         ),
     ),
 )
+SLIP_ZERO = RigError(
+    name="kappa_0",
+    unit="-",
+    meaning="true longitudinal slip = reading + kappa_0",
+    kind="rig",
+    place=Place.SLIP,
+    acts_on=("kappa",),
+    formula=lambda zero, kappa, at: kappa + zero,
+    spread=0.002,
+    lower=-0.1,
+    upper=0.1,
+    declared=Declared(key="u_slip_zero", unit="-", default=0.0, source="zero of slip"),
+)
 
-CONDITION_ERRORS = (CAMBER_ZERO, LOAD_CAMBER, PATH_RADIUS)
+CONDITION_ERRORS = (CAMBER_ZERO, LOAD_CAMBER, PATH_RADIUS, SLIP_ZERO)

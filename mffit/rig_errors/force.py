@@ -194,6 +194,42 @@ ROLLING_ZERO = _of_reading(
     of_setup=True,
     declared=Declared(key="u_My_offset_Nm", unit="Nm", default=constants.ROLLING_ZERO, source="zero of My"),
 )
+LONGITUDINAL_GAIN = _of_reading(
+    name="gain_Fx",
+    unit="-",
+    meaning="reported Fx = gain_Fx Fx + Fx0",
+    acts_on=("Fx",),
+    formula=lambda gain, Fx, at: gain * Fx,
+    undisturbed=1.0,
+    spread=0.02,
+    lower=0.5,
+    upper=2.0,
+    declared=Declared(key="u_Fx_gain", unit="-", default=0.0, source="calibration of Fx"),
+)
+FX_INTO_MZ = _of_reading(
+    name="crosstalk_Fx_Mz_m",
+    unit="m",
+    meaning="reported Mz = Mz + crosstalk_Fx_Mz Fx",
+    acts_on=("Mz",),
+    formula=lambda arm, Mz, at: Mz + arm * at.true["Fx"],
+    reads=("Fx",),
+    spread=0.002,
+    lower=-0.1,
+    upper=0.1,
+    declared=Declared(key="u_Fx_into_Mz_m", unit="m", default=0.0, source="crosstalk of Fx into Mz"),
+)
+FY_INTO_MX = _of_reading(
+    name="crosstalk_Fy_Mx_m",
+    unit="m",
+    meaning="reported Mx = Mx + crosstalk_Fy_Mx Fy",
+    acts_on=("Mx",),
+    formula=lambda arm, Mx, at: Mx + arm * at.true["Fy"],
+    reads=("Fy",),
+    spread=0.003,
+    lower=-0.1,
+    upper=0.1,
+    declared=Declared(key="u_Fy_into_Mx_m", unit="m", default=0.0, source="crosstalk of Fy into Mx"),
+)
 
 FORCE_ERRORS = (
     GAIN,
@@ -201,6 +237,9 @@ FORCE_ERRORS = (
     CROSSTALK,
     FORCE_ZERO,
     MOMENT_ZERO,
+    LONGITUDINAL_GAIN,
+    FX_INTO_MZ,
+    FY_INTO_MX,
     LONGITUDINAL_ZERO,
     OVERTURNING_ZERO,
     ROLLING_ZERO,

@@ -24,13 +24,14 @@ class Place(Enum):
     CAMBER = "Camber angle"
     LOAD = "Load"
     PATH = "Path"
+    SLIP = "Longitudinal slip"
     COEFFICIENTS = "Coefficients of the tyre"
     ANGLE = "Sideslip angle"
     ENVIRONMENT = "Forces of the tyre in its environment"
     FORCE = "Reading of the force"
 
 
-BEFORE_THE_TYRE = (Place.CAMBER, Place.LOAD, Place.PATH, Place.COEFFICIENTS, Place.ANGLE)
+BEFORE_THE_TYRE = (Place.CAMBER, Place.LOAD, Place.PATH, Place.SLIP, Place.COEFFICIENTS, Place.ANGLE)
 """Sideslip comes last: compliance and play need the moment of the tyre under all other conditions."""
 
 
@@ -99,8 +100,9 @@ class RigError:
     meaning: str  #: the formula in words
     kind: str  #: "rig" | "environment" | "tyre"
     place: Place | None  #: None: it only takes part in the formulae of others
-    acts_on: tuple[str, ...] = ()  #: alpha, gamma, Fz, phi_t, channels or coefficients
+    acts_on: tuple[str, ...] = ()  #: alpha, gamma, kappa, Fz, phi_t, channels or coefficients
     formula: Formula | None = None
+    reads: tuple[str, ...] = ()  #: channels of the tyre that the formula takes from ``at.true``
     undisturbed: float = 0.0  #: value without the error; NaN: as declared
     spread: float  #: usual size, 1 sigma
     scan: tuple[float, ...] = (0.0,)  #: changes to start from; an even effect needs some other than 0

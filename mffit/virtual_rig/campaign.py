@@ -13,7 +13,7 @@ from mffit.errors import InputError
 from mffit.rig_errors import ZEROS, Faults
 from mffit.virtual_rig.faults import drawn, given
 from mffit.virtual_rig.machine import Channels, Machine, steady
-from mffit.virtual_rig.plan import NoiseTable, RigPlan, SweepPlan
+from mffit.virtual_rig.plan import ADDED, NoiseTable, RigPlan, SweepPlan
 from mffit.virtual_rig.recording import record
 from mffit.virtual_rig.revolution import written_down
 from mffit.virtual_rig.settings import Settings, settings_of, usual_speed
@@ -56,7 +56,15 @@ def run(plan: RigPlan, tyre: Tyre, seed: int | None = None) -> Campaign:
     faults = faults_in_setups(plan, tyre, np.random.default_rng(for_faults))
     sweeps = settings_of(plan)
     machines = {
-        setup: Machine(tyre, own, plan.phi_t_sign, usual_speed(sweeps)) for setup, own in faults.items()
+        setup: Machine(
+            tyre,
+            own,
+            plan.phi_t_sign,
+            usual_speed(sweeps),
+            plan.tables.drive.drag_Nm,
+            plan.tables.drive.slip_against,
+        )
+        for setup, own in faults.items()
     }
     tables = {
         sweep.file: sweep_table(plan, machines[setup], sweep, settings, np.random.default_rng(stream))
@@ -106,24 +114,34 @@ def sweep_table(
     """Run one sweep, as finished points or as a recording."""
     machine = machine.with_faults(sweep.faults.values())
     if sweep.recording is not None:
-        return recorded_table(plan, record(machine, settings, sweep.recording, generator))
+        return recorded_table(
+            plan, record(machine, settings, sweep.recording, generator, plan.tables.noise.added)
+        )
     return point_table(plan, settings, scattered(steady(machine, settings), plan.tables.noise, generator))
 
 
 def scattered(forces: Channels, noise: NoiseTable, generator: np.random.Generator) -> Channels:
     """Finished points with noise."""
-    Fy, Mz, My = generator.standard_normal((3, len(forces.Fy)))
+    n = len(forces.Fy)
+    Fy, Mz, My = generator.standard_normal((3, n))
+    # Each further channel draws after these, so that one more channel does not change them.
+    added = {
+        name.partition("_")[0]: (noise.of(name) or 0.0) * generator.standard_normal(n)
+        for name in ADDED
+        if noise.of(name) is not None
+    }
     return forces._replace(
         Fy=forces.Fy + noise.Fy_N * Fy,
         Mz=forces.Mz + noise.Mz_Nm * Mz,
         My=forces.My + (noise.My_Nm or 0.0) * My,
+        **{name: getattr(forces, name) + scatter for name, scatter in added.items()},
     )
 
 
 def truth_of(plan: RigPlan, machine: Machine, faults: Mapping[str, Faults], seed: int) -> Truth:
     """The true values at the loads of the campaign and at the nominal load; ``machine`` is that of the first set-up."""
     nominal = plan.declared.tyre.nominal_load
-    loads = sorted({sweep.load_N for sweep in plan.tables.sweep})
+    loads = sorted({load for sweep in plan.tables.sweep for load in sweep.load_N})
     rows = {load: _direct(plan, machine, load) for load in sorted({nominal, *loads})}
     return Truth(
         nominal=rows[nominal],
@@ -171,6 +189,9 @@ def configuration_of(plan: RigPlan, machine: Machine, generator: np.random.Gener
         for row in plan.tables.rolling_radius
     ]
     content["rolling_radius"] = radii
+    against = plan.tables.drive.slip_against
+    if plan.reports_slip and against != "free-rolling":
+        content["columns"] = {**content.get("columns", {}), "kappa": {"against": against}}
     if plan.declared.base_path is not None:
         content["tyre"]["base"] = plan.declared.base_path.name  # its copy is beside tyre.toml
     if plan.declared.priors_path is not None:

@@ -7,12 +7,14 @@ record. Everything is in ISO-W, contact frame.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 from types import SimpleNamespace
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from mffit.rig_errors import Faults
+from mffit.virtual_rig.radius import loaded_radius
 from mffit.virtual_rig.settings import Settings
 from tir import Tyre
 from tir.evaluate import evaluate, turned_on_rim
@@ -27,6 +29,9 @@ class Channels(NamedTuple):
     My: np.ndarray
     Mz: np.ndarray
     Fx: np.ndarray | float = 0.0
+    RL: np.ndarray | float = np.nan  #: loaded radius [m]
+    omega: np.ndarray | float = np.nan  #: wheel speed [rad/s], negative rolling backwards
+    slip: np.ndarray | float = 0.0  #: longitudinal slip as the rig reports it
 
 
 class Machine(NamedTuple):
@@ -36,6 +41,8 @@ class Machine(NamedTuple):
     faults: Faults  #: with the true path radius
     phi_t_sign: int  #: of the usual path: -1 with the centre to the left, 0 on a flat track
     usual_speed: float  #: [m/s], where the speed has no influence
+    drag: float = 0.0  #: moment against the rotation of a wheel that rolls freely [Nm]
+    slip_against: str = "free-rolling"  #: what the slip that the rig reports is against
 
     def with_faults(self, added: Mapping[str, float]) -> Machine:
         """The machine with ``added`` rig errors, for a sweep that has errors of its own."""
@@ -70,6 +77,8 @@ STEERS: dict[str, Formula] = {
 """Added to the sideslip angle as read [rad]."""
 LEANS: dict[str, Formula] = {"gamma_0_deg": lambda x, s, m: np.deg2rad(x)}
 """Added to the camber as read [rad]."""
+SLIPS: dict[str, Formula] = {"kappa_0": lambda x, s, m: x}
+"""Added to the longitudinal slip as read."""
 LOADS: dict[str, Formula] = {
     "load_camber": lambda x, s, m: 1.0 + x * (1.0 - np.cos(2.0 * _leant(s, m))) / 2.0
 }
@@ -98,17 +107,40 @@ SURROUNDINGS: dict[str, Formula] = {
 """Factors on Fy and Mz."""
 YIELDS = ("compliance_deg_per_Nm", "backlash_deg")
 """Errors of the angle for which moment and angle must agree; see :func:`true_alpha`."""
-CELL = ("gain", "nonlinearity_per_kN", "crosstalk", "F0_N", "M0_Nm", "Fx0_N", "Mx0_Nm", "My0_Nm")
+CELL = (
+    "gain", "nonlinearity_per_kN", "crosstalk", "F0_N", "M0_Nm", "Fx0_N", "Mx0_Nm", "My0_Nm",
+    "gain_Fx", "crosstalk_Fx_Mz_m", "crosstalk_Fy_Mx_m",
+)  # fmt: skip
 """Errors of the load cells; see :func:`reported`."""
 ELSEWHERE = ("path_radius_m", "T_ref_degC", "relaxation_m")
 """Path radius: :func:`at_the_tyre`; reference temperature: the factors; lag: :mod:`mffit.virtual_rig.recording`."""
-FORMULAE = (*STEERS, *LEANS, *LOADS, *SCALES, *SURROUNDINGS, *YIELDS, *CELL, *ELSEWHERE)
+FORMULAE = (*STEERS, *LEANS, *SLIPS, *LOADS, *SCALES, *SURROUNDINGS, *YIELDS, *CELL, *ELSEWHERE)
 """Names of the rig errors that have a formula here."""
 
 
 def steady(machine: Machine, settings: Settings) -> Channels:
     """The settled readings of the rig, without noise."""
+    if settings.free:
+        settings = replace(settings, kappa=rolling_slip(machine, settings))
     return reported(machine, settings, at_the_tyre(machine, settings, true_alpha(machine, settings)))
+
+
+def rolling_slip(machine: Machine, settings: Settings) -> np.ndarray:
+    """Slip (n,) at which the force on a wheel without drive balances rolling resistance and drag."""
+
+    def unbalanced(kappa: np.ndarray) -> np.ndarray:
+        """Moment (n,) about the wheel's axis that would slow its rotation [Nm]."""
+        out = at_the_tyre(machine, replace(settings, kappa=kappa), settings.alpha)
+        forwards = np.sign(settings.Vx)
+        return forwards * (out.Fx * out.RL - out.My) + machine.drag
+
+    before, now = np.full(len(settings), -1e-3), np.zeros(len(settings))
+    rest, last = unbalanced(before), unbalanced(now)
+    for _ in range(8):  # secant steps; force and slip are nearly proportional here
+        slope = np.where(last == rest, 1.0, last - rest)
+        before, now, rest = now, now - last * (now - before) / slope, last
+        last = unbalanced(now)
+    return now
 
 
 def true_alpha(machine: Machine, settings: Settings) -> np.ndarray:
@@ -156,18 +188,29 @@ def at_the_tyre(machine: Machine, settings: Settings, alpha: np.ndarray) -> Chan
     # The wheel is moved between paths by known distances, so the error of the radius is common to all paths.
     phi_t = machine.phi_t_sign * settings.side / (machine.faults["path_radius_m"] + settings.outward)
     mounted = turned_on_rim(_scaled(machine, settings), settings.mount)
-    out, _ = evaluate(
+    load = settings.Fz * _product(LOADS, settings, machine)
+    out, state = evaluate(
         mounted,
-        settings.Fz * _product(LOADS, settings, machine),
+        load,
         alpha,
         settings.gamma + _sum(LEANS, settings, machine),
-        0.0,
+        true_slip(machine, settings),
         phi_t,
         settings.Vx,
         settings.p,
         turn_slip=machine.phi_t_sign != 0,
     )
-    return Channels(out.Fy, out.Fz, out.Mx, out.My, out.Mz, out.Fx)
+    radius = loaded_radius(machine.tyre.values, load, out.Fx, out.Fy, state.omega, settings.p)
+    slip = settings.kappa
+    if machine.slip_against == "loaded-radius":
+        slip = (1.0 + slip) * radius / state.Re - 1.0
+    return Channels(out.Fy, out.Fz, out.Mx, out.My, out.Mz, out.Fx, radius, state.omega, slip)
+
+
+def true_slip(machine: Machine, settings: Settings) -> np.ndarray | float:
+    """True longitudinal slip (n,); the number 0 where the wheel is neither driven nor braked."""
+    slip = settings.kappa + _sum(SLIPS, settings, machine)
+    return slip if np.any(slip) else 0.0
 
 
 def reported(machine: Machine, settings: Settings, true: Channels) -> Channels:
@@ -177,10 +220,10 @@ def reported(machine: Machine, settings: Settings, true: Channels) -> Channels:
     bent = seen + faults["nonlinearity_per_kN"] * np.sign(seen) * seen**2 / 1000.0
     return true._replace(
         Fy=bent + faults["F0_N"] + faults["crosstalk"] * true.Fz,
-        Mz=surroundings * true.Mz + faults["M0_Nm"],
-        Mx=faults["Mx0_Nm"] + true.Mx,
+        Mz=surroundings * true.Mz + faults["M0_Nm"] + faults["crosstalk_Fx_Mz_m"] * true.Fx,
+        Mx=faults["Mx0_Nm"] + true.Mx + faults["crosstalk_Fy_Mx_m"] * true.Fy,
         My=faults["My0_Nm"] + true.My,
-        Fx=faults["Fx0_N"] + true.Fx,
+        Fx=faults["Fx0_N"] + faults["gain_Fx"] * true.Fx,
         Fz=settings.Fz,
     )
 

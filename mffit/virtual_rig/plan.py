@@ -48,6 +48,18 @@ def _range(given: dict[str, Any]) -> tuple[float, ...]:
 Angles = Annotated[tuple[float, ...], BeforeValidator(angles), Field(min_length=1)]
 
 
+def _each(check: Any) -> Any:
+    """Type of one or more numbers that all pass a check of the configuration."""
+    return Annotated[tuple[Annotated[float, check], ...], BeforeValidator(angles), Field(min_length=1)]
+
+
+Loads, Pressures, Speeds = (
+    _each(AfterValidator(q.Range(*limits)))
+    for limits in ((0.0, 2e5, "N"), (10.0, 2e3, "kPa"), (0.0, 150.0, "m/s"))
+)
+Slips = _each(AfterValidator(q.Range(-1.0, 4.0, "of free rolling")))
+
+
 class TruthTable(Table):
     """[truth]: the true tyre."""
 
@@ -86,13 +98,40 @@ class FaultsTable(OwnFaultsTable):
     draw: bool = False  #: draw every declared error that is not given from its uncertainty in [rig]
 
 
+ADDED = ("Fx_N", "Mx_Nm", "RL_m", "omega_radps")
+"""Columns of the channels that a rig may measure beside Fy, Mz and My."""
+
+
 class NoiseTable(Table):
     """[noise]: scatter of a finished point, one standard deviation."""
 
     Fy_N: NonNegativeFloat = 0.0
     Mz_Nm: NonNegativeFloat = 0.0
-    My_Nm: NonNegativeFloat | None = None  #: None: the rig does not measure My
-    declared: bool = True  #: write the scatter beside every point, as u_Fy_N and u_Mz_Nm
+    My_Nm: NonNegativeFloat | None = None  #: None: the rig does not measure My; the same for those below
+    Fx_N: NonNegativeFloat | None = None
+    Mx_Nm: NonNegativeFloat | None = None
+    RL_m: NonNegativeFloat | None = None
+    omega_radps: NonNegativeFloat | None = None
+    declared: bool = True  #: write the scatter beside every point, as u_Fy_N and so on
+
+    def of(self, channel: str) -> float | None:
+        """Scatter of a channel by its column; None if it is not measured."""
+        scatter: float | None = getattr(self, channel)
+        return scatter
+
+    @property
+    def added(self) -> tuple[str, ...]:
+        """Columns that are measured beside Fy, Mz and My, in the order of the table."""
+        return tuple(name for name in ADDED if self.of(name) is not None)
+
+
+class DriveTable(Table):
+    """[drive]: the drive of the wheel and how the rig reports its slip."""
+
+    slip_against: Literal["free-rolling", "loaded-radius"] = "free-rolling"
+    drag_Nm: NonNegativeFloat = (
+        0.0  #: moment of bearings and brake against the rotation of a wheel that rolls freely
+    )
 
 
 class ConditionsTable(Table):
@@ -125,20 +164,29 @@ class RecordingTable(Table):
     noise_Mz_Nm: NonNegativeFloat = 2.5
     noise_My_Nm: NonNegativeFloat = 0.0
     noise_Fz_N: NonNegativeFloat = 0.0
+    slip_per_s: PositiveFloat = 0.1  #: rate of the longitudinal slip between points
+    noise_Fx_N: NonNegativeFloat = 25.0
+    noise_Mx_Nm: NonNegativeFloat = 5.0
+    noise_RL_m: NonNegativeFloat = 0.0
+    noise_omega_radps: NonNegativeFloat = 0.0
     correlation_s: NonNegativeFloat = 0.8  #: correlation time of the noise
     ripple_Fy_N: NonNegativeFloat = 0.0  #: amplitude, once per revolution of the wheel
     ripple_Mz_Nm: NonNegativeFloat = 0.0
 
 
 class SweepPlan(Table):
-    """[[sweep]]: set-points at one load; alpha runs fastest, then camber."""
+    """[[sweep]]: set-points; slip runs fastest, then sideslip, camber, load, pressure and speed."""
 
     file: str
-    load_N: q.Load
+    load_N: Loads
     alpha_deg: Angles = (0.0,)
     gamma_deg: Angles = (0.0,)
-    p_kPa: q.Pressure | None = None
-    V_mps: q.Speed | None = None
+    kappa: Slips = (0.0,)
+    free_rolling: bool = (
+        False  #: nothing drives the wheel: rolling resistance and drag hold it at a small slip
+    )
+    p_kPa: Pressures | None = None
+    V_mps: Speeds | None = None
     T_degC: Angles | None = None  #: one temperature, or those of the first and the last point
     direction: Literal["forward", "backward"] = "forward"
     mount: Literal["normal", "flipped"] = "normal"
@@ -156,6 +204,17 @@ class SweepPlan(Table):
             )
         return self
 
+    @model_validator(mode="after")
+    def _one_motion(self) -> SweepPlan:
+        if self.free_rolling and self.kappa != (0.0,):
+            raise q.wrong("is given, but the wheel rolls freely; remove it or free_rolling", "kappa")
+        several = [name for name in ("load_N", "p_kPa", "V_mps") if len(getattr(self, name) or ()) > 1]
+        if self.recording is not None and several:
+            raise q.wrong(
+                "has several values, but a recording has one; write a [[sweep]] for each", several[0]
+            )
+        return self
+
 
 def _entries(given: Any) -> Any:
     """A list of TOML as a tuple."""
@@ -170,6 +229,7 @@ class RigTables(Table):
     faults: FaultsTable = FaultsTable()
     setup: dict[str, SetupFaultsTable] = Field(default_factory=dict)
     noise: NoiseTable = NoiseTable()
+    drive: DriveTable = DriveTable()
     conditions: ConditionsTable = ConditionsTable()
     rolling_radius: Annotated[tuple[RollingRadiusPlan, ...], BeforeValidator(_entries)] = ()
     sweep: Annotated[tuple[SweepPlan, ...], BeforeValidator(_entries), Field(min_length=1)]
@@ -202,13 +262,19 @@ class RigPlan:
         """Name of the set-up of every sweep, empty if there is only one."""
         return setup_names(self.declared.rig, [_entry(sweep) for sweep in self.tables.sweep])
 
-    def pressure_kPa(self, sweep: SweepPlan) -> float:
-        """Inflation pressure of a sweep [kPa]."""
-        return sweep.p_kPa or self.tables.conditions.p_kPa or self.declared.tyre.nominal_pressure
+    def pressures_kPa(self, sweep: SweepPlan) -> tuple[float, ...]:
+        """Inflation pressures of a sweep [kPa]."""
+        return sweep.p_kPa or (self.tables.conditions.p_kPa or self.declared.tyre.nominal_pressure,)
 
-    def speed_mps(self, sweep: SweepPlan) -> float:
-        """Speed of a sweep [m/s], positive in both directions."""
-        return sweep.V_mps or self.tables.conditions.V_mps
+    def speeds_mps(self, sweep: SweepPlan) -> tuple[float, ...]:
+        """Speeds of a sweep [m/s], positive in both directions."""
+        return sweep.V_mps or (self.tables.conditions.V_mps,)
+
+    @property
+    def reports_slip(self) -> bool:
+        """Whether the rig has a column of longitudinal slip."""
+        tables = self.tables
+        return tables.noise.Fx_N is not None or any(sweep.kappa != (0.0,) for sweep in tables.sweep)
 
     def temperatures_degC(self, sweep: SweepPlan) -> tuple[float, ...]:
         """Temperature of a sweep [degC]: one, or those of the first and the last point."""

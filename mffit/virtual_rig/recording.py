@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
@@ -22,7 +24,11 @@ class Recording(NamedTuple):
 
 
 def record(
-    machine: Machine, settings: Settings, table: RecordingTable, generator: np.random.Generator
+    machine: Machine,
+    settings: Settings,
+    table: RecordingTable,
+    generator: np.random.Generator,
+    added: Sequence[str] = (),
 ) -> Recording:
     """The time series of one sweep.
 
@@ -32,13 +38,21 @@ def record(
     settings : set-points (n,) of one sweep, all at one load, speed and pressure
     table : settings of the recording
     generator : source of random numbers
+    added : columns of the channels that are measured beside Fy, Mz and My
     """
-    time, alpha, gamma = course(settings, table)
-    seen = settings.at(alpha, gamma)
+    time, alpha, gamma, kappa = course(settings, table)
+    seen = settings.at(alpha, gamma, kappa)
     state = machine.tyre.state(settings.Fz[0], Vx=settings.Vx[0], p=settings.p[0])
     sigma = machine.faults["relaxation_m"] or state.sigma_y
-    true = at_the_tyre(machine, seen, lagged(true_alpha(machine, seen), settings.V[0], sigma, table.rate_Hz))
+    follows = seen
+    if np.any(kappa):
+        follows = replace(seen, kappa=lagged(kappa, settings.V[0], state.sigma_x, table.rate_Hz))
+    true = at_the_tyre(
+        machine, follows, lagged(true_alpha(machine, seen), settings.V[0], sigma, table.rate_Hz)
+    )
     forces = reported(machine, seen, true)
+    if np.any(kappa):  # the force lags behind the slip, its reading does not
+        forces = forces._replace(slip=at_the_tyre(machine, seen, seen.alpha).slip)
     turned = settings.V[0] / state.Re * time
     forces = forces._replace(
         Fy=forces.Fy + table.ripple_Fy_N * np.sin(turned) + noise(time, table.noise_Fy_N, table, generator),
@@ -46,20 +60,26 @@ def record(
         My=forces.My + noise(time, table.noise_My_Nm, table, generator),
         Fz=forces.Fz + noise(time, table.noise_Fz_N, table, generator),
     )
+    for name in added:
+        channel, size = name.partition("_")[0], getattr(table, f"noise_{name}")
+        read = getattr(forces, channel) + noise(time, size, table, generator)
+        forces = forces._replace(**{channel: read})
     return Recording(time, seen, forces)
 
 
-def course(settings: Settings, table: RecordingTable) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Time [s], sideslip and camber as read [rad] of every sample (m,): straight to each point, then held."""
-    stations = np.column_stack([settings.alpha, settings.gamma])
-    travel = np.abs(np.diff(stations, axis=0)).max(axis=1, initial=0.0) / math.radians(
-        table.steering_deg_per_s
-    )
+def course(
+    settings: Settings, table: RecordingTable
+) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+    """Time [s], sideslip and camber as read [rad] and slip of every sample (m,): straight to each point, then held."""
+    slip = np.broadcast_to(settings.kappa, len(settings))
+    stations = np.column_stack([settings.alpha, settings.gamma, slip])
+    rates = np.array([math.radians(table.steering_deg_per_s)] * 2 + [table.slip_per_s])
+    travel = (np.abs(np.diff(stations, axis=0)) / rates).max(axis=1, initial=0.0)
     arrivals = np.concatenate([[0.0], np.cumsum(travel + table.hold_s)])
     corners = np.column_stack([arrivals, arrivals + table.hold_s]).ravel()
     time = np.arange(math.floor(corners[-1] * table.rate_Hz) + 1) / table.rate_Hz
-    alpha, gamma = (np.interp(time, corners, np.repeat(column, 2)) for column in stations.T)
-    return time, alpha, gamma
+    alpha, gamma, kappa = (np.interp(time, corners, np.repeat(column, 2)) for column in stations.T)
+    return time, alpha, gamma, kappa
 
 
 def lagged(alpha: np.ndarray, V: float, sigma: float, rate_Hz: float) -> np.ndarray:

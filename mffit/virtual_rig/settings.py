@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, field, fields, replace
 
 import numpy as np
 from scipy.integrate import cumulative_trapezoid
@@ -28,6 +28,8 @@ class Settings:
     rolled_m: np.ndarray  #: distance rolled since the start of the campaign [m]
     side: float = 1.0  #: of the disc: 1 the usual one, -1 the other
     outward: float = 0.0  #: radius of the path less that of the usual one [m]
+    kappa: np.ndarray = field(default_factory=lambda: np.zeros(1))  #: longitudinal slip (n,) or (1,) [-]
+    free: bool = False  #: nothing drives the wheel
 
     def __len__(self) -> int:
         return len(self.alpha)
@@ -44,12 +46,12 @@ class Settings:
         """Signed speed (n,) [m/s]: negative when the wheel rolls backwards."""
         return self.direction * self.V
 
-    def at(self, alpha: np.ndarray, gamma: np.ndarray) -> Settings:
-        """The same conditions as at the first point, at other angles (m,) [rad]."""
+    def at(self, alpha: np.ndarray, gamma: np.ndarray, kappa: np.ndarray) -> Settings:
+        """The same conditions as at the first point, at other angles (m,) [rad] and slips (m,)."""
         values = {f.name: getattr(self, f.name) for f in fields(self)}
         arrays = {name: value for name, value in values.items() if isinstance(value, np.ndarray)}
         repeated = {name: np.full(len(alpha), value[0]) for name, value in arrays.items()}
-        return replace(self, **repeated | {"alpha": alpha, "gamma": gamma})
+        return replace(self, **repeated | {"alpha": alpha, "gamma": gamma, "kappa": kappa})
 
 
 def settings_of(plan: RigPlan) -> list[Settings]:
@@ -74,15 +76,26 @@ def _rolled(sweeps: list[Settings]) -> list[Settings]:
 
 
 def _settings(plan: RigPlan, sweep: SweepPlan, begins: int, pause: float) -> Settings:
-    gamma, alpha = (grid.ravel() for grid in np.meshgrid(sweep.gamma_deg, sweep.alpha_deg, indexing="ij"))
+    V, p, Fz, gamma, alpha, kappa = (
+        grid.ravel()
+        for grid in np.meshgrid(
+            plan.speeds_mps(sweep),
+            plan.pressures_kPa(sweep),
+            sweep.load_N,
+            sweep.gamma_deg,
+            sweep.alpha_deg,
+            sweep.kappa,
+            indexing="ij",
+        )
+    )
     n = len(alpha)
     temperatures = plan.temperatures_degC(sweep)
     return Settings(
         alpha=np.radians(alpha),
         gamma=np.radians(gamma),
-        Fz=np.full(n, sweep.load_N),
-        p=np.full(n, 1e3 * plan.pressure_kPa(sweep)),
-        V=np.full(n, plan.speed_mps(sweep)),
+        Fz=Fz,
+        p=1e3 * p,
+        V=V,
         T=np.linspace(temperatures[0], temperatures[-1], n),
         t=pause * (begins + np.arange(n)),
         direction=np.full(n, 1 if sweep.direction == "forward" else -1),
@@ -90,6 +103,8 @@ def _settings(plan: RigPlan, sweep: SweepPlan, begins: int, pause: float) -> Set
         rolled_m=np.zeros(n),
         side=float(np.sign(plan.path(sweep) * plan.phi_t_sign)),
         outward=_outward(plan, sweep),
+        kappa=kappa,
+        free=sweep.free_rolling,
     )
 
 

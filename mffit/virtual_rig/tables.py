@@ -13,9 +13,19 @@ from tir.conventions import from_iso
 
 DECIMALS = {
     "time_s": 3, "alpha_deg": 3, "gamma_deg": 3, "Fz_N": 1, "p_kPa": 1, "V_mps": 2, "T_degC": 1, "t_s": 1,
-    "Fy_N": 2, "Mz_Nm": 3, "My_Nm": 3,
+    "Fy_N": 2, "Mz_Nm": 3, "My_Nm": 3, "kappa": 5, "Fx_N": 2, "Mx_Nm": 3, "RL_m": 6, "omega_radps": 4,
 }  # fmt: skip
-RECORDED_DECIMALS = {"alpha_deg": 2, "gamma_deg": 2, "Fz_N": 0, "Fy_N": 0, "Mz_Nm": 1, "My_Nm": 1}
+RECORDED_DECIMALS = {
+    "alpha_deg": 2,
+    "gamma_deg": 2,
+    "Fz_N": 0,
+    "Fy_N": 0,
+    "Mz_Nm": 1,
+    "My_Nm": 1,
+    "kappa": 4,
+    "Fx_N": 0,
+    "Mx_Nm": 1,
+}
 """Resolution of a logger: far below its noise; the files are a third as large."""
 
 
@@ -25,6 +35,9 @@ def point_table(plan: RigPlan, settings: Settings, forces: Channels) -> pd.DataF
     noise = plan.tables.noise
     if noise.declared and (noise.Fy_N or noise.Mz_Nm):
         table["u_Fy_N"], table["u_Mz_Nm"] = noise.Fy_N, noise.Mz_Nm
+        for name in (*noise.added, *(("My_Nm",) if noise.added and noise.My_Nm else ())):
+            if noise.of(name):
+                table[f"u_{name}"] = noise.of(name)
     if plan.tables.conditions.seconds_per_point is not None:
         table["t_s"] = settings.t
     return table.round(DECIMALS)
@@ -61,6 +74,11 @@ def _channels(plan: RigPlan, settings: Settings, forces: Channels) -> pd.DataFra
     # Mz can be turned from the wheel carrier to the contact frame only with My.
     if plan.tables.noise.My_Nm is not None or rig.force_frame == "C":
         table["My_Nm"] = turned("My", forces.My)
+    if plan.reports_slip:
+        table.insert(2, "kappa", np.broadcast_to(forces.slip, len(table)))
+    for name in plan.tables.noise.added:
+        channel = name.partition("_")[0]
+        table[name] = turned(channel, np.asarray(getattr(forces, channel)))
     return table
 
 

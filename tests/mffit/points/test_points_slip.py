@@ -17,7 +17,6 @@ from flat_belt import (
 from mffit import config as configuration
 from mffit import points
 from mffit.errors import InputError
-from mffit.pipeline.inputs import read_points
 from mffit.points.stretch import SWEEP
 
 COLUMNS = {
@@ -98,14 +97,6 @@ def test_without_a_longitudinal_force_only_free_rolling_is_kept(configured):
     found = points.read(configured(drive_recording(gaps=False), columns))
     assert np.all(np.abs(found.points.kappa) < 0.02)
     assert any("Fx was not measured" in warning for warning in found.warnings)
-
-
-def test_a_fit_of_side_force_takes_the_points_that_roll_freely(configured):
-    found = read_points(configured(drive_recording()))
-    assert np.all(np.abs(found.points.kappa) < 0.02)
-    (warning,) = [warning for warning in found.warnings if "only free rolling" in warning]
-    (entry,) = [row for row in found.left_out if row.rule == "driven-or-braked"]
-    assert f"{entry.count} of {entry.count + len(found.points)} points" in warning
 
 
 @pytest.mark.parametrize(

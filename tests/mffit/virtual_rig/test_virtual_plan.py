@@ -30,7 +30,7 @@ def test_a_range_includes_both_ends():
 def test_a_plan_is_read(written):
     plan = load_plan(written())
     assert plan.declared.rig.path_radius == 1.323
-    assert plan.pressure_kPa(plan.tables.sweep[0]) == 250.0
+    assert plan.pressures_kPa(plan.tables.sweep[0]) == (250.0,)
     assert plan.phi_t_sign == -1
 
 

@@ -43,7 +43,7 @@ def test_the_angle_moves_at_the_steering_rate_and_rests_at_every_point():
     alpha = np.radians([0.0, 2.0, 1.0])
     n = len(alpha)
     settings = Settings(alpha, *(np.ones(n) for _ in range(9)))
-    time, moved, _ = course(settings, RecordingTable(rate_Hz=10.0, hold_s=3.0, steering_deg_per_s=1.0))
+    time, moved, *_ = course(settings, RecordingTable(rate_Hz=10.0, hold_s=3.0, steering_deg_per_s=1.0))
     assert time[-1] == pytest.approx(3.0 * 3 + 2.0 + 1.0)
     assert np.degrees(np.abs(np.diff(moved))).max() == pytest.approx(0.1)
     assert np.sum(np.isclose(moved, alpha[1])) == 31
