@@ -174,6 +174,8 @@ def _of_runs(
     """
     problem, points = model.problem, model.problem.points
     sweeps = np.unique(points.sweep, return_inverse=True)[1]
+    if not demanded and sweeps.max() + 1 < FEWEST_SWEEPS_TO_PREDICT:
+        return Verdict(nuisance, False, _TOO_FEW), {}
     runs = _linear_runs(model, nuisance, sweeps)
     spread = runs.spread()
 
@@ -187,8 +189,6 @@ def _of_runs(
     gaps, scatter = (without.gaps, beside.gaps), dict(zip(nuisance.numbers, spread.tolist(), strict=True))
     if demanded:
         return Verdict(nuisance, True, _said(config, nuisance), *gaps), scatter
-    if len(np.unique(sweeps)) < FEWEST_SWEEPS_TO_PREDICT:
-        return Verdict(nuisance, False, _TOO_FEW), {}
     least = LEAST_PREDICTED_SHARE * without.by_sweep.total
     if not improves(without.by_sweep, beside.by_sweep, least=least, needed=needed_fall(1)):
         return Verdict(
