@@ -99,7 +99,7 @@ def choose(config: Any, first: Fitted) -> NuisanceChoice:
             open_.append(nuisance)
     of_runs = [nuisance for nuisance in (*demanded, *open_) if nuisance.per_run]
     common = [[n for n in some if not n.per_run] for some in (demanded, open_)]
-    near, scatter = first.simulation, {}
+    near, scatter = first.simulation, dict[str, float]()
     if any(common) or of_runs:
         judged, model = _judged(config, first, *common)
         for nuisance in of_runs:

@@ -45,9 +45,10 @@ def nuisance_sentences(
         out += [_files_sentence(name, temperature, plain), _moved_sentence(name, temperature)]
     for verdict in found.choice.verdicts:
         if verdict.modelled and verdict.nuisance.key != TEMPERATURE:
-            own = runs is not None and verdict.nuisance.per_run
             out.append(
-                _runs_sentence(name, verdict, runs) if own else _modelled_sentence(verdict, found.full.rig)
+                _runs_sentence(name, verdict, runs)
+                if runs is not None and verdict.nuisance.per_run
+                else _modelled_sentence(verdict, found.full.rig)
             )
         elif not verdict.modelled and _worth_telling(verdict, found):
             said = f"The {verdict.nuisance.name} is not modelled: {verdict.reason}"

@@ -90,10 +90,10 @@ class Runs:
         Iterated: the mean square of the numbers, each with its variance. Runs that do not show a number keep its variance.
         """
         found, parts = np.full(self.own.shape[1], float(constants.USUAL_RUN_SCATTER)), self.parts()
-        for _ in range(constants.SCATTER_STEPS):
+        for _ in range(constants.RUN_SCATTER_STEPS):
             values, variances = self.own_numbers(parts, found)
             last, found = found, np.sqrt(np.mean(values**2 + variances, axis=0))
-            if np.all(np.abs(found - last) < constants.SCATTER_TOLERANCE * last):
+            if np.all(np.abs(found - last) < constants.RUN_SCATTER_TOLERANCE * last):
                 break
         return np.maximum(found, float(constants.LEAST_RUN_SCATTER))
 
