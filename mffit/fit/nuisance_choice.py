@@ -196,7 +196,7 @@ def _of_runs(
         ), {}
     whole = predictions(sweeps)
     if whole[0].by_sweep.raised(whole[1].by_sweep):
-        reason = "whole left-out sweeps are predicted worse with it, so the formula is what misses the sweeps"
+        reason = "whole left-out sweeps are predicted worse with it, because the formula misses them"
         return Verdict(nuisance, False, reason, whole[0].gaps, whole[1].gaps), {}
     return Verdict(nuisance, True, "left-out halves of sweeps are predicted better with it", *gaps), scatter
 

@@ -58,9 +58,10 @@ def nuisance_sentences(
 
 def _files_sentence(name: str, found: AtTemperature, plain: Mapping[str, Agreement]) -> str:
     special, (low, high) = name_at_temperature(name), found.T_range
-    terms = " and ".join(
+    each = [
         f"{SCALED[term]} {_percent(*value)} per {unit_of(term)[2:]}" for term, value in found.terms.items()
-    )
+    ]
+    terms = " and ".join(filter(None, (", ".join(each[:-1]), each[-1])))
     warm = f"{found.T_ref:g}"
     return (
         f"{name}.tir is for simulations that do not know the temperature of the tyre: it leaves {_gaps(_rms(plain))} rms"
