@@ -99,7 +99,7 @@ def choose(config: Any, first: Fitted) -> NuisanceChoice:
             open_.append(nuisance)
     of_runs = [nuisance for nuisance in (*demanded, *open_) if nuisance.per_run]
     common = [[n for n in some if not n.per_run] for some in (demanded, open_)]
-    near, scatter = first.simulation, {}
+    near, scatter = first.simulation, dict[str, float]()
     if any(common) or of_runs:
         judged, model = _judged(config, first, *common)
         for nuisance in of_runs:
@@ -177,6 +177,8 @@ def _of_runs(
     """
     problem, points = model.problem, model.problem.points
     sweeps = np.unique(points.sweep, return_inverse=True)[1]
+    if not demanded and sweeps.max() + 1 < FEWEST_SWEEPS_TO_PREDICT:
+        return Verdict(nuisance, False, _TOO_FEW), {}
     runs = _linear_runs(model, nuisance, sweeps)
     spread = runs.spread()
 
@@ -190,8 +192,6 @@ def _of_runs(
     gaps, scatter = (without.gaps, beside.gaps), dict(zip(nuisance.numbers, spread.tolist(), strict=True))
     if demanded:
         return Verdict(nuisance, True, _said(config, nuisance), *gaps), scatter
-    if len(np.unique(sweeps)) < FEWEST_SWEEPS_TO_PREDICT:
-        return Verdict(nuisance, False, _TOO_FEW), {}
     least = LEAST_PREDICTED_SHARE * without.by_sweep.total
     if not improves(without.by_sweep, beside.by_sweep, least=least, needed=needed_fall(1)):
         return Verdict(
@@ -199,7 +199,7 @@ def _of_runs(
         ), {}
     whole = predictions(sweeps)
     if whole[0].by_sweep.raised(whole[1].by_sweep):
-        reason = "whole left-out sweeps are predicted worse with it, so the formula is what misses the sweeps"
+        reason = "whole left-out sweeps are predicted worse with it, because the formula misses them"
         return Verdict(nuisance, False, reason, whole[0].gaps, whole[1].gaps), {}
     return Verdict(nuisance, True, "left-out halves of sweeps are predicted better with it", *gaps), scatter
 

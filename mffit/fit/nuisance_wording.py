@@ -47,9 +47,10 @@ def nuisance_sentences(
         out += [_files_sentence(name, temperature, plain), _moved_sentence(name, temperature)]
     for verdict in found.choice.verdicts:
         if verdict.modelled and verdict.nuisance.key != TEMPERATURE:
-            own = runs is not None and verdict.nuisance.per_run
             out.append(
-                _runs_sentence(name, verdict, runs) if own else _modelled_sentence(verdict, found.full.rig)
+                _runs_sentence(name, verdict, runs)
+                if runs is not None and verdict.nuisance.per_run
+                else _modelled_sentence(verdict, found.full.rig)
             )
         elif not verdict.modelled and _worth_telling(verdict, found):
             said = f"The {verdict.nuisance.name} is not modelled: {verdict.reason}"
@@ -59,9 +60,10 @@ def nuisance_sentences(
 
 def _files_sentence(name: str, found: AtTemperature, plain: Mapping[str, Agreement]) -> str:
     special, (low, high) = name_at_temperature(name), found.T_range
-    terms = " and ".join(
+    each = [
         f"{SCALED[term]} {_percent(*value)} per {unit_of(term)[2:]}" for term, value in found.terms.items()
-    )
+    ]
+    terms = " and ".join(filter(None, (", ".join(each[:-1]), each[-1])))
     warm = f"{found.T_ref:g}"
     return (
         f"{name}.tir is for simulations that do not know the temperature of the tyre: it leaves {_gaps(_rms(plain))} rms"

@@ -6,7 +6,7 @@ remain are those of the shared numbers.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 
 import numpy as np
 
@@ -16,13 +16,16 @@ from mffit.points import Points
 
 @dataclass(frozen=True, slots=True)
 class Part:
-    """Normal equations of some readings, shared numbers (k,) beside the own numbers (j,) of one run; additive."""
+    """Normal equations of some readings, shared numbers (k,) beside the own numbers (j,) of their run.
 
-    shared: np.ndarray  #: (k, k)
-    mixed: np.ndarray  #: (k, j)
-    own: np.ndarray  #: (j, j)
-    shared_pull: np.ndarray  #: (k,) derivatives times residuals
-    own_pull: np.ndarray  #: (j,)
+    Those of several runs have one more axis in front.
+    """
+
+    shared: np.ndarray  #: (..., k, k)
+    mixed: np.ndarray  #: (..., k, j)
+    own: np.ndarray  #: (..., j, j)
+    shared_pull: np.ndarray  #: (..., k) derivatives times residuals
+    own_pull: np.ndarray  #: (..., j)
 
     @classmethod
     def of(cls, slope: np.ndarray, own: np.ndarray, residual: np.ndarray) -> Part:
@@ -30,18 +33,20 @@ class Part:
         return cls(slope.T @ slope, slope.T @ own, own.T @ own, slope.T @ residual, own.T @ residual)
 
     def inverse(self, spread: np.ndarray) -> np.ndarray:
-        """Covariance (j, j) of the own numbers for known shared ones; ``spread`` (j,) of their priors may be 0."""
+        """Covariance (..., j, j) of the own numbers for known shared ones; ``spread`` (j,) of their priors may be 0."""
         inside = np.eye(len(spread)) + spread[:, None] * self.own * spread
-        return spread[:, None] * np.linalg.solve(inside, np.diag(spread))
+        return spread[:, None] * np.linalg.solve(inside, np.broadcast_to(np.diag(spread), inside.shape))
 
     def eliminated(self, spread: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Equations of the shared numbers alone: matrix (k, k) and pull (k,)."""
+        """Equations of the shared numbers alone: matrix (..., k, k) and pull (..., k)."""
         through = self.mixed @ self.inverse(spread)
-        return self.shared - through @ self.mixed.T, self.shared_pull - through @ self.own_pull
+        matrix = self.shared - through @ np.swapaxes(self.mixed, -1, -2)
+        return matrix, self.shared_pull - (through @ self.own_pull[..., None])[..., 0]
 
     def solved(self, shared: np.ndarray, spread: np.ndarray) -> np.ndarray:
-        """Change of the own numbers (j,) for a change of the shared ones (k,)."""
-        return -self.inverse(spread) @ (self.own_pull + self.mixed.T @ shared)
+        """Change of the own numbers (..., j) for a change of the shared ones (k,)."""
+        pull = self.own_pull + np.swapaxes(self.mixed, -1, -2) @ shared
+        return -(self.inverse(spread) @ pull[..., None])[..., 0]
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,43 +66,34 @@ class Runs:
         """The equations of some rows."""
         return Part.of(self.slope[rows], self.own[rows], self.residual[rows])
 
-    def parts(self) -> list[Part]:
-        """The equations of every run."""
-        return [self.part(self.run == k) for k in np.unique(self.run)]
+    def parts(self) -> Part:
+        """The equations of all runs."""
+        each = [self.part(self.run == k) for k in np.unique(self.run)]
+        return Part(*(np.array([getattr(part, field.name) for part in each]) for field in fields(Part)))
 
-    def common(self, parts: list[Part], spread: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    def common(self, parts: Part, spread: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Equations of the shared numbers from all runs and priors."""
-        matrix, pull = self.information.copy(), self.pull.copy()
-        for part in parts:
-            more = part.eliminated(spread)
-            matrix += more[0]
-            pull += more[1]
-        return matrix, pull
+        matrix, pull = parts.eliminated(spread)
+        return self.information + matrix.sum(axis=0), self.pull + pull.sum(axis=0)
 
-    def own_numbers(self, spread: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    def own_numbers(self, parts: Part, spread: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Own numbers (runs, j) and their variances (runs, j)."""
-        parts = self.parts()
         matrix, pull = self.common(parts, spread)
-        covariance = np.linalg.inv(matrix)
-        shared = -covariance @ pull
-        values = np.array([part.solved(shared, spread) for part in parts])
-        through = [part.mixed @ part.inverse(spread) for part in parts]
-        variances = [
-            np.diag(part.inverse(spread)) + np.einsum("kj,kl,lj->j", by, covariance, by)
-            for part, by in zip(parts, through, strict=True)
-        ]
-        return values, np.array(variances)
+        covariance, inverse = np.linalg.inv(matrix), parts.inverse(spread)
+        through = parts.mixed @ inverse
+        inside = inverse + np.swapaxes(through, -1, -2) @ covariance @ through
+        return parts.solved(-covariance @ pull, spread), np.diagonal(inside, axis1=-2, axis2=-1)
 
     def spread(self) -> np.ndarray:
         """Standard deviation (j,) of the own numbers among the runs, of maximum likelihood.
 
         Iterated: the mean square of the numbers, each with its variance. Runs that do not show a number keep its variance.
         """
-        found = np.full(self.own.shape[1], float(constants.USUAL_RUN_SCATTER))
-        for _ in range(constants.SCATTER_STEPS):
-            values, variances = self.own_numbers(found)
+        found, parts = np.full(self.own.shape[1], float(constants.USUAL_RUN_SCATTER)), self.parts()
+        for _ in range(constants.RUN_SCATTER_STEPS):
+            values, variances = self.own_numbers(parts, found)
             last, found = found, np.sqrt(np.mean(values**2 + variances, axis=0))
-            if np.all(np.abs(found - last) < constants.SCATTER_TOLERANCE * last):
+            if np.all(np.abs(found - last) < constants.RUN_SCATTER_TOLERANCE * last):
                 break
         return np.maximum(found, float(constants.LEAST_RUN_SCATTER))
 
@@ -109,9 +105,9 @@ class Runs:
         parts = self.parts()
         matrix, pull = self.common(parts, spread)
         error = np.empty_like(self.residual)
-        for k, part in zip(np.unique(self.run), parts, strict=True):
-            rows = np.flatnonzero(self.run == k)
-            whole = part.eliminated(spread)
+        every = parts.eliminated(spread)
+        for k, run in enumerate(np.unique(self.run)):
+            rows, whole = np.flatnonzero(self.run == run), (every[0][k], every[1][k])
             for piece in np.unique(group[rows]):
                 out, rest = rows[group[rows] == piece], self.part(rows[group[rows] != piece])
                 left = rest.eliminated(spread)

@@ -48,7 +48,7 @@ def at_temperature(
 ) -> AtTemperature:
     """The record of a fit that models the temperature."""
     full = found.full
-    terms = {name: value for name, value in full.rig.items() if name in SCALED_BY}
+    terms = {name: full.rig[name] for name in SCALED_BY if name in full.rig}
     simulation = without_runs(full.simulation)
     alone = simulation.with_numbers(dict.fromkeys(terms, 0.0))
     verdict = next(v for v in found.choice.verdicts if v.modelled and set(v.nuisance.numbers) & set(terms))

@@ -215,4 +215,4 @@ class Chain:
 
 
 def _of_rows(value: Any, rows: np.ndarray) -> Any:
-    return value[rows] if np.ndim(value) else value
+    return value if isinstance(value, float) or not np.ndim(value) else value[rows]

@@ -43,6 +43,8 @@ class Warmed:
     """One build of a drawn campaign against the truth."""
 
     modelled: bool = False
+    curved: bool = False  #: with a curvature of the friction
+    of_runs: bool = False  #: with numbers of every run
     pulls: Mapping[str, float] = field(default_factory=dict)  #: (found - true) / standard error
     ratios: Mapping[str, float] = field(default_factory=dict)  #: found over true, of temperature terms
     over_noise: Mapping[str, float] = field(default_factory=dict)  #: misfit of Fy over its noise, by file
@@ -112,7 +114,10 @@ def _compared(result: Any, true: tir.Tyre, terms: Mapping[str, float]) -> Warmed
             pulls[name] = (value - k) / u
             if k:
                 ratios[name] = value / k
-    return Warmed(found is not None, pulls, ratios, over, result.trusted, fit.seconds)
+    curved = found is not None and "k_T_grip_per_K2" in found.terms
+    return Warmed(
+        found is not None, curved, fit.runs is not None, pulls, ratios, over, result.trusted, fit.seconds
+    )
 
 
 def table(world: str, rows: list[Warmed]) -> list[str]:
@@ -121,6 +126,7 @@ def table(world: str, rows: list[Warmed]) -> list[str]:
     modelled = sum(row.modelled for row in sound)
     out = [
         f"\n## {world}: {len(rows)} rigs, {len(rows) - len(sound)} refused, temperature modelled in {modelled}, "
+        f"its curvature in {sum(row.curved for row in sound)}, runs in {sum(row.of_runs for row in sound)}, "
         f"trusted {sum(row.trusted for row in sound)}, median fit {np.median([row.seconds for row in sound]):.1f} s\n"
     ]
     for name in ("plain", "at temperature"):

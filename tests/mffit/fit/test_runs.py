@@ -150,7 +150,7 @@ def test_a_left_out_piece_is_predicted_as_by_a_fit_without_it():
             b = wide[kept].T @ residual[kept] + np.r_[pull, np.zeros(2 * runs)]
             expected = residual[~kept] - wide[~kept] @ np.linalg.solve(A, b)
             np.testing.assert_allclose(errors[~kept], expected, atol=1e-10)
-    values, variances = found.own_numbers(spread)
+    values, variances = found.own_numbers(found.parts(), spread)
     A = wide.T @ wide + prior
     solution = -np.linalg.solve(A, wide.T @ residual + np.r_[pull, np.zeros(2 * runs)])
     np.testing.assert_allclose(values.ravel(), solution[k:], atol=1e-10)
