@@ -64,8 +64,19 @@ def export() -> None:
 
 @export.command()
 @_code_options
+@click.option(
+    "--tunable", is_flag=True, help="Also functions with scaling factors and temperature as arguments."
+)
 @voiced
-def c(file: Path, out: Path, name: str | None, turn_slip: bool | None, limits: bool, voice: Voice) -> None:
+def c(
+    file: Path,
+    out: Path,
+    name: str | None,
+    turn_slip: bool | None,
+    limits: bool,
+    tunable: bool,
+    voice: Voice,
+) -> None:
     """Export a property file as C99 code.
 
     Writes one header and one source in double precision, without memory allocation or state.
@@ -73,7 +84,7 @@ def c(file: Path, out: Path, name: str | None, turn_slip: bool | None, limits: b
     from mffit.export import write_c
 
     with _told(voice):
-        written = write_c(file, out, name=name, turn_slip=turn_slip, limits=limits)
+        written = write_c(file, out, name=name, turn_slip=turn_slip, limits=limits, tunable=tunable)
     _report(voice, written, file, turn_slip)
 
 

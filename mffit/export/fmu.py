@@ -43,7 +43,8 @@ def write_fmu(
     """Write a property file as an FMU for model exchange and co-simulation.
 
     The model has no states: outputs are functions of the inputs. Inputs Fz, kappa, alpha, gamma, phi_t, Vx, p; outputs Fx, Fy,
-    Fz_out, Mx, My, Mz, K_ya, K_xk, sigma_x, sigma_y, Re, omega, trail. SI units, radians, ISO-W.
+    Fz_out, Mx, My, Mz, K_ya, K_xk, sigma_x, sigma_y, Re, omega, trail. Tunable parameters: the scaling factors (LMUY, LKY, ...),
+    and T_degC if the file has temperature terms. SI units, radians, ISO-W.
 
     Parameters
     ----------
@@ -86,8 +87,8 @@ def _texts(
     tyre: tir.Tyre, path: Path, name: str, fmi: int, turn_slip: bool, limits: bool
 ) -> dict[str, bytes]:
     """The files of the archive by their path in it."""
-    code = c_of(tyre, path, name, turn_slip=turn_slip, limits=limits)
-    given, found = variables.inputs(tyre), variables.outputs()
+    code = c_of(tyre, path, name, turn_slip=turn_slip, limits=limits, tunable=True)
+    given, found, turned = variables.inputs(tyre), variables.outputs(), variables.parameters(tyre)
     use = f"{words(turn_slip)}{', inputs held to the ranges' if limits else ''}"
     content = {
         "name": name,
@@ -97,7 +98,8 @@ def _texts(
         "description": f"Tyre {path.name}: MF 6.2 in steady state, {use}; axes ISO-W",
         "inputs": given,
         "outputs": found,
-        "units": variables.UNITS.values(),
+        "parameters": turned,
+        "units": variables.units_of((*given, *found, *turned)),
         "arguments": variables.arguments(given),
         "compiled": [f"{name}.c", f"{name}_fmi{fmi}.c"],
     }

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
 import tir
 from tir.codegen.c99 import INPUT_TEXTS, OUTPUT_TEXTS, STATES
 from tir.codegen.program import INPUTS
 from tir.equations.forces import Forces
+from tir.tuning import tunables
 
 ORDER = ("Fz", "kappa", "alpha", "gamma", "phi_t", "Vx", "pressure")
 """Inputs in the order that is usual in other programs."""
@@ -26,6 +27,7 @@ class Unit:
     powers: Mapping[str, int]
     shown: str = ""  #: unit for display
     factor: float = 1.0  #: number in the unit for display over the number in this unit
+    offset: float = 0.0  #: SI value of zero in this unit
 
 
 UNITS = {
@@ -41,20 +43,21 @@ UNITS = {
         Unit("Pa", {"kg": 1, "m": -1, "s": -2}, "kPa", 1e-3),
         Unit("rad", {"rad": 1}, "deg", math.degrees(1.0)),
         Unit("rad/s", {"rad": 1, "s": -1}),
+        Unit("degC", {"K": 1}, offset=273.15),
     )
 }
 
 
 @dataclass(frozen=True, slots=True)
 class Variable:
-    """An input or output."""
+    """An input, output or parameter."""
 
     name: str
     field: str  #: its name in C
     reference: int  #: value reference; 0 is time
     description: str
     unit: str  #: "" without one
-    start: str = ""  #: as text for C and XML; inputs only
+    start: str = ""  #: as text for C and XML; not for outputs
 
 
 def inputs(tyre: tir.Tyre) -> tuple[Variable, ...]:
@@ -93,6 +96,22 @@ def outputs() -> tuple[Variable, ...]:
             )
         )
     return tuple(out)
+
+
+def parameters(tyre: tir.Tyre) -> tuple[Variable, ...]:
+    """What can be turned: scaling factors, and the temperature if the file has terms for it; they start as in the file."""
+    first = 1 + len(INPUTS) + len(outputs())
+    out = []
+    for reference, one in enumerate(tunables(tyre), start=first):
+        description, unit = _described(one.description)
+        out.append(Variable(one.name, one.name, reference, description, unit, repr(one.start)))
+    return tuple(out)
+
+
+def units_of(variables: Iterable[Variable]) -> tuple[Unit, ...]:
+    """The units of the variables, and that of time."""
+    used = {"s", *(x.unit for x in variables)}
+    return tuple(unit for unit in UNITS.values() if unit.name in used)
 
 
 def arguments(variables: tuple[Variable, ...]) -> str:

@@ -110,3 +110,19 @@ def test_the_tightest_corner_is_found_from_zero():
     assert tyre(load, a, g, 0.0, -c, speed, 2.5e5, turn_slip=True).Fy == pytest.approx(
         mass * speed**2 * c, rel=1e-6
     )
+
+
+def test_scaling_factors_become_inputs():
+    casadi = pytest.importorskip("casadi")
+    tyre = tir.read(VECTORS / "moto_front.tir")
+    function = tir.casadi_function(tyre, outputs=("Fy",), tunable=("LMUY", "LKY"))
+    assert function.name_in()[-2:] == ["LMUY", "LKY"]
+    row = [1400.0, 0.06, 0.3, 0.0, 0.0, 10.0, 2.2e5]
+    wanted = tyre.replace(LMUY=0.7, LKY=1.1)(*row[:5], Vx=10.0, p=2.2e5, turn_slip=False).Fy
+    assert float(function(*row, 0.7, 1.1)) == pytest.approx(wanted, rel=1e-12)
+    factor = casadi.SX.sym("LMUY")
+    slope = casadi.Function("d", [factor], [casadi.jacobian(function(*row, factor, 1.0), factor)])
+    ahead, behind = (float(function(*row, 0.7 + h, 1.0)) for h in (1e-6, -1e-6))
+    assert float(slope(0.7)) == pytest.approx((ahead - behind) / 2e-6, rel=1e-6)
+    with pytest.raises(tir.TirError, match="PKY1 cannot be turned"):
+        tir.casadi_function(tyre, tunable=("PKY1",))

@@ -16,6 +16,7 @@ from tir.codegen.c99 import STATES
 from tir.codegen.program import INPUTS, Switches
 from tir.equations.forces import Forces
 from tir.evaluate import evaluate
+from tir.parameters import TABLE
 
 VECTORS = Path(__file__).parent / "vectors"
 COMPILER = next((name for name in ("cc", "gcc", "clang") if shutil.which(name)), None)
@@ -131,3 +132,23 @@ def test_values_that_code_cannot_hold_are_named():
         tir.export_c(tir.Tyre.from_values({"LMUY": 0.0}))
     with pytest.raises(tir.TirError, match="PKY1 is nan"):
         tir.export_c(tir.Tyre.from_values({"PKY1": float("nan")}))
+
+
+@needs_compiler
+def test_scaling_factors_are_arguments_of_the_tuned_functions(tmp_path):
+    tyre = tir.read(VECTORS / "moto_front.tir").replace(LKYC=0.9)
+    library = compiled(tir.export_c(tyre, name="t", turn_slip=True, tunable=True), "t", tmp_path)
+    factors = [row.name for row in TABLE if row.scaling]
+    tuning = record(factors)
+    library.t_as_in_file.restype = tuning
+    at = [1400.0, 0.06, 0.3, 0.02, -0.1, 10.0, 2.2e5]
+    library.t_evaluate_tuned.argtypes = [ctypes.POINTER(tuning), *[ctypes.c_double] * len(INPUTS)]
+    library.t_evaluate_tuned.restype = record(Forces._fields)
+    for changes in ({}, {"LMUY": 0.7, "LTR": 1.1, "LFZO": 1.2, "LMP": 0.5}):
+        turned = library.t_as_in_file()
+        for name, value in changes.items():
+            setattr(turned, name, value)
+        found = library.t_evaluate_tuned(ctypes.byref(turned), *at)
+        wanted = evaluate(tyre.replace(**changes).p, *at, turn_slip=True)[0]
+        for name in Forces._fields:
+            assert getattr(found, name) == pytest.approx(float(getattr(wanted, name)), rel=1e-12)

@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 import operator
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 from tir.codegen.graph import Node
-from tir.codegen.program import INPUTS, NUMBERS, trace
+from tir.codegen.program import INPUTS
 from tir.equations.forces import Forces
 from tir.errors import TirError
 from tir.evaluate import refuse_zero_divisors
 from tir.mode import exported
+from tir.tuning import chosen, trace_tuned
 
 if TYPE_CHECKING:
     from tir.tyre import Tyre
@@ -34,6 +36,7 @@ def casadi_function(
     turn_slip: bool | None = None,
     star: bool = False,
     limits: bool = False,
+    tunable: Sequence[str] = (),
 ) -> Any:
     """The tyre as a ``casadi.Function`` of Fz, alpha, gamma, kappa, phi_t, Vx, pressure (ISO-W, SI, radians).
 
@@ -44,11 +47,13 @@ def casadi_function(
     outputs : fields of Forces and State, one output each, in this order
     turn_slip : whether spin acts; default: if the units digit of the file's USE_MODE is 5
     star, limits : as in a call of the tyre
+    tunable : scaling factors, and ``T_degC`` if the file has temperature terms, that become further inputs, in this order
 
     Raises
     ------
     TirError
-        If casadi is not installed (``pip install casadi``), or a value by which the equations divide is 0.
+        If casadi is not installed (``pip install casadi``), a value by which the equations divide is 0, or a name cannot be
+        turned.
     """
     try:
         import casadi
@@ -57,14 +62,15 @@ def casadi_function(
     refuse_zero_divisors(tyre.p)
     switches = exported(tyre, turn_slip, star, limits)
     name = name or ("tyre_turn_slip" if switches.turn_slip else "tyre")
-    program = trace(switches, outputs, {key: float(tyre[key]) for key in NUMBERS})
-    inputs = {key: casadi.SX.sym(key) for key in INPUTS}
+    turned = [one.name for one in chosen(tyre, tunable)]
+    program = trace_tuned(tyre, switches, outputs, turned)
+    inputs = {key: casadi.SX.sym(key) for key in (*INPUTS, *turned)}
     known: dict[int, Any] = {}
 
     def of(x: Any) -> Any:
         return known[x.number] if isinstance(x, Node) else float(x)
 
-    for node in program.per_point:
+    for node in (*program.per_tyre, *program.per_point):
         if node.operation == "symbol":
             known[node.number] = inputs[node.name]
             continue

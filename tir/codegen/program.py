@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping
+from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass
 from types import SimpleNamespace
 from typing import Any, NamedTuple
@@ -42,7 +42,12 @@ class Program:
         return tuple(node.name for node in self.per_tyre if node.operation == "symbol")
 
 
-def trace(switches: Switches, outputs: tuple[str, ...], fixed: Mapping[str, float] | None = None) -> Program:
+def trace(
+    switches: Switches,
+    outputs: tuple[str, ...],
+    fixed: Mapping[str, float] | None = None,
+    changed: Callable[[dict[str, Any], Graph], None] | None = None,
+) -> Program:
     """Run the model on symbols.
 
     Parameters
@@ -50,20 +55,26 @@ def trace(switches: Switches, outputs: tuple[str, ...], fixed: Mapping[str, floa
     switches : see :class:`Switches`
     outputs : fields of Forces and State to compute
     fixed : parameters that the program holds as numbers, the others stay symbols
+    changed : changes the parameters by name before the run
     """
-    found = run_on_symbols(switches, fixed or {}, {})
+    found = run_on_symbols(switches, fixed or {}, {}, changed)
     return _program({name: found[name] for name in outputs})
 
 
 def run_on_symbols(
-    switches: Switches, fixed: Mapping[str, float], given: Mapping[str, float]
+    switches: Switches,
+    fixed: Mapping[str, float],
+    given: Mapping[str, float],
+    changed: Callable[[dict[str, Any], Graph], None] | None = None,
 ) -> dict[str, Any]:
     """Every force and state as a node of one graph, or as a number.
 
-    ``fixed`` and ``given`` are the parameters and inputs that are numbers already.
+    ``fixed`` and ``given`` are the parameters and inputs that are numbers already; ``changed`` changes the parameters.
     """
     graph = Graph()
     p = {name: fixed[name] if name in fixed else graph.symbol(name, PARAMETER) for name in NUMBERS}
+    if changed is not None:
+        changed(p, graph)
     inputs = {name: given[name] if name in given else graph.symbol(name, INPUT) for name in INPUTS}
     forces, state = either_way(SimpleNamespace(**p), inputs["Vx"] < 0.0, **inputs, **switches._asdict())
     return {**state._asdict(), **forces._asdict()}

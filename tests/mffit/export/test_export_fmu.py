@@ -95,6 +95,28 @@ def test_a_simulation_gives_the_forces_of_tir(fmus, fmi, kind):
 
 @needs_compiler
 @pytest.mark.parametrize("fmi", [2, 3])
+def test_scaling_factors_and_temperature_can_be_turned(tmp_path, fmi):
+    """Against a tyre with these factors, taken to this temperature; p starts as the pressure of the file."""
+    fmpy = pytest.importorskip("fmpy")
+    terms = {"rig.k_T_grip_per_K": (-0.005, 1e-4, "1/K"), "rig.T_ref_degC": (60.0, 0.0, "degC")}
+    tyre = tir.read(FILE).annotate(measured={name: tir.Quantity(*x) for name, x in terms.items()})
+    tyre.replace(LMUY=0.9).write(tmp_path / "front.tir")
+    fmu = write_fmu(tmp_path / "front.tir", tmp_path, fmi=fmi)
+    turned = {"LMUY": 0.7, "LKY": 1.2, "LKYC": 0.8, "LTR": 1.1, "LMUX": 0.95, "LKX": 1.3}
+    at = {"Fz": 1400.0, "alpha": 0.06, "gamma": 0.3, "kappa": 0.03, "p": 2.2e5}
+    for factors, T in (({}, 60.0), ({**turned, "T_degC": 75.0}, 75.0)):
+        found = fmpy.simulate_fmu(
+            str(fmu), start_values={**at, **factors}, stop_time=0.01, output=["Fx", "Fy", "Mz", "K_ya"]
+        )
+        scaled = tyre.replace(LMUY=0.9).replace(**{k: v for k, v in factors.items() if k != "T_degC"})
+        warm = scaled.at_temperature(T)
+        for name in ("Fx", "Fy", "Mz"):
+            assert found[name][-1] == pytest.approx(getattr(warm(**at), name), rel=1e-10)
+        assert found["K_ya"][-1] == pytest.approx(warm.state(**at).K_ya, rel=1e-10)
+
+
+@needs_compiler
+@pytest.mark.parametrize("fmi", [2, 3])
 def test_units_and_starts_are_declared(fmus, fmi):
     """Base units by hand: a moment is kg m2/s2; the start is the nominal condition of the file."""
     with zipfile.ZipFile(fmus[fmi]) as archive:

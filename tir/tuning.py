@@ -1,0 +1,71 @@
+"""What can be turned in an exported tyre: its scaling factors, and the temperature if its file has terms for it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from tir.codegen.graph import PARAMETER, Graph
+from tir.codegen.program import NUMBERS, Program, Switches, trace
+from tir.errors import TirError
+from tir.parameters import TABLE
+from tir.temperature import REFERENCE, SCALED_BY, terms_of
+
+if TYPE_CHECKING:
+    from tir.tyre import Tyre
+
+TEMPERATURE = "T_degC"
+FACTORS = {row.name: row.description for row in TABLE if row.scaling}
+
+
+class Tunable(NamedTuple):
+    """A number that the user of exported code may change."""
+
+    name: str
+    description: str  #: with the unit in brackets
+    start: float  #: its value in the file
+
+
+def tunables(tyre: Tyre) -> tuple[Tunable, ...]:
+    """Everything that can be turned in the exported tyre, in the order of the file, the temperature last."""
+    found = [Tunable(name, f"{text} [-]", float(tyre[name])) for name, text in FACTORS.items()]
+    if terms_of(tyre):
+        start = float(tyre.measured[REFERENCE].value)
+        found.append(Tunable(TEMPERATURE, "temperature of the tread, by the terms of the file [degC]", start))
+    return tuple(found)
+
+
+def chosen(tyre: Tyre, names: Iterable[str]) -> tuple[Tunable, ...]:
+    """The named ones.
+
+    Raises
+    ------
+    TirError
+        If a name cannot be turned.
+    """
+    known = {one.name: one for one in tunables(tyre)}
+    for name in names:
+        if name not in known:
+            raise TirError(f"{name} cannot be turned in an exported tyre: use {', '.join(known)}", name=name)
+    return tuple(known[name] for name in names)
+
+
+def trace_tuned(
+    tyre: Tyre, switches: Switches, outputs: tuple[str, ...], names: Iterable[str] | None = None
+) -> Program:
+    """The program of a tyre, in which the tunables are symbols and every other value is a number.
+
+    Parameters
+    ----------
+    names : of the tunables; default all
+    """
+    free = {one.name for one in tunables(tyre)} if names is None else set(names)
+    terms, reference = terms_of(tyre), tyre.measured.get(REFERENCE)
+
+    def warmed(p: dict[str, Any], graph: Graph) -> None:
+        if TEMPERATURE in free and reference is not None:
+            warmer = graph.symbol(TEMPERATURE, PARAMETER) - reference.value
+            for name, term in terms.items():
+                p[SCALED_BY[name]] = p[SCALED_BY[name]] * (1.0 + term.value * warmer)
+
+    return trace(switches, outputs, {key: float(tyre[key]) for key in NUMBERS if key not in free}, warmed)
