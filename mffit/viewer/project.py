@@ -8,6 +8,7 @@ import mffit
 from mffit.config.by_hand import as_in_the_file
 from mffit.quantities import CHANNELS, QuantityName
 from mffit.results import BuildResult
+from mffit.results.as_json.values import plain
 from mffit.templates import environment
 from mffit.viewer.controls import in_si
 from mffit.viewer.page import Page
@@ -26,7 +27,12 @@ MODELLED = tuple(CHANNELS)
 
 
 def project_data(result: BuildResult) -> dict[str, Any]:
-    """All that the page shows of a build, as plain JSON; numbers in SI."""
+    """All that the page shows of a build, as plain JSON; numbers in SI, null for what is not finite."""
+    found: dict[str, Any] = plain(_data(result))
+    return found
+
+
+def _data(result: BuildResult) -> dict[str, Any]:
     fitted, points = result.fit, result.points
     simulation = fitted.simulation
     parameters = trace(Switches(simulation.turn_slip, simulation.star), MODELLED).parameters
