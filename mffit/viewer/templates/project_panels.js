@@ -109,7 +109,7 @@ function curvePoints(by_mount, curve) {
 }
 function label(name) {
   const residual = name.startsWith(RESIDUAL), known = quantity(residual ? name.slice(RESIDUAL.length) : name);
-  return `${residual ? RESIDUAL : ""}${known.word}${known.unit ? ` [${known.unit}]` : ""}`;
+  return `${residual ? RESIDUAL + known.symbol.replace("_", "") : known.word}${known.unit ? ` [${known.unit}]` : ""}`;
 }
 
 function draw(panel) {

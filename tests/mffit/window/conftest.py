@@ -19,7 +19,7 @@ LEFT_OUT = (
 @pytest.fixture(scope="session")
 def original(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("window") / "original"
-    simulated(flat(), folder)
+    simulated(flat(loads=(900, 1400)), folder)
     path = folder / "tyre.toml"
     path.write_text(path.read_text(encoding="utf-8") + LEFT_OUT, encoding="utf-8")
     return path
