@@ -100,16 +100,11 @@ class Simulation(Brief):
         The influence is that of this simulation, so the tyre misses the returned readings by as much as the simulation misses
         those of ``points``.
         """
-        chain = self._chain(points, {})
-        readings = Readings(*chain.readings())
-        felt = points.replace(**chain.at_the_tyre)
+        felt = points.replace(**self._chain(points, {}).at_the_tyre())
+        rig = self.readings(points)
         tyre = replace(self, faults=NO_FAULTS, of_parts={}).readings(felt)
-        return felt.replace(
-            **{
-                name: getattr(points, name) - (getattr(readings, name) - getattr(tyre, name))
-                for name in CHANNELS
-            }
-        )
+        influence = {name: getattr(rig, name) - getattr(tyre, name) for name in CHANNELS}
+        return felt.replace(**{name: getattr(points, name) - influence[name] for name in CHANNELS})
 
     def predict(self, points: Points) -> np.ndarray:
         """The readings in one row (2n,): Fy [N], then Mz [Nm]."""

@@ -20,9 +20,10 @@ from mffit.viewer.project_points import (
 )
 from tir.codegen.javascript import javascript
 from tir.codegen.program import INPUTS, Switches, trace
+from tir.equations.forces import Forces, State
 from tir.evaluate import CONICITY
 
-MODELLED = tuple(CHANNELS)
+MODELLED = tuple(name for name in CHANNELS if name in Forces._fields + State._fields)
 """The outputs that the page computes."""
 
 
@@ -52,7 +53,7 @@ def _data(result: BuildResult) -> dict[str, Any]:
                 "stated": stated,
             }
             for name, stated in stated_noise(points).items()
-            if fitted.channels[name].n
+            if name in MODELLED and fitted.channels[name].n
         ],
         "values": values | {row["name"]: row["value"] for row in rows},
         "conicity": [name for name in CONICITY if name in parameters],

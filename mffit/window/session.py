@@ -11,7 +11,7 @@ from mffit.config.by_hand import as_in_the_file
 from mffit.errors import InputError
 from mffit.window.edits import EDITS
 from mffit.window.project_file import ProjectFile
-from mffit.window.runs import PAGES, RUNS, RunOutcome, Run, out_of
+from mffit.window.runs import PAGES, RUNS, Run, RunOutcome, out_of
 
 
 class Session:
