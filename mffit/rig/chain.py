@@ -69,12 +69,11 @@ class Chain:
         self._pass(AFTER)
         return [self._quantities[channel] for channel in channels]
 
-    @property
     def at_the_tyre(self) -> dict[str, np.ndarray]:
-        """Sideslip, camber [rad], load [N] and turn slip [1/m] of the tyre itself (n,), once :meth:`readings` was called."""
-        shape = len(self.points)
+        """Sideslip, camber [rad], load [N] and turn slip [1/m] that the tyre itself has (n,)."""
+        self._pass(BEFORE)
         names = ("alpha", "gamma", "Fz", "phi_t")
-        return {name: np.broadcast_to(plain(self._quantities[name]), shape) for name in names}
+        return {name: np.broadcast_to(plain(self._quantities[name]), len(self.points)) for name in names}
 
     def _pass(self, errors: Iterable[RigError]) -> None:
         """Let rig errors act on what they change."""

@@ -97,16 +97,10 @@ class Simulation(Brief):
         those of ``points``.
         """
         channels = _in_order((*SIDEWAYS, *points.measured))
-        chain = self._chain(points, {})
-        readings = Readings(**dict(zip(channels, chain.readings(channels), strict=True)))
-        felt = points.replace(**chain.at_the_tyre)
+        felt = points.replace(**self._chain(points, {}).at_the_tyre())
+        rig = self.readings(points, channels)
         tyre = replace(self, faults=NO_FAULTS, of_parts={}).readings(felt, channels)
-        return felt.replace(
-            **{
-                name: points.channel(name) - (getattr(readings, name) - getattr(tyre, name))
-                for name in channels
-            }
-        )
+        return felt.replace(**{name: points.channel(name) - (rig[name] - tyre[name]) for name in channels})
 
     def predict(self, points: Points, channels: Iterable[str] = SIDEWAYS) -> np.ndarray:
         """The readings (c n,), channel after channel."""

@@ -13,7 +13,6 @@ SLIDER_LEAST = Real(
     0.2, "-", "Least reach of a coefficient's slider, over the size of its value: a change that the eye sees."
 )
 SLIDER_OF_ZERO = Real(0.1, "-", "Least reach of the slider of a coefficient that is about 0.")
-STEPS_OF_SLIDER = Count(400, "-", "Steps of a coefficient's slider: finer than a pixel of the screen.")
 MOVERS_SHOWN = Count(2, "-", "Sweeps that are named for a coefficient as those that determine it most.")
 LEAST_MOVER = Real(0.1, "-", "Share of the information on a coefficient below which a sweep is not named.")
 LINES_OF_A_SAMPLE = Count(

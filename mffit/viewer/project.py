@@ -8,6 +8,7 @@ import mffit
 from mffit.config.by_hand import as_in_the_file
 from mffit.quantities import CHANNELS, QuantityName
 from mffit.results import BuildResult
+from mffit.results.as_json.values import plain
 from mffit.templates import environment
 from mffit.viewer.controls import in_si
 from mffit.viewer.page import Page
@@ -19,14 +20,20 @@ from mffit.viewer.project_points import (
 )
 from tir.codegen.javascript import javascript
 from tir.codegen.program import INPUTS, Switches, trace
+from tir.equations.forces import Forces, State
 from tir.evaluate import CONICITY
 
-MODELLED = tuple(CHANNELS)
+MODELLED = tuple(name for name in CHANNELS if name in Forces._fields + State._fields)
 """The outputs that the page computes."""
 
 
 def project_data(result: BuildResult) -> dict[str, Any]:
-    """All that the page shows of a build, as plain JSON; numbers in SI."""
+    """All that the page shows of a build, as plain JSON; numbers in SI, null for what is not finite."""
+    found: dict[str, Any] = plain(_data(result))
+    return found
+
+
+def _data(result: BuildResult) -> dict[str, Any]:
     fitted, points = result.fit, result.points
     simulation = fitted.simulation
     parameters = trace(Switches(simulation.turn_slip, simulation.star), MODELLED).parameters
@@ -46,7 +53,7 @@ def project_data(result: BuildResult) -> dict[str, Any]:
                 "stated": stated,
             }
             for name, stated in stated_noise(points).items()
-            if fitted.channels[name].n
+            if name in MODELLED and fitted.channels[name].n
         ],
         "values": values | {row["name"]: row["value"] for row in rows},
         "conicity": [name for name in CONICITY if name in parameters],

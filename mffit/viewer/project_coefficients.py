@@ -47,7 +47,7 @@ def movers(fitted: FitResult) -> dict[str, list[str]]:
         return {}
     information = {channel: rows**2 for channel, rows in _weighted_slopes(search, names).items()}
     whole = sum(information.values())
-    sweeps = fitted.search.problem.points.sweep
+    sweeps = search.problem.points.sweep
     by_sweep = np.zeros((sweeps.max(initial=0) + 1, len(names)))
     np.add.at(by_sweep, sweeps, whole)
     total = by_sweep.sum(axis=0)

@@ -130,7 +130,7 @@ def _ranks(values: np.ndarray) -> np.ndarray:
 
 
 def _said(quantity: QuantityName, x: float) -> str:
-    shown = x / in_si(quantity.unit)
+    shown = round(x / in_si(quantity.unit), 2)
     digits = 3 if abs(shown) < 1000 else 4
     return f"{float(f'{shown:.{digits}g}') + 0.0:g} {quantity.unit_behind}".strip()
 

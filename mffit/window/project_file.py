@@ -71,8 +71,8 @@ class ProjectFile:
                 "was changed elsewhere in the meantime; look at it as it is shown now, and repeat",
                 file=self.path,
             )
-        mark = BOM if before.startswith(BOM) else b""
-        after = mark + change(before.removeprefix(mark).decode("utf-8")).encode()
+        text, _ = self._parsed(before)
+        after = (BOM if before.startswith(BOM) else b"") + change(text).encode()
         if after == before:
             return
         self._checked(after)
@@ -103,12 +103,16 @@ class ProjectFile:
         except OSError as error:
             raise InputError(f"cannot be read ({error.strerror}); put it back", file=self.path) from None
 
-    def _checked(self, content: bytes) -> Config:
+    def _parsed(self, content: bytes) -> tuple[str, dict[str, Any]]:
+        """Text and tables."""
         try:
             text = content.decode("utf-8-sig")
-            tables: dict[str, Any] = tomllib.loads(text)
+            return text, tomllib.loads(text)
         except (UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
             raise InputError(f"is not valid TOML ({error}); correct it", file=self.path) from None
+
+    def _checked(self, content: bytes) -> Config:
+        text, tables = self._parsed(content)
         return checked(tables, path=self.path, folder=self.path.parent, lines=lines_of_keys(text))
 
     def _write(self, content: bytes) -> None:

@@ -18,7 +18,7 @@ from mffit.window import constants
 from tir.errors import TirError
 
 
-class Outcome(NamedTuple):
+class RunOutcome(NamedTuple):
     """How a run ended."""
 
     state: str  #: done, refused, failed or stopped
@@ -88,7 +88,7 @@ class Run:
     def __init__(self, kind: str, path: Path, digest: str) -> None:
         self.kind, self.digest = kind, digest
         self.sentence = "starting"
-        self.outcome: Outcome | None = None
+        self.outcome: RunOutcome | None = None
         self._stopped = False
         context = multiprocessing.get_context("spawn")  # a forked copy of a process with threads may hang
         receiver, sender = context.Pipe(duplex=False)
@@ -122,10 +122,10 @@ class Run:
         receiver.close()
         self._process.join()
         if outcome is None:
-            outcome = Outcome(
+            outcome = RunOutcome(
                 "failed", "the process of this run ended early, perhaps for lack of memory; run it again"
             )
-        self.outcome = Outcome("stopped") if self._stopped and outcome.state != "done" else outcome
+        self.outcome = RunOutcome("stopped") if self._stopped and outcome.state != "done" else outcome
 
 
 def _work(kind: str, path: Path, sender: Connection) -> None:
@@ -133,13 +133,13 @@ def _work(kind: str, path: Path, sender: Connection) -> None:
     try:
         try:
             data = RUNS[kind](path, lambda sentence: sender.send(("progress", sentence)))
-            outcome = Outcome("done", data=data)
+            outcome = RunOutcome("done", data=data)
         except (InputError, TirError) as error:
-            outcome = Outcome("refused", str(error))
+            outcome = RunOutcome("refused", str(error))
         except KeyboardInterrupt:
-            outcome = Outcome("stopped")
+            outcome = RunOutcome("stopped")
         except Exception as error:  # the window must say it, whatever it is
-            outcome = Outcome("failed", f"{type(error).__name__}: {error}; this is a bug in mffit")
+            outcome = RunOutcome("failed", f"{type(error).__name__}: {error}; this is a bug in mffit")
             sender.send(("outcome", outcome))
             raise
         sender.send(("outcome", outcome))

@@ -11,7 +11,7 @@ from mffit.config.by_hand import as_in_the_file
 from mffit.errors import InputError
 from mffit.window.edits import EDITS
 from mffit.window.project_file import ProjectFile
-from mffit.window.runs import PAGES, RUNS, Outcome, Run, out_of
+from mffit.window.runs import PAGES, RUNS, Run, RunOutcome, out_of
 
 
 class Session:
@@ -21,7 +21,7 @@ class Session:
         self.file = ProjectFile(path)
         self.data: dict[str, Any] | None = None  #: of the last fit, for the page
         self.fits = 0  #: finished fits
-        self.last: Outcome | None = None  #: of the last run
+        self.last: RunOutcome | None = None  #: of the last run
         self._fitted = ""  #: digest of the tyre.toml of the last fit
         self._run: Run | None = None
         self._lock = threading.Lock()

@@ -292,6 +292,7 @@ window.mffit = {
   chosen: () => chosen,
   left: () => [...left],
   choose,
+  show: showProject,
   place: (panel, i) => { const p = state.panels[panel].places; return [p.X(p.px[i]), p.Y(p.py[i])]; },
   shown: panel => { const p = state.panels[panel].places; return [[...p.px], [...p.py]]; },
   // Milliseconds of each of n frames in which a slider moves: computing and drawing.

@@ -83,12 +83,21 @@ function placed(panel) {
   if (!residual && over.length) {
     for (const group of over) {
       if (state.reading === "curve") {
-        for (const i of group.members) py[i] += (evaluated(models, group, columns[panel.x][i])[y] - own[y][i]) / sy;
+        const shift = toTheCurve(group, panel.x, y);
+        group.members.forEach((i, k) => { py[i] += shift[k] / sy; });
       }
       curves.push({group, y, sx, sy, from: group.from, to: group.to});
     }
   }
   return {px, py, curves, residual, y, xModel};
+}
+// By how much the fitted model differs between a point's conditions and its curve's; sliders do not move the points.
+function toTheCurve(group, x, y) {
+  return (group.shift ??= {})[y] ??= group.members.map(i => evaluated(fitModels, group, columns[x][i])[y] - fitOwn[y][i]);
+}
+function fixedCurve(by_mount, curve) {
+  const name = `${curve.y} ${by_mount === fitModels ? "fit" : "before"}`;
+  return (curve.group.kept ??= {})[name] ??= curvePoints(by_mount, curve);
 }
 function curvePoints(by_mount, curve) {
   const points = [];
@@ -100,7 +109,7 @@ function curvePoints(by_mount, curve) {
 }
 function label(name) {
   const residual = name.startsWith(RESIDUAL), known = quantity(residual ? name.slice(RESIDUAL.length) : name);
-  return `${residual ? RESIDUAL : ""}${known.word}${known.unit ? ` [${known.unit}]` : ""}`;
+  return `${residual ? RESIDUAL + known.symbol.replace("_", "") : known.word}${known.unit ? ` [${known.unit}]` : ""}`;
 }
 
 function draw(panel) {
@@ -112,7 +121,7 @@ function draw(panel) {
   pen.setTransform(ratio, 0, 0, ratio, 0, 0);
   pen.clearRect(0, 0, width, height);
   pen.font = theme.font;
-  const lines = shown.curves.map(curve => ({curve, now: curvePoints(models, curve)}));
+  const lines = shown.curves.map(curve => ({curve, now: models === fitModels ? fixedCurve(models, curve) : curvePoints(models, curve)}));
   const box = limits(panel, shown, lines), rows_ = ticks(...box.y, 6);
   const start = 10 + 6.6 * Math.max(...rows_.map(tick => tick.text.length));
   const X = x => start + (x - box.x[0]) / (box.x[1] - box.x[0]) * (width - start - RIGHT);
@@ -126,8 +135,8 @@ function draw(panel) {
   const moved = models !== fitModels;
   for (const {curve, now} of lines) {
     const colour = palette[colourOf[curve.group.members[0]]];
-    if (moved) stroke(pen, curvePoints(fitModels, curve), X, Y, theme.muted, 1, [4, 3]);
-    else if (beforeModels) stroke(pen, curvePoints(beforeModels, curve), X, Y, theme.muted, 1, [1, 3]);
+    if (moved) stroke(pen, fixedCurve(fitModels, curve), X, Y, theme.muted, 1, [4, 3]);
+    else if (beforeModels) stroke(pen, fixedCurve(beforeModels, curve), X, Y, theme.muted, 1, [1, 3]);
     stroke(pen, now, X, Y, colour, 2, []);
   }
   marks(pen, shown, X, Y);

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -12,6 +14,7 @@ from mffit.points import make_points
 from mffit.rig import Simulation
 from mffit.rig_errors import BY_NAME, NO_FAULTS, Faults
 
+SAMPLES = Path(__file__).parents[3] / "samples"
 FAULTS = Faults(
     alpha_0_deg=0.3,
     camber_skew_deg=0.4,
@@ -112,3 +115,26 @@ def test_a_perfect_rig_reads_the_tyre(points):
     read = Simulation.of(tyre, NO_FAULTS).readings(normal)
     assert read.Fy == pytest.approx(forces.Fy)
     assert read.Mz == pytest.approx(forces.Mz)
+
+
+def test_points_as_the_tyre_felt_them():
+    """Readings of the rig's own formulae; what the tyre had and what it gave come back, as plain numbers of the faults."""
+    tyre = tir.read(SAMPLES / "front-120-70" / "true.tir")
+    faults = Faults(alpha_0_deg=0.3, gamma_0_deg=-0.5, F0_N=25.0, crosstalk=0.01, M0_Nm=2.0)
+    points = make_points(
+        np.radians([-4.0, 1.0, 6.0]),
+        np.radians([-20.0, 0.0, 30.0]),
+        [900.0, 1400.0, 2100.0],
+        p=250e3,
+        V=6.0,
+        phi_t=-0.75,
+    )
+    simulation = Simulation.of(tyre, faults)
+    readings = simulation.readings(points)
+    felt = simulation.felt(points.replace(Fy=readings.Fy + 7.0, Mz=readings.Mz))
+    assert felt.alpha == pytest.approx(points.alpha + math.radians(0.3))
+    assert felt.gamma == pytest.approx(points.gamma - math.radians(0.5))
+    forces = tyre(felt.Fz, felt.alpha, felt.gamma, phi_t=felt.phi_t, Vx=6.0, p=250e3, turn_slip=True)
+    assert felt.Fy == pytest.approx(forces.Fy + 7.0)
+    assert felt.Mz == pytest.approx(forces.Mz)
+    assert readings.Fy == pytest.approx(forces.Fy + 25.0 + 0.01 * points.Fz)

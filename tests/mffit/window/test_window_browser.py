@@ -1,0 +1,237 @@
+"""The window and the page of a project in a real browser: the numbers of the build, sliders, clicks, refit, several windows."""
+
+from __future__ import annotations
+
+import json
+import re
+import signal
+import subprocess
+import sys
+import time
+import tomllib
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import mffit
+import tir
+from mffit.quantities import CHANNELS
+from mffit.viewer import project_page
+from tests.browser import PHONE, SCREEN, console_errors, look, opened
+
+HOSTILE = "</script><script>window.hacked=1</script><img src=x onerror='window.hacked=1'>"
+
+
+@pytest.fixture(scope="module")
+def browser(result, tmp_path_factory) -> Iterator[Any]:
+    """One browser with the page without a server."""
+    page = project_page(result).write(tmp_path_factory.mktemp("page") / "page.html")
+    with opened(page) as driver:
+        driver.home = page.as_uri()
+        yield driver
+
+
+@pytest.fixture
+def page(browser) -> Any:
+    browser.get("about:blank")
+    browser.get(browser.home)
+    return browser
+
+
+def ask(browser: Any, script: str, *given: Any) -> Any:
+    return browser.execute_script(f"return {script};", *given)
+
+
+def press(browser: Any, css: str) -> None:
+    browser.execute_script("document.querySelector(arguments[0]).click()", css)
+
+
+def until(true: Callable[[], Any], seconds: float = 60.0) -> Any:
+    end = time.monotonic() + seconds
+    while not (found := true()):
+        assert time.monotonic() < end, "not in time"
+        time.sleep(0.05)
+    return found
+
+
+def test_the_misfit_is_that_of_the_build(page, result):
+    for name in CHANNELS:
+        found = ask(page, "mffit.misfit(arguments[0])", name)
+        assert found["rmse"] == pytest.approx(result.fit.channels[name].rmse, rel=1e-9)
+        assert found["over_noise"] == pytest.approx(result.trust.over_noise[name], rel=1e-9)
+    assert console_errors(page) == []
+    assert ask(page, "performance.getEntriesByType('resource').length") == 0
+
+
+def test_a_moved_coefficient_gives_the_misfit_of_that_tyre(page, result):
+    """Computed again by the simulation of the fit: this rig, the other coefficient."""
+    ask(page, "mffit.move('PCY1', 1.5)")
+    readings = result.fit.simulation.with_numbers({"PCY1": 1.5}).readings(result.points)
+    wanted = float(np.sqrt(np.mean((readings.Fy - result.points.Fy) ** 2)))
+    # the rig's play, whose side the moment decides, stays as fitted
+    assert ask(page, "mffit.misfit('Fy').rmse") == pytest.approx(wanted, rel=1e-3)
+    assert wanted > 2.0 * result.fit.channels["Fy"].rmse
+    press(page, "#undo")
+    assert ask(page, "mffit.misfit('Fy').rmse") == pytest.approx(result.fit.channels["Fy"].rmse, rel=1e-9)
+
+
+def test_the_curve_of_the_page_is_that_of_the_file(page, result):
+    inputs = [1400.0, 0.05, 0.1, 0.0, 0.0, 10.0, 250e3]
+    Fz, alpha, gamma, *_, p = inputs
+    wanted = result.fit.tyre(Fz, alpha, gamma, Vx=10.0, p=p, turn_slip=result.fit.simulation.turn_slip)
+    found = ask(page, "mffit.evaluate(arguments[0])", inputs)
+    assert [found["Fy"], found["Mz"]] == pytest.approx([wanted.Fy, wanted.Mz], rel=1e-9)
+
+
+def test_the_reading_that_was_left_out_is_marked(page):
+    left = ask(page, "mffit.left()")
+    assert sum(left) == 1
+    row = left.index(1)
+    ask(page, "mffit.choose(arguments[0], false)", row)
+    section = page.find_element("id", "chosen").text
+    assert "sideslip_1400.csv:4" in section
+    assert "belt tracking" in section
+
+
+def test_filters_hide_points_and_the_address_keeps_the_view(page):
+    count = int(re.search(r"(\d+) of", page.find_element("id", "shown").text)[1])
+    press(page, ".chip[data-facet=Fz]")
+    fewer = int(re.search(r"(\d+) of", page.find_element("id", "shown").text)[1])
+    assert 0 < fewer < count
+    ask(page, "mffit.move('PCY1', 1.5)")
+    page.refresh()
+    assert page.find_element("id", "shown").text.startswith(f"{fewer} of")
+    assert ask(page, "mffit.trial()") == {"PCY1": 1.5}
+
+
+def test_keys_choose_a_point(page):
+    canvas = page.find_element("css selector", ".panel canvas")
+    canvas.send_keys("\ue014")  # right
+    first = ask(page, "mffit.chosen()")
+    canvas.send_keys("\ue014")
+    assert len(first) == 1
+    assert ask(page, "mffit.chosen()") != first
+    canvas.send_keys("\ue00c")  # escape
+    assert ask(page, "mffit.chosen()") == []
+
+
+@pytest.mark.parametrize("width", [PHONE, SCREEN])
+def test_nothing_overflows(page, width):
+    look(page, width)
+    ask(page, "mffit.choose(3, false)")
+    assert ask(page, "document.documentElement.scrollWidth") <= width
+    boxes = ask(
+        page,
+        "[...document.querySelectorAll('.coefficient .line, .facet')].map(e => [e.scrollWidth, e.clientWidth])",
+    )
+    assert all(inner <= outer + 1 for inner, outer in boxes)
+    look(page, SCREEN)
+
+
+def test_a_slider_moves_five_thousand_points_smoothly(page, result):
+    """The sample's points repeated; the limit is wide, because other work may share the processor."""
+    data = ask(page, "JSON.stringify(mffit.data())")
+    content = json.loads(data)
+    points, times = content["points"], 5000 // content["points"]["fitted"] + 1
+    n = points["fitted"]
+
+    def repeated(column: Any) -> Any:
+        if isinstance(column, list) and len(column) >= n:
+            return column[:n] * times
+        return (
+            {name: repeated(inner) for name, inner in column.items()} if isinstance(column, dict) else column
+        )
+
+    facets = [{**facet, "of": repeated(facet["of"])} for facet in points["facets"]]
+    content["points"] = {**{k: repeated(v) for k, v in points.items()}, "facets": facets, "fitted": n * times}
+    page.execute_script("mffit.show(arguments[0])", content)
+    assert ask(page, "mffit.data().points.line.length") >= 5000
+    frames = ask(page, "mffit.frames('PCY1', 12)")
+    assert np.median(frames) < 100.0  # [ms]; 11 to 26 on a machine with other work
+
+
+def test_hostile_names_do_no_harm(page, result, tmp_path):
+    bad = mffit.viewer.project_data(result)
+    bad["name"] = HOSTILE
+    bad["points"]["files"] = [HOSTILE] * len(bad["points"]["files"])
+    bad["warnings"] = [HOSTILE]
+    html = mffit.viewer.project_html(HOSTILE, bad, turn_slip=False, star=False)
+    path = tmp_path / "hostile.html"
+    path.write_text(html, encoding="utf-8")
+    page.get(path.as_uri())
+    ask(page, "mffit.choose(2, false)")
+    assert HOSTILE in page.find_element("id", "chosen-title").text
+    assert ask(page, "window.hacked") is None
+
+
+@contextmanager
+def window(tyre_toml: Path) -> Iterator[tuple[str, subprocess.Popen]]:
+    """Address and process of `mffit open`."""
+    pytest.importorskip("uvicorn")
+    command = [sys.executable, "-m", "mffit", "open", str(tyre_toml), "--no-browser"]
+    process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    try:
+        assert process.stdout is not None
+        yield process.stdout.readline().split()[-1], process
+    finally:
+        process.kill()
+        process.communicate()
+
+
+def test_hold_refit_reload_two_windows_and_a_server_that_ends(browser, tyre_toml):
+    """A walk: what is shown at its end is what mffit build gives for the file that was saved on the way."""
+    before = tyre_toml.read_text(encoding="utf-8")
+    status = lambda: browser.find_element("id", "status").text  # noqa: E731
+    with window(tyre_toml) as (address, process):
+        browser.get(address)
+        until(lambda: ask(browser, "window.mffit && mffit.data() && mffit.data().name"))
+        ask(browser, "mffit.move('PEY1', -0.9)")
+        press(browser, ".coefficient[data-name=PEY1] .keys button")
+        until(lambda: "PEY1" in tyre_toml.read_text(encoding="utf-8"))
+        assert tyre_toml.read_text(encoding="utf-8").startswith(before)
+        assert tomllib.loads(tyre_toml.read_text(encoding="utf-8"))["coefficients"] == {"PEY1": -0.9}
+        until(lambda: "Refit" in status())
+
+        first = browser.current_window_handle
+        browser.switch_to.new_window("tab")  # a second window shows what the first one saved
+        browser.get(address)
+        until(lambda: ask(browser, "window.mffit && mffit.data() && mffit.data().name"))
+        row = ask(browser, "mffit.data().points.files.indexOf('camber_900.csv')")
+        row = ask(browser, "mffit.data().points.file.indexOf(arguments[0])", row)
+        ask(browser, "mffit.choose(arguments[0], false)", row)
+        press(browser, "#chosen-actions button")
+        browser.find_element("id", "ask-why").send_keys("the belt slipped")
+        press(browser, "#ask-yes")
+        until(lambda: "the belt slipped" in tyre_toml.read_text(encoding="utf-8"))
+        browser.close()
+        browser.switch_to.window(first)
+        until(lambda: sum(ask(browser, "mffit.left()")) == 2)
+
+        press(browser, "#refit")
+        until(lambda: ask(browser, "mffit.data().before"))
+        assert ask(browser, "mffit.trial()") == {}
+        assert ask(browser, "mffit.data().before.values.PEY1") != -0.9
+        shown = {name: ask(browser, "mffit.misfit(arguments[0]).rmse", name) for name in CHANNELS}
+        until(lambda: "mffit build" in status())
+        browser.refresh()
+        until(lambda: ask(browser, "window.mffit && mffit.data() && mffit.data().name"))
+        assert ask(browser, "mffit.misfit('Fy').rmse") == shown["Fy"]
+        assert console_errors(browser) == []
+
+        process.send_signal(signal.SIGINT)
+        assert process.wait(15) == 0
+        until(lambda: "has ended" in status())
+        saved = tyre_toml.read_bytes()
+        built = mffit.build(tyre_toml)
+        assert shown == pytest.approx({name: built.fit.channels[name].rmse for name in CHANNELS}, rel=1e-9)
+        assert built.fit.tyre["PEY1"] == -0.9
+    with window(tyre_toml) as (again, _):
+        assert again != address
+        browser.get(again)
+        until(lambda: ask(browser, "document.getElementById('refit') && true"))
+        assert tyre_toml.read_bytes() == saved
+    assert isinstance(built.tyre, tir.Tyre)

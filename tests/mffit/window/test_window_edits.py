@@ -1,0 +1,180 @@
+"""Changes of tyre.toml: what they write, and that they keep everything else byte for byte."""
+
+from __future__ import annotations
+
+import tomllib
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from mffit.config.lines import line_ranges
+from mffit.errors import InputError
+from mffit.window.edits import EDITS, free, hold, leave_out, start, take_back
+from mffit.window.project_file import ProjectFile
+
+TEXT = """# the front tyre
+[tyre]
+name   = "a"      # aligned by hand
+
+[coefficients]   # the engineer's hand
+PCY1 = 1.3       # from the last tyre
+PEY1 = { min = -3.0, max = 0.5, start = -0.5 } # bounds
+
+[fit]
+exclude = [ { file = "a.csv", lines = "39-44", why = "belt tracking" } ]  # by Anna
+
+[[sweep]]
+file = "a.csv"
+"""
+
+
+def reading(file: str, first: int, last: int | None = None) -> dict[str, object]:
+    return {"file": file, "first": first, "last": first if last is None else last}
+
+
+def changed_lines(before: str, after: str) -> tuple[set[str], set[str]]:
+    """Lines that are only in the old, and only in the new text."""
+    a, b = before.splitlines(keepends=True), after.splitlines(keepends=True)
+    return {line for line in a if line not in b}, {line for line in b if line not in a}
+
+
+def test_holding_changes_one_line_and_keeps_its_comment():
+    found = hold(TEXT, name="PCY1", value=1.35)
+    assert changed_lines(TEXT, found) == (
+        {"PCY1 = 1.3       # from the last tyre\n"},
+        {"PCY1 = 1.35       # from the last tyre\n"},
+    )
+
+
+def test_a_new_coefficient_is_added_to_the_table():
+    found = hold(TEXT, name="PKY1", value=-15.0)
+    assert changed_lines(TEXT, found) == (set(), {"PKY1 = -15.0\n"})
+    assert tomllib.loads(found)["coefficients"]["PKY1"] == -15.0
+
+
+def test_a_start_keeps_the_bounds():
+    entry = tomllib.loads(start(TEXT, name="PEY1", value=0.1))["coefficients"]["PEY1"]
+    assert entry == {"min": -3.0, "max": 0.5, "start": 0.1}
+    assert tomllib.loads(start(TEXT, name="PCY1", value=1.2))["coefficients"]["PCY1"] == {"start": 1.2}
+
+
+def test_freeing_removes_the_line_and_nothing_else():
+    found = free(TEXT, name="PCY1")
+    assert changed_lines(TEXT, found) == ({"PCY1 = 1.3       # from the last tyre\n"}, set())
+    assert free(TEXT, name="PKY1") == TEXT
+
+
+def test_tables_are_added_where_there_are_none():
+    bare = '[tyre]\nname = "a"\n\n[[sweep]]\nfile = "a.csv"'
+    found = leave_out(hold(bare, name="PCY1", value=1.0), readings=[reading("a.csv", 7)], why="a jump")
+    assert found.startswith(bare)
+    content = tomllib.loads(found)
+    assert content["coefficients"] == {"PCY1": 1.0}
+    assert content["fit"]["exclude"] == [{"file": "a.csv", "lines": "7", "why": "a jump"}]
+    assert content["sweep"] == [{"file": "a.csv"}]
+
+
+def test_readings_of_one_reason_are_one_entry():
+    found = leave_out(TEXT, readings=[reading("a.csv", 45), reading("a.csv", 60, 62)], why="belt tracking")
+    assert tomllib.loads(found)["fit"]["exclude"] == [
+        {"file": "a.csv", "lines": "39-45, 60-62", "why": "belt tracking"}
+    ]
+    assert "# by Anna" in found
+    found = leave_out(TEXT, readings=[reading("a.csv", 44, 46)], why="a jump")
+    assert [entry["lines"] for entry in tomllib.loads(found)["fit"]["exclude"]] == ["39-44", "45-46"]
+
+
+def test_readings_are_taken_back():
+    assert (
+        tomllib.loads(take_back(TEXT, readings=[reading("a.csv", 41)]))["fit"]["exclude"][0]["lines"]
+        == "39-40, 42-44"
+    )
+    assert tomllib.loads(take_back(TEXT, readings=[reading("a.csv", 30, 50)]))["fit"]["exclude"] == []
+    assert take_back(TEXT, readings=[reading("b.csv", 41)]) == TEXT
+
+
+def test_an_array_of_tables_is_extended():
+    text = '[tyre]\nname = "a"\n\n[[fit.exclude]]\nfile = "a.csv"\nlines = 3\nwhy = "x"\n'
+    found = leave_out(text, readings=[reading("b.csv", 9)], why="y")
+    assert tomllib.loads(found)["fit"]["exclude"] == [
+        {"file": "a.csv", "lines": 3, "why": "x"},
+        {"file": "b.csv", "lines": "9", "why": "y"},
+    ]
+
+
+def test_line_ends_stay_as_they_are():
+    found = leave_out(TEXT.replace("\n", "\r\n"), readings=[reading("b.csv", 1)], why="x")
+    found = hold(found, name="PKY1", value=-15.0)
+    assert "\n" not in found.replace("\r\n", "")
+
+
+@given(st.lists(st.tuples(st.booleans(), st.integers(1, 30), st.integers(0, 5)), max_size=8))
+def test_lines_are_left_out_as_a_set(steps):
+    """Any sequence of leaving out and taking back ends with the lines of the set operations."""
+    text, wanted = '[[sweep]]\nfile = "a.csv"\n', set()
+    for out, first, more in steps:
+        lines = set(range(first, first + more + 1))
+        if out:
+            wanted |= lines
+            text = leave_out(text, readings=[reading("a.csv", first, first + more)], why=f"{first % 3}")
+        else:
+            wanted -= lines
+            text = take_back(text, readings=[reading("a.csv", first, first + more)])
+    entries = tomllib.loads(text).get("fit", {}).get("exclude", [])
+    found = [n for entry in entries for a, b in line_ranges(entry["lines"]) for n in range(a, b + 1)]
+    assert sorted(found) == sorted(wanted)  # each line once
+
+
+def test_readings_without_a_line_are_refused():
+    with pytest.raises(InputError, match="first and last line"):
+        leave_out(TEXT, readings=[{"file": "a.csv"}], why="x")
+
+
+def test_an_edit_is_saved_and_undone_byte_for_byte(tyre_toml):
+    file, before = ProjectFile(tyre_toml), tyre_toml.read_bytes()
+    file.edit(lambda text: hold(text, name="PCY1", value=1.35), file.digest)
+    file.edit(lambda text: free(text, name="PCY1"), file.digest)
+    assert file.config().coefficients == {}
+    file.undo()
+    assert file.config().coefficients["PCY1"].held == 1.35
+    file.undo()
+    assert tyre_toml.read_bytes() == before
+    assert not file.can_undo
+    assert [path.name for path in tyre_toml.parent.glob(".*")] == []
+
+
+def test_a_change_that_the_program_would_refuse_is_not_written(tyre_toml):
+    file, before = ProjectFile(tyre_toml), tyre_toml.read_bytes()
+    with pytest.raises(InputError, match="physically plausible range of PCY1"):
+        file.edit(lambda text: hold(text, name="PCY1", value=99.0), file.digest)
+    with pytest.raises(InputError, match="is not the file of"):
+        file.edit(lambda text: leave_out(text, readings=[reading("no.csv", 2)], why="x"), file.digest)
+    with pytest.raises(InputError, match="why"):
+        file.edit(lambda text: leave_out(text, readings=[reading("camber_900.csv", 2)], why=" "), file.digest)
+    assert tyre_toml.read_bytes() == before
+    assert not file.can_undo
+
+
+def test_changes_of_others_are_neither_overwritten_nor_undone(tyre_toml):
+    file = ProjectFile(tyre_toml)
+    seen = file.digest
+    file.edit(lambda text: hold(text, name="PCY1", value=1.35), seen)
+    with pytest.raises(InputError, match="changed elsewhere"):
+        file.edit(lambda text: free(text, name="PCY1"), seen)
+    mine = tyre_toml.read_text(encoding="utf-8") + "# my own words\n"
+    tyre_toml.write_text(mine, encoding="utf-8")
+    with pytest.raises(InputError, match="no change of this window"):
+        file.undo()
+    assert tyre_toml.read_text(encoding="utf-8") == mine
+
+
+def test_a_mark_of_the_encoding_stays(tyre_toml):
+    tyre_toml.write_bytes(b"\xef\xbb\xbf" + tyre_toml.read_bytes())
+    file = ProjectFile(tyre_toml)
+    file.edit(lambda text: hold(text, name="PCY1", value=1.35), file.digest)
+    assert tyre_toml.read_bytes().startswith(b"\xef\xbb\xbf#")
+
+
+def test_every_edit_is_known_by_its_name():
+    assert {edit.__name__: edit for edit in EDITS.values()} == dict(EDITS)

@@ -1,0 +1,238 @@
+"""The server of a window: what it answers, to whom, and what it refuses to serve."""
+
+from __future__ import annotations
+
+import re
+import time
+from collections.abc import Callable
+from multiprocessing import Pipe
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from mffit.errors import InputError
+from mffit.viewer import project_data
+from mffit.window.runs import _work, out_of
+
+pytest.importorskip("starlette")
+testclient = pytest.importorskip("starlette.testclient", reason="starlette's client needs httpx")
+
+from mffit.window.app import window_app, within  # noqa: E402
+from mffit.window.session import Session  # noqa: E402
+
+TOKEN, PORT = "a-token-of-the-test", 8123
+HERE = f"http://127.0.0.1:{PORT}"
+
+
+@pytest.fixture
+def session(tyre_toml: Path, result: Any) -> Session:
+    """An open project whose first fit has finished."""
+    found = Session(tyre_toml)
+    found.data, found.fits, found._fitted = project_data(result) | {"before": None}, 1, found.file.digest
+    return found
+
+
+@pytest.fixture
+def client(session: Session) -> Any:
+    with testclient.TestClient(
+        window_app(session, token=TOKEN, port=PORT), base_url=HERE, headers={"origin": HERE}
+    ) as found:
+        yield found
+
+
+def post(client: Any, address: str, **content: Any) -> Any:
+    return client.post(f"/{TOKEN}/{address}", json=content)
+
+
+def edit(client: Any, session: Session, do: str, /, **given: Any) -> Any:
+    return post(client, "edit", **{"do": do, "seen": session.file.digest, "with": given})
+
+
+@pytest.mark.parametrize(
+    ("path", "headers"),
+    [
+        ("/wrong-token/", {}),
+        ("//", {}),
+        ("/", {}),
+        (f"/{TOKEN}/", {"host": "tyres.example:8123"}),  # a name that another site lets point to this machine
+        (f"/{TOKEN}/", {"host": "127.0.0.1:9999"}),
+        (f"/{TOKEN}/state", {"origin": "http://tyres.example"}),
+        (f"/{TOKEN}/state", {"origin": "null"}),  # a sandboxed page, such as a report
+        (f"/{TOKEN}/state", {"sec-fetch-site": "cross-site"}),
+        (
+            f"/{TOKEN}/",
+            {"sec-fetch-site": "cross-site", "sec-fetch-mode": "navigate", "sec-fetch-dest": "iframe"},
+        ),
+    ],
+)
+def test_others_are_refused(client, path, headers):
+    answer = client.get(path, headers=headers)
+    assert answer.status_code == 403
+    assert "coefficients" not in answer.text
+
+
+def test_a_change_needs_an_origin(client, session):
+    before = session.file.path.read_bytes()
+    for origin in ({"origin": "http://tyres.example"}, {"origin": ""}):
+        assert client.post(f"/{TOKEN}/undo", headers=origin).status_code == 403
+    without = testclient.TestClient(window_app(session, token=TOKEN, port=PORT), base_url=HERE)
+    assert without.post(f"/{TOKEN}/undo").status_code == 403
+    assert session.file.path.read_bytes() == before
+
+
+def test_a_link_from_elsewhere_opens_the_page(client):
+    headers = {"sec-fetch-site": "cross-site", "sec-fetch-mode": "navigate", "sec-fetch-dest": "document"}
+    answer = client.get(f"/{TOKEN}/", headers=headers)
+    assert answer.status_code == 200
+    assert answer.headers["x-frame-options"] == "DENY"
+    assert answer.headers["referrer-policy"] == "no-referrer"
+
+
+def test_the_page_asks_nobody_else(client):
+    page = client.get(f"/{TOKEN}/").text
+    assert "default-src 'none'" in page
+    assert [word for word in ("http://", "https://", " src=", "@import") if word in page] == []
+
+
+def test_the_data_are_those_of_the_build(client, result):
+    found = client.get(f"/{TOKEN}/project").json()
+    assert {row["name"]: row["rmse"] for row in found["channels"]} == {
+        name: row.rmse for name, row in result.fit.channels.items() if row.n
+    }
+    values = {row["name"]: (row["value"], row["stderr"]) for row in found["coefficients"]}
+    assert values["PCY1"] == (result.tyre["PCY1"], result.fit.coefficients["PCY1"].stderr)
+    assert found["points"]["fitted"] == len(result.points)
+    assert found["exclude"] == [{"file": "sideslip_1400.csv", "lines": "4", "why": "belt tracking"}]
+
+
+def test_a_click_changes_its_line_of_the_file_and_no_other_file(client, session):
+    before = {path.name: path.read_bytes() for path in session.file.path.parent.iterdir()}
+    answer = edit(client, session, "hold", name="PCY1", value=1.35).json()
+    assert answer["state"]["hand"] == {"PCY1": 1.35}
+    assert not answer["state"]["is_fitted"]
+    after = {path.name: path.read_bytes() for path in session.file.path.parent.iterdir()}
+    assert {name for name in after if after[name] != before.get(name)} == {"tyre.toml"}
+    assert after["tyre.toml"].startswith(before["tyre.toml"])
+    assert post(client, "undo").json()["state"]["is_fitted"]
+    assert session.file.path.read_bytes() == before["tyre.toml"]
+
+
+@pytest.mark.parametrize(
+    ("name", "given", "sentence"),
+    [
+        ("hold", {"name": "PCY1", "value": 99.0}, "physically plausible range"),
+        ("hold", {"name": "PCY9", "value": 1.0}, "not a coefficient"),
+        ("hold", {"nam": "PCY1"}, "cannot be done with"),
+        ("__import__", {}, "not a change"),
+        (
+            "leave_out",
+            {"readings": [{"file": "../secret.csv", "first": 1, "last": 1}], "why": "x"},
+            "not the file",
+        ),
+    ],
+)
+def test_what_is_not_possible_is_refused_with_a_sentence(client, session, name, given, sentence):
+    before = session.file.path.read_bytes()
+    answer = edit(client, session, name, **given)
+    assert answer.status_code == 422
+    assert sentence in answer.json()["error"]
+    assert session.file.path.read_bytes() == before
+
+
+def test_two_windows_do_not_overwrite_each_other(client, session):
+    seen = session.file.digest
+    assert edit(client, session, "hold", name="PCY1", value=1.35).status_code == 200
+    answer = post(client, "edit", **{"do": "hold", "seen": seen, "with": {"name": "PCY1", "value": 1.2}})
+    assert answer.status_code == 422
+    assert "changed elsewhere" in answer.json()["error"]
+    assert answer.json()["state"]["hand"] == {"PCY1": 1.35}
+
+
+def test_a_file_that_somebody_broke_is_said_and_left_alone(client, session):
+    session.file.path.write_text("[tyre\n", encoding="utf-8")
+    state = client.get(f"/{TOKEN}/state").json()
+    assert "not valid TOML" in state["problem"]
+    assert edit(client, session, "hold", name="PCY1", value=1.35).status_code == 422
+    assert client.get(f"/{TOKEN}/").status_code == 200
+    assert session.file.path.read_text(encoding="utf-8") == "[tyre\n"
+
+
+def test_only_results_are_served(client, session, tmp_path):
+    out = out_of(session.file.path)
+    (out / "plots").mkdir(parents=True)
+    (out / "report.html").write_text("<p>the report</p>", encoding="utf-8")
+    (out / "plots" / "Fy.png").write_bytes(b"png")
+    (out / ".mffit.json").write_text("{}", encoding="utf-8")
+    (tmp_path / "secret.html").write_text("secret", encoding="utf-8")
+    (out / "link.html").symlink_to(tmp_path / "secret.html")
+    (out / "run.sh").write_text("echo", encoding="utf-8")
+    report = client.get(f"/{TOKEN}/out/report.html")
+    assert report.text == "<p>the report</p>"
+    assert report.headers["content-security-policy"].startswith("sandbox allow-scripts")
+    assert "allow-same-origin" not in report.headers["content-security-policy"]
+    assert client.get(f"/{TOKEN}/out/plots/Fy.png").status_code == 200
+    for name in (
+        "link.html",
+        "run.sh",
+        "plots",
+        "none.html",
+        "../tyre.toml",
+        "%2e%2e/tyre.toml",
+        "/etc/passwd",
+    ):
+        assert client.get(f"/{TOKEN}/out/{name}").status_code == 404, name
+    assert within(out, "../tyre.toml") is None
+    state = client.get(f"/{TOKEN}/state").json()
+    assert [page["href"] for page in state["pages"] if page["run"] == "build"] == ["out/report.html"]
+
+
+def until(true: Callable[[], bool], seconds: float = 60.0) -> None:
+    end = time.monotonic() + seconds
+    while not true():
+        assert time.monotonic() < end, "not in time"
+        time.sleep(0.05)
+
+
+def test_a_run_can_be_stopped_and_leaves_nothing(client, session):
+    files = sorted(path.name for path in session.file.path.parent.iterdir())
+    assert post(client, "run/build").status_code == 200
+    assert "under way" in post(client, "run/fit").json()["error"]
+    until(lambda: session.state()["run"]["sentence"] != "starting")
+    assert post(client, "stop").status_code == 200
+    until(lambda: session.state()["run"] is None)
+    assert session.state()["last"]["state"] == "stopped"
+    assert session.fits == 1
+    assert sorted(path.name for path in session.file.path.parent.iterdir()) == files
+
+
+def test_a_run_on_a_wrong_project_ends_with_its_sentence(tyre_toml):
+    text = tyre_toml.read_text(encoding="utf-8")
+    tyre_toml.write_text(text.replace("sideslip_1400.csv", "gone.csv"), encoding="utf-8")
+    receiver, sender = Pipe(duplex=False)
+    _work("fit", tyre_toml, sender)
+    sent = []
+    while receiver.poll():
+        sent.append(receiver.recv())
+    kind, outcome = sent[-1]
+    assert (kind, outcome.state) == ("outcome", "refused")
+    assert "gone.csv" in outcome.sentence
+
+
+def test_an_unknown_run_is_refused(client):
+    assert "not something to run" in post(client, "run/rm").json()["error"]
+
+
+def test_events_bring_the_state_at_once(session):
+    """The stream ends when the server is about to."""
+    app = window_app(session, token=TOKEN, port=PORT, closing=iter([False, True]).__next__)
+    with testclient.TestClient(app, base_url=HERE) as client:
+        text = client.get(f"/{TOKEN}/events").text
+    assert re.match(r'data: \{"digest": "', text)
+
+
+def test_a_folder_without_a_project_is_said(tmp_path):
+    from mffit.window import open_path
+
+    with pytest.raises(InputError, match=r"has no tyre\.toml"):
+        open_path(tmp_path, opened=print)
