@@ -76,7 +76,7 @@ def test_an_effect_is_named_with_its_ties(camber):
 
 
 def test_an_unlikely_effect_is_called_uncertain_and_a_tie_counts_as_one(camber):
-    found = replace(camber.effects[0], confidence=0.4, tied=(BY_ID["path-radius"],))
+    found = replace(camber.effects[0], confidence=0.4, together=0.4, tied=(BY_ID["path-radius"],))
     alone = replace(camber, effects=(found,), alternatives={})
     assert wording.headline(alone).startswith(
         "The best explanation, though uncertain, is camber stiffness (or"
