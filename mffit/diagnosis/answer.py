@@ -182,7 +182,7 @@ def _judged(found: Explanation, effect: Effect, step: ForwardStep) -> Judgement:
     tied = tuple(rival for rival in rivals if _tied(found.chosen, rival))
     weight = {rival.ids: math.exp(min(-_lead(found.chosen, rival, rival in tied), 50.0)) for rival in rivals}
     known, total = found.confidence(effect), 1.0 + sum(weight.values())
-    together = 1.0 + sum(min(weight[rival.ids], 1.0) for rival in tied)
+    together = 1.0 + sum(weight[rival.ids] for rival in tied if weight[rival.ids] <= 1.0)
     return Judgement(tied, tempered(known / total), tempered(known * together / total))
 
 
