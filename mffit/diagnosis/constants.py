@@ -141,7 +141,9 @@ TIED_EVIDENCE_OF_ALIKE = Real(
     3.0, "-", "The same for effects that these data are not expected to separate: odds of 20, the usual 5 %."
 )
 TIE_EXCLUDED_BY_CHANCE = Real(
-    0.05, "-", "Probability with which readings of a rival's effect exclude it by chance; otherwise the two count as tied."
+    0.05,
+    "-",
+    "Probability with which readings of a rival's effect exclude it by chance; otherwise the two count as tied.",
 )
 UNIDENTIFIED_LOG_ODDS = Real(
     1.0, "-", "Added to the log prior odds of a coefficient at zero, else subtracted."

@@ -36,10 +36,16 @@ class Score:
     confidence: tuple[float, ...]
     repaired: tuple[str, ...]
     unexplained: bool
-    held_out: tuple[float, float, float]  #: chi2 per value of left-out sweeps: before, after, property file alone
-    truth: tuple[float, float, float]  #: misfit of noise-free readings in units of noise, between the settings: the same
+    held_out: tuple[
+        float, float, float
+    ]  #: chi2 per value of left-out sweeps: before, after, property file alone
+    truth: tuple[
+        float, float, float
+    ]  #: misfit of noise-free readings in units of noise, between the settings: the same
     file_changed: bool
-    file_from_tyre: float  #: rms distance of the property file from the true tyre, in units of noise; given: 0
+    file_from_tyre: (
+        float  #: rms distance of the property file from the true tyre, in units of noise; given: 0
+    )
     seconds: float
 
     @property
@@ -111,9 +117,7 @@ def _between(drawn: Set, found: Diagnosis):
         [lines[points.sweep_names[k].removesuffix(".csv")] for k in dict.fromkeys(points.sweep.tolist())]
     )
     moved = Run(**{name: values[order] for name, values in vars(run).items()})
-    moved = replace(
-        moved, alpha=moved.alpha + 0.25 * (np.abs(moved.alpha) < 7.5), gamma=0.93 * moved.gamma
-    )
+    moved = replace(moved, alpha=moved.alpha + 0.25 * (np.abs(moved.alpha) < 7.5), gamma=0.93 * moved.gamma)
     return moved, points.replace(alpha=np.radians(moved.alpha), gamma=np.radians(moved.gamma))
 
 
@@ -137,9 +141,7 @@ def _from_truth(drawn: Set, found: Diagnosis) -> tuple[float, float, float]:
 
 def _rms(truth, model) -> float:
     return float(
-        np.sqrt(
-            np.mean([((t - m) / u) ** 2 for t, m, u in zip(truth, model, (U_FY, U_MZ), strict=True)])
-        )
+        np.sqrt(np.mean([((t - m) / u) ** 2 for t, m, u in zip(truth, model, (U_FY, U_MZ), strict=True)]))
     )
 
 
@@ -167,12 +169,16 @@ def sets(kind: str, count: int, seed: int) -> Iterator[Set]:
 
 def print_table(scores: list[Score]) -> None:
     """A row per cause."""
-    print("\ncause | sets | right first or tied | false names | above 50 % | above 80 % | unexplained | worse")
+    print(
+        "\ncause | sets | right first or tied | false names | above 50 % | above 80 % | unexplained | worse"
+    )
     for cause in dict.fromkeys(s.cause for s in scores):
         own = [s for s in scores if s.cause == cause]
         print(_row(cause, own))
     print(_row("all", scores))
-    print(f"seconds: median {np.median([s.seconds for s in scores]):.1f}, most {max(s.seconds for s in scores):.1f}")
+    print(
+        f"seconds: median {np.median([s.seconds for s in scores]):.1f}, most {max(s.seconds for s in scores):.1f}"
+    )
 
 
 def _row(word: str, own: list[Score]) -> str:

@@ -113,7 +113,9 @@ def readings(
     if outside is not None:
         Fy, Mz = outside.forces(run, Fy, Mz)
     Fy = Fy + x["nonlinearity_per_kN"] * Fy * np.abs(Fy) / 1e3
-    return Fy + x["F0_N"] + _per_run(run, numbers, "F0_N@"), Mz + x["M0_Nm"] + _per_run(run, numbers, "M0_Nm@")
+    return Fy + x["F0_N"] + _per_run(run, numbers, "F0_N@"), Mz + x["M0_Nm"] + _per_run(
+        run, numbers, "M0_Nm@"
+    )
 
 
 def _forces(tyre: Tyre, run: Run, load, alpha, gamma, rows):
@@ -335,9 +337,7 @@ def outside_set(cause: str, seed: int) -> Set:
 
     def gap(size: float) -> float:
         made = OUTSIDE[cause](sign * size, np.random.default_rng(drawn))
-        return float(
-            np.sqrt(np.sum(((np.concatenate(readings(tyre, run, {}, made)) - clean) / u) ** 2))
-        )
+        return float(np.sqrt(np.sum(((np.concatenate(readings(tyre, run, {}, made)) - clean) / u) ** 2)))
 
     size = 1e-3
     for _ in range(8):
@@ -369,7 +369,20 @@ def mixed_set(cause: str, other: str, seed: int) -> Set:
     )  # fmt: skip
 
 
-HEAD = ("alpha_deg", "gamma_deg", "Fz_N", "p_kPa", "V_mps", "direction", "t_s", "T_degC", "Fy_N", "Mz_Nm", "u_Fy_N", "u_Mz_Nm")
+HEAD = (
+    "alpha_deg",
+    "gamma_deg",
+    "Fz_N",
+    "p_kPa",
+    "V_mps",
+    "direction",
+    "t_s",
+    "T_degC",
+    "Fy_N",
+    "Mz_Nm",
+    "u_Fy_N",
+    "u_Mz_Nm",
+)
 
 
 def write(drawn: Set, folder: Path) -> None:

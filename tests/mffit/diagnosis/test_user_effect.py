@@ -38,7 +38,9 @@ def test_effects_that_free_the_same_number_are_one_answer(right_model, tmp_path)
     """The second step once crashed: it freed the number that the first had freed already."""
     case, _, _ = right_model
     road = runpy.run_path(str(EXAMPLE))["ROAD_FRICTION"]
-    wet = replace(road, id="wet", name="water on the disc", free=(Free("LMUY", spread=0.1, lower=0.3, upper=1.2),))
+    wet = replace(
+        road, id="wet", name="water on the disc", free=(Free("LMUY", spread=0.1, lower=0.3, upper=1.2),)
+    )
     true = case.true.replace(LMUY=0.94, PVY1=case.true["PVY1"] + 0.012)
     noise = np.random.default_rng(4)
     Fy, Mz = report(true, case.machine, case.run)
