@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 
@@ -86,7 +87,6 @@ def answer(
         given=given.start,
         state=done.refined.state,
         signs=axis_signs(config),
-        lab=config.lab,
         tyre=tyre if repair.keeps_file else corrected,
         with_terms=corrected if repair.keeps_file else None,
         notes=tuple(notes),
@@ -137,7 +137,7 @@ def _found(found: Explanation, effect: Effect, given: DiagnosisProblem) -> Accep
         (s for s in steps if s.best.effects[-1].id == effect.id),
         steps[min(len(steps), len(chosen.effects)) - 1],
     )
-    tied, confidence = _judged(found, effect, step)
+    tied, confidence, together = _judged(found, effect, step)
     noise = {name: problem.noise.typical(name) for name in problem.channels}
     separations = [separation(problem.points, chosen, t, noise) for t in tied]
     with_it = found.refined.state if alone else _without_later(found, effect, step)
@@ -145,6 +145,7 @@ def _found(found: Explanation, effect: Effect, given: DiagnosisProblem) -> Accep
     return AcceptedEffect(
         effect=effect,
         confidence=confidence,
+        together=together,
         parameters={n: (numbers[n], stderr.get(n, 0.0)) for n in effect.parameters},
         before={n: given.start.number(n, given.points) for n in effect.parameters},
         gap_after=gap(problem.measured - problem.predict(with_it), found.scatter),
@@ -164,23 +165,42 @@ def _without_later(found: Explanation, effect: Effect, step: ForwardStep) -> Sim
     return found.refined.state.with_numbers(given)
 
 
-def _judged(found: Explanation, effect: Effect, step: ForwardStep) -> tuple[Sequence[Hypothesis], float]:
-    """Explanations with another effect in the place of one that are as good, and the confidence in this one."""
+class Judgement(NamedTuple):
+    """An effect beside its rivals."""
+
+    tied: Sequence[Hypothesis]  #: explanations with another effect in its place that are as good
+    confidence: float
+    together: float  #: confidence that it is this effect or a tied one that is no likelier
+
+
+def _judged(found: Explanation, effect: Effect, step: ForwardStep) -> Judgement:
+    """The confidence in an effect, and what it is tied with."""
     if effect.id in found.predicted:  # beside structure that may be anything, evidence decides little
-        tied = found.predicted[effect.id].tied
-        return tied, found.confidence(effect) / (1.0 + len(tied))
+        tied, known = found.predicted[effect.id].tied, found.confidence(effect)
+        return Judgement(tied, known / (1.0 + len(tied)), known)
     rivals = _rivals(found.problem, found.chosen, effect, step)
-    weights = [math.exp(min(rival.log_evidence - found.chosen.log_evidence, 50.0)) for rival in rivals]
     tied = tuple(rival for rival in rivals if _tied(found.chosen, rival))
-    return tied, tempered(found.confidence(effect) * (1.0 / (1.0 + sum(weights))))
+    weight = {rival.ids: math.exp(min(-_lead(found.chosen, rival, rival in tied), 50.0)) for rival in rivals}
+    known, total = found.confidence(effect), 1.0 + sum(weight.values())
+    together = 1.0 + sum(weight[rival.ids] for rival in tied if weight[rival.ids] <= 1.0)
+    return Judgement(tied, tempered(known / total), tempered(known * together / total))
 
 
 def _tied(chosen: Hypothesis, rival: Hypothesis) -> bool:
-    """Whether a rival is as good, or nearly so and so alike that these readings are not expected to separate the two."""
+    """Whether a rival is as good, or nearly so and so alike that these readings are not expected to separate the two.
+
+    A rival that the likelihood does not exclude is tied as well: usual sizes and declarations alone separate no effects.
+    """
     lead = chosen.log_evidence - rival.log_evidence
-    if chosen.apart(rival) < constants.SEPARATING_CHI2:
-        return lead < constants.TIED_EVIDENCE_OF_ALIKE
-    return lead < constants.TIED_EVIDENCE
+    alike = chosen.apart(rival) < constants.SEPARATING_CHI2
+    near = lead < (constants.TIED_EVIDENCE_OF_ALIKE if alike else constants.TIED_EVIDENCE)
+    return near or not chosen.excludes(rival, constants.TIE_EXCLUDED_BY_CHANCE)
+
+
+def _lead(chosen: Hypothesis, rival: Hypothesis, tied: bool) -> float:
+    """Log evidence over a rival; over a tied one no more than the log likelihood, which decides about ties."""
+    lead = chosen.log_evidence - rival.log_evidence
+    return min(lead, max(chosen.ahead(rival), 0.0)) if tied else lead
 
 
 def _rivals(

@@ -11,7 +11,7 @@ import numpy as np
 from mffit.diagnosis import constants
 from mffit.diagnosis.bumps import Bump, BumpScan
 from mffit.diagnosis.hypothesis import Hypothesis
-from mffit.diagnosis.imitation import as_likely_imitated
+from mffit.diagnosis.imitation import is_no_imitation
 from mffit.diagnosis.inexact import Inexactness
 from mffit.diagnosis.noise import Noise
 from mffit.diagnosis.prediction import Judged
@@ -108,8 +108,8 @@ class Explanation:
             return self.predicted[effect.id].confidence
         against, share = self._weighed(effect)
         outside = self.bump.found or self.smooth.found
-        imitates = as_likely_imitated(share, self.imitated) if outside else 1.0 - share
-        return (1.0 - imitates) / (1.0 + math.exp(-against))
+        acts = is_no_imitation(share, self.imitated) if outside else share
+        return acts / (1.0 + math.exp(-against))
 
     def _weighed(self, effect: Effect) -> tuple[float, float]:
         """Log odds of an effect against structure in its place, and the share of the misfit that is not left unexplained."""

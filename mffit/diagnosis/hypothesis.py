@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.special import ndtri
 
 from mffit.effects import Effect
 from mffit.rig import Simulation
@@ -40,6 +42,22 @@ class Hypothesis:
     def apart(self, rival: Hypothesis) -> float:
         """Expected chi2 by which these readings separate two fitted hypotheses, if one of them is true."""
         return float(np.sum((self.residual - rival.residual) ** 2))
+
+    def ahead(self, rival: Hypothesis) -> float:
+        """Log likelihood over that of a rival, each less half the logarithm of the number of readings per freed number (BIC).
+
+        Unlike the evidence it does not depend on how large effects usually are, or on what was declared.
+        """
+        more = len(rival.stderr) - len(self.stderr)
+        return 0.5 * (rival.chi2 - self.chi2 + more * math.log(max(len(self.residual), 1)))
+
+    def excludes(self, rival: Hypothesis, chance: float) -> bool:
+        """Whether the readings contradict a rival: it would fall so far behind with this probability if it were true.
+
+        If the rival is true, twice its lead is normal about d with variance 4 d, d being the expected chi2 between the two.
+        """
+        d = self.apart(rival)
+        return 2.0 * self.ahead(rival) + d > -2.0 * float(ndtri(chance)) * math.sqrt(d)
 
     def others(self, effect: Effect) -> tuple[Effect, ...]:
         """All effects but one."""

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 
 import numpy as np
 
+from mffit.diagnosis import constants
 from mffit.diagnosis.problem import DiagnosisProblem
 from mffit.effects import Effect
 
@@ -13,7 +15,8 @@ from mffit.effects import Effect
 def imitations(problem: DiagnosisProblem, candidates: Sequence[Effect]) -> np.ndarray:
     """Share (n,) of the misfit of each effect, as large as it usually is, that the best single other effect would explain.
 
-    All in whitened readings at the given model, to first order. Effects without influence there are left out.
+    All in whitened readings at the given model, to first order. Effects without influence there are left out, and so are others
+    that are the same effect as far as these readings go: a cause that is imitated so well leaves nothing unexplained.
     """
     found = []
     for groups in problem.columns(problem.start, candidates).values():
@@ -22,21 +25,19 @@ def imitations(problem: DiagnosisProblem, candidates: Sequence[Effect]) -> np.nd
         if size > 0.0:
             left, values, _ = np.linalg.svd(white, full_matrices=False)
             found.append((white / np.sqrt(size), left[:, values > 1e-9 * values[0]]))
-    return np.array(
-        [
-            max(
-                (float(np.sum((axes.T @ white) ** 2)) for j, (_, axes) in enumerate(found) if j != k),
-                default=0.0,
-            )
-            for k, (white, _) in enumerate(found)
-        ]
-    )
+    out = []
+    for k, (white, _) in enumerate(found):
+        shares = [float(np.sum((axes.T @ white) ** 2)) for j, (_, axes) in enumerate(found) if j != k]
+        out.append(max((x for x in shares if x < constants.SAME_EFFECT_SHARE), default=0.0))
+    return np.array(out)
 
 
-def as_likely_imitated(share: float, imitated: np.ndarray) -> float:
-    """Probability that one effect explains at least this share of the misfit of a cause outside the library.
+def is_no_imitation(share: float, imitated: np.ndarray) -> float:
+    """Probability that an effect which explains this share of the misfit acts, and does not imitate an unknown cause alone.
 
-    ``imitated`` (n,) is what the library does with each of its own effects taken out. One more is counted on either side, as
-    for any rank among n draws.
+    That cause is certain. The rank of the share among those of imitations (n,) is a p-value, which bounds the Bayes factor
+    by -e p ln p (Sellke, Bayarri and Berger, The American Statistician 55, 2001).
     """
-    return (1.0 + float(np.sum(imitated >= share))) / (1.0 + len(imitated))
+    p = (1.0 + float(np.sum(imitated >= share))) / (1.0 + len(imitated))
+    bound = -math.e * p * math.log(p) if p < 1.0 / math.e else 1.0
+    return min(1.0 - p, 1.0 / (1.0 + bound / constants.KNOWN_BESIDE_UNKNOWN))

@@ -43,6 +43,7 @@ class AcceptedEffect:
     tied: tuple[Effect, ...]  #: effects that explain the data as well in its place
     separation: Separation | None  #: the run that separates them, if any is tied
     T_ref: float | None = None  #: reference temperature of an effect of temperature [degC]
+    together: float = 0.0  #: confidence that it is this effect or a tied one that is no likelier
     repaired: bool = True  #: whether model and readings are corrected for it; otherwise it is a suspicion
 
     @property
@@ -52,7 +53,8 @@ class AcceptedEffect:
 
     def confidence_of_tie(self, alternatives: Mapping[str, float]) -> float:
         """Confidence that it is this effect or one of those it is tied with; ``alternatives`` are confidences by id."""
-        return self.confidence + sum(alternatives.get(other, 0.0) for other in self.tied_with)
+        listed = self.confidence + sum(alternatives.get(other, 0.0) for other in self.tied_with)
+        return max(listed, self.together)
 
 
 @dataclass(frozen=True, slots=True, repr=False)
@@ -89,7 +91,7 @@ class Diagnosis(Brief):
     with_terms: Tyre | None = None
     """The corrected property file if it is right only with the terms of rig and environment; ``tyre`` is the given one then."""
     made: Made | None = None  #: set by the command
-    lab: LabTable = field(default_factory=LabTable)
+    lab: LabTable = field(default_factory=LabTable)  #: set by the command
     left_out: tuple[LeftOut, ...] = ()  #: by hand and by rules; set by the command
     trust: Trust = SOUND  #: the judgement of the corrected model
 

@@ -31,7 +31,7 @@ from mffit.diagnosis.ties import Separation
 from mffit.diagnosis.validation import Gap, Validation
 from mffit.effects import NEEDS, Effect
 from mffit.quantities import CHANNELS, CONDITIONS
-from mffit.rig_errors import OF_RUN, error_of, unit_of, words_of
+from mffit.rig_errors import OF_RUN, error_of, shown, unit_of, words_of
 from mffit.rounding import per_cent, to_uncertainty
 from mffit.suspicion import Misread, Outlier
 from tir import Quantity
@@ -367,10 +367,7 @@ def _around(bump: Bump) -> str:
 def best_effect(found: BestEffect) -> str:
     """The effect that explains residuals best, with its numbers and its significance."""
     step = found.best
-    numbers = [
-        f"{name} = {to_uncertainty(value, u)} +- {to_uncertainty(u, u)}"
-        for name, (value, u) in step.numbers.items()
-    ]
+    numbers = [_number(name, value, u) for name, (value, u) in step.numbers.items()]
     listed = f" ({', '.join(numbers)})" if len(numbers) <= constants.MOST_NUMBERS_IN_SENTENCE else ""
     rivals = f", as does {' or '.join(o.effect.name for o in found.rivals)}" if found.rivals else ""
     says = (
@@ -379,6 +376,15 @@ def best_effect(found: BestEffect) -> str:
         else f"would explain {100 * step.share:.0f} % of the misfit"
     )
     return f"{step.effect.name}{listed} {says}, {found.sigma:.1f} standard deviations with {found.tried} effects tried{rivals}"
+
+
+def _number(name: str, value: float, u: float) -> str:
+    """A number of an effect in words: one of the rig by its value alone, as the effect bears its name."""
+    if error_of(name) is None:
+        return f"{name} = {to_uncertainty(value, u)} +- {to_uncertainty(u, u)}"
+    value, u, unit = shown(name, value, u)
+    part = name.partition(OF_RUN)[2]
+    return f"{part}{': ' if part else ''}{to_uncertainty(value, u)} +- {to_uncertainty(u, u)} {unit}".rstrip()
 
 
 def structure(found: Structure) -> str:

@@ -106,6 +106,7 @@ def diagnose(
         diagnosis,
         notes=notes,
         made=made(hashes),
+        lab=config.lab,
         left_out=(*reading.left_out, *left_out_by_diagnosis(points, diagnosis)),
         trust=judged_diagnosis(diagnosis),
     )

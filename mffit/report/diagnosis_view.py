@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from mffit.diagnosis import Diagnosis
+from mffit.diagnosis import AcceptedEffect, Diagnosis
 from mffit.diagnosis.selection import ForwardStep
 from mffit.diagnosis.where import Region
 from mffit.effects import CATALOG
@@ -51,6 +51,16 @@ class RankedStep:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class ShownNumber:
+    """A number of an effect in the unit in which people read it."""
+
+    value: float
+    u: float
+    unit: str
+    before: float
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Shown:
     """One sweep with the simulation before and after."""
 
@@ -72,14 +82,20 @@ class DiagnosisView:
     steps: tuple[RankedStep, ...]
     names: Mapping[str, str]  #: effect id -> plain name
     descriptions: Mapping[str, str]  #: coefficient -> its meaning
-    units: Mapping[str, str]  #: of every number that was estimated, empty without one
-    words: Mapping[str, str]  #: names of those that belong to the rig
+    words: Mapping[str, str]  #: of the numbers that are no coefficients of the property file
     shown: tuple[Shown, ...]  #: the worst and the typical sweep
 
     @property
     def changed(self) -> bool:
         """Whether effects are repaired, so that before and after differ."""
         return bool(self.diagnosis.repaired)
+
+    def shown_number(self, found: AcceptedEffect, name: str) -> ShownNumber:
+        """A number of an effect, now and before."""
+        value, u, unit = words.in_unit(name, *found.parameters[name])
+        return ShownNumber(
+            value=value, u=u, unit=unit, before=words.in_unit(name, found.before[name], 0.0)[0]
+        )
 
     def frames(self, channel: str) -> list[Region]:
         """Regions of a channel to be framed in the maps, unexplained ones first."""
@@ -112,8 +128,7 @@ def view_of(diagnosis: Diagnosis) -> DiagnosisView:
         steps=tuple(_ranked(step) for step in diagnosis.steps),
         names={key: effect.name for key, effect in known.items()},
         descriptions={name: BY_NAME[name].description for name in freed if name in BY_NAME},
-        units={name: words.unit_of(name) for name in freed},
-        words={name: words.of_rig(name) for name in freed if words.of_rig(name)},
+        words={name: words.of_number(name) for name in freed if name not in BY_NAME},
         shown=_shown(diagnosis, channels),
     )
 

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from mffit.rig_errors import error_of, words_of
+from mffit.rig.simulation import SWITCH
+from mffit.rig_errors import error_of, shown, words_of
 from mffit.rig_errors import unit_of as rig_unit_of
 from tir.parameters import BY_NAME
 
@@ -13,8 +14,13 @@ def of_rig(name: str) -> str:
 
 
 def of_number(name: str) -> str:
-    """Words for a number of the rig; a coefficient of the tyre keeps its name."""
-    return of_rig(name) or name
+    """Words for a number of the rig and for the switch of turn slip; a coefficient of the tyre keeps its name."""
+    return "turn slip of the simulation" if name == SWITCH else of_rig(name) or name
+
+
+def in_unit(name: str, value: float, u: float) -> tuple[float, float, str]:
+    """A number and its uncertainty in the unit in which people read it, and that unit."""
+    return shown(name, value, u) if error_of(name) else (value, u, unit_of(name))
 
 
 def unit_of(name: str) -> str:

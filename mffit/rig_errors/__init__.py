@@ -18,6 +18,7 @@ from mffit.rig_errors.faults import (
     error_of,
     meaning_of,
     number_of,
+    shown,
     unit_of,
     words_of,
 )
@@ -44,6 +45,7 @@ __all__ = [
     "error_of",
     "meaning_of",
     "number_of",
+    "shown",
     "unit_of",
     "words_of",
 ]

@@ -26,5 +26,7 @@ ZEROS = tuple(error for error in RIG_ERRORS if error.of_setup)
 """Those that every set-up of the rig has anew."""
 UNITS = {error.name: error.unit for error in RIG_ERRORS}
 MEANINGS = {error.name: error.meaning for error in RIG_ERRORS}
-WORDS = {error.name: error.seen_as[0].name for error in RIG_ERRORS if error.seen_as}
+WORDS = {
+    error.name: error.word or error.seen_as[0].name for error in RIG_ERRORS if error.word or error.seen_as
+}
 """What a reader calls a number of the rig, by its name."""

@@ -48,6 +48,7 @@ CAMBER_ZERO = RigError(
 )
 LOAD_CAMBER = RigError(
     name="load_camber",
+    shown_in=("%", 100.0),
     unit="-",
     meaning="true load = reading times 1 + load_camber sin(true camber)^2",
     kind="rig",

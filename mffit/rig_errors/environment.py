@@ -35,6 +35,7 @@ _appearance = partial(Appearance, parity="as the forces")
 
 TEMPERATURE_GRIP = _of_temperature(
     name="k_T_grip_per_K",
+    shown_in=("% per K", 100.0),
     meaning=f"friction times 1 + k {WARMTH}",
     place=Place.COEFFICIENTS,
     acts_on=(SCALED_BY["k_T_grip_per_K"],),
@@ -66,6 +67,7 @@ TEMPERATURE_GRIP_CURVATURE = RigError(
 )
 TEMPERATURE_STIFFNESS = _of_temperature(
     name="k_T_stiffness_per_K",
+    shown_in=("% per K", 100.0),
     meaning=f"cornering stiffness times 1 + k {WARMTH}",
     place=Place.COEFFICIENTS,
     acts_on=(SCALED_BY["k_T_stiffness_per_K"],),
@@ -82,6 +84,8 @@ TEMPERATURE_STIFFNESS = _of_temperature(
 )
 TEMPERATURE_CAMBER = _of_temperature(
     name="k_T_camber_per_K",
+    word="camber stiffness with tyre temperature",
+    shown_in=("% per K", 100.0),
     meaning=f"camber stiffness times 1 + k {WARMTH}",
     place=Place.COEFFICIENTS,
     acts_on=(SCALED_BY["k_T_camber_per_K"],),
@@ -103,6 +107,7 @@ TEMPERATURE_SLIP_STIFFNESS = _of_temperature(
 )
 TEMPERATURE = _of_temperature(
     name="k_T_per_K",
+    shown_in=("% per K", 100.0),
     meaning=f"Fy and Mz times 1 + k_T {WARMTH}",
     place=Place.ENVIRONMENT,
     acts_on=("Fy", "Mz"),
@@ -130,6 +135,7 @@ RUN_STIFFNESS = _of_run(
 )
 REFERENCE_TEMPERATURE = RigError(
     name="T_ref_degC",
+    word="temperature at which the model holds",
     unit="degC",
     meaning="temperature at which the model holds",
     kind="environment",
@@ -141,6 +147,7 @@ REFERENCE_TEMPERATURE = RigError(
 )
 SPEED = _of_forces(
     name="k_V_per_mps",
+    shown_in=("% per m/s", 100.0),
     unit="s/m",
     meaning="Fy and Mz times 1 + k_V (V - V_ref), V_ref the most frequent speed",
     formula=lambda k, force, at: force * (1.0 + k * at.speed_above_usual),
@@ -158,6 +165,7 @@ SPEED = _of_forces(
 )
 DRIFT = _of_forces(
     name="k_t_per_s",
+    shown_in=("% per hour", 3.6e5),
     unit="1/s",
     meaning="Fy and Mz times 1 + k_t t, t the time at which the point was taken",
     formula=lambda k, force, at: force * (1.0 + k * at.time),
@@ -176,6 +184,7 @@ DRIFT = _of_forces(
 )
 WEAR = _of_forces(
     name="wear_per_km",
+    shown_in=("% per km", 100.0),
     unit="1/km",
     meaning="Fy and Mz times 1 + wear s, s the distance rolled",
     formula=lambda wear, force, at: force * (1.0 + wear * at.distance_km),
@@ -194,6 +203,7 @@ WEAR = _of_forces(
 )
 WARM_UP = _of_forces(
     name="warm_up",
+    shown_in=("%", 100.0),
     unit="-",
     meaning="Fy and Mz times 1 - warm_up exp(-s/1 km), s the distance rolled",
     formula=lambda share, force, at: (

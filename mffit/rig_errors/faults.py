@@ -34,6 +34,13 @@ def words_of(name: str) -> str:
     return f"{words}, {part}" if words and part else words
 
 
+def shown(name: str, value: float, u: float) -> tuple[float, float, str]:
+    """A number of the rig and its uncertainty in the unit in which people read it, and that unit; empty without one."""
+    error = error_of(name)
+    unit, size = error.shown_in if error is not None and error.shown_in else (unit_of(name), 1.0)
+    return value * size, u * size, "" if unit == "-" else unit
+
+
 def error_of(name: str) -> RigError | None:
     """The rig error that a number belongs to, of the whole test or of a part of it; None for other numbers."""
     return BY_NAME.get(name.partition(OF_RUN)[0])

@@ -32,6 +32,7 @@ GAIN = _of_reading(
 )
 NONLINEARITY = _of_reading(
     name="nonlinearity_per_kN",
+    shown_in=("% per kN", 100.0),
     unit="1/kN",
     meaning="reported Fy times 1 + nonlinearity |Fy|",
     acts_on=("Fy",),
@@ -53,6 +54,7 @@ NONLINEARITY = _of_reading(
 )
 CROSSTALK = _of_reading(
     name="crosstalk",
+    shown_in=("%", 100.0),
     unit="-",
     meaning=FORCE,
     acts_on=("Fy",),

@@ -111,6 +111,10 @@ class RigError:
     relative: bool = False  #: spread and scan are relative to the value
     of_setup: bool = False  #: differs from one set-up of the rig to the next, as a zero does
     seen_as: tuple[Appearance, ...] = ()
+    word: str = ""  #: what a reader calls the number; default the name of the first appearance
+    shown_in: tuple[str, float] | None = (
+        None  #: unit in which people read it, and its size in them; default its own
+    )
     declared: Declared | None = None
 
     def shows_in(self, channels: Iterable[str]) -> bool:

@@ -50,6 +50,9 @@ FEWEST_POINTS_OF_FRICTION = Count(
     3, "-", "Fewer points with an implausible force per load are single outliers."
 )
 SMALLEST_FRICTION = Real(0.02, "-", "Side force per load that every tyre exceeds at those angles.")
+LARGEST_FORCE_AT_ZERO = Real(
+    1.0, "-", "Side force per load that turn slip and asymmetry never reach at zero angles."
+)
 LARGEST_FRICTION = Real(4.0, "-", "Side force per load that no tyre reaches.")
 LARGEST_MOMENT_ARM = Real(
     0.15,

@@ -9,6 +9,7 @@ import numpy as np
 
 from mffit.points import Points
 from mffit.rig import Simulation
+from mffit.rounding import to_uncertainty
 from mffit.suspicion import constants
 from mffit.suspicion.mistakes import MISTAKES
 from mffit.suspicion.prediction import PredictedChannel
@@ -50,14 +51,14 @@ def _set_point(name: str, relative: bool = False) -> Shape:
 
 
 SHIFTS = (
-    Shift("a zero offset of {:+.3g} N in Fy_N", _constant("Fy"), sign="Fy"),
-    Shift("a zero offset of {:+.3g} Nm in Mz_Nm", _constant("Mz"), sign="Mz"),
-    Shift("a gain of {:.3g} in Fy_N", _gain("Fy"), start=1.0),
-    Shift("a gain of {:.3g} in Mz_Nm", _gain("Mz"), start=1.0),
-    Shift("a sideslip axis that is {:+.2g} deg out", _set_point("alpha"), unit=DEGREES, sign="alpha"),
-    Shift("a camber axis that is {:+.2g} deg out", _set_point("gamma"), unit=DEGREES, sign="gamma"),
-    Shift("a load that was {:+.2g} % off", _set_point("Fz", relative=True), unit=100.0),
-    Shift("a pressure that was {:+.2g} % off", _set_point("p", relative=True), unit=100.0),
+    Shift("a zero offset of {} N in Fy_N", _constant("Fy"), sign="Fy"),
+    Shift("a zero offset of {} Nm in Mz_Nm", _constant("Mz"), sign="Mz"),
+    Shift("a gain of {} in Fy_N", _gain("Fy"), start=1.0),
+    Shift("a gain of {} in Mz_Nm", _gain("Mz"), start=1.0),
+    Shift("a sideslip axis that is {} deg out", _set_point("alpha"), unit=DEGREES, sign="alpha"),
+    Shift("a camber axis that is {} deg out", _set_point("gamma"), unit=DEGREES, sign="gamma"),
+    Shift("a load that was {} % off", _set_point("Fz", relative=True), unit=100.0),
+    Shift("a pressure that was {} % off", _set_point("p", relative=True), unit=100.0),
 )
 
 
@@ -75,10 +76,11 @@ def explanation(
         if gained > best:
             best, said = gained, mistake.looks
     for shift in SHIFTS:
-        gained, size = _fitted(points, errors, shift.shape(points, simulation))
+        gained, size, u = _fitted(points, errors, shift.shape(points, simulation))
         if gained > best:
             best = gained
-            said = shift.looks.format(shift.start + shift.unit * signs.get(shift.sign, 1.0) * size)
+            value = shift.start + shift.unit * signs.get(shift.sign, 1.0) * size
+            said = shift.looks.format(to_uncertainty(value, shift.unit * u, "" if shift.start else "+"))
     return said
 
 
@@ -97,8 +99,8 @@ def _undone(
 
 def _fitted(
     points: Points, errors: Mapping[str, PredictedChannel], shapes: Mapping[str, np.ndarray]
-) -> tuple[float, float]:
-    """Chi-square that a multiple of the shapes removes, and the multiple."""
+) -> tuple[float, float, float]:
+    """Chi-square that a multiple of the shapes removes, the multiple and its standard uncertainty."""
     curvature = gradient = 0.0
     for n, e in errors.items():
         if n in shapes:
@@ -106,7 +108,9 @@ def _fitted(
             solved = np.linalg.solve(e.covariance, shape)
             curvature += float(shape @ solved)
             gradient += float(e.error @ solved)
-    return (gradient**2 / curvature, gradient / curvature) if curvature > 0.0 else (0.0, 0.0)
+    if curvature <= 0.0:
+        return 0.0, 0.0, 0.0
+    return gradient**2 / curvature, gradient / curvature, curvature**-0.5
 
 
 def _chi2(errors: Mapping[str, PredictedChannel], moved: Mapping[str, np.ndarray]) -> float:

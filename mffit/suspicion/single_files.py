@@ -57,23 +57,45 @@ def dead_channel(part: Points, config: Config) -> Iterator[Finding]:
 
 @of_file(
     id="force-and-moment-exchanged",
-    limits=(constants.LARGEST_MOMENT_ARM, constants.LARGEST_FRICTION),
+    limits=(
+        constants.LARGEST_MOMENT_ARM,
+        constants.LARGEST_FRICTION,
+        constants.SMALLEST_FRICTION,
+        constants.LARGEST_CAMBER_THRUST,
+        constants.LARGEST_FORCE_AT_ZERO,
+    ),
     sentence="reaches {moment:.0f} Nm at loads of {load:.0f} N while Fy_N stays below {force:.3g} N, so the headings Fy_N and "
     "Mz_Nm look exchanged; correct them",
 )
 def force_and_moment_exchanged(part: Points, config: Config) -> Iterator[Finding]:
-    """|Mz| and |Fy| over load: the moment is as large as a side force, and the force as small as a moment."""
+    """|Mz| and |Fy| over load: the moment is as large as a side force, and the force as small as a moment.
+
+    In a sweep of small camber both are small: there the moment is as large as a side force must be, and the force too small for
+    newtons but too large for kilonewtons.
+    """
     force, moment = np.abs(part.Fy) / part.Fz, np.abs(part.Mz) / part.Fz
     if not np.all(np.isfinite(moment)):
         return
     least, most = constants.LARGEST_MOMENT_ARM, constants.LARGEST_FRICTION
-    if np.max(force) < least < np.max(moment) < most:
+    if np.max(force) < least < np.max(moment) < most or _exchanged_at_small_camber(part, force, moment):
         facts = {
             "moment": np.max(np.abs(part.Mz)),
             "force": np.max(np.abs(part.Fy)),
             "load": np.median(part.Fz),
         }
         yield Finding(facts, column="Mz_Nm")
+
+
+def _exchanged_at_small_camber(part: Points, force: np.ndarray, moment: np.ndarray) -> bool:
+    """Whether |Fy| and |Mz| per load (n,) of a sweep of camber are a moment and a side force."""
+    shows = np.abs(part.gamma) > constants.CAMBER_THAT_SHOWS_FORCE.rad
+    straight = np.max(np.abs(part.alpha)) <= constants.SIDESLIP_THAT_SHOWS_FORCE.rad
+    if not straight or np.sum(shows) < constants.FEWEST_POINTS_OF_FRICTION:
+        return False
+    thrust = constants.LARGEST_CAMBER_THRUST * np.tan(np.max(np.abs(part.gamma)))
+    in_kilonewtons = factor("kN", "N") * np.max(force) < constants.LARGEST_FORCE_AT_ZERO + thrust
+    weak = np.max(force[shows]) < constants.SMALLEST_FRICTION < np.max(moment[shows])
+    return bool(weak and not in_kilonewtons and np.max(moment) > np.max(force))
 
 
 @of_file(

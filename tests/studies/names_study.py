@@ -1,7 +1,8 @@
 """What is named, how surely, and is the model better afterwards? ``python tests/studies/names_study.py outside --count 5``.
 
 ``outside``: causes that the library lacks; ``library``: single causes that it has, three to ten times their detection limit;
-``faint``: the same at one to three times; ``mixed``: one cause of either kind. A line per set, then a table. All readings come from ``own_rig``.
+``faint``: the same at one to three times; ``mixed``: one cause of either kind. A line per set, then a table.
+All readings come from ``own_rig``.
 """
 
 from __future__ import annotations
@@ -78,7 +79,8 @@ class Score:
         mark = " WORSE" if self.worse else ""
         return (
             f"{self.name:44s} x{self.times_limit:<7.3g} {named or 'none'}{said}  truth {gap}  "
-            f"held out {'/'.join(f'{x:.2f}' for x in self.held_out)}  file off {self.file_from_tyre:.2f}{mark}  {self.seconds:.1f} s"
+            f"held out {'/'.join(f'{x:.2f}' for x in self.held_out)}  file off {self.file_from_tyre:.2f}{mark}  "
+            f"{self.seconds:.1f} s"
         )
 
 

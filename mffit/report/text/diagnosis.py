@@ -49,17 +49,20 @@ def models_written(diagnosis: Diagnosis) -> str:
 def _effect(found: AcceptedEffect, signs: Mapping[str, float]) -> str:
     suspected = "" if found.repaired else ", suspected and not repaired"
     lines = [f"{found.effect.name} ({found.effect.kind}), confidence {per_cent(found.confidence)}{suspected}"]
-    lines += [
-        f"  {words.of_number(name)} = {with_u(value, stderr, words.unit_of(name))}, "
-        f"was {as_good_as(found.before[name], stderr)}"
-        for name, (value, stderr) in found.parameters.items()
-    ]
+    lines += [_number(found, name) for name in found.parameters]
     lines.append(wrapped(f"to do: {wording.remedy(found, signs)}", "  ", "  "))
     if found.tied_with:
         rivals = ", ".join(effect.name for effect in found.tied)
         lines.append(wrapped(f"these data cannot tell it from: {rivals}", "  ", "  "))
         lines.append(wrapped(f"to separate them: {wording.separation(found.separation)}", "  ", "  "))
     return "\n".join(lines)
+
+
+def _number(found: AcceptedEffect, name: str) -> str:
+    """One number of an effect, now and before."""
+    value, u, unit = words.in_unit(name, *found.parameters[name])
+    before, _, _ = words.in_unit(name, found.before[name], 0.0)
+    return f"  {words.of_number(name)} = {with_u(value, u, unit)}, was {as_good_as(before, u)}"
 
 
 def _regions(regions: Sequence[Region]) -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import replace
 
 import numpy as np
@@ -25,10 +26,13 @@ from mffit.diagnosis.notes import (
     OneSweep,
     WithoutNoise,
 )
+from mffit.diagnosis.one_step import BestEffect, OneStep
 from mffit.diagnosis.ties import SeparatingRun, Separation
 from mffit.diagnosis.validation import Gap, Validation
 from mffit.effects import CATALOG, NEEDS
+from mffit.report import text
 from mffit.results import as_json
+from mffit.rig_errors import BY_NAME as RIG_ERRORS_BY_NAME
 from mffit.suspicion import Outlier
 from tir import Quantity
 
@@ -81,7 +85,7 @@ def test_an_effect_is_named_with_its_ties(camber):
 
 
 def test_an_unlikely_effect_is_called_uncertain_and_a_tie_counts_as_one(camber):
-    found = replace(camber.effects[0], confidence=0.4, tied=(BY_ID["path-radius"],))
+    found = replace(camber.effects[0], confidence=0.4, together=0.4, tied=(BY_ID["path-radius"],))
     alone = replace(camber, effects=(found,), alternatives={})
     assert wording.headline(alone).startswith(
         "The best explanation, though uncertain, is camber stiffness (or"
@@ -178,6 +182,39 @@ def test_the_file_keeps_its_keys(camber):
     assert content["effects"][0]["parameters"]["PKY6"].keys() == {"was", "value", "stderr"}
     assert content["validation"].keys() == {"method", "gap_before", "gap_after", "gap_file"}
     assert content["notes"] == [wording.note(OneSweep())]
+
+
+NAMES_OF_NUMBERS = [name for name in (*RIG_ERRORS_BY_NAME, "turn_slip") if "_" in name]
+
+
+@pytest.mark.parametrize("effect", CATALOG, ids=lambda effect: effect.id)
+def test_a_terminal_shows_words_and_units_instead_of_names_of_numbers(camber, effect):
+    """A hundred times its uncertainty, every number has digits to show."""
+    numbers = {free.name: (1.2345 * free.spread, 0.0123 * free.spread) for free in effect.free}
+    found = replace(camber.effects[0], effect=effect, parameters=numbers, before=dict.fromkeys(numbers, 0.0))
+    said = text.diagnosis_summary(replace(camber, effects=(found,)))
+    block = said[said.index(f"{effect.name} ({effect.kind})") :]
+    shown = block[: block.index("to do")]
+    assert not [name for name in NAMES_OF_NUMBERS if name in shown]
+    assert not re.search(r"\de[+-]?\d", shown)
+    step = OneStep(effect, -50.0, {name: x for name, x in numbers.items() if name != "turn_slip"}, 0.4)
+    assert not [name for name in NAMES_OF_NUMBERS if name in wording.best_effect(BestEffect(step, (), 40))]
+
+
+def test_numbers_are_rounded_to_their_uncertainty(camber):
+    drift = replace(
+        camber.effects[0], effect=BY_ID["drift"], parameters={"k_t_per_s": (-3.671525e-06, 1.3e-07)}, before={"k_t_per_s": 0.0}
+    )  # fmt: skip
+    said = text.diagnosis_summary(replace(camber, effects=(drift,)))
+    assert "drift over the test = -1.322 +- 0.047 % per hour, was 0" in said
+    gain = replace(
+        camber.effects[0], effect=BY_ID["loadcell-gain"], parameters={"gain": (1.041283, 0.00077)}, before={"gain": 1.0}
+    )  # fmt: skip
+    assert wording.remedy(gain, camber.signs).endswith("divide its readings by 1.04128")
+    step = OneStep(BY_ID["load-camber"], -50.0, {"load_camber": (-0.03204, 0.0011)}, 0.4)
+    assert "changes with camber (-3.20 +- 0.11 %) would explain 40 %" in wording.best_effect(
+        BestEffect(step, (), 40)
+    )
 
 
 def test_every_need_has_words_and_a_test_of_the_points():

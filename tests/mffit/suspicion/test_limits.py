@@ -45,6 +45,7 @@ def changed(values: np.ndarray, rows: list[int], to: float) -> np.ndarray:
 SOUND = tyre()
 FEW = SOUND.select(np.arange(3))
 FORCE = SOUND.Fy
+CAMBER = np.radians([-8.0, -7.0, -6.0, 0.0, 6.0, 7.0, 8.0])
 LOADS = np.full(7, 1500.0)
 SINGLE_FILES = [
     ("angle-in-radians", tyre(Fy=-1500.0 * 125.0 * ALPHA), tyre(Fy=-1500.0 * 115.0 * ALPHA)),
@@ -54,6 +55,11 @@ SINGLE_FILES = [
     ("dead-channel", tyre(alpha=ALPHA[:4], Mz=3.7), tyre(alpha=ALPHA[:3], Mz=3.7)),
     ("force-and-moment-exchanged", tyre(Fy=0.03 * FORCE, Mz=FORCE), tyre(Fy=FORCE, Mz=0.03 * FORCE)),
     ("force-and-moment-exchanged", tyre(Fy=0.0, Mz=228.0 * np.sign(ALPHA)), tyre(Fy=0.0, Mz=222.0 * np.sign(ALPHA))),
+    (
+        "force-and-moment-exchanged",
+        tyre(0.0, CAMBER, Fy=60.0 * np.sin(CAMBER), Mz=1200.0 * np.sin(CAMBER)),
+        tyre(0.0, CAMBER, Fy=1.2 * np.sin(CAMBER), Mz=300.0 * np.sin(CAMBER)),
+    ),
     ("force-in-kilonewtons", tyre(Fy=28.0 * np.sign(ALPHA)), tyre(Fy=32.0 * np.sign(ALPHA))),
     ("force-in-kilonewtons", tyre(alpha=ALPHA[:3], Fy=28.0).select([0, 1, 0]), tyre(alpha=ALPHA[:3], Fy=28.0)),
     ("force-in-kilonewtons", tyre(alpha=[DEG * 2.1] * 3, Fy=28.0), tyre(alpha=[DEG * 1.9] * 3, Fy=28.0)),
