@@ -92,9 +92,10 @@ SCATTER_STEPS = Series(
     "Typical changes of log scale, growth, artanh of the memory, smooth amplitude, offsets of runs, independent share.",
 )
 RUN_OFFSET_LOG_ODDS = Real(
-    3.5,
+    2.5,
     "-",
-    "Log odds against a memory of the errors that offsets of runs need: they are one of some 35 effects.",
+    "Log odds against a memory of the errors that offsets of runs need: one programme in thirteen is taken to have them.",
+    "diagnosis_study.py --correlated, docs/diagnosis.md",
 )
 MEMORY_MODEL_PROBABILITIES = Series(
     (0.4, 0.4, 0.2),

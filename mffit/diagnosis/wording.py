@@ -266,7 +266,10 @@ def scatter(noise: Noise) -> list[str]:
         if part.growth:
             parts.append(f"it grows with the reading, by {100.0 * part.growth:.2g} % of it")
         if part.memory:
-            parts.append(f"neighbouring errors of a sweep are correlated ({part.memory:.2f})")
+            beside = (
+                f", {100.0 * part.independent:.0f} % of their variance is not" if part.independent else ""
+            )
+            parts.append(f"neighbouring errors of a sweep are correlated ({part.memory:.2f}){beside}")
         if math.isfinite(part.tails):
             parts.append("outliers are more frequent than in normal noise and lost their weight")
         out.append("; ".join(parts) + ".")

@@ -65,8 +65,8 @@ def print_hard(options: argparse.Namespace) -> None:
     every: list[Verdict] = []
     if options.doubtful:
         every += judged("doubtful", list(doubtful(options.seed)), options)
-    for memory in MEMORIES if options.correlated else ():
-        every += judged(f"memory {memory:g}", list(correlated(options.seed, memory)), options)
+    for row in MEMORIES if options.correlated else ():
+        every += judged(row, list(correlated(row, options.seed)), options)
     for row in SCATTERS if options.hard else ():
         every += judged(row, list(hard(row, options.seed)), options)
     if options.hard:

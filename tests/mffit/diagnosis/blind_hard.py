@@ -71,8 +71,17 @@ ASKED = {
 """Causes that have a row of their own."""
 USUAL = [name for name in CAUSES if not any(name in causes for causes in ASKED.values())]
 
-MEMORIES = (0.0, 0.6, 0.9, 0.96)
-"""Correlations from one point to the next in the study of correlated errors."""
+
+def _drifting(rng, run, force, u, memory=0.97, again=_correlated):
+    """Errors that drift along a sweep, and independent ones beside them."""
+    return 0.8 * again(rng, run, force, u, memory) + _gauss(rng, run, force, 0.6 * u)
+
+
+MEMORIES = {
+    **{f"memory {m:g}": (m, _correlated, _continued) for m in (0.0, 0.6, 0.9, 0.96)},
+    "drift": (0.97, _drifting, partial(_drifting, again=_continued)),
+}
+"""Rows of the study of correlated errors: correlation to the next point, and errors that begin anew with each sweep, or not."""
 BESIDE_A_MEMORY = (
     ((), "large"),
     ((), "large"),
@@ -107,15 +116,16 @@ def hard(row: str, seed: int, singles: int = 12, empty: int = 6) -> Iterator[Pla
         yield _plan(row, hidden, ("large", "moderate")[k % 2], int(rng.integers(1 << 31)))
 
 
-def correlated(seed: int, memory: float) -> Iterator[Plan]:
+def correlated(row: str, seed: int) -> Iterator[Plan]:
     """Cases whose errors are correlated along each sweep; in the second one without a cause the memory never restarts."""
+    memory, scatter, continued = MEMORIES[row]
     rng = np.random.default_rng((seed, round(100 * memory)))
     drawn = ((str(rng.choice(USUAL)),), "moderate")
     for k, (causes, level) in enumerate((*BESIDE_A_MEMORY, drawn)):
         number = int(rng.integers(1 << 31))
-        name = f"memory {memory:g}-{'+'.join(causes) or 'none'}-{level}-{number}"
-        scatter = _continued if k == 1 else _correlated
-        yield Plan(name, partial(_remembering, name, causes, level, number, partial(scatter, memory=memory)))
+        name = f"{row}-{'+'.join(causes) or 'none'}-{level}-{number}"
+        errors = partial(continued if k == 1 else scatter, memory=memory)
+        yield Plan(name, partial(_remembering, name, causes, level, number, errors))
 
 
 def _remembering(name: str, causes: tuple[str, ...], level: str, seed: int, scatter: Scatter) -> Case:
