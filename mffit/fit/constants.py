@@ -69,7 +69,7 @@ PKY2_START_COUNT = Count(46, "-", "Values of PKY2 in this range: steps of 0.1.")
 SLIP_OF_THE_SLOPE = Real(0.025, "-", "Longitudinal slip up to which Fx is a straight line for the start.")
 PEAK_INSIDE = Real(0.9, "-", "Slip of the largest Fx over the largest slip below which it is a peak.")
 STARTING_CURVATURES = Series((-5.0, 0.8), "-", "Range of PEX1 at the start.")
-SAME_LOAD = Real(0.05, "-", "Range of loads over the nominal one that shows no dependence on load.")
+SAME_LOAD_OF_SWEEPS = Real(0.05, "-", "Range of loads over the nominal one that shows no dependence on load.")
 READABLE_WEIGHTS = Series((0.1, 0.95), "-", "Weights of combined slip from which a slope factor is read.")
 STARTING_SLOPES_OF_WEIGHT = Series((4.0, 30.0), "-", "Range of RBX1 and RBY1 at the start.")
 

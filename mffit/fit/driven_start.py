@@ -102,7 +102,7 @@ def _pure(values: dict[str, float], sweeps: list[Points]) -> dict[str, float]:
 
 def _line(x: np.ndarray, y: np.ndarray, slope: float) -> tuple[float, float]:
     """Value at x = 0 and slope of the line nearest to values that may all have one x; then the slope is kept."""
-    if np.ptp(x) < constants.SAME_LOAD:
+    if np.ptp(x) < constants.SAME_LOAD_OF_SWEEPS:
         return float(np.median(y - slope * x)), slope
     slope, value = np.polyfit(x, y, 1)
     return float(value), float(slope)

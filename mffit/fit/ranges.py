@@ -56,7 +56,7 @@ def envelope(ranges: Mapping[str, float]) -> Envelope:
         gamma=ranges["CAMMAX"],
         alpha=ranges["ALPMAX"],
         pressure=(ranges["PRESMIN"], ranges["PRESMAX"]),
-        kappa=max(-ranges.get("KPUMIN", 0.0), ranges.get("KPUMAX", 0.0)),
+        kappa=max(-ranges.get("KPUMIN", 0.0), ranges.get("KPUMAX", 0.0), 0.0) + 0.0,
     )
 
 

@@ -41,7 +41,7 @@ WRONG = [
     ("pcy1 = 1.3", "pcy1", "is not a coefficient of MF 6.2; did you mean PCY1?"),
     ("PEY1 = { maximum = 1 }", "PEY1", 'has the unknown key "maximum"; did you mean "max"?'),
     ('PCY1 = "1.3"', "PCY1", '"1.3" is a text, not a number; remove the quotes'),
-    ("RBX1 = { min = 1.0 }", "RBX1", 'has bounds or a prior, but no fit frees RBX1; write a number or "base"'),
+    ("QSX4 = { min = 1.0 }", "QSX4", 'has bounds or a prior, but no fit frees QSX4; write a number or "base"'),
     ("FNOMIN = 1200.0", "FNOMIN", "is set by nominal_load under [tyre]; write it there"),
     ("FZMAX = 5000.0", "FZMAX", "is a range of the file, which follows from the points; remove it"),
     ("USE_MODE = 124", "USE_MODE", "is decided by the build; remove it"),

@@ -171,7 +171,7 @@ def test_tested_ranges_are_those_of_the_set_points():
     alone = ranges.covered_ranges(points.replace(p=250e3))
     assert (alone["PRESMIN"], alone["PRESMAX"]) == (pytest.approx(225e3), pytest.approx(275e3))
     limits = ranges.envelope(found)
-    assert limits == ((900.0, 2100.0), found["CAMMAX"], found["ALPMAX"], (240e3, 260e3))
+    assert limits == ((900.0, 2100.0), found["CAMMAX"], found["ALPMAX"], (240e3, 260e3), 0.0)
 
 
 TESTED = {
