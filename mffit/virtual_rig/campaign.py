@@ -18,7 +18,7 @@ from mffit.virtual_rig.recording import record
 from mffit.virtual_rig.revolution import written_down
 from mffit.virtual_rig.settings import Settings, settings_of, usual_speed
 from mffit.virtual_rig.tables import point_table, recorded_table
-from mffit.virtual_rig.truth import DirectTruth, Truth, coefficients_of, direct_truth
+from mffit.virtual_rig.truth import DirectTruth, Truth, coefficients_of, direct_truth, driven_truth
 from tir import Tyre
 
 LEADING = ("tyre", "rig", "rolling_radius")
@@ -142,6 +142,7 @@ def truth_of(plan: RigPlan, machine: Machine, faults: Mapping[str, Faults], seed
     """The true values at the loads of the campaign and at the nominal load; ``machine`` is that of the first set-up."""
     nominal = plan.declared.tyre.nominal_load
     loads = sorted({load for sweep in plan.tables.sweep for load in sweep.load_N})
+    driven = plan.reports_slip or bool(plan.tables.noise.added)
     rows = {load: _direct(plan, machine, load) for load in sorted({nominal, *loads})}
     return Truth(
         nominal=rows[nominal],
@@ -153,8 +154,12 @@ def truth_of(plan: RigPlan, machine: Machine, faults: Mapping[str, Faults], seed
             for setup, own in faults.items()
             if len(faults) > 1
         },
-        coefficients=coefficients_of(machine.tyre),
+        coefficients=coefficients_of(machine.tyre, driven=driven),
         seed=seed,
+        driven=tuple(driven_truth(machine.tyre, load, machine.usual_speed) for load in loads)
+        if driven
+        else (),
+        drive=plan.tables.drive.model_dump(),
     )
 
 

@@ -3,15 +3,26 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
-from dataclasses import asdict, dataclass
+from collections.abc import Callable, Mapping
+from dataclasses import asdict, dataclass, field
 from typing import Any
 
+import numpy as np
+
 from mffit.rig_errors import Faults
+from mffit.virtual_rig.radius import loaded_radius
 from tir import Tyre
 from tir.parameters import TABLE
 
 SECTIONS = ("LATERAL_COEFFICIENTS", "ALIGNING_COEFFICIENTS", "TURNSLIP_COEFFICIENTS")
+DRIVEN_SECTIONS = (
+    "VERTICAL",
+    "STRUCTURAL",
+    "LONGITUDINAL_COEFFICIENTS",
+    "OVERTURNING_COEFFICIENTS",
+    "ROLLING_COEFFICIENTS",
+)
+"""Sections with coefficients of the other channels."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,6 +47,20 @@ class DirectTruth:
 
 
 @dataclass(frozen=True, slots=True)
+class DrivenTruth:
+    """True values of the other channels at one load, upright, without sideslip, at nominal pressure and the usual speed."""
+
+    load_N: float
+    K_x_N: float  #: slip stiffness
+    mu_drive: float  #: largest driving force over load
+    mu_brake: float  #: largest braking force over load, positive
+    r_e_m: float
+    R_L_m: float  #: loaded radius
+    sigma_x_m: float  #: relaxation lengths
+    sigma_y_m: float
+
+
+@dataclass(frozen=True, slots=True)
 class Truth:
     """The true values behind the data of a campaign."""
 
@@ -44,14 +69,19 @@ class Truth:
     faults: Faults  #: in the first set-up
     faults_of_sweeps: dict[str, dict[str, float]]  #: errors that single sweeps have in addition, by file
     faults_of_setups: dict[str, dict[str, float]]  #: zeros of every set-up, if there are several
-    coefficients: dict[str, float]  #: of the tyre's side force, aligning moment and turn slip
+    coefficients: dict[
+        str, float
+    ]  #: of the tyre's side force, aligning moment and turn slip; of all channels that were measured
     seed: int
+    driven: tuple[DrivenTruth, ...] = ()  #: per load, if Fx, Mx, a radius or the wheel speed was measured
+    drive: Mapping[str, Any] = field(default_factory=dict)  #: the table [drive], if the rig reports slip
 
     def to_json(self) -> dict[str, Any]:
         """The content of truth.json; the flat-track path radius is null."""
         faults: dict[str, float | None] = dict(self.faults)
         if math.isinf(self.faults["path_radius_m"]):
             faults["path_radius_m"] = None
+        of_drive = {"drive": dict(self.drive), "driven_per_load": [asdict(row) for row in self.driven]}
         return {
             **asdict(self.nominal),
             "pecp1": self.coefficients["PECP1"],
@@ -61,6 +91,7 @@ class Truth:
             "faults_of_setups": self.faults_of_setups,
             "per_load": [asdict(row) for row in self.per_load],
             "coefficients": self.coefficients,
+            **(of_drive if self.driven else {}),
             "seed": self.seed,
         }
 
@@ -109,6 +140,26 @@ def slope(force: Callable[[float], float]) -> float:
     return (force(step) - force(-step)) / (2.0 * step)
 
 
-def coefficients_of(tyre: Tyre) -> dict[str, float]:
-    """The coefficients that disc data can determine, by name."""
-    return {row.name: float(tyre[row.name]) for row in TABLE if row.section in SECTIONS}
+def driven_truth(tyre: Tyre, load: float, speed: float) -> DrivenTruth:
+    """True values of the other channels at one load [N] and speed [m/s]."""
+    pressure = float(tyre["NOMPRES"])
+    state = tyre.state(load, Vx=speed, p=pressure)
+    rolling = tyre(load, Vx=speed, p=pressure)
+    Fx = np.asarray(tyre(load, kappa=np.linspace(-1.0, 1.0, 2001), Vx=speed, p=pressure).Fx)
+    radius = loaded_radius(tyre.values, load, rolling.Fx, rolling.Fy, float(state.omega), pressure)
+    return DrivenTruth(
+        load_N=load,
+        K_x_N=float(state.K_xk),
+        mu_drive=float(Fx.max()) / load,
+        mu_brake=-float(Fx.min()) / load,
+        r_e_m=float(state.Re),
+        R_L_m=float(radius),
+        sigma_x_m=float(state.sigma_x),
+        sigma_y_m=float(state.sigma_y),
+    )
+
+
+def coefficients_of(tyre: Tyre, *, driven: bool = False) -> dict[str, float]:
+    """The coefficients that disc data can determine, by name; those of all channels if more were measured."""
+    sections = (*DRIVEN_SECTIONS, *SECTIONS) if driven else SECTIONS
+    return {row.name: float(tyre[row.name]) for row in TABLE if row.section in sections}
