@@ -79,6 +79,11 @@ LEAST_GAIN_OF_MORE_TERMS = Real(
     "Share of the misfit of left-out sweeps that terms of Mx beyond QSX1-3 must remove: programs differ in their form.",
 )
 
+# Radii
+LARGEST_CAMBER_OF_RADII = Real(
+    6.0, "deg", "Camber up to which loaded and rolling radius change with its square."
+)
+
 # Physical limits
 LIMIT_MARGIN = Real(0.02, "-", "Distance kept from a physical limit, in units of its violation.")
 LEAST_FRICTION = Real(0.1, "-", "Physical limit: smallest lateral friction.")

@@ -108,7 +108,8 @@ def test_both_files_and_the_terms_are_where_a_program_looks(warmed):
     assert content["fit"]["temperature"]["T_max_degC"] == WARM
     modelled = {row["id"]: row["modelled"] for row in content["fit"]["modelled"]}
     assert modelled == {
-        "temperature": True, "temperature-camber": True, "hysteresis": False, "lag": False, "warm-up": False, "wear": False, "temperature-slip": False,
+        "temperature": True, "temperature-camber": True, "hysteresis": False, "lag": False, "warm-up": False, "wear": False,
+        "temperature-slip": False,
     }  # fmt: skip
     with pytest.raises(tir.TirError, match="no temperature terms"):
         tir.read(folder / "small.tir").at_temperature(30.0)
