@@ -63,8 +63,8 @@ class _Rolling:
 def vertical_coefficients(values: Mapping[str, Any], points: Points, held: Collection[str] = ()) -> Vertical:
     """Vertical stiffness, free radius and rolling radius of the file that fit the readings, with standard uncertainties.
 
-    The stiffness comes first, from the loaded radius: DREFF, BREFF and FREFF appear only over it. Coefficients ``held``, by hand or
-    because they were measured, stay. What too few loads or pressures show stays too.
+    The stiffness comes first, from the loaded radius: DREFF, BREFF and FREFF appear only over it. Coefficients ``held``, by hand
+    or because they were measured, stay, and so does what too few loads or pressures show.
     """
     rolling = _rolling(points)
     if rolling is None:
