@@ -7,6 +7,8 @@ from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any, NamedTuple
 
+import numpy as np
+
 from mffit.config import axis_signs
 from mffit.config.declared import as_declared
 from mffit.fit import agreement
@@ -71,7 +73,8 @@ def fit(
     settled = {*hand.held, *(name for name, origin in known.origin.items() if origin == "measured")}
     radii = vertical_coefficients(known.values, points, settled)
     known = known.having({name: q.value for name, q in radii.found.items()}, "fitted")
-    turning = None if "PECP1" in hand.held else turning_zeros(known.values, points, measured)
+    rolling = points.select(points.free_rolling) if np.any(points.free_rolling) else points
+    turning = None if "PECP1" in hand.held else turning_zeros(known.values, rolling, measured)
     overturning = overturning_terms(points, known.values, config.tyre.side or "left", hand)
     start = {
         **starting_values(known.values, points, measured, hand.held),

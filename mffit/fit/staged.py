@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 
@@ -131,11 +132,11 @@ def _record(name: str, title: str, parameters: Sequence[str], problem: FitProble
 
 
 def _require_enough_points(points: Points, free: Sequence[str]) -> None:
+    needed = Counter(BY_NAME[name].channel or "Fy" for name in free)
     for channel in CHANNELS:
-        needed = sum(BY_NAME[name].channel == channel for name in free)
         available = int(np.sum(np.isfinite(points.channel(channel))))
-        if needed and available <= needed:
+        if needed[channel] and available <= needed[channel]:
             raise InputError(
-                f"{available} points of {column(channel)} cannot determine the {needed} coefficients that these sweeps "
+                f"{available} points of {column(channel)} cannot determine the {needed[channel]} coefficients that these sweeps "
                 "free: add points (more angles per sweep), or sweeps at fewer loads, cambers and pressures"
             )
