@@ -79,6 +79,11 @@ LEAST_GAIN_OF_MORE_TERMS = Real(
     "Share of the misfit of left-out sweeps that terms of Mx beyond QSX1-3 must remove: programs differ in their form.",
 )
 
+# Radii
+LARGEST_CAMBER_OF_RADII = Real(
+    6.0, "deg", "Camber up to which loaded and rolling radius change with its square."
+)
+
 # Physical limits
 LIMIT_MARGIN = Real(0.02, "-", "Distance kept from a physical limit, in units of its violation.")
 LEAST_FRICTION = Real(0.1, "-", "Physical limit: smallest lateral friction.")
@@ -114,6 +119,9 @@ POINTS_OF_A_STAGE = Count(600, "-", "Most points of a stage or first pass; the p
 STRIDE_DIVISOR = Count(8, "-", "Factor by which the points increase from pass to pass of the polish.")
 RESTART_MISFIT = Real(1.3, "-", "Misfit over stated noise above which alternative starting values are tried.")
 RESTART_GAIN = Real(0.97, "-", "A restart is kept if its sum of squares over the best one is below this.")
+FEWEST_SIDESLIPS_OF_A_SHAPE = Count(
+    5, "-", "Fewest levels of sideslip that show the shape of its curve, where Fx is fitted too."
+)
 STAGE_STEPS = Count(15, "-", "Most least-squares steps of a stage.")
 STAGE_TOLERANCE = Real(1e-3, "-", "Relative gain that ends a stage or an early pass.")
 POLISH_TOLERANCE = Real(1e-6, "-", "Relative gain that ends the joint polish.")

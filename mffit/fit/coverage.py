@@ -42,7 +42,7 @@ class Design:
     slip: bool  #: longitudinal slip was run
     combined: bool  #: longitudinal slip and sideslip together
     both_sides: bool  #: sideslip to both sides
-    measured: frozenset[str]  #: channels that were measured
+    measured: tuple[str, ...]  #: channels with readings
     curved: bool  #: path curvature present
     shifts: bool  #: odd shift terms are separable: flat track, or disc with backward runs, flipped mounts or both sides
     symmetric: bool
@@ -68,7 +68,7 @@ def design(points: Points, side: str) -> Design:
         slip=bool(np.any(driven)),
         combined=bool(np.any(driven & slipping)),
         both_sides=len(np.unique(np.sign(points.alpha[slipping]))) > 1,
-        measured=frozenset(points.measured),
+        measured=points.measured,
         curved=curved,
         shifts=both_ways or not curved,
         symmetric=side == "symmetric",
@@ -112,7 +112,7 @@ def coverage(
 
 
 def _listed(stage: Stage, seen: Design) -> bool:
-    there = seen.measured.issuperset(stage.channels) or not stage.where_measured
+    there = set(seen.measured).issuperset(stage.channels) or not stage.where_measured
     return there and (seen.slip or not stage.where_run)
 
 
@@ -123,7 +123,7 @@ def why_held(name: str, points: Points, side: str) -> str:
 
 def _missing(row: Parameter, seen: Design) -> str:
     """Why these data do not determine the coefficient; empty if they do."""
-    if row.channel != "Fy" and row.channel not in seen.measured:
+    if row.channel not in ("", "Fy", *seen.measured):
         return f"{row.channel} was not measured"
     if row.shift and not seen.shifts:
         return (

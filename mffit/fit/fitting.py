@@ -7,6 +7,8 @@ from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any, NamedTuple
 
+import numpy as np
+
 from mffit.config import axis_signs
 from mffit.config.declared import as_declared
 from mffit.fit import agreement
@@ -29,6 +31,7 @@ from mffit.fit.result import FitResult
 from mffit.fit.rolling import rolling_resistance
 from mffit.fit.start import starting_values
 from mffit.fit.temperature import at_temperature
+from mffit.fit.vertical import Vertical, vertical_coefficients, vertical_sentence
 from mffit.fit.virtual_zero import epsilon_gamma_of_model
 from mffit.fit.with_nuisances import NuisanceFit, fit_with_nuisances
 from mffit.fit.wording import explanations, warnings
@@ -68,7 +71,11 @@ def fit(
     fleet = of_fleet(config)
     hand = hand_of(config, base)
     known = known_before_fit(config, points, measured, base, fleet, hand)
-    turning = None if "PECP1" in hand.held else turning_zeros(known.values, points, measured)
+    settled = {*hand.held, *(name for name, origin in known.origin.items() if origin == "measured")}
+    radii = vertical_coefficients(known.values, points, settled)
+    known = known.having({name: q.value for name, q in radii.found.items()}, "fitted")
+    rolling = points.select(points.free_rolling) if np.any(points.free_rolling) else points
+    turning = None if "PECP1" in hand.held else turning_zeros(known.values, rolling, measured)
     overturning = overturning_terms(points, known.values, config.tyre.side or "left", hand)
     start = {
         **starting_values(known.values, points, measured, hand.held),
@@ -85,10 +92,10 @@ def fit(
 
     progress("deriving the property files")
     use = plain_use(config)
-    after, coefficients, files = _delivered(config, known, points, measured, base, fitted)
+    after, coefficients, files = _delivered(config, known, points, measured, base, fitted, radii)
     temperature = None
     if found.at_temperature:
-        special = _delivered(config, known, points, measured, base, full, only=use)
+        special = _delivered(config, known, points, measured, base, full, radii, only=use)
         own = of_file(special.files, use, special.coefficients)
         temperature = at_temperature(found, points, special.files.by_use[use], own)
 
@@ -110,6 +117,7 @@ def fit(
         explanations=(
             *nuisance_sentences(config.tyre.name, found, temperature, runs, channels),
             *explanations(config, files, after.values, measured, hand),
+            *filter(None, [vertical_sentence(radii)]),
         ),
         warnings=(
             *warnings(full, doubts, outlying, files.untested, plan.cover),
@@ -145,13 +153,14 @@ def _delivered(
     measured: Any,
     base: Tyre | None,
     fitted: Fitted,
+    radii: Vertical,
     only: str | None = None,
 ) -> _Delivered:
     """The files of a fit, for one use ``only`` or for all, and the records of their coefficients."""
     known = known_after_fit(known, fitted.values, fitted.regularised, base)
     rolling = {} if "QSY1" in known.hand.held else rolling_resistance(known.values, points)
     known = known.having({name: QSY1.value for name, QSY1 in rolling.items()}, "fitted")
-    coefficients = coefficient_records(known, fitted, rolling)
+    coefficients = coefficient_records(known, fitted, {**rolling, **radii.found})
     files = make_files(config, known, points, base, dict(measured.by_load("C_gamma")), only=only)
     return _Delivered(known, coefficients, files.annotated(file_comments(files, known.origin, coefficients)))
 

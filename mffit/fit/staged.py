@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 
@@ -16,7 +17,7 @@ from mffit.fit.problem import FitProblem
 from mffit.fit.stages import BY_STAGE, WITH_CAMBER, Stage, StageRecord
 from mffit.fit.start import ALTERNATIVE_STARTS, SHAPES, STARTS_OF_A_STAGE
 from mffit.least_squares import solve
-from mffit.points import Points, main_pressure
+from mffit.points import Points, levels, main_pressure
 from mffit.progress import Progress, silent
 from mffit.quantities import CHANNELS, column
 from mffit.scatter import rms
@@ -52,7 +53,15 @@ def fit_staged(
 def restart_worthwhile(fitted: Fitted, plan: FitPlan) -> bool:
     """Whether the fit ends far above the stated noise, or with the shape of a curve at a bound of the table."""
     far = plan.noise_stated and max(fitted.scale.values()) > constants.RESTART_MISFIT
-    return far or bool((fitted.at_bound - fitted.hand.bounded.keys()) & SHAPES)
+    shapes = (fitted.at_bound - fitted.hand.bounded.keys()) & SHAPES
+    return far or bool(shapes and _shapes_show(fitted.problem.points, plan))
+
+
+def _shapes_show(points: Points, plan: FitPlan) -> bool:
+    """Whether curves over sideslip were swept; sweeps of longitudinal slip alone leave their shape to bounds and priors."""
+    return "Fx" not in plan.channels or (
+        levels.count(points.alpha, levels.SIDESLIP) >= constants.FEWEST_SIDESLIPS_OF_A_SHAPE
+    )
 
 
 def _fit_from(start: Mapping[str, float], problem: FitProblem, plan: FitPlan, progress: Progress) -> Fitted:
@@ -131,11 +140,11 @@ def _record(name: str, title: str, parameters: Sequence[str], problem: FitProble
 
 
 def _require_enough_points(points: Points, free: Sequence[str]) -> None:
+    needed = Counter(BY_NAME[name].channel or "Fy" for name in free)
     for channel in CHANNELS:
-        needed = sum(BY_NAME[name].channel == channel for name in free)
         available = int(np.sum(np.isfinite(points.channel(channel))))
-        if needed and available <= needed:
+        if needed[channel] and available <= needed[channel]:
             raise InputError(
-                f"{available} points of {column(channel)} cannot determine the {needed} coefficients that these sweeps "
+                f"{available} points of {column(channel)} cannot determine the {needed[channel]} coefficients that these sweeps "
                 "free: add points (more angles per sweep), or sweeps at fewer loads, cambers and pressures"
             )

@@ -1,0 +1,189 @@
+"""Vertical stiffness and effective rolling radius, from the measured loaded radius and wheel speed of a freely rolling wheel."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Collection, Mapping, Sequence
+from dataclasses import dataclass, field
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+
+from mffit.fit import constants
+from mffit.least_squares import FreeNumber, LeastSquaresProblem, Linear, solve
+from mffit.points import Points, levels
+from mffit.rounding import ascii_only, to_uncertainty
+from mffit.suspicion import parts_of_sweeps
+from tir import Quantity
+from tir.derivatives import gradient, plain, traced
+from tir.equations import vertical
+from tir.outputs import outputs_of
+from tir.parameters import BY_NAME
+
+GROWTH = "growth"
+"""Growth of the free radius with pressure, relative to dpi: MF has no term for it, and PFZ1 would take it up."""
+LEAN = "lean"
+"""Change of a radius with the square of camber, relative to the free one: it depends on the contour, and is not written."""
+BOUNDS = {
+    "Q_RE0": (0.9, 1.1),
+    "PFZ1": (-0.5, 2.0),
+    "DREFF": (-1.0, 2.0),
+    "FREFF": (-1.0, 1.0),
+    "BREFF": (0.2, 40.0),
+    GROWTH: (-0.3, 0.3),
+    LEAN: (-10.0, 10.0),
+}
+Radius = Callable[[Any], Any]
+"""Radius [m] of the upright wheel at the conditions, from the values of the file."""
+
+
+@dataclass(frozen=True, slots=True)
+class Vertical:
+    """What loaded radius and wheel speed determine."""
+
+    found: Mapping[str, Quantity] = field(default_factory=dict)
+    growth: float = 0.0  #: of the free radius, relative to dpi
+    rms: Mapping[str, float] = field(default_factory=dict)
+    """By channel, RL and omega, rms misfit of the radius [m]."""
+
+
+@dataclass(frozen=True, slots=True)
+class _Rolling:
+    """Means over the freely rolling parts of sweeps with little camber (n,)."""
+
+    Fz: np.ndarray  #: [N]
+    gamma: np.ndarray  #: [rad]
+    p: np.ndarray  #: [Pa]
+    V: np.ndarray  #: [m/s]
+    loaded: np.ndarray  #: [m]; NaN where it was not measured
+    effective: np.ndarray  #: [m]; the same
+
+
+def vertical_coefficients(values: Mapping[str, Any], points: Points, held: Collection[str] = ()) -> Vertical:
+    """Vertical stiffness, free radius and rolling radius of the file that fit the readings, with standard uncertainties.
+
+    The stiffness comes first, from the loaded radius: DREFF, BREFF and FREFF appear only over it. Coefficients ``held``, by hand
+    or because they were measured, stay, and so does what too few loads or pressures show.
+    """
+    rolling = _rolling(points)
+    if rolling is None:
+        return Vertical()
+    nominal = float(values["NOMPRES"])
+    loads = levels.count(rolling.Fz, levels.LOAD)
+    pressures = levels.count(rolling.p, levels.PRESSURE)
+    dpi = rolling.p / nominal - 1.0
+    known: dict[str, Any] = {**values, GROWTH: 0.0, LEAN: 0.0}
+    found: dict[str, Quantity] = {}
+    rms: dict[str, float] = {}
+    beside = [GROWTH] if pressures > 1 else []
+    lean = [LEAN] if levels.count(np.abs(rolling.gamma), levels.CAMBER) > 1 else []
+    if np.any(np.isfinite(rolling.loaded)) and loads > 1:
+        names = ["VERTICAL_STIFFNESS", "Q_RE0"] + (["Q_FZ2"] if loads > 2 else [])
+        names += ["PFZ1"] if pressures > 1 else []
+        names = [name for name in names if name not in held]
+        known |= {name: 0.0 for name in ("Q_FZ2", "PFZ1") if name in names}
+        known["VERTICAL_STIFFNESS"] = _stiffness(rolling)
+
+        def loaded(p: Any) -> Any:
+            return p.UNLOADED_RADIUS * p.Q_RE0 - vertical.deflection(p, rolling.Fz, dpi)
+
+        here, u, rms["RL"] = _fitted([*names, *beside, *lean], known, rolling, rolling.loaded, dpi, loaded)
+        known |= {**here, LEAN: 0.0}
+        found |= {name: Quantity(here[name], u[name], BY_NAME[name].unit) for name in names}
+        beside = []
+    if np.any(np.isfinite(rolling.effective)) and loads > 1:
+        names = [] if found else ["Q_RE0"]
+        names = [name for name in [*names, "DREFF", "FREFF", "BREFF"][: loads - 1] if name not in held]
+
+        def effective(p: Any) -> Any:
+            return outputs_of(("Re",), p, {"Fz": rolling.Fz, "Vx": rolling.V, "pressure": rolling.p})[0]
+
+        here, u, rms["omega"] = _fitted(
+            [*names, *beside, *lean], known, rolling, rolling.effective, dpi, effective
+        )
+        known |= here
+        found |= {name: Quantity(here[name], u[name], BY_NAME[name].unit) for name in names}
+    return Vertical(found, known[GROWTH], rms)
+
+
+def _rolling(points: Points) -> _Rolling | None:
+    """The parts of sweeps at which the wheel rolls freely straight on; None without radius or wheel speed."""
+    used = points.free_rolling & (points.direction > 0) & (points.phi_t == 0.0)
+    used &= np.abs(points.alpha) < constants.COUPLED_ALPHA.rad
+    used &= np.abs(points.gamma) < constants.LARGEST_CAMBER_OF_RADII.rad
+    turning = np.isfinite(points.omega) & (points.omega > 0.0)
+    used &= np.isfinite(points.RL) | turning
+    if not np.any(used):
+        return None
+    part = points.select(used)
+    effective = (1.0 + part.kappa) * part.V / np.where(turning[used], part.omega, np.nan)
+    group = parts_of_sweeps(part)
+
+    def mean(x: np.ndarray) -> np.ndarray:
+        return np.array([float(np.mean(x[group == k])) for k in np.unique(group)])
+
+    return _Rolling(*map(mean, (part.Fz, part.gamma, part.p, part.V, part.RL, effective)))
+
+
+def _stiffness(rolling: _Rolling) -> float:
+    """Load over loaded radius [N/m], the slope of a line."""
+    known = np.isfinite(rolling.loaded)
+    slope = float(np.polyfit(rolling.Fz[known], rolling.loaded[known], 1)[0])
+    return 1.0 / max(-slope, 1e-7)
+
+
+def _fitted(
+    names: Sequence[str],
+    values: Mapping[str, Any],
+    rolling: _Rolling,
+    measured: np.ndarray,
+    dpi: np.ndarray,
+    radius: Radius,
+) -> tuple[dict[str, float], dict[str, float], float]:
+    """Best values, their standard uncertainties from the misfit, and its rms [m]."""
+    known = np.isfinite(measured)
+    unit = float(np.ptp(measured[known])) or 1e-3
+    stiffness, free_radius = float(values["VERTICAL_STIFFNESS"]), float(values["UNLOADED_RADIUS"])
+    relative = (stiffness * free_radius / float(values["FNOMIN"])) ** 2
+    bounds = {
+        **BOUNDS,
+        "VERTICAL_STIFFNESS": (0.2 * stiffness, 5.0 * stiffness),
+        "Q_FZ2": (-relative, 0.2 * relative),
+    }
+    numbers = [FreeNumber(name, float(values.get(name, 0.0)), *bounds[name]) for name in names]
+
+    def linear(x: np.ndarray) -> Linear:
+        free = traced(dict(zip(names, x.tolist(), strict=True)))
+        every = {**values, **free}
+        found = radius(SimpleNamespace(**every))
+        found = found + free_radius * (every[GROWTH] * dpi + every[LEAN] * rolling.gamma**2)
+        shape = (len(measured), len(names))
+        data = (np.broadcast_to(plain(found), len(measured)) - measured) / unit
+        slope = np.broadcast_to(gradient(found, list(free.values())), shape) / unit
+        return Linear(data[known], slope[known], np.zeros(0), np.zeros((0, len(names))))
+
+    def residual(x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        with np.errstate(invalid="ignore"):
+            return linear(x).data, np.zeros(0)
+
+    end = solve(LeastSquaresProblem(residual, linear), numbers, tolerance=1e-9)
+    freedom = max(int(known.sum()) - len(names), 1)
+    scale = float(end.data @ end.data) / freedom
+    u = np.sqrt(np.diag(end.covariance) * scale).tolist() if names else []
+    return dict(end.values), dict(zip(names, u, strict=True)), unit * math.sqrt(float(np.mean(end.data**2)))
+
+
+def vertical_sentence(found: Vertical) -> str:
+    """What was fitted to loaded radius and wheel speed, with the misfit; empty if nothing was."""
+    if not found.found:
+        return ""
+    sources = {"RL": "loaded radius", "omega": "wheel speed"}
+    misfit = " and ".join(f"{1e3 * rms:.1f} mm ({sources[name]})" for name, rms in found.rms.items())
+    numbers = ", ".join(f"{name} {to_uncertainty(q.value, q.u)}" for name, q in found.found.items())
+    grown = (
+        f" The free radius grows by {1e3 * found.growth:.1f} thousandths over one nominal pressure, which the file cannot say."
+        if found.growth
+        else ""
+    )
+    return ascii_only(f"Fitted to radii of the freely rolling wheel, rms {misfit}: {numbers}.{grown}")

@@ -1,0 +1,83 @@
+"""Vertical stiffness and rolling radius from readings that this file computes with its own formulae."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import tir
+from mffit.fit.vertical import vertical_coefficients, vertical_sentence
+from mffit.points import Points, make_points
+from tir.equations import vertical
+
+R0, FNOMIN, NOMPRES = 0.3, 4000.0, 200e3
+STIFFNESS, Q_FZ2, PFZ1, Q_RE0, GROWTH = 200e3, 40.0, 0.6, 1.01, 0.02
+DREFF, BREFF, FREFF = 0.3, 6.0, 0.1
+VALUES = dict(tir.Tyre.from_values({}).values) | {
+    "UNLOADED_RADIUS": R0, "FNOMIN": FNOMIN, "NOMPRES": NOMPRES, "VERTICAL_STIFFNESS": 90e3, "BREFF": 8.0, "DREFF": 0.25,
+    "FREFF": 0.05,
+}  # fmt: skip
+
+
+def rolling(
+    loads=(1000.0, 2500.0, 4000.0, 6000.0, 8000.0), pressures=(150e3, 200e3, 250e3), noise=2e-5
+) -> Points:
+    """Readings of the upright wheel: the root of a quadratic for the deflection, and the rolling radius over it."""
+    Fz, p = (x.ravel() for x in np.meshgrid(loads, pressures))
+    dpi = p / NOMPRES - 1.0
+    q1 = np.sqrt((STIFFNESS * R0 / FNOMIN) ** 2 - 4.0 * Q_FZ2)
+    share = Fz / FNOMIN / (1.0 + PFZ1 * dpi)
+    x = np.array([np.roots([Q_FZ2, q1, -s]).max() for s in share])
+    free = R0 * (Q_RE0 + GROWTH * dpi)
+    draw = np.random.default_rng(5)
+    scale = FNOMIN / STIFFNESS / (1.0 + PFZ1 * dpi)
+    Re = free - scale * (DREFF * np.arctan(BREFF * Fz / FNOMIN) + FREFF * Fz / FNOMIN)
+    Re = Re + noise * draw.standard_normal(len(Fz))
+    return make_points(
+        0.0, 0.0, Fz, p=p, V=16.0, phi_t=0.0, sweep=np.arange(len(Fz)), sweep_names=[f"run {k}" for k in range(len(Fz))],
+        Fy=0.0, RL=free - R0 * x + noise * draw.standard_normal(len(Fz)), omega=1.01 * 16.0 / Re, kappa=0.01,
+    )  # fmt: skip
+
+
+TRUTH = {
+    "VERTICAL_STIFFNESS": STIFFNESS, "Q_FZ2": Q_FZ2, "PFZ1": PFZ1, "Q_RE0": Q_RE0, "DREFF": DREFF, "BREFF": BREFF,
+    "FREFF": FREFF,
+}  # fmt: skip
+
+
+def test_stiffness_and_radii_are_recovered_with_their_errors():
+    found = vertical_coefficients(VALUES, rolling())
+    assert set(found.found) == set(TRUTH)
+    for name, true in TRUTH.items():
+        value, u, _ = found.found[name]
+        assert abs(value - true) < 4.0 * u, name
+        assert u < 0.1 * abs(true), name
+    assert found.growth == pytest.approx(GROWTH, rel=0.05)
+    assert max(found.rms.values()) < 3e-5
+    assert "grows by" in vertical_sentence(found)
+
+
+def test_what_few_loads_and_pressures_do_not_show_stays():
+    two = vertical_coefficients(VALUES, rolling(loads=(2000.0, 6000.0), pressures=(200e3,)))
+    assert set(two.found) == {"VERTICAL_STIFFNESS", "Q_RE0", "DREFF"}
+    assert two.growth == 0.0
+    assert not vertical_coefficients(VALUES, rolling(loads=(4000.0,))).found
+    assert "Q_RE0" not in vertical_coefficients(VALUES, rolling(), held=("Q_RE0",)).found
+    assert not vertical_coefficients(VALUES, rolling().replace(RL=np.nan, omega=np.nan)).found
+
+
+def test_wheel_speed_alone_gives_the_rolling_radius():
+    known = {**VALUES, "VERTICAL_STIFFNESS": STIFFNESS, "PFZ1": PFZ1}
+    found = vertical_coefficients(known, rolling().replace(RL=np.nan)).found
+    assert found["Q_RE0"].value == pytest.approx(Q_RE0, abs=4.0 * found["Q_RE0"].u)
+    assert found["DREFF"].value == pytest.approx(DREFF, abs=4.0 * found["DREFF"].u)
+
+
+def test_vertical_stiffness_is_the_slope_at_the_nominal_load():
+    p = tir.Tyre.from_values({}).replace(**TRUTH, UNLOADED_RADIUS=R0, FNOMIN=FNOMIN).p
+    x = float(vertical.deflection(p, FNOMIN, 0.0))
+    two = [float(vertical.load_at_deflection(p, x + step, 0.0)) for step in (-1e-6, 1e-6)]
+    assert (two[1] - two[0]) / 2e-6 == pytest.approx(STIFFNESS, rel=1e-6)
+    assert float(vertical.load_at_deflection(p, vertical.deflection(p, 5200.0, 0.2), 0.2)) == pytest.approx(
+        5200.0
+    )
