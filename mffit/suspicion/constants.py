@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from tir.constant import Count, Real
+from tir.constant import Count, Real, Series
 
 # Slopes and forces whose sign and size all tyres share
 SIDESLIP_OF_SLOPES = Real(4.0, "deg", "Sideslip up to which the side force counts as linear.")
@@ -35,6 +35,26 @@ FEWEST_POINTS_OF_MOMENT_POINT = Count(10, "-", "Fewest points that determine thi
 FORCE_RANGE_OF_MOMENT_POINT = Real(0.5, "-", "Smallest range of Fy over load that determines this lever arm.")
 LEVER_OF_OTHER_MOMENT_POINT = Real(
     0.5, "-", "Lever arm over radius above which moments refer to another point."
+)
+
+# Another tyre
+UPRIGHT_FOR_RADIUS = Real(1.0, "deg", "Camber up to which the radii do not change by more than a thousandth.")
+STRAIGHT_FOR_RADIUS = Real(
+    2.0, "deg", "Sideslip up to which the radii do not change by more than a hundredth."
+)
+RADIUS_OF_ANOTHER_TYRE = Real(
+    0.03,
+    "-",
+    "Relative difference of the radii of two files at one condition that means two tyres: a worn tread is 0.01 to 0.02 "
+    "smaller, a warmer tyre 0.005 larger, and a repeated run differs by less.",
+)
+LOADED_OVER_UNLOADED = Series(
+    (0.75, 1.01),
+    "-",
+    "Loaded over unloaded radius: no tyre is larger under load, or deflects by more than its sidewall.",
+)
+ROLLING_OVER_UNLOADED = Series(
+    (0.85, 1.03), "-", "Rolling over unloaded radius; the upper end leaves room for growth with speed."
 )
 
 # Single files
