@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from tir.constant import Count, Real, Series
+from tir.constant import Count, Real
 
 # Slopes and forces whose sign and size all tyres share
 SIDESLIP_OF_SLOPES = Real(4.0, "deg", "Sideslip up to which the side force counts as linear.")
@@ -48,13 +48,13 @@ RADIUS_OF_ANOTHER_TYRE = Real(
     "Relative difference of the radii of two files at one condition that means two tyres: a worn tread is 0.01 to 0.02 "
     "smaller, a warmer tyre 0.005 larger, and a repeated run differs by less.",
 )
-LOADED_OVER_UNLOADED = Series(
-    (0.75, 1.01),
-    "-",
-    "Loaded over unloaded radius: no tyre is larger under load, or deflects by more than its sidewall.",
+SMALLEST_LOADED_RADIUS = Real(
+    0.75, "-", "Loaded over unloaded radius below which a tyre would be flat: the rim is at 0.6 to 0.7."
 )
-ROLLING_OVER_UNLOADED = Series(
-    (0.85, 1.03), "-", "Rolling over unloaded radius; the upper end leaves room for growth with speed."
+LARGEST_LOADED_RADIUS = Real(1.01, "-", "Loaded over unloaded radius; no tyre is larger under load.")
+SMALLEST_ROLLING_RADIUS = Real(0.85, "-", "Rolling over unloaded radius; tyres have 0.93 to 1.")
+LARGEST_ROLLING_RADIUS = Real(
+    1.03, "-", "Rolling over unloaded radius; leaves room for growth with speed and pressure."
 )
 
 # Single files

@@ -31,9 +31,17 @@ def _rolling(points: Points) -> np.ndarray:
 
 
 RADII = (
-    MeasuredRadius("loaded radius", "RL_m", lambda points: points.RL, constants.LOADED_OVER_UNLOADED),
     MeasuredRadius(
-        "rolling radius, speed over rotation,", "omega_radps", _rolling, constants.ROLLING_OVER_UNLOADED
+        "loaded radius",
+        "RL_m",
+        lambda points: points.RL,
+        (constants.SMALLEST_LOADED_RADIUS, constants.LARGEST_LOADED_RADIUS),
+    ),
+    MeasuredRadius(
+        "rolling radius, speed over rotation,",
+        "omega_radps",
+        _rolling,
+        (constants.SMALLEST_ROLLING_RADIUS, constants.LARGEST_ROLLING_RADIUS),
     ),
 )
 
@@ -77,7 +85,12 @@ def two_tyres(points: Points, config: Config) -> Iterator[Finding]:
 @rule(
     id="other-radius",
     subject=Subject.ALL_FILES,
-    limits=(*constants.LOADED_OVER_UNLOADED, *constants.ROLLING_OVER_UNLOADED),
+    limits=(
+        constants.SMALLEST_LOADED_RADIUS,
+        constants.LARGEST_LOADED_RADIUS,
+        constants.SMALLEST_ROLLING_RADIUS,
+        constants.LARGEST_ROLLING_RADIUS,
+    ),
     sentence="the {words} of the readings is {radius:.4g} m, {ratio:.2f} times the unloaded radius of {declared:g} m, which no "
     "tyre has; correct unloaded_radius, or the unit of {column}",
 )
