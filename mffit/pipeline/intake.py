@@ -87,6 +87,8 @@ def _check_recordings(sniffed: Sniffed, nominal_pressure: float | None) -> None:
         )
     if not len(sniffed.points):
         raise InputError(sniffed.reading.warnings[-1], file=first)
+    if sniffed.of_two_tyres:
+        raise InputError(sniffed.reading.warnings[-1])
     if not sniffed.axes:
         raise InputError(
             f"no known axes fit: in ISO signs {' and '.join(sniffed.wrong)}, which no tyre does; write the tyre.toml with "

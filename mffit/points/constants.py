@@ -87,6 +87,17 @@ COLD_TREAD = Real(
     10.0, "K", "First sweeps are dropped if the tread is this much colder than in the middle one."
 )
 FEWEST_WARM_SWEEPS = Count(3, "-", "Fewest sweeps that must remain when cold ones are dropped.")
+COLDER_BEGINNING = Real(
+    3.0,
+    "K",
+    "A recording begins cold if its first sweeps are this much colder than later ones: grip changes by 1 %.",
+)
+COLDER_OVER_SCATTER = Real(
+    4.0,
+    "-",
+    "Standard deviations of the later sweeps' temperature by which the first ones must be colder as well.",
+)
+FEWEST_LATER_SWEEPS = Count(5, "-", "Fewest later sweeps that show the usual temperature and its scatter.")
 WANDERING_LOAD = Real(
     0.5, "-", "Range of the load (5th to 95th percentile) over its median above which it is not held."
 )

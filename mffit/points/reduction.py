@@ -63,12 +63,11 @@ def reduce(sweep: Sweep, phi_t: float, scale: Scale | None = None) -> Reduced:
     for plateau in plateaus:
         used[averaging.sound_rows(plateau, faulty)] = True
     number = dict.fromkeys(plateaus, 1) | dict(zip(swept, counts, strict=True))
+    notes = tuple(remarks.note(sweep, s, labels[s], number.get(s, 0), lags.get(s, UNKNOWN)) for s in tried)
     return Reduced(
         points=concatenate([part for part in (steady, moving) if len(part)] or [steady]),
-        warnings=(*repeated, *remarks.left_out(sweep, wrong, tried)),
-        stretches=tuple(
-            remarks.note(sweep, s, labels[s], number.get(s, 0), lags.get(s, UNKNOWN)) for s in tried
-        ),
+        warnings=(*repeated, *remarks.left_out(sweep, wrong, tried), *remarks.cold_beginning(notes)),
+        stretches=notes,
         lags=tuple(lags.values()),
         left_out=(*repeats, *of_recording(sweep, wrong, tried, used)),
     )

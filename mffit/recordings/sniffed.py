@@ -20,6 +20,7 @@ from mffit.points.steady import gaps
 from mffit.points.stretch import MOVE
 from mffit.recordings.guess import Guess, guesses
 from mffit.suspicion import contradictions, signatures, under_axes
+from mffit.suspicion.other_tyre import two_tyres
 from mffit.sweeps import formats
 from mffit.sweeps.channels import SWEEP_CHANNELS
 from mffit.sweeps.columns import numbers
@@ -66,6 +67,8 @@ class Sniffed:
         str, tuple[Level, ...]
     ]  #: levels of load [N], camber [rad], pressure [Pa], speed [m/s] and, of slip sweeps, sideslip [rad]
 
+    of_two_tyres: bool = False  #: the last warning says so
+
     @property
     def points(self) -> Points:
         """Points under the likeliest axes."""
@@ -99,7 +102,10 @@ def sniff(paths: Sequence[str | Path], *, unloaded_radius: float | None = None) 
     agreeing, wrong = axes_of(reading.points, axes, load_falls=axes == "sae")
     if agreeing and agreeing[0] != axes:
         reading = read(configuration_of(recordings, agreeing[0]), may_be_empty=True)
-    return Sniffed(recordings, agreeing, wrong, reading, conditions_of(recordings, reading))
+    two = next(iter(two_tyres.find(reading.points, config)), None)
+    if two is not None:
+        reading = reading._replace(warnings=(*reading.warnings, two_tyres.said(two.facts)))
+    return Sniffed(recordings, agreeing, wrong, reading, conditions_of(recordings, reading), two is not None)
 
 
 def files_of(path: str | Path) -> list[Path]:

@@ -37,6 +37,26 @@ LEVER_OF_OTHER_MOMENT_POINT = Real(
     0.5, "-", "Lever arm over radius above which moments refer to another point."
 )
 
+# Another tyre
+UPRIGHT_FOR_RADIUS = Real(1.0, "deg", "Camber up to which the radii do not change by more than a thousandth.")
+STRAIGHT_FOR_RADIUS = Real(
+    2.0, "deg", "Sideslip up to which the radii do not change by more than a hundredth."
+)
+RADIUS_OF_ANOTHER_TYRE = Real(
+    0.03,
+    "-",
+    "Relative difference of the radii of two files at one condition that means two tyres: a worn tread is 0.01 to 0.02 "
+    "smaller, a warmer tyre 0.005 larger, and a repeated run differs by less.",
+)
+SMALLEST_LOADED_RADIUS = Real(
+    0.75, "-", "Loaded over unloaded radius below which a tyre would be flat: the rim is at 0.6 to 0.7."
+)
+LARGEST_LOADED_RADIUS = Real(1.01, "-", "Loaded over unloaded radius; no tyre is larger under load.")
+SMALLEST_ROLLING_RADIUS = Real(0.85, "-", "Rolling over unloaded radius; tyres have 0.93 to 1.")
+LARGEST_ROLLING_RADIUS = Real(
+    1.03, "-", "Rolling over unloaded radius; leaves room for growth with speed and pressure."
+)
+
 # Single files
 STEEPEST_OVER_SIDESLIP = Real(
     120.0, "1/rad", "Slope over load that no tyre reaches; radians read as degrees are 57 times as steep."

@@ -8,7 +8,17 @@ readings.
 from __future__ import annotations
 
 from mffit.points.faulty import FAULTS
-from mffit.suspicion import all_files, declarations, misread, others, outliers, single_files, slopes, trust
+from mffit.suspicion import (
+    all_files,
+    declarations,
+    misread,
+    other_tyre,
+    others,
+    outliers,
+    single_files,
+    slopes,
+    trust,
+)
 from mffit.suspicion.rule import Outcome, Rule, Subject, When
 
 SAMPLES = tuple(
@@ -29,6 +39,8 @@ SAMPLES = tuple(
 RULES: tuple[Rule, ...] = (
     *SAMPLES,
     all_files.copied_sweep,
+    other_tyre.two_tyres,
+    other_tyre.other_radius,
     single_files.angle_in_radians,
     single_files.dead_channel,
     single_files.force_and_moment_exchanged,

@@ -132,6 +132,18 @@ def test_slip_against_the_loaded_radius_is_shifted_by_load(configured):
     assert any("declared against free rolling" in warning for warning in kept.warnings)
 
 
+def test_a_recording_that_begins_cold_is_said(configured):
+    """Sweeps of one sideslip are compared; the warmer ones at another are no evidence."""
+    table = drive_recording(sideslips=(0.0, -3.0), cambers=(0.0, 2.0, 4.0, 6.0))
+    rows = np.arange(len(table)) // 700  # samples of a sweep
+    table["TSTC"] += np.where(rows < 12, 0.0, 4.0)
+    said = [w for w in points.read(configured(table)).warnings if "begins cold" in w]
+    assert not said
+    table["TSTC"] -= np.where(rows < 3, 7.0 - rows, 0.0)
+    (sentence,) = [w for w in points.read(configured(table)).warnings if "begins cold" in w]
+    assert "53 to 55 degC in the first 3 sweeps and 60 degC in later sweeps" in sentence
+
+
 def test_slip_against_free_rolling_is_said_and_left_alone(configured):
     found = points.read(configured(drive_recording()))
     (sentence,) = [warning for warning in found.warnings if "SL is against free rolling" in warning]

@@ -1,0 +1,173 @@
+"""Whether all files are of one tyre, and of the one that is declared: by its radii."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Callable, Iterator
+from typing import NamedTuple
+
+import numpy as np
+
+from mffit.config import Config
+from mffit.points import Points, levels
+from mffit.quantities import CONDITIONS
+from mffit.suspicion import constants
+from mffit.suspicion.rule import Finding, Subject, rule
+
+
+class MeasuredRadius(NamedTuple):
+    """A radius that every point of a rolling wheel may give."""
+
+    words: str
+    column: str
+    of: Callable[[Points], np.ndarray]  #: (n,) [m]; NaN where it was not measured
+    limits: tuple[float, float]  #: over the unloaded radius
+
+
+def _rolling(points: Points) -> np.ndarray:
+    """Radius of free rolling (n,) [m]: speed over rotation, without the slip."""
+    turns = np.abs(points.omega)
+    return np.where(turns > 0.0, points.V * (1.0 + points.kappa) / np.where(turns > 0.0, turns, 1.0), np.nan)
+
+
+RADII = (
+    MeasuredRadius(
+        "loaded radius",
+        "RL_m",
+        lambda points: points.RL,
+        (constants.SMALLEST_LOADED_RADIUS, constants.LARGEST_LOADED_RADIUS),
+    ),
+    MeasuredRadius(
+        "rolling radius, speed over rotation,",
+        "omega_radps",
+        _rolling,
+        (constants.SMALLEST_ROLLING_RADIUS, constants.LARGEST_ROLLING_RADIUS),
+    ),
+)
+
+
+@rule(
+    id="two-tyres",
+    subject=Subject.ALL_FILES,
+    limits=(constants.RADIUS_OF_ANOTHER_TYRE,),
+    sentence="{first} and {second} are of two tyres: the {words} at {load}, upright, is {a:.0f} against {b:.0f} mm{forces}; "
+    "make a project of each",
+)
+def two_tyres(points: Points, config: Config) -> Iterator[Finding]:
+    """Radii of two files at one load, pressure and speed, upright and rolling freely; worn or warm tyres differ by less."""
+    upright = points.select(_rolls_upright(points))
+    for radius in RADII:
+        values = radius.of(upright)
+        known = np.isfinite(values)
+        found = upright.select(known)
+        cells = _cells(found, values[known])
+        for one, other in itertools.combinations(sorted({cell[0] for cell in cells}), 2):
+            shared = [key for file, *key in cells if file == one and (other, *key) in cells]
+            pairs = {tuple(key): (cells[one, *key], cells[other, *key]) for key in shared}
+            apart = [abs(a.radius / b.radius - 1.0) for a, b in pairs.values()]
+            if not apart or np.median(apart) <= constants.RADIUS_OF_ANOTHER_TYRE:
+                continue
+            load, *_ = key = max(pairs, key=lambda key: min(cell.points for cell in pairs[key]))
+            a, b = (cell.radius for cell in pairs[key])
+            facts = {
+                "first": points.files[one],
+                "second": points.files[other],
+                "words": radius.words,
+                "load": CONDITIONS["Fz_N"].of(load),
+                "a": 1e3 * a,
+                "b": 1e3 * b,
+                "forces": _forces(points, one, other),
+            }
+            yield Finding(facts, file=config.path)
+            return
+
+
+@rule(
+    id="other-radius",
+    subject=Subject.ALL_FILES,
+    limits=(
+        constants.SMALLEST_LOADED_RADIUS,
+        constants.LARGEST_LOADED_RADIUS,
+        constants.SMALLEST_ROLLING_RADIUS,
+        constants.LARGEST_ROLLING_RADIUS,
+    ),
+    sentence="the {words} of the readings is {radius:.4g} m, {ratio:.2f} times the unloaded radius of {declared:g} m, which no "
+    "tyre has; correct unloaded_radius, or the unit of {column}",
+)
+def other_radius(points: Points, config: Config) -> Iterator[Finding]:
+    """Radii of the wheel that rolls freely and upright over the declared unloaded radius."""
+    upright = points.select(_rolls_upright(points))
+    declared = config.tyre.unloaded_radius
+    for radius in RADII:
+        values = radius.of(upright)
+        values = values[np.isfinite(values)]
+        if not len(values):
+            continue
+        middle = float(np.median(values))
+        least, most = radius.limits
+        if not least <= middle / declared <= most:
+            facts = {
+                "words": radius.words,
+                "radius": middle,
+                "ratio": middle / declared,
+                "declared": declared,
+                "column": radius.column,
+            }
+            key = "tyre.unloaded_radius"
+            yield Finding(facts, file=config.path, line=config.line_of(key), key=key)
+
+
+def _rolls_upright(points: Points) -> np.ndarray:
+    """Mask (n,) of the points at which the radii depend on load, pressure and speed only."""
+    upright = np.abs(points.gamma) <= constants.UPRIGHT_FOR_RADIUS.rad
+    return np.asarray(
+        points.free_rolling & upright & (np.abs(points.alpha) <= constants.STRAIGHT_FOR_RADIUS.rad)
+    )
+
+
+class _Cell(NamedTuple):
+    """Points of one file at one condition."""
+
+    radius: float  #: median [m]
+    points: int
+
+
+def _cells(points: Points, values: np.ndarray) -> dict[tuple[float, ...], _Cell]:
+    """Median of the radii (n,) by file, load [N], pressure [Pa] and speed [m/s] of their levels."""
+    settings = [
+        levels.level_values(getattr(points, name), kind)
+        for name, kind in (("Fz", levels.LOAD), ("p", levels.PRESSURE), ("V", levels.SPEED))
+    ]
+    keys = list(zip(points.file.tolist(), *(x.tolist() for x in settings), strict=True))
+    own: dict[tuple[float, ...], list[float]] = {}
+    for key, value in zip(keys, values.tolist(), strict=True):
+        own.setdefault(key, []).append(value)
+    return {key: _Cell(float(np.median(radii)), len(radii)) for key, radii in own.items()}
+
+
+def _forces(points: Points, one: int, other: int) -> str:
+    """Side force of the second file over that of the first at equal conditions, for a sentence; "" if none are equal."""
+    enough = np.abs(points.alpha) >= constants.SIDESLIP_THAT_SHOWS_FORCE.rad
+    used = points.select(points.free_rolling & enough)
+    kinds = {
+        "alpha": levels.SIDESLIP, "gamma": levels.CAMBER, "Fz": levels.LOAD, "p": levels.PRESSURE,
+    }  # fmt: skip
+    if not (np.any(used.file == one) and np.any(used.file == other)):
+        return ""
+    near = [levels.level_values(getattr(used, name), kind) for name, kind in kinds.items()]
+    keys = np.round(np.column_stack(near), 6)
+    force: dict[int, dict[tuple[float, ...], list[float]]] = {one: {}, other: {}}
+    for file, key, value in zip(
+        used.file.tolist(), map(tuple, keys.tolist()), used.Fy / used.Fz, strict=True
+    ):
+        if file in force:
+            force[file].setdefault(key, []).append(float(value))
+    ratios = [
+        float(np.mean(force[other][key]) / np.mean(force[one][key]))
+        for key in force[one].keys() & force[other].keys()
+        if min(len(force[one][key]), len(force[other][key])) >= constants.FEWEST_POINTS_OF_FRICTION
+    ]
+    if not ratios:
+        return ""
+    low, high = np.percentile(ratios, [10.0, 90.0])
+    return f", and the side force under equal conditions is {low:.2f} to {high:.2f} times as large"
