@@ -121,13 +121,10 @@ def main() -> None:
     ask.add_argument("--jobs", type=int, default=1)
     ask.add_argument("--scatters", type=float, nargs="*", default=list(SCATTERS))
     given = ask.parse_args()
-    jobs = [(seed, scatter) for scatter in given.scatters for seed in range(given.rigs)]
-    found: dict[float, list[dict[str, Scattered]]] = {scatter: [] for scatter in given.scatters}
     with ProcessPoolExecutor(given.jobs) as pool:
-        for scatter, row in pool.map(one, jobs):
-            found[scatter].append(row)
-    for scatter, rows in found.items():
-        print("\n".join(table(scatter, rows)), flush=True)
+        for scatter in given.scatters:
+            rows = [row for _, row in pool.map(one, [(seed, scatter) for seed in range(given.rigs)])]
+            print("\n".join(table(scatter, rows)), flush=True)
 
 
 if __name__ == "__main__":

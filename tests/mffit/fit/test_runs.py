@@ -53,6 +53,11 @@ def scattered(tmp_path_factory):
     return mffit.build(folder / "tyre.toml", folder / "out"), folder / "out", drawn
 
 
+@pytest.fixture(scope="module")
+def alike(tmp_path_factory):
+    return small_rigs.built(campaign(0.0, seed=1), tmp_path_factory.mktemp("alike"))
+
+
 def test_the_numbers_of_the_runs_are_those_that_were_drawn(scattered):
     result, _, drawn = scattered
     assert verdict(result.fit.choice).modelled
@@ -100,8 +105,8 @@ def test_terminal_page_and_json_say_how_large_it_is(scattered):
     assert "run_grip" not in (folder / "small.tir").read_text()
 
 
-def test_runs_that_do_not_differ_get_no_numbers(tmp_path):
-    result = small_rigs.built(campaign(0.0, seed=2), tmp_path)
+def test_runs_that_do_not_differ_get_no_numbers(alike):
+    result = alike
     found = verdict(result.fit.choice)
     assert not found.modelled
     assert found.reason == "left-out halves of sweeps are not predicted clearly better with it"
@@ -109,24 +114,49 @@ def test_runs_that_do_not_differ_get_no_numbers(tmp_path):
     assert not any("@" in name for name in result.fit.rig)
 
 
+def with_keys(result, **keys):
+    """The configuration of a build with other keys of [fit]."""
+    config = configuration.load(result.config)
+    changed = config.model_copy(update={"fit": config.fit.model_copy(update=keys)})
+    changed._path, changed._lines = config.path, config._lines
+    return changed
+
+
+def test_what_the_formula_misses_between_runs_is_no_scatter(alike):
+    """Forces fall with the mean temperature of a run but rise with that within it; the formula has one term for both.
+
+    Numbers of the runs let the term follow the readings within the runs, and then predict other runs far off.
+    """
+    search, rng = alike.fit.search, np.random.default_rng(8)
+    points = search.problem.points
+    of_runs = rng.uniform(-12.0, 12.0, len(points.sweep_names))[points.sweep]
+    within = 4.0 * np.random.default_rng(1).standard_normal(len(points))
+    factor = 1.0 - 0.004 * of_runs + 0.004 * within
+    sound = Simulation.of(small_rigs.truth(), turn_slip=False).readings(points)
+    Fy = sound.Fy * factor + 4.0 * small_rigs.FY * rng.standard_normal(len(points))
+    Mz = sound.Mz * factor + 4.0 * small_rigs.MZ * rng.standard_normal(len(points))
+    changed = points.replace(Fy=Fy, Mz=Mz, T=50.0 + of_runs + within)
+    config = with_keys(alike, temperature=True)
+    found = verdict(choose(config, replace(search, problem=replace(search.problem, points=changed))))
+    assert not found.modelled
+    assert (
+        found.reason == "whole left-out sweeps are predicted worse with it, because the formula misses them"
+    )
+    assert found.beside["Fy"] > 1.3 * found.without["Fy"]
+
+
 @pytest.mark.parametrize(("given", "modelled"), [(True, True), (False, False)])
 def test_the_key_decides(scattered, given, modelled):
-    config = configuration.load(scattered[0].config)
-    changed = config.model_copy(update={"fit": config.fit.model_copy(update={"run_scale": given})})
-    changed._path, changed._lines = config.path, config._lines
-    found = verdict(choose(changed, scattered[0].fit.search))
+    found = verdict(choose(with_keys(scattered[0], run_scale=given), scattered[0].fit.search))
     assert found.modelled == modelled
     assert found.reason == f"[fit] run_scale = {str(given).lower()}"
 
 
 def test_two_runs_cannot_show_a_scatter(scattered):
-    config = configuration.load(scattered[0].config)
-    changed = config.model_copy(update={"fit": config.fit.model_copy(update={"run_scale": True})})
-    changed._path, changed._lines = config.path, config._lines
     search = scattered[0].fit.search
     few = search.problem.select(np.flatnonzero(search.problem.points.sweep < 2))
     with pytest.raises(InputError, match="2 runs cannot differ"):
-        choose(changed, replace(search, problem=few))
+        choose(with_keys(scattered[0], run_scale=True), replace(search, problem=few))
 
 
 def test_a_left_out_piece_is_predicted_as_by_a_fit_without_it():
