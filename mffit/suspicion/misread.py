@@ -5,7 +5,7 @@ It is reversed, in another unit, or labelled with another load, camber or pressu
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from functools import partial
 
@@ -73,7 +73,8 @@ def misread_sweep(
     """Median error of the simulation over the usual size of the channel, with each known mistake undone.
 
     The sweep that is much further off than all others is found if a known mistake explains it. If several sweeps look like
-    that, the model or the rig is at fault. ``signs`` lead from ISO-W to the rig's axes.
+    that, the model or the rig is at fault. A small error is a wrong label only if sound sweeps of the same kind at or around
+    that label show that the model is right there. ``signs`` lead from ISO-W to the rig's axes.
     """
     numbers, counts = np.unique(points.sweep, return_counts=True)
     numbers = numbers[counts >= constants.FEWEST_POINTS_OF_A_MISREAD_SWEEP]
@@ -89,16 +90,18 @@ def misread_sweep(
     usual = {name: float(np.median([o[name] for o in off if name in o] or [np.nan])) for name in channels}
     found = []
     for part, before in zip(parts, off, strict=True):
-        gross = _gross(before, [o for o in off if o is not before], usual)
+        others = [o for o in off if o is not before]
+        gross = _gross(before, others, usual, constants.MISREAD_SHARE)
+        if gross:
+            candidates, least = _candidates(part, points, signs), float(constants.MISREAD_SHARE)
+        else:
+            gross, least = _gross(before, others, usual, 0.0), 0.0
+            rest = [other for other in parts if other is not part]
+            candidates = _confirmed_labels(part, points, signs, rest) if gross else iter(())
         tolerated = {
-            n: max(
-                constants.CORRECTED_OVER_USUAL * usual[n],
-                constants.MISREAD_SHARE,
-                0.0 if n in gross else before[n],
-            )
+            n: max(constants.CORRECTED_OVER_USUAL * usual[n], least, 0.0 if n in gross else before[n])
             for n in before
         }
-        candidates = _candidates(part, points, signs) if gross else ()
         best = explaining(candidates, gross, away, tolerated)
         if best is not None:
             found.append(
@@ -117,16 +120,16 @@ def misread_sweep(
 
 
 def _gross(
-    own: Mapping[str, float], others: list[dict[str, float]], usual: Mapping[str, float]
+    own: Mapping[str, float], others: list[dict[str, float]], usual: Mapping[str, float], least: float
 ) -> dict[str, float]:
-    """Channels of a sweep that are much further off than usual and than any other sweep's."""
+    """Channels of a sweep that are off by ``least`` or more, and much further than usual and than any other sweep's."""
     worst = {name: max((o[name] for o in others if name in o), default=0.0) for name in own}
     return {
         name: error
         for name, error in own.items()
         if error
         > max(
-            constants.MISREAD_SHARE,
+            least,
             constants.MISREAD_OVER_USUAL * usual[name],
             constants.MISREAD_OVER_WORST * worst[name],
         )
@@ -138,6 +141,39 @@ def _candidates(part: Points, points: Points, signs: Mapping[str, float]) -> Ite
     wrong_labels = (_wrong_labels(part, points, signs, *label) for label in LABELS)
     for mistake in (*(m for m in MISTAKES if m.beyond_doubt), *(m for some in wrong_labels for m in some)):
         yield mistake, mistake.undone(part, signs)
+
+
+def _confirmed_labels(
+    part: Points, points: Points, signs: Mapping[str, float], others: Sequence[Points]
+) -> Iterator[tuple[Mistake, Points]]:
+    """Labels of other sweeps for each condition of a sweep at or around which ``others`` confirm the model."""
+    for label in LABELS:
+        channel, _, kind = label
+        here = _held(part, channel)
+        alike = [_held(other, channel) for other in others if _differ_only_in(part, other, channel)]
+        near = kind.tolerance * (here if kind.relative else 1.0)
+        if any(x <= here + near for x in alike) and any(x >= here - near for x in alike):
+            for mistake in _wrong_labels(part, points, signs, *label):
+                yield mistake, mistake.undone(part, signs)
+
+
+def _held(part: Points, channel: str) -> float:
+    """Mean of a condition of a sweep; camber without its sign."""
+    return float(abs(np.mean(getattr(part, channel))))
+
+
+def _differ_only_in(part: Points, other: Points, channel: str) -> bool:
+    """Whether two sweeps are of the same angle, in the same direction and mount, and alike in all labels but one."""
+    if any((np.ptp(getattr(part, a)) > 0.0) != (np.ptp(getattr(other, a)) > 0.0) for a in ("alpha", "gamma")):
+        return False
+    if part.direction[0] != other.direction[0] or part.mount[0] != other.mount[0]:
+        return False
+    return all(
+        abs(_held(part, name) - _held(other, name))
+        <= kind.tolerance * (_held(part, name) if kind.relative else 1.0)
+        for name, _, kind in LABELS
+        if name != channel
+    )
 
 
 def _wrong_labels(
