@@ -71,8 +71,8 @@ LARGEST_NOISE_GROWTH = Real(0.2, "-", "Upper bound of the noise that grows with 
 MEMORY_BOUNDS = Series(
     (-0.2, 0.97),
     "-",
-    "Bounds of the correlation between neighbouring errors. Beyond, misfit of a model would pass as noise; only in the comparison "
-    "with offsets of runs is it free.",
+    "Bounds of the correlation between neighbouring errors. Beyond, misfit of a model would pass as noise; in the comparison "
+    "with offsets of runs it is free.",
 )
 INDEPENDENT_BOUNDS = Series(
     (0.0, 0.95), "-", "Bounds of the share of errors without memory beside those with."
