@@ -69,7 +69,10 @@ SCATTER_PART_GAIN = Real(4.0, "-", "Gain in log likelihood that growth, memory o
 LOG_SCALE_BOUNDS = Series((-7.0, 12.0), "-", "Bounds of the logarithm of the scale; its prior is narrower.")
 LARGEST_NOISE_GROWTH = Real(0.2, "-", "Upper bound of the noise that grows with the reading.")
 MEMORY_BOUNDS = Series(
-    (-0.2, 0.999), "-", "Bounds of the correlation between neighbouring errors; at 0.999 a run has one error."
+    (-0.2, 0.97),
+    "-",
+    "Bounds of the correlation between neighbouring errors. Beyond, misfit of a model would pass as noise; in the comparison "
+    "with offsets of runs it is free.",
 )
 INDEPENDENT_BOUNDS = Series(
     (0.0, 0.95), "-", "Bounds of the share of errors without memory beside those with."

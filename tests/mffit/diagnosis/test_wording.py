@@ -223,12 +223,13 @@ def test_every_need_has_words_and_a_test_of_the_points():
 
 def test_the_noise_is_stated_beside_the_declared_one():
     u = np.repeat([6.0, 0.6], 10)
-    parts = {"Fy": Scatter(2.0, 0.015, 0.9, 2.5), "Mz": Scatter()}
+    parts = {"Fy": Scatter(scale=2.0, growth=0.015, memory=0.9, independent=0.3, tails=2.5), "Mz": Scatter()}
     noise = Noise(u=u * np.repeat([2.0, 1.0], 10), stated=u, chain=np.zeros(20), origin=None, scatter=parts)
     Fy, Mz = wording.scatter(noise)
     assert Fy.startswith(
         "The noise of Fy is 12 N (stated 6 N); it grows with the reading, by 1.5 % of it; neighbouring errors of a sweep"
     )
+    assert "correlated (0.90), 30 % of their variance is not;" in Fy
     assert "lost their weight" in Fy
     assert Mz == "The noise of Mz is 0.6 Nm (stated 0.6 Nm)."
 
