@@ -20,6 +20,7 @@ __all__ = [
     "align",
     "build",
     "compare",
+    "convert",
     "diagnose",
     "plan",
     "show",
@@ -29,7 +30,12 @@ __all__ = [
     "write_fmu",
     "write_tydex",
 ]
-ELSEWHERE = {"show": "mffit.viewer", "write_c": "mffit.export", "write_fmu": "mffit.export"}
+ELSEWHERE = {
+    "show": "mffit.viewer",
+    "write_c": "mffit.export",
+    "write_fmu": "mffit.export",
+    "convert": "mffit.conversion",
+}
 """Public names that are not the pipeline's."""
 
 

@@ -22,6 +22,7 @@ COMMANDS = (
     planning.plan,
     files.check,
     files.show,
+    files.convert,
     exporting.export,
     rigs.simulate,
     projects.sniff,
