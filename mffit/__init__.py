@@ -19,6 +19,7 @@ __all__ = [
     "align",
     "build",
     "compare",
+    "convert",
     "diagnose",
     "plan",
     "show",
@@ -28,7 +29,11 @@ __all__ = [
     "write_fmu",
     "write_tydex",
 ]
-ELSEWHERE = {"write_c": "mffit.export", "write_fmu": "mffit.export"}
+ELSEWHERE = {
+    "write_c": "mffit.export",
+    "write_fmu": "mffit.export",
+    "convert": "mffit.conversion",
+}
 """Public names that are not the pipeline's."""
 
 

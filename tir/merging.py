@@ -12,7 +12,7 @@ from typing import Any
 
 from tir.document import Document, FileLine
 from tir.parameters import SECTIONS, TABLE, Parameter
-from tir.properties import MEASURED, PROVENANCE, interpret, parameter_of, units_of, unquoted
+from tir.properties import ESSENTIAL, MEASURED, PROVENANCE, interpret, parameter_of, units_of, unquoted
 from tir.rendering import comment_text, entry, remark, structured_comments, value_text
 from tir.tyre import Tyre
 from tir.units import factor
@@ -26,11 +26,12 @@ def merged(tyre: Tyre, document: Document) -> Document:
     TirError
         If a changed value is not finite.
     """
-    before, words = interpret(document), units_of(document, [])
     lines: dict[str, FileLine] = {}
     for line in document.entries:
         if parameter_of(line) is not None:
             lines.setdefault(line.key, line)
+    given_on_reading = {name: tyre[name] for name in ESSENTIAL if name not in lines}
+    before, words = interpret(document, given_on_reading), units_of(document, [])
     added = [row for row in TABLE if row.name not in lines and row.name in tyre.present]
     changed = {}
     for row in (row for row in TABLE if row.name in lines):

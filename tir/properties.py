@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import re
+from collections.abc import Mapping
 from functools import cache
 from pathlib import Path
 from types import MappingProxyType
@@ -37,26 +38,31 @@ NUMBER = re.compile(
 )
 """Numbers as files have them, with Fortran's exponents. Python's ``float`` alone would accept 1_5 as 15."""
 STATUS = re.compile(
-    r"^(fitted|measured|tied|default|from base|estimate|covered|regularised|given|held|diagnosed)\b"
+    r"^(fitted|measured|tied|default|from base|estimate|covered|regularised|given|held|diagnosed|converted)\b"
 )
 
 
-def read(path: str | Path) -> Tyre:
+def read(path: str | Path, **lacking: float | str) -> Tyre:
     """The tyre of a ``.tir`` file of MF 6.1 or 6.2.
 
     Units other than SI are converted, and missing keys take the defaults of the table. ``Tyre.problems`` lists everything
     unusual with its line.
+
+    Parameters
+    ----------
+    path : the file
+    lacking : values [SI] of keys that the file lacks, such as ``UNLOADED_RADIUS=0.3``; a key of the file keeps its value
 
     Raises
     ------
     TirError
         If the file is not a property file, is truncated, contains an unreadable number, or has another MF version.
     """
-    return interpret(read_document(path))
+    return interpret(read_document(path), lacking)
 
 
-def interpret(document: Document) -> Tyre:
-    """The tyre that a document describes; raises as :func:`read`."""
+def interpret(document: Document, lacking: Mapping[str, float | str] = MappingProxyType({})) -> Tyre:
+    """The tyre that a document describes, with values of keys that it lacks; raises as :func:`read`."""
     entries = document.entries
     if not entries:
         raise TirError("holds no 'KEY = value' line, so it is not a property file", path=document.path)
@@ -84,10 +90,17 @@ def interpret(document: Document) -> Tyre:
         values[line.key] = value
         if STATUS.match(line.comment):
             status[line.key] = line.comment
+    added = Tyre.from_values(lacking).present - values.keys()
+    for name in lacking:
+        if name in added:
+            values[name], status[name] = lacking[name], "given when the file was read"
+        else:
+            sentence = f"{name} is in the file, {values[name]}: the given {lacking[name]} is not used"
+            problems.append(Problem("warning", sentence, name))
     _refuse_other_versions(values, extra, document)
     _refuse_truncated(values, document)
     problems += _about_a_cut_number(values, document)
-    stated = {line.key for line in entries if parameter_of(line)}
+    stated = {line.key for line in entries if parameter_of(line)} | added
     problems += _about_missing(values, stated) + _about_unknown(extra)
     complete = {row.name: row.default for row in TABLE} | values
     measured, provenance = _structured_comments(document)
@@ -140,7 +153,7 @@ def _value(
     if row.kind == "text" and line.value:
         return unquoted(line.value)
     text = unquoted(line.value)
-    number = _number(text)
+    number = number_of(text)
     if number is not None and math.isfinite(number):
         return number * factor(row.unit, words)
     if not text:
@@ -164,7 +177,8 @@ def _value(
     raise TirError(f"{said}{remedy}", path=document.path, line=line.number, name=line.key)
 
 
-def _number(text: str) -> float | None:
+def number_of(text: str) -> float | None:
+    """The number that a text states, with Fortran's exponents too; None if it is none."""
     if not NUMBER.fullmatch(text):
         return None
     return float(re.sub(r"(?<=[\d.])[dD]", "e", text))
@@ -186,7 +200,7 @@ def _refuse_other_versions(values, extra, document: Document) -> None:
             name = f"FITTYP {version:g}: {OLD_FITTYPS[version]}"
         raise TirError(
             f"is a file of the MF 5.2 generation ({name}); its coefficients have another meaning in MF 6.2, so "
-            "renaming it does not help: fit the tyre's data again, or give an MF 6.1 or 6.2 file",
+            "renaming it does not help: mffit convert makes an MF 6.2 file of it by a fit to its forces",
             path=document.path,
         )
     if version is not None and version not in FITTYPS:
@@ -284,7 +298,7 @@ def _structured_comments(document: Document) -> tuple[dict[str, Quantity], dict[
         found = MEASURED.match(line.text)
         if found:
             name, unit = found.group(1, 4)
-            value, u = (_number(text) for text in found.group(2, 3))
+            value, u = (number_of(text) for text in found.group(2, 3))
             if value is not None and u is not None:
                 measured[name] = Quantity(value, u, unit)
         found = PROVENANCE.match(line.text)

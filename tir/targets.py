@@ -41,6 +41,7 @@ class Target:
     dollar_only: bool = False  #: whether only a dollar sign starts a comment
     refusal: str = ""  #: reason if no file can be written for it
     rules: tuple[TargetRule, ...] = ()
+    verified: str = ""  #: how a profile is known that was made without the program and without its source
 
 
 OF_SIMSCAPE = (
@@ -74,6 +75,36 @@ OF_MBSIM = (
         "it has no QDRP2, so the turn-slip moment differs; set it to 0 before the fit, or expect another Mz on curves",
     ),
 )
+OF_ANSYS = (
+    TargetRule(
+        "USE_MODE",
+        asks_for_turn_slip,
+        "USE_MODE asks for turn slip, for which PROPERTY_FILE_FORMAT has to be 'SWIFT' and the Swift licence be there",
+    ),
+)
+ASSUMED = "no public manual was found that names its keys, so this is the file for MF-Tyre/MF-Swift itself"
+HOSTS: tuple[tuple[str, str, Mapping[str, Any], tuple[TargetRule, ...], str], ...] = (
+    ("carsim", "CarSim and BikeSim", {}, (), ASSUMED),
+    ("simpack", "Simpack", {}, (), ASSUMED),
+    ("vigrade", "VI-CarRealTime and VI-BikeRealTime", {}, (), ASSUMED),
+    (
+        "motionview",
+        "MotionView and MotionSolve",
+        {},
+        (),
+        "its public manual names MF-Tyre/MF-Swift and lets [MODEL] select it; take PROPERTY_FILE_FORMAT and FUNCTION_NAME from "
+        "the sample file of the installation",
+    ),
+    (
+        "ansysmotion",
+        "Ansys Motion",
+        {"PROPERTY_FILE_FORMAT": "MF"},
+        OF_ANSYS,
+        "its public manual lists MF-Tyre and MF-Swift and their PROPERTY_FILE_FORMAT",
+    ),
+    ("asm", "dSPACE ASM", {}, (), ASSUMED),
+)
+"""Programs that have MF-Tyre/MF-Swift built in: name, program, fixed values, rules, and how that is known."""
 TARGETS: dict[str, Target] = {
     target.name: target
     for target in (
@@ -114,6 +145,18 @@ TARGETS: dict[str, Target] = {
             si=True,
             positions=True,
             rules=OF_MBSIM,
+        ),
+        *(
+            Target(
+                name,
+                f"{program} with MF-Tyre/MF-Swift",
+                (62, 61, 60),
+                tuple(key for key in ADAMS if key not in values),
+                values=values,
+                rules=rules,
+                verified=f"{verified}; nothing was run",
+            )
+            for name, program, values, rules, verified in HOSTS
         ),
         Target("mfeval", "MFeval and its relatives", (62, 61, 60), ADAMS, si=True, dollar_only=True),
         *(

@@ -65,7 +65,11 @@ def trace_tuned(
     def warmed(p: dict[str, Any], graph: Graph) -> None:
         if TEMPERATURE in free and reference is not None:
             warmer = graph.symbol(TEMPERATURE, PARAMETER) - reference.value
+            factors: dict[str, Any] = {}
             for name, term in terms.items():
-                p[SCALED_BY[name]] = p[SCALED_BY[name]] * (1.0 + term.value * warmer)
+                power = 2 if name.endswith("K2") else 1
+                factors[SCALED_BY[name]] = factors.get(SCALED_BY[name], 1.0) + term.value * warmer**power
+            for name, factor in factors.items():
+                p[name] = p[name] * factor
 
     return trace(switches, outputs, {key: float(tyre[key]) for key in NUMBERS if key not in free}, warmed)

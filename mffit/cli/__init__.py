@@ -34,6 +34,7 @@ COMMANDS = (
     files.check,
     files.show,
     opening.open_window,
+    files.convert,
     exporting.export,
     rigs.simulate,
     projects.sniff,

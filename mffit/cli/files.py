@@ -1,4 +1,4 @@
-"""Commands on property files: `mffit check` and `mffit show`."""
+"""Commands on property files: `mffit check`, `mffit show` and `mffit convert`."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from pathlib import Path
 
 import click
 
-from mffit.cli.console import Voice, out_option, voiced
+from mffit.cli.console import NOT_TRUSTED, Voice, out_option, voiced
 
 
 @click.command()
@@ -64,3 +64,29 @@ def show(files: tuple[Path, ...], out: Path | None, open_it: bool, voice: Voice)
     voice.give(lambda: {"written": [str(out)]})
     if open_it:
         click.launch(str(out))
+
+
+@click.command()
+@click.argument("old", type=click.Path(path_type=Path), metavar="OLD.tir")
+@out_option("File to write.", required=True)
+@click.option("--unloaded-radius", type=float, metavar="M", help="UNLOADED_RADIUS [m] if the file lacks it.")
+@voiced
+def convert(old: Path, out: Path, unloaded_radius: float | None, voice: Voice) -> None:
+    """Convert a property file of MF 5.2 or PAC2002 to MF 6.2.
+
+    Fits the terms of camber to the forces of the old file, and states the misfit.
+    """
+    from mffit import conversion
+    from mffit.conversion import wording
+    from mffit.report import text
+    from mffit.results import as_json
+
+    given = {} if unloaded_radius is None else {"UNLOADED_RADIUS": unloaded_radius}
+    found = conversion.convert(old, given)
+    conversion.write(found, out)
+    voice.warn(problem.sentence for problem in found.old.problems)
+    voice.say(text.conversion_summary(found))
+    voice.say(f"written to {out}")
+    voice.give(lambda: as_json.conversion(found, out))
+    if wording.reasons(found):
+        raise SystemExit(NOT_TRUSTED)

@@ -7,6 +7,7 @@ from pathlib import Path
 import tir
 from mffit import points
 from mffit.config import Config
+from mffit.conversion import convert, is_old
 from mffit.errors import InputError
 from mffit.output import digest
 from mffit.points.loading import Reading
@@ -27,7 +28,7 @@ def read_points(config: Config, *, continuous: bool = False) -> Reading:
 
 
 def read_base(config: Config) -> Tyre | None:
-    """The base file that the configuration names; None without one."""
+    """The base file that the configuration names, one of MF 5.2 or PAC2002 converted; None without one."""
     if config.tyre.base is None:
         return None
     path = config.folder / config.tyre.base
@@ -37,7 +38,7 @@ def read_base(config: Config) -> Tyre | None:
             file=config.path,
             key="tyre.base",
         )
-    return tir.read(path)
+    return convert(path).tyre if is_old(path) else tir.read(path)
 
 
 def inputs_of(config: Config) -> list[Path]:

@@ -516,3 +516,20 @@ def test_a_condition_names_only_inputs_that_it_depends_on(tyre):
         assert condition.slips or np.all(here == elsewhere), condition.sentence
     (sentence,) = [p.sentence for p in check(tyre.replace(PKY1=12.6)) if "at zero camber" in p.sentence]
     assert "deg camber" not in sentence
+
+
+def test_values_of_missing_keys_can_be_given_on_reading(tmp_path):
+    path = tmp_path / "student.tir"
+    path.write_text(re.sub(r"(?m)^UNLOADED_RADIUS .*\n", "", TEXT))
+    with pytest.raises(tir.TirError, match="lacks UNLOADED_RADIUS"):
+        tir.read(path)
+    tyre = tir.read(path, UNLOADED_RADIUS=0.2998)
+    assert tyre == tir.read(VECTORS / "moto_front.tir")
+    assert tyre.status["UNLOADED_RADIUS"].startswith("given")
+    tyre.write(path)
+    assert tir.read(path)["UNLOADED_RADIUS"] == 0.2998
+    other = tir.read(path, UNLOADED_RADIUS=0.4)
+    assert other["UNLOADED_RADIUS"] == 0.2998
+    assert any("the given 0.4 is not used" in problem.sentence for problem in other.problems)
+    with pytest.raises(tir.TirError, match="no parameter RADIUS"):
+        tir.read(path, RADIUS=0.3)

@@ -225,6 +225,7 @@ def test_the_order_of_sections_is_the_manuals(tyre):
         ("mbsim", {"QDRP2": -0.3, "USE_MODE": 225.0}, "QDRP2", "no QDRP2"),
         ("simscape", {"USE_MODE": 225.0}, "USE_MODE", "an option of the block"),
         ("simscape", {}, "MC_CONTOUR_A", "square cross-section"),
+        ("ansysmotion", {"USE_MODE": 225.0}, "USE_MODE", "'SWIFT'"),
     ],
 )
 def test_what_a_program_does_with_a_value_is_told(tyre, program, changes, name, said):
@@ -237,3 +238,17 @@ def test_what_a_program_does_with_a_value_is_told(tyre, program, changes, name, 
     assert said in found[name]
     plain = tyre.replace(MC_CONTOUR_A=0.0, MC_CONTOUR_B=0.5)
     assert name not in {p.name for p in check(plain, [program]) if f"for {program}" in p.sentence}
+
+
+def test_a_profile_without_the_program_says_so():
+    """Those that were made from a manual or by analogy say what was verified; the others were read by the program's source."""
+    said = {name: target.verified for name, target in TARGETS.items() if target.verified}
+    assert set(said) == {"carsim", "simpack", "vigrade", "motionview", "ansysmotion", "asm"}
+    assert all(sentence.endswith("nothing was run") for sentence in said.values())
+    page = (Path(__file__).parents[2] / "docs" / "property-files.md").read_text(encoding="utf-8")
+    assert all(f"`{name}`" in page for name in TARGETS)
+
+
+def test_a_file_for_ansys_motion_selects_the_model(tyre):
+    keys = {line.key: line.value for line in parse_document(tyre.text("ansysmotion")).entries}
+    assert keys["PROPERTY_FILE_FORMAT"] == "'MF'"

@@ -2,6 +2,7 @@
 
 from mffit.report.text.build import build_summary
 from mffit.report.text.compare import comparison_table
+from mffit.report.text.convert import conversion_summary
 from mffit.report.text.diagnosis import diagnosis_summary, models_written
 from mffit.report.text.direct import alignment_table, budget_table, spin_summary
 from mffit.report.text.fleet import fleet_summary
@@ -15,6 +16,7 @@ __all__ = [
     "budget_table",
     "build_summary",
     "comparison_table",
+    "conversion_summary",
     "diagnosis_summary",
     "fleet_summary",
     "lacking",

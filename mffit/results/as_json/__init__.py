@@ -1,6 +1,7 @@
 """The JSON of all records, made only here, with the keys that users' scripts rely on."""
 
 from mffit.results.as_json.of_build import build, fit, spin, write_information
+from mffit.results.as_json.of_conversion import conversion
 from mffit.results.as_json.of_diagnosis import diagnosis
 from mffit.results.as_json.of_fleet import fleet, outcome
 from mffit.results.as_json.of_input import alignment, problems, sniffed
@@ -12,6 +13,7 @@ __all__ = [
     "alignment",
     "build",
     "comparison",
+    "conversion",
     "diagnosis",
     "fit",
     "fleet",

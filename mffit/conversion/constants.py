@@ -1,0 +1,45 @@
+"""Numbers of judgement of the conversion: over which conditions the old forces are reproduced."""
+
+from __future__ import annotations
+
+from tir.constant import Count, Real, Series
+
+CONVERTED_LOADS = Series(
+    (0.1, 2.5),
+    "-",
+    "Loads over the nominal one at most, even if the old file allows more: no car tyre carries more.",
+)
+CONVERTED_SIDESLIP = Real(
+    20.0, "deg", "Largest sideslip, even if the old file allows more: well beyond the peak."
+)
+CONVERTED_CAMBER = Real(
+    15.0,
+    "deg",
+    "Largest camber, even if the old file allows more: MF 5.2 is for cars, its camber force is linear in the angle.",
+)
+CONVERTED_SLIP = Real(0.3, "-", "Largest longitudinal slip in the fit: well beyond the peak.")
+SMALL_CAMBER = Real(
+    5.0, "deg", "Camber up to which cars use their tyres; the misfit is stated on both sides of it."
+)
+WEIGHT_OF_LARGE_CAMBER = Real(
+    0.1,
+    "-",
+    "Weight of conditions beyond the small camber: they are kept in sight, but do not cost the others.",
+)
+LOADS_OF_THE_GRID = Count(6, "-", "Loads of the grid: the load terms are parabolas.")
+SIDESLIPS_OF_THE_GRID = Count(21, "-", "Angles of sideslip of the grid, closer together around zero.")
+CAMBERS_OF_THE_GRID = Count(9, "-", "Angles of camber of the grid, closer together around zero.")
+SLIPS_OF_THE_GRID = Series(
+    (0.0, 0.25, 1.0), "-", "Longitudinal slips of the grid to either side, over the largest."
+)
+MISFIT_UNIT_OF_CONVERSION = Real(
+    0.01, "-", "Unit of the residuals over the largest old force: a hundredth, what the aim is stated in."
+)
+STEPS_OF_THE_CONVERSION = Count(60, "-", "Most steps of the search for the new coefficients.")
+END_OF_THE_CONVERSION = Real(1e-5, "-", "Relative decrease of the sum of squares at which the search ends.")
+GOOD_SHARE = Real(
+    0.02, "-", "Misfit over the largest force up to which a converted condition counts as reproduced."
+)
+GOOD_CONDITIONS = Real(
+    0.95, "-", "Share of the conditions at small camber that a good conversion of a moment reproduces."
+)

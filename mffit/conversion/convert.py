@@ -1,0 +1,195 @@
+"""``mffit convert``: a file of MF 5.2 or PAC2002 as one of MF 6.2."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from types import MappingProxyType
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from mffit.brief import Brief
+from mffit.conversion import constants, mf52
+from mffit.conversion.grid import Conditions, Reach, conditions, reach_of
+from mffit.conversion.old_files import OldFile, read_old
+from mffit.conversion.refit import refit
+from mffit.errors import InputError
+from tir import Tyre
+from tir.equations import lateral, normalise, stiffness
+from tir.outputs import outputs_of
+from tir.parameters import BY_NAME
+
+CHANNELS_COMPARED = ("Fx", "Fy", "Mx", "Mz")
+MOMENTS = ("Mx", "Mz")
+MARK = b"! provenance: converted from:"
+"""A line of every converted file."""
+STRUCTURE = ("LONGITUDINAL_STIFFNESS", "LATERAL_STIFFNESS", "PCFX1", "PCFX2", "PCFY1", "PCFY2")
+
+
+class RegionMisfit(NamedTuple):
+    """New minus old force in one channel and region."""
+
+    channel: str
+    small_camber: bool  #: within SMALL_CAMBER, or beyond
+    slipping: bool  #: with longitudinal slip, or without
+    rms: float  #: [N] or [Nm]
+    largest: float  #: [N] or [Nm]
+    greatest_force: float  #: largest old force over all conditions [N] or [Nm]
+    within: float  #: share of the conditions within GOOD_SHARE of the largest force
+
+
+@dataclass(frozen=True, slots=True, repr=False)
+class Conversion(Brief):
+    """A converted file and how near it comes to the old one."""
+
+    tyre: Tyre  #: MF 6.2, every coefficient marked as converted
+    old: OldFile
+    reach: Reach
+    misfit: tuple[RegionMisfit, ...]
+    fitted: tuple[
+        str, ...
+    ]  #: names of the coefficients that were fitted; the others mean the same in both formulae
+
+    @property
+    def poor(self) -> tuple[RegionMisfit, ...]:
+        """Where the aim is missed: forces at small camber off by more than GOOD_SHARE, moments in too many conditions."""
+        return tuple(
+            row
+            for row in self.misfit
+            if row.small_camber
+            and (
+                row.within < constants.GOOD_CONDITIONS
+                if row.channel in MOMENTS
+                else row.largest > constants.GOOD_SHARE * row.greatest_force
+            )
+        )
+
+
+def convert(path: str | Path, given: Mapping[str, float] = MappingProxyType({})) -> Conversion:
+    """The MF 6.2 file that has the forces of an MF 5.2 or PAC2002 file.
+
+    Most coefficients mean the same. Those of camber are fitted to the old side force and aligning moment over the ranges of the
+    file, because MF 6.2 has another camber force, and leaves camber out of the force that acts on the trail.
+
+    Parameters
+    ----------
+    path : the old file
+    given : values [SI] of keys that it lacks
+
+    Returns
+    -------
+    Conversion
+        ``.tyre.write("new.tir")`` writes the file; ``.misfit`` says how near it comes, by channel and region.
+
+    Raises
+    ------
+    TirError
+        If the file is of another version, or cannot be read.
+    """
+    old = read_old(path, given)
+    p = mf52.in_terms_of_62(old.values)
+    reach = reach_of(old.values, old.present)
+    at = conditions(reach)
+    goal = mf52.forces(p, *at)._asdict()
+    start = {name: getattr(p, name) for name in BY_NAME} | _camber_stiffness(p, reach) | _carcass(p, reach)
+    start |= {"FITTYP": 62.0, "USE_MODE": 124.0}
+    found = refit(start, at, goal)
+    values = {**start, **found, **_ranges(old, reach)}
+    tyre = Tyre.from_values(values).annotate(status=_status(old, values, found), provenance=_provenance(old))
+    return Conversion(tyre, old, reach, tuple(_misfits(tyre, at, goal)), tuple(found))
+
+
+def _camber_stiffness(p: Any, reach: Reach) -> dict[str, float]:
+    """PKY6 and PKY7 nearest to the old camber stiffness of the upright wheel over load."""
+    Fz = np.linspace(*reach.Fz, int(constants.LOADS_OF_THE_GRID))
+    q = normalise.inputs(p, Fz, Fz, 0.0, 0.0, 0.0, 0.0, p.INFLPRES, False, False)
+    force = p.PHY3 * stiffness.cornering_stiffness(p, q, 0.0)
+    force = force + lateral.camber_force(p, q, 1.0)
+    scale = p.LKYC or 1.0
+    terms = np.column_stack([Fz, Fz * q.dfz]) * scale
+    PKY6, PKY7 = np.linalg.lstsq(terms, force, rcond=None)[0]
+    return {"PKY6": float(PKY6), "PKY7": float(PKY7)}
+
+
+def _carcass(p: Any, reach: Reach) -> dict[str, float]:
+    """Carcass stiffnesses over load that give the old relaxation lengths; the table's defaults where the file has none."""
+    Fz = np.linspace(*reach.Fz, int(constants.LOADS_OF_THE_GRID))
+    q = normalise.inputs(p, Fz, Fz, 0.0, 0.0, 0.0, 0.0, p.INFLPRES, False, False)
+    slip = stiffness.longitudinal_slip_stiffness(p, q), stiffness.cornering_stiffness(p, q, 0.0)
+    out: dict[str, float] = {}
+    sides = (("LONGITUDINAL_STIFFNESS", "PCFX"), ("LATERAL_STIFFNESS", "PCFY"))
+    for K, sigma, (key, term) in zip(slip, mf52.relaxation_lengths(p, Fz), sides, strict=True):
+        if np.all(sigma > 0.0):
+            terms = np.column_stack([np.ones_like(Fz), q.dfz, q.dfz**2])
+            at_nominal, linear, quadratic = np.linalg.lstsq(terms, np.abs(K) / sigma, rcond=None)[0]
+            if at_nominal > 0.0:
+                out |= {
+                    key: float(at_nominal),
+                    f"{term}1": float(linear / at_nominal),
+                    f"{term}2": float(quadratic / at_nominal),
+                }
+    return out
+
+
+def _ranges(old: OldFile, reach: Reach) -> dict[str, float]:
+    """The ranges of the new file: those of the old one, camber as far as it was fitted."""
+    wide = abs(float(old.values["CAMMAX"])) > reach.gamma or "CAMMAX" not in old.present
+    return {"CAMMIN": -reach.gamma, "CAMMAX": reach.gamma} if wide else {}
+
+
+def _status(old: OldFile, values: Mapping[str, Any], found: Mapping[str, float]) -> dict[str, str]:
+    """The origin of every value as a comment of the file."""
+    out = {}
+    for name in values:
+        if name in found:
+            out[name] = f"converted from {old.kind}: fitted to the old forces"
+        elif name in STRUCTURE and values[name] != old.values[name]:
+            out[name] = f"converted from {old.kind}: by its relaxation lengths"
+        elif name in old.present and values[name] == old.values[name]:
+            out[name] = f"converted from {old.kind}: unchanged"
+        elif name in old.present:
+            out[name] = f"converted from {old.kind}: was {old.values[name]:.6g}"
+        elif BY_NAME[name].section.endswith("_COEFFICIENTS"):
+            out[name] = f"converted: {old.kind} has no such term"
+    return out
+
+
+def _provenance(old: OldFile) -> dict[str, str]:
+    text = f"{old.path.name}, {old.kind}, by a fit of the camber terms; see the table of mffit convert"
+    return {"converted from": text}
+
+
+def _misfits(tyre: Tyre, at: Conditions, goal: Mapping[str, np.ndarray]) -> list[RegionMisfit]:
+    """The misfit of every channel within the small camber and beyond, with and without longitudinal slip."""
+    new = dict(zip(CHANNELS_COMPARED, outputs_of(CHANNELS_COMPARED, tyre.p, at._asdict()), strict=True))
+    small = np.abs(at.gamma) <= constants.SMALL_CAMBER.rad * (1.0 + 1e-9)
+    slipping = at.kappa != 0.0
+    out = []
+    for channel in CHANNELS_COMPARED:
+        most = float(np.max(np.abs(goal[channel])))
+        off = np.broadcast_to(new[channel], at.Fz.shape) - goal[channel]
+        for region in ((True, False), (True, True), (False, False), (False, True)):
+            chosen = (small == region[0]) & (slipping == region[1])
+            if np.any(chosen) and most > 0.0:
+                here = np.abs(off[chosen])
+                within = float(np.mean(here <= float(constants.GOOD_SHARE) * most))
+                rms, largest = float(np.sqrt(np.mean(here**2))), float(np.max(here))
+                out.append(RegionMisfit(channel, *region, rms, largest, most, within))
+    return out
+
+
+def write(found: Conversion, out: str | Path) -> None:
+    """Write the converted file; a file that is not a converted one is left alone.
+
+    Raises
+    ------
+    InputError
+        If the path is the old file, or another file.
+    """
+    out = Path(out)
+    if out.exists() and MARK not in out.read_bytes():
+        raise InputError("exists already and was not made by mffit convert; give another name", file=out)
+    out.parent.mkdir(parents=True, exist_ok=True)
+    found.tyre.write(out)

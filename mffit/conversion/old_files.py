@@ -1,0 +1,153 @@
+"""Old property files, read without loss: their values under the names of MF 6.2 where those mean the same."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from types import MappingProxyType
+from typing import Any
+
+from tir import Problem, TirError
+from tir.document import Document, read_document
+from tir.parameters import BY_NAME
+from tir.properties import OLD_FITTYPS, OLD_FORMATS, number_of, parameter_of, units_of, unquoted
+from tir.units import factor
+
+OWN: Mapping[str, tuple[float, str]] = MappingProxyType(
+    {
+        "PHY3": (0.0, "-"),
+        **dict.fromkeys(("PTX1", "PTX2", "PTX3", "PTY1", "PTY2"), (0.0, "-")),
+        **dict.fromkeys(("LGAX", "LGAY", "LGAZ", "LSGKP", "LSGAL", "LKYG"), (1.0, "-")),
+        **dict.fromkeys(("QPZ1", "QPZ2"), (0.0, "-")),
+        **dict.fromkeys(("IP", "IP_NOM"), (math.nan, "Pa")),
+    }
+)
+"""Keys that only old files have and that the forces need: value of a missing key, and unit."""
+MOTORCYCLE_FITTYPS = (51, 52)
+MOTORCYCLE_FORMATS = {"PAC_MC", "MF-MCTYRE"}
+VERSION = ("FITTYP", "PROPERTY_FILE_FORMAT")
+NEEDED = ("FNOMIN", "UNLOADED_RADIUS")
+OF_62 = {"PKY4": 2.0, "QSY7": 1.0, "QSY8": 0.0}
+"""Values of MF 6.2 by which its formulae are those of MF 5.2; every other coefficient that 5.2 lacks is 0."""
+
+
+@dataclass(frozen=True, slots=True)
+class OldFile:
+    """An old property file in SI, its own keys beside those of MF 6.2."""
+
+    kind: str  #: in words, such as "MF-Tyre 5.2"
+    values: Mapping[str, Any]  #: every parameter of MF 6.2 and of :data:`OWN`
+    present: frozenset[str]
+    problems: tuple[Problem, ...]
+    document: Document  #: the text, byte for byte
+
+    @property
+    def path(self) -> Path:
+        """The file."""
+        return Path(self.document.path)
+
+
+def is_old(path: str | Path) -> bool:
+    """Whether a file states a version that :func:`read_old` reads."""
+    stated = _version(read_document(path))
+    return bool(stated) and stated not in (str(x) for x in (*MOTORCYCLE_FITTYPS, *MOTORCYCLE_FORMATS))
+
+
+def read_old(path: str | Path, given: Mapping[str, float] = MappingProxyType({})) -> OldFile:
+    """An MF 5.2 or PAC2002 file.
+
+    Parameters
+    ----------
+    path : the file
+    given : values [SI] of keys that the file lacks
+
+    Raises
+    ------
+    TirError
+        If the file is of another version, or lacks what every force needs.
+    """
+    document = read_document(path)
+    kind = _kind(document)
+    problems: list[Problem] = []
+    words = units_of(document, problems)
+    values: dict[str, Any] = {}
+    unused: list[str] = []
+    for line in document.entries:
+        if line.section in ("UNITS", "MDI_HEADER") or line.key in VERSION or line.key in values:
+            continue
+        row = parameter_of(line)
+        text = unquoted(line.value)
+        if row is not None and row.kind == "text":
+            values[line.key] = text
+            continue
+        if row is None and line.key not in OWN:
+            unused.append(line.key)
+            continue
+        number = number_of(text)
+        if number is None or not math.isfinite(number):
+            raise TirError(
+                f'{line.key} is "{text}", but a number was expected: give a number',
+                path=document.path,
+                line=line.number,
+                name=line.key,
+            )
+        unit = OWN[line.key][1] if row is None else row.unit
+        values[line.key] = number * factor(unit, words)
+    for name, value in given.items():
+        values.setdefault(name, value)
+    missing = [name for name in NEEDED if name not in values]
+    if missing:
+        raise TirError(
+            f"lacks {' and '.join(missing)}, which every force needs: add it",
+            path=document.path,
+            name=missing[0],
+        )
+    if unused:
+        shown = ", ".join(unused[:6]) + (f" and {len(unused) - 6} more" if len(unused) > 6 else "")
+        problems.append(Problem("warning", f"keys that are not used: {shown}"))
+    present = frozenset(values)
+    defaults = {row.name: _default(row.name) for row in BY_NAME.values()}
+    own = {name: value for name, (value, _) in OWN.items()}
+    return OldFile(kind, MappingProxyType({**defaults, **own, **values}), present, tuple(problems), document)
+
+
+def _default(name: str) -> Any:
+    """Value of a missing key: coefficients 0, except where the formulae of 6.2 need another value to be those of 5.2."""
+    row = BY_NAME[name]
+    if name in OF_62:
+        return OF_62[name]
+    if row.section.endswith("_COEFFICIENTS") and not row.scaling and row.section != "TURNSLIP_COEFFICIENTS":
+        return 0.0
+    return row.default
+
+
+def _version(document: Document) -> str:
+    """The version as FITTYP or PROPERTY_FILE_FORMAT state it, if it is one of the 5.2 generation; else empty."""
+    stated = {
+        line.key: unquoted(line.value).upper() for line in reversed(document.entries) if line.key in VERSION
+    }
+    number = number_of(stated.get("FITTYP", ""))
+    if number is not None:
+        return f"{number:g}" if number in OLD_FITTYPS else ""
+    form = stated.get("PROPERTY_FILE_FORMAT", "")
+    return form if form in OLD_FORMATS | MOTORCYCLE_FORMATS else ""
+
+
+def _kind(document: Document) -> str:
+    version = _version(document)
+    if not version:
+        raise TirError(
+            "states no FITTYP of MF 5.2 (5, 6, 21) and no PROPERTY_FILE_FORMAT of PAC2002: a file of MF 6.1 or 6.2 needs no "
+            "conversion, other formulas cannot be converted",
+            path=document.path,
+        )
+    number = number_of(version)
+    if version in MOTORCYCLE_FORMATS or number in MOTORCYCLE_FITTYPS:
+        raise TirError(
+            "is of MF-MCTyre, the old formula for motorcycles, whose camber force is another one; it cannot be converted: fit "
+            "the tyre's data again",
+            path=document.path,
+        )
+    return OLD_FITTYPS[int(number)] if number is not None else version

@@ -1,0 +1,40 @@
+"""Sentences of a conversion."""
+
+from __future__ import annotations
+
+import math
+
+from mffit.conversion import constants
+from mffit.conversion.convert import Conversion, RegionMisfit
+from mffit.quantities import MODEL
+
+
+def headline(found: Conversion) -> str:
+    """What was made of what, and over which ranges."""
+    reach = found.reach
+    return (
+        f"{found.old.path.name} ({found.old.kind}) as MF 6.2, over {reach.Fz[0]:.0f} to {reach.Fz[1]:.0f} N, sideslip to "
+        f"{math.degrees(reach.alpha):.3g} deg, camber to {math.degrees(reach.gamma):.3g} deg, longitudinal slip to "
+        f"{reach.kappa:g}. "
+        f"{len(found.fitted)} coefficients were fitted to the old forces, those of camber and of the residual torque; all others "
+        "mean the same in both formulae."
+    )
+
+
+def region(row: RegionMisfit) -> str:
+    """A region of the misfit."""
+    side = "to" if row.small_camber else "beyond"
+    return f"camber {side} {constants.SMALL_CAMBER:g} deg{', slipping' if row.slipping else ''}"
+
+
+def reasons(found: Conversion) -> list[str]:
+    """Why the converted file is not to be trusted; empty if its misfit is small."""
+    out = []
+    for row in found.poor:
+        quantity = MODEL[row.channel]
+        out.append(
+            f"{quantity.symbol} at {region(row)} is off by up to {row.largest:.0f} {quantity.unit}, "
+            f"{row.largest / row.greatest_force:.1%} of its largest value; {row.within:.0%} of the conditions are within "
+            f"{constants.GOOD_SHARE:.0%}"
+        )
+    return out

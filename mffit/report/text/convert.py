@@ -1,0 +1,36 @@
+"""A conversion, for the terminal."""
+
+from __future__ import annotations
+
+from mffit.conversion import Conversion, wording
+from mffit.conversion.convert import RegionMisfit
+from mffit.quantities import MODEL
+from mffit.report.text.layout import blocks, paragraphs, table, wrapped
+from mffit.rounding import number
+
+ROUNDING = 1e-9
+"""Misfit over the largest force that is rounding."""
+
+
+def conversion_summary(found: Conversion) -> str:
+    """The text that ``mffit convert`` prints: what was fitted, and the misfit of every channel and region."""
+    head = ("channel", "region", "rms", "largest", "of the largest force", "within 2 %")
+    rows = [
+        (
+            row.channel,
+            wording.region(row),
+            *(_size(x, row) for x in (row.rms, row.largest)),
+            f"{row.largest / row.greatest_force:.1%}",
+            f"{row.within:.1%}",
+        )
+        for row in found.misfit
+    ]
+    return blocks(
+        [wrapped(wording.headline(found)), table(head, rows, left=2), paragraphs(wording.reasons(found))]
+    )
+
+
+def _size(x: float, row: RegionMisfit) -> str:
+    """A misfit with its unit; 0 if it is rounding."""
+    rounded = 0.0 if x < ROUNDING * row.greatest_force else x
+    return f"{number(rounded, digits=2)} {MODEL[row.channel].unit}"

@@ -1,0 +1,172 @@
+"""Old files: their forces against public programs, what the new file reproduces, and what is refused."""
+
+from __future__ import annotations
+
+import json
+import math
+import re
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import tir
+from mffit import config as configuration
+from mffit.cli import main
+from mffit.conversion import convert, is_old, mf52, read_old
+from mffit.errors import InputError
+from mffit.pipeline.inputs import read_base
+
+OLD = Path(__file__).parent / "old_52.tir"
+TEXT = OLD.read_text(encoding="ascii")
+PUBLISHED = {
+    (4000.0, 0.0, 0.0, 0.0): (75.147949, -75.748573, -4.87957),
+    (4000.0, 0.05, 0.0, 0.0): (58.711836, -3009.648739, 57.444211),
+    (2500.0, -0.08, 0.06, 0.0): (16.775558, 2412.840947, -32.953909),
+    (6500.0, 0.12, -0.15, 0.0): (85.474036, -4828.253985, 85.755655),
+    (4000.0, 0.03, 0.08, 0.06): (3574.582955, -2344.553633, 86.133659),
+    (5500.0, -0.1, -0.05, -0.12): (-4717.77445, 4194.091227, -18.164331),
+    (3000.0, 0.02, 0.1, -0.04): (-2071.329384, -1209.079806, -49.207914),
+}
+"""Fx, Fy, Mz of OLD at Fz, alpha, gamma, kappa by three public programs together: the MATLAB functions of MF 5.2 of a lap
+simulation (combined Fx and Fy) and of a course on vehicle dynamics (pure Mz), and the combined Mz of a PAC2002 reader in C++,
+with the sign of the sideslip where that has the sign of the longitudinal slip."""
+
+
+@pytest.fixture(scope="module")
+def converted():
+    return convert(OLD)
+
+
+def test_the_old_forces_are_those_of_public_programs():
+    p = mf52.in_terms_of_62(read_old(OLD).values)
+    found = mf52.forces(p, *np.array([*PUBLISHED]).T)
+    wanted = np.array([*PUBLISHED.values()]).T
+    for name, column in zip(("Fx", "Fy", "Mz"), wanted, strict=True):
+        np.testing.assert_allclose(getattr(found, name), column, rtol=1e-8, atol=2e-6, err_msg=name)
+
+
+def test_the_new_file_has_the_old_forces(converted, tmp_path):
+    """Between the points of the grid too, by the tyre as it is read back: upright exactly, at 5 deg of camber to 2 %."""
+    converted.tyre.write(tmp_path / "new.tir")
+    tyre = tir.read(tmp_path / "new.tir")
+    p = mf52.in_terms_of_62(read_old(OLD).values)
+    rng = np.random.default_rng(4)
+    n = 2000
+    Fz, alpha, kappa = rng.uniform(500, 7900, n), rng.uniform(-0.3, 0.3, n), rng.uniform(-0.25, 0.25, n)
+    for gamma, bound in ((np.zeros(n), 1e-9), (np.radians(rng.uniform(-5.0, 5.0, n)), 0.02)):
+        old, new = mf52.forces(p, Fz, alpha, gamma, kappa), tyre(Fz, alpha, gamma, kappa)
+        for name in ("Fx", "Fy"):
+            most = np.max(np.abs(getattr(old, name)))
+            assert np.max(np.abs(getattr(new, name) - getattr(old, name))) < bound * most, name
+        off = np.abs(new.Mz - old.Mz) / np.max(np.abs(old.Mz))
+        assert np.mean(off < 0.02) > 0.95
+    assert not converted.poor
+
+
+def test_relaxation_lengths_and_radius_are_kept(converted):
+    """By hand at nominal load: sigma_kappa = R0 PTX1, sigma_alpha = R0 PTY1 sin(2 atan(1/PTY2))."""
+    state = converted.tyre.state(4000.0, kappa=0.0)
+    assert state.sigma_x == pytest.approx(0.31 * 2.38, rel=0.02)
+    assert state.sigma_y == pytest.approx(0.31 * 2.1 * math.sin(2.0 * math.atan(0.5)), rel=0.02)
+    deflection = 4000.0 / 2.1e5 * (0.27 * math.atan(8.4) + 0.07)
+    assert state.Re == pytest.approx(0.31 - deflection, rel=1e-9)
+
+
+def test_every_coefficient_says_that_it_was_converted(converted, tmp_path):
+    converted.tyre.write(tmp_path / "new.tir")
+    tyre = tir.read(tmp_path / "new.tir")
+    coefficients = [row.name for row in tir.parameters.TABLE if row.section.endswith("_COEFFICIENTS")]
+    assert all(tyre.status[name].startswith("converted") for name in coefficients if name in tyre.present)
+    assert tyre.status["PKY6"].endswith("fitted to the old forces")
+    assert tyre.status["PCY1"].endswith("unchanged")
+    assert "old_52.tir" in tyre.provenance["converted from"]
+    assert (tyre["CAMMAX"], tyre["FITTYP"], tyre["USE_MODE"]) == (0.18, 62, 124)
+
+
+def test_units_are_those_of_the_file(tmp_path):
+    text = TEXT.replace("'meter'", "'mm'").replace("= 0.31\n", "= 310\n").replace("2.1e+005", "2.1D+002")
+    text = (
+        text.replace("0.205", "205")
+        .replace("0.2032", "203.2")
+        .replace("0.165", "165")
+        .replace("= 16.7\n", "= 16700\n")
+    )
+    text = text.replace("VXLOW                    = 1\n", "VXLOW                    = 1000\n")
+    text = text.replace("VERTICAL_DAMPING         = 50", "VERTICAL_DAMPING = 0.05")
+    (tmp_path / "mm.tir").write_text(text)
+    old, mm = read_old(OLD).values, read_old(tmp_path / "mm.tir").values
+    assert {name: mm[name] for name in mm if mm[name] == mm[name]} == pytest.approx(
+        {name: old[name] for name in old if old[name] == old[name]}
+    )
+
+
+@pytest.mark.parametrize(
+    ("mangled", "said"),
+    [
+        (TEXT.replace("= 6  ", "= 52 "), "old formula for motorcycles"),
+        (TEXT.replace("= 6  ", "= 61 "), "needs no conversion"),
+        (re.sub(r"FITTYP.*\n|PROPERTY_FILE_FORMAT.*\n", "", TEXT), "states no FITTYP of MF 5.2"),
+        (re.sub(r"FNOMIN.*\n", "", TEXT), "lacks FNOMIN"),
+        (TEXT.replace("-0.8\n", "-0,8\n"), 'PEY1 is "-0,8"'),
+    ],
+)
+def test_what_cannot_be_converted_is_refused(tmp_path, mangled, said):
+    (tmp_path / "other.tir").write_text(mangled)
+    with pytest.raises(tir.TirError, match=said):
+        convert(tmp_path / "other.tir")
+
+
+def test_the_command_writes_states_and_overwrites_only_its_own(tmp_path, capsys):
+    lacking = tmp_path / "old.tir"
+    lacking.write_text(re.sub(r"UNLOADED_RADIUS.*\n", "", TEXT))
+    out = tmp_path / "new.tir"
+    main(["convert", str(lacking), "--out", str(out), "--unloaded-radius", "0.31", "--json"])
+    found = json.loads(capsys.readouterr().out)
+    assert (found["kind"], found["trusted"], found["reasons"]) == ("MF-Tyre 5.2", True, [])
+    assert {row["channel"] for row in found["misfit"]} == {"Fx", "Fy", "Mx", "Mz"}
+    assert tir.read(out)["UNLOADED_RADIUS"] == 0.31
+    main(["convert", str(OLD), "--out", str(out)])
+    assert "Mz       camber to 5 deg" in capsys.readouterr().out
+    before = lacking.read_bytes()
+    with pytest.raises(SystemExit):
+        main(["convert", str(OLD), "--out", str(lacking)])
+    assert lacking.read_bytes() == before
+    assert "not made by mffit convert" in capsys.readouterr().err
+
+
+def test_a_conversion_that_is_off_says_so(tmp_path, capsys):
+    """MF 5.2 holds its curvature factors to 1; what 6.2 reads without limits does not."""
+    (tmp_path / "odd.tir").write_text(
+        TEXT.replace("PEX1                     = 0.34", "PEX1                     = 1.6")
+    )
+    with pytest.raises(SystemExit) as end:
+        main(["convert", str(tmp_path / "odd.tir"), "--out", str(tmp_path / "new.tir")])
+    assert end.value.code == 3
+    assert re.search(r"- F_x at camber to 5 deg.* is off by up to", capsys.readouterr().out)
+    assert (tmp_path / "new.tir").is_file()
+
+
+def test_an_old_file_can_be_the_base_of_a_build(tmp_path):
+    (tmp_path / "base.tir").write_text(TEXT)
+    assert is_old(tmp_path / "base.tir")
+    new = tir.Tyre.from_values({})
+    new.write(tmp_path / "new.tir")
+    assert not is_old(tmp_path / "new.tir")
+
+    class Config:
+        folder, path = tmp_path, None
+        tyre = configuration.models.TyreTable.model_construct(base="base.tir")
+
+    base = read_base(Config)
+    assert base == convert(OLD).tyre
+
+
+def test_writing_over_another_file_is_refused(converted, tmp_path):
+    from mffit.conversion import write
+
+    other = tmp_path / "other.tir"
+    other.write_text("mine")
+    with pytest.raises(InputError, match="give another name"):
+        write(converted, other)
+    assert other.read_text() == "mine"
