@@ -45,3 +45,4 @@ ZERO_OF_A_DISC = Real(
 UPRIGHT = Real(1.0, "deg", "Camber up to which a wheel counts as upright here.")
 NEAR_STRAIGHT = Real(3.0, "deg", "Sideslip up to which the side force is nearly straight.")
 FEWEST_FOR_ZERO = Count(5, "-", "Fewest points that show where the side force vanishes.")
+FEWEST_FOR_PATTERN = Count(4, "-", "Fewest recordings that are named by one pattern instead of one by one.")

@@ -6,6 +6,7 @@ import math
 import re
 from collections.abc import Sequence
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 
@@ -18,6 +19,13 @@ BACKWARD = re.compile(
     r"backward|reverse|r(?:ü|ue)ckw(?:ä|ae)rts|(?<![a-z])(?:bwd|rev)(?![a-z])", re.IGNORECASE
 )
 """Words in the name of a file of which the wheel rolled backwards."""
+
+
+class DiscPath(NamedTuple):
+    """The path of a disc."""
+
+    radius: float  #: [m]
+    centre: str  #: side of the disc's centre, "left" or "right", seen rolling forwards
 
 
 def rolls_backward(path: Path) -> bool:
