@@ -10,24 +10,31 @@ from mffit.cli.console import Voice, voiced
 
 
 @click.command("open")
-@click.argument("path", type=click.Path(path_type=Path), metavar="TYRE_TOML|FOLDER|FILE.tir")
+@click.argument(
+    "paths",
+    type=click.Path(path_type=Path),
+    nargs=-1,
+    required=True,
+    metavar="tyre.toml|FOLDER|FILE.tir...",
+)
 @click.option(
     "--port", type=click.IntRange(0, 65535), default=0, help="Port on this machine [default: a free one]."
 )
 @click.option("--no-browser", is_flag=True, help="Only print the address.")
 @voiced
-def open_window(path: Path, port: int, no_browser: bool, voice: Voice) -> None:
+def open_window(paths: tuple[Path, ...], port: int, no_browser: bool, voice: Voice) -> None:
     """Open a project in a local window in the browser.
 
     Shows measured points and curves, adjusts coefficients, leaves points out, and refits; every click is saved in tyre.toml.
-    Ctrl-C ends it. Other machines cannot reach it.
+    A folder of recordings is shown as a table to correct, then becomes a project. Ctrl-C ends it; other machines cannot reach
+    it.
     """
     from mffit import window
 
     def opened(address: str) -> None:
-        voice.say(f"{path}: open at {address}\nCtrl-C ends it")
+        voice.say(f"{paths[0]}: open at {address}\nCtrl-C ends it")
         voice.give(lambda: {"address": address})
         if not no_browser:
             click.launch(address)
 
-    window.open_path(path, port=port, opened=opened)
+    window.open_path(paths, port=port, opened=opened)

@@ -3,10 +3,14 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import click
 
 from mffit.cli.console import Voice, out_option, voiced
+
+if TYPE_CHECKING:
+    from mffit.recordings import DiscPath
 
 
 @click.command()
@@ -42,6 +46,16 @@ def sniff(files: tuple[Path, ...], out: Path | None, voice: Voice) -> None:
 @click.option("--unloaded-radius", type=float, metavar="M", help="With --from: of the tyre, in metres.")
 @click.option("--nominal-load", type=float, metavar="N", help="With --from: FNOMIN, in newtons.")
 @click.option("--nominal-pressure", type=float, metavar="KPA", help="With --from [default: as most was run].")
+@click.option("--disc", is_flag=True, help="With --from: the path was that of a disc.")
+@click.option("--path-radius", type=float, metavar="M", help="With --disc: radius of the path, in metres.")
+@click.option(
+    "--path-centre",
+    type=click.Choice(["left", "right"]),
+    help="With --disc: side of its centre, rolling forwards.",
+)
+@click.option(
+    "--belt", is_flag=True, help="With --from: the path was straight, whatever the recordings look like."
+)
 @click.option("--name", help="With --from: of the output files [default: the first recording's].")
 @voiced
 def init(
@@ -49,6 +63,10 @@ def init(
     recorded: bool,
     sample: str | None,
     name: str | None,
+    disc: bool,
+    path_radius: float | None,
+    path_centre: str | None,
+    belt: bool,
     voice: Voice,
     **tyre: float | None,
 ) -> None:
@@ -67,7 +85,9 @@ def init(
             raise InputError("--from needs recordings before the folder: mffit init --from FILE... DIR")
         with voice.progress() as show:
             show("reading recordings")
-            found, written = pipeline.init_from(files, folder, name=name, **tyre)
+            found, written = pipeline.init_from(
+                files, folder, name=name, disc=_disc(disc, path_radius, path_centre, belt), belt=belt, **tyre
+            )
         voice.say(text.sniff_summary(found))
     elif files:
         raise InputError(
@@ -80,3 +100,19 @@ def init(
     for path in written:
         voice.say(f"written {path}")
     voice.give(lambda: {"written": [str(path) for path in written]})
+
+
+def _disc(disc: bool, radius: float | None, centre: str | None, belt: bool) -> DiscPath | None:
+    """The path of a disc from the options; None without one."""
+    from mffit.errors import InputError
+    from mffit.recordings import DiscPath
+
+    if not disc and radius is None and centre is None:
+        return None
+    if belt:
+        raise InputError("--disc and --belt exclude each other; give one of them")
+    if radius is None or centre is None:
+        raise InputError("a disc needs --path-radius M and --path-centre left|right")
+    if not radius > 0.0:
+        raise InputError(f"{radius:g} m is no radius; correct it", key="--path-radius")
+    return DiscPath(radius, centre)

@@ -8,7 +8,7 @@ from pathlib import Path
 from mffit import config as configuration
 from mffit.errors import InputError
 from mffit.output import must_be_new, new_files
-from mffit.recordings import Sniffed, project_text, sniff
+from mffit.recordings import DiscPath, Sniffed, disc_signs, project_text, sniff
 from mffit.recordings.project_file import slug
 from mffit.recordings.sniffed import STAND_IN, configuration_of
 from mffit.recordings.stretch_table import stretch_table
@@ -26,6 +26,8 @@ def init_from(
     nominal_load: float | None,
     nominal_pressure: float | None = None,
     name: str | None = None,
+    disc: DiscPath | None = None,
+    belt: bool = False,
 ) -> tuple[Sniffed, list[Path]]:
     """Write a project from recordings: ``tyre.toml``, ``stretches.csv`` and a picture of each recording.
 
@@ -37,6 +39,8 @@ def init_from(
     nominal_load : [N]
     nominal_pressure : [kPa]; default the pressure of most samples
     name : name of the output files; default that of the first recording
+    disc : path of the disc
+    belt : whether the path is straight, whatever the recordings look like
 
     Returns
     -------
@@ -46,12 +50,19 @@ def init_from(
     Raises
     ------
     InputError
-        A recording cannot be read, radius, load or pressure is missing or out of range, a file exists already, or no axes fit.
+        A recording cannot be read, radius, load or pressure is missing or out of range, a file exists already, no axes fit, or
+        the recordings look like those of a disc and neither ``disc`` nor ``belt`` is given.
     """
     _check_tyre(name, unloaded_radius, nominal_load, nominal_pressure)
     folder = Path(folder)
     sniffed = sniff(files, unloaded_radius=unloaded_radius)
     _check_recordings(sniffed, nominal_pressure)
+    if disc is None and not belt and (signs := disc_signs(sniffed)):
+        raise InputError(
+            f"the recordings look like those of a disc ({'; '.join(signs)}): give --disc --path-radius M --path-centre "
+            "left|right, or --belt if the path was straight",
+            file=sniffed.recordings[0].path,
+        )
     text = project_text(
         sniffed,
         folder,
@@ -59,6 +70,8 @@ def init_from(
         nominal_load=nominal_load,
         nominal_pressure=nominal_pressure,
         name=name,
+        disc=disc,
+        belt=belt,
     )
     return sniffed, _written(folder, sniffed, text)
 

@@ -1,6 +1,7 @@
 """Content of recordings (columns, units, axes, conditions, stretches), and a project for them."""
 
+from mffit.recordings.disc import DiscPath, disc_signs
 from mffit.recordings.project_file import project_text
 from mffit.recordings.sniffed import Sniffed, sniff
 
-__all__ = ["Sniffed", "project_text", "sniff"]
+__all__ = ["DiscPath", "Sniffed", "disc_signs", "project_text", "sniff"]

@@ -4,14 +4,18 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Collection, Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping, Sequence
+from itertools import takewhile
 from pathlib import Path
 
 import numpy as np
 import tomli_w
 
+from mffit.config.globs import WILD
 from mffit.config.models import Column, TyreTable
 from mffit.points import main_pressure
+from mffit.recordings import constants
+from mffit.recordings.disc import DiscPath, disc_signs, rolls_backward
 from mffit.recordings.guess import Guess
 from mffit.recordings.sniffed import Sniffed, SniffedRecording, holding, points_from
 from mffit.sweeps.formats import stem
@@ -29,6 +33,8 @@ def project_text(
     nominal_load: float | None,
     nominal_pressure: float | None = None,
     name: str | None = None,
+    disc: DiscPath | None = None,
+    belt: bool = False,
 ) -> str:
     """The text of a ``tyre.toml``.
 
@@ -40,6 +46,8 @@ def project_text(
     nominal_load : [N]; None leaves it to the user
     nominal_pressure : [kPa]; None takes the most frequent pressure
     name : of the output files; None takes the name of the first recording
+    disc : path of the disc; None for a belt, or if it is not known
+    belt : whether the path is known to be straight, whatever the recordings look like
     """
     recordings = sniffed.recordings
     shared = _shared_columns(sniffed)
@@ -59,11 +67,11 @@ def project_text(
         ],
         [
             "[rig]",
-            'type = "flat-track"  # a straight path; for a disc, give path_centre and path_radius as well',
+            *_path(sniffed, disc, belt),
             _axes(sniffed),
         ],
         ["[columns]  # of all files", *_comments(of_all), *_columns(shared)],
-        *(_sweep(recording, folder, shared, of_all) for recording in recordings),
+        *_sweeps(recordings, folder, shared, of_all),
     ]
     return "\n\n".join("\n".join(lines) for lines in tables) + "\n"
 
@@ -97,6 +105,60 @@ def _speed(sniffed: Sniffed) -> list[str]:
     return [f"nominal_speed = {speed:.3g}  # m/s, LONGVL: the most frequent speed"]
 
 
+def _path(sniffed: Sniffed, disc: DiscPath | None, belt: bool) -> list[str]:
+    """Belt or disc, as given; else as the recordings look."""
+    if disc is not None:
+        return [
+            'type = "rotating-disk"',
+            f"path_centre = {quoted(disc.centre)}  # of the disc, seen rolling forwards",
+            f"path_radius = {disc.radius:g}  # m",
+        ]
+    signs = [] if belt else disc_signs(sniffed)
+    if not signs:
+        return [
+            'type = "flat-track"  # a straight path; for a disc, give path_centre and path_radius as well'
+        ]
+    return [
+        f'type = "rotating-disk"  # it looks like a disc: {_one_line("; ".join(signs))}',
+        '# path_centre =   # "left" or "right", where the disc\'s centre is, seen rolling forwards: fill this in',
+        _given("path_radius", None, "m"),
+    ]
+
+
+def _sweeps(
+    recordings: Sequence[SniffedRecording],
+    folder: Path,
+    shared: Mapping[str, Guess],
+    remarks_of_all: Collection[str],
+) -> list[list[str]]:
+    """A [[sweep]] for every recording, or one for all if they differ in nothing but their names."""
+    tables = [_sweep(recording, folder, shared, remarks_of_all) for recording in recordings]
+    pattern = _pattern([recording.path for recording in recordings])
+    if pattern is None or any(len(table) > len(("[[sweep]]", "file")) for table in tables):
+        return tables
+    name = relative(recordings[0].path.parent / pattern, folder)
+    return [["[[sweep]]", f"file = {quoted(name)}  # {len(recordings)} files"]]
+
+
+def _pattern(paths: Sequence[Path]) -> str | None:
+    """The pattern that matches these files of their folder and no others; None for few files, or if there is none."""
+    names = {path.name for path in paths}
+    if len(paths) < constants.FEWEST_FOR_PATTERN or len({path.parent for path in paths}) > 1:
+        return None
+    start, end = _shared_start(names), _shared_start({name[::-1] for name in names})[::-1]
+    pattern = f"{start}*{end[-min(len(end), min(map(len, names)) - len(start)) :] if end else ''}"
+    if WILD & set(pattern.replace("*", "", 1)):
+        return None
+    return pattern if {path.name for path in paths[0].parent.glob(pattern)} == names else None
+
+
+def _shared_start(names: Collection[str]) -> str:
+    """The characters with which all names begin."""
+    return "".join(
+        chars[0] for chars in takewhile(lambda chars: len(set(chars)) == 1, zip(*names, strict=False))
+    )
+
+
 def _sweep(
     recording: SniffedRecording, folder: Path, shared: Mapping[str, Guess], remarks_of_all: Collection[str]
 ) -> list[str]:
@@ -105,8 +167,13 @@ def _sweep(
         "[[sweep]]",
         *_comments(remark for remark in recording.remarks if remark not in remarks_of_all),
         f"file = {quoted(relative(recording.path, folder))}",
+        *(['direction = "backward"  # from the name of the file'] if _backward(recording) else []),
         *(["[sweep.columns]", *(_column(guess) for guess in own.values())] if own else []),
     ]
+
+
+def _backward(recording: SniffedRecording) -> bool:
+    return "direction" not in recording.guesses and rolls_backward(recording.path)
 
 
 def _comments(remarks: Iterable[str]) -> list[str]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import json
 from collections.abc import AsyncIterator, Callable
+from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
@@ -15,9 +16,12 @@ from starlette.responses import FileResponse, HTMLResponse, JSONResponse, Respon
 from starlette.routing import Route
 
 from mffit.errors import InputError
+from mffit.results.as_json.values import plain
+from mffit.templates import environment
 from mffit.viewer import project_html
 from mffit.window import constants
 from mffit.window.guard import App, Guard
+from mffit.window.recordings_folder import RecordingsFolder
 from mffit.window.runs import out_of
 from mffit.window.session import Session
 
@@ -32,49 +36,106 @@ REFUSED = 422
 """Status of a change that is not possible; the sentence is in the answer."""
 
 
-def window_app(
-    session: Session, *, token: str, port: int, closing: Callable[[], bool] = lambda: False
-) -> App:
+class Opened:
+    """What a window shows: a project, or a folder of recordings until a project is made of it, or a finished page."""
+
+    def __init__(
+        self, session: Session | None = None, folder: RecordingsFolder | None = None, html: str = ""
+    ) -> None:
+        self._session, self.folder, self.html = session, folder, html
+
+    @property
+    def has_project(self) -> bool:
+        """Whether a project is open."""
+        return self._session is not None
+
+    @property
+    def session(self) -> Session:
+        """The open project.
+
+        Raises
+        ------
+        InputError
+            There is none.
+        """
+        if self._session is None:
+            raise InputError("no project is open in this window")
+        return self._session
+
+    def make(self, choice: dict[str, Any]) -> None:
+        """Make a project of the folder, and open it; as :meth:`RecordingsFolder.make`."""
+        if self.folder is None or self.has_project:
+            raise InputError("no folder of recordings is open in this window")
+        session = Session(self.folder.make(choice))
+        session.run("fit")
+        self._session = session
+
+    def end(self) -> None:
+        """Stop what is under way."""
+        if self._session is not None:
+            self._session.stop()
+
+
+def window_app(opened: Opened, *, token: str, port: int, closing: Callable[[], bool] = lambda: False) -> App:
     """The ASGI application of a window, guarded; ``closing`` says whether the server is about to end."""
 
     async def page(request: Request) -> Response:
-        if not request.url.path.endswith("/"):
+        return HTMLResponse(await run_in_threadpool(_page, opened))
+
+    async def recordings(request: Request) -> Response:
+        if opened.folder is None:
             return Response(status_code=404)
-        return HTMLResponse(await run_in_threadpool(_page, session))
+        return JSONResponse(plain(await run_in_threadpool(opened.folder.table)))
+
+    async def check(request: Request) -> Response:
+        content, folder = await _content(request), opened.folder
+        if folder is None:
+            return Response(status_code=404)
+        return await _answer(lambda: folder.check(content))
+
+    async def make(request: Request) -> Response:
+        content = await _content(request)
+        return await _answer(lambda: opened.make(content))
 
     async def project(request: Request) -> Response:
-        return JSONResponse(session.data)
+        return JSONResponse(opened.session.data)
 
     async def state(request: Request) -> Response:
-        return JSONResponse(await run_in_threadpool(session.state))
+        return JSONResponse(await run_in_threadpool(opened.session.state))
 
     async def events(request: Request) -> Response:
-        return StreamingResponse(_events(session, request, closing), media_type="text/event-stream")
+        return StreamingResponse(_events(opened.session, request, closing), media_type="text/event-stream")
 
     async def edit(request: Request) -> Response:
         content = await _content(request)
         name, seen, arguments = (content.get(key) for key in ("do", "seen", "with"))
         if not isinstance(name, str) or not isinstance(seen, str) or not isinstance(arguments, dict):
             return JSONResponse({"error": "a change needs do, seen and with"}, REFUSED)
-        return await _answer(session, lambda: session.edit(name, seen, arguments))
+        return await _answer(lambda: opened.session.edit(name, seen, arguments), opened)
 
     async def undo(request: Request) -> Response:
-        return await _answer(session, session.undo)
+        return await _answer(lambda: opened.session.undo(), opened)
 
     async def run(request: Request) -> Response:
-        return await _answer(session, lambda: session.run(request.path_params["kind"]))
+        return await _answer(lambda: opened.session.run(request.path_params["kind"]), opened)
 
     async def stop(request: Request) -> Response:
-        return await _answer(session, session.stop)
+        return await _answer(lambda: opened.session.stop(), opened)
 
     async def result(request: Request) -> Response:
-        found = within(out_of(session.file.path), request.path_params["path"])
+        found = within(out_of(opened.session.file.path), request.path_params["path"])
         if found is None:
             return Response(status_code=404)
         return FileResponse(found, headers={"content-security-policy": SANDBOX})
 
+    async def refused(request: Request, error: Exception) -> Response:
+        return JSONResponse({"error": str(error)}, REFUSED)
+
     routes = [
         Route("/{token}/", page),
+        Route("/{token}/recordings", recordings),
+        Route("/{token}/check", check, methods=["POST"]),
+        Route("/{token}/make", make, methods=["POST"]),
         Route("/{token}/project", project),
         Route("/{token}/state", state),
         Route("/{token}/events", events),
@@ -84,7 +145,8 @@ def window_app(
         Route("/{token}/run/{kind}", run, methods=["POST"]),
         Route("/{token}/out/{path:path}", result),
     ]
-    return Guard(Starlette(routes=routes), token=token, port=port)
+    application = Starlette(routes=routes, exception_handlers={InputError: refused})
+    return Guard(application, token=token, port=port)
 
 
 def within(folder: Path, name: str) -> Path | None:
@@ -97,7 +159,16 @@ def within(folder: Path, name: str) -> Path | None:
     return path if inside and path.suffix in SERVED else None
 
 
-def _page(session: Session) -> str:
+def _page(opened: Opened) -> str:
+    if opened.html:
+        return opened.html
+    if not opened.has_project:
+        assert opened.folder is not None
+        css = files("mffit.viewer").joinpath("templates", "show.css").read_text(encoding="utf-8")
+        own = files("mffit.viewer").joinpath("templates", "project.css").read_text(encoding="utf-8")
+        template = environment("mffit.window").get_template("recordings.html.j2")
+        return template.render(name=opened.folder.folder.name, css=css + own)
+    session = opened.session
     data, state = session.data, session.state()
     if data is not None:
         return project_html(data["name"], data, turn_slip=data["turn_slip"], star=data["star"], window=state)
@@ -131,10 +202,14 @@ async def _content(request: Request) -> dict[str, Any]:
     return found if isinstance(found, dict) else {}
 
 
-async def _answer(session: Session, action: Callable[[], None]) -> Response:
-    """The new state after an action, or the sentence why it was refused."""
+async def _answer(action: Callable[[], Any], opened: Opened | None = None) -> Response:
+    """What an action returns, with the new state of the project if it was about one; or the sentence why it was refused."""
+    found: dict[str, Any] = {}
+    status = 200
     try:
-        await run_in_threadpool(action)
+        found = await run_in_threadpool(action) or {}
     except InputError as error:
-        return JSONResponse({"error": str(error), "state": await run_in_threadpool(session.state)}, REFUSED)
-    return JSONResponse({"state": await run_in_threadpool(session.state)})
+        found, status = {"error": str(error)}, REFUSED
+    if opened is not None and opened.has_project:
+        found["state"] = await run_in_threadpool(opened.session.state)
+    return JSONResponse(plain(found), status)

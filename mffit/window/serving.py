@@ -4,67 +4,66 @@ from __future__ import annotations
 
 import contextlib
 import socket
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 
+from mffit import viewer
 from mffit.errors import InputError
 
 ADDRESS = "127.0.0.1"
 
 
-PROJECT = "tyre.toml"
-
-
-def open_path(path: Path, *, port: int = 0, opened: Callable[[str], None]) -> None:
-    """Open a project, or the folder that it is in, until the window is interrupted; see :func:`serve`."""
-    if path.is_dir():
-        path = path / PROJECT
-        if not path.is_file():
-            raise InputError(
-                f"has no {PROJECT}; `mffit init --from FILE... {path.parent}` writes one for recordings",
-                file=path.parent,
-            )
-    serve(path, port=port, opened=opened)
-
-
-def serve(path: str | Path, *, port: int = 0, opened: Callable[[str], None]) -> None:
-    """Serve the window of a project until it is interrupted.
+def open_path(paths: Sequence[Path], *, port: int = 0, opened: Callable[[str], None]) -> None:
+    """Serve a window until it is interrupted.
 
     Parameters
     ----------
-    path : the ``tyre.toml``
+    paths : a ``tyre.toml``, the folder that it is in, a folder of recordings, or property files
     port : on the loopback address; 0 for any that is free
     opened : called with the address, once requests are answered
 
     Raises
     ------
     InputError
-        The extra ``window`` is not installed, the port is in use, or the file cannot be read.
+        The extra ``window`` is not installed, the port is in use, or the files cannot be read.
     """
     try:
         import uvicorn
 
-        from mffit.window.app import window_app
+        from mffit.window.app import Opened, window_app
     except ImportError as error:
         raise InputError(
             f'the window needs {error.name}, which is not installed; run pip install "mffit[window]", or use '
             "`mffit show tyre.toml`, which needs no server"
         ) from None
     from mffit.window.guard import new_token
+    from mffit.window.recordings_folder import PROJECT, RecordingsFolder
     from mffit.window.session import Session
 
-    session, token = Session(Path(path)), new_token()
-    session.file.config()
+    first, token = paths[0], new_token()
+    if all(path.suffix.lower() == ".tir" for path in paths):
+        shown = Opened(html=viewer.show(paths).html)
+    elif len(paths) > 1:
+        raise InputError(
+            "opens one project at a time; give this file alone, or property files only", file=first
+        )
+    elif first.is_dir() and not (first / PROJECT).exists():
+        shown = Opened(folder=RecordingsFolder(first))
+    else:
+        session = Session(first / PROJECT if first.is_dir() else first)
+        session.file.config()
+        shown = Opened(session)
     with _listening(port) as listening:
         port = listening.getsockname()[1]
-        app = window_app(session, token=token, port=port, closing=lambda: server.should_exit)
+        app = window_app(shown, token=token, port=port, closing=lambda: server.should_exit)
         settings = uvicorn.Config(app, log_level="warning", timeout_graceful_shutdown=2, lifespan="off")
         server = uvicorn.Server(settings)
-        session.run("fit")
+        if shown.has_project:
+            shown.session.run("fit")
         opened(f"http://{ADDRESS}:{port}/{token}/")
         with contextlib.suppress(KeyboardInterrupt):  # the usual end
             server.run(sockets=[listening])
-        session.stop()
+        shown.end()
 
 
 def _listening(port: int) -> socket.socket:

@@ -18,7 +18,7 @@ from mffit.window.runs import _work, out_of
 pytest.importorskip("starlette")
 testclient = pytest.importorskip("starlette.testclient", reason="starlette's client needs httpx")
 
-from mffit.window.app import window_app, within  # noqa: E402
+from mffit.window.app import Opened, window_app, within  # noqa: E402
 from mffit.window.session import Session  # noqa: E402
 
 TOKEN, PORT = "a-token-of-the-test", 8123
@@ -36,7 +36,7 @@ def session(tyre_toml: Path, result: Any) -> Session:
 @pytest.fixture
 def client(session: Session) -> Any:
     with testclient.TestClient(
-        window_app(session, token=TOKEN, port=PORT), base_url=HERE, headers={"origin": HERE}
+        window_app(Opened(session), token=TOKEN, port=PORT), base_url=HERE, headers={"origin": HERE}
     ) as found:
         yield found
 
@@ -76,7 +76,7 @@ def test_a_change_needs_an_origin(client, session):
     before = session.file.path.read_bytes()
     for origin in ({"origin": "http://tyres.example"}, {"origin": ""}):
         assert client.post(f"/{TOKEN}/undo", headers=origin).status_code == 403
-    without = testclient.TestClient(window_app(session, token=TOKEN, port=PORT), base_url=HERE)
+    without = testclient.TestClient(window_app(Opened(session), token=TOKEN, port=PORT), base_url=HERE)
     assert without.post(f"/{TOKEN}/undo").status_code == 403
     assert session.file.path.read_bytes() == before
 
@@ -225,7 +225,7 @@ def test_an_unknown_run_is_refused(client):
 
 def test_events_bring_the_state_at_once(session):
     """The stream ends when the server is about to."""
-    app = window_app(session, token=TOKEN, port=PORT, closing=iter([False, True]).__next__)
+    app = window_app(Opened(session), token=TOKEN, port=PORT, closing=iter([False, True]).__next__)
     with testclient.TestClient(app, base_url=HERE) as client:
         text = client.get(f"/{TOKEN}/events").text
     assert re.match(r'data: \{"digest": "', text)
@@ -234,5 +234,5 @@ def test_events_bring_the_state_at_once(session):
 def test_a_folder_without_a_project_is_said(tmp_path):
     from mffit.window import open_path
 
-    with pytest.raises(InputError, match=r"has no tyre\.toml"):
-        open_path(tmp_path, opened=print)
+    with pytest.raises(InputError, match=r"neither a tyre\.toml nor a recording"):
+        open_path([tmp_path], opened=print)

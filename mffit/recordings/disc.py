@@ -1,0 +1,75 @@
+"""Signs that recordings were made on a disc: without them, a curved path would be taken for a straight one."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Sequence
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+
+from mffit.points import Points
+from mffit.recordings import constants
+from mffit.recordings.sniffed import Sniffed
+from mffit.sweeps import formats
+
+BACKWARD = re.compile(
+    r"backward|reverse|r(?:ü|ue)ckw(?:ä|ae)rts|(?<![a-z])(?:bwd|rev)(?![a-z])", re.IGNORECASE
+)
+"""Words in the name of a file of which the wheel rolled backwards."""
+
+
+class DiscPath(NamedTuple):
+    """The path of a disc."""
+
+    radius: float  #: [m]
+    centre: str  #: side of the disc's centre, "left" or "right", seen rolling forwards
+
+
+def rolls_backward(path: Path) -> bool:
+    """Whether the name of a recording says that the wheel rolled backwards."""
+    return BACKWARD.search(formats.stem(path.name)) is not None
+
+
+def disc_signs(sniffed: Sniffed) -> list[str]:
+    """What speaks for a disc, each in words; empty for recordings of a belt."""
+    found = []
+    backward = [r.path.name for r in sniffed.recordings if rolls_backward(r.path)]
+    if backward:
+        found.append(f"{backward[0]} is named as rolling backwards")
+    if any(_both_ways(sniffed.points, r.path) for r in sniffed.recordings):
+        found.append("the wheel rolls both ways")
+    zero = zero_of_upright(sniffed.points)
+    if abs(zero) > constants.ZERO_OF_A_DISC:
+        found.append(f"the side force of the upright wheel vanishes at {zero:.1f} deg of sideslip")
+    return found
+
+
+def zero_of_upright(points: Points) -> float:
+    """Sideslip [deg] at which the side force of the upright wheel, rolling forwards, vanishes; NaN if points do not show it."""
+    alpha = np.degrees(points.alpha)
+    near = (
+        (np.abs(np.degrees(points.gamma)) < constants.UPRIGHT)
+        & (np.abs(alpha) < constants.NEAR_STRAIGHT)
+        & (points.direction > 0)
+        & np.isfinite(points.Fy)
+        & (points.Fz > 0.0)
+    )
+    if near.sum() < constants.FEWEST_FOR_ZERO or np.ptp(alpha[near]) < 1.0:
+        return math.nan
+    slope, offset = np.polyfit(alpha[near], points.Fy[near] / points.Fz[near], 1)
+    return float(-offset / slope) if slope < 0.0 else math.nan
+
+
+def _both_ways(points: Points, path: Path) -> bool:
+    """Whether one file has points of both directions."""
+    rows = np.array([name == str(path.absolute()) for name in points.files], dtype=bool)[points.file]
+    return len(np.unique(points.direction[rows])) > 1
+
+
+def files_of_folder(folder: Path) -> Sequence[Path]:
+    """The recordings in a folder, sorted by name."""
+    inside = (path for path in folder.iterdir() if path.is_file() and not path.name.startswith("."))
+    return sorted(path for path in inside if path.name.lower().endswith(formats.ENDINGS))

@@ -1,0 +1,235 @@
+"""A folder of recordings in the window: what is recognised, as a table to correct, and the project made of it."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import tomli_w
+
+from mffit.config import Config
+from mffit.config.loading import checked
+from mffit.errors import InputError
+from mffit.output import new_files
+from mffit.points import Points, levels
+from mffit.points.loading import read
+from mffit.recordings.disc import disc_signs, files_of_folder, rolls_backward
+from mffit.recordings.guess import Guess, guesses
+from mffit.recordings.project_file import named_tyre, slug
+from mffit.recordings.sniffed import Sniffed, axes_of, sniff
+from mffit.suspicion import before_the_fit
+from mffit.sweeps import formats
+from mffit.sweeps.channels import SWEEP_CHANNELS
+from mffit.sweeps.columns import numbers
+from mffit.sweeps.raw_table import RawTable
+
+PROJECT = "tyre.toml"
+ABOUT = "# From the recordings in this folder, as corrected in the window of `mffit open`.\n\n"
+NOT_READABLE_HERE = (PROJECT, "stretches.csv")
+CONDITIONS = (
+    (levels.LOAD, "N", 1.0, lambda points: points.Fz),
+    (levels.CAMBER, "deg", math.pi / 180.0, lambda points: points.gamma),
+    (levels.PRESSURE, "kPa", 1e3, lambda points: points.p),
+    (levels.SPEED, "m/s", 1.0, lambda points: points.V),
+)
+"""Settings whose levels are shown: unit, its size in SI, and where a point has it."""
+
+
+class RecordingsFolder:
+    """Recordings in a folder that has no ``tyre.toml`` yet."""
+
+    def __init__(self, folder: Path) -> None:
+        self.folder = folder.resolve()
+        self.files = [path for path in files_of_folder(self.folder) if path.name not in NOT_READABLE_HERE]
+        if not self.files:
+            raise InputError(
+                f"has neither a {PROJECT} nor a recording ({', '.join(formats.ENDINGS)})", file=folder
+            )
+
+    def table(self) -> dict[str, Any]:
+        """What is recognised: files in groups of equal headings, channels to choose from, and what else the files say."""
+        with formats.reading_once():
+            groups, problems = self._groups()
+            found, problem = self._sniffed()
+        first = found.recordings[0] if found else None
+        return {
+            "folder": self.folder.name,
+            "channels": [
+                {"name": c.name, "about": c.description, "required": c.required} for c in SWEEP_CHANNELS
+            ],
+            "groups": groups,
+            "problems": [*problems, *([problem] if problem else [])],
+            "tyre": {
+                "name": slug(self.files[0]),
+                "size": named_tyre(first.about) if first else "",
+                "nominal_pressure": _usual_pressure(found),
+            },
+            "axes": list(found.axes) if found else [],
+            "disc": disc_signs(found) if found else [],
+        }
+
+    def check(self, choice: Mapping[str, Any]) -> dict[str, Any]:
+        """What the recordings hold if they are read as chosen.
+
+        Raises
+        ------
+        InputError
+            They cannot be read so.
+        """
+        config = self._config(choice)
+        with formats.reading_once():
+            reading = read(config, may_be_empty=True)
+        warnings = list(reading.warnings)
+        axes: tuple[str, ...] = ()
+        wrong: tuple[str, ...] = ()
+        if len(reading.points):
+            axes, wrong = axes_of(reading.points, config.rig.axes, load_falls=False)
+            warnings += before_the_fit(reading.points, config)
+        return {
+            "points": len(reading.points),
+            "conditions": _conditions(reading.points) if len(reading.points) else [],
+            "axes": list(axes),
+            "wrong": list(wrong),
+            "warnings": warnings,
+        }
+
+    def make(self, choice: Mapping[str, Any]) -> Path:
+        """Write the ``tyre.toml``; returns its path.
+
+        Raises
+        ------
+        InputError
+            The recordings cannot be read as chosen, or the file exists.
+        """
+        self._config(choice)
+        text = ABOUT + tomli_w.dumps(self._content(choice))
+        return new_files(self.folder, {PROJECT: text})[0]
+
+    def _config(self, choice: Mapping[str, Any]) -> Config:
+        return checked(self._content(choice), path=None, folder=self.folder, lines={})
+
+    def _content(self, choice: Mapping[str, Any]) -> dict[str, Any]:
+        """The tables of a ``tyre.toml``; only files of this folder are named."""
+        try:
+            groups: Sequence[Mapping[str, Any]] = choice["groups"]
+            columns = [_columns(group["columns"]) for group in groups]
+            known = {path.name for path in self.files}
+            sweeps = [
+                {"file": file["name"]}
+                | ({"direction": "backward"} if file.get("backward") else {})
+                | ({"columns": own} if own != columns[0] else {})
+                for group, own in zip(groups, columns, strict=True)
+                for file in group["files"]
+                if file["name"] in known and file.get("used", True)
+            ]
+            tables = {
+                name: {k: v for k, v in choice[name].items() if v not in (None, "")}
+                for name in ("tyre", "rig")
+            }
+        except (KeyError, TypeError, AttributeError, IndexError):
+            raise InputError("the choice is incomplete: tyre, rig and groups are needed") from None
+        if tables["rig"].get("type") == "flat-track":
+            tables["rig"] = {k: v for k, v in tables["rig"].items() if not k.startswith("path")}
+        return tables | {"columns": columns[0] if columns else {}, "sweep": sweeps}
+
+    def _groups(self) -> tuple[list[dict[str, Any]], list[str]]:
+        """Files with equal headings and units, each with the guessed columns; and the files that cannot be read."""
+        groups: dict[tuple[Any, ...], dict[str, Any]] = {}
+        problems = []
+        for path in self.files:
+            try:
+                raw = formats.read(path)
+                found, remarks = guesses(raw)
+            except InputError as error:
+                problems.append(str(error))
+                continue
+            guessed = {guess.heading: guess for guess in found.values()}
+            key = (
+                raw.headings,
+                raw.units,
+                tuple((g.heading, g.channel.name, g.unit) for g in guessed.values()),
+            )
+            group = groups.setdefault(
+                key,
+                {
+                    "files": [],
+                    "columns": [_column(raw, heading, guessed.get(heading)) for heading in raw.headings],
+                    "remarks": list(remarks),
+                },
+            )
+            for row in group["columns"]:
+                row["range"] = _joined(row["range"], _range(raw, row["heading"]))
+            group["files"].append({"name": path.name, "rows": len(raw), "backward": rolls_backward(path)})
+        return list(groups.values()), problems
+
+    def _sniffed(self) -> tuple[Sniffed | None, str]:
+        """What the recognised recordings hold together, or why it is not known yet."""
+        try:
+            return sniff(self.files), ""
+        except InputError as error:
+            return None, str(error)
+
+
+def _column(raw: RawTable, heading: str, guess: Guess | None) -> dict[str, Any]:
+    return {
+        "heading": heading,
+        "stated": raw.unit(heading),
+        "range": _range(raw, heading),
+        "channel": guess.channel.name if guess else "",
+        "unit": guess.unit if guess else "",
+        "why": guess.why if guess else "",
+        "minus": False,
+    }
+
+
+def _range(raw: RawTable, heading: str) -> list[float] | None:
+    """Lowest and highest reading of a column; None if it has no numbers."""
+    values = numbers(raw.column(heading))
+    seen = values[np.isfinite(values)]
+    return [float(seen.min()), float(seen.max())] if len(seen) else None
+
+
+def _joined(one: list[float] | None, other: list[float] | None) -> list[float] | None:
+    """The range that holds both."""
+    if one is None or other is None:
+        return one or other
+    return [min(one[0], other[0]), max(one[1], other[1])]
+
+
+def _columns(rows: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
+    """``[columns]`` of the chosen rows."""
+    out: dict[str, Any] = {}
+    for row in rows:
+        name = row.get("channel")
+        if not name:
+            continue
+        if name in out:
+            raise InputError(f"{name} is given by two columns; choose one of them")
+        own = ({"unit": str(row["unit"])} if row.get("unit") else {}) | (
+            {"scale": -1.0} if row.get("minus") else {}
+        )
+        out[str(name)] = {"column": str(row["heading"]), **own} if own else str(row["heading"])
+    return out
+
+
+def _usual_pressure(found: Sniffed | None) -> float | None:
+    """The most frequent pressure [kPa]; None if none is measured."""
+    found_levels = found.conditions.get("pressure", ()) if found else ()
+    return round(max(found_levels, key=lambda one: one.stretches).value / 1e3) if found_levels else None
+
+
+def _conditions(points: Points) -> list[dict[str, Any]]:
+    """The levels of load, camber, pressure and speed, in the units of the page."""
+    return [
+        {
+            "name": kind.name,
+            "unit": unit,
+            "levels": [
+                round(x / size, 1) + 0.0 for x in np.unique(levels.level_values(of(points), kind)).tolist()
+            ],
+        }
+        for kind, unit, size, of in CONDITIONS
+    ]

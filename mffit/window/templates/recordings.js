@@ -1,0 +1,127 @@
+"use strict";
+(() => {
+  const byId = id => document.getElementById(id);
+  let table = null;
+  const say = (sentence, bad = false) => {
+    byId("status").textContent = sentence;
+    byId("status").classList.toggle("bad", bad);
+  };
+  function element(tag, text = "", given = {}) {
+    return Object.assign(document.createElement(tag), {textContent: text}, given);
+  }
+  function field(home, word, name, given) {
+    const label = element("label", word), input = element("input", "", {name, ...given});
+    label.append(input);
+    home.append(label);
+    return input;
+  }
+  function select(home, word, name, options, value) {
+    const label = element("label", word), list = element("select", "", {name});
+    for (const [text, shown] of options) list.append(new Option(shown, text, false, text === value));
+    label.append(list);
+    home.append(label);
+    return list;
+  }
+  async function post(address) {
+    const answer = await fetch(address, {method: "POST", headers: {"Content-Type": "application/json"}, body: JSON.stringify(choice())}).catch(() => null);
+    if (!answer) { say("The server of this window has ended; run `mffit open` again.", true); return null; }
+    const found = await answer.json();
+    if (found.error) { say(found.error, true); return null; }
+    return found;
+  }
+  const number = name => { const x = document.querySelector(`[name=${name}]`).valueAsNumber; return Number.isFinite(x) ? x : null; };
+  const text = name => document.querySelector(`[name=${name}]`).value;
+  function choice() {
+    return {
+      tyre: {name: text("name"), size: text("size") || null, unloaded_radius: number("unloaded_radius"), nominal_load: number("nominal_load"), nominal_pressure: number("nominal_pressure"), side: text("side")},
+      rig: {type: text("type"), axes: text("axes"), path_radius: number("path_radius"), path_centre: text("path_centre")},
+      groups: table.groups,
+    };
+  }
+  function show() {
+    const tyre = byId("tyre"), rig = byId("rig"), disc = table.disc.length > 0;
+    field(tyre, "name", "name", {value: table.tyre.name, required: true});
+    field(tyre, "size", "size", {value: table.tyre.size});
+    const any = {type: "number", step: "any", required: true, min: 0};
+    field(tyre, "unloaded radius [m]", "unloaded_radius", any);
+    field(tyre, "nominal load [N]", "nominal_load", any);
+    field(tyre, "nominal pressure [kPa]", "nominal_pressure", {...any, value: table.tyre.nominal_pressure ?? ""});
+    select(tyre, "side of the measured tyre", "side", ["left", "right", "symmetric"].map(x => [x, x]), "left");
+    const type = select(rig, "rig", "type", [["", "disc or belt?"], ["flat-track", "belt: a straight path"], ["rotating-disk", "disc: a curved path"]], disc ? "" : "flat-track");
+    type.required = true;
+    select(rig, "axes of the readings", "axes", ["iso", "sae", "adapted-sae"].map(x => [x, table.axes.includes(x) ? `${x} (agrees with the signs)` : x]), table.axes[0] || "iso");
+    const radius = field(rig, "path radius [m]", "path_radius", {type: "number", step: "any", min: 0});
+    const centre = select(rig, "disc centre, seen rolling forwards", "path_centre", ["left", "right"].map(x => [x, x]), "left");
+    const curved = () => { radius.required = type.value === "rotating-disk"; for (const one of [radius, centre]) one.disabled = type.value !== "rotating-disk"; };
+    type.addEventListener("change", curved);
+    curved();
+    byId("groups").replaceChildren(...table.groups.map(group));
+    byId("choice").hidden = false;
+    const first = disc ? `These look like recordings of a disc: ${table.disc.join("; ")}.` : "";
+    say([first, ...table.problems].filter(Boolean).join(" "), table.problems.length > 0);
+  }
+  function group(one) {
+    const home = element("section"), files = element("div", "", {className: "files"}), scroll = element("div", "", {className: "scroll"});
+    const names = one.files.map(file => file.name);
+    home.append(element("h2", names.length > 3 ? `${names[0]} ... ${names[names.length - 1]} (${names.length} files)` : names.join(", ")));
+    for (const file of one.files) {
+      const line = element("div"), used = element("label"), back = element("label");
+      const box = element("input", "", {type: "checkbox", checked: true}), backward = element("input", "", {type: "checkbox", checked: file.backward});
+      box.addEventListener("change", () => { file.used = box.checked; });
+      backward.addEventListener("change", () => { file.backward = backward.checked; });
+      used.append(box, `${file.name}, ${file.rows} rows `);
+      back.append(backward, "rolls backwards");
+      line.append(used, " ", back);
+      files.append(line);
+    }
+    const folded = element("details", "", {open: names.length < 4});
+    folded.append(element("summary", "files"), files);
+    const rows = element("table"), head = rows.insertRow();
+    for (const word of ["heading", "unit in the file", "readings", "is", "read in unit", "turn sign", ""]) head.append(element("th", word));
+    for (const column of one.columns) rows.append(row(column));
+    scroll.append(rows);
+    home.append(folded, scroll);
+    for (const remark of one.remarks) home.append(element("p", remark, {className: "sub"}));
+    return home;
+  }
+  function row(column) {
+    const line = element("tr"), cell = content => { const made = element("td"); made.append(content); line.append(made); return made; };
+    cell(column.heading);
+    cell(column.stated);
+    cell(column.range ? column.range.map(x => Number(x.toPrecision(4))).join(" to ") : "text");
+    const is = element("select");
+    is.setAttribute("aria-label", `${column.heading} is`);
+    is.append(new Option("not used", "", false, !column.channel));
+    for (const channel of table.channels) is.append(new Option(channel.name, channel.name, false, channel.name === column.channel));
+    const about = () => { const known = table.channels.find(one => one.name === is.value); is.title = known ? known.about : ""; line.classList.toggle("unused", !is.value); };
+    is.addEventListener("change", () => { column.channel = is.value; about(); });
+    cell(is);
+    const unit = element("input", "", {value: column.unit, placeholder: "as stated", size: 8});
+    unit.setAttribute("aria-label", `unit of ${column.heading}`);
+    unit.addEventListener("change", () => { column.unit = unit.value.trim(); });
+    cell(unit);
+    const minus = element("input", "", {type: "checkbox", checked: column.minus});
+    minus.setAttribute("aria-label", `turn the sign of ${column.heading}`);
+    minus.addEventListener("change", () => { column.minus = minus.checked; });
+    cell(minus);
+    cell(column.why).className = "why";
+    about();
+    return line;
+  }
+  byId("check").addEventListener("click", async () => {
+    if (!byId("choice").reportValidity()) return;
+    say("reading the recordings as chosen");
+    const found = await post("check");
+    if (!found) return;
+    const said = [`${found.points} points`, ...found.conditions.map(one => `${one.name}: ${one.levels.join(", ")} ${one.unit}`),
+      found.axes.length ? `the signs agree with ${found.axes.join(" and ")} axes` : `the signs agree with no axes: in those chosen ${found.wrong.join(" and ")}`, ...found.warnings];
+    byId("conditions").replaceChildren(...said.map(one => element("li", one)));
+    byId("found").hidden = false;
+    say("Checked; see below.");
+  });
+  byId("choice").addEventListener("submit", async event => {
+    event.preventDefault();
+    if (await post("make")) location.reload();
+  });
+  fetch("recordings").then(answer => answer.json()).then(found => { table = found; show(); }).catch(() => say("The recordings cannot be read; see the terminal.", true));
+})();

@@ -1,0 +1,137 @@
+"""A folder of recordings in the window: what is recognised, what is corrected, and the project made of it."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from mffit import config, points
+from mffit.errors import InputError
+
+pytest.importorskip("starlette")
+testclient = pytest.importorskip("starlette.testclient", reason="starlette's client needs httpx")
+
+from mffit.window.app import Opened, window_app  # noqa: E402
+from mffit.window.recordings_folder import RecordingsFolder  # noqa: E402
+
+TOKEN, PORT = "a-token-of-the-test", 8124
+HERE = f"http://127.0.0.1:{PORT}"
+TYRE = {"name": "t", "unloaded_radius": 0.2992, "nominal_load": 1400, "nominal_pressure": 250}
+BELT = {"type": "flat-track", "axes": "iso", "path_radius": None, "path_centre": "left"}
+
+
+@pytest.fixture
+def folder(original: Path, tmp_path: Path) -> Path:
+    """Two recordings of the small project whose side force has a heading that nobody knows, in kN and with the other sign."""
+    out = tmp_path / "recordings"
+    out.mkdir()
+    for name in ("sideslip_1400.csv", "camber_1400.csv"):
+        table = pd.read_csv(original.parent / name, comment="#").drop(columns=["u_Fy_N"], errors="ignore")
+        table["Kraft quer"] = -1e-3 * table.pop("Fy_N")
+        table.to_csv(out / name, index=False)
+    return out
+
+
+def corrected(table: dict[str, Any], **change: Any) -> dict[str, Any]:
+    """The choice of an engineer who knows the heading."""
+    for group in table["groups"]:
+        for row in group["columns"]:
+            if row["heading"] == "Kraft quer":
+                row |= {"channel": "Fy_N", "unit": "kN", "minus": True}
+    return {"tyre": TYRE, "rig": BELT, "groups": table["groups"]} | change
+
+
+def test_what_is_recognised_and_what_is_missing(folder):
+    table = RecordingsFolder(folder).table()
+    (group,) = table["groups"]
+    rows = {row["heading"]: row for row in group["columns"]}
+    assert rows["alpha_deg"]["channel"] == "alpha_deg"
+    assert rows["alpha_deg"]["range"] == [-8.0, 8.0]  # of both files
+    assert rows["Kraft quer"]["channel"] == ""
+    assert "no heading is known to be Fy_N" in table["problems"][0]
+    assert [file["name"] for file in group["files"]] == ["camber_1400.csv", "sideslip_1400.csv"]
+
+
+def test_the_corrected_project_reads_the_true_points(folder, original):
+    found = RecordingsFolder(folder)
+    before = {path.name: path.read_bytes() for path in folder.iterdir()}
+    choice = corrected(found.table())
+    assert found.check(choice)["axes"] == ["iso"]
+    path = found.make(choice)
+    after = {path.name: path.read_bytes() for path in folder.iterdir()}
+    assert set(after) - set(before) == {"tyre.toml"}
+    assert {name: after[name] for name in before} == before
+    ours, _ = points.load(config.load(path))
+    theirs, _ = points.load(config.load(original))
+    for name in before:
+        mine, true = (x.Fy[np.array(x.files)[x.file] == name] for x in (ours, theirs))
+        assert len(mine) >= len(true) > 10  # the original leaves one out
+        assert np.max(np.min(np.abs(true[:, None] - mine), axis=1)) < 1e-6
+
+
+def test_a_wrong_sign_is_seen_when_checked(folder):
+    found = RecordingsFolder(folder)
+    choice = corrected(found.table())
+    next(row for row in choice["groups"][0]["columns"] if row["heading"] == "Kraft quer")["minus"] = False
+    with pytest.raises(InputError, match="check the signs"):
+        found.check(choice)
+
+
+def test_backward_files_are_marked_and_speak_for_a_disc(folder, original):
+    (folder / "sideslip_1400.csv").rename(folder / "zero_backward.csv")
+    (folder / "camber_1400.csv").write_bytes((original.parent / "camber_1400.csv").read_bytes())
+    found = RecordingsFolder(folder)
+    files = [file for group in found.table()["groups"] for file in group["files"]]
+    assert {file["name"]: file["backward"] for file in files} == {
+        "camber_1400.csv": False,
+        "zero_backward.csv": True,
+    }
+    disc = {"type": "rotating-disk", "axes": "iso", "path_radius": 1.3, "path_centre": "right"}
+    path = found.make(corrected(found.table(), rig=disc))
+    loaded = config.load(path)
+    assert loaded.rig.on_disc
+    assert loaded.rig.path_centre == "right"
+    assert {sweep.file: sweep.direction for sweep in loaded.sweep} == {
+        "camber_1400.csv": None,
+        "zero_backward.csv": "backward",
+    }
+
+
+@pytest.mark.parametrize(
+    ("change", "sentence"),
+    [
+        ({"rig": {"type": "rotating-disk", "axes": "iso"}}, "path_radius"),
+        ({"tyre": {"name": "t"}}, "unloaded_radius"),
+        ({"groups": []}, "sweep"),
+        ({"groups": None}, "incomplete"),
+    ],
+)
+def test_an_incomplete_choice_is_refused_and_nothing_written(folder, change, sentence):
+    found = RecordingsFolder(folder)
+    with pytest.raises(InputError, match=sentence):
+        found.make(corrected(found.table(), **change))
+    assert not (folder / "tyre.toml").exists()
+
+
+def test_files_elsewhere_are_not_named(folder, tmp_path):
+    (tmp_path / "secret.csv").write_text("alpha_deg\n1\n", encoding="utf-8")
+    found = RecordingsFolder(folder)
+    choice = corrected(found.table())
+    choice["groups"][0]["files"].append({"name": "../secret.csv"})
+    assert "secret" not in found.make(choice).read_text(encoding="utf-8")
+
+
+def test_the_server_shows_the_table_and_refuses_with_sentences(folder):
+    app = window_app(Opened(folder=RecordingsFolder(folder)), token=TOKEN, port=PORT)
+    with testclient.TestClient(app, base_url=HERE, headers={"origin": HERE}) as client:
+        page = client.get(f"/{TOKEN}/").text
+        assert "Make the project" in page
+        assert [word for word in ("http://", "https://", " src=") if word in page] == []
+        assert client.get(f"/{TOKEN}/recordings").json()["folder"] == "recordings"
+        assert "incomplete" in client.post(f"/{TOKEN}/check", json={}).json()["error"]
+        assert "no project is open" in client.get(f"/{TOKEN}/state").json()["error"]
+        assert client.get(f"/{TOKEN}/out/report.html").status_code == 422
