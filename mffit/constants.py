@@ -24,6 +24,9 @@ AT_BOUND_SHARE = Real(
 HELD_BY_LIMIT_SHARE = Real(
     0.1, "-", "Share of the information about a number that physical limits supply if they hold it."
 )
+LOOKS_AT_LIMITS = Count(
+    6, "-", "Most times a step is computed again because it would break a limit or cross a bound."
+)
 ZERO_SIDESLIP = Real(
     0.3, "deg", "Sideslip as read within which points count as straight: zeros, camber sweeps."
 )

@@ -33,6 +33,15 @@ class Linear:
     slope: np.ndarray  #: (m, k) derivatives of ``data``
     limits: np.ndarray  #: (l,) residuals of physical limits; zero where a limit is kept
     limits_slope: np.ndarray  #: (l, k) derivatives of ``limits``
+    kept: Kept | None = None
+    """Limits that are kept here, if a step may look at them: where many are near, steps that ignore them are rejected."""
+
+
+class Kept(NamedTuple):
+    """Residuals, below zero, that kept physical limits would have, and their derivatives."""
+
+    value: np.ndarray  #: (q,)
+    slope: np.ndarray  #: (q, k)
 
 
 @dataclass(frozen=True, slots=True)
@@ -174,13 +183,10 @@ def _step(objective: _Objective, x: np.ndarray, cost: float, here: Linear, dampi
     scale = np.maximum(np.diag(curvature), 1e-12 * np.max(np.diag(curvature), initial=1e-300))
     H, g, d = curvature[np.ix_(free, free)], gradient[free], scale[free]
     while damping < 1e12:
-        move = np.zeros(len(x))
-        try:
-            factor = cho_factor(H + np.diag(damping * d), check_finite=False)
-        except np.linalg.LinAlgError:
+        move = _move(objective, x, here, _Quadratic(H, g, damping * d), free)
+        if move is None:
             damping = max(10.0 * damping, 1e-8)
             continue
-        move[free] = -cho_solve(factor, g, check_finite=False)
         trial = np.clip(x + move, objective.lower, objective.upper)
         new = objective.cost(trial, *objective.problem.residual(trial))
         if new < cost:
@@ -192,6 +198,65 @@ def _step(objective: _Objective, x: np.ndarray, cost: float, here: Linear, dampi
             return None
         damping *= 6.0
     return None
+
+
+class _Quadratic(NamedTuple):
+    """A quadratic form of the free numbers (f,), with damping."""
+
+    curvature: np.ndarray  #: (f, f)
+    gradient: np.ndarray  #: (f,)
+    damping: np.ndarray  #: (f,)
+
+    @property
+    def minimum(self) -> np.ndarray | None:
+        """Where it is smallest (f,); None if the form is not positive."""
+        try:
+            factor = cho_factor(self.curvature + np.diag(self.damping), check_finite=False)
+        except np.linalg.LinAlgError:
+            return None
+        lowest: np.ndarray = -cho_solve(factor, self.gradient, check_finite=False)
+        return lowest
+
+
+def _move(
+    objective: _Objective, x: np.ndarray, here: Linear, form: _Quadratic, free: np.ndarray
+) -> np.ndarray | None:
+    """The step (k,) to the minimum of the form; None if there is none.
+
+    Where kept limits are given, the step also respects those that it would break, and the bounds that it would cross.
+    """
+    move = np.zeros(len(x))
+    found = form.minimum
+    if found is None:
+        return None
+    move[free] = found
+    if here.kept is None:
+        return move
+    crossed = np.zeros(len(x), dtype=bool)
+    broken = np.zeros(len(here.kept.value), dtype=bool)
+    for _ in range(int(constants.LOOKS_AT_LIMITS)):
+        beyond = free & ((x + move < objective.lower) | (x + move > objective.upper)) & ~crossed
+        breaks = (here.kept.value + here.kept.slope @ move > 0.0) & ~broken
+        if not beyond.any() and not breaks.any():
+            break
+        crossed |= beyond
+        broken |= breaks
+        move[beyond] = np.clip(x + move, objective.lower, objective.upper)[beyond] - x[beyond]
+        inner = free & ~crossed
+        own, outer = inner[free], crossed[free]
+        slope = here.kept.slope[broken]
+        curvature = form.curvature + slope[:, free].T @ slope[:, free]
+        gradient = form.gradient + slope[:, free].T @ here.kept.value[broken]
+        reduced = _Quadratic(
+            curvature[np.ix_(own, own)],
+            gradient[own] + curvature[np.ix_(own, outer)] @ move[crossed],
+            form.damping[own],
+        )
+        found = reduced.minimum
+        if found is None:
+            return None
+        move[inner] = found
+    return move
 
 
 def _next_damping(damping: float, kept: float) -> float:

@@ -14,7 +14,7 @@ from mffit.fit.constraints import Envelope, limits
 from mffit.fit.ranges import covered_ranges, envelope
 from mffit.fit.rig_numbers import known_faults, known_zeros
 from mffit.fit.rolling import effective_radius
-from mffit.least_squares import FreeNumber, LeastSquaresProblem, Linear
+from mffit.least_squares import FreeNumber, Kept, LeastSquaresProblem, Linear
 from mffit.measured import RadiusReading, radius_readings
 from mffit.points import Points
 from mffit.quantities import SIDEWAYS
@@ -119,12 +119,16 @@ class FitProblem:
                 for name, sigma in here.sigma.items()
             ]
             radii, radii_slope = here._radii(names)
-            broken, broken_slope = here._broken_limits(names)
+            limit, limit_slope = here._limits(names)
+            broken, kept = limit > 0.0, None
+            if "Fx" in here.sigma:  # with limits under slip, many are near
+                kept = Kept(limit[~broken], limit_slope[~broken])
             return Linear(
                 data=np.concatenate([*here.misfit(readings).values(), radii]),
                 slope=np.concatenate([*slopes, radii_slope]),
-                limits=broken,
-                limits_slope=broken_slope,
+                limits=np.where(broken, limit, 0.0),
+                limits_slope=limit_slope * broken[:, None],
+                kept=kept,
             )
 
         return LeastSquaresProblem(residual, linear)
@@ -152,7 +156,13 @@ class FitProblem:
         return np.broadcast_to(plain(out), len(load)), slope
 
     def _broken_limits(self, names: Sequence[str]) -> tuple[np.ndarray, np.ndarray]:
-        """Violations of the physical limits as residuals, and their derivatives."""
+        """Violations of the physical limits as residuals, 0 where they are kept, and their derivatives."""
+        value, slope = self._limits(names)
+        broken = value > 0.0
+        return np.where(broken, value, 0.0), slope * broken[:, None]
+
+    def _limits(self, names: Sequence[str]) -> tuple[np.ndarray, np.ndarray]:
+        """Residuals of the physical limits, below 0 where they are kept, and their derivatives."""
         if self.envelope is None:
             return np.zeros(0), np.zeros((0, len(names)))
         values = self.simulation.values
@@ -161,9 +171,8 @@ class FitProblem:
         value, by_coefficient = limits(p, self.envelope, list(coefficients.values()))
         slope = np.zeros((len(value), len(names)))
         slope[:, [k for k, name in enumerate(names) if name in coefficients]] = by_coefficient
-        broken = value > 0.0
         weight = constants.LIMIT_WEIGHT_OF_FIT
-        return weight * np.where(broken, value, 0.0), weight * slope * broken[:, None]
+        return weight * value, weight * slope
 
 
 def fit_problem(

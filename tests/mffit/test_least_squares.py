@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.optimize import least_squares
 
-from mffit.least_squares import FreeNumber, LeastSquaresProblem, Linear, solve
+from mffit.least_squares import FreeNumber, Kept, LeastSquaresProblem, Linear, solve
 
 RNG = np.random.default_rng(5)
 A = RNG.normal(size=(30, 3))
@@ -84,3 +84,32 @@ def test_a_curved_problem_ends_where_scipy_ends():
     start = [FreeNumber("D", 1.0), FreeNumber("C", 1.0), FreeNumber("B", 1.0)]
     found = solve(LeastSquaresProblem(lambda v: (residual(v), np.zeros(0)), linear), start, tolerance=1e-12)
     assert list(found.values.values()) == pytest.approx(least_squares(residual, np.ones(3)).x, abs=1e-4)
+
+
+def test_steps_that_look_at_kept_limits_and_bounds_arrive_at_once():
+    """The nearest place to (2, 2, 2) with x + y <= 1 and z <= 0.5 is (0.5, 0.5, 0.5): found in a few steps from anywhere inside."""
+    weight, normal = 3000.0, np.array([1.0, 1.0, 0.0])
+
+    def limit(x):
+        return np.array([weight * (normal @ x - 1.0)])
+
+    def linear(x, looks):
+        value, slope = limit(x), weight * normal[None, :]
+        broken = value > 0.0
+        kept = Kept(value[~broken], slope[~broken]) if looks else None
+        return Linear(x - 2.0, np.eye(3), np.where(broken, value, 0.0), slope * broken[:, None], kept)
+
+    def steps(looks):
+        problem = LeastSquaresProblem(
+            lambda x: (x - 2.0, np.maximum(limit(x), 0.0)), lambda x: linear(x, looks)
+        )
+        numbers = [
+            FreeNumber(name, -3.0 - k, upper=0.5 if name == "z" else np.inf) for k, name in enumerate("xyz")
+        ]
+        found = solve(problem, numbers, tolerance=1e-12)
+        return found, found.steps
+
+    found, needed = steps(True)
+    assert list(found.values.values()) == pytest.approx([0.5, 0.5, 0.5], abs=1e-5)
+    assert needed <= 5
+    assert needed < steps(False)[1]
