@@ -14,7 +14,7 @@ from mffit.fit import Posterior
 from mffit.measured import KEYS, LoadResult
 from mffit.points import Points, make_points
 from mffit.quantities import SIDEWAYS
-from mffit.rig import Readings, Simulation
+from mffit.rig import SIMULATED, Readings, Simulation
 from mffit.scatter import rms
 from tir.parameters import TABLE
 
@@ -176,11 +176,11 @@ def _direct(measured: Sequence[LoadResult], simulated: Sequence[LoadResult]) -> 
 
 def _sweeps(points: Points, simulation: Simulation) -> tuple[SweepGap, ...]:
     """The gap of every sweep and channel; the largest first, in units of the noise or else of the channel's size."""
-    readings = simulation.readings(points)
+    readings = simulation.readings(points, set(points.measured).intersection(SIMULATED))
     found: list[tuple[float, SweepGap]] = []
-    for channel in SIDEWAYS:
-        apart, u = points.channel(channel) - readings[channel], points.u(channel)
-        size = max(rms(getattr(points, channel)), 1e-9)
+    for channel, read in readings.items():
+        apart, u = points.channel(channel) - read, points.u(channel)
+        size = max(rms(points.channel(channel)), 1e-9)
         for k in np.unique(points.sweep):
             rows = (points.sweep == k) & np.isfinite(apart)
             if not np.any(rows):

@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from mffit.comparison import constants
 from mffit.comparison.record import ComparedSubject, Comparison, Difference
 from mffit.measured import KEYS
-from mffit.quantities import CHARACTERISTICS, CONDITIONS, DIRECT, SIDEWAYS, QuantityName
+from mffit.quantities import CHANNELS, CHARACTERISTICS, CONDITIONS, DIRECT, SIDEWAYS, QuantityName
 from tir.parameters import BY_NAME
 
 OF_DIRECT = {key: DIRECT[name] for name, key in KEYS.items()}
@@ -26,7 +26,7 @@ def headline(found: Comparison) -> str:
     """The largest differences in a sentence."""
     if found.sweeps:
         parts = []
-        for channel, known in SIDEWAYS.items():
+        for channel, known in CHANNELS.items():
             rows = [gap for gap in found.sweeps if gap.channel == channel]
             if rows:
                 n = sum(gap.n for gap in rows)

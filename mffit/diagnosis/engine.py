@@ -30,8 +30,7 @@ from mffit.diagnosis.strangers import (
 )
 from mffit.diagnosis.validation import Validation, validate
 from mffit.effects import CATALOG, Effect
-from mffit.fit.coverage import coverage
-from mffit.fit.plan import fitted_channels
+from mffit.fit.plan import channels_of
 from mffit.points import Points
 from mffit.progress import Progress, silent
 from mffit.rig import Simulation
@@ -76,9 +75,9 @@ def diagnose(
     """
     progress("comparing simulation and measurement")
     start = _simulation(points, tyre, config, rig)
-    channels = fitted_channels(coverage(points, config.tyre.side or "left"), points)
+    channels = channels_of(points)
     refuse_strangers(points, tyre, start, channels)
-    points, wrong = _without_misread(points, start, config)
+    points, wrong = _without_misread(points, start, config, channels)
     points, origin = with_uncertainties(by_condition(points), start, channels)
     inexact = coefficients or declared_inexactness(tyre, config.model.u_coefficients)
     candidates, notes = _candidates(effects, points, start, known=inexact.names if seen else ())
@@ -116,9 +115,11 @@ def _simulation(points: Points, tyre: Tyre, config: Config, rig: Mapping[str, fl
     ).with_numbers(rig or {})
 
 
-def _without_misread(points: Points, start: Simulation, config: Config) -> tuple[Points, Misread | None]:
+def _without_misread(
+    points: Points, start: Simulation, config: Config, channels: Sequence[str]
+) -> tuple[Points, Misread | None]:
     """The points without the sweep that was written down wrongly, and that sweep."""
-    wrong = misread(points, start, axis_signs(config))
+    wrong = misread(points, start, axis_signs(config), channels)
     if wrong is None:
         return points, None
     kept = np.array([name != wrong.sweep for name in points.sweep_names])

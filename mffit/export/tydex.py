@@ -29,12 +29,15 @@ TYDEX_CHANNELS = (
     TydexChannel("SLIPANGL", "slip angle", "rad", lambda p: p.alpha),
     TydexChannel("INCLANGL", "inclination angle", "rad", lambda p: p.gamma),
     TydexChannel("FZW", "vertical force", "N", lambda p: p.Fz),
+    TydexChannel("LONGSLIP", "longitudinal slip", "-", lambda p: np.where(np.any(p.kappa), p.kappa, np.nan)),
+    TydexChannel("FXW", "longitudinal force", "N", lambda p: p.Fx),
     TydexChannel("FYW", "lateral force", "N", lambda p: p.Fy),
     TydexChannel("MXW", "overturning moment", "Nm", lambda p: p.Mx),
     TydexChannel("MYW", "rolling resistance moment", "Nm", lambda p: p.My),
     TydexChannel("MZW", "self aligning moment", "Nm", lambda p: p.Mz),
     TydexChannel("INFLPRES", "inflation pressure", "Pa", lambda p: p.p),
     TydexChannel("TRAJVELW", "trajectory velocity", "m/s", lambda p: p.V),
+    TydexChannel("WHROTSPD", "wheel rotation speed", "rad/s", lambda p: p.omega),
     TydexChannel("TYRETEMP", "tyre temperature", "degC", lambda p: p.T),
 )
 """In TYDEX W axes, which are the ISO axes; channels that were not measured are left out."""

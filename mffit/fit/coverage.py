@@ -36,7 +36,7 @@ class Design:
     pressure_loads: int  #: loads at which more than one pressure was run
     cambers: int
     coupled: bool  #: sideslip and camber together
-    moment: bool  #: Mz measured
+    measured: tuple[str, ...]  #: channels with readings
     curved: bool  #: path curvature present
     shifts: bool  #: odd shift terms are separable: flat track, or disc with backward runs, flipped mounts or both sides
     symmetric: bool
@@ -57,7 +57,7 @@ def design(points: Points, side: str) -> Design:
         pressure_loads=sum(n > 1 for n in pressures_at),
         cambers=levels.count(np.abs(points.gamma), levels.CAMBER),
         coupled=bool(np.any(cambered & slipping)),
-        moment=bool(np.any(np.isfinite(points.Mz))),
+        measured=points.measured,
         curved=curved,
         shifts=both_ways or not curved,
         symmetric=side == "symmetric",
@@ -100,8 +100,8 @@ def why_held(name: str, points: Points, side: str) -> str:
 
 def _missing(row: Parameter, seen: Design) -> str:
     """Why these data do not determine the coefficient; empty if they do."""
-    if row.channel == "Mz" and not seen.moment:
-        return "Mz was not measured"
+    if row.channel not in ("", "Fy", *seen.measured):
+        return f"{row.channel} was not measured"
     if row.shift and not seen.shifts:
         return (
             "backward runs, flipped mounts or runs on the other side of the disc are missing, "

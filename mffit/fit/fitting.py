@@ -7,6 +7,8 @@ from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any, NamedTuple
 
+import numpy as np
+
 from mffit.config import axis_signs
 from mffit.config.declared import as_declared
 from mffit.fit import agreement
@@ -66,8 +68,9 @@ def fit(
     fleet = of_fleet(config)
     hand = hand_of(config, base)
     known = known_before_fit(config, points, measured, base, fleet, hand)
-    turning = None if "PECP1" in hand.held else turning_zeros(known.values, points, measured)
-    start = starting_values(known.values, points, measured, hand.held) | dict(
+    rolling = points.select(points.free_rolling) if np.any(points.free_rolling) else points
+    turning = None if "PECP1" in hand.held else turning_zeros(known.values, rolling, measured)
+    start = starting_values(known.values, rolling, measured, hand.held) | dict(
         turning.start if turning else {}
     )
     plan = fit_plan(config, points, measured, known, start, fleet, turning)

@@ -19,6 +19,8 @@ from tir.parameters import BY_NAME, TABLE
 
 DECIDED = ("TYRESIDE", "USE_MODE", "FITTYP")
 """Values that the build itself decides."""
+DETERMINED = ("measured", "fitted", "regularised")
+"""Origins of what the points decide, which no estimate replaces."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -102,7 +104,7 @@ def known_after_fit(
     if base is None:  # again, because friction and stiffness among them follow the fitted ones
         found = estimates(known.values)
         known = known.having(
-            {name: v for name, v in found.items() if known.origin[name] != "measured"}, "estimate"
+            {name: v for name, v in found.items() if known.origin[name] not in DETERMINED}, "estimate"
         )
     return known
 

@@ -75,6 +75,11 @@ def fitted_channels(cover: Iterable[StageCoverage], points: Points) -> tuple[str
     return tuple(name for name in CHANNELS if name in wanted)
 
 
+def channels_of(points: Points) -> tuple[str, ...]:
+    """Channels that a fit of these points would use."""
+    return fitted_channels(coverage(points, "left"), points)
+
+
 def fit_plan(
     config: Any,
     points: Points,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 
@@ -18,6 +19,7 @@ from mffit.fit.start import ALTERNATIVE_STARTS, SHAPES
 from mffit.least_squares import solve
 from mffit.points import Points, main_pressure
 from mffit.progress import Progress, silent
+from mffit.quantities import CHANNELS, column
 from mffit.scatter import rms
 from tir.parameters import BY_NAME
 
@@ -113,14 +115,11 @@ def _record(name: str, title: str, parameters: Sequence[str], problem: FitProble
 
 
 def _require_enough_points(points: Points, free: Sequence[str]) -> None:
-    moment = [name for name in free if BY_NAME[name].channel == "Mz"]
-    for channel, needed, values in (
-        ("Fy_N", len(free) - len(moment), points.Fy),
-        ("Mz_Nm", len(moment), points.Mz),
-    ):
-        available = int(np.sum(np.isfinite(values)))
-        if needed and available <= needed:
+    needed = Counter(BY_NAME[name].channel or "Fy" for name in free)
+    for channel in CHANNELS:
+        available = int(np.sum(np.isfinite(points.channel(channel))))
+        if needed[channel] and available <= needed[channel]:
             raise InputError(
-                f"{available} points of {channel} cannot determine the {needed} coefficients that these sweeps "
+                f"{available} points of {column(channel)} cannot determine the {needed[channel]} coefficients that these sweeps "
                 "free: add points (more angles per sweep), or sweeps at fewer loads, cambers and pressures"
             )

@@ -32,6 +32,7 @@ def same_condition(points: Points, i: int) -> np.ndarray:
         & (points.mount == points.mount[i])
         & np.isclose(points.phi_t, points.phi_t[i])
         & (points.setup == points.setup[i])
+        & (np.abs(points.kappa - points.kappa[i]) < constants.SAME_SLIP)
     )
 
 

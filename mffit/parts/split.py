@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -26,6 +27,28 @@ class Parts(Brief):
     partner: np.ndarray  #: index of the mirror, -1 if interpolated or unpaired
     unpaired: tuple[str, ...]  #: one sentence per sweep with unpaired points
     alpha_odd: np.ndarray  #: sideslip of the odd part [rad]: the reading, corrected for known play
+
+    def among(self, points: Points, rows: np.ndarray) -> Parts:
+        """The parts of more ``points`` (n,), of which these are some (mask (n,)); the others have no mirror."""
+
+        def spread(name: str, others: Any) -> np.ndarray:
+            own = getattr(self, name)
+            out = np.full(len(points), others, dtype=own.dtype)
+            out[rows] = own
+            return out
+
+        index = np.flatnonzero(rows)
+        return Parts(
+            **{name: spread(name, np.nan) for name in NUMBERS},
+            paired=spread("paired", "unpaired"),
+            partner=np.where((partner := spread("partner", -1)) < 0, -1, index[partner]),
+            unpaired=self.unpaired,
+            alpha_odd=np.where(rows, spread("alpha_odd", 0.0), points.alpha),
+        )
+
+
+NUMBERS = ("Fy_odd", "Fy_even", "Mz_odd", "Mz_even", "u_Fy_odd", "u_Mz_odd")
+"""Fields of :class:`Parts` that are NaN without a mirror."""
 
 
 def split(points: Points) -> Parts:

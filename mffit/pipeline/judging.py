@@ -34,7 +34,7 @@ def judged(
     assert fitted.full is not None
     left = remains(fitted.full, axis_signs(config))
     channels = [c.channel for c in left.structure.found]
-    model = fitted.full.simulation.readings(points)
+    model = fitted.full.simulation.readings(points, fitted.model)
     finished = FinishedFit(
         points=points,
         model=model,

@@ -7,6 +7,8 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 import tir
 from mffit import config as configuration
 from mffit import measured as direct
@@ -68,18 +70,28 @@ def align(
 
 
 def measure(config: Config, points: Points, base: Tyre | None) -> tuple[Parts, Measured]:
-    """The odd and even parts of the points, and the direct measurements."""
-    parts = decomposition.split(points)
-    measured = direct.measure(config, points, parts, base)
-    return replace(parts, alpha_odd=direct.odd_alpha(points, parts, config)), measured
+    """The odd and even parts of the points, and the direct measurements from those that roll freely, if there are any."""
+    rolling = _rolling(points)
+    own = points if np.all(rolling) else points.select(rolling)
+    parts = decomposition.split(own)
+    measured = direct.measure(config, own, parts, base)
+    parts = replace(parts, alpha_odd=direct.odd_alpha(own, parts, config))
+    return (parts if own is points else parts.among(points, rolling)), measured
 
 
 def epsilon_gamma(config: Config, points: Points, base: Tyre | None) -> tir.Quantity | None:
     """eps_gamma of the points by the direct method; None if the method fails."""
     try:
-        return direct.measure(config, points, decomposition.split(points), base).epsilon_gamma
+        own = points.select(_rolling(points))
+        return direct.measure(config, own, decomposition.split(own), base).epsilon_gamma
     except InputError:
         return None
+
+
+def _rolling(points: Points) -> np.ndarray:
+    """Mask (n,) of the points that roll freely; of all points if none does."""
+    rolling = points.free_rolling
+    return rolling if np.any(rolling) else np.ones_like(rolling)
 
 
 def without_play(config: Config) -> Config:

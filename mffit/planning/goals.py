@@ -8,7 +8,8 @@ from dataclasses import dataclass
 
 from mffit.effects import CATALOG, Effect
 from mffit.errors import InputError
-from mffit.quantities import CHANNELS, DIRECT, SIDEWAYS
+from mffit.quantities import CHANNELS, DIRECT
+from mffit.rig import SIMULATED
 from mffit.rig_errors import UNITS
 from tir.parameters import BY_NAME
 
@@ -63,7 +64,7 @@ def read_goal(text: str, *, on_disc: bool, held: Collection[str] = ()) -> Goal:
                 f'"{text}" needs a disc, because there is no turn slip on a straight path; choose bands or a coefficient'
             )
         return Goal(JOINT if rest == "joint" else EPSILON)
-    if kind == BANDS and (rest or "Fy") in SIDEWAYS:
+    if kind == BANDS and (rest or "Fy") in SIMULATED:
         channel = rest or "Fy"
         return Goal(BANDS, channel, CHANNELS[channel].unit)
     if kind == TIE:

@@ -163,7 +163,7 @@ class Outlook:
         )
         names = [n for n in self.knowledge.names if error_of(n) is None]
         tyre = Simulation.of(self.found.tyre, turn_slip=self.config.rig.on_disc)
-        return names, getattr(tyre.sensitivities(where, names)[1], self.goal.name)
+        return names, tyre.sensitivities(where, names, (self.goal.name,))[1][self.goal.name]
 
 
 def _rivals(effect: Effect) -> list[Effect]:

@@ -15,6 +15,7 @@ from mffit.planning import constants
 from mffit.planning.additions import ADDITIONS, Addition, LineOfPoints
 from mffit.points import Points, levels, main_path, main_pressure
 from mffit.points.points import concatenate
+from mffit.quantities import CHANNELS
 from mffit.rig import reference_speed
 from mffit.scatter import finite_median
 
@@ -130,8 +131,9 @@ class _Programme:
             "mount": addition.mount, "line": 0, "sweep": 0, "file": 0, "sweep_names": ("planned",), "files": ("",),
             "setup": 0, "setups": (setup_on(self.config, self.points, phi_t),),
         }  # fmt: skip
-        unknown = dict.fromkeys(("Fy", "Mz", "Mx", "My", "t", "time", "iteration"), np.nan)
-        typical = {name: finite_median(getattr(self.points, name)) for name in ("u_Fy", "u_Mz", "T")}
+        unknown = dict.fromkeys((*CHANNELS, "t", "time", "iteration"), np.nan) | {"kappa": 0.0}
+        uncertain = (*(f"u_{name}" for name in CHANNELS), "T")
+        typical = {name: finite_median(getattr(self.points, name)) for name in uncertain}
         return like.replace(**(given | {line.over: angles} | unknown | typical))
 
 

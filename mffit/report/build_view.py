@@ -18,7 +18,6 @@ from mffit.made import Made
 from mffit.measured import Measured
 from mffit.points import Points
 from mffit.points.left_out import LeftOut
-from mffit.quantities import SIDEWAYS
 from mffit.report import words
 from mffit.report.channel import NamedChannel
 from mffit.report.curves import Curve, CurveCondition, conditions, curves
@@ -145,25 +144,25 @@ class BuildView:
 def view_of(result: BuildResult) -> BuildView:
     """The view of a build's result; the only function that knows the attributes of a result."""
     points, parts, fit = result.points, result.parts, result.fit
-    found = tuple(curves(points))
+    found, unknown = tuple(curves(points)), np.full(len(points), np.nan)
     channels = [
         ChannelRow(
             name=name,
-            measured=getattr(points, name),
-            u=getattr(points, f"u_{name}"),
-            model=fit.model[name],
-            odd=getattr(parts, f"{name}_odd"),
-            even=getattr(parts, f"{name}_even"),
-            u_odd=getattr(parts, f"u_{name}_odd"),
+            measured=points.channel(name),
+            u=points.u(name),
+            model=model,
+            odd=getattr(parts, f"{name}_odd", unknown),
+            even=getattr(parts, f"{name}_even", unknown),
+            u_odd=getattr(parts, f"u_{name}_odd", unknown),
         )
-        for name in SIDEWAYS
+        for name, model in fit.model.items()
     ]
     return BuildView(
         config=result.config,
         points=points,
         channels=tuple(c for c in channels if np.isfinite(c.measured).any()),
         curves=found,
-        lines=model_lines(fit.simulation, points, found),
+        lines=model_lines(fit.simulation, points, found, fit.model),
         conditions=tuple(conditions(points)),
         measured=result.measured,
         agreement=fit.channels,

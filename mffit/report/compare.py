@@ -11,13 +11,14 @@ import numpy as np
 
 from mffit.comparison import Comparison, wording
 from mffit.points import Points
-from mffit.quantities import SIDEWAYS
+from mffit.quantities import CHANNELS
 from mffit.report import constants, page
 from mffit.report.build_view import ChannelRow
 from mffit.report.curves import Curve, curves
 from mffit.report.drawing.records import Sheet
 from mffit.report.figures import compared, fit
 from mffit.report.lines import CurveLine, model_lines
+from mffit.rig import SIMULATED
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -41,7 +42,7 @@ def write_comparison(found: Comparison, folder: Path) -> None:
         _figures(found),
         found=found,
         say=wording,
-        channels=SIDEWAYS,
+        channels=CHANNELS,
         most=constants.MOST_ROWS_COMPARED,
     )
 
@@ -52,12 +53,12 @@ def _figures(found: Comparison) -> dict[str, Callable[[], Sheet]]:
         out[f"curves_{name}"] = partial(compared.curves, found, name)
     if found.points is not None and found.simulation is not None:
         members = curves(found.points)
-        lines = model_lines(found.simulation, found.points, members)
+        measured = [name for name in found.points.measured if name in SIMULATED]
+        lines = model_lines(found.simulation, found.points, members, measured)
         view = Overlay(points=found.points, curves=members, lines=lines)
-        for name in SIDEWAYS:
-            measured = getattr(found.points, name)
-            if members and np.isfinite(measured).any():
-                channel = ChannelRow.of_readings(name, measured, getattr(found.points, f"u_{name}"))
+        for name in measured:
+            if members:
+                channel = ChannelRow.of_readings(name, found.points.channel(name), found.points.u(name))
                 out[f"fit_{name}"] = partial(fit.model_against_points, view, channel)
     if any(row.z is not None for row in found.numbers):
         out["differences"] = partial(compared.differences, found)

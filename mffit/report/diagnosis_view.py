@@ -129,7 +129,7 @@ def _shown(diagnosis: Diagnosis, channels: Sequence[GapChannel]) -> tuple[Shown,
     if len(order) == 1:
         chosen.pop("Typical")
     before, after = (
-        model_lines(simulation, diagnosis.points, list(chosen.values()))
+        model_lines(simulation, diagnosis.points, list(chosen.values()), diagnosis.noise.channels)
         for simulation in (diagnosis.given, diagnosis.state)
     )
     return tuple(

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -19,11 +19,13 @@ class CurveLine:
     """Readings that the rig would give along a curve if the tyre were the model; arrays (m,)."""
 
     x: np.ndarray  #: the angle that varies [deg]
-    raw: Mapping[str, np.ndarray]  #: by channel, Fy [N] and Mz [Nm]
+    raw: Mapping[str, np.ndarray]  #: by channel
     even: Mapping[str, np.ndarray]  #: its even part
 
 
-def model_lines(simulation: Simulation, points: Points, curves: Sequence[Curve]) -> dict[tuple, CurveLine]:
+def model_lines(
+    simulation: Simulation, points: Points, curves: Sequence[Curve], channels: Iterable[str] = SIDEWAYS
+) -> dict[tuple, CurveLine]:
     """A line per curve, by ``curve.key``, at the curve's median load, pressure, speed and held angle.
 
     Parameters
@@ -31,20 +33,21 @@ def model_lines(simulation: Simulation, points: Points, curves: Sequence[Curve])
     simulation : the model on the rig, with the errors of the rig
     points : the measured points (n,), angles as read
     curves : rows of the points that belong together
+    channels : those to compute
     """
     if not curves:
         return {}
     grid = _along(points, curves)
     mirrored = grid.replace(alpha=-grid.alpha, gamma=-grid.gamma)
-    here, there = (simulation.readings(p) for p in (grid, mirrored))
+    here, there = (simulation.readings(p, channels) for p in (grid, mirrored))
     steps = constants.STEPS_OF_MODEL_LINE
     lines = {}
     for i, curve in enumerate(curves):
         rows = slice(i * steps, (i + 1) * steps)
         lines[curve.key] = CurveLine(
             x=np.degrees(getattr(grid, curve.over)[rows]),
-            raw={name: getattr(here, name)[rows] for name in SIDEWAYS},
-            even={name: 0.5 * (getattr(here, name) + getattr(there, name))[rows] for name in SIDEWAYS},
+            raw={name: values[rows] for name, values in here.items()},
+            even={name: 0.5 * (values + there[name])[rows] for name, values in here.items()},
         )
     return lines
 

@@ -2,6 +2,6 @@
 
 from mffit.rig.histories import distance_km, reference_speed, sense
 from mffit.rig.readings import Readings
-from mffit.rig.simulation import Simulation
+from mffit.rig.simulation import SIMULATED, Simulation
 
-__all__ = ["Readings", "Simulation", "distance_km", "reference_speed", "sense"]
+__all__ = ["SIMULATED", "Readings", "Simulation", "distance_km", "reference_speed", "sense"]

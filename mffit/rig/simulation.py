@@ -18,8 +18,11 @@ from mffit.rig.readings import Readings
 from mffit.rig_errors import BY_NAME, NO_FAULTS, OF_RUN, RIG_ERRORS, Faults
 from tir import Tyre
 from tir.derivatives import Traced, gradient, plain, traced
+from tir.equations.forces import Forces, State
 
 SWITCH = "turn_slip"
+SIMULATED = tuple(name for name in CHANNELS if name in (*Forces._fields, *State._fields))
+"""Channels that tir computes, under the same names."""
 
 
 @dataclass(frozen=True, slots=True, repr=False)

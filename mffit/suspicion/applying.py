@@ -19,10 +19,12 @@ from mffit.suspicion.rules import RULES
 def before_the_fit(points: Points, config: Config) -> tuple[str, ...]:
     """Warnings about points that are odd under their declaration.
 
-    On a disc the samples of moving sweeps are not judged. An InputError says that the points contradict every tyre or the
-    declaration, or that a disc cannot do without what is missing.
+    Points that were driven or braked are not judged, nor, on a disc, the samples of moving sweeps. An InputError says that the
+    points contradict every tyre or the declaration, or that a disc cannot do without what is missing.
     """
     judged = points.select(~points.continuous) if config.rig.on_disc else points
+    if np.any(judged.free_rolling) and not np.all(judged.free_rolling):
+        judged = judged.select(judged.free_rolling)
     warnings = []
     with as_declared(config):
         for rule, file, finding in _before(judged, config):

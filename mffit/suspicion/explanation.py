@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass
 
 import numpy as np
 
 from mffit.points import Points
+from mffit.quantities import CHANNELS, column
 from mffit.rig import Simulation
 from mffit.suspicion import constants
 from mffit.suspicion.mistakes import MISTAKES
@@ -16,8 +17,8 @@ from mffit.suspicion.prediction import PredictedChannel
 DEGREES = float(np.degrees(1.0))
 STEP = 1e-4
 """Step of the difference quotient over a set-point [rad], or relative for load and pressure."""
-Shape = Callable[[Points, Simulation], Mapping[str, np.ndarray]]
-"""Change of prediction less measured, per unit of a number, by channel."""
+Shape = Callable[[Points, Simulation, Collection[str]], Mapping[str, np.ndarray]]
+"""Change of prediction less measured in some channels, per unit of a number, by channel."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,28 +33,32 @@ class Shift:
 
 
 def _constant(channel: str) -> Shape:
-    return lambda points, simulation: {channel: -np.ones(len(points))}
+    return lambda points, simulation, among: {channel: -np.ones(len(points))}
 
 
 def _gain(channel: str) -> Shape:
-    return lambda points, simulation: {channel: -simulation.readings(points, (channel,))[channel]}
+    def shape(points: Points, simulation: Simulation, among: Collection[str]) -> Mapping[str, np.ndarray]:
+        return {channel: -simulation.readings(points, (channel,))[channel]} if channel in among else {}
+
+    return shape
 
 
 def _set_point(name: str, relative: bool = False) -> Shape:
-    def shape(points: Points, simulation: Simulation) -> Mapping[str, np.ndarray]:
+    def shape(points: Points, simulation: Simulation, among: Collection[str]) -> Mapping[str, np.ndarray]:
         value = getattr(points, name)
         moved = points.replace(**{name: value * (1.0 + STEP) if relative else value + STEP})
-        here, there = simulation.readings(points), simulation.readings(moved)
+        here, there = simulation.readings(points, among), simulation.readings(moved, among)
         return {channel: (here[channel] - there[channel]) / STEP for channel in here}
 
     return shape
 
 
 SHIFTS = (
-    Shift("a zero offset of {:+.3g} N in Fy_N", _constant("Fy"), sign="Fy"),
-    Shift("a zero offset of {:+.3g} Nm in Mz_Nm", _constant("Mz"), sign="Mz"),
-    Shift("a gain of {:.3g} in Fy_N", _gain("Fy"), start=1.0),
-    Shift("a gain of {:.3g} in Mz_Nm", _gain("Mz"), start=1.0),
+    *(
+        Shift(f"a zero offset of {{:+.3g}} {known.unit} in {column(name)}", _constant(name), sign=name)
+        for name, known in CHANNELS.items()
+    ),
+    *(Shift(f"a gain of {{:.3g}} in {column(name)}", _gain(name), start=1.0) for name in CHANNELS),
     Shift("a sideslip axis that is {:+.2g} deg out", _set_point("alpha"), unit=DEGREES, sign="alpha"),
     Shift("a camber axis that is {:+.2g} deg out", _set_point("gamma"), unit=DEGREES, sign="gamma"),
     Shift("a load that was {:+.2g} % off", _set_point("Fz", relative=True), unit=100.0),
@@ -75,7 +80,7 @@ def explanation(
         if gained > best:
             best, said = gained, mistake.looks
     for shift in SHIFTS:
-        gained, size = _fitted(points, errors, shift.shape(points, simulation))
+        gained, size = _fitted(points, errors, shift.shape(points, simulation, errors))
         if gained > best:
             best = gained
             said = shift.looks.format(shift.start + shift.unit * signs.get(shift.sign, 1.0) * size)
@@ -86,11 +91,11 @@ def _undone(
     points: Points, errors: Mapping[str, PredictedChannel], simulation: Simulation, changed: Points
 ) -> dict[str, np.ndarray]:
     """The errors with a mistake undone, to first order."""
-    here, there = simulation.readings(points), simulation.readings(changed)
+    here, there = simulation.readings(points, errors), simulation.readings(changed, errors)
     moved = {}
     for n, e in errors.items():
-        known = np.isfinite(getattr(points, n))
-        change = getattr(there, n) - getattr(here, n) - getattr(changed, n) + getattr(points, n)
+        known = np.isfinite(points.channel(n))
+        change = there[n] - here[n] - changed.channel(n) + points.channel(n)
         moved[n] = e.error + change[known]
     return moved
 
@@ -102,7 +107,7 @@ def _fitted(
     curvature = gradient = 0.0
     for n, e in errors.items():
         if n in shapes:
-            shape = shapes[n][np.isfinite(getattr(points, n))]
+            shape = shapes[n][np.isfinite(points.channel(n))]
             solved = np.linalg.solve(e.covariance, shape)
             curvature += float(shape @ solved)
             gradient += float(e.error @ solved)

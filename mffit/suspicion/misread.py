@@ -5,7 +5,7 @@ It is reversed, in another unit, or labelled with another load, camber or pressu
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping
 from dataclasses import asdict, dataclass
 from functools import partial
 
@@ -43,9 +43,11 @@ class Misread:
         return misread_sweep.said(asdict(self) | {"percent": 100 * self.before, "left": 100 * self.after})
 
 
-def misread(points: Points, simulation: Simulation, signs: Mapping[str, float]) -> Misread | None:
-    """The one sweep that contradicts a simulation as a known mistake would."""
-    return next(iter(misread_sweep.find(points, simulation, signs)), None)
+def misread(
+    points: Points, simulation: Simulation, signs: Mapping[str, float], channels: Collection[str] = SIDEWAYS
+) -> Misread | None:
+    """The one sweep that contradicts a simulation in some channels as a known mistake would."""
+    return next(iter(misread_sweep.find(points, simulation, signs, channels)), None)
 
 
 @rule(
@@ -65,7 +67,9 @@ def misread(points: Points, simulation: Simulation, signs: Mapping[str, float]) 
         "like {looks}, which leaves {left:.2g} %. It was left out. In column {column}: {remedy}."
     ),
 )
-def misread_sweep(points: Points, simulation: Simulation, signs: Mapping[str, float]) -> Iterator[Misread]:
+def misread_sweep(
+    points: Points, simulation: Simulation, signs: Mapping[str, float], channels: Collection[str] = SIDEWAYS
+) -> Iterator[Misread]:
     """Median error of the simulation over the usual size of the channel, with each known mistake undone.
 
     The sweep that is much further off than all others is found if a known mistake explains it. If several sweeps look like
@@ -76,13 +80,13 @@ def misread_sweep(points: Points, simulation: Simulation, signs: Mapping[str, fl
     if len(numbers) < constants.FEWEST_SWEEPS_FOR_MISREAD:
         return
     parts = [points.select(points.sweep == k) for k in numbers]
-    size = {name: usual_size(getattr(p, name) / p.Fz for p in parts) for name in SIDEWAYS}
+    size = {name: usual_size(p.channel(name) / p.Fz for p in parts) for name in channels}
 
     def away(of: Points) -> dict[str, Away]:
         return {n: Away(error=e, share=e) for n, e in _off(of, simulation, size).items()}
 
     off = [_off(part, simulation, size) for part in parts]
-    usual = {name: float(np.median([o[name] for o in off if name in o] or [np.nan])) for name in SIDEWAYS}
+    usual = {name: float(np.median([o[name] for o in off if name in o] or [np.nan])) for name in channels}
     found = []
     for part, before in zip(parts, off, strict=True):
         gross = _gross(before, [o for o in off if o is not before], usual)
@@ -168,10 +172,9 @@ def _moved(points: Points, signs: Mapping[str, float], channel: str, step: float
 
 def _off(part: Points, simulation: Simulation, size: Mapping[str, float]) -> dict[str, float]:
     """Median error of each channel of some points, as a share of its usual size."""
-    out = simulation.readings(part)
     load = float(np.mean(part.Fz))
     return {
-        name: robust((getattr(part, name) - getattr(out, name)) / (size[name] * load))
-        for name in SIDEWAYS
-        if np.isfinite(size[name]) and np.isfinite(getattr(part, name)).any()
+        name: robust((part.channel(name) - read) / (size[name] * load))
+        for name, read in simulation.readings(part, size).items()
+        if np.isfinite(size[name]) and np.isfinite(part.channel(name)).any()
     }

@@ -61,6 +61,9 @@ def _in_unit(field: str, column: str, what: str, *, unit: str, expected: str) ->
 
 
 FORCE = ("Fy", "Fy_N", "its side force")
+DRIVE = ("Fx", "Fx_N", "its longitudinal force")
+OVERTURNING = ("Mx", "Mx_Nm", "its overturning moment")
+ROLLING = ("My", "My_Nm", "its rolling resistance moment")
 LOAD = ("Fz", "Fz_N", "its load")
 MOMENT = ("Mz", "Mz_Nm", "its moment")
 SIDESLIP = ("alpha", "alpha_deg", "its sideslip")
@@ -68,7 +71,7 @@ CAMBER = ("gamma", "gamma_deg", "its camber")
 PRESSURE = ("p", "p_kPa", "its pressure")
 
 MISTAKES: tuple[Mistake, ...] = (
-    *(_reversed(*channel) for channel in (SIDESLIP, CAMBER, FORCE, MOMENT)),
+    *(_reversed(*channel) for channel in (SIDESLIP, CAMBER, FORCE, MOMENT, DRIVE, OVERTURNING, ROLLING)),
     Mistake(
         looks="sideslip and camber exchanged",
         column="alpha_deg",
@@ -107,8 +110,12 @@ MISTAKES: tuple[Mistake, ...] = (
         beyond_doubt=False,
     ),
     *(_in_unit(*LOAD, unit=unit, expected="N") for unit in ("kgf", "lbf")),
-    *(_in_unit(*FORCE, unit=unit, expected="N") for unit in ("kN", "kgf", "lbf")),
-    *(_in_unit(*MOMENT, unit=unit, expected="N m") for unit in ("N mm", "kN m", "lbf ft")),
+    *(_in_unit(*force, unit=unit, expected="N") for force in (FORCE, DRIVE) for unit in ("kN", "kgf", "lbf")),
+    *(
+        _in_unit(*moment, unit=unit, expected="N m")
+        for moment in (MOMENT, OVERTURNING, ROLLING)
+        for unit in ("N mm", "kN m", "lbf ft")
+    ),
     *(_in_unit(*angle, unit="rad", expected="deg") for angle in (SIDESLIP, CAMBER)),
     _in_unit(*PRESSURE, unit="psi", expected="kPa"),
 )

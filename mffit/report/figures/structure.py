@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from mffit.diagnosis.structure import DIRECTION, Bin, ResidualComparison, Structure
-from mffit.quantities import CONDITIONS, SIDEWAYS
+from mffit.quantities import CHANNELS, CONDITIONS
 from mffit.report import constants, style
 from mffit.report.drawing.records import Axis, ErrorBars, Guide, Look, Panel, Sheet, in_rows
 
@@ -26,7 +26,7 @@ def residual_means(found: Structure) -> Sheet:
     """A panel per channel and condition, the least likely first; of random residuals only one row per channel."""
     columns = int(constants.PANELS_PER_ROW_OF_MEANS)
     most = None if found.found else columns
-    groups = [[c for c in found.comparisons if c.channel == name and c.bins][:most] for name in SIDEWAYS]
+    groups = [[c for c in found.comparisons if c.channel == name and c.bins][:most] for name in CHANNELS]
     sides = sorted({b.side for group in groups for c in group for b in c.bins})
     panels = [[_panel(c, c in found.found) for c in group] for group in groups if group]
     return Sheet(

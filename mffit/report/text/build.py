@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from mffit.diagnosis import wording
 from mffit.fit import Coefficient
 from mffit.measured import setup_notes
-from mffit.quantities import SIDEWAYS
+from mffit.quantities import CHANNELS
 from mffit.report.text.direct import setups_table, spin_numbers
 from mffit.report.text.layout import blocks, paragraphs, table, wrapped
 from mffit.results import BuildResult
@@ -27,18 +27,17 @@ def build_summary(result: BuildResult) -> str:
         parts.append(setups_table(result.measured))
         scatter = result.measured.setup_scatter
         parts.append(wrapped(setup_notes.setup_scatter(scatter)) if scatter else "")
-    noise = {name: finite_median(getattr(result.points, f"u_{name}")) for name in SIDEWAYS}
     rows = [
         (
             name,
             str(a.n),
-            f"{number(a.rmse, digits=3)} {channel.unit}",
-            times(a.rmse, noise[name]),
-            f"{number(a.max_abs, digits=3)} {channel.unit}",
+            f"{number(a.rmse, digits=3)} {CHANNELS[name].unit}",
+            times(a.rmse, finite_median(result.points.u(name))),
+            f"{number(a.max_abs, digits=3)} {CHANNELS[name].unit}",
             number(a.r2, 5),
         )
-        for name, channel in SIDEWAYS.items()
-        if (a := fit.channels.get(name)) is not None and a.n
+        for name, a in fit.channels.items()
+        if a.n
     ]
     parts.append(table(("fit", "points", "rms", "of noise", "largest", "R2"), rows))
     parts += [wrapped(f"Limit: {sentence}.") for sentence in result.trust.remarks]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from mffit.quantities import DIRECT, SIDEWAYS
+from mffit.quantities import CHANNELS, DIRECT, SIDEWAYS
 from mffit.report.text.layout import blocks, table
 from mffit.results import BuildOutcome
 from mffit.rounding import ascii_only, number, stated
@@ -23,19 +23,20 @@ def many_line(outcome: BuildOutcome, number_of: int, total: int) -> str:
 
 def many_summary(outcomes: Sequence[BuildOutcome]) -> str:
     """Per tyre eps_gamma, misfit, warnings and file; for the others the reason why there is no file."""
+    whole = [o for o in outcomes if o.whole]
+    channels = [name for name in CHANNELS if name in SIDEWAYS or any(name in o.misfit for o in whole)]
     head = (
         "tyre",
         DIRECT["epsilon_gamma"].ascii,
-        *(c.column(f"{n} rms") for n, c in SIDEWAYS.items()),
+        *(CHANNELS[name].column(f"{name} rms") for name in channels),
         "warnings",
         "trusted",
     )
-    whole = [o for o in outcomes if o.whole]
     rows = [
         (
             o.name,
             stated(o.epsilon_gamma),
-            *(number(o.misfit.get(name), digits=3) for name in SIDEWAYS),
+            *(number(o.misfit.get(name), digits=3) for name in channels),
             str(o.warnings),
             "yes" if o.trusted else "NO",
         )

@@ -65,8 +65,8 @@ def test_scatter_replaces_missing_uncertainties(stiffer_camber):
     found = diagnose(points.replace(u_Fy=np.nan, u_Mz=np.nan), case.given, config)
     assert [f.effect.id for f in found.effects] == ["camber-stiffness"]
     # 6 N and 0.6 Nm were put in; the curvature of the sweeps may add to it
-    assert 4.0 < found.noise.Fy < 18.0
-    assert 0.4 < found.noise.Mz < 1.5
+    assert 4.0 < found.noise.typical("Fy") < 18.0
+    assert 0.4 < found.noise.typical("Mz") < 1.5
 
 
 @pytest.mark.parametrize("stated", [True, False])

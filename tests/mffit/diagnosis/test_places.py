@@ -385,7 +385,7 @@ def test_errors_that_neighbours_share_count_as_fewer_readings():
     assert_true(independent)
     assert_true(shared)
     for name in ("PKY6", "PDY2"):
-        per_noise = [answers(found)[name][1] / found.noise.Fy for found in (independent, shared)]
+        per_noise = [answers(found)[name][1] / found.noise.typical("Fy") for found in (independent, shared)]
         # Up to sqrt((1 + 0.61) / (1 - 0.61)) = 2 for what changes slowly along a sweep.
         assert 1.25 < per_noise[1] / per_noise[0] < 2.2, name
 
@@ -393,8 +393,8 @@ def test_errors_that_neighbours_share_count_as_fewer_readings():
 def test_a_noisy_channel_does_not_spoil_the_answers_of_the_other():
     """Forces scatter by 100 N instead of the stated 2.4 N; moments keep their weight."""
     found, quiet = three_effects(2.5, strange=100.0), three_effects(2.5)
-    assert found.noise.Fy == pytest.approx(math.hypot(100.0, U_FY), rel=0.2)
-    assert found.noise.Mz == pytest.approx(U_MZ, rel=0.2)
+    assert found.noise.typical("Fy") == pytest.approx(math.hypot(100.0, U_FY), rel=0.2)
+    assert found.noise.typical("Mz") == pytest.approx(U_MZ, rel=0.2)
     assert_true(found)
     assert answers(found)["M0_Nm"][1] == pytest.approx(answers(quiet)["M0_Nm"][1], rel=0.2)
     assert answers(found)["PDY2"][1] > 5.0 * answers(quiet)["PDY2"][1]

@@ -93,7 +93,7 @@ def test_readings_without_noise_get_that_of_the_best_rigs(rng):
     noise = found(rng.normal(0.0, 1e-4, N))
     assert noise.scatter["Fy"].without_noise
     assert not noise.scatter["Mz"].without_noise
-    assert pytest.approx(1e-3 * np.sqrt(np.mean(FORCE**2))) == noise.Fy
+    assert pytest.approx(1e-3 * np.sqrt(np.mean(FORCE**2))) == noise.typical("Fy")
 
 
 def test_outliers_are_listed_and_lose_their_weight(rng):
