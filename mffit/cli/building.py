@@ -35,6 +35,10 @@ FEWEST_TYRES_TO_COMPARE = 2
     help="Set a coefficient as [coefficients] does, instead of the entry there: PCY1=1.3 holds it, RBX1=base too; "
     "'PEY1={min=-3, max=0.5}' bounds it. May be repeated.",
 )
+@click.option("--no-report", is_flag=True, help="Write neither report.html nor plots, for quick tries; one TYRE_TOML.")
+@click.option(
+    "--strict", is_flag=True, help="Exit code 3 also if the result is only in doubt, for automatic runs; one TYRE_TOML."
+)
 @click.option("--jobs", type=click.IntRange(1), default=1, help="Number of tyres to build at the same time.")
 @click.option("--dask", metavar="ADDRESS", help="Build on the workers of this Dask scheduler.")
 @click.option(
@@ -51,6 +55,8 @@ def build(
     out: Path | None,
     ensemble: int,
     coefficients: tuple[str, ...],
+    no_report: bool,
+    strict: bool,
     jobs: int,
     dask: str | None,
     stored: Path | None,
@@ -61,7 +67,7 @@ def build(
     Runs the whole pipeline and writes .tir, result.json, report.html, points.csv and plots.
     """
     if stored is not None:
-        if tyre_tomls or out is not None or ensemble or dask or coefficients:
+        if tyre_tomls or out is not None or ensemble or dask or coefficients or no_report or strict:
             raise click.UsageError(
                 "--verify reads everything from its folder: give no TYRE_TOML and no other option"
             )
@@ -74,13 +80,21 @@ def build(
             raise click.UsageError(
                 "--set is a try with one TYRE_TOML: build the tyres one by one, or write [coefficients]"
             )
+        if no_report or strict:
+            raise click.UsageError("--no-report and --strict are for one TYRE_TOML: build the tyres one by one")
         _build_many(tyre_tomls, out, ensemble, jobs, dask, voice)
     else:
-        _build(tyre_tomls[0], out, ensemble, coefficients, voice)
+        _build(tyre_tomls[0], out, ensemble, coefficients, not no_report, strict, voice)
 
 
 def _build(
-    tyre_toml: Path, out: Path | None, ensemble: int, coefficients: tuple[str, ...], voice: Voice
+    tyre_toml: Path,
+    out: Path | None,
+    ensemble: int,
+    coefficients: tuple[str, ...],
+    with_report: bool,
+    strict: bool,
+    voice: Voice,
 ) -> None:
     from mffit import config, pipeline
     from mffit.report import text
@@ -89,15 +103,19 @@ def _build(
     out = out or tyre_toml.parent / "out"
     with voice.progress() as show:
         settings = config.load(tyre_toml, coefficients=coefficients)
-        result = pipeline.build(settings, out, ensemble=ensemble, progress=show)
+        result = pipeline.build(settings, out, ensemble=ensemble, with_report=with_report, progress=show)
     voice.warn(result.warnings)
     voice.say(text.build_summary(result))
     files = dict.fromkeys((result.tir_path, *result.files.values()))
     drawn = f", ensemble ({len(result.members)} files)" if result.members else ""
-    voice.say(f"written to {out}: {', '.join(files)}, report.html, result.json, points.csv, plots{drawn}")
+    tables = "report.html, result.json, points.csv, plots" if with_report else "result.json, points.csv"
+    voice.say(f"written to {out}: {', '.join(files)}, {tables}{drawn}")
     voice.give(lambda: as_json.build(result))
     if not result.trusted:
         click.echo(f"{result.tir_path} is not to be trusted: see above", err=True)
+        raise SystemExit(NOT_TRUSTED)
+    if strict and result.trust.doubts:
+        click.echo(f"{result.tir_path} is in doubt, and --strict asks for more: {result.trust.doubts[0]}", err=True)
         raise SystemExit(NOT_TRUSTED)
 
 

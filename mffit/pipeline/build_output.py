@@ -24,16 +24,22 @@ from mffit.suspicion import marks
 
 USES = ("turn-slip", "normal")
 """Uses of a property file that are part of its name where it is not the plain one."""
-WRITTEN = ("result.json", "information.json", "points.csv", "report.html")
+REPORT = "report.html"
+WRITTEN = ("result.json", "information.json", "points.csv", REPORT)
 """Files that every build writes beside its property files."""
 
 
-def write_build(result: BuildResult, out: Path, stretches: Sequence[StretchNote] = ()) -> None:
-    """Write every output of a build, or nothing; ``stretches`` of recordings go to ``stretches.csv``."""
-    from mffit import report
+def write_build(
+    result: BuildResult, out: Path, stretches: Sequence[StretchNote] = (), *, with_report: bool = True
+) -> None:
+    """Write every output of a build, or nothing.
 
+    ``stretches`` of recordings go to ``stretches.csv``. Without report, page and plots of an earlier build are removed.
+    """
     name = result.config.tyre.name
     siblings = [*(f"{name}-{use}.tir" for use in USES), name_at_temperature(name)]
+    if not with_report:
+        siblings += [REPORT, *(f"plots/{path.name}" for path in (out / "plots").glob("*.png"))]
     with output_folder(out, by="build", protected=inputs_of(result.config), outdated=siblings) as folder:
         for use, name in result.files.items():
             result.tyres[use].write(folder / name)
@@ -44,7 +50,10 @@ def write_build(result: BuildResult, out: Path, stretches: Sequence[StretchNote]
             stretch_table(stretches).to_csv(folder / "stretches.csv", index=False)
         (folder / "resolved.toml").write_bytes(resolved_text(result.config, out))
         write_members(result, folder)
-        report.write_build(result, folder)
+        if with_report:
+            from mffit import report
+
+            report.write_build(result, folder)
 
 
 def resolved_text(config: Config, out: Path) -> bytes:
