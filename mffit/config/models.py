@@ -5,6 +5,7 @@ Every ``u_`` is one standard deviation (k = 1). Units are those of the file, as 
 
 from __future__ import annotations
 
+import math
 import re
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal
@@ -243,6 +244,18 @@ class FitTable(Table):
     exclude: Annotated[tuple[ExcludeTable, ...], BeforeValidator(list_of_tables)] = ()
 
 
+class NormalTable(Table):
+    """[normal]: the file for turn slip off."""
+
+    weight: Literal["everything", "road"] = "everything"
+    camber_max_deg: q.CamberLimit | None = None  #: None: the written range
+
+    @property
+    def camber_max(self) -> float | None:
+        """The limit of camber [rad]; None without one."""
+        return None if self.camber_max_deg is None else math.radians(self.camber_max_deg)
+
+
 class ModelTable(Table):
     """[model]: settings of the simulation that measurements are compared with."""
 
@@ -302,6 +315,7 @@ class Config(Brief, Table):
     spin: SpinTable = SpinTable()
     coefficients: Annotated[Entries, BeforeValidator(named)] = Field(default_factory=dict)
     fit: FitTable = FitTable()
+    normal: NormalTable = NormalTable()
     model: ModelTable = ModelTable()
     lab: LabTable = LabTable()
     columns: Columns = Field(default_factory=dict)  #: of all files; those of a sweep take precedence

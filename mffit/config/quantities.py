@@ -94,6 +94,9 @@ Speed = Annotated[float, AfterValidator(Range(0.01, 150.0, "m/s", above="write m
 EstimateAngle = Annotated[
     float, AfterValidator(Range(1.0, 60.0, "deg", below="it looks like radians, write degrees"))
 ]
+CamberLimit = Annotated[
+    float, AfterValidator(Range(5.0, 70.0, "deg", below="it looks like radians, write degrees"))
+]
 Play = Annotated[float, AfterValidator(Range(0.0, 10.0, "deg", above="write the full play in degrees"))]
 Revolutions = Annotated[float, AfterValidator(Range(0.0, 1e4, "revolutions"))]
 Inclination = Annotated[float, AfterValidator(Range(-360.0, 720.0, "deg"))]

@@ -203,6 +203,9 @@ WEIGHT_OUTSIDE_TESTED = Real(
     0.02, "-", "Weight of untested conditions: keeps them plausible at little cost inside."
 )
 WEIGHT_IN_CORNER = Real(0.5, "-", "Weight of conditions with large sideslip and large camber.")
+WEIGHT_IN_CORNER_OF_THE_ROAD = Real(
+    0.02, "-", 'The same with [normal] weight = "road": who leans far slides little, so that this is a fall.'
+)
 ROAD_ALPHA_SCALE = Real(4.0, "deg", "Sideslip that counts as large together with large camber.")
 ROAD_GAMMA_SCALE = Real(25.0, "deg", "Camber that counts as large together with large sideslip.")
 CAMBER_LINE_GRID = Series(

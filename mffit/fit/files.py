@@ -4,16 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
-from typing import Any
+from typing import Any, NamedTuple
 
 from mffit.fit import constants
 from mffit.fit.by_hand import Hand
 from mffit.fit.known import Known
 from mffit.fit.misfit import FileFigures, Reference
-from mffit.fit.normal import derive
+from mffit.fit.normal import derive, side_force_for
 from mffit.fit.ranges import NAMES as RANGES
 from mffit.fit.ranges import plausible_ranges, tested_ranges, with_room
-from mffit.fit.road import road_grid
+from mffit.fit.road import held_to_camber, road_grid
 from mffit.fit.start import camber_stiffness_terms
 from mffit.points import Points, main_path, main_pressure
 from tir import Tyre
@@ -30,6 +30,10 @@ class Files:
     changed: Mapping[str, tuple[str, ...]]  #: by use, coefficients that differ from the fitted model
     lacking: Mapping[float, float]
     """Turn-slip force [N] at nominal load, by radius of the road [m], that the file for turn slip off lacks."""
+    weight: str = "everything"  #: of the file for turn slip off, see :func:`mffit.fit.road.weights`
+    camber_limit: float | None = None  #: to which the file for turn slip off is held [rad]
+    otherwise: FileFigures | None = None
+    """The file for turn slip off with the other weight, or where it is held to some camber, without that limit."""
     untested: Mapping[str, str] = field(default_factory=dict)
     """Where the written range of a quantity comes from that the sweeps do not vary, in words."""
 
@@ -68,20 +72,28 @@ def make_files(
     )
     side = "RIGHT" if str(known.values["TYRESIDE"]).upper().startswith("R") else "LEFT"
     model = {**known.values, **written, "TYRESIDE": side, "FITTYP": 62}
-    changed = _changed(config, model, points, tested, written, C_gamma, known.hand, only)
-    reference = Reference(
-        model=model,
-        road=road_grid(tested, written, float(model["FNOMIN"])),
-        tested=tested,
-        phi_t=main_path(points),
-    )
+    camber = config.normal.camber_max if disc else None
+    fits = _Derivation(config, model, points, tested, written, C_gamma, known.hand)
+    changed = fits.changed(only)
     template = base or Tyre.from_values({})
-    tyres = {
-        use: template.replace(**{**model, **values, "USE_MODE": use_mode(model, use)})
-        for use, values in changed.items()
+
+    def figures(use: str, values: Mapping[str, float], limit: float | None) -> FileFigures:
+        held = held_to_camber(written, limit)
+        ends = {name: held[name] for name in ("CAMMIN", "CAMMAX")} if limit is not None else {}
+        tyre = template.replace(**{**model, **values, **ends, "USE_MODE": use_mode(model, use)})
+        inside = held_to_camber(tested, limit)
+        road = road_grid(inside, held, float(model["FNOMIN"]))
+        return Reference(model, road, inside, main_path(points)).figures(tyre, use)
+
+    by_use = {
+        use: figures(use, values, camber if use == "normal" else None) for use, values in changed.items()
     }
+    otherwise = fits.otherwise(changed["normal"]) if disc and only is None else None
     return Files(
-        by_use={use: reference.figures(tyre, use) for use, tyre in tyres.items()},
+        by_use=by_use,
+        weight=config.normal.weight,
+        camber_limit=camber,
+        otherwise=None if otherwise is None else figures("normal", otherwise, None),
         tested=tested,
         written=written,
         changed={use: tuple(values) for use, values in changed.items() if values},
@@ -90,33 +102,55 @@ def make_files(
     )
 
 
-def _changed(
-    config: Any,
-    model: Mapping[str, Any],
-    points: Points,
-    tested: Mapping[str, float],
-    written: Mapping[str, float],
-    C_gamma: Mapping[float, float],
-    hand: Hand,
-    only: str | None,
-) -> dict[str, dict[str, float]]:
-    """By use of each file, the coefficients in which it differs from the fitted model."""
-    if not config.rig.on_disc:
-        return {"normal": {}}
-    if only == "turn-slip":
-        return {"turn-slip": {}}
-    symmetric = config.tyre.side == "symmetric"
-    main = float(points.p[main_pressure(points)].mean())
-    terms = camber_stiffness_terms(model, C_gamma, main, hand.held)
-    changed = {
-        "turn-slip": {},
-        "normal": derive(model, tested, written, terms, symmetric=symmetric, hand=hand),
-    }
-    if config.spin.exact == "both":
-        changed["both"] = derive(
-            model, tested, written, terms, both_on=main_path(points), symmetric=symmetric, hand=hand
+class _Derivation(NamedTuple):
+    """What the derived files are made from."""
+
+    config: Any
+    model: Mapping[str, Any]
+    points: Points
+    tested: Mapping[str, float]
+    written: Mapping[str, float]
+    C_gamma: Mapping[float, float]
+    hand: Hand
+
+    def changed(self, only: str | None) -> dict[str, dict[str, float]]:
+        """By use of each file, the coefficients in which it differs from the fitted model."""
+        if not self.config.rig.on_disc:
+            return {"normal": {}}
+        if only == "turn-slip":
+            return {"turn-slip": {}}
+        changed = {"turn-slip": {}, "normal": self._normal(self.config.normal.camber_max)}
+        if self.config.spin.exact == "both":
+            changed["both"] = derive(
+                self.model, self.tested, self.written, self._terms,
+                both_on=main_path(self.points), symmetric=self._symmetric, hand=self.hand,
+            )  # fmt: skip
+        return changed if only is None else {only: changed[only]}
+
+    def otherwise(self, normal: Mapping[str, float]) -> dict[str, float]:
+        """The file for turn slip off without its limit of camber, or with the other weight if it has none."""
+        normal_table = self.config.normal
+        if normal_table.camber_max is not None:
+            return self._normal(None)
+        other = "road" if normal_table.weight == "everything" else "everything"
+        ranges = (self.tested, self.written, self._terms)
+        return side_force_for(other, self.model, normal, *ranges, symmetric=self._symmetric, hand=self.hand)
+
+    def _normal(self, camber: float | None) -> dict[str, float]:
+        ranges = (held_to_camber(self.tested, camber), held_to_camber(self.written, camber))
+        weight = self.config.normal.weight
+        return derive(
+            self.model, *ranges, self._terms, symmetric=self._symmetric, hand=self.hand, weight=weight
         )
-    return changed if only is None else {only: changed[only]}
+
+    @property
+    def _symmetric(self) -> bool:
+        return bool(self.config.tyre.side == "symmetric")
+
+    @property
+    def _terms(self) -> dict[str, float]:
+        main = float(self.points.p[main_pressure(self.points)].mean())
+        return camber_stiffness_terms(self.model, self.C_gamma, main, self.hand.held)
 
 
 def _turn_slip_forces(model: Mapping[str, Any]) -> dict[float, float]:

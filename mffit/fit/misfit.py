@@ -27,6 +27,9 @@ class Misfit:
     largest: float
     lean_30: float  #: rms up to 30 deg of camber
     beyond: float  #: rms of the conditions outside the tested but inside the written ranges
+    ridden: float = (
+        0.0  #: rms with the weights of the road, where much lean and much sideslip together hardly count
+    )
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,6 +79,13 @@ class Reference(NamedTuple):
             largest=float(np.max(np.abs(difference[within]))),
             lean_30=rms(difference[moderate]),
             beyond=rms(difference[~within]) if np.any(~within) else 0.0,
+            ridden=float(
+                np.sqrt(
+                    np.average(
+                        difference[within] ** 2, weights=weights(self.road, self.tested, "road")[within]
+                    )
+                )
+            ),
         )
 
 

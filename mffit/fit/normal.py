@@ -38,6 +38,7 @@ def derive(
     both_on: float | None = None,
     symmetric: bool = False,
     hand: Hand = NO_HAND,
+    weight: str = "everything",
 ) -> dict[str, float]:
     """Coefficients of a derived file, where they differ from the fitted model.
 
@@ -55,9 +56,10 @@ def derive(
     both_on : for the file for both uses, curvature of the disc's path [1/m]; None for the file for turn slip off
     symmetric : hold the terms that a symmetric tyre does not have
     hand : coefficients that are held in every file, and bounds that every file keeps
+    weight : "everything" or "road", see :func:`mffit.fit.road.weights`
     """
     roads = [road_grid(tested, written, float(values["FNOMIN"]), dense=dense) for dense in (False, True)]
-    coarse, fine = (_goals(values, road, tested, both_on) for road in roads)
+    coarse, fine = (_goals(values, road, tested, both_on, weight) for road in roads)
     free = _free(both=both_on is not None, symmetric=symmetric)
     free = {channel: hand.without_held(names) for channel, names in free.items()}
     found = dict(values)
@@ -82,10 +84,42 @@ def derive(
     return {name: found[name] for names in free.values() for name in names if found[name] != values[name]}
 
 
+def side_force_for(
+    weight: str,
+    values: Mapping[str, Any],
+    found: Mapping[str, float],
+    tested: Mapping[str, float],
+    written: Mapping[str, float],
+    measured: Mapping[str, float],
+    *,
+    symmetric: bool = False,
+    hand: Hand = NO_HAND,
+) -> dict[str, float]:
+    """Coefficients of the side force in the file for turn slip off with another weight, from those of :func:`derive`."""
+    road = road_grid(tested, written, float(values["FNOMIN"]))
+    names = hand.without_held(_free(both=False, symmetric=symmetric)["Fy"])
+    aim = Imitation(
+        "Fy",
+        values,
+        _goals(values, road, tested, None, weight),
+        envelope(written),
+        _lines(values, written),
+    )
+    start = {name: float(found.get(name, values[name])) for name in names}
+    end = aim.solve(
+        _numbers(start, measured, hand), steps=constants.FINE_GRID_STEPS, tolerance=constants.REFIT_TOLERANCE
+    )
+    return {**found, **end.values}
+
+
 def _goals(
-    values: Mapping[str, Any], road: Road, tested: Mapping[str, float], both_on: float | None
+    values: Mapping[str, Any],
+    road: Road,
+    tested: Mapping[str, float],
+    both_on: float | None,
+    kind: str,
 ) -> tuple[ForcesToReproduce, ...]:
-    weight = weights(road, tested)
+    weight = weights(road, tested, kind)
     without = goal(values, road, weight, turn_slip=False)
     if both_on is None:
         return (without,)

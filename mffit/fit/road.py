@@ -62,17 +62,31 @@ def camber_lines(written: Mapping[str, float]) -> tuple[Road, int]:
     return Road(Fz.ravel(), np.zeros(Fz.size), gamma.ravel(), pressure), n
 
 
-def weights(road: Road, tested: Mapping[str, float]) -> np.ndarray:
+CORNER = {
+    "everything": float(constants.WEIGHT_IN_CORNER),
+    "road": float(constants.WEIGHT_IN_CORNER_OF_THE_ROAD),
+}
+"""By ``[normal] weight``, the weight of conditions with much lean and much sideslip."""
+
+
+def weights(road: Road, tested: Mapping[str, float], weight: str = "everything") -> np.ndarray:
     """Weight (n,) of each condition: conditions that vehicles reach count more than the corners of the ranges.
 
     A wheel with much camber has little sideslip and a wheel with much sideslip has little camber; both at once is a fall. Inside
     the tested ranges the weight is ``1/2 + 1/2 / (1 + (alpha/4 deg * gamma/25 deg)**2)``: 1 along both axes, nearly 1/2 in
-    the corner of 8 deg of sideslip and 50 deg of camber. Conditions outside the tested ranges have a fiftieth of it.
+    the corner of 8 deg of sideslip and 50 deg of camber. With ``weight = "road"`` a fiftieth remains in the corner instead of
+    1/2. Conditions outside the tested ranges have a fiftieth of it.
     """
     both = (road.alpha / constants.ROAD_ALPHA_SCALE.rad * road.gamma / constants.ROAD_GAMMA_SCALE.rad) ** 2
-    corner = constants.WEIGHT_IN_CORNER
+    corner = CORNER[weight]
     share = np.where(inside(road, tested), 1.0, constants.WEIGHT_OUTSIDE_TESTED)
     return share * (corner + (1.0 - corner) / (1.0 + both))
+
+
+def held_to_camber(ranges: Mapping[str, float], camber: float | None) -> dict[str, float]:
+    """The ranges with camber up to an angle [rad] only; None for no limit."""
+    end = ranges["CAMMAX"] if camber is None else min(camber, ranges["CAMMAX"])
+    return {**ranges, "CAMMIN": -end, "CAMMAX": end}
 
 
 def inside(road: Road, tested: Mapping[str, float]) -> np.ndarray:

@@ -63,7 +63,8 @@ def file_sentences(files: Files, names: Mapping[str, str]) -> list[str]:
         *both,
         _use_sentence(files, names),
         f"{names['turn-slip']} is the fitted model itself.",
-        _misfit_sentence(files.by_use["normal"], names["normal"]),
+        _misfit_sentence(files.by_use["normal"], names["normal"], files.camber_limit),
+        *_otherwise_sentences(files, names["normal"]),
         _lacking_sentence(files, names["normal"]),
         ranges_sentence(files),
     ]
@@ -86,14 +87,42 @@ def _use_sentence(files: Files, names: Mapping[str, str]) -> str:
     )
 
 
-def _misfit_sentence(normal: FileFigures, name: str) -> str:
+def _misfit_sentence(normal: FileFigures, name: str, limit: float | None) -> str:
     Fy, Mz = normal.straight["Fy"], normal.straight["Mz"]
+    everything = (
+        "everything tested"
+        if limit is None
+        else f"everything tested to {np.degrees(limit):.0f} deg of camber"
+    )
     return (
         f"{name} reproduces the fitted model on a straight path to {Fy.weighted:.0f} N and {Mz.weighted:.1f} Nm rms in the "
-        f"conditions that vehicles reach ({Fy.rms:.0f} N and {Mz.rms:.1f} Nm rms over everything tested, {Fy.largest:.0f} N "
+        f"conditions that vehicles reach ({Fy.rms:.0f} N and {Mz.rms:.1f} Nm rms over {everything}, {Fy.largest:.0f} N "
         "at most). The reason is that camber changes the grip through spin, for which the formula without spin has no "
         "term. For an upright wheel the two files are equal."
     )
+
+
+def _otherwise_sentences(files: Files, name: str) -> list[str]:
+    """What the other choice under [normal] would give."""
+    if files.otherwise is None:
+        return []
+    here, there = files.by_use["normal"], files.otherwise
+    slope = files.by_use["turn-slip"].camber_stiffness
+    loss = [1.0 - file.camber_stiffness / slope for file in (here, there)]
+    if files.camber_limit is not None:
+        limit = f"{np.degrees(files.camber_limit):.0f} deg"
+        return [
+            f"{name} is held to {limit} of camber, as [normal] camber_max_deg asks, and CAMMAX is written accordingly. Without "
+            f"this limit it would reproduce all tested camber to {there.straight['Fy'].rms:.0f} N rms, and lack {loss[1]:.0%} "
+            f"instead of {loss[0]:.0%} of the camber stiffness at zero."
+        ]
+    other = "road" if files.weight == "everything" else "everything"
+    Fy, would = here.straight["Fy"], there.straight["Fy"]
+    return [
+        f'With [normal] weight = "{other}" {name} would be off by {would.ridden:.1f} instead of {Fy.ridden:.1f} N rms where '
+        f"vehicles are ridden (much lean and much sideslip apart), by {would.rms:.1f} instead of {Fy.rms:.1f} N over "
+        f"everything tested, and lack {loss[1]:.1%} instead of {loss[0]:.1%} of the camber stiffness at zero."
+    ]
 
 
 def _lacking_sentence(files: Files, name: str) -> str:

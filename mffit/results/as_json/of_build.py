@@ -16,6 +16,7 @@ from mffit.fit import Coefficient, FitResult
 from mffit.fit.bands import BandsByPressure
 from mffit.fit.between_runs import BetweenRuns
 from mffit.fit.files import Files
+from mffit.fit.misfit import FileFigures
 from mffit.fit.nuisance_choice import Verdict
 from mffit.fit.temperature import AtTemperature
 from mffit.made import Made
@@ -314,6 +315,14 @@ def _coefficient(found: Coefficient) -> dict[str, Any]:
     }
 
 
+def _otherwise(file: FileFigures) -> dict[str, Any]:
+    """The misfit of the file for turn slip off by the other choice under [normal]."""
+    return {
+        "straight": {channel: asdict(misfit) for channel, misfit in file.straight.items()},
+        "camber_stiffness_N_per_rad": file.camber_stiffness,
+    }
+
+
 def _files(files: Files) -> dict[str, Any]:
     """Misfits of each written file by use, and the ranges."""
     out: dict[str, Any] = {
@@ -332,6 +341,9 @@ def _files(files: Files) -> dict[str, Any]:
     if files.lacking:
         out["normal"] |= {
             "camber_stiffness_loss": files.stiffness_loss,
+            "weight": files.weight,
+            "camber_max_deg": None if files.camber_limit is None else math.degrees(files.camber_limit),
+            "otherwise": None if files.otherwise is None else _otherwise(files.otherwise),
             "turn_slip_force_lacking_N": {f"{radius:g} m": force for radius, force in files.lacking.items()},
         }
     return {**out, "ranges": {"tested": dict(files.tested), "written": dict(files.written)}}

@@ -5,10 +5,12 @@ from __future__ import annotations
 import shutil
 from pathlib import Path
 
+import pytest
 import tomli_w
 from test_config_loading import COMPLETE, MINIMAL
 
 from mffit import config
+from mffit.errors import InputError
 
 
 def settings(found: config.Config) -> dict:
@@ -56,5 +58,15 @@ def test_every_default_is_filled_in(tmp_path):
     (tmp_path / "tyre.toml").write_text(MINIMAL)
     content = config.resolved(config.load(tmp_path / "tyre.toml"), tmp_path)
     assert content["rig"]["u_slip_alignment_N"] == 25.0
+    assert content["normal"] == {"weight": "everything"}
     assert content["model"] == {"turn_slip": True, "star": False, "u_coefficients": 0.0}
     assert content["sweep"][0] == {"file": "a.csv", "mount": "normal"}
+
+
+def test_the_camber_of_the_normal_file_is_in_degrees(tmp_path):
+    (tmp_path / "tyre.toml").write_text(MINIMAL + '\n[normal]\nweight = "road"\ncamber_max_deg = 30\n')
+    found = config.load(tmp_path / "tyre.toml").normal
+    assert (found.weight, found.camber_max) == ("road", pytest.approx(0.5235987755982988))
+    (tmp_path / "tyre.toml").write_text(MINIMAL + "\n[normal]\ncamber_max_deg = 0.5\n")
+    with pytest.raises(InputError, match="radians"):
+        config.load(tmp_path / "tyre.toml")

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from types import SimpleNamespace
 
+import numpy as np
 import pytest
 
 from mffit.fit.files import Files, file_names
@@ -129,3 +131,15 @@ def test_pecp1_is_explained_where_it_was_measured(measured):
     said = explanations(config, files(), {"PECP1": 0.1}, epsilon)
     assert said[-1].startswith("PECP1 = 0.1000") == measured
     assert len(said) == 5 + measured
+
+
+def test_what_the_other_choice_would_give_is_said():
+    wide = replace(files(), otherwise=file(124, -1080.0, straight=2.0))
+    sentence = file_sentences(wide, file_names("small", "turn-slip", True))[3]
+    assert 'With [normal] weight = "road" small-normal.tir would be off by' in sentence
+    assert "14.0 instead of 7.0 N over everything tested, and lack 10.0% instead of 5.0%" in sentence
+    held = replace(wide, camber_limit=np.radians(30.0))
+    misfit, sentence = file_sentences(held, file_names("small", "turn-slip", True))[2:4]
+    assert "over everything tested to 30 deg of camber" in misfit
+    assert "is held to 30 deg of camber" in sentence
+    assert "reproduce all tested camber to 14 N rms, and lack 10% instead of 5%" in sentence

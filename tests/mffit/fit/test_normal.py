@@ -11,6 +11,7 @@ import pytest
 
 import mffit
 import tir
+from mffit.config.models import NormalTable
 from mffit.diagnosis.notes import ModelFittedFirst
 from mffit.fit.comments import whole_words
 from mffit.fit.files import file_names, use_mode
@@ -117,6 +118,32 @@ def test_the_missing_force_and_stiffness_of_the_normal_file_are_stated(result):
     forces = list(files.lacking.values())
     assert forces == sorted(forces)
     assert as_json.fit(result.fit)["files"]["normal"]["turn_slip_force_lacking_N"]["10 m"] == forces[-1]
+
+
+def test_the_other_weight_is_stated_and_is_better_where_one_rides(result):
+    files = result.fit.files
+    here, there = (file.straight["Fy"] for file in (files.by_use["normal"], files.otherwise))
+    assert there.ridden < here.ridden
+    assert there.rms > here.rms
+    assert 0.5 * here.rms < there.rms < 1.5 * here.rms
+    stated = as_json.fit(result.fit)["files"]["normal"]
+    assert (stated["weight"], stated["camber_max_deg"]) == ("everything", None)
+    assert stated["otherwise"]["straight"]["Fy"]["ridden"] == there.ridden
+
+
+def test_held_to_thirty_degrees_the_file_is_four_times_as_near(result):
+    """Independently computed, the formula reaches 11 to 15 N to 30 deg; CAMMAX is that of this file alone."""
+    config = result.config.model_copy(update={"normal": NormalTable(camber_max_deg=30.0)})
+    config._folder, config._path = result.config.folder, result.config.path
+    held = mffit.build(config).fit.files
+    normal = held.by_use["normal"]
+    assert normal.straight["Fy"].rms < 16.0
+    assert (normal.tyre["CAMMIN"], normal.tyre["CAMMAX"]) == pytest.approx((-np.pi / 6.0, np.pi / 6.0))
+    assert held.by_use["turn-slip"].tyre["CAMMAX"] == result.tyre["CAMMAX"]
+    assert abs(normal.camber_stiffness) > abs(result.fit.files.by_use["normal"].camber_stiffness)
+    assert held.otherwise.straight["Fy"].rms == pytest.approx(
+        result.fit.files.by_use["normal"].straight["Fy"].rms
+    )
 
 
 def test_pecp1_is_the_measured_eps_gamma(result):
