@@ -102,7 +102,8 @@ def _of_channel(
     There are no offsets if the readings show no memory: nothing else looks like them.
     """
     first = MarginalParts(math.log(start.scale), start.growth, start.memory, constants.SCATTER_START_SMOOTH)
-    channel, parts, tails = _weighted(channel, first)
+    several = any(columns.shape[1] for columns in runs.values())
+    channel, parts, tails = _weighted(channel, first, drift=several)
     offsets: dict[str, RunOffsets] = {}
     if parts.memory:
         # Offsets of whole runs and a memory give runs the same means: each is fitted beside the other.
@@ -117,7 +118,7 @@ def _of_channel(
                 if odds > most:
                     most, best = odds, (beside, found)
         if best is not None:
-            channel, parts, tails = _weighted(*best)
+            channel, parts, tails = _weighted(*best, drift=True)
     scatter = Scatter(
         math.exp(parts.log_scale), parts.growth, parts.memory, independent=parts.independent, tails=tails
     )
@@ -133,11 +134,16 @@ def _with_offsets(channel: MarginalChannel, runs: np.ndarray, parts: MarginalPar
     return max(climbs, key=lambda climb: climb[1])[0]
 
 
-def _weighted(channel: MarginalChannel, parts: MarginalParts) -> tuple[MarginalChannel, MarginalParts, float]:
-    """The channel with its weights, and the parts and degrees of freedom that were found in turn with them."""
+def _weighted(
+    channel: MarginalChannel, parts: MarginalParts, *, drift: bool
+) -> tuple[MarginalChannel, MarginalParts, float]:
+    """The channel with its weights, and the parts and degrees of freedom that were found in turn with them.
+
+    ``drift``: whether errors without memory beside those with one are considered, which tells drifts from offsets of runs.
+    """
     tails = math.inf
     for _ in range(constants.MOST_READING_WEIGHT_ROUNDS):
-        parts = _accepted(channel, parts)
+        parts = _accepted(channel, parts, drift=drift)
         z = channel.standardised(parts)
         before, (tails, width) = tails, heavy_tails(z)
         weight = weights(z, tails, width)
@@ -148,7 +154,7 @@ def _weighted(channel: MarginalChannel, parts: MarginalParts) -> tuple[MarginalC
     return channel, parts, tails
 
 
-def _accepted(channel: MarginalChannel, start: MarginalParts) -> MarginalParts:
+def _accepted(channel: MarginalChannel, start: MarginalParts, *, drift: bool) -> MarginalParts:
     """The likeliest parts, without growth or memory if the data do not ask for them."""
     second = MarginalParts(*constants.SCATTER_SECOND_START)._replace(offsets=start.offsets)
     every = (*ALL, OFFSETS) if channel.runs is not None else ALL
@@ -159,7 +165,7 @@ def _accepted(channel: MarginalChannel, start: MarginalParts) -> MarginalParts:
         other, less = _climb(channel, MarginalParts(*reduced), free)
         if whole - less < constants.SCATTER_PART_GAIN:
             best, whole = other, less
-    if best.memory:
+    if best.memory and drift:
         longer = float(constants.LONG_MEMORY)
         two = best._replace(memory=longer, independent=float(constants.SCATTER_START_INDEPENDENT))
         free = tuple(k for k in (*every, INDEPENDENT) if k != GROWTH or best.growth)

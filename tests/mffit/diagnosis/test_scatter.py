@@ -80,7 +80,7 @@ def test_errors_that_are_correlated_along_a_sweep(rng):
 
 def test_a_memory_beside_independent_errors(rng):
     """Of 6 N together; a single memory would be a compromise that leaves slow errors unexplained."""
-    scatter = found(0.8 * correlated(rng, 0.97) + rng.normal(0.0, 3.6, N)).scatter["Fy"]
+    scatter = found(0.8 * correlated(rng, 0.97) + rng.normal(0.0, 3.6, N), offsets=5.0).scatter["Fy"]
     assert scatter.memory == pytest.approx(0.97, abs=0.03)
     assert scatter.scale**2 * scatter.independent == pytest.approx(0.36, abs=0.1)
 
