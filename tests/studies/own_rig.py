@@ -45,7 +45,7 @@ class Run:
 
 
 def programme(load: float, p: float, rng: np.random.Generator) -> Run:
-    """About 390 points: sideslip up and down, camber, zeros, leaned sweeps; two more pressures; slow first, then fast."""
+    """319 points: sideslip up and down, camber, zeros, leaned sweeps; two more pressures; slow first, then fast."""
     runs = []
     for Fz in (0.6 * load, load, 1.5 * load):
         runs += [(f"up_{Fz:.0f}", UP, (0,), Fz, p, 0), (f"down_{Fz:.0f}", UP[::-1], (0,), Fz, p, 0)]
