@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
+
 import numpy as np
 import pandas as pd
 import pytest
@@ -10,9 +12,10 @@ from flat_belt import RATE, SPEED, write_mat
 from mffit import config as configuration
 from mffit import points
 from mffit.points import make_points
+from mffit.points.averaging import _blocks
 from mffit.points.stretch import SWEEP
 
-SWEEP_S, REST_S = 2.4, 3.0
+SWEEP_S, REST_S = 6.0, 3.0
 SLIPS, LOADS = (0.0, 3.0, 6.0), (500.0, 1600.0)
 COLUMNS = {
     "time_s": "ET", "alpha_deg": "SA", "gamma_deg": "IA", "Fz_N": "FZ", "Fx_N": "FX", "Fy_N": "FY", "Mz_Nm": "MZ",
@@ -73,9 +76,15 @@ def test_every_condition_is_a_sweep_of_slip_with_all_channels(read):
         rows = p.sweep == k
         assert (p.kappa[rows].min(), p.kappa[rows].max()) == pytest.approx((-0.15, 0.15), abs=0.012)
         assert np.ptp(np.degrees(p.alpha[rows])) < 0.05
-        # A block covers 0.02 of slip to a whole sample, which is 0.0025; a tenth of a second would be 0.025.
-        assert np.max(np.abs(np.diff(p.kappa[rows]))) < 0.0242
     assert not any("lag" in sentence for sentence in found.warnings)
+
+
+def test_a_fast_sweep_is_averaged_over_a_fiftieth_of_slip():
+    """At a slip of 1 per second a tenth of a second would be 0.1; at 0.1 per second it is the tenth of a second."""
+    for rate, samples in ((1.0, 2), (0.1, 10)):
+        time = np.arange(200) / 100.0
+        some = SimpleNamespace(time=time, alpha=0.0 * time, gamma=0.0 * time, kappa=rate * time)
+        assert _blocks(some, np.arange(200))[1] == samples
 
 
 def test_signs_and_units_of_the_channels_are_those_of_iso_w(read):
