@@ -146,6 +146,8 @@ def settled_sweeps(points: Points, lag: tuple[float, float]) -> Points:
 
 def _of_motion(reduced: Sequence[Reduced], lag: tuple[float, float]) -> list[str]:
     """A sentence about the lag and hysteresis of the moving sweeps."""
+    if not any(part.lags for part in reduced):
+        return []
     known = [one for part in reduced for one in part.lags if np.isfinite(one.lag)]
     if not known:
         return [

@@ -1,0 +1,122 @@
+"""Sweeps of longitudinal slip become points with every channel that was measured, in ISO-W."""
+
+from __future__ import annotations
+
+import numpy as np
+import pandas as pd
+import pytest
+from flat_belt import RATE, SPEED, write_mat
+
+from mffit import config as configuration
+from mffit import points
+from mffit.points import make_points
+from mffit.points.stretch import SWEEP
+
+SWEEP_S, REST_S = 6.0, 3.0
+SLIPS, LOADS = (0.0, 3.0, 6.0), (500.0, 1600.0)
+COLUMNS = {
+    "time_s": "ET", "alpha_deg": "SA", "gamma_deg": "IA", "Fz_N": "FZ", "Fx_N": "FX", "Fy_N": "FY", "Mz_Nm": "MZ",
+    "Mx_Nm": "MX", "My_Nm": "MY", "RL_m": {"column": "RL", "unit": "cm"}, "omega_radps": {"column": "N", "unit": "rpm"},
+    "p_kPa": "P", "V_mps": "V", "kappa": "SL",
+}  # fmt: skip
+
+
+def recording() -> pd.DataFrame:
+    """Drive and brake 0 -> 0.15 -> 0 -> -0.15 -> 0 at three sideslips and two loads, as a machine in SAE axes writes it."""
+    random = np.random.default_rng(2)
+    swept, resting = round(SWEEP_S * RATE), round(REST_S * RATE)
+    triangle = 0.15 * (1.0 - np.abs((4.0 * np.arange(swept) / swept + 1.0) % 4.0 - 2.0))
+    parts = [(slip, load) for slip in SLIPS for load in LOADS]
+    kappa = np.concatenate([np.r_[np.zeros(resting), triangle] for _ in parts])
+    alpha, Fz = (np.repeat([part[k] for part in parts], resting + swept) for k in (0, 1))
+    n = len(kappa)
+    Fx = 20.0 * Fz * kappa / (1.0 + 80.0 * kappa**2) + 5.0 * random.standard_normal(n)
+    return pd.DataFrame(
+        {
+            "ET": np.arange(n) / RATE,
+            "V": 3.6 * SPEED + 0.01 * random.standard_normal(n),
+            "SA": -(alpha + 0.01 * random.standard_normal(n)),
+            "IA": 0.01 * random.standard_normal(n),
+            "P": 83.0 + 0.1 * random.standard_normal(n),
+            "SL": kappa + 1e-3 * random.standard_normal(n),
+            "FX": Fx,
+            "FY": 0.2 * alpha * Fz + 5.0 * random.standard_normal(n),
+            "FZ": -Fz + 3.0 * random.standard_normal(n),
+            "MX": -40.0 + random.standard_normal(n),
+            "MY": 6.0 + 0.1 * random.standard_normal(n),
+            "MZ": random.standard_normal(n),
+            "RL": 22.0 - 2e-4 * Fz,
+            "N": 60.0 / (2.0 * np.pi) * (1.0 + kappa) * SPEED / 0.225,
+        }
+    )
+
+
+@pytest.fixture(scope="module")
+def read(tmp_path_factory):
+    file = write_mat(recording(), tmp_path_factory.mktemp("slip") / "run.mat")
+
+    def reading(columns=COLUMNS):
+        tyre = {"name": "x", "unloaded_radius": 0.22, "nominal_load": 1500.0, "nominal_pressure": 83.0}
+        content = {"tyre": tyre, "rig": {"type": "flat-track", "axes": "calspan"}, "columns": columns}
+        return points.read(configuration.load(content | {"sweep": [{"file": str(file)}]}), may_be_empty=True)
+
+    return reading
+
+
+def test_every_condition_is_a_sweep_of_slip_with_all_channels(read):
+    found = read()
+    sweeps = [note for note in found.stretches if note.kind == SWEEP and not note.dropped]
+    assert len(sweeps) == len(SLIPS) * len(LOADS)
+    p = found.points
+    assert p.measured == ("Fx", "Fy", "Mx", "My", "Mz", "RL", "omega")
+    for k in np.unique(p.sweep[np.isfinite(p.time)]):  # the others are the rests before the sweeps
+        rows = p.sweep == k
+        assert (p.kappa[rows].min(), p.kappa[rows].max()) == pytest.approx((-0.15, 0.15), abs=0.012)
+        assert np.ptp(np.degrees(p.alpha[rows])) < 0.05
+        # A block of samples covers at most 0.02 of slip.
+        assert np.max(np.abs(np.diff(p.kappa[rows]))) < 0.022
+    assert not any("lag" in sentence for sentence in found.warnings)
+
+
+def test_signs_and_units_of_the_channels_are_those_of_iso_w(read):
+    p = read().points
+    driven = p.kappa > 0.05
+    assert np.all(p.Fx[driven] > 0.0)
+    assert np.all(p.alpha[p.sweep == p.sweep.max()] > 0.0)
+    assert np.all(p.Fy[p.sweep == p.sweep.max()] < 0.0)
+    assert np.mean(p.Mx) == pytest.approx(-40.0, abs=0.2)
+    assert np.mean(p.My) == pytest.approx(-6.0, abs=0.1)
+    assert pytest.approx(0.22 - 2e-6 * p.Fz, abs=1e-4) == p.RL
+    assert p.omega == pytest.approx((1.0 + p.kappa) * SPEED / 0.225, rel=0.01)
+
+
+def test_without_a_longitudinal_force_only_free_rolling_is_used(read):
+    found = read({name: heading for name, heading in COLUMNS.items() if name != "Fx_N"})
+    assert "Fx" not in found.points.measured
+    assert np.all(found.points.free_rolling)
+    assert any(entry.rule == "driven-or-braked" for entry in found.left_out)
+
+
+def test_the_speed_of_the_wheel_has_the_sign_of_its_rolling(tmp_path):
+    table = "alpha_deg,gamma_deg,Fz_N,Fy_N,omega_radps,direction\n1,0,1500,-300,{0},forward\n1,0,1500,-300,{0},backward\n"
+    for reading in (30.0, -30.0):
+        (tmp_path / "a.csv").write_text(table.format(reading))
+        found = points.load_table(tmp_path / "a.csv", axes="sae", path_centre="left")
+        assert found.omega.tolist() == [30.0, -30.0]
+
+
+def test_a_point_without_slip_rolls_freely():
+    some = make_points(
+        0.0,
+        0.0,
+        1500.0,
+        p=2e5,
+        V=10.0,
+        phi_t=0.0,
+        kappa=[0.0, 0.019, -0.021, 0.1],
+        Mx=[1.0, np.nan, 2.0, 3.0],
+    )
+    assert some.free_rolling.tolist() == [True, True, False, False]
+    assert some.measured == ("Mx",)
+    assert some.channel("Mx")[2] == 2.0
+    assert np.all(np.isnan(some.u("Mx")))
