@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
+
 import numpy as np
 import pandas as pd
 import pytest
@@ -10,6 +12,7 @@ from flat_belt import RATE, SPEED, write_mat
 from mffit import config as configuration
 from mffit import points
 from mffit.points import make_points
+from mffit.points.averaging import _blocks
 from mffit.points.stretch import SWEEP
 
 SWEEP_S, REST_S = 6.0, 3.0
@@ -73,9 +76,15 @@ def test_every_condition_is_a_sweep_of_slip_with_all_channels(read):
         rows = p.sweep == k
         assert (p.kappa[rows].min(), p.kappa[rows].max()) == pytest.approx((-0.15, 0.15), abs=0.012)
         assert np.ptp(np.degrees(p.alpha[rows])) < 0.05
-        # A block of samples covers at most 0.02 of slip.
-        assert np.max(np.abs(np.diff(p.kappa[rows]))) < 0.022
     assert not any("lag" in sentence for sentence in found.warnings)
+
+
+def test_a_fast_sweep_is_averaged_over_a_fiftieth_of_slip():
+    """At a slip of 1 per second a tenth of a second would be 0.1; at 0.1 per second it is the tenth of a second."""
+    for rate, samples in ((1.0, 2), (0.1, 10)):
+        time = np.arange(200) / 100.0
+        some = SimpleNamespace(time=time, alpha=0.0 * time, gamma=0.0 * time, kappa=rate * time)
+        assert _blocks(some, np.arange(200))[1] == samples
 
 
 def test_signs_and_units_of_the_channels_are_those_of_iso_w(read):
