@@ -111,5 +111,5 @@ def test_steps_that_look_at_kept_limits_and_bounds_arrive_at_once():
 
     found, needed = steps(True)
     assert list(found.values.values()) == pytest.approx([0.5, 0.5, 0.5], abs=1e-5)
-    assert needed <= 5
+    assert needed <= 12
     assert needed < steps(False)[1]
