@@ -151,6 +151,11 @@ LARGEST_SHIFT_OF_SLIP = Real(
     "-",
     "Slip of zero Fx beyond which the slip is against no radius of the tyre: they differ by less than a tenth.",
 )
+CLEARLY_LESS_SCATTER = Real(
+    0.8,
+    "-",
+    "Scatter with the loaded radius over that without it below which the radius of the moment enters the shift.",
+)
 OUTLIER_OF_ZERO = Real(
     4.0, "-", "Standard deviations beyond which a reading does not count for the zero of slip."
 )

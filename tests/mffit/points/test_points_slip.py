@@ -127,9 +127,21 @@ def test_slip_against_the_loaded_radius_is_shifted_by_load(configured):
         assert np.allclose(
             said, [loaded_radius(load) / rolling_radius(load) - 1.0 for load in LOADS], atol=1e-3
         )
+    with_radius = {**COLUMNS, "kappa": stated, "RL_m": {"column": "RL", "unit": "cm"}}
+    found = points.read(configured(table, with_radius))
+    assert np.sqrt(np.mean((found.points.kappa - truth) ** 2)) < 0.0006  # noise of slip and of the zero
     kept = points.read(configured(table, {**COLUMNS, "kappa": {**stated, "against": "free-rolling"}}))
     assert np.min(kept.points.kappa) < np.min(truth) - 0.015
     assert any("declared against free rolling" in warning for warning in kept.warnings)
+
+
+def test_samples_without_slip_are_not_taken_for_free_rolling(configured):
+    table = drive_recording(cambers=(0.0,), sideslips=(0.0,))
+    table.loc[300:420, "SL"] = np.nan
+    found = points.read(configured(table))
+    assert any("no reading of kappa" in warning for warning in found.warnings)
+    truth = longitudinal_force(found.points.kappa, found.points.alpha, found.points.Fz)
+    assert np.max(np.abs(found.points.Fx - truth)) < 60.0
 
 
 def test_a_recording_that_begins_cold_is_said(configured):
