@@ -160,7 +160,8 @@ def against_free_rolling(
         if against == LOADED or (against is None and not zero.is_free_rolling):
             for k in rows:
                 shift = zero.at(readings_of(out[k]))
-                out[k] = replace(out[k], kappa=(1.0 + out[k].kappa) / (1.0 + shift) - 1.0)
+                kappa = (1.0 + out[k].kappa) / (1.0 + shift) - 1.0
+                out[k] = replace(out[k], kappa=kappa, table=out[k].table.assign(kappa_free_rolling=kappa))
     return tuple(out), tuple(sentences)
 
 

@@ -130,6 +130,9 @@ def test_slip_against_the_loaded_radius_is_shifted_by_load(configured):
     with_radius = {**COLUMNS, "kappa": stated, "RL_m": {"column": "RL", "unit": "cm"}}
     found = points.read(configured(table, with_radius))
     assert np.sqrt(np.mean((found.points.kappa - truth) ** 2)) < 0.0006  # noise of slip and of the zero
+    written = found.points.table  # of points.csv: as reported, and as used
+    assert np.allclose(written["kappa_free_rolling"], found.points.kappa)
+    assert not np.allclose(written["kappa"], found.points.kappa, atol=0.005)
     kept = points.read(configured(table, {**COLUMNS, "kappa": {**stated, "against": "free-rolling"}}))
     assert np.min(kept.points.kappa) < np.min(truth) - 0.015
     assert any("declared against free rolling" in warning for warning in kept.warnings)
