@@ -9,7 +9,7 @@ from mffit.points import Points, levels
 
 
 def by_condition(points: Points) -> Points:
-    """The points with sweeps cut where load, camber, pressure or speed steps.
+    """The points with sweeps cut where load, camber, pressure, speed or slip steps.
 
     A file may hold a whole programme. A quantity that changes from point to point was swept and does not cut.
     In the result ``sweep`` numbers the conditions, named after their sweep, with a number if the sweep held several.
@@ -19,6 +19,7 @@ def by_condition(points: Points) -> Points:
         (points.gamma, levels.CAMBER),
         (points.p, levels.PRESSURE),
         (points.V, levels.SPEED),
+        (points.kappa, levels.SLIP),
     )
     sweep = np.zeros(len(points), dtype=int)
     names: list[str] = []

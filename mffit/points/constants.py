@@ -111,9 +111,9 @@ LARGEST_ORDER_OF_NOISE = Count(
 AVERAGED_TIME = Real(0.1, "s", "Averaging time of a moving sweep.")
 AVERAGED_ANGLE = Real(0.5, "deg", "Largest angle over which a moving sweep is averaged.")
 AVERAGED_SLIP = Real(
-    0.01,
+    0.02,
     "-",
-    "Largest slip over which a moving sweep is averaged: the curve bends by 0.3 % of its peak over it.",
+    "Largest slip over which a moving sweep is averaged: the curve bends by 1 % of its peak over it.",
 )
 FILLED_BLOCK = Real(0.5, "-", "Share of its samples that such an averaged block needs.")
 

@@ -25,7 +25,7 @@ class Reduced(NamedTuple):
     points: Points
     warnings: tuple[str, ...]
     stretches: tuple[StretchNote, ...] = ()  #: of a recording, in time order
-    lags: tuple[Lag, ...] = ()  #: of the moving sweeps that give points
+    lags: tuple[Lag, ...] = ()  #: of the moving sweeps of an angle that give points
     left_out: tuple[LeftOut, ...] = ()  #: by rules
 
 
@@ -57,7 +57,7 @@ def reduce(sweep: Sweep, phi_t: float, scale: Scale | None = None) -> Reduced:
     moving, averaged = averaging.along_sweeps(
         sweep, phi_t, swept, [labels[stretch] for stretch in swept], faulty
     )
-    lags = {stretch: _lag(sweep, stretch, faulty) for stretch in swept}
+    lags = {stretch: _lag(sweep, stretch, faulty) for stretch in swept if not _over_slip(sweep, stretch)}
     counts = np.bincount(moving.sweep, minlength=len(swept)).tolist()
     used = np.isin(np.arange(len(sweep)), averaged)
     for plateau in plateaus:
@@ -90,6 +90,11 @@ def _labels(sweep: Sweep, tried: list[Stretch]) -> dict[Stretch, str]:
         stretch: f"{sweep.name}:{k:02d}" if stretch.kind == SWEEP else sweep.name
         for stretch, k in zip(tried, numbers, strict=True)
     }
+
+
+def _over_slip(sweep: Sweep, stretch: Stretch) -> bool:
+    """Whether a sweep is one of longitudinal slip, which shows no lag behind the sideslip angle."""
+    return bool(np.ptp(sweep.kappa[stretch.begin : stretch.end]) >= constants.SMALLEST_SWEEP_OF_SLIP)
 
 
 def _lag(sweep: Sweep, stretch: Stretch, faulty: np.ndarray) -> Lag:

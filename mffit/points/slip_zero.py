@@ -208,10 +208,10 @@ def _joined_readings(sweeps: Iterable[Sweep]) -> Driven:
 
 def _conditions(of: Driven, middle: Sequence[float]) -> np.ndarray:
     """Columns (n, k) of the zero: a parabola in load, pressure, magnitudes of camber with and without load and of sideslip."""
-    about = Driven(*middle)
-    load = np.abs(of.Fz) / about.Fz - 1.0
+    of_setting = dict(zip(Driven._fields, middle, strict=True))
+    load = np.abs(of.Fz) / of_setting["Fz"] - 1.0
     camber = np.abs(of.gamma)
-    pressure = np.zeros(len(load)) if not about.p else of.p / about.p - 1.0
+    pressure = of.p / of_setting["p"] - 1.0 if of_setting["p"] else np.zeros(len(load))
     columns = (
         np.ones(len(load)),
         load,
@@ -227,7 +227,7 @@ def _conditions(of: Driven, middle: Sequence[float]) -> np.ndarray:
 
 def _compliance(of: Driven, middle: Sequence[float]) -> np.ndarray:
     """Columns (n, k) of slip per force over load: constant, load, squared sideslip."""
-    load = np.abs(of.Fz) / Driven(*middle).Fz - 1.0
+    load = np.abs(of.Fz) / middle[Driven._fields.index("Fz")] - 1.0
     return np.column_stack([np.ones(len(load)), load, of.alpha**2])
 
 

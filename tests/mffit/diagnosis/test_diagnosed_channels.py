@@ -1,0 +1,89 @@
+"""A diagnosis of three channels: covariance, gap, regions and bumps of the third are those of the third."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import tir
+from mffit.diagnosis.bumps import bump_scan
+from mffit.diagnosis.noise import Scatter
+from mffit.diagnosis.problem import DiagnosisProblem
+from mffit.diagnosis.smooth import smooth_basis
+from mffit.diagnosis.stated import stated_noise, with_uncertainties
+from mffit.diagnosis.validation import gap, validate
+from mffit.diagnosis.where import where
+from mffit.points import make_points
+from mffit.rig import Simulation
+
+CHANNELS = ("Fy", "Mx", "Mz")
+U = {"Fy": 6.0, "Mx": 3.0, "Mz": 0.6}
+N = 60
+
+
+@pytest.fixture(scope="module")
+def problem() -> DiagnosisProblem:
+    """Readings with noise, and Mx 20 Nm too large at positive sideslip."""
+    rng = np.random.default_rng(5)
+    tyre = Simulation.of(
+        tir.read("samples/front-120-70/true.tir").replace(QSX2=0.3, QSX3=0.05), turn_slip=False
+    )
+    alpha = np.tile(np.linspace(-0.1, 0.1, 20), 3)
+    points = make_points(alpha, 0.0, np.repeat([900.0, 1500.0, 2100.0], 20), p=250e3, V=10.0, phi_t=0.0,
+        sweep=np.repeat([0, 1, 2], 20), sweep_names=("a", "b", "c"), **{f"u_{name}": u for name, u in U.items()})  # fmt: skip
+    read = tyre.readings(points, CHANNELS)
+    points = points.replace(**{name: read[name] + U[name] * rng.standard_normal(N) for name in CHANNELS})
+    points = points.replace(Mx=points.Mx + np.where(alpha > 0.0, 20.0, 0.0))
+    points, _ = with_uncertainties(points, tyre, CHANNELS)
+    return DiagnosisProblem(points, tyre, stated_noise(points, channels=CHANNELS))
+
+
+def test_the_gap_has_every_channel(problem):
+    residual = problem.measured - problem.predict(problem.start)
+    found = gap(residual, problem.noise)
+    assert list(found.rmse) == list(CHANNELS)
+    assert found.rms("Fy") == pytest.approx(6.0, rel=0.3)
+    assert found.rms("Mx") == pytest.approx(np.sqrt(3.0**2 + 20.0**2 / 2.0), rel=0.15)
+
+
+def test_the_region_and_the_bump_are_in_the_channel_that_is_off(problem):
+    residual = problem.measured - problem.predict(problem.start)
+    first = where(problem.points, residual, problem.noise)[0]
+    assert first.channel == "Mx"
+    assert first.region["alpha_deg"][0] > 0.0
+    bump = bump_scan(problem.points, problem.noise).best(problem.null)
+    assert (bump.channel, bump.found) == ("Mx", True)
+    assert bump.amplitude > 0.0
+
+
+def test_memory_acts_within_its_channel(problem):
+    scatter = {name: Scatter(memory=0.6 if name == "Mx" else 0.0) for name in CHANNELS}
+    noise = stated_noise(problem.points, channels=CHANNELS).scattering(
+        scatter, np.zeros(3 * N), np.ones(3 * N)
+    )
+    x = np.random.default_rng(1).standard_normal(3 * N) * np.repeat(list(U.values()), N)
+    white, plain = noise.whiten(x), x / np.repeat(list(U.values()), N)
+    for name, rows in noise.by_channel(np.arange(3 * N)).items():
+        assert np.allclose(white[rows], plain[rows]) == (name != "Mx")
+    first = np.arange(N, 2 * N, 20)
+    assert white[first] == pytest.approx(plain[first])
+    second = first + 1
+    assert white[second] == pytest.approx((plain[second] - 0.6 * plain[first]) / 0.8)
+
+
+def test_smooth_structure_of_a_channel_stays_in_it(problem):
+    basis = smooth_basis(problem.points, problem.start.readings(problem.points, CHANNELS))
+    third = basis.shape[1] // 3
+    for k in range(3):
+        block = basis[:, k * third : (k + 1) * third]
+        inside = np.arange(3 * N) // N == k
+        assert np.all(block[~inside] == 0.0)
+        assert np.any(block[inside] != 0.0)
+
+
+def test_a_subset_keeps_the_rows_of_every_channel(problem):
+    keep = problem.points.sweep == 1
+    part = problem.part(keep)
+    assert part.measured == pytest.approx(np.concatenate([problem.points.channel(c)[keep] for c in CHANNELS]))
+    check = validate(problem, problem.null)
+    assert check.gap_before.rms("Mx") == pytest.approx(check.gap_after.rms("Mx"))
