@@ -111,9 +111,9 @@ LARGEST_ORDER_OF_NOISE = Count(
 AVERAGED_TIME = Real(0.1, "s", "Averaging time of a moving sweep.")
 AVERAGED_ANGLE = Real(0.5, "deg", "Largest angle over which a moving sweep is averaged.")
 AVERAGED_SLIP = Real(
-    0.01,
+    0.02,
     "-",
-    "Largest slip over which a moving sweep is averaged: the curve bends by 0.3 % of its peak over it.",
+    "Largest slip over which a moving sweep is averaged: the curve bends by 1 % of its peak over it.",
 )
 FILLED_BLOCK = Real(0.5, "-", "Share of its samples that such an averaged block needs.")
 
@@ -150,6 +150,11 @@ LARGEST_SHIFT_OF_SLIP = Real(
     0.12,
     "-",
     "Slip of zero Fx beyond which the slip is against no radius of the tyre: they differ by less than a tenth.",
+)
+CLEARLY_LESS_SCATTER = Real(
+    0.8,
+    "-",
+    "Scatter with the loaded radius over that without it below which the radius of the moment enters the shift.",
 )
 OUTLIER_OF_ZERO = Real(
     4.0, "-", "Standard deviations beyond which a reading does not count for the zero of slip."

@@ -59,6 +59,14 @@ def faults(sweep: Sweep) -> list[Fault]:
     return [fault for fault in found if np.any(fault.which)]
 
 
+def _slip_missing(sweep: Sweep) -> np.ndarray:
+    """Samples (n,) without slip; none if it was not measured at all."""
+    if "kappa" not in sweep.table:
+        return np.zeros(len(sweep), dtype=bool)
+    missing = ~np.isfinite(sweep.table["kappa"].to_numpy(dtype=float))
+    return missing & ~np.all(missing)
+
+
 def _usual_load(sweep: Sweep) -> float:
     return float(np.nanmedian(np.abs(sweep.Fz))) if np.any(np.isfinite(sweep.Fz)) else 0.0
 
@@ -150,6 +158,13 @@ FAULTS = (
         reason="no reading of {channel}",
         channels=("alpha", "gamma", "Fz", "Fy"),
         find=lambda sweep, channel: ~np.isfinite(getattr(sweep, channel)),
+    ),
+    FaultRule(
+        id="no-reading-of-slip",
+        looks_at="Samples without a number, of a slip that was measured elsewhere in the recording",
+        reason="no reading of {channel}",
+        channels=("kappa",),
+        find=lambda sweep, _: _slip_missing(sweep),
     ),
     FaultRule(
         id="no-load",

@@ -151,8 +151,6 @@ def _of_motion(reduced: Sequence[Reduced], lag: tuple[float, float]) -> list[str
     if not any(part.lags for part in reduced):
         return []
     known = [one for part in reduced for one in part.lags if np.isfinite(one.lag)]
-    if not known and not any(note.swept == "alpha_deg" for part in reduced for note in part.stretches):
-        return []
     if not known:
         return [
             "no sweep goes through zero side force both ways, so the lag of the force behind the sideslip angle is "

@@ -32,6 +32,7 @@ class Driven(NamedTuple):
     alpha: np.ndarray  #: [rad]
     gamma: np.ndarray  #: [rad]
     p: np.ndarray  #: [Pa]
+    RL: np.ndarray  #: loaded radius [m]; NaN where it was not measured
 
 
 class ZeroAtLoad(NamedTuple):
@@ -49,16 +50,24 @@ class SlipZero:
     levels: tuple[ZeroAtLoad, ...]
     middle: tuple[float, ...]  #: of each setting
     coefficients: np.ndarray  #: of :func:`_conditions`
+    per_radius: np.ndarray | None = (
+        None  #: the same of ``(1 + slip) / RL`` [1/m], if the loaded radius explains the slip better
+    )
 
     def at(self, of: Driven) -> np.ndarray:
-        """The slip (n,) of zero force under the conditions of some readings."""
-        return np.asarray(_conditions(of, self.middle) @ self.coefficients)
+        """The slip (n,) of zero force under the conditions of some readings; at their loaded radius, if that counts."""
+        conditions = _conditions(of, self.middle)
+        if self.per_radius is None:
+            return np.asarray(conditions @ self.coefficients)
+        return np.asarray(of.RL * (conditions @ self.per_radius) - 1.0)
 
     @property
     def reversed(self) -> SlipZero:
         """The same for slip of the other sign."""
         turned = tuple(ZeroAtLoad(level.load, -level.slip) for level in self.levels)
-        return replace(self, slope=-self.slope, levels=turned, coefficients=-self.coefficients)
+        return replace(
+            self, slope=-self.slope, levels=turned, coefficients=-self.coefficients, per_radius=None
+        )
 
     @property
     def largest(self) -> float:
@@ -97,7 +106,7 @@ def slip_zero(of: Driven) -> SlipZero | None:
     load = np.abs(of.Fz)
     with np.errstate(invalid="ignore", divide="ignore"):
         force = of.Fx / load
-    near = np.all(np.isfinite([*of, force]), axis=0) & (
+    near = np.all(np.isfinite([*of[:-1], force]), axis=0) & (
         load > constants.UNLOADED * np.nanmedian(load) if len(load) else False
     )
     near &= np.abs(force) < constants.FORCE_NEAR_FREE_ROLLING
@@ -109,8 +118,13 @@ def slip_zero(of: Driven) -> SlipZero | None:
     middle = tuple(float(np.median(np.abs(values))) for values in used)
     conditions, compliance = _conditions(used, middle), _compliance(used, middle)
     design = np.column_stack([conditions, x[:, None] * compliance, x**3])
-    solution = _robust_lines(design, used.slip)
+    solution, scatter = _robust_lines(design, used.slip)
     k = conditions.shape[1]
+    per_radius = None
+    if np.all(np.isfinite(of.RL)):
+        other, left = _robust_lines(design, (1.0 + used.slip) / used.RL)
+        if left * middle[-1] < constants.CLEARLY_LESS_SCATTER * scatter:
+            per_radius = other[:k]
     found = solution[:k]
     inverse = float(compliance.mean(axis=0) @ solution[k:-1])
     return SlipZero(
@@ -118,6 +132,7 @@ def slip_zero(of: Driven) -> SlipZero | None:
         levels=_at_loads(used, middle, found),
         middle=middle,
         coefficients=found,
+        per_radius=per_radius,
     )
 
 
@@ -145,7 +160,8 @@ def against_free_rolling(
         if against == LOADED or (against is None and not zero.is_free_rolling):
             for k in rows:
                 shift = zero.at(readings_of(out[k]))
-                out[k] = replace(out[k], kappa=(1.0 + out[k].kappa) / (1.0 + shift) - 1.0)
+                kappa = (1.0 + out[k].kappa) / (1.0 + shift) - 1.0
+                out[k] = replace(out[k], kappa=kappa, table=out[k].table.assign(kappa_free_rolling=kappa))
     return tuple(out), tuple(sentences)
 
 
@@ -182,7 +198,7 @@ def _contradiction(heading: str, zero: SlipZero) -> str:
 
 def readings_of(sweep: Sweep) -> Driven:
     """The readings of a sweep."""
-    return Driven(sweep.kappa, sweep.Fx, sweep.Fz, sweep.alpha, sweep.gamma, sweep.p)
+    return Driven(sweep.kappa, sweep.Fx, sweep.Fz, sweep.alpha, sweep.gamma, sweep.p, sweep.RL)
 
 
 def _joined_readings(sweeps: Iterable[Sweep]) -> Driven:
@@ -192,10 +208,10 @@ def _joined_readings(sweeps: Iterable[Sweep]) -> Driven:
 
 def _conditions(of: Driven, middle: Sequence[float]) -> np.ndarray:
     """Columns (n, k) of the zero: a parabola in load, pressure, magnitudes of camber with and without load and of sideslip."""
-    about = Driven(*middle)
-    load = np.abs(of.Fz) / about.Fz - 1.0
+    of_setting = dict(zip(Driven._fields, middle, strict=True))
+    load = np.abs(of.Fz) / of_setting["Fz"] - 1.0
     camber = np.abs(of.gamma)
-    pressure = np.zeros(len(load)) if not about.p else of.p / about.p - 1.0
+    pressure = of.p / of_setting["p"] - 1.0 if of_setting["p"] else np.zeros(len(load))
     columns = (
         np.ones(len(load)),
         load,
@@ -211,12 +227,12 @@ def _conditions(of: Driven, middle: Sequence[float]) -> np.ndarray:
 
 def _compliance(of: Driven, middle: Sequence[float]) -> np.ndarray:
     """Columns (n, k) of slip per force over load: constant, load, squared sideslip."""
-    load = np.abs(of.Fz) / Driven(*middle).Fz - 1.0
+    load = np.abs(of.Fz) / middle[Driven._fields.index("Fz")] - 1.0
     return np.column_stack([np.ones(len(load)), load, of.alpha**2])
 
 
-def _robust_lines(design: np.ndarray, y: np.ndarray) -> np.ndarray:
-    """Least squares without the residuals beyond some standard deviations; a column without variation gets zero."""
+def _robust_lines(design: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, float]:
+    """Least squares without the residuals beyond some standard deviations, and the scatter; an empty column gets zero."""
     size = np.linalg.norm(design, axis=0)
     scaled = design / np.where(size > 0.0, size, 1.0)
     solution, *_ = np.linalg.lstsq(scaled, y, rcond=constants.WEAKEST_DIRECTION_OF_ZERO)
@@ -224,7 +240,8 @@ def _robust_lines(design: np.ndarray, y: np.ndarray) -> np.ndarray:
     kept = np.abs(residual) <= constants.OUTLIER_OF_ZERO * robust(residual)
     if np.sum(kept) > design.shape[1]:
         solution, *_ = np.linalg.lstsq(scaled[kept], y[kept], rcond=constants.WEAKEST_DIRECTION_OF_ZERO)
-    return np.asarray(solution / np.where(size > 0.0, size, 1.0))
+    scatter = robust(y - scaled @ solution)
+    return np.asarray(solution / np.where(size > 0.0, size, 1.0)), scatter
 
 
 def _at_loads(of: Driven, middle: Sequence[float], coefficients: np.ndarray) -> tuple[ZeroAtLoad, ...]:
@@ -238,6 +255,7 @@ def _at_loads(of: Driven, middle: Sequence[float], coefficients: np.ndarray) -> 
             alpha=np.full(len(loads), np.min(np.abs(of.alpha))),
             gamma=np.full(len(loads), np.min(np.abs(of.gamma))),
             p=np.full(len(loads), np.median(of.p)),
+            RL=np.full(len(loads), np.nan),
         ),
         middle,
     )

@@ -222,7 +222,7 @@ def moves(settings: SteadySettings, scale: Scale | None = None) -> dict[str, np.
     n = len(settings.time)
     scale = scale or scale_of([settings])
     lag = _samples(settings, constants.COMPARED_APART)
-    masks = {}
+    masks: dict[str, np.ndarray] = {}
     for name in (*STEP, *CONDITIONS):
         values = getattr(settings, name)
         mask = np.zeros(n, dtype=bool)

@@ -122,5 +122,6 @@ def _zero(
             alpha=in_si("alpha_deg", "rad"),
             gamma=in_si("gamma_deg", "rad"),
             p=in_si("p_kPa", "Pa"),
+            RL=np.full(len(slip), np.nan),
         )
     )

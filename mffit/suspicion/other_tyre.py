@@ -62,8 +62,11 @@ def two_tyres(points: Points, config: Config) -> Iterator[Finding]:
         found = upright.select(known)
         cells = _cells(found, values[known])
         for one, other in itertools.combinations(sorted({cell[0] for cell in cells}), 2):
-            shared = [key for file, *key in cells if file == one and (other, *key) in cells]
-            pairs = {tuple(key): (cells[one, *key], cells[other, *key]) for key in shared}
+            pairs = {
+                key[1:]: (cell, cells[other, key[1], key[2], key[3]])
+                for key, cell in cells.items()
+                if key[0] == one and (other, *key[1:]) in cells
+            }
             apart = [abs(a.radius / b.radius - 1.0) for a, b in pairs.values()]
             if not apart or np.median(apart) <= constants.RADIUS_OF_ANOTHER_TYRE:
                 continue
@@ -132,14 +135,14 @@ class _Cell(NamedTuple):
     points: int
 
 
-def _cells(points: Points, values: np.ndarray) -> dict[tuple[float, ...], _Cell]:
+def _cells(points: Points, values: np.ndarray) -> dict[tuple[int, float, float, float], _Cell]:
     """Median of the radii (n,) by file, load [N], pressure [Pa] and speed [m/s] of their levels."""
     settings = [
         levels.level_values(getattr(points, name), kind)
         for name, kind in (("Fz", levels.LOAD), ("p", levels.PRESSURE), ("V", levels.SPEED))
     ]
     keys = list(zip(points.file.tolist(), *(x.tolist() for x in settings), strict=True))
-    own: dict[tuple[float, ...], list[float]] = {}
+    own: dict[tuple[int, float, float, float], list[float]] = {}
     for key, value in zip(keys, values.tolist(), strict=True):
         own.setdefault(key, []).append(value)
     return {key: _Cell(float(np.median(radii)), len(radii)) for key, radii in own.items()}

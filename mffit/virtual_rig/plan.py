@@ -48,16 +48,13 @@ def _range(given: dict[str, Any]) -> tuple[float, ...]:
 Angles = Annotated[tuple[float, ...], BeforeValidator(angles), Field(min_length=1)]
 
 
-def _each(check: Any) -> Any:
-    """Type of one or more numbers that all pass a check of the configuration."""
-    return Annotated[tuple[Annotated[float, check], ...], BeforeValidator(angles), Field(min_length=1)]
-
-
-Loads, Pressures, Speeds = (
-    _each(AfterValidator(q.Range(*limits)))
-    for limits in ((0.0, 2e5, "N"), (10.0, 2e3, "kPa"), (0.0, 150.0, "m/s"))
-)
-Slips = _each(AfterValidator(q.Range(-1.0, 4.0, "of free rolling")))
+Numbers = BeforeValidator(angles)
+"""Before a tuple of numbers: reads what :func:`angles` reads."""
+Loads = Annotated[tuple[q.Load, ...], Numbers, Field(min_length=1)]
+Pressures = Annotated[tuple[q.Pressure, ...], Numbers, Field(min_length=1)]
+Speeds = Annotated[tuple[q.Speed, ...], Numbers, Field(min_length=1)]
+Slip = Annotated[float, AfterValidator(q.Range(-1.0, 4.0, "-"))]
+Slips = Annotated[tuple[Slip, ...], Numbers, Field(min_length=1)]
 
 
 class TruthTable(Table):

@@ -100,15 +100,21 @@ def test_one_more_channel_leaves_the_noise_of_the_others(table):
     assert all_channels["u_Fx_N"].tolist() == [12.0] * 3
 
 
-def test_a_step_of_sideslip_builds_up_over_the_relaxation_length(table, tyre):
-    step = {"rate_Hz": 200, "hold_s": 4, "steering_deg_per_s": 500, "noise_Fy_N": 0.0, "correlation_s": 0.0}
-    found = table({"alpha_deg": [0, 1], "V_mps": 1.0, "recording": step})
-    side = found["Fy_N"].to_numpy()
-    start, end = side[0], side[-1]
-    steps_at = found["time_s"][int(np.argmax(found["alpha_deg"] > 0.5))]
-    reached = found["time_s"][int(np.argmax(np.abs(side - start) > (1.0 - np.exp(-1.0)) * abs(end - start)))]
-    sigma = float(tyre.state(LOAD, Vx=1.0, p=240e3).sigma_y)
-    assert (reached - steps_at) * 1.0 == pytest.approx(sigma, abs=0.015)
+@pytest.mark.parametrize(
+    ("moved", "to", "force", "lag"),
+    [("alpha_deg", 1.0, "Fy_N", "sigma_y"), ("kappa", 0.01, "Fx_N", "sigma_x")],
+)
+def test_a_step_builds_up_over_the_relaxation_length(table, tyre, moved, to, force, lag):
+    step = {
+        "rate_Hz": 200, "hold_s": 4, "steering_deg_per_s": 500, "slip_per_s": 5, "correlation_s": 0.0,
+        "noise_Fy_N": 0.0, "noise_Fx_N": 0.0,
+    }  # fmt: skip
+    found = table({moved: [0, to], "V_mps": 1.0, "recording": step})
+    reading, time = found[force].to_numpy(), found["time_s"].to_numpy()
+    share = np.abs(reading - reading[0]) / abs(reading[-1] - reading[0])
+    begun = time[np.argmax(found[moved].to_numpy() > 0.5 * to)]
+    sigma = float(getattr(tyre.state(LOAD, Vx=1.0, p=240e3), lag))
+    assert time[np.argmax(share > 1.0 - np.exp(-1.0))] - begun == pytest.approx(sigma, abs=0.015)
 
 
 def test_the_sample_reads_as_its_tyre_with_its_noise(tyre):

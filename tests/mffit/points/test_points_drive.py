@@ -1,0 +1,166 @@
+"""Sweeps of longitudinal slip become points, with the force that belongs to the slip."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from flat_belt import (
+    LOADS,
+    drive_recording,
+    loaded_radius,
+    longitudinal_force,
+    recording,
+    rolling_radius,
+    write_mat,
+)
+
+from mffit import config as configuration
+from mffit import points
+from mffit.errors import InputError
+from mffit.points.stretch import SWEEP
+
+COLUMNS = {
+    "time_s": "ET", "alpha_deg": "SA", "gamma_deg": "IA", "Fz_N": "FZ", "Fy_N": "FY", "Mz_Nm": "MZ", "p_kPa": "P", "V_mps": "V",
+    "T_degC": "TSTC", "kappa": "SL", "Fx_N": "FX",
+}  # fmt: skip
+
+
+@pytest.fixture
+def configured(tmp_path):
+    def of(table, columns=COLUMNS):
+        tyre = {"name": "x", "unloaded_radius": 0.228, "nominal_load": 1500.0, "nominal_pressure": 83.0}
+        return configuration.load(
+            {
+                "tyre": tyre,
+                "rig": {"type": "flat-track", "axes": "sae"},
+                "columns": columns,
+                "sweep": [{"file": str(write_mat(table, tmp_path / "run.mat"))}],
+            }
+        )
+
+    return of
+
+
+def sweeps(found):
+    return [note for note in found.stretches if note.kind == SWEEP and not note.dropped]
+
+
+@pytest.mark.parametrize("gaps", [True, False])
+def test_every_condition_of_a_drive_recording_is_a_sweep_of_slip(configured, gaps):
+    found = points.read(configured(drive_recording(gaps=gaps)))
+    notes = sweeps(found)
+    assert {note.swept for note in notes} == {"kappa"}
+    conditions = {
+        (round(note.Fz_N, -2), round(note.gamma_deg), round(note.alpha_from_deg + 0.05)) for note in notes
+    }
+    assert conditions == {(load, camber, slip) for load in LOADS for camber in (0, 3) for slip in (0, -3)}
+    assert len(notes) == 12
+    assert all(note.kappa_from < -0.14 and note.kappa_to > 0.14 for note in notes)
+
+
+def test_the_points_of_a_slip_sweep_have_slip_and_force_of_the_same_moment(configured):
+    found = points.read(configured(drive_recording())).points
+    kappa, Fx = found.kappa, found.Fx
+    truth = longitudinal_force(kappa, found.alpha, found.Fz)
+    assert (
+        np.sqrt(np.mean((Fx - truth) ** 2)) < 10.0
+    )  # 15 N per sample, ten samples, and the bend of the curve
+    assert np.ptp(kappa) > 0.28
+    assert np.median(np.abs(np.diff(kappa))) < 0.011
+
+
+def test_load_that_swings_with_the_force_is_one_condition(configured):
+    """Belts hold the load less well while the wheel is driven; a swing of a tenth is no other set-point."""
+    assert len(sweeps(points.read(configured(drive_recording(swing=0.1))))) == 12
+
+
+def test_slip_that_wanders_along_a_sideslip_sweep_changes_nothing(configured):
+    table = recording(pressures=(83.0,), cambers=(0.0,))
+    still = points.read(configured(table)).points
+    random = np.random.default_rng(2)
+    table["SL"] = 0.003 * np.sin(np.radians(10.0 * table["SA"])) + 0.001 * random.standard_normal(len(table))
+    found = points.read(configured(table))
+    assert {note.swept for note in sweeps(found)} == {"alpha_deg"}
+    assert np.array_equal(found.points.Fy, still.Fy)
+
+
+def test_sideslip_may_be_swept_at_a_slip_that_is_held(configured):
+    table = recording(pressures=(83.0,), cambers=(0.0,), gaps=True)
+    table["SL"] = -0.05
+    found = points.read(configured(table))
+    assert {note.swept for note in sweeps(found)} == {"alpha_deg"}
+    assert np.allclose(found.points.kappa, -0.05)
+
+
+def test_without_a_longitudinal_force_only_free_rolling_is_kept(configured):
+    columns = {name: heading for name, heading in COLUMNS.items() if name != "Fx_N"}
+    found = points.read(configured(drive_recording(gaps=False), columns))
+    assert np.all(np.abs(found.points.kappa) < 0.02)
+    assert any("Fx was not measured" in warning for warning in found.warnings)
+
+
+@pytest.mark.parametrize(
+    ("change", "said"),
+    [
+        (lambda slip: slip + 0.3, "no radius explains"),
+        (lambda slip: -slip, "scale = -1"),
+        (lambda slip: 20.0 * slip, "per cent"),
+    ],
+)
+def test_slip_of_another_sign_unit_or_zero_is_refused_with_the_remedy(configured, change, said):
+    table = drive_recording(cambers=(0.0,), sideslips=(0.0,))
+    table["SL"] = change(table["SL"])
+    with pytest.raises(InputError, match=said):
+        points.read(configured(table))
+
+
+def test_slip_against_the_loaded_radius_is_shifted_by_load(configured):
+    """As the speed of the wheel and the radius of free rolling give it: no formula of the reader."""
+    table = drive_recording()
+    truth = points.read(configured(table)).points.kappa
+    stated = {"column": "SR", "against": "loaded-radius"}
+    for given in ("SR", stated):
+        found = points.read(configured(table, {**COLUMNS, "kappa": given}))
+        assert np.max(np.abs(found.points.kappa - truth)) < 0.0025
+        (sentence,) = [warning for warning in found.warnings if "loaded radius" in warning]
+        said = [float(word.strip(",")) for word in sentence.split() if word[0] in "+-"]
+        assert np.allclose(
+            said, [loaded_radius(load) / rolling_radius(load) - 1.0 for load in LOADS], atol=1e-3
+        )
+    with_radius = {**COLUMNS, "kappa": stated, "RL_m": {"column": "RL", "unit": "cm"}}
+    found = points.read(configured(table, with_radius))
+    assert np.sqrt(np.mean((found.points.kappa - truth) ** 2)) < 0.0006  # noise of slip and of the zero
+    written = found.points.table  # of points.csv: as reported, and as used
+    assert np.allclose(written["kappa_free_rolling"], found.points.kappa)
+    assert not np.allclose(written["kappa"], found.points.kappa, atol=0.005)
+    kept = points.read(configured(table, {**COLUMNS, "kappa": {**stated, "against": "free-rolling"}}))
+    assert np.min(kept.points.kappa) < np.min(truth) - 0.015
+    assert any("declared against free rolling" in warning for warning in kept.warnings)
+
+
+def test_samples_without_slip_are_not_taken_for_free_rolling(configured):
+    table = drive_recording(cambers=(0.0,), sideslips=(0.0,))
+    table.loc[300:420, "SL"] = np.nan
+    found = points.read(configured(table))
+    assert any("no reading of kappa" in warning for warning in found.warnings)
+    truth = longitudinal_force(found.points.kappa, found.points.alpha, found.points.Fz)
+    assert np.max(np.abs(found.points.Fx - truth)) < 60.0
+
+
+def test_a_recording_that_begins_cold_is_said(configured):
+    """Sweeps of one sideslip are compared; the warmer ones at another are no evidence."""
+    table = drive_recording(sideslips=(0.0, -3.0), cambers=(0.0, 2.0, 4.0, 6.0))
+    rows = np.arange(len(table)) // 700  # samples of a sweep
+    table["TSTC"] += np.where(rows < 12, 0.0, 4.0)
+    said = [w for w in points.read(configured(table)).warnings if "begins cold" in w]
+    assert not said
+    table["TSTC"] -= np.where(rows < 3, 7.0 - rows, 0.0)
+    (sentence,) = [w for w in points.read(configured(table)).warnings if "begins cold" in w]
+    assert "53 to 55 degC in the first 3 sweeps and 60 degC in later sweeps" in sentence
+
+
+def test_slip_against_free_rolling_is_said_and_left_alone(configured):
+    found = points.read(configured(drive_recording()))
+    (sentence,) = [warning for warning in found.warnings if "SL is against free rolling" in warning]
+    assert float(sentence.split("within ")[1].split()[0]) < 0.0006
+    assert np.allclose(found.points.kappa, found.points.table["kappa"])
