@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 import warnings
 from collections.abc import Collection, Mapping
 from typing import TYPE_CHECKING, Any
@@ -26,7 +27,7 @@ def exported(tyre: Tyre, turn_slip: bool | None, star: bool, limits: bool) -> Sw
     """The switches of exported code; warns if turn slip is on and the tyre's coefficients of it are doubtful."""
     on = tyre.turn_slip if turn_slip is None else bool(turn_slip)
     if on:
-        warn_of_doubt(tyre.values, tyre.present, stacklevel=3)
+        warn_of_doubt(tyre.values, tyre.present)
     return Switches(on, bool(star), bool(limits))
 
 
@@ -53,8 +54,12 @@ def doubt(values: Mapping[str, Any], present: Collection[str]) -> str:
     return ""
 
 
-def warn_of_doubt(values: Mapping[str, Any], present: Collection[str], *, stacklevel: int) -> None:
-    """Warn with the sentence of :func:`doubt`, at the caller ``stacklevel`` frames up."""
+def warn_of_doubt(values: Mapping[str, Any], present: Collection[str]) -> None:
+    """Warn with the sentence of :func:`doubt`, at the line outside this package that asked for the forces."""
     sentence = doubt(values, present)
-    if sentence:
-        warnings.warn(sentence, TirWarning, stacklevel=stacklevel + 1)
+    if not sentence:
+        return
+    level, frame = 1, sys._getframe()
+    while frame.f_back is not None and str(frame.f_globals.get("__name__")).startswith("tir."):
+        level, frame = level + 1, frame.f_back
+    warnings.warn(sentence, TirWarning, stacklevel=level)
