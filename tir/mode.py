@@ -17,6 +17,9 @@ if TYPE_CHECKING:
 BLOCK = tuple(row for row in TABLE if row.section == TURN_SLIP and row.files == "")
 """The coefficients of turn slip."""
 
+INSIDE = ("tir.", "functools")
+"""Modules that a warning is not meant for: this package, and what keeps the values of its properties."""
+
 
 def asks_for_turn_slip(values: Mapping[str, Any]) -> bool:
     """Whether the units digit of USE_MODE is 5; then spin acts unless a call or an export says otherwise."""
@@ -60,6 +63,6 @@ def warn_of_doubt(values: Mapping[str, Any], present: Collection[str]) -> None:
     if not sentence:
         return
     level, frame = 1, sys._getframe()
-    while frame.f_back is not None and str(frame.f_globals.get("__name__")).startswith("tir."):
+    while frame.f_back is not None and str(frame.f_globals.get("__name__")).startswith(INSIDE):
         level, frame = level + 1, frame.f_back
     warnings.warn(sentence, TirWarning, stacklevel=level)
