@@ -176,6 +176,14 @@ def test_every_command_is_described(command):
     assert named, f"README's table of commands lacks `mffit {command}`"
 
 
+def test_every_program_that_a_file_can_be_written_for_is_described():
+    from tir.targets import TARGETS
+
+    page = text_of(DOCS / "property-files.md")
+    missing = [name for name in TARGETS if f"`{name}`" not in page]
+    assert not missing, f"docs/property-files.md does not describe {', '.join(missing)}"
+
+
 def test_the_readme_names_no_command_that_is_not_there():
     named = set(re.findall(r"`mffit (\w+)", text_of(ROOT / "README.md")))
     assert named <= set(commands.commands), f"README.md names {', '.join(named - set(commands.commands))}"

@@ -184,6 +184,16 @@ def _kernel_for(tyre: Tyre, n: int, switches: Switches) -> Callable | None:
     return tyre.prepared["batch", switches]
 
 
+def lag_of(tyre: Tyre, switches: Switches) -> tuple[Callable, Callable] | None:
+    """The functions of :func:`tir.codegen.lag.lag_functions`, cached in the tyre; None if a parameter is not a real number."""
+    if ("lag", switches) not in tyre.prepared:
+        from tir.codegen.lag import lag_functions  # imported late, so that import tir is quick
+
+        values = _values(tyre)
+        tyre.prepared["lag", switches] = None if values is None else lag_functions(values, switches)
+    return tyre.prepared["lag", switches]
+
+
 def _values(tyre: Tyre) -> dict[str, float] | None:
     """The parameters as floats; None if one is not a real number. Refuses zeros by which the equations divide."""
     refuse_zero_divisors(tyre.p)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 import warnings
 from collections.abc import Collection, Mapping
 from typing import TYPE_CHECKING, Any
@@ -16,6 +17,9 @@ if TYPE_CHECKING:
 BLOCK = tuple(row for row in TABLE if row.section == TURN_SLIP and row.files == "")
 """The coefficients of turn slip."""
 
+INSIDE = ("tir.", "functools")
+"""Modules that a warning is not meant for: this package, and what keeps the values of its properties."""
+
 
 def asks_for_turn_slip(values: Mapping[str, Any]) -> bool:
     """Whether the units digit of USE_MODE is 5; then spin acts unless a call or an export says otherwise."""
@@ -26,7 +30,7 @@ def exported(tyre: Tyre, turn_slip: bool | None, star: bool, limits: bool) -> Sw
     """The switches of exported code; warns if turn slip is on and the tyre's coefficients of it are doubtful."""
     on = tyre.turn_slip if turn_slip is None else bool(turn_slip)
     if on:
-        warn_of_doubt(tyre.values, tyre.present, stacklevel=3)
+        warn_of_doubt(tyre.values, tyre.present)
     return Switches(on, bool(star), bool(limits))
 
 
@@ -53,8 +57,12 @@ def doubt(values: Mapping[str, Any], present: Collection[str]) -> str:
     return ""
 
 
-def warn_of_doubt(values: Mapping[str, Any], present: Collection[str], *, stacklevel: int) -> None:
-    """Warn with the sentence of :func:`doubt`, at the caller ``stacklevel`` frames up."""
+def warn_of_doubt(values: Mapping[str, Any], present: Collection[str]) -> None:
+    """Warn with the sentence of :func:`doubt`, at the line outside this package that asked for the forces."""
     sentence = doubt(values, present)
-    if sentence:
-        warnings.warn(sentence, TirWarning, stacklevel=stacklevel + 1)
+    if not sentence:
+        return
+    level, frame = 1, sys._getframe()
+    while frame.f_back is not None and str(frame.f_globals.get("__name__")).startswith(INSIDE):
+        level, frame = level + 1, frame.f_back
+    warnings.warn(sentence, TirWarning, stacklevel=level)

@@ -14,19 +14,20 @@ length are stable.
 
 from __future__ import annotations
 
+from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from tir.calls import lag_of
+from tir.codegen.kernel import SCALARS
+from tir.codegen.program import Switches
+from tir.equations import contact as equations
 from tir.equations.forces import Forces, State
 from tir.errors import TirError
 
 if TYPE_CHECKING:
     from tir.tyre import Tyre
-
-FULL_SLIDING = 3.0
-"""Slip at which the whole contact slides, in units of friction times load over slip stiffness: a brush of parabolic pressure
-(Pacejka, section 3.2.1)."""
 
 
 class Contact(NamedTuple):
@@ -88,17 +89,38 @@ def step(
     """
     if not dt >= 0.0:
         raise TirError(f"the step dt is {dt:g} s, but time only runs forwards: give 0 or more")
+    quick = _in_floats(tyre, contact, dt, (Fz, Vx, Vsx, Vsy, gamma, phi_t, p, damping), turn_slip, limits)
+    if quick is not None:
+        return quick
     state = tyre.state(Fz, 0.0, gamma, 0.0, phi_t, Vx, p, turn_slip=turn_slip, limits=limits)
-    lifted = np.asarray(Fz) <= 0.0
-    slow = np.abs(Vx) < tyre["VXLOW"]
-    with np.errstate(divide="ignore", invalid="ignore"):
-        u = _dragged(contact.u, -np.asarray(Vsx), np.abs(Vx), state.sigma_x, dt)
-        v = _dragged(contact.v, np.asarray(Vsy), np.abs(Vx), state.sigma_y, dt)
-        u = np.where(slow, _no_growth(u, contact.u, _sliding(state.sigma_x, state.mu_x, Fz, state.K_xk)), u)
-        v = np.where(slow, _no_growth(v, contact.v, _sliding(state.sigma_y, state.mu_y, Fz, state.K_ya)), v)
-    after = Contact(_plain(np.where(lifted, 0.0, u)), _plain(np.where(lifted, 0.0, v)))
+    before = equations.Deflection(*map(np.asarray, contact))
+    load, ahead, along, across = (np.asarray(x, dtype=float) for x in (Fz, Vx, Vsx, Vsy))
+    with np.errstate(all="ignore"):
+        moved = equations.after(tyre.p, state, before, dt, load, ahead, along, across)
+    after = Contact(*map(_plain, moved))
     slip = _slip(tyre, state, after, Vx, Vsx, Vsy, damping)
     return after, _at(tyre, slip, Fz, Vx, gamma, phi_t, p, turn_slip, limits)
+
+
+def _in_floats(
+    tyre: Tyre, contact: Contact, dt: float, given: tuple[Any, ...], turn_slip: bool | None, limits: bool
+) -> tuple[Contact, Forces] | None:
+    """The step by straight-line code if every input is a single number and nothing is infinite; else None."""
+    Fz, Vx, Vsx, Vsy, gamma, phi_t, p, damping = given
+    on = tyre.turns(turn_slip, phi_t)
+    phi_t = 0.0 if phi_t is None else phi_t
+    p = tyre["INFLPRES"] if p is None else p
+    inputs = (*contact, Fz, Vx, Vsx, Vsy, gamma, phi_t, p, damping)
+    if not SCALARS.issuperset(map(type, inputs)):
+        return None
+    functions = lag_of(tyre, Switches(on, False, bool(limits)))
+    if functions is None:
+        return None
+    try:
+        after = Contact(*functions[0](*map(float, inputs), float(dt)))
+        return after, Forces(*functions[1](*after, *map(float, inputs[2:]))[: len(Forces._fields)])
+    except (ArithmeticError, ValueError):
+        return None
 
 
 def forces(
@@ -126,12 +148,11 @@ def _slip(
     tyre: Tyre, state: State, contact: Contact, Vx: Any, Vsx: Any, Vsy: Any, damping: float
 ) -> tuple[Any, Any]:
     """kappa' and alpha' [rad] of a deflected contact, damping included."""
-    kappa, alpha = slips(state, contact, Vx)
-    if damping:
-        share = _way(Vx) * damping * _fading(Vx, tyre["VXLOW"])
-        kappa = kappa - _ratio(share * np.asarray(Vsx), state.K_xk)
-        alpha = np.arctan(np.tan(alpha) + _ratio(share * np.asarray(Vsy), np.abs(state.K_ya)))
-    return kappa, alpha
+    deflection = equations.Deflection(*map(np.asarray, contact))
+    Vx, Vsx, Vsy = (np.asarray(x, dtype=float) for x in (Vx, Vsx, Vsy))
+    with np.errstate(all="ignore"):
+        kappa, alpha = equations.slips(tyre.p, state, deflection, Vx, Vsx, Vsy, damping)
+    return _plain(kappa), _plain(alpha)
 
 
 def _at(
@@ -151,47 +172,11 @@ def _at(
 
 def slips(state: State, contact: Contact, Vx: Any) -> tuple[Any, Any]:
     """kappa' and alpha' [rad] of a deflected contact with the relaxation lengths of ``state``; 0 where those are 0."""
-    kappa, tan_alpha = _ratio(contact.u, state.sigma_x), _ratio(contact.v, state.sigma_y)
-    return _plain(_way(Vx) * kappa), _plain(_way(Vx) * np.arctan(tan_alpha))
-
-
-def _way(Vx: Any) -> Any:
-    """-1 if the wheel rolls backwards, where slips are relative to the backward speed, else 1."""
-    return np.where(np.asarray(Vx) < 0.0, -1.0, 1.0)
-
-
-def _dragged(x: Any, speed: Any, rolling: Any, sigma: Any, dt: float) -> Any:
-    """Exact solution of dx/dt + rolling/sigma x = speed after dt; x + speed dt where nothing rolls."""
-    z = np.where(rolling > 0.0, rolling * dt / sigma, 0.0)
-    mean = np.where(z > 0.0, -np.expm1(-z) / np.where(z > 0.0, z, 1.0), 1.0)
-    time = sigma / rolling if np.isinf(dt) else dt * mean  # effective time for which the slip speed acts
-    gone = np.where(speed == 0.0, 0.0, speed * time)
-    # a contact without slip stiffness has no grip on the road, so no deflection
-    return np.where(sigma == 0.0, 0.0, np.asarray(x) * np.exp(-z) + gone)
-
-
-def _sliding(sigma: Any, mu: Any, Fz: Any, stiffness: Any) -> Any:
-    stiffness = np.asarray(stiffness)
-    return np.where(stiffness == 0.0, 0.0, np.abs(FULL_SLIDING * mu * np.asarray(Fz) * sigma / stiffness))
-
-
-def _no_growth(x: Any, before: Any, limit: Any) -> Any:
-    most = np.maximum(np.abs(before), limit)
-    return np.clip(x, -most, most)
-
-
-def _fading(Vx: Any, low: float) -> Any:
-    """1 at standstill, 0 from ``low`` on, smooth between (Pacejka, chapter 7)."""
-    return (
-        np.where(np.abs(Vx) < low, 0.5 * (1.0 + np.cos(np.pi * np.asarray(Vx) / low)), 0.0)
-        if low > 0.0
-        else 0.0
+    deflection = equations.Deflection(*map(np.asarray, contact))
+    kappa, alpha = equations.slips(
+        SimpleNamespace(VXLOW=0.0), state, deflection, np.asarray(Vx, dtype=float), 0.0, 0.0, 0.0
     )
-
-
-def _ratio(x: Any, sigma: Any) -> Any:
-    sigma = np.asarray(sigma)
-    return np.where(sigma > 0.0, np.asarray(x) / np.where(sigma > 0.0, sigma, 1.0), 0.0)
+    return _plain(kappa), _plain(alpha)
 
 
 def _plain(x: Any) -> Any:

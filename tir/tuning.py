@@ -60,16 +60,23 @@ def trace_tuned(
     names : of the tunables; default all
     """
     free = {one.name for one in tunables(tyre)} if names is None else set(names)
-    terms, reference = terms_of(tyre), tyre.measured.get(REFERENCE)
 
     def warmed(p: dict[str, Any], graph: Graph) -> None:
-        if TEMPERATURE in free and reference is not None:
-            warmer = graph.symbol(TEMPERATURE, PARAMETER) - reference.value
-            factors: dict[str, Any] = {}
-            for name, term in terms.items():
-                power = 2 if name.endswith("K2") else 1
-                factors[SCALED_BY[name]] = factors.get(SCALED_BY[name], 1.0) + term.value * warmer**power
-            for name, factor in factors.items():
-                p[name] = p[name] * factor
+        if TEMPERATURE in free:
+            warm(tyre, p, graph)
 
     return trace(switches, outputs, {key: float(tyre[key]) for key in NUMBERS if key not in free}, warmed)
+
+
+def warm(tyre: Tyre, p: dict[str, Any], graph: Graph) -> None:
+    """Multiply scaling factors by the temperature terms of the tyre's file, with the temperature as a symbol."""
+    terms = terms_of(tyre)
+    if not terms:
+        return
+    warmer = graph.symbol(TEMPERATURE, PARAMETER) - tyre.measured[REFERENCE].value
+    factors: dict[str, Any] = {}
+    for name, term in terms.items():
+        power = 2 if name.endswith("K2") else 1
+        factors[SCALED_BY[name]] = factors.get(SCALED_BY[name], 1.0) + term.value * warmer**power
+    for name, factor in factors.items():
+        p[name] = p[name] * factor

@@ -134,10 +134,16 @@ class Tyre:
         """Whether the file asks for turn slip: the units digit of USE_MODE is 5."""
         return asks_for_turn_slip(self.values)
 
+    def turns(self, turn_slip: bool | None, phi_t: Any) -> bool:
+        """Whether spin acts in a call with these arguments; warns once if it does so unasked by doubtful coefficients."""
+        if turn_slip is not None:
+            return bool(turn_slip)
+        return (phi_t is not None or self.turn_slip) and self._on
+
     @cached_property
     def _on(self) -> bool:
         """True, after one warning if the tyre's coefficients of turn slip are doubtful."""
-        warn_of_doubt(self.values, self.present, stacklevel=4)
+        warn_of_doubt(self.values, self.present)
         return True
 
     @cached_property

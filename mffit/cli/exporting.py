@@ -98,6 +98,9 @@ def c(
     help="Version of the standard: FMI 2.0 or 3.0.",
 )
 @click.option(
+    "--transient", is_flag=True, help="With the lag of the contact, from slip speeds; for co-simulation only."
+)
+@click.option(
     "--sources-only", is_flag=True, help="Without a binary: the importing program compiles the sources."
 )
 @voiced
@@ -108,6 +111,7 @@ def fmu(
     turn_slip: bool | None,
     limits: bool,
     fmi: str,
+    transient: bool,
     sources_only: bool,
     voice: Voice,
 ) -> None:
@@ -119,7 +123,14 @@ def fmu(
 
     with _told(voice):
         written = write_fmu(
-            file, out, fmi=int(fmi), name=name, turn_slip=turn_slip, limits=limits, sources_only=sources_only
+            file,
+            out,
+            fmi=int(fmi),
+            name=name,
+            turn_slip=turn_slip,
+            limits=limits,
+            transient=transient,
+            sources_only=sources_only,
         )
     _report(voice, [written], file, turn_slip)
 

@@ -38,13 +38,14 @@ def write_fmu(
     name: str | None = None,
     turn_slip: bool | None = None,
     limits: bool = False,
+    transient: bool = False,
     sources_only: bool = False,
 ) -> Path:
     """Write a property file as an FMU for model exchange and co-simulation.
 
-    The model has no states: outputs are functions of the inputs. Inputs Fz, kappa, alpha, gamma, phi_t, Vx, p; outputs Fx, Fy,
-    Fz_out, Mx, My, Mz, K_ya, K_xk, sigma_x, sigma_y, Re, omega, trail. Tunable parameters: the scaling factors (LMUY, LKY, ...),
-    and T_degC if the file has temperature terms. SI units, radians, ISO-W.
+    The model has no states unless ``transient``: outputs are functions of the inputs. Inputs Fz, kappa, alpha, gamma, phi_t, Vx,
+    p; outputs Fx, Fy, Fz_out, Mx, My, Mz, K_ya, K_xk, sigma_x, sigma_y, Re, omega, trail. Tunable parameters: the scaling
+    factors (LMUY, LKY, ...), and T_degC if the file has temperature terms. SI units, radians, ISO-W.
 
     Parameters
     ----------
@@ -55,6 +56,8 @@ def write_fmu(
         if turn slip is not as its USE_MODE says
     turn_slip : whether spin acts; default: if the units digit of the file's USE_MODE is 5
     limits : as in a call of the tyre
+    transient : with the lag of the contact (see :mod:`tir.transient`), for co-simulation: inputs are the slip speeds Vsx and Vsy
+        instead of kappa and alpha, and damping; the deflections u and v are states, and outputs with kappa and alpha
     sources_only : without a binary; the program that imports the FMU compiles the sources
 
     Returns
@@ -75,7 +78,7 @@ def write_fmu(
     tyre = tir.read(path)
     on = tyre.turn_slip if turn_slip is None else turn_slip
     name = identifier(path, name, other_mode(tyre, on))
-    files = _texts(tyre, path, name, fmi, on, limits)
+    files = _texts(tyre, path, name, fmi, on, limits, transient)
     if not sources_only:
         files[f"binaries/{compiler.host_folder(fmi)}/{name}{compiler.suffix()}"] = _binary(files, name, fmi)
     with output_folder(out, by="export", protected=[path]) as folder:
@@ -84,18 +87,20 @@ def write_fmu(
 
 
 def _texts(
-    tyre: tir.Tyre, path: Path, name: str, fmi: int, turn_slip: bool, limits: bool
+    tyre: tir.Tyre, path: Path, name: str, fmi: int, turn_slip: bool, limits: bool, transient: bool
 ) -> dict[str, bytes]:
     """The files of the archive by their path in it."""
-    code = c_of(tyre, path, name, turn_slip=turn_slip, limits=limits, tunable=True)
-    given, found, turned = variables.inputs(tyre), variables.outputs(), variables.parameters(tyre)
+    code = c_of(tyre, path, name, turn_slip=turn_slip, limits=limits, tunable=True, lag=transient)
+    given, found = variables.inputs(tyre, transient=transient), variables.outputs(transient=transient)
+    turned = variables.parameters(tyre, transient=transient)
     use = f"{words(turn_slip)}{', inputs held to the ranges' if limits else ''}"
     content = {
         "name": name,
         "title": f"{path.stem}, {words(turn_slip)}",
         "version": mffit.__version__,
         "token": "{" + str(uuid.UUID(hashlib.sha256(f"{fmi} {code.source}".encode()).hexdigest()[:32])) + "}",
-        "description": f"Tyre {path.name}: MF 6.2 in steady state, {use}; axes ISO-W",
+        "description": f"Tyre {path.name}: MF 6.2 {'with lag' if transient else 'in steady state'}, {use}; axes ISO-W",
+        "transient": transient,
         "inputs": given,
         "outputs": found,
         "parameters": turned,

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 
 import tir
 from tir.codegen.c99 import INPUT_TEXTS, OUTPUT_TEXTS, STATES
+from tir.codegen.lag import LAG_INPUTS, LAG_TEXTS, LAGGING
 from tir.codegen.program import INPUTS
 from tir.equations.forces import Forces
 from tir.tuning import tunables
@@ -43,6 +44,7 @@ UNITS = {
         Unit("Pa", {"kg": 1, "m": -1, "s": -2}, "kPa", 1e-3),
         Unit("rad", {"rad": 1}, "deg", math.degrees(1.0)),
         Unit("rad/s", {"rad": 1, "s": -1}),
+        Unit("Ns/m", {"kg": 1, "s": -1}),
         Unit("degC", {"K": 1}, offset=273.15),
     )
 }
@@ -60,12 +62,13 @@ class Variable:
     start: str = ""  #: as text for C and XML; not for outputs
 
 
-def inputs(tyre: tir.Tyre) -> tuple[Variable, ...]:
-    """The operating condition; it starts as the nominal one of the file, rolling straight."""
+def inputs(tyre: tir.Tyre, *, transient: bool = False) -> tuple[Variable, ...]:
+    """The operating condition; it starts as the nominal one of the file, rolling straight. ``transient``: with slip speeds."""
     starts = {"Fz": tyre["FNOMIN"], "Vx": tyre["LONGVL"], "pressure": tyre["INFLPRES"]}
+    texts = {**INPUT_TEXTS, **LAG_TEXTS}
     out = []
-    for reference, field in enumerate(ORDER, start=1):
-        description, unit = _described(INPUT_TEXTS[field])
+    for reference, field in enumerate(LAG_INPUTS if transient else ORDER, start=1):
+        description, unit = _described(texts[field])
         start = repr(float(starts.get(field, 0.0)))
         out.append(
             Variable(
@@ -80,12 +83,21 @@ def inputs(tyre: tir.Tyre) -> tuple[Variable, ...]:
     return tuple(out)
 
 
-def outputs() -> tuple[Variable, ...]:
-    """Forces and moments on the wheel in the contact frame, and further results for simulations."""
+def outputs(*, transient: bool = False) -> tuple[Variable, ...]:
+    """Forces and moments on the wheel in the contact frame, and further results for simulations.
+
+    ``transient``: the lagging slips and the deflections of the contact too.
+    """
     fields = [("forces", name) for name in Forces._fields] + [("state", name) for name in STATES]
+    if transient:
+        fields = [("deflected", name) for _, name in fields] + [
+            ("deflected", name) for name in ("kappa", "alpha")
+        ]
+        fields += [("(*s)", name) for name in LAGGING]
+    texts = {**OUTPUT_TEXTS, **LAG_TEXTS}
     out = []
-    for reference, (record, field) in enumerate(fields, start=1 + len(INPUTS)):
-        description, unit = _described(OUTPUT_TEXTS[field])
+    for reference, (record, field) in enumerate(fields, start=1 + len(LAG_INPUTS if transient else INPUTS)):
+        description, unit = _described(texts[field])
         out.append(
             Variable(
                 name=NAMES.get(f"out.{field}", field),
@@ -98,9 +110,9 @@ def outputs() -> tuple[Variable, ...]:
     return tuple(out)
 
 
-def parameters(tyre: tir.Tyre) -> tuple[Variable, ...]:
+def parameters(tyre: tir.Tyre, *, transient: bool = False) -> tuple[Variable, ...]:
     """What can be turned: scaling factors, and the temperature if the file has terms for it; they start as in the file."""
-    first = 1 + len(INPUTS) + len(outputs())
+    first = 1 + len(LAG_INPUTS if transient else INPUTS) + len(outputs(transient=transient))
     out = []
     for reference, one in enumerate(tunables(tyre), start=first):
         description, unit = _described(one.description)
@@ -117,7 +129,8 @@ def units_of(variables: Iterable[Variable]) -> tuple[Unit, ...]:
 def arguments(variables: tuple[Variable, ...]) -> str:
     """The inputs as arguments of the C functions, from the array of values ``v``."""
     references = {x.field: x.reference for x in variables}
-    return ", ".join(f"v[{references[name]}]" for name in INPUTS)
+    order = INPUTS if set(INPUTS) <= set(references) else LAG_INPUTS
+    return ", ".join(f"v[{references[name]}]" for name in order)
 
 
 def _described(text: str) -> tuple[str, str]:

@@ -46,6 +46,10 @@ def file_comments(
         use: {name: _derived_comment(use, coefficients.get(name)) for name in files.changed.get(use, ())}
         for use in files.by_use
     }
+    if files.camber_limit is not None and "normal" in files.by_use:
+        for name in ("CAMMIN", "CAMMAX"):
+            end = float(files.by_use["normal"].tyre[name])
+            derived["normal"][name] = f"given by [normal] camber_max_deg, {words_on_tested(end, 'rad')}"
     return {use: {**comments, **derived[use]} for use in files.by_use}
 
 

@@ -13,6 +13,7 @@ from mffit.tested import end_tested
 from mffit.viewer.controls import CONTROLS, Control, written_range
 from tir import Tyre
 from tir.evaluate import refuse_zero_divisors
+from tir.mode import doubt
 
 Given = str | Path | Tyre
 """A property file, or a tyre."""
@@ -61,6 +62,7 @@ def described(name: str, tyre: Tyre, parameters: Iterable[str]) -> dict[str, Any
         "values": {key: float(tyre[key]) for key in parameters},
         "ranges": {control.name: _ranges(tyre, control) for control in CONTROLS if control.limits},
         "turn_slip": tyre.turn_slip,
+        "doubt": bool(doubt(tyre.values, tyre.present)),
     }
 
 

@@ -13,10 +13,12 @@ import pytest
 
 import tir
 from tir.codegen.c99 import STATES
+from tir.codegen.lag import LAG_INPUTS
 from tir.codegen.program import INPUTS, Switches
 from tir.equations.forces import Forces
 from tir.evaluate import evaluate
 from tir.parameters import TABLE
+from tir.transient import Contact, step
 
 VECTORS = Path(__file__).parent / "vectors"
 COMPILER = next((name for name in ("cc", "gcc", "clang") if shutil.which(name)), None)
@@ -152,3 +154,45 @@ def test_scaling_factors_are_arguments_of_the_tuned_functions(tmp_path):
         wanted = evaluate(tyre.replace(**changes).p, *at, turn_slip=True)[0]
         for name in Forces._fields:
             assert getattr(found, name) == pytest.approx(float(getattr(wanted, name)), rel=1e-12)
+
+
+@needs_compiler
+@pytest.mark.parametrize("turn_slip", [False, True])
+def test_the_lag_in_c_is_that_of_the_transient_contact(tmp_path, turn_slip):
+    """Rolling, standing, backwards and lifted, in steps of any length."""
+    tyre = tir.read(VECTORS / "moto_front.tir")
+    library = compiled(tir.export_c(tyre, name="t", turn_slip=turn_slip, lag=True), "t", tmp_path)
+    factors = [row.name for row in TABLE if row.scaling]
+    tuning = record(factors)
+    library.t_as_in_file.restype = tuning
+    turned = library.t_as_in_file()
+    n = 2 + len(LAG_INPUTS)
+    library.t_step.argtypes = [ctypes.POINTER(tuning), *[ctypes.c_double] * (n + 1)]
+    library.t_step.restype = record(("u", "v"))
+    library.t_contact.argtypes = [ctypes.POINTER(tuning), *[ctypes.c_double] * n]
+    library.t_contact.restype = record((*Forces._fields, *STATES, "kappa", "alpha"))
+    rng = np.random.default_rng(6)
+    contact = Contact()
+    for i in range(60):
+        Vx = float(rng.choice([0.0, 0.3, 15.0, -8.0]))
+        Fz, dt = (
+            float(rng.choice([1400.0, 900.0, 0.0], p=[0.6, 0.3, 0.1])),
+            float(rng.choice([1e-4, 0.01, 1.0])),
+        )
+        Vsx, Vsy, gamma, phi_t = (
+            rng.uniform(-0.5, 0.5),
+            rng.uniform(-0.8, 0.8),
+            rng.uniform(-0.4, 0.4),
+            rng.uniform(-0.1, 0.1),
+        )
+        damping = float(i % 2) * 400.0
+        given = (Fz, Vx, Vsx, Vsy, gamma, phi_t, 2.4e5, damping)
+        moved = library.t_step(ctypes.byref(turned), dt, *contact, *given)
+        contact, forces = step(
+            tyre, contact, dt, Fz, Vx, Vsx, Vsy, gamma, phi_t, 2.4e5, damping=damping, turn_slip=turn_slip
+        )
+        assert (moved.u, moved.v) == pytest.approx(contact, rel=1e-9, abs=1e-15)
+        found = library.t_contact(ctypes.byref(turned), *contact, *given)
+        assert [getattr(found, name) for name in Forces._fields] == pytest.approx(
+            list(forces), rel=1e-9, abs=1e-9
+        )

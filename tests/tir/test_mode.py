@@ -68,8 +68,12 @@ def test_a_guessed_or_empty_block_is_told_once(change):
     with pytest.warns(tir.TirWarning, match="no side force" if change else "common defaults") as caught:
         tyre(4000.0, 0.02)
     assert Path(caught[0].filename).name == Path(__file__).name
-    with pytest.warns(tir.TirWarning):
+    with pytest.warns(tir.TirWarning) as caught:
         tir.export_c(tyre)
+    assert Path(caught[0].filename).name == Path(__file__).name
+    with pytest.warns(tir.TirWarning) as caught:
+        transient.step(tyre.replace(), transient.Contact(), 0.1, 4000.0, 10.0)
+    assert Path(caught[0].filename).name == Path(__file__).name
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         tyre(4000.0, 0.03)

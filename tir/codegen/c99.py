@@ -6,6 +6,7 @@ import re
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, NamedTuple
 
+from tir.codegen.lag import LAG_INPUTS, LAG_TEXTS, LAGGING, lag_programs
 from tir.codegen.program import INPUTS, NUMBERS, Program, Switches, trace
 from tir.codegen.source import COMMON, SourceDialect, assignments
 from tir.equations.forces import Forces
@@ -80,6 +81,7 @@ def export_c(
     star: bool = False,
     limits: bool = False,
     tunable: bool = False,
+    lag: bool = False,
 ) -> Code:
     """The tyre as C99: one function of the operating condition, no allocation, no state, doubles only.
 
@@ -92,6 +94,8 @@ def export_c(
     tunable : also ``<name>_evaluate_tuned`` and ``<name>_evaluate_state_tuned``, whose first argument points to a
         ``<name>_tuning`` of the scaling factors, and of the temperature if the file has terms for it; ``<name>_as_in_file()``
         returns their values in the file
+    lag : also the lag of the contact, see :mod:`tir.transient`, with the same tuning: ``<name>_step`` returns the
+        deflection after a step of time, ``<name>_contact`` forces and states of a deflection
 
     Returns
     -------
@@ -116,11 +120,33 @@ def export_c(
     switches = exported(tyre, turn_slip, star, limits)
     kinds = {"forces": Forces._fields, "state": STATES}
     programs = {kind: trace(switches, fields, values) for kind, fields in kinds.items()}
-    if not tunable:
+    if not (tunable or lag):
         return Code(_header(name, switches, tyre, ()), _source(name, programs, {}, ()))
     turned = tunables(tyre)
     tuned = {kind: trace_tuned(tyre, switches, fields) for kind, fields in kinds.items()}
-    return Code(_header(name, switches, tyre, turned), _source(name, programs, tuned, turned))
+    code = Code(_header(name, switches, tyre, turned), _source(name, programs, tuned, turned))
+    return _with_lag(code, name, lag_programs(tyre, switches, STATES)) if lag else code
+
+
+def _with_lag(code: Code, name: str, programs: tuple[Program, Program]) -> Code:
+    """The code with two more functions and their records."""
+    declared = []
+    for kind, program in zip(("deflection", "deflected"), programs, strict=True):
+        texts = {**OUTPUT_TEXTS, **LAG_TEXTS}
+        declared += ["typedef struct {", *(f"    double {f}; /* {texts[f]} */" for f in program.outputs)]
+        declared += [f"}} {name}_{kind};", ""]
+    given = ", ".join(f"double {x}" for x in (*LAGGING, *LAG_INPUTS))
+    heads = (
+        f"{name}_deflection {name}_step(const {name}_tuning *tuning, double dt, {given})",
+        f"{name}_deflected {name}_contact(const {name}_tuning *tuning, {given})",
+    )
+    bodies = []
+    for head, record, program in zip(heads, ("deflection", "deflected"), programs, strict=True):
+        names = (*LAGGING, *LAG_INPUTS, "dt")[: None if record == "deflection" else -1]
+        bodies += [*_function(head, f"{name}_{record}", program, names), ""]
+    end = "#ifdef __cplusplus\n}\n#endif\n#endif\n"
+    header = code.header.removesuffix(end) + "\n".join([*declared, *(f"{head};" for head in heads), "", end])
+    return Code(header, code.source + "\n".join(bodies))
 
 
 def _refuse_name(name: str) -> None:
@@ -222,13 +248,14 @@ def _tuned_head(name: str, kind: str) -> str:
     return f"{name}_{kind} {name}_evaluate{words}_tuned(const {name}_tuning *tuning, {_parameters()})"
 
 
-def _function(head: str, record: str, program: Program) -> list[str]:
+def _function(head: str, record: str, program: Program, given: Sequence[str] = INPUTS) -> list[str]:
     lines, results = assignments((*program.per_tyre, *program.per_point), program.outputs.values(), C)
     used = {node.name for node in program.per_point if node.operation == "symbol"}
     return [
         head,
         "{",
-        *(f"    (void){name};" for name in INPUTS if name not in used),
+        *(f"    (void){name};" for name in given if name not in used),
+        *(["    (void)tuning;"] if "*tuning" in head and not program.parameters else []),
         *(f"    const double {name} = tuning->{name};" for name in program.parameters),
         *(f"    {line}" for line in lines),
         f"    {record} out;",

@@ -58,7 +58,7 @@ def trace(
     changed : changes the parameters by name before the run
     """
     found = run_on_symbols(switches, fixed or {}, {}, changed)
-    return _program({name: found[name] for name in outputs})
+    return program_of({name: found[name] for name in outputs})
 
 
 def run_on_symbols(
@@ -92,7 +92,8 @@ def needed(results: Collection[Any]) -> list[Node]:
     return [wanted[number] for number in sorted(wanted)]
 
 
-def _program(outputs: Mapping[str, Any]) -> Program:
+def program_of(outputs: Mapping[str, Any]) -> Program:
+    """The program of nodes, or numbers, by name of the output."""
     nodes = needed(outputs.values())
     per_point = tuple(node for node in nodes if node.level == INPUT)
     used = [*(a for node in per_point for a in node.arguments), *outputs.values()]

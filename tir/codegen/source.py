@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections import Counter
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -97,10 +97,10 @@ def preparation(program: Program) -> str:
     return function(f"prepare(p, {', '.join(FUNCTIONS)})", [*given, *lines, _returned(results)])
 
 
-def conditions(program: Program) -> str:
+def conditions(program: Program, inputs: Sequence[str] = INPUTS) -> str:
     """Python source of ``run(<inputs>, <constants>)``: the outputs at an operating condition."""
     lines, results = assignments(program.per_point, program.outputs.values(), PYTHON)
-    given = (*INPUTS, *map(name_of, program.constants))
+    given = (*inputs, *map(name_of, program.constants))
     return function(f"run({', '.join(given)})", [*lines, _returned(results)])
 
 

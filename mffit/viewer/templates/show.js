@@ -245,6 +245,7 @@
       const beyond = kind => Object.keys(tyre.ranges).filter(name => zoneOf(tyre, name, now[name]) === kind)
         .map(name => data.quantities[name].word).join(", ");
       const notes = [`turn slip ${isOn(tyre) ? "on" : "off"}`];
+      if (isOn(tyre) && tyre.doubt) notes.push("its coefficients of turn slip are defaults or zero");
       if (beyond(OUTSIDE)) notes.push(`outside the file's range: ${beyond(OUTSIDE)}`);
       if (beyond(UNTESTED)) notes.push(`beyond the tested range: ${beyond(UNTESTED)}`);
       tyre.about.textContent = notes.join("; ");

@@ -20,6 +20,8 @@ from mffit.cli import main
 from mffit.errors import InputError
 from mffit.export import write_c, write_fmu
 from mffit.export.variables import UNITS, outputs
+from tir import transient
+from tir.transient import Contact, step
 
 VECTORS = Path(__file__).parents[2] / "tir" / "vectors"
 FILE = VECTORS / "moto_front.tir"
@@ -113,6 +115,48 @@ def test_scaling_factors_and_temperature_can_be_turned(tmp_path, fmi):
         for name in ("Fx", "Fy", "Mz"):
             assert found[name][-1] == pytest.approx(getattr(warm(**at), name), rel=1e-10)
         assert found["K_ya"][-1] == pytest.approx(warm.state(**at).K_ya, rel=1e-10)
+
+
+@needs_compiler
+@pytest.mark.parametrize("fmi", [2, 3])
+def test_the_lag_of_the_contact_is_that_of_tir(tmp_path, fmi):
+    """A steering and braking manoeuvre that ends in standstill, in steps of 10 ms."""
+    fmpy = pytest.importorskip("fmpy")
+    from fmpy.validation import validate_fmu
+
+    fmu = write_fmu(FILE, tmp_path, fmi=fmi, transient=True)
+    assert validate_fmu(str(fmu)) == []
+    with zipfile.ZipFile(fmu) as archive:
+        archive.extractall(tmp_path)
+    strict = ["-std=c99", "-pedantic", "-Wall", "-Wextra", "-Werror", "-c"]
+    sources = map(str, sorted((tmp_path / "sources").glob("*.c")))
+    subprocess.run([str(COMPILER), *strict, *sources], cwd=tmp_path, check=True)
+    n, dt = 80, 0.01
+    signals = np.zeros(
+        n, dtype=[(name, float) for name in ("time", "Fz", "Vx", "Vsx", "Vsy", "gamma", "damping")]
+    )
+    signals["time"] = dt * np.arange(n)
+    signals["Fz"], signals["damping"] = 1400.0, 300.0
+    signals["Vx"] = np.maximum(6.0 - 10.0 * signals["time"], 0.0)
+    signals["Vsx"], signals["Vsy"] = 0.2 * np.sin(9.0 * signals["time"]), 0.3 * np.cos(7.0 * signals["time"])
+    signals["gamma"] = 0.2 * signals["time"]
+    found = fmpy.simulate_fmu(
+        str(fmu), fmi_type="CoSimulation", input=signals, stop_time=signals["time"][-1], output_interval=dt, step_size=dt,
+        output=["Fx", "Fy", "Mz", "u", "v", "alpha"],
+    )  # fmt: skip
+    tyre, contact = tir.read(FILE), Contact()
+    for i, row in enumerate(signals[:-1]):
+        _, Fz, Vx, Vsx, Vsy, gamma, damping = (float(x) for x in row)
+        contact, _ = step(tyre, contact, dt, Fz, Vx, Vsx, Vsy, gamma, damping=damping)
+        if i >= 1:
+            assert (found["u"][i + 1], found["v"][i + 1]) == pytest.approx(contact, rel=1e-6, abs=1e-9)
+    at_end = signals[-1]
+    assert abs(found["v"][-1]) > 1e-3
+    end = transient.forces(
+        tyre, contact, 1400.0, *(float(at_end[x]) for x in ("Vx", "Vsx", "Vsy", "gamma")), damping=300.0
+    )
+    for name in ("Fx", "Fy", "Mz"):
+        assert found[name][-1] == pytest.approx(getattr(end, name), rel=0.02, abs=1.0)
 
 
 @needs_compiler

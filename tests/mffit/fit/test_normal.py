@@ -20,6 +20,7 @@ from mffit.fit.normal import derive
 from mffit.pipeline.diagnosing import chosen_model
 from mffit.pipeline.provenance import use_of
 from mffit.results import as_json
+from mffit.tested import end_tested
 from tir.checking import check
 from tir.parameters import TABLE
 
@@ -139,6 +140,8 @@ def test_held_to_thirty_degrees_the_file_is_four_times_as_near(result):
     normal = held.by_use["normal"]
     assert normal.straight["Fy"].rms < 16.0
     assert (normal.tyre["CAMMIN"], normal.tyre["CAMMAX"]) == pytest.approx((-np.pi / 6.0, np.pi / 6.0))
+    assert "[normal] camber_max_deg" in normal.tyre.status["CAMMAX"]
+    assert end_tested(normal.tyre.status["CAMMAX"]) == pytest.approx(np.pi / 6.0, rel=1e-5)
     assert held.by_use["turn-slip"].tyre["CAMMAX"] == result.tyre["CAMMAX"]
     assert abs(normal.camber_stiffness) > abs(result.fit.files.by_use["normal"].camber_stiffness)
     assert held.otherwise.straight["Fy"].rms == pytest.approx(

@@ -1,0 +1,83 @@
+"""The tyre with the lag of its contact as programs: the deflection after a step, and the forces of a deflection."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from functools import cache
+from types import SimpleNamespace
+from typing import TYPE_CHECKING, Any
+
+from tir.codegen.graph import INPUT, PARAMETER, Graph
+from tir.codegen.program import NUMBERS, Program, Switches, program_of
+from tir.codegen.single import MATH, Run, constants, with_defaults
+from tir.codegen.source import conditions, preparation
+from tir.equations import contact
+from tir.evaluate import either_way
+from tir.tuning import tunables, warm
+
+if TYPE_CHECKING:
+    from tir.tyre import Tyre
+
+LAG_INPUTS = ("Fz", "Vx", "Vsx", "Vsy", "gamma", "phi_t", "pressure", "damping")
+LAG_TEXTS = {
+    "Vsx": "longitudinal slip speed Vx - Re omega [m/s]",
+    "Vsy": "lateral slip speed [m/s]",
+    "damping": "damping of the contact at standstill, fading out towards VXLOW [Ns/m]",
+    "u": "deflection of the contact forwards [m]",
+    "v": "deflection of the contact to the right [m]",
+    "kappa": "lagging longitudinal slip [-]",
+    "alpha": "lagging sideslip angle [rad]",
+}
+LAGGING = ("u", "v")
+
+
+def lag_programs(tyre: Tyre, switches: Switches, states: Sequence[str]) -> tuple[Program, Program]:
+    """The deflection after a step ``dt``; and forces, ``states`` and the lagging slips of a deflection.
+
+    Inputs are LAG_INPUTS, the deflection u and v, and for the step ``dt`` [s]. Tunables are symbols, other values numbers.
+    """
+    graph, free = Graph(), {one.name for one in tunables(tyre)}
+    p = {name: graph.symbol(name, PARAMETER) if name in free else float(tyre[name]) for name in NUMBERS}
+    warm(tyre, p, graph)
+    return _programs(graph, p, switches, states)
+
+
+def lag_functions(values: Mapping[str, float], switches: Switches) -> tuple[Run, Run]:
+    """The same two as functions of floats (u, v, *LAG_INPUTS), and of dt behind them for the step.
+
+    They raise ArithmeticError or ValueError where numpy gives NaN or infinity.
+    """
+    after, deflected = (
+        with_defaults(run, constants(prepare, values)) for prepare, run in _in_python(switches)
+    )
+    return after, deflected
+
+
+@cache
+def _in_python(switches: Switches) -> list[tuple[Any, Any]]:
+    graph = Graph()
+    programs = _programs(graph, {name: graph.symbol(name, PARAMETER) for name in NUMBERS}, switches, ())
+    out = []
+    for program, names in zip(
+        programs, ((*LAGGING, *LAG_INPUTS, "dt"), (*LAGGING, *LAG_INPUTS)), strict=True
+    ):
+        namespace: dict[str, Any] = dict(MATH)
+        exec(preparation(program) + conditions(program, names), namespace)
+        out.append((namespace["prepare"], namespace["run"]))
+    return out
+
+
+def _programs(
+    graph: Graph, p: Mapping[str, Any], switches: Switches, states: Sequence[str]
+) -> tuple[Program, Program]:
+    parameters = SimpleNamespace(**p)
+    given = {name: graph.symbol(name, INPUT) for name in (*LAG_INPUTS, *LAGGING, "dt")}
+    Fz, Vx, Vsx, Vsy, gamma, phi_t, pressure, damping = (given[name] for name in LAG_INPUTS)
+    deflection = contact.Deflection(*(given[name] for name in LAGGING))
+    backwards = Vx < 0.0
+    _, state = either_way(parameters, backwards, Fz, 0.0, gamma, 0.0, phi_t, Vx, pressure, *switches)
+    moved = contact.after(parameters, state, deflection, given["dt"], Fz, Vx, Vsx, Vsy)
+    kappa, alpha = contact.slips(parameters, state, deflection, Vx, Vsx, Vsy, damping)
+    forces, here = either_way(parameters, backwards, Fz, alpha, gamma, kappa, phi_t, Vx, pressure, *switches)
+    outputs = {**forces._asdict(), **{name: getattr(here, name) for name in states}}
+    return program_of(moved._asdict()), program_of({**outputs, "kappa": kappa, "alpha": alpha})
