@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from tir.constant import Count, Real
+from tir.constant import Count, Real, Series
 
 # Levels of the set-points: values further apart than a tolerance may be two levels; the scatter of a rig is a third of it
 LOAD_LEVEL_TOLERANCE = Real(0.08, "-", "Loads of one level differ by less, relatively.")
@@ -20,6 +20,14 @@ HELD_DISTANCE = Real(
 MOST_AWAY_FROM_LEVELS = Real(
     0.3, "-", "Share of values beyond that distance above which a setting is not held."
 )
+
+HELD_SPAN = Real(
+    2.5,
+    "-",
+    "Range of the load within a sweep, in tolerances, up to which the sweep holds it: load control wanders by 10 % to either "
+    "side at small loads, and programmes step it by a quarter or more.",
+)
+PERCENTILES_OF_HELD = Series((5.0, 95.0), "%", "Ends of that range; ignores single values.")
 
 # Samples that are no measurement
 UNLOADED = Real(0.1, "-", "Share of the usual load below which the tyre is off the belt.")
