@@ -22,6 +22,14 @@ MOST_AWAY_FROM_LEVELS = Real(
     0.3, "-", "Share of values beyond that distance above which a setting is not held."
 )
 
+HELD_SPAN = Real(
+    2.5,
+    "-",
+    "Range of the load within a sweep, in tolerances, up to which the sweep holds it: load control wanders by 10 % to either "
+    "side at small loads, and programmes step it by a quarter or more.",
+)
+PERCENTILES_OF_HELD = Series((5.0, 95.0), "%", "Ends of that range; ignores single values.")
+
 # Samples that are no measurement
 UNLOADED = Real(0.1, "-", "Share of the usual load below which the tyre is off the belt.")
 FREE_ROLLING_SLIP = Real(0.02, "-", "Longitudinal slip up to which the wheel counts as rolling freely.")

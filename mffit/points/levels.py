@@ -53,6 +53,36 @@ def nearest_labels(values: np.ndarray, kind: LevelKind) -> np.ndarray:
     return _nearest(scaled, _centres(scaled))
 
 
+def labels_of_sweeps(values: np.ndarray, sweep: np.ndarray, kind: LevelKind) -> np.ndarray:
+    """As :func:`nearest_labels`, with one label for each sweep that holds the setting: that of most of its points.
+
+    A load wanders with the side force of a sweep, by more than a tolerance at small loads.
+
+    Parameters
+    ----------
+    values : (n,)
+    sweep : (n,) number of each value's sweep
+    kind : of the setting
+    """
+    found, scaled = nearest_labels(values, kind), _scaled(values, kind)
+    for k in np.unique(sweep):
+        rows = np.flatnonzero((sweep == k) & (found != NO_LEVEL))
+        if (
+            len(rows)
+            and np.ptp(np.percentile(scaled[rows], constants.PERCENTILES_OF_HELD)) < constants.HELD_SPAN
+        ):
+            found[rows] = np.bincount(found[rows]).argmax()
+    return found
+
+
+def median_of_labels(values: np.ndarray, found: np.ndarray) -> np.ndarray:
+    """Median (n,) of the values with the same label as each; NaN where there is none."""
+    out = np.full(len(values), np.nan)
+    for k in np.unique(found[found != NO_LEVEL]):
+        out[found == k] = np.median(values[found == k])
+    return out
+
+
 def level_values(values: np.ndarray, kind: LevelKind) -> np.ndarray:
     """Median (n,) of the level nearest to each value; NaN stays NaN."""
     values = np.asarray(values, dtype=float)

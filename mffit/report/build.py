@@ -12,7 +12,7 @@ import numpy as np
 from mffit.diagnosis import wording as of_residuals
 from mffit.measured import constants, setup_notes, wording
 from mffit.quantities import CHANNELS, CONDITIONS, DIRECT
-from mffit.report import page, published
+from mffit.report import left_undrawn, page, published
 from mffit.report.build_view import PER_LOAD, STATUS_ORDER, BuildView, ChannelRow, CoefficientRow, view_of
 from mffit.report.drawing.records import Sheet
 from mffit.report.figures import bands, decomposition, files, fit, residuals, spin, structure
@@ -60,6 +60,7 @@ def write_build(result: BuildResult, folder: Path) -> None:
         degrees=math.degrees(1.0),
         of_setups=setup_notes.setup_scatter,
         radians=math.radians(1.0),
+        left_undrawn=left_undrawn,
         meanings=MEANINGS,
         units=UNITS,
     )

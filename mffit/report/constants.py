@@ -32,7 +32,12 @@ STEPS_OF_FILE_CURVE = Count(
 )
 DENSE_CURVE = Count(60, "-", "Curves with more points are drawn as dots, as circles would cover each other.")
 WHOLE_DEGREES = Real(0.15, "deg", "Cambers this close to whole degrees are written without decimals.")
-MOST_PANELS_OF_FIT = Count(15, "-", "Most panels of points and model that a reader looks through.")
+MOST_PANELS_OF_FIT = Count(
+    90, "-", "Most panels of points and model: a picture of three pages. The caption says what is left out."
+)
+PANELS_OF_FULL_SIZE = Count(
+    15, "-", "Above this number, panels are small, so that the conditions are seen side by side."
+)
 MOST_PANELS_OF_PARTS = Count(18, "-", "Most panels of odd and even parts that a reader looks through.")
 MOST_LOADS_SIDE_BY_SIDE = Count(4, "-", "Columns of a picture with a column per load at most.")
 FEWEST_POINTS_OF_PARTS = Count(
@@ -50,6 +55,11 @@ HELD_SIDESLIP_SHARES = Series(
 
 MOST_MAPS_PER_CHANNEL = Count(
     6, "-", "Most conditions with a residual map; those with the most points are shown."
+)
+MOST_MAPS_OF_BUILD = Count(
+    60,
+    "-",
+    "Most residual maps per channel in the report of a build, in rows of six. The caption says what is left out.",
 )
 RESIDUAL_SCALE = Real(4.0, "-", "End of the colour scale of residual maps, in units of noise.")
 SMALLEST_GAP_SCALE = Real(

@@ -60,7 +60,8 @@ class CurveCondition:
 def load_levels(points: Points) -> np.ndarray:
     """Load of each point's level [N], rounded."""
     step = constants.LOAD_ROUNDING
-    return np.round(levels.level_values(points.Fz, levels.LOAD) / step) * step
+    held = levels.labels_of_sweeps(points.Fz, points.sweep, levels.LOAD)
+    return np.round(levels.median_of_labels(points.Fz, held) / step) * step
 
 
 def pressure_levels(points: Points) -> np.ndarray:

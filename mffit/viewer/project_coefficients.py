@@ -16,7 +16,9 @@ from mffit.results import BuildResult
 from mffit.viewer import constants
 from tir.parameters import BY_NAME, TABLE, Parameter
 
-FOUND = frozenset({"fitted", "regularised", "measured"})
+BY_THE_FIT = frozenset({"fitted", "regularised"})
+"""Status of coefficients that the readings of the sweeps determine."""
+FOUND = BY_THE_FIT | {"measured"}
 """Status of coefficients that the data determine."""
 
 
@@ -107,7 +109,7 @@ def _row(row: Parameter, fitted: FitResult, moved: Sequence[str]) -> dict[str, A
         "bounds": [x if math.isfinite(x) else None for x in (lower, upper)],
         "divisor": row.divisor,
         "slider": [low, high],
-        "moved_by": list(moved),
+        "moved_by": list(moved) if record.status in BY_THE_FIT else [],
         "partner": [record.correlated_with, record.correlation] if record.correlated_with else None,
     }
 

@@ -68,7 +68,11 @@ def facets(points: Points) -> list[dict[str, Any]]:
     inputs = _arrays(points)
     found = []
     for name, kind in FACETS.items():
-        of = levels.nearest_labels(np.abs(inputs[name]) if name == "Vx" else inputs[name], kind)
+        values = np.abs(inputs[name]) if name == "Vx" else inputs[name]
+        if kind is levels.LOAD:
+            of = _ranks(levels.labels_of_sweeps(values, points.sweep, kind))
+        else:
+            of = levels.nearest_labels(values, kind)
         medians = [float(np.median(inputs[name][of == k])) for k in range(of.max(initial=-1) + 1)]
         found.append(_facet(name, MODEL[name].word, of, [_said(MODEL[name], x) for x in medians]))
     for name, word, of, words in (

@@ -22,6 +22,7 @@ class Session:
         self.data: dict[str, Any] | None = None  #: of the last fit, for the page
         self.fits = 0  #: finished fits
         self.last: RunOutcome | None = None  #: of the last run
+        self._seen: tuple[str | None, str, Config | None] = (None, "", None)
         self._fitted = ""  #: digest of the tyre.toml of the last fit
         self._run: Run | None = None
         self._lock = threading.Lock()
@@ -30,12 +31,8 @@ class Session:
         """What the page must know beside the data of the fit, as JSON."""
         with self._lock:
             self._collect()
-            problem, config = "", None
-            try:
-                config = self.file.config()
-            except InputError as error:
-                problem = str(error)
             digest = self.file.digest
+            problem, config = self._read(digest)
             return {
                 "digest": digest,
                 "is_fitted": self._fitted == digest,
@@ -109,6 +106,15 @@ class Session:
             self.data = run.outcome.data | {"before": _before(self.data)}
             self.fits += 1
             self._fitted = run.digest
+
+    def _read(self, digest: str) -> tuple[str, Config | None]:
+        """The configuration, or what is wrong with it; read anew only if the file has changed."""
+        if self._seen[0] != digest:
+            try:
+                self._seen = digest, "", self.file.config()
+            except InputError as error:
+                self._seen = digest, str(error), None
+        return self._seen[1:]
 
     def _pages(self, config: Config | None) -> list[dict[str, Any]]:
         """The pages of results: title, address if there is one, whether it is older than tyre.toml."""

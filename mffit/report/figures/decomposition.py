@@ -107,15 +107,20 @@ def pure_curves(view: BuildView) -> list[Curve]:
     ]
 
 
-def worth_drawing(curves: Sequence[Curve], channel: ChannelRow) -> list[Curve]:
-    """Forward curves that have mirrors, thinned out evenly where there are too many for a page."""
-    chosen = [
+def drawable(curves: Sequence[Curve], channel: ChannelRow) -> list[Curve]:
+    """Forward curves that have mirrors."""
+    return [
         c
         for c in curves
         if c.forward
         and c.held > -constants.UPRIGHT_ENOUGH_TO_DRAW
         and np.isfinite(channel.odd[c.index]).sum() > 1
     ]
+
+
+def worth_drawing(curves: Sequence[Curve], channel: ChannelRow) -> list[Curve]:
+    """Those of :func:`drawable` that are long, thinned out evenly where there are too many for a page."""
+    chosen = drawable(curves, channel)
     long_ones = [c for c in chosen if len(c.index) >= constants.FEWEST_POINTS_OF_PARTS] or chosen
     most = constants.MOST_PANELS_OF_PARTS
     if len(long_ones) <= most:

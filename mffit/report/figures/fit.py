@@ -42,13 +42,31 @@ MODEL = Look(colour=style.MUTED, line="-", width=1.0)
 def model_against_points(view: Overlaid, channel: ChannelRow) -> Sheet:
     """One panel per load and pressure: first over sideslip, coloured by camber, then over camber."""
     colours = style.ramp({c.held for c in view.curves if c.over == "alpha"})
-    conditions = list(_conditions(view.curves).items())[: constants.MOST_PANELS_OF_FIT]
+    conditions = drawn_conditions(view.curves)
     groups = [
-        [_panel(view, channel, members, colours) for key, members in conditions if key[0] == over]
+        [
+            _panel(view, channel, members, colours)
+            for (varied, *_), members in conditions.items()
+            if varied == over
+        ]
         for over in labels.ANGLES
     ]
-    rows = in_rows(*groups, columns=5 if max(map(len, groups)) > 4 else 4)
-    return Sheet(rows=rows, height=1.75, key=_key(view, channel, colours))
+    small = len(conditions) > constants.PANELS_OF_FULL_SIZE
+    columns = 6 if small else 5 if max(map(len, groups)) > 4 else 4
+    return Sheet(
+        rows=in_rows(*groups, columns=columns),
+        height=1.4 if small else 1.75,
+        key=_key(view, channel, colours),
+    )
+
+
+def drawn_conditions(curves: Iterable[Curve]) -> dict[tuple[str, float, float], list[Curve]]:
+    """The conditions that have a panel, by varied angle, load and pressure; of too many, those with the most points."""
+    every = _conditions(curves)
+    most = sorted(every, key=lambda key: -sum(len(c.index) for c in every[key]))[
+        : constants.MOST_PANELS_OF_FIT
+    ]
+    return {key: members for key, members in every.items() if key in most}
 
 
 def _conditions(curves: Iterable[Curve]) -> dict[tuple[str, float, float], list[Curve]]:

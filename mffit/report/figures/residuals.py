@@ -9,14 +9,17 @@ import numpy as np
 from mffit.points import Points
 from mffit.report import constants, labels, style
 from mffit.report.curves import CurveCondition
-from mffit.report.drawing.records import Axis, ColourScale, Frame, Look, Map, Panel, Sheet, Trace
+from mffit.report.drawing.records import Axis, ColourScale, Frame, Look, Map, Panel, Sheet, Trace, in_rows
 
 BACKWARD = Look(colour=style.INK, marker=".", size=1.8)
 
 
-def most_populated(conditions: Sequence[CurveCondition]) -> list[CurveCondition]:
-    """The conditions with most points, as many as there is room for, in their order."""
-    kept = sorted(conditions, key=lambda c: -len(c.index))[: constants.MOST_MAPS_PER_CHANNEL]
+MAPS_IN_A_ROW = 6
+
+
+def most_populated(conditions: Sequence[CurveCondition], most: int | None = None) -> list[CurveCondition]:
+    """The conditions with most points, in their order; ``most`` of them, by default as many as fit side by side."""
+    kept = sorted(conditions, key=lambda c: -len(c.index))[: most or constants.MOST_MAPS_PER_CHANNEL]
     return [c for c in conditions if c in kept]
 
 
@@ -26,16 +29,20 @@ def residual_maps(
     conditions: Sequence[CurveCondition],
     unit: str,
 ) -> Sheet:
-    """A row of maps per residual (title, (n,) array), a column per condition; one colour scale for all."""
+    """Rows of maps per residual (title, (n,) array), one map per condition; one colour scale for all."""
     limit = constants.RESIDUAL_SCALE
-    rows = [
+    groups = [
         [
             residual_map(points, values, condition, limit, f"{name}: {condition.title}")
-            for condition in most_populated(conditions)
+            for condition in most_populated(conditions, constants.MOST_MAPS_OF_BUILD)
         ]
         for name, values in residuals
     ]
-    return Sheet(rows=rows, height=1.45, scale=ColourScale(limit=limit, label=f"measured − model [{unit}]"))
+    return Sheet(
+        rows=in_rows(*groups, columns=MAPS_IN_A_ROW),
+        height=1.45,
+        scale=ColourScale(limit=limit, label=f"measured − model [{unit}]"),
+    )
 
 
 def residual_map(

@@ -73,7 +73,7 @@ function showRow(row) {
   const cell = cells[row.name];
   if (!cell) return;
   const moved = row.name in trial, value = moved ? trial[row.name] : row.value, entry = entryOf(row.name);
-  cell.field.value = Number(value.toPrecision(6));
+  cell.field.value = Number(value.toPrecision(5));
   cell.slider.value = value;
   cell.box.classList.toggle("moved", moved);
   cell.reset.hidden = !moved;

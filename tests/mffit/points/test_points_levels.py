@@ -147,3 +147,18 @@ def test_the_main_pressure_is_that_of_most_points(pressures, counts, main):
     p = np.repeat(pressures, counts)
     points = make_points(0.0, 0.0, 1500.0, p=p + np.tile([-300.0, 300.0], len(p) // 2), V=6.0, phi_t=0.0)
     np.testing.assert_array_equal(levels.main_pressure(points), p == main)
+
+
+def test_a_load_that_wanders_within_its_sweep_is_one_level():
+    """Of a real run: 534 N upright, 570 N where the tyre leans on the belt; and a sweep that steps the load is left alone."""
+    wandering = np.linspace(490.0, 590.0, 40)
+    held = np.full(40, 534.0)
+    stepped = np.repeat([534.0, 800.0], 20)
+    Fz = np.concatenate([held, wandering, stepped])
+    sweep = np.repeat([0, 1, 2], 40)
+    assert len(np.unique(levels.nearest_labels(Fz, levels.LOAD))) == 3
+    found = levels.labels_of_sweeps(Fz, sweep, levels.LOAD)
+    assert len(np.unique(found[:80])) == 1
+    assert len(np.unique(found[80:])) == 2
+    assert levels.median_of_labels(Fz, found)[50] == pytest.approx(534.0, abs=2.0)
+    assert np.isnan(levels.median_of_labels(np.array([np.nan, 1.0]), np.array([levels.NO_LEVEL, 0]))[0])

@@ -12,7 +12,7 @@ import pytest
 from matplotlib.text import Text
 
 from mffit.quantities import CHANNELS
-from mffit.report import constants, labels, style
+from mffit.report import constants, labels, left_undrawn, style
 from mffit.report.build_view import view_of
 from mffit.report.drawing import panels, pictures
 from mffit.report.drawing.records import Axis, Bars, Guide, Look, Panel, Sheet, Trace
@@ -416,3 +416,41 @@ def test_levels_have_colours_from_dark_to_light():
 
 def test_a_sentence_gets_the_subscripts_of_channels():
     assert labels.typeset("offset of Fy") == f"offset of {CHANNELS['Fy'].mathtext}"
+
+
+def test_a_campaign_of_many_conditions_is_drawn_completely(view):
+    """Forty loads: a panel for each, also for the largest and for those over camber."""
+    many = [
+        dataclasses.replace(curve, load=100.0 * k, sweep=f"{curve.sweep}-{k}")
+        for k in range(1, 41)
+        for curve in view.curves[:2]
+    ]
+    drawn = fit.drawn_conditions(many)
+    assert {key[1] for key in drawn} == {100.0 * k for k in range(1, 41)}
+    assert left_undrawn.of_fit(view.points, view.curves) == ""
+
+
+def test_captions_say_what_is_left_out(view, monkeypatch):
+    assert left_undrawn.of_maps(view) == ""
+    monkeypatch.setattr(constants, "MOST_PANELS_OF_FIT", 1)
+    monkeypatch.setattr(constants, "MOST_MAPS_OF_BUILD", 1)
+    monkeypatch.setattr(constants, "MOST_PANELS_OF_PARTS", 1)
+    (shown,) = fit.drawn_conditions(view.curves).values()
+    rows = {int(i) for curve in view.curves for i in curve.index} - {
+        int(i) for curve in shown for i in curve.index
+    }
+    said = left_undrawn.of_fit(view.points, view.curves)
+    assert said.startswith(f"{len(rows)} points are left out for lack of room, at ")
+    titles_left = {c.title for c in view.conditions} - {
+        c.title for c in residuals.most_populated(view.conditions, 1)
+    }
+    assert all(title in left_undrawn.of_maps(view) for title in titles_left)
+    assert titles_left
+    assert "1 of " in left_undrawn.of_parts(view, view.channels[0])
+
+
+def test_points_outside_every_series_are_counted(view):
+    alone = left_undrawn.of_fit(view.points, view.curves[1:])
+    lost = len(view.points) - len({int(i) for curve in view.curves[1:] for i in curve.index})
+    assert lost > 0
+    assert alone.startswith(f"{lost} of {len(view.points)} points are not drawn here")

@@ -87,6 +87,17 @@ def test_the_curve_of_the_page_is_that_of_the_file(page, result):
     assert [found["Fy"], found["Mz"]] == pytest.approx([wanted.Fy, wanted.Mz], rel=1e-9)
 
 
+def test_a_point_lies_as_far_from_its_curve_as_the_model_misses_it(page, result):
+    """Brought to the conditions of the curve, which are the medians of its points."""
+    curved = [ask(page, "mffit.onCurve(0, arguments[0])", i) for i in range(len(result.points))]
+    shown = np.array(ask(page, "mffit.shown(0)")[1])[: len(curved)]
+    rows = [i for i, y in enumerate(curved) if y is not None]
+    assert len(rows) > len(curved) / 2
+    missed = result.points.Fy - result.fit.simulation.readings(result.points).Fy
+    assert [shown[i] - curved[i] for i in rows] == pytest.approx([missed[i] for i in rows], abs=1e-6)
+    assert np.ptp(missed) > 1.0
+
+
 def test_the_reading_that_was_left_out_is_marked(page):
     left = ask(page, "mffit.left()")
     assert sum(left) == 1

@@ -1,0 +1,93 @@
+"""What the page of a project states of points and coefficients."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from small_rigs import flat, simulated
+
+import mffit
+from mffit.points import make_points
+from mffit.viewer.project_coefficients import coefficient_rows, movers
+from mffit.viewer.project_points import facets, last_lines
+
+
+@pytest.fixture(scope="module")
+def result(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("small")
+    simulated(flat(loads=(900, 1400)), folder)
+    return mffit.build(folder / "tyre.toml")
+
+
+def points(line, file=0, **fields):
+    n = len(line)
+    return make_points(
+        np.linspace(-0.1, 0.1, n),
+        0.0,
+        1000.0,
+        p=2e5,
+        V=10.0,
+        phi_t=0.0,
+        line=line,
+        file=file,
+        files=("a", "b"),
+        **fields,
+    )
+
+
+def test_a_mean_of_a_recording_has_its_lines():
+    """Ten samples a point, then a gap, which belongs to no point; the last one is as long as the others."""
+    assert last_lines(points([5, 15, 25, 100, 110])).tolist() == [14, 24, 34, 109, 119]
+
+
+def test_a_finished_point_is_one_line():
+    assert last_lines(points([2, 3, 4, 9, 10])).tolist() == [2, 3, 4, 9, 10]
+
+
+def test_lines_are_those_of_each_file():
+    assert last_lines(points([5, 15, 25, 2, 3, 4], file=[0, 0, 0, 1, 1, 1])).tolist() == [14, 24, 34, 2, 3, 4]
+
+
+def test_points_are_grouped_by_their_set_points():
+    found = {f["name"]: f for f in facets(points([1, 2, 3, 4], direction=[1, 1, -1, 1]))}
+    assert found["Fz"]["labels"] == ["1000 N"]
+    assert [found["direction"]["labels"][k] for k in found["direction"]["of"]] == [
+        "forward",
+        "forward",
+        "backward",
+        "forward",
+    ]
+    assert found["path"]["labels"] == ["straight"]
+
+
+def test_a_coefficient_is_moved_by_the_sweeps_that_show_it(result):
+    """Camber stiffness by sweeps that lean, the trail by the moment, friction by large sideslip."""
+    moved = movers(result.fit)
+    assert any(word.startswith(("camber", "coupled")) for word in moved["PKY6"])
+    assert moved["QBZ1"][0].startswith("M_z")
+    assert moved["PDY1"][0].startswith("F_y")
+    assert any(word.startswith(("sideslip", "coupled")) for word in moved["PDY1"])
+
+
+def test_sliders_hold_the_value_and_stay_within_the_bounds(result):
+    for row in coefficient_rows(result, result.fit.coefficients):
+        low, high = row["slider"]
+        assert low <= row["value"] <= high, row["name"]
+        for end, bound in zip((low, high), row["bounds"], strict=True):
+            if bound is not None and row["bounds"][0] <= row["value"] <= row["bounds"][1]:
+                assert row["bounds"][0] <= end <= row["bounds"][1], row["name"]
+    names = {row["name"] for row in coefficient_rows(result, result.fit.coefficients)}
+    assert "PCY1" in names
+    assert not names & {"FNOMIN", "UNLOADED_RADIUS", "ALPMAX"}
+
+
+def test_show_takes_one_project_and_writes_its_page(result, tmp_path):
+    page = mffit.viewer.project_page(result)
+    assert page.names == ("small",)
+    path = page.write(tmp_path / "page.html")
+    assert page.write(path) == path  # replaced, as it is ours
+    assert "connect-src" not in page.html
+    with pytest.raises(mffit.errors.InputError, match="one project at a time"):
+        mffit.show([Path("a/tyre.toml"), Path("b.tir")])
