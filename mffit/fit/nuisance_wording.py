@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Mapping
 
 import numpy as np
 
@@ -63,7 +63,7 @@ def _files_sentence(name: str, found: AtTemperature, plain: Mapping[str, Agreeme
     each = [
         f"{SCALED[term]} {_percent(*value)} per {unit_of(term)[2:]}" for term, value in found.terms.items()
     ]
-    terms = " and ".join(filter(None, (", ".join(each[:-1]), each[-1])))
+    terms = _and(each)
     warm = f"{found.T_ref:g}"
     return (
         f"{name}.tir is for simulations that do not know the temperature of the tyre: it leaves {_gaps(_rms(plain))} rms"
@@ -133,9 +133,16 @@ def _rms(channels: Mapping[str, Agreement]) -> dict[str, float]:
 
 
 def _gaps(gaps: Gaps) -> str:
-    return " and ".join(_each(gaps))
+    """ "62 N and 4.1 Nm"; channels that share a unit are named, "80 N in Fx, 47 N in Fy and 12 Nm in Mz"."""
+    units = [CHANNELS[name].unit for name in gaps]
+    unclear = len(set(units)) < len(units)
+    return _and(
+        f"{ascii_only(number(gap, digits=3))} {unit}" + (f" in {name}" if unclear else "")
+        for (name, gap), unit in zip(gaps.items(), units, strict=True)
+    )
 
 
-def _each(gaps: Gaps) -> Iterator[str]:
-    for name, gap in gaps.items():
-        yield f"{ascii_only(number(gap, digits=3))} {CHANNELS[name].unit}"
+def _and(texts: Iterable[str]) -> str:
+    """ "a, b and c"."""
+    *first, last = texts
+    return " and ".join(filter(None, (", ".join(first), last)))
