@@ -141,7 +141,7 @@ def test_nothing_is_overwritten(machine, tmp_path):
     assert [path.name for path in tmp_path.iterdir()] == ["tyre.toml"]
 
 
-def test_a_driven_recording_without_longitudinal_force_gives_no_project(tmp_path):
+def test_a_driven_recording_without_its_force_is_described_but_gives_no_project(tmp_path):
     table = recording(pressures=(83.0,)).drop(columns="FX")
     table["SL"] = 0.1 * np.sin(np.arange(len(table)) / 50.0)
     table["SL"] += 0.2
