@@ -42,7 +42,11 @@ def sniff(files: tuple[Path, ...], out: Path | None, voice: Voice) -> None:
 @click.command()
 @click.argument("paths", nargs=-1, required=True, type=click.Path(path_type=Path), metavar="[FILE...] DIR")
 @click.option("--from", "recorded", is_flag=True, help="From the recordings FILE... before DIR.")
-@click.option("--sample", metavar="S", help="A copy of a sample: flat-track, front-120-70 or rear-190-55.")
+@click.option(
+    "--sample",
+    metavar="S",
+    help="A copy of a sample: flat-track, flat-track-combined, front-120-70 or rear-190-55.",
+)
 @click.option("--unloaded-radius", type=float, metavar="M", help="With --from: of the tyre, in metres.")
 @click.option("--nominal-load", type=float, metavar="N", help="With --from: FNOMIN, in newtons.")
 @click.option("--nominal-pressure", type=float, metavar="KPA", help="With --from [default: as most was run].")

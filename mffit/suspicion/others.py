@@ -193,7 +193,7 @@ def doubtful_sweep(seen: Evidence) -> Iterator[Doubt]:
         if any(set(v.group.index) <= rows for rows in seen_rows):
             continue
         seen_rows.append(set(v.group.index))
-        part, errors = seen.campaign.points.select(v.group.shown), predictions(seen.leverage, v.group)
+        part, errors = _judged(seen, v.group), predictions(seen.leverage, v.group)
         yield Doubt(
             sweep=v.group.name,
             file=v.group.file,
@@ -204,6 +204,17 @@ def doubtful_sweep(seen: Evidence) -> Iterator[Doubt]:
             share=v.error.share,
             looks=explanation(part, errors, seen.simulation, seen.campaign.signs),
         )
+
+
+def _judged(seen: Evidence, group: Group) -> Points:
+    """The points that a group shows, without readings of no weight, such as driven points where Fx is not fitted."""
+    part, noise = seen.campaign.points.select(group.shown), seen.leverage.noise
+    n = len(seen.campaign.points)
+    readings = {
+        name: np.where(np.isfinite(noise[k * n + group.shown]), part.channel(name), np.nan)
+        for k, name in enumerate(seen.leverage.channels)
+    }
+    return part.replace(**readings)
 
 
 def _suspects(errors: list[tuple[Error, Group]], level: float, usual: float) -> list[Group]:

@@ -70,7 +70,8 @@ def test_the_help_names_every_sample():
 
 def test_an_unknown_sample_is_answered_with_those_there_are(tmp_path):
     with pytest.raises(
-        InputError, match=r"no sample 'front'; choose one of flat-track, front-120-70, rear-190-55"
+        InputError,
+        match=r"no sample 'front'; choose one of flat-track, flat-track-combined, front-120-70, rear-190-55",
     ):
         copy_sample("front", tmp_path / "new")
     assert not (tmp_path / "new").exists()
