@@ -125,7 +125,9 @@ def ranges_sentence(files: Files) -> str:
     tested, written = files.tested, files.written
     low, high = (f"{tested[name] / 1e3:.0f}" for name in ("PRESMIN", "PRESMAX"))
     pressures = f"{low} kPa only" if single_pressure(tested) else f"{low} to {high} kPa"
-    slip = f", longitudinal slip {tested['KPUMIN']:.2f} to {tested['KPUMAX']:.2f}" if "KPUMAX" in tested else ""
+    slip = (
+        f", longitudinal slip {tested['KPUMIN']:.2f} to {tested['KPUMAX']:.2f}" if "KPUMAX" in tested else ""
+    )
     return (
         f"Tested: {tested['FZMIN']:.0f} to {tested['FZMAX']:.0f} N, sideslip to {np.degrees(tested['ALPMAX']):.1f} deg, "
         f"camber to {np.degrees(tested['CAMMAX']):.1f} deg, {pressures}{slip}. The ranges in the file are wider where the model "
