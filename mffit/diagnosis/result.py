@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -20,6 +20,7 @@ from mffit.diagnosis.where import Region
 from mffit.effects import Effect
 from mffit.made import Made
 from mffit.points import Points
+from mffit.quantities import SIDEWAYS
 from mffit.rig import Simulation
 from mffit.rig_errors import Faults
 from mffit.suspicion import SOUND, Outlier, Trust
@@ -129,7 +130,7 @@ class Diagnosis(Brief):
         return sorted(self.alternatives.items(), key=lambda item: -item[1])
 
 
-def corrected_points(points: Points, state: Simulation) -> Points:
+def corrected_points(points: Points, state: Simulation, channels: Iterable[str] = SIDEWAYS) -> Points:
     """Points as a faultless rig at reference conditions would have reported them at the same readings of the angles.
 
     The influence of the faults on a reading is that of the diagnosed model. Shifting the angles instead would break the
@@ -139,8 +140,10 @@ def corrected_points(points: Points, state: Simulation) -> Points:
     ----------
     points : raw points (n,), angles as read
     state : the simulation after all corrections, backlash included
+    channels : those to correct
     """
-    faulty, faultless = state.readings(points), state.faultless.readings(points)
+    channels = tuple(channels)
+    faulty, faultless = state.readings(points, channels), state.faultless.readings(points, channels)
     return points.replace(
         **{name: points.channel(name) - (faulty[name] - faultless[name]) for name in faulty}
     )

@@ -29,7 +29,7 @@ TYDEX_CHANNELS = (
     TydexChannel("SLIPANGL", "slip angle", "rad", lambda p: p.alpha),
     TydexChannel("INCLANGL", "inclination angle", "rad", lambda p: p.gamma),
     TydexChannel("FZW", "vertical force", "N", lambda p: p.Fz),
-    TydexChannel("LONGSLIP", "longitudinal slip", "-", lambda p: np.where(np.any(p.kappa), p.kappa, np.nan)),
+    TydexChannel("LONGSLIP", "longitudinal slip", "-", lambda p: p.kappa),
     TydexChannel("FXW", "longitudinal force", "N", lambda p: p.Fx),
     TydexChannel("FYW", "lateral force", "N", lambda p: p.Fy),
     TydexChannel("MXW", "overturning moment", "Nm", lambda p: p.Mx),
@@ -64,7 +64,7 @@ def tydex_texts(points: Points, config: Config) -> dict[str, str]:
 
 
 def _lines(name: str, points: Points, config: Config) -> Iterator[str]:
-    measured = [channel for channel in TYDEX_CHANNELS if np.any(np.isfinite(channel.of(points)))]
+    measured = [channel for channel in TYDEX_CHANNELS if _measured(channel, points)]
     yield f"{MARK}{tydex_format.HEADER}"
     yield fixed_row("RELEASE", "Release of TYDEX-Format", "", tydex_format.RELEASE)
     yield fixed_row("MEASID", "Measurement ID", "", name)
@@ -83,6 +83,12 @@ def _lines(name: str, points: Points, config: Config) -> Iterator[str]:
     for row in np.column_stack([channel.of(points) for channel in measured]).tolist():
         yield " ".join(repr(x) if np.isfinite(x) else MISSING for x in row)
     yield f"{MARK}{tydex_format.END}"
+
+
+def _measured(channel: TydexChannel, points: Points) -> bool:
+    """Whether a channel has readings; slip that is zero throughout was not measured, or the wheel rolled freely."""
+    values = channel.of(points)
+    return bool(np.any(np.isfinite(values)) and (channel.name != "LONGSLIP" or np.any(values)))
 
 
 def _remarks(points: Points, config: Config) -> Iterator[str]:

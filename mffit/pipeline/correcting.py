@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -14,11 +14,10 @@ from mffit.config import Config, path_curvature, resolved
 from mffit.diagnosis import Diagnosis, corrected_points
 from mffit.points import Points
 from mffit.points.loading import settled_sweeps
+from mffit.quantities import column, u_column
 
 CORRECTED_TOML, CORRECTED_POINTS = "corrected.toml", "points-corrected.csv"
 FLIPPED_POINTS = "points-corrected-flipped.csv"
-NOT_ALWAYS = ("Mz", "T", "t")
-"""Channels that only some sweeps may have; a file has each of them in every row or in none."""
 ABOUT = (
     "# The readings that a rig without errors would have given at reference conditions: corrected for the rig and environment\n"
     "# effects of a diagnosis and for the declared backlash. Build it with: mffit build {name}\n\n"
@@ -36,8 +35,9 @@ def write_corrected(diagnosis: Diagnosis, config: Config, out: Path, folder: Pat
     folder : temporary folder to write them to
     """
     points = _corrected(diagnosis, config)
+    not_always = (*(name for name in diagnosis.noise.channels if name != "Fy"), "T", "t")
     sweeps: list[dict[str, Any]] = []
-    for name, part in _files(points):
+    for name, part in _files(points, not_always):
         corrected_table(part, diagnosis).to_csv(folder / name, index=False, lineterminator="\n")
         sweeps.append({"file": name, **_conditions(part, config)})
     content = resolved(config, out)
@@ -61,10 +61,9 @@ def corrected_table(points: Points, diagnosis: Diagnosis) -> pd.DataFrame:
         "direction": np.where(points.direction > 0, "forward", "backward"),
         "T_degC": points.T,
         "t_s": points.t,
-        "Fy_N": sign["Fy"] * points.Fy,
-        "Mz_Nm": sign["Mz"] * points.Mz,
-        "u_Fy_N": points.u_Fy,
-        "u_Mz_Nm": points.u_Mz,
+        **({"kappa": points.kappa} if np.any(points.kappa) else {}),
+        **{column(name): sign.get(name, 1.0) * points.channel(name) for name in diagnosis.noise.channels},
+        **{u_column(name): points.u(name) for name in diagnosis.noise.channels},
     }
     known = {n: c for n, c in columns.items() if c.dtype.kind not in "f" or np.isfinite(c).any()}
     return pd.DataFrame(known).replace([np.inf, -np.inf], np.nan)
@@ -79,11 +78,14 @@ def _conditions(points: Points, config: Config) -> dict[str, Any]:
     return out | ({"setup": setup} if setup else {})
 
 
-def _files(points: Points) -> Iterator[tuple[str, Points]]:
-    """Name and points of each file: one mount, path and set-up, and the same channels in every row."""
+def _files(points: Points, not_always: Sequence[str]) -> Iterator[tuple[str, Points]]:
+    """Name and points of each file: one mount, path and set-up, and the same channels in every row.
+
+    ``not_always`` are channels that only some sweeps may have.
+    """
     for mount, name in ((1, CORRECTED_POINTS), (-1, FLIPPED_POINTS)):
         channels = np.column_stack(
-            [*(np.isfinite(getattr(points, name)) for name in NOT_ALWAYS), -points.setup, points.phi_t]
+            [*(np.isfinite(getattr(points, name)) for name in not_always), -points.setup, points.phi_t]
         )
         kinds = np.unique(channels[points.mount == mount], axis=0)[::-1]
         for k, kind in enumerate(kinds, 1):
@@ -93,7 +95,7 @@ def _files(points: Points) -> Iterator[tuple[str, Points]]:
 
 def _corrected(diagnosis: Diagnosis, config: Config) -> Points:
     """The corrected points, steady: the angles of moving sweeps are corrected for the lag that was found."""
-    points = corrected_points(diagnosis.points, diagnosis.state)
+    points = corrected_points(diagnosis.points, diagnosis.state, diagnosis.noise.channels)
     if not np.any(points.continuous):
         return points
     if config.rig.on_disc:

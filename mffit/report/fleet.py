@@ -8,10 +8,11 @@ from pathlib import Path
 
 from mffit.fleet import EPSILON, Fleet
 from mffit.fleet.constants import FEWEST_TYRES_FOR_SCATTER
-from mffit.quantities import COMPARED, DIRECT, SIDEWAYS
+from mffit.quantities import COMPARED, DIRECT
 from mffit.report import page
 from mffit.report.drawing.records import Sheet
 from mffit.report.figures import fleet
+from mffit.report.text.fleet import misfit_channels
 from mffit.rig_errors import meaning_of, unit_of, words_of
 
 SPIN = ("PECP1", "PECP2", "PKY6", "PKY7", "PDYP1", "PKYP1", "QDTP1", "QCRP1")
@@ -40,7 +41,7 @@ def write_fleet(found: Fleet, folder: Path, *, priors: bool) -> None:
         epsilon=DIRECT["epsilon_gamma"],
         estimates=estimates,
         compared=COMPARED,
-        channels=SIDEWAYS,
+        channels=misfit_channels(found),
         units=unit_of,
         meanings=meaning_of,
         words=words_of,

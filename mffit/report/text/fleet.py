@@ -3,22 +3,29 @@
 from __future__ import annotations
 
 from mffit.fleet import EPSILON, Fleet
-from mffit.quantities import COMPARED, DIRECT, SIDEWAYS
+from mffit.quantities import CHANNELS, COMPARED, DIRECT, SIDEWAYS, QuantityName
 from mffit.report.text.layout import blocks, paragraphs, table
 from mffit.rig_errors import unit_of, words_of
 from mffit.rounding import as_good_as, number, stated, with_u
 
 
+def misfit_channels(found: Fleet) -> dict[str, QuantityName]:
+    """The channels whose misfit is shown: Fy, Mz and every other that was fitted of any tyre."""
+    fitted = {name for row in found.rows for name in row.specimen.misfit}
+    return {name: known for name, known in CHANNELS.items() if name in fitted or name in SIDEWAYS}
+
+
 def fleet_summary(found: Fleet) -> str:
     """The text that ``mffit fleet`` prints: eps_gamma of every tyre, scatter between tyres, errors of the rig."""
     known = [key for key in EPSILON if any(found.numbers(key))]
-    misfits = [channel.column(name) for name, channel in SIDEWAYS.items()]
+    channels = misfit_channels(found)
+    misfits = [channel.column(name) for name, channel in channels.items()]
     head = ("tyre", *(EPSILON[key] for key in known), *misfits)
     rows = [
         (
             row.specimen.name,
             *(stated(getattr(row, key)) for key in known),
-            *(number(row.specimen.misfit.get(name), digits=3) for name in SIDEWAYS),
+            *(number(row.specimen.misfit.get(name), digits=3) for name in channels),
         )
         for row in found.rows
     ]

@@ -88,8 +88,7 @@ def test_moments_about_the_wheel_centre_are_those_of_a_rigid_body_about_the_cont
     radius = 0.31
     at_centre = np.array(moment) - np.cross(radius * top, force)
     reported = sweep(gamma, force[1], force[2], at_centre[2], at_centre[1])
-    table = reported.table.assign(Fx_N=force[0], RL_m=radius)
-    reported = replace(reported, Mx=at_centre[:1], table=table)
+    reported = replace(reported, Mx=at_centre[:1], Fx=np.array(force[:1]), RL=np.array([radius]))
     found = to_contact_point(reported, unloaded_radius=9.9)
     np.testing.assert_allclose([found.Mx[0], found.My[0], found.Mz[0]], moment, atol=1e-8)
 
