@@ -111,10 +111,16 @@ ELLIPSE_GRID = Series(
     "-",
     "Loads, sideslips to either side and longitudinal slips of the test that the ellipse is convex.",
 )
-ELLIPSE_TURN = Real(
-    0.02,
+LARGEST_DENT = Real(
+    0.002,
     "-",
-    "Unit of a dent: product of two neighbouring steps of force over load and the sine of the angle between them.",
+    "Largest dent, in the same measure, that counts as convex; published tyres have none of this size.",
+)
+ELLIPSE_TURN = Real(
+    1.0,
+    "-",
+    "Unit of a dent: product of two neighbouring steps of force over load and the sine of the angle between them. It is large, so "
+    "that readings with a dent are followed part of the way.",
 )
 LIMIT_GRID = Series((3, 5, 2), "-", "Loads, camber angles and pressures at which the limits are tested.")
 LIMIT_WEIGHT_OF_FIT = Real(

@@ -109,7 +109,7 @@ def _under_slip(p: Any, envelope: Envelope, *conditions: np.ndarray) -> list[Any
 
 
 def _dented(p: Any, envelope: Envelope) -> Any:
-    """How much Fy over Fx, both over load, turns the wrong way along longitudinal slip: above 0 where the ellipse is not convex.
+    """How much Fy over Fx, both over load, turns the wrong way along longitudinal slip: above 0 where the ellipse has a dent.
 
     Three neighbouring slips of an upright wheel at each of some loads and sideslips to either side, from braked to driven.
     """
@@ -137,7 +137,7 @@ def _dented(p: Any, envelope: Envelope) -> Any:
         for before, after in itertools.pairwise(places)
     ]
     turn = along[0][0] * along[1][1] - along[0][1] * along[1][0]
-    return turn / constants.ELLIPSE_TURN
+    return (turn - constants.LARGEST_DENT) / constants.ELLIPSE_TURN
 
 
 def _with_slips(
