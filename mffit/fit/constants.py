@@ -119,8 +119,11 @@ LARGEST_DENT = Real(
 ELLIPSE_TURN = Real(
     1.0,
     "-",
-    "Unit of a dent: product of two neighbouring steps of force over load and the sine of the angle between them. It is large, so "
-    "that readings with a dent are followed part of the way.",
+    "Unit of a dent: product of two neighbouring steps of force over load and the sine of the angle between them; large, so that "
+    "readings with a dent are followed part of the way.",
+)
+STIFFNESS_RATIOS = Series(
+    (0.2, 5.0), "-", "Physical limit: range of the longitudinal slip stiffness over the cornering stiffness."
 )
 LIMIT_GRID = Series((3, 5, 2), "-", "Loads, camber angles and pressures at which the limits are tested.")
 LIMIT_WEIGHT_OF_FIT = Real(

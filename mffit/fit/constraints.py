@@ -76,10 +76,14 @@ def _rows(p: Any, envelope: Envelope) -> list[Any]:
 
 
 def _longitudinal(p: Any, q: normalise.Inputs) -> list[Any]:
-    """Limits of the pure longitudinal force: mu_x > 0, slip stiffness > 0, E_x <= 1 driven and braked."""
+    """Limits of the pure longitudinal force: mu_x > 0, slip stiffness > 0 and like K_ya, E_x <= 1 driven and braked."""
+    K_xk, K_ya = stiffness.longitudinal_slip_stiffness(p, q), stiffness.cornering_stiffness(p, q, 0.0)
+    lowest, highest = constants.STIFFNESS_RATIOS
     rows = [
         constants.LEAST_FRICTION - stiffness.longitudinal_friction(p, q),
-        (constants.LEAST_SLIP_STIFFNESS - stiffness.longitudinal_slip_stiffness(p, q) / q.Fz) / 5.0,
+        (constants.LEAST_SLIP_STIFFNESS - K_xk / q.Fz) / 5.0,
+        (lowest * -K_ya - K_xk) / q.Fz / 5.0,
+        (K_xk - highest * -K_ya) / q.Fz / 5.0,
     ]
     return rows + [longitudinal.curvature(p, q, side) - 1.0 for side in (-1.0, 1.0)]
 
