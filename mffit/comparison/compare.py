@@ -11,10 +11,11 @@ from mffit.comparison import constants, wording
 from mffit.comparison.characteristics import characteristics, with_u
 from mffit.comparison.record import ComparedSubject, Comparison, CurveGap, Difference, SweepGap, ranked
 from mffit.fit import Posterior
+from mffit.fit.plan import channels_of
 from mffit.measured import KEYS, LoadResult
 from mffit.points import Points, make_points
 from mffit.quantities import SIDEWAYS
-from mffit.rig import SIMULATED, Readings, Simulation
+from mffit.rig import Readings, Simulation
 from mffit.scatter import rms
 from tir.parameters import TABLE
 
@@ -176,7 +177,7 @@ def _direct(measured: Sequence[LoadResult], simulated: Sequence[LoadResult]) -> 
 
 def _sweeps(points: Points, simulation: Simulation) -> tuple[SweepGap, ...]:
     """The gap of every sweep and channel; the largest first, in units of the noise or else of the channel's size."""
-    readings = simulation.readings(points, set(points.measured).intersection(SIMULATED))
+    readings = simulation.readings(points, channels_of(points))
     found: list[tuple[float, SweepGap]] = []
     for channel, read in readings.items():
         apart, u = points.channel(channel) - read, points.u(channel)

@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from mffit.comparison import Comparison, wording
+from mffit.fit.plan import channels_of
 from mffit.points import Points
 from mffit.quantities import CHANNELS
 from mffit.report import constants, page
@@ -18,7 +19,6 @@ from mffit.report.curves import Curve, curves
 from mffit.report.drawing.records import Sheet
 from mffit.report.figures import compared, fit
 from mffit.report.lines import CurveLine, model_lines
-from mffit.rig import SIMULATED
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -53,7 +53,7 @@ def _figures(found: Comparison) -> dict[str, Callable[[], Sheet]]:
         out[f"curves_{name}"] = partial(compared.curves, found, name)
     if found.points is not None and found.simulation is not None:
         members = curves(found.points)
-        measured = [name for name in found.points.measured if name in SIMULATED]
+        measured = [name for name in channels_of(found.points) if name in found.points.measured]
         lines = model_lines(found.simulation, found.points, members, measured)
         view = Overlay(points=found.points, curves=members, lines=lines)
         for name in measured:

@@ -7,7 +7,9 @@ import pytest
 
 import tir
 from mffit.diagnosis.bumps import bump_scan
+from mffit.diagnosis.inexact import EXACT
 from mffit.diagnosis.noise import Scatter
+from mffit.diagnosis.prediction import LeftOutPrediction
 from mffit.diagnosis.problem import DiagnosisProblem
 from mffit.diagnosis.smooth import smooth_basis
 from mffit.diagnosis.stated import stated_noise, with_uncertainties
@@ -87,3 +89,10 @@ def test_a_subset_keeps_the_rows_of_every_channel(problem):
     assert part.measured == pytest.approx(np.concatenate([problem.points.channel(c)[keep] for c in CHANNELS]))
     check = validate(problem, problem.null)
     assert check.gap_before.rms("Mx") == pytest.approx(check.gap_after.rms("Mx"))
+
+
+def test_left_out_sweeps_are_predicted_in_every_channel(problem):
+    found = LeftOutPrediction(problem, EXACT).of(problem.null)
+    assert found.chi2.shape == (3, len(CHANNELS))
+    own = problem.null.residual.reshape(3, 3, 20) ** 2  # channel, sweep, point; nothing is free
+    assert found.chi2 == pytest.approx(own.sum(axis=2).T)

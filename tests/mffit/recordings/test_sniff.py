@@ -141,8 +141,8 @@ def test_nothing_is_overwritten(machine, tmp_path):
     assert [path.name for path in tmp_path.iterdir()] == ["tyre.toml"]
 
 
-def test_a_driven_recording_is_described_but_gives_no_project(tmp_path):
-    table = recording(pressures=(83.0,))
+def test_a_driven_recording_without_its_force_is_described_but_gives_no_project(tmp_path):
+    table = recording(pressures=(83.0,)).drop(columns="FX")
     table["SL"] = 0.1 * np.sin(np.arange(len(table)) / 50.0)
     table["SL"] += 0.2
     path = write_mat(table, tmp_path / "drive.mat")
