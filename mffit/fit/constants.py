@@ -106,6 +106,25 @@ LIMIT_REACH_OF_SLIP = Real(
     "-",
     "Slip at which the limits of longitudinal force and combined slip are tested, over the tested one.",
 )
+ELLIPSE_GRID = Series(
+    (3, 2, 9),
+    "-",
+    "Loads, sideslips to either side and longitudinal slips of the test that the ellipse is convex.",
+)
+LARGEST_DENT = Real(
+    0.002,
+    "-",
+    "Largest dent, in the same measure, that counts as convex; published tyres have none of this size.",
+)
+ELLIPSE_TURN = Real(
+    1.0,
+    "-",
+    "Unit of a dent: product of two neighbouring steps of force over load and the sine of the angle between them; large, so that "
+    "readings with a dent are followed part of the way.",
+)
+STIFFNESS_RATIOS = Series(
+    (0.2, 5.0), "-", "Physical limit: range of the longitudinal slip stiffness over the cornering stiffness."
+)
 LIMIT_GRID = Series((3, 5, 2), "-", "Loads, camber angles and pressures at which the limits are tested.")
 LIMIT_WEIGHT_OF_FIT = Real(
     3000.0, "-", "Residual per unit of violation (noise is 1): holds the limit, keeps the problem smooth."

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Sequence
 from typing import Any, NamedTuple
 
@@ -11,6 +12,7 @@ from mffit.fit import constants
 from tir.derivatives import Traced, gradient, plain
 from tir.equations import aligning, lateral, longitudinal, normalise, stiffness, turn_slip
 from tir.equations.elementary import cos, magic_angle
+from tir.outputs import outputs_of
 
 
 class Envelope(NamedTuple):
@@ -69,14 +71,19 @@ def _rows(p: Any, envelope: Envelope) -> list[Any]:
     if envelope.kappa > 0.0:
         rows += _longitudinal(p, q)
         rows += _under_slip(p, envelope, Fz, gamma, pressure)
-    return [row + constants.LIMIT_MARGIN for row in rows]
+    rows = [row + constants.LIMIT_MARGIN for row in rows]
+    return [*rows, _dented(p, envelope)] if envelope.kappa > 0.0 and envelope.alpha > 0.0 else rows
 
 
 def _longitudinal(p: Any, q: normalise.Inputs) -> list[Any]:
-    """Limits of the pure longitudinal force: mu_x > 0, slip stiffness > 0, E_x <= 1 driven and braked."""
+    """Limits of the pure longitudinal force: mu_x > 0, slip stiffness > 0 and like K_ya, E_x <= 1 driven and braked."""
+    K_xk, K_ya = stiffness.longitudinal_slip_stiffness(p, q), stiffness.cornering_stiffness(p, q, 0.0)
+    lowest, highest = constants.STIFFNESS_RATIOS
     rows = [
         constants.LEAST_FRICTION - stiffness.longitudinal_friction(p, q),
-        (constants.LEAST_SLIP_STIFFNESS - stiffness.longitudinal_slip_stiffness(p, q) / q.Fz) / 5.0,
+        (constants.LEAST_SLIP_STIFFNESS - K_xk / q.Fz) / 5.0,
+        (lowest * -K_ya - K_xk) / q.Fz / 5.0,
+        (K_xk - highest * -K_ya) / q.Fz / 5.0,
     ]
     return rows + [longitudinal.curvature(p, q, side) - 1.0 for side in (-1.0, 1.0)]
 
@@ -103,6 +110,38 @@ def _under_slip(p: Any, envelope: Envelope, *conditions: np.ndarray) -> list[Any
         rows += [constants.LEAST_WEIGHT - G, 1.0 / constants.LARGEST_WEIGHT - over_peak]
         rows += [(constants.LEAST_SLOPE_OF_WEIGHT - of.B) / 10.0, of.E - 1.0]
     return rows
+
+
+def _dented(p: Any, envelope: Envelope) -> Any:
+    """How much Fy over Fx, both over load, turns the wrong way along longitudinal slip: above 0 where the ellipse has a dent.
+
+    Three neighbouring slips of an upright wheel at each of some loads and sideslips to either side, from braked to driven.
+    """
+    loads, sideslips, slips = (int(n) for n in constants.ELLIPSE_GRID)
+    reach = float(constants.LIMIT_REACH_OF_SLIP)
+    kappa = reach * envelope.kappa * np.linspace(-1.0, 1.0, slips)
+    alpha = envelope.alpha * np.linspace(1.0 / sideslips, 1.0, sideslips)
+    Fz, alpha, k = (
+        axis.ravel()
+        for axis in np.meshgrid(
+            np.linspace(*envelope.Fz, loads), np.concatenate([-alpha, alpha]), np.arange(slips - 2)
+        )
+    )
+    middle = 0.5 * sum(envelope.pressure)
+    places = [
+        outputs_of(
+            ("Fx", "Fy"),
+            p,
+            {"Fz": Fz, "alpha": alpha, "kappa": kappa[k + step], "pressure": middle, "Vx": p.LONGVL},
+        )
+        for step in range(3)
+    ]
+    along = [
+        ((after[0] - before[0]) / Fz, -np.sign(alpha) * (after[1] - before[1]) / Fz)
+        for before, after in itertools.pairwise(places)
+    ]
+    turn = along[0][0] * along[1][1] - along[0][1] * along[1][0]
+    return (turn - constants.LARGEST_DENT) / constants.ELLIPSE_TURN
 
 
 def _with_slips(

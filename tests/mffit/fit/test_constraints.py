@@ -89,6 +89,8 @@ def driven(sound) -> tir.Tyre:
     [
         {"PDX1": 0.05},
         {"PKX1": 0.5},
+        {"PKX1": 2.0},  # far below the cornering stiffness
+        {"PKX1": 110.0},
         {"PEX1": 1.2},
         {"PEX1": 0.9, "PEX4": 0.3},
         {"PEX1": 0.9, "PEX4": -0.3},
@@ -102,6 +104,7 @@ def driven(sound) -> tir.Tyre:
         {"RHY1": 0.1, "RBY1": 30.0},
         {"RBY1": -12.0},
         {"REY1": 1.2},
+        {"RVY1": 0.3, "RVY5": 1.9, "RVY6": 20.0},  # the ellipse has a dent near free rolling
     ],
 )
 def test_a_broken_limit_under_slip_is_a_violation_where_slip_was_run(driven, change):
@@ -111,7 +114,7 @@ def test_a_broken_limit_under_slip_is_a_violation_where_slip_was_run(driven, cha
 
 
 def test_limits_under_slip_have_exact_derivatives(driven):
-    names = ("PDX1", "PEX1", "PKX3", "RBX1", "RBX3", "REX2", "RHX1", "RBY2", "RCY1", "RHY2", "PVX1")
+    names = ("PDX1", "PEX1", "PKX3", "RBX1", "RBX3", "REX2", "RHX1", "RBY2", "RCY1", "RHY2", "PVX1", "RVY1")
     values = {name: float(driven[name]) for name in names}
     free = traced(values)
     slope = limits(SimpleNamespace(**{**driven.values, **free}), DRIVEN, list(free.values()))[1]
