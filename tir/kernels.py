@@ -48,12 +48,17 @@ class Meter:
         self.left = math.inf
         if not kernel.available():
             return None
-        if now or kernel.is_cached(self.kind, self.switches):
-            return load(self.kind, self.switches)
+        try:
+            if now or kernel.is_cached(self.kind, self.switches):
+                return load(self.kind, self.switches)
+        except WITHOUT_KERNEL:
+            return None
         _start(self)
         return None
 
 
+WITHOUT_KERNEL = (TirError, ImportError, OSError, RuntimeError)
+"""What a broken llvmlite or a full disk raises; nobody asked for the kernel, so the calls go on without it."""
 METERS: dict[tuple[str, Switches], Meter] = {}
 _THREADS: list[Thread] = []
 """Threads that compile, and a mark that forks wait for them."""
@@ -100,6 +105,6 @@ _forks_wait = False
 def _compile(asked: Meter) -> None:
     try:
         LOADED[asked.kind, asked.switches] = kernel.load(asked.kind, asked.switches)
-    except (TirError, OSError, RuntimeError):
-        return  # the calls go on without it, as they did until now
+    except WITHOUT_KERNEL:
+        return
     asked.left = 0.0

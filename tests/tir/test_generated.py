@@ -360,6 +360,25 @@ def test_where_nothing_can_be_compiled_the_calls_go_on(tyre, monkeypatch):
     assert not kernels.LOADED
 
 
+@pytest.mark.parametrize("broken", [ImportError("llvmlite"), OSError("no room"), RuntimeError("LLVM")])
+def test_a_broken_llvmlite_stops_no_call(tyre, monkeypatch, broken):
+    def fail(*given):
+        raise broken
+
+    as_at_start(monkeypatch)
+    monkeypatch.setattr(kernels, "WORTH_LOADING", {"one": 2, "batch": 2})
+    monkeypatch.setattr(kernel, "available", lambda: True)
+    for name in ("is_cached", "load"):
+        monkeypatch.setattr(kernel, name, fail)
+    found = [tyre.replace()(2e3, a).Fy for a in (0.05, np.array([0.05])) for _ in range(4)]
+    assert found == pytest.approx([found[0]] * 8)
+    monkeypatch.setattr(kernel, "is_cached", lambda *given: False)
+    monkeypatch.setattr(kernels, "METERS", {})
+    assert [tyre.replace()(2e3, 0.05).Fy for _ in range(4)] == pytest.approx(found[:4])
+    kernels.wait()
+    assert not kernels.LOADED
+
+
 def test_without_a_global_lock_nothing_is_compiled(monkeypatch):
     import sysconfig
 

@@ -29,7 +29,7 @@ def tyre() -> tir.Tyre:
 
 
 def camber_slope(tyre, Fz, **condition):
-    up, down = (tyre(Fz, gamma=s, **condition).Fy for s in (STEP, -STEP))
+    up, down = (tyre(Fz, gamma=s, **{"turn_slip": False, **condition}).Fy for s in (STEP, -STEP))
     return float(up - down) / (2.0 * STEP)
 
 
