@@ -198,7 +198,6 @@ def test_a_run_can_be_stopped_and_leaves_nothing(client, session):
     files = sorted(path.name for path in session.file.path.parent.iterdir())
     assert post(client, "run/build").status_code == 200
     assert "under way" in post(client, "run/fit").json()["error"]
-    until(lambda: session.state()["run"]["sentence"] != "starting")
     assert post(client, "stop").status_code == 200
     until(lambda: session.state()["run"] is None)
     assert session.state()["last"]["state"] == "stopped"
