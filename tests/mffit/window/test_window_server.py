@@ -66,7 +66,10 @@ def edit(client: Any, session: Session, do: str, /, **given: Any) -> Any:
         ),
     ],
 )
-def test_others_are_refused(client, path, headers):
+def test_others_are_refused(session, path, headers):
+    """Also without an origin, which a browser does not send when it opens a page."""
+    client = testclient.TestClient(window_app(Opened(session), token=TOKEN, port=PORT), base_url=HERE)
+    assert client.get(f"/{TOKEN}/state").status_code == 200
     answer = client.get(path, headers=headers)
     assert answer.status_code == 403
     assert "coefficients" not in answer.text
