@@ -21,6 +21,7 @@ MOST_COLOUR_STEPS = Count(33, "-", "Colours of a map; white is one of them, and 
 
 FEWEST_SET_POINTS_OF_CURVE = Count(4, "-", "Fewer set-points over an angle show no curve.")
 SET_POINT_WIDTH = Real(0.25, "deg", "Angles closer than this count as one set-point.")
+SLIP_SET_POINT_WIDTH = Real(0.01, "-", "Longitudinal slips closer than this count as one set-point.")
 LOAD_ROUNDING = Real(10.0, "N", "Load levels are named by multiples of this, the accuracy of a held load.")
 PRESSURE_ROUNDING = Real(
     1000.0, "Pa", "Pressure levels are named by multiples of this, the resolution of gauges."
@@ -32,7 +33,9 @@ STEPS_OF_FILE_CURVE = Count(
 )
 DENSE_CURVE = Count(60, "-", "Curves with more points are drawn as dots, as circles would cover each other.")
 WHOLE_DEGREES = Real(0.15, "deg", "Cambers this close to whole degrees are written without decimals.")
-MOST_PANELS_OF_FIT = Count(15, "-", "Most panels of points and model that a reader looks through.")
+MOST_PANELS_OF_FIT = Count(
+    60, "-", "Most panels of points and model in one picture: more than any public campaign has conditions."
+)
 MOST_PANELS_OF_PARTS = Count(18, "-", "Most panels of odd and even parts that a reader looks through.")
 MOST_LOADS_SIDE_BY_SIDE = Count(4, "-", "Columns of a picture with a column per load at most.")
 FEWEST_POINTS_OF_PARTS = Count(
@@ -41,6 +44,12 @@ FEWEST_POINTS_OF_PARTS = Count(
 NEAR_ZERO_SIDESLIP = Real(1.6, "deg", "End of the sideslip axis in the picture of the alignment.")
 MOST_BUDGET_BARS = Count(8, "-", "Sources of uncertainty drawn at most; smaller ones are in the table.")
 LONGEST_NAME_AT_AXIS = Count(18, "-", "Characters of a tyre's name beside a panel; longer names are cut.")
+HELD_SLIP_SHARES = Series(
+    (0.0, 0.15, 0.5), "-", "Longitudinal slips of the curves of trail, as shares of the tested slip: none, small, large."
+)
+LEAST_PURE_FORCE = Real(
+    0.25, "-", "Least force of pure slip over its peak for which readings show a weight of combined slip."
+)
 HELD_CAMBER_SHARES = Series(
     (0.0, 0.4, 0.8), "-", "Cambers of the curves over sideslip, as shares of the tested camber."
 )
@@ -49,7 +58,7 @@ HELD_SIDESLIP_SHARES = Series(
 )
 
 MOST_MAPS_PER_CHANNEL = Count(
-    6, "-", "Most conditions with a residual map; those with the most points are shown."
+    30, "-", "Most conditions with a residual map: more than most campaigns have; those with the most points are shown."
 )
 RESIDUAL_SCALE = Real(4.0, "-", "End of the colour scale of residual maps, in units of noise.")
 SMALLEST_GAP_SCALE = Real(

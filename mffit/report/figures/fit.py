@@ -12,7 +12,7 @@ from mffit.points import Points
 from mffit.report import constants, labels, style
 from mffit.report.build_view import ChannelRow
 from mffit.report.curves import Curve
-from mffit.report.drawing.records import Axis, Guide, Look, Panel, Sheet, Trace, in_rows
+from mffit.report.drawing.records import Axis, Guide, Look, Panel, Sheet, Trace, in_rows, thinned
 from mffit.report.lines import CurveLine
 from mffit.rounding import number
 
@@ -34,7 +34,7 @@ MARKS = {
     "no weight": Look(colour=style.CONTRAST, marker="x", size=5.0),
     "doubtful sweep": Look(colour=style.CONTRAST, marker="o", size=5.5, hollow=True),
 }
-FORWARD = Look(colour=style.MUTED, marker="o", size=3.2)
+READINGS = Look(colour=style.MUTED, marker="o", size=3.2)
 BACKWARD = Look(colour=style.MUTED, marker="v", size=3.6, hollow=True)
 MODEL = Look(colour=style.MUTED, line="-", width=1.0)
 
@@ -42,13 +42,22 @@ MODEL = Look(colour=style.MUTED, line="-", width=1.0)
 def model_against_points(view: Overlaid, channel: ChannelRow) -> Sheet:
     """One panel per load and pressure: first over sideslip, coloured by camber, then over camber."""
     colours = style.ramp({c.held for c in view.curves if c.over == "alpha"})
-    conditions = list(_conditions(view.curves).items())[: constants.MOST_PANELS_OF_FIT]
     groups = [
-        [_panel(view, channel, members, colours) for key, members in conditions if key[0] == over]
+        [
+            _panel(view, channel, members, colours)
+            for key, members in _conditions(view.curves).items()
+            if key[0] == over and _has_readings(channel, members)
+        ]
         for over in labels.ANGLES
     ]
-    rows = in_rows(*groups, columns=5 if max(map(len, groups)) > 4 else 4)
-    return Sheet(rows=rows, height=1.75, key=_key(view, channel, colours))
+    kept = [thinned(group, constants.MOST_PANELS_OF_FIT) for group in groups]
+    rows = in_rows(*kept, columns=5 if max(map(len, kept)) > 4 else 4)
+    left_out = sum(map(len, groups)) - sum(map(len, kept))
+    return Sheet(rows=rows, height=1.75, key=_key(view, channel, colours), left_out=left_out)
+
+
+def _has_readings(channel: ChannelRow, members: Iterable[Curve]) -> bool:
+    return any(np.isfinite(channel.measured[curve.index]).any() for curve in members)
 
 
 def _conditions(curves: Iterable[Curve]) -> dict[tuple[str, float, float], list[Curve]]:
@@ -65,7 +74,7 @@ def _panel(
     series = [
         series
         for curve in members
-        for series in _curves(view, channel, curve, colours[curve.held] if curve.over == "alpha" else style.ACCENT)
+        for series in curve_traces(view, channel, curve, colours[curve.held] if curve.over == "alpha" else style.ACCENT)
     ]  # fmt: skip
     return Panel(
         title=members[0].condition,
@@ -76,10 +85,10 @@ def _panel(
     )
 
 
-def _curves(view: Overlaid, channel: ChannelRow, curve: Curve, colour: str) -> list[Trace]:
+def curve_traces(view: Overlaid, channel: ChannelRow, curve: Curve, colour: str) -> list[Trace]:
     """Readings, marks on those that do not fit, and the model's line."""
-    angle, line = curve.angles(view.points), view.lines[curve.key]
-    look = FORWARD if curve.forward else BACKWARD
+    angle, line = curve.varied(view.points), view.lines[curve.key]
+    look = READINGS if curve.forward else BACKWARD
     if len(angle) > constants.DENSE_CURVE:
         look = replace(look, marker=".", size=1.4, hollow=False)
     held = labels.held(curve)
@@ -101,15 +110,19 @@ def _curves(view: Overlaid, channel: ChannelRow, curve: Curve, colour: str) -> l
 
 
 def _key(view: Overlaid, channel: ChannelRow, colours: Mapping[float, str]) -> dict[str, Look]:
-    key = {"measured": FORWARD, "model": MODEL}
+    key = {"measured": READINGS, "model": MODEL}
     if any(not c.forward for c in view.curves):
         key["backward"] = replace(BACKWARD, line="--", width=1.0)
-    for rows, (name, mark) in zip(view.marked(channel.name), MARKS.items(), strict=True):
-        if len(rows):
-            key[name] = mark
+    key |= mark_key(view, channel)
     places = 0 if all(abs(camber - round(camber)) < constants.WHOLE_DEGREES for camber in colours) else 1
     symbol = labels.ANGLES["gamma"].symbol
     if len(colours) > 1:
         for camber, colour in colours.items():
             key[f"{symbol} = {number(camber, places)}°"] = Look(colour=colour, line="-", width=3.0)
     return key
+
+
+def mark_key(view: Overlaid, channel: ChannelRow) -> dict[str, Look]:
+    """The marks on readings that do not fit, as far as there are any."""
+    marked = zip(view.marked(channel.name), MARKS.items(), strict=True)
+    return {name: mark for rows, (name, mark) in marked if len(rows)}
