@@ -15,7 +15,7 @@ from mffit.quantities import CHANNELS, CONDITIONS, DIRECT
 from mffit.report import left_undrawn, page, published
 from mffit.report.build_view import PER_LOAD, STATUS_ORDER, BuildView, ChannelRow, CoefficientRow, view_of
 from mffit.report.drawing.records import Sheet
-from mffit.report.figures import bands, decomposition, files, fit, residuals, spin, structure
+from mffit.report.figures import bands, decomposition, files, fit, residuals, slip, spin, structure
 from mffit.results import BuildResult
 from mffit.rig_errors import MEANINGS, UNITS
 
@@ -83,6 +83,13 @@ def _figures(view: BuildView) -> dict[str, Callable[[], Sheet]]:
     for channel in view.channels:
         if view.curves:
             out[f"fit_{channel.name}"] = partial(fit.model_against_points, view, channel)
+    if slip.slip_curves(view.curves):
+        for channel in view.channels:
+            out[f"slip_{channel.name}"] = partial(slip.over_slip, view, channel)
+    if slip.combined(view) and {"Fx", "Fy"} <= {channel.name for channel in view.channels}:
+        out["friction_ellipse"] = partial(slip.friction_ellipse, view)
+        out["weights"] = partial(slip.weights, view)
+        out["trail"] = partial(slip.trail, view)
     if view.files is not None:
         out["bands"] = partial(bands.bands, view)
     scaled = [(c.symbol, (c.measured - c.model) / _scale(view, c)) for c in view.channels]

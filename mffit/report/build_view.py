@@ -93,6 +93,7 @@ class BuildView:
 
     config: Config
     points: Points  #: angles as read
+    felt: Points  #: as the tyre felt them, less the errors of the rig, where slip was run; else the same points
     channels: tuple[ChannelRow, ...]
     curves: tuple[Curve, ...]
     lines: Mapping[tuple, CurveLine]
@@ -162,6 +163,7 @@ def view_of(result: BuildResult) -> BuildView:
     return BuildView(
         config=result.config,
         points=points,
+        felt=points if np.all(points.free_rolling) else fit.simulation.felt(points),
         channels=tuple(c for c in channels if np.isfinite(c.measured).any()),
         curves=found,
         lines=model_lines(fit.simulation, points, found, fit.model),

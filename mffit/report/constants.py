@@ -21,6 +21,7 @@ MOST_COLOUR_STEPS = Count(33, "-", "Colours of a map; white is one of them, and 
 
 FEWEST_SET_POINTS_OF_CURVE = Count(4, "-", "Fewer set-points over an angle show no curve.")
 SET_POINT_WIDTH = Real(0.25, "deg", "Angles closer than this count as one set-point.")
+SLIP_SET_POINT_WIDTH = Real(0.01, "-", "Longitudinal slips closer than this count as one set-point.")
 LOAD_ROUNDING = Real(10.0, "N", "Load levels are named by multiples of this, the accuracy of a held load.")
 PRESSURE_ROUNDING = Real(
     1000.0, "Pa", "Pressure levels are named by multiples of this, the resolution of gauges."
@@ -46,6 +47,12 @@ FEWEST_POINTS_OF_PARTS = Count(
 NEAR_ZERO_SIDESLIP = Real(1.6, "deg", "End of the sideslip axis in the picture of the alignment.")
 MOST_BUDGET_BARS = Count(8, "-", "Sources of uncertainty drawn at most; smaller ones are in the table.")
 LONGEST_NAME_AT_AXIS = Count(18, "-", "Characters of a tyre's name beside a panel; longer names are cut.")
+HELD_SLIP_SHARES = Series(
+    (0.0, 0.15, 0.5), "-", "Longitudinal slips of the curves of trail, as shares of the tested slip: none, small, large."
+)
+LEAST_PURE_FORCE = Real(
+    0.25, "-", "Least force of pure slip over its peak for which readings show a weight of combined slip."
+)
 HELD_CAMBER_SHARES = Series(
     (0.0, 0.4, 0.8), "-", "Cambers of the curves over sideslip, as shares of the tested camber."
 )
@@ -54,7 +61,7 @@ HELD_SIDESLIP_SHARES = Series(
 )
 
 MOST_MAPS_PER_CHANNEL = Count(
-    6, "-", "Most conditions with a residual map; those with the most points are shown."
+    30, "-", "Most conditions with a residual map: more than most campaigns have; those with the most points are shown."
 )
 MOST_MAPS_OF_BUILD = Count(
     60,

@@ -19,29 +19,38 @@ def condition(load: float, pressure: float) -> str:
 
 @dataclass(frozen=True, slots=True)
 class Curve:
-    """Points of one sweep that differ in one angle only."""
+    """Points of one sweep that differ in one angle, or in longitudinal slip, only."""
 
-    over: str  #: the angle that varies, "alpha" or "gamma"
+    over: str  #: what varies, "alpha", "gamma" or "kappa"
     load: float  #: [N]
     pressure: float  #: [kPa]
-    held: float  #: value of the other angle [deg]
+    held: float  #: value of the other angle, over longitudinal slip of sideslip [deg]
     forward: bool
     mount: int
     sweep: str
-    index: np.ndarray  #: (k,) rows of the points, in order of the angle
+    index: np.ndarray  #: (k,) rows of the points, in order of what varies
+    camber: float = 0.0  #: of a curve over longitudinal slip [deg]
 
     @property
-    def key(self) -> tuple[str, str, float, float, float, bool, int]:
+    def key(self) -> tuple[str, str, float, float, float, bool, int, float]:
         """Identifies this curve among all."""
-        return self.sweep, self.over, self.load, self.pressure, self.held, self.forward, self.mount
+        return (
+            self.sweep, self.over, self.load, self.pressure, self.held, self.forward, self.mount, self.camber,
+        )  # fmt: skip
 
     @property
     def condition(self) -> str:
         return condition(self.load, self.pressure)
 
-    def angles(self, points: Points) -> np.ndarray:
-        """The varied angle (k,) [deg]."""
-        return np.degrees(getattr(points, self.over)[self.index])
+    def varied(self, points: Points) -> np.ndarray:
+        """What varies (k,): an angle [deg] or longitudinal slip [-]."""
+        return shown_values(points, self.over)[self.index]
+
+
+def shown_values(points: Points, over: str) -> np.ndarray:
+    """Sideslip or camber [deg], or longitudinal slip [-], of all points (n,)."""
+    values: np.ndarray = getattr(points, over)
+    return values if over == "kappa" else np.degrees(values)
 
 
 @dataclass(frozen=True, slots=True)
@@ -77,37 +86,76 @@ def conditions(points: Points) -> list[CurveCondition]:
 
 
 def curves(points: Points) -> list[Curve]:
-    """Every series of at least four set-points over one angle, sorted by load, pressure and held angle."""
-    alpha, gamma = np.degrees(points.alpha), np.degrees(points.gamma)
+    """Every series of at least four set-points over an angle or over longitudinal slip, by load, pressure and held angle.
+
+    Series over an angle are of the freely rolling wheel.
+    """
+    driven = _slip_curves(points)
+    taken = np.zeros(len(points), dtype=bool)
+    for curve in driven:
+        taken[curve.index] = True
     held = {
         "alpha": np.degrees(levels.level_values(points.gamma, levels.CAMBER)),
         "gamma": np.degrees(levels.level_values(points.alpha, levels.SIDESLIP)),
     }
-    angle = {"alpha": alpha, "gamma": gamma}
     load, pressure = load_levels(points), pressure_levels(points)
-    found = []
-    for name, rows in _sweeps(points):
-        over = _varied(alpha[rows], gamma[rows])
+    found = driven
+    for name, members in _sweeps(points):
+        rows = members[points.free_rolling[members] & ~taken[members]]
+        if not len(rows):
+            continue
+        over = _varied(np.degrees(points.alpha[rows]), np.degrees(points.gamma[rows]))
         keys = np.column_stack(
             [load[rows], pressure[rows], held[over][rows], points.direction[rows], points.mount[rows]]
         )
-        for key, members in _groups(keys):
-            index = rows[members]
-            if _set_points(angle[over][index]) >= constants.FEWEST_SET_POINTS_OF_CURVE:
-                index = index[np.argsort(angle[over][index], kind="stable")]
-                found.append(
-                    Curve(
-                        over=over,
-                        load=float(key[0]),
-                        pressure=float(key[1]),
-                        held=float(key[2]),
-                        forward=bool(key[3] > 0),
-                        mount=int(key[4]),
-                        sweep=name,
-                        index=index,
-                    )
-                )
-    return sorted(found, key=lambda c: (c.over, c.load, c.pressure, c.held, not c.forward))
+        found += _along(points, name, over, rows, keys, constants.SET_POINT_WIDTH)
+    return sorted(found, key=lambda c: (c.over, c.load, c.pressure, c.camber, c.held, not c.forward))
+
+
+def _slip_curves(points: Points) -> list[Curve]:
+    """The series over longitudinal slip."""
+    if np.all(points.free_rolling):
+        return []
+    found: list[Curve] = []
+    load, pressure = load_levels(points), pressure_levels(points)
+    for name, rows in _sweeps(points):
+        if np.all(points.free_rolling[rows]):
+            continue
+        # Levels within the sweep: those of a sideslip sweep over all angles say nothing about the angles that are held here.
+        alpha, gamma = (
+            np.degrees(levels.level_values(angle[rows], kind))
+            for angle, kind in ((points.alpha, levels.SIDESLIP), (points.gamma, levels.CAMBER))
+        )
+        keys = np.column_stack(
+            [load[rows], pressure[rows], alpha, points.direction[rows], points.mount[rows], np.round(gamma, 1)]
+        )
+        found += _along(points, name, "kappa", rows, keys, constants.SLIP_SET_POINT_WIDTH)
+    return found
+
+
+def _along(
+    points: Points, name: str, over: str, rows: np.ndarray, keys: np.ndarray, width: float
+) -> list[Curve]:
+    """The groups of rows with equal keys (k, 5 or 6) that have enough set-points, in order of what varies."""
+    values, found = shown_values(points, over), []
+    for key, members in _groups(keys):
+        index = rows[members]
+        if len(np.unique(np.round(values[index] / width))) < constants.FEWEST_SET_POINTS_OF_CURVE:
+            continue
+        found.append(
+            Curve(
+                over=over,
+                load=float(key[0]),
+                pressure=float(key[1]),
+                held=float(key[2]),
+                forward=bool(key[3] > 0),
+                mount=int(key[4]),
+                sweep=name,
+                index=index[np.argsort(values[index], kind="stable")],
+                camber=float(key[5]) + 0.0 if over == "kappa" else 0.0,
+            )
+        )
+    return found
 
 
 def _sweeps(points: Points) -> Iterable[tuple[str, np.ndarray]]:

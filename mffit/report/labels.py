@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 
-from mffit.quantities import CHANNELS, CONDITIONS, DIRECT
+from mffit.quantities import CHANNELS, CONDITIONS, DIRECT, MODEL
 from mffit.report import constants
 from mffit.report.curves import Curve
 from mffit.report.drawing.records import Axis
@@ -12,15 +12,16 @@ from mffit.rounding import number
 
 ANGLES = {"alpha": CONDITIONS["alpha_deg"], "gamma": CONDITIONS["gamma_deg"]}
 """The angles that are varied, by the attribute of the points."""
-OTHER = {"alpha": "gamma", "gamma": "alpha"}
-"""The angle that is held while one is varied."""
+SLIP = MODEL["kappa"]
+OTHER = {"alpha": "gamma", "gamma": "alpha", "kappa": "alpha"}
+"""The angle that is held while another one, or longitudinal slip, is varied."""
 LOAD = CONDITIONS["Fz_N"]
 EPSILON = DIRECT["epsilon_gamma"]
 
 
 def angle_axis(over: str) -> Axis:
-    """The axis of a varied angle [deg]."""
-    return Axis(label=ANGLES[over].axis)
+    """The axis of a varied angle [deg], or of longitudinal slip [-]."""
+    return Axis(label=SLIP.axis if over == "kappa" else ANGLES[over].axis)
 
 
 def held(curve: Curve) -> str:

@@ -10,15 +10,18 @@ import numpy as np
 from mffit.points import Points
 from mffit.quantities import SIDEWAYS
 from mffit.report import constants
-from mffit.report.curves import Curve
+from mffit.report.curves import Curve, shown_values
 from mffit.rig import Simulation
+
+VARIED = ("alpha", "gamma", "kappa", "Fz", "p", "V")
+"""Conditions that a line holds at their median, or lets vary."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CurveLine:
     """Readings that the rig would give along a curve if the tyre were the model; arrays (m,)."""
 
-    x: np.ndarray  #: the angle that varies [deg]
+    x: np.ndarray  #: what varies: an angle [deg] or longitudinal slip [-]
     raw: Mapping[str, np.ndarray]  #: by channel
     even: Mapping[str, np.ndarray]  #: its even part
 
@@ -45,7 +48,7 @@ def model_lines(
     for i, curve in enumerate(curves):
         rows = slice(i * steps, (i + 1) * steps)
         lines[curve.key] = CurveLine(
-            x=np.degrees(getattr(grid, curve.over)[rows]),
+            x=shown_values(grid, curve.over)[rows],
             raw={name: values[rows] for name, values in here.items()},
             even={name: 0.5 * (values + there[name])[rows] for name, values in here.items()},
         )
@@ -55,7 +58,7 @@ def model_lines(
 def _along(points: Points, curves: Sequence[Curve]) -> Points:
     """Points at equal distances along each curve's range."""
     steps = constants.STEPS_OF_MODEL_LINE
-    columns: dict[str, list[np.ndarray]] = {name: [] for name in ("alpha", "gamma", "Fz", "p", "V")}
+    columns: dict[str, list[np.ndarray]] = {name: [] for name in VARIED}
     for curve in curves:
         for name, values in columns.items():
             here = getattr(points, name)[curve.index]

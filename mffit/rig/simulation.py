@@ -99,7 +99,7 @@ class Simulation(Brief):
         The influence is that of this simulation, so the tyre misses the returned readings by as much as the simulation misses
         those of ``points``.
         """
-        channels = _in_order((*SIDEWAYS, *points.measured))
+        channels = _in_order((*SIDEWAYS, *(name for name in points.measured if name in SIMULATED)))
         felt = points.replace(**self._chain(points, {}).at_the_tyre())
         rig = self.readings(points, channels)
         tyre = replace(self, faults=NO_FAULTS, of_parts={}).readings(felt, channels)

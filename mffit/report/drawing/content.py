@@ -24,6 +24,7 @@ from mffit.report.drawing.records import (
     Map,
     Note,
     Panel,
+    Ribbon,
     Trace,
 )
 
@@ -77,6 +78,10 @@ def _series(axes: Axes, points: Transform, series: DataSeries) -> None:
                 axes.add_artist(marks(points, _places(axes, points, x, y), look))
         case Band(x=x, low=low, high=high, look=look):
             around = np.concatenate([x, x[::-1]]), np.concatenate([low, high[::-1]])
+            axes.fill(*around, zorder=AREA, **brush(look.colour, look.opacity))
+        case Ribbon(look=look):
+            (left, low), (right, high) = series.sides()
+            around = np.concatenate([left, right[::-1]]), np.concatenate([low, high[::-1]])
             axes.fill(*around, zorder=AREA, **brush(look.colour, look.opacity))
         case ErrorBars():
             _error_bars(axes, points, series)

@@ -129,7 +129,30 @@ class Map:
         return self.x, self.y
 
 
-DataSeries = Trace | Band | ErrorBars | Bars | Map
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Ribbon:
+    """The area on both sides of a path (n,), which may close; arrays (n,)."""
+
+    name: str
+    x: np.ndarray
+    y: np.ndarray
+    dx: np.ndarray  #: from the path to its one side; the other side lies opposite
+    dy: np.ndarray
+    look: Look
+
+    def sides(self) -> tuple[tuple[np.ndarray, np.ndarray], tuple[np.ndarray, np.ndarray]]:
+        """Both edges as (x, y)."""
+        return (self.x + self.dx, self.y + self.dy), (self.x - self.dx, self.y - self.dy)
+
+    def rows(self) -> Iterator[TableRow]:
+        return (TableRow(x, y) for side in self.sides() for x, y in zip(*side, strict=True))
+
+    def extent(self) -> tuple[np.ndarray, np.ndarray]:
+        one, other = self.sides()
+        return np.concatenate([one[0], other[0]]), np.concatenate([one[1], other[1]])
+
+
+DataSeries = Trace | Band | Ribbon | ErrorBars | Bars | Map
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -218,6 +241,7 @@ class Sheet:
     panel_width: float | None = (
         None  #: of a panel with its labels [pt]; None: what the number of columns leaves
     )
+    left_out: int = 0  #: panels that are not drawn, for the caption
 
     @property
     def panels(self) -> list[Panel]:
@@ -229,3 +253,10 @@ def in_rows(*groups: Sequence[Panel], columns: int) -> list[list[Panel]]:
     return [
         list(group[start : start + columns]) for group in groups for start in range(0, len(group), columns)
     ]
+
+
+def thinned(panels: Sequence[Panel], most: int) -> list[Panel]:
+    """At most so many of the panels, evenly chosen, both ends among them."""
+    if len(panels) <= most:
+        return list(panels)
+    return [panels[k] for k in np.linspace(0, len(panels) - 1, most).round().astype(int)]

@@ -32,7 +32,7 @@ def decomposition(view: BuildView, channel: ChannelRow) -> Sheet:
 
 
 def _parts(view: BuildView, channel: ChannelRow, curve: Curve) -> Panel:
-    x = curve.angles(view.points)
+    x = curve.varied(view.points)
     values = (channel.measured, channel.odd, channel.even)
     return Panel(
         title=f"{curve.condition}{labels.held_unless_zero(curve)}",
@@ -76,7 +76,7 @@ def _even(view: BuildView, channel: ChannelRow, curve: Curve) -> list[Trace | Er
     return [
         ErrorBars(
             name="measured, ± 1 u",
-            x=curve.angles(view.points),
+            x=curve.varied(view.points),
             y=channel.even[rows],
             u=channel.u_odd[rows],
             look=MEASURED,

@@ -12,7 +12,7 @@ from mffit.points import Points
 from mffit.report import constants, labels, style
 from mffit.report.build_view import ChannelRow
 from mffit.report.curves import Curve
-from mffit.report.drawing.records import Axis, Guide, Look, Panel, Sheet, Trace, in_rows
+from mffit.report.drawing.records import Axis, Guide, Look, Panel, Sheet, Trace, in_rows, thinned
 from mffit.report.lines import CurveLine
 from mffit.rounding import number
 
@@ -34,7 +34,7 @@ MARKS = {
     "no weight": Look(colour=style.CONTRAST, marker="x", size=5.0),
     "doubtful sweep": Look(colour=style.CONTRAST, marker="o", size=5.5, hollow=True),
 }
-FORWARD = Look(colour=style.MUTED, marker="o", size=3.2)
+READINGS = Look(colour=style.MUTED, marker="o", size=3.2)
 BACKWARD = Look(colour=style.MUTED, marker="v", size=3.6, hollow=True)
 MODEL = Look(colour=style.MUTED, line="-", width=1.0)
 
@@ -47,7 +47,7 @@ def model_against_points(view: Overlaid, channel: ChannelRow) -> Sheet:
         [
             _panel(view, channel, members, colours)
             for (varied, *_), members in conditions.items()
-            if varied == over
+            if varied == over and _has_readings(channel, members)
         ]
         for over in labels.ANGLES
     ]
@@ -69,6 +69,10 @@ def drawn_conditions(curves: Iterable[Curve]) -> dict[tuple[str, float, float], 
     return {key: members for key, members in every.items() if key in most}
 
 
+def _has_readings(channel: ChannelRow, members: Iterable[Curve]) -> bool:
+    return any(np.isfinite(channel.measured[curve.index]).any() for curve in members)
+
+
 def _conditions(curves: Iterable[Curve]) -> dict[tuple[str, float, float], list[Curve]]:
     """The curves by varied angle, load and pressure, in that order."""
     grouped: dict[tuple[str, float, float], list[Curve]] = {}
@@ -83,7 +87,7 @@ def _panel(
     series = [
         series
         for curve in members
-        for series in _curves(view, channel, curve, colours[curve.held] if curve.over == "alpha" else style.ACCENT)
+        for series in curve_traces(view, channel, curve, colours[curve.held] if curve.over == "alpha" else style.ACCENT)
     ]  # fmt: skip
     return Panel(
         title=members[0].condition,
@@ -94,10 +98,10 @@ def _panel(
     )
 
 
-def _curves(view: Overlaid, channel: ChannelRow, curve: Curve, colour: str) -> list[Trace]:
+def curve_traces(view: Overlaid, channel: ChannelRow, curve: Curve, colour: str) -> list[Trace]:
     """Readings, marks on those that do not fit, and the model's line."""
-    angle, line = curve.angles(view.points), view.lines[curve.key]
-    look = FORWARD if curve.forward else BACKWARD
+    angle, line = curve.varied(view.points), view.lines[curve.key]
+    look = READINGS if curve.forward else BACKWARD
     if len(angle) > constants.DENSE_CURVE:
         look = replace(look, marker=".", size=1.4, hollow=False)
     held = labels.held(curve)
@@ -119,15 +123,19 @@ def _curves(view: Overlaid, channel: ChannelRow, curve: Curve, colour: str) -> l
 
 
 def _key(view: Overlaid, channel: ChannelRow, colours: Mapping[float, str]) -> dict[str, Look]:
-    key = {"measured": FORWARD, "model": MODEL}
+    key = {"measured": READINGS, "model": MODEL}
     if any(not c.forward for c in view.curves):
         key["backward"] = replace(BACKWARD, line="--", width=1.0)
-    for rows, (name, mark) in zip(view.marked(channel.name), MARKS.items(), strict=True):
-        if len(rows):
-            key[name] = mark
+    key |= mark_key(view, channel)
     places = 0 if all(abs(camber - round(camber)) < constants.WHOLE_DEGREES for camber in colours) else 1
     symbol = labels.ANGLES["gamma"].symbol
     if len(colours) > 1:
         for camber, colour in colours.items():
             key[f"{symbol} = {number(camber, places)}°"] = Look(colour=colour, line="-", width=3.0)
     return key
+
+
+def mark_key(view: Overlaid, channel: ChannelRow) -> dict[str, Look]:
+    """The marks on readings that do not fit, as far as there are any."""
+    marked = zip(view.marked(channel.name), MARKS.items(), strict=True)
+    return {name: mark for rows, (name, mark) in marked if len(rows)}

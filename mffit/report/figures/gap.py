@@ -106,7 +106,7 @@ def _sweep(view: DiagnosisView, shown: Shown, channel: GapChannel) -> Panel:
         series=[
             Trace(
                 name="measured",
-                x=curve.angles(view.points),
+                x=curve.varied(view.points),
                 y=getattr(view.points, name)[curve.index],
                 look=MEASURED,
             ),

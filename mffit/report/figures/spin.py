@@ -144,7 +144,7 @@ def alignment(view: BuildView) -> Sheet:
 
 
 def _near_zero(view: BuildView, curve: Curve) -> Trace:
-    x = curve.angles(view.points)
+    x = curve.varied(view.points)
     near = np.abs(x) < constants.NEAR_ZERO_SIDESLIP
     return Trace(
         name=f"rolling {'forwards' if curve.forward else 'backwards'}",

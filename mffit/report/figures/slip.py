@@ -1,0 +1,298 @@
+"""Driving, braking and combined slip: curves over slip, friction ellipse, weights of combined slip, trail."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Sequence
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+
+from mffit.points import Points
+from mffit.quantities import CHANNELS, MODEL
+from mffit.report import constants, labels, style
+from mffit.report.build_view import BuildView, ChannelRow
+from mffit.report.curves import Curve
+from mffit.report.drawing.records import Axis, Band, Guide, Look, Panel, Ribbon, Sheet, Trace, in_rows, thinned
+from mffit.report.figures.fit import MODEL as LINE
+from mffit.report.figures.fit import READINGS, Overlaid, curve_traces, mark_key
+from mffit.report.with_band import Banded, several_with_band
+from mffit.rounding import number
+from tir.equations import lateral, longitudinal, normalise
+from tir.outputs import outputs_of
+
+EDGE = Look(colour=style.INK, line="-", width=1.1)
+EDGE_NAME = "sideslip and slip together at their tested ends"
+ZEROS = (Guide(axis="x", at=0.0), Guide(axis="y", at=0.0))
+WEIGHTS = (
+    ("Fx", "weight of sideslip G$_{xa}$ [–]", longitudinal.combined_weight),
+    ("Fy", "weight of slip G$_{yk}$ [–]", lateral.combined_weight),
+)
+"""Force, name and equation of each weight of combined slip."""
+
+
+def slip_curves(curves: Iterable[Curve]) -> list[Curve]:
+    """The curves over longitudinal slip."""
+    return [c for c in curves if c.over == "kappa"]
+
+
+def over_slip(view: Overlaid, channel: ChannelRow) -> Sheet:
+    """A channel over longitudinal slip: one panel per load, pressure and camber, coloured by sideslip."""
+    conditions: dict[tuple[float, float, float], list[Curve]] = {}
+    for curve in slip_curves(view.curves):
+        if np.isfinite(channel.measured[curve.index]).any():
+            conditions.setdefault((curve.load, curve.pressure, curve.camber), []).append(curve)
+    colours = _colours(curve for members in conditions.values() for curve in members)
+    several = len({camber for *_, camber in conditions}) > 1
+    panels = [
+        Panel(
+            title=members[0].condition + (f", {_camber(members[0].camber)}" if several else ""),
+            x=Axis(label=labels.SLIP.axis),
+            y=Axis(label=channel.label),
+            series=[s for c in members for s in curve_traces(view, channel, c, colours[c.held])],
+            guides=ZEROS,
+        )
+        for _, members in sorted(conditions.items())
+    ]
+    kept = thinned(panels, constants.MOST_PANELS_OF_FIT)
+    return Sheet(
+        rows=in_rows(kept, columns=5 if len(kept) > 4 else 4),
+        height=1.75,
+        key={"measured": READINGS, "model": LINE, **mark_key(view, channel), **_sideslip_key(colours)},
+        left_out=len(panels) - len(kept),
+    )
+
+
+def _camber(camber: float) -> str:
+    return f"{labels.ANGLES['gamma'].symbol} = {number(camber, 0)}°"
+
+
+def _colours(curves: Iterable[Curve]) -> dict[float, str]:
+    return style.ramp({curve.held for curve in curves})
+
+
+def _sideslip_key(colours: dict[float, str]) -> dict[str, Look]:
+    symbol = labels.ANGLES["alpha"].symbol
+    return {
+        f"{symbol} = {number(sideslip, 1)}°": Look(colour=colour, line="-", width=3.0)
+        for sideslip, colour in colours.items()
+    }
+
+
+def main_slip_curves(view: BuildView) -> dict[float, list[Curve]]:
+    """By load, the forward curves over slip of the upright wheel at the pressure nearest to the nominal one."""
+    upright = [
+        c
+        for c in slip_curves(view.curves)
+        if c.forward and abs(c.camber) < constants.UPRIGHT_ENOUGH_TO_DRAW
+    ]
+    nominal = view.config.tyre.nominal_pressure
+    nearest = min((c.pressure for c in upright), key=lambda p: abs(p - nominal), default=0.0)
+    found: dict[float, list[Curve]] = {}
+    for curve in upright:
+        if curve.pressure == nearest:
+            found.setdefault(curve.load, []).append(curve)
+    return found
+
+
+def combined(view: BuildView) -> bool:
+    """Whether slip was run with sideslip of the upright wheel."""
+    members = [c for curves in main_slip_curves(view).values() for c in curves]
+    return any(abs(c.held) >= constants.UPRIGHT_ENOUGH_TO_DRAW for c in members)
+
+
+def slip_range(view: BuildView) -> tuple[float, float]:
+    """Ends of the tested longitudinal slip."""
+    kappa = view.points.kappa
+    return min(0.0, float(kappa.min())), max(0.0, float(kappa.max()))
+
+
+def friction_ellipse(view: BuildView) -> Sheet:
+    """Fx over Fy at each load, sideslip as parameter; points less the errors of the rig, and the tyre with its bands."""
+    groups = main_slip_curves(view)
+    colours = _colours(c for members in groups.values() for c in members)
+    panels = [_ellipse(view, load, members, colours) for load, members in sorted(groups.items())]
+    key = {"measured": READINGS, "model": LINE, EDGE_NAME: EDGE, **_sideslip_key(colours)}
+    return Sheet(rows=in_rows(panels, columns=min(4, max(3, len(panels)))), height=2.6, key=key)
+
+
+def _ellipse(view: BuildView, load: float, members: Sequence[Curve], colours: dict[float, str]) -> Panel:
+    Fx, Fy = (view.felt.channel(name) for name in ("Fx", "Fy"))
+    series: list[Ribbon | Trace] = []
+    slip = np.linspace(*slip_range(view), constants.STEPS_OF_FILE_CURVE)
+    for curve in members:
+        look = Look(colour=colours[curve.held], line="-", width=1.0)
+        name = f"{labels.held(curve)}"
+        alpha = float(np.median(view.felt.alpha[curve.index]))
+        series += _path(view, curve, slip, np.full_like(slip, alpha), f"model, {name}", look)
+        dots = Look(colour=colours[curve.held], marker=".", size=1.6)
+        series.append(Trace(name=f"measured, {name}", x=Fy[curve.index], y=Fx[curve.index], look=dots))
+    series += _path(view, members[0], *edge(view), EDGE_NAME, EDGE)
+    largest = max(float(np.nanmax(np.abs(part))) for s in series for part in s.extent())
+    end = (1.0 + constants.AXIS_ROOM) * largest
+    return Panel(
+        title=f"{labels.LOAD.of(load)}",
+        x=Axis(label=CHANNELS["Fy"].axis, low=-end, high=end, ticks=4),
+        y=Axis(label=CHANNELS["Fx"].axis, low=-end, high=end, ticks=4),
+        series=series,
+        guides=ZEROS,
+    )
+
+
+def edge(view: BuildView) -> tuple[np.ndarray, np.ndarray]:
+    """Slip and sideslip [rad] (m,) once around: the ends of the tested ranges in every direction."""
+    turn = np.linspace(0.0, 2.0 * np.pi, 4 * (constants.STEPS_OF_FILE_CURVE // 4) + 1)
+    low, high = slip_range(view)
+    slip = np.where(np.sin(turn) > 0.0, high, -low) * np.sin(turn)
+    return slip, float(np.max(np.abs(view.points.alpha))) * np.cos(turn)
+
+
+def _path(
+    view: BuildView, curve: Curve, kappa: np.ndarray, alpha: np.ndarray, name: str, look: Look
+) -> list[Ribbon | Trace]:
+    """Fx over Fy along slips (m,) with the band across the path."""
+    where = _inputs(view, curve, kappa=kappa, alpha=alpha)
+
+    def forces(p: Any) -> list[Any]:
+        return outputs_of(("Fx", "Fy"), p, where, turn_slip=view.on_disc)
+
+    Fx, Fy = forces(SimpleNamespace(**view.model.values))
+    along = np.gradient(Fx), np.gradient(Fy)
+    size = np.maximum(np.hypot(*along), 1e-9)
+    across_x, across_y = -along[1] / size, along[0] / size
+
+    def moved_across(p: Any) -> list[Any]:
+        F = forces(p)
+        return [across_x * F[0] + across_y * F[1]]
+
+    (band,) = several_with_band(view.model.values, view.posterior, moved_across)
+    dx, dy = across_y * band.half, across_x * band.half
+    shade = Look(colour=look.colour, opacity=0.25)
+    return [
+        Ribbon(name=name, x=Fy, y=Fx, dx=dx, dy=dy, look=shade),
+        Trace(name=name, x=Fy, y=Fx, look=look),
+    ]
+
+
+def _inputs(view: BuildView, curve: Curve, **slips: np.ndarray) -> dict[str, Any]:
+    """The operating conditions of a curve with other slips (m,)."""
+    at: Points = view.felt.select(curve.index)
+    return {
+        "Fz": float(np.median(at.Fz)),
+        "gamma": 0.0,
+        "pressure": float(np.median(at.p)),
+        "Vx": float(np.median(at.V)),
+        **slips,
+    }
+
+
+def weights(view: BuildView) -> Sheet:
+    """The weights of combined slip over longitudinal slip, coloured by sideslip: a column per load, a row per weight."""
+    groups = sorted(main_slip_curves(view).items())
+    colours = _colours(c for _, members in groups for c in members)
+    rows = []
+    for channel, label, weight in WEIGHTS:
+        panels = []
+        for load, members in groups:
+            series: list[Band | Trace] = []
+            for curve in members:
+                if channel == "Fy" and abs(curve.held) < constants.UPRIGHT_ENOUGH_TO_DRAW:
+                    continue
+                series += _weight(view, curve, channel, weight, colours[curve.held])
+            panels.append(
+                Panel(
+                    title=labels.LOAD.of(load),
+                    x=Axis(label=labels.SLIP.axis),
+                    y=Axis(label=label, ticks=4, low=-0.05, high=1.3),
+                    series=series,
+                    guides=[Guide(axis="y", at=1.0), Guide(axis="y", at=0.0)],
+                )
+            )
+        rows += in_rows(panels, columns=4)
+    key = {"measured force over the model's without the other slip": READINGS, "model": LINE}
+    return Sheet(rows=rows, height=1.75, key={**key, **_sideslip_key(colours)})
+
+
+def _weight(
+    view: BuildView, curve: Curve, channel: str, weight: Callable[[Any, Any], Any], colour: str
+) -> list[Band | Trace]:
+    """The model's weight with its band, and the one that the readings show where the pure force is large enough."""
+    name = labels.held(curve)
+    alpha = float(np.median(view.felt.alpha[curve.index]))
+    slip = np.linspace(*slip_range(view), constants.STEPS_OF_FILE_CURVE)
+    line, half = _weights_at(view, curve, slip, np.full_like(slip, alpha), weight)
+    read = view.felt.kappa[curve.index]
+    at = _weights_at(view, curve, read, view.felt.alpha[curve.index], weight).line
+    tyre = SimpleNamespace(**view.model.values)
+    model, pure = (
+        outputs_of(
+            (channel,), tyre, _inputs(view, curve, kappa=k, alpha=a), turn_slip=view.on_disc
+        )[0]
+        for k, a in (
+            (read, view.felt.alpha[curve.index]),
+            ((read, 0.0 * read) if channel == "Fx" else (0.0 * read, view.felt.alpha[curve.index])),
+        )
+    )
+    large = np.abs(pure) > constants.LEAST_PURE_FORCE * np.max(np.abs(pure))
+    shown = at + (view.felt.channel(channel)[curve.index] - model) / np.where(large, pure, np.nan)
+    dots = Look(colour=colour, marker=".", size=1.6)
+    return [
+        Band(name=name, x=slip, low=line - half, high=line + half, look=Look(colour=colour, opacity=0.25)),
+        Trace(name=f"model, {name}", x=slip, y=line, look=Look(colour=colour, line="-", width=1.0)),
+        Trace(name=f"measured, {name}", x=read, y=shown, look=dots),
+    ]
+
+
+def _weights_at(
+    view: BuildView, curve: Curve, kappa: np.ndarray, alpha: np.ndarray, weight: Callable[[Any, Any], Any]
+) -> Banded:
+    at = _inputs(view, curve)
+
+    def of(p: Any) -> list[Any]:
+        q = normalise.inputs(
+            p, at["Fz"], at["Fz"], kappa, alpha, 0.0 * kappa, 0.0, at["pressure"], star=False, limits=False
+        )
+        return [weight(p, q)]
+
+    (found,) = several_with_band(view.model.values, view.posterior, of)
+    return found
+
+
+def trail(view: BuildView) -> Sheet:
+    """Pneumatic trail and residual moment over sideslip with bands, at several longitudinal slips: a column per load."""
+    low, high = slip_range(view)
+    end = high if high > -low else low
+    slips = [share * end for share in constants.HELD_SLIP_SHARES]
+    colours = dict(zip(slips, style.ramp(range(len(slips))).values(), strict=True))
+    reach = float(np.max(np.abs(view.points.alpha)))
+    x = np.linspace(-reach, reach, constants.STEPS_OF_FILE_CURVE)
+    quantities = (("trail", MODEL["trail"].axis, 1e3), ("residual_torque", "residual moment M$_{zr}$ [Nm]", 1.0))
+    rows: list[list[Panel]] = [[] for _ in quantities]
+    for load, members in sorted(main_slip_curves(view).items()):
+        series: list[list[Band | Trace]] = [[] for _ in quantities]
+        for slip, colour in colours.items():
+            where = _inputs(view, members[0], kappa=np.full_like(x, slip), alpha=x)
+
+            def outputs(p: Any, where: dict[str, Any] = where) -> list[Any]:
+                return outputs_of(tuple(q[0] for q in quantities), p, where, turn_slip=view.on_disc)
+
+            found = several_with_band(view.model.values, view.posterior, outputs)
+            name = f"{labels.SLIP.symbol} = {number(slip, 2)}"
+            for drawn, (_, _, unit), (line, half) in zip(series, quantities, found, strict=True):
+                at, shade = np.degrees(x), Look(colour=colour, opacity=0.25)
+                drawn += [
+                    Band(name=name, x=at, low=unit * (line - half), high=unit * (line + half), look=shade),
+                    Trace(name=name, x=at, y=unit * line, look=Look(colour=colour, line="-", width=1.0)),
+                ]
+        for row, (_, label, _), drawn in zip(rows, quantities, series, strict=True):
+            row.append(
+                Panel(
+                    title=labels.LOAD.of(load),
+                    x=labels.angle_axis("alpha"),
+                    y=Axis(label=label, ticks=4),
+                    series=drawn,
+                    guides=ZEROS,
+                )
+            )
+    key = {f"{labels.SLIP.symbol} = {number(s, 2)}": Look(colour=c, line="-") for s, c in colours.items()}
+    return Sheet(rows=[line for row in rows for line in in_rows(row, columns=4)], height=1.6, key=key)
