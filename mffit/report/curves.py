@@ -17,7 +17,7 @@ def condition(load: float, pressure: float) -> str:
     return f"{CONDITIONS['Fz_N'].of(load)}, {CONDITIONS['p_kPa'].of(pressure)}"
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class Curve:
     """Points of one sweep that differ in one angle, or in longitudinal slip, only."""
 
@@ -53,7 +53,7 @@ def shown_values(points: Points, over: str) -> np.ndarray:
     return values if over == "kappa" else np.degrees(values)
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class CurveCondition:
     """Points at one load and pressure."""
 

@@ -12,7 +12,7 @@ from mffit.points import Points
 from mffit.report import constants, labels, style
 from mffit.report.build_view import ChannelRow
 from mffit.report.curves import Curve
-from mffit.report.drawing.records import Axis, Guide, Look, Panel, Sheet, Trace, in_rows, thinned
+from mffit.report.drawing.records import Axis, Guide, Look, Panel, Sheet, Trace, in_rows
 from mffit.report.lines import CurveLine
 from mffit.rounding import number
 

@@ -13,7 +13,18 @@ from mffit.quantities import CHANNELS, MODEL
 from mffit.report import constants, labels, style
 from mffit.report.build_view import BuildView, ChannelRow
 from mffit.report.curves import Curve
-from mffit.report.drawing.records import Axis, Band, Guide, Look, Panel, Ribbon, Sheet, Trace, in_rows, thinned
+from mffit.report.drawing.records import (
+    Axis,
+    Band,
+    Guide,
+    Look,
+    Panel,
+    Ribbon,
+    Sheet,
+    Trace,
+    in_rows,
+    thinned,
+)
 from mffit.report.figures.fit import MODEL as LINE
 from mffit.report.figures.fit import READINGS, Overlaid, curve_traces, mark_key
 from mffit.report.with_band import Banded, several_with_band
