@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Collection, Mapping
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -124,9 +124,9 @@ def _headings(raw: RawTable, mapping: Mapping[str, Column], shared: Collection[s
     for name, heading in headings.items():
         if heading not in raw.headings:
             raise _not_in_file(raw, name, heading)
-    for channel in SWEEP_CHANNELS:
-        if channel.required and channel.name not in headings:
-            raise _missing(raw, channel)
+    missing = [channel for channel in SWEEP_CHANNELS if channel.required and channel.name not in headings]
+    if missing:
+        raise _missing(raw, missing)
     return headings
 
 
@@ -137,7 +137,13 @@ def _not_in_file(raw: RawTable, name: str, heading: str) -> InputError:
     return InputError(sentence, file=raw.path, line=raw.heading_line)
 
 
-def _missing(raw: RawTable, channel: Channel) -> InputError:
+def _missing(raw: RawTable, channels: Sequence[Channel]) -> InputError:
+    """The error about required columns that a file lacks, with what to write for each of them."""
+    channel, *others = channels
+    if others:
+        return InputError(
+            _several_missing(raw, channels), file=raw.path, line=raw.heading_line, column=channel.name
+        )
     near = nearest_heading(channel, raw.headings)
     remedy = (
         f'if it is "{near}", write {channel.name} = {{ column = "{near}", unit = "{channel.unit}" }}, with its true '
@@ -147,6 +153,25 @@ def _missing(raw: RawTable, channel: Channel) -> InputError:
     )
     sentence = f"is missing ({channel.description}); {remedy}"
     return InputError(sentence, file=raw.path, line=raw.heading_line, column=channel.name)
+
+
+def _several_missing(raw: RawTable, channels: Sequence[Channel]) -> str:
+    near = {channel: nearest_heading(channel, raw.headings) for channel in channels}
+    entries = [
+        f'{channel.name} = {{ column = "{heading}", unit = "{raw.unit(heading) or channel.unit}" }}'
+        for channel, heading in near.items()
+        if heading
+    ]
+    lost = [f"{channel.name} ({channel.description})" for channel, heading in near.items() if not heading]
+    said = f"is missing, and so {'is' if len(channels) == 2 else 'are'} {', '.join(c.name for c in channels[1:])}"
+    if entries:
+        said += (
+            "; if they have other headings here, write under [sweep.columns], or under [columns] for all files: "
+            f"{', '.join(entries)}, each with its true unit; or let `mffit init --from` or `mffit open` recognise them"
+        )
+    if lost:
+        said += f"; add {', '.join(lost)}, or give the heading (the headings are {', '.join(raw.headings)})"
+    return said
 
 
 def _source(

@@ -3,12 +3,16 @@
 from __future__ import annotations
 
 import re
+import tomllib
 from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
+from mffit import config as configuration
+from mffit import sweeps as files
+from mffit.errors import InputError
 from mffit.export.tydex import TYDEX_CHANNELS
 from mffit.recordings.guess import simplified
 from mffit.sweeps.channels import BY_NAME, SWEEP_CHANNELS, nearest_channel, nearest_heading
@@ -127,3 +131,27 @@ def test_a_name_that_tydex_export_writes_is_known_to_its_reader(written):
     (channel,) = [channel for channel in SWEEP_CHANNELS if written.name in channel.aliases]
     assert (channel.name.rpartition("_")[0] or channel.name) == source
     assert np.isfinite(converted(np.ones(1), written.unit, channel.unit)).all()
+
+
+def test_all_missing_columns_are_named_at_once_with_what_to_write(tmp_path):
+    """What the sentence says to write makes the file readable."""
+    headings = {
+        "alpha_deg": "Schräglaufwinkel [Grad]", "gamma_deg": "Sturz [Grad]", "Fz_N": "Radlast [kN]", "Fy_N": "Seitenkraft [N]",
+    }  # fmt: skip
+    rows = "\n".join(f"{a};0;1,4;{-200 * a}" for a in range(-5, 6))
+    (tmp_path / "a.csv").write_text(";".join(headings.values()) + f"\n{rows}\n", encoding="utf-8")
+    content = {
+        "tyre": {"name": "a", "unloaded_radius": 0.3, "nominal_load": 1400, "nominal_pressure": 250},
+        "rig": {"type": "flat-track"},
+        "sweep": [{"file": "a.csv"}],
+    }
+    with pytest.raises(InputError) as caught:
+        files.load(configuration.load(content, folder=tmp_path))
+    said = str(caught.value)
+    assert said.count("is missing") == 1
+    entries = re.findall(r"(\w+) = (\{ column = [^}]*\})", said)
+    assert [name for name, _ in entries] == list(headings)
+    content["columns"] = tomllib.loads("\n".join(f"{name} = {entry}" for name, entry in entries))
+    (sweep,) = files.load(configuration.load(content, folder=tmp_path)).sweeps
+    assert sweep.Fz == pytest.approx(1400.0)
+    assert np.degrees(sweep.alpha) == pytest.approx(np.arange(-5.0, 6.0))
