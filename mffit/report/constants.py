@@ -60,6 +60,9 @@ HELD_SIDESLIP_SHARES = Series(
 MOST_MAPS_PER_CHANNEL = Count(
     30, "-", "Most conditions with a residual map: more than most campaigns have; those with the most points are shown."
 )
+MAPS_PER_ROW = Count(6, "-", "Residual maps beside each other; more would be narrower than their axis labels.")
+SLIP_SHOWN_APART = Real(0.1, "-", "Slips that differ by a tenth of this lie beside each other in a map.")
+SHARE_OF_ROOM = Real(0.9, "-", "Share of the room to the end of a map's axis that points at one place fill at most.")
 RESIDUAL_SCALE = Real(4.0, "-", "End of the colour scale of residual maps, in units of noise.")
 SMALLEST_GAP_SCALE = Real(
     4.0, "-", "Shortest colour scale of a diagnosis in units of noise, so that noise looks plain."
