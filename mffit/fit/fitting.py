@@ -134,6 +134,7 @@ def fit(
         choice=found.choice,
         runs=runs,
         confounded=confounded,
+        radii=radii,
     )
     return with_remarks(result, config, points, turning, from_base=base is not None)
 

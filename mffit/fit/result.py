@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from mffit.brief import Brief
 from mffit.fit.agreement import Agreement
@@ -18,6 +18,7 @@ from mffit.fit.nuisance_choice import NuisanceChoice
 from mffit.fit.posterior import Posterior
 from mffit.fit.stages import StageRecord
 from mffit.fit.temperature import AtTemperature
+from mffit.fit.vertical import Vertical
 from mffit.quantities import CHANNELS
 from mffit.rig import Readings, Simulation
 from mffit.suspicion import Doubt, Outlier
@@ -56,6 +57,7 @@ class FitResult(Brief):
     choice: NuisanceChoice | None = (
         None  #: what was modelled beside coefficients and declared rig errors, and why
     )
+    radii: Vertical = field(default_factory=Vertical)  #: loaded radius and wheel speed of the rolling wheel
 
     @property
     def headline(self) -> str:

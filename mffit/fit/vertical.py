@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Collection, Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field
 from types import SimpleNamespace
 from typing import Any
@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from mffit.fit import constants
+from mffit.fit.agreement import Agreement, agreement
 from mffit.least_squares import FreeNumber, LeastSquaresProblem, Linear, solve
 from mffit.points import Points, levels
 from mffit.rounding import ascii_only, to_uncertainty
@@ -34,8 +35,6 @@ BOUNDS = {
     GROWTH: (-0.3, 0.3),
     LEAN: (-10.0, 10.0),
 }
-Radius = Callable[[Any], Any]
-"""Radius [m] of the upright wheel at the conditions, from the values of the file."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,10 +45,22 @@ class Vertical:
     growth: float = 0.0  #: of the free radius, relative to dpi
     rms: Mapping[str, float] = field(default_factory=dict)
     """By channel, RL and omega, rms misfit of the radius [m]."""
+    covariance: Mapping[str, tuple[tuple[str, ...], np.ndarray]] = field(default_factory=dict)
+    """By channel, the fitted numbers (k,) with their covariance (k, k)."""
+    rolling: RollingParts | None = None  #: the means that were fitted; None without any
+
+    def agreement(self, values: Mapping[str, Any]) -> dict[str, Agreement]:
+        """By channel, RL and omega, agreement of the radii [m] of these values with the means; as far as they were fitted."""
+        if self.rolling is None:
+            return {}
+        return {
+            name: agreement(radius(values, self.rolling, name), self.rolling.radius(name))
+            for name in self.rms
+        }
 
 
 @dataclass(frozen=True, slots=True)
-class _Rolling:
+class RollingParts:
     """Means over the freely rolling parts of sweeps with little camber (n,)."""
 
     Fz: np.ndarray  #: [N]
@@ -58,6 +69,20 @@ class _Rolling:
     V: np.ndarray  #: [m/s]
     loaded: np.ndarray  #: [m]; NaN where it was not measured
     effective: np.ndarray  #: [m]; the same
+
+    def radius(self, channel: str) -> np.ndarray:
+        """The measured radius (n,) [m] of RL, or of omega."""
+        return self.loaded if channel == "RL" else self.effective
+
+
+def radius(values: Mapping[str, Any], at: RollingParts, channel: str) -> Any:
+    """Loaded radius, or effective rolling radius for omega, of the upright wheel [m]; plain or traced as the values are."""
+    p = SimpleNamespace(**values)
+    if channel == "RL":
+        return p.UNLOADED_RADIUS * p.Q_RE0 - vertical.deflection(
+            p, at.Fz, at.p / float(values["NOMPRES"]) - 1.0
+        )
+    return outputs_of(("Re",), p, {"Fz": at.Fz, "Vx": at.V, "pressure": at.p})[0]
 
 
 def vertical_coefficients(values: Mapping[str, Any], points: Points, held: Collection[str] = ()) -> Vertical:
@@ -76,6 +101,7 @@ def vertical_coefficients(values: Mapping[str, Any], points: Points, held: Colle
     known: dict[str, Any] = {**values, GROWTH: 0.0, LEAN: 0.0}
     found: dict[str, Quantity] = {}
     rms: dict[str, float] = {}
+    covariance: dict[str, tuple[tuple[str, ...], np.ndarray]] = {}
     beside = [GROWTH] if pressures > 1 else []
     lean = [LEAN] if levels.count(np.abs(rolling.gamma), levels.CAMBER) > 1 else []
     if np.any(np.isfinite(rolling.loaded)) and loads > 1:
@@ -84,30 +110,30 @@ def vertical_coefficients(values: Mapping[str, Any], points: Points, held: Colle
         names = [name for name in names if name not in held]
         known |= {name: 0.0 for name in ("Q_FZ2", "PFZ1") if name in names}
         known["VERTICAL_STIFFNESS"] = _stiffness(rolling)
-
-        def loaded(p: Any) -> Any:
-            return p.UNLOADED_RADIUS * p.Q_RE0 - vertical.deflection(p, rolling.Fz, dpi)
-
-        here, u, rms["RL"] = _fitted([*names, *beside, *lean], known, rolling, rolling.loaded, dpi, loaded)
+        here, covariance["RL"], rms["RL"] = _fitted([*names, *beside, *lean], known, rolling, "RL", dpi)
+        u = _standard(covariance["RL"])
         known |= {**here, LEAN: 0.0}
         found |= {name: Quantity(here[name], u[name], BY_NAME[name].unit) for name in names}
         beside = []
     if np.any(np.isfinite(rolling.effective)) and loads > 1:
         names = [] if found else ["Q_RE0"]
         names = [name for name in [*names, "DREFF", "FREFF", "BREFF"][: loads - 1] if name not in held]
-
-        def effective(p: Any) -> Any:
-            return outputs_of(("Re",), p, {"Fz": rolling.Fz, "Vx": rolling.V, "pressure": rolling.p})[0]
-
-        here, u, rms["omega"] = _fitted(
-            [*names, *beside, *lean], known, rolling, rolling.effective, dpi, effective
+        here, covariance["omega"], rms["omega"] = _fitted(
+            [*names, *beside, *lean], known, rolling, "omega", dpi
         )
+        u = _standard(covariance["omega"])
         known |= here
         found |= {name: Quantity(here[name], u[name], BY_NAME[name].unit) for name in names}
-    return Vertical(found, known[GROWTH], rms)
+    return Vertical(found, known[GROWTH], rms, covariance, rolling)
 
 
-def _rolling(points: Points) -> _Rolling | None:
+def _standard(covariance: tuple[tuple[str, ...], np.ndarray]) -> dict[str, float]:
+    """Standard uncertainty by name."""
+    names, matrix = covariance
+    return dict(zip(names, np.sqrt(np.diag(matrix)).tolist(), strict=True))
+
+
+def _rolling(points: Points) -> RollingParts | None:
     """The parts of sweeps at which the wheel rolls freely straight on; None without radius or wheel speed."""
     used = points.free_rolling & (points.direction > 0) & (points.phi_t == 0.0)
     used &= np.abs(points.alpha) < constants.COUPLED_ALPHA.rad
@@ -123,10 +149,10 @@ def _rolling(points: Points) -> _Rolling | None:
     def mean(x: np.ndarray) -> np.ndarray:
         return np.array([float(np.mean(x[group == k])) for k in np.unique(group)])
 
-    return _Rolling(*map(mean, (part.Fz, part.gamma, part.p, part.V, part.RL, effective)))
+    return RollingParts(*map(mean, (part.Fz, part.gamma, part.p, part.V, part.RL, effective)))
 
 
-def _stiffness(rolling: _Rolling) -> float:
+def _stiffness(rolling: RollingParts) -> float:
     """Load over loaded radius [N/m], the slope of a line."""
     known = np.isfinite(rolling.loaded)
     slope = float(np.polyfit(rolling.Fz[known], rolling.loaded[known], 1)[0])
@@ -136,12 +162,12 @@ def _stiffness(rolling: _Rolling) -> float:
 def _fitted(
     names: Sequence[str],
     values: Mapping[str, Any],
-    rolling: _Rolling,
-    measured: np.ndarray,
+    rolling: RollingParts,
+    channel: str,
     dpi: np.ndarray,
-    radius: Radius,
-) -> tuple[dict[str, float], dict[str, float], float]:
-    """Best values, their standard uncertainties from the misfit, and its rms [m]."""
+) -> tuple[dict[str, float], tuple[tuple[str, ...], np.ndarray], float]:
+    """Best values, names and covariance from the misfit, and its rms [m]."""
+    measured = rolling.radius(channel)
     known = np.isfinite(measured)
     unit = float(np.ptp(measured[known])) or 1e-3
     stiffness, free_radius = float(values["VERTICAL_STIFFNESS"]), float(values["UNLOADED_RADIUS"])
@@ -156,7 +182,7 @@ def _fitted(
     def linear(x: np.ndarray) -> Linear:
         free = traced(dict(zip(names, x.tolist(), strict=True)))
         every = {**values, **free}
-        found = radius(SimpleNamespace(**every))
+        found = radius(every, rolling, channel)
         found = found + free_radius * (every[GROWTH] * dpi + every[LEAN] * rolling.gamma**2)
         shape = (len(measured), len(names))
         data = (np.broadcast_to(plain(found), len(measured)) - measured) / unit
@@ -170,8 +196,8 @@ def _fitted(
     end = solve(LeastSquaresProblem(residual, linear), numbers, tolerance=1e-9)
     freedom = max(int(known.sum()) - len(names), 1)
     scale = float(end.data @ end.data) / freedom
-    u = np.sqrt(np.diag(end.covariance) * scale).tolist() if names else []
-    return dict(end.values), dict(zip(names, u, strict=True)), unit * math.sqrt(float(np.mean(end.data**2)))
+    covariance = end.covariance * scale if names else np.zeros((0, 0))
+    return dict(end.values), (tuple(names), covariance), unit * math.sqrt(float(np.mean(end.data**2)))
 
 
 def vertical_sentence(found: Vertical) -> str:

@@ -15,7 +15,7 @@ from mffit.quantities import CHANNELS, CONDITIONS, DIRECT
 from mffit.report import left_undrawn, page, published
 from mffit.report.build_view import PER_LOAD, STATUS_ORDER, BuildView, ChannelRow, CoefficientRow, view_of
 from mffit.report.drawing.records import Sheet
-from mffit.report.figures import bands, decomposition, files, fit, residuals, slip, spin, structure
+from mffit.report.figures import bands, decomposition, files, fit, radii, residuals, slip, spin, structure
 from mffit.results import BuildResult
 from mffit.rig_errors import MEANINGS, UNITS
 
@@ -90,12 +90,16 @@ def _figures(view: BuildView) -> dict[str, Callable[[], Sheet]]:
         out["friction_ellipse"] = partial(slip.friction_ellipse, view)
         out["weights"] = partial(slip.weights, view)
         out["trail"] = partial(slip.trail, view)
+    if view.radii.rms:
+        out["radii"] = partial(radii.radii, view)
     if view.files is not None:
         out["bands"] = partial(bands.bands, view)
     scaled = [(c.symbol, (c.measured - c.model) / _scale(view, c)) for c in view.channels]
-    out["residuals"] = partial(
-        residuals.residual_maps, view.points, scaled, view.conditions, residual_unit(view)
-    )
+    rolling, driven = (which(view.points, view.conditions) for which in (residuals.rolling, residuals.driven))
+    maps = partial(residuals.residual_maps, view.points, scaled)
+    out["residuals"] = partial(maps, rolling, residual_unit(view))
+    if driven:
+        out["residuals_slip"] = partial(maps, driven, residual_unit(view), over=residuals.SLIPS)
     if any(c.bins for c in view.remains.structure.comparisons):
         out["structure"] = partial(structure.residual_means, view.remains.structure)
     return out

@@ -15,6 +15,7 @@ from mffit.fit.between_runs import BetweenRuns
 from mffit.fit.coverage import StageCoverage
 from mffit.fit.files import Files
 from mffit.fit.temperature import AtTemperature
+from mffit.fit.vertical import Vertical
 from mffit.made import Made
 from mffit.measured import Measured
 from mffit.points import Points
@@ -93,7 +94,9 @@ class BuildView:
 
     config: Config
     points: Points  #: angles as read
-    felt: Points  #: as the tyre felt them, less the errors of the rig, where slip was run; else the same points
+    felt: (
+        Points  #: as the tyre felt them, less the errors of the rig, where slip was run; else the same points
+    )
     channels: tuple[ChannelRow, ...]
     curves: tuple[Curve, ...]
     lines: Mapping[tuple, CurveLine]
@@ -128,6 +131,8 @@ class BuildView:
     )
     temperature: AtTemperature | None  #: the fit with temperature terms, if there is one
     runs: BetweenRuns | None  #: what every run has of its own, if that is modelled
+    radii: Vertical  #: loaded radius and wheel speed of the rolling wheel
+    radii_agreement: Mapping[str, Agreement]  #: of the file's radii, as far as they were fitted [m]
 
     def marked(self, channel: str) -> tuple[np.ndarray, np.ndarray]:
         """Rows of the channel's readings without weight, and of the points of doubtful sweeps."""
@@ -196,6 +201,8 @@ def view_of(result: BuildResult) -> BuildView:
         bands_note=fit.bands_note,
         temperature=fit.temperature,
         runs=fit.runs,
+        radii=fit.radii,
+        radii_agreement=fit.radii.agreement(fit.tyre.values),
     )
 
 

@@ -48,7 +48,9 @@ NEAR_ZERO_SIDESLIP = Real(1.6, "deg", "End of the sideslip axis in the picture o
 MOST_BUDGET_BARS = Count(8, "-", "Sources of uncertainty drawn at most; smaller ones are in the table.")
 LONGEST_NAME_AT_AXIS = Count(18, "-", "Characters of a tyre's name beside a panel; longer names are cut.")
 HELD_SLIP_SHARES = Series(
-    (0.0, 0.15, 0.5), "-", "Longitudinal slips of the curves of trail, as shares of the tested slip: none, small, large."
+    (0.0, 0.15, 0.5),
+    "-",
+    "Longitudinal slips of the curves of trail, as shares of the tested slip: none, small, large.",
 )
 LEAST_PURE_FORCE = Real(
     0.25, "-", "Least force of pure slip over its peak for which readings show a weight of combined slip."
@@ -61,12 +63,21 @@ HELD_SIDESLIP_SHARES = Series(
 )
 
 MOST_MAPS_PER_CHANNEL = Count(
-    30, "-", "Most conditions with a residual map: more than most campaigns have; those with the most points are shown."
+    30,
+    "-",
+    "Most conditions with a residual map: more than most campaigns have; those with the most points are shown.",
 )
 MOST_MAPS_OF_BUILD = Count(
     60,
     "-",
     "Most residual maps per channel in the report of a build, in rows of six. The caption says what is left out.",
+)
+MAPS_PER_ROW = Count(
+    6, "-", "Residual maps beside each other; more would be narrower than their axis labels."
+)
+SLIP_SHOWN_APART = Real(0.1, "-", "Slips that differ by a tenth of this lie beside each other in a map.")
+SHARE_OF_ROOM = Real(
+    0.9, "-", "Share of the room to the end of a map's axis that points at one place fill at most."
 )
 RESIDUAL_SCALE = Real(4.0, "-", "End of the colour scale of residual maps, in units of noise.")
 SMALLEST_GAP_SCALE = Real(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Iterable
 
 from mffit.quantities import CHANNELS, CONDITIONS, DIRECT, MODEL
 from mffit.report import constants
@@ -37,3 +38,8 @@ def held_unless_zero(curve: Curve) -> str:
 def typeset(text: str) -> str:
     """A sentence's channels with the subscripts that a picture shows."""
     return re.sub(rf"\b({'|'.join(CHANNELS)})\b", lambda m: CHANNELS[m[0]].mathtext, text)
+
+
+def places_of(angles: Iterable[float]) -> int:
+    """Decimals with which angles [deg] are written: none if all are whole."""
+    return 0 if all(abs(x - round(x)) < constants.WHOLE_DEGREES for x in angles) else 1

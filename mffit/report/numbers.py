@@ -47,10 +47,10 @@ def _rows(panel: Panel, series: DataSeries) -> Iterator[tuple[str, ...]]:
     rows = list(series.rows())
     every = -(-len(rows) // constants.POINTS_PER_SERIES_IN_PAGE)
     name = f"{series.name}, every {every}th" if every > 1 else series.name
+    title, name, x_label, y_label = map(plain, (panel.title, name, panel.x.label, panel.y.label))
     for row in itertools.islice(rows, None, None, max(every, 1)):
-        y = _word(panel.y, row.y) or _cell(row.y)
-        texts = (panel.title, name, panel.x.label, _cell(row.x), panel.y.label, y)
-        yield (*map(plain, texts), *map(_cell, (row.lower, row.upper, row.value)))
+        y = plain(_word(panel.y, row.y)) or _cell(row.y)
+        yield title, name, x_label, _cell(row.x), y_label, y, *map(_cell, (row.lower, row.upper, row.value))
 
 
 def _word(axis: Axis, y: float) -> str:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from typing import Any
 
@@ -13,13 +13,16 @@ from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
-from matplotlib.patches import Rectangle
+from matplotlib.patches import PathPatch, Rectangle
+from matplotlib.path import Path
+from matplotlib.transforms import Transform
 
 from mffit.report import constants, style
 from mffit.report.drawing.content import INCH, SPAN, brush, in_points, marks, pen, show
 from mffit.report.drawing.records import Axis, ColourScale, Look, Panel, Sheet
 from mffit.report.drawing.texts import shortened, width_of
 from mffit.report.drawing.ticks import limits, numbers_at
+from mffit.report.drawing.words import Words
 
 GAP = 10.0
 """Between panels side by side [pt]."""
@@ -29,6 +32,12 @@ TOP, RIGHT = 17.0, 10.0
 """Margins of a data area [pt]."""
 SPACE, LINE = 4.0, 11.0
 """Between letters and what they belong to, and height of a line of text [pt]."""
+CAPITAL = 0.73
+"""Height of capitals and digits over the size of the letters."""
+ABOVE = 6.0
+"""From the data area to the title [pt]."""
+GRID = 0.5
+"""Order of drawing of the grid: below everything else."""
 SETTINGS: dict[str, Any] = {
     "figure.dpi": float(constants.PICTURE_DPI),
     "font.family": "DejaVu Sans",  # comes with matplotlib, so that pictures are the same on every machine
@@ -37,30 +46,9 @@ SETTINGS: dict[str, Any] = {
     "text.hinting": "no_hinting",
     "mathtext.default": "regular",
     "svg.fonttype": "none",
-    "axes.axisbelow": True,
-    "axes.facecolor": "none",
-    "axes.edgecolor": style.FAINT,
-    "axes.linewidth": 0.8,
-    "axes.spines.right": False,
-    "axes.spines.top": False,
-    "axes.labelcolor": style.INK,
-    "axes.labelsize": LABEL,
-    "axes.titlecolor": style.INK,
-    "axes.titlelocation": "left",
-    "axes.titlesize": TITLE,
-    "grid.color": style.GRID,
-    "grid.linewidth": 0.7,
     "lines.dashed_pattern": (4.4, 2.2),
     "lines.dotted_pattern": (1.2, 1.9),
     "lines.scale_dashes": False,
-    "xtick.bottom": False,
-    "xtick.labelcolor": style.MUTED,
-    "xtick.major.pad": SPACE,
-    "xtick.major.size": 0.0,
-    "ytick.left": False,
-    "ytick.labelcolor": style.MUTED,
-    "ytick.major.pad": SPACE,
-    "ytick.major.size": 0.0,
 }
 
 
@@ -87,7 +75,7 @@ def panels(sheet: Sheet) -> Iterator[Figure]:
     figure = Figure()
     FigureCanvasAgg(figure)
     axes = figure.add_axes((0.0, 0.0, 1.0, 1.0))
-    axes.spines[:].set_zorder(SPAN)
+    axes.set_axis_off()
     for panel, left in zip(sheet.panels, lefts, strict=True):
         _arrange(figure, axes, panel, width, height, max(numbered) if panel.y.words is None else left)
         show(axes, in_points(figure), panel)
@@ -126,37 +114,94 @@ def _beside(panel: Panel, height: float) -> float:
 def _arrange(figure: Figure, axes: Axes, panel: Panel, width: float, height: float, left: float) -> None:
     """Sizes, scales, numbers and labels of a panel whose data area of this height begins at ``left`` [pt]."""
     inside = width - left - RIGHT
-    label = panel.x.label if panel.x.numbered else ""
-    bottom = SPACE + (LINE if panel.x.numbered else 0.0) + (LINE if label else 0.0)
+    labelled = panel.x.numbered and panel.x.label != ""
+    bottom = SPACE + (LINE if panel.x.numbered else 0.0) + (LINE if labelled else 0.0)
     total = bottom + height + TOP
     figure.set_size_inches(width / INCH, total / INCH)
     axes.set_position((left / width, bottom / total, inside / width, height / total))
-    x, y = panel.x, panel.y
-    for axis, record, numbers in (
-        (axes.xaxis, x, _x_numbers(panel, inside)),
-        (axes.yaxis, y, _y_numbers(panel, height)),
-    ):
-        name = axis.axis_name
-        axes.set(**{f"{name}scale": "log" if record.logarithmic else "linear"})
-        axis.set_ticks([*numbers], [*numbers.values()] if record.numbered else [""] * len(numbers))
+    for name in ("x", "y"):
+        scale = "log" if getattr(panel, name).logarithmic else "linear"
+        if getattr(axes, f"get_{name}scale")() != scale:
+            axes.set(**{f"{name}scale": scale})
         axes.set(**{f"{name}lim": _ends(panel, name)})
-    axes.minorticks_off()
-    axes.xaxis.grid(True)
-    axes.yaxis.grid(y.words is None)
-    for text in axes.get_yticklabels():
-        stressed = y.bold != "" and text.get_text() == y.bold
-        text.set_color(style.ACCENT if stressed else style.MUTED)
-        text.set_fontweight("bold" if stressed else "normal")
+    _draw_axes(axes, panel, (left, bottom), (inside, height), width)
+
+
+def _draw_axes(
+    axes: Axes, panel: Panel, corner: tuple[float, float], size: tuple[float, float], width: float
+) -> None:
+    """Grid, axes, numbers and labels of a data area with this lower left corner and size [pt].
+
+    They are plain lines and texts: axes of matplotlib lay out their numbers anew whenever they are drawn.
+    """
+    (left, bottom), (inside, height) = corner, size
+    right, top = left + inside, bottom + height
+    points = in_points(axes.get_figure())  # type: ignore[arg-type]
+    label = panel.x.label if panel.x.numbered else ""
+    across, up = _x_numbers(panel, inside), _y_numbers(panel, height)
+    places_x = _on_axis(axes, "x", across) * inside + left
+    places_y = _on_axis(axes, "y", up) * height + bottom
+    grid = [((x, bottom), (x, top)) for x in places_x]
+    grid += [((left, y), (right, y)) for y in places_y if panel.y.words is None]
+    axes.add_artist(_strokes(grid, points, style.GRID, 0.7, GRID))
+    edges = [((left, bottom), (left, top)), ((left, bottom), (right, bottom))]
+    axes.add_artist(_strokes(edges, points, style.FAINT, 0.8, SPAN))
+
+    def write(x: float, y: float, text: str, size: float, colour: str, **look: Any) -> None:
+        axes.add_artist(Words(x, y, text, size=size, colour=colour, transform=points, **look))
+
+    if panel.x.numbered:
+        below = bottom - SPACE
+        for x, text in zip(places_x, across.values(), strict=True):
+            write(x, below - CAPITAL * NUMBER, text, NUMBER, style.MUTED, align="center")
+    if panel.y.numbered:
+        for y, text in zip(places_y, up.values(), strict=True):
+            stressed = panel.y.bold != "" and text == panel.y.bold
+            colour = style.ACCENT if stressed else style.MUTED
+            middle = y - 0.5 * CAPITAL * NUMBER
+            write(left - SPACE, middle, text, NUMBER, colour, align="right", bold=stressed)
     title = shortened(panel.title, width - 1.0, TITLE)
-    axes.set_title(
-        title, x=(max(0.0, min(left, width - 1.0 - width_of(title, TITLE))) - left) / inside, y=1.0
+    if title:
+        begin = max(0.0, min(left, width - 1.0 - width_of(title, TITLE)))
+        write(begin, top + ABOVE, title, TITLE, style.INK)
+    if label:
+        half = 0.5 * width_of(label, LABEL)
+        middle = min(max(left + 0.5 * inside, half), width - half)
+        write(middle, SPACE, label, LABEL, style.INK, align="center")
+    if panel.y.label:
+        middle = bottom + 0.5 * height
+        write(LABEL, middle, panel.y.label, LABEL, style.INK, align="center", turned=True)
+
+
+def _on_axis(axes: Axes, name: str, numbers: Mapping[float, str]) -> np.ndarray:
+    """Places of numbers along an axis, 0 to 1."""
+    low, high = getattr(axes, f"get_{name}lim")()
+    places = np.array([*numbers], dtype=float)
+    if getattr(axes, f"get_{name}scale")() == "log":
+        low, high, places = np.log(low), np.log(high), np.log(places)
+    shares: np.ndarray = (places - low) / (high - low)
+    return shares
+
+
+def _strokes(
+    lines: Sequence[tuple[tuple[float, float], tuple[float, float]]],
+    points: Transform,
+    colour: str,
+    width: float,
+    order: float,
+) -> PathPatch:
+    """Straight lines between places [pt] as a single path."""
+    path = Path(np.reshape(lines, (-1, 2)), [Path.MOVETO, Path.LINETO] * len(lines))
+    return PathPatch(
+        path,
+        fill=False,
+        edgecolor=colour,
+        linewidth=width,
+        capstyle="butt",
+        transform=points,
+        clip_on=False,
+        zorder=order,
     )
-    half = 0.5 * width_of(label, LABEL)
-    middle = min(max(left + 0.5 * inside, half), width - half)
-    axes.set_xlabel(label, va="baseline")
-    axes.set_ylabel(y.label, va="baseline")
-    axes.xaxis.set_label_coords(middle, SPACE, in_points(figure))
-    axes.yaxis.set_label_coords(LABEL, bottom + 0.5 * height, in_points(figure))
 
 
 def key(sheet: Sheet) -> Iterator[Figure]:
@@ -178,7 +223,8 @@ def _entry(label: str, look: Look) -> Figure:
         figure.add_artist(Line2D([0.0, sample], [middle, middle], transform=points, **pen(look)))
     if look.marker:
         figure.add_artist(marks(points, np.array([[0.5 * sample, middle]]), look))
-    figure.text(sample + 5.0, middle - 0.36 * LABEL, label, size=LABEL, color=style.INK, transform=points)
+    down = middle - 0.36 * LABEL
+    figure.add_artist(Words(sample + 5.0, down, label, size=LABEL, colour=style.INK, transform=points))
     return figure
 
 
@@ -193,8 +239,11 @@ def _colour_scale(scale: ColourScale) -> Figure:
         figure.add_artist(Rectangle(corner, width / count + 0.3, high, transform=points, **shade))
     for value, text in numbers_at(Axis(), -scale.limit, scale.limit, 8).items():
         at = begin + width * (0.5 + 0.5 * value / scale.limit)
-        figure.text(at, 2.0, text, color=style.MUTED, ha="center", transform=points)
-    figure.text(begin + width + 8.0, 12.0, scale.label, size=LABEL, color=style.INK, transform=points)
+        figure.add_artist(
+            Words(at, 2.0, text, size=NUMBER, colour=style.MUTED, transform=points, align="center")
+        )
+    behind = begin + width + 8.0
+    figure.add_artist(Words(behind, 12.0, scale.label, size=LABEL, colour=style.INK, transform=points))
     return figure
 
 

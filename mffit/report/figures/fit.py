@@ -127,7 +127,7 @@ def _key(view: Overlaid, channel: ChannelRow, colours: Mapping[float, str]) -> d
     if any(not c.forward for c in view.curves):
         key["backward"] = replace(BACKWARD, line="--", width=1.0)
     key |= mark_key(view, channel)
-    places = 0 if all(abs(camber - round(camber)) < constants.WHOLE_DEGREES for camber in colours) else 1
+    places = labels.places_of(colours)
     symbol = labels.ANGLES["gamma"].symbol
     if len(colours) > 1:
         for camber, colour in colours.items():

@@ -26,7 +26,7 @@ from mffit.report.drawing.records import (
     Trace,
     in_rows,
 )
-from mffit.report.figures.residuals import most_populated, residual_map
+from mffit.report.figures.residuals import most_populated, residual_map, rolling
 from mffit.rounding import number
 
 KIND_COLOURS = {"tyre": style.ACCENT, "rig": style.CONTRAST, "environment": style.CALM}
@@ -120,7 +120,7 @@ def residuals_before_after(view: DiagnosisView) -> Sheet:
     """Maps side by side: a row per load and pressure, channels before and after, one colour scale for all."""
     limit = colour_limit(view.channels)
     rows = []
-    for condition in most_populated(view.conditions):
+    for condition in most_populated(rolling(view.points, view.conditions)):
         maps = []
         for channel in view.channels:
             frames = _frames(view.frames(channel.name), condition.load)

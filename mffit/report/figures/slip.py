@@ -33,7 +33,7 @@ from tir.equations import lateral, longitudinal, normalise
 from tir.outputs import outputs_of
 
 EDGE = Look(colour=style.INK, line="-", width=1.1)
-EDGE_NAME = "sideslip and slip together at their tested ends"
+EDGE_NAME = "limit within the tested sideslip and slip"
 ZEROS = (Guide(axis="x", at=0.0), Guide(axis="y", at=0.0))
 WEIGHTS = (
     ("Fx", "weight of sideslip G$_{xa}$ [–]", longitudinal.combined_weight),
@@ -84,8 +84,9 @@ def _colours(curves: Iterable[Curve]) -> dict[float, str]:
 
 def _sideslip_key(colours: dict[float, str]) -> dict[str, Look]:
     symbol = labels.ANGLES["alpha"].symbol
+    places = labels.places_of(colours)
     return {
-        f"{symbol} = {number(sideslip, 1)}°": Look(colour=colour, line="-", width=3.0)
+        f"{symbol} = {number(sideslip, places)}°": Look(colour=colour, line="-", width=3.0)
         for sideslip, colour in colours.items()
     }
 
@@ -93,9 +94,7 @@ def _sideslip_key(colours: dict[float, str]) -> dict[str, Look]:
 def main_slip_curves(view: BuildView) -> dict[float, list[Curve]]:
     """By load, the forward curves over slip of the upright wheel at the pressure nearest to the nominal one."""
     upright = [
-        c
-        for c in slip_curves(view.curves)
-        if c.forward and abs(c.camber) < constants.UPRIGHT_ENOUGH_TO_DRAW
+        c for c in slip_curves(view.curves) if c.forward and abs(c.camber) < constants.UPRIGHT_ENOUGH_TO_DRAW
     ]
     nominal = view.config.tyre.nominal_pressure
     nearest = min((c.pressure for c in upright), key=lambda p: abs(p - nominal), default=0.0)
@@ -138,7 +137,7 @@ def _ellipse(view: BuildView, load: float, members: Sequence[Curve], colours: di
         series += _path(view, curve, slip, np.full_like(slip, alpha), f"model, {name}", look)
         dots = Look(colour=colours[curve.held], marker=".", size=1.6)
         series.append(Trace(name=f"measured, {name}", x=Fy[curve.index], y=Fx[curve.index], look=dots))
-    series += _path(view, members[0], *edge(view), EDGE_NAME, EDGE)
+    series += _limit(view, members[0])
     largest = max(float(np.nanmax(np.abs(part))) for s in series for part in s.extent())
     end = (1.0 + constants.AXIS_ROOM) * largest
     return Panel(
@@ -150,30 +149,54 @@ def _ellipse(view: BuildView, load: float, members: Sequence[Curve], colours: di
     )
 
 
-def edge(view: BuildView) -> tuple[np.ndarray, np.ndarray]:
-    """Slip and sideslip [rad] (m,) once around: the ends of the tested ranges in every direction."""
-    turn = np.linspace(0.0, 2.0 * np.pi, 4 * (constants.STEPS_OF_FILE_CURVE // 4) + 1)
-    low, high = slip_range(view)
-    slip = np.where(np.sin(turn) > 0.0, high, -low) * np.sin(turn)
-    return slip, float(np.max(np.abs(view.points.alpha))) * np.cos(turn)
+def friction_limit(view: BuildView, curve: Curve) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Slip, sideslip [rad] (m,) and direction (m, 2) of the largest force of the model in every direction, once around."""
+    steps = int(constants.STEPS_OF_FILE_CURVE)
+    reach = float(np.max(np.abs(view.points.alpha)))
+    kappa, alpha = (
+        grid.ravel()
+        for grid in np.meshgrid(np.linspace(*slip_range(view), steps), np.linspace(-reach, reach, steps))
+    )
+    force = np.column_stack(_forces(view, _inputs(view, curve, kappa=kappa, alpha=alpha)))
+    turn = np.linspace(0.0, 2.0 * np.pi, 4 * (steps // 2) + 1)
+    # Directions are of forces over their peaks, so that the sides of a flat ellipse are seen as well as its ends.
+    way = np.column_stack([np.cos(turn), np.sin(turn)]) / np.max(np.abs(force), axis=0)
+    way /= np.hypot(*way.T)[:, None]
+    best = np.argmax(force @ way.T, axis=0)
+    return kappa[best], alpha[best], way
+
+
+def _forces(view: BuildView, where: dict[str, Any]) -> list[Any]:
+    tyre = SimpleNamespace(**view.model.values)
+    return outputs_of(("Fx", "Fy"), tyre, where, turn_slip=view.on_disc)
+
+
+def _limit(view: BuildView, curve: Curve) -> list[Ribbon | Trace]:
+    """The friction limit with its band, outwards and inwards."""
+    kappa, alpha, way = friction_limit(view, curve)
+    return _path(view, curve, kappa, alpha, EDGE_NAME, EDGE, way)
 
 
 def _path(
-    view: BuildView, curve: Curve, kappa: np.ndarray, alpha: np.ndarray, name: str, look: Look
+    view: BuildView,
+    curve: Curve,
+    kappa: np.ndarray,
+    alpha: np.ndarray,
+    name: str,
+    look: Look,
+    across: np.ndarray | None = None,
 ) -> list[Ribbon | Trace]:
-    """Fx over Fy along slips (m,) with the band across the path."""
+    """Fx over Fy along slips (m,) with the band across the path, or in the directions (m, 2) ``across`` of Fx and Fy."""
     where = _inputs(view, curve, kappa=kappa, alpha=alpha)
 
-    def forces(p: Any) -> list[Any]:
-        return outputs_of(("Fx", "Fy"), p, where, turn_slip=view.on_disc)
-
-    Fx, Fy = forces(SimpleNamespace(**view.model.values))
-    along = np.gradient(Fx), np.gradient(Fy)
-    size = np.maximum(np.hypot(*along), 1e-9)
-    across_x, across_y = -along[1] / size, along[0] / size
+    Fx, Fy = _forces(view, where)
+    if across is None:
+        along = np.gradient(Fx), np.gradient(Fy)
+        across = np.column_stack([-along[1], along[0]]) / np.maximum(np.hypot(*along), 1e-9)[:, None]
+    across_x, across_y = across.T
 
     def moved_across(p: Any) -> list[Any]:
-        F = forces(p)
+        F = outputs_of(("Fx", "Fy"), p, where, turn_slip=view.on_disc)
         return [across_x * F[0] + across_y * F[1]]
 
     (band,) = several_with_band(view.model.values, view.posterior, moved_across)
@@ -236,9 +259,7 @@ def _weight(
     at = _weights_at(view, curve, read, view.felt.alpha[curve.index], weight).line
     tyre = SimpleNamespace(**view.model.values)
     model, pure = (
-        outputs_of(
-            (channel,), tyre, _inputs(view, curve, kappa=k, alpha=a), turn_slip=view.on_disc
-        )[0]
+        outputs_of((channel,), tyre, _inputs(view, curve, kappa=k, alpha=a), turn_slip=view.on_disc)[0]
         for k, a in (
             (read, view.felt.alpha[curve.index]),
             ((read, 0.0 * read) if channel == "Fx" else (0.0 * read, view.felt.alpha[curve.index])),
@@ -277,7 +298,10 @@ def trail(view: BuildView) -> Sheet:
     colours = dict(zip(slips, style.ramp(range(len(slips))).values(), strict=True))
     reach = float(np.max(np.abs(view.points.alpha)))
     x = np.linspace(-reach, reach, constants.STEPS_OF_FILE_CURVE)
-    quantities = (("trail", MODEL["trail"].axis, 1e3), ("residual_torque", "residual moment M$_{zr}$ [Nm]", 1.0))
+    quantities = (
+        ("trail", MODEL["trail"].axis, 1e3),
+        ("residual_torque", "residual moment M$_{zr}$ [Nm]", 1.0),
+    )
     rows: list[list[Panel]] = [[] for _ in quantities]
     for load, members in sorted(main_slip_curves(view).items()):
         series: list[list[Band | Trace]] = [[] for _ in quantities]

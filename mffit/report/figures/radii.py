@@ -1,0 +1,66 @@
+"""Loaded radius and rolling radius of the file over load at each pressure, with the readings that they were fitted to."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from mffit.fit import Posterior
+from mffit.fit.vertical import RollingParts, radius
+from mffit.points import levels
+from mffit.quantities import CHANNELS, CONDITIONS
+from mffit.report import constants, labels, style
+from mffit.report.build_view import BuildView
+from mffit.report.drawing.records import Axis, Band, Look, Panel, Sheet, Trace
+from mffit.report.with_band import with_band
+
+MILLIMETRES = 1e3
+WORDS = {
+    "RL": f"{CHANNELS['RL'].word} {CHANNELS['RL'].mathtext} [mm]",
+    "omega": "rolling radius R$_{e}$ [mm]",
+}
+"""What is drawn for each channel."""
+READ = Look(colour=style.MUTED, marker="o", size=3.2)
+LINE = Look(colour=style.MUTED, line="-", width=1.0)
+
+
+def radii(view: BuildView) -> Sheet:
+    """A panel per radius that was fitted."""
+    rolling = view.radii.rolling
+    assert rolling is not None
+    pressure = np.round(levels.level_values(rolling.p, levels.PRESSURE), -3)
+    colours = style.ramp(np.unique(pressure).tolist())
+    panels = [_panel(view, rolling, channel, pressure, colours) for channel in view.radii.rms]
+    key = {"measured": READ, "file": LINE}
+    key |= {CONDITIONS["p_kPa"].of(p / 1e3): Look(colour=c, line="-", width=3.0) for p, c in colours.items()}
+    return Sheet(rows=[panels], height=2.1, key=key)
+
+
+def _panel(
+    view: BuildView, rolling: RollingParts, channel: str, pressure: np.ndarray, colours: dict[float, str]
+) -> Panel:
+    names, covariance = view.radii.covariance[channel]
+    series: list[Band | Trace] = []
+    read, steps = rolling.radius(channel), constants.STEPS_OF_MODEL_LINE
+    speed = float(np.median(rolling.V))
+    for p, colour in colours.items():
+        rows = (pressure == p) & np.isfinite(read)
+        if not rows.any():
+            continue
+        load = np.linspace(rolling.Fz[rows].min(), rolling.Fz[rows].max(), steps)
+        at = replace(rolling, Fz=load, p=np.full(steps, p), V=np.full(steps, speed))
+
+        def of(tyre: Any, at: RollingParts = at) -> Any:
+            return radius(vars(tyre), at, channel)
+
+        line, half = with_band(view.model.values, Posterior(names, covariance), of)
+        name, mm = CONDITIONS["p_kPa"].of(p / 1e3), MILLIMETRES
+        shade = Look(colour=colour, opacity=0.25)
+        series += [
+            Band(name=name, x=load, low=mm * (line - half), high=mm * (line + half), look=shade),
+            Trace(name=f"file, {name}", x=load, y=mm * line, look=Look(colour=colour, line="-", width=1.0)),
+            Trace(name=f"measured, {name}", x=rolling.Fz[rows], y=mm * read[rows], look=replace(READ, colour=colour)),
+        ]  # fmt: skip
+    return Panel(title=WORDS[channel], x=Axis(label=labels.LOAD.axis), y=Axis(label="mm"), series=series)
