@@ -250,6 +250,11 @@ function showProject(data) {
   showChosen();
   const fit = channels.map(name => `${name} ${written(project.channels.find(one => one.name === name).rmse)} ${quantity(name).unit}`).join(", ");
   byId("about").textContent = `${project.points.fitted} points, rms misfit ${fit}${project.trusted ? "" : "; the result is not to be trusted"}`;
+  const said = project.warnings, box = byId("warnings");
+  box.hidden = !said.length;
+  box.open = !project.trusted;
+  box.querySelector("summary").textContent = `${said.length === 1 ? "1 warning" : `${said.length} warnings`} of the build`;
+  box.querySelector("ul").replaceChildren(...said.map(sentence => element("li", "", sentence)));
   frame();
 }
 let wanted = [];

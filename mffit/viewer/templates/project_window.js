@@ -123,14 +123,16 @@ function showStatus() {
 function showLinks() {
   const parts = [];
   for (const page of live.pages) {
+    const part = document.createElement("span");
     if (page.href) {
       const link = Object.assign(document.createElement("a"), {href: page.href, target: "_blank", textContent: page.title});
       if (page.old) link.append(" (older than tyre.toml)");
-      parts.push(link);
+      part.append(link);
     }
     const make = key(page.href ? "again" : `Make: ${page.title.toLowerCase()}`, `as mffit ${page.run} on the command line, into out/`, () => post(`run/${page.run}`));
     make.disabled = ended || !!live.run;
-    parts.push(make, " ");
+    part.append(make);
+    parts.push(part);
   }
   byId("links").replaceChildren(...parts);
 }

@@ -175,6 +175,7 @@ def test_hostile_names_do_no_harm(page, result, tmp_path):
     path.write_text(html, encoding="utf-8")
     page.get(path.as_uri())
     ask(page, "mffit.choose(2, false)")
+    assert page.find_element("css selector", "#warnings li").get_attribute("textContent") == HOSTILE
     assert HOSTILE in page.find_element("id", "chosen-title").text
     assert ask(page, "window.hacked") is None
 
