@@ -12,6 +12,7 @@ import numpy as np
 from mffit.diagnosis import wording as of_residuals
 from mffit.measured import constants, setup_notes, wording
 from mffit.quantities import CHANNELS, CONDITIONS, DIRECT
+from mffit.report import constants as report_constants
 from mffit.report import page, published
 from mffit.report.build_view import PER_LOAD, STATUS_ORDER, BuildView, ChannelRow, CoefficientRow, view_of
 from mffit.report.drawing.records import Sheet
@@ -62,6 +63,7 @@ def write_build(result: BuildResult, folder: Path) -> None:
         radians=math.radians(1.0),
         meanings=MEANINGS,
         units=UNITS,
+        least_pure=report_constants.LEAST_PURE_FORCE,
     )
 
 
