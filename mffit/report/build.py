@@ -82,7 +82,7 @@ def _figures(view: BuildView) -> dict[str, Callable[[], Sheet]]:
         if decomposition.pure_curves(view):
             out["even_parts"] = partial(decomposition.even_parts, view)
     for channel in view.channels:
-        if view.curves:
+        if any(curve.over != "kappa" for curve in view.curves):
             out[f"fit_{channel.name}"] = partial(fit.model_against_points, view, channel)
     if slip.slip_curves(view.curves):
         for channel in view.channels:
