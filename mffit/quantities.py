@@ -120,6 +120,8 @@ CHARACTERISTICS = {
     "C_gamma_N_per_rad": DIRECT["C_gamma"],
     "C_Mz_alpha_Nm_per_rad": QuantityName("aligning stiffness", "C_Mα", "Nm/rad"),
     "C_phit_Nm": DIRECT["C_phit"],
+    "K_xk_N": QuantityName("slip stiffness", "K_xκ", "N"),
+    "mu_x": QuantityName("peak of longitudinal force over load", "μ_x", "-"),
     "mu_y": QuantityName("peak of side force over load", "μ_y", "-"),
     "Mz_peak_Nm": QuantityName("peak of self-aligning moment", "M_zmax", "Nm"),
     "trail_m": QuantityName("pneumatic trail at zero slip", "t_0", "m"),
@@ -138,6 +140,8 @@ MODEL = {
     "K_ya": DIRECT["C_alpha"]._replace(symbol="K_yα"),
     "K_yg0": DIRECT["C_gamma"]._replace(symbol="K_yγ0"),
     "trail": QuantityName("pneumatic trail", "t", "mm"),
+    "K_xk": CHARACTERISTICS["K_xk_N"],
+    "Re": DIRECT["r_e"]._replace(symbol="R_e"),
     "sigma_y": QuantityName("lateral relaxation length", "σ_y", "m"),
 }
 """Inputs and outputs of the tyre model, by their names in tir; shown in these units, computed in SI."""

@@ -8,12 +8,19 @@ from typing import Any
 
 import numpy as np
 
+from mffit.comparison import constants
 from tir import Tyre
 from tir.parameters import BY_NAME
 
 
 def characteristics(
-    tyre: Tyre, load: float, *, turn_slip: bool, pressure: float | None = None, reach: float | None = None
+    tyre: Tyre,
+    load: float,
+    *,
+    turn_slip: bool,
+    pressure: float | None = None,
+    reach: float | None = None,
+    slip_reach: float | None = None,
 ) -> dict[str, float]:
     """The numbers of ``mffit.quantities.CHARACTERISTICS`` on a straight path; SI units, ISO signs.
 
@@ -24,6 +31,7 @@ def characteristics(
     turn_slip : whether the simulation computes spin; without it there is no turn-slip stiffness
     pressure : [Pa]; default the file's
     reach : sideslip up to which peaks are sought [rad]; default the file's ALPMAX
+    slip_reach : longitudinal slip up to which the peak of Fx is sought; default the file's KPUMAX, at most 0.3
     """
     p: Any = {} if pressure is None else {"p": pressure}
     slip = np.linspace(0.0, float(tyre["ALPMAX"]) if reach is None else reach, 101)
@@ -32,6 +40,8 @@ def characteristics(
     by_camber = tyre(load, gamma=angles, turn_slip=turn_slip, **p)
     curve = tyre(load, alpha=slip, turn_slip=turn_slip, **p)
     step = 2e-3
+    end = min(float(tyre["KPUMAX"]), constants.COMPARED_SLIP) if slip_reach is None else slip_reach
+    driven = tyre(load, kappa=np.linspace(0.0, end, 101), turn_slip=turn_slip, **p)
     C_alpha = float(np.diff(by_slip.Fy)[0] / step)
     C_moment = float(np.diff(by_slip.Mz)[0] / step)
     dfz = load / (float(tyre["FNOMIN"]) * float(tyre["LFZO"])) - 1.0
@@ -40,6 +50,8 @@ def characteristics(
         "C_alpha_N_per_rad": C_alpha,
         "C_gamma_N_per_rad": float(np.diff(by_camber.Fy)[0] / step),
         "C_Mz_alpha_Nm_per_rad": C_moment,
+        "K_xk_N": float(np.diff(tyre(load, kappa=angles, turn_slip=turn_slip, **p).Fx)[0] / step),
+        "mu_x": float(np.max(np.abs(driven.Fx)) / load),
         "mu_y": float(np.max(np.abs(curve.Fy)) / load),
         "Mz_peak_Nm": float(np.max(np.abs(curve.Mz))),
         "trail_m": -C_moment / C_alpha if C_alpha else float("nan"),

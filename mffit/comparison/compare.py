@@ -19,6 +19,8 @@ from mffit.rig import Readings, Simulation
 from mffit.scatter import rms
 from tir.parameters import TABLE
 
+CURVES = (("alpha", "ALPMAX", (*SIDEWAYS,)), ("gamma", "CAMMAX", (*SIDEWAYS,)), ("kappa", "KPUMAX", ("Fx",)))
+"""What is varied, the file's key of its end, and the channels whose curves are compared."""
 DIRECT_ROWS = ("epsilon_gamma", "C_phit", "C_gamma", "C_alpha", "F_phit")
 
 
@@ -39,8 +41,9 @@ def between(first: ComparedSubject, second: ComparedSubject) -> Comparison:
     nominal, pressure = float(first.tyre["FNOMIN"]), float(first.tyre["NOMPRES"])
     within = (float(np.clip(share * nominal, lower, upper)) for share in constants.COMPARED_LOADS)
     loads = list(dict.fromkeys(within))
-    reach = {key: min(float(t[key]) for t in tyres) for key in ("ALPMAX", "CAMMAX")}
-    numbers = [row for load in loads for row in _numbers(first, second, load, pressure, reach["ALPMAX"])]
+    reach = {key: min(float(t[key]) for t in tyres) for key in ("ALPMAX", "CAMMAX", "KPUMAX")}
+    reach["KPUMAX"] = min(reach["KPUMAX"], constants.COMPARED_SLIP)
+    numbers = [row for load in loads for row in _numbers(first, second, load, pressure, reach)]
     curves = [gap for load in loads for gap in _curves(first, second, load, pressure, reach)]
     return Comparison(
         first=first.name,
@@ -54,15 +57,18 @@ def between(first: ComparedSubject, second: ComparedSubject) -> Comparison:
 
 
 def _numbers(
-    first: ComparedSubject, second: ComparedSubject, load: float, pressure: float, reach: float
+    first: ComparedSubject, second: ComparedSubject, load: float, pressure: float, reach: Mapping[str, float]
 ) -> Iterator[Difference]:
-    """The numbers that both files have at a load [N] and a pressure [Pa], peaks sought up to ``reach`` [rad]."""
+    """The numbers that both files have at a load [N] and a pressure [Pa], peaks sought up to the ends ``reach``."""
+    numbers = partial(
+        characteristics, load=load, pressure=pressure, reach=reach["ALPMAX"], slip_reach=reach["KPUMAX"]
+    )
     (a, u_a), (b, u_b) = (
         with_u(
             side.tyre,
             side.names,
             side.covariance,
-            partial(characteristics, load=load, turn_slip=side.turn_slip, pressure=pressure, reach=reach),
+            partial(numbers, turn_slip=side.turn_slip),
         )
         for side in (first, second)
     )
@@ -76,13 +82,13 @@ def _numbers(
 def _curves(
     first: ComparedSubject, second: ComparedSubject, load: float, pressure: float, reach: Mapping[str, float]
 ) -> Iterator[CurveGap]:
-    """The curves of every channel over sideslip and over camber."""
-    for over, end in (("alpha", "ALPMAX"), ("gamma", "CAMMAX")):
-        x = np.linspace(-reach[end], reach[end], 61)
-        angles = (x, 0.0 * x) if over == "alpha" else (0.0 * x, x)
-        where = make_points(*angles, load, p=pressure, V=float(first.tyre["LONGVL"]), phi_t=0.0)
-        (a, half_a), (b, half_b) = (_curve(side, where) for side in (first, second))
-        for channel in SIDEWAYS:
+    """The curves of Fy and Mz over sideslip and over camber, and of Fx over longitudinal slip."""
+    for over, end, channels in CURVES:
+        x = np.linspace(-reach[end], reach[end], constants.STEPS_OF_COMPARED_CURVE)
+        alpha, gamma, kappa = (x if over == varied else 0.0 * x for varied in ("alpha", "gamma", "kappa"))
+        where = make_points(alpha, gamma, load, kappa=kappa, p=pressure, V=float(first.tyre["LONGVL"]), phi_t=0.0)
+        (a, half_a), (b, half_b) = (_curve(side, where, channels) for side in (first, second))
+        for channel in channels:
             yield CurveGap(
                 channel=channel,
                 over=over,
@@ -95,13 +101,15 @@ def _curves(
             )
 
 
-def _curve(side: ComparedSubject, where: Points) -> tuple[Readings, Readings | None]:
+def _curve(
+    side: ComparedSubject, where: Points, channels: Sequence[str]
+) -> tuple[Readings, Readings | None]:
     """Readings of a file on a perfect rig, and the half widths of their bands."""
     simulation = Simulation.of(side.tyre, turn_slip=side.turn_slip)
     band = None
     if side.covariance is not None:
-        band = Posterior(side.names, side.covariance).band(simulation, where)
-    return simulation.readings(where), band
+        band = Posterior(side.names, side.covariance).band(simulation, where, channels)
+    return simulation.readings(where, channels), band
 
 
 def _coefficients(first: ComparedSubject, second: ComparedSubject) -> tuple[Difference, ...]:

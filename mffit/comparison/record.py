@@ -77,12 +77,12 @@ def ranked(rows: list[Difference]) -> tuple[Difference, ...]:
 
 @dataclass(frozen=True, slots=True)
 class CurveGap:
-    """Two files' curves over an angle at a load, on their common range."""
+    """Two files' curves over an angle or over slip at a load, on their common range."""
 
     channel: str
-    over: str  #: "alpha" or "gamma"; the other angle is 0
+    over: str  #: "alpha", "gamma" or "kappa"; the others are 0
     load: float  #: [N]
-    x: np.ndarray  #: (m,) [rad]
+    x: np.ndarray  #: (m,) [rad], over slip [-]
     first: np.ndarray  #: (m,) [N] or [Nm]
     second: np.ndarray
     half_first: np.ndarray | None  #: half width of the 95 % band; None if unknown
@@ -94,7 +94,7 @@ class CurveGap:
 
     @property
     def largest(self) -> tuple[float, float]:
-        """The largest difference, with its sign, and its angle [rad]."""
+        """The largest difference, with its sign, and its angle [rad] or slip [-]."""
         k = int(np.argmax(np.abs(self.second - self.first)))
         return float(self.second[k] - self.first[k]), float(self.x[k])
 

@@ -33,10 +33,11 @@ def headline(found: Comparison) -> str:
                 total = math.sqrt(sum(gap.n * gap.rms**2 for gap in rows) / n)
                 parts.append(f"{total:.3g} {known.unit} rms in {channel}")
         return f"{found.first} misses {found.second} by {' and '.join(parts)}; {_significant(found)}."
-    gap = {c: max((g.rms for g in found.curves if g.channel == c), default=0.0) for c in SIDEWAYS}
+    gap = {c: max((g.rms for g in found.curves if g.channel == c), default=0.0) for c in CHANNELS}
     if not any(gap.values()):
         return f"The curves of {found.first} and {found.second} do not differ; {_significant(found)}."
-    said = " and ".join(f"{c} by up to {gap[c]:.3g} {q.unit} rms" for c, q in SIDEWAYS.items())
+    named = {c: q for c, q in CHANNELS.items() if c in SIDEWAYS or gap[c]}
+    said = " and ".join(f"{c} by up to {gap[c]:.3g} {q.unit} rms" for c, q in named.items())
     return f"The curves of {found.first} and {found.second} differ in {said}; {_significant(found)}."
 
 

@@ -12,6 +12,7 @@ import numpy as np
 from mffit.diagnosis import wording as of_residuals
 from mffit.measured import constants, setup_notes, wording
 from mffit.quantities import CHANNELS, CONDITIONS, DIRECT
+from mffit.report import constants as report_constants
 from mffit.report import left_undrawn, page, published
 from mffit.report.build_view import PER_LOAD, STATUS_ORDER, BuildView, ChannelRow, CoefficientRow, view_of
 from mffit.report.drawing.records import Sheet
@@ -63,6 +64,7 @@ def write_build(result: BuildResult, folder: Path) -> None:
         left_undrawn=left_undrawn,
         meanings=MEANINGS,
         units=UNITS,
+        least_pure=report_constants.LEAST_PURE_FORCE,
     )
 
 
@@ -81,7 +83,7 @@ def _figures(view: BuildView) -> dict[str, Callable[[], Sheet]]:
         if decomposition.pure_curves(view):
             out["even_parts"] = partial(decomposition.even_parts, view)
     for channel in view.channels:
-        if view.curves:
+        if any(curve.over != "kappa" for curve in view.curves):
             out[f"fit_{channel.name}"] = partial(fit.model_against_points, view, channel)
     if slip.slip_curves(view.curves):
         for channel in view.channels:

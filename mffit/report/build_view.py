@@ -141,6 +141,11 @@ class BuildView:
         return np.array(single, dtype=int), np.array(doubtful, dtype=int)
 
     @property
+    def beside_curves(self) -> int:
+        """Number of points that are on no curve."""
+        return len(self.points) - sum(len(curve.index) for curve in self.curves)
+
+    @property
     def on_disc(self) -> bool:
         return self.measured.epsilon_gamma is not None
 

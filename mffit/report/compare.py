@@ -17,7 +17,7 @@ from mffit.report import constants, page
 from mffit.report.build_view import ChannelRow
 from mffit.report.curves import Curve, curves
 from mffit.report.drawing.records import Sheet
-from mffit.report.figures import compared, fit
+from mffit.report.figures import compared, fit, slip
 from mffit.report.lines import CurveLine, model_lines
 
 
@@ -59,7 +59,10 @@ def _figures(found: Comparison) -> dict[str, Callable[[], Sheet]]:
         for name in measured:
             if members:
                 channel = ChannelRow.of_readings(name, found.points.channel(name), found.points.u(name))
-                out[f"fit_{name}"] = partial(fit.model_against_points, view, channel)
+                if any(curve.over != "kappa" for curve in members):
+                    out[f"fit_{name}"] = partial(fit.model_against_points, view, channel)
+                if slip.slip_curves(members):
+                    out[f"slip_{name}"] = partial(slip.over_slip, view, channel)
     if any(row.z is not None for row in found.numbers):
         out["differences"] = partial(compared.differences, found)
     return out

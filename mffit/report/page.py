@@ -27,6 +27,7 @@ class PagePicture:
     name: str  #: file stem
     drawing: str  #: its panels as HTML
     table: str  #: the numbers behind it, CSV
+    left_out: int  #: panels that are not drawn
 
     @property
     def link(self) -> str:
@@ -55,7 +56,9 @@ def draw(folder: Path, figures: Mapping[str, Callable[[], Sheet]]) -> dict[str, 
         sheet = make()
         picture = pictures.draw(sheet)
         picture.save(plots / f"{name}.png")
-        found[name] = PagePicture(name=name, drawing=picture.markup(), table=numbers.table(sheet))
+        found[name] = PagePicture(
+            name=name, drawing=picture.markup(), table=numbers.table(sheet), left_out=sheet.left_out
+        )
     return found
 
 

@@ -41,21 +41,25 @@ class ViewerPanel:
         return MODEL[self.x]
 
 
+FAN = (-12.0, -8.0, -4.0, -2.0, 2.0, 4.0, 8.0, 12.0)
+"""Sideslips [deg] of the thin lines over longitudinal slip."""
 PANELS = (
     ViewerPanel("alpha", "Fy"),
     ViewerPanel("alpha", "Mz"),
     ViewerPanel("kappa", "Fx"),
     ViewerPanel("gamma", "Fy", "camber thrust"),
-    ViewerPanel(
-        "Fx", "Fy", "friction ellipse", sweep="kappa", fan=(-12.0, -8.0, -4.0, -2.0, 2.0, 4.0, 8.0, 12.0)
-    ),
+    ViewerPanel("Fx", "Fy", "friction ellipse", sweep="kappa", fan=FAN),
+    ViewerPanel("kappa", "Fy", "side force over slip", fan=FAN),
+    ViewerPanel("kappa", "Mz", "aligning moment over slip", fan=FAN),
     ViewerPanel("alpha", "trail"),
     ViewerPanel("Fz", "K_ya", sign=-1),
     ViewerPanel("Fz", "K_yg0", sign=-1),
+    ViewerPanel("Fz", "K_xk"),
     ViewerPanel("phi_t", "Fy", "turn-slip force", turn_slip=True),
     ViewerPanel("phi_t", "Mz", "turn-slip moment", turn_slip=True),
     ViewerPanel("gamma", "Mx"),
     ViewerPanel("Fz", "sigma_y"),
+    ViewerPanel("Fz", "Re"),
     ViewerPanel("Vx", "My"),
 )
 OUTPUTS = tuple(dict.fromkeys(name for panel in PANELS for name in (panel.x, panel.y) if name not in INPUTS))

@@ -17,15 +17,15 @@ FIRST, SECOND = (
 
 
 def curves(found: Comparison, channel: str) -> Sheet:
-    """Both curves with their 95 % bands over sideslip and over camber, a panel per load."""
+    """Both curves with their 95 % bands over sideslip and camber, or over slip, a panel per load."""
     gaps = sorted((gap for gap in found.curves if gap.channel == channel), key=lambda gap: gap.load)
-    groups = [[_panel(found, gap) for gap in gaps if gap.over == over] for over in labels.ANGLES]
+    groups = [[_panel(found, gap) for gap in gaps if gap.over == over] for over in (*labels.ANGLES, "kappa")]
     rows = in_rows(*groups, columns=max(map(len, groups)))
     return Sheet(rows=rows, height=1.9, key={found.first: FIRST, found.second: SECOND})
 
 
 def _panel(found: Comparison, gap: CurveGap) -> Panel:
-    x = np.degrees(gap.x)
+    x = gap.x if gap.over == "kappa" else np.degrees(gap.x)
     series: list[Band | Trace] = []
     for name, line, half, look in (
         (found.first, gap.first, gap.half_first, FIRST),

@@ -39,6 +39,17 @@ def build_summary(result: BuildResult) -> str:
         for name, a in fit.channels.items()
         if a.n
     ]
+    rows += [
+        (
+            "RL" if name == "RL" else "R_e",
+            str(a.n),
+            f"{number(1e3 * a.rmse, digits=3)} mm",
+            "-",
+            f"{number(1e3 * a.max_abs, digits=3)} mm",
+            number(a.r2, 5),
+        )
+        for name, a in fit.radii.agreement(fit.tyre.values).items()
+    ]
     parts.append(table(("fit", "points", "rms", "of noise", "largest", "R2"), rows))
     parts += [wrapped(f"Limit: {sentence}.") for sentence in result.trust.remarks]
     parts.append(_residuals(result))

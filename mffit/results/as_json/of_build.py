@@ -106,6 +106,7 @@ def fit(found: FitResult, over_noise: Mapping[str, float] = NOT_JUDGED) -> dict[
         "channels": {
             name: {**asdict(row), "over_noise": over_noise.get(name)} for name, row in found.channels.items()
         },
+        "radii": {name: asdict(row) for name, row in found.radii.agreement(found.tyre.values).items()},
         "odd": {name: asdict(row) for name, row in found.odd.items()},
         "coefficients": {name: _coefficient(row) for name, row in found.coefficients.items()},
         "rig": _rig(found.rig if found.temperature is None else found.temperature.rig),
