@@ -29,6 +29,7 @@ from mffit.fit.problem import FitProblem, fit_problem
 from mffit.fit.remarks import with_remarks
 from mffit.fit.result import FitResult
 from mffit.fit.rolling import rolling_resistance
+from mffit.fit.sister import Lent, Sister, lend, sister_of, sister_sentence
 from mffit.fit.start import starting_values
 from mffit.fit.temperature import at_temperature
 from mffit.fit.vertical import Vertical, vertical_coefficients, vertical_sentence
@@ -70,6 +71,7 @@ def fit(
     began = time.perf_counter()
     fleet = of_fleet(config)
     hand = hand_of(config, base)
+    sister = sister_of(config, base, points)
     known = known_before_fit(config, points, measured, base, fleet, hand)
     settled = {*hand.held, *(name for name, origin in known.origin.items() if origin == "measured")}
     radii = vertical_coefficients(known.values, points, settled)
@@ -92,10 +94,12 @@ def fit(
 
     progress("deriving the property files")
     use = plain_use(config)
-    after, coefficients, files = _delivered(config, known, points, measured, base, fitted, radii)
+    after, coefficients, files, lent = _delivered(
+        config, known, points, measured, base, fitted, radii, sister
+    )
     temperature = None
     if found.at_temperature:
-        special = _delivered(config, known, points, measured, base, full, radii, only=use)
+        special = _delivered(config, known, points, measured, base, full, radii, sister, only=use)
         own = of_file(special.files, use, special.coefficients)
         temperature = at_temperature(found, points, special.files.by_use[use], own)
 
@@ -111,13 +115,14 @@ def fit(
         simulation=fitted.simulation,
         rig=fitted.rig,
         model=readings,
-        posterior=fitted.posterior,
+        posterior=fitted.posterior if lent is None else lent.posterior,
         stages=fitted.stages,
         coverage=plan.cover,
         explanations=(
             *nuisance_sentences(config.tyre.name, found, temperature, runs, channels),
             *explanations(config, files, after.values, measured, hand),
             *filter(None, [vertical_sentence(radii)]),
+            *([] if lent is None else [sister_sentence(lent)]),
         ),
         warnings=(
             *warnings(full, doubts, outlying, files.untested, plan.cover),
@@ -134,6 +139,7 @@ def fit(
         choice=found.choice,
         runs=runs,
         confounded=confounded,
+        lent=lent,
     )
     return with_remarks(result, config, points, turning, from_base=base is not None)
 
@@ -144,6 +150,7 @@ class _Delivered(NamedTuple):
     known: Known  #: every value of the property file, with its origin
     coefficients: dict[str, Coefficient]
     files: Files
+    lent: Lent | None  #: what a sister tyre gave
 
 
 def _delivered(
@@ -154,15 +161,20 @@ def _delivered(
     base: Tyre | None,
     fitted: Fitted,
     radii: Vertical,
+    sister: Sister | None,
     only: str | None = None,
 ) -> _Delivered:
     """The files of a fit, for one use ``only`` or for all, and the records of their coefficients."""
     known = known_after_fit(known, fitted.values, fitted.regularised, base)
     rolling = {} if "QSY1" in known.hand.held else rolling_resistance(known.values, points)
     known = known.having({name: QSY1.value for name, QSY1 in rolling.items()}, "fitted")
-    coefficients = coefficient_records(known, fitted, {**rolling, **radii.found})
+    lent = None if sister is None else lend(sister, known, fitted.posterior)
+    borrowed = {} if lent is None else lent.found
+    known = known.having({name: q.value for name, q in borrowed.items()}, "sister")
+    coefficients = coefficient_records(known, fitted, {**rolling, **radii.found, **borrowed})
     files = make_files(config, known, points, base, dict(measured.by_load("C_gamma")), only=only)
-    return _Delivered(known, coefficients, files.annotated(file_comments(files, known.origin, coefficients)))
+    annotated = files.annotated(file_comments(files, known.origin, coefficients))
+    return _Delivered(known, coefficients, annotated, lent)
 
 
 def _fitted_and_judged(

@@ -8,6 +8,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 from threadpoolctl import threadpool_limits
 
 from mffit import config as configuration
@@ -153,5 +154,8 @@ def _members(config: Config, fitted: FitResult, count: int, annotated: Annotate)
     best = annotated(fitted.tyre, "turn-slip" if config.rig.on_disc else "normal")
     assert fitted.search is not None
     for i, values in enumerate(fitting.ensemble(fitted.search, count), 1):
+        if fitted.lent is not None:
+            random = np.random.default_rng((i, count))
+            values = values | fitted.lent.drawn({**best.values, **values}, random)
         note = {"ensemble": f"draw {i} of {count} from what the fit leaves uncertain"}
         yield best.replace(**values).annotate(status=dict.fromkeys(values, "drawn"), provenance=note)

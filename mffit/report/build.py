@@ -15,7 +15,7 @@ from mffit.quantities import CHANNELS, CONDITIONS, DIRECT
 from mffit.report import page, published
 from mffit.report.build_view import PER_LOAD, STATUS_ORDER, BuildView, ChannelRow, CoefficientRow, view_of
 from mffit.report.drawing.records import Sheet
-from mffit.report.figures import bands, decomposition, files, fit, residuals, spin, structure
+from mffit.report.figures import bands, decomposition, files, fit, residuals, sister, spin, structure
 from mffit.results import BuildResult
 from mffit.rig_errors import MEANINGS, UNITS
 
@@ -84,6 +84,8 @@ def _figures(view: BuildView) -> dict[str, Callable[[], Sheet]]:
             out[f"fit_{channel.name}"] = partial(fit.model_against_points, view, channel)
     if view.files is not None:
         out["bands"] = partial(bands.bands, view)
+    if view.files is not None and view.lent is not None:
+        out["borrowed_Fx"] = partial(sister.borrowed_force, view)
     scaled = [(c.symbol, (c.measured - c.model) / _scale(view, c)) for c in view.channels]
     out["residuals"] = partial(
         residuals.residual_maps, view.points, scaled, view.conditions, residual_unit(view)

@@ -14,6 +14,7 @@ from mffit.fit import Agreement, Coefficient, Posterior, StageRecord
 from mffit.fit.between_runs import BetweenRuns
 from mffit.fit.coverage import StageCoverage
 from mffit.fit.files import Files
+from mffit.fit.sister import Lent
 from mffit.fit.temperature import AtTemperature
 from mffit.made import Made
 from mffit.measured import Measured
@@ -31,7 +32,18 @@ from tir.parameters import BY_NAME
 
 PER_LOAD = ("epsilon_gamma", "F_phit", "C_phit", "C_gamma", "C_alpha")
 """Results of the direct method at every load, in the order of the tables."""
-STATUS_ORDER = ("measured", "fitted", "regularised", "estimate", "range", "given", "fleet", "base", "default")
+STATUS_ORDER = (
+    "measured",
+    "fitted",
+    "regularised",
+    "sister",
+    "estimate",
+    "range",
+    "given",
+    "fleet",
+    "base",
+    "default",
+)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -126,6 +138,7 @@ class BuildView:
         ""  #: why the bands are wider between the pressures of the sweeps; empty if they are not
     )
     temperature: AtTemperature | None  #: the fit with temperature terms, if there is one
+    lent: Lent | None  #: what a sister tyre gave, if there is one
     runs: BetweenRuns | None  #: what every run has of its own, if that is modelled
 
     def marked(self, channel: str) -> tuple[np.ndarray, np.ndarray]:
@@ -193,6 +206,7 @@ def view_of(result: BuildResult) -> BuildView:
         outliers=fit.outliers,
         bands_note=fit.bands_note,
         temperature=fit.temperature,
+        lent=fit.lent,
         runs=fit.runs,
     )
 

@@ -18,6 +18,7 @@ from mffit.fit.between_runs import BetweenRuns
 from mffit.fit.files import Files
 from mffit.fit.misfit import FileFigures
 from mffit.fit.nuisance_choice import Verdict
+from mffit.fit.sister import Lent
 from mffit.fit.temperature import AtTemperature
 from mffit.made import Made
 from mffit.measured import KEYS, LoadResult, Measured, SetupResult, SetupScatter
@@ -112,6 +113,7 @@ def fit(found: FitResult, over_noise: Mapping[str, float] = NOT_JUDGED) -> dict[
         "temperature": None if found.temperature is None else _temperature(found.temperature),
         "modelled": [] if found.choice is None else [_verdict(row) for row in found.choice.verdicts],
         "runs": None if found.runs is None else _runs(found.runs),
+        "sister": None if found.lent is None else _sister(found.lent),
         "confounded": [
             picked(row, "setting", "correlation", "coefficient", "growth") for row in found.confounded
         ],
@@ -191,6 +193,18 @@ def _runs(found: BetweenRuns) -> dict[str, Any]:
         "names": list(found.runs),
         "scatter": _rig(found.scatter),
         "channels_without": {name: asdict(row) for name, row in found.alone.items()},
+    }
+
+
+def _sister(found: Lent) -> dict[str, Any]:
+    """Longitudinal and combined slip of a tyre measured only sideways: both ratios to the sister tyre, and what was borrowed."""
+    return {
+        "file": found.sister.file,
+        **stated("friction", found.friction),
+        **stated("stiffness", found.stiffness),
+        "u_friction_of_sisters": found.sister.u_friction,
+        "u_stiffness_of_sisters": found.sister.u_stiffness,
+        "coefficients": list(found.found),
     }
 
 
