@@ -26,6 +26,7 @@ from mffit.fit.overturning import overturning_terms
 from mffit.fit.plan import FitPlan, fit_plan
 from mffit.fit.priors import of_fleet
 from mffit.fit.problem import FitProblem, fit_problem
+from mffit.fit.relaxation import Relaxation, relaxation, relaxation_sentence
 from mffit.fit.remarks import with_remarks
 from mffit.fit.result import FitResult
 from mffit.fit.rolling import rolling_resistance
@@ -51,6 +52,7 @@ def fit(
     measured: Any,
     base: Tyre | None = None,
     progress: Progress = silent,
+    steps: Points | None = None,
 ) -> FitResult:
     """Fit MF 6.2 to raw points with turn slip on, holding what was measured directly.
 
@@ -62,6 +64,7 @@ def fit(
     measured : the direct method's result; ``epsilon_gamma`` None on a flat track
     base : property file with the values that are not fitted, if there is one
     progress : called with a sentence before each step
+    steps : samples of steps of the sideslip angle, if there are any
 
     Raises
     ------
@@ -94,12 +97,12 @@ def fit(
 
     progress("deriving the property files")
     use = plain_use(config)
-    after, coefficients, files, lent = _delivered(
-        config, known, points, measured, base, fitted, radii, sister
+    after, coefficients, files, lent, lag = _delivered(
+        config, known, points, steps, measured, base, fitted, radii, sister
     )
     temperature = None
     if found.at_temperature:
-        special = _delivered(config, known, points, measured, base, full, radii, sister, only=use)
+        special = _delivered(config, known, points, steps, measured, base, full, radii, sister, only=use)
         own = of_file(special.files, use, special.coefficients)
         temperature = at_temperature(found, points, special.files.by_use[use], own)
 
@@ -117,11 +120,12 @@ def fit(
         model=readings,
         posterior=fitted.posterior if lent is None else lent.posterior,
         stages=fitted.stages,
-        coverage=plan.cover,
+        coverage=(*plan.cover, lag.coverage),
         explanations=(
             *nuisance_sentences(config.tyre.name, found, temperature, runs, channels),
             *explanations(config, files, after.values, measured, hand),
             *filter(None, [vertical_sentence(radii)]),
+            *filter(None, [relaxation_sentence(lag)]),
             *([] if lent is None else [sister_sentence(lent)]),
         ),
         warnings=(
@@ -140,6 +144,7 @@ def fit(
         runs=runs,
         confounded=confounded,
         lent=lent,
+        relaxation=lag,
     )
     return with_remarks(result, config, points, turning, from_base=base is not None)
 
@@ -151,12 +156,14 @@ class _Delivered(NamedTuple):
     coefficients: dict[str, Coefficient]
     files: Files
     lent: Lent | None  #: what a sister tyre gave
+    relaxation: Relaxation
 
 
 def _delivered(
     config: Any,
     known: Known,
     points: Points,
+    steps: Points | None,
     measured: Any,
     base: Tyre | None,
     fitted: Fitted,
@@ -168,13 +175,15 @@ def _delivered(
     known = known_after_fit(known, fitted.values, fitted.regularised, base)
     rolling = {} if "QSY1" in known.hand.held else rolling_resistance(known.values, points)
     known = known.having({name: QSY1.value for name, QSY1 in rolling.items()}, "fitted")
+    lag = relaxation(steps, fitted.simulation, fitted.posterior, known.hand.held)
+    known = known.having({name: q.value for name, q in lag.found.items()}, "fitted")
     lent = None if sister is None else lend(sister, known, fitted.posterior)
     borrowed = {} if lent is None else lent.found
     known = known.having({name: q.value for name, q in borrowed.items()}, "sister")
-    coefficients = coefficient_records(known, fitted, {**rolling, **radii.found, **borrowed})
+    coefficients = coefficient_records(known, fitted, {**rolling, **radii.found, **borrowed, **lag.found})
     files = make_files(config, known, points, base, dict(measured.by_load("C_gamma")), only=only)
     annotated = files.annotated(file_comments(files, known.origin, coefficients))
-    return _Delivered(known, coefficients, annotated, lent)
+    return _Delivered(known, coefficients, annotated, lent, lag)
 
 
 def _fitted_and_judged(

@@ -14,6 +14,7 @@ from mffit.fit import Agreement, Coefficient, Posterior, StageRecord
 from mffit.fit.between_runs import BetweenRuns
 from mffit.fit.coverage import StageCoverage
 from mffit.fit.files import Files
+from mffit.fit.relaxation import Relaxation
 from mffit.fit.sister import Lent
 from mffit.fit.temperature import AtTemperature
 from mffit.made import Made
@@ -138,6 +139,7 @@ class BuildView:
         ""  #: why the bands are wider between the pressures of the sweeps; empty if they are not
     )
     temperature: AtTemperature | None  #: the fit with temperature terms, if there is one
+    relaxation: Relaxation | None  #: what steps of the sideslip angle determine
     lent: Lent | None  #: what a sister tyre gave, if there is one
     runs: BetweenRuns | None  #: what every run has of its own, if that is modelled
 
@@ -206,6 +208,7 @@ def view_of(result: BuildResult) -> BuildView:
         outliers=fit.outliers,
         bands_note=fit.bands_note,
         temperature=fit.temperature,
+        relaxation=fit.relaxation,
         lent=fit.lent,
         runs=fit.runs,
     )
