@@ -244,6 +244,16 @@ class FitTable(Table):
     exclude: Annotated[tuple[ExcludeTable, ...], BeforeValidator(list_of_tables)] = ()
 
 
+class SisterTable(Table):
+    """[sister]: the base file is that of a sister tyre, whose longitudinal force is scaled by the measured side force."""
+
+    Fx: Literal["scaled"]
+    u_friction: q.Fraction = float(
+        constants.SISTER_FRICTION_SCATTER
+    )  #: of longitudinal over lateral friction
+    u_stiffness: q.Fraction = float(constants.SISTER_STIFFNESS_SCATTER)  #: of slip over cornering stiffness
+
+
 class NormalTable(Table):
     """[normal]: the file for turn slip off."""
 
@@ -313,6 +323,7 @@ class Config(Brief, Table):
     rolling_radius: Annotated[tuple[RollingRadiusTable, ...], BeforeValidator(list_of_tables)] = ()
     camber_stiffness: CamberStiffnessTable = CamberStiffnessTable()
     spin: SpinTable = SpinTable()
+    sister: SisterTable | None = None
     coefficients: Annotated[Entries, BeforeValidator(named)] = Field(default_factory=dict)
     fit: FitTable = FitTable()
     normal: NormalTable = NormalTable()
@@ -396,6 +407,16 @@ class Config(Brief, Table):
             has_base=self.tyre.base is not None,
             direct=self.rig.on_disc and self.spin.pecp1 != "model",
         )
+        return self
+
+    @model_validator(mode="after")
+    def _sister_is_the_base(self) -> Config:
+        if self.sister is not None and self.tyre.base is None:
+            raise q.wrong(
+                "scales the longitudinal force of a sister tyre, but [tyre] names no base file; name the sister's file there, "
+                "or remove [sister]",
+                "sister.Fx",
+            )
         return self
 
     @model_validator(mode="after")

@@ -25,7 +25,9 @@ class Coefficient:
     stage: str
     fixed: bool
     at_bound: bool
-    status: str  #: measured | fitted | regularised | default | base | estimate | fleet | range | given
+    status: (
+        str  #: measured | fitted | regularised | default | base | estimate | fleet | sister | range | given
+    )
     correlated_with: str = ""  #: the coefficient with the largest correlation, if this is strong
     correlation: float = 0.0
     interval: tuple[float, float] | None = None  #: of 95 %; None if held

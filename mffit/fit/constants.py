@@ -79,6 +79,20 @@ LEAST_GAIN_OF_MORE_TERMS = Real(
     "Share of the misfit of left-out sweeps that terms of Mx beyond QSX1-3 must remove: programs differ in their form.",
 )
 
+# A sister tyre
+SISTER_LOADS = Count(9, "-", "Loads over the tested range at which two sister tyres are compared.")
+SISTER_LOADS_AROUND_ONE = Real(
+    0.2, "-", "Relative distance from a single tested load over which they are compared instead."
+)
+SISTER_SLIP = Real(
+    0.1, "-", "Longitudinal slip over which a drawn tyre keeps the limits of Fx: about that of the peak."
+)
+SISTER_SHARES_OF_A_DRAW = Series(
+    (1.0, 0.5, 0.25, 0.125, 0.0),
+    "-",
+    "Shares of a draw of borrowed shapes, tried in turn until the physical limits hold.",
+)
+
 # Radii
 LARGEST_CAMBER_OF_RADII = Real(
     6.0, "deg", "Camber up to which loaded and rolling radius change with its square."

@@ -26,9 +26,11 @@ from mffit.fit.overturning import overturning_terms
 from mffit.fit.plan import FitPlan, fit_plan
 from mffit.fit.priors import of_fleet
 from mffit.fit.problem import FitProblem, fit_problem
+from mffit.fit.relaxation import Relaxation, relaxation, relaxation_sentence
 from mffit.fit.remarks import with_remarks
 from mffit.fit.result import FitResult
 from mffit.fit.rolling import rolling_resistance
+from mffit.fit.sister import Lent, Sister, lend, sister_of, sister_sentence
 from mffit.fit.start import starting_values
 from mffit.fit.temperature import at_temperature
 from mffit.fit.vertical import Vertical, vertical_coefficients, vertical_sentence
@@ -50,6 +52,7 @@ def fit(
     measured: Any,
     base: Tyre | None = None,
     progress: Progress = silent,
+    steps: Points | None = None,
 ) -> FitResult:
     """Fit MF 6.2 to raw points with turn slip on, holding what was measured directly.
 
@@ -61,6 +64,7 @@ def fit(
     measured : the direct method's result; ``epsilon_gamma`` None on a flat track
     base : property file with the values that are not fitted, if there is one
     progress : called with a sentence before each step
+    steps : samples of steps of the sideslip angle, if there are any
 
     Raises
     ------
@@ -70,6 +74,7 @@ def fit(
     began = time.perf_counter()
     fleet = of_fleet(config)
     hand = hand_of(config, base)
+    sister = sister_of(config, base, points)
     known = known_before_fit(config, points, measured, base, fleet, hand)
     settled = {*hand.held, *(name for name, origin in known.origin.items() if origin == "measured")}
     radii = vertical_coefficients(known.values, points, settled)
@@ -92,10 +97,12 @@ def fit(
 
     progress("deriving the property files")
     use = plain_use(config)
-    after, coefficients, files = _delivered(config, known, points, measured, base, fitted, radii)
+    after, coefficients, files, lent, lag = _delivered(
+        config, known, points, steps, measured, base, fitted, radii, sister
+    )
     temperature = None
     if found.at_temperature:
-        special = _delivered(config, known, points, measured, base, full, radii, only=use)
+        special = _delivered(config, known, points, steps, measured, base, full, radii, sister, only=use)
         own = of_file(special.files, use, special.coefficients)
         temperature = at_temperature(found, points, special.files.by_use[use], own)
 
@@ -111,13 +118,15 @@ def fit(
         simulation=fitted.simulation,
         rig=fitted.rig,
         model=readings,
-        posterior=fitted.posterior,
+        posterior=fitted.posterior if lent is None else lent.posterior,
         stages=fitted.stages,
-        coverage=plan.cover,
+        coverage=(*plan.cover, lag.coverage),
         explanations=(
             *nuisance_sentences(config.tyre.name, found, temperature, runs, channels),
             *explanations(config, files, after.values, measured, hand),
             *filter(None, [vertical_sentence(radii)]),
+            *filter(None, [relaxation_sentence(lag)]),
+            *([] if lent is None else [sister_sentence(lent)]),
         ),
         warnings=(
             *warnings(full, doubts, outlying, files.untested, plan.cover),
@@ -135,6 +144,8 @@ def fit(
         runs=runs,
         confounded=confounded,
         radii=radii,
+        lent=lent,
+        relaxation=lag,
     )
     return with_remarks(result, config, points, turning, from_base=base is not None)
 
@@ -145,25 +156,35 @@ class _Delivered(NamedTuple):
     known: Known  #: every value of the property file, with its origin
     coefficients: dict[str, Coefficient]
     files: Files
+    lent: Lent | None  #: what a sister tyre gave
+    relaxation: Relaxation
 
 
 def _delivered(
     config: Any,
     known: Known,
     points: Points,
+    steps: Points | None,
     measured: Any,
     base: Tyre | None,
     fitted: Fitted,
     radii: Vertical,
+    sister: Sister | None,
     only: str | None = None,
 ) -> _Delivered:
     """The files of a fit, for one use ``only`` or for all, and the records of their coefficients."""
     known = known_after_fit(known, fitted.values, fitted.regularised, base)
     rolling = {} if "QSY1" in known.hand.held else rolling_resistance(known.values, points)
     known = known.having({name: QSY1.value for name, QSY1 in rolling.items()}, "fitted")
-    coefficients = coefficient_records(known, fitted, {**rolling, **radii.found})
+    lag = relaxation(steps, fitted.simulation, fitted.posterior, known.hand.held)
+    known = known.having({name: q.value for name, q in lag.found.items()}, "fitted")
+    lent = None if sister is None else lend(sister, known, fitted.posterior)
+    borrowed = {} if lent is None else lent.found
+    known = known.having({name: q.value for name, q in borrowed.items()}, "sister")
+    coefficients = coefficient_records(known, fitted, {**rolling, **radii.found, **borrowed, **lag.found})
     files = make_files(config, known, points, base, dict(measured.by_load("C_gamma")), only=only)
-    return _Delivered(known, coefficients, files.annotated(file_comments(files, known.origin, coefficients)))
+    annotated = files.annotated(file_comments(files, known.origin, coefficients))
+    return _Delivered(known, coefficients, annotated, lent, lag)
 
 
 def _fitted_and_judged(

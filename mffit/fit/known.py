@@ -25,7 +25,8 @@ DETERMINED = ("measured", "fitted", "regularised")
 
 @dataclass(frozen=True, slots=True)
 class Known:
-    """Values by name, and the origin of each: measured, fitted, regularised, base, default, estimate, fleet, range, given."""
+    """Values by name, and the origin of each: measured, fitted, regularised, base, default, estimate, fleet, sister,
+    range, given."""
 
     values: Mapping[str, Any]
     origin: Mapping[str, str]

@@ -16,6 +16,8 @@ from mffit.fit.files import Files
 from mffit.fit.fitted import Fitted
 from mffit.fit.nuisance_choice import NuisanceChoice
 from mffit.fit.posterior import Posterior
+from mffit.fit.relaxation import Relaxation
+from mffit.fit.sister import Lent
 from mffit.fit.stages import StageRecord
 from mffit.fit.temperature import AtTemperature
 from mffit.fit.vertical import Vertical
@@ -53,6 +55,8 @@ class FitResult(Brief):
     files: Files | None = None  #: every written file and its misfit
     temperature: AtTemperature | None = None  #: the model with temperature terms, if there is one
     confounded: tuple[Confounding, ...] = ()  #: settings with which the temperature runs along
+    relaxation: Relaxation | None = None  #: what steps of the sideslip angle determine
+    lent: Lent | None = None  #: what a sister tyre gives to one measured only sideways
     runs: BetweenRuns | None = None  #: what every run has of its own, if that is modelled
     choice: NuisanceChoice | None = (
         None  #: what was modelled beside coefficients and declared rig errors, and why

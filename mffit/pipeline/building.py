@@ -8,6 +8,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 from threadpoolctl import threadpool_limits
 
 from mffit import config as configuration
@@ -26,7 +27,7 @@ from mffit.pipeline.left_out import left_out_by_fit
 from mffit.pipeline.measuring import measure
 from mffit.pipeline.provenance import TEMPERATURE, Annotate, annotator
 from mffit.pipeline.refining import finite_spin_bias, undistorted, without_outliers
-from mffit.points import Points
+from mffit.points.loading import Reading
 from mffit.progress import Progress, silent
 from mffit.results import BuildResult
 from tir import Tyre
@@ -76,7 +77,7 @@ def build(
     if out is not None:
         refuse_early(Path(out), (*names.values(), special, *WRITTEN), inputs_of(config))
     with threadpool_limits(1):  # the matrices are small: threads cost more than they save
-        measured, fitted = _fitted(config, reading.points, parts, measured, base, progress)
+        measured, fitted = _fitted(config, reading, parts, measured, base, progress)
         progress("judging what the fit leaves")
         assert fitted.files is not None
         files = fitted.files.by_use
@@ -123,12 +124,14 @@ def build(
 
 
 def _fitted(
-    config: Config, points: Points, parts: Parts, measured: Measured, base: Tyre | None, progress: Progress
+    config: Config, reading: Reading, parts: Parts, measured: Measured, base: Tyre | None, progress: Progress
 ) -> tuple[Measured, FitResult]:
     """The fit, repeated if its outliers or the bias of finite spin change the eps_gamma that it holds."""
 
+    points = reading.points
+
     def fit(measured: Measured) -> FitResult:
-        return fitting.fit(config, points, parts, measured, base, progress)
+        return fitting.fit(config, points, parts, measured, base, progress, reading.steps)
 
     fitted = fit(measured)
     sound = without_outliers(config, points, measured, fitted, base)
@@ -153,5 +156,8 @@ def _members(config: Config, fitted: FitResult, count: int, annotated: Annotate)
     best = annotated(fitted.tyre, "turn-slip" if config.rig.on_disc else "normal")
     assert fitted.search is not None
     for i, values in enumerate(fitting.ensemble(fitted.search, count), 1):
+        if fitted.lent is not None:
+            random = np.random.default_rng((i, count))
+            values = values | fitted.lent.drawn({**best.values, **values}, random)
         note = {"ensemble": f"draw {i} of {count} from what the fit leaves uncertain"}
         yield best.replace(**values).annotate(status=dict.fromkeys(values, "drawn"), provenance=note)

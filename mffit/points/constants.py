@@ -178,3 +178,13 @@ STAND_IN_PRESSURE = Real(
     250e3, "Pa", "For a bare table without pressure; the alignment does not depend on it."
 )
 STAND_IN_SPEED = Real(1.0, "m/s", "For a bare table without speed; the alignment does not depend on it.")
+
+# Steps of the sideslip angle
+SMALLEST_STEP = Real(0.3, "deg", "Smallest change of the angle that is a step.")
+LONGEST_STEP = Real(
+    0.5,
+    "-",
+    "Way of a step, and distance between samples, over the unloaded radius: relaxation lengths are 0.5 to 2 radii.",
+)
+SHORTEST_REST = Real(3.0, "-", "Distance rolled after a step, over the unloaded radius.")
+LOAD_RANGE_OF_STEPS = Real(0.2, "-", "Largest range of the load over its mean while the angle steps.")

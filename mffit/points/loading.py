@@ -23,6 +23,7 @@ from mffit.points.points import Points, concatenate
 from mffit.points.reduction import Reduced, reduce
 from mffit.points.slip_zero import against_free_rolling
 from mffit.points.steady import scale_of
+from mffit.points.steps import steps
 from mffit.points.stretch import StretchNote
 from mffit.scatter import rms
 from mffit.sweeps.sweep import ExcludedRows
@@ -40,6 +41,7 @@ class Reading(NamedTuple):
     stretches: tuple[StretchNote, ...]  #: of all recordings
     left_out: tuple[LeftOut, ...] = ()  #: by hand and by rules
     excluded: Points | None = None  #: finished points that were left out by hand; None without any
+    steps: Points | None = None  #: samples of steps of the sideslip angle, each run a sweep; None without any
 
 
 def load(config: Config, *, continuous: bool = False) -> tuple[Points, tuple[str, ...]]:
@@ -100,7 +102,8 @@ def read(config: Config, *, continuous: bool = False, may_be_empty: bool = False
     kept = points if continuous else steady
     if not continuous:
         left_out += _moving_left_out(points)
-    return Reading(kept, tuple(warnings), notes, left_out, _excluded(found.excluded, phi_t))
+    stepped = steps(sweeps, phi_t, config.tyre.unloaded_radius, scale)
+    return Reading(kept, tuple(warnings), notes, left_out, _excluded(found.excluded, phi_t), stepped)
 
 
 def _excluded(excluded: Sequence[ExcludedRows], phi_t: Mapping[str, float]) -> Points | None:

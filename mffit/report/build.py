@@ -16,7 +16,7 @@ from mffit.report import constants as report_constants
 from mffit.report import left_undrawn, page, published
 from mffit.report.build_view import PER_LOAD, STATUS_ORDER, BuildView, ChannelRow, CoefficientRow, view_of
 from mffit.report.drawing.records import Sheet
-from mffit.report.figures import bands, decomposition, files, fit, radii, residuals, slip, spin, structure
+from mffit.report.figures import bands, decomposition, files, fit, radii, residuals, sister, slip, spin, structure
 from mffit.results import BuildResult
 from mffit.rig_errors import MEANINGS, UNITS
 
@@ -96,6 +96,8 @@ def _figures(view: BuildView) -> dict[str, Callable[[], Sheet]]:
         out["radii"] = partial(radii.radii, view)
     if view.files is not None:
         out["bands"] = partial(bands.bands, view)
+    if view.files is not None and view.lent is not None:
+        out["borrowed_Fx"] = partial(sister.borrowed_force, view)
     scaled = [(c.symbol, (c.measured - c.model) / _scale(view, c)) for c in view.channels]
     rolling, driven = (which(view.points, view.conditions) for which in (residuals.rolling, residuals.driven))
     maps = partial(residuals.residual_maps, view.points, scaled)

@@ -14,6 +14,8 @@ from mffit.fit import Agreement, Coefficient, Posterior, StageRecord
 from mffit.fit.between_runs import BetweenRuns
 from mffit.fit.coverage import StageCoverage
 from mffit.fit.files import Files
+from mffit.fit.relaxation import Relaxation
+from mffit.fit.sister import Lent
 from mffit.fit.temperature import AtTemperature
 from mffit.fit.vertical import Vertical
 from mffit.made import Made
@@ -32,7 +34,18 @@ from tir.parameters import BY_NAME
 
 PER_LOAD = ("epsilon_gamma", "F_phit", "C_phit", "C_gamma", "C_alpha")
 """Results of the direct method at every load, in the order of the tables."""
-STATUS_ORDER = ("measured", "fitted", "regularised", "estimate", "range", "given", "fleet", "base", "default")
+STATUS_ORDER = (
+    "measured",
+    "fitted",
+    "regularised",
+    "sister",
+    "estimate",
+    "range",
+    "given",
+    "fleet",
+    "base",
+    "default",
+)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -130,6 +143,8 @@ class BuildView:
         ""  #: why the bands are wider between the pressures of the sweeps; empty if they are not
     )
     temperature: AtTemperature | None  #: the fit with temperature terms, if there is one
+    relaxation: Relaxation | None  #: what steps of the sideslip angle determine
+    lent: Lent | None  #: what a sister tyre gave, if there is one
     runs: BetweenRuns | None  #: what every run has of its own, if that is modelled
     radii: Vertical  #: loaded radius and wheel speed of the rolling wheel
     radii_agreement: Mapping[str, Agreement]  #: of the file's radii, as far as they were fitted [m]
@@ -205,6 +220,8 @@ def view_of(result: BuildResult) -> BuildView:
         outliers=fit.outliers,
         bands_note=fit.bands_note,
         temperature=fit.temperature,
+        relaxation=fit.relaxation,
+        lent=fit.lent,
         runs=fit.runs,
         radii=fit.radii,
         radii_agreement=fit.radii.agreement(fit.tyre.values),

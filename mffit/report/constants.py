@@ -108,4 +108,6 @@ MOST_CANDIDATE_RUNS_IN_PAGE = Count(15, "-", "Candidate runs listed in the page 
 MOST_CANDIDATE_RUNS_IN_TERMINAL = Count(6, "-", "Candidate runs listed in a terminal, which scrolls.")
 MOST_ROWS_IN_TERMINAL = Count(12, "-", "Most rows of a table in a terminal if a file or page has all.")
 
+LARGEST_SLIP_TO_DRAW = Real(0.2, "-", "Longitudinal slip to which the force of a sister tyre is drawn.")
+SIDESLIPS_OF_BORROWED_FORCE = Series((0.0, 4.0), "deg", "Sideslip angles at which it is drawn.")
 PANELS_PER_ROW_OF_MEANS = Count(3, "-", "Panels beside each other in the picture of mean residuals.")

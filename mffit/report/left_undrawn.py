@@ -12,7 +12,6 @@ from mffit.report.build_view import BuildView, ChannelRow
 from mffit.report.curves import Curve
 from mffit.report.figures.decomposition import drawable, worth_drawing
 from mffit.report.figures.fit import drawn_conditions
-from mffit.report.figures.residuals import most_populated
 
 
 def of_fit(points: Points, curves: Sequence[Curve]) -> str:
@@ -31,13 +30,6 @@ def of_fit(points: Points, curves: Sequence[Curve]) -> str:
             f"{_count(curves) - _count(drawn)} points are left out for lack of room, at {', '.join(lost)}; points.csv has them"
         )
     return _sentences(said)
-
-
-def of_maps(view: BuildView) -> str:
-    """Conditions without a map of residuals."""
-    drawn = most_populated(view.conditions, constants.MOST_MAPS_OF_BUILD)
-    lost = [c.title for c in view.conditions if c not in drawn]
-    return _sentences([f"for lack of room there is no map at {', '.join(lost)}"] if lost else [])
 
 
 def of_parts(view: BuildView, channel: ChannelRow) -> str:

@@ -18,6 +18,8 @@ from mffit.fit.between_runs import BetweenRuns
 from mffit.fit.files import Files
 from mffit.fit.misfit import FileFigures
 from mffit.fit.nuisance_choice import Verdict
+from mffit.fit.relaxation import Relaxation
+from mffit.fit.sister import Lent
 from mffit.fit.temperature import AtTemperature
 from mffit.made import Made
 from mffit.measured import KEYS, LoadResult, Measured, SetupResult, SetupScatter
@@ -113,6 +115,8 @@ def fit(found: FitResult, over_noise: Mapping[str, float] = NOT_JUDGED) -> dict[
         "temperature": None if found.temperature is None else _temperature(found.temperature),
         "modelled": [] if found.choice is None else [_verdict(row) for row in found.choice.verdicts],
         "runs": None if found.runs is None else _runs(found.runs),
+        "relaxation": None if found.relaxation is None else _relaxation(found.relaxation),
+        "sister": None if found.lent is None else _sister(found.lent),
         "confounded": [
             picked(row, "setting", "correlation", "coefficient", "growth") for row in found.confounded
         ],
@@ -192,6 +196,36 @@ def _runs(found: BetweenRuns) -> dict[str, Any]:
         "names": list(found.runs),
         "scatter": _rig(found.scatter),
         "channels_without": {name: asdict(row) for name, row in found.alone.items()},
+    }
+
+
+def _relaxation(found: Relaxation) -> dict[str, Any]:
+    """Relaxation lengths from steps of the sideslip angle, and what follows from them or is missing."""
+    return {
+        "runs": [
+            {
+                "file": run.file,
+                "load_N": run.load,
+                "p_kPa": run.pressure / 1e3,
+                **stated("sigma_y_m", run.length),
+                "sigma_y_file_m": run.written,
+            }
+            for run in found.runs
+        ],
+        "coefficients": list(found.found),
+        "missing": found.missing or None,
+    }
+
+
+def _sister(found: Lent) -> dict[str, Any]:
+    """Longitudinal and combined slip of a tyre measured only sideways: both ratios to the sister tyre, and what was borrowed."""
+    return {
+        "file": found.sister.file,
+        **stated("friction", found.friction),
+        **stated("stiffness", found.stiffness),
+        "u_friction_of_sisters": found.sister.u_friction,
+        "u_stiffness_of_sisters": found.sister.u_stiffness,
+        "coefficients": list(found.found),
     }
 
 

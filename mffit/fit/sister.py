@@ -1,0 +1,257 @@
+"""Longitudinal and combined slip of a tyre measured only sideways: those of a sister tyre, scaled by the measured side force.
+
+With the ratios of friction and of cornering stiffness of the two tyres, r_mu and r_K at the measured loads::
+
+    mu_x = r_mu mu_x,sister        K_xk = r_K K_xk,sister
+
+so that mu_x over mu_y, the friction ellipse, and K_xk over K_ya stay those of the sister. The weights of combined slip are
+functions of slip over the slip at which the tyre slides, which is in the ratio r_mu / r_K (the similarity of H. B. Pacejka, Tire
+and Vehicle Dynamics, 3rd ed., section 4.2): their factors of slip are multiplied by r_K / r_mu, and their shifts divided by it.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from types import SimpleNamespace
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from mffit.errors import InputError
+from mffit.fit import constants
+from mffit.fit.at_nominal import at_nominal
+from mffit.fit.constraints import Envelope, violations
+from mffit.fit.known import DETERMINED, Known
+from mffit.fit.posterior import Posterior
+from mffit.fit.priors import scatter
+from mffit.fit.ranges import covered_ranges, envelope
+from mffit.points import Points, main_pressure
+from mffit.rounding import ascii_only, to_uncertainty
+from tir import Quantity, Tyre
+from tir.derivatives import gradient, plain, traced
+from tir.equations import normalise, stiffness
+from tir.parameters import BY_NAME, TABLE
+
+NEEDED = ("PCX1", "PDX1", "PKX1", "PDY1", "PKY1")
+"""Coefficients that a sister's file must state."""
+NOT_MEASURED = ("default", "estimate")
+"""Beginnings of the comment of a value that nobody measured."""
+BY_FRICTION = (("PDX1", "PDX2"), ("PVX1", "PVX2"))
+"""Coefficients of a + b dfz that friction scales."""
+BY_STIFFNESS = (("PKX1", "PKX2"),)
+"""The same that slip stiffness scales."""
+OVER_SLIP = {
+    **dict.fromkeys(("RBX1", "RBX3", "RBY2", "RVY4"), (1, False)),
+    **dict.fromkeys(("RHX1", "RBY3"), (-1, False)),
+    **dict.fromkeys(("RBX2", "RBY1", "RBY4", "RVY6"), (1, True)),
+    **dict.fromkeys(("PHX1", "PHX2", "RHY1", "RHY2"), (-1, True)),
+}
+"""Factors (1) and shifts (-1) of a slip, and whether it is the longitudinal one."""
+LENT = tuple(
+    row.name
+    for row in TABLE
+    if row.section == "LONGITUDINAL_COEFFICIENTS"
+    or any(need.word == "combined" for need in row.needs)
+    or row.name.startswith(("RVY", "SSZ"))
+)
+"""Every coefficient of longitudinal and combined slip."""
+
+
+class Sister(NamedTuple):
+    """The sister tyre, and how alike the two tyres are expected to be."""
+
+    file: str  #: as tyre.toml names it
+    tyre: Tyre
+    u_friction: float  #: of mu_x over mu_y, relative, between the two tyres
+    u_stiffness: float  #: of K_xk over K_ya
+    loads: np.ndarray  #: (n,) at which the two tyres are compared [N]
+    pressure: float  #: [Pa]
+    envelope: Envelope  #: over which a drawn tyre keeps the physical limits
+
+
+@dataclass(frozen=True, slots=True)
+class Lent:
+    """What a sister tyre gives to a fitted one."""
+
+    sister: Sister
+    friction: Quantity  #: longitudinal friction over the sister's, at nominal load
+    stiffness: Quantity  #: slip stiffness over the sister's, at nominal load
+    theirs: Mapping[str, float]  #: the sister's coefficients at the nominal load and pressure of this tyre
+    found: Mapping[str, Quantity]  #: every borrowed coefficient with its standard uncertainty
+    spread: Mapping[str, float]  #: of each of them, among tyres with these two ratios
+    posterior: Posterior  #: of the fitted and of the borrowed coefficients
+
+    def drawn(self, values: Mapping[str, Any], random: np.random.Generator) -> dict[str, float]:
+        """Borrowed coefficients of a tyre drawn from the posterior, whose other ``values`` were drawn before.
+
+        What each coefficient has of its own is reduced until the physical limits hold.
+        """
+        sister = self.sister
+        errors = (sister.u_friction * random.standard_normal(), sister.u_stiffness * random.standard_normal())
+        mean = _scaled(values, self.theirs, sister, errors).values
+        own = {name: u * random.standard_normal() for name, u in self.spread.items()}
+        allowed = constants.DRAWN_LIMIT_MARGINS * constants.LIMIT_MARGIN
+        for share in constants.SISTER_SHARES_OF_A_DRAW:
+            found = {name: BY_NAME[name].inside(mean[name] + share * u) for name, u in own.items()}
+            p = SimpleNamespace(**{**values, **self.theirs, **found})
+            if np.max(violations(p, sister.envelope)) <= allowed:
+                break
+        return found
+
+
+def sister_of(config: Any, base: Tyre | None, points: Points) -> Sister | None:
+    """The sister tyre that ``[sister]`` declares; None without that table.
+
+    Raises
+    ------
+    InputError
+        The base file states no longitudinal force that somebody measured, or longitudinal force was measured on this tyre too.
+    """
+    if config.sister is None or base is None:
+        return None
+
+    def refused(sentence: str) -> InputError:
+        return InputError(sentence, file=config.path, line=config.line_of("sister.Fx"), key="sister.Fx")
+
+    driven = np.flatnonzero(~points.free_rolling & np.isfinite(points.Fx))
+    if len(driven):
+        raise refused(
+            f"Fx is to come from a sister tyre, but {points.files[points.file[driven[0]]]} measures it on this one: remove "
+            "[sister], or the sweeps of longitudinal slip"
+        )
+    for name in NEEDED:
+        said = base.status.get(name, "")
+        lacks = "" if name in base.present else f"does not state {name}"
+        if not lacks and said.startswith(NOT_MEASURED):
+            lacks = f'marks {name} as "{said}"'
+        if lacks:
+            raise refused(
+                f"the base file {config.tyre.base} {lacks}, so that it has no measured force to scale: name another base, or "
+                "remove [sister]"
+            )
+    ranges = covered_ranges(points)
+    low, high = ranges["FZMIN"], ranges["FZMAX"]
+    if high - low < constants.SAME_LOAD_OF_SWEEPS * config.tyre.nominal_load:
+        share = float(constants.SISTER_LOADS_AROUND_ONE)
+        low, high = (1.0 - share) * low, (1.0 + share) * high
+    return Sister(
+        file=config.tyre.base,
+        tyre=base,
+        u_friction=config.sister.u_friction,
+        u_stiffness=config.sister.u_stiffness,
+        loads=np.linspace(low, high, constants.SISTER_LOADS),
+        pressure=float(points.p[main_pressure(points)].mean()),
+        envelope=envelope(ranges)._replace(kappa=float(constants.SISTER_SLIP)),
+    )
+
+
+def lend(sister: Sister, known: Known, posterior: Posterior) -> Lent:
+    """The borrowed coefficients of a fitted tyre; those that the points or the engineer decided keep their values."""
+    at = at_nominal(sister.tyre.values, float(known.values["FNOMIN"]), float(known.values["NOMPRES"]))
+    theirs = {name: float(at[name]) for name in LENT}
+    kept = {*known.hand.names, *(name for name in LENT if known.origin[name] in DETERMINED)}
+    wanted = [name for name in LENT if name in sister.tyre.present and name not in kept]
+    rows = [i for i, name in enumerate(posterior.names) if name not in wanted]
+    names = [posterior.names[i] for i in rows]
+    covariance = posterior.covariance[np.ix_(rows, rows)]
+    scaled = _scaled(known.values, theirs, sister, by=names)
+    spread = {
+        name: 0.0 if name in ("PDX1", "PKX1") else scatter(name, x, from_base=True, curved=False)
+        for name, x in scaled.values.items()
+    }
+    u_errors = np.diag([sister.u_friction**2, sister.u_stiffness**2])
+    every = np.block([[covariance, np.zeros((len(rows), 2))], [np.zeros((2, len(rows))), u_errors]])
+    own = np.diag([spread[name] ** 2 for name in LENT])
+    slope = np.array([scaled.slopes[name] for name in LENT])
+    u = dict(zip(LENT, np.sqrt(np.diag(slope @ every @ slope.T + own)).tolist(), strict=True))
+    slope = slope[[LENT.index(name) for name in wanted]]
+    through = np.vstack([np.eye(len(rows), len(rows) + 2), slope])
+    whole = through @ every @ through.T
+    whole[len(rows) :, len(rows) :] += np.diag([spread[name] ** 2 for name in wanted])
+    return Lent(
+        sister=sister,
+        friction=_ratio("PDX1", scaled.values, theirs, u),
+        stiffness=_ratio("PKX1", scaled.values, theirs, u),
+        theirs=theirs,
+        found={name: Quantity(scaled.values[name], u[name], BY_NAME[name].unit) for name in wanted},
+        spread={name: spread[name] for name in wanted},
+        posterior=Posterior((*names, *wanted), whole),
+    )
+
+
+def _ratio(
+    name: str, own: Mapping[str, float], theirs: Mapping[str, float], u: Mapping[str, float]
+) -> Quantity:
+    return Quantity(own[name] / theirs[name], u[name] / abs(theirs[name]), "-")
+
+
+class _Scaled(NamedTuple):
+    """The scaled coefficients and their derivatives (k + 2,) by the k named numbers and the logarithms of the two errors."""
+
+    values: dict[str, float]
+    slopes: dict[str, np.ndarray]
+
+
+def _scaled(
+    values: Mapping[str, Any],
+    theirs: Mapping[str, float],
+    sister: Sister,
+    errors: tuple[float, float] = (0.0, 0.0),
+    by: Sequence[str] = (),
+) -> _Scaled:
+    """The sister's coefficients ``theirs``, scaled to the tyre with these ``values``.
+
+    ``errors`` are those of the two ratios, as logarithms; ``by`` names the numbers to differentiate by.
+    """
+    free = traced({name: float(values[name]) for name in by if name in values and name in BY_NAME})
+    own = _sideways({**values, **free}, sister)
+    other = _sideways(sister.tyre.values, sister)
+    logs, slopes = [], []
+    for k, (here, there) in enumerate(zip(own, other, strict=True)):
+        logs.append(np.log(plain(here) / there) + errors[k])
+        slope = np.zeros((len(sister.loads), len(by) + 2))
+        columns = [by.index(name) for name in free]
+        slope[:, columns] = gradient(here, list(free.values())) / plain(here)[:, None] if free else 0.0
+        slope[:, len(by) + k] = 1.0
+        slopes.append(slope)
+    dfz = sister.loads / (float(values["FNOMIN"]) * float(values["LFZO"])) - 1.0
+    lines = np.stack([np.ones_like(dfz), dfz], axis=1)
+    nearest = np.linalg.pinv(lines)
+    found, derivative = dict(theirs), {name: np.zeros(len(by) + 2) for name in theirs}
+    for k, pairs in enumerate((BY_FRICTION, BY_STIFFNESS)):
+        for pair in pairs:
+            scaled = np.exp(logs[k]) * (lines @ [theirs[name] for name in pair])
+            for name, x, slope in zip(
+                pair, nearest @ scaled, nearest @ (scaled[:, None] * slopes[k]), strict=True
+            ):
+                found[name], derivative[name] = float(x), slope
+    # sideslip over that of sliding follows from the measured side force alone, without the two errors
+    growth = {True: float(np.mean(logs[1] - logs[0]))}
+    by_growth = {True: np.mean(slopes[1] - slopes[0], axis=0)}
+    growth[False] = growth[True] - (errors[1] - errors[0])
+    by_growth[False] = np.r_[by_growth[True][:-2], 0.0, 0.0]
+    for name, (power, of_kappa) in OVER_SLIP.items():
+        found[name] = theirs[name] * math.exp(power * growth[of_kappa])
+        derivative[name] = found[name] * power * by_growth[of_kappa]
+    return _Scaled(found, derivative)
+
+
+def _sideways(values: Mapping[str, Any], sister: Sister) -> tuple[Any, Any]:
+    """Friction and cornering stiffness (n,) of the upright wheel at the loads of the comparison, on a straight path."""
+    p = SimpleNamespace(**values)
+    q = normalise.inputs(p, sister.loads, sister.loads, 0.0, 0.0, 0.0, 0.0, sister.pressure, False, False)
+    return stiffness.lateral_friction(p, q, 0.0), stiffness.cornering_stiffness(p, q, 0.0)
+
+
+def sister_sentence(lent: Lent) -> str:
+    """Where longitudinal and combined slip come from, with both ratios and what their uncertainty contains."""
+    sister, friction, slip = lent.sister, lent.friction, lent.stiffness
+    return ascii_only(
+        f"Fx and combined slip are those of the sister tyre {sister.file}, scaled by the measured side force: friction times "
+        f"{to_uncertainty(friction.value, friction.u)} +- {to_uncertainty(friction.u, friction.u)}, slip stiffness times "
+        f"{to_uncertainty(slip.value, slip.u)} +- {to_uncertainty(slip.u, slip.u)}. These contain the uncertainty of the fit, "
+        f"and {sister.u_friction:.0%} and {sister.u_stiffness:.0%} for tyres whose longitudinal force does not follow the side "
+        "force. No reading of this tyre tests them."
+    )

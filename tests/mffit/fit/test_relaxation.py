@@ -1,0 +1,82 @@
+"""Relaxation length of the side force from steps of the sideslip angle."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from scipy.ndimage import uniform_filter1d
+
+import tir
+from mffit import config as configuration
+from mffit.fit.posterior import Posterior
+from mffit.fit.relaxation import RUN, relaxation
+from mffit.points.loading import read
+from mffit.points.steps import steps
+from mffit.rig import Simulation
+from mffit.sweeps import load
+
+SAMPLE = Path(__file__).parents[3] / "samples" / "flat-track-combined"
+NONE_KNOWN = Posterior((), np.zeros((0, 0)))
+
+
+@pytest.fixture(scope="module")
+def campaign():
+    content = configuration.load(SAMPLE / "tyre.toml")
+    kept = tuple(row for row in content.sweep if row.file.startswith(("steps", "rolling")))
+    return content.model_copy(update={"sweep": kept})
+
+
+@pytest.fixture(scope="module")
+def truth() -> tir.Tyre:
+    return tir.read(SAMPLE / "true.tir")
+
+
+@pytest.fixture(scope="module")
+def found(campaign, truth):
+    """The tyre is known but for its carcass, and the rig has its errors."""
+    start = truth.replace(LATERAL_STIFFNESS=300e3, PCFY1=0.0, PCFY2=0.0)
+    return relaxation(read(campaign).steps, Simulation.of(start, turn_slip=False), NONE_KNOWN)
+
+
+def test_the_relaxation_length_is_that_of_the_tyre_at_every_load(found, truth):
+    assert [round(run.load, -2) for run in found.runs] == [2000, 4200, 6500]
+    for run in found.runs:
+        true = float(truth.state(run.load, p=run.pressure).sigma_y)
+        assert run.length.value == pytest.approx(true, abs=2.6 * run.length.u)
+        assert run.length.u < 0.06 * true
+        assert run.written == pytest.approx(run.length.value, rel=1e-6)  # three loads, three coefficients
+
+
+def test_coefficients_are_within_their_uncertainty(found, truth):
+    assert set(found.found) == {"LATERAL_STIFFNESS", "PCFY1", "PCFY2"}
+    for name, q in found.found.items():
+        assert q.value == pytest.approx(truth[name], abs=2.6 * q.u), name
+    assert found.coverage.held == ("PCFY3",)
+    assert "one pressure" in found.coverage.missing[0]
+
+
+def test_one_load_determines_the_stiffness_only(campaign, truth):
+    one = read(campaign).steps
+    one = one.select(one.sweep == 1)
+    assert set(relaxation(one, Simulation.of(truth, turn_slip=False), NONE_KNOWN).found) == {
+        "LATERAL_STIFFNESS"
+    }
+
+
+def test_steps_that_take_long_are_no_steps(campaign):
+    """The same recordings with a steering that takes a second, one metre of rolling, from angle to angle."""
+    series = [sweep for sweep in load(campaign).sweeps if sweep.is_series]
+    slow = [replace(sweep, alpha=uniform_filter1d(sweep.alpha, 20)) for sweep in series]
+    phi_t = {sweep.file: 0.0 for sweep in series}
+    assert len(np.unique(steps(series, phi_t, 0.3185).sweep)) == 3
+    assert steps(slow, phi_t, 0.3185) is None
+
+
+def test_without_steps_the_result_says_what_to_run(truth):
+    nothing = relaxation(None, Simulation.of(truth, turn_slip=False), NONE_KNOWN)
+    assert not nothing.coverage.supported
+    assert nothing.coverage.missing == (RUN,)
+    assert not nothing.found

@@ -1,0 +1,154 @@
+"""Longitudinal and combined slip of a sister tyre, scaled by the measured side force."""
+
+from __future__ import annotations
+
+import json
+import shutil
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import mffit
+import tir
+from mffit.errors import InputError
+from mffit.fit.at_nominal import at_nominal
+
+SAMPLE = Path(__file__).parents[3] / "samples" / "flat-track-combined"
+FRICTION, STIFFNESS = 1.08, 0.9
+"""This tyre over its sister."""
+PROJECT = """
+[tyre]
+name = "front"
+unloaded_radius = 0.3185
+width = 0.225
+rim_radius = 0.2159
+nominal_load = 4200
+nominal_pressure = 240
+nominal_speed = 16.7
+{base}
+[rig]
+type = "flat-track"
+axes = "sae"
+[sister]
+Fx = "scaled"
+"""
+
+
+def similar(tyre: tir.Tyre, friction: float, stiffness: float) -> dict[str, float]:
+    """Values of a tyre with Fx(kappa) = friction Fx_0(kappa stiffness / friction), and the same sideways and combined."""
+    v = {name: x for name, x in tyre.values.items() if isinstance(x, float)}
+    slip = stiffness / friction
+    for name in ("PDX1", "PDX2", "PVX1", "PVX2", "PDY1", "PDY2", "PVY1", "PVY2"):
+        v[name] *= friction
+    for name in ("PKX1", "PKX2", "PKY1"):
+        v[name] *= stiffness
+    for name in ("RBX1", "RBX2", "RBX3", "RBY1", "RBY2", "RBY4", "RVY4", "RVY6"):
+        v[name] *= slip
+    for name in ("PHX1", "PHX2", "PHY1", "PHY2", "RHX1", "RHY1", "RHY2", "RBY3"):
+        v[name] /= slip
+    return v
+
+
+def write_project(folder: Path, sweeps: tuple[str, ...], base: str = 'base = "sister.tir"') -> Path:
+    for name in sweeps:
+        shutil.copy(SAMPLE / f"{name}.csv", folder)
+    rows = "".join(f'[[sweep]]\nfile = "{name}.csv"\n' for name in sweeps)
+    (folder / "tyre.toml").write_text(PROJECT.format(base=base) + rows)
+    return folder / "tyre.toml"
+
+
+SIDEWAYS = tuple(f"sideslip_{load}N" for load in (2000, 4200, 6500))
+
+
+@pytest.fixture(scope="module")
+def truth() -> tir.Tyre:
+    return tir.read(SAMPLE / "true.tir")
+
+
+@pytest.fixture(scope="module")
+def sister(truth) -> tir.Tyre:
+    """A similar tyre whose file has another nominal load and pressure."""
+    values = similar(truth, 1.0 / FRICTION, 1.0 / STIFFNESS)
+    return truth.replace(**values)
+
+
+@pytest.fixture(scope="module")
+def built(tmp_path_factory, sister):
+    folder = tmp_path_factory.mktemp("sister")
+    sister.write(folder / "sister.tir")
+    out = folder / "out"
+    return mffit.build(write_project(folder, SIDEWAYS), out, ensemble=12, with_report=False), out
+
+
+def test_forces_at_all_slips_are_those_of_the_tyre_itself(built, truth):
+    """Both tyres are similar, so that the scaled file is the truth to within what the side force was measured."""
+    rng = np.random.default_rng(1)
+    n = 200
+    Fz, alpha, kappa = (
+        rng.uniform(2000, 6500, n),
+        np.radians(rng.uniform(-8, 8, n)),
+        rng.uniform(-0.2, 0.2, n),
+    )
+    found, expected = (t(Fz, alpha, 0.0, kappa, turn_slip=False) for t in (built[0].tyre, truth))
+    assert np.sqrt(np.mean((found.Fx - expected.Fx) ** 2)) < 0.01 * np.sqrt(np.mean(expected.Fx**2))
+    assert np.sqrt(np.mean((found.Fy - expected.Fy) ** 2)) < 0.02 * np.sqrt(np.mean(expected.Fy**2))
+
+
+def test_every_borrowed_coefficient_says_where_it_comes_from(built, truth):
+    _, out = built
+    found = json.loads((out / "result.json").read_text())["fit"]
+    assert found["sister"]["friction"] == pytest.approx(FRICTION, rel=0.01)
+    assert found["sister"]["stiffness"] == pytest.approx(STIFFNESS, rel=0.02)
+    assert found["coefficients"]["PDX1"]["stderr"] == pytest.approx(0.05 * truth["PDX1"], rel=0.1)
+    assert {"PCX1", "PDX1", "PKX1", "RBX1", "RBY1", "RVY4", "SSZ1"} <= set(found["sister"]["coefficients"])
+    assert {found["coefficients"][name]["status"] for name in found["sister"]["coefficients"]} == {"sister"}
+    assert tir.read(out / "front.tir").status["RBX1"].startswith("from sister, scaled +- ")
+    assert any("sister tyre sister.tir" in text for text in found["explanations"])
+
+
+def test_drawn_tyres_scatter_as_stated(built):
+    """Friction of the members: mean and spread of 12 draws, within what chance does in 99.9 %."""
+    result = built[0]
+    drawn = np.array([member["PDX1"] for member in result.members])
+    q = result.fit.lent.found["PDX1"]
+    assert np.mean(drawn) == pytest.approx(q.value, abs=3.3 * q.u / np.sqrt(12))
+    assert 0.4 < np.std(drawn, ddof=1) / q.u < 1.8
+    kappa = np.linspace(0.01, 0.1, 10)
+    assert all(np.all(member(4200.0, kappa=kappa, turn_slip=False).Fx > 0.0) for member in result.members)
+
+
+def test_the_band_of_the_longitudinal_force_contains_tyres_that_differ_from_their_sister(built, truth):
+    """Draw tyres whose ratios of Fx scatter about those of Fy as stated: the stated u of PDX1 and PKX1 covers them."""
+    lent, rng = built[0].fit.lent, np.random.default_rng(3)
+    z = {name: [] for name in ("PDX1", "PKX1")}
+    for _ in range(400):
+        e = rng.standard_normal(2) * (0.05, 0.25)
+        for name, error in (("PDX1", e[0]), ("PKX1", e[1])):
+            true = truth[name] * np.exp(error)
+            z[name].append((lent.found[name].value - true) / lent.found[name].u)
+    for name, rows in z.items():
+        assert 0.90 < np.mean(np.abs(rows) < 1.96) <= 0.99, name
+
+
+def test_another_nominal_load_and_pressure_change_no_force(truth):
+    values = at_nominal(truth.values, 5000.0, 200e3)
+    # what depends on the nominal condition sideways is left out of the comparison
+    other = truth.replace(**{name: x for name, x in values.items() if isinstance(x, float)})
+    Fz, kappa, p = np.meshgrid([1500.0, 4000.0, 7000.0], [-0.15, -0.02, 0.03, 0.2], [190e3, 260e3])
+    found, expected = (t(Fz, 0.06, 0.03, kappa, p=p, turn_slip=False).Fx for t in (other, truth))
+    np.testing.assert_allclose(found, expected, rtol=1e-12)
+
+
+def test_contradictions_are_refused_with_their_line(tmp_path, sister):
+    sister.write(tmp_path / "sister.tir")
+    with pytest.raises(InputError, match=r"tyre\.toml:\d+: sister\.Fx: .*names no base file"):
+        mffit.build(write_project(tmp_path, SIDEWAYS[:1], base=""))
+    with pytest.raises(InputError, match=r"tyre\.toml:15: sister\.Fx: .*drive_4200N\.csv measures it"):
+        mffit.build(write_project(tmp_path, (*SIDEWAYS, "drive_4200N")))
+    text = (tmp_path / "sister.tir").read_text()
+    (tmp_path / "sister.tir").write_text(
+        "\n".join(row for row in text.splitlines() if not row.startswith("PKX1"))
+    )
+    with pytest.raises(InputError, match=r"sister\.tir does not state PKX1"):
+        mffit.build(write_project(tmp_path, SIDEWAYS))
