@@ -39,7 +39,7 @@ class LeftOutPrediction:
         C = problem.noise.whiten(np.column_stack(columns))
         r = problem.whitened(state)
         error = left_out_errors(C, -r, C.T @ C + np.eye(C.shape[1]), -C.T @ r, self.sweep)
-        return predicted(error, self.sweep, self.channel)
+        return predicted(error, self.sweep, self.channel, channels=len(problem.channels))
 
     def beyond_noise(self, predicted: Predicted) -> float:
         """Misfit that the noise does not explain."""

@@ -9,18 +9,22 @@ import pytest
 
 from mffit.points import Points, make_points
 from mffit.points.points import concatenate
+from mffit.rig import Readings
 from mffit.suspicion import misread
 from mffit.suspicion.mistakes import MISTAKES
 
 ISO = dict.fromkeys(("alpha", "gamma", "Fz", "Fy", "Mz"), 1.0)
+ALL = ("Fx", "Fy", "Mx", "My", "Mz")
 ALPHA = np.radians([-6.0, -4.0, -2.0, -1.0, 1.0, 2.0, 4.0, 6.0])
 
 
-def readings(points: Points) -> SimpleNamespace:
+def readings(points: Points, channels=("Fy", "Mz")) -> Readings:
     """Side force that grows less than the load, and with pressure; the trail falls with sideslip."""
     slip = 12.0 * points.direction * points.alpha + 1.1 * points.gamma
     Fy = -points.Fz * points.p / 250e3 * (1.2 - 1e-4 * points.Fz) * np.tanh(slip)
-    return SimpleNamespace(Fy=Fy, Mz=-0.03 * Fy * np.exp(-((10.0 * points.alpha) ** 2)) + 2.0 * points.mount)
+    Mz = -0.03 * Fy * np.exp(-((10.0 * points.alpha) ** 2)) + 2.0 * points.mount
+    out = {"Fy": Fy, "Mz": Mz, "Fx": -0.02 * points.Fz, "Mx": 0.04 * Fy + 5.0, "My": -0.004 * points.Fz}
+    return Readings(**{name: out[name] for name in channels})
 
 
 TYRE = SimpleNamespace(readings=readings)
@@ -34,7 +38,7 @@ CONDITIONS = [
 ]
 
 
-def campaign(n: int = 6, points: int = 8) -> list[Points]:
+def campaign(n: int = 6, points: int = 8, channels=("Fy", "Mz")) -> list[Points]:
     """Sound sweeps of sideslip, one per condition and file."""
     out = []
     for condition in CONDITIONS[:n]:
@@ -42,8 +46,8 @@ def campaign(n: int = 6, points: int = 8) -> list[Points]:
         sweep = make_points(
             ALPHA[-points:], np.radians(settings.pop("gamma_deg")), settings.pop("Fz"), V=6.0, phi_t=0.0, **settings
         )  # fmt: skip
-        true = readings(sweep)
-        out.append(sweep.replace(Fy=true.Fy, Mz=true.Mz))
+        true = readings(sweep, channels)
+        out.append(sweep.replace(**true))
     return out
 
 
@@ -92,6 +96,23 @@ MADE = {
     "its moment in N mm": times(Mz=1e3),
     "its moment in kN m": times(Mz=1e-3),
     "its moment in lbf ft": times(Mz=1.0 / 1.3558179),
+    **{
+        f"{what} reversed": times(**{channel: -1.0})
+        for channel, what in (
+            ("Fx", "its longitudinal force"),
+            ("Mx", "its overturning moment"),
+            ("My", "its rolling resistance moment"),
+        )
+    },
+    "its longitudinal force in kN": times(Fx=1e-3),
+    "its longitudinal force in kgf": times(Fx=1.0 / 9.80665),
+    "its longitudinal force in lbf": times(Fx=1.0 / 4.4482216),
+    "its overturning moment in N mm": times(Mx=1e3),
+    "its overturning moment in kN m": times(Mx=1e-3),
+    "its overturning moment in lbf ft": times(Mx=1.0 / 1.3558179),
+    "its rolling resistance moment in N mm": times(My=1e3),
+    "its rolling resistance moment in kN m": times(My=1e-3),
+    "its rolling resistance moment in lbf ft": times(My=1.0 / 1.3558179),
     "its sideslip in rad": times(alpha=np.pi / 180.0),
     "its camber in rad": times(gamma=np.pi / 180.0),
     "its pressure in psi": times(p=1.0 / 6.894757),
@@ -101,10 +122,10 @@ MADE = {
 
 @pytest.mark.parametrize("mistake", MISTAKES, ids=lambda mistake: mistake.looks)
 def test_a_mistake_undone_gives_the_sound_sweep_back(mistake):
-    (sound,) = campaign(4)[3:]
+    (sound,) = campaign(4, channels=ALL)[3:]
     broken = MADE[mistake.looks](sound)
     undone = mistake.undone(broken, ISO)
-    for name in ("alpha", "gamma", "Fz", "p", "Fy", "Mz", "direction", "mount"):
+    for name in ("alpha", "gamma", "Fz", "p", *ALL, "direction", "mount"):
         assert getattr(undone, name) == pytest.approx(getattr(sound, name), rel=1e-7), name
 
 
@@ -141,6 +162,13 @@ def test_the_misread_sweep_is_found_by_what_was_done_to_it(looks):
     assert found.before > 0.15
     assert found.after == pytest.approx(0.0, abs=1e-9)
     assert looks in found.sentence
+
+
+def test_a_reversed_overturning_moment_is_found_where_it_is_simulated():
+    sweeps = campaign(channels=("Fy", "Mx", "Mz"))
+    sweeps[3] = MADE["its overturning moment reversed"](sweeps[3])
+    found = misread(numbered(sweeps), TYRE, ISO, ("Fy", "Mx", "Mz"))
+    assert (found.sweep, found.looks, found.column) == ("d", "its overturning moment reversed", "Mx_Nm")
 
 
 def test_sound_sweeps_are_not_misread():
@@ -211,7 +239,9 @@ def found_with(
             )
         )
     sweeps[0] = sweeps[0].replace(Fz=sweeps[0].Fz / label)
-    tyre = SimpleNamespace(readings=lambda at: SimpleNamespace(Fy=-at.Fz * np.sign(at.alpha), Mz=0.0 * at.Fz))
+    tyre = SimpleNamespace(
+        readings=lambda at, channels: Readings(Fy=-at.Fz * np.sign(at.alpha), Mz=0.0 * at.Fz)
+    )
     return misread(numbered(sweeps), tyre, ISO) is not None
 
 
