@@ -87,6 +87,25 @@ class Correlation:
         bands = np.vstack([self.own, np.append(self.below[1:], 0.0)])
         return dtbtrs(bands, d, uplo="L", overwrite_b=1)[0].reshape(d.shape)
 
+    def adjoint(self, slope: np.ndarray) -> np.ndarray:
+        """Slopes by the differences d (m, k), from slopes (m, k) by the readings after :meth:`in_order`."""
+        if not self.below.any():
+            return (slope.T / self.own).T
+        bands = np.vstack([self.own, np.append(self.below[1:], 0.0)])
+        return dtbtrs(bands, slope, uplo="L", trans="T")[0].reshape(slope.shape)
+
+    def slopes(self, z: np.ndarray, white: np.ndarray, by_d: np.ndarray, memory: float, share: float) -> np.ndarray:
+        """Slopes (2,) by memory and independent share that all readings have, the logarithm of the determinant included.
+
+        ``z`` are the readings (m, k), ``white`` what :meth:`in_order` makes of them, ``by_d`` the result of :meth:`adjoint`.
+        """
+        after, place = self.chains.place > 0, self.chains.place
+        own, below = (slope[:, place] for slope in _factor_slopes(memory, share, self.chains.longest))
+        by_own = 1.0 / self.own - np.einsum("ij,ij->i", by_d, white)
+        by_below = -np.einsum("ij,ij->i", by_d[1:], white[:-1])
+        by_memory = -float(np.einsum("ij,ij->i", by_d[1:], z[:-1]) @ after[1:])
+        return own @ by_own + below[:, 1:] @ by_below + np.array([by_memory, 0.0])
+
     def sum_of(self, weight: np.ndarray) -> np.ndarray:
         """Weights (m,) of independent unit errors in the sum of readings with these weights."""
         if self.trivial:
@@ -115,3 +134,15 @@ def _factors(memory: float, share: float, length: int) -> tuple[np.ndarray, np.n
             break
         last = float(own[k])
     return own, below
+
+
+def _factor_slopes(memory: float, share: float, length: int) -> tuple[np.ndarray, np.ndarray]:
+    """Slopes (2, length) of :func:`_factors` by memory and share."""
+    own, below = _factors(memory, share, length)
+    size = np.array([2.0 * memory * (2.0 * share - 1.0), 2.0 * memory**2])
+    link = np.array([-share, -memory])
+    of_own, of_below = np.zeros((2, length)), np.zeros((2, length))
+    for k in range(1, length):
+        of_below[:, k] = (link - below[k] * of_own[:, k - 1]) / own[k - 1]
+        of_own[:, k] = (0.5 * size - below[k] * of_below[:, k]) / own[k]
+    return of_own, of_below

@@ -14,7 +14,7 @@ from mffit.diagnosis.explain import explain, only_first
 from mffit.diagnosis.explanation import Explanation
 from mffit.diagnosis.inexact import EXACT, Inexactness, with_zeros
 from mffit.diagnosis.inexact import declared as declared_inexactness
-from mffit.diagnosis.needs import possible
+from mffit.diagnosis.needs import HELD_AT, possible, without
 from mffit.diagnosis.notes import NoRepair, Note, OneSweep
 from mffit.diagnosis.priors import declared_priors, zeros_of_setups
 from mffit.diagnosis.problem import DiagnosisProblem
@@ -129,8 +129,13 @@ def _without_misread(
 def _candidates(
     effects: Sequence[Effect], points: Points, start: Simulation, known: Sequence[str]
 ) -> tuple[list[Effect], list[Note]]:
-    """Effects that could be missing, and notes on the others; what is refitted in any case (``known``) is not missing."""
+    """Effects that could be missing, and notes on the others; what is refitted in any case (``known``) is not missing.
+
+    A model whose coefficients are refitted holds at the mean temperature of the points.
+    """
     candidates, hidden = possible(effects, points, start)
+    if known:
+        candidates = [without(effect, HELD_AT) for effect in candidates]
     if len(np.unique(points.sweep)) < 2:
         return [], [*hidden, OneSweep()]
     return [e for e in candidates if not set(e.parameters) <= set(known)], [*hidden]

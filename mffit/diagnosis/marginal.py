@@ -9,6 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 from scipy.linalg import cho_solve, cholesky, solve_triangular
+from scipy.linalg.lapack import dpotri
 
 from mffit.diagnosis import constants
 from mffit.diagnosis.chains import Chains, Correlation
@@ -54,6 +55,43 @@ class MarginalChannel:
         prior = parts.log_scale / math.log(constants.STATED_NOISE_FACTOR)
         return -0.5 * float(r @ r - b @ b) - log - 0.5 * prior**2
 
+    def likelihood_and_slopes(self, parts: MarginalParts) -> tuple[float, MarginalParts]:
+        """The likelihood and its slopes by each of the parts."""
+        rows, chains, columns = self._sample
+        u, by_scale, by_growth = self._uncertainty(parts, rows)
+        z = (columns / u[:, None]) * self._sizes(parts, columns.shape[1])
+        memory = max(parts.memory, 1e-12)  # at 0 too the likelihood has a slope
+        correlation = Correlation.along(chains, [(np.ones(len(rows), bool), memory, parts.independent)])
+        white = correlation.in_order(z)
+        r, A = white[:, 0], white[:, 1:]
+        root = _factor(A)
+        log = float(np.sum(np.log(np.diag(root))) + np.sum(np.log(u)) + correlation.log)
+        inverse = dpotri(root, lower=1)[0]
+        inverse = np.tril(inverse) + np.tril(inverse, -1).T
+        x = inverse @ (A.T @ r)
+        # Slopes of half the sum of squares and half the log determinant by the whitened readings: (white @ joint).
+        joint = np.empty((len(x) + 1, len(x) + 1))
+        joint[0, 0], joint[0, 1:], joint[1:, 0] = 1.0, -x, -x
+        joint[1:, 1:] = inverse + x[:, None] * x
+        by_white = (joint @ white.T).T
+        by_difference = correlation.adjoint(by_white)
+        of_memory, of_share = correlation.slopes(z, white, by_difference, memory, parts.independent)
+        by_z = by_difference.copy(order="F")
+        by_z[:-1] -= (correlation.memory[1:] * by_difference[1:].T).T
+        by_u = 1.0 - np.einsum("ij,ij->i", by_z, z)
+        by_size, first = np.einsum("ij,ij->j", by_white, white), 1 + self.named.shape[1]
+        smooth, offsets = np.split(by_size, [first, first + self.smooth.shape[1]])[1:]
+        wide = math.log(constants.STATED_NOISE_FACTOR)
+        slopes = MarginalParts(
+            log_scale=-float(by_u @ by_scale) - parts.log_scale / wide**2,
+            growth=-float(by_u @ by_growth),
+            memory=-float(of_memory),
+            smooth=-float(np.sum(smooth)) / max(parts.smooth, 1e-300),
+            offsets=-float(np.sum(offsets)) / max(parts.offsets, 1e-300),
+            independent=-float(of_share),
+        )
+        return -0.5 * float(r @ by_white[:, 0]) - log - 0.5 * (parts.log_scale / wide) ** 2, slopes
+
     def standardised(self, parts: MarginalParts) -> np.ndarray:
         """Every reading (m,) against its prediction from all others, in units of their joint uncertainty at weight 1."""
         rows = np.argsort(self.chain, kind="stable")
@@ -88,11 +126,8 @@ class MarginalChannel:
         self, parts: MarginalParts, rows: np.ndarray, chains: Chains, columns: np.ndarray
     ) -> tuple[np.ndarray, np.ndarray, float]:
         """Residual and columns of readings in the order of their sweeps, in units of their scatter, and the log determinant."""
-        u = np.hypot(math.exp(parts.log_scale) * self.stated, parts.growth * self.size)
-        u = np.hypot(u, self.least)[rows] / np.sqrt(self.weight[rows])
-        sizes, first = np.ones(columns.shape[1]), 1 + self.named.shape[1]
-        sizes[first : first + self.smooth.shape[1]] = parts.smooth
-        sizes[first + self.smooth.shape[1] :] = parts.offsets
+        u = self._uncertainty(parts, rows)[0]
+        sizes = self._sizes(parts, columns.shape[1])
         A = (columns / u[:, None]) * sizes
         log = float(np.sum(np.log(u)))
         if parts.memory:
@@ -101,6 +136,22 @@ class MarginalChannel:
             A = correlation.in_order(A)
             log += correlation.log
         return A[:, 0], A[:, 1:], log
+
+    def _uncertainty(
+        self, parts: MarginalParts, rows: np.ndarray
+    ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Standard uncertainty of readings (m,), and the slopes of its logarithm by log scale and growth."""
+        stated, size = math.exp(parts.log_scale) * self.stated[rows], self.size[rows]
+        square = stated**2 + (parts.growth * size) ** 2 + self.least**2
+        u = np.sqrt(square / self.weight[rows])
+        return u, stated**2 / square, parts.growth * size**2 / square
+
+    def _sizes(self, parts: MarginalParts, columns: int) -> np.ndarray:
+        """Size of the residual and of each column, in which they enter the likelihood."""
+        sizes, first = np.ones(columns), 1 + self.named.shape[1]
+        sizes[first : first + self.smooth.shape[1]] = parts.smooth
+        sizes[first + self.smooth.shape[1] :] = parts.offsets
+        return sizes
 
 
 def _factor(A: np.ndarray) -> np.ndarray:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -11,6 +12,9 @@ from mffit.diagnosis.notes import NotVisible
 from mffit.effects import Effect
 from mffit.points import Points
 from mffit.rig import Simulation, distance_km, sense
+
+HELD_AT = "T_ref_degC"
+"""The number of an effect of temperature that says at which temperature the model holds."""
 
 
 def _spread(x: np.ndarray) -> float:
@@ -61,6 +65,21 @@ def missing(effect: Effect, points: Points) -> tuple[str, ...]:
     return tuple(need for need in effect.needs if not MET[need](points))
 
 
+def without(effect: Effect, name: str) -> Effect:
+    """The effect with one of its numbers as the model has it."""
+    return replace(effect, free=tuple(free for free in effect.free if free.name != name))
+
+
+def _in_range(effect: Effect, points: Points) -> Effect:
+    """The effect with a model that holds at a temperature of the data: further away, temperature is a change of the tyre."""
+    if HELD_AT not in effect.parameters:
+        return effect
+    T = points.T[np.isfinite(points.T)]
+    known = {"spread": float(np.std(T)), "lower": float(T.min()), "upper": float(T.max())}
+    free = [replace(f, **known) if f.name == HELD_AT else f for f in effect.free]
+    return replace(effect, free=tuple(free))
+
+
 def possible(
     effects: Sequence[Effect], points: Points, start: Simulation
 ) -> tuple[list[Effect], list[NotVisible]]:
@@ -75,5 +94,5 @@ def possible(
         if lack:
             lacking.setdefault(lack, []).append(effect)
         else:
-            out.append(effect.of_parts(files).of_setups(points.used_setups))
+            out.append(_in_range(effect.of_parts(files).of_setups(points.used_setups), points))
     return out, [NotVisible(needs=lack, effects=tuple(hidden)) for lack, hidden in lacking.items()]

@@ -54,6 +54,16 @@ def _of_model(channel: MarginalChannel, parts: MarginalParts, model: MemoryModel
     def density(x: np.ndarray) -> float:
         return -channel.likelihood(_at(x, parts, model, offsets=offsets)) - _log_prior(x, model, offsets)
 
+    def with_slopes(x: np.ndarray) -> tuple[float, np.ndarray]:
+        at = _at(x, parts, model, offsets=offsets)
+        value, by = channel.likelihood_and_slopes(at)
+        slopes = [by.log_scale]
+        slopes += [by.memory * at.memory * (1.0 - at.memory)] if model.memory else []
+        slopes += [by.independent * at.independent * (1.0 - at.independent)] if model.independent else []
+        slopes += [by.offsets * at.offsets] if offsets else []
+        prior, of_prior = _log_prior(x, model, offsets), _prior_slopes(at, model, offsets)
+        return -value - prior, -np.array(slopes) - of_prior
+
     found = []
     for memory in starts:
         x = [parts.log_scale]
@@ -62,7 +72,7 @@ def _of_model(channel: MarginalChannel, parts: MarginalParts, model: MemoryModel
         x += [math.log(max(parts.offsets, constants.SMALLEST_RUN_OFFSETS))] if offsets else []
         bounds = [constants.LOG_SCALE_BOUNDS, *[(-LARGEST, LARGEST)] * (len(x) - 1)]
         options = {"maxiter": int(constants.MOST_SCATTER_STEPS), "ftol": 1e-5}
-        best = minimize(density, np.array(x), bounds=bounds, method="L-BFGS-B", options=options)
+        best = minimize(with_slopes, np.array(x), jac=True, bounds=bounds, method="L-BFGS-B", options=options)
         found.append((float(best.fun), best.x))
     value, x = min(found, key=lambda row: row[0])
     return -value + _log_volume(density, x, value)
@@ -95,6 +105,18 @@ def _log_prior(x: np.ndarray, model: MemoryModel, offsets: bool) -> float:
         size = math.exp(float(x[-1]))
         log += math.log(2.0 / math.pi) + math.log(size / (1.0 + size**2))
     return log
+
+
+def _prior_slopes(at: MarginalParts, model: MemoryModel, offsets: bool) -> np.ndarray:
+    """Slopes of the same by the coordinates."""
+    out = [0.0]
+    if model.memory:
+        out.append(1.0 - 2.0 * at.memory + at.memory**2 / (1.0 + at.memory))
+    if model.independent:
+        out.append(1.0 - 2.0 * at.independent)
+    if offsets:
+        out.append((1.0 - at.offsets**2) / (1.0 + at.offsets**2))
+    return np.array(out)
 
 
 def _log_volume(density: Callable[[np.ndarray], float], x: np.ndarray, value: float) -> float:

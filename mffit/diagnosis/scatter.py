@@ -142,8 +142,8 @@ def _weighted(
     ``drift``: whether errors without memory beside those with one are considered, which tells drifts from offsets of runs.
     """
     tails = math.inf
-    for _ in range(constants.MOST_READING_WEIGHT_ROUNDS):
-        parts = _accepted(channel, parts, drift=drift)
+    for again in range(constants.MOST_READING_WEIGHT_ROUNDS):
+        parts = _accepted(channel, parts, drift=drift, near=again > 0)
         z = channel.standardised(parts)
         before, (tails, width) = tails, heavy_tails(z)
         weight = weights(z, tails, width)
@@ -154,11 +154,17 @@ def _weighted(
     return channel, parts, tails
 
 
-def _accepted(channel: MarginalChannel, start: MarginalParts, *, drift: bool) -> MarginalParts:
-    """The likeliest parts, without growth or memory if the data do not ask for them."""
+def _accepted(
+    channel: MarginalChannel, start: MarginalParts, *, drift: bool, near: bool = False
+) -> MarginalParts:
+    """The likeliest parts, without growth or memory if the data do not ask for them.
+
+    ``near``: the start is the solution for slightly different weights, so that no other maximum is sought.
+    """
     second = MarginalParts(*constants.SCATTER_SECOND_START)._replace(offsets=start.offsets)
     every = (*ALL, OFFSETS) if channel.runs is not None else ALL
-    best, whole = max((_climb(channel, x, every) for x in (start, second)), key=lambda climb: climb[1])
+    starts = (start,) if near else (start, second)
+    best, whole = max((_climb(channel, x, every) for x in starts), key=lambda climb: climb[1])
     for part in (GROWTH, MEMORY):
         reduced = [0.0 if k == part else value for k, value in enumerate(best)]
         free = tuple(k for k in every if k != part and (k not in (GROWTH, MEMORY) or best[k]))
@@ -192,9 +198,17 @@ def _climb(
     if GROWTH in free and not start.growth:
         first[GROWTH] = constants.SCATTER_START_GROWTH
     first[MEMORY], bounds[MEMORY] = np.arctanh(first[MEMORY]), np.arctanh(bounds[MEMORY])
+
+    def falling(y: np.ndarray) -> tuple[float, np.ndarray]:
+        parts = full(y)
+        value, by = channel.likelihood_and_slopes(parts)
+        slopes = np.array(by._replace(memory=by.memory * (1.0 - parts.memory**2)))
+        return -value, -slopes[chosen] * unit[chosen]
+
     found = minimize(
-        lambda y: -channel.likelihood(full(y)),
+        falling,
         first[chosen] / unit[chosen],
+        jac=True,
         bounds=bounds[chosen] / unit[chosen][:, None],
         method="L-BFGS-B",
         options={"maxiter": int(constants.MOST_SCATTER_STEPS), "ftol": 1e-6},

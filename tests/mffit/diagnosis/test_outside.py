@@ -90,5 +90,5 @@ def test_offsets_of_runs_are_checked_within_the_runs(problem):
     shifted = DiagnosisProblem(moved, problem.start, problem.noise)
     check = validate(shifted, shifted.fit((offsets,)))
     assert check.within_runs
-    assert check.gap_after.Fy_rmse_N < 0.5 * check.gap_before.Fy_rmse_N
+    assert check.gap_after.rms("Fy") < 0.5 * check.gap_before.rms("Fy")
     assert number_of("F0_N", files[0]) in offsets.parameters
