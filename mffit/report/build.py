@@ -16,7 +16,18 @@ from mffit.report import constants as report_constants
 from mffit.report import left_undrawn, page, published
 from mffit.report.build_view import PER_LOAD, STATUS_ORDER, BuildView, ChannelRow, CoefficientRow, view_of
 from mffit.report.drawing.records import Sheet
-from mffit.report.figures import bands, decomposition, files, fit, radii, residuals, sister, slip, spin, structure
+from mffit.report.figures import (
+    bands,
+    decomposition,
+    files,
+    fit,
+    radii,
+    residuals,
+    sister,
+    slip,
+    spin,
+    structure,
+)
 from mffit.results import BuildResult
 from mffit.rig_errors import MEANINGS, UNITS
 
