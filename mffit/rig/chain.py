@@ -70,9 +70,9 @@ class Chain:
         return [self._quantities[channel] for channel in channels]
 
     def at_the_tyre(self) -> dict[str, np.ndarray]:
-        """Sideslip, camber [rad], load [N] and turn slip [1/m] that the tyre itself has (n,)."""
+        """Sideslip, camber [rad], load [N], turn slip [1/m] and longitudinal slip that the tyre itself has (n,)."""
         self._pass(BEFORE)
-        names = ("alpha", "gamma", "Fz", "phi_t")
+        names = [n for n in ("alpha", "gamma", "Fz", "phi_t", "kappa") if n in self._quantities]
         return {name: np.broadcast_to(plain(self._quantities[name]), len(self.points)) for name in names}
 
     def _pass(self, errors: Iterable[RigError]) -> None:

@@ -53,7 +53,7 @@ def _data(result: BuildResult) -> dict[str, Any]:
                 "stated": stated,
             }
             for name, stated in stated_noise(points).items()
-            if name in MODELLED and fitted.channels[name].n
+            if name in MODELLED and name in fitted.channels and fitted.channels[name].n
         ],
         "values": values | {row["name"]: row["value"] for row in rows},
         "conicity": [name for name in CONICITY if name in parameters],

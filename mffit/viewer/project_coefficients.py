@@ -68,11 +68,11 @@ def movers(fitted: FitResult) -> dict[str, list[str]]:
 def _weighted_slopes(search: Fitted, names: Sequence[str]) -> dict[str, np.ndarray]:
     """By channel, derivatives (n, k) of the residuals in units of the uncertainty; 0 where a reading is not used."""
     problem = search.problem
-    _, slopes = problem.simulation.sensitivities(problem.points, names)
+    _, slopes = problem.simulation.sensitivities(problem.points, names, problem.channels)
     out = {}
     for channel, sigma in problem.sigma.items():
-        used = np.isfinite(sigma) & np.isfinite(getattr(problem.points, channel))
-        out[channel] = getattr(slopes, channel) * np.where(used, 1.0 / sigma, 0.0)[:, None]
+        used = np.isfinite(sigma) & np.isfinite(problem.points.channel(channel))
+        out[channel] = slopes[channel] * np.where(used, 1.0 / sigma, 0.0)[:, None]
     return out
 
 

@@ -44,8 +44,8 @@ def columns(points: Points, excluded: Points | None, fitted: FitResult) -> dict[
     sigma = fitted.search.problem.sigma if fitted.search is not None else {}
     return {
         **_conditions(felt),
-        **{name: listed(getattr(felt, name)) for name in CHANNELS},
-        "read": {**_conditions(read), **{name: listed(getattr(read, name)) for name in CHANNELS}},
+        **{name: listed(felt.channel(name)) for name in CHANNELS},
+        "read": {**_conditions(read), **{name: listed(read.channel(name)) for name in CHANNELS}},
         "u": {name: listed(_noise(points, name, sigma)) for name in CHANNELS},
         "unused": {name: [o.row for o in fitted.outliers if o.channel == name] for name in CHANNELS},
         "fitted": len(points),
@@ -60,7 +60,7 @@ def columns(points: Points, excluded: Points | None, fitted: FitResult) -> dict[
 
 def stated_noise(points: Points) -> dict[str, bool]:
     """By channel, whether the points state their uncertainty."""
-    return {name: bool(np.any(getattr(points, f"u_{name}") > 0.0)) for name in CHANNELS}
+    return {name: bool(np.any(points.u(name) > 0.0)) for name in CHANNELS}
 
 
 def facets(points: Points) -> list[dict[str, Any]]:
@@ -111,15 +111,14 @@ def _conditions(points: Points) -> dict[str, Any]:
 
 def _arrays(points: Points) -> dict[str, np.ndarray]:
     """The inputs of the model and the other conditions of points (n,), SI."""
-    kappa = points.kappa if hasattr(points, "kappa") else np.zeros(len(points))
-    known = {"pressure": points.p, "Vx": points.Vx, "kappa": np.nan_to_num(kappa)}
+    known = {"pressure": points.p, "Vx": points.Vx}
     inputs = {name: known[name] if name in known else getattr(points, name) for name in INPUTS}
     return inputs | {name: getattr(points, name) for name in MEASURED_ONLY}
 
 
 def _noise(points: Points, channel: str, sigma: Any) -> np.ndarray:
     """Uncertainty (n,) in whose units the misfit is stated: the stated one, else the one that the fit weighs with."""
-    stated = getattr(points, f"u_{channel}")
+    stated = points.u(channel)
     if np.any(stated > 0.0):
         return stated
     return np.asarray(sigma.get(channel, stated))
