@@ -290,8 +290,8 @@ function begin() {
 // For the console and for tests.
 window.mffit = {
   evaluate: inputs => models["1"](...inputs),
-  misfit: name => misfit(name),
-  move: (name, value) => move(name, value, true),
+  misfit: name => { recompute(); return misfit(name); },  // also before the next frame is drawn
+  move: (name, value) => { move(name, value, true); frame(); },
   data: () => project,
   trial: () => trial,
   chosen: () => chosen,

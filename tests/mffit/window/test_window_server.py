@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import sys
 import time
 from collections.abc import Callable
 from multiprocessing import Pipe
@@ -238,3 +239,16 @@ def test_a_folder_without_a_project_is_said(tmp_path):
 
     with pytest.raises(InputError, match=r"neither a tyre\.toml nor a recording"):
         open_path([tmp_path], opened=print)
+
+
+@pytest.mark.parametrize("lacking", ["uvicorn", "starlette.applications", "tomlkit"])
+def test_without_the_extra_the_sentence_says_what_to_install(tyre_toml, monkeypatch, lacking):
+    from mffit.window import open_path
+
+    for name in [name for name in sys.modules if name.startswith("mffit.window.")]:
+        monkeypatch.delitem(sys.modules, name)
+    monkeypatch.setitem(sys.modules, lacking, None)
+    if lacking == "tomlkit":
+        monkeypatch.setitem(sys.modules, "tomlkit.items", None)
+    with pytest.raises(InputError, match=r'pip install "mffit\[window\]"'):
+        open_path([tyre_toml], opened=print)
