@@ -53,7 +53,10 @@ class Vertical:
         """By channel, RL and omega, agreement of the radii [m] of these values with the means; as far as they were fitted."""
         if self.rolling is None:
             return {}
-        return {name: agreement(radius(values, self.rolling, name), self.rolling.radius(name)) for name in self.rms}
+        return {
+            name: agreement(radius(values, self.rolling, name), self.rolling.radius(name))
+            for name in self.rms
+        }
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,7 +79,9 @@ def radius(values: Mapping[str, Any], at: RollingParts, channel: str) -> Any:
     """Loaded radius, or effective rolling radius for omega, of the upright wheel [m]; plain or traced as the values are."""
     p = SimpleNamespace(**values)
     if channel == "RL":
-        return p.UNLOADED_RADIUS * p.Q_RE0 - vertical.deflection(p, at.Fz, at.p / float(values["NOMPRES"]) - 1.0)
+        return p.UNLOADED_RADIUS * p.Q_RE0 - vertical.deflection(
+            p, at.Fz, at.p / float(values["NOMPRES"]) - 1.0
+        )
     return outputs_of(("Re",), p, {"Fz": at.Fz, "Vx": at.V, "pressure": at.p})[0]
 
 
@@ -113,7 +118,9 @@ def vertical_coefficients(values: Mapping[str, Any], points: Points, held: Colle
     if np.any(np.isfinite(rolling.effective)) and loads > 1:
         names = [] if found else ["Q_RE0"]
         names = [name for name in [*names, "DREFF", "FREFF", "BREFF"][: loads - 1] if name not in held]
-        here, covariance["omega"], rms["omega"] = _fitted([*names, *beside, *lean], known, rolling, "omega", dpi)
+        here, covariance["omega"], rms["omega"] = _fitted(
+            [*names, *beside, *lean], known, rolling, "omega", dpi
+        )
         u = _standard(covariance["omega"])
         known |= here
         found |= {name: Quantity(here[name], u[name], BY_NAME[name].unit) for name in names}

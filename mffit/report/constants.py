@@ -23,6 +23,11 @@ FEWEST_SET_POINTS_OF_CURVE = Count(4, "-", "Fewer set-points over an angle show 
 SET_POINT_WIDTH = Real(0.25, "deg", "Angles closer than this count as one set-point.")
 SLIP_SET_POINT_WIDTH = Real(0.01, "-", "Longitudinal slips closer than this count as one set-point.")
 LOAD_ROUNDING = Real(10.0, "N", "Load levels are named by multiples of this, the accuracy of a held load.")
+CONTROL_OF_LOAD = Real(
+    0.03,
+    "-",
+    "Loads closer than this share of the largest load are one level in pictures: rigs hold loads to a share of their range.",
+)
 PRESSURE_ROUNDING = Real(
     1000.0, "Pa", "Pressure levels are named by multiples of this, the resolution of gauges."
 )
@@ -45,7 +50,9 @@ NEAR_ZERO_SIDESLIP = Real(1.6, "deg", "End of the sideslip axis in the picture o
 MOST_BUDGET_BARS = Count(8, "-", "Sources of uncertainty drawn at most; smaller ones are in the table.")
 LONGEST_NAME_AT_AXIS = Count(18, "-", "Characters of a tyre's name beside a panel; longer names are cut.")
 HELD_SLIP_SHARES = Series(
-    (0.0, 0.15, 0.5), "-", "Longitudinal slips of the curves of trail, as shares of the tested slip: none, small, large."
+    (0.0, 0.15, 0.5),
+    "-",
+    "Longitudinal slips of the curves of trail, as shares of the tested slip: none, small, large.",
 )
 LEAST_PURE_FORCE = Real(
     0.25, "-", "Least force of pure slip over its peak for which readings show a weight of combined slip."
@@ -58,11 +65,17 @@ HELD_SIDESLIP_SHARES = Series(
 )
 
 MOST_MAPS_PER_CHANNEL = Count(
-    30, "-", "Most conditions with a residual map: more than most campaigns have; those with the most points are shown."
+    30,
+    "-",
+    "Most conditions with a residual map: more than most campaigns have; those with the most points are shown.",
 )
-MAPS_PER_ROW = Count(6, "-", "Residual maps beside each other; more would be narrower than their axis labels.")
+MAPS_PER_ROW = Count(
+    6, "-", "Residual maps beside each other; more would be narrower than their axis labels."
+)
 SLIP_SHOWN_APART = Real(0.1, "-", "Slips that differ by a tenth of this lie beside each other in a map.")
-SHARE_OF_ROOM = Real(0.9, "-", "Share of the room to the end of a map's axis that points at one place fill at most.")
+SHARE_OF_ROOM = Real(
+    0.9, "-", "Share of the room to the end of a map's axis that points at one place fill at most."
+)
 RESIDUAL_SCALE = Real(4.0, "-", "End of the colour scale of residual maps, in units of noise.")
 SMALLEST_GAP_SCALE = Real(
     4.0, "-", "Shortest colour scale of a diagnosis in units of noise, so that noise looks plain."

@@ -67,9 +67,21 @@ class CurveCondition:
 
 
 def load_levels(points: Points) -> np.ndarray:
-    """Load of each point's level [N], rounded."""
+    """Load of each point's level [N], rounded; a level that is within the control of the load of a larger one belongs to it."""
+    found = levels.level_values(points.Fz, levels.LOAD)
+    values, counts = np.unique(found[np.isfinite(found)], return_counts=True)
+    near = constants.CONTROL_OF_LOAD * float(np.max(values, initial=0.0))
+    taken = np.zeros(len(values), dtype=bool)
+    out = found.copy()
+    for k in np.argsort(-counts, kind="stable"):
+        members = ~taken & (np.abs(values - values[k]) < near)
+        if taken[k] or not members.any():
+            continue
+        taken |= members
+        rows = np.isin(found, values[members])
+        out[rows] = np.median(points.Fz[rows]) if members.sum() > 1 else values[k]
     step = constants.LOAD_ROUNDING
-    return np.round(levels.level_values(points.Fz, levels.LOAD) / step) * step
+    return np.round(out / step) * step
 
 
 def pressure_levels(points: Points) -> np.ndarray:
@@ -117,19 +129,22 @@ def _slip_curves(points: Points) -> list[Curve]:
         return []
     found: list[Curve] = []
     load, pressure = load_levels(points), pressure_levels(points)
+    alpha = _nearest_level(points, points.alpha, levels.SIDESLIP)
+    gamma = _nearest_level(points, points.gamma, levels.CAMBER)
     for name, rows in _sweeps(points):
         if np.all(points.free_rolling[rows]):
             continue
-        # Levels within the sweep: those of a sideslip sweep over all angles say nothing about the angles that are held here.
-        alpha, gamma = (
-            np.degrees(levels.level_values(angle[rows], kind))
-            for angle, kind in ((points.alpha, levels.SIDESLIP), (points.gamma, levels.CAMBER))
-        )
-        keys = np.column_stack(
-            [load[rows], pressure[rows], alpha, points.direction[rows], points.mount[rows], np.round(gamma, 1)]
-        )
+        columns = (load, pressure, alpha, points.direction, points.mount, gamma)
+        keys = np.column_stack([column[rows] for column in columns])
         found += _along(points, name, "kappa", rows, keys, constants.SLIP_SET_POINT_WIDTH)
     return found
+
+
+def _nearest_level(points: Points, angle: np.ndarray, kind: levels.LevelKind) -> np.ndarray:
+    """The nearest angle (n,) [deg] that was held while the wheel was driven or braked, to a tenth."""
+    held = np.unique(np.round(np.degrees(levels.level_values(angle[~points.free_rolling], kind)), 1)) + 0.0
+    nearest: np.ndarray = held[np.argmin(np.abs(np.degrees(angle)[:, None] - held), axis=1)]
+    return nearest
 
 
 def _along(

@@ -243,9 +243,7 @@ def _colour_scale(scale: ColourScale) -> Figure:
             Words(at, 2.0, text, size=NUMBER, colour=style.MUTED, transform=points, align="center")
         )
     behind = begin + width + 8.0
-    figure.add_artist(
-        Words(behind, 12.0, scale.label, size=LABEL, colour=style.INK, transform=points)
-    )
+    figure.add_artist(Words(behind, 12.0, scale.label, size=LABEL, colour=style.INK, transform=points))
     return figure
 
 

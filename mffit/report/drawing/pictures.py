@@ -81,7 +81,11 @@ def _drawing(figure: Figure) -> Drawing:
     """The figure as SVG, where subscripts are set by the browser, and as pixels, where matplotlib sets them."""
     canvas = figure.canvas
     assert isinstance(canvas, FigureCanvasAgg)
-    written = [a for a in (*figure.get_children(), *(a for axes in figure.axes for a in axes.texts)) if isinstance(a, Text)]
+    written = [
+        a
+        for a in (*figure.get_children(), *(a for axes in figure.axes for a in axes.texts))
+        if isinstance(a, Text)
+    ]
     indexed = [text for text in written if SUBSCRIPT.search(text.get_text())]
     stream = io.StringIO()
     figure.savefig(stream, format="svg", transparent=True, metadata={"Date": None})

@@ -32,7 +32,9 @@ def bands(view: BuildView) -> Sheet:
     written = files.written
     loads = [written["FZMIN"], float(view.model["FNOMIN"]), written["FZMAX"]]
     colours = style.ramp(loads)
-    sideways = [name for name in CHANNELS if name in SIDEWAYS or (name == "Mx" and name in view.points.measured)]
+    sideways = [
+        name for name in CHANNELS if name in SIDEWAYS or (name == "Mx" and name in view.points.measured)
+    ]
     rows = [[_panel(view, over, name, colours) for name in sideways] for over in LIMITS]
     if len(sideways) == len(SIDEWAYS):  # both angles beside each other
         rows = [[panel for row in rows for panel in row]]

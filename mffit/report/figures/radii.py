@@ -17,7 +17,10 @@ from mffit.report.drawing.records import Axis, Band, Look, Panel, Sheet, Trace
 from mffit.report.with_band import with_band
 
 MILLIMETRES = 1e3
-WORDS = {"RL": f"{CHANNELS['RL'].word} {CHANNELS['RL'].mathtext} [mm]", "omega": "rolling radius R$_{e}$ [mm]"}
+WORDS = {
+    "RL": f"{CHANNELS['RL'].word} {CHANNELS['RL'].mathtext} [mm]",
+    "omega": "rolling radius R$_{e}$ [mm]",
+}
 """What is drawn for each channel."""
 READ = Look(colour=style.MUTED, marker="o", size=3.2)
 LINE = Look(colour=style.MUTED, line="-", width=1.0)
@@ -60,6 +63,4 @@ def _panel(
             Trace(name=f"file, {name}", x=load, y=mm * line, look=Look(colour=colour, line="-", width=1.0)),
             Trace(name=f"measured, {name}", x=rolling.Fz[rows], y=mm * read[rows], look=replace(READ, colour=colour)),
         ]  # fmt: skip
-    return Panel(
-        title=WORDS[channel], x=Axis(label=labels.LOAD.axis), y=Axis(label="mm"), series=series
-    )
+    return Panel(title=WORDS[channel], x=Axis(label=labels.LOAD.axis), y=Axis(label="mm"), series=series)

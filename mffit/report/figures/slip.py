@@ -13,7 +13,18 @@ from mffit.quantities import CHANNELS, MODEL
 from mffit.report import constants, labels, style
 from mffit.report.build_view import BuildView, ChannelRow
 from mffit.report.curves import Curve
-from mffit.report.drawing.records import Axis, Band, Guide, Look, Panel, Ribbon, Sheet, Trace, in_rows, thinned
+from mffit.report.drawing.records import (
+    Axis,
+    Band,
+    Guide,
+    Look,
+    Panel,
+    Ribbon,
+    Sheet,
+    Trace,
+    in_rows,
+    thinned,
+)
 from mffit.report.figures.fit import MODEL as LINE
 from mffit.report.figures.fit import READINGS, Overlaid, curve_traces, mark_key
 from mffit.report.with_band import Banded, several_with_band
@@ -83,9 +94,7 @@ def _sideslip_key(colours: dict[float, str]) -> dict[str, Look]:
 def main_slip_curves(view: BuildView) -> dict[float, list[Curve]]:
     """By load, the forward curves over slip of the upright wheel at the pressure nearest to the nominal one."""
     upright = [
-        c
-        for c in slip_curves(view.curves)
-        if c.forward and abs(c.camber) < constants.UPRIGHT_ENOUGH_TO_DRAW
+        c for c in slip_curves(view.curves) if c.forward and abs(c.camber) < constants.UPRIGHT_ENOUGH_TO_DRAW
     ]
     nominal = view.config.tyre.nominal_pressure
     nearest = min((c.pressure for c in upright), key=lambda p: abs(p - nominal), default=0.0)
@@ -106,6 +115,12 @@ def slip_range(view: BuildView) -> tuple[float, float]:
     """Ends of the tested longitudinal slip."""
     kappa = view.points.kappa
     return min(0.0, float(kappa.min())), max(0.0, float(kappa.max()))
+
+
+def sideslip_range(view: BuildView) -> tuple[float, float]:
+    """Ends of the tested sideslip [rad], which was run to one side only on some rigs."""
+    alpha = view.felt.alpha
+    return min(0.0, float(alpha.min())), max(0.0, float(alpha.max()))
 
 
 def friction_ellipse(view: BuildView) -> Sheet:
@@ -143,10 +158,11 @@ def _ellipse(view: BuildView, load: float, members: Sequence[Curve], colours: di
 def friction_limit(view: BuildView, curve: Curve) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Slip, sideslip [rad] (m,) and direction (m, 2) of the largest force of the model in every direction, once around."""
     steps = int(constants.STEPS_OF_FILE_CURVE)
-    reach = float(np.max(np.abs(view.points.alpha)))
     kappa, alpha = (
         grid.ravel()
-        for grid in np.meshgrid(np.linspace(*slip_range(view), steps), np.linspace(-reach, reach, steps))
+        for grid in np.meshgrid(
+            np.linspace(*slip_range(view), steps), np.linspace(*sideslip_range(view), steps)
+        )
     )
     force = np.column_stack(_forces(view, _inputs(view, curve, kappa=kappa, alpha=alpha)))
     turn = np.linspace(0.0, 2.0 * np.pi, 4 * (steps // 2) + 1)
@@ -250,9 +266,7 @@ def _weight(
     at = _weights_at(view, curve, read, view.felt.alpha[curve.index], weight).line
     tyre = SimpleNamespace(**view.model.values)
     model, pure = (
-        outputs_of(
-            (channel,), tyre, _inputs(view, curve, kappa=k, alpha=a), turn_slip=view.on_disc
-        )[0]
+        outputs_of((channel,), tyre, _inputs(view, curve, kappa=k, alpha=a), turn_slip=view.on_disc)[0]
         for k, a in (
             (read, view.felt.alpha[curve.index]),
             ((read, 0.0 * read) if channel == "Fx" else (0.0 * read, view.felt.alpha[curve.index])),
@@ -289,9 +303,11 @@ def trail(view: BuildView) -> Sheet:
     end = high if high > -low else low
     slips = [share * end for share in constants.HELD_SLIP_SHARES]
     colours = dict(zip(slips, style.ramp(range(len(slips))).values(), strict=True))
-    reach = float(np.max(np.abs(view.points.alpha)))
-    x = np.linspace(-reach, reach, constants.STEPS_OF_FILE_CURVE)
-    quantities = (("trail", MODEL["trail"].axis, 1e3), ("residual_torque", "residual moment M$_{zr}$ [Nm]", 1.0))
+    x = np.linspace(*sideslip_range(view), constants.STEPS_OF_FILE_CURVE)
+    quantities = (
+        ("trail", MODEL["trail"].axis, 1e3),
+        ("residual_torque", "residual moment M$_{zr}$ [Nm]", 1.0),
+    )
     rows: list[list[Panel]] = [[] for _ in quantities]
     for load, members in sorted(main_slip_curves(view).items()):
         series: list[list[Band | Trace]] = [[] for _ in quantities]

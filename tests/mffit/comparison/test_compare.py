@@ -38,7 +38,9 @@ def test_numbers_are_those_of_the_equations():
     assert found["C_phit_Nm"] == pytest.approx(implied, rel=2e-3)
     assert found["r_e_m"] == pytest.approx(float(state.Re))
     assert found["K_xk_N"] == pytest.approx(float(state.K_xk), rel=2e-3)
-    assert found["mu_x"] == pytest.approx(float(state.mu_x), rel=5e-3)  # the shift S_Vx makes the two ends differ
+    assert found["mu_x"] == pytest.approx(
+        float(state.mu_x), rel=5e-3
+    )  # the shift S_Vx makes the two ends differ
     assert "C_phit_Nm" not in characteristics(tyre, 1400.0, turn_slip=False)
 
 

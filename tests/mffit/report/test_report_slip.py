@@ -124,7 +124,8 @@ def test_measured_weights_scatter_about_the_ratio_of_the_true_forces(view):
 
 def test_a_band_is_what_the_coefficient_moves(view):
     where = {"Fz": 1400.0, "kappa": np.linspace(-0.2, 0.2, 9), "alpha": 0.05, "Vx": 16.0, "pressure": 250e3}
-    found = with_band(view.model.values, Posterior(("PDX1",), np.array([[U["PDX1"] ** 2]])), lambda p: outputs_of(("Fx",), p, where)[0])  # fmt: skip
+    known = Posterior(("PDX1",), np.array([[U["PDX1"] ** 2]]))
+    found = with_band(view.model.values, known, lambda p: outputs_of(("Fx",), p, where)[0])
     ends = [
         view.model.replace(PDX1=view.model["PDX1"] + side * U["PDX1"])(
             1400.0, 0.05, 0.0, where["kappa"], Vx=16.0, p=250e3, turn_slip=False
