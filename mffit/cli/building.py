@@ -35,13 +35,9 @@ FEWEST_TYRES_TO_COMPARE = 2
     help="Set a coefficient as [coefficients] does, instead of the entry there: PCY1=1.3 holds it, RBX1=base too; "
     "'PEY1={min=-3, max=0.5}' bounds it. May be repeated.",
 )
+@click.option("--no-report", is_flag=True, help="Write neither report.html nor plots, for quick tries; one TYRE_TOML.")
 @click.option(
-    "--no-report", is_flag=True, help="Write neither report.html nor plots, for quick tries; one TYRE_TOML."
-)
-@click.option(
-    "--strict",
-    is_flag=True,
-    help="Exit code 3 also if the result is only in doubt, for automatic runs; one TYRE_TOML.",
+    "--strict", is_flag=True, help="Exit code 3 also if the result is only in doubt, for automatic runs; one TYRE_TOML."
 )
 @click.option("--jobs", type=click.IntRange(1), default=1, help="Number of tyres to build at the same time.")
 @click.option("--dask", metavar="ADDRESS", help="Build on the workers of this Dask scheduler.")
@@ -85,9 +81,7 @@ def build(
                 "--set is a try with one TYRE_TOML: build the tyres one by one, or write [coefficients]"
             )
         if no_report or strict:
-            raise click.UsageError(
-                "--no-report and --strict are for one TYRE_TOML: build the tyres one by one"
-            )
+            raise click.UsageError("--no-report and --strict are for one TYRE_TOML: build the tyres one by one")
         _build_many(tyre_tomls, out, ensemble, jobs, dask, voice)
     else:
         _build(tyre_tomls[0], out, ensemble, coefficients, not no_report, strict, voice)
@@ -121,9 +115,7 @@ def _build(
         click.echo(f"{result.tir_path} is not to be trusted: see above", err=True)
         raise SystemExit(NOT_TRUSTED)
     if strict and result.trust.doubts:
-        click.echo(
-            f"{result.tir_path} is in doubt, and --strict asks for more: {result.trust.doubts[0]}", err=True
-        )
+        click.echo(f"{result.tir_path} is in doubt, and --strict asks for more: {result.trust.doubts[0]}", err=True)
         raise SystemExit(NOT_TRUSTED)
 
 

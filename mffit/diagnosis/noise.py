@@ -175,3 +175,5 @@ class Noise:
             ]
         )
         return replace(self, u=u / np.sqrt(weight), scatter=dict(scatter), weight=weight)
+
+
