@@ -141,7 +141,6 @@ MODEL = {
     "K_yg0": DIRECT["C_gamma"]._replace(symbol="K_yγ0"),
     "trail": QuantityName("pneumatic trail", "t", "mm"),
     "K_xk": CHARACTERISTICS["K_xk_N"],
-    "Re": DIRECT["r_e"]._replace(symbol="R_e"),
     "sigma_y": QuantityName("lateral relaxation length", "σ_y", "m"),
 }
 """Inputs and outputs of the tyre model, by their names in tir; shown in these units, computed in SI."""

@@ -86,7 +86,9 @@ def _curves(
     for over, end, channels in CURVES:
         x = np.linspace(-reach[end], reach[end], constants.STEPS_OF_COMPARED_CURVE)
         alpha, gamma, kappa = (x if over == varied else 0.0 * x for varied in ("alpha", "gamma", "kappa"))
-        where = make_points(alpha, gamma, load, kappa=kappa, p=pressure, V=float(first.tyre["LONGVL"]), phi_t=0.0)
+        where = make_points(
+            alpha, gamma, load, kappa=kappa, p=pressure, V=float(first.tyre["LONGVL"]), phi_t=0.0
+        )
         (a, half_a), (b, half_b) = (_curve(side, where, channels) for side in (first, second))
         for channel in channels:
             yield CurveGap(
@@ -101,9 +103,7 @@ def _curves(
             )
 
 
-def _curve(
-    side: ComparedSubject, where: Points, channels: Sequence[str]
-) -> tuple[Readings, Readings | None]:
+def _curve(side: ComparedSubject, where: Points, channels: Sequence[str]) -> tuple[Readings, Readings | None]:
     """Readings of a file on a perfect rig, and the half widths of their bands."""
     simulation = Simulation.of(side.tyre, turn_slip=side.turn_slip)
     band = None

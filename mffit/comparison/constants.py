@@ -11,5 +11,7 @@ COMPARED_SAME_LOAD = Real(0.02, "-", "Relative difference up to which two loads 
 SIGNIFICANT_DIFFERENCE = Real(2.0, "-", "Standard uncertainties above which a difference is significant.")
 STEPS_OF_COMPARED_CURVE = Count(61, "-", "Points of a compared curve.")
 COMPARED_SLIP = Real(
-    0.3, "-", "Longest slip at which Fx is compared if the files allow more: well beyond the peak of every tyre."
+    0.3,
+    "-",
+    "Longest slip at which Fx is compared if the files allow more: well beyond the peak of every tyre.",
 )

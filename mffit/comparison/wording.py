@@ -36,7 +36,7 @@ def headline(found: Comparison) -> str:
     gap = {c: max((g.rms for g in found.curves if g.channel == c), default=0.0) for c in CHANNELS}
     if not any(gap.values()):
         return f"The curves of {found.first} and {found.second} do not differ; {_significant(found)}."
-    named = {c: q for c, q in CHANNELS.items() if c in SIDEWAYS or gap[c]}
+    named = {**SIDEWAYS, **{c: q for c, q in CHANNELS.items() if gap[c]}}
     said = " and ".join(f"{c} by up to {gap[c]:.3g} {q.unit} rms" for c, q in named.items())
     return f"The curves of {found.first} and {found.second} differ in {said}; {_significant(found)}."
 

@@ -118,6 +118,8 @@ def _slip_curves(points: Points) -> list[Curve]:
         return []
     found: list[Curve] = []
     load, pressure = load_levels(points), pressure_levels(points)
+    alpha = _nearest_level(points, points.alpha, levels.SIDESLIP)
+    gamma = _nearest_level(points, points.gamma, levels.CAMBER)
     for name, rows in _sweeps(points):
         if np.all(points.free_rolling[rows]):
             continue
@@ -138,6 +140,13 @@ def _slip_curves(points: Points) -> list[Curve]:
         )
         found += _along(points, name, "kappa", rows, keys, constants.SLIP_SET_POINT_WIDTH)
     return found
+
+
+def _nearest_level(points: Points, angle: np.ndarray, kind: levels.LevelKind) -> np.ndarray:
+    """The nearest angle (n,) [deg] that was held while the wheel was driven or braked, to a tenth."""
+    held = np.unique(np.round(np.degrees(levels.level_values(angle[~points.free_rolling], kind)), 1)) + 0.0
+    nearest: np.ndarray = held[np.argmin(np.abs(np.degrees(angle)[:, None] - held), axis=1)]
+    return nearest
 
 
 def _along(

@@ -59,7 +59,6 @@ PANELS = (
     ViewerPanel("phi_t", "Mz", "turn-slip moment", turn_slip=True),
     ViewerPanel("gamma", "Mx"),
     ViewerPanel("Fz", "sigma_y"),
-    ViewerPanel("Fz", "Re"),
     ViewerPanel("Vx", "My"),
 )
 OUTPUTS = tuple(dict.fromkeys(name for panel in PANELS for name in (panel.x, panel.y) if name not in INPUTS))

@@ -117,6 +117,12 @@ def slip_range(view: BuildView) -> tuple[float, float]:
     return min(0.0, float(kappa.min())), max(0.0, float(kappa.max()))
 
 
+def sideslip_range(view: BuildView) -> tuple[float, float]:
+    """Ends of the tested sideslip [rad], which was run to one side only on some rigs."""
+    alpha = view.felt.alpha
+    return min(0.0, float(alpha.min())), max(0.0, float(alpha.max()))
+
+
 def friction_ellipse(view: BuildView) -> Sheet:
     """Fx over Fy at each load, sideslip as parameter; points less the errors of the rig, and the tyre with its bands."""
     groups = main_slip_curves(view)
@@ -152,10 +158,11 @@ def _ellipse(view: BuildView, load: float, members: Sequence[Curve], colours: di
 def friction_limit(view: BuildView, curve: Curve) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Slip, sideslip [rad] (m,) and direction (m, 2) of the largest force of the model in every direction, once around."""
     steps = int(constants.STEPS_OF_FILE_CURVE)
-    reach = float(np.max(np.abs(view.points.alpha)))
     kappa, alpha = (
         grid.ravel()
-        for grid in np.meshgrid(np.linspace(*slip_range(view), steps), np.linspace(-reach, reach, steps))
+        for grid in np.meshgrid(
+            np.linspace(*slip_range(view), steps), np.linspace(*sideslip_range(view), steps)
+        )
     )
     force = np.column_stack(_forces(view, _inputs(view, curve, kappa=kappa, alpha=alpha)))
     turn = np.linspace(0.0, 2.0 * np.pi, 4 * (steps // 2) + 1)
@@ -296,8 +303,7 @@ def trail(view: BuildView) -> Sheet:
     end = high if high > -low else low
     slips = [share * end for share in constants.HELD_SLIP_SHARES]
     colours = dict(zip(slips, style.ramp(range(len(slips))).values(), strict=True))
-    reach = float(np.max(np.abs(view.points.alpha)))
-    x = np.linspace(-reach, reach, constants.STEPS_OF_FILE_CURVE)
+    x = np.linspace(*sideslip_range(view), constants.STEPS_OF_FILE_CURVE)
     quantities = (
         ("trail", MODEL["trail"].axis, 1e3),
         ("residual_torque", "residual moment M$_{zr}$ [Nm]", 1.0),

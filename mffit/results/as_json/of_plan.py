@@ -56,7 +56,11 @@ def comparison(found: Comparison) -> dict[str, Any]:
                 "load_N": gap.load,
                 "rms": gap.rms,
                 "largest": gap.largest[0],
-                **({"at_kappa": gap.largest[1]} if gap.over == "kappa" else {"at_deg": math.degrees(gap.largest[1])}),
+                **(
+                    {"at_kappa": gap.largest[1]}
+                    if gap.over == "kappa"
+                    else {"at_deg": math.degrees(gap.largest[1])}
+                ),
             }
             for gap in found.curves
         ],

@@ -37,6 +37,10 @@ def test_numbers_are_those_of_the_equations():
     implied = abs(float(state.K_yg0)) * tyre["UNLOADED_RADIUS"] / (1.0 - tyre["PECP1"])
     assert found["C_phit_Nm"] == pytest.approx(implied, rel=2e-3)
     assert found["r_e_m"] == pytest.approx(float(state.Re))
+    assert found["K_xk_N"] == pytest.approx(float(state.K_xk), rel=2e-3)
+    assert found["mu_x"] == pytest.approx(
+        float(state.mu_x), rel=5e-3
+    )  # the shift S_Vx makes the two ends differ
     assert "C_phit_Nm" not in characteristics(tyre, 1400.0, turn_slip=False)
 
 
@@ -178,10 +182,11 @@ def test_a_file_is_compared_with_data(folder, stiffer, tmp_path):
     row = by_key(wrong)["C_alpha_N_per_rad"]
     assert abs(by_key(right)["C_alpha_N_per_rad"].z) < 3.0 < abs(row.z)
     assert row.change > 0.0  # the data are less stiff, and C_alpha is negative
-    readings = wrong.simulation.readings(wrong.points)
-    apart = {c: getattr(wrong.points, c) - getattr(readings, c) for c in ("Fy", "Mz")}
-    Fy, Mz = (f"{np.sqrt(np.nanmean(apart[c] ** 2)):.3g}" for c in ("Fy", "Mz"))
-    assert f" by {Fy} N rms in Fy and {Mz} Nm rms in Mz; numbers that differ" in wording.headline(wrong)
+    readings = wrong.simulation.readings(wrong.points, ("Fy", "My", "Mz"))
+    apart = {c: wrong.points.channel(c) - getattr(readings, c) for c in ("Fy", "My", "Mz")}
+    Fy, My, Mz = (f"{np.sqrt(np.nanmean(gap**2)):.3g}" for gap in apart.values())
+    said = f" by {Fy} N rms in Fy and {My} Nm rms in My and {Mz} Nm rms in Mz; numbers that differ"
+    assert said in wording.headline(wrong)
     # The same sign by sweep.
     for gap in wrong.sweeps:
         rows = np.array([wrong.points.sweep_names[k] == gap.sweep for k in wrong.points.sweep])

@@ -65,3 +65,15 @@ def test_samples_between_two_loads_do_not_join_them():
     way = {name: np.full(8, column) for name, column in way.items()} | {"Fz": np.linspace(950.0, 1450.0, 8)}
     points = made_points({f"{Fz:.0f}": sweep(SIDESLIP, 0.0, Fz) for Fz in (900.0, 1500.0)} | {"way": way})
     assert {c.load for c in curves(points)} >= {900.0, 1500.0}
+
+
+def test_a_load_that_the_rig_does_not_hold_is_one_level():
+    """Rigs hold a load to a share of their range: 534 N of up to 2700 N, held to 50 N, are no two panels."""
+    rng = np.random.default_rng(4)
+    slip = np.tile(SIDESLIP, 6)
+    small = sweep(slip, 0.0, 534.0)
+    small["Fz"] = 534.0 + np.where(rng.random(len(slip)) < 0.2, 45.0, 10.0 * rng.standard_normal(len(slip)))
+    points = made_points({"small": small, "large": sweep(SIDESLIP, 0.0, 2700.0)})
+    assert [c.load for c in conditions(points)] == pytest.approx([535.0, 2700.0], abs=15.0)
+    apart = made_points({str(load): sweep(SIDESLIP, 0.0, load) for load in (534.0, 620.0, 2700.0)})
+    assert [c.load for c in conditions(apart)] == [530.0, 620.0, 2700.0]

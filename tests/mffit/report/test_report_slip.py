@@ -1,0 +1,166 @@
+"""Pictures of driving, braking and combined slip show the readings and the physics of a known tyre."""
+
+from __future__ import annotations
+
+import dataclasses
+
+import numpy as np
+import pytest
+from report_toys import made_result
+
+from mffit import parts
+from mffit.fit.agreement import with_points
+from mffit.fit.coverage import coverage
+from mffit.fit.posterior import Posterior
+from mffit.report import build, constants, page
+from mffit.report.build_view import view_of
+from mffit.report.drawing.records import Map, Ribbon, Trace
+from mffit.report.figures import residuals, slip
+from mffit.report.with_band import with_band
+from mffit.rig import Simulation
+from mffit.rig_errors import NO_FAULTS
+from tests.mffit.fit import combined_programme as belt
+from tir.outputs import outputs_of
+
+U = {"PDX1": 0.02, "RBX1": 0.4, "RBY1": 0.4, "QDZ1": 0.002}
+
+
+@pytest.fixture(scope="module")
+def view():
+    """A build of the programme whose model is the true tyre on its rig."""
+    disc = made_result(phi_t=0.0, rig={"type": "flat-track"})
+    points, tyre = belt.programme(), belt.truth()
+    rig = Simulation.of(tyre, NO_FAULTS.replace(Mx0_Nm=30.0), turn_slip=False)
+    readings = rig.readings(points, belt.NOISE)
+    fit = dataclasses.replace(
+        disc.fit,
+        tyre=tyre,
+        simulation=rig,
+        model=readings,
+        channels=with_points(readings, points),
+        coverage=coverage(points, "left"),
+        posterior=Posterior(tuple(U), np.diag(np.square([*U.values()]))),
+    )
+    return view_of(dataclasses.replace(disc, points=points, parts=parts.split(points), fit=fit))
+
+
+def named(panel, kind, begin):
+    return [s for s in panel.series if isinstance(s, kind) and s.name.startswith(begin)]
+
+
+def test_every_reading_is_on_one_curve_over_an_angle_or_over_slip(view):
+    rows = np.concatenate([curve.index for curve in view.curves])
+    assert sorted(rows) == list(range(len(view.points)))
+    assert view.beside_curves == 0
+    over = {o: sum(c.over == o for c in view.curves) for o in ("alpha", "gamma", "kappa")}
+    assert over == {"alpha": 3 * 2 + 2 * 2, "gamma": 0, "kappa": 3 * 2 * 5 + 2 * 2}
+    held = {(c.load, c.camber): [] for c in view.curves if c.over == "kappa" and c.pressure == 250.0}
+    for curve in view.curves:
+        if curve.over == "kappa" and curve.pressure == 250.0:
+            held[curve.load, curve.camber].append(curve.held)
+    assert all(sideslips == pytest.approx([-5.0, -2.0, 0.0, 2.0, 5.0]) for sideslips in held.values())
+    assert set(held) == {(load, camber) for load in belt.LOADS for camber in (0.0, 6.0)}
+
+
+def test_panels_over_slip_hold_every_driven_reading_of_each_channel(view):
+    driven = sum(len(c.index) for c in view.curves if c.over == "kappa")
+    for channel in view.channels:
+        sheet = slip.over_slip(view, channel)
+        assert len(sheet.panels) == 3 * 2 + 2 * 2
+        assert sheet.left_out == 0
+        assert sum(len(s.x) for p in sheet.panels for s in named(p, Trace, "sweep")) == driven
+
+
+def test_lines_over_slip_drive_forwards_and_go_through_the_readings(view):
+    (Fx,) = (channel for channel in view.channels if channel.name == "Fx")
+    for curve in slip.slip_curves(view.curves):
+        line = view.lines[curve.key]
+        assert np.all(line.raw["Fx"][line.x > 0.02] > 0.0)
+        apart = Fx.measured[curve.index] - np.interp(curve.varied(view.points), line.x, line.raw["Fx"])
+        assert np.std(apart) < 2.0 * belt.NOISE["Fx"] + 0.01 * np.ptp(line.raw["Fx"])  # chords of a bent line
+
+
+def test_the_friction_limit_is_closed_convex_and_holds_the_readings(view):
+    sheet = slip.friction_ellipse(view)
+    assert [panel.title for panel in sheet.panels] == ["900 N", "1400 N", "2100 N"]
+    for panel in sheet.panels:
+        (limit,) = named(panel, Trace, slip.EDGE_NAME)
+        corners = np.column_stack([limit.x, limit.y])
+        assert corners[0] == pytest.approx(corners[-1])
+        sides = np.diff(corners, axis=0)
+        sides = sides[np.hypot(*sides.T) > 0.0]
+        following = np.roll(sides, -1, axis=0)
+        turn = sides[:, 0] * following[:, 1] - sides[:, 1] * following[:, 0]
+        size = float(np.max(np.abs(corners)))
+        assert np.all(turn < 1e-9 * size**2) or np.all(turn > -1e-9 * size**2)
+        load = float(panel.title.split()[0])
+        assert 0.9 * load < float(limit.y.max()) < 1.6 * load
+        sense = np.sign(turn.sum())
+        outwards = np.column_stack([sides[:, 1], -sides[:, 0]]) * sense / np.hypot(*sides.T)[:, None]
+        start = corners[:-1][np.hypot(*np.diff(corners, axis=0).T) > 0.0]
+        for read in named(panel, Trace, "measured"):
+            places = np.column_stack([read.x, read.y])
+            beyond = np.max(np.einsum("ij,kij->ki", outwards, places[:, None] - start), axis=1)
+            assert np.max(beyond) < 4.0 * belt.NOISE["Fx"]
+        assert named(panel, Ribbon, slip.EDGE_NAME)
+
+
+def test_measured_weights_scatter_about_the_ratio_of_the_true_forces(view):
+    tyre, sheet = belt.truth(), slip.weights(view)
+    for panel in sheet.panels[:3]:
+        load = float(panel.title.split()[0])
+        for line in named(panel, Trace, "model"):
+            alpha = np.radians(float(line.name.split("= ")[1].rstrip("°").replace("−", "-")))
+            far = np.abs(line.x) > 0.05
+            kappa = line.x[far]
+            pure = tyre(load, 0.0, 0.0, kappa, Vx=16.0, p=250e3, turn_slip=False).Fx
+            both = tyre(load, alpha, 0.0, kappa, Vx=16.0, p=250e3, turn_slip=False).Fx
+            assert line.y[far] == pytest.approx(both / pure, abs=1e-3)
+            (read,) = named(panel, Trace, line.name.replace("model", "measured"))
+            shown = np.isfinite(read.y)
+            gap = read.y[shown] - np.interp(read.x[shown], line.x, line.y)
+            assert np.mean(gap) == pytest.approx(0.0, abs=0.02)
+
+
+def test_a_band_is_what_the_coefficient_moves(view):
+    where = {"Fz": 1400.0, "kappa": np.linspace(-0.2, 0.2, 9), "alpha": 0.05, "Vx": 16.0, "pressure": 250e3}
+    known = Posterior(("PDX1",), np.array([[U["PDX1"] ** 2]]))
+    found = with_band(view.model.values, known, lambda p: outputs_of(("Fx",), p, where)[0])
+    ends = [
+        view.model.replace(PDX1=view.model["PDX1"] + side * U["PDX1"])(
+            1400.0, 0.05, 0.0, where["kappa"], Vx=16.0, p=250e3, turn_slip=False
+        ).Fx
+        for side in (-1.0, 1.0)
+    ]
+    assert found.half == pytest.approx(1.96 * np.abs(ends[1] - ends[0]) / 2.0, rel=2e-3, abs=1e-6)
+
+
+def test_maps_hold_every_reading_inside_their_axes(view):
+    values = [("Fx", np.zeros(len(view.points)))]
+    shown = 0
+    for which, over in ((residuals.rolling, residuals.ANGLES), (residuals.driven, residuals.SLIPS)):
+        sheet = residuals.residual_maps(
+            view.points, values, which(view.points, view.conditions), "u", over=over
+        )
+        for panel in sheet.panels:
+            (found,) = (s for s in panel.series if isinstance(s, Map))
+            shown += len(found.x)
+            assert panel.x.low < found.x.min() <= found.x.max() < panel.x.high
+            assert panel.y.low < found.y.min() <= found.y.max() < panel.y.high
+    assert shown == len(view.points)
+
+
+def test_what_is_not_drawn_is_said(view, monkeypatch, tmp_path):
+    monkeypatch.setattr(constants, "MOST_PANELS_OF_FIT", 2)
+    (Fx, *_) = view.channels
+    (picture,) = page.draw(tmp_path, {"slip_Fx": lambda: slip.over_slip(view, Fx)}).values()
+    assert picture.left_out == 8
+    macro = page._environment().get_template("macros.html.j2").module
+    assert "8 more panels are not drawn" in macro.figure(picture, "words", caller=lambda: "Caption.")
+
+
+def test_pictures_of_slip_are_drawn_only_where_slip_was_run(view, result):
+    names = set(build._figures(view))
+    own = {f"slip_{name}" for name in belt.NOISE} | {"friction_ellipse", "weights", "trail", "residuals_slip"}
+    assert own <= names
+    assert not own & set(build._figures(view_of(result)))
