@@ -37,6 +37,7 @@ STATUS_ORDER = (
     "measured",
     "fitted",
     "regularised",
+    "campaign",
     "sister",
     "estimate",
     "range",
