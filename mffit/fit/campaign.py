@@ -40,7 +40,7 @@ GROUPS = {
 """What a campaign may give, each group as a whole: its coefficients were fitted together."""
 
 
-class Campaign(NamedTuple):
+class FittedCampaign(NamedTuple):
     """Another campaign of the same tyre, fitted by itself."""
 
     name: str  #: of its tyre.toml, as the project names it
@@ -69,12 +69,19 @@ class Campaign(NamedTuple):
 class Joined:
     """What another campaign gave to a fitted tyre."""
 
-    campaign: Campaign
+    campaign: FittedCampaign
     grip: Quantity  #: friction of this campaign's surface over that of the other
     groups: tuple[str, ...]  #: in words
     found: Mapping[str, Quantity]  #: every coefficient with its standard uncertainty
     u_scatter: float  #: of the logarithm of the ratio, beyond the two fits
     posterior: Posterior  #: of the fitted coefficients and of these
+
+    @property
+    def values(self) -> dict[str, float]:
+        """The coefficients, and the range of longitudinal slip that the other campaign covers."""
+        driven = any(name in self.found for name in ("PCX1", "PDX1", "PKX1"))
+        ends = {name: float(self.campaign.tyre[name]) for name in ("KPUMIN", "KPUMAX") if driven}
+        return {name: q.value for name, q in self.found.items()} | ends
 
     def drawn(self, values: Mapping[str, Any], random: np.random.Generator) -> dict[str, float]:
         """The joined coefficients of a tyre whose other ``values`` were drawn before."""
@@ -125,7 +132,7 @@ def _swept(points: Points) -> list[tuple[float, float, int]]:
     return found
 
 
-def join(campaign: Campaign, known: Known, posterior: Posterior) -> Joined:
+def join(campaign: FittedCampaign, known: Known, posterior: Posterior) -> Joined:
     """What the campaign gives to a fitted tyre: groups that its own points and the engineer did not decide."""
     taken = {words: names for words, names in campaign.groups.items() if not _decided(names, known)}
     wanted = [name for names in taken.values() for name in names if name not in known.hand.names]

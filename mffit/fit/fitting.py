@@ -14,7 +14,7 @@ from mffit.config.declared import as_declared
 from mffit.fit import agreement
 from mffit.fit.between_runs import between_runs
 from mffit.fit.by_hand import hand_of
-from mffit.fit.campaign import Campaign, Joined, campaign_sentence, join
+from mffit.fit.campaign import FittedCampaign, Joined, campaign_sentence, join
 from mffit.fit.coefficients import Coefficient, coefficient_records, of_file
 from mffit.fit.comments import file_comments
 from mffit.fit.confounding import confounding_sentence, confoundings
@@ -55,7 +55,7 @@ def fit(
     base: Tyre | None = None,
     progress: Progress = silent,
     steps: Points | None = None,
-    campaigns: Sequence[Campaign] = (),
+    campaigns: Sequence[FittedCampaign] = (),
 ) -> FitResult:
     """Fit MF 6.2 to raw points with turn slip on, holding what was measured directly.
 
@@ -180,7 +180,7 @@ def _delivered(
     fitted: Fitted,
     radii: Vertical,
     sister: Sister | None,
-    campaigns: Sequence[Campaign],
+    campaigns: Sequence[FittedCampaign],
     only: str | None = None,
 ) -> _Delivered:
     """The files of a fit, for one use ``only`` or for all, and the records of their coefficients."""
@@ -196,7 +196,7 @@ def _delivered(
     joined = []
     for campaign in campaigns:
         joined.append(join(campaign, known, posterior))
-        known = known.having({name: q.value for name, q in joined[-1].found.items()}, "campaign")
+        known = known.having(joined[-1].values, "campaign")
         borrowed |= joined[-1].found
         posterior = joined[-1].posterior
     coefficients = coefficient_records(known, fitted, {**rolling, **radii.found, **lag.found, **borrowed})

@@ -16,13 +16,13 @@ from mffit import fit as fitting
 from mffit.config import Config
 from mffit.config.laboratory import lab_warnings
 from mffit.fit import FitResult
-from mffit.fit.campaign import Campaign
+from mffit.fit.campaign import FittedCampaign
 from mffit.made import made
 from mffit.measured import Measured
 from mffit.output import refuse_early
 from mffit.parts import Parts
 from mffit.pipeline.build_output import WRITTEN, write_build
-from mffit.pipeline.campaigns import campaigns_of
+from mffit.pipeline.campaigns import campaigns_of, projects_of
 from mffit.pipeline.inputs import input_hashes, inputs_of, read_base, read_points
 from mffit.pipeline.judging import judged
 from mffit.pipeline.left_out import left_out_by_fit
@@ -68,6 +68,7 @@ def build(
     """
     began = time.perf_counter()
     config = configuration.load(config)
+    projects = projects_of(config)
     progress("reading sweeps")
     reading = read_points(config)
     base = read_base(config)
@@ -78,7 +79,7 @@ def build(
     special = fitting.name_at_temperature(config.tyre.name)
     if out is not None:
         refuse_early(Path(out), (*names.values(), special, *WRITTEN), inputs_of(config))
-    campaigns, warned = campaigns_of(config, reading.points, build, progress)
+    campaigns, warned = campaigns_of(config, projects, reading.points, build, progress)
     with threadpool_limits(1):  # the matrices are small: threads cost more than they save
         measured, fitted = _fitted(config, reading, parts, measured, base, progress, campaigns)
         progress("judging what the fit leaves")
@@ -134,7 +135,7 @@ def _fitted(
     measured: Measured,
     base: Tyre | None,
     progress: Progress,
-    campaigns: Sequence[Campaign],
+    campaigns: Sequence[FittedCampaign],
 ) -> tuple[Measured, FitResult]:
     """The fit, repeated if its outliers or the bias of finite spin change the eps_gamma that it holds."""
 
@@ -167,7 +168,9 @@ def _members(config: Config, fitted: FitResult, count: int, annotated: Annotate)
     assert fitted.search is not None
     for i, values in enumerate(fitting.ensemble(fitted.search, count), 1):
         random = np.random.default_rng((i, count))
-        for other in (*filter(None, [fitted.lent]), *fitted.joined):
+        if fitted.lent is not None:
+            values = values | fitted.lent.drawn({**best.values, **values}, random)
+        for other in fitted.joined:
             values = values | other.drawn({**best.values, **values}, random)
         note = {"ensemble": f"draw {i} of {count} from what the fit leaves uncertain"}
         yield best.replace(**values).annotate(status=dict.fromkeys(values, "drawn"), provenance=note)

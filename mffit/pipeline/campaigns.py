@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
 from mffit.config import Config
-from mffit.errors import InputError
 from mffit.fit import constants
-from mffit.fit.campaign import Campaign, shared_conditions
-from mffit.pipeline.inputs import other_project
+from mffit.fit.campaign import FittedCampaign, shared_conditions
+from mffit.pipeline.inputs import other_project, wrong_campaign
 from mffit.points import Points, concatenate
 from mffit.progress import Progress
 from mffit.results import BuildResult
@@ -21,14 +19,30 @@ SAME_OF_ONE_TYRE = ("unloaded_radius", "width", "rim_radius", "nominal_load", "n
 """Keys of [tyre] that the projects of one tyre share: coefficients are relative to them."""
 
 
+def projects_of(config: Config) -> tuple[Config, ...]:
+    """The projects that ``[[campaign]]`` names.
+
+    An InputError says that one of them cannot be read, names campaigns itself, or is of another tyre.
+    """
+    out = tuple(other_project(config, index) for index in range(len(config.campaign)))
+    for index, other in enumerate(out):
+        _refuse_another_tyre(config, other, index)
+    return out
+
+
 def campaigns_of(
-    config: Config, points: Points, build: Callable[..., BuildResult], progress: Progress
-) -> tuple[tuple[Campaign, ...], tuple[str, ...]]:
-    """The fitted campaigns that ``[[campaign]]`` names, and warnings about them.
+    config: Config,
+    projects: Sequence[Config],
+    points: Points,
+    build: Callable[..., BuildResult],
+    progress: Progress,
+) -> tuple[tuple[FittedCampaign, ...], tuple[str, ...]]:
+    """The fitted campaigns of the other projects, and warnings about them.
 
     Parameters
     ----------
     config : of this project
+    projects : the others
     points : of this project
     build : a configuration to its result
     progress : called with a sentence before each build
@@ -36,25 +50,18 @@ def campaigns_of(
     Raises
     ------
     InputError
-        A project cannot be read, names campaigns itself, or is of another tyre.
+        The readings of a project cannot be fitted, or their radii are those of another tyre.
     """
     out, warned = [], []
-    for index, row in enumerate(config.campaign):
-        place = {
-            "file": config.path,
-            "line": config.line_of(f"campaign.{index}.toml"),
-            "key": "campaign.toml",
-        }
-        other = other_project(config, index)
-        _refuse_another_tyre(config, other, row.toml, place)
+    for index, (row, other) in enumerate(zip(config.campaign, projects, strict=True)):
         progress(f"building the campaign {row.toml}")
         result = build(other, progress=progress)
-        _refuse_other_radii(config, points, result.points, row.toml, place)
+        _refuse_other_radii(config, points, result.points, index)
         if not result.trusted:
             warned.append(f"the campaign {row.toml} is not to be trusted: {'; '.join(result.reasons)}")
         fit = result.fit
         out.append(
-            Campaign(
+            FittedCampaign(
                 name=row.toml,
                 tyre=fit.tyre,
                 coefficients=fit.coefficients,
@@ -65,30 +72,28 @@ def campaigns_of(
     return tuple(out), tuple(warned)
 
 
-def _refuse_another_tyre(config: Config, other: Config, name: str, place: dict[str, Any]) -> None:
+def _refuse_another_tyre(config: Config, other: Config, index: int) -> None:
     """Refuse a project whose tyre has other dimensions or another nominal condition."""
-    mine, theirs = config.tyre, other.tyre
+    mine, theirs, name = config.tyre, other.tyre, config.campaign[index].toml
     if "-" not in (mine.size, theirs.size) and mine.size != theirs.size:
-        raise InputError(
-            f"{name} is of a tyre of size {theirs.size}, this one is {mine.size}; campaigns are of one tyre",
-            **place,
+        sentence = (
+            f"{name} is of a tyre of size {theirs.size}, this one is {mine.size}; campaigns are of one tyre"
         )
+        raise wrong_campaign(config, index, sentence)
     for key in SAME_OF_ONE_TYRE:
         a, b = getattr(mine, key), getattr(theirs, key)
         if a is not None and b is not None and abs(a - b) > constants.SAME_NOMINAL_CONDITION * a:
-            raise InputError(
+            sentence = (
                 f"{name} has {key} = {b:g}, but this project {a:g}: campaigns are of one tyre, and coefficients are relative to "
-                "it; correct one of them",
-                **place,
+                "it; correct one of them"
             )
+            raise wrong_campaign(config, index, sentence)
 
 
-def _refuse_other_radii(
-    config: Config, points: Points, others: Points, name: str, place: dict[str, Any]
-) -> None:
+def _refuse_other_radii(config: Config, points: Points, others: Points, index: int) -> None:
     """Refuse readings whose loaded or rolling radius is that of another tyre."""
-    folder = Path(name).parent
+    folder = Path(config.campaign[index].toml).parent
     renamed = replace(others, files=tuple((folder / file).as_posix() for file in others.files))
     found = next(iter(two_tyres.find(concatenate([points, renamed]), config)), None)
     if found is not None:
-        raise InputError(two_tyres.said(found.facts), **place)
+        raise wrong_campaign(config, index, two_tyres.said(found.facts))

@@ -67,11 +67,19 @@ def input_names(config: Config) -> list[str]:
 def other_project(config: Config, index: int) -> Config:
     """The configuration of another campaign, which names no campaigns itself."""
     name = config.campaign[index].toml
-    place = {"file": config.path, "line": config.line_of(f"campaign.{index}.toml"), "key": "campaign.toml"}
     path = config.folder / name
     if not path.is_file():
-        raise InputError(f"there is no file {path}; name the tyre.toml of the other campaign", **place)
+        raise wrong_campaign(
+            config, index, f"there is no file {path}; name the tyre.toml of the other campaign"
+        )
     other = configuration.load(path)
     if other.campaign:
-        raise InputError(f"{name} names campaigns itself; name all of them here", **place)
+        raise wrong_campaign(config, index, f"{name} names campaigns itself; name all of them here")
     return other
+
+
+def wrong_campaign(config: Config, index: int, sentence: str) -> InputError:
+    """An error about an entry of ``[[campaign]]``."""
+    return InputError(
+        sentence, file=config.path, line=config.line_of(f"campaign.{index}.toml"), key="campaign.toml"
+    )

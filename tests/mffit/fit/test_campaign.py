@@ -96,6 +96,7 @@ def test_longitudinal_coefficients_say_where_they_come_from(built):
     assert {rows[name]["status"] for name in ("PCX1", "PDX1", "PKX1", "RBX1", "RBY1")} == {"campaign"}
     assert {rows[name]["status"] for name in ("PCY1", "PDY1", "PKY6", "PDYP1")} <= {"fitted", "regularised"}
     assert tir.read(built[1] / "front-120-70.tir").status["PDX1"].startswith("from another campaign +- ")
+    assert built[0].tyre["KPUMAX"] == pytest.approx(0.2)
     members = np.array([member["PDX1"] for member in built[0].members])
     assert 0.0 < np.std(members) < 5.0 * rows["PDX1"]["stderr"]
     assert any("From the campaign belt/tyre.toml: longitudinal" in text for text in built[0].fit.explanations)
