@@ -25,9 +25,7 @@ class Coefficient:
     stage: str
     fixed: bool
     at_bound: bool
-    status: (
-        str  #: measured | fitted | regularised | default | base | estimate | fleet | sister | range | given
-    )
+    status: str  #: measured | fitted | regularised | default | base | estimate | fleet | sister | campaign | range | given
     correlated_with: str = ""  #: the coefficient with the largest correlation, if this is strong
     correlation: float = 0.0
     interval: tuple[float, float] | None = None  #: of 95 %; None if held

@@ -17,12 +17,14 @@ DERIVED = {
 }
 TIED = "tied to its expected value"
 HELD = "held by hand"
+JOINED = "from another campaign"
 BORROWED = "from sister, scaled"
 FROM_DATA = ("measured", "fitted", "regularised")
 """Origins of values that these data decided."""
 WORDS = {
     "base": "from base",
     "sister": BORROWED,
+    "campaign": JOINED,
     "fleet": "as tyres of its fleet have it",
     "default": "default, not measured",
     "estimate": "estimate, not measured",
@@ -39,9 +41,9 @@ def file_comments(
     comments = {row.name: _comment(row, origin[row.name], files.tested) for row in TABLE}
     comments |= {name: _data_comment(c) for name, c in coefficients.items() if c.status in FROM_DATA}
     comments |= {
-        name: f"{BORROWED} +- {c.stderr:.2g}"
+        name: f"{WORDS[c.status]} +- {c.stderr:.2g}"
         for name, c in coefficients.items()
-        if c.status == "sister" and c.stderr
+        if c.status in ("sister", "campaign") and c.stderr
     }
     comments |= {
         name: f"{comments[name]}, {c.by_hand}"

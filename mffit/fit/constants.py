@@ -93,6 +93,15 @@ SISTER_SHARES_OF_A_DRAW = Series(
     "Shares of a draw of borrowed shapes, tried in turn until the physical limits hold.",
 )
 
+# Other campaigns of the same tyre
+SAME_LOAD_OF_CAMPAIGNS = Real(0.05, "-", "Relative difference of loads at which friction is compared.")
+SIDESLIP_THAT_SHOWS_GRIP = Real(
+    4.0, "deg", "Sideslip to either side from which a sweep shows friction, not only stiffness."
+)
+UNKNOWN_RATIO_OF_GRIPS = Real(
+    0.1, "-", "Relative uncertainty of the ratio of two surfaces' grips where nothing was run on both."
+)
+
 # Radii
 LARGEST_CAMBER_OF_RADII = Real(
     6.0, "deg", "Camber up to which loaded and rolling radius change with its square."

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import Any, NamedTuple
 
@@ -14,6 +14,7 @@ from mffit.config.declared import as_declared
 from mffit.fit import agreement
 from mffit.fit.between_runs import between_runs
 from mffit.fit.by_hand import hand_of
+from mffit.fit.campaign import FittedCampaign, Joined, campaign_sentence, join
 from mffit.fit.coefficients import Coefficient, coefficient_records, of_file
 from mffit.fit.comments import file_comments
 from mffit.fit.confounding import confounding_sentence, confoundings
@@ -24,6 +25,7 @@ from mffit.fit.nuisance_choice import at_reference
 from mffit.fit.nuisance_wording import nuisance_sentences
 from mffit.fit.overturning import overturning_terms
 from mffit.fit.plan import FitPlan, fit_plan
+from mffit.fit.posterior import Posterior
 from mffit.fit.priors import of_fleet
 from mffit.fit.problem import FitProblem, fit_problem
 from mffit.fit.relaxation import Relaxation, relaxation, relaxation_sentence
@@ -53,6 +55,7 @@ def fit(
     base: Tyre | None = None,
     progress: Progress = silent,
     steps: Points | None = None,
+    campaigns: Sequence[FittedCampaign] = (),
 ) -> FitResult:
     """Fit MF 6.2 to raw points with turn slip on, holding what was measured directly.
 
@@ -65,6 +68,7 @@ def fit(
     base : property file with the values that are not fitted, if there is one
     progress : called with a sentence before each step
     steps : samples of steps of the sideslip angle, if there are any
+    campaigns : others of the same tyre, whose coefficients are taken where these points determine none
 
     Raises
     ------
@@ -75,7 +79,8 @@ def fit(
     fleet = of_fleet(config)
     hand = hand_of(config, base)
     sister = sister_of(config, base, points)
-    known = known_before_fit(config, points, measured, base, fleet, hand)
+    elsewhere = {name: x for other in campaigns for name, x in other.vertical().items()}
+    known = known_before_fit(config, points, measured, base, fleet, hand, elsewhere)
     settled = {*hand.held, *(name for name, origin in known.origin.items() if origin == "measured")}
     radii = vertical_coefficients(known.values, points, settled)
     known = known.having({name: q.value for name, q in radii.found.items()}, "fitted")
@@ -97,12 +102,14 @@ def fit(
 
     progress("deriving the property files")
     use = plain_use(config)
-    after, coefficients, files, lent, lag = _delivered(
-        config, known, points, steps, measured, base, fitted, radii, sister
+    after, coefficients, files, lent, lag, joined, posterior = _delivered(
+        config, known, points, steps, measured, base, fitted, radii, sister, campaigns
     )
     temperature = None
     if found.at_temperature:
-        special = _delivered(config, known, points, steps, measured, base, full, radii, sister, only=use)
+        special = _delivered(
+            config, known, points, steps, measured, base, full, radii, sister, campaigns, only=use
+        )
         own = of_file(special.files, use, special.coefficients)
         temperature = at_temperature(found, points, special.files.by_use[use], own)
 
@@ -118,7 +125,7 @@ def fit(
         simulation=fitted.simulation,
         rig=fitted.rig,
         model=readings,
-        posterior=fitted.posterior if lent is None else lent.posterior,
+        posterior=posterior,
         stages=fitted.stages,
         coverage=(*plan.cover, lag.coverage),
         explanations=(
@@ -126,6 +133,7 @@ def fit(
             *explanations(config, files, after.values, measured, hand),
             *filter(None, [vertical_sentence(radii)]),
             *filter(None, [relaxation_sentence(lag)]),
+            *map(campaign_sentence, joined),
             *([] if lent is None else [sister_sentence(lent)]),
         ),
         warnings=(
@@ -145,6 +153,7 @@ def fit(
         confounded=confounded,
         radii=radii,
         lent=lent,
+        joined=joined,
         relaxation=lag,
     )
     return with_remarks(result, config, points, turning, from_base=base is not None)
@@ -158,6 +167,8 @@ class _Delivered(NamedTuple):
     files: Files
     lent: Lent | None  #: what a sister tyre gave
     relaxation: Relaxation
+    joined: tuple[Joined, ...]  #: what other campaigns gave
+    posterior: Posterior  #: of all of them
 
 
 def _delivered(
@@ -170,6 +181,7 @@ def _delivered(
     fitted: Fitted,
     radii: Vertical,
     sister: Sister | None,
+    campaigns: Sequence[FittedCampaign],
     only: str | None = None,
 ) -> _Delivered:
     """The files of a fit, for one use ``only`` or for all, and the records of their coefficients."""
@@ -179,12 +191,19 @@ def _delivered(
     lag = relaxation(steps, fitted.simulation, fitted.posterior, known.hand.held)
     known = known.having({name: q.value for name, q in lag.found.items()}, "fitted")
     lent = None if sister is None else lend(sister, known, fitted.posterior)
-    borrowed = {} if lent is None else lent.found
+    borrowed = {} if lent is None else dict(lent.found)
     known = known.having({name: q.value for name, q in borrowed.items()}, "sister")
-    coefficients = coefficient_records(known, fitted, {**rolling, **radii.found, **borrowed, **lag.found})
+    posterior = fitted.posterior if lent is None else lent.posterior
+    joined = []
+    for campaign in campaigns:
+        joined.append(join(campaign, known, posterior))
+        known = known.having(joined[-1].values, "campaign")
+        borrowed |= joined[-1].found
+        posterior = joined[-1].posterior
+    coefficients = coefficient_records(known, fitted, {**rolling, **radii.found, **lag.found, **borrowed})
     files = make_files(config, known, points, base, dict(measured.by_load("C_gamma")), only=only)
     annotated = files.annotated(file_comments(files, known.origin, coefficients))
-    return _Delivered(known, coefficients, annotated, lent, lag)
+    return _Delivered(known, coefficients, annotated, lent, lag, tuple(joined), posterior)
 
 
 def _fitted_and_judged(

@@ -9,6 +9,7 @@ from mffit.brief import Brief
 from mffit.fit.agreement import Agreement
 from mffit.fit.bands import BandsByPressure
 from mffit.fit.between_runs import BetweenRuns
+from mffit.fit.campaign import Joined
 from mffit.fit.coefficients import Coefficient
 from mffit.fit.confounding import Confounding
 from mffit.fit.coverage import StageCoverage
@@ -56,6 +57,7 @@ class FitResult(Brief):
     temperature: AtTemperature | None = None  #: the model with temperature terms, if there is one
     confounded: tuple[Confounding, ...] = ()  #: settings with which the temperature runs along
     relaxation: Relaxation | None = None  #: what steps of the sideslip angle determine
+    joined: tuple[Joined, ...] = ()  #: what other campaigns of the tyre gave
     lent: Lent | None = None  #: what a sister tyre gives to one measured only sideways
     runs: BetweenRuns | None = None  #: what every run has of its own, if that is modelled
     choice: NuisanceChoice | None = (

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -16,11 +16,13 @@ from mffit import fit as fitting
 from mffit.config import Config
 from mffit.config.laboratory import lab_warnings
 from mffit.fit import FitResult
+from mffit.fit.campaign import FittedCampaign
 from mffit.made import made
 from mffit.measured import Measured
 from mffit.output import refuse_early
 from mffit.parts import Parts
 from mffit.pipeline.build_output import WRITTEN, write_build
+from mffit.pipeline.campaigns import campaigns_of, projects_of
 from mffit.pipeline.inputs import input_hashes, inputs_of, read_base, read_points
 from mffit.pipeline.judging import judged
 from mffit.pipeline.left_out import left_out_by_fit
@@ -66,6 +68,7 @@ def build(
     """
     began = time.perf_counter()
     config = configuration.load(config)
+    projects = projects_of(config)
     progress("reading sweeps")
     reading = read_points(config)
     base = read_base(config)
@@ -76,8 +79,9 @@ def build(
     special = fitting.name_at_temperature(config.tyre.name)
     if out is not None:
         refuse_early(Path(out), (*names.values(), special, *WRITTEN), inputs_of(config))
+    campaigns, warned = campaigns_of(config, projects, reading.points, build, progress)
     with threadpool_limits(1):  # the matrices are small: threads cost more than they save
-        measured, fitted = _fitted(config, reading, parts, measured, base, progress)
+        measured, fitted = _fitted(config, reading, parts, measured, base, progress, campaigns)
         progress("judging what the fit leaves")
         assert fitted.files is not None
         files = fitted.files.by_use
@@ -105,6 +109,7 @@ def build(
         warnings=(
             *(NOT_TRUSTED.format(reason) for reason in trust.reasons),
             *trust.doubts,
+            *warned,
             *reading.warnings,
             *measured.warnings,
             *fitted.warnings,
@@ -124,14 +129,20 @@ def build(
 
 
 def _fitted(
-    config: Config, reading: Reading, parts: Parts, measured: Measured, base: Tyre | None, progress: Progress
+    config: Config,
+    reading: Reading,
+    parts: Parts,
+    measured: Measured,
+    base: Tyre | None,
+    progress: Progress,
+    campaigns: Sequence[FittedCampaign],
 ) -> tuple[Measured, FitResult]:
     """The fit, repeated if its outliers or the bias of finite spin change the eps_gamma that it holds."""
 
     points = reading.points
 
     def fit(measured: Measured) -> FitResult:
-        return fitting.fit(config, points, parts, measured, base, progress, reading.steps)
+        return fitting.fit(config, points, parts, measured, base, progress, reading.steps, campaigns)
 
     fitted = fit(measured)
     sound = without_outliers(config, points, measured, fitted, base)
@@ -156,8 +167,10 @@ def _members(config: Config, fitted: FitResult, count: int, annotated: Annotate)
     best = annotated(fitted.tyre, "turn-slip" if config.rig.on_disc else "normal")
     assert fitted.search is not None
     for i, values in enumerate(fitting.ensemble(fitted.search, count), 1):
+        random = np.random.default_rng((i, count))
         if fitted.lent is not None:
-            random = np.random.default_rng((i, count))
             values = values | fitted.lent.drawn({**best.values, **values}, random)
+        for other in fitted.joined:
+            values = values | other.drawn({**best.values, **values}, random)
         note = {"ensemble": f"draw {i} of {count} from what the fit leaves uncertain"}
         yield best.replace(**values).annotate(status=dict.fromkeys(values, "drawn"), provenance=note)

@@ -38,6 +38,7 @@ STATUS_ORDER = (
     "measured",
     "fitted",
     "regularised",
+    "campaign",
     "sister",
     "estimate",
     "range",

@@ -15,6 +15,7 @@ from mffit.diagnosis.remains import Remains
 from mffit.fit import Coefficient, FitResult
 from mffit.fit.bands import BandsByPressure
 from mffit.fit.between_runs import BetweenRuns
+from mffit.fit.campaign import Joined
 from mffit.fit.files import Files
 from mffit.fit.misfit import FileFigures
 from mffit.fit.nuisance_choice import Verdict
@@ -116,6 +117,7 @@ def fit(found: FitResult, over_noise: Mapping[str, float] = NOT_JUDGED) -> dict[
         "modelled": [] if found.choice is None else [_verdict(row) for row in found.choice.verdicts],
         "runs": None if found.runs is None else _runs(found.runs),
         "relaxation": None if found.relaxation is None else _relaxation(found.relaxation),
+        "campaigns": [_joined(row) for row in found.joined],
         "sister": None if found.lent is None else _sister(found.lent),
         "confounded": [
             picked(row, "setting", "correlation", "coefficient", "growth") for row in found.confounded
@@ -214,6 +216,19 @@ def _relaxation(found: Relaxation) -> dict[str, Any]:
         ],
         "coefficients": list(found.found),
         "missing": found.missing or None,
+    }
+
+
+def _joined(found: Joined) -> dict[str, Any]:
+    """What another campaign gave, and the ratio of grips of the two surfaces."""
+    shared = found.campaign.shared
+    return {
+        "toml": found.campaign.name,
+        "groups": list(found.groups),
+        **stated("ratio_of_grips", found.grip),
+        "loads_N": None if shared is None else shared[0].tolist(),
+        "p_kPa": None if shared is None else shared[1] / 1e3,
+        "coefficients": list(found.found),
     }
 
 
