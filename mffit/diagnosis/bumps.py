@@ -43,14 +43,18 @@ class BumpScan:
     spread: Mapping[str, float]  #: usual amplitude by channel
 
     @cached_property
-    def _white(self) -> list[tuple[str, int, np.ndarray, np.ndarray]]:
-        """Whitened bumps in blocks: channel, number of the first, shapes (m, k) and their power (k,)."""
-        out, block = [], constants.BUMPS_WHITENED_TOGETHER
-        for channel in self.spread:
-            for first in range(0, len(self.regions), block):
-                shapes = self.noise.whiten(self.column(channel, slice(first, first + block)))
-                power = np.einsum("ij,ij->j", shapes, shapes)
-                out.append((channel, first, shapes.astype(np.float32), power))
+    def _white(self) -> list[tuple[str, int, np.ndarray, np.ndarray, np.ndarray]]:
+        """Bumps in blocks: channel, number of the first, the channel's used rows, shapes there without shared changes, power.
+
+        A bump is zero in all other rows.
+        """
+        out, block, n = [], constants.BUMPS_WHITENED_TOGETHER, len(self.bumps)
+        for k, channel in enumerate(self.noise.channels):
+            rows, own = np.flatnonzero(self.noise.used // n == k), self.noise.only(channel)
+            for first in range(0, len(self.regions) if channel in self.spread else 0, block):
+                shapes = own.whiten(self.bumps[:, first : first + block].astype(float))
+                power = np.einsum("ij,ij->j", shapes, shapes) - self.noise.shared_power(rows, shapes)
+                out.append((channel, first, rows, shapes.astype(np.float32), power))
         return out
 
     def best(self, hypothesis: Hypothesis, limit: float = math.inf) -> Bump:
@@ -58,14 +62,17 @@ class BumpScan:
 
         Residuals are clipped at ``limit`` standard deviations, so that an outlier does not make a bump.
         """
-        axes = hypothesis.axes
         residual = np.clip(hypothesis.residual, -limit, limit)
+        along = hypothesis.axes.T @ residual
+        # Shared changes act on shapes and residual alike, so that they need to be taken off the smaller one only.
+        axes = self.noise.less_shared(hypothesis.axes).astype(np.float32)
+        left = self.noise.less_shared(residual).astype(np.float32)
         tried = math.log(max(len(self.regions) * len(self.spread), 1))
         best = Bump("Fy", {}, 0.0, -math.inf)
-        for channel, first, shapes, whole in self._white:
+        for channel, first, rows, shapes, whole in self._white:
             spread = self.spread[channel]
-            inside = (axes.astype(np.float32).T @ shapes).astype(float)
-            score = (shapes.T @ residual.astype(np.float32)).astype(float) - inside.T @ (axes.T @ residual)
+            inside = (axes[rows].T @ shapes).astype(float)
+            score = (shapes.T @ left[rows]).astype(float) - inside.T @ along
             power = whole - np.einsum("ij,ij->j", inside, inside)
             precision = np.maximum(power, 0.0) + spread**-2.0
             gain = 0.5 * score**2 / precision - 0.5 * np.log(precision * spread**2) - tried

@@ -89,7 +89,7 @@ def diagnose(
     found = explain(points, start, noise, candidates, inexact, declared, seen=seen)
     found, stranger = named_of_this_tyre(found)
     progress("checking on left-out sweeps")
-    given = DiagnosisProblem(points, start, found.plain.noise)
+    given = DiagnosisProblem(points, start, found.independent)
     found, validation, refused = _confirmed(found, given, inexact, seen=seen)
     exact = without_noise(found.scatter)
     named = named_effects(found, given)
@@ -151,13 +151,16 @@ def _confirmed(
     # Refitting coefficients to points that they were fitted to repairs nothing.
     if seen and not found.chosen.effects:
         found = found.withdrawn()
-    validation = validate(given, found.refined, inexact if found.coefficients else EXACT, seen=seen)
+    weights = found.plain.noise
+    validation = validate(
+        given, found.refined, inexact if found.coefficients else EXACT, weights=weights, seen=seen
+    )
     if not (found.chosen.effects or found.coefficients) or validation.helps:
         return found, validation, None
     refused = NoRepair(tuple(effect.name for effect in found.chosen.effects), validation)
     if len(found.chosen.effects) > 1:
         fewer = only_first(found, inexact)
-        validation = validate(given, fewer.refined, inexact, seen=seen)
+        validation = validate(given, fewer.refined, inexact, weights=weights, seen=seen)
         if validation.helps:
             return fewer, validation, refused
     return found.withdrawn(), validation.without_repair(), refused

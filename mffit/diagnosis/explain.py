@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
+import numpy as np
+
 from mffit.diagnosis import constants
 from mffit.diagnosis.explanation import Explanation
 from mffit.diagnosis.imitation import imitations
@@ -18,6 +20,7 @@ from mffit.diagnosis.smooth import smooth_basis
 from mffit.effects import Effect
 from mffit.points import Points
 from mffit.rig import Simulation
+from mffit.scatter import rms
 
 
 def explain(
@@ -37,6 +40,8 @@ def explain(
     """
     channels = stated.channels
     basis = smooth_basis(points, start.readings(points, channels))
+    measured = np.concatenate([points.channel(name) for name in channels])
+    misfit = measured - start.predict(points, channels)
     found: Explanation | None = None
     at, noise = start, stated
     for _ in range(constants.MOST_EXPLANATION_ROUNDS):
@@ -62,6 +67,8 @@ def explain(
             found = competed(problem, columns, beyond_memory(noise, candidates), basis)
         if found.smooth.found:
             found = certain(found, counted=not seen)
+        if seen and rms(misfit / noise.u) > constants.MISFIT_AT_NOISE:
+            found = replace(found, misfit=misfit)
         found = found.with_coefficients(inexact)
         if last is not None and found.chosen.ids == last.chosen.ids:
             break
@@ -80,7 +87,7 @@ def _predicting(found: Explanation, candidates: Sequence[Effect], inexact: Inexa
 
     For a model that leaves smooth structure in any case: beside it evidence decides little.
     """
-    prediction = LeftOutPrediction(found.plain, inexact)
+    prediction = LeftOutPrediction(found.plain, inexact, found.independent)
     chosen = chosen_by_prediction(prediction, candidates)
     support = {effect.id: judged(prediction, chosen, effect, candidates) for effect in chosen.effects}
     found = replace(found.choosing(chosen), predicted=support)

@@ -40,6 +40,8 @@ class Explanation:
     """Gain of each effect alone, without smooth structure beside it."""
     predicted: Mapping[str, Judged] = field(default_factory=dict)
     """Support of each effect by left-out sweeps, if the effects were chosen by prediction."""
+    misfit: np.ndarray | None = None
+    """Measured minus simulated (c n,) of the given model, if it was fitted to these points and is not at their noise."""
     imitated: np.ndarray = field(default_factory=lambda: np.zeros(0))
     """Share of a cause outside the library that an effect of it explains: of each effect, with itself taken out."""
 
@@ -49,17 +51,24 @@ class Explanation:
         return self.problem.noise.alone()
 
     @property
+    def independent(self) -> Noise:
+        """The scatter of the readings, without memory where structure is left: a model shall follow it as far as it can."""
+        noise = self.scatter
+        if not self.smooth.found and self.misfit is None:
+            return noise
+        scatter = {c: replace(s, memory=0.0, independent=0.0) for c, s in noise.scatter.items()}
+        return replace(noise, scatter=scatter)
+
+    @property
     def plain(self) -> DiagnosisProblem:
         """The problem in which coefficients are fitted rather than integrated out.
 
         Smooth structure is left out of its covariance: a model predicts best if it follows the readings as far as it can.
-        For the same reason errors have no memory here if there is smooth structure.
+        What a model leaves that was fitted to these points counts as noise, channel by channel, as it did in that fit.
         """
-        noise = self.scatter
-        if self.smooth.found:
-            noise = replace(
-                noise, scatter={c: replace(s, memory=0.0, independent=0.0) for c, s in noise.scatter.items()}
-            )
+        noise = self.independent
+        if self.misfit is not None:
+            noise = noise.at_least(self.misfit)
         return DiagnosisProblem(self.problem.points, self.problem.start, noise, self.problem.declared)
 
     @property

@@ -12,7 +12,7 @@ import numpy as np
 
 from mffit.diagnosis.chains import Chains, Correlation
 from mffit.quantities import SIDEWAYS
-from mffit.scatter import finite_median
+from mffit.scatter import finite_median, rms
 
 
 class Origin(Enum):
@@ -114,12 +114,30 @@ class Noise:
 
     def whiten(self, x: np.ndarray) -> np.ndarray:
         """Differences of readings (c n,) or (c n, k) in units of their joint uncertainty: (m,) or (m, k)."""
-        z = self._independent(x[self.used])
+        return self.less_shared(self._independent(x[self.used]))
+
+    def less_shared(self, z: np.ndarray) -> np.ndarray:
+        """Whitened differences (m,) or (m, k) of which shared changes explain a part, in units of the joint uncertainty.
+
+        The operation is symmetric.
+        """
         axes, variance = self._axes
         if not len(variance):
             return z
         lost = 1.0 - 1.0 / np.sqrt(1.0 + variance)
         return z - axes @ ((lost * (axes.T @ z).T).T)
+
+    def shared_power(self, rows: np.ndarray, z: np.ndarray) -> np.ndarray:
+        """By how much the sum of squares (k,) of differences (m, k) falls with shared changes, z its only rows that are not 0."""
+        axes, variance = self._axes
+        return (variance / (1.0 + variance)) @ (axes[rows].T @ z) ** 2
+
+    def only(self, channel: str) -> Noise:
+        """The scatter of one channel."""
+        rows = {name: self.of_channel(getattr(self, name), channel) for name in ("u", "stated", "chain")}
+        weight = None if self.weight is None else self.of_channel(self.weight, channel)
+        scatter = {channel: self.scatter[channel]}
+        return replace(self, **rows, weight=weight, scatter=scatter, shared=None)
 
     def error_of_sum(self, rows: np.ndarray) -> float:
         """Standard error of the sum of some used readings, by their position among the used ones."""
@@ -140,6 +158,19 @@ class Noise:
                 scale = channels[name] / self.typically_stated(name)
                 scatter[name] = Scatter(scale=scale, without_noise=True)
         return replace(self, u=u, weight=weight, scatter=scatter)
+
+    def at_least(self, misfit: np.ndarray) -> Noise:
+        """The noise, in every channel so large that a misfit (c n,) has at most its variance on average."""
+        z = np.zeros(len(self.u))
+        z[self.used] = misfit[self.used] / self.u[self.used]
+        factors, scatter = [], dict(self.scatter)
+        for name, rows in self.by_channel(z).items():
+            known = np.isfinite(self.of_channel(self.u, name))
+            factor = max(1.0, np.nan_to_num(rms(rows[known]))) if known.any() else 1.0
+            factors.append(np.full(len(rows), factor))
+            here = scatter[name]
+            scatter[name] = replace(here, scale=factor * here.scale, growth=factor * here.growth)
+        return replace(self, u=self.u * np.concatenate(factors), scatter=scatter)
 
     def subset(self, keep: np.ndarray) -> Noise:
         """The noise of some points (mask (n,)), with the covariance among them."""

@@ -11,6 +11,7 @@ from mffit import constants
 from mffit.diagnosis.constants import MOST_EFFECTS
 from mffit.diagnosis.hypothesis import Hypothesis
 from mffit.diagnosis.inexact import Inexactness
+from mffit.diagnosis.noise import Noise
 from mffit.diagnosis.problem import DiagnosisProblem, refitted
 from mffit.effects import Effect
 from mffit.left_out import Predicted, improves, left_out_errors, needed_fall, predicted
@@ -19,12 +20,16 @@ from mffit.left_out import Predicted, improves, left_out_errors, needed_fall, pr
 class LeftOutPrediction:
     """Left-out sweeps predicted to first order, every number estimated again without them.
 
-    ``problem`` has the scatter of the readings alone.
+    ``problem`` has the weights of the readings, ``noise`` their scatter alone if it differs.
     """
 
-    def __init__(self, problem: DiagnosisProblem, inexact: Inexactness) -> None:
+    def __init__(
+        self, problem: DiagnosisProblem, inexact: Inexactness, noise: Noise | None = None
+    ) -> None:
         self.problem, self.inexact = problem, inexact
         used, n = problem.noise.used, len(problem.points)
+        scatter = (noise or problem.noise).u[used] / problem.noise.u[used]
+        self.of_noise = float(scatter @ scatter)
         self.channel = used // n
         numbers, self.sweep = np.unique(problem.points.sweep[used % n], return_inverse=True)
         self.sweeps = len(numbers)
@@ -43,7 +48,7 @@ class LeftOutPrediction:
 
     def beyond_noise(self, predicted: Predicted) -> float:
         """Misfit that the noise does not explain."""
-        return max(predicted.total - len(self.sweep), 0.0)
+        return max(predicted.total - self.of_noise, 0.0)
 
     def without(self, chosen: Hypothesis, effect: Effect) -> Hypothesis:
         """The hypothesis less one of its effects, fitted again."""

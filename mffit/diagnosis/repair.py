@@ -49,7 +49,8 @@ def repair(
         found = found.only(likely).with_coefficients(inexact)
         if seen and not likely:
             found = found.withdrawn()
-        validation = validate(given, found.refined, inexact if found.coefficients else EXACT, seen=seen)
+        coefficients = inexact if found.coefficients else EXACT
+        validation = validate(given, found.refined, coefficients, weights=found.plain.noise, seen=seen)
         if (likely or found.coefficients) and not validation.helps:
             refused = NoRepair(tuple(effect.name for effect in likely), validation)
             found, validation = found.withdrawn(), validation.without_repair()

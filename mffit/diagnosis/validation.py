@@ -70,12 +70,13 @@ def gap(residual: np.ndarray, noise: Noise) -> Gap:
 
 
 def validate(
-    problem: DiagnosisProblem, hypothesis: Hypothesis, inexact: Inexactness = EXACT, *, seen: bool = False
+    problem: DiagnosisProblem, hypothesis: Hypothesis, inexact: Inexactness = EXACT, *, weights: Noise | None = None, seen: bool = False
 ) -> Validation:
     """Refit the hypothesis without each group of sweeps and predict that group.
 
     Numbers of single runs say nothing about other runs: with such an effect, successive parts of every run are left out in turn.
-    ``problem`` has the scatter of the readings alone, or whatever else the fits shall allow for. If the model was fitted to
+    ``problem`` has the scatter of the readings alone, or whatever else the fits shall allow for. ``weights``: another noise for
+    these fits. If the model was fitted to
     these points (``seen``), it is refitted without the group for the gap before too, which it would otherwise predict from
     itself.
     """
@@ -83,13 +84,14 @@ def validate(
     measured = np.concatenate([points.channel(name) for name in channels])
     before = measured - problem.predict(problem.start)
     after, alone = before.copy(), before.copy()
+    fits = problem.seen_through(weights or problem.noise)
     within_runs = any(effect.differs_by_run for effect in hypothesis.effects)
     group = _part_of_run(points.file) if within_runs else _group_of_sweeps(points.sweep)
     for fold in range(int(group.max()) + 1):
         out = group == fold
         if not (hypothesis.effects or inexact) or out.all():
             continue
-        rest, chosen, rows = problem.part(~out), points.select(out), np.tile(out, len(channels))
+        rest, chosen, rows = fits.part(~out), points.select(out), np.tile(out, len(channels))
         fitted = rest.evaluate(hypothesis.effects, hypothesis.numbers)
         if hypothesis.effects and not inexact:
             fitted = rest.fit(hypothesis.effects, hypothesis.numbers)

@@ -15,7 +15,7 @@ from mffit.fit.nuisances import TEMPERATURE
 from mffit.fit.temperature import AtTemperature
 from mffit.fit.with_nuisances import NuisanceFit
 from mffit.quantities import CHANNELS
-from mffit.rig_errors import unit_of
+from mffit.rig_errors import shown, unit_of, words_of
 from mffit.rounding import ascii_only, number, rounded
 
 SCALED = {
@@ -90,10 +90,7 @@ def _moved_sentence(name: str, found: AtTemperature) -> str:
 
 
 def _modelled_sentence(verdict: Verdict, rig: Mapping[str, tuple[float, float]]) -> str:
-    numbers = ", ".join(
-        f"{name} = {' +- '.join(rounded(*rig[name]))} {unit_of(name)}".removesuffix(" -")
-        for name in verdict.nuisance.numbers
-    )
+    numbers = ", ".join(f"{words_of(name)} {_stated(name, *rig[name])}" for name in verdict.nuisance.numbers)
     return ascii_only(
         f"The {verdict.nuisance.name} is modelled, {numbers}: {verdict.reason} ({_compared(verdict)}). The files are without it."
     )
@@ -117,6 +114,11 @@ def _worth_telling(verdict: Verdict, found: NuisanceFit) -> bool:
 
 def _compared(verdict: Verdict) -> str:
     return f"{_gaps(verdict.beside)} with it, {_gaps(verdict.without)} without"
+
+
+def _stated(name: str, value: float, u: float) -> str:
+    value, u, unit = shown(name, value, u)
+    return f"{' +- '.join(rounded(value, u))} {unit}".rstrip()
 
 
 def _percent(value: float, u: float) -> str:

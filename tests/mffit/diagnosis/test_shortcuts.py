@@ -1,0 +1,122 @@
+"""Formulae that save time, against the plain ones: slopes of the likelihood, and bumps beside shared changes."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from mffit.diagnosis.bumps import bump_scan
+from mffit.diagnosis.marginal import MarginalChannel, MarginalParts
+from mffit.diagnosis.needs import HELD_AT, possible, without
+from mffit.diagnosis.noise import Noise, Scatter
+from mffit.effects import CATALOG
+from mffit.points import Points, make_points
+from mffit.rig import Simulation
+
+M = 60
+WARMTH = next(effect for effect in CATALOG if effect.id == "temperature")
+
+
+@pytest.fixture(scope="module")
+def channel() -> MarginalChannel:
+    rng = np.random.default_rng(1)
+    return MarginalChannel(
+        stated=rng.uniform(3.0, 6.0, M),
+        residual=rng.normal(0.0, 9.0, M),
+        size=rng.uniform(100.0, 2000.0, M),
+        chain=np.repeat(np.arange(6), 10),
+        named=rng.normal(0.0, 20.0, (M, 5)),
+        smooth=rng.normal(0.0, 300.0, (M, 4)),
+        weight=rng.uniform(0.3, 1.0, M),
+        runs=rng.normal(0.0, 5.0, (M, 6)),
+        least=0.3,
+    )
+
+
+@pytest.mark.parametrize(
+    "parts",
+    [
+        MarginalParts(0.2, 0.004, 0.7, 0.01, 0.8, 0.3),
+        MarginalParts(-0.1, 0.01, 0.95, 0.05, 0.2, 0.0),
+        MarginalParts(0.2, 0.004, 1e-3, 0.01, 0.8, 0.0),
+    ],
+)
+def test_slopes_of_the_likelihood_are_its_differences(channel, parts):
+    value, slopes = channel.likelihood_and_slopes(parts)
+    assert value == pytest.approx(channel.likelihood(parts), rel=1e-10)
+    for name, slope in slopes._asdict().items():
+        step = 1e-6 * max(getattr(parts, name), 0.1)
+        if name == "independent" and not parts.independent:
+            continue
+        up, down = (parts._replace(**{name: getattr(parts, name) + sign * step}) for sign in (1.0, -1.0))
+        difference = (channel.likelihood(up) - channel.likelihood(down)) / (2.0 * step)
+        assert slope == pytest.approx(difference, rel=1e-4, abs=1e-4), name
+
+
+def test_a_memory_of_zero_has_a_slope(channel):
+    at = MarginalParts(0.2, 0.004, 0.0, 0.01)
+    step = 1e-6
+    difference = (channel.likelihood(at._replace(memory=step)) - channel.likelihood(at)) / step
+    assert channel.likelihood_and_slopes(at)[1].memory == pytest.approx(difference, rel=1e-3)
+
+
+def _points(n: int = 120) -> Points:
+    rng = np.random.default_rng(3)
+    return make_points(
+        rng.uniform(-0.15, 0.15, n), rng.uniform(-0.1, 0.1, n), rng.choice([900.0, 1500.0], n), p=250e3, V=10.0,
+        phi_t=0.0, T=rng.uniform(50.0, 70.0, n), Fy=rng.normal(0.0, 900.0, n), Mz=rng.normal(0.0, 20.0, n),
+        sweep=np.repeat(np.arange(6), n // 6), sweep_names=tuple("abcdef"),
+    )  # fmt: skip
+
+
+def test_the_best_bump_is_that_of_whole_whitened_shapes():
+    points, rng = _points(), np.random.default_rng(5)
+    n = len(points)
+    u = np.repeat([5.0, 0.6], n)
+    u[7] = np.inf
+    noise = Noise(
+        u=u,
+        stated=u,
+        chain=np.concatenate([points.sweep, points.sweep + 6]),
+        origin=None,
+        scatter={"Fy": Scatter(memory=0.6), "Mz": Scatter()},
+    ).sharing(rng.normal(0.0, 3.0, (2 * n, 6)))
+    axes = np.linalg.qr(rng.normal(size=(2 * n - 1, 3)))[0]
+    residual = rng.normal(0.0, 2.0, 2 * n - 1)
+    scan = bump_scan(points, noise)
+    found = scan.best(SimpleNamespace(axes=axes, residual=residual))
+    gains = []
+    for name in noise.channels:
+        shapes, spread = noise.whiten(scan.column(name, slice(None))), scan.spread[name]
+        inside = axes.T @ shapes
+        score = shapes.T @ residual - inside.T @ (axes.T @ residual)
+        precision = np.sum(shapes**2, axis=0) - np.sum(inside**2, axis=0) + spread**-2
+        tried = np.log(2 * len(scan.regions))
+        gains.append(np.max(0.5 * score**2 / precision - 0.5 * np.log(precision * spread**2) - tried))
+    assert found.gain == pytest.approx(max(gains), rel=1e-4)
+    assert found.channel == noise.channels[int(np.argmax(gains))]
+
+
+def test_a_misfit_that_is_left_counts_as_noise():
+    n = 50
+    u = np.repeat([5.0, 0.5], n)
+    noise = Noise(u=u, stated=u, chain=np.zeros(2 * n, dtype=int), origin=None)
+    wider = noise.at_least(np.concatenate([np.full(n, 20.0), np.full(n, 0.1)]))
+    assert wider.typical("Fy") == pytest.approx(20.0)
+    assert wider.typical("Mz") == pytest.approx(0.5)
+    assert wider.scatter["Fy"].scale == pytest.approx(4.0)
+
+
+def test_the_model_holds_at_a_temperature_of_the_data():
+    points = _points()
+    start = Simulation({}, turn_slip=True)
+    (warm,), _ = possible([WARMTH], points, start)
+    (held_at,) = (free for free in warm.free if free.name == HELD_AT)
+    assert held_at.lower == points.T.min()
+    assert held_at.upper == points.T.max()
+    assert held_at.spread == pytest.approx(np.std(points.T))
+    assert without(warm, HELD_AT).parameters == ("k_T_per_K",)
+    assert replace(warm, free=WARMTH.free) == WARMTH
