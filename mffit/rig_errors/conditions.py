@@ -112,6 +112,7 @@ PATH_RADIUS = RigError(
 )
 SLIP_ZERO = RigError(
     name="kappa_0",
+    shown_in=("%", 100.0),
     unit="-",
     meaning="true longitudinal slip = reading + kappa_0",
     kind="rig",

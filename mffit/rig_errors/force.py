@@ -271,6 +271,7 @@ LONGITUDINAL_DRAG = _of_reading(
 )
 FX_INTO_MZ = _of_reading(
     name="crosstalk_Fx_Mz_m",
+    shown_in=("mm", 1e3),
     unit="m",
     meaning="reported Mz = Mz + crosstalk_Fx_Mz Fx",
     acts_on=("Mz",),
@@ -296,6 +297,7 @@ FX_INTO_MZ = _of_reading(
 )
 FY_INTO_MX = _of_reading(
     name="crosstalk_Fy_Mx_m",
+    shown_in=("mm", 1e3),
     unit="m",
     meaning="reported Mx = Mx + crosstalk_Fy_Mx Fy",
     acts_on=("Mx",),

@@ -6,6 +6,7 @@ import pytest
 from combined_cases import HIDDEN, backwards, diagnosed, simulated
 
 from mffit import config, points
+from mffit.diagnosis import wording
 from mffit.diagnosis.conditions import by_condition
 from mffit.diagnosis.needs import possible
 from mffit.diagnosis.problem import DiagnosisProblem
@@ -60,5 +61,8 @@ def test_a_tie_is_named_with_its_channels_and_the_run_that_ends_it(tmp_path):
     assert "longitudinal-arm" in first.tied_with
     assert "N in longitudinal force (noise 15" in found.headline
     assert "Nm in overturning moment (noise 6" in found.headline
+    where = found.where[0]
+    assert where.channel == "Mz"
     said = " ".join(text.diagnosis_summary(found).split())
     assert "a backward sweep of longitudinal slip at 4200 N (expected chi2" in said
+    assert wording.place(where.region) == ["longitudinal slip 0.08 to 0.2"]

@@ -19,9 +19,10 @@ from mffit.diagnosis.priors import declared_priors
 from mffit.diagnosis.stated import stated_noise, with_uncertainties
 from mffit.diagnosis.strangers import refuse_strangers
 from mffit.effects import CATALOG, OF_CHANNEL
-from mffit.fit.plan import channels_of
 from mffit.errors import InputError
+from mffit.fit.plan import channels_of
 from mffit.points import make_points
+from mffit.quantities import SIDEWAYS
 from mffit.rig import Simulation
 from mffit.rig_errors import Faults
 
