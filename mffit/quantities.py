@@ -81,6 +81,7 @@ def u_column(channel: str) -> str:
 CONDITIONS = {
     "alpha_deg": QuantityName("sideslip", "α", "deg"),
     "gamma_deg": QuantityName("camber", "γ", "deg"),
+    "kappa": QuantityName("longitudinal slip", "κ", "-"),
     "Fz_N": QuantityName("load", "F_z", "N"),
     "p_kPa": QuantityName("pressure", "p", "kPa"),
     "V_mps": QuantityName("speed", "V", "m/s"),
@@ -132,7 +133,7 @@ MODEL = {
     "Fz": CONDITIONS["Fz_N"],
     "alpha": CONDITIONS["alpha_deg"],
     "gamma": CONDITIONS["gamma_deg"],
-    "kappa": QuantityName("longitudinal slip", "κ", "-"),
+    "kappa": CONDITIONS["kappa"],
     "phi_t": QuantityName("path curvature", "φ_t", "1/m"),
     "Vx": CONDITIONS["V_mps"],
     "pressure": CONDITIONS["p_kPa"],

@@ -225,6 +225,8 @@ TIE_RUN_WARMER = Real(20.0, "K", "Rise of temperature of an added run.")
 TIE_RUN_UNKNOWN_TEMPERATURE = Real(25.0, "degC", "Temperature of the test if none was measured.")
 TIE_RUN_LATER = Real(600.0, "s", "Added late runs begin this long after the lengthened test.")
 TIE_RUN_LATER_SHARE = Real(1.2, "-", "Factor that lengthens the test for added late runs.")
+TIE_RUN_SLIP_POINTS = Count(13, "-", "Points of an added sweep of longitudinal slip.")
+TIE_RUN_STEERED = Real(4.0, "deg", "Sideslip of an added sweep of longitudinal slip.")
 TIE_RUN_WIDE = Real(2.0, "-", "Path radius of an added run over the usual one.")
 
 # Confidence and answer

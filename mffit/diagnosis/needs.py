@@ -9,7 +9,7 @@ import numpy as np
 
 from mffit.diagnosis import constants
 from mffit.diagnosis.notes import NotVisible
-from mffit.effects import Effect
+from mffit.effects import OF_CHANNEL, Effect
 from mffit.points import Points
 from mffit.rig import Simulation, distance_km, sense
 
@@ -25,6 +25,12 @@ def _spread(x: np.ndarray) -> float:
 def _coupled(points: Points) -> bool:
     leaned = np.abs(points.gamma) > constants.VISIBLE_COUPLED_CAMBER
     return bool(np.any(leaned & (np.abs(points.alpha) > constants.VISIBLE_COUPLED_SIDESLIP)))
+
+
+def _driven(points: Points, least_camber: float = 0.0) -> np.ndarray:
+    """Mask (n,) of points with longitudinal slip and sideslip together, and as much camber."""
+    steered = np.abs(points.alpha) > constants.VISIBLE_COUPLED_SIDESLIP
+    return ~points.free_rolling & steered & (np.abs(points.gamma) >= least_camber)
 
 
 def _both_senses(points: Points) -> bool:
@@ -56,6 +62,10 @@ MET: dict[str, Callable[[Points], bool]] = {
     "runs": lambda p: len(np.unique(p.file)) >= constants.VISIBLE_RUNS,
     "senses": _both_senses,
     "continuous": lambda p: bool(np.any(p.continuous)),
+    "drive": lambda p: "Fx" in p.measured and not np.all(p.free_rolling),
+    "combined": lambda p: bool(np.any(_driven(p))),
+    "combined_camber": lambda p: bool(np.any(_driven(p, constants.VISIBLE_COUPLED_CAMBER))),
+    "overturning": lambda p: "Mx" in p.measured,
 }
 """Whether points meet a need, by its key in ``mffit.effects.NEEDS``."""
 
@@ -83,7 +93,7 @@ def _in_range(effect: Effect, points: Points) -> Effect:
 def possible(
     effects: Sequence[Effect], points: Points, start: Simulation
 ) -> tuple[list[Effect], list[NotVisible]]:
-    """Effects that the data can show, and notes on the others."""
+    """Effects that the data can show, and notes on the others; none on effects of a channel that was not measured."""
     out: list[Effect] = []
     lacking: dict[tuple[str, ...], list[Effect]] = {}
     files = sorted({points.files[k] for k in np.unique(points.file)})
@@ -91,6 +101,8 @@ def possible(
         if effect.switches and start.turn_slip:
             continue
         lack = missing(effect, points)
+        if not OF_CHANNEL.isdisjoint(lack):
+            continue
         if lack:
             lacking.setdefault(lack, []).append(effect)
         else:

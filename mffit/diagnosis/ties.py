@@ -31,6 +31,16 @@ class SeparatingRun(Enum):
     STRAIGHT = "a sideslip sweep at {load:.0f} N on a straight path"
     WIDE = f"a sideslip sweep at {{load:.0f}} N on a path of {constants.TIE_RUN_WIDE:g} times the radius"
     STRAIGHT_CAMBER = "a camber sweep at {load:.0f} N on a straight path"
+    DRIVE = "a sweep of longitudinal slip at {load:.0f} N"
+    BACKWARD_DRIVE = "a backward sweep of longitudinal slip at {load:.0f} N"
+    DRIVE_TURNED_ON_RIM = "a sweep of longitudinal slip at {load:.0f} N with the tyre turned on its rim"
+    STEERED_DRIVE = (
+        f"a sweep of longitudinal slip at {constants.TIE_RUN_STEERED:g} deg sideslip and {{load:.0f}} N"
+    )
+    LEANED_DRIVE = (
+        f"a sweep of longitudinal slip at {constants.TIE_RUN_STEERED:g} deg sideslip, "
+        f"{constants.TIE_RUN_LEANED:g} deg camber and {{load:.0f}} N"
+    )
 
 
 @dataclass(frozen=True, slots=True)
@@ -93,14 +103,30 @@ def candidate_runs(points: Points) -> tuple[tuple[SeparatingRun, Points], ...]:
             (SeparatingRun.WIDE, slip.replace(phi_t=slip.phi_t / constants.TIE_RUN_WIDE)),
             (SeparatingRun.STRAIGHT_CAMBER, camber.replace(phi_t=0.0)),
         ]
+    if not np.all(points.free_rolling):
+        reach = float(np.max(np.abs(main.kappa)))
+        drive = _line(main, load, kappa=np.linspace(-reach, reach, constants.TIE_RUN_SLIP_POINTS))
+        steered = drive.replace(alpha=constants.TIE_RUN_STEERED.rad)
+        runs += [
+            (SeparatingRun.DRIVE, drive.replace(Fz=higher)),
+            (SeparatingRun.DRIVE, drive.replace(Fz=lower)),
+            (SeparatingRun.BACKWARD_DRIVE, drive.replace(direction=-1)),
+            (SeparatingRun.DRIVE_TURNED_ON_RIM, drive.replace(mount=-1)),
+            (SeparatingRun.STEERED_DRIVE, steered),
+            (SeparatingRun.LEANED_DRIVE, steered.replace(gamma=constants.TIE_RUN_LEANED.rad)),
+        ]
     return tuple(runs)
 
 
 def _line(
-    points: Points, load: float, alpha: np.ndarray | float = 0.0, gamma: np.ndarray | float = 0.0
+    points: Points,
+    load: float,
+    alpha: np.ndarray | float = 0.0,
+    gamma: np.ndarray | float = 0.0,
+    kappa: np.ndarray | float = 0.0,
 ) -> Points:
-    """Steady points along one angle, everything else as at the point nearest the load."""
-    n = max(np.size(alpha), np.size(gamma))
+    """Steady points along one angle or the slip, everything else as at the point nearest the load."""
+    n = max(np.size(alpha), np.size(gamma), np.size(kappa))
     nearest = int(np.argmin(np.abs(points.Fz - load)))
     line = points.select(np.full(n, nearest))
-    return line.replace(alpha=alpha, gamma=gamma, Fz=load, continuous=False, time=np.nan)
+    return line.replace(alpha=alpha, gamma=gamma, kappa=kappa, Fz=load, continuous=False, time=np.nan)

@@ -19,6 +19,9 @@ PAIRS = (
     ("gamma_deg", "Fz_N"),
     ("alpha_deg", "direction"),
     ("Fz_N", "p_kPa"),
+    ("kappa", "alpha_deg"),
+    ("kappa", "gamma_deg"),
+    ("kappa", "Fz_N"),
 )
 Range = tuple[float, float]
 
@@ -114,6 +117,8 @@ def _bins(points: Points) -> dict[str, list[tuple[Range, np.ndarray]]]:
         "t_s": points.t,
         "direction": points.direction.astype(float),
     }
+    if not np.all(points.free_rolling):
+        variables["kappa"] = points.kappa
     return {name: cells for name, values in variables.items() if len(cells := _cut(values)) > 1}
 
 

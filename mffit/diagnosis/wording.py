@@ -352,10 +352,9 @@ def place(region: Mapping[str, tuple[float, float]]) -> list[str]:
 def _range(name: str, low: float, high: float) -> str:
     if name == "direction":
         return "backward runs" if high < 0 else "forward runs" if low > 0 else "both directions"
-    word, _, unit = CONDITIONS[name]
-    if low == high:
-        return f"{word} {_short(low)} {unit}"
-    return f"{word} {_short(low)} to {_short(high)} {unit}"
+    quantity = CONDITIONS[name]
+    values = _short(low) if low == high else f"{_short(low)} to {_short(high)}"
+    return f"{quantity.word} {values} {quantity.unit_behind}".rstrip()
 
 
 def _short(value: float) -> str:

@@ -18,4 +18,10 @@ NEEDS = {
     "runs": "at least three runs, each in a file of its own",
     "senses": "sideslip swept both up and down",
     "continuous": "a continuous sweep (time_s, moving alpha)",
+    "drive": "sweeps of longitudinal slip with Fx",
+    "combined": "longitudinal slip and sideslip together",
+    "combined_camber": "longitudinal slip, sideslip and camber together",
+    "overturning": "Mx",
 }
+OF_CHANNEL = frozenset(("drive", "overturning"))
+"""Needs of channels that many rigs do not measure: without them, an effect is neither tried nor listed as invisible."""

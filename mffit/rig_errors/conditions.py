@@ -112,6 +112,7 @@ PATH_RADIUS = RigError(
 )
 SLIP_ZERO = RigError(
     name="kappa_0",
+    shown_in=("%", 100.0),
     unit="-",
     meaning="true longitudinal slip = reading + kappa_0",
     kind="rig",
@@ -121,6 +122,19 @@ SLIP_ZERO = RigError(
     spread=0.002,
     lower=-0.1,
     upper=0.1,
+    seen_as=(
+        Appearance(
+            id="slip-zero",
+            name="zero of longitudinal slip",
+            physics="The slip reads zero while the wheel is driven or braked a little, because its rolling radius or a speed is "
+            "not exactly known.",
+            parity="even in slip",
+            needs=("drive",),
+            confusable_with=("slip-shift",),
+            remedy="count slip from the speed of the freely rolling wheel; or add {value} to all readings of the slip, "
+            "which is positive when driven",
+        ),
+    ),
     declared=Declared(key="u_slip_zero", unit="-", default=0.0, source="zero of slip"),
 )
 

@@ -166,6 +166,18 @@ LONGITUDINAL_ZERO = _of_reading(
     lower=-1e3,
     upper=1e3,
     of_setup=True,
+    seen_as=(
+        Appearance(
+            id="loadcell-offset-fx",
+            name="load-cell zero of Fx",
+            physics="The longitudinal load cell was zeroed while a force acted on it.",
+            parity="even in slip, the same at every load and in both directions",
+            needs=("drive",),
+            confusable_with=("longitudinal-drag", "rolling-force"),
+            remedy="zero the longitudinal channel with the tyre off the ground; or subtract {value} N from its readings",
+            axes=("Fx",),
+        ),
+    ),
     declared=Declared(
         key="u_Fx_offset_N", unit="N", default=constants.LONGITUDINAL_ZERO, source="zero of Fx"
     ),
@@ -180,6 +192,20 @@ OVERTURNING_ZERO = _of_reading(
     lower=-500.0,
     upper=500.0,
     of_setup=True,
+    seen_as=(
+        Appearance(
+            id="loadcell-offset-mx",
+            name="load-cell zero of Mx",
+            physics="The overturning moment reads a constant beside that of the tyre, from the zero of its cell or from a wheel "
+            "beside the middle of the rig.",
+            parity="even in alpha and gamma, the same at every load",
+            needs=("overturning",),
+            confusable_with=("overturning-offset",),
+            remedy="zero the channel of the overturning moment with the tyre off the ground; or subtract {value} Nm from its "
+            "readings",
+            axes=("Mx",),
+        ),
+    ),
     declared=Declared(
         key="u_Mx_offset_Nm", unit="Nm", default=constants.OVERTURNING_ZERO, source="zero of Mx"
     ),
@@ -206,10 +232,46 @@ LONGITUDINAL_GAIN = _of_reading(
     spread=0.02,
     lower=0.5,
     upper=2.0,
+    seen_as=(
+        Appearance(
+            id="loadcell-gain-fx",
+            name="calibration of Fx",
+            physics="The longitudinal channel reads a few per cent too much or too little.",
+            parity="as Fx",
+            needs=("drive",),
+            confusable_with=("longitudinal-grip", "slip-stiffness"),
+            remedy="calibrate the longitudinal channel; or divide its readings by {value}",
+        ),
+    ),
     declared=Declared(key="u_Fx_gain", unit="-", default=0.0, source="calibration of Fx"),
+)
+LONGITUDINAL_DRAG = _of_reading(
+    name="drag_Fx_N",
+    unit="N",
+    meaning="reported Fx = Fx - drag_Fx rolling forwards, Fx + drag_Fx backwards",
+    acts_on=("Fx",),
+    formula=lambda drag, Fx, at: Fx - drag * at.points.direction,
+    spread=15.0,
+    lower=-500.0,
+    upper=500.0,
+    seen_as=(
+        Appearance(
+            id="longitudinal-drag",
+            name="drag of brake and bearings",
+            physics="A dragging brake, bearings or seals between wheel and load cell add a force against the rolling, which "
+            "turns with the direction.",
+            parity="even in slip, the same at every load; turns with the direction",
+            needs=("drive",),
+            confusable_with=("loadcell-offset-fx", "rolling-force"),
+            remedy="free the brake and warm up the bearings, or measure Fx between them and the wheel; or add {value} N to the "
+            "readings of forward runs",
+            axes=("Fx",),
+        ),
+    ),
 )
 FX_INTO_MZ = _of_reading(
     name="crosstalk_Fx_Mz_m",
+    shown_in=("mm", 1e3),
     unit="m",
     meaning="reported Mz = Mz + crosstalk_Fx_Mz Fx",
     acts_on=("Mz",),
@@ -218,10 +280,24 @@ FX_INTO_MZ = _of_reading(
     spread=0.002,
     lower=-0.1,
     upper=0.1,
+    seen_as=(
+        Appearance(
+            id="crosstalk-fx-mz",
+            name="crosstalk of Fx into Mz",
+            physics="Part of the longitudinal force appears in the moment channel, as if it had an arm.",
+            parity="odd in slip",
+            needs=("drive", "moment"),
+            confusable_with=("longitudinal-arm",),
+            remedy="calibrate the cross terms of the load cell or move its origin to the middle of the wheel; or subtract "
+            "{value} m times Fx from Mz",
+            axes=("Fx", "Mz"),
+        ),
+    ),
     declared=Declared(key="u_Fx_into_Mz_m", unit="m", default=0.0, source="crosstalk of Fx into Mz"),
 )
 FY_INTO_MX = _of_reading(
     name="crosstalk_Fy_Mx_m",
+    shown_in=("mm", 1e3),
     unit="m",
     meaning="reported Mx = Mx + crosstalk_Fy_Mx Fy",
     acts_on=("Mx",),
@@ -230,6 +306,20 @@ FY_INTO_MX = _of_reading(
     spread=0.003,
     lower=-0.1,
     upper=0.1,
+    seen_as=(
+        Appearance(
+            id="crosstalk-fy-mx",
+            name="crosstalk of Fy into Mx",
+            physics="Part of the side force appears in the overturning moment, as if the origin of the load cell were above or "
+            "below the road.",
+            parity="as Fy",
+            needs=("overturning", "slip"),
+            confusable_with=("overturning-arm", "overturning-side-force"),
+            remedy="calibrate the cross terms of the load cell or correct the height of its origin; or subtract {value} m times "
+            "Fy from Mx",
+            axes=("Fy", "Mx"),
+        ),
+    ),
     declared=Declared(key="u_Fy_into_Mx_m", unit="m", default=0.0, source="crosstalk of Fy into Mx"),
 )
 
@@ -242,6 +332,7 @@ FORCE_ERRORS = (
     LONGITUDINAL_GAIN,
     FX_INTO_MZ,
     FY_INTO_MX,
+    LONGITUDINAL_DRAG,
     LONGITUDINAL_ZERO,
     OVERTURNING_ZERO,
     ROLLING_ZERO,

@@ -193,10 +193,12 @@ def _distances(rows: Sequence[Candidate], gains: np.ndarray) -> list[Note]:
 
 
 def _frames(regions: Sequence[Region], load: float) -> list[Frame]:
-    """A frame around every region at this load."""
+    """A frame around every region at this load; none for a range of slip, over which the maps are not drawn."""
     found, near = [], constants.LOAD_TOLERANCE_OF_FRAME
     for region in (item.region for item in regions):
         low, high = region.get("Fz_N", (-np.inf, np.inf))
+        if "kappa" in region:
+            continue
         if {"alpha_deg", "gamma_deg"} & region.keys() and low * (1.0 - near) <= load <= high * (1.0 + near):
             found.append(Frame(x=region.get("alpha_deg"), y=region.get("gamma_deg")))
     return found

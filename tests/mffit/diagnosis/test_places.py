@@ -18,9 +18,11 @@ from mffit.diagnosis.notes import HardlyThisTyre, NotVisible
 from mffit.diagnosis.priors import declared_priors
 from mffit.diagnosis.stated import stated_noise, with_uncertainties
 from mffit.diagnosis.strangers import refuse_strangers
-from mffit.effects import CATALOG
+from mffit.effects import CATALOG, OF_CHANNEL
 from mffit.errors import InputError
+from mffit.fit.plan import channels_of
 from mffit.points import make_points
+from mffit.quantities import SIDEWAYS
 from mffit.rig import Simulation
 from mffit.rig_errors import Faults
 
@@ -186,6 +188,16 @@ CONDITIONS = {
         {"file": [0, 1, 1, 1], "files": ("a", "b", "c")},
     ),
     "continuous": ({"continuous": [False, True]}, {"continuous": False}),
+    "drive": ({"kappa": [0.0, 0.05], "Fx": [0.0, 900.0]}, {"kappa": 0.0, "Fx": [0.0, 5.0]}),
+    "combined": (
+        {"kappa": [0.0, 0.05], "alpha": [0.0, 0.05]},
+        {"kappa": [0.0, 0.05], "alpha": [0.05, 0.0]},
+    ),
+    "combined_camber": (
+        {"kappa": [0.0, 0.05], "alpha": [0.0, 0.05], "gamma": [0.0, 0.05]},
+        {"kappa": [0.0, 0.05], "alpha": [0.0, 0.05], "gamma": [0.05, 0.0]},
+    ),
+    "overturning": ({"Mx": [np.nan, 1.0]}, {"Mx": np.nan}),
 }
 
 
@@ -206,8 +218,37 @@ def test_invisible_effects_are_not_tried():
     )
     assert {e.id for e in tried} >= {"ply-steer", "camber-stiffness", "loadcell-gain"}
     lacking = {e.id for note in notes if isinstance(note, NotVisible) for e in note.effects}
-    assert {e.id for e in CATALOG} - {e.id for e in tried} - {"turn-slip"} <= lacking | {"turn-slip"}
+    unmeasured = {e.id for e in CATALOG if OF_CHANNEL & set(e.needs)}
+    assert {e.id for e in CATALOG} - {e.id for e in tried} - {"turn-slip"} <= lacking | {
+        "turn-slip"
+    } | unmeasured
     assert all(missing(e, points) == () for e in tried)
+
+
+def test_effects_of_fx_and_mx_are_tried_only_where_these_channels_are_fitted():
+    """A project of Fy and Mz has as many candidates as before, and no note on effects of other channels."""
+    plain = read(programme())
+    tried, notes = possible(CATALOG, plain, Simulation.of(TYRE))
+    before, listed = possible(
+        [e for e in CATALOG if not OF_CHANNEL & set(e.needs)], plain, Simulation.of(TYRE)
+    )
+    assert (tried, notes) == (before, listed)
+    n = len(plain)
+    slips, moment = np.tile([-0.05, 0.05], n)[:n], np.zeros(n)
+    for channels, needs in (
+        ({"kappa": slips, "Fx": 1e4 * slips}, {"drive"}),
+        ({"Mx": moment}, {"overturning"}),
+        ({"Fx": moment}, set()),
+    ):
+        points = plain.replace(**channels)
+        assert {need for need in OF_CHANNEL if MET[need](points)} == needs
+        fitted = {
+            {"Fx": "drive", "Mx": "overturning"}[name] for name in channels_of(points) if name not in SIDEWAYS
+        }
+        assert fitted == needs
+        more = {e.id for e in possible(CATALOG, points, Simulation.of(TYRE))[0]} - {e.id for e in tried}
+        assert bool(more) is bool(needs)
+        assert all(needs & set(e.needs) for e in CATALOG if e.id in more)
 
 
 @pytest.mark.parametrize("simulated", [True, False])

@@ -1,0 +1,96 @@
+"""Effects of the tyre under drive and brake, alone and with sideslip."""
+
+from __future__ import annotations
+
+from functools import partial
+
+from mffit.effects.effect import Effect, Free
+
+_effect = partial(Effect, kind="tyre")
+
+LONGITUDINAL_EFFECTS = (
+    _effect(
+        id="longitudinal-grip",
+        name="longitudinal grip",
+        physics="The peak of the longitudinal force over load is higher, or lower, than the model's.",
+        free=(Free(name="PDX1", spread=0.1, lower=0.4, upper=3.5, relative=True),),
+        needs=("drive",),
+        parity="even in alpha and gamma; as Fx",
+        confusable_with=("loadcell-gain-fx",),
+    ),
+    _effect(
+        id="longitudinal-grip-load",
+        name="longitudinal grip over load",
+        physics="Longitudinal friction falls, or rises, with contact pressure.",
+        free=(Free(name="PDX2", spread=0.1, lower=-1.0, upper=0.5),),
+        needs=("drive", "loads"),
+        parity="even in alpha and gamma; as Fx",
+    ),
+    _effect(
+        id="slip-stiffness",
+        name="slip stiffness",
+        physics="The longitudinal force per unit of slip near free rolling differs from the model's.",
+        free=(Free(name="PKX1", spread=0.15, lower=4.0, upper=120.0, relative=True),),
+        needs=("drive",),
+        parity="even in alpha and gamma; as Fx",
+        confusable_with=("loadcell-gain-fx",),
+    ),
+    _effect(
+        id="slip-shift",
+        name="shift of the Fx curve over slip",
+        physics="The longitudinal force is zero at another slip than that of free rolling, at which slip is counted from zero.",
+        free=(Free(name="PHX1", spread=0.002, lower=-0.02, upper=0.02),),
+        needs=("drive",),
+        parity="even in alpha, gamma and slip",
+        confusable_with=("slip-zero",),
+        prior=-2.0,
+    ),
+    _effect(
+        id="rolling-force",
+        name="longitudinal force in proportion to load",
+        physics="A share of the load that the slip does not change acts along the tyre, as rolling resistance does.",
+        free=(Free(name="PVX1", spread=0.005, lower=-0.15, upper=0.15),),
+        needs=("drive",),
+        parity="even in alpha, gamma and slip",
+        confusable_with=("loadcell-offset-fx", "longitudinal-drag"),
+        prior=-0.3,
+    ),
+    _effect(
+        id="combined-longitudinal",
+        name="loss of longitudinal force by sideslip",
+        physics="Sideslip uses part of the grip, so that less is left for drive and brake.",
+        free=(Free(name="RBX1", spread=0.2, lower=2.0, upper=50.0, relative=True),),
+        needs=("drive", "combined"),
+        parity="even in alpha; as Fx",
+    ),
+    _effect(
+        id="combined-lateral",
+        name="loss of side force by longitudinal slip",
+        physics="Drive and brake use part of the grip, so that less is left for the side force.",
+        free=(Free(name="RBY1", spread=0.2, lower=2.0, upper=50.0, relative=True),),
+        needs=("drive", "combined"),
+        parity="even in slip; as Fy",
+    ),
+    _effect(
+        id="combined-camber",
+        name="combined slip with camber",
+        physics="A leaned tyre shares its grip between drive and sideslip otherwise than an upright one.",
+        free=(
+            Free(name="RBX3", spread=10.0, lower=-100.0, upper=100.0),
+            Free(name="RBY4", spread=10.0, lower=-100.0, upper=100.0),
+        ),
+        needs=("drive", "combined_camber"),
+        parity="even in gamma; as Fx and Fy",
+    ),
+    _effect(
+        id="longitudinal-arm",
+        name="moment arm of the longitudinal force",
+        physics="The longitudinal force acts beside the middle of the wheel and turns it, to the other side once the tyre is "
+        "turned on its rim.",
+        free=(Free(name="SSZ1", spread=0.01, lower=-0.2, upper=0.2),),
+        needs=("drive", "moment"),
+        parity="odd in slip",
+        confusable_with=("crosstalk-fx-mz",),
+        prior=-2.0,
+    ),
+)

@@ -1,0 +1,68 @@
+"""Hidden effects of Fx, combined slip and Mx in campaigns of the virtual rig, which has formulae of its own."""
+
+from __future__ import annotations
+
+import pytest
+from combined_cases import HIDDEN, backwards, diagnosed, simulated
+
+from mffit import config, points
+from mffit.diagnosis import wording
+from mffit.diagnosis.conditions import by_condition
+from mffit.diagnosis.needs import possible
+from mffit.diagnosis.problem import DiagnosisProblem
+from mffit.diagnosis.stated import stated_noise
+from mffit.effects import CATALOG, OF_CHANNEL
+from mffit.fit.plan import channels_of
+from mffit.report import text
+from mffit.rig import Simulation
+
+SAME = {
+    "crosstalk-fx-mz": {"longitudinal-arm"},
+    "crosstalk-fy-mx": {"overturning-arm"},
+    "loadcell-offset-fx": {"longitudinal-drag"},
+}
+"""Effects that no forward run separates, by the one that is named first."""
+LIKE = SAME | {other: {name} for name, others in SAME.items() for other in others}
+
+
+def gains(effect: str, folder, added=()) -> dict[str, float]:
+    """Gain in log evidence of every candidate to first order, best first."""
+    given = simulated(effect, 0.4, 5, folder, added=added)
+    read = by_condition(points.load(config.load(folder / "rig" / "tyre.toml"))[0])
+    start = Simulation.of(given, turn_slip=False)
+    problem = DiagnosisProblem(read, start, stated_noise(read, channels=channels_of(read)))
+    candidates, _ = possible(CATALOG, read, start)
+    return {found.id: gain for found, gain in problem.promising(problem.null, candidates)}
+
+
+@pytest.mark.parametrize("effect", HIDDEN)
+def test_the_hidden_effect_explains_most(tmp_path, effect):
+    found = gains(effect, tmp_path)
+    behind = {name for name, gain in found.items() if found[effect] - gain > 6.0}
+    assert found[effect] > 20.0
+    assert set(found) - behind <= {effect} | LIKE.get(effect, set())
+
+
+@pytest.mark.parametrize("effect", ["loadcell-offset-fx", "longitudinal-drag"])
+def test_a_backward_run_separates_drag_from_the_zero(tmp_path, effect):
+    found = gains(effect, tmp_path, backwards())
+    assert next(iter(found)) == effect
+    assert found[effect] - found[next(iter(LIKE[effect]))] > 6.0
+
+
+def test_every_effect_of_these_channels_is_hidden_once():
+    assert {e.id for e in CATALOG if OF_CHANNEL & set(e.needs)} == set(HIDDEN)
+
+
+def test_a_tie_is_named_with_its_channels_and_the_run_that_ends_it(tmp_path):
+    found = diagnosed("crosstalk-fx-mz", 0.4, 5, tmp_path)
+    first = found.effects[0]
+    assert first.effect.id == "crosstalk-fx-mz"
+    assert "longitudinal-arm" in first.tied_with
+    assert "N in longitudinal force (noise 15" in found.headline
+    assert "Nm in overturning moment (noise 6" in found.headline
+    where = found.where[0]
+    assert where.channel == "Mz"
+    said = " ".join(text.diagnosis_summary(found).split())
+    assert "a backward sweep of longitudinal slip at 4200 N (expected chi2" in said
+    assert wording.place(where.region) == ["longitudinal slip 0.08 to 0.2"]
