@@ -53,7 +53,7 @@ def radius_coefficients(
 
 def rolling_resistance(values: Mapping[str, Any], points: Points) -> dict[str, Quantity]:
     """QSY1 with its standard uncertainty from measured My, all other values held; empty if My was not measured."""
-    used = np.isfinite(points.My) & (points.direction > 0)
+    used = np.isfinite(points.My) & (points.direction > 0) & points.free_rolling
     if not np.any(used):
         return {}
     chosen = points.select(np.flatnonzero(used))
