@@ -84,6 +84,13 @@ LARGEST_CAMBER_OF_RADII = Real(
     6.0, "deg", "Camber up to which loaded and rolling radius change with its square."
 )
 
+RADIUS_GROWTH_OVER_SPEED = Real(
+    0.0007, "-", "Standard deviation of Q_V1 where nothing states it; published files have 0.0005 to 0.0008."
+)
+STIFFENING_OVER_SPEED = Real(
+    0.03, "-", "Standard deviation of Q_V2 where nothing states it; published files have 0.02 to 0.05."
+)
+
 # Physical limits
 LIMIT_MARGIN = Real(0.02, "-", "Distance kept from a physical limit, in units of its violation.")
 LEAST_FRICTION = Real(0.1, "-", "Physical limit: smallest lateral friction.")
