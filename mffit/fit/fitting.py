@@ -9,8 +9,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from mffit.config import axis_signs
+from mffit.config import Declaration, axis_signs, declared_rig
 from mffit.config.declared import as_declared
+from mffit.constants import USUAL_CORNERING_STIFFNESS
 from mffit.fit import agreement
 from mffit.fit.between_runs import between_runs
 from mffit.fit.by_hand import hand_of
@@ -28,7 +29,7 @@ from mffit.fit.priors import of_fleet
 from mffit.fit.problem import FitProblem, fit_problem
 from mffit.fit.remarks import with_remarks
 from mffit.fit.result import FitResult
-from mffit.fit.rolling import rolling_resistance
+from mffit.fit.rolling import MY_ZERO, rolling_resistance
 from mffit.fit.start import starting_values
 from mffit.fit.temperature import at_temperature
 from mffit.fit.vertical import Vertical, vertical_coefficients, vertical_sentence
@@ -92,7 +93,7 @@ def fit(
 
     progress("deriving the property files")
     use = plain_use(config)
-    after, coefficients, files = _delivered(config, known, points, measured, base, fitted, radii)
+    after, coefficients, files, zeros = _delivered(config, known, points, measured, base, fitted, radii)
     temperature = None
     if found.at_temperature:
         special = _delivered(config, known, points, measured, base, full, radii, only=use)
@@ -109,7 +110,7 @@ def fit(
         channels=channels,
         odd=agreement.with_odd_part(files.by_use["normal"].tyre.values, points, parts),
         simulation=fitted.simulation,
-        rig=fitted.rig,
+        rig={**fitted.rig, **zeros},
         model=readings,
         posterior=fitted.posterior,
         stages=fitted.stages,
@@ -144,6 +145,7 @@ class _Delivered(NamedTuple):
     known: Known  #: every value of the property file, with its origin
     coefficients: dict[str, Coefficient]
     files: Files
+    zeros: Mapping[str, tuple[float, float]]  #: of My, with standard errors
 
 
 def _delivered(
@@ -158,11 +160,15 @@ def _delivered(
 ) -> _Delivered:
     """The files of a fit, for one use ``only`` or for all, and the records of their coefficients."""
     known = known_after_fit(known, fitted.values, fitted.regularised, base)
-    rolling = {} if "QSY1" in known.hand.held else rolling_resistance(known.values, points)
-    known = known.having({name: QSY1.value for name, QSY1 in rolling.items()}, "fitted")
-    coefficients = coefficient_records(known, fitted, {**rolling, **radii.found})
+    side = config.tyre.side or "left"
+    zero = declared_rig(config.rig, USUAL_CORNERING_STIFFNESS).get(MY_ZERO, Declaration(0.0, 0.0))
+    rolling = rolling_resistance(known.values, points, zero, known.hand.held, side)
+    for name, q in rolling.found.items():
+        known = known.having({name: q.value}, "regularised" if name in rolling.regularised else "fitted")
+    coefficients = coefficient_records(known, fitted, {**rolling.found, **radii.found})
     files = make_files(config, known, points, base, dict(measured.by_load("C_gamma")), only=only)
-    return _Delivered(known, coefficients, files.annotated(file_comments(files, known.origin, coefficients)))
+    files = files.annotated(file_comments(files, known.origin, coefficients))
+    return _Delivered(known, coefficients, files, rolling.zeros)
 
 
 def _fitted_and_judged(

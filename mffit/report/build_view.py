@@ -93,7 +93,9 @@ class BuildView:
 
     config: Config
     points: Points  #: angles as read
-    felt: Points  #: as the tyre felt them, less the errors of the rig, where slip was run; else the same points
+    felt: (
+        Points  #: as the tyre felt them, less the errors of the rig, where slip was run; else the same points
+    )
     channels: tuple[ChannelRow, ...]
     curves: tuple[Curve, ...]
     lines: Mapping[tuple, CurveLine]

@@ -48,7 +48,9 @@ NEAR_ZERO_SIDESLIP = Real(1.6, "deg", "End of the sideslip axis in the picture o
 MOST_BUDGET_BARS = Count(8, "-", "Sources of uncertainty drawn at most; smaller ones are in the table.")
 LONGEST_NAME_AT_AXIS = Count(18, "-", "Characters of a tyre's name beside a panel; longer names are cut.")
 HELD_SLIP_SHARES = Series(
-    (0.0, 0.15, 0.5), "-", "Longitudinal slips of the curves of trail, as shares of the tested slip: none, small, large."
+    (0.0, 0.15, 0.5),
+    "-",
+    "Longitudinal slips of the curves of trail, as shares of the tested slip: none, small, large.",
 )
 LEAST_PURE_FORCE = Real(
     0.25, "-", "Least force of pure slip over its peak for which readings show a weight of combined slip."
@@ -61,7 +63,9 @@ HELD_SIDESLIP_SHARES = Series(
 )
 
 MOST_MAPS_PER_CHANNEL = Count(
-    30, "-", "Most conditions with a residual map: more than most campaigns have; those with the most points are shown."
+    30,
+    "-",
+    "Most conditions with a residual map: more than most campaigns have; those with the most points are shown.",
 )
 MOST_MAPS_OF_BUILD = Count(
     60,

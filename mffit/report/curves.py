@@ -127,7 +127,14 @@ def _slip_curves(points: Points) -> list[Curve]:
             for angle, kind in ((points.alpha, levels.SIDESLIP), (points.gamma, levels.CAMBER))
         )
         keys = np.column_stack(
-            [load[rows], pressure[rows], alpha, points.direction[rows], points.mount[rows], np.round(gamma, 1)]
+            [
+                load[rows],
+                pressure[rows],
+                alpha,
+                points.direction[rows],
+                points.mount[rows],
+                np.round(gamma, 1),
+            ]
         )
         found += _along(points, name, "kappa", rows, keys, constants.SLIP_SET_POINT_WIDTH)
     return found

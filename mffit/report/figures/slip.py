@@ -93,9 +93,7 @@ def _sideslip_key(colours: dict[float, str]) -> dict[str, Look]:
 def main_slip_curves(view: BuildView) -> dict[float, list[Curve]]:
     """By load, the forward curves over slip of the upright wheel at the pressure nearest to the nominal one."""
     upright = [
-        c
-        for c in slip_curves(view.curves)
-        if c.forward and abs(c.camber) < constants.UPRIGHT_ENOUGH_TO_DRAW
+        c for c in slip_curves(view.curves) if c.forward and abs(c.camber) < constants.UPRIGHT_ENOUGH_TO_DRAW
     ]
     nominal = view.config.tyre.nominal_pressure
     nearest = min((c.pressure for c in upright), key=lambda p: abs(p - nominal), default=0.0)
@@ -236,9 +234,7 @@ def _weight(
     at = _weights_at(view, curve, read, view.felt.alpha[curve.index], weight).line
     tyre = SimpleNamespace(**view.model.values)
     model, pure = (
-        outputs_of(
-            (channel,), tyre, _inputs(view, curve, kappa=k, alpha=a), turn_slip=view.on_disc
-        )[0]
+        outputs_of((channel,), tyre, _inputs(view, curve, kappa=k, alpha=a), turn_slip=view.on_disc)[0]
         for k, a in (
             (read, view.felt.alpha[curve.index]),
             ((read, 0.0 * read) if channel == "Fx" else (0.0 * read, view.felt.alpha[curve.index])),
@@ -277,7 +273,10 @@ def trail(view: BuildView) -> Sheet:
     colours = dict(zip(slips, style.ramp(range(len(slips))).values(), strict=True))
     reach = float(np.max(np.abs(view.points.alpha)))
     x = np.linspace(-reach, reach, constants.STEPS_OF_FILE_CURVE)
-    quantities = (("trail", MODEL["trail"].axis, 1e3), ("residual_torque", "residual moment M$_{zr}$ [Nm]", 1.0))
+    quantities = (
+        ("trail", MODEL["trail"].axis, 1e3),
+        ("residual_torque", "residual moment M$_{zr}$ [Nm]", 1.0),
+    )
     rows: list[list[Panel]] = [[] for _ in quantities]
     for load, members in sorted(main_slip_curves(view).items()):
         series: list[list[Band | Trace]] = [[] for _ in quantities]
