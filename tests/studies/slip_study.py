@@ -10,6 +10,7 @@ and residual torque, so a truth without them could not be found.
 from __future__ import annotations
 
 import argparse
+import math
 import pickle
 import sys
 import tempfile
@@ -34,6 +35,7 @@ import tir
 from mffit import virtual_rig
 from mffit.errors import InputError
 from mffit.fit.stages import STAGES
+from mffit.rig_errors import DECLARED
 from mffit.scatter import rms
 from mffit.virtual_rig.radius import loaded_radius
 
@@ -47,7 +49,13 @@ UNSETTLED = {
     name: 0.0 for stage in STAGES if stage.if_predicted for name in stage.parameters
 } | dict.fromkeys((f"QSX{k}" for k in range(4, 10)), 0.0)
 """One form of the overturning moment for all drawn tyres: programs disagree about the others."""
-RIGHT = dict.fromkeys(("alpha_0_deg", "gamma_0_deg", "F0_N", "M0_Nm"), 0.0)
+DRAWN_ZEROS = ("Fx0_N", "Mx0_Nm", "My0_Nm")
+RIGHT = {
+    error.name: error.undisturbed
+    for error, _ in DECLARED
+    if error.name not in (*DRAWN_ZEROS, "path_radius_m") and math.isfinite(error.undisturbed)
+}
+"""Declared rig errors that are absent."""
 CHANNELS = ("Fx", "Fy", "Mz", "Mx")
 NOISE_OFF = 2.0
 """Largest factor on a channel's noise, up or down."""
@@ -145,6 +153,8 @@ class SlipDraw(Draw):
     trusted: bool = True
     reasons: tuple[str, ...] = ()
     at_bound: tuple[str, ...] = ()
+    overall: float = 0.0
+    """Misfit over noise of all channels together, with the freedom that the numbers of the fit take."""
     gaps: dict[tuple[str, str], Gap] = field(default_factory=dict)  #: by range and channel
 
 
@@ -242,6 +252,7 @@ def _compare(
     sigma = {name: noise[column] for name in CHANNELS for column in noise if column.startswith(f"{name}_")}
     for name in CHANNELS:
         draw.misfit[name] = fit.channels[name].rmse / sigma[name]
+    draw.overall = _with_freedom(draw.misfit, fit)
     draw.note_coefficients(fit, true, [name for name in FOUND if true[name]])  # a factor moves no zero
     for name, (value, u) in fit.rig.items():
         draw.note(f"rig.{name}", value, u, faults[name])
@@ -251,6 +262,14 @@ def _compare(
             gap = np.abs(getattr(found, name) - getattr(truth, name))
             draw.gaps[word, name] = Gap(rms(gap), sigma[name], float(np.mean(gap < 2.0 * sigma[name])))
     draw.error |= _radius_errors(fit.written, true, kind)
+
+
+def _with_freedom(misfit: Mapping[str, float], fit: Any) -> float:
+    """Misfit over noise whose expected value is 1: a number that its prior decides takes no freedom from the points."""
+    points = {name: fit.channels[name].n for name in CHANNELS}
+    squares = sum(points[name] * misfit[name] ** 2 for name in CHANNELS)
+    taken = sum(1.0 - (fit.search.stderr[n.name] / n.spread) ** 2 for n in fit.search.numbers)
+    return math.sqrt(squares / (sum(points.values()) - taken))
 
 
 def _ranges(kind: Kind, rng: np.random.Generator) -> dict[str, dict[str, np.ndarray]]:
@@ -326,7 +345,9 @@ def _misfits(draws: Sequence[SlipDraw]) -> Iterable[str]:
     for name, rows in _by_kind(draws).items():
         x = np.array([[d.misfit[c] for c in CHANNELS] for d in rows])
         cells = [f"{np.median(c):.2f} ({c.min():.2f}-{c.max():.2f})" for c in x.T]
-        inside = np.mean((x > 0.95) & (x < 1.05))
+        overall = np.array([d.overall for d in rows])
+        inside = np.mean((overall > 0.95) & (overall < 1.05))
+        cells.append(f"{np.median(overall):.2f} ({overall.min():.2f}-{overall.max():.2f})")
         seconds = np.median([d.seconds for d in rows])
         yield f"| {name} | {len(rows)} | " + " | ".join(cells) + f" | {inside:.0%} | {seconds:.1f} |"
 
