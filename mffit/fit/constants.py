@@ -107,6 +107,23 @@ LARGEST_CAMBER_OF_RADII = Real(
     6.0, "deg", "Camber up to which loaded and rolling radius change with its square."
 )
 
+RADIUS_GROWTH_OVER_SPEED = Real(
+    0.0007, "-", "Standard deviation of Q_V1 where nothing states it; published files have 0.0005 to 0.0008."
+)
+STIFFENING_OVER_SPEED = Real(
+    0.03, "-", "Standard deviation of Q_V2 where nothing states it; published files have 0.02 to 0.05."
+)
+
+# Rolling resistance: standard deviations among tyres, from published files
+QSY1_SPREAD = Real(0.01, "-", "Standard deviation of QSY1: rolling resistance over load is 0.007 to 0.02.")
+QSY2_SPREAD = Real(0.01, "-", "Standard deviation of QSY2 among tyres.")
+QSY3_SPREAD = Real(0.001, "-", "Standard deviation of QSY3; published files have 0.0004 to 0.0015.")
+QSY4_SPREAD = Real(0.00005, "-", "Standard deviation of QSY4; published files have 0.00004 to 0.00006.")
+QSY5_SPREAD = Real(0.02, "-", "Standard deviation of QSY5; published files have 0 to 0.02.")
+QSY6_SPREAD = Real(0.01, "-", "Standard deviation of QSY6; published files have 0 to 0.006.")
+QSY7_SPREAD = Real(0.15, "-", "Standard deviation of QSY7; published files have 0.85 to 1.")
+QSY8_SPREAD = Real(0.3, "-", "Standard deviation of QSY8; published files have -0.5 to 0.")
+
 # Physical limits
 LIMIT_MARGIN = Real(0.02, "-", "Distance kept from a physical limit, in units of its violation.")
 LEAST_FRICTION = Real(0.1, "-", "Physical limit: smallest lateral friction.")

@@ -35,7 +35,9 @@ class Design:
 
     loads: int
     pressures: int
-    pressure_loads: int  #: loads at which more than one pressure was run
+    pressure_loads: (
+        int  #: loads at which more than one pressure was run, a wheel that only rolls straight on apart
+    )
     cambers: int
     coupled: bool  #: sideslip and camber together
     speeds: int
@@ -51,7 +53,7 @@ class Design:
 def design(points: Points, side: str) -> Design:
     """The numbers of levels that were run."""
     curved = bool(np.any(points.phi_t != 0.0))
-    load = levels.nearest_labels(points.Fz, levels.LOAD)
+    load = np.where(_straight_on(points), levels.NO_LEVEL, levels.nearest_labels(points.Fz, levels.LOAD))
     pressures_at = [levels.count(points.p[load == k], levels.PRESSURE) for k in np.unique(load[load >= 0])]
     both_sides = len(np.unique(np.sign(points.phi_t))) > 1
     both_ways = bool(np.any(points.direction < 0) or np.any(points.mount < 0) or both_sides)
@@ -73,6 +75,13 @@ def design(points: Points, side: str) -> Design:
         shifts=both_ways or not curved,
         symmetric=side == "symmetric",
     )
+
+
+def _straight_on(points: Points) -> np.ndarray:
+    """Mask (n,) of an upright wheel that rolls freely straight on: radii depend on its load and pressure, stiffnesses do not."""
+    upright = np.abs(points.gamma) < constants.ZERO_CAMBER_LIMIT.rad
+    straight = (np.abs(points.alpha) < constants.COUPLED_ALPHA.rad) & (points.phi_t == 0.0)
+    return upright & straight & points.free_rolling
 
 
 def coverage(

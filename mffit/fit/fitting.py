@@ -9,8 +9,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from mffit.config import axis_signs
+from mffit.config import Declaration, axis_signs, declared_rig
 from mffit.config.declared import as_declared
+from mffit.constants import USUAL_CORNERING_STIFFNESS
 from mffit.fit import agreement
 from mffit.fit.between_runs import between_runs
 from mffit.fit.by_hand import hand_of
@@ -31,7 +32,7 @@ from mffit.fit.problem import FitProblem, fit_problem
 from mffit.fit.relaxation import Relaxation, relaxation, relaxation_sentence
 from mffit.fit.remarks import with_remarks
 from mffit.fit.result import FitResult
-from mffit.fit.rolling import rolling_resistance
+from mffit.fit.rolling import MY_ZERO, rolling_resistance
 from mffit.fit.sister import Lent, Sister, lend, sister_of, sister_sentence
 from mffit.fit.start import starting_values
 from mffit.fit.temperature import at_temperature
@@ -102,7 +103,7 @@ def fit(
 
     progress("deriving the property files")
     use = plain_use(config)
-    after, coefficients, files, lent, lag, joined, posterior = _delivered(
+    after, coefficients, files, lent, lag, joined, posterior, zeros = _delivered(
         config, known, points, steps, measured, base, fitted, radii, sister, campaigns
     )
     temperature = None
@@ -123,7 +124,7 @@ def fit(
         channels=channels,
         odd=agreement.with_odd_part(files.by_use["normal"].tyre.values, points, parts),
         simulation=fitted.simulation,
-        rig=fitted.rig,
+        rig={**fitted.rig, **zeros},
         model=readings,
         posterior=posterior,
         stages=fitted.stages,
@@ -169,6 +170,7 @@ class _Delivered(NamedTuple):
     relaxation: Relaxation
     joined: tuple[Joined, ...]  #: what other campaigns gave
     posterior: Posterior  #: of all of them
+    zeros: Mapping[str, tuple[float, float]]  #: of My, with standard errors
 
 
 def _delivered(
@@ -186,8 +188,11 @@ def _delivered(
 ) -> _Delivered:
     """The files of a fit, for one use ``only`` or for all, and the records of their coefficients."""
     known = known_after_fit(known, fitted.values, fitted.regularised, base)
-    rolling = {} if "QSY1" in known.hand.held else rolling_resistance(known.values, points)
-    known = known.having({name: QSY1.value for name, QSY1 in rolling.items()}, "fitted")
+    side = config.tyre.side or "left"
+    zero = declared_rig(config.rig, USUAL_CORNERING_STIFFNESS).get(MY_ZERO, Declaration(0.0, 0.0))
+    rolling = rolling_resistance(known.values, points, zero, known.hand.held, side)
+    for name, q in rolling.found.items():
+        known = known.having({name: q.value}, "regularised" if name in rolling.regularised else "fitted")
     lag = relaxation(steps, fitted.simulation, fitted.posterior, known.hand.held)
     known = known.having({name: q.value for name, q in lag.found.items()}, "fitted")
     lent = None if sister is None else lend(sister, known, fitted.posterior)
@@ -200,10 +205,10 @@ def _delivered(
         known = known.having(joined[-1].values, "campaign")
         borrowed |= joined[-1].found
         posterior = joined[-1].posterior
-    coefficients = coefficient_records(known, fitted, {**rolling, **radii.found, **lag.found, **borrowed})
+    coefficients = coefficient_records(known, fitted, {**rolling.found, **radii.found, **lag.found, **borrowed})
     files = make_files(config, known, points, base, dict(measured.by_load("C_gamma")), only=only)
     annotated = files.annotated(file_comments(files, known.origin, coefficients))
-    return _Delivered(known, coefficients, annotated, lent, lag, tuple(joined), posterior)
+    return _Delivered(known, coefficients, annotated, lent, lag, tuple(joined), posterior, rolling.zeros)
 
 
 def _fitted_and_judged(

@@ -3,16 +3,25 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import dataclass, field
 from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 
+from mffit.config import Declaration
+from mffit.fit import constants
+from mffit.fit.coverage import why_held
+from mffit.fit.weights import stated_or_nominal
+from mffit.least_squares import FreeNumber, LeastSquaresProblem, Linear, solve
 from mffit.points import Points
-from tir import Quantity, Tyre
+from mffit.rig_errors import number_of
+from mffit.scatter import rms
+from tir import Quantity
 from tir.derivatives import gradient, plain, traced
 from tir.outputs import outputs_of
+from tir.parameters import TABLE
 
 
 def effective_radius(values: Mapping[str, Any], loads: np.ndarray, speed: float) -> Any:
@@ -20,6 +29,22 @@ def effective_radius(values: Mapping[str, Any], loads: np.ndarray, speed: float)
     return outputs_of(("Re",), SimpleNamespace(**values), {"Fz": loads, "Vx": speed})[0]
 
 
+ROLLING = tuple(row.name for row in TABLE if row.channel == "My")
+"""Coefficients of rolling resistance."""
+SPREADS = {
+    "QSY1": constants.QSY1_SPREAD,
+    "QSY2": constants.QSY2_SPREAD,
+    "QSY3": constants.QSY3_SPREAD,
+    "QSY4": constants.QSY4_SPREAD,
+    "QSY5": constants.QSY5_SPREAD,
+    "QSY6": constants.QSY6_SPREAD,
+    "QSY7": constants.QSY7_SPREAD,
+    "QSY8": constants.QSY8_SPREAD,
+}
+"""Standard deviation of each among tyres."""
+BOUNDS = {"QSY7": (0.0, 3.0), "QSY8": (-2.0, 1.0)}
+MY_ZERO = "My0_Nm"
+TINY_ZERO = 1e-9  # Nm, prior of a zero that is exactly known
 RADIUS_COEFFICIENTS = ("Q_RE0", "DREFF")
 """Coefficients that measured effective radii determine; the second one needs several loads."""
 
@@ -51,21 +76,75 @@ def radius_coefficients(
     return found
 
 
-def rolling_resistance(values: Mapping[str, Any], points: Points) -> dict[str, Quantity]:
-    """QSY1 with its standard uncertainty from measured My, all other values held; empty if My was not measured."""
-    used = np.isfinite(points.My) & (points.direction > 0) & points.free_rolling
-    if not np.any(used):
-        return {}
-    chosen = points.select(np.flatnonzero(used))
+@dataclass(frozen=True, slots=True)
+class Resistance:
+    """What the measured moment My of the freely rolling wheel determines."""
 
-    def moment(QSY1: float) -> np.ndarray:
-        trial = Tyre.from_values(values).replace(QSY1=QSY1)
-        return trial(
-            chosen.Fz, chosen.alpha, chosen.gamma, phi_t=chosen.phi_t, Vx=chosen.V, p=chosen.p, turn_slip=True
-        ).My
+    found: Mapping[str, Quantity] = field(default_factory=dict)  #: coefficients
+    regularised: frozenset[str] = frozenset()  #: those that their priors decide as much as the points
+    zeros: Mapping[str, tuple[float, float]] = field(default_factory=dict)
+    """Zeros of My [Nm] by number of the rig, with standard errors, as far as loads separate them from the tyre."""
 
-    at_zero = moment(0.0)
-    slope = moment(1.0) - at_zero  # My is linear in QSY1
-    QSY1 = float(slope @ (chosen.My - at_zero) / (slope @ slope))
-    scatter = float(np.sum((chosen.My - at_zero - QSY1 * slope) ** 2)) / max(len(slope) - 1, 1)
-    return {"QSY1": Quantity(QSY1, math.sqrt(scatter / float(slope @ slope)), "-")}
+
+def rolling_resistance(
+    values: Mapping[str, Any],
+    points: Points,
+    zero: Declaration,
+    held: Collection[str] = (),
+    side: str = "left",
+) -> Resistance:
+    """Coefficients of rolling resistance and the zeros of the rig, with standard uncertainties; empty if My was not measured.
+
+    ``zero`` is the prior of the zero, which every set-up has anew. Coefficients ``held`` stay, and so do those of which loads,
+    pressures, speeds and cambers show nothing. Points with longitudinal slip are not used: their My depends on the arm of Fx.
+    """
+    rolling = np.isfinite(points.My) & (points.direction > 0) & points.free_rolling
+    if not np.any(rolling):
+        return Resistance()
+    chosen = points.select(np.flatnonzero(rolling))
+    names = [n for n in ROLLING if n not in held and not why_held(n, chosen, side)]
+    numbers = [_with_prior(name, float(values[name])) for name in names]
+    setups = chosen.used_setups
+    own = {setup: number_of(MY_ZERO, setup if len(setups) > 1 else "") for setup in setups}
+    numbers += [
+        FreeNumber(n, zero.value, expected=zero.value, spread=zero.u or TINY_ZERO) for n in own.values()
+    ]
+    in_setup = np.array([[chosen.setups[k] == setup for setup in setups] for k in chosen.setup], float)
+    sigma = stated_or_nominal(chosen.u_My, chosen.My)
+    inputs = {
+        "Fz": chosen.Fz, "alpha": chosen.alpha, "gamma": chosen.gamma, "phi_t": chosen.phi_t, "Vx": chosen.V,
+        "pressure": chosen.p,
+    }  # fmt: skip
+
+    def linear(x: np.ndarray) -> Linear:
+        free = traced(dict(zip(names, x[: len(names)].tolist(), strict=True)))
+        (My,) = outputs_of(("My",), SimpleNamespace(**{**values, **free}), inputs, turn_slip=True)
+        slope = (
+            np.broadcast_to(gradient(My, list(free.values())), (len(sigma), len(names)))
+            if free
+            else in_setup[:, :0]
+        )
+        data = np.broadcast_to(plain(My), len(sigma)) + in_setup @ x[len(names) :] - chosen.My
+        return Linear(
+            data / sigma, np.hstack([slope, in_setup]) / sigma[:, None], np.zeros(0), np.zeros((0, len(x)))
+        )
+
+    def residual(x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        return linear(x).data, np.zeros(0)
+
+    end = solve(LeastSquaresProblem(residual, linear), numbers, tolerance=1e-8)
+    u = np.sqrt(np.diag(end.covariance)) * max(rms(end.data), 1.0)
+    stderr = dict(zip(end.names, u.tolist(), strict=True))
+    decided = {n.name for n in numbers if stderr[n.name] > constants.FITTED_SHARE_OF_PRIOR * n.spread}
+    return Resistance(
+        found={name: Quantity(end.values[name], stderr[name], "-") for name in names},
+        regularised=frozenset(decided.intersection(names)),
+        zeros={n: (end.values[n], stderr[n]) for n in own.values() if n not in decided and zero.u > 0.0},
+    )
+
+
+def _with_prior(name: str, known: float) -> FreeNumber:
+    """A coefficient from what is known of it, spread as among similar tyres."""
+    lower, upper = BOUNDS.get(name, (-math.inf, math.inf))
+    spread = max(float(SPREADS[name]), constants.SIMILAR_TYRES_SPREAD * abs(known))
+    return FreeNumber(name, known, lower, upper, expected=known, spread=spread)

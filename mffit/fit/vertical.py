@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Collection, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from types import SimpleNamespace
 from typing import Any
 
@@ -34,7 +34,11 @@ BOUNDS = {
     "BREFF": (0.2, 40.0),
     GROWTH: (-0.3, 0.3),
     LEAN: (-10.0, 10.0),
+    "Q_V1": (-0.01, 0.02),
+    "Q_V2": (-0.3, 0.5),
 }
+OVER_SPEED = {"Q_V1": constants.RADIUS_GROWTH_OVER_SPEED, "Q_V2": constants.STIFFENING_OVER_SPEED}
+"""Coefficients of the radii that several speeds show, and the standard deviation of each among tyres."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -74,13 +78,21 @@ class RollingParts:
         """The measured radius (n,) [m] of RL, or of omega."""
         return self.loaded if channel == "RL" else self.effective
 
+    def rim_speed(self, free_radius: float) -> np.ndarray:
+        """Speed of rotation times a radius (n,) [m/s]; that of travel where the wheel speed was not measured."""
+        rolled = np.where(np.isfinite(self.effective), self.effective, free_radius)
+        found: np.ndarray = self.V * free_radius / rolled
+        return found
+
 
 def radius(values: Mapping[str, Any], at: RollingParts, channel: str) -> Any:
     """Loaded radius, or effective rolling radius for omega, of the upright wheel [m]; plain or traced as the values are."""
     p = SimpleNamespace(**values)
     if channel == "RL":
-        return p.UNLOADED_RADIUS * p.Q_RE0 - vertical.deflection(
-            p, at.Fz, at.p / float(values["NOMPRES"]) - 1.0
+        rim_speed = at.rim_speed(float(values["UNLOADED_RADIUS"])) / float(values["LONGVL"])
+        free = p.UNLOADED_RADIUS * (p.Q_RE0 + p.Q_V1 * rim_speed**2)
+        return free - vertical.deflection(
+            p, at.Fz / (1.0 + p.Q_V2 * rim_speed), at.p / float(values["NOMPRES"]) - 1.0
         )
     return outputs_of(("Re",), p, {"Fz": at.Fz, "Vx": at.V, "pressure": at.p})[0]
 
@@ -89,14 +101,35 @@ def vertical_coefficients(values: Mapping[str, Any], points: Points, held: Colle
     """Vertical stiffness, free radius and rolling radius of the file that fit the readings, with standard uncertainties.
 
     The stiffness comes first, from the loaded radius: DREFF, BREFF and FREFF appear only over it. Coefficients ``held``, by hand
-    or because they were measured, stay, and so does what too few loads or pressures show.
+    or because they were measured, stay, and so does what too few loads, pressures or speeds show. What speed does and a single
+    speed does not show is part of the uncertainties.
     """
     rolling = _rolling(points)
     if rolling is None:
         return Vertical()
+    best = _best(values, rolling, held)
+    covariance = dict(best.covariance)
+    for name, spread in OVER_SPEED.items():
+        if name in best.found or name in held:
+            continue
+        known = float(values[name])
+        change = float(constants.SIMILAR_TYRES_SPREAD) * abs(known) or float(spread)
+        other = _best({**values, name: known + change}, rolling, {*held, *OVER_SPEED})
+        for channel, (names, matrix) in covariance.items():
+            moved = [other.found[n].value - best.found[n].value if n in best.found else 0.0 for n in names]
+            covariance[channel] = names, matrix + np.outer(moved, moved)
+    u = {name: u for of in covariance.values() for name, u in _standard(of).items()}
+    return replace(
+        best, found={name: q._replace(u=u[name]) for name, q in best.found.items()}, covariance=covariance
+    )
+
+
+def _best(values: Mapping[str, Any], rolling: RollingParts, held: Collection[str]) -> Vertical:
+    """The coefficients that fit the readings; coefficients over speed that are not found are exact here."""
     nominal = float(values["NOMPRES"])
     loads = levels.count(rolling.Fz, levels.LOAD)
     pressures = levels.count(rolling.p, levels.PRESSURE)
+    speeds = levels.count(rolling.V, levels.SPEED)
     dpi = rolling.p / nominal - 1.0
     known: dict[str, Any] = {**values, GROWTH: 0.0, LEAN: 0.0}
     found: dict[str, Quantity] = {}
@@ -106,7 +139,7 @@ def vertical_coefficients(values: Mapping[str, Any], points: Points, held: Colle
     lean = [LEAN] if levels.count(np.abs(rolling.gamma), levels.CAMBER) > 1 else []
     if np.any(np.isfinite(rolling.loaded)) and loads > 1:
         names = ["VERTICAL_STIFFNESS", "Q_RE0"] + (["Q_FZ2"] if loads > 2 else [])
-        names += ["PFZ1"] if pressures > 1 else []
+        names += (["PFZ1"] if pressures > 1 else []) + (list(OVER_SPEED) if speeds > 1 else [])
         names = [name for name in names if name not in held]
         known |= {name: 0.0 for name in ("Q_FZ2", "PFZ1") if name in names}
         known["VERTICAL_STIFFNESS"] = _stiffness(rolling)
@@ -116,8 +149,9 @@ def vertical_coefficients(values: Mapping[str, Any], points: Points, held: Colle
         found |= {name: Quantity(here[name], u[name], BY_NAME[name].unit) for name in names}
         beside = []
     if np.any(np.isfinite(rolling.effective)) and loads > 1:
-        names = [] if found else ["Q_RE0"]
-        names = [name for name in [*names, "DREFF", "FREFF", "BREFF"][: loads - 1] if name not in held]
+        names = [] if found else ["Q_RE0", *(["Q_V1"] if speeds > 1 else [])]
+        names += ["DREFF", "FREFF", "BREFF"][: loads - 1]
+        names = [name for name in names if name not in held]
         here, covariance["omega"], rms["omega"] = _fitted(
             [*names, *beside, *lean], known, rolling, "omega", dpi
         )

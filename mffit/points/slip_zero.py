@@ -102,7 +102,7 @@ class SlipZero:
 
 
 def slip_zero(of: Driven) -> SlipZero | None:
-    """Where the longitudinal force is zero; None if the readings hold no drive and brake force about zero."""
+    """Where the longitudinal force is zero; None if the readings hold too little drive and brake force about zero."""
     load = np.abs(of.Fz)
     with np.errstate(invalid="ignore", divide="ignore"):
         force = of.Fx / load
@@ -127,6 +127,9 @@ def slip_zero(of: Driven) -> SlipZero | None:
             per_radius = other[:k]
     found = solution[:k]
     inverse = float(compliance.mean(axis=0) @ solution[k:-1])
+    every = np.isfinite(of.slip) & np.isfinite(force)
+    if inverse * float(np.mean(of.slip[every] * force[every])) < 0.0:
+        return None  # few points near zero: their line contradicts the whole curve
     return SlipZero(
         slope=1.0 / inverse if inverse else np.nan,
         levels=_at_loads(used, middle, found),

@@ -9,7 +9,7 @@ from __future__ import annotations
 import argparse
 import pickle
 import sys
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import replace
 from pathlib import Path
@@ -69,18 +69,7 @@ def tables(draws: dict[str, list[Draw]]) -> Iterable[str]:
         cells = [np.array([d.error.get(n, np.nan) for d in rows]) for n in names]
         texts = [f"{np.sqrt(np.mean(c**2)):.3g} ({np.max(np.abs(c)):.3g})" for c in cells]
         yield f"| {kind} | " + " | ".join(texts) + " |"
-    yield "\n## Share of the truth inside 95 % intervals\n"
-    yield "| quantity | builds | inside | rms error | rms standard error | ratio | mean pull | sd of pull |"
-    yield "|---" * 8 + "|"
-    for name in sorted(dict.fromkeys(n for d in everything for n in d.pulls), key=_order):
-        rows = [d for d in everything if name in d.pulls]
-        x, u = (np.array([getattr(d, key)[name] for d in rows]) for key in ("pulls", "stderr"))
-        if len(x) >= SMALLEST_SHARE_OF_BUILDS * len(everything):
-            inside = np.mean([d.inside[name] for d in rows])
-            yield (
-                f"| {name} | {len(x)} | {inside:.0%} | {rms(x * u):.3g} | {rms(u):.3g} | {rms(u) / rms(x * u):.2f} "
-                f"| {np.mean(x):+.2f} | {np.std(x):.2f} |"
-            )
+    yield from coverage(everything)
     yield "\n## Bands of curves\n"
     yield "| band | campaign | inside | rms error | rms half width over 1.96 | ratio |"
     yield "|---" * 6 + "|"
@@ -95,6 +84,22 @@ def tables(draws: dict[str, list[Draw]]) -> Iterable[str]:
                     f"| {name} | {campaign} | {np.mean(inside):.0%} | {rms(error):.3g} | {rms(half) / SAFE:.3g} "
                     f"| {rms(half) / SAFE / rms(error):.2f} |"
                 )
+
+
+def coverage(draws: Sequence[Draw]) -> Iterable[str]:
+    """Lines of the table of coverage; a number of few builds is left out."""
+    yield "\n## Share of the truth inside 95 % intervals\n"
+    yield "| quantity | builds | inside | rms error | rms standard error | ratio | mean pull | sd of pull |"
+    yield "|---" * 8 + "|"
+    for name in sorted(dict.fromkeys(n for d in draws for n in d.pulls), key=_order):
+        rows = [d for d in draws if name in d.pulls]
+        x, u = (np.array([getattr(d, key)[name] for d in rows]) for key in ("pulls", "stderr"))
+        if len(x) >= SMALLEST_SHARE_OF_BUILDS * len(draws):
+            inside = np.mean([d.inside[name] for d in rows])
+            yield (
+                f"| {name} | {len(x)} | {inside:.0%} | {rms(x * u):.3g} | {rms(u):.3g} | {rms(u) / rms(x * u):.2f} "
+                f"| {np.mean(x):+.2f} | {np.std(x):.2f} |"
+            )
 
 
 def _order(name: str) -> tuple[bool, bool]:

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import tempfile
 import tomllib
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -88,6 +88,26 @@ class Draw:
     seconds: float = 0.0
     doubted: int = 0  #: sweeps that the build doubts, although all are sound
     refused: str = ""  #: the sentence with which it ended; everything else is empty then
+
+    def note(
+        self,
+        name: str,
+        value: float,
+        stderr: float,
+        truth: float,
+        interval: tuple[float, float] | None = None,
+    ) -> None:
+        """Keep how far a number is from its truth; without ``interval``, that of 95 % follows from the standard error."""
+        low, high = interval or (value - SAFE * stderr, value + SAFE * stderr)
+        self.pulls[name], self.stderr[name] = (value - truth) / stderr, stderr
+        self.inside[name] = low <= truth <= high
+
+    def note_coefficients(self, fit: Any, true: tir.Tyre, names: Collection[str]) -> None:
+        """Keep the named coefficients that the fit found and that are not at a bound."""
+        for name, row in fit.coefficients.items():
+            if row.stderr and row.interval and name in names and not row.at_bound:
+                label = name if row.status == "fitted" else f"{name} ({row.status})"
+                self.note(label, row.value, row.stderr, true[name], row.interval)
 
 
 PRESSURE = ("PPY1", "PPY2", "PPY3", "PPY4", "PPY5", "PPZ1", "PPZ2")
@@ -176,8 +196,10 @@ def _at_pressure_of_sweeps(points: Any, true: tir.Tyre, known: Mapping[str, Any]
     return direct_truth(true, known["load_N"], speed, float(np.median(points.p)), -1.0 / R, R)
 
 
-def _scaled(tyre: tir.Tyre, off: float, rng: np.random.Generator) -> tir.Tyre:
-    return tyre.replace(**{n: float(tyre[n] * (1.0 + off * rng.uniform(-1.0, 1.0))) for n in STAGED})
+def _scaled(
+    tyre: tir.Tyre, off: float, rng: np.random.Generator, names: Collection[str] = STAGED
+) -> tir.Tyre:
+    return tyre.replace(**{n: float(tyre[n] * (1.0 + off * rng.uniform(-1.0, 1.0))) for n in names})
 
 
 def _compared(result: Any, true: tir.Tyre, known: Mapping[str, Any], rng: np.random.Generator) -> Draw:
@@ -186,25 +208,17 @@ def _compared(result: Any, true: tir.Tyre, known: Mapping[str, Any], rng: np.ran
     for channel, u in (("Fy", points.u_Fy), ("Mz", points.u_Mz)):
         draw.misfit[channel] = fit.channels[channel].rmse / float(np.sqrt(np.nanmean(u**2)))
 
-    def note(name: str, value: float, stderr: float, truth: float, interval: Any = None) -> None:
-        low, high = interval or (value - SAFE * stderr, value + SAFE * stderr)
-        draw.pulls[name], draw.stderr[name] = (value - truth) / stderr, stderr
-        draw.inside[name] = low <= truth <= high
-
     if measured.epsilon_gamma is not None:
         for name, quantity, truth in (
             ("eps_gamma", measured.epsilon_gamma, known["epsilon_gamma"]),
             ("C_phit", measured.C_phit, _at_pressure_of_sweeps(points, true, known).C_phit_secant_Nm),
         ):
-            note(name, quantity.value, quantity.u, truth)
+            draw.note(name, quantity.value, quantity.u, truth)
         draw.error["eps_gamma"] = measured.epsilon_gamma.value - known["epsilon_gamma"]
         draw.error["eps_gamma debiased"] = measured.epsilon_gamma_debiased.value - known["epsilon_gamma"]
-    for name, row in fit.coefficients.items():
-        if row.stderr and row.interval and (name in STAGED or name == "PECP1") and not row.at_bound:
-            label = name if row.status == "fitted" else f"{name} ({row.status})"
-            note(label, row.value, row.stderr, true[name], row.interval)
+    draw.note_coefficients(fit, true, {*STAGED, "PECP1"})
     for name, (value, u) in fit.rig.items():
-        note(f"rig.{name}", value, u, known["faults"][name])
+        draw.note(f"rig.{name}", value, u, known["faults"][name])
     draw.error["PECP1"] = fit.tyre["PECP1"] - true["PECP1"]
     for place, phi_t in (("disc", -1.0 / 1.323), ("straight", 0.0)):
         Fy, Mz = model_error(fit.tyre, true, phi_t, np.unique(np.round(points.Fz, -2)))
