@@ -29,8 +29,8 @@ class LeftOutPrediction:
         self.problem, self.inexact = problem, inexact
         used, n = problem.noise.used, len(problem.points)
         scatter = (noise or problem.noise).u[used] / problem.noise.u[used]
-        self.of_noise = float(scatter @ scatter)
         self.channel = used // n
+        self.of_noise = np.bincount(self.channel, scatter**2, minlength=len(problem.channels))
         numbers, self.sweep = np.unique(problem.points.sweep[used % n], return_inverse=True)
         self.sweeps = len(numbers)
         columns = inexact.columns(problem.points, problem.start, problem.channels)
@@ -46,9 +46,9 @@ class LeftOutPrediction:
         error = left_out_errors(C, -r, C.T @ C + np.eye(C.shape[1]), -C.T @ r, self.sweep)
         return predicted(error, self.sweep, self.channel, channels=len(problem.channels))
 
-    def beyond_noise(self, predicted: Predicted) -> float:
-        """Misfit that the noise does not explain."""
-        return max(predicted.total - self.of_noise, 0.0)
+    def beyond_noise(self, predicted: Predicted) -> np.ndarray:
+        """Misfit (c,) that the noise does not explain, by channel."""
+        return np.maximum(predicted.chi2.sum(axis=0) - self.of_noise, 0.0)
 
     def without(self, chosen: Hypothesis, effect: Effect) -> Hypothesis:
         """The hypothesis less one of its effects, fitted again."""
@@ -82,7 +82,7 @@ def _best_addition(
 ) -> Effect | None:
     """The candidate that lowers the misfit of left-out sweeps most, if by enough and beyond chance."""
     before = prediction.of(current)
-    most, best = constants.LEAST_PREDICTED_SHARE * prediction.beyond_noise(before), None
+    most, best = constants.LEAST_PREDICTED_SHARE * float(prediction.beyond_noise(before).sum()), None
     for effect, groups in prediction.problem.columns(current.state, candidates).items():
         for columns in groups:
             after = prediction.of(current, columns)
@@ -95,17 +95,21 @@ def _best_addition(
 class Judged:
     """The support that left-out sweeps give an effect that was chosen by them."""
 
-    confidence: float  #: share of their misfit beyond the noise that the effect removes
+    confidence: float  #: share of their misfit beyond the noise that it removes, in the channel where it removes most
     tied: tuple[Hypothesis, ...]  #: with another effect in its place, no worse beyond chance
 
 
 def judged(
     prediction: LeftOutPrediction, chosen: Hypothesis, effect: Effect, rivals: Sequence[Effect]
 ) -> Judged:
-    """Compare a chosen effect with its absence and with others in its place."""
+    """Compare a chosen effect with its absence and with others in its place.
+
+    What is left in one channel says nothing against an effect that explains another: every channel has formulae of its own.
+    """
     without, present = prediction.without(chosen, effect), prediction.of(chosen)
-    taken = max(prediction.of(without).total - present.total, 0.0)
-    left = prediction.beyond_noise(present)
+    removed = np.maximum(np.sum(prediction.of(without).chi2 - present.chi2, axis=0), 0.0)
+    most = int(np.argmax(removed))
+    taken, left = float(removed[most]), float(prediction.beyond_noise(present)[most])
     tied = []
     others = [e for e in rivals if e not in chosen.effects]
     for rival, groups in prediction.problem.columns(without.state, others).items():
