@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from functools import cache
-from typing import Any
+from typing import Any, Literal
 
 from matplotlib.backend_bases import RendererBase
 from matplotlib.font_manager import FontProperties
@@ -13,7 +13,8 @@ from matplotlib.transforms import Transform
 from mffit.report.drawing.texts import SUBSCRIPT, width_of
 
 INCH = 72.0
-SHARES = {"left": 0.0, "center": 0.5, "right": 1.0}
+Align = Literal["left", "center", "right"]
+SHARES: dict[str, float] = {"left": 0.0, "center": 0.5, "right": 1.0}
 """Part of the width that lies before the place, by alignment."""
 
 
@@ -35,7 +36,7 @@ class Words(Text):
         size: float,
         colour: str,
         transform: Transform,
-        align: str = "left",
+        align: Align = "left",
         bold: bool = False,
         turned: bool = False,
     ) -> None:
@@ -59,7 +60,8 @@ class Words(Text):
         if not text:
             return
         x, y = self.get_transform().transform(self.get_unitless_position())
-        before = SHARES[self.get_horizontalalignment()] * renderer.points_to_pixels(self._width)
+        width: Any = renderer.points_to_pixels(self._width)
+        before = SHARES[self.get_horizontalalignment()] * width
         x, y = (x, y - before) if self._turned else (x - before, y)
         if renderer.flipy():
             y = renderer.get_canvas_width_height()[1] - y

@@ -26,7 +26,14 @@ from mffit.report.drawing.records import (
     Trace,
     in_rows,
 )
-from mffit.report.figures.residuals import most_populated, residual_map, rolling
+from mffit.report.figures.residuals import (
+    ANGLES,
+    SLIPS,
+    driven,
+    most_populated,
+    residual_map,
+    rolling,
+)
 from mffit.rounding import number
 
 KIND_COLOURS = {"tyre": style.ACCENT, "rig": style.CONTRAST, "environment": style.CALM}
@@ -120,19 +127,23 @@ def residuals_before_after(view: DiagnosisView) -> Sheet:
     """Maps side by side: a row per load and pressure, channels before and after, one colour scale for all."""
     limit = colour_limit(view.channels)
     rows = []
-    for condition in most_populated(rolling(view.points, view.conditions)):
-        maps = []
-        for channel in view.channels:
-            frames = _frames(view.frames(channel.name), condition.load)
-            for when in ("before", "after") if view.changed else ("before",):
-                title = f"{channel.symbol}{' ' + when if view.changed else ''}, {condition.title}"
-                framed = frames if when == "before" else ()
-                maps.append(
-                    residual_map(view.points, getattr(channel, when), condition, limit, title, framed)
-                )
-        rows.append(maps)
+    left_out = 0
+    for which, over in ((rolling, ANGLES), (driven, SLIPS)):
+        conditions = which(view.points, view.conditions)
+        shown = most_populated(conditions)
+        left_out += (len(conditions) - len(shown)) * len(view.channels)
+        for condition in shown:
+            maps = []
+            for channel in view.channels:
+                frames = _frames(view.frames(channel.name), condition.load) if over == ANGLES else []
+                for when in ("before", "after") if view.changed else ("before",):
+                    title = f"{channel.symbol}{' ' + when if view.changed else ''}, {condition.title}"
+                    framed = frames if when == "before" else ()
+                    values = getattr(channel, when)
+                    maps.append(residual_map(view.points, values, condition, limit, title, framed, over=over))
+            rows.append(maps)
     label = "measured − simulated [noise of a point]"
-    return Sheet(rows=rows, height=1.40, scale=ColourScale(limit=limit, label=label))
+    return Sheet(rows=rows, height=1.40, scale=ColourScale(limit=limit, label=label), left_out=left_out)
 
 
 def colour_limit(channels: Sequence[GapChannel]) -> float:

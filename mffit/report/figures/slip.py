@@ -240,11 +240,12 @@ def weights(view: BuildView) -> Sheet:
                 if channel == "Fy" and abs(curve.held) < constants.UPRIGHT_ENOUGH_TO_DRAW:
                     continue
                 series += _weight(view, curve, channel, weight, colours[curve.held])
+            largest = max((float(np.nanmax(s.extent()[1])) for s in series), default=1.0)
             panels.append(
                 Panel(
                     title=labels.LOAD.of(load),
                     x=Axis(label=labels.SLIP.axis),
-                    y=Axis(label=label, ticks=4, low=-0.05, high=1.3),
+                    y=Axis(label=label, ticks=4, low=-0.05, high=max(1.3, 1.05 * largest)),
                     series=series,
                     guides=[Guide(axis="y", at=1.0), Guide(axis="y", at=0.0)],
                 )
