@@ -15,6 +15,7 @@ from mffit.report import constants, labels, style
 from mffit.report.build_view import BuildView
 from mffit.report.drawing.records import Axis, Band, Look, Panel, Sheet, Trace
 from mffit.report.with_band import with_band
+from mffit.scatter import finite_median
 
 MILLIMETRES = 1e3
 WORDS = {
@@ -50,7 +51,8 @@ def _panel(
         if not rows.any():
             continue
         load = np.linspace(rolling.Fz[rows].min(), rolling.Fz[rows].max(), steps)
-        at = replace(rolling, Fz=load, p=np.full(steps, p), V=np.full(steps, speed))
+        usual = {"gamma": 0.0, "p": p, "V": speed, "loaded": np.nan, "effective": finite_median(rolling.effective)}
+        at = RollingParts(Fz=load, **{name: np.full(steps, value) for name, value in usual.items()})
 
         def of(tyre: Any, at: RollingParts = at) -> Any:
             return radius(vars(tyre), at, channel)
