@@ -203,7 +203,7 @@ def _delivered(
     for campaign in campaigns:
         joined.append(join(campaign, known, posterior))
         known = known.having(joined[-1].values, "campaign")
-        borrowed |= joined[-1].found
+        borrowed |= {name: q for name, q in joined[-1].found.items() if q.u > 0.0}
         posterior = joined[-1].posterior
     coefficients = coefficient_records(known, fitted, {**rolling.found, **radii.found, **lag.found, **borrowed})
     files = make_files(config, known, points, base, dict(measured.by_load("C_gamma")), only=only)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from mffit.points import make_points
-from mffit.quantities import CHANNELS, CONDITIONS
+from mffit.quantities import CHANNELS, CONDITIONS, MODEL
 from mffit.report import constants, labels, style
 from mffit.report.build_view import BuildView
 from mffit.report.drawing.records import Axis, Band, Look, Panel, Sheet, Trace
@@ -39,7 +39,7 @@ def borrowed_force(view: BuildView) -> Sheet:
         panels.append(
             Panel(
                 title=f"{CHANNELS['Fx'].short_axis}, {CONDITIONS['alpha_deg'].symbol} = {alpha:.0f}°",
-                x=Axis(label=CONDITIONS["kappa"].axis),
+                x=Axis(label=MODEL["kappa"].axis),
                 y=Axis(),
                 series=series,
             )

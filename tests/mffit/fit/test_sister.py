@@ -13,6 +13,9 @@ import mffit
 import tir
 from mffit.errors import InputError
 from mffit.fit.at_nominal import at_nominal
+from mffit.report.build_view import view_of
+from mffit.report.drawing.records import Band
+from mffit.report.figures.sister import borrowed_force
 
 SAMPLE = Path(__file__).parents[3] / "samples" / "flat-track-combined"
 FRICTION, STIFFNESS = 1.08, 0.9
@@ -118,7 +121,18 @@ def test_drawn_tyres_scatter_as_stated(built):
     assert all(np.all(member(4200.0, kappa=kappa, turn_slip=False).Fx > 0.0) for member in result.members)
 
 
-def test_the_band_of_the_longitudinal_force_contains_tyres_that_differ_from_their_sister(built, truth):
+def test_the_report_draws_the_borrowed_force_with_its_band(built):
+    """The band at the peak is at least as wide as the uncertainty of friction alone makes it."""
+    sheet = borrowed_force(view_of(built[0]))
+    bands = [series for series in sheet.rows[0][0].series if isinstance(series, Band)]
+    assert len(bands) == 3
+    for band in bands:
+        middle, half = 0.5 * (band.high + band.low), 0.5 * (band.high - band.low)
+        k = int(np.argmax(np.abs(middle)))
+        assert half[k] > 1.9 * 0.05 * abs(middle[k])
+
+
+def test_stated_uncertainties_cover_tyres_that_differ_from_their_sister(built, truth):
     """Draw tyres whose ratios of Fx scatter about those of Fy as stated: the stated u of PDX1 and PKX1 covers them."""
     lent, rng = built[0].fit.lent, np.random.default_rng(3)
     z = {name: [] for name in ("PDX1", "PKX1")}
