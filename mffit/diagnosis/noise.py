@@ -206,5 +206,3 @@ class Noise:
             ]
         )
         return replace(self, u=u / np.sqrt(weight), scatter=dict(scatter), weight=weight)
-
-
