@@ -94,7 +94,9 @@ class Correlation:
         bands = np.vstack([self.own, np.append(self.below[1:], 0.0)])
         return dtbtrs(bands, slope, uplo="L", trans="T")[0].reshape(slope.shape)
 
-    def slopes(self, z: np.ndarray, white: np.ndarray, by_d: np.ndarray, memory: float, share: float) -> np.ndarray:
+    def slopes(
+        self, z: np.ndarray, white: np.ndarray, by_d: np.ndarray, memory: float, share: float
+    ) -> np.ndarray:
         """Slopes (2,) by memory and independent share that all readings have, the logarithm of the determinant included.
 
         ``z`` are the readings (m, k), ``white`` what :meth:`in_order` makes of them, ``by_d`` the result of :meth:`adjoint`.

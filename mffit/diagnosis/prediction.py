@@ -23,9 +23,7 @@ class LeftOutPrediction:
     ``problem`` has the weights of the readings, ``noise`` their scatter alone if it differs.
     """
 
-    def __init__(
-        self, problem: DiagnosisProblem, inexact: Inexactness, noise: Noise | None = None
-    ) -> None:
+    def __init__(self, problem: DiagnosisProblem, inexact: Inexactness, noise: Noise | None = None) -> None:
         self.problem, self.inexact = problem, inexact
         used, n = problem.noise.used, len(problem.points)
         scatter = (noise or problem.noise).u[used] / problem.noise.u[used]
@@ -95,7 +93,9 @@ def _best_addition(
 class Judged:
     """The support that left-out sweeps give an effect that was chosen by them."""
 
-    confidence: float  #: share of their misfit beyond the noise that it removes, in the channel where it removes most
+    confidence: (
+        float  #: share of their misfit beyond the noise that it removes, in the channel where it removes most
+    )
     tied: tuple[Hypothesis, ...]  #: with another effect in its place, no worse beyond chance
 
 

@@ -70,7 +70,12 @@ def gap(residual: np.ndarray, noise: Noise) -> Gap:
 
 
 def validate(
-    problem: DiagnosisProblem, hypothesis: Hypothesis, inexact: Inexactness = EXACT, *, weights: Noise | None = None, seen: bool = False
+    problem: DiagnosisProblem,
+    hypothesis: Hypothesis,
+    inexact: Inexactness = EXACT,
+    *,
+    weights: Noise | None = None,
+    seen: bool = False,
 ) -> Validation:
     """Refit the hypothesis without each group of sweeps and predict that group.
 
