@@ -154,7 +154,9 @@ ZERO_COEFFICIENT_SCALE = Real(0.2, "-", "Scale of a coefficient at zero over the
 RIGS_WORSE_THAN_DECLARED = Real(0.05, "-", "Share of rigs whose errors exceed their declaration.")
 
 # Selection
-MOST_EFFECTS = Count(4, "-", "Most effects of one explanation; more are structure without a name.")
+MOST_EFFECTS_PER_CHANNEL = Count(
+    2, "-", "Most effects of one explanation, over the channels; more are structure without a name."
+)
 EVIDENCE_MARGIN = Real(
     4.0, "-", "Log evidence that an effect must add beyond the price of choosing among all candidates.",
     "checked with diagnosis_study.py --seed 3: nothing hidden, nothing named 20 of 20, docs/diagnosis.md",

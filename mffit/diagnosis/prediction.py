@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from mffit import constants
-from mffit.diagnosis.constants import MOST_EFFECTS
+from mffit.diagnosis.constants import MOST_EFFECTS_PER_CHANNEL
 from mffit.diagnosis.hypothesis import Hypothesis
 from mffit.diagnosis.inexact import Inexactness
 from mffit.diagnosis.noise import Noise
@@ -62,7 +62,7 @@ def chosen_by_prediction(prediction: LeftOutPrediction, candidates: Sequence[Eff
     needed = needed_fall(len(candidates))
     if prediction.sweeps < constants.FEWEST_SWEEPS_TO_PREDICT:
         return current
-    while len(current.effects) < MOST_EFFECTS:
+    while len(current.effects) < MOST_EFFECTS_PER_CHANNEL * len(prediction.problem.channels):
         added = _best_addition(prediction, current, left, needed)
         if added is None:
             break

@@ -73,14 +73,15 @@ def select(problem: DiagnosisProblem, candidates: Sequence[Effect]) -> tuple[Hyp
     therefore never entered a second time, which ends the search.
     """
     current, steps, left = problem.null, [], set[Ids]()
-    while len(current.effects) < min(constants.MOST_EFFECTS, len(candidates)):
+    most = min(constants.MOST_EFFECTS_PER_CHANNEL * len(problem.channels), len(candidates))
+    while len(current.effects) < most:
         step = forward_step(problem, current, candidates)
         steps.append(step)
         left.add(current.ids)
         if not step.passes or step.best.ids in left:
             break
-        most = constants.MOST_EXCHANGE_CANDIDATES
-        near = [trial.effects[-1] for trial in (*step.trials[:most], *steps[0].trials[:most])]
+        first = constants.MOST_EXCHANGE_CANDIDATES
+        near = [trial.effects[-1] for trial in (*step.trials[:first], *steps[0].trials[:first])]
         current = _exchanged(problem, step.best, tuple(dict.fromkeys(near)), left)
         current = _without_needless(problem, current, step.threshold, left)
     return current, steps

@@ -80,7 +80,7 @@ def backwards() -> list[dict[str, Any]]:
 
 
 def diagnosed(
-    effect: str, size: float, seed: int, folder: Path, *, added: Sequence[dict[str, Any]] = ()
+    effect: str | Hidden, size: float, seed: int, folder: Path, *, added: Sequence[dict[str, Any]] = ()
 ) -> Diagnosis:
     """The diagnosis of a simulated campaign, with the tyre without its hidden effect as model."""
     simulated(effect, size, seed, folder, added=added)
@@ -88,7 +88,7 @@ def diagnosed(
 
 
 def simulated(
-    effect: str,
+    effect: str | Hidden,
     size: float,
     seed: int,
     folder: Path,
@@ -103,7 +103,8 @@ def simulated(
     given = sample.replace(
         **{n: float(sample[n]) * (1.0 + SPREAD * random.standard_normal()) for n in varied}
     )
-    hidden, sign = HIDDEN.get(effect, Hidden()), random.choice([-1.0, 1.0]) * size
+    hidden = HIDDEN.get(effect, Hidden()) if isinstance(effect, str) else effect
+    sign = random.choice([-1.0, 1.0]) * size
     true = given.replace(
         **{n: float(given[n]) + sign * x for n, x in hidden.tyre.items()},
         **{n: float(given[n]) * (1.0 + sign * x) for n, x in hidden.factor.items()},

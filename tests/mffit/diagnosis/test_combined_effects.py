@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import pytest
-from combined_cases import HIDDEN, backwards, diagnosed, simulated
+from combined_cases import HIDDEN, Hidden, backwards, diagnosed, simulated
 
 from mffit import config, points
 from mffit.diagnosis import wording
@@ -52,6 +52,24 @@ def test_a_backward_run_separates_drag_from_the_zero(tmp_path, effect):
 
 def test_every_effect_of_these_channels_is_hidden_once():
     assert {e.id for e in CATALOG if OF_CHANNEL & set(e.needs)} == set(HIDDEN)
+
+
+def test_four_channels_may_have_more_than_four_effects(tmp_path):
+    """A zero of every channel, of the slip and of both angles, as any rig has them."""
+    zeros = {
+        "slip-zero": {"kappa_0": 0.002},
+        "loadcell-offset-fx": {"Fx0_N": 30.0},
+        "loadcell-offset-fy": {"F0_N": 30.0},
+        "loadcell-offset-mx": {"Mx0_Nm": 30.0},
+        "loadcell-offset-mz": {"M0_Nm": 2.0},
+        "sideslip-misalignment": {"alpha_0_deg": 0.1},
+    }
+    faults = {name: size for one in zeros.values() for name, size in one.items()}
+    found = diagnosed(Hidden(faults=faults), 1.0, 7, tmp_path)
+    named = [{one.effect.id, *one.tied_with} for one in found.effects]
+    assert len(named) == len(zeros)
+    assert all(any(name in ids for ids in named) for name in zeros)
+    assert not found.unexplained
 
 
 def test_a_tie_is_named_with_its_channels_and_the_run_that_ends_it(tmp_path):

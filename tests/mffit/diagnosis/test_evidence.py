@@ -20,6 +20,7 @@ from mffit.rig import Simulation
 from mffit.rig_errors import Faults
 
 BY_ID = {effect.id: effect for effect in CATALOG}
+DRIVEN = {run for run in SeparatingRun if "longitudinal slip" in run.value}
 OFFSET = BY_ID["loadcell-offset-fy"]
 
 
@@ -167,7 +168,7 @@ def test_the_usual_runs_have_the_conditions_of_their_names():
     for run, added in candidate_runs(points):
         loads.setdefault(run, []).append((added, float(added.Fz[0])))
         assert np.ptp(added.Fz) == 0.0
-    assert set(loads) == set(SeparatingRun)
+    assert set(loads) == set(SeparatingRun) - DRIVEN
     one = {run: rows[0][0] for run, rows in loads.items()}
     assert sorted(load for _, load in loads[SeparatingRun.OTHER_LOAD]) == [500.0, pytest.approx(2520.0)]
     usual = 1000.0, 1800.0
@@ -197,6 +198,22 @@ def test_the_usual_runs_have_the_conditions_of_their_names():
     assert {SeparatingRun.STRAIGHT, SeparatingRun.WIDE, SeparatingRun.STRAIGHT_CAMBER}.isdisjoint(
         run for run, _ in candidate_runs(straight)
     )
+
+
+def test_runs_over_longitudinal_slip_are_proposed_where_it_was_run():
+    points = read(programme())
+    driven = points.replace(kappa=np.resize([-0.1, 0.0, 0.1], len(points)))
+    slips = {}
+    for run, added in candidate_runs(driven):
+        slips.setdefault(run, added)
+    assert set(slips) == set(SeparatingRun)
+    assert all(bool(np.any(added.kappa)) is (run in DRIVEN) for run, added in slips.items())
+    for run in DRIVEN:
+        assert (slips[run].kappa.min(), slips[run].kappa.max()) == pytest.approx((-0.1, 0.1))
+    assert np.all(slips[SeparatingRun.BACKWARD_DRIVE].direction == -1)
+    assert np.all(slips[SeparatingRun.DRIVE_TURNED_ON_RIM].mount == -1)
+    assert np.degrees(slips[SeparatingRun.STEERED_DRIVE].alpha) == pytest.approx(4.0)
+    assert np.degrees(slips[SeparatingRun.LEANED_DRIVE].gamma) == pytest.approx(20.0)
 
 
 def test_runs_can_be_added_to_a_continuous_recording():

@@ -41,7 +41,7 @@ class Tabulated:
 
     def __init__(self, sweeps: int, **misfit: float | tuple[float, float]) -> None:
         self.sweeps, self.misfit = sweeps, {frozenset(names.strip("_")): x for names, x in misfit.items()}
-        self.problem = SimpleNamespace(null=self.fit(()), columns=self.columns)
+        self.problem = SimpleNamespace(null=self.fit(()), columns=self.columns, channels=("Fy", "Mz"))
         self.joint = self
 
     def fit(self, effects, start=None):

@@ -28,7 +28,7 @@ class Table:
 
     def __init__(self, **evidence: tuple[float, ...]) -> None:
         self.evidence = {frozenset(names): list(values) for names, values in evidence.items()}
-        self.fits, self.start = 0, None
+        self.fits, self.start, self.channels = 0, None, ("Fy", "Mz")
         self.null = self.hypothesis((), 0.0)
 
     def hypothesis(self, effects, evidence):
