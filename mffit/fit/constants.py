@@ -140,7 +140,7 @@ ELLIPSE_TURN = Real(
     "readings with a dent are followed part of the way.",
 )
 STIFFNESS_RATIOS = Series(
-    (0.2, 5.0), "-", "Physical limit: range of the longitudinal slip stiffness over the cornering stiffness."
+    (0.1, 10.0), "-", "Physical limit: range of the longitudinal slip stiffness over the cornering stiffness."
 )
 LIMIT_GRID = Series((3, 5, 2), "-", "Loads, camber angles and pressures at which the limits are tested.")
 LIMIT_WEIGHT_OF_FIT = Real(

@@ -87,7 +87,7 @@ def test_a_curved_problem_ends_where_scipy_ends():
 
 
 def test_steps_that_look_at_kept_limits_and_bounds_arrive_at_once():
-    """The nearest place to (2, 2, 2) with x + y <= 1 and z <= 0.5 is (0.5, 0.5, 0.5): found in a few steps from anywhere inside."""
+    """The nearest place to (2, 2, 2) with x + y <= 1 and z <= 0.5 is (0.5, 0.5, 0.5)."""
     weight, normal = 3000.0, np.array([1.0, 1.0, 0.0])
 
     def limit(x):

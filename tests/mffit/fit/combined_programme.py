@@ -33,8 +33,14 @@ def truth() -> tir.Tyre:
     return tir.read(SAMPLE / "true.tir").replace(**{**odd, **still, **DRIVEN})
 
 
-def programme(*, sideslips: tuple[float, ...] = SIDESLIPS, driven: bool = True, seed: int = 1) -> Points:
-    """Points of the programme, with noise; ``driven`` False: its sweeps of sideslip only."""
+def programme(
+    *,
+    sideslips: tuple[float, ...] = SIDESLIPS,
+    driven: bool = True,
+    seed: int = 1,
+    tyre: tir.Tyre | None = None,
+) -> Points:
+    """Points of the programme, with noise; ``driven`` False: its sweeps of sideslip only; ``tyre``: another truth."""
     sweeps: list[tuple[Any, ...]] = []
     for load in LOADS:
         for camber in (0.0, 6.0):
@@ -53,7 +59,7 @@ def programme(*, sideslips: tuple[float, ...] = SIDESLIPS, driven: bool = True, 
         for k, (load, camber, p, alpha, kappa) in enumerate(sweeps)
     ]
     sweep, Fz, gamma, p, alpha, kappa, _ = np.concatenate(rows).T
-    found = truth()(Fz, alpha, gamma, kappa, Vx=16.0, p=p, turn_slip=False)
+    found = (tyre or truth())(Fz, alpha, gamma, kappa, Vx=16.0, p=p, turn_slip=False)
     noise = np.random.default_rng(seed)
     readings = {
         name: getattr(found, name) + sigma * noise.standard_normal(len(Fz)) for name, sigma in NOISE.items()

@@ -89,8 +89,8 @@ def driven(sound) -> tir.Tyre:
     [
         {"PDX1": 0.05},
         {"PKX1": 0.5},
-        {"PKX1": 2.0},  # far below the cornering stiffness
-        {"PKX1": 110.0},
+        {"PKX1": 1.2},  # far below the cornering stiffness
+        {"PKX1": 400.0},
         {"PEX1": 1.2},
         {"PEX1": 0.9, "PEX4": 0.3},
         {"PEX1": 0.9, "PEX4": -0.3},

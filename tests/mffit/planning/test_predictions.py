@@ -289,7 +289,7 @@ def test_a_band_is_not_called_a_standard_uncertainty(plan):
     [
         ("PKY66", "did you mean PKY6"),
         ("tie:rain", "not an effect that can be tied"),
-        ("bands:Fx", "neither a goal of a plan nor a coefficient"),
+        ("bands:RL", "neither a goal of a plan nor a coefficient"),
     ],
 )
 def test_an_unknown_goal_is_refused(goal, said):
