@@ -14,7 +14,7 @@ from mffit.config import Declaration
 from mffit.fit import constants
 from mffit.fit.coverage import why_held
 from mffit.fit.weights import stated_or_nominal
-from mffit.least_squares import FreeNumber, LeastSquaresProblem, Linear, solve
+from mffit.least_squares import FreeNumber, LeastSquaresProblem, Linear, inverse, solve
 from mffit.points import Points
 from mffit.rig_errors import number_of
 from mffit.scatter import rms
@@ -133,7 +133,9 @@ def rolling_resistance(
         return linear(x).data, np.zeros(0)
 
     end = solve(LeastSquaresProblem(residual, linear), numbers, tolerance=1e-8)
-    u = np.sqrt(np.diag(end.covariance)) * max(rms(end.data), 1.0)
+    scale = max(rms(end.data), 1.0)  # where the formula misses the points by more than their noise
+    information = end.jacobian.T @ end.jacobian / scale**2 + np.diag(end.prior)
+    u = np.sqrt(np.diag(inverse(information)))
     stderr = dict(zip(end.names, u.tolist(), strict=True))
     decided = {n.name for n in numbers if stderr[n.name] > constants.FITTED_SHARE_OF_PRIOR * n.spread}
     return Resistance(

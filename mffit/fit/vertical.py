@@ -178,7 +178,9 @@ def _rolling(points: Points) -> RollingParts | None:
         return None
     part = points.select(used)
     effective = (1.0 + part.kappa) * part.V / np.where(turning[used], part.omega, np.nan)
-    group = parts_of_sweeps(part)
+    # Radii grow with the square of speed, so that a mean over speeds belongs to none of them.
+    speed = levels.nearest_labels(part.V, levels.SPEED)
+    group = parts_of_sweeps(part) * (int(np.max(speed)) + 2) + speed + 1
 
     def mean(x: np.ndarray) -> np.ndarray:
         return np.array([float(np.mean(x[group == k])) for k in np.unique(group)])

@@ -123,7 +123,11 @@ def test_coefficients_of_which_only_a_combination_is_determined_name_each_other(
 
 
 def test_rolling_resistance_comes_from_the_measured_moment(misaligned):
-    assert misaligned.fit.tyre["QSY1"] == pytest.approx(truth()["QSY1"], rel=0.03)
+    found = misaligned.fit.coefficients["QSY1"]
+    assert abs(found.value - truth()["QSY1"]) < 2.0 * found.stderr
+    assert (
+        found.stderr < 0.15 * truth()["QSY1"]
+    )  # the zero of My is uncertain by 5 Nm, as much as the moment itself
     assert misaligned.fit.tyre["QSY1"] != misaligned.fit.tyre["QSY2"]
     assert misaligned.fit.coefficients["QSY1"].status == "fitted"
 

@@ -13,6 +13,7 @@ from tir.equations import vertical
 R0, FNOMIN, NOMPRES = 0.3, 4000.0, 200e3
 STIFFNESS, Q_FZ2, PFZ1, Q_RE0, GROWTH = 200e3, 40.0, 0.6, 1.01, 0.02
 DREFF, BREFF, FREFF = 0.3, 6.0, 0.1
+Q_V1, Q_V2 = 0.0006, 0.04
 VALUES = dict(tir.Tyre.from_values({}).values) | {
     "UNLOADED_RADIUS": R0, "FNOMIN": FNOMIN, "NOMPRES": NOMPRES, "VERTICAL_STIFFNESS": 90e3, "BREFF": 8.0, "DREFF": 0.25,
     "FREFF": 0.05,
@@ -36,6 +37,20 @@ def rolling(
     return make_points(
         0.0, 0.0, Fz, p=p, V=16.0, phi_t=0.0, sweep=np.arange(len(Fz)), sweep_names=[f"run {k}" for k in range(len(Fz))],
         Fy=0.0, RL=free - R0 * x + noise * draw.standard_normal(len(Fz)), omega=1.01 * 16.0 / Re, kappa=0.01,
+    )  # fmt: skip
+
+
+def at_speeds(speeds, noise=2e-5) -> Points:
+    """The loaded radius of a wheel that grows and stiffens with speed, at the nominal pressure."""
+    Fz, V = (x.ravel() for x in np.meshgrid((1000.0, 2500.0, 4000.0, 6000.0, 8000.0), speeds))
+    Re = 0.29
+    rim = V / Re * R0 / VALUES["LONGVL"]
+    q1 = np.sqrt((STIFFNESS * R0 / FNOMIN) ** 2 - 4.0 * Q_FZ2)
+    x = np.array([np.roots([Q_FZ2, q1, -s]).max() for s in Fz / FNOMIN / (1.0 + Q_V2 * rim)])
+    RL = R0 * (Q_RE0 + Q_V1 * rim**2) - R0 * x + noise * np.random.default_rng(6).standard_normal(len(Fz))
+    return make_points(
+        0.0, 0.0, Fz, p=NOMPRES, V=V, phi_t=0.0, sweep=np.arange(len(Fz)),
+        sweep_names=[f"run {k}" for k in range(len(Fz))], Fy=0.0, RL=RL, omega=V / Re,
     )  # fmt: skip
 
 
@@ -86,3 +101,26 @@ def test_vertical_stiffness_is_the_slope_at_the_nominal_load():
     assert float(vertical.load_at_deflection(p, vertical.deflection(p, 5200.0, 0.2), 0.2)) == pytest.approx(
         5200.0
     )
+
+
+def test_several_speeds_show_how_the_wheel_grows_and_stiffens():
+    found = vertical_coefficients(VALUES, at_speeds((8.0, 16.7, 30.0))).found
+    truth = {"VERTICAL_STIFFNESS": STIFFNESS, "Q_RE0": Q_RE0, "Q_V1": Q_V1, "Q_V2": Q_V2}
+    for name, true in truth.items():
+        value, u, _ = found[name]
+        assert abs(value - true) < 3.0 * u, name
+    assert found["VERTICAL_STIFFNESS"].u < 0.01 * STIFFNESS
+    assert found["Q_V2"].u < 0.3 * Q_V2
+
+
+def test_what_one_speed_does_not_show_is_part_of_the_uncertainty_of_the_stiffness():
+    """At one speed the wheel is stiffer by Q_V2, here 4 %, and nothing in the readings says so."""
+    one = vertical_coefficients(VALUES, at_speeds((16.7,))).found
+    several = vertical_coefficients(VALUES, at_speeds((8.0, 16.7, 30.0))).found
+    value, u, _ = one["VERTICAL_STIFFNESS"]
+    assert not {"Q_V1", "Q_V2"} & set(one)
+    assert value - STIFFNESS > 10.0 * several["VERTICAL_STIFFNESS"].u
+    assert abs(value - STIFFNESS) < 2.0 * u
+    stated = vertical_coefficients({**VALUES, "Q_V1": Q_V1, "Q_V2": Q_V2}, at_speeds((16.7,))).found
+    assert abs(stated["VERTICAL_STIFFNESS"].value - STIFFNESS) < 0.005 * STIFFNESS
+    assert stated["VERTICAL_STIFFNESS"].u < u
