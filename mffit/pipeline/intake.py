@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 
 from mffit import config as configuration
 from mffit.errors import InputError
 from mffit.output import must_be_new, new_files
 from mffit.recordings import DiscPath, Sniffed, disc_signs, project_text, sniff
-from mffit.recordings.project_file import slug
+from mffit.recordings.project_file import load_beyond, slug
 from mffit.recordings.sniffed import STAND_IN, configuration_of
 from mffit.recordings.stretch_table import stretch_table
 from mffit.sweeps import formats
@@ -63,6 +64,9 @@ def init_from(
             "left|right, or --belt if the path was straight",
             file=sniffed.recordings[0].path,
         )
+    if doubt := load_beyond(sniffed, nominal_load):
+        reading = sniffed.reading
+        sniffed = replace(sniffed, reading=reading._replace(warnings=(*reading.warnings, doubt)))
     text = project_text(
         sniffed,
         folder,

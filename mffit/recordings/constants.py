@@ -25,6 +25,18 @@ CAR_TYRE_PRESSURES = Series(
 )
 LORRY_TYRE_PRESSURES = Series((400.0, 1200.0), "kPa", "Pressures of the tyres of lorries.")
 ANY_TYRE_PRESSURES = Series((40.0, 1200.0), "kPa", "No tyre has a pressure outside this range.")
+TREADS_IN_FAHRENHEIT = Series(
+    (110.0, 250.0),
+    "-",
+    "Median of a tread's temperature that is in degF: 43 to 121 degC, while no tread stays at 110 degC; kelvin are above.",
+)
+ANY_LOADED_RADII = Series((0.1, 0.8), "m", "Loaded radii of tyres, from karts to lorries.")
+LARGEST_LEVER_ARM_IN_FEET = Real(
+    0.4,
+    "-",
+    "Largest moment over largest load, both without units, below which American moments are in ft-lb: with lever arms of "
+    "20 to 60 mm it is 0.07 to 0.2 in feet and 0.8 to 2.4 in inches.",
+)
 LORRY_LOAD = Real(10_000.0, "N", "Largest load above which the tyre is one of a lorry.")
 RECORDED_TIME_STEPS = Series((1e-5, 5.0), "s", "Time between samples of a moving angle.")
 STEERING_RATES = Series((0.02, 100.0), "deg/s", "Rates at which rigs steer.")
@@ -38,6 +50,12 @@ LARGEST_SLIP_AS_RATIO = Real(
 )
 ROLLING_RADIUS_RANGE = Series(
     (0.75, 1.25), "-", "Speed over rotation, in unloaded radii, if the rotation is the wheel's."
+)
+
+NOMINAL_OVER_HIGHEST_LOAD = Real(
+    1.05,
+    "-",
+    "Nominal load over the highest level of load from which it is pointed out; levels scatter by less.",
 )
 
 # Disc or belt

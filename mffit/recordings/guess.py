@@ -14,7 +14,7 @@ import numpy as np
 
 from mffit.config.models import Column
 from mffit.recordings.slip_definition import SLIP, slip_definition, wheel_not_recorded
-from mffit.recordings.unstated import Choice, FoundChannel, choices, customary
+from mffit.recordings.unstated import Choice, FoundChannel, choices, customary, hot
 from mffit.sweeps.channels import BY_NAME, SWEEP_CHANNELS, Channel
 from mffit.sweeps.columns import numbers
 from mffit.sweeps.raw_table import RawTable
@@ -79,6 +79,8 @@ def guesses(raw: RawTable, *, unloaded_radius: float | None = None) -> Guesses:
     remarks = [*left_out.values()]
     columns = {name: column for name, column in columns.items() if name not in left_out}
     if remark := customary(columns, chosen):
+        remarks.append(remark)
+    if remark := hot(columns):
         remarks.append(remark)
     found = {name: _guess(raw, column, chosen.get(name)) for name, column in columns.items()} | _labels(raw)
     defined = slip_definition(slips, columns, lambda name: found[name].unit_of_readings)

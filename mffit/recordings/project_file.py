@@ -61,7 +61,7 @@ def project_text(
             f"name = {quoted(name or slug(recordings[0].path))}",
             *_size(recordings),
             _given("unloaded_radius", unloaded_radius, "m"),
-            _given("nominal_load", nominal_load, "N, FNOMIN"),
+            _load(sniffed, nominal_load),
             _pressure(sniffed, nominal_pressure),
             *_speed(sniffed),
         ],
@@ -80,10 +80,27 @@ def _size(recordings: Collection[SniffedRecording]) -> list[str]:
     """The tyre as a recording names it; else a recording's title as a comment."""
     most = 60  # characters
     tyre = next((tyre for r in recordings if (tyre := named_tyre(r.about))), "")
-    title = next((r.about["title"] for r in recordings if r.about.get("title")), "")
+    title = next((title for r in recordings if (title := title_of(r.about))), "")
     if tyre:
         return [f"size = {quoted(tyre[:most])}  # as the recording names the tyre"]
     return [f'# size = ""  # the title of the recording is: {_one_line(title)[:most]}'] if title else []
+
+
+def _load(sniffed: Sniffed, given: float | None) -> str:
+    line = _given("nominal_load", given, "N, FNOMIN")
+    doubt = load_beyond(sniffed, given)
+    return f"{line}; {_one_line(doubt)}" if doubt else line
+
+
+def load_beyond(sniffed: Sniffed, nominal_load: float | None) -> str:
+    """A remark if the nominal load [N] is above every load of the recordings; "" otherwise."""
+    highest = max((level.value for level in sniffed.conditions["load"]), default=np.nan)
+    if nominal_load is None or not nominal_load > constants.NOMINAL_OVER_HIGHEST_LOAD * highest:
+        return ""
+    return (
+        f"the nominal load of {nominal_load:g} N is above the highest load of {highest:.0f} N: check the unit of the load "
+        f"({', '.join(sorted({r.guesses['Fz_N'].unit_of_readings for r in sniffed.recordings}))})"
+    )
 
 
 def _pressure(sniffed: Sniffed, given: float | None) -> str:
@@ -184,8 +201,13 @@ def named_tyre(about: Mapping[str, str]) -> str:
     """The tyre that a recording names; of a title, only what follows the word tyre."""
     if about.get("tireid"):
         return about["tireid"]
-    found = TYRE_IN_TITLE.search(SECTION_IN_TITLE.sub("", about.get("title", "")))
+    found = TYRE_IN_TITLE.search(title_of(about))
     return found[1].strip() if found else ""
+
+
+def title_of(about: Mapping[str, str]) -> str:
+    """The title of a recording without the headings of its sections."""
+    return SECTION_IN_TITLE.sub("", about.get("title", "")).strip()
 
 
 def _axes(sniffed: Sniffed) -> str:

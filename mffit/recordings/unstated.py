@@ -54,8 +54,11 @@ PRESSURE_UNITS = ("bar", "psi", "kPa", "MPa", "Pa")
 TIME_UNITS = ("s", "ms", "us")
 """Sorted by priority."""
 ROTATION_UNITS = ("rad/s", "rpm")
-CUSTOMARY = {"N": "lbf", "N m": "in-lb", "kPa": "psi", "m/s": "mph", "degC": "degF"}
+CUSTOMARY = {"N": "lbf", "N m": "in-lb", "kPa": "psi", "m/s": "mph", "degC": "degF", "m": "in"}
 """American units by the contract's."""
+FOOT_POUNDS = "ft-lb"
+AMERICAN = frozenset(spelt(unit) for unit in (*CUSTOMARY.values(), FOOT_POUNDS))
+LENGTH_UNITS = ("m", "mm", "cm", "in")
 
 
 def choices(found: Mapping[str, FoundChannel], radius: float | None) -> Choices:
@@ -67,12 +70,15 @@ def choices(found: Mapping[str, FoundChannel], radius: float | None) -> Choices:
     radius : unloaded [m]; None if it is not known
     """
     chosen: dict[str, Choice] = {}
+    american = _american_sign(found, radius)
     for kind in KINDS_OF_ONE_UNIT:
         for group in _groups(kind, found):
             chosen |= _shared_unit(kind, group, _load(found, chosen))
     for name, column in found.items():
         if not column.unit and column.channel.unit and name not in chosen and name != "omega_radps":
-            chosen[name] = _own_unit(name, found, chosen)
+            chosen[name] = _own_unit(name, found, chosen, radius)
+    if american is not None and not _has_other_units(found, chosen):
+        chosen |= _american(found, chosen, american)
     rotation = _rotation(found, chosen, radius)
     left_out = {"omega_radps": rotation} if isinstance(rotation, str) else {}
     if isinstance(rotation, Choice):
@@ -118,12 +124,82 @@ def _fitting_unit(kind: str, group: Mapping[str, FoundChannel], load: float) -> 
     return "kN m" if 0.0 < size < constants.SHORTEST_LEVER_ARM_IN_RECORDING * load else "N m"
 
 
-def _own_unit(name: str, found: Mapping[str, FoundChannel], chosen: Mapping[str, Choice]) -> Choice:
+def _american_sign(found: Mapping[str, FoundChannel], radius: float | None) -> FoundChannel | None:
+    """A column that can only be in an American unit, so that the file has American units; None without one.
+
+    A pressure in psi is no such sign: rigs in Europe have gauges in psi, too.
+    """
+
+    def is_sign(name: str, column: FoundChannel) -> bool:
+        if column.unit:
+            return spelt(column.unit) in AMERICAN - {spelt("psi")}
+        return (name == "T_degC" and _too_hot(column)) or (
+            name == "RL_m" and _lengths(column, radius) == ["in"]
+        )
+
+    return next((column for name, column in found.items() if is_sign(name, column)), None)
+
+
+def _has_other_units(found: Mapping[str, FoundChannel], chosen: Mapping[str, Choice]) -> bool:
+    """Whether a pressure or a column with a stated unit is in a unit that is not American."""
+    pressure = _unit_of("p_kPa", found, chosen) if "p_kPa" in found else "psi"
+    stated = [column for column in found.values() if column.unit and column.channel.unit in CUSTOMARY]
+    return spelt(pressure) != spelt("psi") or any(spelt(column.unit) not in AMERICAN for column in stated)
+
+
+def _american(
+    found: Mapping[str, FoundChannel], chosen: Mapping[str, Choice], sign: FoundChannel
+) -> dict[str, Choice]:
+    """American units of the columns of which no column of the same kind states a unit."""
+    settled = {column.channel.unit for column in found.values() if column.unit}
+    moments = max((found[name].size for name in chosen if found[name].channel.unit == "N m"), default=0.0)
+    arm = moments / found["Fz_N"].size if "Fz_N" in found and found["Fz_N"].size else 0.0
+    units = CUSTOMARY | ({"N m": FOOT_POUNDS} if arm < constants.LARGEST_LEVER_ARM_IN_FEET else {})
+    given = {}
+    for name in chosen:
+        column = found[name]
+        unit = units.get(column.channel.unit)
+        if unit is None or column.channel.unit in settled:
+            continue
+        if name == "p_kPa" and chosen[name].unit != "psi":
+            continue  # readings decide between units that differ by a factor of seven
+        if name == "RL_m" and "in" not in _lengths(column, None):
+            continue
+        why = f"{column.range} assumed to be in {unit}, as {sign.heading} ({sign.range}) is in American units"
+        given[name] = chosen[name] if chosen[name].unit == unit else Choice(unit, why)
+    return given
+
+
+def _too_hot(column: FoundChannel) -> bool:
+    """Whether temperatures without a unit, or stated in degC, are those of no tyre in degC."""
+    return _within(float(np.nanmedian(column.values)), constants.TREADS_IN_FAHRENHEIT)
+
+
+def _lengths(column: FoundChannel, radius: float | None) -> list[str]:
+    """Units in which a column is the loaded radius of a tyre."""
+    limits: tuple[float, ...] = constants.ANY_LOADED_RADII
+    if radius is not None:
+        limits = tuple(share * radius for share in constants.ROLLING_RADIUS_RANGE)
+    middle = float(np.nanmedian(column.values))
+    return [unit for unit in LENGTH_UNITS if _within(factor(unit, "m") * middle, limits)]
+
+
+def _own_unit(
+    name: str, found: Mapping[str, FoundChannel], chosen: Mapping[str, Choice], radius: float | None
+) -> Choice:
     """The unit of a column that shares it with no other."""
     column = found[name]
     unit = column.channel.unit
     if unit == "kPa":
         return _pressure(column, _load(found, chosen))
+    if name == "RL_m":
+        # Between centimetres and inches only the size of the tyre decides; in metres the column is left out.
+        possible = _lengths(column, radius)
+        return (
+            Choice(possible[0], _look_like(column, possible[0])) if len(possible) == 1 else Choice(unit, "")
+        )
+    if name == "T_degC" and _too_hot(column):
+        return Choice("degF", f"{_look_like(column, 'degF')}: no tread stays as hot in degC")
     if name == "time_s":
         return _time(column, _sideslip_deg(found, chosen))
     if name == "V_mps" and column.size >= constants.FASTEST_SPEED_IN_METRES:
@@ -249,22 +325,38 @@ def _implausible(name: str, found: Mapping[str, FoundChannel], chosen: Mapping[s
     if not implausible(values, channel, may_have_gaps="time_s" in found):
         return ""
     limits = f"{channel.lower:g} to {channel.upper:g} {channel.unit}".rstrip()
+    possible = _lengths(column, None) if name == "RL_m" and not column.unit else []
+    if len(possible) > 1:
+        return (
+            f"{column.heading} ({column.range}) is left out: it may be in {' or '.join(possible)}; if it is {channel.name}, "
+            "write it with its true unit under [columns]"
+        )
     return (
         f"{column.heading} ({column.range}) is left out: in {unit or 'plain numbers'} it is not within {limits}; if it is "
         f"{channel.name}, write it with its true unit under [columns]"
     )
 
 
+def hot(found: Mapping[str, FoundChannel]) -> str:
+    """A remark if a temperature that is stated in degC is that of no tyre; "" otherwise."""
+    column = found.get("T_degC")
+    if column is None or not column.unit or spelt(column.unit) != "degC" or not _too_hot(column):
+        return ""
+    return (
+        f"{column.heading} ({column.range}) is stated in {column.unit}, but no tread stays as hot: if it is in degF, write "
+        f'T_degC = {{ column = "{column.heading}", unit = "degF" }} under [columns]'
+    )
+
+
 def customary(found: Mapping[str, FoundChannel], chosen: Mapping[str, Choice]) -> str:
     """A remark if one column is in an American unit and others state none; "" otherwise."""
     units = {name: _unit_of(name, found, chosen) for name in found}
-    american = {spelt(unit) for unit in CUSTOMARY.values()}
     settled = {column.channel.unit for column in found.values() if column.unit}
-    sign = next((name for name in found if spelt(units[name]) in american), None)
+    sign = next((name for name in found if spelt(units[name]) in AMERICAN), None)
     doubtful = [
         name
         for name in chosen
-        if found[name].channel.unit in CUSTOMARY.keys() - settled and spelt(units[name]) not in american
+        if found[name].channel.unit in CUSTOMARY.keys() - settled and spelt(units[name]) not in AMERICAN
     ]
     if sign is None or not doubtful:
         return ""

@@ -6,6 +6,7 @@ import numpy as np
 
 from mffit.points.stretch import MOVE
 from mffit.recordings import Sniffed
+from mffit.recordings.project_file import title_of
 from mffit.recordings.sniffed import Level, SniffedRecording
 from mffit.report import constants
 from mffit.report.text.layout import blocks, paragraphs, table
@@ -54,7 +55,8 @@ def _file(recording: SniffedRecording) -> str:
         else " without a time channel"
     )
     head = f"{recording.path}: {recording.kind}, {recording.samples} rows{rate}"
-    about = "; ".join(f"{key}: {text[:90]}" for key, text in recording.about.items())
+    said = {**recording.about, "title": title_of(recording.about)}
+    about = "; ".join(f"{key}: {text[:90]}" for key, text in said.items() if text)
     return "\n".join(
         part
         for part in (head, about, "", table(("heading", "unit", "is", "range"), rows, left=3))

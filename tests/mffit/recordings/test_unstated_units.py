@@ -360,3 +360,52 @@ def test_the_conditions_of_two_different_recordings_are_counted(tmp_path):
         "pressure": [(83_000.0, 30), (96_526.6, 6)],
         "speed": [(11.11, 24), (16.67, 12)],
     }
+
+
+AMERICAN = {
+    "FX": 60.0 / 4.448 * WAVE, "FY": -2300.0 / 4.448 * WAVE, "FZ": np.full(N, 2500.0 / 4.448),
+    "MX": 30.0 / 1.3558 * WAVE, "MZ": 60.0 / 1.3558 * WAVE, "P": np.full(N, 35.0), "V": np.full(N, 24.6),
+    "TSTC": np.full(N, 140.0), "RL": np.full(N, 11.2),
+}  # fmt: skip
+"""The sweep of ``columns`` in lbf, ft-lb, psi, mph, degF and inches."""
+
+
+def test_a_tread_that_is_hot_only_in_fahrenheit_shows_american_units():
+    found = units(**AMERICAN)
+    assert (found["Fz_N"], found["Fy_N"], found["V_mps"], found["T_degC"]) == ("lbf", "lbf", "mph", "degF")
+    assert (found["Mz_Nm"], found["p_kPa"], found["RL_m"]) == ("ft-lb", "psi", "in")
+    assert units(**AMERICAN | {"MZ": 12.0 * AMERICAN["MZ"], "MX": 12.0 * AMERICAN["MX"]})["Mz_Nm"] == "in-lb"
+    assert not [remark for remark in guessed(**AMERICAN).remarks if "American" in remark]
+
+
+def test_a_pressure_in_kPa_beside_a_hot_tread_leaves_the_forces_in_newtons():
+    found = units(TSTC=np.full(N, 140.0))
+    assert (found["Fz_N"], found["T_degC"], found["p_kPa"]) == ("N", "degF", "kPa")
+
+
+def test_a_hot_tread_that_is_stated_in_degC_is_noticed():
+    remarks = guessed({"TSTC": "deg C"}, TSTC=np.full(N, 166.0)).remarks
+    assert any("TSTC (166 to 166) is stated in deg C, but no tread stays as hot" in r for r in remarks)
+
+
+def test_a_loaded_radius_in_inches_does_not_end_the_reading():
+    assert units(RL=np.full(N, 285.0))["RL_m"] == "mm"
+    doubtful = guessed(RL=np.full(N, 11.2))
+    assert "RL_m" not in doubtful.found
+    assert any("RL (11.2 to 11.2) is left out: it may be in cm or in;" in r for r in doubtful.remarks)
+    assert guessed(RL=np.full(N, 11.2), radius=0.3).found["RL_m"].unit == "in"
+
+
+def test_a_nominal_load_above_all_loads_is_noticed(tmp_path):
+    (tmp_path / "a.csv").write_text(table(P=83.0))
+    found = sniff([tmp_path / "a.csv"])
+    for nominal, is_noticed in ((2000.0, False), (3000.0, True)):
+        written = project_text(found, tmp_path, unloaded_radius=0.2, nominal_load=nominal)
+        assert ("above the highest load of 2000 N: check the unit of the load (N)" in written) == is_noticed
+
+
+def test_the_heading_of_a_section_is_no_title(tmp_path):
+    (tmp_path / "a.csv").write_text(f"[DATA]\n{table(P=83.0)}")
+    found = sniff([tmp_path / "a.csv"])
+    assert "DATA" not in project_text(found, tmp_path, unloaded_radius=0.2, nominal_load=1500.0)
+    assert "DATA" not in text.sniff_summary(found)
