@@ -38,7 +38,8 @@ NUMBER = re.compile(
 )
 """Numbers as files have them, with Fortran's exponents. Python's ``float`` alone would accept 1_5 as 15."""
 STATUS = re.compile(
-    r"^(fitted|measured|tied|default|from base|from sister|from another campaign|estimate|covered|regularised|given|held|diagnosed|converted)\b"
+    r"^(fitted|measured|tied|default|from (?:base|sister|another campaign)|estimate|covered|regularised|given|held|"
+    r"diagnosed|converted)\b"
 )
 
 
