@@ -134,10 +134,15 @@ class Noise:
 
     def only(self, channel: str) -> Noise:
         """The scatter of one channel."""
-        rows = {name: self.of_channel(getattr(self, name), channel) for name in ("u", "stated", "chain")}
-        weight = None if self.weight is None else self.of_channel(self.weight, channel)
-        scatter = {channel: self.scatter[channel]}
-        return replace(self, **rows, weight=weight, scatter=scatter, shared=None)
+        return replace(
+            self,
+            u=self.of_channel(self.u, channel),
+            stated=self.of_channel(self.stated, channel),
+            chain=self.of_channel(self.chain, channel),
+            weight=None if self.weight is None else self.of_channel(self.weight, channel),
+            scatter={channel: self.scatter[channel]},
+            shared=None,
+        )
 
     def error_of_sum(self, rows: np.ndarray) -> float:
         """Standard error of the sum of some used readings, by their position among the used ones."""

@@ -10,7 +10,7 @@ from small_programme import U_FY, U_MZ, problem, programme, read
 
 from mffit.constants import FEWEST_SWEEPS_TO_PREDICT
 from mffit.diagnosis.inexact import EXACT
-from mffit.diagnosis.prediction import LeftOutPrediction, chosen_by_prediction
+from mffit.diagnosis.prediction import LeftOutPrediction, chosen_by_prediction, judged
 from mffit.effects import CATALOG, Effect, Free
 from mffit.left_out import Predicted
 from mffit.rig_errors import Faults
@@ -56,7 +56,7 @@ class Tabulated:
         return Predicted(np.outer(unequal / unequal.sum(), misfit * np.ones(2)))
 
     def beyond_noise(self, predicted):
-        return predicted.total
+        return predicted.chi2.sum(axis=0)
 
     def without(self, chosen, effect):
         return self.fit(other for other in chosen.effects if other is not effect)
@@ -96,3 +96,11 @@ def test_a_later_effect_is_dropped_if_the_last_one_makes_it_needless():
 
 def test_few_sweeps_choose_nothing():
     assert chosen(SWEEPS - 1) == ()
+
+
+def test_the_share_is_that_of_the_channel_that_an_effect_explains_most():
+    """It removes 300 of 400 there, and 5 of 300 in the other."""
+    predictions = Tabulated(SWEEPS, _=(400.0, 300.0), a=(100.0, 295.0))
+    found = judged(predictions, predictions.fit((A,)), A, (A,))
+    assert found.confidence == pytest.approx(0.75)
+    assert found.tied == ()
