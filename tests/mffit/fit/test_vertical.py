@@ -41,7 +41,7 @@ def rolling(
 
 
 def at_speeds(speeds, noise=2e-5) -> Points:
-    """The loaded radius of a wheel that grows and stiffens with speed, at the nominal pressure."""
+    """One sweep of a wheel that grows and stiffens with speed, at the nominal pressure."""
     Fz, V = (x.ravel() for x in np.meshgrid((1000.0, 2500.0, 4000.0, 6000.0, 8000.0), speeds))
     Re = 0.29
     rim = V / Re * R0 / VALUES["LONGVL"]
@@ -49,8 +49,8 @@ def at_speeds(speeds, noise=2e-5) -> Points:
     x = np.array([np.roots([Q_FZ2, q1, -s]).max() for s in Fz / FNOMIN / (1.0 + Q_V2 * rim)])
     RL = R0 * (Q_RE0 + Q_V1 * rim**2) - R0 * x + noise * np.random.default_rng(6).standard_normal(len(Fz))
     return make_points(
-        0.0, 0.0, Fz, p=NOMPRES, V=V, phi_t=0.0, sweep=np.arange(len(Fz)),
-        sweep_names=[f"run {k}" for k in range(len(Fz))], Fy=0.0, RL=RL, omega=V / Re,
+        0.0, 0.0, Fz, p=NOMPRES, V=V, phi_t=0.0, sweep=np.zeros(len(Fz), int), sweep_names=["rolling"],
+        Fy=0.0, RL=RL, omega=V / Re,
     )  # fmt: skip
 
 

@@ -1,0 +1,28 @@
+"""The sign of slip where few readings lie near zero force."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from mffit.points.slip_zero import Driven, slip_zero
+
+
+def readings(near: float) -> Driven:
+    """Forty readings near zero force with a slope of slip over force, and a whole curve that rises with slip."""
+    force = np.concatenate([np.linspace(-0.25, 0.25, 40), np.repeat([-1.1, 1.1], 40)])
+    slip = np.concatenate([near * np.linspace(-0.25, 0.25, 40), np.repeat([-0.15, 0.15], 40)])
+    n = len(slip)
+    some = np.tile([0.0, 0.02, -0.02, 0.01], n // 4)
+    Fz = 1400.0 * (1.0 + 0.2 * some)
+    return Driven(slip, force * Fz, Fz, some, 0.0 * some, np.full(n, 250e3), np.full(n, np.nan))
+
+
+def test_few_readings_near_zero_that_contradict_the_whole_curve_name_no_sign():
+    """Slip steps of 0.02 leave a stiff tyre hardly a reading near zero; braking was then taken for positive."""
+    assert slip_zero(readings(-0.05)) is None
+    assert slip_zero(readings(0.05)).slope > 0.0
+
+
+def test_braking_that_is_positive_throughout_is_still_found():
+    driven = readings(0.05)
+    assert slip_zero(driven._replace(slip=-driven.slip)).slope < 0.0
