@@ -15,7 +15,13 @@ from mffit.errors import InputError, shortened
 from mffit.quantities import CHANNELS, u_column
 from mffit.sweeps import constants
 from mffit.sweeps.channels import BY_NAME, SWEEP_CHANNELS, Channel, nearest_channel, nearest_heading
-from mffit.sweeps.raw_table import Cells, RawTable, has_decimal_comma, with_decimal_point
+from mffit.sweeps.raw_table import (
+    Cells,
+    RawTable,
+    has_decimal_comma,
+    is_spreadsheet_error,
+    with_decimal_point,
+)
 from mffit.sweeps.units import UnknownUnitError, converted
 from tir.errors import counted
 
@@ -93,7 +99,9 @@ def read_columns(raw: RawTable, mapping: Mapping[str, Column], shared: Collectio
     """
     headings = _headings(raw, mapping, shared)
     found: dict[str, np.ndarray] = {}
-    warnings: list[str] = []
+    warnings = [f"{raw.path}: {sentence}" for sentence in raw.skipped]
+    raw, sentences = _without_spreadsheet_errors(raw, headings)
+    warnings += sentences
     for channel in SWEEP_CHANNELS:
         if channel.name not in headings:
             continue
@@ -110,6 +118,28 @@ def read_columns(raw: RawTable, mapping: Mapping[str, Column], shared: Collectio
     order = sorted(found, key=lambda name: raw.headings.index(headings[name]))
     table = pd.DataFrame({**{name: found[name] for name in order}, **extras}, copy=False)
     return Columns(raw, table, direction, tuple(warnings))
+
+
+def _without_spreadsheet_errors(raw: RawTable, headings: Mapping[str, str]) -> tuple[RawTable, list[str]]:
+    """The rows to read, and sentences about cells such as ``#NV``: missing in a recording, else their row is skipped."""
+    out = np.zeros(len(raw), dtype=bool)
+    sentences = []
+    for heading in dict.fromkeys(headings.values()):
+        cells = raw.column(heading)
+        if isinstance(cells, np.ndarray):
+            continue
+        wrong = np.array([isinstance(cell, str) and is_spreadsheet_error(cell) for cell in cells], dtype=bool)
+        if not np.any(wrong):
+            continue
+        out |= wrong
+        first = int(wrong.argmax())
+        also = f" and {counted(int(wrong.sum()) - 1, 'more cell')} of this kind" if wrong.sum() > 1 else ""
+        done = "treated as missing" if "time_s" in headings else "the row is skipped"
+        place = f"{raw.path}:{int(raw.lines[first])}: column {heading}"
+        sentences.append(f'{place}: "{cells[first]}"{also} is no reading; {done}')
+    if "time_s" in headings or not np.any(out) or np.all(out):
+        return raw, sentences if not np.all(out) else []
+    return raw.of_rows(~out), sentences
 
 
 def _headings(raw: RawTable, mapping: Mapping[str, Column], shared: Collection[str]) -> dict[str, str]:
@@ -272,7 +302,7 @@ def _is_blank(cell: str | float) -> bool:
 
 def _is_gap(cell: str | float) -> bool:
     """Whether a recorder writes this where it has no reading."""
-    return not isinstance(cell, str) or cell.lower().lstrip("+-") in NO_READING
+    return not isinstance(cell, str) or cell.lower().lstrip("+-") in NO_READING or is_spreadsheet_error(cell)
 
 
 def _text(cell: str | float) -> str:

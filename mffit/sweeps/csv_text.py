@@ -21,8 +21,15 @@ import pandas as pd
 from mffit.errors import InputError
 from mffit.sweeps import constants
 from mffit.sweeps.extras import first_bytes, is_packed, opened
-from mffit.sweeps.grid import Head, head_of, table_of
-from mffit.sweeps.raw_table import Cells, RawTable, has_decimal_comma, with_decimal_point
+from mffit.sweeps.grid import Head, head_of, is_summary, table_of
+from mffit.sweeps.raw_table import (
+    THOUSANDS_WITH_POINT,
+    Cells,
+    RawTable,
+    has_decimal_comma,
+    is_spreadsheet_error,
+    without_commas,
+)
 
 UTF16_MARKS = (b"\xff\xfe", b"\xfe\xff")
 SEPARATORS = ("\t", ";", "|", ",")
@@ -78,7 +85,10 @@ def _dialect(path: Path) -> Dialect:
     separator = _separator(lines)
     cells = [cell.strip() for line in lines[1:] for cell in _split(line, separator)]
     has_comma = separator != "," and any(map(has_decimal_comma, cells))
-    return Dialect(separator, has_comma and not any(map(NUMBER_WITH_POINT.fullmatch, cells)), encoding)
+    with_point = [cell for cell in cells if NUMBER_WITH_POINT.fullmatch(cell)]
+    if any("." in cell for cell in cells if has_decimal_comma(cell)):
+        with_point = [cell for cell in with_point if not THOUSANDS_WITH_POINT.fullmatch(cell)]
+    return Dialect(separator, has_comma and not with_point, encoding)
 
 
 def _separator(lines: list[str]) -> str:
@@ -136,12 +146,12 @@ def _rows(text: str, dialect: Dialect) -> Iterator[tuple[int, tuple[str, ...]]]:
         # A quoted cell may span lines, so a row begins one line after the end of the row before it.
         line, before = before + 1, reader.line_num
         row = tuple(_point(cell.strip(), dialect) for cell in cells)
-        if any(row) and not row[0].startswith("#"):
+        if any(row) and (not row[0].startswith("#") or is_spreadsheet_error(row[0])):
             yield line, row
 
 
 def _point(cell: str, dialect: Dialect) -> str:
-    return with_decimal_point(cell) if dialect.has_comma else cell
+    return without_commas(cell) if dialect.has_comma else cell
 
 
 def _fast(path: Path, dialect: Dialect) -> RawTable | None:
@@ -170,10 +180,13 @@ def _fast(path: Path, dialect: Dialect) -> RawTable | None:
         return None
     if lines is None or not len(table):
         return None
+    columns = tuple(_column(table.pop(name), dialect) for name in head.headings)
+    if any(not isinstance(cells, np.ndarray) and any(map(is_summary, set(cells))) for cells in columns):
+        return None
     return RawTable(
         headings=head.headings,
         units=head.units,
-        cells=tuple(_column(table.pop(name)) for name in head.headings),
+        cells=columns,
         lines=lines,
         path=path,
         heading_line=line - (head.rows - head.at) + 1,
@@ -189,20 +202,23 @@ def _head(path: Path, dialect: Dialect) -> tuple[Head, int]:
     return head, found[head.rows - 1][0]
 
 
-def _column(column: pd.Series) -> Cells:
+def _column(column: pd.Series, dialect: Dialect) -> Cells:
     if pd.api.types.is_numeric_dtype(column) and not pd.api.types.is_bool_dtype(column):
         return column.to_numpy(dtype=float)
-    return column.fillna("").astype(str).str.strip().tolist()
+    return [_point(cell, dialect) for cell in column.fillna("").astype(str).str.strip()]
 
 
 def _lines(path: Path, head: int, rows: int) -> range | np.ndarray | None:
-    """Line of every row after the head; None if lines and rows do not match."""
-    count, last = 0, b"\n"
+    """Line of every row after the head; None if lines and rows do not match, or if pandas cut a row at a ``#`` inside it."""
+    count, last, has_marks = 0, b"\n", False
     with opened(path) as file:
         while chunk := file.read(1 << 20):
             count += chunk.count(b"\n")
             last = chunk[-1:]
+            has_marks |= b"#" in chunk
     count += last != b"\n"
+    if has_marks and _has_mark_inside(path, head):
+        return None
     if count - head == rows:
         return range(head + 1, head + 1 + rows)
     skipped = []
@@ -214,6 +230,21 @@ def _lines(path: Path, head: int, rows: int) -> range | np.ndarray | None:
         return None
     every = np.arange(head + 1, count + 1)
     return every[~np.isin(every, skipped)]
+
+
+def _has_mark_inside(path: Path, head: int) -> bool:
+    """Whether a row below the head has a ``#`` that does not begin a comment, as in ``#NV``."""
+    with opened(path) as file:
+        return any(
+            b"#" in line and (not line.lstrip().startswith(b"#") or is_spreadsheet_error(_first(line)))
+            for number, line in enumerate(file, start=1)
+            if number > head
+        )
+
+
+def _first(line: bytes) -> str:
+    """The first cell of a row, whatever the separator."""
+    return re.split(r"[\t;|, ]", line.decode("latin-1").strip(), maxsplit=1)[0]
 
 
 def _text(path: Path, dialect: Dialect) -> str:

@@ -6,14 +6,13 @@ They are taken out of the file's cells, so that a damaged row can be excluded wi
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
 
 from mffit.config.exclusion import ExcludeTable
 from mffit.config.lines import LineRange, inside, ranges_text
-from mffit.sweeps.raw_table import Cells, RawTable
+from mffit.sweeps.raw_table import RawTable
 
 
 class Apart(NamedTuple):
@@ -48,8 +47,8 @@ def take_apart(raw: RawTable, entries: Sequence[ExcludeTable]) -> Apart:
             raise ExclusionError(_sentence(raw, wrong), entry)
         mask = inside(lines, entry.ranges)
         out |= mask
-        excluded.append(_rows(raw, mask))
-    kept = None if np.all(out) else _rows(raw, ~out) if np.any(out) else raw
+        excluded.append(raw.of_rows(mask))
+    kept = None if np.all(out) else raw.of_rows(~out) if np.any(out) else raw
     return Apart(kept, tuple(excluded))
 
 
@@ -66,12 +65,3 @@ def _sentence(raw: RawTable, wrong: int) -> str:
         return f"line {wrong} is beyond the end of the file; {place}"
     reason = "is above the first reading" if wrong < first else "holds no reading"
     return f"line {wrong} {reason}; {place}"
-
-
-def _rows(raw: RawTable, mask: np.ndarray) -> RawTable:
-    rows = np.flatnonzero(mask)
-
-    def some(cells: Cells) -> Cells:
-        return cells[rows] if isinstance(cells, np.ndarray) else [cells[row] for row in rows.tolist()]
-
-    return replace(raw, cells=tuple(some(cells) for cells in raw.cells), lines=np.asarray(raw.lines)[rows])

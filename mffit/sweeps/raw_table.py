@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
@@ -33,6 +33,7 @@ class RawTable:
     path: Path
     heading_line: int | None  #: None in formats without lines
     about: Mapping[str, str] = field(default_factory=dict)  #: the file's own texts: tyre, test, source, title
+    skipped: tuple[str, ...] = ()  #: sentences about rows of the file that are no readings, without its name
 
     def __post_init__(self) -> None:
         if not self.headings or not len(self.lines):
@@ -58,8 +59,37 @@ class RawTable:
         """The unit that the file states for a heading; "" if it states none."""
         return self.units[self.headings.index(heading)]
 
+    def of_rows(self, mask: np.ndarray) -> RawTable:
+        """The table of some rows, (n,) of bool."""
+        rows = np.flatnonzero(mask)
 
-NUMBER_WITH_COMMA = re.compile(r"[-+]?\d*,\d+(?:[eE][-+]?\d+)?")
+        def some(cells: Cells) -> Cells:
+            return cells[rows] if isinstance(cells, np.ndarray) else [cells[row] for row in rows.tolist()]
+
+        return replace(self, cells=tuple(map(some, self.cells)), lines=np.asarray(self.lines)[rows])
+
+
+NUMBER_WITH_COMMA = re.compile(r"[-+]?(?:\d*|\d{1,3}(?:\.\d{3})+),\d+(?:[eE][-+]?\d+)?")
+"""A number with a decimal comma, also with points between its thousands: ``-8,0``, ``1.500,0``."""
+THOUSANDS_WITH_POINT = re.compile(r"[-+]?[1-9]\d{0,2}(?:\.\d{3})+")
+THOUSANDS_WITH_COMMA = re.compile(r"[-+]?[1-9]\d{0,2}(?:,\d{3})+")
+
+SPREADSHEET_ERRORS = frozenset(
+    [
+        "#NV",
+        "#N/A",
+        "#N/V",
+        "#DIV/0!",
+        "#WERT!",
+        "#VALUE!",
+        "#BEZUG!",
+        "#REF!",
+        "#ZAHL!",
+        "#NUM!",
+        "#NAME?",
+        "#NULL!",
+    ]
+)
 
 
 def has_decimal_comma(cell: str) -> bool:
@@ -69,4 +99,14 @@ def has_decimal_comma(cell: str) -> bool:
 
 def with_decimal_point(cell: str) -> str:
     """The number with a decimal point; any other text unchanged."""
-    return cell.replace(",", ".") if has_decimal_comma(cell) else cell
+    return cell.replace(".", "").replace(",", ".") if has_decimal_comma(cell) else cell
+
+
+def is_spreadsheet_error(cell: str) -> bool:
+    """Whether a spreadsheet writes this where it has no value."""
+    return cell.upper() in SPREADSHEET_ERRORS
+
+
+def without_commas(cell: str) -> str:
+    """A number of a file that has decimal commas, with a decimal point and without points between thousands."""
+    return cell.replace(".", "") if THOUSANDS_WITH_POINT.fullmatch(cell) else with_decimal_point(cell)

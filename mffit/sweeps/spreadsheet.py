@@ -8,7 +8,7 @@ from pathlib import Path
 from mffit.errors import InputError
 from mffit.sweeps.extras import needed, undamaged
 from mffit.sweeps.grid import table_of
-from mffit.sweeps.raw_table import RawTable
+from mffit.sweeps.raw_table import THOUSANDS_WITH_COMMA, RawTable, has_decimal_comma, with_decimal_point
 
 
 def read_xlsx(path: Path) -> RawTable:
@@ -27,8 +27,17 @@ def read_xlsx(path: Path) -> RawTable:
         for sheet in book.worksheets:
             rows = [tuple(_cell(value) for value in row) for row in sheet.iter_rows(values_only=True)]
             if any(sum(cell != "" for cell in row) > 1 for row in rows):
-                return table_of(rows, range(1, len(rows) + 1), path)
+                return table_of(_with_points(rows), range(1, len(rows) + 1), path)
     raise InputError("has no sheet with a table; put headings above the columns", file=path)
+
+
+def _with_points(rows: list[tuple[str | float, ...]]) -> list[tuple[str | float, ...]]:
+    """The rows with decimal points, if texts are numbers with decimal commas and not with commas between thousands."""
+    texts = {cell for row in rows for cell in row if isinstance(cell, str)}
+    with_comma = {cell for cell in texts if has_decimal_comma(cell)}
+    if all(map(THOUSANDS_WITH_COMMA.fullmatch, with_comma)):
+        return rows
+    return [tuple(with_decimal_point(cell) if cell in with_comma else cell for cell in row) for row in rows]
 
 
 def _cell(value: object) -> str | float:

@@ -11,7 +11,7 @@ import numpy as np
 from mffit.errors import InputError, shortened
 from mffit.sweeps import tydex_format
 from mffit.sweeps.extras import first_bytes
-from mffit.sweeps.raw_table import RawTable
+from mffit.sweeps.raw_table import RawTable, with_decimal_point
 from mffit.sweeps.tydex_format import (
     CHANNEL_SECTION,
     CONSTANTS,
@@ -157,6 +157,6 @@ def _numbers(line: str, count: int, path: Path, number: int) -> list[float]:
 
 def _float(word: str) -> float:
     try:
-        return float(word)
+        return float(with_decimal_point(word))
     except ValueError:
         return math.nan

@@ -341,3 +341,46 @@ def test_the_name_of_a_sweep_is_that_of_its_file_without_the_ending():
         "b.c.odt",
         "B",
     ]
+
+
+@pytest.mark.parametrize("is_large", [False, True])
+def test_rows_that_are_no_readings_are_skipped_and_listed(project, is_large):
+    """The mean below the readings, and a cell where a spreadsheet found no value."""
+    path = project.write()
+    reference = sweep_named(load(path), NAME)
+    text = line_changed(project.text(NAME), 5, "1500.0", "#NV").rstrip("\n")
+    width = text.split("\n")[0].count(",") + 1
+    text += "\nMittelwert" + ",1.0" * (width - 1) + "\n"
+    project.overwrite(NAME, text + ("# " + "x" * 100_000 + "\n") * 30 * is_large)
+    found = load(path)
+    np.testing.assert_array_equal(sweep_named(found, NAME).Fy, np.delete(reference.Fy, 3))
+    said = " ".join(found.warnings)
+    assert f'{NAME}:5: column Fz_N: "#NV" is no reading; the row is skipped' in said
+    assert f'line {len(reference.Fy) + 2} is skipped: it holds no reading, but is headed "Mittelwert"' in said
+
+
+def test_a_missing_value_of_a_recording_costs_only_its_cell(project):
+    path = project.write()
+    text = project.text(NAME).split("\n")
+    rows = [text[0] + ",time_s", *(f"{row},{0.01 * k:.2f}" for k, row in enumerate(text[1:]) if row)]
+    rows[5] = rows[5].replace("1500.0", "#DIV/0!", 1)
+    project.overwrite(NAME, "\n".join(rows))
+    found = load(path)
+    Fz = sweep_named(found, NAME).Fz
+    assert list(np.flatnonzero(np.isnan(Fz))) == [4]
+    assert any('"#DIV/0!" is no reading; treated as missing' in warning for warning in found.warnings)
+
+
+@pytest.mark.parametrize(
+    ("cells", "values"),
+    [
+        (("1.500,0", "999,5"), (1500.0, 999.5)),
+        (("1.500", "1.499,5"), (1500.0, 1499.5)),
+        (("1.500", "999.5"), (1.5, 999.5)),
+    ],
+)
+def test_points_between_thousands_are_read_where_a_comma_follows(tmp_path, cells, values):
+    path = tmp_path / "a.csv"
+    path.write_text("Fz_N;Fy_N\n" + "".join(f"{cell};1\n" for cell in cells))
+    raw = formats.read(path)
+    assert tuple(map(float, raw.cells[0])) == values

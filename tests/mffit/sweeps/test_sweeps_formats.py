@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import gzip
+import re
 from pathlib import Path
 
 import numpy as np
@@ -88,6 +89,11 @@ def tydex(
     return end.join([*lines, "**END", ""])
 
 
+def german(value: float) -> str:
+    """A number with a decimal comma and points between its thousands: -1.500,25."""
+    return f"{value:,.12f}".translate(str.maketrans(",.", ".,"))
+
+
 WRITERS = {
     "five.mat": lambda path: write_mat(TABLE, path),
     "four.mat": write_v4,
@@ -104,6 +110,11 @@ WRITERS = {
     "run.tdx.gz": lambda path: path.write_bytes(gzip.compress(tydex().encode())),
     "plain.csv": lambda path: TABLE.to_csv(path, index=False),
     "german.csv": lambda path: TABLE.to_csv(path, index=False, sep=";", decimal=","),
+    "thousands.csv": lambda path: path.write_text(
+        "\n".join([";".join(TABLE), *(";".join(map(german, row)) for row in TABLE.to_numpy())])
+    ),
+    "texts.xlsx": lambda path: TABLE.map(german).to_excel(path, index=False),
+    "german.tdx": lambda path: path.write_text(re.sub(r"(?<=\d)\.(?=\d+[ \n])", ",", tydex(factor=0.5))),
 }
 
 
