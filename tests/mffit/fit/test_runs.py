@@ -227,9 +227,9 @@ def test_a_number_of_a_run_moves_this_run_only_and_its_slope_is_exact(name):
     )
     simulation, number = Simulation.of(small_rigs.truth(), turn_slip=False), f"{name}@second"
     _, slope = simulation.sensitivities(points, ["PKY1", number, "alpha_0_deg"])
-    moved = [np.array(simulation.with_numbers({number: step}).readings(points)) for step in (1e-5, -1e-5)]
-    expected = (moved[0] - moved[1]) / 2e-5
-    for channel, values in zip(slope, expected, strict=True):
+    moved = [simulation.with_numbers({number: step}).predict(points) for step in (1e-5, -1e-5)]
+    expected = ((moved[0] - moved[1]) / 2e-5).reshape(len(slope), -1)
+    for channel, values in zip(slope.values(), expected, strict=True):
         np.testing.assert_allclose(channel[:, 1], values, atol=1e-5 * np.max(np.abs(values)))
         assert np.any(channel[:, 2])
     assert not np.any(expected[:, :13])
