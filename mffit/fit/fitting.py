@@ -5,38 +5,35 @@ from __future__ import annotations
 import time
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
-from mffit.config import Declaration, axis_signs, declared_rig
+from mffit.config import axis_signs
 from mffit.config.declared import as_declared
-from mffit.constants import USUAL_CORNERING_STIFFNESS
 from mffit.fit import agreement
 from mffit.fit.between_runs import between_runs
 from mffit.fit.by_hand import hand_of
-from mffit.fit.campaign import FittedCampaign, Joined, campaign_sentence, join
-from mffit.fit.coefficients import Coefficient, coefficient_records, of_file
-from mffit.fit.comments import file_comments
+from mffit.fit.campaign import FittedCampaign, campaign_sentence
+from mffit.fit.coefficients import of_file
 from mffit.fit.confounding import confounding_sentence, confoundings
-from mffit.fit.files import Files, make_files, plain_use
+from mffit.fit.delivery import Beside, deliver
+from mffit.fit.files import plain_use
 from mffit.fit.fitted import Fitted
-from mffit.fit.known import Known, known_after_fit, known_before_fit
+from mffit.fit.known import known_before_fit
 from mffit.fit.nuisance_choice import at_reference
 from mffit.fit.nuisance_wording import nuisance_sentences
 from mffit.fit.overturning import overturning_terms
 from mffit.fit.plan import FitPlan, fit_plan
-from mffit.fit.posterior import Posterior
 from mffit.fit.priors import of_fleet
 from mffit.fit.problem import FitProblem, fit_problem
-from mffit.fit.relaxation import Relaxation, relaxation, relaxation_sentence
+from mffit.fit.relaxation import relaxation_sentence
 from mffit.fit.remarks import with_remarks
 from mffit.fit.result import FitResult
-from mffit.fit.rolling import MY_ZERO, rolling_resistance
-from mffit.fit.sister import Lent, Sister, lend, sister_of, sister_sentence
+from mffit.fit.sister import sister_of, sister_sentence
 from mffit.fit.start import starting_values
 from mffit.fit.temperature import at_temperature
-from mffit.fit.vertical import Vertical, vertical_coefficients, vertical_sentence
+from mffit.fit.vertical import vertical_coefficients, vertical_sentence
 from mffit.fit.virtual_zero import epsilon_gamma_of_model
 from mffit.fit.with_nuisances import NuisanceFit, fit_with_nuisances
 from mffit.fit.wording import explanations, warnings
@@ -103,14 +100,12 @@ def fit(
 
     progress("deriving the property files")
     use = plain_use(config)
-    after, coefficients, files, lent, lag, joined, posterior, zeros = _delivered(
-        config, known, points, steps, measured, base, fitted, radii, sister, campaigns
-    )
+    beside = Beside(radii, steps, sister, campaigns)
+    made = deliver(config, known, points, measured, base, fitted, beside)
+    files = made.files
     temperature = None
     if found.at_temperature:
-        special = _delivered(
-            config, known, points, steps, measured, base, full, radii, sister, campaigns, only=use
-        )
+        special = deliver(config, known, points, measured, base, full, beside, only=use)
         own = of_file(special.files, use, special.coefficients)
         temperature = at_temperature(found, points, special.files.by_use[use], own)
 
@@ -120,29 +115,29 @@ def fit(
     result = FitResult(
         tyre=files.by_use["turn-slip" if config.rig.on_disc else "normal"].tyre,
         written=files.by_use[use].tyre,
-        coefficients=of_file(files, use, coefficients),
+        coefficients=of_file(files, use, made.coefficients),
         channels=channels,
         odd=agreement.with_odd_part(files.by_use["normal"].tyre.values, points, parts),
         simulation=fitted.simulation,
-        rig={**fitted.rig, **zeros},
+        rig={**fitted.rig, **made.zeros},
         model=readings,
-        posterior=posterior,
+        posterior=made.posterior,
         stages=fitted.stages,
-        coverage=(*plan.cover, lag.coverage),
+        coverage=(*plan.cover, made.relaxation.coverage),
         explanations=(
             *nuisance_sentences(config.tyre.name, found, temperature, runs, channels),
-            *explanations(config, files, after.values, measured, hand),
+            *explanations(config, files, made.known.values, measured, hand),
             *filter(None, [vertical_sentence(radii)]),
-            *filter(None, [relaxation_sentence(lag)]),
-            *map(campaign_sentence, joined),
-            *([] if lent is None else [sister_sentence(lent)]),
+            *filter(None, [relaxation_sentence(made.relaxation)]),
+            *map(campaign_sentence, made.joined),
+            *([] if made.lent is None else [sister_sentence(made.lent)]),
         ),
         warnings=(
             *warnings(full, doubts, outlying, files.untested, plan.cover),
             *(confounding_sentence(row, modelled=found.at_temperature) for row in confounded),
         ),
         seconds=time.perf_counter() - began,
-        epsilon_gamma_model=_epsilon_gamma(after.values, points, measured),
+        epsilon_gamma_model=_epsilon_gamma(made.known.values, points, measured),
         doubts=doubts,
         outliers=outlying,
         search=fitted,
@@ -153,62 +148,11 @@ def fit(
         runs=runs,
         confounded=confounded,
         radii=radii,
-        lent=lent,
-        joined=joined,
-        relaxation=lag,
+        lent=made.lent,
+        joined=made.joined,
+        relaxation=made.relaxation,
     )
     return with_remarks(result, config, points, turning, from_base=base is not None)
-
-
-class _Delivered(NamedTuple):
-    """What a fit writes."""
-
-    known: Known  #: every value of the property file, with its origin
-    coefficients: dict[str, Coefficient]
-    files: Files
-    lent: Lent | None  #: what a sister tyre gave
-    relaxation: Relaxation
-    joined: tuple[Joined, ...]  #: what other campaigns gave
-    posterior: Posterior  #: of all of them
-    zeros: Mapping[str, tuple[float, float]]  #: of My, with standard errors
-
-
-def _delivered(
-    config: Any,
-    known: Known,
-    points: Points,
-    steps: Points | None,
-    measured: Any,
-    base: Tyre | None,
-    fitted: Fitted,
-    radii: Vertical,
-    sister: Sister | None,
-    campaigns: Sequence[FittedCampaign],
-    only: str | None = None,
-) -> _Delivered:
-    """The files of a fit, for one use ``only`` or for all, and the records of their coefficients."""
-    known = known_after_fit(known, fitted.values, fitted.regularised, base)
-    side = config.tyre.side or "left"
-    zero = declared_rig(config.rig, USUAL_CORNERING_STIFFNESS).get(MY_ZERO, Declaration(0.0, 0.0))
-    rolling = rolling_resistance(known.values, points, zero, known.hand.held, side)
-    for name, q in rolling.found.items():
-        known = known.having({name: q.value}, "regularised" if name in rolling.regularised else "fitted")
-    lag = relaxation(steps, fitted.simulation, fitted.posterior, known.hand.held)
-    known = known.having({name: q.value for name, q in lag.found.items()}, "fitted")
-    lent = None if sister is None else lend(sister, known, fitted.posterior)
-    borrowed = {} if lent is None else dict(lent.found)
-    known = known.having({name: q.value for name, q in borrowed.items()}, "sister")
-    posterior = fitted.posterior if lent is None else lent.posterior
-    joined = []
-    for campaign in campaigns:
-        joined.append(join(campaign, known, posterior))
-        known = known.having(joined[-1].values, "campaign")
-        borrowed |= {name: q for name, q in joined[-1].found.items() if q.u > 0.0}
-        posterior = joined[-1].posterior
-    coefficients = coefficient_records(known, fitted, {**rolling.found, **radii.found, **lag.found, **borrowed})
-    files = make_files(config, known, points, base, dict(measured.by_load("C_gamma")), only=only)
-    annotated = files.annotated(file_comments(files, known.origin, coefficients))
-    return _Delivered(known, coefficients, annotated, lent, lag, tuple(joined), posterior, rolling.zeros)
 
 
 def _fitted_and_judged(

@@ -1,0 +1,82 @@
+"""From the numbers of a fit, and what is known beside it, to the property files."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from mffit.config import Declaration, declared_rig
+from mffit.constants import USUAL_CORNERING_STIFFNESS
+from mffit.fit.campaign import FittedCampaign, Joined, join
+from mffit.fit.coefficients import Coefficient, coefficient_records
+from mffit.fit.comments import file_comments
+from mffit.fit.files import Files, make_files
+from mffit.fit.fitted import Fitted
+from mffit.fit.known import Known, known_after_fit
+from mffit.fit.posterior import Posterior
+from mffit.fit.relaxation import Relaxation, relaxation
+from mffit.fit.rolling import MY_ZERO, rolling_resistance
+from mffit.fit.sister import Lent, Sister, lend
+from mffit.fit.vertical import Vertical
+from mffit.points import Points
+from tir import Tyre
+
+
+@dataclass(frozen=True, slots=True)
+class Beside:
+    """What determines coefficients beside the least squares of the points."""
+
+    radii: Vertical  #: from loaded radius and wheel speed
+    steps: Points | None = None  #: samples of steps of the sideslip angle
+    sister: Sister | None = None
+    campaigns: Sequence[FittedCampaign] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Delivered:
+    """What a fit writes."""
+
+    known: Known  #: every value of the property file, with its origin
+    coefficients: dict[str, Coefficient]
+    files: Files
+    lent: Lent | None  #: what a sister tyre gave
+    relaxation: Relaxation
+    joined: tuple[Joined, ...]  #: what other campaigns gave
+    posterior: Posterior  #: of all of them
+    zeros: Mapping[str, tuple[float, float]]  #: of My, with standard errors
+
+
+def deliver(
+    config: Any,
+    known: Known,
+    points: Points,
+    measured: Any,
+    base: Tyre | None,
+    fitted: Fitted,
+    beside: Beside,
+    only: str | None = None,
+) -> Delivered:
+    """The files of a fit, for one use ``only`` or for all, and the records of their coefficients."""
+    known = known_after_fit(known, fitted.values, fitted.regularised, base)
+    zero = declared_rig(config.rig, USUAL_CORNERING_STIFFNESS).get(MY_ZERO, Declaration(0.0, 0.0))
+    rolling = rolling_resistance(known.values, points, zero, known.hand.held, config.tyre.side or "left")
+    for name, q in rolling.found.items():
+        known = known.having({name: q.value}, "regularised" if name in rolling.regularised else "fitted")
+    lag = relaxation(beside.steps, fitted.simulation, fitted.posterior, known.hand.held)
+    known = known.having({name: q.value for name, q in lag.found.items()}, "fitted")
+    lent = None if beside.sister is None else lend(beside.sister, known, fitted.posterior)
+    borrowed = {} if lent is None else dict(lent.found)
+    known = known.having({name: q.value for name, q in borrowed.items()}, "sister")
+    posterior = fitted.posterior if lent is None else lent.posterior
+    joined = []
+    for campaign in beside.campaigns:
+        joined.append(join(campaign, known, posterior))
+        known = known.having(joined[-1].values, "campaign")
+        borrowed |= {name: q for name, q in joined[-1].found.items() if q.u > 0.0}
+        posterior = joined[-1].posterior
+    found = {**rolling.found, **beside.radii.found, **lag.found, **borrowed}
+    coefficients = coefficient_records(known, fitted, found)
+    files = make_files(config, known, points, base, dict(measured.by_load("C_gamma")), only=only)
+    annotated = files.annotated(file_comments(files, known.origin, coefficients))
+    return Delivered(known, coefficients, annotated, lent, lag, tuple(joined), posterior, rolling.zeros)
