@@ -85,8 +85,10 @@ def _in_range(effect: Effect, points: Points) -> Effect:
     if HELD_AT not in effect.parameters:
         return effect
     T = points.T[np.isfinite(points.T)]
-    known = {"spread": float(np.std(T)), "lower": float(T.min()), "upper": float(T.max())}
-    free = [replace(f, **known) if f.name == HELD_AT else f for f in effect.free]
+    spread, lower, upper = float(np.std(T)), float(T.min()), float(T.max())
+    free = [
+        replace(f, spread=spread, lower=lower, upper=upper) if f.name == HELD_AT else f for f in effect.free
+    ]
     return replace(effect, free=tuple(free))
 
 

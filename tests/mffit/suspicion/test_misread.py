@@ -265,7 +265,7 @@ def test_a_small_error_is_a_wrong_label_where_others_confirm_the_model(siblings,
         sweep = make_points(alpha, 0.0, 1500.0, p=p, V=6.0, phi_t=0.0)
         sweeps.append(sweep.replace(Fy=force(sweep) + rng.normal(0.0, 5.0, 8)))
     sweeps[0] = sweeps[0].replace(p=200e3)
-    tyre = SimpleNamespace(readings=lambda at: SimpleNamespace(Fy=force(at), Mz=0.0 * at.Fz))
+    tyre = SimpleNamespace(readings=lambda at, _: Readings(Fy=force(at), Mz=0.0 * at.Fz))
     wrong = misread(numbered(sweeps), tyre, ISO)
     assert (wrong is not None) == found
     assert wrong is None or wrong.looks == "run at a pressure of 250 kPa"
