@@ -87,7 +87,7 @@ LONGITUDINAL_EFFECTS = (
         name="moment arm of the longitudinal force",
         physics="The longitudinal force acts beside the middle of the wheel and turns it, to the other side once the tyre is "
         "turned on its rim.",
-        free=(Free(name="SSZ1", spread=0.01, lower=-0.2, upper=0.2),),
+        free=(Free(name="SSZ1", spread=0.006, lower=-0.2, upper=0.2),),
         needs=("drive", "moment"),
         parity="odd in slip",
         confusable_with=("crosstalk-fx-mz",),
