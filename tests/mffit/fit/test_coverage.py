@@ -49,7 +49,7 @@ def test_pressures_at_one_load_hold_the_pressure_effect_on_the_load_of_peak_stif
 def test_a_wheel_that_only_rolls_shows_nothing_of_the_cornering_stiffness():
     """Radii were measured at every load and pressure, sideslip at other pressures at one load only."""
     swept = programme(*LOADS, *PRESSURES, phi_t=0.0, backward=False)
-    Fz, p = (x.ravel() for x in np.meshgrid((900.0, 1400.0, 2100.0), (200e3, 250e3, 300e3)))
+    Fz, p = (np.repeat(x, 3) for x in np.meshgrid((900.0, 1400.0, 2100.0), (200e3, 250e3, 300e3)))
     rows = len(swept) + len(Fz)
     both = make_points(
         np.append(swept.alpha, 0.0 * Fz), np.append(swept.gamma, 0.0 * Fz), np.append(swept.Fz, Fz),
