@@ -46,9 +46,9 @@ def test_german_headings_with_units_are_taken_with_a_remark(tmp_path):
 
 
 def test_what_tyre_toml_says_overrides_what_is_recognised(tmp_path):
-    plain = read(tmp_path, GERMAN).points.Fy
-    given = read(tmp_path, GERMAN, {"Fy_N": {"column": "Seitenkraft", "unit": "lbf"}}).points.Fy
-    np.testing.assert_allclose(given, 4.4482216 * plain, rtol=1e-6)
+    plain = read(tmp_path, GERMAN).points.Mz
+    given = read(tmp_path, GERMAN, {"Mz_Nm": {"column": "Rückstellmoment", "unit": "ft-lb"}}).points.Mz
+    np.testing.assert_allclose(given, 1.3558179 * plain, rtol=1e-6)
 
 
 DOUBTFUL = {
