@@ -35,13 +35,11 @@ FEWEST_TYRES_TO_COMPARE = 2
     help="Set a coefficient as [coefficients] does, instead of the entry there: PCY1=1.3 holds it, RBX1=base too; "
     "'PEY1={min=-3, max=0.5}' bounds it. May be repeated.",
 )
-@click.option(
-    "--no-report", is_flag=True, help="Write neither report.html nor plots, for quick tries; one TYRE_TOML."
-)
+@click.option("--no-report", is_flag=True, help="Write neither report.html nor plots, for quick tries.")
 @click.option(
     "--strict",
     is_flag=True,
-    help="Exit code 3 also if the result is only in doubt, for automatic runs; one TYRE_TOML.",
+    help="Exit code 3 also if the result is only in doubt, for automatic runs.",
 )
 @click.option("--jobs", type=click.IntRange(1), default=1, help="Number of tyres to build at the same time.")
 @click.option("--dask", metavar="ADDRESS", help="Build on the workers of this Dask scheduler.")
@@ -84,11 +82,7 @@ def build(
             raise click.UsageError(
                 "--set is a try with one TYRE_TOML: build the tyres one by one, or write [coefficients]"
             )
-        if no_report or strict:
-            raise click.UsageError(
-                "--no-report and --strict are for one TYRE_TOML: build the tyres one by one"
-            )
-        _build_many(tyre_tomls, out, ensemble, jobs, dask, voice)
+        _build_many(tyre_tomls, out, ensemble, not no_report, strict, jobs, dask, voice)
     else:
         _build(tyre_tomls[0], out, ensemble, coefficients, not no_report, strict, voice)
 
@@ -146,6 +140,8 @@ def _build_many(
     tyre_tomls: tuple[Path, ...],
     out: Path | None,
     ensemble: int,
+    with_report: bool,
+    strict: bool,
     jobs: int,
     dask: str | None,
     voice: Voice,
@@ -165,7 +161,9 @@ def _build_many(
 
         show(f"building {len(tyre_tomls)} tyres")
         try:
-            ordered = pipeline.build_many(tyre_tomls, out, jobs=jobs, dask=dask, ensemble=ensemble, done=done)
+            ordered = pipeline.build_many(
+                tyre_tomls, out, jobs=jobs, dask=dask, ensemble=ensemble, with_report=with_report, done=done
+            )
             finished = list(ordered)
         except KeyboardInterrupt:
             interrupted = True
@@ -174,7 +172,7 @@ def _build_many(
     if out is not None and not interrupted:
         _compare_built(finished, out, voice)
     voice.give(lambda: [as_json.outcome(outcome) for outcome in finished])
-    _end(finished, interrupted, voice)
+    _end(finished, interrupted, strict, voice)
 
 
 def _compare_built(finished: list[BuildOutcome], out: Path, voice: Voice) -> None:
@@ -192,7 +190,7 @@ def _compare_built(finished: list[BuildOutcome], out: Path, voice: Voice) -> Non
         voice.warn([f"the tyres are not compared: {error}"])
 
 
-def _end(finished: list[BuildOutcome], interrupted: bool, voice: Voice) -> None:
+def _end(finished: list[BuildOutcome], interrupted: bool, strict: bool, voice: Voice) -> None:
     """Name the tyres that were not built, and exit with the code of the worst."""
     from mffit.report import text
 
@@ -214,6 +212,10 @@ def _end(finished: list[BuildOutcome], interrupted: bool, voice: Voice) -> None:
     doubtful = [outcome.name for outcome in finished if not outcome.trusted]
     if doubtful:
         click.echo(f"not to be trusted: {', '.join(doubtful)}", err=True)
+        raise SystemExit(NOT_TRUSTED)
+    if strict and (in_doubt := [outcome for outcome in finished if outcome.in_doubt]):
+        names = ", ".join(outcome.name for outcome in in_doubt)
+        click.echo(f"in doubt, and --strict asks for more: {names}: {in_doubt[0].in_doubt[0]}", err=True)
         raise SystemExit(NOT_TRUSTED)
 
 

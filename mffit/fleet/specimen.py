@@ -35,6 +35,7 @@ class Specimen:
     misfit: Mapping[str, float]  #: rms by channel, [N] and [Nm]
     warnings: tuple[str, ...]
     reasons: tuple[str, ...] = ()  #: why the build is not to be trusted; empty for a sound one
+    in_doubt: tuple[str, ...] = ()  #: what the engineer should look at
     setups: tuple[str, ...] = ()  #: names of the set-ups that its sweeps declare
     epsilon_of_setups: tuple[
         Quantity, ...
@@ -101,6 +102,7 @@ def read(folder: str | Path) -> Specimen:
             misfit={name: row["rmse"] for name, row in result["fit"]["channels"].items() if row["n"]},
             warnings=tuple(result["warnings"]),
             reasons=tuple(result.get("reasons", ())),
+            in_doubt=tuple(result.get("in_doubt", ())),
             setups=tuple(dict.fromkeys(s["setup"] for s in resolved["sweep"] if "setup" in s)),
             epsilon_of_setups=_of_setups(spin.get("setups", [])),
         )

@@ -12,7 +12,9 @@ from mffit.conversion import convert, is_old
 from mffit.errors import InputError
 from mffit.output import digest
 from mffit.points.loading import Reading
+from mffit.recordings import with_recognised
 from mffit.suspicion import before_the_fit
+from mffit.sweeps import formats
 from tir import Tyre
 
 
@@ -24,8 +26,10 @@ def read_points(config: Config, *, continuous: bool = False) -> Reading:
     config : the checked ``tyre.toml``
     continuous : see :func:`mffit.points.read`
     """
-    found = points.read(config, continuous=continuous)
-    return found._replace(warnings=(*found.warnings, *before_the_fit(found.points, config)))
+    with formats.reading_once():
+        config, recognised = with_recognised(config)
+        found = points.read(config, continuous=continuous)
+    return found._replace(warnings=(*recognised, *found.warnings, *before_the_fit(found.points, config)))
 
 
 def read_base(config: Config) -> Tyre | None:

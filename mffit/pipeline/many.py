@@ -18,7 +18,7 @@ from mffit.config import Config
 from mffit.errors import InputError
 from mffit.fleet import read
 from mffit.output import written_by
-from mffit.pipeline.build_output import WRITTEN, resolved_text
+from mffit.pipeline.build_output import REPORT, WRITTEN, resolved_text
 from mffit.pipeline.building import build
 from mffit.pipeline.members import FOLDER
 from mffit.pipeline.provenance import METHOD, PROGRAM, fitted_to
@@ -39,6 +39,7 @@ def build_many(
     jobs: int = 1,
     dask: str | None = None,
     ensemble: int = 0,
+    with_report: bool = True,
     done: Done = lambda outcome: None,
 ) -> tuple[BuildOutcome, ...]:
     """Build many tyres; a failure does not stop the others, and output that is complete and current is left unchanged.
@@ -49,7 +50,7 @@ def build_many(
     out : folder in which each tyre gets a folder of its name; default ``out`` beside each ``tyre.toml``
     jobs : number of processes, each of which builds one tyre at a time; 1 builds in this process
     dask : address of a Dask scheduler, whose workers see the same files and have mffit; ``jobs`` is ignored then
-    ensemble : as in :func:`build`
+    ensemble, with_report : as in :func:`build`
     done : called with every finished tyre
 
     Returns
@@ -65,7 +66,7 @@ def build_many(
         Builds reported to ``done`` are complete; the others have left no files.
     """
     paths = [Path(source) for source in sources]
-    wanted, finished = _jobs(paths, None if out is None else Path(out), ensemble)
+    wanted, finished = _jobs(paths, None if out is None else Path(out), ensemble, with_report=with_report)
     for outcome in finished.values():
         done(outcome)
     with contextlib.closing(_outcomes(wanted, jobs, dask)) as outcomes:
@@ -103,9 +104,9 @@ def build_one(job: Job) -> BuildOutcome:
 def _built(job: Job) -> BuildOutcome:
     """The outcome of a build, with the numbers that its folder holds."""
     config = configuration.load(job.source)
-    current = is_current(config, job.out, ensemble=job.ensemble)
+    current = is_current(config, job.out, ensemble=job.ensemble, with_report=job.with_report)
     if not current:
-        build(config, job.out, ensemble=job.ensemble)
+        build(config, job.out, ensemble=job.ensemble, with_report=job.with_report)
     specimen = read(job.out)
     return BuildOutcome(
         source=job.source,
@@ -117,6 +118,7 @@ def _built(job: Job) -> BuildOutcome:
         warnings=len(specimen.warnings),
         file=specimen.file,
         reasons=specimen.reasons,
+        in_doubt=specimen.in_doubt,
     )
 
 
@@ -125,7 +127,7 @@ def _one_line(text: str) -> str:
 
 
 def _jobs(
-    paths: Sequence[Path], out: Path | None, ensemble: int
+    paths: Sequence[Path], out: Path | None, ensemble: int, *, with_report: bool
 ) -> tuple[list[Job], dict[Path, BuildOutcome]]:
     """The tyres to build, and the outcomes of those whose ``tyre.toml`` cannot be read."""
     wanted: list[Job] = []
@@ -138,7 +140,8 @@ def _jobs(
         except InputError as error:
             refused[path] = BuildOutcome(path, str(path), None, "refused", str(error))
             continue
-        job = Job(path, name, (path.parent / "out" if out is None else out / name).absolute(), ensemble)
+        folder = (path.parent / "out" if out is None else out / name).absolute()
+        job = Job(path, name, folder, ensemble, with_report)
         _check_folder(job, wanted, given=out is not None)
         wanted.append(job)
     return wanted, refused
@@ -154,7 +157,7 @@ def _check_folder(job: Job, others: Sequence[Job], *, given: bool) -> None:
             raise InputError(f"would be built into {job.out}, like {other.source}: {remedy}", file=job.source)
 
 
-def is_current(config: Config, out: Path, *, ensemble: int = 0) -> bool:
+def is_current(config: Config, out: Path, *, ensemble: int = 0, with_report: bool = True) -> bool:
     """Whether ``out`` holds a complete, unedited build of this version, configuration and inputs.
 
     Parameters
@@ -162,11 +165,13 @@ def is_current(config: Config, out: Path, *, ensemble: int = 0) -> bool:
     config : configuration of the build
     out : folder of an earlier build; it need not exist
     ensemble : number of drawn files required; 0 accepts any
+    with_report : whether the report is required
     """
     kept = written_by(out, "build")
     try:
         result = json.loads((out / "result.json").read_text(encoding="utf-8"))
         files = [*WRITTEN, "resolved.toml", *result["files"].values()]
+        files = [name for name in files if with_report or name != REPORT]
         tyre = tir.read(out / result["tir"])
         drawn = sum(name.startswith(f"{FOLDER}/") and name.endswith(".tir") for name in kept)
         return (

@@ -32,6 +32,7 @@ class Job:
     name: str
     out: Path
     ensemble: int = 0
+    with_report: bool = True
 
 
 BuildOne = Callable[[Job], BuildOutcome]

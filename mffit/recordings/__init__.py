@@ -2,6 +2,7 @@
 
 from mffit.recordings.disc import DiscPath, disc_signs
 from mffit.recordings.project_file import project_text
+from mffit.recordings.recognised import with_recognised
 from mffit.recordings.sniffed import Sniffed, sniff
 
-__all__ = ["DiscPath", "Sniffed", "disc_signs", "project_text", "sniff"]
+__all__ = ["DiscPath", "Sniffed", "disc_signs", "project_text", "sniff", "with_recognised"]

@@ -73,7 +73,7 @@ def guesses(raw: RawTable, *, unloaded_radius: float | None = None) -> Guesses:
     unloaded_radius : [m], to check the speed of rotation; None if it is not known
     """
     columns = _number_columns(raw)
-    slips = _candidates(raw, BY_NAME[SLIP])
+    slips = candidates(raw, BY_NAME[SLIP])
     columns.pop(SLIP, None)
     chosen, left_out = choices(columns, unloaded_radius)
     remarks = [*left_out.values()]
@@ -110,11 +110,11 @@ def simplified(heading: str) -> str:
 
 def _number_columns(raw: RawTable) -> dict[str, FoundChannel]:
     """Columns of numbers that are channels; the first known name with suitable readings counts."""
-    candidates = {c.name: _candidates(raw, c) for c in SWEEP_CHANNELS if c.kind == "number"}
-    return {name: columns[0] for name, columns in candidates.items() if columns}
+    named = {c.name: candidates(raw, c) for c in SWEEP_CHANNELS if c.kind == "number"}
+    return {name: columns[0] for name, columns in named.items() if columns}
 
 
-def _candidates(raw: RawTable, channel: Channel) -> list[FoundChannel]:
+def candidates(raw: RawTable, channel: Channel) -> list[FoundChannel]:
     """Columns with a known name of a channel and suitable readings, in the order of the names."""
     headings = _headings(raw)
     named = dict.fromkeys(headings.get(simplified(name)) for name in (channel.name, *channel.aliases))

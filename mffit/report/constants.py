@@ -98,6 +98,9 @@ MOST_STEPS_DRAWN = Count(3, "-", "Steps of a diagnosis drawn at most: one row of
 SMALLEST_GAIN_DRAWN = Real(1.0, "-", "Left end of the scale of log evidence; smaller gains have no bar.")
 MOST_DIFFERENCES_DRAWN = Count(18, "-", "Differences of a comparison drawn at most: one picture's height.")
 MOST_TYRE_NUMBERS_AT_AXIS = Count(16, "-", "Numbers of tyres at the axis of a fleet's picture at most.")
+CHARACTERS_BELOW_A_SHEET = Count(
+    100, "characters", "Names of tyres up to this length fit below the axis of one panel of full width."
+)
 MOST_SAMPLES_DRAWN = Count(
     6000, "-", "Most samples of a recording that are drawn; more only thicken the lines."
 )

@@ -98,6 +98,7 @@ class BuildOutcome:
     warnings: int = 0
     file: str = ""  #: the property file with the plain name, in ``out``
     reasons: tuple[str, ...] = ()  #: why the result is not to be trusted; empty for a sound one
+    in_doubt: tuple[str, ...] = ()  #: what the engineer should look at
 
     @property
     def whole(self) -> bool:

@@ -40,12 +40,12 @@ def test_an_outcome_of_many_builds():
     assert as_json.outcome(good) == {
         "tyre_toml": str(Path("a/tyre.toml")), "name": "a", "out": str(Path("out/a")), "state": "built", "sentence": None,
         "seconds": 2.5, "epsilon_gamma": {"value": -0.1, "u": 0.02}, "rmse": {"Fy": 6.0}, "warnings": 3, "tir": "a.tir",
-        "trusted": True, "reasons": [],
+        "trusted": True, "reasons": [], "in_doubt": [],
     }  # fmt: skip
     bad = as_json.outcome(BuildOutcome(Path("b.toml"), "b.toml", None, "refused", "the reason"))
     assert bad == {
         "tyre_toml": "b.toml", "name": "b.toml", "out": None, "state": "refused", "sentence": "the reason", "seconds": 0.0,
-        "epsilon_gamma": None, "rmse": {}, "warnings": 0, "trusted": None, "reasons": [], "tir": None,
+        "epsilon_gamma": None, "rmse": {}, "warnings": 0, "trusted": None, "reasons": [], "in_doubt": [], "tir": None,
     }  # fmt: skip
 
 

@@ -305,7 +305,7 @@ def test_a_fleet_on_a_disc_reads_the_file_with_turn_slip(folders, tmp_path):
 def test_the_exit_code_is_that_of_the_worst_tyre(states, code):
     outcomes = [BuildOutcome(Path("a.toml"), "a", None, state) for state in states]
     with contextlib.nullcontext() if code is None else pytest.raises(SystemExit) as end:
-        _end(outcomes, False, Voice(json=False, quiet=False))
+        _end(outcomes, False, False, Voice(json=False, quiet=False))
     assert code is None or end.value.code == code
 
 
@@ -314,7 +314,10 @@ def test_a_tyre_that_is_not_to_be_trusted_gives_3_unless_a_build_failed(other, c
     doubtful = BuildOutcome(Path("a.toml"), "a", None, "built", reasons=("the model misses Fy",))
     with pytest.raises(SystemExit) as end:
         _end(
-            [doubtful, BuildOutcome(Path("b.toml"), "b", None, other)], False, Voice(json=False, quiet=False)
+            [doubtful, BuildOutcome(Path("b.toml"), "b", None, other)],
+            False,
+            False,
+            Voice(json=False, quiet=False),
         )
     assert end.value.code == code
     assert ("not to be trusted: a\n" in capsys.readouterr().err) == (code == 3)

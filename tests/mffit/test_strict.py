@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import json
+import shutil
 from pathlib import Path
 
-import pytest
 from small_rigs import flat, simulated
 
 from mffit.cli import main
@@ -19,24 +19,29 @@ def test_a_result_in_doubt_ends_with_3_and_no_page_is_written(tmp_path: Path, ca
     path.write_text(
         path.read_text(encoding="utf-8").replace("[[sweep]]", f"{column}[[sweep]]", 1), encoding="utf-8"
     )
-    try:
-        main(["build", str(path), "--strict", "--no-report"])
-        code = 0
-    except SystemExit as end:
-        code = end.code
+    code = exit_code("build", path, "--strict", "--no-report")
     out = tmp_path / "p" / "out"
     result = json.loads((out / "result.json").read_text(encoding="utf-8"))
     assert result["trusted"]
+    assert result["in_doubt"]
     assert code == 3
     assert "--strict" in capsys.readouterr().err
     assert (out / "small.tir").is_file()
     assert not (out / "report.html").exists()
     assert not (out / "plots").exists()
+    shutil.copytree(tmp_path / "p", tmp_path / "q")
+    both = (path, tmp_path / "q" / "tyre.toml")
+    assert exit_code("build", *both, "--no-report") == 0
+    assert exit_code("build", *both, "--no-report", "--strict") == 3
+    captured = capsys.readouterr()
+    assert captured.out.count("(unchanged)") == 4
+    assert "in doubt, and --strict asks for more: small, small: " in captured.err
+    assert not (out / "report.html").exists()
 
 
-def test_several_tyres_are_refused(capsys):
-    for option in ("--strict", "--no-report"):
-        with pytest.raises(SystemExit) as end:
-            main(["build", "a.toml", "b.toml", option])
-        assert end.value.code == 2
-        assert "one TYRE_TOML" in capsys.readouterr().err
+def exit_code(*arguments: object) -> int:
+    try:
+        main([str(argument) for argument in arguments])
+    except SystemExit as end:
+        return end.code
+    return 0

@@ -20,6 +20,7 @@ LOOKS = {
     "alone": Look(colour=style.CALM, marker="D", size=4.0, width=1.2),
     "together": Look(colour=style.ACCENT, marker="o", size=4.0, width=1.2),
 }
+COLUMNS = 3
 APART = 0.22
 """Distance between the estimates of one tyre, as a share of the distance between two tyres."""
 
@@ -39,13 +40,13 @@ def numbers_of_all(found: Fleet) -> Sheet:
     panels = [
         Panel(
             title=quantity.column(f"{quantity.word} {quantity.mathtext}"),
-            x=_names(found),
+            x=_names(found, COLUMNS),
             y=Axis(),
             series=[_bars(found.numbers(key), 0.0, LOOKS["together"], quantity.word)],
         )
         for key, quantity in COMPARED.items()
     ]
-    return Sheet(rows=in_rows(panels, columns=3), height=1.9)
+    return Sheet(rows=in_rows(panels, columns=COLUMNS), height=1.9)
 
 
 def _bars(numbers: Sequence[Quantity | None], shift: float, look: Look, name: str) -> ErrorBars:
@@ -54,8 +55,11 @@ def _bars(numbers: Sequence[Quantity | None], shift: float, look: Look, name: st
     return ErrorBars(name=name, x=x, y=y, u=u, look=look)
 
 
-def _names(found: Fleet) -> Axis:
-    """The tyres' numbers in the table, as names would not fit side by side."""
+def _names(found: Fleet, columns: int = 1) -> Axis:
+    """The tyres' names if they fit side by side below one of ``columns`` panels, else their numbers in the table."""
     n = len(found.rows)
+    names = [row.specimen.name for row in found.rows]
+    if n * (2 + max(map(len, names))) <= constants.CHARACTERS_BELOW_A_SHEET // columns:
+        return Axis(low=-0.6, high=n - 0.4, words={float(k): name for k, name in enumerate(names)})
     step = max(1, n // constants.MOST_TYRE_NUMBERS_AT_AXIS)
     return Axis(low=-0.6, high=n - 0.4, words={float(k): str(k + 1) for k in range(0, n, step)})

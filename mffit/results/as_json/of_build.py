@@ -39,6 +39,7 @@ def build(result: BuildResult) -> dict[str, Any]:
     return {
         "trusted": result.trusted,
         "reasons": list(result.reasons),
+        "in_doubt": list(result.trust.doubts),
         "tyre": result.config.tyre.model_dump(exclude_none=True),
         "spin": spin(result.measured),
         "fit": fit(result.fit, result.trust.over_noise),

@@ -26,6 +26,7 @@ def outcome(found: BuildOutcome) -> dict[str, Any]:
         "warnings": found.warnings,
         "trusted": found.trusted if found.whole else None,
         "reasons": list(found.reasons),
+        "in_doubt": list(found.in_doubt),
         "tir": found.file or None,
     }
 
