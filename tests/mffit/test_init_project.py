@@ -64,7 +64,9 @@ def test_a_sample_is_copied_byte_for_byte_and_loads(tmp_path, name):
 
 
 def test_the_help_names_every_sample():
-    help_text = "".join(projects.init.get_help(click.Context(projects.init)).split())  # a name may be broken at a hyphen
+    help_text = "".join(
+        projects.init.get_help(click.Context(projects.init)).split()
+    )  # a name may be broken at a hyphen
     assert all(name in help_text for name in sample_names())
 
 

@@ -51,7 +51,13 @@ def _panel(
         if not rows.any():
             continue
         load = np.linspace(rolling.Fz[rows].min(), rolling.Fz[rows].max(), steps)
-        usual = {"gamma": 0.0, "p": p, "V": speed, "loaded": np.nan, "effective": finite_median(rolling.effective)}
+        usual = {
+            "gamma": 0.0,
+            "p": p,
+            "V": speed,
+            "loaded": np.nan,
+            "effective": finite_median(rolling.effective),
+        }
         at = RollingParts(Fz=load, **{name: np.full(steps, value) for name, value in usual.items()})
 
         def of(tyre: Any, at: RollingParts = at) -> Any:
