@@ -32,7 +32,8 @@ def points():
 def test_every_channel_is_that_of_the_tyre_under_the_slip_of_the_points(tyre, points):
     read = Simulation.of(tyre, turn_slip=False).readings(points, CHANNELS)
     at = (points.Fz, points.alpha, points.gamma, points.kappa)
-    forces, state = tyre(*at, Vx=9.0, p=250e3), tyre.state(*at, Vx=9.0, p=250e3)
+    how = {"Vx": 9.0, "p": 250e3, "turn_slip": False}
+    forces, state = tyre(*at, **how), tyre.state(*at, **how)
     assert list(read) == list(CHANNELS)
     for name in CHANNELS:
         expected = getattr(forces, name) if hasattr(forces, name) else getattr(state, name)
