@@ -115,14 +115,14 @@ STIFFENING_OVER_SPEED = Real(
 )
 
 # Rolling resistance: standard deviations among tyres, from published files
-QSY1_SPREAD = Real(0.01, "-", "Standard deviation of QSY1: rolling resistance over load is 0.007 to 0.02.")
-QSY2_SPREAD = Real(0.01, "-", "Standard deviation of QSY2 among tyres.")
-QSY3_SPREAD = Real(0.001, "-", "Standard deviation of QSY3; published files have 0.0004 to 0.0015.")
-QSY4_SPREAD = Real(0.00005, "-", "Standard deviation of QSY4; published files have 0.00004 to 0.00006.")
-QSY5_SPREAD = Real(0.02, "-", "Standard deviation of QSY5; published files have 0 to 0.02.")
-QSY6_SPREAD = Real(0.01, "-", "Standard deviation of QSY6; published files have 0 to 0.006.")
-QSY7_SPREAD = Real(0.15, "-", "Standard deviation of QSY7; published files have 0.85 to 1.")
-QSY8_SPREAD = Real(0.3, "-", "Standard deviation of QSY8; published files have -0.5 to 0.")
+QSY1_SPREAD = Real(0.01, "-", "Standard deviation of QSY1, judged: rolling resistance over load is 0.007 to 0.02.")
+QSY2_SPREAD = Real(0.01, "-", "Standard deviation of QSY2 among tyres, judged.")
+QSY3_SPREAD = Real(0.001, "-", "Standard deviation of QSY3, judged: public files have 0.0004 and more.")
+QSY4_SPREAD = Real(0.00005, "-", "Standard deviation of QSY4, judged: of the size that public files have.")
+QSY5_SPREAD = Real(0.02, "-", "Standard deviation of QSY5, judged.")
+QSY6_SPREAD = Real(0.01, "-", "Standard deviation of QSY6, judged.")
+QSY7_SPREAD = Real(0.15, "-", "Standard deviation of QSY7, judged: public files have 0.85 to 1.")
+QSY8_SPREAD = Real(0.3, "-", "Standard deviation of QSY8, judged: public files have -0.4 to 0.")
 
 # Physical limits
 LIMIT_MARGIN = Real(0.02, "-", "Distance kept from a physical limit, in units of its violation.")

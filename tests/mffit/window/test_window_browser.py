@@ -18,7 +18,7 @@ import numpy as np
 import pytest
 
 import mffit
-from mffit.quantities import CHANNELS
+from mffit.quantities import SIDEWAYS
 from mffit.viewer import project_page
 from mffit.window.session import Session
 from tests.browser import PHONE, SCREEN, console_errors, look, opened
@@ -59,7 +59,7 @@ def until(true: Callable[[], Any], seconds: float = 60.0) -> Any:
 
 
 def test_the_misfit_is_that_of_the_build(page, result):
-    for name in CHANNELS:
+    for name in result.fit.channels:
         found = ask(page, "mffit.misfit(arguments[0])", name)
         assert found["rmse"] == pytest.approx(result.fit.channels[name].rmse, rel=1e-9)
         assert found["over_noise"] == pytest.approx(result.trust.over_noise[name], rel=1e-9)
@@ -227,7 +227,7 @@ def test_hold_refit_reload_two_windows_and_a_server_that_ends(browser, tyre_toml
         until(lambda: ask(browser, "mffit.data().before"))
         assert ask(browser, "mffit.trial()") == {}
         assert ask(browser, "mffit.data().before.values.PEY1") != -0.9
-        shown = {name: ask(browser, "mffit.misfit(arguments[0]).rmse", name) for name in CHANNELS}
+        shown = {name: ask(browser, "mffit.misfit(arguments[0]).rmse", name) for name in SIDEWAYS}
         until(lambda: "mffit build" in status())
         browser.refresh()
         until(lambda: ask(browser, "window.mffit && mffit.data() && mffit.data().name"))
@@ -238,7 +238,7 @@ def test_hold_refit_reload_two_windows_and_a_server_that_ends(browser, tyre_toml
         assert process.wait(15) == 0
         until(lambda: "has ended" in status())
         built = mffit.build(tyre_toml)
-        assert shown == pytest.approx({name: built.fit.channels[name].rmse for name in CHANNELS}, rel=1e-9)
+        assert shown == pytest.approx({name: built.fit.channels[name].rmse for name in SIDEWAYS}, rel=1e-9)
         assert built.fit.tyre["PEY1"] == -0.9
     again = Session(tyre_toml).state()  # what a restarted server knows
     assert again["hand"] == {"PEY1": -0.9}
