@@ -115,7 +115,9 @@ STIFFENING_OVER_SPEED = Real(
 )
 
 # Rolling resistance: standard deviations among tyres, from published files
-QSY1_SPREAD = Real(0.01, "-", "Standard deviation of QSY1, judged: rolling resistance over load is 0.007 to 0.02.")
+QSY1_SPREAD = Real(
+    0.01, "-", "Standard deviation of QSY1, judged: rolling resistance over load is 0.007 to 0.02."
+)
 QSY2_SPREAD = Real(0.01, "-", "Standard deviation of QSY2 among tyres, judged.")
 QSY3_SPREAD = Real(0.001, "-", "Standard deviation of QSY3, judged: public files have 0.0004 and more.")
 QSY4_SPREAD = Real(0.00005, "-", "Standard deviation of QSY4, judged: of the size that public files have.")

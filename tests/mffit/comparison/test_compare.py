@@ -182,10 +182,10 @@ def test_a_file_is_compared_with_data(folder, stiffer, tmp_path):
     row = by_key(wrong)["C_alpha_N_per_rad"]
     assert abs(by_key(right)["C_alpha_N_per_rad"].z) < 3.0 < abs(row.z)
     assert row.change > 0.0  # the data are less stiff, and C_alpha is negative
-    readings = wrong.simulation.readings(wrong.points, ("Fy", "My", "Mz"))
-    apart = {c: wrong.points.channel(c) - getattr(readings, c) for c in ("Fy", "My", "Mz")}
-    Fy, My, Mz = (f"{np.sqrt(np.nanmean(gap**2)):.3g}" for gap in apart.values())
-    said = f" by {Fy} N rms in Fy and {My} Nm rms in My and {Mz} Nm rms in Mz; numbers that differ"
+    readings = wrong.simulation.readings(wrong.points)
+    apart = {c: wrong.points.channel(c) - read for c, read in readings.items()}
+    Fy, Mz = (f"{np.sqrt(np.nanmean(gap**2)):.3g}" for gap in apart.values())
+    said = f" by {Fy} N rms in Fy and {Mz} Nm rms in Mz; numbers that differ"
     assert said in wording.headline(wrong)
     # The same sign by sweep.
     for gap in wrong.sweeps:

@@ -1,151 +1,131 @@
-"""Sweeps of longitudinal slip become points, with the force that belongs to the slip."""
+"""Sweeps of longitudinal slip become points with every channel that was measured, in ISO-W."""
 
 from __future__ import annotations
 
+from types import SimpleNamespace
+
 import numpy as np
+import pandas as pd
 import pytest
-from flat_belt import (
-    LOADS,
-    drive_recording,
-    loaded_radius,
-    longitudinal_force,
-    recording,
-    rolling_radius,
-    write_mat,
-)
+from flat_belt import RATE, SPEED, write_mat
 
 from mffit import config as configuration
 from mffit import points
-from mffit.errors import InputError
+from mffit.points import make_points
+from mffit.points.averaging import _blocks
 from mffit.points.stretch import SWEEP
 
+SWEEP_S, REST_S = 6.0, 3.0
+SLIPS, LOADS = (0.0, 3.0, 6.0), (500.0, 1600.0)
 COLUMNS = {
-    "time_s": "ET", "alpha_deg": "SA", "gamma_deg": "IA", "Fz_N": "FZ", "Fy_N": "FY", "Mz_Nm": "MZ", "p_kPa": "P", "V_mps": "V",
-    "T_degC": "TSTC", "kappa": "SL", "Fx_N": "FX",
+    "time_s": "ET", "alpha_deg": "SA", "gamma_deg": "IA", "Fz_N": "FZ", "Fx_N": "FX", "Fy_N": "FY", "Mz_Nm": "MZ",
+    "Mx_Nm": "MX", "My_Nm": "MY", "RL_m": {"column": "RL", "unit": "cm"}, "omega_radps": {"column": "N", "unit": "rpm"},
+    "p_kPa": "P", "V_mps": "V", "kappa": "SL",
 }  # fmt: skip
 
 
-@pytest.fixture
-def configured(tmp_path):
-    def of(table, columns=COLUMNS):
-        tyre = {"name": "x", "unloaded_radius": 0.228, "nominal_load": 1500.0, "nominal_pressure": 83.0}
-        return configuration.load(
-            {
-                "tyre": tyre,
-                "rig": {"type": "flat-track", "axes": "sae"},
-                "columns": columns,
-                "sweep": [{"file": str(write_mat(table, tmp_path / "run.mat"))}],
-            }
-        )
-
-    return of
-
-
-def sweeps(found):
-    return [note for note in found.stretches if note.kind == SWEEP and not note.dropped]
-
-
-@pytest.mark.parametrize("gaps", [True, False])
-def test_every_condition_of_a_drive_recording_is_a_sweep_of_slip(configured, gaps):
-    found = points.read(configured(drive_recording(gaps=gaps)))
-    notes = sweeps(found)
-    assert {note.swept for note in notes} == {"kappa"}
-    conditions = {
-        (round(note.Fz_N, -2), round(note.gamma_deg), round(note.alpha_from_deg + 0.05)) for note in notes
-    }
-    assert conditions == {(load, camber, slip) for load in LOADS for camber in (0, 3) for slip in (0, -3)}
-    assert len(notes) == 12
-    assert all(note.kappa_from < -0.14 and note.kappa_to > 0.14 for note in notes)
-
-
-def test_the_points_of_a_slip_sweep_have_slip_and_force_of_the_same_moment(configured):
-    found = points.read(configured(drive_recording())).points
-    kappa, Fx = found.kappa, found.Fx
-    truth = longitudinal_force(kappa, found.alpha, found.Fz)
-    assert (
-        np.sqrt(np.mean((Fx - truth) ** 2)) < 10.0
-    )  # 15 N per sample, ten samples, and the bend of the curve
-    assert np.ptp(kappa) > 0.28
-    assert np.median(np.abs(np.diff(kappa))) < 0.011
-
-
-def test_load_that_swings_with_the_force_is_one_condition(configured):
-    """Belts hold the load less well while the wheel is driven; a swing of a tenth is no other set-point."""
-    assert len(sweeps(points.read(configured(drive_recording(swing=0.1))))) == 12
-
-
-def test_slip_that_wanders_along_a_sideslip_sweep_changes_nothing(configured):
-    table = recording(pressures=(83.0,), cambers=(0.0,))
-    still = points.read(configured(table)).points
+def recording() -> pd.DataFrame:
+    """Drive and brake 0 -> 0.15 -> 0 -> -0.15 -> 0 at three sideslips and two loads, as a machine in SAE axes writes it."""
     random = np.random.default_rng(2)
-    table["SL"] = 0.003 * np.sin(np.radians(10.0 * table["SA"])) + 0.001 * random.standard_normal(len(table))
-    found = points.read(configured(table))
-    assert {note.swept for note in sweeps(found)} == {"alpha_deg"}
-    assert np.array_equal(found.points.Fy, still.Fy)
+    swept, resting = round(SWEEP_S * RATE), round(REST_S * RATE)
+    triangle = 0.15 * (1.0 - np.abs((4.0 * np.arange(swept) / swept + 1.0) % 4.0 - 2.0))
+    parts = [(slip, load) for slip in SLIPS for load in LOADS]
+    kappa = np.concatenate([np.r_[np.zeros(resting), triangle] for _ in parts])
+    alpha, Fz = (np.repeat([part[k] for part in parts], resting + swept) for k in (0, 1))
+    n = len(kappa)
+    Fx = 20.0 * Fz * kappa / (1.0 + 80.0 * kappa**2) + 5.0 * random.standard_normal(n)
+    return pd.DataFrame(
+        {
+            "ET": np.arange(n) / RATE,
+            "V": 3.6 * SPEED + 0.01 * random.standard_normal(n),
+            "SA": -(alpha + 0.01 * random.standard_normal(n)),
+            "IA": 0.01 * random.standard_normal(n),
+            "P": 83.0 + 0.1 * random.standard_normal(n),
+            "SL": kappa + 1e-3 * random.standard_normal(n),
+            "FX": Fx,
+            "FY": 0.2 * alpha * Fz + 5.0 * random.standard_normal(n),
+            "FZ": -Fz + 3.0 * random.standard_normal(n),
+            "MX": -40.0 + random.standard_normal(n),
+            "MY": 6.0 + 0.1 * random.standard_normal(n),
+            "MZ": random.standard_normal(n),
+            "RL": 22.0 - 2e-4 * Fz,
+            "N": 60.0 / (2.0 * np.pi) * (1.0 + kappa) * SPEED / 0.225,
+        }
+    )
 
 
-def test_sideslip_may_be_swept_at_a_slip_that_is_held(configured):
-    table = recording(pressures=(83.0,), cambers=(0.0,), gaps=True)
-    table["SL"] = -0.05
-    found = points.read(configured(table))
-    assert {note.swept for note in sweeps(found)} == {"alpha_deg"}
-    assert np.allclose(found.points.kappa, -0.05)
+@pytest.fixture(scope="module")
+def read(tmp_path_factory):
+    file = write_mat(recording(), tmp_path_factory.mktemp("slip") / "run.mat")
+
+    def reading(columns=COLUMNS):
+        tyre = {"name": "x", "unloaded_radius": 0.22, "nominal_load": 1500.0, "nominal_pressure": 83.0}
+        content = {"tyre": tyre, "rig": {"type": "flat-track", "axes": "calspan"}, "columns": columns}
+        return points.read(configuration.load(content | {"sweep": [{"file": str(file)}]}), may_be_empty=True)
+
+    return reading
 
 
-def test_without_a_longitudinal_force_only_free_rolling_is_kept(configured):
-    columns = {name: heading for name, heading in COLUMNS.items() if name != "Fx_N"}
-    found = points.read(configured(drive_recording(gaps=False), columns))
-    assert np.all(np.abs(found.points.kappa) < 0.02)
-    assert any("Fx was not measured" in warning for warning in found.warnings)
+def test_every_condition_is_a_sweep_of_slip_with_all_channels(read):
+    found = read()
+    sweeps = [note for note in found.stretches if note.kind == SWEEP and not note.dropped]
+    assert len(sweeps) == len(SLIPS) * len(LOADS)
+    p = found.points
+    assert p.measured == ("Fx", "Fy", "Mx", "My", "Mz", "RL", "omega")
+    for k in np.unique(p.sweep[np.isfinite(p.time)]):  # the others are the rests before the sweeps
+        rows = p.sweep == k
+        assert (p.kappa[rows].min(), p.kappa[rows].max()) == pytest.approx((-0.15, 0.15), abs=0.012)
+        assert np.ptp(np.degrees(p.alpha[rows])) < 0.05
+    assert not any("lag" in sentence for sentence in found.warnings)
 
 
-@pytest.mark.parametrize(
-    ("change", "said"),
-    [
-        (lambda slip: slip + 0.3, "no radius explains"),
-        (lambda slip: -slip, "scale = -1"),
-        (lambda slip: 20.0 * slip, "per cent"),
-    ],
-)
-def test_slip_of_another_sign_unit_or_zero_is_refused_with_the_remedy(configured, change, said):
-    table = drive_recording(cambers=(0.0,), sideslips=(0.0,))
-    table["SL"] = change(table["SL"])
-    with pytest.raises(InputError, match=said):
-        points.read(configured(table))
+def test_a_fast_sweep_is_averaged_over_a_fiftieth_of_slip():
+    """At a slip of 1 per second a tenth of a second would be 0.1; at 0.1 per second it is the tenth of a second."""
+    for rate, samples in ((1.0, 2), (0.1, 10)):
+        time = np.arange(200) / 100.0
+        some = SimpleNamespace(time=time, alpha=0.0 * time, gamma=0.0 * time, kappa=rate * time)
+        assert _blocks(some, np.arange(200))[1] == samples
 
 
-def test_slip_against_the_loaded_radius_is_shifted_by_load(configured):
-    """As the speed of the wheel and the radius of free rolling give it: no formula of the reader."""
-    table = drive_recording()
-    truth = points.read(configured(table)).points.kappa
-    stated = {"column": "SR", "against": "loaded-radius"}
-    for given in ("SR", stated):
-        found = points.read(configured(table, {**COLUMNS, "kappa": given}))
-        assert np.max(np.abs(found.points.kappa - truth)) < 0.0025
-        (sentence,) = [warning for warning in found.warnings if "loaded radius" in warning]
-        said = [float(word.strip(",")) for word in sentence.split() if word[0] in "+-"]
-        assert np.allclose(
-            said, [loaded_radius(load) / rolling_radius(load) - 1.0 for load in LOADS], atol=1e-3
-        )
-    kept = points.read(configured(table, {**COLUMNS, "kappa": {**stated, "against": "free-rolling"}}))
-    assert np.min(kept.points.kappa) < np.min(truth) - 0.015
-    assert any("declared against free rolling" in warning for warning in kept.warnings)
+def test_signs_and_units_of_the_channels_are_those_of_iso_w(read):
+    p = read().points
+    driven = p.kappa > 0.05
+    assert np.all(p.Fx[driven] > 0.0)
+    assert np.all(p.alpha[p.sweep == p.sweep.max()] > 0.0)
+    assert np.all(p.Fy[p.sweep == p.sweep.max()] < 0.0)
+    assert np.mean(p.Mx) == pytest.approx(-40.0, abs=0.2)
+    assert np.mean(p.My) == pytest.approx(-6.0, abs=0.1)
+    assert pytest.approx(0.22 - 2e-6 * p.Fz, abs=1e-4) == p.RL
+    assert p.omega == pytest.approx((1.0 + p.kappa) * SPEED / 0.225, rel=0.01)
 
 
-def test_a_recording_that_begins_cold_is_said(configured):
-    """Sweeps of one sideslip are compared; the warmer ones at another are no evidence."""
-    table = drive_recording(sideslips=(0.0, -3.0), cambers=(0.0, 2.0, 4.0, 6.0))
-    rows = np.arange(len(table)) // 700  # samples of a sweep
-    table["TSTC"] += np.where(rows < 12, 0.0, 4.0)
-    said = [w for w in points.read(configured(table)).warnings if "begins cold" in w]
-    assert not said
-    table["TSTC"] -= np.where(rows < 3, 7.0 - rows, 0.0)
-    (sentence,) = [w for w in points.read(configured(table)).warnings if "begins cold" in w]
-    assert "53 to 55 degC in the first 3 sweeps and 60 degC in later sweeps" in sentence
+def test_without_a_longitudinal_force_only_free_rolling_is_used(read):
+    found = read({name: heading for name, heading in COLUMNS.items() if name != "Fx_N"})
+    assert "Fx" not in found.points.measured
+    assert np.all(found.points.free_rolling)
+    assert any(entry.rule == "driven-or-braked" for entry in found.left_out)
 
 
-def test_slip_against_free_rolling_is_said_and_left_alone(configured):
-    found = points.read(configured(drive_recording()))
-    (sentence,) = [warning for warning in found.warnings if "SL is against free rolling" in warning]
-    assert float(sentence.split("within ")[1].split()[0]) < 0.0006
-    assert np.allclose(found.points.kappa, found.points.table["kappa"])
+def test_the_speed_of_the_wheel_has_the_sign_of_its_rolling(tmp_path):
+    table = "alpha_deg,gamma_deg,Fz_N,Fy_N,omega_radps,direction\n1,0,1500,-300,{0},forward\n1,0,1500,-300,{0},backward\n"
+    for reading in (30.0, -30.0):
+        (tmp_path / "a.csv").write_text(table.format(reading))
+        found = points.load_table(tmp_path / "a.csv", axes="sae", path_centre="left")
+        assert found.omega.tolist() == [30.0, -30.0]
+
+
+def test_a_point_without_slip_rolls_freely():
+    some = make_points(
+        0.0,
+        0.0,
+        1500.0,
+        p=2e5,
+        V=10.0,
+        phi_t=0.0,
+        kappa=[0.0, 0.019, -0.021, 0.1],
+        Mx=[1.0, np.nan, 2.0, 3.0],
+    )
+    assert some.free_rolling.tolist() == [True, True, False, False]
+    assert some.measured == ("Mx",)
+    assert some.channel("Mx")[2] == 2.0
+    assert np.all(np.isnan(some.u("Mx")))
