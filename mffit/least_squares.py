@@ -5,12 +5,13 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from scipy.linalg import cho_factor, cho_solve
 
 from mffit import constants
+from tir.derivatives import gradient, plain, traced
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,6 +51,29 @@ class LeastSquaresProblem:
 
     residual: Callable[[np.ndarray], tuple[np.ndarray, np.ndarray]]  #: of data (m,) and limits (l,)
     linear: Callable[[np.ndarray], Linear]  #: the same with derivatives
+
+
+def of_model(
+    model: Callable[[Mapping[str, Any]], Any], names: Sequence[str], measured: np.ndarray, u: Any
+) -> LeastSquaresProblem:
+    """The problem without limits of a model (m,) of named numbers, plain or traced, against measured values (m,).
+
+    ``u`` is the uncertainty of these, scalar or (m,).
+    """
+    none, k = np.zeros(0), len(names)
+
+    def residual(x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        found = model(dict(zip(names, x.tolist(), strict=True)))
+        return (np.broadcast_to(found, len(measured)) - measured) / u, none
+
+    def linear(x: np.ndarray) -> Linear:
+        numbers = traced(dict(zip(names, x.tolist(), strict=True)))
+        found = model(numbers)
+        slope = np.broadcast_to(gradient(found, list(numbers.values())), (len(measured), k))
+        data = (np.broadcast_to(plain(found), len(measured)) - measured) / u
+        return Linear(data, (slope.T / u).T, none, np.zeros((0, k)))
+
+    return LeastSquaresProblem(residual, linear)
 
 
 @dataclass(frozen=True, slots=True)

@@ -52,6 +52,12 @@ def counted(number: int, what: str) -> str:
     return " ".join([str(number), head + "s" * (number != 1), *rest])
 
 
+def listed(words: Sequence[str]) -> str:
+    """Words of a sentence: "a", "a and b", "a, b and c"."""
+    *first, last = words
+    return f"{', '.join(first)} and {last}" if first else last
+
+
 def some(names: Sequence[str]) -> str:
     """The first of many names, and the number of the others."""
     shown = NAMES_IN_A_SENTENCE

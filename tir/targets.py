@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
-from tir.errors import TirError
+from tir.errors import TirError, listed
 from tir.mode import asks_for_turn_slip
 from tir.parameters import TABLE
 
@@ -180,8 +180,7 @@ FITTYPS = tuple(sorted({version for target in TARGETS.values() for version in ta
 
 def fittyps_text() -> str:
     """:data:`FITTYPS` in words: "60, 61 and 62"."""
-    *others, last = map(str, FITTYPS)
-    return f"{', '.join(others)} and {last}"
+    return listed([str(version) for version in FITTYPS])
 
 
 def target_of(name: str) -> Target:

@@ -11,7 +11,6 @@ from __future__ import annotations
 import math
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
-from types import SimpleNamespace
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -21,20 +20,19 @@ from mffit.fit.coefficients import Coefficient
 from mffit.fit.known import DETERMINED, Known
 from mffit.fit.posterior import Posterior
 from mffit.fit.relaxation import NAMES as OF_RELAXATION
-from mffit.fit.sister import BY_FRICTION, LENT, OVER_SLIP
+from mffit.fit.sister import BY_FRICTION, LENT, OVER_SLIP, sideways
 from mffit.points import Points, levels
 from mffit.rounding import ascii_only, to_uncertainty
 from tir import Quantity, Tyre
 from tir.derivatives import gradient, plain, traced
-from tir.equations import normalise, stiffness
 from tir.parameters import BY_NAME, TABLE
 
-VERTICAL = ("VERTICAL_STIFFNESS", "Q_RE0", "Q_FZ2", "PFZ1", "DREFF", "FREFF", "BREFF")
+OF_RADII = ("VERTICAL_STIFFNESS", "Q_RE0", "Q_FZ2", "PFZ1", "DREFF", "FREFF", "BREFF")
 GROUPS = {
     "longitudinal and combined slip": LENT,
     "overturning moment": tuple(row.name for row in TABLE if row.channel == "Mx"),
     "rolling resistance": tuple(row.name for row in TABLE if row.channel == "My"),
-    "vertical stiffness and radii": VERTICAL,
+    "vertical stiffness and radii": OF_RADII,
     "relaxation": OF_RELAXATION,
 }
 """What a campaign may give, each group as a whole: its coefficients were fitted together."""
@@ -62,7 +60,7 @@ class FittedCampaign(NamedTuple):
     def vertical(self) -> dict[str, float]:
         """Vertical stiffness and radii, if the campaign measured them: the rolling radius of a fit depends on them."""
         found = "vertical stiffness and radii" in self.groups
-        return {name: self.coefficients[name].value for name in VERTICAL} if found else {}
+        return {name: self.coefficients[name].value for name in OF_RADII} if found else {}
 
 
 @dataclass(frozen=True, slots=True)
@@ -220,9 +218,7 @@ def _log_of_grip(
     logs = []
     for sign, content, names, begin in ((1.0, values, by, 0), (-1.0, theirs, by_theirs, len(by))):
         free = traced({name: float(content[name]) for name in names if name in BY_NAME})
-        p = SimpleNamespace(**{**values, **content, **free})
-        q = normalise.inputs(p, loads, loads, 0.0, 0.0, 0.0, 0.0, pressure, False, False)
-        mu = stiffness.lateral_friction(p, q, 0.0)
+        mu, _ = sideways({**values, **content, **free}, loads, pressure)
         logs.append(sign * np.log(np.broadcast_to(plain(mu), len(loads))))
         if free:
             relative = np.mean(gradient(mu, list(free.values())) / plain(mu)[:, None], axis=0)

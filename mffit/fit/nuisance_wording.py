@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 
 import numpy as np
 
@@ -17,6 +17,7 @@ from mffit.fit.with_nuisances import NuisanceFit
 from mffit.quantities import CHANNELS
 from mffit.rig_errors import shown, unit_of, words_of
 from mffit.rounding import ascii_only, number, rounded
+from tir.errors import listed
 
 SCALED = {
     "k_T_grip_per_K": "friction",
@@ -63,7 +64,7 @@ def _files_sentence(name: str, found: AtTemperature, plain: Mapping[str, Agreeme
     each = [
         f"{SCALED[term]} {_percent(*value)} per {unit_of(term)[2:]}" for term, value in found.terms.items()
     ]
-    terms = _and(each)
+    terms = listed(each)
     warm = f"{found.T_ref:g}"
     return (
         f"{name}.tir is for simulations that do not know the temperature of the tyre: it leaves {_gaps(_rms(plain))} rms"
@@ -138,13 +139,9 @@ def _gaps(gaps: Gaps) -> str:
     """ "62 N and 4.1 Nm"; channels that share a unit are named, "80 N in Fx, 47 N in Fy and 12 Nm in Mz"."""
     units = [CHANNELS[name].unit for name in gaps]
     unclear = len(set(units)) < len(units)
-    return _and(
-        f"{ascii_only(number(gap, digits=3))} {unit}" + (f" in {name}" if unclear else "")
-        for (name, gap), unit in zip(gaps.items(), units, strict=True)
+    return listed(
+        [
+            f"{ascii_only(number(gap, digits=3))} {unit}" + (f" in {name}" if unclear else "")
+            for (name, gap), unit in zip(gaps.items(), units, strict=True)
+        ]
     )
-
-
-def _and(texts: Iterable[str]) -> str:
-    """ "a, b and c"."""
-    *first, last = texts
-    return " and ".join(filter(None, (", ".join(first), last)))

@@ -13,12 +13,11 @@ from mffit.fit import constants
 from mffit.fit.by_hand import Hand
 from mffit.fit.coverage import coverage
 from mffit.fit.stages import STAGES
-from mffit.least_squares import FreeNumber, LeastSquaresProblem, Linear, Solution, solve
+from mffit.least_squares import FreeNumber, Solution, of_model, solve
 from mffit.left_out import Predicted, improves, left_out_errors, needed_fall, predicted
 from mffit.points import Points
 from mffit.scatter import robust
 from mffit.suspicion import parts_of_sweeps
-from tir.derivatives import gradient, plain, traced
 from tir.equations import normalise, overturning
 
 OFFSET = "offset"
@@ -92,14 +91,10 @@ class _Fit(NamedTuple):
         numbers.append(FreeNumber(OFFSET, float(np.median(self.points.Mx)), -spread, spread))
         every = [number.name for number in numbers]
 
-        def linear(x: np.ndarray) -> Linear:
-            free = traced(dict(zip(every, x.tolist(), strict=True)))
-            Mx = self._moment({n: v for n, v in free.items() if n != OFFSET}) + free[OFFSET]
-            data = (plain(Mx) - self.points.Mx) / self.scale
-            slope = np.broadcast_to(gradient(Mx, list(free.values())), (len(data), len(every)))
-            return Linear(data, slope / self.scale, np.zeros(0), np.zeros((0, len(every))))
+        def moment(free: Mapping[str, Any]) -> Any:
+            return self._moment({n: v for n, v in free.items() if n != OFFSET}) + free[OFFSET]
 
-        return solve(LeastSquaresProblem(lambda x: (linear(x).data, np.zeros(0)), linear), numbers)
+        return solve(of_model(moment, every, self.points.Mx, self.scale), numbers)
 
     def _moment(self, coefficients: Mapping[str, Any]) -> Any:
         p = SimpleNamespace(**{**self.values, **coefficients})

@@ -18,12 +18,11 @@ import numpy as np
 from mffit.fit import constants
 from mffit.fit.coverage import StageCoverage
 from mffit.fit.posterior import Posterior
-from mffit.least_squares import FreeNumber, LeastSquaresProblem, Linear, solve
+from mffit.least_squares import FreeNumber, of_model, solve
 from mffit.points import Points, levels
 from mffit.rig import Simulation
 from mffit.rounding import ascii_only, to_uncertainty
 from tir import Quantity, Tyre
-from tir.derivatives import gradient, plain, traced
 from tir.equations import normalise
 from tir.equations.forces import carcass_stiffness
 from tir.parameters import BY_NAME
@@ -184,15 +183,10 @@ def _fitted(
     bounds = {**BOUNDS, "LATERAL_STIFFNESS": (0.1 * measured.min(), 10.0 * measured.max())}
     numbers = [FreeNumber(name, float(start[name]), *bounds[name]) for name in names]
 
-    def linear(x: np.ndarray) -> Linear:
-        free = traced(dict(zip(names, x.tolist(), strict=True)))
-        C = _stiffness({**values, **free}, load, pressure)
-        shape = (len(runs), len(names))
-        data = (np.broadcast_to(plain(C), len(runs)) - measured) / u
-        slope = np.broadcast_to(gradient(C, list(free.values())), shape) / u[:, None]
-        return Linear(data, slope, np.zeros(0), np.zeros((0, len(names))))
+    def stiffness(free: Mapping[str, Any]) -> Any:
+        return _stiffness({**values, **free}, load, pressure)
 
-    end = solve(LeastSquaresProblem(lambda x: (linear(x).data, np.zeros(0)), linear), numbers, tolerance=1e-9)
+    end = solve(of_model(stiffness, names, measured, u), numbers, tolerance=1e-9)
     freedom = len(runs) - len(names)
     scale = max(1.0, float(end.data @ end.data) / freedom) if freedom > 0 else 1.0
     stderr = np.sqrt(scale * np.diag(end.covariance)).tolist()

@@ -14,7 +14,7 @@ from mffit.config import Declaration
 from mffit.fit import constants
 from mffit.fit.coverage import why_held
 from mffit.fit.weights import stated_or_nominal
-from mffit.least_squares import FreeNumber, LeastSquaresProblem, Linear, inverse, solve
+from mffit.least_squares import FreeNumber, inverse, of_model, solve
 from mffit.points import Points
 from mffit.rig_errors import number_of
 from mffit.scatter import rms
@@ -116,23 +116,14 @@ def rolling_resistance(
         "pressure": chosen.p,
     }  # fmt: skip
 
-    def linear(x: np.ndarray) -> Linear:
-        free = traced(dict(zip(names, x[: len(names)].tolist(), strict=True)))
+    def moment(free: Mapping[str, Any]) -> Any:
         (My,) = outputs_of(("My",), SimpleNamespace(**{**values, **free}), inputs, turn_slip=True)
-        slope = (
-            np.broadcast_to(gradient(My, list(free.values())), (len(sigma), len(names)))
-            if free
-            else in_setup[:, :0]
-        )
-        data = np.broadcast_to(plain(My), len(sigma)) + in_setup @ x[len(names) :] - chosen.My
-        return Linear(
-            data / sigma, np.hstack([slope, in_setup]) / sigma[:, None], np.zeros(0), np.zeros((0, len(x)))
-        )
+        for setup, number in enumerate(own.values()):
+            My = My + in_setup[:, setup] * free[number]
+        return My
 
-    def residual(x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        return linear(x).data, np.zeros(0)
-
-    end = solve(LeastSquaresProblem(residual, linear), numbers, tolerance=1e-8)
+    every = [number.name for number in numbers]
+    end = solve(of_model(moment, every, chosen.My, sigma), numbers, tolerance=1e-8)
     scale = max(rms(end.data), 1.0)  # where the formula misses the points by more than their noise
     information = end.jacobian.T @ end.jacobian / scale**2 + np.diag(end.prior)
     u = np.sqrt(np.diag(inverse(information)))

@@ -206,8 +206,8 @@ def _scaled(
     ``errors`` are those of the two ratios, as logarithms; ``by`` names the numbers to differentiate by.
     """
     free = traced({name: float(values[name]) for name in by if name in values and name in BY_NAME})
-    own = _sideways({**values, **free}, sister)
-    other = _sideways(sister.tyre.values, sister)
+    own = sideways({**values, **free}, sister.loads, sister.pressure)
+    other = sideways(sister.tyre.values, sister.loads, sister.pressure)
     logs, slopes = [], []
     for k, (here, there) in enumerate(zip(own, other, strict=True)):
         logs.append(np.log(plain(here) / there) + errors[k])
@@ -238,10 +238,10 @@ def _scaled(
     return _Scaled(found, derivative)
 
 
-def _sideways(values: Mapping[str, Any], sister: Sister) -> tuple[Any, Any]:
-    """Friction and cornering stiffness (n,) of the upright wheel at the loads of the comparison, on a straight path."""
+def sideways(values: Mapping[str, Any], loads: np.ndarray, pressure: float) -> tuple[Any, Any]:
+    """Friction and cornering stiffness (n,) of the upright wheel at loads (n,) [N] and a pressure [Pa], on a straight path."""
     p = SimpleNamespace(**values)
-    q = normalise.inputs(p, sister.loads, sister.loads, 0.0, 0.0, 0.0, 0.0, sister.pressure, False, False)
+    q = normalise.inputs(p, loads, loads, 0.0, 0.0, 0.0, 0.0, pressure, False, False)
     return stiffness.lateral_friction(p, q, 0.0), stiffness.cornering_stiffness(p, q, 0.0)
 
 

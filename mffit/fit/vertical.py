@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Collection, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field, fields, replace
 from types import SimpleNamespace
 from typing import Any
 
@@ -12,12 +12,11 @@ import numpy as np
 
 from mffit.fit import constants
 from mffit.fit.agreement import Agreement, agreement
-from mffit.least_squares import FreeNumber, LeastSquaresProblem, Linear, solve
+from mffit.least_squares import FreeNumber, of_model, solve
 from mffit.points import Points, levels
 from mffit.rounding import ascii_only, to_uncertainty
 from mffit.suspicion import parts_of_sweeps
 from tir import Quantity
-from tir.derivatives import gradient, plain, traced
 from tir.equations import vertical
 from tir.outputs import outputs_of
 from tir.parameters import BY_NAME
@@ -77,6 +76,10 @@ class RollingParts:
     def radius(self, channel: str) -> np.ndarray:
         """The measured radius (n,) [m] of RL, or of omega."""
         return self.loaded if channel == "RL" else self.effective
+
+    def select(self, which: np.ndarray) -> RollingParts:
+        """Those of a boolean mask (n,)."""
+        return RollingParts(*(getattr(self, part.name)[which] for part in fields(self)))
 
     def rim_speed(self, free_radius: float) -> np.ndarray:
         """Speed of rotation times a radius (n,) [m/s]; that of travel where the wheel speed was not measured."""
@@ -177,7 +180,7 @@ def _rolling(points: Points) -> RollingParts | None:
     if not np.any(used):
         return None
     part = points.select(used)
-    effective = (1.0 + part.kappa) * part.V / np.where(turning[used], part.omega, np.nan)
+    effective = np.where(turning[used], part.rolling_radius, np.nan)
     # Radii grow with the square of speed, so that a mean over speeds belongs to none of them.
     speed = levels.nearest_labels(part.V, levels.SPEED)
     group = parts_of_sweeps(part) * (int(np.max(speed)) + 2) + speed + 1
@@ -203,9 +206,10 @@ def _fitted(
     dpi: np.ndarray,
 ) -> tuple[dict[str, float], tuple[tuple[str, ...], np.ndarray], float]:
     """Best values, names and covariance from the misfit, and its rms [m]."""
+    known = np.isfinite(rolling.radius(channel))
+    rolling, dpi = rolling.select(known), dpi[known]
     measured = rolling.radius(channel)
-    known = np.isfinite(measured)
-    unit = float(np.ptp(measured[known])) or 1e-3
+    unit = float(np.ptp(measured)) or 1e-3
     stiffness, free_radius = float(values["VERTICAL_STIFFNESS"]), float(values["UNLOADED_RADIUS"])
     relative = (stiffness * free_radius / float(values["FNOMIN"])) ** 2
     bounds = {
@@ -215,22 +219,14 @@ def _fitted(
     }
     numbers = [FreeNumber(name, float(values.get(name, 0.0)), *bounds[name]) for name in names]
 
-    def linear(x: np.ndarray) -> Linear:
-        free = traced(dict(zip(names, x.tolist(), strict=True)))
+    def radius_of(free: Mapping[str, Any]) -> Any:
         every = {**values, **free}
-        found = radius(every, rolling, channel)
-        found = found + free_radius * (every[GROWTH] * dpi + every[LEAN] * rolling.gamma**2)
-        shape = (len(measured), len(names))
-        data = (np.broadcast_to(plain(found), len(measured)) - measured) / unit
-        slope = np.broadcast_to(gradient(found, list(free.values())), shape) / unit
-        return Linear(data[known], slope[known], np.zeros(0), np.zeros((0, len(names))))
-
-    def residual(x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         with np.errstate(invalid="ignore"):
-            return linear(x).data, np.zeros(0)
+            found = radius(every, rolling, channel)
+        return found + free_radius * (every[GROWTH] * dpi + every[LEAN] * rolling.gamma**2)
 
-    end = solve(LeastSquaresProblem(residual, linear), numbers, tolerance=1e-9)
-    freedom = max(int(known.sum()) - len(names), 1)
+    end = solve(of_model(radius_of, names, measured, unit), numbers, tolerance=1e-9)
+    freedom = max(len(measured) - len(names), 1)
     scale = float(end.data @ end.data) / freedom
     covariance = end.covariance * scale if names else np.zeros((0, 0))
     return dict(end.values), (tuple(names), covariance), unit * math.sqrt(float(np.mean(end.data**2)))

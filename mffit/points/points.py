@@ -102,6 +102,13 @@ class Points(Brief):
         return np.abs(self.kappa) <= constants.FREE_ROLLING_SLIP
 
     @property
+    def rolling_radius(self) -> np.ndarray:
+        """Radius of free rolling (n,) [m]: speed over rotation, without the slip; NaN where the wheel speed was not measured."""
+        turns = np.abs(self.omega)
+        turning = turns > 0.0
+        return np.where(turning, (1.0 + self.kappa) * self.V / np.where(turning, turns, 1.0), np.nan)
+
+    @property
     def used_setups(self) -> tuple[str, ...]:
         """Names of the set-ups that have points, in the order of ``setups``."""
         return tuple(self.setups[k] for k in np.unique(self.setup))

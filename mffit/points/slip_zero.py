@@ -18,6 +18,7 @@ from mffit.errors import InputError
 from mffit.points import constants
 from mffit.scatter import robust
 from mffit.sweeps import Sweep
+from tir.errors import listed
 
 FREE, LOADED = "free-rolling", "loaded-radius"
 """What the slip of a column may be against."""
@@ -92,12 +93,12 @@ class SlipZero:
 
     @property
     def _loads(self) -> str:
-        return f"{_joined([f'{level.load:.0f}' for level in self.levels])} N"
+        return f"{listed([f'{level.load:.0f}' for level in self.levels])} N"
 
     @property
     def said(self) -> str:
         """The zeros with their loads, for a sentence."""
-        slips = _joined([f"{level.slip:+.4f}" for level in self.levels])
+        slips = listed([f"{level.slip:+.4f}" for level in self.levels])
         return f"{slips} at {self._loads}"
 
 
@@ -265,7 +266,3 @@ def _at_loads(of: Driven, middle: Sequence[float], coefficients: np.ndarray) -> 
     return tuple(
         ZeroAtLoad(float(load), float(zero)) for load, zero in zip(loads, zeros @ coefficients, strict=True)
     )
-
-
-def _joined(words: Sequence[str]) -> str:
-    return words[0] if len(words) == 1 else f"{', '.join(words[:-1])} and {words[-1]}"

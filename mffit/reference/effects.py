@@ -7,6 +7,7 @@ from collections.abc import Sequence
 
 from mffit.effects import CATALOG, NEEDS, Effect, Free
 from mffit.rig_errors import BY_NAME as RIG_ERRORS
+from tir.errors import listed
 from tir.parameters import BY_NAME
 
 SWITCHES = {"turn_slip": ("–", "whether the simulation has turn slip")}
@@ -48,7 +49,7 @@ def page(effect: Effect, catalog: Sequence[Effect] = CATALOG) -> str:
         "## How to recognise it",
         f"Under reversed angles: {effect.parity or 'no symmetry'}. "
         + (
-            f"Can be confused with {_listed(alike)}."
+            f"Can be confused with {listed(alike)}."
             if alike
             else "No other effect of the library looks like it in a full programme."
         ),
@@ -110,10 +111,6 @@ def _described(name: str) -> tuple[str, str]:
     return row.unit, row.description + (f" ({row.equation})" if row.equation else "")
 
 
-def _listed(words: Sequence[str]) -> str:
-    return words[0] if len(words) == 1 else f"{', '.join(words[:-1])} and {words[-1]}"
-
-
 def _sentence(words: Sequence[str]) -> str:
-    text = _listed(words)
+    text = listed(words)
     return text[:1].upper() + text[1:]

@@ -8,6 +8,7 @@ from mffit.rig_errors import constants
 from mffit.rig_errors.record import Appearance, Declared, Measurement, Place, RigError
 
 _of_reading = partial(RigError, kind="rig", place=Place.FORCE)
+_zero_of = partial(_of_reading, formula=lambda zero, reading, at: reading + zero, of_setup=True)
 FORCE = "reported Fy = gain Fy + F0 + crosstalk Fz"
 
 GAIN = _of_reading(
@@ -75,16 +76,14 @@ CROSSTALK = _of_reading(
         ),
     ),
 )
-FORCE_ZERO = _of_reading(
+FORCE_ZERO = _zero_of(
     name="F0_N",
     unit="N",
     meaning=FORCE,
     acts_on=("Fy",),
-    formula=lambda zero, Fy, at: Fy + zero,
     spread=10.0,
     lower=-1e3,
     upper=1e3,
-    of_setup=True,
     seen_as=(
         Appearance(
             id="loadcell-offset-fy",
@@ -121,16 +120,14 @@ FORCE_ZERO = _of_reading(
         ),
     ),
 )
-MOMENT_ZERO = _of_reading(
+MOMENT_ZERO = _zero_of(
     name="M0_Nm",
     unit="Nm",
     meaning="reported Mz = Mz + M0",
     acts_on=("Mz",),
-    formula=lambda zero, Mz, at: Mz + zero,
     spread=1.0,
     lower=-1e2,
     upper=1e2,
-    of_setup=True,
     seen_as=(
         Appearance(
             id="loadcell-offset-mz",
@@ -156,16 +153,14 @@ MOMENT_ZERO = _of_reading(
         ),
     ),
 )
-LONGITUDINAL_ZERO = _of_reading(
+LONGITUDINAL_ZERO = _zero_of(
     name="Fx0_N",
     unit="N",
     meaning="reported Fx = Fx + Fx0",
     acts_on=("Fx",),
-    formula=lambda zero, Fx, at: Fx + zero,
     spread=20.0,
     lower=-1e3,
     upper=1e3,
-    of_setup=True,
     seen_as=(
         Appearance(
             id="loadcell-offset-fx",
@@ -182,16 +177,14 @@ LONGITUDINAL_ZERO = _of_reading(
         key="u_Fx_offset_N", unit="N", default=constants.LONGITUDINAL_ZERO, source="zero of Fx"
     ),
 )
-OVERTURNING_ZERO = _of_reading(
+OVERTURNING_ZERO = _zero_of(
     name="Mx0_Nm",
     unit="Nm",
     meaning="reported Mx = Mx + Mx0",
     acts_on=("Mx",),
-    formula=lambda zero, Mx, at: Mx + zero,
     spread=30.0,
     lower=-500.0,
     upper=500.0,
-    of_setup=True,
     seen_as=(
         Appearance(
             id="loadcell-offset-mx",
@@ -210,16 +203,14 @@ OVERTURNING_ZERO = _of_reading(
         key="u_Mx_offset_Nm", unit="Nm", default=constants.OVERTURNING_ZERO, source="zero of Mx"
     ),
 )
-ROLLING_ZERO = _of_reading(
+ROLLING_ZERO = _zero_of(
     name="My0_Nm",
     unit="Nm",
     meaning="reported My = My + My0",
     acts_on=("My",),
-    formula=lambda zero, My, at: My + zero,
     spread=5.0,
     lower=-100.0,
     upper=100.0,
-    of_setup=True,
     declared=Declared(key="u_My_offset_Nm", unit="Nm", default=constants.ROLLING_ZERO, source="zero of My"),
 )
 LONGITUDINAL_GAIN = _of_reading(

@@ -24,12 +24,6 @@ class MeasuredRadius(NamedTuple):
     limits: tuple[float, float]  #: over the unloaded radius
 
 
-def _rolling(points: Points) -> np.ndarray:
-    """Radius of free rolling (n,) [m]: speed over rotation, without the slip."""
-    turns = np.abs(points.omega)
-    return np.where(turns > 0.0, points.V * (1.0 + points.kappa) / np.where(turns > 0.0, turns, 1.0), np.nan)
-
-
 RADII = (
     MeasuredRadius(
         "loaded radius",
@@ -40,7 +34,7 @@ RADII = (
     MeasuredRadius(
         "rolling radius, speed over rotation,",
         "omega_radps",
-        _rolling,
+        lambda points: points.rolling_radius,
         (constants.SMALLEST_ROLLING_RADIUS, constants.LARGEST_ROLLING_RADIUS),
     ),
 )
