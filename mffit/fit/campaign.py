@@ -21,13 +21,13 @@ from mffit.fit.known import DETERMINED, Known
 from mffit.fit.posterior import Posterior
 from mffit.fit.relaxation import NAMES as OF_RELAXATION
 from mffit.fit.sister import BY_FRICTION, LENT, OVER_SLIP, sideways
+from mffit.fit.vertical import OF_RADII
 from mffit.points import Points, levels
 from mffit.rounding import ascii_only, to_uncertainty
 from tir import Quantity, Tyre
 from tir.derivatives import gradient, plain, traced
 from tir.parameters import BY_NAME, TABLE
 
-OF_RADII = ("VERTICAL_STIFFNESS", "Q_RE0", "Q_FZ2", "PFZ1", "DREFF", "FREFF", "BREFF")
 GROUPS = {
     "longitudinal and combined slip": LENT,
     "overturning moment": tuple(row.name for row in TABLE if row.channel == "Mx"),

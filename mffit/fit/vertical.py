@@ -40,6 +40,10 @@ OVER_SPEED = {"Q_V1": constants.RADIUS_GROWTH_OVER_SPEED, "Q_V2": constants.STIF
 """Coefficients of the radii that several speeds show, and the standard deviation of each among tyres."""
 
 
+OF_RADII = ("VERTICAL_STIFFNESS", "Q_FZ2", *(name for name in BOUNDS if name not in (GROWTH, LEAN)))
+"""Every coefficient that radii may determine."""
+
+
 @dataclass(frozen=True, slots=True)
 class Vertical:
     """What loaded radius and wheel speed determine."""
