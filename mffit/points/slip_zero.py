@@ -103,7 +103,12 @@ class SlipZero:
 
 
 def slip_zero(of: Driven) -> SlipZero | None:
-    """Where the longitudinal force is zero; None if the readings hold too little drive and brake force about zero."""
+    """Where the longitudinal force is zero; None if slip hardly changes or too few readings lie on either side of zero force."""
+    if (
+        not np.nanmax(of.slip, initial=-np.inf) - np.nanmin(of.slip, initial=np.inf)
+        >= constants.SMALLEST_SWEEP_OF_SLIP
+    ):
+        return None  # a freely rolling wheel: Fx over slip is that of the noise
     load = np.abs(of.Fz)
     with np.errstate(invalid="ignore", divide="ignore"):
         force = of.Fx / load

@@ -250,7 +250,7 @@ def _column(guess: Guess) -> str:
         note = f"the file states no unit: {guess.why}" if guess.unit else guess.why
     else:
         text = f"{name} = {heading}"
-        note = f"in {guess.stated}, as the file says" if guess.stated else ""
+        note = f"in {guess.stated}, as the file says" if guess.stated and guess.channel.unit else ""
     return f"{text}  # {_one_line(note)}" if note else text
 
 

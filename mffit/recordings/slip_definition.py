@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from mffit.points.constants import SOFTEST_SLIP_STIFFNESS
+from mffit.points.constants import SMALLEST_SWEEP_OF_SLIP, SOFTEST_SLIP_STIFFNESS
 from mffit.points.slip_zero import FREE, LOADED, Driven, SlipZero, sentence, slip_zero
 from mffit.recordings import constants
 from mffit.recordings.unstated import FoundChannel
@@ -40,8 +40,8 @@ def slip_definition(
     """
     silent = [column for column in candidates if wheel_not_recorded(column)]
     remarks = [
-        f"{column.heading} is {column.values[np.isfinite(column.values)][0]:g} throughout, so the speed of the wheel was not "
-        "recorded: left out"
+        f"{column.heading} is {np.nanmedian(column.values):.3g} throughout, as of a wheel at rest, so the speed of the wheel "
+        "was not recorded: left out"
         for column in silent
     ]
     readable = [column for column in candidates if column not in silent]
@@ -67,9 +67,12 @@ def _zero_said(zero: SlipZero) -> str:
 
 
 def wheel_not_recorded(column: FoundChannel) -> bool:
-    """Whether the slip is that of a wheel at rest in every sample."""
+    """Whether the slip is that of a wheel at rest in every sample: -1 or -100 % but for the noise of the road speed."""
     seen = column.values[np.isfinite(column.values)]
-    return bool(len(seen)) and float(np.median(seen)) in (-1.0, -100.0) and float(np.ptp(seen)) == 0.0
+    return any(
+        bool(len(seen)) and float(np.max(np.abs(seen / one + 1.0))) < SMALLEST_SWEEP_OF_SLIP
+        for one in (1.0, 100.0)
+    )
 
 
 def _judged(
