@@ -241,7 +241,7 @@ class Sheet:
     panel_width: float | None = (
         None  #: of a panel with its labels [pt]; None: what the number of columns leaves
     )
-    left_out: int = 0  #: panels that are not drawn, for the caption
+    left_out: str = ""  #: what is not drawn, in sentences for the caption
 
     @property
     def panels(self) -> list[Panel]:

@@ -10,7 +10,7 @@ import numpy as np
 
 from mffit.points import Points
 from mffit.quantities import CHANNELS, MODEL
-from mffit.report import constants, labels, style
+from mffit.report import constants, labels, left_undrawn, style
 from mffit.report.build_view import BuildView, ChannelRow
 from mffit.report.curves import Curve
 from mffit.report.drawing.records import (
@@ -70,7 +70,7 @@ def over_slip(view: Overlaid, channel: ChannelRow) -> Sheet:
         rows=in_rows(kept, columns=5 if len(kept) > 4 else 4),
         height=1.75,
         key={"measured": READINGS, "model": LINE, **mark_key(view, channel), **_sideslip_key(colours)},
-        left_out=len(panels) - len(kept),
+        left_out=left_undrawn.panels(len(panels) - len(kept)),
     )
 
 
