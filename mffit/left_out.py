@@ -1,4 +1,9 @@
-"""Prediction of left-out groups of points to first order, from one linearised fit; and the rule that compares predictions."""
+"""Prediction of left-out groups of points to first order, from one linearised fit; and the rule that compares predictions.
+
+No second fit is needed. With J the derivatives of a group's residuals r in units of their weight, and C the covariance of the
+fit, the others leave the covariance A^-1 with A = C^-1 - J^T J, and the numbers move by A^-1 J^T r when the group is taken out
+(Belsley, Kuh and Welsch, Regression Diagnostics, 1980, section 2.1, there with the hat matrix J C J^T).
+"""
 
 from __future__ import annotations
 
@@ -56,6 +61,18 @@ def left_out_errors(
         out, r = slopes[rows], residual[rows]
         error[rows] = r - out @ np.linalg.solve(information - out.T @ out, gradient - out.T @ r)
     return error
+
+
+def covariance_without(axes: np.ndarray, least: float) -> np.ndarray:
+    """Covariance (k, k) of the numbers from all points but those of a group, in units in which that of all points is 1.
+
+    Parameters
+    ----------
+    axes : (m, k) derivatives of the group's residuals by the numbers in these units, over the noise
+    least : smallest share of the information about a direction that is left; less makes its prediction meaningless
+    """
+    share, directions = np.linalg.eigh(axes.T @ axes)
+    return (directions / np.maximum(1.0 - share, least)) @ directions.T
 
 
 def predicted(error: np.ndarray, group: np.ndarray, channel: np.ndarray, *, channels: int = 2) -> Predicted:

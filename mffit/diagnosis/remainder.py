@@ -11,7 +11,7 @@ from scipy.linalg import solve_triangular
 from mffit.diagnosis import constants
 from mffit.fit.fitted import Fitted
 from mffit.fit.problem import FitProblem
-from mffit.left_out import left_out_errors
+from mffit.left_out import covariance_without, left_out_errors
 from mffit.points import Points
 from mffit.rig import Simulation
 from mffit.scatter import rms
@@ -108,8 +108,8 @@ def predicted_sweep(left: Remainder, k: int) -> tuple[float, dict[str, Predicted
     rows = np.flatnonzero(left.sweep == k)
     rows = rows[left.used[rows]]
     A = left.axes[rows]
-    shrunk = (1.0 + constants.INFORMATION_LEFT) * np.eye(A.shape[1]) - A.T @ A
-    covariance = np.eye(len(rows)) + A @ np.linalg.solve(shrunk, A.T)  # of the prediction's error
+    others = covariance_without(A, constants.INFORMATION_LEFT)
+    covariance = np.eye(len(rows)) + A @ others @ A.T  # of the prediction's error
     error = covariance @ left.residual[rows]
     n, u = len(left.points), left.sigma[rows]
     out = {}

@@ -13,7 +13,7 @@ from mffit.diagnosis import wording as of_residuals
 from mffit.measured import constants, setup_notes, wording
 from mffit.quantities import CHANNELS, CONDITIONS, DIRECT
 from mffit.report import constants as report_constants
-from mffit.report import left_undrawn, page, published
+from mffit.report import page, published
 from mffit.report.build_view import PER_LOAD, STATUS_ORDER, BuildView, ChannelRow, CoefficientRow, view_of
 from mffit.report.drawing.records import Sheet
 from mffit.report.figures import (
@@ -55,6 +55,7 @@ def write_build(result: BuildResult, folder: Path) -> None:
         "build.html.j2",
         folder / "report.html",
         _figures(view),
+        readings="points.csv",
         view=view,
         sections=_by_section(view),
         statuses=[s for s in STATUS_ORDER if any(row.status == s for row in view.rows)],
@@ -72,7 +73,6 @@ def write_build(result: BuildResult, folder: Path) -> None:
         degrees=math.degrees(1.0),
         of_setups=setup_notes.setup_scatter,
         radians=math.radians(1.0),
-        left_undrawn=left_undrawn,
         meanings=MEANINGS,
         units=UNITS,
         least_pure=report_constants.LEAST_PURE_FORCE,

@@ -10,6 +10,7 @@ PICTURE_COMPRESSION = Count(3, "-", "Level of PNG: twice as fast as the usual 6,
 WIDEST_PANEL = Real(396.0, "pt", "A telephone, which shows one panel per row, shows no wider one.")
 NARROWEST_PANEL = Real(150.0, "pt", "In narrower panels the axis numbers need more room than the data.")
 AXIS_ROOM = Real(0.05, "-", "Share of the data's range left free at both ends of an axis.")
+BAND_OPACITY = Real(0.25, "-", "Opacity of bands: three that overlap can still be told apart.")
 MOST_TICKS = Count(
     5, "-", "Most intervals between the numbers of an axis; more do not help in a small panel."
 )

@@ -27,7 +27,7 @@ class PagePicture:
     name: str  #: file stem
     drawing: str  #: its panels as HTML
     table: str  #: the numbers behind it, CSV
-    left_out: int  #: panels that are not drawn
+    left_out: str  #: what is not drawn, in sentences for the caption
 
     @property
     def link(self) -> str:
@@ -37,15 +37,27 @@ class PagePicture:
         return "data:text/csv;charset=utf-8" + min(plain, packed, key=len)
 
 
-def write(template: str, path: Path, figures: Mapping[str, Callable[[], Sheet]], **content: Any) -> None:
-    """Draw the figures, fill a template of ``templates/`` with them and the content, and write the page as UTF-8."""
-    pictures = draw(path.parent, figures)
+def write(
+    template: str,
+    path: Path,
+    figures: Mapping[str, Callable[[], Sheet]],
+    *,
+    readings: str = "",
+    **content: Any,
+) -> None:
+    """Draw the figures, fill a template of ``templates/`` with them and the content, and write the page as UTF-8.
+
+    ``readings`` is the file beside the page that has every reading, if there is one.
+    """
+    pictures = draw(path.parent, figures, readings)
     filled = _environment().get_template(template)
     html = filled.render(made=making.made(), pictures=pictures, **content)
     path.write_text(typeset.page(html), encoding="utf-8")
 
 
-def draw(folder: Path, figures: Mapping[str, Callable[[], Sheet]]) -> dict[str, PagePicture]:
+def draw(
+    folder: Path, figures: Mapping[str, Callable[[], Sheet]], readings: str = ""
+) -> dict[str, PagePicture]:
     """Draw every figure into ``folder/plots/<name>.png``; returns the pictures for the page by name."""
     from mffit.report.drawing import pictures
 
@@ -56,8 +68,11 @@ def draw(folder: Path, figures: Mapping[str, Callable[[], Sheet]]) -> dict[str, 
         sheet = make()
         picture = pictures.draw(sheet)
         picture.save(plots / f"{name}.png")
+        left_out = sheet.left_out
+        if left_out and readings:
+            left_out = f"{left_out} {readings} has every reading."
         found[name] = PagePicture(
-            name=name, drawing=picture.markup(), table=numbers.table(sheet), left_out=sheet.left_out
+            name=name, drawing=picture.markup(), table=numbers.table(sheet), left_out=left_out
         )
     return found
 

@@ -1,9 +1,4 @@
-"""Prediction of each sweep from all others, computed from the one fit to all of them.
-
-To first order no second fit is needed. With J the derivatives of a group's residuals r in units of their weight, and C the
-covariance of the fit, the others leave the covariance A^-1 with A = C^-1 - J^T J, and the numbers move by A^-1 J^T r when the
-group is taken out (Belsley, Kuh and Welsch, Regression Diagnostics, 1980, section 2.1, there with the hat matrix J C J^T).
-"""
+"""Prediction of each sweep from all others, computed from the one fit to all of them (see :mod:`mffit.left_out`)."""
 
 from __future__ import annotations
 
@@ -13,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from mffit.least_squares import FreeNumber, inverse, root
+from mffit.left_out import covariance_without
 from mffit.points import Points, levels
 from mffit.rig import Simulation
 from mffit.rig_errors import BY_NAME, RIG_ERRORS, ZEROS, number_of
@@ -60,10 +56,9 @@ class Leverage:
 
     channels: tuple[str, ...]  #: (c,)
     residual: np.ndarray  #: (c n,) model less measured [N], [Nm]
-    slope: np.ndarray  #: (c n, k) derivative by the free numbers
+    slope: np.ndarray  #: (c n, k) derivative by combinations of the free numbers whose covariance is 1
     weight: np.ndarray  #: (c n,) uncertainty that the fit used [N], [Nm]; inf: not used
     noise: np.ndarray  #: (c n,) uncertainty of a sound point, model misfit included; inf: not measured
-    root: np.ndarray  #: (k, k) of the covariance, which is root @ root.T
 
 
 @dataclass(frozen=True, slots=True)
@@ -147,10 +142,9 @@ def leverage(fit: FittedModel, noise: np.ndarray) -> Leverage:
     return Leverage(
         channels=channels,
         residual=np.where(used, residual - slopes @ (covariance @ gradient), 0.0),
-        slope=slopes,
+        slope=slopes @ root(covariance),
         weight=weight,
         noise=np.where(used, noise, np.inf),
-        root=root(covariance),
     )
 
 
@@ -169,12 +163,9 @@ def predictions(fit: Leverage, group: Group) -> dict[str, PredictedChannel]:
     """The measured channels of a group at the rows that it shows (m,), as all other points predict them."""
     n = len(fit.residual) // len(fit.channels)
     rows = _measured(fit, group.index, n)
-    J = fit.slope[rows] / fit.weight[rows][:, None]
-    # Eigenvalues: the share of the information about each direction that comes from the group.
-    share, axes = np.linalg.eigh((J @ fit.root).T @ (J @ fit.root))
-    turned = fit.root @ axes
-    others = (turned / np.maximum(1.0 - share, constants.INFORMATION_OF_OTHERS)) @ turned.T
-    moved = others @ (J.T @ (fit.residual[rows] / fit.weight[rows]))
+    axes = fit.slope[rows] / fit.weight[rows][:, None]
+    others = covariance_without(axes, constants.INFORMATION_OF_OTHERS)
+    moved = others @ (axes.T @ (fit.residual[rows] / fit.weight[rows]))
     rows = _measured(fit, group.shown, n)
     slope = fit.slope[rows]
     error = fit.residual[rows] + slope @ moved

@@ -5,7 +5,7 @@ Forces of the tyre come from ``tir``, everything around them from here: programm
 
 from __future__ import annotations
 
-import csv
+import sys
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -13,6 +13,10 @@ from pathlib import Path
 import numpy as np
 from scipy.optimize import brentq
 from scipy.special import chdtri, chndtr
+
+sys.path.insert(0, str(Path(__file__).parents[1] / "mffit" / "diagnosis"))
+
+from disc_files import write_project, write_sweep
 
 import tir
 from tir import Tyre
@@ -369,43 +373,26 @@ def mixed_set(cause: str, other: str, seed: int) -> Set:
     )  # fmt: skip
 
 
-HEAD = (
-    "alpha_deg",
-    "gamma_deg",
-    "Fz_N",
-    "p_kPa",
-    "V_mps",
-    "direction",
-    "t_s",
-    "T_degC",
-    "Fy_N",
-    "Mz_Nm",
-    "u_Fy_N",
-    "u_Mz_Nm",
-)
-
-
 def write(drawn: Set, folder: Path) -> None:
     """``tyre.toml``, sweeps and ``given.tir`` of a set."""
     folder.mkdir(parents=True, exist_ok=True)
     drawn.given.write(folder / "given.tir")
     run, tyre, files = drawn.run, drawn.given, list(dict.fromkeys(drawn.run.file.tolist()))
+    conditions = (run.alpha, run.gamma, run.Fz, run.p, run.V, run.backward, np.round(run.t, 3), run.T)
     for name in files:
-        with (folder / f"{name}.csv").open("w", newline="", encoding="utf-8") as out:
-            table = csv.writer(out)
-            table.writerow(HEAD)
-            for i in np.flatnonzero(run.file == name):
-                table.writerow(
-                    (run.alpha[i], run.gamma[i], run.Fz[i], run.p[i], run.V[i], "backward" if run.backward[i] else "forward",
-                     round(run.t[i], 3), run.T[i], round(drawn.Fy[i], 3), round(drawn.Mz[i], 4), U_FY, U_MZ)
-                )  # fmt: skip
+        rows = run.file == name
+        write_sweep(
+            folder / f"{name}.csv", *(column[rows] for column in conditions),
+            Fy=drawn.Fy[rows], Mz=drawn.Mz[rows], u=(U_FY, U_MZ),
+        )  # fmt: skip
     Re = float(tyre.state(float(tyre["FNOMIN"]), Vx=6.0).Re)
-    (folder / "tyre.toml").write_text(
-        f'[tyre]\nname = "set"\nunloaded_radius = {tyre["UNLOADED_RADIUS"]}\nwidth = {tyre["WIDTH"]}\n'
-        f"rim_radius = {tyre['RIM_RADIUS']}\nnominal_load = {tyre['FNOMIN']}\n"
-        f"nominal_pressure = {float(tyre['NOMPRES']) / 1e3}\nnominal_speed = {tyre['LONGVL']}\n"
-        f'[rig]\ntype = "rotating-disk"\naxes = "iso"\npath_centre = "left"\npath_radius = {RADIUS}\nbacklash_deg = 0.0\n'
-        f"[rolling_radius]\nload_N = {tyre['FNOMIN']}\neffective_radius = {Re:.5f}\nu_effective_radius = 0.0005\n"
-        "[model]\nturn_slip = true\nu_coefficients = 0.0\n"
-        + "".join(f'[[sweep]]\nfile = "{name}.csv"\n' for name in files)
+    write_project(
+        folder,
+        "set",
+        tyre,
+        files,
+        path_radius=RADIUS,
+        effective_radius=Re,
+        turn_slip=True,
+        u_coefficients=0.0,
     )

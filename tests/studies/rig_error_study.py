@@ -10,26 +10,16 @@ rear in turn, measures eps_gamma and the numbers beside it, and prints rms error
 
 from __future__ import annotations
 
-import argparse
-import sys
-import tempfile
-import tomllib
 from collections.abc import Mapping
-from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass, field
-from pathlib import Path
 from typing import Any
 
 import numpy as np
-import tomli_w
-
-sys.path.insert(0, str(Path(__file__).parents[1] / "mffit" / "fit"))
-
-from drawn_rigs import DECLARED, NO_FORCE_AT_REST, SAFE, SAMPLES, _scaled, backward_camber, plan_content
+import worlds
+from drawn_rigs import DECLARED, SAFE, backward_camber, front_or_rear, on_disk, plan_content
 
 import mffit
 import tir
-from mffit import virtual_rig
 from mffit.errors import InputError
 
 STEP = 1e-5  # rad, for the slopes of the true tyre
@@ -97,16 +87,14 @@ class Found:
     refused: str = ""
 
 
-def one(job: tuple[int, str, bool]) -> tuple[str, Found]:
+def one(job: tuple[int, str, Any]) -> Found:
     """Draw, simulate and measure one rig."""
-    seed, name, build = job
+    seed, name, given = job
     world, rng = WORLDS[name], np.random.default_rng(5000 + seed)
-    sample = SAMPLES / ("front-120-70", "rear-190-55")[seed % 2]
-    true = _scaled(tir.read(sample / "true.tir").replace(**NO_FORCE_AT_REST), 0.1, rng)
+    sample, true = front_or_rear(seed, rng)
     conicity, ply_steer = rng.normal(0.0, (world.conicity, PLY_STEER))
     true = true.replace(PVY1=conicity, PHY1=ply_steer, PVY2=0.0, PHY2=0.0)
     content = plan_content(sample)
-    content["tyre"].pop("base", None)
     content["faults"] |= world.faults
     declared = {**content["rig"], **DECLARED, **world.declared}
     content["rig"] = {**declared, **world.drawn_from}
@@ -117,25 +105,17 @@ def one(job: tuple[int, str, bool]) -> tuple[str, Found]:
     content["sweep"] += _again(content, world.setups)
     if world.flipped:
         content["sweep"] += _flipped(content)
-    if not build:  # eps_gamma at the nominal load needs no other sweeps
+    if not given.build:  # eps_gamma at the nominal load needs no other sweeps
         content["sweep"] = [sweep for sweep in content["sweep"] if _needed(sweep, content)]
     for sweep in content["sweep"]:
         if world.warm_camber and "gamma_deg" in sweep and "alpha_deg" not in sweep:
             sweep["T_degC"] = 28.0 + world.warm_camber
-    with tempfile.TemporaryDirectory() as made:
-        folder = Path(made)
-        true.write(folder / "drawn.tir")
-        content["truth"] = {"tyre": "drawn.tir"}
-        known = virtual_rig.simulate(virtual_rig.load_plan(content, folder=folder), folder / "rig", seed=seed)
-        path = folder / "rig" / "tyre.toml"
-        config = tomllib.loads(path.read_text(encoding="utf-8"))
-        config["rig"] = {**config["rig"], **declared}
-        path.write_text(tomli_w.dumps(config), encoding="utf-8")
+    with on_disk(true, content, seed, edit=lambda config: config["rig"].update(declared)) as (path, known):
         try:
-            measured = mffit.build(path).measured if build else mffit.spin(path)
+            measured = mffit.build(path).measured if given.build else mffit.spin(path)
         except InputError as error:
-            return name, Found(refused=str(error))
-    return name, Found(numbers=_numbers(measured, known, true))
+            return Found(refused=str(error))
+    return Found(numbers=_numbers(measured, known, true))
 
 
 def _other_side(content: Mapping[str, Any]) -> list[dict[str, Any]]:
@@ -238,28 +218,9 @@ def table(name: str, rows: list[Found]) -> list[str]:
     return out
 
 
-def main() -> None:
-    ask = argparse.ArgumentParser()
-    ask.add_argument("rigs", type=int, nargs="?", default=200, help="per world")
-    ask.add_argument("--first", type=int, default=0, help="seed of the first rig")
-    ask.add_argument("--jobs", type=int, default=1)
-    ask.add_argument("--worlds", nargs="*", default=list(WORLDS))
+if __name__ == "__main__":
+    ask = worlds.asked(200, WORLDS)
     ask.add_argument(
         "--build", action="store_true", help="build whole files, which know the bias of finite spin"
     )
-    given = ask.parse_args()
-    jobs = [
-        (seed, name, given.build)
-        for name in given.worlds
-        for seed in range(given.first, given.first + given.rigs)
-    ]
-    found: dict[str, list[Found]] = {name: [] for name in given.worlds}
-    with ProcessPoolExecutor(given.jobs) as pool:
-        for name, row in pool.map(one, jobs, chunksize=4):
-            found[name].append(row)
-            if len(found[name]) == given.rigs:
-                print("\n".join(table(name, found[name])), flush=True)
-
-
-if __name__ == "__main__":
-    main()
+    worlds.run(one, table, ask)

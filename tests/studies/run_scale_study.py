@@ -10,26 +10,18 @@ campaign is built twice, the second time with `[fit] run_scale = false`.
 
 from __future__ import annotations
 
-import argparse
-import sys
-import tempfile
 import tomllib
 from collections.abc import Mapping
-from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass, field
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 import tomli_w
-
-sys.path.insert(0, str(Path(__file__).parents[1] / "mffit" / "fit"))
-
-from drawn_rigs import NO_FORCE_AT_REST, SAFE, SAMPLES, _scaled, plan_content
+import worlds
+from drawn_rigs import SAFE, front_or_rear, on_disk, plan_content, scaled
 
 import mffit
 import tir
-from mffit import virtual_rig
 from mffit.errors import InputError
 from mffit.rig import Simulation
 
@@ -51,33 +43,24 @@ class Scattered:
     refused: str = ""
 
 
-def one(job: tuple[int, float]) -> tuple[float, dict[str, Scattered]]:
+def one(job: tuple[int, float, Any]) -> dict[str, Scattered]:
     """Draw, simulate and build one rig, with the default and with run_scale = false."""
-    seed, scatter = job
+    seed, scatter, _ = job
     rng = np.random.default_rng(9000 + seed)
-    sample = SAMPLES / ("front-120-70", "rear-190-55")[seed % 2]
-    true = _scaled(tir.read(sample / "true.tir").replace(**NO_FORCE_AT_REST), 0.1, rng)
+    sample, true = front_or_rear(seed, rng)
     content = plan_content(sample)
-    content["tyre"].pop("base", None)
     for sweep in content["sweep"]:
         sweep["faults"] = dict(zip(NAMES, (scatter * rng.standard_normal(2)).tolist(), strict=True))
     out = {}
-    with tempfile.TemporaryDirectory() as made:
-        folder = Path(made)
-        true.write(folder / "drawn.tir")
-        content["truth"] = {"tyre": "drawn.tir"}
-        virtual_rig.simulate(virtual_rig.load_plan(content, folder=folder), folder / "rig", seed=seed)
-        path = folder / "rig" / "tyre.toml"
+    with on_disk(true, content, seed, base=scaled(true, 0.3, rng)) as (path, _):
         config = tomllib.loads(path.read_text(encoding="utf-8"))
-        _scaled(true, 0.3, rng).write(folder / "rig" / "other.tir")
-        config["tyre"]["base"] = "other.tir"
         for words, key in (("auto", "auto"), ("false", False)):
             path.write_text(tomli_w.dumps({**config, "fit": {"run_scale": key}}), encoding="utf-8")
             try:
                 out[words] = _compared(mffit.build(path), true)
             except InputError as error:
                 out[words] = Scattered(refused=str(error))
-    return scatter, out
+    return out
 
 
 def _compared(result: Any, true: tir.Tyre) -> Scattered:
@@ -115,17 +98,5 @@ def table(scatter: float, found: list[dict[str, Scattered]]) -> list[str]:
     return out
 
 
-def main() -> None:
-    ask = argparse.ArgumentParser()
-    ask.add_argument("rigs", type=int, nargs="?", default=30, help="per scatter")
-    ask.add_argument("--jobs", type=int, default=1)
-    ask.add_argument("--scatters", type=float, nargs="*", default=list(SCATTERS))
-    given = ask.parse_args()
-    with ProcessPoolExecutor(given.jobs) as pool:
-        for scatter in given.scatters:
-            rows = [row for _, row in pool.map(one, [(seed, scatter) for seed in range(given.rigs)])]
-            print("\n".join(table(scatter, rows)), flush=True)
-
-
 if __name__ == "__main__":
-    main()
+    worlds.run(one, table, worlds.asked(30, SCATTERS))

@@ -9,43 +9,27 @@ by the scatter of the prior. The sweeps of sideslip have their noise, so that th
 from __future__ import annotations
 
 import argparse
-import tempfile
+import sys
+import tomllib
+from functools import partial
 from pathlib import Path
 
 import numpy as np
 
+sys.path.insert(0, str(Path(__file__).parents[1] / "mffit" / "fit"))
+
+from drawn_rigs import SAMPLES, on_disk
+
 import mffit
 import tir
-from mffit import virtual_rig
 from mffit.config.constants import SISTER_FRICTION_SCATTER, SISTER_STIFFNESS_SCATTER
 
-SAMPLE = Path(__file__).parents[2] / "samples" / "flat-track-combined"
+SAMPLE = SAMPLES / "flat-track-combined"
 NAMES = ("PDX1", "PDX2", "PKX1", "PKX2")
-RIG = """
-[rig]
-type = "flat-track"
-axes = "iso"
-"""
-TYRE = """
-[tyre]
-name = "t"
-unloaded_radius = 0.3185
-width = 0.225
-rim_radius = 0.2159
-nominal_load = 4200
-nominal_pressure = 240
-nominal_speed = 16.7
-"""
-RUNS = """
-[[sweep]]
-file = "a{load}.csv"
-load_N = {load}
-alpha_deg = {{ from = -12, to = 12, step = 1.5 }}
-gamma_deg = [0, 4]
-"""
+SIDESLIP = {"from": -12, "to": 12, "step": 1.5}  # deg
 
 
-def drawn(random: np.random.Generator, folder: Path) -> dict[str, float]:
+def drawn(random: np.random.Generator) -> dict[str, float]:
     """Error over stated standard uncertainty of the borrowed coefficients of one pair."""
     true = tir.read(SAMPLE / "true.tir")
     own = np.exp(random.normal(0.0, (0.1, 0.2)))
@@ -53,16 +37,19 @@ def drawn(random: np.random.Generator, folder: Path) -> dict[str, float]:
     scaled = {name: own[0] * true[name] for name in ("PDY1", "PDY2")} | {"PKY1": own[1] * true["PKY1"]}
     scaled |= {name: own[0] * apart[0] * true[name] for name in ("PDX1", "PDX2")}
     scaled |= {name: own[1] * apart[1] * true[name] for name in ("PKX1", "PKX2")}
-    true.write(folder / "sister.tir")
-    true.replace(**scaled).write(folder / "true.tir")
-    runs = "".join(RUNS.format(load=load) for load in (2000, 4200, 6500))
-    faults = '[truth]\ntyre = "true.tir"\n[noise]\nFy_N = 12.0\nMz_Nm = 1.5\n'
-    (folder / "rig.toml").write_text(f"seed = {random.integers(1 << 30)}\n{faults}{TYRE}{RIG}{runs}")
-    virtual_rig.simulate(virtual_rig.load_plan(folder / "rig.toml"), folder / "data")
-    toml = folder / "data" / "tyre.toml"
-    text = toml.read_text().replace('name = "t"', 'name = "t"\nbase = "../sister.tir"', 1)
-    toml.write_text(f'{text}\n[sister]\nFx = "scaled"\n')
-    found = mffit.build(toml).fit.lent.found
+    content = {
+        "noise": {"Fy_N": 12.0, "Mz_Nm": 1.5},
+        "tyre": tomllib.loads((SAMPLE / "tyre.toml").read_text())["tyre"],
+        "rig": {"type": "flat-track", "axes": "iso"},
+        "sweep": [
+            {"file": f"a{load}.csv", "load_N": load, "alpha_deg": SIDESLIP, "gamma_deg": [0, 4]}
+            for load in (2000, 4200, 6500)
+        ],
+    }
+    seed = int(random.integers(1 << 30))
+    edit = partial(dict.update, sister={"Fx": "scaled"})
+    with on_disk(true.replace(**scaled), content, seed, base=true, edit=edit) as (toml, _):
+        found = mffit.build(toml).fit.lent.found
     return {name: (found[name].value - scaled[name]) / found[name].u for name in NAMES}
 
 
@@ -73,10 +60,7 @@ def main() -> None:
     parser.add_argument("--seed", type=int, default=1)
     given = parser.parse_args()
     random = np.random.default_rng(given.seed)
-    rows = []
-    for _ in range(given.count):
-        with tempfile.TemporaryDirectory() as folder:
-            rows.append(drawn(random, Path(folder)))
+    rows = [drawn(random) for _ in range(given.count)]
     for name in NAMES:
         z = np.array([row[name] for row in rows])
         print(f"{name}: inside 95 % {np.mean(np.abs(z) < 1.96):.0%}, rms of z {np.sqrt(np.mean(z**2)):.2f}")

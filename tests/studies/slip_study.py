@@ -13,9 +13,7 @@ import argparse
 import math
 import pickle
 import sys
-import tempfile
 import time
-import tomllib
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
@@ -23,16 +21,14 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import tomli_w
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "mffit" / "fit"))
 
-from drawn_rigs import SAMPLES, STAGED, Draw, _scaled
+from drawn_rigs import SAMPLES, STAGED, Draw, on_disk, scaled
 from recovery_study import coverage
 
 import mffit
 import tir
-from mffit import virtual_rig
 from mffit.errors import InputError
 from mffit.fit.stages import STAGES
 from mffit.rig_errors import DECLARED
@@ -205,25 +201,16 @@ def one(seed: int, name: str, off: float) -> SlipDraw:
     true = _drawn(tir.read(vehicle.true).replace(**UNSETTLED, LONGVL=SPEED), off, rng)
     noise = {key: float(x * NOISE_OFF ** rng.uniform(-1.0, 1.0)) for key, x in vehicle.noise.items()}
     draw = SlipDraw(kind=name, seed=seed)
-    with tempfile.TemporaryDirectory() as made:
-        folder = Path(made)
-        true.write(folder / "drawn.tir")
-        plan = {
-            "truth": {"tyre": "drawn.tir"},
-            "faults": {"draw": True, **RIGHT},
-            "noise": noise,
-            "conditions": {"V_mps": SPEED},
-            "tyre": {"name": "drawn", "nominal_speed": SPEED, "side": "left", **vehicle.tyre},
-            "rig": {"type": "flat-track", "axes": "sae"},
-            "sweep": sweeps(kind),
-        }
-        known = virtual_rig.simulate(virtual_rig.load_plan(plan, folder=folder), folder / "rig", seed=seed)
-        path = folder / "rig" / "tyre.toml"
-        if kind.base:
-            _drawn(true, 0.3, rng).write(folder / "rig" / "other.tir")
-            config = tomllib.loads(path.read_text(encoding="utf-8"))
-            config["tyre"]["base"] = "other.tir"
-            path.write_text(tomli_w.dumps(config), encoding="utf-8")
+    content = {
+        "faults": {"draw": True, **RIGHT},
+        "noise": noise,
+        "conditions": {"V_mps": SPEED},
+        "tyre": {"name": "drawn", "nominal_speed": SPEED, "side": "left", **vehicle.tyre},
+        "rig": {"type": "flat-track", "axes": "sae"},
+        "sweep": sweeps(kind),
+    }
+    base = _drawn(true, 0.3, rng) if kind.base else None
+    with on_disk(true, content, seed, base=base) as (path, known):
         try:
             result = mffit.build(path)
         except InputError as error:
@@ -234,8 +221,8 @@ def one(seed: int, name: str, off: float) -> SlipDraw:
 
 
 def _drawn(tyre: tir.Tyre, off: float, rng: np.random.Generator) -> tir.Tyre:
-    tyre = _scaled(tyre, off, rng, (*STAGED, *RADII, "QSY1"))
-    return _scaled(tyre, min(off, FREE_RADIUS), rng, ("Q_RE0",))
+    tyre = scaled(tyre, off, rng, (*STAGED, *RADII, "QSY1"))
+    return scaled(tyre, min(off, FREE_RADIUS), rng, ("Q_RE0",))
 
 
 def _compare(

@@ -9,26 +9,16 @@ disturbs most (PPY4, PDY2) are from the truth, and what both files leave.
 
 from __future__ import annotations
 
-import argparse
-import sys
-import tempfile
-import tomllib
 from collections.abc import Mapping
-from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass, field
-from pathlib import Path
 from typing import Any
 
 import numpy as np
-import tomli_w
-
-sys.path.insert(0, str(Path(__file__).parents[1] / "mffit" / "fit"))
-
-from drawn_rigs import NO_FORCE_AT_REST, SAFE, SAMPLES, _scaled, plan_content
+import worlds
+from drawn_rigs import SAFE, front_or_rear, on_disk, plan_content, scaled
 
 import mffit
 import tir
-from mffit import virtual_rig
 from mffit.errors import InputError
 
 COLD, WARM, SHARE = 25.0, 48.0, 0.4
@@ -63,34 +53,23 @@ def drawn_terms(world: str, rng: np.random.Generator) -> dict[str, float]:
     return {name: size * factor for name, factor in zip(PARTS, rng.uniform(0.4, 1.6, 3), strict=True)}
 
 
-def one(job: tuple[int, str]) -> tuple[str, Warmed]:
+def one(job: tuple[int, str, Any]) -> Warmed:
     """Draw, simulate and build one rig."""
-    seed, world = job
+    seed, world, _ = job
     rng = np.random.default_rng(7000 + seed)
-    sample = SAMPLES / ("front-120-70", "rear-190-55")[seed % 2]
-    true = _scaled(tir.read(sample / "true.tir").replace(**NO_FORCE_AT_REST), 0.1, rng)
+    sample, true = front_or_rear(seed, rng)
     content = plan_content(sample)
-    content["tyre"].pop("base", None)
     terms = drawn_terms(world, rng)
     content["faults"] |= terms
     ends = COLD + (WARM - COLD) * (1.0 - np.exp(-np.linspace(0.0, 1.0 / SHARE, len(content["sweep"]) + 1)))
     for sweep, first, last in zip(content["sweep"], ends[:-1], ends[1:], strict=True):
         sweep["T_degC"] = [float(first), float(last)]
-    with tempfile.TemporaryDirectory() as made:
-        folder = Path(made)
-        true.write(folder / "drawn.tir")
-        content["truth"] = {"tyre": "drawn.tir"}
-        virtual_rig.simulate(virtual_rig.load_plan(content, folder=folder), folder / "rig", seed=seed)
-        path = folder / "rig" / "tyre.toml"
-        config = tomllib.loads(path.read_text(encoding="utf-8"))
-        _scaled(true, 0.3, rng).write(folder / "rig" / "other.tir")
-        config["tyre"]["base"] = "other.tir"
-        path.write_text(tomli_w.dumps(config), encoding="utf-8")
+    with on_disk(true, content, seed, base=scaled(true, 0.3, rng)) as (path, _):
         try:
             result = mffit.build(path)
         except InputError as error:
-            return world, Warmed(refused=str(error))
-    return world, _compared(result, true, terms)
+            return Warmed(refused=str(error))
+    return _compared(result, true, terms)
 
 
 def _compared(result: Any, true: tir.Tyre, terms: Mapping[str, float]) -> Warmed:
@@ -146,20 +125,5 @@ def table(world: str, rows: list[Warmed]) -> list[str]:
     return out + [f"* {row.refused}" for row in rows if row.refused]
 
 
-def main() -> None:
-    ask = argparse.ArgumentParser()
-    ask.add_argument("rigs", type=int, nargs="?", default=40, help="per world")
-    ask.add_argument("--jobs", type=int, default=1)
-    ask.add_argument("--worlds", nargs="*", default=list(WORLDS))
-    given = ask.parse_args()
-    jobs = [(seed, world) for world in given.worlds for seed in range(given.rigs)]
-    found: dict[str, list[Warmed]] = {world: [] for world in given.worlds}
-    with ProcessPoolExecutor(given.jobs) as pool:
-        for world, row in pool.map(one, jobs):
-            found[world].append(row)
-    for world, rows in found.items():
-        print("\n".join(table(world, rows)), flush=True)
-
-
 if __name__ == "__main__":
-    main()
+    worlds.run(one, table, worlds.asked(40, WORLDS))

@@ -7,38 +7,29 @@ carry a warning or a suspected cause, and the coefficients and rig numbers that 
 
 from __future__ import annotations
 
-import argparse
 import re
-import sys
-import tempfile
-import tomllib
 from collections import Counter
 from collections.abc import Callable, Mapping
-from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pandas as pd
-import tomli_w
-
-sys.path.insert(0, str(Path(__file__).parents[1] / "mffit" / "fit"))
-
+import worlds
 from drawn_rigs import (
     DECLARED,
-    NO_FORCE_AT_REST,
     SAFE,
-    SAMPLES,
-    _scaled,
     backward_camber,
+    front_or_rear,
     model_error,
+    on_disk,
     plan_content,
+    scaled,
 )
 
 import mffit
 import tir
-from mffit import virtual_rig
 from mffit.errors import InputError
 from mffit.results import as_json
 from tir.parameters import TABLE
@@ -113,7 +104,9 @@ class World:
     declared: Mapping[str, float] = field(default_factory=dict)
     tyre: Mapping[str, float] = field(default_factory=dict)  #: coefficients of the true tyre
     base: Mapping[str, float] = field(default_factory=dict)  #: coefficients of the base file
-    written: Callable[[dict[str, Any]], None] | None = None  #: changes what the owner writes into tyre.toml
+    written: Callable[[dict[str, Any]], None] = lambda config: (
+        None
+    )  #: changes what the owner writes into tyre.toml
     edits: tuple[Edit, ...] = ()
     thin: bool = False  #: half of the angles, one pressure
     spoil: Callable[[Path, np.random.Generator], None] | None = None
@@ -150,39 +143,27 @@ WARMED, PER_KELVIN, COLD = ("k_T_grip_per_K", "k_T_stiffness_per_K"), -0.004, 25
 """Terms by which a warming tyre is modelled; the true one, which holds at the temperature [degC] of the cold tyre."""
 
 
-def one(job: tuple[int, str]) -> tuple[str, dict[str, Any]]:
+def one(job: tuple[int, str, Any]) -> dict[str, Any]:
     """Draw, simulate and build one rig."""
-    seed, name = job
+    seed, name, _ = job
     world, rng = WORLDS[name], np.random.default_rng(9000 + seed)
-    sample = SAMPLES / ("front-120-70", "rear-190-55")[seed % 2]
-    true = _scaled(tir.read(sample / "true.tir").replace(**NO_FORCE_AT_REST), 0.1, rng).replace(**world.tyre)
+    sample, true = front_or_rear(seed, rng)
+    true = true.replace(**world.tyre)
     content = plan_content(sample, pecp1="direct", thin=world.thin)
     content["faults"] |= world.faults
     content["faults"] |= {key: u * rng.normal() for key, u in world.drawn.items()}
-    declared = {**DECLARED, **world.declared}
-    content["rig"] |= declared
+    content["rig"] |= {**DECLARED, **world.declared}
     for edit in world.edits:
         edit(content, rng)
-    content["tyre"].pop("base", None)
-    with tempfile.TemporaryDirectory() as made:
-        folder = Path(made)
-        true.write(folder / "drawn.tir")
-        content["truth"] = {"tyre": "drawn.tir"}
-        known = virtual_rig.simulate(virtual_rig.load_plan(content, folder=folder), folder / "rig", seed=seed)
-        path = folder / "rig" / "tyre.toml"
-        config = tomllib.loads(path.read_text(encoding="utf-8"))
-        if world.written is not None:
-            world.written(config)
-        _scaled(true, 0.3, rng).replace(**world.base).write(folder / "rig" / "other.tir")
-        config["tyre"]["base"] = "other.tir"
-        path.write_text(tomli_w.dumps(config), encoding="utf-8")
+    base = scaled(true, 0.3, rng).replace(**world.base)
+    with on_disk(true, content, seed, base=base, edit=world.written) as (path, known):
         if world.spoil is not None:
-            world.spoil(folder / "rig", rng)
+            world.spoil(path.parent, rng)
         try:
             result = mffit.build(path)
         except InputError as error:
-            return name, {"refused": str(error)}
-    return name, _found(result, true, known, world)
+            return {"refused": str(error)}
+    return _found(result, true, known, world)
 
 
 def _found(result: Any, true: tir.Tyre, known: Any, world: World) -> dict[str, Any]:
@@ -277,17 +258,5 @@ def lines(name: str, rows: list[dict[str, Any]]) -> list[str]:
     return out
 
 
-def main() -> None:
-    ask = argparse.ArgumentParser()
-    ask.add_argument("rigs", type=int, nargs="?", default=40, help="per world")
-    ask.add_argument("--jobs", type=int, default=1)
-    ask.add_argument("--worlds", nargs="*", default=list(WORLDS))
-    given = ask.parse_args()
-    for name in given.worlds:
-        with ProcessPoolExecutor(given.jobs) as pool:
-            rows = [row for _, row in pool.map(one, [(seed, name) for seed in range(given.rigs)])]
-        print("\n".join(lines(name, rows)), flush=True)
-
-
 if __name__ == "__main__":
-    main()
+    worlds.run(one, lines, worlds.asked(40, WORLDS))

@@ -68,6 +68,17 @@ class Band:
         return self.x, np.concatenate([self.low, self.high])
 
 
+def banded(
+    name: str, x: np.ndarray, line: np.ndarray, half: np.ndarray, look: Look, line_name: str = ""
+) -> list[Band | Trace]:
+    """A line with a band of its colour, ``half`` wide to both sides; arrays (n,)."""
+    shade = Look(colour=look.colour, opacity=constants.BAND_OPACITY)
+    return [
+        Band(name=name, x=x, low=line - half, high=line + half, look=shade),
+        Trace(name=line_name or name, x=x, y=line, look=look),
+    ]
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ErrorBars:
     """Points (n,) with bars of one standard uncertainty, which may be NaN."""
@@ -241,7 +252,7 @@ class Sheet:
     panel_width: float | None = (
         None  #: of a panel with its labels [pt]; None: what the number of columns leaves
     )
-    left_out: int = 0  #: panels that are not drawn, for the caption
+    left_out: str = ""  #: what is not drawn, in sentences for the caption
 
     @property
     def panels(self) -> list[Panel]:

@@ -11,7 +11,7 @@ from mffit.points import make_points
 from mffit.quantities import CHANNELS, SIDEWAYS
 from mffit.report import constants, labels, style
 from mffit.report.build_view import BuildView
-from mffit.report.drawing.records import Axis, Band, Guide, Look, Panel, Sheet, Trace
+from mffit.report.drawing.records import Axis, Band, Guide, Look, Panel, Sheet, Trace, banded
 from mffit.rig import Simulation
 
 LIMITS = {"gamma": "CAMMAX", "alpha": "ALPMAX"}
@@ -29,9 +29,7 @@ def bands(view: BuildView) -> Sheet:
     """The channels with 95 % bands over camber, over sideslip and over slip if it was run, at three loads on a straight path."""
     files = view.files
     assert files is not None
-    written = files.written
-    loads = [written["FZMIN"], float(view.model["FNOMIN"]), written["FZMAX"]]
-    colours = style.ramp(loads)
+    colours = three_loads(view)
     sideways = [
         name for name in CHANNELS if name in SIDEWAYS or (name == "Mx" and name in view.points.measured)
     ]
@@ -41,8 +39,19 @@ def bands(view: BuildView) -> Sheet:
     if "KPUMAX" in files.tested and "Fx" in view.points.measured:
         driven = [name for name in ("Fx", "Mz") if name in view.points.measured]
         rows.append([_panel(view, "kappa", name, colours) for name in driven])
-    key = {labels.LOAD.of(load): Look(colour=colours[load], line="-") for load in loads}
-    return Sheet(rows=rows, height=2.1, key=key)
+    return Sheet(rows=rows, height=2.1, key=key_of_loads(colours))
+
+
+def three_loads(view: BuildView) -> dict[float, str]:
+    """Colours of the smallest, the nominal and the largest load of the file."""
+    assert view.files is not None
+    written = view.files.written
+    return style.ramp([written["FZMIN"], float(view.model["FNOMIN"]), written["FZMAX"]])
+
+
+def key_of_loads(colours: Mapping[float, str]) -> dict[str, Look]:
+    """The key of these colours."""
+    return {labels.LOAD.of(load): Look(colour=colour, line="-") for load, colour in colours.items()}
 
 
 def _panel(view: BuildView, over: str, name: str, colours: Mapping[float, str]) -> Panel:
@@ -52,12 +61,7 @@ def _panel(view: BuildView, over: str, name: str, colours: Mapping[float, str]) 
     at = x if over == "kappa" else np.degrees(x)
     series: list[Band | Trace] = []
     for load, colour in colours.items():
-        lines, halves = _with_halves(view, over, x, load, name)
-        line, half, said = lines[name], halves[name], labels.LOAD.of(load)
-        series += [
-            Band(name=said, x=at, low=line - half, high=line + half, look=Look(colour=colour, opacity=0.25)),
-            Trace(name=said, x=at, y=line, look=Look(colour=colour, line="-", width=1.0)),
-        ]
+        series += model_curve(view, name, at, load, colour, **{over: x})
     return Panel(
         title=CHANNELS[name].short_axis, x=labels.angle_axis(over), y=Axis(), series=series, guides=guides
     )
@@ -73,11 +77,23 @@ def _ends(files: Files, over: str) -> tuple[np.ndarray, list[Guide]]:
     return np.linspace(low, high, constants.STEPS_OF_FILE_CURVE), guides
 
 
-def _with_halves(view: BuildView, over: str, x: np.ndarray, load: float, name: str) -> tuple:
-    """The model's curve of a channel, and half the width of its band."""
+def model_curve(
+    view: BuildView,
+    channel: str,
+    at: np.ndarray,
+    load: float,
+    colour: str,
+    *,
+    alpha: np.ndarray | float = 0.0,
+    gamma: np.ndarray | float = 0.0,
+    kappa: np.ndarray | float = 0.0,
+) -> list[Band | Trace]:
+    """A channel of the model on a straight path with its band, drawn over ``at`` (m,); angles in radians."""
     tyre = Simulation.of(view.model, turn_slip=view.on_disc)
-    none = np.zeros_like(x)
-    alpha, gamma, kappa = (x if over == varied else none for varied in ("alpha", "gamma", "kappa"))
-    nominal = float(view.model["NOMPRES"])
-    where = make_points(alpha, gamma, load, kappa=kappa, p=nominal, V=10.0, phi_t=0.0)
-    return tyre.readings(where, (name,)), view.posterior.band(tyre, where, (name,))
+    angles = (np.broadcast_to(angle, at.shape) for angle in (alpha, gamma))
+    slip, nominal = np.broadcast_to(kappa, at.shape), float(view.model["NOMPRES"])
+    where = make_points(*angles, load, kappa=slip, p=nominal, V=10.0, phi_t=0.0)
+    line = tyre.readings(where, (channel,))[channel]
+    half = view.posterior.band(tyre, where, (channel,))[channel]
+    look = Look(colour=colour, line="-", width=1.0)
+    return banded(labels.LOAD.of(load), at, line, half, look)

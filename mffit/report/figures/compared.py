@@ -8,7 +8,7 @@ from mffit.comparison import Comparison, CurveGap, wording
 from mffit.comparison.constants import SIGNIFICANT_DIFFERENCE
 from mffit.quantities import CHANNELS
 from mffit.report import constants, labels, style
-from mffit.report.drawing.records import Axis, Band, Bars, Guide, Look, Panel, Sheet, Trace, in_rows
+from mffit.report.drawing.records import Axis, Band, Bars, Guide, Look, Panel, Sheet, Trace, banded, in_rows
 
 FIRST, SECOND = (
     Look(colour=style.ACCENT, line="-", width=1.2),
@@ -31,10 +31,9 @@ def _panel(found: Comparison, gap: CurveGap) -> Panel:
         (found.first, gap.first, gap.half_first, FIRST),
         (found.second, gap.second, gap.half_second, SECOND),
     ):
-        if half is not None:
-            shaded = Look(colour=look.colour, opacity=0.2)
-            series.append(Band(name=name, x=x, low=line - half, high=line + half, look=shaded))
-        series.append(Trace(name=name, x=x, y=line, look=look))
+        series += (
+            [Trace(name=name, x=x, y=line, look=look)] if half is None else banded(name, x, line, half, look)
+        )
     known = CHANNELS[gap.channel]
     return Panel(
         title=f"{labels.LOAD.of(gap.load)}, apart by {gap.rms:.3g} {known.unit} rms",

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from mffit.report import constants, labels, style
+from mffit.report import constants, labels, left_undrawn, style
 from mffit.report.build_view import BuildView, ChannelRow
 from mffit.report.curves import Curve
 from mffit.report.drawing.records import Axis, ErrorBars, Guide, Look, Panel, Sheet, Trace, in_rows
@@ -28,7 +28,8 @@ def decomposition(view: BuildView, channel: ChannelRow) -> Sheet:
     chosen = worth_drawing(view.curves, channel)
     groups = [[_parts(view, channel, c) for c in chosen if c.over == over] for over in labels.ANGLES]
     columns = 5 if max(map(len, groups)) > 4 else 4
-    return Sheet(rows=in_rows(*groups, columns=columns), height=1.40, key=PARTS)
+    left_out = left_undrawn.parts(drawable(view.curves, channel), chosen)
+    return Sheet(rows=in_rows(*groups, columns=columns), height=1.40, key=PARTS, left_out=left_out)
 
 
 def _parts(view: BuildView, channel: ChannelRow, curve: Curve) -> Panel:

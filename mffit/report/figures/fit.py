@@ -9,7 +9,7 @@ from typing import Protocol
 import numpy as np
 
 from mffit.points import Points
-from mffit.report import constants, labels, style
+from mffit.report import constants, labels, left_undrawn, style
 from mffit.report.build_view import ChannelRow
 from mffit.report.curves import Curve
 from mffit.report.drawing.records import Axis, Guide, Look, Panel, Sheet, Trace, in_rows
@@ -57,6 +57,9 @@ def model_against_points(view: Overlaid, channel: ChannelRow) -> Sheet:
         rows=in_rows(*groups, columns=columns),
         height=1.4 if small else 1.75,
         key=_key(view, channel, colours),
+        left_out=left_undrawn.points(
+            len(view.points), view.curves, [c for members in conditions.values() for c in members]
+        ),
     )
 
 

@@ -11,7 +11,7 @@ import numpy as np
 from mffit.diagnosis import Gap
 from mffit.diagnosis.constants import TIED_EVIDENCE
 from mffit.diagnosis.where import Region
-from mffit.report import constants, labels, style
+from mffit.report import constants, labels, left_undrawn, style
 from mffit.report.diagnosis_view import Candidate, DiagnosisView, GapChannel, RankedStep, Shown, shown_steps
 from mffit.report.drawing.records import (
     Axis,
@@ -143,7 +143,8 @@ def residuals_before_after(view: DiagnosisView) -> Sheet:
                     maps.append(residual_map(view.points, values, condition, limit, title, framed, over=over))
             rows.append(maps)
     label = "measured − simulated [noise of a point]"
-    return Sheet(rows=rows, height=1.40, scale=ColourScale(limit=limit, label=label), left_out=left_out)
+    scale = ColourScale(limit=limit, label=label)
+    return Sheet(rows=rows, height=1.40, scale=scale, left_out=left_undrawn.panels(left_out))
 
 
 def colour_limit(channels: Sequence[GapChannel]) -> float:

@@ -13,7 +13,7 @@ from mffit.points import levels
 from mffit.quantities import CHANNELS, CONDITIONS
 from mffit.report import constants, labels, style
 from mffit.report.build_view import BuildView
-from mffit.report.drawing.records import Axis, Band, Look, Panel, Sheet, Trace
+from mffit.report.drawing.records import Axis, Band, Look, Panel, Sheet, Trace, banded
 from mffit.report.with_band import with_band
 from mffit.scatter import finite_median
 
@@ -65,10 +65,8 @@ def _panel(
 
         line, half = with_band(view.model.values, Posterior(names, covariance), of)
         name, mm = CONDITIONS["p_kPa"].of(p / 1e3), MILLIMETRES
-        shade = Look(colour=colour, opacity=0.25)
         series += [
-            Band(name=name, x=load, low=mm * (line - half), high=mm * (line + half), look=shade),
-            Trace(name=f"file, {name}", x=load, y=mm * line, look=Look(colour=colour, line="-", width=1.0)),
+            *banded(name, load, mm * line, mm * half, replace(LINE, colour=colour), f"file, {name}"),
             Trace(name=f"measured, {name}", x=rolling.Fz[rows], y=mm * read[rows], look=replace(READ, colour=colour)),
         ]  # fmt: skip
     return Panel(title=WORDS[channel], x=Axis(label=labels.LOAD.axis), y=Axis(label="mm"), series=series)

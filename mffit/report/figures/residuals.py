@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from mffit.points import Points
-from mffit.report import constants, labels, style
+from mffit.report import constants, labels, left_undrawn, style
 from mffit.report.curves import CurveCondition, shown_values
 from mffit.report.drawing.records import Axis, ColourScale, Frame, Look, Map, Panel, Sheet, Trace, in_rows
 
@@ -61,7 +61,7 @@ def residual_maps(
         rows=in_rows(*groups, columns=min(len(shown), constants.MAPS_PER_ROW)),
         height=1.45,
         scale=ColourScale(limit=limit, label=f"measured − model [{unit}]"),
-        left_out=len(residuals) * (len(conditions) - len(shown)),
+        left_out=left_undrawn.panels(len(residuals) * (len(conditions) - len(shown))),
     )
 
 

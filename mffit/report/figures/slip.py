@@ -10,7 +10,7 @@ import numpy as np
 
 from mffit.points import Points
 from mffit.quantities import CHANNELS, MODEL
-from mffit.report import constants, labels, style
+from mffit.report import constants, labels, left_undrawn, style
 from mffit.report.build_view import BuildView, ChannelRow
 from mffit.report.curves import Curve
 from mffit.report.drawing.records import (
@@ -22,6 +22,7 @@ from mffit.report.drawing.records import (
     Ribbon,
     Sheet,
     Trace,
+    banded,
     in_rows,
     thinned,
 )
@@ -70,7 +71,7 @@ def over_slip(view: Overlaid, channel: ChannelRow) -> Sheet:
         rows=in_rows(kept, columns=5 if len(kept) > 4 else 4),
         height=1.75,
         key={"measured": READINGS, "model": LINE, **mark_key(view, channel), **_sideslip_key(colours)},
-        left_out=len(panels) - len(kept),
+        left_out=left_undrawn.panels(len(panels) - len(kept)),
     )
 
 
@@ -208,7 +209,7 @@ def _path(
 
     (band,) = several_with_band(view.model.values, view.posterior, moved_across)
     dx, dy = across_y * band.half, across_x * band.half
-    shade = Look(colour=look.colour, opacity=0.25)
+    shade = Look(colour=look.colour, opacity=constants.BAND_OPACITY)
     return [
         Ribbon(name=name, x=Fy, y=Fx, dx=dx, dy=dy, look=shade),
         Trace(name=name, x=Fy, y=Fx, look=look),
@@ -277,8 +278,7 @@ def _weight(
     shown = at + (view.felt.channel(channel)[curve.index] - model) / np.where(large, pure, np.nan)
     dots = Look(colour=colour, marker=".", size=1.6)
     return [
-        Band(name=name, x=slip, low=line - half, high=line + half, look=Look(colour=colour, opacity=0.25)),
-        Trace(name=f"model, {name}", x=slip, y=line, look=Look(colour=colour, line="-", width=1.0)),
+        *banded(name, slip, line, half, Look(colour=colour, line="-", width=1.0), f"model, {name}"),
         Trace(name=f"measured, {name}", x=read, y=shown, look=dots),
     ]
 
@@ -321,11 +321,8 @@ def trail(view: BuildView) -> Sheet:
             found = several_with_band(view.model.values, view.posterior, outputs)
             name = f"{labels.SLIP.symbol} = {number(slip, 2)}"
             for drawn, (_, _, unit), (line, half) in zip(series, quantities, found, strict=True):
-                at, shade = np.degrees(x), Look(colour=colour, opacity=0.25)
-                drawn += [
-                    Band(name=name, x=at, low=unit * (line - half), high=unit * (line + half), look=shade),
-                    Trace(name=name, x=at, y=unit * line, look=Look(colour=colour, line="-", width=1.0)),
-                ]
+                look = Look(colour=colour, line="-", width=1.0)
+                drawn += banded(name, np.degrees(x), unit * line, unit * half, look)
         for row, (_, label, _), drawn in zip(rows, quantities, series, strict=True):
             row.append(
                 Panel(

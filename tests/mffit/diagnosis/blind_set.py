@@ -6,7 +6,6 @@ readings after the declared inexactness of the given model is projected out.
 
 from __future__ import annotations
 
-import csv
 import json
 import re
 from collections.abc import Callable, Mapping
@@ -15,6 +14,7 @@ from pathlib import Path
 
 import numpy as np
 from blind_rig import Machine, Programme, disc_programme, report
+from disc_files import write_project, write_sweep
 
 import tir
 from tir import Tyre
@@ -252,20 +252,18 @@ def write_case(case: Case, folder: Path, truth: Path) -> None:
     """Write the campaign to ``folder`` and its hidden causes to the file ``truth``."""
     folder.mkdir(parents=True)
     case.given.write(folder / "given.tir")
-    names = list(dict.fromkeys(case.run.sweep.tolist()))
+    run, names = case.run, list(dict.fromkeys(case.run.sweep.tolist()))
+    conditions = (run.alpha_deg, run.gamma_deg, run.Fz, run.p_kPa, run.V, run.backward, run.t, run.T)
     for name in names:
-        _write_sweep(case, case.run.sweep == name, folder / f"{name}.csv")
-    tyre = case.given
-    files = "".join(f'[[sweep]]\nfile = "{name}.csv"\n' for name in names)
-    (folder / "tyre.toml").write_text(
-        f'[tyre]\nname = "{case.name}"\nunloaded_radius = {tyre["UNLOADED_RADIUS"]}\nwidth = {tyre["WIDTH"]}\n'
-        f"rim_radius = {tyre['RIM_RADIUS']}\nnominal_load = {tyre['FNOMIN']}\n"
-        f"nominal_pressure = {float(tyre['NOMPRES']) / 1e3}\nnominal_speed = {tyre['LONGVL']}\n"
-        f'[rig]\ntype = "rotating-disk"\naxes = "iso"\npath_centre = "left"\npath_radius = {Machine().R}\n'
-        f"backlash_deg = 0.0\n[rolling_radius]\nload_N = {tyre['FNOMIN']}\neffective_radius = {_rolling_radius(case):.5f}\n"
-        f"u_effective_radius = 0.0005\n[model]\nturn_slip = {str(case.turn_slip).lower()}\n"
-        f"u_coefficients = {case.u_coefficients}\n{files}"
-    )
+        rows = run.sweep == name
+        write_sweep(
+            folder / f"{name}.csv", *(column[rows] for column in conditions),
+            Fy=case.Fy[rows], Mz=case.Mz[rows], u=(U_FY, U_MZ),
+        )  # fmt: skip
+    write_project(
+        folder, case.name, case.given, names, path_radius=Machine().R, effective_radius=_rolling_radius(case),
+        turn_slip=case.turn_slip, u_coefficients=case.u_coefficients,
+    )  # fmt: skip
     secret = {
         "causes": case.causes,
         "level": case.level,
@@ -279,31 +277,3 @@ def write_case(case: Case, folder: Path, truth: Path) -> None:
 def _rolling_radius(case: Case) -> float:
     """Effective radius from a revolution of the disc at the nominal load [m]."""
     return float(case.true.state(float(case.true["FNOMIN"]), Vx=6.0).Re)
-
-
-def _write_sweep(case: Case, rows: np.ndarray, path: Path) -> None:
-    run = case.run.where(rows)
-    direction = np.where(run.backward, "backward", "forward")
-    columns = (
-        run.alpha_deg, run.gamma_deg, run.Fz, run.p_kPa, run.V, direction, run.t, run.T,
-        np.round(case.Fy[rows], 3), np.round(case.Mz[rows], 4), np.full(len(run), U_FY), np.full(len(run), U_MZ),
-    )  # fmt: skip
-    with path.open("w", newline="", encoding="utf-8") as out:
-        writer = csv.writer(out)
-        writer.writerow(
-            [
-                "alpha_deg",
-                "gamma_deg",
-                "Fz_N",
-                "p_kPa",
-                "V_mps",
-                "direction",
-                "t_s",
-                "T_degC",
-                "Fy_N",
-                "Mz_Nm",
-                "u_Fy_N",
-                "u_Mz_Nm",
-            ]
-        )
-        writer.writerows(zip(*columns, strict=True))

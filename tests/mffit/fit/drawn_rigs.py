@@ -8,7 +8,8 @@ from __future__ import annotations
 
 import tempfile
 import tomllib
-from collections.abc import Collection, Mapping
+from collections.abc import Callable, Collection, Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -24,7 +25,7 @@ from mffit.fit.priors import scatter
 from mffit.points import make_points
 from mffit.rig import Simulation
 from mffit.scatter import rms
-from mffit.virtual_rig.truth import DirectTruth, direct_truth
+from mffit.virtual_rig.truth import DirectTruth, Truth, direct_truth
 from tir.parameters import TABLE
 
 SAMPLES = Path(__file__).parents[3] / "samples"
@@ -38,7 +39,7 @@ DECLARED = {
     "u_slip_alignment_N": 25.0,
     "u_camber_skew_deg": 0.1,
 }
-"""Keys of [rig] that the studies of rig errors declare, unless they say otherwise."""
+"""Keys of [rig] that drawn rigs declare, unless a study says otherwise; ``Kind.rig_off`` multiplies the errors behind them."""
 SAFE = 1.959964
 """Coverage factor of 95 % intervals."""
 
@@ -112,8 +113,6 @@ class Draw:
 
 PRESSURE = ("PPY1", "PPY2", "PPY3", "PPY4", "PPY5", "PPZ1", "PPZ2")
 SHIFTS = ("PHY1", "PHY2", "PVY1", "PVY2")
-DECLARED = {"u_loadcell_offset_N": 10.0, "u_camber_alignment_deg": 0.5, "u_slip_alignment_N": 25.0}
-"""Those declared uncertainties of the sample rigs that ``rig_off`` multiplies, beside that of the camber skew."""
 
 
 def plan_content(sample: Path = SAMPLE, *, pecp1: str = "model", thin: bool = False) -> dict[str, Any]:
@@ -132,48 +131,82 @@ def plan_content(sample: Path = SAMPLE, *, pecp1: str = "model", thin: bool = Fa
     return content
 
 
-def one_rig(seed: int, kind: Kind = Kind(base="sample's")) -> Draw:
-    """Draw, simulate and build one campaign."""
-    rng = np.random.default_rng(1000 + seed)
-    sample = SAMPLES / kind.sample
-    true = _scaled(tir.read(sample / "true.tir").replace(**NO_FORCE_AT_REST), kind.tyre_off, rng)
-    if kind.one_load:
-        true = true.replace(**_drawn_from_priors(PRESSURE, rng))
-    content = plan_content(sample, pecp1=kind.pecp1, thin=kind.thin)
-    declared = {**content["rig"], **DECLARED, "u_camber_skew_deg": 0.1}
-    content["rig"] = {
-        **declared,
-        **{name: kind.rig_off * declared[name] for name in (*DECLARED, "u_camber_skew_deg")},
-    }
-    if kind.one_load:
-        _at_the_lowest_load(content)
-    if kind.upright:
-        content["sweep"] = [row for row in content["sweep"] if "gamma_deg" not in row]
+def front_or_rear(seed: int, rng: np.random.Generator) -> tuple[Path, tir.Tyre]:
+    """Folder of a sample, front and rear in turn, and its tyre with all fitted coefficients up to a tenth off."""
+    sample = SAMPLES / ("front-120-70", "rear-190-55")[seed % 2]
+    return sample, scaled(tir.read(sample / "true.tir").replace(**NO_FORCE_AT_REST), 0.1, rng)
+
+
+def declares(config: dict[str, Any]) -> None:
+    """State the usual uncertainties in a ``tyre.toml``."""
+    config["rig"] |= DECLARED
+
+
+@contextmanager
+def on_disk(
+    true: tir.Tyre,
+    content: dict[str, Any],
+    seed: int,
+    *,
+    base: tir.Tyre | None = None,
+    edit: Callable[[dict[str, Any]], None] = lambda config: None,
+) -> Iterator[tuple[Path, Truth]]:
+    """``tyre.toml`` of a simulated campaign and the truth behind it.
+
+    Parameters
+    ----------
+    true : the tyre of the rig
+    content : plan of the campaign, which is changed
+    seed : of noise and drawn faults
+    base : the base file of the build, if it has one
+    edit : changes what the owner of the rig writes into ``tyre.toml``
+    """
     with tempfile.TemporaryDirectory() as made:
         folder = Path(made)
         true.write(folder / "drawn.tir")
         content["truth"] = {"tyre": "drawn.tir"}
-        if kind.base == "sample's":
-            content["tyre"]["base"] = str(sample / "base.tir")
-        else:
-            content["tyre"].pop("base", None)
+        content["tyre"].pop("base", None)
         known = virtual_rig.simulate(virtual_rig.load_plan(content, folder=folder), folder / "rig", seed=seed)
-        config = tomllib.loads((folder / "rig" / "tyre.toml").read_text(encoding="utf-8"))
-        config["rig"] |= {name: declared[name] for name in (*DECLARED, "u_camber_skew_deg")}
-        if kind.base == "another's":
-            other = _scaled(true, 0.3, rng)
-            if kind.one_load:
-                other = other.replace(**dict.fromkeys((*PRESSURE, *SHIFTS), 0.0))
-            if kind.upright:
-                other = other.replace(PECP1=0.5)
-            other.write(folder / "rig" / "other.tir")
+        path = folder / "rig" / "tyre.toml"
+        config = tomllib.loads(path.read_text(encoding="utf-8"))
+        if base is not None:
+            base.write(path.with_name("other.tir"))
             config["tyre"]["base"] = "other.tir"
-        (folder / "rig" / "tyre.toml").write_text(tomli_w.dumps(config), encoding="utf-8")
+        edit(config)
+        path.write_text(tomli_w.dumps(config), encoding="utf-8")
+        yield path, known
+
+
+def one_rig(seed: int, kind: Kind = Kind(base="sample's")) -> Draw:
+    """Draw, simulate and build one campaign."""
+    rng = np.random.default_rng(1000 + seed)
+    sample = SAMPLES / kind.sample
+    true = scaled(tir.read(sample / "true.tir").replace(**NO_FORCE_AT_REST), kind.tyre_off, rng)
+    if kind.one_load:
+        true = true.replace(**_drawn_from_priors(PRESSURE, rng))
+    content = plan_content(sample, pecp1=kind.pecp1, thin=kind.thin)
+    content["rig"] |= {name: kind.rig_off * u for name, u in DECLARED.items()}
+    if kind.one_load:
+        _at_the_lowest_load(content)
+    if kind.upright:
+        content["sweep"] = [row for row in content["sweep"] if "gamma_deg" not in row]
+    with on_disk(true, content, seed, base=_base(kind, true, rng), edit=declares) as (path, known):
         try:
-            result = mffit.build(folder / "rig" / "tyre.toml")
+            result = mffit.build(path)
         except InputError as error:
             return Draw(refused=str(error))
     return _compared(result, true, known.to_json(), rng)
+
+
+def _base(kind: Kind, true: tir.Tyre, rng: np.random.Generator) -> tir.Tyre | None:
+    if kind.base == "sample's":
+        return tir.read(SAMPLES / kind.sample / "base.tir")
+    if kind.base == "none":
+        return None
+    other = scaled(true, 0.3, rng)
+    if kind.one_load:
+        other = other.replace(**dict.fromkeys((*PRESSURE, *SHIFTS), 0.0))
+    return other.replace(PECP1=0.5) if kind.upright else other
 
 
 def _drawn_from_priors(names: tuple[str, ...], rng: np.random.Generator) -> dict[str, float]:
@@ -196,9 +229,8 @@ def _at_pressure_of_sweeps(points: Any, true: tir.Tyre, known: Mapping[str, Any]
     return direct_truth(true, known["load_N"], speed, float(np.median(points.p)), -1.0 / R, R)
 
 
-def _scaled(
-    tyre: tir.Tyre, off: float, rng: np.random.Generator, names: Collection[str] = STAGED
-) -> tir.Tyre:
+def scaled(tyre: tir.Tyre, off: float, rng: np.random.Generator, names: Collection[str] = STAGED) -> tir.Tyre:
+    """The tyre with the named coefficients up to ``off`` of their size apart."""
     return tyre.replace(**{n: float(tyre[n] * (1.0 + off * rng.uniform(-1.0, 1.0))) for n in names})
 
 

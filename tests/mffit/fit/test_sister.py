@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import json
 import shutil
+import tomllib
 from pathlib import Path
 
 import numpy as np
 import pytest
+import tomli_w
 
 import mffit
 import tir
@@ -20,22 +22,6 @@ from mffit.report.figures.sister import borrowed_force
 SAMPLE = Path(__file__).parents[3] / "samples" / "flat-track-combined"
 FRICTION, STIFFNESS = 1.08, 0.9
 """This tyre over its sister."""
-PROJECT = """
-[tyre]
-name = "front"
-unloaded_radius = 0.3185
-width = 0.225
-rim_radius = 0.2159
-nominal_load = 4200
-nominal_pressure = 240
-nominal_speed = 16.7
-{base}
-[rig]
-type = "flat-track"
-axes = "sae"
-[sister]
-Fx = "scaled"
-"""
 
 
 def similar(tyre: tir.Tyre, friction: float, stiffness: float) -> dict[str, float]:
@@ -53,11 +39,14 @@ def similar(tyre: tir.Tyre, friction: float, stiffness: float) -> dict[str, floa
     return v
 
 
-def write_project(folder: Path, sweeps: tuple[str, ...], base: str = 'base = "sister.tir"') -> Path:
+def write_project(folder: Path, sweeps: tuple[str, ...], **base: str) -> Path:
+    """The sample's project with these sweeps only, whose base file ``base="sister.tir"`` gives Fx."""
+    content = tomllib.loads((SAMPLE / "tyre.toml").read_text())
+    content["tyre"] |= {"name": "front", **base}
     for name in sweeps:
         shutil.copy(SAMPLE / f"{name}.csv", folder)
-    rows = "".join(f'[[sweep]]\nfile = "{name}.csv"\n' for name in sweeps)
-    (folder / "tyre.toml").write_text(PROJECT.format(base=base) + rows)
+    content |= {"sister": {"Fx": "scaled"}, "sweep": [{"file": f"{name}.csv"} for name in sweeps]}
+    (folder / "tyre.toml").write_text(tomli_w.dumps(content))
     return folder / "tyre.toml"
 
 
@@ -81,7 +70,8 @@ def built(tmp_path_factory, sister):
     folder = tmp_path_factory.mktemp("sister")
     sister.write(folder / "sister.tir")
     out = folder / "out"
-    return mffit.build(write_project(folder, SIDEWAYS), out, ensemble=12, with_report=False), out
+    toml = write_project(folder, SIDEWAYS, base="sister.tir")
+    return mffit.build(toml, out, ensemble=12, with_report=False), out
 
 
 def test_forces_at_all_slips_are_those_of_the_tyre_itself(built, truth):
@@ -157,12 +147,14 @@ def test_another_nominal_load_and_pressure_change_no_force(truth):
 def test_contradictions_are_refused_with_their_line(tmp_path, sister):
     sister.write(tmp_path / "sister.tir")
     with pytest.raises(InputError, match=r"tyre\.toml:\d+: sister\.Fx: .*names no base file"):
-        mffit.build(write_project(tmp_path, SIDEWAYS[:1], base=""))
-    with pytest.raises(InputError, match=r"tyre\.toml:15: sister\.Fx: .*drive_4200N\.csv measures it"):
-        mffit.build(write_project(tmp_path, (*SIDEWAYS, "drive_4200N")))
+        mffit.build(write_project(tmp_path, SIDEWAYS[:1]))
+    toml = write_project(tmp_path, (*SIDEWAYS, "drive_4200N"), base="sister.tir")
+    line = toml.read_text().splitlines().index('Fx = "scaled"') + 1
+    with pytest.raises(InputError, match=rf"tyre\.toml:{line}: sister\.Fx: .*drive_4200N\.csv measures it"):
+        mffit.build(toml)
     text = (tmp_path / "sister.tir").read_text()
     (tmp_path / "sister.tir").write_text(
         "\n".join(row for row in text.splitlines() if not row.startswith("PKX1"))
     )
     with pytest.raises(InputError, match=r"sister\.tir does not state PKX1"):
-        mffit.build(write_project(tmp_path, SIDEWAYS))
+        mffit.build(write_project(tmp_path, SIDEWAYS, base="sister.tir"))

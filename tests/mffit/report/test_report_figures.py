@@ -427,12 +427,12 @@ def test_a_campaign_of_many_conditions_is_drawn_completely(view):
     ]
     drawn = fit.drawn_conditions(many)
     assert {key[1] for key in drawn} == {100.0 * k for k in range(1, 41)}
-    assert left_undrawn.of_fit(view.points, view.curves) == ""
+    assert fit.model_against_points(view, view.channels[0]).left_out == ""
 
 
 def test_captions_say_what_is_left_out(view, monkeypatch):
     flat = [("Fy", np.zeros(len(view.points)))]
-    assert residuals.residual_maps(view.points, flat, view.conditions, "u").left_out == 0
+    assert residuals.residual_maps(view.points, flat, view.conditions, "u").left_out == ""
     monkeypatch.setattr(constants, "MOST_PANELS_OF_FIT", 1)
     monkeypatch.setattr(constants, "MOST_MAPS_OF_BUILD", 1)
     monkeypatch.setattr(constants, "MOST_PANELS_OF_PARTS", 1)
@@ -440,15 +440,17 @@ def test_captions_say_what_is_left_out(view, monkeypatch):
     rows = {int(i) for curve in view.curves for i in curve.index} - {
         int(i) for curve in shown for i in curve.index
     }
-    said = left_undrawn.of_fit(view.points, view.curves)
+    said = fit.model_against_points(view, view.channels[0]).left_out
     assert said.startswith(f"{len(rows)} points are left out for lack of room, at ")
     maps = residuals.residual_maps(view.points, flat, view.conditions, "u")
-    assert maps.left_out == len(view.conditions) - 1 > 0
-    assert "1 of " in left_undrawn.of_parts(view, view.channels[0])
+    lost = len(view.conditions) - 1
+    assert lost > 0
+    assert maps.left_out == left_undrawn.panels(lost)
+    assert decomposition.decomposition(view, view.channels[0]).left_out.startswith("1 of ")
 
 
 def test_points_outside_every_series_are_counted(view):
-    alone = left_undrawn.of_fit(view.points, view.curves[1:])
+    alone = left_undrawn.points(len(view.points), view.curves[1:], view.curves[1:])
     lost = len(view.points) - len({int(i) for curve in view.curves[1:] for i in curve.index})
     assert lost > 0
     assert alone.startswith(f"{lost} of {len(view.points)} points are not drawn here")

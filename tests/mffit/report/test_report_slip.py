@@ -67,7 +67,7 @@ def test_panels_over_slip_hold_every_driven_reading_of_each_channel(view):
     for channel in view.channels:
         sheet = slip.over_slip(view, channel)
         assert len(sheet.panels) == 3 * 2 + 2 * 2
-        assert sheet.left_out == 0
+        assert sheet.left_out == ""
         assert sum(len(s.x) for p in sheet.panels for s in named(p, Trace, "sweep")) == driven
 
 
@@ -153,8 +153,8 @@ def test_maps_hold_every_reading_inside_their_axes(view):
 def test_what_is_not_drawn_is_said(view, monkeypatch, tmp_path):
     monkeypatch.setattr(constants, "MOST_PANELS_OF_FIT", 2)
     (Fx, *_) = view.channels
-    (picture,) = page.draw(tmp_path, {"slip_Fx": lambda: slip.over_slip(view, Fx)}).values()
-    assert picture.left_out == 8
+    (picture,) = page.draw(tmp_path, {"slip_Fx": lambda: slip.over_slip(view, Fx)}, "points.csv").values()
+    assert picture.left_out == "8 more panels are not drawn. points.csv has every reading."
     macro = page._environment().get_template("macros.html.j2").module
     assert "8 more panels are not drawn" in macro.figure(picture, "words", caller=lambda: "Caption.")
 

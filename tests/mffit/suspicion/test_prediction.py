@@ -22,7 +22,7 @@ def linear_fit(n: int = 60, k: int = 5, seed: int = 4) -> tuple[Leverage, np.nda
     covariance = np.linalg.inv(J.T @ J)
     residual = design @ (covariance @ J.T @ (measured / weight)) - measured
     return (
-        Leverage(("Fy", "Mz"), residual, design, weight, noise, np.linalg.cholesky(covariance)),
+        Leverage(("Fy", "Mz"), residual, design @ np.linalg.cholesky(covariance), weight, noise),
         design,
         measured,
     )
