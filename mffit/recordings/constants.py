@@ -39,6 +39,12 @@ LARGEST_LEVER_ARM_IN_FEET = Real(
 )
 LORRY_LOAD = Real(10_000.0, "N", "Largest load above which the tyre is one of a lorry.")
 RECORDED_TIME_STEPS = Series((1e-5, 5.0), "s", "Time between samples of a moving angle.")
+TIME_BETWEEN_POINTS = Series(
+    (5.0, 3600.0),
+    "s",
+    "Time between the rows of a table of finished points: longer than between the samples of any recording, and less than "
+    "a unit other than seconds would give.",
+)
 STEERING_RATES = Series((0.02, 100.0), "deg/s", "Rates at which rigs steer.")
 STEERING_PERCENTILE = Real(95.0, "%", "Percentile of the rates that is the rate of steering; ignores pauses.")
 STEERING_TRAVEL = Real(1.0, "deg", "Smaller motions of an angle show no rate.")
