@@ -18,6 +18,7 @@ from mffit.recordings import constants
 from mffit.recordings.disc import DiscPath, disc_signs, rolls_backward
 from mffit.recordings.guess import Guess
 from mffit.recordings.sniffed import Sniffed, SniffedRecording, holding, points_from
+from mffit.suspicion.all_files import load_below
 from mffit.sweeps.formats import stem
 
 TYRE_IN_TITLE = re.compile(
@@ -116,8 +117,8 @@ def _load(sniffed: Sniffed, given: float | None) -> str:
 
 def load_beyond(sniffed: Sniffed, nominal_load: float | None) -> str:
     """A remark if the nominal load [N] is above every load of the recordings; "" otherwise."""
-    highest = max((level.value for level in sniffed.conditions["load"]), default=np.nan)
-    if nominal_load is None or not nominal_load > constants.NOMINAL_OVER_HIGHEST_LOAD * highest:
+    highest = None if nominal_load is None else load_below(sniffed.points, nominal_load)
+    if highest is None:
         return ""
     return (
         f"the nominal load of {nominal_load:g} N is above the highest load of {highest:.0f} N: check the unit of the load "
