@@ -42,3 +42,11 @@ PREDICTION_FALSE_ALARM = Real(0.01, "-", "Probability that chance lets any candi
 LEAST_PREDICTED_SHARE = Real(0.02, "-", "Misfit of left-out sweeps that a candidate must remove.")
 WORSE_PREDICTION = Real(2.0, "-", "Standard errors over the sweeps by which a prediction counts as worse.")
 FEWEST_SWEEPS_TO_PREDICT = Count(8, "-", "With fewer sweeps a gain cannot be separated from chance.")
+HOTTEST_TREAD = Real(
+    110.0, "degC", "Median of a tread's temperature that no tread keeps; in degF it is usual, 43 degC."
+)
+NOMINAL_OVER_HIGHEST_LOAD = Real(
+    1.05,
+    "-",
+    "Nominal load over the highest level of load from which it is pointed out; levels scatter by less.",
+)

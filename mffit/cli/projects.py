@@ -60,7 +60,7 @@ def sniff(files: tuple[Path, ...], out: Path | None, voice: Voice) -> None:
 @click.option(
     "--belt", is_flag=True, help="With --from: the path was straight, whatever the recordings look like."
 )
-@click.option("--name", help="With --from: of the output files [default: the first recording's].")
+@click.option("--name", help="With --from: of the output files [default: the recording's, or the folder's].")
 @voiced
 def init(
     paths: tuple[Path, ...],

@@ -215,7 +215,12 @@ def _assembled(
         camber_skew=skew,
     )
     if not known:
-        return measured, [notes.NOTHING_MEASURED] if evidence.rig else []
+        lacking = notes.nothing_measured(
+            camber=any(row.C_gamma is not None for row in per_load),
+            zeros=any(row.C_phit is not None for row in per_load),
+            radius=bool(evidence.radii),
+        )
+        return measured, [lacking] if evidence.rig else []
     loads = [found.row.load for found, _ in known]
     at = min(range(len(known)), key=lambda k: abs(loads[k] - nominal_load))
     law = load_dependence(loads, [epsilon for _, epsilon in known], at, nominal_load)

@@ -15,11 +15,21 @@ ON_THE_PATH = (
     "the curvature of that path."
 )
 CONTACT_WANDERS = "With camber the contact point moves over the crown and changes the path radius; R holds for the upright wheel."
-NOTHING_MEASURED = (
-    "eps_gamma could not be measured: it needs a camber sweep, points at (0, 0) and a [rolling_radius]"
-)
 ONE_LOAD = "PECP2 is 0: one load was measured."
 EPSILON_IN_NOISE = "PECP2 is 0: eps_gamma itself is within 2 u of zero, so a relative slope has no meaning."
+
+
+def nothing_measured(*, camber: bool, zeros: bool, radius: bool) -> str:
+    """What eps_gamma lacks: ``camber``, ``zeros`` and ``radius`` say what there is at any load."""
+    needed = {
+        "a camber sweep at zero sideslip": camber,
+        "points at zero sideslip and camber": zeros,
+        "the rolling radius (write one turn of the disc under [rolling_radius] of tyre.toml)": radius,
+    }
+    lacking = [what for what, there in needed.items() if not there]
+    if not lacking:
+        return "eps_gamma could not be measured: camber sweep and zeros are at different loads; it needs both at one load"
+    return f"eps_gamma could not be measured, for lack of {' and '.join(lacking)}"
 
 
 def load_slope(pecp2: float, u: float) -> str:

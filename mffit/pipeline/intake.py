@@ -39,7 +39,7 @@ def init_from(
     unloaded_radius : [m]
     nominal_load : [N]
     nominal_pressure : [kPa]; default the pressure of most samples
-    name : name of the output files; default that of the first recording
+    name : name of the output files; default that of the recording, or of the folder for several
     disc : path of the disc
     belt : whether the path is straight, whatever the recordings look like
 

@@ -28,6 +28,15 @@ HELD_SPAN = Real(
     "Range of the load within a sweep, in tolerances, up to which the sweep holds it: load control wanders by 10 % to either "
     "side at small loads, and programmes step it by a quarter or more.",
 )
+LONGEST_HELD_SPAN = Real(
+    4.5,
+    "-",
+    "The same without a gap between the readings, as while braking: 18 % to either side; a step of a quarter that wanders by "
+    "10 % spans 5.",
+)
+GAP_OF_A_STEP = Real(
+    0.5, "-", "Smallest gap between the sorted loads of a sweep, in tolerances, that means a step."
+)
 PERCENTILES_OF_HELD = Series((5.0, 95.0), "%", "Ends of that range; ignores single values.")
 
 # Samples that are no measurement

@@ -54,9 +54,10 @@ def nearest_labels(values: np.ndarray, kind: LevelKind) -> np.ndarray:
 
 
 def labels_of_sweeps(values: np.ndarray, sweep: np.ndarray, kind: LevelKind) -> np.ndarray:
-    """As :func:`nearest_labels`, with one label for each sweep that holds the setting: that of most of its points.
+    """As :func:`nearest_labels`, with one label for each sweep that holds the setting: that of its median.
 
-    A load wanders with the side force of a sweep, by more than a tolerance at small loads.
+    A load wanders with the forces of a sweep, by more than a tolerance at small loads. Levels are therefore those of the medians
+    of such sweeps.
 
     Parameters
     ----------
@@ -64,15 +65,23 @@ def labels_of_sweeps(values: np.ndarray, sweep: np.ndarray, kind: LevelKind) -> 
     sweep : (n,) number of each value's sweep
     kind : of the setting
     """
-    found, scaled = nearest_labels(values, kind), _scaled(values, kind)
+    held = np.array(values, dtype=float)
+    scaled = _scaled(values, kind)
     for k in np.unique(sweep):
-        rows = np.flatnonzero((sweep == k) & (found != NO_LEVEL))
-        if (
-            len(rows)
-            and np.ptp(np.percentile(scaled[rows], constants.PERCENTILES_OF_HELD)) < constants.HELD_SPAN
-        ):
-            found[rows] = np.bincount(found[rows]).argmax()
-    return found
+        rows = np.flatnonzero((sweep == k) & np.isfinite(scaled))
+        if len(rows) and _is_held(scaled[rows]):
+            held[rows] = np.median(held[rows])
+    return nearest_labels(held, kind)
+
+
+def _is_held(scaled: np.ndarray) -> bool:
+    """Whether values (n,) in tolerances wander about one value, instead of stepping from one to another."""
+    low, high = np.percentile(scaled, constants.PERCENTILES_OF_HELD)
+    if high - low < constants.HELD_SPAN:
+        return True
+    inside = np.sort(scaled[(scaled >= low) & (scaled <= high)])
+    steady = bool(np.diff(inside).max() < constants.GAP_OF_A_STEP)
+    return steady and bool(high - low < constants.LONGEST_HELD_SPAN)
 
 
 def median_of_labels(values: np.ndarray, found: np.ndarray) -> np.ndarray:

@@ -25,10 +25,8 @@ CAR_TYRE_PRESSURES = Series(
 )
 LORRY_TYRE_PRESSURES = Series((400.0, 1200.0), "kPa", "Pressures of the tyres of lorries.")
 ANY_TYRE_PRESSURES = Series((40.0, 1200.0), "kPa", "No tyre has a pressure outside this range.")
-TREADS_IN_FAHRENHEIT = Series(
-    (110.0, 250.0),
-    "-",
-    "Median of a tread's temperature that is in degF: 43 to 121 degC, while no tread stays at 110 degC; kelvin are above.",
+HOTTEST_TREAD_IN_FAHRENHEIT = Real(
+    250.0, "degF", "Median of a tread's temperature up to which it may be in degF; kelvin are above."
 )
 ANY_LOADED_RADII = Series((0.1, 0.8), "m", "Loaded radii of tyres, from karts to lorries.")
 LARGEST_LEVER_ARM_IN_FEET = Real(
@@ -39,6 +37,12 @@ LARGEST_LEVER_ARM_IN_FEET = Real(
 )
 LORRY_LOAD = Real(10_000.0, "N", "Largest load above which the tyre is one of a lorry.")
 RECORDED_TIME_STEPS = Series((1e-5, 5.0), "s", "Time between samples of a moving angle.")
+TIME_BETWEEN_POINTS = Series(
+    (5.0, 3600.0),
+    "s",
+    "Time between the rows of a table of finished points: longer than between the samples of any recording, and less than "
+    "a unit other than seconds would give.",
+)
 STEERING_RATES = Series((0.02, 100.0), "deg/s", "Rates at which rigs steer.")
 STEERING_PERCENTILE = Real(95.0, "%", "Percentile of the rates that is the rate of steering; ignores pauses.")
 STEERING_TRAVEL = Real(1.0, "deg", "Smaller motions of an angle show no rate.")
@@ -50,12 +54,6 @@ LARGEST_SLIP_AS_RATIO = Real(
 )
 ROLLING_RADIUS_RANGE = Series(
     (0.75, 1.25), "-", "Speed over rotation, in unloaded radii, if the rotation is the wheel's."
-)
-
-NOMINAL_OVER_HIGHEST_LOAD = Real(
-    1.05,
-    "-",
-    "Nominal load over the highest level of load from which it is pointed out; levels scatter by less.",
 )
 
 # Disc or belt

@@ -7,12 +7,13 @@ states none, it is the unit in which the numbers are plausible (``unstated``); t
 from __future__ import annotations
 
 import re
-from collections.abc import Collection
+from collections.abc import Collection, Mapping
 from typing import NamedTuple
 
 import numpy as np
 
 from mffit.config.models import Column
+from mffit.recordings import constants
 from mffit.recordings.slip_definition import SLIP, slip_definition, wheel_not_recorded
 from mffit.recordings.unstated import Choice, FoundChannel, choices, customary, hot
 from mffit.sweeps.channels import BY_NAME, SWEEP_CHANNELS, Channel
@@ -22,6 +23,10 @@ from mffit.sweeps.units import UnknownUnitError, converted
 
 CLOCK = re.compile(r"\d{1,4}[-./]\d{1,2}[-./]\d{1,4}[T ]+\d{1,2}:\d|\d{1,2}:\d\d:\d\d")
 """A time of day, with or without its date."""
+
+
+SPELLINGS = str.maketrans({" ": "_", "-": "_", "ä": "ae", "ö": "oe", "ü": "ue", "ß": "ss"})
+"""What is written in several ways in headings."""
 
 
 class Guess(NamedTuple):
@@ -83,6 +88,9 @@ def guesses(raw: RawTable, *, unloaded_radius: float | None = None) -> Guesses:
     if remark := hot(columns):
         remarks.append(remark)
     found = {name: _guess(raw, column, chosen.get(name)) for name, column in columns.items()} | _labels(raw)
+    if why := _of_finished_points(columns, found):
+        time = found.pop("time_s")
+        found["t_s"] = time._replace(channel=BY_NAME["t_s"], why=why)
     defined = slip_definition(slips, columns, lambda name: found[name].unit_of_readings)
     if defined is not None:
         remarks += defined.remarks
@@ -104,8 +112,8 @@ def _headings(raw: RawTable) -> dict[str, str]:
 
 
 def simplified(heading: str) -> str:
-    """A heading or name without differences of case, blanks and hyphens."""
-    return heading.lower().replace(" ", "_").replace("-", "_")
+    """A heading or name without differences of case, blanks, hyphens and umlauts (``ae`` for ``ä``)."""
+    return heading.lower().translate(SPELLINGS)
 
 
 def _number_columns(raw: RawTable) -> dict[str, FoundChannel]:
@@ -162,6 +170,19 @@ def _guess(raw: RawTable, column: FoundChannel, choice: Choice | None) -> Guess:
         upper=float(np.nanmax(column.values)),
         why="" if choice is None else choice.why,
     )
+
+
+def _of_finished_points(columns: Mapping[str, FoundChannel], found: Mapping[str, Guess]) -> str:
+    """Why the time of a file is when its points were taken, not that of samples; "" if it is that of samples."""
+    if "time_s" not in columns or "t_s" in columns or columns["time_s"].heading == "time_s":
+        return ""
+    time = columns["time_s"].values
+    seconds = converted(time[np.isfinite(time)], found["time_s"].unit_of_readings, "s")
+    if len(seconds) < 2:
+        return ""
+    step = float(np.median(np.abs(np.diff(seconds))))
+    least, most = constants.TIME_BETWEEN_POINTS
+    return f"rows are {step:.3g} s apart, so each is a finished point" if least < step < most else ""
 
 
 def _without_moment(raw: RawTable, taken: Collection[str]) -> list[str]:

@@ -18,9 +18,26 @@ from mffit.recordings import constants
 from mffit.recordings.disc import DiscPath, disc_signs, rolls_backward
 from mffit.recordings.guess import Guess
 from mffit.recordings.sniffed import Sniffed, SniffedRecording, holding, points_from
+from mffit.suspicion.all_files import load_below
 from mffit.sweeps.formats import stem
 
-TYRE_IN_TITLE = re.compile(r"\b(?:tyre|tire|reifen)\s*[:=]\s*(.*\S)", re.IGNORECASE)
+TYRE_IN_TITLE = re.compile(
+    r"\b(?:tyre|tire|reifen)\s*[:=]\s*(\S.*?)\s*(?=$|[;|]|\s[^\s:=]+\s*[:=](?:\s|$))", re.IGNORECASE
+)
+"""What a title names as the tyre, up to its next entry."""
+ZEROS_OF_A_DISC = [
+    "# backlash_deg = 0.0       # full play of the sideslip axis; this and how well the zeros are known decide how certain",
+    "# u_loadcell_offset_N = 10 # the camber reduction factor is: see docs, A programme on a disc",
+]
+ROLLING_RADIUS = [
+    "# One turn of the disc; without it the camber reduction factor is not measured. One [[rolling_radius]] per load:",
+    "# [[rolling_radius]]",
+    "# load_N = ",
+    "# revolutions =            # whole turns of the wheel",
+    "# angle_start_deg =        # of the wheel, before and after",
+    "# angle_end_deg = ",
+]
+"""What recordings of a disc do not contain."""
 SECTION_IN_TITLE = re.compile(r"\[[^\]]*\]")
 """The heading of a section in a text file, ``[DATA]``."""
 
@@ -45,7 +62,7 @@ def project_text(
     unloaded_radius : [m]; None leaves it to the user
     nominal_load : [N]; None leaves it to the user
     nominal_pressure : [kPa]; None takes the most frequent pressure
-    name : of the output files; None takes the name of the first recording
+    name : of the output files; None takes the name of the recording, or of the folder for several
     disc : path of the disc; None for a belt, or if it is not known
     belt : whether the path is known to be straight, whatever the recordings look like
     """
@@ -58,7 +75,7 @@ def project_text(
         ],
         [
             "[tyre]",
-            f"name = {quoted(name or slug(recordings[0].path))}",
+            f"name = {quoted(name or _name(recordings, folder))}",
             *_size(recordings),
             _given("unloaded_radius", unloaded_radius, "m"),
             _load(sniffed, nominal_load),
@@ -69,11 +86,17 @@ def project_text(
             "[rig]",
             *_path(sniffed, disc, belt),
             _axes(sniffed),
+            *(ZEROS_OF_A_DISC if disc is not None else ()),
         ],
+        *([ROLLING_RADIUS] if disc is not None else []),
         ["[columns]  # of all files", *_comments(of_all), *_columns(shared)],
         *_sweeps(recordings, folder, shared, of_all),
     ]
     return "\n\n".join("\n".join(lines) for lines in tables) + "\n"
+
+
+def _name(recordings: Sequence[SniffedRecording], folder: Path) -> str:
+    return slug(folder if len(recordings) > 1 and folder.name else recordings[0].path)
 
 
 def _size(recordings: Collection[SniffedRecording]) -> list[str]:
@@ -94,8 +117,8 @@ def _load(sniffed: Sniffed, given: float | None) -> str:
 
 def load_beyond(sniffed: Sniffed, nominal_load: float | None) -> str:
     """A remark if the nominal load [N] is above every load of the recordings; "" otherwise."""
-    highest = max((level.value for level in sniffed.conditions["load"]), default=np.nan)
-    if nominal_load is None or not nominal_load > constants.NOMINAL_OVER_HIGHEST_LOAD * highest:
+    highest = None if nominal_load is None else load_below(sniffed.points, nominal_load)
+    if highest is None:
         return ""
     return (
         f"the nominal load of {nominal_load:g} N is above the highest load of {highest:.0f} N: check the unit of the load "
@@ -148,13 +171,34 @@ def _sweeps(
     shared: Mapping[str, Guess],
     remarks_of_all: Collection[str],
 ) -> list[list[str]]:
-    """A [[sweep]] for every recording, or one for all if they differ in nothing but their names."""
-    tables = [_sweep(recording, folder, shared, remarks_of_all) for recording in recordings]
-    pattern = _pattern([recording.path for recording in recordings])
-    if pattern is None or any(len(table) > len(("[[sweep]]", "file")) for table in tables):
-        return tables
-    name = relative(recordings[0].path.parent / pattern, folder)
-    return [["[[sweep]]", f"file = {quoted(name)}  # {len(recordings)} files"]]
+    """A [[sweep]] for every recording; one with a pattern for those that differ in nothing but their names."""
+    alike: dict[tuple[tuple[str, ...], tuple[str, ...]], list[SniffedRecording]] = {}
+    for recording in recordings:
+        remarks = _comments(remark for remark in recording.remarks if remark not in remarks_of_all)
+        alike.setdefault((tuple(remarks), _content(recording, shared)), []).append(recording)
+    return [
+        ["[[sweep]]", *remarks, f"file = {quoted(relative(path, folder))}{count}", *content]
+        for (remarks, content), members in alike.items()
+        for path, count in _files([recording.path for recording in members])
+    ]
+
+
+def _files(paths: Sequence[Path]) -> list[tuple[Path, str]]:
+    """Files, or patterns for those whose names begin with the same word, each with a comment on how many it matches."""
+    if (pattern := _pattern(paths)) is not None:
+        return [(paths[0].parent / pattern, f"  # {len(paths)} files")]
+    families: dict[tuple[Path, str], list[Path]] = {}
+    for path in paths:
+        word = "".join(takewhile(str.isalpha, path.name))
+        families.setdefault((path.parent, word), []).append(path)
+    named = []
+    for family in families.values():
+        pattern = _pattern(family)
+        if pattern is None:
+            named += [(path, "") for path in family]
+        else:
+            named.append((family[0].parent / pattern, f"  # {len(family)} files"))
+    return named
 
 
 def _pattern(paths: Sequence[Path]) -> str | None:
@@ -176,17 +220,13 @@ def _shared_start(names: Collection[str]) -> str:
     )
 
 
-def _sweep(
-    recording: SniffedRecording, folder: Path, shared: Mapping[str, Guess], remarks_of_all: Collection[str]
-) -> list[str]:
-    own = {name: guess for name, guess in recording.guesses.items() if _differs(shared[name], guess)}
-    return [
-        "[[sweep]]",
-        *_comments(remark for remark in recording.remarks if remark not in remarks_of_all),
-        f"file = {quoted(relative(recording.path, folder))}",
+def _content(recording: SniffedRecording, shared: Mapping[str, Guess]) -> tuple[str, ...]:
+    """What the [[sweep]] of a recording says beside its file."""
+    own = {name: guess for name, guess in recording.guesses.items() if _differs(shared.get(name), guess)}
+    return (
         *(['direction = "backward"  # from the name of the file'] if _backward(recording) else []),
         *(["[sweep.columns]", *(_column(guess) for guess in own.values())] if own else []),
-    ]
+    )
 
 
 def _backward(recording: SniffedRecording) -> bool:
@@ -223,15 +263,18 @@ def _axes(sniffed: Sniffed) -> str:
 
 
 def _shared_columns(sniffed: Sniffed) -> dict[str, Guess]:
-    """The column of every channel, as in the first file that has it."""
+    """The column of every channel, as in the first file that has it; none whose heading is another channel elsewhere."""
     shared: dict[str, Guess] = {}
+    channels: dict[str, set[str]] = {}
     for recording in sniffed.recordings:
         shared |= {name: guess for name, guess in recording.guesses.items() if name not in shared}
-    return shared
+        for name, guess in recording.guesses.items():
+            channels.setdefault(guess.heading, set()).add(name)
+    return {name: guess for name, guess in shared.items() if len(channels[guess.heading]) == 1}
 
 
-def _differs(shared: Guess, guess: Guess) -> bool:
-    return shared.column != guess.column
+def _differs(shared: Guess | None, guess: Guess) -> bool:
+    return shared is None or shared.column != guess.column
 
 
 def _columns(guesses: Mapping[str, Guess]) -> list[str]:
@@ -250,7 +293,8 @@ def _column(guess: Guess) -> str:
         note = f"the file states no unit: {guess.why}" if guess.unit else guess.why
     else:
         text = f"{name} = {heading}"
-        note = f"in {guess.stated}, as the file says" if guess.stated and guess.channel.unit else ""
+        stated = f"in {guess.stated}, as the file says" if guess.stated and guess.channel.unit else ""
+        note = "; ".join(part for part in (stated, guess.why) if part)
     return f"{text}  # {_one_line(note)}" if note else text
 
 

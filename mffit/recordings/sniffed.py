@@ -219,20 +219,20 @@ def axes_of(points: Points, declared: str, *, load_falls: bool) -> tuple[tuple[s
 
 
 def conditions_of(recordings: Sequence[SniffedRecording], reading: Reading) -> dict[str, tuple[Level, ...]]:
-    """The levels of every setting, of the stretches that give points or of finished points; sideslip of slip sweeps only.
+    """The levels of every setting, of the stretches that give points and of finished points; sideslip of slip sweeps only.
 
     Pressure and speed count only if measured; a setting that no recording holds has no level.
     """
     kept = [note for note in reading.stretches if note.kind != MOVE and not note.dropped]
-    points = reading.points
+    finished = points_from(reading.points, set(reading.points.files) - {note.file for note in kept})
     pressed = holding(recordings, "p_kPa")
     values = {
-        levels.LOAD: np.array([note.Fz_N for note in kept]) if kept else points.Fz,
-        levels.CAMBER: np.radians([note.gamma_deg for note in kept]) if kept else points.gamma,
-        levels.PRESSURE: 1e3 * np.array([note.p_kPa for note in kept if note.file in pressed])
-        if kept
-        else points_from(points, pressed).p,
-        levels.SPEED: points_from(points, holding(recordings, "V_mps")).V,
+        levels.LOAD: np.append([note.Fz_N for note in kept], finished.Fz),
+        levels.CAMBER: np.append(np.radians([note.gamma_deg for note in kept]), finished.gamma),
+        levels.PRESSURE: np.append(
+            [1e3 * note.p_kPa for note in kept if note.file in pressed], points_from(finished, pressed).p
+        ),
+        levels.SPEED: points_from(reading.points, holding(recordings, "V_mps")).V,
     }
     found = {quantity.name: _levels(value, quantity) for quantity, value in values.items()}
     driven = [note for note in kept if note.swept == "kappa"]

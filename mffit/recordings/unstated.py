@@ -7,6 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from mffit.constants import HOTTEST_TREAD
 from mffit.recordings import constants
 from mffit.sweeps.channels import BY_NAME, Channel
 from mffit.sweeps.columns import implausible
@@ -172,7 +173,7 @@ def _american(
 
 def _too_hot(column: FoundChannel) -> bool:
     """Whether temperatures without a unit, or stated in degC, are those of no tyre in degC."""
-    return _within(float(np.nanmedian(column.values)), constants.TREADS_IN_FAHRENHEIT)
+    return _within(float(np.nanmedian(column.values)), (HOTTEST_TREAD, constants.HOTTEST_TREAD_IN_FAHRENHEIT))
 
 
 def _lengths(column: FoundChannel, radius: float | None) -> list[str]:

@@ -17,6 +17,14 @@ MOST_TICKS = Count(
 POINTS_PER_SERIES_IN_PAGE = Count(
     1000, "-", "Most points of a series in a page's table; more would slow the page."
 )
+LARGEST_PLAIN_TABLE = Count(
+    40_000, "bytes", "Longer tables behind a picture are packed; a page then has a third of the size."
+)
+MOST_MARKS_IN_HUNDREDTHS = Count(
+    8,
+    "-",
+    "Outlines of more pieces are marks, drawn to a tenth of a point, which is less than a pixel; lines are drawn to a hundredth.",
+)
 DIGITS_IN_TABLE = Count(6, "-", "Significant digits of the table behind a picture; no rig has more.")
 MOST_COLOUR_STEPS = Count(33, "-", "Colours of a map; white is one of them, and neighbours look alike.")
 

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import base64
+import io
+import zipfile
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cache
@@ -12,7 +14,7 @@ from urllib.parse import quote
 
 from mffit import rounding
 from mffit.errors import shortened
-from mffit.report import making, numbers, typeset
+from mffit.report import constants, making, numbers, typeset
 from mffit.report.drawing.records import Sheet
 from mffit.templates import environment
 
@@ -30,11 +32,25 @@ class PagePicture:
     left_out: str  #: what is not drawn, in sentences for the caption
 
     @property
+    def is_packed(self) -> bool:
+        """Whether the table is a ZIP archive of its file, because it is long."""
+        return len(self.table) > constants.LARGEST_PLAIN_TABLE
+
+    @property
     def link(self) -> str:
-        """The table as a data address, in the shorter of both encodings."""
+        """The table, or the archive with it, as a data address; of a table in the shorter of both encodings."""
+        if self.is_packed:
+            return f"data:application/zip;base64,{base64.b64encode(self._archive()).decode('ascii')}"
         plain = "," + quote(self.table, safe=",;:.+-=()[]/_")
         packed = ";base64," + base64.b64encode(self.table.encode()).decode("ascii")
         return "data:text/csv;charset=utf-8" + min(plain, packed, key=len)
+
+    def _archive(self) -> bytes:
+        buffer = io.BytesIO()
+        with zipfile.ZipFile(buffer, "w", zipfile.ZIP_DEFLATED) as archive:
+            # With the default date the same table gives the same bytes.
+            archive.writestr(zipfile.ZipInfo(f"{self.name}.csv"), self.table, zipfile.ZIP_DEFLATED)
+        return buffer.getvalue()
 
 
 def write(

@@ -8,11 +8,12 @@ from functools import partial
 import numpy as np
 
 from mffit.config import Config
-from mffit.constants import ZERO_CAMBER, ZERO_SIDESLIP
-from mffit.points import Points
+from mffit.constants import HOTTEST_TREAD, NOMINAL_OVER_HIGHEST_LOAD, ZERO_CAMBER, ZERO_SIDESLIP
+from mffit.points import Points, levels
 from mffit.suspicion import constants
 from mffit.suspicion.rule import Finding, Outcome, Subject, rule
 from mffit.suspicion.slopes import SIGNS, Signatures, at_zero, pooled, signatures
+from tir.errors import counted
 
 of_all_files = partial(rule, subject=Subject.ALL_FILES)
 
@@ -174,3 +175,47 @@ def no_zero_on_disc(points: Points, config: Config) -> Iterator[Finding]:
     """Forward points at alpha = gamma = 0 on a disc, where the turn-slip force is measured."""
     if config.rig.on_disc and not np.any(at_zero(points) & (points.direction > 0)):
         yield Finding({}, file=config.path, column="alpha_deg")
+
+
+@of_all_files(
+    id="nominal-load-above-all",
+    limits=(NOMINAL_OVER_HIGHEST_LOAD,),
+    outcome=Outcome.WARNED,
+    sentence="the nominal load of {nominal:g} N is above the highest measured load of {highest:.0f} N, so that nothing was "
+    "measured where the file is centred: check nominal_load, and the unit of Fz_N",
+)
+def nominal_load_above_all(points: Points, config: Config) -> Iterator[Finding]:
+    """Nominal load over the highest level of load."""
+    highest = load_below(points, config.tyre.nominal_load)
+    if highest is not None:
+        yield Finding({"nominal": config.tyre.nominal_load, "highest": highest})
+
+
+def load_below(points: Points, nominal_load: float) -> float | None:
+    """The highest level of load [N] if the nominal load is above it; else None."""
+    loads = points.Fz[np.isfinite(points.Fz)]
+    if not len(loads):
+        return None
+    highest = float(levels.level_values(loads, levels.LOAD).max())
+    return highest if nominal_load > NOMINAL_OVER_HIGHEST_LOAD * highest else None
+
+
+@of_all_files(
+    id="hot-tread",
+    limits=(HOTTEST_TREAD,),
+    outcome=Outcome.WARNED,
+    sentence="T_degC is {degrees:.0f} degC in the middle{where}, and no tread stays as hot: if the readings are in degF, write "
+    'T_degC = {{ column = "...", unit = "degF" }} under [columns]',
+)
+def hot_tread(points: Points, config: Config) -> Iterator[Finding]:
+    """Median of the temperatures of a file."""
+    found = []
+    for k in np.unique(points.file):
+        T = points.T[points.file == k]
+        middle = float(np.median(T[np.isfinite(T)])) if np.any(np.isfinite(T)) else 0.0
+        if middle >= HOTTEST_TREAD:
+            found.append((points.files[k], middle))
+    if found:
+        first, others = found[0][0], len(found) - 1
+        where = f" in {first}" + f" and {counted(others, 'more file')}" * bool(others)
+        yield Finding({"degrees": found[0][1], "where": where})

@@ -58,6 +58,8 @@ RULES: tuple[Rule, ...] = (
     all_files.no_zero_on_disc,
     all_files.lone_lean,
     all_files.weak_turn_slip,
+    all_files.nominal_load_above_all,
+    all_files.hot_tread,
     others.known_mistake,
     others.implausible_sweep,
     others.doubtful_sweep,

@@ -209,7 +209,7 @@ def test_pictures_and_page_are_there(built):
         assert content.startswith(PNG)
         assert content.rstrip().endswith(b"IEND\xaeB`\x82")
     page = (built / "out" / "report.html").read_text(encoding="utf-8")
-    assert page.count('<div class="panels"') == page.count('href="data:text/csv') == len(pictures)
+    assert page.count('<div class="panels"') == page.count('<a class="data" download="') == len(pictures)
 
 
 @pytest.fixture(scope="module")

@@ -6,6 +6,7 @@ import io
 import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from functools import cache
 from itertools import islice
 from pathlib import Path
 
@@ -25,8 +26,15 @@ MARGIN, ROW_GAP, KEY_GAP = 8.0, 6.0, 15.0
 TAG = re.compile(r"<[^>]*>")
 BETWEEN = re.compile(r"<defs>.*?</defs>|(?<=>)\s+(?=<)", re.DOTALL)
 """Clip paths, which the drawings do not need, and indentation."""
-SURPLUS = re.compile(r'(?<=\.\d\d)\d+| (id|clip-path)="[^"]*"|\n')
-"""In a tag: decimals beyond a hundredth of a point, names that would occur twice in a page, and ends of lines."""
+SURPLUS = re.compile(
+    r'(?<=\.\d\d)\d+| (id|clip-path)="[^"]*"|\n| transform="rotate\(-0 [^"]*"'
+    r"|; stroke-linejoin: miter|font-family: [^;]*; |text-anchor: start; "
+)
+"""In a tag: decimals beyond a hundredth of a point, names that would occur twice in a page, ends of lines, and what the page's
+style sheet says or would be so without it."""
+OUTLINE = re.compile(r'(?<= d=")[^"]*')
+STEP = re.compile(r"([A-Za-z])([^A-Za-z]*)")
+"""A command of an outline with its numbers."""
 LOWERED = re.compile(SUBSCRIPT.pattern + "([^$<]*)")
 """A subscript and the text behind it."""
 
@@ -102,9 +110,47 @@ def _drawing(figure: Figure) -> Drawing:
 def _svg(text: str, width: float, height: float) -> str:
     """What the file draws, without its head and names."""
     drawn = text[text.index('<g id="figure_1">') : text.rindex("</svg>")]
-    short = TAG.sub(lambda tag: SURPLUS.sub("", tag[0]), BETWEEN.sub("", drawn))
+    drawn = OUTLINE.sub(lambda outline: _shortened(outline[0]), BETWEEN.sub("", drawn))
+    short = TAG.sub(lambda tag: SURPLUS.sub("", tag[0]), drawn)
     lowered = LOWERED.sub(r'<tspan dy=".3em" font-size="70%">\1</tspan><tspan dy="-.21em">\2</tspan>', short)
     return f'<svg viewBox="0 0 {width:.2f} {height:.2f}" style="--w:{width:.2f}">{lowered}</svg>'
+
+
+def _shortened(outline: str) -> str:
+    """The same outline in steps from place to place, a third of the text: lines in hundredths of a point, marks in tenths."""
+    per_point = 10 if outline.count("M") > constants.MOST_MARKS_IN_HUNDREDTHS else 100
+    out: list[str] = []
+    x = y = first_x = first_y = 0
+    for command, text in STEP.findall(outline):
+        numbers = [round(per_point * float(number)) for number in text.split()]
+        if not numbers:
+            x, y = first_x, first_y
+            out.append("z")
+            continue
+        if command == "M":
+            out.append(f"M{_decimal(numbers[0], per_point)} {_decimal(numbers[1], per_point)}")
+            first_x, first_y = numbers
+        elif command != "L":
+            steps = [number - (x, y)[k % 2] for k, number in enumerate(numbers)]
+            out.append(command.lower() + " ".join(_decimal(step, per_point) for step in steps))
+        elif per_point == 10 and abs(numbers[0] - x) <= 1 and numbers[1] == y:
+            out.append("h.01")  # a line with hardly any length, whose ends are a disc
+        elif numbers[1] == y:
+            out.append(f"h{_decimal(numbers[0] - x, per_point)}")
+        elif numbers[0] == x:
+            out.append(f"v{_decimal(numbers[1] - y, per_point)}")
+        else:
+            up = _decimal(numbers[1] - y, per_point)
+            out.append(f"l{_decimal(numbers[0] - x, per_point)}{up if up[0] == '-' else ' ' + up}")
+        x, y = numbers[-2:]
+    return "".join(out)
+
+
+@cache
+def _decimal(number: int, per_point: int) -> str:
+    """A number of tenths or hundredths as short as possible: ``.5``, ``-3``."""
+    text = f"{number / per_point:.2f}".rstrip("0").rstrip(".")
+    return text.replace("0.", ".", 1) if text.startswith(("0.", "-0.")) else text
 
 
 def _key_lines(key: Sequence[Drawing]) -> Iterator[list[Drawing]]:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from mffit.points.stretch import MOVE
@@ -10,6 +12,7 @@ from mffit.recordings.project_file import title_of
 from mffit.recordings.sniffed import Level, SniffedRecording
 from mffit.report import constants
 from mffit.report.text.layout import blocks, paragraphs, table
+from tir.errors import counted
 
 SETTINGS = {
     "load": ("N", 1.0, 0),
@@ -22,46 +25,79 @@ SETTINGS = {
 
 
 def sniff_summary(sniffed: Sniffed) -> str:
-    """Channels, units, axes, conditions, rates, gaps and stretches."""
+    """Channels, units, axes, conditions, rates, gaps and stretches; files with the same columns share a table."""
+    alike: dict[tuple[object, ...], list[SniffedRecording]] = {}
+    for recording in sniffed.recordings:
+        alike.setdefault(_columns(recording), []).append(recording)
     return blocks(
         [
-            *(_file(recording) for recording in sniffed.recordings),
+            *(_files(recordings) for recordings in alike.values()),
             _axes(sniffed),
             _conditions(sniffed),
             _stretches(sniffed),
-            paragraphs(
-                [f"{r.path}: {remark}" for r in sniffed.recordings for remark in r.remarks]
-                + list(sniffed.reading.warnings)
-            ),
+            paragraphs(_remarks(sniffed.recordings) + list(sniffed.reading.warnings)),
         ]
     )
 
 
-def _file(recording: SniffedRecording) -> str:
-    taken = {guess.heading: guess for guess in recording.guesses.values()}
+def _columns(recording: SniffedRecording) -> tuple[object, ...]:
+    """What files with one table have in common."""
+    taken = tuple((guess.heading, name, guess.unit) for name, guess in recording.guesses.items())
+    return recording.kind, recording.headings, recording.units, taken
+
+
+def _remarks(recordings: Sequence[SniffedRecording]) -> list[str]:
+    """The remarks on columns, each once, with its file or the number of its files."""
+    files: dict[str, list[SniffedRecording]] = {}
+    for recording in recordings:
+        for remark in recording.remarks:
+            files.setdefault(remark, []).append(recording)
+    return [f"{_named(named)}: {remark}" for remark, named in files.items()]
+
+
+def _named(recordings: Sequence[SniffedRecording]) -> str:
+    first, *others = recordings
+    return f"{first.path} and {counted(len(others), 'more file')}" if others else str(first.path)
+
+
+def _files(recordings: Sequence[SniffedRecording]) -> str:
+    """Files with the same columns: a line for each, and the columns with their ranges over all of them."""
+    first = recordings[0]
     rows = []
-    for heading, unit in zip(recording.headings, recording.units, strict=True):
-        guess = taken.get(heading)
-        if guess is None:
+    for heading, unit in zip(first.headings, first.units, strict=True):
+        guesses = [guess for r in recordings for guess in r.guesses.values() if guess.heading == heading]
+        if not guesses:
             rows.append((heading, unit or "-", "not used", ""))
-        else:
-            found = "" if np.isnan(guess.lower) else f"{guess.lower:.5g} to {guess.upper:.5g}"
-            rows.append(
-                (heading, unit or (f"{guess.unit}?" if guess.assumed else "-"), guess.channel.name, found)
-            )
-    rate = (
-        f", {recording.rate:.4g} samples per second over {recording.seconds:.0f} s, {recording.gaps} gaps in time"
-        if np.isfinite(recording.rate)
-        else " without a time channel"
-    )
-    head = f"{recording.path}: {recording.kind}, {recording.samples} rows{rate}"
+            continue
+        guess = guesses[0]
+        lower, upper = min(g.lower for g in guesses), max(g.upper for g in guesses)
+        found = "" if np.isnan(lower) else f"{lower:.5g} to {upper:.5g}"
+        rows.append(
+            (heading, unit or (f"{guess.unit}?" if guess.assumed else "-"), guess.channel.name, found)
+        )
+    heads = [_head(recording) for recording in recordings]
+    texts = {_about(recording): None for recording in recordings}
+    about = next(iter(texts)) if len(texts) == 1 else ""
+    columns = table(("heading", "unit", "is", "range"), rows, left=3)
+    return "\n".join(part for part in (*heads, about, "", columns) if part or not about)
+
+
+def _head(recording: SniffedRecording) -> str:
+    if np.isfinite(recording.rate):
+        rows = (
+            f"{recording.samples} rows, {recording.rate:.4g} samples per second over {recording.seconds:.0f} s, "
+            f"{recording.gaps} gaps in time"
+        )
+    elif "t_s" in recording.guesses:
+        rows = f"{recording.samples} finished points"
+    else:
+        rows = f"{recording.samples} rows without a time channel"
+    return f"{recording.path}: {recording.kind}, {rows}"
+
+
+def _about(recording: SniffedRecording) -> str:
     said = {**recording.about, "title": title_of(recording.about)}
-    about = "; ".join(f"{key}: {text[:90]}" for key, text in said.items() if text)
-    return "\n".join(
-        part
-        for part in (head, about, "", table(("heading", "unit", "is", "range"), rows, left=3))
-        if part or not about
-    )
+    return "; ".join(f"{key}: {text[:90]}" for key, text in said.items() if text)
 
 
 def _axes(sniffed: Sniffed) -> str:
@@ -97,17 +133,19 @@ def _stretches(sniffed: Sniffed) -> str:
     kept = [note for note in notes if note.points]
     lost = [note for note in notes if note.dropped]
     head = f"{len(kept)} stretches give {len(sniffed.points)} points; {len(lost)} stretches give none"
+    moves = [note for note in lost if note.kind == MOVE]
+    if moves:
+        head += f", {len(moves)} of them moves between set-points"
+    other = sorted((note for note in lost if note.kind != MOVE), key=lambda note: note.begin_s)
     rows = [
         (note.sweep, note.kind, f"{note.begin_s:.2f}", f"{note.end_s:.2f}", note.dropped)
-        for note in sorted(lost, key=lambda note: (note.kind == MOVE, note.begin_s))[
-            : constants.MOST_ROWS_IN_TERMINAL
-        ]
+        for note in other[: constants.MOST_ROWS_IN_TERMINAL]
     ]
     shown = (
         table(("part of", "kind", "from [s]", "to [s]", "why it gives no point"), rows, left=2)
         if rows
         else ""
     )
-    hidden = len(lost) - len(rows)
+    hidden = len(other) - len(rows)
     more = f"... and {hidden} more in stretches.csv" if hidden else ""
     return "\n".join(part for part in (head, shown, more) if part)

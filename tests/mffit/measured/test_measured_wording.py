@@ -62,7 +62,11 @@ WARNINGS = [
     ),
     (notes.slope_not_possible(1500.0, 15.0), "at 1500 N the camber sweep is too short"),
     (notes.secant_not_possible(1500.0, 15.0), "does not reach 15 deg"),
-    (notes.NOTHING_MEASURED, "eps_gamma could not be measured"),
+    (
+        notes.nothing_measured(camber=False, zeros=True, radius=False),
+        "for lack of a camber sweep at zero sideslip and the rolling radius",
+    ),
+    (notes.nothing_measured(camber=True, zeros=True, radius=True), "at different loads"),
     (
         notes.axis_off(900.0, 64.2, 50.0, 0.213),
         "differ by 64 N (the limit is 50 N): the sideslip axis is off by about 0.21",
@@ -96,8 +100,8 @@ def test_every_remark_is_tested():
     functions = [x for x in public if getattr(x, "__module__", "") == notes.__name__]
     assert set(sentences) <= {text for text, _ in (*NOTES, *WARNINGS)}
     assert (
-        len({text for text, _ in (*NOTES, *WARNINGS)}) == len(sentences) + len(functions) + 2
-    )  # two in two forms
+        len({text for text, _ in (*NOTES, *WARNINGS)}) == len(sentences) + len(functions) + 3
+    )  # three in two forms
 
 
 def at_one_load(budget=(), **more):

@@ -162,3 +162,19 @@ def test_a_load_that_wanders_within_its_sweep_is_one_level():
     assert len(np.unique(found[80:])) == 2
     assert levels.median_of_labels(Fz, found)[50] == pytest.approx(534.0, abs=2.0)
     assert np.isnan(levels.median_of_labels(np.array([np.nan, 1.0]), np.array([levels.NO_LEVEL, 0]))[0])
+
+
+def test_loads_that_wander_while_braking_are_one_level_and_steps_are_not():
+    """Sweeps whose load wanders by 16 % about 500 to 540 N are one level; a sweep of two loads a quarter apart has two."""
+    rng = np.random.default_rng(7)
+    wandering = [
+        held * (1.0 + 0.16 * np.sin(np.linspace(0.0, 6.0, 60)) + rng.normal(0.0, 0.01, 60))
+        for held in np.linspace(500.0, 540.0, 12)
+    ]
+    stepped = np.repeat([1000.0, 1280.0], 30) * (1.0 + rng.normal(0.0, 0.02, 60))
+    Fz = np.concatenate([*wandering, stepped])
+    sweep = np.repeat(np.arange(13), 60)
+    found = levels.labels_of_sweeps(Fz, sweep, levels.LOAD)
+    assert set(found[sweep < 12]) == {0}
+    assert set(found[sweep == 12]) == {1, 2}
+    assert len(set(levels.nearest_labels(Fz[sweep < 12], levels.LOAD))) > 1

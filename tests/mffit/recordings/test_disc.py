@@ -13,8 +13,10 @@ from mffit import config as configuration
 from mffit.cli import main
 from mffit.pipeline import init_from
 from mffit.points import make_points
+from mffit.points.loading import read
 from mffit.recordings import DiscPath, disc_signs, sniff
 from mffit.recordings.disc import rolls_backward, zero_of_upright
+from mffit.report.text import sniff_summary
 
 SAMPLES = Path(__file__).parents[3] / "samples"
 DISC = [
@@ -141,3 +143,84 @@ def test_files_of_two_directions_are_named_one_by_one(tmp_path):
     init_from(copies, tmp_path / "p", **given)
     found = configuration.load(tmp_path / "p" / "tyre.toml")
     assert [sweep.direction for sweep in found.sweep] == [None, "backward", "backward", "backward"]
+
+
+GERMAN = {
+    "alpha_deg": ("Schraeglaufwinkel", "Grad", 1.0), "gamma_deg": ("Sturzwinkel", "Grad", 1.0), "Fz_N": ("Radlast", "kN", 1e-3),
+    "Fy_N": ("Seitenkraft", "N", 1.0), "Mz_Nm": ("Rückstellmoment", "Nm", 1.0), "p_kPa": ("Reifeninnendruck", "bar", 0.01),
+    "T_degC": ("Laufflächentemperatur", "°C", 1.0), "V_mps": ("Bahngeschwindigkeit", "km/h", 3.6), "t_s": ("Zeit", "s", 1.0),
+    "time_s": ("Zeit", "s", 1.0),
+}  # fmt: skip
+"""Heading, unit and the factor to it of a laboratory's tables."""
+
+
+def in_german(path: Path, folder: Path) -> Path:
+    """A sample's file as a German laboratory would save it: title, semicolons, decimal commas, other headings and units."""
+    table = pd.read_csv(path, comment="#")
+    taken = [name for name in table if name in GERMAN]
+    lines = [
+        "Reifen: 120/70 ZR17;Prüfer: Mü",
+        *(";".join(f"{GERMAN[name][k]}" for name in taken) for k in (0, 1)),
+        *(
+            ";".join(f"{GERMAN[name][2] * row[name]:.8g}".replace(".", ",") for name in taken)
+            for row in table.to_dict("records")
+        ),
+    ]
+    copy = folder / path.name.replace(".csv.gz", ".csv")
+    copy.write_text("\n".join(lines), encoding="latin-1")
+    return copy
+
+
+@pytest.fixture(scope="module")
+def german_disc(tmp_path_factory):
+    """Sniffed campaign and its configuration; one of its files is a recording, all others are tables of points."""
+    names = (
+        "camber_1400N",
+        "coupled_1400N_10deg",
+        "zero_900N_forward",
+        "zero_1400N_forward",
+        "zero_1400N_backward",
+    )
+    folder = tmp_path_factory.mktemp("lab")
+    files = [in_german(SAMPLES / "front-120-70" / f"{name}.csv", folder) for name in names]
+    series = pd.read_csv(SAMPLES / "front-120-70" / "sideslip_2100N_series.csv.gz")[:2500]
+    series.to_csv(folder / "raw.csv", index=False)
+    files.append(in_german(folder / "raw.csv", folder))
+    sniffed, (toml, *_) = init_from(
+        files,
+        folder / "front-wheel",
+        unloaded_radius=0.2992,
+        nominal_load=1400.0,
+        disc=DiscPath(1.323, "left"),
+    )
+    return sniffed, toml.read_text(encoding="utf-8"), configuration.load(toml)
+
+
+def test_finished_points_with_their_time_are_no_recording(german_disc):
+    """Every row of the sample's tables is a point, although the heading of their time is that of the recording's."""
+    _, _, config = german_disc
+    found = read(config).points
+    rows = {name: int(np.sum(found.file == k)) for k, name in enumerate(Path(f).stem for f in found.files)}
+    sample = SAMPLES / "front-120-70"
+    for name in rows.keys() - {"raw"}:
+        table = pd.read_csv(sample / f"{name}.csv", comment="#")
+        at = np.flatnonzero([Path(found.files[k]).stem == name for k in found.file])
+        assert found.Fy[at] == pytest.approx(table["Fy_N"].to_numpy(), rel=1e-6)
+        assert found.p[at] == pytest.approx(1e3 * table["p_kPa"].to_numpy())
+    assert 3 <= rows["raw"] <= 6
+
+
+def test_the_project_names_the_tyre_alone_and_what_a_disc_needs(german_disc):
+    _, text, config = german_disc
+    assert (config.tyre.name, config.tyre.size) == ("front-wheel", "120/70 ZR17")
+    assert "rows are 90 s apart, so each is a finished point" in text
+    assert "# [[rolling_radius]]" in text
+
+
+def test_files_with_the_same_columns_share_a_table(german_disc):
+    sniffed, _, _ = german_disc
+    said = sniff_summary(sniffed)
+    assert said.count("Schraeglaufwinkel") == 2
+    assert said.count("finished points") == 5
+    (loads,) = (line for line in said.splitlines() if line.startswith("load"))
+    assert loads.split()[2::2] == ["900", "1400", "2100"]

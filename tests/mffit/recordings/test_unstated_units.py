@@ -294,7 +294,7 @@ WRITTEN = """\
 # From the recordings below, as `mffit sniff` reads them. The comments say where each value comes from.
 
 [tyre]
-name = "a-b"
+name = "project"
 # unloaded_radius =   # m: fill this in
 # nominal_load =   # N, FNOMIN: fill this in
 nominal_pressure = 83  # kPa, NOMPRES: the most frequent pressure

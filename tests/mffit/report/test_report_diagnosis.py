@@ -75,7 +75,10 @@ def test_a_found_effect_is_shown_with_its_size_and_pictures(misaligned, tmp_path
 
 def test_page_needs_no_network(misaligned, tmp_path):
     page = written(misaligned, tmp_path)
-    assert all(r.startswith(("data:text/csv", "data:image/png;base64,", "#")) for r in page.references)
+    assert all(
+        r.startswith(("data:text/csv", "data:application/zip", "data:image/png;base64,", "#"))
+        for r in page.references
+    )
 
 
 def test_a_tie_is_stated_with_the_run_that_separates_it(misaligned, tmp_path):

@@ -62,8 +62,27 @@ def markup(*members):
 def paths(svg, colour, kind="stroke"):
     """Corners (n, 2) of every line or area of a colour, in the order of drawing."""
     found = re.findall(rf'<path d="([^"]*)" style="[^"]*\b{kind}: {colour}[;"]', svg)
-    pieces = [piece for path in found for piece in path.split("M")[1:]]
-    return [np.array(re.findall(r"[-\d.]+", piece), float).reshape(-1, 2) for piece in pieces]
+    return [corners(f"M{piece}") for path in found for piece in path.split("M")[1:]]
+
+
+def corners(piece):
+    """Corners (n, 2) of an outline, whose steps after the first place are relative."""
+    out = []
+    for command, text in re.findall(r"([MlhvcqzL])([^MlhvcqzL]*)", piece):
+        numbers = [float(number) for number in re.findall(r"-?(?:\d+\.?\d*|\.\d+)", text)]
+        match command:
+            case "M" | "L":
+                steps = [np.array(numbers)]
+            case "h":
+                steps = [out[-1] + [numbers[0], 0.0]]
+            case "v":
+                steps = [out[-1] + [0.0, numbers[0]]]
+            case "z":
+                steps = []
+            case _:
+                steps = list(out[-1] + np.reshape(numbers, (-1, 2)))
+        out += steps
+    return np.array(out)
 
 
 def corner(svg):
@@ -454,3 +473,20 @@ def test_points_outside_every_series_are_counted(view):
     lost = len(view.points) - len({int(i) for curve in view.curves[1:] for i in curve.index})
     assert lost > 0
     assert alone.startswith(f"{lost} of {len(view.points)} points are not drawn here")
+
+
+@pytest.mark.parametrize("marker", ["", "o", "s"])
+def test_a_shortened_outline_draws_what_was_given(marker):
+    """Lines to a hundredth, marks to a tenth of a point, also at the end of a long outline."""
+    x = np.linspace(0.0, 1.0, 60)
+    y = np.sin(40.0 * x)
+    look = Look(colour="#123456", line="" if marker else "-", marker=marker, hollow=marker == "o")
+    axes = {"x": Axis(low=0.0, high=1.0), "y": Axis(low=-1.1, high=1.1)}
+    (panel,) = drawn(panel_of(x, y, look, **axes)).rows[0]
+    left, right, bottom, top = corner(panel.svg)
+    found = paths(panel.svg, "#123456", "fill" if marker == "s" else "stroke")
+    places = (
+        found[0] if not marker else np.array([0.5 * (one.min(axis=0) + one.max(axis=0)) for one in found])
+    )
+    given = np.column_stack([left + (right - left) * x, np.interp(y, (-1.1, 1.1), (bottom, top))])
+    assert np.abs(places - given).max() < (0.11 if marker else 0.011)

@@ -35,7 +35,9 @@ class Suspicious(HTMLParser):
         for name, value in attrs:
             if name.startswith("on") or (
                 name in ("src", "href")
-                and not (value or "").startswith(("data:image/", "data:text/csv", "#"))
+                and not (value or "").startswith(
+                    ("data:image/", "data:text/csv", "data:application/zip", "#")
+                )
             ):
                 self.found.append(f"{tag} {name}={value}")
 

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import base64
 import csv
 import io
+import zipfile
+from urllib.parse import unquote
 
 import numpy as np
 import pytest
@@ -13,6 +16,7 @@ from mffit.report.build_view import view_of
 from mffit.report.drawing.records import Axis, Look, Map, Panel, Sheet, Trace
 from mffit.report.figures import decomposition, fit, residuals, spin
 from mffit.report.numbers import table
+from mffit.report.page import PagePicture
 
 
 @pytest.fixture(scope="module")
@@ -66,3 +70,19 @@ def test_a_long_series_is_thinned_and_its_name_says_so(monkeypatch):
     assert {row["series"] for row in line} == {"line, every 10th"}
     assert [float(row["x"]) for row in line] == list(np.arange(0.0, 95.0, 10.0))
     assert len(found) - len(line) == 9
+
+
+def test_a_long_table_is_packed_and_the_same_table():
+    """Bytes do not depend on when it was packed."""
+    numbers = "x,y\n" + "1.25,3.5\n" * 10_000
+    short, long = (
+        PagePicture(name="fit", drawing="", table=text, left_out=0) for text in (numbers[:400], numbers)
+    )
+    assert unquote(short.link.partition(",")[2]) == numbers[:400]
+    address, _, packed = long.link.partition(",")
+    assert address == "data:application/zip;base64"
+    assert len(packed) < len(numbers) / 20
+    with zipfile.ZipFile(io.BytesIO(base64.b64decode(packed))) as archive:
+        assert archive.namelist() == ["fit.csv"]
+        assert archive.read("fit.csv").decode() == numbers
+        assert archive.infolist()[0].date_time[0] == 1980

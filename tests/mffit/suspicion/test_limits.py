@@ -12,7 +12,7 @@ from mffit.suspicion import RULES, signatures
 from mffit.suspicion.slopes import SlopeWithError, slope
 
 CONFIG = SimpleNamespace(
-    tyre=SimpleNamespace(nominal_pressure=250.0, unloaded_radius=0.3),
+    tyre=SimpleNamespace(nominal_pressure=250.0, nominal_load=1500.0, unloaded_radius=0.3),
     rig=SimpleNamespace(on_disc=True, moments="contact"),
     path=None,
     line_of=lambda key: None,
@@ -153,6 +153,20 @@ def test_one_sweep_of_four_that_leans_the_other_way_is_named():
     assert found("lone-lean", sweeps(left, left, left, tyre(gamma=-0.4 * DEG))) == 0
 
 
+@pytest.mark.parametrize(("load", "cases"), [(1400.0, 1), (1450.0, 0), (2000.0, 0)])
+def test_a_nominal_load_above_all_measured_ones_is_pointed_out(load, cases):
+    """The mean of a level of load decides, not one reading above it."""
+    Fz = changed(np.full(40, load), [3], 1.05 * load)
+    assert found("nominal-load-above-all", tyre(alpha=np.linspace(-0.1, 0.1, 40), Fz=Fz)) == cases
+
+
+@pytest.mark.parametrize(("degrees", "cases"), [(166.0, 1), (108.0, 0), (np.nan, 0)])
+def test_a_tread_that_stays_hotter_than_any_is_pointed_out(degrees, cases):
+    """One hot reading is no sign; of two files it is enough that one is hot."""
+    assert found("hot-tread", tyre(T=degrees)) == cases
+    assert found("hot-tread", tyre(T=changed(np.full(7, 60.0), [2], 166.0))) == 0
+
+
 @pytest.mark.parametrize(("share", "cases"), [(0.009, 1), (0.011, 0), (-0.5, 1)])
 def test_a_turn_slip_force_is_weak_below_a_hundredth_of_the_load(share, cases):
     zero = tyre(alpha=[0.0], Fy=-share * 1500.0, phi_t=-0.76)
@@ -235,6 +249,12 @@ def sentence(rule: str, points: Points) -> str:
             tyre(alpha=np.r_[ALPHA, ALPHA[:3]], Mx=0.2 * tyre(np.r_[ALPHA, ALPHA[:3]]).Fy),
             "changes by 0.20 m times Fy_N",
         ),
+        (
+            "nominal-load-above-all",
+            tyre(Fz=1300.0),
+            "the nominal load of 1500 N is above the highest measured load of 1300 N",
+        ),
+        ("hot-tread", tyre(T=166.0), "T_degC is 166 degC in the middle in"),
         ("copied-sweep", sweeps(SOUND, SOUND), "holds exactly the readings of s0"),
     ],
 )
