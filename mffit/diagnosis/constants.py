@@ -273,6 +273,9 @@ INFORMATION_LEFT = Real(1e-9, "-", "Share of the information that keeps a matrix
 ONE_STEP_FALSE_ALARM = Real(
     0.01, "-", "Chance that any effect looks significant in the residuals of a sound fit (Bonferroni)."
 )
+MOST_SURFACE_STEPS = Count(
+    4, "-", "Steps to the grips of the surfaces of several campaigns; forces are nearly proportional to them."
+)
 STRUCTURE_FALSE_ALARM = Real(
     0.005, "-", "Chance that any comparison finds structure in the residuals of a sound fit (Bonferroni)."
 )
