@@ -11,10 +11,12 @@ import pandas as pd
 
 from mffit.brief import Brief
 from mffit.points import constants
-from mffit.quantities import CHANNELS
+from mffit.quantities import CHANNELS, CONDITIONS
 
 INTEGER = frozenset({"direction", "mount", "sweep", "file", "line", "setup", "campaign"})
 SHARED = frozenset({"sweep_names", "files", "setups", "campaigns", "table"})
+OF_SI = {"deg": 180.0 / np.pi, "kPa": 1e-3}
+"""Factors from SI to units of conditions."""
 COUNTED = {"sweep": "sweep_names", "file": "files", "setup": "setups", "campaign": "campaigns"}
 """Fields of indices, and the field with the names that they count."""
 OPTIONAL: Mapping[str, Any] = {
@@ -94,6 +96,11 @@ class Points(Brief):
         """Standard uncertainty (n,) of a channel; NaN where none is stated."""
         u: np.ndarray = getattr(self, f"u_{name}")
         return u
+
+    def condition(self, column: str) -> np.ndarray:
+        """A condition (n,) of :data:`mffit.quantities.CONDITIONS` in its unit, by its column; NaN where it was not measured."""
+        values: np.ndarray = getattr(self, column.partition("_")[0])
+        return values * OF_SI.get(CONDITIONS[column].unit, 1.0)
 
     @property
     def measured(self) -> tuple[str, ...]:
