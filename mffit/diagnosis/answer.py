@@ -44,7 +44,7 @@ def answer(
     repair: Repair,
     given: DiagnosisProblem,
     tyre: Tyre,
-    config: Config,
+    rigs: Mapping[str, Config],
     notes: Sequence[Note],
     candidates: Sequence[Effect],
     alternatives: Mapping[str, float],
@@ -52,9 +52,10 @@ def answer(
     """The record of an explanation.
 
     ``found`` is what left-out sweeps confirm, with the ``named`` effects and the confidence of the ``alternatives`` by id;
-    ``given`` is the problem before it.
+    ``given`` is the problem before it, ``rigs`` are the configurations of the campaigns, that of the tyre first.
     """
     points, chosen, scatter = given.points, found.chosen, found.scatter
+    config = next(iter(rigs.values()))
     before = given.predict(given.start)
     explained = given.predict(found.refined.state) if chosen.effects or found.coefficients else before
     done = repair.explanation
@@ -87,6 +88,7 @@ def answer(
         given=given.start,
         state=done.refined.state,
         signs=axis_signs(config),
+        signs_elsewhere={name: axis_signs(other) for name, other in rigs.items()} if len(rigs) > 1 else {},
         tyre=tyre if repair.keeps_file else corrected,
         with_terms=corrected if repair.keeps_file else None,
         notes=tuple(notes),

@@ -14,6 +14,12 @@ from mffit.diagnosis.hypothesis import Hypothesis
 from mffit.diagnosis.noise import Noise
 from mffit.points import Points, levels
 
+SWEPT = {
+    "alpha_deg": (constants.BUMP_WIDTHS_SIDESLIP, constants.BUMP_STEP_OF_ANGLE),
+    "gamma_deg": (constants.BUMP_WIDTHS_CAMBER, constants.BUMP_STEP_OF_ANGLE),
+    "kappa": (constants.BUMP_WIDTHS_SLIP, constants.BUMP_STEP_OF_SLIP),
+}
+"""Conditions of ``mffit.quantities`` over which bumps are sought: their widths, and the steps of their centres."""
 Ranges = dict[str, tuple[float, float]]
 """Column -> smallest and largest value."""
 
@@ -94,11 +100,15 @@ class BumpScan:
 
 
 def bump_scan(points: Points, noise: Noise) -> BumpScan:
-    """Bumps over sideslip or camber: everywhere, or within one load, one side of camber, or backward runs."""
+    """Bumps over sideslip, camber or slip: everywhere, or within one load, one side of camber, or backward runs.
+
+    Those over slip also within one side of sideslip.
+    """
     parts = _parts(points)
+    beside = {"kappa": list(_sides("alpha_deg", points, constants.BUMP_STRAIGHT))}
     shapes, regions = [], []
     for column, centre, width, bell in _bells(points):
-        for region, mask in parts:
+        for region, mask in (*parts, *beside.get(column, ())):
             shape = bell * mask
             if np.sum(shape > 0.5) >= 2:
                 shapes.append(shape.astype(np.float32))
@@ -113,15 +123,14 @@ def bump_scan(points: Points, noise: Noise) -> BumpScan:
 
 
 def _bells(points: Points) -> Iterator[tuple[str, float, float, np.ndarray]]:
-    """Column, centre, width [deg] and height (n,) of Gaussian bells along sideslip and along camber."""
-    for column, angle, widths in (
-        ("alpha_deg", points.alpha, constants.BUMP_WIDTHS_SIDESLIP),
-        ("gamma_deg", points.gamma, constants.BUMP_WIDTHS_CAMBER),
-    ):
-        degrees = np.degrees(angle)
-        for centre in _centres(degrees):
+    """Column, centre, width and height (n,) of Gaussian bells along each swept condition, in the unit of its column."""
+    for column, (widths, step) in SWEPT.items():
+        values = points.condition(column)
+        if column == "kappa" and np.all(points.free_rolling):
+            continue
+        for centre in _centres(values, step):
             for width in widths:
-                bell = np.exp(-0.5 * ((degrees - centre) / width) ** 2)
+                bell = np.exp(-0.5 * ((values - centre) / width) ** 2)
                 yield column, centre, width, np.where(bell < constants.BUMP_CUT, 0.0, bell)
 
 
@@ -131,9 +140,9 @@ def _narrowed(region: Ranges, column: str, low: float, high: float) -> Ranges:
     return {**region, column: (float(max(low, before[0])), float(min(high, before[1])))}
 
 
-def _centres(degrees: np.ndarray) -> np.ndarray:
-    """Centres of bumps: the angles in steps of half a degree, or fewer evenly spaced ones."""
-    most, steps = constants.MOST_BUMP_CENTRES, np.unique(np.round(degrees * 2.0) / 2.0)
+def _centres(values: np.ndarray, step: float) -> np.ndarray:
+    """Centres of bumps: the values in steps, or fewer evenly spaced ones."""
+    most, steps = constants.MOST_BUMP_CENTRES, np.unique(np.round(values / step) * step)
     return steps if len(steps) <= most else np.linspace(steps[0], steps[-1], most)
 
 
@@ -141,7 +150,7 @@ def _parts(points: Points) -> list[tuple[Ranges, np.ndarray]]:
     """Parts of the programme to which a bump may be confined, with their masks (n,)."""
     return [
         ({}, np.ones(len(points))),
-        *_sides_of_camber(points),
+        *_sides("gamma_deg", points, constants.BUMP_UPRIGHT),
         *_loads(points),
         *(
             [({"direction": (-1.0, -1.0)}, (points.direction < 0) * 1.0)]
@@ -151,12 +160,13 @@ def _parts(points: Points) -> list[tuple[Ranges, np.ndarray]]:
     ]
 
 
-def _sides_of_camber(points: Points) -> Iterator[tuple[Ranges, np.ndarray]]:
-    gamma, upright = np.degrees(points.gamma), constants.BUMP_UPRIGHT
-    for low, high in ((-90.0, -upright), (-upright, upright), (upright, 90.0)):
-        mask = (gamma >= low) & (gamma <= high)
+def _sides(column: str, points: Points, middle: float) -> Iterator[tuple[Ranges, np.ndarray]]:
+    """Either side of an angle, and the ``middle`` [deg] around zero."""
+    angle = points.condition(column)
+    for low, high in ((-90.0, -middle), (-middle, middle), (middle, 90.0)):
+        mask = (angle >= low) & (angle <= high)
         if 2 <= mask.sum() < len(points):
-            yield {"gamma_deg": (max(low, float(gamma.min())), min(high, float(gamma.max())))}, mask * 1.0
+            yield {column: (max(low, float(angle.min())), min(high, float(angle.max())))}, mask * 1.0
 
 
 def _loads(points: Points) -> Iterator[tuple[Ranges, np.ndarray]]:

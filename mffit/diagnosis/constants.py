@@ -188,6 +188,12 @@ STRUCTURE_EVIDENCE = Real(
 )
 BUMP_WIDTHS_SIDESLIP = Series((0.7, 1.4, 3.0), "deg", "Widths of bumps over sideslip.")
 BUMP_WIDTHS_CAMBER = Series((3.0, 8.0), "deg", "Widths of bumps over camber.")
+BUMP_WIDTHS_SLIP = Series(
+    (0.01, 0.03), "-", "Widths of bumps over longitudinal slip: a tenth and a third of the slip at the peak."
+)
+BUMP_STEP_OF_ANGLE = Real(0.5, "deg", "Step of the centres of bumps over an angle.")
+BUMP_STEP_OF_SLIP = Real(0.01, "-", "Step of the centres of bumps over longitudinal slip.")
+BUMP_STRAIGHT = Real(1.0, "deg", "Sideslip within which points count as straight in this search.")
 BUMP_AMPLITUDE = Real(0.03, "-", "Usual size (1 sigma) of a bump over the largest reading of its channel.")
 BUMP_CUT = Real(0.02, "-", "Height below which a bump is cut to zero.")
 MOST_BUMP_CENTRES = Count(41, "-", "Most centres of bumps along one angle.")
@@ -272,6 +278,9 @@ MISFIT_AT_NOISE = Real(1.2, "-", "Misfit over stated noise up to which the resid
 INFORMATION_LEFT = Real(1e-9, "-", "Share of the information that keeps a matrix invertible.")
 ONE_STEP_FALSE_ALARM = Real(
     0.01, "-", "Chance that any effect looks significant in the residuals of a sound fit (Bonferroni)."
+)
+MOST_SURFACE_STEPS = Count(
+    4, "-", "Steps to the grips of the surfaces of several campaigns; forces are nearly proportional to them."
 )
 STRUCTURE_FALSE_ALARM = Real(
     0.005, "-", "Chance that any comparison finds structure in the residuals of a sound fit (Bonferroni)."

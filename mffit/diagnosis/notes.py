@@ -16,6 +16,15 @@ class OneSweep:
 
 
 @dataclass(frozen=True, slots=True)
+class CampaignsTogether:
+    """Several campaigns of one tyre were looked at together."""
+
+    counts: tuple[tuple[str, int], ...]  #: name of the campaign, number of its points
+    grips: tuple[tuple[str, float, float], ...]
+    """Name of the campaign, grip of its surface over that of the first, standard error."""
+
+
+@dataclass(frozen=True, slots=True)
 class AnotherTyre:
     """The model states other dimensions or nominal conditions than the configuration."""
 
@@ -108,6 +117,7 @@ class DirectMethodRedone:
 
 Note = (
     OneSweep
+    | CampaignsTogether
     | Misread
     | AnotherTyre
     | WithoutNoise

@@ -12,6 +12,7 @@ from mffit.diagnosis.notes import FileKept, NoRepair
 from mffit.diagnosis.problem import DiagnosisProblem
 from mffit.diagnosis.result import AcceptedEffect
 from mffit.diagnosis.validation import Validation, validate
+from tir.parameters import BY_NAME
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,7 +56,9 @@ def repair(
             refused = NoRepair(tuple(effect.name for effect in likely), validation)
             found, validation = found.withdrawn(), validation.without_repair()
     terms = tuple(effect.name for effect in found.chosen.effects if effect.kind != "tyre")
-    changed = found.coefficients or any(effect.kind == "tyre" for effect in found.chosen.effects)
+    changed = any(n in BY_NAME for n in found.coefficients) or any(
+        e.kind == "tyre" for e in found.chosen.effects
+    )
     if not terms or not changed or validation.file_helps:
         return Repair(found, validation, refused, keeps_file=False)
     return Repair(found, validation, FileKept(terms, validation), keeps_file=True)

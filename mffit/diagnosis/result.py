@@ -86,6 +86,9 @@ class Diagnosis(Brief):
     given: Simulation  #: the simulation as given
     state: Simulation  #: the simulation after all corrections
     signs: Mapping[str, float]  #: +1 or -1 per channel: the rig's axes over ISO-W
+    signs_elsewhere: Mapping[
+        str, Mapping[str, float]
+    ]  #: the same of the rigs of several campaigns, by campaign
     tyre: Tyre  #: the corrected property file, or the given one if that is better alone
     notes: tuple[Note, ...]
     model_after: str  #: file name of the corrected model in the output folder
@@ -105,6 +108,10 @@ class Diagnosis(Brief):
     def reasons(self) -> tuple[str, ...]:
         """Why it is not to be trusted, as sentences; empty for a sound one."""
         return self.trust.reasons
+
+    def signs_of(self, effect: Effect) -> Mapping[str, float]:
+        """Signs of the axes of the rig that an effect is about."""
+        return self.signs_elsewhere.get(effect.campaign, self.signs)
 
     @property
     def repaired(self) -> tuple[AcceptedEffect, ...]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Collection, Iterable
 
 import numpy as np
 
@@ -18,18 +18,26 @@ TINY = 1e-9
 
 
 def with_uncertainties(
-    points: Points, state: Simulation, channels: Iterable[str] = SIDEWAYS
+    points: Points, state: Simulation, channels: Collection[str] = SIDEWAYS
 ) -> tuple[Points, Origin | None]:
     """The points with a standard uncertainty for every reading of some channels, and its origin for Fy.
 
     Missing uncertainties are estimated from the scatter of measured minus simulated between neighbouring points of each sweep.
     If all stated uncertainties are zero, an InputError asks for real ones.
     """
-    found = {
-        name: _of_channel(points, points.channel(name), points.u(name), simulated, u_column(name))
-        for name, simulated in state.readings(points, channels).items()
-    }
-    return points.replace(**{f"u_{name}": u for name, (u, _) in found.items()}), found["Fy"][1]
+    found = {name: points.u(name).copy() for name in channels}
+    origins = set()
+    for k in np.unique(points.campaign):  # another rig has another scatter
+        rows = points.campaign == k
+        own = points.select(rows)
+        for name, simulated in state.readings(own, channels).items():
+            found[name][rows], origin = _of_channel(
+                own, own.channel(name), own.u(name), simulated, u_column(name)
+            )
+            if name == "Fy" and origin is not None:
+                origins.add(origin)
+    origin = Origin.SCATTER if Origin.SCATTER in origins else next(iter(origins), None)
+    return points.replace(**{f"u_{name}": u for name, u in found.items()}), origin
 
 
 def stated_noise(points: Points, origin: Origin | None = None, channels: Iterable[str] = SIDEWAYS) -> Noise:

@@ -15,6 +15,8 @@ from mffit.quantities import CONDITIONS
 
 ALONG_SWEEPS = "the course of the sweeps"
 DIRECTION = "direction of rolling"
+OTHER_ANGLE = {"alpha_deg": "gamma_deg", "gamma_deg": "alpha_deg", "kappa": "alpha_deg"}
+"""The angle whose side splits the bins of a condition; the sign of the force splits those of the others."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -67,7 +69,7 @@ class Structure:
 
 
 def structure(left: Remainder) -> Structure:
-    """Residuals of each channel over camber, sideslip, load, pressure, temperature, time and direction, and along sweeps.
+    """Residuals of each channel over every condition and direction, and along sweeps.
 
     Means of bins are tested by chi-square, neighbours along sweeps by their covariance (Ljung and Box, Biometrika 65, 1978), both
     with the covariance that fitting leaves. The side of the other angle, or the sign of the force, splits each bin.
@@ -94,18 +96,14 @@ def _conditions(
     """Condition, its value, number of the bin and side of every used reading (m,); only conditions that vary."""
     points = left.points.select(rows)
     force = np.sign(left.simulation.readings(points, (channel,))[channel])
-    alpha, gamma = (_side(np.degrees(x)) for x in (points.alpha, points.gamma))
-    yield from _varying("gamma_deg", np.degrees(points.gamma), alpha)
-    yield from _varying("alpha_deg", np.degrees(points.alpha), gamma)
-    for over, values in (
-        ("Fz_N", points.Fz),
-        ("p_kPa", points.p / 1e3),
-        ("V_mps", points.V),
-        ("T_degC", points.T),
-        ("t_s", points.t),
-        (DIRECTION, points.direction.astype(float)),
-    ):
-        yield from _varying(over, values, force)
+    driven = not np.all(points.free_rolling)
+    for over in CONDITIONS:
+        if over != "kappa" or driven:
+            other = OTHER_ANGLE.get(over)
+            yield from _varying(
+                over, points.condition(over), force if other is None else _side(points.condition(other))
+            )
+    yield from _varying(DIRECTION, points.direction.astype(float), force)
 
 
 def _side(degrees: np.ndarray) -> np.ndarray:

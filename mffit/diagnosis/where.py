@@ -12,6 +12,7 @@ from scipy.special import ndtr
 from mffit.diagnosis import constants
 from mffit.diagnosis.noise import Noise
 from mffit.points import Points, levels
+from mffit.quantities import CONDITIONS
 
 PAIRS = (
     ("alpha_deg", "gamma_deg"),
@@ -107,18 +108,10 @@ def _cells(points: Points) -> Iterator[tuple[dict[str, Range], np.ndarray]]:
 
 def _bins(points: Points) -> dict[str, list[tuple[Range, np.ndarray]]]:
     """Bins of every variable that has at least two."""
-    variables = {
-        "alpha_deg": np.degrees(points.alpha),
-        "gamma_deg": np.degrees(points.gamma),
-        "Fz_N": points.Fz,
-        "p_kPa": points.p / 1e3,
-        "V_mps": points.V,
-        "T_degC": points.T,
-        "t_s": points.t,
-        "direction": points.direction.astype(float),
-    }
-    if not np.all(points.free_rolling):
-        variables["kappa"] = points.kappa
+    variables = {name: points.condition(name) for name in CONDITIONS}
+    variables["direction"] = points.direction.astype(float)
+    if np.all(points.free_rolling):
+        variables.pop("kappa")
     return {name: cells for name, values in variables.items() if len(cells := _cut(values)) > 1}
 
 

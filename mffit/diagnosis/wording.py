@@ -11,6 +11,7 @@ from mffit.diagnosis.bumps import Bump
 from mffit.diagnosis.noise import Noise
 from mffit.diagnosis.notes import (
     AnotherTyre,
+    CampaignsTogether,
     DirectMethodRedone,
     FileKept,
     HardlyThisTyre,
@@ -31,7 +32,7 @@ from mffit.diagnosis.ties import Separation
 from mffit.diagnosis.validation import Gap, Validation
 from mffit.effects import NEEDS, Effect
 from mffit.quantities import CHANNELS, CONDITIONS
-from mffit.rig_errors import OF_RUN, error_of, shown, unit_of, words_of
+from mffit.rig_errors import OF_RUN, error_of, number_of, shown, unit_of, words_of
 from mffit.rounding import per_cent, to_uncertainty
 from mffit.suspicion import Misread, Outlier
 from tir import Quantity
@@ -84,7 +85,10 @@ def _nothing_named(diagnosis: Diagnosis) -> str:
 
 def zeros_of_setups(diagnosis: Diagnosis) -> dict[str, tuple[float, float]]:
     """Zeros of single set-ups that were estimated beside the effects: value and standard error by number."""
-    return {name: found for name, found in diagnosis.coefficients.items() if error_of(name)}
+    errors = {name: error_of(name) for name in diagnosis.coefficients}
+    return {
+        n: diagnosis.coefficients[n] for n, error in errors.items() if error is not None and error.of_setup
+    }
 
 
 def _zeros(diagnosis: Diagnosis) -> list[str]:
@@ -155,6 +159,14 @@ def note(remark: Note) -> str:
     match remark:
         case OneSweep():
             return "One sweep cannot separate causes: add sweeps at another load, camber or direction."
+        case CampaignsTogether(counts, grips):
+            looked = " and ".join(f"{number} points of {name}" for name, number in counts)
+            ratios = "".join(
+                f" The grip of the surface of {name} is {to_uncertainty(value, u)} +- {to_uncertainty(u, u)} times that of "
+                f"{counts[0][0]}."
+                for name, value, u in grips
+            )
+            return f"Looked at together: {looked}; effects of rig and environment say which campaign they are of.{ratios}"
         case Misread():
             return remark.sentence
         case AnotherTyre():
@@ -308,7 +320,7 @@ def remedy(found: AcceptedEffect, signs: Mapping[str, float]) -> str:
     if not effect.remedy:
         return (TO_DO if found.repaired else NOT_REPAIRED).get(effect.kind, "")
     several = [free.name for free in effect.free if OF_RUN in free.name and not effect.runs_written_out]
-    if not several:
+    if not several or several == [number_of(name.partition(OF_RUN)[0], effect.campaign) for name in several]:
         return _remedy_with(found, effect.free[0].name, signs)
     significant = [name for name in several if _is_significant(found, name)]
     return "; ".join(

@@ -9,8 +9,9 @@ from pathlib import Path
 from mffit.config import Config
 from mffit.fit import constants
 from mffit.fit.campaign import FittedCampaign, shared_conditions
-from mffit.pipeline.inputs import other_project, wrong_campaign
+from mffit.pipeline.inputs import other_project, read_points, wrong_campaign
 from mffit.points import Points, concatenate
+from mffit.points.loading import Reading
 from mffit.progress import Progress
 from mffit.results import BuildResult
 from mffit.suspicion.other_tyre import two_tyres
@@ -70,6 +71,60 @@ def campaigns_of(
             )
         )
     return tuple(out), tuple(warned)
+
+
+def points_of_all(
+    config: Config, projects: Sequence[Config], reading: Reading, *, continuous: bool
+) -> tuple[Reading, dict[str, Config]]:
+    """The readings of this project and of all others together, and the configurations of the others.
+
+    The campaigns of the points, the keys of the second result, are named as ``[[campaign]]`` names them, this project after its
+    own file. Files, sweeps and set-ups of the others are renamed after their folders.
+
+    Parameters
+    ----------
+    config, projects : this project and the others
+    reading : of this project
+    continuous : see :func:`mffit.points.read`
+    """
+    if not projects:
+        return reading, {}
+    own = config.path.name if config.path is not None else "this project"
+    parts, warnings, left_out, others = [_named(reading.points, own, "")], [], [], {}
+    for index, (row, other) in enumerate(zip(config.campaign, projects, strict=True)):
+        found = read_points(other, continuous=continuous)
+        _refuse_other_radii(config, reading.points, found.points, index)
+        folder = Path(row.toml).parent.as_posix()
+        parts.append(_named(found.points, row.toml, folder))
+        left_out += [replace(one, file=f"{folder}/{one.file}") for one in found.left_out]
+        warnings += [f"{row.toml}: {sentence}" for sentence in found.warnings]
+        others[row.toml] = other
+    return (
+        reading._replace(
+            points=concatenate(parts),
+            warnings=(*reading.warnings, *warnings),
+            left_out=(*reading.left_out, *left_out),
+        ),
+        others,
+    )
+
+
+def _named(points: Points, campaign: str, folder: str) -> Points:
+    """The points as those of a campaign, whose folder precedes the names of its files and sweeps."""
+
+    def within(names: tuple[str, ...]) -> tuple[str, ...]:
+        return tuple(f"{folder}/{name}" for name in names) if folder else names
+
+    setups = points.setups if len(points.setups) > 1 and not folder else within(points.setups)
+    if len(points.used_setups) < 2:
+        setups = (campaign,) * len(points.setups)
+    return points.replace(
+        campaign=0,
+        campaigns=(campaign,),
+        files=within(points.files),
+        sweep_names=within(points.sweep_names),
+        setups=setups,
+    )
 
 
 def _refuse_another_tyre(config: Config, other: Config, index: int) -> None:

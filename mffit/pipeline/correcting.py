@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -10,7 +10,7 @@ import numpy as np
 import pandas as pd
 import tomli_w
 
-from mffit.config import Config, path_curvature, resolved
+from mffit.config import Config, axis_signs, path_curvature, resolved
 from mffit.diagnosis import Diagnosis, corrected_points
 from mffit.points import Points
 from mffit.points.loading import settled_sweeps
@@ -24,8 +24,14 @@ ABOUT = (
 )
 
 
-def write_corrected(diagnosis: Diagnosis, config: Config, out: Path, folder: Path) -> None:
-    """Write the corrected points and a ``tyre.toml`` that builds from them.
+CAMPAIGN = "campaign-{}"
+"""Folder of the corrected points of another campaign."""
+
+
+def write_corrected(
+    diagnosis: Diagnosis, config: Config, out: Path, folder: Path, others: Mapping[str, Config]
+) -> None:
+    """Write the corrected points of every campaign and a ``tyre.toml`` that builds from them.
 
     Parameters
     ----------
@@ -33,24 +39,42 @@ def write_corrected(diagnosis: Diagnosis, config: Config, out: Path, folder: Pat
     config : the configuration that was diagnosed
     out : final folder of the files
     folder : temporary folder to write them to
+    others : configurations of other campaigns, by their name in the points
     """
-    points = _corrected(diagnosis, config)
+    for k, (name, other) in enumerate(others.items(), 1):
+        (folder / CAMPAIGN.format(k)).mkdir()
+        _write_campaign(diagnosis, name, other, out / CAMPAIGN.format(k), folder / CAMPAIGN.format(k), [])
+    named = [{"toml": f"{CAMPAIGN.format(k)}/{CORRECTED_TOML}"} for k in range(1, len(others) + 1)]
+    _write_campaign(diagnosis, diagnosis.points.campaigns[0], config, out, folder, named)
+
+
+def _write_campaign(
+    diagnosis: Diagnosis, campaign: str, config: Config, out: Path, folder: Path, named: list[dict[str, Any]]
+) -> None:
+    """Write the corrected points of one campaign and its ``tyre.toml``, which names other campaigns."""
+    points = _corrected(diagnosis, config, campaign)
     not_always = (*(name for name in diagnosis.noise.channels if name != "Fy"), "T", "t")
     sweeps: list[dict[str, Any]] = []
     for name, part in _files(points, not_always):
-        corrected_table(part, diagnosis).to_csv(folder / name, index=False, lineterminator="\n")
+        corrected_table(part, diagnosis, axis_signs(config)).to_csv(
+            folder / name, index=False, lineterminator="\n"
+        )
         sweeps.append({"file": name, **_conditions(part, config)})
     content = resolved(config, out)
     content["sweep"] = sweeps
+    content |= {"campaign": named} if named else {}
     content.get("fit", {}).pop("exclude", None)  # these points are not in the corrected files
     content["rig"] |= {"backlash_deg": 0.0, "force_frame": "W", "moments": "contact"}
     text = ABOUT.format(name=CORRECTED_TOML) + tomli_w.dumps(content)
     (folder / CORRECTED_TOML).write_text(text, encoding="utf-8", newline="\n")
 
 
-def corrected_table(points: Points, diagnosis: Diagnosis) -> pd.DataFrame:
-    """Corrected points with the headings of sweep files in the rig's axes, a row per point."""
-    sign = diagnosis.signs
+def corrected_table(
+    points: Points, diagnosis: Diagnosis, signs: Mapping[str, float] | None = None
+) -> pd.DataFrame:
+    """Corrected points with the headings of sweep files in the axes of the first rig or with ``signs``, a row per point."""
+    sign = signs or diagnosis.signs
+    channels = [name for name in diagnosis.noise.channels if np.any(np.isfinite(points.channel(name)))]
     columns = {
         "run": np.array(points.sweep_names, dtype=object)[points.sweep],
         "alpha_deg": sign["alpha"] * np.degrees(points.alpha),
@@ -62,8 +86,8 @@ def corrected_table(points: Points, diagnosis: Diagnosis) -> pd.DataFrame:
         "T_degC": points.T,
         "t_s": points.t,
         **({"kappa": points.kappa} if np.any(points.kappa) else {}),
-        **{column(name): sign.get(name, 1.0) * points.channel(name) for name in diagnosis.noise.channels},
-        **{u_column(name): points.u(name) for name in diagnosis.noise.channels},
+        **{column(name): sign.get(name, 1.0) * points.channel(name) for name in channels},
+        **{u_column(name): points.u(name) for name in channels},
     }
     known = {n: c for n, c in columns.items() if c.dtype.kind not in "f" or np.isfinite(c).any()}
     return pd.DataFrame(known).replace([np.inf, -np.inf], np.nan)
@@ -93,9 +117,13 @@ def _files(points: Points, not_always: Sequence[str]) -> Iterator[tuple[str, Poi
             yield name if k == 1 else name.replace(".csv", f"-{k}.csv"), points.select(rows)
 
 
-def _corrected(diagnosis: Diagnosis, config: Config) -> Points:
-    """The corrected points, steady: the angles of moving sweeps are corrected for the lag that was found."""
+def _corrected(diagnosis: Diagnosis, config: Config, campaign: str) -> Points:
+    """The corrected points of a campaign, steady: the angles of moving sweeps are corrected for the lag that was found."""
     points = corrected_points(diagnosis.points, diagnosis.state, diagnosis.noise.channels)
+    if len(points.campaigns) > 1:
+        points = points.of_campaign(campaign)
+        if len(points.used_setups) < 2:  # the set-up had no name of its own
+            points = points.replace(setups=("",) * len(points.setups))
     if not np.any(points.continuous):
         return points
     if config.rig.on_disc:

@@ -21,6 +21,7 @@ from mffit.effects import CATALOG, Effect
 from mffit.made import made
 from mffit.output import digest, output_folder, refuse_early
 from mffit.pipeline.building import build
+from mffit.pipeline.campaigns import points_of_all, projects_of
 from mffit.pipeline.correcting import CORRECTED_POINTS, CORRECTED_TOML, write_corrected
 from mffit.pipeline.inputs import input_hashes, inputs_of, read_base, read_points
 from mffit.pipeline.judging import judged_diagnosis
@@ -63,7 +64,8 @@ def diagnose(
     """
     config = configuration.load(config)
     progress("reading sweeps")
-    reading = read_points(config, continuous=True)
+    own = read_points(config, continuous=True)
+    reading, others = points_of_all(config, projects_of(config), own, continuous=True)
     points = reading.points
     base = read_base(config)
     inputs = [*inputs_of(config), last_build(config)]
@@ -91,6 +93,7 @@ def diagnose(
             tyre,
             config,
             rig=rig_of_build(tyre) if same else None,
+            others=others,
             effects=effects,
             coefficients=known,
             seen=seen,
@@ -101,7 +104,7 @@ def diagnose(
     file = _file_read(config, model, choice)
     if file is not None:
         hashes[str(file)] = digest(file)
-    notes = (*choice, *diagnosis.notes, *_redone(config, points, diagnosis, base))
+    notes = (*choice, *diagnosis.notes, *_redone(config, own.points, diagnosis, base))
     diagnosis = replace(
         diagnosis,
         notes=notes,
@@ -117,7 +120,7 @@ def diagnose(
         with_terms=diagnosis.with_terms and marked(diagnosis.with_terms, diagnosis.trust),
     )
     if out is not None:
-        write_diagnosis(diagnosis, Path(out), protected=inputs, config=config)
+        write_diagnosis(diagnosis, Path(out), protected=inputs, config=config, others=others)
     return diagnosis
 
 
@@ -163,20 +166,32 @@ def _redone(
     config: Config, points: Points, diagnosis: Diagnosis, base: Tyre | None
 ) -> tuple[DirectMethodRedone, ...]:
     """The direct method on points corrected for the rig effects, if any were found."""
-    causes = tuple(found.effect.name for found in diagnosis.repaired if found.effect.kind == "rig")
+    first = {"", diagnosis.points.campaigns[0]}
+    causes = tuple(
+        found.effect.name
+        for found in diagnosis.repaired
+        if found.effect.kind == "rig" and found.effect.campaign in first
+    )
     if not config.rig.on_disc or not causes:
         return ()
-    corrected = corrected_points(points, diagnosis.state)
+    corrected = corrected_points(
+        points, diagnosis.state.of_campaign(diagnosis.points.campaigns[0], diagnosis.points)
+    )
     before = epsilon_gamma(config, points, base)
     return (DirectMethodRedone(causes, before, epsilon_gamma(without_play(config), corrected, base)),)
 
 
 def write_diagnosis(
-    diagnosis: Diagnosis, out: Path, protected: Iterable[Path] = (), config: Config | None = None
+    diagnosis: Diagnosis,
+    out: Path,
+    protected: Iterable[Path] = (),
+    config: Config | None = None,
+    others: Mapping[str, Config] | None = None,
 ) -> None:
     """Write every output of a diagnosis, or nothing; the ``protected`` files, which were read, are not replaced.
 
-    With ``config``, the corrected points and a configuration to build from them are written as well.
+    With ``config`` and those of the ``others``, by campaign, the corrected points and configurations to build from them are
+    written as well.
     """
     from mffit import report
 
@@ -186,5 +201,5 @@ def write_diagnosis(
             diagnosis.with_terms.write(folder / str(diagnosis.model_with_terms))
         as_json.write(folder / "diagnosis.json", as_json.diagnosis(diagnosis))
         if config is not None:
-            write_corrected(diagnosis, config, out, folder)
+            write_corrected(diagnosis, config, out, folder, others or {})
         report.write_diagnosis(diagnosis, folder)

@@ -8,7 +8,7 @@ import numpy as np
 import pandas as pd
 
 from mffit.points import constants
-from mffit.points.mean import mean_and_error
+from mffit.points.mean import errors_of_means
 from mffit.points.points import Points, make_points
 from mffit.points.stretch import Stretch
 from mffit.quantities import CHANNELS, u_column
@@ -45,7 +45,7 @@ def over_plateaus(sweep: Sweep, phi_t: float, kept: list[Stretch], faulty: np.nd
     for channel in CHANNELS:
         values, u = getattr(sweep, channel), f"u_{channel}"
         if np.any(np.isfinite(values)):
-            errors = np.array([mean_and_error(values[part])[1] for part in parts])
+            errors = errors_of_means([values[part] for part in parts])
             # A record without scatter does not show how exact it is.
             means[u] = np.where(np.isfinite(means[u]), means[u], np.where(errors > 0.0, errors, np.nan))
         table[u_column(channel)] = means[u]

@@ -2,9 +2,42 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Sequence
+from typing import NamedTuple
+
 import numpy as np
+from scipy.special import digamma, polygamma
 
 from mffit.points import constants
+
+
+def errors_of_means(records: Sequence[np.ndarray]) -> np.ndarray:
+    """Standard error (k,) of the mean of each of k records of one channel, all of one recording.
+
+    A record that is only a few times as long as the memory of its noise hardly shows its own noise. The noise of each record is
+    therefore averaged with that of all records, weighed by degrees of freedom. How far the records differ beyond the chance of
+    their estimates gives the weight of what is common (Smyth, Stat. Appl. Genet. Mol. Biol. 3, 2004, article 3): all of it if
+    they differ by chance only.
+    """
+    found = [_mean_of(x) for x in records]
+    errors = np.array([one.error for one in found])
+    known = np.flatnonzero(np.isfinite(errors) & (errors > 0.0))
+    if len(known) < 2:
+        return errors
+    n = np.array([len(records[k]) for k in known])
+    freedom = np.array([len(records[k]) / (1.0 + 2.0 * found[k].inefficiency) for k in known])
+    noise = errors[known] ** 2 * n  # variance of the mean of one sample, if all were like that
+    logs = np.log(noise) - digamma(0.5 * freedom) + np.log(0.5 * freedom)
+    beyond_chance = float(np.var(logs, ddof=1) - np.mean(polygamma(1, 0.5 * freedom)))
+    if beyond_chance <= 0.0:
+        noise = np.full(len(n), math.exp(np.mean(logs)))
+    else:
+        shared = 2.0 * _inverse_trigamma(beyond_chance)
+        common = math.exp(np.mean(logs) + digamma(0.5 * shared) - math.log(0.5 * shared))
+        noise = (shared * common + freedom * noise) / (shared + freedom)
+    errors[known] = np.sqrt(noise / n)
+    return errors
 
 
 def mean_and_error(x: np.ndarray) -> tuple[float, float]:
@@ -27,19 +60,42 @@ def mean_and_error(x: np.ndarray) -> tuple[float, float]:
     criterion. A window over the autocorrelation function needs twice the record for the same certainty.
     Estimating the mean from the same record costs ``g`` of its ``n`` samples, in the variance and in ``g`` itself.
     """
+    found = _mean_of(x)
+    return found.mean, found.error
+
+
+class _Mean(NamedTuple):
+    mean: float
+    error: float
+    inefficiency: float  #: number of samples that count as one
+
+
+def _mean_of(x: np.ndarray) -> _Mean:
     n, mean = len(x), float(np.mean(x))
     if n < 2 or not np.isfinite(mean):
-        return mean, float("nan")
+        return _Mean(mean, math.nan, 1.0)
     centred = x - mean
     variance = float(np.mean(centred**2))
     if variance <= (1e-12 * max(abs(mean), 1e-300)) ** 2:
-        return mean, 0.0
+        return _Mean(mean, 0.0, 1.0)
     coefficients, innovation = autoregression(centred)
     g = innovation / (1.0 - float(np.sum(coefficients))) ** 2 / variance
     g = min(max(g, 1.0), n / 4.0)
     if len(coefficients):
         g *= 1.0 + 2.0 * g / n
-    return mean, float(np.sqrt(variance / (1.0 - g / n) * g / n))
+    return _Mean(mean, float(np.sqrt(variance / (1.0 - g / n) * g / n)), g)
+
+
+def _inverse_trigamma(y: float) -> float:
+    """The x at which the derivative of the digamma function is ``y``, both positive; Newton's method on its reciprocal."""
+    x = 0.5 + 1.0 / y
+    for _ in range(20):
+        value = float(polygamma(1, x))
+        step = value * (1.0 - value / y) / float(polygamma(2, x))
+        x += step
+        if abs(step) < 1e-8 * x:
+            break
+    return x
 
 
 def autoregression(centred: np.ndarray) -> tuple[np.ndarray, float]:

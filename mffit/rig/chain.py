@@ -86,6 +86,8 @@ class Chain:
                     continue
                 owner = self._quantities if name in self._quantities else self._coefficients
                 owner[name] = error.formula(number, owner[name], self)
+            for name in error.inverse_on:
+                self._coefficients[name] = self._coefficients[name] / error.formula(number, 1.0, self)
 
     def _acts(self, error: RigError) -> bool:
         """Whether an error may change anything: it has another number than without the error, or is traced."""

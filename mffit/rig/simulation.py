@@ -3,19 +3,19 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
 
 from mffit.brief import Brief
-from mffit.points import Points
+from mffit.points import Points, concatenate
 from mffit.quantities import CHANNELS, SIDEWAYS
 from mffit.rig.chain import Chain
 from mffit.rig.histories import of_part, usual_radius
 from mffit.rig.readings import Readings
-from mffit.rig_errors import BY_NAME, NO_FAULTS, OF_RUN, RIG_ERRORS, Faults
+from mffit.rig_errors import BY_NAME, NO_FAULTS, OF_RUN, RIG_ERRORS, Faults, number_of
 from tir import Tyre
 from tir.derivatives import Traced, gradient, plain, traced
 from tir.equations.forces import Forces, State
@@ -35,7 +35,10 @@ class Simulation(Brief):
     star: bool = False  #: tan(alpha), sin(gamma) as inputs
     radius_m: float = math.nan  #: declared radius of the rig's usual path [m]; NaN: that of most points
     of_parts: Mapping[str, float] = field(default_factory=dict)
-    """What single files, set-ups or sweeps add to a rig error, as ``F0_N@zeros.csv`` or ``F0_N@A``, in its unit."""
+    """What single files, set-ups or sweeps add to a rig error, as ``F0_N@zeros.csv`` or ``F0_N@A``, in its unit.
+
+    The number of a campaign replaces that of the whole at its points, as each campaign has a rig of its own.
+    """
 
     @classmethod
     def of(
@@ -48,7 +51,11 @@ class Simulation(Brief):
         """Current value of a coefficient, a rig error or a switch."""
         if name == SWITCH:
             return float(self.turn_slip)
-        if OF_RUN in name:
+        error, _, part = name.partition(OF_RUN)
+        if part and part in points.campaigns:
+            own = self.of_campaign(part, points)
+            return own.number(error, points.of_campaign(part))
+        if part:
             return self.of_parts.get(name, 0.0)
         if name == "path_radius_m" and math.isnan(self.faults[name]):
             return self.declared(points)
@@ -71,6 +78,15 @@ class Simulation(Brief):
             of_parts={**self.of_parts, **of_parts} if of_parts else self.of_parts,
         )
 
+    def of_campaign(self, name: str, points: Points) -> Simulation:
+        """The same tyre on the rig of one of the campaigns of some points."""
+        if len(points.campaigns) < 2:
+            return self
+        parts = {key: key.partition(OF_RUN) for key in self.of_parts}
+        own = {parts[key][0]: x for key, x in self.of_parts.items() if parts[key][2] == name}
+        rest = {key: x for key, x in self.of_parts.items() if parts[key][2] not in points.campaigns}
+        return replace(self, faults=self.faults.replace(**own), of_parts=rest)
+
     @property
     def faultless(self) -> Simulation:
         """The same tyre, its relaxation included, on a perfect rig at reference conditions."""
@@ -91,6 +107,12 @@ class Simulation(Brief):
             In ISO-W, contact frame, rig-fixed also when rolling backwards.
         """
         channels = _in_order(channels)
+        if len(points.campaigns) > 1:
+            out = {name: np.empty(len(points)) for name in channels}
+            for part, rows, own in self._campaigns(points):
+                for name, x in part.readings(own, channels).items():
+                    out[name][rows] = x
+            return Readings(**out)
         return Readings(**dict(zip(channels, self._chain(points, {}).readings(channels), strict=True)))
 
     def felt(self, points: Points) -> Points:
@@ -99,6 +121,11 @@ class Simulation(Brief):
         The influence is that of this simulation, so the tyre misses the returned readings by as much as the simulation misses
         those of ``points``.
         """
+        if len(points.campaigns) > 1:
+            parts = [(rows, part.felt(own)) for part, rows, own in self._campaigns(points)]
+            order = np.argsort(np.concatenate([rows for rows, _ in parts]), kind="stable")
+            together = concatenate([part for _, part in parts]).select(order)
+            return together.replace(campaign=points.campaign, campaigns=points.campaigns)
         channels = _in_order((*SIDEWAYS, *(name for name in points.measured if name in SIMULATED)))
         felt = points.replace(**self._chain(points, {}).at_the_tyre())
         rig = self.readings(points, channels)
@@ -116,6 +143,8 @@ class Simulation(Brief):
 
         The stop at which the moment holds a wheel with play stays the same; a floating wheel keeps its moment at zero.
         """
+        if len(points.campaigns) > 1:
+            return self._sensitivities_of_campaigns(points, names, _in_order(channels))
         whole = [name.partition(OF_RUN)[0] for name in names]
         numbers = traced({name: self.number(name, points) for name in whole})
         channels = _in_order(channels)
@@ -133,6 +162,39 @@ class Simulation(Brief):
                 for slope in slopes.values():
                     slope[:, k] *= own
         return Readings(**{name: np.broadcast_to(plain(x), n) for name, x in out.items()}), Readings(**slopes)
+
+    def _campaigns(self, points: Points) -> Iterator[tuple[Simulation, np.ndarray, Points]]:
+        """The simulation of every campaign that has points, the rows (m,) of these, and the points by themselves."""
+        for k in np.unique(points.campaign).tolist():
+            name = points.campaigns[k]
+            yield (
+                self.of_campaign(name, points),
+                np.flatnonzero(points.campaign == k),
+                points.of_campaign(name),
+            )
+
+    def _sensitivities_of_campaigns(
+        self, points: Points, names: Sequence[str], channels: tuple[str, ...]
+    ) -> tuple[Readings, Readings]:
+        """As :meth:`sensitivities`; the number of one campaign acts on no other."""
+        out = {name: np.empty(len(points)) for name in channels}
+        slopes = {name: np.zeros((len(points), len(names))) for name in channels}
+        own_of = [name.partition(OF_RUN) for name in names]
+        for part, rows, own in self._campaigns(points):
+            campaign = points.campaigns[int(points.campaign[rows[0]])]
+            columns = [
+                k
+                for k, (name, _, of) in enumerate(own_of)
+                if of == campaign
+                or (of and of not in points.campaigns)
+                or (not of and number_of(name, campaign) not in {*names, *self.of_parts})
+            ]
+            called = [own_of[k][0] if own_of[k][2] == campaign else names[k] for k in columns]
+            readings, by = part.sensitivities(own, called, channels)
+            for name in channels:
+                out[name][rows] = readings[name]
+                slopes[name][np.ix_(rows, columns)] = by[name]
+        return Readings(**out), Readings(**slopes)
 
     def _chain(self, points: Points, numbers: Mapping[str, Traced]) -> Chain:
         """The passage of the points with some numbers traced."""

@@ -29,7 +29,7 @@ def diagnosis(found: Diagnosis) -> dict[str, Any]:
             "gap_file": _gap(found.validation.gap_file),
         },
         "where": [asdict(region) for region in found.where],
-        "effects": [_effect(effect, found.signs) for effect in found.effects],
+        "effects": [_effect(effect, found.signs_of(effect.effect)) for effect in found.effects],
         "alternatives": [{"id": name, "confidence": weight} for name, weight in found.ranked_alternatives()],
         "limits": [
             {"id": row.effect.id, "of_usual_size": row.share, "ruled_out": row.ruled_out}
@@ -69,6 +69,7 @@ def _noise(noise: Noise) -> dict[str, Any]:
 def _effect(found: AcceptedEffect, signs: Mapping[str, float]) -> dict[str, Any]:
     return {
         **picked(found.effect, "id", "name", "kind", "physics"),
+        **({"campaign": found.effect.campaign} if found.effect.campaign else {}),
         "confidence": found.confidence,
         "repaired": found.repaired,
         "parameters": {

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -11,8 +13,10 @@ from mffit.diagnosis.inexact import EXACT
 from mffit.diagnosis.noise import Scatter
 from mffit.diagnosis.prediction import LeftOutPrediction
 from mffit.diagnosis.problem import DiagnosisProblem
+from mffit.diagnosis.remainder import Remainder
 from mffit.diagnosis.smooth import smooth_basis
 from mffit.diagnosis.stated import stated_noise, with_uncertainties
+from mffit.diagnosis.structure import structure
 from mffit.diagnosis.validation import gap, validate
 from mffit.diagnosis.where import where
 from mffit.points import make_points
@@ -96,3 +100,66 @@ def test_left_out_sweeps_are_predicted_in_every_channel(problem):
     assert found.chi2.shape == (3, len(CHANNELS))
     own = problem.null.residual.reshape(3, 3, 20) ** 2  # channel, sweep, point; nothing is free
     assert found.chi2 == pytest.approx(own.sum(axis=2).T)
+
+
+@pytest.fixture(scope="module")
+def driven() -> DiagnosisProblem:
+    """Readings without noise of drive and brake at three sideslips and two loads, and of sideslip sweeps."""
+    tyre = Simulation.of(tir.read("samples/flat-track-combined/true.tir"), turn_slip=False)
+    slip, steer = np.linspace(-0.2, 0.2, 21), np.linspace(-0.1, 0.1, 15)
+    kappa = np.concatenate([np.tile(slip, 6), np.zeros(30)])
+    alpha = np.concatenate([np.tile(np.repeat(np.radians([-4.0, 0.0, 4.0]), 21), 2), np.tile(steer, 2)])
+    load = np.repeat([2500.0, 5000.0, 2500.0, 5000.0], [63, 63, 15, 15])
+    sweep = np.concatenate([np.repeat(np.arange(6), 21), np.repeat([6, 7], 15)])
+    points = make_points(alpha, 0.0, load, kappa=kappa, p=240e3, V=16.7, phi_t=0.0, sweep=sweep,
+        sweep_names=tuple("abcdefgh"), u_Fx=15.0, u_Fy=12.0, u_Mz=1.5)  # fmt: skip
+    points = points.replace(**tyre.readings(points, ("Fx", "Fy", "Mz")))
+    return DiagnosisProblem(points, tyre, stated_noise(points, channels=("Fx", "Fy", "Mz")))
+
+
+def test_a_local_misfit_over_slip_is_found_where_it_is(driven):
+    points = driven.points
+    bump = 90.0 * np.exp(-0.5 * ((points.kappa - 0.08) / 0.03) ** 2) * (points.alpha > 0.02)
+    noise = np.random.default_rng(3).standard_normal(len(points))
+    bumpy = DiagnosisProblem(points.replace(Fx=points.Fx + bump + 15.0 * noise), driven.start, driven.noise)
+    found = bump_scan(points, driven.noise).best(bumpy.null)
+    assert (found.channel, found.found) == ("Fx", True)
+    low, high = found.region["kappa"]
+    assert low < 0.08 < high
+    assert found.region["alpha_deg"][0] > 0.0
+    assert found.amplitude == pytest.approx(90.0, rel=0.2)
+
+
+def test_noise_has_no_bump_over_slip(driven):
+    """300 draws; a bump needs four units of log evidence beyond the price of the search."""
+    scan, rng = bump_scan(driven.points, driven.noise), np.random.default_rng(4)
+    assert any("kappa" in region for region in scan.regions)
+    draws = (
+        replace(driven.null, residual=rng.standard_normal(len(driven.null.residual))) for _ in range(300)
+    )
+    assert sum(scan.best(one).found for one in draws) <= 3
+
+
+def test_residuals_over_slip_are_compared_where_slip_was_swept(driven):
+    """Noise alone is called structure by its chance; a wave over slip is named over slip."""
+    rng = np.random.default_rng(6)
+    n, channels = len(driven.points), ("Fx", "Fy", "Mz")
+
+    def left(residual: np.ndarray) -> Remainder:
+        return Remainder(
+            points=driven.points,
+            simulation=driven.start,
+            channels=channels,
+            residual=residual,
+            axes=np.zeros((3 * n, 0)),
+            sigma=np.ones(3 * n),
+            free=frozenset(),
+            expected={},
+            noise={},
+        )
+
+    chances = [structure(left(rng.standard_normal(3 * n))).chance for _ in range(30)]
+    assert np.sum(np.array(chances) < 0.01) <= 3
+    wave = np.concatenate([np.where(np.abs(driven.points.kappa) > 0.15, 1.5, 0.0), np.zeros(2 * n)])
+    found = structure(left(rng.standard_normal(3 * n) + wave)).found
+    assert ("Fx", "kappa") in {(c.channel, c.over) for c in found}

@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.signal import lfilter
 
-from mffit.points.mean import autoregression, mean_and_error
+from mffit.points.mean import autoregression, errors_of_means, mean_and_error
 
 
 def ar1(n: int, correlation_s: float, rate_Hz: float, generator: np.random.Generator) -> np.ndarray:
@@ -80,3 +80,31 @@ def test_constant_short_and_broken_records():
     assert mean_and_error(np.full(50, 3.2)) == (pytest.approx(3.2), 0.0)
     assert math.isnan(mean_and_error(np.array([1.0]))[1])
     assert math.isnan(mean_and_error(np.array([1.0, np.nan, 2.0]))[1])
+
+
+def test_short_plateaus_share_what_they_show_of_their_noise():
+    """Plateaus of some two independent samples: their own errors are often four times too small, shared ones are not."""
+    generator = np.random.default_rng(21)
+    own, shared = [], []
+    for _ in range(60):
+        records = [ar1(64, 0.8, 20.0, generator) for _ in range(5)]
+        means = np.array([np.mean(x) for x in records])
+        own.append(np.abs(means) / [mean_and_error(x)[1] for x in records])
+        shared.append(np.abs(means) / errors_of_means(records))
+    assert np.mean(np.array(own) > 4.0) > 0.02
+    assert np.mean(np.array(shared) > 4.0) < 0.01
+
+
+def test_records_that_really_differ_keep_their_own_errors():
+    generator = np.random.default_rng(22)
+    sizes = np.array([1.0, 3.0, 10.0, 30.0, 0.3, 0.1])
+    errors = errors_of_means([size * generator.standard_normal(400) for size in sizes])
+    np.testing.assert_allclose(errors, sizes / 20.0, rtol=0.2)
+
+
+def test_records_without_scatter_lend_nothing():
+    noisy = np.random.default_rng(23).standard_normal(100)
+    errors = errors_of_means([np.full(50, 3.2), noisy, np.full(10, np.nan)])
+    assert errors[0] == 0.0
+    assert errors[1] == mean_and_error(noisy)[1]
+    assert np.isnan(errors[2])

@@ -1,0 +1,78 @@
+"""Several campaigns of one tyre in one diagnosis: each has a rig of its own, and a surface of its own."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping
+
+import numpy as np
+
+from mffit.config import Config, declared_faults
+from mffit.diagnosis import constants
+from mffit.diagnosis.notes import CampaignsTogether
+from mffit.diagnosis.stated import stated_noise, with_uncertainties
+from mffit.fit.constants import UNKNOWN_RATIO_OF_GRIPS
+from mffit.points import Points
+from mffit.rig import Simulation
+from mffit.rig_errors import OF_RUN, error_of, number_of
+
+SURFACE = "surface_grip"
+
+
+def rigs_apart(rigs: Mapping[str, Config], known: Mapping[str, float]) -> dict[str, float]:
+    """Numbers of the rigs of several campaigns: their declared play, and ``known`` errors of the first one."""
+    out = {
+        number_of(name, campaign): value
+        for campaign, config in rigs.items()
+        for name, value in declared_faults(config.rig).disturbed.items()
+    }
+    first = next(iter(rigs))
+    for name, value in known.items():
+        error = error_of(name)
+        of_rig = OF_RUN not in name and error is not None and error.kind == "rig"
+        out[number_of(name, first) if of_rig else name] = value
+    return out
+
+
+def grips_of_surfaces(points: Points, start: Simulation) -> dict[str, tuple[float, float]]:
+    """Grip of the surface of every other campaign beyond that of the first: name -> (value, standard uncertainty)."""
+    names = [number_of(SURFACE, campaign) for campaign in points.campaigns[1:]]
+    return {name: (start.number(name, points), float(UNKNOWN_RATIO_OF_GRIPS)) for name in names}
+
+
+def on_surfaces(points: Points, start: Simulation, channels: Collection[str]) -> Simulation:
+    """The simulation with the grip of every surface as the readings show it, all else as given."""
+    names = list(grips_of_surfaces(points, start))
+    if not names:
+        return start
+    noise = stated_noise(*with_uncertainties(points, start, channels), channels)
+    measured = np.concatenate([points.channel(name) for name in noise.channels])
+    for _ in range(int(constants.MOST_SURFACE_STEPS)):
+        readings, slopes = start.sensitivities(points, names, noise.channels)
+        columns = noise.whiten(np.nan_to_num(slopes.stacked)) * UNKNOWN_RATIO_OF_GRIPS
+        left = noise.whiten(np.nan_to_num(measured - readings.stacked))
+        now = np.array([start.number(name, points) for name in names])
+        power = columns.T @ columns + np.eye(len(names))
+        step = (
+            np.linalg.solve(power, columns.T @ left - now / UNKNOWN_RATIO_OF_GRIPS) * UNKNOWN_RATIO_OF_GRIPS
+        )
+        start = start.with_numbers(dict(zip(names, np.clip(now + step, -0.5, 1.0).tolist(), strict=True)))
+    return start
+
+
+def looked_at_together(
+    points: Points, found: Mapping[str, tuple[float, float]], start: Simulation
+) -> CampaignsTogether | None:
+    """Which campaigns were looked at, and the grips of their surfaces; None for a single one.
+
+    ``found`` has the numbers that were estimated beside the effects.
+    """
+    if len(points.campaigns) < 2:
+        return None
+    counts = np.bincount(points.campaign, minlength=len(points.campaigns)).tolist()
+    known = grips_of_surfaces(points, start) | {
+        n: x for n, x in found.items() if n.startswith(SURFACE + OF_RUN)
+    }
+    return CampaignsTogether(
+        tuple(zip(points.campaigns, counts, strict=True)),
+        tuple((name.partition(OF_RUN)[2], 1.0 + value, u) for name, (value, u) in known.items()),
+    )
