@@ -209,7 +209,8 @@ async def _answer(action: Callable[[], Any], opened: Opened | None = None) -> Re
     try:
         found = await run_in_threadpool(action) or {}
     except InputError as error:
-        found, status = {"error": str(error)}, REFUSED
+        found = {"error": str(error), "sentence": error.sentence, "key": error.key}
+        status = REFUSED
     if opened is not None and opened.has_project:
         found["state"] = await run_in_threadpool(opened.session.state)
     return JSONResponse(plain(found), status)
