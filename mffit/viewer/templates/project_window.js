@@ -186,6 +186,12 @@ function showLinks() {
   byId("links").replaceChildren(...parts);
 }
 
+// A file that is dropped here would replace the page.
+addEventListener("dragover", event => event.preventDefault());
+addEventListener("drop", event => {
+  event.preventDefault();
+  if (event.dataTransfer.files.length) say("Recordings are dropped into a window without a project: mffit open FOLDER. For this one, name them under [[sweep]] in tyre.toml.", true);
+});
 byId("refit").addEventListener("click", () => post("run/fit"));
 byId("stop").addEventListener("click", () => post("stop"));
 const events = new EventSource("events");
