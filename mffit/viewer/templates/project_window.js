@@ -162,7 +162,7 @@ function showStatus() {
   byId("stop").hidden = !live.run;
   byId("undo").disabled = !moves.length && !live.can_undo;
   showLinks();
-  if (ended) return say("The server of this window has ended. Everything that you clicked is in tyre.toml; run `mffit open` again.", true);
+  if (ended) return say("The server of this window has ended. Everything that you saved is in tyre.toml; run `mffit open` again, and this page follows.", true);
   if (live.problem) return say(live.problem, true);
   if (live.run) return say(`${live.fits || live.run.kind !== "fit" ? WORDS[live.run.kind] : "First fit"}: ${live.run.sentence}`);
   if (live.last && live.last.sentence) return say(`${live.last.state}: ${live.last.sentence}`, true);
@@ -197,4 +197,10 @@ byId("stop").addEventListener("click", () => post("stop"));
 const events = new EventSource("events");
 events.onmessage = message => setLive(JSON.parse(message.data));
 events.onerror = () => { ended = true; showStatus(); };
+// A server that was started again has another address: its page says so to those of the old one, which follow with their view.
+const windows = new BroadcastChannel("mffit window"), here = {project: live.project, address: location.pathname};
+windows.onmessage = ({data}) => {
+  if (data.project === here.project && data.address !== here.address && /^\/[\w-]+\/$/.test(data.address)) location.replace(data.address + location.hash);
+};
+windows.postMessage(here);
 showStatus();

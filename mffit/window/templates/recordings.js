@@ -62,7 +62,7 @@
     const taken = files.filter(isRecording), dialog = byId("ask");
     if (!taken.length) return say(`No recording among ${files.length === 1 ? "it" : `these ${files.length} files`}: their names end in ${endings.join(", ")}.`, true);
     const size = taken.reduce((sum, file) => sum + file.size, 0) / 1e6, others = files.length - taken.length;
-    byId("ask-about").textContent = `Store ${taken.length === 1 ? "this recording" : `these ${taken.length} recordings`} (${size < 0.1 ? "less than 0.1" : size.toFixed(1)} MB) in the folder ${table.folder}?${others ? ` ${others} other files are no recordings.` : ""}`;
+    byId("ask-about").textContent = `Store ${taken.length === 1 ? "this recording" : `these ${taken.length} recordings`} (${size < 0.1 ? "less than 0.1" : size.toFixed(1)} MB) in the folder ${table.folder}?${others ? ` ${others} other ${others === 1 ? "file is no recording" : "files are no recordings"}.` : ""}`;
     byId("ask-files").replaceChildren(...taken.map(file => element("li", file.name)));
     dialog.returnValue = "";
     dialog.onclose = () => { if (dialog.returnValue === "yes") store(taken); };

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import re
+import shutil
 import signal
 import subprocess
 import sys
@@ -12,7 +13,9 @@ import tomllib
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from threading import Thread
 from typing import Any
+from urllib.parse import urlsplit
 
 import numpy as np
 import pytest
@@ -222,6 +225,78 @@ def test_hostile_names_do_no_harm(page, result, tmp_path):
     assert page.find_element("css selector", "#warnings li").get_attribute("textContent") == HOSTILE
     assert HOSTILE in page.find_element("id", "chosen-title").text
     assert ask(page, "window.hacked") is None
+
+
+@contextmanager
+def served(shown: Any, token: str, port: int = 0) -> Iterator[str]:
+    """Address of a window whose server runs in this process."""
+    uvicorn = pytest.importorskip("uvicorn")
+    from mffit.window.app import window_app
+    from mffit.window.serving import _listening
+
+    with _listening(port) as listening:
+        port = listening.getsockname()[1]
+        app = window_app(shown, token=token, port=port, closing=lambda: server.should_exit)
+        server = uvicorn.Server(
+            uvicorn.Config(app, log_level="error", lifespan="off", timeout_graceful_shutdown=1)
+        )
+        thread = Thread(target=server.run, kwargs={"sockets": [listening]})
+        thread.start()
+        try:
+            yield f"http://127.0.0.1:{port}/{token}/"
+        finally:
+            server.should_exit = True
+            thread.join()
+
+
+def test_a_page_follows_a_server_that_was_started_again(browser, tyre_toml, result):
+    """With its view; a page that stays open says meanwhile that the server has ended."""
+    from mffit.window.app import Opened
+
+    session = Session(tyre_toml)
+    session.data, session.fits, session._fitted = mffit.viewer.project_data(result) | {"before": None}, 1, ""
+    first = browser.current_window_handle
+    with served(Opened(session), "first-token") as address:
+        browser.get(address)
+        ask(browser, "mffit.move('PCY1', 1.5)")
+    until(lambda: "has ended" in browser.find_element("id", "status").text)
+    with served(Opened(session), "second-token", urlsplit(address).port) as again:
+        browser.switch_to.new_window("tab")
+        browser.get(again)
+        browser.close()
+        browser.switch_to.window(first)
+        until(lambda: browser.current_url.startswith(again))
+        assert ask(browser, "mffit.trial()") == {"PCY1": 1.5}
+        until(lambda: "has ended" not in browser.find_element("id", "status").text)
+
+
+def test_a_folder_dropped_into_the_page_is_stored_once_agreed(browser, original, tmp_path):
+    from mffit.window.app import Opened
+    from mffit.window.recordings_folder import RecordingsFolder
+
+    (tmp_path / "run" / "deep").mkdir(parents=True)
+    (tmp_path / "empty").mkdir()
+    shutil.copy(original.parent / "sideslip_900.csv", tmp_path / "run")
+    shutil.copy(original.parent / "camber_900.csv", tmp_path / "run" / "deep")
+    (tmp_path / "run" / "photo.jpg").write_bytes(b"jpg")
+    with served(Opened(folder=RecordingsFolder(tmp_path / "empty")), "a-token") as address:
+        browser.get(address)
+        until(lambda: "No recordings here yet" in browser.find_element("id", "status").text)
+        files = {"items": [], "files": [str(tmp_path / "run")], "dragOperationsMask": 1}
+        for kind in ("dragEnter", "dragOver", "drop"):
+            browser.execute_cdp_cmd(
+                "Input.dispatchDragEvent", {"type": kind, "x": 200, "y": 120, "data": files}
+            )
+        until(lambda: ask(browser, "document.getElementById('ask').open"))
+        assert "these 2 recordings" in browser.find_element("id", "ask-about").text
+        assert "1 other file" in browser.find_element("id", "ask-about").text
+        assert list((tmp_path / "empty").iterdir()) == []
+        press(browser, "#ask button.main")
+        until(lambda: browser.find_elements("css selector", "#groups tr"))
+        stored = sorted(path.name for path in (tmp_path / "empty").iterdir())
+        assert stored == ["camber_900.csv", "sideslip_900.csv"]
+        assert ask(browser, "document.querySelector('[name=axes]').value") == "iso"
+        assert console_errors(browser) == []
 
 
 @contextmanager
