@@ -114,10 +114,15 @@ def read_entry(given: tuple[str, Any]) -> CoefficientByHand:
 Entries = dict[str, Annotated[CoefficientByHand, PlainValidator(read_entry), PlainSerializer(as_in_the_file)]]
 
 
+def may_be_free(row: Parameter) -> bool:
+    """Whether a fit may determine the coefficient, so that bounds, a start and a prior are possible."""
+    return bool(row.stage and row.stage != "held") or row.name in FREE_WITHOUT_STAGE
+
+
 def _check_freed(row: Parameter, entry: CoefficientByHand) -> None:
     """Refuse contradictions within the table of a coefficient."""
     value, u, start, least, most = (getattr(entry, key) for key in KEYS)
-    if not (row.stage and row.stage != "held") and row.name not in FREE_WITHOUT_STAGE:
+    if not may_be_free(row):
         raise q.wrong(f'has bounds or a prior, but no fit frees {row.name}; write a number or "{BASE}"')
     if value is None and u is not None:
         raise q.wrong("is missing, but u needs it; add what is known of the coefficient", "value")

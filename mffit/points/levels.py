@@ -30,6 +30,8 @@ PRESSURE = LevelKind("pressure", constants.PRESSURE_LEVEL_TOLERANCE)  # [Pa]
 SPEED = LevelKind("speed", constants.SPEED_LEVEL_TOLERANCE, relative=True)  # [m/s]
 SIDESLIP = LevelKind("sideslip", constants.SIDESLIP_LEVEL_TOLERANCE.rad)  # [rad]
 SLIP = LevelKind("longitudinal slip", constants.SLIP_LEVEL_TOLERANCE)  # [-]
+KINDS = {kind.name: kind for kind in (LOAD, CAMBER, PRESSURE, SPEED, SIDESLIP, SLIP)}
+"""By the word of the quantity in :mod:`mffit.quantities`."""
 
 NO_LEVEL = -1
 """Label of a value that belongs to no level."""

@@ -15,6 +15,9 @@ SLIDER_LEAST = Real(
 SLIDER_OF_ZERO = Real(0.1, "-", "Least reach of the slider of a coefficient that is about 0.")
 MOVERS_SHOWN = Count(2, "-", "Sweeps that are named for a coefficient as those that determine it most.")
 LEAST_MOVER = Real(0.1, "-", "Share of the information on a coefficient below which a sweep is not named.")
+MOST_CHIPS = Count(
+    24, "-", "Most levels of a condition with a button each: three lines; above it, the filter is a range."
+)
 LINES_OF_A_SAMPLE = Count(
     3, "-", "Median distance in lines from which points of a file are means of several lines each."
 )

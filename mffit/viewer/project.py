@@ -6,6 +6,7 @@ from typing import Any
 
 import mffit
 from mffit.config.by_hand import as_in_the_file
+from mffit.fit.agreement import with_points
 from mffit.quantities import CHANNELS, QuantityName
 from mffit.results import BuildResult
 from mffit.results.as_json.values import plain
@@ -16,6 +17,7 @@ from mffit.viewer.project_coefficients import coefficient_rows
 from mffit.viewer.project_points import (
     axis_quantities,
     columns,
+    delivered,
     stated_noise,
 )
 from tir.codegen.javascript import javascript
@@ -39,6 +41,7 @@ def _data(result: BuildResult) -> dict[str, Any]:
     parameters = trace(Switches(simulation.turn_slip, simulation.star), MODELLED).parameters
     rows = coefficient_rows(result, parameters)
     values = {name: float(simulation.values[name]) for name in parameters}
+    stated = stated_noise(points)
     return {
         "name": result.config.tyre.name,
         "order": list(INPUTS),
@@ -48,12 +51,12 @@ def _data(result: BuildResult) -> dict[str, Any]:
         "channels": [
             {
                 "name": name,
-                "rmse": fitted.channels[name].rmse,
+                "rmse": rmse,
                 "over_noise": result.trust.over_noise.get(name),
-                "stated": stated,
+                "stated": stated[name],
+                "of_fit": name in fitted.channels,
             }
-            for name, stated in stated_noise(points).items()
-            if name in MODELLED and name in fitted.channels and fitted.channels[name].n
+            for name, rmse in _misfits(result).items()
         ],
         "values": values | {row["name"]: row["value"] for row in rows},
         "conicity": [name for name in CONICITY if name in parameters],
@@ -109,6 +112,18 @@ def project_page(result: BuildResult) -> Page:
     data = project_data(result)
     html = project_html(data["name"], data, turn_slip=data["turn_slip"], star=data["star"])
     return Page(html, (data["name"],))
+
+
+def _misfits(result: BuildResult) -> dict[str, float]:
+    """By channel that was measured and that the page computes, rms misfit of the fitted model.
+
+    Some, such as the wheel speed, are fitted by themselves, from the freely rolling wheel only, and are no channel of the fit.
+    """
+    fitted, measured = result.fit, [name for name in result.points.measured if name in MODELLED]
+    others = [name for name in measured if name not in fitted.channels]
+    readings = delivered(fitted).readings(result.points, others)
+    found = {**with_points(readings, result.points), **fitted.channels}
+    return {name: found[name].rmse for name in measured if found[name].n}
 
 
 def _quantity(quantity: QuantityName) -> dict[str, Any]:

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from mffit.config.by_hand import KEYS_OF_TYRE
+from mffit.config.by_hand import KEYS_OF_TYRE, may_be_free
 from mffit.fit import Coefficient, FitResult
 from mffit.fit.fitted import Fitted
 from mffit.quantities import CHANNELS
@@ -106,6 +106,7 @@ def _row(row: Parameter, fitted: FitResult, moved: Sequence[str]) -> dict[str, A
         "status": record.status,
         "found": record.status in FOUND or bool(record.by_hand),
         "at_bound": record.at_bound,
+        "may_be_free": may_be_free(row),
         "bounds": [x if math.isfinite(x) else None for x in (lower, upper)],
         "divisor": row.divisor,
         "slider": [low, high],

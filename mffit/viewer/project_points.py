@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -10,19 +11,14 @@ import numpy as np
 from mffit.fit import FitResult
 from mffit.points import Points, concatenate, levels
 from mffit.quantities import CHANNELS, CONDITIONS, MODEL, QuantityName
+from mffit.rig import Simulation
 from mffit.viewer import constants
 from mffit.viewer.controls import in_si
 from tir.codegen.program import INPUTS
 
 MEASURED_ONLY = {"T": CONDITIONS["T_degC"], "t": CONDITIONS["t_s"]}
 """Conditions of points that are no input of the model."""
-FACETS = {
-    "Fz": levels.LOAD,
-    "gamma": levels.CAMBER,
-    "pressure": levels.PRESSURE,
-    "alpha": levels.SIDESLIP,
-    "Vx": levels.SPEED,
-}
+FACETS = {name: levels.KINDS[MODEL[name].word] for name in INPUTS if MODEL[name].word in levels.KINDS}
 """Inputs of the model whose set-points have levels."""
 DIGITS = 12
 """Significant digits of a number in the page: more than any reading has, and half of what a float needs."""
@@ -33,13 +29,19 @@ def axis_quantities() -> dict[str, QuantityName]:
     return {name: MODEL[name] for name in INPUTS} | MEASURED_ONLY | dict(CHANNELS)
 
 
+def delivered(fitted: FitResult) -> Simulation:
+    """The tyre of the file on the rig as fitted: radii and rolling resistance are fitted after the search."""
+    return replace(fitted.simulation, values=dict(fitted.tyre.values))
+
+
 def columns(points: Points, excluded: Points | None, fitted: FitResult) -> dict[str, Any]:
     """The points as the tyre felt them, by column, with what the rig read; then those that are left out by hand.
 
     Conditions and readings are in SI; missing readings are null. ``fitted`` is the number of points that the fit has.
     """
     parts = [points] if excluded is None else [points, excluded]
-    felt = concatenate([fitted.simulation.felt(part) for part in parts])
+    simulation = delivered(fitted)
+    felt = concatenate([simulation.felt(part) for part in parts])
     read = concatenate(parts)
     sigma = fitted.search.problem.sigma if fitted.search is not None else {}
     return {
@@ -64,7 +66,11 @@ def stated_noise(points: Points) -> dict[str, bool]:
 
 
 def facets(points: Points) -> list[dict[str, Any]]:
-    """Groups of points by their set-points: name, words of the groups, and the group (n,) of each point; -1 for none."""
+    """Groups of points by their set-points: name, words of the groups, and the group (n,) of each point; -1 for none.
+
+    ``inputs`` are those of the model that the groups share; points of a curve over another input are in the same groups.
+    ``is_run`` marks the groups that do not separate curves.
+    """
     inputs = _arrays(points)
     found = []
     for name, kind in FACETS.items():
@@ -74,14 +80,14 @@ def facets(points: Points) -> list[dict[str, Any]]:
         else:
             of = levels.nearest_labels(values, kind)
         medians = [float(np.median(inputs[name][of == k])) for k in range(of.max(initial=-1) + 1)]
-        found.append(_facet(name, MODEL[name].word, of, [_said(MODEL[name], x) for x in medians]))
-    for name, word, of, words in (
-        ("path", "path", _ranks(points.phi_t), [_path(x) for x in np.unique(points.phi_t)]),
-        ("direction", "rolling", (points.direction > 0).astype(int), ["backward", "forward"]),
-        ("mount", "mount", (points.mount > 0).astype(int), ["flipped", "normal"]),
-        ("sweep", "run", points.sweep, points.sweep_names),
+        found.append(_facet(name, MODEL[name].word, of, [_said(MODEL[name], x) for x in medians], [name]))
+    for name, word, of, words, shared in (
+        ("path", "path", _ranks(points.phi_t), [_path(x) for x in np.unique(points.phi_t)], ["phi_t"]),
+        ("direction", "rolling", (points.direction > 0).astype(int), ["backward", "forward"], ["Vx"]),
+        ("mount", "mount", (points.mount > 0).astype(int), ["flipped", "normal"], []),
+        ("sweep", "run", points.sweep, points.sweep_names, []),
     ):
-        found.append(_facet(name, word, of, words))
+        found.append(_facet(name, word, of, words, shared))
     return found
 
 
@@ -124,8 +130,18 @@ def _noise(points: Points, channel: str, sigma: Any) -> np.ndarray:
     return np.asarray(sigma.get(channel, stated))
 
 
-def _facet(name: str, word: str, of: np.ndarray, words: Sequence[str]) -> dict[str, Any]:
-    return {"name": name, "word": word, "of": of.tolist(), "labels": list(words)}
+def _facet(
+    name: str, word: str, of: np.ndarray, words: Sequence[str], inputs: Sequence[str]
+) -> dict[str, Any]:
+    return {
+        "name": name,
+        "word": word,
+        "of": of.tolist(),
+        "labels": list(words),
+        "inputs": list(inputs),
+        "is_run": name == "sweep",
+        "as_range": name in FACETS and len(words) > constants.MOST_CHIPS,
+    }
 
 
 def _ranks(values: np.ndarray) -> np.ndarray:

@@ -17,6 +17,7 @@ from starlette.routing import Route
 
 from mffit.errors import InputError
 from mffit.results.as_json.values import plain
+from mffit.sweeps.formats import ENDINGS
 from mffit.templates import environment
 from mffit.viewer import project_html
 from mffit.window import constants
@@ -97,6 +98,17 @@ def window_app(opened: Opened, *, token: str, port: int, closing: Callable[[], b
         content = await _content(request)
         return await _answer(lambda: opened.make(content))
 
+    async def store(request: Request) -> Response:
+        if opened.folder is None or opened.has_project:
+            return Response(status_code=404)
+        folder, name, content = opened.folder, request.path_params["name"], bytearray()
+        async for chunk in request.stream():
+            content += chunk
+            if len(content) > constants.LARGEST_RECORDING:
+                sentence = f"{name} is larger than {constants.LARGEST_RECORDING / 1e6:.0f} MB; copy it into the folder"
+                return JSONResponse({"error": sentence}, REFUSED)
+        return await _answer(lambda: {"name": folder.store(name, bytes(content)).name})
+
     async def project(request: Request) -> Response:
         return JSONResponse(opened.session.data)
 
@@ -134,6 +146,7 @@ def window_app(opened: Opened, *, token: str, port: int, closing: Callable[[], b
     routes = [
         Route("/{token}/", page),
         Route("/{token}/recordings", recordings),
+        Route("/{token}/store/{name}", store, methods=["POST"]),
         Route("/{token}/check", check, methods=["POST"]),
         Route("/{token}/make", make, methods=["POST"]),
         Route("/{token}/project", project),
@@ -167,7 +180,7 @@ def _page(opened: Opened) -> str:
         css = files("mffit.viewer").joinpath("templates", "show.css").read_text(encoding="utf-8")
         own = files("mffit.viewer").joinpath("templates", "project.css").read_text(encoding="utf-8")
         template = environment("mffit.window").get_template("recordings.html.j2")
-        return template.render(name=opened.folder.folder.name, css=css + own)
+        return template.render(name=opened.folder.folder.name, css=css + own, endings=ENDINGS)
     session = opened.session
     data, state = session.data, session.state()
     if data is not None:
@@ -209,7 +222,8 @@ async def _answer(action: Callable[[], Any], opened: Opened | None = None) -> Re
     try:
         found = await run_in_threadpool(action) or {}
     except InputError as error:
-        found, status = {"error": str(error)}, REFUSED
+        found = {"error": str(error), "sentence": error.sentence, "key": error.key}
+        status = REFUSED
     if opened is not None and opened.has_project:
         found["state"] = await run_in_threadpool(opened.session.state)
     return JSONResponse(plain(found), status)

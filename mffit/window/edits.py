@@ -7,8 +7,9 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any
 
 import tomlkit
-from tomlkit.items import AoT
+from tomlkit.items import AoT, Table
 
+from mffit.config.by_hand import KEYS
 from mffit.config.lines import LineRange, line_ranges, ranges_text
 from mffit.errors import InputError
 
@@ -32,6 +33,34 @@ def start(text: str, *, name: str, value: float) -> str:
             entry = tomlkit.inline_table()
             entry["start"] = value
             table[name] = entry
+
+    return _edited(text, change)
+
+
+def limit(text: str, *, name: str, entry: Mapping[str, Any]) -> str:
+    """The text with bounds, start and prior of the coefficient; without any of them, the text without its entry.
+
+    Parameters
+    ----------
+    text : of the file
+    name : of the coefficient
+    entry : numbers by key of :data:`mffit.config.by_hand.KEYS`; what the file gave for the coefficient goes
+    """
+    if unknown := [key for key in entry if key not in KEYS]:
+        raise InputError(f'"{unknown[0]}" is not a key of a coefficient; known are {", ".join(KEYS)}')
+    if not entry:
+        return free(text, name=name)
+
+    def change(document: Any) -> None:
+        table = _table(document, "coefficients")
+        own = table.get(name)
+        if not isinstance(own, Table):
+            table[name] = own = tomlkit.inline_table()
+        for key in KEYS:
+            if key not in entry:
+                own.pop(key, None)
+            elif own.get(key) != entry[key]:
+                own[key] = entry[key]
 
     return _edited(text, change)
 
@@ -92,7 +121,7 @@ def take_back(text: str, *, readings: Sequence[Mapping[str, Any]]) -> str:
 
 
 EDITS: Mapping[str, Callable[..., str]] = {
-    edit.__name__: edit for edit in (hold, start, free, leave_out, take_back)
+    edit.__name__: edit for edit in (hold, start, limit, free, leave_out, take_back)
 }
 """The changes by name."""
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -12,10 +11,11 @@ import tomli_w
 
 from mffit.config import Config
 from mffit.config.loading import checked
-from mffit.errors import InputError
+from mffit.errors import InputError, shortened
 from mffit.output import new_files
 from mffit.points import Points, levels
 from mffit.points.loading import read
+from mffit.quantities import CONDITIONS
 from mffit.recordings.disc import disc_signs, files_of_folder, rolls_backward
 from mffit.recordings.guess import Guess, guesses
 from mffit.recordings.project_file import named_tyre, slug
@@ -25,17 +25,15 @@ from mffit.sweeps import formats
 from mffit.sweeps.channels import SWEEP_CHANNELS
 from mffit.sweeps.columns import numbers
 from mffit.sweeps.raw_table import RawTable
+from mffit.viewer.controls import in_si
 
 PROJECT = "tyre.toml"
 ABOUT = "# From the recordings in this folder, as corrected in the window of `mffit open`.\n\n"
 NOT_READABLE_HERE = (PROJECT, "stretches.csv")
-CONDITIONS = (
-    (levels.LOAD, "N", 1.0, lambda points: points.Fz),
-    (levels.CAMBER, "deg", math.pi / 180.0, lambda points: points.gamma),
-    (levels.PRESSURE, "kPa", 1e3, lambda points: points.p),
-    (levels.SPEED, "m/s", 1.0, lambda points: points.V),
-)
-"""Settings whose levels are shown: unit, its size in SI, and where a point has it."""
+SEPARATORS = frozenset('/\\:*?"<>|')
+"""Characters that separate folders on some system, or that no file there may have."""
+SETTINGS = ("Fz_N", "gamma_deg", "kappa", "p_kPa", "V_mps")
+"""Conditions whose levels are shown."""
 
 
 class RecordingsFolder:
@@ -43,17 +41,50 @@ class RecordingsFolder:
 
     def __init__(self, folder: Path) -> None:
         self.folder = folder.resolve()
-        self.files = [path for path in files_of_folder(self.folder) if path.name not in NOT_READABLE_HERE]
-        if not self.files:
+
+    @property
+    def files(self) -> list[Path]:
+        """The recordings that are in the folder now; a link to a file elsewhere is none."""
+        found = (path for path in files_of_folder(self.folder) if path.name not in NOT_READABLE_HERE)
+        return [path for path in found if path.resolve().is_relative_to(self.folder)]
+
+    def store(self, name: str, content: bytes) -> Path:
+        """Write a recording that was dropped into the page; returns its path.
+
+        Raises
+        ------
+        InputError
+            The name is not that of a recording in this folder, the file exists, or the folder cannot be written to.
+        """
+        simple = bool(name) and name.isprintable() and not name.startswith(".") and not set(name) & SEPARATORS
+        if not simple or name in NOT_READABLE_HERE or not name.lower().endswith(formats.ENDINGS):
             raise InputError(
-                f"has neither a {PROJECT} nor a recording ({', '.join(formats.ENDINGS)})", file=folder
+                f'"{shortened(name)}" is not the name of a recording ({", ".join(formats.ENDINGS)}); rename the file'
             )
+        path = self.folder / name
+        try:
+            with path.open("xb") as stream:  # never over a file that is there
+                try:
+                    stream.write(content)
+                    stream.flush()
+                except OSError:
+                    path.unlink()
+                    raise
+        except FileExistsError:
+            raise InputError("exists already in this folder; rename the new one", file=path) from None
+        except OSError as error:
+            raise InputError(
+                f"cannot be written ({error.strerror}); free space or choose another folder", file=path
+            ) from None
+        return path
 
     def table(self) -> dict[str, Any]:
         """What is recognised: files in groups of equal headings, channels to choose from, and what else the files say."""
+        files = self.files
         with formats.reading_once():
-            groups, problems = self._groups()
-            found, problem = self._sniffed()
+            groups, problems = self._groups(files)
+            readable = {file["name"] for group in groups for file in group["files"]}
+            found, problem = self._sniffed([path for path in files if path.name in readable])
         first = found.recordings[0] if found else None
         return {
             "folder": self.folder.name,
@@ -63,7 +94,7 @@ class RecordingsFolder:
             "groups": groups,
             "problems": [*problems, *([problem] if problem else [])],
             "tyre": {
-                "name": slug(self.files[0]),
+                "name": slug(files[0]) if files else slug(self.folder),
                 "size": named_tyre(first.about) if first else "",
                 "nominal_pressure": _usual_pressure(found),
             },
@@ -135,11 +166,11 @@ class RecordingsFolder:
             tables["rig"] = {k: v for k, v in tables["rig"].items() if not k.startswith("path")}
         return tables | {"columns": columns[0] if columns else {}, "sweep": sweeps}
 
-    def _groups(self) -> tuple[list[dict[str, Any]], list[str]]:
+    def _groups(self, files: Sequence[Path]) -> tuple[list[dict[str, Any]], list[str]]:
         """Files with equal headings and units, each with the guessed columns; and the files that cannot be read."""
         groups: dict[tuple[Any, ...], dict[str, Any]] = {}
         problems = []
-        for path in self.files:
+        for path in files:
             try:
                 raw = formats.read(path)
                 found, remarks = guesses(raw)
@@ -165,10 +196,12 @@ class RecordingsFolder:
             group["files"].append({"name": path.name, "rows": len(raw), "backward": rolls_backward(path)})
         return list(groups.values()), problems
 
-    def _sniffed(self) -> tuple[Sniffed | None, str]:
+    def _sniffed(self, files: Sequence[Path]) -> tuple[Sniffed | None, str]:
         """What the recognised recordings hold together, or why it is not known yet."""
+        if not files:
+            return None, ""
         try:
-            return sniff(self.files), ""
+            return sniff(files), ""
         except InputError as error:
             return None, str(error)
 
@@ -222,14 +255,11 @@ def _usual_pressure(found: Sniffed | None) -> float | None:
 
 
 def _conditions(points: Points) -> list[dict[str, Any]]:
-    """The levels of load, camber, pressure and speed, in the units of the page."""
-    return [
-        {
-            "name": kind.name,
-            "unit": unit,
-            "levels": [
-                round(x / size, 1) + 0.0 for x in np.unique(levels.level_values(of(points), kind)).tolist()
-            ],
-        }
-        for kind, unit, size, of in CONDITIONS
-    ]
+    """The levels of the settings, in the units of the page."""
+    found = []
+    for column in SETTINGS:
+        quantity = CONDITIONS[column]
+        near = levels.level_values(getattr(points, column.partition("_")[0]), levels.KINDS[quantity.word])
+        shown = {float(f"{round(x, 3):.4g}") + 0.0 for x in (near / in_si(quantity.unit)).tolist()}
+        found.append({"name": quantity.word, "unit": quantity.unit_behind, "levels": sorted(shown)})
+    return found

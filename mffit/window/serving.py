@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import contextlib
+import os
 import socket
+import zlib
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
 from mffit import viewer
 from mffit.errors import InputError
+from mffit.window import constants
 
 ADDRESS = "127.0.0.1"
 
@@ -19,7 +22,7 @@ def open_path(paths: Sequence[Path], *, port: int = 0, opened: Callable[[str], N
     Parameters
     ----------
     paths : a ``tyre.toml``, the folder that it is in, a folder of recordings, or property files
-    port : on the loopback address; 0 for any that is free
+    port : on the loopback address; 0 for the usual one of this project, or any if that is in use
     opened : called with the address, once requests are answered
 
     Raises
@@ -53,7 +56,7 @@ def open_path(paths: Sequence[Path], *, port: int = 0, opened: Callable[[str], N
         session = Session(first / PROJECT if first.is_dir() else first)
         session.file.config()
         shown = Opened(session)
-    with _listening(port) as listening:
+    with _listening(port) if port else _usual(first) as listening:
         port = listening.getsockname()[1]
         app = window_app(shown, token=token, port=port, closing=lambda: server.should_exit)
         settings = uvicorn.Config(app, log_level="warning", timeout_graceful_shutdown=2, lifespan="off")
@@ -66,10 +69,25 @@ def open_path(paths: Sequence[Path], *, port: int = 0, opened: Callable[[str], N
         shown.end()
 
 
+def _usual(path: Path) -> socket.socket:
+    """A socket on the port that a project usually has, or on a free one.
+
+    The port is the same after a restart, so that a page that is still open can follow to the new address.
+    """
+    first, count = constants.FIRST_PORT, constants.PORTS
+    try:
+        return _listening(int(first) + zlib.crc32(bytes(path.resolve())) % int(count))
+    except InputError:
+        return _listening(0)
+
+
 def _listening(port: int) -> socket.socket:
-    """A socket on the loopback address."""
+    """A socket on the loopback address; no other process can listen there beside it."""
     found = socket.socket(socket.AF_INET, socket.SOCK_STREAM)
-    found.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+    if os.name == "nt":
+        found.setsockopt(socket.SOL_SOCKET, socket.SO_EXCLUSIVEADDRUSE, 1)  # type: ignore[attr-defined]
+    else:  # ports of a server that has just ended; on Windows it would let others listen too
+        found.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
     try:
         found.bind((ADDRESS, port))
     except OSError as error:

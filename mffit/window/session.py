@@ -10,7 +10,7 @@ from mffit.config import Config
 from mffit.config.by_hand import as_in_the_file
 from mffit.errors import InputError
 from mffit.window.edits import EDITS
-from mffit.window.project_file import ProjectFile
+from mffit.window.project_file import ProjectFile, digest_of
 from mffit.window.runs import PAGES, RUNS, Run, RunOutcome, out_of
 
 
@@ -34,6 +34,7 @@ class Session:
             digest = self.file.digest
             problem, config = self._read(digest)
             return {
+                "project": digest_of(bytes(self.file.path)),
                 "digest": digest,
                 "is_fitted": self._fitted == digest,
                 "fits": self.fits,

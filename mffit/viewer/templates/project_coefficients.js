@@ -63,11 +63,11 @@ function coefficientRow(row) {
     move(row.name, Math.min(Math.max(slider.valueAsNumber + steps * (row.slider[1] - row.slider[0]) / 200, row.slider[0]), row.slider[1]), true);
   });
   cells[row.name] = {box, field, slider, tag, reset, about, keys};
-  extendRow(row, keys);
+  extendRow(row, keys, box);
   showRow(row);
   return box;
 }
-let extendRow = () => {};  // a window adds "hold" and "free"
+let extendRow = () => {};  // a window adds "hold", "limits" and "free"
 let entryOf = name => project.hand[name] ?? null;
 function showRow(row) {
   const cell = cells[row.name];

@@ -10,6 +10,7 @@ let columns = {};  // Float64Array by name, of every point
 let own = {};  // by channel: the model at the conditions of every point
 let fitOwn = {};  // the same of the fit, before any slider moved
 let models, fitModels, beforeModels = null;
+let misfits = {};  // by channel, of the present values; see misfit
 let left = new Uint8Array(0);  // 1 where a point is left out
 let trial = {};  // coefficients that differ from the fit
 
@@ -57,6 +58,7 @@ function predicted(by_mount) {
   return found;
 }
 function recompute() {
+  misfits = {};
   const changed = Object.keys(trial).length > 0;
   models = changed ? compiled({...project.values, ...trial}) : fitModels;
   own = changed ? predicted(models) : fitOwn;

@@ -40,7 +40,7 @@ function showMisfit() {
   byId("misfit-before").hidden = !project.before;
   while (body.rows.length > channels.length) body.deleteRow(-1);
   channels.forEach((name, k) => {
-    const line = body.rows[k] || body.insertRow(), now = misfit(name), fit = misfit(name, fitOwn);
+    const line = body.rows[k] || body.insertRow(), now = misfits[name] ??= misfit(name), fit = misfit(name, fitOwn);
     if (!line.cells.length) for (let i = 0; i < 5; i++) line.insertCell().className = i ? "n" : "";
     const known = project.channels[k].stated;
     line.cells[0].replaceChildren(shared.symbol(quantity(name)), ` [${unit(name)}]`);
@@ -80,31 +80,92 @@ function choose(i, add) {
   showChosen();
   update();
 }
+function chooseAll(members, add) {
+  chosen = [...new Set([...(add ? chosen : []), ...members])];
+  showChosen();
+  update();
+}
+const pointsIn = panel => [...visible.keys()].filter(i => visible[i] && Number.isFinite(panel.places.px[i]) && Number.isFinite(panel.places.py[i]));
+// The points in a rectangle of a picture, in its pixels.
+function inside(panel, [x0, y0, x1, y1]) {
+  const {X, Y, px, py} = panel.places, between = (x, a, b) => x >= Math.min(a, b) && x <= Math.max(a, b);
+  return pointsIn(panel).filter(i => between(X(px[i]), x0, x1) && between(Y(py[i]), y0, y1));
+}
+// A rectangle is drawn with the mouse at once; with a finger, which otherwise scrolls, while "Select points" is on.
+function rectangles(panel, plot) {
+  const canvas = panel.canvas, frame = plot.appendChild(element("div", "rectangle"));
+  let from = null, to = null, just = false;
+  const at = event => { const box = canvas.getBoundingClientRect(); return [event.clientX - box.left, event.clientY - box.top]; };
+  const end = () => { from = to = null; frame.hidden = true; };
+  end();
+  canvas.addEventListener("pointerdown", event => {
+    just = false;
+    if (event.button === 0 && (event.pointerType === "mouse" || selecting())) from = at(event);
+  });
+  canvas.addEventListener("pointermove", event => {
+    if (!from) return;
+    const now = at(event);
+    if (!to && Math.hypot(now[0] - from[0], now[1] - from[1]) < NEAREST_DRAG) return;
+    if (!to) canvas.setPointerCapture(event.pointerId);
+    to = now;
+    frame.hidden = false;
+    Object.assign(frame.style, {left: `${Math.min(from[0], to[0])}px`, top: `${Math.min(from[1], to[1])}px`, width: `${Math.abs(to[0] - from[0])}px`, height: `${Math.abs(to[1] - from[1])}px`});
+  });
+  canvas.addEventListener("pointerup", event => {
+    if (to) { just = true; chooseAll(inside(panel, [...from, ...to]), event.shiftKey || selecting()); }
+    end();
+  });
+  canvas.addEventListener("pointercancel", end);
+  canvas.addEventListener("click", event => {
+    if (just) just = false; else choose(nearest(panel, event), event.shiftKey || selecting());
+  });
+  return {dragged: () => to !== null, end};
+}
+const selecting = () => byId("select").getAttribute("aria-pressed") === "true";
 let chosenActions = () => [];
 function showChosen() {
   byId("chosen").hidden = !chosen.length;
+  byId("chosen-title").textContent = chosen.length === 1 ? placeOf(chosen[0]) : chosen.length ? `${chosen.length} points` : "";
   if (!chosen.length) return;
-  byId("chosen-title").textContent = chosen.length === 1 ? placeOf(chosen[0]) : `${chosen.length} points`;
-  const body = byId("chosen-table").tBodies[0], shown = chosen.slice(0, 12);
-  body.replaceChildren();
+  const shown = chosen.slice(0, MOST_LISTED), body = byId("chosen-table").tBodies[0], head = byId("chosen-table").tHead;
   const named = Object.keys(project.quantities).filter(name => columns[name] && shown.some(i => Number.isFinite(columns[name][i]) && columns[name][i] !== 0));
-  const line = (title, text) => {
-    const made = body.insertRow();
-    made.append(element("th", "", title), ...shown.map(i => element("td", "n", text(i))));
-  };
-  if (chosen.length > 1) line("", placeOf);
-  for (const name of named) line(`${label(name)}, as read`, i => trimmed(written(shownIn(name, (columns.read[name] || columns[name])[i]))));
-  for (const name of channels) line(label(RESIDUAL + name), i => written(columns[name][i] - own[name][i]));
-  if (shown.some(i => left[i])) line("left out", i => left[i] ? whyLeftOut(i) || "yes" : "");
-  byId("chosen-actions").replaceChildren(...chosenActions());
+  const about = [
+    ...channels.map(name => [label(RESIDUAL + name), i => written(columns[name][i] - own[name][i])]),
+    ...named.filter(name => chosen.length === 1 || axisKnown(name)).map(name => [`${label(name)}, as read`, i => trimmed(written(shownIn(name, (columns.read[name] || columns[name])[i])))]),
+    ...(shown.some(i => left[i]) ? [["left out", i => left[i] ? whyLeftOut(i) || "yes" : ""]] : []),
+  ];
+  head.replaceChildren();
+  if (chosen.length === 1) {
+    body.replaceChildren(...about.map(([title, text]) => rowOf(element("th", "", title), element("td", "n", text(chosen[0])))));
+  } else {
+    head.append(rowOf(element("th", "", "point"), ...about.map(([title]) => element("th", "n", title)), element("th", "")));
+    body.replaceChildren(...shown.map(i => rowOf(element("td", "", placeOf(i)), ...about.map(([, text]) => element("td", "n", text(i))), unchoose(i))));
+    if (shown.length < chosen.length) body.append(rowOf(element("td", "", `and ${chosen.length - shown.length} more`)));
+  }
+  byId("chosen-actions").replaceChildren(...chosenActions(), key("Choose none", "ends the choice (Esc in a picture)", () => choose(-1, false)));
 }
-function step(panel, by) {
-  const order = [...visible.keys()].filter(i => visible[i] && Number.isFinite(panel.places.py[i]))
+function rowOf(...inside) {
+  const made = document.createElement("tr");
+  made.append(...inside);
+  return made;
+}
+function unchoose(i) {
+  const cell = element("td", "n"), button = key("×", "take this point out of the choice", () => choose(i, true));
+  button.setAttribute("aria-label", `take ${placeOf(i)} out of the choice`);
+  cell.append(button);
+  return cell;
+}
+function step(panel, by, add) {
+  const order = pointsIn(panel)
     .sort((a, b) => panel.places.px[a] - panel.places.px[b] || panel.places.py[a] - panel.places.py[b]);
   if (!order.length) return;
   const at = order.indexOf(chosen[chosen.length - 1]);
-  choose(order[(at + by + order.length) % order.length], false);
-  tip(panel, chosen[0]);
+  const next = order[((at < 0 && by < 0 ? 0 : at) + by + order.length) % order.length];
+  if (add && chosen.includes(next)) chosen = chosen.slice(0, -1);  // back over the points that were added
+  else chooseAll([next], add);
+  showChosen();
+  update();
+  tip(panel, next);
 }
 
 // ---- pictures
@@ -130,21 +191,23 @@ function addPanel({x, y}) {
   panel.tip.hidden = true;
   panel.canvas.tabIndex = 0;
   panel.canvas.setAttribute("role", "img");
-  panel.canvas.setAttribute("aria-label", "points and curves; arrow keys choose a point");
+  panel.canvas.setAttribute("aria-label", "points and curves; arrow keys choose a point, with Shift several, Ctrl+A all");
   plot.append(panel.canvas, panel.tip);
   figure.append(caption, plot);
   byId("panels").append(figure);
+  const rectangle = rectangles(panel, plot);
   panel.canvas.addEventListener("pointermove", event => {
+    if (rectangle.dragged()) return tip(panel, -1);
     const i = nearest(panel, event);
     tip(panel, i);
     if (i !== pointed) { pointed = i; update(); }
   });
   panel.canvas.addEventListener("pointerleave", () => { tip(panel, -1); pointed = -1; update(); });
-  panel.canvas.addEventListener("click", event => choose(nearest(panel, event), event.shiftKey));
   panel.canvas.addEventListener("keydown", event => {
     const steps = {ArrowLeft: -1, ArrowRight: 1}[event.key];
-    if (steps) { event.preventDefault(); step(panel, steps); }
-    else if (event.key === "Escape") { choose(-1, false); tip(panel, -1); }
+    if (steps) { event.preventDefault(); step(panel, steps, event.shiftKey); }
+    else if (event.key === "Escape") { if (!rectangle.dragged()) choose(-1, false); rectangle.end(); tip(panel, -1); }
+    else if ((event.ctrlKey || event.metaKey) && event.key.toLowerCase() === "a") { event.preventDefault(); chooseAll(pointsIn(panel), false); }
     else if (event.key === "Delete" && chosen.length) leaveOut();
   });
   state.panels.push(panel);
@@ -156,7 +219,9 @@ const axisKnown = name => columns[name] && columns[name].some(Number.isFinite) &
 function listFacets() {
   const home = byId("facets");
   home.replaceChildren();
-  for (const one of project.points.facets.filter(facet => facet.labels.length > 1)) {
+  const wide = project.points.facets.filter(one => one.as_range).map(one => one.name);
+  for (const name of wide) delete state.hidden[name];
+  for (const one of project.points.facets.filter(facet => facet.labels.length > 1 && !facet.as_range)) {
     const present = one.labels.filter((_, k) => one.of.includes(k));
     if (present.length < 2) continue;
     const line = element("div", "facet");
@@ -167,7 +232,7 @@ function listFacets() {
     for (const text of present) line.append(chip(one, text));
     home.append(line);
   }
-  for (const name of ["T", "t"]) {
+  for (const name of [...wide, "T", "t"]) {
     if (!axisKnown(name)) continue;
     const line = element("div", "facet range"), ends = [0, 1].map(k => {
       const field = Object.assign(element("input", "number"), {type: "number", step: "any"});
@@ -185,15 +250,17 @@ function listFacets() {
     home.append(line);
   }
 }
-// A click hides the group; a double click shows it alone.
+// A click hides the group; with Shift, or twice, it shows it alone.
 function chip(one, text) {
-  const made = key(text, "click: hide or show; double click: only this", event => {
+  const alone = () => { state.hidden[one.name] = one.labels.filter(other => other !== text); refilter(); };
+  const made = key(text, "click: hide or show; with Shift, or double click: only this", event => {
+    if (event.shiftKey) return alone();
     const hidden = new Set(state.hidden[one.name] || []);
     if (hidden.has(text)) hidden.delete(text); else hidden.add(text);
     state.hidden[one.name] = [...hidden];
     refilter();
   });
-  made.addEventListener("dblclick", () => { state.hidden[one.name] = one.labels.filter(other => other !== text); refilter(); });
+  made.addEventListener("dblclick", alone);
   made.classList.add("chip");
   made.dataset.facet = one.name;
   made.dataset.label = text;
@@ -248,7 +315,7 @@ function showProject(data) {
   if (!state.panels.length) for (const panel of (wanted.length ? wanted : defaultPanels())) addPanel(panel);
   listCoefficients();
   showChosen();
-  const fit = channels.map(name => `${name} ${written(project.channels.find(one => one.name === name).rmse)} ${quantity(name).unit}`).join(", ");
+  const fit = project.channels.filter(one => one.of_fit).map(one => `${one.name} ${written(one.rmse)} ${quantity(one.name).unit}`).join(", ");
   byId("about").textContent = `${project.points.fitted} points, rms misfit ${fit}${project.trusted ? "" : "; the result is not to be trusted"}`;
   const said = project.warnings, box = byId("warnings");
   box.hidden = !said.length;
@@ -278,6 +345,10 @@ function begin() {
   });
   byId("colour").addEventListener("change", event => { state.colour = event.target.value; recolour(); showFacets(); remember(); update(); });
   byId("reading").addEventListener("change", event => { state.reading = event.target.value; remember(); update(); });
+  byId("select").addEventListener("click", () => {
+    byId("select").setAttribute("aria-pressed", !selecting());
+    byId("panels").classList.toggle("selecting", selecting());
+  });
   byId("add").addEventListener("click", () => { addPanel(defaultPanels()[0]); remember(); update(); });
   addEventListener("resize", update);
   matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => { if (project) { readTheme(); update(); } });
@@ -296,7 +367,9 @@ window.mffit = {
   trial: () => trial,
   chosen: () => chosen,
   left: () => [...left],
+  visible: () => visible,
   choose,
+  chooseAll,
   show: showProject,
   place: (panel, i) => { const p = state.panels[panel].places; return [p.X(p.px[i]), p.Y(p.py[i])]; },
   // What the curve of a point in a picture is at its place, in SI; null without a curve.

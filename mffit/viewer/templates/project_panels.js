@@ -1,13 +1,12 @@
 // Pictures: any quantity over any other, on canvas, because a picture has thousands of points.
-const RESIDUAL = "residual of ", GROUPED = ["Fz", "gamma", "pressure", "alpha", "Vx", "path", "direction", "mount"];
-const SAME_PLACE = {Vx: ["Vx", "direction"], phi_t: ["path"]};
-const STEPS = 48, NARROWEST = 0.08, NEAR = 14, RIGHT = 10, TOP = 8, BOTTOM = 22;
+const RESIDUAL = "residual of ";
+const STEPS = 48, NARROWEST = 0.08, NEAR = 14, NEAREST_DRAG = 6, MOST_LISTED = 300, RIGHT = 10, TOP = 8, BOTTOM = 22;
 const state = {panels: [], hidden: {}, ranges: {}, colour: "Fz", reading: "curve"};
 let visible = new Uint8Array(0), theme = {}, palette = [], colourOf = [], curveGroups = {}, chosen = [], pointed = -1;
 
 const facet = name => project.points.facets.find(one => one.name === name);
 function defaultPanels() {
-  const first = channels.slice(0, 2), over = name => name === "Fx" ? "kappa" : "alpha";
+  const first = project.channels.filter(one => one.of_fit).map(one => one.name).slice(0, 2), over = name => name === "Fx" ? "kappa" : "alpha";
   return [...first.map(y => ({x: over(y), y})), ...first.map(y => ({x: over(y), y: RESIDUAL + y}))];
 }
 function readTheme() {
@@ -39,7 +38,7 @@ function filter() {
 // Points of one curve over x: the same levels of everything else; with the median of their conditions.
 function groupsOver(x) {
   if (curveGroups[x]) return curveGroups[x];
-  const facets = GROUPED.filter(name => name !== x && !(SAME_PLACE[x] || []).includes(name)).map(facet).filter(Boolean);
+  const facets = project.points.facets.filter(one => !one.is_run && !one.inputs.includes(x));
   const found = new Map(), X = columns[x];
   for (let i = 0; i < columns.count; i++) {
     if (!visible[i]) continue;
@@ -141,6 +140,13 @@ function draw(panel) {
   }
   marks(pen, shown, X, Y);
   pen.restore();
+  if (channels.includes(shown.y)) {
+    const {rmse, over_noise} = misfits[shown.y] ??= misfit(shown.y);
+    const text = `misfit ${written(rmse)} ${quantity(shown.y).unit}${Number.isFinite(over_noise) ? `, ${over_noise.toFixed(2)} × noise` : ""}`;
+    Object.assign(pen, {fillStyle: theme.muted, strokeStyle: theme.paper, lineWidth: 4, textAlign: "right"});
+    pen.strokeText(text, width - RIGHT - 2, TOP + 9);  // readable over curves
+    pen.fillText(text, width - RIGHT - 2, TOP + 9);
+  }
   panel.places = {px: shown.px, py: shown.py, X, Y};
 }
 function limits(panel, shown, lines) {

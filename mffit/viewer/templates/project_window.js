@@ -5,7 +5,7 @@ const say = (sentence, bad = false) => {
   byId("status").textContent = sentence;
   byId("status").classList.toggle("bad", bad);
 };
-async function post(address, body = {}) {
+async function post(address, body = {}, refused = found => say(found.error, true)) {
   let answer;
   try {
     answer = await fetch(address, {method: "POST", headers: {"Content-Type": "application/json"}, body: JSON.stringify(body)});
@@ -13,9 +13,9 @@ async function post(address, body = {}) {
     return lost();
   }
   if (answer.status === 403) return lost();
-  const found = await answer.json();
+  const found = await answer.json().catch(() => ({error: `The server answered with status ${answer.status}; see the terminal.`}));
   if (found.state) setLive(found.state);
-  if (found.error) say(found.error, true);
+  if (found.error) refused(found);
   return !found.error;
 }
 function lost() {
@@ -23,10 +23,10 @@ function lost() {
   showStatus();
   return false;
 }
-// One change after the other: each is meant for the file as the one before left it.
-function edit(name, given) {
+// One change after the other: each is meant for the file as the one before left it. A refusal is said at the place of the click.
+function edit(name, given, refused) {
   waiting = waiting.then(async () => {
-    const done = await post("edit", {do: name, seen: live.digest, with: given});
+    const done = await post("edit", {do: name, seen: live.digest, with: given}, refused);
     if (done) moves.push({edit: true});
     if (project) frame();
     return done;
@@ -37,20 +37,69 @@ canUndo = () => live.can_undo;
 undoEdit = () => { waiting = waiting.then(() => live.can_undo ? post("undo") : false); };
 entryOf = name => live.hand[name] ?? null;
 
-extendRow = (row, keys) => {
+const drafts = {};  // by coefficient, what is typed into its limits and not saved yet
+extendRow = (row, keys, box) => {
   const held = entry => typeof entry === "number" || entry === "base";
-  const now = () => row.name in trial ? trial[row.name] : row.value;
-  const hold = key("hold", "write this value into tyre.toml: the fit takes it as exact", () => edit("hold", {name: row.name, value: Number(now().toPrecision(9))}));
-  const start = key("start", "write this value into tyre.toml as the one from which the fit starts", () => edit("start", {name: row.name, value: Number(now().toPrecision(9))}));
-  const free = key("free", "remove the entry of this coefficient from tyre.toml", () => edit("free", {name: row.name}));
-  keys.prepend(hold, start, free);
+  const now = () => Number((row.name in trial ? trial[row.name] : row.value).toPrecision(9));
+  const problem = element("p", "problem");
+  problem.setAttribute("role", "alert");
+  const refused = found => {
+    const field = (found.key || "").startsWith(`coefficients.${row.name}.`) ? found.key.split(".").pop() : "";
+    problem.textContent = found.key ? `${field || row.name}: ${found.sentence}` : found.error;
+    for (const input of box.querySelectorAll(".limits input")) input.setAttribute("aria-invalid", input.name === field);
+  };
+  const change = (name, given) => { problem.textContent = ""; return edit(name, {name: row.name, ...given}, refused); };
+  const hold = key("hold", "write this value into tyre.toml: the fit takes it as exact", () => change("hold", {value: now()}));
+  const start = key("start", "write this value into tyre.toml as the one from which the fit starts", () => change("start", {value: now()}));
+  const free = key("free", "remove the entry of this coefficient from tyre.toml", () => change("free", {}));
+  const limits = key("limits", "bounds, start and what is known beforehand, written into tyre.toml", () => {
+    if (row.name in drafts) delete drafts[row.name]; else drafts[row.name] = typeof entryOf(row.name) === "object" ? {...entryOf(row.name)} : {};
+    form();
+  });
+  const form = () => {
+    limits.setAttribute("aria-expanded", row.name in drafts);
+    const old = box.querySelector(".limits"), made = row.name in drafts ? limitsForm(row, change, refused, () => { delete drafts[row.name]; form(); limits.focus(); }) : null;
+    if (old) old.remove();
+    if (!made) { problem.textContent = ""; return; }
+    problem.before(made);
+    made.querySelector("input").focus();
+  };
+  keys.prepend(hold, start, limits, free);
+  box.append(problem);
+  if (row.name in drafts) form();
   keys.refresh = () => {
     const entry = entryOf(row.name);
     free.hidden = entry === null;
+    limits.hidden = !row.may_be_free;
     start.hidden = !["fitted", "regularised"].includes(row.status) || held(entry);
   };
   keys.refresh();
 };
+// Fields for the table of a coefficient; empty ones are not written.
+function limitsForm(row, change, refused, close) {
+  const form = element("form", "limits"), draft = drafts[row.name];
+  const [low, high] = row.bounds.map(x => x === null ? "none" : `${Number(x.toPrecision(5))}`);
+  const fields = {min: ["min", low], max: ["max", high], start: ["start", "chosen"], value: ["known value", "none"], u: ["its u (1 sigma)", "none"]};
+  for (const [name, [word, usual]] of Object.entries(fields)) {
+    const label = element("label", "", word), input = Object.assign(element("input", "number"), {type: "number", step: "any", name, placeholder: usual});
+    if (name in draft) input.value = draft[name];
+    input.setAttribute("aria-label", `${row.name}: ${name}`);
+    input.addEventListener("input", () => { if (Number.isFinite(input.valueAsNumber)) draft[name] = input.valueAsNumber; else delete draft[name]; });
+    label.append(input);
+    form.append(label);
+  }
+  const save = Object.assign(element("button", "small", "save"), {type: "submit"}), cancel = key("cancel", "close without saving", close);
+  form.append(save, cancel);
+  form.noValidate = true;
+  form.addEventListener("submit", async event => {
+    event.preventDefault();
+    const wrong = [...form.querySelectorAll("input")].find(input => input.validity.badInput);
+    if (wrong) return refused({key: `coefficients.${row.name}.${wrong.name}`, sentence: "this is not a number; write one, with a decimal point"});
+    if (await change("limit", {entry: {...draft}})) close();
+  });
+  form.addEventListener("keydown", event => { if (event.key === "Escape") { event.stopPropagation(); close(); } });
+  return form;
+}
 leaveOut = () => {
   const members = chosen.filter(i => !left[i]), dialog = byId("ask");
   if (!members.length) return;
@@ -113,7 +162,7 @@ function showStatus() {
   byId("stop").hidden = !live.run;
   byId("undo").disabled = !moves.length && !live.can_undo;
   showLinks();
-  if (ended) return say("The server of this window has ended. Everything that you clicked is in tyre.toml; run `mffit open` again.", true);
+  if (ended) return say("The server of this window has ended. Everything that you saved is in tyre.toml; run `mffit open` again, and this page follows.", true);
   if (live.problem) return say(live.problem, true);
   if (live.run) return say(`${live.fits || live.run.kind !== "fit" ? WORDS[live.run.kind] : "First fit"}: ${live.run.sentence}`);
   if (live.last && live.last.sentence) return say(`${live.last.state}: ${live.last.sentence}`, true);
@@ -137,9 +186,21 @@ function showLinks() {
   byId("links").replaceChildren(...parts);
 }
 
+// A file that is dropped here would replace the page.
+addEventListener("dragover", event => event.preventDefault());
+addEventListener("drop", event => {
+  event.preventDefault();
+  if (event.dataTransfer.files.length) say("Recordings are dropped into a window without a project: mffit open FOLDER. For this one, name them under [[sweep]] in tyre.toml.", true);
+});
 byId("refit").addEventListener("click", () => post("run/fit"));
 byId("stop").addEventListener("click", () => post("stop"));
 const events = new EventSource("events");
 events.onmessage = message => setLive(JSON.parse(message.data));
 events.onerror = () => { ended = true; showStatus(); };
+// A server that was started again has another address: its page says so to those of the old one, which follow with their view.
+const windows = new BroadcastChannel("mffit window"), here = {project: live.project, address: location.pathname};
+windows.onmessage = ({data}) => {
+  if (data.project === here.project && data.address !== here.address && /^\/[\w-]+\/$/.test(data.address)) location.replace(data.address + location.hash);
+};
+windows.postMessage(here);
 showStatus();

@@ -38,8 +38,97 @@
       groups: table.groups,
     };
   }
+  function list(sentences) {
+    byId("problems").replaceChildren(...sentences.map(sentence => element("li", sentence)));
+    byId("problems").hidden = !sentences.length;
+  }
+  // ---- recordings that are dropped or chosen: stored in the folder once the user agrees
+  const endings = JSON.parse(byId("endings").textContent);
+  const isRecording = file => endings.some(ending => file.name.toLowerCase().endsWith(ending)) && !file.name.startsWith(".");
+  async function filesOf(transfer) {
+    const entries = [...transfer.items].filter(item => item.kind === "file").map(item => item.webkitGetAsEntry()).filter(Boolean);
+    const within = async entry => {
+      if (entry.isFile) return [await new Promise((done, failed) => entry.file(done, failed))];
+      const reader = entry.createReader(), found = [];
+      for (let some = [null]; some.length;) {  // a reader gives a hundred at a time
+        some = await new Promise((done, failed) => reader.readEntries(done, failed));
+        for (const one of some) found.push(...await within(one));
+      }
+      return found;
+    };
+    return (await Promise.all(entries.map(within))).flat();
+  }
+  function offer(files) {
+    const taken = files.filter(isRecording), dialog = byId("ask");
+    if (!taken.length) return say(`No recording among ${files.length === 1 ? "it" : `these ${files.length} files`}: their names end in ${endings.join(", ")}.`, true);
+    const size = taken.reduce((sum, file) => sum + file.size, 0) / 1e6, others = files.length - taken.length;
+    byId("ask-about").textContent = `Store ${taken.length === 1 ? "this recording" : `these ${taken.length} recordings`} (${size < 0.1 ? "less than 0.1" : size.toFixed(1)} MB) in the folder ${table.folder}?${others ? ` ${others} other ${others === 1 ? "file is no recording" : "files are no recordings"}.` : ""}`;
+    byId("ask-files").replaceChildren(...taken.map(file => element("li", file.name)));
+    dialog.returnValue = "";
+    dialog.onclose = () => { if (dialog.returnValue === "yes") store(taken); };
+    dialog.showModal();
+  }
+  async function store(files) {
+    const refusals = [];
+    for (const [k, file] of files.entries()) {
+      say(`storing ${k + 1} of ${files.length}: ${file.name}`);
+      const answer = await fetch(`store/${encodeURIComponent(file.name)}`, {method: "POST", headers: {"Content-Type": "application/octet-stream"}, body: file}).catch(() => null);
+      if (!answer) return say("The server of this window has ended; run `mffit open` again.", true);
+      const found = await answer.json().catch(() => ({error: `${file.name} was not taken (status ${answer.status})`}));
+      if (found.error) refusals.push(found.error);
+    }
+    say("reading the recordings");
+    await load();
+    if (refusals.length) {
+      say(`${refusals.length} of ${files.length} files were not stored; see below.`, true);
+      list([...refusals, ...table.problems]);
+    }
+  }
+  addEventListener("dragover", event => { event.preventDefault(); byId("drop").classList.add("over"); });
+  addEventListener("dragleave", event => { if (!event.relatedTarget) byId("drop").classList.remove("over"); });
+  addEventListener("drop", async event => {
+    event.preventDefault();
+    byId("drop").classList.remove("over");
+    if (table) offer(await filesOf(event.dataTransfer).catch(() => []));
+  });
+  for (const id of ["add-files", "add-folder"]) byId(id).addEventListener("change", event => { if (table) offer([...event.target.files]); event.target.value = ""; });
+  // What was corrected stays when recordings are added.
+  function carriedOver(before, after) {
+    const columns = new Map(before.groups.flatMap(group => group.columns).map(one => [`${one.heading} ${one.stated}`, one]));
+    const files = new Map(before.groups.flatMap(group => group.files).map(one => [one.name, one]));
+    for (const group of after.groups) {
+      for (const one of group.columns) {
+        const {channel, unit, minus} = columns.get(`${one.heading} ${one.stated}`) || one;
+        Object.assign(one, {channel, unit, minus});
+      }
+      for (const one of group.files) {
+        const {used, backward} = files.get(one.name) || one;
+        Object.assign(one, {used, backward});
+      }
+    }
+    return after;
+  }
+  const touched = new Set();  // fields that were filled in by hand
+  byId("choice").addEventListener("input", event => touched.add(event.target.name));
+  async function load() {
+    const answer = await fetch("recordings").catch(() => null);
+    if (!answer || !answer.ok) return say("The recordings cannot be read; see the terminal.", true);
+    const found = await answer.json(), typed = table && table.groups.length ? choice() : null;
+    table = table ? carriedOver(table, found) : found;
+    show();
+    if (!typed) return;
+    for (const [name, x] of Object.entries({...typed.tyre, ...typed.rig})) if (x !== null && touched.has(name)) document.querySelector(`[name=${name}]`).value = x;
+    document.querySelector("[name=type]").dispatchEvent(new Event("change"));
+  }
+
   function show() {
     const tyre = byId("tyre"), rig = byId("rig"), disc = table.disc.length > 0;
+    tyre.replaceChildren();
+    rig.replaceChildren();
+    byId("found").hidden = true;
+    byId("choice").hidden = !table.groups.length;
+    list(table.problems);
+    if (!table.groups.length) return say(table.problems.length ? "None of the recordings here can be read; see below." : "No recordings here yet.", table.problems.length > 0);
     field(tyre, "name", "name", {value: table.tyre.name, required: true});
     field(tyre, "size", "size", {value: table.tyre.size});
     const any = {type: "number", step: "any", required: true, min: 0};
@@ -56,9 +145,8 @@
     type.addEventListener("change", curved);
     curved();
     byId("groups").replaceChildren(...table.groups.map(group));
-    byId("choice").hidden = false;
     const first = disc ? `These look like recordings of a disc: ${table.disc.join("; ")}.` : "";
-    say([first, ...table.problems].filter(Boolean).join(" "), table.problems.length > 0);
+    say(first || (table.problems.length ? "Something was not recognised; see below." : ""), !first && table.problems.length > 0);
   }
   function group(one) {
     const home = element("section"), files = element("div", "", {className: "files"}), scroll = element("div", "", {className: "scroll"});
@@ -66,7 +154,7 @@
     home.append(element("h2", names.length > 3 ? `${names[0]} ... ${names[names.length - 1]} (${names.length} files)` : names.join(", ")));
     for (const file of one.files) {
       const line = element("div"), used = element("label"), back = element("label");
-      const box = element("input", "", {type: "checkbox", checked: true}), backward = element("input", "", {type: "checkbox", checked: file.backward});
+      const box = element("input", "", {type: "checkbox", checked: file.used !== false}), backward = element("input", "", {type: "checkbox", checked: file.backward});
       box.addEventListener("change", () => { file.used = box.checked; });
       backward.addEventListener("change", () => { file.backward = backward.checked; });
       used.append(box, `${file.name}, ${file.rows} rows `);
@@ -123,5 +211,5 @@
     event.preventDefault();
     if (await post("make")) location.reload();
   });
-  fetch("recordings").then(answer => answer.json()).then(found => { table = found; show(); }).catch(() => say("The recordings cannot be read; see the terminal.", true));
+  load();
 })();

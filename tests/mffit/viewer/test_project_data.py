@@ -10,6 +10,8 @@ from small_rigs import flat, simulated
 
 import mffit
 from mffit.points import make_points
+from mffit.quantities import CONDITIONS
+from mffit.viewer.project import project_data
 from mffit.viewer.project_coefficients import coefficient_rows, movers
 from mffit.viewer.project_points import facets, last_lines
 
@@ -62,6 +64,20 @@ def test_points_are_grouped_by_their_set_points():
     assert found["path"]["labels"] == ["straight"]
 
 
+def test_every_condition_with_set_points_is_a_filter():
+    """Also longitudinal slip; a condition with many levels is filtered by a range."""
+    driven = make_points(
+        0.0, 0.0, 1000.0, p=2e5, V=10.0, phi_t=0.0, kappa=np.repeat([-0.1, 0.0, 0.1], 4), line=np.arange(12),
+        files=("a",),
+    )  # fmt: skip
+    found = {f["name"]: f for f in facets(driven)}
+    assert found["kappa"]["labels"] == ["-0.1", "0", "0.1"]
+    words = {f["word"] for f in found.values()}
+    assert {q.word for q in CONDITIONS.values()} - words == {"temperature", "time"}
+    swept = make_points(np.linspace(-0.3, 0.3, 200), 0.0, 1000.0, p=2e5, V=10.0, phi_t=0.0)
+    assert {f["name"] for f in facets(swept) if f["as_range"]} == {"alpha"}
+
+
 def test_a_coefficient_is_moved_by_the_sweeps_that_show_it(result):
     """Camber stiffness by sweeps that lean, the trail by the moment, friction by large sideslip."""
     moved = movers(result.fit)
@@ -69,6 +85,17 @@ def test_a_coefficient_is_moved_by_the_sweeps_that_show_it(result):
     assert moved["QBZ1"][0].startswith("M_z")
     assert moved["PDY1"][0].startswith("F_y")
     assert any(word.startswith(("sideslip", "coupled")) for word in moved["PDY1"])
+
+
+def test_channels_beside_the_fit_have_the_misfit_of_the_file(result):
+    """Rolling resistance is fitted by itself, to the freely rolling wheel: computed again with the written file."""
+    rows = {row["name"]: row for row in project_data(result)["channels"]}
+    assert [name for name, row in rows.items() if not row["of_fit"]] == ["My"]
+    points = result.points
+    model = result.fit.tyre(points.Fz, points.alpha, points.gamma, Vx=points.Vx, p=points.p, turn_slip=False)
+    # the rig's small misalignment changes the load and angle that the moment sees by a thousandth
+    assert rows["My"]["rmse"] == pytest.approx(np.sqrt(np.mean((model.My - points.My) ** 2)), rel=1e-2)
+    assert {q for q in project_data(result)["quantities"] if q in rows} == set(rows)
 
 
 def test_sliders_hold_the_value_and_stay_within_the_bounds(result):

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from mffit.config.lines import line_ranges
 from mffit.errors import InputError
-from mffit.window.edits import EDITS, free, hold, leave_out, start, take_back
+from mffit.window.edits import EDITS, free, hold, leave_out, limit, start, take_back
 from mffit.window.project_file import ProjectFile
 
 TEXT = """# the front tyre
@@ -57,6 +57,33 @@ def test_a_start_keeps_the_bounds():
     entry = tomllib.loads(start(TEXT, name="PEY1", value=0.1))["coefficients"]["PEY1"]
     assert entry == {"min": -3.0, "max": 0.5, "start": 0.1}
     assert tomllib.loads(start(TEXT, name="PCY1", value=1.2))["coefficients"]["PCY1"] == {"start": 1.2}
+
+
+@pytest.mark.parametrize("name", ["PCY1", "PEY1", "PKY1", "PDY1"])
+@pytest.mark.parametrize(
+    "entry",
+    [{"min": 1.0}, {"value": -0.3, "u": 0.1, "max": 0.5}, {"start": 2.0, "min": 1.0}, {}],
+    ids=",".join,
+)
+def test_limits_replace_the_entry_and_keep_every_comment(name, entry):
+    """A number, a table on one line, a table of its own, and none at all."""
+    text = TEXT + "\n[coefficients.PKY1]  # from the report\nstart = -20.0  # a guess\n"
+    found = limit(text, name=name, entry=entry)
+    before, after = tomllib.loads(text), tomllib.loads(found)
+    assert after["coefficients"].pop(name, {}) == entry
+    before["coefficients"].pop(name, None)
+    assert after == before
+    if entry:
+        assert [
+            c
+            for c in ("the engineer's hand", "from the last tyre", "# bounds", "from the report", "by Anna")
+            if c not in found
+        ] == []
+
+
+def test_an_unknown_key_of_limits_is_refused():
+    with pytest.raises(InputError, match='"least" is not a key'):
+        limit(TEXT, name="PCY1", entry={"least": 1.0})
 
 
 def test_freeing_removes_the_line_and_nothing_else():

@@ -125,6 +125,69 @@ def test_files_elsewhere_are_not_named(folder, tmp_path):
     assert "secret" not in found.make(choice).read_text(encoding="utf-8")
 
 
+def test_a_link_to_a_file_elsewhere_is_not_read(folder, tmp_path):
+    (tmp_path / "secret.csv").write_text("secret\n1\n", encoding="utf-8")
+    (folder / "link.csv").symlink_to(tmp_path / "secret.csv")
+    assert "secret" not in str(RecordingsFolder(folder).table())
+
+
+def test_one_file_that_is_no_recording_leaves_the_others_recognised(folder, original):
+    for name in ("sideslip_1400.csv", "camber_1400.csv"):
+        (folder / name).write_bytes((original.parent / name).read_bytes())
+    (folder / "notes.txt").write_text("hi\n", encoding="utf-8")
+    table = RecordingsFolder(folder).table()
+    assert table["axes"] == ["iso"]
+    assert "notes.txt" in table["problems"][0]
+
+
+@pytest.fixture
+def client(folder):
+    app = window_app(Opened(folder=RecordingsFolder(folder)), token=TOKEN, port=PORT)
+    with testclient.TestClient(app, base_url=HERE, headers={"origin": HERE}) as found:
+        yield found
+
+
+def test_a_dropped_recording_is_stored_and_recognised(client, folder, original):
+    content = (original.parent / "sideslip_900.csv").read_bytes()
+    assert client.post(f"/{TOKEN}/store/added%20one.csv", content=content).json() == {"name": "added one.csv"}
+    assert (folder / "added one.csv").read_bytes() == content
+    names = [f["name"] for g in client.get(f"/{TOKEN}/recordings").json()["groups"] for f in g["files"]]
+    assert sorted(names) == ["added one.csv", "camber_1400.csv", "sideslip_1400.csv"]
+
+
+@pytest.mark.parametrize(
+    "name",
+    [
+        "sideslip_1400.csv",
+        "..%2Fout.csv",
+        "%2e%2e%5cout.csv",
+        "a%00.csv",
+        ".hidden.csv",
+        "tyre.toml",
+        "run.sh",
+        "C:a.csv",
+    ],
+)
+def test_nothing_is_overwritten_and_nothing_else_is_stored(client, folder, name):
+    before = {path: path.read_bytes() for path in folder.parent.rglob("*") if path.is_file()}
+    answer = client.post(f"/{TOKEN}/store/{name}", content=b"x")
+    assert answer.status_code in (404, 422)
+    assert {path: path.read_bytes() for path in folder.parent.rglob("*") if path.is_file()} == before
+
+
+def test_a_recording_that_is_too_large_or_from_elsewhere_is_refused(client, folder, monkeypatch):
+    monkeypatch.setattr("mffit.window.constants.LARGEST_RECORDING", 10)
+    assert "larger than" in client.post(f"/{TOKEN}/store/a.csv", content=b"x" * 11).json()["error"]
+    for headers in ({"origin": "http://tyres.example"}, {"origin": "null"}, {"sec-fetch-site": "cross-site"}):
+        assert client.post(f"/{TOKEN}/store/a.csv", content=b"x", headers=headers).status_code == 403
+    assert not (folder / "a.csv").exists()
+
+
+def test_a_folder_without_recordings_waits_for_them(tmp_path):
+    table = RecordingsFolder(tmp_path).table()
+    assert (table["groups"], table["problems"], table["axes"]) == ([], [], [])
+
+
 def test_the_server_shows_the_table_and_refuses_with_sentences(folder):
     app = window_app(Opened(folder=RecordingsFolder(folder)), token=TOKEN, port=PORT)
     with testclient.TestClient(app, base_url=HERE, headers={"origin": HERE}) as client:

@@ -101,7 +101,7 @@ def test_the_page_asks_nobody_else(client):
 
 def test_the_data_are_those_of_the_build(client, result):
     found = client.get(f"/{TOKEN}/project").json()
-    assert {row["name"]: row["rmse"] for row in found["channels"]} == {
+    assert {row["name"]: row["rmse"] for row in found["channels"] if row["of_fit"]} == {
         name: row.rmse for name, row in result.fit.channels.items() if row.n
     }
     values = {row["name"]: (row["value"], row["stderr"]) for row in found["coefficients"]}
@@ -128,6 +128,9 @@ def test_a_click_changes_its_line_of_the_file_and_no_other_file(client, session)
         ("hold", {"name": "PCY1", "value": 99.0}, "physically plausible range"),
         ("hold", {"name": "PCY9", "value": 1.0}, "not a coefficient"),
         ("hold", {"nam": "PCY1"}, "cannot be done with"),
+        ("limit", {"name": "PCY1", "entry": {"min": 1.6, "max": 1.2}}, "1.6 is not below max, 1.2"),
+        ("limit", {"name": "PCY1", "entry": {"min": "1.6"}}, "is a text, not a number"),
+        ("limit", {"name": "PCY1", "entry": 3}, "cannot be done with"),
         ("__import__", {}, "not a change"),
         (
             "leave_out",
@@ -234,11 +237,11 @@ def test_events_bring_the_state_at_once(session):
     assert re.match(r'data: \{"digest": "', text)
 
 
-def test_a_folder_without_a_project_is_said(tmp_path):
+def test_a_folder_that_is_not_there_is_said(tmp_path):
     from mffit.window import open_path
 
-    with pytest.raises(InputError, match=r"neither a tyre\.toml nor a recording"):
-        open_path([tmp_path], opened=print)
+    with pytest.raises(InputError, match="cannot be read"):
+        open_path([tmp_path / "none"], opened=print)
 
 
 @pytest.mark.parametrize("lacking", ["uvicorn", "starlette.applications", "tomlkit"])
