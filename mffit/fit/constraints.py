@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Sequence
+from functools import lru_cache
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -41,11 +42,12 @@ def limits(p: Any, envelope: Envelope, by: Sequence[Traced] = ()) -> tuple[np.nd
     ``p`` has the file's values as attributes, plain or traced; ``by`` are the m traced values to differentiate by.
     """
     rows, n = _rows(p, envelope), envelope.size
-    sizes = [max(n, np.size(plain(row))) for row in rows]
-    value = np.concatenate([np.broadcast_to(plain(row), m) for row, m in zip(rows, sizes, strict=True)])
-    slope = np.concatenate(
-        [np.broadcast_to(gradient(row, by), (m, len(by))) for row, m in zip(rows, sizes, strict=True)]
-    )
+    ends = list(itertools.accumulate((max(n, np.size(plain(row))) for row in rows), initial=0))
+    value, slope = np.empty(ends[-1]), np.zeros((ends[-1], len(by)))
+    for row, (start, end) in zip(rows, itertools.pairwise(ends), strict=True):
+        value[start:end] = plain(row)
+        if by:
+            slope[start:end] = gradient(row, by)
     return value, slope
 
 
@@ -56,7 +58,7 @@ def _rows(p: Any, envelope: Envelope) -> list[Any]:
     trail at zero slip not negative; where longitudinal slip was run, those of :func:`_longitudinal` and
     :func:`_under_slip` too.
     """
-    Fz, gamma, pressure = (axis.ravel() for axis in _grid(envelope))
+    Fz, gamma, pressure = _grid(envelope)
     q = normalise.inputs(p, Fz, Fz, 0.0, 0.0, gamma, 0.0, pressure, False, False)
     B_t = aligning.slope_factor(p, q)
     rows = [
@@ -153,14 +155,14 @@ def _with_slips(
     return normalise.inputs(p, Fz, Fz, kappa, alpha, gamma, 0.0, pressure, False, False)
 
 
-def _grid(envelope: Envelope) -> list[np.ndarray]:
-    """Load, camber and pressure of the conditions at which the limits are tested."""
+@lru_cache(maxsize=8)
+def _grid(envelope: Envelope) -> tuple[np.ndarray, ...]:
+    """Load, camber and pressure (n,) of the conditions at which the limits are tested."""
     loads, cambers, pressures = (int(n) for n in constants.LIMIT_GRID)
     low, high = envelope.pressure
-    return list(
-        np.meshgrid(
-            np.linspace(*envelope.Fz, loads),
-            np.linspace(-envelope.gamma, envelope.gamma, cambers if envelope.gamma > 0 else 1) + 0.0,
-            np.linspace(low, high, pressures if high > low else 1),
-        )
+    axes = np.meshgrid(
+        np.linspace(*envelope.Fz, loads),
+        np.linspace(-envelope.gamma, envelope.gamma, cambers if envelope.gamma > 0 else 1) + 0.0,
+        np.linspace(low, high, pressures if high > low else 1),
     )
+    return tuple(axis.ravel() for axis in axes)

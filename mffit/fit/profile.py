@@ -116,7 +116,8 @@ def _softest(
     rows = [i for i in _movable(numbers, solution, among) if numbers[i].name in SHAPES]
     if not rows:
         return ""
-    part = problem.thinned(max(len(problem.points) // constants.PROBE_POINTS, 1)).free(solution.names)
+    thinned = problem.thinned(max(len(problem.points) // constants.PROBE_POINTS, 1))
+    part = replace(thinned, envelope=None).free(solution.names)  # limits are not information
 
     def errors(place: np.ndarray) -> np.ndarray:
         slope = part.linear(place).slope

@@ -153,7 +153,7 @@ class Chain:
                 held = held + move
                 if np.max(np.abs(move)) < 1e-7:  # [rad]
                     break
-        if not self._traced:
+        if self._tape is None:
             return held
         # One Newton step on traced numbers: its value is the angle found, its derivatives are those of the solution.
         return held + (alpha + give * self._moment(held) - held) / (1.0 - k * slope)
@@ -178,10 +178,12 @@ class Chain:
 
     def _following_root(self, alpha: np.ndarray) -> Any:
         """Angles without moment (n,) that move with the traced numbers so that the moment stays zero."""
-        Mz = self._moment(alpha)
-        if not isinstance(Mz, Traced):
+        tape = self._tape
+        if tape is None:
             return alpha
-        _, slope = self._without_history().moment_and_slope(alpha)
+        at = Traced(alpha, tape)
+        Mz = self._moment(at)
+        slope = gradient(Mz, [at])[..., 0]
         by_moment = np.divide(-1.0, slope, out=np.zeros_like(slope), where=slope != 0.0)
         return alpha + by_moment * (Mz - plain(Mz))
 
@@ -201,10 +203,10 @@ class Chain:
         return outputs_of(wanted, SimpleNamespace(**p), inputs, **self._modes)
 
     @property
-    def _traced(self) -> bool:
-        """Whether any number is traced."""
+    def _tape(self) -> list[Traced] | None:
+        """The record of the traced numbers; None if there are none."""
         known = (*self._coefficients.values(), *self.numbers.values())
-        return any(isinstance(value, Traced) for value in known)
+        return next((value.tape for value in known if isinstance(value, Traced)), None)
 
     def _without_history(self) -> Chain:
         """The same conditions with plain values only."""

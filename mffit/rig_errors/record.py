@@ -126,4 +126,6 @@ class RigError:
 
     def acts(self, number: Any) -> bool:
         """Whether a plain number, or any of an array, differs from the undisturbed value."""
+        if isinstance(number, float):
+            return number != self.undisturbed and not math.isnan(number)
         return bool(np.any((number != self.undisturbed) & ~np.isnan(number)))

@@ -5,6 +5,7 @@ from __future__ import annotations
 import operator
 from collections.abc import Callable, Mapping, Sequence
 from functools import cache, lru_cache
+from threading import RLock
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -119,41 +120,48 @@ def replay(
     Replay
         of the outputs, and then for each output its derivatives by ``wrt``
     """
-    if not wrt:
-        found = _on_symbols(switches, outputs, still)
-        return _replay([found[name] for name in outputs])
-    found, slopes = _with_derivatives(switches, outputs, still)
-    return _replay(
-        [*(found[name] for name in outputs), *(slopes.get((name, x), 0.0) for name in outputs for x in wrt)]
-    )
+    with _ONE_AT_A_TIME:
+        found = _on_symbols(switches, still)
+        slopes = [_derivatives(switches, still, name) if wrt else {} for name in outputs]
+        return _replay(
+            [*(found[name] for name in outputs), *(slope.get(x, 0.0) for slope in slopes for x in wrt)]
+        )
 
 
-def _on_symbols(switches: Switches, outputs: tuple[str, ...], still: tuple[str, ...]) -> dict[str, Any]:
-    found = run_on_symbols(switches, {}, dict.fromkeys(still, 0.0))
-    return {name: found[name] for name in outputs}
+_ONE_AT_A_TIME = RLock()
+"""Held while a graph grows."""
 
 
-@lru_cache(maxsize=8)
-def _with_derivatives(
-    switches: Switches, outputs: tuple[str, ...], still: tuple[str, ...]
-) -> tuple[dict[str, Any], Mapping[tuple[str, str], Any]]:
-    """The outputs, and their derivatives by every parameter and input in the same graph, which is complete then.
+@lru_cache(maxsize=16)
+def _on_symbols(switches: Switches, still: tuple[str, ...]) -> dict[str, Any]:
+    """Every force and state in one graph."""
+    return run_on_symbols(switches, {}, dict.fromkeys(still, 0.0))
 
-    A replay computes only the derivatives that it needs.
+
+@lru_cache(maxsize=64)
+def _derivatives(switches: Switches, still: tuple[str, ...], output: str) -> Mapping[str, Any]:
+    """The derivatives of an output by every parameter and input, added to its graph.
+
+    A replay computes only those that it needs.
     """
-    found = _on_symbols(switches, outputs, still)
-    return found, derivatives(found, {*NUMBERS, *INPUTS} - set(still))
+    found = _on_symbols(switches, still)[output]
+    every = derivatives({output: found}, {*NUMBERS, *INPUTS} - set(still))
+    return {name: slope for (_, name), slope in every.items()}
 
 
 def _replay(results: Sequence[Any]) -> Replay:
     nodes = needed(results)
     symbols = [node for node in nodes if node.operation == "symbol"]
     others = [node for node in nodes if node.operation != "symbol"]
-    used = (*results, *(a for node in others for a in node.arguments))
-    constants = list(dict.fromkeys(_key(x) for x in used if not isinstance(x, Node)))
-    place = {key: i for i, key in enumerate([*map(_key, symbols), *constants])}
-    room = _allocated(others, frozenset(map(_key, results)), place)
-    places = [(place[_key(node)], *(place[_key(a)] for a in node.arguments)) for node in others]
+    arguments = [[_key(a) for a in node.arguments] for node in others]
+    kept = [_key(x) for x in results]
+    constants = list(dict.fromkeys(key for keys in (kept, *arguments) for key in keys if type(key) is tuple))
+    place = {key: i for i, key in enumerate([*(node.number for node in symbols), *constants])}
+    room = _allocated([node.number for node in others], arguments, frozenset(kept), place)
+    places = [
+        (place[node.number], *[place[key] for key in keys])
+        for node, keys in zip(others, arguments, strict=True)
+    ]
     of_inputs = in_numpy()
 
     def operations(of_tyre: Mapping[str, Any]) -> tuple[tuple[Any, ...], ...]:
@@ -168,25 +176,34 @@ def _replay(results: Sequence[Any]) -> Replay:
         room,
         operations(IN_FLOATS),
         operations(of_inputs),
-        tuple(place[_key(x)] for x in results),
+        tuple(place[key] for key in kept),
     )
 
 
-def _allocated(nodes: Sequence[Node], kept: frozenset[Any], place: dict[Any, int]) -> int:
-    """Number of places, after giving the result of every operation a place that is free by then."""
-    given, room = frozenset(place), len(place)
-    last = {_key(a): i for i, node in enumerate(nodes) for a in node.arguments}
+def _allocated(
+    results: Sequence[int], arguments: Sequence[Sequence[Any]], kept: frozenset[Any], place: dict[Any, int]
+) -> int:
+    """Number of places, after giving the result of every operation a place that is free by then.
+
+    ``results`` and ``arguments`` are the keys of what the operations compute and use; what is in ``kept`` is never replaced.
+    """
+    room = len(place)
+    last = {key: i for i, keys in enumerate(arguments) for key in keys}
+    for key in (*place, *kept):
+        last.pop(key, None)
     free: list[int] = []
-    for i, node in enumerate(nodes):
-        done = {_key(a) for a in node.arguments} - given - kept
-        free += [place[key] for key in done if last[key] == i]
+    for i, (result, keys) in enumerate(zip(results, arguments, strict=True)):
+        for key in keys:
+            if last.get(key) == i:
+                free.append(place[key])
+                del last[key]  # both arguments may be the same
         if free:
-            place[_key(node)] = free.pop()
+            place[result] = free.pop()
         else:
-            place[_key(node)], room = room, room + 1
+            place[result], room = room, room + 1
     return room
 
 
 def _key(x: Any) -> Any:
-    """Key of an argument; 0 and False have different keys."""
+    """Key of an argument: an integer for a node, type and value of a number, so that 0 and False differ."""
     return x.number if isinstance(x, Node) else (type(x), x)
