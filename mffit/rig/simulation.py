@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import itertools
 import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
 
@@ -13,7 +14,7 @@ from mffit.brief import Brief
 from mffit.points import Points
 from mffit.quantities import CHANNELS, SIDEWAYS
 from mffit.rig.chain import Chain
-from mffit.rig.histories import of_part, usual_radius
+from mffit.rig.histories import History, blocks, of_part, usual_radius
 from mffit.rig.readings import Readings
 from mffit.rig_errors import BY_NAME, NO_FAULTS, OF_RUN, RIG_ERRORS, Faults
 from tir import Tyre
@@ -21,6 +22,8 @@ from tir.derivatives import Traced, gradient, plain, traced
 from tir.equations.forces import Forces, State
 
 SWITCH = "turn_slip"
+LAG = "relaxation_m"
+"""The rig error at which a point depends on all points before it in its sweep."""
 SIMULATED = tuple(name for name in CHANNELS if name in (*Forces._fields, *State._fields))
 """Channels that tir computes, under the same names."""
 
@@ -91,7 +94,10 @@ class Simulation(Brief):
             In ISO-W, contact frame, rig-fixed also when rolling backwards.
         """
         channels = _in_order(channels)
-        return Readings(**dict(zip(channels, self._chain(points, {}).readings(channels), strict=True)))
+        found = [read for _, read, _ in self.in_blocks(points, (), channels)]
+        if len(found) == 1:
+            return found[0]
+        return Readings(**{name: np.concatenate([read[name] for read in found]) for name in channels})
 
     def felt(self, points: Points) -> Points:
         """The points as the tyre felt them: its own conditions, and readings without the influence of rig and environment.
@@ -116,16 +122,68 @@ class Simulation(Brief):
 
         The stop at which the moment holds a wheel with play stays the same; a floating wheel keeps its moment at zero.
         """
-        whole = [name.partition(OF_RUN)[0] for name in names]
-        numbers = traced({name: self.number(name, points) for name in whole})
-        channels = _in_order(channels)
-        out = dict(zip(channels, self._chain(points, numbers).readings(channels), strict=True))
-        columns, n = list(numbers.values()), len(points)
-        place = [list(numbers).index(name) for name in whole]
-        slopes = {
-            name: np.broadcast_to(gradient(x, columns), (n, len(columns)))[:, place]
-            for name, x in out.items()
-        }
+        channels, n = _in_order(channels), len(points)
+        found = self.in_blocks(points, names, channels)
+        rows, out, slopes = next(found)
+        if len(rows) == n:
+            return out, slopes
+        whole = Readings(**{name: np.empty(n) for name in channels})
+        by_number = Readings(**{name: np.empty((n, len(names))) for name in channels})
+        for rows, out, slopes in itertools.chain([(rows, out, slopes)], found):
+            for name in channels:
+                whole[name][rows], by_number[name][rows] = out[name], slopes[name]
+        return whole, by_number
+
+    def in_blocks(
+        self,
+        points: Points,
+        names: Sequence[str],
+        channels: Iterable[str] = SIDEWAYS,
+        *,
+        by_sweep: bool = False,
+    ) -> Iterator[tuple[np.ndarray, Readings, Readings]]:
+        """:meth:`sensitivities` block after block: rows (m,) of the points, readings (m,), derivatives (m, k).
+
+        With ``by_sweep`` no sweep is divided. A block never holds derivatives of more points than it needs to be fast.
+        """
+        at_rows = self.at_rows(points, names, channels)
+        lags = LAG in names or bool(self.faults[LAG])
+        for rows in blocks(points, by_sweep=by_sweep or lags):
+            yield rows, *at_rows(rows)
+
+    def at_rows(
+        self, points: Points, names: Sequence[str], channels: Iterable[str] = SIDEWAYS
+    ) -> Callable[[np.ndarray], tuple[Readings, Readings]]:
+        """:meth:`sensitivities` as a function of the rows (m,) of a test; if sweeps lag, rows of whole sweeps."""
+        channels, history = _in_order(channels), History(points)
+        numbers = {name: self.number(name, points) for name in (n.partition(OF_RUN)[0] for n in names)}
+        here = replace(self, radius_m=self.declared(points))
+
+        def found(rows: np.ndarray) -> tuple[Readings, Readings]:
+            part = points if len(rows) == len(points) else points.select(rows)
+            return here._linearised(part, names, numbers, channels, history, rows)
+
+        return found
+
+    def _linearised(
+        self,
+        points: Points,
+        names: Sequence[str],
+        numbers: Mapping[str, float],
+        channels: tuple[str, ...],
+        history: History,
+        rows: np.ndarray,
+    ) -> tuple[Readings, Readings]:
+        """Readings and derivatives by the named numbers at some rows of a test."""
+        at, n = traced(numbers), len(points)
+        chain = self._chain(points, at, history, rows)
+        out = dict(zip(channels, chain.readings(channels), strict=True))
+        columns = list(at.values())
+        place = [list(at).index(name.partition(OF_RUN)[0]) for name in names]
+        slopes = {}
+        for name, x in out.items():
+            slope = np.broadcast_to(gradient(x, columns), (n, len(columns)))
+            slopes[name] = slope[:, place]
         # A number of a part is added to that of the whole test, so its slope is the same at the points of the part.
         for k, name in enumerate(names):
             if OF_RUN in name:
@@ -134,7 +192,13 @@ class Simulation(Brief):
                     slope[:, k] *= own
         return Readings(**{name: np.broadcast_to(plain(x), n) for name, x in out.items()}), Readings(**slopes)
 
-    def _chain(self, points: Points, numbers: Mapping[str, Traced]) -> Chain:
+    def _chain(
+        self,
+        points: Points,
+        numbers: Mapping[str, Traced],
+        history: History | None = None,
+        rows: np.ndarray | slice = slice(None),
+    ) -> Chain:
         """The passage of the points with some numbers traced."""
         faults: dict[str, Any] = {**self.faults, **{n: x for n, x in numbers.items() if n in BY_NAME}}
         for key, added in self.of_parts.items():
@@ -147,6 +211,8 @@ class Simulation(Brief):
             usual_radius=self.declared(points),
             turn_slip=self.turn_slip,
             star=self.star,
+            history=history,
+            rows=rows,
         )
 
 

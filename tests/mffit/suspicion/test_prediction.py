@@ -21,8 +21,13 @@ def linear_fit(n: int = 60, k: int = 5, seed: int = 4) -> tuple[Leverage, np.nda
     J = design / weight[:, None]
     covariance = np.linalg.inv(J.T @ J)
     residual = design @ (covariance @ J.T @ (measured / weight)) - measured
+
+    def at(rows):
+        both = np.r_[rows, n + rows]
+        return residual[both], design[both]
+
     return (
-        Leverage(("Fy", "Mz"), residual, design, weight, noise, np.linalg.cholesky(covariance)),
+        Leverage(("Fy", "Mz"), at, weight, noise, np.linalg.cholesky(covariance)),
         design,
         measured,
     )
