@@ -24,6 +24,12 @@ AT_BOUND_SHARE = Real(
 HELD_BY_LIMIT_SHARE = Real(
     0.1, "-", "Share of the information about a number that physical limits supply if they hold it."
 )
+ROWS_AT_ONCE = Count(
+    20_000,
+    "-",
+    "Residuals with derivatives beyond which only their sums of products are kept.",
+    "tests/benchmarks/scale.py",
+)
 LOOKS_AT_LIMITS = Count(
     6, "-", "Most times a step is computed again because it would break a limit or cross a bound."
 )

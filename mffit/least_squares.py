@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
@@ -28,7 +28,7 @@ class FreeNumber:
 
 @dataclass(frozen=True, slots=True)
 class Linear:
-    """Residuals and their derivatives at one place."""
+    """Residuals and their derivatives at one place; those of the data may be :func:`condensed`."""
 
     data: np.ndarray  #: (m,) residuals of the data in units of their uncertainty
     slope: np.ndarray  #: (m, k) derivatives of ``data``
@@ -36,6 +36,32 @@ class Linear:
     limits_slope: np.ndarray  #: (l, k) derivatives of ``limits``
     kept: Kept | None = None
     """Limits that are kept here, if a step may look at them: where many are near, steps that ignore them are rejected."""
+
+
+def condensed(blocks: Iterable[tuple[np.ndarray, np.ndarray]]) -> tuple[np.ndarray, np.ndarray]:
+    """Residuals (m,) and derivatives (m, k) of blocks of data one after the other.
+
+    Many are replaced by k + 1 rows with the same sums of squares and products, of all that a solver and a covariance need: the
+    memory is then that of one block.
+    """
+    found: list[tuple[np.ndarray, np.ndarray]] = []
+    size, products = 0, np.zeros(())
+    for data, slope in blocks:
+        found.append((data, slope))
+        size += len(data)
+        if size > constants.ROWS_AT_ONCE:
+            products = products + _products(found)
+            found, size = [], 0
+    if products.ndim:
+        rows = root(products + _products(found)).T if found else root(products).T
+        return rows[:, -1], rows[:, :-1]
+    return np.concatenate([data for data, _ in found]), np.concatenate([slope for _, slope in found])
+
+
+def _products(blocks: Sequence[tuple[np.ndarray, np.ndarray]]) -> np.ndarray:
+    """Sums of products (k + 1, k + 1) of derivatives and residuals."""
+    rows = np.concatenate([np.column_stack([slope, data]) for data, slope in blocks])
+    return np.asarray(rows.T @ rows)
 
 
 class Kept(NamedTuple):
@@ -81,7 +107,7 @@ class Solution:
     """The end of a search."""
 
     values: Mapping[str, float]
-    data: np.ndarray  #: (m,) residuals of the data
+    data: np.ndarray  #: (m,) residuals of the data, as in :class:`Linear`
     jacobian: np.ndarray  #: (m, k) of the data
     prior: np.ndarray  #: (k,) precision of the priors, 1 / spread^2
     cost: float  #: sum of squares of data, priors and limits

@@ -10,7 +10,8 @@ import numpy as np
 from mffit.fit import constants
 from mffit.fit.constraints import violations
 from mffit.fit.fitted import Fitted
-from mffit.least_squares import FreeNumber, LeastSquaresProblem, Linear, solve
+from mffit.fit.problem import FitProblem
+from mffit.least_squares import FreeNumber, solve
 from mffit.rig_errors import error_of
 
 
@@ -49,25 +50,24 @@ def _drawn(fitted: Fitted, random: np.random.Generator) -> dict[str, float]:
     }
     starts = fitted.problem.starting_here(fitted.numbers)
     numbers = [_with_drawn_prior(number, random) for number in starts]
-    free = fitted.problem.with_values(held).free([n.name for n in numbers])
-    rows = len(free.residual(np.array([n.start for n in numbers]))[0])
-    noise = random.standard_normal(rows)
-
-    def residual(x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        data, limits = free.residual(x)
-        return data - noise, limits
-
-    def linear(x: np.ndarray) -> Linear:
-        here = free.linear(x)
-        return dataclasses.replace(here, data=here.data - noise)
-
+    drawn = _with_noise(fitted.problem.with_values(held), random)
     solution = solve(
-        LeastSquaresProblem(residual, linear),
+        drawn.free([n.name for n in numbers]),
         numbers,
         max_steps=constants.REFIT_STEPS,
         tolerance=constants.REFIT_TOLERANCE,
     )
     return held | {name: v for name, v in solution.values.items() if error_of(name) is None}
+
+
+def _with_noise(problem: FitProblem, random: np.random.Generator) -> FitProblem:
+    """The problem with readings that another test of the same tyre might have given."""
+    readings = {}
+    for name, sigma in problem.sigma.items():
+        noise = random.standard_normal(len(sigma))
+        readings[name] = problem.points.channel(name) + np.where(np.isfinite(sigma), sigma * noise, 0.0)
+    radii = tuple(row._replace(value=row.value + row.u * random.standard_normal()) for row in problem.radii)
+    return dataclasses.replace(problem, points=problem.points.replace(**readings), radii=radii)
 
 
 def _with_drawn_prior(number: FreeNumber, random: np.random.Generator) -> FreeNumber:

@@ -14,7 +14,7 @@ from mffit.fit import constants
 from mffit.fit.fitted import Fitted
 from mffit.fit.nuisances import NUISANCES, Nuisance
 from mffit.fit.problem import FitProblem
-from mffit.fit.run_scatter import Runs, halves_of_runs
+from mffit.fit.run_scatter import OfRuns, Runs, halves_of_runs
 from mffit.least_squares import FreeNumber, solve
 from mffit.left_out import Predicted, improves, left_out_errors, needed_fall, predicted
 from mffit.points import Points
@@ -179,13 +179,12 @@ def _of_runs(
     sweeps = np.unique(points.sweep, return_inverse=True)[1]
     if not demanded and sweeps.max() + 1 < FEWEST_SWEEPS_TO_PREDICT:
         return Verdict(nuisance, False, _TOO_FEW), {}
-    runs = _linear_runs(model, nuisance, sweeps)
+    runs = _linear_runs(model, nuisance)
     spread = runs.spread()
 
     def predictions(group: np.ndarray) -> list[_Prediction]:
         """Without and with numbers of every run; errors are summed over sweeps."""
-        groups = np.tile(group, len(problem.sigma))
-        errors = (runs.left_out(groups, s) for s in (np.zeros_like(spread), spread))
+        errors = runs.left_out(group, (np.zeros_like(spread), spread))
         return [_judged_errors(problem, error, sweeps) for error in errors]
 
     without, beside = predictions(halves_of_runs(points))
@@ -204,23 +203,22 @@ def _of_runs(
     return Verdict(nuisance, True, "left-out halves of sweeps are predicted better with it", *gaps), scatter
 
 
-def _linear_runs(model: _NearSolution, nuisance: Nuisance, sweeps: np.ndarray) -> Runs:
+def _linear_runs(model: _NearSolution, nuisance: Nuisance) -> Runs:
     """The fit, linearised, with numbers of every run."""
-    problem, channels = model.problem, len(model.problem.sigma)
+    problem = model.problem
     numbers = problem.starting_here(model.numbers)
     x = np.array([number.start for number in numbers])
-    own = [problem.value(name) for name in nuisance.numbers]
-    here = problem.free([*(n.name for n in numbers), *nuisance.numbers]).linear(np.array([*x, *own]))
-    rows = slice(len(sweeps) * channels)  # the others are measured radii, which belong to no run
+    names = [*(n.name for n in numbers), *nuisance.numbers]
     precision, away = _priors(numbers, x)
-    radii, slope = here.slope[rows.stop :, : len(x)], here.slope[rows]
+    radii, by_radii = problem.radii_rows(names[: len(x)])
     return Runs(
-        slope=slope[:, : len(x)],
-        own=slope[:, len(x) :],
-        residual=here.data[rows],
-        run=np.tile(sweeps, channels),
-        information=np.diag(precision) + radii.T @ radii,
-        pull=away + radii.T @ here.data[rows.stop :],
+        rows=lambda: (
+            OfRuns(np.tile(rows, len(problem.sigma)), slope[:, : len(x)], slope[:, len(x) :], data)
+            for rows, data, slope in problem.blocks(names, by_sweep=True)
+        ),
+        run=problem.points.sweep,
+        information=np.diag(precision) + by_radii.T @ by_radii,
+        pull=away + by_radii.T @ radii,
     )
 
 
@@ -275,16 +273,16 @@ def _predicted(model: _NearSolution, more: Iterable[Nuisance], group: np.ndarray
     added = (number for nuisance in more for number in nuisance.free(problem.points, {}))
     numbers = [*problem.starting_here(model.numbers), *added]
     x = np.array([number.start for number in numbers])
-    here = problem.free([number.name for number in numbers]).linear(x)
+    names = [number.name for number in numbers]
+    here = problem.free(names).linear(x)
     precision, away = _priors(numbers, x)
-    rows = slice(len(group) * len(problem.sigma))  # the others are measured radii, which belong to no sweep
-    error = left_out_errors(
-        here.slope[rows],
-        here.data[rows],
-        here.slope.T @ here.slope + np.diag(precision),
-        here.slope.T @ here.data + away,
-        np.tile(group, len(problem.sigma)),
-    )
+    information = here.slope.T @ here.slope + np.diag(precision)
+    gradient = here.slope.T @ here.data + away
+    error = np.empty((len(problem.sigma), len(group)))
+    for rows, data, slope in problem.blocks(names, by_sweep=True):
+        own = np.tile(np.unique(group[rows], return_inverse=True)[1], len(problem.sigma))
+        found = left_out_errors(slope, data, information, gradient, own)
+        error[:, rows] = found.reshape(len(problem.sigma), -1)
     return _judged_errors(problem, error, group)
 
 
@@ -295,12 +293,12 @@ def _priors(numbers: Sequence[FreeNumber], x: np.ndarray) -> tuple[np.ndarray, n
 
 
 def _judged_errors(problem: FitProblem, error: np.ndarray, group: np.ndarray) -> _Prediction:
-    """The prediction whose errors (m,) are in units of the weights, by group (n,) of the points."""
+    """The prediction whose errors (c, n) are in units of the weights, by group (n,) of the points."""
     count, channels = len(group), len(problem.sigma)
     groups = np.tile(group, channels)
-    by_sweep = predicted(error, groups, np.repeat(np.arange(channels), count), channels=channels)
+    by_sweep = predicted(error.ravel(), groups, np.repeat(np.arange(channels), count), channels=channels)
     gaps = {}
-    for (name, sigma), errors in zip(problem.sigma.items(), error.reshape(channels, count), strict=True):
+    for (name, sigma), errors in zip(problem.sigma.items(), error, strict=True):
         used = np.isfinite(sigma) & np.isfinite(getattr(problem.points, name))
         if np.any(used):
             gaps[name] = rms(errors[used] * sigma[used])

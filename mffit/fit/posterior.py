@@ -58,9 +58,10 @@ def joint(problem: FitProblem, solution: Solution, held: Mapping[str, float]) ->
     covariance, names = solution.covariance, list(held)
     if not names:
         return Posterior(solution.names, covariance)
-    at = np.array([problem.value(name) for name in names])
-    slope = problem.free(names).linear(at).slope
-    return beside_held(solution.names, covariance, held, solution.jacobian.T @ slope)
+    every = (*solution.names, *names)
+    slope = problem.free(every).linear(np.array([problem.value(name) for name in every])).slope
+    free, known = np.split(slope, [len(solution.names)], axis=1)
+    return beside_held(solution.names, covariance, held, free.T @ known)
 
 
 def beside_held(

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+import itertools
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from types import SimpleNamespace
 from typing import Any
@@ -14,7 +15,7 @@ from mffit.fit.constraints import Envelope, limits
 from mffit.fit.ranges import covered_ranges, envelope
 from mffit.fit.rig_numbers import known_faults, known_zeros
 from mffit.fit.rolling import effective_radius
-from mffit.least_squares import FreeNumber, Kept, LeastSquaresProblem, Linear
+from mffit.least_squares import FreeNumber, Kept, LeastSquaresProblem, Linear, condensed
 from mffit.measured import RadiusReading, radius_readings
 from mffit.points import Points
 from mffit.quantities import SIDEWAYS
@@ -108,24 +109,21 @@ class FitProblem:
 
         def residual(x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
             here = at(x)
-            data = np.concatenate([*here.misfit().values(), here._radii([])[0]])
+            data = np.concatenate([*here.misfit().values(), here.radii_rows([])[0]])
             return data, here._broken_limits([])[0]
 
         def linear(x: np.ndarray) -> Linear:
             here = at(x)
-            readings, by_channel = here.simulation.sensitivities(here.points, names, here.sigma)
-            slopes = [
-                by_channel[name] / sigma[:, None] * here._used(name)[:, None]
-                for name, sigma in here.sigma.items()
-            ]
-            radii, radii_slope = here._radii(names)
+            data, slope = condensed(
+                itertools.chain((rows[1:] for rows in here.blocks(names)), [here.radii_rows(names)])
+            )
             limit, limit_slope = here._limits(names)
             broken, kept = limit > 0.0, None
             if "Fx" in here.sigma:  # with limits under slip, many are near
                 kept = Kept(limit[~broken], limit_slope[~broken])
             return Linear(
-                data=np.concatenate([*here.misfit(readings).values(), radii]),
-                slope=np.concatenate([*slopes, radii_slope]),
+                data=data,
+                slope=slope,
                 limits=np.where(broken, limit, 0.0),
                 limits_slope=limit_slope * broken[:, None],
                 kept=kept,
@@ -133,10 +131,28 @@ class FitProblem:
 
         return LeastSquaresProblem(residual, linear)
 
+    def blocks(
+        self, names: Sequence[str], *, by_sweep: bool = False
+    ) -> Iterator[tuple[np.ndarray, np.ndarray, np.ndarray]]:
+        """Rows (m,) of the points, block after block, with residuals (c m,) and derivatives (c m, k), channel after channel.
+
+        As :meth:`mffit.rig.Simulation.in_blocks`; rows that are not used are 0.
+        """
+        for rows, readings, by_channel in self.simulation.in_blocks(
+            self.points, names, self.sigma, by_sweep=by_sweep
+        ):
+            data, slopes = [], []
+            for name, sigma in self.sigma.items():
+                measured, u = self.points.channel(name)[rows], sigma[rows]
+                used = np.isfinite(u) & np.isfinite(measured)
+                data.append(np.where(used, (readings[name] - np.nan_to_num(measured)) / u, 0.0))
+                slopes.append(by_channel[name] / u[:, None] * used[:, None])
+            yield rows, np.concatenate(data), np.concatenate(slopes)
+
     def _used(self, channel: str) -> np.ndarray:
         return np.isfinite(self.sigma[channel]) & np.isfinite(self.points.channel(channel))
 
-    def _radii(self, names: Sequence[str]) -> tuple[np.ndarray, np.ndarray]:
+    def radii_rows(self, names: Sequence[str]) -> tuple[np.ndarray, np.ndarray]:
         """Residuals of the measured effective radii and their derivatives.
 
         A radius that was measured over a path length is proportional to the path radius.

@@ -6,7 +6,9 @@ remain are those of the shared numbers.
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, fields
+from typing import NamedTuple
 
 import numpy as np
 
@@ -49,26 +51,38 @@ class Part:
         return -(self.inverse(spread) @ pull[..., None])[..., 0]
 
 
+class OfRuns(NamedTuple):
+    """Linearised readings of some whole runs."""
+
+    point: np.ndarray  #: (m,) index of the point
+    slope: np.ndarray  #: (m, k) derivatives by the shared numbers, in units of the noise
+    own: np.ndarray  #: (m, j) derivatives by a number of all runs, for every kind of own number
+    residual: np.ndarray  #: (m,) model less measured
+
+    def part(self, which: np.ndarray) -> Part:
+        """The equations of some of the readings."""
+        return Part.of(self.slope[which], self.own[which], self.residual[which])
+
+
 @dataclass(frozen=True, slots=True)
 class Runs:
     """A linearised fit whose runs may have numbers of their own."""
 
-    slope: np.ndarray  #: (m, k) derivatives by the shared numbers, in units of the noise
-    own: np.ndarray  #: (m, j) derivatives by a number of all runs, for every kind of own number
-    residual: np.ndarray  #: (m,) model less measured
-    run: np.ndarray  #: (m,) index of the run
+    rows: Callable[[], Iterator[OfRuns]]
+    """All readings, by whole runs, channel after channel; computed when they are asked for, because they may be many."""
+    run: np.ndarray  #: (n,) index of each point's run
     information: (
         np.ndarray
     )  #: (k, k) about the shared numbers from priors and from readings that belong to no run
     pull: np.ndarray  #: (k,) half the derivative of the sum of squares of these
 
-    def part(self, rows: np.ndarray) -> Part:
-        """The equations of some rows."""
-        return Part.of(self.slope[rows], self.own[rows], self.residual[rows])
-
     def parts(self) -> Part:
-        """The equations of all runs."""
-        each = [self.part(self.run == k) for k in np.unique(self.run)]
+        """The equations of all runs, in the order of :meth:`rows` and of their index within a block."""
+        each = [
+            rows.part(self.run[rows.point] == k)
+            for rows in self.rows()
+            for k in np.unique(self.run[rows.point])
+        ]
         return Part(*(np.array([getattr(part, field.name) for part in each]) for field in fields(Part)))
 
     def common(self, parts: Part, spread: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -89,7 +103,8 @@ class Runs:
 
         Iterated: the mean square of the numbers, each with its variance. Runs that do not show a number keep its variance.
         """
-        found, parts = np.full(self.own.shape[1], float(constants.USUAL_RUN_SCATTER)), self.parts()
+        parts = self.parts()
+        found = np.full(parts.own.shape[-1], float(constants.USUAL_RUN_SCATTER))
         for _ in range(constants.RUN_SCATTER_STEPS):
             values, variances = self.own_numbers(parts, found)
             last, found = found, np.sqrt(np.mean(values**2 + variances, axis=0))
@@ -97,23 +112,37 @@ class Runs:
                 break
         return np.maximum(found, float(constants.LEAST_RUN_SCATTER))
 
-    def left_out(self, group: np.ndarray, spread: np.ndarray) -> np.ndarray:
-        """Errors (m,) of the rows when each group (m,), a run or a piece of one, is predicted from all other rows.
+    def left_out(self, group: np.ndarray, spreads: Sequence[np.ndarray]) -> np.ndarray:
+        """Errors (s, c, n) of the readings when each group (n,), a run or a piece of one, is predicted from all other readings.
 
-        What remains of the run shows its own numbers; those of a whole run that is left out have their expected value.
+        What remains of the run shows its own numbers; those of a whole run that is left out have their expected value. One
+        prediction for each of the ``spreads`` (j,).
         """
         parts = self.parts()
-        matrix, pull = self.common(parts, spread)
-        error = np.empty_like(self.residual)
-        every = parts.eliminated(spread)
-        for k, run in enumerate(np.unique(self.run)):
-            rows, whole = np.flatnonzero(self.run == run), (every[0][k], every[1][k])
-            for piece in np.unique(group[rows]):
-                out, rest = rows[group[rows] == piece], self.part(rows[group[rows] != piece])
-                left = rest.eliminated(spread)
-                shared = -np.linalg.solve(matrix - whole[0] + left[0], pull - whole[1] + left[1])
-                own = rest.solved(shared, spread)
-                error[out] = self.residual[out] + self.slope[out] @ shared + self.own[out] @ own
+        known = [(spread, *self.common(parts, spread)) for spread in spreads]
+        blocks = [(rows.point, self._errors(rows, group[rows.point], known)) for rows in self.rows()]
+        channels = len(blocks[0][0]) // len(np.unique(blocks[0][0]))
+        error = np.empty((len(spreads), channels, len(group)))
+        for point, found in blocks:
+            own = point[: len(point) // channels]
+            error[:, :, own] = found.reshape(len(spreads), channels, -1)
+        return error
+
+    def _errors(
+        self, rows: OfRuns, group: np.ndarray, known: Sequence[tuple[np.ndarray, np.ndarray, np.ndarray]]
+    ) -> np.ndarray:
+        """Errors (s, m) of the readings of some runs; ``known`` are spread and common equations of all runs."""
+        error, run = np.empty((len(known), len(group))), self.run[rows.point]
+        for k in np.unique(run):
+            mine = np.flatnonzero(run == k)
+            all_of_it = rows.part(mine)
+            for piece in np.unique(group[mine]):
+                out, rest = mine[group[mine] == piece], rows.part(mine[group[mine] != piece])
+                for to, (spread, matrix, pull) in zip(error, known, strict=True):
+                    whole, left = all_of_it.eliminated(spread), rest.eliminated(spread)
+                    shared = -np.linalg.solve(matrix - whole[0] + left[0], pull - whole[1] + left[1])
+                    own = rest.solved(shared, spread)
+                    to[out] = rows.residual[out] + rows.slope[out] @ shared + rows.own[out] @ own
         return error
 
 

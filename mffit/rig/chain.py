@@ -11,7 +11,7 @@ import numpy as np
 
 from mffit.points import Points
 from mffit.quantities import CHANNELS
-from mffit.rig.histories import distance_km, path_radii, reference_speed, sense
+from mffit.rig.histories import History, path_radii
 from mffit.rig.lag import lagged_angle
 from mffit.rig.play import settled
 from mffit.rig_errors import AFTER, BEFORE, RigError
@@ -32,6 +32,7 @@ class Chain:
     numbers : every rig error, scalar or (n,)
     usual_radius : declared radius of the usual path [m]
     turn_slip, star : as in :class:`mffit.rig.Simulation`
+    history, rows : of the test of which the points are these rows (n,); default a test of their own
     """
 
     def __init__(
@@ -43,8 +44,11 @@ class Chain:
         usual_radius: float,
         turn_slip: bool,
         star: bool,
+        history: History | None = None,
+        rows: np.ndarray | slice = slice(None),
     ) -> None:
         self.points, self.numbers = points, numbers
+        self._history, self._rows = History(points) if history is None else history, rows
         self.true: dict[str, Any] = {}  #: channels (n,) of the tyre before their readings
         self._usual_radius, self._modes = usual_radius, {"turn_slip": turn_slip, "star": star}
         if np.any(points.mount < 0):
@@ -118,22 +122,22 @@ class Chain:
     @cached_property
     def speed_above_usual(self) -> np.ndarray:
         """Speed above the most frequent one (n,) [m/s]; 0 where it was not measured."""
-        return np.nan_to_num(self.points.V - reference_speed(self.points))
+        return np.nan_to_num(self.points.V - self._history.usual_speed)
 
     @cached_property
     def time(self) -> np.ndarray:
         """Time of every point (n,) [s]; 0 where it is not known."""
         return np.nan_to_num(self.points.t)
 
-    @cached_property
+    @property
     def distance_km(self) -> np.ndarray:
         """Distance rolled (n,) [km]."""
-        return distance_km(self.points)
+        return self._history.distance_km[self._rows]
 
-    @cached_property
+    @property
     def sense(self) -> np.ndarray:
         """Sense (n,) of the sweep: 1, -1, or 0 where the angle was held."""
-        return sense(self.points)
+        return self._history.sense[self._rows]
 
     def lagged(self, alpha: np.ndarray, sigma: Any) -> Any:
         """Sideslip (n,) [rad] behind the reading ``alpha`` by the relaxation length ``sigma`` [m]."""

@@ -2,10 +2,56 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from functools import cached_property
+
 import numpy as np
 
 from mffit.points import Points, main_path
 from mffit.rig import constants
+
+
+class History:
+    """What the points of a test owe to each other, computed once for all of them when it is first asked for."""
+
+    def __init__(self, points: Points) -> None:
+        self.points = points
+
+    @cached_property
+    def distance_km(self) -> np.ndarray:
+        """Distance rolled (n,) [km]."""
+        return distance_km(self.points)
+
+    @cached_property
+    def sense(self) -> np.ndarray:
+        """Sense (n,) of the sweep: 1, -1, or 0 where the angle was held."""
+        return sense(self.points)
+
+    @cached_property
+    def usual_speed(self) -> float:
+        """The most frequent speed [m/s]."""
+        return reference_speed(self.points)
+
+
+def blocks(points: Points, *, by_sweep: bool) -> Iterator[np.ndarray]:
+    """Rows (m,) of successive blocks of the points, in their order; with ``by_sweep`` no sweep is divided.
+
+    Blocks of this size stay in the processor's cache. A sweep that is larger is a block by itself then.
+    """
+    n, most = len(points), int(constants.POINTS_OF_A_BLOCK)
+    if n <= most:
+        yield np.arange(n)
+        return
+    if not by_sweep:
+        yield from np.array_split(np.arange(n), -(-n // most))
+        return
+    order = np.argsort(points.sweep, kind="stable")
+    ends = np.flatnonzero(np.diff(points.sweep[order], append=-1)) + 1
+    begin = 0
+    for end, following in zip(ends, np.append(ends[1:], n + most), strict=True):
+        if following - begin > most:
+            yield order[begin:end]
+            begin = int(end)
 
 
 def usual_radius(points: Points) -> float:

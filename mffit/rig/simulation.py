@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
 
@@ -13,7 +13,7 @@ from mffit.brief import Brief
 from mffit.points import Points, concatenate
 from mffit.quantities import CHANNELS, SIDEWAYS
 from mffit.rig.chain import Chain
-from mffit.rig.histories import of_part, usual_radius
+from mffit.rig.histories import History, blocks, of_part, usual_radius
 from mffit.rig.readings import Readings
 from mffit.rig_errors import BY_NAME, NO_FAULTS, OF_RUN, RIG_ERRORS, Faults, number_of
 from tir import Tyre
@@ -21,6 +21,8 @@ from tir.derivatives import Traced, gradient, plain, traced
 from tir.equations.forces import Forces, State
 
 SWITCH = "turn_slip"
+LAG = "relaxation_m"
+"""The rig error at which a point depends on all points before it in its sweep."""
 SIMULATED = tuple(name for name in CHANNELS if name in (*Forces._fields, *State._fields))
 """Channels that tir computes, under the same names."""
 
@@ -106,14 +108,7 @@ class Simulation(Brief):
         Readings
             In ISO-W, contact frame, rig-fixed also when rolling backwards.
         """
-        channels = _in_order(channels)
-        if len(points.campaigns) > 1:
-            out = {name: np.empty(len(points)) for name in channels}
-            for part, rows, own in self._campaigns(points):
-                for name, x in part.readings(own, channels).items():
-                    out[name][rows] = x
-            return Readings(**out)
-        return Readings(**dict(zip(channels, self._chain(points, {}).readings(channels), strict=True)))
+        return self.sensitivities(points, (), channels)[0]
 
     def felt(self, points: Points) -> Points:
         """The points as the tyre felt them: its own conditions, and readings without the influence of rig and environment.
@@ -143,18 +138,71 @@ class Simulation(Brief):
 
         The stop at which the moment holds a wheel with play stays the same; a floating wheel keeps its moment at zero.
         """
-        if len(points.campaigns) > 1:
-            return self._sensitivities_of_campaigns(points, names, _in_order(channels))
-        whole = [name.partition(OF_RUN)[0] for name in names]
-        numbers = traced({name: self.number(name, points) for name in whole})
+        channels, n = _in_order(channels), len(points)
+        whole: dict[str, np.ndarray] = {name: np.empty(n) for name in channels}
+        by_number: dict[str, np.ndarray] = {name: np.empty((n, len(names))) for name in channels}
+        for rows, out, slopes in self.in_blocks(points, names, channels):
+            if len(rows) == n:
+                return out, slopes
+            for name in channels:
+                whole[name][rows], by_number[name][rows] = out[name], slopes[name]
+        return Readings(**whole), Readings(**by_number)
+
+    def in_blocks(
+        self,
+        points: Points,
+        names: Sequence[str],
+        channels: Iterable[str] = SIDEWAYS,
+        *,
+        by_sweep: bool = False,
+    ) -> Iterator[tuple[np.ndarray, Readings, Readings]]:
+        """:meth:`sensitivities` block after block: rows (m,) of the points, readings (m,), derivatives (m, k).
+
+        With ``by_sweep`` no sweep is divided. A block never holds derivatives of more points than it needs to be fast.
+        """
+        at_rows = self.at_rows(points, names, channels)
+        lags = bool(self.faults[LAG]) or any(
+            name.partition(OF_RUN)[0] == LAG for name in (*names, *self.of_parts)
+        )
+        for rows in blocks(points, by_sweep=by_sweep or lags):
+            yield rows, *at_rows(rows)
+
+    def at_rows(
+        self, points: Points, names: Sequence[str], channels: Iterable[str] = SIDEWAYS
+    ) -> Callable[[np.ndarray], tuple[Readings, Readings]]:
+        """:meth:`sensitivities` as a function of the rows (m,) of a test; if sweeps lag, rows of whole sweeps."""
         channels = _in_order(channels)
-        out = dict(zip(channels, self._chain(points, numbers).readings(channels), strict=True))
-        columns, n = list(numbers.values()), len(points)
-        place = [list(numbers).index(name) for name in whole]
-        slopes = {
-            name: np.broadcast_to(gradient(x, columns), (n, len(columns)))[:, place]
-            for name, x in out.items()
-        }
+        if len(points.campaigns) > 1:
+            return self._at_rows_of_campaigns(points, names, channels)
+        history = History(points)
+        numbers = {name: self.number(name, points) for name in (n.partition(OF_RUN)[0] for n in names)}
+        here = replace(self, radius_m=self.declared(points))
+
+        def found(rows: np.ndarray) -> tuple[Readings, Readings]:
+            part = points if len(rows) == len(points) else points.select(rows)
+            return here._linearised(part, names, numbers, channels, history, rows)
+
+        return found
+
+    def _linearised(
+        self,
+        points: Points,
+        names: Sequence[str],
+        numbers: Mapping[str, float],
+        channels: tuple[str, ...],
+        history: History,
+        rows: np.ndarray,
+    ) -> tuple[Readings, Readings]:
+        """Readings and derivatives by the named numbers at some rows of a test."""
+        at, n = traced(numbers), len(points)
+        chain = self._chain(points, at, history, rows)
+        out = dict(zip(channels, chain.readings(channels), strict=True))
+        columns = list(at.values())
+        place = [list(at).index(name.partition(OF_RUN)[0]) for name in names]
+        slopes = {}
+        for name, x in out.items():
+            slope = np.broadcast_to(gradient(x, columns), (n, len(columns)))
+            slopes[name] = slope[:, place]
         # A number of a part is added to that of the whole test, so its slope is the same at the points of the part.
         for k, name in enumerate(names):
             if OF_RUN in name:
@@ -173,30 +221,49 @@ class Simulation(Brief):
                 points.of_campaign(name),
             )
 
-    def _sensitivities_of_campaigns(
+    def _at_rows_of_campaigns(
         self, points: Points, names: Sequence[str], channels: tuple[str, ...]
-    ) -> tuple[Readings, Readings]:
-        """As :meth:`sensitivities`; the number of one campaign acts on no other."""
-        out = {name: np.empty(len(points)) for name in channels}
-        slopes = {name: np.zeros((len(points), len(names))) for name in channels}
+    ) -> Callable[[np.ndarray], tuple[Readings, Readings]]:
+        """As :meth:`at_rows`; the number of one campaign acts on no other."""
         own_of = [name.partition(OF_RUN) for name in names]
+        place = np.empty(len(points), dtype=int)
+        parts = {}
         for part, rows, own in self._campaigns(points):
-            campaign = points.campaigns[int(points.campaign[rows[0]])]
+            k = int(points.campaign[rows[0]])
+            campaign = points.campaigns[k]
             columns = [
-                k
-                for k, (name, _, of) in enumerate(own_of)
+                column
+                for column, (name, _, of) in enumerate(own_of)
                 if of == campaign
                 or (of and of not in points.campaigns)
                 or (not of and number_of(name, campaign) not in {*names, *self.of_parts})
             ]
-            called = [own_of[k][0] if own_of[k][2] == campaign else names[k] for k in columns]
-            readings, by = part.sensitivities(own, called, channels)
-            for name in channels:
-                out[name][rows] = readings[name]
-                slopes[name][np.ix_(rows, columns)] = by[name]
-        return Readings(**out), Readings(**slopes)
+            called = [own_of[c][0] if own_of[c][2] == campaign else names[c] for c in columns]
+            place[rows] = np.arange(len(rows))
+            parts[k] = part.at_rows(own, called, channels), columns
 
-    def _chain(self, points: Points, numbers: Mapping[str, Traced]) -> Chain:
+        def found(rows: np.ndarray) -> tuple[Readings, Readings]:
+            out = {name: np.empty(len(rows)) for name in channels}
+            slopes = {name: np.zeros((len(rows), len(names))) for name in channels}
+            for k, (at_rows, columns) in parts.items():
+                here = np.flatnonzero(points.campaign[rows] == k)
+                if not len(here):
+                    continue
+                readings, by = at_rows(place[rows[here]])
+                for name in channels:
+                    out[name][here] = readings[name]
+                    slopes[name][np.ix_(here, np.asarray(columns))] = by[name]
+            return Readings(**out), Readings(**slopes)
+
+        return found
+
+    def _chain(
+        self,
+        points: Points,
+        numbers: Mapping[str, Traced],
+        history: History | None = None,
+        rows: np.ndarray | slice = slice(None),
+    ) -> Chain:
         """The passage of the points with some numbers traced."""
         faults: dict[str, Any] = {**self.faults, **{n: x for n, x in numbers.items() if n in BY_NAME}}
         for key, added in self.of_parts.items():
@@ -209,6 +276,8 @@ class Simulation(Brief):
             usual_radius=self.declared(points),
             turn_slip=self.turn_slip,
             star=self.star,
+            history=history,
+            rows=rows,
         )
 
 

@@ -117,7 +117,9 @@ def evidence(campaign: JudgedSweeps, fitted: FittedModel) -> Evidence | None:
     size = {c: usual_size((getattr(points, c) / points.Fz)[g.index] for g in found) for c in campaign.stated}
     noise = np.concatenate([u * fitted.scale[name] for name, u in campaign.stated.items()])
     fit = leverage(fitted, noise)
-    errors = [(e, g) for g in found for e in _errors(predictions(fit, g), points.Fz[g.index], size)]
+    in_order = sorted(found, key=lambda g: int(g.index[0]))  # so that no point is simulated twice
+    own = {id(g): _errors(predictions(fit, g), points.Fz[g.index], size) for g in in_order}
+    errors = [(e, g) for g in found for e in own[id(g)]]
     level = constants.FALSE_ALARM_OF_SWEEPS / len(errors)
     usual = _usual_ratio([e for e, _ in errors])
     views = []

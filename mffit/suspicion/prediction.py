@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 
-from mffit.least_squares import FreeNumber, inverse, root
+from mffit.least_squares import FreeNumber, condensed, inverse, root
 from mffit.left_out import covariance_without
 from mffit.points import Points, levels
-from mffit.rig import Simulation
+from mffit.rig import Simulation, blocks
 from mffit.rig_errors import BY_NAME, RIG_ERRORS, ZEROS, number_of
 from mffit.suspicion import constants
 
@@ -45,18 +46,24 @@ class Group:
     whole: bool  #: all points of a sweep rather than those of one condition
 
     @property
+    def every(self) -> slice:
+        """Those of the group's points at which it is predicted."""
+        return slice(None, None, -(-len(self.index) // constants.MOST_POINTS_SHOWN))
+
+    @property
     def shown(self) -> np.ndarray:
         """Rows at which the group is predicted."""
-        return self.index[:: -(-len(self.index) // constants.MOST_POINTS_SHOWN)]
+        return self.index[self.every]
 
 
 @dataclass(frozen=True, slots=True)
 class Leverage:
-    """A fit at its solution, for every point; arrays of c channels one after the other, 0 or inf where one is not used."""
+    """A fit at its solution; arrays of c channels one after the other."""
 
     channels: tuple[str, ...]  #: (c,)
-    residual: np.ndarray  #: (c n,) model less measured [N], [Nm]
-    slope: np.ndarray  #: (c n, k) derivative by combinations of the free numbers whose covariance is 1
+    at: Callable[[np.ndarray], tuple[np.ndarray, np.ndarray]]
+    """Rows (m,) of a sweep -> model less measured (c m,) [N], [Nm], 0 where not used, and its derivatives (c m, k) by
+    combinations of the free numbers whose covariance is 1."""
     weight: np.ndarray  #: (c n,) uncertainty that the fit used [N], [Nm]; inf: not used
     noise: np.ndarray  #: (c n,) uncertainty of a sound point, model misfit included; inf: not measured
 
@@ -129,23 +136,52 @@ def leverage(fit: FittedModel, noise: np.ndarray) -> Leverage:
     free = [n.name for n in fit.numbers]
     channels = tuple(fit.weights)
     common = [name for name in _common(points, channels) if name not in free]
-    out, slope = fit.simulation.sensitivities(points, [*free, *common], channels)
-    slopes = slope.stacked
     measured = np.concatenate([points.channel(name) for name in channels])
     used = np.isfinite(measured) & np.isfinite(noise)
     weight = np.where(used, np.concatenate(list(fit.weights.values())), np.inf)
-    residual = np.where(used, out.stacked - np.nan_to_num(measured), 0.0)
-    J = slopes / weight[:, None]
+    at_rows = fit.simulation.at_rows(points, [*free, *common], channels)
+
+    def read(rows: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Residuals (c m,), derivatives (c m, k) and rows of the stacked arrays (c m,)."""
+        out, slope = at_rows(rows)
+        i = _stacked(rows, len(channels), len(points))
+        return np.where(used[i], out.stacked - np.nan_to_num(measured[i]), 0.0), slope.stacked, i
+
+    divided = list(blocks(points, by_sweep=True))
+    weighted = (
+        (residual / weight[i], slope / weight[i][:, None]) for residual, slope, i in map(read, divided)
+    )
+    r, J = condensed(weighted)
     covariance = inverse(J.T @ J + np.diag([n.spread**-2.0 for n in fit.numbers] + [0.0] * len(common)))
-    gradient = J.T @ (residual / weight)
+    gradient = J.T @ r
     gradient[: len(free)] = 0.0  # the fit has converged in its own numbers
+    step, combined = covariance @ gradient, root(covariance)
+    block, place = np.empty(len(points), dtype=int), np.empty(len(points), dtype=int)
+    for k, rows in enumerate(divided):
+        block[rows], place[rows] = k, np.arange(len(rows))
+
+    @lru_cache(maxsize=1)
+    def of_block(k: int) -> tuple[np.ndarray, np.ndarray]:
+        residual, slope, i = read(divided[k])
+        return np.where(used[i], residual - slope @ step, 0.0), slope @ combined
+
+    def at(rows: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        k = int(block[rows[0]])
+        residual, slope = of_block(k)
+        i = _stacked(place[rows], len(channels), len(divided[k]))
+        return residual[i], slope[i]
+
     return Leverage(
         channels=channels,
-        residual=np.where(used, residual - slopes @ (covariance @ gradient), 0.0),
-        slope=slopes @ root(covariance),
+        at=at,
         weight=weight,
         noise=np.where(used, noise, np.inf),
     )
+
+
+def _stacked(rows: np.ndarray, channels: int, n: int) -> np.ndarray:
+    """Rows (c m,) of arrays of channels (c n,) that belong to some points (m,)."""
+    return (np.arange(channels)[:, None] * n + rows).ravel()
 
 
 def _common(points: Points, channels: Iterable[str]) -> list[str]:
@@ -161,24 +197,22 @@ def _common(points: Points, channels: Iterable[str]) -> list[str]:
 
 def predictions(fit: Leverage, group: Group) -> dict[str, PredictedChannel]:
     """The measured channels of a group at the rows that it shows (m,), as all other points predict them."""
-    n = len(fit.residual) // len(fit.channels)
-    rows = _measured(fit, group.index, n)
-    axes = fit.slope[rows] / fit.weight[rows][:, None]
+    count, m = len(fit.channels), len(group.index)
+    rows = _stacked(group.index, count, len(fit.noise) // count)
+    residual, slope = fit.at(group.index)
+    measured = np.isfinite(fit.noise[rows])
+    weight = fit.weight[rows]
+    axes = (slope / weight[:, None])[measured]
     others = covariance_without(axes, constants.INFORMATION_OF_OTHERS)
-    moved = others @ (axes.T @ (fit.residual[rows] / fit.weight[rows]))
-    rows = _measured(fit, group.shown, n)
-    slope = fit.slope[rows]
-    error = fit.residual[rows] + slope @ moved
-    spread = slope @ others @ slope.T + np.diag(fit.noise[rows] ** 2)
+    moved = others @ (axes.T @ (residual / weight)[measured])
+    shown = _stacked(np.arange(m)[group.every], count, m)
+    shown = shown[measured[shown]]
+    slope = slope[shown]
+    error = residual[shown] + slope @ moved
+    spread = slope @ others @ slope.T + np.diag(fit.noise[rows[shown]] ** 2)
     out = {}
     for k, name in enumerate(fit.channels):
-        own = rows // n == k
+        own = shown // m == k
         if np.any(own):
             out[name] = PredictedChannel(error=error[own], covariance=spread[np.ix_(own, own)])
     return out
-
-
-def _measured(fit: Leverage, index: np.ndarray, n: int) -> np.ndarray:
-    """Rows of the fit's arrays for all channels of some points, where they were measured."""
-    rows = np.concatenate([k * n + index for k in range(len(fit.channels))])
-    return rows[np.isfinite(fit.noise[rows])]

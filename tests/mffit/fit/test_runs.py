@@ -14,7 +14,7 @@ import tir
 from mffit import config as configuration
 from mffit.errors import InputError
 from mffit.fit.nuisance_choice import choose
-from mffit.fit.run_scatter import Runs, halves_of_runs
+from mffit.fit.run_scatter import OfRuns, Runs, halves_of_runs
 from mffit.points import make_points
 from mffit.rig import Simulation
 
@@ -159,6 +159,15 @@ def test_two_runs_cannot_show_a_scatter(scattered):
         choose(with_keys(scattered[0], run_scale=True), replace(search, problem=few))
 
 
+def of_runs(run, slope, own, residual):
+    """Readings of one channel in two blocks of whole runs, the later ones first."""
+    late = run >= np.median(run)
+    return lambda: (
+        OfRuns(point=rows, slope=slope[rows], own=own[rows], residual=residual[rows])
+        for rows in (np.flatnonzero(late), np.flatnonzero(~late))
+    )
+
+
 def test_a_left_out_piece_is_predicted_as_by_a_fit_without_it():
     """Against a solution of the whole system with a column for every number of every run."""
     rng = np.random.default_rng(4)
@@ -167,20 +176,21 @@ def test_a_left_out_piece_is_predicted_as_by_a_fit_without_it():
     slope, own = rng.standard_normal((60, k)), rng.standard_normal((60, 2))
     residual, spread = rng.standard_normal(60), np.array([0.7, 0.2])
     information, pull = np.diag(rng.uniform(0.1, 1.0, k)), rng.standard_normal(k)
-    found = Runs(slope=slope, own=own, residual=residual, run=run, information=information, pull=pull)
+    found = Runs(rows=of_runs(run, slope, own, residual), run=run, information=information, pull=pull)
     wide = np.column_stack([slope, *(own * (run == j)[:, None] for j in range(runs))])
     prior = np.zeros((k + 2 * runs, k + 2 * runs))
     prior[:k, :k] = information
     prior[k:, k:] = np.diag(np.tile(spread**-2.0, runs))
     for group in (run, 2 * run + np.tile(np.arange(rows) % 3 == 0, runs)):
-        errors = found.left_out(group, spread)
+        errors, other = found.left_out(group, (spread, 2.0 * spread))
+        assert not np.allclose(errors, other)
         for piece in np.unique(group):
             kept = group != piece
             A = wide[kept].T @ wide[kept] + prior
             b = wide[kept].T @ residual[kept] + np.r_[pull, np.zeros(2 * runs)]
             expected = residual[~kept] - wide[~kept] @ np.linalg.solve(A, b)
-            np.testing.assert_allclose(errors[~kept], expected, atol=1e-10)
-    values, variances = found.own_numbers(found.parts(), spread)
+            np.testing.assert_allclose(errors[0, ~kept], expected, atol=1e-10)
+    values, variances = (np.roll(x, 2, axis=0) for x in found.own_numbers(found.parts(), spread))
     A = wide.T @ wide + prior
     solution = -np.linalg.solve(A, wide.T @ residual + np.r_[pull, np.zeros(2 * runs)])
     np.testing.assert_allclose(values.ravel(), solution[k:], atol=1e-10)
@@ -193,9 +203,8 @@ def test_the_scatter_of_numbers_that_were_drawn_is_found():
     own, slope = rng.uniform(0.5, 1.5, (3000, 2)) * 100.0, rng.standard_normal((3000, 3))
     drawn = np.array([0.03, 0.006]) * rng.standard_normal((150, 2))
     residual = np.sum(own * drawn[run], axis=1) + rng.standard_normal(3000)
-    found = Runs(
-        slope=slope, own=own, residual=residual, run=run, information=np.zeros((3, 3)), pull=np.zeros(3)
-    )
+    rows = of_runs(run, slope, own, residual)
+    found = Runs(rows=rows, run=run, information=np.zeros((3, 3)), pull=np.zeros(3))
     assert found.spread() == pytest.approx([0.03, 0.006], rel=0.2)
 
 

@@ -21,8 +21,15 @@ def linear_fit(n: int = 60, k: int = 5, seed: int = 4) -> tuple[Leverage, np.nda
     J = design / weight[:, None]
     covariance = np.linalg.inv(J.T @ J)
     residual = design @ (covariance @ J.T @ (measured / weight)) - measured
+
+    combined = design @ np.linalg.cholesky(covariance)
+
+    def at(rows):
+        both = np.r_[rows, n + rows]
+        return residual[both], combined[both]
+
     return (
-        Leverage(("Fy", "Mz"), residual, design @ np.linalg.cholesky(covariance), weight, noise),
+        Leverage(("Fy", "Mz"), at, weight, noise),
         design,
         measured,
     )
