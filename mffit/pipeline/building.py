@@ -79,7 +79,7 @@ def build(
     special = fitting.name_at_temperature(config.tyre.name)
     if out is not None:
         refuse_early(Path(out), (*names.values(), special, *WRITTEN), inputs_of(config))
-    campaigns, warned = campaigns_of(config, projects, reading.points, build, progress)
+    campaigns, others, warned = campaigns_of(config, projects, reading.points, build, progress)
     with threadpool_limits(1):  # the matrices are small: threads cost more than they save
         measured, fitted = _fitted(config, reading, parts, measured, base, progress, campaigns)
         progress("judging what the fit leaves")
@@ -121,6 +121,7 @@ def build(
         made=made_of,
         left_out=(*reading.left_out, *left_out_by_fit(reading.points, fitted)),
         excluded=reading.excluded,
+        campaigns=others,
     )
     if out is not None:
         progress("writing the report" if with_report else "writing the files")

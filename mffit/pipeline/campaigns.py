@@ -37,8 +37,8 @@ def campaigns_of(
     points: Points,
     build: Callable[..., BuildResult],
     progress: Progress,
-) -> tuple[tuple[FittedCampaign, ...], tuple[str, ...]]:
-    """The fitted campaigns of the other projects, and warnings about them.
+) -> tuple[tuple[FittedCampaign, ...], tuple[BuildResult, ...], tuple[str, ...]]:
+    """The fitted campaigns of the other projects, their builds, and warnings about them.
 
     Parameters
     ----------
@@ -53,7 +53,7 @@ def campaigns_of(
     InputError
         The readings of a project cannot be fitted, or their radii are those of another tyre.
     """
-    out, warned = [], []
+    out, built, warned = [], [], []
     for index, (row, other) in enumerate(zip(config.campaign, projects, strict=True)):
         progress(f"building the campaign {row.toml}")
         result = build(other, progress=progress)
@@ -61,6 +61,7 @@ def campaigns_of(
         if not result.trusted:
             warned.append(f"the campaign {row.toml} is not to be trusted: {'; '.join(result.reasons)}")
         fit = result.fit
+        built.append(result)
         out.append(
             FittedCampaign(
                 name=row.toml,
@@ -70,7 +71,7 @@ def campaigns_of(
                 shared=shared_conditions(points, result.points),
             )
         )
-    return tuple(out), tuple(warned)
+    return tuple(out), tuple(built), tuple(warned)
 
 
 def points_of_all(

@@ -18,6 +18,7 @@ from mffit.report.build_view import PER_LOAD, STATUS_ORDER, BuildView, ChannelRo
 from mffit.report.drawing.records import Sheet
 from mffit.report.figures import (
     bands,
+    campaigns,
     decomposition,
     files,
     fit,
@@ -40,6 +41,17 @@ SECTION_TITLES = {
 OTHER_SECTIONS = "Everything else"
 PLACES = {"straight_with_turn_slip": "turn slip on", "disc": "turn slip on, on the disc"}
 """Uses for which a file that serves both is judged, beside the straight path without turn slip."""
+
+
+OF_CAMPAIGN = {
+    "fit": "%(channel)s at every load, pressure and camber.",
+    "slip": "%(channel)s over longitudinal slip, coloured by sideslip.",
+    "friction": "friction ellipse of the upright wheel, coloured by sideslip.",
+    "weights": "weights of combined slip, coloured by sideslip.",
+    "trail": "pneumatic trail and residual moment at three longitudinal slips.",
+    "radii": "radii of the freely rolling wheel.",
+}
+"""Captions of the pictures of another campaign, by the first word of their names."""
 
 
 def write_build(result: BuildResult, folder: Path) -> None:
@@ -75,6 +87,7 @@ def write_build(result: BuildResult, folder: Path) -> None:
         radians=math.radians(1.0),
         meanings=MEANINGS,
         units=UNITS,
+        captions=OF_CAMPAIGN,
         least_pure=report_constants.LEAST_PURE_FORCE,
     )
 
@@ -93,18 +106,21 @@ def _figures(view: BuildView) -> dict[str, Callable[[], Sheet]]:
                 out[f"parts_{channel.name}"] = partial(decomposition.decomposition, view, channel)
         if decomposition.pure_curves(view):
             out["even_parts"] = partial(decomposition.even_parts, view)
-    for channel in view.channels:
-        if any(curve.over != "kappa" for curve in view.curves):
-            out[f"fit_{channel.name}"] = partial(fit.model_against_points, view, channel)
-    if slip.slip_curves(view.curves):
+    if any(curve.over != "kappa" for curve in view.curves):
         for channel in view.channels:
-            out[f"slip_{channel.name}"] = partial(slip.over_slip, view, channel)
-    if slip.combined(view) and {"Fx", "Fy"} <= {channel.name for channel in view.channels}:
-        out["friction_ellipse"] = partial(slip.friction_ellipse, view)
-        out["weights"] = partial(slip.weights, view)
-        out["trail"] = partial(slip.trail, view)
-    if view.radii.rms:
-        out["radii"] = partial(radii.radii, view)
+            out[f"fit_{channel.name}"] = partial(fit.model_against_points, view, channel)
+    out |= _under_slip(view)
+    for number, other in enumerate(view.campaigns, 1):
+        own = {channel.name for channel in view.channels}
+        theirs = {
+            f"fit_{channel.name}": partial(fit.model_against_points, other.build, channel)
+            for channel in other.build.channels
+            if channel.name not in own and any(curve.over != "kappa" for curve in other.build.curves)
+        }
+        theirs |= _under_slip(other.build)
+        out |= {f"campaign{number}_{name}": make for name, make in theirs.items()}
+    if view.campaigns:
+        out["campaigns"] = partial(campaigns.where_run, view)
     if view.files is not None:
         out["bands"] = partial(bands.bands, view)
     if view.files is not None and view.lent is not None:
@@ -117,6 +133,21 @@ def _figures(view: BuildView) -> dict[str, Callable[[], Sheet]]:
         out["residuals_slip"] = partial(maps, driven, residual_unit(view), over=residuals.SLIPS)
     if any(c.bins for c in view.remains.structure.comparisons):
         out["structure"] = partial(structure.residual_means, view.remains.structure)
+    return out
+
+
+def _under_slip(view: BuildView) -> dict[str, Callable[[], Sheet]]:
+    """The figures of longitudinal slip and of radii."""
+    out: dict[str, Callable[[], Sheet]] = {}
+    if slip.slip_curves(view.curves):
+        for channel in view.channels:
+            out[f"slip_{channel.name}"] = partial(slip.over_slip, view, channel)
+    if slip.combined(view) and {"Fx", "Fy"} <= {channel.name for channel in view.channels}:
+        out["friction_ellipse"] = partial(slip.friction_ellipse, view)
+        out["weights"] = partial(slip.weights, view)
+        out["trail"] = partial(slip.trail, view)
+    if view.radii.rms:
+        out["radii"] = partial(radii.radii, view)
     return out
 
 

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -12,6 +12,7 @@ from mffit.config.laboratory import LabTable
 from mffit.diagnosis.remains import Remains
 from mffit.fit import Agreement, Coefficient, Posterior, StageRecord
 from mffit.fit.between_runs import BetweenRuns
+from mffit.fit.campaign import Joined
 from mffit.fit.coverage import StageCoverage
 from mffit.fit.files import Files
 from mffit.fit.relaxation import Relaxation
@@ -103,6 +104,20 @@ class CoefficientRow:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class CampaignView:
+    """Another campaign of the tyre, what it gave, and its own build."""
+
+    joined: Joined
+    build: BuildView
+    rows: tuple[CoefficientRow, ...]  #: coefficients of the file that it gave
+
+    @property
+    def name(self) -> str:
+        """Its tyre.toml, as the project names it."""
+        return self.joined.campaign.name
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class BuildView:
     """All content of the build report."""
 
@@ -145,6 +160,7 @@ class BuildView:
     )
     temperature: AtTemperature | None  #: the fit with temperature terms, if there is one
     relaxation: Relaxation | None  #: what steps of the sideslip angle determine
+    campaigns: tuple[CampaignView, ...]  #: the others, if several were joined
     lent: Lent | None  #: what a sister tyre gave, if there is one
     runs: BetweenRuns | None  #: what every run has of its own, if that is modelled
     radii: Vertical  #: loaded radius and wheel speed of the rolling wheel
@@ -186,6 +202,7 @@ def view_of(result: BuildResult) -> BuildView:
         )
         for name, model in fit.model.items()
     ]
+    rows = coefficient_rows(fit.coefficients)
     return BuildView(
         config=result.config,
         points=points,
@@ -197,7 +214,7 @@ def view_of(result: BuildResult) -> BuildView:
         measured=result.measured,
         agreement=fit.channels,
         odd_agreement=fit.odd,
-        rows=coefficient_rows(fit.coefficients),
+        rows=_with_campaigns(rows, fit.joined),
         stages=fit.stages,
         coverage=fit.coverage,
         warnings=tuple(result.warnings),
@@ -222,11 +239,25 @@ def view_of(result: BuildResult) -> BuildView:
         bands_note=fit.bands_note,
         temperature=fit.temperature,
         relaxation=fit.relaxation,
+        campaigns=tuple(
+            CampaignView(
+                joined=joined,
+                build=view_of(other),
+                rows=tuple(row for row in rows if row.name in joined.found),
+            )
+            for joined, other in zip(fit.joined, result.campaigns, strict=False)
+        ),
         lent=fit.lent,
         runs=fit.runs,
         radii=fit.radii,
         radii_agreement=fit.radii.agreement(fit.tyre.values),
     )
+
+
+def _with_campaigns(rows: Iterable[CoefficientRow], joined: Sequence[Joined]) -> tuple[CoefficientRow, ...]:
+    """The rows, with the campaign in place of the stage where one gave the coefficient."""
+    origin = {name: one.campaign.name for one in joined for name in one.found}
+    return tuple(replace(row, stage=origin.get(row.name, row.stage)) for row in rows)
 
 
 def coefficient_rows(coefficients: Mapping[str, Coefficient]) -> tuple[CoefficientRow, ...]:

@@ -44,6 +44,10 @@ class BuildResult(Brief):
     left_out: tuple[LeftOut, ...] = ()  #: readings that are left out, have less weight or are doubted
     excluded: Points | None = None  #: finished points that were left out by hand; None without any
 
+    campaigns: tuple[
+        BuildResult, ...
+    ] = ()  #: of the other campaigns of the tyre, in the order of ``fit.joined``
+
     @property
     def headline(self) -> str:
         """Name of the tyre, its eps_gamma if measured, and the misfit of the model."""
