@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import reduce
 from typing import Any
 
 from mffit.config import Declaration, declared_rig
 from mffit.constants import USUAL_CORNERING_STIFFNESS
+from mffit.fit.beside import BesideNumbers
 from mffit.fit.campaign import FittedCampaign, Joined, join
 from mffit.fit.coefficients import Coefficient, coefficient_records
 from mffit.fit.comments import file_comments
@@ -44,6 +46,7 @@ class Delivered:
     relaxation: Relaxation
     joined: tuple[Joined, ...]  #: what other campaigns gave
     posterior: Posterior  #: of all of them
+    beside: tuple[BesideNumbers, ...]  #: what was fitted to readings of its own
     zeros: Mapping[str, tuple[float, float]]  #: of My, with standard errors
 
 
@@ -65,10 +68,12 @@ def deliver(
         known = known.having({name: q.value}, "regularised" if name in rolling.regularised else "fitted")
     lag = relaxation(beside.steps, fitted.simulation, fitted.posterior, known.hand.held)
     known = known.having({name: q.value for name, q in lag.found.items()}, "fitted")
-    lent = None if beside.sister is None else lend(beside.sister, known, fitted.posterior)
+    own = (beside.radii.beside, rolling.beside, lag.beside)
+    posterior = reduce(Posterior.with_numbers, own, fitted.posterior)
+    lent = None if beside.sister is None else lend(beside.sister, known, posterior)
     borrowed = {} if lent is None else dict(lent.found)
     known = known.having({name: q.value for name, q in borrowed.items()}, "sister")
-    posterior = fitted.posterior if lent is None else lent.posterior
+    posterior = posterior if lent is None else lent.posterior
     joined = []
     for campaign in beside.campaigns:
         joined.append(join(campaign, known, posterior))
@@ -79,4 +84,4 @@ def deliver(
     coefficients = coefficient_records(known, fitted, found)
     files = make_files(config, known, points, base, dict(measured.by_load("C_gamma")), only=only)
     annotated = files.annotated(file_comments(files, known.origin, coefficients))
-    return Delivered(known, coefficients, annotated, lent, lag, tuple(joined), posterior, rolling.zeros)
+    return Delivered(known, coefficients, annotated, lent, lag, tuple(joined), posterior, own, rolling.zeros)

@@ -148,6 +148,7 @@ def fit(
         runs=runs,
         confounded=confounded,
         radii=radii,
+        beside=made.beside,
         lent=made.lent,
         joined=made.joined,
         relaxation=made.relaxation,

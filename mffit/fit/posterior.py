@@ -10,6 +10,7 @@ import numpy as np
 from mffit.brief import Brief
 from mffit.constants import COVERAGE_FACTOR_95
 from mffit.fit import constants
+from mffit.fit.beside import BesideNumbers
 from mffit.fit.problem import FitProblem
 from mffit.least_squares import Solution
 from mffit.points import Points
@@ -29,6 +30,17 @@ class Posterior(Brief):
     def stderr(self) -> dict[str, float]:
         """Standard uncertainty by name."""
         return dict(zip(self.names, np.sqrt(np.diag(self.covariance)).tolist(), strict=True))
+
+    def with_numbers(self, beside: BesideNumbers) -> Posterior:
+        """The posterior with numbers that were fitted beside the others; those that it already has stay as they are."""
+        new = [i for i, name in enumerate(beside.values) if name not in self.names]
+        names = [list(beside.values)[i] for i in new]
+        slope = np.zeros((len(new), len(self.names)))
+        if beside.leans_on:
+            slope[:, [self.names.index(name) for name in beside.leans_on]] = beside.slope[new]
+        across = slope @ self.covariance
+        own = across @ slope.T + beside.covariance[np.ix_(new, new)]
+        return Posterior((*self.names, *names), np.block([[self.covariance, across.T], [across, own]]))
 
     def shifted(self, shift: np.ndarray) -> Posterior:
         """The posterior with one more error, which moves the numbers by ``shift`` (k,) if it has its standard size."""

@@ -16,13 +16,16 @@ from typing import Any
 import numpy as np
 
 from mffit.fit import constants
+from mffit.fit.beside import BesideNumbers
 from mffit.fit.coverage import StageCoverage
 from mffit.fit.posterior import Posterior
+from mffit.fit.sister import sideways
 from mffit.least_squares import FreeNumber, of_model, solve
 from mffit.points import Points, levels
 from mffit.rig import Simulation
 from mffit.rounding import ascii_only, to_uncertainty
 from tir import Quantity, Tyre
+from tir.derivatives import gradient, plain, traced
 from tir.equations import normalise
 from tir.equations.forces import carcass_stiffness
 from tir.parameters import BY_NAME
@@ -48,7 +51,7 @@ class StepLength:
     load: float  #: [N]
     pressure: float  #: [Pa]
     length: Quantity  #: [m]
-    stiffness: Quantity  #: of the carcass [N/m]
+    stiffness: Quantity  #: of the carcass [N/m], where the cornering stiffness is exact
     written: float = math.nan  #: relaxation length of the file there [m]
 
 
@@ -58,6 +61,7 @@ class Relaxation:
 
     runs: tuple[StepLength, ...] = ()
     found: Mapping[str, Quantity] = field(default_factory=dict)
+    beside: BesideNumbers = field(default_factory=BesideNumbers)  #: the same with their covariance
     missing: str = RUN  #: why the others, or all, are held
 
     @property
@@ -88,7 +92,7 @@ def relaxation(
     """
     if steps is None:
         return Relaxation()
-    runs = [_of_run(steps.select(steps.sweep == k), simulation, posterior) for k in np.unique(steps.sweep)]
+    runs = [_of_run(steps.select(steps.sweep == k), simulation) for k in np.unique(steps.sweep)]
     clear = [run for run in runs if run.length.u < constants.FITTED_SHARE_OF_PRIOR * run.length.value]
     if not clear:
         return Relaxation(missing=UNCLEAR)
@@ -101,16 +105,18 @@ def relaxation(
         *(["steps were run at one pressure"] if pressures < 2 else []),
     ]
     names = [name for name in names if name not in held]
-    found = _fitted(names, values, clear)
-    at = {**values, **{name: q.value for name, q in found.items()}}
+    beside = _fitted(names, values, clear, posterior)
+    at = {**values, **beside.values}
     written = tuple(
         StepLength(run.file, run.load, run.pressure, run.length, run.stiffness, _length(run, at))
         for run in clear
     )
-    return Relaxation(written, found, "; ".join(lacking))
+    u = posterior.with_numbers(beside).stderr
+    found = {name: Quantity(x, u[name], BY_NAME[name].unit) for name, x in beside.values.items()}
+    return Relaxation(written, found, beside, "; ".join(lacking))
 
 
-def _of_run(samples: Points, simulation: Simulation, posterior: Posterior) -> StepLength:
+def _of_run(samples: Points, simulation: Simulation) -> StepLength:
     """The relaxation length at which the fitted tyre, lagging, follows the readings best."""
     radius = float(simulation.values["UNLOADED_RADIUS"])
     used = np.isfinite(samples.Fy)
@@ -136,14 +142,12 @@ def _of_run(samples: Points, simulation: Simulation, posterior: Posterior) -> St
         turn_slip=simulation.turn_slip,
     )  # fmt: skip
     C = abs(float(state.K_ya)) / sigma
-    PKY1 = float(simulation.values["PKY1"])
-    share = math.hypot(u / sigma, posterior.stderr.get("PKY1", 0.0) / PKY1)
     return StepLength(
         samples.files[int(samples.file[0])],
         load,
         pressure,
         Quantity(sigma, u, "m"),
-        Quantity(C, share * C, "N/m"),
+        Quantity(C, u / sigma * C, "N/m"),
     )
 
 
@@ -172,11 +176,11 @@ def _length(run: StepLength, values: Mapping[str, Any]) -> float:
 
 
 def _fitted(
-    names: Sequence[str], values: Mapping[str, Any], runs: Sequence[StepLength]
-) -> dict[str, Quantity]:
-    """The coefficients that fit the carcass stiffnesses of the runs, with their standard uncertainties."""
+    names: Sequence[str], values: Mapping[str, Any], runs: Sequence[StepLength], posterior: Posterior
+) -> BesideNumbers:
+    """The coefficients that fit the carcass stiffnesses of the runs; they follow the cornering stiffness of the fit."""
     if not names:
-        return {}
+        return BesideNumbers()
     load, pressure = (np.array([getattr(run, name) for run in runs]) for name in ("load", "pressure"))
     measured, u = (np.array([run.stiffness[k] for run in runs]) for k in (0, 1))
     start = {**values, "LATERAL_STIFFNESS": float(np.median(measured)), **dict.fromkeys(names[1:], 0.0)}
@@ -189,8 +193,17 @@ def _fitted(
     end = solve(of_model(stiffness, names, measured, u), numbers, tolerance=1e-9)
     freedom = len(runs) - len(names)
     scale = max(1.0, float(end.data @ end.data) / freedom) if freedom > 0 else 1.0
-    stderr = np.sqrt(scale * np.diag(end.covariance)).tolist()
-    return {n: Quantity(end.values[n], s, BY_NAME[n].unit) for n, s in zip(names, stderr, strict=True)}
+    fitted = tuple(name for name in posterior.names if name in BY_NAME)
+    free = traced({name: float(values[name]) for name in fitted})
+    _, K_ya = sideways({**values, **free}, load, pressure)
+    relative = gradient(K_ya, list(free.values())) / np.reshape(plain(K_ya), (-1, 1)) if fitted else 0.0
+    by_stiffness = end.covariance @ end.jacobian.T / u
+    return BesideNumbers(
+        values=dict(end.values),
+        covariance=scale * end.covariance,
+        leans_on=fitted,
+        slope=by_stiffness @ (measured[:, None] * relative) if fitted else np.zeros((len(names), 0)),
+    )
 
 
 def relaxation_sentence(found: Relaxation) -> str:

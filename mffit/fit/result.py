@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 from mffit.brief import Brief
 from mffit.fit.agreement import Agreement
 from mffit.fit.bands import BandsByPressure
+from mffit.fit.beside import BesideNumbers
 from mffit.fit.between_runs import BetweenRuns
 from mffit.fit.campaign import Joined
 from mffit.fit.coefficients import Coefficient
@@ -58,6 +59,7 @@ class FitResult(Brief):
     confounded: tuple[Confounding, ...] = ()  #: settings with which the temperature runs along
     relaxation: Relaxation | None = None  #: what steps of the sideslip angle determine
     joined: tuple[Joined, ...] = ()  #: what other campaigns of the tyre gave
+    beside: tuple[BesideNumbers, ...] = ()  #: coefficients fitted to readings of their own: radii, My, steps
     lent: Lent | None = None  #: what a sister tyre gives to one measured only sideways
     runs: BetweenRuns | None = None  #: what every run has of its own, if that is modelled
     choice: NuisanceChoice | None = (

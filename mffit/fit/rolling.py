@@ -12,6 +12,7 @@ import numpy as np
 
 from mffit.config import Declaration
 from mffit.fit import constants
+from mffit.fit.beside import BesideNumbers
 from mffit.fit.coverage import why_held
 from mffit.fit.weights import stated_or_nominal
 from mffit.least_squares import FreeNumber, inverse, of_model, solve
@@ -80,10 +81,15 @@ def radius_coefficients(
 class Resistance:
     """What the measured moment My of the freely rolling wheel determines."""
 
-    found: Mapping[str, Quantity] = field(default_factory=dict)  #: coefficients
+    beside: BesideNumbers = field(default_factory=BesideNumbers)  #: coefficients
     regularised: frozenset[str] = frozenset()  #: those that their priors decide as much as the points
     zeros: Mapping[str, tuple[float, float]] = field(default_factory=dict)
     """Zeros of My [Nm] by number of the rig, with standard errors, as far as loads separate them from the tyre."""
+
+    @property
+    def found(self) -> dict[str, Quantity]:
+        """The coefficients with their standard uncertainties."""
+        return self.beside.quantities
 
 
 def rolling_resistance(
@@ -126,11 +132,13 @@ def rolling_resistance(
     end = solve(of_model(moment, every, chosen.My, sigma), numbers, tolerance=1e-8)
     scale = max(rms(end.data), 1.0)  # where the formula misses the points by more than their noise
     information = end.jacobian.T @ end.jacobian / scale**2 + np.diag(end.prior)
-    u = np.sqrt(np.diag(inverse(information)))
-    stderr = dict(zip(end.names, u.tolist(), strict=True))
+    covariance = inverse(information)
+    stderr = dict(zip(end.names, np.sqrt(np.diag(covariance)).tolist(), strict=True))
     decided = {n.name for n in numbers if stderr[n.name] > constants.FITTED_SHARE_OF_PRIOR * n.spread}
     return Resistance(
-        found={name: Quantity(end.values[name], stderr[name], "-") for name in names},
+        beside=BesideNumbers(
+            {name: end.values[name] for name in names}, covariance[: len(names), : len(names)]
+        ),
         regularised=frozenset(decided.intersection(names)),
         zeros={n: (end.values[n], stderr[n]) for n in own.values() if n not in decided and zero.u > 0.0},
     )

@@ -238,8 +238,8 @@ def _scaled(
     return _Scaled(found, derivative)
 
 
-def sideways(values: Mapping[str, Any], loads: np.ndarray, pressure: float) -> tuple[Any, Any]:
-    """Friction and cornering stiffness (n,) of the upright wheel at loads (n,) [N] and a pressure [Pa], on a straight path."""
+def sideways(values: Mapping[str, Any], loads: np.ndarray, pressure: Any) -> tuple[Any, Any]:
+    """Friction and cornering stiffness (n,) of the upright wheel at loads (n,) [N] and pressures [Pa], on a straight path."""
     p = SimpleNamespace(**values)
     q = normalise.inputs(p, loads, loads, 0.0, 0.0, 0.0, 0.0, pressure, False, False)
     return stiffness.lateral_friction(p, q, 0.0), stiffness.cornering_stiffness(p, q, 0.0)

@@ -2,19 +2,20 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field, fields, replace
 from types import SimpleNamespace
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from mffit.fit import constants
 from mffit.fit.agreement import Agreement, agreement
+from mffit.fit.beside import BesideNumbers
 from mffit.least_squares import FreeNumber, of_model, solve
 from mffit.points import Points, levels
 from mffit.rounding import ascii_only, to_uncertainty
+from mffit.scatter import rms
 from mffit.suspicion import parts_of_sweeps
 from tir import Quantity
 from tir.equations import vertical
@@ -23,8 +24,9 @@ from tir.parameters import BY_NAME
 
 GROWTH = "growth"
 """Growth of the free radius with pressure, relative to dpi: MF has no term for it, and PFZ1 would take it up."""
-LEAN = "lean"
-"""Change of a radius with the square of camber, relative to the free one: it depends on the contour, and is not written."""
+LEAN = {"RL": "lean of RL", "omega": "lean of omega"}
+"""By channel, change of the radius with the square of camber, relative to the free one: it depends on the contour, and is not
+written."""
 BOUNDS = {
     "Q_RE0": (0.9, 1.1),
     "PFZ1": (-0.5, 2.0),
@@ -32,7 +34,7 @@ BOUNDS = {
     "FREFF": (-1.0, 1.0),
     "BREFF": (0.2, 40.0),
     GROWTH: (-0.3, 0.3),
-    LEAN: (-10.0, 10.0),
+    **dict.fromkeys(LEAN.values(), (-10.0, 10.0)),
     "Q_V1": (-0.01, 0.02),
     "Q_V2": (-0.3, 0.5),
 }
@@ -40,7 +42,7 @@ OVER_SPEED = {"Q_V1": constants.RADIUS_GROWTH_OVER_SPEED, "Q_V2": constants.STIF
 """Coefficients of the radii that several speeds show, and the standard deviation of each among tyres."""
 
 
-OF_RADII = ("VERTICAL_STIFFNESS", "Q_FZ2", *(name for name in BOUNDS if name not in (GROWTH, LEAN)))
+OF_RADII = ("VERTICAL_STIFFNESS", "Q_FZ2", *(name for name in BOUNDS if name in BY_NAME))
 """Every coefficient that radii may determine."""
 
 
@@ -48,13 +50,29 @@ OF_RADII = ("VERTICAL_STIFFNESS", "Q_FZ2", *(name for name in BOUNDS if name not
 class Vertical:
     """What loaded radius and wheel speed determine."""
 
-    found: Mapping[str, Quantity] = field(default_factory=dict)
-    growth: float = 0.0  #: of the free radius, relative to dpi
+    numbers: Mapping[str, float] = field(default_factory=dict)
+    """Coefficients (k,) with the growth of the free radius and the effects of camber, in the order of the covariance."""
+    covariance: np.ndarray = field(default_factory=lambda: np.zeros((0, 0)))  #: (k, k)
     rms: Mapping[str, float] = field(default_factory=dict)
     """By channel, RL and omega, rms misfit of the radius [m]."""
-    covariance: Mapping[str, tuple[tuple[str, ...], np.ndarray]] = field(default_factory=dict)
-    """By channel, the fitted numbers (k,) with their covariance (k, k)."""
     rolling: RollingParts | None = None  #: the means that were fitted; None without any
+
+    @property
+    def found(self) -> dict[str, Quantity]:
+        """The coefficients with their standard uncertainties."""
+        return self.beside.quantities
+
+    @property
+    def beside(self) -> BesideNumbers:
+        """The coefficients with their covariance; no force of the points depends on them."""
+        rows = [i for i, name in enumerate(self.numbers) if name in BY_NAME]
+        names = [name for name in self.numbers if name in BY_NAME]
+        return BesideNumbers({n: self.numbers[n] for n in names}, self.covariance[np.ix_(rows, rows)])
+
+    @property
+    def growth(self) -> float:
+        """Growth of the free radius, relative to dpi."""
+        return self.numbers.get(GROWTH, 0.0)
 
     def agreement(self, values: Mapping[str, Any]) -> dict[str, Agreement]:
         """By channel, RL and omega, agreement of the radii [m] of these values with the means; as far as they were fitted."""
@@ -107,7 +125,8 @@ def radius(values: Mapping[str, Any], at: RollingParts, channel: str) -> Any:
 def vertical_coefficients(values: Mapping[str, Any], points: Points, held: Collection[str] = ()) -> Vertical:
     """Vertical stiffness, free radius and rolling radius of the file that fit the readings, with standard uncertainties.
 
-    The stiffness comes first, from the loaded radius: DREFF, BREFF and FREFF appear only over it. Coefficients ``held``, by hand
+    The stiffness comes first, from the loaded radius: DREFF, BREFF and FREFF appear only over it, and a zero of one reading does
+    not distort what the other shows. The errors of the first fit are carried into the second. Coefficients ``held``, by hand
     or because they were measured, stay, and so does what too few loads, pressures or speeds show. What speed does and a single
     speed does not show is part of the uncertainties.
     """
@@ -115,63 +134,54 @@ def vertical_coefficients(values: Mapping[str, Any], points: Points, held: Colle
     if rolling is None:
         return Vertical()
     best = _best(values, rolling, held)
-    covariance = dict(best.covariance)
+    covariance = best.covariance
     for name, spread in OVER_SPEED.items():
-        if name in best.found or name in held:
+        if name in best.numbers or name in held:
             continue
         known = float(values[name])
         change = float(constants.SIMILAR_TYRES_SPREAD) * abs(known) or float(spread)
         other = _best({**values, name: known + change}, rolling, {*held, *OVER_SPEED})
-        for channel, (names, matrix) in covariance.items():
-            moved = [other.found[n].value - best.found[n].value if n in best.found else 0.0 for n in names]
-            covariance[channel] = names, matrix + np.outer(moved, moved)
-    u = {name: u for of in covariance.values() for name, u in _standard(of).items()}
-    return replace(
-        best, found={name: q._replace(u=u[name]) for name, q in best.found.items()}, covariance=covariance
-    )
+        moved = [other.numbers.get(n, x) - x for n, x in best.numbers.items()]
+        covariance = covariance + np.outer(moved, moved)
+    return replace(best, covariance=covariance)
 
 
 def _best(values: Mapping[str, Any], rolling: RollingParts, held: Collection[str]) -> Vertical:
-    """The coefficients that fit the readings; coefficients over speed that are not found are exact here."""
+    """The numbers that fit the readings; coefficients over speed that are not found are exact here."""
     nominal = float(values["NOMPRES"])
     loads = levels.count(rolling.Fz, levels.LOAD)
     pressures = levels.count(rolling.p, levels.PRESSURE)
     speeds = levels.count(rolling.V, levels.SPEED)
     dpi = rolling.p / nominal - 1.0
-    known: dict[str, Any] = {**values, GROWTH: 0.0, LEAN: 0.0}
-    found: dict[str, Quantity] = {}
-    rms: dict[str, float] = {}
-    covariance: dict[str, tuple[tuple[str, ...], np.ndarray]] = {}
-    beside = [GROWTH] if pressures > 1 else []
-    lean = [LEAN] if levels.count(np.abs(rolling.gamma), levels.CAMBER) > 1 else []
+    known: dict[str, Any] = {**values, GROWTH: 0.0, **dict.fromkeys(LEAN.values(), 0.0)}
+    fits: dict[str, _OfRadius] = {}
+    growth = [GROWTH] if pressures > 1 else []
+    leant = levels.count(np.abs(rolling.gamma), levels.CAMBER) > 1
     if np.any(np.isfinite(rolling.loaded)) and loads > 1:
         names = ["VERTICAL_STIFFNESS", "Q_RE0"] + (["Q_FZ2"] if loads > 2 else [])
         names += (["PFZ1"] if pressures > 1 else []) + (list(OVER_SPEED) if speeds > 1 else [])
         names = [name for name in names if name not in held]
         known |= {name: 0.0 for name in ("Q_FZ2", "PFZ1") if name in names}
         known["VERTICAL_STIFFNESS"] = _stiffness(rolling)
-        here, covariance["RL"], rms["RL"] = _fitted([*names, *beside, *lean], known, rolling, "RL", dpi)
-        u = _standard(covariance["RL"])
-        known |= {**here, LEAN: 0.0}
-        found |= {name: Quantity(here[name], u[name], BY_NAME[name].unit) for name in names}
-        beside = []
+        names += [*growth, *([LEAN["RL"]] if leant else [])]
+        fits["RL"] = _fitted(names, (), known, rolling, "RL", dpi)
+        known |= fits["RL"].values
+        growth = []
     if np.any(np.isfinite(rolling.effective)) and loads > 1:
-        names = [] if found else ["Q_RE0", *(["Q_V1"] if speeds > 1 else [])]
+        names = [] if fits else ["Q_RE0", *(["Q_V1"] if speeds > 1 else [])]
         names += ["DREFF", "FREFF", "BREFF"][: loads - 1]
         names = [name for name in names if name not in held]
-        here, covariance["omega"], rms["omega"] = _fitted(
-            [*names, *beside, *lean], known, rolling, "omega", dpi
-        )
-        u = _standard(covariance["omega"])
-        known |= here
-        found |= {name: Quantity(here[name], u[name], BY_NAME[name].unit) for name in names}
-    return Vertical(found, known[GROWTH], rms, covariance, rolling)
-
-
-def _standard(covariance: tuple[tuple[str, ...], np.ndarray]) -> dict[str, float]:
-    """Standard uncertainty by name."""
-    names, matrix = covariance
-    return dict(zip(names, np.sqrt(np.diag(matrix)).tolist(), strict=True))
+        names += [*growth, *([LEAN["omega"]] if leant else [])]
+        before = [name for fit in fits.values() for name in fit.values]
+        fits["omega"] = _fitted(names, before, known, rolling, "omega", dpi)
+        known |= fits["omega"].values
+    covariance = np.zeros((0, 0))
+    for fit in fits.values():  # an error of what was fitted before moves the rest
+        across = fit.moved @ covariance
+        own = fit.covariance + across @ fit.moved.T
+        covariance = np.block([[covariance, across.T], [across, own]])
+    numbers = {name: x for fit in fits.values() for name, x in fit.values.items()}
+    return Vertical(numbers, covariance, {c: fit.rms for c, fit in fits.items()}, rolling)
 
 
 def _rolling(points: Points) -> RollingParts | None:
@@ -202,14 +212,24 @@ def _stiffness(rolling: RollingParts) -> float:
     return 1.0 / max(-slope, 1e-7)
 
 
+class _OfRadius(NamedTuple):
+    """The fit of one radius."""
+
+    values: dict[str, float]  #: (k,)
+    covariance: np.ndarray  #: (k, k) from the misfit; what was fitted before counts as exact
+    moved: np.ndarray  #: (k, b) derivatives of the numbers by those that were fitted before
+    rms: float  #: [m]
+
+
 def _fitted(
     names: Sequence[str],
+    before: Sequence[str],
     values: Mapping[str, Any],
     rolling: RollingParts,
     channel: str,
     dpi: np.ndarray,
-) -> tuple[dict[str, float], tuple[tuple[str, ...], np.ndarray], float]:
-    """Best values, names and covariance from the misfit, and its rms [m]."""
+) -> _OfRadius:
+    """The best values of the named numbers, beside those that were fitted ``before``."""
     known = np.isfinite(rolling.radius(channel))
     rolling, dpi = rolling.select(known), dpi[known]
     measured = rolling.radius(channel)
@@ -221,19 +241,26 @@ def _fitted(
         "VERTICAL_STIFFNESS": (0.2 * stiffness, 5.0 * stiffness),
         "Q_FZ2": (-relative, 0.2 * relative),
     }
-    numbers = [FreeNumber(name, float(values.get(name, 0.0)), *bounds[name]) for name in names]
+    numbers = [FreeNumber(name, float(values[name]), *bounds[name]) for name in names]
 
     def radius_of(free: Mapping[str, Any]) -> Any:
         every = {**values, **free}
         with np.errstate(invalid="ignore"):
             found = radius(every, rolling, channel)
-        return found + free_radius * (every[GROWTH] * dpi + every[LEAN] * rolling.gamma**2)
+        return found + free_radius * (every[GROWTH] * dpi + every[LEAN[channel]] * rolling.gamma**2)
 
     end = solve(of_model(radius_of, names, measured, unit), numbers, tolerance=1e-9)
     freedom = max(len(measured) - len(names), 1)
     scale = float(end.data @ end.data) / freedom
-    covariance = end.covariance * scale if names else np.zeros((0, 0))
-    return dict(end.values), (tuple(names), covariance), unit * math.sqrt(float(np.mean(end.data**2)))
+    values = {**values, **end.values}
+    at = np.array([float(values[name]) for name in before])
+    slope = of_model(radius_of, before, measured, unit).linear(at).slope
+    return _OfRadius(
+        values=dict(end.values),
+        covariance=end.covariance * scale,
+        moved=-end.covariance @ end.jacobian.T @ slope,
+        rms=unit * rms(end.data),
+    )
 
 
 def vertical_sentence(found: Vertical) -> str:
@@ -241,7 +268,7 @@ def vertical_sentence(found: Vertical) -> str:
     if not found.found:
         return ""
     sources = {"RL": "loaded radius", "omega": "wheel speed"}
-    misfit = " and ".join(f"{1e3 * rms:.1f} mm ({sources[name]})" for name, rms in found.rms.items())
+    misfit = " and ".join(f"{1e3 * x:.1f} mm ({sources[name]})" for name, x in found.rms.items())
     numbers = ", ".join(f"{name} {to_uncertainty(q.value, q.u)}" for name, q in found.found.items())
     grown = (
         f" The free radius grows by {1e3 * found.growth:.1f} thousandths over one nominal pressure, which the file cannot say."

@@ -169,6 +169,8 @@ def _members(config: Config, fitted: FitResult, count: int, annotated: Annotate)
     assert fitted.search is not None
     for i, values in enumerate(fitting.ensemble(fitted.search, count), 1):
         random = np.random.default_rng((i, count))
+        for beside in fitted.beside:
+            values = values | beside.drawn({**best.values, **values}, best.values, random)
         if fitted.lent is not None:
             values = values | fitted.lent.drawn({**best.values, **values}, random)
         for other in fitted.joined:

@@ -42,7 +42,7 @@ def radii(view: BuildView) -> Sheet:
 def _panel(
     view: BuildView, rolling: RollingParts, channel: str, pressure: np.ndarray, colours: dict[float, str]
 ) -> Panel:
-    names, covariance = view.radii.covariance[channel]
+    known = Posterior(tuple(view.radii.numbers), view.radii.covariance)
     series: list[Band | Trace] = []
     read, steps = rolling.radius(channel), constants.STEPS_OF_MODEL_LINE
     speed = float(np.median(rolling.V))
@@ -63,7 +63,7 @@ def _panel(
         def of(tyre: Any, at: RollingParts = at) -> Any:
             return radius(vars(tyre), at, channel)
 
-        line, half = with_band(view.model.values, Posterior(names, covariance), of)
+        line, half = with_band(view.model.values, known, of)
         name, mm = CONDITIONS["p_kPa"].of(p / 1e3), MILLIMETRES
         series += [
             *banded(name, load, mm * line, mm * half, replace(LINE, colour=colour), f"file, {name}"),

@@ -66,6 +66,25 @@ def test_one_load_determines_the_stiffness_only(campaign, truth):
     }
 
 
+def test_the_stiffness_follows_the_cornering_stiffness_of_the_fit(campaign, truth):
+    """A relaxation length is cornering stiffness over carcass stiffness: 5 % in PKY1 are 5 % in LATERAL_STIFFNESS."""
+    one = read(campaign).steps
+    one = one.select(one.sweep == 1)
+    u = 0.05 * abs(truth["PKY1"])
+    found = relaxation(one, Simulation.of(truth, turn_slip=False), Posterior(("PKY1",), np.array([[u**2]])))
+    alone = relaxation(one, Simulation.of(truth, turn_slip=False), NONE_KNOWN)
+    q = found.found["LATERAL_STIFFNESS"]
+    own = alone.found["LATERAL_STIFFNESS"].u
+    assert q.u == pytest.approx(np.hypot(own, 0.05 * q.value), rel=1e-3)
+    joint = Posterior(("PKY1",), np.array([[u**2]])).with_numbers(found.beside)
+    assert joint.stderr["LATERAL_STIFFNESS"] == pytest.approx(q.u)
+    best, random = {"PKY1": truth["PKY1"]}, np.random.default_rng(2)
+    drawn = [found.beside.drawn({"PKY1": 1.1 * truth["PKY1"]}, best, random) for _ in range(300)]
+    stiffness = np.array([row["LATERAL_STIFFNESS"] for row in drawn])
+    assert np.mean(stiffness) == pytest.approx(1.1 * q.value, abs=4.0 * own / np.sqrt(300))
+    assert np.std(stiffness) == pytest.approx(own, rel=0.15)
+
+
 def test_steps_that_take_long_are_no_steps(campaign):
     """The same recordings with a steering that takes a second, one metre of rolling, from angle to angle."""
     series = [sweep for sweep in load(campaign).sweeps if sweep.is_series]

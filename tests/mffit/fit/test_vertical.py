@@ -21,7 +21,11 @@ VALUES = dict(tir.Tyre.from_values({}).values) | {
 
 
 def rolling(
-    loads=(1000.0, 2500.0, 4000.0, 6000.0, 8000.0), pressures=(150e3, 200e3, 250e3), noise=2e-5
+    loads=(1000.0, 2500.0, 4000.0, 6000.0, 8000.0),
+    pressures=(150e3, 200e3, 250e3),
+    noise=2e-5,
+    noise_of_RL=2e-5,
+    seed=5,
 ) -> Points:
     """Readings of the upright wheel: the root of a quadratic for the deflection, and the rolling radius over it."""
     Fz, p = (x.ravel() for x in np.meshgrid(loads, pressures))
@@ -30,13 +34,13 @@ def rolling(
     share = Fz / FNOMIN / (1.0 + PFZ1 * dpi)
     x = np.array([np.roots([Q_FZ2, q1, -s]).max() for s in share])
     free = R0 * (Q_RE0 + GROWTH * dpi)
-    draw = np.random.default_rng(5)
+    draw = np.random.default_rng(seed)
     scale = FNOMIN / STIFFNESS / (1.0 + PFZ1 * dpi)
     Re = free - scale * (DREFF * np.arctan(BREFF * Fz / FNOMIN) + FREFF * Fz / FNOMIN)
     Re = Re + noise * draw.standard_normal(len(Fz))
     return make_points(
         0.0, 0.0, Fz, p=p, V=16.0, phi_t=0.0, sweep=np.arange(len(Fz)), sweep_names=[f"run {k}" for k in range(len(Fz))],
-        Fy=0.0, RL=free - R0 * x + noise * draw.standard_normal(len(Fz)), omega=1.01 * 16.0 / Re, kappa=0.01,
+        Fy=0.0, RL=free - R0 * x + noise_of_RL * draw.standard_normal(len(Fz)), omega=1.01 * 16.0 / Re, kappa=0.01,
     )  # fmt: skip
 
 
@@ -75,6 +79,20 @@ def test_stiffness_and_radii_are_recovered_with_their_errors():
     for agreement in found.agreement(file).values():
         assert agreement.n == 15
         assert agreement.rmse == pytest.approx(R0 * GROWTH * 0.25 * np.sqrt(2.0 / 3.0), rel=0.05)
+
+
+def test_errors_of_the_loaded_radius_are_carried_into_the_rolling_radius():
+    """The free radius comes from the loaded one, so DREFF takes up its error."""
+    pulls = []
+    for seed in range(8):
+        found = vertical_coefficients(VALUES, rolling(noise=1e-5, noise_of_RL=2e-4, seed=seed))
+        q = found.found["DREFF"]
+        pulls.append((q.value - DREFF) / q.u)
+        names = list(found.beside.values)
+        i, j = names.index("Q_RE0"), names.index("DREFF")
+        covariance = found.beside.covariance
+        assert covariance[i, j] > 0.3 * np.sqrt(covariance[i, i] * covariance[j, j])
+    assert 0.3 < np.sqrt(np.mean(np.square(pulls))) < 1.8
 
 
 def test_what_few_loads_and_pressures_do_not_show_stays():
