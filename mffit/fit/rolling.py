@@ -128,11 +128,11 @@ def rolling_resistance(
     information = end.jacobian.T @ end.jacobian / scale**2 + np.diag(end.prior)
     u = np.sqrt(np.diag(inverse(information)))
     stderr = dict(zip(end.names, u.tolist(), strict=True))
-    decided = {n.name for n in numbers if stderr[n.name] > constants.FITTED_SHARE_OF_PRIOR * n.spread}
+    of_prior = {n.name for n in numbers if stderr[n.name] > constants.FITTED_SHARE_OF_PRIOR * n.spread}
     return Resistance(
         found={name: Quantity(end.values[name], stderr[name], "-") for name in names},
-        regularised=frozenset(decided.intersection(names)),
-        zeros={n: (end.values[n], stderr[n]) for n in own.values() if n not in decided and zero.u > 0.0},
+        regularised=frozenset(of_prior.intersection(names)),
+        zeros={n: (end.values[n], stderr[n]) for n in own.values() if n not in of_prior and zero.u > 0.0},
     )
 
 
