@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import replace
 from types import MappingProxyType
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from tir.errors import Problem, TirError
 
@@ -39,6 +40,15 @@ def terms_of(tyre: Tyre) -> dict[str, Quantity]:
     return {name: tyre.measured[RIG + name] for name in SCALED_BY if RIG + name in tyre.measured}
 
 
+def factors_at(terms: Mapping[str, Quantity], warmer: Any) -> dict[str, Any]:
+    """By scaling factor, the number that multiplies it ``warmer`` kelvin above the reference temperature."""
+    found: dict[str, Any] = {}
+    for name, term in terms.items():
+        rise = warmer**2 if name in CURVED_BY.values() else warmer
+        found[SCALED_BY[name]] = found.get(SCALED_BY[name], 1.0) + term.value * rise
+    return found
+
+
 def at_temperature(tyre: Tyre, T_degC: float) -> Tyre:
     """The tyre at a temperature [degC]; see :meth:`tir.Tyre.at_temperature`."""
     terms = terms_of(tyre)
@@ -50,7 +60,7 @@ def at_temperature(tyre: Tyre, T_degC: float) -> Tyre:
         )
     T_degC = float(T_degC)
     warmer = T_degC - tyre.measured[REFERENCE].value
-    factors, stated = {}, {}
+    factors, stated = factors_at(terms, warmer), {}
     for name in SCALED_BY.keys() - CURVED_BY.values():
         linear, curved = terms.get(name), terms.get(CURVED_BY.get(name, ""))
         if linear is None and curved is None:
@@ -58,7 +68,7 @@ def at_temperature(tyre: Tyre, T_degC: float) -> Tyre:
         (k, u_k), (k2, u_k2) = (
             (0.0, 0.0) if term is None else (term.value, term.u) for term in (linear, curved)
         )
-        factor = factors[SCALED_BY[name]] = 1.0 + k * warmer + k2 * warmer**2
+        factor = factors[SCALED_BY[name]]
         if not factor > 0.0:
             raise TirError(
                 f"at {T_degC:g} degC the temperature terms leave no friction or stiffness; use them near their range"

@@ -9,7 +9,7 @@ from tir.codegen.graph import PARAMETER, Graph
 from tir.codegen.program import NUMBERS, Program, Switches, trace
 from tir.errors import TirError
 from tir.parameters import TABLE
-from tir.temperature import REFERENCE, SCALED_BY, terms_of
+from tir.temperature import REFERENCE, factors_at, terms_of
 
 if TYPE_CHECKING:
     from tir.tyre import Tyre
@@ -74,9 +74,5 @@ def warm(tyre: Tyre, p: dict[str, Any], graph: Graph) -> None:
     if not terms:
         return
     warmer = graph.symbol(TEMPERATURE, PARAMETER) - tyre.measured[REFERENCE].value
-    factors: dict[str, Any] = {}
-    for name, term in terms.items():
-        power = 2 if name.endswith("K2") else 1
-        factors[SCALED_BY[name]] = factors.get(SCALED_BY[name], 1.0) + term.value * warmer**power
-    for name, factor in factors.items():
+    for name, factor in factors_at(terms, warmer).items():
         p[name] = p[name] * factor

@@ -85,7 +85,9 @@ SISTER_LOADS_AROUND_ONE = Real(
     0.2, "-", "Relative distance from a single tested load over which they are compared instead."
 )
 SISTER_SLIP = Real(
-    0.1, "-", "Longitudinal slip over which a drawn tyre keeps the limits of Fx: about that of the peak."
+    0.1,
+    "-",
+    "Longitudinal slip, about that of the peak, up to which the limits of Fx are checked for a drawn tyre.",
 )
 SISTER_SHARES_OF_A_DRAW = Series(
     (1.0, 0.5, 0.25, 0.125, 0.0),

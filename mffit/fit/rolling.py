@@ -134,13 +134,13 @@ def rolling_resistance(
     information = end.jacobian.T @ end.jacobian / scale**2 + np.diag(end.prior)
     covariance = inverse(information)
     stderr = dict(zip(end.names, np.sqrt(np.diag(covariance)).tolist(), strict=True))
-    decided = {n.name for n in numbers if stderr[n.name] > constants.FITTED_SHARE_OF_PRIOR * n.spread}
+    of_prior = {n.name for n in numbers if stderr[n.name] > constants.FITTED_SHARE_OF_PRIOR * n.spread}
     return Resistance(
         beside=BesideNumbers(
             {name: end.values[name] for name in names}, covariance[: len(names), : len(names)]
         ),
-        regularised=frozenset(decided.intersection(names)),
-        zeros={n: (end.values[n], stderr[n]) for n in own.values() if n not in decided and zero.u > 0.0},
+        regularised=frozenset(of_prior.intersection(names)),
+        zeros={n: (end.values[n], stderr[n]) for n in own.values() if n not in of_prior and zero.u > 0.0},
     )
 
 

@@ -189,8 +189,8 @@ OVERTURNING_ZERO = _zero_of(
         Appearance(
             id="loadcell-offset-mx",
             name="load-cell zero of Mx",
-            physics="The overturning moment reads a constant beside that of the tyre, from the zero of its cell or from a wheel "
-            "beside the middle of the rig.",
+            physics="The reading of the overturning moment has a constant offset: its load cell has a wrong zero, or the wheel "
+            "is not centred in the rig.",
             parity="even in alpha and gamma, the same at every load",
             needs=("overturning",),
             confusable_with=("overturning-offset",),

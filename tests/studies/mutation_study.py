@@ -52,6 +52,7 @@ TESTS: dict[str, tuple[str, ...]] = {
         f"{SUITE}/config", f"{SUITE}/virtual_rig/test_virtual_plan.py", BAD_INPUT,
         f"{SUITE}/suspicion/test_declarations.py", f"{SUITE}/recordings/test_unstated_units.py", COMMANDS,
     ),
+    "mffit/conversion": (f"{SUITE}/conversion",),
     "mffit/diagnosis": (
         *(f"{DIAGNOSIS}/test_{name}.py" for name in (
             "selection", "steps", "wording", "places", "thresholds", "conditions", "explain", "scatter", "evidence",
@@ -104,6 +105,9 @@ TESTS: dict[str, tuple[str, ...]] = {
     "mffit/sweeps": (
         *(f"{SUITE}/sweeps/test_sweeps_{name}.py" for name in ("channels", "files", "frames", "formats", "fuzz")),
         BAD_INPUT, CORPUS, f"{SUITE}/test_readers_fuzz.py", f"{SUITE}/recordings", POINTS, COMMANDS,
+    ),
+    "mffit/window": (
+        *(f"{SUITE}/window/test_window_{name}.py" for name in ("edits", "folder", "server")),
     ),
     "mffit/virtual_rig": (
         f"{SUITE}/virtual_rig", f"{SUITE}/rig", "tests/test_samples.py", COMMANDS,

@@ -14,6 +14,7 @@ import tir
 from mffit import config as configuration
 from mffit.cli import main
 from mffit.conversion import convert, is_old, mf52, read_old
+from mffit.conversion.grid import conditions
 from mffit.errors import InputError
 from mffit.pipeline.inputs import read_base
 
@@ -44,6 +45,7 @@ def test_the_old_forces_are_those_of_public_programs():
     wanted = np.array([*PUBLISHED.values()]).T
     for name, column in zip(("Fx", "Fy", "Mz"), wanted, strict=True):
         np.testing.assert_allclose(getattr(found, name), column, rtol=1e-8, atol=2e-6, err_msg=name)
+    assert mf52.forces(p, 4000.0).Fy == pytest.approx(PUBLISHED[4000.0, 0.0, 0.0, 0.0][1])
 
 
 def test_the_new_file_has_the_old_forces(converted, tmp_path):
@@ -62,6 +64,34 @@ def test_the_new_file_has_the_old_forces(converted, tmp_path):
         off = np.abs(new.Mz - old.Mz) / np.max(np.abs(old.Mz))
         assert np.mean(off < 0.02) > 0.95
     assert not converted.poor
+
+
+def test_the_misfit_is_stated_by_region(converted):
+    """The region without slip and within 5 deg of camber, computed from forces of both formulae at its conditions."""
+    at = conditions(converted.reach)
+    here = (np.abs(at.gamma) <= np.radians(5.0) + 1e-9) & (at.kappa == 0.0)
+    Fz, alpha, gamma, _ = (x[here] for x in at)
+    old = mf52.forces(mf52.in_terms_of_62(read_old(OLD).values), Fz, alpha, gamma).Mz
+    off = converted.tyre(Fz, alpha, gamma).Mz - old
+    (row,) = (r for r in converted.misfit if (r.channel, r.small_camber, r.slipping) == ("Mz", True, False))
+    assert row.largest == pytest.approx(np.max(np.abs(off)), rel=1e-6)
+    assert row.rms == pytest.approx(np.sqrt(np.mean(off**2)), rel=1e-6)
+
+
+def test_the_grid_reaches_the_ends_on_both_sides_and_weights_small_camber_most(converted):
+    reach, at = converted.reach, conditions(converted.reach)
+    for name in ("alpha", "gamma", "kappa"):
+        values = np.unique(getattr(at, name))
+        np.testing.assert_allclose(values, -values[::-1], atol=1e-12)
+        assert values[-1] == pytest.approx(getattr(reach, name))
+    small = np.abs(at.gamma) < np.radians(5.0)
+    assert np.all(at.weight[small] == 1.0)
+    assert np.all(at.weight[np.abs(at.gamma) > np.radians(5.1)] < 1.0)
+
+
+def test_rolling_resistance_does_not_depend_on_pressure_as_in_the_old_formula(converted):
+    My = [converted.tyre(4000.0, p=p).My for p in (1.0e5, 2.0e5)]
+    assert My[0] == pytest.approx(My[1], rel=1e-12)
 
 
 def test_relaxation_lengths_and_radius_are_kept(converted):
@@ -105,6 +135,7 @@ def test_units_are_those_of_the_file(tmp_path):
     ("mangled", "said"),
     [
         (TEXT.replace("= 6  ", "= 52 "), "old formula for motorcycles"),
+        (TEXT.replace("= 6  ", "= 51 "), "old formula for motorcycles"),
         (TEXT.replace("= 6  ", "= 61 "), "needs no conversion"),
         (re.sub(r"FITTYP.*\n|PROPERTY_FILE_FORMAT.*\n", "", TEXT), "states no FITTYP of MF 5.2"),
         (re.sub(r"FNOMIN.*\n", "", TEXT), "lacks FNOMIN"),

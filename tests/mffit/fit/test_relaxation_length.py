@@ -12,7 +12,7 @@ from scipy.ndimage import uniform_filter1d
 import tir
 from mffit import config as configuration
 from mffit.fit.posterior import Posterior
-from mffit.fit.relaxation import RUN, relaxation
+from mffit.fit.relaxation import RUN, relaxation, relaxation_sentence
 from mffit.points.loading import read
 from mffit.points.steps import steps
 from mffit.rig import Simulation
@@ -99,3 +99,10 @@ def test_without_steps_the_result_says_what_to_run(truth):
     assert not nothing.coverage.supported
     assert nothing.coverage.missing == (RUN,)
     assert not nothing.found
+    assert relaxation_sentence(nothing) == ""
+
+
+def test_the_sentence_gives_every_length_with_its_load(found):
+    run = found.runs[0]
+    said = f"{1e3 * run.length.value:.0f} +- {1e3 * run.length.u:.0f} mm at {run.load:.0f} N, "
+    assert said in relaxation_sentence(found)

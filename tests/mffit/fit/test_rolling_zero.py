@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -36,6 +38,14 @@ def test_all_terms_are_recovered_beside_a_zero_of_the_rig():
     value, u = result.zeros["My0_Nm"]
     assert value == pytest.approx(ZERO, abs=3.0 * u)
     assert u < 0.5
+
+
+def test_every_set_up_has_a_zero_of_its_own():
+    points = rolling(setups=("one", "two"), setup=np.arange(36) % 2)
+    points = replace(points, My=points.My + np.where(points.setup == 1, 2.0, 0.0))
+    zeros = rolling_resistance(VALUES, points, Declaration(0.0, 5.0)).zeros
+    assert list(zeros) == ["My0_Nm@one", "My0_Nm@two"]
+    assert zeros["My0_Nm@two"][0] - zeros["My0_Nm@one"][0] == pytest.approx(2.0, abs=0.1)
 
 
 def test_one_load_does_not_separate_the_zero_and_the_uncertainty_says_so():

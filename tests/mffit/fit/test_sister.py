@@ -15,6 +15,7 @@ import mffit
 import tir
 from mffit.errors import InputError
 from mffit.fit.at_nominal import at_nominal
+from mffit.fit.sister import LENT, Sister, _scaled
 from mffit.report.build_view import view_of
 from mffit.report.drawing.records import Band
 from mffit.report.figures.sister import borrowed_force
@@ -86,6 +87,19 @@ def test_forces_at_all_slips_are_those_of_the_tyre_itself(built, truth):
     found, expected = (t(Fz, alpha, 0.0, kappa, turn_slip=False) for t in (built[0].tyre, truth))
     assert np.sqrt(np.mean((found.Fx - expected.Fx) ** 2)) < 0.01 * np.sqrt(np.mean(expected.Fx**2))
     assert np.sqrt(np.mean((found.Fy - expected.Fy) ** 2)) < 0.02 * np.sqrt(np.mean(expected.Fy**2))
+
+
+def test_longitudinal_friction_follows_the_ratio_of_lateral_frictions_over_load(truth):
+    """PDX1 and PDX2 are the line through the sister's friction times that ratio at every load."""
+    other = truth.replace(PDY1=1.1 * truth["PDY1"], PDY2=truth["PDY2"] - 0.2)
+    loads = np.linspace(2000.0, 6500.0, 9)
+    sister = Sister("sister.tir", truth, 0.05, 0.25, loads, 240e3, None)
+    found = _scaled(other.values, {name: truth[name] for name in LENT}, sister).values
+    dfz = loads / 4200.0 - 1.0
+    ratio = (other["PDY1"] + other["PDY2"] * dfz) / (truth["PDY1"] + truth["PDY2"] * dfz)
+    slope, middle = np.polyfit(dfz, (truth["PDX1"] + truth["PDX2"] * dfz) * ratio, 1)
+    assert (found["PDX1"], found["PDX2"]) == pytest.approx((middle, slope))
+    assert found["PKX1"] == pytest.approx(truth["PKX1"])
 
 
 def test_every_borrowed_coefficient_says_where_it_comes_from(built, truth):

@@ -23,6 +23,20 @@ def test_few_readings_near_zero_that_contradict_the_whole_curve_name_no_sign():
     assert slip_zero(readings(0.05)).slope > 0.0
 
 
+def test_the_zero_follows_load_camber_pressure_and_sideslip():
+    """Slip against the loaded radius: its zero under every condition, found beside the compliance and despite outliers."""
+    rng = np.random.default_rng(8)
+    n = 600
+    load, gamma, p = rng.uniform(800.0, 2200.0, n), rng.uniform(0.0, 0.1, n), rng.uniform(200e3, 300e3, n)
+    alpha, force = rng.uniform(0.0, 0.1, n), rng.uniform(-0.3, 0.3, n)
+    zero = -0.02 - 1e-5 * (load - 1500.0) + 4e-8 * (p - 250e3) + 0.05 * gamma * load / 1500.0 - 0.03 * alpha
+    compliance = 0.05 + 2.0 * alpha**2
+    slip = zero + compliance * force
+    slip[::40] += 0.3
+    driven = Driven(slip, force * load, load, alpha, gamma, p, np.full(n, np.nan))
+    np.testing.assert_allclose(slip_zero(driven).at(driven), zero, atol=2e-4)
+
+
 def test_braking_that_is_positive_throughout_is_still_found():
     driven = readings(0.05)
     assert slip_zero(driven._replace(slip=-driven.slip)).slope < 0.0
