@@ -30,7 +30,7 @@ def coefficient_rows(result: BuildResult, used: Iterable[str]) -> list[dict[str,
     result : of the build
     used : parameters of the page's model
     """
-    moved = movers(result.fit)
+    moved = {**beside_the_search(result.fit), **movers(result.fit)}
     names = set(used)
     rows = [row for row in TABLE if row.name in names and _settable(row)]
     return [_row(row, result.fit, moved.get(row.name, [])) for row in rows]
@@ -63,6 +63,17 @@ def movers(fitted: FitResult) -> dict[str, list[str]]:
         channels = {c: float(information[c][:, k].sum() / total[k]) for c in information}
         out[name] = [*_channels(channels), *words]
     return out
+
+
+def beside_the_search(fitted: FitResult) -> dict[str, list[str]]:
+    """By coefficient that is fitted by itself, after the search, the channel that determines it, in words."""
+    found = {row.name: row.channel for row in TABLE if row.channel in CHANNELS}
+    found |= {name: channel for channel, (names, _) in fitted.radii.covariance.items() for name in names}
+    return {
+        name: [CHANNELS[channel].ascii]
+        for name, channel in found.items()
+        if name in fitted.coefficients and fitted.coefficients[name].status == "fitted"
+    }
 
 
 def _weighted_slopes(search: Fitted, names: Sequence[str]) -> dict[str, np.ndarray]:

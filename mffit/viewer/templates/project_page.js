@@ -368,14 +368,15 @@ window.mffit = {
   chosen: () => chosen,
   left: () => [...left],
   visible: () => visible,
+  redraw: frame,
   choose,
   chooseAll,
   show: showProject,
   place: (panel, i) => { const p = state.panels[panel].places; return [p.X(p.px[i]), p.Y(p.py[i])]; },
   // What the curve of a point in a picture is at its place, in SI; null without a curve.
   onCurve: (panel, i) => {
-    const {x, y} = state.panels[panel], group = groupsOver(x).find(one => one.members.includes(i));
-    return group ? evaluated(models, group, columns[x][i])[y] : null;
+    const {x, y} = state.panels[panel], group = groupsOver(parameterOf(x, y)).find(one => one.members.includes(i));
+    return group ? evaluated(models, group, columns[parameterOf(x, y)][i])[y] : null;
   },
   shown: panel => { const p = state.panels[panel].places; return [[...p.px], [...p.py]]; },
   // Milliseconds of each of n frames in which a slider moves: computing and drawing.

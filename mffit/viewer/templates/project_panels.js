@@ -71,9 +71,8 @@ function placed(panel) {
   const residual = panel.y.startsWith(RESIDUAL), y = residual ? panel.y.slice(RESIDUAL.length) : panel.y;
   const source = state.reading === "read" ? columns.read : columns;
   const X = source[panel.x] || columns[panel.x], n = columns.count;
-  const over = project.order.includes(panel.x) && channels.includes(y) ? groupsOver(panel.x) : [];
+  const along = channels.includes(y) ? parameterOf(panel.x, y) : null, over = along ? groupsOver(along) : [];
   const sx = quantity(panel.x).si, sy = quantity(y).si, px = new Float64Array(n), py = new Float64Array(n);
-  const xModel = channels.includes(panel.x);
   for (let i = 0; i < n; i++) {
     px[i] = X[i] / sx;
     py[i] = residual ? (columns[y][i] - own[y][i]) / sy : (source[y] || columns[y])[i] / sy;
@@ -82,27 +81,36 @@ function placed(panel) {
   if (!residual && over.length) {
     for (const group of over) {
       if (state.reading === "curve") {
-        const shift = toTheCurve(group, panel.x, y);
-        group.members.forEach((i, k) => { py[i] += shift[k] / sy; });
+        for (const [name, places, size] of [[panel.x, px, sx], [y, py, sy]]) {
+          if (!channels.includes(name)) continue;
+          const shift = toTheCurve(group, along, name);
+          group.members.forEach((i, k) => { places[i] += shift[k] / size; });
+        }
       }
-      curves.push({group, y, sx, sy, from: group.from, to: group.to});
+      curves.push({group, x: panel.x, y, sx, sy, from: group.from, to: group.to});
     }
   }
-  return {px, py, curves, residual, y, xModel};
+  return {px, py, curves, residual, y};
+}
+// The input that runs along a curve: that of the axis; slip or sideslip where both axes are forces, as in a friction ellipse.
+function parameterOf(x, y) {
+  if (project.order.includes(x)) return x;
+  if (x === y || !channels.includes(x)) return null;
+  return [x, y].includes("Fx") && axisKnown("kappa") ? "kappa" : axisKnown("alpha") ? "alpha" : null;
 }
 // By how much the fitted model differs between a point's conditions and its curve's; sliders do not move the points.
 function toTheCurve(group, x, y) {
   return (group.shift ??= {})[y] ??= group.members.map(i => evaluated(fitModels, group, columns[x][i])[y] - fitOwn[y][i]);
 }
 function fixedCurve(by_mount, curve) {
-  const name = `${curve.y} ${by_mount === fitModels ? "fit" : "before"}`;
+  const name = `${curve.x} ${curve.y} ${by_mount === fitModels ? "fit" : "before"}`;
   return (curve.group.kept ??= {})[name] ??= curvePoints(by_mount, curve);
 }
 function curvePoints(by_mount, curve) {
   const points = [];
   for (let k = 0; k <= STEPS; k++) {
-    const x = curve.from + (curve.to - curve.from) * k / STEPS;
-    points.push([x / curve.sx, evaluated(by_mount, curve.group, x)[curve.y] / curve.sy]);
+    const at = curve.from + (curve.to - curve.from) * k / STEPS, forces = evaluated(by_mount, curve.group, at);
+    points.push([(curve.x in forces ? forces[curve.x] : at) / curve.sx, forces[curve.y] / curve.sy]);
   }
   return points;
 }
@@ -159,12 +167,18 @@ function limits(panel, shown, lines) {
     if (shown.py[i] > y1) y1 = shown.py[i];
   }
   if (x0 > x1) return {x: [0, 1], y: [-1, 1]};
-  for (const line of lines) for (const [, y] of line.now) if (Number.isFinite(y)) { y0 = Math.min(y0, y); y1 = Math.max(y1, y); }
+  for (const line of lines) {
+    for (const [x, y] of line.now) {
+      if (Number.isFinite(y)) { y0 = Math.min(y0, y); y1 = Math.max(y1, y); }
+      if (channels.includes(panel.x) && Number.isFinite(x)) { x0 = Math.min(x0, x); x1 = Math.max(x1, x); }
+    }
+  }
   if (shown.residual || shown.curves.length) { y0 = Math.min(y0, 0); y1 = Math.max(y1, 0); }
   const wide = ([low, high]) => high - low > 1e-12 ? [low - 0.03 * (high - low), high + 0.03 * (high - low)] : [low - 1, high + 1];
   let box = {x: wide([x0, x1]), y: wide([y0, y1])};
   if (panel.box && dragging) {  // axes only grow while a slider moves, so that the curve is seen to move
-    box = {x: box.x, y: [Math.min(box.y[0], panel.box.y[0]), Math.max(box.y[1], panel.box.y[1])]};
+    const grown = axis => [Math.min(box[axis][0], panel.box[axis][0]), Math.max(box[axis][1], panel.box[axis][1])];
+    box = {x: grown("x"), y: grown("y")};
   }
   return panel.box = box;
 }

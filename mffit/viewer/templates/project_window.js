@@ -71,7 +71,7 @@ extendRow = (row, keys, box) => {
     const entry = entryOf(row.name);
     free.hidden = entry === null;
     limits.hidden = !row.may_be_free;
-    start.hidden = !["fitted", "regularised"].includes(row.status) || held(entry);
+    start.hidden = !row.may_be_free || !["fitted", "regularised"].includes(row.status) || held(entry);
   };
   keys.refresh();
 };

@@ -85,6 +85,9 @@ def test_a_coefficient_is_moved_by_the_sweeps_that_show_it(result):
     assert moved["QBZ1"][0].startswith("M_z")
     assert moved["PDY1"][0].startswith("F_y")
     assert any(word.startswith(("sideslip", "coupled")) for word in moved["PDY1"])
+    rows = {row["name"]: row["moved_by"] for row in coefficient_rows(result, result.fit.coefficients)}
+    assert rows["PDY1"] == moved["PDY1"]
+    assert rows["QSY1"] == ["M_y"]  # of the freely rolling wheel, after the search
 
 
 def test_channels_beside_the_fit_have_the_misfit_of_the_file(result):
