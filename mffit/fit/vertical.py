@@ -42,6 +42,8 @@ OVER_SPEED = {"Q_V1": constants.RADIUS_GROWTH_OVER_SPEED, "Q_V2": constants.STIF
 """Coefficients of the radii that several speeds show, and the standard deviation of each among tyres."""
 
 
+OF_WHEEL_SPEED = ("DREFF", "FREFF", "BREFF")
+"""Coefficients of the rolling radius, in the order in which further loads determine them."""
 OF_RADII = ("VERTICAL_STIFFNESS", "Q_FZ2", *(name for name in BOUNDS if name in BY_NAME))
 """Every coefficient that radii may determine."""
 
@@ -169,7 +171,7 @@ def _best(values: Mapping[str, Any], rolling: RollingParts, held: Collection[str
         growth = []
     if np.any(np.isfinite(rolling.effective)) and loads > 1:
         names = [] if fits else ["Q_RE0", *(["Q_V1"] if speeds > 1 else [])]
-        names += ["DREFF", "FREFF", "BREFF"][: loads - 1]
+        names += OF_WHEEL_SPEED[: loads - 1]
         names = [name for name in names if name not in held]
         names += [*growth, *([LEAN["omega"]] if leant else [])]
         before = [name for fit in fits.values() for name in fit.values]

@@ -22,7 +22,7 @@ def errors_of_means(records: Sequence[np.ndarray]) -> np.ndarray:
     """
     found = [_mean_of(x) for x in records]
     errors = np.array([one.error for one in found])
-    known = np.flatnonzero(np.isfinite(errors) & (errors > 0.0))
+    known = np.flatnonzero(np.isfinite(errors) & (errors > 0.0)).tolist()
     if len(known) < 2:
         return errors
     n = np.array([len(records[k]) for k in known])

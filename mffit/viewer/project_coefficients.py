@@ -11,6 +11,7 @@ import numpy as np
 from mffit.config.by_hand import KEYS_OF_TYRE, may_be_free
 from mffit.fit import Coefficient, FitResult
 from mffit.fit.fitted import Fitted
+from mffit.fit.vertical import OF_WHEEL_SPEED
 from mffit.quantities import CHANNELS
 from mffit.results import BuildResult
 from mffit.viewer import constants
@@ -68,7 +69,7 @@ def movers(fitted: FitResult) -> dict[str, list[str]]:
 def beside_the_search(fitted: FitResult) -> dict[str, list[str]]:
     """By coefficient that is fitted by itself, after the search, the channel that determines it, in words."""
     found = {row.name: row.channel for row in TABLE if row.channel in CHANNELS}
-    found |= {name: channel for channel, (names, _) in fitted.radii.covariance.items() for name in names}
+    found |= {name: "omega" if name in OF_WHEEL_SPEED else "RL" for name in fitted.radii.found}
     return {
         name: [CHANNELS[channel].ascii]
         for name, channel in found.items()
