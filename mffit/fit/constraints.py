@@ -165,4 +165,7 @@ def _grid(envelope: Envelope) -> tuple[np.ndarray, ...]:
         np.linspace(-envelope.gamma, envelope.gamma, cambers if envelope.gamma > 0 else 1) + 0.0,
         np.linspace(low, high, pressures if high > low else 1),
     )
-    return tuple(axis.ravel() for axis in axes)
+    found = tuple(axis.ravel() for axis in axes)
+    for axis in found:
+        axis.setflags(write=False)
+    return found

@@ -50,13 +50,16 @@ def fit_with_nuisances(
     ``before_restarts`` is called before they are tried; it may refuse the data.
     """
 
+    staged: dict[bytes, Fitted] = {}  # fits to some of the points; restarts of the fit to all do not change them
+
     def extended(fitted: Fitted) -> NuisanceFit:
         choice = choose(config, fitted)
 
         def refit(rows: np.ndarray) -> Fitted:
-            part = problem.select(rows)
-            found = fit_staged(part, start, plan, silent, restarts=False)
-            return _polished(config, part, plan, choice, choice.modelled, found)
+            part, key = problem.select(rows), rows.tobytes()
+            if key not in staged:
+                staged[key] = fit_staged(part, start, plan, silent, restarts=False)
+            return _polished(config, part, plan, choice, choice.modelled, staged[key])
 
         if choice.modelled:
             progress(f"fitting again with {', '.join(nuisance.name for nuisance in choice.modelled)}")

@@ -33,7 +33,7 @@ normal_study = importlib.import_module("normal_study")
 @pytest.fixture(scope="module")
 def built(tmp_path_factory):
     out = tmp_path_factory.mktemp("front") / "out"
-    return mffit.build(SAMPLES / "front-120-70" / "tyre.toml", out), out
+    return mffit.build(SAMPLES / "front-120-70" / "tyre.toml", out, with_report=False), out
 
 
 @pytest.fixture(scope="module")
