@@ -58,6 +58,21 @@ class Remainder:
         """Changes (m,) or (m, j) without what the fitted numbers follow."""
         return x - self.axes @ (self.axes.T @ x)
 
+    def rows_of(self, k: int) -> np.ndarray:
+        """Rows of the readings of sweep ``k`` that count."""
+        rows = np.flatnonzero(self.sweep == k)
+        return rows[self.used[rows]]
+
+    def shrunk(self, rows: np.ndarray) -> np.ndarray:
+        """Information (k, k) about the directions without some rows, in units of the whole."""
+        A = self.axes[rows]
+        return (1.0 + constants.INFORMATION_LEFT) * np.eye(A.shape[1]) - A.T @ A
+
+    def predicting(self, rows: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Shares (k,) of some rows in the directions, and how far the fit moves (k,) along these without the rows."""
+        shared = self.axes[rows].T @ self.residual[rows]
+        return shared, np.linalg.solve(self.shrunk(rows), shared)
+
     def whitened(self, change: np.ndarray) -> np.ndarray:
         """Changes of the readings (c n, j) as rows (m, j) in units of the uncertainty."""
         rows = np.zeros((len(self.residual), change.shape[1]))
@@ -76,7 +91,8 @@ def remainder(fitted: Fitted) -> Remainder:
     """The remainder of a fit at its solution.
 
     Readings count with their stated uncertainty, or more if the misfit is larger; without one, with the misfit of their channel.
-    Outliers do not count. Coefficients that the fit held with a known spread are as uncertain as that.
+    Outliers do not count. Coefficients that the fit held with a known spread are as uncertain as that. Of very many points,
+    evenly spaced ones are examined as if they were all.
     """
     problem, noise = _weighted(fitted)
     numbers = [n for n in fitted.numbers if n.name not in fitted.at_bound]
@@ -85,9 +101,11 @@ def remainder(fitted: Fitted) -> Remainder:
     at = np.array([problem.value(name) for name in names])
     spread = np.array([*(n.spread for n in numbers), *(fitted.held[name] for name in held)])
     expected = np.array([*(n.expected for n in numbers), *at[len(numbers) :]])
-    linear = problem.free(names).linear(at)
-    before = -linear.data + linear.slope @ np.where(np.isfinite(spread), at - expected, 0.0)
-    axes = _axes(linear.slope, np.maximum(spread, 1e-300) ** -2.0)
+    every = -(-len(problem.points) // constants.MOST_POINTS_EXAMINED)
+    data, slope = problem.rows(names, every)
+    problem = problem.select(np.arange(0, len(problem.points), every))
+    before = -data + slope @ np.where(np.isfinite(spread), at - expected, 0.0)
+    axes = _axes(slope, np.maximum(spread, 1e-300) ** -2.0)
     free = frozenset(n.name for n in fitted.numbers if n.name in problem.simulation.values)
     priors = zip(names, zip(expected.tolist(), spread.tolist(), strict=True), strict=True)
     return Remainder(
@@ -103,22 +121,28 @@ def remainder(fitted: Fitted) -> Remainder:
     )
 
 
-def predicted_sweep(left: Remainder, k: int) -> tuple[float, dict[str, PredictedChannel]]:
-    """Chi-square by which sweep ``k`` contradicts its prediction from all others, and the prediction by channel."""
-    rows = np.flatnonzero(left.sweep == k)
-    rows = rows[left.used[rows]]
-    A = left.axes[rows]
-    shrunk = (1.0 + constants.INFORMATION_LEFT) * np.eye(A.shape[1]) - A.T @ A
+def contradiction(left: Remainder, k: int) -> float:
+    """Chi-square by which sweep ``k`` contradicts its prediction from all others."""
+    rows = left.rows_of(k)
+    r, (shared, step) = left.residual[rows], left.predicting(rows)
+    return float(r @ r + shared @ step)
+
+
+def predicted_sweep(left: Remainder, k: int, shown: np.ndarray) -> dict[str, PredictedChannel]:
+    """Some points (mask (n,)) of sweep ``k`` as all others predict them, by channel."""
+    rows = left.rows_of(k)
+    n, shrunk, step = len(left.points), left.shrunk(rows), left.predicting(rows)[1]
+    rows = rows[shown[rows % n]]
+    A, u = left.axes[rows], left.sigma[rows]
+    error = left.residual[rows] + A @ step
     covariance = np.eye(len(rows)) + A @ np.linalg.solve(shrunk, A.T)  # of the prediction's error
-    error = covariance @ left.residual[rows]
-    n, u = len(left.points), left.sigma[rows]
     out = {}
     for j, name in enumerate(left.channels):
         own = rows // n == j
         if own.any():
             scaled = covariance[np.ix_(own, own)] * u[own] * u[own][:, None]
             out[name] = PredictedChannel(error=-error[own] * u[own], covariance=scaled)
-    return float(left.residual[rows] @ error), out
+    return out
 
 
 def _axes(J: np.ndarray, precision: np.ndarray) -> np.ndarray:

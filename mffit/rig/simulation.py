@@ -124,12 +124,12 @@ class Simulation(Brief):
         """
         channels, n = _in_order(channels), len(points)
         found = self.in_blocks(points, names, channels)
-        rows, out, slopes = next(found)
-        if len(rows) == n:
-            return out, slopes
+        first = next(found)
+        if len(first[0]) == n:
+            return first[1:]
         whole = Readings(**{name: np.empty(n) for name in channels})
         by_number = Readings(**{name: np.empty((n, len(names))) for name in channels})
-        for rows, out, slopes in itertools.chain([(rows, out, slopes)], found):
+        for rows, out, slopes in itertools.chain([first], found):
             for name in channels:
                 whole[name][rows], by_number[name][rows] = out[name], slopes[name]
         return whole, by_number
