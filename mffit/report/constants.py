@@ -16,6 +16,9 @@ MOST_TICKS = Count(
 POINTS_PER_SERIES_IN_PAGE = Count(
     1000, "-", "Most points of a series in a page's table; more would slow the page."
 )
+POINTS_PER_SERIES_DRAWN = Count(
+    4000, "-", "Most points of a series in a picture: more lie on top of each other, and slow the page."
+)
 DIGITS_IN_TABLE = Count(6, "-", "Significant digits of the table behind a picture; no rig has more.")
 MOST_COLOUR_STEPS = Count(33, "-", "Colours of a map; white is one of them, and neighbours look alike.")
 

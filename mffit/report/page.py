@@ -12,8 +12,8 @@ from urllib.parse import quote
 
 from mffit import rounding
 from mffit.errors import shortened
-from mffit.report import making, numbers, typeset
-from mffit.report.drawing.records import Sheet
+from mffit.report import constants, making, numbers, typeset
+from mffit.report.drawing.records import Sheet, long, with_shorter_series
 from mffit.templates import environment
 
 if TYPE_CHECKING:
@@ -28,6 +28,7 @@ class PagePicture:
     drawing: str  #: its panels as HTML
     table: str  #: the numbers behind it, CSV
     left_out: int  #: panels that are not drawn
+    most: int = 0  #: points that are drawn of a longer series; 0: there is none
 
     @property
     def link(self) -> str:
@@ -54,10 +55,15 @@ def draw(folder: Path, figures: Mapping[str, Callable[[], Sheet]]) -> dict[str, 
     found = {}
     for name, make in figures.items():
         sheet = make()
-        picture = pictures.draw(sheet)
+        most = int(constants.POINTS_PER_SERIES_DRAWN)
+        picture = pictures.draw(with_shorter_series(sheet, most))
         picture.save(plots / f"{name}.png")
         found[name] = PagePicture(
-            name=name, drawing=picture.markup(), table=numbers.table(sheet), left_out=sheet.left_out
+            name=name,
+            drawing=picture.markup(),
+            table=numbers.table(sheet),
+            left_out=sheet.left_out,
+            most=most if long(sheet, most) else 0,
         )
     return found
 
