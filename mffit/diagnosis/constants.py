@@ -276,6 +276,12 @@ RAISED_GAP = Real(2.0, "-", "Standard deviations beyond chance above which a cha
 # What a fit leaves
 MISFIT_AT_NOISE = Real(1.2, "-", "Misfit over stated noise up to which the residuals count as noise.")
 INFORMATION_LEFT = Real(1e-9, "-", "Share of the information that keeps a matrix invertible.")
+MOST_POINTS_EXAMINED = Count(
+    40_000,
+    "-",
+    "Points whose residuals are examined, of more evenly spaced ones: a fiftieth of the noise still shows.",
+    "tests/benchmarks/scale.py",
+)
 ONE_STEP_FALSE_ALARM = Real(
     0.01, "-", "Chance that any effect looks significant in the residuals of a sound fit (Bonferroni)."
 )

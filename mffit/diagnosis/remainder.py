@@ -58,6 +58,15 @@ class Remainder:
         """Changes (m,) or (m, j) without what the fitted numbers follow."""
         return x - self.axes @ (self.axes.T @ x)
 
+    def rows_of(self, k: int) -> np.ndarray:
+        """Rows of the readings of sweep ``k`` that count."""
+        rows = np.flatnonzero(self.sweep == k)
+        return rows[self.used[rows]]
+
+    def without(self, rows: np.ndarray) -> np.ndarray:
+        """Covariance (k, k) of the directions from all but some rows, in units in which that of all is 1."""
+        return covariance_without(self.axes[rows], constants.INFORMATION_LEFT)
+
     def whitened(self, change: np.ndarray) -> np.ndarray:
         """Changes of the readings (c n, j) as rows (m, j) in units of the uncertainty."""
         rows = np.zeros((len(self.residual), change.shape[1]))
@@ -76,7 +85,8 @@ def remainder(fitted: Fitted) -> Remainder:
     """The remainder of a fit at its solution.
 
     Readings count with their stated uncertainty, or more if the misfit is larger; without one, with the misfit of their channel.
-    Outliers do not count. Coefficients that the fit held with a known spread are as uncertain as that.
+    Outliers do not count. Coefficients that the fit held with a known spread are as uncertain as that. Of very many points,
+    evenly spaced ones are examined as if they were all.
     """
     problem, noise = _weighted(fitted)
     numbers = [n for n in fitted.numbers if n.name not in fitted.at_bound]
@@ -85,9 +95,11 @@ def remainder(fitted: Fitted) -> Remainder:
     at = np.array([problem.value(name) for name in names])
     spread = np.array([*(n.spread for n in numbers), *(fitted.held[name] for name in held)])
     expected = np.array([*(n.expected for n in numbers), *at[len(numbers) :]])
-    linear = problem.free(names).linear(at)
-    before = -linear.data + linear.slope @ np.where(np.isfinite(spread), at - expected, 0.0)
-    axes = _axes(linear.slope, np.maximum(spread, 1e-300) ** -2.0)
+    every = -(-len(problem.points) // constants.MOST_POINTS_EXAMINED)
+    data, slope = problem.rows(names, every)
+    problem = problem.select(np.arange(0, len(problem.points), every))
+    before = -data + slope @ np.where(np.isfinite(spread), at - expected, 0.0)
+    axes = _axes(slope, np.maximum(spread, 1e-300) ** -2.0)
     free = frozenset(n.name for n in fitted.numbers if n.name in problem.simulation.values)
     priors = zip(names, zip(expected.tolist(), spread.tolist(), strict=True), strict=True)
     return Remainder(
@@ -103,22 +115,30 @@ def remainder(fitted: Fitted) -> Remainder:
     )
 
 
-def predicted_sweep(left: Remainder, k: int) -> tuple[float, dict[str, PredictedChannel]]:
-    """Chi-square by which sweep ``k`` contradicts its prediction from all others, and the prediction by channel."""
-    rows = np.flatnonzero(left.sweep == k)
-    rows = rows[left.used[rows]]
-    A = left.axes[rows]
-    others = covariance_without(A, constants.INFORMATION_LEFT)
+def contradiction(left: Remainder, k: int) -> float:
+    """Chi-square by which sweep ``k`` contradicts its prediction from all others."""
+    rows = left.rows_of(k)
+    r, A = left.residual[rows], left.axes[rows]
+    shared = A.T @ r
+    return float(r @ r + shared @ left.without(rows) @ shared)
+
+
+def predicted_sweep(left: Remainder, k: int, shown: np.ndarray) -> dict[str, PredictedChannel]:
+    """Some points (mask (n,)) of sweep ``k`` as all others predict them, by channel."""
+    rows = left.rows_of(k)
+    others, n = left.without(rows), len(left.points)
+    step = others @ (left.axes[rows].T @ left.residual[rows])
+    rows = rows[shown[rows % n]]
+    A, u = left.axes[rows], left.sigma[rows]
+    error = left.residual[rows] + A @ step
     covariance = np.eye(len(rows)) + A @ others @ A.T  # of the prediction's error
-    error = covariance @ left.residual[rows]
-    n, u = len(left.points), left.sigma[rows]
     out = {}
     for j, name in enumerate(left.channels):
         own = rows // n == j
         if own.any():
             scaled = covariance[np.ix_(own, own)] * u[own] * u[own][:, None]
             out[name] = PredictedChannel(error=-error[own] * u[own], covariance=scaled)
-    return float(left.residual[rows] @ error), out
+    return out
 
 
 def _axes(J: np.ndarray, precision: np.ndarray) -> np.ndarray:

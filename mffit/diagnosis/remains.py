@@ -9,10 +9,11 @@ import numpy as np
 
 from mffit.diagnosis import constants
 from mffit.diagnosis.one_step import BestEffect, best_effect, held_numbers
-from mffit.diagnosis.remainder import Remainder, left_out_sweeps, predicted_sweep, remainder
+from mffit.diagnosis.remainder import Remainder, contradiction, left_out_sweeps, predicted_sweep, remainder
 from mffit.diagnosis.structure import Structure, structure
 from mffit.fit.fitted import Fitted
 from mffit.suspicion import HeldNumber, LeftOutSweeps
+from mffit.suspicion.constants import MOST_POINTS_SHOWN
 from mffit.suspicion.explanation import explanation
 
 
@@ -55,14 +56,17 @@ def remains(fitted: Fitted, signs: Mapping[str, float]) -> Remains:
 def odd_sweep(left: Remainder, signs: Mapping[str, float]) -> OddSweep | None:
     """The sweep that contradicts all others; None if it does not stand out, or if no known mistake explains it."""
     points = left.points
-    found = {k: predicted_sweep(left, k) for k in np.unique(points.sweep).tolist()}
-    worst, *others = sorted(found, key=lambda k: -found[k][0])
-    if any(found[worst][0] < constants.ODD_SWEEP_OVER_NEXT * found[k][0] for k in others):
+    found = {k: contradiction(left, k) for k in np.unique(points.sweep).tolist()}
+    worst, *others = sorted(found, key=lambda k: -found[k])
+    if any(found[worst] < constants.ODD_SWEEP_OVER_NEXT * found[k] for k in others):
         return None
+    shown = np.zeros(len(points), dtype=bool)
+    sweep = np.flatnonzero(points.sweep == worst)
+    shown[sweep[:: -(-len(sweep) // MOST_POINTS_SHOWN)]] = True
     readings = {
         name: np.where(used, points.channel(name), np.nan)
         for name, used in zip(left.channels, np.split(left.used, len(left.channels)), strict=True)
     }
-    part = points.replace(**readings).select(points.sweep == worst)
-    looks = explanation(part, found[worst][1], left.simulation, signs)
+    part = points.replace(**readings).select(shown)
+    looks = explanation(part, predicted_sweep(left, worst, shown), left.simulation, signs)
     return OddSweep(points.sweep_names[worst], looks) if looks else None

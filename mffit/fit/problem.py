@@ -134,9 +134,9 @@ class FitProblem:
     def blocks(
         self, names: Sequence[str], *, by_sweep: bool = False
     ) -> Iterator[tuple[np.ndarray, np.ndarray, np.ndarray]]:
-        """Rows (m,) of the points, block after block, with residuals (c m,) and derivatives (c m, k), channel after channel.
+        """Rows (m,) of the points, block after block, with their residuals (c m,) and derivatives (c m, k).
 
-        As :meth:`mffit.rig.Simulation.in_blocks`; rows that are not used are 0.
+        As :meth:`mffit.rig.Simulation.in_blocks`, channel after channel; rows that are not used are 0.
         """
         for rows, readings, by_channel in self.simulation.in_blocks(
             self.points, names, self.sigma, by_sweep=by_sweep
@@ -148,6 +148,18 @@ class FitProblem:
                 data.append(np.where(used, (readings[name] - np.nan_to_num(measured)) / u, 0.0))
                 slopes.append(by_channel[name] / u[:, None] * used[:, None])
             yield rows, np.concatenate(data), np.concatenate(slopes)
+
+    def rows(self, names: Sequence[str], every: int = 1) -> tuple[np.ndarray, np.ndarray]:
+        """Residuals (c m + r,) and derivatives of each ``every``-th point, channel after channel, and of the measured radii."""
+        c, n = len(self.sigma), len(range(0, len(self.points), every))
+        data, slopes = np.empty((c, n)), np.empty((c, n, len(names)))
+        for rows, residual, slope in self.blocks(names):
+            kept = rows % every == 0
+            to = rows[kept] // every
+            data[:, to] = residual.reshape(c, -1)[:, kept]
+            slopes[:, to] = slope.reshape(c, -1, len(names))[:, kept]
+        radii, by_radii = self.radii_rows(names)
+        return np.append(data, radii), np.concatenate([slopes.reshape(c * n, -1), by_radii])
 
     def _used(self, channel: str) -> np.ndarray:
         return np.isfinite(self.sigma[channel]) & np.isfinite(self.points.channel(channel))

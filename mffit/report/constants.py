@@ -25,6 +25,9 @@ MOST_MARKS_IN_HUNDREDTHS = Count(
     "-",
     "Outlines of more pieces are marks, drawn to a tenth of a point, which is less than a pixel; lines are drawn to a hundredth.",
 )
+POINTS_PER_SERIES_DRAWN = Count(
+    4000, "-", "Most points of a series in a picture: more lie on top of each other, and slow the page."
+)
 DIGITS_IN_TABLE = Count(6, "-", "Significant digits of the table behind a picture; no rig has more.")
 MOST_COLOUR_STEPS = Count(33, "-", "Colours of a map; white is one of them, and neighbours look alike.")
 

@@ -43,3 +43,8 @@ def parts(every: Sequence[Curve], drawn: Sequence[Curve]) -> str:
 
 def _count(curves: Sequence[Curve]) -> int:
     return len(np.unique(np.concatenate([c.index for c in curves]))) if curves else 0
+
+
+def long_series(most: int) -> str:
+    """That at most so many points of a series are drawn."""
+    return f"Of longer series at most {most} points, evenly spaced, are drawn."

@@ -4,13 +4,12 @@ from __future__ import annotations
 
 import csv
 import io
-import itertools
 import math
 from collections.abc import Iterator
 from typing import Any
 
 from mffit.report import constants
-from mffit.report.drawing.records import Axis, DataSeries, Panel, Sheet
+from mffit.report.drawing.records import Axis, DataSeries, Panel, Sheet, shorter
 from mffit.report.drawing.texts import plain
 
 COLUMNS = ("panel", "series", "x axis", "x", "y axis", "y", "lower", "upper", "value")
@@ -44,11 +43,10 @@ def table(sheet: Sheet) -> str:
 
 def _rows(panel: Panel, series: DataSeries) -> Iterator[tuple[str, ...]]:
     """Rows of a series; of a long one every so many, which its name then says. points.csv holds every reading."""
-    rows = list(series.rows())
-    every = -(-len(rows) // constants.POINTS_PER_SERIES_IN_PAGE)
+    series, every = shorter(series, constants.POINTS_PER_SERIES_IN_PAGE)
     name = f"{series.name}, every {every}th" if every > 1 else series.name
     title, name, x_label, y_label = map(plain, (panel.title, name, panel.x.label, panel.y.label))
-    for row in itertools.islice(rows, None, None, max(every, 1)):
+    for row in series.rows():
         y = plain(_word(panel.y, row.y)) or _cell(row.y)
         yield title, name, x_label, _cell(row.x), y_label, y, *map(_cell, (row.lower, row.upper, row.value))
 

@@ -14,8 +14,8 @@ from urllib.parse import quote
 
 from mffit import rounding
 from mffit.errors import shortened
-from mffit.report import constants, making, numbers, typeset
-from mffit.report.drawing.records import Sheet
+from mffit.report import constants, left_undrawn, making, numbers, typeset
+from mffit.report.drawing.records import Sheet, long, with_shorter_series
 from mffit.templates import environment
 
 if TYPE_CHECKING:
@@ -82,13 +82,18 @@ def draw(
     found = {}
     for name, make in figures.items():
         sheet = make()
-        picture = pictures.draw(sheet)
+        most = int(constants.POINTS_PER_SERIES_DRAWN)
+        picture = pictures.draw(with_shorter_series(sheet, most))
         picture.save(plots / f"{name}.png")
-        left_out = sheet.left_out
+        shorter = left_undrawn.long_series(most) if long(sheet, most) else ""
+        left_out = " ".join(filter(None, [sheet.left_out, shorter]))
         if left_out and readings:
             left_out = f"{left_out} {readings} has every reading."
         found[name] = PagePicture(
-            name=name, drawing=picture.markup(), table=numbers.table(sheet), left_out=left_out
+            name=name,
+            drawing=picture.markup(),
+            table=numbers.table(sheet),
+            left_out=left_out,
         )
     return found
 

@@ -15,7 +15,7 @@ LIKENESS_OF_MAPPED_COLUMN = Real(
     0.5, "-", "Similarity to a channel's name from which an unknown key of [columns] means it."
 )
 LARGE_TEXT_FILE = Count(
-    2_000_000, "bytes", "Larger files are read by pandas, which is fifty times as fast but names no bad cell."
+    500_000, "bytes", "Larger files are read by pandas, which is fifty times as fast but names no bad cell."
 )
 SHARE_OF_REGULAR_LINES = Real(
     0.5, "-", "Share of lines with equal numbers of cells (two or more) that a separator needs."

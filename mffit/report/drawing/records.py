@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields, replace
 from typing import NamedTuple
 
 import numpy as np
@@ -271,3 +271,32 @@ def thinned(panels: Sequence[Panel], most: int) -> list[Panel]:
     if len(panels) <= most:
         return list(panels)
     return [panels[k] for k in np.linspace(0, len(panels) - 1, most).round().astype(int)]
+
+
+def long(sheet: Sheet, most: int) -> bool:
+    """Whether any series has more points than ``most``."""
+    return any(_points(series) > most for panel in sheet.panels for series in panel.series)
+
+
+def with_shorter_series(sheet: Sheet, most: int) -> Sheet:
+    """The sheet with at most so many points, evenly chosen, of every series."""
+    rows = [
+        [replace(panel, series=[shorter(series, most)[0] for series in panel.series]) for panel in row]
+        for row in sheet.rows
+    ]
+    return replace(sheet, rows=rows)
+
+
+def shorter(series: DataSeries, most: int) -> tuple[DataSeries, int]:
+    """The series with every so many of its points, so that they are at most ``most``, and that stride."""
+    n = _points(series)
+    every = -(-n // most)
+    if every < 2:
+        return series, 1
+    arrays = ((field.name, getattr(series, field.name)) for field in fields(series))
+    kept = {name: x[::every] for name, x in arrays if isinstance(x, np.ndarray) and len(x) == n}
+    return replace(series, **kept), every
+
+
+def _points(series: DataSeries) -> int:
+    return len(series.lengths if isinstance(series, Bars) else series.x)
