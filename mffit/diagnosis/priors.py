@@ -92,7 +92,7 @@ def declared_priors(
     """
     if len(rigs) < 2:
         return _declared_of(next(iter(rigs.values())), points, start, channels, len(points.used_setups) > 1)
-    found = {}
+    found: dict[str, tuple[float, float]] = {}
     for name, config in rigs.items():
         own = points.of_campaign(name)
         read = [channel for channel in channels if channel in own.measured]

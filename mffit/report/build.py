@@ -112,7 +112,7 @@ def _figures(view: BuildView) -> dict[str, Callable[[], Sheet]]:
     out |= _under_slip(view)
     for number, other in enumerate(view.campaigns, 1):
         own = {channel.name for channel in view.channels}
-        theirs = {
+        theirs: dict[str, Callable[[], Sheet]] = {
             f"fit_{channel.name}": partial(fit.model_against_points, other.build, channel)
             for channel in other.build.channels
             if channel.name not in own and any(curve.over != "kappa" for curve in other.build.curves)

@@ -193,7 +193,7 @@ class Simulation(Brief):
             readings, by = part.sensitivities(own, called, channels)
             for name in channels:
                 out[name][rows] = readings[name]
-                slopes[name][np.ix_(rows, columns)] = by[name]
+                slopes[name][np.ix_(rows, np.array(columns, dtype=int))] = by[name]
         return Readings(**out), Readings(**slopes)
 
     def _chain(self, points: Points, numbers: Mapping[str, Traced]) -> Chain:
