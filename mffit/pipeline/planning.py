@@ -24,9 +24,14 @@ from mffit.planning.goals import BANDS, EPSILON, JOINT
 from mffit.planning.outlook import Direct, DirectU
 from mffit.points import Points
 from mffit.progress import Progress, silent
+from mffit.quantities import column
 from mffit.results import BuildResult, as_json
 
 WRITTEN = ("plan.json", "plan.html")
+RECORDED = (
+    f"recording = {{ rate_Hz = 20, hold_s = {search.constants.PLAN_STEP_HOLD:g}, steering_deg_per_s = 50 }}"
+)
+"""How a simulated run of steps is recorded."""
 SHEETS = "runs"
 """Folder with the sheets to fill in at the rig."""
 
@@ -142,24 +147,31 @@ def write_plan(found: Plan, out: Path) -> None:
         runs = [step.run for step in found.steps]
         if runs:
             (folder / SHEETS).mkdir()
-            (folder / SHEETS / "tyre-additions.toml").write_text(
-                additions(found.config, runs), encoding="utf-8"
-            )
+            texts = {"tyre-additions.toml": additions, "rig-additions.toml": simulated}
+            for name, text in texts.items():
+                (folder / SHEETS / name).write_text(text(found.config, runs), encoding="utf-8")
         for run in runs:
             if run.points is not None:
-                sheet(found.config, run.points).to_csv(folder / SHEETS / f"{run.name}.csv", index=False)
+                sheet(found.config, run.points, run.addition.measures).to_csv(
+                    folder / SHEETS / f"{run.name}.csv", index=False
+                )
         report.write_plan(found, folder)
 
 
-def sheet(config: Config, points: Points) -> pd.DataFrame:
-    """The set-points of a run in the rig's axes and the columns of sweep files; the readings are empty."""
+def sheet(config: Config, points: Points, measures: Sequence[str] = ()) -> pd.DataFrame:
+    """The set-points of a run in the rig's axes and the columns of sweep files; the readings are empty.
+
+    ``measures`` are channels beside Fy and Mz.
+    """
     signs = configuration.axis_signs(config)
     angles = {name: np.degrees(getattr(points, name)) * signs[name] + 0.0 for name in ("alpha", "gamma")}
     table = pd.DataFrame({f"{name}_deg": values.round(4) for name, values in angles.items()})
     table["Fz_N"] = (points.Fz * signs["Fz"]).round(1)
     table["p_kPa"], table["V_mps"] = (points.p / 1e3).round(1), points.V
     table["direction"] = np.where(points.direction > 0, "forward", "backward")
-    return table.assign(Fy_N="", Mz_Nm="")
+    if np.any(points.kappa):
+        table.insert(2, "kappa", points.kappa.round(5))
+    return table.assign(**{column(channel): "" for channel in ("Fy", "Mz", *measures)})
 
 
 def additions(config: Config, runs: Sequence[PlannedRun]) -> str:
@@ -177,9 +189,62 @@ def additions(config: Config, runs: Sequence[PlannedRun]) -> str:
     return "\n".join(lines) + "\n"
 
 
+def simulated(config: Config, runs: Sequence[PlannedRun]) -> str:
+    """TOML to append to the rig.toml of `mffit simulate`, which then makes these runs."""
+    signs = configuration.axis_signs(config)
+    lines = ["# Append to rig.toml: mffit simulate makes these runs."]
+    for run in runs:
+        if run.points is None:
+            continue
+        for number, part in enumerate(_grids(run.points), 1):
+            several = f"-{number}" if number > 1 else ""
+            lines += ["", "[[sweep]]", f'file = "{run.name}{several}.csv"']
+            lines += [f"load_N = {_listed(part.Fz)}", f"p_kPa = {_listed(part.p / 1e3)}"]
+            lines += [
+                f"alpha_deg = {_listed(signs['alpha'] * np.degrees(part.alpha), ordered=run.addition.steps)}"
+            ]
+            lines += [f"gamma_deg = {_listed(signs['gamma'] * np.degrees(part.gamma))}"]
+            lines += [f"kappa = {_listed(part.kappa)}", f"V_mps = {_listed(part.V)}"]
+            lines += ['direction = "backward"'] if part.direction[0] < 0 else []
+            lines += _place(part, configuration.path_curvature(config.rig))
+            lines += ["free_rolling = true"] if run.addition.rolling else []
+            lines += [RECORDED] if run.addition.steps else []
+    return "\n".join(lines) + "\n"
+
+
+def _grids(points: Points) -> list[Points]:
+    """The points in parts that vary one condition, or all combinations of load and pressure."""
+    held = np.column_stack(
+        [
+            points.direction,
+            points.gamma != 0.0,
+            np.sign(points.gamma),
+            np.where(points.kappa.any(), np.sign(points.alpha), 0),
+        ]
+    )
+    if np.ptp(points.gamma) and not np.ptp(points.alpha):
+        held = held[:, :1]  # a camber sweep
+    _, part = np.unique(held, axis=0, return_inverse=True)
+    part = part.ravel()
+    return [points.select(part == k) for k in dict.fromkeys(part.tolist())]
+
+
+def _listed(values: np.ndarray, *, ordered: bool = False) -> str:
+    """Different values of a condition as a TOML list, in ascending order or as they are."""
+    rounded = np.round(values, 6) + 0.0
+    kept = rounded if ordered else np.unique(rounded)
+    return f"[{', '.join(f'{x:g}' for x in kept.tolist())}]"
+
+
 def _sweep_table(file: str, points: Points, usual: float) -> list[str]:
     """Lines of the [[sweep]] table of a run, with the path where it is not the ``usual`` curvature [1/m]."""
     lines = ["[[sweep]]", f'file = "{file}"']
+    return lines + _place(points, usual)
+
+
+def _place(points: Points, usual: float) -> list[str]:
+    """Lines on the mount and the path of points, where they are not usual."""
+    lines = []
     phi_t = float(points.phi_t[0])
     if points.mount[0] < 0:
         lines.append('mount = "flipped"')

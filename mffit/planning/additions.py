@@ -18,10 +18,11 @@ _EPSILON = DIRECT["epsilon_gamma"].ascii
 class LineOfPoints(NamedTuple):
     """Set-points along one angle; everything not given here is as in most of the programme."""
 
-    over: Literal["alpha", "gamma"]
-    angles: Series  #: in degrees, or without unit: over the largest angle that was run
+    over: Literal["alpha", "gamma", "kappa"]
+    angles: Series  #: in degrees, or without unit: over the largest angle or slip that was run
     direction: Literal[1, -1] = 1  #: 1 forward, -1 backward
     camber_side: Literal[-1, 0, 1] = 0  #: of a coupled sweep
+    steer_side: Literal[-1, 0, 1] = 0  #: of a sweep of combined slip
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -34,9 +35,14 @@ class Addition:
     loads: Literal["each", "nominal", "new"] = "each"  #: each or nominal: of the programme
     lines: tuple[LineOfPoints, ...] = ()  #: none for a measurement of the rig
     disc_only: bool = False
+    belt_only: bool = False
+    measures: tuple[str, ...] = ()  #: channels beside those of the programme
+    steps: bool = False  #: a recording of steps between its angles, at walking speed
+    rolling: bool = False  #: rolling freely straight on, at all loads and several pressures
     mount: Literal[1, -1] = 1
     radius: float = 1.0  #: path radius over the programme's; negative: centre on the other side
     cambers: Series | None = None  #: of coupled sweeps, one run per camber
+    sideslips: Series | None = None  #: of combined sweeps, one run per sideslip
     pressures: Series | None = None  #: over the programme's pressure, one run per pressure
     declares: str = ""  #: the uncertainty in [rig] that a better measurement lowers
     declares_unit: str = ""
@@ -54,6 +60,7 @@ _ZEROS = (
 _SMALL_CAMBERS = (LineOfPoints("gamma", constants.PLAN_SMALL_CAMBERS),)
 _SIDESLIP = (LineOfPoints("alpha", constants.PLAN_SWEEP_SHARES),)
 _CAMBER = (LineOfPoints("gamma", constants.PLAN_SWEEP_SHARES),)
+_DRIVE = (LineOfPoints("kappa", constants.PLAN_SWEEP_SHARES),)
 
 _RIG_MEASUREMENTS = tuple(
     Addition(
@@ -177,6 +184,62 @@ ADDITIONS = (
         reason="The farther the loads are apart, the better the data determine what changes with load.",
         loads="new",
         lines=(*_SIDESLIP, *_CAMBER),
+    ),
+    Addition(
+        id="drive",
+        title="sweep of longitudinal slip, drive and brake",
+        reason="Slip stiffness, peak and shape of the longitudinal force are seen only under slip.",
+        lines=_DRIVE,
+        belt_only=True,
+        measures=("Fx",),
+    ),
+    Addition(
+        id="combined",
+        title="sweeps of longitudinal slip at sideslip to both sides",
+        reason="How sideslip and slip take force from each other is seen only where both act together.",
+        lines=tuple(LineOfPoints("kappa", constants.PLAN_SWEEP_SHARES, steer_side=side) for side in (-1, 1)),
+        sideslips=constants.PLAN_COMBINED_SIDESLIPS,
+        belt_only=True,
+        measures=("Fx",),
+    ),
+    Addition(
+        id="drive-camber",
+        title="sweeps of longitudinal slip at camber of both signs",
+        reason="Camber changes the peak of the longitudinal force, and the moment of slip about the two other axes.",
+        lines=tuple(LineOfPoints("kappa", constants.PLAN_SWEEP_SHARES, camber_side=side) for side in (-1, 1)),
+        cambers=constants.PLAN_LEANED_SLIP_CAMBERS,
+        belt_only=True,
+        measures=("Fx",),
+    ),
+    Addition(
+        id="drive-pressure",
+        title="sweep of longitudinal slip at another pressure",
+        reason="Slip stiffness and longitudinal friction change with pressure.",
+        lines=_DRIVE,
+        pressures=constants.PLAN_NEW_PRESSURE_FACTORS,
+        belt_only=True,
+        measures=("Fx",),
+    ),
+    Addition(
+        id="rolling",
+        title="rolling freely at all loads and three pressures",
+        reason="Vertical stiffness, free radius and their change with pressure follow from loaded radius and wheel speed.",
+        loads="nominal",
+        belt_only=True,
+        rolling=True,
+        measures=("RL", "omega"),
+    ),
+    Addition(
+        id="steps",
+        title="recording of steps of the sideslip angle",
+        reason=(
+            "The distance over which the side force follows a step is the relaxation length: roll at "
+            f"{constants.PLAN_STEP_SPEED:g} m/s, step within a fraction of a second, hold each angle for "
+            f"{constants.PLAN_STEP_HOLD:g} s, and record at 20 Hz."
+        ),
+        lines=(LineOfPoints("alpha", constants.PLAN_STEPS),),
+        belt_only=True,
+        steps=True,
     ),
 )
 """In the order in which they are tried; of equally good ones with as many points the first is taken."""

@@ -25,6 +25,37 @@ PLAN_FLIPPED_SHARES = Series(
     "Angles of a sweep on the flipped mount over the largest one; conicity needs no peak.",
 )
 PLAN_COUPLED_CAMBERS = Series((10.0, 20.0, 35.0), "deg", "Cambers at which a sideslip sweep is proposed.")
+PLAN_COMBINED_SIDESLIPS = Series(
+    (2.0, 6.0), "deg", "Sideslips at which a sweep of longitudinal slip is proposed: below and near the peak."
+)
+PLAN_LEANED_SLIP_CAMBERS = Series((4.0,), "deg", "Cambers at which a sweep of longitudinal slip is proposed.")
+PLAN_LARGEST_SLIP = Real(
+    0.15, "-", "Largest longitudinal slip that is proposed where none was run: beyond the peak of dry tyres."
+)
+PLAN_STEP = Real(1.0, "deg", "Size of a step of the sideslip angle; the side force is linear within it.")
+PLAN_STEPS = Series((0.0, 1.0, 0.0, -1.0, 0.0), "deg", "Angles of a run of steps, one after the other.")
+PLAN_STEP_SPEED = Real(1.0, "m/s", "Speed of a run of steps.")
+PLAN_STEP_HOLD = Real(6.0, "s", "Time for which each angle is held in a run of steps.")
+PLAN_STEP_INDEPENDENT = Real(
+    0.4,
+    "s",
+    "Time between samples of a run of steps that count as independent; cells and belts sway as long.",
+)
+PLAN_UNKNOWN_CARCASS = Series(
+    (0.3, 0.3, 0.2),
+    "-",
+    "Relative standard deviation of the lateral carcass stiffness of a tyre without steps: at nominal load, its slope and "
+    "curvature over dfz.",
+)
+PLAN_UNKNOWN_STIFFNESS = Real(
+    0.3, "-", "Relative standard deviation of a vertical stiffness that was not measured."
+)
+PLAN_UNKNOWN_RADIUS = Real(0.01, "-", "Standard deviation of Q_RE0 where it was not measured.")
+PLAN_UNKNOWN_PRESSURE = Real(0.3, "-", "Standard deviation of PFZ1 where it was not measured.")
+PLAN_NOISE_OF_RADIUS = Real(0.0003, "m", "Smallest scatter of a loaded radius that is expected of a run.")
+PLAN_ROLLING_PRESSURES = Series(
+    (0.8, 1.0, 1.2), "-", "Pressures of a rolling run over the programme's pressure."
+)
 PLAN_NEW_LOAD_FACTORS = Series(
     (0.7, 1.3), "-", "Proposed new loads over the smallest and the largest load of the programme."
 )

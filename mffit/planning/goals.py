@@ -13,8 +13,8 @@ from mffit.rig import SIMULATED
 from mffit.rig_errors import UNITS
 from tir.parameters import BY_NAME
 
-EPSILON, JOINT, BANDS, TIE = "eps_gamma", "eps_gamma:joint", "bands", "tie"
-GOALS = (EPSILON, JOINT, BANDS, f"{BANDS}:Mz", f"{TIE}:EFFECT")
+EPSILON, JOINT, BANDS, TIE, FILE = "eps_gamma", "eps_gamma:joint", "bands", "tie", "file"
+GOALS = (EPSILON, JOINT, BANDS, f"{BANDS}:Mz", f"{TIE}:EFFECT", FILE)
 """How goals are written; the name of a coefficient is a goal too."""
 
 
@@ -22,7 +22,7 @@ GOALS = (EPSILON, JOINT, BANDS, f"{BANDS}:Mz", f"{TIE}:EFFECT")
 class Goal:
     """The number whose uncertainty is to fall."""
 
-    kind: str  #: EPSILON (direct method), JOINT, BANDS, TIE or "coefficient"
+    kind: str  #: EPSILON (direct method), JOINT, BANDS, TIE, FILE or "coefficient"
     name: str = ""  #: of the coefficient, the channel of the bands, or the effect
     unit: str = "-"
 
@@ -34,6 +34,7 @@ class Goal:
             EPSILON: f"u({epsilon}) by the direct method",
             JOINT: f"u({epsilon}) by the joint fit",
             BANDS: f"95 % band of {self.name}, rms",
+            FILE: "95 % band of the file over its forces, relaxation length and deflection, rms",
             TIE: f"u of {self._tied} with its rival effects free",
         }.get(self.kind, f"u({self.name})")
 
@@ -58,6 +59,10 @@ def read_goal(text: str, *, on_disc: bool, held: Collection[str] = ()) -> Goal:
             f"[coefficients] holds {text}, so that no run makes it more certain; choose another goal, or free it"
         )
     kind, _, rest = text.partition(":")
+    if text == FILE:
+        if on_disc:
+            raise InputError(f'"{text}" needs a straight path; choose bands or a coefficient')
+        return Goal(FILE)
     if kind == EPSILON and rest in ("", "direct", "joint"):
         if not on_disc:
             raise InputError(

@@ -13,12 +13,13 @@ from mffit.effects import Effect
 from mffit.fit import FitResult, Posterior
 from mffit.fit.coverage import coverage
 from mffit.fit.posterior import beside_held
+from mffit.fit.priors import scatter
 from mffit.fit.rig_numbers import rig_numbers
 from mffit.least_squares import inverse
 from mffit.measured import Measured
 from mffit.measured.radii import measured_path_radius
 from mffit.measured.zero_split import alignment_verdict
-from mffit.planning.runs import PlannedRun, new_setups
+from mffit.planning.runs import PlannedRun, candidates, new_setups
 from mffit.points import Points
 from mffit.points.points import concatenate
 from mffit.rig_errors import OF_RUN, ZEROS, error_of
@@ -47,6 +48,8 @@ class Knowledge:
         self.problem, self.hand = search.problem, search.hand
         self.simulation = search.problem.simulation
         self.spread = {n.name: n.spread for n in search.numbers} | dict(search.held)
+        self._unseen = self._spread_of_unseen(found)
+        self.spread = self._unseen | self.spread
         self.rig = tuple(n.name for n in search.numbers if error_of(n.name))
         staged = {name for row in found.coverage for name in (*row.free, *row.held)}
         self.extra = tuple(n.name for n in search.numbers if n.name not in staged and n.name not in self.rig)
@@ -55,7 +58,10 @@ class Knowledge:
         self.names = tuple(dict.fromkeys([*self.spread, PECP1, *self.usual, *self.new_zeros]))
         self._row = {name: k for k, name in enumerate(self.names)}
         self._at = np.array([self.simulation.number(n, points) for n in self.names])
-        self._sigma = {channel: _median_or_infinite(s) for channel, s in search.problem.sigma.items()}
+        sigma = {channel: _median_or_infinite(s) for channel, s in search.problem.sigma.items()}
+        if self._unseen:  # nothing is known of the noise of Fx: forces usually scatter alike
+            sigma = {"Fx": sigma["Fy"], **sigma}
+        self._sigma = sigma
         self._base = self._information(self.problem.free(self.names).linear(self._at).slope)
         self._of_run: dict[str, np.ndarray] = {}
 
@@ -92,7 +98,7 @@ class Knowledge:
     def with_readings(self, run: PlannedRun, draw: np.random.Generator | None = None) -> Points:
         """The set-points of a run with the readings that the fitted rig would give; with noise if ``draw`` is given."""
         assert run.points is not None
-        read = self.simulation.readings(run.points, self._sigma)
+        read = self.simulation.readings(run.points, self.channels_of(run))
         if draw is None:
             return run.points.replace(**read)
         noise = {name: sigma if math.isfinite(sigma) else 0.0 for name, sigma in self._sigma.items()}
@@ -100,6 +106,31 @@ class Knowledge:
         return run.points.replace(
             **{name: values + noise[name] * draw.standard_normal(n) for name, values in read.items()}
         )
+
+    def channels_of(self, run: PlannedRun) -> tuple[str, ...]:
+        """Channels that a run measures: those of the programme, and what it adds."""
+        added = run.addition.measures
+        return tuple(c for c in self._sigma if c in self.problem.channels or c in added)
+
+    def _spread_of_unseen(self, found: FitResult) -> dict[str, float]:
+        """Standard deviation of the coefficients that only a run of longitudinal slip would free; empty once one was made."""
+        if self.config.rig.on_disc or "Fx" in self.problem.channels:
+            return {}
+        runs = [run for run in candidates(self.config, self.points) if run.points is not None]
+        known = found.tyre.values
+        return {
+            name: row.stderr
+            or scatter(name, float(known[name]), from_base=row.status == "base", curved=False)
+            for name, row in found.coefficients.items()
+            if name in self._freed_by(runs) and name not in self.spread
+        }
+
+    def _freed_by(self, runs: Sequence[PlannedRun]) -> set[str]:
+        """Coefficients that a build with some runs frees."""
+        new = [_as_measured(run) for run in runs if run.points is not None]
+        points = concatenate([self.points, *new]) if new else self.points
+        cover = coverage(points, self.config.tyre.side, self.hand.held)
+        return {name for row in cover for name in row.free}
 
     def _zeros_of_new_setups(self) -> dict[str, float]:
         """Prior spread of the zeros of set-ups that runs may add, by number."""
@@ -120,7 +151,7 @@ class Knowledge:
         return number.spread * size
 
     def _free(self, runs: Sequence[PlannedRun]) -> list[str]:
-        new = [run.points for run in runs if run.points is not None]
+        new = [_as_measured(run) for run in runs if run.points is not None]
         points = concatenate([self.points, *new]) if new else self.points
         cover = coverage(points, self.config.tyre.side, self.hand.held)
         named = [*(name for row in cover for name in row.free), *self.extra, *self.rig, *self._new_of(runs)]
@@ -162,7 +193,7 @@ class Knowledge:
             return np.zeros_like(self._base)
         if run.name not in self._of_run:
             n = len(run.points)
-            sigma = {channel: np.full(n, s) for channel, s in self._sigma.items()}
+            sigma = {channel: np.full(n, self._sigma[channel]) for channel in self.channels_of(run)}
             seen = replace(self.problem, points=self.with_readings(run), sigma=sigma, envelope=None, radii=())
             slope = seen.free(self.names).linear(self._at).slope
             if self._new_of([run]):  # zeros of its own instead of those without a set-up
@@ -184,6 +215,12 @@ class Knowledge:
         prior = np.diag([spread.get(n, math.inf) ** -2.0 for n in free])
         covariance = inverse(information[np.ix_(f, f)] + prior)
         return beside_held(free, covariance, {n: spread[n] for n in held}, information[np.ix_(f, h)])
+
+
+def _as_measured(run: PlannedRun) -> Points:
+    """The set-points of a run, with readings of 0 in the channels that it adds: coverage asks only whether they are there."""
+    assert run.points is not None
+    return run.points.replace(**dict.fromkeys(run.addition.measures, 0.0))
 
 
 def _median_or_infinite(sigma: np.ndarray) -> float:

@@ -12,11 +12,12 @@ from mffit.config import Config
 from mffit.constants import COVERAGE_FACTOR_95
 from mffit.diagnosis.constants import SEPARATING_CHI2
 from mffit.effects import CATALOG, Effect
-from mffit.fit import FitResult
+from mffit.fit import FitResult, Posterior
 from mffit.fit.posterior import spread_through
 from mffit.measured import Measured
 from mffit.planning import constants
-from mffit.planning.goals import BANDS, EPSILON, JOINT, TIE, Goal, effect_named
+from mffit.planning.apart import Apart, weighted
+from mffit.planning.goals import BANDS, EPSILON, FILE, JOINT, TIE, Goal, effect_named
 from mffit.planning.identified import tied_pairs
 from mffit.planning.knowledge import PECP1, Knowledge
 from mffit.planning.runs import PlannedRun
@@ -57,7 +58,9 @@ class Outlook:
             self._near = points.select(self._decides_epsilon(points) & ~outliers)
         self.draws = 0
         self._direct, self._cache = direct, dict[tuple[str, ...], DirectU | None]()
-        self._curves = self._band_slopes() if goal.kind == BANDS else None
+        self._curves = self._band_slopes((goal.name,)) if goal.kind == BANDS else None
+        self._file = self._every_band() if goal.kind == FILE else None
+        self.apart = Apart(config, found) if goal.kind == FILE else None
 
     def u(self, runs: Sequence[PlannedRun]) -> float:
         """Uncertainty of the goal in its unit; infinite if the goal is not measured at all."""
@@ -69,14 +72,15 @@ class Outlook:
         if self.effect is not None:
             return self.knowledge.u_of_effect(runs, self.effect, _rivals(self.effect))
         posterior = self.knowledge.posterior(runs, self._u_pecp1(runs))
+        if self._file is not None and self.apart is not None:
+            names, by_channel = self._file
+            parts = [_spread(posterior, names, slopes) for slopes in by_channel]
+            parts += [self.apart.u_relaxation(runs), self.apart.u_loaded_radius(runs)]
+            return COVERAGE_FACTOR_95 * weighted(parts)
         if self._curves is None:
             return _or_infinite(posterior.stderr.get(self.goal.name))
-        names, slopes = self._curves
-        rows = [posterior.names.index(n) for n in names if n in posterior.names]
-        columns = [k for k, n in enumerate(names) if n in posterior.names]
-        return COVERAGE_FACTOR_95 * rms(
-            spread_through(slopes[:, columns], posterior.covariance[np.ix_(rows, rows)])
-        )
+        names, (slopes,) = self._curves
+        return COVERAGE_FACTOR_95 * _spread(posterior, names, slopes)
 
     @property
     def told_below(self) -> float | None:
@@ -146,24 +150,60 @@ class Outlook:
         main = np.abs(points.p - pressure) < constants.PLAN_PRESSURE_TOLERANCE
         return near & main & (points.mount > 0) & ~points.continuous
 
-    def _band_slopes(self) -> tuple[list[str], np.ndarray]:
-        """Slopes of the curves by each coefficient: over sideslip and over camber, at three loads on a straight path."""
+    def _every_band(self) -> tuple[list[str], list[np.ndarray]]:
+        """Slopes of all forces over their largest values, those of Fx also where none was measured."""
+        channels = [c for c in ("Fx", "Fy", "Mx", "Mz") if c in ("Fx", *self.knowledge.problem.channels)]
+        names, slopes = self._band_slopes(channels)
+        tyre = Simulation.of(self.found.tyre, turn_slip=False)
+        sizes = tyre.readings(self._band_conditions(slip=True), channels)
+        return names, [
+            slope / max(float(np.max(np.abs(sizes[c]))), 1e-9)
+            for c, slope in zip(channels, slopes, strict=True)
+        ]
+
+    def _band_slopes(self, channels: Sequence[str]) -> tuple[list[str], list[np.ndarray]]:
+        """Slopes of the curves by each coefficient: over sideslip and camber, at three loads on a straight path.
+
+        Where slip was run, or all forces count, they are over longitudinal slip as well, without and with sideslip.
+        """
+        slip = self.goal.kind == FILE or "Fx" in channels or not np.all(self.points.free_rolling)
+        where = self._band_conditions(slip=slip)
+        names = [n for n in self.knowledge.names if error_of(n) is None]
+        tyre = Simulation.of(self.found.tyre, turn_slip=self.config.rig.on_disc)
+        found = tyre.sensitivities(where, names, channels)[1]
+        return names, [found[channel] for channel in channels]
+
+    def _band_conditions(self, *, slip: bool) -> Points:
+        """Operating conditions of the bands."""
         assert self.found.files is not None
         tested = self.found.files.tested
         loads = [tested["FZMIN"], float(self.found.tyre["FNOMIN"]), tested["FZMAX"]]
         n = int(constants.PLAN_BAND_ANGLES)
-        slip, camber = (np.linspace(-tested[end], tested[end], n) for end in ("ALPMAX", "CAMMAX"))
-        where = make_points(
-            np.tile(np.r_[slip, np.zeros(n)], len(loads)),
-            np.tile(np.r_[np.zeros(n), camber], len(loads)),
-            np.repeat(loads, 2 * n),
+        steer, camber = (np.linspace(-tested[end], tested[end], n) for end in ("ALPMAX", "CAMMAX"))
+        drive = np.linspace(-1.0, 1.0, n) * (
+            float(np.max(np.abs(self.points.kappa))) or float(constants.PLAN_LARGEST_SLIP)
+        )
+        none = np.zeros(n)
+        lines = [(steer, none, none), (none, camber, none)]
+        if slip:
+            lines += [(none, none, drive), (none + 0.5 * tested["ALPMAX"], none, drive)]
+        alpha, gamma, kappa = (np.concatenate(part) for part in zip(*lines, strict=True))
+        return make_points(
+            np.tile(alpha, len(loads)),
+            np.tile(gamma, len(loads)),
+            np.repeat(loads, len(alpha)),
+            kappa=np.tile(kappa, len(loads)),
             p=float(self.found.tyre["NOMPRES"]),
             V=constants.PLAN_BAND_SPEED,
             phi_t=0.0,
         )
-        names = [n for n in self.knowledge.names if error_of(n) is None]
-        tyre = Simulation.of(self.found.tyre, turn_slip=self.config.rig.on_disc)
-        return names, tyre.sensitivities(where, names, (self.goal.name,))[1][self.goal.name]
+
+
+def _spread(posterior: Posterior, names: Sequence[str], slopes: np.ndarray) -> float:
+    """Standard uncertainty, rms, of curves with slopes (m, k) by the named coefficients."""
+    rows = [posterior.names.index(n) for n in names if n in posterior.names]
+    columns = [k for k, n in enumerate(names) if n in posterior.names]
+    return rms(spread_through(slopes[:, columns], posterior.covariance[np.ix_(rows, rows)]))
 
 
 def _rivals(effect: Effect) -> list[Effect]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
-from itertools import groupby
+from itertools import groupby, product
 from typing import Any
 
 import numpy as np
@@ -12,7 +12,7 @@ import numpy as np
 from mffit.config import Config, RollingRadiusTable, SweepTable, setup_names
 from mffit.measured.radii import measured_path_radius
 from mffit.planning import constants
-from mffit.planning.additions import ADDITIONS, Addition, LineOfPoints
+from mffit.planning.additions import ADDITIONS, BY_ID, Addition, LineOfPoints
 from mffit.points import Points, levels, main_path, main_pressure
 from mffit.points.points import concatenate
 from mffit.quantities import CHANNELS
@@ -28,6 +28,7 @@ class PlannedRun:
     load: float  #: [N]
     points: Points | None = None  #: set-points in ISO-W, without readings; None for a measurement
     camber_deg: float = 0.0  #: of coupled sweeps
+    sideslip_deg: float = 0.0  #: of sweeps of combined slip
     pressure_kPa: float | None = None  #: where it differs from the programme's
     rig: Mapping[str, float] = field(default_factory=dict)  #: keys of [rig] and their values from then on
     revolution: RollingRadiusTable | None = None
@@ -40,7 +41,8 @@ class PlannedRun:
     @property
     def name(self) -> str:
         """Stem of the run's files, unique among the candidates."""
-        camber = f"-{self.camber_deg:.0f}deg" if self.camber_deg else ""
+        angle = self.camber_deg or self.sideslip_deg
+        camber = f"-{angle:.0f}deg" if angle else ""
         pressure = f"-{self.pressure_kPa:.0f}kPa" if self.pressure_kPa else ""
         return f"{self.addition.id}-{self.load:.0f}N{camber}{pressure}"
 
@@ -60,7 +62,11 @@ def candidates(config: Config, points: Points, r_e: float | None = None) -> tupl
     ``r_e`` is the effective radius of the model at the nominal load [m], to predict a disc revolution.
     """
     programme = _Programme(config, points)
-    possible = [addition for addition in ADDITIONS if config.rig.on_disc or not addition.disc_only]
+    possible = [
+        addition
+        for addition in ADDITIONS
+        if not (addition.belt_only if config.rig.on_disc else addition.disc_only)
+    ]
     found: list[PlannedRun] = []
     for loads, group in groupby(possible, key=lambda addition: addition.loads):
         additions = list(group)
@@ -70,6 +76,8 @@ def candidates(config: Config, points: Points, r_e: float | None = None) -> tupl
                     found += _better_declared(config, addition, load)
                 elif addition.revolution:
                     found += _revolution(config, addition, load, r_e)
+                elif addition.rolling:
+                    found.append(PlannedRun(addition, load, programme.rolling()))
                 else:
                     found += _with_points(programme, addition, load)
     return tuple(found)
@@ -90,6 +98,10 @@ class _Programme:
         self.largest = {
             name: float(np.degrees(np.max(np.abs(getattr(self.main, name))))) for name in ("alpha", "gamma")
         }
+        driven = not np.all(points.free_rolling)
+        self.largest["kappa"] = (
+            float(np.max(np.abs(points.kappa))) if driven else float(constants.PLAN_LARGEST_SLIP)
+        )
         self.pressure = float(np.mean(self.main.p))
         self.phi_t = main_path(self.main)
 
@@ -100,7 +112,7 @@ class _Programme:
         return {"each": self.loads, "nominal": [self.load], "new": new}[which]
 
     def angles(self, line: LineOfPoints) -> np.ndarray:
-        """Angles (n,) of a line [deg]."""
+        """Angles [deg] or slips (n,) of a line."""
         if line.angles.unit == "deg":
             return np.array(line.angles)
         if line.over == "gamma" and not self.largest["gamma"] > constants.PLAN_SMALLEST_CAMBER_SWEPT:
@@ -114,27 +126,54 @@ class _Programme:
         near = np.abs(self.main.Fz / load - 1.0) < constants.PLAN_COUPLED_LOAD_TOLERANCE
         swept = near & (np.abs(self.main.alpha) > constants.PLAN_COUPLED_SIDESLIP.rad)
         run_already = np.round(np.abs(np.degrees(self.main.gamma[swept])))
+        if addition.belt_only:
+            return list(addition.cambers)
         most = max(self.largest["gamma"], constants.PLAN_SMALL_CAMBERS[-1])
         return [camber for camber in addition.cambers if camber not in run_already and camber <= most]
 
+    def rolling(self) -> Points:
+        """Set-points (n,) of an upright wheel that rolls freely straight on, at all loads and several pressures."""
+        straight = LineOfPoints("alpha", constants.PLAN_ZERO_ANGLES)
+        one = self.line(straight, BY_ID["rolling"], load=self.load, camber_deg=0.0, p=self.pressure)
+        low, high = self.loads_of("new")
+        loads = [low, *self.loads, high]
+        grid = [
+            (load, factor * self.pressure) for load in loads for factor in constants.PLAN_ROLLING_PRESSURES
+        ]
+        Fz, p = np.array(grid).T
+        return one.select(np.zeros(len(grid), dtype=int)).replace(alpha=0.0, Fz=Fz, p=p)
+
+    def sideslips(self, addition: Addition) -> list[float]:
+        """Sideslips [deg] of an addition's sweeps of combined slip; [0] for other additions."""
+        return [0.0] if addition.sideslips is None else list(addition.sideslips)
+
     def line(
-        self, line: LineOfPoints, addition: Addition, *, load: float, camber_deg: float, p: float
+        self,
+        line: LineOfPoints,
+        addition: Addition,
+        *,
+        load: float,
+        camber_deg: float,
+        p: float,
+        sideslip_deg: float = 0.0,
     ) -> Points:
         """Set-points (n,) of one line of an addition."""
-        angles = np.radians(self.angles(line))
+        angles = self.angles(line) if line.over == "kappa" else np.radians(self.angles(line))
         usual = np.flatnonzero(self.main.phi_t == self.phi_t)[0]
         like = self.main.select(np.full(len(angles), usual))
         phi_t = self.phi_t / addition.radius
         given = {
-            "alpha": 0.0, "gamma": np.radians(line.camber_side * camber_deg), "Fz": load, "p": p,
-            "V": reference_speed(self.main), "phi_t": phi_t, "direction": line.direction,
+            "alpha": np.radians(line.steer_side * sideslip_deg),
+            "gamma": np.radians(line.camber_side * camber_deg), "Fz": load, "p": p,
+            "V": constants.PLAN_STEP_SPEED if addition.steps else reference_speed(self.main),
+            "phi_t": phi_t, "direction": line.direction,
             "mount": addition.mount, "line": 0, "sweep": 0, "file": 0, "sweep_names": ("planned",), "files": ("",),
             "setup": 0, "setups": (setup_on(self.config, self.points, phi_t),),
         }  # fmt: skip
         unknown = dict.fromkeys((*CHANNELS, "t", "time", "iteration"), np.nan) | {"kappa": 0.0}
         uncertain = (*(f"u_{name}" for name in CHANNELS), "T")
         typical = {name: finite_median(getattr(self.points, name)) for name in uncertain}
-        return like.replace(**(given | {line.over: angles} | unknown | typical))
+        return like.replace(**(given | unknown | typical | {line.over: angles}))
 
 
 def setup_on(config: Config, points: Points, phi_t: float) -> str:
@@ -159,19 +198,23 @@ def new_setups(config: Config, points: Points) -> tuple[str, ...]:
 
 def _with_points(programme: _Programme, addition: Addition, load: float) -> Iterator[PlannedRun]:
     """The runs of an addition at one load: one per camber and pressure."""
-    for camber in programme.cambers(addition, load):
-        for factor in addition.pressures or (1.0,):
-            p = factor * programme.pressure
-            lines = [
-                programme.line(line, addition, load=load, camber_deg=camber, p=p) for line in addition.lines
-            ]
-            yield PlannedRun(
-                addition,
-                load,
-                concatenate(lines),
-                camber_deg=camber,
-                pressure_kPa=None if addition.pressures is None else 1e-3 * p,
-            )
+    kinds = product(
+        programme.cambers(addition, load), programme.sideslips(addition), addition.pressures or (1.0,)
+    )
+    for camber, sideslip, factor in kinds:
+        p = factor * programme.pressure
+        lines = [
+            programme.line(line, addition, load=load, camber_deg=camber, p=p, sideslip_deg=sideslip)
+            for line in addition.lines
+        ]
+        yield PlannedRun(
+            addition,
+            load,
+            concatenate(lines),
+            camber_deg=camber,
+            sideslip_deg=sideslip,
+            pressure_kPa=None if addition.pressures is None else 1e-3 * p,
+        )
 
 
 def _better_declared(config: Config, addition: Addition, load: float) -> Iterator[PlannedRun]:

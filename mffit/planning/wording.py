@@ -8,7 +8,7 @@ from mffit.diagnosis.constants import SEPARATING_CHI2
 from mffit.effects import NAMES
 from mffit.fit.by_hand import HELD_BY_HAND
 from mffit.planning import constants
-from mffit.planning.goals import BANDS, EPSILON, JOINT, TIE
+from mffit.planning.goals import BANDS, EPSILON, FILE, JOINT, TIE
 from mffit.planning.record import Identified, Plan, Tie
 from mffit.planning.runs import PlannedRun
 from mffit.quantities import CONDITIONS, DIRECT
@@ -22,7 +22,10 @@ def title(run: PlannedRun) -> str:
     if run.rig:
         (value,) = run.rig.values()
         return f"{run.addition.title}, known to {value:.2g} {run.addition.declares_unit}"
-    more = f", {run.camber_deg:g} deg" if run.camber_deg else ""
+    angle = run.camber_deg or run.sideslip_deg
+    more = f", {angle:g} deg" if angle else ""
+    if run.addition.rolling:
+        return run.addition.title
     more += f", {CONDITIONS['p_kPa'].of(run.pressure_kPa)}" if run.pressure_kPa else ""
     return f"{run.addition.title}, {LOAD.of(run.load)}{more}"
 
@@ -55,7 +58,7 @@ def _tie_resolved(plan: Plan) -> str:
 
 def measure(plan: Plan) -> str:
     """The kind of uncertainty, for headings: u, or a 95 % band."""
-    return "95 % band" if plan.goal.kind == BANDS else "u"
+    return "95 % band" if plan.goal.kind in (BANDS, FILE) else "u"
 
 
 def shown(plan: Plan, u: float) -> str:
@@ -86,6 +89,12 @@ def promise(plan: Plan) -> str:
             "The prediction is for the 95 % band of the fitted curves on a straight path: rms over the tested sideslip and "
             "camber at three loads, from the posterior, linearised at the present solution."
         )
+    elif kind == FILE:
+        estimate = (
+            "The prediction is for the 95 % bands of Fx, Fy, Mx and Mz over their largest values (rms over sideslip, camber and "
+            "slip at three loads), of the relaxation length, and of the loaded radius over the deflection: the rms of these. "
+            "What was not measured counts with its prior."
+        )
     elif kind == TIE:
         limit = f", {shown(plan, plan.told_below)}" if plan.told_below else ""
         estimate = (
@@ -94,7 +103,7 @@ def promise(plan: Plan) -> str:
         )
     else:
         estimate = "The prediction is for the standard error in the file, from the posterior, linearised at the present solution."
-    size = "" if kind == BANDS else " are standard uncertainties (k = 1) and"
+    size = "" if kind in (BANDS, FILE) else " are standard uncertainties (k = 1) and"
     return f"{estimate} All numbers{size} assume the noise of your present points."
 
 
@@ -197,6 +206,8 @@ def instructions(run: PlannedRun) -> list[str]:
             f"load_N = {run.load:.0f}",
             "# revolutions, angle_start_deg, angle_end_deg",
         ]
+    if run.addition.steps:
+        return ["# a recording: with the column time_s, and a row per sample"]
     return []
 
 

@@ -25,8 +25,8 @@ def errors_of_means(records: Sequence[np.ndarray]) -> np.ndarray:
     known = np.flatnonzero(np.isfinite(errors) & (errors > 0.0)).tolist()
     if len(known) < 2:
         return errors
-    n = np.array([len(records[k]) for k in known])
-    freedom = np.array([len(records[k]) / (1.0 + 2.0 * found[k].inefficiency) for k in known])
+    n = np.array([len(x) for x in records])[known]
+    freedom = n / (1.0 + 2.0 * np.array([one.inefficiency for one in found])[known])
     noise = errors[known] ** 2 * n  # variance of the mean of one sample, if all were like that
     logs = np.log(noise) - digamma(0.5 * freedom) + np.log(0.5 * freedom)
     beyond_chance = float(np.var(logs, ddof=1) - np.mean(polygamma(1, 0.5 * freedom)))

@@ -252,7 +252,7 @@ class Simulation(Brief):
                 readings, by = at_rows(place[rows[here]])
                 for name in channels:
                     out[name][here] = readings[name]
-                    slopes[name][np.ix_(here, np.asarray(columns))] = by[name]
+                    slopes[name][np.ix_(here, np.array(columns, dtype=int))] = by[name]
             return Readings(**out), Readings(**slopes)
 
         return found
