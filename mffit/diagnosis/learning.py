@@ -79,7 +79,7 @@ def beyond_memory(noise: Noise, candidates: Sequence[Effect]) -> list[Effect]:
         offsets = noise.offsets.get(effect.id)
         if offsets is None:
             kept.append(effect)
-        elif offsets.log_odds > constants.RUN_OFFSET_LOG_ODDS:
+        elif offsets.beyond > 0.0:
             wider = max(offsets.size, 1.0)
             kept.append(replace(effect, free=tuple(replace(f, spread=wider * f.spread) for f in effect.free)))
     return kept
@@ -90,8 +90,10 @@ def settled(before: Noise, after: Noise) -> bool:
     used = after.used
     change = np.abs(np.log(after.u[used] / before.u[used]))
     memory = [abs(after.scatter[c].memory - before.scatter[c].memory) for c in after.channels]
+    spans = [after.scatter[c].span is before.scatter[c].span for c in after.channels]
     return not (
-        np.median(change) > constants.SCATTER_SETTLED
+        not all(spans)
+        or np.median(change) > constants.SCATTER_SETTLED
         or np.quantile(change, 0.95) > constants.SCATTER_SETTLED_TAIL
         or max(memory) > constants.SCATTER_SETTLED
     )
