@@ -83,6 +83,11 @@ class Noise:
         """Names (c,) of the channels."""
         return tuple(self.scatter)
 
+    @property
+    def offset(self) -> frozenset[str]:
+        """Ids of the effects that offset runs beyond what errors with a memory explain."""
+        return frozenset(effect for effect, found in self.offsets.items() if found.beyond > 0.0)
+
     def of_channel(self, readings: np.ndarray, channel: str) -> np.ndarray:
         """The part (n,) of readings (c n,) that belongs to a channel."""
         part: np.ndarray = np.split(readings, len(self.channels))[self.channels.index(channel)]

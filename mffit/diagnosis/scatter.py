@@ -43,6 +43,9 @@ class ExplainingColumns:
     named: np.ndarray  #: effects, coefficients, bumps
     runs: Mapping[str, np.ndarray]  #: by id, effects that differ by run: rivals of errors correlated along it
     smooth: np.ndarray  #: low-order structure; its amplitude is found with the scatter
+    withdrawn: bool = (
+        False  #: whether none of the effects that differ by run is there, however likely beside the memory
+    )
 
 
 def learned(noise: Noise, residual: np.ndarray, explained: ExplainingColumns, size: np.ndarray) -> Noise:
@@ -69,7 +72,9 @@ def learned(noise: Noise, residual: np.ndarray, explained: ExplainingColumns, si
         )
         runs = {effect: _occurring(columns[rows]) for effect, columns in explained.runs.items()}
         courses = _courses(channel, {span: chain[rows] for span, chain in noise.longer.items()})
-        scatter[name], weight[rows], here = _of_channel(courses, runs, noise.scatter[name])
+        needed = constants.RUN_OFFSET_LOG_ODDS + math.log(max(len(runs), 1))
+        needed = math.inf if explained.withdrawn else needed
+        scatter[name], weight[rows], here = _of_channel(courses, runs, noise.scatter[name], needed)
         for effect, (odds, needed, larger, _) in here.items():
             other = offsets.get(effect, here[effect])
             both = odds + other.log_odds if effect in offsets else odds
@@ -107,12 +112,12 @@ def _courses(channel: MarginalChannel, longer: Mapping[Span, np.ndarray]) -> lis
 
 
 def _of_channel(
-    courses: Sequence[MarginalChannel], runs: Mapping[str, np.ndarray], start: Scatter
+    courses: Sequence[MarginalChannel], runs: Mapping[str, np.ndarray], start: Scatter, needed: float
 ) -> tuple[Scatter, np.ndarray, dict[str, RunOffsets]]:
     """The scatter, the weight of every reading (m,), and the offsets of runs by effect.
 
-    ``courses`` are the channel with a memory along each of several chains. There are no offsets if the readings show no memory:
-    nothing else looks like them.
+    ``courses`` are the channel with a memory along each of several chains; ``needed`` are log odds that offsets need. There are
+    none if the readings show no memory: nothing else looks like them.
     """
     first = MarginalParts(
         math.log(start.scale), start.growth, start.memory, constants.SCATTER_START_SMOOTH
@@ -128,7 +133,6 @@ def _of_channel(
             channel, parts, tails = _weighted(courses[0], parts, drift=several, near=True)
             courses = [one.weighing(channel.weight) for one in courses]
         # Offsets of whole runs and a memory give runs the same means: each is fitted beside the other.
-        needed = constants.RUN_OFFSET_LOG_ODDS + math.log(max(len(runs), 1))
         most, best = needed, None
         alone = log_evidence([one.condensed(parts.smooth) for one in courses], parts)
         for effect, columns in runs.items():
@@ -210,13 +214,14 @@ def _accepted(
     every = (*every, INDEPENDENT) if start.independent else every
     starts = (start,) if near else (start, second)
     best, whole = max((_climb(channel, x, every) for x in starts), key=lambda climb: climb[1])
-    if drift and not best.independent:
+    if drift and not (near and best.independent):
         # A single memory may be a compromise between both parts that is no better than none.
         longer = float(constants.LONG_MEMORY)
         two = best._replace(memory=longer, independent=float(constants.SCATTER_START_INDEPENDENT))
-        other, more = _climb(channel, two, (*every, INDEPENDENT))
-        if more - whole > constants.SCATTER_PART_GAIN:
-            best, whole, every = other, more, (*every, INDEPENDENT)
+        free = tuple(dict.fromkeys((*every, INDEPENDENT)))
+        other, more = _climb(channel, two, free)
+        if more - whole > (0.0 if best.independent else constants.SCATTER_PART_GAIN):
+            best, whole, every = other, more, free
     # Beside offsets of runs a memory stays that was found without them: drifts within the runs are no structure of the model.
     for part in (GROWTH, MEMORY) if channel.runs is None else (GROWTH,):
         lost = (MEMORY, INDEPENDENT) if part == MEMORY else (part,)
