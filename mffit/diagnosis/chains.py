@@ -5,9 +5,18 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from enum import Enum
 
 import numpy as np
 from scipy.linalg.lapack import dtbtrs
+
+
+class Span(Enum):
+    """What errors with a memory run through before they begin anew, in words."""
+
+    SWEEP = "a sweep"
+    FILE = "a file"
+    PROGRAMME = "the programme"
 
 
 @dataclass(frozen=True, slots=True)
@@ -18,13 +27,23 @@ class Chains:
     place: np.ndarray  #: (m,) place of each of these within its chain, from 0
 
     @classmethod
-    def of(cls, chain: np.ndarray) -> Chains:
-        """The chains of readings, from the number (m,) of the chain of each; within a chain they keep their order."""
-        order = np.argsort(chain, kind="stable")
+    def of(cls, chain: np.ndarray, turn: np.ndarray | None = None) -> Chains:
+        """The chains of readings, from the number (m,) of the chain of each.
+
+        Within a chain they are ordered by ``turn`` (m,), if that is given, and a turn that is left out begins another chain; else
+        they keep their order.
+        """
+        order = np.argsort(chain, kind="stable") if turn is None else np.lexsort((turn, chain))
         at = np.arange(len(order))
         begins = np.ones(len(order), dtype=bool)
         begins[1:] = chain[order][1:] != chain[order][:-1]
+        if turn is not None:
+            begins[1:] |= np.diff(turn[order]) != 1
         return cls(order, at - np.maximum.accumulate(np.where(begins, at, 0)))
+
+    def same_as(self, other: Chains) -> bool:
+        """Whether other chains of the same readings are these."""
+        return np.array_equal(self.order, other.order) and np.array_equal(self.place, other.place)
 
     @property
     def longest(self) -> int:

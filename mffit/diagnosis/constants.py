@@ -77,6 +77,17 @@ MEMORY_BOUNDS = Series(
 INDEPENDENT_BOUNDS = Series(
     (0.0, 0.95), "-", "Bounds of the share of errors without memory beside those with."
 )
+LONGEST_PAUSE = Real(
+    3.0, "-", "Time between two points over the usual one, above which errors with a memory begin anew."
+)
+LIKELY_SPAN = Real(
+    6.0,
+    "-",
+    "Log likelihood below that of the best chains at which others are left out: a four-hundredth of the probability.",
+)
+NEGLIGIBLE_CHANGE = Real(
+    1e-4, "-", "Variance of a direction of changes, over that of a reading, below which it is left out."
+)
 SCATTER_START_INDEPENDENT = Real(0.3, "-", "Independent share at which its search starts.")
 LONG_MEMORY = Real(0.97, "-", "Memory at which a second search starts, for errors that drift within a run.")
 SCATTER_SMOOTH_BOUNDS = Series((1e-4, 0.3), "-", "Bounds of the smooth amplitude in the search for scatter.")

@@ -43,14 +43,23 @@ def explain(
     measured = np.concatenate([points.channel(name) for name in channels])
     misfit = measured - start.predict(points, channels)
     found: Explanation | None = None
-    at, noise = start, stated
+    at, noise, without_offsets = start, stated, False
     for _ in range(constants.MOST_EXPLANATION_ROUNDS):
-        if found is not None and not inexact and all(e.differs_by_run for e in found.chosen.effects):
+        lost = found is not None and bool(noise.offset) and not noise.offset & found.chosen.ids
+        if (
+            found is not None
+            and not (lost or inexact)
+            and all(e.differs_by_run for e in found.chosen.effects)
+        ):
             break  # the scatter was learned from these very residuals
+        # Beside structure without a name offsets of runs were not chosen: then the noise is not what they leave.
+        without_offsets = without_offsets or lost
         before, state = noise, start if found is None else found.without_run_offsets
-        noise = learned_noise(stated, before, points, state, candidates, inexact, basis)
+        noise = learned_noise(
+            stated, before, points, state, candidates, inexact, basis, without_offsets=without_offsets
+        )
         around_start = bool(inexact) and at is start
-        if found is not None and settled(before, noise) and not around_start:
+        if found is not None and settled(before, noise) and not (around_start or lost):
             break
         offset = None
         if found is not None and inexact:

@@ -8,7 +8,6 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from mffit.diagnosis import constants
 from mffit.diagnosis.bumps import Bump, BumpScan
 from mffit.diagnosis.hypothesis import Hypothesis
 from mffit.diagnosis.imitation import is_no_imitation
@@ -127,8 +126,7 @@ class Explanation:
         gain, left = chosen.log_evidence - without.log_evidence, self.left(chosen)
         against = gain + left - self.left(without) - math.log(max(len(self.steps[0].trials), 1))
         if effect.id in self.problem.noise.offsets:  # a memory of the errors is another rival
-            offsets = self.problem.noise.offsets[effect.id]
-            against = min(against, offsets.log_odds - constants.RUN_OFFSET_LOG_ODDS)
+            against = min(against, self.problem.noise.offsets[effect.id].beyond)
         open_ = left + (self.smooth.gain if self.smooth.found else 0.0)
         explains = max(gain, self.unaided.get(effect.id, 0.0), 0.0)
         share = explains / (explains + open_) if open_ else 1.0

@@ -27,10 +27,12 @@ def learned_noise(
     candidates: Sequence[Effect],
     inexact: Inexactness,
     basis: np.ndarray,
+    *,
+    without_offsets: bool = False,
 ) -> Noise:
     """The noise with the scatter that stays when every candidate, coefficient and structure may explain the misfit.
 
-    The search starts at the noise ``before``, as found in the last round.
+    The search starts at the noise ``before``, as found in the last round. ``without_offsets``: no run is offset.
     """
     problem = DiagnosisProblem(points, state, stated.alone())
     predicted = np.nan_to_num(problem.predict(state))
@@ -45,7 +47,7 @@ def learned_noise(
         [nothing, *(generous * g for g in others), inexact.columns(points, state, problem.channels)]
     )
     named = _with_bumps(problem, residual, named, basis)
-    explained = ExplainingColumns(named=named, runs=runs, smooth=basis)
+    explained = ExplainingColumns(named=named, runs=runs, smooth=basis, withdrawn=without_offsets)
     return learned(replace(stated, scatter=before.scatter), residual, explained, predicted).alone()
 
 
@@ -79,7 +81,7 @@ def beyond_memory(noise: Noise, candidates: Sequence[Effect]) -> list[Effect]:
         offsets = noise.offsets.get(effect.id)
         if offsets is None:
             kept.append(effect)
-        elif offsets.log_odds > constants.RUN_OFFSET_LOG_ODDS:
+        elif effect.id in noise.offset:
             wider = max(offsets.size, 1.0)
             kept.append(replace(effect, free=tuple(replace(f, spread=wider * f.spread) for f in effect.free)))
     return kept
@@ -90,8 +92,10 @@ def settled(before: Noise, after: Noise) -> bool:
     used = after.used
     change = np.abs(np.log(after.u[used] / before.u[used]))
     memory = [abs(after.scatter[c].memory - before.scatter[c].memory) for c in after.channels]
+    spans = [after.scatter[c].span is before.scatter[c].span for c in after.channels]
     return not (
-        np.median(change) > constants.SCATTER_SETTLED
+        not all(spans)
+        or np.median(change) > constants.SCATTER_SETTLED
         or np.quantile(change, 0.95) > constants.SCATTER_SETTLED_TAIL
         or max(memory) > constants.SCATTER_SETTLED
     )

@@ -12,7 +12,7 @@ from scipy.linalg import cho_solve, cholesky, solve_triangular
 from scipy.linalg.lapack import dpotri
 
 from mffit.diagnosis import constants
-from mffit.diagnosis.chains import Chains, Correlation
+from mffit.diagnosis.chains import Chains, Correlation, Span
 
 
 class MarginalParts(NamedTuple):
@@ -40,11 +40,39 @@ class MarginalChannel:
     runs: np.ndarray | None = (
         None  #: (m, k) the same of offsets of runs at their usual size; None: they are not considered
     )
+    span: Span = Span.SWEEP  #: the chains of its memory
+    course: np.ndarray | None = None  #: number of the chain of each reading, if that is longer than a sweep
+    turn: np.ndarray | None = None  #: place of each reading in time
     least: float = 0.0  #: standard uncertainty that is always added, for readings without noise
 
     def beside(self, columns: np.ndarray) -> MarginalChannel:
         """The same with offsets of runs, whose changes (m, k) have the usual size."""
         return replace(self, runs=columns)
+
+    def along(self, span: Span, course: np.ndarray) -> MarginalChannel:
+        """The same with errors whose memory runs through other chains (m,)."""
+        return replace(self, span=span, course=course)
+
+    def weighing(self, weight: np.ndarray) -> MarginalChannel:
+        """The same with other weights (m,) of the readings."""
+        return replace(self, weight=weight)
+
+    def condensed(self, smooth: float) -> MarginalChannel:
+        """The same with fewer columns, which change as much: smooth structure of this amplitude is among the named changes.
+
+        Directions of hardly any change are left out.
+        """
+        u = np.hypot(self.stated, self.least)
+        both = np.column_stack([self.named, smooth * self.smooth]) / u[:, None]
+        axes, size, _ = np.linalg.svd(both, full_matrices=False)
+        some = size**2 > constants.NEGLIGIBLE_CHANGE
+        named = axes[:, some] * size[some] * u[:, None]
+        return replace(self, named=named, smooth=self.smooth[:, :0])
+
+    @property
+    def chains(self) -> Chains:
+        """The chains of the readings that the likelihood uses."""
+        return self._sample[1]
 
     def likelihood(self, parts: MarginalParts) -> float:
         """Logarithm of the marginal likelihood, with the prior of the scale; of some whole sweeps if there are many."""
@@ -94,8 +122,8 @@ class MarginalChannel:
 
     def standardised(self, parts: MarginalParts) -> np.ndarray:
         """Every reading (m,) against its prediction from all others, in units of their joint uncertainty at weight 1."""
-        rows = np.argsort(self.chain, kind="stable")
-        r, A, _ = self._white(parts, rows, *self._columns_of(rows))
+        rows, chains, columns = self._chained(np.arange(len(self.chain)))
+        r, A, _ = self._white(parts, rows, chains, columns)
         root = _factor(A)
         left = r - A @ cho_solve((root, True), A.T @ r, check_finite=False)
         B = solve_triangular(root, A.T, lower=True, check_finite=False)
@@ -111,16 +139,20 @@ class MarginalChannel:
 
     @cached_property
     def _sample(self) -> tuple[np.ndarray, Chains, np.ndarray]:
-        """Indices of the readings that the likelihood uses, sweep after sweep, with their sweeps and columns."""
-        rows = _some_sweeps(self.chain)
-        rows = rows[np.argsort(self.chain[rows], kind="stable")]
-        return rows, *self._columns_of(rows)
+        """Indices of the readings that the likelihood uses, chain after chain, with their chains and columns."""
+        return self._chained(_some_sweeps(self.chain))
 
-    def _columns_of(self, rows: np.ndarray) -> tuple[Chains, np.ndarray]:
-        """Sweeps of some readings, and their residual and columns (m, 1 + k) at full size."""
+    def _chained(self, rows: np.ndarray) -> tuple[np.ndarray, Chains, np.ndarray]:
+        """Some readings chain after chain, with their chains, and their residual and columns (m, 1 + k) at full size."""
+        if self.course is None or self.turn is None:
+            rows = rows[np.argsort(self.chain[rows], kind="stable")]
+            chains = Chains.of(self.chain[rows])
+        else:
+            rows = rows[np.lexsort((self.turn[rows], self.course[rows]))]
+            chains = Chains.of(self.course[rows], self.turn[rows])
         some = [self.residual[rows, None], self.named[rows], self.smooth[rows]]
         some += [self.runs[rows]] if self.runs is not None else []
-        return Chains.of(self.chain[rows]), np.asfortranarray(np.column_stack(some))
+        return rows, chains, np.asfortranarray(np.column_stack(some))
 
     def _white(
         self, parts: MarginalParts, rows: np.ndarray, chains: Chains, columns: np.ndarray

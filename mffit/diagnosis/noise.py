@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from mffit.diagnosis.chains import Chains, Correlation
+from mffit.diagnosis.chains import Chains, Correlation, Span
 from mffit.quantities import SIDEWAYS
 from mffit.scatter import finite_median, rms
 
@@ -28,9 +28,10 @@ class Scatter:
 
     scale: float = 1.0  #: uncertainty over the stated one
     growth: float = 0.0  #: standard uncertainty over the reading, added in quadrature
-    memory: float = 0.0  #: correlation from one point to the next along a sweep, of the part that has one
+    memory: float = 0.0  #: correlation from one point to the next along a chain, of the part that has one
     independent: float = 0.0  #: share of the variance without memory, beside a part with one
     tails: float = np.inf  #: degrees of freedom of Student's t, infinite where the scatter is normal
+    span: Span = Span.SWEEP  #: the chains along which errors have their memory
     without_noise: bool = (
         False  #: whether the readings hardly scatter, as those of a simulation; the noise is assumed
     )
@@ -40,8 +41,16 @@ class RunOffsets(NamedTuple):
     """Offsets of whole runs, as the likelihood of the scatter sees them beside errors with a memory."""
 
     log_odds: float  #: logarithm of the odds against the memory alone that the readings give
+    needed: (
+        float  #: the same that are needed: the prior odds of any such offsets are shared among their kinds
+    )
     size: float  #: over the usual one
     channels: frozenset[str]  #: with a memory, in which the offsets appear
+
+    @property
+    def beyond(self) -> float:
+        """Logarithm of the odds for these offsets after the readings, negative if a memory alone is likelier."""
+        return self.log_odds - self.needed
 
 
 @dataclass(frozen=True)
@@ -49,7 +58,7 @@ class Noise:
     """Covariance of the readings, and the whitening that goes with it.
 
     The readings (c n,) are those of n points in c channels, one channel after the other. Their covariance is D M D + S S':
-    independent uncertainties D; M with ``memory`` to the power of the distance along each sweep, times 1 less the
+    independent uncertainties D; M with ``memory`` to the power of the distance along each chain, times 1 less the
     ``independent`` share; and columns S of changes that several readings share, one standard deviation each.
     """
 
@@ -59,6 +68,11 @@ class Noise:
     origin: Origin | None  #: of the uncertainties of Fy; None if it was not measured
     scatter: Mapping[str, Scatter] = field(default_factory=lambda: dict.fromkeys(SIDEWAYS, Scatter()))
     """By channel, in the order of the readings."""
+    longer: Mapping[Span, np.ndarray] = field(default_factory=dict)
+    """Longer chains than sweeps that are possible, (c n,) each."""
+    turn: np.ndarray | None = (
+        None  #: (c n,) place of every reading in time among those of its channel; None if no chain is longer
+    )
     weight: np.ndarray | None = None  #: (c n,) of each reading, below 1 for outliers; None: all 1
     shared: np.ndarray | None = None  #: (c n, k) changes that readings share, one standard deviation each
     offsets: Mapping[str, RunOffsets] = field(default_factory=dict)
@@ -68,6 +82,11 @@ class Noise:
     def channels(self) -> tuple[str, ...]:
         """Names (c,) of the channels."""
         return tuple(self.scatter)
+
+    @property
+    def offset(self) -> frozenset[str]:
+        """Ids of the effects that offset runs beyond what errors with a memory explain."""
+        return frozenset(effect for effect, found in self.offsets.items() if found.beyond > 0.0)
 
     def of_channel(self, readings: np.ndarray, channel: str) -> np.ndarray:
         """The part (n,) of readings (c n,) that belongs to a channel."""
@@ -95,8 +114,16 @@ class Noise:
     def _correlation(self) -> Correlation:
         """The correlation of the used readings along their chains."""
         channel = self.used // (len(self.u) // len(self.channels))
-        parts = [(channel == k, s.memory, s.independent) for k, s in enumerate(self.scatter.values())]
-        return Correlation.along(Chains.of(self.chain[self.used]), parts)
+        chain, turn, parts = self.chain[self.used], np.zeros(len(self.used), dtype=int), []
+        for k, scatter in enumerate(self.scatter.values()):
+            own = channel == k
+            parts.append((own, scatter.memory, scatter.independent))
+            if scatter.span in self.longer and self.turn is not None:
+                chain[own], turn[own] = self.longer[scatter.span][self.used][own], self.turn[self.used][own]
+            else:
+                turn[np.flatnonzero(own)[np.argsort(chain[own], kind="stable")]] = np.arange(np.sum(own))
+        _, chain = np.unique(np.column_stack([channel, chain]), axis=0, return_inverse=True)
+        return Correlation.along(Chains.of(chain.ravel(), turn), parts)
 
     @cached_property
     def _axes(self) -> tuple[np.ndarray, np.ndarray]:
@@ -139,6 +166,8 @@ class Noise:
             u=self.of_channel(self.u, channel),
             stated=self.of_channel(self.stated, channel),
             chain=self.of_channel(self.chain, channel),
+            longer={span: self.of_channel(chain, channel) for span, chain in self.longer.items()},
+            turn=None if self.turn is None else self.of_channel(self.turn, channel),
             weight=None if self.weight is None else self.of_channel(self.weight, channel),
             scatter={channel: self.scatter[channel]},
             shared=None,
@@ -185,6 +214,8 @@ class Noise:
             u=self.u[rows],
             stated=self.stated[rows],
             chain=self.chain[rows],
+            longer={span: chain[rows] for span, chain in self.longer.items()},
+            turn=None if self.turn is None else self.turn[rows],
             weight=None if self.weight is None else self.weight[rows],
             shared=None if self.shared is None else self.shared[rows],
         )

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -33,13 +33,18 @@ MODELS = tuple(
 )
 
 
-def log_evidence(channel: MarginalChannel, parts: MarginalParts) -> float:
+def log_evidence(channels: Sequence[MarginalChannel], parts: MarginalParts) -> float:
     """Logarithm of the probability of the readings, with offsets of runs if the channel considers them, else without.
 
-    The descriptions of the errors, and in each of them scale, memory, independent share and size of the offsets, are integrated
-    over their priors. The search begins at ``parts``.
+    ``channels`` are one channel with a memory along different chains, equally probable. They, the descriptions of the errors,
+    and in each of these scale, memory, independent share and size of the offsets, are integrated over their priors. The search
+    begins at ``parts``.
     """
-    logs = [math.log(model.probability) + _of_model(channel, parts, model) for model in MODELS]
+    logs = []
+    for model in MODELS:
+        alike = channels if model.memory else channels[:1]
+        share = math.log(model.probability / len(alike))
+        logs += [share + _of_model(channel, parts, model) for channel in alike]
     return float(np.logaddexp.reduce(logs))
 
 

@@ -7,13 +7,14 @@ their priors, so that the scatter is what none of them explains.
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.optimize import minimize
 
 from mffit.diagnosis import constants
+from mffit.diagnosis.chains import Span
 from mffit.diagnosis.marginal import MarginalChannel, MarginalParts
 from mffit.diagnosis.noise import Noise, RunOffsets, Scatter
 from mffit.diagnosis.run_means import log_evidence
@@ -42,6 +43,9 @@ class ExplainingColumns:
     named: np.ndarray  #: effects, coefficients, bumps
     runs: Mapping[str, np.ndarray]  #: by id, effects that differ by run: rivals of errors correlated along it
     smooth: np.ndarray  #: low-order structure; its amplitude is found with the scatter
+    withdrawn: bool = (
+        False  #: whether none of the effects that differ by run is there, however likely beside the memory
+    )
 
 
 def learned(noise: Noise, residual: np.ndarray, explained: ExplainingColumns, size: np.ndarray) -> Noise:
@@ -60,18 +64,21 @@ def learned(noise: Noise, residual: np.ndarray, explained: ExplainingColumns, si
             residual=np.nan_to_num(residual[rows]),
             size=np.abs(np.nan_to_num(size[rows])),
             chain=noise.chain[rows],
+            turn=None if noise.turn is None else noise.turn[rows],
             named=_occurring(explained.named[rows]),
             smooth=_occurring(explained.smooth[rows]),
             weight=np.ones(len(rows)),
             least=0.5 * constants.NO_NOISE_SHARE * rms(size[rows]),
         )
         runs = {effect: _occurring(columns[rows]) for effect, columns in explained.runs.items()}
-        scatter[name], weight[rows], here = _of_channel(channel, runs, noise.scatter[name])
-        for effect, (odds, larger, _) in here.items():
-            other = offsets.get(effect, RunOffsets(0.0, 0.0, frozenset()))
-            offsets[effect] = RunOffsets(
-                other.log_odds + odds, max(other.size, larger), other.channels | {name}
-            )
+        courses = _courses(channel, {span: chain[rows] for span, chain in noise.longer.items()})
+        needed = constants.RUN_OFFSET_LOG_ODDS + math.log(max(len(runs), 1))
+        needed = math.inf if explained.withdrawn else needed
+        scatter[name], weight[rows], here = _of_channel(courses, runs, noise.scatter[name], needed)
+        for effect, (odds, needed, larger, _) in here.items():
+            other = offsets.get(effect, here[effect])
+            both = odds + other.log_odds if effect in offsets else odds
+            offsets[effect] = RunOffsets(both, needed, max(other.size, larger), other.channels | {name})
     found = replace(noise.scattering(scatter, size, weight), offsets=offsets)
     return _at_least_of_a_rig(found, size)
 
@@ -94,35 +101,75 @@ def _occurring(columns: np.ndarray) -> np.ndarray:
     return columns[:, np.any(columns != 0.0, axis=0)]
 
 
+def _courses(channel: MarginalChannel, longer: Mapping[Span, np.ndarray]) -> list[MarginalChannel]:
+    """The channel with a memory along each sweep, and along those longer chains (m,) that differ from shorter ones."""
+    found = [channel]
+    for span, course in longer.items():
+        other = channel.along(span, course)
+        if not any(other.chains.same_as(one.chains) for one in found):
+            found.append(other)
+    return found
+
+
 def _of_channel(
-    channel: MarginalChannel, runs: Mapping[str, np.ndarray], start: Scatter
+    courses: Sequence[MarginalChannel], runs: Mapping[str, np.ndarray], start: Scatter, needed: float
 ) -> tuple[Scatter, np.ndarray, dict[str, RunOffsets]]:
     """The scatter, the weight of every reading (m,), and the offsets of runs by effect.
 
-    There are no offsets if the readings show no memory: nothing else looks like them.
+    ``courses`` are the channel with a memory along each of several chains; ``needed`` are log odds that offsets need. There are
+    none if the readings show no memory: nothing else looks like them.
     """
-    first = MarginalParts(math.log(start.scale), start.growth, start.memory, constants.SCATTER_START_SMOOTH)
+    first = MarginalParts(
+        math.log(start.scale), start.growth, start.memory, constants.SCATTER_START_SMOOTH
+    )._replace(independent=start.independent if start.memory else 0.0)
     several = any(columns.shape[1] for columns in runs.values())
-    channel, parts, tails = _weighted(channel, first, drift=several)
+    # A memory shows most along the longest chains.
+    known = [one for one in courses if start.memory and one.span is start.span]
+    channel, parts, tails = _weighted((known or courses)[-1], first, drift=several)
     offsets: dict[str, RunOffsets] = {}
     if parts.memory:
+        courses = _likeliest([one.weighing(channel.weight) for one in courses], parts)
+        if courses[0].span is not channel.span:
+            channel, parts, tails = _weighted(courses[0], parts, drift=several, near=True)
+            courses = [one.weighing(channel.weight) for one in courses]
         # Offsets of whole runs and a memory give runs the same means: each is fitted beside the other.
-        most, best = float(constants.RUN_OFFSET_LOG_ODDS), None
-        alone = log_evidence(channel, parts)
+        most, best = needed, None
+        alone = log_evidence([one.condensed(parts.smooth) for one in courses], parts)
         for effect, columns in runs.items():
-            if columns.shape[1]:
-                beside = channel.beside(columns)
-                found = _with_offsets(beside, columns, parts)
-                odds = log_evidence(beside, found) - alone
-                offsets[effect] = RunOffsets(odds, found.offsets, frozenset())
-                if odds > most:
-                    most, best = odds, (beside, found)
+            if not columns.shape[1]:
+                continue
+            found = _with_offsets(channel.beside(columns), columns, parts)
+            beside = [one.beside(columns) for one in courses]
+            odds = log_evidence([one.condensed(found.smooth) for one in beside], found) - alone
+            if odds > needed:  # the memory may have as much smooth structure beside it
+                other = log_evidence([one.condensed(found.smooth) for one in courses], parts)
+                odds -= max(other - alone, 0.0)
+            offsets[effect] = RunOffsets(odds, needed, found.offsets, frozenset())
+            if odds > most:
+                most, best = odds, (beside, found)
         if best is not None:
-            channel, parts, tails = _weighted(*best, drift=True)
+            beside, parts = best
+            channel, parts, tails = _weighted(_likeliest(beside, parts)[0], parts, drift=True)
     scatter = Scatter(
-        math.exp(parts.log_scale), parts.growth, parts.memory, independent=parts.independent, tails=tails
+        math.exp(parts.log_scale),
+        parts.growth,
+        parts.memory,
+        independent=parts.independent,
+        span=channel.span,
+        tails=tails,
     )
     return scatter, channel.weight, offsets
+
+
+def _likeliest(courses: Sequence[MarginalChannel], parts: MarginalParts) -> list[MarginalChannel]:
+    """Those along chains that are likely, the likeliest first."""
+    if len(courses) == 1:
+        return list(courses)
+    free = [k for k in ALL if k != GROWTH or parts.growth]
+    free += [OFFSETS] * (courses[0].runs is not None) + [INDEPENDENT] * (parts.independent > 0.0)
+    climbed = [(one, _climb(one, parts, tuple(free))[1]) for one in courses]
+    climbed.sort(key=lambda row: -row[1])
+    return [one for one, value in climbed if value > climbed[0][1] - constants.LIKELY_SPAN]
 
 
 def _with_offsets(channel: MarginalChannel, runs: np.ndarray, parts: MarginalParts) -> MarginalParts:
@@ -135,15 +182,16 @@ def _with_offsets(channel: MarginalChannel, runs: np.ndarray, parts: MarginalPar
 
 
 def _weighted(
-    channel: MarginalChannel, parts: MarginalParts, *, drift: bool
+    channel: MarginalChannel, parts: MarginalParts, *, drift: bool, near: bool = False
 ) -> tuple[MarginalChannel, MarginalParts, float]:
     """The channel with its weights, and the parts and degrees of freedom that were found in turn with them.
 
     ``drift``: whether errors without memory beside those with one are considered, which tells drifts from offsets of runs.
+    ``near``: no other maximum than that near the start is sought.
     """
     tails = math.inf
     for again in range(constants.MOST_READING_WEIGHT_ROUNDS):
-        parts = _accepted(channel, parts, drift=drift, near=again > 0)
+        parts = _accepted(channel, parts, drift=drift, near=near or again > 0)
         z = channel.standardised(parts)
         before, (tails, width) = tails, heavy_tails(z)
         weight = weights(z, tails, width)
@@ -163,21 +211,25 @@ def _accepted(
     """
     second = MarginalParts(*constants.SCATTER_SECOND_START)._replace(offsets=start.offsets)
     every = (*ALL, OFFSETS) if channel.runs is not None else ALL
+    every = (*every, INDEPENDENT) if start.independent else every
     starts = (start,) if near else (start, second)
     best, whole = max((_climb(channel, x, every) for x in starts), key=lambda climb: climb[1])
-    for part in (GROWTH, MEMORY):
-        reduced = [0.0 if k == part else value for k, value in enumerate(best)]
-        free = tuple(k for k in every if k != part and (k not in (GROWTH, MEMORY) or best[k]))
+    if drift and not (near and best.independent):
+        # A single memory may be a compromise between both parts that is no better than none.
+        longer = float(constants.LONG_MEMORY)
+        two = best._replace(memory=longer, independent=float(constants.SCATTER_START_INDEPENDENT))
+        free = tuple(dict.fromkeys((*every, INDEPENDENT)))
+        other, more = _climb(channel, two, free)
+        if more - whole > (0.0 if best.independent else constants.SCATTER_PART_GAIN):
+            best, whole, every = other, more, free
+    # Beside offsets of runs a memory stays that was found without them: drifts within the runs are no structure of the model.
+    for part in (GROWTH, MEMORY) if channel.runs is None else (GROWTH,):
+        lost = (MEMORY, INDEPENDENT) if part == MEMORY else (part,)
+        reduced = [0.0 if k in lost else value for k, value in enumerate(best)]
+        free = tuple(k for k in every if k not in lost and (k not in (GROWTH, MEMORY) or best[k]))
         other, less = _climb(channel, MarginalParts(*reduced), free)
         if whole - less < constants.SCATTER_PART_GAIN:
             best, whole = other, less
-    if best.memory and drift:
-        longer = float(constants.LONG_MEMORY)
-        two = best._replace(memory=longer, independent=float(constants.SCATTER_START_INDEPENDENT))
-        free = tuple(k for k in (*every, INDEPENDENT) if k != GROWTH or best.growth)
-        other, more = _climb(channel, two, free)
-        if more - whole > constants.SCATTER_PART_GAIN:
-            best = other
     return best
 
 

@@ -7,6 +7,7 @@ from collections.abc import Collection, Iterable
 import numpy as np
 
 from mffit.diagnosis import constants
+from mffit.diagnosis.chains import Span
 from mffit.diagnosis.noise import Noise, Origin, Scatter
 from mffit.errors import InputError
 from mffit.points import Points
@@ -41,12 +42,40 @@ def with_uncertainties(
 
 
 def stated_noise(points: Points, origin: Origin | None = None, channels: Iterable[str] = SIDEWAYS) -> Noise:
-    """Independent noise of some channels as the points state it, with the sweeps along which errors may be correlated."""
+    """Independent noise of some channels as the points state it, with the chains along which errors may be correlated."""
     scatter = {name: Scatter() for name in CHANNELS if name in set(channels)}
     u = np.concatenate([points.u(name) for name in scatter])
     sweeps = 1 + int(points.sweep.max(initial=0))
     chain = np.concatenate([points.sweep + k * sweeps for k in range(len(scatter))])
-    return Noise(u=u, stated=u, chain=chain, origin=origin, scatter=scatter)
+    order, longer = _in_time(points)
+    turn = np.empty(len(u), dtype=int)
+    for k, known in enumerate(np.split(np.isfinite(u), len(scatter))):
+        turn[k * len(points) + order] = np.cumsum(known[order]) - 1  # among the readings of the channel
+    tiled = {span: np.tile(chain, len(scatter)) for span, chain in longer.items()}
+    return Noise(u=u, stated=u, chain=chain, origin=origin, scatter=scatter, longer=tiled, turn=turn)
+
+
+def _in_time(points: Points) -> tuple[np.ndarray, dict[Span, np.ndarray]]:
+    """Order (n,) in which the points were taken, and the chains (n,) longer than a sweep that were not interrupted.
+
+    The order is that of their times; within a file, and where times are unknown, that of the lines.
+    """
+    when = np.where(np.isfinite(points.t), points.t, points.time)
+    timed = bool(np.all(np.isfinite(when)))
+    when = when if timed else np.zeros(len(points))
+    begin = np.array([when[points.file == k].min(initial=np.inf) for k in range(len(points.files))])
+    order = np.lexsort((points.line, when, points.file, begin[points.file]))
+    step, next_file = np.diff(when[order]), np.diff(points.file[order]) != 0
+    pause = np.zeros(len(step), dtype=bool)
+    if timed and np.any(step > 0.0):
+        pause = (step < 0.0) | (step > constants.LONGEST_PAUSE * np.median(step[step > 0.0]))
+    spans = {Span.FILE: pause | next_file}
+    if timed and len(points.files) > 1:
+        spans[Span.PROGRAMME] = pause
+    chains = {span: np.empty(len(points), dtype=int) for span in spans}
+    for span, begins in spans.items():
+        chains[span][order] = np.append(0, np.cumsum(begins))
+    return order, chains
 
 
 def _of_channel(

@@ -281,7 +281,8 @@ def scatter(noise: Noise) -> list[str]:
             beside = (
                 f", {100.0 * part.independent:.0f} % of their variance is not" if part.independent else ""
             )
-            parts.append(f"neighbouring errors of a sweep are correlated ({part.memory:.2f}){beside}")
+            of = part.span.value
+            parts.append(f"neighbouring errors of {of} are correlated ({part.memory:.2f}){beside}")
         if math.isfinite(part.tails):
             parts.append("outliers are more frequent than in normal noise and lost their weight")
         out.append("; ".join(parts) + ".")
