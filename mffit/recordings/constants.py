@@ -56,6 +56,15 @@ ROLLING_RADIUS_RANGE = Series(
     (0.75, 1.25), "-", "Speed over rotation, in unloaded radii, if the rotation is the wheel's."
 )
 
+# Summaries of a test
+LARGEST_SUMMARY = Count(1_000_000, "bytes", "Larger tables are no list of runs.")
+SET_POINT_TOLERANCE = Real(
+    2.0,
+    "-",
+    "Distance of a recorded level from its set-point, in tolerances of a level: 16 % of the load, which programmes step by a "
+    "quarter.",
+)
+
 # Disc or belt
 ZERO_OF_A_DISC = Real(
     0.8,
