@@ -37,6 +37,9 @@ LARGEST_LEVER_ARM_IN_FEET = Real(
 )
 LORRY_LOAD = Real(10_000.0, "N", "Largest load above which the tyre is one of a lorry.")
 RECORDED_TIME_STEPS = Series((1e-5, 5.0), "s", "Time between samples of a moving angle.")
+SHORTEST_RECORDING = Real(
+    1.0, "s", "Shortest recording of a moving angle; a time that gives less is not in ms or us."
+)
 TIME_BETWEEN_POINTS = Series(
     (5.0, 3600.0),
     "s",
