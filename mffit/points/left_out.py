@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
@@ -30,6 +30,23 @@ class LeftOut:
     channel: str = ""  #: "" if the whole reading is meant
     weight: float = 0.0  #: smallest weight in the fit relative to an undoubted reading
     why: str
+
+
+def together(entries: Sequence[LeftOut], most: int) -> list[LeftOut]:
+    """The entries for a page: more than ``most`` of one rule, file, channel and weight as one, with the first reason."""
+    alike: dict[tuple[object, ...], list[LeftOut]] = {}
+    for one in entries:
+        alike.setdefault((one.file, one.by, one.rule, one.channel, one.weight), []).append(one)
+    shown: list[LeftOut] = []
+    for members in alike.values():
+        if len(members) <= most:
+            shown += members
+            continue
+        first = members[0]
+        lines = ", ".join(one.lines for one in members if one.lines)
+        why = f"{first.why}; and {len(members) - 1} more like it"
+        shown.append(replace(first, lines=lines, count=sum(one.count for one in members), why=why))
+    return shown
 
 
 def by_hand(excluded: Sequence[ExcludedRows]) -> tuple[LeftOut, ...]:

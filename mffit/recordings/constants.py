@@ -37,6 +37,9 @@ LARGEST_LEVER_ARM_IN_FEET = Real(
 )
 LORRY_LOAD = Real(10_000.0, "N", "Largest load above which the tyre is one of a lorry.")
 RECORDED_TIME_STEPS = Series((1e-5, 5.0), "s", "Time between samples of a moving angle.")
+SHORTEST_RECORDING = Real(
+    1.0, "s", "Shortest recording of a moving angle; a time that gives less is not in ms or us."
+)
 TIME_BETWEEN_POINTS = Series(
     (5.0, 3600.0),
     "s",
@@ -54,6 +57,15 @@ LARGEST_SLIP_AS_RATIO = Real(
 )
 ROLLING_RADIUS_RANGE = Series(
     (0.75, 1.25), "-", "Speed over rotation, in unloaded radii, if the rotation is the wheel's."
+)
+
+# Summaries of a test
+LARGEST_SUMMARY = Count(1_000_000, "bytes", "Larger tables are no list of runs.")
+SET_POINT_TOLERANCE = Real(
+    2.0,
+    "-",
+    "Distance of a recorded level from its set-point, in tolerances of a level: 16 % of the load, which programmes step by a "
+    "quarter.",
 )
 
 # Disc or belt

@@ -90,6 +90,7 @@ def project_text(
         ],
         *([ROLLING_RADIUS] if disc is not None else []),
         ["[columns]  # of all files", *_comments(of_all), *_columns(shared)],
+        *_bad_runs(sniffed, folder),
         *_sweeps(recordings, folder, shared, of_all),
     ]
     return "\n\n".join("\n".join(lines) for lines in tables) + "\n"
@@ -163,6 +164,15 @@ def _path(sniffed: Sniffed, disc: DiscPath | None, belt: bool) -> list[str]:
         '# path_centre =   # "left" or "right", where the disc\'s centre is, seen rolling forwards: fill this in',
         _given("path_radius", None, "m"),
     ]
+
+
+def _bad_runs(sniffed: Sniffed, folder: Path) -> list[list[str]]:
+    """The runs that a summary calls bad as [fit] exclude."""
+    entries = [
+        f"    {{ file = {quoted(relative(run.recording, folder))}, lines = {quoted(run.lines)}, why = {quoted(run.why)} }},"
+        for run in sniffed.bad_runs
+    ]
+    return [["[fit]", "exclude = [", *entries, "]"]] if entries else []
 
 
 def _sweeps(

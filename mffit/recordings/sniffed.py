@@ -19,6 +19,8 @@ from mffit.points.points import Points
 from mffit.points.steady import gaps
 from mffit.points.stretch import MOVE
 from mffit.recordings.guess import Guess, guesses
+from mffit.recordings.summary import BadRun, apart, bad_runs, two_specimens
+from mffit.recordings.summary import contradictions as against_summary
 from mffit.suspicion import contradictions, signatures, under_axes
 from mffit.suspicion.other_tyre import two_tyres
 from mffit.sweeps import formats
@@ -68,6 +70,7 @@ class Sniffed:
     ]  #: levels of load [N], camber [rad], pressure [Pa], speed [m/s] and, of slip sweeps, sideslip [rad]
 
     of_two_tyres: bool = False  #: the last warning says so
+    bad_runs: tuple[BadRun, ...] = ()  #: recordings that a summary of the test calls bad
 
     @property
     def points(self) -> Points:
@@ -95,17 +98,23 @@ def sniff(paths: Sequence[str | Path], *, unloaded_radius: float | None = None) 
     twice = [file for k, file in enumerate(files) if file in files[:k]]
     if twice:
         raise InputError("is named twice; remove one", file=twice[0])
+    files, summaries = apart(files)
     recordings = tuple(_recording(file, unloaded_radius) for file in files)
+    bad = bad_runs(summaries)
+    if len(bad) == len(files):
+        raise InputError(f"every run is bad, as {bad[0].why}", file=files[0])
     axes = _first_axes(recordings)
-    config = configuration_of(recordings, axes)
+    config = configuration_of(recordings, axes, bad)
     reading = read(config, may_be_empty=True)
     agreeing, wrong = axes_of(reading.points, axes, load_falls=axes == "sae")
     if agreeing and agreeing[0] != axes:
-        reading = read(configuration_of(recordings, agreeing[0]), may_be_empty=True)
-    two = next(iter(two_tyres.find(reading.points, config)), None)
-    if two is not None:
-        reading = reading._replace(warnings=(*reading.warnings, two_tyres.said(two.facts)))
-    return Sniffed(recordings, agreeing, wrong, reading, conditions_of(recordings, reading), two is not None)
+        reading = read(configuration_of(recordings, agreeing[0], bad), may_be_empty=True)
+    of_summaries = [f"{each.recording} is left out: {each.why}" for each in bad]
+    of_summaries += against_summary(summaries, reading)
+    two = [two_tyres.said(found.facts) for found in two_tyres.find(reading.points, config)][:1]
+    two = two or [sentence for sentence in (two_specimens(summaries),) if sentence]
+    reading = reading._replace(warnings=(*reading.warnings, *of_summaries, *two))
+    return Sniffed(recordings, agreeing, wrong, reading, conditions_of(recordings, reading), bool(two), bad)
 
 
 def files_of(path: str | Path) -> list[Path]:
@@ -181,8 +190,8 @@ def _first_axes(recordings: Sequence[SniffedRecording]) -> str:
     return "sae" if any(negative) else "iso"
 
 
-def configuration_of(recordings: Sequence[SniffedRecording], axes: str) -> Config:
-    """A configuration that reads these files, with a placeholder for the tyre."""
+def configuration_of(recordings: Sequence[SniffedRecording], axes: str, bad: Sequence[BadRun] = ()) -> Config:
+    """A configuration that reads these files without the bad runs, with a placeholder for the tyre."""
     sweeps = [
         {
             "file": str(recording.path.absolute()),
@@ -195,6 +204,11 @@ def configuration_of(recordings: Sequence[SniffedRecording], axes: str) -> Confi
     content = {
         "tyre": {"name": "sniffed", **STAND_IN},
         "rig": {"type": "flat-track", "axes": axes},
+        "fit": {
+            "exclude": [
+                {"file": str(run.recording.absolute()), "lines": run.lines, "why": run.why} for run in bad
+            ]
+        },
         "sweep": sweeps,
     }
     return configuration.load(content)

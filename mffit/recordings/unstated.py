@@ -257,6 +257,10 @@ def _time(column: FoundChannel, alpha_deg: np.ndarray | None) -> Choice:
     step, rate = motion
     for unit in TIME_UNITS:
         seconds = factor(unit, "s")
+        if unit != "s" and seconds * float(np.ptp(column.values[np.isfinite(column.values)])) < (
+            constants.SHORTEST_RECORDING
+        ):
+            continue  # a table of finished points, not a recording
         if _within(step * seconds, constants.RECORDED_TIME_STEPS) and _within(
             rate / seconds, constants.STEERING_RATES
         ):

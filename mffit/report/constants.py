@@ -5,9 +5,19 @@ from __future__ import annotations
 from tir.constant import Count, Real, Series
 
 PICTURE_WIDTH = Real(792.0, "pt", "Width of a picture file: 11 inches, which fill a landscape page.")
+PAPER_WIDTH = Real(
+    680.0,
+    "px",
+    "Width of a sheet of A4 between the margins, for panels side by side, in which a point is a pixel: letters of 7.5 pt are "
+    "then 7 px or more.",
+)
 PICTURE_DPI = Count(110, "1/inch", "Resolution of picture files: sharp on a screen and small enough to mail.")
 PICTURE_COMPRESSION = Count(3, "-", "Level of PNG: twice as fast as the usual 6, for files a twelfth larger.")
-WIDEST_PANEL = Real(396.0, "pt", "A telephone, which shows one panel per row, shows no wider one.")
+WIDEST_PANEL = Real(
+    338.0,
+    "pt",
+    "Two lie side by side on a sheet of A4; a telephone, which shows one panel per row, shows no wider one.",
+)
 NARROWEST_PANEL = Real(150.0, "pt", "In narrower panels the axis numbers need more room than the data.")
 AXIS_ROOM = Real(0.05, "-", "Share of the data's range left free at both ends of an axis.")
 BAND_OPACITY = Real(0.25, "-", "Opacity of bands: three that overlap can still be told apart.")
@@ -121,6 +131,9 @@ GAP_IN_TIME_DRAWN = Real(0.004, "-", "Width of a closed gap in time, as a share 
 MOST_ROWS_COMPARED = Count(30, "-", "Most rows of a table in the page of a comparison; compare.json has all.")
 MOST_CANDIDATE_RUNS_IN_PAGE = Count(15, "-", "Candidate runs listed in the page of a plan.")
 MOST_CANDIDATE_RUNS_IN_TERMINAL = Count(6, "-", "Candidate runs listed in a terminal, which scrolls.")
+MOST_LEFT_OUT_ONE_BY_ONE = Count(
+    5, "-", "Readings of one file that one rule leaves out, listed one by one; more share a line of the page."
+)
 MOST_ROWS_IN_TERMINAL = Count(12, "-", "Most rows of a table in a terminal if a file or page has all.")
 
 LARGEST_SLIP_TO_DRAW = Real(0.2, "-", "Longitudinal slip to which the force of a sister tyre is drawn.")

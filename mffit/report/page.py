@@ -7,13 +7,14 @@ import io
 import zipfile
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 from urllib.parse import quote
 
 from mffit import rounding
 from mffit.errors import shortened
+from mffit.points.left_out import together
 from mffit.report import constants, left_undrawn, making, numbers, typeset
 from mffit.report.drawing.records import Sheet, long, with_shorter_series
 from mffit.templates import environment
@@ -102,6 +103,7 @@ def draw(
 def _environment() -> Environment:
     found = environment("mffit.report")
     found.filters["shortened"] = shortened
+    found.filters["together"] = partial(together, most=int(constants.MOST_LEFT_OUT_ONE_BY_ONE))
     for rounded in (
         rounding.number,
         rounding.with_u,

@@ -13,7 +13,6 @@ from mffit.points import Points, levels
 from mffit.suspicion import constants
 from mffit.suspicion.rule import Finding, Outcome, Subject, rule
 from mffit.suspicion.slopes import SIGNS, Signatures, at_zero, pooled, signatures
-from tir.errors import counted
 
 of_all_files = partial(rule, subject=Subject.ALL_FILES)
 
@@ -217,5 +216,5 @@ def hot_tread(points: Points, config: Config) -> Iterator[Finding]:
             found.append((points.files[k], middle))
     if found:
         first, others = found[0][0], len(found) - 1
-        where = f" in {first}" + f" and {counted(others, 'more file')}" * bool(others)
+        where = f" in {first}" + f" and {others} more" * bool(others)
         yield Finding({"degrees": found[0][1], "where": where})

@@ -23,7 +23,6 @@ from mffit.sweeps.raw_table import (
     with_decimal_point,
 )
 from mffit.sweeps.units import UnknownUnitError, converted
-from tir.errors import counted
 
 DIRECTIONS = {"forward": 1, "backward": -1, "1": 1, "+1": 1, "-1": -1}
 UNCERTAINTIES = tuple(u_column(name) for name in CHANNELS)
@@ -133,7 +132,7 @@ def _without_spreadsheet_errors(raw: RawTable, headings: Mapping[str, str]) -> t
             continue
         out |= wrong
         first = int(wrong.argmax())
-        also = f" and {counted(int(wrong.sum()) - 1, 'more cell')} of this kind" if wrong.sum() > 1 else ""
+        also = f" and {int(wrong.sum()) - 1} more of this kind" if wrong.sum() > 1 else ""
         done = "treated as missing" if "time_s" in headings else "the row is skipped"
         place = f"{raw.path}:{int(raw.lines[first])}: column {heading}"
         sentences.append(f'{place}: "{cells[first]}"{also} is no reading; {done}')
@@ -336,7 +335,7 @@ def _in_range(source: _Source, values: np.ndarray) -> _Read:
     unit = f" {channel.unit}" if channel.unit else ""
     sentence = f"{values[row]:g}{unit} is outside {channel.lower:g} to {channel.upper:g}{unit}"
     if not implausible(values, channel, may_have_gaps=source.may_have_gaps):
-        also = f" (with {counted(count - 1, 'more sample')})" if count > 1 else ""
+        also = f" (with {count - 1} more)" if count > 1 else ""
         warning = source.refusal(f"{sentence}{also}; treated as missing", row)
         return _Read(np.where(outside, np.nan, values), (str(warning),))
     hint = channel.below if values[row] < channel.lower else channel.above
@@ -365,7 +364,7 @@ def _positive(source: _Source, read: _Read) -> _Read:
             "is not above zero in any row, as a standard uncertainty must be; complete or remove the column",
             row,
         )
-    also = f" here and in {counted(count - 1, 'more row')}" if count > 1 else ""
+    also = f" here and in {count - 1} more {'row' if count == 2 else 'rows'}" if count > 1 else ""
     warning = source.refusal(f"{read.values[row]:g} is not above zero; treated as not stated{also}", row)
     return _Read(np.where(wrong, np.nan, read.values), (*read.warnings, str(warning)))
 

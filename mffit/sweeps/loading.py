@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -20,6 +22,9 @@ from mffit.sweeps.formats import ENDINGS, FORMATS, read
 from mffit.sweeps.frames import load_is_vertical, to_contact_frame, to_contact_point
 from mffit.sweeps.raw_table import RawTable
 from mffit.sweeps.sweep import ExcludedRows, Sweep, Sweeps
+from tir.errors import some
+
+NUMBER = re.compile(r"\d+(?:\.\d+)?")
 
 
 def load(config: Config) -> Sweeps:
@@ -38,6 +43,7 @@ def load(config: Config) -> Sweeps:
     found: list[Sweep] = []
     excluded: list[ExcludedRows] = []
     warnings: list[str] = []
+    of_columns: list[tuple[Path, str]] = []
     setups = setup_names(config.rig, config.sweep)
     for index, (entry, setup) in enumerate(zip(config.sweep, setups, strict=True)):
         raw, apart = _apart(config, entry, _raw(config, index, entry))
@@ -57,7 +63,7 @@ def load(config: Config) -> Sweeps:
         if raw is None:
             continue
         columns = _columns(config, index, entry, raw)
-        warnings.extend(columns.warnings)
+        of_columns.extend((raw.path, sentence) for sentence in columns.warnings)
         if entry.direction is not None and columns.direction is not None:
             warnings.extend(_contradicting(columns, entry, direction))
         found.extend(sweeps_of(columns, given))
@@ -68,6 +74,7 @@ def load(config: Config) -> Sweeps:
             line=config.line_of("fit.exclude"),
             key="fit.exclude",
         )
+    warnings = _once(of_columns) + warnings
     vertical = config.rig.force_frame == "C" and load_is_vertical(found)
     if config.rig.force_frame == "C":
         warnings.extend(_about_frame(found, vertical=vertical))
@@ -84,6 +91,21 @@ def load(config: Config) -> Sweeps:
         tuple(warnings),
         tuple(replace(rows, sweeps=tuple(in_iso_w(sweep) for sweep in rows.sweeps)) for rows in excluded),
     )
+
+
+def _once(warnings: Sequence[tuple[Path, str]]) -> list[str]:
+    """Warnings with their files, each kind once: of more than two files that differ in nothing but numbers, that of the first."""
+    alike: dict[str, list[tuple[Path, str]]] = {}
+    for path, sentence in warnings:
+        alike.setdefault(NUMBER.sub("0", sentence.removeprefix(str(path))), []).append((path, sentence))
+    said = []
+    for kind in alike.values():
+        if len(kind) > constants.MOST_WARNINGS_OF_A_KIND:
+            files = dict.fromkeys(path.name for path, _ in kind[1:])
+            said.append(f"{kind[0][1]}; {len(kind) - 1} more of this kind, in {some(list(files))}")
+        else:
+            said += [sentence for _, sentence in kind]
+    return said
 
 
 def load_file(path: str | Path, *, axes: str) -> Sweeps:

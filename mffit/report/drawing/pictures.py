@@ -58,7 +58,8 @@ class Picture:
     def markup(self) -> str:
         """HTML that a page arranges to its width."""
         widest = max(drawing.width for row in self.rows for drawing in row)
-        out = [f'<div class="panels" style="--widest:{widest:.2f}">']
+        abreast = max(1, int(constants.PAPER_WIDTH / widest))
+        out = [f'<div class="panels" style="--widest:{widest:.2f};--abreast:{abreast}">']
         for name, drawings in (("key", self.key), *(("row", row) for row in self.rows)):
             if drawings:
                 out += [f'<div class="{name}">', *(drawing.svg for drawing in drawings), "</div>"]

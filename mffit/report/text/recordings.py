@@ -12,7 +12,6 @@ from mffit.recordings.project_file import title_of
 from mffit.recordings.sniffed import Level, SniffedRecording
 from mffit.report import constants
 from mffit.report.text.layout import blocks, paragraphs, table
-from tir.errors import counted
 
 SETTINGS = {
     "load": ("N", 1.0, 0),
@@ -57,7 +56,7 @@ def _remarks(recordings: Sequence[SniffedRecording]) -> list[str]:
 
 def _named(recordings: Sequence[SniffedRecording]) -> str:
     first, *others = recordings
-    return f"{first.path} and {counted(len(others), 'more file')}" if others else str(first.path)
+    return f"{first.path} and {len(others)} more" if others else str(first.path)
 
 
 def _files(recordings: Sequence[SniffedRecording]) -> str:
@@ -79,7 +78,7 @@ def _files(recordings: Sequence[SniffedRecording]) -> str:
     texts = {_about(recording): None for recording in recordings}
     about = next(iter(texts)) if len(texts) == 1 else ""
     columns = table(("heading", "unit", "is", "range"), rows, left=3)
-    return "\n".join(part for part in (*heads, about, "", columns) if part or not about)
+    return "\n".join([*heads, *([about] if about else []), "", columns])
 
 
 def _head(recording: SniffedRecording) -> str:

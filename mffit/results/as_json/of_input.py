@@ -50,6 +50,9 @@ def sniffed(found: Sniffed) -> dict[str, Any]:
             name: [level._asdict() for level in levels] for name, levels in found.conditions.items()
         },
         "points": len(found.points),
+        "bad_runs": [
+            {"file": str(run.recording), "lines": run.lines, "why": run.why} for run in found.bad_runs
+        ],
         "stretches": stretch_table(found.reading.stretches).to_dict("records"),
         "warnings": list(found.reading.warnings),
     }

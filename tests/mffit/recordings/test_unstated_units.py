@@ -6,6 +6,7 @@ import tomllib
 from pathlib import Path
 
 import numpy as np
+import pandas as pd
 import pytest
 
 from mffit import pipeline
@@ -109,6 +110,23 @@ def test_the_rate_of_steering_distinguishes_steps_of_a_second_and_a_millisecond(
     slow = 9.0 * np.sin(np.linspace(0.0, 2.0, N))
     assert units(ET=np.arange(N), SA=slow)["time_s"] == "ms"
     assert units(ET=np.arange(N), SA=9.0 * np.sin(np.linspace(0.0, 200.0, N)))["time_s"] == "s"
+
+
+def test_rows_that_are_seconds_apart_are_finished_points_also_without_a_unit(tmp_path):
+    """Thirteen rows that are 20 apart are no recording of a quarter of a second."""
+    few = np.linspace(-8.0, 8.0, 13)
+    rows = {
+        "ET": 20.0 * np.arange(13),
+        "SA": few,
+        "IA": 0.0 * few,
+        "FZ": 900.0,
+        "FY": -300.0 * few,
+        "MZ": 3.0 * few,
+    }
+    pd.DataFrame(rows).to_csv(tmp_path / "a.csv", index=False)
+    (found,) = sniff([tmp_path / "a.csv"]).recordings
+    assert found.guesses["t_s"].unit == "s"
+    assert "time_s" not in found.guesses
 
 
 def test_a_time_that_fits_no_unit_is_called_unknown():

@@ -384,3 +384,16 @@ def test_points_between_thousands_are_read_where_a_comma_follows(tmp_path, cells
     path.write_text("Fz_N;Fy_N\n" + "".join(f"{cell};1\n" for cell in cells))
     raw = formats.read(path)
     assert tuple(map(float, raw.cells[0])) == values
+
+
+def test_a_kind_of_warning_is_given_once_with_the_other_files(project):
+    """A row of means in every file of a campaign is one warning; two files are named one by one."""
+    names = sorted(project.tables)
+    path = project.write()
+    for count in (2, len(names)):
+        for name in names[:count]:
+            text = project.tables[name].to_csv(index=False)
+            project.overwrite(name, text + "Mittelwert" + "," * text.splitlines()[0].count(",") + "\n")
+        said = [warning for warning in load(path).warnings if "Mittelwert" in warning]
+        assert len(said) == (2 if count == 2 else 1)
+    assert f"; {len(names) - 1} more of this kind, in " in said[0]
