@@ -90,9 +90,8 @@ def model_curve(
 ) -> list[Band | Trace]:
     """A channel of the model on a straight path with its band, drawn over ``at`` (m,); angles in radians."""
     tyre = Simulation.of(view.model, turn_slip=view.on_disc)
-    angles = (np.broadcast_to(angle, at.shape) for angle in (alpha, gamma))
-    slip, nominal = np.broadcast_to(kappa, at.shape), float(view.model["NOMPRES"])
-    where = make_points(*angles, load, kappa=slip, p=nominal, V=10.0, phi_t=0.0)
+    alpha, gamma, kappa = np.broadcast_arrays(alpha, gamma, kappa, at)[:3]
+    where = make_points(alpha, gamma, load, kappa=kappa, p=float(view.model["NOMPRES"]), V=10.0, phi_t=0.0)
     line = tyre.readings(where, (channel,))[channel]
     half = view.posterior.band(tyre, where, (channel,))[channel]
     look = Look(colour=colour, line="-", width=1.0)
