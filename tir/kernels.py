@@ -1,4 +1,4 @@
-"""The kernels of this process, and when it gets one without being asked.
+"""The compiled kernels of this process, and when one is loaded or compiled by itself.
 
 A meter counts what is computed without machine code. When that has taken about as long as loading the kernel takes, the kernel is
 loaded from the cache of the user; if it is not there, a thread compiles it while the calls go on. So a program with few calls

@@ -1,4 +1,4 @@
-"""Whether turn slip acts: one rule for calls and exports, and what speaks against a file's coefficients for it."""
+"""Whether turn slip acts: one rule for calls and exports, and warnings about a file's coefficients of turn slip."""
 
 from __future__ import annotations
 

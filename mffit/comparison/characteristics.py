@@ -78,7 +78,8 @@ def with_u(
     Returns
     -------
     numbers, uncertainties
-        Uncertainties are empty without a covariance; infinite ones are left out.
+        Uncertainties are empty without a covariance. Infinite ones are left out, and those of numbers that depend on none of the
+        coefficients, whose uncertainty is unknown.
     """
     here = of(tyre)
     if covariance is None:
@@ -89,6 +90,8 @@ def with_u(
         if step > 0.0:
             there = of(tyre.replace(**{name: float(tyre[name]) + step}))
             for key, value in here.items():
-                slopes[key][k] = (there[key] - value) / step
+                change = there[key] - value
+                if not abs(change) <= constants.ROUNDING_OF_NUMBERS * abs(value):
+                    slopes[key][k] = change / step
     found = {key: math.sqrt(max(float(g @ covariance @ g), 0.0)) for key, g in slopes.items()}
-    return here, {key: u for key, u in found.items() if math.isfinite(u)}
+    return here, {key: u for key, u in found.items() if math.isfinite(u) and u > 0.0}

@@ -15,3 +15,8 @@ COMPARED_SLIP = Real(
     "-",
     "Longest slip at which Fx is compared if the files allow more: well beyond the peak of every tyre.",
 )
+ROUNDING_OF_NUMBERS = Real(
+    1e-12,
+    "-",
+    "Relative changes of a compared number below this are rounding errors of floating-point arithmetic.",
+)

@@ -47,9 +47,9 @@ def _significant(found: Comparison) -> str:
     rows = [row for row in found.numbers if row.z is not None and abs(row.z) > limit]
     if rows:
         names = list(dict.fromkeys(quantity(row).word for row in rows))
-        return f"numbers that differ by more than {limit:g} u: {', '.join(names)}"
+        return f"numbers that differ by more than {limit:g} standard uncertainties: {', '.join(names)}"
     if any(row.z is not None for row in found.numbers):
-        return f"no number differs by more than {limit:g} u"
+        return f"no number differs by more than {limit:g} standard uncertainties"
     largest = max(found.numbers, key=lambda row: row.relative, default=None)
     if largest is None or not largest.relative:
         return "all numbers are equal"

@@ -1,4 +1,4 @@
-"""Whether whole runs are offset, or errors with a memory gave them their means: how probable each makes the readings."""
+"""Probability of the readings with offsets of whole runs, and with errors whose memory shifts the means of runs."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Coefficients of longitudinal and combined slip, relative to another nominal load and pressure."""
+"""Coefficients of longitudinal and combined slip converted to another nominal load and pressure."""
 
 from __future__ import annotations
 

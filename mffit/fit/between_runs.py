@@ -1,4 +1,4 @@
-"""What the fit found of each run's own friction and cornering stiffness, for the report and for result.json."""
+"""Friction and cornering stiffness of every run as the fit found them, for the report and for result.json."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Whether the tyre's temperature runs along with a setting of the test plan, and what that costs the coefficients."""
+"""Correlation of the tyre's temperature with settings of the test plan, and how much it widens the uncertainties."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""From the numbers of a fit, and what is known beside it, to the property files."""
+"""The property files of a fit, from its numbers and from what is known otherwise."""
 
 from __future__ import annotations
 

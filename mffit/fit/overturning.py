@@ -1,4 +1,4 @@
-"""What the points show of the overturning moment before the fit: its coefficients to start from, and the terms that it needs."""
+"""The overturning moment before the fit: starting values of its coefficients, and the terms that the points need."""
 
 from __future__ import annotations
 

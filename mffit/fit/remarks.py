@@ -1,4 +1,4 @@
-"""What the result of a fit says beside its files: where its bands hold, and what zeros alone have moved."""
+"""Remarks on the result of a fit: where its bands hold, and which coefficients only zeros have changed."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Scatter of grip and stiffness from run to run: its size, and what it does to the prediction of left-out readings.
+"""Scatter of grip and stiffness from run to run: its size, and its effect on the prediction of left-out readings.
 
 A run is a sweep. Its own numbers act on its own readings only, so they are eliminated run by run, and the equations that
 remain are those of the shared numbers.

@@ -273,7 +273,7 @@ def vertical_sentence(found: Vertical) -> str:
     misfit = " and ".join(f"{1e3 * x:.1f} mm ({sources[name]})" for name, x in found.rms.items())
     numbers = ", ".join(f"{name} {to_uncertainty(q.value, q.u)}" for name, q in found.found.items())
     grown = (
-        f" The free radius grows by {1e3 * found.growth:.1f} thousandths over one nominal pressure, which the file cannot say."
+        f" The free radius changes by {1e2 * found.growth:+.2f} % per nominal pressure, for which MF has no coefficient."
         if found.growth
         else ""
     )

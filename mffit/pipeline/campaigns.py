@@ -1,4 +1,4 @@
-"""Other campaigns of the same tyre: their projects, built for what they give to this one."""
+"""Builds of other campaigns of the same tyre, from which this project takes coefficients."""
 
 from __future__ import annotations
 

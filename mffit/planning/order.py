@@ -1,4 +1,4 @@
-"""An order of the runs in which warming does not run along with load, camber or pressure."""
+"""An order of the runs in which temperature does not change together with load, camber or pressure."""
 
 from __future__ import annotations
 

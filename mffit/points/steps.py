@@ -1,4 +1,4 @@
-"""Recordings that step the sideslip angle: samples that show over which rolled distance the side force follows."""
+"""Recordings with steps of the sideslip angle: samples that show over which rolled distance the side force follows."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Signs that recordings were made on a disc: without them, a curved path would be taken for a straight one."""
+"""Signs that recordings were made on a disc, whose curved path would otherwise be taken for a straight one."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Who may ask the window: this machine, by its own address, with the token; everything else is refused."""
+"""Access to the window: only from this machine, by its own address, with the token."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""``tyre.toml`` of an open window: read anew whenever it changed, written whole, with the steps back."""
+"""``tyre.toml`` of an open window: read again after every change, written as a whole, with undo."""
 
 from __future__ import annotations
 

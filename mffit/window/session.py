@@ -1,4 +1,4 @@
-"""What an open window knows: the project's file, the last fits, the run that is under way. All windows of a server share it."""
+"""State of an open project, shared by all windows of a server: the file, the last fits, the current run."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The lag of the contact: its deflections against the wheel, and the slips that they stand for; see :mod:`tir.transient`.
+"""The lag of the contact: its deflections against the wheel, and the slips that correspond to them; see :mod:`tir.transient`.
 
 u is forwards and v to the right [m]; slip speeds Vsx, Vsy [m/s]; sigma_x, sigma_y [m].
 """

@@ -1,4 +1,4 @@
-"""A line of text whose place is known in advance, drawn without matplotlib's layout, which took half the time of a picture."""
+"""Lines of text at known places, drawn without matplotlib's layout, which took half the time of a picture."""
 
 from __future__ import annotations
 

@@ -90,8 +90,8 @@ def model_curve(
 ) -> list[Band | Trace]:
     """A channel of the model on a straight path with its band, drawn over ``at`` (m,); angles in radians."""
     tyre = Simulation.of(view.model, turn_slip=view.on_disc)
-    alpha, gamma, slip = np.broadcast_arrays(alpha, gamma, kappa, np.empty(at.shape))[:3]
-    where = make_points(alpha, gamma, load, kappa=slip, p=float(view.model["NOMPRES"]), V=10.0, phi_t=0.0)
+    alpha, gamma, kappa = np.broadcast_arrays(alpha, gamma, kappa, at)[:3]
+    where = make_points(alpha, gamma, load, kappa=kappa, p=float(view.model["NOMPRES"]), V=10.0, phi_t=0.0)
     line = tyre.readings(where, (channel,))[channel]
     half = view.posterior.band(tyre, where, (channel,))[channel]
     look = Look(colour=colour, line="-", width=1.0)

@@ -38,7 +38,7 @@ def fleet_summary(found: Fleet) -> str:
     ]
     rigs = [
         (
-            f"{i} {words_of(name)}" if len(found.rigs) > 1 else words_of(name),
+            f"rig {i}: {words_of(name)}" if len(found.rigs) > 1 else words_of(name),
             with_u(value, u, unit_of(name)),
         )
         for i, rig in enumerate(found.rigs, 1)

@@ -71,6 +71,19 @@ def test_the_file_says_which_slips_were_run(found):
     assert found.written.status["KPUMAX"]
 
 
+def test_further_terms_of_the_overturning_moment_are_taken_only_where_they_predict_better(points):
+    """An arm of the side force is found beside the zero of the rig; where there is none, no term is added."""
+    values = {**belt.truth().values, "QSX1": 0.0, "QSX2": 0.0, "QSX3": 0.0}
+    plain = overturning_terms(points, values, "left", NO_HAND)
+    assert plain.predicting == ()
+    for name in ("QSX1", "QSX2", "QSX3"):
+        assert plain.start[name] == pytest.approx(belt.DRIVEN[name], rel=0.1, abs=1e-3), name
+    arm = 0.05 * 0.2992 * points.Fy
+    assert overturning_terms(replace(points, Mx=points.Mx + arm), values, "left", NO_HAND).predicting == (
+        "Mx-arm",
+    )
+
+
 def test_no_start_is_dead(points):
     """Every free coefficient changes some reading at the start: a product of factors that are all 0 would never move."""
     project = belt.config()

@@ -64,6 +64,7 @@ def test_the_numbers_of_the_runs_are_those_that_were_drawn(scattered):
     for name in NAMES:
         spread, u = result.fit.runs.scatter[name]
         assert abs(spread - SIZE) < 4.0 * u
+        assert u == pytest.approx(spread / np.sqrt(2.0 * len(drawn)))
         found = {run: result.fit.rig[f"{name}@{run}"] for run in drawn if "sideslip" in run}
         pulls = [(value - drawn[run][name]) / u for run, (value, u) in found.items()]
         assert np.max(np.abs(pulls)) < 4.0

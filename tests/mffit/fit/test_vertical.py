@@ -73,7 +73,7 @@ def test_stiffness_and_radii_are_recovered_with_their_errors():
         assert u < 0.1 * abs(true), name
     assert found.growth == pytest.approx(GROWTH, rel=0.05)
     assert max(found.rms.values()) < 3e-5
-    assert "grows by" in vertical_sentence(found)
+    assert "changes by +2.0" in vertical_sentence(found)
     # The file lacks the growth: 0.02 of 0.3 m over one nominal pressure, at -0.25, 0 and 0.25 of it.
     file = {**VALUES, **{name: q.value for name, q in found.found.items()}}
     for agreement in found.agreement(file).values():
