@@ -11,7 +11,7 @@ from typing import Any
 
 from starlette.applications import Starlette
 from starlette.concurrency import run_in_threadpool
-from starlette.requests import Request
+from starlette.requests import ClientDisconnect, Request
 from starlette.responses import FileResponse, HTMLResponse, JSONResponse, Response, StreamingResponse
 from starlette.routing import Route
 
@@ -101,13 +101,14 @@ def window_app(opened: Opened, *, token: str, port: int, closing: Callable[[], b
     async def store(request: Request) -> Response:
         if opened.folder is None or opened.has_project:
             return Response(status_code=404)
-        folder, name, content = opened.folder, request.path_params["name"], bytearray()
-        async for chunk in request.stream():
-            content += chunk
-            if len(content) > constants.LARGEST_RECORDING:
-                sentence = f"{name} is larger than {constants.LARGEST_RECORDING / 1e6:.0f} MB; copy it into the folder"
-                return JSONResponse({"error": sentence}, REFUSED)
-        return await _answer(lambda: {"name": folder.store(name, bytes(content)).name})
+        folder, name = opened.folder, request.path_params["name"]
+        content = await _body(request, int(constants.LARGEST_RECORDING))
+        if content is None:
+            sentence = (
+                f"{name} is larger than {constants.LARGEST_RECORDING / 1e6:.0f} MB; copy it into the folder"
+            )
+            return JSONResponse({"error": sentence}, REFUSED)
+        return await _answer(lambda: {"name": folder.store(name, content).name})
 
     async def project(request: Request) -> Response:
         return JSONResponse(opened.session.data)
@@ -140,6 +141,9 @@ def window_app(opened: Opened, *, token: str, port: int, closing: Callable[[], b
             return Response(status_code=404)
         return FileResponse(found, headers={"content-security-policy": SANDBOX})
 
+    async def gone(request: Request, error: Exception) -> Response:
+        return Response(status_code=400)  # nobody reads it
+
     async def refused(request: Request, error: Exception) -> Response:
         return JSONResponse({"error": str(error)}, REFUSED)
 
@@ -158,7 +162,7 @@ def window_app(opened: Opened, *, token: str, port: int, closing: Callable[[], b
         Route("/{token}/run/{kind}", run, methods=["POST"]),
         Route("/{token}/out/{path:path}", result),
     ]
-    application = Starlette(routes=routes, exception_handlers={InputError: refused})
+    application = Starlette(routes=routes, exception_handlers={InputError: refused, ClientDisconnect: gone})
     return Guard(application, token=token, port=port)
 
 
@@ -206,13 +210,21 @@ async def _events(session: Session, request: Request, closing: Callable[[], bool
 
 async def _content(request: Request) -> dict[str, Any]:
     """The JSON object of a request; empty if it has none, or too large a one."""
-    if int(request.headers.get("content-length", 0)) > constants.LARGEST_REQUEST:
-        return {}
     try:
-        found = json.loads(await request.body())
-    except ValueError:
+        found = json.loads(await _body(request, int(constants.LARGEST_REQUEST)) or b"")
+    except (ValueError, RecursionError):
         return {}
     return found if isinstance(found, dict) else {}
+
+
+async def _body(request: Request, most: int) -> bytes | None:
+    """The body of a request; None if it is larger than ``most`` bytes, of which no more are kept."""
+    found = bytearray()
+    async for chunk in request.stream():
+        found += chunk
+        if len(found) > most:
+            return None
+    return bytes(found)
 
 
 async def _answer(action: Callable[[], Any], opened: Opened | None = None) -> Response:

@@ -157,8 +157,12 @@ def _by_file(readings: Iterable[Mapping[str, Any]]) -> dict[str, list[LineRange]
     for reading in readings:
         try:
             file, first, last = str(reading["file"]), int(reading["first"]), int(reading["last"])
-        except (KeyError, TypeError, ValueError):
+        except (KeyError, TypeError, ValueError, OverflowError):
             raise InputError("a reading needs file, first and last line") from None
+        if not 1 <= first <= last:
+            raise InputError(
+                f"a reading is at the lines {first} to {last}, which are not in order; select it again"
+            )
         found.setdefault(file, []).append((first, last))
     return {file: list(line_ranges(_lines(ranges))) for file, ranges in found.items()}
 

@@ -72,7 +72,12 @@ class ProjectFile:
                 file=self.path,
             )
         text, _ = self._parsed(before)
-        after = (BOM if before.startswith(BOM) else b"") + change(text).encode()
+        try:
+            after = (BOM if before.startswith(BOM) else b"") + change(text).encode()
+        except UnicodeEncodeError:
+            raise InputError(
+                "cannot hold a character of the new text; leave it away", file=self.path
+            ) from None
         if after == before:
             return
         self._checked(after)

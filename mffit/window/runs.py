@@ -17,6 +17,9 @@ from mffit.progress import Progress
 from mffit.window import constants
 from tir.errors import TirError
 
+BEGUN = "reading the project"
+"""First progress of every run."""
+
 
 class RunOutcome(NamedTuple):
     """How a run ended."""
@@ -89,7 +92,7 @@ class Run:
         self.kind, self.digest = kind, digest
         self.sentence = "starting"
         self.outcome: RunOutcome | None = None
-        self._stopped = False
+        self._stopped = self._begun = False
         context = multiprocessing.get_context("spawn")  # a forked copy of a process with threads may hang
         receiver, sender = context.Pipe(duplex=False)
         self._process = context.Process(target=_work, args=(kind, path, sender), daemon=True)
@@ -98,9 +101,9 @@ class Run:
         threading.Thread(target=self._listen, args=(receiver,), daemon=True).start()
 
     def stop(self) -> None:
-        """End the run; its temporary files go."""
+        """End the run; its temporary files go. A process that has not begun is loading the program and has none."""
         self._stopped = True
-        if os.name == "nt" or self._process.pid is None:
+        if not self._begun or os.name == "nt" or self._process.pid is None:
             self._process.terminate()
         else:
             with contextlib.suppress(ProcessLookupError):
@@ -115,6 +118,7 @@ class Run:
         with contextlib.suppress(EOFError, OSError):
             while outcome is None:
                 kind, content = receiver.recv()
+                self._begun = True
                 if kind == "progress":
                     self.sentence = content
                 else:
@@ -132,6 +136,7 @@ def _work(kind: str, path: Path, sender: Connection) -> None:
     """In the process: run, and send progress and outcome."""
     try:
         try:
+            sender.send(("progress", BEGUN))
             data = RUNS[kind](path, lambda sentence: sender.send(("progress", sentence)))
             outcome = RunOutcome("done", data=data)
         except (InputError, TirError) as error:

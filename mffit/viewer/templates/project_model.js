@@ -10,7 +10,7 @@ let columns = {};  // Float64Array by name, of every point
 let own = {};  // by channel: the model at the conditions of every point
 let fitOwn = {};  // the same of the fit, before any slider moved
 let models, fitModels, beforeModels = null;
-let misfits = {};  // by channel, of the present values; see misfit
+let misfits = {}, fitMisfits = {};  // by channel, of the present values and of the fit; see misfit
 let left = new Uint8Array(0);  // 1 where a point is left out
 let trial = {};  // coefficients that differ from the fit
 
@@ -72,6 +72,8 @@ function markLeftOut(entries) {
       (byFile[entry.file] ??= []).push([first, last ?? first, entry.why]);
     }
   }
+  fitMisfits = {};
+  version++;
   left = Uint8Array.from(points.line, (line, i) => {
     const ranges = byFile[points.files[points.file[i]]];
     return ranges && ranges.some(([first, last]) => line >= first && line <= last) ? 1 : 0;

@@ -40,7 +40,7 @@ function showMisfit() {
   byId("misfit-before").hidden = !project.before;
   while (body.rows.length > channels.length) body.deleteRow(-1);
   channels.forEach((name, k) => {
-    const line = body.rows[k] || body.insertRow(), now = misfits[name] ??= misfit(name), fit = misfit(name, fitOwn);
+    const line = body.rows[k] || body.insertRow(), now = misfits[name] ??= misfit(name), fit = fitMisfits[name] ??= misfit(name, fitOwn);
     if (!line.cells.length) for (let i = 0; i < 5; i++) line.insertCell().className = i ? "n" : "";
     const known = project.channels[k].stated;
     line.cells[0].replaceChildren(shared.symbol(quantity(name)), ` [${unit(name)}]`);

@@ -3,6 +3,7 @@ const RESIDUAL = "residual of ";
 const STEPS = 48, NARROWEST = 0.08, NEAR = 14, NEAREST_DRAG = 6, MOST_LISTED = 300, RIGHT = 10, TOP = 8, BOTTOM = 22;
 const state = {panels: [], hidden: {}, ranges: {}, colour: "Fz", reading: "curve"};
 let visible = new Uint8Array(0), theme = {}, palette = [], colourOf = [], curveGroups = {}, chosen = [], pointed = -1;
+let version = 0;  // of all that decides where points and the curves of the fits are, and how they look
 
 const facet = name => project.points.facets.find(one => one.name === name);
 function defaultPanels() {
@@ -21,6 +22,7 @@ function recolour() {
   const by = facet(state.colour) || project.points.facets[0], many = by.labels.length;
   palette = by.labels.map((_, i) => many <= 8 ? theme.colours[i] : `hsl(${250 - 250 * i / (many - 1)} 70% ${theme.dark ? 62 : 42}%)`);
   colourOf = by.of;
+  version++;
 }
 function filter() {
   const hidden = project.points.facets.map(one => [one, new Set(state.hidden[one.name] || [])]).filter(([, set]) => set.size);
@@ -34,6 +36,7 @@ function filter() {
       }) ? 1 : 0;
   }
   curveGroups = {};
+  version++;
 }
 // Points of one curve over x: the same levels of everything else; with the median of their conditions.
 function groupsOver(x) {
@@ -125,27 +128,44 @@ function draw(panel) {
   if (canvas.width !== Math.round(width * ratio)) canvas.width = Math.round(width * ratio);
   if (canvas.height !== Math.round(height * ratio)) canvas.height = Math.round(height * ratio);
   const pen = canvas.getContext("2d"), shown = placed(panel);
-  pen.setTransform(ratio, 0, 0, ratio, 0, 0);
-  pen.clearRect(0, 0, width, height);
-  pen.font = theme.font;
+  pen.setTransform(1, 0, 0, 1, 0, 0);
+  pen.clearRect(0, 0, canvas.width, canvas.height);
   const lines = shown.curves.map(curve => ({curve, now: models === fitModels ? fixedCurve(models, curve) : curvePoints(models, curve)}));
   const box = limits(panel, shown, lines), rows_ = ticks(...box.y, 6);
   const start = 10 + 6.6 * Math.max(...rows_.map(tick => tick.text.length));
   const X = x => start + (x - box.x[0]) / (box.x[1] - box.x[0]) * (width - start - RIGHT);
   const Y = y => height - BOTTOM - (y - box.y[0]) / (box.y[1] - box.y[0]) * (height - TOP - BOTTOM);
-  axes(pen, {X, Y, box, start, width, height, rows_});
-  pen.save();
-  pen.beginPath();
-  pen.rect(start - 3, TOP - 3, width - start - RIGHT + 6, height - TOP - BOTTOM + 6);
-  pen.clip();
-  dots(pen, shown, X, Y);
-  const moved = models !== fitModels;
-  for (const {curve, now} of lines) {
-    const colour = palette[colourOf[curve.group.members[0]]];
-    if (moved) stroke(pen, fixedCurve(fitModels, curve), X, Y, theme.muted, 1, [4, 3]);
-    else if (beforeModels) stroke(pen, fixedCurve(beforeModels, curve), X, Y, theme.muted, 1, [1, 3]);
-    stroke(pen, now, X, Y, colour, 2, []);
+  const frame = new Path2D();
+  frame.rect(start - 3, TOP - 3, width - start - RIGHT + 6, height - TOP - BOTTOM + 6);
+  // What a slider does not move is drawn once: axes, points and the curves of the fits.
+  const still = on => {
+    on.setTransform(ratio, 0, 0, ratio, 0, 0);
+    on.font = theme.font;
+    axes(on, {X, Y, box, start, width, height, rows_});
+    on.save();
+    on.clip(frame);
+    dots(on, shown, X, Y);
+    for (const {curve} of lines) {
+      if (models !== fitModels) stroke(on, fixedCurve(fitModels, curve), X, Y, theme.muted, 1, [4, 3]);
+      else if (beforeModels) stroke(on, fixedCurve(beforeModels, curve), X, Y, theme.muted, 1, [1, 3]);
+    }
+    on.restore();
+  };
+  if (shown.residual) still(pen);
+  else {
+    const name = [panel.x, panel.y, canvas.width, canvas.height, ratio, ...box.x, ...box.y, state.reading, models === fitModels, version].join();
+    if (!panel.layer || panel.layer.name !== name) {
+      const layer = Object.assign(document.createElement("canvas"), {width: canvas.width, height: canvas.height});
+      still(layer.getContext("2d"));
+      panel.layer = {name, layer};
+    }
+    pen.drawImage(panel.layer.layer, 0, 0);
+    pen.setTransform(ratio, 0, 0, ratio, 0, 0);
+    pen.font = theme.font;
   }
+  pen.save();
+  pen.clip(frame);
+  for (const {curve, now} of lines) stroke(pen, now, X, Y, palette[colourOf[curve.group.members[0]]], 2, []);
   marks(pen, shown, X, Y);
   pen.restore();
   if (channels.includes(shown.y)) {
@@ -214,11 +234,9 @@ function dots(pen, shown, X, Y) {
     else if (colourOf[i] >= 0) byColour[colourOf[i]].push(i);
   }
   pen.globalAlpha = .72;
-  byColour.forEach((members, k) => {
+  byColour.forEach((members, k) => {  // a rectangle each: a path of thousands takes longer to fill
     pen.fillStyle = palette[k];
-    pen.beginPath();
-    for (const i of members) pen.rect(X(shown.px[i]) - half, Y(shown.py[i]) - half, size, size);
-    pen.fill();
+    for (const i of members) pen.fillRect(X(shown.px[i]) - half, Y(shown.py[i]) - half, size, size);
   });
   pen.globalAlpha = 1;
   pen.strokeStyle = theme.muted;

@@ -126,6 +126,7 @@ chosenActions = () => {
 function setLive(state) {
   live = state;
   ended = false;
+  if (!live.can_undo) moves = moves.filter(one => one.trial);  // another program has changed the file since
   if (live.fits !== shownFit && live.fits > 0) return bring();
   if (project) {
     project.hand = live.hand;

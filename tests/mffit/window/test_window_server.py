@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import re
 import sys
 import time
@@ -43,7 +44,7 @@ def client(session: Session) -> Any:
 
 
 def post(client: Any, address: str, **content: Any) -> Any:
-    return client.post(f"/{TOKEN}/{address}", json=content)
+    return client.post(f"/{TOKEN}/{address}", content=json.dumps(content))
 
 
 def edit(client: Any, session: Session, do: str, /, **given: Any) -> Any:
@@ -132,6 +133,18 @@ def test_a_click_changes_its_line_of_the_file_and_no_other_file(client, session)
         ("limit", {"name": "PCY1", "entry": {"min": "1.6"}}, "is a text, not a number"),
         ("limit", {"name": "PCY1", "entry": 3}, "cannot be done with"),
         ("__import__", {}, "not a change"),
+        ("hold", {"name": ["PCY1"], "value": 1.0}, "cannot be done with"),
+        ("leave_out", {"readings": [{"file": "a", "first": 5, "last": 2}], "why": "x"}, "not in order"),
+        (
+            "leave_out",
+            {"readings": [{"file": "a", "first": 1, "last": 1e400}], "why": "x"},
+            "first and last line",
+        ),
+        (
+            "leave_out",
+            {"readings": [{"file": "camber_900.csv", "first": 2, "last": 2}], "why": "\ud800"},
+            "cannot hold a character",
+        ),
         (
             "leave_out",
             {"readings": [{"file": "../secret.csv", "first": 1, "last": 1}], "why": "x"},
@@ -144,6 +157,16 @@ def test_what_is_not_possible_is_refused_with_a_sentence(client, session, name, 
     answer = edit(client, session, name, **given)
     assert answer.status_code == 422
     assert sentence in answer.json()["error"]
+    assert session.file.path.read_bytes() == before
+
+
+@pytest.mark.parametrize(
+    "body", [b"", b"no json", b"[]", b'{"a":' + b"[" * 200_000, b"{" + b" " * 2_000_000 + b"}"]
+)
+def test_a_request_that_is_no_change_is_refused(client, session, body):
+    before = session.file.path.read_bytes()
+    answer = client.post(f"/{TOKEN}/edit", content=body)
+    assert (answer.status_code, answer.json()["error"]) == (422, "a change needs do, seen and with")
     assert session.file.path.read_bytes() == before
 
 
@@ -234,7 +257,7 @@ def test_events_bring_the_state_at_once(session):
     app = window_app(Opened(session), token=TOKEN, port=PORT, closing=iter([False, True]).__next__)
     with testclient.TestClient(app, base_url=HERE) as client:
         text = client.get(f"/{TOKEN}/events").text
-    assert re.match(r'data: \{"digest": "', text)
+    assert re.match(r'data: \{"project": "\w{64}", "digest": "', text)
 
 
 def test_a_folder_that_is_not_there_is_said(tmp_path):
