@@ -33,7 +33,8 @@ class PagePicture:
     @property
     def link(self) -> str:
         """The table as a data address, in the shorter of both encodings."""
-        plain = "," + quote(self.table, safe=",;:.+-=()[]/_")
+        quoted = {ord(mark): quote(mark, safe=",;:.+-=()[]/_") for mark in set(self.table)}
+        plain = "," + self.table.translate(quoted)
         packed = ";base64," + base64.b64encode(self.table.encode()).decode("ascii")
         return "data:text/csv;charset=utf-8" + min(plain, packed, key=len)
 

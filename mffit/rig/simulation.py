@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import itertools
 import math
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
@@ -13,6 +12,7 @@ import numpy as np
 from mffit.brief import Brief
 from mffit.points import Points
 from mffit.quantities import CHANNELS, SIDEWAYS
+from mffit.rig import constants
 from mffit.rig.chain import Chain
 from mffit.rig.histories import History, blocks, of_part, usual_radius
 from mffit.rig.readings import Readings
@@ -93,11 +93,7 @@ class Simulation(Brief):
         Readings
             In ISO-W, contact frame, rig-fixed also when rolling backwards.
         """
-        channels = _in_order(channels)
-        found = [read for _, read, _ in self.in_blocks(points, (), channels)]
-        if len(found) == 1:
-            return found[0]
-        return Readings(**{name: np.concatenate([read[name] for read in found]) for name in channels})
+        return self.sensitivities(points, (), channels)[0]
 
     def felt(self, points: Points) -> Points:
         """The points as the tyre felt them: its own conditions, and readings without the influence of rig and environment.
@@ -122,17 +118,7 @@ class Simulation(Brief):
 
         The stop at which the moment holds a wheel with play stays the same; a floating wheel keeps its moment at zero.
         """
-        channels, n = _in_order(channels), len(points)
-        found = self.in_blocks(points, names, channels)
-        first = next(found)
-        if len(first[0]) == n:
-            return first[1:]
-        whole = Readings(**{name: np.empty(n) for name in channels})
-        by_number = Readings(**{name: np.empty((n, len(names))) for name in channels})
-        for rows, out, slopes in itertools.chain([first], found):
-            for name in channels:
-                whole[name][rows], by_number[name][rows] = out[name], slopes[name]
-        return whole, by_number
+        return self.at_rows(points, names, channels)(np.arange(len(points)))
 
     def in_blocks(
         self,
@@ -147,8 +133,7 @@ class Simulation(Brief):
         With ``by_sweep`` no sweep is divided. A block never holds derivatives of more points than it needs to be fast.
         """
         at_rows = self.at_rows(points, names, channels)
-        lags = LAG in names or bool(self.faults[LAG])
-        for rows in blocks(points, by_sweep=by_sweep or lags):
+        for rows in blocks(points, by_sweep=by_sweep or self._lags(names)):
             yield rows, *at_rows(rows)
 
     def at_rows(
@@ -157,13 +142,27 @@ class Simulation(Brief):
         """:meth:`sensitivities` as a function of the rows (m,) of a test; if sweeps lag, rows of whole sweeps."""
         channels, history = _in_order(channels), History(points)
         numbers = {name: self.number(name, points) for name in (n.partition(OF_RUN)[0] for n in names)}
-        here = replace(self, radius_m=self.declared(points))
+        here, lags = replace(self, radius_m=self.declared(points)), self._lags(names)
 
         def found(rows: np.ndarray) -> tuple[Readings, Readings]:
-            part = points if len(rows) == len(points) else points.select(rows)
-            return here._linearised(part, names, numbers, channels, history, rows)
+            n = len(rows)
+            if lags or n <= constants.POINTS_OF_A_BLOCK:
+                every = n == len(points) and np.array_equal(rows, np.arange(n))
+                part = points if every else points.select(rows, with_table=False)
+                return here._linearised(part, names, numbers, channels, history, rows)
+            whole = Readings(**{name: np.empty(n) for name in channels})
+            by_number = Readings(**{name: np.empty((n, len(names))) for name in channels})
+            for i in np.array_split(np.arange(n), -(-n // constants.POINTS_OF_A_BLOCK)):
+                out, slopes = found(rows[i])
+                for name in channels:
+                    whole[name][i], by_number[name][i] = out[name], slopes[name]
+            return whole, by_number
 
         return found
+
+    def _lags(self, names: Sequence[str]) -> bool:
+        """Whether a reading depends on those before it in its sweep."""
+        return LAG in names or bool(self.faults[LAG])
 
     def _linearised(
         self,
