@@ -134,8 +134,8 @@ class Points(Brief):
         """Signed speed (n,) [m/s]: negative when the wheel rolls backwards."""
         return self.direction * self.V
 
-    def select(self, which: np.ndarray) -> Points:
-        """The points of a boolean mask (n,) or of an index array (m,), in that order."""
+    def select(self, which: np.ndarray, *, with_table: bool = True) -> Points:
+        """The points of a boolean mask (n,) or of an index array (m,), in that order; their table may be left empty."""
         which = np.asarray(which)
         if which.dtype == bool:
             which = np.flatnonzero(which)
@@ -146,7 +146,7 @@ class Points(Brief):
             files=self.files,
             setups=self.setups,
             campaigns=self.campaigns,
-            table=self.table.iloc[which].reset_index(drop=True),
+            table=self.table.iloc[which].reset_index(drop=True) if with_table else _no_table(len(which)),
         )
 
     def replace(self, **arrays: Any) -> Points:
@@ -205,7 +205,7 @@ def make_points(
     for name in ("direction", "mount"):
         if not np.all(np.abs(arrays[name]) == 1):
             raise ValueError(f"{name} must be +1 or -1 at every point")
-    table = pd.DataFrame(index=pd.RangeIndex(n)) if table is None else table.reset_index(drop=True)
+    table = _no_table(n) if table is None else table.reset_index(drop=True)
     if len(table) != n:
         raise ValueError(f"the table has {len(table)} rows for {n} points")
     names = {"sweep_names": tuple(sweep_names), "files": tuple(files), "setups": tuple(setups)}
@@ -224,6 +224,10 @@ def concatenate(parts: Sequence[Points]) -> Points:
         )
     table = pd.concat([part.table for part in parts], ignore_index=True)
     return _sealed(arrays, **names, table=table)
+
+
+def _no_table(n: int) -> pd.DataFrame:
+    return pd.DataFrame(index=pd.RangeIndex(n))
 
 
 def _refuse_unknown(given: Mapping[str, Any]) -> None:

@@ -42,7 +42,8 @@ class PagePicture:
         """The table, or the archive with it, as a data address; of a table in the shorter of both encodings."""
         if self.is_packed:
             return f"data:application/zip;base64,{base64.b64encode(self._archive()).decode('ascii')}"
-        plain = "," + quote(self.table, safe=",;:.+-=()[]/_")
+        quoted = {ord(mark): quote(mark, safe=",;:.+-=()[]/_") for mark in set(self.table)}
+        plain = "," + self.table.translate(quoted)
         packed = ";base64," + base64.b64encode(self.table.encode()).decode("ascii")
         return "data:text/csv;charset=utf-8" + min(plain, packed, key=len)
 

@@ -12,6 +12,7 @@ import numpy as np
 from mffit.brief import Brief
 from mffit.points import Points, concatenate
 from mffit.quantities import CHANNELS, SIDEWAYS
+from mffit.rig import constants
 from mffit.rig.chain import Chain
 from mffit.rig.histories import History, blocks, of_part, usual_radius
 from mffit.rig.readings import Readings
@@ -138,15 +139,7 @@ class Simulation(Brief):
 
         The stop at which the moment holds a wheel with play stays the same; a floating wheel keeps its moment at zero.
         """
-        channels, n = _in_order(channels), len(points)
-        whole: dict[str, np.ndarray] = {name: np.empty(n) for name in channels}
-        by_number: dict[str, np.ndarray] = {name: np.empty((n, len(names))) for name in channels}
-        for rows, out, slopes in self.in_blocks(points, names, channels):
-            if len(rows) == n:
-                return out, slopes
-            for name in channels:
-                whole[name][rows], by_number[name][rows] = out[name], slopes[name]
-        return Readings(**whole), Readings(**by_number)
+        return self.at_rows(points, names, channels)(np.arange(len(points)))
 
     def in_blocks(
         self,
@@ -161,10 +154,7 @@ class Simulation(Brief):
         With ``by_sweep`` no sweep is divided. A block never holds derivatives of more points than it needs to be fast.
         """
         at_rows = self.at_rows(points, names, channels)
-        lags = bool(self.faults[LAG]) or any(
-            name.partition(OF_RUN)[0] == LAG for name in (*names, *self.of_parts)
-        )
-        for rows in blocks(points, by_sweep=by_sweep or lags):
+        for rows in blocks(points, by_sweep=by_sweep or self._lags(names)):
             yield rows, *at_rows(rows)
 
     def at_rows(
@@ -176,13 +166,27 @@ class Simulation(Brief):
             return self._at_rows_of_campaigns(points, names, channels)
         history = History(points)
         numbers = {name: self.number(name, points) for name in (n.partition(OF_RUN)[0] for n in names)}
-        here = replace(self, radius_m=self.declared(points))
+        here, lags = replace(self, radius_m=self.declared(points)), self._lags(names)
 
         def found(rows: np.ndarray) -> tuple[Readings, Readings]:
-            part = points if len(rows) == len(points) else points.select(rows)
-            return here._linearised(part, names, numbers, channels, history, rows)
+            n = len(rows)
+            if lags or n <= constants.POINTS_OF_A_BLOCK:
+                every = n == len(points) and np.array_equal(rows, np.arange(n))
+                part = points if every else points.select(rows, with_table=False)
+                return here._linearised(part, names, numbers, channels, history, rows)
+            whole: dict[str, np.ndarray] = {name: np.empty(n) for name in channels}
+            by_number: dict[str, np.ndarray] = {name: np.empty((n, len(names))) for name in channels}
+            for i in np.array_split(np.arange(n), -(-n // constants.POINTS_OF_A_BLOCK)):
+                out, slopes = found(rows[i])
+                for name in channels:
+                    whole[name][i], by_number[name][i] = out[name], slopes[name]
+            return Readings(**whole), Readings(**by_number)
 
         return found
+
+    def _lags(self, names: Sequence[str]) -> bool:
+        """Whether a reading depends on those before it in its sweep."""
+        return bool(self.faults[LAG]) or any(n.partition(OF_RUN)[0] == LAG for n in (*names, *self.of_parts))
 
     def _linearised(
         self,

@@ -79,7 +79,7 @@ class PredictedChannel:
 def groups(points: Points) -> list[Group]:
     """Every sweep, and every load, pressure, direction and camber of a sweep that holds several."""
     found = [*_sweeps(points), *_conditions(points)]
-    unique = {tuple(group.index): group for group in reversed(found)}
+    unique = {group.index.tobytes(): group for group in reversed(found)}
     fewest, most = constants.FEWEST_POINTS_OF_A_SWEEP, constants.LARGEST_SWEEP * len(points)
     return [g for g in reversed(unique.values()) if fewest <= len(g.index) <= most]
 

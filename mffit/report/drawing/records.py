@@ -294,7 +294,9 @@ def shorter(series: DataSeries, most: int) -> tuple[DataSeries, int]:
     if every < 2:
         return series, 1
     arrays = ((field.name, getattr(series, field.name)) for field in fields(series))
-    kept: dict[str, Any] = {name: x[::every] for name, x in arrays if isinstance(x, np.ndarray) and len(x) == n}
+    kept: dict[str, Any] = {
+        name: x[::every] for name, x in arrays if isinstance(x, np.ndarray) and len(x) == n
+    }
     return replace(series, **kept), every
 
 
