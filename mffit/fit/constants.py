@@ -89,10 +89,15 @@ SISTER_SLIP = Real(
     "-",
     "Longitudinal slip, about that of the peak, up to which the limits of Fx are checked for a drawn tyre.",
 )
-SISTER_SHARES_OF_A_DRAW = Series(
-    (1.0, 0.5, 0.25, 0.125, 0.0),
+SISTER_DRAWS = Count(
+    20,
     "-",
-    "Shares of a draw of borrowed shapes, tried in turn until the physical limits hold.",
+    "Draws of borrowed shapes until the physical limits hold; half of them do, so that one to five are usual.",
+)
+SISTER_SHARES_OF_A_DRAW = Series(
+    (0.5, 0.25, 0.125, 0.0),
+    "-",
+    "Shares of a draw of borrowed shapes, tried in turn if none of the whole draws keeps the physical limits.",
 )
 
 # Other campaigns of the same tyre

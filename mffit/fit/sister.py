@@ -86,15 +86,15 @@ class Lent:
     def drawn(self, values: Mapping[str, Any], random: np.random.Generator) -> dict[str, float]:
         """Borrowed coefficients of a tyre drawn from the posterior, whose other ``values`` were drawn before.
 
-        What each coefficient has of its own is reduced until the physical limits hold.
+        What each coefficient has of its own is drawn again until the physical limits hold, and reduced after many draws.
         """
         sister = self.sister
         errors = (sister.u_friction * random.standard_normal(), sister.u_stiffness * random.standard_normal())
         mean = _scaled(values, self.theirs, sister, errors).values
-        own = {name: u * random.standard_normal() for name, u in self.spread.items()}
         allowed = constants.DRAWN_LIMIT_MARGINS * constants.LIMIT_MARGIN
-        for share in constants.SISTER_SHARES_OF_A_DRAW:
-            found = {name: BY_NAME[name].inside(mean[name] + share * u) for name, u in own.items()}
+        for share in (*(1.0,) * int(constants.SISTER_DRAWS), *constants.SISTER_SHARES_OF_A_DRAW):
+            own = {name: share * u * random.standard_normal() for name, u in self.spread.items()}
+            found = {name: BY_NAME[name].inside(mean[name] + x) for name, x in own.items()}
             p = SimpleNamespace(**{**values, **self.theirs, **found})
             if np.max(violations(p, sister.envelope)) <= allowed:
                 break

@@ -18,7 +18,7 @@ from tir.derivatives import gradient, traced
 LOADED = ("VERTICAL_STIFFNESS", "Q_RE0", "Q_FZ2", "PFZ1")
 
 
-class Apart:
+class FittedApart:
     """Relative uncertainty of relaxation length and loaded radius after any list of runs.
 
     Each is linear in a few numbers with wide priors; readings add their information.

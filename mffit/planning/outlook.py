@@ -16,7 +16,7 @@ from mffit.fit import FitResult, Posterior
 from mffit.fit.posterior import spread_through
 from mffit.measured import Measured
 from mffit.planning import constants
-from mffit.planning.apart import Apart, weighted
+from mffit.planning.apart import FittedApart, weighted
 from mffit.planning.goals import BANDS, EPSILON, FILE, JOINT, TIE, Goal, effect_named
 from mffit.planning.identified import tied_pairs
 from mffit.planning.knowledge import PECP1, Knowledge
@@ -60,7 +60,7 @@ class Outlook:
         self._direct, self._cache = direct, dict[tuple[str, ...], DirectU | None]()
         self._curves = self._band_slopes((goal.name,)) if goal.kind == BANDS else None
         self._file = self._every_band() if goal.kind == FILE else None
-        self.apart = Apart(config, found) if goal.kind == FILE else None
+        self.apart = FittedApart(config, found) if goal.kind == FILE else None
 
     def u(self, runs: Sequence[PlannedRun]) -> float:
         """Uncertainty of the goal in its unit; infinite if the goal is not measured at all."""

@@ -64,26 +64,26 @@ def mean_and_error(x: np.ndarray) -> tuple[float, float]:
     return found.mean, found.error
 
 
-class _Mean(NamedTuple):
+class _MeanOfRecord(NamedTuple):
     mean: float
     error: float
     inefficiency: float  #: number of samples that count as one
 
 
-def _mean_of(x: np.ndarray) -> _Mean:
+def _mean_of(x: np.ndarray) -> _MeanOfRecord:
     n, mean = len(x), float(np.mean(x))
     if n < 2 or not np.isfinite(mean):
-        return _Mean(mean, math.nan, 1.0)
+        return _MeanOfRecord(mean, math.nan, 1.0)
     centred = x - mean
     variance = float(np.mean(centred**2))
     if variance <= (1e-12 * max(abs(mean), 1e-300)) ** 2:
-        return _Mean(mean, 0.0, 1.0)
+        return _MeanOfRecord(mean, 0.0, 1.0)
     coefficients, innovation = autoregression(centred)
     g = innovation / (1.0 - float(np.sum(coefficients))) ** 2 / variance
     g = min(max(g, 1.0), n / 4.0)
     if len(coefficients):
         g *= 1.0 + 2.0 * g / n
-    return _Mean(mean, float(np.sqrt(variance / (1.0 - g / n) * g / n)), g)
+    return _MeanOfRecord(mean, float(np.sqrt(variance / (1.0 - g / n) * g / n)), g)
 
 
 def _inverse_trigamma(y: float) -> float:
