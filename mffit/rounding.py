@@ -53,9 +53,7 @@ def rounded(value: float | None, u: float | None) -> tuple[str, str]:
         exponent = math.floor(math.log10(max(abs(value), u)))
         value, u = value / 10.0**exponent, u / 10.0**exponent
         power = f"e{exponent}".replace("-", MINUS)
-    elif u >= 100.0:
-        step = 10.0 ** (math.floor(math.log10(u)) - 1)
-        value, u = round(value / step) * step, round(u / step) * step
+    value, u = _in_steps(value, u), _in_steps(u, u)
     places = decimals_of(u)
     return number(value, places) + power, number(u, places) + power
 
@@ -67,7 +65,15 @@ def to_uncertainty(value: float, u: float, sign: str = "") -> str:
     """
     if not (math.isfinite(u) and u > 0.0):
         return f"{value:{sign}.3g}"
-    return f"{value:{sign}.{decimals_of(u)}f}"
+    return f"{_in_steps(value, u):{sign}.{decimals_of(u)}f}"
+
+
+def _in_steps(value: float, u: float) -> float:
+    """A multiple of the second digit of an uncertainty of 100 or more; else the value itself."""
+    if u < 100.0 or not math.isfinite(value):
+        return value
+    step = 10.0 ** (math.floor(math.log10(u)) - 1)
+    return round(value / step) * step
 
 
 def with_u(value: float | None, u: float | None, unit: str = "") -> str:

@@ -53,8 +53,8 @@ def counted(number: int, what: str) -> str:
 
 
 def listed(words: Sequence[str]) -> str:
-    """Words of a sentence: "a", "a and b", "a, b and c"."""
-    *first, last = words
+    """Words of a sentence: "a", "a and b", "a, b and c"; empty for none."""
+    *first, last = words or ("",)
     return f"{', '.join(first)} and {last}" if first else last
 
 

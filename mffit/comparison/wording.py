@@ -9,6 +9,7 @@ from mffit.comparison import constants
 from mffit.comparison.record import ComparedSubject, Comparison, Difference
 from mffit.measured import KEYS
 from mffit.quantities import CHANNELS, CHARACTERISTICS, CONDITIONS, DIRECT, SIDEWAYS, QuantityName
+from tir.errors import listed
 from tir.parameters import BY_NAME
 
 OF_DIRECT = {key: DIRECT[name] for name, key in KEYS.items()}
@@ -32,12 +33,12 @@ def headline(found: Comparison) -> str:
                 n = sum(gap.n for gap in rows)
                 total = math.sqrt(sum(gap.n * gap.rms**2 for gap in rows) / n)
                 parts.append(f"{total:.3g} {known.unit} rms in {channel}")
-        return f"{found.first} misses {found.second} by {' and '.join(parts)}; {_significant(found)}."
+        return f"{found.first} misses {found.second} by {listed(parts)}; {_significant(found)}."
     gap = {c: max((g.rms for g in found.curves if g.channel == c), default=0.0) for c in CHANNELS}
     if not any(gap.values()):
         return f"The curves of {found.first} and {found.second} do not differ; {_significant(found)}."
     named = {**SIDEWAYS, **{c: q for c, q in CHANNELS.items() if gap[c]}}
-    said = " and ".join(f"{c} by up to {gap[c]:.3g} {q.unit} rms" for c, q in named.items())
+    said = listed([f"{c} by up to {gap[c]:.3g} {q.unit} rms" for c, q in named.items()])
     return f"The curves of {found.first} and {found.second} differ in {said}; {_significant(found)}."
 
 

@@ -36,6 +36,7 @@ from mffit.rig_errors import OF_RUN, error_of, number_of, shown, unit_of, words_
 from mffit.rounding import per_cent, to_uncertainty
 from mffit.suspicion import Misread, Outlier
 from tir import Quantity
+from tir.errors import listed
 from tir.parameters import BY_NAME
 
 TO_DO = {
@@ -62,13 +63,18 @@ def headline(diagnosis: Diagnosis) -> str:
 
 def _nothing_named(diagnosis: Diagnosis) -> str:
     before, bump = diagnosis.gap_before, diagnosis.bump
-    misfit = "the rms misfit is " + " and ".join(
-        f"{_short(before.rms(name))} {unit} in {CHANNELS[name].word} (noise {_short(noise)} {unit})"
-        for name, unit, noise in _measured(diagnosis.noise)
+    misfit = "the rms misfit is " + listed(
+        [
+            f"{_short(before.rms(name))} {unit} in {CHANNELS[name].word} (noise {_short(noise)} {unit})"
+            for name, unit, noise in _measured(diagnosis.noise)
+        ]
     )
     if zeros_of_setups(diagnosis):
-        after = " and ".join(
-            f"{_short(diagnosis.gap_after.rms(name))} {unit}" for name, unit, _ in _measured(diagnosis.noise)
+        after = listed(
+            [
+                f"{_short(diagnosis.gap_after.rms(name))} {unit}"
+                for name, unit, _ in _measured(diagnosis.noise)
+            ]
         )
         misfit += f"; with the zeros of every set-up, estimated within what [rig] declares, it is {after}"
     if not diagnosis.unexplained:
@@ -103,14 +109,16 @@ def _zeros(diagnosis: Diagnosis) -> list[str]:
 def _named(diagnosis: Diagnosis) -> str:
     effects, bump = diagnosis.repaired or diagnosis.effects, diagnosis.bump
     after = diagnosis.gap_after if diagnosis.repaired else diagnosis.gap_named
-    names, one = " and ".join(map(_with_ties, effects)), len(effects) == 1
+    names, one = listed([_with_ties(found) for found in effects]), len(effects) == 1
     verdict = f"The missing {'effect is' if one else 'effects are'} {names}"
     if min(found.confidence_of_tie(diagnosis.alternatives) for found in effects) < constants.LIKELY_ANSWER:
         verdict = f"The best explanation, though uncertain, is {names}"
-    misfit = " and ".join(
-        f"{_short(after.rms(name))} {unit} instead of {_short(diagnosis.gap_before.rms(name))} {unit} in "
-        f"{CHANNELS[name].word} (noise {_short(noise)} {unit})"
-        for name, unit, noise in _measured(diagnosis.noise)
+    misfit = listed(
+        [
+            f"{_short(after.rms(name))} {unit} instead of {_short(diagnosis.gap_before.rms(name))} {unit} in "
+            f"{CHANNELS[name].word} (noise {_short(noise)} {unit})"
+            for name, unit, noise in _measured(diagnosis.noise)
+        ]
     )
     rest = ""
     if diagnosis.unexplained:
@@ -125,7 +133,7 @@ def _suspicions(diagnosis: Diagnosis) -> str:
     found = diagnosis.suspected
     if not found or any(isinstance(remark, NoRepair) for remark in diagnosis.notes):
         return ""
-    limit, names = per_cent(constants.LIKELY_ANSWER), " and ".join(_suspicion(one) for one in found)
+    limit, names = per_cent(constants.LIKELY_ANSWER), listed([_suspicion(one) for one in found])
     if diagnosis.repaired:
         return f" Suspected but not repaired, at a confidence below {limit}: {names}."
     return f" It is not repaired, because no confidence reaches {limit}: {names}."
@@ -201,7 +209,7 @@ def note(remark: Note) -> str:
                 "times its noise. It hardly is a model of this tyre; fit it first (mffit build)."
             )
         case NoRepair(effects, validation):
-            tried = " and ".join(effects) or "other coefficients"
+            tried = listed(effects) if effects else "other coefficients"
             before, after = validation.gap_before, validation.gap_after
             return (
                 f"No repair is written: {tried} would fit these points better, but on left-out sweeps "
@@ -240,17 +248,19 @@ def _another_tyre(found: AnotherTyre) -> str:
 
 
 def _held_out(before: Gap, after: Gap) -> str:
-    return " and ".join(
-        f"the {CHANNELS[name].word} misses by {_short(rmse)} {CHANNELS[name].unit} instead of {_short(before.rms(name))} "
-        f"{CHANNELS[name].unit}"
-        for name, rmse in after.rmse.items()
-        if math.isfinite(rmse)
+    return listed(
+        [
+            f"the {CHANNELS[name].word} misses by {_short(rmse)} {CHANNELS[name].unit} instead of {_short(before.rms(name))} "
+            f"{CHANNELS[name].unit}"
+            for name, rmse in after.rmse.items()
+            if math.isfinite(rmse)
+        ]
     )
 
 
 def _redone(found: DirectMethodRedone) -> str:
     """The change of eps_gamma when the rig's faults are corrected."""
-    names, before, after = " and ".join(found.causes), found.before, found.after
+    names, before, after = listed(found.causes), found.before, found.after
     if before is None or after is None:
         return f"eps_gamma cannot be measured {'with' if after else 'even without'} {names}."
     if abs(after.value - before.value) < constants.UNCHANGED_SHARE_OF_U * after.u:

@@ -12,7 +12,7 @@ LONGITUDINAL_EFFECTS = (
     _effect(
         id="longitudinal-grip",
         name="longitudinal grip",
-        physics="The peak of the longitudinal force over load is higher, or lower, than the model's.",
+        physics="The peak of the longitudinal force is higher, or lower, than the model's.",
         free=(Free(name="PDX1", spread=0.1, lower=0.4, upper=3.5, relative=True),),
         needs=("drive",),
         parity="even in alpha and gamma; as Fx",

@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from mffit.rounding import MINUS, ascii_only, number, times, with_u
+from mffit.rounding import MINUS, ascii_only, number, times, to_uncertainty, with_u
 
 
 @pytest.mark.parametrize(
@@ -41,6 +41,19 @@ def test_rounding_moves_a_value_by_less_than_a_tenth_of_its_uncertainty(value, u
 
 def test_no_minus_before_a_zero():
     assert number(-0.0001, 2) == "0.00"
+
+
+@pytest.mark.parametrize(
+    ("value", "u", "expected"),
+    [
+        (239286.4, 3766.0, "239300"),
+        (-0.18237, 0.0412, "-0.182"),
+        (424.09, 9.96, "424"),
+        (0.12345, 0.0, "0.123"),
+    ],
+)
+def test_numbers_of_sentences_have_two_digits_of_their_uncertainty(value, u, expected):
+    assert to_uncertainty(value, u) == expected
 
 
 def test_ratio_needs_both_numbers():

@@ -8,11 +8,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 from scipy.ndimage import uniform_filter1d
+from scipy.signal import lfilter
 
 import tir
 from mffit import config as configuration
 from mffit.fit.posterior import Posterior
-from mffit.fit.relaxation import RUN, relaxation, relaxation_sentence
+from mffit.fit.relaxation import RUN, _correlation, relaxation, relaxation_sentence
 from mffit.points.loading import read
 from mffit.points.steps import steps
 from mffit.rig import Simulation
@@ -100,6 +101,13 @@ def test_without_steps_the_result_says_what_to_run(truth):
     assert nothing.coverage.missing == (RUN,)
     assert not nothing.found
     assert relaxation_sentence(nothing) == ""
+
+
+def test_correlated_residuals_count_as_fewer_and_white_ones_as_they_are():
+    """The mean of a first-order process with correlation r has (1 + r) / (1 - r) times the variance of white noise."""
+    white = np.random.default_rng(3).standard_normal(4000)
+    assert _correlation(white) == pytest.approx(1.0, abs=0.1)
+    assert _correlation(lfilter([1.0], [1.0, -0.8], white)) == pytest.approx(9.0, rel=0.25)
 
 
 def test_the_sentence_gives_every_length_with_its_load(found):

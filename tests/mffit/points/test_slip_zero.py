@@ -34,7 +34,7 @@ def test_the_zero_follows_load_camber_pressure_and_sideslip():
     slip = zero + compliance * force
     slip[::40] += 0.3
     driven = Driven(slip, force * load, load, alpha, gamma, p, np.full(n, np.nan))
-    np.testing.assert_allclose(slip_zero(driven).at(driven), zero, atol=2e-4)
+    np.testing.assert_allclose(slip_zero(driven).at(driven), zero, atol=1e-6)
 
 
 def test_braking_that_is_positive_throughout_is_still_found():
