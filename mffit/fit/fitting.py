@@ -22,7 +22,7 @@ from mffit.fit.files import plain_use
 from mffit.fit.fitted import Fitted
 from mffit.fit.known import known_before_fit
 from mffit.fit.nuisance_choice import at_reference
-from mffit.fit.nuisance_wording import nuisance_sentences
+from mffit.fit.nuisance_wording import nuisance_sentences, unmodelled_sentences
 from mffit.fit.overturning import overturning_terms
 from mffit.fit.plan import FitPlan, fit_plan
 from mffit.fit.priors import of_fleet
@@ -131,6 +131,7 @@ def fit(
             *filter(None, [relaxation_sentence(made.relaxation)]),
             *map(campaign_sentence, made.joined),
             *([] if made.lent is None else [sister_sentence(made.lent)]),
+            *unmodelled_sentences(found),
         ),
         warnings=(
             *warnings(full, doubts, outlying, files.untested, plan.cover),

@@ -39,7 +39,7 @@ def nuisance_sentences(
     runs: BetweenRuns | None,
     plain: Mapping[str, Agreement],
 ) -> list[str]:
-    """Which file is for whom, what was modelled and why, and what it did to the coefficients, the most important first.
+    """Which file is for whom, what was modelled and what it did to the coefficients, the most important first.
 
     ``name`` is that of the tyre; ``plain`` the agreement of the plain file with the points, by channel.
     """
@@ -53,7 +53,14 @@ def nuisance_sentences(
                 if runs is not None and verdict.nuisance.per_run
                 else _modelled_sentence(verdict, found.full.rig)
             )
-        elif not verdict.modelled and _worth_telling(verdict, found):
+    return out
+
+
+def unmodelled_sentences(found: NuisanceFit) -> list[str]:
+    """What was not modelled, and why."""
+    out = []
+    for verdict in found.choice.verdicts:
+        if not verdict.modelled and _worth_telling(verdict, found):
             said = f"The {verdict.nuisance.name} is not modelled: {verdict.reason}"
             out.append(said + (f" ({_compared(verdict)})." if verdict.beside else "."))
     return out

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -118,35 +118,32 @@ def _slip_curves(points: Points) -> list[Curve]:
         return []
     found: list[Curve] = []
     load, pressure = load_levels(points), pressure_levels(points)
-    alpha = _nearest_level(points, points.alpha, levels.SIDESLIP)
-    gamma = _nearest_level(points, points.gamma, levels.CAMBER)
-    for name, rows in _sweeps(points):
-        if np.all(points.free_rolling[rows]):
-            continue
-        # Levels within the sweep: those of a sideslip sweep over all angles say nothing about the angles that are held here.
-        alpha, gamma = (
-            np.degrees(levels.level_values(angle[rows], kind))
-            for angle, kind in ((points.alpha, levels.SIDESLIP), (points.gamma, levels.CAMBER))
-        )
+    driven = [(name, rows) for name, rows in _sweeps(points) if not np.all(points.free_rolling[rows])]
+    alpha = _held_angles(points.alpha, [rows for _, rows in driven], levels.SIDESLIP)
+    gamma = _held_angles(points.gamma, [rows for _, rows in driven], levels.CAMBER)
+    for name, rows in driven:
         keys = np.column_stack(
             [
                 load[rows],
                 pressure[rows],
-                alpha,
+                alpha[rows],
                 points.direction[rows],
                 points.mount[rows],
-                np.round(gamma, 1),
+                np.round(gamma[rows], 1),
             ]
         )
         found += _along(points, name, "kappa", rows, keys, constants.SLIP_SET_POINT_WIDTH)
     return found
 
 
-def _nearest_level(points: Points, angle: np.ndarray, kind: levels.LevelKind) -> np.ndarray:
-    """The nearest angle (n,) [deg] that was held while the wheel was driven or braked, to a tenth."""
-    held = np.unique(np.round(np.degrees(levels.level_values(angle[~points.free_rolling], kind)), 1)) + 0.0
-    nearest: np.ndarray = held[np.argmin(np.abs(np.degrees(angle)[:, None] - held), axis=1)]
-    return nearest
+def _held_angles(angle: np.ndarray, sweeps: Sequence[np.ndarray], kind: levels.LevelKind) -> np.ndarray:
+    """The angle (n,) [deg] held at each point of sweeps of slip, the same for sweeps of one level; NaN elsewhere."""
+    # Levels within each sweep first: those of a sideslip sweep over all angles say nothing about the angles that are held here.
+    held = np.full(len(angle), np.nan)
+    for rows in sweeps:
+        held[rows] = levels.level_values(angle[rows], kind)
+    degrees: np.ndarray = np.degrees(levels.level_values(held, kind))
+    return degrees
 
 
 def _along(

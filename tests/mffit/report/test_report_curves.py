@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from report_toys import SIDESLIP, made_points, programme, sweep
 
+from mffit.points import make_points
 from mffit.report.curves import conditions, curves
 
 
@@ -77,3 +78,15 @@ def test_a_load_that_the_rig_does_not_hold_is_one_level():
     assert [c.load for c in conditions(points)] == pytest.approx([535.0, 2700.0], abs=15.0)
     apart = made_points({str(load): sweep(SIDESLIP, 0.0, load) for load in (534.0, 620.0, 2700.0)})
     assert [c.load for c in conditions(apart)] == [530.0, 620.0, 2700.0]
+
+
+def test_slip_sweeps_at_one_sideslip_have_one_colour():
+    """Two sweeps whose rigs held 2.38 and 2.47 deg: one level, so one entry of the key; 4.8 deg is another."""
+    kappa = np.tile(np.linspace(-0.15, 0.15, 31), 3)
+    alpha = np.radians(np.repeat([2.38, 2.47, 4.8], 31))
+    run = np.repeat([0, 1, 2], 31)
+    driven = make_points(alpha, 0.0, 1500.0, p=250e3, V=10.0, phi_t=0.0, Fy=0.0, kappa=kappa, sweep=run)
+    found = curves(driven.replace(sweep_names=("a", "b", "c")))
+    assert [(c.over, len(c.index)) for c in found] == [("kappa", 31)] * 3
+    assert sorted(c.held for c in found) == pytest.approx([2.425, 2.425, 4.8], abs=0.1)
+    assert len({c.held for c in found}) == 2
