@@ -37,8 +37,8 @@ def delivered(fitted: FitResult) -> Simulation:
 def columns(points: Points, excluded: Points | None, fitted: FitResult) -> dict[str, Any]:
     """The points as the tyre felt them, by column, with what the rig read; then those that are left out by hand.
 
-    Conditions and readings are in SI; missing readings are null, and channels without a reading are left out. ``read`` has only the
-    columns that differ from what the tyre felt. ``fitted`` is the number of points that the fit has.
+    Conditions and readings are in SI; missing readings are null, and channels without a reading are left out. ``read`` has only
+    the columns that differ from what the tyre felt. ``fitted`` is the number of points that the fit has.
     """
     parts = [points] if excluded is None else [points, excluded]
     simulation = delivered(fitted)
