@@ -37,18 +37,19 @@ def delivered(fitted: FitResult) -> Simulation:
 def columns(points: Points, excluded: Points | None, fitted: FitResult) -> dict[str, Any]:
     """The points as the tyre felt them, by column, with what the rig read; then those that are left out by hand.
 
-    Conditions and readings are in SI; missing readings are null. ``fitted`` is the number of points that the fit has.
+    Conditions and readings are in SI; missing readings are null, and channels without a reading are left out. ``read`` has only
+    the columns that differ from what the tyre felt. ``fitted`` is the number of points that the fit has.
     """
     parts = [points] if excluded is None else [points, excluded]
     simulation = delivered(fitted)
     felt = concatenate([simulation.felt(part) for part in parts])
     read = concatenate(parts)
     sigma = fitted.search.problem.sigma if fitted.search is not None else {}
+    own, rig = _shown(felt), _shown(read)
     return {
-        **_conditions(felt),
-        **{name: listed(felt.channel(name)) for name in CHANNELS},
-        "read": {**_conditions(read), **{name: listed(read.channel(name)) for name in CHANNELS}},
-        "u": {name: listed(_noise(points, name, sigma)) for name in CHANNELS},
+        **own,
+        "read": {name: column for name, column in rig.items() if column != own[name]},
+        "u": {name: listed(_noise(points, name, sigma)) for name in read.measured},
         "unused": {name: [o.row for o in fitted.outliers if o.channel == name] for name in CHANNELS},
         "fitted": len(points),
         "mount": read.mount.tolist(),
@@ -111,8 +112,10 @@ def listed(values: np.ndarray) -> list[float | None]:
     return [float(f"{x:.{DIGITS}g}") if np.isfinite(x) else None for x in values.tolist()]
 
 
-def _conditions(points: Points) -> dict[str, Any]:
-    return {name: listed(values) for name, values in _arrays(points).items()}
+def _shown(points: Points) -> dict[str, list[float | None]]:
+    """Conditions and measured channels by name."""
+    readings = {name: points.channel(name) for name in points.measured}
+    return {name: listed(values) for name, values in (_arrays(points) | readings).items()}
 
 
 def _arrays(points: Points) -> dict[str, np.ndarray]:

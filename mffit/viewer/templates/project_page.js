@@ -345,6 +345,7 @@ function begin() {
   });
   byId("colour").addEventListener("change", event => { state.colour = event.target.value; recolour(); showFacets(); remember(); update(); });
   byId("reading").addEventListener("change", event => { state.reading = event.target.value; remember(); update(); });
+  byId("to-pictures").addEventListener("click", () => state.panels.length && state.panels[0].canvas.focus());
   byId("select").addEventListener("click", () => {
     byId("select").setAttribute("aria-pressed", !selecting());
     byId("panels").classList.toggle("selecting", selecting());

@@ -1,13 +1,14 @@
 // Pictures: any quantity over any other, on canvas, because a picture has thousands of points.
 const RESIDUAL = "residual of ";
-const STEPS = 48, NARROWEST = 0.08, NEAR = 14, NEAREST_DRAG = 6, MOST_LISTED = 300, RIGHT = 10, TOP = 8, BOTTOM = 22;
+const STEPS = 48, FEWEST_STEPS = 12, STEPS_OF_A_PICTURE = 9000, NARROWEST = 0.08, NEAR = 14, NEAREST_DRAG = 6, MOST_LISTED = 300, RIGHT = 10, TOP = 8, BOTTOM = 22;
 const state = {panels: [], hidden: {}, ranges: {}, colour: "Fz", reading: "curve"};
 let visible = new Uint8Array(0), theme = {}, palette = [], colourOf = [], curveGroups = {}, chosen = [], pointed = -1;
 let version = 0;  // of all that decides where points and the curves of the fits are, and how they look
 
 const facet = name => project.points.facets.find(one => one.name === name);
 function defaultPanels() {
-  const first = project.channels.filter(one => one.of_fit).map(one => one.name).slice(0, 2), over = name => name === "Fx" ? "kappa" : "alpha";
+  const first = project.channels.filter(one => one.of_fit).map(one => one.name).slice(0, 2), levels = name => facet(name).labels.length;
+  const over = name => name === "Fx" || levels("kappa") > levels("alpha") ? "kappa" : "alpha";
   return [...first.map(y => ({x: over(y), y})), ...first.map(y => ({x: over(y), y: RESIDUAL + y}))];
 }
 function readTheme() {
@@ -80,7 +81,7 @@ function placed(panel) {
     px[i] = X[i] / sx;
     py[i] = residual ? (columns[y][i] - own[y][i]) / sy : (source[y] || columns[y])[i] / sy;
   }
-  const curves = [];
+  const curves = [], steps = Math.max(FEWEST_STEPS, Math.min(STEPS, Math.floor(STEPS_OF_A_PICTURE / over.length)));
   if (!residual && over.length) {
     for (const group of over) {
       if (state.reading === "curve") {
@@ -90,7 +91,7 @@ function placed(panel) {
           group.members.forEach((i, k) => { places[i] += shift[k] / size; });
         }
       }
-      curves.push({group, x: panel.x, y, sx, sy, from: group.from, to: group.to});
+      curves.push({group, x: panel.x, y, sx, sy, from: group.from, to: group.to, steps});
     }
   }
   return {px, py, curves, residual, y};
@@ -107,12 +108,12 @@ function toTheCurve(group, x, y) {
 }
 function fixedCurve(by_mount, curve) {
   const name = `${curve.x} ${curve.y} ${by_mount === fitModels ? "fit" : "before"}`;
-  return (curve.group.kept ??= {})[name] ??= curvePoints(by_mount, curve);
+  return (curve.group.kept ??= {})[name] ??= curvePoints(by_mount, curve, curve.steps);
 }
-function curvePoints(by_mount, curve) {
+function curvePoints(by_mount, curve, steps) {
   const points = [];
-  for (let k = 0; k <= STEPS; k++) {
-    const at = curve.from + (curve.to - curve.from) * k / STEPS, forces = evaluated(by_mount, curve.group, at);
+  for (let k = 0; k <= steps; k++) {
+    const at = curve.from + (curve.to - curve.from) * k / steps, forces = evaluated(by_mount, curve.group, at);
     points.push([(curve.x in forces ? forces[curve.x] : at) / curve.sx, forces[curve.y] / curve.sy]);
   }
   return points;
@@ -130,7 +131,7 @@ function draw(panel) {
   const pen = canvas.getContext("2d"), shown = placed(panel);
   pen.setTransform(1, 0, 0, 1, 0, 0);
   pen.clearRect(0, 0, canvas.width, canvas.height);
-  const lines = shown.curves.map(curve => ({curve, now: models === fitModels ? fixedCurve(models, curve) : curvePoints(models, curve)}));
+  const lines = shown.curves.map(curve => ({curve, now: models === fitModels ? fixedCurve(models, curve) : curvePoints(models, curve, dragging ? Math.ceil(curve.steps / 2) : curve.steps)}));
   const box = limits(panel, shown, lines), rows_ = ticks(...box.y, 6);
   const start = 10 + 6.6 * Math.max(...rows_.map(tick => tick.text.length));
   const X = x => start + (x - box.x[0]) / (box.x[1] - box.x[0]) * (width - start - RIGHT);
@@ -226,7 +227,7 @@ function axes(pen, {X, Y, box, start, width, height, rows_}) {
   if (box.y[0] <= 0 && box.y[1] >= 0) line(start, Y(0), width - RIGHT, Y(0), theme.muted);
 }
 function dots(pen, shown, X, Y) {
-  const size = columns.count > 3000 ? 2.4 : columns.count > 1200 ? 3 : 4.4, half = size / 2;
+  const size = columns.count > 3000 ? 2 : columns.count > 1200 ? 3 : 4, half = size / 2;
   const byColour = palette.map(() => []), out = [];
   for (let i = 0; i < columns.count; i++) {
     if (!visible[i] || Number.isNaN(shown.py[i]) || Number.isNaN(shown.px[i])) continue;
@@ -234,9 +235,9 @@ function dots(pen, shown, X, Y) {
     else if (colourOf[i] >= 0) byColour[colourOf[i]].push(i);
   }
   pen.globalAlpha = .72;
-  byColour.forEach((members, k) => {  // a rectangle each: a path of thousands takes longer to fill
+  byColour.forEach((members, k) => {  // a rectangle of whole pixels each: a path of thousands takes longer to fill
     pen.fillStyle = palette[k];
-    for (const i of members) pen.fillRect(X(shown.px[i]) - half, Y(shown.py[i]) - half, size, size);
+    for (const i of members) pen.fillRect(Math.round(X(shown.px[i]) - half), Math.round(Y(shown.py[i]) - half), size, size);
   });
   pen.globalAlpha = 1;
   pen.strokeStyle = theme.muted;
