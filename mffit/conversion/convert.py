@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from mffit.brief import Brief
-from mffit.conversion import constants, mf52
+from mffit.conversion import constants, mf52, wording
 from mffit.conversion.grid import Conditions, Reach, conditions, reach_of
 from mffit.conversion.old_files import OldFile, read_old
 from mffit.conversion.refit import refit
@@ -23,7 +23,10 @@ from tir.parameters import BY_NAME
 
 CHANNELS_COMPARED = ("Fx", "Fy", "Mx", "Mz")
 MOMENTS = ("Mx", "Mz")
-MARK = b"! provenance: converted from:"
+ORIGIN = "converted from"
+MISFIT = "misfit of the conversion"
+"""Keys of the provenance of a converted file."""
+MARK = f"! provenance: {ORIGIN}:".encode()
 """A line of every converted file."""
 STRUCTURE = ("LONGITUDINAL_STIFFNESS", "LATERAL_STIFFNESS", "PCFX1", "PCFX2", "PCFY1", "PCFY2")
 
@@ -97,8 +100,11 @@ def convert(path: str | Path, given: Mapping[str, float] = MappingProxyType({}))
     start |= {"FITTYP": 62.0, "USE_MODE": 124.0}
     found = refit(start, at, goal)
     values = {**start, **found, **_ranges(old, reach)}
-    tyre = Tyre.from_values(values).annotate(status=_status(old, values, found), provenance=_provenance(old))
-    return Conversion(tyre, old, reach, tuple(_misfits(tyre, at, goal)), tuple(found))
+    tyre = Tyre.from_values(values)
+    misfit = tuple(_misfits(tyre, at, goal))
+    provenance = {ORIGIN: _origin(old), MISFIT: wording.worst(misfit)}
+    tyre = tyre.annotate(status=_status(old, values, found), provenance=provenance)
+    return Conversion(tyre, old, reach, misfit, tuple(found))
 
 
 def _camber_stiffness(p: Any, reach: Reach) -> dict[str, float]:
@@ -156,9 +162,8 @@ def _status(old: OldFile, values: Mapping[str, Any], found: Mapping[str, float])
     return out
 
 
-def _provenance(old: OldFile) -> dict[str, str]:
-    text = f"{old.path.name}, {old.kind}, by a fit of the camber terms; see the table of mffit convert"
-    return {"converted from": text}
+def _origin(old: OldFile) -> str:
+    return f"{old.path.name}, {old.kind}, by a fit of the camber terms; see the table of mffit convert"
 
 
 def _misfits(tyre: Tyre, at: Conditions, goal: Mapping[str, np.ndarray]) -> list[RegionMisfit]:

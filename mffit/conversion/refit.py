@@ -11,8 +11,7 @@ import numpy as np
 from mffit.conversion import constants
 from mffit.conversion.grid import Conditions
 from mffit.fit.normal import CAMBER_FORCE, CAMBER_MOMENT, STARTS
-from mffit.least_squares import FreeNumber, LeastSquaresProblem, Linear, solve
-from tir.derivatives import gradient, plain, traced
+from mffit.least_squares import FreeNumber, of_model, solve
 from tir.outputs import outputs_of
 from tir.parameters import BY_NAME
 
@@ -35,25 +34,15 @@ def _of_channel(
     channel: str, names: Sequence[str], values: Mapping[str, Any], at: Conditions, goal: np.ndarray
 ) -> Mapping[str, float]:
     unit = float(constants.MISFIT_UNIT_OF_CONVERSION) * float(np.max(np.abs(goal)))
-    factor = np.sqrt(at.weight / at.weight.sum()) / unit
+    u = unit / np.sqrt(at.weight / at.weight.sum())
     inputs = at._asdict()
-    none = np.zeros(0)
 
     def force(numbers: Mapping[str, Any]) -> Any:
         return outputs_of((channel,), SimpleNamespace(**{**values, **numbers}), inputs)[0]
 
-    def residual(x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        return (force(dict(zip(names, x.tolist(), strict=True))) - goal) * factor, none
-
-    def linear(x: np.ndarray) -> Linear:
-        numbers = traced(dict(zip(names, x.tolist(), strict=True)))
-        out = force(numbers)
-        slope = gradient(out, [*numbers.values()]) * factor[:, None]
-        return Linear((plain(out) - goal) * factor, slope, none, np.zeros((0, len(names))))
-
     ends = [
         solve(
-            LeastSquaresProblem(residual, linear),
+            of_model(force, names, goal, u),
             [_number(name, float(start.get(name, values[name]))) for name in names],
             max_steps=int(constants.STEPS_OF_THE_CONVERSION),
             tolerance=float(constants.END_OF_THE_CONVERSION),

@@ -3,10 +3,14 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
+from typing import TYPE_CHECKING
 
 from mffit.conversion import constants
-from mffit.conversion.convert import Conversion, RegionMisfit
 from mffit.quantities import MODEL
+
+if TYPE_CHECKING:
+    from mffit.conversion.convert import Conversion, RegionMisfit
 
 
 def headline(found: Conversion) -> str:
@@ -25,6 +29,16 @@ def region(row: RegionMisfit) -> str:
     """A region of the misfit."""
     side = "to" if row.small_camber else "beyond"
     return f"camber {side} {constants.SMALL_CAMBER:g} deg{', slipping' if row.slipping else ''}"
+
+
+def worst(misfit: Iterable[RegionMisfit]) -> str:
+    """The misfit of the channel that differs most, as a share of its largest value."""
+    row = max(misfit, key=lambda row: row.largest / row.greatest_force)
+    quantity = MODEL[row.channel]
+    return (
+        f"{quantity.symbol} differs most from the old file, by up to {row.largest:.3g} {quantity.unit} "
+        f"({row.largest / row.greatest_force:.1%} of its largest value), at {region(row)}"
+    )
 
 
 def reasons(found: Conversion) -> list[str]:

@@ -25,7 +25,7 @@ class Coefficient:
     stage: str
     fixed: bool
     at_bound: bool
-    status: str  #: measured | fitted | regularised | default | base | estimate | fleet | sister | campaign | range | given
+    status: str  #: its origin, as the table of docs/files.md names it
     correlated_with: str = ""  #: the coefficient with the largest correlation, if this is strong
     correlation: float = 0.0
     interval: tuple[float, float] | None = None  #: of 95 %; None if held

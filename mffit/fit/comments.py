@@ -8,6 +8,7 @@ from mffit.fit import constants
 from mffit.fit.coefficients import Coefficient
 from mffit.fit.files import Files
 from mffit.fit.known import DECIDED
+from mffit.fit.priors import CONVERTED, FROM_BASE
 from mffit.tested import words_on_tested
 from tir.parameters import TABLE, Parameter
 
@@ -23,6 +24,7 @@ FROM_DATA = ("measured", "fitted", "regularised")
 """Origins of values that these data decided."""
 WORDS = {
     "base": "from base",
+    CONVERTED: "from base, converted",
     "sister": BORROWED,
     "campaign": JOINED,
     "fleet": "as tyres of its fleet have it",
@@ -64,7 +66,7 @@ def file_comments(
 
 def _held_comment(coefficient: Coefficient) -> str:
     """The comment of a value that the engineer holds."""
-    return "from base, held by hand" if coefficient.status == "base" else HELD
+    return f"{WORDS[coefficient.status]}, {HELD}" if coefficient.status in FROM_BASE else HELD
 
 
 def _derived_comment(use: str, coefficient: Coefficient | None) -> str:

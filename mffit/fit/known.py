@@ -8,7 +8,7 @@ from typing import Any
 
 from mffit.fit.by_hand import NO_HAND, Hand
 from mffit.fit.estimates import estimates
-from mffit.fit.priors import Prior
+from mffit.fit.priors import CONVERTED, Prior
 from mffit.fit.ranges import covered_ranges
 from mffit.fit.rolling import RADIUS_COEFFICIENTS, radius_coefficients
 from mffit.fit.stages import ODD_TERMS
@@ -28,7 +28,7 @@ NOTHING: Mapping[str, float] = {}
 
 @dataclass(frozen=True, slots=True)
 class Known:
-    """Values by name, and the origin of each: measured, fitted, regularised, base, default, estimate, fleet, sister,
+    """Values by name, and the origin of each: measured, fitted, regularised, base, converted, default, estimate, fleet, sister,
     campaign, range, given."""
 
     values: Mapping[str, Any]
@@ -55,14 +55,14 @@ def known_before_fit(
 
     ``elsewhere`` are vertical stiffness and radii of other campaigns of the tyre.
     """
-    template, stated = (base, base.present) if base is not None else (Tyre.from_values({}), frozenset())
+    template = Tyre.from_values({}) if base is None else base
     known = Known(
         values={**template.values, **hand.held},
         origin={
             row.name: "given"
             if row.name in hand.held and row.name not in hand.from_base
-            else "base"
-            if row.name in stated
+            else _of_base(base, row.name)
+            if base is not None and row.name in base.present
             else "default"
             for row in TABLE
         },
@@ -86,6 +86,11 @@ def known_before_fit(
     if config.tyre.side == "symmetric":
         known = known.having(dict.fromkeys(ODD_TERMS, 0.0), "given")
     return _as_set(known)
+
+
+def _of_base(base: Tyre, name: str) -> str:
+    """The origin of a value that the base file states."""
+    return CONVERTED if base.status.get(name, "").startswith(CONVERTED) else "base"
 
 
 def _as_set(known: Known) -> Known:

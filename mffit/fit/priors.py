@@ -12,6 +12,11 @@ from mffit.fit import constants
 from mffit.fit.stages import SMALL_ON_A_DISC
 from tir.parameters import BY_NAME
 
+CONVERTED = "converted"
+"""Origin of a value that a conversion of the base file gave, and the first word of its comment there."""
+FROM_BASE = ("base", CONVERTED)
+"""Origins of what the base file states."""
+
 
 class Prior(NamedTuple):
     """Prior of one coefficient."""
@@ -33,7 +38,9 @@ def scatter(name: str, expected: float, *, from_base: bool, curved: bool) -> flo
 
 def scatters(names: Mapping[str, float], origin: Mapping[str, str], *, curved: bool) -> dict[str, float]:
     """Standard deviation of every named coefficient around its expected value."""
-    return {n: scatter(n, value, from_base=origin[n] == "base", curved=curved) for n, value in names.items()}
+    return {
+        n: scatter(n, value, from_base=origin[n] in FROM_BASE, curved=curved) for n, value in names.items()
+    }
 
 
 def fleet_content(nominal: Mapping[str, float], tyres: int, priors: Mapping[str, Prior]) -> dict[str, Any]:

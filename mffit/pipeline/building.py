@@ -23,7 +23,7 @@ from mffit.output import refuse_early
 from mffit.parts import Parts
 from mffit.pipeline.build_output import WRITTEN, write_build
 from mffit.pipeline.campaigns import campaigns_of, projects_of
-from mffit.pipeline.inputs import input_hashes, inputs_of, read_base, read_points
+from mffit.pipeline.inputs import base_warnings, input_hashes, inputs_of, read_base, read_points
 from mffit.pipeline.judging import judged
 from mffit.pipeline.left_out import left_out_by_fit
 from mffit.pipeline.measuring import measure
@@ -110,6 +110,7 @@ def build(
             *(NOT_TRUSTED.format(reason) for reason in trust.reasons),
             *trust.doubts,
             *warned,
+            *base_warnings(config, base),
             *reading.warnings,
             *measured.warnings,
             *fitted.warnings,

@@ -9,6 +9,7 @@ from mffit import config as configuration
 from mffit import points
 from mffit.config import Config
 from mffit.conversion import convert, is_old
+from mffit.conversion.convert import MISFIT, ORIGIN
 from mffit.errors import InputError
 from mffit.output import digest
 from mffit.points.loading import Reading
@@ -44,6 +45,17 @@ def read_base(config: Config) -> Tyre | None:
             key="tyre.base",
         )
     return convert(path).tyre if is_old(path) else tir.read(path)
+
+
+def base_warnings(config: Config, base: Tyre | None) -> tuple[str, ...]:
+    """What a build says of a base file that was converted from another version of the formula."""
+    if base is None or ORIGIN not in base.provenance:
+        return ()
+    missed = base.provenance.get(MISFIT, "its misfit is not stated")
+    return (
+        f"the base file {config.tyre.base} is converted ({', '.join(base.provenance[ORIGIN].split(', ')[:2])}): {missed}; "
+        "coefficients that the sweeps do not determine have this misfit",
+    )
 
 
 def inputs_of(config: Config) -> list[Path]:

@@ -46,6 +46,7 @@ STATUS_ORDER = (
     "given",
     "fleet",
     "base",
+    "converted",
     "default",
 )
 
@@ -100,7 +101,7 @@ class CoefficientRow:
 
     @property
     def held(self) -> bool:
-        return self.status in ("base", "default", "given", "range") and not self.by_hand
+        return self.status in ("base", "converted", "default", "given", "range") and not self.by_hand
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -16,8 +16,12 @@ from mffit.cli import main
 from mffit.conversion import convert, is_old, mf52, read_old
 from mffit.conversion.grid import conditions
 from mffit.errors import InputError
-from mffit.pipeline.inputs import read_base
+from mffit.fit.known import known_before_fit
+from mffit.pipeline.inputs import base_warnings, read_base
+from mffit.pipeline.measuring import measure
+from mffit.points import make_points
 
+ROOT = Path(__file__).parents[3]
 OLD = Path(__file__).parent / "old_52.tir"
 TEXT = OLD.read_text(encoding="ascii")
 PUBLISHED = {
@@ -189,8 +193,42 @@ def test_an_old_file_can_be_the_base_of_a_build(tmp_path):
         folder, path = tmp_path, None
         tyre = configuration.models.TyreTable.model_construct(base="base.tir")
 
-    base = read_base(Config)
-    assert base == convert(OLD).tyre
+    base, found = read_base(Config), convert(OLD)
+    assert base == found.tyre
+    (said,) = base_warnings(Config, base)
+    most = max(found.misfit, key=lambda row: row.largest / row.greatest_force)
+    assert f"{most.largest / most.greatest_force:.1%} of its largest value" in said
+    assert most.channel[0] in said
+    assert "base.tir" in said
+    written = found.tyre.replace(QSX1=0.0)
+    written.write(tmp_path / "again.tir")  # a file converted before says the same
+    assert (
+        base_warnings(Config, tir.read(tmp_path / "again.tir"))[0].partition(": ")[2]
+        == said.partition(": ")[2]
+    )
+    assert base_warnings(Config, new) == ()
+
+
+def test_what_a_converted_base_gives_is_marked_as_converted(converted, tmp_path):
+    tyre = converted.tyre
+    points = make_points(np.radians([-2.0, 2.0]), 0.0, 3000.0, p=200e3, V=10.0, phi_t=0.0, Fy=[900.0, -900.0])
+    config = configuration.load(
+        {
+            "tyre": {
+                "name": "t", "unloaded_radius": 0.3, "nominal_load": 4000, "nominal_pressure": 200, "nominal_speed": 16,
+            },
+            "rig": {"type": "flat-track"},
+            "sweep": [{"file": "any.csv"}],
+        }
+    )  # fmt: skip
+    _, measured = measure(config, points, tyre)
+    known = known_before_fit(config, points, measured, tyre, {})
+    assert known.origin["PCX1"] == known.origin["PKY6"] == "converted"
+    tyre.write(tmp_path / "converted.tir")
+    known = known_before_fit(config, points, measured, tir.read(tmp_path / "converted.tir"), {})
+    assert known.origin["PCX1"] == "converted"
+    plain = tir.read(ROOT / "samples" / "front-120-70" / "base.tir")
+    assert known_before_fit(config, points, measured, plain, {}).origin["PCX1"] == "base"
 
 
 def test_writing_over_another_file_is_refused(converted, tmp_path):
