@@ -50,7 +50,9 @@ def fit_with_nuisances(
     ``before_restarts`` is called before they are tried; it may refuse the data.
     """
 
-    staged: dict[bytes, Fitted] = {}  # fits to some of the points; restarts of the fit to all do not change them
+    staged: dict[
+        bytes, Fitted
+    ] = {}  # fits to some of the points; restarts of the fit to all do not change them
 
     def extended(fitted: Fitted) -> NuisanceFit:
         choice = choose(config, fitted)
