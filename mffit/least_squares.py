@@ -126,6 +126,47 @@ class Solution:
         return inverse(self.jacobian.T @ self.jacobian + np.diag(self.prior))
 
 
+class Minimum(NamedTuple):
+    """Where a search ends."""
+
+    names: tuple[str, ...]
+    x: np.ndarray  #: (k,)
+    cost: float  #: sum of squares of data, priors and limits
+    steps: int
+    here: Linear | None  #: the problem there, where the search computed it
+
+    @property
+    def values(self) -> dict[str, float]:
+        """The numbers by name."""
+        return dict(zip(self.names, self.x.tolist(), strict=True))
+
+
+def minimum(
+    problem: LeastSquaresProblem,
+    numbers: Sequence[FreeNumber],
+    *,
+    max_steps: int = 60,
+    tolerance: float = 1e-6,
+) -> Minimum:
+    """The minimum that :func:`solve` finds, without the derivatives there."""
+    objective = _Objective.of(problem, numbers)
+    x = np.clip([n.start for n in numbers], objective.lower, objective.upper)
+    here: Linear | None = problem.linear(x)
+    assert here is not None
+    cost = objective.cost(x, here.data, here.limits)
+    damping, taken = 1e-3, 0
+    while taken < max_steps and len(x):
+        here = problem.linear(x) if here is None else here
+        step = _step(objective, x, cost, here, damping)
+        if step is None:
+            break
+        gained, x, cost, damping, here = cost - step.cost, step.x, step.cost, step.damping, None
+        taken += 1
+        if gained < tolerance * cost:
+            break
+    return Minimum(tuple(n.name for n in numbers), x, cost, taken, here)
+
+
 def solve(
     problem: LeastSquaresProblem,
     numbers: Sequence[FreeNumber],
@@ -142,29 +183,20 @@ def solve(
     max_steps : accepted steps at most
     tolerance : relative decrease of the sum of squares at which the search ends
     """
+    found = minimum(problem, numbers, max_steps=max_steps, tolerance=tolerance)
     objective = _Objective.of(problem, numbers)
-    x = np.clip([n.start for n in numbers], objective.lower, objective.upper)
-    here = problem.linear(x)
-    cost = objective.cost(x, here.data, here.limits)
-    damping, taken = 1e-3, 0
-    while taken < max_steps and len(x):
-        step = _step(objective, x, cost, here, damping)
-        if step is None:
-            break
-        gained, x, cost, damping = cost - step.cost, step.x, step.cost, step.damping
-        here = problem.linear(x)
-        taken += 1
-        if gained < tolerance * cost:
-            break
+    here = problem.linear(found.x) if found.here is None else found.here
     return Solution(
-        values={n.name: v for n, v in zip(numbers, x.tolist(), strict=True)},
+        values=found.values,
         data=here.data,
         jacobian=here.slope,
         prior=objective.precision,
-        cost=cost,
-        at_bound=frozenset(n.name for n, v in zip(numbers, x, strict=True) if touches(v, n.lower, n.upper)),
+        cost=found.cost,
+        at_bound=frozenset(
+            n.name for n, v in zip(numbers, found.x, strict=True) if touches(v, n.lower, n.upper)
+        ),
         at_limit=_held_by_limits([n.name for n in numbers], here),
-        steps=taken,
+        steps=found.steps,
     )
 
 

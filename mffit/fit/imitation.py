@@ -11,7 +11,7 @@ import numpy as np
 from mffit.fit import constants
 from mffit.fit.constraints import Envelope, limits
 from mffit.fit.road import Road
-from mffit.least_squares import FreeNumber, LeastSquaresProblem, Linear, Solution, solve
+from mffit.least_squares import FreeNumber, LeastSquaresProblem, Linear, Minimum, minimum
 from mffit.quantities import SIDEWAYS
 from mffit.rig import Readings
 from tir.derivatives import gradient, plain, traced
@@ -73,7 +73,7 @@ class Imitation(NamedTuple):
     envelope: Envelope  #: over which the physical limits hold
     lines: Lines | None = None
 
-    def solve(self, numbers: Sequence[FreeNumber], *, steps: int, tolerance: float) -> Solution:
+    def solve(self, numbers: Sequence[FreeNumber], *, steps: int, tolerance: float) -> Minimum:
         """The coefficients that come nearest to the goals."""
         names = [n.name for n in numbers]
 
@@ -85,7 +85,7 @@ class Imitation(NamedTuple):
             return self._residuals(dict(zip(names, x.tolist(), strict=True)), derive=True)
 
         problem = LeastSquaresProblem(residual, linear)
-        return solve(problem, numbers, max_steps=steps, tolerance=tolerance)
+        return minimum(problem, numbers, max_steps=steps, tolerance=tolerance)
 
     @property
     def _unit(self) -> float:

@@ -15,7 +15,7 @@ from mffit.fit.fitted import Fitted
 from mffit.fit.nuisances import NUISANCES, Nuisance
 from mffit.fit.problem import FitProblem
 from mffit.fit.run_scatter import OfRuns, Runs, halves_of_runs
-from mffit.least_squares import FreeNumber, solve
+from mffit.least_squares import FreeNumber, minimum
 from mffit.left_out import Predicted, improves, left_out_errors, needed_fall, predicted
 from mffit.points import Points
 from mffit.rig import Simulation
@@ -323,7 +323,7 @@ def _without(model: _NearSolution, dropped: Nuisance) -> _NearSolution:
 def _solved(model: _NearSolution) -> _NearSolution:
     numbers = model.problem.starting_here(model.numbers)
     slips = "Fx" in model.problem.sigma
-    found = solve(
+    found = minimum(
         model.problem.free([number.name for number in numbers]),
         numbers,
         max_steps=constants.REFIT_STEPS_UNDER_SLIP if slips else constants.REFIT_STEPS,

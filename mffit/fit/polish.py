@@ -13,7 +13,7 @@ from mffit.fit.plan import FitPlan
 from mffit.fit.posterior import joint, strongest_correlations
 from mffit.fit.problem import FitProblem
 from mffit.fit.profile import follow
-from mffit.least_squares import Solution, solve
+from mffit.least_squares import Solution, minimum, solve
 from mffit.rig_errors import error_of
 
 
@@ -62,7 +62,9 @@ def _approached(problem: FitProblem, plan: FitPlan) -> FitProblem:
         thinned = problem.reweighted()[0].thinned(stride)
         last = stride <= constants.STRIDE_DIVISOR  # the fit to all points can then do the rest
         tolerance = constants.STAGE_TOLERANCE if last else constants.POLISH_TOLERANCE
-        problem = problem.with_values(_solution(thinned, plan, tolerance).values)
+        numbers = plan.numbers(thinned)
+        near = minimum(thinned.free([n.name for n in numbers]), numbers, tolerance=tolerance)
+        problem = problem.with_values(near.values)
     return problem
 
 
@@ -76,13 +78,9 @@ def _strides(n: int) -> Iterator[int]:
 
 
 def _solved(problem: FitProblem, plan: FitPlan) -> tuple[FitProblem, Solution]:
-    solution = _solution(problem, plan, constants.POLISH_TOLERANCE)
-    return problem.with_values(solution.values), solution
-
-
-def _solution(problem: FitProblem, plan: FitPlan, tolerance: float) -> Solution:
     numbers = plan.numbers(problem)
-    return solve(problem.free([n.name for n in numbers]), numbers, tolerance=tolerance)
+    solution = solve(problem.free([n.name for n in numbers]), numbers, tolerance=constants.POLISH_TOLERANCE)
+    return problem.with_values(solution.values), solution
 
 
 def _errors(solution: Solution) -> dict[str, float]:

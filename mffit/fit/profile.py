@@ -12,7 +12,7 @@ from mffit.constants import COVERAGE_FACTOR_95
 from mffit.fit import constants
 from mffit.fit.problem import FitProblem
 from mffit.fit.start import SHAPES
-from mffit.least_squares import FreeNumber, Solution, inverse, solve
+from mffit.least_squares import FreeNumber, Solution, inverse, minimum
 
 ALLOWED_RISE = COVERAGE_FACTOR_95**2
 """Rise of the sum of squares up to which a fit belongs to the 95 % interval of one number."""
@@ -170,11 +170,11 @@ def _refitted(
     """The best fit with one number held at a value, and its sum of squares."""
     moving = [replace(n, start=x) for n, x in zip(numbers, start.tolist(), strict=True)]
     held = moving.pop(i)
-    found = solve(
+    found = minimum(
         problem.with_values({held.name: value}).free([n.name for n in moving]),
         moving,
         max_steps=constants.REFIT_STEPS,
         tolerance=constants.REFIT_TOLERANCE,
     )
-    place = np.insert(np.array(list(found.values.values())), i, value)
+    place = np.insert(found.x, i, value)
     return place, found.cost + ((value - held.expected) / held.spread) ** 2

@@ -16,7 +16,7 @@ from mffit.fit.polish import polish
 from mffit.fit.problem import FitProblem
 from mffit.fit.stages import BY_STAGE, WITH_CAMBER, Stage, StageRecord
 from mffit.fit.start import ALTERNATIVE_STARTS, SHAPES, STARTS_OF_A_STAGE
-from mffit.least_squares import solve
+from mffit.least_squares import minimum
 from mffit.points import Points, levels, main_pressure
 from mffit.progress import Progress, silent
 from mffit.quantities import CHANNELS, column
@@ -95,7 +95,7 @@ def _fit_stage(stage: Stage, names: Sequence[str], problem: FitProblem, plan: Fi
     sigma = {name: u if name in stage.channels else unused for name, u in part.sigma.items()}
     part, _ = replace(part, sigma=sigma, radii=()).reweighted()
     ends = [
-        solve(
+        minimum(
             here.free(names),
             plan.coefficients(names, here),
             max_steps=constants.STAGE_STEPS,

@@ -37,7 +37,7 @@ def small(tmp_path_factory):
     """A build of a rig whose load cell is 15 N off, and its folder."""
     folder = tmp_path_factory.mktemp("small")
     campaign(folder, faults={"F0_N": 15.0})
-    return mffit.build(folder / "tyre.toml", folder / "out"), folder
+    return mffit.build(folder / "tyre.toml", folder / "out", with_report=False), folder
 
 
 def test_a_built_file_contains_the_rig_errors_of_its_sweeps(small):

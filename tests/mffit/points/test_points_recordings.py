@@ -21,12 +21,12 @@ COLUMNS = {
 }  # fmt: skip
 
 
-@pytest.fixture
-def read(tmp_path):
+@pytest.fixture(scope="module")
+def read(tmp_path_factory):
     def reading(
         table: pd.DataFrame, axes: str = "calspan", *, judged: bool = True, **keys
     ) -> points.loading.Reading:
-        file = write_mat(table, tmp_path / "run.mat")
+        file = write_mat(table, tmp_path_factory.mktemp("run") / "run.mat")
         reader = read_points if judged else points.read
         return reader(
             configuration.load(
@@ -48,13 +48,19 @@ def read(tmp_path):
     return reading
 
 
+@pytest.fixture(scope="module")
+def whole(read):
+    """The recording without a fault."""
+    return read(recording())
+
+
 def kept(found) -> list:
     return [note for note in found.stretches if note.kind == SWEEP and not note.dropped]
 
 
 @pytest.mark.parametrize("gaps", [True, False])
-def test_every_condition_is_a_sweep_of_its_own(read, gaps):
-    found = read(recording(gaps=gaps))
+def test_every_condition_is_a_sweep_of_its_own(read, whole, gaps):
+    found = read(recording(gaps=True)) if gaps else whole
     sweeps = kept(found)
     conditions = [(p, gamma, load) for p in (83.0, 97.0) for gamma in CAMBERS for load in LOADS]
     assert len(sweeps) == len(conditions)
@@ -69,10 +75,9 @@ def test_every_condition_is_a_sweep_of_its_own(read, gaps):
     assert not np.any(found.points.continuous)
 
 
-def test_every_sample_is_in_one_stretch_and_dropped_ones_have_a_reason(read):
-    table = recording()
-    notes = read(table).stretches
-    covered = np.zeros(len(table), dtype=int)
+def test_every_sample_is_in_one_stretch_and_dropped_ones_have_a_reason(whole):
+    notes = whole.stretches
+    covered = np.zeros(len(recording()), dtype=int)
     for note in notes:
         covered[note.first_line - 1 : note.last_line] += 1
         assert bool(note.dropped) != bool(note.points), note
@@ -81,9 +86,9 @@ def test_every_sample_is_in_one_stretch_and_dropped_ones_have_a_reason(read):
     assert covered.mean() > 0.9
 
 
-def test_points_lie_on_the_tyre(read):
+def test_points_lie_on_the_tyre(whole):
     """Means of ten samples of 10 N scatter by 3.2 N; the curve bends by less than 3 N over a third of a degree."""
-    found = read(recording()).points
+    found = whole.points
     truth = side_force(found.alpha, found.gamma, found.Fz, side=0.0)
     assert np.sqrt(np.mean((found.Fy - truth) ** 2)) < 8.0
     line = found.line[1:] - found.line[:-1]
@@ -92,28 +97,28 @@ def test_points_lie_on_the_tyre(read):
 
 @pytest.mark.parametrize("sigma", [0.0, 0.3, 0.6])
 def test_the_lag_is_measured_and_taken_off(read, sigma):
-    table = recording(sigma=sigma)
-    lags = [note.lag_m for note in kept(read(table)) if np.isfinite(note.lag_m)]
+    reading = read(recording(sigma=sigma))
+    lags = [note.lag_m for note in kept(reading) if np.isfinite(note.lag_m)]
     assert len(lags) >= 12
     # The machine's filter, sample by sample, lags by this on a ramp: sigma less half a sample.
     step = SPEED / RATE
     keeps = np.exp(-step / sigma) if sigma else 0.0
     assert np.median(lags) == pytest.approx(step * keeps / (1.0 - keeps), rel=0.08, abs=0.03)
-    found = read(table).points
+    found = reading.points
     truth = side_force(found.alpha, found.gamma, found.Fz, side=0.0)
     # Uncorrected, 0.6 m at 3 deg/s and 11 m/s are 0.16 deg, 55 N where the curve is steepest.
     assert np.sqrt(np.mean((found.Fy - truth) ** 2)) < 12.0
     np.testing.assert_allclose(-found.table["alpha_deg"], np.degrees(found.alpha), atol=0.25)
 
 
-def test_heat_is_not_taken_for_lag(read):
+def test_heat_is_not_taken_for_lag(read, whole):
     """A tyre that loses 1 % of its grip per degree differs between up and down, but not where the force is zero."""
     found = read(recording(grip_per_K=0.01))
     lags = [note.lag_m for note in kept(found) if np.isfinite(note.lag_m)]
     assert abs(np.median(lags)) < 0.05
     hysteresis = [note.hysteresis_N / note.Fz_N for note in kept(found)]
     assert np.nanmedian(hysteresis) > 0.01
-    assert np.nanmedian([n.hysteresis_N / n.Fz_N for n in kept(read(recording()))]) < 0.01
+    assert np.nanmedian([n.hysteresis_N / n.Fz_N for n in kept(whole)]) < 0.01
     assert np.ptp(found.points.T) > 5.0  # the tread's temperature stays a channel
 
 
@@ -195,8 +200,7 @@ def impossible(table):
         (impossible, "no reading"),
     ],
 )
-def test_faulty_samples_are_left_out_with_a_reason(read, change, said):
-    whole = read(recording())
+def test_faulty_samples_are_left_out_with_a_reason(read, whole, change, said):
     found = read(spoilt(change))
     sentences = " ".join([*found.warnings, *(note.dropped for note in found.stretches)])
     assert said in sentences
@@ -205,10 +209,10 @@ def test_faulty_samples_are_left_out_with_a_reason(read, change, said):
     assert 0.5 * len(whole.points) < len(found.points) < 1.02 * len(whole.points)
 
 
-def test_more_clipping_leaves_fewer_points(read):
+def test_more_clipping_leaves_fewer_points(read, whole):
     found = read(spoilt(hard_clipped))
     assert any("Fy clipped" in warning for warning in found.warnings)
-    assert len(found.points) < 0.6 * len(read(recording()).points)
+    assert len(found.points) < 0.6 * len(whole.points)
     truth = side_force(found.points.alpha, found.points.gamma, found.points.Fz, side=0.0)
     assert np.sqrt(np.mean((found.points.Fy - truth) ** 2)) < 60.0
 
@@ -238,11 +242,10 @@ def test_a_reversed_channel_is_caught(read, column):
         read(table)
 
 
-def test_a_warning_names_the_one_sweep_that_leans_the_other_way(read):
+def test_a_warning_names_the_one_sweep_that_leans_the_other_way(read, whole):
     table = recording()
-    sound = read(table)
-    assert not [warning for warning in sound.warnings if "other side" in warning]
-    leaning = [note for note in kept(sound) if abs(note.gamma_deg) > 1.0]
+    assert not [warning for warning in whole.warnings if "other side" in warning]
+    leaning = [note for note in kept(whole) if abs(note.gamma_deg) > 1.0]
     note = leaning[0]
     rows = (table["ET"] >= note.begin_s) & (table["ET"] <= note.end_s)
     table.loc[rows, "IA"] *= -1.0
