@@ -174,5 +174,6 @@ def test_whitened_readings_have_unit_covariance(share):
     covariance += shared[used] @ shared[used].T
     white = noise.whiten(np.eye(60))[:, used]
     assert white @ covariance @ white.T == pytest.approx(np.eye(59), abs=1e-10)
+    assert noise.whiten(np.empty((60, 0))).shape == (59, 0)  # LAPACK once wrote beyond it
     rows = np.array([2, 3, 7, 33, 50])
     assert noise.error_of_sum(rows) ** 2 == pytest.approx(covariance[np.ix_(rows, rows)].sum())
