@@ -99,6 +99,8 @@ class Correlation:
 
     def in_order(self, z: np.ndarray) -> np.ndarray:
         """The same for readings in the order of the chains; fast for columns of Fortran order."""
+        if not z.size:  # the slopes of a switch: LAPACK's wrapper writes beyond an array without columns
+            return z
         d = z.copy(order="F")
         d[1:] -= (self.memory[1:] * z[:-1].T).T
         if not self.below.any():

@@ -94,7 +94,7 @@ class MarginalChannel:
         r, A = white[:, 0], white[:, 1:]
         root = _factor(A)
         log = float(np.sum(np.log(np.diag(root))) + np.sum(np.log(u)) + correlation.log)
-        inverse = dpotri(root, lower=1)[0]
+        inverse = dpotri(root, lower=1)[0] if len(root) else root
         inverse = np.tril(inverse) + np.tril(inverse, -1).T
         x = inverse @ (A.T @ r)
         # Slopes of half the sum of squares and half the log determinant by the whitened readings: (white @ joint).

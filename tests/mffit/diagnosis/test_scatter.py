@@ -8,9 +8,12 @@ import numpy as np
 import pytest
 
 from mffit.diagnosis import constants
+from mffit.diagnosis.chains import Span
 from mffit.diagnosis.noise import Noise, Scatter
 from mffit.diagnosis.scatter import ExplainingColumns, learned
+from mffit.diagnosis.stated import stated_noise
 from mffit.diagnosis.tails import outlying
+from mffit.points import make_points
 
 N, SWEEPS = 400, 20
 FORCE = 1500.0 * np.sin(np.linspace(0.0, 40.0, N))
@@ -26,8 +29,11 @@ def stated(u=6.0):
 RUNS = np.repeat(np.arange(SWEEPS), N // SWEEPS)
 
 
-def found(Fy, named=NOTHING, offsets=0.0):
-    """The noise learned from errors (N,), NaN where nothing was read, with offsets of runs of a usual size [N] if given."""
+def found(Fy, named=NOTHING, offsets=0.0, longer=False):
+    """The noise learned from errors (N,), NaN where nothing was read, with offsets of runs of a usual size [N] if given.
+
+    ``longer``: the sweeps may have followed each other without a pause.
+    """
     rng = np.random.default_rng(99)
     residual = np.concatenate([Fy, rng.normal(0.0, 0.6, N)])
     size = np.concatenate([FORCE, 0.02 * FORCE])
@@ -39,14 +45,17 @@ def found(Fy, named=NOTHING, offsets=0.0):
         u=np.where(np.isfinite(residual), noise.u, np.inf),
         stated=np.where(np.isfinite(residual), noise.u, np.inf),
     )
+    if longer:
+        chain = {Span.PROGRAMME: np.zeros(2 * N, dtype=int)}
+        noise = replace(noise, longer=chain, turn=np.tile(np.arange(N), 2))
     return learned(noise, residual, ExplainingColumns(named, runs, NOTHING), size)
 
 
-def correlated(rng, memory):
-    """Errors of 6 N with a memory along each sweep."""
+def correlated(rng, memory, *, again=True):
+    """Errors of 6 N with a memory along each sweep, begun ``again`` with each or not."""
     noise = rng.normal(0.0, 6.0, N)
     for i in range(1, N):
-        if RUNS[i] == RUNS[i - 1]:
+        if RUNS[i] == RUNS[i - 1] or not again:
             noise[i] = memory * noise[i - 1] + np.sqrt(1.0 - memory**2) * noise[i]
     return noise
 
@@ -128,6 +137,54 @@ def test_a_few_runs_hardly_separate_offsets_from_a_memory(seed):
     assert all_ > constants.RUN_OFFSET_LOG_ODDS + 1.0
 
 
+@pytest.mark.parametrize(("again", "span"), [(True, Span.SWEEP), (False, Span.PROGRAMME)])
+def test_errors_that_run_on_from_sweep_to_sweep_are_told_from_those_that_begin_anew(again, span):
+    noise = found(correlated(np.random.default_rng(3), 0.96, again=again), offsets=5.0, longer=True)
+    assert noise.scatter["Fy"].span is span
+    assert noise.scatter["Fy"].memory == pytest.approx(0.96, abs=0.03)
+    assert noise.offset == frozenset()
+
+
+def test_a_drift_is_found_where_a_single_memory_is_no_better_than_none():
+    """Slow errors of 3 N beside independent ones of 6 N, which once counted as structure of the model."""
+    errors = 0.5 * correlated(np.random.default_rng(5), 0.97, again=False)
+    scatter = found(errors + np.random.default_rng(6).normal(0.0, 6.0, N), offsets=5.0, longer=True).scatter[
+        "Fy"
+    ]
+    assert scatter.memory > 0.85
+    assert scatter.independent == pytest.approx(0.8, abs=0.15)
+
+
+def taken(t, file, lines):
+    """The chains longer than a sweep of points with times (n,), and the places of the points in time."""
+    points = make_points(
+        np.zeros(len(t)), np.zeros(len(t)), np.full(len(t), 1e3), p=2e5, V=10.0, phi_t=0.0, Fy=np.zeros(len(t)), t=t,
+        u_Fy=np.ones(len(t)), file=file, files=("a", "b", "c"), line=lines,
+    )  # fmt: skip
+    noise = stated_noise(points, channels=("Fy",))
+    return {span: chain.tolist() for span, chain in noise.longer.items()}, noise.turn.tolist()
+
+
+def test_sweeps_that_follow_each_other_in_time_are_one_chain():
+    """File b was run first, then a at once, and c after a pause."""
+    t, file = np.array([40.0, 50.0, 20.0, 10.0, 95.0, 105.0]), np.array([0, 0, 1, 1, 2, 2])
+    chains, turn = taken(t, file, np.arange(6))
+    assert turn == [2, 3, 1, 0, 4, 5]
+    assert chains[Span.FILE] == [1, 1, 0, 0, 2, 2]
+    assert chains[Span.PROGRAMME] == [0, 0, 0, 0, 1, 1]
+
+
+def test_without_times_only_the_lines_of_a_file_follow_each_other():
+    chains, turn = taken(np.full(6, np.nan), np.array([0, 0, 1, 1, 2, 2]), np.array([2, 1, 1, 2, 1, 2]))
+    assert turn == [1, 0, 2, 3, 4, 5]
+    assert chains == {Span.FILE: [0, 0, 1, 1, 2, 2]}
+
+
+def test_files_with_clocks_of_their_own_do_not_follow_each_other():
+    chains, _ = taken(np.tile([0.0, 10.0], 3), np.array([0, 0, 1, 1, 2, 2]), np.arange(6))
+    assert chains[Span.PROGRAMME] == [0, 0, 1, 1, 2, 2]
+
+
 def test_readings_without_noise_get_that_of_the_best_rigs(rng):
     noise = found(rng.normal(0.0, 1e-4, N))
     assert noise.scatter["Fy"].without_noise
@@ -155,24 +212,31 @@ def test_misfit_that_an_effect_could_explain_is_not_noise(rng):
     assert scatter.memory == 0.0
 
 
-@pytest.mark.parametrize("share", [0.0, 0.4])
-def test_whitened_readings_have_unit_covariance(share):
-    """Against the explicit covariance: independent uncertainty, memory along sweeps, shared changes."""
+@pytest.mark.parametrize(("share", "span"), [(0.0, Span.SWEEP), (0.4, Span.SWEEP), (0.4, Span.PROGRAMME)])
+def test_whitened_readings_have_unit_covariance(share, span):
+    """Against the explicit covariance: independent uncertainty, memory along sweeps or all readings, shared changes."""
     rng = np.random.default_rng(1)
     n, u = 30, rng.uniform(1.0, 3.0, 60)
     u[40] = np.inf
     chain, shared = np.repeat([0, 1, 2, 3], 15), rng.normal(size=(60, 4))
-    memory = {"Fy": Scatter(memory=0.8, independent=share), "Mz": Scatter(memory=0.3)}
-    noise = Noise(u=u, stated=u, chain=chain, origin=None, scatter=memory, shared=shared)
+    memory = {"Fy": Scatter(memory=0.8, independent=share, span=span), "Mz": Scatter(memory=0.3)}
+    turn = np.concatenate([rng.permutation(n), np.zeros(n, dtype=int)])
+    noise = Noise(
+        u=u, stated=u, chain=chain, origin=None, scatter=memory, shared=shared, turn=turn,
+        longer={Span.PROGRAMME: np.zeros(60, dtype=int)},
+    )  # fmt: skip
     used = np.flatnonzero(np.isfinite(u))
-    steps = np.abs(np.subtract.outer(np.arange(59), np.arange(59)))
+    place = np.concatenate([turn[:n] if span is Span.PROGRAMME else np.arange(n), np.arange(n, 59)])
+    steps = np.abs(np.subtract.outer(place, place))
     rho = np.where(used < n, 0.8, 0.3)
     inside = chain[used][:, None] == chain[used][None, :]
+    inside |= np.logical_and.outer(used < n, used < n) & (span is Span.PROGRAMME)
     alike = np.where(inside, rho[:, None] ** steps, 0.0)
     alike *= np.where((steps > 0) & (used < n)[:, None], 1.0 - share, 1.0)
     covariance = np.outer(u[used], u[used]) * alike
     covariance += shared[used] @ shared[used].T
     white = noise.whiten(np.eye(60))[:, used]
     assert white @ covariance @ white.T == pytest.approx(np.eye(59), abs=1e-10)
+    assert noise.whiten(np.empty((60, 0))).shape == (59, 0)  # LAPACK once wrote beyond it
     rows = np.array([2, 3, 7, 33, 50])
     assert noise.error_of_sum(rows) ** 2 == pytest.approx(covariance[np.ix_(rows, rows)].sum())
