@@ -47,9 +47,10 @@ def _drawn(fitted: Fitted, random: np.random.Generator) -> dict[str, float]:
         name: float(np.clip(values[name] + u * random.standard_normal(), *fitted.hand.bounds(name)))
         for name, u in fitted.held.items()
     }
+    rig = {n: fitted.problem.value(n) + u * random.standard_normal() for n, u in fitted.held_rig.items()}
     starts = fitted.problem.starting_here(fitted.numbers)
     numbers = [_with_drawn_prior(number, random) for number in starts]
-    free = fitted.problem.with_values(held).free([n.name for n in numbers])
+    free = fitted.problem.with_values({**held, **rig}).free([n.name for n in numbers])
     rows = len(free.residual(np.array([n.start for n in numbers]))[0])
     noise = random.standard_normal(rows)
 
