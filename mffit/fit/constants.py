@@ -222,6 +222,27 @@ BETTER_ON_PROFILE = Real(
     0.999, "-", "A fit met on a profile is better if its sum of squares is below this share."
 )
 
+# Other ends of a search
+OTHER_CURVATURES = Series(
+    (0.2, 0.75),
+    "-",
+    "Curvature factors near the two ends with equal slope and equal value at the largest slip.",
+)
+CURVATURE_BETWEEN_ENDS = Real(0.5, "-", "Curvature factor between these ends.")
+SHAPES_OF_OTHER_ENDS = Series((0.6, 2.5), "-", "Range of shape factors in which the other end is searched.")
+EXPONENTS_OF_OTHER_ENDS = Series((-2.0, 2.0), "-", "Range of PKX3 in which the other end is searched.")
+STEPS_TO_OTHER_ENDS = Count(
+    81, "-", "Values in each of these ranges; the fit that follows finds the end itself."
+)
+HOPELESS_END = Real(
+    1.02,
+    "-",
+    "Ratio of sums of squares, after a step from where some of the points lead, above which an end is given up.",
+)
+CLEARLY_BETTER_END = Real(
+    0.1, "-", "Fall of the sum of squares above which another end is taken: less decides nothing."
+)
+
 # Bands
 WIDENING_SHARE = Real(
     0.5, "-", "Share of the variance above which one coefficient is named as what widens the bands."

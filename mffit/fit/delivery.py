@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import reduce
 from typing import Any
+
+import numpy as np
 
 from mffit.config import Declaration, declared_rig
 from mffit.constants import USUAL_CORNERING_STIFFNESS
@@ -18,11 +20,13 @@ from mffit.fit.fitted import Fitted
 from mffit.fit.known import Known, known_after_fit
 from mffit.fit.posterior import Posterior
 from mffit.fit.relaxation import Relaxation, relaxation
-from mffit.fit.rolling import MY_ZERO, rolling_resistance
+from mffit.fit.rolling import FX_ZERO, MY_ZERO, Resistance, coasting, rolling_resistance
 from mffit.fit.sister import Lent, Sister, lend
 from mffit.fit.vertical import Vertical
 from mffit.points import Points
 from tir import Tyre
+
+NO_ZERO = Declaration(0.0, 0.0)
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,8 +66,7 @@ def deliver(
 ) -> Delivered:
     """The files of a fit, for one use ``only`` or for all, and the records of their coefficients."""
     known = known_after_fit(known, fitted.values, fitted.regularised, base)
-    zero = declared_rig(config.rig, USUAL_CORNERING_STIFFNESS).get(MY_ZERO, Declaration(0.0, 0.0))
-    rolling = rolling_resistance(known.values, points, zero, known.hand.held, config.tyre.side or "left")
+    rolling = _rolling_resistance(config, known, points)
     for name, q in rolling.found.items():
         known = known.having({name: q.value}, "regularised" if name in rolling.regularised else "fitted")
     lag = relaxation(beside.steps, fitted.simulation, fitted.posterior, known.hand.held)
@@ -85,3 +88,16 @@ def deliver(
     files = make_files(config, known, points, base, dict(measured.by_load("C_gamma")), only=only)
     annotated = files.annotated(file_comments(files, known.origin, coefficients))
     return Delivered(known, coefficients, annotated, lent, lag, tuple(joined), posterior, own, rolling.zeros)
+
+
+def _rolling_resistance(config: Any, known: Known, points: Points) -> Resistance:
+    """Rolling resistance from the measured moment My; where that is missing, from Fx of the wheel that coasts."""
+    declared = declared_rig(config.rig, USUAL_CORNERING_STIFFNESS)
+    hand, side = known.hand.held, config.tyre.side or "left"
+    if np.any(np.isfinite(points.My)):
+        return rolling_resistance(known.values, points, declared.get(MY_ZERO, NO_ZERO), hand, side)
+    zero = declared.get(FX_ZERO, NO_ZERO)
+    radius = float(known.values["UNLOADED_RADIUS"])
+    of_moment = Declaration(zero.value * radius, zero.u * radius)
+    found = rolling_resistance(known.values, coasting(points, known.values), of_moment, hand, side)
+    return replace(found, zeros={})  # that of Fx is a number of the fit

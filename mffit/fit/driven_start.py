@@ -33,8 +33,13 @@ def peak_curvature(C: float, B: float, peak: float) -> float:
 
     There C arctan(B x - E (B x - arctan(B x))) is a right angle; Pacejka, Tire and Vehicle Dynamics, 3rd ed., 4.E14.
     """
-    x = B * peak
-    return (x - math.tan(0.5 * math.pi / C)) / (x - math.atan(x))
+    return curvature_through(C, B, peak, 0.5 * math.pi)
+
+
+def curvature_through(C: float, B: float, slip: float, angle: float) -> float:
+    """Curvature factor E with which C arctan(B x - E (B x - arctan(B x))) is an angle [rad] at the slip x."""
+    x = B * slip
+    return (x - math.tan(angle / C)) / (x - math.atan(x))
 
 
 def _sweeps(points: Points, *, sideslip: bool) -> list[Points]:

@@ -48,9 +48,10 @@ def _drawn(fitted: Fitted, random: np.random.Generator) -> dict[str, float]:
         name: float(np.clip(values[name] + u * random.standard_normal(), *fitted.hand.bounds(name)))
         for name, u in fitted.held.items()
     }
+    rig = {n: fitted.problem.value(n) + u * random.standard_normal() for n, u in fitted.held_rig.items()}
     starts = fitted.problem.starting_here(fitted.numbers)
     numbers = [_with_drawn_prior(number, random) for number in starts]
-    drawn = _with_noise(fitted.problem.with_values(held), random)
+    drawn = _with_noise(fitted.problem.with_values({**held, **rig}), random)
     solution = solve(
         drawn.free([n.name for n in numbers]),
         numbers,

@@ -30,6 +30,7 @@ class Fitted:
     problem: FitProblem  #: at the solution, with the final weights
     numbers: tuple[FreeNumber, ...]  #: that were free in the end
     held: Mapping[str, float]  #: standard uncertainty of coefficients that the fit took as exact
+    held_rig: Mapping[str, float]  #: the same of rig errors that it took as absent
     at_bound: frozenset[str]  #: numbers at their own bound or at a physical limit
     regularised: frozenset[str]  #: coefficients that the priors decide as much as the points
     scale: Mapping[str, float]  #: by channel, robust misfit over stated uncertainty

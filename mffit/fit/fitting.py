@@ -94,7 +94,7 @@ def fit(
     start = hand.starting(start)
     problem = fit_problem(config, points, measured, known.values, plan.channels)
     found, doubts = _fitted_and_judged(config, problem, start, plan, progress)
-    fitted, full = found.plain, found.full
+    fitted, full, plan = found.plain, found.full, found.plan
     readings, best = (fit.simulation.readings(points, problem.channels) for fit in (fitted, full))
     outlying = outliers(points, problem.sigma, full.problem.sigma, best)
 

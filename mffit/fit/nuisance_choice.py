@@ -63,7 +63,7 @@ class _Prediction(NamedTuple):
     gaps: Gaps
 
 
-class _NearSolution(NamedTuple):
+class NearSolution(NamedTuple):
     """A fit with some influences, near its solution."""
 
     problem: FitProblem  #: with the weights of the first fit
@@ -125,16 +125,16 @@ def at_reference(config: Any, problem: FitProblem) -> FitProblem:
 
 def _judged(
     config: Any, first: Fitted, demanded: Sequence[Nuisance], candidates: Sequence[Nuisance]
-) -> tuple[dict[str, Verdict], _NearSolution]:
+) -> tuple[dict[str, Verdict], NearSolution]:
     """The verdicts on demanded influences and candidates, and the fit with what is modelled."""
     numbers = [number for number in first.numbers if number.name not in first.at_bound]
     group = parts_of_sweeps(first.problem.points)
-    model = _NearSolution(at_reference(config, first.problem), numbers, ())
-    base = _predicted(model, (), group)
+    model = NearSolution(at_reference(config, first.problem), numbers, ())
+    base = predicted_left_out(model, (), group)
     if demanded:
         model = _refitted(model, demanded)
     enough = len(np.unique(group)) >= FEWEST_SWEEPS_TO_PREDICT
-    here = _predicted(model, (), group)
+    here = predicted_left_out(model, (), group)
     needed, left = needed_fall(len(candidates)), list(candidates)
     tried: dict[str, _Prediction] = {}
 
@@ -146,7 +146,7 @@ def _judged(
         return improves(before.by_sweep, after.by_sweep, least=least, needed=needed, channels=own)
 
     while enough and left:
-        found = {step: _predicted(model, step, group) for step in _steps(left, model.chosen)}
+        found = {step: predicted_left_out(model, step, group) for step in _steps(left, model.chosen)}
         tried |= {step[-1].id: prediction for step, prediction in found.items()}
         helpful = [step for step, prediction in found.items() if better(here, prediction, step[-1].about)]
         if not helpful:
@@ -155,10 +155,10 @@ def _judged(
         rivals = {nuisance.rival for nuisance in best}
         left = [nuisance for nuisance in left if nuisance not in best and nuisance.id not in rivals]
         last, model = here, _refitted(model, best)
-        here = _predicted(model, (), group)
+        here = predicted_left_out(model, (), group)
         for old in [n for n in model.chosen if n in candidates and n is not best[0]]:
             fewer = _without(model, old)
-            before = _predicted(fewer, (), group)
+            before = predicted_left_out(fewer, (), group)
             # What came in one step is one influence: its parts must matter, but not each be beyond chance.
             share = 1.0 - here.by_sweep.total / before.by_sweep.total
             helps = share > LEAST_PREDICTED_SHARE if old in best else better(before, here, old.about)
@@ -168,7 +168,7 @@ def _judged(
 
 
 def _of_runs(
-    config: Any, model: _NearSolution, nuisance: Nuisance, *, demanded: bool
+    config: Any, model: NearSolution, nuisance: Nuisance, *, demanded: bool
 ) -> tuple[Verdict, dict[str, float]]:
     """The verdict on numbers of every run, and their scatter if they are modelled.
 
@@ -203,7 +203,7 @@ def _of_runs(
     return Verdict(nuisance, True, "left-out halves of sweeps are predicted better with it", *gaps), scatter
 
 
-def _linear_runs(model: _NearSolution, nuisance: Nuisance) -> Runs:
+def _linear_runs(model: NearSolution, nuisance: Nuisance) -> Runs:
     """The fit, linearised, with numbers of every run."""
     problem = model.problem
     numbers = problem.starting_here(model.numbers)
@@ -235,7 +235,7 @@ def _steps(left: Sequence[Nuisance], chosen: Sequence[Nuisance]) -> Iterator[tup
 
 def _verdicts(
     config: Any,
-    model: _NearSolution,
+    model: NearSolution,
     candidates: Sequence[Nuisance],
     demanded: Sequence[Nuisance],
     base: _Prediction,
@@ -267,7 +267,7 @@ def _named(key: str) -> str:
     return next(nuisance.name for nuisance in NUISANCES if nuisance.id == key)
 
 
-def _predicted(model: _NearSolution, more: Iterable[Nuisance], group: np.ndarray) -> _Prediction:
+def predicted_left_out(model: NearSolution, more: Iterable[Nuisance], group: np.ndarray) -> _Prediction:
     """Left-out parts of sweeps as the model predicts them, to first order with further influences."""
     problem = model.problem
     added = (number for nuisance in more for number in nuisance.free(problem.points, {}))
@@ -305,22 +305,23 @@ def _judged_errors(problem: FitProblem, error: np.ndarray, group: np.ndarray) ->
     return _Prediction(by_sweep, gaps)
 
 
-def _refitted(model: _NearSolution, added: Sequence[Nuisance]) -> _NearSolution:
+def _refitted(model: NearSolution, added: Sequence[Nuisance]) -> NearSolution:
     """The model with more influences, fitted again from where it is."""
     points = model.problem.points
     numbers = [*model.numbers, *(number for nuisance in added for number in nuisance.free(points, {}))]
-    return _solved(model._replace(numbers=numbers, chosen=(*model.chosen, *added)))
+    return solved(model._replace(numbers=numbers, chosen=(*model.chosen, *added)))
 
 
-def _without(model: _NearSolution, dropped: Nuisance) -> _NearSolution:
+def _without(model: NearSolution, dropped: Nuisance) -> NearSolution:
     """The model without an influence and those that need it, fitted again."""
     kept = tuple(n for n in model.chosen if n is not dropped and n.after != dropped.id)
     gone = {name: BY_NAME[name].undisturbed for n in model.chosen if n not in kept for name in n.numbers}
     numbers = [number for number in model.numbers if number.name not in gone]
-    return _solved(_NearSolution(model.problem.with_values(gone), numbers, kept))
+    return solved(NearSolution(model.problem.with_values(gone), numbers, kept))
 
 
-def _solved(model: _NearSolution) -> _NearSolution:
+def solved(model: NearSolution) -> NearSolution:
+    """The model fitted again from where it is."""
     numbers = model.problem.starting_here(model.numbers)
     slips = "Fx" in model.problem.sigma
     found = minimum(

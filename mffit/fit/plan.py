@@ -16,7 +16,7 @@ from mffit.fit.coverage import StageCoverage, coverage
 from mffit.fit.known import Known
 from mffit.fit.priors import Prior, scatters
 from mffit.fit.problem import FitProblem
-from mffit.fit.rig_numbers import rig_numbers
+from mffit.fit.rig_numbers import held_rig, rig_numbers
 from mffit.fit.stages import BY_STAGE, ODD_TERMS, STAGES
 from mffit.fit.zeros import TurningZeros
 from mffit.least_squares import FreeNumber
@@ -36,6 +36,8 @@ class FitPlan:
     extra: tuple[str, ...] = ()  #: coefficients that are free in the polish only
     held: Mapping[str, float] = field(default_factory=dict)
     """Standard uncertainty of coefficients that the fit takes as exact."""
+    held_rig: Mapping[str, float] = field(default_factory=dict)
+    """The same of declared rig errors."""
     noise_stated: bool = True  #: whether the points state their uncertainty
     hand: Hand = NO_HAND  #: bounds that replace those of the table, and what is held as exact
 
@@ -43,6 +45,22 @@ class FitPlan:
     def free(self) -> list[str]:
         """Coefficients that the stages free."""
         return [name for row in self.cover for name in row.free]
+
+    def without(self, names: Collection[str], why: str) -> FitPlan:
+        """The plan with some coefficients held at their expected values; ``why`` is what the data lack for them."""
+        cover = tuple(
+            replace(
+                row,
+                free=tuple(name for name in row.free if name not in names),
+                held=(*row.held, *(name for name in row.free if name in names)),
+                missing=(*row.missing, why),
+                supported=any(name not in names for name in row.free),
+            )
+            if any(name in names for name in row.free)
+            else row
+            for row in self.cover
+        )
+        return replace(self, cover=cover, held={**self.held, **{name: self.scatter[name] for name in names}})
 
     def coefficients(self, names: Iterable[str], problem: FitProblem) -> list[FreeNumber]:
         """The named coefficients from their current values, with their bounds and priors."""
@@ -124,6 +142,7 @@ def fit_plan(
         channels=channels,
         extra=tuple(extra),
         held=held,
+        held_rig=held_rig(config),
         noise_stated=bool(np.any(np.isfinite(points.u_Fy))),
     )
     return _by_hand(plan, known.hand)

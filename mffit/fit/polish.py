@@ -9,6 +9,7 @@ import numpy as np
 from mffit.constants import COVERAGE_FACTOR_95
 from mffit.fit import constants
 from mffit.fit.fitted import Fitted
+from mffit.fit.other_ends import other_ends
 from mffit.fit.plan import FitPlan
 from mffit.fit.posterior import joint, strongest_correlations
 from mffit.fit.problem import FitProblem
@@ -16,11 +17,14 @@ from mffit.fit.profile import follow
 from mffit.least_squares import Solution, minimum, solve
 from mffit.rig_errors import error_of
 
+Intervals = Mapping[str, tuple[float, float]]
+
 
 def polish(stated: FitProblem, plan: FitPlan) -> Fitted:
     """The joint fit with its errors.
 
-    Weights are balanced between the channels and reduced for outliers; a bent valley of equally good fits is followed.
+    Weights are balanced between the channels and reduced for outliers; a bent valley of equally good fits is followed,
+    and other ends that are as good belong to the intervals.
     ``stated`` is near the solution, with weights as stated.
     """
     problem, scale = _approached(stated, plan).reweighted()
@@ -29,8 +33,11 @@ def polish(stated: FitProblem, plan: FitPlan) -> Fitted:
     valley = follow(problem, plan.numbers(problem), solution, decided)
     if valley is not None and valley.better:
         problem, solution = _solved(problem.with_values(valley.better), plan)
-    posterior = joint(problem, solution, plan.held)
-    intervals = valley.intervals if valley is not None else {}
+    ends = other_ends(problem, plan.numbers(problem), solution)
+    if ends.better:
+        problem, solution = _solved(problem.with_values(ends.better), plan)
+    posterior = joint(problem, solution, {**plan.held, **plan.held_rig}).without(plan.held_rig)
+    intervals = _wider_of(valley.intervals if valley is not None else {}, ends.intervals)
     stderr = {name: max(u, _half_width(intervals.get(name))) for name, u in posterior.stderr.items()}
     return Fitted(
         values={name: v for name, v in solution.values.items() if error_of(name) is None},
@@ -42,6 +49,7 @@ def polish(stated: FitProblem, plan: FitPlan) -> Fitted:
         problem=problem,
         numbers=tuple(plan.numbers(problem)),
         held=plan.held,
+        held_rig=plan.held_rig,
         at_bound=solution.at_bound | solution.at_limit,
         regularised=frozenset(name for name in solution.names if name in plan.scatter)
         - _within_their_priors(stderr, plan),
@@ -49,6 +57,14 @@ def polish(stated: FitProblem, plan: FitPlan) -> Fitted:
         cost=solution.cost,
         hand=plan.hand,
     )
+
+
+def _wider_of(one: Intervals, other: Intervals) -> dict[str, tuple[float, float]]:
+    """The intervals that contain both."""
+    return {**one, **other} | {
+        name: (min(one[name][0], other[name][0]), max(one[name][1], other[name][1]))
+        for name in one.keys() & other.keys()
+    }
 
 
 def _half_width(interval: tuple[float, float] | None) -> float:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -41,6 +41,11 @@ class Posterior(Brief):
         across = slope @ self.covariance
         own = across @ slope.T + beside.covariance[np.ix_(new, new)]
         return Posterior((*self.names, *names), np.block([[self.covariance, across.T], [across, own]]))
+
+    def without(self, names: Collection[str]) -> Posterior:
+        """The posterior of the other numbers, which contains the uncertainty of these."""
+        rows = [i for i, name in enumerate(self.names) if name not in names]
+        return Posterior(tuple(self.names[i] for i in rows), self.covariance[np.ix_(rows, rows)])
 
     def shifted(self, shift: np.ndarray) -> Posterior:
         """The posterior with one more error, which moves the numbers by ``shift`` (k,) if it has its standard size."""

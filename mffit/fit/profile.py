@@ -17,6 +17,9 @@ from mffit.least_squares import FreeNumber, Solution, inverse, minimum
 ALLOWED_RISE = COVERAGE_FACTOR_95**2
 """Rise of the sum of squares up to which a fit belongs to the 95 % interval of one number."""
 
+BENDING = ("PKX3",)
+"""Numbers whose valley always bends: slip stiffness over load is a line times an exponential, and PKX2 makes up for PKX3."""
+
 
 @dataclass(frozen=True, slots=True)
 class Valley:
@@ -30,14 +33,15 @@ class Valley:
 def follow(
     problem: FitProblem, numbers: Sequence[FreeNumber], solution: Solution, among: Collection[str]
 ) -> Valley | None:
-    """The most bent and the softest valley, followed to both sides until the sum of squares has risen by 3.84.
+    """The most bent and the softest valley, and those of ``BENDING``, followed to both sides until the sum has risen by 3.84.
 
     ``problem`` is at the solution. ``among`` names the numbers that the points determine; the prior's spread suffices as
     interval of the others.
     None where the sum of squares is close to its quadratic form along all directions.
     """
     bent, soft = (find(problem, numbers, solution, among) for find in (_most_bent, _softest))
-    moved = tuple(dict.fromkeys(name for name in (bent, soft) if name))
+    exponents = [name for name in BENDING if _movable(numbers, solution, {name}.intersection(among))]
+    moved = tuple(dict.fromkeys(name for name in (bent, soft, *exponents) if name))
     if not moved:
         return None
     best, errors = np.array(list(solution.values.values())), np.sqrt(np.diag(solution.covariance))
@@ -53,15 +57,15 @@ def follow(
             low, high = np.minimum(low, place - across), np.maximum(high, place + across)
     return Valley(
         along=moved,
-        intervals=_wider(numbers, best, errors, low, high),
+        intervals=wider(numbers, best, errors, low, high),
         better=better if least < constants.BETTER_ON_PROFILE * solution.cost else {},
     )
 
 
-def _wider(
+def wider(
     numbers: Sequence[FreeNumber], best: np.ndarray, errors: np.ndarray, low: np.ndarray, high: np.ndarray
 ) -> dict[str, tuple[float, float]]:
-    """The intervals, within the bounds, that exceed those from the curvature."""
+    """The intervals (k,), within the bounds, that exceed those from the curvature around the best values (k,)."""
     usual = constants.WIDER_INTERVAL * COVERAGE_FACTOR_95 * errors
     wider = (best - low > usual) | (high - best > usual)
     return {

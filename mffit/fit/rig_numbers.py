@@ -61,6 +61,21 @@ def rig_numbers(
     return (*_sideways(config, measured, setups), *others)
 
 
+def held_rig(config: Any) -> dict[str, float]:
+    """Standard uncertainty of declared errors of a flat track that no reading separates from coefficients, and that are no zeros.
+
+    The fit takes them as absent, and their uncertainty goes into the coefficients that would take them up: a skew of the camber
+    axis is camber stiffness. On a disc, turn slip separates them, and they are numbers of the fit.
+    """
+    if config.rig.on_disc:
+        return {}
+    return {
+        name: prior.u
+        for name, prior in declared_rig(config.rig, USUAL_CORNERING_STIFFNESS).items()
+        if prior.u > 0.0 and not BY_NAME[name].of_setup and not _of_other_channels(name)
+    }
+
+
 def _of_other_channels(name: str) -> bool:
     """Whether a rig error acts on channels other than Fy and Mz alone."""
     return not BY_NAME[name].shows_in(SIDEWAYS)

@@ -44,7 +44,7 @@ SPREADS = {
 }
 """Standard deviation of each among tyres."""
 BOUNDS = {"QSY7": (0.0, 3.0), "QSY8": (-2.0, 1.0)}
-MY_ZERO = "My0_Nm"
+MY_ZERO, FX_ZERO = "My0_Nm", "Fx0_N"
 TINY_ZERO = 1e-9  # Nm, prior of a zero that is exactly known
 RADIUS_COEFFICIENTS = ("Q_RE0", "DREFF")
 """Coefficients that measured effective radii determine; the second one needs several loads."""
@@ -90,6 +90,22 @@ class Resistance:
     def found(self) -> dict[str, Quantity]:
         """The coefficients with their standard uncertainties."""
         return self.beside.quantities
+
+
+def coasting(points: Points, values: Mapping[str, Any]) -> Points:
+    """The points (m,) of sweeps in which the wheel rolls freely straight on, with the My that their Fx shows.
+
+    Nothing drives such a wheel, so that the moments about its axis balance: My = Fx times the loaded radius.
+    """
+    straight = (
+        points.free_rolling & (np.abs(points.alpha) < constants.COUPLED_ALPHA.rad) & (points.phi_t == 0.0)
+    )
+    driven = np.unique(points.sweep[~straight])
+    used = np.isfinite(points.Fx) & ~np.isin(points.sweep, driven)
+    rolling = points.select(used)
+    deflected = float(values["UNLOADED_RADIUS"]) - rolling.Fz / float(values["VERTICAL_STIFFNESS"])
+    radius = np.where(np.isfinite(rolling.RL), rolling.RL, deflected)
+    return rolling.replace(My=rolling.Fx * radius, u_My=rolling.u_Fx * radius)
 
 
 def rolling_resistance(

@@ -15,7 +15,7 @@ from mffit.fit.plan import FitPlan
 from mffit.fit.polish import polish
 from mffit.fit.problem import FitProblem
 from mffit.fit.stages import BY_STAGE, WITH_CAMBER, Stage, StageRecord
-from mffit.fit.start import ALTERNATIVE_STARTS, SHAPES, STARTS_OF_A_STAGE
+from mffit.fit.start import ALTERNATIVE_STARTS, SHAPES, STARTS_OF_A_STAGE, with_expected_signs
 from mffit.least_squares import minimum
 from mffit.points import Points, levels, main_pressure
 from mffit.progress import Progress, silent
@@ -76,6 +76,8 @@ def _fit_from(start: Mapping[str, float], problem: FitProblem, plan: FitPlan, pr
         reopened = [name for other in plan.cover if other.stage in stage.reopened for name in other.free]
         problem = problem.with_values(_fit_stage(stage, [*reopened, *row.free], problem, plan))
         records.append(_record(stage.name, stage.title, row.free, problem))
+    expected = {name: x for name, x in plan.expected.items() if name not in plan.hand.names}
+    problem = problem.with_values(with_expected_signs(problem.simulation.values, expected))
     progress("joint polish")
     fitted = polish(problem, plan)
     names = [number.name for number in fitted.numbers]

@@ -16,6 +16,7 @@ from mffit.fit.nuisances import TEMPERATURE, Nuisance
 from mffit.fit.plan import FitPlan
 from mffit.fit.polish import polish
 from mffit.fit.problem import FitProblem
+from mffit.fit.runaways import with_runaways_put_back
 from mffit.fit.staged import fit_staged, restart_worthwhile
 from mffit.progress import Progress, silent
 from mffit.rig import Simulation
@@ -29,6 +30,7 @@ class NuisanceFit:
     full: Fitted  #: with every influence that is modelled
     choice: NuisanceChoice
     refit: Callable[[np.ndarray], Fitted]  #: the full fit to some of the points (rows)
+    plan: FitPlan  #: without the coefficients that turned out not to be determined
 
     @property
     def at_temperature(self) -> bool:
@@ -51,27 +53,28 @@ def fit_with_nuisances(
     """
 
     staged: dict[
-        bytes, Fitted
-    ] = {}  # fits to some of the points; restarts of the fit to all do not change them
+        tuple[object, ...], Fitted
+    ] = {}  # fits to some of the points, which restarts of the fit to all do not change
 
     def extended(fitted: Fitted) -> NuisanceFit:
+        fitted, known = with_runaways_put_back(fitted, plan)
         choice = choose(config, fitted)
 
         def refit(rows: np.ndarray) -> Fitted:
-            part, key = problem.select(rows), rows.tobytes()
+            part, key = problem.select(rows), (rows.tobytes(), *known.free)
             if key not in staged:
-                staged[key] = fit_staged(part, start, plan, silent, restarts=False)
-            return _polished(config, part, plan, choice, choice.modelled, staged[key])
+                staged[key] = fit_staged(part, start, known, silent, restarts=False)
+            return _polished(config, part, known, choice, choice.modelled, staged[key])
 
         if choice.modelled:
             progress(f"fitting again with {', '.join(nuisance.name for nuisance in choice.modelled)}")
-        full = _polished(config, problem, plan, choice, choice.modelled, fitted, choice.near)
+        full = _polished(config, problem, known, choice, choice.modelled, fitted, choice.near)
         if not any(nuisance.key == TEMPERATURE for nuisance in choice.modelled):
-            return NuisanceFit(full, full, choice, refit)
+            return NuisanceFit(full, full, choice, refit, known)
         # Numbers of every run would take up what the coefficients of the plain file are to contain: the usual warming.
         others = [n for n in choice.modelled if n.key != TEMPERATURE and not n.per_run]
-        plain = _polished(config, problem, plan, choice, others, fitted)
-        return NuisanceFit(_doubted(plain, full), full, choice, refit)
+        plain = _polished(config, problem, known, choice, others, fitted)
+        return NuisanceFit(_doubted(plain, full), full, choice, refit, known)
 
     first: list[NuisanceFit] = []
 

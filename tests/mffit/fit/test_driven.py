@@ -15,6 +15,7 @@ from mffit.fit.known import known_before_fit
 from mffit.fit.overturning import overturning_terms
 from mffit.fit.plan import fit_plan
 from mffit.fit.problem import fit_problem
+from mffit.fit.runaways import with_runaways_put_back
 from mffit.fit.start import starting_values
 from mffit.pipeline.measuring import measure
 from tests.mffit.fit import combined_programme as belt
@@ -150,3 +151,32 @@ def test_what_is_missing_for_longitudinal_slip_is_said():
     }
     held = {row.stage: row for row in coverage(rolling.replace(Fx=0.0), "left")}
     assert held["Fx"].missing == ("no sweep varies longitudinal slip",)
+
+
+def test_a_coefficient_at_its_bound_for_nothing_is_put_back(points, found):
+    project, fitted = belt.config(), found.search
+    _, measured = measure(project, points, None)
+    known = known_before_fit(project, points, measured, None, {}, NO_HAND)
+    plan = fit_plan(project, points, measured, known, starting_values(known.values, points, measured), {})
+    assert with_runaways_put_back(fitted, plan)[0] is fitted  # nothing is at a bound
+    pushed = replace(
+        fitted,
+        values={**fitted.values, "RBX3": 100.0},
+        problem=fitted.problem.with_values({"RBX3": 100.0}),
+        at_bound=frozenset({"RBX3"}),
+    )
+    again, later = with_runaways_put_back(pushed, plan)
+    assert "RBX3" not in later.free
+    assert "RBX3" not in again.values
+    assert again.problem.value("RBX3") == plan.expected["RBX3"]
+    assert again.posterior.stderr["RBX3"] == pytest.approx(plan.scatter["RBX3"])
+    row = next(row for row in later.cover if row.stage == "combined-Fx")
+    assert "RBX3" in row.held
+    assert "left-out sweeps are predicted as well" in row.missing[-1]
+
+
+def test_the_uncertainty_of_the_camber_stiffness_contains_the_skew_of_the_axis(found):
+    """0.1 deg of skew, the default, is sideslip of that times the sine of camber: a side force like camber stiffness."""
+    K_ya = belt.truth().state(1400.0, p=250e3).K_ya
+    assert found.posterior.stderr["PKY6"] > np.radians(0.1) * abs(K_ya) / 1400.0
+    assert found.posterior.stderr["PKY6"] < 2.0 * np.radians(0.1) * abs(K_ya) / 1400.0

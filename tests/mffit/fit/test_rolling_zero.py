@@ -9,7 +9,7 @@ import pytest
 
 import tir
 from mffit.config import Declaration
-from mffit.fit.rolling import rolling_resistance
+from mffit.fit.rolling import coasting, rolling_resistance
 from mffit.points import Points, make_points
 
 R0, FNOMIN, NOMPRES, LONGVL, ZERO, U = 0.3, 4000.0, 200e3, 16.0, 3.0, 0.05
@@ -62,3 +62,18 @@ def test_points_with_slip_and_coefficients_held_by_hand_stay_out():
     held = rolling_resistance(VALUES, rolling(), Declaration(0.0, 0.0), held=("QSY1",))
     assert "QSY1" not in held.found
     assert not held.zeros
+
+
+def test_a_coasting_wheel_shows_rolling_resistance_by_its_longitudinal_force():
+    """The moments about the axis of a wheel that nothing drives balance; a sweep with slip or sideslip says nothing of that."""
+    measured = rolling()
+    radius = 0.29 - measured.Fz / 200e3
+    force = measured.replace(My=np.nan, Fx=measured.My / radius, u_Fx=U / radius, RL=radius)
+    found = rolling_resistance(VALUES, coasting(force, VALUES), Declaration(0.0, 20.0 * R0)).found
+    assert abs(found["QSY1"].value - TRUTH["QSY1"]) < 3.0 * found["QSY1"].u < 0.15 * TRUTH["QSY1"]
+    stiffness = {**VALUES, "VERTICAL_STIFFNESS": 200e3}
+    estimated = coasting(force.replace(RL=np.nan), stiffness).My
+    assert estimated == pytest.approx(coasting(force, VALUES).My * (radius + 0.01) / radius)
+    slipping = force.replace(kappa=np.where(np.arange(len(force)) == 5, 0.1, 0.0))
+    assert not len(coasting(slipping, VALUES))
+    assert not len(coasting(force.replace(alpha=0.05), VALUES))
