@@ -14,7 +14,7 @@ import tir
 from mffit import config as configuration
 from mffit.cli import main
 from mffit.conversion import convert, is_old, mf52, read_old
-from mffit.conversion.grid import conditions
+from mffit.conversion.grid import conditions, reach_of
 from mffit.errors import InputError
 from mffit.pipeline.inputs import read_base
 
@@ -87,6 +87,21 @@ def test_the_grid_reaches_the_ends_on_both_sides_and_weights_small_camber_most(c
     small = np.abs(at.gamma) < np.radians(5.0)
     assert np.all(at.weight[small] == 1.0)
     assert np.all(at.weight[np.abs(at.gamma) > np.radians(5.1)] < 1.0)
+
+
+def test_ranges_that_the_old_file_states_bound_those_of_the_conversion():
+    old = read_old(OLD)
+    stated = {"FZMIN": 1500.0, "FZMAX": 5000.0, "ALPMAX": 0.1, "KPUMAX": 0.05, "CAMMAX": 0.02}
+    assert reach_of({**old.values, **stated}, old.present | stated.keys()) == (
+        (1500.0, 5000.0),
+        0.1,
+        0.02,
+        0.05,
+    )
+    wide = reach_of({**old.values, **stated}, old.present - stated.keys())
+    assert wide.Fz[0] < 1500.0
+    assert wide.Fz[1] > 5000.0
+    assert min(wide.alpha / 0.1, wide.gamma / 0.02, wide.kappa / 0.05) > 1.0
 
 
 def test_rolling_resistance_does_not_depend_on_pressure_as_in_the_old_formula(converted):
