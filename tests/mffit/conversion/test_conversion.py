@@ -118,6 +118,15 @@ def test_relaxation_lengths_and_radius_are_kept(converted):
     assert state.Re == pytest.approx(0.31 - deflection, rel=1e-9)
 
 
+def test_relaxation_lengths_have_the_scaling_factors_of_the_old_formula():
+    """The manual of MF 5.2: R0 LFZO LSGAL with Fz over LFZO FNOMIN, and R0 LSGKP Fz / (LFZO FNOMIN), by hand at nominal load."""
+    factors = {"LFZO": 1.2, "LSGAL": 0.9, "LSGKP": 0.8}
+    p = mf52.in_terms_of_62({**read_old(OLD).values, **factors, "PTX2": 0.0, "PTX3": 0.0})
+    sigma_x, sigma_y = mf52.relaxation_lengths(p, np.array([4000.0]))
+    assert sigma_x[0] == pytest.approx(2.38 / 1.2 * 0.31 * 0.8)
+    assert sigma_y[0] == pytest.approx(2.1 * math.sin(2.0 * math.atan(0.5 / 1.2)) * 0.31 * 1.2 * 0.9)
+
+
 def test_every_coefficient_says_that_it_was_converted(converted, tmp_path):
     converted.tyre.write(tmp_path / "new.tir")
     tyre = tir.read(tmp_path / "new.tir")
