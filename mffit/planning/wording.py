@@ -12,6 +12,7 @@ from mffit.planning.goals import BANDS, EPSILON, FILE, JOINT, TIE
 from mffit.planning.record import Identified, Plan, Tie
 from mffit.planning.runs import PlannedRun
 from mffit.quantities import CONDITIONS, DIRECT
+from mffit.rounding import decimals_of
 
 EPS = DIRECT["epsilon_gamma"].ascii
 LOAD = CONDITIONS["Fz_N"]
@@ -66,7 +67,7 @@ def shown(plan: Plan, u: float) -> str:
     if not math.isfinite(u):
         return "not measured"
     unit = "" if plan.goal.unit in ("", "-") else f" {plan.goal.unit}"
-    return f"{u:.3g}{unit}"
+    return f"{_u(u)}{unit}"
 
 
 def promise(plan: Plan) -> str:
@@ -119,7 +120,8 @@ def estimates(plan: Plan) -> str:
 
 
 def _u(u: float | None) -> str:
-    return "not measured" if u is None else f"{u:.3g}"
+    """Three digits, also if the last is 0, so that the rows of a table can be compared."""
+    return "not measured" if u is None else f"{u:.{decimals_of(u, 3)}f}"
 
 
 def identified(found: Identified) -> list[str]:

@@ -14,7 +14,7 @@ import tir
 from mffit import config as configuration
 from mffit.cli import main
 from mffit.conversion import convert, is_old, mf52, read_old
-from mffit.conversion.grid import conditions
+from mffit.conversion.grid import conditions, reach_of
 from mffit.errors import InputError
 from mffit.fit.known import known_before_fit
 from mffit.pipeline.inputs import base_warnings, read_base
@@ -93,6 +93,21 @@ def test_the_grid_reaches_the_ends_on_both_sides_and_weights_small_camber_most(c
     assert np.all(at.weight[np.abs(at.gamma) > np.radians(5.1)] < 1.0)
 
 
+def test_ranges_that_the_old_file_states_bound_those_of_the_conversion():
+    old = read_old(OLD)
+    stated = {"FZMIN": 1500.0, "FZMAX": 5000.0, "ALPMAX": 0.1, "KPUMAX": 0.05, "CAMMAX": 0.02}
+    assert reach_of({**old.values, **stated}, old.present | stated.keys()) == (
+        (1500.0, 5000.0),
+        0.1,
+        0.02,
+        0.05,
+    )
+    wide = reach_of({**old.values, **stated}, old.present - stated.keys())
+    assert wide.Fz[0] < 1500.0
+    assert wide.Fz[1] > 5000.0
+    assert min(wide.alpha / 0.1, wide.gamma / 0.02, wide.kappa / 0.05) > 1.0
+
+
 def test_rolling_resistance_does_not_depend_on_pressure_as_in_the_old_formula(converted):
     My = [converted.tyre(4000.0, p=p).My for p in (1.0e5, 2.0e5)]
     assert My[0] == pytest.approx(My[1], rel=1e-12)
@@ -105,6 +120,15 @@ def test_relaxation_lengths_and_radius_are_kept(converted):
     assert state.sigma_y == pytest.approx(0.31 * 2.1 * math.sin(2.0 * math.atan(0.5)), rel=0.02)
     deflection = 4000.0 / 2.1e5 * (0.27 * math.atan(8.4) + 0.07)
     assert state.Re == pytest.approx(0.31 - deflection, rel=1e-9)
+
+
+def test_relaxation_lengths_have_the_scaling_factors_of_the_old_formula():
+    """The manual of MF 5.2: R0 LFZO LSGAL with Fz over LFZO FNOMIN, and R0 LSGKP Fz / (LFZO FNOMIN), by hand at nominal load."""
+    factors = {"LFZO": 1.2, "LSGAL": 0.9, "LSGKP": 0.8}
+    p = mf52.in_terms_of_62({**read_old(OLD).values, **factors, "PTX2": 0.0, "PTX3": 0.0})
+    sigma_x, sigma_y = mf52.relaxation_lengths(p, np.array([4000.0]))
+    assert sigma_x[0] == pytest.approx(2.38 / 1.2 * 0.31 * 0.8)
+    assert sigma_y[0] == pytest.approx(2.1 * math.sin(2.0 * math.atan(0.5 / 1.2)) * 0.31 * 1.2 * 0.9)
 
 
 def test_every_coefficient_says_that_it_was_converted(converted, tmp_path):

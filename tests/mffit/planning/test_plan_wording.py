@@ -77,7 +77,7 @@ def test_the_headline_counts_runs_and_points():
         "2 additions with 30 points: u(eps_gamma) by the direct method from 0.0561 to 0.0123."
     )
     assert wording.headline(plan(steps=plan().steps[:1])) == (
-        "1 addition: u(eps_gamma) by the direct method from 0.0561 to 0.031."
+        "1 addition: u(eps_gamma) by the direct method from 0.0561 to 0.0310."
     )
     assert wording.headline(plan(steps=(), now=math.inf)) == (
         "None of the runs tried lowers u(eps_gamma) by the direct method by 5 % or more; it is not measured. The budget and the "
@@ -101,7 +101,7 @@ def test_the_headline_says_whether_the_tie_is_resolved(now, then, said):
 
 def test_both_estimates_of_eps_gamma_now_and_then():
     assert wording.estimates(plan()) == (
-        "u(eps_gamma): direct method 0.0561 -> not measured; joint fit 0.0263 -> 0.0063."
+        "u(eps_gamma): direct method 0.0561 -> not measured; joint fit 0.0263 -> 0.00630."
     )
     assert wording.estimates(plan(steps=())) == "u(eps_gamma): direct method 0.0561; joint fit 0.0263."
     assert wording.estimates(plan(steps=(), direct_now=None)) == (
@@ -109,7 +109,7 @@ def test_both_estimates_of_eps_gamma_now_and_then():
     )
     assert wording.estimates(plan(steps=(), direct_now=None, joint_now=None)) == ""
     found = plan(steps=plan().steps[:1], direct_now=None, joint_now=None)
-    assert wording.estimates(found).startswith("u(eps_gamma): direct method not measured -> 0.031;")
+    assert wording.estimates(found).startswith("u(eps_gamma): direct method not measured -> 0.0310;")
 
 
 @pytest.mark.parametrize(
@@ -135,7 +135,7 @@ def test_a_debiased_eps_gamma_is_called_so():
 
 
 def test_uncertainties_have_the_unit_of_the_goal():
-    assert wording.shown(plan("bands:Mz"), 2.8049) == "2.8 Nm"
+    assert wording.shown(plan("bands:Mz"), 2.8049) == "2.80 Nm"
     assert wording.shown(plan("bands:Mz"), math.inf) == "not measured"
     assert wording.measure(plan("bands:Mz")) == "95 % band"
     assert wording.shown(plan(), 0.05612) == "0.0561"
