@@ -20,6 +20,7 @@ from mffit.recordings.disc import disc_signs, files_of_folder, rolls_backward
 from mffit.recordings.guess import Guess, guesses
 from mffit.recordings.project_file import named_tyre, slug
 from mffit.recordings.sniffed import Sniffed, axes_of, sniff
+from mffit.recordings.summary import apart, bad_runs, contradictions, two_specimens
 from mffit.suspicion import before_the_fit
 from mffit.sweeps import formats
 from mffit.sweeps.channels import SWEEP_CHANNELS
@@ -43,7 +44,9 @@ class RecordingsFolder:
 
     def __init__(self, folder: Path) -> None:
         self.folder = folder.resolve()
-        self.files = [path for path in files_of_folder(self.folder) if path.name not in NOT_READABLE_HERE]
+        found = [path for path in files_of_folder(self.folder) if path.name not in NOT_READABLE_HERE]
+        with formats.reading_once():
+            self.files, self.summaries = apart(found)
         if not self.files:
             raise InputError(
                 f"has neither a {PROJECT} nor a recording ({', '.join(formats.ENDINGS)})", file=folder
@@ -61,7 +64,7 @@ class RecordingsFolder:
                 {"name": c.name, "about": c.description, "required": c.required} for c in SWEEP_CHANNELS
             ],
             "groups": groups,
-            "problems": [*problems, *([problem] if problem else [])],
+            "problems": [*problems, *([problem] if problem else []), *self._of_summaries(found)],
             "tyre": {
                 "name": slug(self.files[0]),
                 "size": named_tyre(first.about) if first else "",
@@ -70,6 +73,13 @@ class RecordingsFolder:
             "axes": list(found.axes) if found else [],
             "disc": disc_signs(found) if found else [],
         }
+
+    def _of_summaries(self, found: Sniffed | None) -> list[str]:
+        """What a summary of the test says against the recordings."""
+        left_out = [f"{run.recording.name} is left out: {run.why}" for run in bad_runs(self.summaries)]
+        against = contradictions(self.summaries, found.reading) if found else []
+        two = two_specimens(self.summaries)
+        return [*left_out, *against, *([two] if two else [])]
 
     def check(self, choice: Mapping[str, Any]) -> dict[str, Any]:
         """What the recordings hold if they are read as chosen.
@@ -133,7 +143,14 @@ class RecordingsFolder:
             raise InputError("the choice is incomplete: tyre, rig and groups are needed") from None
         if tables["rig"].get("type") == "flat-track":
             tables["rig"] = {k: v for k, v in tables["rig"].items() if not k.startswith("path")}
-        return tables | {"columns": columns[0] if columns else {}, "sweep": sweeps}
+        used = {sweep["file"] for sweep in sweeps}
+        bad = [
+            {"file": run.recording.name, "lines": run.lines, "why": run.why}
+            for run in bad_runs(self.summaries)
+            if run.recording.name in used
+        ]
+        fit = {"fit": {"exclude": bad}} if bad else {}
+        return tables | {"columns": columns[0] if columns else {}} | fit | {"sweep": sweeps}
 
     def _groups(self) -> tuple[list[dict[str, Any]], list[str]]:
         """Files with equal headings and units, each with the guessed columns; and the files that cannot be read."""
