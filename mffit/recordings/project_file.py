@@ -125,7 +125,7 @@ def _of_size(tyre: str) -> list[str]:
     else:
         return []
     return [
-        f"width = {width:.3g}  # m, as the size says",
+        f"width = {width:.4g}  # m, as the size says",
         f"rim_radius = {0.5 * rim:.4g}  # m, as the size says",
     ]
 

@@ -230,7 +230,7 @@ def test_files_with_the_same_columns_share_a_table(german_disc):
 
 @pytest.mark.parametrize(
     ("tyre", "width", "rim"),
-    [("Hoosier 43075 16x7.5-10 LCO, 7 inch rim", 0.19, 0.127), ("225/45R17 91W", 0.225, 0.2159), ("120/70-17", 0.12, 0.2159)],
+    [("Hoosier 43075 16x7.5-10 LCO, 7 inch rim", 0.1905, 0.127), ("225/45R17 91W", 0.225, 0.2159), ("120/70-17", 0.12, 0.2159)],
 )  # fmt: skip
 def test_width_and_rim_as_the_size_says(tyre, width, rim):
     assert _of_size(tyre) == [
