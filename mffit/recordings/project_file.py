@@ -27,7 +27,7 @@ TYRE_IN_TITLE = re.compile(
 """What a title names as the tyre, up to its next entry."""
 ZEROS_OF_A_DISC = [
     "# backlash_deg = 0.0       # full play of the sideslip axis; this and how well the zeros are known decide how certain",
-    "# u_loadcell_offset_N = 10 # the camber reduction factor is: see docs, A programme on a disc",
+    '# u_loadcell_offset_N = 10 # the camber reduction factor is; see "Run a programme on a disc" in the documentation',
 ]
 ROLLING_RADIUS = [
     "# One turn of the disc; without it the camber reduction factor is not measured. One [[rolling_radius]] per load:",
@@ -38,6 +38,11 @@ ROLLING_RADIUS = [
     "# angle_end_deg = ",
 ]
 """What recordings of a disc do not contain."""
+METRIC_SIZE = re.compile(r"(?<!\d)([6-9]\d|\d{3})/\d{2}\s*-?\s*[A-Z]{0,3}\s*-?\s*(\d{2})(?!\d)")
+"""``120/70 ZR17``: width in millimetres, rim in inches."""
+INCH_SIZE = re.compile(r"(?<!\d)\d{2}(?:\.\d+)?\s*x\s*(\d{1,2}(?:\.\d+)?)\s*-\s*(\d{2})(?!\d)", re.IGNORECASE)
+"""``16x7.5-10``: diameter, width and rim in inches."""
+INCH = 0.0254
 SECTION_IN_TITLE = re.compile(r"\[[^\]]*\]")
 """The heading of a section in a text file, ``[DATA]``."""
 
@@ -106,8 +111,23 @@ def _size(recordings: Collection[SniffedRecording]) -> list[str]:
     tyre = next((tyre for r in recordings if (tyre := named_tyre(r.about))), "")
     title = next((title for r in recordings if (title := title_of(r.about))), "")
     if tyre:
-        return [f"size = {quoted(tyre[:most])}  # as the recording names the tyre"]
+        return [f"size = {quoted(tyre[:most])}  # as the recording names the tyre", *_of_size(tyre)]
     return [f'# size = ""  # the title of the recording is: {_one_line(title)[:most]}'] if title else []
+
+
+def _of_size(tyre: str) -> list[str]:
+    """Width and rim radius as the size of a tyre says them; none for an unknown notation."""
+    metric, inches = METRIC_SIZE.search(tyre), INCH_SIZE.search(tyre)
+    if metric:
+        width, rim = 1e-3 * float(metric[1]), INCH * float(metric[2])
+    elif inches:
+        width, rim = INCH * float(inches[1]), INCH * float(inches[2])
+    else:
+        return []
+    return [
+        f"width = {width:.4g}  # m, as the size says",
+        f"rim_radius = {0.5 * rim:.4g}  # m, as the size says",
+    ]
 
 
 def _load(sniffed: Sniffed, given: float | None) -> str:

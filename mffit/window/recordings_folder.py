@@ -20,6 +20,7 @@ from mffit.recordings.disc import disc_signs, files_of_folder, rolls_backward
 from mffit.recordings.guess import Guess, guesses
 from mffit.recordings.project_file import named_tyre, slug
 from mffit.recordings.sniffed import Sniffed, axes_of, sniff
+from mffit.recordings.summary import RunSummary, apart, bad_runs, contradictions, two_specimens
 from mffit.suspicion import before_the_fit
 from mffit.sweeps import formats
 from mffit.sweeps.channels import SWEEP_CHANNELS
@@ -41,12 +42,30 @@ class RecordingsFolder:
 
     def __init__(self, folder: Path) -> None:
         self.folder = folder.resolve()
+        self._seen: object = None
+        self._apart: tuple[list[Path], tuple[RunSummary, ...]] = [], ()
 
     @property
     def files(self) -> list[Path]:
         """The recordings that are in the folder now; a link to a file elsewhere is none."""
-        found = (path for path in files_of_folder(self.folder) if path.name not in NOT_READABLE_HERE)
-        return [path for path in found if path.resolve().is_relative_to(self.folder)]
+        return self._parted()[0]
+
+    @property
+    def summaries(self) -> tuple[RunSummary, ...]:
+        """The summaries of tests that are in the folder now."""
+        return self._parted()[1]
+
+    def _parted(self) -> tuple[list[Path], tuple[RunSummary, ...]]:
+        found = [
+            path
+            for path in files_of_folder(self.folder)
+            if path.name not in NOT_READABLE_HERE and path.resolve().is_relative_to(self.folder)
+        ]
+        now = [(path, path.stat().st_mtime_ns) for path in found]
+        if now != self._seen:
+            with formats.reading_once():
+                self._seen, self._apart = now, apart(found)
+        return self._apart
 
     def store(self, name: str, content: bytes) -> Path:
         """Write a recording that was dropped into the page; returns its path.
@@ -92,7 +111,7 @@ class RecordingsFolder:
                 {"name": c.name, "about": c.description, "required": c.required} for c in SWEEP_CHANNELS
             ],
             "groups": groups,
-            "problems": [*problems, *([problem] if problem else [])],
+            "problems": [*problems, *([problem] if problem else []), *self._of_summaries(found)],
             "tyre": {
                 "name": slug(files[0]) if files else slug(self.folder),
                 "size": named_tyre(first.about) if first else "",
@@ -101,6 +120,13 @@ class RecordingsFolder:
             "axes": list(found.axes) if found else [],
             "disc": disc_signs(found) if found else [],
         }
+
+    def _of_summaries(self, found: Sniffed | None) -> list[str]:
+        """What a summary of the test says against the recordings."""
+        left_out = [f"{run.recording.name} is left out: {run.why}" for run in bad_runs(self.summaries)]
+        against = contradictions(self.summaries, found.reading) if found else []
+        two = two_specimens(self.summaries)
+        return [*left_out, *against, *([two] if two else [])]
 
     def check(self, choice: Mapping[str, Any]) -> dict[str, Any]:
         """What the recordings hold if they are read as chosen.
@@ -164,7 +190,14 @@ class RecordingsFolder:
             raise InputError("the choice is incomplete: tyre, rig and groups are needed") from None
         if tables["rig"].get("type") == "flat-track":
             tables["rig"] = {k: v for k, v in tables["rig"].items() if not k.startswith("path")}
-        return tables | {"columns": columns[0] if columns else {}, "sweep": sweeps}
+        used = {sweep["file"] for sweep in sweeps}
+        bad = [
+            {"file": run.recording.name, "lines": run.lines, "why": run.why}
+            for run in bad_runs(self.summaries)
+            if run.recording.name in used
+        ]
+        fit = {"fit": {"exclude": bad}} if bad else {}
+        return tables | {"columns": columns[0] if columns else {}} | fit | {"sweep": sweeps}
 
     def _groups(self, files: Sequence[Path]) -> tuple[list[dict[str, Any]], list[str]]:
         """Files with equal headings and units, each with the guessed columns; and the files that cannot be read."""

@@ -16,6 +16,7 @@ from mffit.points import make_points
 from mffit.points.loading import read
 from mffit.recordings import DiscPath, disc_signs, sniff
 from mffit.recordings.disc import rolls_backward, zero_of_upright
+from mffit.recordings.project_file import _of_size
 from mffit.report.text import sniff_summary
 
 SAMPLES = Path(__file__).parents[3] / "samples"
@@ -213,6 +214,7 @@ def test_finished_points_with_their_time_are_no_recording(german_disc):
 def test_the_project_names_the_tyre_alone_and_what_a_disc_needs(german_disc):
     _, text, config = german_disc
     assert (config.tyre.name, config.tyre.size) == ("front-wheel", "120/70 ZR17")
+    assert (config.tyre.width, config.tyre.rim_radius) == (0.12, 0.2159)
     assert "rows are 90 s apart, so each is a finished point" in text
     assert "# [[rolling_radius]]" in text
 
@@ -224,3 +226,15 @@ def test_files_with_the_same_columns_share_a_table(german_disc):
     assert said.count("finished points") == 5
     (loads,) = (line for line in said.splitlines() if line.startswith("load"))
     assert loads.split()[2::2] == ["900", "1400", "2100"]
+
+
+@pytest.mark.parametrize(
+    ("tyre", "width", "rim"),
+    [("Hoosier 43075 16x7.5-10 LCO, 7 inch rim", 0.1905, 0.127), ("225/45R17 91W", 0.225, 0.2159), ("120/70-17", 0.12, 0.2159)],
+)  # fmt: skip
+def test_width_and_rim_as_the_size_says(tyre, width, rim):
+    assert _of_size(tyre) == [
+        f"width = {width:g}  # m, as the size says",
+        f"rim_radius = {rim:g}  # m, as the size says",
+    ]
+    assert _of_size("test 7 of 2024-11-02") == []

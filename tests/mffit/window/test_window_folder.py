@@ -73,6 +73,19 @@ def test_the_corrected_project_reads_the_true_points(folder, original):
         assert np.max(np.min(np.abs(true[:, None] - mine), axis=1)) < 1e-6
 
 
+def test_the_summary_of_the_test_is_no_recording_and_leaves_its_bad_run_out(folder):
+    (folder / "runs.csv").write_text("File;Quality\nsideslip_1400.csv;good\ncamber_1400;bad\n")
+    found = RecordingsFolder(folder)
+    table = found.table()
+    assert [file["name"] for group in table["groups"] for file in group["files"]] == [
+        "camber_1400.csv",
+        "sideslip_1400.csv",
+    ]
+    assert "camber_1400.csv is left out: runs.csv, line 3: bad" in table["problems"]
+    (entry,) = config.load(found.make(corrected(table))).fit.exclude
+    assert (entry.file, entry.why) == ("camber_1400.csv", "runs.csv, line 3: bad")
+
+
 def test_a_wrong_sign_is_seen_when_checked(folder):
     found = RecordingsFolder(folder)
     choice = corrected(found.table())
