@@ -45,8 +45,11 @@ class RecordingsFolder:
     @property
     def files(self) -> list[Path]:
         """The recordings that are in the folder now; a link to a file elsewhere is none."""
-        found = (path for path in files_of_folder(self.folder) if path.name not in NOT_READABLE_HERE)
-        return [path for path in found if path.resolve().is_relative_to(self.folder)]
+        return [path for path in self._named() if path.resolve().is_relative_to(self.folder)]
+
+    def _named(self) -> list[Path]:
+        """Everything in the folder with the name of a recording."""
+        return [path for path in files_of_folder(self.folder) if path.name not in NOT_READABLE_HERE]
 
     def store(self, name: str, content: bytes) -> Path:
         """Write a recording that was dropped into the page; returns its path.
@@ -84,6 +87,11 @@ class RecordingsFolder:
         with formats.reading_once():
             groups, problems = self._groups(files)
             readable = {file["name"] for group in groups for file in group["files"]}
+            problems += [
+                str(InputError("is a link to a file elsewhere and not read; copy the file here", file=path))
+                for path in self._named()
+                if path not in files
+            ]
             found, problem = self._sniffed([path for path in files if path.name in readable])
         first = found.recordings[0] if found else None
         return {
