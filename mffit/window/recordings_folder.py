@@ -56,16 +56,16 @@ class RecordingsFolder:
         return self._parted()[1]
 
     def _parted(self) -> tuple[list[Path], tuple[RunSummary, ...]]:
-        found = [
-            path
-            for path in files_of_folder(self.folder)
-            if path.name not in NOT_READABLE_HERE and path.resolve().is_relative_to(self.folder)
-        ]
+        found = [path for path in self._named() if path.resolve().is_relative_to(self.folder)]
         now = [(path, path.stat().st_mtime_ns) for path in found]
         if now != self._seen:
             with formats.reading_once():
                 self._seen, self._apart = now, apart(found)
         return self._apart
+
+    def _named(self) -> list[Path]:
+        """Everything in the folder with the name of a recording."""
+        return [path for path in files_of_folder(self.folder) if path.name not in NOT_READABLE_HERE]
 
     def store(self, name: str, content: bytes) -> Path:
         """Write a recording that was dropped into the page; returns its path.
@@ -103,6 +103,11 @@ class RecordingsFolder:
         with formats.reading_once():
             groups, problems = self._groups(files)
             readable = {file["name"] for group in groups for file in group["files"]}
+            problems += [
+                str(InputError("is a link to a file elsewhere and not read; copy the file here", file=path))
+                for path in self._named()
+                if path not in files
+            ]
             found, problem = self._sniffed([path for path in files if path.name in readable])
         first = found.recordings[0] if found else None
         return {

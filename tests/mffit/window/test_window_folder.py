@@ -141,7 +141,9 @@ def test_files_elsewhere_are_not_named(folder, tmp_path):
 def test_a_link_to_a_file_elsewhere_is_not_read(folder, tmp_path):
     (tmp_path / "secret.csv").write_text("secret\n1\n", encoding="utf-8")
     (folder / "link.csv").symlink_to(tmp_path / "secret.csv")
-    assert "secret" not in str(RecordingsFolder(folder).table())
+    table = RecordingsFolder(folder).table()
+    assert "link.csv: is a link to a file elsewhere" in table["problems"][0]
+    assert "secret" not in str(table)
 
 
 def test_one_file_that_is_no_recording_leaves_the_others_recognised(folder, original):
