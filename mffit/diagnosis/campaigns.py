@@ -9,6 +9,7 @@ import numpy as np
 from mffit.config import Config, declared_faults
 from mffit.diagnosis import constants
 from mffit.diagnosis.notes import CampaignsTogether
+from mffit.diagnosis.priors import declared_priors
 from mffit.diagnosis.stated import stated_noise, with_uncertainties
 from mffit.fit.constants import UNKNOWN_RATIO_OF_GRIPS
 from mffit.points import Points
@@ -39,24 +40,47 @@ def grips_of_surfaces(points: Points, start: Simulation) -> dict[str, tuple[floa
     return {name: (start.number(name, points), float(UNKNOWN_RATIO_OF_GRIPS)) for name in names}
 
 
-def on_surfaces(points: Points, start: Simulation, channels: Collection[str]) -> Simulation:
-    """The simulation with the grip of every surface as the readings show it, all else as given."""
-    names = list(grips_of_surfaces(points, start))
-    if not names:
+def on_surfaces(
+    points: Points,
+    start: Simulation,
+    channels: Collection[str],
+    rigs: Mapping[str, Config],
+    *,
+    seen: bool,
+) -> Simulation:
+    """The simulation with the grip of every surface as the readings show it, all else as given.
+
+    If the model was fitted to these points (``seen``), the declared errors of all rigs but the first are found as well: the
+    file holds what the rig of its own campaign reads.
+    """
+    priors = grips_of_surfaces(points, start)
+    if not priors:
         return start
+    if seen:
+        declared = declared_priors(rigs, points, start, channels)
+        priors |= {n: x for n, x in declared.items() if campaign_of(n, points) != points.campaigns[0]}
+    names, spread = list(priors), np.array([u for _, u in priors.values()])
+    expected = np.array([value for value, _ in priors.values()])
     noise = stated_noise(*with_uncertainties(points, start, channels), channels)
     measured = np.concatenate([points.channel(name) for name in noise.channels])
     for _ in range(int(constants.MOST_SURFACE_STEPS)):
         readings, slopes = start.sensitivities(points, names, noise.channels)
-        columns = noise.whiten(np.nan_to_num(slopes.stacked)) * UNKNOWN_RATIO_OF_GRIPS
+        columns = noise.whiten(np.nan_to_num(slopes.stacked)) * spread
         left = noise.whiten(np.nan_to_num(measured - readings.stacked))
         now = np.array([start.number(name, points) for name in names])
         power = columns.T @ columns + np.eye(len(names))
-        step = (
-            np.linalg.solve(power, columns.T @ left - now / UNKNOWN_RATIO_OF_GRIPS) * UNKNOWN_RATIO_OF_GRIPS
-        )
-        start = start.with_numbers(dict(zip(names, np.clip(now + step, -0.5, 1.0).tolist(), strict=True)))
+        step = np.linalg.solve(power, columns.T @ left - (now - expected) / spread) * spread
+        start = start.with_numbers(dict(zip(names, (now + step).tolist(), strict=True)))
     return start
+
+
+def campaign_of(number: str, points: Points) -> str:
+    """The campaign of a number of a campaign or of one of its set-ups."""
+    part = number.partition(OF_RUN)[2]
+    if part in points.campaigns:
+        return part
+    own = points.campaign[points.setup == points.setups.index(part)]
+    return points.campaigns[int(own[0])]
 
 
 def looked_at_together(

@@ -82,7 +82,7 @@ def diagnose(
     start = _simulation(points, tyre, config, rigs, rig)
     channels = channels_of(points)
     refuse_strangers(points, tyre, start, channels)
-    start = on_surfaces(points, start, channels)
+    start = on_surfaces(points, start, channels, rigs, seen=seen)
     points, wrong = _without_misread(points, start, rigs, channels)
     points, origin = with_uncertainties(by_condition(points), start, channels)
     inexact = coefficients or declared_inexactness(tyre, config.model.u_coefficients)
@@ -98,6 +98,7 @@ def diagnose(
     found, stranger = named_of_this_tyre(found)
     progress("checking on left-out sweeps")
     given = DiagnosisProblem(points, start, found.independent)
+    seen = seen and len(points.campaigns) < 2  # joined campaigns were not fitted together
     found, validation, refused = _confirmed(found, given, inexact, seen=seen)
     exact = without_noise(found.scatter)
     named = named_effects(found, given)

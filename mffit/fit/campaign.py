@@ -11,6 +11,7 @@ from __future__ import annotations
 import math
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
+from types import MappingProxyType
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -47,6 +48,8 @@ class FittedCampaign(NamedTuple):
     posterior: Posterior
     shared: tuple[np.ndarray, float] | None
     """Loads (n,) [N] and pressure [Pa] at which both campaigns swept the sideslip angle upright; None without any."""
+    rig: Mapping[str, tuple[float, float]] = MappingProxyType({})
+    """Errors of its rig with standard errors; numbers of the campaign or of its set-ups, as joined points call them."""
 
     @property
     def groups(self) -> dict[str, tuple[str, ...]]:

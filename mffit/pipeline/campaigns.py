@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -14,6 +14,7 @@ from mffit.points import Points, concatenate
 from mffit.points.loading import Reading
 from mffit.progress import Progress
 from mffit.results import BuildResult
+from mffit.rig_errors import BY_NAME, OF_RUN, number_of
 from mffit.suspicion.other_tyre import two_tyres
 
 SAME_OF_ONE_TYRE = ("unloaded_radius", "width", "rim_radius", "nominal_load", "nominal_pressure")
@@ -69,9 +70,20 @@ def campaigns_of(
                 coefficients=fit.coefficients,
                 posterior=fit.posterior,
                 shared=shared_conditions(points, result.points),
+                rig=_rig_in(row.toml, fit.rig),
             )
         )
     return tuple(out), tuple(built), tuple(warned)
+
+
+def _rig_in(campaign: str, rig: Mapping[str, tuple[float, float]]) -> dict[str, tuple[float, float]]:
+    """Errors of the rig of a campaign as joined points call them; what belongs to the tyre is left out."""
+    out = {}
+    for name, found in rig.items():
+        error, _, part = name.partition(OF_RUN)
+        if BY_NAME[error].kind == "rig":
+            out[number_of(error, f"{Path(campaign).parent.as_posix()}/{part}" if part else campaign)] = found
+    return out
 
 
 def points_of_all(
