@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, fields, replace
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -283,7 +283,9 @@ def shorter(series: DataSeries, most: int) -> tuple[DataSeries, int]:
     if every < 2:
         return series, 1
     arrays = ((field.name, getattr(series, field.name)) for field in fields(series))
-    kept = {name: x[::every] for name, x in arrays if isinstance(x, np.ndarray) and len(x) == n}
+    kept: dict[str, Any] = {
+        name: x[::every] for name, x in arrays if isinstance(x, np.ndarray) and len(x) == n
+    }
     return replace(series, **kept), every
 
 
