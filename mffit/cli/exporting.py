@@ -11,6 +11,7 @@ from typing import Any
 import click
 
 from mffit.cli.console import Voice, out_option, tyre_toml_argument, voiced
+from mffit.errors import InputError
 
 
 def _code_options(command: Any) -> Any:
@@ -32,6 +33,16 @@ def _code_options(command: Any) -> Any:
     ):
         command = decorator(command)
     return command
+
+
+def _folder(out: Path, ending: str) -> Path:
+    """The folder to write to; refuses the name of a file, which would become a folder of that name."""
+    if out.suffix.lower() == ending:
+        raise InputError(
+            f"is the name of a file, but --out names the folder: write --out {out.parent} --name {out.stem}",
+            key=f"--out {out}",
+        )
+    return out
 
 
 @contextmanager
@@ -84,7 +95,9 @@ def c(
     from mffit.export import write_c
 
     with _told(voice):
-        written = write_c(file, out, name=name, turn_slip=turn_slip, limits=limits, tunable=tunable)
+        written = write_c(
+            file, _folder(out, ".c"), name=name, turn_slip=turn_slip, limits=limits, tunable=tunable
+        )
     _report(voice, written, file, turn_slip)
 
 
@@ -124,7 +137,7 @@ def fmu(
     with _told(voice):
         written = write_fmu(
             file,
-            out,
+            _folder(out, ".fmu"),
             fmi=int(fmi),
             name=name,
             turn_slip=turn_slip,

@@ -46,9 +46,9 @@ def blocks(points: Points, *, by_sweep: bool) -> Iterator[np.ndarray]:
         yield from np.array_split(np.arange(n), -(-n // most))
         return
     order = np.argsort(points.sweep, kind="stable")
-    ends = np.flatnonzero(np.diff(points.sweep[order], append=-1)) + 1
+    ends = (np.flatnonzero(np.diff(points.sweep[order], append=-1)) + 1).tolist()
     begin = 0
-    for end, following in zip(ends, np.append(ends[1:], n + most), strict=True):
+    for end, following in zip(ends, [*ends[1:], n + most], strict=True):
         if following - begin > most:
             yield order[begin:end]
             begin = int(end)

@@ -401,7 +401,12 @@ def test_turn_slip_without_measured_coefficients_is_warned_of(tmp_path, capsys):
 
 
 @pytest.mark.parametrize(
-    ("arguments", "said"), [(["--name", "3x"], "not a valid name in C"), (["--fmi", "1"], "Invalid value")]
+    ("arguments", "said"),
+    [
+        (["--name", "3x"], "not a valid name in C"),
+        (["--fmi", "1"], "Invalid value"),
+        (["--out", "there/front.fmu"], "write --out there --name front"),
+    ],
 )
 def test_bad_choices_end_in_one_sentence(tmp_path, capsys, arguments, said):
     with pytest.raises(SystemExit) as end:

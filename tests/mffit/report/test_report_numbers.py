@@ -6,14 +6,15 @@ import base64
 import csv
 import io
 import zipfile
+from dataclasses import replace
 from urllib.parse import unquote
 
 import numpy as np
 import pytest
 
-from mffit.report import constants
+from mffit.report import constants, page
 from mffit.report.build_view import view_of
-from mffit.report.drawing.records import Axis, Look, Map, Panel, Sheet, Trace
+from mffit.report.drawing.records import Axis, ErrorBars, Look, Map, Panel, Sheet, Trace, with_shorter_series
 from mffit.report.figures import decomposition, fit, residuals, spin
 from mffit.report.numbers import table
 from mffit.report.page import PagePicture
@@ -56,6 +57,21 @@ def test_a_map_gives_the_value_of_every_colour(view):
     found = rows(residuals.residual_maps(view.points, [("Fy", values)], view.conditions, "u"))
     coloured = sorted(float(row["value"]) for row in found if row["value"])
     assert coloured == pytest.approx(sorted(values), abs=1e-5)
+
+
+def test_a_long_series_is_drawn_at_evenly_spaced_points_and_the_picture_knows(monkeypatch, tmp_path):
+    monkeypatch.setattr(constants, "POINTS_PER_SERIES_DRAWN", 10)
+    x = np.arange(95.0)
+    bars = ErrorBars(name="points", x=x, y=x**2, u=np.full(95, 3.0), look=Look(marker="o"))
+    few = Map(name="", x=x[:9], y=x[:9], values=x[:9], limit=9.0, size=4.0)
+    sheet = Sheet(rows=[[Panel(x=Axis(), y=Axis(), series=[bars, few])]], height=1.0)
+    drawn, untouched = with_shorter_series(sheet, 10).panels[0].series
+    assert list(drawn.x) == list(x[::10])
+    assert list(drawn.ends()[1]) == list(x[::10] ** 2 + 3.0)
+    assert untouched is few
+    assert page.draw(tmp_path, {"long": lambda: sheet})["long"].most == 10
+    short = replace(sheet, rows=[[Panel(x=Axis(), y=Axis(), series=[few])]])
+    assert page.draw(tmp_path, {"short": lambda: short})["short"].most == 0
 
 
 def test_a_long_series_is_thinned_and_its_name_says_so(monkeypatch):

@@ -1,0 +1,97 @@
+"""A campaign of many points gives what it gives in one piece: fit, errors, choice of influences, predicted sweeps."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import small_rigs
+
+import mffit.constants
+import mffit.diagnosis.constants
+import mffit.rig.constants
+from mffit.diagnosis.remainder import remainder
+from mffit.diagnosis.structure import structure
+from mffit.fit.fitting import _as_model
+from mffit.fit.nuisance_choice import choose
+from mffit.least_squares import Linear, condensed
+from mffit.suspicion.prediction import groups, leverage, predictions
+
+
+@pytest.fixture(scope="module")
+def built(tmp_path_factory):
+    return small_rigs.built(small_rigs.flat(), tmp_path_factory.mktemp("flat"))
+
+
+@pytest.fixture
+def in_small_blocks(monkeypatch):
+    def change():
+        monkeypatch.setattr(mffit.rig.constants, "POINTS_OF_A_BLOCK", 30)
+        monkeypatch.setattr(mffit.constants, "ROWS_AT_ONCE", 50)
+
+    return change
+
+
+def products(linear: Linear) -> np.ndarray:
+    rows = np.column_stack([linear.slope, linear.data])
+    return rows.T @ rows
+
+
+def test_condensed_rows_have_the_same_products(built, in_small_blocks):
+    search = built.fit.search
+    names = [n.name for n in search.numbers]
+    at = np.array([search.problem.value(name) * 1.01 for name in names])
+    whole = search.problem.free(names).linear(at)
+    in_small_blocks()
+    few = search.problem.free(names).linear(at)
+    assert few.slope.shape == (len(names) + 1, len(names))
+    size = np.sqrt(np.diag(products(whole)))
+    assert products(few) / np.outer(size, size) == pytest.approx(
+        products(whole) / np.outer(size, size), abs=1e-12
+    )
+
+
+def test_a_number_without_effect_stays_without_effect(monkeypatch):
+    monkeypatch.setattr(mffit.constants, "ROWS_AT_ONCE", 4)
+    rng = np.random.default_rng(1)
+    slope = np.column_stack([rng.standard_normal(12), np.zeros(12)])
+    data, rows = condensed([(np.ones(6), slope[:6]), (np.ones(6), slope[6:])])
+    assert rows.T @ rows == pytest.approx(slope.T @ slope, abs=1e-12)
+    assert rows.T @ data == pytest.approx(slope.T @ np.ones(12), abs=1e-12)
+    assert data @ data == pytest.approx(12.0)
+
+
+def test_the_choice_of_influences_is_that_in_one_piece(built, in_small_blocks):
+    before = choose(built.config, built.fit.search).verdicts
+    in_small_blocks()
+    for old, new in zip(before, choose(built.config, built.fit.search).verdicts, strict=True):
+        assert (new.modelled, new.reason) == (old.modelled, old.reason)
+        assert dict(new.beside) == pytest.approx(dict(old.beside), rel=1e-7)
+        assert dict(new.without) == pytest.approx(dict(old.without), rel=1e-7)
+    assert any(verdict.without for verdict in before)
+
+
+def test_predicted_sweeps_are_those_in_one_piece(built, in_small_blocks):
+    model = _as_model(built.fit.search)
+    noise = np.concatenate(list(model.weights.values()))
+    found = groups(model.points)
+    before = [predictions(leverage(model, noise), group) for group in found]
+    in_small_blocks()
+    apart = leverage(model, noise)
+    for group, old in zip(found, before, strict=True):
+        for channel, new in predictions(apart, group).items():
+            assert new.error == pytest.approx(old[channel].error, rel=1e-5, abs=1e-5)
+            assert np.diag(new.covariance) == pytest.approx(np.diag(old[channel].covariance), rel=1e-5)
+
+
+def test_of_many_points_some_are_examined_with_their_own_uncertainty(built, monkeypatch):
+    whole = remainder(built.fit.search)
+    every = 3
+    monkeypatch.setattr(mffit.diagnosis.constants, "MOST_POINTS_EXAMINED", -(-len(whole.points) // every))
+    some = remainder(built.fit.search)
+    rows = np.arange(0, len(whole.points), every)
+    assert np.array_equal(some.points.alpha, whole.points.alpha[rows])
+    assert np.array_equal(some.sigma[: len(rows)], whole.sigma[rows])
+    # Fewer readings are followed more closely, so that their residuals are smaller.
+    both = np.concatenate([rows, len(whole.points) + rows])
+    assert 0.5 < np.std(some.residual) / np.std(whole.residual[both]) < 1.0
+    assert structure(some).chance > 1e-3
