@@ -13,6 +13,7 @@ from pathlib import Path
 
 import numpy as np
 import pandas as pd
+import pytest
 import scipy.io
 from disc_project import moment, side_force
 from scipy.signal import lfilter
@@ -169,6 +170,36 @@ def drive_recording(
     if gaps:
         table = table[np.tile(np.r_[np.zeros(resting, bool), np.ones(len(swept), bool)], len(parts))]
     return table.reset_index(drop=True)
+
+
+def write_mat73(table: pd.DataFrame, path: Path, **texts: str) -> Path:
+    """The table as :func:`write_mat` writes it, by MATLAB 7.3: a row for each column, letters as numbers, cells as references.
+
+    Older files are read in a process of their own, which takes as long as all the rest of a small recording.
+    """
+    h5py = pytest.importorskip("h5py")
+
+    def letters(text: str) -> np.ndarray:
+        return np.array([[ord(c)] for c in text], dtype=np.uint16)
+
+    with h5py.File(path, "w", userblock_size=512) as file:
+        for name in table:
+            file[name] = table[name].to_numpy()[None, :]
+            file[name].attrs["MATLAB_class"] = np.bytes_("double")
+        channel = file.create_group("channel")
+        for key, cells in (("name", list(table)), ("units", [DRIVE_UNITS.get(name, "") for name in table])):
+            stored = [
+                file.create_dataset(f"#refs#/{key}{k}", data=letters(text)) for k, text in enumerate(cells)
+            ]
+            for item in stored:
+                item.attrs["MATLAB_class"] = np.bytes_("char")
+            channel.create_dataset(
+                key, data=np.array([item.ref for item in stored], dtype=h5py.ref_dtype)[None, :]
+            )
+        for name, text in {"tireid": "Tyre A, 7 inch", **texts}.items():
+            file[name] = letters(text)
+            file[name].attrs["MATLAB_class"] = np.bytes_("char")
+    return path
 
 
 def write_mat(table: pd.DataFrame, path: Path, **texts: str) -> Path:

@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import small_rigs
-from flat_belt import RATE, SPEED, recording, write_mat
+from flat_belt import RATE, SPEED, recording, write_mat73
 
 import mffit
 import tir
@@ -301,7 +301,7 @@ def test_a_change_over_the_distance_is_found_if_it_is_asked_for(warmed, key):
 
 def test_a_lag_of_recorded_sweeps_is_told_from_a_hysteresis(tmp_path):
     """The recording's lag is that of a filter of its own along the rolled distance, and its rate of sideslip changes sign."""
-    write_mat(recording(sigma=0.5, seed=4, cambers=(0.0, 3.0)), tmp_path / "run.mat")
+    write_mat73(recording(sigma=0.5, seed=4, cambers=(0.0, 3.0)), tmp_path / "run.mat")
     columns = {"alpha_deg": "SA", "gamma_deg": "IA", "Fz_N": "FZ", "Fy_N": "FY", "Mz_Nm": "MZ", "p_kPa": "P"}
     config = configuration.load(
         {

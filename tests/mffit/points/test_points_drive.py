@@ -13,7 +13,7 @@ from flat_belt import (
     longitudinal_force,
     recording,
     rolling_radius,
-    write_mat,
+    write_mat73,
 )
 
 from mffit import config as configuration
@@ -39,7 +39,7 @@ def configured(tmp_path_factory):
                 "tyre": tyre,
                 "rig": {"type": "flat-track", "axes": "sae"},
                 "columns": columns,
-                "sweep": [{"file": str(write_mat(table, folder / f"{next(NUMBERS)}.mat"))}],
+                "sweep": [{"file": str(write_mat73(table, folder / f"{next(NUMBERS)}.mat"))}],
             }
         )
 

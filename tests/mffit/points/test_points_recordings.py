@@ -6,7 +6,7 @@ import numpy as np
 import pandas as pd
 import pytest
 from disc_project import side_force
-from flat_belt import CAMBERS, LOADS, RATE, SPEED, recording, write_mat
+from flat_belt import CAMBERS, LOADS, RATE, SPEED, recording, write_mat73
 
 from mffit import config as configuration
 from mffit import points
@@ -26,7 +26,7 @@ def read(tmp_path_factory):
     def reading(
         table: pd.DataFrame, axes: str = "calspan", *, judged: bool = True, **keys
     ) -> points.loading.Reading:
-        file = write_mat(table, tmp_path_factory.mktemp("run") / "run.mat")
+        file = write_mat73(table, tmp_path_factory.mktemp("run") / "run.mat")
         reader = read_points if judged else points.read
         return reader(
             configuration.load(

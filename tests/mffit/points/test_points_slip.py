@@ -7,7 +7,7 @@ from types import SimpleNamespace
 import numpy as np
 import pandas as pd
 import pytest
-from flat_belt import RATE, SPEED, write_mat
+from flat_belt import RATE, SPEED, write_mat73
 
 from mffit import config as configuration
 from mffit import points
@@ -56,7 +56,7 @@ def recording() -> pd.DataFrame:
 
 @pytest.fixture(scope="module")
 def read(tmp_path_factory):
-    file = write_mat(recording(), tmp_path_factory.mktemp("slip") / "run.mat")
+    file = write_mat73(recording(), tmp_path_factory.mktemp("slip") / "run.mat")
 
     def reading(columns=COLUMNS):
         tyre = {"name": "x", "unloaded_radius": 0.22, "nominal_load": 1500.0, "nominal_pressure": 83.0}

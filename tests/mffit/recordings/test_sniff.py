@@ -8,7 +8,7 @@ import numpy as np
 import pandas as pd
 import pytest
 from disc_project import side_force
-from flat_belt import CAMBERS, LOADS, recording, write_mat
+from flat_belt import CAMBERS, LOADS, recording, write_mat, write_mat73
 
 from mffit import config as configuration
 from mffit import pipeline
@@ -48,7 +48,7 @@ def test_conditions_axes_and_columns_are_found(machine):
 
 def test_gaps_in_time_are_counted(tmp_path):
     table = recording(loads=(600.0, 1500.0), cambers=(0.0, 2.0), pressures=(83.0,), gaps=True)
-    (found,) = sniff([write_mat(table, tmp_path / "a.mat")]).recordings
+    (found,) = sniff([write_mat73(table, tmp_path / "a.mat")]).recordings
     assert (found.gaps, found.rate) == (3, pytest.approx(100.0))
     assert found.seconds == pytest.approx(4 * 15.0 - 3.0 - 0.01)  # the first rest is cut off
 
@@ -68,12 +68,12 @@ def iso(table: pd.DataFrame) -> pd.DataFrame:
     ],
 )
 def test_the_axes_follow_from_physics(tmp_path, turned, axes):
-    assert sniff([write_mat(turned(recording(pressures=(83.0,))), tmp_path / "a.mat")]).axes == axes
+    assert sniff([write_mat73(turned(recording(pressures=(83.0,))), tmp_path / "a.mat")]).axes == axes
 
 
 def test_without_camber_the_axes_stay_open_with_a_remark(tmp_path):
     table = iso(recording(cambers=(0.0,), pressures=(83.0,)))
-    found = sniff([write_mat(table, tmp_path / "a.mat")])
+    found = sniff([write_mat73(table, tmp_path / "a.mat")])
     assert found.axes == ("iso", "sae")  # first those that the sign of the load suggests
     assert "too little camber" in text.sniff_summary(found)
 
@@ -145,7 +145,7 @@ def test_a_driven_recording_without_its_force_is_described_but_gives_no_project(
     table = recording(pressures=(83.0,)).drop(columns="FX")
     table["SL"] = 0.1 * np.sin(np.arange(len(table)) / 50.0)
     table["SL"] += 0.2
-    path = write_mat(table, tmp_path / "drive.mat")
+    path = write_mat73(table, tmp_path / "drive.mat")
     found = sniff([path])
     assert "driven or braked" in text.sniff_summary(found)
     with pytest.raises(InputError, match="driven or braked"):
@@ -154,7 +154,7 @@ def test_a_driven_recording_without_its_force_is_described_but_gives_no_project(
 
 @pytest.mark.parametrize("hostile", ['a"b', "x\ny", "[[sweep]]", "<script>", "\\", "# no"])
 def test_texts_of_a_file_stay_texts(tmp_path, hostile):
-    path = write_mat(recording(loads=(1500.0,), pressures=(83.0,)), tmp_path / "a.mat", tireid=hostile)
+    path = write_mat73(recording(loads=(1500.0,), pressures=(83.0,)), tmp_path / "a.mat", tireid=hostile)
     _, written = pipeline.init_from([path], tmp_path / "p", **GIVEN)
     content = tomllib.loads(written[0].read_text())
     assert content["tyre"].get("size", hostile) == hostile

@@ -6,7 +6,7 @@ import tomllib
 
 import numpy as np
 import pytest
-from flat_belt import drive_recording, write_mat
+from flat_belt import drive_recording, write_mat73
 
 from mffit import config as configuration
 from mffit import pipeline, points
@@ -31,7 +31,7 @@ def started(recording, folder):
 @pytest.fixture(scope="module")
 def project(table, tmp_path_factory):
     folder = tmp_path_factory.mktemp("drive")
-    return started(write_mat(table, folder / "drive.mat"), folder)
+    return started(write_mat73(table, folder / "drive.mat"), folder)
 
 
 def test_a_drive_recording_becomes_a_project_of_slip_sweeps(project):
@@ -63,7 +63,7 @@ def test_the_same_slip_comes_from_another_unit_sign_or_radius(table, project, tm
 def test_a_wheel_whose_speed_was_not_recorded_has_no_slip(table, tmp_path):
     noise = 0.0005 * np.sin(np.arange(len(table)))
     silent = table.assign(SL=-1.0 + noise).drop(columns="SR")
-    found = sniff([write_mat(silent, tmp_path / "a.mat")])
+    found = sniff([write_mat73(silent, tmp_path / "a.mat")])
     (recording,) = found.recordings
     assert "kappa" not in recording.guesses
     assert "speed of the wheel was not recorded" in text.sniff_summary(found)

@@ -12,7 +12,7 @@ from urllib.parse import unquote
 import numpy as np
 import pytest
 
-from mffit.report import constants, page
+from mffit.report import constants, left_undrawn, page
 from mffit.report.build_view import view_of
 from mffit.report.drawing.records import Axis, ErrorBars, Look, Map, Panel, Sheet, Trace, with_shorter_series
 from mffit.report.figures import decomposition, fit, residuals, spin
@@ -69,7 +69,7 @@ def test_a_long_series_is_drawn_at_evenly_spaced_points_and_the_picture_knows(mo
     assert list(drawn.x) == list(x[::10])
     assert list(drawn.ends()[1]) == list(x[::10] ** 2 + 3.0)
     assert untouched is few
-    assert page.draw(tmp_path, {"long": lambda: sheet})["long"].most == 10
+    assert page.draw(tmp_path, {"long": lambda: sheet})["long"].left_out == left_undrawn.long_series(10)
     short = replace(sheet, rows=[[Panel(x=Axis(), y=Axis(), series=[few])]])
     assert page.draw(tmp_path, {"short": lambda: short})["short"].most == 0
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pandas as pd
 import pytest
-from flat_belt import drive_recording, loaded_radius, recording, rolling_radius, write_mat
+from flat_belt import drive_recording, loaded_radius, recording, rolling_radius, write_mat73
 
 from mffit import config as configuration
 from mffit import pipeline, points
@@ -34,7 +34,7 @@ def read(tmp_path_factory):
 
     def of(*tables, radius=0.228, without=()):
         folder = tmp_path_factory.mktemp("runs")
-        files = [str(write_mat(table, folder / f"{k}.mat")) for k, table in enumerate(tables)]
+        files = [str(write_mat73(table, folder / f"{k}.mat")) for k, table in enumerate(tables)]
         config = configuration.load(
             {
                 "tyre": {
@@ -95,7 +95,7 @@ def test_a_declared_radius_that_the_readings_contradict_is_refused(read, drive, 
 
 
 def test_init_refuses_a_project_of_two_tyres(drive, tmp_path):
-    files = [write_mat(cornering(0.212), tmp_path / "a.mat"), write_mat(drive, tmp_path / "b.mat")]
+    files = [write_mat73(cornering(0.212), tmp_path / "a.mat"), write_mat73(drive, tmp_path / "b.mat")]
     with pytest.raises(InputError, match="of two tyres"):
         pipeline.init_from(files, tmp_path / "p", unloaded_radius=0.22, nominal_load=1500.0)
     assert not (tmp_path / "p").exists()

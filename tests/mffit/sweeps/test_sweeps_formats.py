@@ -10,7 +10,7 @@ import numpy as np
 import pandas as pd
 import pytest
 import scipy.io
-from flat_belt import UNITS, recording, write_mat
+from flat_belt import UNITS, recording, write_mat, write_mat73
 
 from mffit import config as configuration
 from mffit import sweeps
@@ -23,27 +23,6 @@ TABLE = recording(loads=(1500.0,), cambers=(0.0,), pressures=(83.0,), sweep_s=2.
 
 def write_v4(path):
     scipy.io.savemat(path, {name: TABLE[name].to_numpy()[:, None] for name in TABLE}, format="4")
-
-
-def write_v73(path):
-    """The layout of MATLAB 7.3: a row for each column vector, letters as numbers, cells as references."""
-    h5py = pytest.importorskip("h5py")
-    with h5py.File(path, "w", userblock_size=512) as file:
-        for name in TABLE:
-            file[name] = TABLE[name].to_numpy()[None, :]
-            file[name].attrs["MATLAB_class"] = np.bytes_("double")
-        channel = file.create_group("channel")
-        for key, texts in (("name", list(TABLE)), ("units", [UNITS[name] for name in TABLE])):
-            cells = []
-            for k, text in enumerate(texts):
-                item = file.create_dataset(
-                    f"#refs#/{key}{k}", data=np.array([[ord(c)] for c in text], dtype=np.uint16)
-                )
-                item.attrs["MATLAB_class"] = np.bytes_("char")
-                cells.append(item.ref)
-            channel.create_dataset(key, data=np.array(cells, dtype=h5py.ref_dtype)[None, :])
-        tyre = file.create_dataset("tireid", data=np.array([[ord(c)] for c in "Tyre A"], dtype=np.uint16))
-        tyre.attrs["MATLAB_class"] = np.bytes_("char")
 
 
 def write_xlsx(path):
@@ -97,7 +76,7 @@ def german(value: float) -> str:
 WRITERS = {
     "five.mat": lambda path: write_mat(TABLE, path),
     "four.mat": write_v4,
-    "seven.mat": write_v73,
+    "seven.mat": lambda path: write_mat73(TABLE, path),
     "book.xlsx": write_xlsx,
     "table.parquet": write_parquet,
     "calspan.dat": write_dat,
