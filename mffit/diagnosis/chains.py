@@ -11,7 +11,7 @@ import numpy as np
 from scipy.linalg.lapack import dtbtrs
 
 
-class Span(Enum):
+class MemorySpan(Enum):
     """What errors with a memory run through before they begin anew."""
 
     SWEEP = "sweep"

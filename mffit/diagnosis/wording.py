@@ -8,7 +8,7 @@ from typing import assert_never
 
 from mffit.diagnosis import constants
 from mffit.diagnosis.bumps import Bump
-from mffit.diagnosis.chains import Span
+from mffit.diagnosis.chains import MemorySpan
 from mffit.diagnosis.noise import Noise
 from mffit.diagnosis.notes import (
     AnotherTyre,
@@ -50,7 +50,7 @@ NOT_REPAIRED = {
 }
 """The same for effects that are suspected only."""
 
-THROUGH = {Span.SWEEP: "a sweep", Span.FILE: "a file", Span.PROGRAMME: "the programme"}
+THROUGH = {MemorySpan.SWEEP: "a sweep", MemorySpan.FILE: "a file", MemorySpan.PROGRAMME: "the programme"}
 """The chains of a memory in words."""
 
 
