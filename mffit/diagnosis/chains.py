@@ -11,12 +11,12 @@ import numpy as np
 from scipy.linalg.lapack import dtbtrs
 
 
-class Span(Enum):
-    """What errors with a memory run through before they begin anew, in words."""
+class MemorySpan(Enum):
+    """What errors with a memory run through before they begin anew."""
 
-    SWEEP = "a sweep"
-    FILE = "a file"
-    PROGRAMME = "the programme"
+    SWEEP = "sweep"
+    FILE = "file"
+    PROGRAMME = "programme"
 
 
 @dataclass(frozen=True, slots=True)

@@ -12,7 +12,7 @@ from scipy.linalg import cho_solve, cholesky, solve_triangular
 from scipy.linalg.lapack import dpotri
 
 from mffit.diagnosis import constants
-from mffit.diagnosis.chains import Chains, Correlation, Span
+from mffit.diagnosis.chains import Chains, Correlation, MemorySpan
 
 
 class MarginalParts(NamedTuple):
@@ -40,7 +40,7 @@ class MarginalChannel:
     runs: np.ndarray | None = (
         None  #: (m, k) the same of offsets of runs at their usual size; None: they are not considered
     )
-    span: Span = Span.SWEEP  #: the chains of its memory
+    span: MemorySpan = MemorySpan.SWEEP  #: the chains of its memory
     course: np.ndarray | None = None  #: number of the chain of each reading, if that is longer than a sweep
     turn: np.ndarray | None = None  #: place of each reading in time
     least: float = 0.0  #: standard uncertainty that is always added, for readings without noise
@@ -49,7 +49,7 @@ class MarginalChannel:
         """The same with offsets of runs, whose changes (m, k) have the usual size."""
         return replace(self, runs=columns)
 
-    def along(self, span: Span, course: np.ndarray) -> MarginalChannel:
+    def along(self, span: MemorySpan, course: np.ndarray) -> MarginalChannel:
         """The same with errors whose memory runs through other chains (m,)."""
         return replace(self, span=span, course=course)
 

@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from mffit.diagnosis.chains import Chains, Correlation, Span
+from mffit.diagnosis.chains import Chains, Correlation, MemorySpan
 from mffit.quantities import SIDEWAYS
 from mffit.scatter import finite_median, rms
 
@@ -31,7 +31,7 @@ class Scatter:
     memory: float = 0.0  #: correlation from one point to the next along a chain, of the part that has one
     independent: float = 0.0  #: share of the variance without memory, beside a part with one
     tails: float = np.inf  #: degrees of freedom of Student's t, infinite where the scatter is normal
-    span: Span = Span.SWEEP  #: the chains along which errors have their memory
+    span: MemorySpan = MemorySpan.SWEEP  #: the chains along which errors have their memory
     without_noise: bool = (
         False  #: whether the readings hardly scatter, as those of a simulation; the noise is assumed
     )
@@ -68,7 +68,7 @@ class Noise:
     origin: Origin | None  #: of the uncertainties of Fy; None if it was not measured
     scatter: Mapping[str, Scatter] = field(default_factory=lambda: dict.fromkeys(SIDEWAYS, Scatter()))
     """By channel, in the order of the readings."""
-    longer: Mapping[Span, np.ndarray] = field(default_factory=dict)
+    longer: Mapping[MemorySpan, np.ndarray] = field(default_factory=dict)
     """Longer chains than sweeps that are possible, (c n,) each."""
     turn: np.ndarray | None = (
         None  #: (c n,) place of every reading in time among those of its channel; None if no chain is longer

@@ -14,7 +14,7 @@ import numpy as np
 from scipy.optimize import minimize
 
 from mffit.diagnosis import constants
-from mffit.diagnosis.chains import Span
+from mffit.diagnosis.chains import MemorySpan
 from mffit.diagnosis.marginal import MarginalChannel, MarginalParts
 from mffit.diagnosis.noise import Noise, RunOffsets, Scatter
 from mffit.diagnosis.run_means import log_evidence
@@ -101,7 +101,7 @@ def _occurring(columns: np.ndarray) -> np.ndarray:
     return columns[:, np.any(columns != 0.0, axis=0)]
 
 
-def _courses(channel: MarginalChannel, longer: Mapping[Span, np.ndarray]) -> list[MarginalChannel]:
+def _courses(channel: MarginalChannel, longer: Mapping[MemorySpan, np.ndarray]) -> list[MarginalChannel]:
     """The channel with a memory along each sweep, and along those longer chains (m,) that differ from shorter ones."""
     found = [channel]
     for span, course in longer.items():

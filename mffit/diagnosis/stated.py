@@ -7,7 +7,7 @@ from collections.abc import Collection, Iterable
 import numpy as np
 
 from mffit.diagnosis import constants
-from mffit.diagnosis.chains import Span
+from mffit.diagnosis.chains import MemorySpan
 from mffit.diagnosis.noise import Noise, Origin, Scatter
 from mffit.errors import InputError
 from mffit.points import Points
@@ -55,7 +55,7 @@ def stated_noise(points: Points, origin: Origin | None = None, channels: Iterabl
     return Noise(u=u, stated=u, chain=chain, origin=origin, scatter=scatter, longer=tiled, turn=turn)
 
 
-def _in_time(points: Points) -> tuple[np.ndarray, dict[Span, np.ndarray]]:
+def _in_time(points: Points) -> tuple[np.ndarray, dict[MemorySpan, np.ndarray]]:
     """Order (n,) in which the points were taken, and the chains (n,) longer than a sweep that were not interrupted.
 
     The order is that of their times; within a file, and where times are unknown, that of the lines.
@@ -69,9 +69,9 @@ def _in_time(points: Points) -> tuple[np.ndarray, dict[Span, np.ndarray]]:
     pause = np.zeros(len(step), dtype=bool)
     if timed and np.any(step > 0.0):
         pause = (step < 0.0) | (step > constants.LONGEST_PAUSE * np.median(step[step > 0.0]))
-    spans = {Span.FILE: pause | next_file}
+    spans = {MemorySpan.FILE: pause | next_file}
     if timed and len(points.files) > 1:
-        spans[Span.PROGRAMME] = pause
+        spans[MemorySpan.PROGRAMME] = pause
     chains = {span: np.empty(len(points), dtype=int) for span in spans}
     for span, begins in spans.items():
         chains[span][order] = np.append(0, np.cumsum(begins))

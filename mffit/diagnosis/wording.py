@@ -8,6 +8,7 @@ from typing import assert_never
 
 from mffit.diagnosis import constants
 from mffit.diagnosis.bumps import Bump
+from mffit.diagnosis.chains import MemorySpan
 from mffit.diagnosis.noise import Noise
 from mffit.diagnosis.notes import (
     AnotherTyre,
@@ -50,6 +51,9 @@ NOT_REPAIRED = {
     "environment": "keep it constant; the readings are as measured, and --repair-all would correct them",
 }
 """The same for effects that are suspected only."""
+
+THROUGH = {MemorySpan.SWEEP: "a sweep", MemorySpan.FILE: "a file", MemorySpan.PROGRAMME: "the programme"}
+"""The chains of a memory in words."""
 
 
 def headline(diagnosis: Diagnosis) -> str:
@@ -196,7 +200,7 @@ def note(remark: Note) -> str:
             )
         case OffsetsOrMemory(channel, memory, noise, effects):
             return (
-                f"The errors of {channel} ({_short(noise)} {CHANNELS[channel].unit}) are correlated along sweeps ({memory:.2f} "
+                f"The errors of {channel} ({_short(noise)} {CHANNELS[channel].unit}) are correlated ({memory:.2f} "
                 f"between neighbours) and may as well be a {' or a '.join(e.name for e in effects)}: measure one condition "
                 "again in several runs to separate them."
             )
@@ -291,8 +295,9 @@ def scatter(noise: Noise) -> list[str]:
             beside = (
                 f", {100.0 * part.independent:.0f} % of their variance is not" if part.independent else ""
             )
-            of = part.span.value
-            parts.append(f"neighbouring errors of {of} are correlated ({part.memory:.2f}){beside}")
+            parts.append(
+                f"neighbouring errors of {THROUGH[part.span]} are correlated ({part.memory:.2f}){beside}"
+            )
         if math.isfinite(part.tails):
             parts.append("outliers are more frequent than in normal noise and lost their weight")
         out.append("; ".join(parts) + ".")

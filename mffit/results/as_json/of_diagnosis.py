@@ -62,7 +62,7 @@ def _noise(noise: Noise) -> dict[str, Any]:
         **{column(name): noise.typical(name) for name in noise.channels},
         "source": wording.source(noise),
         **{f"stated_{column(name)}": noise.typically_stated(name) for name in noise.channels},
-        "scatter": {name: asdict(row) for name, row in noise.scatter.items()},
+        "scatter": {name: {**asdict(row), "span": row.span.value} for name, row in noise.scatter.items()},
     }
 
 

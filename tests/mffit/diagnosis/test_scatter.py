@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from mffit.diagnosis import constants
-from mffit.diagnosis.chains import Span
+from mffit.diagnosis.chains import MemorySpan
 from mffit.diagnosis.noise import Noise, Scatter
 from mffit.diagnosis.scatter import ExplainingColumns, learned
 from mffit.diagnosis.stated import stated_noise
@@ -46,7 +46,7 @@ def found(Fy, named=NOTHING, offsets=0.0, longer=False):
         stated=np.where(np.isfinite(residual), noise.u, np.inf),
     )
     if longer:
-        chain = {Span.PROGRAMME: np.zeros(2 * N, dtype=int)}
+        chain = {MemorySpan.PROGRAMME: np.zeros(2 * N, dtype=int)}
         noise = replace(noise, longer=chain, turn=np.tile(np.arange(N), 2))
     return learned(noise, residual, ExplainingColumns(named, runs, NOTHING), size)
 
@@ -137,7 +137,7 @@ def test_a_few_runs_hardly_separate_offsets_from_a_memory(seed):
     assert all_ > constants.RUN_OFFSET_LOG_ODDS + 1.0
 
 
-@pytest.mark.parametrize(("again", "span"), [(True, Span.SWEEP), (False, Span.PROGRAMME)])
+@pytest.mark.parametrize(("again", "span"), [(True, MemorySpan.SWEEP), (False, MemorySpan.PROGRAMME)])
 def test_errors_that_run_on_from_sweep_to_sweep_are_told_from_those_that_begin_anew(again, span):
     noise = found(correlated(np.random.default_rng(3), 0.96, again=again), offsets=5.0, longer=True)
     assert noise.scatter["Fy"].span is span
@@ -170,19 +170,19 @@ def test_sweeps_that_follow_each_other_in_time_are_one_chain():
     t, file = np.array([40.0, 50.0, 20.0, 10.0, 95.0, 105.0]), np.array([0, 0, 1, 1, 2, 2])
     chains, turn = taken(t, file, np.arange(6))
     assert turn == [2, 3, 1, 0, 4, 5]
-    assert chains[Span.FILE] == [1, 1, 0, 0, 2, 2]
-    assert chains[Span.PROGRAMME] == [0, 0, 0, 0, 1, 1]
+    assert chains[MemorySpan.FILE] == [1, 1, 0, 0, 2, 2]
+    assert chains[MemorySpan.PROGRAMME] == [0, 0, 0, 0, 1, 1]
 
 
 def test_without_times_only_the_lines_of_a_file_follow_each_other():
     chains, turn = taken(np.full(6, np.nan), np.array([0, 0, 1, 1, 2, 2]), np.array([2, 1, 1, 2, 1, 2]))
     assert turn == [1, 0, 2, 3, 4, 5]
-    assert chains == {Span.FILE: [0, 0, 1, 1, 2, 2]}
+    assert chains == {MemorySpan.FILE: [0, 0, 1, 1, 2, 2]}
 
 
 def test_files_with_clocks_of_their_own_do_not_follow_each_other():
     chains, _ = taken(np.tile([0.0, 10.0], 3), np.array([0, 0, 1, 1, 2, 2]), np.arange(6))
-    assert chains[Span.PROGRAMME] == [0, 0, 1, 1, 2, 2]
+    assert chains[MemorySpan.PROGRAMME] == [0, 0, 1, 1, 2, 2]
 
 
 def test_readings_without_noise_get_that_of_the_best_rigs(rng):
@@ -212,7 +212,9 @@ def test_misfit_that_an_effect_could_explain_is_not_noise(rng):
     assert scatter.memory == 0.0
 
 
-@pytest.mark.parametrize(("share", "span"), [(0.0, Span.SWEEP), (0.4, Span.SWEEP), (0.4, Span.PROGRAMME)])
+@pytest.mark.parametrize(
+    ("share", "span"), [(0.0, MemorySpan.SWEEP), (0.4, MemorySpan.SWEEP), (0.4, MemorySpan.PROGRAMME)]
+)
 def test_whitened_readings_have_unit_covariance(share, span):
     """Against the explicit covariance: independent uncertainty, memory along sweeps or all readings, shared changes."""
     rng = np.random.default_rng(1)
@@ -223,14 +225,14 @@ def test_whitened_readings_have_unit_covariance(share, span):
     turn = np.concatenate([rng.permutation(n), np.zeros(n, dtype=int)])
     noise = Noise(
         u=u, stated=u, chain=chain, origin=None, scatter=memory, shared=shared, turn=turn,
-        longer={Span.PROGRAMME: np.zeros(60, dtype=int)},
+        longer={MemorySpan.PROGRAMME: np.zeros(60, dtype=int)},
     )  # fmt: skip
     used = np.flatnonzero(np.isfinite(u))
-    place = np.concatenate([turn[:n] if span is Span.PROGRAMME else np.arange(n), np.arange(n, 59)])
+    place = np.concatenate([turn[:n] if span is MemorySpan.PROGRAMME else np.arange(n), np.arange(n, 59)])
     steps = np.abs(np.subtract.outer(place, place))
     rho = np.where(used < n, 0.8, 0.3)
     inside = chain[used][:, None] == chain[used][None, :]
-    inside |= np.logical_and.outer(used < n, used < n) & (span is Span.PROGRAMME)
+    inside |= np.logical_and.outer(used < n, used < n) & (span is MemorySpan.PROGRAMME)
     alike = np.where(inside, rho[:, None] ** steps, 0.0)
     alike *= np.where((steps > 0) & (used < n)[:, None], 1.0 - share, 1.0)
     covariance = np.outer(u[used], u[used]) * alike

@@ -71,7 +71,7 @@ def test_a_long_series_is_drawn_at_evenly_spaced_points_and_the_picture_knows(mo
     assert untouched is few
     assert page.draw(tmp_path, {"long": lambda: sheet})["long"].left_out == left_undrawn.long_series(10)
     short = replace(sheet, rows=[[Panel(x=Axis(), y=Axis(), series=[few])]])
-    assert page.draw(tmp_path, {"short": lambda: short})["short"].most == 0
+    assert page.draw(tmp_path, {"short": lambda: short})["short"].left_out == ""
 
 
 def test_a_long_series_is_thinned_and_its_name_says_so(monkeypatch):
