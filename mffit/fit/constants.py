@@ -235,7 +235,7 @@ STEPS_TO_OTHER_ENDS = Count(
     81, "-", "Values in each of these ranges; the fit that follows finds the end itself."
 )
 HOPELESS_END = Real(
-    1.02,
+    1.005,
     "-",
     "Ratio of sums of squares, after a step from where some of the points lead, above which an end is given up.",
 )

@@ -22,7 +22,7 @@ def with_remarks(
     assert fitted is not None
     tyre = Simulation(values, turn_slip=config.rig.on_disc)
     bands = bands_by_pressure(fitted.posterior, fitted.held, tyre, points)
-    why = why_held(bands.unseen, points, config.tyre.side or "left")
+    why = why_held(bands.unseen, points, config.tyre.side or "left") or "these sweeps do not determine it"
     note = bands_sentence(bands, fitted.held, values, why)
     moved = zeros_sentence(zeros, fitted, from_base=from_base) if zeros else ""
     warned = zeros is not None and zeros.contradicted and from_base

@@ -63,8 +63,8 @@ def _needless(fitted: Fitted, plan: FitPlan, names: Sequence[str], group: np.nda
         inner = [number for number in free if number.name not in fitted.at_bound]
         return near, predicted_left_out(near._replace(numbers=inner), (), group).by_sweep
 
-    part = predicted(())[0].problem
-    first = predicted(())[1]
+    near, first = predicted(())
+    part = near.problem
     found: list[str] = []
     for name in names:
         near, there = predicted([*found, name])

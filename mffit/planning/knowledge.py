@@ -14,7 +14,7 @@ from mffit.fit import FitResult, Posterior
 from mffit.fit.coverage import coverage
 from mffit.fit.posterior import beside_held
 from mffit.fit.priors import scatter
-from mffit.fit.rig_numbers import rig_numbers
+from mffit.fit.rig_numbers import held_rig, rig_numbers
 from mffit.least_squares import inverse
 from mffit.measured import Measured
 from mffit.measured.radii import measured_path_radius
@@ -47,11 +47,13 @@ class Knowledge:
         self.config, self.points, self.measured = config, points, measured
         self.problem, self.hand = search.problem, search.hand
         self.simulation = search.problem.simulation
-        self.spread = {n.name: n.spread for n in search.numbers} | dict(search.held)
+        self.spread = {n.name: n.spread for n in search.numbers} | {**search.held, **search.held_rig}
         self._unseen = self._spread_of_unseen(found)
         self.spread = self._unseen | self.spread
         self.rig = tuple(n.name for n in search.numbers if error_of(n.name))
         staged = {name for row in found.coverage for name in (*row.free, *row.held)}
+        shown = {name for row in coverage(points, config.tyre.side, self.hand.held) for name in row.free}
+        self.put_back = shown & search.held.keys()  #: the points push them to a bound for nothing
         self.extra = tuple(n.name for n in search.numbers if n.name not in staged and n.name not in self.rig)
         self.new_zeros = self._zeros_of_new_setups()
         self.usual = {e.free[0].name: self._usual(e) for e in effects}  # 1 sigma
@@ -155,7 +157,7 @@ class Knowledge:
         points = concatenate([self.points, *new]) if new else self.points
         cover = coverage(points, self.config.tyre.side, self.hand.held)
         named = [*(name for row in cover for name in row.free), *self.extra, *self.rig, *self._new_of(runs)]
-        return list(dict.fromkeys(named))
+        return [name for name in dict.fromkeys(named) if name not in self.put_back]
 
     def _spread(self, runs: Sequence[PlannedRun]) -> dict[str, float]:
         """Prior spread of each number once the rig has been measured as the runs demand."""
@@ -178,7 +180,7 @@ class Knowledge:
             tuple(dict.fromkeys([*self.points.used_setups, *(n.partition(OF_RUN)[2] for n in new)])),
             self.problem.channels,
         )
-        found = {n.name: n.spread for n in numbers}
+        found = {n.name: n.spread for n in numbers} | held_rig(config)
         return {
             **self.spread,
             **new,

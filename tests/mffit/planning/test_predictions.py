@@ -66,7 +66,7 @@ def run_of(result, kind, load=1400):
 
 def test_without_runs_the_posterior_is_the_builds(result, knowledge):
     found = knowledge.posterior([], result.fit.search.held["PECP1"]).stderr
-    for name, u in result.fit.posterior.stderr.items():
+    for name, u in result.fit.search.posterior.stderr.items():
         assert found[name] == pytest.approx(u, rel=1e-4), name
 
 
