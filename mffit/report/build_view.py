@@ -257,7 +257,7 @@ def view_of(result: BuildResult) -> BuildView:
 
 def _with_campaigns(rows: Iterable[CoefficientRow], joined: Sequence[Joined]) -> tuple[CoefficientRow, ...]:
     """The rows, with the campaign in place of the stage where one gave the coefficient."""
-    origin = {name: one.campaign.name for one in joined for name in one.found}
+    origin = {name: one.campaign.name for one in joined for name in one.values}
     return tuple(replace(row, stage=origin.get(row.name, row.stage)) for row in rows)
 
 

@@ -13,6 +13,8 @@ import mffit
 import tir
 from mffit import virtual_rig
 from mffit.errors import InputError
+from mffit.report.build import _figures
+from mffit.report.build_view import view_of
 
 SAMPLE = Path(__file__).parents[3] / "samples" / "front-120-70"
 GRIP = 1.1
@@ -115,3 +117,24 @@ def test_campaigns_of_different_tyres_are_refused(project, tmp_path):
     other.unlink()
     with pytest.raises(InputError, match=r"campaign\.toml: there is no file"):
         mffit.build(tmp_path / "other" / "tyre.toml")
+
+
+def test_the_report_shows_every_campaign_and_what_it_gave(built):
+    """Pictures of the belt's own channels, its coefficients by name, and the points of both in one picture."""
+    view = view_of(built[0])
+    (belt,) = view.campaigns
+    assert belt.name == "belt/tyre.toml"
+    assert {"Fx", "Fy", "Mz"} <= set(belt.build.agreement)
+    assert {"PCX1", "PDX1", "RBY1"} <= {row.name for row in belt.rows}
+    assert {row.stage for row in view.rows if row.status == "campaign"} == {"belt/tyre.toml"}
+    drawn = _figures(view)
+    assert {"campaign1_slip_Fx", "campaign1_friction_ellipse", "campaign1_weights", "campaigns"} <= set(drawn)
+    slip = drawn["campaigns"]().rows[0][-1]
+    run = {trace.name: trace.x for trace in slip.series}
+    assert np.ptp(run["this project"]) == 0.0
+    assert np.ptp(run["belt/tyre.toml"]) == pytest.approx(0.4)
+
+
+def test_the_file_says_what_the_rigs_of_other_campaigns_read(built):
+    found = built[0].tyre.measured["rig.Fx0_N@belt/tyre.toml"]
+    assert abs(found.value) < 3.0 * found.u
