@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, NamedTuple
@@ -15,7 +16,7 @@ from mffit.fit.fitted import Fitted
 from mffit.fit.nuisances import NUISANCES, Nuisance
 from mffit.fit.problem import FitProblem
 from mffit.fit.run_scatter import OfRuns, Runs, halves_of_runs
-from mffit.least_squares import FreeNumber, minimum
+from mffit.least_squares import FreeNumber, condensed, minimum
 from mffit.left_out import Predicted, improves, left_out_errors, needed_fall, predicted
 from mffit.points import Points
 from mffit.rig import Simulation
@@ -210,11 +211,12 @@ def _linear_runs(model: NearSolution, nuisance: Nuisance) -> Runs:
     x = np.array([number.start for number in numbers])
     names = [*(n.name for n in numbers), *nuisance.numbers]
     precision, away = _priors(numbers, x)
+    sweeps = problem.sweeps(names)
     radii, by_radii = problem.radii_rows(names[: len(x)])
     return Runs(
         rows=lambda: (
             OfRuns(np.tile(rows, len(problem.sigma)), slope[:, : len(x)], slope[:, len(x) :], data)
-            for rows, data, slope in problem.blocks(names, by_sweep=True)
+            for rows, data, slope in sweeps()
         ),
         run=problem.points.sweep,
         information=np.diag(precision) + by_radii.T @ by_radii,
@@ -274,12 +276,13 @@ def predicted_left_out(model: NearSolution, more: Iterable[Nuisance], group: np.
     numbers = [*problem.starting_here(model.numbers), *added]
     x = np.array([number.start for number in numbers])
     names = [number.name for number in numbers]
-    here = problem.free(names).linear(x)
+    problem = problem.with_values(dict(zip(names, x.tolist(), strict=True)))
+    sweeps = problem.sweeps(names)
+    r, J = condensed(itertools.chain((block[1:] for block in sweeps()), [problem.radii_rows(names)]))
     precision, away = _priors(numbers, x)
-    information = here.slope.T @ here.slope + np.diag(precision)
-    gradient = here.slope.T @ here.data + away
+    information, gradient = J.T @ J + np.diag(precision), J.T @ r + away
     error = np.empty((len(problem.sigma), len(group)))
-    for rows, data, slope in problem.blocks(names, by_sweep=True):
+    for rows, data, slope in sweeps():
         own = np.tile(np.unique(group[rows], return_inverse=True)[1], len(problem.sigma))
         found = left_out_errors(slope, data, information, gradient, own)
         error[:, rows] = found.reshape(len(problem.sigma), -1)

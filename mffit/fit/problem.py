@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from types import SimpleNamespace
 from typing import Any
@@ -148,6 +148,15 @@ class FitProblem:
                 data.append(np.where(used, (readings[name] - np.nan_to_num(measured)) / u, 0.0))
                 slopes.append(by_channel[name] / u[:, None] * used[:, None])
             yield rows, np.concatenate(data), np.concatenate(slopes)
+
+    def sweeps(
+        self, names: Sequence[str]
+    ) -> Callable[[], Iterable[tuple[np.ndarray, np.ndarray, np.ndarray]]]:
+        """:meth:`blocks` of whole sweeps, as often as they are asked for; where one holds all points, it is computed once."""
+        first = next(self.blocks(names, by_sweep=True))
+        if len(first[0]) == len(self.points):
+            return lambda: (first,)
+        return lambda: self.blocks(names, by_sweep=True)
 
     def rows(self, names: Sequence[str], every: int = 1) -> tuple[np.ndarray, np.ndarray]:
         """Residuals (c m + r,) and derivatives of each ``every``-th point, channel after channel, and of the measured radii."""

@@ -141,16 +141,17 @@ def leverage(fit: FittedModel, noise: np.ndarray) -> Leverage:
     weight = np.where(used, np.concatenate(list(fit.weights.values())), np.inf)
     at_rows = fit.simulation.at_rows(points, [*free, *common], channels)
 
-    def read(rows: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Residuals (c m,), derivatives (c m, k) and rows of the stacked arrays (c m,)."""
-        out, slope = at_rows(rows)
-        i = _stacked(rows, len(channels), len(points))
+    divided = list(blocks(points, by_sweep=True))
+
+    @lru_cache(maxsize=1)
+    def read(k: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Residuals (c m,), derivatives (c m, k) and rows of the stacked arrays (c m,) of a block."""
+        out, slope = at_rows(divided[k])
+        i = _stacked(divided[k], len(channels), len(points))
         return np.where(used[i], out.stacked - np.nan_to_num(measured[i]), 0.0), slope.stacked, i
 
-    divided = list(blocks(points, by_sweep=True))
-    weighted = (
-        (residual / weight[i], slope / weight[i][:, None]) for residual, slope, i in map(read, divided)
-    )
+    every = map(read, range(len(divided)))
+    weighted = ((residual / weight[i], slope / weight[i][:, None]) for residual, slope, i in every)
     r, J = condensed(weighted)
     covariance = inverse(J.T @ J + np.diag([n.spread**-2.0 for n in fit.numbers] + [0.0] * len(common)))
     gradient = J.T @ r
@@ -162,7 +163,7 @@ def leverage(fit: FittedModel, noise: np.ndarray) -> Leverage:
 
     @lru_cache(maxsize=1)
     def of_block(k: int) -> tuple[np.ndarray, np.ndarray]:
-        residual, slope, i = read(divided[k])
+        residual, slope, i = read(k)
         return np.where(used[i], residual - slope @ step, 0.0), slope @ combined
 
     def at(rows: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
