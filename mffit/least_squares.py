@@ -151,20 +151,20 @@ def minimum(
     """The minimum that :func:`solve` finds, without the derivatives there."""
     objective = _Objective.of(problem, numbers)
     x = np.clip([n.start for n in numbers], objective.lower, objective.upper)
-    here: Linear | None = problem.linear(x)
-    assert here is not None
+    here, at_x = problem.linear(x), True
     cost = objective.cost(x, here.data, here.limits)
     damping, taken = 1e-3, 0
     while taken < max_steps and len(x):
-        here = problem.linear(x) if here is None else here
+        if not at_x:  # earlier arrays are kept until here: memory that was freed is slow to get again
+            here, at_x = problem.linear(x), True
         step = _step(objective, x, cost, here, damping)
         if step is None:
             break
-        gained, x, cost, damping, here = cost - step.cost, step.x, step.cost, step.damping, None
+        gained, x, cost, damping, at_x = cost - step.cost, step.x, step.cost, step.damping, False
         taken += 1
         if gained < tolerance * cost:
             break
-    return Minimum(tuple(n.name for n in numbers), x, cost, taken, here)
+    return Minimum(tuple(n.name for n in numbers), x, cost, taken, here if at_x else None)
 
 
 def solve(
