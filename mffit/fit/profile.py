@@ -121,7 +121,7 @@ def _softest(
     if not rows:
         return ""
     thinned = problem.thinned(max(len(problem.points) // constants.PROBE_POINTS, 1))
-    part = replace(thinned, envelope=None).free(solution.names)  # limits are not information
+    part = thinned.without_limits().free(solution.names)  # limits are not information
 
     def errors(place: np.ndarray) -> np.ndarray:
         slope = part.linear(place).slope

@@ -197,6 +197,9 @@ def test_a_valley_that_only_widens_is_followed_too():
         def thinned(self, stride):
             return self
 
+        def without_limits(self):
+            return self
+
     number = FreeNumber("QEZ1", 0.0, -15.0, 1.0e3, spread=10.0)
     best = solve(Soft().free(["QEZ1"]), [number])
     valley = follow(Soft(), [number], best, {"QEZ1"})
