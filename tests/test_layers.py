@@ -102,6 +102,30 @@ def test_mffit_imports_only_from_above():
     assert not wrong, "\n".join(wrong)
 
 
+@pytest.mark.parametrize(
+    "folder", sorted(path.name for path in (ROOT / "mffit").iterdir() if (path / "__init__.py").is_file())
+)
+def test_modules_of_a_folder_import_in_one_direction(folder):
+    """A folder inside counts as one module."""
+    inside = f"mffit.{folder}."
+    after: dict[str, set[str]] = {}
+    for path in (ROOT / "mffit" / folder).rglob("*.py"):
+        own = path.relative_to(ROOT / "mffit" / folder).parts[0].removesuffix(".py")
+        if path.name != "__init__.py":
+            used = {
+                name.removeprefix(inside).split(".")[0]
+                for _, name in imports(path)
+                if name.startswith(inside)
+            }
+            after.setdefault(own, set()).update(used - {own})
+    while after:
+        free = {name for name, used in after.items() if not used & after.keys()}
+        assert free, (
+            f"{', '.join(sorted(after))} of mffit/{folder} import each other; move what both need to a third module"
+        )
+        after = {name: used for name, used in after.items() if name not in free}
+
+
 def test_tir_does_not_know_mffit():
     wrong = [
         f"{place(path, line)}: tir imports {name}; a simulation must be able to use tir alone"

@@ -3,18 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from pathlib import Path
 from types import MappingProxyType
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
-from mffit.brief import Brief
 from mffit.conversion import constants, mf52, wording
 from mffit.conversion.grid import Conditions, Reach, conditions, reach_of
 from mffit.conversion.old_files import OldFile, read_old
 from mffit.conversion.refit import refit
+from mffit.conversion.result import Conversion, RegionMisfit
 from mffit.errors import InputError
 from tir import Tyre
 from tir.equations import lateral, normalise, stiffness
@@ -22,52 +21,12 @@ from tir.outputs import outputs_of
 from tir.parameters import BY_NAME
 
 CHANNELS_COMPARED = ("Fx", "Fy", "Mx", "Mz")
-MOMENTS = ("Mx", "Mz")
 ORIGIN = "converted from"
 MISFIT = "misfit of the conversion"
 """Keys of the provenance of a converted file."""
 MARK = f"! provenance: {ORIGIN}:".encode()
 """A line of every converted file."""
 STRUCTURE = ("LONGITUDINAL_STIFFNESS", "LATERAL_STIFFNESS", "PCFX1", "PCFX2", "PCFY1", "PCFY2")
-
-
-class RegionMisfit(NamedTuple):
-    """New minus old force in one channel and region."""
-
-    channel: str
-    small_camber: bool  #: within SMALL_CAMBER, or beyond
-    slipping: bool  #: with longitudinal slip, or without
-    rms: float  #: [N] or [Nm]
-    largest: float  #: [N] or [Nm]
-    greatest_force: float  #: largest old force over all conditions [N] or [Nm]
-    within: float  #: share of the conditions within GOOD_SHARE of the largest force
-
-
-@dataclass(frozen=True, slots=True, repr=False)
-class Conversion(Brief):
-    """A converted file and how near it comes to the old one."""
-
-    tyre: Tyre  #: MF 6.2, every coefficient marked as converted
-    old: OldFile
-    reach: Reach
-    misfit: tuple[RegionMisfit, ...]
-    fitted: tuple[
-        str, ...
-    ]  #: names of the coefficients that were fitted; the others mean the same in both formulae
-
-    @property
-    def poor(self) -> tuple[RegionMisfit, ...]:
-        """Where the aim is missed: forces at small camber off by more than GOOD_SHARE, moments in too many conditions."""
-        return tuple(
-            row
-            for row in self.misfit
-            if row.small_camber
-            and (
-                row.within < constants.GOOD_CONDITIONS
-                if row.channel in MOMENTS
-                else row.largest > constants.GOOD_SHARE * row.greatest_force
-            )
-        )
 
 
 def convert(path: str | Path, given: Mapping[str, float] = MappingProxyType({})) -> Conversion:

@@ -10,7 +10,7 @@ import numpy as np
 
 from mffit.conversion import constants
 from mffit.conversion.grid import Conditions
-from mffit.fit.normal import CAMBER_FORCE, CAMBER_MOMENT, STARTS
+from mffit.fit.written.normal import CAMBER_FORCE, CAMBER_MOMENT, STARTS
 from mffit.least_squares import FreeNumber, of_model, solve
 from tir.outputs import outputs_of
 from tir.parameters import BY_NAME

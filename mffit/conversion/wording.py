@@ -4,13 +4,10 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable
-from typing import TYPE_CHECKING
 
 from mffit.conversion import constants
+from mffit.conversion.result import Conversion, RegionMisfit
 from mffit.quantities import MODEL
-
-if TYPE_CHECKING:
-    from mffit.conversion.convert import Conversion, RegionMisfit
 
 
 def headline(found: Conversion) -> str:

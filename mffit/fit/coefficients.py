@@ -7,10 +7,10 @@ from dataclasses import dataclass, replace
 
 from mffit.constants import COVERAGE_FACTOR_95
 from mffit.fit.by_hand import Hand
-from mffit.fit.files import Files
 from mffit.fit.fitted import Fitted
 from mffit.fit.known import Known
 from mffit.fit.priors import Prior
+from mffit.fit.written.files import Files
 from mffit.least_squares import touches
 from tir import Quantity
 from tir.parameters import BY_NAME, TABLE

@@ -6,9 +6,9 @@ from collections.abc import Mapping
 
 from mffit.fit import constants
 from mffit.fit.coefficients import Coefficient
-from mffit.fit.files import Files
 from mffit.fit.known import DECIDED
 from mffit.fit.priors import CONVERTED, FROM_BASE
+from mffit.fit.written.files import Files
 from mffit.tested import words_on_tested
 from tir.parameters import TABLE, Parameter
 

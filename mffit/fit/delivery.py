@@ -12,17 +12,17 @@ import numpy as np
 from mffit.config import Declaration, declared_rig
 from mffit.constants import USUAL_CORNERING_STIFFNESS
 from mffit.fit.beside import BesideNumbers
-from mffit.fit.campaign import FittedCampaign, Joined, join
+from mffit.fit.borrowed.campaign import FittedCampaign, Joined, join
+from mffit.fit.borrowed.sister import Lent, Sister, lend
 from mffit.fit.coefficients import Coefficient, coefficient_records
 from mffit.fit.comments import file_comments
-from mffit.fit.files import Files, make_files
 from mffit.fit.fitted import Fitted
 from mffit.fit.known import Known, known_after_fit
 from mffit.fit.posterior import Posterior
 from mffit.fit.relaxation import Relaxation, relaxation
-from mffit.fit.rolling import FX_ZERO, MY_ZERO, Resistance, coasting, rolling_resistance
-from mffit.fit.sister import Lent, Sister, lend
-from mffit.fit.vertical import Vertical
+from mffit.fit.wheel.rolling import FX_ZERO, MY_ZERO, Resistance, coasting, rolling_resistance
+from mffit.fit.wheel.vertical import Vertical
+from mffit.fit.written.files import Files, make_files
 from mffit.points import Points
 from tir import Tyre
 

@@ -12,32 +12,32 @@ import numpy as np
 from mffit.config import axis_signs
 from mffit.config.declared import as_declared
 from mffit.fit import agreement
-from mffit.fit.between_runs import between_runs
+from mffit.fit.borrowed.campaign import FittedCampaign, campaign_sentence
+from mffit.fit.borrowed.sister import sister_of, sister_sentence
 from mffit.fit.by_hand import hand_of
-from mffit.fit.campaign import FittedCampaign, campaign_sentence
 from mffit.fit.coefficients import of_file
-from mffit.fit.confounding import confounding_sentence, confoundings
 from mffit.fit.delivery import Beside, deliver
-from mffit.fit.files import plain_use
 from mffit.fit.fitted import Fitted
+from mffit.fit.influences.between_runs import between_runs
+from mffit.fit.influences.confounding import confounding_sentence, confoundings
+from mffit.fit.influences.nuisance_choice import at_reference
+from mffit.fit.influences.nuisance_wording import nuisance_sentences, unmodelled_sentences
+from mffit.fit.influences.temperature import at_temperature
+from mffit.fit.influences.with_nuisances import NuisanceFit, fit_with_nuisances
 from mffit.fit.known import known_before_fit
-from mffit.fit.nuisance_choice import at_reference
-from mffit.fit.nuisance_wording import nuisance_sentences, unmodelled_sentences
-from mffit.fit.overturning import overturning_terms
 from mffit.fit.plan import FitPlan, fit_plan
 from mffit.fit.priors import of_fleet
 from mffit.fit.problem import FitProblem, fit_problem
 from mffit.fit.relaxation import relaxation_sentence
 from mffit.fit.remarks import with_remarks
 from mffit.fit.result import FitResult
-from mffit.fit.sister import sister_of, sister_sentence
+from mffit.fit.rig.virtual_zero import epsilon_gamma_of_model
+from mffit.fit.rig.zeros import turning_zeros
 from mffit.fit.start import starting_values
-from mffit.fit.temperature import at_temperature
-from mffit.fit.vertical import vertical_coefficients, vertical_sentence
-from mffit.fit.virtual_zero import epsilon_gamma_of_model
-from mffit.fit.with_nuisances import NuisanceFit, fit_with_nuisances
+from mffit.fit.wheel.overturning import overturning_terms
+from mffit.fit.wheel.vertical import vertical_coefficients, vertical_sentence
 from mffit.fit.wording import explanations, warnings
-from mffit.fit.zeros import turning_zeros
+from mffit.fit.written.files import plain_use
 from mffit.parts import Parts
 from mffit.points import Points
 from mffit.progress import Progress, silent

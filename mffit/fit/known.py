@@ -10,8 +10,8 @@ from mffit.fit.by_hand import NO_HAND, Hand
 from mffit.fit.estimates import estimates
 from mffit.fit.priors import CONVERTED, Prior
 from mffit.fit.ranges import covered_ranges
-from mffit.fit.rolling import RADIUS_COEFFICIENTS, radius_coefficients
 from mffit.fit.stages import ODD_TERMS
+from mffit.fit.wheel.rolling import RADIUS_COEFFICIENTS, radius_coefficients
 from mffit.points import Points
 from mffit.rig import reference_speed
 from tir import Tyre

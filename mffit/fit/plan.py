@@ -16,9 +16,9 @@ from mffit.fit.coverage import StageCoverage, coverage
 from mffit.fit.known import Known
 from mffit.fit.priors import Prior, scatters
 from mffit.fit.problem import FitProblem
-from mffit.fit.rig_numbers import held_rig, rig_numbers
+from mffit.fit.rig.rig_numbers import held_rig, rig_numbers
+from mffit.fit.rig.zeros import TurningZeros
 from mffit.fit.stages import BY_STAGE, ODD_TERMS, STAGES
-from mffit.fit.zeros import TurningZeros
 from mffit.least_squares import FreeNumber
 from mffit.points import Points
 from mffit.quantities import CHANNELS, SIDEWAYS

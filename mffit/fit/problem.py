@@ -13,8 +13,8 @@ import numpy as np
 from mffit.fit import constants, weights
 from mffit.fit.constraints import Envelope, limits
 from mffit.fit.ranges import covered_ranges, envelope
-from mffit.fit.rig_numbers import known_faults, known_zeros
-from mffit.fit.rolling import effective_radius
+from mffit.fit.rig.rig_numbers import known_faults, known_zeros
+from mffit.fit.wheel.rolling import effective_radius
 from mffit.least_squares import FreeNumber, Kept, LeastSquaresProblem, Linear, condensed
 from mffit.measured import RadiusReading, radius_readings
 from mffit.points import Points

@@ -19,7 +19,7 @@ from mffit.fit import constants
 from mffit.fit.beside import BesideNumbers
 from mffit.fit.coverage import StageCoverage
 from mffit.fit.posterior import Posterior
-from mffit.fit.sister import sideways
+from mffit.fit.upright import sideways
 from mffit.least_squares import FreeNumber, of_model, solve
 from mffit.points import Points, levels
 from mffit.rig import Simulation

@@ -8,8 +8,8 @@ from typing import Any
 from mffit.fit.bands import bands_by_pressure
 from mffit.fit.coverage import why_held
 from mffit.fit.result import FitResult
+from mffit.fit.rig.zeros import TurningZeros
 from mffit.fit.wording import bands_sentence, zeros_sentence
-from mffit.fit.zeros import TurningZeros
 from mffit.points import Points
 from mffit.rig import Simulation
 

@@ -9,20 +9,20 @@ from mffit.brief import Brief
 from mffit.fit.agreement import Agreement
 from mffit.fit.bands import BandsByPressure
 from mffit.fit.beside import BesideNumbers
-from mffit.fit.between_runs import BetweenRuns
-from mffit.fit.campaign import Joined
+from mffit.fit.borrowed.campaign import Joined
+from mffit.fit.borrowed.sister import Lent
 from mffit.fit.coefficients import Coefficient
-from mffit.fit.confounding import Confounding
 from mffit.fit.coverage import StageCoverage
-from mffit.fit.files import Files
 from mffit.fit.fitted import Fitted
-from mffit.fit.nuisance_choice import NuisanceChoice
+from mffit.fit.influences.between_runs import BetweenRuns
+from mffit.fit.influences.confounding import Confounding
+from mffit.fit.influences.nuisance_choice import NuisanceChoice
+from mffit.fit.influences.temperature import AtTemperature
 from mffit.fit.posterior import Posterior
 from mffit.fit.relaxation import Relaxation
-from mffit.fit.sister import Lent
 from mffit.fit.stages import StageRecord
-from mffit.fit.temperature import AtTemperature
-from mffit.fit.vertical import Vertical
+from mffit.fit.wheel.vertical import Vertical
+from mffit.fit.written.files import Files
 from mffit.quantities import CHANNELS
 from mffit.rig import Readings, Simulation
 from mffit.suspicion import Doubt, Outlier

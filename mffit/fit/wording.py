@@ -11,13 +11,13 @@ from mffit.fit.bands import BandsByPressure
 from mffit.fit.by_hand import HELD_BY_HAND, NO_HAND, Hand
 from mffit.fit.contradiction import contradicted_priors
 from mffit.fit.coverage import StageCoverage
-from mffit.fit.files import Files, file_names
 from mffit.fit.fitted import Fitted
-from mffit.fit.misfit import FileFigures
-from mffit.fit.normal import CAMBER_FORCE, CAMBER_MOMENT
 from mffit.fit.priors import Prior
 from mffit.fit.ranges import single_pressure
-from mffit.fit.zeros import TurningZeros
+from mffit.fit.rig.zeros import TurningZeros
+from mffit.fit.written.files import Files, file_names
+from mffit.fit.written.misfit import FileFigures
+from mffit.fit.written.normal import CAMBER_FORCE, CAMBER_MOMENT
 from mffit.rounding import to_uncertainty
 from mffit.suspicion import Doubt, Outlier, outliers_sentence
 from tir import Quantity

@@ -16,7 +16,7 @@ from mffit import fit as fitting
 from mffit.config import Config
 from mffit.config.laboratory import lab_warnings
 from mffit.fit import FitResult
-from mffit.fit.campaign import FittedCampaign
+from mffit.fit.borrowed.campaign import FittedCampaign
 from mffit.made import made
 from mffit.measured import Measured
 from mffit.output import refuse_early

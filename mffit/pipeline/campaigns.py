@@ -8,7 +8,7 @@ from pathlib import Path
 
 from mffit.config import Config
 from mffit.fit import constants
-from mffit.fit.campaign import FittedCampaign, shared_conditions
+from mffit.fit.borrowed.campaign import FittedCampaign, shared_conditions
 from mffit.pipeline.inputs import other_project, read_points, wrong_campaign
 from mffit.points import Points, concatenate
 from mffit.points.loading import Reading

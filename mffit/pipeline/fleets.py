@@ -13,7 +13,7 @@ from threadpoolctl import threadpool_limits
 from mffit import fleet as combining
 from mffit.comparison import with_u
 from mffit.errors import InputError
-from mffit.fit.nuisances import of_run
+from mffit.fit.influences.nuisances import of_run
 from mffit.fleet import Fleet, Hierarchy, Information, Row, Specimen, TyreEstimate
 from mffit.output import refuse_early
 from mffit.pipeline.fleet_notes import fleet_notes, notes_on_setups

@@ -15,7 +15,7 @@ import tir
 from mffit.config import Config
 from mffit.diagnosis.inexact import Inexactness, correlated, refitted
 from mffit.fit import FitResult, plain_use
-from mffit.fit.nuisances import of_run
+from mffit.fit.influences.nuisances import of_run
 from mffit.made import Made
 from mffit.measured import Measured
 from mffit.pipeline.inputs import input_hashes

@@ -9,7 +9,7 @@ import numpy as np
 
 from mffit.config import Config
 from mffit.fit import FitResult
-from mffit.fit.vertical import RollingParts, radius
+from mffit.fit.wheel.vertical import RollingParts, radius
 from mffit.planning import constants
 from mffit.planning.runs import PlannedRun
 from mffit.scatter import rms

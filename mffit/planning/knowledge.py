@@ -14,7 +14,7 @@ from mffit.fit import FitResult, Posterior
 from mffit.fit.coverage import coverage
 from mffit.fit.posterior import beside_held
 from mffit.fit.priors import scatter
-from mffit.fit.rig_numbers import held_rig, rig_numbers
+from mffit.fit.rig.rig_numbers import held_rig, rig_numbers
 from mffit.least_squares import inverse
 from mffit.measured import Measured
 from mffit.measured.radii import measured_path_radius

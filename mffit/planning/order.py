@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from mffit.fit.confounding import LEVELS, SETTINGS
+from mffit.fit.influences.confounding import LEVELS, SETTINGS
 from mffit.planning import constants
 from mffit.points import Points, levels
 

@@ -200,7 +200,7 @@ def make_points(
     if missing := [name for name in ARRAYS if name not in given]:
         raise TypeError(f"make_points needs {', '.join(missing)}")
     _refuse_unknown(given)
-    n = np.broadcast(*(np.atleast_1d(values) for values in given.values())).size
+    (n,) = np.broadcast_shapes((1,), *(np.shape(values) for values in given.values()))
     arrays = {name: _filled(name, given[name], n) for name in ARRAYS}
     for name in ("direction", "mount"):
         if not np.all(np.abs(arrays[name]) == 1):

@@ -11,14 +11,14 @@ from mffit.config import Config
 from mffit.config.laboratory import LabTable
 from mffit.diagnosis.remains import Remains
 from mffit.fit import Agreement, Coefficient, Posterior, StageRecord
-from mffit.fit.between_runs import BetweenRuns
-from mffit.fit.campaign import Joined
+from mffit.fit.borrowed.campaign import Joined
+from mffit.fit.borrowed.sister import Lent
 from mffit.fit.coverage import StageCoverage
-from mffit.fit.files import Files
+from mffit.fit.influences.between_runs import BetweenRuns
+from mffit.fit.influences.temperature import AtTemperature
 from mffit.fit.relaxation import Relaxation
-from mffit.fit.sister import Lent
-from mffit.fit.temperature import AtTemperature
-from mffit.fit.vertical import Vertical
+from mffit.fit.wheel.vertical import Vertical
+from mffit.fit.written.files import Files
 from mffit.made import Made
 from mffit.measured import Measured
 from mffit.points import Points

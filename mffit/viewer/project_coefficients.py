@@ -11,7 +11,7 @@ import numpy as np
 from mffit.config.by_hand import KEYS_OF_TYRE, may_be_free
 from mffit.fit import Coefficient, FitResult
 from mffit.fit.fitted import Fitted
-from mffit.fit.vertical import OF_WHEEL_SPEED
+from mffit.fit.wheel.vertical import OF_WHEEL_SPEED
 from mffit.quantities import CHANNELS
 from mffit.results import BuildResult
 from mffit.viewer import constants

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from mffit.fit.files import Files
+from mffit.fit.written.files import Files
 from mffit.points import make_points
 from mffit.quantities import CHANNELS, SIDEWAYS
 from mffit.report import constants, labels, style

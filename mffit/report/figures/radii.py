@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from mffit.fit import Posterior
-from mffit.fit.vertical import RollingParts, radius
+from mffit.fit.wheel.vertical import RollingParts, radius
 from mffit.points import levels
 from mffit.quantities import CHANNELS, CONDITIONS
 from mffit.report import constants, labels, style

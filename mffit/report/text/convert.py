@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from mffit.conversion import Conversion, wording
-from mffit.conversion.convert import RegionMisfit
+from mffit.conversion.result import RegionMisfit
 from mffit.quantities import MODEL
 from mffit.report.text.layout import blocks, paragraphs, table, wrapped
 from mffit.rounding import number

@@ -14,14 +14,14 @@ from mffit.diagnosis.one_step import BestEffect
 from mffit.diagnosis.remains import Remains
 from mffit.fit import Coefficient, FitResult
 from mffit.fit.bands import BandsByPressure
-from mffit.fit.between_runs import BetweenRuns
-from mffit.fit.campaign import Joined
-from mffit.fit.files import Files
-from mffit.fit.misfit import FileFigures
-from mffit.fit.nuisance_choice import Verdict
+from mffit.fit.borrowed.campaign import Joined
+from mffit.fit.borrowed.sister import Lent
+from mffit.fit.influences.between_runs import BetweenRuns
+from mffit.fit.influences.nuisance_choice import Verdict
+from mffit.fit.influences.temperature import AtTemperature
 from mffit.fit.relaxation import Relaxation
-from mffit.fit.sister import Lent
-from mffit.fit.temperature import AtTemperature
+from mffit.fit.written.files import Files
+from mffit.fit.written.misfit import FileFigures
 from mffit.made import Made
 from mffit.measured import KEYS, LoadResult, Measured, SetupResult, SetupScatter
 from mffit.points.left_out import LeftOut

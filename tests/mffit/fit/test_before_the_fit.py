@@ -13,9 +13,9 @@ import tir
 from mffit.fit import ranges
 from mffit.fit.agreement import agreement
 from mffit.fit.ranges import plausible_ranges
-from mffit.fit.rolling import radius_coefficients
+from mffit.fit.rig.virtual_zero import epsilon_gamma_of_model, zero_points
 from mffit.fit.start import camber_stiffness_terms, starting_values
-from mffit.fit.virtual_zero import epsilon_gamma_of_model, zero_points
+from mffit.fit.wheel.rolling import radius_coefficients
 from mffit.points import make_points
 from tir import Quantity
 

@@ -11,12 +11,12 @@ import pytest
 from mffit.fit.by_hand import NO_HAND
 from mffit.fit.coverage import coverage
 from mffit.fit.driven_start import driven_starts, peak_curvature
+from mffit.fit.influences.runaways import with_runaways_put_back
 from mffit.fit.known import known_before_fit
-from mffit.fit.overturning import overturning_terms
 from mffit.fit.plan import fit_plan
 from mffit.fit.problem import fit_problem
-from mffit.fit.runaways import with_runaways_put_back
 from mffit.fit.start import starting_values
+from mffit.fit.wheel.overturning import overturning_terms
 from mffit.pipeline.measuring import measure
 from tests.mffit.fit import combined_programme as belt
 

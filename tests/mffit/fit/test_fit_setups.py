@@ -16,7 +16,7 @@ import tir
 from mffit import config
 from mffit.diagnosis import wording
 from mffit.effects import CATALOG
-from mffit.fit.rig_numbers import rig_numbers
+from mffit.fit.rig.rig_numbers import rig_numbers
 from mffit.pipeline.build_output import points_table
 from mffit.pipeline.inputs import read_points
 from mffit.pipeline.provenance import rig_of_build

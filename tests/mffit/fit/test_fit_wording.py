@@ -8,9 +8,9 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from mffit.fit.files import Files, file_names
-from mffit.fit.misfit import FileFigures, Misfit
 from mffit.fit.wording import explanations, file_sentences, pecp1_sentence, ranges_sentence
+from mffit.fit.written.files import Files, file_names
+from mffit.fit.written.misfit import FileFigures, Misfit
 
 TESTED = {
     "PRESMIN": 200e3, "PRESMAX": 300e3, "FZMIN": 900.0, "FZMAX": 2100.0, "ALPMAX": 0.1396, "CAMMAX": 0.5236,

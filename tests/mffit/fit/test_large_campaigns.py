@@ -12,7 +12,7 @@ import mffit.rig.constants
 from mffit.diagnosis.remainder import remainder
 from mffit.diagnosis.structure import structure
 from mffit.fit.fitting import _as_model
-from mffit.fit.nuisance_choice import choose
+from mffit.fit.influences.nuisance_choice import choose
 from mffit.least_squares import Linear, condensed
 from mffit.suspicion.prediction import groups, leverage, predictions
 
@@ -79,7 +79,9 @@ def test_predicted_sweeps_are_those_in_one_piece(built, in_small_blocks):
     apart = leverage(model, noise)
     for group, old in zip(found, before, strict=True):
         for channel, new in predictions(apart, group).items():
-            assert new.error == pytest.approx(old[channel].error, rel=1e-3, abs=1e-3)  # sums of products hold half the digits
+            assert new.error == pytest.approx(
+                old[channel].error, rel=1e-3, abs=1e-3
+            )  # sums of products hold half the digits
             assert np.diag(new.covariance) == pytest.approx(np.diag(old[channel].covariance), rel=1e-3)
 
 

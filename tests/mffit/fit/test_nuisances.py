@@ -15,9 +15,9 @@ import tir
 from mffit import config as configuration
 from mffit import fit as fitting
 from mffit.errors import InputError
-from mffit.fit.confounding import confoundings
-from mffit.fit.nuisance_choice import choose
-from mffit.fit.nuisances import NUISANCES
+from mffit.fit.influences.confounding import confoundings
+from mffit.fit.influences.nuisance_choice import choose
+from mffit.fit.influences.nuisances import NUISANCES
 from mffit.pipeline.measuring import measure
 from mffit.points import make_points
 from mffit.rig import Simulation

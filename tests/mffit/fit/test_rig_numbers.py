@@ -11,7 +11,7 @@ import pytest
 from mffit import config
 from mffit.fit.by_hand import NO_HAND
 from mffit.fit.plan import fit_plan
-from mffit.fit.rig_numbers import known_faults, known_zeros, rig_numbers
+from mffit.fit.rig.rig_numbers import known_faults, known_zeros, rig_numbers
 from mffit.points import make_points
 from tir import Quantity
 from tir.parameters import TABLE

@@ -11,10 +11,10 @@ from small_rigs import SAMPLE, disc, truth
 from mffit import config, points, virtual_rig
 from mffit.fit import ranges
 from mffit.fit.comments import file_comments
-from mffit.fit.files import file_names, make_files
 from mffit.fit.known import Known, given_values
-from mffit.fit.road import Road, inside, road_grid, weights
 from mffit.fit.wording import file_sentences, ranges_sentence
+from mffit.fit.written.files import file_names, make_files
+from mffit.fit.written.road import Road, inside, road_grid, weights
 from tir.parameters import TABLE
 
 TESTED = {

@@ -9,7 +9,7 @@ import pytest
 
 import tir
 from mffit.config import Declaration
-from mffit.fit.rolling import coasting, rolling_resistance
+from mffit.fit.wheel.rolling import coasting, rolling_resistance
 from mffit.points import Points, make_points
 
 R0, FNOMIN, NOMPRES, LONGVL, ZERO, U = 0.3, 4000.0, 200e3, 16.0, 3.0, 0.05

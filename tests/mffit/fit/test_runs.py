@@ -13,8 +13,8 @@ import mffit
 import tir
 from mffit import config as configuration
 from mffit.errors import InputError
-from mffit.fit.nuisance_choice import choose
-from mffit.fit.run_scatter import OfRuns, Runs, halves_of_runs
+from mffit.fit.influences.nuisance_choice import choose
+from mffit.fit.influences.run_scatter import OfRuns, Runs, halves_of_runs
 from mffit.points import make_points
 from mffit.rig import Simulation
 

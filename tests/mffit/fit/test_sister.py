@@ -14,8 +14,8 @@ import tomli_w
 import mffit
 import tir
 from mffit.errors import InputError
-from mffit.fit.at_nominal import at_nominal
-from mffit.fit.sister import LENT, Sister, _scaled
+from mffit.fit.borrowed.at_nominal import at_nominal
+from mffit.fit.borrowed.sister import LENT, Sister, _scaled
 from mffit.report.build_view import view_of
 from mffit.report.drawing.records import Band
 from mffit.report.figures.sister import borrowed_force

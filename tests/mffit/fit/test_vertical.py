@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import tir
-from mffit.fit.vertical import vertical_coefficients, vertical_sentence
+from mffit.fit.wheel.vertical import vertical_coefficients, vertical_sentence
 from mffit.points import Points, make_points
 from tir.equations import vertical
 

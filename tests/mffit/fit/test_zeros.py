@@ -9,7 +9,7 @@ import small_rigs
 
 import mffit
 import tir
-from mffit.fit.zeros import turning_zeros
+from mffit.fit.rig.zeros import turning_zeros
 from mffit.points import make_points
 from tir import Quantity
 

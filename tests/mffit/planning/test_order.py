@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from mffit.fit.confounding import correlation_ratio
+from mffit.fit.influences.confounding import correlation_ratio
 from mffit.planning.order import mixed_order
 from mffit.points import make_points
 

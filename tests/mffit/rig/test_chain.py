@@ -9,7 +9,7 @@ import pytest
 
 import tir
 from mffit.diagnosis.campaigns import SURFACE
-from mffit.fit.nuisances import NUISANCES
+from mffit.fit.influences.nuisances import NUISANCES
 from mffit.points import make_points
 from mffit.rig import Simulation
 from mffit.rig.lag import lagged_angle

@@ -9,9 +9,9 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from mffit.fit import constants
-from mffit.fit.imitation import forces
-from mffit.fit.road import Road, inside, weights
-from mffit.fit.virtual_zero import BESIDE_ZERO
+from mffit.fit.rig.virtual_zero import BESIDE_ZERO
+from mffit.fit.written.imitation import forces
+from mffit.fit.written.road import Road, inside, weights
 from mffit.scatter import rms
 from tir import Tyre
 from tir.derivatives import gradient, traced
@@ -23,7 +23,7 @@ class Misfit:
     """Difference of one channel from the fitted model [N] or [Nm]; over the tested ranges where not stated otherwise."""
 
     rms: float  #: all conditions with equal weight
-    weighted: float  #: rms with the weights of :func:`mffit.fit.road.weights`
+    weighted: float  #: rms with the weights of :func:`mffit.fit.written.road.weights`
     largest: float
     lean_30: float  #: rms up to 30 deg of camber
     beyond: float  #: rms of the conditions outside the tested but inside the written ranges

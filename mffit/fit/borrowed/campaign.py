@@ -17,12 +17,13 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from mffit.fit import constants
+from mffit.fit.borrowed.sister import BY_FRICTION, LENT, OVER_SLIP
 from mffit.fit.coefficients import Coefficient
 from mffit.fit.known import DETERMINED, Known
 from mffit.fit.posterior import Posterior
 from mffit.fit.relaxation import NAMES as OF_RELAXATION
-from mffit.fit.sister import BY_FRICTION, LENT, OVER_SLIP, sideways
-from mffit.fit.vertical import OF_RADII
+from mffit.fit.upright import sideways
+from mffit.fit.wheel.vertical import OF_RADII
 from mffit.points import Points, levels
 from mffit.rounding import ascii_only, to_uncertainty
 from tir import Quantity, Tyre

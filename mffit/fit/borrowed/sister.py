@@ -21,17 +21,17 @@ import numpy as np
 
 from mffit.errors import InputError
 from mffit.fit import constants
-from mffit.fit.at_nominal import at_nominal
+from mffit.fit.borrowed.at_nominal import at_nominal
 from mffit.fit.constraints import Envelope, violations
 from mffit.fit.known import DETERMINED, Known
 from mffit.fit.posterior import Posterior
 from mffit.fit.priors import scatter
 from mffit.fit.ranges import covered_ranges, envelope
+from mffit.fit.upright import sideways
 from mffit.points import Points, main_pressure
 from mffit.rounding import ascii_only, to_uncertainty
 from tir import Quantity, Tyre
 from tir.derivatives import gradient, plain, traced
-from tir.equations import normalise, stiffness
 from tir.parameters import BY_NAME, TABLE
 
 NEEDED = ("PCX1", "PDX1", "PKX1", "PDY1", "PKY1")
@@ -236,13 +236,6 @@ def _scaled(
         found[name] = theirs[name] * math.exp(power * growth[of_kappa])
         derivative[name] = found[name] * power * by_growth[of_kappa]
     return _Scaled(found, derivative)
-
-
-def sideways(values: Mapping[str, Any], loads: np.ndarray, pressure: Any) -> tuple[Any, Any]:
-    """Friction and cornering stiffness (n,) of the upright wheel at loads (n,) [N] and pressures [Pa], on a straight path."""
-    p = SimpleNamespace(**values)
-    q = normalise.inputs(p, loads, loads, 0.0, 0.0, 0.0, 0.0, pressure, False, False)
-    return stiffness.lateral_friction(p, q, 0.0), stiffness.cornering_stiffness(p, q, 0.0)
 
 
 def sister_sentence(lent: Lent) -> str:

@@ -1,4 +1,4 @@
-"""The influences of :mod:`mffit.fit.nuisances` that a fit models, chosen by how well left-out sweeps are predicted."""
+"""The influences of :mod:`mffit.fit.influences.nuisances` that a fit models, chosen by how well left-out sweeps are predicted."""
 
 from __future__ import annotations
 
@@ -13,9 +13,9 @@ from mffit.constants import FEWEST_SWEEPS_TO_PREDICT, LEAST_PREDICTED_SHARE
 from mffit.errors import InputError
 from mffit.fit import constants
 from mffit.fit.fitted import Fitted
-from mffit.fit.nuisances import NUISANCES, Nuisance
+from mffit.fit.influences.nuisances import NUISANCES, Nuisance
+from mffit.fit.influences.run_scatter import OfRuns, Runs, halves_of_runs
 from mffit.fit.problem import FitProblem
-from mffit.fit.run_scatter import OfRuns, Runs, halves_of_runs
 from mffit.least_squares import FreeNumber, condensed, minimum
 from mffit.left_out import Predicted, improves, left_out_errors, needed_fall, predicted
 from mffit.points import Points

@@ -12,8 +12,8 @@ from typing import Any
 
 from mffit.constants import COVERAGE_FACTOR_95
 from mffit.fit import constants
+from mffit.fit.rig.virtual_zero import zero_points
 from mffit.fit.start import camber_stiffness_terms
-from mffit.fit.virtual_zero import zero_points
 from mffit.measured import Measured
 from mffit.points import Points
 from mffit.rig import Simulation

@@ -1,4 +1,4 @@
-"""The fit of the plain file, and the fit with the influences of :mod:`mffit.fit.nuisances` that are modelled."""
+"""The fit of the plain file, and the fit with the influences of :mod:`mffit.fit.influences.nuisances` that are modelled."""
 
 from __future__ import annotations
 
@@ -11,12 +11,12 @@ import numpy as np
 
 from mffit.constants import COVERAGE_FACTOR_95
 from mffit.fit.fitted import Fitted
-from mffit.fit.nuisance_choice import NuisanceChoice, at_reference, choose
-from mffit.fit.nuisances import TEMPERATURE, Nuisance
+from mffit.fit.influences.nuisance_choice import NuisanceChoice, at_reference, choose
+from mffit.fit.influences.nuisances import TEMPERATURE, Nuisance
+from mffit.fit.influences.runaways import with_runaways_put_back
 from mffit.fit.plan import FitPlan
 from mffit.fit.polish import polish
 from mffit.fit.problem import FitProblem
-from mffit.fit.runaways import with_runaways_put_back
 from mffit.fit.staged import fit_staged, restart_worthwhile
 from mffit.progress import Progress, silent
 from mffit.rig import Simulation

@@ -9,10 +9,10 @@ import numpy as np
 
 from mffit.fit import constants
 from mffit.fit.by_hand import NO_HAND, Hand
-from mffit.fit.imitation import ForcesToReproduce, Imitation, Lines, force, goal
 from mffit.fit.ranges import envelope
-from mffit.fit.road import Road, camber_lines, road_grid, weights
 from mffit.fit.stages import ODD_TERMS, STAGES
+from mffit.fit.written.imitation import ForcesToReproduce, Imitation, Lines, force, goal
+from mffit.fit.written.road import Road, camber_lines, road_grid, weights
 from mffit.least_squares import FreeNumber
 from tir.parameters import BY_NAME
 
@@ -56,7 +56,7 @@ def derive(
     both_on : for the file for both uses, curvature of the disc's path [1/m]; None for the file for turn slip off
     symmetric : hold the terms that a symmetric tyre does not have
     hand : coefficients that are held in every file, and bounds that every file keeps
-    weight : "everything" or "road", see :func:`mffit.fit.road.weights`
+    weight : "everything" or "road", see :func:`mffit.fit.written.road.weights`
     """
     roads = [road_grid(tested, written, float(values["FNOMIN"]), dense=dense) for dense in (False, True)]
     coarse, fine = (_goals(values, road, tested, both_on, weight) for road in roads)

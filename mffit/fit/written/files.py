@@ -9,12 +9,12 @@ from typing import Any, NamedTuple
 from mffit.fit import constants
 from mffit.fit.by_hand import Hand
 from mffit.fit.known import Known
-from mffit.fit.misfit import FileFigures, Reference
-from mffit.fit.normal import derive, side_force_for
 from mffit.fit.ranges import NAMES as RANGES
 from mffit.fit.ranges import plausible_ranges, tested_ranges, with_room
-from mffit.fit.road import held_to_camber, road_grid
 from mffit.fit.start import camber_stiffness_terms
+from mffit.fit.written.misfit import FileFigures, Reference
+from mffit.fit.written.normal import derive, side_force_for
+from mffit.fit.written.road import held_to_camber, road_grid
 from mffit.points import Points, main_path, main_pressure
 from tir import Tyre
 
@@ -30,7 +30,7 @@ class Files:
     changed: Mapping[str, tuple[str, ...]]  #: by use, coefficients that differ from the fitted model
     lacking: Mapping[float, float]
     """Turn-slip force [N] at nominal load, by radius of the road [m], that the file for turn slip off lacks."""
-    weight: str = "everything"  #: of the file for turn slip off, see :func:`mffit.fit.road.weights`
+    weight: str = "everything"  #: of the file for turn slip off, see :func:`mffit.fit.written.road.weights`
     camber_limit: float | None = None  #: to which the file for turn slip off is held [rad]
     otherwise: FileFigures | None = None
     """The file for turn slip off with the other weight, or where it is held to some camber, without that limit."""

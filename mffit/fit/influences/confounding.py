@@ -9,7 +9,7 @@ import numpy as np
 
 from mffit.fit import constants
 from mffit.fit.fitted import Fitted
-from mffit.fit.nuisances import NUISANCES, TEMPERATURE
+from mffit.fit.influences.nuisances import NUISANCES, TEMPERATURE
 from mffit.least_squares import inverse
 from mffit.points import Points, levels
 from tir.parameters import BY_NAME

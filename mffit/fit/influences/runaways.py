@@ -14,7 +14,7 @@ import numpy as np
 from mffit.constants import FEWEST_SWEEPS_TO_PREDICT, LEAST_PREDICTED_SHARE
 from mffit.fit import constants
 from mffit.fit.fitted import Fitted
-from mffit.fit.nuisance_choice import NearSolution, predicted_left_out, solved
+from mffit.fit.influences.nuisance_choice import NearSolution, predicted_left_out, solved
 from mffit.fit.plan import FitPlan
 from mffit.fit.polish import polish
 from mffit.least_squares import touches

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 
 from mffit.fit import agreement
 from mffit.fit.agreement import Agreement
-from mffit.fit.nuisances import of_run
-from mffit.fit.with_nuisances import NuisanceFit
+from mffit.fit.influences.nuisances import of_run
+from mffit.fit.influences.with_nuisances import NuisanceFit
 from mffit.points import Points
 from mffit.rig import Simulation
 from mffit.rig_errors import OF_RUN

@@ -8,12 +8,12 @@ import numpy as np
 
 from mffit.fit import constants
 from mffit.fit.agreement import Agreement
-from mffit.fit.between_runs import BetweenRuns
-from mffit.fit.files import name_at_temperature
-from mffit.fit.nuisance_choice import Gaps, Verdict
-from mffit.fit.nuisances import TEMPERATURE
-from mffit.fit.temperature import AtTemperature
-from mffit.fit.with_nuisances import NuisanceFit
+from mffit.fit.influences.between_runs import BetweenRuns
+from mffit.fit.influences.nuisance_choice import Gaps, Verdict
+from mffit.fit.influences.nuisances import TEMPERATURE
+from mffit.fit.influences.temperature import AtTemperature
+from mffit.fit.influences.with_nuisances import NuisanceFit
+from mffit.fit.written.files import name_at_temperature
 from mffit.quantities import CHANNELS
 from mffit.rig_errors import shown, unit_of, words_of
 from mffit.rounding import ascii_only, number, rounded

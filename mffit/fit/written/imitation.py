@@ -10,7 +10,7 @@ import numpy as np
 
 from mffit.fit import constants
 from mffit.fit.constraints import Envelope, limits
-from mffit.fit.road import Road
+from mffit.fit.written.road import Road
 from mffit.least_squares import FreeNumber, LeastSquaresProblem, Linear, Minimum, minimum
 from mffit.quantities import SIDEWAYS
 from mffit.rig import Readings

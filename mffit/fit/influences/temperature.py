@@ -10,12 +10,12 @@ import numpy as np
 
 from mffit.fit import agreement, constants
 from mffit.fit.agreement import Agreement
-from mffit.fit.between_runs import without_runs
 from mffit.fit.coefficients import Coefficient
-from mffit.fit.files import FileFigures
-from mffit.fit.nuisance_choice import Gaps
+from mffit.fit.influences.between_runs import without_runs
+from mffit.fit.influences.nuisance_choice import Gaps
+from mffit.fit.influences.with_nuisances import NuisanceFit
 from mffit.fit.posterior import Posterior
-from mffit.fit.with_nuisances import NuisanceFit
+from mffit.fit.written.files import FileFigures
 from mffit.points import Points
 from mffit.rig import Simulation
 from tir.temperature import SCALED_BY

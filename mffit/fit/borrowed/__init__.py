@@ -1,0 +1,1 @@
+"""Coefficients from elsewhere: of a sister tyre, or of another campaign of this tyre."""
