@@ -114,6 +114,11 @@ LARGEST_CAMBER_OF_RADII = Real(
     6.0, "deg", "Camber up to which loaded and rolling radius change with its square."
 )
 
+USUAL_MISFIT_OF_RADIUS = Real(
+    0.0003,
+    "m",
+    "Scatter of a loaded or rolling radius where as many coefficients as means leave none to see.",
+)
 RADIUS_GROWTH_OVER_SPEED = Real(
     0.0007, "-", "Standard deviation of Q_V1 where nothing states it; published files have 0.0005 to 0.0008."
 )

@@ -9,6 +9,7 @@ import numpy as np
 
 from mffit.config import Config
 from mffit.fit import FitResult
+from mffit.fit.constants import USUAL_MISFIT_OF_RADIUS
 from mffit.fit.wheel.vertical import RollingParts, radius
 from mffit.planning import constants
 from mffit.planning.runs import PlannedRun
@@ -41,7 +42,7 @@ class FittedApart:
             )
         self._radius = np.diag(self._spread_of_radius() ** -2.0)
         rolling, u = found.radii.rolling, found.radii.rms.get("RL")
-        self.u_radius = max(float(constants.PLAN_NOISE_OF_RADIUS), u or 0.0)
+        self.u_radius = max(float(USUAL_MISFIT_OF_RADIUS), u or 0.0)
         if rolling is not None and u:
             self._radius = self._radius + self._of_radii(
                 rolling.select(np.isfinite(rolling.loaded)), self.u_radius

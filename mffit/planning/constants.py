@@ -52,7 +52,6 @@ PLAN_UNKNOWN_STIFFNESS = Real(
 )
 PLAN_UNKNOWN_RADIUS = Real(0.01, "-", "Standard deviation of Q_RE0 where it was not measured.")
 PLAN_UNKNOWN_PRESSURE = Real(0.3, "-", "Standard deviation of PFZ1 where it was not measured.")
-PLAN_NOISE_OF_RADIUS = Real(0.0003, "m", "Smallest scatter of a loaded radius that is expected of a run.")
 PLAN_ROLLING_PRESSURES = Series(
     (0.8, 1.0, 1.2), "-", "Pressures of a rolling run over the programme's pressure."
 )

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field, fields, replace
 from types import SimpleNamespace
 from typing import Any, NamedTuple
 
 import numpy as np
+from scipy.special import stdtrit
 
+from mffit.constants import COVERAGE_FACTOR_95
 from mffit.fit import constants
 from mffit.fit.agreement import Agreement, agreement
 from mffit.fit.beside import BesideNumbers
@@ -252,8 +255,7 @@ def _fitted(
         return found + free_radius * (every[GROWTH] * dpi + every[LEAN[channel]] * rolling.gamma**2)
 
     end = solve(of_model(radius_of, names, measured, unit), numbers, tolerance=1e-9)
-    freedom = max(len(measured) - len(names), 1)
-    scale = float(end.data @ end.data) / freedom
+    scale = _scatter(float(end.data @ end.data), len(measured) - len(names), unit) ** 2
     values = {**values, **end.values}
     at = np.array([float(values[name]) for name in before])
     slope = of_model(radius_of, before, measured, unit).linear(at).slope
@@ -263,6 +265,13 @@ def _fitted(
         moved=-end.covariance @ end.jacobian.T @ slope,
         rms=unit * rms(end.data),
     )
+
+
+def _scatter(squares: float, freedom: int, unit: float) -> float:
+    """Scatter of the means in units, so that 1.96 of it hold 95 % although it is estimated from few of them."""
+    if freedom < 1:
+        return float(constants.USUAL_MISFIT_OF_RADIUS) / unit
+    return math.sqrt(squares / freedom) * float(stdtrit(freedom, 0.975)) / COVERAGE_FACTOR_95
 
 
 def vertical_sentence(found: Vertical) -> str:

@@ -104,6 +104,17 @@ def test_what_few_loads_and_pressures_do_not_show_stays():
     assert not vertical_coefficients(VALUES, rolling().replace(RL=np.nan, omega=np.nan)).found
 
 
+def test_a_fit_through_every_mean_is_not_exact():
+    """Three loads and three coefficients: the stiffness is as uncertain as radii that scatter by tenths of a millimetre."""
+    three = vertical_coefficients(
+        VALUES, rolling(loads=(2000.0, 4000.0, 6000.0), pressures=(200e3,), noise_of_RL=3e-4)
+    )
+    assert three.rms["RL"] < 1e-6
+    q = three.found["VERTICAL_STIFFNESS"]
+    assert abs(q.value - STIFFNESS) < 3.0 * q.u
+    assert 0.005 * STIFFNESS < q.u < 0.3 * STIFFNESS
+
+
 def test_wheel_speed_alone_gives_the_rolling_radius():
     known = {**VALUES, "VERTICAL_STIFFNESS": STIFFNESS, "PFZ1": PFZ1}
     found = vertical_coefficients(known, rolling().replace(RL=np.nan)).found
