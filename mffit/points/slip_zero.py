@@ -165,7 +165,8 @@ def against_free_rolling(
         wrong = _contradiction(heading, zero)
         if wrong:
             raise InputError(wrong, file=config.path or config.sweep[0].file, key="columns.kappa")
-        sentences.append(sentence(heading, against, zero))
+        if not (against == FREE and zero.is_free_rolling):  # declared so, and it is
+            sentences.append(sentence(heading, against, zero))
         if against == LOADED or (against is None and not zero.is_free_rolling):
             for k in rows:
                 shift = zero.at(readings_of(out[k]))
