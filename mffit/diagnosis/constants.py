@@ -83,7 +83,7 @@ LONGEST_PAUSE = Real(
 LIKELY_SPAN = Real(
     6.0,
     "-",
-    "Log likelihood below that of the best chains at which others are left out: a four-hundredth of the probability.",
+    "Chains are left out whose log likelihood is lower than that of the best ones by this: one in 400 in probability.",
 )
 NEGLIGIBLE_CHANGE = Real(
     1e-4, "-", "Variance of a direction of changes, over that of a reading, below which it is left out."

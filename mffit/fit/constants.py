@@ -87,7 +87,7 @@ SISTER_LOADS_AROUND_ONE = Real(
 SISTER_SLIP = Real(
     0.1,
     "-",
-    "Longitudinal slip, about that of the peak, up to which the limits of Fx are checked for a drawn tyre.",
+    "Limits of Fx of a drawn sister tyre are checked up to this slip, which is about that of the peak.",
 )
 SISTER_DRAWS = Count(
     20,

@@ -14,7 +14,7 @@ INFORMED_VARIANCE_SHARE = Real(
 STRAINED_RIG = Real(
     4.0,
     "-",
-    "A rig error found with one tyre is reported if it differs from that of the others by more standard uncertainties.",
+    "Standard uncertainties between a rig error of one tyre's build and that of the others from which it is reported.",
 )
 RIG_FAR_FROM_DECLARED = Real(
     3.0, "-", "Standard deviations above which the common rig contradicts its declaration."

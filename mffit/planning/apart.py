@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 
 import numpy as np
 
@@ -117,8 +117,3 @@ class FittedApart:
 def _by_load(dfz: np.ndarray) -> np.ndarray:
     """Derivatives (n, 3) of the logarithm of the carcass stiffness."""
     return np.column_stack([np.ones_like(dfz), dfz, dfz**2])
-
-
-def weighted(parts: Sequence[float]) -> float:
-    """Root mean square of several relative uncertainties."""
-    return math.sqrt(sum(part**2 for part in parts) / len(parts))

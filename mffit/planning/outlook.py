@@ -16,7 +16,7 @@ from mffit.fit import FitResult, Posterior
 from mffit.fit.posterior import spread_through
 from mffit.measured import Measured
 from mffit.planning import constants
-from mffit.planning.apart import FittedApart, weighted
+from mffit.planning.apart import FittedApart
 from mffit.planning.goals import BANDS, EPSILON, FILE, JOINT, TIE, Goal, effect_named
 from mffit.planning.identified import tied_pairs
 from mffit.planning.knowledge import PECP1, Knowledge
@@ -76,7 +76,7 @@ class Outlook:
             names, by_channel = self._file
             parts = [_spread(posterior, names, slopes) for slopes in by_channel]
             parts += [self.apart.u_relaxation(runs), self.apart.u_loaded_radius(runs)]
-            return COVERAGE_FACTOR_95 * weighted(parts)
+            return COVERAGE_FACTOR_95 * rms(np.array(parts))
         if self._curves is None:
             return _or_infinite(posterior.stderr.get(self.goal.name))
         names, (slopes,) = self._curves

@@ -60,7 +60,7 @@ ROLLING_RADIUS_RANGE = Series(
 )
 
 # Summaries of a test
-LARGEST_SUMMARY = Count(1_000_000, "bytes", "Larger tables are no list of runs.")
+LARGEST_SUMMARY = Count(1_000_000, "bytes", "Larger tables are not taken for the summary of a test.")
 SET_POINT_TOLERANCE = Real(
     2.0,
     "-",

@@ -267,9 +267,12 @@ def _row(raw: RawTable, columns: Mapping[str, str], k: int, recording: Path) -> 
 
 def _bad(quality: str, good: str, remark: str) -> str:
     """Why a run is bad, by its flags; "" if it is not."""
-    flagged = [word for word in (quality,) if simplified(word).rstrip(".!") in BAD]
-    flagged += [f"not valid ({good})" for _ in (good,) if simplified(good).rstrip(".!") in BAD | NO]
-    return ", ".join([*flagged, *([remark] if remark else [])]) if flagged else ""
+    flagged = []
+    if simplified(quality).rstrip(".!") in BAD:
+        flagged.append(quality)
+    if simplified(good).rstrip(".!") in BAD | NO:
+        flagged.append(f"not valid ({good})")
+    return ", ".join(filter(None, [*flagged, remark])) if flagged else ""
 
 
 def _recording(cell: str | float, recordings: Sequence[Path]) -> Path | None:
