@@ -80,6 +80,9 @@ class VectorValue:
     def __and__(self, other: Any) -> VectorValue:
         return self._given(self.builder.and_, self.value, self.like(other))
 
+    def __or__(self, other: Any) -> VectorValue:
+        return self._given(self.builder.or_, self.value, self.like(other))
+
     def __xor__(self, other: Any) -> VectorValue:
         return self._given(self.builder.xor, self.value, self.like(other))
 

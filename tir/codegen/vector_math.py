@@ -1,7 +1,7 @@
 """Elementary functions without branches, so that a compiler can use vector instructions.
 
 Each polynomial interpolates its function at the Chebyshev nodes of a reduced range; relative errors are below 4e-16
-(``power``: 2e-15), angles of ``sin``, ``cos`` and ``tan`` up to 1e6 rad. NaN gives NaN.
+(``arctan``: 7e-16, ``power``: 2e-15), angles of ``sin``, ``cos`` and ``tan`` up to 1e6 rad. NaN gives NaN.
 
 The numbers are those of :mod:`tir.codegen.instructions`.
 """
@@ -14,62 +14,89 @@ from tir.codegen.instructions import bits, number, select, sqrt
 
 ROUND = 6755399441055744.0
 """1.5 2^52: adding and subtracting it rounds to an integer, which is in the lowest bits in between."""
-PI_1, PI_2, PI_3 = 3.1415926534682512, 1.2154201012607932e-10, 4.044532497591901e-21
+PI_1, PI_2 = 3.1415926534682512, 1.2154201013012384e-10
 LN2_1, LN2_2 = 0.6931471804855391, 7.440617110012397e-11
 """pi and ln 2 as sums of numbers with few digits, so that small multiples of each are exact."""
 PER_PI, PER_LN2 = 1.0 / math.pi, 1.0 / math.log(2.0)
-HALF_PI, HALF_PI_REST = math.pi / 2.0, 6.123233995736766e-17
-TAN_PI_8, TAN_3PI_8 = math.sqrt(2.0) - 1.0, math.sqrt(2.0) + 1.0
+HALF_PI, PI_6 = math.pi / 2.0, math.pi / 6.0
+TAN_PI_12, TAN_PI_6, TAN_5PI_12 = 2.0 - math.sqrt(3.0), 1.0 / math.sqrt(3.0), 2.0 + math.sqrt(3.0)
+SIGN_BIT = -(2**63)
+SIN = (
+    -0.16666666666666666, 0.008333333333333316, -0.00019841269841254974, 2.7557319219163234e-06,
+    -2.5052107616996182e-08, 1.6058977312464087e-10, -7.643970296798572e-13, 2.7314447669863995e-15,
+)  # fmt: skip
+ARCTAN = (
+    -0.3333333333333324, 0.19999999999842993, -0.1428571423967277, 0.11111105955136967,
+    -0.09090624586290096, 0.07683735512306385, -0.06522051309586488, 0.04578559472830506,
+)  # fmt: skip
 EXPONENT_OF_ONE = 4607182418800017408
 MANTISSA = 4503599627370495
 INTEGER_IN_BITS = 4841369599423283200
 """Bits of 1.0, the bits behind the exponent, and the bits of 2^52, to which an integer can be added."""
+EXP = (
+    0.5000000000000001, 0.16666666666666669, 0.041666666666624164, 0.008333333333330065, 0.0013888888917196719,
+    0.00019841269863040545, 2.4801521322368692e-05, 2.7557268480310024e-06, 2.7620075879983367e-07,
+    2.5100375832561234e-08,
+)  # fmt: skip
+LOG = (
+    0.6666666666666666, 0.4000000000000088, 0.28571428570803614, 0.22222222391713917, 0.18181795640132906,
+    0.15386239702814658, 0.13268773138656886, 0.13086626147840102,
+)  # fmt: skip
+
+
+def polynomial(x, coefficients):
+    """c0 + c1 x + c2 x^2 ...; neighbours are added first, because sums that do not wait for each other run side by side."""
+    terms = list(coefficients)
+    while len(terms) > 1:
+        terms = [
+            terms[i] + x * terms[i + 1] if i + 1 < len(terms) else terms[i] for i in range(0, len(terms), 2)
+        ]
+        x = x * x
+    return terms[0]
 
 
 def sin(x):
     turns = x * PER_PI + ROUND
-    n = turns - ROUND
-    r = ((x - n * PI_1) - n * PI_2) - n * PI_3
-    return _sin_in_half_turn(r, bits(turns))
+    return _with_sign_of(turns, _sin_in_half_turn(_reduced(x, turns - ROUND)))
 
 
 def cos(x):
-    turns = (x * PER_PI - 0.5) + ROUND
-    n = (turns - ROUND) + 0.5
-    r = ((x - n * PI_1) - n * PI_2) - n * PI_3
-    return -_sin_in_half_turn(r, bits(turns))
-
-
-def _sin_in_half_turn(r, half_turns):
-    """sin(r) for abs(r) <= pi/2, negative where the number of half turns is odd."""
-    s = r * r
-    tail = 1.605904347941901e-10 + s * (
-        -7.647139121983424e-13 + s * (2.8104687777073216e-15 - s * 8.006069886350886e-18)
-    )
-    tail = -0.00019841269841269806 + s * (2.7557319223971264e-06 + s * (-2.5052108382391406e-08 + s * tail))
-    value = r + r * (s * (-0.16666666666666666 + s * (0.008333333333333333 + s * tail)))
-    return number(bits(value) ^ (half_turns << 63))
+    turns = (x * PER_PI + 0.5) + ROUND
+    return _with_sign_of(turns, _sin_in_half_turn(_reduced(x, (turns - ROUND) - 0.5)))
 
 
 def tan(x):
-    return sin(x) / cos(x)
+    half_turns = (x * PER_PI + ROUND) - ROUND
+    r = _reduced(x, half_turns)
+    from_pole = _reduced(x, half_turns + select(r < 0.0, -0.5, 0.5))
+    return _sin_in_half_turn(r) / _sin_in_half_turn(abs(from_pole))
+
+
+def _reduced(x, half_turns):
+    return (x - half_turns * PI_1) - half_turns * PI_2
+
+
+def _with_sign_of(turns, value):
+    """The value, negative where the number of half turns is odd."""
+    return number(bits(value) ^ (bits(turns) << 63))
+
+
+def _sin_in_half_turn(r):
+    """sin(r) for abs(r) <= pi/2."""
+    s = r * r
+    return r + (r * s) * polynomial(s, SIN)
 
 
 def arctan(x):
     t = abs(x)
-    steep, middle = t > TAN_3PI_8, t > TAN_PI_8
-    top = select(steep, -1.0, select(middle, t - 1.0, t))
-    bottom = select(steep, t, select(middle, t + 1.0, 1.0))
-    share = select(steep, 1.0, select(middle, 0.5, 0.0))
-    z = top / bottom
+    steep, middle = t > 1.0, (t > TAN_PI_12) & (t < TAN_5PI_12)
+    top, bottom = select(steep, 1.0, t), select(steep, t, 1.0)
+    z = select(middle, top - TAN_PI_6 * bottom, top) / select(middle, bottom + TAN_PI_6 * top, bottom)
     s = z * z
-    tail = -0.06664511447381948 + s * (
-        0.0585814891280221 + s * (-0.0508544973794026 + s * (0.03923165829558719 - s * 0.01917688711906226))
-    )
-    tail = 0.11111111015256361 + s * (-0.09090904578123903 + s * (0.07692183190826087 + s * tail))
-    tail = -0.3333333333333333 + s * (0.1999999999999552 + s * (-0.14285714284666542 + s * tail))
-    value = share * HALF_PI + (z + (z * (s * tail) + share * HALF_PI_REST))
-    return select(x < 0.0, -value, value)
+    value = z + (z * s) * polynomial(s, ARCTAN)
+    value = select(middle, value + PI_6, value)
+    value = select(steep, HALF_PI - value, value)
+    return number(bits(value) | (bits(x) & SIGN_BIT))
 
 
 def arccos(x):
@@ -82,12 +109,7 @@ def exp(x):
     turns = x * PER_LN2 + ROUND
     n = turns - ROUND
     r = (x - n * LN2_1) - n * LN2_2
-    tail = 2.4801521322368692e-05 + r * (
-        2.7557268480310024e-06 + r * (2.7620075879983367e-07 + r * 2.5100375832561234e-08)
-    )
-    tail = 0.008333333333330065 + r * (0.0013888888917196719 + r * (0.00019841269863040545 + r * tail))
-    tail = 0.5000000000000001 + r * (0.16666666666666669 + r * (0.041666666666624164 + r * tail))
-    return (1.0 + (r + (r * r) * tail)) * number((bits(turns) << 52) + EXPONENT_OF_ONE)
+    return (1.0 + (r + (r * r) * polynomial(r, EXP))) * number((bits(turns) << 52) + EXPONENT_OF_ONE)
 
 
 def log(x):
@@ -99,11 +121,7 @@ def log(x):
     m, exponent = select(high, 0.5 * m, m), select(high, exponent + 1.0, exponent)
     f = (m - 1.0) / (m + 1.0)
     s = f * f
-    tail = 0.18181795640132906 + s * (
-        0.15386239702814658 + s * (0.13268773138656886 + s * 0.13086626147840102)
-    )
-    tail = 0.4000000000000088 + s * (0.28571428570803614 + s * (0.22222222391713917 + s * tail))
-    tail = f * (s * (0.6666666666666666 + s * tail))
+    tail = (f * s) * polynomial(s, LOG)
     value = exponent * LN2_1 + (2.0 * f + (tail + exponent * LN2_2))
     return select(x == 0.0, -math.inf, select(abs(x) < math.inf, value, abs(x)))
 
