@@ -10,3 +10,8 @@ VECTOR_LANES = Count(
 LONGEST_INLINED_EXPRESSION = Count(
     400, "-", "Longest expression in characters that is written inside another one."
 )
+DIVISION_TAKES = Count(
+    4,
+    "-",
+    "A division or a root in a vector, in other operations one after the other; orders the instructions.",
+)

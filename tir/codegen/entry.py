@@ -15,7 +15,7 @@ from typing import Any
 from llvmlite import ir
 
 from tir.codegen import vector_math
-from tir.codegen.constants import VECTOR_LANES
+from tir.codegen.constants import DIVISION_TAKES, VECTOR_LANES
 from tir.codegen.graph import Node
 from tir.codegen.instructions import (
     DOUBLE,
@@ -34,6 +34,7 @@ from tir.codegen.source import FUNCTIONS
 POINTER = ir.IntType(8).as_pointer()
 PAIR = ir.VectorType(DOUBLE, 2)
 """A scalar call computes the same condition twice in a vector: choices between numbers are a fifth faster there."""
+SLOW = int(DIVISION_TAKES)
 BUFFER = ir.ArrayType(INTEGER, 10)
 """Python's ``Py_buffer``: the address is its first word, the length in bytes its third."""
 API = {
@@ -254,6 +255,8 @@ def _computed(
 ) -> Sequence[ir.Value]:
     """The outputs of the program, one condition per lane of the inputs."""
     type_ = next(iter(inputs.values())).type
+    written = builder.block.instructions
+    before = len(written)
     known: dict[int, Any] = {}
 
     def value(x: Any) -> Any:
@@ -262,23 +265,29 @@ def _computed(
     for i, node in enumerate(program.constants):
         x = builder.load(builder.gep(constants, [ir.Constant(INTEGER, i)]))
         known[node.number] = VectorValue(builder, in_every_lane(builder, type_, x))
-    for node in _longest_way_first(program.per_point):
+    for node in program.per_point:
         if node.operation == "symbol":
             known[node.number] = VectorValue(builder, inputs[node.name])
         else:
             known[node.number] = OPERATIONS[node.operation](*map(value, node.arguments))
     results = map(value, program.outputs.values())
+    written[before:] = _longest_way_first(written[before:])
     return [x.value if isinstance(x, VectorValue) else repeated(type_, x) for x in results]
 
 
-def _longest_way_first(nodes: Sequence[Node]) -> list[Node]:
-    """Nodes, those with the most operations on the way to a result first, so that neighbours seldom wait for each other.
+def _longest_way_first(instructions: Sequence[ir.Instruction]) -> list[ir.Instruction]:
+    """Instructions, those with the longest way to a result first, so that neighbours seldom wait for each other.
 
-    A processor that looks some hundred instructions ahead then always finds work.
+    A processor that looks some hundred instructions ahead then always finds work. LLVM alone follows the order of the equations.
     """
-    way = {node.number: 1 for node in nodes}
-    for node in reversed(nodes):
-        for a in node.arguments:
-            if isinstance(a, Node) and a.number in way:
-                way[a.number] = max(way[a.number], way[node.number] + 1)
-    return sorted(nodes, key=lambda node: -way[node.number])
+    takes = [
+        SLOW if i.opname == "fdiv" or (i.opname == "call" and "sqrt" in i.callee.name) else 1
+        for i in instructions
+    ]
+    place = {id(instruction): k for k, instruction in enumerate(instructions)}
+    way = takes.copy()
+    for k in reversed(range(len(instructions))):
+        for earlier in (place.get(id(x)) for x in instructions[k].operands):
+            if earlier is not None:
+                way[earlier] = max(way[earlier], takes[earlier] + way[k])
+    return [instructions[k] for k in sorted(range(len(instructions)), key=lambda k: -way[k])]

@@ -16,7 +16,7 @@ ROUND = 6755399441055744.0
 """1.5 2^52: adding and subtracting it rounds to an integer, which is in the lowest bits in between."""
 PI_1, PI_2 = 3.1415926534682512, 1.2154201013012384e-10
 LN2_1, LN2_2 = 0.6931471804855391, 7.440617110012397e-11
-"""pi and ln 2 as sums of numbers with few digits, so that small multiples of each are exact."""
+"""pi and ln 2 as sums of two numbers, the first with few digits, so that small multiples of it are exact."""
 PER_PI, PER_LN2 = 1.0 / math.pi, 1.0 / math.log(2.0)
 HALF_PI, PI_6 = math.pi / 2.0, math.pi / 6.0
 TAN_PI_12, TAN_PI_6, TAN_5PI_12 = 2.0 - math.sqrt(3.0), 1.0 / math.sqrt(3.0), 2.0 + math.sqrt(3.0)

@@ -70,7 +70,7 @@ def effective_radius(p, Fz, kappa, Vx, dpi):
     """Effective rolling radius Re [m] at load Fz [N] and forward speed Vx [m/s]; A7.
 
     Re depends on the wheel's speed of rotation, which depends on Re: ``Re = a + b / Re**2``, solved by Newton's method
-    (six steps reach rounding, as ``b`` is the small centrifugal growth).
+    (four steps reach rounding while b < a^3 / 2; ``b`` is the small centrifugal growth).
     """
     stiffness = p.VERTICAL_STIFFNESS * (1.0 + p.PFZ1 * dpi)
     load = Fz / p.FNOMIN
@@ -78,8 +78,9 @@ def effective_radius(p, Fz, kappa, Vx, dpi):
     a = p.UNLOADED_RADIUS * p.Q_RE0 - deflection
     b = p.UNLOADED_RADIUS * p.Q_V1 * ((1.0 + kappa) * Vx * p.UNLOADED_RADIUS / p.LONGVL) ** 2
     Re = a + b / (a * a)
-    for _ in range(6):
-        Re = Re - (Re - a - b / (Re * Re)) / (1.0 + 2.0 * b / (Re * Re * Re))
+    for _ in range(4):
+        square = Re * Re
+        Re = Re * (a * square + 3.0 * b) / (square * Re + 2.0 * b)
     return Re
 
 
