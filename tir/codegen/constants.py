@@ -4,8 +4,12 @@ from __future__ import annotations
 
 from tir.constant import Count
 
-VECTOR_LANES = Count(
-    8, "-", "Conditions computed together: doubles of the widest common vector; narrower machines split them."
+VECTOR_LANES = Count(8, "-", "Conditions computed together: doubles of the widest common vector (AVX-512).")
+NARROW_LANES = Count(
+    4,
+    "-",
+    "The same on processors with narrower vectors; more would fill their registers.",
+    "tests/benchmarks/speed.py",
 )
 LONGEST_INLINED_EXPRESSION = Count(
     400, "-", "Longest expression in characters that is written inside another one."

@@ -15,7 +15,7 @@ from typing import Any
 from llvmlite import ir
 
 from tir.codegen import vector_math
-from tir.codegen.constants import DIVISION_TAKES, VECTOR_LANES
+from tir.codegen.constants import DIVISION_TAKES
 from tir.codegen.graph import Node
 from tir.codegen.instructions import (
     DOUBLE,
@@ -73,17 +73,17 @@ OPERATIONS: dict[str, Callable[..., Any]] = {
 }
 
 
-def module(kind: str, program: Program) -> str:
+def module(kind: str, program: Program, lanes: int) -> str:
     """The function "one" or "batch" as LLVM assembly.
 
     ``one(*INPUTS)`` takes numbers of the types SCALARS, raises TypeError for others, and returns the six forces as floats.
     ``batch(*INPUTS, forces, first, last)`` takes buffers of doubles, each of a single number or of one per condition, and writes
-    conditions ``first`` to ``last`` of the buffer ``forces`` (6, n); n is VECTOR_LANES or more. It lets other threads run.
+    conditions ``first`` to ``last`` of the buffer ``forces`` (6, n), ``lanes`` at a time; n is not less. Other threads may run.
     """
     text = ir.Module(name=kind)
     signature = ir.FunctionType(POINTER, [POINTER, POINTER.as_pointer(), INTEGER])
     body = ir.IRBuilder(ir.Function(text, signature, kind).append_basic_block())
-    {"one": _one, "batch": _batch}[kind](_Caller(body), program)
+    {"one": _one, "batch": functools.partial(_batch, lanes=lanes)}[kind](_Caller(body), program)
     return str(text)
 
 
@@ -159,7 +159,7 @@ def _one(python: _Caller, program: Program) -> None:
     builder.ret(out)
 
 
-def _batch(python: _Caller, program: Program) -> None:
+def _batch(python: _Caller, program: Program, lanes: int) -> None:
     builder, count = python.builder, len(INPUTS)
     python.expect(count + 3)
     views = [builder.alloca(BUFFER) for _ in range(count + 1)]
@@ -178,7 +178,7 @@ def _batch(python: _Caller, program: Program) -> None:
     first, last = (python.call("PyLong_AsSsize_t", python.argument(count + i)) for i in (1, 2))
     python.leave_if(python.failed(), before=release)
 
-    vector = ir.VectorType(DOUBLE, VECTOR_LANES)
+    vector = ir.VectorType(DOUBLE, lanes)
     inputs = {name: _input(builder, vector, view) for name, view in zip(INPUTS, views, strict=False)}
     forces, size = _address_and_size(builder, views[-1])
     stride = builder.udiv(size, ir.Constant(INTEGER, 8 * len(program.outputs)))
@@ -222,7 +222,7 @@ def _loop(
     first, last = span
     before = builder.block
     loop, done = builder.append_basic_block("conditions"), builder.append_basic_block("done")
-    lanes = ir.Constant(INTEGER, VECTOR_LANES)
+    lanes = ir.Constant(INTEGER, vector.count)
     builder.cbranch(builder.icmp_signed("<", first, last), loop, done)
     builder.position_at_end(loop)
     at = builder.phi(INTEGER)

@@ -19,7 +19,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from tir.codegen.constants import VECTOR_LANES
+from tir.codegen.constants import NARROW_LANES, VECTOR_LANES
 from tir.codegen.program import Switches, trace
 from tir.codegen.single import constants, preparation_of
 from tir.equations.forces import Forces
@@ -30,6 +30,7 @@ SCALARS = frozenset({float, int, bool, np.float64, np.float32, np.int64, np.int3
 SOURCES = ("equations", "codegen", "constants.py", "evaluate.py", "derivatives.py", "parameters.csv")
 """Files that the machine code depends on."""
 LANES = int(VECTOR_LANES)
+"""Conditions that a call of the kernel for arrays has at least."""
 KINDS = ("batch", "one")
 FASTCALL = 0x80
 """CPython's METH_FASTCALL."""
@@ -108,7 +109,7 @@ def load(kind: str, switches: Switches) -> Kernel:
     if code is None:
         from tir.codegen import entry
 
-        code = _compiled(entry.module(kind, trace(switches, Forces._fields)), machine)
+        code = _compiled(entry.module(kind, trace(switches, Forces._fields), _lanes()), machine)
         _write(path, code)
     engine = binding.create_mcjit_compiler(binding.parse_assembly(""), machine)
     engine.add_object_file(binding.ObjectFileRef.from_data(code))
@@ -140,6 +141,12 @@ def _machine() -> Any:
         cpu=binding.get_host_cpu_name(), features=binding.get_host_cpu_features().flatten(), opt=3,
         codemodel="jitdefault", jit=True,
     )  # fmt: skip
+
+
+def _lanes() -> int:
+    from llvmlite import binding
+
+    return int(VECTOR_LANES if binding.get_host_cpu_features().get("avx512f") else NARROW_LANES)
 
 
 def _compiled(text: str, machine: Any) -> bytes:
