@@ -47,12 +47,8 @@ def _plain(column: pd.Series[Any]) -> np.ndarray | None:
     if isinstance(column.dtype, np.dtype) and (column.dtype == float or column.dtype.kind in "iub"):
         return column.to_numpy()
     values = column.to_numpy(dtype=object)
-    texts = set(map(type, values.tolist())) == {str} or all(map(_is_text, values, pd.isna(values)))
+    texts = set(map(type, values[~pd.isna(values)].tolist())) <= {str}
     return values if texts else None
-
-
-def _is_text(value: Any, missing: bool) -> bool:
-    return missing or isinstance(value, str)
 
 
 def _cells(values: np.ndarray) -> list[str]:
