@@ -1,4 +1,4 @@
-"""Tables as CSV text, as ``pandas.DataFrame.to_csv(index=False, lineterminator="\\n")`` writes them, in 40 % of its time.
+"""Tables as CSV text, as ``pandas.DataFrame.to_csv(index=False, lineterminator="\\n")`` writes them, in a third of its time.
 
 Numbers have the shortest digits that are read as the same number. Equal values of a column are formatted once.
 """
@@ -30,33 +30,30 @@ def csv_text(table: pd.DataFrame) -> str:
 
 def _chunks(table: pd.DataFrame) -> Iterator[str]:
     """The header, then the text of some rows at a time."""
-    columns = [_plain(table.iloc[:, k]) for k in range(table.shape[1])]
-    found = [column for column in columns if column is not None]
-    if len(found) < max(len(columns), 2):  # times, categories, mixed objects; a single column has other rules
+    columns = [table.iloc[:, k] for k in range(table.shape[1])]
+    if len(columns) < 2 or not all(map(_is_plain, columns)):  # a single column has other rules
         yield table.to_csv(index=False, lineterminator="\n")
         return
     yield _line(table.columns.tolist())
     rows = int(constants.ROWS_AS_TEXT)
     for begin in range(0, len(table), rows):
-        cells = [_cells(column[begin : begin + rows]) for column in found]
+        cells = [_cells(column.iloc[begin : begin + rows]) for column in columns]
         yield "\n".join([*map(",".join, zip(*cells, strict=True)), ""])
 
 
-def _plain(column: pd.Series[Any]) -> np.ndarray | None:
-    """The values (n,) as float64, integers, booleans, or objects that are texts or missing; None for any other kind."""
-    if isinstance(column.dtype, np.dtype) and (column.dtype == float or column.dtype.kind in "iub"):
-        return column.to_numpy()
-    values = column.to_numpy(dtype=object)
-    texts = set(map(type, values[~pd.isna(values)].tolist())) <= {str}
-    return values if texts else None
+def _is_plain(column: pd.Series[Any]) -> bool:
+    """Whether all values are float64, integers, booleans, or texts of which some may be missing."""
+    if isinstance(column.dtype, np.dtype) and column.dtype != object:
+        return column.dtype == float or column.dtype.kind in "iub"
+    return isinstance(column.dtype, pd.StringDtype) or set(map(type, column.dropna())) <= {str}
 
 
-def _cells(values: np.ndarray) -> list[str]:
+def _cells(column: pd.Series[Any]) -> list[str]:
     """Text (n,) of each value; a missing one is empty."""
-    if values.dtype == object:
-        cells = values.tolist()
-        known = {x: _line([x, ""])[:-2] if isinstance(x, str) else "" for x in set(cells)}
-        return [known[x] for x in cells]
+    if not isinstance(column.dtype, np.dtype) or column.dtype == object:
+        index, distinct = pd.factorize(column)  # -1 where missing
+        return _at(index, [*(_line([text, ""])[:-2] for text in distinct), ""])
+    values = column.to_numpy()
     if values.dtype != float:
         return _formatted_once(values, lambda each: list(map(repr, each.tolist())))
     # Distinct by their bits, as 0.0 and -0.0 are.
@@ -71,7 +68,11 @@ def _formatted_once(values: np.ndarray, formatted: Callable[[np.ndarray], list[s
     distinct, index = np.unique(values, return_inverse=True)
     if 2 * len(distinct) > len(values):
         return formatted(values)
-    found: list[str] = np.array(formatted(distinct), dtype=object)[index].tolist()
+    return _at(index, formatted(distinct))
+
+
+def _at(index: np.ndarray, texts: Sequence[str]) -> list[str]:
+    found: list[str] = np.array(texts, dtype=object)[index].tolist()
     return found
 
 
